@@ -1,0 +1,35 @@
+// Logging: one line an event to stderr, which systemd's journal takes as it is.
+//
+// Under the journal (JOURNAL_STREAM is set) a line starts with its syslog priority, "<4>", and
+// carries no time; in a terminal it starts with the time of day. Pure folders do not log: they
+// return Results, and the composition root says what happened.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+namespace merlin {
+
+enum class LogLevel { kDebug, kInfo, kWarning, kError };
+
+// Once, before any thread starts. Lines below `lowest` are dropped.
+void initLog(LogLevel lowest);
+
+// Thread-safe.
+void logLine(LogLevel level, std::string_view text);
+
+template <typename... Args>
+void logInfo(fmt::format_string<Args...> format, Args&&... args) {
+  logLine(LogLevel::kInfo, fmt::format(format, std::forward<Args>(args)...));
+}
+template <typename... Args>
+void logWarning(fmt::format_string<Args...> format, Args&&... args) {
+  logLine(LogLevel::kWarning, fmt::format(format, std::forward<Args>(args)...));
+}
+template <typename... Args>
+void logError(fmt::format_string<Args...> format, Args&&... args) {
+  logLine(LogLevel::kError, fmt::format(format, std::forward<Args>(args)...));
+}
+
+}  // namespace merlin

@@ -1,0 +1,94 @@
+#include "drivers/emulate/motion.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "drivers/hand/shapes.h"
+
+namespace merlin::emulate {
+namespace {
+
+constexpr double kTransition = 0.35;  // s, from one hand shape or push to the next
+
+using Ball = std::array<float, 6>;
+constexpr Ball kRest{};
+constexpr Ball kSpin{0, 0, 0, 0, 0.6F, 0};
+constexpr Ball kPush{0.5F, 0, 0.4F, 0, 0, 0};
+constexpr Ball kTumble{0, 0.2F, 0, 0.5F, -0.5F, 0.3F};
+
+// A visitor: turns the model, looks at it, takes it in the hand, lets go, turns it back.
+constexpr Phase kVisit[] = {
+    {3.0, "open", kSpin, 0, false},     {2.0, "open", kRest, 0, false},
+    {2.0, "point", kPush, 0, false},    {1.0, "open", kRest, 0, true},
+    {3.5, "fist", kRest, 0, true},      {2.0, "open", kRest, 0, false},
+    {1.5, "thumb-up", kTumble, 0, false}, {0.3, "open", kRest, 1, false},
+    {1.7, "victory", kRest, 0, false},  {2.0, "pinch", kSpin, 0, false},
+    {1.0, "hook", kRest, 0, false},
+};
+constexpr Phase kTurning[] = {{1000.0, "open", kSpin, 0, true}};
+constexpr Phase kStill[] = {{1000.0, "open", kRest, 0, false}};
+constexpr Phase kGrabbing[] = {{1.0, "open", kRest, 0, true}, {4.0, "fist", kRest, 0, true}};
+
+constexpr MotionScript kScripts[] = {
+    {"visit", "a visitor turns the model, rests, grabs it with a fist, lets go", kVisit},
+    {"turning", "the ball is twisted all the time", kTurning},
+    {"still", "nobody is there: open hand, ball at rest, tracker noise only", kStill},
+    {"grabbing", "fist and open hand in turn, the hand moves", kGrabbing},
+};
+
+float mix(float a, float b, double share) { return a + (b - a) * static_cast<float>(share); }
+
+// 0..1 with level ends.
+double smooth(double x) {
+  x = std::clamp(x, 0.0, 1.0);
+  return x * x * (3 - 2 * x);
+}
+
+// Where the hand is, relative to the transmitter; wanders where the phase says so.
+void placeHand(Motion& motion, double seconds, double amplitude) {
+  const double w = 2 * std::numbers::pi * seconds;
+  motion.position_m = {0.60F + static_cast<float>(amplitude * 0.08 * std::sin(w / 2.7)),
+                       0.05F + static_cast<float>(amplitude * 0.20 * std::sin(w / 3.5)),
+                       -0.15F + static_cast<float>(amplitude * 0.10 * std::sin(w / 2.3))};
+  const double half = amplitude * 0.35 * std::sin(w / 4.1);  // half of the angle about z
+  motion.orientation_wxyz = {static_cast<float>(std::cos(half)), 0, 0,
+                             static_cast<float>(std::sin(half))};
+}
+
+}  // namespace
+
+Motion MotionScript::at(Duration t) const {
+  double length = 0;
+  for (const Phase& p : phases) length += p.seconds;
+  double since = std::fmod(std::max(toSeconds(t), 0.0), length);
+  std::size_t i = 0;
+  while (since >= phases[i].seconds) since -= phases[i++].seconds;
+  const Phase& now = phases[i];
+  const Phase& before = phases[(i + phases.size() - 1) % phases.size()];
+  const double share = smooth(since / kTransition);
+
+  Motion motion;
+  const hand::Shape* from = hand::findShape(before.shape);
+  const hand::Shape* to = hand::findShape(now.shape);
+  assert(from && to);
+  for (std::size_t s = 0; s < kGloveSlots; ++s) {
+    motion.glove_rad[s] = mix(from->angle_rad[s], to->angle_rad[s], share);
+  }
+  for (std::size_t a = 0; a < 6; ++a) motion.ball[a] = mix(before.ball[a], now.ball[a], share);
+  motion.ball_buttons = now.buttons;
+  placeHand(motion, toSeconds(t), mix(before.wave ? 1 : 0, now.wave ? 1 : 0, share));
+  return motion;
+}
+
+std::span<const MotionScript> motionScripts() { return kScripts; }
+
+const MotionScript* findMotionScript(std::string_view name) {
+  for (const MotionScript& script : kScripts) {
+    if (script.name == name) return &script;
+  }
+  return nullptr;
+}
+
+}  // namespace merlin::emulate

@@ -1,0 +1,46 @@
+// MotionScript: what the emulated person does with glove, tracker and ball, as a function of time.
+// Synthetic by design; pure.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "daemon/base/clock.h"
+#include "drivers/port/samples.h"
+
+namespace merlin::emulate {
+
+// What the three devices would measure at one moment.
+struct Motion {
+  std::array<float, kGloveSlots> glove_rad{};   // joint angles in slot order, flexion positive
+  std::array<float, 3> position_m{};            // of the hand, transmitter frame
+  std::array<float, 4> orientation_wxyz{1, 0, 0, 0};
+  std::array<float, 6> ball{};                  // shares of full scale, device's own axes
+  std::uint32_t ball_buttons = 0;               // bit i = button i + 1
+};
+
+// What the person does during one phase; between phases, hands move over in kTransition.
+struct Phase {
+  double seconds;               // how long
+  const char* shape;            // of the hand: a name of drivers/hand/shapes
+  std::array<float, 6> ball;    // held push and twist
+  std::uint32_t buttons;        // held
+  bool wave;                    // the hand moves about; else it is still
+};
+
+struct MotionScript {
+  const char* name;
+  const char* help;
+  std::span<const Phase> phases;  // repeated for ever
+
+  // At `t` since the start of the script. Tracker noise is the emulator's, not the script's.
+  Motion at(Duration t) const;
+};
+
+std::span<const MotionScript> motionScripts();
+const MotionScript* findMotionScript(std::string_view name);  // nullptr if there is none
+
+}  // namespace merlin::emulate

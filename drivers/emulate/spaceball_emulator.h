@@ -1,0 +1,14 @@
+// A Spaceball 2003, 3003 or 4000 FLX as a program sees it. Source: drivers/spaceball/README.md.
+#pragma once
+
+#include <memory>
+
+#include "drivers/emulate/emulator.h"
+
+namespace merlin::emulate {
+
+// Models: "2003", "3003", "4000".
+std::unique_ptr<Emulator> makeSpaceball(const EmulatorSettings& settings, const MotionScript& script,
+                                        Timestamp start);
+
+}  // namespace merlin::emulate

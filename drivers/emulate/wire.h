@@ -1,0 +1,54 @@
+// Wire: how long bytes take on a serial line, so that an emulator sends no more than its line holds.
+#pragma once
+
+#include <algorithm>
+
+#include <string>
+#include <string_view>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/random.h"
+
+namespace merlin::emulate {
+
+class Wire {
+ public:
+  // 8N1: ten bits a byte. `garbage_every` records apart a burst of 1..12 random bytes is sent.
+  Wire(int baud, int garbage_every, std::uint64_t seed)
+      : byte_time_(std::chrono::nanoseconds(10'000'000'000 / baud)),
+        garbage_every_(garbage_every),
+        random_(seed) {}
+
+  bool free(Timestamp now) const noexcept { return now >= busy_until_; }
+  Timestamp freeAt() const noexcept { return busy_until_; }
+
+  // A reply to a command: never dropped, sent after what is under way.
+  void reply(std::string_view bytes, Timestamp now, std::string& out) {
+    occupy(bytes.size(), now);
+    out += bytes;
+  }
+
+  // A record of a stream. REQUIRES: free(now).
+  void record(std::string_view bytes, Timestamp now, std::string& out) {
+    if (garbage_every_ > 0 && ++records_ % garbage_every_ == 0) {
+      const auto burst = 1 + random_.below(12);
+      for (std::uint64_t i = 0; i < burst; ++i) out.push_back(static_cast<char>(random_.next()));
+      occupy(burst, now);
+    }
+    occupy(bytes.size(), now);
+    out += bytes;
+  }
+
+ private:
+  void occupy(std::size_t bytes, Timestamp now) {
+    busy_until_ = std::max(busy_until_, now) + byte_time_ * static_cast<std::int64_t>(bytes);
+  }
+
+  Duration byte_time_;
+  int garbage_every_;
+  Random random_;
+  int records_ = 0;
+  Timestamp busy_until_{};
+};
+
+}  // namespace merlin::emulate

@@ -1,0 +1,128 @@
+#include "drivers/io/open_stream.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <grp.h>
+#include <libserialport.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <termios.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "drivers/io/fd_stream.h"
+
+namespace merlin::io {
+namespace {
+
+// ", whose group is dialout: add this user to it" where that is the cure; else empty.
+std::string groupHint(const std::string& path) {
+  struct stat status {};
+  if (errno != EACCES || ::stat(path.c_str(), &status) != 0) return {};
+  const group* owner = ::getgrgid(status.st_gid);
+  return owner ? fmt::format(" (its group is {0}: usermod -aG {0} USER)", owner->gr_name) : "";
+}
+
+Error openError(const std::string& path, int error) {
+  errno = error;
+  const std::string hint = groupHint(path);
+  return {error == ENOENT ? Errc::kNotFound : Errc::kIo,
+          fmt::format("{}: {}{}", path, std::strerror(error), hint)};
+}
+
+Result<Ok> lockPort(int fd, const std::string& path) {
+  if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return Ok{};
+  return Error{Errc::kBusy, path + ": another program holds this port"};
+}
+
+speed_t toSpeed(int baud) {
+  switch (baud) {
+    case 1200: return B1200;
+    case 2400: return B2400;
+    case 4800: return B4800;
+    case 9600: return B9600;
+    case 19200: return B19200;
+    case 38400: return B38400;
+    case 57600: return B57600;
+    case 115200: return B115200;
+    default: return B0;
+  }
+}
+
+Result<std::unique_ptr<ByteStream>> openPty(const std::string& path, int baud) {
+  UniqueFd fd(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (!fd.valid()) return openError(path, errno);
+  if (const auto locked = lockPort(fd.get(), path); !locked) return locked.error();
+  termios line{};
+  if (::tcgetattr(fd.get(), &line) != 0) {
+    return Error{Errc::kIo, path + ": is not a terminal; pty: takes the path of a pseudo-terminal"};
+  }
+  ::cfmakeraw(&line);
+  line.c_cflag |= CLOCAL | CREAD;
+  ::cfsetspeed(&line, toSpeed(baud));
+  ::tcsetattr(fd.get(), TCSANOW, &line);
+  ::tcflush(fd.get(), TCIOFLUSH);
+  const int raw = fd.get();
+  auto owner = std::make_shared<UniqueFd>(std::move(fd));  // shared: std::function must copy
+  return std::unique_ptr<ByteStream>(std::make_unique<FdStream>(raw, [owner] { owner->reset(); }));
+}
+
+using PortHandle = std::shared_ptr<sp_port>;  // shared: std::function must copy
+
+Error serialError(const std::string& path, const char* step) {
+  const int error = errno;
+  if (error == ENOENT || error == EACCES) return openError(path, error);
+  char* text = sp_last_error_message();
+  Error result{Errc::kIo, fmt::format("{}: {}: {}", path, step, text ? text : "unknown")};
+  sp_free_error_message(text);
+  return result;
+}
+
+Result<std::unique_ptr<ByteStream>> openSerial(const std::string& path, int baud) {
+  if (::access(path.c_str(), R_OK | W_OK) != 0) return openError(path, errno);
+  sp_port* found = nullptr;
+  if (sp_get_port_by_name(path.c_str(), &found) != SP_OK) {
+    return Error{Errc::kIo, path + ": is no serial port (a pseudo-terminal is pty:" + path + ")"};
+  }
+  const PortHandle port(found, [](sp_port* p) { sp_free_port(p); });
+  if (sp_open(found, SP_MODE_READ_WRITE) != SP_OK) return serialError(path, "open");
+  const auto close = [port] { sp_close(port.get()); };
+  int fd = -1;
+  sp_get_port_handle(found, &fd);
+  const auto locked = lockPort(fd, path);
+  const bool set = locked.ok() && sp_set_baudrate(found, baud) == SP_OK &&
+                   sp_set_bits(found, 8) == SP_OK && sp_set_parity(found, SP_PARITY_NONE) == SP_OK &&
+                   sp_set_stopbits(found, 1) == SP_OK &&
+                   sp_set_flowcontrol(found, SP_FLOWCONTROL_NONE) == SP_OK &&
+                   sp_set_rts(found, SP_RTS_ON) == SP_OK && sp_set_dtr(found, SP_DTR_ON) == SP_OK &&
+                   sp_flush(found, SP_BUF_BOTH) == SP_OK;
+  if (!set) {
+    const Error error = locked.ok() ? serialError(path, "line settings") : locked.error();
+    close();
+    return error;
+  }
+  return std::unique_ptr<ByteStream>(std::make_unique<FdStream>(fd, close));
+}
+
+}  // namespace
+
+Result<PortAddress> parsePort(std::string_view text) {
+  constexpr std::pair<std::string_view, PortKind> kForms[] = {{"serial:", PortKind::kSerial},
+                                                              {"pty:", PortKind::kPty}};
+  for (const auto& [prefix, kind] : kForms) {
+    if (text.starts_with(prefix) && text.size() > prefix.size()) {
+      return PortAddress{kind, std::string(text.substr(prefix.size()))};
+    }
+  }
+  return Error{Errc::kInvalidArgument,
+               fmt::format("\"{}\" is no port; ports are serial:/dev/... and pty:PATH", text)};
+}
+
+Result<std::unique_ptr<ByteStream>> openPort(const PortAddress& address, int baud) {
+  return address.kind == PortKind::kSerial ? openSerial(address.path, baud)
+                                           : openPty(address.path, baud);
+}
+
+}  // namespace merlin::io

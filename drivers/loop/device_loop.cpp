@@ -1,0 +1,113 @@
+#include "drivers/loop/device_loop.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace merlin {
+namespace {
+
+constexpr Duration kReportInterval = std::chrono::milliseconds(100);
+constexpr Duration kRateWindow = std::chrono::seconds(1);
+
+template <std::size_t N>
+void setText(char (&field)[N], std::string_view text) noexcept {
+  const std::size_t n = std::min(text.size(), N - 1);
+  std::memcpy(field, text.data(), n);
+  std::memset(field + n, 0, N - n);
+}
+
+}  // namespace
+
+DeviceLoop::DeviceLoop(DeviceLoopSettings settings, StreamOpener open_stream,
+                       std::unique_ptr<Device> device, HealthSink& health, Clock& clock)
+    : settings_(std::move(settings)),
+      open_stream_(std::move(open_stream)),
+      device_(std::move(device)),
+      sink_(health),
+      clock_(clock) {
+  setText(health_.port, settings_.port);
+}
+
+void DeviceLoop::run(const std::stop_token& stop) {
+  enter(HealthState::kAbsent, "not opened yet");
+  Duration retry = settings_.first_retry;
+  while (!stop.stop_requested()) {
+    streamed_ = false;
+    const Error end = serve(stop);
+    if (stop.stop_requested()) break;
+    if (streamed_) {
+      ++health_.reconnects;
+      retry = settings_.first_retry;
+    }
+    const bool port_opened = health_.state != HealthState::kAbsent;
+    enter(port_opened && end.code != Errc::kClosed ? HealthState::kFailed : HealthState::kAbsent,
+          end.what);
+    if (!clock_.sleepUntil(clock_.now() + retry, stop)) break;
+    retry = std::min(2 * retry, settings_.longest_retry);
+  }
+  enter(HealthState::kAbsent, "stopped");
+}
+
+Error DeviceLoop::serve(const std::stop_token& stop) {
+  auto stream = open_stream_();
+  if (!stream) {
+    health_.state = HealthState::kAbsent;
+    return stream.error();
+  }
+  const std::stop_callback wake(stop, [&] { (*stream)->interrupt(); });
+  enter(HealthState::kOpening, "");
+  const auto identity = device_->open(**stream);
+  if (!identity) return identity.error();
+  setText(health_.identity, *identity);
+  enter(HealthState::kOk, "");
+  return pollUntilLost(**stream, stop);
+}
+
+Error DeviceLoop::pollUntilLost(ByteStream& stream, const std::stop_token& stop) {
+  rate_since_ = clock_.now();
+  rate_samples_ = device_->counters().samples;
+  while (!stop.stop_requested()) {
+    if (const auto polled = device_->poll(stream); !polled) return polled.error();
+    if (device_->counters().samples > health_.samples) streamed_ = true;
+    report();
+  }
+  return {Errc::kClosed, "stopped"};
+}
+
+void DeviceLoop::enter(HealthState state, std::string_view reason) noexcept {
+  const Timestamp now = clock_.now();
+  if (state != health_.state || health_.since_ns == 0) health_.since_ns = toNanoseconds(now);
+  health_.state = state;
+  setText(health_.reason, reason);
+  if (state != HealthState::kOk) health_.rate_hz = 0;
+  reported_ = {};
+  report();
+}
+
+void DeviceLoop::report() noexcept {
+  const Timestamp now = clock_.now();
+  if (now - reported_ < kReportInterval) return;
+  reported_ = now;
+  const DeviceCounters counters = device_->counters();
+  health_.updated_ns = toNanoseconds(now);
+  health_.samples = counters.samples;
+  health_.bad_bytes = counters.bad_bytes;
+  health_.bad_packets = counters.bad_packets;
+  if (health_.state == HealthState::kOk) {
+    setText(health_.reason, device_->complaint());
+    measureRate(now);
+  }
+  sink_.publish(health_);
+}
+
+void DeviceLoop::measureRate(Timestamp now) noexcept {
+  const Duration window = now - rate_since_;
+  if (window < kRateWindow) return;
+  const auto samples = static_cast<double>(health_.samples - rate_samples_);
+  health_.rate_hz = static_cast<float>(samples / toSeconds(window));
+  rate_since_ = now;
+  rate_samples_ = health_.samples;
+}
+
+}  // namespace merlin

@@ -1,0 +1,53 @@
+// DeviceLoop: keeps one device alive and publishing, whatever happens to its line.
+#pragma once
+
+#include <memory>
+#include <stop_token>
+#include <string>
+
+#include "daemon/base/clock.h"
+#include "drivers/port/byte_stream.h"
+#include "drivers/port/device.h"
+#include "drivers/port/sample_sink.h"
+
+namespace merlin {
+
+struct DeviceLoopSettings {
+  std::string port;                                        // as a person wrote it, for the health
+  Duration first_retry = std::chrono::milliseconds(100);   // doubled after each failure,
+  Duration longest_retry = std::chrono::milliseconds(1000);  // up to this; reset by success
+};
+
+// Over ports and a Clock only; owns no thread: run() is the body of one. Thread-bound but for the
+// stop token, which may be triggered from anywhere.
+class DeviceLoop {
+ public:
+  DeviceLoop(DeviceLoopSettings settings, StreamOpener open_stream, std::unique_ptr<Device> device,
+             HealthSink& health, Clock& clock);
+
+  // Opens, talks, polls, backs off and starts again, until `stop`; returns within about 50 ms of
+  // it. Blocks no other device: it shares nothing with them.
+  void run(const std::stop_token& stop);
+
+ private:
+  // One connection, from opening the port to losing it; returns why it ended.
+  Error serve(const std::stop_token& stop);
+  Error pollUntilLost(ByteStream& stream, const std::stop_token& stop);
+
+  void enter(HealthState state, std::string_view reason) noexcept;
+  void report() noexcept;  // publishes health_, with counters and rate, at most every 100 ms
+  void measureRate(Timestamp now) noexcept;
+
+  DeviceLoopSettings settings_;
+  StreamOpener open_stream_;
+  std::unique_ptr<Device> device_;
+  HealthSink& sink_;
+  Clock& clock_;
+  DeviceHealth health_{};
+  bool streamed_ = false;  // this connection came as far as a sample
+  Timestamp rate_since_{};
+  std::uint64_t rate_samples_ = 0;
+  Timestamp reported_{};
+};
+
+}  // namespace merlin

@@ -1,0 +1,89 @@
+// What devices measure: the vocabulary that drivers write and the rest of MERLIN reads.
+//
+// Each struct is fixed-width, SI, pointer-free and trivially copyable, because it is mapped as it
+// stands by client processes. Its size is asserted; changing one bumps shm::kVersion.
+// `received_ns` is CLOCK_MONOTONIC at the record's first byte; `counter` grows by one a record, so
+// that a gap is a lost record.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace merlin {
+
+// Slots of a CyberGlove, in the order of the interface unit's mask bits: 0 thumb roll ... 22 wrist
+// yaw. What each slot is, and which rule fills slot 7: drivers/cyberglove/README.md.
+inline constexpr std::size_t kGloveSlots = 23;
+
+struct GloveSample {
+  enum Flag : std::uint32_t { kPlugged = 1, kWristSwitch = 2, kLight = 4 };
+
+  std::int64_t received_ns;
+  std::uint32_t counter;
+  std::uint32_t flags;           // Flag bits, as on the wire
+  float angle_rad[kGloveSlots];  // flexion positive; see the calibration for each slot's zero
+  std::uint32_t sensors;         // how many slots were measured (18 or 22); others were filled
+  std::uint8_t raw[24];          // 1..255 as on the wire, 0 where not measured; [23] unused
+};
+static_assert(sizeof(GloveSample) == 136 && offsetof(GloveSample, angle_rad) == 16);
+
+// Stations of a Fastrak.
+inline constexpr std::size_t kStations = 4;
+
+struct TrackerSample {
+  std::int64_t received_ns;
+  std::uint32_t counter;
+  std::uint32_t station;      // 1..4, as the switches on the unit name them
+  float position_m[3];        // transmitter frame: x away from the cable, y right, z down
+  float orientation_wxyz[4];  // unit quaternion q_transmitter_receiver
+  char error;                 // ' ' for none, else the unit's built-in-test letter
+  std::uint8_t reserved[3];
+};
+static_assert(sizeof(TrackerSample) == 48 && offsetof(TrackerSample, position_m) == 16);
+
+struct BallSample {
+  std::int64_t received_ns;
+  std::uint32_t counter;
+  std::uint32_t buttons;   // bit 0 = button 1 ... bit 11 = button 12; the pick button is the last
+  float translation[3];    // share of full scale, -1..1; x right, y up, z towards the person
+  float rotation[3];       // about the same axes, right-handed, share of full scale
+  std::int16_t raw[6];     // as on the wire: X Y Z A B C
+  std::uint32_t period_us; // the device's own time since its last displacement packet
+};
+static_assert(sizeof(BallSample) == 56 && offsetof(BallSample, translation) == 16);
+
+struct PostureSample {
+  std::int64_t received_ns;  // of the glove record that it was recognised from
+  std::int64_t since_ns;     // received_ns of the first record in a row with this code
+  std::uint32_t counter;     // of that glove record
+  std::uint32_t code;        // five bits: output i above 0.5 sets bit i
+  float activation[5];       // the network's outputs
+  char name[20];             // of the code, NUL-ended; empty where the code has no name
+};
+static_assert(sizeof(PostureSample) == 64 && offsetof(PostureSample, activation) == 24);
+
+// How a device is.
+enum class HealthState : std::uint32_t {
+  kAbsent = 0,   // its port cannot be opened
+  kOpening = 1,  // the dialogue is under way
+  kOk = 2,       // streaming
+  kFailed = 3,   // the port is open, and what answers there is not this device, or nothing is
+};
+
+struct DeviceHealth {
+  std::int64_t since_ns;      // when `state` began
+  std::int64_t updated_ns;    // when this was written; old means that the daemon is gone
+  std::uint64_t samples;      // published since the daemon started
+  std::uint64_t bad_bytes;    // dropped by the parser since the daemon started
+  std::uint64_t bad_packets;  // packets dropped whole
+  HealthState state;
+  std::uint32_t reconnects;  // times that it was lost after it had streamed
+  float rate_hz;             // samples a second, over about the last second
+  std::uint32_t reserved;
+  char port[64];      // where it is looked for, NUL-ended, cut if longer
+  char identity[64];  // what it said it is
+  char reason[128];   // why it is not well; empty where it is
+};
+static_assert(sizeof(DeviceHealth) == 312 && offsetof(DeviceHealth, port) == 56);
+
+}  // namespace merlin

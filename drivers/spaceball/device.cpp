@@ -1,0 +1,148 @@
+#include "drivers/spaceball/device.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "drivers/port/dialogue.h"
+#include "drivers/spaceball/calibration.h"
+
+namespace merlin::spaceball {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr Duration kPollTime = milliseconds(250);
+constexpr Duration kSilenceBeforePing = seconds(2);
+constexpr Duration kPingTime = seconds(1);
+constexpr Duration kFirstByteTime = milliseconds(2500);  // a reset takes about 2 s
+constexpr Duration kBannerTime = seconds(10);
+
+constexpr std::string_view kReset = "\r@RESET\r";
+// Binary mode, no null region, 50 ms between packets.
+constexpr std::string_view kSetUp = "CB\rNT\rFT?\rFR?\rP@r@r\r";
+constexpr std::string_view kBallOn = "MSSV\rZ\rk\r";      // 2003, 3003
+constexpr std::string_view kBallOn4000 = "M\rZ\rk\r";
+constexpr std::string_view kPing = "k\r";
+
+// "2.63" of "@2 Firmware version 2.63 created on 24-Oct-1997."; empty if there is none.
+std::string_view firmwareVersion(std::string_view line) {
+  constexpr std::string_view kBefore = "ersion ";
+  const auto at = line.find(kBefore);
+  if (at == std::string_view::npos) return {};
+  line.remove_prefix(at + kBefore.size());
+  return line.substr(0, line.find_first_not_of("0123456789."));
+}
+
+}  // namespace
+
+SpaceballDevice::SpaceballDevice(const SpaceballSettings& settings, const Clock& clock,
+                                 SampleSink& sink)
+    : settings_(settings), clock_(clock), sink_(sink) {}
+
+Result<std::string> SpaceballDevice::open(ByteStream& stream) {
+  Dialogue dialogue(stream, clock_);
+  if (const auto sent = dialogue.send(kReset); !sent) return sent.error();
+  const auto firmware = awaitBanner(stream);
+  if (!firmware) return firmware.error();
+  model_ = modelOf(*firmware);
+  if (const auto done = setUp(stream); !done) return done.error();
+  last_heard_ = clock_.now();
+  const std::uint32_t counter = sample_.counter;
+  sample_ = {};  // whatever was pushed before the line was lost is pushed no more
+  sample_.counter = counter;
+  fresh_ = true;
+  return fmt::format("{}, firmware {}", nameOf(model_), *firmware);
+}
+
+// Returns the firmware's number. Banner lines: "@1 Spaceball alive and well after a ... reset." and
+// "@2 Firmware version N created on ...".
+Result<std::string> SpaceballDevice::awaitBanner(ByteStream& stream) {
+  Dialogue dialogue(stream, clock_);
+  Duration patience = kFirstByteTime;
+  for (const Timestamp deadline = clock_.now() + kBannerTime; clock_.now() < deadline;) {
+    const auto line = dialogue.readUntil('\r', 256, patience, "@RESET");
+    if (!line && line.error().code != Errc::kTimeout) return line.error();
+    if (!line) {
+      if (patience == kPingTime) return line.error();
+      patience = kPingTime;  // perhaps awake, and deaf to @RESET: ask for the model
+      if (const auto sent = dialogue.send("hm\rhv\r"); !sent) return sent.error();
+      continue;
+    }
+    const std::string version(firmwareVersion(*line));
+    if (!version.empty()) return version;
+  }
+  return Error{Errc::kMalformed, "bytes came for 10 s after @RESET, and no Spaceball banner in them"};
+}
+
+Result<Ok> SpaceballDevice::setUp(ByteStream& stream) {
+  Dialogue dialogue(stream, clock_);
+  if (const auto sent = dialogue.send(kSetUp); !sent) return sent.error();
+  return dialogue.send(model_ == Model::k4000 ? kBallOn4000 : kBallOn);
+}
+
+Result<Ok> SpaceballDevice::poll(ByteStream& stream) {
+  std::array<std::byte, 64> buffer;  // NOLINT: filled by read
+  const auto got = stream.read(buffer, kPollTime);
+  if (!got && got.error().code == Errc::kTimeout) return keepAlive(stream);
+  if (!got) return got.error();
+  const Timestamp now = clock_.now();
+  for (std::size_t i = 0; i < *got; ++i) {
+    if (!parser_.inside()) packet_start_ = now;
+    const auto packet = parser_.feed(buffer[i]);
+    if (!packet) continue;
+    last_heard_ = now;
+    pinged_ = false;
+    if (const auto done = handle(*packet, packet_start_, stream); !done) return done;
+  }
+  return Ok{};
+}
+
+// At rest the ball says nothing: after a while ask for the keys, which it always answers.
+Result<Ok> SpaceballDevice::keepAlive(ByteStream& stream) {
+  const Duration silence = clock_.now() - last_heard_;
+  if (silence < kSilenceBeforePing) return Ok{};
+  if (pinged_ && silence >= kSilenceBeforePing + kPingTime) {
+    return Error{Errc::kTimeout,
+                 fmt::format("silent for {:.1f} s, a ping too", toSeconds(silence))};
+  }
+  if (pinged_) return Ok{};
+  pinged_ = true;
+  return Dialogue(stream, clock_).send(kPing);
+}
+
+Result<Ok> SpaceballDevice::handle(const Packet& packet, Timestamp first_byte, ByteStream& stream) {
+  if (const auto* displacement = std::get_if<Displacement>(&packet)) {
+    calibrate(*displacement, settings_, sample_);
+    publish(first_byte);
+  } else if (const auto* keys = std::get_if<Keys>(&packet)) {
+    if (keys->flx) model_ = Model::k4000;
+    const std::uint32_t buttons = buttonsOf(*keys, model_);
+    if (buttons == sample_.buttons && !fresh_) return Ok{};  // the answer to a ping
+    sample_.buttons = buttons;
+    publish(first_byte);
+  } else if (std::get<Text>(packet).line.starts_with("@1")) {
+    return setUp(stream);  // it reset by itself (power, watchdog): all it was told is gone
+  }
+  return Ok{};
+}
+
+void SpaceballDevice::publish(Timestamp first_byte) noexcept {
+  sample_.received_ns = toNanoseconds(first_byte);
+  ++sample_.counter;
+  ++samples_;
+  fresh_ = false;
+  sink_.publish(sample_);
+}
+
+DeviceCounters SpaceballDevice::counters() const noexcept {
+  return {samples_, parser_.badBytes(), parser_.badPackets()};
+}
+
+std::unique_ptr<Device> makeDevice(const SpaceballSettings& settings, const Clock& clock,
+                                   SampleSink& sink) {
+  return std::make_unique<SpaceballDevice>(settings, clock, sink);
+}
+
+}  // namespace merlin::spaceball

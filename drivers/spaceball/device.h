@@ -1,0 +1,49 @@
+// A Spaceball's dialogue: reset, banner, set-up, stream; redone after every unsolicited reset.
+#pragma once
+
+#include <memory>
+
+#include "daemon/base/clock.h"
+#include "drivers/port/device.h"
+#include "drivers/port/sample_sink.h"
+#include "drivers/spaceball/protocol.h"
+#include "drivers/spaceball/settings.h"
+
+namespace merlin::spaceball {
+
+// open() takes up to 10 s: the ball is silent for about 2 s after a reset. A ball that is already
+// awake and does not reset is asked for its model instead. poll() fails with kTimeout when a ball
+// that has been silent for 2 s (which rest looks like) does not answer a ping within 1 s.
+class SpaceballDevice final : public Device {
+ public:
+  SpaceballDevice(const SpaceballSettings& settings, const Clock& clock, SampleSink& sink);
+
+  Result<std::string> open(ByteStream& stream) override;
+  Result<Ok> poll(ByteStream& stream) override;
+  DeviceCounters counters() const noexcept override;
+  const char* complaint() const noexcept override { return ""; }
+
+ private:
+  Result<std::string> awaitBanner(ByteStream& stream);
+  Result<Ok> setUp(ByteStream& stream);
+  Result<Ok> keepAlive(ByteStream& stream);
+  Result<Ok> handle(const Packet& packet, Timestamp first_byte, ByteStream& stream);
+  void publish(Timestamp first_byte) noexcept;
+
+  SpaceballSettings settings_;
+  const Clock& clock_;
+  SampleSink& sink_;
+  Parser parser_;
+  Model model_ = Model::k2003;
+  BallSample sample_{};
+  std::uint64_t samples_ = 0;
+  Timestamp packet_start_{};
+  Timestamp last_heard_{};
+  bool pinged_ = false;
+  bool fresh_ = true;  // nothing published since open()
+};
+
+std::unique_ptr<Device> makeDevice(const SpaceballSettings& settings, const Clock& clock,
+                                   SampleSink& sink);
+
+}  // namespace merlin::spaceball

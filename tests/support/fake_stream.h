@@ -1,0 +1,65 @@
+// FakeStream: a ByteStream whose other end is an emulator, or a script, on a FakeClock.
+//
+// Time passes in read(): it moves the clock to the moment when the next byte comes, or by the whole
+// time-out. No thread, no sleep.
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include "drivers/emulate/emulator.h"
+#include "drivers/port/byte_stream.h"
+#include "tests/support/fake_clock.h"
+
+namespace merlin::test {
+
+class FakeStream final : public ByteStream {
+ public:
+  // `emulator` may be null: then only what feed() was given comes.
+  FakeStream(FakeClock& clock, emulate::Emulator* emulator) : clock_(clock), emulator_(emulator) {}
+
+  void feed(std::string_view bytes) { input_ += bytes; }
+  void close() { closed_ = true; }
+  void mute() { emulator_ = nullptr; }  // unplugged at the device: silence from now on
+
+  // Everything that was written by the driver.
+  const std::string& written() const { return written_; }
+
+  Result<std::size_t> read(std::span<std::byte> buffer, Duration timeout) override {
+    if (closed_) return Error{Errc::kClosed, "closed"};
+    const Timestamp deadline = clock_.now() + timeout;
+    for (;;) {
+      if (emulator_) emulator_->advance(clock_.now(), input_);
+      if (!input_.empty()) break;
+      const Timestamp due = emulator_ ? emulator_->nextDue() : deadline;
+      if (due >= deadline) {
+        clock_.advance(deadline - clock_.now());
+        return Error{Errc::kTimeout, "time-out"};
+      }
+      clock_.advance(std::max<Duration>(due - clock_.now(), std::chrono::microseconds(1)));
+    }
+    const std::size_t n = std::min(buffer.size(), input_.size());
+    std::memcpy(buffer.data(), input_.data(), n);
+    input_.erase(0, n);
+    return n;
+  }
+
+  Result<std::size_t> write(std::span<const std::byte> bytes, Duration) override {
+    if (closed_) return Error{Errc::kClosed, "closed"};
+    written_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (emulator_) emulator_->receive(bytes, clock_.now());
+    return bytes.size();
+  }
+
+  void interrupt() noexcept override { closed_ = true; }
+
+ private:
+  FakeClock& clock_;
+  emulate::Emulator* emulator_;
+  std::string input_;
+  std::string written_;
+  bool closed_ = false;
+};
+
+}  // namespace merlin::test

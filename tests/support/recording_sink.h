@@ -1,0 +1,27 @@
+// RecordingSink: keeps every sample and every state of health that it is given.
+#pragma once
+
+#include <vector>
+
+#include "drivers/port/sample_sink.h"
+
+namespace merlin::test {
+
+struct RecordingSink final : SampleSink {
+  void publish(const GloveSample& s) noexcept override { glove.push_back(s); }
+  void publish(const TrackerSample& s) noexcept override { tracker.push_back(s); }
+  void publish(const BallSample& s) noexcept override { ball.push_back(s); }
+
+  std::vector<GloveSample> glove;
+  std::vector<TrackerSample> tracker;
+  std::vector<BallSample> ball;
+};
+
+struct RecordingHealth final : HealthSink {
+  void publish(const DeviceHealth& h) noexcept override { all.push_back(h); }
+  const DeviceHealth& last() const { return all.back(); }
+
+  std::vector<DeviceHealth> all;
+};
+
+}  // namespace merlin::test
