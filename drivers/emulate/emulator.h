@@ -31,17 +31,17 @@ class Emulator {
 };
 
 struct EmulatorSettings {
-  int baud = 38400;           // the line's speed: records that do not fit are dropped, as by the box
-  std::string model;          // of the device, empty for its default; see the table
-  std::uint64_t seed = 1;     // of noise and garbage
-  int garbage_every = 0;      // records between two bursts of garbage; 0 for none
+  int baud = 38400;        // the line's speed: records that do not fit are dropped, as by the box
+  std::string model;       // of the device, empty for its default; see the table
+  std::uint64_t seed = 1;  // of noise and garbage
+  int garbage_every = 0;   // records between two bursts of garbage; 0 for none
 };
 
 // One row a device that can be emulated.
 struct EmulatorEntry {
-  const char* name;       // as in drivers/registry
-  int baud;               // default
-  const char* models;     // what EmulatorSettings::model may be, "a|b|c"; the first is the default
+  const char* name;    // as in drivers/registry
+  int baud;            // default
+  const char* models;  // what EmulatorSettings::model may be, "a|b|c"; the first is the default
   const char* help;
   std::unique_ptr<Emulator> (*make)(const EmulatorSettings&, const MotionScript&, Timestamp start);
 };

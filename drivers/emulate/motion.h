@@ -15,20 +15,20 @@ namespace merlin::emulate {
 
 // What the three devices would measure at one moment.
 struct Motion {
-  std::array<float, kGloveSlots> glove_rad{};   // joint angles in slot order, flexion positive
-  std::array<float, 3> position_m{};            // of the hand, transmitter frame
+  std::array<float, kGloveSlots> glove_rad{};  // joint angles in slot order, flexion positive
+  std::array<float, 3> position_m{};           // of the hand, transmitter frame
   std::array<float, 4> orientation_wxyz{1, 0, 0, 0};
-  std::array<float, 6> ball{};                  // shares of full scale, device's own axes
-  std::uint32_t ball_buttons = 0;               // bit i = button i + 1
+  std::array<float, 6> ball{};     // shares of full scale, device's own axes
+  std::uint32_t ball_buttons = 0;  // bit i = button i + 1
 };
 
 // What the person does during one phase; between phases, hands move over in kTransition.
 struct Phase {
-  double seconds;               // how long
-  const char* shape;            // of the hand: a name of drivers/hand/shapes
-  std::array<float, 6> ball;    // held push and twist
-  std::uint32_t buttons;        // held
-  bool wave;                    // the hand moves about; else it is still
+  double seconds;             // how long
+  const char* shape;          // of the hand: a name of drivers/hand/shapes
+  std::array<float, 6> ball;  // held push and twist
+  std::uint32_t buttons;      // held
+  bool wave;                  // the hand moves about; else it is still
 };
 
 struct MotionScript {

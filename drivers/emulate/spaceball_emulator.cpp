@@ -72,8 +72,8 @@ class SpaceballEmulator final : public Emulator {
 
  private:
   std::string banner() const {
-    return std::string("\x11\r@1 Spaceball alive and well after a software reset.\r\n@2 Firmware version ") +
-           firmwareOf(model_) + " created on 24-Oct-1997.\r\n";
+    return std::string("\x11\r@1 Spaceball alive and well after a software reset.\r\n") +
+           "@2 Firmware version " + firmwareOf(model_) + " created on 24-Oct-1997.\r\n";
   }
 
   void reset(Timestamp now) {
@@ -133,9 +133,13 @@ class SpaceballEmulator final : public Emulator {
 
   void sayWhat(const std::string& command) {
     const std::string firmware = std::string("Firmware version ") + firmwareOf(model_);
-    if (command == "hm" && model_ == spaceball::Model::k2003) pending_ += "Hm2003B\r";
-    else if (command == "hm" && model_ == spaceball::Model::k3003) pending_ += "Hm3003C\r";
-    else pending_ += "Hv" + firmware + " created on 24-Oct-1997\r";
+    if (command == "hm" && model_ == spaceball::Model::k2003) {
+      pending_ += "Hm2003B\r";
+    } else if (command == "hm" && model_ == spaceball::Model::k3003) {
+      pending_ += "Hm3003C\r";
+    } else {
+      pending_ += "Hv" + firmware + " created on 24-Oct-1997\r";
+    }
   }
 
   spaceball::Displacement measure(Timestamp now) const {
@@ -146,7 +150,8 @@ class SpaceballEmulator final : public Emulator {
       d.axes[i] = static_cast<std::int16_t>(std::lround(std::clamp(counts, -32767.F, 32767.F)));
     }
     const auto period = std::chrono::duration_cast<std::chrono::microseconds>(now - last_packet_);
-    d.period = static_cast<std::uint16_t>(std::min<std::int64_t>(period.count() * 16 / 1000, 65535));
+    d.period =
+        static_cast<std::uint16_t>(std::min<std::int64_t>(period.count() * 16 / 1000, 65535));
     return d;
   }
 
@@ -185,8 +190,8 @@ class SpaceballEmulator final : public Emulator {
 
 }  // namespace
 
-std::unique_ptr<Emulator> makeSpaceball(const EmulatorSettings& settings, const MotionScript& script,
-                                        Timestamp start) {
+std::unique_ptr<Emulator> makeSpaceball(const EmulatorSettings& settings,
+                                        const MotionScript& script, Timestamp start) {
   return std::make_unique<SpaceballEmulator>(settings, script, start);
 }
 

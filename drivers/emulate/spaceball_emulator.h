@@ -8,7 +8,7 @@
 namespace merlin::emulate {
 
 // Models: "2003", "3003", "4000".
-std::unique_ptr<Emulator> makeSpaceball(const EmulatorSettings& settings, const MotionScript& script,
-                                        Timestamp start);
+std::unique_ptr<Emulator> makeSpaceball(const EmulatorSettings& settings,
+                                        const MotionScript& script, Timestamp start);
 
 }  // namespace merlin::emulate

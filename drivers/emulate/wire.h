@@ -1,8 +1,8 @@
-// Wire: how long bytes take on a serial line, so that an emulator sends no more than its line holds.
+// Wire: how long bytes take on a serial line, so that an emulator sends no more than its line
+// holds.
 #pragma once
 
 #include <algorithm>
-
 #include <string>
 #include <string_view>
 

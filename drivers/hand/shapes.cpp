@@ -29,9 +29,9 @@ constexpr Spread kWide{0.15F, 0.22F, 0.40F};
 
 constexpr Shape make(const char* name, Thumb t, Finger i, Finger m, Finger r, Finger p, Spread s,
                      float arch) {
-  return {name, {t.roll, t.mcp, t.ip,  t.abduction, i.mcp, i.pip, i.dip, 0.0F,
-                 m.mcp,  m.pip, m.dip, s.mi,        r.mcp, r.pip, r.dip, s.rm,
-                 p.mcp,  p.pip, p.dip, s.pr,        arch,  0.0F,  0.0F}};
+  return {name,
+          {t.roll, t.mcp, t.ip,  t.abduction, i.mcp, i.pip, i.dip, 0.0F, m.mcp, m.pip, m.dip, s.mi,
+           r.mcp,  r.pip, r.dip, s.rm,        p.mcp, p.pip, p.dip, s.pr, arch,  0.0F,  0.0F}};
 }
 
 constexpr Shape kShapes[] = {

@@ -1,13 +1,13 @@
 #include "drivers/io/fd_stream.h"
 
-#include <fcntl.h>
-#include <poll.h>
-#include <sys/eventfd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/eventfd.h>
 
 namespace merlin::io {
 namespace {

@@ -1,5 +1,9 @@
 #include "drivers/io/open_stream.h"
 
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <grp.h>
@@ -7,10 +11,6 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <termios.h>
-
-#include <cerrno>
-#include <cstring>
-#include <utility>
 
 #include "drivers/io/fd_stream.h"
 
@@ -92,12 +92,12 @@ Result<std::unique_ptr<ByteStream>> openSerial(const std::string& path, int baud
   int fd = -1;
   sp_get_port_handle(found, &fd);
   const auto locked = lockPort(fd, path);
-  const bool set = locked.ok() && sp_set_baudrate(found, baud) == SP_OK &&
-                   sp_set_bits(found, 8) == SP_OK && sp_set_parity(found, SP_PARITY_NONE) == SP_OK &&
-                   sp_set_stopbits(found, 1) == SP_OK &&
-                   sp_set_flowcontrol(found, SP_FLOWCONTROL_NONE) == SP_OK &&
-                   sp_set_rts(found, SP_RTS_ON) == SP_OK && sp_set_dtr(found, SP_DTR_ON) == SP_OK &&
-                   sp_flush(found, SP_BUF_BOTH) == SP_OK;
+  const bool set =
+      locked.ok() && sp_set_baudrate(found, baud) == SP_OK && sp_set_bits(found, 8) == SP_OK &&
+      sp_set_parity(found, SP_PARITY_NONE) == SP_OK && sp_set_stopbits(found, 1) == SP_OK &&
+      sp_set_flowcontrol(found, SP_FLOWCONTROL_NONE) == SP_OK &&
+      sp_set_rts(found, SP_RTS_ON) == SP_OK && sp_set_dtr(found, SP_DTR_ON) == SP_OK &&
+      sp_flush(found, SP_BUF_BOTH) == SP_OK;
   if (!set) {
     const Error error = locked.ok() ? serialError(path, "line settings") : locked.error();
     close();

@@ -1,14 +1,14 @@
 #include "drivers/io/pty_master.h"
 
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <sys/stat.h>
-#include <termios.h>
-
 #include <cerrno>
 #include <climits>
 #include <cstdlib>
 #include <cstring>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <termios.h>
 
 namespace merlin::io {
 namespace {
@@ -27,8 +27,7 @@ Result<Ok> makeLink(const std::string& target, const std::string& link) {
   }
   const std::string fresh = fmt::format("{}.{}", link, ::getpid());
   ::unlink(fresh.c_str());
-  if (::symlink(target.c_str(), fresh.c_str()) != 0 ||
-      ::rename(fresh.c_str(), link.c_str()) != 0) {
+  if (::symlink(target.c_str(), fresh.c_str()) != 0 || ::rename(fresh.c_str(), link.c_str()) != 0) {
     return Error{Errc::kIo, fmt::format("{}: {}", link, std::strerror(errno))};
   }
   return Ok{};

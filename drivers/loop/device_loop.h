@@ -13,8 +13,8 @@
 namespace merlin {
 
 struct DeviceLoopSettings {
-  std::string port;                                        // as a person wrote it, for the health
-  Duration first_retry = std::chrono::milliseconds(100);   // doubled after each failure,
+  std::string port;                                          // as a person wrote it, for the health
+  Duration first_retry = std::chrono::milliseconds(100);     // doubled after each failure,
   Duration longest_retry = std::chrono::milliseconds(1000);  // up to this; reset by success
 };
 

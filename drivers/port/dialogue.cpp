@@ -1,8 +1,8 @@
 #include "drivers/port/dialogue.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+
+#include <fmt/format.h>
 
 namespace merlin {
 namespace {

@@ -44,11 +44,11 @@ static_assert(sizeof(TrackerSample) == 48 && offsetof(TrackerSample, position_m)
 struct BallSample {
   std::int64_t received_ns;
   std::uint32_t counter;
-  std::uint32_t buttons;   // bit 0 = button 1 ... bit 11 = button 12; the pick button is the last
-  float translation[3];    // share of full scale, -1..1; x right, y up, z towards the person
-  float rotation[3];       // about the same axes, right-handed, share of full scale
-  std::int16_t raw[6];     // as on the wire: X Y Z A B C
-  std::uint32_t period_us; // the device's own time since its last displacement packet
+  std::uint32_t buttons;    // bit 0 = button 1 ... bit 11 = button 12; the pick button is the last
+  float translation[3];     // share of full scale, -1..1; x right, y up, z towards the person
+  float rotation[3];        // about the same axes, right-handed, share of full scale
+  std::int16_t raw[6];      // as on the wire: X Y Z A B C
+  std::uint32_t period_us;  // the device's own time since its last displacement packet
 };
 static_assert(sizeof(BallSample) == 56 && offsetof(BallSample, translation) == 16);
 

@@ -1,8 +1,8 @@
 #include "drivers/spaceball/device.h"
 
-#include <fmt/format.h>
-
 #include <string_view>
+
+#include <fmt/format.h>
 
 #include "drivers/port/dialogue.h"
 #include "drivers/spaceball/calibration.h"
@@ -22,7 +22,7 @@ constexpr Duration kBannerTime = seconds(10);
 constexpr std::string_view kReset = "\r@RESET\r";
 // Binary mode, no null region, 50 ms between packets.
 constexpr std::string_view kSetUp = "CB\rNT\rFT?\rFR?\rP@r@r\r";
-constexpr std::string_view kBallOn = "MSSV\rZ\rk\r";      // 2003, 3003
+constexpr std::string_view kBallOn = "MSSV\rZ\rk\r";  // 2003, 3003
 constexpr std::string_view kBallOn4000 = "M\rZ\rk\r";
 constexpr std::string_view kPing = "k\r";
 
@@ -73,7 +73,8 @@ Result<std::string> SpaceballDevice::awaitBanner(ByteStream& stream) {
     const std::string version(firmwareVersion(*line));
     if (!version.empty()) return version;
   }
-  return Error{Errc::kMalformed, "bytes came for 10 s after @RESET, and no Spaceball banner in them"};
+  return Error{Errc::kMalformed,
+               "bytes came for 10 s after @RESET, and no Spaceball banner in them"};
 }
 
 Result<Ok> SpaceballDevice::setUp(ByteStream& stream) {

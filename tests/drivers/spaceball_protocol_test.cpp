@@ -1,10 +1,10 @@
-#include "drivers/spaceball/protocol.h"
-
-#include <gtest/gtest.h>
-
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <gtest/gtest.h>
+
+#include "drivers/spaceball/protocol.h"
 
 namespace merlin::spaceball {
 namespace {
@@ -38,7 +38,8 @@ TEST(SpaceballParser, ReadsADisplacement) {
   const auto seen = parse(parser, kGood);
   ASSERT_EQ(seen.displacements.size(), 1u);
   EXPECT_EQ(seen.displacements[0].period, 800);
-  EXPECT_EQ(seen.displacements[0].axes, (std::array<std::int16_t, 6>{256, -512, 1000, -1, 39, -10}));
+  EXPECT_EQ(seen.displacements[0].axes,
+            (std::array<std::int16_t, 6>{256, -512, 1000, -1, 39, -10}));
   EXPECT_EQ(parser.badPackets(), 0u);
 }
 
@@ -47,13 +48,15 @@ TEST(SpaceballParser, EscapesStandForTheirByte) {  // fact sheet, example 3
   const auto seen = parse(parser, "D^M^Q^M^M^Q^S^^\0\0^S\xFF\xFF\0\0\r"s);
   ASSERT_EQ(seen.displacements.size(), 1u);
   EXPECT_EQ(seen.displacements[0].period, 3345);
-  EXPECT_EQ(seen.displacements[0].axes, (std::array<std::int16_t, 6>{3341, 4371, 24064, 19, -1, 0}));
+  EXPECT_EQ(seen.displacements[0].axes,
+            (std::array<std::int16_t, 6>{3341, 4371, 24064, 19, -1, 0}));
 }
 
 TEST(SpaceballParser, ReadsTheBannerPastXonAndLineFeeds) {
   Parser parser;
   const auto seen = parse(parser, "\x11\r@1 Spaceball alive.\r\n@2 Firmware version 2.63\r\n"s);
-  EXPECT_EQ(seen.texts, (std::vector<std::string>{"@1 Spaceball alive.", "@2 Firmware version 2.63"}));
+  EXPECT_EQ(seen.texts,
+            (std::vector<std::string>{"@1 Spaceball alive.", "@2 Firmware version 2.63"}));
   EXPECT_EQ(parser.badPackets(), 0u);
 }
 
@@ -63,7 +66,7 @@ TEST(SpaceballKeys, OfEachModel) {  // fact sheet, example 4 and section 6
   EXPECT_EQ(seen.keys.size(), 2u);  // 0x60 in a K packet is the 3003's rezero: see below
   EXPECT_EQ(buttonsOf(seen.keys[0], Model::k2003), 1u << 2 | 1u << 7 | 1u << 8);  // 3, 8, pick
   EXPECT_EQ(buttonsOf({true, 0x70, 0xC0}, Model::k4000), 1u << 6 | 1u << 11);     // 7, 12
-  EXPECT_EQ(buttonsOf({false, 0x60, 0x50}, Model::k3003), 1u | 1u << 2);  // left, rezero
+  EXPECT_EQ(buttonsOf({false, 0x60, 0x50}, Model::k3003), 1u | 1u << 2);          // left, rezero
 }
 
 TEST(SpaceballKeys, EncodingIsTheInverseForEveryCombination) {
