@@ -1,0 +1,104 @@
+#include "daemon/base/files.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "daemon/base/unique_fd.h"
+
+namespace merlin {
+namespace {
+
+Error fileError(const std::string& path, int error) {
+  return {error == ENOENT ? Errc::kNotFound : Errc::kIo,
+          fmt::format("{}: {}", path, std::strerror(error))};
+}
+
+bool writeAll(int fd, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(fd, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(n));
+  }
+  return true;
+}
+
+// Gathers small writes; 1 MiB at a time reaches the file.
+class Buffered {
+ public:
+  explicit Buffered(int fd) : fd_(fd) { pending_.reserve(kSize); }
+
+  bool write(std::span<const std::byte> bytes) {
+    if (pending_.size() + bytes.size() > kSize && !flush()) return false;
+    if (bytes.size() >= kSize) return writeAll(fd_, bytes);
+    pending_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return true;
+  }
+  bool flush() {
+    const bool done = writeAll(fd_, std::as_bytes(std::span(pending_)));
+    pending_.clear();
+    return done;
+  }
+
+ private:
+  static constexpr std::size_t kSize = 1 << 20;
+  int fd_;
+  std::string pending_;
+};
+
+}  // namespace
+
+Result<MappedFile> MappedFile::open(const std::string& path) {
+  const UniqueFd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  struct stat status {};
+  if (!fd.valid() || ::fstat(fd.get(), &status) != 0) return fileError(path, errno);
+  if (!S_ISREG(status.st_mode)) return Error{Errc::kMalformed, path + ": is not a regular file"};
+  const auto size = static_cast<std::size_t>(status.st_size);
+  if (size == 0) return MappedFile();
+  void* data = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd.get(), 0);
+  if (data == MAP_FAILED) return fileError(path, errno);
+  return MappedFile(static_cast<const std::byte*>(data), size);
+}
+
+MappedFile::MappedFile(MappedFile&& other) noexcept
+    : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+
+MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
+  std::swap(data_, other.data_);
+  std::swap(size_, other.size_);
+  return *this;
+}
+
+MappedFile::~MappedFile() {
+  if (data_) ::munmap(const_cast<std::byte*>(data_), size_);
+}
+
+Result<Ok> writeFile(const std::string& path, const std::function<bool(const WriteBytes&)>& fill) {
+  const std::string fresh = fmt::format("{}.{}.tmp", path, ::getpid());
+  const UniqueFd fd(::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (!fd.valid()) return fileError(path, errno);
+  Buffered buffer(fd.get());
+  const bool written =
+      fill([&](std::span<const std::byte> bytes) { return buffer.write(bytes); }) &&
+      buffer.flush() && ::fsync(fd.get()) == 0 && std::rename(fresh.c_str(), path.c_str()) == 0;
+  if (written) return Ok{};
+  const int error = errno;
+  ::unlink(fresh.c_str());
+  return fileError(path, error);
+}
+
+Result<Ok> writeFile(const std::string& path, std::string_view content) {
+  return writeFile(path, [&](const WriteBytes& write) {
+    return write(std::as_bytes(std::span(content.data(), content.size())));
+  });
+}
+
+}  // namespace merlin

@@ -1,0 +1,47 @@
+// Files: a read-only mapping of one, and writing one whole or not at all.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "daemon/base/result.h"
+
+namespace merlin {
+
+// A whole file as bytes, by mmap: pages come as they are touched. Reentrant.
+// A file that another program cuts short while it is mapped ends this one with SIGBUS, as every
+// mapping does; MERLIN's own writers replace files and never cut them.
+class MappedFile {
+ public:
+  // Errors: kNotFound, kIo, kMalformed (not a regular file). An empty file is an empty span.
+  static Result<MappedFile> open(const std::string& path);
+
+  MappedFile() = default;
+  MappedFile(MappedFile&& other) noexcept;
+  MappedFile& operator=(MappedFile&& other) noexcept;
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+  ~MappedFile();
+
+  std::span<const std::byte> bytes() const noexcept { return {data_, size_}; }
+  std::string_view text() const noexcept { return {reinterpret_cast<const char*>(data_), size_}; }
+
+ private:
+  MappedFile(const std::byte* data, std::size_t size) : data_(data), size_(size) {}
+
+  const std::byte* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+// Takes bytes in order; false where the file could not take them (the disk is full).
+using WriteBytes = std::function<bool(std::span<const std::byte>)>;
+
+// Calls `fill` to write a temporary file in the same folder, then syncs it and renames it to
+// `path`: readers see the old file or the whole new one. Where anything fails the old one stays.
+// Errors: kIo.
+Result<Ok> writeFile(const std::string& path, const std::function<bool(const WriteBytes&)>& fill);
+Result<Ok> writeFile(const std::string& path, std::string_view content);
+
+}  // namespace merlin

@@ -1,0 +1,52 @@
+#include "render/gl/frame_buffer.h"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <utility>
+
+namespace merlin::render {
+
+Result<FrameBuffer> FrameBuffer::make(const GlApi& gl, int width, int height) {
+  FrameBuffer f(gl, width, height);
+  gl.GenFramebuffers(1, &f.frame_);
+  gl.GenRenderbuffers(1, &f.colour_);
+  gl.GenRenderbuffers(1, &f.depth_);
+  gl.BindRenderbuffer(GL_RENDERBUFFER, f.colour_);
+  gl.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
+  gl.BindRenderbuffer(GL_RENDERBUFFER, f.depth_);
+  gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
+  f.bind();
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, f.colour_);
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, f.depth_);
+  const GLenum status = gl.CheckFramebufferStatus(GL_FRAMEBUFFER);
+  if (status == GL_FRAMEBUFFER_COMPLETE) return f;
+  return Error{Errc::kUnsupported, fmt::format("no frame buffer of {} x {}: GL status 0x{:04X}", width,
+                                               height, status)};
+}
+
+FrameBuffer::FrameBuffer(FrameBuffer&& other) noexcept
+    : gl_(other.gl_),
+      width_(other.width_),
+      height_(other.height_),
+      frame_(std::exchange(other.frame_, 0)),
+      colour_(std::exchange(other.colour_, 0)),
+      depth_(std::exchange(other.depth_, 0)) {}
+
+FrameBuffer::~FrameBuffer() {
+  if (frame_ == 0) return;
+  gl_->DeleteFramebuffers(1, &frame_);
+  gl_->DeleteRenderbuffers(1, &colour_);
+  gl_->DeleteRenderbuffers(1, &depth_);
+}
+
+void FrameBuffer::bind() const { gl_->BindFramebuffer(GL_FRAMEBUFFER, frame_); }
+
+void FrameBuffer::read(std::uint8_t* pixels, int stride_px) const {
+  assert(stride_px >= width_);
+  bind();
+  gl_->PixelStorei(GL_PACK_ROW_LENGTH, stride_px);
+  gl_->ReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+}
+
+}  // namespace merlin::render

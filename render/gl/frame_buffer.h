@@ -1,0 +1,40 @@
+// FrameBuffer: an off-screen picture, RGBA bytes and depth, and how its pixels come out.
+#pragma once
+
+#include <cstdint>
+
+#include "daemon/base/result.h"
+#include "render/gl/gl_api.h"
+
+namespace merlin::render {
+
+// Thread-bound to its context, which outlives it.
+class FrameBuffer {
+ public:
+  // Errors: kUnsupported (the context cannot make one of this size).
+  static Result<FrameBuffer> make(const GlApi& gl, int width, int height);
+
+  FrameBuffer(FrameBuffer&& other) noexcept;
+  FrameBuffer& operator=(FrameBuffer&&) = delete;
+  FrameBuffer(const FrameBuffer&) = delete;
+  FrameBuffer& operator=(const FrameBuffer&) = delete;
+  ~FrameBuffer();
+
+  int width() const noexcept { return width_; }
+  int height() const noexcept { return height_; }
+
+  void bind() const;
+
+  // Copies the picture to `pixels`, RGBA, rows from top to bottom (MERLIN draws with y downwards, so
+  // no row is turned), the next row `stride_px` pixels on. Waits until all is drawn.
+  void read(std::uint8_t* pixels, int stride_px) const;
+
+ private:
+  FrameBuffer(const GlApi& gl, int width, int height) : gl_(&gl), width_(width), height_(height) {}
+
+  const GlApi* gl_;
+  int width_, height_;
+  GLuint frame_ = 0, colour_ = 0, depth_ = 0;
+};
+
+}  // namespace merlin::render

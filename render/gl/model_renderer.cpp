@@ -1,0 +1,165 @@
+#include "render/gl/model_renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "render/gl/shader.h"
+
+namespace merlin::render {
+namespace {
+
+// A node as the vertex shader reads it.
+struct Vertex {
+  float position[3];
+  std::int8_t normal[4];    // unit normal x 127
+  std::uint8_t colour[4];
+};
+static_assert(sizeof(Vertex) == 20);
+
+constexpr GLuint kPosition = 0, kNormal = 1, kColour = 2;
+
+// One light at the eye, a little from above, and enough of everywhere to see the rest.
+constexpr const char* kVertexShader = R"(#version 330 core
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec3 colour;
+uniform mat4 clip_from_model;
+uniform mat3 eye_from_model;
+uniform vec3 tint;
+out vec3 shade;
+void main() {
+  gl_Position = clip_from_model * vec4(position, 1.0);
+  vec3 n = eye_from_model * normal;
+  float facing = dot(n, normalize(vec3(0.15, 0.35, 1.0)));
+  float light = 0.30 + 0.80 * max(facing, 0.0) + 0.10 * max(-facing, 0.0);
+  shade = min(colour * tint * light, vec3(1.0));
+}
+)";
+
+constexpr const char* kFragmentShader = R"(#version 330 core
+in vec3 shade;
+out vec4 pixel;
+void main() { pixel = vec4(shade, 1.0); }
+)";
+
+template <typename T>
+T quantise(float value, float scale) {
+  const float low = std::is_signed_v<T> ? -scale : 0;
+  const float v = std::isfinite(value) ? value * scale : 0;
+  return static_cast<T>(std::lround(std::clamp(v, low, scale)));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ModelRenderer>> ModelRenderer::make(const GlApi& gl, const Dendrogram& model) {
+  if (model.nodeCount() > std::numeric_limits<std::int32_t>::max() / sizeof(Vertex) * 8) {
+    return Error{Errc::kUnsupported, fmt::format("{} nodes are more than one buffer holds", model.nodeCount())};
+  }
+  std::unique_ptr<ModelRenderer> r(new ModelRenderer(gl));
+  if (const auto built = r->buildProgram(); !built) return built.error();
+  r->uploadNodes(model);
+  r->makeArray(&r->cut_array_, &r->cut_indices_);
+  r->makeArray(&r->full_array_, &r->full_indices_);
+  const auto full = model.arrays().triangles;
+  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(full.size_bytes()), full.data(), GL_STATIC_DRAW);
+  r->full_triangles_ = model.triangleCount();
+  gl.BindVertexArray(0);
+  if (const GLenum error = gl.GetError(); error != GL_NO_ERROR) {
+    return Error{Errc::kUnsupported, fmt::format("{} nodes and {} triangles do not fit: GL error 0x{:04X}",
+                                                 model.nodeCount(), model.triangleCount(), error)};
+  }
+  return r;
+}
+
+ModelRenderer::~ModelRenderer() {
+  gl_.DeleteProgram(program_);
+  for (GLuint array : {cut_array_, full_array_}) gl_.DeleteVertexArrays(1, &array);
+  for (GLuint buffer : {nodes_, cut_indices_, full_indices_}) gl_.DeleteBuffers(1, &buffer);
+}
+
+Result<Ok> ModelRenderer::buildProgram() {
+  const auto program = linkProgram(gl_, kVertexShader, kFragmentShader);
+  if (!program) return program.error();
+  program_ = *program;
+  clip_location_ = gl_.GetUniformLocation(program_, "clip_from_model");
+  eye_location_ = gl_.GetUniformLocation(program_, "eye_from_model");
+  colour_location_ = gl_.GetUniformLocation(program_, "tint");
+  return Ok{};
+}
+
+void ModelRenderer::uploadNodes(const Dendrogram& model) {
+  const auto& a = model.arrays();
+  const FeatureView* normal = model.find("normal");
+  const FeatureView* colour = model.find("colour");
+  if (normal && normal->dimension != 3) normal = nullptr;
+  if (colour && colour->dimension != 3) colour = nullptr;
+  coloured_ = colour != nullptr;
+  std::vector<Vertex> vertices(model.nodeCount());
+  for (std::size_t n = 0; n < vertices.size(); ++n) {
+    Vertex& v = vertices[n];
+    for (std::size_t k = 0; k < 3; ++k) {
+      v.position[k] = a.positions[3 * n + k];
+      v.normal[k] = quantise<std::int8_t>(normal ? normal->values[3 * n + k] : (k == 2 ? 1.0F : 0.0F), 127);
+      v.colour[k] = quantise<std::uint8_t>(colour ? colour->values[3 * n + k] : 1.0F, 255);
+    }
+    v.normal[3] = 0;
+    v.colour[3] = 255;
+  }
+  gl_.GenBuffers(1, &nodes_);
+  gl_.BindBuffer(GL_ARRAY_BUFFER, nodes_);
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
+                 GL_STATIC_DRAW);
+}
+
+void ModelRenderer::makeArray(GLuint* array, GLuint* indices) {
+  const auto offset = [](std::size_t bytes) { return reinterpret_cast<const void*>(bytes); };
+  gl_.GenVertexArrays(1, array);
+  gl_.BindVertexArray(*array);
+  gl_.BindBuffer(GL_ARRAY_BUFFER, nodes_);
+  gl_.VertexAttribPointer(kPosition, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), offset(offsetof(Vertex, position)));
+  gl_.VertexAttribPointer(kNormal, 3, GL_BYTE, GL_TRUE, sizeof(Vertex), offset(offsetof(Vertex, normal)));
+  gl_.VertexAttribPointer(kColour, 3, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(Vertex), offset(offsetof(Vertex, colour)));
+  for (const GLuint attribute : {kPosition, kNormal, kColour}) gl_.EnableVertexAttribArray(attribute);
+  gl_.GenBuffers(1, indices);
+  gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, *indices);
+}
+
+void ModelRenderer::uploadCut(std::span<const std::uint32_t> indices) {
+  gl_.BindVertexArray(cut_array_);
+  gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size_bytes()), indices.data(),
+                 GL_STREAM_DRAW);
+  cut_triangles_ = indices.size() / 3;
+}
+
+void ModelRenderer::begin(int width, int height, const Camera& camera, const Look& look) {
+  gl_.Viewport(0, 0, width, height);
+  gl_.ClearColor(look.background[0], look.background[1], look.background[2], 1);
+  gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  gl_.Enable(GL_DEPTH_TEST);
+  gl_.PolygonMode(GL_FRONT_AND_BACK, look.wireframe ? GL_LINE : GL_FILL);
+  if (look.draw_back_faces) gl_.Disable(GL_CULL_FACE);
+  else gl_.Enable(GL_CULL_FACE);
+  // The picture's first row is its upper one, so y is turned over, and with it every triangle.
+  Eigen::Matrix4f clip = camera.clip_from_model;
+  clip.row(1) *= -1;
+  gl_.FrontFace(GL_CW);
+  gl_.UseProgram(program_);
+  gl_.UniformMatrix4fv(clip_location_, 1, GL_FALSE, clip.data());
+  gl_.UniformMatrix3fv(eye_location_, 1, GL_FALSE, camera.eye_from_model.data());
+  const std::array<float, 3> white{1, 1, 1};
+  const auto& tint = coloured_ ? white : look.colour;
+  gl_.Uniform3f(colour_location_, tint[0] * look.brightness, tint[1] * look.brightness,
+                tint[2] * look.brightness);
+}
+
+void ModelRenderer::draw(Source source, std::size_t first, std::size_t count) {
+  gl_.BindVertexArray(source == Source::kCut ? cut_array_ : full_array_);
+  const auto offset = reinterpret_cast<const void*>(first * 3 * sizeof(std::uint32_t));
+  gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT, offset);
+}
+
+}  // namespace merlin::render

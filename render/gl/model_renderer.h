@@ -1,0 +1,73 @@
+// ModelRenderer: a dendrogram's nodes on the GPU, and its triangles drawn at any level, whole or in
+// slices.
+//
+// Lit per vertex by a light at the eye, vertex colours where the model has them. OpenGL 3.3 core.
+// Thread-bound to its context, which outlives it.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "daemon/base/result.h"
+#include "render/gl/gl_api.h"
+#include "render/lod/dendrogram.h"
+
+namespace merlin::render {
+
+struct Look {
+  std::array<float, 3> colour{0.75F, 0.75F, 0.72F};         // of a model without vertex colours
+  std::array<float, 3> background{0.06F, 0.07F, 0.09F};
+  float brightness = 1;          // multiplies colours before they are clipped; for dark scans
+  bool draw_back_faces = false;  // lit as fronts; costs 1.6 to 1.9 times the time
+  bool wireframe = false;
+};
+
+// What one tile sees.
+struct Camera {
+  Eigen::Matrix4f clip_from_model;  // y up, OpenGL's clip space; y is turned over when drawn
+  Eigen::Matrix3f eye_from_model;   // rotation only, for the light
+};
+
+class ModelRenderer {
+ public:
+  // Uploads the nodes (20 bytes each) and the full resolution's indices. The dendrogram is not kept.
+  // Errors: kUnsupported (a shader that does not compile, with the log; no memory on the GPU).
+  static Result<std::unique_ptr<ModelRenderer>> make(const GlApi& gl, const Dendrogram& model);
+
+  ~ModelRenderer();
+  ModelRenderer(const ModelRenderer&) = delete;
+  ModelRenderer& operator=(const ModelRenderer&) = delete;
+
+  // Node numbers, 3 a triangle, for kCut. Replaces the last ones.
+  void uploadCut(std::span<const std::uint32_t> indices);
+
+  enum class Source { kCut, kFull };
+  std::size_t triangles(Source source) const noexcept {
+    return source == Source::kCut ? cut_triangles_ : full_triangles_;
+  }
+
+  // Clears the bound frame buffer's picture of width x height and sets up state and camera.
+  void begin(int width, int height, const Camera& camera, const Look& look);
+
+  // Draws triangles first .. first + count - 1, after begin(). May be called in slices: a flush
+  // between slices bounds how long one takes.
+  void draw(Source source, std::size_t first, std::size_t count);
+
+ private:
+  explicit ModelRenderer(const GlApi& gl) : gl_(gl) {}
+  Result<Ok> buildProgram();
+  void uploadNodes(const Dendrogram& model);
+  void makeArray(GLuint* array, GLuint* indices);
+
+  const GlApi& gl_;
+  GLuint program_ = 0, nodes_ = 0;
+  GLuint cut_array_ = 0, cut_indices_ = 0, full_array_ = 0, full_indices_ = 0;
+  GLint clip_location_ = -1, eye_location_ = -1, colour_location_ = -1;
+  bool coloured_ = false;
+  std::size_t cut_triangles_ = 0, full_triangles_ = 0;
+};
+
+}  // namespace merlin::render

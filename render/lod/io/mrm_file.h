@@ -1,0 +1,19 @@
+// .mrm, the multiresolution model file, version 1: written whole, read by mmap. Format: FORMAT.md.
+#pragma once
+
+#include <string>
+
+#include "daemon/base/result.h"
+#include "render/lod/dendrogram.h"
+
+namespace merlin::render {
+
+// Maps and checks the file: checksums, sizes, and all that Dendrogram::make() checks. O(file), at
+// memory speed. Errors, with the file's name and the section: kNotFound, kIo, kMalformed (damaged,
+// cut short), kUnsupported (a later version).
+Result<Dendrogram> readMrm(const std::string& path);
+
+// Writes atomically; the same dendrogram gives the same bytes. Errors: kIo.
+Result<Ok> writeMrm(const std::string& path, const Dendrogram& dendrogram);
+
+}  // namespace merlin::render

@@ -1,0 +1,50 @@
+// The bytes of an .mrm file, version 1. A contract: FORMAT.md says it in words, and
+// tests/render/mrm_file_test.cpp holds an old file. Little-endian, as every machine that MERLIN
+// runs on; asserted in mrm_file.cpp.
+#pragma once
+
+#include <cstdint>
+
+namespace merlin::render::mrm {
+
+inline constexpr char kMagic[8] = {'M', 'R', 'L', 'N', '.', 'm', 'r', 'm'};
+inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint64_t kAlignment = 64;  // of each section's start
+
+enum class Kind : std::uint32_t {
+  kPositions = 1,  // f32 x 3, a node
+  kFeature = 2,    // f32 x dimension, a node; name = the feature's
+  kParents = 3,    // u32, a collapse
+  kTriangles = 4,  // u32 x 3, a triangle
+  kAlive = 5,      // u32, a level
+  kError = 6,      // f32, a level
+  kAbout = 7,      // u8: "key=value" lines of UTF-8 text
+};
+// A reader skips kinds from here on that it does not know; below, an unknown kind is an error.
+inline constexpr std::uint32_t kFirstOptional = 1000;
+
+struct FileHeader {
+  char magic[8];
+  std::uint32_t version;
+  std::uint32_t sections;
+  std::uint64_t file_size;
+  std::uint64_t nodes;
+  std::uint64_t collapses;
+  std::uint64_t triangles;
+  float box_low[3], box_high[3];  // of all nodes, for a reader that wants no more
+  std::uint64_t table_checksum;   // XXH3-64 of the section table
+  std::uint64_t header_checksum;  // XXH3-64 of this header up to here
+};
+static_assert(sizeof(FileHeader) == 88);
+
+struct SectionEntry {
+  std::uint32_t kind;
+  std::uint32_t dimension;  // values a row
+  std::uint64_t offset;     // from the file's start
+  std::uint64_t rows;
+  std::uint64_t checksum;   // XXH3-64 of the section's bytes
+  char name[32];            // of a feature, NUL-padded
+};
+static_assert(sizeof(SectionEntry) == 64);
+
+}  // namespace merlin::render::mrm

@@ -1,0 +1,267 @@
+#include "render/mesh/io/ply.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "daemon/base/bytes.h"
+#include "render/mesh/io/ply_body.h"
+#include "render/mesh/io/ply_header.h"
+
+namespace merlin::render::ply {
+namespace {
+
+// Where one vertex property goes: a column of a table of floats.
+struct Column {
+  std::vector<float>* values = nullptr;  // null: skipped
+  std::size_t stride = 1;
+  std::size_t offset = 0;
+  float scale = 1;
+};
+
+// Properties that belong together under one feature's name.
+struct Known {
+  const char* property;
+  const char* feature;
+  std::size_t dimension, offset;
+};
+constexpr Known kKnown[] = {
+    {"nx", "normal", 3, 0},         {"ny", "normal", 3, 1},         {"nz", "normal", 3, 2},
+    {"red", "colour", 3, 0},        {"green", "colour", 3, 1},      {"blue", "colour", 3, 2},
+    {"r", "colour", 3, 0},          {"g", "colour", 3, 1},          {"b", "colour", 3, 2},
+    {"s", "texcoord", 2, 0},        {"t", "texcoord", 2, 1},        {"u", "texcoord", 2, 0},
+    {"v", "texcoord", 2, 1},        {"texture_u", "texcoord", 2, 0}, {"texture_v", "texcoord", 2, 1},
+};
+
+const Known* knownAs(std::string_view property) {
+  for (const Known& k : kKnown) {
+    if (property == k.property) return &k;
+  }
+  return nullptr;
+}
+
+// Integer colours are shares of their type's range.
+float scaleOf(const Known* known, Scalar type) {
+  if (!known || std::string_view(known->feature) != "colour") return 1;
+  if (type == Scalar::kUint8) return 1.0F / 255;
+  if (type == Scalar::kUint16) return 1.0F / 65535;
+  return 1;
+}
+
+class Reader {
+ public:
+  Reader(std::string_view bytes, Header header)
+      : header_(std::move(header)), body_(bytes.substr(header_.size), header_.form) {}
+
+  Result<LoadedMesh> read() {
+    for (const Element& e : header_.elements) {
+      const auto done = e.name == "vertex" ? readVertices(e)
+                        : e.name == "face" ? readFaces(e)
+                                           : skip(e);
+      if (!done) return done.error();
+    }
+    return std::move(loaded_);
+  }
+
+ private:
+  Mesh& mesh() { return loaded_.mesh; }
+
+  // A file cannot hold more elements than it has room for; said before anything is allocated.
+  Result<Ok> checkRoom(const Element& e) const {
+    const std::size_t least = std::max<std::size_t>(e.leastBytes(header_.form), 1);
+    const std::size_t room = (body_.left() + 1) / least;
+    if (e.count <= room) return Ok{};
+    return Error{Errc::kMalformed,
+                 fmt::format("cut short: the header promises {} x {}, the file ends after {} at most",
+                             e.count, e.name, room)};
+  }
+
+  Error brokenAt(const Element& e, std::uint64_t row, const Property& p) const {
+    const std::string_view rest = body_.rest();
+    return {Errc::kMalformed,
+            rest.empty() ? fmt::format("cut short in {} {} of {}, property {}", e.name, row, e.count, p.name)
+                         : fmt::format("{} {}, property {}: \"{}\" is no number", e.name, row, p.name, rest)};
+  }
+
+  Result<Ok> skip(const Element& e) {
+    ++loaded_.skipped_properties;
+    if (e.properties.empty()) return Ok{};
+    for (std::uint64_t row = 0; row < e.count; ++row) {
+      for (const Property& p : e.properties) {
+        if (!skipProperty(p)) return brokenAt(e, row, p);
+      }
+    }
+    return Ok{};
+  }
+
+  bool skipProperty(const Property& p) {
+    double value = 0, count = 1;
+    if (p.list && !body_.next(p.count_type, count)) return false;
+    for (; count > 0; --count) {
+      if (!body_.next(p.type, value)) return false;
+    }
+    return true;
+  }
+
+  Result<std::vector<Column>> planColumns(const Element& e) {
+    constexpr std::string_view kAxes = "xyz";
+    std::size_t axes = 0;
+    mesh().positions.assign(e.count * 3, 0);
+    mesh().features.reserve(e.properties.size());  // columns point into it
+    std::vector<Column> columns;
+    for (const Property& p : e.properties) {
+      Column c;
+      if (p.list) {
+        ++loaded_.skipped_properties;
+      } else if (p.name.size() == 1 && kAxes.find(p.name) != std::string_view::npos) {
+        c = {&mesh().positions, 3, kAxes.find(p.name), 1};
+        ++axes;
+      } else {
+        c = featureColumn(p, e.count);
+      }
+      columns.push_back(c);
+    }
+    if (axes == 3) return columns;
+    return Error{Errc::kMalformed, "the vertices lack x, y or z"};
+  }
+
+  Column featureColumn(const Property& p, std::uint64_t count) {
+    const Known* known = knownAs(p.name);
+    const std::string name = known ? known->feature : p.name;
+    Feature* feature = mesh().find(name);
+    if (!feature) {
+      const std::size_t dimension = known ? known->dimension : 1;
+      mesh().features.push_back({name, dimension, std::vector<float>(count * dimension, 0.0F)});
+      feature = &mesh().features.back();
+    }
+    return {&feature->values, feature->dimension, known ? known->offset : 0,
+            scaleOf(known, p.type)};
+  }
+
+  Result<Ok> readVertices(const Element& e) {
+    if (!mesh().positions.empty()) return Error{Errc::kMalformed, "two vertex elements"};
+    if (const auto room = checkRoom(e); !room) return room;
+    const auto columns = planColumns(e);
+    if (!columns) return columns.error();
+    for (std::uint64_t row = 0; row < e.count; ++row) {
+      for (std::size_t i = 0; i < e.properties.size(); ++i) {
+        const Property& p = e.properties[i];
+        const Column& c = (*columns)[i];
+        double value = 0;
+        if (!(p.list ? skipProperty(p) : body_.next(p.type, value))) return brokenAt(e, row, p);
+        if (c.values) (*c.values)[row * c.stride + c.offset] = static_cast<float>(value) * c.scale;
+      }
+    }
+    return Ok{};
+  }
+
+  Result<Ok> readFaces(const Element& e) {
+    if (const auto room = checkRoom(e); !room) return room;
+    mesh().triangles.reserve(std::min<std::uint64_t>(e.count, body_.left()) * 3);
+    for (const Property& p : e.properties) {
+      if (!isCorners(p)) ++loaded_.skipped_properties;
+    }
+    for (std::uint64_t row = 0; row < e.count; ++row) {
+      for (const Property& p : e.properties) {
+        const auto done = isCorners(p)         ? readCorners(e, row, p)
+                          : skipProperty(p)    ? Result<Ok>(Ok{})
+                                               : Result<Ok>(brokenAt(e, row, p));
+        if (!done) return done;
+      }
+    }
+    return Ok{};
+  }
+
+  static bool isCorners(const Property& p) {
+    return p.list && (p.name == "vertex_indices" || p.name == "vertex_index");
+  }
+
+  Result<Ok> readCorners(const Element& e, std::uint64_t row, const Property& p) {
+    double count = 0, value = 0;
+    if (!body_.next(p.count_type, count)) return brokenAt(e, row, p);
+    if (count < 3) ++loaded_.tidied.degenerate;
+    std::uint32_t first = 0, last = 0;
+    for (double i = 0; i < count; ++i) {
+      if (!body_.next(p.type, value)) return brokenAt(e, row, p);
+      if (!(value >= 0 && value < 2147483648.0) || value != std::floor(value)) {
+        return Error{Errc::kMalformed, fmt::format("face {}: corner {} is {}, no vertex", row, i, value)};
+      }
+      const auto v = static_cast<std::uint32_t>(value);
+      if (i == 0) first = v;
+      if (i >= 2) mesh().triangles.insert(mesh().triangles.end(), {first, last, v});
+      last = v;
+    }
+    return Ok{};
+  }
+
+  Header header_;
+  Body body_;
+  LoadedMesh loaded_;
+};
+
+// The PLY properties that a feature is written as.
+std::vector<std::string> propertiesOf(const Feature& f) {
+  std::vector<std::string> names(f.dimension);
+  for (const Known& k : kKnown) {
+    if (f.name == k.feature && f.dimension == k.dimension && names[k.offset].empty()) {
+      names[k.offset] = k.property;
+    }
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i].empty()) names[i] = f.dimension == 1 ? f.name : fmt::format("{}_{}", f.name, i);
+  }
+  return names;
+}
+
+bool writtenAsBytes(const Feature& f) { return f.name == "colour" && f.dimension == 3; }
+
+std::string headerFor(const Mesh& mesh) {
+  std::string text = fmt::format(
+      "ply\nformat binary_little_endian 1.0\ncomment written by MERLIN\nelement vertex {}\n"
+      "property float x\nproperty float y\nproperty float z\n",
+      mesh.vertexCount());
+  for (const Feature& f : mesh.features) {
+    for (const std::string& name : propertiesOf(f)) {
+      text += fmt::format("property {} {}\n", writtenAsBytes(f) ? "uchar" : "float", name);
+    }
+  }
+  return text + fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+                            mesh.triangleCount());
+}
+
+}  // namespace
+
+Result<LoadedMesh> parse(std::string_view bytes) {
+  auto header = parseHeader(bytes);
+  if (!header) return header.error();
+  return Reader(bytes, std::move(*header)).read();
+}
+
+bool write(const Mesh& mesh, const WriteBytes& write) {
+  const std::string header = headerFor(mesh);
+  if (!write(std::as_bytes(std::span(header)))) return false;
+  std::string row;
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+    row.clear();
+    for (std::size_t k = 0; k < 3; ++k) appendLeFloat(row, mesh.positions[3 * v + k]);
+    for (const Feature& f : mesh.features) {
+      for (std::size_t k = 0; k < f.dimension; ++k) {
+        const float value = f.values[v * f.dimension + k];
+        if (!writtenAsBytes(f)) appendLeFloat(row, value);
+        else row.push_back(static_cast<char>(std::lround(std::clamp(value, 0.0F, 1.0F) * 255)));
+      }
+    }
+    if (!write(std::as_bytes(std::span(row)))) return false;
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    row.assign(1, '\3');
+    for (std::size_t k = 0; k < 3; ++k) appendLe32(row, mesh.triangles[t + k]);
+    if (!write(std::as_bytes(std::span(row)))) return false;
+  }
+  return true;
+}
+
+}  // namespace merlin::render::ply

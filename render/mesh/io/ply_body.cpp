@@ -1,0 +1,61 @@
+#include "render/mesh/io/ply_body.h"
+
+#include <bit>
+#include <charconv>
+#include <cstring>
+
+namespace merlin::render::ply {
+namespace {
+
+bool isSpace(char c) noexcept { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
+
+// The unsigned integer of `size` bytes at `p`.
+std::uint64_t load(const char* p, std::size_t size, bool big) noexcept {
+  std::uint64_t v = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto byte = static_cast<std::uint8_t>(p[big ? i : size - 1 - i]);
+    v = v << 8 | byte;
+  }
+  return v;
+}
+
+double interpret(std::uint64_t bits, Scalar type) noexcept {
+  switch (type) {
+    case Scalar::kInt8: return static_cast<std::int8_t>(bits);
+    case Scalar::kUint8: return static_cast<std::uint8_t>(bits);
+    case Scalar::kInt16: return static_cast<std::int16_t>(bits);
+    case Scalar::kUint16: return static_cast<std::uint16_t>(bits);
+    case Scalar::kInt32: return static_cast<std::int32_t>(bits);
+    case Scalar::kUint32: return static_cast<std::uint32_t>(bits);
+    case Scalar::kFloat32: return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+    case Scalar::kFloat64: return std::bit_cast<double>(bits);
+  }
+  return 0;
+}
+
+}  // namespace
+
+bool Body::nextWord(double& value) noexcept {
+  while (at_ < end_ && isSpace(*at_)) ++at_;
+  const char* from = at_ < end_ && *at_ == '+' ? at_ + 1 : at_;
+  const auto [end, error] = std::from_chars(from, end_, value);
+  if (error == std::errc::invalid_argument || (end < end_ && !isSpace(*end))) return false;
+  at_ = end;
+  return true;
+}
+
+bool Body::nextBinary(Scalar type, double& value) noexcept {
+  const std::size_t size = sizeOf(type);
+  if (left() < size) return false;
+  value = interpret(load(at_, size, form_ == Form::kBigEndian), type);
+  at_ += size;
+  return true;
+}
+
+std::string_view Body::rest() const noexcept {
+  std::string_view rest(at_, left());
+  rest.remove_prefix(std::min(rest.find_first_not_of(" \r\n\t"), rest.size()));
+  return rest.substr(0, std::min<std::size_t>(rest.find_first_of(" \r\n\t"), 16));
+}
+
+}  // namespace merlin::render::ply

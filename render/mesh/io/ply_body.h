@@ -1,0 +1,34 @@
+// The body of a PLY file as a stream of numbers, whatever its form.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "render/mesh/io/ply_header.h"
+
+namespace merlin::render::ply {
+
+class Body {
+ public:
+  Body(std::string_view bytes, Form form) : at_(bytes.data()), end_(at_ + bytes.size()), form_(form) {}
+
+  // The next number of the file; false at its end, or where an ascii word is no number.
+  bool next(Scalar type, double& value) noexcept {
+    return form_ == Form::kAscii ? nextWord(value) : nextBinary(type, value);
+  }
+
+  std::size_t left() const noexcept { return static_cast<std::size_t>(end_ - at_); }
+
+  // What stands where next() stopped, for a message; empty at the end of the file.
+  std::string_view rest() const noexcept;
+
+ private:
+  bool nextWord(double& value) noexcept;
+  bool nextBinary(Scalar type, double& value) noexcept;
+
+  const char* at_;
+  const char* end_;
+  Form form_;
+};
+
+}  // namespace merlin::render::ply

@@ -1,0 +1,163 @@
+#include "render/mesh/mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace merlin::render {
+namespace {
+
+constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kMost = std::size_t{1} << 31;
+
+bool repeats(const std::uint32_t* t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+
+std::size_t dropDegenerate(Mesh& mesh) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
+    if (repeats(&mesh.triangles[i])) continue;
+    std::copy_n(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(i), 3,
+                mesh.triangles.begin() + static_cast<std::ptrdiff_t>(kept));
+    kept += 3;
+  }
+  const std::size_t dropped = (mesh.triangles.size() - kept) / 3;
+  mesh.triangles.resize(kept);
+  return dropped;
+}
+
+// Moves the rows of `values` to their new places; new places never lie behind old ones.
+void compactRows(std::vector<float>& values, std::size_t dimension,
+                 const std::vector<std::uint32_t>& place, std::size_t rows) {
+  for (std::size_t v = 0; v < place.size(); ++v) {
+    if (place[v] == kUnused) continue;
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(v * dimension), dimension,
+                values.begin() + static_cast<std::ptrdiff_t>(place[v] * dimension));
+  }
+  values.resize(rows * dimension);
+}
+
+std::size_t dropUnused(Mesh& mesh) {
+  std::vector<std::uint32_t> place(mesh.vertexCount(), kUnused);
+  for (const std::uint32_t v : mesh.triangles) place[v] = 0;
+  std::uint32_t rows = 0;
+  for (std::uint32_t& p : place) {
+    if (p != kUnused) p = rows++;
+  }
+  const std::size_t dropped = mesh.vertexCount() - rows;
+  if (dropped == 0) return 0;
+  for (std::uint32_t& v : mesh.triangles) v = place[v];
+  compactRows(mesh.positions, 3, place, rows);
+  for (Feature& f : mesh.features) compactRows(f.values, f.dimension, place, rows);
+  return dropped;
+}
+
+void normalise(float* v) noexcept {
+  const float length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  for (int k = 0; k < 3; ++k) v[k] = length > 0 ? v[k] / length : 0;
+}
+
+bool areUnit(const std::vector<float>& normals) {
+  for (std::size_t i = 0; i < normals.size(); i += 3) {
+    const float l2 = normals[i] * normals[i] + normals[i + 1] * normals[i + 1] +
+                     normals[i + 2] * normals[i + 2];
+    if (!(std::abs(l2 - 1) < 0.01F)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+float Box::diagonal() const noexcept {
+  return std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+}
+
+const Feature* Mesh::find(std::string_view name) const noexcept {
+  for (const Feature& f : features) {
+    if (f.name == name) return &f;
+  }
+  return nullptr;
+}
+
+Feature* Mesh::find(std::string_view name) noexcept {
+  return const_cast<Feature*>(std::as_const(*this).find(name));
+}
+
+Result<Ok> validate(const Mesh& mesh) {
+  const std::size_t n = mesh.vertexCount();
+  if (n >= kMost || mesh.triangleCount() >= kMost) {
+    return Error{Errc::kUnsupported, fmt::format("{} vertices and {} triangles; 2^31 is the most",
+                                                 n, mesh.triangleCount())};
+  }
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    if (std::isfinite(mesh.positions[i])) continue;
+    return Error{Errc::kMalformed, fmt::format("vertex {}: coordinate {} is {}", i / 3, "xyz"[i % 3],
+                                               mesh.positions[i])};
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (mesh.triangles[i] < n) continue;
+    return Error{Errc::kMalformed, fmt::format("triangle {}: vertex {} of {} (0 to {} exist)", i / 3,
+                                               mesh.triangles[i], n, n == 0 ? 0 : n - 1)};
+  }
+  for (const Feature& f : mesh.features) {
+    if (f.values.size() == n * f.dimension) continue;
+    return Error{Errc::kMalformed, fmt::format("feature {}: {} values for {} vertices x {}", f.name,
+                                               f.values.size(), n, f.dimension)};
+  }
+  return Ok{};
+}
+
+TidyReport tidy(Mesh& mesh) {
+  const std::size_t degenerate = dropDegenerate(mesh);
+  return {degenerate, dropUnused(mesh)};
+}
+
+Box boundingBox(std::span<const float> positions) noexcept {
+  if (positions.size() < 3) return {};
+  Box box{{positions[0], positions[1], positions[2]}, {positions[0], positions[1], positions[2]}};
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    box.low[i % 3] = std::min(box.low[i % 3], positions[i]);
+    box.high[i % 3] = std::max(box.high[i % 3], positions[i]);
+  }
+  return box;
+}
+
+std::array<float, 3> faceNormal(const float* a, const float* b, const float* c) noexcept {
+  // In double: for a sliver in float the cross product is noise.
+  const double u[] = {double{b[0]} - a[0], double{b[1]} - a[1], double{b[2]} - a[2]};
+  const double v[] = {double{c[0]} - a[0], double{c[1]} - a[1], double{c[2]} - a[2]};
+  const double n[] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                      u[0] * v[1] - u[1] * v[0]};
+  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  if (!(length > 0)) return {};
+  return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length),
+          static_cast<float>(n[2] / length)};
+}
+
+std::vector<float> vertexNormals(const Mesh& mesh) {
+  std::vector<float> normals(mesh.positions.size(), 0.0F);
+  const float* p = mesh.positions.data();
+  for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
+    const std::uint32_t* t = &mesh.triangles[i];
+    const auto f = faceNormal(p + 3 * std::size_t{t[0]}, p + 3 * std::size_t{t[1]},
+                              p + 3 * std::size_t{t[2]});
+    for (int corner = 0; corner < 3; ++corner) {
+      for (std::size_t k = 0; k < 3; ++k) normals[3 * std::size_t{t[corner]} + k] += f[k];
+    }
+  }
+  for (std::size_t i = 0; i < normals.size(); i += 3) normalise(&normals[i]);
+  return normals;
+}
+
+void ensureNormals(Mesh& mesh) {
+  Feature* present = mesh.find("normal");
+  if (present && present->dimension == 3 && areUnit(present->values)) return;
+  if (present) {
+    *present = {"normal", 3, vertexNormals(mesh)};
+  } else {
+    mesh.features.push_back({"normal", 3, vertexNormals(mesh)});
+  }
+}
+
+}  // namespace merlin::render

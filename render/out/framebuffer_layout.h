@@ -1,0 +1,53 @@
+// The shared-memory framebuffer that other processes map: /NAME-framebuffer, read-only for clients.
+//
+// Three pictures in turn. A reader takes `newest`, reads that buffer, and then looks whether the
+// buffer's `sequence` is still the same: the writer needs two more frames to come round to it.
+// Little-endian. A change of meaning bumps kVersion; clients refuse a version they do not know.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+namespace merlin::render::framebuffer {
+
+inline constexpr std::uint32_t kMagic = 0x42464D4D;  // "MMFB" in memory
+inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kFormatRgba8 = 1;
+inline constexpr std::size_t kBuffers = 3;
+inline constexpr std::size_t kMostTiles = 32;
+
+struct TileRectangle {
+  char name[16];         // NUL-ended
+  std::uint32_t kind;    // 0 a piece of the wall, 1 the operator's view
+  std::int32_t x, y, width, height;  // in the frame [px], from its upper left corner
+  std::int32_t wall_x;   // in the wall's picture [px]; -1 for none
+};
+static_assert(sizeof(TileRectangle) == 40);
+
+struct Buffer {
+  std::uint64_t offset;                 // of its pixels, from the segment's start
+  std::atomic<std::uint64_t> sequence;  // of the frame in it; 0 while it is being written
+  std::int64_t finished_ns;             // CLOCK_MONOTONIC, last pixel drawn
+  std::uint32_t triangles;
+  std::uint32_t full_detail;            // 1 if nothing was left out
+};
+static_assert(sizeof(Buffer) == 32);
+
+struct Header {
+  std::uint32_t magic, version;
+  std::uint64_t size;          // of the whole segment [bytes]
+  std::uint64_t generation;    // new at each start of the daemon
+  std::uint32_t width, height;  // of the frame [px]
+  std::uint32_t stride;         // of a row [bytes]
+  std::uint32_t format;
+  std::uint32_t wall_width, wall_height;  // of the wall's picture [px]
+  std::uint32_t tile_count;
+  std::atomic<std::uint32_t> newest;      // index of the newest whole buffer
+  Buffer buffers[kBuffers];
+  TileRectangle tiles[kMostTiles];
+};
+static_assert(offsetof(Header, buffers) == 56 && sizeof(Header) == 56 + 96 + 1280);
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+
+}  // namespace merlin::render::framebuffer

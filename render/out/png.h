@@ -1,0 +1,16 @@
+// PNG: a picture to a file. libpng. About 100 ms for a frame: never on the wall's thread.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "daemon/base/result.h"
+
+namespace merlin::render {
+
+// `pixels`: RGBA, rows from top to bottom, 4 * width * height bytes; alpha is not written. The file
+// appears whole or not at all. The same pixels give the same bytes. Errors: kIo.
+Result<Ok> writePng(const std::string& path, int width, int height, std::span<const std::uint8_t> pixels);
+
+}  // namespace merlin::render

@@ -1,0 +1,48 @@
+#include "render/out/png_sink.h"
+
+#include <utility>
+
+#include "render/out/png.h"
+
+namespace merlin::render {
+
+PngFrameSink::PngFrameSink(PngSinkSettings settings, int width, int height)
+    : settings_(std::move(settings)),
+      width_(width),
+      height_(height),
+      thread_([this](const std::stop_token& stop) { encodeLoop(stop); }) {}
+
+PngFrameSink::~PngFrameSink() {
+  thread_.request_stop();
+  thread_.join();
+}
+
+void PngFrameSink::present(std::span<const std::uint8_t> pixels, const FrameInfo& info) {
+  if (last_ != Timestamp{} && info.finished - last_ < fromSeconds(settings_.interval_s)) return;
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock || !waiting_.empty()) return;
+  last_ = info.finished;
+  waiting_.assign(pixels.begin(), pixels.end());
+  wake_.notify_one();
+}
+
+std::string PngFrameSink::error() const {
+  const std::lock_guard lock(mutex_);
+  return error_;
+}
+
+void PngFrameSink::encodeLoop(const std::stop_token& stop) {
+  std::vector<std::uint8_t> pixels;
+  for (;;) {
+    {
+      std::unique_lock lock(mutex_);
+      if (!wake_.wait(lock, stop, [&] { return !waiting_.empty(); })) return;
+      pixels = std::exchange(waiting_, {});
+    }
+    const auto written = writePng(settings_.path, width_, height_, pixels);
+    const std::lock_guard lock(mutex_);
+    error_ = written ? std::string() : written.error().what;
+  }
+}
+
+}  // namespace merlin::render

@@ -1,0 +1,46 @@
+// PngFrameSink: the newest frame as a PNG file, now and then, encoded on a thread of its own.
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "render/out/frame_sink.h"
+
+namespace merlin::render {
+
+struct PngSinkSettings {
+  std::string path;
+  double interval_s = 60;  // between two files, at least
+};
+
+// A frame that comes while the last one is still being written is left out: the wall never waits
+// for a disk. What went wrong last is told by error().
+class PngFrameSink final : public FrameSink {
+ public:
+  PngFrameSink(PngSinkSettings settings, int width, int height);
+  ~PngFrameSink() override;
+  PngFrameSink(const PngFrameSink&) = delete;
+  PngFrameSink& operator=(const PngFrameSink&) = delete;
+
+  void present(std::span<const std::uint8_t> pixels, const FrameInfo& info) override;
+
+  // Empty while all is well. Thread-safe.
+  std::string error() const;
+
+ private:
+  void encodeLoop(const std::stop_token& stop);
+
+  PngSinkSettings settings_;
+  int width_, height_;
+  Timestamp last_{};
+  mutable std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::vector<std::uint8_t> waiting_;  // empty: nothing to do
+  std::string error_;
+  std::jthread thread_;
+};
+
+}  // namespace merlin::render

@@ -1,0 +1,155 @@
+#include "render/out/shm_sink.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <new>
+
+namespace merlin::render {
+namespace {
+
+using framebuffer::Buffer;
+using framebuffer::Header;
+using framebuffer::TileRectangle;
+
+constexpr std::size_t kPixelAlignment = 4096;
+constexpr int kCaptureTries = 10;
+
+std::size_t headerRoom() {
+  return (sizeof(Header) + kPixelAlignment - 1) / kPixelAlignment * kPixelAlignment;
+}
+
+TileRectangle rectangleOf(const Tile& tile) {
+  TileRectangle r{};
+  std::copy_n(tile.name.begin(), std::min(tile.name.size(), sizeof r.name - 1), r.name);
+  r.kind = tile.kind == TileKind::kOperator ? 1 : 0;
+  r.x = tile.x;
+  r.y = tile.y;
+  r.width = tile.width;
+  r.height = tile.height;
+  r.wall_x = tile.wall_x;
+  return r;
+}
+
+void fillHeader(Header& h, const TilePlan& plan, std::size_t size, std::uint64_t generation) {
+  const auto frame_bytes = static_cast<std::uint64_t>(plan.frame_width) * static_cast<std::uint64_t>(plan.frame_height) * 4;
+  h.size = size;
+  h.generation = generation;
+  h.width = static_cast<std::uint32_t>(plan.frame_width);
+  h.height = static_cast<std::uint32_t>(plan.frame_height);
+  h.stride = h.width * 4;
+  h.format = framebuffer::kFormatRgba8;
+  h.wall_width = static_cast<std::uint32_t>(plan.wall_width);
+  h.wall_height = static_cast<std::uint32_t>(plan.wall_height);
+  h.tile_count = static_cast<std::uint32_t>(plan.tiles.size());
+  for (std::size_t i = 0; i < framebuffer::kBuffers; ++i) h.buffers[i].offset = headerRoom() + i * frame_bytes;
+  for (std::size_t i = 0; i < plan.tiles.size(); ++i) h.tiles[i] = rectangleOf(plan.tiles[i]);
+  h.version = framebuffer::kVersion;
+  h.magic = framebuffer::kMagic;
+}
+
+Error broken(const std::string& name, const std::string& what) {
+  return {Errc::kMalformed, fmt::format("shared memory {}: {}", name, what)};
+}
+
+// Everything that a copy relies on; the writer may be any program.
+Result<Ok> check(const Header& h, std::size_t size, const std::string& name) {
+  if (size < sizeof(Header) || h.magic != framebuffer::kMagic) return broken(name, "is no framebuffer of MERLIN's");
+  if (h.version != framebuffer::kVersion) {
+    return Error{Errc::kUnsupported, fmt::format("shared memory {}: is version {}, this program reads {}", name,
+                                                 h.version, framebuffer::kVersion)};
+  }
+  const std::uint64_t bytes = std::uint64_t{h.stride} * h.height;
+  bool good = h.format == framebuffer::kFormatRgba8 && h.stride == h.width * 4 && h.width <= 32768 &&
+              h.height <= 32768 && h.tile_count <= framebuffer::kMostTiles;
+  for (const Buffer& b : h.buffers) good = good && b.offset <= size && bytes <= size - b.offset;
+  for (std::size_t i = 0; good && i < h.tile_count; ++i) {
+    const TileRectangle& t = h.tiles[i];
+    good = t.x >= 0 && t.y >= 0 && t.width >= 0 && t.height >= 0 &&
+           std::int64_t{t.x} + t.width <= h.width && std::int64_t{t.y} + t.height <= h.height &&
+           t.wall_x >= -1 && (t.wall_x < 0 || std::int64_t{t.wall_x} + t.width <= h.wall_width);
+  }
+  return good ? Result<Ok>(Ok{}) : Result<Ok>(broken(name, "its header is damaged"));
+}
+
+// True where the copy is whole.
+bool copyNewest(const Header& h, const std::byte* base, CapturedFrame& frame) {
+  const Buffer& b = h.buffers[h.newest.load(std::memory_order_acquire) % framebuffer::kBuffers];
+  const std::uint64_t before = b.sequence.load(std::memory_order_acquire);
+  if (before == 0) return false;
+  std::memcpy(frame.pixels.data(), base + b.offset, frame.pixels.size());
+  frame.info = {before, fromNanoseconds(b.finished_ns), b.triangles, b.full_detail != 0};
+  std::atomic_thread_fence(std::memory_order_acquire);
+  return b.sequence.load(std::memory_order_relaxed) == before;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ShmFrameSink>> ShmFrameSink::make(const std::string& name, const TilePlan& plan,
+                                                         std::uint64_t generation) {
+  if (plan.tiles.size() > framebuffer::kMostTiles) {
+    return Error{Errc::kUnsupported, fmt::format("{} tiles; a framebuffer describes {} at most",
+                                                 plan.tiles.size(), framebuffer::kMostTiles)};
+  }
+  const auto frame_bytes = static_cast<std::size_t>(plan.frame_width) * static_cast<std::size_t>(plan.frame_height) * 4;
+  const std::size_t size = headerRoom() + framebuffer::kBuffers * frame_bytes;
+  auto memory = SharedMemory::create(name, size);
+  if (!memory) return memory.error();
+  std::unique_ptr<ShmFrameSink> sink(new ShmFrameSink(*std::move(memory)));
+  fillHeader(*new (sink->memory_.data()) Header{}, plan, size, generation);
+  return sink;
+}
+
+void ShmFrameSink::present(std::span<const std::uint8_t> pixels, const FrameInfo& info) {
+  Header& h = header();
+  assert(pixels.size() == std::size_t{h.stride} * h.height);
+  Buffer& b = h.buffers[next_];
+  b.sequence.store(0, std::memory_order_release);
+  std::memcpy(memory_.data() + b.offset, pixels.data(), pixels.size());
+  b.finished_ns = toNanoseconds(info.finished);
+  b.triangles = info.triangles;
+  b.full_detail = info.full_detail ? 1 : 0;
+  b.sequence.store(info.sequence, std::memory_order_release);
+  h.newest.store(next_, std::memory_order_release);
+  next_ = (next_ + 1) % framebuffer::kBuffers;
+}
+
+Result<CapturedFrame> captureFrame(const std::string& name) {
+  const auto memory = SharedMemory::open(name);
+  if (!memory) return memory.error();
+  if (memory->size() < sizeof(Header)) return broken(name, "is no framebuffer of MERLIN's");
+  const auto& h = *reinterpret_cast<const Header*>(memory->data());
+  if (const auto checked = check(h, memory->size(), name); !checked) return checked.error();
+  CapturedFrame frame;
+  frame.width = static_cast<int>(h.width);
+  frame.height = static_cast<int>(h.height);
+  frame.wall_width = static_cast<int>(h.wall_width);
+  frame.wall_height = static_cast<int>(h.wall_height);
+  frame.tiles.assign(h.tiles, h.tiles + h.tile_count);
+  frame.pixels.resize(std::size_t{h.stride} * h.height);
+  for (int i = 0; i < kCaptureTries; ++i) {
+    if (copyNewest(h, memory->data(), frame)) return frame;
+  }
+  return Error{Errc::kTimeout, fmt::format("shared memory {}: no whole frame in it yet", name)};
+}
+
+CapturedFrame wallPicture(const CapturedFrame& frame) {
+  CapturedFrame wall;
+  wall.width = wall.wall_width = frame.wall_width;
+  wall.height = wall.wall_height = frame.wall_height;
+  wall.info = frame.info;
+  wall.pixels.assign(std::size_t{4} * static_cast<std::size_t>(wall.width) * static_cast<std::size_t>(wall.height), 0);
+  for (const TileRectangle& t : frame.tiles) {
+    if (t.wall_x < 0) continue;  // an operator's view
+    for (int row = 0; row < std::min(t.height, wall.height); ++row) {
+      const auto from = static_cast<std::ptrdiff_t>(4) * (std::ptrdiff_t{t.y + row} * frame.width + t.x);
+      const auto to = static_cast<std::ptrdiff_t>(4) * (std::ptrdiff_t{row} * wall.width + t.wall_x);
+      std::copy_n(frame.pixels.begin() + from, 4 * t.width, wall.pixels.begin() + to);
+    }
+  }
+  return wall;
+}
+
+}  // namespace merlin::render

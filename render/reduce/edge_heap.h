@@ -1,0 +1,39 @@
+// EdgeHeap: edges by length, shortest first, updated in place (row P5; [GOURLEY98] 4.2.2).
+//
+// A binary heap with the place of each edge in it. Ties go to the smaller edge number, so one input
+// gives one order on every machine. Thread-bound.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace merlin::render {
+
+class EdgeHeap {
+ public:
+  // Edges 0..lengths.size()-1, all in the heap. O(n).
+  explicit EdgeHeap(std::vector<float> lengths);
+
+  bool empty() const noexcept { return heap_.empty(); }
+  std::uint32_t top() const noexcept { return heap_.front(); }
+  float length(std::uint32_t edge) const noexcept { return lengths_[edge]; }
+  bool contains(std::uint32_t edge) const noexcept { return place_[edge] != kGone; }
+
+  void update(std::uint32_t edge, float length);  // O(log n). REQUIRES: contains(edge)
+  void remove(std::uint32_t edge);                // O(log n); nothing where it is not in
+
+ private:
+  static constexpr std::uint32_t kGone = ~std::uint32_t{0};
+
+  bool before(std::uint32_t a, std::uint32_t b) const noexcept {
+    return lengths_[a] != lengths_[b] ? lengths_[a] < lengths_[b] : a < b;
+  }
+  void put(std::size_t place, std::uint32_t edge) noexcept;
+  void up(std::size_t place) noexcept;
+  void down(std::size_t place) noexcept;
+
+  std::vector<float> lengths_;
+  std::vector<std::uint32_t> heap_, place_;
+};
+
+}  // namespace merlin::render

@@ -1,0 +1,37 @@
+// ListPool: one short list of numbers a vertex, all in one array. Lists that grow move to its end;
+// when half of the array is holes it is packed. Thread-bound.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace merlin::render {
+
+class ListPool {
+ public:
+  // `lists` empty lists, with room for counts[i] numbers in list i.
+  explicit ListPool(std::span<const std::uint32_t> counts);
+
+  std::span<const std::uint32_t> operator[](std::size_t list) const noexcept {
+    return {pool_.data() + at_[list].offset, at_[list].size};
+  }
+
+  // Amortised O(1) a number. Invalidates every span that operator[] gave out.
+  void assign(std::size_t list, std::span<const std::uint32_t> numbers);
+  void append(std::size_t list, std::uint32_t number);  // REQUIRES: room from the constructor
+  void remove(std::size_t list, std::uint32_t number);  // the first one equal; keeps the order
+
+ private:
+  struct At {
+    std::uint64_t offset = 0;
+    std::uint32_t size = 0, room = 0;
+  };
+  void pack();
+
+  std::vector<At> at_;
+  std::vector<std::uint32_t> pool_;
+  std::uint64_t holes_ = 0;
+};
+
+}  // namespace merlin::render

@@ -1,0 +1,226 @@
+#include "render/reduce/pattern_reducer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+namespace merlin::render {
+namespace {
+
+constexpr float kNever = std::numeric_limits<float>::infinity();
+// What a refused edge's length is multiplied by (P8 says "lengthen", not how much).
+constexpr float kLengthening = 4;
+constexpr float kShortest = 1e-6F;
+
+float dot(const float* a, const float* b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+}  // namespace
+
+PatternReducer::PatternReducer(const Mesh& mesh, const PatternSpace& space, bool preserve_topology)
+    : surface_(mesh),
+      space_(space),
+      preserve_topology_(preserve_topology),
+      positions_(mesh.positions),
+      features_(mesh.features),
+      patterns_(mesh.vertexCount() * space.dimension()),
+      boundary_(mesh.vertexCount()),
+      error_(mesh.vertexCount(), 0.0F),
+      node_(mesh.vertexCount()),
+      heap_({}) {
+  while (features_[normal_].name != "normal") ++normal_;
+  std::iota(node_.begin(), node_.end(), 0U);
+  const auto vertices = static_cast<std::uint32_t>(mesh.vertexCount());
+  for (std::uint32_t v = 0; v < vertices; ++v) boundary_[v] = surface_.isBoundary(v);
+  for (std::uint32_t v = 0; v < vertices; ++v) makePattern(v);
+  std::vector<float> lengths(surface_.edgeCount());
+  for (std::uint32_t e = 0; e < lengths.size(); ++e) lengths[e] = lengthOf(e);
+  heap_ = EdgeHeap(std::move(lengths));
+  result_.log.features.resize(features_.size());
+}
+
+Reduction PatternReducer::finish() && {
+  result_.report.collapses = collapses();
+  result_.report.triangles = triangles();
+  return std::move(result_);
+}
+
+bool PatternReducer::collapseShortest() {
+  while (!heap_.empty() && heap_.length(heap_.top()) < kNever) {
+    const std::uint32_t edge = heap_.top();
+    const Plan p = plan(edge);
+    const bool last = surface_.trianglesAt(p.a, p.b) == surface_.liveTriangles();
+    if (last || (preserve_topology_ && !surface_.linkCondition(p.a, p.b))) {
+      ++result_.report.topology_refused;
+      lengthen(edge);
+    } else if (flips(p)) {
+      ++result_.report.flips_refused;
+      lengthen(edge);
+    } else {
+      apply(p, edge);
+      return true;
+    }
+  }
+  return false;
+}
+
+// P6: both on the boundary, to the sharper corner; one, to it; none, to the middle.
+PatternReducer::Plan PatternReducer::plan(std::uint32_t edge) const {
+  const auto [a, b] = surface_.ends(edge);
+  Plan p{a, b, 0.5F, {}};
+  if (boundary_[a] && boundary_[b]) p.towards_b = sharpness(b) > sharpness(a) ? 1.0F : 0.0F;
+  else if (boundary_[a]) p.towards_b = 0;
+  else if (boundary_[b]) p.towards_b = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    p.position[k] = std::lerp(position(a)[k], position(b)[k], p.towards_b);
+  }
+  return p;
+}
+
+// How far the border turns at v, 0 (straight) to pi; more than that where it is not two edges.
+float PatternReducer::sharpness(std::uint32_t v) const {
+  Vec3 direction[2];
+  std::size_t found = 0;
+  for (const std::uint32_t e : surface_.edgesOf(v)) {
+    const std::uint32_t x = surface_.otherEnd(e, v);
+    if (surface_.trianglesAt(v, x) != 1) continue;
+    if (found == 2) return 4;
+    for (std::size_t k = 0; k < 3; ++k) direction[found][k] = position(x)[k] - position(v)[k];
+    ++found;
+  }
+  if (found != 2) return 4;
+  const float* d = direction[0].data();
+  const float* e = direction[1].data();
+  const float lengths = std::sqrt(dot(d, d) * dot(e, e));
+  if (!(lengths > 0)) return 0;
+  return std::numbers::pi_v<float> - std::acos(std::clamp(dot(d, e) / lengths, -1.0F, 1.0F));
+}
+
+// P8: whether a face of the new star would turn over, or lose its area. Fills new_normals_.
+bool PatternReducer::flips(const Plan& p) {
+  new_normals_.clear();
+  const float* moved = p.position.data();
+  for (const std::uint32_t v : {p.a, p.b}) {
+    for (const std::uint32_t t : surface_.trianglesOf(v)) {
+      if (surface_.contains(t, v == p.a ? p.b : p.a)) continue;
+      const float* before[3];
+      const float* after[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t corner = surface_.corners(t)[k];
+        before[k] = position(corner);
+        after[k] = corner == v ? moved : before[k];
+      }
+      const Vec3 was = faceNormal(before[0], before[1], before[2]);
+      const Vec3 is = faceNormal(after[0], after[1], after[2]);
+      if (dot(was.data(), was.data()) > 0 && !(dot(was.data(), is.data()) > 0)) return true;
+      new_normals_.insert(new_normals_.end(), is.begin(), is.end());
+    }
+  }
+  return false;
+}
+
+// Equations 4.8, 4.9: for a and b, how far each lies from the nearest plane of the new faces (all
+// of which pass through the new vertex); where no face is left, from the new vertex.
+PatternReducer::Vec3 PatternReducer::planeDistances(const Plan& p) const {
+  Vec3 nearest{};
+  for (std::size_t side = 0; side < 2; ++side) {
+    const float* old = position(side == 0 ? p.a : p.b);
+    const float d[] = {p.position[0] - old[0], p.position[1] - old[1], p.position[2] - old[2]};
+    float least = std::sqrt(dot(d, d));
+    for (std::size_t i = 0; i < new_normals_.size(); i += 3) {
+      least = std::min(least, std::abs(dot(d, &new_normals_[i])));
+    }
+    nearest[side] = least;
+  }
+  return nearest;
+}
+
+void PatternReducer::apply(const Plan& p, std::uint32_t edge) {
+  const Vec3 distance = planeDistances(p);
+  // Equation 4.10: what each end had gathered, and what it gathers now; the new vertex has the worse.
+  const float error = std::max(error_[p.a] + distance[0], error_[p.b] + distance[1]);
+  mixFeatures(p);
+  std::copy(p.position.begin(), p.position.end(), positions_.begin() + 3 * std::ptrdiff_t{p.a});
+  for (const std::uint32_t gone : surface_.collapse(p.a, p.b)) heap_.remove(gone);
+  heap_.remove(edge);
+  boundary_[p.a] = surface_.isBoundary(p.a);
+  recordNode(p, error);
+  makePattern(p.a);
+  for (const std::uint32_t e : surface_.edgesOf(p.a)) heap_.update(e, lengthOf(e));
+}
+
+// The new vertex' features: mixed as its position is; the normal from the new faces.
+void PatternReducer::mixFeatures(const Plan& p) {
+  for (std::size_t f = 0; f < features_.size(); ++f) {
+    float* a = &features_[f].values[p.a * features_[f].dimension];
+    const float* b = &features_[f].values[p.b * features_[f].dimension];
+    for (std::size_t k = 0; k < features_[f].dimension; ++k) a[k] = std::lerp(a[k], b[k], p.towards_b);
+  }
+  Vec3 sum{};
+  for (std::size_t i = 0; i < new_normals_.size(); ++i) sum[i % 3] += new_normals_[i];
+  const float length = std::sqrt(dot(sum.data(), sum.data()));
+  if (!(length > 0)) return;  // no face left: keep the mixed one
+  for (std::size_t k = 0; k < 3; ++k) features_[normal_].values[3 * p.a + k] = sum[k] / length;
+}
+
+void PatternReducer::recordNode(const Plan& p, float error) {
+  CollapseLog& log = result_.log;
+  const auto node = static_cast<std::uint32_t>(error_.size() + log.children.size());
+  log.children.push_back({node_[p.a], node_[p.b]});
+  log.positions.insert(log.positions.end(), p.position.begin(), p.position.end());
+  for (std::size_t f = 0; f < features_.size(); ++f) {
+    const float* from = &features_[f].values[p.a * features_[f].dimension];
+    log.features[f].insert(log.features[f].end(), from, from + features_[f].dimension);
+  }
+  log.error.push_back(error);
+  error_[p.a] = error;
+  node_[p.a] = node;
+  result_.report.error = std::max(result_.report.error, error);
+}
+
+void PatternReducer::makePattern(std::uint32_t v) {
+  float* pattern = &patterns_[v * space_.dimension()];
+  const float* normal = &features_[normal_].values[3 * std::size_t{v}];
+  for (const PatternFeature& f : space_.features()) {
+    float own = 0;
+    const float* values = &own;
+    if (f.name == "geometry") {
+      values = position(v);
+    } else if (f.name == "boundary") {
+      own = boundary_[v];
+    } else if (f.name == "curvature") {
+      new_normals_.clear();
+      for (const std::uint32_t t : surface_.trianglesOf(v)) {
+        const auto& c = surface_.corners(t);
+        const Vec3 n = faceNormal(position(c[0]), position(c[1]), position(c[2]));
+        new_normals_.insert(new_normals_.end(), n.begin(), n.end());
+      }
+      own = curvature(new_normals_, normal);
+    } else {
+      const auto named = [&](const Feature& feature) { return feature.name == f.name; };
+      const auto feature = std::find_if(features_.begin(), features_.end(), named);
+      values = &feature->values[v * f.dimension];
+    }
+    for (std::size_t k = 0; k < f.dimension; ++k) pattern[f.offset + k] = values[k] * f.scale;
+  }
+}
+
+// P4, equation 4.3.
+float PatternReducer::lengthOf(std::uint32_t edge) const noexcept {
+  const auto [a, b] = surface_.ends(edge);
+  const std::size_t d = space_.dimension();
+  double sum = 0;
+  for (std::size_t k = 0; k < d; ++k) {
+    const double step = double{patterns_[a * d + k]} - patterns_[b * d + k];
+    sum += step * step;
+  }
+  return static_cast<float>(std::sqrt(sum));
+}
+
+// So that other edges come first; after enough refusals it is never again the shortest.
+void PatternReducer::lengthen(std::uint32_t edge) {
+  heap_.update(edge, std::max(heap_.length(edge), kShortest) * kLengthening);
+}
+
+}  // namespace merlin::render

@@ -1,0 +1,97 @@
+#include "render/reduce/pattern_space.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace merlin::render {
+namespace {
+
+// The largest extent of any of a feature's values over the mesh; 1 where all are equal.
+float extentOf(const Feature& f) {
+  float extent = 0;
+  for (std::size_t k = 0; k < f.dimension; ++k) {
+    float low = f.values[k], high = f.values[k];
+    for (std::size_t i = k; i < f.values.size(); i += f.dimension) {
+      low = std::min(low, f.values[i]);
+      high = std::max(high, f.values[i]);
+    }
+    extent = std::max(extent, high - low);
+  }
+  return extent > 0 && std::isfinite(extent) ? extent : 1;
+}
+
+std::string namesOf(const Mesh& mesh) {
+  std::string names = "geometry, normal, curvature, boundary";
+  for (const Feature& f : mesh.features) {
+    if (f.name != "normal") names += ", " + f.name;
+  }
+  return names;
+}
+
+// How many values a feature has and what normalises them; 0 values where the mesh has none such.
+PatternFeature measure(const Mesh& mesh, const std::string& name) {
+  if (name == "geometry") {
+    const float diagonal = boundingBox(mesh.positions).diagonal();
+    return {name, 3, 0, diagonal > 0 ? 1 / diagonal : 1};
+  }
+  if (name == "normal") return {name, 3, 0, 1};
+  if (name == "curvature" || name == "boundary") return {name, 1, 0, 1};
+  const Feature* f = mesh.find(name);
+  if (!f || f->values.empty()) return {name, 0, 0, 1};
+  return {name, f->dimension, 0, name == "colour" ? 1 : 1 / extentOf(*f)};
+}
+
+}  // namespace
+
+Weights typicalWeights(const Mesh& mesh) {
+  Weights weights{{"geometry", 1.0F}, {"normal", 0.5F}, {"boundary", 2.0F}, {"curvature", 1.5F}};
+  if (mesh.find("colour")) weights["colour"] = 1.0F;
+  return weights;
+}
+
+Weights defaultWeights(const Mesh& mesh) {
+  Weights weights{{"geometry", 1.0F}, {"normal", 0.05F}, {"boundary", 0.5F}};
+  if (mesh.find("colour")) weights["colour"] = 0.03F;
+  return weights;
+}
+
+Result<PatternSpace> PatternSpace::make(const Mesh& mesh, const Weights& weights) {
+  PatternSpace space;
+  for (const auto& [name, weight] : weights) {
+    if (!(weight >= 0) || !std::isfinite(weight)) {
+      return Error{Errc::kInvalidArgument, fmt::format("weight {}: {} is not 0 or more", name, weight)};
+    }
+    PatternFeature f = measure(mesh, name);
+    if (f.dimension == 0) {
+      return Error{Errc::kInvalidArgument,
+                   fmt::format("weight {}: the mesh has no such feature; it has {}", name, namesOf(mesh))};
+    }
+    if (weight == 0) continue;
+    f.offset = space.dimension_;
+    f.scale *= weight;
+    space.dimension_ += f.dimension;
+    space.features_.push_back(std::move(f));
+  }
+  return space;
+}
+
+const PatternFeature* PatternSpace::find(std::string_view name) const noexcept {
+  for (const PatternFeature& f : features_) {
+    if (f.name == name) return &f;
+  }
+  return nullptr;
+}
+
+float curvature(std::span<const float> face_normals, const float* normal) noexcept {
+  if (face_normals.empty()) return 0;
+  double sum = 0;
+  for (std::size_t i = 0; i < face_normals.size(); ++i) {
+    const double d = double{face_normals[i]} - normal[i % 3];
+    sum += d * d;
+  }
+  return static_cast<float>(std::sqrt(sum / (static_cast<double>(face_normals.size()) / 3)));
+}
+
+}  // namespace merlin::render

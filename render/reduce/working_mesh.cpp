@@ -1,0 +1,142 @@
+#include "render/reduce/working_mesh.h"
+
+#include <algorithm>
+
+namespace merlin::render {
+namespace {
+
+std::vector<WorkingMesh::Corners> cornersOf(const Mesh& mesh) {
+  std::vector<WorkingMesh::Corners> corners(mesh.triangleCount());
+  for (std::size_t t = 0; t < corners.size(); ++t) {
+    std::copy_n(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, corners[t].begin());
+  }
+  return corners;
+}
+
+// Every edge once, sorted by its ends.
+std::vector<WorkingMesh::Ends> uniqueEdges(const std::vector<WorkingMesh::Corners>& corners) {
+  std::vector<WorkingMesh::Ends> ends;
+  ends.reserve(corners.size() * 3);
+  for (const auto& c : corners) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = c[k], b = c[(k + 1) % 3];
+      ends.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  return ends;
+}
+
+template <std::size_t N>
+ListPool listsOf(std::size_t vertices, const std::vector<std::array<std::uint32_t, N>>& rows) {
+  std::vector<std::uint32_t> counts(vertices, 0);
+  for (const auto& row : rows) {
+    for (const std::uint32_t v : row) ++counts[v];
+  }
+  ListPool lists(counts);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (const std::uint32_t v : rows[i]) lists.append(v, static_cast<std::uint32_t>(i));
+  }
+  return lists;
+}
+
+}  // namespace
+
+WorkingMesh::WorkingMesh(const Mesh& mesh)
+    : corners_(cornersOf(mesh)),
+      ends_(uniqueEdges(corners_)),
+      around_(listsOf(mesh.vertexCount(), corners_)),
+      spokes_(listsOf(mesh.vertexCount(), ends_)),
+      mark_(mesh.vertexCount(), 0),
+      live_(corners_.size()) {}
+
+std::size_t WorkingMesh::trianglesAt(std::uint32_t a, std::uint32_t b) const noexcept {
+  std::size_t count = 0;
+  for (const std::uint32_t t : around_[a]) count += contains(t, b);
+  return count;
+}
+
+bool WorkingMesh::isBoundary(std::uint32_t v) const noexcept {
+  for (const std::uint32_t e : spokes_[v]) {
+    if (trianglesAt(v, otherEnd(e, v)) == 1) return true;
+  }
+  return false;
+}
+
+bool WorkingMesh::linkCondition(std::uint32_t a, std::uint32_t b) noexcept {
+  ++stamp_;
+  for (const std::uint32_t e : spokes_[a]) mark_[otherEnd(e, a)] = stamp_;
+  std::size_t common = 0;
+  for (const std::uint32_t e : spokes_[b]) common += mark_[otherEnd(e, b)] == stamp_;
+  const std::size_t shared = trianglesAt(a, b);
+  if (common != shared) return false;
+  if (around_[a].size() + around_[b].size() <= 2 * shared + 1) return false;  // nothing would be left
+  return shared == 1 || !(isBoundary(a) && isBoundary(b));
+}
+
+std::span<const std::uint32_t> WorkingMesh::collapse(std::uint32_t a, std::uint32_t b) {
+  gone_.clear();
+  mergeTriangles(a, b);
+  mergeEdges(a, b);
+  return gone_;
+}
+
+void WorkingMesh::mergeTriangles(std::uint32_t a, std::uint32_t b) {
+  scratch_.clear();
+  for (const std::uint32_t t : around_[a]) {
+    if (!contains(t, b)) scratch_.push_back(t);
+  }
+  for (const std::uint32_t t : around_[b]) {
+    if (contains(t, a)) {
+      --live_;
+      for (const std::uint32_t v : corners_[t]) {
+        if (v != a && v != b) around_.remove(v, t);
+      }
+      continue;
+    }
+    for (std::uint32_t& v : corners_[t]) {
+      if (v == b) v = a;
+    }
+    scratch_.push_back(t);
+  }
+  around_.assign(b, {});
+  around_.assign(a, scratch_);
+}
+
+void WorkingMesh::mergeEdges(std::uint32_t a, std::uint32_t b) {
+  ++stamp_;
+  scratch_.clear();
+  for (const std::uint32_t e : spokes_[a]) {
+    const std::uint32_t x = otherEnd(e, a);
+    if (x == b) {
+      gone_.push_back(e);
+      continue;
+    }
+    mark_[x] = stamp_;
+    scratch_.push_back(e);
+  }
+  for (const std::uint32_t e : spokes_[b]) {
+    const std::uint32_t x = otherEnd(e, b);
+    if (x == a) continue;
+    if (mark_[x] == stamp_) {  // a and b both had an edge to x: one remains
+      gone_.push_back(e);
+      spokes_.remove(x, e);
+      continue;
+    }
+    ends_[e] = {a, x};
+    scratch_.push_back(e);
+  }
+  // An edge whose only triangle has gone is no edge any more.
+  std::erase_if(scratch_, [&](std::uint32_t e) {
+    const std::uint32_t x = otherEnd(e, a);
+    if (trianglesAt(a, x) > 0) return false;
+    gone_.push_back(e);
+    spokes_.remove(x, e);
+    return true;
+  });
+  spokes_.assign(b, {});
+  spokes_.assign(a, scratch_);
+}
+
+}  // namespace merlin::render

@@ -1,0 +1,202 @@
+#include "render/scene/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+namespace merlin::render {
+namespace {
+
+constexpr float kRadian = std::numbers::pi_v<float> / 180;
+// A frame that took longer moves the model no further than this would.
+constexpr float kLongestStep_s = 0.1F;
+
+Eigen::Isometry3f isometry(const Eigen::Quaternionf& q, const Eigen::Vector3f& p) {
+  Eigen::Isometry3f t = Eigen::Isometry3f::Identity();
+  t.linear() = q.normalized().toRotationMatrix();
+  t.translation() = p;
+  return t;
+}
+
+std::optional<Eigen::Matrix3f> axisMap(const std::array<int, 3>& axes) {
+  Eigen::Matrix3f m = Eigen::Matrix3f::Zero();
+  for (int row = 0; row < 3; ++row) {
+    const int axis = axes[static_cast<std::size_t>(row)];
+    if (axis == 0 || std::abs(axis) > 3) return std::nullopt;
+    m(row, std::abs(axis) - 1) = axis > 0 ? 1.0F : -1.0F;
+  }
+  if (std::abs(m.determinant() - 1) > 1e-6F) return std::nullopt;
+  return m;
+}
+
+Eigen::Vector3f vector(const std::array<double, 3>& a) {
+  return Eigen::Vector3d(a[0], a[1], a[2]).cast<float>();
+}
+
+}  // namespace
+
+Result<Scene> Scene::make(const SceneSettings& settings) {
+  if (!axisMap(settings.tracker_axes)) {
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("tracker_axes {}, {}, {}: each of 1, 2, 3 once, right-handed with its signs",
+                             settings.tracker_axes[0], settings.tracker_axes[1], settings.tracker_axes[2])};
+  }
+  Scene scene(settings);
+  for (const Binding& binding : settings.bindings) {
+    auto bound = parse(binding);
+    if (!bound) {
+      return Error{Errc::kInvalidArgument,
+                   fmt::format("binding \"{}\": inputs are ball.button.1 to ball.button.12, "
+                               "posture.NAME and glove.switch", binding.input)};
+    }
+    scene.bound_.push_back(std::move(*bound));
+  }
+  return scene;
+}
+
+Scene::Scene(const SceneSettings& settings)
+    : settings_(settings), R_wall_tracker_(*axisMap(settings.tracker_axes)) {
+  reset();
+}
+
+std::optional<Scene::Bound> Scene::parse(const Binding& binding) {
+  constexpr std::string_view kButton = "ball.button.", kPosture = "posture.";
+  const std::string_view input = binding.input;
+  Bound bound;
+  bound.action = binding.action;
+  if (input == "glove.switch") {
+    bound.kind = Bound::Kind::kSwitch;
+    return bound;
+  }
+  if (input.starts_with(kPosture) && input.size() > kPosture.size()) {
+    bound.kind = Bound::Kind::kPosture;
+    bound.posture = input.substr(kPosture.size());
+    return bound;
+  }
+  unsigned number = 0;
+  if (!input.starts_with(kButton)) return std::nullopt;
+  const char* end = input.data() + input.size();
+  const auto parsed = std::from_chars(input.data() + kButton.size(), end, number);
+  if (parsed.ec != std::errc() || parsed.ptr != end || number < 1 || number > 12) return std::nullopt;
+  bound.button = 1U << (number - 1);
+  return bound;
+}
+
+void Scene::reset() {
+  const auto yaw = static_cast<float>(settings_.model_yaw_deg) * kRadian;
+  const Eigen::Vector3f place(0, 0, -static_cast<float>(settings_.model_distance_m));
+  T_wall_model_ = isometry(Eigen::Quaternionf(Eigen::AngleAxisf(yaw, Eigen::Vector3f::UnitY())), place);
+  T_wall_eye_.setIdentity();
+  grab_hand_.reset();
+  grab_model_.reset();
+  last_motion_ = last_update_;
+  view_ = {T_wall_model_, mode_, false, true};
+}
+
+void Scene::nextMode() { mode_ = mode_ == BallMode::kObject ? BallMode::kFly : BallMode::kObject; }
+
+SceneView Scene::update(const SceneInput& input, Timestamp now) {
+  const bool first = last_update_ == Timestamp{};
+  const auto seconds = first ? 0.0F : static_cast<float>(toSeconds(now - last_update_));
+  last_update_ = now;
+  if (first) last_motion_ = now;
+  const bool grab = act(input);
+  const bool pushed = moveByBall(input, std::clamp(seconds, 0.0F, kLongestStep_s));
+  const bool carried = moveByHand(input, grab);
+  if (pushed || carried) last_motion_ = now;
+  view_.T_eye_model = T_wall_eye_.inverse() * T_wall_model_;
+  view_.mode = mode_;
+  view_.grabbed = grab_hand_.has_value();
+  view_.moving = now - last_motion_ < fromSeconds(settings_.still_after_s);
+  return view_;
+}
+
+bool Scene::isHeld(const Bound& bound, const SceneInput& input) const {
+  switch (bound.kind) {
+    case Bound::Kind::kButton: return input.ball && (input.ball->buttons & bound.button) != 0;
+    case Bound::Kind::kSwitch:
+      return input.glove && (input.glove->flags & GloveSample::kWristSwitch) != 0;
+    case Bound::Kind::kPosture: break;
+  }
+  if (!input.posture || bound.posture != input.posture->name) return false;
+  const auto held = Duration(input.posture->received_ns - input.posture->since_ns);
+  return held >= fromSeconds(settings_.posture_hold_s);
+}
+
+bool Scene::act(const SceneInput& input) {
+  bool grab = false;
+  for (Bound& bound : bound_) {
+    const bool held = isHeld(bound, input);
+    const bool began = held && !bound.was_held;
+    bound.was_held = held;
+    if (bound.action == Action::kGrab) grab |= held;
+    if (bound.action == Action::kResetView && began) reset();
+    if (bound.action == Action::kNextMode && began) nextMode();
+  }
+  return grab;
+}
+
+// Turns are about the model's own centre, along the viewer's axes; a flying viewer turns about the
+// eye. Returns whether the ball is pushed at all.
+bool Scene::moveByBall(const SceneInput& input, float seconds) {
+  if (!input.ball) return false;
+  const Eigen::Vector3f push(input.ball->translation[0], input.ball->translation[1], input.ball->translation[2]);
+  const Eigen::Vector3f twist(input.ball->rotation[0], input.ball->rotation[1], input.ball->rotation[2]);
+  if (push.isZero(0) && twist.isZero(0)) return false;
+  const Eigen::Vector3f step = push.cwiseProduct(vector(settings_.ball_speed_m_s)) * seconds;
+  const Eigen::Vector3f turn = twist.cwiseProduct(vector(settings_.ball_turn_deg_s)) * kRadian * seconds;
+  const float angle = turn.norm();
+  const Eigen::AngleAxisf rotation(angle, angle > 0 ? Eigen::Vector3f(turn / angle) : Eigen::Vector3f::UnitX());
+  if (mode_ == BallMode::kFly) {
+    T_wall_eye_ = T_wall_eye_ * isometry(Eigen::Quaternionf(rotation), step);
+    return true;
+  }
+  const Eigen::Matrix3f R_wall_eye = T_wall_eye_.linear();
+  T_wall_model_.linear() = R_wall_eye * rotation.toRotationMatrix() * R_wall_eye.transpose() * T_wall_model_.linear();
+  T_wall_model_.translation() += R_wall_eye * step;
+  return true;
+}
+
+// The model turns with the hand about its own centre and moves hand_gain times as far. Within the
+// tracker's noise nothing moves; from rest, the noise has to be doubled.
+bool Scene::moveByHand(const SceneInput& input, bool grab) {
+  if (!grab || !input.hand) {
+    grab_hand_.reset();
+    return false;
+  }
+  const Eigen::Isometry3f hand = handPose(*input.hand);
+  if (!grab_hand_) {
+    grab_hand_ = last_hand_ = hand;
+    grab_model_ = T_wall_model_;
+    return true;
+  }
+  const float gate = view_.moving ? 1.0F : 2.0F;
+  const float way = (hand.translation() - last_hand_.translation()).norm();
+  const float turn = Eigen::AngleAxisf(Eigen::Matrix3f(hand.linear() * last_hand_.linear().transpose())).angle();
+  const bool moved = way > gate * static_cast<float>(settings_.hand_noise_m) ||
+                     turn > gate * static_cast<float>(settings_.hand_noise_deg) * kRadian;
+  if (moved) last_hand_ = hand;
+  if (!moved && !view_.moving) return false;
+  const Eigen::Matrix3f R = hand.linear() * grab_hand_->linear().transpose();
+  const Eigen::Matrix3f R_wall_eye = T_wall_eye_.linear();
+  T_wall_model_.linear() = R_wall_eye * R * R_wall_eye.transpose() * grab_model_->linear();
+  T_wall_model_.translation() =
+      grab_model_->translation() + R_wall_eye * (hand.translation() - grab_hand_->translation()) *
+                                       static_cast<float>(settings_.hand_gain);
+  return moved;
+}
+
+Eigen::Isometry3f Scene::handPose(const TrackerSample& s) const {
+  const Eigen::Quaternionf q(s.orientation_wxyz[0], s.orientation_wxyz[1], s.orientation_wxyz[2],
+                             s.orientation_wxyz[3]);
+  const Eigen::Matrix3f R = q.normalized().toRotationMatrix();
+  Eigen::Isometry3f hand = Eigen::Isometry3f::Identity();
+  hand.linear() = R_wall_tracker_ * R * R_wall_tracker_.transpose();
+  hand.translation() = R_wall_tracker_ * Eigen::Vector3f(s.position_m[0], s.position_m[1], s.position_m[2]);
+  return hand;
+}
+
+}  // namespace merlin::render

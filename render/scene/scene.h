@@ -1,0 +1,81 @@
+// Scene: what the devices say becomes where the model and the viewer are. Pure: no clock, no GL.
+//
+// Wall frame: the eye at the origin, x right, y up, -z into the wall, metres. T_a_b takes
+// b-coordinates to a-coordinates.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/result.h"
+#include "drivers/port/samples.h"
+#include "render/scene/settings.h"
+
+namespace merlin::render {
+
+// What is known of the devices when a frame begins. Absent: never heard, or not well for longer
+// than stale_after_s; its input then counts as let go.
+struct SceneInput {
+  std::optional<BallSample> ball;
+  std::optional<TrackerSample> hand;
+  std::optional<PostureSample> posture;
+  std::optional<GloveSample> glove;
+};
+
+enum class BallMode { kObject, kFly };  // the ball moves the model; the viewer
+
+struct SceneView {
+  Eigen::Isometry3f T_eye_model;  // model in metres, its bounding sphere's centre at its origin
+  BallMode mode = BallMode::kObject;
+  bool grabbed = false;
+  bool moving = false;  // an input is above its noise, or was within still_after_s
+};
+
+
+class Scene {
+ public:
+  // Errors: kInvalidArgument: a binding whose input is none, an axis map that is no permutation.
+  static Result<Scene> make(const SceneSettings& settings);
+
+  // Once a frame. `now` never falls. Cost: microseconds.
+  SceneView update(const SceneInput& input, Timestamp now);
+
+  // Where it would be drawn without any further input.
+  const SceneView& view() const noexcept { return view_; }
+
+  void reset();     // model and viewer back to the start; counts as motion
+  void nextMode();
+
+ private:
+  struct Bound {
+    Action action = Action::kGrab;
+    enum class Kind { kButton, kPosture, kSwitch } kind = Kind::kButton;
+    std::uint32_t button = 0;  // bit
+    std::string posture;
+    bool was_held = false;
+  };
+
+  explicit Scene(const SceneSettings& settings);
+  static std::optional<Bound> parse(const Binding& binding);
+  bool isHeld(const Bound& bound, const SceneInput& input) const;
+  bool act(const SceneInput& input);            // bindings; returns whether grab is held
+  bool moveByBall(const SceneInput& input, float seconds);
+  bool moveByHand(const SceneInput& input, bool grab);
+  Eigen::Isometry3f handPose(const TrackerSample& sample) const;
+
+  SceneSettings settings_;
+  std::vector<Bound> bound_;
+  Eigen::Matrix3f R_wall_tracker_;
+  Eigen::Isometry3f T_wall_model_, T_wall_eye_;
+  BallMode mode_ = BallMode::kObject;
+  // While grabbed: where hand and model were when it began, and where the hand last counted.
+  std::optional<Eigen::Isometry3f> grab_hand_, grab_model_;
+  Eigen::Isometry3f last_hand_ = Eigen::Isometry3f::Identity();
+  SceneView view_;
+  Timestamp last_update_{}, last_motion_{};
+};
+
+}  // namespace merlin::render

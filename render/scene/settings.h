@@ -1,0 +1,48 @@
+// What the configuration says of the scene: where the model stands, and what a person's input does.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace merlin::render {
+
+// What an input can do.
+enum class Action {
+  kGrab,       // while it is held: the tracked hand moves the model
+  kResetView,  // once: model and viewer back to where they started
+  kNextMode,   // once: the ball moves the model, or the viewer
+};
+
+// "ball.button.1" ... "ball.button.12", "posture.NAME", "glove.switch".
+struct Binding {
+  std::string input;
+  Action action = Action::kGrab;
+};
+
+struct SceneSettings {
+  double model_radius_m = 1.0;    // the model is scaled to this bounding sphere
+  double model_distance_m = 2.0;  // of its centre in front of the eye
+  double model_yaw_deg = 0;       // turned about the vertical axis at first
+
+  // At a full push or twist of the ball, for x, y, z.
+  std::array<double, 3> ball_speed_m_s = {1.0, 1.0, 1.0};
+  std::array<double, 3> ball_turn_deg_s = {90, 90, 90};
+  // The wall's x (right), y (up), z (towards the person) as axes of the tracker (1 x, 2 y, 3 z,
+  // negative to turn it round). As set: the transmitter's x points from the wall to the person.
+  std::array<int, 3> tracker_axes = {-2, -3, 1};
+  int hand_station = 1;       // of the tracker, that the grabbing hand wears
+  double hand_gain = 3.0;     // metres of the model for a metre of the hand
+  // What the tracker's own noise may look like; less is no motion.
+  double hand_noise_m = 0.003;
+  double hand_noise_deg = 0.6;
+  double still_after_s = 0.15;    // without input until the scene counts as still
+  double posture_hold_s = 0.10;   // that a posture lasts before it acts
+  double stale_after_s = 0.5;     // of a device that is no longer well, its input ends
+
+  std::vector<Binding> bindings = {{"posture.fist", Action::kGrab},
+                                   {"ball.button.1", Action::kResetView},
+                                   {"ball.button.2", Action::kNextMode}};
+};
+
+}  // namespace merlin::render

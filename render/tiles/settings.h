@@ -1,0 +1,33 @@
+// What the configuration says of the wall's geometry.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace merlin::render {
+
+enum class TileKind {
+  kWall,      // a piece of the picture on the wall
+  kOperator,  // the operator's own view of the whole model
+};
+
+struct TileSettings {
+  std::string name;
+  TileKind kind = TileKind::kWall;
+  int x = 0, y = 0;      // of its upper left corner in the frame buffer [px]
+  double turns = 0;      // about the vertical axis, in tile widths; +1 is one to the left
+};
+
+struct TilesSettings {
+  int tile_width = 640, tile_height = 480;    // [px]
+  int frame_width = 1280, frame_height = 960;  // [px]
+  double field_of_view_deg = 40;               // of one tile, horizontally
+  double near_m = 0.05, far_m = 50;            // what is drawn, along the view
+  // W1: upper left, upper right, lower left, lower right.
+  std::vector<TileSettings> tiles = {{"left", TileKind::kWall, 0, 0, 1},
+                                     {"centre", TileKind::kWall, 640, 0, 0},
+                                     {"right", TileKind::kWall, 0, 480, -1},
+                                     {"operator", TileKind::kOperator, 640, 480, 0}};
+};
+
+}  // namespace merlin::render

@@ -1,0 +1,49 @@
+// TilePlan: which part of the frame buffer shows what, through which frustum. Pure.
+//
+// Wall tiles look from one point, each turned about the vertical axis by a whole field of view from
+// its neighbour, so that the frusta touch and do not overlap: three make one wide picture
+// ([GOURLEY98] 2.4, rows W1 and W2). The operator's tile sees the whole model from further back.
+//
+// Axes: x right, y up, the eye looks along -z. Angles to the left are positive.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "daemon/base/result.h"
+#include "render/tiles/settings.h"
+
+namespace merlin::render {
+
+struct Tile {
+  std::string name;
+  TileKind kind = TileKind::kWall;
+  int x = 0, y = 0, width = 0, height = 0;  // in the frame buffer, from its upper left corner [px]
+  int wall_x = -1;                          // in the wall's picture [px]; -1 for no wall tile
+  Eigen::Matrix4f projection;               // view to clip coordinates, OpenGL's, y up
+  Eigen::Matrix4f view;                     // eye to view coordinates: the tile's turn
+};
+
+struct TilePlan {
+  int frame_width = 0, frame_height = 0;
+  int wall_width = 0, wall_height = 0;  // of the picture on the wall, tiles left to right
+  std::vector<Tile> tiles;
+};
+
+// Errors: kInvalidArgument: a tile outside the frame, two that overlap, two of one name or turn, a
+// field of view that is not 1..179 degrees, near or far out of order.
+Result<TilePlan> planTiles(const TilesSettings& settings);
+
+// Frustum of a field of view (horizontal, radians) and an aspect (width / height).
+Eigen::Matrix4f perspective(float field_of_view_rad, float aspect, float near_m, float far_m);
+
+// The operator's view of a sphere (centre and radius in eye coordinates, metres): from the front,
+// far enough away that all of it is seen in a tile with this projection.
+Eigen::Matrix4f operatorView(const Eigen::Matrix4f& projection, const Eigen::Vector3f& centre,
+                             float radius);
+
+// Turns the view to the left by `yaw_rad`.
+Eigen::Matrix4f yawView(float yaw_rad);
+
+}  // namespace merlin::render
