@@ -1,0 +1,25 @@
+// Raw values of a CyberGlove to joint angles in slot order, and back. Pure.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "drivers/cyberglove/protocol.h"
+#include "drivers/cyberglove/settings.h"
+#include "drivers/port/samples.h"
+
+namespace merlin::cyberglove {
+
+// Fills `angle_rad`, `raw`, `sensors` and `flags` of `sample`; leaves the rest. A slot that `slots`
+// lacks has raw 0 and an angle that is filled in: a DIP joint from its PIP joint [VTI], slot 7 by
+// the rule of the settings, any other with 0. Slot 23 is reserved and ignored.
+void calibrate(const Record& record, const SlotList& slots, const CybergloveSettings& settings,
+               GloveSample& sample) noexcept;
+
+// The inverse, for the emulator: the raw value of each slot at these angles, rounded and clamped to
+// 1..255. A slot of gain 0 has its offset.
+std::array<std::uint8_t, kSlots> rawOf(std::span<const float, kGloveSlots> angle_rad,
+                                       const CybergloveSettings& settings) noexcept;
+
+}  // namespace merlin::cyberglove

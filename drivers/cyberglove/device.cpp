@@ -1,0 +1,154 @@
+#include "drivers/cyberglove/device.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "drivers/cyberglove/calibration.h"
+
+namespace merlin::cyberglove {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr Duration kPollTime = milliseconds(250);
+constexpr Duration kReplyTime = milliseconds(500);
+constexpr Duration kLongestSilence = milliseconds(500);
+constexpr std::size_t kLongestText = 512;
+
+constexpr std::string_view kStop = "\x03";
+constexpr const char* kUnplugged = "glove not plugged in";
+constexpr const char* kTooFast = "more records asked for than the glove can measure";
+
+// What follows "?x" in the answer, `count` bytes without the NUL.
+Result<std::string> ask(Dialogue& dialogue, char letter, std::size_t count) {
+  const std::string query{'?', letter};
+  if (const auto sent = dialogue.send(query); !sent) return sent.error();
+  const auto reply = dialogue.readExactly(count + 3, kReplyTime, query);
+  if (!reply) return reply.error();
+  if (!reply->starts_with(query) || reply->back() != '\0') {
+    return Error{Errc::kMalformed,
+                 fmt::format("\"{}\" in answer to {}", quoteBytes(*reply), query)};
+  }
+  return reply->substr(2, count);
+}
+
+// The answer is the letter and NUL. Old firmware adds a byte, an error has one more: drained.
+Result<Ok> set(Dialogue& dialogue, std::string_view command) {
+  const std::string_view letter = command.substr(0, 1);
+  if (const auto sent = dialogue.send(command); !sent) return sent.error();
+  const auto reply = dialogue.readExactly(2, kReplyTime, letter);
+  if (!reply) return reply.error();
+  if ((*reply)[0] != letter[0] || (*reply)[1] != '\0') {
+    return Error{Errc::kMalformed,
+                 fmt::format("\"{}\" in answer to {}", quoteBytes(*reply), letter)};
+  }
+  if (const auto done = dialogue.drain(milliseconds(20), milliseconds(40)); !done) {
+    return done.error();
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+CybergloveDevice::CybergloveDevice(const CybergloveSettings& settings, const Clock& clock,
+                                   SampleSink& sink)
+    : settings_(settings), clock_(clock), sink_(sink) {}
+
+Result<std::string> CybergloveDevice::open(ByteStream& stream) {
+  Dialogue dialogue(stream, clock_);
+  complaint_ = "";
+  if (const auto sent = dialogue.send(kStop); !sent) return sent.error();
+  if (const auto quiet = dialogue.drain(milliseconds(100), milliseconds(500)); !quiet) {
+    return quiet.error();
+  }
+  if (const auto known = identify(dialogue); !known) return known.error();
+  if (const auto done = setUp(dialogue); !done) return done.error();
+  parser_.expect({.values = slots_.count, .timestamp = false, .status = true});
+  if (const auto sent = dialogue.send("S"); !sent) return sent.error();
+  last_record_ = clock_.now();
+  return fmt::format("CyberGlove, {} sensors", slots_.count);
+}
+
+Result<Ok> CybergloveDevice::identify(Dialogue& dialogue) {
+  if (const auto sent = dialogue.send("?i"); !sent) return sent.error();
+  const auto info = dialogue.readUntil('\0', kLongestText, kReplyTime, "?i");
+  if (!info) return info.error();
+  if (info->find("CyberGlove") == std::string::npos) {
+    return Error{Errc::kMalformed, fmt::format("no CyberGlove: it says \"{}\"", quoteBytes(*info))};
+  }
+  const auto state = ask(dialogue, 'G', 1);
+  if (!state) return state.error();
+  if (!((*state)[0] & 2)) complaint_ = kUnplugged;
+  const auto sensors = ask(dialogue, 'S', 1);
+  if (!sensors) return sensors.error();
+  const auto mask = ask(dialogue, 'K', 3);
+  if (!mask) return mask.error();
+  mask_ = decodeMask(mask->data());
+  slots_ = slotsOf(mask_);
+  const auto count = static_cast<std::uint8_t>((*sensors)[0]);
+  if (count != slots_.count || count == 0) {
+    return Error{Errc::kMalformed,
+                 fmt::format("a glove of {} sensors with a mask of {} (0x{:06X}){}{}", count,
+                             slots_.count, mask_, *complaint_ ? ": " : "", complaint_)};
+  }
+  return Ok{};
+}
+
+Result<Ok> CybergloveDevice::setUp(Dialogue& dialogue) {
+  const std::string commands[] = {
+      "M" + encodeMask(mask_),
+      {'N', static_cast<char>(slots_.count)},
+      {'U', '\1'},
+      {'D', '\0'},
+      {'F', settings_.filter ? '\1' : '\0'},
+      encodeRate(settings_.rate_hz),
+  };
+  for (const std::string& command : commands) {
+    if (const auto done = set(dialogue, command); !done) return done;
+  }
+  return Ok{};
+}
+
+Result<Ok> CybergloveDevice::poll(ByteStream& stream) {
+  std::array<std::byte, 256> buffer;  // NOLINT: filled by read
+  const auto got = stream.read(buffer, kPollTime);
+  if (!got && got.error().code != Errc::kTimeout) return got.error();
+  const Timestamp now = clock_.now();
+  for (std::size_t i = 0; got && i < *got; ++i) {
+    if (!parser_.inside()) packet_start_ = now;
+    if (const auto packet = parser_.feed(buffer[i])) handle(*packet, packet_start_);
+  }
+  const Duration silence = now - last_record_;
+  if (silence < std::max(kLongestSilence, fromSeconds(5 / settings_.rate_hz))) return Ok{};
+  return Error{Errc::kTimeout, fmt::format("no record for {:.1f} s{}{}", toSeconds(silence),
+                                           *complaint_ ? ": " : "", complaint_)};
+}
+
+void CybergloveDevice::handle(const Packet& packet, Timestamp first_byte) noexcept {
+  if (const auto* refusal = std::get_if<Refusal>(&packet)) {
+    if (refusal->code == 'g') complaint_ = kUnplugged;
+    if (refusal->code == 's') complaint_ = kTooFast;
+    return;
+  }
+  const Record& record = std::get<Record>(packet);
+  const bool plugged = (record.status & Record::kPlugged) && !record.unplugged;
+  complaint_ = !plugged ? kUnplugged : record.too_fast ? kTooFast : "";
+  last_record_ = clock_.now();
+  calibrate(record, slots_, settings_, sample_);
+  sample_.received_ns = toNanoseconds(first_byte);
+  ++sample_.counter;
+  ++samples_;
+  sink_.publish(sample_);
+}
+
+DeviceCounters CybergloveDevice::counters() const noexcept {
+  return {samples_, parser_.badBytes(), parser_.badPackets()};
+}
+
+std::unique_ptr<Device> makeDevice(const CybergloveSettings& settings, const Clock& clock,
+                                   SampleSink& sink) {
+  return std::make_unique<CybergloveDevice>(settings, clock, sink);
+}
+
+}  // namespace merlin::cyberglove

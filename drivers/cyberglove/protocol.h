@@ -1,0 +1,102 @@
+// CyberGlove wire format, binary dialogue: bytes to records and back. No I/O, no clock.
+//
+// A record is a letter, one byte a sensor, what was switched on, and NUL:
+//   'G' or 'S'  v1 .. vN: u8 [raw, 1..255]  [time stamp: 5 bytes]  [status: u8, bit 7 set]
+//   ['e' 's' or 'e' 'g', both may come]  00
+// 'G' answers a single request, 'S' belongs to a stream. An error reply is 'e' code 00. No byte
+// inside is 0, so a NUL always ends a packet. 'e' is also a legal value: errors are told by place.
+//
+// Sources: README.md beside this file.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace merlin::cyberglove {
+
+// Slots of the interface unit: bits of its sensor masks. Values are sent in their order.
+inline constexpr std::size_t kSlots = 24;
+inline constexpr std::uint32_t kMask18 = 0x7BBB3F;
+inline constexpr std::uint32_t kMask22 = 0x7FFF7F;
+
+struct SlotList {
+  std::array<std::uint8_t, kSlots> slot{};  // slot[i] is where value i of a record belongs
+  std::size_t count = 0;
+};
+SlotList slotsOf(std::uint32_t mask) noexcept;
+
+// A mask as `M` and `?K` carry it: 3 bytes, lowest first.
+std::string encodeMask(std::uint32_t mask);
+std::uint32_t decodeMask(const char* bytes) noexcept;
+
+// What a record holds.
+struct Layout {
+  std::size_t values = 22;  // 1..24
+  bool timestamp = false;   // `D`
+  bool status = true;       // `U`
+};
+
+struct Record {
+  enum Status : std::uint8_t { kPlugged = 1, kWristSwitch = 2, kLight = 4, kAlways = 0x80 };
+
+  std::array<std::uint8_t, kSlots> values{};  // in wire order; 0 beyond the layout's count
+  std::uint32_t timestamp = 0;                // [1/115200 s]; 0 where the layout has none
+  std::uint8_t status = kAlways | kPlugged;   // as it stands where the layout has none
+  bool single = false;                        // answers `G`
+  bool too_fast = false;                      // "es": sampled faster than the glove can
+  bool unplugged = false;                     // "eg": no glove on the interface unit
+};
+
+struct Refusal {
+  char code =
+      '?';  // '?' unknown command, 'n' number, 'y' sync too fast, 'g' no glove, 's' too fast
+};
+
+using Packet = std::variant<Record, Refusal>;
+
+class Parser {
+ public:
+  // Forgets what is under way, not the counts. REQUIRES: 1 <= layout.values <= 24.
+  void expect(const Layout& layout) noexcept;
+
+  // Takes one byte; returns a packet when `byte` completes one. Never blocks, never allocates.
+  // A packet that does not fit the layout is dropped whole and counted; the next NUL
+  // resynchronises.
+  std::optional<Packet> feed(std::byte byte) noexcept;
+
+  // Packets dropped since construction, and their bytes.
+  std::uint64_t badPackets() const noexcept { return bad_packets_; }
+  std::uint64_t badBytes() const noexcept { return bad_bytes_; }
+
+  // True in the middle of a packet.
+  bool inside() const noexcept { return length_ > 0; }
+
+ private:
+  std::optional<Packet> finish() noexcept;
+  std::optional<Packet> read() const noexcept;
+
+  static constexpr std::size_t kLongest = 1 + kSlots + 5 + 1 + 4;
+  Layout layout_;
+  std::array<std::uint8_t, kLongest> bytes_{};  // without the NUL
+  std::size_t length_ = 0;
+  std::uint64_t bad_packets_ = 0;
+  std::uint64_t bad_bytes_ = 0;
+};
+
+// A time stamp on the wire: a flag byte, then the count, lowest byte first, in which a 0 is sent as
+// 1 and its bit in the flag byte is set.
+using Stamp = std::array<std::uint8_t, 5>;
+Stamp stuffTimestamp(std::uint32_t count) noexcept;
+std::uint32_t unstuffTimestamp(const std::uint8_t* stamp) noexcept;
+
+// The inverse of the parser, for the emulator. A value of 0 is sent as 1.
+std::string encode(const Record& record, const Layout& layout);
+
+// `T`: the command that asks for `rate_hz` records a second. REQUIRES: 1 <= rate_hz <= 115200.
+std::string encodeRate(double rate_hz);
+
+}  // namespace merlin::cyberglove
