@@ -1,0 +1,49 @@
+// A Fastrak's dialogue: stop, status, stations, set up, stream.
+#pragma once
+
+#include <memory>
+
+#include "daemon/base/clock.h"
+#include "drivers/fastrak/protocol.h"
+#include "drivers/fastrak/settings.h"
+#include "drivers/port/device.h"
+#include "drivers/port/dialogue.h"
+#include "drivers/port/sample_sink.h"
+
+namespace merlin::fastrak {
+
+// open() takes about 0.5 s. After a failure of the box's the next open() reinitialises it first,
+// which takes up to 12 s: a box is deaf for up to 10 s while it starts. poll() fails with kTimeout
+// when no record came for 0.5 s. Publishes one sample a record, each station with its own counter.
+class FastrakDevice final : public Device {
+ public:
+  FastrakDevice(const FastrakSettings& settings, const Clock& clock, SampleSink& sink);
+
+  Result<std::string> open(ByteStream& stream) override;
+  Result<Ok> poll(ByteStream& stream) override;
+  DeviceCounters counters() const noexcept override;
+  const char* complaint() const noexcept override { return complaint_; }
+
+ private:
+  Result<std::string> talk(Dialogue& dialogue);
+  Result<Status> identify(Dialogue& dialogue);
+  Result<Stations> askStations(Dialogue& dialogue);
+  Result<Ok> setUp(Dialogue& dialogue, const Stations& stations);
+  void publish(const Record& record) noexcept;
+  void noteErrors() noexcept;
+
+  FastrakSettings settings_;
+  const Clock& clock_;
+  SampleSink& sink_;
+  Parser parser_;
+  std::array<TrackerSample, kStations> sample_{};  // the newest of each station
+  std::uint64_t samples_ = 0;
+  Timestamp last_record_{};
+  bool restart_ = false;  // it did not answer, or not as it should: reinitialise it
+  char complaint_[48] = "";
+};
+
+std::unique_ptr<Device> makeDevice(const FastrakSettings& settings, const Clock& clock,
+                                   SampleSink& sink);
+
+}  // namespace merlin::fastrak

@@ -1,0 +1,104 @@
+// Polhemus Fastrak wire format: bytes to records and back. No I/O, no clock.
+//
+// A data record with the output list 2,11,0 in binary, 32 bytes, neither length nor terminator:
+//   '0'  station '1'..'4'  error ' ' or letter  x y z  q0 q1 q2 q3: 7 x f32le  ' '
+// A reply is '2', the station, the command's letter, its data, CR LF.
+//
+// Sources: README.md beside this file.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "drivers/port/samples.h"
+
+namespace merlin::fastrak {
+
+inline constexpr std::size_t kRecordLength = 32;
+inline constexpr std::size_t kStatusLength = 55;
+inline constexpr std::size_t kStationsLength = 9;
+
+struct Record {
+  int station = 1;                  // 1..4
+  char error = ' ';                 // ' ' or a letter of the built-in test
+  std::array<float, 3> position{};  // in the unit's own length: inches, or centimetres after `u`
+  std::array<float, 4> orientation_wxyz{1, 0, 0, 0};  // as on the wire: of norm 0.98..1.02
+  std::int64_t received_ns = 0;  // what feed() was told with the record's first byte
+};
+
+// A window slides over the stream. What stands in it is a record if the fixed bytes are right, the
+// numbers are finite and the quaternion is a rotation; after a failure the next record's '0' must
+// follow as well. If not, one byte is dropped and the rest tried again.
+class Parser {
+ public:
+  // Forgets what is under way, not the counts; the next byte is taken for the first of a record.
+  void reset() noexcept;
+
+  // Takes one byte, which arrived at `received_ns`; returns a record when `byte` completes one.
+  // Never blocks, never allocates. (Arrival is passed in, because the window may have to look for a
+  // record's first byte among bytes that came earlier.)
+  std::optional<Record> feed(std::byte byte, std::int64_t received_ns) noexcept;
+
+  // Times that the records' beat was lost since construction, and bytes dropped to find it again.
+  std::uint64_t badPackets() const noexcept { return bad_packets_; }
+  std::uint64_t badBytes() const noexcept { return bad_bytes_; }
+
+ private:
+  bool plausible() const noexcept;
+  void drop() noexcept;
+  Record take() noexcept;
+  void shift(std::size_t count) noexcept;
+
+  std::array<std::uint8_t, kRecordLength + 1> window_{};
+  std::array<std::int64_t, kRecordLength + 1> received_ns_{};  // of each byte in the window
+  std::size_t length_ = 0;
+  bool locked_ = true;  // the window starts where a good record ended
+  std::uint64_t bad_packets_ = 0;
+  std::uint64_t bad_bytes_ = 0;
+};
+
+// The answer to `S`.
+struct Status {
+  bool binary = false;
+  bool centimetres = false;
+  bool compensation = false;
+  bool continuous = false;
+  int test_error = 0;             // of the built-in test, 0 for none
+  std::string firmware = "3.00";  // at most 6 characters
+  std::string configuration;      // at most 32 characters
+};
+// Nothing unless `reply` is a status record, 55 bytes with its CR LF.
+std::optional<Status> parseStatus(std::string_view reply);
+
+// The answer to `l`: element i is true where station i + 1 is active. Nothing unless it is one,
+// 9 bytes with its CR LF.
+using Stations = std::array<bool, kStations>;
+std::optional<Stations> parseStations(std::string_view reply) noexcept;
+
+// The inverse, for the emulator, in more forms than the driver asks for. Items of an output list: 0
+// blank, 1 CR LF, 2 position, 4 azimuth, elevation and roll, 11 quaternion, 16 stylus switch
+// (always off), 18, 19 and 20: 2, 4 and 11 as 16-bit numbers.
+bool isItem(int item) noexcept;
+
+inline constexpr std::array<int, 3> kDefaultList = {2, 4, 1};  // of a box that was told nothing
+inline constexpr std::array<int, 3> kDriverList = {2, 11, 0};
+
+struct Form {
+  bool binary = true;
+  bool centimetres = true;  // of record.position; it scales item 18
+};
+
+// REQUIRES: isItem() of each.
+std::string encode(const Record& record, std::span<const int> items, const Form& form);
+std::string encode(const Status& status);
+std::string encode(const Stations& stations, int asked_station);
+
+// Azimuth, elevation and roll [degrees]: R = Rz(az) Ry(el) Rx(roll). REQUIRES: a unit quaternion.
+std::array<float, 3> anglesOf(const std::array<float, 4>& orientation_wxyz) noexcept;
+
+}  // namespace merlin::fastrak
