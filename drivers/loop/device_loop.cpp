@@ -33,15 +33,14 @@ void DeviceLoop::run(const std::stop_token& stop) {
   enter(HealthState::kAbsent, "not opened yet");
   Duration retry = settings_.first_retry;
   while (!stop.stop_requested()) {
-    streamed_ = false;
+    opened_ = streamed_ = false;
     const Error end = serve(stop);
     if (stop.stop_requested()) break;
     if (streamed_) {
       ++health_.reconnects;
       retry = settings_.first_retry;
     }
-    const bool port_opened = health_.state != HealthState::kAbsent;
-    enter(port_opened && end.code != Errc::kClosed ? HealthState::kFailed : HealthState::kAbsent,
+    enter(opened_ && end.code != Errc::kClosed ? HealthState::kFailed : HealthState::kAbsent,
           end.what);
     if (!clock_.sleepUntil(clock_.now() + retry, stop)) break;
     retry = std::min(2 * retry, settings_.longest_retry);
@@ -51,22 +50,20 @@ void DeviceLoop::run(const std::stop_token& stop) {
 
 Error DeviceLoop::serve(const std::stop_token& stop) {
   auto stream = open_stream_();
-  if (!stream) {
-    health_.state = HealthState::kAbsent;
-    return stream.error();
-  }
+  if (!stream) return stream.error();
+  opened_ = true;
   const std::stop_callback wake(stop, [&] { (*stream)->interrupt(); });
   enter(HealthState::kOpening, "");
   const auto identity = device_->open(**stream);
   if (!identity) return identity.error();
   setText(health_.identity, *identity);
+  rate_since_ = clock_.now();
+  rate_samples_ = device_->counters().samples;
   enter(HealthState::kOk, "");
   return pollUntilLost(**stream, stop);
 }
 
 Error DeviceLoop::pollUntilLost(ByteStream& stream, const std::stop_token& stop) {
-  rate_since_ = clock_.now();
-  rate_samples_ = device_->counters().samples;
   while (!stop.stop_requested()) {
     if (const auto polled = device_->poll(stream); !polled) return polled.error();
     if (device_->counters().samples > health_.samples) streamed_ = true;

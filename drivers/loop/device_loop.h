@@ -44,7 +44,8 @@ class DeviceLoop {
   HealthSink& sink_;
   Clock& clock_;
   DeviceHealth health_{};
-  bool streamed_ = false;  // this connection came as far as a sample
+  bool opened_ = false;    // this connection came as far as an open port
+  bool streamed_ = false;  // and as far as a sample
   Timestamp rate_since_{};
   std::uint64_t rate_samples_ = 0;
   Timestamp reported_{};

@@ -86,10 +86,9 @@ Result<Ok> SpaceballDevice::setUp(ByteStream& stream) {
 Result<Ok> SpaceballDevice::poll(ByteStream& stream) {
   std::array<std::byte, 64> buffer;  // NOLINT: filled by read
   const auto got = stream.read(buffer, kPollTime);
-  if (!got && got.error().code == Errc::kTimeout) return keepAlive(stream);
-  if (!got) return got.error();
+  if (!got && got.error().code != Errc::kTimeout) return got.error();
   const Timestamp now = clock_.now();
-  for (std::size_t i = 0; i < *got; ++i) {
+  for (std::size_t i = 0; got && i < *got; ++i) {
     if (!parser_.inside()) packet_start_ = now;
     const auto packet = parser_.feed(buffer[i]);
     if (!packet) continue;
@@ -97,7 +96,7 @@ Result<Ok> SpaceballDevice::poll(ByteStream& stream) {
     pinged_ = false;
     if (const auto done = handle(*packet, packet_start_, stream); !done) return done;
   }
-  return Ok{};
+  return keepAlive(stream);  // bytes that are no packets count as silence
 }
 
 // At rest the ball says nothing: after a while ask for the keys, which it always answers.
