@@ -64,7 +64,7 @@ Motion MotionScript::at(Duration t) const {
   for (const Phase& p : phases) length += p.seconds;
   double since = std::fmod(std::max(toSeconds(t), 0.0), length);
   std::size_t i = 0;
-  while (since >= phases[i].seconds) since -= phases[i++].seconds;
+  while (i + 1 < phases.size() && since >= phases[i].seconds) since -= phases[i++].seconds;
   const Phase& now = phases[i];
   const Phase& before = phases[(i + phases.size() - 1) % phases.size()];
   const double share = smooth(since / kTransition);
