@@ -69,7 +69,7 @@ std::optional<Packet> Parser::finish() noexcept {
 std::optional<Packet> Parser::read() const noexcept {
   if (length_ == 2 && bytes_[0] == 'e') return Refusal{static_cast<char>(bytes_[1])};
   const std::size_t body = bodyLength(layout_);
-  if (length_ < body || (length_ - body) % 2 != 0) return std::nullopt;
+  if (length_ != body && length_ != body + 2 && length_ != body + 4) return std::nullopt;
   if (bytes_[0] != 'G' && bytes_[0] != 'S') return std::nullopt;
 
   Record record;

@@ -10,7 +10,8 @@
 namespace merlin::emulate {
 namespace {
 
-constexpr double kTransition = 0.35;  // s, from one hand shape or push to the next
+// s, from one hand shape or push to the next; a shorter phase is all transition.
+constexpr double kTransition = 0.35;
 
 using Ball = std::array<float, 6>;
 constexpr Ball kRest{};
@@ -67,7 +68,7 @@ Motion MotionScript::at(Duration t) const {
   while (i + 1 < phases.size() && since >= phases[i].seconds) since -= phases[i++].seconds;
   const Phase& now = phases[i];
   const Phase& before = phases[(i + phases.size() - 1) % phases.size()];
-  const double share = smooth(since / kTransition);
+  const double share = smooth(since / std::min(kTransition, now.seconds));
 
   Motion motion;
   const hand::Shape* from = hand::findShape(before.shape);
