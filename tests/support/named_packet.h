@@ -1,0 +1,18 @@
+// NamedPacket: a parameter of the damage tests, listed by ctest under its name and not its bytes.
+#pragma once
+
+#include <ostream>
+#include <string>
+
+namespace merlin::test {
+
+struct NamedPacket {
+  const char* name;
+  std::string bytes;
+
+  friend std::ostream& operator<<(std::ostream& out, const NamedPacket& packet) {
+    return out << packet.name;
+  }
+};
+
+}  // namespace merlin::test
