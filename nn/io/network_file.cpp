@@ -1,0 +1,197 @@
+#include "nn/io/network_file.h"
+
+#include <exception>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/files.h"
+#include "nn/io/strict_json.h"
+
+namespace merlin::nn {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kMostVersions = 1000;
+constexpr std::size_t kLargestFile = 1 << 20;  // bytes; a network has about 8 kB
+constexpr double kMostWeight = 1e6;            // far beyond where any Phi is flat
+constexpr std::size_t kLongestHow = 200;
+constexpr auto kMostCount = std::numeric_limits<std::uint64_t>::max();
+
+void readSizes(JsonView sizes) {
+  sizes.expectKeys({"inputs", "hidden", "outputs"});
+  sizes.at("inputs").count(kInputs, kInputs);
+  sizes.at("hidden").count(kHidden, kHidden);
+  sizes.at("outputs").count(kOutputs, kOutputs);
+}
+
+Phi readPhi(JsonView view) {
+  const auto phi = phiNamed(view.text(kLongestName));
+  if (!phi) view.wrong("\"sigmoid\", \"signum\" or \"atan\"");
+  return phi.value_or(Phi::kSigmoid);
+}
+
+// Slot and name say the same thing twice, so that a file made for another order is found out.
+void readInputs(JsonView inputs, InputRanges& ranges) {
+  inputs.expectArray(kInputs, kInputs);
+  for (std::size_t i = 0; i < kInputs; ++i) {
+    JsonView input = inputs.at(i);
+    input.expectKeys({"slot", "name", "low_rad", "high_rad"});
+    input.at("slot").count(i, i);
+    JsonView name = input.at("name");
+    if (name.text(kLongestHow) != kInputNames[i]) name.wrong(fmt::format("\"{}\"", kInputNames[i]));
+    ranges[i].low_rad =
+        static_cast<float>(input.at("low_rad").number(-kMostAngle_rad, kMostAngle_rad));
+    JsonView high = input.at("high_rad");
+    ranges[i].high_rad = static_cast<float>(high.number(-kMostAngle_rad, kMostAngle_rad));
+    if (!(ranges[i].low_rad < ranges[i].high_rad)) {
+      high.wrong(fmt::format("more than low_rad, {}", ranges[i].low_rad));
+    }
+  }
+}
+
+template <typename Rows>
+void readRows(JsonView view, Rows& rows) {
+  view.expectArray(rows.size(), rows.size());
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    JsonView row = view.at(j);
+    row.expectArray(rows[j].size(), rows[j].size());
+    for (std::size_t i = 0; i < rows[j].size(); ++i) {
+      rows[j][i] = static_cast<float>(row.at(i).number(-kMostWeight, kMostWeight));
+    }
+  }
+}
+
+void readPostures(JsonView list, PostureTable& postures) {
+  const std::size_t size = list.expectArray(1, kCodes);
+  for (std::size_t n = 0; n < size; ++n) {
+    JsonView posture = list.at(n);
+    posture.expectKeys({"code", "name"});
+    JsonView digits = posture.at("code");
+    const auto code = parseCode(digits.text(kLongestHow));
+    if (!code) digits.wrong("five digits 0 or 1, output 4 first");
+    const auto added = postures.add(code.value_or(0), posture.at("name").text(kLongestHow));
+    if (!added) posture.wrong("one code a name, one name a code", added.error().what);
+  }
+}
+
+Provenance readProvenance(JsonView view) {
+  view.expectKeys({"how", "seed", "samples", "mse", "synthetic"});
+  Provenance trained;
+  trained.how = view.at("how").text(kLongestHow);
+  trained.seed = view.at("seed").count(0, kMostCount);
+  trained.samples = view.at("samples").count(0, kMostCount);
+  trained.mse = view.at("mse").number(0, 1);
+  trained.synthetic = view.at("synthetic").boolean();
+  return trained;
+}
+
+NetworkFile readDocument(JsonView root) {
+  NetworkFile file;
+  JsonView version = root.at("version");
+  if (version.count(0, kMostVersions) != kVersion) {  // first: of another version all may differ
+    version.wrong(fmt::format("{}, the version that this MERLIN reads", kVersion), {},
+                  Errc::kUnsupported);
+  }
+  root.expectKeys({"version", "sizes", "phi", "inputs", "hidden", "output", "postures", "trained"});
+  readSizes(root.at("sizes"));
+  file.network.phi = readPhi(root.at("phi"));
+  readInputs(root.at("inputs"), file.network.ranges);
+  readRows(root.at("hidden"), file.network.weights.hidden);
+  readRows(root.at("output"), file.network.weights.output);
+  readPostures(root.at("postures"), file.network.postures);
+  file.trained = readProvenance(root.at("trained"));
+  return file;
+}
+
+// fmt's shortest form that reads back as the same float; `+ 0` turns -0, which JSON has not, to 0.
+std::string number(float v) { return fmt::format("{}", v + 0.0F); }
+
+template <typename Rows>
+std::string formatRows(const Rows& rows) {
+  std::string out;
+  for (const auto& row : rows) {
+    out += out.empty() ? "    [" : ",\n    [";
+    for (std::size_t i = 0; i < row.size(); ++i) out += (i == 0 ? "" : ", ") + number(row[i]);
+    out += ']';
+  }
+  return out;
+}
+
+std::string formatInputs(const InputRanges& ranges) {
+  std::string out;
+  for (std::size_t i = 0; i < kInputs; ++i) {
+    out += fmt::format(R"({}    {{"slot": {}, "name": "{}", "low_rad": {}, "high_rad": {}}})",
+                       i == 0 ? "" : ",\n", i, kInputNames[i], number(ranges[i].low_rad),
+                       number(ranges[i].high_rad));
+  }
+  return out;
+}
+
+std::string formatPostures(const PostureTable& postures) {
+  std::string out;
+  for (std::uint32_t code = 0; code < kCodes; ++code) {
+    const auto name = postures.name(code);
+    if (name.empty()) continue;
+    out += fmt::format(R"({}    {{"code": "{}", "name": "{}"}})", out.empty() ? "" : ",\n",
+                       formatCode(code), name);
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<NetworkFile> parseNetwork(std::string_view text, const std::string& file) {
+  try {
+    if (text.size() > kLargestFile) {
+      return Error{Errc::kMalformed, fmt::format("{}: (root): found {} bytes; allowed: {}", file,
+                                                 text.size(), kLargestFile)};
+    }
+    if (const auto checked = checkJson(text, file); !checked) return checked.error();
+    const json document = json::parse(text);
+    std::optional<Error> error;
+    NetworkFile read = readDocument(JsonView(&document, "", file, error));
+    if (error) return *std::move(error);
+    return read;
+  } catch (const std::exception& ex) {  // nlohmann's, or no memory
+    return Error{Errc::kMalformed, file + ": " + ex.what()};
+  }
+}
+
+Result<NetworkFile> loadNetwork(const std::string& path) {
+  const auto file = MappedFile::open(path);
+  if (!file) return file.error();
+  return parseNetwork(file->text(), path);
+}
+
+std::string formatNetwork(const PostureNetwork& network, const Provenance& trained) {
+  constexpr auto kReplace = json::error_handler_t::replace;  // `how` may hold anything
+  return fmt::format(
+      "{{\n  \"version\": {},\n"
+      "  \"sizes\": {{\"inputs\": {}, \"hidden\": {}, \"outputs\": {}}},\n"
+      "  \"phi\": \"{}\",\n"
+      "  \"inputs\": [\n{}\n  ],\n"
+      "  \"hidden\": [\n{}\n  ],\n"
+      "  \"output\": [\n{}\n  ],\n"
+      "  \"postures\": [\n{}\n  ],\n"
+      "  \"trained\": {{\"how\": {}, \"seed\": {}, \"samples\": {}, \"mse\": {}, "
+      "\"synthetic\": {}}}\n}}\n",
+      kVersion, kInputs, kHidden, kOutputs, nameOf(network.phi), formatInputs(network.ranges),
+      formatRows(network.weights.hidden), formatRows(network.weights.output),
+      formatPostures(network.postures), json(trained.how).dump(-1, ' ', false, kReplace),
+      trained.seed, trained.samples, trained.mse, trained.synthetic);
+}
+
+Result<Ok> saveNetwork(const std::string& path, const PostureNetwork& network,
+                       const Provenance& trained) {
+  const std::string text = formatNetwork(network, trained);
+  if (const auto read = parseNetwork(text, path); !read) {
+    return Error{Errc::kInvalidArgument, "not written: " + read.error().what};
+  }
+  return writeFile(path, text);
+}
+
+}  // namespace merlin::nn

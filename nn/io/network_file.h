@@ -1,0 +1,34 @@
+// The posture network's file: JSON, version 1. The format: nn/io/README.md.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "daemon/base/result.h"
+#include "nn/postures.h"
+#include "nn/train.h"
+
+namespace merlin::nn {
+
+struct NetworkFile {
+  PostureNetwork network;
+  Provenance trained;
+};
+
+// Reads a file whole or not at all. Every error names the file and says where the fault stands
+// (a JSON pointer), what was found there and what is allowed; the first fault is the one told.
+// Errors: kNotFound, kIo, kMalformed, kUnsupported (a version that is not 1).
+Result<NetworkFile> loadNetwork(const std::string& path);
+
+// The same of a text; `file` is its name in errors.
+Result<NetworkFile> parseNetwork(std::string_view text, const std::string& file);
+
+// The inverse, exact: what is read back equals what was written, number for number (-0 becomes 0).
+std::string formatNetwork(const PostureNetwork& network, const Provenance& trained);
+
+// Replaces `path` by a whole file or leaves it as it was. Errors: kIo; kInvalidArgument: what
+// loadNetwork() would refuse, a weight that is not finite among it.
+Result<Ok> saveNetwork(const std::string& path, const PostureNetwork& network,
+                       const Provenance& trained);
+
+}  // namespace merlin::nn

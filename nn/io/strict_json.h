@@ -1,0 +1,55 @@
+// JSON read strictly: what a file may not hold is an error that says where it stands.
+//
+// Every error reads "FILE: POINTER: found X; allowed: Y", with an RFC 6901 pointer.
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "daemon/base/result.h"
+
+namespace merlin::nn {
+
+// Looks at the text alone. Errors, all kMalformed: no JSON (line and column come along), a number
+// that overflows, a key that comes twice, more than 8 levels. What passes is safe to parse.
+Result<Ok> checkJson(std::string_view text, const std::string& file);
+
+// One value of a parsed document, and where it stands.
+//
+// The first thing that is wrong is kept in `error`, which all views of a document share; reading
+// goes on with zeros and empty views, so that a reader looks at the error once, at its end.
+class JsonView {
+ public:
+  JsonView(const nlohmann::json* value, std::string pointer, const std::string& file,
+           std::optional<Error>& error)
+      : value_(value), pointer_(std::move(pointer)), file_(file), error_(error) {}
+
+  // Wrong unless this is an object with these keys and no others.
+  void expectKeys(std::initializer_list<const char*> keys);
+  // Wrong unless this is an array with that many elements; returns how many.
+  std::size_t expectArray(std::size_t least, std::size_t most);
+
+  JsonView at(const char* key) const;
+  JsonView at(std::size_t index) const;
+
+  double number(double low, double high);
+  std::uint64_t count(std::uint64_t low, std::uint64_t high);
+  bool boolean();
+  std::string text(std::size_t longest);
+
+  // Marks this value as wrong. `found` is this value itself where it is left out.
+  void wrong(std::string_view allowed, std::string_view found = {}, Errc code = Errc::kMalformed);
+
+ private:
+  const nlohmann::json* value_;  // nullptr where there is none
+  std::string pointer_;
+  const std::string& file_;
+  std::optional<Error>& error_;
+};
+
+}  // namespace merlin::nn

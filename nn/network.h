@@ -1,0 +1,62 @@
+// The posture network: 23 inputs, 15 hidden nodes, 5 outputs, fully connected, feed-forward. Pure.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace merlin::nn {
+
+inline constexpr std::size_t kInputs = 23;  // order and ranges: nn/README.md, "Inputs"
+inline constexpr std::size_t kHidden = 15;
+inline constexpr std::size_t kOutputs = 5;  // five bits, thresholded at 0.5: up to 32 postures
+
+using Input = std::array<float, kInputs>;    // each in [0, 1]: nn/inputs.h
+using Output = std::array<float, kOutputs>;  // activations in [0, 1]
+
+// The transfer function of every node. [GOU] A.5.1 names the three; the last two are shifted and
+// scaled from (-1, 1) to (0, 1), so that one threshold of 0.5 serves all:
+//   sigmoid  1 / (1 + e^-t)
+//   signum   1 for t > 0, else 0; it has no slope, so it recalls and cannot be trained
+//   atan     1/2 + atan(t) / pi
+enum class Phi { kSigmoid, kSignum, kAtan };
+
+const char* nameOf(Phi phi) noexcept;                         // "sigmoid", "signum", "atan"
+std::optional<Phi> phiNamed(std::string_view name) noexcept;  // the inverse
+
+// Row-major weights; the last column of a row is its bias. 15 x 24 and 5 x 16: 440 numbers.
+// Real is float for recall, double for training.
+template <typename Real>
+struct BasicWeights {
+  std::array<std::array<Real, kInputs + 1>, kHidden> hidden{};
+  std::array<std::array<Real, kHidden + 1>, kOutputs> output{};
+};
+using Weights = BasicWeights<float>;
+
+// Every sum (I_j of A.9) and every value (Y_j of A.10) of one forward pass.
+template <typename Real>
+struct Pass {
+  std::array<Real, kHidden> hidden_sum, hidden;
+  std::array<Real, kOutputs> output_sum, output;
+};
+
+// Forward pass. For each node, from the inputs to the hidden layer and from that to the outputs:
+//
+//   I_j = sum_i W_ji X_i + bias_j   [GOU] A.9,    Y_j = Phi(I_j)   [GOU] A.10
+//
+// Pure and allocation-free: it runs in the glove's device thread. Inputs outside [0, 1] are used
+// as they are. A NaN among the inputs makes every output NaN, with each Phi. Sums run from i = 0
+// up, the bias last: the same bits on every machine but for the last one of e^t and atan.
+template <typename Real>
+Pass<Real> propagate(Phi phi, const BasicWeights<Real>& weights,
+                     const std::array<Real, kInputs>& x) noexcept;
+
+// The outputs of propagate() alone.
+Output forward(Phi phi, const Weights& weights, const Input& x) noexcept;
+
+// The five-bit code: bit i is set where output i is above 0.5 ([GOU] 2.3). A NaN sets no bit.
+std::uint32_t threshold(const Output& output) noexcept;
+
+}  // namespace merlin::nn

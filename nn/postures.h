@@ -1,0 +1,67 @@
+// Postures: the network's five bits, the names that they stand for, and recall as a whole.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "daemon/base/result.h"
+#include "nn/inputs.h"
+#include "nn/network.h"
+
+namespace merlin::nn {
+
+inline constexpr std::uint32_t kCodes = 1U << kOutputs;
+inline constexpr std::size_t kLongestName = 19;  // characters
+
+// 1 to kLongestName letters, digits, '-' or '_': safe in JSON, in CSV and on a command line.
+bool isPostureName(std::string_view name) noexcept;
+
+// Code to name, and back. One code a name, one name a code. Copies freely; looking up allocates
+// nothing.
+class PostureTable {
+ public:
+  // Errors: kInvalidArgument: code above 31, no posture name, code or name already taken.
+  Result<Ok> add(std::uint32_t code, std::string_view name);
+
+  // Empty where the code has no name. Valid as long as the table.
+  std::string_view name(std::uint32_t code) const noexcept;
+  std::optional<std::uint32_t> code(std::string_view name) const noexcept;
+  std::size_t size() const noexcept;  // codes with a name
+
+ private:
+  std::array<std::array<char, kLongestName + 1>, kCodes> names_{};  // NUL-ended
+};
+
+// The code of the n-th posture of a table that MERLIN makes, n < kEvenCodes: n + 1 in the upper
+// four bits, and the lowest so that the number of ones is even. Any two differ in at least two
+// bits, so one wrong output is no posture, never another one. 00000 is left out: it is what a
+// network says that has learned nothing.
+inline constexpr std::size_t kEvenCodes = 15;
+std::uint32_t evenCode(std::size_t n) noexcept;
+
+// A code as files write it: five digits, output 4 first, output 0 last.
+std::string formatCode(std::uint32_t code);
+std::optional<std::uint32_t> parseCode(std::string_view digits) noexcept;
+
+// All that recall needs. Plain data, about 2.6 kB.
+struct PostureNetwork {
+  Phi phi = Phi::kSigmoid;
+  InputRanges ranges = kGloveRanges;
+  Weights weights;
+  PostureTable postures;
+};
+
+struct Recognition {
+  std::uint32_t code;     // threshold(activation)
+  Output activation;      // the outputs as they are
+  std::string_view name;  // of the code; empty: no posture. Valid as long as the network
+};
+
+// What the hand shows. An angle that is not finite is never a posture, whatever the table says:
+// code 0, activations NaN, no name. Allocation-free; about 0.3 us.
+Recognition recognise(const PostureNetwork& network, const Angles& angle_rad) noexcept;
+
+}  // namespace merlin::nn
