@@ -52,7 +52,7 @@ void calibrate(const Record& record, const SlotList& slots, const CybergloveSett
 
 std::array<std::uint8_t, kSlots> rawOf(std::span<const float, kGloveSlots> angle_rad,
                                        const CybergloveSettings& settings) noexcept {
-  std::array<std::uint8_t, kSlots> raw;
+  std::array<std::uint8_t, kSlots> raw{};
   raw.fill(1);
   for (std::size_t slot = 0; slot < kGloveSlots; ++slot) {
     const float gain = settings.gain[slot];

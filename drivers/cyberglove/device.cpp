@@ -105,7 +105,7 @@ Result<Ok> CybergloveDevice::setUp(Dialogue& dialogue) {
       encodeRate(settings_.rate_hz),
   };
   for (const std::string& command : commands) {
-    if (const auto done = set(dialogue, command); !done) return done;
+    if (auto done = set(dialogue, command); !done) return done;
   }
   return Ok{};
 }
@@ -131,7 +131,7 @@ void CybergloveDevice::handle(const Packet& packet, Timestamp first_byte) noexce
     if (refusal->code == 's') complaint_ = kTooFast;
     return;
   }
-  const Record& record = std::get<Record>(packet);
+  const Record& record = *std::get_if<Record>(&packet);
   const bool plugged = (record.status & Record::kPlugged) && !record.unplugged;
   complaint_ = !plugged ? kUnplugged : record.too_fast ? kTooFast : "";
   last_record_ = clock_.now();

@@ -311,7 +311,7 @@ class FastrakEmulator final : public Emulator {
 
   // Turned by a little about each of its own axes.
   std::array<float, 4> shaken(const std::array<float, 4>& q) {
-    std::array<float, 3> h;  // half angles, small
+    std::array<float, 3> h{};  // half angles, small
     for (float& half : h) half = static_cast<float>(kAngleNoise_rad / 2 * noise_.normal());
     const auto [w, x, y, z] = q;
     std::array<float, 4> r = {

@@ -1,5 +1,6 @@
 #include "drivers/fastrak/device.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -20,6 +21,9 @@ constexpr Duration kLongestSilence = milliseconds(500);
 
 constexpr std::string_view kReinitialise = "\x19";
 constexpr std::string_view kStop = "c";
+
+constexpr char kComplaint[] = "station 1 reports error k";
+constexpr std::size_t kComplaintStation = 8, kComplaintLetter = 24;
 
 constexpr float kMetresPerInch = 0.0254F;
 constexpr float kMetresPerCentimetre = 0.01F;
@@ -101,7 +105,7 @@ Result<Ok> FastrakDevice::setUp(Dialogue& dialogue, const Stations& stations) {
     const auto& h = settings_.hemisphere[i];
     const auto commands =
         fmt::format("H{0},{1:.4g},{2:.4g},{3:.4g}\rO{0},2,11,0\r", i + 1, h[0], h[1], h[2]);
-    if (const auto sent = dialogue.send(commands); !sent) return sent;
+    if (auto sent = dialogue.send(commands); !sent) return sent;
     if (const auto quiet = dialogue.drain(kSettleTime, kSettleTime); !quiet) return quiet.error();
   }
   return dialogue.send(settings_.centimetres ? "ufC" : "UfC");
@@ -145,9 +149,9 @@ void FastrakDevice::noteErrors() noexcept {
   complaint_[0] = '\0';
   for (const TrackerSample& sample : sample_) {
     if (sample.error == ' ' || complaint_[0]) continue;
-    const auto end = fmt::format_to_n(complaint_, sizeof complaint_ - 1,
-                                      "station {} reports error {}", sample.station, sample.error);
-    *end.out = '\0';
+    std::copy(std::begin(kComplaint), std::end(kComplaint), complaint_);
+    complaint_[kComplaintStation] = static_cast<char>('0' + sample.station);
+    complaint_[kComplaintLetter] = sample.error;
   }
 }
 

@@ -40,7 +40,7 @@ class FastrakDevice final : public Device {
   std::uint64_t samples_ = 0;
   Timestamp last_record_{};
   bool restart_ = false;  // it did not answer, or not as it should: reinitialise it
-  char complaint_[48] = "";
+  char complaint_[32] = "";
 };
 
 std::unique_ptr<Device> makeDevice(const FastrakSettings& settings, const Clock& clock,

@@ -94,7 +94,7 @@ Result<Ok> SpaceballDevice::poll(ByteStream& stream) {
     if (!packet) continue;
     last_heard_ = now;
     pinged_ = false;
-    if (const auto done = handle(*packet, packet_start_, stream); !done) return done;
+    if (auto done = handle(*packet, packet_start_, stream); !done) return done;
   }
   return keepAlive(stream);  // bytes that are no packets count as silence
 }

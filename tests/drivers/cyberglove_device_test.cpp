@@ -17,7 +17,7 @@ using std::chrono::seconds;
 constexpr Layout kLayout{22, false, true};
 
 struct Glove : test::DeviceBench {
-  explicit Glove(emulate::EmulatorSettings emulated = {}, const char* script_name = "visit",
+  explicit Glove(const emulate::EmulatorSettings& emulated = {}, const char* script_name = "visit",
                  const CybergloveSettings& settings = {})
       : DeviceBench("cyberglove", emulated, script_name),
         device(makeDevice(settings, clock, sink)) {}

@@ -291,7 +291,7 @@ TEST(CybergloveCalibration, TheInverseNeverLeavesTheLegalRange) {
   settings.gain[4] = 0;
   settings.offset[4] = 300;
   for (const float angle : {-100.0F, 0.0F, 100.0F}) {
-    std::array<float, kGloveSlots> angles;
+    std::array<float, kGloveSlots> angles{};
     angles.fill(angle);
     const auto raw = rawOf(angles, settings);
     EXPECT_GE(*std::min_element(raw.begin(), raw.end()), 1);
