@@ -1,5 +1,7 @@
 #include "drivers/emulate/emulator.h"
 
+#include <algorithm>
+
 #include "drivers/emulate/cyberglove_emulator.h"
 #include "drivers/emulate/fastrak_emulator.h"
 #include "drivers/emulate/spaceball_emulator.h"
@@ -23,6 +25,16 @@ const EmulatorEntry* findEmulator(std::string_view name) {
     if (entry.name == name) return &entry;
   }
   return nullptr;
+}
+
+bool hasModel(const EmulatorEntry& entry, std::string_view model) {
+  std::string_view models = entry.models;
+  while (!model.empty() && !models.empty()) {
+    const std::size_t n = std::min(models.find('|'), models.size());
+    if (models.substr(0, n) == model) return true;
+    models.remove_prefix(std::min(n + 1, models.size()));
+  }
+  return model.empty();
 }
 
 }  // namespace merlin::emulate

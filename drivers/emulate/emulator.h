@@ -49,4 +49,7 @@ struct EmulatorEntry {
 std::span<const EmulatorEntry> emulators();
 const EmulatorEntry* findEmulator(std::string_view name);  // nullptr if there is none
 
+// Whether `model` is one of the entry's, or empty for its default.
+bool hasModel(const EmulatorEntry& entry, std::string_view model);
+
 }  // namespace merlin::emulate

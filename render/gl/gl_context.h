@@ -9,10 +9,9 @@
 
 #include "daemon/base/result.h"
 #include "render/gl/gl_api.h"
+#include "render/gl/settings.h"
 
 namespace merlin::render {
-
-enum class GlBackend { kEgl, kOsmesa };
 
 class GlContext {
  public:

@@ -13,17 +13,10 @@
 
 #include "daemon/base/result.h"
 #include "render/gl/gl_api.h"
+#include "render/gl/settings.h"
 #include "render/lod/dendrogram.h"
 
 namespace merlin::render {
-
-struct Look {
-  std::array<float, 3> colour{0.75F, 0.75F, 0.72F};         // of a model without vertex colours
-  std::array<float, 3> background{0.06F, 0.07F, 0.09F};
-  float brightness = 1;          // multiplies colours before they are clipped; for dark scans
-  bool draw_back_faces = false;  // lit as fronts; costs 1.6 to 1.9 times the time
-  bool wireframe = false;
-};
 
 // What one tile sees.
 struct Camera {
@@ -55,6 +48,9 @@ class ModelRenderer {
   // Draws triangles first .. first + count - 1, after begin(). May be called in slices: a flush
   // between slices bounds how long one takes.
   void draw(Source source, std::size_t first, std::size_t count);
+
+  void flush() { gl_.Flush(); }    // lets what was drawn begin
+  void finish() { gl_.Finish(); }  // waits until it is done
 
  private:
   explicit ModelRenderer(const GlApi& gl) : gl_(gl) {}

@@ -8,13 +8,9 @@
 #include <vector>
 
 #include "render/out/frame_sink.h"
+#include "render/out/settings.h"
 
 namespace merlin::render {
-
-struct PngSinkSettings {
-  std::string path;
-  double interval_s = 60;  // between two files, at least
-};
 
 // A frame that comes while the last one is still being written is left out: the wall never waits
 // for a disk. What went wrong last is told by error().

@@ -87,8 +87,11 @@ std::optional<Scene::Bound> Scene::parse(const Binding& binding) {
 
 void Scene::reset() {
   const auto yaw = static_cast<float>(settings_.model_yaw_deg) * kRadian;
+  const auto pitch = static_cast<float>(settings_.model_pitch_deg) * kRadian;
+  const Eigen::Quaternionf turned = Eigen::AngleAxisf(yaw, Eigen::Vector3f::UnitY()) *
+                                    Eigen::AngleAxisf(pitch, Eigen::Vector3f::UnitX());
   const Eigen::Vector3f place(0, 0, -static_cast<float>(settings_.model_distance_m));
-  T_wall_model_ = isometry(Eigen::Quaternionf(Eigen::AngleAxisf(yaw, Eigen::Vector3f::UnitY())), place);
+  T_wall_model_ = isometry(turned, place);
   T_wall_eye_.setIdentity();
   grab_hand_.reset();
   grab_model_.reset();

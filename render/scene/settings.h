@@ -23,7 +23,8 @@ struct Binding {
 struct SceneSettings {
   double model_radius_m = 1.0;    // the model is scaled to this bounding sphere
   double model_distance_m = 2.0;  // of its centre in front of the eye
-  double model_yaw_deg = 0;       // turned about the vertical axis at first
+  double model_yaw_deg = 0;       // turned about the vertical axis at first,
+  double model_pitch_deg = 0;     // and before that about the horizontal one
 
   // At a full push or twist of the ball, for x, y, z.
   std::array<double, 3> ball_speed_m_s = {1.0, 1.0, 1.0};

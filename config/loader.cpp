@@ -1,0 +1,218 @@
+#include "config/loader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "config/checks.h"
+#include "config/json_tree.h"
+#include "config/nearest.h"
+#include "config/visitor.h"
+#include "daemon/base/files.h"
+
+namespace merlin {
+namespace {
+
+std::string escapePointer(std::string_view key) {
+  std::string out;
+  for (const char c : key) out += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+  return out;
+}
+
+// Takes settings out of a tree; what it does not take is unknown.
+class Loader final : public SettingsVisitor {
+ public:
+  Loader(const JsonNode& root, std::string folder, std::vector<Finding>& findings)
+      : folder_(std::move(folder)), findings_(findings) {
+    enter(&root, "");
+  }
+  ~Loader() override { leave(); }
+  Loader(const Loader&) = delete;
+  Loader& operator=(const Loader&) = delete;
+
+  void number(const char* key, double& value, Range range, const char*) override {
+    if (const JsonNode* node = take(key, JsonNode::Kind::kNumber, "a number")) value = clamp(*node, key, range);
+  }
+  void integer(const char* key, int& value, Range range, const char*) override {
+    const JsonNode* node = take(key, JsonNode::Kind::kNumber, "a whole number");
+    if (!node) return;
+    if (node->number != std::floor(node->number)) return wrong(*node, key, "a whole number");
+    value = static_cast<int>(clamp(*node, key, range));
+  }
+  void flag(const char* key, bool& value, const char*) override {
+    if (const JsonNode* node = take(key, JsonNode::Kind::kBool, "true or false")) value = node->boolean;
+  }
+  void text(const char* key, std::string& value, const char*) override {
+    if (const JsonNode* node = take(key, JsonNode::Kind::kString, "a string")) value = node->text;
+  }
+  void path(const char* key, std::string& value, const char*) override {
+    const JsonNode* node = take(key, JsonNode::Kind::kString, "a file's name");
+    if (!node) return;
+    value = node->text.empty() ? "" : (std::filesystem::path(folder_) / node->text).lexically_normal().string();
+  }
+  void choice(const char* key, int& value, std::span<const char* const> names, const char*) override {
+    const std::string allowed = fmt::format("one of {}", fmt::join(names, ", "));
+    const JsonNode* node = take(key, JsonNode::Kind::kString, allowed);
+    if (!node) return;
+    const auto found = std::find_if(names.begin(), names.end(), [&](const char* n) { return node->text == n; });
+    if (found == names.end()) return wrong(*node, key, allowed);
+    value = static_cast<int>(found - names.begin());
+  }
+  void numbers(const char* key, std::span<double> values, Range range, const char*) override {
+    const std::string allowed = fmt::format("a list of {} numbers", values.size());
+    const JsonNode* node = take(key, JsonNode::Kind::kArray, allowed);
+    if (!node) return;
+    if (node->items.size() != values.size()) return wrong(*node, key, allowed);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const std::string item = fmt::format("{}/{}", key, i);
+      if (node->items[i].kind != JsonNode::Kind::kNumber) wrong(node->items[i], item, "a number");
+      else values[i] = clamp(node->items[i], item, range);
+    }
+  }
+  void group(const char* key, const char*, const std::function<void()>& members) override {
+    enter(take(key, JsonNode::Kind::kObject, "an object"), pointer(key));
+    members();
+    leave();
+  }
+  void list(const char* key, std::size_t, const char*, const std::function<void(std::size_t)>& resize,
+            const std::function<void(std::size_t)>& member) override {
+    const JsonNode* node = take(key, JsonNode::Kind::kArray, "a list of objects");
+    if (!node) return;
+    resize(node->items.size());
+    for (std::size_t i = 0; i < node->items.size(); ++i) {
+      const bool object = node->items[i].kind == JsonNode::Kind::kObject;
+      if (!object) wrong(node->items[i], fmt::format("{}/{}", key, i), "an object");
+      enter(object ? &node->items[i] : nullptr, pointer(fmt::format("{}/{}", key, i)));
+      member(i);
+      leave();
+    }
+  }
+
+  const std::map<std::string, int>& lines() const { return lines_; }
+
+ private:
+  struct Level {
+    const JsonNode* object;  // null where the file has none
+    std::string pointer;
+    std::vector<std::string> known;
+  };
+
+  std::string pointer(std::string_view key) const { return fmt::format("{}/{}", levels_.back().pointer, key); }
+
+  void enter(const JsonNode* object, const std::string& pointer) { levels_.push_back({object, pointer, {}}); }
+
+  // Whatever of the object was not asked for is unknown.
+  void leave() {
+    const Level& level = levels_.back();
+    for (const auto& member : level.object ? level.object->members : std::vector<JsonNode::Member>()) {
+      if (std::find(level.known.begin(), level.known.end(), member.key) != level.known.end()) continue;
+      if (member.key == "$schema" && levels_.size() == 1) continue;
+      findings_.push_back({false, member.line, level.pointer + "/" + escapePointer(member.key),
+                           "is no setting; " + suggestion(member.key, level.known)});
+    }
+    levels_.pop_back();
+  }
+
+  static std::string suggestion(const std::string& key, const std::vector<std::string>& known) {
+    const std::string near = nearest(key, known);
+    return near.empty() ? fmt::format("here are {}", fmt::join(known, ", ")) : fmt::format("did you mean \"{}\"?", near);
+  }
+
+  // The value of `key` if it is there and of that kind; says what is wrong otherwise.
+  const JsonNode* take(const char* key, JsonNode::Kind kind, std::string_view allowed) {
+    Level& level = levels_.back();
+    level.known.emplace_back(key);
+    if (!level.object) return nullptr;
+    for (const auto& member : level.object->members) {
+      if (member.key != key) continue;
+      lines_[pointer(key)] = member.line;
+      if (member.value.kind == kind) return &member.value;
+      wrong(member.value, key, allowed);
+      return nullptr;
+    }
+    return nullptr;
+  }
+
+  void wrong(const JsonNode& node, std::string_view key, std::string_view allowed) {
+    findings_.push_back({false, node.line, pointer(key), fmt::format("is {}; allowed is {}", describe(node), allowed)});
+  }
+
+  double clamp(const JsonNode& node, std::string_view key, Range range) {
+    const double value = std::clamp(node.number, range.low, range.high);
+    if (value == node.number) return value;
+    if (std::isnan(node.number)) {
+      wrong(node, key, "a number");
+      return range.low;
+    }
+    findings_.push_back({true, node.line, pointer(key),
+                         fmt::format("is {}; allowed is {} to {}; {} is taken", node.number, range.low, range.high, value)});
+    return value;
+  }
+
+  std::string folder_;
+  std::vector<Finding>& findings_;
+  std::vector<Level> levels_;
+  std::map<std::string, int> lines_;
+};
+
+}  // namespace
+
+LoadedSettings::Verdict LoadedSettings::verdict() const {
+  if (findings.empty()) return Verdict::kValid;
+  const bool all_adjusted = std::all_of(findings.begin(), findings.end(), [](const Finding& f) { return f.adjusted; });
+  return all_adjusted ? Verdict::kAdjusted : Verdict::kInvalid;
+}
+
+LoadedSettings loadSettings(std::string_view json, const std::string& folder) {
+  LoadedSettings loaded;
+  const auto tree = parseJson(json);
+  if (!tree) {
+    int line = 0;
+    std::string what = tree.error().what;  // "line N: ..."
+    if (const auto colon = what.find(": "); colon != std::string::npos) {
+      line = std::atoi(what.c_str() + 5);
+      what = what.substr(colon + 2);
+    }
+    loaded.findings.push_back({false, line, "", what});
+    return loaded;
+  }
+  if (tree->kind != JsonNode::Kind::kObject) {
+    loaded.findings.push_back({false, tree->line, "", fmt::format("is {}; allowed is an object", describe(*tree))});
+    return loaded;
+  }
+  std::map<std::string, int> lines;
+  {
+    Loader loader(*tree, folder, loaded.findings);
+    describe(loaded.settings, loader);
+    lines = loader.lines();
+  }
+  checkTogether(loaded.settings, lines, loaded.findings);
+  std::stable_sort(loaded.findings.begin(), loaded.findings.end(),
+                   [](const Finding& a, const Finding& b) { return a.line < b.line; });
+  return loaded;
+}
+
+LoadedSettings loadSettingsFile(const std::string& path) {
+  const auto file = MappedFile::open(path);
+  if (!file) {
+    LoadedSettings loaded;
+    std::string what = file.error().what;
+    if (what.starts_with(path + ": ")) what = what.substr(path.size() + 2);
+    loaded.findings.push_back({false, 0, "", what});
+    return loaded;
+  }
+  return loadSettings(file->text(), std::filesystem::path(path).parent_path().string());
+}
+
+std::string toText(const std::string& file, const Finding& f) {
+  std::string text = file;
+  if (f.line > 0) text += fmt::format(":{}", f.line);
+  if (!f.pointer.empty()) text += ": " + f.pointer;
+  return text + (f.pointer.empty() ? ": " : " ") + f.what;
+}
+
+}  // namespace merlin

@@ -1,0 +1,14 @@
+// The nearest of some known words to one that was mistyped.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace merlin {
+
+// By edit distance (V. Levenshtein, 1966), at most a third of the word's length away; empty if none
+// is that near. Ties go to the first.
+std::string nearest(std::string_view word, const std::vector<std::string>& known);
+
+}  // namespace merlin

@@ -1,0 +1,53 @@
+// Settings: everything that a configuration file says, with the values that hold where it is silent.
+#pragma once
+
+#include <string>
+
+#include "drivers/cyberglove/settings.h"
+#include "drivers/fastrak/settings.h"
+#include "drivers/spaceball/settings.h"
+#include "render/gl/settings.h"
+#include "render/governor/settings.h"
+#include "render/out/settings.h"
+#include "render/scene/settings.h"
+#include "render/tiles/settings.h"
+
+namespace merlin {
+
+// Which device it is, where, and how fast its line runs.
+struct LineSettings {
+  std::string driver;  // a name of drivers/registry
+  std::string port;  // "serial:/dev/...", "pty:PATH"; empty: there is no such device
+  int baud = 38400;
+};
+
+struct DevicesSettings {
+  LineSettings glove_line{"cyberglove", "", 38400};
+  CybergloveSettings glove;
+  LineSettings tracker_line{"fastrak", "", 38400};
+  FastrakSettings tracker;
+  LineSettings ball_line{"spaceball", "", 9600};
+  SpaceballSettings ball;
+  std::string postures;      // the posture network's file; empty: none is recognised
+  std::string script = "visit";  // what the emulated person does, with --emulate
+};
+
+struct WallSettings {
+  std::string model;  // an .mrm file
+  render::GovernorSettings governor;
+  render::TilesSettings tiles;
+  render::SceneSettings scene;
+  render::RenderSettings render;
+  render::PngSinkSettings png;
+};
+
+struct Settings {
+  // Keeps two daemons on one machine apart: names of shared memory and sockets.
+  std::string instance = "merlin";
+  // Where sockets and emulators' lines lie; empty: /run/merlin for root, else the user's own.
+  std::string run_directory;
+  DevicesSettings devices;
+  WallSettings wall;
+};
+
+}  // namespace merlin

@@ -1,0 +1,84 @@
+// SettingsVisitor: is shown every setting once, by describe(). Reading a file, writing the schema and
+// printing what holds are three visitors of one description, so they cannot drift apart.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace merlin {
+
+struct Range {
+  double low, high;
+};
+
+class SettingsVisitor {
+ public:
+  virtual ~SettingsVisitor() = default;
+
+  // `help`: one sentence, with the unit.
+  virtual void number(const char* key, double& value, Range range, const char* help) = 0;
+  virtual void integer(const char* key, int& value, Range range, const char* help) = 0;
+  virtual void flag(const char* key, bool& value, const char* help) = 0;
+  virtual void text(const char* key, std::string& value, const char* help) = 0;
+  // A file's name; relative to the folder of the configuration.
+  virtual void path(const char* key, std::string& value, const char* help) = 0;
+  // One of `names`; `value` is its index.
+  virtual void choice(const char* key, int& value, std::span<const char* const> names, const char* help) = 0;
+  // Exactly as many numbers.
+  virtual void numbers(const char* key, std::span<double> values, Range range, const char* help) = 0;
+  virtual void group(const char* key, const char* help, const std::function<void()>& members) = 0;
+  // Any number of objects: resize(n) makes room, member(i) describes one.
+  virtual void list(const char* key, std::size_t count, const char* help,
+                    const std::function<void(std::size_t)>& resize,
+                    const std::function<void(std::size_t)>& member) = 0;
+
+  // The same for other types of number and for enumerations.
+  void number(const char* key, float& value, Range range, const char* help) {
+    double wide = static_cast<double>(value);
+    number(key, wide, range, help);
+    value = static_cast<float>(wide);
+  }
+  void integer(const char* key, std::size_t& value, Range range, const char* help) {
+    int narrow = static_cast<int>(value);
+    integer(key, narrow, range, help);
+    value = static_cast<std::size_t>(narrow);
+  }
+  template <typename T, std::size_t N>
+  void numbers(const char* key, std::array<T, N>& values, Range range, const char* help) {
+    std::array<double, N> wide;
+    for (std::size_t i = 0; i < N; ++i) wide[i] = static_cast<double>(values[i]);
+    numbers(key, std::span<double>(wide), range, help);
+    for (std::size_t i = 0; i < N; ++i) values[i] = static_cast<T>(wide[i]);
+  }
+  template <typename Enum>
+  void oneOf(const char* key, Enum& value, std::span<const char* const> names, const char* help) {
+    int index = static_cast<int>(value);
+    choice(key, index, names, help);
+    value = static_cast<Enum>(index);
+  }
+  // A text that is one of `names`.
+  void choiceOf(const char* key, std::string& value, std::span<const char* const> names, const char* help) {
+    int index = 0;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (value == names[i]) index = static_cast<int>(i);
+    }
+    choice(key, index, names, help);
+    value = names[static_cast<std::size_t>(index)];
+  }
+  template <typename T>
+  void listOf(const char* key, std::vector<T>& values, const char* help, const std::function<void(T&)>& member) {
+    list(key, values.size(), help, [&](std::size_t n) { values.assign(n, T{}); },
+         [&](std::size_t i) { member(values[i]); });
+  }
+};
+
+struct Settings;
+
+// Shows every setting of `settings` to `visitor`, in the order of the files.
+void describe(Settings& settings, SettingsVisitor& visitor);
+
+}  // namespace merlin

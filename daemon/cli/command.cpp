@@ -1,0 +1,20 @@
+#include "daemon/cli/command.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "daemon/cli/exit_status.h"
+
+namespace merlin::cli {
+
+int fail(const Error& error) {
+  fmt::print(stderr, "merlin: {}\n", error.what);
+  return exitStatus(error);
+}
+
+void addInstance(CLI::App& app, std::string& instance) {
+  app.add_option("--instance", instance, "Which daemon, by the \"instance\" of its configuration")->capture_default_str();
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,107 @@
+// merlin emulate: a device on a pseudo-terminal, for a wall without hardware.
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/signalfd.h>
+
+#include <cerrno>
+#include <memory>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/unique_fd.h"
+#include "daemon/cli/command.h"
+#include "daemon/cli/exit_status.h"
+#include "drivers/emulate/emulator.h"
+#include "drivers/io/pty_master.h"
+
+namespace merlin::cli {
+namespace {
+
+struct EmulateOptions {
+  std::string device, link, script = "visit", model;
+  int baud = 0;
+  int garbage_every = 0;
+  std::uint64_t seed = 1;
+  std::int64_t epoch_ns = 0;
+};
+
+UniqueFd stopSignals() {
+  sigset_t set;
+  ::sigemptyset(&set);
+  for (const int s : {SIGTERM, SIGINT, SIGHUP}) ::sigaddset(&set, s);
+  ::sigprocmask(SIG_BLOCK, &set, nullptr);
+  return UniqueFd(::signalfd(-1, &set, SFD_CLOEXEC));
+}
+
+// Until a signal. What the other side does not read is lost, as on a wire.
+int serve(const io::PtyMaster& line, emulate::Emulator& device, const Clock& clock, int stop_fd) {
+  std::byte received[256];
+  std::string out;
+  for (;;) {
+    device.advance(clock.now(), out);
+    if (!out.empty()) {
+      (void)!::write(line.fd(), out.data(), out.size());
+      out.clear();
+    }
+    const Duration until = std::max<Duration>(device.nextDue() - clock.now(), Duration::zero());
+    const timespec limit{until / std::chrono::seconds(1), (until % std::chrono::seconds(1)).count()};
+    pollfd fds[] = {{line.fd(), POLLIN, 0}, {stop_fd, POLLIN, 0}};
+    if (::ppoll(fds, 2, &limit, nullptr) < 0 && errno != EINTR) return kExitFailed;
+    if (fds[1].revents != 0) return kExitDone;
+    if (fds[0].revents == 0) continue;
+    const ssize_t n = ::read(line.fd(), received, sizeof received);
+    if (n > 0) device.receive(std::span(received, static_cast<std::size_t>(n)), clock.now());
+  }
+}
+
+int emulateDevice(const EmulateOptions& options) {
+  const emulate::EmulatorEntry* entry = emulate::findEmulator(options.device);
+  const emulate::MotionScript* script = emulate::findMotionScript(options.script);
+  if (!entry || !script) return fail({Errc::kInvalidArgument, "no such device or script"});  // CLI11 has checked both
+  emulate::EmulatorSettings settings;
+  settings.baud = options.baud > 0 ? options.baud : entry->baud;
+  settings.model = options.model;
+  settings.seed = options.seed;
+  settings.garbage_every = options.garbage_every;
+  if (!emulate::hasModel(*entry, options.model)) {
+    return fail({Errc::kInvalidArgument, fmt::format("--model {}: models of {} are {}", options.model, entry->name, entry->models)});
+  }
+  const UniqueFd stop = stopSignals();
+  const SystemClock clock;
+  const auto line = io::PtyMaster::open(options.link);
+  if (!line) return fail(line.error());
+  const Timestamp start = options.epoch_ns > 0 ? fromNanoseconds(options.epoch_ns) : clock.now();
+  const auto device = entry->make(settings, *script, start);
+  fmt::print("{} on pty:{}\n", entry->name, options.link.empty() ? line->slavePath() : options.link);
+  std::fflush(stdout);
+  return serve(*line, *device, clock, stop.get());
+}
+
+}  // namespace
+
+void addEmulate(CLI::App& app, Run& run) {
+  const auto options = std::make_shared<EmulateOptions>();
+  std::vector<std::string> devices, scripts;
+  std::string help = "A device on a pseudo-terminal, speaking its own protocol.\nDevices:";
+  for (const auto& e : emulate::emulators()) {
+    devices.emplace_back(e.name);
+    help += fmt::format("\n  {:11} {} (models {})", e.name, e.help, e.models);
+  }
+  help += "\nScripts:";
+  for (const auto& s : emulate::motionScripts()) {
+    scripts.emplace_back(s.name);
+    help += fmt::format("\n  {:11} {}", s.name, s.help);
+  }
+  CLI::App* command = app.add_subcommand("emulate", help + "\nExample: merlin emulate spaceball --link /tmp/ball");
+  command->add_option("device", options->device, "Which one")->required()->check(CLI::IsMember(devices));
+  command->add_option("--link", options->link, "A symbolic link to the pseudo-terminal, made there");
+  command->add_option("--script", options->script, "What the emulated person does")->check(CLI::IsMember(scripts))->capture_default_str();
+  command->add_option("--model", options->model, "Of the device");
+  command->add_option("--baud", options->baud, "Speed of the line");
+  command->add_option("--garbage-every", options->garbage_every, "Records between two bursts of random bytes; 0: none")->capture_default_str();
+  command->add_option("--seed", options->seed, "Of noise and garbage")->capture_default_str();
+  command->add_option("--epoch-ns", options->epoch_ns, "When the script began, CLOCK_MONOTONIC; so that several devices agree");
+  command->callback([options, &run] { run = [options] { return emulateDevice(*options); }; });
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,27 @@
+// What programs exit with; outside checks rely on it.
+#pragma once
+
+#include "daemon/base/result.h"
+
+namespace merlin {
+
+inline constexpr int kExitDone = 0;
+inline constexpr int kExitFailed = 1;          // while running
+inline constexpr int kExitBadInput = 2;        // bad usage or bad input
+inline constexpr int kExitBusy = 3;
+
+inline int exitStatus(const Error& error) {
+  switch (error.code) {
+    case Errc::kNotFound:
+    case Errc::kMalformed:
+    case Errc::kInvalidArgument:
+    case Errc::kUnsupported: return kExitBadInput;
+    case Errc::kBusy: return kExitBusy;
+    case Errc::kTimeout:
+    case Errc::kClosed:
+    case Errc::kIo: break;
+  }
+  return kExitFailed;
+}
+
+}  // namespace merlin

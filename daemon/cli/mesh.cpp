@@ -1,0 +1,17 @@
+// merlin mesh: its subcommands, one file each.
+#include "daemon/cli/mesh.h"
+
+#include "daemon/cli/command.h"
+
+namespace merlin::cli {
+
+void addMesh(CLI::App& app, Run& run) {
+  CLI::App* mesh = app.add_subcommand("mesh", "Models: reduce, look into, export, picture.");
+  mesh->require_subcommand(1);
+  addMeshReduce(*mesh, run);
+  addMeshInfo(*mesh, run);
+  addMeshExport(*mesh, run);
+  addMeshPicture(*mesh, run);
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,30 @@
+// ProgressBar: how far a long piece of work is, how fast it goes, and how long it will take yet.
+#pragma once
+
+#include <string>
+
+#include "daemon/base/clock.h"
+
+namespace merlin::cli {
+
+// On a terminal one line that is redrawn ten times a second; elsewhere a line every tenth of the way.
+// Writes to stderr. Thread-bound.
+class ProgressBar {
+ public:
+  ProgressBar(std::string title, std::string unit, const Clock& clock);
+
+  // `share` of the work is done, 0..1; `count` of `unit` so far, for the rate.
+  void update(double share, std::size_t count);
+  void finish(std::size_t count);
+
+ private:
+  void draw(double share, std::size_t count);
+
+  std::string title_, unit_;
+  const Clock& clock_;
+  bool terminal_;
+  Timestamp began_, drawn_{};
+  int tenths_ = 0;
+};
+
+}  // namespace merlin::cli

@@ -1,0 +1,26 @@
+#include "daemon/cli/roles.h"
+
+#include <fmt/format.h>
+
+namespace merlin::cli {
+namespace {
+
+template <typename Segment>
+std::optional<FoundRole> find(const std::string& instance, const char* role) {
+  const auto segment = shm::SegmentReader<Segment>::open(shm::segmentName(instance, role));
+  if (!segment || !segment->alive(SystemClock().now())) return std::nullopt;
+  const shm::Header& h = (*segment)->header;
+  return FoundRole{role, {h.status_endpoint, h.command_endpoint}};
+}
+
+}  // namespace
+
+Result<std::vector<FoundRole>> findRoles(const std::string& instance) {
+  std::vector<FoundRole> roles;
+  if (auto role = find<shm::WallSegment>(instance, "wall")) roles.push_back(*role);
+  if (auto role = find<shm::DevicesSegment>(instance, "devices")) roles.push_back(*role);
+  if (!roles.empty()) return roles;
+  return Error{Errc::kIo, fmt::format("no merlind runs as \"{0}\" (no living shared memory /{0}-wall or /{0}-devices)", instance)};
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,21 @@
+// Finding the running roles of a daemon, for subcommands that read or ask them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/base/result.h"
+#include "daemon/shm/segment.h"
+
+namespace merlin::cli {
+
+struct FoundRole {
+  std::string role;  // "devices" or "wall"
+  shm::Endpoints endpoints;
+};
+
+// Roles of this instance whose daemon lives. Errors: kIo, none does, saying what was looked for.
+Result<std::vector<FoundRole>> findRoles(const std::string& instance);
+
+}  // namespace merlin::cli

@@ -1,0 +1,31 @@
+// merlin status: how the daemon is, once.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "daemon/cli/command.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/status_text.h"
+
+namespace merlin::cli {
+
+void addStatus(CLI::App& app, Run& run) {
+  struct Options {
+    std::string instance = "merlin";
+    bool json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("status", "How the wall and the devices are.\nExample: merlin status --json");
+  addInstance(*command, options->instance);
+  command->add_flag("--json", options->json, "For programs");
+  command->callback([options, &run] {
+    run = [options] {
+      const auto status = askStatus(options->instance);
+      if (!status) return fail(status.error());
+      fmt::print("{}", options->json ? status->dump(2) + "\n" : statusTable(*status));
+      return kExitDone;
+    };
+  });
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,55 @@
+// merlin watch: one line a second, until interrupted.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "daemon/base/clock.h"
+#include "daemon/cli/command.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/roles.h"
+#include "daemon/cli/status_text.h"
+#include "daemon/status/client.h"
+
+namespace merlin::cli {
+namespace {
+
+struct WatchOptions {
+  std::string instance = "merlin";
+  double seconds = 0;
+  bool json = false;
+};
+
+// A line after each of the role's documents that comes last in a second.
+int watch(const WatchOptions& options) {
+  const auto roles = findRoles(options.instance);
+  if (!roles) return fail(roles.error());
+  std::vector<std::string> endpoints;
+  for (const FoundRole& role : *roles) endpoints.push_back(role.endpoints.status);
+  const SystemClock clock;
+  const Timestamp began = clock.now();
+  nlohmann::ordered_json both = nlohmann::ordered_json::object();
+  std::size_t documents = 0;
+  const auto followed = status::follow(endpoints, {"status"}, std::chrono::seconds(3), [&](const std::string&, const std::string& document) {
+    mergeStatus(both, document);
+    if (++documents % roles->size() == 0) {
+      fmt::print("{}\n", options.json ? both.dump() : statusLine(both));
+      std::fflush(stdout);
+    }
+    return options.seconds <= 0 || toSeconds(clock.now() - began) < options.seconds;
+  });
+  if (!followed) return fail({followed.error().code, "the daemon has gone: " + followed.error().what});
+  return kExitDone;
+}
+
+}  // namespace
+
+void addWatch(CLI::App& app, Run& run) {
+  const auto options = std::make_shared<WatchOptions>();
+  CLI::App* command = app.add_subcommand("watch", "One line a second: rate asked, rate held, triangles, late frames, posture, devices.\nExample: merlin watch --for 20");
+  addInstance(*command, options->instance);
+  command->add_option("--for", options->seconds, "Seconds, then end; without it: until interrupted")->type_name("SECONDS");
+  command->add_flag("--json", options->json, "One JSON document a line");
+  command->callback([options, &run] { run = [options] { return watch(*options); }; });
+}
+
+}  // namespace merlin::cli

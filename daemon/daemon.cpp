@@ -1,0 +1,221 @@
+#include "daemon/daemon.h"
+
+#include <fmt/format.h>
+#include <systemd/sd-daemon.h>
+
+#include <cerrno>
+#include <ctime>
+#include <utility>
+
+#include "daemon/base/log.h"
+#include "daemon/status/documents.h"
+#include "daemon/status/health_events.h"
+#include "daemon/status/run_directory.h"
+
+namespace merlin {
+namespace {
+
+constexpr Duration kBeat = std::chrono::milliseconds(100);
+constexpr Duration kSummary = std::chrono::seconds(5);
+constexpr Duration kOnceASecond = std::chrono::seconds(1);
+constexpr Duration kThirtyASecond = std::chrono::milliseconds(33);
+
+sigset_t stopSignals() {
+  sigset_t set;
+  ::sigemptyset(&set);
+  for (const int s : {SIGTERM, SIGINT, SIGHUP, SIGCHLD}) ::sigaddset(&set, s);
+  return set;
+}
+
+// Half of what systemd waits; zero where nobody watches.
+Duration watchdogInterval() {
+  std::uint64_t usec = 0;
+  return ::sd_watchdog_enabled(0, &usec) > 0 ? Duration(std::chrono::microseconds(usec / 2)) : Duration{};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Daemon>> Daemon::make(Settings settings, const DaemonOptions& options, Clock& clock) {
+  std::unique_ptr<Daemon> daemon(new Daemon(std::move(settings), options, clock));
+  auto directory = status::runDirectory(daemon->settings_.run_directory);
+  if (!directory) return directory.error();
+  daemon->run_directory_ = *std::move(directory);
+  if (const auto made = daemon->makeRoles(); !made) return made.error();
+  return daemon;
+}
+
+Daemon::Daemon(Settings settings, const DaemonOptions& options, Clock& clock)
+    : settings_(std::move(settings)), options_(options), clock_(clock), watchdog_(watchdogInterval()) {}
+
+// In reverse order of start: nobody is asked for what is no more.
+Daemon::~Daemon() {
+  servers_.clear();
+  wall_.reset();
+  devices_.reset();
+}
+
+shm::Endpoints Daemon::endpoints(const std::string& role) const {
+  const std::string at = fmt::format("ipc://{}/{}-{}", run_directory_, settings_.instance, role);
+  return {at + ".status", at + ".command"};
+}
+
+// The segments first: their locks say that no other daemon of this name lives, so that the sockets' files
+// are ours to replace. Emulators before any thread, since they are forked.
+Result<Ok> Daemon::makeRoles() {
+  const std::uint64_t generation = shm::newGeneration();
+  for (const char* role : {"devices", "wall"}) {
+    // Before the emulators, which would take another daemon's lines over.
+    const std::string name = shm::segmentName(settings_.instance, role);
+    if ((role[0] == 'd' ? options_.devices : options_.wall) && SharedMemory::owned(name)) {
+      return Error{Errc::kBusy, fmt::format("another merlind already runs as \"{}\" (it owns shared memory {}); stop it, or "
+                                            "set another \"instance\"", settings_.instance, name)};
+    }
+  }
+  if (options_.emulate && options_.devices) {
+    auto started = EmulatorChildren::start(settings_, run_directory_);
+    if (!started) return started.error();
+    emulators_ = std::make_unique<EmulatorChildren>(*std::move(started));
+  }
+  if (options_.devices) {
+    auto role = devices::DevicesRole::make(settings_, generation, endpoints("devices"), clock_);
+    if (!role) return role.error();
+    devices_ = *std::move(role);
+  }
+  if (options_.wall) {
+    auto role = wall::WallRole::make(settings_, generation, endpoints("wall"), clock_);
+    if (!role) return role.error();
+    wall_ = *std::move(role);
+  }
+  return Ok{};
+}
+
+Result<Ok> Daemon::run() {
+  const Timestamp now = clock_.now();
+  if (devices_) {
+    devices_->beat(now);
+    devices_->start();
+    if (const auto served = serveDevices(); !served) return served;
+  }
+  if (wall_) {
+    wall_->beat(now);
+    if (const auto served = serveWall(); !served) return served;
+    if (const auto shown = awaitFirstFrame(wall_->start()); !shown) return shown;
+  }
+  ::sd_notify(0, "READY=1");
+  logInfo("ready");
+  while (!stopAsked(kBeat)) housekeeping();
+  ::sd_notify(0, "STOPPING=1");
+  logInfo("stopping");
+  return Ok{};
+}
+
+Result<Ok> Daemon::awaitFirstFrame(std::future<Result<std::string>> ready) {
+  while (ready.wait_for(std::chrono::milliseconds(0)) != std::future_status::ready) {
+    if (stopAsked(kBeat)) return Error{Errc::kClosed, "stopped before the first frame"};
+    housekeeping();
+  }
+  const auto first = ready.get();
+  if (!first) return first.error();
+  logInfo("first frame: {} triangles at full detail, drawn by {}", wall_->segment().stats.read()->triangles, *first);
+  return Ok{};
+}
+
+// A signal ends it at once; SIGCHLD is looked after in housekeeping().
+bool Daemon::stopAsked(Duration wait) {
+  const sigset_t set = stopSignals();
+  const timespec limit{0, wait.count()};
+  const int signal = ::sigtimedwait(&set, nullptr, &limit);
+  return signal == SIGTERM || signal == SIGINT || signal == SIGHUP;
+}
+
+void Daemon::housekeeping() {
+  const Timestamp now = clock_.now();
+  if (devices_) devices_->beat(now);
+  if (wall_) wall_->beat(now);
+  if (emulators_) {
+    for (const std::string& device : emulators_->takeEnded()) {
+      logWarning("the emulated {} has ended; start it again with: merlin emulate {} --link ...", device, device);
+    }
+  }
+  if (now - summarised_ >= kSummary) {
+    summarised_ = now;
+    ::sd_notify(0, ("STATUS=" + summary(now)).c_str());
+  }
+  pingWatchdog(now);
+}
+
+// Only while everything that should move on does: frames, and each status server's rounds.
+void Daemon::pingWatchdog(Timestamp now) {
+  if (watchdog_ == Duration::zero() || now - pinged_ < watchdog_) return;
+  std::uint64_t progress = wall_ ? wall_->periods() : 1;
+  for (const auto& server : servers_) progress = std::min(progress, server->rounds());
+  if (progress <= progress_ && (wall_ || !servers_.empty())) return;
+  progress_ = progress;
+  pinged_ = now;
+  ::sd_notify(0, "WATCHDOG=1");
+}
+
+std::string Daemon::summary(Timestamp now) const {
+  std::string text;
+  if (wall_) {
+    const auto s = wall_->segment().stats.read().value_or(shm::WallStats{});
+    text = fmt::format("{:.1f} of {:.0f} Hz, {} triangles, {:.1f} % late", s.rate_held_hz, s.rate_asked_hz, s.triangles, 100 * s.late_share_1min);
+  }
+  for (std::size_t i = 0; devices_ && i < shm::kDevices; ++i) {
+    const auto health = devices_->segment().health[i].read();
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", status::kDeviceNames[i], health ? status::healthName(*health, now) : "absent");
+  }
+  return text;
+}
+
+Result<Ok> Daemon::serveStatus(const std::string& role, status::StatusServerSettings settings) {
+  const shm::Endpoints at = endpoints(role);
+  settings.status_endpoint = at.status;
+  settings.command_endpoint = at.command;
+  auto server = status::StatusServer::start(std::move(settings), clock_);
+  if (!server) return server.error();
+  servers_.push_back(*std::move(server));
+  return Ok{};
+}
+
+Result<Ok> Daemon::serveDevices() {
+  const shm::DevicesSegment& segment = devices_->segment();
+  status::StatusServerSettings s;
+  const auto statusNow = [this, &segment] { return status::devicesStatus(segment, clock_.now()); };
+  s.publications = {{"status", kOnceASecond, statusNow},
+                    {"metrics", kOnceASecond, [&segment] { return status::devicesMetrics(segment); }},
+                    {"sample", kThirtyASecond, [this, &segment] { return status::newestSamples(segment, clock_.now()); }}};
+  s.commands = {{"status", "the devices' status", [statusNow]() -> Result<std::string> { return statusNow(); }}};
+  auto events = std::make_shared<status::HealthEvents>(segment);  // shared: std::function must copy
+  s.events = [this, events] {
+    std::vector<std::string> documents;
+    const Timestamp now = clock_.now();
+    for (const std::string& sentence : events->take(now)) {
+      logInfo("{}", sentence);
+      documents.push_back(status::event("device", sentence, now));
+    }
+    return documents;
+  };
+  return serveStatus("devices", std::move(s));
+}
+
+Result<Ok> Daemon::serveWall() {
+  const shm::WallSegment& segment = wall_->segment();
+  status::StatusServerSettings s;
+  const auto statusNow = [this, &segment] { return status::wallStatus(segment, clock_.now()); };
+  s.publications = {{"status", kOnceASecond, statusNow},
+                    {"metrics", kOnceASecond, [&segment] { return status::wallMetrics(segment); }}};
+  const auto ask = [this](wall::WallLoop::Request what) {
+    return [this, what]() -> Result<std::string> {
+      wall_->request(what);
+      return std::string("{}");
+    };
+  };
+  s.commands = {{"status", "the wall's status", [statusNow]() -> Result<std::string> { return statusNow(); }},
+                {"reset_view", "model and viewer back to the start", ask(wall::WallLoop::kResetView)},
+                {"next_mode", "the ball moves the model, or the viewer", ask(wall::WallLoop::kNextMode)}};
+  s.events = [] { return std::vector<std::string>(); };
+  return serveStatus("wall", std::move(s));
+}
+
+}  // namespace merlin

@@ -1,0 +1,62 @@
+// Daemon: the roles of one merlind, put together, and its main loop.
+#pragma once
+
+#include <csignal>
+#include <memory>
+#include <string>
+
+#include "config/settings.h"
+#include "daemon/base/clock.h"
+#include "daemon/base/result.h"
+#include "daemon/devices/devices_role.h"
+#include "daemon/emulator_children.h"
+#include "daemon/status/server.h"
+#include "daemon/wall/wall_role.h"
+
+namespace merlin {
+
+struct DaemonOptions {
+  bool devices = true, wall = true;  // roles
+  bool emulate = false;
+};
+
+class Daemon {
+ public:
+  // Everything is made and checked, nothing runs. REQUIRES: SIGTERM, SIGINT, SIGHUP and SIGCHLD are
+  // blocked, no thread has been started. Errors: of its parts.
+  static Result<std::unique_ptr<Daemon>> make(Settings settings, const DaemonOptions& options, Clock& clock);
+  ~Daemon();
+  Daemon(const Daemon&) = delete;
+  Daemon& operator=(const Daemon&) = delete;
+
+  // Runs until a signal; tells systemd when the first frame is out, and that there is progress.
+  // Errors: why there will be no first frame.
+  Result<Ok> run();
+
+ private:
+  Daemon(Settings settings, const DaemonOptions& options, Clock& clock);
+  Result<Ok> makeRoles();
+  Result<Ok> serveStatus(const std::string& role, status::StatusServerSettings settings);
+  Result<Ok> serveDevices();
+  Result<Ok> serveWall();
+  shm::Endpoints endpoints(const std::string& role) const;
+  Result<Ok> awaitFirstFrame(std::future<Result<std::string>> ready);
+  bool stopAsked(Duration wait);  // waits for a signal
+  void housekeeping();
+  void pingWatchdog(Timestamp now);
+  std::string summary(Timestamp now) const;
+
+  Settings settings_;
+  DaemonOptions options_;
+  Clock& clock_;
+  std::string run_directory_;
+  std::unique_ptr<EmulatorChildren> emulators_;
+  std::unique_ptr<devices::DevicesRole> devices_;
+  std::unique_ptr<wall::WallRole> wall_;
+  std::vector<std::unique_ptr<status::StatusServer>> servers_;  // last made, first gone
+  Duration watchdog_{};       // between two pings; zero for none
+  Timestamp pinged_{}, summarised_{};
+  std::uint64_t progress_ = 0;
+};
+
+}  // namespace merlin

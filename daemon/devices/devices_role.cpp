@@ -1,0 +1,97 @@
+#include "daemon/devices/devices_role.h"
+
+#include <pthread.h>
+#include <sched.h>
+
+#include <cstring>
+#include <utility>
+
+#include "daemon/base/log.h"
+#include "daemon/shm/fields.h"
+#include "drivers/io/open_stream.h"
+#include "nn/io/network_file.h"
+
+namespace merlin::devices {
+namespace {
+
+constexpr int kRealTimePriority = 50;
+
+// Wire to shared memory within microseconds even while the wall draws, where the unit allows it.
+void askForRealTime() {
+  const sched_param priority{kRealTimePriority};
+  if (::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &priority) != 0) {
+    static std::atomic<bool> said{false};
+    if (!said.exchange(true)) logInfo("no real-time priority for device threads (LimitRTPRIO would allow it)");
+  }
+}
+
+DeviceHealth notConfigured(Timestamp now) {
+  DeviceHealth health{};
+  health.since_ns = health.updated_ns = toNanoseconds(now);
+  health.state = HealthState::kAbsent;
+  constexpr std::string_view kReason = "not configured";
+  std::copy(kReason.begin(), kReason.end(), health.reason);
+  return health;
+}
+
+}  // namespace
+
+DevicesRole::DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, Clock& clock)
+    : segment_(std::move(segment)), clock_(clock), sink_(*segment_) {}
+
+Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings, std::uint64_t generation,
+                                                       const shm::Endpoints& endpoints, Clock& clock) {
+  auto segment = shm::SegmentWriter<shm::DevicesSegment>::make(shm::segmentName(settings.instance, "devices"),
+                                                               shm::devicesFields(), generation, clock.now(), endpoints);
+  if (!segment) return segment.error();
+  std::unique_ptr<DevicesRole> role(new DevicesRole(*std::move(segment), clock));
+  if (!settings.devices.postures.empty()) {
+    const auto file = nn::loadNetwork(settings.devices.postures);
+    if (!file) return file.error();
+    role->posture_sink_ = std::make_unique<PostureSink>(file->network, role->segment_->posture, role->sink_);
+  }
+  const DevicesSettings& d = settings.devices;
+  const std::pair<const LineSettings*, std::pair<SampleKind, shm::DeviceIndex>> kLines[] = {
+      {&d.glove_line, {SampleKind::kGlove, shm::kGlove}},
+      {&d.tracker_line, {SampleKind::kTracker, shm::kTracker}},
+      {&d.ball_line, {SampleKind::kBall, shm::kBall}}};
+  for (const auto& [line, what] : kLines) {
+    if (const auto added = role->add(*line, what.first, what.second, settings); !added) return added.error();
+  }
+  return role;
+}
+
+Result<Ok> DevicesRole::add(const LineSettings& line, SampleKind kind, shm::DeviceIndex index, const Settings& settings) {
+  shm::SeqSlot<DeviceHealth>& slot = segment_->health[index];
+  slot.publish(notConfigured(clock_.now()));
+  if (line.port.empty()) return Ok{};
+  const DriverEntry* driver = findDriver(kind, line.driver);
+  if (!driver) return Error{Errc::kInvalidArgument, "no driver is named " + line.driver};
+  const auto address = io::parsePort(line.port);
+  if (!address) return address.error();
+  const DriverSettings own{settings.devices.glove, settings.devices.tracker, settings.devices.ball};
+  SampleSink& sink = kind == SampleKind::kGlove && posture_sink_ ? static_cast<SampleSink&>(*posture_sink_) : sink_;
+  health_.push_back(std::make_unique<shm::ShmHealthSink>(slot));
+  DeviceLoopSettings loop;
+  loop.port = line.port;
+  loops_.push_back(std::make_unique<DeviceLoop>(
+      loop, [address = *address, baud = line.baud] { return io::openPort(address, baud); },
+      driver->make(own, clock_, sink), *health_.back(), clock_));
+  return Ok{};
+}
+
+void DevicesRole::start() {
+  for (const auto& loop : loops_) {
+    threads_.emplace_back([&loop = *loop](const std::stop_token& stop) {
+      askForRealTime();
+      loop.run(stop);
+    });
+  }
+}
+
+DevicesRole::~DevicesRole() {
+  for (std::jthread& thread : threads_) thread.request_stop();
+  threads_.clear();
+}
+
+}  // namespace merlin::devices

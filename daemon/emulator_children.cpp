@@ -1,0 +1,83 @@
+#include "daemon/emulator_children.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "daemon/base/clock.h"
+
+namespace merlin {
+namespace {
+
+// `merlin` lies beside this program.
+Result<std::string> merlinProgram() {
+  std::error_code error;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
+  const auto program = self.parent_path() / "merlin";
+  if (!error && ::access(program.c_str(), X_OK) == 0) return program.string();
+  return Error{Errc::kIo, fmt::format("{}: is needed for --emulate and is not there", program.string())};
+}
+
+pid_t spawn(const std::vector<std::string>& arguments) {
+  const pid_t parent = ::getpid();
+  const pid_t pid = ::fork();
+  if (pid != 0) return pid;
+  sigset_t none;
+  ::sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // whatever happens to merlind, none is left behind
+  if (::getppid() != parent) ::_exit(1);
+  std::vector<char*> argv;
+  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+  argv.push_back(nullptr);
+  ::execv(argv[0], argv.data());
+  ::_exit(127);
+}
+
+// Where the device's line is to be; made the device's port.
+std::string placeLine(LineSettings& line, const std::string& run_directory) {
+  constexpr std::string_view kPty = "pty:";
+  if (!line.port.starts_with(kPty)) line.port = fmt::format("pty:{}/{}.pty", run_directory, line.driver);
+  return line.port.substr(kPty.size());
+}
+
+}  // namespace
+
+Result<EmulatorChildren> EmulatorChildren::start(Settings& settings, const std::string& run_directory) {
+  const auto program = merlinProgram();
+  if (!program) return program.error();
+  EmulatorChildren started;
+  const auto epoch = std::to_string(toNanoseconds(SystemClock().now()));
+  for (LineSettings* line : {&settings.devices.glove_line, &settings.devices.tracker_line, &settings.devices.ball_line}) {
+    const std::string link = placeLine(*line, run_directory);
+    const pid_t pid = spawn({*program, "emulate", line->driver, "--link", link, "--script", settings.devices.script,
+                             "--baud", std::to_string(line->baud), "--epoch-ns", epoch});
+    if (pid < 0) return Error{Errc::kIo, fmt::format("no process for an emulator: {}", std::strerror(errno))};
+    started.children_.push_back({line->driver, pid});
+  }
+  return started;
+}
+
+EmulatorChildren::~EmulatorChildren() {
+  for (const Child& child : children_) ::kill(child.pid, SIGTERM);
+  for (const Child& child : children_) ::waitpid(child.pid, nullptr, 0);
+}
+
+std::vector<std::string> EmulatorChildren::takeEnded() {
+  std::vector<std::string> ended;
+  std::erase_if(children_, [&](const Child& child) {
+    if (::waitpid(child.pid, nullptr, WNOHANG) != child.pid) return false;
+    ended.push_back(child.device);
+    return true;
+  });
+  return ended;
+}
+
+}  // namespace merlin

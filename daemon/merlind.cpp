@@ -1,0 +1,106 @@
+// merlind: the daemon. The only place where an adapter meets a port: read the configuration, make
+// everything, run, stop.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <string>
+
+#include "config/loader.h"
+#include "config/writer.h"
+#include "daemon/base/log.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/daemon.h"
+#include "render/gl/gl_context.h"
+
+namespace merlin {
+namespace {
+
+struct Options {
+  std::string config = "/etc/merlin/merlin.json";
+  std::string check;
+  std::string role = "all";
+  bool emulate = false;
+  bool print_config = false;
+  bool print_schema = false;
+};
+
+void printFindings(const std::string& file, const LoadedSettings& loaded) {
+  for (const Finding& finding : loaded.findings) fmt::print(stderr, "{}\n", toText(file, finding));
+}
+
+int checkConfig(const std::string& file) {
+  const LoadedSettings loaded = loadSettingsFile(file);
+  printFindings(file, loaded);
+  switch (loaded.verdict()) {
+    case LoadedSettings::Verdict::kValid: fmt::print("{}: valid\n", file); return 0;
+    case LoadedSettings::Verdict::kAdjusted: fmt::print("{}: valid after {} adjustments\n", file, loaded.findings.size()); return 1;
+    case LoadedSettings::Verdict::kInvalid: break;
+  }
+  fmt::print("{}: invalid, {} findings\n", file, loaded.findings.size());
+  return 2;
+}
+
+// Every thread inherits this mask; the main loop takes the signals one by one.
+void blockSignals() {
+  sigset_t set;
+  ::sigemptyset(&set);
+  for (const int s : {SIGTERM, SIGINT, SIGHUP, SIGCHLD}) ::sigaddset(&set, s);
+  ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  ::signal(SIGPIPE, SIG_IGN);
+}
+
+int runDaemon(const Options& options) {
+  LoadedSettings loaded = loadSettingsFile(options.config);
+  printFindings(options.config, loaded);
+  if (loaded.verdict() == LoadedSettings::Verdict::kInvalid) return kExitBadInput;
+  if (options.print_config) {
+    fmt::print("{}", settingsText(loaded.settings));
+    return kExitDone;
+  }
+  blockSignals();
+  render::prepareSoftwareGl(loaded.settings.wall.render.raster_threads);
+  SystemClock clock;
+  DaemonOptions daemon_options;
+  daemon_options.devices = options.role != "wall";
+  daemon_options.wall = options.role != "devices";
+  daemon_options.emulate = options.emulate;
+  const auto daemon = Daemon::make(std::move(loaded.settings), daemon_options, clock);
+  if (!daemon) {
+    logError("{}", daemon.error().what);
+    return exitStatus(daemon.error());
+  }
+  const auto ran = (*daemon)->run();
+  if (ran) return kExitDone;
+  logError("{}", ran.error().what);
+  return ran.error().code == Errc::kClosed ? kExitDone : exitStatus(ran.error());
+}
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("MERLIN's daemon: reads the devices, draws the wall.\n\nExample: merlind --config config/demo.json --emulate");
+  app.add_option("--config", options.config, "The configuration, JSON")->capture_default_str();
+  app.add_option("--check-config", options.check, "Only check FILE: exits 0 valid, 1 adjusted, 2 invalid")->type_name("FILE");
+  app.add_option("--role", options.role, "What this process does")->check(CLI::IsMember({"devices", "wall", "all"}))->capture_default_str();
+  app.add_flag("--emulate", options.emulate, "Start an emulator for each device, on pseudo-terminals");
+  app.add_flag("--print-config", options.print_config, "Print every setting that the configuration gives, and end");
+  app.add_flag("--print-schema", options.print_schema, "Print the JSON Schema of configurations, and end");
+  app.set_version_flag("--version", MERLIN_VERSION);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? kExitDone : kExitBadInput;
+  }
+  initLog(LogLevel::kInfo);
+  if (options.print_schema) {
+    fmt::print("{}", settingsSchema());
+    return kExitDone;
+  }
+  return options.check.empty() ? runDaemon(options) : checkConfig(options.check);
+}
+
+}  // namespace
+}  // namespace merlin
+
+int main(int argc, char** argv) { return merlin::main(argc, argv); }

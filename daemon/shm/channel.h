@@ -1,0 +1,64 @@
+// Channel: one device's samples in shared memory: the newest, a ring of the last, and a word to wait
+// on.
+#pragma once
+
+#include <linux/futex.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <climits>
+#include <cstdint>
+#include <optional>
+
+#include "daemon/shm/seq_slot.h"
+
+namespace merlin::shm {
+
+inline constexpr std::size_t kHistory = 256;
+
+// One writing thread. Each channel has cache lines of its own, so that one device's writes never
+// disturb a reader of another.
+template <typename T>
+class alignas(64) Channel {
+ public:
+  // Wait-free but for one futex call, which wakes whoever waits and is nothing otherwise.
+  // REQUIRES: called from one thread only.
+  void publish(const T& sample) noexcept {
+    const auto n = count_.load(std::memory_order_relaxed);
+    ring_[n % kHistory].publish(sample);
+    newest_.publish(sample);
+    count_.store(n + 1, std::memory_order_release);
+    wake_.fetch_add(1, std::memory_order_release);
+    ::syscall(SYS_futex, &wake_, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
+  }
+
+  std::optional<T> newest() const noexcept { return newest_.read(); }
+
+  // How many were published since the segment was made.
+  std::uint64_t count() const noexcept { return count_.load(std::memory_order_acquire); }
+
+  // Sample number n, counted from 0; nothing where it is not there yet, or no longer.
+  std::optional<T> at(std::uint64_t n) const noexcept {
+    if (n >= count() || n + kHistory <= count()) return std::nullopt;
+    const auto sample = ring_[n % kHistory].read();
+    return n + kHistory > count() ? sample : std::nullopt;  // overtaken while it was read
+  }
+
+  // Waits until another sample than number `seen` - 1 is the newest, or `timeout` has passed.
+  void wait(std::uint64_t seen, timespec timeout) const noexcept {
+    const auto word = wake_.load(std::memory_order_acquire);
+    if (count() != seen) return;
+    ::syscall(SYS_futex, &wake_, FUTEX_WAIT, word, &timeout, nullptr, 0);
+  }
+
+ private:
+  SeqSlot<T> newest_;
+  std::atomic<std::uint64_t> count_{0};
+  std::atomic<std::uint32_t> wake_{0};  // grows with each sample; wait on it with FUTEX_WAIT
+  std::uint32_t reserved_ = 0;
+  std::array<SeqSlot<T>, kHistory> ring_{};
+};
+
+}  // namespace merlin::shm

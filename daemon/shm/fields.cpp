@@ -1,0 +1,152 @@
+#include "daemon/shm/fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace merlin::shm {
+namespace {
+
+template <typename T>
+constexpr char kType = '?';
+template <> constexpr char kType<std::int64_t> = 'q';
+template <> constexpr char kType<std::uint64_t> = 'Q';
+template <> constexpr char kType<std::int32_t> = 'i';
+template <> constexpr char kType<std::uint32_t> = 'I';
+template <> constexpr char kType<HealthState> = 'I';
+template <> constexpr char kType<std::int16_t> = 'h';
+template <> constexpr char kType<std::uint8_t> = 'B';
+template <> constexpr char kType<float> = 'f';
+template <> constexpr char kType<char> = 's';
+
+constexpr std::size_t kPayload = 8;  // of a SeqSlot: after its sequence
+
+// Gathers the fields of slots, each at its place in the segment.
+class Table {
+ public:
+  void slot(std::string prefix, std::size_t offset) {
+    prefix_ = std::move(prefix);
+    slot_ = offset;
+  }
+
+  template <typename Member>
+  void add(std::string_view name, std::size_t offset_in_value, std::string_view unit) {
+    using Element = std::remove_all_extents_t<Member>;
+    static_assert(kType<Element> != '?');
+    Field f{};
+    const std::string full = prefix_ + "." + std::string(name);
+    assert(full.size() < sizeof f.name && unit.size() < sizeof f.unit);
+    std::copy(full.begin(), full.end(), f.name);
+    std::copy(unit.begin(), unit.end(), f.unit);
+    f.type[0] = kType<Element>;
+    f.count = sizeof(Member) / sizeof(Element);
+    f.offset = static_cast<std::uint32_t>(slot_ + kPayload + offset_in_value);
+    f.slot = static_cast<std::uint32_t>(slot_);
+    fields_.push_back(f);
+  }
+
+  std::vector<Field> take() { return std::move(fields_); }
+
+ private:
+  std::string prefix_;
+  std::size_t slot_ = 0;
+  std::vector<Field> fields_;
+};
+
+#define MERLIN_FIELD(table, Sample, member, unit) \
+  (table).add<decltype(Sample::member)>(#member, offsetof(Sample, member), unit)
+
+void addHealth(Table& t, const char* device, std::size_t index) {
+  t.slot(fmt::format("{}.health", device),
+         offsetof(DevicesSegment, health) + index * sizeof(SeqSlot<DeviceHealth>));
+  MERLIN_FIELD(t, DeviceHealth, state, "HealthState");
+  MERLIN_FIELD(t, DeviceHealth, since_ns, "ns");
+  MERLIN_FIELD(t, DeviceHealth, updated_ns, "ns");
+  MERLIN_FIELD(t, DeviceHealth, samples, "");
+  MERLIN_FIELD(t, DeviceHealth, bad_bytes, "");
+  MERLIN_FIELD(t, DeviceHealth, rate_hz, "Hz");
+  MERLIN_FIELD(t, DeviceHealth, reason, "");
+}
+
+void addTracker(Table& t, std::size_t station) {
+  t.slot(fmt::format("tracker{}", station + 1),
+         offsetof(DevicesSegment, tracker) + station * sizeof(Channel<TrackerSample>));
+  MERLIN_FIELD(t, TrackerSample, received_ns, "ns");
+  MERLIN_FIELD(t, TrackerSample, counter, "");
+  MERLIN_FIELD(t, TrackerSample, position_m, "m");
+  MERLIN_FIELD(t, TrackerSample, orientation_wxyz, "");
+  MERLIN_FIELD(t, TrackerSample, error, "");
+}
+
+}  // namespace
+
+std::vector<Field> devicesFields() {
+  Table t;
+  addHealth(t, "glove", kGlove);
+  addHealth(t, "tracker", kTracker);
+  addHealth(t, "ball", kBall);
+  t.slot("glove", offsetof(DevicesSegment, glove));
+  MERLIN_FIELD(t, GloveSample, received_ns, "ns");
+  MERLIN_FIELD(t, GloveSample, counter, "");
+  MERLIN_FIELD(t, GloveSample, flags, "bits");
+  MERLIN_FIELD(t, GloveSample, angle_rad, "rad");
+  MERLIN_FIELD(t, GloveSample, sensors, "");
+  MERLIN_FIELD(t, GloveSample, raw, "");
+  t.slot("posture", offsetof(DevicesSegment, posture));
+  MERLIN_FIELD(t, PostureSample, received_ns, "ns");
+  MERLIN_FIELD(t, PostureSample, since_ns, "ns");
+  MERLIN_FIELD(t, PostureSample, counter, "");
+  MERLIN_FIELD(t, PostureSample, code, "bits");
+  MERLIN_FIELD(t, PostureSample, activation, "");
+  MERLIN_FIELD(t, PostureSample, name, "");
+  for (std::size_t station = 0; station < kStations; ++station) addTracker(t, station);
+  t.slot("ball", offsetof(DevicesSegment, ball));
+  MERLIN_FIELD(t, BallSample, received_ns, "ns");
+  MERLIN_FIELD(t, BallSample, counter, "");
+  MERLIN_FIELD(t, BallSample, buttons, "bits");
+  MERLIN_FIELD(t, BallSample, translation, "full scale");
+  MERLIN_FIELD(t, BallSample, rotation, "full scale");
+  MERLIN_FIELD(t, BallSample, raw, "");
+  return t.take();
+}
+
+std::vector<Field> wallFields() {
+  Table t;
+  t.slot("wall", offsetof(WallSegment, stats));
+  MERLIN_FIELD(t, WallStats, updated_ns, "ns");
+  MERLIN_FIELD(t, WallStats, frames, "");
+  MERLIN_FIELD(t, WallStats, deadlines, "");
+  MERLIN_FIELD(t, WallStats, late, "");
+  MERLIN_FIELD(t, WallStats, triangles, "");
+  MERLIN_FIELD(t, WallStats, level, "");
+  MERLIN_FIELD(t, WallStats, moving, "");
+  MERLIN_FIELD(t, WallStats, full_detail, "");
+  MERLIN_FIELD(t, WallStats, longest_late, "");
+  MERLIN_FIELD(t, WallStats, rate_asked_hz, "Hz");
+  MERLIN_FIELD(t, WallStats, rate_held_hz, "Hz");
+  MERLIN_FIELD(t, WallStats, late_share_1s, "");
+  MERLIN_FIELD(t, WallStats, late_share_1min, "");
+  MERLIN_FIELD(t, WallStats, late_share, "");
+  MERLIN_FIELD(t, WallStats, work_ms, "ms");
+  MERLIN_FIELD(t, WallStats, work_median_ms, "ms");
+  MERLIN_FIELD(t, WallStats, utilisation, "");
+  MERLIN_FIELD(t, WallStats, head_room, "");
+  MERLIN_FIELD(t, WallStats, input_age_ms, "ms");
+  MERLIN_FIELD(t, WallStats, still_to_full_s, "s");
+  MERLIN_FIELD(t, WallStats, mode, "");
+  MERLIN_FIELD(t, WallStats, posture, "");
+  return t.take();
+}
+
+void setFields(Header& header, const std::vector<Field>& fields) {
+  assert(fields.size() <= kMostFields);
+  std::copy(fields.begin(), fields.end(), header.fields);
+  header.field_count = static_cast<std::uint32_t>(fields.size());
+}
+
+}  // namespace merlin::shm

@@ -1,0 +1,101 @@
+// The shared-memory contract of MERLIN: what a client process maps. Clients: read this file first.
+//
+// Two segments, read-only for clients: /merlin-devices (what the devices measure) and /merlin-wall
+// (how the wall fares). Each starts with a Header and carries a table of its own fields, so that C,
+// C++ and Python readers need no header file; read_merlin.py beside this file is one in 30 lines.
+//
+// One writer a slot, named here. No pointers, no locks; a field's meaning never changes. Fields are
+// only ever appended; any change of an offset bumps kVersion, and a client refuses a version that it
+// does not know.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include "daemon/shm/channel.h"
+#include "daemon/shm/seq_slot.h"
+#include "drivers/port/samples.h"
+
+namespace merlin::shm {
+
+inline constexpr std::uint32_t kMagic = 0x4E4C524D;  // "MRLN" in memory
+inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::size_t kMostFields = 96;
+
+// One field of the segment. `type` is a letter of Python's struct module (q i64, Q u64, i i32, I u32,
+// h i16, B u8, f f32, d f64, s bytes of text); `slot` is the offset of the u64 sequence that guards
+// it (read it before and after; odd or changed: try again), 0 for none.
+struct Field {
+  char name[40];         // "glove.angle_rad"
+  char unit[16];         // "rad"
+  char type[4];
+  std::uint32_t count;   // of values of that type
+  std::uint32_t offset;  // from the segment's start [bytes]
+  std::uint32_t slot;
+};
+static_assert(sizeof(Field) == 72);
+
+struct Header {
+  std::uint32_t magic, version;
+  std::uint64_t size;                      // of the whole segment [bytes]
+  std::uint64_t generation;                // new at each start of the daemon: re-open when it changes
+  std::atomic<std::int64_t> heartbeat_ns;  // CLOCK_MONOTONIC, ten times a second; old: it is gone
+  std::int64_t started_ns;                 // CLOCK_MONOTONIC
+  std::uint32_t pid;
+  std::uint32_t field_count;
+  char status_endpoint[108];   // ZeroMQ PUB: one JSON document a topic
+  char command_endpoint[108];  // ZeroMQ REP: commands
+  Field fields[kMostFields];
+};
+static_assert(offsetof(Header, status_endpoint) == 48 && offsetof(Header, fields) == 264);
+static_assert(sizeof(Header) == 264 + kMostFields * 72);
+
+// Health of the three devices, by this number.
+enum DeviceIndex : std::size_t { kGlove = 0, kTracker = 1, kBall = 2, kDevices = 3 };
+
+struct DevicesSegment {
+  Header header;
+  alignas(64) SeqSlot<DeviceHealth> health[kDevices];  // writer: each device's own thread
+  Channel<GloveSample> glove;                          // writer: the glove's device thread
+  Channel<PostureSample> posture;                      // writer: the same, before the glove
+  Channel<TrackerSample> tracker[kStations];           // writer: the tracker's; index: station - 1
+  Channel<BallSample> ball;                            // writer: the ball's device thread
+};
+
+// How the wall fares; written once a frame by the wall's thread. Shares are 0..1.
+struct WallStats {
+  std::int64_t updated_ns;
+  std::uint64_t frames;          // drawn and presented since the start
+  std::uint64_t deadlines;       // passed while something moved, since the start
+  std::uint64_t late;            // of these, missed
+  std::uint32_t triangles;       // of the model, in the last frame
+  std::uint32_t level;           // of the dendrogram: collapses done
+  std::uint32_t levels;          // of the dendrogram, all
+  std::uint32_t moving;          // 1 while something moves
+  std::uint32_t full_detail;     // 1 while nothing is left out
+  std::uint32_t longest_late;    // frames late in a row, at most, since the start
+  float rate_asked_hz;
+  float rate_held_hz;            // deadlines met over the last second; an unchanged picture meets its
+  float late_share_1s, late_share_1min, late_share;
+  float work_ms;                 // of the last frame, from its begin to its last pixel
+  float work_median_ms;          // of the last second's frames
+  float utilisation;             // work / period, of the last second's moving frames
+  float head_room;               // the governor's, share of the period
+  float cost_fixed_ms;           // its model: work = fixed + coefficient * triangles^0.65
+  float cost_coefficient_us;
+  float input_age_ms;            // of the newest sample, when the last frame began
+  float still_to_full_s;         // last time: from standstill to full detail
+  std::uint32_t grabbed;         // 1 while a hand holds the model
+  char mode[16];                 // of the ball: "object" or "fly"
+  char posture[20];              // the newest, empty for none
+  std::uint32_t reserved;
+};
+static_assert(sizeof(WallStats) == 152 && offsetof(WallStats, triangles) == 32);
+
+struct WallSegment {
+  Header header;
+  alignas(64) SeqSlot<WallStats> stats;  // writer: the wall's thread
+};
+
+}  // namespace merlin::shm

@@ -1,0 +1,104 @@
+#include "daemon/shm/segment.h"
+
+#include <fmt/format.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <new>
+
+#include "daemon/shm/fields.h"
+
+namespace merlin::shm {
+namespace {
+
+template <std::size_t N>
+void setText(char (&field)[N], const std::string& text) {
+  const std::size_t n = std::min(text.size(), N - 1);
+  std::copy_n(text.begin(), n, field);
+  field[n] = '\0';
+}
+
+}  // namespace
+
+std::string segmentName(const std::string& instance, const char* what) {
+  return fmt::format("/{}-{}", instance, what);
+}
+
+std::uint64_t newGeneration() {
+  std::uint64_t number = 0;
+  if (::getrandom(&number, sizeof number, 0) != sizeof number) number = static_cast<std::uint64_t>(::getpid());
+  return number | 1;  // never 0
+}
+
+void fillHeader(Header& h, std::size_t size, std::uint64_t generation, Timestamp now, const Endpoints& endpoints) {
+  h.size = size;
+  h.generation = generation;
+  h.heartbeat_ns.store(toNanoseconds(now), std::memory_order_relaxed);
+  h.started_ns = toNanoseconds(now);
+  h.pid = static_cast<std::uint32_t>(::getpid());
+  setText(h.status_endpoint, endpoints.status);
+  setText(h.command_endpoint, endpoints.command);
+  h.version = kVersion;
+  std::atomic_ref(h.magic).store(kMagic, std::memory_order_release);  // last: a reader sees all or none
+}
+
+Result<Ok> checkHeader(const SharedMemory& memory, std::size_t least_size, const std::string& name) {
+  if (memory.size() < sizeof(Header)) {
+    return Error{Errc::kMalformed, fmt::format("shared memory {}: {} bytes are too few", name, memory.size())};
+  }
+  const auto& h = *reinterpret_cast<const Header*>(memory.data());
+  if (h.magic != kMagic) {
+    return Error{Errc::kMalformed, fmt::format("shared memory {}: is none of MERLIN's", name)};
+  }
+  if (h.version != kVersion) {
+    return Error{Errc::kUnsupported,
+                 fmt::format("shared memory {}: is version {}, this program reads {}", name, h.version, kVersion)};
+  }
+  if (memory.size() < least_size || h.size != memory.size() || h.field_count > kMostFields) {
+    return Error{Errc::kMalformed, fmt::format("shared memory {}: its header is damaged", name)};
+  }
+  return Ok{};
+}
+
+template <typename Segment>
+Result<SegmentWriter<Segment>> SegmentWriter<Segment>::make(const std::string& name, const std::vector<Field>& fields,
+                                                            std::uint64_t generation, Timestamp now,
+                                                            const Endpoints& endpoints) {
+  auto memory = SharedMemory::create(name, sizeof(Segment));
+  if (!memory) return memory.error();
+  auto* segment = new (memory->data()) Segment{};
+  setFields(segment->header, fields);
+  fillHeader(segment->header, sizeof(Segment), generation, now, endpoints);
+  return SegmentWriter(*std::move(memory));
+}
+
+template <typename Segment>
+Result<SegmentReader<Segment>> SegmentReader<Segment>::open(const std::string& name) {
+  auto memory = SharedMemory::open(name);
+  if (!memory) return memory.error();
+  if (const auto checked = checkHeader(*memory, sizeof(Segment), name); !checked) return checked.error();
+  return SegmentReader(*std::move(memory));
+}
+
+template <typename Segment>
+const Segment* SegmentFollower<Segment>::get(Timestamp now) {
+  constexpr Duration kRetry = std::chrono::milliseconds(500);
+  if (reader_ && reader_->alive(now)) return &**reader_;
+  reader_.reset();
+  if (now - tried_ < kRetry) return nullptr;
+  tried_ = now;
+  auto opened = SegmentReader<Segment>::open(name_);
+  if (!opened || !opened->alive(now)) return nullptr;
+  reader_.emplace(*std::move(opened));
+  return &**reader_;
+}
+
+template class SegmentWriter<DevicesSegment>;
+template class SegmentWriter<WallSegment>;
+template class SegmentReader<DevicesSegment>;
+template class SegmentReader<WallSegment>;
+template class SegmentFollower<DevicesSegment>;
+template class SegmentFollower<WallSegment>;
+
+}  // namespace merlin::shm

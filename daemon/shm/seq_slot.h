@@ -1,0 +1,67 @@
+// SeqSlot: the newest value of T between one writer and any number of readers, in any process.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <type_traits>
+
+namespace merlin::shm {
+
+// publish() is wait-free; read() never blocks the writer. A reader sees one whole published value
+// or nothing, never a mix of two. There is no queue: a value nobody read is gone, by design.
+//
+// The payload is an array of atomics rather than plain memory, so that a read that races a write
+// is a lost race and not undefined behaviour (and stays silent under ThreadSanitizer).
+// Source: H.-J. Boehm, "Can Seqlocks Get Along With Programming Language Memory Models?", 2012.
+//
+// In memory: sequence (u64, odd while a value is being written), then T, padded to 8 bytes.
+template <typename T>
+class SeqSlot {
+  static_assert(std::is_trivially_copyable_v<T>, "T crosses a process border");
+  static_assert(std::atomic<std::uint64_t>::is_always_lock_free, "a lock would not");
+
+ public:
+  // REQUIRES: called from one thread only.
+  void publish(const T& value) noexcept {
+    Words words{};
+    std::memcpy(words.data(), &value, sizeof value);
+    const auto even = sequence_.load(std::memory_order_relaxed);
+    sequence_.store(even + 1, std::memory_order_relaxed);  // odd: being written
+    for (std::size_t i = 0; i < kWords; ++i) {
+      payload_[i].store(words[i], std::memory_order_release);
+    }
+    sequence_.store(even + 2, std::memory_order_release);
+  }
+
+  // The last published value; nothing before the first publish(), or where kTries reads in a row
+  // met a write (a writer that died in the middle of one, for example).
+  std::optional<T> read() const noexcept {
+    for (int i = 0; i < kTries; ++i) {
+      const auto before = sequence_.load(std::memory_order_acquire);
+      if (before == 0) return std::nullopt;
+      if (before & 1) continue;
+      Words words;
+      for (std::size_t w = 0; w < kWords; ++w) {
+        words[w] = payload_[w].load(std::memory_order_acquire);
+      }
+      if (sequence_.load(std::memory_order_relaxed) != before) continue;
+      T value;
+      std::memcpy(&value, words.data(), sizeof value);
+      return value;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr int kTries = 64;
+  static constexpr std::size_t kWords = (sizeof(T) + 7) / 8;
+  using Words = std::array<std::uint64_t, kWords>;
+
+  std::atomic<std::uint64_t> sequence_{0};
+  std::array<std::atomic<std::uint64_t>, kWords> payload_{};
+};
+
+}  // namespace merlin::shm

@@ -1,0 +1,168 @@
+#include "daemon/status/documents.h"
+
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <span>
+
+namespace merlin::status {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// As short as a reader needs it.
+double round3(double value) { return std::isfinite(value) ? std::round(value * 1000) / 1000 : 0; }
+
+std::string dump(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);  // device text may be no UTF-8
+}
+
+template <std::size_t N>
+std::string text(const char (&field)[N]) {
+  return {field, strnlen(field, N)};
+}
+
+template <typename T>
+Json list(std::span<const T> values) {
+  Json json = Json::array();
+  for (const T v : values) json.push_back(round3(static_cast<double>(v)));
+  return json;
+}
+
+double ageSeconds(std::int64_t then_ns, Timestamp now) { return round3(toSeconds(now - fromNanoseconds(then_ns))); }
+
+Json deviceJson(const DeviceHealth& h, Timestamp now) {
+  return {{"health", healthName(h, now)},
+          {"since_s", ageSeconds(h.since_ns, now)},
+          {"port", text(h.port)},
+          {"identity", text(h.identity)},
+          {"reason", text(h.reason)},
+          {"rate_hz", round3(h.rate_hz)},
+          {"samples", h.samples},
+          {"reconnects", h.reconnects},
+          {"bad_packets", h.bad_packets},
+          {"bad_bytes", h.bad_bytes}};
+}
+
+std::string postureName(const shm::DevicesSegment& segment) {
+  const auto posture = segment.posture.newest();
+  return posture ? text(posture->name) : "";
+}
+
+}  // namespace
+
+const char* healthName(const DeviceHealth& health, Timestamp now) {
+  constexpr Duration kStale = std::chrono::seconds(1);
+  if (health.state == HealthState::kOk && now - fromNanoseconds(health.updated_ns) > kStale) return "stale";
+  switch (health.state) {
+    case HealthState::kAbsent: return "absent";
+    case HealthState::kOpening: return "opening";
+    case HealthState::kOk: return "ok";
+    case HealthState::kFailed: return "failed";
+  }
+  return "failed";
+}
+
+std::string devicesStatus(const shm::DevicesSegment& segment, Timestamp now) {
+  Json devices = Json::object();
+  for (std::size_t i = 0; i < shm::kDevices; ++i) {
+    if (const auto health = segment.health[i].read()) devices[kDeviceNames[i]] = deviceJson(*health, now);
+  }
+  return dump({{"role", "devices"},
+               {"pid", segment.header.pid},
+               {"uptime_s", ageSeconds(segment.header.started_ns, now)},
+               {"posture", postureName(segment)},
+               {"devices", std::move(devices)}});
+}
+
+std::string wallStatus(const shm::WallSegment& segment, Timestamp now) {
+  const auto s = segment.stats.read().value_or(shm::WallStats{});
+  return dump({{"role", "wall"},
+               {"pid", segment.header.pid},
+               {"uptime_s", ageSeconds(segment.header.started_ns, now)},
+               {"rate_asked", round3(s.rate_asked_hz)},
+               {"rate_held", round3(s.rate_held_hz)},
+               {"late_percent", round3(100 * s.late_share)},
+               {"late_percent_1s", round3(100 * s.late_share_1s)},
+               {"late_percent_1min", round3(100 * s.late_share_1min)},
+               {"longest_late", s.longest_late},
+               {"frames", s.frames},
+               {"triangles", s.triangles},
+               {"level", s.level},
+               {"levels", s.levels},
+               {"moving", s.moving != 0},
+               {"full_detail", s.full_detail != 0},
+               {"mode", text(s.mode)},
+               {"grabbed", s.grabbed != 0},
+               {"work_ms", round3(s.work_ms)},
+               {"work_median_ms", round3(s.work_median_ms)},
+               {"utilisation", round3(s.utilisation)},
+               {"head_room", round3(s.head_room)},
+               {"cost_fixed_ms", round3(s.cost_fixed_ms)},
+               {"cost_coefficient_us", round3(s.cost_coefficient_us)},
+               {"input_age_ms", round3(s.input_age_ms)},
+               {"still_to_full_s", round3(s.still_to_full_s)},
+               {"stale_s", ageSeconds(s.updated_ns, now)}});
+}
+
+std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {
+  Json json = {{"now_ns", toNanoseconds(now)}};
+  if (const auto p = segment.posture.newest()) {
+    json["posture"] = {{"received_ns", p->received_ns}, {"code", p->code}, {"name", text(p->name)},
+                       {"activation", list(std::span<const float>(p->activation))}};
+  }
+  if (const auto g = segment.glove.newest()) {
+    json["hand"] = {{"received_ns", g->received_ns}, {"counter", g->counter}, {"flags", g->flags},
+                    {"angle_rad", list(std::span<const float>(g->angle_rad))}};
+  }
+  Json stations = Json::array();
+  for (const auto& channel : segment.tracker) {
+    const auto t = channel.newest();
+    if (!t) continue;
+    stations.push_back({{"station", t->station}, {"received_ns", t->received_ns}, {"counter", t->counter},
+                        {"position_m", list(std::span<const float>(t->position_m))},
+                        {"orientation_wxyz", list(std::span<const float>(t->orientation_wxyz))}});
+  }
+  if (!stations.empty()) json["tracker"] = std::move(stations);
+  if (const auto b = segment.ball.newest()) {
+    json["ball"] = {{"received_ns", b->received_ns}, {"counter", b->counter}, {"buttons", b->buttons},
+                    {"translation", list(std::span<const float>(b->translation))},
+                    {"rotation", list(std::span<const float>(b->rotation))}};
+  }
+  return dump(json);
+}
+
+std::string devicesMetrics(const shm::DevicesSegment& segment) {
+  Json json = {{"role", "devices"}};
+  for (std::size_t i = 0; i < shm::kDevices; ++i) {
+    const auto h = segment.health[i].read();
+    if (!h) continue;
+    const std::string name = kDeviceNames[i];
+    json[name + "_ok"] = h->state == HealthState::kOk ? 1 : 0;
+    json[name + "_samples_total"] = h->samples;
+    json[name + "_reconnects_total"] = h->reconnects;
+    json[name + "_bad_packets_total"] = h->bad_packets;
+    json[name + "_bad_bytes_total"] = h->bad_bytes;
+    json[name + "_rate_hz"] = round3(h->rate_hz);
+  }
+  return dump(json);
+}
+
+std::string wallMetrics(const shm::WallSegment& segment) {
+  const auto s = segment.stats.read().value_or(shm::WallStats{});
+  return dump({{"role", "wall"},
+               {"frames_total", s.frames},
+               {"deadlines_total", s.deadlines},
+               {"late_total", s.late},
+               {"longest_late", s.longest_late},
+               {"triangles", s.triangles},
+               {"rate_held_hz", round3(s.rate_held_hz)},
+               {"work_ms", round3(s.work_ms)},
+               {"utilisation", round3(s.utilisation)}});
+}
+
+std::string event(std::string_view kind, std::string_view what, Timestamp now) {
+  return dump({{"now_ns", toNanoseconds(now)}, {"kind", std::string(kind)}, {"what", std::string(what)}});
+}
+
+}  // namespace merlin::status

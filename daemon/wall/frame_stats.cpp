@@ -1,0 +1,66 @@
+#include "daemon/wall/frame_stats.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace merlin::wall {
+namespace {
+
+constexpr Duration kSecond = std::chrono::seconds(1);
+constexpr Duration kMinute = std::chrono::seconds(60);
+
+}  // namespace
+
+void FrameStats::deadline(Timestamp at, bool moving, bool met) {
+  minute_.push_back({at, moving, met});
+  if (!moving) return;
+  ++deadlines_;
+  late_run_ = met ? 0 : late_run_ + 1;
+  late_ += met ? 0 : 1;
+  longest_late_ = std::max(longest_late_, late_run_);
+}
+
+void FrameStats::frame(Timestamp finished, Duration work, Duration period) {
+  second_.push_back({finished, toSeconds(work), toSeconds(work) / toSeconds(period)});
+}
+
+void FrameStats::advance(Timestamp now) {
+  while (!minute_.empty() && now - minute_.front().at > kMinute) minute_.pop_front();
+  while (!second_.empty() && now - second_.front().at > kSecond) second_.pop_front();
+}
+
+double FrameStats::heldRate(Timestamp now, double asked_hz) const {
+  // A share of the rate asked, not a count: a window of a second holds one deadline more or less.
+  double met = 0, all = 0;
+  for (auto d = minute_.rbegin(); d != minute_.rend() && now - d->at < kSecond; ++d) {
+    met += d->met;
+    ++all;
+  }
+  return all > 0 ? asked_hz * met / all : 0;
+}
+
+double FrameStats::lateShare(Timestamp now, Duration over) const {
+  double late = 0, all = 0;
+  for (auto d = minute_.rbegin(); d != minute_.rend() && now - d->at < over; ++d) {
+    all += d->moving;
+    late += d->moving && !d->met;
+  }
+  return all > 0 ? late / all : 0;
+}
+
+double FrameStats::medianWorkSeconds() const {
+  if (second_.empty()) return 0;
+  std::vector<double> work;
+  for (const Frame& f : second_) work.push_back(f.work);
+  const auto middle = work.begin() + static_cast<std::ptrdiff_t>(work.size() / 2);
+  std::nth_element(work.begin(), middle, work.end());
+  return *middle;
+}
+
+double FrameStats::utilisation() const {
+  double sum = 0;
+  for (const Frame& f : second_) sum += f.share;
+  return second_.empty() ? 0 : sum / static_cast<double>(second_.size());
+}
+
+}  // namespace merlin::wall

@@ -1,0 +1,137 @@
+#include "daemon/wall/picture.h"
+
+#include <algorithm>
+
+namespace merlin::wall {
+namespace {
+
+using render::ModelRenderer;
+
+// Triangles of a slice: 1 to 5 ms on llvmpipe; larger ones are no faster (its bins fall out of L2).
+constexpr std::size_t kSlice = 10'000;
+
+// The model's box centred at the origin, its half diagonal `radius_m` long.
+Eigen::Matrix4f scaling(const render::Dendrogram& model, float radius_m) {
+  const render::Box box = render::boundingBox(model.arrays().positions);
+  const float half = box.diagonal() / 2;
+  const float scale = half > 0 ? radius_m / half : 1;
+  Eigen::Matrix4f m = Eigen::Matrix4f::Identity() * scale;
+  for (int k = 0; k < 3; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    m(k, 3) = -scale * (box.low[i] + box.high[i]) / 2;
+  }
+  m(3, 3) = 1;
+  return m;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Picture>> Picture::make(const render::Dendrogram& model, const render::TilePlan& plan,
+                                               const render::RenderSettings& settings, double radius_m,
+                                               const Clock& clock) {
+  std::unique_ptr<Picture> picture(new Picture(model, plan, settings.look, radius_m, clock));
+  auto context = render::makeGlContext(settings.backend);
+  if (!context) return context.error();
+  picture->context_ = *std::move(context);
+  const render::GlApi& gl = picture->context_->gl();
+  auto renderer = ModelRenderer::make(gl, model);
+  if (!renderer) return renderer.error();
+  picture->renderer_ = *std::move(renderer);
+  for (const render::Tile& tile : plan.tiles) {
+    auto buffer = render::FrameBuffer::make(gl, tile.width, tile.height);
+    if (!buffer) return buffer.error();
+    picture->tiles_.push_back(*std::move(buffer));
+  }
+  return picture;
+}
+
+Picture::Picture(const render::Dendrogram& model, const render::TilePlan& plan, const render::Look& look,
+                 double radius_m, const Clock& clock)
+    : model_(model),
+      plan_(plan),
+      look_(look),
+      radius_m_(static_cast<float>(radius_m)),
+      metres_from_model_(scaling(model, radius_m_)),
+      clock_(clock),
+      cut_(3 * model.triangleCount()),
+      pixels_(std::size_t{4} * static_cast<std::size_t>(plan.frame_width) * static_cast<std::size_t>(plan.frame_height)) {
+  tiles_.reserve(plan.tiles.size());
+}
+
+render::Camera Picture::cameraOf(const render::Tile& tile, const Eigen::Isometry3f& T_eye_model) const {
+  const bool operators = tile.kind == render::TileKind::kOperator;
+  const Eigen::Matrix4f view =
+      operators ? render::operatorView(tile.projection, T_eye_model.translation(), radius_m_) : tile.view;
+  // The light comes from the eye, not from the tile: so a surface is as bright on either side of a seam.
+  return {tile.projection * view * T_eye_model.matrix() * metres_from_model_, T_eye_model.linear()};
+}
+
+void Picture::beginTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model) {
+  const render::Tile& t = plan_.tiles[tile];
+  tiles_[tile].bind();
+  renderer_->begin(t.width, t.height, cameraOf(t, T_eye_model), look_);
+}
+
+void Picture::readTile(std::size_t tile) {
+  const render::Tile& t = plan_.tiles[tile];
+  const auto at = static_cast<std::size_t>(4) * static_cast<std::size_t>(t.y * plan_.frame_width + t.x);
+  tiles_[tile].read(pixels_.data() + at, plan_.frame_width);
+}
+
+DrawTimes Picture::draw(const Eigen::Isometry3f& T_eye_model, std::size_t level) {
+  DrawTimes times;
+  Timestamp last = clock_.now();
+  const auto lap = [&](Duration& sum) {
+    const Timestamp now = clock_.now();
+    sum += now - last;
+    last = now;
+  };
+  const std::size_t triangles = model_.cut(level, cut_);
+  renderer_->uploadCut(std::span(cut_).first(3 * triangles));
+  lap(times.drawing);
+  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    beginTile(i, T_eye_model);
+    lap(times.fixed);
+    for (std::size_t first = 0; first < triangles; first += kSlice) {
+      renderer_->draw(ModelRenderer::Source::kCut, first, std::min(kSlice, triangles - first));
+      renderer_->flush();
+    }
+    lap(times.drawing);
+    readTile(i);
+    lap(times.fixed);
+  }
+  return times;
+}
+
+void Picture::warmUp(const Eigen::Isometry3f& T_eye_model) {
+  draw(T_eye_model, model_.levelFor(kSlice));
+  beginRefining(T_eye_model);
+  refine(clock_.now());
+}
+
+void Picture::beginRefining(const Eigen::Isometry3f& T_eye_model) {
+  refined_view_ = T_eye_model;
+  refined_tile_ = refined_triangles_ = 0;
+}
+
+bool Picture::refine(Timestamp until) {
+  const std::size_t all = renderer_->triangles(ModelRenderer::Source::kFull);
+  Timestamp now = clock_.now();
+  do {
+    if (refined_triangles_ == 0) beginTile(refined_tile_, refined_view_);
+    const std::size_t count = std::min(kSlice, all - refined_triangles_);
+    renderer_->draw(ModelRenderer::Source::kFull, refined_triangles_, count);
+    renderer_->finish();
+    refined_triangles_ += count;
+    if (refined_triangles_ == all) {
+      readTile(refined_tile_);
+      refined_triangles_ = 0;
+      if (++refined_tile_ == tiles_.size()) return true;
+    }
+    const Timestamp then = std::exchange(now, clock_.now());
+    slice_time_ = std::max<Duration>(now - then, slice_time_ * 9 / 10);
+  } while (now + slice_time_ * 3 / 2 < until);
+  return false;
+}
+
+}  // namespace merlin::wall

@@ -1,0 +1,83 @@
+#include "daemon/wall/wall_role.h"
+
+#include <utility>
+
+#include "daemon/shm/fields.h"
+#include "render/lod/io/mrm_file.h"
+#include "render/out/png_sink.h"
+
+namespace merlin::wall {
+
+Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings, std::uint64_t generation,
+                                                 const shm::Endpoints& endpoints, Clock& clock) {
+  auto segment = shm::SegmentWriter<shm::WallSegment>::make(shm::segmentName(settings.instance, "wall"),
+                                                            shm::wallFields(), generation, clock.now(), endpoints);
+  if (!segment) return segment.error();
+  if (settings.wall.model.empty()) {
+    return Error{Errc::kInvalidArgument, "/wall/model: names no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)"};
+  }
+  auto model = render::readMrm(settings.wall.model);
+  if (!model) return model.error();
+  auto plan = render::planTiles(settings.wall.tiles);
+  if (!plan) return Error{plan.error().code, "/wall/tiles: " + plan.error().what};
+  auto scene = render::Scene::make(settings.wall.scene);
+  if (!scene) return Error{scene.error().code, "/wall/scene: " + scene.error().what};
+  std::unique_ptr<WallRole> role(new WallRole(settings, *std::move(model), *std::move(plan), *std::move(scene),
+                                              *std::move(segment), clock));
+  auto shared = render::ShmFrameSink::make(shm::segmentName(settings.instance, "framebuffer"), role->plan_, generation);
+  if (!shared) return shared.error();
+  role->sinks_.push_back(*std::move(shared));
+  if (!settings.wall.png.path.empty()) {
+    role->sinks_.push_back(std::make_unique<render::PngFrameSink>(settings.wall.png, role->plan_.frame_width, role->plan_.frame_height));
+  }
+  return role;
+}
+
+WallRole::WallRole(const Settings& settings, render::Dendrogram model, render::TilePlan plan, render::Scene scene,
+                   shm::SegmentWriter<shm::WallSegment> segment, Clock& clock)
+    : settings_(settings),
+      model_(std::move(model)),
+      plan_(std::move(plan)),
+      scene_(std::move(scene)),
+      governor_(settings.wall.governor),
+      segment_(std::move(segment)),
+      clock_(clock) {}
+
+WallRole::~WallRole() {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+std::future<Result<std::string>> WallRole::start() {
+  auto ready = ready_.get_future();
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  return ready;
+}
+
+void WallRole::run(const std::stop_token& stop) {
+  auto picture = Picture::make(model_, plan_, settings_.wall.render, settings_.wall.scene.model_radius_m, clock_);
+  if (!picture) {
+    ready_.set_value(picture.error());
+    return;
+  }
+  (*picture)->warmUp(scene_.view().T_eye_model);
+  DeviceFeed feed(shm::segmentName(settings_.instance, "devices"), settings_.wall.scene.hand_station,
+                  fromSeconds(settings_.wall.scene.stale_after_s));
+  std::vector<render::FrameSink*> sinks;
+  for (const auto& sink : sinks_) sinks.push_back(sink.get());
+  WallLoop loop({model_, **picture, scene_, governor_, feed, sinks, segment_->stats, clock_});
+  loop_.store(&loop);
+  loop.run(stop, [&] { ready_.set_value((*picture)->renderer()); });
+  loop_.store(nullptr);
+}
+
+void WallRole::request(WallLoop::Request what) {
+  if (WallLoop* loop = loop_.load()) loop->request(what);
+}
+
+std::uint64_t WallRole::periods() const {
+  const WallLoop* loop = loop_.load();
+  return loop ? loop->periods() : 0;
+}
+
+}  // namespace merlin::wall

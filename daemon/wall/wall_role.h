@@ -1,0 +1,58 @@
+// WallRole: a configuration's wall: model, scene, governor, GL, sinks, on a thread of its own.
+#pragma once
+
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "config/settings.h"
+#include "daemon/base/clock.h"
+#include "daemon/shm/segment.h"
+#include "daemon/wall/wall_loop.h"
+#include "render/out/shm_sink.h"
+
+namespace merlin::wall {
+
+class WallRole {
+ public:
+  // Loads the model and makes the segments; nothing runs yet. Errors: what is wrong with the model's
+  // file or the wall's settings; kBusy (a living daemon has the segments), kIo.
+  static Result<std::unique_ptr<WallRole>> make(const Settings& settings, std::uint64_t generation,
+                                                const shm::Endpoints& endpoints, Clock& clock);
+  ~WallRole();  // stops and joins the wall's thread
+  WallRole(const WallRole&) = delete;
+  WallRole& operator=(const WallRole&) = delete;
+
+  // Starts the wall's thread. The future holds, once: after the first frame what draws ("EGL,
+  // llvmpipe ..."), or why there will be none.
+  std::future<Result<std::string>> start();
+
+  // From any thread, once the first frame is out.
+  void request(WallLoop::Request what);
+
+  void beat(Timestamp now) const { segment_.beat(now); }
+  const shm::WallSegment& segment() const { return *segment_; }
+  std::uint64_t periods() const;
+
+ private:
+  WallRole(const Settings& settings, render::Dendrogram model, render::TilePlan plan, render::Scene scene,
+           shm::SegmentWriter<shm::WallSegment> segment, Clock& clock);
+  void run(const std::stop_token& stop);
+
+  Settings settings_;
+  render::Dendrogram model_;
+  render::TilePlan plan_;
+  render::Scene scene_;
+  render::Governor governor_;
+  shm::SegmentWriter<shm::WallSegment> segment_;
+  Clock& clock_;
+  std::vector<std::unique_ptr<render::FrameSink>> sinks_;
+  std::promise<Result<std::string>> ready_;
+  std::atomic<WallLoop*> loop_{nullptr};
+  std::jthread thread_;
+};
+
+}  // namespace merlin::wall

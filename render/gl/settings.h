@@ -1,0 +1,24 @@
+// What the configuration says of drawing.
+#pragma once
+
+#include <array>
+
+namespace merlin::render {
+
+enum class GlBackend { kEgl, kOsmesa };
+
+struct Look {
+  std::array<float, 3> colour{0.75F, 0.75F, 0.72F};  // of a model without vertex colours, 0..1
+  std::array<float, 3> background{0.06F, 0.07F, 0.09F};
+  float brightness = 1;          // multiplies colours before they are clipped; for dark scans
+  bool draw_back_faces = false;  // lit as fronts; costs 1.6 to 1.9 times the time
+  bool wireframe = false;
+};
+
+struct RenderSettings {
+  GlBackend backend = GlBackend::kEgl;
+  int raster_threads = 0;  // of Mesa's software renderer; 0: the wall's own thread does all
+  Look look;
+};
+
+}  // namespace merlin::render
