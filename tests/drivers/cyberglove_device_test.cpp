@@ -260,11 +260,14 @@ TEST(CybergloveDevice, OpensAgainAndCountsOn) {
   ASSERT_TRUE(glove.device->open(glove.stream));
   ASSERT_TRUE(glove.pollFor(*glove.device, seconds(1)));
   const auto first = glove.sink.glove.size();
+  glove.stream.feed(record({}).substr(0, 20));  // cut off
+  ASSERT_TRUE(glove.device->poll(glove.stream));
   ASSERT_TRUE(glove.device->open(glove.stream));  // it streams meanwhile
   ASSERT_TRUE(glove.pollFor(*glove.device, seconds(1)));
   EXPECT_NEAR(static_cast<double>(glove.sink.glove.size() - first), 100, 1);
   EXPECT_EQ(glove.sink.glove.back().counter, glove.sink.glove.size());
   EXPECT_EQ(glove.device->counters().samples, glove.sink.glove.size());
+  EXPECT_EQ(glove.device->counters().bad_bytes, 0u);
 }
 
 TEST(CybergloveDevice, EndsAtOnceWhenTheLineIsClosed) {

@@ -234,10 +234,13 @@ TEST(FastrakDevice, OpensAgainAndCountsOn) {
   ASSERT_TRUE(tracker.device->open(tracker.stream));
   ASSERT_TRUE(tracker.pollFor(*tracker.device, seconds(1)));
   const auto first = tracker.sink.tracker.size();
+  tracker.stream.feed(record(1, ' ').substr(0, 20));  // cut off
+  ASSERT_TRUE(tracker.device->poll(tracker.stream));
   ASSERT_TRUE(tracker.device->open(tracker.stream));  // it streams meanwhile
   ASSERT_TRUE(tracker.pollFor(*tracker.device, seconds(1)));
   EXPECT_NEAR(static_cast<double>(tracker.sink.tracker.size() - first), 120, 1);
   EXPECT_EQ(tracker.sink.tracker.back().counter, tracker.sink.tracker.size());
+  EXPECT_EQ(tracker.device->counters().bad_bytes, 0u);
 }
 
 TEST(FastrakDevice, EndsAtOnceWhenTheLineIsClosed) {
