@@ -57,7 +57,7 @@ std::optional<Phi> phiNamed(std::string_view name) noexcept {
 template <typename Real>
 Pass<Real> propagate(Phi phi, const BasicWeights<Real>& weights,
                      const std::array<Real, kInputs>& x) noexcept {
-  Pass<Real> pass;
+  Pass<Real> pass;  // NOLINT: filled by layer
   layer(phi, weights.hidden, x, pass.hidden_sum, pass.hidden);
   layer(phi, weights.output, pass.hidden, pass.output_sum, pass.output);
   return pass;

@@ -22,7 +22,7 @@ constexpr std::size_t kLongestHow = 200;
 constexpr auto kMostCount = std::numeric_limits<std::uint64_t>::max();
 
 void readSizes(JsonView sizes) {
-  sizes.expectKeys({"inputs", "hidden", "outputs"});
+  sizes.allowKeys({"inputs", "hidden", "outputs"});
   sizes.at("inputs").count(kInputs, kInputs);
   sizes.at("hidden").count(kHidden, kHidden);
   sizes.at("outputs").count(kOutputs, kOutputs);
@@ -39,7 +39,7 @@ void readInputs(JsonView inputs, InputRanges& ranges) {
   inputs.expectArray(kInputs, kInputs);
   for (std::size_t i = 0; i < kInputs; ++i) {
     JsonView input = inputs.at(i);
-    input.expectKeys({"slot", "name", "low_rad", "high_rad"});
+    input.allowKeys({"slot", "name", "low_rad", "high_rad"});
     input.at("slot").count(i, i);
     JsonView name = input.at("name");
     if (name.text(kLongestHow) != kInputNames[i]) name.wrong(fmt::format("\"{}\"", kInputNames[i]));
@@ -69,7 +69,7 @@ void readPostures(JsonView list, PostureTable& postures) {
   const std::size_t size = list.expectArray(1, kCodes);
   for (std::size_t n = 0; n < size; ++n) {
     JsonView posture = list.at(n);
-    posture.expectKeys({"code", "name"});
+    posture.allowKeys({"code", "name"});
     JsonView digits = posture.at("code");
     const auto code = parseCode(digits.text(kLongestHow));
     if (!code) digits.wrong("five digits 0 or 1, output 4 first");
@@ -79,7 +79,7 @@ void readPostures(JsonView list, PostureTable& postures) {
 }
 
 Provenance readProvenance(JsonView view) {
-  view.expectKeys({"how", "seed", "samples", "mse", "synthetic"});
+  view.allowKeys({"how", "seed", "samples", "mse", "synthetic"});
   Provenance trained;
   trained.how = view.at("how").text(kLongestHow);
   trained.seed = view.at("seed").count(0, kMostCount);
@@ -96,7 +96,7 @@ NetworkFile readDocument(JsonView root) {
     version.wrong(fmt::format("{}, the version that this MERLIN reads", kVersion), {},
                   Errc::kUnsupported);
   }
-  root.expectKeys({"version", "sizes", "phi", "inputs", "hidden", "output", "postures", "trained"});
+  root.allowKeys({"version", "sizes", "phi", "inputs", "hidden", "output", "postures", "trained"});
   readSizes(root.at("sizes"));
   file.network.phi = readPhi(root.at("phi"));
   readInputs(root.at("inputs"), file.network.ranges);

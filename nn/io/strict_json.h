@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -29,14 +30,17 @@ class JsonView {
            std::optional<Error>& error)
       : value_(value), pointer_(std::move(pointer)), file_(file), error_(error) {}
 
-  // Wrong unless this is an object with these keys and no others.
-  void expectKeys(std::initializer_list<const char*> keys);
+  // Wrong unless this is an object without any key but these; at() finds the one that is missing.
+  void allowKeys(std::initializer_list<const char*> keys);
   // Wrong unless this is an array with that many elements; returns how many.
   std::size_t expectArray(std::size_t least, std::size_t most);
 
+  // Wrong if there is no such key; an empty view then.
   JsonView at(const char* key) const;
+  // Empty if there is no such element: expectArray() has said so.
   JsonView at(std::size_t index) const;
 
+  // The value, if it is of that kind and within these limits; else wrong, and zero.
   double number(double low, double high);
   std::uint64_t count(std::uint64_t low, std::uint64_t high);
   bool boolean();

@@ -157,6 +157,8 @@ INSTANTIATE_TEST_SUITE_P(
             "\"phi\"", "\"fi/~\"",
             "f.json: (root): found the key \"fi/~\"; allowed: version, sizes, phi, inputs, hidden, "
             "output, postures, trained"},
+        Fault{"\"phi\"", "\"fi/~\": [0, 1e999], \"phi\"",
+              "f.json: /fi~1~0/1: found number overflow parsing '1e999'; allowed: JSON"},
         Fault{"\"slot\": 1,", "\"slot\": 2,", "f.json: /inputs/1/slot: found 2; allowed: 1"},
         Fault{"\"thumb-mcp\"", "\"thumb-ip\"",
               "f.json: /inputs/1/name: found \"thumb-ip\"; allowed: \"thumb-mcp\""},
