@@ -1,9 +1,9 @@
 #include "render/gl/frame_buffer.h"
 
-#include <fmt/format.h>
-
 #include <cassert>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace merlin::render {
 
@@ -21,8 +21,8 @@ Result<FrameBuffer> FrameBuffer::make(const GlApi& gl, int width, int height) {
   gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, f.depth_);
   const GLenum status = gl.CheckFramebufferStatus(GL_FRAMEBUFFER);
   if (status == GL_FRAMEBUFFER_COMPLETE) return f;
-  return Error{Errc::kUnsupported, fmt::format("no frame buffer of {} x {}: GL status 0x{:04X}", width,
-                                               height, status)};
+  return Error{Errc::kUnsupported, fmt::format("no frame buffer of {} x {}: GL status 0x{:04X}",
+                                               width, height, status)};
 }
 
 FrameBuffer::FrameBuffer(FrameBuffer&& other) noexcept

@@ -25,8 +25,8 @@ class FrameBuffer {
 
   void bind() const;
 
-  // Copies the picture to `pixels`, RGBA, rows from top to bottom (MERLIN draws with y downwards, so
-  // no row is turned), the next row `stride_px` pixels on. Waits until all is drawn.
+  // Copies the picture to `pixels`, RGBA, rows from top to bottom (MERLIN draws with y downwards,
+  // so no row is turned), the next row `stride_px` pixels on. Waits until all is drawn.
   void read(std::uint8_t* pixels, int stride_px) const;
 
  private:

@@ -4,69 +4,69 @@
 // process; nothing here links either, and each context carries its own table. OpenGL 3.3 core.
 #pragma once
 
-#include <GL/glcorearb.h>
-
 #include <string>
+
+#include <GL/glcorearb.h>
 
 #include "daemon/base/result.h"
 
 namespace merlin::render {
 
 // X(type, name): name without "gl".
-#define MERLIN_GL_FUNCTIONS(X)                                                                  \
-  X(PFNGLATTACHSHADERPROC, AttachShader)                                                        \
-  X(PFNGLBINDBUFFERPROC, BindBuffer)                                                            \
-  X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                                                  \
-  X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer)                                                \
-  X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                                                  \
-  X(PFNGLBUFFERDATAPROC, BufferData)                                                            \
-  X(PFNGLBUFFERSUBDATAPROC, BufferSubData)                                                      \
-  X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)                                    \
-  X(PFNGLCLEARPROC, Clear)                                                                      \
-  X(PFNGLCLEARCOLORPROC, ClearColor)                                                            \
-  X(PFNGLCOMPILESHADERPROC, CompileShader)                                                      \
-  X(PFNGLCREATEPROGRAMPROC, CreateProgram)                                                      \
-  X(PFNGLCREATESHADERPROC, CreateShader)                                                        \
-  X(PFNGLCULLFACEPROC, CullFace)                                                                \
-  X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                                                      \
-  X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)                                            \
-  X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                                                      \
-  X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers)                                          \
-  X(PFNGLDELETESHADERPROC, DeleteShader)                                                        \
-  X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)                                            \
-  X(PFNGLDEPTHFUNCPROC, DepthFunc)                                                              \
-  X(PFNGLDISABLEPROC, Disable)                                                                  \
-  X(PFNGLDRAWELEMENTSPROC, DrawElements)                                                        \
-  X(PFNGLENABLEPROC, Enable)                                                                    \
-  X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray)                                  \
-  X(PFNGLFINISHPROC, Finish)                                                                    \
-  X(PFNGLFLUSHPROC, Flush)                                                                      \
-  X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer)                                  \
-  X(PFNGLFRONTFACEPROC, FrontFace)                                                              \
-  X(PFNGLGENBUFFERSPROC, GenBuffers)                                                            \
-  X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                                                  \
-  X(PFNGLGENRENDERBUFFERSPROC, GenRenderbuffers)                                                \
-  X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                                                  \
-  X(PFNGLGETATTRIBLOCATIONPROC, GetAttribLocation)                                              \
-  X(PFNGLGETERRORPROC, GetError)                                                                \
-  X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                                              \
-  X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                                        \
-  X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                                                \
-  X(PFNGLGETSHADERIVPROC, GetShaderiv)                                                          \
-  X(PFNGLGETSTRINGPROC, GetString)                                                              \
-  X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                                            \
-  X(PFNGLLINKPROGRAMPROC, LinkProgram)                                                          \
-  X(PFNGLPIXELSTOREIPROC, PixelStorei)                                                          \
-  X(PFNGLPOLYGONMODEPROC, PolygonMode)                                                          \
-  X(PFNGLREADPIXELSPROC, ReadPixels)                                                            \
-  X(PFNGLRENDERBUFFERSTORAGEPROC, RenderbufferStorage)                                          \
-  X(PFNGLSCISSORPROC, Scissor)                                                                  \
-  X(PFNGLSHADERSOURCEPROC, ShaderSource)                                                        \
-  X(PFNGLUNIFORM3FPROC, Uniform3f)                                                              \
-  X(PFNGLUNIFORMMATRIX3FVPROC, UniformMatrix3fv)                                                \
-  X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)                                                \
-  X(PFNGLUSEPROGRAMPROC, UseProgram)                                                            \
-  X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)                                          \
+#define MERLIN_GL_FUNCTIONS(X)                                 \
+  X(PFNGLATTACHSHADERPROC, AttachShader)                       \
+  X(PFNGLBINDBUFFERPROC, BindBuffer)                           \
+  X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                 \
+  X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer)               \
+  X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                 \
+  X(PFNGLBUFFERDATAPROC, BufferData)                           \
+  X(PFNGLBUFFERSUBDATAPROC, BufferSubData)                     \
+  X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)   \
+  X(PFNGLCLEARPROC, Clear)                                     \
+  X(PFNGLCLEARCOLORPROC, ClearColor)                           \
+  X(PFNGLCOMPILESHADERPROC, CompileShader)                     \
+  X(PFNGLCREATEPROGRAMPROC, CreateProgram)                     \
+  X(PFNGLCREATESHADERPROC, CreateShader)                       \
+  X(PFNGLCULLFACEPROC, CullFace)                               \
+  X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                     \
+  X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)           \
+  X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                     \
+  X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers)         \
+  X(PFNGLDELETESHADERPROC, DeleteShader)                       \
+  X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)           \
+  X(PFNGLDEPTHFUNCPROC, DepthFunc)                             \
+  X(PFNGLDISABLEPROC, Disable)                                 \
+  X(PFNGLDRAWELEMENTSPROC, DrawElements)                       \
+  X(PFNGLENABLEPROC, Enable)                                   \
+  X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
+  X(PFNGLFINISHPROC, Finish)                                   \
+  X(PFNGLFLUSHPROC, Flush)                                     \
+  X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer) \
+  X(PFNGLFRONTFACEPROC, FrontFace)                             \
+  X(PFNGLGENBUFFERSPROC, GenBuffers)                           \
+  X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                 \
+  X(PFNGLGENRENDERBUFFERSPROC, GenRenderbuffers)               \
+  X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                 \
+  X(PFNGLGETATTRIBLOCATIONPROC, GetAttribLocation)             \
+  X(PFNGLGETERRORPROC, GetError)                               \
+  X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)             \
+  X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                       \
+  X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)               \
+  X(PFNGLGETSHADERIVPROC, GetShaderiv)                         \
+  X(PFNGLGETSTRINGPROC, GetString)                             \
+  X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)           \
+  X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
+  X(PFNGLPIXELSTOREIPROC, PixelStorei)                         \
+  X(PFNGLPOLYGONMODEPROC, PolygonMode)                         \
+  X(PFNGLREADPIXELSPROC, ReadPixels)                           \
+  X(PFNGLRENDERBUFFERSTORAGEPROC, RenderbufferStorage)         \
+  X(PFNGLSCISSORPROC, Scissor)                                 \
+  X(PFNGLSHADERSOURCEPROC, ShaderSource)                       \
+  X(PFNGLUNIFORM3FPROC, Uniform3f)                             \
+  X(PFNGLUNIFORMMATRIX3FVPROC, UniformMatrix3fv)               \
+  X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)               \
+  X(PFNGLUSEPROGRAMPROC, UseProgram)                           \
+  X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)         \
   X(PFNGLVIEWPORTPROC, Viewport)
 
 struct GlApi {

@@ -1,14 +1,14 @@
 #include "render/gl/gl_context.h"
 
+#include <cstdlib>
+#include <vector>
+
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GL/osmesa.h>
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <malloc.h>
-
-#include <cstdlib>
-#include <vector>
 
 namespace merlin::render {
 namespace {
@@ -31,8 +31,10 @@ Result<GlApi> loadApi(Resolve resolve) {
 }
 
 Error eglError(const char* step) {
-  return {Errc::kUnsupported, fmt::format("EGL: {}: error 0x{:04X}; packages libegl1, libegl-mesa0 and "
-                                          "libgl1-mesa-dri bring a software renderer", step, eglGetError())};
+  return {Errc::kUnsupported,
+          fmt::format("EGL: {}: error 0x{:04X}; packages libegl1, libegl-mesa0 and "
+                      "libgl1-mesa-dri bring a software renderer",
+                      step, eglGetError())};
 }
 
 class EglContext final : public GlContext {
@@ -58,9 +60,12 @@ class EglContext final : public GlContext {
     if (display_ == EGL_NO_DISPLAY) return eglError("no surfaceless display");
     if (!eglInitialize(display_, nullptr, nullptr)) return eglError("initialisation");
     if (!eglBindAPI(EGL_OPENGL_API)) return eglError("no OpenGL");
-    const EGLint kAttributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3,
-                                  EGL_CONTEXT_MINOR_VERSION, 3,
-                                  EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+    const EGLint kAttributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                  3,
+                                  EGL_CONTEXT_MINOR_VERSION,
+                                  3,
+                                  EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                  EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                   EGL_NONE};
     context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kAttributes);
     if (context_ == EGL_NO_CONTEXT) return eglError("no OpenGL 3.3 core context");
@@ -86,7 +91,8 @@ class OsmesaLibrary {
     OsmesaLibrary library;
     library.handle_ = ::dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
     if (!library.handle_) {
-      return Error{Errc::kUnsupported, fmt::format("OSMesa: {}; package libosmesa6 has it", ::dlerror())};
+      return Error{Errc::kUnsupported,
+                   fmt::format("OSMesa: {}; package libosmesa6 has it", ::dlerror())};
     }
     return library;
   }
@@ -117,21 +123,31 @@ class OsmesaContext final : public GlContext {
 
  private:
   Result<Ok> create() {
-    const auto make = library_.function<decltype(&OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs");
+    const auto make =
+        library_.function<decltype(&OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs");
     const auto makeCurrent = library_.function<decltype(&OSMesaMakeCurrent)>("OSMesaMakeCurrent");
     const auto resolve = library_.function<decltype(&OSMesaGetProcAddress)>("OSMesaGetProcAddress");
     if (!make || !makeCurrent || !resolve) return Error{Errc::kUnsupported, "OSMesa: too old"};
-    const int kAttributes[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                               OSMESA_CONTEXT_MAJOR_VERSION, 3, OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
+    const int kAttributes[] = {OSMESA_FORMAT,
+                               OSMESA_RGBA,
+                               OSMESA_PROFILE,
+                               OSMESA_CORE_PROFILE,
+                               OSMESA_CONTEXT_MAJOR_VERSION,
+                               3,
+                               OSMESA_CONTEXT_MINOR_VERSION,
+                               3,
+                               0};
     context_ = make(kAttributes, nullptr);
     // OSMesa wants a buffer of its own; everything is drawn into frame buffer objects instead.
     if (!context_ || !makeCurrent(context_, unused_.data(), GL_UNSIGNED_BYTE, 1, 1)) {
       return Error{Errc::kUnsupported, "OSMesa: no OpenGL 3.3 core context"};
     }
-    auto api = loadApi([&](const char* name) { return reinterpret_cast<AnyFunction>(resolve(name)); });
+    auto api =
+        loadApi([&](const char* name) { return reinterpret_cast<AnyFunction>(resolve(name)); });
     if (!api) return api.error();
     api_ = *api;
-    renderer_ = fmt::format("OSMesa, {}", reinterpret_cast<const char*>(api_.GetString(GL_RENDERER)));
+    renderer_ =
+        fmt::format("OSMesa, {}", reinterpret_cast<const char*>(api_.GetString(GL_RENDERER)));
     return Ok{};
   }
 

@@ -1,11 +1,11 @@
 #include "render/gl/model_renderer.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+
+#include <fmt/format.h>
 
 #include "render/gl/shader.h"
 
@@ -15,7 +15,7 @@ namespace {
 // A node as the vertex shader reads it.
 struct Vertex {
   float position[3];
-  std::int8_t normal[4];    // unit normal x 127
+  std::int8_t normal[4];  // unit normal x 127
   std::uint8_t colour[4];
 };
 static_assert(sizeof(Vertex) == 20);
@@ -55,9 +55,11 @@ T quantise(float value, float scale) {
 
 }  // namespace
 
-Result<std::unique_ptr<ModelRenderer>> ModelRenderer::make(const GlApi& gl, const Dendrogram& model) {
+Result<std::unique_ptr<ModelRenderer>> ModelRenderer::make(const GlApi& gl,
+                                                           const Dendrogram& model) {
   if (model.nodeCount() > std::numeric_limits<std::int32_t>::max() / sizeof(Vertex) * 8) {
-    return Error{Errc::kUnsupported, fmt::format("{} nodes are more than one buffer holds", model.nodeCount())};
+    return Error{Errc::kUnsupported,
+                 fmt::format("{} nodes are more than one buffer holds", model.nodeCount())};
   }
   std::unique_ptr<ModelRenderer> r(new ModelRenderer(gl));
   if (const auto built = r->buildProgram(); !built) return built.error();
@@ -65,12 +67,14 @@ Result<std::unique_ptr<ModelRenderer>> ModelRenderer::make(const GlApi& gl, cons
   r->makeArray(&r->cut_array_, &r->cut_indices_);
   r->makeArray(&r->full_array_, &r->full_indices_);
   const auto full = model.arrays().triangles;
-  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(full.size_bytes()), full.data(), GL_STATIC_DRAW);
+  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(full.size_bytes()), full.data(),
+                GL_STATIC_DRAW);
   r->full_triangles_ = model.triangleCount();
   gl.BindVertexArray(0);
   if (const GLenum error = gl.GetError(); error != GL_NO_ERROR) {
-    return Error{Errc::kUnsupported, fmt::format("{} nodes and {} triangles do not fit: GL error 0x{:04X}",
-                                                 model.nodeCount(), model.triangleCount(), error)};
+    return Error{Errc::kUnsupported,
+                 fmt::format("{} nodes and {} triangles do not fit: GL error 0x{:04X}",
+                             model.nodeCount(), model.triangleCount(), error)};
   }
   return r;
 }
@@ -103,7 +107,8 @@ void ModelRenderer::uploadNodes(const Dendrogram& model) {
     Vertex& v = vertices[n];
     for (std::size_t k = 0; k < 3; ++k) {
       v.position[k] = a.positions[3 * n + k];
-      v.normal[k] = quantise<std::int8_t>(normal ? normal->values[3 * n + k] : (k == 2 ? 1.0F : 0.0F), 127);
+      v.normal[k] =
+          quantise<std::int8_t>(normal ? normal->values[3 * n + k] : (k == 2 ? 1.0F : 0.0F), 127);
       v.colour[k] = quantise<std::uint8_t>(colour ? colour->values[3 * n + k] : 1.0F, 255);
     }
     v.normal[3] = 0;
@@ -111,8 +116,8 @@ void ModelRenderer::uploadNodes(const Dendrogram& model) {
   }
   gl_.GenBuffers(1, &nodes_);
   gl_.BindBuffer(GL_ARRAY_BUFFER, nodes_);
-  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
-                 GL_STATIC_DRAW);
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
+                 vertices.data(), GL_STATIC_DRAW);
 }
 
 void ModelRenderer::makeArray(GLuint* array, GLuint* indices) {
@@ -120,18 +125,22 @@ void ModelRenderer::makeArray(GLuint* array, GLuint* indices) {
   gl_.GenVertexArrays(1, array);
   gl_.BindVertexArray(*array);
   gl_.BindBuffer(GL_ARRAY_BUFFER, nodes_);
-  gl_.VertexAttribPointer(kPosition, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), offset(offsetof(Vertex, position)));
-  gl_.VertexAttribPointer(kNormal, 3, GL_BYTE, GL_TRUE, sizeof(Vertex), offset(offsetof(Vertex, normal)));
-  gl_.VertexAttribPointer(kColour, 3, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(Vertex), offset(offsetof(Vertex, colour)));
-  for (const GLuint attribute : {kPosition, kNormal, kColour}) gl_.EnableVertexAttribArray(attribute);
+  gl_.VertexAttribPointer(kPosition, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                          offset(offsetof(Vertex, position)));
+  gl_.VertexAttribPointer(kNormal, 3, GL_BYTE, GL_TRUE, sizeof(Vertex),
+                          offset(offsetof(Vertex, normal)));
+  gl_.VertexAttribPointer(kColour, 3, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(Vertex),
+                          offset(offsetof(Vertex, colour)));
+  for (const GLuint attribute : {kPosition, kNormal, kColour})
+    gl_.EnableVertexAttribArray(attribute);
   gl_.GenBuffers(1, indices);
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, *indices);
 }
 
 void ModelRenderer::uploadCut(std::span<const std::uint32_t> indices) {
   gl_.BindVertexArray(cut_array_);
-  gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size_bytes()), indices.data(),
-                 GL_STREAM_DRAW);
+  gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size_bytes()),
+                 indices.data(), GL_STREAM_DRAW);
   cut_triangles_ = indices.size() / 3;
 }
 
@@ -141,8 +150,10 @@ void ModelRenderer::begin(int width, int height, const Camera& camera, const Loo
   gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   gl_.Enable(GL_DEPTH_TEST);
   gl_.PolygonMode(GL_FRONT_AND_BACK, look.wireframe ? GL_LINE : GL_FILL);
-  if (look.draw_back_faces) gl_.Disable(GL_CULL_FACE);
-  else gl_.Enable(GL_CULL_FACE);
+  if (look.draw_back_faces)
+    gl_.Disable(GL_CULL_FACE);
+  else
+    gl_.Enable(GL_CULL_FACE);
   // The picture's first row is its upper one, so y is turned over, and with it every triangle.
   Eigen::Matrix4f clip = camera.clip_from_model;
   clip.row(1) *= -1;

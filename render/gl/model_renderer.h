@@ -5,11 +5,12 @@
 // Thread-bound to its context, which outlives it.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
+
+#include <Eigen/Core>
 
 #include "daemon/base/result.h"
 #include "render/gl/gl_api.h"
@@ -26,7 +27,7 @@ struct Camera {
 
 class ModelRenderer {
  public:
-  // Uploads the nodes (20 bytes each) and the full resolution's indices. The dendrogram is not kept.
+  // Uploads the nodes (20 bytes each) and the full resolution's indices. Keeps no dendrogram.
   // Errors: kUnsupported (a shader that does not compile, with the log; no memory on the GPU).
   static Result<std::unique_ptr<ModelRenderer>> make(const GlApi& gl, const Dendrogram& model);
 

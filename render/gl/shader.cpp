@@ -24,7 +24,8 @@ Result<GLuint> compile(const GlApi& gl, GLenum kind, const char* source) {
 
 }  // namespace
 
-Result<GLuint> linkProgram(const GlApi& gl, const char* vertex_source, const char* fragment_source) {
+Result<GLuint> linkProgram(const GlApi& gl, const char* vertex_source,
+                           const char* fragment_source) {
   const auto vertex = compile(gl, GL_VERTEX_SHADER, vertex_source);
   if (!vertex) return vertex.error();
   const auto fragment = compile(gl, GL_FRAGMENT_SHADER, fragment_source);

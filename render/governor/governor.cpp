@@ -45,7 +45,8 @@ void Governor::learnCost(const FrameCost& cost) noexcept {
   const double fixed = toSeconds(cost.fixed);
   fixed_ = seen_ == 0 ? fixed : fixed_ + kFixedGain * (fixed - fixed_);
   const double grown = std::max(toSeconds(cost.work) - fixed, 1e-9);
-  const double now = grown / std::pow(std::max<double>(static_cast<double>(cost.triangles), 1), kExponent);
+  const double now =
+      grown / std::pow(std::max<double>(static_cast<double>(cost.triangles), 1), kExponent);
   work_[seen_++ % work_.size()] = now;
   if (per_ == 0) {
     per_ = now;

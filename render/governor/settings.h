@@ -10,7 +10,7 @@ struct GovernorSettings {
   std::size_t min_triangles = 500;        // never fewer, however late
   std::size_t max_triangles = 4'000'000;  // never more while moving
   std::size_t first_triangles = 10'000;   // before anything was measured
-  double late_share = 0.01;  // of frames, that the head room is learnt for
+  double late_share = 0.01;               // of frames, that the head room is learnt for
 };
 
 }  // namespace merlin::render

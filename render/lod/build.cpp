@@ -77,8 +77,9 @@ void sortTriangles(const Mesh& mesh, const std::vector<std::uint32_t>& number, S
   s.triangles.reserve(corners.size());
   s.alive.assign(levels, 0);
   for (const std::uint32_t t : order) {
-    s.triangles.insert(s.triangles.end(), {corners[3 * std::size_t{t}], corners[3 * std::size_t{t} + 1],
-                                           corners[3 * std::size_t{t} + 2]});
+    s.triangles.insert(s.triangles.end(),
+                       {corners[3 * std::size_t{t}], corners[3 * std::size_t{t} + 1],
+                        corners[3 * std::size_t{t} + 2]});
     ++s.alive[std::min<std::size_t>(death[t], levels) - 1];
   }
   // alive[L] = triangles that die later than L.

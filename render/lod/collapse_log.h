@@ -1,4 +1,4 @@
-// CollapseLog: what a reduction did, in order. The reducer writes it, the dendrogram is built of it.
+// CollapseLog: what a reduction did, in order. The reducer writes it, buildDendrogram() reads it.
 #pragma once
 
 #include <array>

@@ -1,12 +1,12 @@
 #include "render/lod/dendrogram.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace merlin::render {
 namespace {
@@ -47,7 +47,8 @@ Result<Ok> checkValues(const Dendrogram::Arrays& a) {
   }
   std::size_t most = a.triangles.size() / 3;
   for (std::size_t k = 0; k < a.alive.size(); ++k) {
-    if (a.alive[k] > most) return broken(fmt::format("level {}: {} triangles of {}", k, a.alive[k], most));
+    if (a.alive[k] > most)
+      return broken(fmt::format("level {}: {} triangles of {}", k, a.alive[k], most));
     most = a.alive[k];
     if (!std::isfinite(a.error[k]) || (k > 0 && a.error[k] < a.error[k - 1])) {
       return broken(fmt::format("level {}: the error does not rise", k));
@@ -82,8 +83,8 @@ std::size_t Dendrogram::levelFor(std::size_t budget) const noexcept {
 }
 
 std::size_t Dendrogram::levelForError(float error) const noexcept {
-  const auto beyond = std::partition_point(a_.error.begin(), a_.error.end(),
-                                           [&](float e) { return e <= error; });
+  const auto beyond =
+      std::partition_point(a_.error.begin(), a_.error.end(), [&](float e) { return e <= error; });
   return beyond == a_.error.begin() ? 0 : static_cast<std::size_t>(beyond - a_.error.begin()) - 1;
 }
 

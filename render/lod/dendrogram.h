@@ -37,12 +37,12 @@ struct FeatureView {
 class Dendrogram {
  public:
   struct Arrays {
-    std::span<const float> positions;          // nodes x 3, model units
+    std::span<const float> positions;  // nodes x 3, model units
     std::vector<FeatureView> features;
     std::span<const std::uint32_t> parents;    // collapses: the node that collapse k makes
     std::span<const std::uint32_t> triangles;  // triangles x 3, leaf nodes, sorted as above
     std::span<const std::uint32_t> alive;      // levels: triangles left at level 0..C
-    std::span<const float> error;              // levels: estimate at level 0..C, model units, rising
+    std::span<const float> error;  // levels: estimate at level 0..C, model units, rising
     std::string about;
   };
 

@@ -1,10 +1,10 @@
 #include "render/mesh/mesh.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include <fmt/format.h>
 
 namespace merlin::render {
 namespace {
@@ -60,8 +60,8 @@ void normalise(float* v) noexcept {
 
 bool areUnit(const std::vector<float>& normals) {
   for (std::size_t i = 0; i < normals.size(); i += 3) {
-    const float l2 = normals[i] * normals[i] + normals[i + 1] * normals[i + 1] +
-                     normals[i + 2] * normals[i + 2];
+    const float l2 =
+        normals[i] * normals[i] + normals[i + 1] * normals[i + 1] + normals[i + 2] * normals[i + 2];
     if (!(std::abs(l2 - 1) < 0.01F)) return false;
   }
   return true;
@@ -92,13 +92,13 @@ Result<Ok> validate(const Mesh& mesh) {
   }
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     if (std::isfinite(mesh.positions[i])) continue;
-    return Error{Errc::kMalformed, fmt::format("vertex {}: coordinate {} is {}", i / 3, "xyz"[i % 3],
-                                               mesh.positions[i])};
+    return Error{Errc::kMalformed, fmt::format("vertex {}: coordinate {} is {}", i / 3,
+                                               "xyz"[i % 3], mesh.positions[i])};
   }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if (mesh.triangles[i] < n) continue;
-    return Error{Errc::kMalformed, fmt::format("triangle {}: vertex {} of {} (0 to {} exist)", i / 3,
-                                               mesh.triangles[i], n, n == 0 ? 0 : n - 1)};
+    return Error{Errc::kMalformed, fmt::format("triangle {}: vertex {} of {} (0 to {} exist)",
+                                               i / 3, mesh.triangles[i], n, n == 0 ? 0 : n - 1)};
   }
   for (const Feature& f : mesh.features) {
     if (f.values.size() == n * f.dimension) continue;
@@ -140,8 +140,8 @@ std::vector<float> vertexNormals(const Mesh& mesh) {
   const float* p = mesh.positions.data();
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
     const std::uint32_t* t = &mesh.triangles[i];
-    const auto f = faceNormal(p + 3 * std::size_t{t[0]}, p + 3 * std::size_t{t[1]},
-                              p + 3 * std::size_t{t[2]});
+    const auto f =
+        faceNormal(p + 3 * std::size_t{t[0]}, p + 3 * std::size_t{t[1]}, p + 3 * std::size_t{t[2]});
     for (int corner = 0; corner < 3; ++corner) {
       for (std::size_t k = 0; k < 3; ++k) normals[3 * std::size_t{t[corner]} + k] += f[k];
     }

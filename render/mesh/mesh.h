@@ -30,7 +30,7 @@ struct Box {
 };
 
 struct Mesh {
-  std::vector<float> positions;          // vertices x 3, model units
+  std::vector<float> positions;  // vertices x 3, model units
   std::vector<Feature> features;
   std::vector<std::uint32_t> triangles;  // triangles x 3, vertex indices, counter-clockwise outside
 

@@ -10,9 +10,9 @@
 namespace merlin::render {
 
 struct FrameInfo {
-  std::uint64_t sequence = 0;       // +1 a frame
-  Timestamp finished{};             // when its last pixel was drawn
-  std::uint32_t triangles = 0;      // of the model, as drawn in each tile
+  std::uint64_t sequence = 0;   // +1 a frame
+  Timestamp finished{};         // when its last pixel was drawn
+  std::uint32_t triangles = 0;  // of the model, as drawn in each tile
   bool full_detail = false;
 };
 

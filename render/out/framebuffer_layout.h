@@ -18,10 +18,10 @@ inline constexpr std::size_t kBuffers = 3;
 inline constexpr std::size_t kMostTiles = 32;
 
 struct TileRectangle {
-  char name[16];         // NUL-ended
-  std::uint32_t kind;    // 0 a piece of the wall, 1 the operator's view
+  char name[16];                     // NUL-ended
+  std::uint32_t kind;                // 0 a piece of the wall, 1 the operator's view
   std::int32_t x, y, width, height;  // in the frame [px], from its upper left corner
-  std::int32_t wall_x;   // in the wall's picture [px]; -1 for none
+  std::int32_t wall_x;               // in the wall's picture [px]; -1 for none
 };
 static_assert(sizeof(TileRectangle) == 40);
 
@@ -30,20 +30,20 @@ struct Buffer {
   std::atomic<std::uint64_t> sequence;  // of the frame in it; 0 while it is being written
   std::int64_t finished_ns;             // CLOCK_MONOTONIC, last pixel drawn
   std::uint32_t triangles;
-  std::uint32_t full_detail;            // 1 if nothing was left out
+  std::uint32_t full_detail;  // 1 if nothing was left out
 };
 static_assert(sizeof(Buffer) == 32);
 
 struct Header {
   std::uint32_t magic, version;
-  std::uint64_t size;          // of the whole segment [bytes]
-  std::uint64_t generation;    // new at each start of the daemon
+  std::uint64_t size;           // of the whole segment [bytes]
+  std::uint64_t generation;     // new at each start of the daemon
   std::uint32_t width, height;  // of the frame [px]
   std::uint32_t stride;         // of a row [bytes]
   std::uint32_t format;
   std::uint32_t wall_width, wall_height;  // of the wall's picture [px]
   std::uint32_t tile_count;
-  std::atomic<std::uint32_t> newest;      // index of the newest whole buffer
+  std::atomic<std::uint32_t> newest;  // index of the newest whole buffer
   Buffer buffers[kBuffers];
   TileRectangle tiles[kMostTiles];
 };

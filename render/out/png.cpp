@@ -1,10 +1,10 @@
 #include "render/out/png.h"
 
-#include <png.h>
-
 #include <cassert>
 #include <csetjmp>
 #include <vector>
+
+#include <png.h>
 
 #include "daemon/base/files.h"
 
@@ -32,7 +32,8 @@ bool encode(const WriteBytes* write, int width, int height, std::uint8_t* const*
   png_set_write_fn(png, const_cast<WriteBytes*>(write), writeChunk, flushNothing);
   png_set_compression_level(png, kCompression);
   png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
-               PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+               PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
   png_write_info(png, info);
   png_set_filler(png, 0, PNG_FILLER_AFTER);
   png_write_image(png, const_cast<png_bytepp>(rows));
@@ -43,14 +44,17 @@ bool encode(const WriteBytes* write, int width, int height, std::uint8_t* const*
 
 }  // namespace
 
-Result<Ok> writePng(const std::string& path, int width, int height, std::span<const std::uint8_t> pixels) {
-  assert(pixels.size() == std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+Result<Ok> writePng(const std::string& path, int width, int height,
+                    std::span<const std::uint8_t> pixels) {
+  assert(pixels.size() ==
+         std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   std::vector<std::uint8_t*> rows;
   for (int y = 0; y < height; ++y) {
     // libpng takes rows that it does not write to as mutable.
     rows.push_back(const_cast<std::uint8_t*>(pixels.data()) + std::ptrdiff_t{4} * y * width);
   }
-  return writeFile(path, [&](const WriteBytes& write) { return encode(&write, width, height, rows.data()); });
+  return writeFile(
+      path, [&](const WriteBytes& write) { return encode(&write, width, height, rows.data()); });
 }
 
 }  // namespace merlin::render

@@ -1,11 +1,11 @@
 #include "render/out/shm_sink.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cstring>
 #include <new>
+
+#include <fmt/format.h>
 
 namespace merlin::render {
 namespace {
@@ -34,7 +34,8 @@ TileRectangle rectangleOf(const Tile& tile) {
 }
 
 void fillHeader(Header& h, const TilePlan& plan, std::size_t size, std::uint64_t generation) {
-  const auto frame_bytes = static_cast<std::uint64_t>(plan.frame_width) * static_cast<std::uint64_t>(plan.frame_height) * 4;
+  const auto frame_bytes = static_cast<std::uint64_t>(plan.frame_width) *
+                           static_cast<std::uint64_t>(plan.frame_height) * 4;
   h.size = size;
   h.generation = generation;
   h.width = static_cast<std::uint32_t>(plan.frame_width);
@@ -44,7 +45,8 @@ void fillHeader(Header& h, const TilePlan& plan, std::size_t size, std::uint64_t
   h.wall_width = static_cast<std::uint32_t>(plan.wall_width);
   h.wall_height = static_cast<std::uint32_t>(plan.wall_height);
   h.tile_count = static_cast<std::uint32_t>(plan.tiles.size());
-  for (std::size_t i = 0; i < framebuffer::kBuffers; ++i) h.buffers[i].offset = headerRoom() + i * frame_bytes;
+  for (std::size_t i = 0; i < framebuffer::kBuffers; ++i)
+    h.buffers[i].offset = headerRoom() + i * frame_bytes;
   for (std::size_t i = 0; i < plan.tiles.size(); ++i) h.tiles[i] = rectangleOf(plan.tiles[i]);
   h.version = framebuffer::kVersion;
   h.magic = framebuffer::kMagic;
@@ -56,14 +58,16 @@ Error broken(const std::string& name, const std::string& what) {
 
 // Everything that a copy relies on; the writer may be any program.
 Result<Ok> check(const Header& h, std::size_t size, const std::string& name) {
-  if (size < sizeof(Header) || h.magic != framebuffer::kMagic) return broken(name, "is no framebuffer of MERLIN's");
+  if (size < sizeof(Header) || h.magic != framebuffer::kMagic)
+    return broken(name, "is no framebuffer of MERLIN's");
   if (h.version != framebuffer::kVersion) {
-    return Error{Errc::kUnsupported, fmt::format("shared memory {}: is version {}, this program reads {}", name,
-                                                 h.version, framebuffer::kVersion)};
+    return Error{Errc::kUnsupported,
+                 fmt::format("shared memory {}: is version {}, this program reads {}", name,
+                             h.version, framebuffer::kVersion)};
   }
   const std::uint64_t bytes = std::uint64_t{h.stride} * h.height;
-  bool good = h.format == framebuffer::kFormatRgba8 && h.stride == h.width * 4 && h.width <= 32768 &&
-              h.height <= 32768 && h.tile_count <= framebuffer::kMostTiles;
+  bool good = h.format == framebuffer::kFormatRgba8 && h.stride == h.width * 4 &&
+              h.width <= 32768 && h.height <= 32768 && h.tile_count <= framebuffer::kMostTiles;
   for (const Buffer& b : h.buffers) good = good && b.offset <= size && bytes <= size - b.offset;
   for (std::size_t i = 0; good && i < h.tile_count; ++i) {
     const TileRectangle& t = h.tiles[i];
@@ -87,13 +91,15 @@ bool copyNewest(const Header& h, const std::byte* base, CapturedFrame& frame) {
 
 }  // namespace
 
-Result<std::unique_ptr<ShmFrameSink>> ShmFrameSink::make(const std::string& name, const TilePlan& plan,
+Result<std::unique_ptr<ShmFrameSink>> ShmFrameSink::make(const std::string& name,
+                                                         const TilePlan& plan,
                                                          std::uint64_t generation) {
   if (plan.tiles.size() > framebuffer::kMostTiles) {
     return Error{Errc::kUnsupported, fmt::format("{} tiles; a framebuffer describes {} at most",
                                                  plan.tiles.size(), framebuffer::kMostTiles)};
   }
-  const auto frame_bytes = static_cast<std::size_t>(plan.frame_width) * static_cast<std::size_t>(plan.frame_height) * 4;
+  const auto frame_bytes =
+      static_cast<std::size_t>(plan.frame_width) * static_cast<std::size_t>(plan.frame_height) * 4;
   const std::size_t size = headerRoom() + framebuffer::kBuffers * frame_bytes;
   auto memory = SharedMemory::create(name, size);
   if (!memory) return memory.error();
@@ -140,12 +146,16 @@ CapturedFrame wallPicture(const CapturedFrame& frame) {
   wall.width = wall.wall_width = frame.wall_width;
   wall.height = wall.wall_height = frame.wall_height;
   wall.info = frame.info;
-  wall.pixels.assign(std::size_t{4} * static_cast<std::size_t>(wall.width) * static_cast<std::size_t>(wall.height), 0);
+  wall.pixels.assign(
+      std::size_t{4} * static_cast<std::size_t>(wall.width) * static_cast<std::size_t>(wall.height),
+      0);
   for (const TileRectangle& t : frame.tiles) {
     if (t.wall_x < 0) continue;  // an operator's view
     for (int row = 0; row < std::min(t.height, wall.height); ++row) {
-      const auto from = static_cast<std::ptrdiff_t>(4) * (std::ptrdiff_t{t.y + row} * frame.width + t.x);
-      const auto to = static_cast<std::ptrdiff_t>(4) * (std::ptrdiff_t{row} * wall.width + t.wall_x);
+      const auto from =
+          static_cast<std::ptrdiff_t>(4) * (std::ptrdiff_t{t.y + row} * frame.width + t.x);
+      const auto to =
+          static_cast<std::ptrdiff_t>(4) * (std::ptrdiff_t{row} * wall.width + t.wall_x);
       std::copy_n(frame.pixels.begin() + from, 4 * t.width, wall.pixels.begin() + to);
     }
   }

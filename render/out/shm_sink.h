@@ -1,4 +1,4 @@
-// The shared-memory framebuffer: its writer in the daemon, and the reader that `merlin snapshot` uses.
+// The shared-memory framebuffer: its writer in the daemon, the reader that `merlin snapshot` uses.
 #pragma once
 
 #include <memory>

@@ -14,7 +14,9 @@ constexpr float kNever = std::numeric_limits<float>::infinity();
 constexpr float kLengthening = 4;
 constexpr float kShortest = 1e-6F;
 
-float dot(const float* a, const float* b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+float dot(const float* a, const float* b) noexcept {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 }  // namespace
 
@@ -69,9 +71,12 @@ bool PatternReducer::collapseShortest() {
 PatternReducer::Plan PatternReducer::plan(std::uint32_t edge) const {
   const auto [a, b] = surface_.ends(edge);
   Plan p{a, b, 0.5F, {}};
-  if (boundary_[a] && boundary_[b]) p.towards_b = sharpness(b) > sharpness(a) ? 1.0F : 0.0F;
-  else if (boundary_[a]) p.towards_b = 0;
-  else if (boundary_[b]) p.towards_b = 1;
+  if (boundary_[a] && boundary_[b])
+    p.towards_b = sharpness(b) > sharpness(a) ? 1.0F : 0.0F;
+  else if (boundary_[a])
+    p.towards_b = 0;
+  else if (boundary_[b])
+    p.towards_b = 1;
   for (std::size_t k = 0; k < 3; ++k) {
     p.position[k] = std::lerp(position(a)[k], position(b)[k], p.towards_b);
   }
@@ -138,7 +143,7 @@ PatternReducer::Vec3 PatternReducer::planeDistances(const Plan& p) const {
 
 void PatternReducer::apply(const Plan& p, std::uint32_t edge) {
   const Vec3 distance = planeDistances(p);
-  // Equation 4.10: what each end had gathered, and what it gathers now; the new vertex has the worse.
+  // Equation 4.10: what each end had gathered and gathers now; the new vertex has the worse.
   const float error = std::max(error_[p.a] + distance[0], error_[p.b] + distance[1]);
   mixFeatures(p);
   std::copy(p.position.begin(), p.position.end(), positions_.begin() + 3 * std::ptrdiff_t{p.a});
@@ -155,7 +160,8 @@ void PatternReducer::mixFeatures(const Plan& p) {
   for (std::size_t f = 0; f < features_.size(); ++f) {
     float* a = &features_[f].values[p.a * features_[f].dimension];
     const float* b = &features_[f].values[p.b * features_[f].dimension];
-    for (std::size_t k = 0; k < features_[f].dimension; ++k) a[k] = std::lerp(a[k], b[k], p.towards_b);
+    for (std::size_t k = 0; k < features_[f].dimension; ++k)
+      a[k] = std::lerp(a[k], b[k], p.towards_b);
   }
   Vec3 sum{};
   for (std::size_t i = 0; i < new_normals_.size(); ++i) sum[i % 3] += new_normals_[i];

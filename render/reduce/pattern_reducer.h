@@ -1,7 +1,7 @@
 // PatternReducer: the loop of POLYMUR, one collapse at a time. Private to render/reduce.
 //
-// [GOURLEY98] 4.3, figure 4.6. Row numbers are those of the project's specification of 1998's system
-// (README.md). Thread-bound.
+// [GOURLEY98] 4.3, figure 4.6. Row numbers are those of the project's specification of 1998's
+// system (README.md). Thread-bound.
 #pragma once
 
 #include <array>
@@ -55,15 +55,15 @@ class PatternReducer {
   WorkingMesh surface_;
   const PatternSpace& space_;
   bool preserve_topology_;
-  std::vector<float> positions_;          // by vertex, as they move
-  std::vector<Feature> features_;         // by vertex, as they change
-  std::size_t normal_ = 0;                // index of "normal" in features_
-  std::vector<float> patterns_;           // by vertex: weighted pattern vectors
-  std::vector<std::uint8_t> boundary_;    // by vertex
-  std::vector<float> error_;              // by vertex: accumulated, equation 4.10
-  std::vector<std::uint32_t> node_;       // by vertex: its node in the log
+  std::vector<float> positions_;        // by vertex, as they move
+  std::vector<Feature> features_;       // by vertex, as they change
+  std::size_t normal_ = 0;              // index of "normal" in features_
+  std::vector<float> patterns_;         // by vertex: weighted pattern vectors
+  std::vector<std::uint8_t> boundary_;  // by vertex
+  std::vector<float> error_;            // by vertex: accumulated, equation 4.10
+  std::vector<std::uint32_t> node_;     // by vertex: its node in the log
   EdgeHeap heap_;
-  std::vector<float> new_normals_;        // scratch: of the plan's new faces, 3 each
+  std::vector<float> new_normals_;  // scratch: of the plan's new faces, 3 each
   Reduction result_;
 };
 

@@ -1,9 +1,9 @@
 #include "render/reduce/pattern_space.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
 
 namespace merlin::render {
 namespace {
@@ -61,12 +61,14 @@ Result<PatternSpace> PatternSpace::make(const Mesh& mesh, const Weights& weights
   PatternSpace space;
   for (const auto& [name, weight] : weights) {
     if (!(weight >= 0) || !std::isfinite(weight)) {
-      return Error{Errc::kInvalidArgument, fmt::format("weight {}: {} is not 0 or more", name, weight)};
+      return Error{Errc::kInvalidArgument,
+                   fmt::format("weight {}: {} is not 0 or more", name, weight)};
     }
     PatternFeature f = measure(mesh, name);
     if (f.dimension == 0) {
-      return Error{Errc::kInvalidArgument,
-                   fmt::format("weight {}: the mesh has no such feature; it has {}", name, namesOf(mesh))};
+      return Error{
+          Errc::kInvalidArgument,
+          fmt::format("weight {}: the mesh has no such feature; it has {}", name, namesOf(mesh))};
     }
     if (weight == 0) continue;
     f.offset = space.dimension_;

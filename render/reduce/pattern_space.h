@@ -21,8 +21,9 @@ using Weights = std::map<std::string, float, std::less<>>;
 // The typical weights of 1998 (figure 5.2); colour, where the mesh has it, weighs as the geometry.
 Weights typicalWeights(const Mesh& mesh);
 
-// What MERLIN takes where nobody says otherwise. Against 1998's, normals weigh a tenth and curvature
-// nothing: on scans the RMS error is lowest for a normal's weight of 0.03 to 0.1 (README.md).
+// What MERLIN takes where nobody says otherwise. Against 1998's, normals weigh a tenth and
+// curvature nothing: on scans the RMS error is lowest for a normal's weight of 0.03 to 0.1
+// (README.md).
 Weights defaultWeights(const Mesh& mesh);
 
 // One dimension or more of the pattern vectors. `offset` is where it starts in a vector.

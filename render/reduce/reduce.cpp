@@ -1,9 +1,9 @@
 #include "render/reduce/reduce.h"
 
-#include <fmt/format.h>
-
 #include <cassert>
 #include <cmath>
+
+#include <fmt/format.h>
 
 #include "render/reduce/pattern_reducer.h"
 

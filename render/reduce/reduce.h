@@ -22,7 +22,7 @@ struct ReduceSettings {
 
   // When to stop, whichever comes first (P10). As they stand: when nothing legal is left.
   std::size_t min_triangles = 0;
-  double min_percent = 0;    // of the mesh's triangles left, 0..100
+  double min_percent = 0;  // of the mesh's triangles left, 0..100
   double max_error_percent = std::numeric_limits<double>::infinity();  // estimate (P9), of the
                                                                        // diagonal of the box
 };
@@ -47,8 +47,9 @@ struct Reduction {
   ReduceReport report;
 };
 
-// Reduces `mesh`; a last triangle always stays. The log's features follow mesh.features, of which "normal" is recomputed at each
-// new vertex; a mesh without normals must get them first (ensureNormals).
+// Reduces `mesh`; a last triangle always stays. The log's features follow mesh.features, of which
+// "normal" is recomputed at each new vertex; a mesh without normals must get them first
+// (ensureNormals).
 //
 // mesh      n vertices, m triangles; borders, components, non-manifold edges allowed.
 // progress  called every few thousand collapses; false cancels (what was done is returned).

@@ -71,7 +71,8 @@ bool WorkingMesh::linkCondition(std::uint32_t a, std::uint32_t b) noexcept {
   for (const std::uint32_t e : spokes_[b]) common += mark_[otherEnd(e, b)] == stamp_;
   const std::size_t shared = trianglesAt(a, b);
   if (common != shared) return false;
-  if (around_[a].size() + around_[b].size() <= 2 * shared + 1) return false;  // nothing would be left
+  if (around_[a].size() + around_[b].size() <= 2 * shared + 1)
+    return false;  // nothing would be left
   return shared == 1 || !(isBoundary(a) && isBoundary(b));
 }
 

@@ -1,5 +1,6 @@
-// WorkingMesh: a mesh that is being reduced: which triangles and edges each vertex has, and how they
-// change when one edge is collapsed. Connectivity only. Thread-bound; private to render/reduce.
+// WorkingMesh: a mesh that is being reduced: which triangles and edges each vertex has, and how
+// they change when one edge is collapsed. Connectivity only. Thread-bound; private to
+// render/reduce.
 #pragma once
 
 #include <array>

@@ -1,11 +1,11 @@
 #include "render/scene/scene.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
+
+#include <fmt/format.h>
 
 namespace merlin::render {
 namespace {
@@ -40,9 +40,10 @@ Eigen::Vector3f vector(const std::array<double, 3>& a) {
 
 Result<Scene> Scene::make(const SceneSettings& settings) {
   if (!axisMap(settings.tracker_axes)) {
-    return Error{Errc::kInvalidArgument,
-                 fmt::format("tracker_axes {}, {}, {}: each of 1, 2, 3 once, right-handed with its signs",
-                             settings.tracker_axes[0], settings.tracker_axes[1], settings.tracker_axes[2])};
+    return Error{
+        Errc::kInvalidArgument,
+        fmt::format("tracker_axes {}, {}, {}: each of 1, 2, 3 once, right-handed with its signs",
+                    settings.tracker_axes[0], settings.tracker_axes[1], settings.tracker_axes[2])};
   }
   Scene scene(settings);
   for (const Binding& binding : settings.bindings) {
@@ -50,7 +51,8 @@ Result<Scene> Scene::make(const SceneSettings& settings) {
     if (!bound) {
       return Error{Errc::kInvalidArgument,
                    fmt::format("binding \"{}\": inputs are ball.button.1 to ball.button.12, "
-                               "posture.NAME and glove.switch", binding.input)};
+                               "posture.NAME and glove.switch",
+                               binding.input)};
     }
     scene.bound_.push_back(std::move(*bound));
   }
@@ -80,7 +82,8 @@ std::optional<Scene::Bound> Scene::parse(const Binding& binding) {
   if (!input.starts_with(kButton)) return std::nullopt;
   const char* end = input.data() + input.size();
   const auto parsed = std::from_chars(input.data() + kButton.size(), end, number);
-  if (parsed.ec != std::errc() || parsed.ptr != end || number < 1 || number > 12) return std::nullopt;
+  if (parsed.ec != std::errc() || parsed.ptr != end || number < 1 || number > 12)
+    return std::nullopt;
   bound.button = 1U << (number - 1);
   return bound;
 }
@@ -146,19 +149,24 @@ bool Scene::act(const SceneInput& input) {
 // eye. Returns whether the ball is pushed at all.
 bool Scene::moveByBall(const SceneInput& input, float seconds) {
   if (!input.ball) return false;
-  const Eigen::Vector3f push(input.ball->translation[0], input.ball->translation[1], input.ball->translation[2]);
-  const Eigen::Vector3f twist(input.ball->rotation[0], input.ball->rotation[1], input.ball->rotation[2]);
+  const Eigen::Vector3f push(input.ball->translation[0], input.ball->translation[1],
+                             input.ball->translation[2]);
+  const Eigen::Vector3f twist(input.ball->rotation[0], input.ball->rotation[1],
+                              input.ball->rotation[2]);
   if (push.isZero(0) && twist.isZero(0)) return false;
   const Eigen::Vector3f step = push.cwiseProduct(vector(settings_.ball_speed_m_s)) * seconds;
-  const Eigen::Vector3f turn = twist.cwiseProduct(vector(settings_.ball_turn_deg_s)) * kRadian * seconds;
+  const Eigen::Vector3f turn =
+      twist.cwiseProduct(vector(settings_.ball_turn_deg_s)) * kRadian * seconds;
   const float angle = turn.norm();
-  const Eigen::AngleAxisf rotation(angle, angle > 0 ? Eigen::Vector3f(turn / angle) : Eigen::Vector3f::UnitX());
+  const Eigen::AngleAxisf rotation(
+      angle, angle > 0 ? Eigen::Vector3f(turn / angle) : Eigen::Vector3f::UnitX());
   if (mode_ == BallMode::kFly) {
     T_wall_eye_ = T_wall_eye_ * isometry(Eigen::Quaternionf(rotation), step);
     return true;
   }
   const Eigen::Matrix3f R_wall_eye = T_wall_eye_.linear();
-  T_wall_model_.linear() = R_wall_eye * rotation.toRotationMatrix() * R_wall_eye.transpose() * T_wall_model_.linear();
+  T_wall_model_.linear() =
+      R_wall_eye * rotation.toRotationMatrix() * R_wall_eye.transpose() * T_wall_model_.linear();
   T_wall_model_.translation() += R_wall_eye * step;
   return true;
 }
@@ -178,7 +186,8 @@ bool Scene::moveByHand(const SceneInput& input, bool grab) {
   }
   const float gate = view_.moving ? 1.0F : 2.0F;
   const float way = (hand.translation() - last_hand_.translation()).norm();
-  const float turn = Eigen::AngleAxisf(Eigen::Matrix3f(hand.linear() * last_hand_.linear().transpose())).angle();
+  const float turn =
+      Eigen::AngleAxisf(Eigen::Matrix3f(hand.linear() * last_hand_.linear().transpose())).angle();
   const bool moved = way > gate * static_cast<float>(settings_.hand_noise_m) ||
                      turn > gate * static_cast<float>(settings_.hand_noise_deg) * kRadian;
   if (moved) last_hand_ = hand;
@@ -198,7 +207,8 @@ Eigen::Isometry3f Scene::handPose(const TrackerSample& s) const {
   const Eigen::Matrix3f R = q.normalized().toRotationMatrix();
   Eigen::Isometry3f hand = Eigen::Isometry3f::Identity();
   hand.linear() = R_wall_tracker_ * R * R_wall_tracker_.transpose();
-  hand.translation() = R_wall_tracker_ * Eigen::Vector3f(s.position_m[0], s.position_m[1], s.position_m[2]);
+  hand.translation() =
+      R_wall_tracker_ * Eigen::Vector3f(s.position_m[0], s.position_m[1], s.position_m[2]);
   return hand;
 }
 

@@ -4,10 +4,11 @@
 // b-coordinates to a-coordinates.
 #pragma once
 
-#include <Eigen/Geometry>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
@@ -34,7 +35,6 @@ struct SceneView {
   bool moving = false;  // an input is above its noise, or was within still_after_s
 };
 
-
 class Scene {
  public:
   // Errors: kInvalidArgument: a binding whose input is none, an axis map that is no permutation.
@@ -46,7 +46,7 @@ class Scene {
   // Where it would be drawn without any further input.
   const SceneView& view() const noexcept { return view_; }
 
-  void reset();     // model and viewer back to the start; counts as motion
+  void reset();  // model and viewer back to the start; counts as motion
   void nextMode();
 
  private:
@@ -61,7 +61,7 @@ class Scene {
   explicit Scene(const SceneSettings& settings);
   static std::optional<Bound> parse(const Binding& binding);
   bool isHeld(const Bound& bound, const SceneInput& input) const;
-  bool act(const SceneInput& input);            // bindings; returns whether grab is held
+  bool act(const SceneInput& input);  // bindings; returns whether grab is held
   bool moveByBall(const SceneInput& input, float seconds);
   bool moveByHand(const SceneInput& input, bool grab);
   Eigen::Isometry3f handPose(const TrackerSample& sample) const;

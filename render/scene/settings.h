@@ -32,14 +32,14 @@ struct SceneSettings {
   // The wall's x (right), y (up), z (towards the person) as axes of the tracker (1 x, 2 y, 3 z,
   // negative to turn it round). As set: the transmitter's x points from the wall to the person.
   std::array<int, 3> tracker_axes = {-2, -3, 1};
-  int hand_station = 1;       // of the tracker, that the grabbing hand wears
-  double hand_gain = 3.0;     // metres of the model for a metre of the hand
+  int hand_station = 1;    // of the tracker, that the grabbing hand wears
+  double hand_gain = 3.0;  // metres of the model for a metre of the hand
   // What the tracker's own noise may look like; less is no motion.
   double hand_noise_m = 0.003;
   double hand_noise_deg = 0.6;
-  double still_after_s = 0.15;    // without input until the scene counts as still
-  double posture_hold_s = 0.10;   // that a posture lasts before it acts
-  double stale_after_s = 0.5;     // of a device that is no longer well, its input ends
+  double still_after_s = 0.15;   // without input until the scene counts as still
+  double posture_hold_s = 0.10;  // that a posture lasts before it acts
+  double stale_after_s = 0.5;    // of a device that is no longer well, its input ends
 
   std::vector<Binding> bindings = {{"posture.fist", Action::kGrab},
                                    {"ball.button.1", Action::kResetView},

@@ -14,12 +14,12 @@ enum class TileKind {
 struct TileSettings {
   std::string name;
   TileKind kind = TileKind::kWall;
-  int x = 0, y = 0;      // of its upper left corner in the frame buffer [px]
-  double turns = 0;      // about the vertical axis, in tile widths; +1 is one to the left
+  int x = 0, y = 0;  // of its upper left corner in the frame buffer [px]
+  double turns = 0;  // about the vertical axis, in tile widths; +1 is one to the left
 };
 
 struct TilesSettings {
-  int tile_width = 640, tile_height = 480;    // [px]
+  int tile_width = 640, tile_height = 480;     // [px]
   int frame_width = 1280, frame_height = 960;  // [px]
   double field_of_view_deg = 40;               // of one tile, horizontally
   double near_m = 0.05, far_m = 50;            // what is drawn, along the view

@@ -1,10 +1,10 @@
 #include "render/tiles/tile_plan.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include <fmt/format.h>
 
 namespace merlin::render {
 namespace {
@@ -19,10 +19,12 @@ bool overlap(const TileSettings& a, const TileSettings& b, const TilesSettings& 
 
 Result<Ok> checkPair(const TileSettings& a, const TileSettings& b, const TilesSettings& s) {
   if (a.name == b.name) return wrong(fmt::format("two tiles are named \"{}\"", a.name));
-  if (overlap(a, b, s)) return wrong(fmt::format("tiles {} and {} overlap in the frame", a.name, b.name));
+  if (overlap(a, b, s))
+    return wrong(fmt::format("tiles {} and {} overlap in the frame", a.name, b.name));
   const bool both = a.kind == TileKind::kWall && b.kind == TileKind::kWall;
   if (both && std::abs(a.turns - b.turns) < 1e-6) {
-    return wrong(fmt::format("tiles {} and {} both look {} tile widths to the left", a.name, b.name, a.turns));
+    return wrong(fmt::format("tiles {} and {} both look {} tile widths to the left", a.name, b.name,
+                             a.turns));
   }
   return Ok{};
 }
@@ -39,8 +41,8 @@ Result<Ok> check(const TilesSettings& s) {
     const TileSettings& t = s.tiles[i];
     if (t.x < 0 || t.y < 0 || t.x + s.tile_width > s.frame_width ||
         t.y + s.tile_height > s.frame_height) {
-      return wrong(fmt::format("tile {} at {}, {} does not lie in the frame of {} x {}", t.name, t.x,
-                               t.y, s.frame_width, s.frame_height));
+      return wrong(fmt::format("tile {} at {}, {} does not lie in the frame of {} x {}", t.name,
+                               t.x, t.y, s.frame_width, s.frame_height));
     }
     for (std::size_t j = 0; j < i; ++j) {
       if (const auto pair = checkPair(s.tiles[j], t, s); !pair) return pair;
@@ -102,9 +104,9 @@ Result<TilePlan> planTiles(const TilesSettings& s) {
   if (const auto checked = check(s); !checked) return checked.error();
   TilePlan plan{s.frame_width, s.frame_height, 0, 0, {}};
   const double fov = s.field_of_view_deg * kRadian;
-  const Eigen::Matrix4f projection =
-      perspective(static_cast<float>(fov), static_cast<float>(s.tile_width) / static_cast<float>(s.tile_height),
-                  static_cast<float>(s.near_m), static_cast<float>(s.far_m));
+  const Eigen::Matrix4f projection = perspective(
+      static_cast<float>(fov), static_cast<float>(s.tile_width) / static_cast<float>(s.tile_height),
+      static_cast<float>(s.near_m), static_cast<float>(s.far_m));
   for (const TileSettings& t : s.tiles) {
     Tile tile{t.name, t.kind, t.x, t.y, s.tile_width, s.tile_height, -1, projection, {}};
     tile.view = yawView(static_cast<float>(t.kind == TileKind::kWall ? t.turns * fov : 0));

@@ -7,9 +7,10 @@
 // Axes: x right, y up, the eye looks along -z. Angles to the left are positive.
 #pragma once
 
-#include <Eigen/Core>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "daemon/base/result.h"
 #include "render/tiles/settings.h"

@@ -1,13 +1,13 @@
 #include "render/lod/io/mrm_file.h"
 
-#include <fmt/format.h>
-#include <xxhash.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstring>
 #include <utility>
+
+#include <fmt/format.h>
+#include <xxhash.h>
 
 #include "daemon/base/files.h"
 #include "render/lod/io/mrm_layout.h"
@@ -69,8 +69,9 @@ class MrmReader {
       return broken(path_, "is no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)");
     }
     if (header_.version != kVersion) {
-      return Error{Errc::kUnsupported, fmt::format("{}: is version {} of .mrm, this program reads {}",
-                                                   path_, header_.version, kVersion)};
+      return Error{Errc::kUnsupported,
+                   fmt::format("{}: is version {} of .mrm, this program reads {}", path_,
+                               header_.version, kVersion)};
     }
     if (header_.header_checksum != checksum(&header_, offsetof(FileHeader, header_checksum))) {
       return broken(path_, "the header is damaged");
@@ -108,16 +109,20 @@ class MrmReader {
     switch (static_cast<Kind>(e.kind)) {
       case Kind::kPositions: arrays_.positions = floats; return Ok{};
       case Kind::kFeature:
-        arrays_.features.push_back({std::string(e.name, strnlen(e.name, sizeof e.name)), e.dimension, floats});
+        arrays_.features.push_back(
+            {std::string(e.name, strnlen(e.name, sizeof e.name)), e.dimension, floats});
         return Ok{};
       case Kind::kParents: arrays_.parents = words; return Ok{};
       case Kind::kTriangles: arrays_.triangles = words; return Ok{};
       case Kind::kAlive: arrays_.alive = words; return Ok{};
       case Kind::kError: arrays_.error = floats; return Ok{};
-      case Kind::kAbout: arrays_.about.assign(reinterpret_cast<const char*>(at), values); return Ok{};
+      case Kind::kAbout:
+        arrays_.about.assign(reinterpret_cast<const char*>(at), values);
+        return Ok{};
     }
     if (e.kind >= kFirstOptional) return Ok{};
-    return Error{Errc::kUnsupported, fmt::format("{}: section kind {} is not known", path_, e.kind)};
+    return Error{Errc::kUnsupported,
+                 fmt::format("{}: section kind {} is not known", path_, e.kind)};
   }
 
   Result<Ok> checkCounts() const {
@@ -141,7 +146,8 @@ struct Section {
 };
 
 template <typename T>
-Section section(Kind kind, std::span<const T> values, std::size_t dimension, std::string_view name = "") {
+Section section(Kind kind, std::span<const T> values, std::size_t dimension,
+                std::string_view name = "") {
   Section s{};
   s.bytes = std::as_bytes(values);
   s.entry.kind = static_cast<std::uint32_t>(kind);

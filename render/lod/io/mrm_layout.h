@@ -42,8 +42,8 @@ struct SectionEntry {
   std::uint32_t dimension;  // values a row
   std::uint64_t offset;     // from the file's start
   std::uint64_t rows;
-  std::uint64_t checksum;   // XXH3-64 of the section's bytes
-  char name[32];            // of a feature, NUL-padded
+  std::uint64_t checksum;  // XXH3-64 of the section's bytes
+  char name[32];           // of a feature, NUL-padded
 };
 static_assert(sizeof(SectionEntry) == 64);
 

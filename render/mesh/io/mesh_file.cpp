@@ -1,10 +1,10 @@
 #include "render/mesh/io/mesh_file.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "daemon/base/files.h"
 #include "render/mesh/io/openmesh_reader.h"

@@ -1,11 +1,11 @@
 #include "render/mesh/io/openmesh_reader.h"
 
-#include <fmt/format.h>
+#include <exception>
+#include <string_view>
 
 #include <OpenMesh/Core/IO/reader/OBJReader.hh>
 #include <OpenMesh/Core/System/omstream.hh>
-#include <exception>
-#include <string_view>
+#include <fmt/format.h>
 
 #include "render/mesh/io/flat_importer.h"
 

@@ -1,11 +1,11 @@
 #include "render/mesh/io/ply.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "daemon/base/bytes.h"
 #include "render/mesh/io/ply_body.h"
@@ -29,11 +29,11 @@ struct Known {
   std::size_t dimension, offset;
 };
 constexpr Known kKnown[] = {
-    {"nx", "normal", 3, 0},         {"ny", "normal", 3, 1},         {"nz", "normal", 3, 2},
-    {"red", "colour", 3, 0},        {"green", "colour", 3, 1},      {"blue", "colour", 3, 2},
-    {"r", "colour", 3, 0},          {"g", "colour", 3, 1},          {"b", "colour", 3, 2},
-    {"s", "texcoord", 2, 0},        {"t", "texcoord", 2, 1},        {"u", "texcoord", 2, 0},
-    {"v", "texcoord", 2, 1},        {"texture_u", "texcoord", 2, 0}, {"texture_v", "texcoord", 2, 1},
+    {"nx", "normal", 3, 0},  {"ny", "normal", 3, 1},          {"nz", "normal", 3, 2},
+    {"red", "colour", 3, 0}, {"green", "colour", 3, 1},       {"blue", "colour", 3, 2},
+    {"r", "colour", 3, 0},   {"g", "colour", 3, 1},           {"b", "colour", 3, 2},
+    {"s", "texcoord", 2, 0}, {"t", "texcoord", 2, 1},         {"u", "texcoord", 2, 0},
+    {"v", "texcoord", 2, 1}, {"texture_u", "texcoord", 2, 0}, {"texture_v", "texcoord", 2, 1},
 };
 
 const Known* knownAs(std::string_view property) {
@@ -74,16 +74,18 @@ class Reader {
     const std::size_t least = std::max<std::size_t>(e.leastBytes(header_.form), 1);
     const std::size_t room = (body_.left() + 1) / least;
     if (e.count <= room) return Ok{};
-    return Error{Errc::kMalformed,
-                 fmt::format("cut short: the header promises {} x {}, the file ends after {} at most",
-                             e.count, e.name, room)};
+    return Error{
+        Errc::kMalformed,
+        fmt::format("cut short: the header promises {} x {}, the file ends after {} at most",
+                    e.count, e.name, room)};
   }
 
   Error brokenAt(const Element& e, std::uint64_t row, const Property& p) const {
     const std::string_view rest = body_.rest();
-    return {Errc::kMalformed,
-            rest.empty() ? fmt::format("cut short in {} {} of {}, property {}", e.name, row, e.count, p.name)
-                         : fmt::format("{} {}, property {}: \"{}\" is no number", e.name, row, p.name, rest)};
+    return {Errc::kMalformed, rest.empty() ? fmt::format("cut short in {} {} of {}, property {}",
+                                                         e.name, row, e.count, p.name)
+                                           : fmt::format("{} {}, property {}: \"{}\" is no number",
+                                                         e.name, row, p.name, rest)};
   }
 
   Result<Ok> skip(const Element& e) {
@@ -166,9 +168,9 @@ class Reader {
     }
     for (std::uint64_t row = 0; row < e.count; ++row) {
       for (const Property& p : e.properties) {
-        const auto done = isCorners(p)         ? readCorners(e, row, p)
-                          : skipProperty(p)    ? Result<Ok>(Ok{})
-                                               : Result<Ok>(brokenAt(e, row, p));
+        const auto done = isCorners(p)      ? readCorners(e, row, p)
+                          : skipProperty(p) ? Result<Ok>(Ok{})
+                                            : Result<Ok>(brokenAt(e, row, p));
         if (!done) return done;
       }
     }
@@ -187,7 +189,8 @@ class Reader {
     for (double i = 0; i < count; ++i) {
       if (!body_.next(p.type, value)) return brokenAt(e, row, p);
       if (!(value >= 0 && value < 2147483648.0) || value != std::floor(value)) {
-        return Error{Errc::kMalformed, fmt::format("face {}: corner {} is {}, no vertex", row, i, value)};
+        return Error{Errc::kMalformed,
+                     fmt::format("face {}: corner {} is {}, no vertex", row, i, value)};
       }
       const auto v = static_cast<std::uint32_t>(value);
       if (i == 0) first = v;
@@ -250,8 +253,10 @@ bool write(const Mesh& mesh, const WriteBytes& write) {
     for (const Feature& f : mesh.features) {
       for (std::size_t k = 0; k < f.dimension; ++k) {
         const float value = f.values[v * f.dimension + k];
-        if (!writtenAsBytes(f)) appendLeFloat(row, value);
-        else row.push_back(static_cast<char>(std::lround(std::clamp(value, 0.0F, 1.0F) * 255)));
+        if (!writtenAsBytes(f))
+          appendLeFloat(row, value);
+        else
+          row.push_back(static_cast<char>(std::lround(std::clamp(value, 0.0F, 1.0F) * 255)));
       }
     }
     if (!write(std::as_bytes(std::span(row)))) return false;

@@ -10,7 +10,8 @@ namespace merlin::render::ply {
 
 class Body {
  public:
-  Body(std::string_view bytes, Form form) : at_(bytes.data()), end_(at_ + bytes.size()), form_(form) {}
+  Body(std::string_view bytes, Form form)
+      : at_(bytes.data()), end_(at_ + bytes.size()), form_(form) {}
 
   // The next number of the file; false at its end, or where an ascii word is no number.
   bool next(Scalar type, double& value) noexcept {

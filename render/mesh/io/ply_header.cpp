@@ -1,11 +1,11 @@
 #include "render/mesh/io/ply_header.h"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <charconv>
 #include <optional>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace merlin::render::ply {
 namespace {
@@ -27,11 +27,11 @@ Words split(std::string_view line) {
 
 std::optional<Scalar> scalarNamed(std::string_view name) {
   constexpr std::pair<std::string_view, Scalar> kNames[] = {
-      {"char", Scalar::kInt8},     {"int8", Scalar::kInt8},       {"uchar", Scalar::kUint8},
-      {"uint8", Scalar::kUint8},   {"short", Scalar::kInt16},     {"int16", Scalar::kInt16},
-      {"ushort", Scalar::kUint16}, {"uint16", Scalar::kUint16},   {"int", Scalar::kInt32},
-      {"int32", Scalar::kInt32},   {"uint", Scalar::kUint32},     {"uint32", Scalar::kUint32},
-      {"float", Scalar::kFloat32}, {"float32", Scalar::kFloat32}, {"double", Scalar::kFloat64},
+      {"char", Scalar::kInt8},      {"int8", Scalar::kInt8},       {"uchar", Scalar::kUint8},
+      {"uint8", Scalar::kUint8},    {"short", Scalar::kInt16},     {"int16", Scalar::kInt16},
+      {"ushort", Scalar::kUint16},  {"uint16", Scalar::kUint16},   {"int", Scalar::kInt32},
+      {"int32", Scalar::kInt32},    {"uint", Scalar::kUint32},     {"uint32", Scalar::kUint32},
+      {"float", Scalar::kFloat32},  {"float32", Scalar::kFloat32}, {"double", Scalar::kFloat64},
       {"float64", Scalar::kFloat64}};
   for (const auto& [known, type] : kNames) {
     if (known == name) return type;
@@ -115,7 +115,8 @@ class HeaderParser {
     const auto type = words.size() >= 3 ? scalarNamed(words[words.size() - 2]) : std::nullopt;
     const auto count = p.list ? scalarNamed(words[2]) : Scalar::kUint8;
     if (!type || !count || (!p.list && words.size() != 3)) {
-      return bad(header_.lines, "a property is \"property TYPE NAME\" or \"property list TYPE TYPE NAME\"");
+      return bad(header_.lines,
+                 "a property is \"property TYPE NAME\" or \"property list TYPE TYPE NAME\"");
     }
     if (p.list && (*count == Scalar::kFloat32 || *count == Scalar::kFloat64)) {
       return bad(header_.lines, "the length of a list is an integer");

@@ -11,7 +11,16 @@
 namespace merlin::render::ply {
 
 enum class Form { kAscii, kLittleEndian, kBigEndian };
-enum class Scalar : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
+enum class Scalar : std::uint8_t {
+  kInt8,
+  kUint8,
+  kInt16,
+  kUint16,
+  kInt32,
+  kUint32,
+  kFloat32,
+  kFloat64
+};
 
 std::size_t sizeOf(Scalar type) noexcept;
 
@@ -34,8 +43,8 @@ struct Element {
 struct Header {
   Form form = Form::kAscii;
   std::vector<Element> elements;
-  std::size_t size = 0;        // bytes, where the body starts
-  std::size_t lines = 0;       // where an ascii body starts, for messages
+  std::size_t size = 0;   // bytes, where the body starts
+  std::size_t lines = 0;  // where an ascii body starts, for messages
 };
 
 // Errors: kMalformed, kUnsupported; each names the header's line.
