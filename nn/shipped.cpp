@@ -23,16 +23,18 @@ void roundRows(Rows& rows) {
   }
 }
 
-Result<Ok> nameShapes(std::span<const HandShape> shapes, PostureTable& postures) {
+Result<PostureTable> nameShapes(std::span<const HandShape> shapes) {
   if (shapes.size() > kEvenCodes) {
     return Error{Errc::kInvalidArgument,
                  fmt::format("{} hand shapes; allowed: {}, for two codes to differ in two bits",
                              shapes.size(), kEvenCodes)};
   }
+  PostureTable postures;
   for (std::size_t n = 0; n < shapes.size(); ++n) {
-    if (auto added = postures.add(evenCode(n), shapes[n].name); !added) return added;
+    const auto added = postures.add(evenCode(n), shapes[n].name);
+    if (!added) return added.error();
   }
-  return Ok{};
+  return postures;
 }
 
 }  // namespace
@@ -40,7 +42,9 @@ Result<Ok> nameShapes(std::span<const HandShape> shapes, PostureTable& postures)
 Result<TrainedNetwork> trainShipped(std::span<const HandShape> shapes, std::uint64_t seed,
                                     const Progress& progress) {
   TrainedNetwork made;
-  if (const auto named = nameShapes(shapes, made.network.postures); !named) return named.error();
+  const auto postures = nameShapes(shapes);
+  if (!postures) return postures.error();
+  made.network.postures = *postures;
   SyntheticSettings hands;
   hands.joint_sigma *= kWider;
   hands.stiffness_sigma *= kWider;

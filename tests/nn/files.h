@@ -20,11 +20,11 @@ inline std::string contentOf(const std::string& path) {
 // A folder of its own, gone at the end.
 class FilesTest : public testing::Test {
  protected:
-  FilesTest() {
+  void SetUp() override {
     std::string pattern = (std::filesystem::temp_directory_path() / "merlin-nn-XXXXXX").string();
     folder_ = ::mkdtemp(pattern.data());
   }
-  ~FilesTest() override { std::filesystem::remove_all(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   std::string path(const char* name) const { return (folder_ / name).string(); }
   std::size_t count() const {
