@@ -27,7 +27,7 @@ struct TrainedNetwork {
 //
 // errors     kInvalidArgument: more than kEvenCodes shapes, a name that is none or comes twice, an
 //            angle that is not finite, no shapes.
-// cost       about 2 s on one core for the eight shipped shapes.
+// cost       about 2.5 s on one core for the eight shipped shapes.
 Result<TrainedNetwork> trainShipped(std::span<const HandShape> shapes, std::uint64_t seed,
                                     const Progress& progress = {});
 
