@@ -90,6 +90,10 @@ Result<Ok> validate(const Mesh& mesh) {
     return Error{Errc::kUnsupported, fmt::format("{} vertices and {} triangles; 2^31 is the most",
                                                  n, mesh.triangleCount())};
   }
+  if (mesh.positions.size() % 3 != 0 || mesh.triangles.size() % 3 != 0) {
+    return Error{Errc::kMalformed, fmt::format("{} coordinates, {} corners: no triples",
+                                               mesh.positions.size(), mesh.triangles.size())};
+  }
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     if (std::isfinite(mesh.positions[i])) continue;
     return Error{Errc::kMalformed, fmt::format("vertex {}: coordinate {} is {}", i / 3,
