@@ -1,0 +1,106 @@
+// Meshes made in code, for the tests of render.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/base/random.h"
+#include "render/mesh/mesh.h"
+
+namespace merlin::test {
+
+using render::Mesh;
+
+// columns x rows cells in the plane z = 0, a unit wide, two triangles each that face +z. Vertex
+// (x, y) has the number y * (columns + 1) + x.
+inline Mesh grid(std::uint32_t columns, std::uint32_t rows) {
+  Mesh mesh;
+  for (std::uint32_t y = 0; y <= rows; ++y) {
+    for (std::uint32_t x = 0; x <= columns; ++x) {
+      mesh.positions.insert(mesh.positions.end(),
+                            {static_cast<float>(x), static_cast<float>(y), 0.0F});
+    }
+  }
+  for (std::uint32_t y = 0; y < rows; ++y) {
+    for (std::uint32_t x = 0; x < columns; ++x) {
+      const std::uint32_t a = y * (columns + 1) + x, b = a + 1, c = b + columns + 1, d = c - 1;
+      mesh.triangles.insert(mesh.triangles.end(), {a, b, c, a, c, d});
+    }
+  }
+  return mesh;
+}
+
+// The same with hills: z is normal noise of standard deviation `height`.
+inline Mesh noisyGrid(std::uint32_t columns, std::uint32_t rows, double height,
+                      std::uint64_t seed) {
+  Mesh mesh = grid(columns, rows);
+  Random random(seed);
+  for (std::size_t i = 2; i < mesh.positions.size(); i += 3) {
+    mesh.positions[i] = static_cast<float>(height * random.normal());
+  }
+  return mesh;
+}
+
+// 8 vertices at +-1, 12 triangles. Vertex number: bit 0 is x > 0, bit 1 y > 0, bit 2 z > 0.
+inline Mesh cube() {
+  Mesh mesh;
+  for (int v = 0; v < 8; ++v) {
+    for (const int axis : {1, 2, 4}) mesh.positions.push_back(v & axis ? 1.0F : -1.0F);
+  }
+  mesh.triangles = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                    2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+  return mesh;
+}
+
+// Cuts each triangle into four; new vertices lie on the unit sphere.
+inline Mesh subdivided(Mesh mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+  const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+    const auto fresh = static_cast<std::uint32_t>(mesh.vertexCount());
+    const auto [at, made] = middles.try_emplace(std::minmax(a, b), fresh);
+    if (!made) return at->second;
+    float m[3];
+    for (std::size_t k = 0; k < 3; ++k)
+      m[k] = mesh.positions[3 * a + k] + mesh.positions[3 * b + k];
+    const float length = std::hypot(m[0], m[1], m[2]);
+    for (const float x : m) mesh.positions.push_back(x / length);
+    return fresh;
+  };
+  const std::vector<std::uint32_t> coarse = std::exchange(mesh.triangles, {});
+  for (std::size_t i = 0; i < coarse.size(); i += 3) {
+    const std::uint32_t a = coarse[i], b = coarse[i + 1], c = coarse[i + 2];
+    const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    mesh.triangles.insert(mesh.triangles.end(), {a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca});
+  }
+  return mesh;
+}
+
+// A unit sphere: an octahedron, cut `times` times. 8 * 4^times triangles, closed and manifold.
+inline Mesh sphere(int times) {
+  Mesh mesh;
+  mesh.positions = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
+  mesh.triangles = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+  for (; times > 0; --times) mesh = subdivided(std::move(mesh));
+  return mesh;
+}
+
+// Both in one mesh, as two components; features are left out.
+inline Mesh together(Mesh a, const Mesh& b) {
+  const auto first = static_cast<std::uint32_t>(a.vertexCount());
+  a.features.clear();
+  a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
+  for (const std::uint32_t v : b.triangles) a.triangles.push_back(first + v);
+  return a;
+}
+
+inline Mesh moved(Mesh mesh, float x, float y, float z) {
+  const float by[] = {x, y, z};
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) mesh.positions[i] += by[i % 3];
+  return mesh;
+}
+
+}  // namespace merlin::test
