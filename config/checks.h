@@ -10,6 +10,7 @@
 namespace merlin {
 
 // Appends findings; `lines` says where each setting of the file stands, by pointer.
-void checkTogether(const Settings& settings, const std::map<std::string, int>& lines, std::vector<Finding>& findings);
+void checkTogether(const Settings& settings, const std::map<std::string, int>& lines,
+                   std::vector<Finding>& findings);
 
 }  // namespace merlin

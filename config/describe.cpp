@@ -19,15 +19,22 @@ constexpr const char* kBalls[] = {"spaceball", "sample"};
 void describeLine(LineSettings& line, std::span<const char* const> drivers, SettingsVisitor& v) {
   v.choiceOf("driver", line.driver, drivers, "Which device it is.");
   v.text("port", line.port,
-         "Where the device is: serial:/dev/... (best a name under /dev/serial/by-id) or pty:PATH; empty: there is none.");
-  v.integer("baud", line.baud, {1200, 115200}, "Speed of the line, bits a second: 1200, 2400, ... 38400, 57600 or 115200.");
+         "Where the device is: serial:/dev/... (best a name under /dev/serial/by-id) or pty:PATH; "
+         "empty: there is none.");
+  v.integer("baud", line.baud, {1200, 115200},
+            "Speed of the line, bits a second: 1200, 2400, ... 38400, 57600 or 115200.");
 }
 
 void describeGlove(DevicesSettings& d, SettingsVisitor& v) {
   describeLine(d.glove_line, kGloves, v);
-  v.numbers("offset", d.glove.offset, {-10000, 10000}, "Of each slot 0 to 22: the raw value at 0 rad.");
-  v.numbers("gain", d.glove.gain, {-1, 1}, "Of each slot 0 to 22: radians for one raw count; negative for a sensor that is turned round.");
-  v.oneOf("slot7", d.glove.slot7, kSlot7Rules, "What fills slot 7, which no glove measures: 0, the middle, its neighbours' mean, or the wrist switch.");
+  v.numbers("offset", d.glove.offset, {-10000, 10000},
+            "Of each slot 0 to 22: the raw value at 0 rad.");
+  v.numbers("gain", d.glove.gain, {-1, 1},
+            "Of each slot 0 to 22: radians for one raw count; negative for a sensor that is turned "
+            "round.");
+  v.oneOf("slot7", d.glove.slot7, kSlot7Rules,
+          "What fills slot 7, which no glove measures: 0, the middle, its neighbours' mean, or the "
+          "wrist switch.");
   v.number("rate_hz", d.glove.rate_hz, {1, 150}, "Records a second that are asked for.");
   v.flag("filter", d.glove.filter, "The interface unit's own low-pass filter.");
 }
@@ -36,17 +43,24 @@ void describeTracker(DevicesSettings& d, SettingsVisitor& v) {
   describeLine(d.tracker_line, kTrackers, v);
   constexpr const char* kKeys[] = {"hemisphere1", "hemisphere2", "hemisphere3", "hemisphere4"};
   for (std::size_t i = 0; i < d.tracker.hemisphere.size(); ++i) {
-    v.numbers(kKeys[i], d.tracker.hemisphere[i], {-1, 1}, "Into the half of space where that station's receiver is, transmitter's frame; 0, 0, 0: the unit follows it.");
+    v.numbers(kKeys[i], d.tracker.hemisphere[i], {-1, 1},
+              "Into the half of space where that station's receiver is, transmitter's frame; 0, 0, "
+              "0: the unit follows it.");
   }
-  v.flag("centimetres", d.tracker.centimetres, "What the unit sends on its line, else inches; samples are in metres.");
+  v.flag("centimetres", d.tracker.centimetres,
+         "What the unit sends on its line, else inches; samples are in metres.");
 }
 
 void describeBall(DevicesSettings& d, SettingsVisitor& v) {
   describeLine(d.ball_line, kBalls, v);
-  v.integer("full_scale_translation", d.ball.full_scale_translation, {100, 32767}, "Counts of a full push.");
-  v.integer("full_scale_rotation", d.ball.full_scale_rotation, {100, 32767}, "Counts of a full twist.");
+  v.integer("full_scale_translation", d.ball.full_scale_translation, {100, 32767},
+            "Counts of a full push.");
+  v.integer("full_scale_rotation", d.ball.full_scale_rotation, {100, 32767},
+            "Counts of a full twist.");
   v.integer("dead_zone", d.ball.dead_zone, {0, 99}, "Counts of an axis that are taken for rest.");
-  v.numbers("axis_map", d.ball.axis_map, {-6, 6}, "For x, y, z and the turns about them: the device's axis 1 to 6, negative to turn it round.");
+  v.numbers(
+      "axis_map", d.ball.axis_map, {-6, 6},
+      "For x, y, z and the turns about them: the device's axis 1 to 6, negative to turn it round.");
 }
 
 void describeTiles(render::TilesSettings& t, SettingsVisitor& v) {
@@ -54,47 +68,69 @@ void describeTiles(render::TilesSettings& t, SettingsVisitor& v) {
   v.integer("tile_height", t.tile_height, {16, 8192}, "Of each tile, pixels.");
   v.integer("frame_width", t.frame_width, {16, 16384}, "Of the frame buffer, pixels.");
   v.integer("frame_height", t.frame_height, {16, 16384}, "Of the frame buffer, pixels.");
-  v.number("field_of_view_deg", t.field_of_view_deg, {1, 179}, "Of one tile, horizontally, degrees.");
+  v.number("field_of_view_deg", t.field_of_view_deg, {1, 179},
+           "Of one tile, horizontally, degrees.");
   v.number("near_m", t.near_m, {0.001, 1000}, "Nothing nearer is drawn, metres.");
   v.number("far_m", t.far_m, {0.01, 1e6}, "Nothing further is drawn, metres.");
-  v.listOf<render::TileSettings>("tiles", t.tiles, "Where each tile lies in the frame buffer, and what it shows.",
-                                 [&](render::TileSettings& tile) {
-    v.text("name", tile.name, "Of the tile.");
-    v.oneOf("kind", tile.kind, kTileKinds, "A piece of the wall's picture, or the operator's view of the whole model.");
-    v.integer("x", tile.x, {0, 16384}, "Of its upper left corner in the frame buffer, pixels.");
-    v.integer("y", tile.y, {0, 16384}, "Of its upper left corner in the frame buffer, pixels.");
-    v.number("turns", tile.turns, {-8, 8}, "How far it is turned, in tile widths; +1 is one to the left.");
-  });
+  v.listOf<render::TileSettings>(
+      "tiles", t.tiles, "Where each tile lies in the frame buffer, and what it shows.",
+      [&](render::TileSettings& tile) {
+        v.text("name", tile.name, "Of the tile.");
+        v.oneOf("kind", tile.kind, kTileKinds,
+                "A piece of the wall's picture, or the operator's view of the whole model.");
+        v.integer("x", tile.x, {0, 16384}, "Of its upper left corner in the frame buffer, pixels.");
+        v.integer("y", tile.y, {0, 16384}, "Of its upper left corner in the frame buffer, pixels.");
+        v.number("turns", tile.turns, {-8, 8},
+                 "How far it is turned, in tile widths; +1 is one to the left.");
+      });
 }
 
 void describeScene(render::SceneSettings& s, SettingsVisitor& v) {
-  v.number("model_radius_m", s.model_radius_m, {0.001, 1000}, "The model is scaled to a bounding sphere of this radius, metres.");
-  v.number("model_distance_m", s.model_distance_m, {0, 1000}, "Of the model's centre in front of the eye, metres.");
-  v.number("model_yaw_deg", s.model_yaw_deg, {-360, 360}, "The model is turned about the vertical axis at first, degrees.");
-  v.number("model_pitch_deg", s.model_pitch_deg, {-360, 360}, "And about the horizontal one before that, degrees: -90 for a model whose up is z.");
-  v.numbers("ball_speed_m_s", s.ball_speed_m_s, {-100, 100}, "At a full push of the ball along x, y, z, metres a second.");
-  v.numbers("ball_turn_deg_s", s.ball_turn_deg_s, {-3600, 3600}, "At a full twist about x, y, z, degrees a second.");
-  v.numbers("tracker_axes", s.tracker_axes, {-3, 3}, "The wall's x (right), y (up), z (towards the person) as axes of the tracker: 1 x, 2 y, 3 z, negative to turn one round.");
-  v.integer("hand_station", s.hand_station, {1, 4}, "Of the tracker, that the grabbing hand wears.");
+  v.number("model_radius_m", s.model_radius_m, {0.001, 1000},
+           "The model is scaled to a bounding sphere of this radius, metres.");
+  v.number("model_distance_m", s.model_distance_m, {0, 1000},
+           "Of the model's centre in front of the eye, metres.");
+  v.number("model_yaw_deg", s.model_yaw_deg, {-360, 360},
+           "The model is turned about the vertical axis at first, degrees.");
+  v.number("model_pitch_deg", s.model_pitch_deg, {-360, 360},
+           "And about the horizontal one before that, degrees: -90 for a model whose up is z.");
+  v.numbers("ball_speed_m_s", s.ball_speed_m_s, {-100, 100},
+            "At a full push of the ball along x, y, z, metres a second.");
+  v.numbers("ball_turn_deg_s", s.ball_turn_deg_s, {-3600, 3600},
+            "At a full twist about x, y, z, degrees a second.");
+  v.numbers("tracker_axes", s.tracker_axes, {-3, 3},
+            "The wall's x (right), y (up), z (towards the person) as axes of the tracker: 1 x, 2 "
+            "y, 3 z, negative to turn one round.");
+  v.integer("hand_station", s.hand_station, {1, 4},
+            "Of the tracker, that the grabbing hand wears.");
   v.number("hand_gain", s.hand_gain, {0.01, 1000}, "Metres of the model for a metre of the hand.");
-  v.number("hand_noise_m", s.hand_noise_m, {0, 1}, "Way of the hand that is taken for the tracker's noise, metres.");
-  v.number("hand_noise_deg", s.hand_noise_deg, {0, 180}, "Turn of the hand that is taken for noise, degrees.");
-  v.number("still_after_s", s.still_after_s, {0.01, 10}, "Without input until the scene counts as still, seconds.");
-  v.number("posture_hold_s", s.posture_hold_s, {0, 10}, "That a posture lasts before it acts, seconds.");
-  v.number("stale_after_s", s.stale_after_s, {0.1, 10}, "After which a device that is no longer well has let go, seconds.");
+  v.number("hand_noise_m", s.hand_noise_m, {0, 1},
+           "Way of the hand that is taken for the tracker's noise, metres.");
+  v.number("hand_noise_deg", s.hand_noise_deg, {0, 180},
+           "Turn of the hand that is taken for noise, degrees.");
+  v.number("still_after_s", s.still_after_s, {0.01, 10},
+           "Without input until the scene counts as still, seconds.");
+  v.number("posture_hold_s", s.posture_hold_s, {0, 10},
+           "That a posture lasts before it acts, seconds.");
+  v.number("stale_after_s", s.stale_after_s, {0.1, 10},
+           "After which a device that is no longer well has let go, seconds.");
   v.listOf<render::Binding>("bindings", s.bindings, "What inputs do.", [&](render::Binding& b) {
     v.text("input", b.input, "ball.button.1 to ball.button.12, posture.NAME or glove.switch.");
-    v.oneOf("action", b.action, kActions, "Grab: while held, the hand moves the model; the others: once.");
+    v.oneOf("action", b.action, kActions,
+            "Grab: while held, the hand moves the model; the others: once.");
   });
 }
 
 void describeRender(render::RenderSettings& r, SettingsVisitor& v) {
   v.oneOf("backend", r.backend, kBackends, "Which windowless OpenGL draws.");
-  v.integer("raster_threads", r.raster_threads, {0, 16}, "Of Mesa's software renderer; 0: the wall's own thread does all.");
+  v.integer("raster_threads", r.raster_threads, {0, 16},
+            "Of Mesa's software renderer; 0: the wall's own thread does all.");
   v.numbers("colour", r.look.colour, {0, 1}, "Of a model without colours: red, green, blue.");
   v.numbers("background", r.look.background, {0, 1}, "Red, green, blue.");
-  v.number("brightness", r.look.brightness, {0.1, 10}, "Multiplies the model's colours; for dark scans.");
-  v.flag("draw_back_faces", r.look.draw_back_faces, "For open scans that are seen from behind; costs 1.6 to 1.9 times the time.");
+  v.number("brightness", r.look.brightness, {0.1, 10},
+           "Multiplies the model's colours; for dark scans.");
+  v.flag("draw_back_faces", r.look.draw_back_faces,
+         "For open scans that are seen from behind; costs 1.6 to 1.9 times the time.");
   v.flag("wireframe", r.look.wireframe, "Draws edges instead of faces.");
 }
 
@@ -102,13 +138,17 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
   v.path("model", w.model, "The multiresolution model that is shown, an .mrm file.");
   v.group("rate", "The frame rate, and what is given for it.", [&] {
     v.number("rate_hz", w.governor.rate_hz, {1, 240}, "Frames a second while anything moves.");
-    v.integer("min_triangles", w.governor.min_triangles, {4, 1e6}, "Never fewer while it moves, however late.");
+    v.integer("min_triangles", w.governor.min_triangles, {4, 1e6},
+              "Never fewer while it moves, however late.");
     v.integer("max_triangles", w.governor.max_triangles, {4, 1e9}, "Never more while it moves.");
-    v.integer("first_triangles", w.governor.first_triangles, {4, 1e9}, "Before anything was measured.");
-    v.number("late_share", w.governor.late_share, {0.0001, 0.5}, "Of frames, that the head room is learnt for.");
+    v.integer("first_triangles", w.governor.first_triangles, {4, 1e9},
+              "Before anything was measured.");
+    v.number("late_share", w.governor.late_share, {0.0001, 0.5},
+             "Of frames, that the head room is learnt for.");
   });
   v.group("tiles", "The geometry of the wall.", [&] { describeTiles(w.tiles, v); });
-  v.group("scene", "Where the model stands, and what a person's input does.", [&] { describeScene(w.scene, v); });
+  v.group("scene", "Where the model stands, and what a person's input does.",
+          [&] { describeScene(w.scene, v); });
   v.group("render", "How it is drawn.", [&] { describeRender(w.render, v); });
   v.group("png", "The newest frame as a file, now and then.", [&] {
     v.path("path", w.png.path, "Of the file; empty: none.");
@@ -119,14 +159,19 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
 }  // namespace
 
 void describe(Settings& s, SettingsVisitor& v) {
-  v.text("instance", s.instance, "Keeps two daemons on one machine apart: part of the names of shared memory and sockets.");
-  v.path("run_directory", s.run_directory, "Where sockets and emulators' lines lie; empty: /run/merlin for root, else the user's own.");
+  v.text("instance", s.instance,
+         "Keeps two daemons on one machine apart: part of the names of shared memory and sockets.");
+  v.path(
+      "run_directory", s.run_directory,
+      "Where sockets and emulators' lines lie; empty: /run/merlin for root, else the user's own.");
   v.group("devices", "What is read.", [&] {
     v.group("glove", "A CyberGlove.", [&] { describeGlove(s.devices, v); });
     v.group("tracker", "A Polhemus Fastrak.", [&] { describeTracker(s.devices, v); });
     v.group("ball", "A Spaceball.", [&] { describeBall(s.devices, v); });
-    v.path("postures", s.devices.postures, "The posture network, a JSON file; empty: no posture is recognised.");
-    v.choiceOf("script", s.devices.script, kScripts, "What the emulated person does, with --emulate.");
+    v.path("postures", s.devices.postures,
+           "The posture network, a JSON file; empty: no posture is recognised.");
+    v.choiceOf("script", s.devices.script, kScripts,
+               "What the emulated person does, with --emulate.");
   });
   v.group("wall", "What is shown.", [&] { describeWall(s.wall, v); });
 }

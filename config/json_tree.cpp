@@ -1,9 +1,9 @@
 #include "config/json_tree.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <iterator>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace merlin {
@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kMostBytes = 1 << 20;
 constexpr std::size_t kMostLevels = 32;
 
-// Counts the lines that the parser has come to. A line begins with its first character, not with the
-// newline before it: the parser looks one character past a number.
+// Counts the lines that the parser has come to. A line begins with its first character, not with
+// the newline before it: the parser looks one character past a number.
 class CountingIterator {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -22,7 +22,8 @@ class CountingIterator {
   using pointer = const char*;
   using reference = const char&;
 
-  CountingIterator(const char* begin, const char* at, int* line) : begin_(begin), at_(at), line_(line) {}
+  CountingIterator(const char* begin, const char* at, int* line)
+      : begin_(begin), at_(at), line_(line) {}
   reference operator*() const { return *at_; }
   CountingIterator& operator++() {
     if (at_ != begin_ && at_[-1] == '\n') ++*line_;
@@ -53,8 +54,12 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
     last_->boolean = value;
     return true;
   }
-  bool number_integer(number_integer_t value) override { return number(static_cast<double>(value)); }
-  bool number_unsigned(number_unsigned_t value) override { return number(static_cast<double>(value)); }
+  bool number_integer(number_integer_t value) override {
+    return number(static_cast<double>(value));
+  }
+  bool number_unsigned(number_unsigned_t value) override {
+    return number(static_cast<double>(value));
+  }
   bool number_float(number_float_t value, const string_t&) override { return number(value); }
   bool string(string_t& value) override {
     if (!place(JsonNode::Kind::kString)) return false;
@@ -69,8 +74,10 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   bool key(string_t& value) override {
     auto& members = open_.back()->members;
     const auto same = [&](const JsonNode::Member& m) { return m.key == value; };
-    if (const auto found = std::find_if(members.begin(), members.end(), same); found != members.end()) {
-      return fail(fmt::format("the key \"{}\" stands twice in one object, before on line {}", value, found->line));
+    if (const auto found = std::find_if(members.begin(), members.end(), same);
+        found != members.end()) {
+      return fail(fmt::format("the key \"{}\" stands twice in one object, before on line {}", value,
+                              found->line));
     }
     members.push_back({std::move(value), *line_, {}});
     return true;
@@ -108,7 +115,8 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
   bool open(JsonNode::Kind kind) {
-    if (open_.size() == kMostLevels) return fail(fmt::format("more than {} levels deep", kMostLevels));
+    if (open_.size() == kMostLevels)
+      return fail(fmt::format("more than {} levels deep", kMostLevels));
     if (!place(kind)) return false;
     open_.push_back(last_);
     return true;
@@ -132,7 +140,8 @@ std::string describe(const JsonNode& node) {
     case JsonNode::Kind::kBool: return node.boolean ? "true" : "false";
     case JsonNode::Kind::kNumber: return fmt::format("the number {}", node.number);
     case JsonNode::Kind::kString:
-      return fmt::format("the string \"{}{}\"", node.text.substr(0, 40), node.text.size() > 40 ? "..." : "");
+      return fmt::format("the string \"{}{}\"", node.text.substr(0, 40),
+                         node.text.size() > 40 ? "..." : "");
     case JsonNode::Kind::kArray: return fmt::format("a list of {}", node.items.size());
     case JsonNode::Kind::kObject: return "an object";
   }
@@ -141,18 +150,21 @@ std::string describe(const JsonNode& node) {
 
 Result<JsonNode> parseJson(std::string_view text) {
   if (text.size() > kMostBytes) {
-    return Error{Errc::kMalformed, fmt::format("line 1: {} bytes; {} are the most", text.size(), kMostBytes)};
+    return Error{Errc::kMalformed,
+                 fmt::format("line 1: {} bytes; {} are the most", text.size(), kMostBytes)};
   }
   int line = 1;
   TreeBuilder builder(&line);
   const char* const first = text.data();
   const CountingIterator begin(first, first, &line), end(first, first + text.size(), &line);
   try {
-    if (nlohmann::json::sax_parse(begin, end, &builder) && builder.error.empty()) return std::move(builder.root);
+    if (nlohmann::json::sax_parse(begin, end, &builder) && builder.error.empty())
+      return std::move(builder.root);
   } catch (const std::exception& e) {
     return Error{Errc::kMalformed, fmt::format("line {}: {}", line, e.what())};
   }
-  return Error{Errc::kMalformed, builder.error.empty() ? fmt::format("line {}: no JSON", line) : builder.error};
+  return Error{Errc::kMalformed,
+               builder.error.empty() ? fmt::format("line {}: no JSON", line) : builder.error};
 }
 
 }  // namespace merlin

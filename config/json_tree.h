@@ -1,6 +1,6 @@
-// A JSON text as a tree that knows where each value stands. nlohmann-json parses; it gives positions
-// for syntax errors only, lets later keys win over earlier ones without a word, and recurses without
-// bound, so the tree is built here from its SAX events.
+// A JSON text as a tree that knows where each value stands. nlohmann-json parses; it gives
+// positions for syntax errors only, lets later keys win over earlier ones without a word, and
+// recurses without bound, so the tree is built here from its SAX events.
 #pragma once
 
 #include <string>

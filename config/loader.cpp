@@ -1,18 +1,18 @@
 #include "config/loader.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "config/checks.h"
 #include "config/json_tree.h"
-#include "config/nearest.h"
 #include "config/visitor.h"
 #include "daemon/base/files.h"
+#include "daemon/base/nearest.h"
 
 namespace merlin {
 namespace {
@@ -35,7 +35,8 @@ class Loader final : public SettingsVisitor {
   Loader& operator=(const Loader&) = delete;
 
   void number(const char* key, double& value, Range range, const char*) override {
-    if (const JsonNode* node = take(key, JsonNode::Kind::kNumber, "a number")) value = clamp(*node, key, range);
+    if (const JsonNode* node = take(key, JsonNode::Kind::kNumber, "a number"))
+      value = clamp(*node, key, range);
   }
   void integer(const char* key, int& value, Range range, const char*) override {
     const JsonNode* node = take(key, JsonNode::Kind::kNumber, "a whole number");
@@ -44,7 +45,8 @@ class Loader final : public SettingsVisitor {
     value = static_cast<int>(clamp(*node, key, range));
   }
   void flag(const char* key, bool& value, const char*) override {
-    if (const JsonNode* node = take(key, JsonNode::Kind::kBool, "true or false")) value = node->boolean;
+    if (const JsonNode* node = take(key, JsonNode::Kind::kBool, "true or false"))
+      value = node->boolean;
   }
   void text(const char* key, std::string& value, const char*) override {
     if (const JsonNode* node = take(key, JsonNode::Kind::kString, "a string")) value = node->text;
@@ -52,13 +54,17 @@ class Loader final : public SettingsVisitor {
   void path(const char* key, std::string& value, const char*) override {
     const JsonNode* node = take(key, JsonNode::Kind::kString, "a file's name");
     if (!node) return;
-    value = node->text.empty() ? "" : (std::filesystem::path(folder_) / node->text).lexically_normal().string();
+    value = node->text.empty()
+                ? ""
+                : (std::filesystem::path(folder_) / node->text).lexically_normal().string();
   }
-  void choice(const char* key, int& value, std::span<const char* const> names, const char*) override {
+  void choice(const char* key, int& value, std::span<const char* const> names,
+              const char*) override {
     const std::string allowed = fmt::format("one of {}", fmt::join(names, ", "));
     const JsonNode* node = take(key, JsonNode::Kind::kString, allowed);
     if (!node) return;
-    const auto found = std::find_if(names.begin(), names.end(), [&](const char* n) { return node->text == n; });
+    const auto found =
+        std::find_if(names.begin(), names.end(), [&](const char* n) { return node->text == n; });
     if (found == names.end()) return wrong(*node, key, allowed);
     value = static_cast<int>(found - names.begin());
   }
@@ -69,8 +75,10 @@ class Loader final : public SettingsVisitor {
     if (node->items.size() != values.size()) return wrong(*node, key, allowed);
     for (std::size_t i = 0; i < values.size(); ++i) {
       const std::string item = fmt::format("{}/{}", key, i);
-      if (node->items[i].kind != JsonNode::Kind::kNumber) wrong(node->items[i], item, "a number");
-      else values[i] = clamp(node->items[i], item, range);
+      if (node->items[i].kind != JsonNode::Kind::kNumber)
+        wrong(node->items[i], item, "a number");
+      else
+        values[i] = clamp(node->items[i], item, range);
     }
   }
   void group(const char* key, const char*, const std::function<void()>& members) override {
@@ -78,7 +86,8 @@ class Loader final : public SettingsVisitor {
     members();
     leave();
   }
-  void list(const char* key, std::size_t, const char*, const std::function<void(std::size_t)>& resize,
+  void list(const char* key, std::size_t, const char*,
+            const std::function<void(std::size_t)>& resize,
             const std::function<void(std::size_t)>& member) override {
     const JsonNode* node = take(key, JsonNode::Kind::kArray, "a list of objects");
     if (!node) return;
@@ -101,15 +110,21 @@ class Loader final : public SettingsVisitor {
     std::vector<std::string> known;
   };
 
-  std::string pointer(std::string_view key) const { return fmt::format("{}/{}", levels_.back().pointer, key); }
+  std::string pointer(std::string_view key) const {
+    return fmt::format("{}/{}", levels_.back().pointer, key);
+  }
 
-  void enter(const JsonNode* object, const std::string& pointer) { levels_.push_back({object, pointer, {}}); }
+  void enter(const JsonNode* object, const std::string& pointer) {
+    levels_.push_back({object, pointer, {}});
+  }
 
   // Whatever of the object was not asked for is unknown.
   void leave() {
     const Level& level = levels_.back();
-    for (const auto& member : level.object ? level.object->members : std::vector<JsonNode::Member>()) {
-      if (std::find(level.known.begin(), level.known.end(), member.key) != level.known.end()) continue;
+    for (const auto& member :
+         level.object ? level.object->members : std::vector<JsonNode::Member>()) {
+      if (std::find(level.known.begin(), level.known.end(), member.key) != level.known.end())
+        continue;
       if (member.key == "$schema" && levels_.size() == 1) continue;
       findings_.push_back({false, member.line, level.pointer + "/" + escapePointer(member.key),
                            "is no setting; " + suggestion(member.key, level.known)});
@@ -119,7 +134,8 @@ class Loader final : public SettingsVisitor {
 
   static std::string suggestion(const std::string& key, const std::vector<std::string>& known) {
     const std::string near = nearest(key, known);
-    return near.empty() ? fmt::format("here are {}", fmt::join(known, ", ")) : fmt::format("did you mean \"{}\"?", near);
+    return near.empty() ? fmt::format("here are {}", fmt::join(known, ", "))
+                        : fmt::format("did you mean \"{}\"?", near);
   }
 
   // The value of `key` if it is there and of that kind; says what is wrong otherwise.
@@ -138,7 +154,8 @@ class Loader final : public SettingsVisitor {
   }
 
   void wrong(const JsonNode& node, std::string_view key, std::string_view allowed) {
-    findings_.push_back({false, node.line, pointer(key), fmt::format("is {}; allowed is {}", describe(node), allowed)});
+    findings_.push_back({false, node.line, pointer(key),
+                         fmt::format("is {}; allowed is {}", describe(node), allowed)});
   }
 
   double clamp(const JsonNode& node, std::string_view key, Range range) {
@@ -149,7 +166,8 @@ class Loader final : public SettingsVisitor {
       return range.low;
     }
     findings_.push_back({true, node.line, pointer(key),
-                         fmt::format("is {}; allowed is {} to {}; {} is taken", node.number, range.low, range.high, value)});
+                         fmt::format("is {}; allowed is {} to {}; {} is taken", node.number,
+                                     range.low, range.high, value)});
     return value;
   }
 
@@ -163,7 +181,8 @@ class Loader final : public SettingsVisitor {
 
 LoadedSettings::Verdict LoadedSettings::verdict() const {
   if (findings.empty()) return Verdict::kValid;
-  const bool all_adjusted = std::all_of(findings.begin(), findings.end(), [](const Finding& f) { return f.adjusted; });
+  const bool all_adjusted =
+      std::all_of(findings.begin(), findings.end(), [](const Finding& f) { return f.adjusted; });
   return all_adjusted ? Verdict::kAdjusted : Verdict::kInvalid;
 }
 
@@ -181,7 +200,8 @@ LoadedSettings loadSettings(std::string_view json, const std::string& folder) {
     return loaded;
   }
   if (tree->kind != JsonNode::Kind::kObject) {
-    loaded.findings.push_back({false, tree->line, "", fmt::format("is {}; allowed is an object", describe(*tree))});
+    loaded.findings.push_back(
+        {false, tree->line, "", fmt::format("is {}; allowed is an object", describe(*tree))});
     return loaded;
   }
   std::map<std::string, int> lines;

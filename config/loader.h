@@ -1,5 +1,5 @@
-// Reading a configuration file: every finding at once, each with the line, the JSON pointer, what was
-// found and what is allowed.
+// Reading a configuration file: every finding at once, each with the line, the JSON pointer, what
+// was found and what is allowed.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ namespace merlin {
 struct Finding {
   bool adjusted = false;  // a number was clamped into its range; else the file is invalid
   int line = 0;
-  std::string pointer;    // RFC 6901, "/wall/rate/rate_hz"
+  std::string pointer;  // RFC 6901, "/wall/rate/rate_hz"
   std::string what;
 };
 
@@ -26,7 +26,8 @@ struct LoadedSettings {
   Verdict verdict() const;
 };
 
-// Reads a text. Relative paths in it are taken from `folder`. Never fails: syntax errors are findings.
+// Reads a text. Relative paths in it are taken from `folder`. Never fails: syntax errors are
+// findings.
 LoadedSettings loadSettings(std::string_view json, const std::string& folder);
 
 // Reads a file; what cannot be opened is a finding too (line 0).

@@ -1,4 +1,5 @@
-// Settings: everything that a configuration file says, with the values that hold where it is silent.
+// Settings: everything that a configuration file says, with the values that hold where it is
+// silent.
 #pragma once
 
 #include <string>
@@ -17,7 +18,7 @@ namespace merlin {
 // Which device it is, where, and how fast its line runs.
 struct LineSettings {
   std::string driver;  // a name of drivers/registry
-  std::string port;  // "serial:/dev/...", "pty:PATH"; empty: there is no such device
+  std::string port;    // "serial:/dev/...", "pty:PATH"; empty: there is no such device
   int baud = 38400;
 };
 
@@ -28,7 +29,7 @@ struct DevicesSettings {
   FastrakSettings tracker;
   LineSettings ball_line{"spaceball", "", 9600};
   SpaceballSettings ball;
-  std::string postures;      // the posture network's file; empty: none is recognised
+  std::string postures;          // the posture network's file; empty: none is recognised
   std::string script = "visit";  // what the emulated person does, with --emulate
 };
 

@@ -1,5 +1,5 @@
-// SettingsVisitor: is shown every setting once, by describe(). Reading a file, writing the schema and
-// printing what holds are three visitors of one description, so they cannot drift apart.
+// SettingsVisitor: is shown every setting once, by describe(). Reading a file, writing the schema
+// and printing what holds are three visitors of one description, so they cannot drift apart.
 #pragma once
 
 #include <array>
@@ -27,9 +27,11 @@ class SettingsVisitor {
   // A file's name; relative to the folder of the configuration.
   virtual void path(const char* key, std::string& value, const char* help) = 0;
   // One of `names`; `value` is its index.
-  virtual void choice(const char* key, int& value, std::span<const char* const> names, const char* help) = 0;
+  virtual void choice(const char* key, int& value, std::span<const char* const> names,
+                      const char* help) = 0;
   // Exactly as many numbers.
-  virtual void numbers(const char* key, std::span<double> values, Range range, const char* help) = 0;
+  virtual void numbers(const char* key, std::span<double> values, Range range,
+                       const char* help) = 0;
   virtual void group(const char* key, const char* help, const std::function<void()>& members) = 0;
   // Any number of objects: resize(n) makes room, member(i) describes one.
   virtual void list(const char* key, std::size_t count, const char* help,
@@ -61,7 +63,8 @@ class SettingsVisitor {
     value = static_cast<Enum>(index);
   }
   // A text that is one of `names`.
-  void choiceOf(const char* key, std::string& value, std::span<const char* const> names, const char* help) {
+  void choiceOf(const char* key, std::string& value, std::span<const char* const> names,
+                const char* help) {
     int index = 0;
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (value == names[i]) index = static_cast<int>(i);
@@ -70,9 +73,11 @@ class SettingsVisitor {
     value = names[static_cast<std::size_t>(index)];
   }
   template <typename T>
-  void listOf(const char* key, std::vector<T>& values, const char* help, const std::function<void(T&)>& member) {
-    list(key, values.size(), help, [&](std::size_t n) { values.assign(n, T{}); },
-         [&](std::size_t i) { member(values[i]); });
+  void listOf(const char* key, std::vector<T>& values, const char* help,
+              const std::function<void(T&)>& member) {
+    list(
+        key, values.size(), help, [&](std::size_t n) { values.assign(n, T{}); },
+        [&](std::size_t i) { member(values[i]); });
   }
 };
 

@@ -1,8 +1,8 @@
 #include "config/writer.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "config/visitor.h"
@@ -16,17 +16,20 @@ using Json = nlohmann::ordered_json;  // in the order of the description
 // 0.10000000149.
 Json plain(double value) {
   if (value == std::floor(value) && std::abs(value) < 1e15) return static_cast<std::int64_t>(value);
-  return std::stod(fmt::format("{:.7g}", value));
+  return std::stod(fmt::format("{}", static_cast<float>(value)));
 }
 
 class TextWriter final : public SettingsVisitor {
  public:
-  void number(const char* key, double& value, Range, const char*) override { (*at_)[key] = plain(value); }
+  void number(const char* key, double& value, Range, const char*) override {
+    (*at_)[key] = plain(value);
+  }
   void integer(const char* key, int& value, Range, const char*) override { (*at_)[key] = value; }
   void flag(const char* key, bool& value, const char*) override { (*at_)[key] = value; }
   void text(const char* key, std::string& value, const char*) override { (*at_)[key] = value; }
   void path(const char* key, std::string& value, const char*) override { (*at_)[key] = value; }
-  void choice(const char* key, int& value, std::span<const char* const> names, const char*) override {
+  void choice(const char* key, int& value, std::span<const char* const> names,
+              const char*) override {
     (*at_)[key] = names[static_cast<std::size_t>(value)];
   }
   void numbers(const char* key, std::span<double> values, Range, const char*) override {
@@ -37,7 +40,8 @@ class TextWriter final : public SettingsVisitor {
   void group(const char* key, const char*, const std::function<void()>& members) override {
     within((*at_)[key] = Json::object(), members);
   }
-  void list(const char* key, std::size_t count, const char*, const std::function<void(std::size_t)>&,
+  void list(const char* key, std::size_t count, const char*,
+            const std::function<void(std::size_t)>&,
             const std::function<void(std::size_t)>& member) override {
     Json& list = (*at_)[key] = Json::array();
     for (std::size_t i = 0; i < count; ++i) {
@@ -61,10 +65,18 @@ class TextWriter final : public SettingsVisitor {
 class SchemaWriter final : public SettingsVisitor {
  public:
   void number(const char* key, double& value, Range range, const char* help) override {
-    put(key, {{"type", "number"}, {"minimum", plain(range.low)}, {"maximum", plain(range.high)}, {"default", plain(value)}, {"description", help}});
+    put(key, {{"type", "number"},
+              {"minimum", plain(range.low)},
+              {"maximum", plain(range.high)},
+              {"default", plain(value)},
+              {"description", help}});
   }
   void integer(const char* key, int& value, Range range, const char* help) override {
-    put(key, {{"type", "integer"}, {"minimum", plain(range.low)}, {"maximum", plain(range.high)}, {"default", value}, {"description", help}});
+    put(key, {{"type", "integer"},
+              {"minimum", plain(range.low)},
+              {"maximum", plain(range.high)},
+              {"default", value},
+              {"description", help}});
   }
   void flag(const char* key, bool& value, const char* help) override {
     put(key, {{"type", "boolean"}, {"default", value}, {"description", help}});
@@ -72,15 +84,21 @@ class SchemaWriter final : public SettingsVisitor {
   void text(const char* key, std::string& value, const char* help) override {
     put(key, {{"type", "string"}, {"default", value}, {"description", help}});
   }
-  void path(const char* key, std::string& value, const char* help) override { text(key, value, help); }
-  void choice(const char* key, int& value, std::span<const char* const> names, const char* help) override {
-    put(key, {{"enum", Json(std::vector<std::string>(names.begin(), names.end()))}, {"default", names[static_cast<std::size_t>(value)]}, {"description", help}});
+  void path(const char* key, std::string& value, const char* help) override {
+    text(key, value, help);
+  }
+  void choice(const char* key, int& value, std::span<const char* const> names,
+              const char* help) override {
+    put(key, {{"enum", Json(std::vector<std::string>(names.begin(), names.end()))},
+              {"default", names[static_cast<std::size_t>(value)]},
+              {"description", help}});
   }
   void numbers(const char* key, std::span<double> values, Range range, const char* help) override {
     Json defaults = Json::array();
     for (const double v : values) defaults.push_back(plain(v));
     put(key, {{"type", "array"},
-              {"items", {{"type", "number"}, {"minimum", plain(range.low)}, {"maximum", plain(range.high)}}},
+              {"items",
+               {{"type", "number"}, {"minimum", plain(range.low)}, {"maximum", plain(range.high)}}},
               {"minItems", values.size()},
               {"maxItems", values.size()},
               {"default", defaults},
@@ -91,7 +109,8 @@ class SchemaWriter final : public SettingsVisitor {
     within(object, members);
     put(key, std::move(object));
   }
-  void list(const char* key, std::size_t count, const char* help, const std::function<void(std::size_t)>&,
+  void list(const char* key, std::size_t count, const char* help,
+            const std::function<void(std::size_t)>&,
             const std::function<void(std::size_t)>& member) override {
     Json item = object_("");
     item.erase("description");
@@ -100,7 +119,10 @@ class SchemaWriter final : public SettingsVisitor {
   }
 
   static Json object_(const char* help) {
-    return {{"type", "object"}, {"additionalProperties", false}, {"description", help}, {"properties", Json::object()}};
+    return {{"type", "object"},
+            {"additionalProperties", false},
+            {"description", help},
+            {"properties", Json::object()}};
   }
   void put(const char* key, Json schema) { (*at_)["properties"][key] = std::move(schema); }
   void within(Json& object, const std::function<void()>& members) {

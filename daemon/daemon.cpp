@@ -1,11 +1,11 @@
 #include "daemon/daemon.h"
 
-#include <fmt/format.h>
-#include <systemd/sd-daemon.h>
-
 #include <cerrno>
 #include <ctime>
 #include <utility>
+
+#include <fmt/format.h>
+#include <systemd/sd-daemon.h>
 
 #include "daemon/base/log.h"
 #include "daemon/status/documents.h"
@@ -30,12 +30,14 @@ sigset_t stopSignals() {
 // Half of what systemd waits; zero where nobody watches.
 Duration watchdogInterval() {
   std::uint64_t usec = 0;
-  return ::sd_watchdog_enabled(0, &usec) > 0 ? Duration(std::chrono::microseconds(usec / 2)) : Duration{};
+  return ::sd_watchdog_enabled(0, &usec) > 0 ? Duration(std::chrono::microseconds(usec / 2))
+                                             : Duration{};
 }
 
 }  // namespace
 
-Result<std::unique_ptr<Daemon>> Daemon::make(Settings settings, const DaemonOptions& options, Clock& clock) {
+Result<std::unique_ptr<Daemon>> Daemon::make(Settings settings, const DaemonOptions& options,
+                                             Clock& clock) {
   std::unique_ptr<Daemon> daemon(new Daemon(std::move(settings), options, clock));
   auto directory = status::runDirectory(daemon->settings_.run_directory);
   if (!directory) return directory.error();
@@ -45,7 +47,10 @@ Result<std::unique_ptr<Daemon>> Daemon::make(Settings settings, const DaemonOpti
 }
 
 Daemon::Daemon(Settings settings, const DaemonOptions& options, Clock& clock)
-    : settings_(std::move(settings)), options_(options), clock_(clock), watchdog_(watchdogInterval()) {}
+    : settings_(std::move(settings)),
+      options_(options),
+      clock_(clock),
+      watchdog_(watchdogInterval()) {}
 
 // In reverse order of start: nobody is asked for what is no more.
 Daemon::~Daemon() {
@@ -59,16 +64,20 @@ shm::Endpoints Daemon::endpoints(const std::string& role) const {
   return {at + ".status", at + ".command"};
 }
 
-// The segments first: their locks say that no other daemon of this name lives, so that the sockets' files
-// are ours to replace. Emulators before any thread, since they are forked.
+// The segments first: their locks say that no other daemon of this name lives, so that the sockets'
+// files are ours to replace. Emulators before any thread, since they are forked.
 Result<Ok> Daemon::makeRoles() {
   const std::uint64_t generation = shm::newGeneration();
   for (const char* role : {"devices", "wall"}) {
     // Before the emulators, which would take another daemon's lines over.
     const std::string name = shm::segmentName(settings_.instance, role);
     if ((role[0] == 'd' ? options_.devices : options_.wall) && SharedMemory::owned(name)) {
-      return Error{Errc::kBusy, fmt::format("another merlind already runs as \"{}\" (it owns shared memory {}); stop it, or "
-                                            "set another \"instance\"", settings_.instance, name)};
+      return Error{
+          Errc::kBusy,
+          fmt::format(
+              "another merlind already runs as \"{}\" (it owns shared memory {}); stop it, or "
+              "set another \"instance\"",
+              settings_.instance, name)};
     }
   }
   if (options_.emulate && options_.devices) {
@@ -116,7 +125,8 @@ Result<Ok> Daemon::awaitFirstFrame(std::future<Result<std::string>> ready) {
   }
   const auto first = ready.get();
   if (!first) return first.error();
-  logInfo("first frame: {} triangles at full detail, drawn by {}", wall_->segment().stats.read()->triangles, *first);
+  logInfo("first frame: {} triangles at full detail, drawn by {}",
+          wall_->segment().stats.read()->triangles, *first);
   return Ok{};
 }
 
@@ -134,7 +144,8 @@ void Daemon::housekeeping() {
   if (wall_) wall_->beat(now);
   if (emulators_) {
     for (const std::string& device : emulators_->takeEnded()) {
-      logWarning("the emulated {} has ended; start it again with: merlin emulate {} --link ...", device, device);
+      logWarning("the emulated {} has ended; start it again with: merlin emulate {} --link ...",
+                 device, device);
     }
   }
   if (now - summarised_ >= kSummary) {
@@ -144,26 +155,24 @@ void Daemon::housekeeping() {
   pingWatchdog(now);
 }
 
-// Only while everything that should move on does: frames, and each status server's rounds.
 void Daemon::pingWatchdog(Timestamp now) {
-  if (watchdog_ == Duration::zero() || now - pinged_ < watchdog_) return;
-  std::uint64_t progress = wall_ ? wall_->periods() : 1;
-  for (const auto& server : servers_) progress = std::min(progress, server->rounds());
-  if (progress <= progress_ && (wall_ || !servers_.empty())) return;
-  progress_ = progress;
-  pinged_ = now;
-  ::sd_notify(0, "WATCHDOG=1");
+  std::vector<std::uint64_t> progress;
+  if (wall_) progress.push_back(wall_->periods());
+  for (const auto& server : servers_) progress.push_back(server->rounds());
+  if (watchdog_.ping(now, progress)) ::sd_notify(0, "WATCHDOG=1");
 }
 
 std::string Daemon::summary(Timestamp now) const {
   std::string text;
   if (wall_) {
     const auto s = wall_->segment().stats.read().value_or(shm::WallStats{});
-    text = fmt::format("{:.1f} of {:.0f} Hz, {} triangles, {:.1f} % late", s.rate_held_hz, s.rate_asked_hz, s.triangles, 100 * s.late_share_1min);
+    text = fmt::format("{:.1f} of {:.0f} Hz, {} triangles, {:.1f} % late", s.rate_held_hz,
+                       s.rate_asked_hz, s.triangles, 100 * s.late_share_1min);
   }
   for (std::size_t i = 0; devices_ && i < shm::kDevices; ++i) {
     const auto health = devices_->segment().health[i].read();
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", status::kDeviceNames[i], health ? status::healthName(*health, now) : "absent");
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", status::kDeviceNames[i],
+                        health ? status::healthName(*health, now) : "absent");
   }
   return text;
 }
@@ -182,10 +191,13 @@ Result<Ok> Daemon::serveDevices() {
   const shm::DevicesSegment& segment = devices_->segment();
   status::StatusServerSettings s;
   const auto statusNow = [this, &segment] { return status::devicesStatus(segment, clock_.now()); };
-  s.publications = {{"status", kOnceASecond, statusNow},
-                    {"metrics", kOnceASecond, [&segment] { return status::devicesMetrics(segment); }},
-                    {"sample", kThirtyASecond, [this, &segment] { return status::newestSamples(segment, clock_.now()); }}};
-  s.commands = {{"status", "the devices' status", [statusNow]() -> Result<std::string> { return statusNow(); }}};
+  s.publications = {
+      {"status", kOnceASecond, statusNow},
+      {"metrics", kOnceASecond, [&segment] { return status::devicesMetrics(segment); }},
+      {"sample", kThirtyASecond,
+       [this, &segment] { return status::newestSamples(segment, clock_.now()); }}};
+  s.commands = {{"status", "the devices' status",
+                 [statusNow]() -> Result<std::string> { return statusNow(); }}};
   auto events = std::make_shared<status::HealthEvents>(segment);  // shared: std::function must copy
   s.events = [this, events] {
     std::vector<std::string> documents;
@@ -211,9 +223,10 @@ Result<Ok> Daemon::serveWall() {
       return std::string("{}");
     };
   };
-  s.commands = {{"status", "the wall's status", [statusNow]() -> Result<std::string> { return statusNow(); }},
-                {"reset_view", "model and viewer back to the start", ask(wall::WallLoop::kResetView)},
-                {"next_mode", "the ball moves the model, or the viewer", ask(wall::WallLoop::kNextMode)}};
+  s.commands = {
+      {"status", "the wall's status", [statusNow]() -> Result<std::string> { return statusNow(); }},
+      {"reset_view", "model and viewer back to the start", ask(wall::WallLoop::kResetView)},
+      {"next_mode", "the ball moves the model, or the viewer", ask(wall::WallLoop::kNextMode)}};
   s.events = [] { return std::vector<std::string>(); };
   return serveStatus("wall", std::move(s));
 }

@@ -11,6 +11,7 @@
 #include "daemon/devices/devices_role.h"
 #include "daemon/emulator_children.h"
 #include "daemon/status/server.h"
+#include "daemon/status/watchdog.h"
 #include "daemon/wall/wall_role.h"
 
 namespace merlin {
@@ -24,7 +25,8 @@ class Daemon {
  public:
   // Everything is made and checked, nothing runs. REQUIRES: SIGTERM, SIGINT, SIGHUP and SIGCHLD are
   // blocked, no thread has been started. Errors: of its parts.
-  static Result<std::unique_ptr<Daemon>> make(Settings settings, const DaemonOptions& options, Clock& clock);
+  static Result<std::unique_ptr<Daemon>> make(Settings settings, const DaemonOptions& options,
+                                              Clock& clock);
   ~Daemon();
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
@@ -54,9 +56,8 @@ class Daemon {
   std::unique_ptr<devices::DevicesRole> devices_;
   std::unique_ptr<wall::WallRole> wall_;
   std::vector<std::unique_ptr<status::StatusServer>> servers_;  // last made, first gone
-  Duration watchdog_{};       // between two pings; zero for none
-  Timestamp pinged_{}, summarised_{};
-  std::uint64_t progress_ = 0;
+  status::Watchdog watchdog_;
+  Timestamp summarised_{};
 };
 
 }  // namespace merlin

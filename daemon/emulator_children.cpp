@@ -1,15 +1,15 @@
 #include "daemon/emulator_children.h"
 
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <utility>
 
 #include "daemon/base/clock.h"
 
@@ -22,7 +22,8 @@ Result<std::string> merlinProgram() {
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
   const auto program = self.parent_path() / "merlin";
   if (!error && ::access(program.c_str(), X_OK) == 0) return program.string();
-  return Error{Errc::kIo, fmt::format("{}: is needed for --emulate and is not there", program.string())};
+  return Error{Errc::kIo,
+               fmt::format("{}: is needed for --emulate and is not there", program.string())};
 }
 
 pid_t spawn(const std::vector<std::string>& arguments) {
@@ -44,22 +45,27 @@ pid_t spawn(const std::vector<std::string>& arguments) {
 // Where the device's line is to be; made the device's port.
 std::string placeLine(LineSettings& line, const std::string& run_directory) {
   constexpr std::string_view kPty = "pty:";
-  if (!line.port.starts_with(kPty)) line.port = fmt::format("pty:{}/{}.pty", run_directory, line.driver);
+  if (!line.port.starts_with(kPty))
+    line.port = fmt::format("pty:{}/{}.pty", run_directory, line.driver);
   return line.port.substr(kPty.size());
 }
 
 }  // namespace
 
-Result<EmulatorChildren> EmulatorChildren::start(Settings& settings, const std::string& run_directory) {
+Result<EmulatorChildren> EmulatorChildren::start(Settings& settings,
+                                                 const std::string& run_directory) {
   const auto program = merlinProgram();
   if (!program) return program.error();
   EmulatorChildren started;
   const auto epoch = std::to_string(toNanoseconds(SystemClock().now()));
-  for (LineSettings* line : {&settings.devices.glove_line, &settings.devices.tracker_line, &settings.devices.ball_line}) {
+  for (LineSettings* line : {&settings.devices.glove_line, &settings.devices.tracker_line,
+                             &settings.devices.ball_line}) {
     const std::string link = placeLine(*line, run_directory);
-    const pid_t pid = spawn({*program, "emulate", line->driver, "--link", link, "--script", settings.devices.script,
-                             "--baud", std::to_string(line->baud), "--epoch-ns", epoch});
-    if (pid < 0) return Error{Errc::kIo, fmt::format("no process for an emulator: {}", std::strerror(errno))};
+    const pid_t pid =
+        spawn({*program, "emulate", line->driver, "--link", link, "--script",
+               settings.devices.script, "--baud", std::to_string(line->baud), "--epoch-ns", epoch});
+    if (pid < 0)
+      return Error{Errc::kIo, fmt::format("no process for an emulator: {}", std::strerror(errno))};
     started.children_.push_back({line->driver, pid});
   }
   return started;

@@ -1,7 +1,12 @@
 // merlin: everything that a person types.
+#include <algorithm>
+#include <cstdio>
+
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "daemon/base/log.h"
+#include "daemon/base/nearest.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
 
@@ -11,8 +16,19 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", MERLIN_VERSION);
   cli::Run run;
-  for (const auto add : {cli::addStatus, cli::addWatch, cli::addSnapshot, cli::addMesh, cli::addPosture, cli::addEmulate, cli::addShm}) {
+  for (const auto add : {cli::addStatus, cli::addWatch, cli::addSnapshot, cli::addMesh,
+                         cli::addPosture, cli::addEmulate, cli::addShm}) {
     add(app, run);
+  }
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (argc > 1 && argv[1][0] != '-' &&
+      std::find(names.begin(), names.end(), argv[1]) == names.end()) {
+    const std::string near = nearest(argv[1], names);
+    fmt::print(stderr, "merlin: \"{}\" is no command; {}\n", argv[1],
+               near.empty() ? fmt::format("commands are {}", fmt::join(names, ", "))
+                            : fmt::format("did you mean \"{}\"?", near));
+    return kExitBadInput;
   }
   try {
     app.parse(argc, argv);

@@ -1,11 +1,11 @@
 // merlind: the daemon. The only place where an adapter meets a port: read the configuration, make
 // everything, run, stop.
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "config/loader.h"
 #include "config/writer.h"
@@ -35,7 +35,9 @@ int checkConfig(const std::string& file) {
   printFindings(file, loaded);
   switch (loaded.verdict()) {
     case LoadedSettings::Verdict::kValid: fmt::print("{}: valid\n", file); return 0;
-    case LoadedSettings::Verdict::kAdjusted: fmt::print("{}: valid after {} adjustments\n", file, loaded.findings.size()); return 1;
+    case LoadedSettings::Verdict::kAdjusted:
+      fmt::print("{}: valid after {} adjustments\n", file, loaded.findings.size());
+      return 1;
     case LoadedSettings::Verdict::kInvalid: break;
   }
   fmt::print("{}: invalid, {} findings\n", file, loaded.findings.size());
@@ -79,13 +81,22 @@ int runDaemon(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("MERLIN's daemon: reads the devices, draws the wall.\n\nExample: merlind --config config/demo.json --emulate");
+  CLI::App app(
+      "MERLIN's daemon: reads the devices, draws the wall.\n\nExample: merlind --config "
+      "config/demo.json --emulate");
   app.add_option("--config", options.config, "The configuration, JSON")->capture_default_str();
-  app.add_option("--check-config", options.check, "Only check FILE: exits 0 valid, 1 adjusted, 2 invalid")->type_name("FILE");
-  app.add_option("--role", options.role, "What this process does")->check(CLI::IsMember({"devices", "wall", "all"}))->capture_default_str();
-  app.add_flag("--emulate", options.emulate, "Start an emulator for each device, on pseudo-terminals");
-  app.add_flag("--print-config", options.print_config, "Print every setting that the configuration gives, and end");
-  app.add_flag("--print-schema", options.print_schema, "Print the JSON Schema of configurations, and end");
+  app.add_option("--check-config", options.check,
+                 "Only check FILE: exits 0 valid, 1 adjusted, 2 invalid")
+      ->type_name("FILE");
+  app.add_option("--role", options.role, "What this process does")
+      ->check(CLI::IsMember({"devices", "wall", "all"}))
+      ->capture_default_str();
+  app.add_flag("--emulate", options.emulate,
+               "Start an emulator for each device, on pseudo-terminals");
+  app.add_flag("--print-config", options.print_config,
+               "Print every setting that the configuration gives, and end");
+  app.add_flag("--print-schema", options.print_schema,
+               "Print the JSON Schema of configurations, and end");
   app.set_version_flag("--version", MERLIN_VERSION);
   try {
     app.parse(argc, argv);

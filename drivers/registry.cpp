@@ -10,17 +10,25 @@ namespace {
 
 using Made = std::unique_ptr<Device>;
 
-// Every driver merlind knows. A new one is one row here and one folder beside this file. A table, not
-// self-registration: a linker drops what nobody names from a static library.
+// Every driver merlind knows. A new one is one row here and one folder beside this file. A table,
+// not self-registration: a linker drops what nobody names from a static library.
 constexpr DriverEntry kDrivers[] = {
     {"cyberglove", SampleKind::kGlove, "CyberGlove with its interface unit, 18 or 22 sensors",
-     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> Made { return cyberglove::makeDevice(s.cyberglove, c, k); }},
+     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> Made {
+       return cyberglove::makeDevice(s.cyberglove, c, k);
+     }},
     {"fastrak", SampleKind::kTracker, "Polhemus Fastrak, 1 to 4 receivers",
-     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> Made { return fastrak::makeDevice(s.fastrak, c, k); }},
+     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> Made {
+       return fastrak::makeDevice(s.fastrak, c, k);
+     }},
     {"spaceball", SampleKind::kBall, "Spaceball 1003, 2003, 3003 or 4000 FLX",
-     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> Made { return spaceball::makeDevice(s.spaceball, c, k); }},
+     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> Made {
+       return spaceball::makeDevice(s.spaceball, c, k);
+     }},
     {"sample", SampleKind::kBall, "the driver to copy: a ball that sends lines of text",
-     [](const DriverSettings&, const Clock& c, SampleSink& k) -> Made { return sample::makeDevice(c, k); }},
+     [](const DriverSettings&, const Clock& c, SampleSink& k) -> Made {
+       return sample::makeDevice(c, k);
+     }},
 };
 
 }  // namespace

@@ -15,7 +15,9 @@ inline std::uint32_t loadLe32(const std::uint8_t* p) noexcept {
   return std::uint32_t{p[0]} | std::uint32_t{p[1]} << 8 | std::uint32_t{p[2]} << 16 |
          std::uint32_t{p[3]} << 24;
 }
-inline float loadLeFloat(const std::uint8_t* p) noexcept { return std::bit_cast<float>(loadLe32(p)); }
+inline float loadLeFloat(const std::uint8_t* p) noexcept {
+  return std::bit_cast<float>(loadLe32(p));
+}
 
 inline void appendBe16(std::string& out, std::uint16_t v) {
   out.push_back(static_cast<char>(v >> 8));
@@ -24,6 +26,8 @@ inline void appendBe16(std::string& out, std::uint16_t v) {
 inline void appendLe32(std::string& out, std::uint32_t v) {
   for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<char>(v >> shift & 0xFF));
 }
-inline void appendLeFloat(std::string& out, float v) { appendLe32(out, std::bit_cast<std::uint32_t>(v)); }
+inline void appendLeFloat(std::string& out, float v) {
+  appendLe32(out, std::bit_cast<std::uint32_t>(v));
+}
 
 }  // namespace merlin

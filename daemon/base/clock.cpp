@@ -1,8 +1,7 @@
 #include "daemon/base/clock.h"
 
-#include <ctime>
-
 #include <algorithm>
+#include <ctime>
 
 namespace merlin {
 namespace {

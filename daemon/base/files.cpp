@@ -1,15 +1,15 @@
 #include "daemon/base/files.h"
 
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
 
 #include "daemon/base/unique_fd.h"
 
@@ -93,6 +93,15 @@ Result<Ok> writeFile(const std::string& path, const std::function<bool(const Wri
   const int error = errno;
   ::unlink(fresh.c_str());
   return fileError(path, error);
+}
+
+Result<Ok> checkWritable(const std::string& path) {
+  const auto slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  struct stat status {};
+  if (::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) return fileError(path, EISDIR);
+  if (::access(folder.c_str(), W_OK) != 0) return fileError(path, errno);
+  return Ok{};
 }
 
 Result<Ok> writeFile(const std::string& path, std::string_view content) {

@@ -44,4 +44,8 @@ using WriteBytes = std::function<bool(std::span<const std::byte>)>;
 Result<Ok> writeFile(const std::string& path, const std::function<bool(const WriteBytes&)>& fill);
 Result<Ok> writeFile(const std::string& path, std::string_view content);
 
+// Whether writeFile() could put a file there, as far as can be said before: to be asked before long
+// work. Errors: kNotFound (no such folder), kIo (not writable, a folder).
+Result<Ok> checkWritable(const std::string& path);
+
 }  // namespace merlin

@@ -1,10 +1,10 @@
 #include "daemon/base/log.h"
 
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
-
 #include <cstdlib>
 #include <memory>
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
 
 namespace merlin {
 namespace {
@@ -37,8 +37,8 @@ bool underJournal() {
 }  // namespace
 
 void initLog(LogLevel lowest) {
-  auto logger = std::make_shared<spdlog::logger>("merlin",
-                                                 std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  auto logger =
+      std::make_shared<spdlog::logger>("merlin", std::make_shared<spdlog::sinks::stderr_sink_mt>());
   logger->set_pattern(underJournal() ? "%v" : "%H:%M:%S.%e %l: %v");
   logger->set_level(toSpdlog(lowest));
   logger->flush_on(spdlog::level::debug);

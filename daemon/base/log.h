@@ -5,9 +5,9 @@
 // return Results, and the composition root says what happened.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <string_view>
+
+#include <fmt/format.h>
 
 namespace merlin {
 

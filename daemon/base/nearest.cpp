@@ -1,4 +1,4 @@
-#include "config/nearest.h"
+#include "daemon/base/nearest.h"
 
 #include <algorithm>
 #include <numeric>
@@ -6,28 +6,34 @@
 namespace merlin {
 namespace {
 
+constexpr std::size_t kLongest = 64;
+
+// F. J. Damerau, "A technique for computer detection and correction of spelling errors", 1964, in
+// the form that edits no part twice.
 std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
+  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+  std::iota(last.begin(), last.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
     }
+    before.swap(last);
+    last.swap(row);
   }
-  return row[b.size()];
+  return last[b.size()];
 }
 
 }  // namespace
 
 std::string nearest(std::string_view word, const std::vector<std::string>& known) {
-  std::size_t best = std::max<std::size_t>(word.size() / 3, 1) + 1;
+  if (word.size() > kLongest) return {};
+  std::size_t best = std::max<std::size_t>(word.size() / 2, 1) + 1;
   std::string found;
   for (const std::string& candidate : known) {
-    const std::size_t d = distance(word.substr(0, 64), candidate);
+    const std::size_t d = distance(word, candidate);
     if (d >= best) continue;
     best = d;
     found = candidate;

@@ -7,8 +7,8 @@
 
 namespace merlin {
 
-// By edit distance (V. Levenshtein, 1966), at most a third of the word's length away; empty if none
-// is that near. Ties go to the first.
+// By edits of one letter or swaps of two neighbours (optimal string alignment distance), at most
+// half of the word's length away; empty if none is that near. Ties go to the first.
 std::string nearest(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace merlin

@@ -1,12 +1,12 @@
 #include "daemon/base/shared_memory.h"
 
+#include <cerrno>
+#include <cstring>
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
-
-#include <cerrno>
-#include <cstring>
 
 namespace merlin {
 namespace {
@@ -38,7 +38,8 @@ bool isLocked(int fd) {
 // Whether `fd` is still what the name stands for: a stale object may be replaced under our feet.
 bool isCurrent(int fd, const std::string& name) {
   const UniqueFd again(::shm_open(name.c_str(), O_RDONLY | O_CLOEXEC, 0));
-  struct stat mine {}, named {};
+  struct stat mine {
+  }, named{};
   return again.valid() && ::fstat(fd, &mine) == 0 && ::fstat(again.get(), &named) == 0 &&
          mine.st_ino == named.st_ino;
 }

@@ -1,9 +1,9 @@
 // UniqueFd: owns one file descriptor; closes it once.
 #pragma once
 
-#include <unistd.h>
-
 #include <utility>
+
+#include <unistd.h>
 
 namespace merlin {
 

@@ -1,8 +1,8 @@
 #include "daemon/cli/command.h"
 
-#include <fmt/format.h>
-
 #include <cstdio>
+
+#include <fmt/format.h>
 
 #include "daemon/cli/exit_status.h"
 
@@ -14,7 +14,8 @@ int fail(const Error& error) {
 }
 
 void addInstance(CLI::App& app, std::string& instance) {
-  app.add_option("--instance", instance, "Which daemon, by the \"instance\" of its configuration")->capture_default_str();
+  app.add_option("--instance", instance, "Which daemon, by the \"instance\" of its configuration")
+      ->capture_default_str();
 }
 
 }  // namespace merlin::cli

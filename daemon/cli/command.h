@@ -1,9 +1,10 @@
 // The subcommands of `merlin`: how each adds itself to the command line, and what they share.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+
+#include <CLI/CLI.hpp>
 
 #include "daemon/base/result.h"
 

@@ -1,11 +1,11 @@
 // merlin emulate: a device on a pseudo-terminal, for a wall without hardware.
+#include <cerrno>
+#include <memory>
+
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/signalfd.h>
-
-#include <cerrno>
-#include <memory>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/unique_fd.h"
@@ -44,7 +44,8 @@ int serve(const io::PtyMaster& line, emulate::Emulator& device, const Clock& clo
       out.clear();
     }
     const Duration until = std::max<Duration>(device.nextDue() - clock.now(), Duration::zero());
-    const timespec limit{until / std::chrono::seconds(1), (until % std::chrono::seconds(1)).count()};
+    const timespec limit{until / std::chrono::seconds(1),
+                         (until % std::chrono::seconds(1)).count()};
     pollfd fds[] = {{line.fd(), POLLIN, 0}, {stop_fd, POLLIN, 0}};
     if (::ppoll(fds, 2, &limit, nullptr) < 0 && errno != EINTR) return kExitFailed;
     if (fds[1].revents != 0) return kExitDone;
@@ -57,14 +58,16 @@ int serve(const io::PtyMaster& line, emulate::Emulator& device, const Clock& clo
 int emulateDevice(const EmulateOptions& options) {
   const emulate::EmulatorEntry* entry = emulate::findEmulator(options.device);
   const emulate::MotionScript* script = emulate::findMotionScript(options.script);
-  if (!entry || !script) return fail({Errc::kInvalidArgument, "no such device or script"});  // CLI11 has checked both
+  if (!entry || !script)
+    return fail({Errc::kInvalidArgument, "no such device or script"});  // CLI11 has checked both
   emulate::EmulatorSettings settings;
   settings.baud = options.baud > 0 ? options.baud : entry->baud;
   settings.model = options.model;
   settings.seed = options.seed;
   settings.garbage_every = options.garbage_every;
   if (!emulate::hasModel(*entry, options.model)) {
-    return fail({Errc::kInvalidArgument, fmt::format("--model {}: models of {} are {}", options.model, entry->name, entry->models)});
+    return fail({Errc::kInvalidArgument, fmt::format("--model {}: models of {} are {}",
+                                                     options.model, entry->name, entry->models)});
   }
   const UniqueFd stop = stopSignals();
   const SystemClock clock;
@@ -72,7 +75,8 @@ int emulateDevice(const EmulateOptions& options) {
   if (!line) return fail(line.error());
   const Timestamp start = options.epoch_ns > 0 ? fromNanoseconds(options.epoch_ns) : clock.now();
   const auto device = entry->make(settings, *script, start);
-  fmt::print("{} on pty:{}\n", entry->name, options.link.empty() ? line->slavePath() : options.link);
+  fmt::print("{} on pty:{}\n", entry->name,
+             options.link.empty() ? line->slavePath() : options.link);
   std::fflush(stdout);
   return serve(*line, *device, clock, stop.get());
 }
@@ -92,15 +96,25 @@ void addEmulate(CLI::App& app, Run& run) {
     scripts.emplace_back(s.name);
     help += fmt::format("\n  {:11} {}", s.name, s.help);
   }
-  CLI::App* command = app.add_subcommand("emulate", help + "\nExample: merlin emulate spaceball --link /tmp/ball");
-  command->add_option("device", options->device, "Which one")->required()->check(CLI::IsMember(devices));
-  command->add_option("--link", options->link, "A symbolic link to the pseudo-terminal, made there");
-  command->add_option("--script", options->script, "What the emulated person does")->check(CLI::IsMember(scripts))->capture_default_str();
+  CLI::App* command =
+      app.add_subcommand("emulate", help + "\nExample: merlin emulate spaceball --link /tmp/ball");
+  command->add_option("device", options->device, "Which one")
+      ->required()
+      ->check(CLI::IsMember(devices));
+  command->add_option("--link", options->link,
+                      "A symbolic link to the pseudo-terminal, made there");
+  command->add_option("--script", options->script, "What the emulated person does")
+      ->check(CLI::IsMember(scripts))
+      ->capture_default_str();
   command->add_option("--model", options->model, "Of the device");
   command->add_option("--baud", options->baud, "Speed of the line");
-  command->add_option("--garbage-every", options->garbage_every, "Records between two bursts of random bytes; 0: none")->capture_default_str();
+  command
+      ->add_option("--garbage-every", options->garbage_every,
+                   "Records between two bursts of random bytes; 0: none")
+      ->capture_default_str();
   command->add_option("--seed", options->seed, "Of noise and garbage")->capture_default_str();
-  command->add_option("--epoch-ns", options->epoch_ns, "When the script began, CLOCK_MONOTONIC; so that several devices agree");
+  command->add_option("--epoch-ns", options->epoch_ns,
+                      "When the script began, CLOCK_MONOTONIC; so that several devices agree");
   command->callback([options, &run] { run = [options] { return emulateDevice(*options); }; });
 }
 

@@ -6,8 +6,8 @@
 namespace merlin {
 
 inline constexpr int kExitDone = 0;
-inline constexpr int kExitFailed = 1;          // while running
-inline constexpr int kExitBadInput = 2;        // bad usage or bad input
+inline constexpr int kExitFailed = 1;    // while running
+inline constexpr int kExitBadInput = 2;  // bad usage or bad input
 inline constexpr int kExitBusy = 3;
 
 inline int exitStatus(const Error& error) {

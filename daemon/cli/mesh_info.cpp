@@ -1,7 +1,7 @@
 // merlin mesh info: what a mesh or a model holds.
-#include <fmt/format.h>
-
 #include <memory>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/exit_status.h"
@@ -22,20 +22,31 @@ int info(const InfoOptions& options) {
   const render::Box box = render::boundingBox(a.positions);
   if (options.json) {
     nlohmann::ordered_json features = nlohmann::ordered_json::array();
-    for (const auto& f : a.features) features.push_back({{"name", f.name}, {"dimension", f.dimension}});
-    const nlohmann::ordered_json json = {{"file", options.file}, {"triangles", model->triangleCount()}, {"vertices", model->vertexCount()},
-                                         {"levels", model->levels()}, {"triangles_coarsest", model->trianglesAt(model->levels() - 1)},
-                                         {"features", std::move(features)}, {"box", {{"low", box.low}, {"high", box.high}}},
-                                         {"diagonal", box.diagonal()}, {"about", a.about}};
+    for (const auto& f : a.features)
+      features.push_back({{"name", f.name}, {"dimension", f.dimension}});
+    const nlohmann::ordered_json json = {
+        {"file", options.file},
+        {"triangles", model->triangleCount()},
+        {"vertices", model->vertexCount()},
+        {"levels", model->levels()},
+        {"triangles_coarsest", model->trianglesAt(model->levels() - 1)},
+        {"features", std::move(features)},
+        {"box", {{"low", box.low}, {"high", box.high}}},
+        {"diagonal", box.diagonal()},
+        {"about", a.about}};
     fmt::print("{}\n", json.dump());
     return kExitDone;
   }
-  fmt::print("{}: {} triangles, {} vertices\n", options.file, model->triangleCount(), model->vertexCount());
+  fmt::print("{}: {} triangles, {} vertices\n", options.file, model->triangleCount(),
+             model->vertexCount());
   if (model->levels() > 1) {
-    fmt::print("  levels    {}, down to {} triangles (error estimate {:.3g})\n", model->levels(), model->trianglesAt(model->levels() - 1), model->errorAt(model->levels() - 1));
+    fmt::print("  levels    {}, down to {} triangles (error estimate {:.3g})\n", model->levels(),
+               model->trianglesAt(model->levels() - 1), model->errorAt(model->levels() - 1));
   }
   for (const auto& f : a.features) fmt::print("  feature   {} x {}\n", f.name, f.dimension);
-  fmt::print("  box       {:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}, diagonal {:.6g}\n", box.low[0], box.low[1], box.low[2], box.high[0], box.high[1], box.high[2], box.diagonal());
+  fmt::print("  box       {:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}, diagonal {:.6g}\n",
+             box.low[0], box.low[1], box.low[2], box.high[0], box.high[1], box.high[2],
+             box.diagonal());
   std::string_view about = a.about;
   while (!about.empty()) {
     const std::size_t n = std::min(about.find('\n'), about.size());
@@ -49,7 +60,8 @@ int info(const InfoOptions& options) {
 
 void addMeshInfo(CLI::App& mesh, Run& run) {
   const auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = mesh.add_subcommand("info", "What a mesh or a model holds.\nExample: merlin mesh info scan.mrm --json");
+  CLI::App* command = mesh.add_subcommand(
+      "info", "What a mesh or a model holds.\nExample: merlin mesh info scan.mrm --json");
   command->add_option("file", options->file, ".mrm, .ply or .obj")->required()->type_name("FILE");
   command->add_flag("--json", options->json, "For programs");
   command->callback([options, &run] { run = [options] { return info(*options); }; });

@@ -17,16 +17,23 @@ Result<render::Dendrogram> openModel(const std::string& path) {
 }
 
 void LevelChoice::addTo(CLI::App& command) {
-  CLI::Option_group* group = command.add_option_group("resolution", "Which resolution; without any: the finest");
+  CLI::Option_group* group =
+      command.add_option_group("resolution", "Which resolution; without any: the finest");
   group->add_option("--percent", percent, "Of the triangles")->check(CLI::Range(0.0, 100.0));
   group->add_option("--triangles", triangles, "At most so many");
-  group->add_option("--error", error_percent, "The coarsest whose error estimate is at most this, percent of the box' diagonal")->check(CLI::NonNegativeNumber);
+  group
+      ->add_option(
+          "--error", error_percent,
+          "The coarsest whose error estimate is at most this, percent of the box' diagonal")
+      ->check(CLI::NonNegativeNumber);
   group->require_option(0, 1);
 }
 
 std::size_t LevelChoice::levelOf(const render::Dendrogram& model) const {
   if (triangles) return model.levelFor(*triangles);
-  if (percent) return model.levelFor(static_cast<std::size_t>(std::floor(*percent / 100 * static_cast<double>(model.triangleCount()))));
+  if (percent)
+    return model.levelFor(static_cast<std::size_t>(
+        std::floor(*percent / 100 * static_cast<double>(model.triangleCount()))));
   if (error_percent) {
     const float diagonal = render::boundingBox(model.arrays().positions).diagonal();
     return model.levelForError(static_cast<float>(*error_percent / 100) * diagonal);

@@ -1,12 +1,13 @@
 // merlin mesh reduce: a mesh to a multiresolution model.
-#include <fmt/format.h>
-#include <sys/resource.h>
-
 #include <cstdlib>
 #include <memory>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/files.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
 #include "daemon/cli/progress.h"
@@ -38,7 +39,8 @@ Result<Ok> setWeight(const std::string& text, render::Weights& weights) {
 }
 
 Result<render::Weights> weightsOf(const ReduceOptions& options, const render::Mesh& mesh) {
-  render::Weights weights = options.preset == "typical1998" ? render::typicalWeights(mesh) : render::defaultWeights(mesh);
+  render::Weights weights =
+      options.preset == "typical1998" ? render::typicalWeights(mesh) : render::defaultWeights(mesh);
   for (const std::string& text : options.weights) {
     if (const auto set = setWeight(text, weights); !set) return set.error();
   }
@@ -51,28 +53,45 @@ double peakMegabytes() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-void report(const ReduceOptions& options, const render::LoadedMesh& loaded, const render::ReduceReport& r, double seconds) {
-  const double percent = 100.0 * static_cast<double>(r.error) / render::boundingBox(loaded.mesh.positions).diagonal();
+void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
+            const render::ReduceReport& r, double seconds) {
+  const double percent =
+      100.0 * static_cast<double>(r.error) / render::boundingBox(loaded.mesh.positions).diagonal();
   const double rate = seconds > 0 ? static_cast<double>(r.collapses) / seconds : 0;
   if (options.json) {
-    const nlohmann::ordered_json json = {
-        {"output", options.output}, {"triangles", loaded.mesh.triangleCount()}, {"triangles_left", r.triangles},
-        {"collapses", r.collapses}, {"seconds", seconds}, {"collapses_per_second", rate}, {"peak_memory_mb", peakMegabytes()},
-        {"error_estimate", r.error}, {"error_estimate_percent", percent}, {"flips_refused", r.flips_refused},
-        {"topology_refused", r.topology_refused}, {"degenerate_dropped", loaded.tidied.degenerate},
-        {"unused_dropped", loaded.tidied.unused}, {"stopped", r.stopped}};
+    const nlohmann::ordered_json json = {{"output", options.output},
+                                         {"triangles", loaded.mesh.triangleCount()},
+                                         {"triangles_left", r.triangles},
+                                         {"collapses", r.collapses},
+                                         {"seconds", seconds},
+                                         {"collapses_per_second", rate},
+                                         {"peak_memory_mb", peakMegabytes()},
+                                         {"error_estimate", r.error},
+                                         {"error_estimate_percent", percent},
+                                         {"flips_refused", r.flips_refused},
+                                         {"topology_refused", r.topology_refused},
+                                         {"degenerate_dropped", loaded.tidied.degenerate},
+                                         {"unused_dropped", loaded.tidied.unused},
+                                         {"stopped", r.stopped}};
     fmt::print("{}\n", json.dump());
     return;
   }
-  fmt::print("{}: {} triangles down to {} in {} collapses ({})\n", options.output, loaded.mesh.triangleCount(), r.triangles, r.collapses, r.stopped);
-  fmt::print("  {:.2f} s, {:.0f} collapses a second, peak memory {:.0f} MB\n", seconds, rate, peakMegabytes());
-  fmt::print("  error estimate of the coarsest level {:.4g} ({:.3g} % of the diagonal); {} flips refused\n", r.error, percent, r.flips_refused);
+  fmt::print("{}: {} triangles down to {} in {} collapses ({})\n", options.output,
+             loaded.mesh.triangleCount(), r.triangles, r.collapses, r.stopped);
+  fmt::print("  {:.2f} s, {:.0f} collapses a second, peak memory {:.0f} MB\n", seconds, rate,
+             peakMegabytes());
+  fmt::print(
+      "  error estimate of the coarsest level {:.4g} ({:.3g} % of the diagonal); {} flips "
+      "refused\n",
+      r.error, percent, r.flips_refused);
   if (loaded.tidied.degenerate + loaded.tidied.unused > 0) {
-    fmt::print("  dropped: {} triangles with a vertex twice, {} unused vertices\n", loaded.tidied.degenerate, loaded.tidied.unused);
+    fmt::print("  dropped: {} triangles with a vertex twice, {} unused vertices\n",
+               loaded.tidied.degenerate, loaded.tidied.unused);
   }
 }
 
 int reduceMesh(const ReduceOptions& options) {
+  if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
   auto loaded = render::readMesh(options.input);
   if (!loaded) return fail(loaded.error());
   render::ensureNormals(loaded->mesh);
@@ -85,14 +104,16 @@ int reduceMesh(const ReduceOptions& options) {
   ProgressBar bar("reducing", "collapses", clock);
   const Timestamp began = clock.now();
   const auto all = static_cast<double>(loaded->mesh.triangleCount());
-  const auto reduction = render::reduce(loaded->mesh, settings, [&](const render::ReduceProgress& p) {
-    bar.update(1 - static_cast<double>(p.triangles) / all, p.collapses);
-    return true;
-  });
+  const auto reduction =
+      render::reduce(loaded->mesh, settings, [&](const render::ReduceProgress& p) {
+        bar.update(1 - static_cast<double>(p.triangles) / all, p.collapses);
+        return true;
+      });
   if (!reduction) return fail(reduction.error());
   const double seconds = toSeconds(clock.now() - began);
   bar.finish(reduction->report.collapses);
-  const auto written = render::writeMrm(options.output, render::buildDendrogram(loaded->mesh, reduction->log));
+  const auto written =
+      render::writeMrm(options.output, render::buildDendrogram(loaded->mesh, reduction->log));
   if (!written) return fail(written.error());
   report(options, *loaded, reduction->report, seconds);
   return kExitDone;
@@ -102,16 +123,36 @@ int reduceMesh(const ReduceOptions& options) {
 
 void addMeshReduce(CLI::App& mesh, Run& run) {
   const auto options = std::make_shared<ReduceOptions>();
-  CLI::App* command = mesh.add_subcommand("reduce", "A mesh (.ply, .obj) to a multiresolution model (.mrm), shortest edge in pattern space first.\nExample: merlin mesh reduce scan.ply -o scan.mrm --weight colour=0.1");
+  CLI::App* command = mesh.add_subcommand(
+      "reduce",
+      "A mesh (.ply, .obj) to a multiresolution model (.mrm), shortest edge in pattern space "
+      "first.\nExample: merlin mesh reduce scan.ply -o scan.mrm --weight colour=0.1");
   command->add_option("input", options->input, "The mesh")->required()->type_name("IN");
   command->add_option("-o", options->output, "The model")->required()->type_name("OUT.mrm");
-  command->add_option("--cost", options->cost, "What an edge costs")->check(CLI::IsMember({"pattern"}))->capture_default_str();
-  command->add_option("--preset", options->preset, "Weights to begin with")->check(CLI::IsMember({"default", "typical1998"}))->capture_default_str();
-  command->add_option("--weight", options->weights, "Of a feature: geometry, normal, curvature, boundary, colour or any of the mesh's own; 0 leaves it out")->type_name("FEATURE=W");
-  command->add_flag("--preserve-topology", options->settings.preserve_topology, "Refuse collapses that join or pinch off parts");
-  command->add_option("--triangles", options->settings.min_triangles, "Stop at so many triangles")->capture_default_str();
-  command->add_option("--percent", options->settings.min_percent, "Stop at so many percent of the triangles")->check(CLI::Range(0.0, 100.0))->capture_default_str();
-  command->add_option("--error", options->settings.max_error_percent, "Stop at this error estimate, percent of the box' diagonal")->check(CLI::NonNegativeNumber);
+  command->add_option("--cost", options->cost, "What an edge costs")
+      ->check(CLI::IsMember({"pattern"}))
+      ->capture_default_str();
+  command->add_option("--preset", options->preset, "Weights to begin with")
+      ->check(CLI::IsMember({"default", "typical1998"}))
+      ->capture_default_str();
+  command
+      ->add_option("--weight", options->weights,
+                   "Of a feature: geometry, normal, curvature, boundary, colour or any of the "
+                   "mesh's own; 0 leaves it out")
+      ->type_name("FEATURE=W");
+  command->add_flag("--preserve-topology", options->settings.preserve_topology,
+                    "Refuse collapses that join or pinch off parts");
+  command->add_option("--triangles", options->settings.min_triangles, "Stop at so many triangles")
+      ->capture_default_str();
+  command
+      ->add_option("--percent", options->settings.min_percent,
+                   "Stop at so many percent of the triangles")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  command
+      ->add_option("--error", options->settings.max_error_percent,
+                   "Stop at this error estimate, percent of the box' diagonal")
+      ->check(CLI::NonNegativeNumber);
   command->add_flag("--json", options->json, "The report for programs");
   command->callback([options, &run] { run = [options] { return reduceMesh(*options); }; });
 }

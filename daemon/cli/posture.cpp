@@ -1,7 +1,7 @@
 // merlin posture: train the posture network, and test one.
-#include <fmt/format.h>
-
 #include <memory>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clock.h"
@@ -37,18 +37,21 @@ int train(const PostureOptions& options) {
   ProgressBar bar("training", "steps", clock);
   const nn::TrainSettings limits;
   std::size_t steps = 0;
-  const auto trained = nn::trainShipped(shippedShapes(), options.seed, [&](std::size_t step, double) {
-    steps = step;
-    bar.update(static_cast<double>(step) / static_cast<double>(limits.max_iterations), step);
-    return true;
-  });
+  const auto trained =
+      nn::trainShipped(shippedShapes(), options.seed, [&](std::size_t step, double) {
+        steps = step;
+        bar.update(static_cast<double>(step) / static_cast<double>(limits.max_iterations), step);
+        return true;
+      });
   bar.finish(steps);
   if (!trained) return fail(trained.error());
   const auto saved = nn::saveNetwork(options.output, trained->network, trained->trained);
   if (!saved) return fail(saved.error());
   const nn::TrainReport& r = trained->report;
-  fmt::print("{}: {} postures, mean squared error {:.2g} after {} steps, {:.2f} % of the synthetic training hands right\n",
-             options.output, trained->network.postures.size(), r.mse, r.iterations, 100 * r.accuracy);
+  fmt::print(
+      "{}: {} postures, mean squared error {:.2g} after {} steps, {:.2f} % of the synthetic "
+      "training hands right\n",
+      options.output, trained->network.postures.size(), r.mse, r.iterations, 100 * r.accuracy);
   return kExitDone;
 }
 
@@ -68,13 +71,16 @@ int test(const PostureOptions& options) {
   const nn::Score score = nn::score(file->network, *hands);
   const bool synthetic = options.data.empty();
   if (options.json) {
-    const nlohmann::ordered_json json = {{"accuracy", score.accuracy()}, {"right", score.right}, {"total", score.total},
-                                         {"rejected", score.rejected}, {"synthetic", synthetic}};
+    const nlohmann::ordered_json json = {{"accuracy", score.accuracy()},
+                                         {"right", score.right},
+                                         {"total", score.total},
+                                         {"rejected", score.rejected},
+                                         {"synthetic", synthetic}};
     fmt::print("{}\n", json.dump());
   } else {
-    fmt::print("{} of {} {} right ({:.3f} %), {} taken for no posture, {} for another\n", score.right, score.total,
-               synthetic ? "held-out synthetic hands" : "hands", 100 * score.accuracy(), score.rejected,
-               score.total - score.right - score.rejected);
+    fmt::print("{} of {} {} right ({:.3f} %), {} taken for no posture, {} for another\n",
+               score.right, score.total, synthetic ? "held-out synthetic hands" : "hands",
+               100 * score.accuracy(), score.rejected, score.total - score.right - score.rejected);
   }
   return kExitDone;
 }
@@ -85,13 +91,25 @@ void addPosture(CLI::App& app, Run& run) {
   const auto options = std::make_shared<PostureOptions>();
   CLI::App* posture = app.add_subcommand("posture", "The posture network: train one, test one.");
   posture->require_subcommand(1);
-  CLI::App* train_command = posture->add_subcommand("train", "Train on synthetic hands of the shipped shapes.\nExample: merlin posture train -o postures.json");
-  train_command->add_option("-o", options->output, "The network's file")->required()->type_name("FILE.json");
-  train_command->add_option("--seed", options->seed, "Of hands and first weights")->capture_default_str();
+  CLI::App* train_command =
+      posture->add_subcommand("train",
+                              "Train on synthetic hands of the shipped shapes.\nExample: merlin "
+                              "posture train -o postures.json");
+  train_command->add_option("-o", options->output, "The network's file")
+      ->required()
+      ->type_name("FILE.json");
+  train_command->add_option("--seed", options->seed, "Of hands and first weights")
+      ->capture_default_str();
   train_command->callback([options, &run] { run = [options] { return train(*options); }; });
-  CLI::App* test_command = posture->add_subcommand("test", "How many hands a network names right: held-out synthetic ones, or a CSV file's.\nExample: merlin posture test --network config/postures.json --json");
-  test_command->add_option("--network", options->network, "The network's file")->capture_default_str()->type_name("FILE.json");
-  test_command->add_option("--data", options->data, "Labelled hands: posture,s0..s22 in radians")->type_name("FILE.csv");
+  CLI::App* test_command = posture->add_subcommand(
+      "test",
+      "How many hands a network names right: held-out synthetic ones, or a CSV file's.\nExample: "
+      "merlin posture test --network config/postures.json --json");
+  test_command->add_option("--network", options->network, "The network's file")
+      ->capture_default_str()
+      ->type_name("FILE.json");
+  test_command->add_option("--data", options->data, "Labelled hands: posture,s0..s22 in radians")
+      ->type_name("FILE.csv");
   test_command->add_flag("--json", options->json, "For programs");
   test_command->callback([options, &run] { run = [options] { return test(*options); }; });
 }

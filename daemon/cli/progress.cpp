@@ -1,11 +1,11 @@
 #include "daemon/cli/progress.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <utility>
+
+#include <fmt/format.h>
+#include <unistd.h>
 
 namespace merlin::cli {
 namespace {
@@ -16,7 +16,11 @@ constexpr int kWidth = 30;
 }  // namespace
 
 ProgressBar::ProgressBar(std::string title, std::string unit, const Clock& clock)
-    : title_(std::move(title)), unit_(std::move(unit)), clock_(clock), terminal_(::isatty(STDERR_FILENO) == 1), began_(clock.now()) {}
+    : title_(std::move(title)),
+      unit_(std::move(unit)),
+      clock_(clock),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      began_(clock.now()) {}
 
 void ProgressBar::update(double share, std::size_t count) {
   const Timestamp now = clock_.now();
@@ -40,8 +44,9 @@ void ProgressBar::draw(double share, std::size_t count) {
   const double rate = seconds > 0 ? static_cast<double>(count) / seconds : 0;
   const double left = share > 0 ? seconds * (1 - share) / share : 0;
   const int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * kWidth);
-  fmt::print(stderr, "{}{} [{:#<{}}{:.<{}}] {:3.0f} %  {:.0f} {}/s  {:.1f} s left{}", terminal_ ? "\r" : "", title_, "", full, "",
-             kWidth - full, 100 * share, rate, unit_, left, terminal_ ? "  " : "\n");
+  fmt::print(stderr, "{}{} [{:#<{}}{:.<{}}] {:3.0f} %  {:.0f} {}/s  {:.1f} s left{}",
+             terminal_ ? "\r" : "", title_, "", full, "", kWidth - full, 100 * share, rate, unit_,
+             left, terminal_ ? "  " : "\n");
   std::fflush(stderr);
 }
 

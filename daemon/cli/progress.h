@@ -7,8 +7,8 @@
 
 namespace merlin::cli {
 
-// On a terminal one line that is redrawn ten times a second; elsewhere a line every tenth of the way.
-// Writes to stderr. Thread-bound.
+// On a terminal one line that is redrawn ten times a second; elsewhere a line every tenth of the
+// way. Writes to stderr. Thread-bound.
 class ProgressBar {
  public:
   ProgressBar(std::string title, std::string unit, const Clock& clock);

@@ -20,7 +20,10 @@ Result<std::vector<FoundRole>> findRoles(const std::string& instance) {
   if (auto role = find<shm::WallSegment>(instance, "wall")) roles.push_back(*role);
   if (auto role = find<shm::DevicesSegment>(instance, "devices")) roles.push_back(*role);
   if (!roles.empty()) return roles;
-  return Error{Errc::kIo, fmt::format("no merlind runs as \"{0}\" (no living shared memory /{0}-wall or /{0}-devices)", instance)};
+  return Error{
+      Errc::kIo,
+      fmt::format("no merlind runs as \"{0}\" (no living shared memory /{0}-wall or /{0}-devices)",
+                  instance)};
 }
 
 }  // namespace merlin::cli

@@ -1,12 +1,12 @@
 // merlin shm dump: every field of the shared memory, as its own table describes it.
-#include <fmt/format.h>
-
 #include <atomic>
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
@@ -29,7 +29,8 @@ void appendNumbers(Json& list, const std::byte* at, std::uint32_t count) {
     T value;
     std::memcpy(&value, at + i * sizeof value, sizeof value);
     if constexpr (std::is_floating_point_v<T>) {
-      list.push_back(std::isfinite(value) ? Json(std::stod(fmt::format("{:.6g}", value))) : Json(nullptr));
+      list.push_back(std::isfinite(value) ? Json(std::stod(fmt::format("{:.6g}", value)))
+                                          : Json(nullptr));
     } else {
       list.push_back(value);
     }
@@ -71,15 +72,18 @@ Json decode(const shm::Field& f, const std::byte* at) {
 // The field's value, whole; null where it was never written, or is being written each time we look.
 Json readField(const SharedMemory& memory, const shm::Field& f) {
   const std::size_t bytes = sizeOf(f.type[0]) * f.count;
-  if (f.offset + bytes > memory.size() || f.slot + 8 > memory.size() || f.slot % 8 != 0) return nullptr;
-  const auto& sequence = *reinterpret_cast<const std::atomic<std::uint64_t>*>(memory.data() + f.slot);
+  if (f.offset + bytes > memory.size() || f.slot + 8 > memory.size() || f.slot % 8 != 0)
+    return nullptr;
+  const auto& sequence =
+      *reinterpret_cast<const std::atomic<std::uint64_t>*>(memory.data() + f.slot);
   std::vector<std::byte> copy(bytes);
   for (int i = 0; i < 1000; ++i) {
     const auto before = sequence.load(std::memory_order_acquire);
     if (before == 0) return nullptr;
     std::memcpy(copy.data(), memory.data() + f.offset, bytes);
     std::atomic_thread_fence(std::memory_order_acquire);
-    if (before % 2 == 0 && sequence.load(std::memory_order_relaxed) == before) return decode(f, copy.data());
+    if (before % 2 == 0 && sequence.load(std::memory_order_relaxed) == before)
+      return decode(f, copy.data());
   }
   return nullptr;
 }
@@ -87,7 +91,8 @@ Json readField(const SharedMemory& memory, const shm::Field& f) {
 Result<Json> readSegment(const std::string& name) {
   const auto memory = SharedMemory::open(name);
   if (!memory) return memory.error();
-  if (const auto checked = shm::checkHeader(*memory, sizeof(shm::Header), name); !checked) return checked.error();
+  if (const auto checked = shm::checkHeader(*memory, sizeof(shm::Header), name); !checked)
+    return checked.error();
   const auto& header = *reinterpret_cast<const shm::Header*>(memory->data());
   Json fields = Json::object();
   for (std::uint32_t i = 0; i < header.field_count; ++i) {
@@ -107,7 +112,12 @@ int dump(const DumpOptions& options) {
     if (!fields) return fail(fields.error());
     all[name] = *std::move(fields);
   }
-  if (all.empty()) return fail({Errc::kIo, fmt::format("there is no shared memory /{0}-devices or /{0}-wall: no merlind runs as \"{0}\"", options.instance)});
+  if (all.empty())
+    return fail(
+        {Errc::kIo,
+         fmt::format(
+             "there is no shared memory /{0}-devices or /{0}-wall: no merlind runs as \"{0}\"",
+             options.instance)});
   if (options.json) {
     fmt::print("{}\n", all.dump());
     return kExitDone;
@@ -136,10 +146,12 @@ void addShm(CLI::App& app, Run& run) {
   const auto options = std::make_shared<DumpOptions>();
   CLI::App* shm = app.add_subcommand("shm", "The shared memory that other programs read.");
   shm->require_subcommand(1);
-  CLI::App* command = shm->add_subcommand("dump", "Every field: name, value, unit.\nExample: merlin shm dump --json");
+  CLI::App* command = shm->add_subcommand(
+      "dump", "Every field: name, value, unit.\nExample: merlin shm dump --json");
   addInstance(*command, options->instance);
   command->add_flag("--json", options->json, "One JSON object");
-  command->add_option("--follow", options->follow_s, "Again and again, every so many seconds")->type_name("SECONDS");
+  command->add_option("--follow", options->follow_s, "Again and again, every so many seconds")
+      ->type_name("SECONDS");
   command->callback([options, &run] { run = [options] { return dumpRepeatedly(*options); }; });
 }
 

@@ -1,7 +1,7 @@
 // merlin snapshot: what the wall shows now, as a PNG file.
-#include <fmt/format.h>
-
 #include <memory>
+
+#include <fmt/format.h>
 
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
@@ -21,15 +21,18 @@ struct SnapshotOptions {
 int snapshot(const SnapshotOptions& options) {
   auto frame = render::captureFrame(shm::segmentName(options.instance, "framebuffer"));
   if (!frame && frame.error().code == Errc::kNotFound) {
-    return fail({Errc::kIo, fmt::format("no merlind shows a wall as \"{}\": {}", options.instance, frame.error().what)});
+    return fail({Errc::kIo, fmt::format("no merlind shows a wall as \"{}\": {}", options.instance,
+                                        frame.error().what)});
   }
   if (!frame) return fail(frame.error());
   if (options.wall) *frame = render::wallPicture(*frame);
-  if (frame->pixels.empty()) return fail({Errc::kUnsupported, "this wall has no tiles but the operator's view"});
+  if (frame->pixels.empty())
+    return fail({Errc::kUnsupported, "this wall has no tiles but the operator's view"});
   const auto written = render::writePng(options.output, frame->width, frame->height, frame->pixels);
   if (!written) return fail(written.error());
-  fmt::print("{}: {} x {}, frame {}, {} triangles{}\n", options.output, frame->width, frame->height, frame->info.sequence,
-             frame->info.triangles, frame->info.full_detail ? ", full detail" : "");
+  fmt::print("{}: {} x {}, frame {}, {} triangles{}\n", options.output, frame->width, frame->height,
+             frame->info.sequence, frame->info.triangles,
+             frame->info.full_detail ? ", full detail" : "");
   return kExitDone;
 }
 
@@ -37,10 +40,12 @@ int snapshot(const SnapshotOptions& options) {
 
 void addSnapshot(CLI::App& app, Run& run) {
   const auto options = std::make_shared<SnapshotOptions>();
-  CLI::App* command = app.add_subcommand("snapshot", "What the wall shows now, as a PNG file.\nExample: merlin snapshot -o frame.png");
+  CLI::App* command = app.add_subcommand(
+      "snapshot", "What the wall shows now, as a PNG file.\nExample: merlin snapshot -o frame.png");
   addInstance(*command, options->instance);
   command->add_option("-o", options->output, "The file")->required()->type_name("FILE.png");
-  command->add_flag("--wall", options->wall, "The picture on the wall: its tiles side by side, without the operator's view");
+  command->add_flag("--wall", options->wall,
+                    "The picture on the wall: its tiles side by side, without the operator's view");
   command->callback([options, &run] { run = [options] { return snapshot(*options); }; });
 }
 

@@ -1,7 +1,7 @@
 // merlin status: how the daemon is, once.
-#include <fmt/format.h>
-
 #include <memory>
+
+#include <fmt/format.h>
 
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
@@ -15,7 +15,8 @@ void addStatus(CLI::App& app, Run& run) {
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("status", "How the wall and the devices are.\nExample: merlin status --json");
+  CLI::App* command = app.add_subcommand(
+      "status", "How the wall and the devices are.\nExample: merlin status --json");
   addInstance(*command, options->instance);
   command->add_flag("--json", options->json, "For programs");
   command->callback([options, &run] {

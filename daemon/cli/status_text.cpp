@@ -16,7 +16,8 @@ constexpr Duration kPatience = std::chrono::seconds(2);
 std::string deviceDetail(const Json& d) {
   const std::string reason = d.value("reason", "");
   if (d.value("health", "") != "ok") return reason;
-  return fmt::format("{:5.1f} Hz  {}{}", d.value("rate_hz", 0.0), d.value("identity", ""), reason.empty() ? "" : "; " + reason);
+  return fmt::format("{:5.1f} Hz  {}{}", d.value("rate_hz", 0.0), d.value("identity", ""),
+                     reason.empty() ? "" : "; " + reason);
 }
 
 std::string pictureWord(const Json& s) {
@@ -54,12 +55,19 @@ Result<Json> askStatus(const std::string& instance) {
 std::string statusTable(const Json& s) {
   std::string text;
   if (s.contains("rate_asked")) {
-    text += fmt::format("wall     {:.1f} of {:.0f} Hz held, {} triangles, {} (ball: {})\n", s.value("rate_held", 0.0),
-                        s.value("rate_asked", 0.0), s.value("triangles", 0), pictureWord(s), s.value("mode", ""));
-    text += fmt::format("frames   {} drawn; late {:.2f} % of those due while it moved (last minute {:.2f} %), at most {} in a row\n",
-                        s.value("frames", 0), s.value("late_percent", 0.0), s.value("late_percent_1min", 0.0), s.value("longest_late", 0));
-    text += fmt::format("work     {:.1f} ms a frame (median of the last second), {:.0f} % of the period, head room {:.0f} %\n",
-                        s.value("work_median_ms", 0.0), 100 * s.value("utilisation", 0.0), 100 * s.value("head_room", 0.0));
+    text += fmt::format("wall     {:.1f} of {:.0f} Hz held, {} triangles, {} (ball: {})\n",
+                        s.value("rate_held", 0.0), s.value("rate_asked", 0.0),
+                        s.value("triangles", 0), pictureWord(s), s.value("mode", ""));
+    text += fmt::format(
+        "frames   {} drawn; late {:.2f} % of those due while it moved (last minute {:.2f} %), at "
+        "most {} in a row\n",
+        s.value("frames", 0), s.value("late_percent", 0.0), s.value("late_percent_1min", 0.0),
+        s.value("longest_late", 0));
+    text += fmt::format(
+        "work     {:.1f} ms a frame (median of the last second), {:.0f} % of the period, head room "
+        "{:.0f} %\n",
+        s.value("work_median_ms", 0.0), 100 * s.value("utilisation", 0.0),
+        100 * s.value("head_room", 0.0));
   }
   if (!s.contains("devices")) return text;
   const std::string posture = s.value("posture", "");
@@ -73,13 +81,15 @@ std::string statusTable(const Json& s) {
 std::string statusLine(const Json& s) {
   std::string line;
   if (s.contains("rate_asked")) {
-    line = fmt::format("{:4.1f} of {:.0f} Hz  {:7} triangles  {:5.2f} % late  {:18}", s.value("rate_held", 0.0), s.value("rate_asked", 0.0),
+    line = fmt::format("{:4.1f} of {:.0f} Hz  {:7} triangles  {:5.2f} % late  {:18}",
+                       s.value("rate_held", 0.0), s.value("rate_asked", 0.0),
                        s.value("triangles", 0), s.value("late_percent", 0.0), pictureWord(s));
   }
   if (!s.contains("devices")) return line;
   const std::string posture = s.value("posture", "");
   line += fmt::format("  posture {:8}", posture.empty() ? "-" : posture);
-  for (const auto& [name, device] : s["devices"].items()) line += fmt::format("  {} {}", name, device.value("health", ""));
+  for (const auto& [name, device] : s["devices"].items())
+    line += fmt::format("  {} {}", name, device.value("health", ""));
   return line;
 }
 

@@ -1,8 +1,9 @@
 // A daemon's status as JSON of both roles, and as a table for a person.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include <nlohmann/json.hpp>
 
 #include "daemon/base/result.h"
 

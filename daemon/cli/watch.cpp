@@ -1,7 +1,7 @@
 // merlin watch: one line a second, until interrupted.
-#include <fmt/format.h>
-
 #include <memory>
+
+#include <fmt/format.h>
 
 #include "daemon/base/clock.h"
 #include "daemon/cli/command.h"
@@ -29,15 +29,18 @@ int watch(const WatchOptions& options) {
   const Timestamp began = clock.now();
   nlohmann::ordered_json both = nlohmann::ordered_json::object();
   std::size_t documents = 0;
-  const auto followed = status::follow(endpoints, {"status"}, std::chrono::seconds(3), [&](const std::string&, const std::string& document) {
-    mergeStatus(both, document);
-    if (++documents % roles->size() == 0) {
-      fmt::print("{}\n", options.json ? both.dump() : statusLine(both));
-      std::fflush(stdout);
-    }
-    return options.seconds <= 0 || toSeconds(clock.now() - began) < options.seconds;
-  });
-  if (!followed) return fail({followed.error().code, "the daemon has gone: " + followed.error().what});
+  const auto followed = status::follow(
+      endpoints, {"status"}, std::chrono::seconds(3),
+      [&](const std::string&, const std::string& document) {
+        mergeStatus(both, document);
+        if (++documents % roles->size() == 0) {
+          fmt::print("{}\n", options.json ? both.dump() : statusLine(both));
+          std::fflush(stdout);
+        }
+        return options.seconds <= 0 || toSeconds(clock.now() - began) < options.seconds;
+      });
+  if (!followed)
+    return fail({followed.error().code, "the daemon has gone: " + followed.error().what});
   return kExitDone;
 }
 
@@ -45,9 +48,13 @@ int watch(const WatchOptions& options) {
 
 void addWatch(CLI::App& app, Run& run) {
   const auto options = std::make_shared<WatchOptions>();
-  CLI::App* command = app.add_subcommand("watch", "One line a second: rate asked, rate held, triangles, late frames, posture, devices.\nExample: merlin watch --for 20");
+  CLI::App* command =
+      app.add_subcommand("watch",
+                         "One line a second: rate asked, rate held, triangles, late frames, "
+                         "posture, devices.\nExample: merlin watch --for 20");
   addInstance(*command, options->instance);
-  command->add_option("--for", options->seconds, "Seconds, then end; without it: until interrupted")->type_name("SECONDS");
+  command->add_option("--for", options->seconds, "Seconds, then end; without it: until interrupted")
+      ->type_name("SECONDS");
   command->add_flag("--json", options->json, "One JSON document a line");
   command->callback([options, &run] { run = [options] { return watch(*options); }; });
 }

@@ -1,10 +1,10 @@
 #include "daemon/devices/devices_role.h"
 
-#include <pthread.h>
-#include <sched.h>
-
 #include <cstring>
 #include <utility>
+
+#include <pthread.h>
+#include <sched.h>
 
 #include "daemon/base/log.h"
 #include "daemon/shm/fields.h"
@@ -21,7 +21,8 @@ void askForRealTime() {
   const sched_param priority{kRealTimePriority};
   if (::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &priority) != 0) {
     static std::atomic<bool> said{false};
-    if (!said.exchange(true)) logInfo("no real-time priority for device threads (LimitRTPRIO would allow it)");
+    if (!said.exchange(true))
+      logInfo("no real-time priority for device threads (LimitRTPRIO would allow it)");
   }
 }
 
@@ -39,16 +40,20 @@ DeviceHealth notConfigured(Timestamp now) {
 DevicesRole::DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, Clock& clock)
     : segment_(std::move(segment)), clock_(clock), sink_(*segment_) {}
 
-Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings, std::uint64_t generation,
-                                                       const shm::Endpoints& endpoints, Clock& clock) {
-  auto segment = shm::SegmentWriter<shm::DevicesSegment>::make(shm::segmentName(settings.instance, "devices"),
-                                                               shm::devicesFields(), generation, clock.now(), endpoints);
+Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
+                                                       std::uint64_t generation,
+                                                       const shm::Endpoints& endpoints,
+                                                       Clock& clock) {
+  auto segment = shm::SegmentWriter<shm::DevicesSegment>::make(
+      shm::segmentName(settings.instance, "devices"), shm::devicesFields(), generation, clock.now(),
+      endpoints);
   if (!segment) return segment.error();
   std::unique_ptr<DevicesRole> role(new DevicesRole(*std::move(segment), clock));
   if (!settings.devices.postures.empty()) {
     const auto file = nn::loadNetwork(settings.devices.postures);
     if (!file) return file.error();
-    role->posture_sink_ = std::make_unique<PostureSink>(file->network, role->segment_->posture, role->sink_);
+    role->posture_sink_ =
+        std::make_unique<PostureSink>(file->network, role->segment_->posture, role->sink_);
   }
   const DevicesSettings& d = settings.devices;
   const std::pair<const LineSettings*, std::pair<SampleKind, shm::DeviceIndex>> kLines[] = {
@@ -56,12 +61,14 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
       {&d.tracker_line, {SampleKind::kTracker, shm::kTracker}},
       {&d.ball_line, {SampleKind::kBall, shm::kBall}}};
   for (const auto& [line, what] : kLines) {
-    if (const auto added = role->add(*line, what.first, what.second, settings); !added) return added.error();
+    if (const auto added = role->add(*line, what.first, what.second, settings); !added)
+      return added.error();
   }
   return role;
 }
 
-Result<Ok> DevicesRole::add(const LineSettings& line, SampleKind kind, shm::DeviceIndex index, const Settings& settings) {
+Result<Ok> DevicesRole::add(const LineSettings& line, SampleKind kind, shm::DeviceIndex index,
+                            const Settings& settings) {
   shm::SeqSlot<DeviceHealth>& slot = segment_->health[index];
   slot.publish(notConfigured(clock_.now()));
   if (line.port.empty()) return Ok{};
@@ -70,7 +77,9 @@ Result<Ok> DevicesRole::add(const LineSettings& line, SampleKind kind, shm::Devi
   const auto address = io::parsePort(line.port);
   if (!address) return address.error();
   const DriverSettings own{settings.devices.glove, settings.devices.tracker, settings.devices.ball};
-  SampleSink& sink = kind == SampleKind::kGlove && posture_sink_ ? static_cast<SampleSink&>(*posture_sink_) : sink_;
+  SampleSink& sink = kind == SampleKind::kGlove && posture_sink_
+                         ? static_cast<SampleSink&>(*posture_sink_)
+                         : sink_;
   health_.push_back(std::make_unique<shm::ShmHealthSink>(slot));
   DeviceLoopSettings loop;
   loop.port = line.port;

@@ -9,9 +9,9 @@
 
 #include "config/settings.h"
 #include "daemon/base/clock.h"
+#include "daemon/devices/posture_sink.h"
 #include "daemon/shm/segment.h"
 #include "daemon/shm/shm_sink.h"
-#include "daemon/devices/posture_sink.h"
 #include "drivers/loop/device_loop.h"
 #include "drivers/registry.h"
 
@@ -21,7 +21,8 @@ class DevicesRole {
  public:
   // Makes the segment; nothing runs yet. Errors: kBusy (a living daemon has the segment), kIo; what
   // is wrong with the posture network's file.
-  static Result<std::unique_ptr<DevicesRole>> make(const Settings& settings, std::uint64_t generation,
+  static Result<std::unique_ptr<DevicesRole>> make(const Settings& settings,
+                                                   std::uint64_t generation,
                                                    const shm::Endpoints& endpoints, Clock& clock);
   ~DevicesRole();  // stops and joins the device threads
   DevicesRole(const DevicesRole&) = delete;
@@ -35,7 +36,8 @@ class DevicesRole {
 
  private:
   DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, Clock& clock);
-  Result<Ok> add(const LineSettings& line, SampleKind kind, shm::DeviceIndex index, const Settings& settings);
+  Result<Ok> add(const LineSettings& line, SampleKind kind, shm::DeviceIndex index,
+                 const Settings& settings);
 
   shm::SegmentWriter<shm::DevicesSegment> segment_;
   Clock& clock_;

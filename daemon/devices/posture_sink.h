@@ -1,4 +1,5 @@
-// PostureSink: recognises the posture of each glove sample, on the glove's own thread, and hands both on.
+// PostureSink: recognises the posture of each glove sample, on the glove's own thread, and hands
+// both on.
 #pragma once
 
 #include "daemon/shm/layout.h"
@@ -7,11 +8,12 @@
 
 namespace merlin::devices {
 
-// Takes no lock, allocates nothing. The posture is published before its glove sample, so that whoever
-// wakes for the sample finds the posture.
+// Takes no lock, allocates nothing. The posture is published before its glove sample, so that
+// whoever wakes for the sample finds the posture.
 class PostureSink final : public SampleSink {
  public:
-  PostureSink(const nn::PostureNetwork& network, shm::Channel<PostureSample>& postures, SampleSink& next)
+  PostureSink(const nn::PostureNetwork& network, shm::Channel<PostureSample>& postures,
+              SampleSink& next)
       : network_(network), postures_(postures), next_(next) {}
 
   void publish(const GloveSample& sample) noexcept override;

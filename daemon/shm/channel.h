@@ -1,16 +1,16 @@
-// Channel: one device's samples in shared memory: the newest, a ring of the last, and a word to wait
-// on.
+// Channel: one device's samples in shared memory: the newest, a ring of the last, and a word to
+// wait on.
 #pragma once
-
-#include <linux/futex.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include <array>
 #include <atomic>
 #include <climits>
 #include <cstdint>
 #include <optional>
+
+#include <linux/futex.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include "daemon/shm/seq_slot.h"
 

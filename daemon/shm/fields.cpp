@@ -1,7 +1,5 @@
 #include "daemon/shm/fields.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cstring>
@@ -9,20 +7,31 @@
 #include <string_view>
 #include <type_traits>
 
+#include <fmt/format.h>
+
 namespace merlin::shm {
 namespace {
 
 template <typename T>
 constexpr char kType = '?';
-template <> constexpr char kType<std::int64_t> = 'q';
-template <> constexpr char kType<std::uint64_t> = 'Q';
-template <> constexpr char kType<std::int32_t> = 'i';
-template <> constexpr char kType<std::uint32_t> = 'I';
-template <> constexpr char kType<HealthState> = 'I';
-template <> constexpr char kType<std::int16_t> = 'h';
-template <> constexpr char kType<std::uint8_t> = 'B';
-template <> constexpr char kType<float> = 'f';
-template <> constexpr char kType<char> = 's';
+template <>
+constexpr char kType<std::int64_t> = 'q';
+template <>
+constexpr char kType<std::uint64_t> = 'Q';
+template <>
+constexpr char kType<std::int32_t> = 'i';
+template <>
+constexpr char kType<std::uint32_t> = 'I';
+template <>
+constexpr char kType<HealthState> = 'I';
+template <>
+constexpr char kType<std::int16_t> = 'h';
+template <>
+constexpr char kType<std::uint8_t> = 'B';
+template <>
+constexpr char kType<float> = 'f';
+template <>
+constexpr char kType<char> = 's';
 
 constexpr std::size_t kPayload = 8;  // of a SeqSlot: after its sequence
 

@@ -5,8 +5,8 @@
 // C++ and Python readers need no header file; read_merlin.py beside this file is one in 30 lines.
 //
 // One writer a slot, named here. No pointers, no locks; a field's meaning never changes. Fields are
-// only ever appended; any change of an offset bumps kVersion, and a client refuses a version that it
-// does not know.
+// only ever appended; any change of an offset bumps kVersion, and a client refuses a version that
+// it does not know.
 #pragma once
 
 #include <atomic>
@@ -23,12 +23,12 @@ inline constexpr std::uint32_t kMagic = 0x4E4C524D;  // "MRLN" in memory
 inline constexpr std::uint32_t kVersion = 1;
 inline constexpr std::size_t kMostFields = 96;
 
-// One field of the segment. `type` is a letter of Python's struct module (q i64, Q u64, i i32, I u32,
-// h i16, B u8, f f32, d f64, s bytes of text); `slot` is the offset of the u64 sequence that guards
-// it (read it before and after; odd or changed: try again), 0 for none.
+// One field of the segment. `type` is a letter of Python's struct module (q i64, Q u64, i i32, I
+// u32, h i16, B u8, f f32, d f64, s bytes of text); `slot` is the offset of the u64 sequence that
+// guards it (read it before and after; odd or changed: try again), 0 for none.
 struct Field {
-  char name[40];         // "glove.angle_rad"
-  char unit[16];         // "rad"
+  char name[40];  // "glove.angle_rad"
+  char unit[16];  // "rad"
   char type[4];
   std::uint32_t count;   // of values of that type
   std::uint32_t offset;  // from the segment's start [bytes]
@@ -38,8 +38,8 @@ static_assert(sizeof(Field) == 72);
 
 struct Header {
   std::uint32_t magic, version;
-  std::uint64_t size;                      // of the whole segment [bytes]
-  std::uint64_t generation;                // new at each start of the daemon: re-open when it changes
+  std::uint64_t size;        // of the whole segment [bytes]
+  std::uint64_t generation;  // new at each start of the daemon: re-open when it changes
   std::atomic<std::int64_t> heartbeat_ns;  // CLOCK_MONOTONIC, ten times a second; old: it is gone
   std::int64_t started_ns;                 // CLOCK_MONOTONIC
   std::uint32_t pid;
@@ -66,29 +66,29 @@ struct DevicesSegment {
 // How the wall fares; written once a frame by the wall's thread. Shares are 0..1.
 struct WallStats {
   std::int64_t updated_ns;
-  std::uint64_t frames;          // drawn and presented since the start
-  std::uint64_t deadlines;       // passed while something moved, since the start
-  std::uint64_t late;            // of these, missed
-  std::uint32_t triangles;       // of the model, in the last frame
-  std::uint32_t level;           // of the dendrogram: collapses done
-  std::uint32_t levels;          // of the dendrogram, all
-  std::uint32_t moving;          // 1 while something moves
-  std::uint32_t full_detail;     // 1 while nothing is left out
-  std::uint32_t longest_late;    // frames late in a row, at most, since the start
+  std::uint64_t frames;        // drawn and presented since the start
+  std::uint64_t deadlines;     // passed while something moved, since the start
+  std::uint64_t late;          // of these, missed
+  std::uint32_t triangles;     // of the model, in the last frame
+  std::uint32_t level;         // of the dendrogram: collapses done
+  std::uint32_t levels;        // of the dendrogram, all
+  std::uint32_t moving;        // 1 while something moves
+  std::uint32_t full_detail;   // 1 while nothing is left out
+  std::uint32_t longest_late;  // frames late in a row, at most, since the start
   float rate_asked_hz;
-  float rate_held_hz;            // deadlines met over the last second; an unchanged picture meets its
+  float rate_held_hz;  // deadlines met over the last second; an unchanged picture meets its
   float late_share_1s, late_share_1min, late_share;
-  float work_ms;                 // of the last frame, from its begin to its last pixel
-  float work_median_ms;          // of the last second's frames
-  float utilisation;             // work / period, of the last second's moving frames
-  float head_room;               // the governor's, share of the period
-  float cost_fixed_ms;           // its model: work = fixed + coefficient * triangles^0.65
+  float work_ms;         // of the last frame, from its begin to its last pixel
+  float work_median_ms;  // of the last second's frames
+  float utilisation;     // work / period, of the last second's moving frames
+  float head_room;       // the governor's, share of the period
+  float cost_fixed_ms;   // its model: work = fixed + coefficient * triangles^0.65
   float cost_coefficient_us;
-  float input_age_ms;            // of the newest sample, when the last frame began
-  float still_to_full_s;         // last time: from standstill to full detail
-  std::uint32_t grabbed;         // 1 while a hand holds the model
-  char mode[16];                 // of the ball: "object" or "fly"
-  char posture[20];              // the newest, empty for none
+  float input_age_ms;     // of the newest sample, when the last frame began
+  float still_to_full_s;  // last time: from standstill to full detail
+  std::uint32_t grabbed;  // 1 while a hand holds the model
+  char mode[16];          // of the ball: "object" or "fly"
+  char posture[20];       // the newest, empty for none
   std::uint32_t reserved;
 };
 static_assert(sizeof(WallStats) == 152 && offsetof(WallStats, triangles) == 32);

@@ -1,11 +1,11 @@
 #include "daemon/shm/segment.h"
 
+#include <algorithm>
+#include <new>
+
 #include <fmt/format.h>
 #include <sys/random.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <new>
 
 #include "daemon/shm/fields.h"
 
@@ -27,11 +27,13 @@ std::string segmentName(const std::string& instance, const char* what) {
 
 std::uint64_t newGeneration() {
   std::uint64_t number = 0;
-  if (::getrandom(&number, sizeof number, 0) != sizeof number) number = static_cast<std::uint64_t>(::getpid());
+  if (::getrandom(&number, sizeof number, 0) != sizeof number)
+    number = static_cast<std::uint64_t>(::getpid());
   return number | 1;  // never 0
 }
 
-void fillHeader(Header& h, std::size_t size, std::uint64_t generation, Timestamp now, const Endpoints& endpoints) {
+void fillHeader(Header& h, std::size_t size, std::uint64_t generation, Timestamp now,
+                const Endpoints& endpoints) {
   h.size = size;
   h.generation = generation;
   h.heartbeat_ns.store(toNanoseconds(now), std::memory_order_relaxed);
@@ -40,12 +42,15 @@ void fillHeader(Header& h, std::size_t size, std::uint64_t generation, Timestamp
   setText(h.status_endpoint, endpoints.status);
   setText(h.command_endpoint, endpoints.command);
   h.version = kVersion;
-  std::atomic_ref(h.magic).store(kMagic, std::memory_order_release);  // last: a reader sees all or none
+  std::atomic_ref(h.magic).store(kMagic,
+                                 std::memory_order_release);  // last: a reader sees all or none
 }
 
-Result<Ok> checkHeader(const SharedMemory& memory, std::size_t least_size, const std::string& name) {
+Result<Ok> checkHeader(const SharedMemory& memory, std::size_t least_size,
+                       const std::string& name) {
   if (memory.size() < sizeof(Header)) {
-    return Error{Errc::kMalformed, fmt::format("shared memory {}: {} bytes are too few", name, memory.size())};
+    return Error{Errc::kMalformed,
+                 fmt::format("shared memory {}: {} bytes are too few", name, memory.size())};
   }
   const auto& h = *reinterpret_cast<const Header*>(memory.data());
   if (h.magic != kMagic) {
@@ -53,7 +58,8 @@ Result<Ok> checkHeader(const SharedMemory& memory, std::size_t least_size, const
   }
   if (h.version != kVersion) {
     return Error{Errc::kUnsupported,
-                 fmt::format("shared memory {}: is version {}, this program reads {}", name, h.version, kVersion)};
+                 fmt::format("shared memory {}: is version {}, this program reads {}", name,
+                             h.version, kVersion)};
   }
   if (memory.size() < least_size || h.size != memory.size() || h.field_count > kMostFields) {
     return Error{Errc::kMalformed, fmt::format("shared memory {}: its header is damaged", name)};
@@ -62,7 +68,8 @@ Result<Ok> checkHeader(const SharedMemory& memory, std::size_t least_size, const
 }
 
 template <typename Segment>
-Result<SegmentWriter<Segment>> SegmentWriter<Segment>::make(const std::string& name, const std::vector<Field>& fields,
+Result<SegmentWriter<Segment>> SegmentWriter<Segment>::make(const std::string& name,
+                                                            const std::vector<Field>& fields,
                                                             std::uint64_t generation, Timestamp now,
                                                             const Endpoints& endpoints) {
   auto memory = SharedMemory::create(name, sizeof(Segment));
@@ -77,7 +84,8 @@ template <typename Segment>
 Result<SegmentReader<Segment>> SegmentReader<Segment>::open(const std::string& name) {
   auto memory = SharedMemory::open(name);
   if (!memory) return memory.error();
-  if (const auto checked = checkHeader(*memory, sizeof(Segment), name); !checked) return checked.error();
+  if (const auto checked = checkHeader(*memory, sizeof(Segment), name); !checked)
+    return checked.error();
   return SegmentReader(*std::move(memory));
 }
 

@@ -11,8 +11,8 @@
 
 namespace merlin::shm {
 
-// "/merlin-devices" for instance "merlin" and "devices". An instance's name keeps two daemons on one
-// machine, and tests from a daemon, apart.
+// "/merlin-devices" for instance "merlin" and "devices". An instance's name keeps two daemons on
+// one machine, and tests from a daemon, apart.
 std::string segmentName(const std::string& instance, const char* what);
 
 struct Endpoints {
@@ -36,7 +36,8 @@ class SegmentWriter {
  public:
   // Errors: kBusy (a living daemon owns it), kIo.
   static Result<SegmentWriter> make(const std::string& name, const std::vector<Field>& fields,
-                                    std::uint64_t generation, Timestamp now, const Endpoints& endpoints);
+                                    std::uint64_t generation, Timestamp now,
+                                    const Endpoints& endpoints);
 
   Segment& operator*() const { return *reinterpret_cast<Segment*>(memory_.data()); }
   Segment* operator->() const { return &**this; }
@@ -63,7 +64,8 @@ class SegmentReader {
   // False once its daemon is gone (killed, or stopped and started anew): open it again.
   bool alive(Timestamp now) const {
     constexpr Duration kGone = std::chrono::seconds(1);
-    return now - fromNanoseconds((*this)->header.heartbeat_ns.load(std::memory_order_relaxed)) < kGone;
+    return now - fromNanoseconds((*this)->header.heartbeat_ns.load(std::memory_order_relaxed)) <
+           kGone;
   }
 
  private:

@@ -1,7 +1,6 @@
 #include "daemon/status/client.h"
 
 #include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 #include <zmq.hpp>
 
@@ -12,7 +11,8 @@ int milliseconds(Duration d) { return static_cast<int>(d / std::chrono::millisec
 
 }  // namespace
 
-Result<std::string> ask(const std::string& command_endpoint, const std::string& command, Duration timeout) {
+Result<std::string> ask(const std::string& command_endpoint, const std::string& command,
+                        Duration timeout) {
   try {
     zmq::context_t context{1};
     zmq::socket_t socket{context, zmq::socket_type::req};
@@ -23,10 +23,12 @@ Result<std::string> ask(const std::string& command_endpoint, const std::string& 
     const std::string request = nlohmann::json{{"command", command}}.dump();
     zmq::message_t answer;
     if (!socket.send(zmq::buffer(request)) || !socket.recv(answer)) {
-      return Error{Errc::kTimeout, fmt::format("{}: no answer within {:.1f} s", command_endpoint, toSeconds(timeout))};
+      return Error{Errc::kTimeout, fmt::format("{}: no answer within {:.1f} s", command_endpoint,
+                                               toSeconds(timeout))};
     }
     const auto json = nlohmann::json::parse(answer.to_string_view(), nullptr, false);
-    if (json.is_object() && json.value("ok", false) && json.contains("result")) return json["result"].dump();
+    if (json.is_object() && json.value("ok", false) && json.contains("result"))
+      return json["result"].dump();
     const std::string why = json.is_object() ? json.value("error", "no reason") : "no JSON";
     return Error{Errc::kInvalidArgument, fmt::format("{}: {}", command_endpoint, why)};
   } catch (const std::exception& e) {
@@ -34,8 +36,9 @@ Result<std::string> ask(const std::string& command_endpoint, const std::string& 
   }
 }
 
-Result<Ok> follow(const std::vector<std::string>& status_endpoints, const std::vector<std::string>& topics,
-                  Duration patience, const std::function<bool(const std::string&, const std::string&)>& take) {
+Result<Ok> follow(const std::vector<std::string>& status_endpoints,
+                  const std::vector<std::string>& topics, Duration patience,
+                  const std::function<bool(const std::string&, const std::string&)>& take) {
   try {
     zmq::context_t context{1};
     zmq::socket_t socket{context, zmq::socket_type::sub};
@@ -45,7 +48,8 @@ Result<Ok> follow(const std::vector<std::string>& status_endpoints, const std::v
     for (const std::string& endpoint : status_endpoints) socket.connect(endpoint);
     for (;;) {
       zmq::message_t topic, document;
-      if (!socket.recv(topic)) return Error{Errc::kTimeout, fmt::format("nothing for {:.1f} s", toSeconds(patience))};
+      if (!socket.recv(topic))
+        return Error{Errc::kTimeout, fmt::format("nothing for {:.1f} s", toSeconds(patience))};
       if (!topic.more() || !socket.recv(document)) continue;
       if (!take(topic.to_string(), document.to_string())) return Ok{};
     }

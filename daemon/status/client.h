@@ -11,12 +11,16 @@
 namespace merlin::status {
 
 // Sends {"command": name}; returns the JSON text of "result".
-// Errors: kTimeout (the daemon is there and does not answer), kIo; what the daemon refused, kInvalidArgument.
-Result<std::string> ask(const std::string& command_endpoint, const std::string& command, Duration timeout);
+// Errors: kTimeout (the daemon is there and does not answer), kIo; what the daemon refused,
+// kInvalidArgument.
+Result<std::string> ask(const std::string& command_endpoint, const std::string& command,
+                        Duration timeout);
 
 // Calls `take` with each document of these topics, from all endpoints, until it returns false or
 // nothing has come for `patience` (kTimeout). Errors: kIo, kTimeout.
-Result<Ok> follow(const std::vector<std::string>& status_endpoints, const std::vector<std::string>& topics,
-                  Duration patience, const std::function<bool(const std::string& topic, const std::string& document)>& take);
+Result<Ok> follow(
+    const std::vector<std::string>& status_endpoints, const std::vector<std::string>& topics,
+    Duration patience,
+    const std::function<bool(const std::string& topic, const std::string& document)>& take);
 
 }  // namespace merlin::status

@@ -2,8 +2,9 @@
 
 #include <cmath>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <span>
+
+#include <nlohmann/json.hpp>
 
 namespace merlin::status {
 namespace {
@@ -29,19 +30,16 @@ Json list(std::span<const T> values) {
   return json;
 }
 
-double ageSeconds(std::int64_t then_ns, Timestamp now) { return round3(toSeconds(now - fromNanoseconds(then_ns))); }
+double ageSeconds(std::int64_t then_ns, Timestamp now) {
+  return round3(toSeconds(now - fromNanoseconds(then_ns)));
+}
 
 Json deviceJson(const DeviceHealth& h, Timestamp now) {
-  return {{"health", healthName(h, now)},
-          {"since_s", ageSeconds(h.since_ns, now)},
-          {"port", text(h.port)},
-          {"identity", text(h.identity)},
-          {"reason", text(h.reason)},
-          {"rate_hz", round3(h.rate_hz)},
-          {"samples", h.samples},
-          {"reconnects", h.reconnects},
-          {"bad_packets", h.bad_packets},
-          {"bad_bytes", h.bad_bytes}};
+  return {{"health", healthName(h, now)}, {"since_s", ageSeconds(h.since_ns, now)},
+          {"port", text(h.port)},         {"identity", text(h.identity)},
+          {"reason", text(h.reason)},     {"rate_hz", round3(h.rate_hz)},
+          {"samples", h.samples},         {"reconnects", h.reconnects},
+          {"bad_packets", h.bad_packets}, {"bad_bytes", h.bad_bytes}};
 }
 
 std::string postureName(const shm::DevicesSegment& segment) {
@@ -53,7 +51,8 @@ std::string postureName(const shm::DevicesSegment& segment) {
 
 const char* healthName(const DeviceHealth& health, Timestamp now) {
   constexpr Duration kStale = std::chrono::seconds(1);
-  if (health.state == HealthState::kOk && now - fromNanoseconds(health.updated_ns) > kStale) return "stale";
+  if (health.state == HealthState::kOk && now - fromNanoseconds(health.updated_ns) > kStale)
+    return "stale";
   switch (health.state) {
     case HealthState::kAbsent: return "absent";
     case HealthState::kOpening: return "opening";
@@ -66,7 +65,8 @@ const char* healthName(const DeviceHealth& health, Timestamp now) {
 std::string devicesStatus(const shm::DevicesSegment& segment, Timestamp now) {
   Json devices = Json::object();
   for (std::size_t i = 0; i < shm::kDevices; ++i) {
-    if (const auto health = segment.health[i].read()) devices[kDeviceNames[i]] = deviceJson(*health, now);
+    if (const auto health = segment.health[i].read())
+      devices[kDeviceNames[i]] = deviceJson(*health, now);
   }
   return dump({{"role", "devices"},
                {"pid", segment.header.pid},
@@ -108,24 +108,32 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now) {
 std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {
   Json json = {{"now_ns", toNanoseconds(now)}};
   if (const auto p = segment.posture.newest()) {
-    json["posture"] = {{"received_ns", p->received_ns}, {"code", p->code}, {"name", text(p->name)},
+    json["posture"] = {{"received_ns", p->received_ns},
+                       {"code", p->code},
+                       {"name", text(p->name)},
                        {"activation", list(std::span<const float>(p->activation))}};
   }
   if (const auto g = segment.glove.newest()) {
-    json["hand"] = {{"received_ns", g->received_ns}, {"counter", g->counter}, {"flags", g->flags},
+    json["hand"] = {{"received_ns", g->received_ns},
+                    {"counter", g->counter},
+                    {"flags", g->flags},
                     {"angle_rad", list(std::span<const float>(g->angle_rad))}};
   }
   Json stations = Json::array();
   for (const auto& channel : segment.tracker) {
     const auto t = channel.newest();
     if (!t) continue;
-    stations.push_back({{"station", t->station}, {"received_ns", t->received_ns}, {"counter", t->counter},
+    stations.push_back({{"station", t->station},
+                        {"received_ns", t->received_ns},
+                        {"counter", t->counter},
                         {"position_m", list(std::span<const float>(t->position_m))},
                         {"orientation_wxyz", list(std::span<const float>(t->orientation_wxyz))}});
   }
   if (!stations.empty()) json["tracker"] = std::move(stations);
   if (const auto b = segment.ball.newest()) {
-    json["ball"] = {{"received_ns", b->received_ns}, {"counter", b->counter}, {"buttons", b->buttons},
+    json["ball"] = {{"received_ns", b->received_ns},
+                    {"counter", b->counter},
+                    {"buttons", b->buttons},
                     {"translation", list(std::span<const float>(b->translation))},
                     {"rotation", list(std::span<const float>(b->rotation))}};
   }
@@ -162,7 +170,8 @@ std::string wallMetrics(const shm::WallSegment& segment) {
 }
 
 std::string event(std::string_view kind, std::string_view what, Timestamp now) {
-  return dump({{"now_ns", toNanoseconds(now)}, {"kind", std::string(kind)}, {"what", std::string(what)}});
+  return dump(
+      {{"now_ns", toNanoseconds(now)}, {"kind", std::string(kind)}, {"what", std::string(what)}});
 }
 
 }  // namespace merlin::status

@@ -1,5 +1,5 @@
-// The JSON documents that MERLIN publishes: what the segments say, for programs. Names and units are a
-// contract (README.md); a name is only ever added.
+// The JSON documents that MERLIN publishes: what the segments say, for programs. Names and units
+// are a contract (README.md); a name is only ever added.
 #pragma once
 
 #include <string>

@@ -1,9 +1,9 @@
 #include "daemon/status/health_events.h"
 
-#include <fmt/format.h>
-
 #include <cstring>
 #include <string_view>
+
+#include <fmt/format.h>
 
 #include "daemon/status/documents.h"
 
@@ -16,7 +16,9 @@ std::vector<std::string> HealthEvents::take(Timestamp now) {
     // Opening is no event: an absent device is opened again every second.
     if (!health || health->state == HealthState::kOpening) continue;
     const std::string_view state = healthName(*health, now);
-    const std::string_view why = health->state == HealthState::kOk && health->reason[0] == '\0' ? health->identity : health->reason;
+    const std::string_view why = health->state == HealthState::kOk && health->reason[0] == '\0'
+                                     ? health->identity
+                                     : health->reason;
     std::string sentence = fmt::format("{}: {} ({})", kDeviceNames[i], state, why);
     if (sentence == last_[i]) continue;
     last_[i] = sentence;

@@ -1,4 +1,5 @@
-// HealthEvents: what changed of the devices since the last look, as sentences and as event documents.
+// HealthEvents: what changed of the devices since the last look, as sentences and as event
+// documents.
 #pragma once
 
 #include <array>
@@ -15,8 +16,8 @@ class HealthEvents {
  public:
   explicit HealthEvents(const shm::DevicesSegment& segment) : segment_(segment) {}
 
-  // "glove: ok (CyberGlove, 22 sensors)", "tracker: absent (/run/merlin/t: No such file)"; a device that
-  // only tries again and again is told once.
+  // "glove: ok (CyberGlove, 22 sensors)", "tracker: absent (/run/merlin/t: No such file)"; a device
+  // that only tries again and again is told once.
   std::vector<std::string> take(Timestamp now);
 
  private:

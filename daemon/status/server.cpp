@@ -1,10 +1,10 @@
 #include "daemon/status/server.h"
 
-#include <fmt/format.h>
-#include <sys/stat.h>
-
-#include <nlohmann/json.hpp>
 #include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/stat.h>
 #include <zmq.hpp>
 
 namespace merlin::status {
@@ -28,7 +28,10 @@ class Umask {
   mode_t before_;
 };
 
-std::string failure(std::string_view what) { return Json{{"ok", false}, {"error", std::string(what)}}.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string failure(std::string_view what) {
+  return Json{{"ok", false}, {"error", std::string(what)}}.dump(-1, ' ', false,
+                                                                Json::error_handler_t::replace);
+}
 
 }  // namespace
 
@@ -38,7 +41,8 @@ struct StatusServer::Sockets {
   zmq::socket_t replier{context, zmq::socket_type::rep};
 };
 
-Result<std::unique_ptr<StatusServer>> StatusServer::start(StatusServerSettings settings, const Clock& clock) {
+Result<std::unique_ptr<StatusServer>> StatusServer::start(StatusServerSettings settings,
+                                                          const Clock& clock) {
   const std::string* endpoint = &settings.status_endpoint;
   try {
     auto sockets = std::make_unique<Sockets>();
@@ -50,13 +54,15 @@ Result<std::unique_ptr<StatusServer>> StatusServer::start(StatusServerSettings s
     sockets->publisher.bind(settings.status_endpoint);
     endpoint = &settings.command_endpoint;
     sockets->replier.bind(settings.command_endpoint);
-    return std::unique_ptr<StatusServer>(new StatusServer(std::move(settings), clock, std::move(sockets)));
+    return std::unique_ptr<StatusServer>(
+        new StatusServer(std::move(settings), clock, std::move(sockets)));
   } catch (const zmq::error_t& e) {
     return Error{Errc::kIo, fmt::format("{}: {}", *endpoint, e.what())};
   }
 }
 
-StatusServer::StatusServer(StatusServerSettings settings, const Clock& clock, std::unique_ptr<Sockets> sockets)
+StatusServer::StatusServer(StatusServerSettings settings, const Clock& clock,
+                           std::unique_ptr<Sockets> sockets)
     : settings_(std::move(settings)),
       clock_(clock),
       sockets_(std::move(sockets)),
@@ -110,14 +116,17 @@ std::string StatusServer::reply(std::string_view request) {
   std::vector<std::string> names;
   for (const Command& c : settings_.commands) names.push_back(c.name);
   if (!json.is_object() || name == json.end() || !name->is_string()) {
-    return failure(R"(a request is {"command": "NAME"}, NAME one of )" + fmt::format("{}", fmt::join(names, ", ")));
+    return failure(R"(a request is {"command": "NAME"}, NAME one of )" +
+                   fmt::format("{}", fmt::join(names, ", ")));
   }
   for (const Command& c : settings_.commands) {
     if (*name != c.name) continue;
     const auto result = c.run();
-    return result ? fmt::format(R"({{"ok": true, "result": {}}})", *result) : failure(result.error().what);
+    return result ? fmt::format(R"({{"ok": true, "result": {}}})", *result)
+                  : failure(result.error().what);
   }
-  return failure(fmt::format("\"{}\" is no command; commands are {}", name->get<std::string>().substr(0, 64), fmt::join(names, ", ")));
+  return failure(fmt::format("\"{}\" is no command; commands are {}",
+                             name->get<std::string>().substr(0, 64), fmt::join(names, ", ")));
 }
 
 }  // namespace merlin::status

@@ -16,12 +16,13 @@ namespace merlin::status {
 
 // One topic that is published by itself.
 struct Publication {
-  std::string topic;                       // "status", "metrics", "sample"
+  std::string topic;  // "status", "metrics", "sample"
   Duration interval;
   std::function<std::string()> document;  // thread: the server's
 };
 
-// A command's answer, JSON without the outer braces' "ok"; an Error becomes {"ok":false,"error":...}.
+// A command's answer, JSON without the outer braces' "ok"; an Error becomes
+// {"ok":false,"error":...}.
 struct Command {
   std::string name, help;
   std::function<Result<std::string>()> run;  // thread: the server's; returns a JSON value
@@ -41,7 +42,8 @@ struct StatusServerSettings {
 class StatusServer {
  public:
   // Errors: kIo, naming the endpoint.
-  static Result<std::unique_ptr<StatusServer>> start(StatusServerSettings settings, const Clock& clock);
+  static Result<std::unique_ptr<StatusServer>> start(StatusServerSettings settings,
+                                                     const Clock& clock);
   ~StatusServer();
   StatusServer(const StatusServer&) = delete;
   StatusServer& operator=(const StatusServer&) = delete;

@@ -17,25 +17,27 @@ bool pushed(const BallSample& b) {
 }  // namespace
 
 template <typename T>
-std::optional<T> DeviceFeed::fresh(const shm::Channel<T>& channel, const shm::SeqSlot<DeviceHealth>& slot,
-                                   Timestamp now) {
+std::optional<T> DeviceFeed::fresh(const shm::Channel<T>& channel,
+                                   const shm::SeqSlot<DeviceHealth>& slot, Timestamp now) {
   const auto sample = channel.newest();
   const auto health = slot.read();
   if (!sample || !health) return std::nullopt;
-  const bool well = health->state == HealthState::kOk && now - fromNanoseconds(health->updated_ns) < stale_after_ * 2;
+  const bool well = health->state == HealthState::kOk &&
+                    now - fromNanoseconds(health->updated_ns) < stale_after_ * 2;
   if (!well && now - fromNanoseconds(health->since_ns) >= stale_after_) return std::nullopt;
   const Duration age = now - fromNanoseconds(sample->received_ns);
-  age_ = age_ == Duration::zero() ? age : std::min(age_, age);
+  age_ = std::min(age, age_.value_or(age));
   return sample;
 }
 
 render::SceneInput DeviceFeed::read(Timestamp now) {
   render::SceneInput input;
-  age_ = Duration::zero();
+  age_.reset();
   const shm::DevicesSegment* d = devices_.get(now);
   if (!d) return input;
   input.ball = fresh(d->ball, d->health[shm::kBall], now);
-  if (input.ball && pushed(*input.ball) && now - fromNanoseconds(input.ball->received_ns) > kPushLasts) {
+  if (input.ball && pushed(*input.ball) &&
+      now - fromNanoseconds(input.ball->received_ns) > kPushLasts) {
     std::fill(std::begin(input.ball->translation), std::end(input.ball->translation), 0.0F);
     std::fill(std::begin(input.ball->rotation), std::end(input.ball->rotation), 0.0F);
   }
@@ -44,8 +46,10 @@ render::SceneInput DeviceFeed::read(Timestamp now) {
   input.glove = fresh(d->glove, d->health[shm::kGlove], now);
   input.posture = fresh(d->posture, d->health[shm::kGlove], now);
   // The line may live while the glove is silent: a posture nobody shows any more lets go.
-  if (input.posture && now - fromNanoseconds(input.posture->received_ns) > stale_after_) input.posture.reset();
-  if (input.hand && now - fromNanoseconds(input.hand->received_ns) > stale_after_) input.hand.reset();
+  if (input.posture && now - fromNanoseconds(input.posture->received_ns) > stale_after_)
+    input.posture.reset();
+  if (input.hand && now - fromNanoseconds(input.hand->received_ns) > stale_after_)
+    input.hand.reset();
   return input;
 }
 

@@ -26,9 +26,10 @@ Eigen::Matrix4f scaling(const render::Dendrogram& model, float radius_m) {
 
 }  // namespace
 
-Result<std::unique_ptr<Picture>> Picture::make(const render::Dendrogram& model, const render::TilePlan& plan,
-                                               const render::RenderSettings& settings, double radius_m,
-                                               const Clock& clock) {
+Result<std::unique_ptr<Picture>> Picture::make(const render::Dendrogram& model,
+                                               const render::TilePlan& plan,
+                                               const render::RenderSettings& settings,
+                                               double radius_m, const Clock& clock) {
   std::unique_ptr<Picture> picture(new Picture(model, plan, settings.look, radius_m, clock));
   auto context = render::makeGlContext(settings.backend);
   if (!context) return context.error();
@@ -45,8 +46,8 @@ Result<std::unique_ptr<Picture>> Picture::make(const render::Dendrogram& model, 
   return picture;
 }
 
-Picture::Picture(const render::Dendrogram& model, const render::TilePlan& plan, const render::Look& look,
-                 double radius_m, const Clock& clock)
+Picture::Picture(const render::Dendrogram& model, const render::TilePlan& plan,
+                 const render::Look& look, double radius_m, const Clock& clock)
     : model_(model),
       plan_(plan),
       look_(look),
@@ -54,15 +55,19 @@ Picture::Picture(const render::Dendrogram& model, const render::TilePlan& plan, 
       metres_from_model_(scaling(model, radius_m_)),
       clock_(clock),
       cut_(3 * model.triangleCount()),
-      pixels_(std::size_t{4} * static_cast<std::size_t>(plan.frame_width) * static_cast<std::size_t>(plan.frame_height)) {
+      pixels_(std::size_t{4} * static_cast<std::size_t>(plan.frame_width) *
+              static_cast<std::size_t>(plan.frame_height)) {
   tiles_.reserve(plan.tiles.size());
 }
 
-render::Camera Picture::cameraOf(const render::Tile& tile, const Eigen::Isometry3f& T_eye_model) const {
+render::Camera Picture::cameraOf(const render::Tile& tile,
+                                 const Eigen::Isometry3f& T_eye_model) const {
   const bool operators = tile.kind == render::TileKind::kOperator;
   const Eigen::Matrix4f view =
-      operators ? render::operatorView(tile.projection, T_eye_model.translation(), radius_m_) : tile.view;
-  // The light comes from the eye, not from the tile: so a surface is as bright on either side of a seam.
+      operators ? render::operatorView(tile.projection, T_eye_model.translation(), radius_m_)
+                : tile.view;
+  // The light comes from the eye, not from the tile: so a surface is as bright on either side of a
+  // seam.
   return {tile.projection * view * T_eye_model.matrix() * metres_from_model_, T_eye_model.linear()};
 }
 
@@ -74,7 +79,8 @@ void Picture::beginTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model) 
 
 void Picture::readTile(std::size_t tile) {
   const render::Tile& t = plan_.tiles[tile];
-  const auto at = static_cast<std::size_t>(4) * static_cast<std::size_t>(t.y * plan_.frame_width + t.x);
+  const auto at =
+      static_cast<std::size_t>(4) * static_cast<std::size_t>(t.y * plan_.frame_width + t.x);
   tiles_[tile].read(pixels_.data() + at, plan_.frame_width);
 }
 
@@ -106,7 +112,7 @@ DrawTimes Picture::draw(const Eigen::Isometry3f& T_eye_model, std::size_t level)
 void Picture::warmUp(const Eigen::Isometry3f& T_eye_model) {
   draw(T_eye_model, model_.levelFor(kSlice));
   beginRefining(T_eye_model);
-  refine(clock_.now());
+  refine(clock_.now() + 2 * slice_time_);
 }
 
 void Picture::beginRefining(const Eigen::Isometry3f& T_eye_model) {
@@ -116,8 +122,7 @@ void Picture::beginRefining(const Eigen::Isometry3f& T_eye_model) {
 
 bool Picture::refine(Timestamp until) {
   const std::size_t all = renderer_->triangles(ModelRenderer::Source::kFull);
-  Timestamp now = clock_.now();
-  do {
+  for (Timestamp now = clock_.now(); now + slice_time_ * 3 / 2 < until;) {
     if (refined_triangles_ == 0) beginTile(refined_tile_, refined_view_);
     const std::size_t count = std::min(kSlice, all - refined_triangles_);
     renderer_->draw(ModelRenderer::Source::kFull, refined_triangles_, count);
@@ -130,7 +135,9 @@ bool Picture::refine(Timestamp until) {
     }
     const Timestamp then = std::exchange(now, clock_.now());
     slice_time_ = std::max<Duration>(now - then, slice_time_ * 9 / 10);
-  } while (now + slice_time_ * 3 / 2 < until);
+  }
+  // Where slices take longer than a period has, the figure fades until one is tried again.
+  slice_time_ = slice_time_ * 9 / 10;
   return false;
 }
 

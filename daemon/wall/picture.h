@@ -2,13 +2,15 @@
 // detail in slices.
 #pragma once
 
-#include <Eigen/Geometry>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
+#include "daemon/wall/painter.h"
 #include "render/gl/frame_buffer.h"
 #include "render/gl/gl_context.h"
 #include "render/gl/model_renderer.h"
@@ -17,39 +19,29 @@
 
 namespace merlin::wall {
 
-struct DrawTimes {
-  Duration drawing{};  // cut, upload, triangles
-  Duration fixed{};    // clearing and read-back
-};
-
 // Thread-bound: made, used and destroyed on the wall's thread (its GL context is current there).
-class Picture {
+class Picture final : public Painter {
  public:
   // `radius_m`: the model is scaled to a bounding sphere of this radius about its box's centre.
   // The model is borrowed. Errors: kUnsupported (no GL of that kind, or not enough of it).
-  static Result<std::unique_ptr<Picture>> make(const render::Dendrogram& model, const render::TilePlan& plan,
-                                               const render::RenderSettings& settings, double radius_m,
-                                               const Clock& clock);
+  static Result<std::unique_ptr<Picture>> make(const render::Dendrogram& model,
+                                               const render::TilePlan& plan,
+                                               const render::RenderSettings& settings,
+                                               double radius_m, const Clock& clock);
 
   // Draws every state that a frame uses once, so that no shader is compiled in a frame.
   void warmUp(const Eigen::Isometry3f& T_eye_model);
 
-  // The whole frame at `level` of the dendrogram.
-  DrawTimes draw(const Eigen::Isometry3f& T_eye_model, std::size_t level);
+  DrawTimes draw(const Eigen::Isometry3f& T_eye_model, std::size_t level) override;
+  void beginRefining(const Eigen::Isometry3f& T_eye_model) override;
+  bool refine(Timestamp until) override;
+  std::span<const std::uint8_t> pixels() const noexcept override { return pixels_; }
 
-  // Full detail in slices: beginRefining() once, then refine() until it returns true: the frame is
-  // whole, pixels() shows it. refine() draws until about `until`, one slice at least; a slice takes
-  // a few milliseconds. draw() in between abandons it.
-  void beginRefining(const Eigen::Isometry3f& T_eye_model);
-  bool refine(Timestamp until);
-
-  // RGBA, rows from top to bottom, of the plan's frame.
-  std::span<const std::uint8_t> pixels() const noexcept { return pixels_; }
   const std::string& renderer() const noexcept { return context_->renderer(); }
 
  private:
-  Picture(const render::Dendrogram& model, const render::TilePlan& plan, const render::Look& look, double radius_m,
-          const Clock& clock);
+  Picture(const render::Dendrogram& model, const render::TilePlan& plan, const render::Look& look,
+          double radius_m, const Clock& clock);
   render::Camera cameraOf(const render::Tile& tile, const Eigen::Isometry3f& T_eye_model) const;
   void beginTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model);
   void readTile(std::size_t tile);
@@ -68,7 +60,7 @@ class Picture {
   // Where refining is.
   Eigen::Isometry3f refined_view_ = Eigen::Isometry3f::Identity();
   std::size_t refined_tile_ = 0, refined_triangles_ = 0;
-  Duration slice_time_ = std::chrono::milliseconds(4);  // of the last slices, the worst fading
+  Duration slice_time_ = std::chrono::milliseconds(4);  // of the last slices, the worst, fading
 };
 
 }  // namespace merlin::wall

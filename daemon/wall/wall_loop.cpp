@@ -15,7 +15,8 @@ float ms(Duration d) { return static_cast<float>(1000 * toSeconds(d)); }
 
 }  // namespace
 
-WallLoop::WallLoop(WallParts parts) : p_(std::move(parts)), period_(p_.governor.period()), view_(p_.scene.view()) {}
+WallLoop::WallLoop(WallParts parts)
+    : p_(std::move(parts)), period_(p_.governor.period()), view_(p_.scene.view()) {}
 
 void WallLoop::run(const std::stop_token& stop, const std::function<void()>& first_frame) {
   start_ = p_.clock.now();
@@ -26,7 +27,8 @@ void WallLoop::run(const std::stop_token& stop, const std::function<void()>& fir
     const bool was_moving = view_.moving;
     view_ = p_.scene.update(input, began);
     std::fill(std::begin(out_.posture), std::end(out_.posture), '\0');
-    if (input.posture) std::copy(std::begin(input.posture->name), std::end(input.posture->name), out_.posture);
+    if (input.posture)
+      std::copy(std::begin(input.posture->name), std::end(input.posture->name), out_.posture);
     if (was_moving && !view_.moving) still_since_ = began;
     k = view_.moving ? movingFrame(k, began) : stillPeriod(k);
     publishStats(p_.clock.now());
@@ -41,8 +43,15 @@ void WallLoop::obeyRequests() {
 }
 
 std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
-  level_ = p_.model.levelFor(p_.governor.budget());
-  const DrawTimes times = p_.picture.draw(view_.T_eye_model, level_);
+  // After a frame that ran over, less than a period is left: fewer triangles, or none before the
+  // next.
+  const std::size_t budget = p_.governor.budgetFor(tick(k + 1) - began);
+  if (budget == 0) {
+    stats_.deadline(tick(k + 1), true, false);
+    return k + 1;
+  }
+  level_ = p_.model.levelFor(budget);
+  const DrawTimes times = p_.painter.draw(view_.T_eye_model, level_);
   const Timestamp drawn = p_.clock.now();
   present(level_ == 0);
   const Timestamp finished = p_.clock.now();
@@ -53,7 +62,8 @@ std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
   const std::int64_t reached = (finished - start_) / period_;
   const bool met = finished <= tick(k + 1);
   stats_.deadline(tick(k + 1), true, met);
-  for (std::int64_t missed = k + 2; missed <= reached; ++missed) stats_.deadline(tick(missed), true, false);
+  for (std::int64_t missed = k + 2; missed <= reached; ++missed)
+    stats_.deadline(tick(missed), true, false);
   stats_.frame(finished, work, period_);
   const Duration fixed = times.fixed + (finished - drawn);
   p_.governor.observe({p_.model.trianglesAt(level_), std::min(fixed, work), work, !met});
@@ -63,8 +73,8 @@ std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
 
 std::int64_t WallLoop::stillPeriod(std::int64_t k) {
   if (!full_detail_) {
-    if (!refining_) p_.picture.beginRefining(view_.T_eye_model);
-    refining_ = !p_.picture.refine(tick(k + 1) - kRefineMargin);
+    if (!refining_) p_.painter.beginRefining(view_.T_eye_model);
+    refining_ = !p_.painter.refine(tick(k + 1) - kRefineMargin);
     if (!refining_) {
       level_ = 0;
       present(true);
@@ -73,7 +83,8 @@ std::int64_t WallLoop::stillPeriod(std::int64_t k) {
   }
   // What stands is right: the deadline is met, unless refining ran over it.
   const std::int64_t reached = (p_.clock.now() - start_) / period_;
-  for (std::int64_t passed = k + 1; passed <= std::max(k + 1, reached); ++passed) stats_.deadline(tick(passed), false, true);
+  for (std::int64_t passed = k + 1; passed <= std::max(k + 1, reached); ++passed)
+    stats_.deadline(tick(passed), false, true);
   return std::max(k + 1, reached);
 }
 
@@ -81,7 +92,7 @@ void WallLoop::present(bool full_detail) {
   full_detail_ = full_detail;
   const auto triangles = static_cast<std::uint32_t>(p_.model.trianglesAt(level_));
   const render::FrameInfo info{++frames_, p_.clock.now(), triangles, full_detail};
-  for (render::FrameSink* sink : p_.sinks) sink->present(p_.picture.pixels(), info);
+  for (render::FrameSink* sink : p_.sinks) sink->present(p_.painter.pixels(), info);
 }
 
 void WallLoop::publishStats(Timestamp now) {

@@ -2,8 +2,8 @@
 //
 // Frame k begins at t0 + (k-1) x period and is late when its last pixel reaches the sinks after
 // t0 + k x period. While anything moves, each period brings a frame of as many triangles as the
-// governor allows; while nothing does, the periods are spent on drawing full detail in slices, so that
-// the frame that begins after motion resumes begins on time.
+// governor allows; while nothing does, the periods are spent on drawing full detail in slices, so
+// that the frame that begins after motion resumes begins on time.
 #pragma once
 
 #include <atomic>
@@ -14,10 +14,11 @@
 
 #include "daemon/base/clock.h"
 #include "daemon/shm/layout.h"
-#include "daemon/wall/device_feed.h"
 #include "daemon/wall/frame_stats.h"
-#include "daemon/wall/picture.h"
+#include "daemon/wall/input_feed.h"
+#include "daemon/wall/painter.h"
 #include "render/governor/governor.h"
+#include "render/lod/dendrogram.h"
 #include "render/out/frame_sink.h"
 #include "render/scene/scene.h"
 
@@ -25,10 +26,10 @@ namespace merlin::wall {
 
 struct WallParts {
   const render::Dendrogram& model;
-  Picture& picture;
+  Painter& painter;
   render::Scene& scene;
   render::Governor& governor;
-  DeviceFeed& feed;
+  InputFeed& feed;
   std::vector<render::FrameSink*> sinks;
   shm::SeqSlot<shm::WallStats>& stats;
   Clock& clock;

@@ -10,11 +10,14 @@ namespace merlin::wall {
 
 Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings, std::uint64_t generation,
                                                  const shm::Endpoints& endpoints, Clock& clock) {
-  auto segment = shm::SegmentWriter<shm::WallSegment>::make(shm::segmentName(settings.instance, "wall"),
-                                                            shm::wallFields(), generation, clock.now(), endpoints);
+  auto segment = shm::SegmentWriter<shm::WallSegment>::make(
+      shm::segmentName(settings.instance, "wall"), shm::wallFields(), generation, clock.now(),
+      endpoints);
   if (!segment) return segment.error();
   if (settings.wall.model.empty()) {
-    return Error{Errc::kInvalidArgument, "/wall/model: names no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)"};
+    return Error{
+        Errc::kInvalidArgument,
+        "/wall/model: names no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)"};
   }
   auto model = render::readMrm(settings.wall.model);
   if (!model) return model.error();
@@ -22,19 +25,21 @@ Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings, std::
   if (!plan) return Error{plan.error().code, "/wall/tiles: " + plan.error().what};
   auto scene = render::Scene::make(settings.wall.scene);
   if (!scene) return Error{scene.error().code, "/wall/scene: " + scene.error().what};
-  std::unique_ptr<WallRole> role(new WallRole(settings, *std::move(model), *std::move(plan), *std::move(scene),
-                                              *std::move(segment), clock));
-  auto shared = render::ShmFrameSink::make(shm::segmentName(settings.instance, "framebuffer"), role->plan_, generation);
+  std::unique_ptr<WallRole> role(new WallRole(settings, *std::move(model), *std::move(plan),
+                                              *std::move(scene), *std::move(segment), clock));
+  auto shared = render::ShmFrameSink::make(shm::segmentName(settings.instance, "framebuffer"),
+                                           role->plan_, generation);
   if (!shared) return shared.error();
   role->sinks_.push_back(*std::move(shared));
   if (!settings.wall.png.path.empty()) {
-    role->sinks_.push_back(std::make_unique<render::PngFrameSink>(settings.wall.png, role->plan_.frame_width, role->plan_.frame_height));
+    role->sinks_.push_back(std::make_unique<render::PngFrameSink>(
+        settings.wall.png, role->plan_.frame_width, role->plan_.frame_height));
   }
   return role;
 }
 
-WallRole::WallRole(const Settings& settings, render::Dendrogram model, render::TilePlan plan, render::Scene scene,
-                   shm::SegmentWriter<shm::WallSegment> segment, Clock& clock)
+WallRole::WallRole(const Settings& settings, render::Dendrogram model, render::TilePlan plan,
+                   render::Scene scene, shm::SegmentWriter<shm::WallSegment> segment, Clock& clock)
     : settings_(settings),
       model_(std::move(model)),
       plan_(std::move(plan)),
@@ -55,13 +60,15 @@ std::future<Result<std::string>> WallRole::start() {
 }
 
 void WallRole::run(const std::stop_token& stop) {
-  auto picture = Picture::make(model_, plan_, settings_.wall.render, settings_.wall.scene.model_radius_m, clock_);
+  auto picture = Picture::make(model_, plan_, settings_.wall.render,
+                               settings_.wall.scene.model_radius_m, clock_);
   if (!picture) {
     ready_.set_value(picture.error());
     return;
   }
   (*picture)->warmUp(scene_.view().T_eye_model);
-  DeviceFeed feed(shm::segmentName(settings_.instance, "devices"), settings_.wall.scene.hand_station,
+  DeviceFeed feed(shm::segmentName(settings_.instance, "devices"),
+                  settings_.wall.scene.hand_station,
                   fromSeconds(settings_.wall.scene.stale_after_s));
   std::vector<render::FrameSink*> sinks;
   for (const auto& sink : sinks_) sinks.push_back(sink.get());

@@ -11,6 +11,8 @@
 #include "config/settings.h"
 #include "daemon/base/clock.h"
 #include "daemon/shm/segment.h"
+#include "daemon/wall/device_feed.h"
+#include "daemon/wall/picture.h"
 #include "daemon/wall/wall_loop.h"
 #include "render/out/shm_sink.h"
 
@@ -18,8 +20,8 @@ namespace merlin::wall {
 
 class WallRole {
  public:
-  // Loads the model and makes the segments; nothing runs yet. Errors: what is wrong with the model's
-  // file or the wall's settings; kBusy (a living daemon has the segments), kIo.
+  // Loads the model and makes the segments; nothing runs yet. Errors: what is wrong with the
+  // model's file or the wall's settings; kBusy (a living daemon has the segments), kIo.
   static Result<std::unique_ptr<WallRole>> make(const Settings& settings, std::uint64_t generation,
                                                 const shm::Endpoints& endpoints, Clock& clock);
   ~WallRole();  // stops and joins the wall's thread
@@ -38,8 +40,8 @@ class WallRole {
   std::uint64_t periods() const;
 
  private:
-  WallRole(const Settings& settings, render::Dendrogram model, render::TilePlan plan, render::Scene scene,
-           shm::SegmentWriter<shm::WallSegment> segment, Clock& clock);
+  WallRole(const Settings& settings, render::Dendrogram model, render::TilePlan plan,
+           render::Scene scene, shm::SegmentWriter<shm::WallSegment> segment, Clock& clock);
   void run(const std::stop_token& stop);
 
   Settings settings_;

@@ -112,9 +112,11 @@ class FastrakEmulator final : public Emulator {
       pending_.clear();
     }
     if (!streaming() || now < due_) return;
-    while (due_ <= now) due_ += kCycle;
+    // By the cycle's own time: a process that wakes late must not make the line busy for longer.
+    Timestamp cycle = due_;
+    for (; due_ <= now; due_ += kCycle) cycle = due_;
     nextStation();
-    if (wire_.free(now)) wire_.record(record(station_, now), now, out);  // else it is dropped
+    if (wire_.free(cycle)) wire_.record(record(station_, cycle), cycle, out);  // else it is dropped
   }
 
   Timestamp nextDue() const override { return streaming() ? due_ : start_ + kNever; }

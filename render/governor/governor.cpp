@@ -65,9 +65,21 @@ double Governor::medianWork() const noexcept {
   return sorted[n / 2];
 }
 
+// The model's inverse, with head room.
+double Governor::trianglesIn(double seconds) const noexcept {
+  const double room = seconds * (1 - head_room_) - fixed_;
+  return std::pow(std::max(room, 0.0) / per_, 1 / kExponent);
+}
+
+std::size_t Governor::budgetFor(Duration available) const noexcept {
+  if (per_ == 0 || available >= period_ * 99 / 100) return budget();
+  const double fits = trianglesIn(toSeconds(available));
+  if (fits < static_cast<double>(settings_.min_triangles)) return 0;
+  return static_cast<std::size_t>(std::min(fits, triangles_));
+}
+
 void Governor::choose() noexcept {
-  const double room = toSeconds(period_) * (1 - head_room_) - fixed_;
-  const double wanted = std::pow(std::max(room, 0.0) / per_, 1 / kExponent);
+  const double wanted = trianglesIn(toSeconds(period_));
   const double ratio = wanted / triangles_;
   if (late_in_a_row_ >= 2 || ratio < 1 - kDeadBand) {
     triangles_ = wanted;

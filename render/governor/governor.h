@@ -38,6 +38,10 @@ class Governor {
   // Triangles for the next moving frame, all tiles together counting the model once.
   std::size_t budget() const noexcept { return static_cast<std::size_t>(triangles_); }
 
+  // The same for a frame that has less than a period left, after one that ran over: what the model
+  // says fits; 0 where not even the least does.
+  std::size_t budgetFor(Duration available) const noexcept;
+
   // REQUIRES: cost.work > 0, 0 <= cost.fixed <= cost.work.
   void observe(const FrameCost& cost) noexcept;
 
@@ -54,6 +58,7 @@ class Governor {
   void learnCost(const FrameCost& cost) noexcept;
   void choose() noexcept;
   double medianWork() const noexcept;
+  double trianglesIn(double seconds) const noexcept;
 
   GovernorSettings settings_;
   Duration period_;

@@ -43,6 +43,11 @@ const Known* knownAs(std::string_view property) {
   return nullptr;
 }
 
+bool isKnownFeature(std::string_view name) {
+  return std::any_of(std::begin(kKnown), std::end(kKnown),
+                     [&](const Known& k) { return name == k.feature; });
+}
+
 // Integer colours are shares of their type's range.
 float scaleOf(const Known* known, Scalar type) {
   if (!known || std::string_view(known->feature) != "colour") return 1;
@@ -81,7 +86,7 @@ class Reader {
   }
 
   Error brokenAt(const Element& e, std::uint64_t row, const Property& p) const {
-    const std::string_view rest = body_.rest();
+    const std::string_view rest = header_.form == Form::kAscii ? body_.rest() : "";
     return {Errc::kMalformed, rest.empty() ? fmt::format("cut short in {} {} of {}, property {}",
                                                          e.name, row, e.count, p.name)
                                            : fmt::format("{} {}, property {}: \"{}\" is no number",
@@ -93,24 +98,38 @@ class Reader {
     if (e.properties.empty()) return Ok{};
     for (std::uint64_t row = 0; row < e.count; ++row) {
       for (const Property& p : e.properties) {
-        if (!skipProperty(p)) return brokenAt(e, row, p);
+        if (const auto done = skipProperty(e, row, p); !done) return done;
       }
     }
     return Ok{};
   }
 
-  bool skipProperty(const Property& p) {
-    double value = 0, count = 1;
-    if (p.list && !body_.next(p.count_type, count)) return false;
-    for (; count > 0; --count) {
-      if (!body_.next(p.type, value)) return false;
+  Result<Ok> skipProperty(const Element& e, std::uint64_t row, const Property& p) {
+    std::uint64_t count = 1;
+    if (p.list) {
+      const auto length = readLength(e, row, p);
+      if (!length) return length.error();
+      count = *length;
     }
-    return true;
+    for (double value = 0; count > 0; --count) {
+      if (!body_.next(p.type, value)) return brokenAt(e, row, p);
+    }
+    return Ok{};
+  }
+
+  Result<std::uint64_t> readLength(const Element& e, std::uint64_t row, const Property& p) {
+    double length = 0;
+    if (!body_.next(p.count_type, length)) return brokenAt(e, row, p);
+    if (length >= 0 && length < 4294967296.0 && length == std::floor(length)) {
+      return static_cast<std::uint64_t>(length);
+    }
+    return Error{Errc::kMalformed, fmt::format("{} {}, property {}: {} is no length of a list",
+                                               e.name, row, p.name, length)};
   }
 
   Result<std::vector<Column>> planColumns(const Element& e) {
     constexpr std::string_view kAxes = "xyz";
-    std::size_t axes = 0;
+    unsigned axes = 0;  // a bit each
     mesh().positions.assign(e.count * 3, 0);
     mesh().features.reserve(e.properties.size());  // columns point into it
     std::vector<Column> columns;
@@ -120,18 +139,22 @@ class Reader {
         ++loaded_.skipped_properties;
       } else if (p.name.size() == 1 && kAxes.find(p.name) != std::string_view::npos) {
         c = {&mesh().positions, 3, kAxes.find(p.name), 1};
-        ++axes;
+        axes |= 1U << c.offset;
       } else {
         c = featureColumn(p, e.count);
       }
       columns.push_back(c);
     }
-    if (axes == 3) return columns;
+    if (axes == 0b111) return columns;
     return Error{Errc::kMalformed, "the vertices lack x, y or z"};
   }
 
   Column featureColumn(const Property& p, std::uint64_t count) {
     const Known* known = knownAs(p.name);
+    if (!known && isKnownFeature(p.name)) {  // a scalar "colour" has no room for a green
+      ++loaded_.skipped_properties;
+      return {};
+    }
     const std::string name = known ? known->feature : p.name;
     Feature* feature = mesh().find(name);
     if (!feature) {
@@ -153,7 +176,11 @@ class Reader {
         const Property& p = e.properties[i];
         const Column& c = (*columns)[i];
         double value = 0;
-        if (!(p.list ? skipProperty(p) : body_.next(p.type, value))) return brokenAt(e, row, p);
+        if (p.list) {
+          if (const auto done = skipProperty(e, row, p); !done) return done;
+        } else if (!body_.next(p.type, value)) {
+          return brokenAt(e, row, p);
+        }
         if (c.values) (*c.values)[row * c.stride + c.offset] = static_cast<float>(value) * c.scale;
       }
     }
@@ -182,11 +209,12 @@ class Reader {
   }
 
   Result<Ok> readCorners(const Element& e, std::uint64_t row, const Property& p) {
-    double count = 0, value = 0;
-    if (!body_.next(p.count_type, count)) return brokenAt(e, row, p);
-    if (count < 3) ++loaded_.tidied.degenerate;
+    const auto count = readLength(e, row, p);
+    if (!count) return count.error();
+    if (*count < 3) ++loaded_.tidied.degenerate;
+    double value = 0;
     std::uint32_t first = 0, last = 0;
-    for (double i = 0; i < count; ++i) {
+    for (std::uint64_t i = 0; i < *count; ++i) {
       if (!body_.next(p.type, value)) return brokenAt(e, row, p);
       if (!(value >= 0 && value < 2147483648.0) || value != std::floor(value)) {
         return Error{Errc::kMalformed,

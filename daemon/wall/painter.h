@@ -1,0 +1,36 @@
+// Port: who draws the wall's frames. Implemented by Picture (GL) and by a fake in tests.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <Eigen/Geometry>
+
+#include "daemon/base/clock.h"
+
+namespace merlin::wall {
+
+struct DrawTimes {
+  Duration drawing{};  // cut, upload, triangles
+  Duration fixed{};    // clearing and read-back
+};
+
+// Thread-bound to the wall's thread.
+class Painter {
+ public:
+  virtual ~Painter() = default;
+
+  // The whole frame at `level` of the dendrogram.
+  virtual DrawTimes draw(const Eigen::Isometry3f& T_eye_model, std::size_t level) = 0;
+
+  // Full detail in slices: beginRefining() once, then refine() until it returns true: the frame is
+  // whole, pixels() shows it. refine() draws until about `until`, one slice at least, if there is
+  // time for one; a slice takes a few milliseconds. draw() in between abandons it.
+  virtual void beginRefining(const Eigen::Isometry3f& T_eye_model) = 0;
+  virtual bool refine(Timestamp until) = 0;
+
+  // RGBA, rows from top to bottom, of the plan's frame.
+  virtual std::span<const std::uint8_t> pixels() const noexcept = 0;
+};
+
+}  // namespace merlin::wall

@@ -1,0 +1,188 @@
+// The dependency rules of README.md, "Who may include whom", as a test.
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Folders = std::set<std::string>;
+
+// A folder may include itself, daemon/base, and what stands here. A new folder needs a line, and a
+// review of it. "a/settings.h" allows that header alone.
+const std::map<std::string, Folders> kMayInclude = {
+    {"daemon/base", {}},
+    {"daemon/shm", {"drivers/port"}},
+    {"daemon/status", {"daemon/shm", "drivers/port"}},
+    {"daemon/devices",
+     {"config", "daemon/shm", "drivers", "drivers/port", "drivers/loop", "drivers/io", "nn",
+      "nn/io"}},
+    {"daemon/wall",
+     {"config", "daemon/shm", "drivers/port", "render/mesh", "render/lod", "render/lod/io",
+      "render/scene", "render/governor", "render/tiles", "render/gl", "render/out"}},
+    {"daemon/cli",
+     {"daemon/shm", "daemon/status", "daemon/wall", "drivers/emulate", "drivers/hand", "drivers/io",
+      "nn", "nn/io", "render/mesh", "render/mesh/io", "render/reduce", "render/lod",
+      "render/lod/io", "render/tiles", "render/gl", "render/out"}},
+    // The composition root.
+    {"daemon",
+     {"config", "daemon/cli", "daemon/devices", "daemon/shm", "daemon/status", "daemon/wall",
+      "render/gl"}},
+    {"drivers/port", {}},
+    {"drivers/cyberglove", {"drivers/port"}},
+    {"drivers/fastrak", {"drivers/port"}},
+    {"drivers/spaceball", {"drivers/port"}},
+    {"drivers/sample", {"drivers/port"}},
+    {"drivers/hand", {"drivers/port"}},
+    {"drivers/io", {"drivers/port"}},
+    {"drivers/loop", {"drivers/port"}},
+    {"drivers/emulate",
+     {"drivers/port", "drivers/hand", "drivers/cyberglove", "drivers/fastrak",
+      "drivers/spaceball"}},
+    // The registry: the one place that names every driver.
+    {"drivers",
+     {"drivers/port", "drivers/cyberglove", "drivers/fastrak", "drivers/spaceball",
+      "drivers/sample"}},
+    {"nn", {}},
+    {"nn/io", {"nn"}},
+    {"render/mesh", {}},
+    {"render/mesh/io", {"render/mesh"}},
+    {"render/lod", {"render/mesh"}},
+    {"render/lod/io", {"render/lod", "render/mesh"}},
+    {"render/reduce", {"render/lod", "render/mesh"}},
+    {"render/governor", {}},
+    {"render/tiles", {}},
+    {"render/scene", {"drivers/port"}},
+    {"render/gl", {"render/lod"}},
+    {"render/out", {"render/tiles"}},
+    {"config",
+     {"drivers/cyberglove/settings.h", "drivers/fastrak/settings.h", "drivers/spaceball/settings.h",
+      "render/gl/settings.h", "render/governor/settings.h", "render/out/settings.h",
+      "render/scene/settings.h", "render/tiles/settings.h"}},
+};
+
+// Third-party headers stay behind an adapter.
+const std::map<std::string, Folders> kOnlyIn = {
+    {"libserialport.h", {"drivers/io"}},
+    {"zmq.hpp", {"daemon/status"}},
+    {"zmq.h", {"daemon/status"}},
+    {"nlohmann/json.hpp", {"config", "nn/io", "daemon/status", "daemon/cli"}},
+    {"nlohmann/json_fwd.hpp", {"nn/io"}},
+    {"EGL/egl.h", {"render/gl"}},
+    {"EGL/eglext.h", {"render/gl"}},
+    {"GL/osmesa.h", {"render/gl"}},
+    {"GL/glcorearb.h", {"render/gl"}},
+    {"png.h", {"render/out"}},
+    {"xxhash.h", {"render/lod/io"}},
+    {"CLI/CLI.hpp", {"daemon", "daemon/cli"}},
+    {"systemd/sd-daemon.h", {"daemon"}},
+    {"spdlog/spdlog.h", {"daemon/base"}},
+};
+
+// Pure folders: no clock, no file, no thread of their own.
+const Folders kPure = {"nn",
+                       "drivers/port",
+                       "drivers/cyberglove",
+                       "drivers/fastrak",
+                       "drivers/spaceball",
+                       "drivers/sample",
+                       "drivers/hand",
+                       "drivers/emulate",
+                       "render/mesh",
+                       "render/lod",
+                       "render/reduce",
+                       "render/governor",
+                       "render/tiles",
+                       "render/scene"};
+const Folders kImpure = {"fstream",
+                         "thread",
+                         "mutex",
+                         "filesystem",
+                         "random",
+                         "fcntl.h",
+                         "unistd.h",
+                         "ctime",
+                         "daemon/base/files.h",
+                         "daemon/base/log.h",
+                         "daemon/base/shared_memory.h"};
+
+std::string folderOf(const fs::path& header) { return header.parent_path().generic_string(); }
+
+void checkInclude(const fs::path& root, const std::string& from, const std::string& header,
+                  const std::string& where) {
+  if (const auto only = kOnlyIn.find(header); only != kOnlyIn.end()) {
+    EXPECT_TRUE(only->second.count(from)) << where;
+  }
+  EXPECT_TRUE(!header.starts_with("OpenMesh/") || from == "render/mesh/io") << where;
+  EXPECT_FALSE(kPure.count(from) && kImpure.count(header)) << where;
+  if (!fs::exists(root / header)) return;  // the standard library or a third party
+  const std::string to = folderOf(header);
+  const Folders& allowed = kMayInclude.at(from);
+  EXPECT_TRUE(to == from || to == "daemon/base" || allowed.count(to) || allowed.count(header))
+      << where;
+}
+
+TEST(Architecture, EveryIncludeFollowsTheRules) {
+  const fs::path root = MERLIN_SOURCE_DIR;
+  const std::regex include(R"re(^\s*#include\s+["<]([^">]+)[">])re");
+  int files = 0;
+  for (const char* top : {"daemon", "drivers", "nn", "render", "config"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      const auto extension = entry.path().extension();
+      if (extension != ".h" && extension != ".cpp") continue;
+      ++files;
+      const std::string from = folderOf(fs::relative(entry.path(), root));
+      ASSERT_TRUE(kMayInclude.count(from)) << from << " has no line in kMayInclude";
+      std::ifstream in(entry.path());
+      for (std::string line; std::getline(in, line);) {
+        std::smatch m;
+        if (std::regex_search(line, m, include))
+          checkInclude(root, from, m[1], entry.path().string() + ": " + line);
+      }
+    }
+  }
+  EXPECT_GT(files, 100);
+}
+
+TEST(Architecture, EveryFolderSaysWhatItIsForInFortyLines) {
+  const fs::path root = MERLIN_SOURCE_DIR;
+  for (const auto& [folder, unused] : kMayInclude) {
+    const fs::path readme = root / folder / "README.md";
+    ASSERT_TRUE(fs::exists(readme)) << readme;
+    std::ifstream in(readme);
+    int lines = 0;
+    for (std::string line; std::getline(in, line);) ++lines;
+    EXPECT_LE(lines, 40) << readme;
+  }
+}
+
+TEST(Architecture, TheTopLevelIsFixed) {
+  const Folders kAllowed = {
+      "CMakeLists.txt",    "daemon", "drivers",   "nn",      "render",          "config",
+      "systemd",           "tests",  "README.md", "LICENSE", "CONTRIBUTING.md", "CHANGELOG.md",
+      "CMakePresets.json", "dev",    "build"};
+  for (const auto& entry : fs::directory_iterator(MERLIN_SOURCE_DIR)) {
+    const std::string name = entry.path().filename();
+    EXPECT_TRUE(name.starts_with(".") || kAllowed.count(name)) << name;
+  }
+}
+
+TEST(Architecture, AFileStartsWithWhatItIsFor) {
+  const fs::path root = MERLIN_SOURCE_DIR;
+  for (const char* top : {"daemon", "drivers", "nn", "render", "config"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      if (entry.path().extension() != ".h") continue;
+      std::ifstream in(entry.path());
+      std::string first;
+      std::getline(in, first);
+      EXPECT_TRUE(first.starts_with("// ")) << entry.path();
+    }
+  }
+}
+
+}  // namespace

@@ -1,0 +1,199 @@
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "config/loader.h"
+#include "config/writer.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin {
+namespace {
+
+using Verdict = LoadedSettings::Verdict;
+
+std::string all(const LoadedSettings& loaded) {
+  std::string text;
+  for (const Finding& f : loaded.findings) text += toText("f.json", f) + "\n";
+  return text;
+}
+
+TEST(Config, AnEmptyObjectIsTheDefaults) {
+  const auto loaded = loadSettings("{}", "");
+  EXPECT_EQ(loaded.verdict(), Verdict::kValid) << all(loaded);
+  EXPECT_EQ(loaded.settings.devices.glove_line.baud, 38400);
+  EXPECT_EQ(loaded.settings.devices.tracker_line.baud, 38400);
+  EXPECT_EQ(loaded.settings.devices.ball_line.baud, 9600);
+  EXPECT_EQ(loaded.settings.wall.governor.rate_hz, 30);
+  EXPECT_EQ(loaded.settings.wall.tiles.tiles.size(), 4u);
+}
+
+TEST(Config, ReadsEveryKindOfSetting) {
+  const auto loaded = loadSettings(R"({
+    "instance": "lab-2",
+    "devices": {"glove": {"port": "serial:/dev/ttyUSB0", "baud": 115200, "slot7": "switch", "filter": false},
+                "ball": {"axis_map": [1, 2, 3, 4, 5, 6], "dead_zone": 20}},
+    "wall": {"model": "models/a.mrm",
+             "scene": {"ball_speed_m_s": [1, 2, 3.5], "bindings": [{"input": "posture.fist", "action": "grab"},
+                                                                   {"input": "glove.switch", "action": "next_mode"}]},
+             "tiles": {"tiles": [{"name": "only", "kind": "operator", "x": 640, "y": 0, "turns": 0.5}]}}})",
+                                   "/etc/merlin");
+  ASSERT_EQ(loaded.verdict(), Verdict::kValid) << all(loaded);
+  const Settings& s = loaded.settings;
+  EXPECT_EQ(s.instance, "lab-2");
+  EXPECT_EQ(s.devices.glove_line.baud, 115200);
+  EXPECT_EQ(s.devices.glove.slot7, Slot7Rule::kSwitch);
+  EXPECT_FALSE(s.devices.glove.filter);
+  EXPECT_EQ(s.devices.ball.axis_map, (std::array<int, 6>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(s.wall.model, "/etc/merlin/models/a.mrm") << "relative to the configuration's folder";
+  EXPECT_EQ(s.wall.scene.ball_speed_m_s, (std::array<double, 3>{1, 2, 3.5}));
+  ASSERT_EQ(s.wall.scene.bindings.size(), 2u) << "a list replaces the default one";
+  EXPECT_EQ(s.wall.scene.bindings[1].action, render::Action::kNextMode);
+  ASSERT_EQ(s.wall.tiles.tiles.size(), 1u);
+  EXPECT_EQ(s.wall.tiles.tiles[0].kind, render::TileKind::kOperator);
+}
+
+TEST(Config, SaysEverythingThatIsWrongAtOnceWithLineAndPointer) {
+  const auto loaded = loadSettings(R"({
+  "devices": {
+    "glove": {"prot": "pty:/tmp/a"},
+    "ball": {"baud": "fast"}
+  },
+  "wall": {
+    "rate": {
+      "rate_hz": 900
+    },
+    "render": {"backend": "vulkan"}
+  }
+})",
+                                   "");
+  EXPECT_EQ(loaded.verdict(), Verdict::kInvalid);
+  EXPECT_EQ(
+      all(loaded),
+      "f.json:3: /devices/glove/prot is no setting; did you mean \"port\"?\n"
+      "f.json:4: /devices/ball/baud is the string \"fast\"; allowed is a whole number\n"
+      "f.json:8: /wall/rate/rate_hz is 900; allowed is 1 to 240; 240 is taken\n"
+      "f.json:10: /wall/render/backend is the string \"vulkan\"; allowed is one of egl, osmesa\n");
+}
+
+TEST(Config, ANumberBeyondItsRangeIsClampedAndThatAloneIsAdjusted) {
+  const auto loaded = loadSettings("{\"wall\": {\"rate\": {\"rate_hz\": 0.5}}}", "");
+  EXPECT_EQ(loaded.verdict(), Verdict::kAdjusted);
+  EXPECT_EQ(loaded.settings.wall.governor.rate_hz, 1);
+}
+
+struct Bad {
+  const char* json;
+  const char* what;  // a part of the finding
+};
+
+class BadConfig : public testing::TestWithParam<Bad> {};
+
+TEST_P(BadConfig, IsInvalidAndSaysWhy) {
+  const auto loaded = loadSettings(GetParam().json, "");
+  EXPECT_EQ(loaded.verdict(), Verdict::kInvalid);
+  EXPECT_NE(all(loaded).find(GetParam().what), std::string::npos) << all(loaded);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Cases, BadConfig,
+    testing::Values(
+        Bad{"", "f.json:1: "}, Bad{"[]", "f.json:1: is a list of 0; allowed is an object"},
+        Bad{"{\n\"wall\": {,}}", "f.json:2: "},
+        Bad{"{\"wall\": 1}", "/wall is the number 1; allowed is an object"},
+        Bad{"{\"wall\": {}, \n\"wall\": {}}",
+            "f.json:2: the key \"wall\" stands twice in one object, before on line 1"},
+        Bad{"{\"devices\": {\"ball\": {\"dead_zone\": 1.5}}}",
+            "is the number 1.5; allowed is a whole number"},
+        Bad{"{\"devices\": {\"ball\": {\"axis_map\": [1, 2]}}}",
+            "is a list of 2; allowed is a list of 6 numbers"},
+        Bad{"{\"devices\": {\"ball\": {\"axis_map\": [1, 2, 3, 4, 5, true]}}}",
+            "/devices/ball/axis_map/5 is true; allowed is a number"},
+        Bad{"{\"devices\": {\"ball\": {\"axis_map\": [1, 2, 3, 4, 5, 5]}}}",
+            "allowed is each of 1 to 6 once"},
+        Bad{"{\"devices\": {\"glove\": {\"baud\": 31337}}}",
+            "is 31337; allowed are 1200, 2400, 4800"},
+        Bad{"{\"devices\": {\"glove\": {\"port\": \"/dev/ttyS0\"}}}",
+            "allowed are serial:/dev/..., pty:PATH"},
+        Bad{"{\"instance\": \"a/b\"}", "is \"a/b\"; allowed are 1 to 32 letters, digits, - and _"},
+        Bad{"{\"wall\": {\"scene\": {\"tracker_axes\": [1, 1, 2]}}}",
+            "allowed is each of 1 to 3 once"},
+        Bad{"{\"wall\": {\"scene\": {\"bindings\": [7]}}}",
+            "/wall/scene/bindings/0 is the number 7; allowed is an object"},
+        Bad{"{\"wall\": {\"scene\": {\"bindings\": [{\"input\": \"x\", \"acton\": \"grab\"}]}}}",
+            "/wall/scene/bindings/0/acton is no setting; did you mean \"action\"?"},
+        Bad{"{\"wall\": {\"rate\": {\"min_triangles\": 5000, \"first_triangles\": 100}}}",
+            "they must rise"},
+        Bad{"{\"a~b/c\": 1}",
+            "f.json:1: /a~0b~1c is no setting; here are instance, run_directory, devices, wall"},
+        Bad{"{\"wall\": {\"rate\": {\"rate_hz\": 1e999}}}", "f.json:1: "}));
+
+TEST(Config, EveryTruncationOfAFileIsInvalidAndNoCrash) {
+  const std::string text = settingsText(Settings());
+  ASSERT_EQ(loadSettings(text, "").verdict(), Verdict::kValid) << all(loadSettings(text, ""));
+  for (std::size_t n = 0; n + 2 < text.size(); n += 3) {
+    EXPECT_EQ(loadSettings(text.substr(0, n), "").verdict(), Verdict::kInvalid) << n;
+  }
+}
+
+TEST(Config, EveryOneByteDamageIsSurvived) {
+  const std::string text = settingsText(Settings());
+  for (std::size_t n = 0; n < text.size(); n += 7) {
+    for (const char byte : {'\0', '"', '{', '}', '9', '\xFF'}) {
+      std::string damaged = text;
+      damaged[n] = byte;
+      (void)loadSettings(damaged, "").verdict();
+    }
+  }
+}
+
+TEST(Config, DeepNestingIsRefused) {
+  const auto loaded = loadSettings(std::string(100'000, '['), "");
+  EXPECT_EQ(loaded.verdict(), Verdict::kInvalid);
+  EXPECT_NE(all(loaded).find("more than 32 levels deep"), std::string::npos);
+  EXPECT_NE(all(loadSettings(std::string(2 << 20, ' '), "")).find("1048576 are the most"),
+            std::string::npos);
+}
+
+TEST(Config, AMissingFileIsOneFinding) {
+  const auto loaded = loadSettingsFile("/no/such/file.json");
+  EXPECT_EQ(loaded.verdict(), Verdict::kInvalid);
+  ASSERT_EQ(loaded.findings.size(), 1u);
+  EXPECT_EQ(toText("/no/such/file.json", loaded.findings[0]),
+            "/no/such/file.json: No such file or directory");
+}
+
+TEST(Config, WritingAndReadingGivesTheSame) {
+  Settings settings;
+  settings.wall.scene.hand_gain = 2.5;
+  settings.devices.tracker_line.port = "pty:/tmp/t";
+  settings.wall.tiles.tiles.pop_back();
+  const std::string text = settingsText(settings);
+  const auto loaded = loadSettings(text, "/");
+  ASSERT_EQ(loaded.verdict(), Verdict::kValid) << all(loaded);
+  EXPECT_EQ(settingsText(loaded.settings), text);
+  EXPECT_EQ(loaded.settings.devices.glove.gain, settings.devices.glove.gain);
+}
+
+// The schema, the shipped configurations and the program say the same.
+TEST(Config, TheSchemaInTheRepositoryIsTheProgramsOwn) {
+  EXPECT_EQ(test::readText(MERLIN_SOURCE_DIR "/config/merlin.schema.json"), settingsSchema())
+      << "merlind --print-schema > config/merlin.schema.json";
+}
+
+TEST(Config, EveryShippedConfigurationIsValid) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(MERLIN_SOURCE_DIR "/config")) {
+    const std::string name = entry.path().filename();
+    if (entry.path().extension() != ".json" || name == "merlin.schema.json" ||
+        name == "postures.json")
+      continue;
+    ++files;
+    const auto loaded = loadSettingsFile(entry.path());
+    EXPECT_EQ(loaded.verdict(), Verdict::kValid) << name << "\n" << all(loaded);
+  }
+  EXPECT_GE(files, 2);
+}
+
+}  // namespace
+}  // namespace merlin

@@ -1,0 +1,111 @@
+// The bottom layer: files, words, clocks.
+#include <filesystem>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "daemon/base/bytes.h"
+#include "daemon/base/clock.h"
+#include "daemon/base/files.h"
+#include "daemon/base/nearest.h"
+#include "daemon/base/random.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin {
+namespace {
+
+TEST(Nearest, FindsTypingErrorsAndNothingFarAway) {
+  const std::vector<std::string> known = {"port", "baud", "rate_hz", "model_radius_m"};
+  EXPECT_EQ(nearest("prot", known), "port");
+  EXPECT_EQ(nearest("rate_Hz", known), "rate_hz");
+  EXPECT_EQ(nearest("model_radius", known), "model_radius_m");
+  EXPECT_EQ(nearest("thermal", known), "");
+  EXPECT_EQ(nearest(std::string(100'000, 'x'), known), "");
+}
+
+TEST(MappedFile, IsTheFilesBytes) {
+  const test::TempDir dir;
+  test::writeText(dir / "f", "abc");
+  test::writeText(dir / "empty", "");
+  EXPECT_EQ(MappedFile::open(dir / "f")->text(), "abc");
+  EXPECT_EQ(MappedFile::open(dir / "empty")->text(), "");
+  EXPECT_EQ(MappedFile::open(dir / "none").error().code, Errc::kNotFound);
+  EXPECT_EQ(MappedFile::open(dir.path()).error().code, Errc::kMalformed);
+  MappedFile moved = *MappedFile::open(dir / "f");
+  moved = *MappedFile::open(dir / "empty");
+  EXPECT_EQ(moved.text(), "");
+}
+
+TEST(WriteFile, AFileAppearsWholeOrTheOldOneStays) {
+  const test::TempDir dir;
+  ASSERT_TRUE(writeFile(dir / "f", "old"));
+  EXPECT_FALSE(writeFile(dir / "f", [](const WriteBytes& write) {
+    return write(std::as_bytes(std::span("half"))) && false;
+  }));
+  EXPECT_EQ(test::readText(dir / "f"), "old");
+  ASSERT_TRUE(writeFile(dir / "f", std::string(3 << 20, 'x')));
+  EXPECT_EQ(test::readText(dir / "f"), std::string(3 << 20, 'x'));
+  EXPECT_EQ(writeFile(dir / "none/f", "x").error().code, Errc::kNotFound);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1)
+      << "no temporary file is left";
+}
+
+TEST(WriteFile, OnAFullDiskTheOldOneStays) {
+  const auto written = writeFile("/dev/full-is-no-folder/x", "x");
+  EXPECT_FALSE(written);
+}
+
+TEST(CheckWritable, SaysBeforeTheWorkThatItWouldBeInVain) {
+  const test::TempDir dir;
+  EXPECT_TRUE(checkWritable(dir / "new"));
+  EXPECT_TRUE(checkWritable("new-in-this-folder"));
+  EXPECT_EQ(checkWritable(dir / "none/new").error().code, Errc::kNotFound);
+  EXPECT_EQ(checkWritable(dir.path()).error().code, Errc::kIo) << "is a folder";
+}
+
+TEST(Random, IsTheSameEverywhere) {
+  Random random(42);
+  EXPECT_EQ(random.next(), 13679457532755275413ULL);
+  EXPECT_EQ(random.next(), 2949826092126892291ULL);
+  for (int i = 0; i < 1000; ++i) {
+    const double u = random.uniform(-2, 3);
+    EXPECT_TRUE(u >= -2 && u < 3);
+    EXPECT_LT(random.below(7), 7u);
+  }
+}
+
+TEST(Random, NormalHasMeanZeroAndDeviationOne) {
+  Random random(1);
+  double sum = 0, squares = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    const double x = random.normal();
+    sum += x;
+    squares += x * x;
+  }
+  EXPECT_NEAR(sum / 100'000, 0, 0.01);
+  EXPECT_NEAR(squares / 100'000, 1, 0.02);
+}
+
+TEST(Bytes, InTheirStatedOrder) {
+  const std::uint8_t b[] = {0x01, 0x02, 0x03, 0x84};
+  EXPECT_EQ(loadBe16(b), 0x0102);
+  EXPECT_EQ(loadLe32(b), 0x84030201u);
+  std::string out;
+  appendBe16(out, 0xABCD);
+  appendLe32(out, 0x12345678);
+  appendLeFloat(out, 1.0F);
+  EXPECT_EQ(out, std::string("\xAB\xCD\x78\x56\x34\x12\x00\x00\x80\x3F", 10));
+}
+
+TEST(SystemClock, SleepsUntilThenAndWakesForAStop) {
+  SystemClock clock;
+  const Timestamp then = clock.now() + std::chrono::milliseconds(5);
+  EXPECT_TRUE(clock.sleepUntil(then, {}));
+  EXPECT_GE(clock.now(), then);
+  std::stop_source stop;
+  std::jthread stopper([&] { stop.request_stop(); });
+  EXPECT_FALSE(clock.sleepUntil(clock.now() + std::chrono::hours(1), stop.get_token()));
+}
+
+}  // namespace
+}  // namespace merlin

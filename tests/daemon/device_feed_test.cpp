@@ -1,0 +1,100 @@
+#include "daemon/wall/device_feed.h"
+
+#include <gtest/gtest.h>
+
+#include "daemon/shm/fields.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::wall {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr Duration kStaleAfter = milliseconds(500);
+
+class DeviceFeedTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto made =
+        shm::SegmentWriter<shm::DevicesSegment>::make(name_, shm::devicesFields(), 1, now_, {});
+    ASSERT_TRUE(made);
+    segment_.emplace(*std::move(made));
+    for (auto& slot : (*segment_)->health) slot.publish(health(HealthState::kOk));
+  }
+  DeviceHealth health(HealthState state) const {
+    DeviceHealth h{};
+    h.state = state;
+    h.since_ns = h.updated_ns = toNanoseconds(now_);
+    return h;
+  }
+  render::SceneInput read() {
+    segment_->beat(now_);
+    return feed_.read(now_);
+  }
+  void push() {
+    BallSample ball{};
+    ball.received_ns = toNanoseconds(now_);
+    ball.translation[0] = 1;
+    ball.buttons = 2;
+    (*segment_)->ball.publish(ball);
+  }
+
+  std::string name_ = shm::segmentName(test::privateName("feed"), "devices");
+  Timestamp now_ = SystemClock().now();
+  std::optional<shm::SegmentWriter<shm::DevicesSegment>> segment_;
+  DeviceFeed feed_{name_, 2, kStaleAfter};
+};
+
+TEST_F(DeviceFeedTest, GivesTheNewestOfWhatThereIs) {
+  push();
+  TrackerSample hand{};
+  hand.received_ns = toNanoseconds(now_ - milliseconds(3));
+  (*segment_)->tracker[1].publish(hand);
+  const auto input = read();
+  ASSERT_TRUE(input.ball);
+  EXPECT_EQ(input.ball->translation[0], 1);
+  EXPECT_TRUE(input.hand) << "station 2";
+  EXPECT_FALSE(input.glove);
+  EXPECT_FALSE(input.posture);
+  EXPECT_EQ(feed_.age(), Duration::zero()) << "of the ball, the newest";
+}
+
+TEST_F(DeviceFeedTest, ADeviceThatIsNotWellForAWhileIsLeftOut) {
+  push();
+  (*segment_)->health[shm::kBall].publish(health(HealthState::kAbsent));
+  EXPECT_TRUE(read().ball);
+  now_ += kStaleAfter;
+  EXPECT_FALSE(read().ball);
+}
+
+TEST_F(DeviceFeedTest, APushThatIsOldIsALostLettingGo) {
+  push();
+  now_ += milliseconds(501);
+  const auto input = read();
+  ASSERT_TRUE(input.ball);
+  EXPECT_EQ(input.ball->translation[0], 0);
+  EXPECT_EQ(input.ball->buttons, 2u) << "a ball at rest is silent: its buttons stand";
+}
+
+TEST_F(DeviceFeedTest, AHandOrPostureThatIsOldIsNone) {
+  TrackerSample hand{};
+  PostureSample posture{};
+  hand.received_ns = posture.received_ns = toNanoseconds(now_);
+  (*segment_)->tracker[1].publish(hand);
+  (*segment_)->posture.publish(posture);
+  EXPECT_TRUE(read().hand && read().posture);
+  now_ += kStaleAfter + milliseconds(1);
+  EXPECT_FALSE(read().hand);
+  EXPECT_FALSE(read().posture);
+}
+
+TEST_F(DeviceFeedTest, WithoutADaemonThereIsNothing) {
+  push();
+  EXPECT_TRUE(read().ball);
+  now_ += seconds(2);  // no heartbeat
+  EXPECT_FALSE(feed_.read(now_).ball);
+}
+
+}  // namespace
+}  // namespace merlin::wall

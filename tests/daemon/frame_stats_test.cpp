@@ -1,0 +1,59 @@
+#include "daemon/wall/frame_stats.h"
+
+#include <gtest/gtest.h>
+
+namespace merlin::wall {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr Duration kPeriod = milliseconds(25);
+
+Timestamp at(int k) { return Timestamp(seconds(100)) + k * kPeriod; }
+
+TEST(FrameStats, TheRateHeldIsTheShareOfDeadlinesMetInTheLastSecond) {
+  FrameStats stats;
+  for (int k = 1; k <= 40; ++k) stats.deadline(at(k), true, true);
+  EXPECT_DOUBLE_EQ(stats.heldRate(at(40), 40), 40);
+  for (int k = 41; k <= 80; ++k) stats.deadline(at(k), true, k % 4 != 0);
+  EXPECT_DOUBLE_EQ(stats.heldRate(at(80), 40), 30);
+}
+
+TEST(FrameStats, LateSharesCountWhatMovedAndNothingElse) {
+  FrameStats stats;
+  for (int k = 1; k <= 40; ++k) stats.deadline(at(k), true, k > 4);     // the first four are late
+  for (int k = 41; k <= 4000; ++k) stats.deadline(at(k), false, true);  // 99 s of standstill
+  EXPECT_EQ(stats.deadlines(), 40u);
+  EXPECT_EQ(stats.late(), 4u);
+  EXPECT_EQ(stats.longestLate(), 4u);
+  EXPECT_DOUBLE_EQ(stats.lateShare(at(41), seconds(60)), 0.1);
+  stats.advance(at(4000));
+  EXPECT_DOUBLE_EQ(stats.lateShare(at(4000), seconds(60)), 0);
+}
+
+TEST(FrameStats, TheLongestRunOfLateFramesIsOfOneRun) {
+  FrameStats stats;
+  const bool met[] = {false, false, true, false, false, false, true, false};
+  for (int k = 0; k < 8; ++k) stats.deadline(at(k), true, met[k]);
+  EXPECT_EQ(stats.longestLate(), 3u);
+}
+
+TEST(FrameStats, WorkIsTheMedianAndTheMeanShareOfTheLastSecond) {
+  FrameStats stats;
+  stats.frame(at(0), milliseconds(1000), kPeriod);  // long ago
+  for (int k = 100; k < 105; ++k) stats.frame(at(k), milliseconds(k == 104 ? 45 : 20), kPeriod);
+  stats.advance(at(105));
+  EXPECT_DOUBLE_EQ(stats.medianWorkSeconds(), 0.020);
+  EXPECT_DOUBLE_EQ(stats.utilisation(), 1.0);  // (4 x 0.8 + 1.8) / 5
+}
+
+TEST(FrameStats, SayNothingBeforeAnythingHappened) {
+  const FrameStats stats;
+  EXPECT_EQ(stats.heldRate(at(0), 30), 0);
+  EXPECT_EQ(stats.lateShare(at(0), seconds(1)), 0);
+  EXPECT_EQ(stats.medianWorkSeconds(), 0);
+}
+
+}  // namespace
+}  // namespace merlin::wall

@@ -1,0 +1,99 @@
+#include "daemon/shm/seq_slot.h"
+
+#include <algorithm>
+#include <array>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "daemon/shm/channel.h"
+
+namespace merlin::shm {
+namespace {
+
+// Large, so that a write takes long enough for a reader to land inside it.
+using Block = std::array<std::uint64_t, 512>;
+
+Block filled(std::uint64_t n) {
+  Block b;
+  b.fill(n);
+  return b;
+}
+
+bool uniform(const Block& b) {
+  return std::all_of(b.begin(), b.end(), [&](auto w) { return w == b.front(); });
+}
+
+TEST(SeqSlot, IsEmptyUntilTheFirstPublish) {
+  SeqSlot<Block> slot;
+  EXPECT_FALSE(slot.read());
+  slot.publish({1, 2, 3});
+  EXPECT_EQ(slot.read(), (Block{1, 2, 3}));
+}
+
+TEST(SeqSlot, AReaderNeverSeesAMixOfTwoValues) {
+  SeqSlot<Block> slot;
+  std::jthread writer([&](const std::stop_token& stop) {
+    for (std::uint64_t n = 1; !stop.stop_requested(); ++n) slot.publish(filled(n));
+  });
+  std::uint64_t last = 0;
+  for (int reads = 0; reads < 20'000;) {
+    const auto b = slot.read();
+    if (!b) continue;
+    ASSERT_TRUE(uniform(*b));
+    ASSERT_GE(b->front(), last);  // time does not run backwards
+    last = b->front();
+    ++reads;
+  }
+}
+
+TEST(SeqSlot, AWriterThatDiedInTheMiddleIsNothingAndNoWait) {
+  struct Torn {
+    std::uint64_t sequence = 7;  // odd: being written, for ever
+    std::uint64_t payload = 1;
+  } torn;
+  EXPECT_FALSE(reinterpret_cast<const SeqSlot<std::uint64_t>&>(torn).read());
+}
+
+TEST(Channel, KeepsTheLast256AndSaysWhichAreGone) {
+  auto channel = std::make_unique<Channel<std::uint64_t>>();
+  for (std::uint64_t n = 0; n < 300; ++n) channel->publish(1000 + n);
+  EXPECT_EQ(channel->count(), 300u);
+  EXPECT_EQ(channel->newest(), 1299u);
+  EXPECT_EQ(channel->at(299), 1299u);
+  EXPECT_EQ(channel->at(45), 1045u);
+  EXPECT_FALSE(channel->at(44));  // overwritten by number 300
+  EXPECT_FALSE(channel->at(300));
+}
+
+TEST(Channel, WakesAWaiterAtOnce) {
+  Channel<std::uint64_t> channel;
+  std::atomic<bool> woken{false};
+  std::jthread waiter([&] {
+    while (channel.count() == 0) channel.wait(0, {60, 0});
+    woken = true;
+  });
+  channel.publish(1);
+  waiter.join();  // hangs for a minute a time if nobody wakes it
+  EXPECT_TRUE(woken);
+}
+
+TEST(Channel, ARingReadThatIsOvertakenIsNothing) {
+  auto channel = std::make_unique<Channel<Block>>();
+  std::jthread writer([&](const std::stop_token& stop) {
+    for (std::uint64_t n = 0; !stop.stop_requested(); ++n) channel->publish(filled(n));
+  });
+  for (int reads = 0; reads < 2'000;) {
+    const std::uint64_t count = channel->count();
+    if (count < kHistory) continue;
+    const std::uint64_t oldest = count - kHistory + 1;
+    if (const auto b = channel->at(oldest)) {
+      ASSERT_TRUE(uniform(*b));
+      ASSERT_EQ(b->front(), oldest);
+    }
+    ++reads;
+  }
+}
+
+}  // namespace
+}  // namespace merlin::shm

@@ -1,0 +1,259 @@
+#include <atomic>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <zmq.hpp>
+
+#include "daemon/status/client.h"
+#include "daemon/status/documents.h"
+#include "daemon/status/health_events.h"
+#include "daemon/status/run_directory.h"
+#include "daemon/status/server.h"
+#include "daemon/status/watchdog.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::status {
+namespace {
+
+using nlohmann::json;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+const Timestamp kNow{seconds(1000)};
+
+DeviceHealth healthy(const char* identity) {
+  DeviceHealth h{};
+  h.state = HealthState::kOk;
+  h.since_ns = toNanoseconds(kNow - seconds(10));
+  h.updated_ns = toNanoseconds(kNow);
+  h.rate_hz = 100;
+  h.samples = 1234;
+  std::snprintf(h.identity, sizeof h.identity, "%s", identity);
+  return h;
+}
+
+class DocumentsTest : public testing::Test {
+ protected:
+  std::unique_ptr<shm::DevicesSegment> devices_ = std::make_unique<shm::DevicesSegment>();
+  std::unique_ptr<shm::WallSegment> wall_ = std::make_unique<shm::WallSegment>();
+};
+
+TEST_F(DocumentsTest, DevicesSayHealthReasonAndPosture) {
+  devices_->health[shm::kGlove].publish(healthy("CyberGlove"));
+  DeviceHealth gone{};
+  std::snprintf(gone.reason, sizeof gone.reason, "/dev/x: No such file");
+  devices_->health[shm::kBall].publish(gone);
+  PostureSample posture{};
+  std::snprintf(posture.name, sizeof posture.name, "fist");
+  devices_->posture.publish(posture);
+  const json s = json::parse(devicesStatus(*devices_, kNow));
+  EXPECT_EQ(s["role"], "devices");
+  EXPECT_EQ(s["posture"], "fist");
+  EXPECT_EQ(s["devices"]["glove"]["health"], "ok");
+  EXPECT_EQ(s["devices"]["glove"]["identity"], "CyberGlove");
+  EXPECT_EQ(s["devices"]["glove"]["since_s"], 10);
+  EXPECT_EQ(s["devices"]["ball"]["health"], "absent");
+  EXPECT_EQ(s["devices"]["ball"]["reason"], "/dev/x: No such file");
+}
+
+TEST_F(DocumentsTest, AHealthThatNobodyWritesAnyMoreIsStale) {
+  const DeviceHealth h = healthy("x");
+  EXPECT_STREQ(healthName(h, kNow + milliseconds(900)), "ok");
+  EXPECT_STREQ(healthName(h, kNow + milliseconds(1100)), "stale");
+}
+
+TEST_F(DocumentsTest, TextThatIsNoUtf8BecomesJsonAllTheSame) {
+  devices_->health[shm::kGlove].publish(healthy("\xFF\xFE\"\\"));
+  EXPECT_TRUE(json::accept(devicesStatus(*devices_, kNow)));
+}
+
+TEST_F(DocumentsTest, TheWallSaysWhatOutsideChecksRelyOn) {
+  shm::WallStats stats{};
+  stats.rate_asked_hz = 30;
+  stats.rate_held_hz = 29.5F;
+  stats.late_share = 0.015F;
+  stats.triangles = 12345;
+  wall_->stats.publish(stats);
+  const json s = json::parse(wallStatus(*wall_, kNow));
+  EXPECT_EQ(s["rate_asked"], 30);
+  EXPECT_EQ(s["rate_held"], 29.5);
+  EXPECT_EQ(s["late_percent"], 1.5);
+  EXPECT_EQ(s["triangles"], 12345);
+}
+
+TEST_F(DocumentsTest, SamplesAreTheNewestOfEachThatThereIs) {
+  EXPECT_EQ(json::parse(newestSamples(*devices_, kNow)).size(), 1u);  // now_ns
+  TrackerSample tracker{};
+  tracker.station = 2;
+  tracker.position_m[1] = 0.5F;
+  devices_->tracker[1].publish(tracker);
+  BallSample ball{};
+  ball.counter = 3;
+  devices_->ball.publish(ball);
+  const json s = json::parse(newestSamples(*devices_, kNow));
+  EXPECT_EQ(s["tracker"][0]["station"], 2);
+  EXPECT_EQ(s["tracker"][0]["position_m"], json({0, 0.5, 0}));
+  EXPECT_EQ(s["ball"]["counter"], 3);
+  EXPECT_FALSE(s.contains("hand"));
+}
+
+TEST_F(DocumentsTest, MetricsAreFlatNumbers) {
+  devices_->health[shm::kTracker].publish(healthy("x"));
+  const json m = json::parse(devicesMetrics(*devices_));
+  EXPECT_EQ(m["tracker_ok"], 1);
+  EXPECT_EQ(m["tracker_samples_total"], 1234);
+  EXPECT_EQ(json::parse(wallMetrics(*wall_))["late_total"], 0);
+}
+
+TEST_F(DocumentsTest, EventsAreToldOnce) {
+  HealthEvents events(*devices_);
+  EXPECT_TRUE(events.take(kNow).empty());
+  devices_->health[shm::kBall].publish(healthy("Spaceball 2003"));
+  EXPECT_EQ(events.take(kNow), (std::vector<std::string>{"ball: ok (Spaceball 2003)"}));
+  EXPECT_TRUE(events.take(kNow).empty());
+  DeviceHealth lost{};
+  std::snprintf(lost.reason, sizeof lost.reason, "the other end hung up");
+  devices_->health[shm::kBall].publish(lost);
+  EXPECT_EQ(events.take(kNow), (std::vector<std::string>{"ball: absent (the other end hung up)"}));
+  lost.state = HealthState::kOpening;  // tried again: no news
+  devices_->health[shm::kBall].publish(lost);
+  EXPECT_TRUE(events.take(kNow).empty());
+}
+
+// Real sockets, in a folder of the test's own.
+class ServerTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    StatusServerSettings settings;
+    settings.status_endpoint = status_;
+    settings.command_endpoint = command_;
+    settings.publications = {{"status", milliseconds(1), [] { return std::string(R"({"n":1})"); }}};
+    settings.commands = {
+        {"status", "", []() -> Result<std::string> { return std::string(R"({"n":1})"); }},
+        {"fail", "", []() -> Result<std::string> {
+           return Error{Errc::kIo, "it is broken"};
+         }}};
+    settings.events = [this] {
+      return events_-- > 0 ? std::vector<std::string>{R"({"kind":"x"})"}
+                           : std::vector<std::string>();
+    };
+    auto started = StatusServer::start(std::move(settings), clock_);
+    ASSERT_TRUE(started) << started.error().what;
+    server_ = *std::move(started);
+  }
+
+  std::string raw(const std::string& request) {
+    zmq::context_t context;
+    zmq::socket_t socket(context, zmq::socket_type::req);
+    socket.set(zmq::sockopt::linger, 0);
+    socket.set(zmq::sockopt::rcvtimeo, 10'000);
+    socket.connect(command_);
+    socket.send(zmq::buffer(request));
+    zmq::message_t answer;
+    return socket.recv(answer) ? answer.to_string() : "";
+  }
+
+  test::TempDir dir_;
+  std::string status_ = "ipc://" + dir_ / "s", command_ = "ipc://" + dir_ / "c";
+  SystemClock clock_;
+  std::atomic<int> events_{1'000'000};
+  std::unique_ptr<StatusServer> server_;
+};
+
+TEST_F(ServerTest, AnswersCommands) {
+  EXPECT_EQ(*ask(command_, "status", seconds(10)), R"({"n":1})");
+  const auto failed = ask(command_, "fail", seconds(10));
+  ASSERT_FALSE(failed);
+  EXPECT_NE(failed.error().what.find("it is broken"), std::string::npos);
+}
+
+TEST_F(ServerTest, ARequestThatIsNoneSaysWhatOneIs) {
+  for (const char* request :
+       {"", "hello", "[]", "{}", "{\"command\": 5}", "\xFF\x00", "{\"command\": \"dance\"}"}) {
+    const json answer = json::parse(raw(request));
+    EXPECT_EQ(answer["ok"], false) << request;
+    EXPECT_NE(answer["error"].get<std::string>().find("status, fail"), std::string::npos)
+        << request;
+  }
+}
+
+TEST_F(ServerTest, DeepNestingAndLongRequestsDoNotHurt) {
+  EXPECT_EQ(json::parse(raw(std::string(4096, '[')))["ok"], false);
+  zmq::context_t context;
+  zmq::socket_t socket(context, zmq::socket_type::req);
+  socket.set(zmq::sockopt::linger, 0);
+  socket.connect(command_);
+  socket.send(zmq::buffer(std::string(1 << 20, 'x')));  // is dropped with its connection
+  EXPECT_EQ(*ask(command_, "status", seconds(10)), R"({"n":1})");
+}
+
+TEST_F(ServerTest, PublishesTopics) {
+  bool status = false, event = false;
+  const auto followed = follow({status_}, {"status", "event"}, seconds(10),
+                               [&](const std::string& topic, const std::string& document) {
+                                 status |= topic == "status" && document == R"({"n":1})";
+                                 event |= topic == "event" && document == R"({"kind":"x"})";
+                                 return !(status && event);
+                               });
+  EXPECT_TRUE(followed);
+  EXPECT_TRUE(status && event);
+  EXPECT_GT(server_->rounds(), 0u);
+}
+
+TEST_F(ServerTest, SocketsAreForUserAndGroupOnly) {
+  namespace fs = std::filesystem;
+  for (const char* name : {"s", "c"}) {
+    const auto mode = fs::status(dir_ / name).permissions();
+    EXPECT_EQ(mode & fs::perms::others_all, fs::perms::none);
+    EXPECT_NE(mode & fs::perms::group_write, fs::perms::none);
+  }
+}
+
+TEST(Server, AnEndpointThatCannotBeBoundIsNamed) {
+  StatusServerSettings settings;
+  settings.status_endpoint = "ipc:///no/such/folder/s";
+  settings.events = [] { return std::vector<std::string>(); };
+  const SystemClock clock;
+  const auto started = StatusServer::start(std::move(settings), clock);
+  ASSERT_FALSE(started);
+  EXPECT_NE(started.error().what.find("ipc:///no/such/folder/s"), std::string::npos);
+}
+
+TEST(Client, ASilentDaemonIsATimeOut) {
+  const test::TempDir dir;
+  EXPECT_EQ(ask("ipc://" + dir / "nobody", "status", milliseconds(20)).error().code,
+            Errc::kTimeout);
+  EXPECT_EQ(
+      follow({"ipc://" + dir / "nobody"}, {""}, milliseconds(20), [](auto&, auto&) { return true; })
+          .error()
+          .code,
+      Errc::kTimeout);
+}
+
+TEST(Watchdog, PingsOnlyWhileEachCounterGrows) {
+  Watchdog watchdog(seconds(2));
+  const auto ping = [&](int at, std::vector<std::uint64_t> counters) {
+    return watchdog.ping(kNow + seconds(at), counters);
+  };
+  EXPECT_TRUE(ping(0, {0, 0}));
+  EXPECT_FALSE(ping(1, {5, 5})) << "not due";
+  EXPECT_TRUE(ping(2, {5, 5}));
+  EXPECT_FALSE(ping(4, {1000, 5})) << "the second one is stuck, whatever the first does";
+  EXPECT_FALSE(ping(6, {2000, 5}));
+  EXPECT_TRUE(ping(8, {2001, 6}));
+  EXPECT_FALSE(Watchdog(Duration::zero()).ping(kNow, {}));
+}
+
+TEST(RunDirectory, IsMadeAndRefusedWhereItIsNotOurs) {
+  const test::TempDir dir;
+  EXPECT_EQ(*runDirectory(dir / "a/b"), dir / "a/b");
+  EXPECT_TRUE(std::filesystem::is_directory(dir / "a/b"));
+  EXPECT_FALSE(runDirectory("/proc/nothing/here"));
+  EXPECT_FALSE(runDirectory(dir / std::string(90, 'x'))) << "too long for a socket's name";
+  std::filesystem::create_directory_symlink("/tmp", dir / "link");
+  EXPECT_FALSE(runDirectory(dir / "link"));
+}
+
+}  // namespace
+}  // namespace merlin::status

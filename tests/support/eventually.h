@@ -1,0 +1,20 @@
+// eventually(): for tests with real processes and threads. Looks again until it is so, or the
+// deadline has passed: the test fails by the fact, not by how long a machine takes.
+#pragma once
+
+#include <chrono>
+#include <thread>
+
+namespace merlin::test {
+
+template <typename Condition>
+bool eventually(Condition condition, std::chrono::seconds deadline = std::chrono::seconds(30)) {
+  const auto end = std::chrono::steady_clock::now() + deadline;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
+}  // namespace merlin::test

@@ -1,0 +1,172 @@
+// What a person can do wrong: one clear message each, the right exit status, nothing left behind.
+#include <gtest/gtest.h>
+
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+void expectOutcome(const Outcome& outcome, int status, const std::vector<std::string>& parts) {
+  EXPECT_EQ(outcome.status, status) << outcome.output;
+  for (const std::string& part : parts)
+    EXPECT_NE(outcome.output.find(part), std::string::npos)
+        << "\"" << part << "\" is not in: " << outcome.output;
+}
+
+class BadInput : public testing::Test {
+ protected:
+  TempDir dir_;
+};
+
+TEST_F(BadInput, AMissingModel) {
+  Merlind m(dir_, "/no/such/model.mrm", "missing", {.emulate = false});
+  EXPECT_EQ(m.process().wait(), 2);
+  EXPECT_NE(m.process().output().find("/no/such/model.mrm: No such file or directory"),
+            std::string::npos)
+      << m.process().output();
+  EXPECT_TRUE(m.leftInSharedMemory().empty());
+}
+
+TEST_F(BadInput, AModelThatIsNone) {
+  writeText(dir_ / "model.mrm", std::string(500, 'x'));
+  Merlind m(dir_, dir_ / "model.mrm", "none", {.emulate = false});
+  EXPECT_EQ(m.process().wait(), 2);
+  EXPECT_NE(m.process().output().find("is no .mrm file (make one with: merlin mesh reduce"),
+            std::string::npos)
+      << m.process().output();
+  EXPECT_TRUE(m.leftInSharedMemory().empty());
+}
+
+TEST_F(BadInput, ATruncatedScan) {
+  const std::string whole = readText(kSource + "/config/models/ankylosaurus.ply");
+  writeText(dir_ / "cut.ply", whole.substr(0, whole.size() / 2));
+  expectOutcome(run({kMerlin, "mesh", "reduce", dir_ / "cut.ply", "-o", dir_ / "out.mrm"}), 2,
+                {"cut.ply: cut short: the header promises 34820 x vertex, the file ends after "
+                 "33645 at most"});
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "out.mrm"));
+}
+
+TEST_F(BadInput, AConfigurationWithThreeErrors) {
+  writeText(dir_ / "bad.json",
+            "{\n\"wall\": {\n\"modle\": \"a.mrm\",\n\"rate\": {\"rate_hz\": "
+            "\"fast\"}},\n\"devices\": {\"ball\": {\"port\": \"COM1\"}}\n}\n");
+  const std::vector<std::string> findings = {
+      "bad.json:3: /wall/modle is no setting; did you mean \"model\"?",
+      "bad.json:4: /wall/rate/rate_hz is the string \"fast\"; allowed is a number",
+      "bad.json:5: /devices/ball/port is \"COM1\"; allowed are"};
+  expectOutcome(run({kMerlind, "--check-config", dir_ / "bad.json"}), 2, findings);
+  expectOutcome(run({kMerlind, "--config", dir_ / "bad.json"}), 2, findings);
+}
+
+TEST_F(BadInput, CheckConfigSaysValidAdjustedOrInvalid) {
+  writeText(dir_ / "good.json", "{}");
+  writeText(dir_ / "adjusted.json", "{\"wall\": {\"rate\": {\"rate_hz\": 100000}}}");
+  expectOutcome(run({kMerlind, "--check-config", dir_ / "good.json"}), 0, {"good.json: valid"});
+  expectOutcome(run({kMerlind, "--check-config", dir_ / "adjusted.json"}), 1,
+                {"is 100000; allowed is 1 to 240; 240 is taken"});
+  expectOutcome(run({kMerlind, "--check-config", dir_ / "none.json"}), 2,
+                {"none.json: No such file or directory"});
+}
+
+TEST_F(BadInput, APortThatDoesNotExistLeavesTheRestRunning) {
+  const std::string model = makeModel(dir_, 5);
+  const std::string name = privateName("noport");
+  writeText(dir_ / "c.json", nlohmann::json{{"instance", name},
+                                            {"run_directory", dir_.path()},
+                                            {"wall", {{"model", model}}},
+                                            {"devices",
+                                             {{"ball", {{"port", "serial:/dev/ttyNONE7"}}},
+                                              {"glove", {{"port", "pty:" + dir_ / "none"}}}}}}
+                                 .dump());
+  Process merlind({kMerlind, "--config", dir_ / "c.json"});
+  EXPECT_TRUE(merlind.saysEventually("ready")) << merlind.output();
+  EXPECT_TRUE(merlind.saysEventually("ball: absent (/dev/ttyNONE7: No such file or directory)"))
+      << merlind.output();
+  EXPECT_TRUE(merlind.saysEventually("glove: absent (" + dir_ / "none: No such file or directory)"))
+      << merlind.output();
+  EXPECT_TRUE(merlind.saysEventually("tracker: absent (not configured)")) << merlind.output();
+  EXPECT_EQ(merlind.kill(SIGTERM), 0);
+}
+
+TEST_F(BadInput, APortThatIsNoSerialLine) {
+  const std::string name = privateName("noline");
+  writeText(dir_ / "file", "");
+  writeText(dir_ / "c.json", nlohmann::json{{"instance", name},
+                                            {"run_directory", dir_.path()},
+                                            {"devices",
+                                             {{"ball", {{"port", "serial:/dev/null"}}},
+                                              {"glove", {{"port", "pty:" + dir_ / "file"}}}}}}
+                                 .dump());
+  Process merlind({kMerlind, "--config", dir_ / "c.json", "--role", "devices"});
+  EXPECT_TRUE(merlind.saysEventually("/dev/null: ")) << merlind.output();
+  EXPECT_TRUE(merlind.saysEventually("is not a terminal; pty: takes the path of a pseudo-terminal"))
+      << merlind.output();
+  EXPECT_EQ(merlind.kill(SIGTERM), 0);
+}
+
+TEST_F(BadInput, ABrokenPostureNetwork) {
+  writeText(dir_ / "p.json", "{\"version\": 1}");
+  writeText(dir_ / "c.json", nlohmann::json{{"instance", privateName("net")},
+                                            {"run_directory", dir_.path()},
+                                            {"devices", {{"postures", "p.json"}}}}
+                                 .dump());
+  expectOutcome(run({kMerlind, "--config", dir_ / "c.json", "--role", "devices"}), 2, {"p.json"});
+}
+
+TEST_F(BadInput, UsageErrorsExitWithTwo) {
+  expectOutcome(run({kMerlin}), 2, {"subcommand"});
+  expectOutcome(run({kMerlin, "dance"}), 2, {"dance"});
+  expectOutcome(run({kMerlin, "snapshot"}), 2, {"-o"});
+  expectOutcome(run({kMerlin, "emulate", "theremin"}), 2, {"theremin", "spaceball"});
+  expectOutcome(run({kMerlin, "emulate", "spaceball", "--model", "9000"}), 2,
+                {"9000", "2003|3003|4000"});
+  expectOutcome(run({kMerlind, "--role", "emperor"}), 2, {"emperor"});
+  expectOutcome(run({kMerlin, "--help"}), 0, {"status", "mesh", "emulate"});
+}
+
+TEST_F(BadInput, CommandsForADaemonThatIsNotThere) {
+  const std::string nobody = privateName("nobody");
+  expectOutcome(run({kMerlin, "status", "--instance", nobody}), 1, {"no merlind runs as", nobody});
+  expectOutcome(run({kMerlin, "watch", "--instance", nobody}), 1, {"no merlind runs as"});
+  expectOutcome(run({kMerlin, "snapshot", "-o", dir_ / "x.png", "--instance", nobody}), 1,
+                {"no merlind shows a wall as"});
+  expectOutcome(run({kMerlin, "shm", "dump", "--instance", nobody}), 1, {"no merlind runs as"});
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "x.png"));
+}
+
+TEST_F(BadInput, MeshCommands) {
+  writeText(dir_ / "empty.ply", "");
+  writeText(dir_ / "a.xyz", "");
+  expectOutcome(run({kMerlin, "mesh", "info", dir_ / "none.ply"}), 2,
+                {"none.ply: No such file or directory"});
+  expectOutcome(run({kMerlin, "mesh", "info", dir_ / "empty.ply"}), 2,
+                {"empty.ply: line 1: a PLY file starts with"});
+  expectOutcome(run({kMerlin, "mesh", "info", dir_ / "a.xyz"}), 2,
+                {"a.xyz: meshes are read from .ply and .obj"});
+  const std::string scan = kSource + "/config/models/ankylosaurus.ply";
+  expectOutcome(run({kMerlin, "mesh", "reduce", scan, "-o", dir_ / "o.mrm", "--weight", "colour"}),
+                2, {"--weight colour: is not FEATURE=NUMBER"});
+  expectOutcome(run({kMerlin, "mesh", "reduce", scan, "-o", dir_ / "o.mrm", "--weight", "heat=1"}),
+                2,
+                {"weight heat: the mesh has no such feature; it has geometry, normal, curvature, "
+                 "boundary, colour"});
+  expectOutcome(run({kMerlin, "mesh", "reduce", scan, "-o", "/no/such/folder/o.mrm"}), 2,
+                {"/no/such/folder/o.mrm"});
+  expectOutcome(run({kMerlin, "mesh", "export", scan, "-o", dir_ / "o.stl"}), 2,
+                {"o.stl: meshes are written as .ply"});
+  expectOutcome(run({kMerlin, "mesh", "export", scan, "-o", dir_ / "o.ply", "--percent", "5",
+                     "--triangles", "9"}),
+                2, {"triangles"});
+}
+
+TEST_F(BadInput, PostureCommands) {
+  writeText(dir_ / "hands.csv", "posture,s0\nfist,1\n");
+  expectOutcome(run({kMerlin, "posture", "test", "--network", dir_ / "none.json"}), 2,
+                {"none.json"});
+  expectOutcome(run({kMerlin, "posture", "test", "--network", kSource + "/config/postures.json",
+                     "--data", dir_ / "hands.csv"}),
+                2, {"hands.csv"});
+}
+
+}  // namespace
+}  // namespace merlin::test

@@ -1,0 +1,118 @@
+// A real merlind on emulated devices, with a name and a folder of the test's own.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/shm/segment.h"
+#include "tests/support/process.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::test {
+
+inline const std::string kMerlin = MERLIN_BIN_DIR "/merlin";
+inline const std::string kMerlind = MERLIN_BIN_DIR "/merlind";
+inline const std::string kSource = MERLIN_SOURCE_DIR;
+
+// The demo's model, reduced to a part of itself so that a sanitizer's build can draw it.
+inline std::string makeModel(const TempDir& dir, int percent = 20) {
+  const std::string small = dir / "small.ply", model = dir / "model.mrm";
+  EXPECT_EQ(run({kMerlin, "mesh", "reduce", kSource + "/config/models/ankylosaurus.ply", "-o",
+                 dir / "full.mrm"})
+                .status,
+            0);
+  EXPECT_EQ(run({kMerlin, "mesh", "export", dir / "full.mrm", "--percent", std::to_string(percent),
+                 "-o", small})
+                .status,
+            0);
+  EXPECT_EQ(run({kMerlin, "mesh", "reduce", small, "-o", model}).status, 0);
+  return model;
+}
+
+struct MerlindOptions {
+  std::string script = "visit", role = "all";
+  double rate_hz = 10;  // a sanitizer's build cannot do 30
+  bool emulate = true;
+  std::map<std::string, std::string> environment = {};
+};
+
+class Merlind {
+ public:
+  Merlind(const TempDir& dir, const std::string& model, const std::string& name,
+          MerlindOptions options = {})
+      : instance_(privateName(name)), config_(dir / (name + ".json")) {
+    const nlohmann::json config = {
+        {"instance", instance_},
+        {"run_directory", dir.path()},
+        {"devices", {{"postures", kSource + "/config/postures.json"}, {"script", options.script}}},
+        {"wall", {{"model", model}, {"rate", {{"rate_hz", options.rate_hz}}}}}};
+    writeText(config_, config.dump(2));
+    std::vector<std::string> arguments = {kMerlind, "--config", config_, "--role", options.role};
+    if (options.emulate) arguments.emplace_back("--emulate");
+    process_ = std::make_unique<Process>(std::move(arguments), options.environment);
+  }
+
+  Process& process() { return *process_; }
+  const std::string& instance() const { return instance_; }
+  const std::string& config() const { return config_; }
+  bool ready() { return process_->saysEventually("ready"); }
+
+  const shm::DevicesSegment* devices() {
+    if (!devices_) {
+      auto opened =
+          shm::SegmentReader<shm::DevicesSegment>::open(shm::segmentName(instance_, "devices"));
+      if (!opened) return nullptr;
+      devices_.emplace(*std::move(opened));
+    }
+    return &**devices_;
+  }
+  shm::WallStats wall() {
+    const auto opened =
+        shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(instance_, "wall"));
+    return opened ? (*opened)->stats.read().value_or(shm::WallStats{}) : shm::WallStats{};
+  }
+  bool healthIs(shm::DeviceIndex device, HealthState state) {
+    return eventually([&] {
+      const auto* d = devices();
+      const auto health = d ? d->health[device].read() : std::nullopt;
+      return health && health->state == state;
+    });
+  }
+  nlohmann::json status() {
+    const Outcome asked = run({kMerlin, "status", "--json", "--instance", instance_});
+    return nlohmann::json::parse(asked.output, nullptr, false);
+  }
+
+  // Process numbers of its children whose command line has this word.
+  std::vector<pid_t> children(const std::string& word) const {
+    std::vector<pid_t> found;
+    const std::string pid = std::to_string(process_->pid());
+    std::istringstream pids(readText("/proc/" + pid + "/task/" + pid + "/children"));
+    for (pid_t child = 0; pids >> child;) {
+      if (readText(fmt::format("/proc/{}/cmdline", child)).find(word) != std::string::npos)
+        found.push_back(child);
+    }
+    return found;
+  }
+
+  // What of it lies in /dev/shm.
+  std::vector<std::string> leftInSharedMemory() const {
+    std::vector<std::string> left;
+    for (const auto& entry : std::filesystem::directory_iterator("/dev/shm")) {
+      if (entry.path().filename().string().starts_with(instance_)) left.push_back(entry.path());
+    }
+    return left;
+  }
+
+ private:
+  std::string instance_, config_;
+  std::unique_ptr<Process> process_;
+  std::optional<shm::SegmentReader<shm::DevicesSegment>> devices_;
+};
+
+}  // namespace merlin::test

@@ -1,0 +1,61 @@
+// Our Spaceball against a program that knows real ones: spacenavd reads the emulator, and says what
+// it saw on its own socket. Skipped where spacenavd is not installed.
+#include <array>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include "tests/support/process.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::test {
+namespace {
+
+using Event = std::array<std::int32_t, 8>;  // protocol of version 0: what, six axes or a button, ms
+
+int connectTo(const std::string& path) {
+  const int fd = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::copy(path.begin(), path.end(), address.sun_path);
+  if (::connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) return fd;
+  ::close(fd);
+  return -1;
+}
+
+TEST(Spacenavd, SeesTheEmulatedBallTwistedAboutItsVerticalAxis) {
+  if (run({"which", "spacenavd"}).status != 0) GTEST_SKIP() << "spacenavd is not installed";
+  const TempDir dir;
+  Process emulator({MERLIN_BIN_DIR "/merlin", "emulate", "spaceball", "--link", dir / "ball",
+                    "--script", "turning"});
+  ASSERT_TRUE(emulator.saysEventually("spaceball on")) << emulator.output();
+  writeText(dir / "spnavrc", "serial = " + dir / "ball" + "\n");
+  // Debian's spacenavd binds run/spnav.sock in the folder that it is in, / as a service.
+  std::filesystem::create_directory(dir / "run");
+  Process spacenavd({"sh", "-c", "cd " + dir.path() + " && exec spacenavd -d -v -c spnavrc"});
+  int client = -1;
+  ASSERT_TRUE(eventually([&] {
+    return spacenavd.ended() || (client = connectTo(dir / "run/spnav.sock")) >= 0;
+  })) << spacenavd.output();
+  ASSERT_FALSE(spacenavd.ended()) << spacenavd.output();
+
+  Event event{};
+  bool twisted = false;
+  for (int i = 0; i < 100 && !twisted; ++i) {
+    timeval limit{20, 0};
+    ::setsockopt(client, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+    ASSERT_EQ(::recv(client, event.data(), sizeof event, MSG_WAITALL),
+              static_cast<ssize_t>(sizeof event))
+        << spacenavd.output();
+    twisted = event[0] == 0 && std::abs(event[5]) > 100 && event[1] == 0 && event[2] == 0 &&
+              event[3] == 0;
+  }
+  EXPECT_TRUE(twisted) << spacenavd.output();
+  ::close(client);
+  spacenavd.kill(SIGTERM);
+}
+
+}  // namespace
+}  // namespace merlin::test

@@ -1,0 +1,240 @@
+// The whole of it: real merlind, real emulators on ptys, real ZeroMQ, real EGL.
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+class Wall : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    dir_ = new TempDir;  // for all tests of the suite
+    model_ = makeModel(*dir_);
+  }
+  static void TearDownTestSuite() { delete dir_; }
+
+  static TempDir* dir_;
+  static std::string model_;
+};
+TempDir* Wall::dir_ = nullptr;
+std::string Wall::model_;
+
+TEST_F(Wall, RunsOnEmulatedDevicesAndEndsClean) {
+  Merlind m(*dir_, model_, "runs");
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  for (const auto device : {shm::kGlove, shm::kTracker, shm::kBall})
+    EXPECT_TRUE(m.healthIs(device, HealthState::kOk)) << device;
+  EXPECT_TRUE(
+      eventually([&] { return m.devices()->posture.newest() && m.devices()->glove.count() > 50; }));
+  EXPECT_TRUE(eventually(
+      [&] { return m.devices()->ball.count() > 5 && m.devices()->tracker[0].count() > 50; }));
+
+  const auto status = m.status();
+  ASSERT_TRUE(status.is_object());
+  for (const char* key : {"rate_asked", "rate_held", "late_percent", "triangles", "posture"})
+    EXPECT_TRUE(status.contains(key)) << key;
+  for (const char* name : {"glove", "tracker", "ball"})
+    EXPECT_EQ(status["devices"][name]["health"], "ok") << name;
+
+  EXPECT_EQ(m.process().kill(SIGTERM), 0) << m.process().output();
+  EXPECT_TRUE(m.leftInSharedMemory().empty());
+}
+
+TEST_F(Wall, ShowsFullDetailWhenNobodyIsThere) {
+  Merlind m(*dir_, model_, "still", {.script = "still"});
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  EXPECT_TRUE(eventually([&] { return m.wall().full_detail == 1; }));
+  EXPECT_EQ(m.wall().triangles, m.status()["triangles"]);
+  EXPECT_EQ(m.wall().level, 0u);
+}
+
+TEST_F(Wall, AFistWithTheTrackerGrabs) {
+  Merlind m(*dir_, model_, "grabs", {.script = "grabbing"});
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  EXPECT_TRUE(eventually([&] { return m.wall().grabbed == 1; }));
+  EXPECT_TRUE(eventually([&] { return m.wall().grabbed == 0; }));
+}
+
+// Since `from` samples came, and of the newest of them none is missing.
+template <typename T>
+void expectContiguous(const shm::Channel<T>& channel, std::uint64_t from, const char* what) {
+  const std::uint64_t to = channel.count();
+  EXPECT_GT(to, from) << what;
+  std::optional<std::uint32_t> last;
+  for (std::uint64_t n = std::max(from, to > 200 ? to - 200 : 0); n < to; ++n) {
+    const auto sample = channel.at(n);
+    ASSERT_TRUE(sample) << what;
+    EXPECT_TRUE(!last || sample->counter == *last + 1) << what;
+    last = sample->counter;
+  }
+}
+
+TEST_F(Wall, EachDeviceMayDieAndComeBackWithoutTheOthersNoticing) {
+  Merlind m(*dir_, model_, "dies");
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  const struct {
+    shm::DeviceIndex index;
+    const char *driver, *name;
+  } kDevices[] = {{shm::kGlove, "cyberglove", "glove"},
+                  {shm::kTracker, "fastrak", "tracker"},
+                  {shm::kBall, "spaceball", "ball"}};
+  const auto streams = [&](shm::DeviceIndex device) {
+    const auto health = m.devices()->health[device].read();
+    return health && health->state == HealthState::kOk && health->samples > 0;
+  };
+  for (const auto& d : kDevices)
+    ASSERT_TRUE(eventually([&] { return streams(d.index); })) << d.name;
+  std::vector<std::unique_ptr<Process>> restarted;
+
+  for (const auto& victim : kDevices) {
+    const std::uint64_t glove_from = m.devices()->glove.count(),
+                        tracker_from = m.devices()->tracker[0].count();
+    const std::int64_t drawn = m.wall().updated_ns;
+    const auto children = m.children(victim.driver);
+    ASSERT_EQ(children.size(), 1u);
+    ::kill(children[0], SIGKILL);
+    EXPECT_TRUE(m.healthIs(victim.index, HealthState::kAbsent)) << victim.name;
+    EXPECT_EQ(m.status()["devices"][victim.name]["health"], "absent");
+    EXPECT_TRUE(
+        m.process().saysEventually(fmt::format("the emulated {} has ended", victim.driver)));
+
+    restarted.push_back(std::make_unique<Process>(
+        std::vector<std::string>{kMerlin, "emulate", victim.driver, "--link",
+                                 *dir_ / (std::string(victim.driver) + ".pty")}));
+    EXPECT_TRUE(m.healthIs(victim.index, HealthState::kOk)) << victim.name;
+    EXPECT_EQ(m.status()["devices"][victim.name]["health"], "ok");
+    EXPECT_EQ(m.devices()->health[victim.index].read()->reconnects, 1u);
+    EXPECT_GT(m.wall().updated_ns, drawn) << "the wall never stops";
+
+    if (victim.index != shm::kGlove) expectContiguous(m.devices()->glove, glove_from, "glove");
+    if (victim.index != shm::kTracker)
+      expectContiguous(m.devices()->tracker[0], tracker_from, "tracker");
+  }
+  EXPECT_EQ(m.process().kill(SIGTERM), 0);
+}
+
+TEST_F(Wall, SnapshotsAreTheFrameAndTheWall) {
+  Merlind m(*dir_, model_, "snapshot");
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  const std::string frame = *dir_ / "frame.png", wall = *dir_ / "wall.png";
+  EXPECT_NE(
+      run({kMerlin, "snapshot", "-o", frame, "--instance", m.instance()}).output.find("1280 x 960"),
+      std::string::npos);
+  EXPECT_NE(run({kMerlin, "snapshot", "--wall", "-o", wall, "--instance", m.instance()})
+                .output.find("1920 x 480"),
+            std::string::npos);
+  EXPECT_EQ(readText(frame).substr(1, 3), "PNG");
+  EXPECT_EQ(readText(wall).substr(1, 3), "PNG");
+}
+
+TEST_F(Wall, SharedMemoryIsReadByItsDumpAndByPython) {
+  Merlind m(*dir_, model_, "dump", {.script = "still"});
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  ASSERT_TRUE(m.healthIs(shm::kGlove, HealthState::kOk));
+  ASSERT_TRUE(eventually([&] {
+    return m.devices()->posture.newest() &&
+           std::string(m.devices()->posture.newest()->name) == "open";
+  }));
+  const auto dump = nlohmann::json::parse(
+      run({kMerlin, "shm", "dump", "--json", "--instance", m.instance()}).output);
+  const auto& fields = dump["/" + m.instance() + "-devices"];
+  EXPECT_EQ(fields["glove.angle_rad"]["value"].size(), 23u);
+  EXPECT_EQ(fields["glove.angle_rad"]["unit"], "rad");
+  EXPECT_EQ(fields["glove.health.state"]["value"], 2);
+
+  const Outcome python = run({"python3", kSource + "/daemon/shm/read_merlin.py",
+                              m.instance() + "-devices", "posture.name", "glove.sensors"});
+  EXPECT_EQ(python.status, 0) << python.output;
+  EXPECT_EQ(python.output, "glove.sensors (22,) \nposture.name open \n");
+  EXPECT_LE(std::count(python.output.begin(), python.output.end(), '\n'), 30);
+}
+
+TEST_F(Wall, TheTwoRolesRunAsTwoProcesses) {
+  Merlind devices(*dir_, model_, "roles", {.script = "turning", .role = "devices"});
+  ASSERT_TRUE(devices.ready()) << devices.process().output();
+  Merlind wall(*dir_, model_, "roles", {.role = "wall", .emulate = false});
+  ASSERT_TRUE(wall.ready()) << wall.process().output();
+  EXPECT_TRUE(eventually([&] { return wall.wall().moving == 1 && wall.wall().frames > 20; }))
+      << "the ball is twisted";
+  EXPECT_EQ(devices.status()["roles"].size(), 2u);
+  // The wall outlives the devices' process, and finds them again.
+  EXPECT_EQ(devices.process().kill(SIGKILL), 128 + SIGKILL);
+  EXPECT_TRUE(eventually([&] { return wall.wall().moving == 0; }));
+  Merlind again(*dir_, model_, "roles", {.script = "turning", .role = "devices"});
+  EXPECT_TRUE(eventually([&] { return wall.wall().moving == 1; })) << again.process().output();
+  EXPECT_EQ(again.process().kill(SIGTERM), 0);
+  EXPECT_EQ(wall.process().kill(SIGTERM), 0);
+  EXPECT_TRUE(wall.leftInSharedMemory().empty());
+}
+
+TEST_F(Wall, ASecondOneOfTheSameNameIsRefused) {
+  Merlind first(*dir_, model_, "second");
+  ASSERT_TRUE(first.ready()) << first.process().output();
+  Merlind second(*dir_, model_, "second");
+  EXPECT_EQ(second.process().wait(), 3);
+  EXPECT_NE(second.process().output().find("another merlind already runs as"), std::string::npos)
+      << second.process().output();
+  EXPECT_TRUE(first.healthIs(shm::kBall, HealthState::kOk));
+  EXPECT_EQ(first.status()["roles"].size(), 2u) << "its sockets still answer";
+  EXPECT_EQ(first.process().kill(SIGTERM), 0);
+}
+
+TEST_F(Wall, StartsAgainAfterAKill) {
+  Merlind killed(*dir_, model_, "killed");
+  ASSERT_TRUE(killed.ready()) << killed.process().output();
+  EXPECT_EQ(killed.process().kill(SIGKILL), 128 + SIGKILL);
+  EXPECT_FALSE(killed.leftInSharedMemory().empty());
+  Merlind next(*dir_, model_, "killed");
+  EXPECT_TRUE(next.ready()) << next.process().output();
+  EXPECT_EQ(next.status()["roles"].size(), 2u);
+  EXPECT_EQ(next.process().kill(SIGINT), 0);
+  EXPECT_TRUE(next.leftInSharedMemory().empty());
+}
+
+// What systemd would hear on its socket.
+class NotifySocket {
+ public:
+  explicit NotifySocket(const std::string& path)
+      : path_(path), fd_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0)) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::copy(path.begin(), path.end(), address.sun_path);
+    EXPECT_EQ(::bind(fd_, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  }
+  ~NotifySocket() { ::close(fd_); }
+  NotifySocket(const NotifySocket&) = delete;
+  NotifySocket& operator=(const NotifySocket&) = delete;
+
+  std::string all() {
+    char buffer[512];
+    for (ssize_t n = 0; (n = ::recv(fd_, buffer, sizeof buffer, 0)) > 0;)
+      heard_ += std::string(buffer, static_cast<std::size_t>(n)) + "\n";
+    return heard_;
+  }
+  bool hears(const std::string& text) {
+    return eventually([&] { return all().find(text) != std::string::npos; });
+  }
+
+ private:
+  std::string path_;
+  int fd_;
+  std::string heard_;
+};
+
+TEST_F(Wall, TellsSystemdWhenTheFirstFrameIsOutAndThatThereIsProgress) {
+  NotifySocket systemd(*dir_ / "notify");
+  Merlind m(*dir_, model_, "systemd",
+            {.environment = {{"NOTIFY_SOCKET", *dir_ / "notify"}, {"WATCHDOG_USEC", "400000"}}});
+  EXPECT_TRUE(systemd.hears("READY=1")) << m.process().output();
+  EXPECT_GT(m.wall().frames, 0u);
+  EXPECT_TRUE(systemd.hears("WATCHDOG=1"));
+  EXPECT_TRUE(systemd.hears("STATUS="));
+  EXPECT_EQ(m.process().kill(SIGTERM), 0);
+  EXPECT_TRUE(systemd.hears("STOPPING=1"));
+}
+
+}  // namespace
+}  // namespace merlin::test
