@@ -67,6 +67,19 @@ bool areUnit(const std::vector<float>& normals) {
   return true;
 }
 
+Result<Ok> validate(const Feature& f, std::size_t vertices) {
+  if (f.values.size() != vertices * f.dimension) {
+    return Error{Errc::kMalformed, fmt::format("feature {}: {} values for {} vertices x {}", f.name,
+                                               f.values.size(), vertices, f.dimension)};
+  }
+  for (std::size_t i = 0; i < f.values.size(); ++i) {
+    if (std::isfinite(f.values[i])) continue;
+    return Error{Errc::kMalformed,
+                 fmt::format("feature {}: vertex {} has {}", f.name, i / f.dimension, f.values[i])};
+  }
+  return Ok{};
+}
+
 }  // namespace
 
 float Box::diagonal() const noexcept {
@@ -105,9 +118,7 @@ Result<Ok> validate(const Mesh& mesh) {
                                                i / 3, mesh.triangles[i], n, n == 0 ? 0 : n - 1)};
   }
   for (const Feature& f : mesh.features) {
-    if (f.values.size() == n * f.dimension) continue;
-    return Error{Errc::kMalformed, fmt::format("feature {}: {} values for {} vertices x {}", f.name,
-                                               f.values.size(), n, f.dimension)};
+    if (const auto valid = validate(f, n); !valid) return valid;
   }
   return Ok{};
 }

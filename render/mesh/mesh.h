@@ -47,7 +47,7 @@ struct TidyReport {
   std::size_t unused = 0;      // vertices of no triangle
 };
 
-// Checks what comes from outside: every index in range, every position finite, every feature of the
+// Checks what comes from outside: every index in range, every number finite, every feature of the
 // right size, fewer than 2^31 vertices and triangles. Errors: kMalformed, with the first offender.
 Result<Ok> validate(const Mesh& mesh);
 

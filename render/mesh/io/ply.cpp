@@ -195,9 +195,7 @@ class Reader {
     }
     for (std::uint64_t row = 0; row < e.count; ++row) {
       for (const Property& p : e.properties) {
-        const auto done = isCorners(p)      ? readCorners(e, row, p)
-                          : skipProperty(p) ? Result<Ok>(Ok{})
-                                            : Result<Ok>(brokenAt(e, row, p));
+        const auto done = isCorners(p) ? readCorners(e, row, p) : skipProperty(e, row, p);
         if (!done) return done;
       }
     }

@@ -1,5 +1,6 @@
 #include "render/mesh/io/ply_body.h"
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cstring>
@@ -39,7 +40,7 @@ bool Body::nextWord(double& value) noexcept {
   while (at_ < end_ && isSpace(*at_)) ++at_;
   const char* from = at_ < end_ && *at_ == '+' ? at_ + 1 : at_;
   const auto [end, error] = std::from_chars(from, end_, value);
-  if (error == std::errc::invalid_argument || (end < end_ && !isSpace(*end))) return false;
+  if (error != std::errc() || (end < end_ && !isSpace(*end))) return false;
   at_ = end;
   return true;
 }

@@ -13,7 +13,8 @@ class Body {
   Body(std::string_view bytes, Form form)
       : at_(bytes.data()), end_(at_ + bytes.size()), form_(form) {}
 
-  // The next number of the file; false at its end, or where an ascii word is no number.
+  // The next number of the file; false at its end, or where an ascii word is no number
+  // that a double has.
   bool next(Scalar type, double& value) noexcept {
     return form_ == Form::kAscii ? nextWord(value) : nextBinary(type, value);
   }
