@@ -1,0 +1,155 @@
+#include "render/mesh/io/mesh_file.h"
+
+#include <filesystem>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/render/ply_files.h"
+#include "tests/support/meshes.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::render {
+namespace {
+
+using test::readText;
+using test::TempDir;
+using test::writeText;
+using Floats = std::vector<float>;
+using Limits = std::numeric_limits<float>;
+
+// The square, with numbers that lose nothing but in binary, and every feature that has a form of
+// its own. Colours are bytes in the file: 0, 1, 254 and 255 of 255.
+Mesh richSquare() {
+  Mesh mesh = test::grid(1, 1);
+  mesh.positions = {0.1F,  -0.0F, 1e-40F, Limits::max(), Limits::min(), -1.0F / 3,
+                    1e-7F, 2.0F,  3.0F,   4.0F,          5.0F,          6.0F};
+  mesh.features = {{"normal", 3, Floats(12, 0.57735027F)},
+                   {"colour", 3, {}},
+                   {"texcoord", 2, {0, 1, 2, 3, 4, 5, 6, 7}},
+                   {"heat", 1, {1e-30F, -2, 1e30F, 0.1F}}};
+  for (const int byte : {0, 1, 254, 255, 0, 1, 254, 255, 0, 1, 254, 255}) {
+    mesh.features[1].values.push_back(static_cast<float>(byte) * (1.0F / 255));
+  }
+  return mesh;
+}
+
+TEST(WriteMesh, IsReadBackBitByBit) {
+  const TempDir dir;
+  const Mesh mesh = richSquare();
+  ASSERT_TRUE(writeMesh(dir / "a.ply", mesh));
+  const auto loaded = readMesh(dir / "a.ply");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->mesh.positions, mesh.positions);
+  EXPECT_TRUE(std::signbit(loaded->mesh.positions[1]));
+  EXPECT_EQ(loaded->mesh.triangles, mesh.triangles);
+  ASSERT_EQ(loaded->mesh.features.size(), 4u);
+  for (std::size_t f = 0; f < 4; ++f) {
+    EXPECT_EQ(loaded->mesh.features[f].name, mesh.features[f].name);
+    EXPECT_EQ(loaded->mesh.features[f].dimension, mesh.features[f].dimension);
+    EXPECT_EQ(loaded->mesh.features[f].values, mesh.features[f].values) << f;
+  }
+  EXPECT_EQ(loaded->skipped_properties + loaded->tidied.degenerate + loaded->tidied.unused, 0u);
+}
+
+TEST(WriteMesh, GivesTheSameBytesForWhatItRead) {
+  const TempDir dir;
+  ASSERT_TRUE(writeMesh(dir / "a.ply", richSquare()));
+  ASSERT_TRUE(writeMesh(dir / "b.ply", readMesh(dir / "a.ply")->mesh));
+  EXPECT_EQ(readText(dir / "a.ply"), readText(dir / "b.ply"));
+}
+
+TEST(WriteMesh, HoldsColoursWithinTheirRange) {
+  const TempDir dir;
+  Mesh mesh = test::grid(1, 1);
+  mesh.features = {{"colour", 3, {-1, 0.5F, 7, 0, 0.001F, 0.999F, 0, 0, 0, 1, 1, 1}}};
+  ASSERT_TRUE(writeMesh(dir / "a.ply", mesh));
+  const auto loaded = readMesh(dir / "a.ply");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  const Floats& colour = loaded->mesh.find("colour")->values;
+  const int bytes[] = {0, 128, 255, 0, 0, 255, 0, 0, 0, 255, 255, 255};
+  for (std::size_t i = 0; i < 12; ++i) {
+    EXPECT_EQ(colour[i], static_cast<float>(bytes[i]) * (1.0F / 255)) << i;
+  }
+}
+
+TEST(WriteMesh, NumbersTheColumnsOfAWideFeature) {
+  const TempDir dir;
+  Mesh mesh = test::grid(1, 1);
+  mesh.features = {{"flow", 2, {0, 1, 10, 11, 20, 21, 30, 31}}};
+  ASSERT_TRUE(writeMesh(dir / "a.ply", mesh));
+  const auto loaded = readMesh(dir / "a.ply");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  ASSERT_EQ(loaded->mesh.features.size(), 2u);
+  EXPECT_EQ(loaded->mesh.find("flow_0")->values, (Floats{0, 10, 20, 30}));
+  EXPECT_EQ(loaded->mesh.find("flow_1")->values, (Floats{1, 11, 21, 31}));
+}
+
+TEST(WriteMesh, IsDoneWholeOrNotAtAll) {
+  const TempDir dir;
+  const auto refused = writeMesh(dir / "none/a.ply", test::cube());
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().what.find(dir / "none/a.ply"), std::string::npos);
+  const auto other = writeMesh(dir / "a.stl", test::cube());
+  ASSERT_FALSE(other);
+  EXPECT_EQ(other.error().code, Errc::kUnsupported);
+  EXPECT_EQ(other.error().what, dir / "a.stl" + ": meshes are written as .ply");
+  EXPECT_TRUE(std::filesystem::is_empty(dir.path()));
+}
+
+TEST(ReadMesh, GoesByTheEndingInSmallOrLargeLetters) {
+  const TempDir dir;
+  writeText(dir / "a.PLY", test::squareFile(test::Form::kBig));
+  ASSERT_TRUE(readMesh(dir / "a.PLY"));
+  writeText(dir / "a.Obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  ASSERT_TRUE(readMesh(dir / "a.Obj"));
+  for (const char* name : {"a.stl", "ply", "a.ply.gz", "x.ply/a"}) {
+    const auto refused = readMesh(dir / name);
+    ASSERT_FALSE(refused) << name;
+    EXPECT_EQ(refused.error().code, Errc::kUnsupported) << name;
+    EXPECT_EQ(refused.error().what, dir / name + ": meshes are read from .ply and .obj");
+  }
+}
+
+TEST(ReadMesh, TidiesWhatItRead) {
+  const TempDir dir;
+  const std::string file = test::squareFile(test::Form::kAscii);
+  writeText(dir / "a.ply", test::replaced(file, "4 0 1 3 2", "3 1 1 0"));
+  const auto loaded = readMesh(dir / "a.ply");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->mesh.triangles, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(loaded->mesh.vertexCount(), 3u);
+  EXPECT_EQ(loaded->tidied.degenerate, 1u);
+  EXPECT_EQ(loaded->tidied.unused, 1u);
+}
+
+TEST(ReadMesh, SaysWhichFileIsBrokenAndHow) {
+  const TempDir dir;
+  const std::string file = test::squareFile(test::Form::kAscii);
+  const auto fault = [&](const std::string& name, const std::string& text) {
+    writeText(dir / name, text);
+    const auto loaded = readMesh(dir / name);
+    EXPECT_FALSE(loaded);
+    EXPECT_EQ(loaded.error().code, Errc::kMalformed);
+    return loaded.error().what.substr(dir.path().size() + 1);
+  };
+  EXPECT_EQ(fault("empty.ply", ""), "empty.ply: line 1: a PLY file starts with \"ply\"");
+  EXPECT_EQ(fault("a.ply", test::replaced(file, "face 2", "face 9")),
+            "a.ply: cut short in face 2 of 9, property vertex_indices");
+  EXPECT_EQ(fault("b.ply", test::replaced(file, "3 0 1 3", "3 0 1 9")),
+            "b.ply: triangle 2: vertex 9 of 4 (0 to 3 exist)");
+  EXPECT_EQ(fault("c.ply", test::replaced(file, "vertex_indices", "corners")),
+            "c.ply: has no triangles");
+  EXPECT_EQ(fault("empty.obj", ""), "empty.obj: has no triangles");
+}
+
+TEST(ReadMesh, OfNoFileIsAnError) {
+  const TempDir dir;
+  EXPECT_EQ(readMesh(dir / "none.ply").error().code, Errc::kNotFound);
+  EXPECT_EQ(readMesh(dir / "none.obj").error().code, Errc::kNotFound);
+  std::filesystem::create_directory(dir / "folder.ply");
+  EXPECT_EQ(readMesh(dir / "folder.ply").error().code, Errc::kMalformed);
+}
+
+}  // namespace
+}  // namespace merlin::render

@@ -1,0 +1,177 @@
+#include "render/mesh/io/ply.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/render/ply_files.h"
+
+namespace merlin::render {
+namespace {
+
+using namespace std::string_literals;
+using namespace test;  // ply_files.h
+using Floats = std::vector<float>;
+using Indices = std::vector<std::uint32_t>;
+
+void expectSquare(const Mesh& mesh) {
+  EXPECT_EQ(mesh.positions, (Floats{0, 0, 0.5F, 1, 0, 0.5F, 0, 1, 0.5F, 1, 1, 0.5F}));
+  EXPECT_EQ(mesh.triangles, (Indices{0, 1, 3, 0, 3, 2, 0, 1, 3}));
+  ASSERT_EQ(mesh.features.size(), 2u);
+  EXPECT_EQ(mesh.features[0].name, "colour");
+  EXPECT_EQ(mesh.features[0].dimension, 3u);
+  ASSERT_EQ(mesh.features[0].values.size(), 12u);
+  const Floats expected{0, 1, 0, 0.2F, 1, 0, 0.4F, 1, 0, 0.6F, 1, 0};
+  for (std::size_t i = 0; i < 12; ++i) {
+    EXPECT_FLOAT_EQ(mesh.features[0].values[i], expected[i]) << i;
+  }
+  EXPECT_EQ(mesh.features[1].name, "heat");
+  EXPECT_EQ(mesh.features[1].dimension, 1u);
+  EXPECT_EQ(mesh.features[1].values, (Floats{0, -0.25F, -0.5F, -0.75F}));
+}
+
+class PlyForms : public testing::TestWithParam<Form> {};
+INSTANTIATE_TEST_SUITE_P(Each, PlyForms, testing::ValuesIn(kForms),
+                         [](const auto& form) { return nameOf(form.param); });
+
+TEST_P(PlyForms, AreReadAlike) {
+  const auto loaded = read(squareFile(GetParam()));
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  expectSquare(loaded->mesh);
+  EXPECT_EQ(loaded->skipped_properties, 0u);
+}
+
+TEST_P(PlyForms, MayHaveCarriageReturnsInTheirHeader) {
+  const std::string file = squareFile(GetParam());
+  const std::size_t end = file.find("end_header\n") + 11;
+  const auto loaded = read(replaced(file.substr(0, end), "\n", "\r\n") + file.substr(end));
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  expectSquare(loaded->mesh);
+}
+
+// One property of each type, by both of its names, at the end of its range.
+TEST_P(PlyForms, HaveEightTypesOfTwoNames) {
+  const auto last = [&](const std::string& type, auto value) {
+    Body body(GetParam());
+    body.put(0.0F).put(0.0F).put(0.0F).put(value).line();
+    const auto loaded = read(header(GetParam(),
+                                    "element vertex 1\nproperty float x\nproperty float y\n"
+                                    "property float z\nproperty " +
+                                        type + " data\n") +
+                             body.text());
+    return loaded ? loaded->mesh.features.at(0).values.at(0) : NAN;
+  };
+  for (const char* type : {"char", "int8"}) EXPECT_EQ(last(type, std::int8_t{-128}), -128.0F);
+  for (const char* type : {"uchar", "uint8"}) EXPECT_EQ(last(type, std::uint8_t{255}), 255.0F);
+  for (const char* type : {"short", "int16"})
+    EXPECT_EQ(last(type, std::int16_t{-32768}), -32768.0F);
+  for (const char* type : {"ushort", "uint16"})
+    EXPECT_EQ(last(type, std::uint16_t{65535}), 65535.0F);
+  for (const char* type : {"int", "int32"}) EXPECT_EQ(last(type, -2147483647 - 1), -2147483648.0F);
+  for (const char* type : {"uint", "uint32"}) EXPECT_EQ(last(type, 4294967040U), 4294967040.0F);
+  for (const char* type : {"float", "float32"}) EXPECT_EQ(last(type, -0.15625F), -0.15625F);
+  for (const char* type : {"double", "float64"}) EXPECT_EQ(last(type, 0.078125), 0.078125F);
+}
+
+TEST_P(PlyForms, MayCarryWhatNobodyKnows) {
+  Body body(GetParam());
+  body.put(std::uint8_t{2}).put(7.0).put(8.0).put(std::int16_t{-1}).line();  // a camera
+  for (int v = 0; v < 3; ++v) {
+    body.put(std::uint8_t{1}).put(v).put(v == 1 ? 1.0F : 0.0F).put(v == 2 ? 1.0F : 0.0F).put(0.0F);
+    body.line();
+  }
+  body.put(std::uint8_t{9}).put(std::int8_t{3}).put(std::uint16_t{0}).put(std::uint16_t{1});
+  body.put(std::uint16_t{2}).line();
+  const auto loaded =
+      read(header(GetParam(),
+                  "obj_info an unknown element, an empty one, a list in a vertex, a face's flags\n"
+                  "element camera 1\nproperty list uchar double lens\nproperty short shutter\n"
+                  "element nothing 1000000\n"
+                  "element vertex 3\nproperty list uchar int bones\nproperty float x\n"
+                  "property float y\nproperty float z\n"
+                  "element face 1\nproperty uchar flags\n"
+                  "property list char ushort vertex_index\n") +
+           body.text());
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->mesh.positions, (Floats{0, 0, 0, 1, 0, 0, 0, 1, 0}));
+  EXPECT_EQ(loaded->mesh.triangles, (Indices{0, 1, 2}));
+  EXPECT_TRUE(loaded->mesh.features.empty());
+  EXPECT_EQ(loaded->skipped_properties, 4u);
+}
+
+const std::string kAscii = squareFile(Form::kAscii);
+
+TEST(PlyAscii, MayHaveCarriageReturnsBlanksAndSigns) {
+  auto loaded = read(replaced(kAscii, "\n", "\r\n"));
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  expectSquare(loaded->mesh);
+  loaded = read(replaced(replaced(kAscii, " 0.500000 ", "\t +5e-1  "), "property float",
+                         " property\tfloat "));
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  expectSquare(loaded->mesh);
+}
+
+TEST(PlyRead, TakesFacesBeforeTheirVertices) {
+  const auto loaded = read(
+      "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "element vertex 3\nproperty float z\nproperty float y\nproperty float x\nend_header\n"
+      "3 0 1 2\n1 2 3\n4 5 6\n7 8 9\n");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->mesh.positions, (Floats{3, 2, 1, 6, 5, 4, 9, 8, 7}));
+}
+
+TEST(PlyRead, FansPolygonsAndCountsThoseWithoutArea) {
+  const auto loaded =
+      read(replaced(replaced(kAscii, "4 0 1 3 2", "5 0 1 3 2 1"), "3 0 1 3", "2 0 1"));
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->mesh.triangles, (Indices{0, 1, 3, 0, 3, 2, 0, 2, 1}));
+  EXPECT_EQ(loaded->tidied.degenerate, 1u);
+}
+
+TEST(PlyRead, PutsKnownPropertiesUnderOneName) {
+  const auto loaded = read(
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float ny\nproperty float nz\nproperty float nx\n"
+      "property float u\nproperty float v\nproperty ushort b\nproperty ushort g\n"
+      "property ushort r\nproperty uchar alpha\nend_header\n"
+      "0 0 0 2 3 1 0.25 0.75 65535 13107 0 128\n");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  const Mesh& mesh = loaded->mesh;
+  ASSERT_EQ(mesh.features.size(), 4u);
+  EXPECT_EQ(mesh.find("normal")->values, (Floats{1, 2, 3}));
+  EXPECT_EQ(mesh.find("texcoord")->values, (Floats{0.25F, 0.75F}));
+  EXPECT_EQ(mesh.find("alpha")->values, (Floats{128}));  // data as any other
+  ASSERT_EQ(mesh.find("colour")->values.size(), 3u);
+  EXPECT_EQ(mesh.find("colour")->values[0], 0.0F);
+  EXPECT_FLOAT_EQ(mesh.find("colour")->values[1], 0.2F);
+  EXPECT_FLOAT_EQ(mesh.find("colour")->values[2], 1);
+}
+
+TEST(PlyRead, TakesColoursInFloatAsTheyAre) {
+  const auto loaded =
+      read(replaced(replaced(kAscii, "property uchar", "property float"), " 255 0 ", " 0.5 1.5 "));
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  const Floats& colour = loaded->mesh.find("colour")->values;
+  EXPECT_EQ((Floats{colour.begin() + 3, colour.begin() + 6}), (Floats{51, 0.5F, 1.5F}));
+}
+
+// A scalar that is called "colour" is not a colour's red; nor may its neighbours be written beside
+// it.
+TEST(PlyRead, LeavesOutAScalarThatBearsTheNameOfAKnownFeature) {
+  for (const char* name : {"colour", "normal", "texcoord"}) {
+    const auto loaded =
+        read(replaced(replaced(kAscii, "property double heat", "property uchar blue"),
+                      "property uchar red", "property uchar "s + name));
+    ASSERT_TRUE(loaded) << loaded.error().what;
+    EXPECT_EQ(loaded->skipped_properties, 1u);
+    ASSERT_EQ(loaded->mesh.features.size(), 1u);
+    EXPECT_EQ(loaded->mesh.features[0].name, "colour");
+    EXPECT_EQ(loaded->mesh.features[0].dimension, 3u);
+    EXPECT_EQ(loaded->mesh.features[0].values.size(), 12u);
+  }
+}
+
+}  // namespace
+}  // namespace merlin::render
