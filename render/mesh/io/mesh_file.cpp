@@ -36,7 +36,7 @@ Result<LoadedMesh> readMesh(const std::string& path) {
   }
   const auto file = MappedFile::open(path);
   if (!file) return file.error();
-  auto loaded = end == "ply" ? ply::parse(file->text()) : readWithOpenMesh(path, file->text());
+  auto loaded = end == "ply" ? ply::parse(file->text()) : readWithOpenMesh(file->text());
   if (!loaded) return inFile(path, loaded.error());
   if (const auto valid = validate(loaded->mesh); !valid) return inFile(path, valid.error());
   const TidyReport tidied = tidy(loaded->mesh);
