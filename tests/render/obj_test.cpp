@@ -1,0 +1,179 @@
+#include <string>
+#include <vector>
+
+#include <OpenMesh/Core/IO/MeshIO.hh>
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "render/mesh/io/mesh_file.h"
+#include "tests/support/meshes.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::render {
+namespace {
+
+using Floats = std::vector<float>;
+using Indices = std::vector<std::uint32_t>;
+
+class ObjFile : public testing::Test {
+ protected:
+  Result<LoadedMesh> read(const std::string& text) {
+    test::writeText(path_, text);
+    return readMesh(path_);
+  }
+  // Four corners of a square, then `faces`.
+  Result<LoadedMesh> readFaces(const std::string& faces) {
+    return read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n" + faces);
+  }
+  Indices trianglesOf(const std::string& faces) {
+    const auto loaded = readFaces(faces);
+    return loaded ? loaded->mesh.triangles : Indices{};
+  }
+  // What is wrong with the file, without its name.
+  std::string faultOf(const std::string& text) {
+    const auto loaded = read(text);
+    return loaded ? "none" : loaded.error().what.substr(path_.size() + 2);
+  }
+  std::string faultOfFaces(const std::string& faces) {
+    const auto loaded = readFaces(faces);
+    return loaded ? "none" : loaded.error().what.substr(path_.size() + 2);
+  }
+
+  const test::TempDir dir_;
+  const std::string path_ = dir_ / "a.obj";
+};
+
+TEST_F(ObjFile, HasTrianglesAndFansOfLargerFaces) {
+  const Indices square{0, 1, 3, 0, 3, 2};
+  EXPECT_EQ(trianglesOf("f 1 2 4\nf 1 4 3\n"), square);
+  EXPECT_EQ(trianglesOf("f 1 2 4 3\n"), square);
+}
+
+TEST_F(ObjFile, MayNameNormalsAndTextureAtEachCorner) {
+  const std::string extra = "vt 0 0\nvt 1 0\nvn 0 0 1\n";
+  const Indices square{0, 1, 3, 0, 3, 2};
+  EXPECT_EQ(trianglesOf(extra + "f 1//1 2//1 4//1 3//1\n"), square);
+  EXPECT_EQ(trianglesOf(extra + "f 1/1 2/2 4/1 3/2\n"), square);
+  EXPECT_EQ(trianglesOf(extra + "f 1/1/1 2/2/1 4/1/1 3/2/1\n"), square);
+}
+
+TEST_F(ObjFile, CountsNegativeIndicesFromTheVerticesSoFar) {
+  EXPECT_EQ(trianglesOf("f -4 -3 -1\nv 5 5 5\nv 6 6 6\nf -6 -2 -1\n"), (Indices{0, 1, 2, 0, 3, 4}));
+}
+
+TEST_F(ObjFile, MayHoldWhatMerlinHasNoUseFor) {
+  const auto loaded = read(
+      "# made by hand\r\nmtllib none.mtl\r\no square\r\ng all\r\nusemtl red\r\ns off\r\n"
+      "v 0 0 0 # corner\r\nv 1 0 0\r\n\r\n  v\t0  1 0\r\nl 1 2\r\np 1\r\nvp 0.5\r\nf 1 2 3 # face");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->mesh.positions, (Floats{0, 0, 0, 1, 0, 0, 0, 1, 0}));
+  EXPECT_EQ(loaded->mesh.triangles, (Indices{0, 1, 2}));
+}
+
+TEST_F(ObjFile, HasColoursWhereEveryVertexHasOne) {
+  const auto loaded = read("v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 0.25\nf 1 2 3\n");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  ASSERT_NE(loaded->mesh.find("colour"), nullptr);
+  EXPECT_EQ(loaded->mesh.find("colour")->values, (Floats{1, 0, 0, 0, 0.5F, 0, 0, 0, 0.25F}));
+  const auto without = read("v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0\nf 1 2 3\n");
+  ASSERT_TRUE(without) << without.error().what;
+  EXPECT_TRUE(without->mesh.features.empty());
+}
+
+TEST_F(ObjFile, IsRefusedWhereOpenMeshSkipsALineOfIt) {
+  for (const char* vertex : {"v 1 0", "v", "v 0 0 nan", "v 0 0 1e99", "v\r"}) {
+    const std::string text = std::string(vertex) + "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    EXPECT_EQ(faultOf(text), "1 of 4 \"v\" lines could not be read") << vertex;
+  }
+  for (const char* face : {"f 1 2", "f", "f 1 1 3"}) {
+    EXPECT_EQ(faultOfFaces(std::string("f 1 2 4\nf 1 4 3\n") + face + "\n"),
+              "1 of 3 \"f\" lines could not be read")
+        << face;
+  }
+}
+
+// Before OpenMesh sees them: a corner that starts with no vertex breaks an assertion in it.
+TEST_F(ObjFile, NamesTheLineOfAWordThatIsNoNumber) {
+  EXPECT_EQ(faultOf("\n# x\nv 0 one 0\n"), "line 3: \"one\" is no number");
+  EXPECT_EQ(faultOf("v 1.0.0 0 0\n"), "line 1: \"1.0.0\" is no number");
+  for (const char* corner : {"x", "1.5", "//1", "/1", "/", "x/1", "99999999999", "1e2", "\xFF"}) {
+    EXPECT_EQ(faultOfFaces("f 1 2 3\nf 1 2 " + std::string(corner) + "\n"),
+              "line 6: \"" + std::string(corner) + "\" is no corner of a face");
+  }
+}
+
+// A pipe that nobody writes to: whoever opened it would wait for ever.
+TEST_F(ObjFile, NeverHasItsMaterialsOpened) {
+  ASSERT_EQ(::mkfifo((dir_ / "x.mtl").c_str(), 0600), 0);
+  EXPECT_EQ(trianglesOf("mtllib x.mtl\nmtllib " + dir_ / "x.mtl" + "\nusemtl red\nf 1 2 3\n"),
+            (Indices{0, 1, 2}));
+}
+
+TEST_F(ObjFile, IsRefusedWhereAFacePointsNowhere) {
+  EXPECT_EQ(faultOfFaces("f 1 2 4\nf 1 2 5\n"), "triangle 1: vertex 4 of 4 (0 to 3 exist)");
+  EXPECT_EQ(faultOfFaces("f 0 2 3\n"), "triangle 0: vertex 4294967295 of 4 (0 to 3 exist)");
+  EXPECT_EQ(faultOfFaces("f 1 2 -5\n"), "triangle 0: vertex 4294967295 of 4 (0 to 3 exist)");
+}
+
+TEST_F(ObjFile, WithoutFacesOrOfSomethingElseIsNoMesh) {
+  EXPECT_EQ(faultOfFaces(""), "has no triangles");
+  EXPECT_EQ(faultOf("banana\n"), "has no triangles");
+  EXPECT_EQ(faultOf(std::string(1000, '\0')), "has no triangles");
+}
+
+// What one wrong byte, or an early end, leaves is a sound mesh or an error.
+TEST_F(ObjFile, SurvivesDamage) {
+  const std::string text =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2//1 -1\nf 1 2 3\n";
+  std::size_t refused = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    refused += !read(text.substr(0, at));
+    for (const char c : {'\0', ' ', '\n', '-', '9', '/', 'v', 'f', 'x', '\xFF'}) {
+      std::string damaged = text;
+      damaged[at] = c;
+      const auto loaded = read(damaged);
+      refused += !loaded;
+      EXPECT_TRUE(!loaded || validate(loaded->mesh));
+    }
+  }
+  EXPECT_GT(refused, 2 * text.size());
+}
+
+std::string objOf(const Mesh& mesh) {
+  std::string text;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    text +=
+        (i % 3 == 0 ? "v " : " ") + std::to_string(mesh.positions[i]) + (i % 3 == 2 ? "\n" : "");
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    text += (i % 3 == 0 ? "f " : " ") + std::to_string(mesh.triangles[i] + 1) +
+            (i % 3 == 2 ? "\n" : "");
+  }
+  return text;
+}
+
+// OpenMesh's half-edge mesh as an oracle: on a manifold it loses nothing.
+TEST_F(ObjFile, AgreesWithAHalfEdgeMesh) {
+  const auto loaded = read(objOf(test::sphere(2)));
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  OpenMesh::TriMesh_ArrayKernelT<> oracle;
+  ASSERT_TRUE(OpenMesh::IO::read_mesh(oracle, path_));
+  ASSERT_EQ(loaded->mesh.vertexCount(), oracle.n_vertices());
+  ASSERT_EQ(loaded->mesh.triangleCount(), 128u);
+  ASSERT_EQ(oracle.n_faces(), 128u);
+  std::size_t corner = 0;
+  for (const auto& face : oracle.faces()) {
+    for (const auto& vertex : face.vertices()) {
+      const std::uint32_t v = loaded->mesh.triangles[corner++];
+      ASSERT_EQ(static_cast<int>(v), vertex.idx());
+      const auto& p = oracle.point(vertex);
+      for (std::size_t k = 0; k < 3; ++k) {
+        ASSERT_EQ(loaded->mesh.positions[3 * v + k], p[k]);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace merlin::render
