@@ -62,7 +62,7 @@ Result<Ok> appendModel(const PictureOptions& options, const std::string& path,
   for (const double percent : options.percents) {
     const std::size_t level = model->levelFor(
         static_cast<std::size_t>(percent / 100 * static_cast<double>(model->triangleCount())));
-    (*picture)->draw(viewOf(options), level);
+    (*picture)->draw(viewOf(options), level, Timestamp::max());
     strip.append((*picture)->pixels(), options.width);
     fmt::print("{}: {} of {} triangles\n", path, model->trianglesAt(level), model->triangleCount());
   }

@@ -147,6 +147,8 @@ std::vector<Field> wallFields() {
   MERLIN_FIELD(t, WallStats, head_room, "");
   MERLIN_FIELD(t, WallStats, input_age_ms, "ms");
   MERLIN_FIELD(t, WallStats, still_to_full_s, "s");
+  MERLIN_FIELD(t, WallStats, resumed, "");
+  MERLIN_FIELD(t, WallStats, resumed_late, "");
   MERLIN_FIELD(t, WallStats, mode, "");
   MERLIN_FIELD(t, WallStats, posture, "");
   return t.take();

@@ -84,14 +84,16 @@ struct WallStats {
   float head_room;       // the governor's, share of the period
   float cost_fixed_ms;   // its model: work = fixed + coefficient * triangles^0.65
   float cost_coefficient_us;
-  float input_age_ms;     // of the newest sample, when the last frame began
-  float still_to_full_s;  // last time: from standstill to full detail
-  std::uint32_t grabbed;  // 1 while a hand holds the model
-  char mode[16];          // of the ball: "object" or "fly"
-  char posture[20];       // the newest, empty for none
+  float input_age_ms;          // of the newest sample, when the last frame began
+  float still_to_full_s;       // last time: from standstill to full detail
+  std::uint32_t resumed;       // times that motion resumed after a standstill, since the start
+  std::uint32_t resumed_late;  // of these: the first frame missed its deadline
+  std::uint32_t grabbed;       // 1 while a hand holds the model
+  char mode[16];               // of the ball: "object" or "fly"
+  char posture[20];            // the newest, empty for none
   std::uint32_t reserved;
 };
-static_assert(sizeof(WallStats) == 152 && offsetof(WallStats, triangles) == 32);
+static_assert(sizeof(WallStats) == 160 && offsetof(WallStats, triangles) == 32);
 
 struct WallSegment {
   Header header;

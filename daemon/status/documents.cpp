@@ -102,6 +102,8 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now) {
                {"cost_coefficient_us", round3(s.cost_coefficient_us)},
                {"input_age_ms", round3(s.input_age_ms)},
                {"still_to_full_s", round3(s.still_to_full_s)},
+               {"resumed", s.resumed},
+               {"resumed_late", s.resumed_late},
                {"stale_s", ageSeconds(s.updated_ns, now)}});
 }
 

@@ -11,8 +11,9 @@
 namespace merlin::wall {
 
 struct DrawTimes {
-  Duration drawing{};  // cut, upload, triangles
+  Duration drawing{};  // cut, upload, triangles; where a view was coarser, what it would have been
   Duration fixed{};    // clearing and read-back
+  bool gave_way = false;  // the operator's view was coarser, for want of time
 };
 
 // Thread-bound to the wall's thread.
@@ -20,8 +21,10 @@ class Painter {
  public:
   virtual ~Painter() = default;
 
-  // The whole frame at `level` of the dendrogram.
-  virtual DrawTimes draw(const Eigen::Isometry3f& T_eye_model, std::size_t level) = 0;
+  // The whole frame at `level` of the dendrogram, if possible by `until`: the wall's tiles come
+  // first, and the operator's view gets coarser where they took longer than they used to.
+  virtual DrawTimes draw(const Eigen::Isometry3f& T_eye_model, std::size_t level,
+                         Timestamp until) = 0;
 
   // Full detail in slices: beginRefining() once, then refine() until it returns true: the frame is
   // whole, pixels() shows it. refine() draws until about `until`, one slice at least, if there is

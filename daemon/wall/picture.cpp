@@ -1,6 +1,7 @@
 #include "daemon/wall/picture.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace merlin::wall {
 namespace {
@@ -9,6 +10,11 @@ using render::ModelRenderer;
 
 // Triangles of a slice: 1 to 5 ms on llvmpipe; larger ones are no faster (its bins fall out of L2).
 constexpr std::size_t kSlice = 10'000;
+
+// Of the operator's view, where time is short; and how its cost grows with triangles (as the
+// governor has it).
+constexpr std::size_t kLeastOperator = 300;
+constexpr double kCostExponent = 0.65;
 
 // The model's box centred at the origin, its half diagonal `radius_m` long.
 Eigen::Matrix4f scaling(const render::Dendrogram& model, float radius_m) {
@@ -84,33 +90,73 @@ void Picture::readTile(std::size_t tile) {
   tiles_[tile].read(pixels_.data() + at, plan_.frame_width);
 }
 
-DrawTimes Picture::draw(const Eigen::Isometry3f& T_eye_model, std::size_t level) {
-  DrawTimes times;
-  Timestamp last = clock_.now();
-  const auto lap = [&](Duration& sum) {
-    const Timestamp now = clock_.now();
-    sum += now - last;
-    last = now;
-  };
+void Picture::uploadCut(std::size_t level) {
   const std::size_t triangles = model_.cut(level, cut_);
   renderer_->uploadCut(std::span(cut_).first(3 * triangles));
-  lap(times.drawing);
+}
+
+void Picture::drawTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model, DrawTimes& times) {
+  const Timestamp began = clock_.now();
+  beginTile(tile, T_eye_model);
+  const Timestamp cleared = clock_.now();
+  const std::size_t triangles = renderer_->triangles(ModelRenderer::Source::kCut);
+  for (std::size_t first = 0; first < triangles; first += kSlice) {
+    renderer_->draw(ModelRenderer::Source::kCut, first, std::min(kSlice, triangles - first));
+    renderer_->flush();
+  }
+  const Timestamp drawn = clock_.now();
+  readTile(tile);
+  times.drawing += drawn - cleared;
+  times.fixed += (cleared - began) + (clock_.now() - drawn);
+}
+
+DrawTimes Picture::draw(const Eigen::Isometry3f& T_eye_model, std::size_t level, Timestamp until) {
+  DrawTimes times;
+  const Timestamp began = clock_.now();
+  uploadCut(level);
+  times.drawing += clock_.now() - began;
+  std::size_t operators = 0;
   for (std::size_t i = 0; i < tiles_.size(); ++i) {
-    beginTile(i, T_eye_model);
-    lap(times.fixed);
-    for (std::size_t first = 0; first < triangles; first += kSlice) {
-      renderer_->draw(ModelRenderer::Source::kCut, first, std::min(kSlice, triangles - first));
-      renderer_->flush();
-    }
-    lap(times.drawing);
-    readTile(i);
-    lap(times.fixed);
+    if (plan_.tiles[i].kind == render::TileKind::kWall)
+      drawTile(i, T_eye_model, times);
+    else
+      ++operators;
+  }
+  if (operators == 0 || operators == tiles_.size()) until = Timestamp::max();
+  const Duration wall = times.drawing;
+  const std::size_t fits = levelThatFits(level, wall, until - clock_.now());
+  times.gave_way = fits != level;
+  if (times.gave_way) uploadCut(fits);
+  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    if (plan_.tiles[i].kind != render::TileKind::kWall) drawTile(i, T_eye_model, times);
+  }
+  if (times.gave_way) {
+    times.drawing = wall + std::chrono::duration_cast<Duration>(wall * operator_share_);
+  } else {
+    learnOperatorShare(wall, times.drawing - wall);
   }
   return times;
 }
 
+// The operator's views cost operator_share_ of what the wall's tiles cost now; half as many
+// triangles cost more than half as much.
+std::size_t Picture::levelThatFits(std::size_t level, Duration wall, Duration left) const {
+  const double share = toSeconds(left) / std::max(operator_share_ * toSeconds(wall), 1e-9);
+  if (share >= 1) return level;
+  const double triangles = std::pow(std::max(share, 0.0), 1 / kCostExponent) *
+                           static_cast<double>(model_.trianglesAt(level));
+  return std::max(level,
+                  model_.levelFor(std::max(static_cast<std::size_t>(triangles), kLeastOperator)));
+}
+
+void Picture::learnOperatorShare(Duration wall, Duration operators) {
+  constexpr double kGain = 0.2;
+  if (wall > Duration::zero())
+    operator_share_ += kGain * (toSeconds(operators) / toSeconds(wall) - operator_share_);
+}
+
 void Picture::warmUp(const Eigen::Isometry3f& T_eye_model) {
-  draw(T_eye_model, model_.levelFor(kSlice));
+  draw(T_eye_model, model_.levelFor(kSlice), Timestamp::max());
   beginRefining(T_eye_model);
   refine(clock_.now() + 2 * slice_time_);
 }

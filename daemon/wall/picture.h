@@ -32,7 +32,7 @@ class Picture final : public Painter {
   // Draws every state that a frame uses once, so that no shader is compiled in a frame.
   void warmUp(const Eigen::Isometry3f& T_eye_model);
 
-  DrawTimes draw(const Eigen::Isometry3f& T_eye_model, std::size_t level) override;
+  DrawTimes draw(const Eigen::Isometry3f& T_eye_model, std::size_t level, Timestamp until) override;
   void beginRefining(const Eigen::Isometry3f& T_eye_model) override;
   bool refine(Timestamp until) override;
   std::span<const std::uint8_t> pixels() const noexcept override { return pixels_; }
@@ -43,6 +43,10 @@ class Picture final : public Painter {
   Picture(const render::Dendrogram& model, const render::TilePlan& plan, const render::Look& look,
           double radius_m, const Clock& clock);
   render::Camera cameraOf(const render::Tile& tile, const Eigen::Isometry3f& T_eye_model) const;
+  void uploadCut(std::size_t level);
+  void drawTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model, DrawTimes& times);
+  std::size_t levelThatFits(std::size_t level, Duration wall, Duration left) const;
+  void learnOperatorShare(Duration wall, Duration operators);
   void beginTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model);
   void readTile(std::size_t tile);
 
@@ -57,6 +61,8 @@ class Picture final : public Painter {
   std::vector<render::FrameBuffer> tiles_;
   std::vector<std::uint32_t> cut_;
   std::vector<std::uint8_t> pixels_;
+  // Operator's views' time as a share of the wall tiles', at the same level; of the last frames.
+  double operator_share_ = 0.3;
   // Where refining is.
   Eigen::Isometry3f refined_view_ = Eigen::Isometry3f::Identity();
   std::size_t refined_tile_ = 0, refined_triangles_ = 0;

@@ -8,6 +8,8 @@ namespace {
 
 // Left free at the end of a period that is spent on refining.
 constexpr Duration kRefineMargin = std::chrono::milliseconds(2);
+// Left for reading the last tile back and handing the frame to the sinks.
+constexpr Duration kPresentMargin = std::chrono::milliseconds(3);
 constexpr Duration kMinute = std::chrono::seconds(60);
 constexpr Duration kSecond = std::chrono::seconds(1);
 
@@ -30,6 +32,7 @@ void WallLoop::run(const std::stop_token& stop, const std::function<void()>& fir
     if (input.posture)
       std::copy(std::begin(input.posture->name), std::end(input.posture->name), out_.posture);
     if (was_moving && !view_.moving) still_since_ = began;
+    if (!was_moving && view_.moving) resuming_ = true;
     k = view_.moving ? movingFrame(k, began) : stillPeriod(k);
     publishStats(p_.clock.now());
     if (periods_.fetch_add(1, std::memory_order_relaxed) == 0) first_frame();
@@ -51,7 +54,7 @@ std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
     return k + 1;
   }
   level_ = p_.model.levelFor(budget);
-  const DrawTimes times = p_.painter.draw(view_.T_eye_model, level_);
+  const DrawTimes times = p_.painter.draw(view_.T_eye_model, level_, tick(k + 1) - kPresentMargin);
   const Timestamp drawn = p_.clock.now();
   present(level_ == 0);
   const Timestamp finished = p_.clock.now();
@@ -65,9 +68,15 @@ std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
   for (std::int64_t missed = k + 2; missed <= reached; ++missed)
     stats_.deadline(tick(missed), true, false);
   stats_.frame(finished, work, period_);
+  // What the frame would have cost with every view as fine as the wall.
   const Duration fixed = times.fixed + (finished - drawn);
-  p_.governor.observe({p_.model.trianglesAt(level_), std::min(fixed, work), work, !met});
+  p_.governor.observe({p_.model.trianglesAt(level_), fixed, fixed + times.drawing, !met});
   out_.work_ms = ms(work);
+  if (resuming_) {
+    ++out_.resumed;
+    out_.resumed_late += met ? 0 : 1;
+    resuming_ = false;
+  }
   return std::max(k + 1, reached);
 }
 

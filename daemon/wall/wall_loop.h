@@ -66,6 +66,7 @@ class WallLoop {
   render::SceneView view_;
   std::size_t level_ = 0;
   bool refining_ = false, full_detail_ = false;
+  bool resuming_ = false;  // the next frame is the first after a standstill
   Timestamp still_since_{};
   std::uint64_t frames_ = 0;
   shm::WallStats out_{};

@@ -10,7 +10,7 @@ namespace {
 // Measured on llvmpipe, four views of 640 x 480 (README.md); a wrong exponent costs speed of
 // settling, not safety.
 constexpr double kExponent = 0.65;
-constexpr double kLeastRoom = 0.05, kMostRoom = 0.30, kRoomGain = 0.02;
+constexpr double kLeastRoom = 0.10, kMostRoom = 0.30, kRoomGain = 0.02;
 constexpr double kSlower = 0.15, kFaster = 0.10;  // how fast c follows dearer, cheaper frames
 constexpr double kFixedGain = 0.1;
 constexpr double kDeadBand = 0.05, kGrowth = 1.08;
@@ -29,7 +29,8 @@ Governor::Governor(const GovernorSettings& settings) noexcept
 
 void Governor::observe(const FrameCost& cost) noexcept {
   assert(cost.work > Duration::zero() && cost.fixed >= Duration::zero());
-  late_in_a_row_ = cost.late ? late_in_a_row_ + 1 : 0;
+  const bool over = cost.late || cost.work > period_;
+  late_in_a_row_ = over ? late_in_a_row_ + 1 : 0;
   learnHeadRoom(cost.late);
   learnCost(cost);
   choose();

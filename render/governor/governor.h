@@ -24,7 +24,8 @@ namespace merlin::render {
 struct FrameCost {
   std::size_t triangles = 0;  // that were asked for
   Duration fixed{};           // of `work`: what does not depend on the triangles
-  Duration work{};            // from the frame's begin to its last pixel; > 0
+  Duration work{};            // from the frame's begin to its last pixel, as if nothing had given
+                              // way; > 0. More than the period counts as late in a row
   bool late = false;          // its last pixel came after its deadline
 };
 

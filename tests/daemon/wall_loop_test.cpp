@@ -43,13 +43,13 @@ class FakePainter final : public Painter {
   FakePainter(test::FakeClock& clock, Duration per_triangle, int slices)
       : clock_(clock), per_triangle_(per_triangle), slices_(slices) {}
 
-  DrawTimes draw(const Eigen::Isometry3f&, std::size_t level) override {
+  DrawTimes draw(const Eigen::Isometry3f&, std::size_t level, Timestamp) override {
     const Duration fixed = milliseconds(4);
     const Duration drawing =
         per_triangle_ * static_cast<std::int64_t>(model().trianglesAt(level)) * slow;
     clock_.advance(fixed + drawing);
     drawn.push_back(clock_.now());
-    return {drawing, fixed};
+    return {drawing, fixed, false};
   }
   void beginRefining(const Eigen::Isometry3f&) override { left_ = slices_; }
   bool refine(Timestamp until) override {
@@ -191,6 +191,8 @@ TEST_F(WallLoopTest, TheFirstFrameAfterMotionResumesIsInTime) {
     ASSERT_NE(first, frames_.frames.end());
     EXPECT_LE(first->finished - *resumed, kPeriod) << still_periods;
     EXPECT_FALSE(first->full_detail) << still_periods;
+    EXPECT_EQ(stats().resumed, 1u);
+    EXPECT_EQ(stats().resumed_late, 0u);
   }
 }
 
