@@ -125,8 +125,8 @@ Result<Ok> Daemon::awaitFirstFrame(std::future<Result<std::string>> ready) {
   }
   const auto first = ready.get();
   if (!first) return first.error();
-  logInfo("first frame: {} triangles at full detail, drawn by {}",
-          wall_->segment().stats.read()->triangles, *first);
+  logInfo("first frame is out, drawn by {}; {} levels of detail", *first,
+          wall_->segment().stats.read()->levels);
   return Ok{};
 }
 

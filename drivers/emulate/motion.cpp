@@ -19,14 +19,15 @@ constexpr Ball kSpin{0, 0, 0, 0, 0.6F, 0};
 constexpr Ball kPush{0.5F, 0, 0.4F, 0, 0, 0};
 constexpr Ball kTumble{0, 0.2F, 0, 0.5F, -0.5F, 0.3F};
 
-// A visitor: turns the model, looks at it, takes it in the hand, lets go, turns it back.
+// A visitor: turns the model, looks at it, pushes it, takes it in the hand, lets go, tumbles it,
+// puts it back, and looks.
 constexpr Phase kVisit[] = {
     {3.0, "open", kSpin, 0, false},       {2.0, "open", kRest, 0, false},
     {2.0, "point", kPush, 0, false},      {1.0, "open", kRest, 0, true},
     {3.5, "fist", kRest, 0, true},        {2.0, "open", kRest, 0, false},
     {1.5, "thumb-up", kTumble, 0, false}, {0.3, "open", kRest, 1, false},
-    {1.7, "victory", kRest, 0, false},    {2.0, "pinch", kSpin, 0, false},
-    {1.0, "hook", kRest, 0, false},
+    {1.7, "victory", kRest, 0, false},    {1.5, "pinch", kRest, 0, false},
+    {1.0, "hook", kRest, 0, false},       {4.5, "open", kRest, 0, false},
 };
 constexpr Phase kTurning[] = {{1000.0, "open", kSpin, 0, true}};
 constexpr Phase kStill[] = {{1000.0, "open", kRest, 0, false}};

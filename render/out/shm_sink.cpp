@@ -119,7 +119,7 @@ void ShmFrameSink::present(std::span<const std::uint8_t> pixels, const FrameInfo
   b.full_detail = info.full_detail ? 1 : 0;
   b.sequence.store(info.sequence, std::memory_order_release);
   h.newest.store(next_, std::memory_order_release);
-  next_ = (next_ + 1) % framebuffer::kBuffers;
+  next_ = static_cast<std::uint32_t>((next_ + 1) % framebuffer::kBuffers);
 }
 
 Result<CapturedFrame> captureFrame(const std::string& name) {
