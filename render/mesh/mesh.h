@@ -47,8 +47,9 @@ struct TidyReport {
   std::size_t unused = 0;      // vertices of no triangle
 };
 
-// Checks what comes from outside: every index in range, every number finite, every feature of the
-// right size, fewer than 2^31 vertices and triangles. Errors: kMalformed, with the first offender.
+// Checks what comes from outside: every index in range, every number finite, coordinates within
+// +-1e18, every feature of the right size, fewer than 2^31 vertices and triangles. Errors:
+// kMalformed, with the first offender.
 Result<Ok> validate(const Mesh& mesh);
 
 // Drops triangles that have a vertex twice, then vertices that no triangle uses. Order is kept.

@@ -22,8 +22,8 @@ using Limits = std::numeric_limits<float>;
 // its own. Colours are bytes in the file: 0, 1, 254 and 255 of 255.
 Mesh richSquare() {
   Mesh mesh = test::grid(1, 1);
-  mesh.positions = {0.1F,  -0.0F, 1e-40F, Limits::max(), Limits::min(), -1.0F / 3,
-                    1e-7F, 2.0F,  3.0F,   4.0F,          5.0F,          6.0F};
+  mesh.positions = {0.1F,  -0.0F, 1e-40F, 1e18F, Limits::min(), -1.0F / 3,
+                    1e-7F, 2.0F,  3.0F,   4.0F,  5.0F,          6.0F};
   mesh.features = {{"normal", 3, Floats(12, 0.57735027F)},
                    {"colour", 3, {}},
                    {"texcoord", 2, {0, 1, 2, 3, 4, 5, 6, 7}},

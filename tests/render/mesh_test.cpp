@@ -42,12 +42,14 @@ TEST(MeshValidate, TakesWhateverASurfaceMayBe) {
   EXPECT_EQ(fault(mesh), "none");
 }
 
-TEST(MeshValidate, NamesTheVertexThatIsNotFinite) {
+TEST(MeshValidate, NamesTheVertexThatIsNowhere) {
   Mesh mesh = square();
   mesh.positions[11] = kNaN;
-  EXPECT_EQ(fault(mesh), "vertex 3: coordinate z is nan");
+  EXPECT_EQ(fault(mesh), "vertex 3: coordinate z is nan; 1e+18 is the farthest");
+  mesh.positions[7] = 2e18F;
+  EXPECT_EQ(fault(mesh), "vertex 2: coordinate y is 2e+18; 1e+18 is the farthest");
   mesh.positions[4] = -kInfinity;  // the first offender is told
-  EXPECT_EQ(fault(mesh), "vertex 1: coordinate y is -inf");
+  EXPECT_EQ(fault(mesh), "vertex 1: coordinate y is -inf; 1e+18 is the farthest");
 }
 
 TEST(MeshValidate, NamesTheTriangleThatPointsNowhere) {
