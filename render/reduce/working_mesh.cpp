@@ -71,9 +71,22 @@ bool WorkingMesh::linkCondition(std::uint32_t a, std::uint32_t b) noexcept {
   for (const std::uint32_t e : spokes_[b]) common += mark_[otherEnd(e, b)] == stamp_;
   const std::size_t shared = trianglesAt(a, b);
   if (common != shared) return false;
-  if (around_[a].size() + around_[b].size() <= 2 * shared + 1)
-    return false;  // nothing would be left
+  if (around_[a].size() + around_[b].size() == 2 * shared) return false;  // nothing would be left
+  if (shared == 2 && linksShareAnEdge(a, b)) return false;
   return shared == 1 || !(isBoundary(a) && isBoundary(b));
+}
+
+// As on a tetrahedron: a face at a and a face at b would come to lie on one another.
+bool WorkingMesh::linksShareAnEdge(std::uint32_t a, std::uint32_t b) const noexcept {
+  const auto has = [&](std::uint32_t t, std::uint32_t v) { return v == a || contains(t, v); };
+  for (const std::uint32_t t : around_[a]) {
+    if (contains(t, b)) continue;
+    for (const std::uint32_t u : around_[b]) {
+      const Corners& c = corners_[t];
+      if (has(u, c[0]) && has(u, c[1]) && has(u, c[2])) return true;
+    }
+  }
+  return false;
 }
 
 std::span<const std::uint32_t> WorkingMesh::collapse(std::uint32_t a, std::uint32_t b) {

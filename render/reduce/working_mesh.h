@@ -48,6 +48,7 @@ class WorkingMesh {
   std::span<const std::uint32_t> collapse(std::uint32_t a, std::uint32_t b);
 
  private:
+  bool linksShareAnEdge(std::uint32_t a, std::uint32_t b) const noexcept;
   void mergeTriangles(std::uint32_t a, std::uint32_t b);
   void mergeEdges(std::uint32_t a, std::uint32_t b);
 
