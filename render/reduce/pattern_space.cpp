@@ -76,6 +76,7 @@ Result<PatternSpace> PatternSpace::make(const Mesh& mesh, const Weights& weights
     space.dimension_ += f.dimension;
     space.features_.push_back(std::move(f));
   }
+  if (space.dimension_ == 0) return Error{Errc::kInvalidArgument, "no weight is more than 0"};
   return space;
 }
 

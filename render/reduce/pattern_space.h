@@ -37,7 +37,8 @@ class PatternSpace {
  public:
   // Normalisation (P3): geometry by the diagonal of the mesh's box; normals, curvature and boundary
   // as they are; any other feature by its largest extent over the mesh.
-  // Errors: kInvalidArgument: a weight that is negative or not finite, or names no feature.
+  // Errors: kInvalidArgument: a weight that is negative or not finite, or names no feature; none
+  // that is more than 0.
   static Result<PatternSpace> make(const Mesh& mesh, const Weights& weights);
 
   std::size_t dimension() const noexcept { return dimension_; }
