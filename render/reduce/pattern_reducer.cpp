@@ -48,7 +48,7 @@ Reduction PatternReducer::finish() && {
   return std::move(result_);
 }
 
-bool PatternReducer::collapseShortest() {
+PatternReducer::Step PatternReducer::collapseShortest(double max_error) {
   while (!heap_.empty() && heap_.length(heap_.top()) < kNever) {
     const std::uint32_t edge = heap_.top();
     const Plan p = plan(edge);
@@ -60,11 +60,13 @@ bool PatternReducer::collapseShortest() {
       ++result_.report.flips_refused;
       lengthen(edge);
     } else {
-      apply(p, edge);
-      return true;
+      const float error = errorAfter(p);
+      if (error > max_error) return Step::kTooCoarse;
+      apply(p, edge, error);
+      return Step::kDone;
     }
   }
-  return false;
+  return Step::kNothingLeft;
 }
 
 // P6: both on the boundary, to the sharper corner; one, to it; none, to the middle.
@@ -119,7 +121,8 @@ bool PatternReducer::flips(const Plan& p) {
       const Vec3 was = faceNormal(before[0], before[1], before[2]);
       const Vec3 is = faceNormal(after[0], after[1], after[2]);
       if (dot(was.data(), was.data()) > 0 && !(dot(was.data(), is.data()) > 0)) return true;
-      new_normals_.insert(new_normals_.end(), is.begin(), is.end());
+      const bool has_area = dot(is.data(), is.data()) > 0;
+      if (has_area) new_normals_.insert(new_normals_.end(), is.begin(), is.end());
     }
   }
   return false;
@@ -127,8 +130,8 @@ bool PatternReducer::flips(const Plan& p) {
 
 // Equations 4.8, 4.9: for a and b, how far each lies from the nearest plane of the new faces (all
 // of which pass through the new vertex); where no face is left, from the new vertex.
-PatternReducer::Vec3 PatternReducer::planeDistances(const Plan& p) const {
-  Vec3 nearest{};
+std::array<float, 2> PatternReducer::planeDistances(const Plan& p) const {
+  std::array<float, 2> nearest{};
   for (std::size_t side = 0; side < 2; ++side) {
     const float* old = position(side == 0 ? p.a : p.b);
     const float d[] = {p.position[0] - old[0], p.position[1] - old[1], p.position[2] - old[2]};
@@ -141,10 +144,13 @@ PatternReducer::Vec3 PatternReducer::planeDistances(const Plan& p) const {
   return nearest;
 }
 
-void PatternReducer::apply(const Plan& p, std::uint32_t edge) {
-  const Vec3 distance = planeDistances(p);
-  // Equation 4.10: what each end had gathered and gathers now; the new vertex has the worse.
-  const float error = std::max(error_[p.a] + distance[0], error_[p.b] + distance[1]);
+// Equation 4.10: what each end had gathered and gathers now; the new vertex has the worse.
+float PatternReducer::errorAfter(const Plan& p) const {
+  const auto [a, b] = planeDistances(p);
+  return std::max(error_[p.a] + a, error_[p.b] + b);
+}
+
+void PatternReducer::apply(const Plan& p, std::uint32_t edge, float error) {
   mixFeatures(p);
   std::copy(p.position.begin(), p.position.end(), positions_.begin() + 3 * std::ptrdiff_t{p.a});
   for (const std::uint32_t gone : surface_.collapse(p.a, p.b)) heap_.remove(gone);

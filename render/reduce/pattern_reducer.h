@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "render/mesh/mesh.h"
@@ -20,12 +21,13 @@ class PatternReducer {
  public:
   PatternReducer(const Mesh& mesh, const PatternSpace& space, bool preserve_topology);
 
-  // Collapses the shortest edge that may be; false where none is left.
-  bool collapseShortest();
+  enum class Step { kDone, kNothingLeft, kTooCoarse };
+
+  // Collapses the shortest edge that may be, unless its error is more than `max_error`.
+  Step collapseShortest(double max_error = std::numeric_limits<double>::infinity());
 
   std::size_t collapses() const noexcept { return result_.log.children.size(); }
   std::size_t triangles() const noexcept { return surface_.liveTriangles(); }
-  float error() const noexcept { return result_.report.error; }  // the largest so far, model units
 
   // Leaves the reducer empty. `stopped` and `about` are the caller's to fill.
   Reduction finish() &&;
@@ -44,8 +46,9 @@ class PatternReducer {
   Plan plan(std::uint32_t edge) const;
   float sharpness(std::uint32_t v) const;
   bool flips(const Plan& plan);
-  Vec3 planeDistances(const Plan& plan) const;
-  void apply(const Plan& plan, std::uint32_t edge);
+  std::array<float, 2> planeDistances(const Plan& plan) const;
+  float errorAfter(const Plan& plan) const;
+  void apply(const Plan& plan, std::uint32_t edge, float error);
   void mixFeatures(const Plan& plan);
   void recordNode(const Plan& plan, float error);
   void makePattern(std::uint32_t v);

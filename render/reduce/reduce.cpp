@@ -30,15 +30,12 @@ std::string aboutText(const Weights& weights, const ReduceSettings& s, const Red
   return text;
 }
 
-// Why it stops before the next collapse; empty where it goes on.
-const char* reasonToStop(const PatternReducer& reducer, const ReduceSettings& s,
-                         std::size_t triangles_before, float diagonal) {
-  const std::size_t left = reducer.triangles();
+// Why so many triangles are few enough; null where they are not.
+const char* reasonToStop(std::size_t left, const ReduceSettings& s, std::size_t triangles_before) {
   if (left <= s.min_triangles) return "triangles";
   if (static_cast<double>(left) <= s.min_percent / 100 * static_cast<double>(triangles_before)) {
     return "percent";
   }
-  if (100.0 * reducer.error() > s.max_error_percent * diagonal) return "error";
   return nullptr;
 }
 
@@ -53,11 +50,15 @@ Result<Reduction> reduce(const Mesh& mesh, const ReduceSettings& settings,
   if (!space) return space.error();
 
   PatternReducer reducer(mesh, *space, settings.preserve_topology);
-  const float diagonal = boundingBox(mesh.positions).diagonal();
+  const double max_error =
+      settings.max_error_percent / 100 * boundingBox(mesh.positions).diagonal();
   const char* stopped = nullptr;
   while (!stopped) {
-    stopped = reasonToStop(reducer, settings, mesh.triangleCount(), diagonal);
-    if (!stopped && !reducer.collapseShortest()) stopped = "nothing left to collapse";
+    stopped = reasonToStop(reducer.triangles(), settings, mesh.triangleCount());
+    if (stopped) break;
+    const auto step = reducer.collapseShortest(max_error);
+    if (step == PatternReducer::Step::kNothingLeft) stopped = "nothing left to collapse";
+    if (step == PatternReducer::Step::kTooCoarse) stopped = "error";
     if (!stopped && progress && reducer.collapses() % kProgressInterval == 0 &&
         !progress({reducer.collapses(), reducer.triangles()})) {
       stopped = "cancelled";

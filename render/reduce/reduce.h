@@ -20,7 +20,8 @@ struct ReduceSettings {
   Weights weights;                 // empty: defaultWeights()
   bool preserve_topology = false;  // refuse collapses that join or pinch off parts (P11)
 
-  // When to stop, whichever comes first (P10). As they stand: when nothing legal is left.
+  // When to stop, whichever comes first (P10): as soon as no more triangles are left than these,
+  // and before the error would be larger. As they stand: when nothing legal is left.
   std::size_t min_triangles = 0;
   double min_percent = 0;  // of the mesh's triangles left, 0..100
   double max_error_percent = std::numeric_limits<double>::infinity();  // estimate (P9), of the
