@@ -1,4 +1,5 @@
-// Counts what operator new is asked for. Replaces it: include it in one source of a program.
+// Counts what operator new is asked for, and keeps the largest. Replaces it: include it in one
+// source of a program.
 #pragma once
 
 #include <atomic>
@@ -7,11 +8,13 @@
 
 namespace merlin::test {
 inline std::atomic<long> allocations{0};
+inline std::atomic<std::size_t> largest_allocation{0};
 }  // namespace merlin::test
 
 // Not inlined: g++ 12 would find fault with a new and a delete of which it sees only one.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++merlin::test::allocations;
+  if (size > merlin::test::largest_allocation) merlin::test::largest_allocation = size;
   if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
   throw std::bad_alloc();
 }

@@ -1,0 +1,129 @@
+#include "render/reduce/pattern_space.h"
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/meshes.h"
+
+namespace merlin::render {
+namespace {
+
+using Floats = std::vector<float>;
+
+// 3 x 4 units, so that the diagonal of its box is 5.
+Mesh richGrid() {
+  Mesh mesh = test::grid(3, 4);
+  const std::size_t n = mesh.vertexCount();
+  mesh.features = {{"normal", 3, vertexNormals(mesh)},
+                   {"colour", 3, Floats(3 * n, 0.5F)},
+                   {"heat", 1, Floats(n, 300)},
+                   {"flow", 2, Floats(2 * n, 0)},
+                   {"label", 1, Floats(n, 7)}};
+  mesh.features[1].values[0] = 0;  // extent 0.5; colours are not normalised
+  mesh.features[2].values[3] = 280;
+  mesh.features[2].values[9] = 330;  // extent 50
+  mesh.features[3].values[4] = 4;    // extents 4 and 1: the larger counts for both
+  mesh.features[3].values[7] = -1;
+  return mesh;
+}
+
+float scaleOf(const char* name, float weight) {
+  const auto space = PatternSpace::make(richGrid(), {{name, weight}});
+  EXPECT_TRUE(space);
+  return space ? space->find(name)->scale : 0;
+}
+
+std::string faultOf(const Weights& weights) {
+  const auto space = PatternSpace::make(richGrid(), weights);
+  if (space) return "none";
+  EXPECT_EQ(space.error().code, Errc::kInvalidArgument);
+  return space.error().what;
+}
+
+TEST(Curvature, IsTheSpreadOfTheFaceNormals) {  // equation 4.2
+  const float up[] = {0, 0, 1};
+  EXPECT_FLOAT_EQ(curvature(Floats{0, 0, 1, 0, 0, 1}, up), 0);
+  // Each |F - N|^2 is 2, so their mean is 2.
+  EXPECT_FLOAT_EQ(curvature(Floats{1, 0, 0, 0, 1, 0, -1, 0, 0}, up), 1.41421356F);
+  // 0, 0, 2 and 4 over four faces: the root of 1.5.
+  EXPECT_FLOAT_EQ(curvature(Floats{0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, -1}, up), 1.22474487F);
+}
+
+TEST(Curvature, IsZeroWithoutFaces) {
+  const float up[] = {0, 0, 1};
+  EXPECT_EQ(curvature({}, up), 0);
+}
+
+TEST(PatternSpace, DividesGeometryByTheDiagonalOfTheBox) {
+  EXPECT_FLOAT_EQ(scaleOf("geometry", 2), 0.4F);
+}
+
+TEST(PatternSpace, TakesNormalsCurvatureBoundaryAndColourAsTheyAre) {
+  for (const char* name : {"normal", "curvature", "boundary", "colour"}) {
+    EXPECT_EQ(scaleOf(name, 2), 2) << name;
+  }
+}
+
+TEST(PatternSpace, DividesAnyOtherFeatureByItsLargestExtent) {
+  EXPECT_FLOAT_EQ(scaleOf("heat", 2), 2.0F / 50);
+  EXPECT_FLOAT_EQ(scaleOf("flow", 2), 2.0F / 4);
+  EXPECT_FLOAT_EQ(scaleOf("label", 2), 2);  // is the same everywhere
+}
+
+TEST(PatternSpace, LaysItsFeaturesSideBySide) {
+  const auto space = PatternSpace::make(richGrid(), {{"boundary", 1},
+                                                     {"colour", 0},
+                                                     {"curvature", 1},
+                                                     {"flow", 1},
+                                                     {"geometry", 1},
+                                                     {"heat", 1},
+                                                     {"normal", 1}});
+  ASSERT_TRUE(space);
+  EXPECT_EQ(space->dimension(), 11u);
+  std::string table;
+  for (const PatternFeature& f : space->features()) {
+    table += f.name + " " + std::to_string(f.offset) + "+" + std::to_string(f.dimension) + ", ";
+  }
+  EXPECT_EQ(table, "boundary 0+1, curvature 1+1, flow 2+2, geometry 4+3, heat 7+1, normal 8+3, ");
+  EXPECT_EQ(space->find("colour"), nullptr);  // weighs nothing
+  EXPECT_EQ(space->find("label"), nullptr);
+}
+
+TEST(PatternSpace, NamesTheFeaturesThatThereAre) {
+  EXPECT_EQ(faultOf({{"geometry", 1}, {"temperature", 1}}),
+            "weight temperature: the mesh has no such feature; it has geometry, normal, curvature, "
+            "boundary, colour, heat, flow, label");
+}
+
+TEST(PatternSpace, NamesTheWeightThatIsNone) {
+  EXPECT_EQ(faultOf({{"heat", -1.0F}}), "weight heat: -1 is not 0 or more");
+  EXPECT_EQ(faultOf({{"heat", std::numeric_limits<float>::quiet_NaN()}}),
+            "weight heat: nan is not 0 or more");
+  EXPECT_EQ(faultOf({{"heat", std::numeric_limits<float>::infinity()}}),
+            "weight heat: inf is not 0 or more");
+  EXPECT_EQ(faultOf({{"heat", 0}, {"geometry", 0}}), "no weight is more than 0");
+  EXPECT_EQ(faultOf({}), "no weight is more than 0");
+}
+
+TEST(Weights, OfNineteenNinetyEight) {  // figure 5.2
+  const Weights expected{
+      {"geometry", 1.0F}, {"normal", 0.5F}, {"boundary", 2.0F}, {"curvature", 1.5F}};
+  EXPECT_EQ(typicalWeights(test::cube()), expected);
+  Weights coloured = expected;
+  coloured["colour"] = 1;
+  EXPECT_EQ(typicalWeights(richGrid()), coloured);
+}
+
+TEST(Weights, WhereNobodySaysOtherwise) {
+  const Weights expected{{"geometry", 1.0F}, {"normal", 0.05F}, {"boundary", 0.5F}};
+  EXPECT_EQ(defaultWeights(test::cube()), expected);
+  Weights coloured = expected;
+  coloured["colour"] = 0.03F;
+  EXPECT_EQ(defaultWeights(richGrid()), coloured);
+}
+
+}  // namespace
+}  // namespace merlin::render
