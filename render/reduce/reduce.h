@@ -17,7 +17,7 @@
 namespace merlin::render {
 
 struct ReduceSettings {
-  Weights weights;                 // empty: defaultWeights()
+  Weights weights{};               // empty: defaultWeights()
   bool preserve_topology = false;  // refuse collapses that join or pinch off parts (P11)
 
   // When to stop, whichever comes first (P10): as soon as no more triangles are left than these,
