@@ -54,10 +54,18 @@ class Buffered {
   std::string pending_;
 };
 
+// The rename would put a file in the place of a device, a pipe or a socket.
+Result<Ok> checkReplaceable(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode)) return Ok{};
+  if (S_ISDIR(status.st_mode)) return fileError(path, EISDIR);
+  return Error{Errc::kIo, path + ": is no regular file and is not replaced; name another"};
+}
+
 }  // namespace
 
 Result<MappedFile> MappedFile::open(const std::string& path) {
-  const UniqueFd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const UniqueFd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // a pipe would wait
   struct stat status {};
   if (!fd.valid() || ::fstat(fd.get(), &status) != 0) return fileError(path, errno);
   if (!S_ISREG(status.st_mode)) return Error{Errc::kMalformed, path + ": is not a regular file"};
@@ -82,6 +90,7 @@ MappedFile::~MappedFile() {
 }
 
 Result<Ok> writeFile(const std::string& path, const std::function<bool(const WriteBytes&)>& fill) {
+  if (const auto replaceable = checkReplaceable(path); !replaceable) return replaceable;
   const std::string fresh = fmt::format("{}.{}.tmp", path, ::getpid());
   const UniqueFd fd(::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (!fd.valid()) return fileError(path, errno);
@@ -98,8 +107,7 @@ Result<Ok> writeFile(const std::string& path, const std::function<bool(const Wri
 Result<Ok> checkWritable(const std::string& path) {
   const auto slash = path.rfind('/');
   const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
-  struct stat status {};
-  if (::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) return fileError(path, EISDIR);
+  if (const auto replaceable = checkReplaceable(path); !replaceable) return replaceable;
   if (::access(folder.c_str(), W_OK) != 0) return fileError(path, errno);
   return Ok{};
 }

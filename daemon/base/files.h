@@ -40,12 +40,12 @@ using WriteBytes = std::function<bool(std::span<const std::byte>)>;
 
 // Calls `fill` to write a temporary file in the same folder, then syncs it and renames it to
 // `path`: readers see the old file or the whole new one. Where anything fails the old one stays.
-// Errors: kIo.
+// Errors: kNotFound (no such folder), kIo (also where `path` is a device, a pipe, a socket).
 Result<Ok> writeFile(const std::string& path, const std::function<bool(const WriteBytes&)>& fill);
 Result<Ok> writeFile(const std::string& path, std::string_view content);
 
 // Whether writeFile() could put a file there, as far as can be said before: to be asked before long
-// work. Errors: kNotFound (no such folder), kIo (not writable, a folder).
+// work. Errors: kNotFound (no such folder), kIo (not writable, a folder, a device).
 Result<Ok> checkWritable(const std::string& path);
 
 }  // namespace merlin

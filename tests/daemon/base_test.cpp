@@ -1,8 +1,11 @@
 // The bottom layer: files, words, clocks.
+#include <csignal>
 #include <filesystem>
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 
 #include "daemon/base/bytes.h"
 #include "daemon/base/clock.h"
@@ -31,6 +34,8 @@ TEST(MappedFile, IsTheFilesBytes) {
   EXPECT_EQ(MappedFile::open(dir / "empty")->text(), "");
   EXPECT_EQ(MappedFile::open(dir / "none").error().code, Errc::kNotFound);
   EXPECT_EQ(MappedFile::open(dir.path()).error().code, Errc::kMalformed);
+  ASSERT_EQ(::mkfifo((dir / "pipe").c_str(), 0600), 0);
+  EXPECT_EQ(MappedFile::open(dir / "pipe").error().code, Errc::kMalformed) << "and does not wait";
   MappedFile moved = *MappedFile::open(dir / "f");
   moved = *MappedFile::open(dir / "empty");
   EXPECT_EQ(moved.text(), "");
@@ -50,9 +55,29 @@ TEST(WriteFile, AFileAppearsWholeOrTheOldOneStays) {
       << "no temporary file is left";
 }
 
+// A full disk, as far as a process can make one for itself: no file longer than 1 kB.
 TEST(WriteFile, OnAFullDiskTheOldOneStays) {
-  const auto written = writeFile("/dev/full-is-no-folder/x", "x");
-  EXPECT_FALSE(written);
+  const test::TempDir dir;
+  ASSERT_TRUE(writeFile(dir / "f", "old"));
+  ASSERT_NE(::signal(SIGXFSZ, SIG_IGN), SIG_ERR);
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit little{1000, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &little), 0);
+  const auto written = writeFile(dir / "f", std::string(5000, 'x'));
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().code, Errc::kIo);
+  EXPECT_EQ(test::readText(dir / "f"), "old");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1);
+}
+
+TEST(WriteFile, ReplacesNothingButFiles) {
+  const test::TempDir dir;
+  ASSERT_EQ(::mkfifo((dir / "pipe").c_str(), 0600), 0);
+  EXPECT_EQ(writeFile(dir / "pipe", "x").error().code, Errc::kIo);
+  EXPECT_EQ(checkWritable(dir / "pipe").error().code, Errc::kIo);
+  EXPECT_TRUE(std::filesystem::is_fifo(dir / "pipe"));
 }
 
 TEST(CheckWritable, SaysBeforeTheWorkThatItWouldBeInVain) {
