@@ -10,7 +10,7 @@
 namespace merlin::render {
 
 // `pixels`: RGBA, rows from top to bottom, 4 * width * height bytes; alpha is not written. The file
-// appears whole or not at all. The same pixels give the same bytes. Errors: kIo.
+// appears whole or not at all. The same pixels give the same bytes. Errors: writeFile()'s.
 Result<Ok> writePng(const std::string& path, int width, int height,
                     std::span<const std::uint8_t> pixels);
 

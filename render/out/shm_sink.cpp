@@ -112,7 +112,8 @@ void ShmFrameSink::present(std::span<const std::uint8_t> pixels, const FrameInfo
   Header& h = header();
   assert(pixels.size() == std::size_t{h.stride} * h.height);
   Buffer& b = h.buffers[next_];
-  b.sequence.store(0, std::memory_order_release);
+  b.sequence.store(0, std::memory_order_relaxed);
+  std::atomic_thread_fence(std::memory_order_release);  // before any pixel changes
   std::memcpy(memory_.data() + b.offset, pixels.data(), pixels.size());
   b.finished_ns = toNanoseconds(info.finished);
   b.triangles = info.triangles;

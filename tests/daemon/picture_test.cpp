@@ -1,0 +1,183 @@
+// The wall's picture, drawn by Mesa: tiles that continue one another, whatever else is drawn.
+#include "daemon/wall/picture.h"
+
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "render/reduce/reduce.h"
+#include "tests/support/meshes.h"
+#include "tests/support/pictures.h"
+
+namespace merlin::wall {
+namespace {
+
+using render::GlBackend;
+using render::TileKind;
+using render::TilesSettings;
+using test::Image;
+
+constexpr int kTileWidth = 160, kTileHeight = 120;
+
+const render::Dendrogram& model() {
+  static const render::Dendrogram made = [] {
+    render::Mesh mesh = test::noisyGrid(60, 20, 0.3, 5);
+    render::ensureNormals(mesh);
+    return render::buildDendrogram(mesh, render::reduce(mesh, {})->log);
+  }();
+  return made;
+}
+
+// Right in front of the eye and so wide that all three tiles are full of it.
+Eigen::Isometry3f inFront() {
+  Eigen::Isometry3f T_eye_model(Eigen::Translation3f(0.1F, 0.05F, -1.2F));
+  T_eye_model.rotate(Eigen::AngleAxisf(0.2F, Eigen::Vector3f::UnitY()));
+  return T_eye_model;
+}
+
+TilesSettings fourTiles() {
+  TilesSettings s;
+  s.tile_width = kTileWidth;
+  s.tile_height = kTileHeight;
+  s.frame_width = 2 * kTileWidth;
+  s.frame_height = 2 * kTileHeight;
+  for (render::TileSettings& t : s.tiles) {
+    t.x /= 4;
+    t.y /= 4;
+  }
+  return s;
+}
+
+struct Wall {
+  explicit Wall(const TilesSettings& settings, GlBackend backend = GlBackend::kEgl)
+      : plan(*render::planTiles(settings)),
+        picture(*Picture::make(model(), plan, {.backend = backend, .raster_threads = 0, .look = {}},
+                               2.0, clock)) {}
+
+  Image tile(std::size_t index) const {
+    const render::Tile& t = plan.tiles[index];
+    Image image{t.width, t.height, {}};
+    for (int y = t.y; y < t.y + t.height; ++y) {
+      const auto from = picture->pixels().begin() + 4 * (y * plan.frame_width + t.x);
+      image.pixels.insert(image.pixels.end(), from, from + 4 * t.width);
+    }
+    return image;
+  }
+  void draw(std::size_t level = 0) { picture->draw(inFront(), level, Timestamp::max()); }
+
+  SystemClock clock;
+  render::TilePlan plan;
+  std::unique_ptr<Picture> picture;
+};
+
+TEST(Picture, MiddleTileAloneIsTheSamePixels) {
+  Wall wall(fourTiles());
+  wall.draw();
+  TilesSettings alone = fourTiles();
+  alone.frame_width = kTileWidth;
+  alone.frame_height = kTileHeight;
+  alone.tiles = {{"centre", TileKind::kWall, 0, 0, 0}};
+  Wall one(alone);
+  one.draw();
+  EXPECT_EQ(one.tile(0).pixels, wall.tile(1).pixels);
+  EXPECT_NE(wall.tile(0).pixels, wall.tile(1).pixels);
+}
+
+// How much two columns that touch differ, on average, 0..255.
+double step(const Image& left, int x, const Image& right, int y) {
+  double sum = 0;
+  for (int row = 0; row < left.height; ++row)
+    sum += test::difference(left.at(x, row), right.at(y, row));
+  return sum / left.height;
+}
+
+TEST(Picture, TilesContinueOneAnotherAtTheSeams) {
+  Wall wall(fourTiles());
+  wall.draw();
+  const Image left = wall.tile(0), centre = wall.tile(1), right = wall.tile(2);
+  const int last = kTileWidth - 1;
+  const double inside = (step(left, last - 1, left, last) + step(centre, 0, centre, 1) +
+                         step(centre, last - 1, centre, last) + step(right, 0, right, 1)) /
+                        4;
+  ASSERT_GT(inside, 0.5);  // there is something to see
+  EXPECT_LT(step(left, last, centre, 0), 2 * inside);
+  EXPECT_LT(step(centre, last, right, 0), 2 * inside);
+  EXPECT_GT(step(right, last, left, 0), 3 * inside);  // what two edges that do not touch look like
+}
+
+// One wide view of both tiles' field, halfway between them, has what each has at the seam.
+TEST(Picture, SeamIsWhereOneWideViewHasIt) {
+  Wall wall(fourTiles());
+  wall.draw();
+  TilesSettings between = fourTiles();
+  between.frame_width = kTileWidth;
+  between.frame_height = kTileHeight;
+  between.tiles = {{"half left", TileKind::kWall, 0, 0, 0.5}};
+  Wall one(between);
+  one.draw();
+  // The seam is the middle of this view: its ray is the same, its pixels are a little smaller.
+  const Image left = wall.tile(0), centre = wall.tile(1), half = one.tile(0);
+  const auto far = [](const Image& a, int x, int y, const Image& b) {
+    return test::difference(a.at(x, y), b.at(kTileWidth / 2, kTileHeight / 2));
+  };
+  EXPECT_LE(std::min(far(left, kTileWidth - 1, kTileHeight / 2, half),
+                     far(centre, 0, kTileHeight / 2, half)),
+            12);
+}
+
+TEST(Picture, RefiningInSlicesEndsInTheSamePicture) {
+  Wall wall(fourTiles());
+  wall.draw(0);
+  const std::vector<std::uint8_t> whole(wall.picture->pixels().begin(),
+                                        wall.picture->pixels().end());
+  wall.draw(model().levelFor(200));
+  EXPECT_FALSE(std::equal(whole.begin(), whole.end(), wall.picture->pixels().begin()));
+  wall.picture->beginRefining(inFront());
+  while (!wall.picture->refine(wall.clock.now() + std::chrono::milliseconds(20))) {
+  }
+  EXPECT_TRUE(std::equal(whole.begin(), whole.end(), wall.picture->pixels().begin()));
+}
+
+TEST(Picture, OperatorSeesTheWholeModel) {
+  Wall wall(fourTiles());
+  wall.draw();
+  const Image operators = wall.tile(3);
+  const test::Rgba background{15, 18, 23, 255};
+  EXPECT_GT(operators.covered(background), kTileWidth * kTileHeight / 20);
+  for (int x = 0; x < kTileWidth; ++x) {
+    EXPECT_EQ(operators.at(x, 0), background);
+    EXPECT_EQ(operators.at(x, kTileHeight - 1), background);
+  }
+  for (int y = 0; y < kTileHeight; ++y) {
+    EXPECT_EQ(operators.at(0, y), background);
+    EXPECT_EQ(operators.at(kTileWidth - 1, y), background);
+  }
+}
+
+TEST(Picture, OperatorsViewGivesWayBeforeTheFrameIsLate) {
+  Wall wall(fourTiles());
+  wall.draw();
+  const Image left = wall.tile(0), operators = wall.tile(3);
+  const DrawTimes times = wall.picture->draw(inFront(), 0, wall.clock.now());
+  EXPECT_TRUE(times.gave_way);
+  EXPECT_EQ(wall.tile(0).pixels, left.pixels);
+  EXPECT_NE(wall.tile(3).pixels, operators.pixels);
+}
+
+TEST(Picture, OsmesaDrawsTheSameWall) {
+  Image egl, osmesa;
+  {
+    Wall wall(fourTiles());
+    wall.draw();
+    egl = wall.tile(1);
+  }
+  {
+    Wall wall(fourTiles(), GlBackend::kOsmesa);
+    wall.draw();
+    osmesa = wall.tile(1);
+  }
+  EXPECT_LE(1000 * test::differing(egl, osmesa, 2), kTileWidth * kTileHeight);
+}
+
+}  // namespace
+}  // namespace merlin::wall

@@ -1,0 +1,252 @@
+// Where frames go: the shared framebuffer as another process reads it, PNG files as libpng reads
+// them.
+#include <csignal>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <png.h>
+#include <sys/resource.h>
+
+#include "daemon/base/random.h"
+#include "render/out/png.h"
+#include "render/out/png_sink.h"
+#include "render/out/shm_sink.h"
+#include "tests/support/eventually.h"
+#include "tests/support/pictures.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::render {
+namespace {
+
+using test::Image;
+using Pixels = std::vector<std::uint8_t>;
+
+TilePlan smallPlan() {
+  TilesSettings s;
+  s.tile_width = 64;
+  s.tile_height = 48;
+  s.frame_width = 128;
+  s.frame_height = 96;
+  for (TileSettings& t : s.tiles) {
+    t.x /= 10;
+    t.y /= 10;
+  }
+  return *planTiles(s);
+}
+
+constexpr std::size_t kFrameBytes = 4 * 128 * 96;
+
+// All bytes of frame n are n, but for the first of each row: the row's number.
+Pixels frameOf(std::uint64_t n) {
+  Pixels pixels(kFrameBytes, static_cast<std::uint8_t>(n));
+  for (std::size_t y = 0; y < 96; ++y) pixels[y * 4 * 128] = static_cast<std::uint8_t>(y);
+  return pixels;
+}
+
+Pixels noise(std::size_t bytes, std::uint64_t seed) {
+  Random random(seed);
+  Pixels pixels(bytes);
+  for (std::uint8_t& b : pixels) b = static_cast<std::uint8_t>(random.next());
+  for (std::size_t i = 3; i < bytes; i += 4) pixels[i] = 255;
+  return pixels;
+}
+
+Image readPng(const std::string& path) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  EXPECT_TRUE(png_image_begin_read_from_file(&png, path.c_str())) << png.message;
+  png.format = PNG_FORMAT_RGBA;
+  Image image{static_cast<int>(png.width), static_cast<int>(png.height), {}};
+  image.pixels.resize(PNG_IMAGE_SIZE(png));
+  EXPECT_TRUE(png_image_finish_read(&png, nullptr, image.pixels.data(), 0, nullptr)) << png.message;
+  return image;
+}
+
+std::string name(const std::string& what) { return "/" + test::privateName(what); }
+
+TEST(Framebuffer, GivesTheNewestFrameWithWhatIsKnownOfIt) {
+  const auto sink = ShmFrameSink::make(name("fb"), smallPlan(), 1);
+  ASSERT_TRUE(sink) << sink.error().what;
+  EXPECT_EQ(captureFrame(name("fb")).error().code, Errc::kTimeout);  // nothing in it yet
+  for (std::uint64_t n = 1; n <= 8; ++n) {
+    (*sink)->present(frameOf(n),
+                     {n, fromNanoseconds(1000), static_cast<std::uint32_t>(10 * n), n == 7});
+    const auto frame = captureFrame(name("fb"));
+    ASSERT_TRUE(frame) << frame.error().what;
+    EXPECT_EQ(frame->pixels, frameOf(n));
+    EXPECT_EQ(frame->info.sequence, n);
+    EXPECT_EQ(frame->info.triangles, 10 * n);
+    EXPECT_EQ(frame->info.full_detail, n == 7);
+    EXPECT_EQ(toNanoseconds(frame->info.finished), 1000);
+  }
+}
+
+TEST(Framebuffer, WallIsItsTilesSideBySideWithoutTheOperators) {
+  const auto sink = ShmFrameSink::make(name("wall"), smallPlan(), 1);
+  const Pixels pixels = noise(kFrameBytes, 3);
+  (*sink)->present(pixels, {1, {}, 1, true});
+  const Image frame{128, 96, pixels};
+  const CapturedFrame captured = wallPicture(*captureFrame(name("wall")));
+  const Image wall{captured.width, captured.height, captured.pixels};
+  ASSERT_EQ(wall.width, 3 * 64);
+  ASSERT_EQ(wall.height, 48);
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      ASSERT_EQ(wall.at(x, y), frame.at(x, y));            // left: upper left
+      ASSERT_EQ(wall.at(64 + x, y), frame.at(64 + x, y));  // centre: upper right
+      ASSERT_EQ(wall.at(128 + x, y), frame.at(x, 48 + y));
+    }
+  }
+}
+
+TEST(Framebuffer, ReaderNeverSeesTwoFramesInOne) {
+  const auto sink = ShmFrameSink::make(name("torn"), smallPlan(), 1);
+  (*sink)->present(frameOf(1), {1, {}, 1, false});
+  std::jthread writer([&](const std::stop_token& stop) {
+    for (std::uint64_t n = 2; !stop.stop_requested(); ++n)
+      (*sink)->present(frameOf(n), {n, {}, 1, false});
+  });
+  int seen = 0;
+  for (int i = 0; i < 20000 && seen < 300; ++i) {
+    const auto frame = captureFrame(name("torn"));
+    if (!frame) continue;  // overtaken
+    ++seen;
+    ASSERT_EQ(frame->pixels, frameOf(frame->info.sequence));
+  }
+  EXPECT_GT(seen, 0);
+}
+
+TEST(Framebuffer, IsGoneWithItsWriterAndThereCanBeOnlyOne) {
+  {
+    const auto sink = ShmFrameSink::make(name("one"), smallPlan(), 1);
+    const auto second = ShmFrameSink::make(name("one"), smallPlan(), 2);
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, Errc::kBusy);
+  }
+  EXPECT_EQ(captureFrame(name("one")).error().code, Errc::kNotFound);
+}
+
+// A framebuffer as a hostile program might leave it: `damage` is done to a good header.
+template <typename Damage>
+Error captureDamaged(Damage damage) {
+  const std::string at = name("bad");
+  const std::size_t size = 4096 + 3 * kFrameBytes;
+  auto memory = SharedMemory::create(at, size);
+  auto& h = *new (memory->data()) framebuffer::Header{};
+  h.magic = framebuffer::kMagic;
+  h.version = framebuffer::kVersion;
+  h.size = size;
+  h.width = h.wall_width = 128;
+  h.height = h.wall_height = 96;
+  h.stride = 4 * 128;
+  h.format = framebuffer::kFormatRgba8;
+  h.tile_count = 1;
+  h.tiles[0] = {"a", 0, 0, 0, 128, 96, 0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    h.buffers[i].offset = 4096 + i * kFrameBytes;
+    h.buffers[i].sequence = 1;
+  }
+  damage(h);
+  const auto frame = captureFrame(at);
+  return frame ? Error{Errc::kIo, "none"} : frame.error();
+}
+
+TEST(Framebuffer, DamagedHeadersAreRefused) {
+  using Header = framebuffer::Header;
+  EXPECT_EQ(captureDamaged([](Header&) {}).what, "none");
+  EXPECT_EQ(captureDamaged([](Header& h) { h.magic = 1; }).code, Errc::kMalformed);
+  const Error version = captureDamaged([](Header& h) { h.version = 9; });
+  EXPECT_EQ(version.code, Errc::kUnsupported);
+  EXPECT_NE(version.what.find("is version 9, this program reads 1"), std::string::npos);
+  const std::vector<void (*)(Header&)> damages = {
+      [](Header& h) { h.format = 2; },
+      [](Header& h) { h.stride = 4; },
+      [](Header& h) {
+        h.width = 0x40000000;
+        h.stride = 0;
+      },
+      [](Header& h) { h.height = 97; },
+      [](Header& h) { h.tile_count = 33; },
+      [](Header& h) { h.buffers[2].offset += 1; },
+      [](Header& h) { h.buffers[0].offset = ~std::uint64_t{0}; },
+      [](Header& h) { h.tiles[0].width = 129; },
+      [](Header& h) { h.tiles[0].x = -1; },
+      [](Header& h) { h.tiles[0].height = -5; },
+      [](Header& h) { h.tiles[0].wall_x = 1; },
+      [](Header& h) { h.tiles[0].x = 0x7fffffff; },
+  };
+  for (std::size_t i = 0; i < damages.size(); ++i)
+    EXPECT_EQ(captureDamaged(damages[i]).code, Errc::kMalformed) << i;
+}
+
+TEST(Png, KeepsEachPixelAndIsTheSameBytesEachTime) {
+  const test::TempDir folder;
+  const Pixels pixels = noise(std::size_t{4} * 37 * 21, 1);
+  ASSERT_TRUE(writePng(folder / "a.png", 37, 21, pixels));
+  ASSERT_TRUE(writePng(folder / "b.png", 37, 21, pixels));
+  const Image image = readPng(folder / "a.png");
+  EXPECT_EQ(image.width, 37);
+  EXPECT_EQ(image.height, 21);
+  EXPECT_EQ(image.pixels, pixels);
+  EXPECT_EQ(test::readText(folder / "a.png"), test::readText(folder / "b.png"));
+}
+
+TEST(Png, NamesTheFileThatCannotBeWritten) {
+  const auto written = writePng("/nowhere/at/all.png", 1, 1, Pixels(4));
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().code, Errc::kNotFound);
+  EXPECT_NE(written.error().what.find("/nowhere/at/all.png"), std::string::npos);
+}
+
+// A full disk, as far as a process can make one for itself: no file longer than 2 kB.
+TEST(Png, FullDiskLeavesNothingHalfWritten) {
+  const test::TempDir folder;
+  ASSERT_NE(::signal(SIGXFSZ, SIG_IGN), SIG_ERR);
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit little{2000, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &little), 0);
+  const auto written = writePng(folder / "a.png", 64, 64, noise(std::size_t{4} * 64 * 64, 2));
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().code, Errc::kIo);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+// What a sink took is in the file when it is gone.
+TEST(PngSink, WritesNoMoreOftenThanAsked) {
+  const test::TempDir folder;
+  const std::string path = folder / "frame.png";
+  const auto present = [](PngFrameSink& sink, std::uint8_t n, int seconds) {
+    sink.present(Pixels(std::size_t{4} * 16 * 16, n),
+                 {n, Timestamp{std::chrono::seconds(seconds)}, 1, true});
+  };
+  const auto red = [&] { return readPng(path).at(0, 0).red; };
+  {
+    PngFrameSink sink({path, 60}, 16, 16);
+    present(sink, 1, 1000);
+    ASSERT_TRUE(test::eventually([&] { return std::filesystem::exists(path); }));
+    present(sink, 2, 1059);
+  }
+  EXPECT_EQ(red(), 1);
+  PngFrameSink sink({path, 60}, 16, 16);
+  present(sink, 3, 1000);
+  // One that finds the encoder at work is left out; so the time goes on until one is taken.
+  int seconds = 1060;
+  EXPECT_TRUE(test::eventually([&] {
+    present(sink, 4, seconds += 60);
+    return red() == 4;
+  }));
+  EXPECT_EQ(sink.error(), "");
+}
+
+TEST(PngSink, SaysWhatWentWrongAndGoesOn) {
+  PngFrameSink sink({"/nowhere/frame.png", 0}, 16, 16);
+  sink.present(Pixels(std::size_t{4} * 16 * 16), {1, fromNanoseconds(1), 1, true});
+  ASSERT_TRUE(test::eventually([&] { return !sink.error().empty(); }));
+  EXPECT_NE(sink.error().find("/nowhere/frame.png"), std::string::npos);
+  sink.present(Pixels(std::size_t{4} * 16 * 16), {2, fromNanoseconds(2), 1, true});
+}
+
+}  // namespace
+}  // namespace merlin::render

@@ -1,0 +1,49 @@
+// Looking at RGBA pictures, rows from top to bottom.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <vector>
+
+namespace merlin::test {
+
+struct Rgba {
+  int red = 0, green = 0, blue = 0, alpha = 0;
+  friend bool operator==(const Rgba&, const Rgba&) = default;
+};
+
+// The largest difference of a channel of two pixels, 0..255.
+inline int difference(const Rgba& a, const Rgba& b) {
+  return std::max(
+      {std::abs(a.red - b.red), std::abs(a.green - b.green), std::abs(a.blue - b.blue)});
+}
+
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> pixels;
+
+  Rgba at(int x, int y) const {
+    const std::uint8_t* p = pixels.data() + 4 * (static_cast<std::ptrdiff_t>(y) * width + x);
+    return {p[0], p[1], p[2], p[3]};
+  }
+  // Pixels that differ from `background`.
+  int covered(const Rgba& background) const {
+    int count = 0;
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) count += at(x, y) != background;
+    }
+    return count;
+  }
+};
+
+// How many pixels of two images of one size differ by more than `tolerance`.
+inline int differing(const Image& a, const Image& b, int tolerance) {
+  int count = 0;
+  for (int y = 0; y < a.height; ++y) {
+    for (int x = 0; x < a.width; ++x) count += difference(a.at(x, y), b.at(x, y)) > tolerance;
+  }
+  return count;
+}
+
+}  // namespace merlin::test
