@@ -35,16 +35,27 @@ Result<Ok> checkSizes(const Dendrogram::Arrays& a) {
   return Ok{};
 }
 
-Result<Ok> checkValues(const Dendrogram::Arrays& a) {
+Result<Ok> checkTree(const Dendrogram::Arrays& a) {
   const std::size_t nodes = a.positions.size() / 3;
+  std::vector<bool> made(nodes, false);
   for (std::size_t k = 0; k < a.parents.size(); ++k) {
-    if (a.parents[k] < nodes - 2 * k - 2) continue;
-    return broken(fmt::format("collapse {}: parent {} is not above its children", k, a.parents[k]));
+    const std::uint32_t parent = a.parents[k];
+    if (parent >= nodes - 2 * k - 2) {
+      return broken(fmt::format("collapse {}: parent {} is not above its children", k, parent));
+    }
+    if (made[parent]) return broken(fmt::format("collapse {}: node {} is made twice", k, parent));
+    made[parent] = true;
   }
   for (std::size_t i = 0; i < a.triangles.size(); ++i) {
-    if (a.triangles[i] < nodes) continue;
-    return broken(fmt::format("triangle {}: node {} of {}", i / 3, a.triangles[i], nodes));
+    const std::uint32_t node = a.triangles[i];
+    if (node >= nodes) return broken(fmt::format("triangle {}: node {} of {}", i / 3, node, nodes));
+    if (!made[node]) continue;
+    return broken(fmt::format("triangle {}: node {} is no vertex of the mesh", i / 3, node));
   }
+  return Ok{};
+}
+
+Result<Ok> checkValues(const Dendrogram::Arrays& a) {
   std::size_t most = a.triangles.size() / 3;
   for (std::size_t k = 0; k < a.alive.size(); ++k) {
     if (a.alive[k] > most)
@@ -65,6 +76,7 @@ Result<Ok> checkValues(const Dendrogram::Arrays& a) {
 
 Result<Dendrogram> Dendrogram::make(Arrays arrays, std::shared_ptr<const void> owner) {
   if (const auto sizes = checkSizes(arrays); !sizes) return sizes.error();
+  if (const auto tree = checkTree(arrays); !tree) return tree.error();
   if (const auto values = checkValues(arrays); !values) return values.error();
   return Dendrogram(std::move(arrays), std::move(owner));
 }

@@ -47,7 +47,8 @@ class Dendrogram {
   };
 
   // Checks everything that a cut relies on, so that no file can lead it astray: sizes that agree,
-  // corners and parents in range, chains that end, counts that fall. O(file). Errors: kMalformed.
+  // corners that are leaves, each inner node made once, chains that end, counts that fall. O(file).
+  // Errors: kMalformed.
   static Result<Dendrogram> make(Arrays arrays, std::shared_ptr<const void> owner);
 
   std::size_t nodeCount() const noexcept { return a_.positions.size() / 3; }
