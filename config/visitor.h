@@ -51,7 +51,7 @@ class SettingsVisitor {
   }
   template <typename T, std::size_t N>
   void numbers(const char* key, std::array<T, N>& values, Range range, const char* help) {
-    std::array<double, N> wide;
+    std::array<double, N> wide{};
     for (std::size_t i = 0; i < N; ++i) wide[i] = static_cast<double>(values[i]);
     numbers(key, std::span<double>(wide), range, help);
     for (std::size_t i = 0; i < N; ++i) values[i] = static_cast<T>(wide[i]);

@@ -103,12 +103,12 @@ Result<Ok> Daemon::run() {
   if (devices_) {
     devices_->beat(now);
     devices_->start();
-    if (const auto served = serveDevices(); !served) return served;
+    if (auto served = serveDevices(); !served) return served;
   }
   if (wall_) {
     wall_->beat(now);
-    if (const auto served = serveWall(); !served) return served;
-    if (const auto shown = awaitFirstFrame(wall_->start()); !shown) return shown;
+    if (auto served = serveWall(); !served) return served;
+    if (auto shown = awaitFirstFrame(wall_->start()); !shown) return shown;
   }
   ::sd_notify(0, "READY=1");
   logInfo("ready");

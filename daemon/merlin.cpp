@@ -10,8 +10,10 @@
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
 
+namespace merlin {
+namespace {
+
 int main(int argc, char** argv) {
-  using namespace merlin;
   CLI::App app("MERLIN: a lab's display wall. The daemon is merlind.");
   app.require_subcommand(1);
   app.set_version_flag("--version", MERLIN_VERSION);
@@ -37,4 +39,11 @@ int main(int argc, char** argv) {
   }
   initLog(LogLevel::kWarning);
   return run();
+}
+
+}  // namespace
+}  // namespace merlin
+
+int main(int argc, char** argv) {
+  return merlin::guarded("merlin", [&] { return merlin::main(argc, argv); });
 }

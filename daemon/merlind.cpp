@@ -114,4 +114,6 @@ int main(int argc, char** argv) {
 }  // namespace
 }  // namespace merlin
 
-int main(int argc, char** argv) { return merlin::main(argc, argv); }
+int main(int argc, char** argv) {
+  return merlin::guarded("merlind", [&] { return merlin::main(argc, argv); });
+}

@@ -90,7 +90,7 @@ MappedFile::~MappedFile() {
 }
 
 Result<Ok> writeFile(const std::string& path, const std::function<bool(const WriteBytes&)>& fill) {
-  if (const auto replaceable = checkReplaceable(path); !replaceable) return replaceable;
+  if (auto replaceable = checkReplaceable(path); !replaceable) return replaceable;
   const std::string fresh = fmt::format("{}.{}.tmp", path, ::getpid());
   const UniqueFd fd(::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (!fd.valid()) return fileError(path, errno);
@@ -107,7 +107,7 @@ Result<Ok> writeFile(const std::string& path, const std::function<bool(const Wri
 Result<Ok> checkWritable(const std::string& path) {
   const auto slash = path.rfind('/');
   const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
-  if (const auto replaceable = checkReplaceable(path); !replaceable) return replaceable;
+  if (auto replaceable = checkReplaceable(path); !replaceable) return replaceable;
   if (::access(folder.c_str(), W_OK) != 0) return fileError(path, errno);
   return Ok{};
 }

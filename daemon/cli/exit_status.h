@@ -1,6 +1,9 @@
 // What programs exit with; outside checks rely on it.
 #pragma once
 
+#include <cstdio>
+#include <exception>
+
 #include "daemon/base/result.h"
 
 namespace merlin {
@@ -20,6 +23,18 @@ inline int exitStatus(const Error& error) {
     case Errc::kTimeout:
     case Errc::kClosed:
     case Errc::kIo: break;
+  }
+  return kExitFailed;
+}
+
+// What a program's main returns; where something was thrown and nobody caught it (no memory, as a
+// rule) one line says so.
+template <typename Main>
+int guarded(const char* program, Main main) noexcept {
+  try {
+    return main();
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s: ended: %s\n", program, e.what());
   }
   return kExitFailed;
 }

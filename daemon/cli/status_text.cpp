@@ -14,7 +14,7 @@ constexpr Duration kPatience = std::chrono::seconds(2);
 
 // What a device's line says after its health.
 std::string deviceDetail(const Json& d) {
-  const std::string reason = d.value("reason", "");
+  std::string reason = d.value("reason", "");
   if (d.value("health", "") != "ok") return reason;
   return fmt::format("{:5.1f} Hz  {}{}", d.value("rate_hz", 0.0), d.value("identity", ""),
                      reason.empty() ? "" : "; " + reason);

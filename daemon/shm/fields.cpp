@@ -53,7 +53,7 @@ class Table {
     std::copy(full.begin(), full.end(), f.name);
     std::copy(unit.begin(), unit.end(), f.unit);
     f.type[0] = kType<Element>;
-    f.count = sizeof(Member) / sizeof(Element);
+    f.count = sizeof(Member) / sizeof(Element);  // NOLINT(bugprone-sizeof-expression)
     f.offset = static_cast<std::uint32_t>(slot_ + kPayload + offset_in_value);
     f.slot = static_cast<std::uint32_t>(slot_);
     fields_.push_back(f);

@@ -48,7 +48,7 @@ class SeqSlot {
         words[w] = payload_[w].load(std::memory_order_acquire);
       }
       if (sequence_.load(std::memory_order_relaxed) != before) continue;
-      T value;
+      T value;  // NOLINT(*-member-init): copied over
       std::memcpy(&value, words.data(), sizeof value);
       return value;
     }

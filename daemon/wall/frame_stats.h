@@ -34,11 +34,11 @@ class FrameStats {
  private:
   struct Deadline {
     Timestamp at;
-    bool moving, met;
+    bool moving = false, met = false;
   };
   struct Frame {
     Timestamp at;
-    double work, share;
+    double work = 0, share = 0;
   };
   std::deque<Deadline> minute_;
   std::deque<Frame> second_;
