@@ -1,0 +1,145 @@
+// What the tests of .mrm share: a model whose every number stands here, and a file's bytes, to be
+// damaged and sealed again.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <xxhash.h>
+
+#include "render/lod/io/mrm_file.h"
+#include "render/lod/io/mrm_layout.h"
+#include "tests/support/meshes.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::test {
+
+using render::CollapseLog;
+using render::Dendrogram;
+
+inline const std::string kGoldenCube =
+    std::string(MERLIN_SOURCE_DIR) + "/tests/data/golden/cube.mrm";
+
+// The cube, its normals along its diagonals, folded up along x, then y. By hand, so that no other
+// code than buildDendrogram() and writeMrm() has a say in the golden file.
+inline Dendrogram goldenCube() {
+  Mesh mesh = cube();
+  render::Feature normal{"normal", 3, mesh.positions};
+  for (float& x : normal.values) x *= 0.57735026F;
+  mesh.features.push_back(std::move(normal));
+  constexpr float kHalf = 0.70710677F;
+  CollapseLog log;
+  log.children = {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {8, 9}, {10, 11}};
+  log.positions = {0, -1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0, 0, -1, 0, 0, 1};
+  log.features = {{0, -kHalf, -kHalf, 0, kHalf, -kHalf, 0, -kHalf, kHalf,  //
+                   0, kHalf, kHalf, 0, 0, -1, 0, 0, 1}};
+  log.error = {0.25F, 0.125F, 0.5F, 0.5F, 1, 1};
+  log.about = "cost=by hand\nmade=for the tests\n";
+  return buildDendrogram(mesh, log);
+}
+
+// The bytes of an .mrm file, and its parts by name.
+class MrmBytes {
+ public:
+  using Header = render::mrm::FileHeader;
+  using Entry = render::mrm::SectionEntry;
+
+  explicit MrmBytes(std::string file) : bytes(std::move(file)) {}
+
+  Header header() const { return at<Header>(0); }
+  void set(const Header& header) { put(0, header); }
+
+  static std::size_t entryAt(std::size_t i) { return sizeof(Header) + i * sizeof(Entry); }
+  Entry entry(std::size_t i) const { return at<Entry>(entryAt(i)); }
+  void set(std::size_t i, const Entry& entry) { put(entryAt(i), entry); }
+
+  // Its place in the table.
+  std::size_t find(render::mrm::Kind kind) const {
+    for (std::size_t i = 0; i < header().sections; ++i) {
+      if (entry(i).kind == static_cast<std::uint32_t>(kind)) return i;
+    }
+    ADD_FAILURE() << "no section of kind " << static_cast<std::uint32_t>(kind);
+    return 0;
+  }
+  static std::size_t sizeOf(const Entry& e) {
+    return e.rows * e.dimension * (e.kind == static_cast<std::uint32_t>(Kind::kAbout) ? 1 : 4);
+  }
+
+  // Puts a number into a section.
+  template <typename T>
+  void put(render::mrm::Kind kind, std::size_t index, T value) {
+    put(entry(find(kind)).offset + index * sizeof value, value);
+  }
+
+  // Makes all checksums right again; those of sections that lie in the file.
+  MrmBytes& seal() {
+    for (std::size_t i = 0; i < header().sections && entryAt(i + 1) <= bytes.size(); ++i) {
+      Entry e = entry(i);
+      if (e.offset > bytes.size() || sizeOf(e) > bytes.size() - e.offset) continue;
+      e.checksum = XXH3_64bits(&bytes[e.offset], sizeOf(e));
+      set(i, e);
+    }
+    return sealTable();
+  }
+  // Those of table and header alone.
+  MrmBytes& sealTable() {
+    Header h = header();
+    const std::size_t table = std::min(h.sections * sizeof(Entry), bytes.size() - sizeof h);
+    h.table_checksum = XXH3_64bits(&bytes[sizeof h], table);
+    h.header_checksum = XXH3_64bits(&h, offsetof(Header, header_checksum));
+    set(h);
+    return *this;
+  }
+
+  // Whether a byte belongs to nothing: between sections, so that they begin where they should.
+  bool isPadding(std::size_t at) const {
+    if (at < entryAt(header().sections)) return false;
+    for (std::size_t i = 0; i < header().sections; ++i) {
+      if (at >= entry(i).offset && at < entry(i).offset + sizeOf(entry(i))) return false;
+    }
+    return true;
+  }
+
+  std::string bytes;
+
+ private:
+  using Kind = render::mrm::Kind;
+
+  template <typename T>
+  T at(std::size_t offset) const {
+    T value;
+    std::memcpy(&value, &bytes.at(offset), sizeof value);
+    return value;
+  }
+  template <typename T>
+  void put(std::size_t offset, const T& value) {
+    std::memcpy(&bytes.at(offset), &value, sizeof value);
+  }
+};
+
+template <typename T>
+std::vector<T> copyOf(std::span<const T> values) {
+  return {values.begin(), values.end()};
+}
+
+inline void expectSame(const Dendrogram& a, const Dendrogram& b) {
+  const Dendrogram::Arrays &x = a.arrays(), &y = b.arrays();
+  EXPECT_EQ(copyOf(x.positions), copyOf(y.positions));
+  EXPECT_EQ(copyOf(x.parents), copyOf(y.parents));
+  EXPECT_EQ(copyOf(x.triangles), copyOf(y.triangles));
+  EXPECT_EQ(copyOf(x.alive), copyOf(y.alive));
+  EXPECT_EQ(copyOf(x.error), copyOf(y.error));
+  EXPECT_EQ(x.about, y.about);
+  ASSERT_EQ(x.features.size(), y.features.size());
+  for (std::size_t f = 0; f < x.features.size(); ++f) {
+    EXPECT_EQ(x.features[f].name, y.features[f].name);
+    EXPECT_EQ(x.features[f].dimension, y.features[f].dimension);
+    EXPECT_EQ(copyOf(x.features[f].values), copyOf(y.features[f].values));
+  }
+}
+
+}  // namespace merlin::test
