@@ -27,6 +27,7 @@ Error broken(const std::string& path, const std::string& what) {
   return {Errc::kMalformed, path + ": " + what};
 }
 
+// nullptr for a kind that is not known.
 const char* nameOf(std::uint32_t kind) {
   switch (static_cast<Kind>(kind)) {
     case Kind::kPositions: return "positions";
@@ -37,7 +38,7 @@ const char* nameOf(std::uint32_t kind) {
     case Kind::kError: return "error";
     case Kind::kAbout: return "about";
   }
-  return "unknown section";
+  return nullptr;
 }
 
 class MrmReader {
@@ -89,6 +90,11 @@ class MrmReader {
   }
 
   Result<Ok> readSection(const SectionEntry& e) {
+    if (nameOf(e.kind) == nullptr) {  // nobody here knows how large its values are
+      if (e.kind >= kFirstOptional) return Ok{};
+      return Error{Errc::kUnsupported,
+                   fmt::format("{}: section kind {} is not known", path_, e.kind)};
+    }
     const std::uint64_t unit = e.kind == static_cast<std::uint32_t>(Kind::kAbout) ? 1 : 4;
     const std::uint64_t row = std::uint64_t{e.dimension} * unit;
     if (row == 0 || row > size() || e.offset % kAlignment != 0 || e.offset > size() ||
@@ -99,30 +105,26 @@ class MrmReader {
     if (e.checksum != checksum(at, e.rows * row)) {
       return broken(path_, fmt::format("section {} is damaged", nameOf(e.kind)));
     }
-    return place(e, at);
+    place(e, at);
+    return Ok{};
   }
 
-  Result<Ok> place(const SectionEntry& e, const std::byte* at) {
+  void place(const SectionEntry& e, const std::byte* at) {
     const std::size_t values = e.rows * e.dimension;
     const std::span floats(reinterpret_cast<const float*>(at), values);
     const std::span words(reinterpret_cast<const std::uint32_t*>(at), values);
     switch (static_cast<Kind>(e.kind)) {
-      case Kind::kPositions: arrays_.positions = floats; return Ok{};
+      case Kind::kPositions: arrays_.positions = floats; break;
       case Kind::kFeature:
         arrays_.features.push_back(
             {std::string(e.name, strnlen(e.name, sizeof e.name)), e.dimension, floats});
-        return Ok{};
-      case Kind::kParents: arrays_.parents = words; return Ok{};
-      case Kind::kTriangles: arrays_.triangles = words; return Ok{};
-      case Kind::kAlive: arrays_.alive = words; return Ok{};
-      case Kind::kError: arrays_.error = floats; return Ok{};
-      case Kind::kAbout:
-        arrays_.about.assign(reinterpret_cast<const char*>(at), values);
-        return Ok{};
+        break;
+      case Kind::kParents: arrays_.parents = words; break;
+      case Kind::kTriangles: arrays_.triangles = words; break;
+      case Kind::kAlive: arrays_.alive = words; break;
+      case Kind::kError: arrays_.error = floats; break;
+      case Kind::kAbout: arrays_.about.assign(reinterpret_cast<const char*>(at), values); break;
     }
-    if (e.kind >= kFirstOptional) return Ok{};
-    return Error{Errc::kUnsupported,
-                 fmt::format("{}: section kind {} is not known", path_, e.kind)};
   }
 
   Result<Ok> checkCounts() const {
@@ -141,7 +143,7 @@ class MrmReader {
 };
 
 struct Section {
-  SectionEntry entry;
+  SectionEntry entry{};
   std::span<const std::byte> bytes;
 };
 

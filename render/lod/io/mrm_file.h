@@ -13,7 +13,8 @@ namespace merlin::render {
 // cut short), kUnsupported (a later version).
 Result<Dendrogram> readMrm(const std::string& path);
 
-// Writes atomically; the same dendrogram gives the same bytes. Errors: kIo.
+// Writes atomically; the same dendrogram gives the same bytes. Of a feature's name, the first 31
+// bytes are kept. Errors: kNotFound (no such folder), kIo.
 Result<Ok> writeMrm(const std::string& path, const Dendrogram& dendrogram);
 
 }  // namespace merlin::render
