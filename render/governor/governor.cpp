@@ -82,7 +82,9 @@ std::size_t Governor::budgetFor(Duration available) const noexcept {
 void Governor::choose() noexcept {
   const double wanted = trianglesIn(toSeconds(period_));
   const double ratio = wanted / triangles_;
-  if (late_in_a_row_ >= 2 || ratio < 1 - kDeadBand) {
+  if (late_in_a_row_ >= 2) {
+    triangles_ = std::min(triangles_, wanted);
+  } else if (ratio < 1 - kDeadBand) {
     triangles_ = wanted;
   } else if (ratio > 1 + kDeadBand) {
     triangles_ *= std::min(ratio, kGrowth);

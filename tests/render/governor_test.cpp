@@ -1,0 +1,269 @@
+// The governor's laws, one by one, on frames whose cost is said literally.
+#include "render/governor/governor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "daemon/base/random.h"
+
+namespace merlin::render {
+namespace {
+
+using std::chrono::hours;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+// 25 Hz, a period of 40 ms: 36 ms but for the head room that it starts with.
+const GovernorSettings kSettings = {.rate_hz = 25,
+                                    .min_triangles = 100,
+                                    .max_triangles = 1'000'000,
+                                    .first_triangles = 10'000,
+                                    .late_share = 0.01};
+
+FrameCost frame(std::size_t triangles, Duration fixed, Duration work) {
+  return {triangles, fixed, work, work > milliseconds(40)};
+}
+
+// At its target: 10,000 triangles take 36 ms, 4 of them fixed. Nothing is left to change.
+Governor settled() {
+  Governor governor(kSettings);
+  for (int i = 0; i < 10; ++i) governor.observe(frame(10'000, milliseconds(4), milliseconds(36)));
+  return governor;
+}
+
+double shareOf(const Governor& governor, const Governor& of) {
+  return static_cast<double>(governor.budget()) / static_cast<double>(of.budget());
+}
+
+TEST(Governor, StartsWithWhatItIsTold) {
+  const Governor governor(kSettings);
+  EXPECT_EQ(governor.budget(), 10'000u);
+  EXPECT_EQ(governor.budgetFor(milliseconds(1)), 10'000u) << "nothing was measured yet";
+  EXPECT_EQ(governor.budgetFor(Duration::zero()), 10'000u);
+  EXPECT_EQ(governor.period(), milliseconds(40));
+  EXPECT_EQ(governor.coefficient(), 0);
+}
+
+// 4 ms + c T^0.65, c from one frame: twice the triangles take 2^0.65 = 1.5692 times as long.
+TEST(Governor, PredictsByTheModel) {
+  Governor governor(kSettings);
+  governor.observe(frame(10'000, milliseconds(4), milliseconds(14)));
+  EXPECT_DOUBLE_EQ(governor.fixedSeconds(), 0.004);
+  EXPECT_NEAR(governor.predict(10'000), 0.014, 1e-12);
+  EXPECT_NEAR(governor.predict(20'000), 0.004 + 0.0156917, 1e-7);
+  EXPECT_NEAR(governor.predict(0), 0.004, 1e-12);
+}
+
+// Head room 0.1 + 0.0198 since it was late; (40 ms x 0.8802 - 4 ms) / 60 ms = 0.52013, and to the
+// power of 1 / 0.65: 0.36576.
+TEST(Governor, ShrinksAtOnceToWhatTheModelSaysFits) {
+  Governor governor(kSettings);
+  governor.observe(frame(10'000, milliseconds(4), milliseconds(64)));
+  EXPECT_NEAR(static_cast<double>(governor.budget()), 3658, 2);
+}
+
+TEST(Governor, GrowsByEightPercentAFrameAtMost) {
+  Governor governor(kSettings);
+  for (int i = 1; i <= 20; ++i) {
+    governor.observe(frame(10'000, milliseconds(0), milliseconds(1)));
+    EXPECT_NEAR(static_cast<double>(governor.budget()), 10'000 * std::pow(1.08, i), 1) << i;
+  }
+}
+
+// 36 ms would be right; within 5 per cent of the triangles nothing changes.
+TEST(Governor, WaitsForAGainWorthIt) {
+  EXPECT_EQ(settled().budget(), 10'000u);
+  Governor near(kSettings);
+  near.observe(frame(10'000, milliseconds(0), milliseconds(35)));  // 4.4 per cent more would fit
+  EXPECT_EQ(near.budget(), 10'000u);
+  Governor further(kSettings);
+  further.observe(frame(10'000, milliseconds(0), milliseconds(34)));  // 9.2
+  EXPECT_EQ(further.budget(), 10'800u);
+}
+
+TEST(Governor, OneHiccupChangesNothing) {
+  Governor governor = settled();
+  const double before = governor.coefficient();
+  governor.observe(frame(10'000, milliseconds(4), milliseconds(400)));
+  EXPECT_DOUBLE_EQ(governor.coefficient(), before);
+  EXPECT_GT(shareOf(governor, settled()), 0.95);  // the head room grew by two per cent
+  for (int i = 0; i < 5; ++i) {
+    governor.observe(frame(10'000, milliseconds(4), milliseconds(36)));
+    EXPECT_NEAR(governor.coefficient() / before, 1, 1e-9) << "the median does not see it";
+    EXPECT_GT(shareOf(governor, settled()), 0.95);
+  }
+}
+
+TEST(Governor, AHiccupNowAndThenChangesNothingEither) {
+  Governor governor = settled();
+  const double before = governor.coefficient();
+  for (int i = 0; i < 200; ++i) {
+    const int work = i % 20 == 0 ? 200 : 36;
+    governor.observe({10'000, milliseconds(4), milliseconds(work), false});
+    EXPECT_NEAR(governor.coefficient() / before, 1, 1e-9) << i;
+  }
+  EXPECT_EQ(governor.budget(), 10'000u);
+}
+
+// 4 + 64 ms, twice: at the worst figure seen, 32 / 64 of the room, less the head room learnt.
+TEST(Governor, TwoLateInARowActAtOnceOnTheWorstSeen) {
+  Governor governor = settled();
+  const double before = governor.coefficient();
+  governor.observe(frame(10'000, milliseconds(4), milliseconds(68)));
+  governor.observe(frame(10'000, milliseconds(4), milliseconds(60)));
+  EXPECT_NEAR(governor.coefficient() / before, 56.0 / 32.0, 1e-9);
+  EXPECT_NEAR(governor.headRoom(), 0.1396, 1e-9);
+  EXPECT_NEAR(governor.predict(governor.budget()), 0.040 * (1 - 0.1396), 1e-5);
+  governor.observe({10'000, milliseconds(4), milliseconds(20), true});
+  EXPECT_NEAR(governor.coefficient() / before, 56.0 / 32.0, 1e-9) << "no better figure when late";
+}
+
+// Two of the last three are dearer, but the newest is late for the first time.
+TEST(Governor, TheFirstLateFrameTeachesNothing) {
+  Governor governor = settled();
+  const double before = governor.coefficient();
+  governor.observe(frame(10'000, milliseconds(4), milliseconds(39)));
+  governor.observe(frame(10'000, milliseconds(4), milliseconds(400)));
+  EXPECT_NEAR(governor.coefficient() / before, 1, 1e-9);
+}
+
+// 31.1 ms of 32 would let 4.5 per cent more in, which is not worth it; with the head room that two
+// late frames teach 3.4 per cent fewer fit: (40 ms x 0.8604 - 4 ms) / 31.1 ms = 0.97801.
+TEST(Governor, TwoLateInARowDoNotWaitForALossWorthIt) {
+  const Duration work = std::chrono::microseconds(35'100);
+  Governor governor = settled();
+  for (int i = 0; i < 200; ++i) governor.observe(frame(10'000, milliseconds(4), work));
+  EXPECT_EQ(governor.budget(), 10'000u);
+  for (int i = 0; i < 2; ++i) governor.observe({10'000, milliseconds(4), work, true});
+  EXPECT_NEAR(static_cast<double>(governor.budget()), 9664, 2);
+}
+
+// Something else made them late: room there is, but the next frame is not the one to take it.
+TEST(Governor, TwoLateInARowNeverGrow) {
+  Governor governor(kSettings);
+  for (int i = 0; i < 10; ++i) governor.observe({10'000, {}, milliseconds(1), true});
+  EXPECT_EQ(governor.budget(), 10'800u) << "by the first of them";
+  governor.observe({10'000, {}, milliseconds(1), false});
+  EXPECT_EQ(governor.budget(), 11'664u);
+}
+
+// A tenth of the way a frame.
+TEST(Governor, SmoothsTheFixedPart) {
+  Governor governor = settled();
+  governor.observe(frame(10'000, milliseconds(8), milliseconds(36)));
+  EXPECT_NEAR(governor.fixedSeconds(), 0.0044, 1e-12);
+}
+
+TEST(Governor, TwoThatBeganLateCountAlthoughTheirWorkFits) {
+  Governor governor = settled();
+  const double before = governor.coefficient();
+  for (int i = 0; i < 2; ++i) governor.observe({10'000, milliseconds(4), milliseconds(39), true});
+  EXPECT_NEAR(governor.coefficient() / before, 35.0 / 32.0, 1e-9);
+}
+
+// Work beyond the period counts although the frame gave way and came in time.
+TEST(Governor, TwoThatRanOverInARowCountAsLate) {
+  Governor governor = settled();
+  const double before = governor.coefficient();
+  for (int i = 0; i < 2; ++i) {
+    governor.observe({10'000, milliseconds(4), milliseconds(68), false});
+  }
+  EXPECT_NEAR(governor.coefficient() / before, 2, 1e-9);
+  EXPECT_NEAR(governor.headRoom(), 0.10, 1e-12) << "and the share of late frames is not touched";
+}
+
+TEST(Governor, FollowsDearerFramesFasterThanCheaperOnes) {
+  Governor dearer = settled(), cheaper = settled();
+  const double before = dearer.coefficient();
+  for (int i = 0; i < 3; ++i) {
+    dearer.observe(frame(10'000, milliseconds(4), milliseconds(39)));
+    cheaper.observe(frame(10'000, milliseconds(4), milliseconds(33)));
+  }
+  // Two of the last three are new from the second frame on: 35 / 32 and 29 / 32, by 15 and 10 %.
+  EXPECT_NEAR(dearer.coefficient() / before, 1 + 3.0 / 32 * (1 - 0.85 * 0.85), 1e-9);
+  EXPECT_NEAR(cheaper.coefficient() / before, 1 - 3.0 / 32 * (1 - 0.9 * 0.9), 1e-9);
+}
+
+TEST(Governor, HeadRoomFollowsTheLateShare) {
+  Governor governor(kSettings);
+  EXPECT_DOUBLE_EQ(governor.headRoom(), 0.10);
+  governor.observe({1000, {}, milliseconds(50), true});
+  EXPECT_NEAR(governor.headRoom(), 0.10 + 0.02 * 0.99, 1e-12);
+  governor.observe({1000, {}, milliseconds(30), false});
+  EXPECT_NEAR(governor.headRoom(), 0.10 + 0.02 * 0.99 - 0.02 * 0.01, 1e-12);
+  for (int i = 0; i < 50; ++i) governor.observe({1000, {}, milliseconds(50), true});
+  EXPECT_DOUBLE_EQ(governor.headRoom(), 0.30);
+  for (int i = 0; i < 2000; ++i) governor.observe({1000, {}, milliseconds(30), false});
+  EXPECT_DOUBLE_EQ(governor.headRoom(), 0.10);
+}
+
+TEST(Governor, KeepsTheLeastAndTheMost) {
+  Governor governor(kSettings);
+  for (int i = 0; i < 100; ++i) governor.observe(frame(100, milliseconds(39), hours(1)));
+  EXPECT_EQ(governor.budget(), 100u);
+  for (int i = 0; i < 2000; ++i) governor.observe(frame(100, {}, nanoseconds(1)));
+  EXPECT_EQ(governor.budget(), 1'000'000u);
+}
+
+TEST(GovernorBudgetFor, IsTheBudgetForAWholePeriod) {
+  const Governor governor = settled();
+  EXPECT_EQ(governor.budgetFor(milliseconds(40)), governor.budget());
+  EXPECT_EQ(governor.budgetFor(milliseconds(60)), governor.budget());
+  EXPECT_EQ(governor.budgetFor(nanoseconds(39'600'000)), governor.budget());  // a late start
+}
+
+// (20 ms x 0.9 - 4 ms) / 32 ms = 0.4375, to the power of 1 / 0.65: 0.28041.
+TEST(GovernorBudgetFor, IsWhatTheModelSaysFits) {
+  EXPECT_NEAR(static_cast<double>(settled().budgetFor(milliseconds(20))), 2804, 1);
+}
+
+TEST(GovernorBudgetFor, IsNoneWhereNotEvenTheLeastFits) {
+  const Governor governor = settled();
+  EXPECT_EQ(governor.budgetFor(milliseconds(5)), 0u);  // 0.5 ms for 100 triangles of 1.6
+  EXPECT_EQ(governor.budgetFor(milliseconds(4)), 0u);
+  EXPECT_EQ(governor.budgetFor(Duration::zero()), 0u);
+  EXPECT_EQ(governor.budgetFor(-milliseconds(100)), 0u);
+  for (int us = 0; us < 40'000; us += 10) {
+    const std::size_t fits = governor.budgetFor(std::chrono::microseconds(us));
+    ASSERT_TRUE(fits == 0 || (fits >= 100 && fits <= governor.budget())) << us;
+    if (fits == 0 || us >= 39'600) continue;
+    ASSERT_LE(governor.predict(fits), 0.9 * us * 1e-6 + 1e-9) << us;
+    ASSERT_GT(governor.predict(fits + 1), std::min(0.9 * us * 1e-6, governor.predict(10'000)));
+  }
+}
+
+// Whatever frames cost, by all that a Duration can say.
+TEST(Governor, StaysFiniteWhateverIsObserved) {
+  const Duration times[] = {nanoseconds(1), nanoseconds(1000), milliseconds(40), hours(1),
+                            hours(24 * 365 * 200)};
+  const std::size_t counts[] = {0, 1, 10'000, std::numeric_limits<std::size_t>::max()};
+  Random random(1);
+  for (int run = 0; run < 200; ++run) {
+    Governor governor(kSettings);
+    for (int i = 0; i < 50; ++i) {
+      const Duration work = times[random.below(5)];
+      const Duration fixed = random.below(2) == 0 ? Duration::zero() : work;
+      governor.observe({counts[random.below(4)], fixed, work, random.below(2) == 0});
+      ASSERT_GE(governor.budget(), 100u);
+      ASSERT_LE(governor.budget(), 1'000'000u);
+      ASSERT_TRUE(std::isfinite(governor.coefficient()) && governor.coefficient() > 0);
+      ASSERT_TRUE(std::isfinite(governor.fixedSeconds()) && governor.fixedSeconds() >= 0);
+      ASSERT_TRUE(std::isfinite(governor.predict(counts[random.below(4)])));
+      ASSERT_TRUE(governor.headRoom() >= 0.10 && governor.headRoom() <= 0.30);
+      for (const Duration t : times) ASSERT_LE(governor.budgetFor(t), governor.budget());
+    }
+  }
+}
+
+TEST(GovernorDeathTest, RefusesSettingsThatMakeNoSense) {
+  EXPECT_DEBUG_DEATH(Governor({.rate_hz = 0}), "rate_hz");
+  EXPECT_DEBUG_DEATH(Governor({.min_triangles = 0}), "min_triangles");
+  EXPECT_DEBUG_DEATH(Governor({.max_triangles = 9'000}), "max_triangles");
+  EXPECT_DEBUG_DEATH(Governor({.late_share = 0}), "late_share");
+}
+
+}  // namespace
+}  // namespace merlin::render
