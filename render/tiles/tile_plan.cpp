@@ -33,17 +33,23 @@ Result<Ok> check(const TilesSettings& s) {
   if (!(s.field_of_view_deg >= 1 && s.field_of_view_deg <= 179)) {
     return wrong(fmt::format("a field of view of {} degrees is not 1 to 179", s.field_of_view_deg));
   }
-  if (!(s.near_m > 0 && s.far_m > s.near_m)) {
+  if (!(s.near_m > 0 && s.far_m > s.near_m && std::isfinite(s.far_m))) {
     return wrong(fmt::format("near {} m and far {} m: 0 < near < far", s.near_m, s.far_m));
+  }
+  if (s.tile_width <= 0 || s.tile_height <= 0) {
+    return wrong(
+        fmt::format("a tile of {} x {} pixels has no picture", s.tile_width, s.tile_height));
   }
   if (s.tiles.empty()) return wrong("a wall has at least one tile");
   for (std::size_t i = 0; i < s.tiles.size(); ++i) {
     const TileSettings& t = s.tiles[i];
-    if (t.x < 0 || t.y < 0 || t.x + s.tile_width > s.frame_width ||
-        t.y + s.tile_height > s.frame_height) {
+    if (t.x < 0 || t.y < 0 || t.x > s.frame_width - s.tile_width ||
+        t.y > s.frame_height - s.tile_height) {
       return wrong(fmt::format("tile {} at {}, {} does not lie in the frame of {} x {}", t.name,
                                t.x, t.y, s.frame_width, s.frame_height));
     }
+    if (!std::isfinite(t.turns))
+      return wrong(fmt::format("tile {}: turns are {}", t.name, t.turns));
     for (std::size_t j = 0; j < i; ++j) {
       if (const auto pair = checkPair(s.tiles[j], t, s); !pair) return pair;
     }
