@@ -26,8 +26,8 @@ const std::map<std::string, Folders> kMayInclude = {
       "render/scene", "render/governor", "render/tiles", "render/gl", "render/out"}},
     {"daemon/cli",
      {"daemon/shm", "daemon/status", "daemon/wall", "drivers/emulate", "drivers/hand", "drivers/io",
-      "nn", "nn/io", "render/mesh", "render/mesh/io", "render/reduce", "render/lod",
-      "render/lod/io", "render/tiles", "render/gl", "render/out"}},
+      "nn", "nn/io", "render/mesh", "render/mesh/io", "render/reduce", "render/compare",
+      "render/lod", "render/lod/io", "render/tiles", "render/gl", "render/out"}},
     // The composition root.
     {"daemon",
      {"config", "daemon/cli", "daemon/devices", "daemon/shm", "daemon/status", "daemon/wall",
@@ -54,6 +54,8 @@ const std::map<std::string, Folders> kMayInclude = {
     {"render/lod", {"render/mesh"}},
     {"render/lod/io", {"render/lod", "render/mesh"}},
     {"render/reduce", {"render/lod", "render/mesh"}},
+    // Pure but for its threads; its figures are the same for any number of them.
+    {"render/compare", {"render/mesh"}},
     {"render/governor", {}},
     {"render/tiles", {}},
     {"render/scene", {"drivers/port"}},

@@ -6,11 +6,13 @@
 namespace merlin::cli {
 
 void addMesh(CLI::App& app, Run& run) {
-  CLI::App* mesh = app.add_subcommand("mesh", "Models: reduce, look into, export, picture.");
+  CLI::App* mesh =
+      app.add_subcommand("mesh", "Models: reduce, look into, export, compare, picture.");
   mesh->require_subcommand(1);
   addMeshReduce(*mesh, run);
   addMeshInfo(*mesh, run);
   addMeshExport(*mesh, run);
+  addMeshCompare(*mesh, run);
   addMeshPicture(*mesh, run);
 }
 

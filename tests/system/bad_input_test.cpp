@@ -134,6 +134,23 @@ TEST_F(BadInput, CommandsForADaemonThatIsNotThere) {
   EXPECT_FALSE(std::filesystem::exists(dir_ / "x.png"));
 }
 
+TEST_F(BadInput, MeshesThatCannotBeCompared) {
+  const std::string scan = kSource + "/config/models/ankylosaurus.ply";
+  const std::string line = dir_ / "line.obj";
+  writeText(line, "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  expectOutcome(run({kMerlin, "mesh", "compare", scan, line}), 2,
+                {scan, line, "the second mesh: none of 1 triangles has an area"});
+  expectOutcome(run({kMerlin, "mesh", "compare", dir_ / "none.ply", scan}), 2,
+                {"none.ply: No such file or directory"});
+  expectOutcome(run({kMerlin, "mesh", "compare", scan, dir_ / "none.mrm"}), 2,
+                {"none.mrm: No such file or directory"});
+  expectOutcome(run({kMerlin, "mesh", "compare", scan}), 2, {"b is required"});
+  expectOutcome(run({kMerlin, "mesh", "compare", scan, scan, "--width", "0"}), 2, {"--width"});
+  expectOutcome(run({kMerlin, "mesh", "compare", scan, scan, "--samples", "0"}), 2, {"--samples"});
+  expectOutcome(run({kMerlin, "mesh", "compare", scan, scan, "--feature", "heat"}), 2,
+                {"feature heat: the first mesh has none, the second has none"});
+}
+
 TEST_F(BadInput, MeshCommands) {
   writeText(dir_ / "empty.ply", "");
   writeText(dir_ / "a.xyz", "");

@@ -59,6 +59,61 @@ TEST_F(Cli, PicturesModelsSideBySide) {
   EXPECT_NE(picture.output.find("p.png: 128 x 48"), std::string::npos) << picture.output;
 }
 
+// A square of two triangles `height` above the ground, as ASCII PLY.
+std::string squarePly(double height) {
+  return fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 {0}\n3 0 {0}\n3 "
+      "4 "
+      "{0}\n0 4 {0}\n3 0 1 2\n3 0 2 3\n",
+      height);
+}
+
+// The JSON that ends what a command printed, after its progress.
+nlohmann::json jsonOf(const Outcome& outcome) {
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  return nlohmann::json::parse(outcome.output.substr(outcome.output.find("{\"")));
+}
+
+TEST_F(Cli, CompareMeasuresBothWays) {
+  writeText(dir_ / "a.ply", squarePly(0));
+  writeText(dir_ / "b.ply", squarePly(0.5));
+  const auto c = jsonOf(run(
+      {kMerlin, "mesh", "compare", dir_ / "a.ply", dir_ / "b.ply", "--samples", "5000", "--json"}));
+  EXPECT_EQ(c["diagonal"], 5);
+  for (const auto& part : {c, c["forward"], c["backward"]}) {
+    EXPECT_NEAR(part["rms"], 0.5, 1e-12);
+    EXPECT_NEAR(part["mean"], 0.5, 1e-12);
+    EXPECT_NEAR(part["max_low"], 0.5, 1e-12);
+    EXPECT_LE(part["max_high"], 0.5005);
+    EXPECT_NEAR(part["rms_percent"], 10, 1e-9);
+    EXPECT_LE(part["max_high_percent"], 10.01);
+    EXPECT_EQ(part["normal_rms_deg"], 0);
+    EXPECT_TRUE(part["colour_rms_255"].is_null());
+    EXPECT_EQ(part["features"], nlohmann::json::object());
+  }
+  EXPECT_GE(c["seconds"], 0);
+}
+
+TEST_F(Cli, CompareTakesAResolutionOfAModel) {
+  ASSERT_EQ(run({kMerlin, "mesh", "reduce", scan_, "-o", dir_ / "a.mrm"}).status, 0);
+  const auto error = [&](const std::string& percent) {
+    return jsonOf(run({kMerlin, "mesh", "compare", scan_, dir_ / "a.mrm", "--percent", percent,
+                       "--samples", "20000", "--width", "0.1", "--json"}));
+  };
+  const auto half = error("50"), twentieth = error("5");
+  EXPECT_GT(half["rms"], 0);
+  EXPECT_GT(twentieth["rms"], 2 * half["rms"].get<double>());
+  EXPECT_GT(twentieth["colour_rms_255"], half["colour_rms_255"]);
+  EXPECT_NEAR(half["colour_rms_255"], 255 * half["features"]["colour"].get<double>(), 1e-9);
+  EXPECT_GT(half["vertex_normal_rms_deg"], 0);
+  EXPECT_LE(half["max_high_percent"].get<double>() - half["max_low_percent"].get<double>(), 0.1);
+  const Outcome table = run({kMerlin, "mesh", "compare", scan_, dir_ / "a.mrm", "--percent", "5",
+                             "--samples", "20000", "--width", "0.1"});
+  for (const char* word : {"A to B", "RMS", "max, at least", "colour RMS of 255", "points/s"})
+    EXPECT_NE(table.output.find(word), std::string::npos) << word;
+}
+
 TEST_F(Cli, TheShippedPostureNetworkIsTestedOnHeldOutHands) {
   const auto score = nlohmann::json::parse(
       run({kMerlin, "posture", "test", "--network", kSource + "/config/postures.json", "--json"})

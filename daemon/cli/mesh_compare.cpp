@@ -1,0 +1,163 @@
+// merlin mesh compare: how far two surfaces are from one another.
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/clock.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh.h"
+#include "daemon/cli/progress.h"
+#include "render/compare/compare.h"
+
+namespace merlin::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct CompareOptions {
+  std::string original, other;
+  LevelChoice choice;  // of the other one
+  render::CompareSettings settings;
+  bool json = false;
+};
+
+// The rows of the table and the keys of the JSON that are numbers of one direction.
+struct Figure {
+  const char* name;
+  const char* key;
+  std::optional<double> value;
+  bool is_length = false;  // model units, shown as percent of the diagonal too
+};
+
+std::optional<double> colourError(const render::Deviation& d) {
+  for (const auto& f : d.features) {
+    if (f.name == "colour") return 255 * f.rms;
+  }
+  return std::nullopt;
+}
+
+std::vector<Figure> figuresOf(const render::Deviation& d) {
+  return {{"RMS", "rms", d.rms, true},
+          {"mean", "mean", d.mean, true},
+          {"max, at least", "max_low", d.max.low, true},
+          {"max, at most", "max_high", d.max.high, true},
+          {"colour RMS of 255", "colour_rms_255", colourError(d)},
+          {"facets' normals RMS, degrees", "normal_rms_deg", d.facet_rms_deg},
+          {"vertex normals RMS, degrees", "vertex_normal_rms_deg", d.normal_rms_deg}};
+}
+
+// null where there is no figure.
+Json valueOf(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+Json jsonOf(const render::Deviation& d, double diagonal) {
+  Json json;
+  for (const Figure& f : figuresOf(d)) {
+    json[f.key] = valueOf(f.value);
+    if (f.is_length) json[std::string(f.key) + "_percent"] = 100 * *f.value / diagonal;
+  }
+  json["features"] = Json::object();
+  for (const auto& f : d.features) json["features"][f.name] = f.rms;
+  json["points_tested"] = d.max.evaluations;
+  return json;
+}
+
+void printJson(const CompareOptions& options, const render::Comparison& c, double seconds) {
+  Json json = {{"original", options.original}, {"other", options.other}, {"diagonal", c.diagonal}};
+  json.update(jsonOf(c.symmetric(), c.diagonal));
+  json["forward"] = jsonOf(c.forward, c.diagonal);
+  json["backward"] = jsonOf(c.backward, c.diagonal);
+  json["seconds"] = seconds;
+  fmt::print("{}\n", json.dump());
+}
+
+std::string cell(const std::optional<double>& value) {
+  return value ? fmt::format("{:.4g}", *value) : "-";
+}
+
+void printTable(const CompareOptions& options, const render::Comparison& c, double seconds) {
+  fmt::print("{} (A) and {} (B): diagonal of A {:.6g}, {:.1f} s\n", options.original, options.other,
+             c.diagonal, seconds);
+  fmt::print("{:30}{:>12}{:>12}{:>12}{:>16}\n", "", "A to B", "B to A", "larger", "% of diagonal");
+  const render::Deviation symmetric = c.symmetric();
+  const auto forward = figuresOf(c.forward), backward = figuresOf(c.backward);
+  const auto larger = figuresOf(symmetric);
+  for (std::size_t i = 0; i < larger.size(); ++i) {
+    if (!larger[i].value) continue;
+    const std::string percent =
+        larger[i].is_length ? fmt::format("{:.4f}", 100 * *larger[i].value / c.diagonal) : "";
+    fmt::print("{:30}{:>12}{:>12}{:>12}{:>16}\n", larger[i].name, cell(forward[i].value),
+               cell(backward[i].value), cell(larger[i].value), percent);
+  }
+  for (std::size_t i = 0; i < symmetric.features.size(); ++i) {
+    fmt::print("{:30}{:>12.4g}{:>12.4g}{:>12.4g}\n", symmetric.features[i].name + " RMS",
+               c.forward.features[i].rms, c.backward.features[i].rms, symmetric.features[i].rms);
+  }
+}
+
+Result<render::Mesh> openMesh(const std::string& path, const LevelChoice& choice) {
+  const auto model = openModel(path);
+  if (!model) return model.error();
+  return render::extract(*model, choice.levelOf(*model));
+}
+
+int compareMeshes(const CompareOptions& options) {
+  const auto original = openMesh(options.original, {});
+  if (!original) return fail(original.error());
+  const auto other = openMesh(options.other, options.choice);
+  if (!other) return fail(other.error());
+  const SystemClock clock;
+  ProgressBar bar("comparing", "points", clock);
+  const Timestamp began = clock.now();
+  std::size_t points = 0;
+  const auto comparison =
+      render::compare(*original, *other, options.settings, [&](const render::CompareProgress& p) {
+        points = p.points;
+        bar.update(p.share, p.points);
+        return true;
+      });
+  if (!comparison) {
+    return fail({comparison.error().code, fmt::format("{}, {}: {}", options.original, options.other,
+                                                      comparison.error().what)});
+  }
+  bar.finish(points);
+  const double seconds = toSeconds(clock.now() - began);
+  (options.json ? printJson : printTable)(options, *comparison, seconds);
+  return kExitDone;
+}
+
+}  // namespace
+
+void addMeshCompare(CLI::App& mesh, Run& run) {
+  const auto options = std::make_shared<CompareOptions>();
+  CLI::App* command = mesh.add_subcommand(
+      "compare",
+      "How far two surfaces are from one another: RMS, mean, and an interval that holds the "
+      "maximum.\nExample: merlin mesh compare scan.ply scan.mrm --percent 5");
+  command->add_option("a", options->original, "The original: .mrm, .ply or .obj")
+      ->required()
+      ->type_name("A");
+  command->add_option("b", options->other, "The other one; a resolution of it if told")
+      ->required()
+      ->type_name("B");
+  options->choice.addTo(*command);
+  command
+      ->add_option("--samples", options->settings.samples,
+                   "Points of each surface for all but the maximum")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}))
+      ->capture_default_str();
+  command->add_option("--seed", options->settings.seed, "Of the samples")->capture_default_str();
+  command
+      ->add_option("--width", options->settings.width_percent,
+                   "Of the maximum's interval, percent of the diagonal of A's box")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--feature", options->settings.features,
+                      "Compare these only; without any: all that both have");
+  command->add_option("--threads", options->settings.threads,
+                      "0: as many as there are; any gives the same figures");
+  command->add_flag("--json", options->json, "For programs");
+  command->callback([options, &run] { run = [options] { return compareMeshes(*options); }; });
+}
+
+}  // namespace merlin::cli

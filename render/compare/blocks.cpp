@@ -1,0 +1,48 @@
+#include "render/compare/blocks.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <thread>
+#include <vector>
+
+namespace merlin::render {
+
+bool forBlocks(unsigned threads, std::size_t blocks, const std::function<void(std::size_t)>& work,
+               const std::function<bool(std::size_t)>& goOn) {
+  std::atomic<std::size_t> next{0}, done{0};
+  std::atomic<bool> cancelled{false};
+  std::atomic_flag thrown;
+  std::exception_ptr exception;
+  const auto doOne = [&] {
+    if (cancelled) return false;
+    const std::size_t block = next++;
+    if (block >= blocks) return false;
+    try {
+      work(block);
+    } catch (...) {  // no memory, as a rule
+      if (!thrown.test_and_set()) exception = std::current_exception();
+      cancelled = true;
+      return false;
+    }
+    ++done;
+    return true;
+  };
+  {
+    std::vector<std::jthread> others;
+    const std::size_t wanted = std::min<std::size_t>(threads, blocks);
+    for (std::size_t i = 1; i < wanted; ++i) {
+      others.emplace_back([&] {
+        while (doOne()) {
+        }
+      });
+    }
+    while (doOne()) {
+      if (!goOn(done)) cancelled = true;
+    }
+  }
+  if (exception) std::rethrow_exception(exception);
+  return done == blocks;
+}
+
+}  // namespace merlin::render
