@@ -25,7 +25,7 @@ std::optional<Eigen::Matrix3f> axisMap(const std::array<int, 3>& axes) {
   Eigen::Matrix3f m = Eigen::Matrix3f::Zero();
   for (int row = 0; row < 3; ++row) {
     const int axis = axes[static_cast<std::size_t>(row)];
-    if (axis == 0 || std::abs(axis) > 3) return std::nullopt;
+    if (axis == 0 || axis < -3 || axis > 3) return std::nullopt;  // abs(the least int) is none
     m(row, std::abs(axis) - 1) = axis > 0 ? 1.0F : -1.0F;
   }
   if (std::abs(m.determinant() - 1) > 1e-6F) return std::nullopt;

@@ -1,0 +1,255 @@
+// The ball, the bindings and what counts as motion.
+#include "render/scene/scene.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/render/scene_play.h"
+
+namespace merlin::render {
+namespace {
+
+using Eigen::Matrix3f;
+using Eigen::Vector3f;
+using test::expectAt;
+using test::ScenePlay;
+using test::turnedBy;
+
+const Vector3f kX = Vector3f::UnitX(), kY = Vector3f::UnitY(), kZ = Vector3f::UnitZ();
+const Vector3f kStart(0, 0, -2);  // as shipped
+constexpr std::uint32_t kButton1 = 1, kButton2 = 2;
+
+TEST(Scene, StartsWhereTheSettingsSay) {
+  expectAt(ScenePlay(), kStart);
+  ScenePlay play({.model_distance_m = 5, .model_yaw_deg = 90, .model_pitch_deg = 30});
+  expectAt(play, {0, 0, -5}, turnedBy(90, kY) * turnedBy(30, kX));
+  const Scene unused = *Scene::make({.model_distance_m = 5});
+  EXPECT_EQ(unused.view().T_eye_model.translation(), Vector3f(0, 0, -5));
+  EXPECT_TRUE(unused.view().moving);
+}
+
+TEST(SceneBall, MovesTheModelBySpeedTimesTimeOnEachAxis) {
+  ScenePlay play({.ball_speed_m_s = {1, 2, 4}});
+  play.push({0.5F, -0.25F, 1});
+  play.update(100);
+  expectAt(play, kStart + Vector3f(0.05F, -0.05F, 0.4F));
+  play.update(20);
+  expectAt(play, kStart + Vector3f(0.06F, -0.06F, 0.48F));
+}
+
+TEST(SceneBall, TurnsTheModelAboutItsOwnCentreAndTheViewersAxes) {
+  const SceneSettings settings = {.ball_turn_deg_s = {100, 200, 300}};
+  const Vector3f axes[] = {kX, kY, kZ};
+  for (int k = 0; k < 3; ++k) {
+    ScenePlay play(settings);
+    play.push(Vector3f::Zero(), 0.5F * axes[k]);
+    play.update(100);
+    expectAt(play, kStart, turnedBy(5.0F * static_cast<float>(k + 1), axes[k]));
+  }
+  ScenePlay play(settings);
+  play.push(Vector3f::Zero(), kX);
+  for (int i = 0; i < 9; ++i) play.update(100);  // 90 degrees
+  play.push(Vector3f::Zero(), kY);
+  for (int i = 0; i < 3; ++i) play.update(100);  // 60, about the viewer's y, not the model's
+  expectAt(play, kStart, turnedBy(60, kY) * turnedBy(90, kX));
+}
+
+TEST(SceneBall, TurnsAboutTheAxisOfTheWholeTwist) {
+  ScenePlay play({.ball_turn_deg_s = {90, 90, 180}});
+  play.push(Vector3f::Zero(), {1, 0, 0.5F});
+  play.update(100);
+  expectAt(play, kStart, turnedBy(9 * std::sqrt(2.0F), {1, 0, 1}));
+}
+
+TEST(SceneBall, MovesNothingWhileTimeStandsStill) {
+  ScenePlay play;
+  play.push({1, 1, 1}, {1, 1, 1});
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(play.update(0).moving);
+  expectAt(play, kStart);
+}
+
+TEST(SceneBall, AFrameThatTookLongMovesAsOneOfATenthOfASecond) {
+  ScenePlay play;
+  play.push(kX);
+  play.update(60'000);
+  expectAt(play, kStart + 0.1F * kX);
+}
+
+TEST(SceneFly, TheBallMovesTheViewer) {
+  ScenePlay play;
+  play.scene.nextMode();
+  play.push(-kZ);  // away from the person
+  EXPECT_EQ(play.update(100).mode, BallMode::kFly);
+  expectAt(play, {0, 0, -1.9F});
+  play.push(kX);
+  play.update(100);
+  expectAt(play, {-0.1F, 0, -1.9F});
+}
+
+// After 90 degrees to the left the model is on the right, and ahead is where left was.
+TEST(SceneFly, TheViewerTurnsAboutTheEyeAndFliesAhead) {
+  ScenePlay play;
+  play.scene.nextMode();
+  play.push(Vector3f::Zero(), kY);
+  for (int i = 0; i < 10; ++i) play.update(100);
+  expectAt(play, {2, 0, 0}, turnedBy(-90, kY));
+  play.push(-kZ);
+  play.update(100);
+  expectAt(play, {2, 0, 0.1F}, turnedBy(-90, kY));
+  play.scene.nextMode();  // the model again, and along the viewer's axes still
+  play.push(kX);
+  play.update(100);
+  expectAt(play, {2.1F, 0, 0.1F}, turnedBy(-90, kY));
+  play.push(Vector3f::Zero(), kX);
+  for (int i = 0; i < 10; ++i) play.update(100);
+  expectAt(play, {2.1F, 0, 0.1F}, turnedBy(90, kX) * turnedBy(-90, kY));
+}
+
+TEST(SceneReset, BringsModelAndViewerBackAndKeepsTheMode) {
+  ScenePlay play;
+  play.push({1, 1, 1}, {1, 0, 1});
+  play.update(100);
+  play.scene.nextMode();
+  play.update(100);
+  play.push(Vector3f::Zero());
+  play.rest();
+  play.press(kButton1);
+  const SceneView view = play.update(20);
+  expectAt(play, kStart);
+  EXPECT_TRUE(view.moving);
+  EXPECT_EQ(view.mode, BallMode::kFly);
+  EXPECT_FALSE(play.update(150).moving) << "held: once is enough";
+  play.scene.reset();
+  EXPECT_TRUE(play.scene.view().moving);
+  EXPECT_EQ(play.scene.view().mode, BallMode::kFly);
+}
+
+TEST(SceneBindings, ActOnceAPress) {
+  ScenePlay play;
+  for (int press = 0; press < 3; ++press) {
+    const BallMode expected = press % 2 == 0 ? BallMode::kFly : BallMode::kObject;
+    play.press(kButton2);
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(play.update(20).mode, expected) << press;
+    play.press(0);
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(play.update(20).mode, expected) << press;
+  }
+  play.press(kButton2 | 4);
+  EXPECT_EQ(play.update(20).mode, BallMode::kObject);
+  play.press(kButton2 | 8);  // others come and go while it is held
+  EXPECT_EQ(play.update(20).mode, BallMode::kObject);
+  play.press(4);
+  EXPECT_EQ(play.update(20).mode, BallMode::kObject) << "not bound";
+}
+
+TEST(SceneBindings, ABallThatIsAbsentLetsGo) {
+  ScenePlay play;
+  play.press(kButton2);
+  play.push(kX);
+  EXPECT_EQ(play.update(20).mode, BallMode::kFly);
+  const Vector3f before = play.position();
+  play.input.ball.reset();
+  play.rest();
+  EXPECT_EQ(play.position(), before);
+  EXPECT_EQ(play.scene.view().mode, BallMode::kFly);
+  play.press(kButton2);
+  EXPECT_EQ(play.update(20).mode, BallMode::kObject) << "back, it is pressed again";
+}
+
+TEST(SceneBindings, EveryInputDoesWhatItIsBoundTo) {
+  SceneSettings settings;
+  settings.bindings = {{"ball.button.12", Action::kNextMode},
+                       {"glove.switch", Action::kNextMode},
+                       {"posture.point", Action::kNextMode}};
+  ScenePlay play(settings);
+  const auto mode = [&] { return play.update(20).mode; };
+  play.press(1U << 11);
+  EXPECT_EQ(mode(), BallMode::kFly);
+  play.press(0x7FF);  // the eleven others
+  EXPECT_EQ(mode(), BallMode::kFly);
+  play.input.glove = GloveSample{};
+  play.input.glove->flags = GloveSample::kPlugged | GloveSample::kLight;
+  EXPECT_EQ(mode(), BallMode::kFly);
+  play.input.glove->flags = GloveSample::kWristSwitch;
+  EXPECT_EQ(mode(), BallMode::kObject);
+  play.input.glove.reset();
+  play.showPosture("fist");
+  EXPECT_EQ(mode(), BallMode::kObject);
+  play.showPosture("point");
+  EXPECT_EQ(mode(), BallMode::kFly);
+}
+
+TEST(SceneBindings, APostureActsOnceItHasLasted) {
+  SceneSettings settings;
+  settings.bindings = {{"posture.point", Action::kNextMode}};
+  ScenePlay play(settings);
+  for (const int ms : {0, 50, 99}) {
+    play.showPosture("point", ms);
+    EXPECT_EQ(play.update(20).mode, BallMode::kObject) << ms;
+  }
+  play.showPosture("point", 100);
+  EXPECT_EQ(play.update(20).mode, BallMode::kFly);
+  play.showPosture("point", 500);
+  EXPECT_EQ(play.update(20).mode, BallMode::kFly) << "held";
+  play.showPosture("point", 0);  // shown anew
+  EXPECT_EQ(play.update(20).mode, BallMode::kFly);
+  play.showPosture("point", 100);
+  EXPECT_EQ(play.update(20).mode, BallMode::kObject);
+}
+
+TEST(SceneMotion, EndsAWhileAfterTheLastInput) {
+  ScenePlay play({.still_after_s = 0.15});
+  EXPECT_TRUE(play.update(149).moving) << "the start counts";
+  EXPECT_FALSE(play.update(1).moving);
+  play.push({1e-6F, 0, 0});
+  EXPECT_TRUE(play.update(20).moving) << "the driver has taken the noise away";
+  play.push(Vector3f::Zero());
+  EXPECT_TRUE(play.update(149).moving);
+  EXPECT_FALSE(play.update(1).moving);
+  play.push(Vector3f::Zero(), {0, 0, -1e-6F});
+  EXPECT_TRUE(play.update(20).moving);
+  play.input.ball.reset();
+  EXPECT_FALSE(play.update(150).moving);
+}
+
+TEST(SceneSettings, ABindingOfNoInputIsRefused) {
+  for (const std::string input :
+       {"", "ball", "ball.button.", "ball.button.0", "ball.button.13", "ball.button.-1",
+        "ball.button.+1", "ball.button.1x", "ball.button.x1", "ball.button. 1",
+        "ball.button.99999999999", "posture.", "posture", "glove", "glove.switch.1", "Glove.switch",
+        "tracker.button.1"}) {
+    const auto scene = Scene::make({.bindings = {{"glove.switch"}, {input}}});
+    ASSERT_FALSE(scene) << input;
+    EXPECT_EQ(scene.error().code, Errc::kInvalidArgument);
+    EXPECT_TRUE(scene.error().what.starts_with("binding \"" + input + "\": inputs are ")) << input;
+  }
+  for (int n = 1; n <= 12; ++n) {
+    EXPECT_TRUE(Scene::make({.bindings = {{"ball.button." + std::to_string(n)}}})) << n;
+  }
+}
+
+TEST(SceneSettings, AnAxisMapThatIsNoTurnIsRefused) {
+  constexpr int kLeast = std::numeric_limits<int>::min();
+  for (const std::array<int, 3>& axes : {std::array{0, 2, 3},
+                                         {1, 1, 3},
+                                         {1, -1, 2},
+                                         {1, 2, 4},
+                                         {-4, 2, 3},
+                                         {kLeast, 2, 3},
+                                         {1, 2, -3},
+                                         {2, 1, 3},
+                                         {-1, -2, -3}}) {  // the last three: a mirror
+    const auto scene = Scene::make({.tracker_axes = axes});
+    ASSERT_FALSE(scene) << axes[0];
+    EXPECT_EQ(scene.error().code, Errc::kInvalidArgument);
+    EXPECT_TRUE(scene.error().what.starts_with("tracker_axes " + std::to_string(axes[0]) + ", "));
+  }
+  int turns = 0;
+  for (int code = 0; code < 343; ++code) {
+    turns += Scene::make({.tracker_axes = {code % 7 - 3, code / 7 % 7 - 3, code / 49 - 3}}) ? 1 : 0;
+  }
+  EXPECT_EQ(turns, 24) << "as many as a cube has";
+}
+
+}  // namespace
+}  // namespace merlin::render
