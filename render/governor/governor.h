@@ -9,7 +9,8 @@
 // and T is chosen so that the work fills the period but for a head room m, which follows the share
 // of late frames: late, m += g (1 - q); in time, m -= g q, so that in the long run a share q is
 // late. One late frame may be a hiccup and changes nothing; two in a row act at once, on the worst
-// figure seen, and never by growth; growth is gentle and waits for a gain worth it. README.md has figures and sources.
+// figure seen, and never by growth; growth is gentle and waits for a gain worth it. README.md has
+// figures and sources.
 #pragma once
 
 #include <array>
