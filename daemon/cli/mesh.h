@@ -18,6 +18,9 @@ void addMeshReduce(CLI::App& mesh, Run& run);
 // An .mrm file as it is, or a mesh as a dendrogram of one level. Errors: of the readers.
 Result<render::Dendrogram> openModel(const std::string& path);
 
+// A mesh as a model of one level.
+render::Dendrogram asModel(const render::Mesh& mesh);
+
 // Which resolution: at most one is set.
 struct LevelChoice {
   std::optional<double> percent, error_percent;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clock.h"
+#include "daemon/cli/compare_pictures.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
 #include "daemon/cli/progress.h"
@@ -19,7 +20,15 @@ struct CompareOptions {
   std::string original, other;
   LevelChoice choice;  // of the other one
   render::CompareSettings settings;
+  std::string pictures;  // a folder; empty: none
+  View view;
   bool json = false;
+};
+
+struct Answer {
+  render::Comparison comparison;
+  double seconds = 0;
+  std::optional<double> changed_percent;  // of the pixels, where there are pictures
 };
 
 // The rows of the table and the keys of the JSON that are numbers of one direction.
@@ -62,12 +71,14 @@ Json jsonOf(const render::Deviation& d, double diagonal) {
   return json;
 }
 
-void printJson(const CompareOptions& options, const render::Comparison& c, double seconds) {
+void printJson(const CompareOptions& options, const Answer& answer) {
+  const render::Comparison& c = answer.comparison;
   Json json = {{"original", options.original}, {"other", options.other}, {"diagonal", c.diagonal}};
   json.update(jsonOf(c.symmetric(), c.diagonal));
   json["forward"] = jsonOf(c.forward, c.diagonal);
   json["backward"] = jsonOf(c.backward, c.diagonal);
-  json["seconds"] = seconds;
+  if (answer.changed_percent) json["changed_pixels_percent"] = *answer.changed_percent;
+  json["seconds"] = answer.seconds;
   fmt::print("{}\n", json.dump());
 }
 
@@ -75,9 +86,10 @@ std::string cell(const std::optional<double>& value) {
   return value ? fmt::format("{:.4g}", *value) : "-";
 }
 
-void printTable(const CompareOptions& options, const render::Comparison& c, double seconds) {
+void printTable(const CompareOptions& options, const Answer& answer) {
+  const render::Comparison& c = answer.comparison;
   fmt::print("{} (A) and {} (B): diagonal of A {:.6g}, {:.1f} s\n", options.original, options.other,
-             c.diagonal, seconds);
+             c.diagonal, answer.seconds);
   fmt::print("{:30}{:>12}{:>12}{:>12}{:>16}\n", "", "A to B", "B to A", "larger", "% of diagonal");
   const render::Deviation symmetric = c.symmetric();
   const auto forward = figuresOf(c.forward), backward = figuresOf(c.backward);
@@ -93,6 +105,10 @@ void printTable(const CompareOptions& options, const render::Comparison& c, doub
     fmt::print("{:30}{:>12.4g}{:>12.4g}{:>12.4g}\n", symmetric.features[i].name + " RMS",
                c.forward.features[i].rms, c.backward.features[i].rms, symmetric.features[i].rms);
   }
+  if (answer.changed_percent) {
+    fmt::print("pixels changed by more than 15 %: {:.3g} % of the model's ({}/difference.png)\n",
+               *answer.changed_percent, options.pictures);
+  }
 }
 
 Result<render::Mesh> openMesh(const std::string& path, const LevelChoice& choice) {
@@ -101,28 +117,43 @@ Result<render::Mesh> openMesh(const std::string& path, const LevelChoice& choice
   return render::extract(*model, choice.levelOf(*model));
 }
 
-int compareMeshes(const CompareOptions& options) {
-  const auto original = openMesh(options.original, {});
-  if (!original) return fail(original.error());
-  const auto other = openMesh(options.other, options.choice);
-  if (!other) return fail(other.error());
-  const SystemClock clock;
+Result<render::Comparison> compared(const CompareOptions& options, const render::Mesh& original,
+                                    const render::Mesh& other, const Clock& clock) {
   ProgressBar bar("comparing", "points", clock);
-  const Timestamp began = clock.now();
   std::size_t points = 0;
-  const auto comparison =
-      render::compare(*original, *other, options.settings, [&](const render::CompareProgress& p) {
+  auto comparison =
+      render::compare(original, other, options.settings, [&](const render::CompareProgress& p) {
         points = p.points;
         bar.update(p.share, p.points);
         return true;
       });
   if (!comparison) {
-    return fail({comparison.error().code, fmt::format("{}, {}: {}", options.original, options.other,
-                                                      comparison.error().what)});
+    return Error{comparison.error().code, fmt::format("{}, {}: {}", options.original, options.other,
+                                                      comparison.error().what)};
   }
   bar.finish(points);
-  const double seconds = toSeconds(clock.now() - began);
-  (options.json ? printJson : printTable)(options, *comparison, seconds);
+  return comparison;
+}
+
+int compareMeshes(const CompareOptions& options) {
+  const auto original = openMesh(options.original, {});
+  if (!original) return fail(original.error());
+  const auto other = openMesh(options.other, options.choice);
+  if (!other) return fail(other.error());
+  Answer answer;
+  if (!options.pictures.empty()) {  // first, since it is known soon whether they can be drawn
+    render::prepareSoftwareGl(0);
+    const auto changed = writePictures(options.pictures, *original, *other, options.view);
+    if (!changed) return fail(changed.error());
+    answer.changed_percent = *changed;
+  }
+  const SystemClock clock;
+  const Timestamp began = clock.now();
+  const auto comparison = compared(options, *original, *other, clock);
+  if (!comparison) return fail(comparison.error());
+  answer.comparison = *comparison;
+  answer.seconds = toSeconds(clock.now() - began);
+  (options.json ? printJson : printTable)(options, answer);
   return kExitDone;
 }
 
@@ -156,6 +187,13 @@ void addMeshCompare(CLI::App& mesh, Run& run) {
                       "Compare these only; without any: all that both have");
   command->add_option("--threads", options->settings.threads,
                       "0: as many as there are; any gives the same figures");
+  command
+      ->add_option(
+          "--pictures", options->pictures,
+          "A folder for pictures: a, b, a_wire, b_wire, beside, difference (pixels changed "
+          "by more than 15 %), edges (of B, red the shortest, blue the longest)")
+      ->type_name("DIR");
+  options->view.addTo(*command);
   command->add_flag("--json", options->json, "For programs");
   command->callback([options, &run] { run = [options] { return compareMeshes(*options); }; });
 }

@@ -11,9 +11,13 @@ Result<render::Dendrogram> openModel(const std::string& path) {
   auto loaded = render::readMesh(path);
   if (!loaded) return loaded.error();
   render::ensureNormals(loaded->mesh);
+  return asModel(loaded->mesh);
+}
+
+render::Dendrogram asModel(const render::Mesh& mesh) {
   render::CollapseLog nothing;
-  nothing.features.resize(loaded->mesh.features.size());
-  return render::buildDendrogram(loaded->mesh, nothing);
+  nothing.features.resize(mesh.features.size());
+  return render::buildDendrogram(mesh, nothing);
 }
 
 void LevelChoice::addTo(CLI::App& command) {

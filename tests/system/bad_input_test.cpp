@@ -149,6 +149,8 @@ TEST_F(BadInput, MeshesThatCannotBeCompared) {
   expectOutcome(run({kMerlin, "mesh", "compare", scan, scan, "--samples", "0"}), 2, {"--samples"});
   expectOutcome(run({kMerlin, "mesh", "compare", scan, scan, "--feature", "heat"}), 2,
                 {"feature heat: the first mesh has none, the second has none"});
+  expectOutcome(run({kMerlin, "mesh", "compare", scan, scan, "--pictures", line + "/pictures"}), 1,
+                {"line.obj/pictures: Not a directory"});
 }
 
 TEST_F(BadInput, MeshCommands) {

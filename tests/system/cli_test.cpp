@@ -114,6 +114,25 @@ TEST_F(Cli, CompareTakesAResolutionOfAModel) {
     EXPECT_NE(table.output.find(word), std::string::npos) << word;
 }
 
+TEST_F(Cli, CompareDrawsPictures) {
+  const auto changed = [&](const std::string& percent) {
+    return jsonOf(run({kMerlin, "mesh", "compare", scan_, dir_ / "a.mrm", "--percent", percent,
+                       "--samples", "1000", "--width", "5", "--pictures", dir_ / "new/pictures",
+                       "--json"}))["changed_pixels_percent"]
+        .get<double>();
+  };
+  ASSERT_EQ(run({kMerlin, "mesh", "reduce", scan_, "-o", dir_ / "a.mrm"}).status, 0);
+  EXPECT_EQ(changed("100"), 0);
+  EXPECT_TRUE(readText(dir_ / "new/pictures/a.png") == readText(dir_ / "new/pictures/b.png"))
+      << "from one eye, at one scale";
+  const double fifth = changed("20"), hundredth = changed("1");
+  EXPECT_GT(fifth, 0);
+  EXPECT_GT(hundredth, 2 * fifth);
+  EXPECT_LT(hundredth, 100);
+  for (const char* name : {"a", "b", "a_wire", "b_wire", "beside", "difference", "edges"})
+    EXPECT_EQ(readText(dir_ / fmt::format("new/pictures/{}.png", name)).substr(1, 3), "PNG");
+}
+
 TEST_F(Cli, TheShippedPostureNetworkIsTestedOnHeldOutHands) {
   const auto score = nlohmann::json::parse(
       run({kMerlin, "posture", "test", "--network", kSource + "/config/postures.json", "--json"})
