@@ -130,6 +130,18 @@ TEST(Compare, FindsAMaximumThatIsAtNoVertex) {
   }
 }
 
+// The walls' middle is at x = 0.15, where no halving of the floor comes to lie.
+TEST(Compare, DropsNothingThatMatters) {
+  const Mesh wall{{0, -2, -2, 0, 2, -2, 0, 2, 2, 0, -2, 2}, {}, {0, 1, 2, 0, 2, 3}};
+  const Mesh apart = test::together(test::moved(wall, -1, 0, 0), test::moved(wall, 1.3F, 0, 0));
+  for (const double width_percent : {30.0, 10.0, 5.0, 2.0, 1.0, 0.3, 0.1, 0.01}) {
+    CompareSettings settings = quick();
+    settings.width_percent = width_percent;
+    const Comparison c = compared(ground(), apart, settings);
+    expectHolds(c.forward.max, 1.15, width_percent / 100 * c.diagonal);
+  }
+}
+
 TEST(Compare, StopsAtItsBudgetWithAnIntervalThatStillHolds) {
   CompareSettings settings = quick();
   settings.max_evaluations = 1;
