@@ -97,6 +97,7 @@ const Folders kPure = {"nn",
                        "render/mesh",
                        "render/lod",
                        "render/reduce",
+                       "render/compare",
                        "render/governor",
                        "render/tiles",
                        "render/scene"};

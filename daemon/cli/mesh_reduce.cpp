@@ -19,7 +19,7 @@ namespace merlin::cli {
 namespace {
 
 struct ReduceOptions {
-  std::string input, output, cost = "pattern", preset = "default";
+  std::string input, output, preset = "default";
   std::vector<std::string> weights;
   render::ReduceSettings settings;
   bool json = false;
@@ -39,8 +39,9 @@ Result<Ok> setWeight(const std::string& text, render::Weights& weights) {
 }
 
 Result<render::Weights> weightsOf(const ReduceOptions& options, const render::Mesh& mesh) {
-  render::Weights weights =
-      options.preset == "typical1998" ? render::typicalWeights(mesh) : render::defaultWeights(mesh);
+  render::Weights weights = options.preset == "typical1998"
+                                ? render::typicalWeights(mesh)
+                                : render::findCost(options.settings.cost)->weights(mesh);
   for (const std::string& text : options.weights) {
     if (const auto set = setWeight(text, weights); !set) return set.error();
   }
@@ -60,6 +61,7 @@ void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
   const double rate = seconds > 0 ? static_cast<double>(r.collapses) / seconds : 0;
   if (options.json) {
     const nlohmann::ordered_json json = {{"output", options.output},
+                                         {"cost", options.settings.cost},
                                          {"triangles", loaded.mesh.triangleCount()},
                                          {"triangles_left", r.triangles},
                                          {"collapses", r.collapses},
@@ -125,20 +127,27 @@ void addMeshReduce(CLI::App& mesh, Run& run) {
   const auto options = std::make_shared<ReduceOptions>();
   CLI::App* command = mesh.add_subcommand(
       "reduce",
-      "A mesh (.ply, .obj) to a multiresolution model (.mrm), shortest edge in pattern space "
-      "first.\nExample: merlin mesh reduce scan.ply -o scan.mrm --weight colour=0.1");
+      "A mesh (.ply, .obj) to a multiresolution model (.mrm): every resolution from all of it down "
+      "to next to nothing.\nExample: merlin mesh reduce scan.ply -o scan.mrm --weight colour=0.02");
   command->add_option("input", options->input, "The mesh")->required()->type_name("IN");
   command->add_option("-o", options->output, "The model")->required()->type_name("OUT.mrm");
-  command->add_option("--cost", options->cost, "What an edge costs")
-      ->check(CLI::IsMember({"pattern"}))
+  std::vector<std::string> names;
+  std::string help = "What an edge costs";
+  for (const render::Cost& cost : render::costs()) {
+    names.emplace_back(cost.name);
+    help += fmt::format("; {}: {}", cost.name, cost.help);
+  }
+  command->add_option("--cost", options->settings.cost, help)
+      ->check(CLI::IsMember(names))
       ->capture_default_str();
-  command->add_option("--preset", options->preset, "Weights to begin with")
+  command->add_option("--preset", options->preset, "Weights to begin with, of the cost or of 1998")
       ->check(CLI::IsMember({"default", "typical1998"}))
       ->capture_default_str();
   command
-      ->add_option("--weight", options->weights,
-                   "Of a feature: geometry, normal, curvature, boundary, colour or any of the "
-                   "mesh's own; 0 leaves it out")
+      ->add_option(
+          "--weight", options->weights,
+          "Of a feature: geometry, colour or any of the mesh's own, and for pattern normal, "
+          "curvature, boundary; 0 leaves it out")
       ->type_name("FEATURE=W");
   command->add_flag("--preserve-topology", options->settings.preserve_topology,
                     "Refuse collapses that join or pinch off parts");
@@ -153,6 +162,10 @@ void addMeshReduce(CLI::App& mesh, Run& run) {
       ->add_option("--error", options->settings.max_error_percent,
                    "Stop at this error estimate, percent of the box' diagonal")
       ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--threads", options->settings.threads,
+                   "So many at most; 0: all. The model is the same")
+      ->capture_default_str();
   command->add_flag("--json", options->json, "The report for programs");
   command->callback([options, &run] { run = [options] { return reduceMesh(*options); }; });
 }

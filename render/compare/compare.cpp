@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cmath>
 #include <memory>
-#include <thread>
 
 #include <fmt/format.h>
 
@@ -110,8 +109,7 @@ Result<Comparison> compare(const Mesh& a, const Mesh& b, const CompareSettings& 
   if (const auto fine = check("the second mesh", b); !fine) return fine.error();
   const auto features = featuresOf(a, b, settings.features);
   if (!features) return features.error();
-  const unsigned threads =
-      settings.threads > 0 ? settings.threads : std::max(1U, std::thread::hardware_concurrency());
+  const unsigned threads = threadsOr(settings.threads);
 
   Comparison comparison;
   comparison.diagonal = boundingBox(a.positions).diagonal();

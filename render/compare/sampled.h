@@ -6,11 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "render/compare/blocks.h"
+#include "daemon/base/blocks.h"
 #include "render/compare/triangle_tree.h"
 #include "render/mesh/mesh.h"
 
 namespace merlin::render {
+
+// Told on the caller's thread which share of a piece of work is done, 0..1, and how many points it
+// has tested; says whether to go on.
+using GoOn = std::function<bool(double share, std::size_t points)>;
 
 // A mesh with its tree; both are borrowed.
 struct Surface {

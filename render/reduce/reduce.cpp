@@ -1,18 +1,28 @@
 #include "render/reduce/reduce.h"
 
+#include <array>
 #include <cassert>
-#include <cmath>
 
 #include <fmt/format.h>
 
-#include "render/reduce/pattern_reducer.h"
+#include "render/reduce/costs.h"
 
 namespace merlin::render {
 namespace {
 
-constexpr std::size_t kProgressInterval = 4096;
+constexpr std::array kCosts = {
+    Cost{"quadric", "distance to the surface and its features; the lowest error", quadricWeights,
+         reduceByQuadric},
+    Cost{"pattern", "length in pattern space, as in 1998", defaultWeights, reduceByPattern},
+};
 
 Result<Ok> check(const ReduceSettings& s) {
+  if (!findCost(s.cost)) {
+    std::string known;
+    for (const Cost& cost : kCosts)
+      known += fmt::format("{}{}", known.empty() ? "" : ", ", cost.name);
+    return Error{Errc::kInvalidArgument, fmt::format("cost {}: is none of {}", s.cost, known)};
+  }
   if (!(s.min_percent >= 0 && s.min_percent <= 100)) {
     return Error{Errc::kInvalidArgument, fmt::format("percent {} is not 0 to 100", s.min_percent)};
   }
@@ -23,51 +33,34 @@ Result<Ok> check(const ReduceSettings& s) {
   return Ok{};
 }
 
-std::string aboutText(const Weights& weights, const ReduceSettings& s, const ReduceReport& report) {
-  std::string text = fmt::format("cost=pattern\npreserve_topology={}\nstopped={}\n",
-                                 s.preserve_topology, report.stopped);
-  for (const auto& [name, weight] : weights) text += fmt::format("weight.{}={}\n", name, weight);
-  return text;
-}
+}  // namespace
 
-// Why so many triangles are few enough; null where they are not.
-const char* reasonToStop(std::size_t left, const ReduceSettings& s, std::size_t triangles_before) {
-  if (left <= s.min_triangles) return "triangles";
-  if (static_cast<double>(left) <= s.min_percent / 100 * static_cast<double>(triangles_before)) {
-    return "percent";
+std::span<const Cost> costs() { return kCosts; }
+
+const Cost* findCost(std::string_view name) {
+  for (const Cost& cost : kCosts) {
+    if (name == cost.name) return &cost;
   }
   return nullptr;
 }
 
-}  // namespace
+Weights weightsFor(const Mesh& mesh, const ReduceSettings& settings) {
+  return settings.weights.empty() ? findCost(settings.cost)->weights(mesh) : settings.weights;
+}
+
+std::string aboutText(const ReduceSettings& settings, const Weights& weights,
+                      const ReduceReport& report) {
+  std::string text = fmt::format("cost={}\npreserve_topology={}\nstopped={}\n", settings.cost,
+                                 settings.preserve_topology, report.stopped);
+  for (const auto& [name, weight] : weights) text += fmt::format("weight.{}={}\n", name, weight);
+  return text;
+}
 
 Result<Reduction> reduce(const Mesh& mesh, const ReduceSettings& settings,
-                         const std::function<bool(const ReduceProgress&)>& progress) {
+                         const Progress& progress) {
   assert(mesh.find("normal") && mesh.find("normal")->dimension == 3);
   if (const auto checked = check(settings); !checked) return checked.error();
-  const Weights weights = settings.weights.empty() ? defaultWeights(mesh) : settings.weights;
-  const auto space = PatternSpace::make(mesh, weights);
-  if (!space) return space.error();
-
-  PatternReducer reducer(mesh, *space, settings.preserve_topology);
-  const double max_error =
-      settings.max_error_percent / 100 * boundingBox(mesh.positions).diagonal();
-  const char* stopped = nullptr;
-  while (!stopped) {
-    stopped = reasonToStop(reducer.triangles(), settings, mesh.triangleCount());
-    if (stopped) break;
-    const auto step = reducer.collapseShortest(max_error);
-    if (step == PatternReducer::Step::kNothingLeft) stopped = "nothing left to collapse";
-    if (step == PatternReducer::Step::kTooCoarse) stopped = "error";
-    if (!stopped && progress && reducer.collapses() % kProgressInterval == 0 &&
-        !progress({reducer.collapses(), reducer.triangles()})) {
-      stopped = "cancelled";
-    }
-  }
-  Reduction result = std::move(reducer).finish();
-  result.report.stopped = stopped;
-  result.log.about = aboutText(weights, settings, result.report);
-  return result;
+  return findCost(settings.cost)->reduce(mesh, settings, progress);
 }
 
 }  // namespace merlin::render

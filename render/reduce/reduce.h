@@ -1,13 +1,16 @@
 // Reduction: a mesh to the log of its collapses, of which the dendrogram is built.
 //
-// POLYMUR, [GOURLEY98] chapter 4: shortest edge first, length measured in the space of all
-// modalities. What is ours in it and what the source leaves open: README.md.
+// Edges are collapsed one after another, cheapest first. What an edge costs is chosen by name; all
+// costs see the modalities of the mesh as one space, with one weight each ([GOURLEY98] chapter 4,
+// POLYMUR). What is ours in it and what the source leaves open: README.md.
 #pragma once
 
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "daemon/base/result.h"
 #include "render/lod/collapse_log.h"
@@ -17,15 +20,17 @@
 namespace merlin::render {
 
 struct ReduceSettings {
-  Weights weights{};               // empty: defaultWeights()
+  std::string cost = "quadric";    // of costs()
+  Weights weights{};               // empty: the cost's own
   bool preserve_topology = false;  // refuse collapses that join or pinch off parts (P11)
+  unsigned threads = 0;            // 0: as many as the machine has; the result is the same
 
   // When to stop, whichever comes first (P10): as soon as no more triangles are left than these,
   // and before the error would be larger. As they stand: when nothing legal is left.
   std::size_t min_triangles = 0;
   double min_percent = 0;  // of the mesh's triangles left, 0..100
-  double max_error_percent = std::numeric_limits<double>::infinity();  // estimate (P9), of the
-                                                                       // diagonal of the box
+  double max_error_percent = std::numeric_limits<double>::infinity();  // the cost's estimate, of
+                                                                       // the diagonal of the box
 };
 
 struct ReduceProgress {
@@ -38,7 +43,7 @@ struct ReduceReport {
   std::size_t flips_refused = 0;     // P8; the same edge counts each time
   std::size_t topology_refused = 0;  // by preserve_topology, or since nothing would be left
   std::size_t triangles = 0;         // left
-  float error = 0;                   // estimate (P9) of the last level, model units
+  float error = 0;                   // estimate of the last level, model units
   const char* stopped = "";          // why: "nothing left to collapse", "triangles", "percent",
                                      // "error", "cancelled"
 };
@@ -48,18 +53,32 @@ struct Reduction {
   ReduceReport report;
 };
 
+using Progress = std::function<bool(const ReduceProgress&)>;
+
+// One way to say what an edge costs. A row of the table in reduce.cpp.
+struct Cost {
+  const char* name;
+  const char* help;                 // one line, for a person
+  Weights (*weights)(const Mesh&);  // where nobody says otherwise
+  Result<Reduction> (*reduce)(const Mesh&, const ReduceSettings&, const Progress&);
+};
+
+std::span<const Cost> costs();
+const Cost* findCost(std::string_view name);  // nullptr if there is none
+
 // Reduces `mesh`; a last triangle always stays. The log's features follow mesh.features, of which
 // "normal" is recomputed at each new vertex; a mesh without normals must get them first
 // (ensureNormals).
 //
 // mesh      n vertices, m triangles; borders, components, non-manifold edges allowed.
 // progress  called every few thousand collapses; false cancels (what was done is returned).
-// errors    kInvalidArgument: a weight or a stop criterion out of range.
-// order     ties go to the edge that comes first in the sorted list of edges: one input, one log.
-// cost      O(m log m) time; about 110 bytes an edge with three features beside the mesh.
+// errors    kInvalidArgument: no such cost, a weight or a stop criterion out of range.
+// order     one input, one log, whatever the number of threads.
+// cost      pattern: O(m log m) time, about 110 bytes an edge with three features beside the mesh;
+//           quadric: O(m), README.md.
 // thread    reentrant.
 // REQUIRES  validate(mesh), tidy(mesh), and a feature "normal" of dimension 3.
 Result<Reduction> reduce(const Mesh& mesh, const ReduceSettings& settings,
-                         const std::function<bool(const ReduceProgress&)>& progress = {});
+                         const Progress& progress = {});
 
 }  // namespace merlin::render

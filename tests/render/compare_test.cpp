@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/compare/blocks.h"
+#include "daemon/base/blocks.h"
 #include "tests/support/meshes.h"
 
 namespace merlin::render {

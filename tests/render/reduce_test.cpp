@@ -24,13 +24,15 @@ Mesh withNormals(Mesh mesh) {
 // 441 vertices, 800 triangles.
 Mesh hills() { return withNormals(test::noisyGrid(20, 20, 0.1, 1)); }
 
-Reduction reduced(const Mesh& mesh, const ReduceSettings& settings = {}) {
+Reduction reduced(const Mesh& mesh, ReduceSettings settings = {}) {
+  settings.cost = "pattern";
   auto result = reduce(mesh, settings);
   EXPECT_TRUE(result) << result.error().what;
   return *std::move(result);
 }
 
-std::string faultOf(const ReduceSettings& settings) {
+std::string faultOf(ReduceSettings settings) {
+  settings.cost = "pattern";
   const auto result = reduce(hills(), settings);
   if (result) return "none";
   EXPECT_EQ(result.error().code, Errc::kInvalidArgument);
@@ -128,7 +130,7 @@ TEST(Reduce, GoesOnUntilNothingIsLeft) {
 TEST(Reduce, IsCancelledByItsProgress) {
   const Mesh mesh = withNormals(test::grid(80, 80));
   std::vector<std::size_t> calls;
-  const auto cancelled = reduce(mesh, {}, [&](const ReduceProgress& p) {
+  const auto cancelled = reduce(mesh, {.cost = "pattern"}, [&](const ReduceProgress& p) {
     calls.push_back(p.collapses);
     EXPECT_LE(p.triangles, 12800 - p.collapses);
     return false;

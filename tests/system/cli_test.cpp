@@ -47,8 +47,9 @@ TEST_F(Cli, TheSameInputGivesTheSameBytes) {
 }
 
 TEST_F(Cli, ReduceStopsWhereItIsTold) {
-  const Outcome reduced = run({kMerlin, "mesh", "reduce", scan_, "-o", dir_ / "a.mrm", "--percent",
-                               "50", "--preset", "typical1998", "--preserve-topology"});
+  const Outcome reduced =
+      run({kMerlin, "mesh", "reduce", scan_, "-o", dir_ / "a.mrm", "--percent", "50", "--cost",
+           "pattern", "--preset", "typical1998", "--preserve-topology"});
   EXPECT_NE(reduced.output.find("(percent)"), std::string::npos) << reduced.output;
 }
 

@@ -4,11 +4,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace merlin::render {
-
-// Told on the caller's thread which share of a piece of work is done, 0..1, and how many points it
-// has tested; says whether to go on.
-using GoOn = std::function<bool(double share, std::size_t points)>;
+namespace merlin {
 
 // Calls work(0) .. work(blocks - 1), each once, on `threads` threads, the caller's among them;
 // what they write must not overlap, and then does not depend on the number of threads. `goOn` is
@@ -16,6 +12,9 @@ using GoOn = std::function<bool(double share, std::size_t points)>;
 // Returns whether all were done. What `work` throws comes out here, after all threads have ended.
 // REQUIRES: threads > 0.
 bool forBlocks(unsigned threads, std::size_t blocks, const std::function<void(std::size_t)>& work,
-               const std::function<bool(std::size_t)>& goOn);
+               const std::function<bool(std::size_t)>& goOn = {});
 
-}  // namespace merlin::render
+// `wanted`, or for 0 as many as the machine runs at once.
+unsigned threadsOr(unsigned wanted);
+
+}  // namespace merlin

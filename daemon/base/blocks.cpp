@@ -1,4 +1,4 @@
-#include "render/compare/blocks.h"
+#include "daemon/base/blocks.h"
 
 #include <algorithm>
 #include <atomic>
@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace merlin::render {
+namespace merlin {
 
 bool forBlocks(unsigned threads, std::size_t blocks, const std::function<void(std::size_t)>& work,
                const std::function<bool(std::size_t)>& goOn) {
@@ -38,11 +38,15 @@ bool forBlocks(unsigned threads, std::size_t blocks, const std::function<void(st
       });
     }
     while (doOne()) {
-      if (!goOn(done)) cancelled = true;
+      if (goOn && !goOn(done)) cancelled = true;
     }
   }
   if (exception) std::rethrow_exception(exception);
   return done == blocks;
 }
 
-}  // namespace merlin::render
+unsigned threadsOr(unsigned wanted) {
+  return wanted > 0 ? wanted : std::max(1U, std::thread::hardware_concurrency());
+}
+
+}  // namespace merlin

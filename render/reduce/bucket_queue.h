@@ -1,0 +1,72 @@
+// BucketQueue: vertices by the cost of their best edge, roughly sorted. Private to render/reduce.
+//
+// A bucket holds the costs of one binary exponent and the same upper bits of the mantissa (1.6 %
+// apart). Lists run through the vertices' own records; nothing is ever moved or taken out: what a
+// collapse made stale is measured again when it comes up. O(1) for each operation.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+namespace merlin::render {
+
+// `Next` is a callable: std::uint32_t& (std::uint32_t vertex), the vertex' link.
+class BucketQueue {
+ public:
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+  BucketQueue() : first_(kBuckets, kNone), filled_(kBuckets / 64, 0) {}
+
+  // Least cost that does not belong to a later bucket.
+  static float floorOf(std::size_t bucket) {
+    return std::bit_cast<float>(static_cast<std::uint32_t>(bucket + kLowest) << kDropped);
+  }
+  static std::size_t bucketOf(float cost) {
+    const std::int64_t k = std::int64_t{std::bit_cast<std::uint32_t>(cost) >> kDropped} - kLowest;
+    return static_cast<std::size_t>(std::clamp<std::int64_t>(k, 0, kBuckets - 1));
+  }
+  static constexpr std::size_t buckets() { return kBuckets; }
+
+  // REQUIRES: cost > 0, vertex is in no bucket.
+  template <typename Next>
+  void push(std::uint32_t vertex, float cost, const Next& next) {
+    const std::size_t k = bucketOf(cost);
+    next(vertex) = first_[k];
+    first_[k] = vertex;
+    filled_[k / 64] |= std::uint64_t{1} << (k % 64);
+    current_ = std::min(current_, k);
+  }
+
+  // From the first bucket that is not empty, if it is before `limit`; else kNone.
+  template <typename Next>
+  std::uint32_t pop(std::size_t limit, const Next& next) {
+    std::size_t word = current_ / 64;
+    while (word < filled_.size() && filled_[word] == 0) ++word;
+    if (word == filled_.size()) return kNone;
+    const std::size_t k = word * 64 + static_cast<std::size_t>(std::countr_zero(filled_[word]));
+    current_ = k;
+    if (k >= limit) return kNone;
+    const std::uint32_t vertex = first_[k];
+    first_[k] = next(vertex);
+    if (first_[k] == kNone) filled_[word] &= ~(std::uint64_t{1} << (k % 64));
+    return vertex;
+  }
+
+  // The bucket that the last pop() looked at; a lower one after a push() there.
+  std::size_t current() const noexcept { return current_; }
+  std::uint32_t front() const noexcept { return first_[current_]; }
+
+ private:
+  static constexpr int kDropped = 17;  // 23 bits of mantissa, 6 count
+  // Costs from 2^-80 to 2^80, in squared mean edges times area.
+  static constexpr std::int64_t kLowest = std::int64_t{127 - 80} << (23 - kDropped);
+  static constexpr std::int64_t kBuckets = std::int64_t{160} << (23 - kDropped);
+
+  std::vector<std::uint32_t> first_;
+  std::vector<std::uint64_t> filled_;
+  std::size_t current_ = kBuckets - 1;
+};
+
+}  // namespace merlin::render

@@ -1,0 +1,48 @@
+// The cost `pattern`: the loop around PatternReducer, until a stop criterion (P10) holds.
+#include "render/reduce/costs.h"
+#include "render/reduce/pattern_reducer.h"
+
+namespace merlin::render {
+namespace {
+
+constexpr std::size_t kProgressInterval = 4096;
+
+// Why so many triangles are few enough; null where they are not.
+const char* reasonToStop(std::size_t left, const ReduceSettings& s, std::size_t triangles_before) {
+  if (left <= s.min_triangles) return "triangles";
+  if (static_cast<double>(left) <= s.min_percent / 100 * static_cast<double>(triangles_before)) {
+    return "percent";
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+Result<Reduction> reduceByPattern(const Mesh& mesh, const ReduceSettings& settings,
+                                  const Progress& progress) {
+  const Weights weights = weightsFor(mesh, settings);
+  const auto space = PatternSpace::make(mesh, weights);
+  if (!space) return space.error();
+
+  PatternReducer reducer(mesh, *space, settings.preserve_topology);
+  const double max_error =
+      settings.max_error_percent / 100 * boundingBox(mesh.positions).diagonal();
+  const char* stopped = nullptr;
+  while (!stopped) {
+    stopped = reasonToStop(reducer.triangles(), settings, mesh.triangleCount());
+    if (stopped) break;
+    const auto step = reducer.collapseShortest(max_error);
+    if (step == PatternReducer::Step::kNothingLeft) stopped = "nothing left to collapse";
+    if (step == PatternReducer::Step::kTooCoarse) stopped = "error";
+    if (!stopped && progress && reducer.collapses() % kProgressInterval == 0 &&
+        !progress({reducer.collapses(), reducer.triangles()})) {
+      stopped = "cancelled";
+    }
+  }
+  Reduction result = std::move(reducer).finish();
+  result.report.stopped = stopped;
+  result.log.about = aboutText(settings, weights, result.report);
+  return result;
+}
+
+}  // namespace merlin::render

@@ -1,0 +1,144 @@
+// The cost `quadric`: weighted features become channels of the quadrics; the others are carried
+// along and mixed by where the new vertex lies between the two old ones.
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/base/blocks.h"
+#include "render/reduce/costs.h"
+#include "render/reduce/quadric_reducer.h"
+
+namespace merlin::render {
+namespace {
+
+// Feature f of the mesh as channels first .. first + dimension - 1.
+struct ChannelFeature {
+  std::size_t feature, first;
+  float scale;  // model units a difference of 1 weighs
+};
+
+std::vector<ChannelFeature> channelsOf(const Mesh& mesh, const PatternSpace& space) {
+  // As in pattern space, geometry counts by the diagonal of the box.
+  const PatternFeature* geometry = space.find("geometry");
+  std::vector<ChannelFeature> channels;
+  std::size_t first = 0;
+  for (std::size_t f = 0; f < mesh.features.size(); ++f) {
+    const PatternFeature* weighted = space.find(mesh.features[f].name);
+    if (!weighted || mesh.features[f].name == "normal") continue;
+    channels.push_back({f, first, weighted->scale / geometry->scale});
+    first += mesh.features[f].dimension;
+  }
+  return channels;
+}
+
+std::size_t countOf(const Mesh& mesh, const std::vector<ChannelFeature>& channels) {
+  std::size_t count = 0;
+  for (const ChannelFeature& c : channels) count += mesh.features[c.feature].dimension;
+  return count;
+}
+
+// Where the node lies between its children: 0 at the first, 1 at the second.
+float between(const float* node, const float* a, const float* b) {
+  double ab = 0, an = 0;
+  for (int k = 0; k < 3; ++k) {
+    ab += (double{b[k]} - a[k]) * (double{b[k]} - a[k]);
+    an += (double{b[k]} - a[k]) * (double{node[k]} - a[k]);
+  }
+  return ab > 0 ? static_cast<float>(std::clamp(an / ab, 0.0, 1.0)) : 0.5F;
+}
+
+// Values at the nodes of a feature that does not cost: mixed, or of the nearer child for labels.
+std::vector<float> carryAlong(const Mesh& mesh, const Feature& feature, const CollapseLog& log) {
+  const std::size_t d = feature.dimension, vertices = mesh.vertexCount();
+  std::vector<float> values(log.children.size() * d);
+  const auto at = [&](const std::vector<float>& leaves, const std::vector<float>& inner,
+                      std::uint32_t n, std::size_t dimension) {
+    return n < vertices ? &leaves[n * dimension] : &inner[(n - vertices) * dimension];
+  };
+  for (std::size_t k = 0; k < log.children.size(); ++k) {
+    const auto [a, b] = log.children[k];
+    float t = between(&log.positions[3 * k], at(mesh.positions, log.positions, a, 3),
+                      at(mesh.positions, log.positions, b, 3));
+    if (feature.name == "label") t = std::round(t);
+    const float *x = at(feature.values, values, a, d), *y = at(feature.values, values, b, d);
+    for (std::size_t i = 0; i < d; ++i) values[k * d + i] = x[i] + t * (y[i] - x[i]);
+  }
+  return values;
+}
+
+const char* reasonOf(const char* stopped, const ReduceSettings& s, std::size_t by_percent) {
+  const bool percent = std::string_view(stopped) == "triangles" && by_percent > s.min_triangles;
+  return percent ? "percent" : stopped;
+}
+
+Result<Ok> checkWeights(const Mesh& mesh, const Weights& weights, const PatternSpace& space) {
+  const auto normal = weights.find("normal");
+  for (const char* name : {"curvature", "boundary"}) {
+    const auto w = weights.find(name);
+    if (w != weights.end() && w->second > 0) {
+      return Error{Errc::kInvalidArgument,
+                   std::string("weight ") + name + ": only the cost pattern has it"};
+    }
+  }
+  if (normal != weights.end() && normal->second > 0) {
+    return Error{Errc::kInvalidArgument,
+                 "weight normal: normals follow from the surface; only the cost pattern has it"};
+  }
+  if (!space.find("geometry"))
+    return Error{Errc::kInvalidArgument, "weight geometry: has to be more than 0"};
+  (void)mesh;
+  return Ok{};
+}
+
+}  // namespace
+
+Weights quadricWeights(const Mesh& mesh) {
+  Weights weights{{"geometry", 1.0F}};
+  for (const Feature& f : mesh.features) {
+    if (f.name != "normal" && f.name != "label") weights[f.name] = 0.01F;
+  }
+  return weights;
+}
+
+Result<Reduction> reduceByQuadric(const Mesh& mesh, const ReduceSettings& settings,
+                                  const Progress& progress) {
+  const Weights weights = weightsFor(mesh, settings);
+  const auto space = PatternSpace::make(mesh, weights);
+  if (!space) return space.error();
+  if (const auto checked = checkWeights(mesh, weights, *space); !checked) return checked.error();
+  const auto channels = channelsOf(mesh, *space);
+
+  QuadricReducer reducer(mesh, countOf(mesh, channels));
+  for (const ChannelFeature& c : channels) {
+    const Feature& f = mesh.features[c.feature];
+    for (std::size_t k = 0; k < f.dimension; ++k)
+      reducer.setChannel(c.first + k, f.values.data() + k, f.dimension, c.scale);
+  }
+  const auto by_percent = static_cast<std::size_t>(settings.min_percent / 100 *
+                                                   static_cast<double>(mesh.triangleCount()));
+  QuadricReducer::Limits limits;
+  limits.triangles = std::max(settings.min_triangles, by_percent);
+  limits.error =
+      static_cast<float>(settings.max_error_percent / 100 * boundingBox(mesh.positions).diagonal());
+  limits.preserve_topology = settings.preserve_topology;
+  limits.threads = threadsOr(settings.threads);
+  const char* stopped = reducer.run(limits, progress);
+
+  Reduction result = reducer.finish(mesh);
+  result.report.stopped = reasonOf(stopped, settings, by_percent);
+  for (std::size_t f = 0; f < mesh.features.size(); ++f) {
+    if (result.log.features[f].empty())
+      result.log.features[f] = carryAlong(mesh, mesh.features[f], result.log);
+  }
+  for (const ChannelFeature& c : channels) {
+    const std::size_t d = mesh.features[c.feature].dimension;
+    for (std::size_t k = 0; k < d; ++k) {
+      const std::vector<float> values = reducer.channelValues(c.first + k, c.scale);
+      for (std::size_t i = 0; i < values.size(); ++i)
+        result.log.features[c.feature][i * d + k] = values[i];
+    }
+  }
+  result.log.about = aboutText(settings, weights, result.report);
+  return result;
+}
+
+}  // namespace merlin::render

@@ -1,0 +1,80 @@
+// What it costs to collapse each edge of a vertex, and where the new vertex would be. Private to
+// render/reduce.
+//
+// For the edge (w, x) the quadric is A = H_w + H_x: the area-weighted squared distance to the
+// planes of both stars as they are now (memoryless: P. Lindstrom and G. Turk, "Fast and memory
+// efficient polygonal simplification", 1998; area instead of area squared, as H. Hoppe, "New
+// quadric metric for simplifying meshes with appearance attributes", 1999). The new vertex is the
+// least of it, with a tiny pull to the middle of the edge where A leaves it free.
+//
+// Channels (Hoppe 1999, 4.1): a channel s is linear on each triangle, s(p) = g p + d. Its error is
+// area times (g p + d - s)^2, its sums are kept relative to the vertex: a = sum area,
+// b = sum area g, and G = sum area g g', which is added to H. For an edge the best s of each
+// channel is a linear function of p and goes into A (Schur complement), so that it stays 3 x 3.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "render/reduce/quadric_mesh.h"
+
+namespace merlin::render {
+
+inline constexpr float kNoEdge = 1e30F;  // the cost of what must not be
+
+// Values that cost, by vertex: one block {a, (b x, y, z, s) a channel} each. In mean edges.
+class QuadricChannels {
+ public:
+  QuadricChannels() = default;
+  QuadricChannels(std::size_t vertices, std::size_t channels)
+      : count_(channels), blocks_(channels ? vertices * stride() : 0) {}
+
+  std::size_t count() const noexcept { return count_; }
+  std::size_t stride() const noexcept { return 1 + 4 * count_; }
+  float* block(std::uint32_t v) const noexcept { return blocks_.data() + v * stride(); }
+  float& value(std::uint32_t v, std::size_t channel) const noexcept {
+    return block(v)[4 + 4 * channel];
+  }
+
+ private:
+  std::size_t count_ = 0;
+  HugeArray<float> blocks_;
+};
+
+struct QuadricView {
+  QuadricVertex* vertices;
+  Corner* corners;
+  const QuadricChannels* channels;
+};
+
+// Of one vertex. Arrays have a row a neighbour, and room for 8 more. Scratch: one a thread.
+struct EdgeCosts {
+  std::uint32_t count = 0;
+  std::vector<std::uint32_t> neighbour;
+  std::vector<std::uint32_t> shared;  // triangles that have both
+  std::vector<std::uint32_t> b, c;    // of the star's corners: indices into `neighbour`
+  std::vector<float> cost;            // kNoEdge at most
+  std::vector<float> x, y, z;         // the new vertex, from w
+  std::vector<float> rx, ry, rz;      // the neighbour, from w
+  std::vector<float> deviation;       // of the border, squared; the reducer's
+  float normal[3] = {};               // sum of the star's unit normals
+
+  void makeRoom(std::size_t corners);
+  std::uint32_t cheapest() const noexcept;
+};
+
+// Evaluates all edges of w, a vertex with corners; sets w's own quadric (and channels' sums) anew.
+// Neighbours' quadrics are taken as they are.
+using EvaluateEdges = void (*)(const QuadricView&, std::uint32_t w, EdgeCosts&);
+
+// The fastest for this processor. All give the same bits.
+EvaluateEdges edgeEvaluator();
+
+// For tests: that of any processor.
+EvaluateEdges portableEdgeEvaluator();
+
+// Weight of a border's plane, in the planes of its triangles.
+inline constexpr float kBorderWeight = 4;
+
+}  // namespace merlin::render

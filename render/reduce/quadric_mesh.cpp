@@ -1,0 +1,178 @@
+#include "render/reduce/quadric_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+namespace merlin::render {
+namespace {
+
+constexpr std::uint32_t kLine = 8;  // corners
+
+std::uint32_t linesFor(std::uint32_t corners) {
+  return std::max(1U, (corners + kLine - 1) / kLine);
+}
+
+// 10 bits, spread so that two others fit between each two of them.
+std::uint64_t spread(float unit) {
+  auto v = static_cast<std::uint64_t>(std::clamp(unit, 0.0F, 1.0F) * 1023.0F);
+  v = (v | v << 16) & 0x030000FF;
+  v = (v | v << 8) & 0x0300F00F;
+  v = (v | v << 4) & 0x030C30C3;
+  return (v | v << 2) & 0x09249249;
+}
+
+// By the upper 32 bits' lower 30; stable.
+void radixSort(std::vector<std::uint64_t>& keys) {
+  std::vector<std::uint64_t> other(keys.size());
+  for (const int shift : {32, 42, 52}) {
+    std::array<std::size_t, 1025> at{};
+    for (const std::uint64_t k : keys) ++at[(k >> shift & 1023) + 1];
+    for (std::size_t i = 1; i < at.size(); ++i) at[i] += at[i - 1];
+    for (const std::uint64_t k : keys) other[at[k >> shift & 1023]++] = k;
+    keys.swap(other);
+  }
+}
+
+// One over the mean length of (some of) the edges.
+float scaleOf(const Mesh& mesh) {
+  const std::size_t step = std::max<std::size_t>(1, mesh.triangleCount() / 4096);
+  double sum = 0, count = 0;
+  for (std::size_t t = 0; t < mesh.triangleCount(); t += step) {
+    const float* a = &mesh.positions[3 * std::size_t{mesh.triangles[3 * t]}];
+    const float* b = &mesh.positions[3 * std::size_t{mesh.triangles[3 * t + 1]}];
+    sum += std::hypot(double{a[0]} - b[0], double{a[1]} - b[1], double{a[2]} - b[2]);
+    ++count;
+  }
+  const double scale = count / sum;
+  // Where all is in one place, or too far for floats, the box decides.
+  if (sum > 0 && scale < 1e30) return static_cast<float>(scale);
+  const float diagonal = boundingBox(mesh.positions).diagonal();
+  return diagonal > 0 ? 1 / diagonal : 1;
+}
+
+}  // namespace
+
+std::uint32_t StarRoom::take(std::uint32_t corners, std::uint32_t& capacity) {
+  const std::uint32_t lines = linesFor(corners);
+  for (std::size_t k = lines; k < free_.size(); ++k) {
+    // A larger place only where nothing fresh is left.
+    if (free_[k].empty() || (k > lines && end_ - next_ >= lines * kLine)) continue;
+    const std::uint32_t star = free_[k].back();
+    free_[k].pop_back();
+    capacity = static_cast<std::uint32_t>(k) * kLine;
+    return star;
+  }
+  if (end_ - next_ < lines * kLine) throw std::bad_alloc();
+  capacity = lines * kLine;
+  next_ += capacity;
+  return next_ - capacity;
+}
+
+void StarRoom::give(std::uint32_t star, std::uint32_t capacity) {
+  const std::size_t lines = capacity / kLine;
+  if (free_.size() <= lines) free_.resize(lines + 1);
+  free_[lines].push_back(star);
+}
+
+void StarRoom::join(StarRoom&& other) {
+  if (free_.size() < other.free_.size()) free_.resize(other.free_.size());
+  for (std::size_t k = 0; k < other.free_.size(); ++k)
+    free_[k].insert(free_[k].end(), other.free_[k].begin(), other.free_[k].end());
+  if (other.end_ - other.next_ > end_ - next_) {
+    next_ = other.next_;
+    end_ = other.end_;
+  }
+}
+
+QuadricMesh::QuadricMesh(const Mesh& mesh) : scale_(scaleOf(mesh)) {
+  number(mesh);
+  const std::size_t n = input_.size();
+  std::vector<std::uint32_t> numbers(n);
+  for (std::uint32_t v = 0; v < n; ++v) numbers[input_[v]] = v;
+  vertices_ = HugeArray<QuadricVertex>(n);
+  for (std::uint32_t v = 0; v < n; ++v) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      vertices_[v].position[k] =
+          (mesh.positions[3 * std::size_t{input_[v]} + k] - centre_[k]) * scale_;
+    }
+    vertices_[v].node = v;
+  }
+  fillStars(mesh, numbers);
+}
+
+std::array<float, 3> QuadricMesh::toModel(const float* position) const noexcept {
+  return {position[0] / scale_ + centre_[0], position[1] / scale_ + centre_[1],
+          position[2] / scale_ + centre_[2]};
+}
+
+// Along a Morton curve of 1,024 steps an axis.
+void QuadricMesh::number(const Mesh& mesh) {
+  const Box box = boundingBox(mesh.positions);
+  float extent = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    centre_[k] = (box.low[k] + box.high[k]) / 2;
+    extent = std::max(extent, box.high[k] - box.low[k]);
+  }
+  if (!(extent > 0)) extent = 1;
+  std::vector<std::uint64_t> keys(mesh.vertexCount());
+  for (std::size_t v = 0; v < keys.size(); ++v) {
+    std::uint64_t key = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      key |= spread((mesh.positions[3 * v + k] - box.low[k]) / extent) << k;
+    keys[v] = key << 32 | v;
+  }
+  radixSort(keys);
+  input_.resize(keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) input_[i] = static_cast<std::uint32_t>(keys[i]);
+}
+
+void QuadricMesh::fillStars(const Mesh& mesh, const std::vector<std::uint32_t>& numbers) {
+  for (const std::uint32_t v : mesh.triangles) ++vertices_[numbers[v]].degree;
+  std::uint64_t total = 0;
+  for (std::uint32_t v = 0; v < vertexCount(); ++v) {
+    QuadricVertex& x = vertices_[v];
+    x.star = static_cast<std::uint32_t>(total);
+    x.capacity = linesFor(x.degree) * kLine;
+    total += x.capacity;
+    x.degree = 0;
+  }
+  // Stars that grow need lines of another size than those that others leave. Room that is never
+  // touched is no memory.
+  const std::uint64_t room = std::min<std::uint64_t>(5 * total + (1U << 16), 0xFFFFFFF0U);
+  if (total >= room) throw std::bad_alloc();
+  stars_ = HugeArray<Corner>(room);
+  used_ = static_cast<std::uint32_t>(total);
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    const std::uint32_t v[] = {numbers[mesh.triangles[t]], numbers[mesh.triangles[t + 1]],
+                               numbers[mesh.triangles[t + 2]]};
+    for (std::size_t k = 0; k < 3; ++k) {
+      QuadricVertex& x = vertices_[v[k]];
+      stars_[x.star + x.degree++] = {v[(k + 1) % 3], v[(k + 2) % 3]};
+    }
+  }
+  for (std::uint32_t v = 0; v < vertexCount(); ++v) orderStar(vertices_[v]);
+}
+
+// Puts the corners in the order of the fan; kOpen where they are none that closes.
+void QuadricMesh::orderStar(QuadricVertex& v) {
+  Corner* s = stars_.data() + v.star;
+  const std::uint32_t n = v.degree;
+  bool closed = n > 2 && n <= 1000;  // this search is O(n^2)
+  for (std::uint32_t i = 0; closed && i + 1 < n; ++i) {
+    std::uint32_t j = i + 1;
+    while (j < n && s[j].b != s[i].c) ++j;
+    if (j < n)
+      std::swap(s[i + 1], s[j]);
+    else
+      closed = false;
+  }
+  closed = closed && s[n - 1].c == s[0].b;
+  // A vertex that comes by twice: no manifold.
+  for (std::uint32_t i = 0; closed && i < n; ++i) {
+    for (std::uint32_t j = i + 1; j < n; ++j) closed = closed && s[i].b != s[j].b;
+  }
+  if (!closed) v.flags |= kOpen;
+}
+
+}  // namespace merlin::render

@@ -1,0 +1,112 @@
+// QuadricMesh: the surface while `quadric` reduces it: one record a vertex, one star a vertex.
+// Private to render/reduce.
+//
+// A vertex' star is the list of its triangles, each as the two other corners in the triangle's own
+// order. In a closed fan they follow one another (a's second is b's first); at borders and where
+// the surface is no manifold they may stand in any order. Stars live in lines of 8 corners, 64
+// bytes. Vertices are numbered along a space-filling curve, so that what is near is near in memory.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "daemon/base/huge_array.h"
+#include "render/mesh/mesh.h"
+
+namespace merlin::render {
+
+struct Corner {
+  std::uint32_t b, c;  // the triangle (vertex, b, c)
+};
+
+// Upper triangle of a symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz.
+using Symmetric3 = std::array<float, 6>;
+
+struct alignas(64) QuadricVertex {
+  // In mean edges, from the box' centre. The quadric: sum of A n n' over the star's triangles, A
+  // twice the area, n the unit normal: all planes pass through the vertex, so that there is no
+  // linear part. The fourth position and h[0] are loaded as one.
+  float position[3];
+  float h[6];
+  std::uint32_t star;      // index of its first corner
+  std::uint32_t degree;    // corners
+  std::uint32_t capacity;  // corners that its lines hold
+  std::uint32_t next;      // in its bucket
+  std::uint32_t node;      // of the log
+  float border_deviation;  // squared distance that old border points may be off by now
+  std::uint8_t flags;
+  std::uint8_t part;  // that it belongs to
+  std::uint16_t unused;
+};
+static_assert(sizeof(QuadricVertex) == 64);
+
+enum : std::uint8_t {
+  kOpen = 1,    // its star is no closed fan: a border, or no manifold
+  kDead = 2,    // merged into another; its record then holds a NodeRecord
+  kIdle = 4,    // no legal edge; back in the queue when its neighbourhood changes
+  kInside = 8,  // its whole ring is in its part
+};
+
+// What a collapse made, kept in the dead vertex' record over position and h.
+struct NodeRecord {
+  std::uint32_t children[2];
+  float position[3], error, normal[3];
+};
+static_assert(sizeof(NodeRecord) == sizeof(QuadricVertex::position) + sizeof(QuadricVertex::h));
+
+// Lines of corners, handed out and taken back by size. One a thread; regions do not overlap.
+class StarRoom {
+ public:
+  StarRoom() = default;
+  StarRoom(std::uint32_t begin, std::uint32_t end) : next_(begin), end_(end) {}
+
+  // Throws std::bad_alloc where the region is full. `capacity` becomes the room there is.
+  std::uint32_t take(std::uint32_t corners, std::uint32_t& capacity);
+  void give(std::uint32_t star, std::uint32_t capacity);
+
+  // Takes over what another has left.
+  void join(StarRoom&& other);
+
+  std::uint32_t next() const noexcept { return next_; }
+  std::uint32_t end() const noexcept { return end_; }
+
+ private:
+  std::uint32_t next_ = 0, end_ = 0;
+  std::vector<std::vector<std::uint32_t>> free_;  // by lines
+};
+
+class QuadricMesh {
+ public:
+  // REQUIRES: validate(mesh), tidy(mesh). O(n) but for a radix sort.
+  explicit QuadricMesh(const Mesh& mesh);
+
+  std::uint32_t vertexCount() const noexcept { return static_cast<std::uint32_t>(input_.size()); }
+  QuadricVertex& operator[](std::uint32_t v) const noexcept { return vertices_[v]; }
+  std::span<Corner> star(const QuadricVertex& v) const noexcept {
+    return {stars_.data() + v.star, v.degree};
+  }
+  Corner* corners(std::uint32_t star) const noexcept { return stars_.data() + star; }
+  // The mesh's vertex of that number.
+  std::uint32_t inputOf(std::uint32_t v) const noexcept { return input_[v]; }
+
+  float scale() const noexcept { return scale_; }  // mean edges in a model unit
+  std::array<float, 3> toModel(const float* position) const noexcept;
+  StarRoom freeRoom() const { return {used_, static_cast<std::uint32_t>(stars_.size())}; }
+  void dropStars() { stars_ = {}; }
+
+ private:
+  void number(const Mesh& mesh);
+  void fillStars(const Mesh& mesh, const std::vector<std::uint32_t>& number);
+  void orderStar(QuadricVertex& v);
+
+  std::vector<std::uint32_t> input_;
+  HugeArray<QuadricVertex> vertices_;
+  HugeArray<Corner> stars_;
+  std::uint32_t used_ = 0;
+  float scale_ = 1;
+  std::array<float, 3> centre_{};
+};
+
+}  // namespace merlin::render

@@ -1,0 +1,108 @@
+// QuadricReducer: collapses by the quadrics of quadric_evaluate, on several threads. Private to
+// render/reduce.
+//
+// The vertices come in parts along the space-filling curve. First each part is reduced for itself,
+// step by step up to the same cost, where no collapse reaches across a seam; then, with a sixth of
+// the triangles left, all is one. Parts follow from the mesh alone, so the result does not depend
+// on the number of threads.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "render/reduce/bucket_queue.h"
+#include "render/reduce/quadric_evaluate.h"
+#include "render/reduce/quadric_rules.h"
+#include "render/reduce/reduce.h"
+
+namespace merlin::render {
+
+class QuadricReducer {
+ public:
+  using Progress = std::function<bool(const ReduceProgress&)>;
+
+  // `channels`: how many values a vertex has that cost.
+  QuadricReducer(const Mesh& mesh, std::size_t channels);
+
+  // Values of a channel, of the mesh's vertices `stride` floats apart. `scale`: how many model
+  // units a difference of 1 weighs.
+  void setChannel(std::size_t channel, const float* values, std::size_t stride, float scale);
+
+  struct Limits {
+    std::size_t triangles = 0;                             // stop when no more are left; 0: none
+    float error = std::numeric_limits<float>::infinity();  // no collapse is worse; model units
+    bool preserve_topology = false;
+    unsigned threads = 1;
+  };
+  // Returns why it stopped, in reduce()'s words.
+  const char* run(const Limits& limits, const Progress& progress);
+
+  // Of the nodes that collapses made, in order, as they were given to setChannel().
+  std::vector<float> channelValues(std::size_t channel, float scale) const;
+
+  // The log; of the features of `mesh` only "normal" is filled.
+  Reduction finish(const Mesh& mesh);
+
+ private:
+  // What one thread works on: a part, or the whole.
+  struct Worker {
+    BucketQueue queue;
+    StarRoom room;
+    EdgeCosts costs;
+    std::vector<Corner> merged;
+    std::uint32_t* log = nullptr;  // dead vertices, in order
+    std::size_t collapses = 0;
+    std::size_t removed = 0;  // triangles
+    std::size_t flips = 0, links = 0;
+    bool too_coarse = false;         // an edge's error was beyond the limit
+    bool inside_only = false;        // of a part: only vertices whose ring is in it
+    std::size_t triangles = 0;       // of a part, about
+    std::vector<std::size_t> steps;  // of a part: collapses at the end of each
+  };
+  struct Range {
+    float low, high;
+  };
+
+  auto nextOf() const {
+    return [this](std::uint32_t v) -> std::uint32_t& { return mesh_[v].next; };
+  }
+  QuadricView view() const { return {&mesh_[0], mesh_.corners(0), &channels_}; }
+  void evaluate(Worker& w, std::uint32_t v) { evaluate_(view(), v, w.costs); }
+  void enqueue(Worker& w, std::uint32_t v);
+  void prefetch(const Worker& w) const;
+  void reduceTo(Worker& w, std::size_t removed, std::size_t bucket_limit);
+  void tryVertex(Worker& w, std::uint32_t v);
+  bool mayCollapse(Worker& w, std::uint32_t v, std::uint32_t edge);
+  bool guardBorder(Worker& w, std::uint32_t v, std::uint32_t edge);
+  float errorOf(const Worker& w, std::uint32_t v, std::uint32_t edge) const;
+  void collapse(Worker& w, std::uint32_t v, std::uint32_t edge);
+  void mixChannels(std::uint32_t v, std::uint32_t x, const EdgeCosts& costs, std::uint32_t edge);
+  void mergeStars(Worker& w, std::uint32_t v, std::uint32_t x);
+  void renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_t x);
+  void wakeRing(Worker& w, std::uint32_t v, float cost);
+
+  void planParts();
+  void forEachPart(const std::function<void(std::size_t)>& work) const;
+  void startPart(std::size_t part, Worker& w);
+  void reduceParts(std::size_t keep, const Progress& progress);
+  void joinParts(std::vector<Worker>& parts);
+  void requeue();
+  void reduceWhole(std::size_t keep, const Progress& progress);
+
+  QuadricMesh mesh_;
+  QuadricChannels channels_;
+  std::vector<Range> ranges_;  // of the channels: no value leaves them
+  EvaluateEdges evaluate_;
+  HugeArray<std::uint32_t> log_;
+  std::vector<std::uint32_t> part_ends_;
+  Worker whole_;
+  std::size_t triangles_;                                     // left
+  float max_error_ = std::numeric_limits<float>::infinity();  // in mean edges
+  QuadricStage stage_ = QuadricStage::kAll;
+  unsigned threads_ = 1;
+  bool cancelled_ = false;
+};
+
+}  // namespace merlin::render

@@ -1,0 +1,144 @@
+#include "render/reduce/quadric_rules.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace merlin::render {
+namespace {
+
+// A star that grows beyond this is a fan of slivers.
+constexpr std::uint32_t kMostDegree = 24;
+// Least cosine between a face's normals before and after.
+constexpr float kLeastCosine = 0.2F;
+
+bool isIn(const Corner& corner, std::uint32_t v) { return corner.b == v || corner.c == v; }
+
+// Link condition: the ends have no neighbour in common but those of the triangles they share.
+bool linkHolds(const QuadricView& view, const QuadricVertex& a, const QuadricVertex& x,
+               const EdgeCosts& costs, std::uint32_t edge) {
+  const std::uint32_t shared = costs.shared[edge];
+  if (shared == 2 && (a.flags & x.flags & kOpen)) return false;  // would pinch the border
+  const Corner* star = view.corners + x.star;
+  const bool open = x.flags & kOpen;
+  std::uint32_t common = 0;
+  for (std::uint32_t i = 0; i < costs.count; ++i) {
+    bool hit = false;
+    for (std::uint32_t k = 0; k < x.degree; ++k)
+      hit |= star[k].b == costs.neighbour[i] || (open && star[k].c == costs.neighbour[i]);
+    common += hit;
+  }
+  return common == shared;
+}
+
+// Those beside the edge lose a triangle, and must keep enough to be a surface.
+bool sidesKeepEnough(const QuadricView& view, const QuadricVertex& a, std::uint32_t x) {
+  const Corner* star = view.corners + a.star;
+  for (std::uint32_t k = 0; k < a.degree; ++k) {
+    if (!isIn(star[k], x)) continue;
+    const QuadricVertex& o = view.vertices[star[k].b == x ? star[k].c : star[k].b];
+    if (o.degree < ((o.flags & kOpen) ? 2U : 4U)) return false;
+  }
+  return true;
+}
+
+// Whether a face of v's star turns by too much when v goes to `to` (from `origin`, as `from` is).
+bool turns(const QuadricView& view, const QuadricVertex& v, const float* origin, const float* from,
+           const float* to, std::uint32_t other) {
+  const Corner* star = view.corners + v.star;
+  for (std::uint32_t k = 0; k < v.degree; ++k) {
+    if (isIn(star[k], other)) continue;
+    const float* p = view.vertices[star[k].b].position;
+    const float* q = view.vertices[star[k].c].position;
+    const float u0 = p[0] - origin[0], u1 = p[1] - origin[1], u2 = p[2] - origin[2];
+    const float e0 = q[0] - p[0], e1 = q[1] - p[1], e2 = q[2] - p[2];
+    const float a0 = u0 - from[0], a1 = u1 - from[1], a2 = u2 - from[2];
+    const float b0 = u0 - to[0], b1 = u1 - to[1], b2 = u2 - to[2];
+    const float n0 = a1 * e2 - a2 * e1, n1 = a2 * e0 - a0 * e2, n2 = a0 * e1 - a1 * e0;
+    const float m0 = b1 * e2 - b2 * e1, m1 = b2 * e0 - b0 * e2, m2 = b0 * e1 - b1 * e0;
+    const float nn = n0 * n0 + n1 * n1 + n2 * n2, mm = m0 * m0 + m1 * m1 + m2 * m2;
+    const float d = n0 * m0 + n1 * m1 + n2 * m2;
+    if (!(d * std::fabs(d) >= kLeastCosine * kLeastCosine * (nn * mm)) || (mm == 0 && nn > 0))
+      return true;
+  }
+  return false;
+}
+
+float segmentDistance2(const float* p, const float* a, const float* b) {
+  float ee = 0, ed = 0;
+  for (int k = 0; k < 3; ++k) {
+    ee += (b[k] - a[k]) * (b[k] - a[k]);
+    ed += (b[k] - a[k]) * (p[k] - a[k]);
+  }
+  const float t = ee > 0 ? std::clamp(ed / ee, 0.0F, 1.0F) : 0.0F;
+  float sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const float d = p[k] - a[k] - t * (b[k] - a[k]);
+    sum += d * d;
+  }
+  return sum;
+}
+
+// The neighbours that v's border goes to, without `other`. At most `room`.
+std::size_t borderNeighbours(const QuadricView& view, const QuadricVertex& v, std::uint32_t other,
+                             std::uint32_t* found, std::size_t room) {
+  const Corner* star = view.corners + v.star;
+  std::size_t n = 0;
+  for (std::uint32_t i = 0; i < v.degree; ++i) {
+    bool b_again = false, c_again = false;
+    for (std::uint32_t k = 0; k < v.degree; ++k) {
+      b_again |= star[k].c == star[i].b;
+      c_again |= star[k].b == star[i].c;
+    }
+    if (!b_again && star[i].b != other && n < room) found[n++] = star[i].b;
+    if (!c_again && star[i].c != other && n < room) found[n++] = star[i].c;
+  }
+  return n;
+}
+
+}  // namespace
+
+Verdict judge(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs, std::uint32_t edge,
+              QuadricStage stage) {
+  const QuadricVertex& a = view.vertices[w];
+  const std::uint32_t x = costs.neighbour[edge];
+  const QuadricVertex& v = view.vertices[x];
+  const std::uint32_t shared = costs.shared[edge];
+  if (stage == QuadricStage::kAll) {
+    const std::uint32_t left = a.degree + v.degree - 2 * shared;
+    if (shared > 2 || left < 1) return Verdict::kLink;
+    if (left > kMostDegree && left > std::max(a.degree, v.degree)) return Verdict::kLink;
+    if (!linkHolds(view, a, v, costs, edge) || !sidesKeepEnough(view, a, x)) return Verdict::kLink;
+  }
+  if (stage == QuadricStage::kNoFlips) return Verdict::kLegal;
+  const float to[] = {costs.x[edge], costs.y[edge], costs.z[edge]};
+  const float here[] = {0, 0, 0}, there[] = {costs.rx[edge], costs.ry[edge], costs.rz[edge]};
+  if (turns(view, a, a.position, here, to, x) || turns(view, v, a.position, there, to, w))
+    return Verdict::kFlip;
+  return Verdict::kLegal;
+}
+
+float borderDeviation(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
+                      std::uint32_t edge) {
+  const std::uint32_t ends[] = {w, costs.neighbour[edge]};
+  const float* origin = view.vertices[w].position;
+  const float to[] = {origin[0] + costs.x[edge], origin[1] + costs.y[edge],
+                      origin[2] + costs.z[edge]};
+  std::uint32_t around[8];
+  std::size_t n = 0;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const QuadricVertex& v = view.vertices[ends[side]];
+    if (v.flags & kOpen) n += borderNeighbours(view, v, ends[1 - side], around + n, 4);
+  }
+  float deviation = 0;
+  for (const std::uint32_t end : ends) {
+    const QuadricVertex& v = view.vertices[end];
+    if (!(v.flags & kOpen)) continue;
+    float d = n == 0 ? segmentDistance2(v.position, to, to) : kNoEdge;
+    for (std::size_t i = 0; i < n; ++i)
+      d = std::min(d, segmentDistance2(v.position, to, view.vertices[around[i]].position));
+    deviation = std::max(deviation, d + v.border_deviation);
+  }
+  return deviation;
+}
+
+}  // namespace merlin::render

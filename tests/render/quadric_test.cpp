@@ -1,0 +1,262 @@
+// The cost `quadric` as a whole: what it keeps, when it stops, that threads change nothing.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "render/compare/compare.h"
+#include "render/lod/dendrogram.h"
+#include "render/reduce/reduce.h"
+#include "tests/support/meshes.h"
+
+namespace merlin::render {
+namespace {
+
+Mesh withNormals(Mesh mesh) {
+  ensureNormals(mesh);
+  return mesh;
+}
+
+Reduction reduced(const Mesh& mesh, const ReduceSettings& settings = {}) {
+  auto result = reduce(mesh, settings);
+  EXPECT_TRUE(result) << result.error().what;
+  return *std::move(result);
+}
+
+Mesh levelOf(const Mesh& mesh, const Reduction& r, std::size_t triangles) {
+  const Dendrogram d = buildDendrogram(mesh, r.log);
+  return extract(d, d.levelFor(triangles));
+}
+
+double areaOf(const Mesh& mesh) {
+  double area = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    double p[3][3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t i = 0; i < 3; ++i)
+        p[k][i] = mesh.positions[3 * std::size_t{mesh.triangles[t + k]} + i];
+    }
+    double u[3], v[3];
+    for (int i = 0; i < 3; ++i) {
+      u[i] = p[1][i] - p[0][i];
+      v[i] = p[2][i] - p[0][i];
+    }
+    area += std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                       u[0] * v[1] - u[1] * v[0]) /
+            2;
+  }
+  return area;
+}
+
+TEST(Quadric, APlateBecomesTwoTrianglesAndKeepsItsCorners) {
+  const Mesh mesh = withNormals(test::grid(12, 9));
+  const Mesh least = levelOf(mesh, reduced(mesh), 2);
+  ASSERT_EQ(least.triangleCount(), 2u);
+  EXPECT_NEAR(areaOf(least), 12 * 9, 0.5);
+  const Box box = boundingBox(least.positions);
+  EXPECT_NEAR(box.low[0], 0, 0.05);
+  EXPECT_NEAR(box.high[0], 12, 0.05);
+  EXPECT_NEAR(box.high[1], 9, 0.05);
+}
+
+TEST(Quadric, ErrorIsFarBelowThePatterns) {
+  Mesh ball = test::sphere(5);
+  for (std::size_t v = 0; v < ball.vertexCount(); ++v) {
+    float* p = &ball.positions[3 * v];
+    const float bump = 1 + 0.05F * std::sin(6 * p[0]) * std::cos(5 * p[1]) * std::sin(7 * p[2]);
+    for (int k = 0; k < 3; ++k) p[k] *= bump;
+  }
+  ball = withNormals(ball);
+  CompareSettings settings;
+  settings.samples = 20'000;
+  const std::size_t keep = ball.triangleCount() / 20;
+  const auto quadric = compare(ball, levelOf(ball, reduced(ball), keep), settings);
+  const auto pattern =
+      compare(ball, levelOf(ball, reduced(ball, {.cost = "pattern"}), keep), settings);
+  ASSERT_TRUE(quadric && pattern);
+  EXPECT_LT(quadric->symmetric().rms, pattern->symmetric().rms / 2);
+  EXPECT_LT(quadric->symmetric().max.high, pattern->symmetric().max.high);
+}
+
+// Enough vertices for two parts.
+Mesh wide() { return withNormals(test::noisyGrid(170, 170, 0.2, 7)); }
+
+TEST(Quadric, IsTheSameBytesForAnyNumberOfThreads) {
+  const Mesh mesh = wide();
+  const Reduction one = reduced(mesh, {.threads = 1});
+  for (const unsigned threads : {2u, 3u}) {
+    const Reduction more = reduced(mesh, {.threads = threads});
+    EXPECT_EQ(more.log.children, one.log.children);
+    EXPECT_EQ(more.log.positions, one.log.positions);
+    EXPECT_EQ(more.log.features, one.log.features);
+    EXPECT_EQ(more.log.error, one.log.error);
+  }
+}
+
+TEST(Quadric, SeamsOfItsPartsAreNotSeen) {
+  const Mesh mesh = wide();
+  const Mesh coarse = levelOf(mesh, reduced(mesh), mesh.triangleCount() / 50);
+  // Where seams lie triangles would be as small as they were: count those in 10 x 10 fields.
+  std::vector<int> fields(100);
+  for (std::size_t v = 0; v < coarse.vertexCount(); ++v) {
+    const auto cell = [&](std::size_t k) {
+      return std::clamp(static_cast<int>(coarse.positions[3 * v + k] / 17), 0, 9);
+    };
+    ++fields[static_cast<std::size_t>(10 * cell(1) + cell(0))];
+  }
+  const auto mean = static_cast<int>(coarse.vertexCount()) / 100;
+  EXPECT_LT(*std::max_element(fields.begin(), fields.end()), 3 * mean);
+}
+
+TEST(Quadric, ComponentsStayUntilNothingElseIsLeft) {
+  Mesh mesh = test::sphere(4);
+  for (int i = 0; i < 20; ++i) {
+    Mesh speck = test::cube();
+    for (float& x : speck.positions) x *= 0.01F;
+    mesh = test::together(mesh, test::moved(speck, 2 + 0.1F * static_cast<float>(i), 0, 0));
+  }
+  mesh = withNormals(mesh);
+  const Reduction r = reduced(mesh);
+  const Mesh coarse = levelOf(mesh, r, 120);
+  std::set<int> alive;
+  for (std::size_t v = 0; v < coarse.vertexCount(); ++v) {
+    if (coarse.positions[3 * v] > 1.5F)
+      alive.insert(static_cast<int>(std::lround((coarse.positions[3 * v] - 2) * 10)));
+  }
+  EXPECT_EQ(alive.size(), 20u);
+  EXPECT_LE(r.report.triangles, 2u);  // but for the last ones all may go
+}
+
+TEST(Quadric, TopologyIsKeptWhereAsked) {
+  const Mesh two =
+      withNormals(test::together(test::sphere(3), test::moved(test::sphere(3), 3, 0, 0)));
+  const Reduction r = reduced(two, {.preserve_topology = true});
+  EXPECT_EQ(r.report.triangles, 8u);  // two tetrahedra
+  EXPECT_STREQ(r.report.stopped, "nothing left to collapse");
+}
+
+TEST(Quadric, StopsWhereItIsTold) {
+  const Mesh mesh = withNormals(test::noisyGrid(20, 20, 0.1, 1));
+  const Reduction by_count = reduced(mesh, {.min_triangles = 300});
+  EXPECT_STREQ(by_count.report.stopped, "triangles");
+  EXPECT_LE(by_count.report.triangles, 300u);
+  EXPECT_GE(by_count.report.triangles, 299u);
+  const Reduction by_percent = reduced(mesh, {.min_percent = 10});
+  EXPECT_STREQ(by_percent.report.stopped, "percent");
+  EXPECT_LE(by_percent.report.triangles, 80u);
+  const Reduction by_error = reduced(mesh, {.max_error_percent = 0.1});
+  EXPECT_STREQ(by_error.report.stopped, "error");
+  EXPECT_LE(by_error.report.error, 0.001F * boundingBox(mesh.positions).diagonal());
+  EXPECT_GT(by_error.report.collapses, 20u);
+  EXPECT_STREQ(reduced(mesh, {.min_triangles = 10'000}).report.stopped, "triangles");
+  EXPECT_EQ(reduced(mesh, {.min_triangles = 10'000}).report.collapses, 0u);
+}
+
+TEST(Quadric, IsCancelledByItsProgress) {
+  const Mesh mesh = wide();
+  int calls = 0;
+  const auto r = reduce(mesh, {}, [&](const ReduceProgress& p) {
+    EXPECT_LE(p.triangles, mesh.triangleCount());
+    return ++calls < 3;
+  });
+  ASSERT_TRUE(r);
+  EXPECT_STREQ(r->report.stopped, "cancelled");
+  EXPECT_EQ(calls, 3);
+  EXPECT_EQ(buildDendrogram(mesh, r->log).trianglesAt(r->report.collapses), r->report.triangles);
+}
+
+// What is no manifold, has duplicates, is folded flat: reduced to the end, and counted right.
+TEST(Quadric, TakesAnySurface) {
+  const Mesh fins{{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1}, {}, {0, 1, 2, 1, 0, 3, 0, 1, 4}};
+  Mesh twice = test::cube();
+  twice.triangles.insert(twice.triangles.end(), twice.triangles.begin(), twice.triangles.end());
+  Mesh folded = test::grid(6, 6);
+  for (float& x : folded.positions) x = std::floor(x / 2);
+  Mesh point = test::grid(4, 4);
+  for (float& x : point.positions) x = 1;
+  Mesh fan;
+  fan.positions = {0, 0, 0};
+  for (std::uint32_t i = 0; i < 3000; ++i) {
+    const float a = static_cast<float>(i) * 0.00209F;
+    fan.positions.insert(fan.positions.end(), {std::cos(a), std::sin(a), 0});
+    fan.triangles.insert(fan.triangles.end(), {0, i + 1, (i + 1) % 3000 + 1});
+  }
+  const Mesh one{{0, 0, 0, 1, 0, 0, 0, 1, 0}, {}, {0, 1, 2}};
+  for (const Mesh& mesh : {fins, twice, folded, point, fan, one}) {
+    const Mesh ready = withNormals(mesh);
+    const Reduction r = reduced(ready);
+    const Dendrogram d = buildDendrogram(ready, r.log);
+    EXPECT_EQ(d.trianglesAt(d.levels() - 1), r.report.triangles);
+    EXPECT_GE(r.report.triangles, 1u);
+    EXPECT_LE(r.report.triangles, 4u);  // duplicates go together
+    for (const float x : r.log.positions) ASSERT_TRUE(std::isfinite(x));
+  }
+}
+
+TEST(Quadric, TakesTheFarthestAndTheSmallestCoordinates) {
+  for (const float scale : {1e18F / 20, 1e-30F}) {
+    Mesh mesh = test::together(test::noisyGrid(8, 8, 0.5, 3), test::moved(test::cube(), 15, 0, 0));
+    for (float& x : mesh.positions) x *= scale;
+    mesh = withNormals(mesh);
+    const Reduction r = reduced(mesh);
+    EXPECT_GT(r.report.collapses, 70u);
+    for (const float x : r.log.positions) ASSERT_TRUE(std::isfinite(x));
+    buildDendrogram(mesh, r.log);
+  }
+}
+
+// A plane in which one feature steps from 0 to 1 at x = 10.
+Mesh step(const std::string& name) {
+  Mesh mesh = withNormals(test::grid(20, 20));
+  Feature f{name, 1, {}};
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v)
+    f.values.push_back(v % 21 < 10 ? 0.0F : 1.0F);
+  mesh.features.push_back(std::move(f));
+  return mesh;
+}
+
+// The mean error of feature 1 at the vertices that are left.
+double stepError(const Mesh& coarse) {
+  const Feature& f = coarse.features[1];
+  double sum = 0;
+  for (std::size_t v = 0; v < coarse.vertexCount(); ++v) {
+    const float x = coarse.positions[3 * v];
+    const double ought = std::clamp(x - 9.0F, 0.0F, 1.0F);
+    sum += std::abs(f.values[v] - ought);
+  }
+  return sum / static_cast<double>(coarse.vertexCount());
+}
+
+TEST(Quadric, AnyModalityWithAWeightIsKept) {
+  const Mesh mesh = step("thermal");
+  const Mesh kept =
+      levelOf(mesh, reduced(mesh, {.weights = {{"geometry", 1}, {"thermal", 1}}}), 60);
+  const Mesh lost = levelOf(mesh, reduced(mesh, {.weights = {{"geometry", 1}}}), 60);
+  EXPECT_LT(stepError(kept), 0.01);
+  EXPECT_GT(stepError(lost), 5 * stepError(kept));
+  for (const float x : kept.features[1].values) {
+    EXPECT_GE(x, 0);
+    EXPECT_LE(x, 1);
+  }
+}
+
+TEST(Quadric, LabelsAreNeverMixed) {
+  const Mesh mesh = step("label");
+  for (const float x : reduced(mesh).log.features[1]) EXPECT_TRUE(x == 0 || x == 1) << x;
+}
+
+TEST(Quadric, WeightsOfThePatternAreRefused) {
+  const Mesh mesh = withNormals(test::grid(3, 3));
+  for (const char* name : {"normal", "curvature", "boundary"}) {
+    const auto r = reduce(mesh, {.weights = {{"geometry", 1}, {name, 1}}});
+    ASSERT_FALSE(r) << name;
+    EXPECT_NE(r.error().what.find("only the cost pattern has it"), std::string::npos);
+  }
+  EXPECT_FALSE(reduce(mesh, {.weights = {{"geometry", 0}}}));
+  EXPECT_EQ(reduce(mesh, {.cost = "cubic"}).error().what,
+            "cost cubic: is none of quadric, pattern");
+}
+
+}  // namespace
+}  // namespace merlin::render
