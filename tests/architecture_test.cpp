@@ -72,7 +72,7 @@ const std::map<std::string, Folders> kOnlyIn = {
     {"libserialport.h", {"drivers/io"}},
     {"zmq.hpp", {"daemon/status"}},
     {"zmq.h", {"daemon/status"}},
-    {"nlohmann/json.hpp", {"config", "nn/io", "daemon/status", "daemon/cli"}},
+    {"nlohmann/json.hpp", {"config", "nn/io", "daemon/status", "daemon/cli", "render/mesh/io"}},
     {"nlohmann/json_fwd.hpp", {"nn/io"}},
     {"EGL/egl.h", {"render/gl"}},
     {"EGL/eglext.h", {"render/gl"}},

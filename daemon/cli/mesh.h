@@ -23,7 +23,7 @@ render::Dendrogram asModel(const render::Mesh& mesh);
 
 // Which resolution: at most one is set.
 struct LevelChoice {
-  std::optional<double> percent, error_percent;
+  std::optional<double> percent, error_percent, error_units;
   std::optional<std::size_t> triangles;
 
   void addTo(CLI::App& command);

@@ -30,6 +30,8 @@ void LevelChoice::addTo(CLI::App& command) {
           "--error", error_percent,
           "The coarsest whose error estimate is at most this, percent of the box' diagonal")
       ->check(CLI::NonNegativeNumber);
+  group->add_option("--error-units", error_units, "The same, in the model's units")
+      ->check(CLI::NonNegativeNumber);
   group->require_option(0, 1);
 }
 
@@ -42,6 +44,7 @@ std::size_t LevelChoice::levelOf(const render::Dendrogram& model) const {
     const float diagonal = render::boundingBox(model.arrays().positions).diagonal();
     return model.levelForError(static_cast<float>(*error_percent / 100) * diagonal);
   }
+  if (error_units) return model.levelForError(static_cast<float>(*error_units));
   return 0;
 }
 

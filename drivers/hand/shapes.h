@@ -18,7 +18,8 @@ struct Shape {
   std::array<float, kGloveSlots> angle_rad;  // flexion positive; slot 7 is 0 (not measured)
 };
 
-std::span<const Shape> shapes();
+std::span<const Shape> shapes();                // the eight of the shipped network
+std::span<const Shape> allShapes();             // these, and others that a hand can hold: 31
 const Shape* findShape(std::string_view name);  // nullptr if there is none
 
 }  // namespace merlin::hand

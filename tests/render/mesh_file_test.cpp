@@ -90,10 +90,11 @@ TEST(WriteMesh, IsDoneWholeOrNotAtAll) {
   const auto refused = writeMesh(dir / "none/a.ply", test::cube());
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().what.find(dir / "none/a.ply"), std::string::npos);
-  const auto other = writeMesh(dir / "a.stl", test::cube());
+  const auto other = writeMesh(dir / "a.off", test::cube());
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().code, Errc::kUnsupported);
-  EXPECT_EQ(other.error().what, dir / "a.stl" + ": meshes are written as .ply");
+  EXPECT_EQ(other.error().what,
+            dir / "a.off" + ": meshes are written as .ply, .obj, .glb, .gltf, .stl and .iv");
   EXPECT_TRUE(std::filesystem::is_empty(dir.path()));
 }
 

@@ -49,7 +49,7 @@ class MrmReader {
   Result<Dendrogram> read() {
     if (const auto done = readHeader(); !done) return done.error();
     for (std::uint32_t i = 0; i < header_.sections; ++i) {
-      SectionEntry entry;
+      SectionEntry entry{};
       std::memcpy(&entry, data() + sizeof header_ + i * sizeof entry, sizeof entry);
       if (const auto done = readSection(entry); !done) return done.error();
     }

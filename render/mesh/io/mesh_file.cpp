@@ -1,6 +1,7 @@
 #include "render/mesh/io/mesh_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "daemon/base/files.h"
 #include "render/mesh/io/openmesh_reader.h"
 #include "render/mesh/io/ply.h"
+#include "render/mesh/io/writer.h"
 
 namespace merlin::render {
 namespace {
@@ -27,7 +29,28 @@ Error inFile(const std::string& path, const Error& error) {
   return {error.code, path + ": " + error.what};
 }
 
+constexpr std::array kWriters = {&kPlyWriter,  &kObjWriter, &kGlbWriter,
+                                 &kGltfWriter, &kStlWriter, &kInventorWriter};
+
+const MeshWriter* writerFor(const std::string& path) {
+  const std::string end = ending(path);
+  for (const MeshWriter* w : kWriters) {
+    if (end == w->ending) return w;
+  }
+  return nullptr;
+}
+
 }  // namespace
+
+bool isUsual(const Feature& f) {
+  return (f.name == "normal" && f.dimension == 3) || (f.name == "colour" && f.dimension == 3) ||
+         (f.name == "texcoord" && f.dimension == 2);
+}
+
+const Feature* findOf(const Mesh& mesh, std::string_view name, std::size_t dimension) {
+  const Feature* f = mesh.find(name);
+  return f && f->dimension == dimension ? f : nullptr;
+}
 
 Result<LoadedMesh> readMesh(const std::string& path) {
   const std::string end = ending(path);
@@ -48,11 +71,35 @@ Result<LoadedMesh> readMesh(const std::string& path) {
   return loaded;
 }
 
-Result<Ok> writeMesh(const std::string& path, const Mesh& mesh) {
-  if (ending(path) != "ply") {
-    return Error{Errc::kUnsupported, fmt::format("{}: meshes are written as .ply", path)};
+Result<Ok> checkMeshEnding(const std::string& path) {
+  if (writerFor(path)) return Ok{};
+  std::string known;
+  for (const MeshWriter* w : kWriters)
+    known += fmt::format("{}.{}",
+                         known.empty()          ? ""
+                         : w == kWriters.back() ? " and "
+                                                : ", ",
+                         w->ending);
+  return Error{Errc::kUnsupported, fmt::format("{}: meshes are written as {}", path, known)};
+}
+
+Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh) {
+  if (const auto known = checkMeshEnding(path); !known) return known.error();
+  const MeshWriter& writer = *writerFor(path);
+  if (mesh.triangles.empty()) {
+    return Error{Errc::kUnsupported, path + ": the mesh has no triangles; nothing is written"};
   }
-  return writeFile(path, [&](const WriteBytes& write) { return ply::write(mesh, write); });
+  if (writer.fits) {
+    if (const auto fits = writer.fits(mesh); !fits) return inFile(path, fits.error());
+  }
+  const auto done =
+      writeFile(path, [&](const WriteBytes& bytes) { return writer.write(mesh, bytes); });
+  if (!done) return done.error();
+  WrittenMesh written{writer.ending, {}};
+  for (const Feature& f : mesh.features) {
+    if (!writer.carries(f)) written.left_out.push_back(f.name);
+  }
+  return written;
 }
 
 }  // namespace merlin::render

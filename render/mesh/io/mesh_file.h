@@ -1,13 +1,21 @@
 // Mesh files: reading and writing, by the name's ending.
 //
-//   .ply   ascii and binary of both byte orders; every scalar vertex property becomes a feature
-//   .obj   positions and faces (through OpenMesh)
+//   read     .ply   ascii and binary of both byte orders; every scalar vertex property becomes a
+//                   feature
+//            .obj   positions and faces (through OpenMesh)
+//   written  .ply   binary little-endian, every feature: normal as nx ny nz, colour as red green
+//                   blue (bytes), label as int, any other as float properties
+//            .obj   normal, colour, texcoord
+//            .glb, .gltf   normal, colour, texcoord, any other feature of 1 to 4 dimensions
+//            .iv    Open Inventor 2.1 ascii: normal, colour, texcoord
+//            .stl   binary: triangles alone
 //
 // A mesh that is returned has passed validate() and tidy(). Nothing throws, nothing is printed.
 // Reentrant.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "daemon/base/result.h"
 #include "render/mesh/mesh.h"
@@ -24,9 +32,18 @@ struct LoadedMesh {
 // no triangles), kUnsupported (an ending or a variant that is not read).
 Result<LoadedMesh> readMesh(const std::string& path);
 
-// Writes binary little-endian PLY: x y z, normal as nx ny nz, colour as red green blue (bytes), any
-// other feature as float properties. The file appears whole or not at all.
-// Errors: kIo, kUnsupported (another ending than .ply).
-Result<Ok> writeMesh(const std::string& path, const Mesh& mesh);
+// What a file could not carry.
+struct WrittenMesh {
+  std::string format;                 // the ending, in small letters
+  std::vector<std::string> left_out;  // features, by name
+};
+
+// Whether writeMesh() knows the ending; to be asked before long work. Errors: kUnsupported.
+Result<Ok> checkMeshEnding(const std::string& path);
+
+// The file appears whole or not at all. Errors: kIo, kNotFound, kUnsupported (another ending; a
+// mesh too large for the format, or without triangles).
+// REQUIRES: validate(mesh).
+Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh);
 
 }  // namespace merlin::render

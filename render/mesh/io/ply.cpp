@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "daemon/base/bytes.h"
 #include "render/mesh/io/ply_body.h"
+#include "render/mesh/io/ply_features.h"
 #include "render/mesh/io/ply_header.h"
 
 namespace merlin::render::ply {
@@ -20,20 +20,6 @@ struct Column {
   std::size_t stride = 1;
   std::size_t offset = 0;
   float scale = 1;
-};
-
-// Properties that belong together under one feature's name.
-struct Known {
-  const char* property;
-  const char* feature;
-  std::size_t dimension, offset;
-};
-constexpr Known kKnown[] = {
-    {"nx", "normal", 3, 0},  {"ny", "normal", 3, 1},          {"nz", "normal", 3, 2},
-    {"red", "colour", 3, 0}, {"green", "colour", 3, 1},       {"blue", "colour", 3, 2},
-    {"r", "colour", 3, 0},   {"g", "colour", 3, 1},           {"b", "colour", 3, 2},
-    {"s", "texcoord", 2, 0}, {"t", "texcoord", 2, 1},         {"u", "texcoord", 2, 0},
-    {"v", "texcoord", 2, 1}, {"texture_u", "texcoord", 2, 0}, {"texture_v", "texcoord", 2, 1},
 };
 
 const Known* knownAs(std::string_view property) {
@@ -231,68 +217,12 @@ class Reader {
   LoadedMesh loaded_;
 };
 
-// The PLY properties that a feature is written as.
-std::vector<std::string> propertiesOf(const Feature& f) {
-  std::vector<std::string> names(f.dimension);
-  for (const Known& k : kKnown) {
-    if (f.name == k.feature && f.dimension == k.dimension && names[k.offset].empty()) {
-      names[k.offset] = k.property;
-    }
-  }
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (names[i].empty()) names[i] = f.dimension == 1 ? f.name : fmt::format("{}_{}", f.name, i);
-  }
-  return names;
-}
-
-bool writtenAsBytes(const Feature& f) { return f.name == "colour" && f.dimension == 3; }
-
-std::string headerFor(const Mesh& mesh) {
-  std::string text = fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment written by MERLIN\nelement vertex {}\n"
-      "property float x\nproperty float y\nproperty float z\n",
-      mesh.vertexCount());
-  for (const Feature& f : mesh.features) {
-    for (const std::string& name : propertiesOf(f)) {
-      text += fmt::format("property {} {}\n", writtenAsBytes(f) ? "uchar" : "float", name);
-    }
-  }
-  return text + fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-                            mesh.triangleCount());
-}
-
 }  // namespace
 
 Result<LoadedMesh> parse(std::string_view bytes) {
   auto header = parseHeader(bytes);
   if (!header) return header.error();
   return Reader(bytes, std::move(*header)).read();
-}
-
-bool write(const Mesh& mesh, const WriteBytes& write) {
-  const std::string header = headerFor(mesh);
-  if (!write(std::as_bytes(std::span(header)))) return false;
-  std::string row;
-  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
-    row.clear();
-    for (std::size_t k = 0; k < 3; ++k) appendLeFloat(row, mesh.positions[3 * v + k]);
-    for (const Feature& f : mesh.features) {
-      for (std::size_t k = 0; k < f.dimension; ++k) {
-        const float value = f.values[v * f.dimension + k];
-        if (!writtenAsBytes(f))
-          appendLeFloat(row, value);
-        else
-          row.push_back(static_cast<char>(std::lround(std::clamp(value, 0.0F, 1.0F) * 255)));
-      }
-    }
-    if (!write(std::as_bytes(std::span(row)))) return false;
-  }
-  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
-    row.assign(1, '\3');
-    for (std::size_t k = 0; k < 3; ++k) appendLe32(row, mesh.triangles[t + k]);
-    if (!write(std::as_bytes(std::span(row)))) return false;
-  }
-  return true;
 }
 
 }  // namespace merlin::render::ply

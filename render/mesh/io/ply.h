@@ -1,4 +1,4 @@
-// PLY, read and written by hand: the one reader that keeps any vertex property, does not split or
+// PLY, read by hand: the one reader that keeps any vertex property, does not split or
 // drop anything silently, and says where a file is broken. See README.md for why not a library.
 // Format: G. Turk, "The PLY Polygon File Format", 1994.
 #pragma once
@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "daemon/base/files.h"
 #include "daemon/base/result.h"
 #include "render/mesh/io/mesh_file.h"
 
@@ -15,8 +14,5 @@ namespace merlin::render::ply {
 // `bytes` is a whole file. Faces of more than three corners become fans. The mesh is neither
 // validated nor tidied. Errors: kMalformed, kUnsupported, without the file's name.
 Result<LoadedMesh> parse(std::string_view bytes);
-
-// Writes as writeMesh() says; false where `write` refused.
-bool write(const Mesh& mesh, const WriteBytes& write);
 
 }  // namespace merlin::render::ply
