@@ -1,0 +1,50 @@
+// Open Inventor 2.1, ascii. Normals, colours and texture coordinates are bound per indexed vertex;
+// without index lists of their own they follow coordIndex. J. Wernecke, "The Inventor Mentor",
+// 1994.
+#include "render/mesh/io/writer.h"
+
+namespace merlin::render {
+namespace {
+
+// "Node { field [ a b c, ... ] }"
+void printNode(TextSink& out, std::string_view node, std::string_view field,
+               const std::vector<float>& values, std::size_t width) {
+  out.print("  {} {{\n    {} [\n", node, field);
+  out.printRows(values, width, "      ", ",\n");
+  out.print("    ]\n  }}\n");
+}
+
+bool write(const Mesh& mesh, const WriteBytes& bytes) {
+  TextSink out(bytes);
+  out.print("#Inventor V2.1 ascii\n\n# written by MERLIN\nSeparator {{\n");
+  // Lit from both sides, since scans have borders.
+  out.print(
+      "  ShapeHints {{\n    vertexOrdering COUNTERCLOCKWISE\n"
+      "    shapeType UNKNOWN_SHAPE_TYPE\n    faceType CONVEX\n  }}\n");
+  if (const Feature* colour = findOf(mesh, "colour", 3)) {
+    printNode(out, "Material", "diffuseColor", colour->values, 3);
+    out.print("  MaterialBinding {{ value PER_VERTEX_INDEXED }}\n");
+  }
+  if (const Feature* normal = findOf(mesh, "normal", 3)) {
+    printNode(out, "Normal", "vector", normal->values, 3);
+    out.print("  NormalBinding {{ value PER_VERTEX_INDEXED }}\n");
+  }
+  if (const Feature* texcoord = findOf(mesh, "texcoord", 2)) {
+    printNode(out, "TextureCoordinate2", "point", texcoord->values, 2);
+    out.print("  TextureCoordinateBinding {{ value PER_VERTEX_INDEXED }}\n");
+  }
+  printNode(out, "Coordinate3", "point", mesh.positions, 3);
+  out.print("  IndexedFaceSet {{\n    coordIndex [\n");
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    out.print("      {}, {}, {}, -1,\n", mesh.triangles[t], mesh.triangles[t + 1],
+              mesh.triangles[t + 2]);
+  }
+  out.print("    ]\n  }}\n}}\n");
+  return out.finish();
+}
+
+}  // namespace
+
+const MeshWriter kInventorWriter{"iv", isUsual, write};
+
+}  // namespace merlin::render

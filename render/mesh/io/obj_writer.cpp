@@ -1,0 +1,46 @@
+// Wavefront OBJ. Colours stand behind the position, as MeshLab, Blender and OpenMesh read them.
+#include "render/mesh/io/writer.h"
+
+namespace merlin::render {
+namespace {
+
+bool write(const Mesh& mesh, const WriteBytes& bytes) {
+  const Feature* normal = findOf(mesh, "normal", 3);
+  const Feature* colour = findOf(mesh, "colour", 3);
+  const Feature* texcoord = findOf(mesh, "texcoord", 2);
+  TextSink out(bytes);
+  out.print("# written by MERLIN\n");
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+    const float* p = &mesh.positions[3 * v];
+    out.print("v {} {} {}", p[0], p[1], p[2]);
+    if (colour) {
+      const float* c = &colour->values[3 * v];
+      out.print(" {} {} {}", c[0], c[1], c[2]);
+    }
+    out.print("\n");
+  }
+  if (texcoord) out.printRows(texcoord->values, 2, "vt ", "\n");
+  if (normal) out.printRows(normal->values, 3, "vn ", "\n");
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    out.print("f");
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint64_t v = std::uint64_t{mesh.triangles[t + k]} + 1;
+      if (texcoord && normal)
+        out.print(" {0}/{0}/{0}", v);
+      else if (texcoord)
+        out.print(" {0}/{0}", v);
+      else if (normal)
+        out.print(" {0}//{0}", v);
+      else
+        out.print(" {}", v);
+    }
+    out.print("\n");
+  }
+  return out.finish();
+}
+
+}  // namespace
+
+const MeshWriter kObjWriter{"obj", isUsual, write};
+
+}  // namespace merlin::render

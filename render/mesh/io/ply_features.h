@@ -1,0 +1,22 @@
+// The vertex properties of PLY files that make up a feature of MERLIN's. Private to render/mesh/io.
+#pragma once
+
+#include <cstddef>
+
+namespace merlin::render::ply {
+
+// Properties that belong together under one feature's name; the first of each place is written.
+struct Known {
+  const char* property;
+  const char* feature;
+  std::size_t dimension, offset;
+};
+inline constexpr Known kKnown[] = {
+    {"nx", "normal", 3, 0},  {"ny", "normal", 3, 1},          {"nz", "normal", 3, 2},
+    {"red", "colour", 3, 0}, {"green", "colour", 3, 1},       {"blue", "colour", 3, 2},
+    {"r", "colour", 3, 0},   {"g", "colour", 3, 1},           {"b", "colour", 3, 2},
+    {"s", "texcoord", 2, 0}, {"t", "texcoord", 2, 1},         {"u", "texcoord", 2, 0},
+    {"v", "texcoord", 2, 1}, {"texture_u", "texcoord", 2, 0}, {"texture_v", "texcoord", 2, 1},
+};
+
+}  // namespace merlin::render::ply
