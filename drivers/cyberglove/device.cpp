@@ -12,7 +12,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr Duration kPollTime = milliseconds(250);
-constexpr Duration kReplyTime = milliseconds(500);
+constexpr Duration kReplyTime = milliseconds(300);
 constexpr Duration kLongestSilence = milliseconds(500);
 constexpr std::size_t kLongestText = 512;
 

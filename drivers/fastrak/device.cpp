@@ -13,11 +13,15 @@ using std::chrono::seconds;
 
 constexpr Duration kPollTime = milliseconds(250);
 constexpr Duration kQuiet = milliseconds(200);  // a record is over by then, at any speed
-constexpr Duration kReplyTime = seconds(1);
-constexpr Duration kStartTime = seconds(10);
+constexpr Duration kReplyTime = milliseconds(400);
+constexpr Duration kMostDrain = seconds(1);
+constexpr Duration kPatience = milliseconds(1200);  // of an open(): the box is asked again for this
+constexpr Duration kStartTime = seconds(10);        // of a box that was reinitialised
 constexpr Duration kSettleTime = milliseconds(50);  // VRPN's pause after each output list
 // Longer than five periods of the slowest stream, 30 records a second at 9600 baud.
 constexpr Duration kLongestSilence = milliseconds(500);
+
+constexpr int kFailuresBeforeRestart = 4;  // of open(), in a row
 
 constexpr std::string_view kReinitialise = "\x19";
 constexpr std::string_view kStop = "c";
@@ -44,16 +48,18 @@ Result<std::string> FastrakDevice::open(ByteStream& stream) {
   complaint_[0] = '\0';
   auto identity = talk(dialogue);
   if (identity) {
-    restart_ = false;
+    failures_ = 0;
   } else if (isOfTheBox(identity.error())) {
-    restart_ = true;
+    ++failures_;
   }
   return identity;
 }
 
 Result<std::string> FastrakDevice::talk(Dialogue& dialogue) {
-  const Timestamp deadline = clock_.now() + (restart_ ? kStartTime : Duration::zero());
-  if (restart_) {
+  // Rarely: a box that has only been out of reach for a while would be deaf for ten seconds more.
+  const bool restart = failures_ > 0 && failures_ % kFailuresBeforeRestart == 0;
+  const Timestamp deadline = clock_.now() + (restart ? kStartTime : kPatience);
+  if (restart) {
     if (const auto sent = dialogue.send(kReinitialise); !sent) return sent.error();
   }
   auto status = identify(dialogue);
@@ -75,7 +81,7 @@ Result<std::string> FastrakDevice::talk(Dialogue& dialogue) {
 
 Result<Status> FastrakDevice::identify(Dialogue& dialogue) {
   if (const auto sent = dialogue.send(kStop); !sent) return sent.error();
-  if (const auto quiet = dialogue.drain(kQuiet, kReplyTime); !quiet) return quiet.error();
+  if (const auto quiet = dialogue.drain(kQuiet, kMostDrain); !quiet) return quiet.error();
   if (const auto sent = dialogue.send("S"); !sent) return sent.error();
   const auto reply = dialogue.readExactly(kStatusLength, kReplyTime, "S");
   if (!reply) return reply.error();
@@ -93,6 +99,7 @@ Result<Stations> FastrakDevice::askStations(Dialogue& dialogue) {
     return Error{Errc::kMalformed, fmt::format("\"{}\" in answer to l1", quoteBytes(*reply))};
   }
   if (*stations == Stations{}) {
+    failures_ = kFailuresBeforeRestart - 1;  // it looks for receivers when it starts
     return Error{Errc::kMalformed, "no station is active: is a receiver plugged in?"};
   }
   return *stations;

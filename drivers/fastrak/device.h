@@ -12,8 +12,9 @@
 
 namespace merlin::fastrak {
 
-// open() takes about 0.5 s. After a failure of the box's the next open() reinitialises it first,
-// which takes up to 12 s: a box is deaf for up to 10 s while it starts. poll() fails with kTimeout
+// open() takes about 0.5 s, at most 2 s. Every fourth failure of the box's in a row makes the next
+// open() reinitialise it first, which takes up to 12 s: a box is deaf for up to 10 s while it
+// starts. poll() fails with kTimeout
 // when no record came for 0.5 s. Publishes one sample a record, each station with its own counter.
 class FastrakDevice final : public Device {
  public:
@@ -39,7 +40,7 @@ class FastrakDevice final : public Device {
   std::array<TrackerSample, kStations> sample_{};  // the newest of each station
   std::uint64_t samples_ = 0;
   Timestamp last_record_{};
-  bool restart_ = false;  // it did not answer, or not as it should: reinitialise it
+  int failures_ = 0;  // of open(), in a row: it did not answer, or not as it should
   char complaint_[32] = "";
 };
 

@@ -13,9 +13,11 @@
 namespace merlin {
 
 struct DeviceLoopSettings {
-  std::string port;                                          // as a person wrote it, for the health
-  Duration first_retry = std::chrono::milliseconds(100);     // doubled after each failure,
-  Duration longest_retry = std::chrono::milliseconds(1000);  // up to this; reset by success
+  std::string port;                                       // as a person wrote it, for the health
+  Duration first_retry = std::chrono::milliseconds(100);  // doubled after each failure,
+  // Up to this; reset by success. Short, since an attempt costs next to nothing, and a device that
+  // is back should be heard within a second, its dialogue included.
+  Duration longest_retry = std::chrono::milliseconds(250);
 };
 
 // Over ports and a Clock only; owns no thread: run() is the body of one. Thread-bound but for the

@@ -8,6 +8,7 @@ namespace merlin {
 namespace {
 
 constexpr Duration kWriteTimeout = std::chrono::seconds(1);
+constexpr Duration kGap = std::chrono::milliseconds(100);  // within an answer that is under way
 
 Error timedOut(std::string_view step, Duration timeout, std::string_view got) {
   return {Errc::kTimeout, fmt::format("no answer to {} within {:.1f} s{}", step, toSeconds(timeout),
@@ -42,20 +43,21 @@ Result<char> Dialogue::next(Timestamp deadline) {
 
 Result<std::string> Dialogue::readExactly(std::size_t count, Duration timeout,
                                           std::string_view step) {
-  const Timestamp deadline = clock_.now() + timeout;
+  Timestamp deadline = clock_.now() + timeout;
   std::string bytes;
   while (bytes.size() < count) {
     const auto c = next(deadline);
     if (!c && c.error().code == Errc::kTimeout) return timedOut(step, timeout, bytes);
     if (!c) return c.error();
     bytes.push_back(*c);
+    deadline = std::max(deadline, clock_.now() + kGap);
   }
   return bytes;
 }
 
 Result<std::string> Dialogue::readUntil(char end, std::size_t limit, Duration timeout,
                                         std::string_view step) {
-  const Timestamp deadline = clock_.now() + timeout;
+  Timestamp deadline = clock_.now() + timeout;
   std::string bytes;
   for (;;) {
     const auto c = next(deadline);
@@ -67,6 +69,7 @@ Result<std::string> Dialogue::readUntil(char end, std::size_t limit, Duration ti
                                                  limit, step, quoteBytes(bytes))};
     }
     bytes.push_back(*c);
+    deadline = std::max(deadline, clock_.now() + kGap);
   }
 }
 

@@ -19,11 +19,12 @@ class Dialogue {
 
   Result<Ok> send(std::string_view bytes);
 
-  // Exactly `count` bytes, all within `timeout`. `step` names what is waited for, in errors:
-  // kTimeout says how many bytes came, and the first of them.
+  // Exactly `count` bytes, the first within `timeout`, the others within it too or as long as they
+  // come in a row (no gap of 100 ms), so that a slow line is given its time and a dead one is not.
+  // `step` names what is waited for, in errors: kTimeout says how many bytes came, and the first.
   Result<std::string> readExactly(std::size_t count, Duration timeout, std::string_view step);
 
-  // Bytes up to and without `end`, at most `limit` of them, within `timeout`.
+  // Bytes up to and without `end`, at most `limit` of them; in time as above.
   Result<std::string> readUntil(char end, std::size_t limit, Duration timeout,
                                 std::string_view step);
 

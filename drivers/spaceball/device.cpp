@@ -16,7 +16,10 @@ using std::chrono::seconds;
 constexpr Duration kPollTime = milliseconds(250);
 constexpr Duration kSilenceBeforePing = seconds(2);
 constexpr Duration kPingTime = seconds(1);
-constexpr Duration kFirstByteTime = milliseconds(2500);  // a reset takes about 2 s
+constexpr Duration kConfirmTime = milliseconds(400);
+constexpr int kMostSetUps = 5;                         // in a row without a confirmation
+constexpr Duration kQuestionTime = milliseconds(500);  // between questions during a reset
+constexpr Duration kLongestWait = milliseconds(3500);  // a reset takes about 2 s
 constexpr Duration kBannerTime = seconds(10);
 
 constexpr std::string_view kReset = "\r@RESET\r";
@@ -25,6 +28,7 @@ constexpr std::string_view kSetUp = "CB\rNT\rFT?\rFR?\rP@r@r\r";
 constexpr std::string_view kBallOn = "MSSV\rZ\rk\r";  // 2003, 3003
 constexpr std::string_view kBallOn4000 = "M\rZ\rk\r";
 constexpr std::string_view kPing = "k\r";
+constexpr std::string_view kQuestion = "\rhm\rhv\r";
 
 // "2.63" of "@2 Firmware version 2.63 created on 24-Oct-1997."; empty if there is none.
 std::string_view firmwareVersion(std::string_view line) {
@@ -47,6 +51,7 @@ Result<std::string> SpaceballDevice::open(ByteStream& stream) {
   const auto firmware = awaitBanner(stream);
   if (!firmware) return firmware.error();
   model_ = modelOf(*firmware);
+  set_ups_ = 0;
   if (const auto done = setUp(stream); !done) return done.error();
   last_heard_ = clock_.now();
   const std::uint32_t counter = sample_.counter;
@@ -57,19 +62,25 @@ Result<std::string> SpaceballDevice::open(ByteStream& stream) {
 }
 
 // Returns the firmware's number. Banner lines: "@1 Spaceball alive and well after a ... reset." and
-// "@2 Firmware version N created on ...".
+// "@2 Firmware version N created on ...". A ball that was deaf to @RESET (frozen, on a line that
+// was just mended) may be awake all the same, even streaming: it is asked now and then.
 Result<std::string> SpaceballDevice::awaitBanner(ByteStream& stream) {
   Dialogue dialogue(stream, clock_);
-  Duration patience = kFirstByteTime;
-  for (const Timestamp deadline = clock_.now() + kBannerTime; clock_.now() < deadline;) {
-    const auto line = dialogue.readUntil('\r', 256, patience, "@RESET");
-    if (!line && line.error().code != Errc::kTimeout) return line.error();
-    if (!line) {
-      if (patience == kPingTime) return line.error();
-      patience = kPingTime;  // perhaps awake, and deaf to @RESET: ask for the model
-      if (const auto sent = dialogue.send("hm\rhv\r"); !sent) return sent.error();
-      continue;
+  const Timestamp start = clock_.now();
+  Timestamp heard = start, question = start + kQuestionTime;
+  for (Timestamp now = start; now - start < kBannerTime; now = clock_.now()) {
+    if (now - heard >= kLongestWait)
+      return Error{Errc::kTimeout,
+                   fmt::format("no answer to @RESET, nor to hm and hv, within {:.1f} s",
+                               toSeconds(kLongestWait))};
+    if (now >= question) {
+      question = now + kQuestionTime;
+      if (const auto sent = dialogue.send(kQuestion); !sent) return sent.error();
     }
+    const auto line = dialogue.readUntil('\r', 256, question - now, "@RESET");
+    if (!line && line.error().code == Errc::kTimeout) continue;
+    if (!line) return line.error();
+    heard = clock_.now();
     const std::string version(firmwareVersion(*line));
     if (!version.empty()) return version;
   }
@@ -80,6 +91,8 @@ Result<std::string> SpaceballDevice::awaitBanner(ByteStream& stream) {
 Result<Ok> SpaceballDevice::setUp(ByteStream& stream) {
   Dialogue dialogue(stream, clock_);
   if (const auto sent = dialogue.send(kSetUp); !sent) return sent.error();
+  confirmed_ = false;
+  set_up_at_ = clock_.now();
   return dialogue.send(model_ == Model::k4000 ? kBallOn4000 : kBallOn);
 }
 
@@ -99,9 +112,17 @@ Result<Ok> SpaceballDevice::poll(ByteStream& stream) {
   return keepAlive(stream);  // bytes that are no packets count as silence
 }
 
-// At rest the ball says nothing: after a while ask for the keys, which it always answers.
+// A set-up that was lost on the line would leave a ball that answers, and never moves: `M` is
+// echoed, and a ball that sends displacements is on. At rest the ball says nothing: after a while
+// ask for the keys, which it always answers.
 Result<Ok> SpaceballDevice::keepAlive(ByteStream& stream) {
-  const Duration silence = clock_.now() - last_heard_;
+  const Timestamp now = clock_.now();
+  if (!confirmed_ && now - set_up_at_ >= kConfirmTime) {
+    if (++set_ups_ >= kMostSetUps)
+      return Error{Errc::kTimeout, "it does not confirm that it was switched on"};
+    if (auto done = setUp(stream); !done) return done;
+  }
+  const Duration silence = now - last_heard_;
   if (silence < kSilenceBeforePing) return Ok{};
   if (pinged_ && silence >= kSilenceBeforePing + kPingTime) {
     return Error{Errc::kTimeout,
@@ -114,6 +135,7 @@ Result<Ok> SpaceballDevice::keepAlive(ByteStream& stream) {
 
 Result<Ok> SpaceballDevice::handle(const Packet& packet, Timestamp first_byte, ByteStream& stream) {
   if (const auto* displacement = std::get_if<Displacement>(&packet)) {
+    confirmed_ = true;
     calibrate(*displacement, settings_, sample_);
     publish(first_byte);
   } else if (const auto* keys = std::get_if<Keys>(&packet)) {
@@ -122,6 +144,9 @@ Result<Ok> SpaceballDevice::handle(const Packet& packet, Timestamp first_byte, B
     if (buttons == sample_.buttons && !fresh_) return Ok{};  // the answer to a ping
     sample_.buttons = buttons;
     publish(first_byte);
+  } else if (std::get<Text>(packet).line.starts_with('M')) {
+    confirmed_ = true;
+    set_ups_ = 0;
   } else if (std::get<Text>(packet).line.starts_with("@1")) {
     return setUp(stream);  // it reset by itself (power, watchdog): all it was told is gone
   }

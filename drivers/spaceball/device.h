@@ -40,7 +40,10 @@ class SpaceballDevice final : public Device {
   Timestamp packet_start_{};
   Timestamp last_heard_{};
   bool pinged_ = false;
-  bool fresh_ = true;  // nothing published since open()
+  bool fresh_ = true;       // nothing published since open()
+  bool confirmed_ = false;  // it has said that it is on
+  int set_ups_ = 0;         // sent since it last did
+  Timestamp set_up_at_{};
 };
 
 std::unique_ptr<Device> makeDevice(const SpaceballSettings& settings, const Clock& clock,

@@ -172,7 +172,7 @@ TEST(CybergloveDevice, SaysWhatAnsweredInstead) {
   const auto nothing = glove.device->open(glove.stream);
   ASSERT_FALSE(nothing);
   EXPECT_EQ(nothing.error().code, Errc::kTimeout);
-  EXPECT_EQ(nothing.error().what, "no answer to ?i within 0.5 s");
+  EXPECT_EQ(nothing.error().what, "no answer to ?i within 0.3 s");
   EXPECT_LT(glove.clock.now() - glove.start, seconds(1));
 }
 

@@ -80,7 +80,7 @@ TEST(DeviceLoop, AnAbsentPortIsTriedEverMoreRarely) {
     if (n == 8) loop.stop.request_stop();
   };
   loop.run();
-  EXPECT_EQ(loop.pauses(), (std::vector<long>{100, 200, 400, 800, 1000, 1000, 1000}));
+  EXPECT_EQ(loop.pauses(), (std::vector<long>{100, 200, 250, 250, 250, 250, 250}));
   const DeviceHealth& h = loop.health.all[loop.health.all.size() - 2];  // the last says "stopped"
   EXPECT_EQ(h.state, HealthState::kAbsent);
   EXPECT_STREQ(h.reason, "/tmp/glove: no such file");
@@ -136,7 +136,7 @@ TEST(DeviceLoop, ASilentDeviceHasFailedAndItsRetryStartsAgainAtTheFirst) {
   Loop loop;
   loop.absent = true;
   loop.before_opening = [&](std::size_t n) {
-    if (n == 4) loop.absent = false;   // after 700 ms
+    if (n == 4) loop.absent = false;   // after 550 ms
     if (n == 5) loop.plugged = false;  // it streamed, then fell silent
     if (n == 7) loop.stop.request_stop();
   };
@@ -147,16 +147,16 @@ TEST(DeviceLoop, ASilentDeviceHasFailedAndItsRetryStartsAgainAtTheFirst) {
   const auto pauses = loop.pauses();
   ASSERT_EQ(pauses.size(), 6u);
   EXPECT_EQ((std::vector<long>{pauses[0], pauses[1], pauses[2]}),
-            (std::vector<long>{100, 200, 400}));
+            (std::vector<long>{100, 200, 250}));
   EXPECT_NEAR(static_cast<double>(pauses[3]), 250 + 1000 + 500 + 100,
               120);                                                  // open, stream, silence, retry
-  EXPECT_NEAR(static_cast<double>(pauses[4]), 100 + 500 + 200, 10);  // ^C, ?i, retry
-  EXPECT_NEAR(static_cast<double>(pauses[5]), 100 + 500 + 400, 10);
+  EXPECT_NEAR(static_cast<double>(pauses[4]), 100 + 300 + 200, 10);  // ^C, ?i, retry
+  EXPECT_NEAR(static_cast<double>(pauses[5]), 100 + 300 + 250, 10);
   bool silent = false, deaf = false;
   for (const DeviceHealth& h : loop.health.all) {
     if (h.state != HealthState::kFailed) continue;
     silent |= std::string(h.reason) == "no record for 0.5 s";
-    deaf |= std::string(h.reason) == "no answer to ?i within 0.5 s";
+    deaf |= std::string(h.reason) == "no answer to ?i within 0.3 s";
   }
   EXPECT_TRUE(silent && deaf);
   EXPECT_EQ(loop.health.all.back().reconnects, 1u);
