@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
-#include "render/mesh/io/openmesh_reader.h"
+#include "render/mesh/io/obj_texture.h"
 #include "render/mesh/io/ply.h"
 #include "render/mesh/io/writer.h"
 
@@ -27,6 +27,22 @@ std::string ending(const std::string& path) {
 
 Error inFile(const std::string& path, const Error& error) {
   return {error.code, path + ": " + error.what};
+}
+
+// With its slash; empty where there is none.
+std::string folderOf(const std::string& path) { return path.substr(0, path.rfind('/') + 1); }
+
+Result<LoadedMesh> readObj(std::string_view content, const std::string& folder) {
+  auto surface = parseObj(content);
+  if (!surface) return surface.error();
+  if (const auto valid = validate(surface->mesh); !valid) return valid.error();
+  LoadedMesh loaded;
+  std::vector<ObjMaterial> materials(surface->materials.size());
+  if (!surface->corner_texcoord.empty()) {
+    materials = readMaterials(surface->materials, surface->libraries, folder, loaded.notes);
+  }
+  loaded.mesh = textured(*std::move(surface), materials);
+  return loaded;
 }
 
 constexpr std::array kWriters = {&kPlyWriter,  &kObjWriter, &kGlbWriter,
@@ -59,7 +75,7 @@ Result<LoadedMesh> readMesh(const std::string& path) {
   }
   const auto file = MappedFile::open(path);
   if (!file) return file.error();
-  auto loaded = end == "ply" ? ply::parse(file->text()) : readWithOpenMesh(file->text());
+  auto loaded = end == "ply" ? ply::parse(file->text()) : readObj(file->text(), folderOf(path));
   if (!loaded) return inFile(path, loaded.error());
   if (const auto valid = validate(loaded->mesh); !valid) return inFile(path, valid.error());
   const TidyReport tidied = tidy(loaded->mesh);

@@ -2,7 +2,8 @@
 //
 //   read     .ply   ascii and binary of both byte orders; every scalar vertex property becomes a
 //                   feature
-//            .obj   positions and faces (through OpenMesh)
+//            .obj   colours; texture coordinates, and the colours of the pictures (PNG, JPEG) that
+//                   its materials name
 //   written  .ply   binary little-endian, every feature: normal as nx ny nz, colour as red green
 //                   blue (bytes), label as int, any other as float properties
 //            .obj   normal, colour, texcoord
@@ -26,6 +27,7 @@ struct LoadedMesh {
   Mesh mesh;
   TidyReport tidied;
   std::size_t skipped_properties = 0;  // of the file, that MERLIN has no place for
+  std::vector<std::string> notes;      // for a person: a picture that is not there, and the like
 };
 
 // Errors, each with the file's name and where in it: kNotFound, kIo, kMalformed (cut short, broken,

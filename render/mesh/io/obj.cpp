@@ -1,0 +1,176 @@
+#include "render/mesh/io/obj.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "render/mesh/io/text_lines.h"
+
+namespace merlin::render {
+namespace {
+
+// "7/2/1" as far as it concerns a mesh: from 0 on; what is not there is kNoTexcoord.
+struct ObjCorner {
+  std::uint32_t vertex = 0, texcoord = kNoTexcoord;
+};
+
+// From 1 on, or negative: from the last back. Far indices stay far, for validate() to find.
+std::uint32_t indexOf(int number, std::size_t count) {
+  const std::int64_t index =
+      number > 0 ? std::int64_t{number} - 1 : static_cast<std::int64_t>(count) + number;
+  return number == 0 || index < 0 ? 0xFFFFFFFF : static_cast<std::uint32_t>(index);
+}
+
+class ObjParser {
+ public:
+  explicit ObjParser(std::string_view content) : left_(content) {}
+
+  Result<ObjSurface> parse() {
+    surface_.materials = {""};
+    while (!left_.empty()) {
+      ++line_;
+      std::string_view line = takeLine(left_);
+      const std::string_view keyword = takeWord(line);
+      if (const auto done = take(keyword, line); !done) return done.error();
+    }
+    if (const auto checked = checkTexcoords(); !checked) return checked.error();
+    finish();
+    return std::move(surface_);
+  }
+
+ private:
+  Error bad(std::string_view word, const char* what) const {
+    return {Errc::kMalformed, fmt::format("line {}: \"{}\" is no {}", line_, word, what)};
+  }
+
+  Result<Ok> take(std::string_view keyword, std::string_view line) {
+    if (keyword == "v") return takeVertex(line);
+    if (keyword == "vt") return takeTexcoord(line);
+    if (keyword == "f") return takeFace(line);
+    if (keyword == "usemtl") material_ = materialOf(std::string(trimmed(line)));
+    if (keyword == "mtllib") surface_.libraries.emplace_back(trimmed(line));
+    return Ok{};
+  }
+
+  // As many numbers as stand in the line, at most eight of them.
+  Result<std::size_t> takeNumbers(std::string_view line, std::array<float, 8>& numbers) const {
+    std::size_t count = 0;
+    for (std::string_view word = takeWord(line); !word.empty(); word = takeWord(line)) {
+      double value = 0;
+      if (!readNumber(word, value)) return bad(word, "number");
+      if (count < numbers.size()) numbers[count++] = static_cast<float>(value);
+    }
+    return count;
+  }
+
+  // x y z, x y z w, or x y z r g b.
+  Result<Ok> takeVertex(std::string_view line) {
+    std::array<float, 8> n{};
+    const auto count = takeNumbers(line, n);
+    if (!count) return count.error();
+    if (*count < 3) {
+      return Error{Errc::kMalformed,
+                   fmt::format("line {}: a vertex has 3 coordinates, here are {}", line_, *count)};
+    }
+    Mesh& mesh = surface_.mesh;
+    mesh.positions.insert(mesh.positions.end(), n.begin(), n.begin() + 3);
+    if (*count >= 6) colours_.insert(colours_.end(), n.begin() + 3, n.begin() + 6);
+    return Ok{};
+  }
+
+  Result<Ok> takeTexcoord(std::string_view line) {
+    std::array<float, 8> n{};
+    const auto count = takeNumbers(line, n);
+    if (!count) return count.error();
+    if (*count < 1) {
+      return Error{Errc::kMalformed,
+                   fmt::format("line {}: a texture coordinate has no numbers", line_)};
+    }
+    surface_.texcoords.insert(surface_.texcoords.end(), n.begin(), n.begin() + 2);
+    return Ok{};
+  }
+
+  Result<Ok> takeFace(std::string_view line) {
+    ObjCorner first, last;
+    std::size_t count = 0;
+    for (std::string_view word = takeWord(line); !word.empty(); word = takeWord(line), ++count) {
+      ObjCorner corner;
+      if (!readCorner(word, corner)) return bad(word, "corner of a face");
+      if (count == 0) first = corner;
+      if (count >= 2) addTriangle({first, last, corner});
+      last = corner;
+    }
+    if (count >= 3) return Ok{};
+    return Error{Errc::kMalformed,
+                 fmt::format("line {}: a face has 3 corners or more, here are {}", line_, count)};
+  }
+
+  // "7", "7/1", "7//2", "-1/1/2".
+  bool readCorner(std::string_view word, ObjCorner& corner) {
+    const std::string_view vertex = word.substr(0, word.find('/'));
+    int number = 0;
+    if (!readNumber(vertex, number)) return false;
+    corner.vertex = indexOf(number, surface_.mesh.vertexCount());
+    if (vertex.size() == word.size()) return true;
+    word.remove_prefix(vertex.size() + 1);
+    const std::string_view texcoord = word.substr(0, word.find('/'));
+    if (texcoord.empty()) return true;
+    if (!readNumber(texcoord, number)) return false;
+    corner.texcoord = indexOf(number, surface_.texcoords.size() / 2);
+    if (farthest_.texcoord == kNoTexcoord || corner.texcoord > farthest_.texcoord) {
+      farthest_.texcoord = std::min(corner.texcoord, kNoTexcoord - 1);
+      farthest_line_ = line_;
+    }
+    textured_ = true;
+    return true;
+  }
+
+  void addTriangle(const std::array<ObjCorner, 3>& corners) {
+    for (const ObjCorner& c : corners) {
+      surface_.mesh.triangles.push_back(c.vertex);
+      surface_.corner_texcoord.push_back(c.texcoord);
+    }
+    surface_.triangle_material.push_back(material_);
+  }
+
+  std::uint32_t materialOf(const std::string& name) {
+    auto& names = surface_.materials;
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end()) names.push_back(name);
+    return static_cast<std::uint32_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  }
+
+  // Coordinates may stand behind the faces that use them.
+  Result<Ok> checkTexcoords() const {
+    const std::size_t count = surface_.texcoords.size() / 2;
+    if (!textured_ || farthest_.texcoord < count) return Ok{};
+    return Error{Errc::kMalformed,
+                 fmt::format("line {}: a corner names a texture coordinate that is none of the {}",
+                             farthest_line_, count)};
+  }
+
+  void finish() {
+    Mesh& mesh = surface_.mesh;
+    if (!colours_.empty() && colours_.size() == mesh.positions.size())
+      mesh.features.push_back({"colour", 3, std::move(colours_)});
+    if (textured_ || surface_.materials.size() > 1) return;
+    surface_.corner_texcoord = {};
+    surface_.triangle_material = {};
+  }
+
+  std::string_view left_;
+  std::size_t line_ = 0, farthest_line_ = 0;
+  ObjSurface surface_;
+  std::vector<float> colours_;
+  std::uint32_t material_ = 0;
+  ObjCorner farthest_;
+  bool textured_ = false;
+};
+
+}  // namespace
+
+Result<ObjSurface> parseObj(std::string_view content) { return ObjParser(content).parse(); }
+
+}  // namespace merlin::render

@@ -1,0 +1,132 @@
+#include "render/mesh/io/obj_materials.h"
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "daemon/base/files.h"
+#include "render/mesh/io/text_lines.h"
+
+namespace merlin::render {
+namespace {
+
+// A model that was sent from elsewhere names paths of there, and may name anything.
+std::string pathBeside(const std::string& folder, std::string_view name) {
+  std::string path(name);
+  std::replace(path.begin(), path.end(), '\\', '/');
+  const bool leaves = path.starts_with('/') || path.find("..") != std::string::npos ||
+                      path.find(':') != std::string::npos;
+  if (leaves) path = path.substr(path.find_last_of('/') + 1);
+  while (path.starts_with("./")) path.erase(0, 2);
+  return folder + path;
+}
+
+// How many words follow an option of a map; -1: it is none.
+int wordsOf(std::string_view option) {
+  constexpr std::pair<std::string_view, int> kOptions[] = {
+      {"-clamp", 1}, {"-blendu", 1}, {"-blendv", 1}, {"-cc", 1}, {"-bm", 1},      {"-boost", 1},
+      {"-mm", 2},    {"-s", 3},      {"-o", 3},      {"-t", 3},  {"-imfchan", 1}, {"-texres", 1}};
+  for (const auto& [name, words] : kOptions) {
+    if (name == option) return words;
+  }
+  return -1;
+}
+
+class Library {
+ public:
+  Library(const std::vector<std::string>& names, std::string folder,
+          std::vector<std::string>& notes)
+      : names_(names), folder_(std::move(folder)), notes_(notes), materials_(names.size()) {}
+
+  void read(const std::string& name) {
+    const auto file = MappedFile::open(pathBeside(folder_, name));
+    if (!file) {
+      notes_.push_back(file.error().what + "; its materials are left out");
+      return;
+    }
+    ObjMaterial* material = nullptr;  // null: one that no face has
+    for (std::string_view text = file->text(); !text.empty();) {
+      std::string_view line = takeLine(text);
+      const std::string_view keyword = takeWord(line);
+      if (keyword == "newmtl")
+        material = find(trimmed(line));
+      else if (material && keyword == "Kd")
+        takeDiffuse(line, *material);
+      else if (material && keyword == "map_Kd")
+        takeMap(line, *material);
+    }
+  }
+
+  std::vector<ObjMaterial> take() { return std::move(materials_); }
+
+ private:
+  ObjMaterial* find(std::string_view name) {
+    const auto at = std::find(names_.begin(), names_.end(), name);
+    return at == names_.end() || name.empty()
+               ? nullptr
+               : &materials_[static_cast<std::size_t>(at - names_.begin())];
+  }
+
+  static void takeDiffuse(std::string_view line, ObjMaterial& material) {
+    std::array<float, 3> colour{};
+    for (float& x : colour) {
+      if (!readNumber(takeWord(line), x) || !(x >= 0 && x <= 1)) return;
+    }
+    material.diffuse = colour;
+  }
+
+  void takeMap(std::string_view line, ObjMaterial& material) {
+    std::string_view rest = trimmed(line);
+    while (rest.starts_with('-')) {
+      std::string_view after = rest;
+      const std::string_view option = takeWord(after);
+      int words = wordsOf(option);
+      if (words < 0) break;  // a file's name may begin so
+      if (option == "-s" || option == "-o")
+        notes_.push_back(fmt::format("map_Kd {}: the option {} is not followed", line, option));
+      float number = 0;
+      for (bool first = true; words > 0; --words, first = false) {
+        std::string_view next = after;
+        const std::string_view word = takeWord(next);
+        // Of three numbers the last two may be left out.
+        if (!first && wordsOf(option) == 3 && !readNumber(word, number)) break;
+        if (option == "-clamp") material.clamped = word == "on";
+        after = next;
+      }
+      rest = trimmed(after);
+    }
+    material.picture = pictureOf(pathBeside(folder_, rest));
+  }
+
+  std::shared_ptr<const PictureFile> pictureOf(const std::string& path) {
+    const auto known = pictures_.find(path);
+    if (known != pictures_.end()) return known->second;
+    std::shared_ptr<const PictureFile> picture;
+    if (auto read = readPicture(path))
+      picture = std::make_shared<const PictureFile>(*std::move(read));
+    else
+      notes_.push_back(read.error().what + "; its colours are left out");
+    pictures_[path] = picture;
+    return picture;
+  }
+
+  const std::vector<std::string>& names_;
+  std::string folder_;
+  std::vector<std::string>& notes_;
+  std::vector<ObjMaterial> materials_;
+  std::map<std::string, std::shared_ptr<const PictureFile>> pictures_;
+};
+
+}  // namespace
+
+std::vector<ObjMaterial> readMaterials(const std::vector<std::string>& names,
+                                       const std::vector<std::string>& libraries,
+                                       const std::string& folder, std::vector<std::string>& notes) {
+  Library library(names, folder, notes);
+  for (const std::string& name : libraries) library.read(name);
+  return library.take();
+}
+
+}  // namespace merlin::render

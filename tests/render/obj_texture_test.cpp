@@ -1,0 +1,219 @@
+// OBJ with texture coordinates, materials and pictures; pictures made here by libpng and TurboJPEG.
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <png.h>
+#include <sys/stat.h>
+#include <turbojpeg.h>
+
+#include "render/mesh/io/mesh_file.h"
+#include "render/mesh/io/picture_file.h"
+#include "render/mesh/places.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::render {
+namespace {
+
+using Floats = std::vector<float>;
+using Indices = std::vector<std::uint32_t>;
+using Names = std::vector<std::string>;
+using Colour = std::array<float, 3>;
+
+// Red and green above blue and white.
+const std::vector<std::uint8_t> kFour = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255};
+
+void writePngFile(const std::string& path, int width, int height,
+                  const std::vector<std::uint8_t>& rgb) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(width);
+  image.height = static_cast<png_uint_32>(height);
+  image.format = PNG_FORMAT_RGB;
+  ASSERT_NE(png_image_write_to_file(&image, path.c_str(), 0, rgb.data(), 0, nullptr), 0);
+}
+
+std::string jpegOf(int width, int height, const std::vector<std::uint8_t>& rgb) {
+  const tjhandle jpeg = tjInitCompress();
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  EXPECT_EQ(tjCompress2(jpeg, rgb.data(), width, 0, height, TJPF_RGB, &bytes, &size, TJSAMP_444,
+                        100, TJFLAG_ACCURATEDCT),
+            0);
+  const std::string file(reinterpret_cast<const char*>(bytes), size);
+  tjFree(bytes);
+  tjDestroy(jpeg);
+  return file;
+}
+
+// A square of two triangles: 0 1 3 and 0 3 2.
+constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
+// The middles of the four pixels, from the lower left.
+constexpr const char* kMiddles = "vt 0.25 0.25\nvt 0.75 0.25\nvt 0.25 0.75\nvt 0.75 0.75\n";
+
+class TexturedObj : public testing::Test {
+ protected:
+  LoadedMesh read(const std::string& text) {
+    test::writeText(dir_ / "a.obj", text);
+    auto loaded = readMesh(dir_ / "a.obj");
+    EXPECT_TRUE(loaded) << loaded.error().what;
+    return loaded ? *std::move(loaded) : LoadedMesh{};
+  }
+  // The notes without the folder's name.
+  Names notesOf(const LoadedMesh& loaded) const {
+    Names notes;
+    for (const std::string& note : loaded.notes) {
+      EXPECT_TRUE(note.starts_with(dir_.path() + "/")) << note;
+      notes.push_back(note.substr(dir_.path().size() + 1));
+    }
+    return notes;
+  }
+
+  const test::TempDir dir_;
+};
+
+TEST_F(TexturedObj, TakesColoursFromThePicture) {
+  writePngFile(dir_ / "four pixels.png", 2, 2, kFour);
+  test::writeText(dir_ / "a.mtl", "newmtl skin\nKd 0.5 0.5 0.5\nmap_Kd four pixels.png\n");
+  const auto loaded =
+      read(std::string("mtllib a.mtl\n") + kSquare + kMiddles + "usemtl skin\nf 1/1 2/2 4/4 3/3\n");
+  EXPECT_EQ(loaded.notes, Names{});
+  ASSERT_EQ(loaded.mesh.vertexCount(), 4u);
+  EXPECT_EQ(loaded.mesh.positions, (Floats{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}));
+  EXPECT_EQ(loaded.mesh.triangles, (Indices{0, 1, 3, 0, 3, 2}));
+  EXPECT_EQ(loaded.mesh.find("texcoord")->values,
+            (Floats{0.25F, 0.25F, 0.75F, 0.25F, 0.25F, 0.75F, 0.75F, 0.75F}));
+  EXPECT_EQ(loaded.mesh.find("colour")->values, (Floats{0, 0, 1, 1, 1, 1, 1, 0, 0, 0, 1, 0}))
+      << "blue below on the left, white, red, green";
+}
+
+TEST_F(TexturedObj, CutsVerticesAtASeamAndNowhereElse) {
+  const auto loaded = read(std::string(kSquare) + kMiddles + "f 1/1 2/2 4/4\nf 1/1 4/3 3/3\n");
+  EXPECT_EQ(loaded.mesh.triangles, (Indices{0, 1, 3, 0, 4, 2})) << "only vertex 3 is cut";
+  ASSERT_EQ(loaded.mesh.vertexCount(), 5u);
+  EXPECT_EQ((Floats{loaded.mesh.positions.end() - 6, loaded.mesh.positions.end()}),
+            (Floats{1, 1, 0, 1, 1, 0}));
+  EXPECT_EQ(samePlace(loaded.mesh.positions), (Indices{0, 1, 2, 4, 3}));
+  EXPECT_EQ(loaded.mesh.find("colour"), nullptr);
+  EXPECT_EQ(loaded.tidied.unused, 0u);
+}
+
+TEST_F(TexturedObj, GivesEachMaterialItsOwn) {
+  writePngFile(dir_ / "four.png", 2, 2, kFour);
+  test::writeText(dir_ / "a.mtl",
+                  "newmtl unused\nKd 9 9 9\nnewmtl plain\nKd 0.5 0.25 0\n"
+                  "newmtl picture\nmap_Kd -clamp on -blendu off -o 0 0 .\\four.png\n"
+                  "newmtl twin\nmap_Kd -clamp on four.png\n");
+  const auto loaded = read(std::string("mtllib a.mtl\n") + kSquare + kMiddles +
+                           "usemtl plain\nf 1/1 2/2 4/4\nusemtl picture\nf 1/1 4/4 3/3\n"
+                           "usemtl twin\nf 3/3 4/4 1/1\n");
+  EXPECT_EQ(loaded.mesh.triangles, (Indices{0, 1, 3, 4, 5, 2, 2, 5, 4}))
+      << "picture and twin look the same, so no seam is between them";
+  const Floats colour = loaded.mesh.find("colour")->values;
+  EXPECT_EQ((Floats{colour.begin(), colour.begin() + 3}), (Floats{0.5F, 0.25F, 0}));
+  EXPECT_EQ((Floats{colour.end() - 3, colour.end()}), (Floats{0, 1, 0}));
+  ASSERT_EQ(loaded.notes.size(), 1u);
+  EXPECT_NE(loaded.notes[0].find("the option -o is not followed"), std::string::npos);
+}
+
+TEST_F(TexturedObj, IsReadWithoutThePicturesThatAreNotThere) {
+  test::writeText(dir_ / "a.mtl", "newmtl a\nmap_Kd none.png\nnewmtl b\nmap_Kd text.png\n");
+  test::writeText(dir_ / "text.png", "no picture");
+  const auto loaded = read(std::string("mtllib a.mtl\nmtllib b.mtl\n") + kSquare + kMiddles +
+                           "usemtl a\nf 1/1 2/2 4/4\nusemtl b\nf 1/1 4/4 3/3\n");
+  EXPECT_EQ(notesOf(loaded),
+            (Names{"none.png: No such file or directory; its colours are left out",
+                   "text.png: is neither PNG nor JPEG; its colours are left out",
+                   "b.mtl: No such file or directory; its materials are left out"}));
+  EXPECT_EQ(loaded.mesh.vertexCount(), 4u) << "materials that look the same make no seam";
+  EXPECT_EQ(loaded.mesh.find("colour"), nullptr);
+  EXPECT_NE(loaded.mesh.find("texcoord"), nullptr);
+}
+
+TEST_F(TexturedObj, OpensNothingOutsideItsFolder) {
+  ::mkdir((dir_ / "model").c_str(), 0700);
+  writePngFile(dir_ / "four.png", 2, 2, kFour);
+  test::writeText(dir_ / "a.mtl", "newmtl a\nKd 1 0 0\n");
+  test::writeText(dir_ / "model/b.mtl", "newmtl b\nmap_Kd ../four.png\n");
+  test::writeText(dir_ / "model/a.obj", "mtllib ../a.mtl\nmtllib C:\\theirs\\b.mtl\n" +
+                                            std::string(kSquare) + kMiddles +
+                                            "usemtl a\nf 1/1 2/2 4/4\nusemtl b\nf 1/1 4/4 3/3\n");
+  const auto loaded = readMesh(dir_ / "model/a.obj");
+  ASSERT_TRUE(loaded);
+  ASSERT_EQ(loaded->notes.size(), 2u);
+  EXPECT_TRUE(loaded->notes[0].starts_with(dir_ / "model/a.mtl:")) << loaded->notes[0];
+  EXPECT_TRUE(loaded->notes[1].starts_with(dir_ / "model/four.png:")) << loaded->notes[1];
+}
+
+// A pipe that nobody writes to: whoever waited for it would wait for ever.
+TEST_F(TexturedObj, WaitsForNoPipe) {
+  ASSERT_EQ(::mkfifo((dir_ / "x.mtl").c_str(), 0600), 0);
+  const auto loaded = read(std::string("mtllib x.mtl\nusemtl red\n") + kSquare + "f 1 2 3\n");
+  EXPECT_EQ(loaded.mesh.triangles, (Indices{0, 1, 2}));
+  EXPECT_EQ(notesOf(loaded), Names{"x.mtl: is not a regular file; its materials are left out"});
+}
+
+TEST_F(TexturedObj, KeepsItsOwnColoursWhereNoPictureIs) {
+  const auto loaded = read(
+      "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nv 9 9 9 0 0 0\n"
+      "vt 0 0\nf 1/1 2 3\n");
+  EXPECT_EQ(loaded.mesh.find("colour")->values, (Floats{1, 0, 0, 0, 1, 0, 0, 0, 1}));
+  EXPECT_EQ(loaded.mesh.find("texcoord")->values, Floats(6, 0));
+  EXPECT_EQ(loaded.tidied.unused, 1u);
+}
+
+TEST_F(TexturedObj, NamesTheLineOfACornerWithoutItsCoordinate) {
+  test::writeText(dir_ / "a.obj", std::string(kSquare) + "vt 0 0\nf 1/1 2/1 3/1\nf 1/2 2/1 3/1\n");
+  EXPECT_EQ(readMesh(dir_ / "a.obj").error().what,
+            dir_ / "a.obj: line 7: a corner names a texture coordinate that is none of the 1");
+  read(std::string(kSquare) + "f 1/1 2/1 3/1\nvt 0 0\n");  // behind its use
+  read(std::string(kSquare) + "vt 0 0\nvt 1 1\nf 1/-1 2/-2 3/-1\n");
+}
+
+TEST(PictureFile, IsMixedOfTheNearestPixels) {
+  const PictureFile four{2, 2, kFour};
+  EXPECT_EQ(four.at(0.25F, 0.75F, false), (Colour{1, 0, 0}));
+  EXPECT_EQ(four.at(0.5F, 0.75F, false), (Colour{0.5F, 0.5F, 0}));
+  EXPECT_EQ(four.at(0.5F, 0.5F, false), (Colour{0.5F, 0.5F, 0.5F}));
+  EXPECT_EQ(four.at(0, 0.75F, false), (Colour{0.5F, 0.5F, 0})) << "repeats";
+  EXPECT_EQ(four.at(0, 0.75F, true), (Colour{1, 0, 0})) << "does not";
+  EXPECT_EQ(four.at(-0.75F, 1.75F, false), (Colour{1, 0, 0}));
+  EXPECT_EQ(four.at(-7, 9, true), (Colour{1, 0, 0}));
+  EXPECT_EQ(four.at(1e30F, -1e30F, false), four.at(0, 0, false));
+}
+
+TEST(PictureFile, MayBeAJpegOfAnyName) {
+  const test::TempDir dir;
+  test::writeText(dir / "a.png", jpegOf(2, 1, {250, 10, 10, 250, 10, 10}));
+  const auto picture = readPicture(dir / "a.png");
+  ASSERT_TRUE(picture) << picture.error().what;
+  EXPECT_EQ(picture->width, 2);
+  EXPECT_EQ(picture->height, 1);
+  ASSERT_EQ(picture->pixels.size(), 6u);
+  EXPECT_NEAR(picture->pixels[3], 250, 3);
+  EXPECT_NEAR(picture->pixels[4], 10, 3);
+}
+
+TEST(PictureFile, SaysWhatIsBroken) {
+  const test::TempDir dir;
+  writePngFile(dir / "a.png", 2, 2, kFour);
+  const std::string png = test::readText(dir / "a.png");
+  const std::string jpeg = jpegOf(2, 2, kFour);
+  for (const std::string& file : {png, jpeg}) {
+    std::size_t refused = 0;
+    for (std::size_t n = 0; n < file.size(); ++n) {
+      test::writeText(dir / "b", file.substr(0, n));
+      const auto picture = readPicture(dir / "b");
+      refused += !picture;
+      EXPECT_TRUE(picture || picture.error().what.starts_with(dir / "b: ")) << n;
+    }
+    EXPECT_GE(refused, file.size() / 2);
+  }
+  std::string huge = png;
+  huge.replace(16, 8, std::string("\x7F\xFF\xFF\xFF\x7F\xFF\xFF\xFF", 8));
+  test::writeText(dir / "b", huge);
+  EXPECT_FALSE(readPicture(dir / "b"));
+}
+
+}  // namespace
+}  // namespace merlin::render
