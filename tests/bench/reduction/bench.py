@@ -1,0 +1,257 @@
+#!/usr/bin/env python3
+"""./dev bench reduction: MERLIN's costs and every peer that was built, on equal meshes.
+
+Each program reduces in a process of its own, in turns, in every round; of its seconds the least
+count. What is counted, and what a figure means: README.md beside this file.
+"""
+import argparse
+import hashlib
+import json
+import pathlib
+import subprocess
+import sys
+
+import chart
+import data
+import report
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
+
+# name, executable, arguments before the file, what it needs of the mesh, Debian package
+PEERS = [
+    ("meshoptimizer", "bench_meshoptimizer", "plain", "", "libmeshoptimizer-dev"),
+    ("meshoptimizer, colour", "bench_meshoptimizer", "colour", "colour", "libmeshoptimizer-dev"),
+    ("CGAL Lindstrom-Turk", "bench_cgal", "lt", "", "libcgal-dev"),
+    ("CGAL Garland-Heckbert", "bench_cgal", "gh", "", "libcgal-dev"),
+    ("OpenMesh quadric", "bench_openmesh", "quadric", "", "libopenmesh-dev"),
+    ("VTK quadric", "bench_vtk", "plain", "", "libvtk9-dev"),
+    ("VTK quadric, colour", "bench_vtk", "colour", "colour", "libvtk9-dev"),
+]
+
+# name, cost, threads, weights, what it needs of the mesh
+COSTS = [
+    ("quadric, 1 thread", "quadric", "1", "default", ""),
+    ("quadric, 2 threads", "quadric", "2", "default", ""),
+    ("quadric, without colour", "quadric", "2", "colour=0", "colour"),
+    ("pattern, 1 thread", "pattern", "1", "default", ""),
+    ("pattern, 2 threads", "pattern", "2", "default", ""),
+]
+
+# name, how it is made. The scans of several kinds that lie beside the repository, if they do.
+SCANS = [
+    ("nefertiti", lambda d, ply: d / "models/odedstein/nefertiti/nefertiti-lowres.obj"),
+    ("hammer", lambda d, ply: d / "models/odedstein/hammer/hammer.obj"),
+    ("ankylosaurus", lambda d, ply: REPOSITORY / "config/models/ankylosaurus.ply"),
+    ("kinect", lambda d, ply: data.range_image(d / "range/pcl/milk_cartoon.depth_mm.pgm",
+                                               d / "range/pcl/milk_cartoon.colour.ppm", ply)),
+    ("n44w072", lambda d, ply: data.heights(d / "dem/N44W072.hgt", ply, 2)),
+]
+
+
+def note(text):
+    print(text, file=sys.stderr, flush=True)
+
+
+def digest(path):
+    with open(path, "rb") as file:
+        return hashlib.sha256(file.read()).hexdigest()[:24]
+
+
+def line_of(command):
+    """The JSON line that a program prints; what it says on standard error where it fails."""
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
+    if done.returncode != 0:
+        why = (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
+        return {"skipped": why}
+    return json.loads(done.stdout.strip().splitlines()[-1])
+
+
+class Bench:
+    def __init__(self, options):
+        self.options = options
+        self.programs = options.bin / "bench"
+        self.merlin = options.bin / "bin/merlin"
+        self.work = options.out / "work"
+        self.memo = options.out / "memo"
+        for folder in (self.work, self.memo):
+            folder.mkdir(parents=True, exist_ok=True)
+        self.missing = set()
+
+    # Meshes
+
+    def prepare(self, name, source):
+        """The mesh that all programs get; None where it cannot be read."""
+        ply = self.work / f"{name}.ply"
+        kind = line_of([self.programs / "bench_merlin", "prepare", source, ply])
+        if "skipped" in kind:
+            note(f"skipped: {name}: {kind['skipped']}")
+            return None
+        kind.update(name=name, path=ply, sha=digest(ply))
+        return kind
+
+    def meshes(self):
+        wanted = SCANS if self.options.data.is_dir() else []
+        if self.options.quick or not wanted:
+            wanted = [scan for scan in SCANS if scan[0] == "ankylosaurus"]
+        if self.options.only_given and self.options.meshes:
+            wanted = []
+        for name, source_of in wanted:
+            made = self.work / f"{name}.source.ply"
+            yield self.prepare(name, source_of(self.options.data, made) or made)
+        for path in self.options.meshes:
+            yield self.prepare(pathlib.Path(path).stem, path)
+
+    # Runs
+
+    def remembered(self, key, run):
+        """With --reuse the figures of an earlier run."""
+        path = self.memo / (hashlib.sha256(key.encode()).hexdigest()[:24] + ".json")
+        if self.options.reuse and path.exists():
+            return json.loads(path.read_text())
+        answer = run()
+        path.write_text(json.dumps(answer))
+        return answer
+
+    def run_peer(self, peer, mesh, level):
+        name, program, variant, _, _ = peer
+        out = self.work / f"{mesh['name']}.{program}.{variant}.{level}.ply"
+        command = [self.programs / program, variant, mesh["path"], target(mesh, level), out]
+
+        def run():
+            line = line_of(command)
+            if "skipped" not in line:
+                line["file"] = str(out)
+            return line
+        if name == "meshoptimizer":  # what seconds are compared with: always of this run
+            return {level: run()}
+        key = f"{mesh['sha']} {program} {variant} {level} {digest(command[0])}"
+        return {level: self.remembered(key, run)}
+
+    def run_cost(self, cost, mesh):
+        name, kind, threads, weights, _ = cost
+        out = self.work / f"{mesh['name']}.{name.replace(', ', '.').replace(' ', '')}"
+        targets = {level: target(mesh, level) for level in self.options.levels}
+        line = line_of([self.programs / "bench_merlin", kind, threads, weights, mesh["path"], out,
+                        *targets.values()])
+        if "skipped" in line:
+            return {level: line for level in targets}
+        line["hierarchy_seconds"] = line["seconds"] + sum(
+            line[f"{step}_seconds"] for step in ("normals", "dendrogram", "write"))
+        levels = line.pop("levels")
+        return {level: dict(line, triangles=levels[str(n)], file=f"{out}.{n}.ply")
+                for level, n in targets.items()}
+
+    def jobs(self, mesh):
+        """(name, function that runs it once at one or all levels) of each program, in turns."""
+        for cost in COSTS:
+            if not cost[4] or mesh[cost[4]]:
+                yield cost[0], lambda cost=cost: self.run_cost(cost, mesh)
+        for peer in PEERS:
+            if peer[3] and not mesh[peer[3]]:
+                continue
+            if not (self.programs / peer[1]).exists():
+                self.missing.add(f"{peer[1]} (install {peer[4]})")
+                continue
+            for level in self.options.levels:
+                yield peer[0], lambda p=peer, lv=level: self.run_peer(p, mesh, lv)
+
+    def rounds(self, mesh):
+        """rows[name, level]: the first run's line, with the least seconds of all rounds."""
+        rows, slow = {}, set()
+        for number in range(self.options.rounds):
+            for job, (name, run) in enumerate(self.jobs(mesh)):
+                if job in slow:
+                    continue
+                for level, line in run().items():
+                    row = rows.setdefault((name, level), line)
+                    if "skipped" in line or number == 0:
+                        slow.update({job} if "skipped" in line else ())
+                        if line.get("seconds", 0) > self.options.slow:
+                            slow.add(job)  # its first seconds have to do
+                        continue
+                    for key in row:
+                        if key.endswith("seconds"):
+                            row[key] = min(row[key], line[key])
+            note(f"{mesh['name']}: round {number + 1} of {self.options.rounds}")
+        return rows
+
+    # Errors
+
+    def errors(self, mesh, line):
+        def run():
+            return line_of([self.merlin, "mesh", "compare", mesh["path"], line["file"], "--json",
+                            "--width", self.options.width])
+        answer = self.remembered(f"{mesh['sha']} {digest(line['file'])} {self.options.width}", run)
+        if "skipped" in answer:
+            return {"skipped": answer["skipped"]}
+        return {"rms": answer["rms_percent"], "max": answer["max_low_percent"],
+                "max_high": answer["max_high_percent"], "colour": answer["colour_rms_255"],
+                "sha": digest(line["file"])}
+
+    def measure(self, mesh):
+        note(f"{mesh['name']}: {mesh['triangles']} triangles, {mesh['components']} components, "
+             f"{mesh['border_edges']} border edges, {mesh['split_vertices']} vertices split, "
+             f"{mesh['non_manifold_edges']} non-manifold edges")
+        rows = []
+        for (name, level), line in self.rounds(mesh).items():
+            row = {"mesh": mesh["name"], "level": level, "target": target(mesh, level),
+                   "program": name, **line}
+            if "file" in line:
+                row.update(self.errors(mesh, line))
+            if "skipped" not in row:
+                row["rate"] = row["collapses"] / row["seconds"]
+                row["cpu_rate"] = row["collapses"] / row["cpu_seconds"]
+                row["bytes_per_edge"] = row["memory_bytes"] / mesh["edges"]
+            rows.append(row)
+        return rows
+
+
+def target(mesh, level):
+    return int(mesh["triangles"] * level / 100)
+
+
+def options_of():
+    parser = argparse.ArgumentParser(prog="./dev bench reduction", description=__doc__)
+    parser.add_argument("meshes", nargs="*", metavar="MESH", help="PLY or OBJ files beside the scans")
+    parser.add_argument("--quick", action="store_true",
+                        help="the repository's own model, and MESH, in two rounds")
+    parser.add_argument("--only-given", action="store_true", help="MESH alone")
+    parser.add_argument("--levels", default="10,5,1", help="percent of the triangles kept")
+    parser.add_argument("--rounds", type=int, help="3, and 2 with --quick")
+    parser.add_argument("--slow", type=float, default=5,
+                        help="who needs more seconds runs in the first round only")
+    parser.add_argument("--width", default="0.005",
+                        help="of the certified maximum's interval, percent of the diagonal")
+    parser.add_argument("--reuse", action="store_true",
+                        help="peers (all but meshoptimizer) and errors from earlier runs")
+    parser.add_argument("--json", action="store_true", help="all figures for programs")
+    parser.add_argument("--bin", type=pathlib.Path, default=REPOSITORY / "build/release")
+    parser.add_argument("--data", type=pathlib.Path, default=REPOSITORY.parent / "shared/data")
+    parser.add_argument("--out", type=pathlib.Path, default=REPOSITORY / "build/bench/reduction")
+    options = parser.parse_args()
+    options.levels = [float(level) for level in options.levels.split(",")]
+    options.rounds = options.rounds or (2 if options.quick else 3)
+    return options
+
+
+def main():
+    options = options_of()
+    bench = Bench(options)
+    meshes, rows = [], []
+    for mesh in bench.meshes():
+        if mesh:
+            meshes.append({k: v for k, v in mesh.items() if k != "path"})
+            rows += bench.measure(mesh)
+            text = report.text(meshes, rows, sorted(bench.missing))
+            (options.out / "table.txt").write_text(text)  # after each mesh: a long run is of use early
+    if not meshes:
+        sys.exit("no mesh to reduce")
+    chart.write(options.out / "chart.svg", meshes, rows)
+    figures = {"meshes": meshes, "rows": rows, "summary": report.summary(meshes, rows)}
+    (options.out / "figures.json").write_text(json.dumps(figures, indent=1))
+    print(json.dumps(figures) if options.json else text, end="\n")
+    note(f"in {options.out}: table.txt, chart.svg, figures.json")
+
+
+if __name__ == "__main__":
+    main()

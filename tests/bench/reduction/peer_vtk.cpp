@@ -1,0 +1,128 @@
+// VTK: vtkQuadricDecimation by position, and with its attribute error metric over colours.
+#include <array>
+
+#include <fmt/format.h>
+#include <vtkCellArray.h>
+#include <vtkFloatArray.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkQuadricDecimation.h>
+#include <vtkSmartPointer.h>
+#include <vtkVersion.h>
+
+#include "tests/bench/reduction/peer.h"
+
+namespace merlin::bench {
+namespace {
+
+template <typename T>
+using Pointer = vtkSmartPointer<T>;
+
+// VTK's attribute quadrics take a matrix for singular where a triangle is small in absolute units,
+// and weigh attributes against those units: so the mesh is brought to one size, and back.
+constexpr double kDiagonal = 1000;
+
+double scaleOf(const render::Mesh& mesh) {
+  return kDiagonal / double{render::boundingBox(mesh.positions).diagonal()};
+}
+
+Pointer<vtkPolyData> polyData(const render::Mesh& mesh, bool with_colours) {
+  const auto points = Pointer<vtkPoints>::New();
+  const double scale = scaleOf(mesh);
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+    const float* p = &mesh.positions[3 * v];
+    points->InsertNextPoint(scale * p[0], scale * p[1], scale * p[2]);
+  }
+  const auto cells = Pointer<vtkCellArray>::New();
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    const std::array<vtkIdType, 3> corners{mesh.triangles[t], mesh.triangles[t + 1],
+                                           mesh.triangles[t + 2]};
+    cells->InsertNextCell(3, corners.data());
+  }
+  auto data = Pointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetPolys(cells);
+  if (with_colours) {
+    const auto& colours = mesh.find("colour")->values;
+    const auto scalars = Pointer<vtkFloatArray>::New();
+    scalars->SetNumberOfComponents(3);
+    for (std::size_t i = 0; i < colours.size(); i += 3) scalars->InsertNextTypedTuple(&colours[i]);
+    data->GetPointData()->SetScalars(scalars);
+  }
+  return data;
+}
+
+class VtkPeer : public Peer {
+ public:
+  VtkPeer(const render::Mesh& mesh, bool with_colours)
+      : input_(polyData(mesh, with_colours)),
+        triangles_(mesh.triangleCount()),
+        scale_(scaleOf(mesh)) {
+    decimation_->SetInputData(input_);
+    if (!with_colours) return;
+    decimation_->AttributeErrorMetricOn();
+    decimation_->ScalarsAttributeOn();
+    decimation_->SetScalarsWeight(0.1 * kDiagonal);  // VTK's own weight of a model of diagonal 1
+    for (auto set :
+         {&vtkQuadricDecimation::SetVectorsAttribute, &vtkQuadricDecimation::SetNormalsAttribute,
+          &vtkQuadricDecimation::SetTCoordsAttribute, &vtkQuadricDecimation::SetTensorsAttribute}) {
+      (decimation_->*set)(false);
+    }
+  }
+
+  void reduce(std::size_t triangles) override {
+    decimation_->SetTargetReduction(1 - static_cast<double>(triangles) /
+                                            static_cast<double>(triangles_));
+    decimation_->Update();
+  }
+
+  render::Mesh result() override {
+    vtkPolyData* output = decimation_->GetOutput();
+    render::Mesh mesh;
+    for (vtkIdType v = 0; v < output->GetNumberOfPoints(); ++v) {
+      const double* p = output->GetPoint(v);
+      for (int k = 0; k < 3; ++k) mesh.positions.push_back(static_cast<float>(p[k] / scale_));
+    }
+    vtkIdType count = 0;
+    const vtkIdType* corners = nullptr;
+    for (output->GetPolys()->InitTraversal(); output->GetPolys()->GetNextCell(count, corners);) {
+      for (int k = 0; k < 3; ++k) mesh.triangles.push_back(static_cast<std::uint32_t>(corners[k]));
+    }
+    if (vtkDataArray* scalars = output->GetPointData()->GetScalars()) {
+      render::Feature colour{"colour", 3, {}};
+      for (vtkIdType v = 0; v < scalars->GetNumberOfTuples(); ++v) {
+        for (int k = 0; k < 3; ++k) {
+          colour.values.push_back(static_cast<float>(scalars->GetComponent(v, k)));
+        }
+      }
+      mesh.features.push_back(std::move(colour));
+    }
+    return mesh;
+  }
+
+ private:
+  Pointer<vtkPolyData> input_;
+  Pointer<vtkQuadricDecimation> decimation_ = Pointer<vtkQuadricDecimation>::New();
+  std::size_t triangles_;
+  double scale_;
+};
+
+Result<std::unique_ptr<Peer>> make(render::Mesh mesh, const std::string& variant) {
+  if (variant != "plain" && variant != "colour") {
+    return Error{Errc::kInvalidArgument, variant + ": is not plain or colour"};
+  }
+  const bool with_colours = variant == "colour";
+  if (with_colours && !mesh.find("colour")) {
+    return Error{Errc::kUnsupported, "the mesh has no colours"};
+  }
+  return std::unique_ptr<Peer>(new VtkPeer(mesh, with_colours));
+}
+
+}  // namespace
+}  // namespace merlin::bench
+
+int main(int argc, char** argv) {
+  const std::string version = fmt::format("VTK {}", vtkVersion::GetVTKVersion());
+  return merlin::bench::runPeer(argc, argv, version.c_str(), merlin::bench::make);
+}
