@@ -25,9 +25,9 @@ const std::map<std::string, Folders> kMayInclude = {
      {"config", "daemon/shm", "drivers/port", "render/mesh", "render/lod", "render/lod/io",
       "render/scene", "render/governor", "render/tiles", "render/gl", "render/out"}},
     {"daemon/cli",
-     {"daemon/shm", "daemon/status", "daemon/wall", "drivers/emulate", "drivers/hand", "drivers/io",
-      "nn", "nn/io", "render/mesh", "render/mesh/io", "render/reduce", "render/compare",
-      "render/lod", "render/lod/io", "render/tiles", "render/gl", "render/out"}},
+     {"daemon/shm", "daemon/status", "daemon/wall", "drivers/emulate", "drivers", "drivers/port",
+      "drivers/hand", "drivers/io", "nn", "nn/io", "render/mesh", "render/mesh/io", "render/reduce",
+      "render/compare", "render/lod", "render/lod/io", "render/tiles", "render/gl", "render/out"}},
     // The composition root.
     {"daemon",
      {"config", "daemon/cli", "daemon/devices", "daemon/shm", "daemon/status", "daemon/wall",
@@ -53,7 +53,7 @@ const std::map<std::string, Folders> kMayInclude = {
     {"render/mesh/io", {"render/mesh"}},
     {"render/lod", {"render/mesh"}},
     {"render/lod/io", {"render/lod", "render/mesh"}},
-    {"render/reduce", {"render/lod", "render/mesh"}},
+    {"render/reduce", {"render/compare", "render/lod", "render/mesh"}},
     // Pure but for its threads; its figures are the same for any number of them.
     {"render/compare", {"render/mesh"}},
     {"render/governor", {}},

@@ -1,7 +1,7 @@
 // HugeArray: a large array of plain values on huge pages, zero at first.
 //
 // Where a walk over the array is random, 4 KiB pages cost a page walk for each step; 2 MiB pages
-// do not. Pages that were never touched cost no memory.
+// do not. Pages that were never touched cost no memory. What is small stays on small pages.
 #pragma once
 
 #include <cstddef>
@@ -18,6 +18,7 @@ template <typename T>
 class HugeArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
   static constexpr std::size_t kPage = std::size_t{2} << 20;
+  static constexpr std::size_t kWorthIt = std::size_t{32} << 20;
 
  public:
   HugeArray() = default;
@@ -30,7 +31,8 @@ class HugeArray {
     void* at = base_;
     std::size_t room = bytes_;
     data_ = static_cast<T*>(std::align(kPage, size * sizeof(T), at, room));
-    ::madvise(data_, roundUp(size * sizeof(T)), MADV_HUGEPAGE);  // a wish
+    if (size * sizeof(T) >= kWorthIt)
+      ::madvise(data_, roundUp(size * sizeof(T)), MADV_HUGEPAGE);  // a wish
   }
   HugeArray(HugeArray&& other) noexcept { *this = std::move(other); }
   HugeArray& operator=(HugeArray&& other) noexcept {

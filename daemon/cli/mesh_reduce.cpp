@@ -60,21 +60,20 @@ void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
       100.0 * static_cast<double>(r.error) / render::boundingBox(loaded.mesh.positions).diagonal();
   const double rate = seconds > 0 ? static_cast<double>(r.collapses) / seconds : 0;
   if (options.json) {
-    const nlohmann::ordered_json json = {{"output", options.output},
-                                         {"cost", options.settings.cost},
-                                         {"triangles", loaded.mesh.triangleCount()},
-                                         {"triangles_left", r.triangles},
-                                         {"collapses", r.collapses},
-                                         {"seconds", seconds},
-                                         {"collapses_per_second", rate},
-                                         {"peak_memory_mb", peakMegabytes()},
-                                         {"error_estimate", r.error},
-                                         {"error_estimate_percent", percent},
-                                         {"flips_refused", r.flips_refused},
-                                         {"topology_refused", r.topology_refused},
-                                         {"degenerate_dropped", loaded.tidied.degenerate},
-                                         {"unused_dropped", loaded.tidied.unused},
-                                         {"stopped", r.stopped}};
+    nlohmann::ordered_json json = {{"output", options.output},
+                                   {"cost", options.settings.cost},
+                                   {"triangles", loaded.mesh.triangleCount()},
+                                   {"triangles_left", r.triangles},
+                                   {"collapses", r.collapses},
+                                   {"seconds", seconds},
+                                   {"collapses_per_second", rate},
+                                   {"peak_memory_mb", peakMegabytes()},
+                                   {"error_estimate", r.error},
+                                   {"error_estimate_percent", percent},
+                                   {"flips_refused", r.flips_refused},
+                                   {"topology_refused", r.topology_refused},
+                                   {"stopped", r.stopped}};
+    for (const Repair& repair : repairsOf(loaded)) json[repair.key] = repair.count;
     fmt::print("{}\n", json.dump());
     return;
   }
@@ -86,17 +85,13 @@ void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
       "  error estimate of the coarsest level {:.4g} ({:.3g} % of the diagonal); {} flips "
       "refused\n",
       r.error, percent, r.flips_refused);
-  if (loaded.tidied.degenerate + loaded.tidied.unused > 0) {
-    fmt::print("  dropped: {} triangles with a vertex twice, {} unused vertices\n",
-               loaded.tidied.degenerate, loaded.tidied.unused);
-  }
+  if (const std::string mended = mendedText(loaded); !mended.empty()) fmt::print("  {}\n", mended);
 }
 
 int reduceMesh(const ReduceOptions& options) {
   if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
-  auto loaded = render::readMesh(options.input);
+  const auto loaded = loadMesh(options.input);
   if (!loaded) return fail(loaded.error());
-  render::ensureNormals(loaded->mesh);
   auto weights = weightsOf(options, loaded->mesh);
   if (!weights) return fail(weights.error());
   render::ReduceSettings settings = options.settings;
@@ -151,6 +146,8 @@ void addMeshReduce(CLI::App& mesh, Run& run) {
       ->type_name("FEATURE=W");
   command->add_flag("--preserve-topology", options->settings.preserve_topology,
                     "Refuse collapses that join or pinch off parts");
+  command->add_flag("--preserve-components", options->settings.preserve_components,
+                    "Keep a triangle of every part until nothing else can go");
   command->add_option("--triangles", options->settings.min_triangles, "Stop at so many triangles")
       ->capture_default_str();
   command

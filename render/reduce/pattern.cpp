@@ -24,7 +24,8 @@ Result<Reduction> reduceByPattern(const Mesh& mesh, const ReduceSettings& settin
   const auto space = PatternSpace::make(mesh, weights);
   if (!space) return space.error();
 
-  PatternReducer reducer(mesh, *space, settings.preserve_topology);
+  PatternReducer reducer(mesh, *space, settings.preserve_topology, settings.preserve_components);
+  bool components_stay = settings.preserve_components && !settings.preserve_topology;
   const double max_error =
       settings.max_error_percent / 100 * boundingBox(mesh.positions).diagonal();
   const char* stopped = nullptr;
@@ -32,7 +33,13 @@ Result<Reduction> reduceByPattern(const Mesh& mesh, const ReduceSettings& settin
     stopped = reasonToStop(reducer.triangles(), settings, mesh.triangleCount());
     if (stopped) break;
     const auto step = reducer.collapseShortest(max_error);
-    if (step == PatternReducer::Step::kNothingLeft) stopped = "nothing left to collapse";
+    if (step == PatternReducer::Step::kNothingLeft) {
+      if (components_stay)
+        reducer.releaseComponents();
+      else
+        stopped = "nothing left to collapse";
+      components_stay = false;
+    }
     if (step == PatternReducer::Step::kTooCoarse) stopped = "error";
     if (!stopped && progress && reducer.collapses() % kProgressInterval == 0 &&
         !progress({reducer.collapses(), reducer.triangles()})) {

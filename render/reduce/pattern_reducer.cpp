@@ -20,10 +20,12 @@ float dot(const float* a, const float* b) noexcept {
 
 }  // namespace
 
-PatternReducer::PatternReducer(const Mesh& mesh, const PatternSpace& space, bool preserve_topology)
+PatternReducer::PatternReducer(const Mesh& mesh, const PatternSpace& space, bool preserve_topology,
+                               bool preserve_components)
     : surface_(mesh),
       space_(space),
       preserve_topology_(preserve_topology),
+      preserve_components_(preserve_components),
       positions_(mesh.positions),
       features_(mesh.features),
       patterns_(mesh.vertexCount() * space.dimension()),
@@ -52,8 +54,7 @@ PatternReducer::Step PatternReducer::collapseShortest(double max_error) {
   while (!heap_.empty() && heap_.length(heap_.top()) < kNever) {
     const std::uint32_t edge = heap_.top();
     const Plan p = plan(edge);
-    const bool last = surface_.trianglesAt(p.a, p.b) == surface_.liveTriangles();
-    if (last || (preserve_topology_ && !surface_.linkCondition(p.a, p.b))) {
+    if (!mayGo(p)) {
       ++result_.report.topology_refused;
       lengthen(edge);
     } else if (flips(p)) {
@@ -67,6 +68,22 @@ PatternReducer::Step PatternReducer::collapseShortest(double max_error) {
     }
   }
   return Step::kNothingLeft;
+}
+
+// A last triangle stays, of all or of each component.
+bool PatternReducer::mayGo(const Plan& p) {
+  const std::size_t shared = surface_.trianglesAt(p.a, p.b);
+  if (shared == surface_.liveTriangles()) return false;
+  const std::size_t around = surface_.trianglesOf(p.a).size() + surface_.trianglesOf(p.b).size();
+  if (preserve_components_ && around == 2 * shared) return false;
+  return !preserve_topology_ || surface_.linkCondition(p.a, p.b);
+}
+
+void PatternReducer::releaseComponents() {
+  preserve_components_ = false;
+  for (std::uint32_t v = 0; v < node_.size(); ++v) {
+    for (const std::uint32_t e : surface_.edgesOf(v)) heap_.update(e, lengthOf(e));
+  }
 }
 
 // P6: both on the boundary, to the sharper corner; one, to it; none, to the middle.
@@ -166,8 +183,8 @@ void PatternReducer::mixFeatures(const Plan& p) {
   for (std::size_t f = 0; f < features_.size(); ++f) {
     float* a = &features_[f].values[p.a * features_[f].dimension];
     const float* b = &features_[f].values[p.b * features_[f].dimension];
-    for (std::size_t k = 0; k < features_[f].dimension; ++k)
-      a[k] = std::lerp(a[k], b[k], p.towards_b);
+    const float t = features_[f].name == "label" ? std::round(p.towards_b) : p.towards_b;
+    for (std::size_t k = 0; k < features_[f].dimension; ++k) a[k] = std::lerp(a[k], b[k], t);
   }
   Vec3 sum{};
   for (std::size_t i = 0; i < new_normals_.size(); ++i) sum[i % 3] += new_normals_[i];

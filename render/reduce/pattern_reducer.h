@@ -19,12 +19,16 @@ namespace merlin::render {
 
 class PatternReducer {
  public:
-  PatternReducer(const Mesh& mesh, const PatternSpace& space, bool preserve_topology);
+  PatternReducer(const Mesh& mesh, const PatternSpace& space, bool preserve_topology,
+                 bool preserve_components = false);
 
   enum class Step { kDone, kNothingLeft, kTooCoarse };
 
   // Collapses the shortest edge that may be, unless its error is more than `max_error`.
   Step collapseShortest(double max_error = std::numeric_limits<double>::infinity());
+
+  // From here on components may vanish. Measures all edges again.
+  void releaseComponents();
 
   std::size_t collapses() const noexcept { return result_.log.children.size(); }
   std::size_t triangles() const noexcept { return surface_.liveTriangles(); }
@@ -44,6 +48,7 @@ class PatternReducer {
 
   const float* position(std::uint32_t v) const noexcept { return &positions_[3 * std::size_t{v}]; }
   Plan plan(std::uint32_t edge) const;
+  bool mayGo(const Plan& plan);
   float sharpness(std::uint32_t v) const;
   bool flips(const Plan& plan);
   std::array<float, 2> planeDistances(const Plan& plan) const;
@@ -57,7 +62,7 @@ class PatternReducer {
 
   WorkingMesh surface_;
   const PatternSpace& space_;
-  bool preserve_topology_;
+  bool preserve_topology_, preserve_components_;
   std::vector<float> positions_;        // by vertex, as they move
   std::vector<Feature> features_;       // by vertex, as they change
   std::size_t normal_ = 0;              // index of "normal" in features_

@@ -94,7 +94,7 @@ Result<Ok> checkWeights(const Mesh& mesh, const Weights& weights, const PatternS
 Weights quadricWeights(const Mesh& mesh) {
   Weights weights{{"geometry", 1.0F}};
   for (const Feature& f : mesh.features) {
-    if (f.name != "normal" && f.name != "label") weights[f.name] = 0.01F;
+    if (f.name != "normal" && f.name != "label") weights[f.name] = 0.005F;
   }
   return weights;
 }
@@ -113,6 +113,9 @@ Result<Reduction> reduceByQuadric(const Mesh& mesh, const ReduceSettings& settin
     for (std::size_t k = 0; k < f.dimension; ++k)
       reducer.setChannel(c.first + k, f.values.data() + k, f.dimension, c.scale);
   }
+  // P12: as good as a colour of very high weight, unless somebody weighs it.
+  if (const Feature* label = mesh.find("label"); label && !space->find("label"))
+    reducer.setLabels(label->values.data());
   const auto by_percent = static_cast<std::size_t>(settings.min_percent / 100 *
                                                    static_cast<double>(mesh.triangleCount()));
   QuadricReducer::Limits limits;
@@ -120,6 +123,7 @@ Result<Reduction> reduceByQuadric(const Mesh& mesh, const ReduceSettings& settin
   limits.error =
       static_cast<float>(settings.max_error_percent / 100 * boundingBox(mesh.positions).diagonal());
   limits.preserve_topology = settings.preserve_topology;
+  limits.preserve_components = settings.preserve_components;
   limits.threads = threadsOr(settings.threads);
   const char* stopped = reducer.run(limits, progress);
 
@@ -130,6 +134,7 @@ Result<Reduction> reduceByQuadric(const Mesh& mesh, const ReduceSettings& settin
       result.log.features[f] = carryAlong(mesh, mesh.features[f], result.log);
   }
   for (const ChannelFeature& c : channels) {
+    if (mesh.features[c.feature].name == "label") continue;  // is never mixed
     const std::size_t d = mesh.features[c.feature].dimension;
     for (std::size_t k = 0; k < d; ++k) {
       const std::vector<float> values = reducer.channelValues(c.first + k, c.scale);

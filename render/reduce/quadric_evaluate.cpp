@@ -19,6 +19,9 @@ using Quad = float __attribute__((vector_size(16)));
 
 constexpr float kTiny = 1e-30F;
 constexpr float kLeastCost = 1e-22F;
+// Of a sharp vertex the mean of its faces' normals is shorter. A cone's is the sine of the angle
+// between its axis and its side.
+constexpr float kSharpMean = 0.6F;
 constexpr float kPull = 1e-5F;  // to the middle of the edge, in the quadric's trace
 
 MERLIN_INLINE Lanes all(float x) { return Lanes{x, x, x, x, x, x, x, x}; }
@@ -325,6 +328,11 @@ MERLIN_INLINE void evaluate(const QuadricView& view, std::uint32_t vertex, EdgeC
     closedFan(view, w, out);
   else
     anyStar(view, w, out);
+  const float* n = out.normal;
+  const float upright = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+  const auto faces = static_cast<float>(w.degree);
+  w.flags = static_cast<std::uint8_t>(w.flags & ~kSharp);
+  if (upright < kSharpMean * kSharpMean * faces * faces) w.flags |= kSharp;
   const float* block = nullptr;
   if (view.channels->count() > 0) {
     addChannels(view, vertex, out, small);

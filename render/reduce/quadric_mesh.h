@@ -35,7 +35,7 @@ struct alignas(64) QuadricVertex {
   std::uint32_t capacity;  // corners that its lines hold
   std::uint32_t next;      // in its bucket
   std::uint32_t node;      // of the log
-  float border_deviation;  // squared distance that old border points may be off by now
+  float deviation;         // squared distance that what it stands for may be off by now
   std::uint8_t flags;
   std::uint8_t part;  // that it belongs to
   std::uint16_t unused;
@@ -47,6 +47,7 @@ enum : std::uint8_t {
   kDead = 2,    // merged into another; its record then holds a NodeRecord
   kIdle = 4,    // no legal edge; back in the queue when its neighbourhood changes
   kInside = 8,  // its whole ring is in its part
+  kSharp = 16,  // a thin tip or a knife's edge: its faces' normals cancel
 };
 
 // What a collapse made, kept in the dead vertex' record over position and h.

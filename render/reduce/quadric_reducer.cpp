@@ -49,6 +49,11 @@ void QuadricReducer::setChannel(std::size_t channel, const float* values, std::s
   }
 }
 
+void QuadricReducer::setLabels(const float* values) {
+  labels_.resize(mesh_.vertexCount());
+  for (std::uint32_t v = 0; v < mesh_.vertexCount(); ++v) labels_[v] = values[mesh_.inputOf(v)];
+}
+
 void QuadricReducer::enqueue(Worker& w, std::uint32_t v) {
   const float cost = w.costs.cost[w.costs.cheapest()];
   if (cost >= kNoEdge)
@@ -80,14 +85,21 @@ void QuadricReducer::reduceTo(Worker& w, std::size_t removed, std::size_t bucket
   }
 }
 
-// Raises the edge's cost where it is a border's, once. Returns whether it did.
-bool QuadricReducer::guardBorder(Worker& w, std::uint32_t v, std::uint32_t edge) {
+// Raises the edge's cost where area does not say what is lost, once. Returns whether it did.
+bool QuadricReducer::guard(Worker& w, std::uint32_t v, std::uint32_t edge) {
   float& deviation = w.costs.deviation[edge];
   if (deviation >= 0) return false;
   deviation = 0;
-  if (!((mesh_[v].flags | mesh_[w.costs.neighbour[edge]].flags) & kOpen)) return false;
-  deviation = borderDeviation(view(), v, w.costs, edge);
-  w.costs.cost[edge] = std::max(w.costs.cost[edge], borderCost(deviation));
+  const QuadricVertex &a = mesh_[v], &x = mesh_[w.costs.neighbour[edge]];
+  const std::uint8_t flags = a.flags | x.flags;
+  if (flags & kOpen) deviation = borderDeviation(view(), v, w.costs, edge);
+  if ((flags & kSharp) || a.deviation > 0 || x.deviation > 0)
+    deviation = std::max(deviation, tipDeviation(view(), v, w.costs, edge));
+  if (stage_ <= QuadricStage::kNoLock && vanishes(view(), v, w.costs, edge))
+    deviation = std::max(deviation, reachOf(w.costs) + std::max(a.deviation, x.deviation));
+  const float least = deviationCost(deviation);
+  if (!(least > w.costs.cost[edge])) return false;
+  w.costs.cost[edge] = least;
   return true;
 }
 
@@ -111,7 +123,7 @@ void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
     }
     const std::uint32_t x = costs.neighbour[edge];
     __builtin_prefetch(mesh_.corners(mesh_[x].star));
-    if (guardBorder(w, v, edge)) continue;
+    if (guard(w, v, edge)) continue;
     if (mayCollapse(w, v, edge)) {
       collapse(w, v, edge);
       return;
@@ -124,6 +136,13 @@ bool QuadricReducer::mayCollapse(Worker& w, std::uint32_t v, std::uint32_t edge)
   if (w.inside_only && !(mesh_[w.costs.neighbour[edge]].flags & kInside)) return false;
   // The last triangle stays. (A part keeps some by the first stage's rules.)
   if (!w.inside_only && w.costs.shared[edge] >= triangles_ - w.removed) return false;
+  const bool locked = stage_ == QuadricStage::kAll && !labels_.empty() &&
+                      labels_[v] != labels_[w.costs.neighbour[edge]];
+  if (locked ||
+      (keep_components_ && stage_ <= QuadricStage::kNoLock && vanishes(view(), v, w.costs, edge))) {
+    ++w.links;
+    return false;
+  }
   const Verdict verdict = judge(view(), v, w.costs, edge, stage_);
   if (verdict != Verdict::kLegal) {
     ++(verdict == Verdict::kFlip ? w.flips : w.links);
@@ -149,9 +168,9 @@ void QuadricReducer::collapse(Worker& w, std::uint32_t v, std::uint32_t edge) {
   mergeStars(w, v, x);
   QuadricVertex &a = mesh_[v], &b = mesh_[x];
   a.flags |= b.flags & kOpen;
-  if (stage_ != QuadricStage::kAll) a.flags |= kOpen;
+  if (stage_ > QuadricStage::kNoLock) a.flags |= kOpen;
   b.flags |= kDead;
-  a.border_deviation = std::max({a.border_deviation, b.border_deviation, w.costs.deviation[edge]});
+  a.deviation = std::max({a.deviation, b.deviation, w.costs.deviation[edge]});
   a.position[0] += w.costs.x[edge];
   a.position[1] += w.costs.y[edge];
   a.position[2] += w.costs.z[edge];
@@ -223,7 +242,7 @@ void QuadricReducer::renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_
     star[kept++] = c;
   }
   ring.degree = kept;
-  if (stage_ != QuadricStage::kAll) ring.flags |= kOpen;
+  if (stage_ > QuadricStage::kNoLock) ring.flags |= kOpen;
 }
 
 // The neighbours that had no legal edge may have one now.
@@ -388,6 +407,7 @@ void QuadricReducer::reduceWhole(std::size_t keep, const Progress& progress) {
 const char* QuadricReducer::run(const Limits& limits, const Progress& progress) {
   threads_ = std::max(1U, limits.threads);
   max_error_ = limits.error * mesh_.scale();
+  keep_components_ = limits.preserve_topology || limits.preserve_components;
   const std::size_t keep = std::max<std::size_t>(limits.triangles, 1);
   planParts();
   if (const std::size_t left = leftByParts(triangles_, keep);
@@ -396,11 +416,14 @@ const char* QuadricReducer::run(const Limits& limits, const Progress& progress) 
   else
     whole_.room = mesh_.freeRoom();
   whole_.log = log_.data();
-  const auto stages = {QuadricStage::kAll, QuadricStage::kNoLink, QuadricStage::kNoFlips};
+  const auto stages = {QuadricStage::kAll, QuadricStage::kNoLock, QuadricStage::kNoLink,
+                       QuadricStage::kNoFlips};
   for (const QuadricStage stage : stages) {
     if (triangles_ <= keep || cancelled_) break;
     // What is left after an error's limit is not what rules are in the way of.
-    if (stage != QuadricStage::kAll && (limits.preserve_topology || whole_.too_coarse)) break;
+    if (stage != QuadricStage::kAll && whole_.too_coarse) break;
+    if (stage == QuadricStage::kNoLock && labels_.empty()) continue;
+    if (stage > QuadricStage::kNoLock && limits.preserve_topology) break;
     stage_ = stage;
     reduceWhole(keep, progress);
   }

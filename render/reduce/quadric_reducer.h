@@ -30,10 +30,13 @@ class QuadricReducer {
   // units a difference of 1 weighs.
   void setChannel(std::size_t channel, const float* values, std::size_t stride, float scale);
 
+  // One a vertex of the mesh; vertices of different labels merge only when nothing else is left.
+  void setLabels(const float* values);
+
   struct Limits {
     std::size_t triangles = 0;                             // stop when no more are left; 0: none
     float error = std::numeric_limits<float>::infinity();  // no collapse is worse; model units
-    bool preserve_topology = false;
+    bool preserve_topology = false, preserve_components = false;
     unsigned threads = 1;
   };
   // Returns why it stopped, in reduce()'s words.
@@ -75,7 +78,7 @@ class QuadricReducer {
   void reduceTo(Worker& w, std::size_t removed, std::size_t bucket_limit);
   void tryVertex(Worker& w, std::uint32_t v);
   bool mayCollapse(Worker& w, std::uint32_t v, std::uint32_t edge);
-  bool guardBorder(Worker& w, std::uint32_t v, std::uint32_t edge);
+  bool guard(Worker& w, std::uint32_t v, std::uint32_t edge);
   float errorOf(const Worker& w, std::uint32_t v, std::uint32_t edge) const;
   void collapse(Worker& w, std::uint32_t v, std::uint32_t edge);
   void mixChannels(std::uint32_t v, std::uint32_t x, const EdgeCosts& costs, std::uint32_t edge);
@@ -93,6 +96,8 @@ class QuadricReducer {
 
   QuadricMesh mesh_;
   QuadricChannels channels_;
+  std::vector<float> labels_;  // empty where there are none
+  bool keep_components_ = false;
   std::vector<Range> ranges_;  // of the channels: no value leaves them
   EvaluateEdges evaluate_;
   HugeArray<std::uint32_t> log_;

@@ -9,12 +9,20 @@ namespace merlin::render {
 
 // Rules fall one after another once nothing is left that they allow.
 enum class QuadricStage : std::uint8_t {
-  kAll,      // topology stays (link condition), every component keeps a triangle, no face flips
-  kNoLink,   // parts may join or pinch off, holes close
+  kAll,      // topology stays (link condition), labels do not mix, no face flips
+  kNoLock,   // labels may mix
+  kNoLink,   // parts may join or pinch off, holes close, components vanish
   kNoFlips,  // faces may flip
 };
 
 enum class Verdict : std::uint8_t { kLegal, kLink, kFlip };
+
+// Whether a collapse leaves no surface of a component, or only a tetrahedron folded flat.
+bool vanishes(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs, std::uint32_t edge);
+
+// Squared length of the longest edge at w's neighbour and at w itself: how far what vanishes
+// reaches.
+float reachOf(const EdgeCosts& costs);
 
 // Whether w may collapse with its neighbour number `edge` of `costs`. Pure.
 Verdict judge(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs, std::uint32_t edge,
@@ -25,7 +33,12 @@ Verdict judge(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs, 
 float borderDeviation(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
                       std::uint32_t edge);
 
-// What an edge costs at least whose border deviation (squared) is this.
-inline float borderCost(float deviation) { return 30 * deviation * deviation; }
+// Squared distance of both ends, and of what they stand for, to the new vertex' star. A thin tip
+// has little area, so that the quadric sees little of its loss; so it is watched by distance.
+float tipDeviation(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
+                   std::uint32_t edge);
+
+// What an edge costs at least whose deviation (squared) is this.
+inline float deviationCost(float deviation) { return 30 * deviation * deviation; }
 
 }  // namespace merlin::render

@@ -23,7 +23,10 @@ struct ReduceSettings {
   std::string cost = "quadric";    // of costs()
   Weights weights{};               // empty: the cost's own
   bool preserve_topology = false;  // refuse collapses that join or pinch off parts (P11)
-  unsigned threads = 0;            // 0: as many as the machine has; the result is the same
+  // Keep of every component a triangle as long as anything else can go; without it what is smaller
+  // than the error goes as well.
+  bool preserve_components = false;
+  unsigned threads = 0;  // 0: as many as the machine has; the result is the same
 
   // When to stop, whichever comes first (P10): as soon as no more triangles are left than these,
   // and before the error would be larger. As they stand: when nothing legal is left.

@@ -94,6 +94,19 @@ TEST(Quadric, IsTheSameBytesForAnyNumberOfThreads) {
   }
 }
 
+// A needle on hills: no area to speak of, but height.
+TEST(Quadric, AThinTipStays) {
+  Mesh mesh = test::grid(100, 100);
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+    const float x = mesh.positions[3 * v] - 50, y = mesh.positions[3 * v + 1] - 50;
+    mesh.positions[3 * v + 2] =
+        std::max(0.0F, 40 * (1 - std::hypot(x, y) / 1.5F)) + 2 * std::sin(x) * std::sin(0.7F * y);
+  }
+  mesh = withNormals(mesh);
+  const Box box = boundingBox(levelOf(mesh, reduced(mesh), 200).positions);
+  EXPECT_GT(box.high[2], 39.5F);  // without a guard 26 and less
+}
+
 TEST(Quadric, SeamsOfItsPartsAreNotSeen) {
   const Mesh mesh = wide();
   const Mesh coarse = levelOf(mesh, reduced(mesh), mesh.triangleCount() / 50);
@@ -109,23 +122,57 @@ TEST(Quadric, SeamsOfItsPartsAreNotSeen) {
   EXPECT_LT(*std::max_element(fields.begin(), fields.end()), 3 * mean);
 }
 
-TEST(Quadric, ComponentsStayUntilNothingElseIsLeft) {
+// A sphere and 20 specks of a hundredth of its size.
+Mesh specks() {
   Mesh mesh = test::sphere(4);
   for (int i = 0; i < 20; ++i) {
     Mesh speck = test::cube();
     for (float& x : speck.positions) x *= 0.01F;
     mesh = test::together(mesh, test::moved(speck, 2 + 0.1F * static_cast<float>(i), 0, 0));
   }
-  mesh = withNormals(mesh);
-  const Reduction r = reduced(mesh);
+  return withNormals(mesh);
+}
+
+// Of specks().
+std::size_t specksLeft(const Mesh& mesh, const Reduction& r) {
   const Mesh coarse = levelOf(mesh, r, 120);
   std::set<int> alive;
   for (std::size_t v = 0; v < coarse.vertexCount(); ++v) {
     if (coarse.positions[3 * v] > 1.5F)
       alive.insert(static_cast<int>(std::lround((coarse.positions[3 * v] - 2) * 10)));
   }
-  EXPECT_EQ(alive.size(), 20u);
+  return alive.size();
+}
+
+TEST(Quadric, ComponentsStayUntilNothingElseIsLeft) {
+  const Mesh mesh = specks();
+  const Reduction r = reduced(mesh, {.preserve_components = true});
+  EXPECT_EQ(specksLeft(mesh, r), 20u);
   EXPECT_LE(r.report.triangles, 2u);  // but for the last ones all may go
+}
+
+TEST(Quadric, WhatIsSmallerThanTheErrorVanishes) {
+  const Mesh mesh = specks();
+  EXPECT_EQ(specksLeft(mesh, reduced(mesh)), 0u);
+}
+
+TEST(Quadric, LabelsLock) {
+  Mesh mesh = withNormals(test::noisyGrid(20, 20, 0.3, 5));
+  Feature label{"label", 1, {}};
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v)
+    label.values.push_back(static_cast<float>(v * 7919 % 13 < 2));  // scattered
+  mesh.features.push_back(label);
+  const Reduction r = reduced(mesh);
+  // As long as anything else can go, no node has children of both labels.
+  const auto labelOf = [&](std::uint32_t n) {
+    return n < mesh.vertexCount() ? label.values[n] : r.log.features[1][n - mesh.vertexCount()];
+  };
+  std::size_t k = 0;
+  while (k < r.log.children.size() &&
+         labelOf(r.log.children[k][0]) == labelOf(r.log.children[k][1]))
+    ++k;
+  EXPECT_GT(k, mesh.vertexCount() / 2);
+  EXPECT_LT(k, r.log.children.size());
 }
 
 TEST(Quadric, TopologyIsKeptWhereAsked) {
@@ -243,7 +290,8 @@ TEST(Quadric, AnyModalityWithAWeightIsKept) {
 
 TEST(Quadric, LabelsAreNeverMixed) {
   const Mesh mesh = step("label");
-  for (const float x : reduced(mesh).log.features[1]) EXPECT_TRUE(x == 0 || x == 1) << x;
+  const Reduction r = reduced(mesh);
+  for (const float x : r.log.features[1]) EXPECT_TRUE(x == 0 || x == 1) << x;
 }
 
 TEST(Quadric, WeightsOfThePatternAreRefused) {
