@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "daemon/base/blocks.h"
+#include "render/mesh/places.h"
 #include "render/reduce/costs.h"
 #include "render/reduce/quadric_reducer.h"
 
@@ -89,6 +90,18 @@ Result<Ok> checkWeights(const Mesh& mesh, const Weights& weights, const PatternS
   return Ok{};
 }
 
+// Those of the settings, and both sides of a seam, so that it does not gape; empty: none.
+std::vector<bool> lockedVertices(const Mesh& mesh, const ReduceSettings& settings) {
+  std::vector<bool> locked = settings.locked;
+  const std::vector<std::uint32_t> next = samePlace(mesh.positions);
+  for (std::uint32_t v = 0; v < next.size(); ++v) {
+    if (next[v] == v) continue;
+    locked.resize(next.size());
+    locked[v] = true;
+  }
+  return locked;
+}
+
 }  // namespace
 
 Weights quadricWeights(const Mesh& mesh) {
@@ -116,6 +129,8 @@ Result<Reduction> reduceByQuadric(const Mesh& mesh, const ReduceSettings& settin
   // P12: as good as a colour of very high weight, unless somebody weighs it.
   if (const Feature* label = mesh.find("label"); label && !space->find("label"))
     reducer.setLabels(label->values.data());
+  const std::vector<bool> locked = lockedVertices(mesh, settings);
+  if (!locked.empty()) reducer.lock(locked);
   const auto by_percent = static_cast<std::size_t>(settings.min_percent / 100 *
                                                    static_cast<double>(mesh.triangleCount()));
   QuadricReducer::Limits limits;

@@ -92,13 +92,16 @@ QuadricMesh::QuadricMesh(const Mesh& mesh) : scale_(scaleOf(mesh)) {
   for (std::uint32_t v = 0; v < n; ++v) numbers[input_[v]] = v;
   vertices_ = HugeArray<QuadricVertex>(n);
   for (std::uint32_t v = 0; v < n; ++v) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      vertices_[v].position[k] =
-          (mesh.positions[3 * std::size_t{input_[v]} + k] - centre_[k]) * scale_;
-    }
+    const auto place = toWorking(&mesh.positions[3 * std::size_t{input_[v]}]);
+    std::copy(place.begin(), place.end(), vertices_[v].position);
     vertices_[v].node = v;
   }
   fillStars(mesh, numbers);
+}
+
+std::array<float, 3> QuadricMesh::toWorking(const float* model) const noexcept {
+  return {(model[0] - centre_[0]) * scale_, (model[1] - centre_[1]) * scale_,
+          (model[2] - centre_[2]) * scale_};
 }
 
 std::array<float, 3> QuadricMesh::toModel(const float* position) const noexcept {

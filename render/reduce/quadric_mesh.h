@@ -43,11 +43,12 @@ struct alignas(64) QuadricVertex {
 static_assert(sizeof(QuadricVertex) == 64);
 
 enum : std::uint8_t {
-  kOpen = 1,    // its star is no closed fan: a border, or no manifold
-  kDead = 2,    // merged into another; its record then holds a NodeRecord
-  kIdle = 4,    // no legal edge; back in the queue when its neighbourhood changes
-  kInside = 8,  // its whole ring is in its part
-  kSharp = 16,  // a thin tip or a knife's edge: its faces' normals cancel
+  kOpen = 1,     // its star is no closed fan: a border, or no manifold
+  kDead = 2,     // merged into another; its record then holds a NodeRecord
+  kIdle = 4,     // no legal edge; back in the queue when its neighbourhood changes
+  kInside = 8,   // its whole ring is in its part
+  kLocked = 32,  // stays where it is
+  kSharp = 16,   // a thin tip or a knife's edge: its faces' normals cancel
 };
 
 // What a collapse made, kept in the dead vertex' record over position and h.
@@ -93,6 +94,7 @@ class QuadricMesh {
   std::uint32_t inputOf(std::uint32_t v) const noexcept { return input_[v]; }
 
   float scale() const noexcept { return scale_; }  // mean edges in a model unit
+  std::array<float, 3> toWorking(const float* model) const noexcept;
   std::array<float, 3> toModel(const float* position) const noexcept;
   StarRoom freeRoom() const { return {used_, static_cast<std::uint32_t>(stars_.size())}; }
   void dropStars() { stars_ = {}; }

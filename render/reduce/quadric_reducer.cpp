@@ -31,6 +31,7 @@ float trace(const float* h) { return h[0] + h[3] + h[5]; }
 
 QuadricReducer::QuadricReducer(const Mesh& mesh, std::size_t channels)
     : mesh_(mesh),
+      input_positions_(mesh.positions.data()),
       channels_(mesh.vertexCount(), channels),
       ranges_(channels),
       evaluate_(edgeEvaluator()),
@@ -52,6 +53,15 @@ void QuadricReducer::setChannel(std::size_t channel, const float* values, std::s
 void QuadricReducer::setLabels(const float* values) {
   labels_.resize(mesh_.vertexCount());
   for (std::uint32_t v = 0; v < mesh_.vertexCount(); ++v) labels_[v] = values[mesh_.inputOf(v)];
+}
+
+void QuadricReducer::lock(const std::vector<bool>& locked) {
+  pinned_.assign(2 * std::size_t{mesh_.vertexCount()}, kNowhere);
+  for (std::uint32_t v = 0; v < mesh_.vertexCount(); ++v) {
+    if (!locked[mesh_.inputOf(v)]) continue;
+    mesh_[v].flags |= kLocked;
+    pinned_[mesh_.inputOf(v)] = mesh_.inputOf(v);
+  }
 }
 
 void QuadricReducer::enqueue(Worker& w, std::uint32_t v) {
@@ -92,15 +102,16 @@ bool QuadricReducer::guard(Worker& w, std::uint32_t v, std::uint32_t edge) {
   deviation = 0;
   const QuadricVertex &a = mesh_[v], &x = mesh_[w.costs.neighbour[edge]];
   const std::uint8_t flags = a.flags | x.flags;
+  const float before = w.costs.cost[edge];
+  if ((flags & kLocked) && stage_ <= QuadricStage::kNoLock) stayAtLocked(view(), v, w.costs, edge);
   if (flags & kOpen) deviation = borderDeviation(view(), v, w.costs, edge);
   if ((flags & kSharp) || a.deviation > 0 || x.deviation > 0)
     deviation = std::max(deviation, tipDeviation(view(), v, w.costs, edge));
   if (stage_ <= QuadricStage::kNoLock && vanishes(view(), v, w.costs, edge))
     deviation = std::max(deviation, reachOf(w.costs) + std::max(a.deviation, x.deviation));
   const float least = deviationCost(deviation);
-  if (!(least > w.costs.cost[edge])) return false;
-  w.costs.cost[edge] = least;
-  return true;
+  w.costs.cost[edge] = std::max(w.costs.cost[edge], least);
+  return w.costs.cost[edge] > before;
 }
 
 void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
@@ -167,13 +178,13 @@ void QuadricReducer::collapse(Worker& w, std::uint32_t v, std::uint32_t edge) {
   if (channels_.count() > 0) mixChannels(v, x, w.costs, edge);
   mergeStars(w, v, x);
   QuadricVertex &a = mesh_[v], &b = mesh_[x];
-  a.flags |= b.flags & kOpen;
+  const bool to_b = (b.flags & kLocked) && stage_ <= QuadricStage::kNoLock;
+  a.flags |= b.flags & (kOpen | kLocked);
   if (stage_ > QuadricStage::kNoLock) a.flags |= kOpen;
   b.flags |= kDead;
   a.deviation = std::max({a.deviation, b.deviation, w.costs.deviation[edge]});
-  a.position[0] += w.costs.x[edge];
-  a.position[1] += w.costs.y[edge];
-  a.position[2] += w.costs.z[edge];
+  const float step[] = {w.costs.x[edge], w.costs.y[edge], w.costs.z[edge]};
+  for (int k = 0; k < 3; ++k) a.position[k] = to_b ? b.position[k] : a.position[k] + step[k];
   NodeRecord record{
       {a.node, b.node}, {a.position[0], a.position[1], a.position[2]}, error, {0, 0, 0}};
   a.node = mesh_.vertexCount() + x;
@@ -434,6 +445,20 @@ const char* QuadricReducer::run(const Limits& limits, const Progress& progress) 
 
 // --- the result ----------------------------------------------------------------------------------
 
+// A node that stands where a locked vertex was is there to the last bit, so that seams fit.
+void QuadricReducer::pin(std::size_t k, const std::array<std::uint32_t, 2>& children,
+                         const float* position, std::array<float, 3>& p) {
+  for (const std::uint32_t child : children) {
+    const std::uint32_t v = pinned_[child];
+    if (v == kNowhere) continue;
+    const auto place = mesh_.toWorking(&input_positions_[3 * std::size_t{v}]);
+    if (!std::equal(place.begin(), place.end(), position)) continue;
+    std::copy_n(&input_positions_[3 * std::size_t{v}], 3, p.begin());
+    pinned_[mesh_.vertexCount() + k] = v;
+    return;
+  }
+}
+
 Reduction QuadricReducer::finish(const Mesh& mesh) {
   mesh_.dropStars();
   const std::uint32_t vertices = mesh_.vertexCount();
@@ -457,7 +482,8 @@ Reduction QuadricReducer::finish(const Mesh& mesh) {
     NodeRecord r;
     std::memcpy(&r, static_cast<const void*>(mesh_[log_[k]].position), sizeof r);
     log.children.push_back({node(r.children[0]), node(r.children[1])});
-    const auto p = mesh_.toModel(r.position);
+    auto p = mesh_.toModel(r.position);
+    if (!pinned_.empty()) pin(k, log.children.back(), r.position, p);
     log.positions.insert(log.positions.end(), p.begin(), p.end());
     log.error.push_back(r.error / mesh_.scale());
     const float length = std::hypot(r.normal[0], r.normal[1], r.normal[2]);

@@ -23,7 +23,7 @@ class QuadricReducer {
  public:
   using Progress = std::function<bool(const ReduceProgress&)>;
 
-  // `channels`: how many values a vertex has that cost.
+  // `channels`: how many values a vertex has that cost. The mesh must outlive this.
   QuadricReducer(const Mesh& mesh, std::size_t channels);
 
   // Values of a channel, of the mesh's vertices `stride` floats apart. `scale`: how many model
@@ -32,6 +32,9 @@ class QuadricReducer {
 
   // One a vertex of the mesh; vertices of different labels merge only when nothing else is left.
   void setLabels(const float* values);
+
+  // Of the mesh's vertices: these stay where they are until nothing else is left.
+  void lock(const std::vector<bool>& locked);
 
   struct Limits {
     std::size_t triangles = 0;                             // stop when no more are left; 0: none
@@ -94,9 +97,15 @@ class QuadricReducer {
   void requeue();
   void reduceWhole(std::size_t keep, const Progress& progress);
 
+  static constexpr std::uint32_t kNowhere = ~std::uint32_t{0};
+  void pin(std::size_t k, const std::array<std::uint32_t, 2>& children, const float* position,
+           std::array<float, 3>& p);
+
   QuadricMesh mesh_;
+  const float* input_positions_;  // the mesh's, which outlives this
   QuadricChannels channels_;
-  std::vector<float> labels_;  // empty where there are none
+  std::vector<float> labels_;          // empty where there are none
+  std::vector<std::uint32_t> pinned_;  // by node: the locked vertex that it stands on; if any are
   bool keep_components_ = false;
   std::vector<Range> ranges_;  // of the channels: no value leaves them
   EvaluateEdges evaluate_;

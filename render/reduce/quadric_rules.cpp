@@ -163,6 +163,23 @@ Verdict judge(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs, 
   return Verdict::kLegal;
 }
 
+void stayAtLocked(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, std::uint32_t edge) {
+  const QuadricVertex &a = view.vertices[w], &x = view.vertices[costs.neighbour[edge]];
+  if (a.flags & x.flags & kLocked) {
+    costs.cost[edge] = kNoEdge;
+    return;
+  }
+  const float r[] = {costs.rx[edge], costs.ry[edge], costs.rz[edge]};
+  const bool here = a.flags & kLocked;
+  const float* h = here ? x.h : a.h;  // of the end that goes
+  costs.x[edge] = here ? 0 : r[0];
+  costs.y[edge] = here ? 0 : r[1];
+  costs.z[edge] = here ? 0 : r[2];
+  const float cost = r[0] * (h[0] * r[0] + 2 * (h[1] * r[1] + h[2] * r[2])) +
+                     r[1] * (h[3] * r[1] + 2 * (h[4] * r[2])) + h[5] * r[2] * r[2];
+  costs.cost[edge] = std::max(costs.cost[edge], std::min(cost, kNoEdge));
+}
+
 float borderDeviation(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
                       std::uint32_t edge) {
   const std::uint32_t ends[] = {w, costs.neighbour[edge]};

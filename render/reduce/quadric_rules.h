@@ -10,7 +10,7 @@ namespace merlin::render {
 // Rules fall one after another once nothing is left that they allow.
 enum class QuadricStage : std::uint8_t {
   kAll,      // topology stays (link condition), labels do not mix, no face flips
-  kNoLock,   // labels may mix
+  kNoLock,   // labels may mix, what is locked stays
   kNoLink,   // parts may join or pinch off, holes close, components vanish
   kNoFlips,  // faces may flip
 };
@@ -27,6 +27,10 @@ float reachOf(const EdgeCosts& costs);
 // Whether w may collapse with its neighbour number `edge` of `costs`. Pure.
 Verdict judge(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs, std::uint32_t edge,
               QuadricStage stage);
+
+// Puts the new vertex where the locked end is, and says what that costs (of the channels what they
+// cost at their best place). kNoEdge where both ends are locked.
+void stayAtLocked(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, std::uint32_t edge);
 
 // Squared distance of the two ends that lie on a border, and of what they stand for, to the border
 // as it would be. A border loses little area where a flap is worn off; so it is watched by length.

@@ -26,7 +26,9 @@ struct ReduceSettings {
   // Keep of every component a triangle as long as anything else can go; without it what is smaller
   // than the error goes as well.
   bool preserve_components = false;
-  unsigned threads = 0;  // 0: as many as the machine has; the result is the same
+  std::vector<bool> locked{};  // quadric: of the mesh's vertices, those that stay where they are as
+                               // long as anything else can go; empty: none but those of seams
+  unsigned threads = 0;        // 0: as many as the machine has; the result is the same
 
   // When to stop, whichever comes first (P10): as soon as no more triangles are left than these,
   // and before the error would be larger. As they stand: when nothing legal is left.
