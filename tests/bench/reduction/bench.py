@@ -25,7 +25,8 @@ PEERS = [
     ("CGAL Garland-Heckbert", "bench_cgal", "gh", "", "libcgal-dev"),
     ("OpenMesh quadric", "bench_openmesh", "quadric", "", "libopenmesh-dev"),
     ("VTK quadric", "bench_vtk", "plain", "", "libvtk9-dev"),
-    ("VTK quadric, colour", "bench_vtk", "colour", "colour", "libvtk9-dev"),
+    ("VTK quadric, colour", "bench_vtk", "colour=0.01", "colour", "libvtk9-dev"),
+    ("VTK quadric, less colour", "bench_vtk", "colour=0.003", "colour", "libvtk9-dev"),
 ]
 
 # name, cost, threads, weights, what it needs of the mesh
@@ -76,6 +77,7 @@ class Bench:
         for folder in (self.work, self.memo):
             folder.mkdir(parents=True, exist_ok=True)
         self.missing = set()
+        self.seen = {}  # errors of this run by the bytes of the file
 
     # Meshes
 
@@ -93,8 +95,8 @@ class Bench:
         wanted = SCANS if self.options.data.is_dir() else []
         if self.options.quick or not wanted:
             wanted = [scan for scan in SCANS if scan[0] == "ankylosaurus"]
-        if self.options.only_given and self.options.meshes:
-            wanted = []
+        if self.options.scans is not None:
+            wanted = [scan for scan in wanted if scan[0] in self.options.scans.split(",")]
         for name, source_of in wanted:
             made = self.work / f"{name}.source.ply"
             yield self.prepare(name, source_of(self.options.data, made) or made)
@@ -114,7 +116,7 @@ class Bench:
 
     def run_peer(self, peer, mesh, level):
         name, program, variant, _, _ = peer
-        out = self.work / f"{mesh['name']}.{program}.{variant}.{level}.ply"
+        out = self.work / f"{mesh['sha']}.{program}.{variant}.{level:g}.ply"
         command = [self.programs / program, variant, mesh["path"], target(mesh, level), out]
 
         def run():
@@ -129,7 +131,7 @@ class Bench:
 
     def run_cost(self, cost, mesh):
         name, kind, threads, weights, _ = cost
-        out = self.work / f"{mesh['name']}.{name.replace(', ', '.').replace(' ', '')}"
+        out = self.work / f"{mesh['sha']}.{name.replace(', ', '.').replace(' ', '')}"
         targets = {level: target(mesh, level) for level in self.options.levels}
         line = line_of([self.programs / "bench_merlin", kind, threads, weights, mesh["path"], out,
                         *targets.values()])
@@ -157,21 +159,15 @@ class Bench:
 
     def rounds(self, mesh):
         """rows[name, level]: the first run's line, with the least seconds of all rounds."""
-        rows, slow = {}, set()
+        rows, done = {}, set()
         for number in range(self.options.rounds):
             for job, (name, run) in enumerate(self.jobs(mesh)):
-                if job in slow:
+                if job in done:
                     continue
                 for level, line in run().items():
-                    row = rows.setdefault((name, level), line)
-                    if "skipped" in line or number == 0:
-                        slow.update({job} if "skipped" in line else ())
-                        if line.get("seconds", 0) > self.options.slow:
-                            slow.add(job)  # its first seconds have to do
-                        continue
-                    for key in row:
-                        if key.endswith("seconds"):
-                            row[key] = min(row[key], line[key])
+                    keep_least(rows.setdefault((name, level), line), line)
+                    if line.get("seconds", self.options.slow + 1) > self.options.slow:
+                        done.add(job)  # so long that one run has to do, or skipped
             note(f"{mesh['name']}: round {number + 1} of {self.options.rounds}")
         return rows
 
@@ -181,17 +177,19 @@ class Bench:
         def run():
             return line_of([self.merlin, "mesh", "compare", mesh["path"], line["file"], "--json",
                             "--width", self.options.width])
-        answer = self.remembered(f"{mesh['sha']} {digest(line['file'])} {self.options.width}", run)
+        sha = digest(line["file"])
+        key = f"{mesh['sha']} {sha} {self.options.width}"
+        if key not in self.seen:
+            self.seen[key] = self.remembered(key, run)
+        answer = self.seen[key]
         if "skipped" in answer:
             return {"skipped": answer["skipped"]}
         return {"rms": answer["rms_percent"], "max": answer["max_low_percent"],
                 "max_high": answer["max_high_percent"], "colour": answer["colour_rms_255"],
-                "sha": digest(line["file"])}
+                "sha": sha}
 
     def measure(self, mesh):
-        note(f"{mesh['name']}: {mesh['triangles']} triangles, {mesh['components']} components, "
-             f"{mesh['border_edges']} border edges, {mesh['split_vertices']} vertices split, "
-             f"{mesh['non_manifold_edges']} non-manifold edges")
+        note(f"{mesh['name']}: " + report.kind(mesh))
         rows = []
         for (name, level), line in self.rounds(mesh).items():
             row = {"mesh": mesh["name"], "level": level, "target": target(mesh, level),
@@ -206,20 +204,28 @@ class Bench:
         return rows
 
 
+def keep_least(row, line):
+    """Into the row the least seconds of both."""
+    for key in row.keys() & line.keys():
+        if key.endswith("seconds"):
+            row[key] = min(row[key], line[key])
+
+
 def target(mesh, level):
     return int(mesh["triangles"] * level / 100)
 
 
 def options_of():
     parser = argparse.ArgumentParser(prog="./dev bench reduction", description=__doc__)
-    parser.add_argument("meshes", nargs="*", metavar="MESH", help="PLY or OBJ files beside the scans")
+    parser.add_argument("meshes", nargs="*", metavar="MESH", help="PLY or OBJ, beside the scans")
     parser.add_argument("--quick", action="store_true",
                         help="the repository's own model, and MESH, in two rounds")
-    parser.add_argument("--only-given", action="store_true", help="MESH alone")
+    parser.add_argument("--scans", metavar="NAME,...", help="of " + ", ".join(
+        name for name, _ in SCANS) + "; all that are there unless told, none where empty")
     parser.add_argument("--levels", default="10,5,1", help="percent of the triangles kept")
     parser.add_argument("--rounds", type=int, help="3, and 2 with --quick")
-    parser.add_argument("--slow", type=float, default=5,
-                        help="who needs more seconds runs in the first round only")
+    parser.add_argument("--slow", type=float,
+                        help="who needs more seconds runs in the first round only; 5, --quick: 0.5")
     parser.add_argument("--width", default="0.005",
                         help="of the certified maximum's interval, percent of the diagonal")
     parser.add_argument("--reuse", action="store_true",
@@ -231,25 +237,32 @@ def options_of():
     options = parser.parse_args()
     options.levels = [float(level) for level in options.levels.split(",")]
     options.rounds = options.rounds or (2 if options.quick else 3)
+    options.slow = options.slow or (0.5 if options.quick else 5)
     return options
+
+
+def figures(meshes, rows):
+    return {"meshes": meshes, "rows": rows, "summary": report.summary(rows)}
+
+
+def write(out, meshes, rows, missing):
+    (out / "table.txt").write_text(report.text(meshes, rows, missing))
+    (out / "figures.json").write_text(json.dumps(figures(meshes, rows), indent=1))
+    chart.write(out / "chart.svg", meshes, rows)
 
 
 def main():
     options = options_of()
     bench = Bench(options)
     meshes, rows = [], []
-    for mesh in bench.meshes():
-        if mesh:
-            meshes.append({k: v for k, v in mesh.items() if k != "path"})
-            rows += bench.measure(mesh)
-            text = report.text(meshes, rows, sorted(bench.missing))
-            (options.out / "table.txt").write_text(text)  # after each mesh: a long run is of use early
+    for mesh in filter(None, bench.meshes()):
+        meshes.append({k: v for k, v in mesh.items() if k != "path"})
+        rows += bench.measure(mesh)
+        missing = sorted(bench.missing)
+        write(options.out, meshes, rows, missing)  # after each: a long run is of use early
     if not meshes:
         sys.exit("no mesh to reduce")
-    chart.write(options.out / "chart.svg", meshes, rows)
-    figures = {"meshes": meshes, "rows": rows, "summary": report.summary(meshes, rows)}
-    (options.out / "figures.json").write_text(json.dumps(figures, indent=1))
-    print(json.dumps(figures) if options.json else text, end="\n")
+    print(json.dumps(figures(meshes, rows)) if options.json else report.text(meshes, rows, missing))
     note(f"in {options.out}: table.txt, chart.svg, figures.json")
 
 

@@ -7,7 +7,8 @@ COLOURS = {"quadric, 1 thread": "#d7191c", "quadric, 2 threads": "#d7191c",
            "pattern, 2 threads": "#7b3294", "meshoptimizer": "#1a9641",
            "meshoptimizer, colour": "#66bd63", "CGAL Lindstrom-Turk": "#2c7bb6",
            "CGAL Garland-Heckbert": "#00a6ca", "OpenMesh quadric": "#8c510a",
-           "VTK quadric": "#525252", "VTK quadric, colour": "#969696"}
+           "VTK quadric": "#525252", "VTK quadric, colour": "#969696",
+           "VTK quadric, less colour": "#bdbdbd"}
 DASHED = {"quadric, 1 thread", "pattern, 1 thread"}
 
 WIDTH, HEIGHT, LEFT, TOP, GAP = 400, 250, 70, 30, 60  # of a panel, px
@@ -48,8 +49,9 @@ def panel(title, unit, lines, x0, y0):
         svg.append(f'<line x1="{x0}" x2="{x0 + WIDTH}" y1="{y.px(value):.1f}" '
                    f'y2="{y.px(value):.1f}" class="grid"/><text x="{x0 - 6}" '
                    f'y="{y.px(value) + 4:.1f}" text-anchor="end">{value:g}</text>')
-    svg.append(f'<text x="{x0 + WIDTH}" y="{y0 + HEIGHT + 30}" text-anchor="end">triangles kept</text>'
-               f'<text x="{x0 + WIDTH}" y="{y0 - 8}" text-anchor="end">{escape(unit)}</text>')
+    svg.append(f'<text x="{x0 + WIDTH}" y="{y0 + HEIGHT + 30}" text-anchor="end">triangles kept'
+               f'</text><text x="{x0 + WIDTH}" y="{y0 - 8}" text-anchor="end">{escape(unit)}'
+               '</text>')
     for program, line in lines.items():
         svg.append(curve(program, [(x.px(a), y.px(b)) for a, b in sorted(line)]))
     return svg

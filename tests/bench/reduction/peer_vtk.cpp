@@ -1,5 +1,7 @@
 // VTK: vtkQuadricDecimation by position, and with its attribute error metric over colours.
 #include <array>
+#include <cstdlib>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <vtkCellArray.h>
@@ -55,15 +57,15 @@ Pointer<vtkPolyData> polyData(const render::Mesh& mesh, bool with_colours) {
 
 class VtkPeer : public Peer {
  public:
-  VtkPeer(const render::Mesh& mesh, bool with_colours)
-      : input_(polyData(mesh, with_colours)),
+  VtkPeer(const render::Mesh& mesh, double colour_weight)
+      : input_(polyData(mesh, colour_weight > 0)),
         triangles_(mesh.triangleCount()),
         scale_(scaleOf(mesh)) {
     decimation_->SetInputData(input_);
-    if (!with_colours) return;
+    if (colour_weight == 0) return;
     decimation_->AttributeErrorMetricOn();
     decimation_->ScalarsAttributeOn();
-    decimation_->SetScalarsWeight(0.1 * kDiagonal);  // VTK's own weight of a model of diagonal 1
+    decimation_->SetScalarsWeight(colour_weight * kDiagonal);
     for (auto set :
          {&vtkQuadricDecimation::SetVectorsAttribute, &vtkQuadricDecimation::SetNormalsAttribute,
           &vtkQuadricDecimation::SetTCoordsAttribute, &vtkQuadricDecimation::SetTensorsAttribute}) {
@@ -108,15 +110,16 @@ class VtkPeer : public Peer {
   double scale_;
 };
 
+constexpr std::string_view kColour = "colour=";  // and the weight, as a share of the diagonal
+
 Result<std::unique_ptr<Peer>> make(render::Mesh mesh, const std::string& variant) {
-  if (variant != "plain" && variant != "colour") {
-    return Error{Errc::kInvalidArgument, variant + ": is not plain or colour"};
+  if (variant == "plain") return std::unique_ptr<Peer>(new VtkPeer(mesh, 0));
+  if (variant.rfind(kColour, 0) != 0) {
+    return Error{Errc::kInvalidArgument, variant + ": is not plain or colour=WEIGHT"};
   }
-  const bool with_colours = variant == "colour";
-  if (with_colours && !mesh.find("colour")) {
-    return Error{Errc::kUnsupported, "the mesh has no colours"};
-  }
-  return std::unique_ptr<Peer>(new VtkPeer(mesh, with_colours));
+  if (!mesh.find("colour")) return Error{Errc::kUnsupported, "the mesh has no colours"};
+  const double weight = std::strtod(variant.c_str() + kColour.size(), nullptr);
+  return std::unique_ptr<Peer>(new VtkPeer(mesh, weight));
 }
 
 }  // namespace

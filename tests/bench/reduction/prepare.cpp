@@ -69,6 +69,20 @@ void forEachEdge(const std::vector<Side>& sides, F f) {
 
 }  // namespace
 
+std::size_t contractZeroEdges(Mesh& mesh) {
+  Groups same(mesh.vertexCount());
+  std::size_t contracted = 0;
+  for (const Side& side : sortedSides(mesh)) {
+    const auto* low = &mesh.positions[3 * side.low];
+    if (std::equal(low, low + 3, &mesh.positions[3 * side.high])) {
+      contracted += same.join(side.low, side.high);
+    }
+  }
+  for (std::uint32_t& v : mesh.triangles) v = static_cast<std::uint32_t>(same.of(v));
+  render::tidy(mesh);
+  return contracted;
+}
+
 std::size_t splitManifold(Mesh& mesh) {
   Groups fans(mesh.triangles.size());  // of corners
   forEachEdge(sortedSides(mesh), [&](auto first, auto last) {
@@ -123,14 +137,16 @@ Result<std::string> prepare(const std::string& in, const std::string& out) {
   if (!loaded) return loaded.error();
   Mesh& mesh = loaded->mesh;
   std::erase_if(mesh.features, [](const render::Feature& f) { return f.name != "colour"; });
+  const std::size_t contracted = contractZeroEdges(mesh);
   const std::size_t split = splitManifold(mesh);
   if (const auto written = render::writeMesh(out, mesh); !written) return written.error();
   const Kind kind = kindOf(mesh);
-  return fmt::format(
-      R"({{"triangles": {}, "vertices": {}, "edges": {}, "border_edges": {}, )"
-      R"("non_manifold_edges": {}, "components": {}, "split_vertices": {}, "colour": {}}})",
-      mesh.triangleCount(), mesh.vertexCount(), kind.edges, kind.borders, kind.non_manifold,
-      kind.components, split, mesh.find("colour") != nullptr);
+  return fmt::format(R"({{"triangles": {}, "vertices": {}, "edges": {}, "border_edges": {}, )"
+                     R"("non_manifold_edges": {}, "components": {}, "contracted_edges": {}, )"
+                     R"("split_vertices": {}, "colour": {}}})",
+                     mesh.triangleCount(), mesh.vertexCount(), kind.edges, kind.borders,
+                     kind.non_manifold, kind.components, contracted, split,
+                     mesh.find("colour") != nullptr);
 }
 
 }  // namespace merlin::bench

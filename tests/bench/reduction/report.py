@@ -3,7 +3,7 @@ import math
 
 LEAD = "quadric, 2 threads"
 GEOMETRY = ("quadric, 2 threads", "quadric, without colour")
-COLOUR_PEERS = ("meshoptimizer, colour", "VTK quadric, colour")
+COLOUR_PEERS = ("meshoptimizer, colour", "VTK quadric, colour", "VTK quadric, less colour")
 SPEED_PEER = "meshoptimizer"
 
 
@@ -35,16 +35,18 @@ def ratios(rows, program, key, peer, peer_key=None):
             "each": sorted([mesh, level, ratio] for (mesh, level), ratio in each.items())}
 
 
-def summary(meshes, rows):
+def summary(rows):
     """What MERLIN is measured by: ratios of one run. None where a program is missing."""
     wanted = []
     for program in GEOMETRY:
-        wanted += [(program, "rms", "CGAL Lindstrom-Turk"), (program, "max", "CGAL Garland-Heckbert")]
+        wanted += [(program, "rms", "CGAL Lindstrom-Turk"),
+                   (program, "max", "CGAL Garland-Heckbert")]
     for peer in COLOUR_PEERS:
         wanted += [(LEAD, "colour", peer), (LEAD, "rms", peer), (LEAD, "max", peer)]
     for program in ("quadric, 1 thread", LEAD):
         wanted += [(program, "rate", SPEED_PEER)]
-    wanted += [("quadric, 1 thread", "cpu_rate", SPEED_PEER), (LEAD, "whole_rate", SPEED_PEER, "rate")]
+    wanted += [("quadric, 1 thread", "cpu_rate", SPEED_PEER),
+               (LEAD, "whole_rate", SPEED_PEER, "rate")]
     for row in rows:
         if "hierarchy_seconds" in row:
             row["whole_rate"] = row["collapses"] / row["hierarchy_seconds"]
@@ -62,11 +64,12 @@ def at(cell):
 
 def summary_lines(meshes, rows):
     lines = ["Ratios, geometric mean over meshes and levels (cells), and the extremes:"]
-    for r in summary(meshes, rows):
+    for r in summary(rows):
         speed = r["figure"].endswith("rate")
         edge = "least" if speed else "largest"
-        lines.append(f"  {r['mean']:6.3f} ({r['cells']:2})  {edge} {r[edge]:6.3f} ({at(r[edge + '_at'])})"
-                     f"   {NAMES[r['figure']]}: {r['program']} / {r['peer']}")
+        lines.append(f"  {r['mean']:6.3f} ({r['cells']:2})  {edge} {r[edge]:6.3f} "
+                     f"({at(r[edge + '_at'])})   "
+                     f"{NAMES[r['figure']]}: {r['program']} / {r['peer']}")
         over = [f"{m} {level:g} %: {x:.3f}" for m, level, x in r["each"] if not speed and x > 1.10]
         if over:
             lines.append("         above 1.10: " + ", ".join(over))
@@ -78,7 +81,8 @@ def summary_lines(meshes, rows):
 
 
 def bytes_of(rows, mesh, program):
-    found = [r["bytes_per_edge"] for r in cells(rows, program).values() if r["mesh"] == mesh["name"]]
+    found = [r["bytes_per_edge"] for r in cells(rows, program).values()
+             if r["mesh"] == mesh["name"]]
     return f"{found[0]:.1f}" if found else "-"
 
 
@@ -99,16 +103,25 @@ def row_line(row):
     if "skipped" in row:
         return f"{row['program']:26}skipped: {row['skipped']}"
     colour = f"{row['colour']:8.2f}" if row.get("colour") is not None else f"{'-':>8}"
-    return (f"{row['program']:26}{row['triangles']:10}{row['seconds']:9.3f}{row['cpu_seconds']:9.3f}"
-            f"{row['rate'] / 1e3:10.0f}{row['bytes_per_edge']:8.1f}{row['rms']:10.5f}"
-            f"{row['max']:9.4f}{colour}{'' if reached(row) else '  stopped early: not compared'}")
+    return (f"{row['program']:26}{row['triangles']:10}{row['seconds']:9.3f}"
+            f"{row['cpu_seconds']:9.3f}{row['rate'] / 1e3:10.0f}{row['bytes_per_edge']:8.1f}"
+            f"{row['rms']:10.5f}{row['max']:9.4f}{colour}"
+            + ("" if reached(row) else "  stopped early: not compared"))
+
+
+def kind(mesh):
+    """What kind of mesh it is, and what was done to it."""
+    parts = [f"{mesh['triangles']} triangles", f"{mesh['components']} components",
+             f"{mesh['border_edges']} border edges"]
+    for key in ("non_manifold_edges", "contracted_edges", "split_vertices"):
+        parts += [f"{mesh[key]} {key.replace('_', ' ')}"] if mesh[key] else []
+    return ", ".join(parts)
 
 
 def text(meshes, rows, missing):
     lines = [f"skipped: {what}: was not there when this was configured" for what in missing]
     for mesh in meshes:
-        lines += ["", f"{mesh['name']}: {mesh['triangles']} triangles, {mesh['components']} components, "
-                  f"{mesh['border_edges']} border edges"]
+        lines += ["", f"{mesh['name']}: " + kind(mesh)]
         of_mesh = [r for r in rows if r["mesh"] == mesh["name"]]
         for level in sorted({r["level"] for r in of_mesh}, reverse=True):
             lines.append(f"{level:g} % kept".ljust(26) + COLUMNS[26:])
