@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "render/lod/chase.h"
+
 namespace merlin::render {
 namespace {
 
@@ -106,11 +108,7 @@ std::size_t Dendrogram::cut(std::size_t level, std::span<std::uint32_t> out) con
   assert(out.size() >= corners);
   const auto nodes = static_cast<std::uint32_t>(nodeCount());
   const auto alive = static_cast<std::uint32_t>(nodes - 2 * level);
-  for (std::size_t i = 0; i < corners; ++i) {
-    std::uint32_t node = a_.triangles[i];
-    while (node >= alive) node = a_.parents[(nodes - 1 - node) / 2];
-    out[i] = node;
-  }
+  chaser(nodes)({a_.parents, nodes}, alive, a_.triangles.data(), corners, out.data());
   return corners / 3;
 }
 

@@ -1,0 +1,28 @@
+// Corners up their parents to the nodes that are alive. Private to render/lod.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace merlin::render {
+
+struct Forest {
+  std::span<const std::uint32_t> parents;  // as Dendrogram has them
+  std::uint32_t nodes;
+
+  // The first of `node` and its ancestors with a number below `alive`.
+  std::uint32_t chase(std::uint32_t node, std::uint32_t alive) const noexcept {
+    while (node >= alive) node = parents[(nodes - 1 - node) / 2];
+    return node;
+  }
+};
+
+// Of each of `count` corners; `from` and `out` may be the same. Eight at a time where the processor
+// can (AVX2), the same result.
+using ChaseAll = void (*)(const Forest& forest, std::uint32_t alive, const std::uint32_t* from,
+                          std::size_t count, std::uint32_t* out);
+ChaseAll chaser(std::size_t nodes);  // the fastest for this processor and so many nodes
+ChaseAll portableChaser();           // for tests
+
+}  // namespace merlin::render

@@ -1,0 +1,207 @@
+// Clusters: every cut against the dendrogram's own chase, even or uneven.
+#include "render/lod/clusters.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "render/reduce/reduce.h"
+#include "tests/support/meshes.h"
+
+namespace merlin::render {
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+using Indices = std::vector<std::uint32_t>;
+
+Dendrogram dendrogramOf(Mesh mesh) {
+  ensureNormals(mesh);
+  auto reduction = reduce(mesh, {.threads = 1});
+  EXPECT_TRUE(reduction);
+  return buildDendrogram(mesh, reduction->log);
+}
+
+// Of indices, the smallest corner first, sorted.
+std::vector<Triangle> sorted(std::span<const std::uint32_t> indices) {
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 0; i < indices.size(); i += 3) {
+    Triangle t{indices[i], indices[i + 1], indices[i + 2]};
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    triangles.push_back(t);
+  }
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+Indices evenCut(const Clusters& clusters, const Dendrogram& d, std::size_t level) {
+  Indices out(3 * d.triangleCount());
+  out.resize(3 * clusters.cutEvenly(level, out));
+  return out;
+}
+
+Indices unevenCut(const Clusters& clusters, const Dendrogram& d, const Indices& levels) {
+  Indices out(3 * d.triangleCount()), ends(clusters.size() + 1);
+  out.resize(3 * clusters.cut(levels, out, ends));
+  return out;
+}
+
+Indices randomLevels(const Clusters& clusters, unsigned seed) {
+  std::mt19937 random(seed);
+  Indices levels(clusters.size());
+  for (auto& l : levels) {
+    const auto range = clusters.coarsestLevel() - clusters.finestLevel();
+    l = static_cast<std::uint32_t>(clusters.finestLevel() + random() % (range + 1));
+  }
+  return levels;
+}
+
+TEST(Clusters, AnEvenCutIsTheDendrograms) {
+  const Dendrogram d = dendrogramOf(test::sphere(5));
+  for (const std::size_t memory : {std::size_t{40} << 20, std::size_t{300'000}}) {
+    const Clusters clusters(d, {.clusters = 40, .memory = memory});
+    Indices expected(3 * d.triangleCount());
+    for (std::size_t level = 0; level < d.levels(); level += 97) {
+      const std::size_t n = d.cut(level, expected);
+      EXPECT_EQ(sorted(evenCut(clusters, d, level)), sorted(std::span(expected).first(3 * n)))
+          << level;
+    }
+  }
+}
+
+TEST(Clusters, LittleMemoryMeansACoarserFinestLevel) {
+  const Dendrogram d = dendrogramOf(test::sphere(5));
+  const Clusters all(d, {.clusters = 40}), few(d, {.clusters = 40, .memory = 300'000});
+  EXPECT_EQ(all.finestLevel(), 0u);
+  EXPECT_GT(few.finestLevel(), 0u);
+  EXPECT_LT(few.memoryBytes(), 330'000u);
+}
+
+// The levels of all clusters at random: what comes out is each triangle of the mesh, its corners
+// chased to their own clusters' levels, if they are three.
+TEST(Clusters, AnUnevenCutIsWhatChasingEveryCornerGives) {
+  const Dendrogram d = dendrogramOf(test::noisyGrid(40, 40, 0.4, 3));
+  const Clusters clusters(d, {.clusters = 30});
+  ASSERT_EQ(clusters.finestLevel(), 0u);
+  const auto nodes = static_cast<std::uint32_t>(d.nodeCount());
+  const auto coarse = nodes - static_cast<std::uint32_t>(2 * clusters.coarsestLevel());
+  const auto parent = [&](std::uint32_t n) { return d.arrays().parents[(nodes - 1 - n) / 2]; };
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Indices levels = randomLevels(clusters, seed);
+    // Which cluster a leaf is in shows by its root: learn it from cuts with one cluster fine.
+    static std::map<std::uint32_t, std::size_t> cluster_of_root;
+    if (cluster_of_root.empty()) {
+      for (std::size_t c = 0; c < clusters.size(); ++c) {
+        Indices one(clusters.size(), static_cast<std::uint32_t>(clusters.coarsestLevel()));
+        one[c] = 0;
+        for (std::uint32_t n : unevenCut(clusters, d, one)) {
+          if (n < coarse) continue;
+          while (n >= coarse) n = parent(n);
+          cluster_of_root[n] = c;
+        }
+      }
+    }
+    Indices expected;
+    for (std::size_t i = 0; i < d.arrays().triangles.size(); i += 3) {
+      Triangle t{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t leaf = d.arrays().triangles[i + k];
+        std::uint32_t root = leaf;
+        while (root >= coarse) root = parent(root);
+        t[k] = leaf;
+        if (!cluster_of_root.count(root)) continue;  // a root that is a leaf
+        while (t[k] >= nodes - 2 * levels[cluster_of_root[root]]) t[k] = parent(t[k]);
+      }
+      if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
+        expected.insert(expected.end(), t.begin(), t.end());
+    }
+    EXPECT_EQ(sorted(unevenCut(clusters, d, levels)), sorted(expected)) << seed;
+  }
+}
+
+// Of a closed surface every edge is there as often one way as the other, whatever the levels.
+TEST(Clusters, NeighboursOfAnyLevelsLeaveNoCrack) {
+  const Dendrogram d = dendrogramOf(test::sphere(5));
+  for (const std::size_t memory : {std::size_t{40} << 20, std::size_t{300'000}}) {
+    const Clusters clusters(d, {.clusters = 60, .memory = memory});
+    for (unsigned seed = 0; seed < 20; ++seed) {
+      std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+      const Indices cut = unevenCut(clusters, d, randomLevels(clusters, seed));
+      for (std::size_t i = 0; i < cut.size(); ++i) {
+        const std::uint32_t a = cut[i], b = cut[i % 3 == 2 ? i - 2 : i + 1];
+        a < b ? ++edges[{a, b}] : --edges[{b, a}];
+      }
+      for (const auto& [edge, sum] : edges) ASSERT_EQ(sum, 0) << edge.first << ' ' << edge.second;
+    }
+  }
+}
+
+TEST(Clusters, CountsAndEndsSayWhatACutHolds) {
+  const Dendrogram d = dendrogramOf(test::sphere(5));
+  const Clusters clusters(d, {.clusters = 50});
+  const Indices levels = randomLevels(clusters, 7);
+  Indices out(3 * d.triangleCount()), ends(clusters.size() + 1);
+  const std::size_t n = clusters.cut(levels, out, ends);
+  std::size_t end = 0;
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    end += clusters.trianglesAt(c, levels[c]);
+    EXPECT_EQ(ends[c], end);
+  }
+  EXPECT_EQ(n, end + clusters.alwaysThere());
+}
+
+TEST(Clusters, BoundsHoldWhatIsCut) {
+  const Dendrogram d = dendrogramOf(test::sphere(5));
+  const Clusters clusters(d, {.clusters = 50});
+  const auto positions = d.arrays().positions;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const Indices levels = randomLevels(clusters, seed);
+    Indices out(3 * d.triangleCount()), ends(clusters.size() + 1);
+    clusters.cut(levels, out, ends);
+    std::size_t i = 0;
+    for (std::size_t c = 0; c < clusters.size(); ++c) {
+      const ClusterBounds& b = clusters.bounds(c);
+      for (; i < 3 * std::size_t{ends[c]}; ++i) {
+        const float* p = &positions[3 * std::size_t{out[i]}];
+        EXPECT_LE(std::hypot(p[0] - b.centre[0], p[1] - b.centre[1], p[2] - b.centre[2]),
+                  b.radius * 1.0001F);
+      }
+      // The sphere's normals look away from its middle.
+      EXPECT_GT(b.axis[0] * b.centre[0] + b.axis[1] * b.centre[1] + b.axis[2] * b.centre[2], 0);
+      EXPECT_GT(b.cone_cos, 0.3F);
+    }
+  }
+}
+
+TEST(Clusters, EightAtATimeIsAsOneAtATime) {
+  const Dendrogram d = dendrogramOf(test::sphere(4));
+  const Forest forest{d.arrays().parents, static_cast<std::uint32_t>(d.nodeCount())};
+  const auto leaves = d.arrays().triangles;
+  Indices one(leaves.size()), eight(leaves.size());
+  for (std::uint32_t alive = forest.nodes; alive > 20; alive -= 14) {
+    for (const std::size_t n : {leaves.size(), std::size_t{13}, std::size_t{0}}) {
+      portableChaser()(forest, alive, leaves.data(), n, one.data());
+      chaser(forest.nodes)(forest, alive, leaves.data(), n, eight.data());
+      ASSERT_EQ(one, eight) << alive;
+    }
+  }
+}
+
+TEST(Clusters, TheSmallestModelsAreCutToo) {
+  for (const Mesh& mesh : {test::cube(), test::grid(1, 1), test::grid(2, 2)}) {
+    const Dendrogram d = dendrogramOf(mesh);
+    const Clusters clusters(d, {});
+    Indices expected(3 * d.triangleCount());
+    for (std::size_t level = 0; level < d.levels(); ++level) {
+      const std::size_t n = d.cut(level, expected);
+      EXPECT_EQ(sorted(evenCut(clusters, d, level)), sorted(std::span(expected).first(3 * n)));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace merlin::render
