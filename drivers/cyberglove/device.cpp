@@ -1,6 +1,7 @@
 #include "drivers/cyberglove/device.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,6 +16,9 @@ constexpr Duration kPollTime = milliseconds(250);
 constexpr Duration kReplyTime = milliseconds(300);
 constexpr Duration kLongestSilence = milliseconds(500);
 constexpr std::size_t kLongestText = 512;
+
+constexpr double kStampClock = 115200;  // Hz, of the time stamps
+constexpr double kMostLost = 1000;      // more is a unit that started anew
 
 constexpr std::string_view kStop = "\x03";
 constexpr const char* kUnplugged = "glove not plugged in";
@@ -64,9 +68,10 @@ Result<std::string> CybergloveDevice::open(ByteStream& stream) {
   }
   if (const auto known = identify(dialogue); !known) return known.error();
   if (const auto done = setUp(dialogue); !done) return done.error();
-  parser_.expect({.values = slots_.count, .timestamp = false, .status = true});
+  parser_.expect({.values = slots_.count, .timestamp = settings_.time_stamps, .status = true});
   if (const auto sent = dialogue.send("S"); !sent) return sent.error();
   last_record_ = clock_.now();
+  last_stamp_ = 0;
   return fmt::format("CyberGlove, {} sensors", slots_.count);
 }
 
@@ -100,14 +105,17 @@ Result<Ok> CybergloveDevice::setUp(Dialogue& dialogue) {
       "M" + encodeMask(mask_),
       {'N', static_cast<char>(slots_.count)},
       {'U', '\1'},
-      {'D', '\0'},
+      {'D', settings_.time_stamps ? '\1' : '\0'},
       {'F', settings_.filter ? '\1' : '\0'},
+      {'J', settings_.light == CybergloveSettings::Light::kSwitch ? '\1' : '\0'},
       encodeRate(settings_.rate_hz),
   };
   for (const std::string& command : commands) {
     if (auto done = set(dialogue, command); !done) return done;
   }
-  return Ok{};
+  if (settings_.light == CybergloveSettings::Light::kSwitch) return Ok{};
+  const std::string light{'L', settings_.light == CybergloveSettings::Light::kOn ? '\1' : '\0'};
+  return set(dialogue, light);
 }
 
 Result<Ok> CybergloveDevice::poll(ByteStream& stream) {
@@ -137,9 +145,19 @@ void CybergloveDevice::handle(const Packet& packet, Timestamp first_byte) noexce
   last_record_ = clock_.now();
   calibrate(record, slots_, settings_, sample_);
   sample_.received_ns = toNanoseconds(first_byte);
-  ++sample_.counter;
+  sample_.counter += 1 + lostBefore(record);
   ++samples_;
   sink_.publish(sample_);
+}
+
+// By the unit's own time between two records; half a period of jitter is none.
+std::uint32_t CybergloveDevice::lostBefore(const Record& record) noexcept {
+  if (!settings_.time_stamps) return 0;
+  const std::uint32_t ticks = record.timestamp - last_stamp_;
+  const bool first = std::exchange(last_stamp_, record.timestamp) == 0;
+  const double periods = ticks / kStampClock * settings_.rate_hz;
+  if (first || periods < 1.5 || periods > kMostLost) return 0;
+  return static_cast<std::uint32_t>(periods + 0.5) - 1;
 }
 
 DeviceCounters CybergloveDevice::counters() const noexcept {

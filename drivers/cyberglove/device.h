@@ -28,6 +28,7 @@ class CybergloveDevice final : public Device {
  private:
   Result<Ok> identify(Dialogue& dialogue);
   Result<Ok> setUp(Dialogue& dialogue);
+  std::uint32_t lostBefore(const Record& record) noexcept;
   void handle(const Packet& packet, Timestamp first_byte) noexcept;
 
   CybergloveSettings settings_;
@@ -37,6 +38,7 @@ class CybergloveDevice final : public Device {
   std::uint32_t mask_ = 0;  // of the sensors that the glove has
   SlotList slots_;
   GloveSample sample_{};
+  std::uint32_t last_stamp_ = 0;  // of the last record; 0 before the first
   std::uint64_t samples_ = 0;
   Timestamp packet_start_{};
   Timestamp last_record_{};

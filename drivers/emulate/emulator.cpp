@@ -13,7 +13,7 @@ constexpr EmulatorEntry kEmulators[] = {
     {"cyberglove", 38400, "22|18", "CyberGlove with its interface unit", makeCyberglove},
     {"fastrak", 38400, "1|2|3|4", "Polhemus Fastrak; the model is the number of receivers",
      makeFastrak},
-    {"spaceball", 9600, "2003|3003|4000", "Spaceball", makeSpaceball},
+    {"spaceball", 9600, "2003|1003|3003|4000", "Spaceball", makeSpaceball},
 };
 
 }  // namespace

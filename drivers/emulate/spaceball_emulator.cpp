@@ -19,6 +19,7 @@ constexpr float kFullPush = 8000, kFullTwist = 1600;  // counts
 spaceball::Model modelNamed(std::string_view name) {
   if (name == "3003") return spaceball::Model::k3003;
   if (name == "4000") return spaceball::Model::k4000;
+  if (name == "1003") return spaceball::Model::k1003;
   return spaceball::Model::k2003;
 }
 
@@ -26,6 +27,7 @@ const char* firmwareOf(spaceball::Model model) {
   switch (model) {
     case spaceball::Model::k3003: return "2.63";
     case spaceball::Model::k4000: return "2.43";
+    case spaceball::Model::k1003: return "2.02";
     case spaceball::Model::k2003: break;
   }
   return "2.13";

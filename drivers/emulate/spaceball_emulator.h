@@ -1,4 +1,4 @@
-// A Spaceball 2003, 3003 or 4000 FLX as a program sees it. Source: drivers/spaceball/README.md.
+// A Spaceball 1003, 2003, 3003 or 4000 FLX as a program sees it. Source: drivers/spaceball/README.md.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 
 namespace merlin::emulate {
 
-// Models: "2003", "3003", "4000".
+// Models: "2003", "1003", "3003", "4000".
 std::unique_ptr<Emulator> makeSpaceball(const EmulatorSettings& settings,
                                         const MotionScript& script, Timestamp start);
 

@@ -26,11 +26,17 @@ constexpr int kFailuresBeforeRestart = 4;  // of open(), in a row
 constexpr std::string_view kReinitialise = "\x19";
 constexpr std::string_view kStop = "c";
 
-constexpr char kComplaint[] = "station 1 reports error k";
-constexpr std::size_t kComplaintStation = 8, kComplaintLetter = 24;
-
 constexpr float kMetresPerInch = 0.0254F;
 constexpr float kMetresPerCentimetre = 0.01F;
+
+// The orientation relative to the one that counts as straight ahead: q * conj(ahead).
+std::array<float, 4> ofBoresight(const std::array<float, 4>& q, const std::array<float, 4>& a) {
+  if (a == FastrakSettings::kAhead) return q;
+  return {q[0] * a[0] + q[1] * a[1] + q[2] * a[2] + q[3] * a[3],
+          -q[0] * a[1] + q[1] * a[0] - q[2] * a[3] + q[3] * a[2],
+          -q[0] * a[2] + q[1] * a[3] + q[2] * a[0] - q[3] * a[1],
+          -q[0] * a[3] - q[1] * a[2] + q[2] * a[1] + q[3] * a[0]};
+}
 
 // The line works, and what is on it did not answer, or not as a Fastrak does.
 bool isOfTheBox(const Error& error) noexcept {
@@ -40,7 +46,11 @@ bool isOfTheBox(const Error& error) noexcept {
 }  // namespace
 
 FastrakDevice::FastrakDevice(const FastrakSettings& settings, const Clock& clock, SampleSink& sink)
-    : settings_(settings), clock_(clock), sink_(sink) {}
+    : settings_(settings),
+      clock_(clock),
+      sink_(sink),
+      layout_{static_cast<Layout::Numbers>(settings.numbers), settings.angles, settings.stylus,
+              settings.centimetres} {}
 
 Result<std::string> FastrakDevice::open(ByteStream& stream) {
   Dialogue dialogue(stream, clock_);
@@ -70,7 +80,7 @@ Result<std::string> FastrakDevice::talk(Dialogue& dialogue) {
   const auto stations = askStations(dialogue);
   if (!stations) return stations.error();
   if (const auto done = setUp(dialogue, *stations); !done) return done.error();
-  parser_.reset();
+  parser_.expect(layout_);
   last_record_ = clock_.now();
   std::string identity = fmt::format("Fastrak, firmware {}, stations", status->firmware);
   for (std::size_t i = 0; i < kStations; ++i) {
@@ -105,17 +115,44 @@ Result<Stations> FastrakDevice::askStations(Dialogue& dialogue) {
   return *stations;
 }
 
-// Nothing here is answered; a command error is drained, and then shows in what streams.
+// Nothing here is answered; a command error is drained, and then shows in what streams. Alignment
+// is incremental on the box: it is reset first.
 Result<Ok> FastrakDevice::setUp(Dialogue& dialogue, const Stations& stations) {
+  if (auto sent = dialogue.send(settings_.centimetres ? "u" : "U"); !sent) return sent;
   for (std::size_t i = 0; i < kStations; ++i) {
     if (!stations[i]) continue;
-    const auto& h = settings_.hemisphere[i];
-    const auto commands =
-        fmt::format("H{0},{1:.4g},{2:.4g},{3:.4g}\rO{0},2,11,0\r", i + 1, h[0], h[1], h[2]);
-    if (auto sent = dialogue.send(commands); !sent) return sent;
+    if (auto sent = dialogue.send(stationSetUp(i)); !sent) return sent;
     if (const auto quiet = dialogue.drain(kSettleTime, kSettleTime); !quiet) return quiet.error();
   }
-  return dialogue.send(settings_.centimetres ? "ufC" : "UfC");
+  const auto filter = [](char letter, const std::array<float, 4>& f) {
+    return fmt::format("{}{:.4g},{:.4g},{:.4g},{:.4g}\r", letter, f[0], f[1], f[2], f[3]);
+  };
+  const FastrakSettings defaults;
+  std::string last;
+  if (settings_.position_filter != defaults.position_filter)
+    last += filter('x', settings_.position_filter);
+  if (settings_.angle_filter != defaults.angle_filter) last += filter('v', settings_.angle_filter);
+  return dialogue.send(last + (settings_.numbers == FastrakSettings::Numbers::kText ? "FC" : "fC"));
+}
+
+std::string FastrakDevice::stationSetUp(std::size_t i) const {
+  const int station = static_cast<int>(i) + 1;
+  const auto& h = settings_.hemisphere[i];
+  std::string commands = fmt::format("H{},{:.4g},{:.4g},{:.4g}\r", station, h[0], h[1], h[2]);
+  if (settings_.alignment_cm[i] != FastrakSettings::kAligned) {
+    const float unit = settings_.centimetres ? 1.0F : 1 / 2.54F;
+    commands += fmt::format("R{0}\rA{0}", station);
+    for (const float v : settings_.alignment_cm[i]) commands += fmt::format(",{:.2f}", v * unit);
+    commands += '\r';
+  }
+  Layout layout = layout_;
+  if (settings_.stylus && station == 1) {
+    const auto& tip = settings_.stylus_tip_cm;
+    const float unit = settings_.centimetres ? 1.0F : 1 / 2.54F;
+    commands +=
+        fmt::format("e1,0\rN1,{:.2f},{:.2f},{:.2f}\r", tip[0] * unit, tip[1] * unit, tip[2] * unit);
+  }
+  return commands + fmt::format("O{},{}\r", station, layout.items());
 }
 
 Result<Ok> FastrakDevice::poll(ByteStream& stream) {
@@ -143,7 +180,11 @@ void FastrakDevice::publish(const Record& record) noexcept {
   ++sample.counter;
   sample.station = static_cast<std::uint32_t>(record.station);
   for (std::size_t i = 0; i < 3; ++i) sample.position_m[i] = scale * record.position[i];
-  for (std::size_t i = 0; i < 4; ++i) sample.orientation_wxyz[i] = q[i] / norm;
+  const auto ahead =
+      ofBoresight({q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm},
+                  settings_.boresight_wxyz[static_cast<std::size_t>(record.station - 1)]);
+  std::copy(ahead.begin(), ahead.end(), sample.orientation_wxyz);
+  sample.stylus = record.stylus ? 1 : 0;
   const bool news = sample.error != record.error;
   sample.error = record.error;
   if (news) noteErrors();
@@ -156,9 +197,14 @@ void FastrakDevice::noteErrors() noexcept {
   complaint_[0] = '\0';
   for (const TrackerSample& sample : sample_) {
     if (sample.error == ' ' || complaint_[0]) continue;
-    std::copy(std::begin(kComplaint), std::end(kComplaint), complaint_);
-    complaint_[kComplaintStation] = static_cast<char>('0' + sample.station);
-    complaint_[kComplaintLetter] = sample.error;
+    const std::string_view meaning = meaningOf(sample.error);
+    const auto end = meaning.empty() ? fmt::format_to_n(complaint_, sizeof complaint_ - 1,
+                                                        "station {} reports error {}",
+                                                        sample.station, sample.error)
+                                     : fmt::format_to_n(complaint_, sizeof complaint_ - 1,
+                                                        "station {} reports error {} ({})",
+                                                        sample.station, sample.error, meaning);
+    *end.out = '\0';
   }
 }
 

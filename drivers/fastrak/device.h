@@ -30,18 +30,20 @@ class FastrakDevice final : public Device {
   Result<Status> identify(Dialogue& dialogue);
   Result<Stations> askStations(Dialogue& dialogue);
   Result<Ok> setUp(Dialogue& dialogue, const Stations& stations);
+  std::string stationSetUp(std::size_t index) const;
   void publish(const Record& record) noexcept;
   void noteErrors() noexcept;
 
   FastrakSettings settings_;
   const Clock& clock_;
   SampleSink& sink_;
+  Layout layout_;
   Parser parser_;
   std::array<TrackerSample, kStations> sample_{};  // the newest of each station
   std::uint64_t samples_ = 0;
   Timestamp last_record_{};
   int failures_ = 0;  // of open(), in a row: it did not answer, or not as it should
-  char complaint_[32] = "";
+  char complaint_[80] = "";
 };
 
 std::unique_ptr<Device> makeDevice(const FastrakSettings& settings, const Clock& clock,

@@ -12,9 +12,8 @@
 namespace merlin::fastrak {
 namespace {
 
-constexpr std::size_t kPosition = 3;
-constexpr std::size_t kQuaternion = 15;
-constexpr std::size_t kTerminator = kRecordLength - 1;
+constexpr std::size_t kPosition = 3;  // after '0', station and error
+constexpr std::size_t kTextWidth = 7;
 
 bool isErrorLetter(std::uint8_t c) noexcept {
   return c == ' ' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
@@ -50,6 +49,23 @@ void appendNumbers(std::string& out, std::span<const float> values, bool binary,
   }
 }
 
+float shortRange(bool centimetres) noexcept { return centimetres ? 300 : 118.110F; }
+
+// Sign or blank first, fixed width, no separators.
+bool readDecimal(const std::uint8_t* at, float& value) noexcept {
+  const char* first = reinterpret_cast<const char*>(at);
+  const char* const end = first + kTextWidth;
+  while (first != end && (*first == ' ' || *first == '+')) ++first;
+  const auto parsed = std::from_chars(first, end, value, std::chars_format::fixed);
+  return parsed.ec == std::errc{} && parsed.ptr == end;
+}
+
+// Fourteen bits in two's complement, seven a byte, lower ones first.
+float load14(const std::uint8_t* at) noexcept {
+  const int bits = (at[0] & 0x7F) | (at[1] & 0x7F) << 7;
+  return static_cast<float>(bits >= 8192 ? bits - 16384 : bits);
+}
+
 // 14 bits, seven a byte, lower ones first.
 void append14(std::string& out, std::span<const float> values, float full) {
   for (const float v : values) {
@@ -60,6 +76,14 @@ void append14(std::string& out, std::span<const float> values, float full) {
   }
 }
 
+// Column `i` of the rotation: where the receiver's own axis points.
+std::array<float, 3> axisOf(const std::array<float, 4>& q, int i) noexcept {
+  const auto [w, x, y, z] = q;
+  if (i == 0) return {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
+  if (i == 1) return {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
+  return {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
+}
+
 void appendItem(std::string& out, int item, const Record& record, const Form& form) {
   switch (item) {
     case 0: out += ' '; break;
@@ -67,8 +91,11 @@ void appendItem(std::string& out, int item, const Record& record, const Form& fo
     case 2: appendNumbers(out, record.position, form.binary, 2); break;
     case 4: appendNumbers(out, anglesOf(record.orientation_wxyz), form.binary, 2); break;
     case 11: appendNumbers(out, record.orientation_wxyz, form.binary, 4); break;
-    case 16: out += " 0"; break;
-    case 18: append14(out, record.position, form.centimetres ? 300 : 118.110F); break;
+    case 5:
+    case 6:
+    case 7: appendNumbers(out, axisOf(record.orientation_wxyz, item - 5), form.binary, 4); break;
+    case 16: out += record.stylus ? " 1" : " 0"; break;
+    case 18: append14(out, record.position, shortRange(form.centimetres)); break;
     case 19: append14(out, anglesOf(record.orientation_wxyz), 180); break;
     case 20: append14(out, record.orientation_wxyz, 1); break;
     default: break;
@@ -77,9 +104,29 @@ void appendItem(std::string& out, int item, const Record& record, const Form& fo
 
 }  // namespace
 
+std::size_t Layout::length() const noexcept {
+  const std::size_t count = angles ? 6 : 7;
+  const std::size_t width = numbers == Numbers::kBinary ? 4
+                            : numbers == Numbers::kText ? kTextWidth
+                                                        : 2;
+  return kPosition + count * width + (stylus ? 2 : 0) + 1;
+}
+
+std::string Layout::items() const {
+  const bool small = numbers == Numbers::kShort;
+  const char* orientation = angles ? (small ? "19" : "4") : (small ? "20" : "11");
+  return fmt::format("{},{},{}0", small ? "18" : "2", orientation, stylus ? "16," : "");
+}
+
 void Parser::reset() noexcept {
   length_ = 0;
   locked_ = true;
+}
+
+void Parser::expect(const Layout& layout) noexcept {
+  layout_ = layout;
+  record_length_ = layout.length();
+  reset();
 }
 
 std::optional<Record> Parser::feed(std::byte byte, std::int64_t received_ns) noexcept {
@@ -87,7 +134,7 @@ std::optional<Record> Parser::feed(std::byte byte, std::int64_t received_ns) noe
   received_ns_[length_] = received_ns;
   ++length_;
   while (!plausible()) drop();
-  if (length_ < kRecordLength + (locked_ ? 0 : 1)) return std::nullopt;
+  if (length_ < record_length_ + (locked_ ? 0 : 1)) return std::nullopt;
   return take();
 }
 
@@ -96,17 +143,48 @@ bool Parser::plausible() const noexcept {
   if (length_ > 0 && window_[0] != '0') return false;
   if (length_ > 1 && !isStation(static_cast<char>(window_[1]))) return false;
   if (length_ > 2 && !isErrorLetter(window_[2])) return false;
-  if (length_ < kRecordLength) return true;
-  if (window_[kTerminator] != ' ') return false;
-  if (length_ > kRecordLength && window_[kRecordLength] != '0') return false;
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!std::isfinite(loadLeFloat(&window_[kPosition + 4 * i]))) return false;
+  if (length_ < record_length_) return true;
+  if (window_[record_length_ - 1] != ' ') return false;
+  if (length_ > record_length_ && window_[record_length_] != '0') return false;
+  Record record;
+  return readNumbers(record);
+}
+
+bool Parser::readNumbers(Record& record) const noexcept {
+  std::array<float, 7> v{};
+  const std::size_t count = layout_.angles ? 6 : 7;
+  const std::uint8_t* at = &window_[kPosition];
+  for (std::size_t i = 0; i < count; ++i) {
+    switch (layout_.numbers) {
+      case Layout::Numbers::kBinary:
+        v[i] = loadLeFloat(at);
+        at += 4;
+        break;
+      case Layout::Numbers::kText: {
+        if (!readDecimal(at, v[i])) return false;
+        at += kTextWidth;
+        break;
+      }
+      case Layout::Numbers::kShort: {
+        if (((at[0] & kPhase) != 0) != (i == 0) || (at[1] & kPhase) != 0) return false;
+        const float full = i < 3 ? shortRange(layout_.centimetres) : layout_.angles ? 180.0F : 1.0F;
+        v[i] = load14(at) / kHalfScale * full;
+        at += 2;
+      }
+    }
+    if (!std::isfinite(v[i])) return false;
   }
-  float square = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const float q = loadLeFloat(&window_[kQuaternion + 4 * i]);
-    square += q * q;
+  if (layout_.stylus) {
+    if (at[0] != ' ' || (at[1] != '0' && at[1] != '1')) return false;
+    record.stylus = at[1] == '1';
   }
+  std::copy_n(v.begin(), 3, record.position.begin());
+  if (layout_.angles) {
+    record.orientation_wxyz = quaternionOf({v[3], v[4], v[5]});
+    return std::abs(v[3]) <= 360 && std::abs(v[4]) <= 360 && std::abs(v[5]) <= 360;
+  }
+  std::copy_n(v.begin() + 3, 4, record.orientation_wxyz.begin());
+  const float square = v[3] * v[3] + v[4] * v[4] + v[5] * v[5] + v[6] * v[6];
   return square >= 0.98F * 0.98F && square <= 1.02F * 1.02F;  // false of a NaN
 }
 
@@ -122,15 +200,10 @@ Record Parser::take() noexcept {
   Record record;
   record.station = window_[1] - '0';
   record.error = static_cast<char>(window_[2]);
-  for (std::size_t i = 0; i < 3; ++i) {
-    record.position[i] = loadLeFloat(&window_[kPosition + 4 * i]);
-  }
-  for (std::size_t i = 0; i < 4; ++i) {
-    record.orientation_wxyz[i] = loadLeFloat(&window_[kQuaternion + 4 * i]);
-  }
+  (void)readNumbers(record);
   record.received_ns = received_ns_[0];
   locked_ = true;
-  shift(kRecordLength);
+  shift(record_length_);
   return record;
 }
 
@@ -177,7 +250,7 @@ std::optional<Stations> parseStations(std::string_view reply) noexcept {
 }
 
 bool isItem(int item) noexcept {
-  constexpr int kItems[] = {0, 1, 2, 4, 11, 16, 18, 19, 20};
+  constexpr int kItems[] = {0, 1, 2, 4, 5, 6, 7, 11, 16, 18, 19, 20};
   return std::find(std::begin(kItems), std::end(kItems), item) != std::end(kItems);
 }
 
@@ -213,6 +286,37 @@ std::array<float, 3> anglesOf(const std::array<float, 4>& q) noexcept {
   return {degrees * std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)),
           degrees * std::asin(std::clamp(2 * (w * y - z * x), -1.0F, 1.0F)),
           degrees * std::atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))};
+}
+
+std::array<float, 4> quaternionOf(const std::array<float, 3>& angles_deg) noexcept {
+  std::array<float, 3> c{}, s{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float half = angles_deg[i] * std::numbers::pi_v<float> / 360;
+    c[i] = std::cos(half);
+    s[i] = std::sin(half);
+  }
+  return {c[0] * c[1] * c[2] + s[0] * s[1] * s[2], c[0] * c[1] * s[2] - s[0] * s[1] * c[2],
+          c[0] * s[1] * c[2] + s[0] * c[1] * s[2], s[0] * c[1] * c[2] - c[0] * s[1] * s[2]};
+}
+
+std::string_view meaningOf(char error) noexcept {
+  if (error >= 'a' && error <= 'c') return "a driver of the transmitter";
+  if (error >= 'd' && error <= 'f') return "a gain of the receiver";
+  switch (error) {
+    case 'g': return "a coil";
+    case 'j': return "too near: saturated";
+    case 'k': return "too far or unplugged: low signal";
+    case 'l': return "a receiver without a signal";
+    case 'm': return "checksum of its memory";
+    case 's': return "unit vector reset";
+    case 't':
+    case 'u': return "compensation";
+    case 'v': return "no synchronisation";
+    case 'w': return "writing its memory";
+    case 'x': return "outside the motion box";
+    case 'y': return "outside the angles allowed";
+    default: return "";
+  }
 }
 
 }  // namespace merlin::fastrak

@@ -2,7 +2,9 @@
 //
 // A data record with the output list 2,11,0 in binary, 32 bytes, neither length nor terminator:
 //   '0'  station '1'..'4'  error ' ' or letter  x y z  q0 q1 q2 q3: 7 x f32le  ' '
-// A reply is '2', the station, the command's letter, its data, CR LF.
+// Other forms (Layout): az el rl in place of the quaternion; decimals; 14-bit numbers, two bytes of
+// seven bits each, of which the first of a record has bit 7 set; a stylus switch, ' ' and '0' or
+// '1'. A reply is '2', the station, the command's letter, its data, CR LF.
 //
 // Sources: README.md beside this file.
 #pragma once
@@ -28,7 +30,19 @@ struct Record {
   char error = ' ';                 // ' ' or a letter of the built-in test
   std::array<float, 3> position{};  // in the unit's own length: inches, or centimetres after `u`
   std::array<float, 4> orientation_wxyz{1, 0, 0, 0};  // as on the wire: of norm 0.98..1.02
+  bool stylus = false;                                // its button is pressed
   std::int64_t received_ns = 0;  // what feed() was told with the record's first byte
+};
+
+// What a record holds, and how.
+struct Layout {
+  enum class Numbers { kBinary, kText, kShort };
+  Numbers numbers = Numbers::kBinary;
+  bool angles = false;                  // az el rl in place of the quaternion
+  bool stylus = false;                  // item 16
+  bool centimetres = true;              // the unit that 14-bit positions are scaled by
+  std::size_t length() const noexcept;  // of a record [bytes]
+  std::string items() const;            // of the output list: "2,11,0"
 };
 
 // A window slides over the stream. What stands in it is a record if the fixed bytes are right, the
@@ -38,6 +52,7 @@ class Parser {
  public:
   // Forgets what is under way, not the counts; the next byte is taken for the first of a record.
   void reset() noexcept;
+  void expect(const Layout& layout) noexcept;  // and reset()
 
   // Takes one byte, which arrived at `received_ns`; returns a record when `byte` completes one.
   // Never blocks, never allocates. (Arrival is passed in, because the window may have to look for a
@@ -49,13 +64,18 @@ class Parser {
   std::uint64_t badBytes() const noexcept { return bad_bytes_; }
 
  private:
+  static constexpr std::size_t kLongest = 56;
+
   bool plausible() const noexcept;
+  bool readNumbers(Record& record) const noexcept;  // false where they cannot be
   void drop() noexcept;
   Record take() noexcept;
   void shift(std::size_t count) noexcept;
 
-  std::array<std::uint8_t, kRecordLength + 1> window_{};
-  std::array<std::int64_t, kRecordLength + 1> received_ns_{};  // of each byte in the window
+  Layout layout_;
+  std::size_t record_length_ = kRecordLength;
+  std::array<std::uint8_t, kLongest + 1> window_{};
+  std::array<std::int64_t, kLongest + 1> received_ns_{};  // of each byte in the window
   std::size_t length_ = 0;
   bool locked_ = true;  // the window starts where a good record ended
   std::uint64_t bad_packets_ = 0;
@@ -81,8 +101,8 @@ using Stations = std::array<bool, kStations>;
 std::optional<Stations> parseStations(std::string_view reply) noexcept;
 
 // The inverse, for the emulator, in more forms than the driver asks for. Items of an output list: 0
-// blank, 1 CR LF, 2 position, 4 azimuth, elevation and roll, 11 quaternion, 16 stylus switch
-// (always off), 18, 19 and 20: 2, 4 and 11 as 16-bit numbers.
+// blank, 1 CR LF, 2 position, 4 azimuth, elevation and roll, 5 to 7 direction cosines of the axes,
+// 11 quaternion, 16 stylus switch, 18, 19 and 20: 2, 4 and 11 as 16-bit numbers.
 bool isItem(int item) noexcept;
 
 inline constexpr std::array<int, 3> kDefaultList = {2, 4, 1};  // of a box that was told nothing
@@ -100,5 +120,9 @@ std::string encode(const Stations& stations, int asked_station);
 
 // Azimuth, elevation and roll [degrees]: R = Rz(az) Ry(el) Rx(roll). REQUIRES: a unit quaternion.
 std::array<float, 3> anglesOf(const std::array<float, 4>& orientation_wxyz) noexcept;
+std::array<float, 4> quaternionOf(const std::array<float, 3>& angles_deg) noexcept;
+
+// What a letter of the built-in test means; "" for one that is not listed. Source: MAN12, p. 76.
+std::string_view meaningOf(char error) noexcept;
 
 }  // namespace merlin::fastrak

@@ -1,7 +1,9 @@
 #include "drivers/io/open_stream.h"
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include <fcntl.h>
@@ -13,6 +15,9 @@
 #include <termios.h>
 
 #include "drivers/io/fd_stream.h"
+#include "drivers/io/low_latency.h"
+#include "drivers/io/replay_stream.h"
+#include "drivers/io/tcp_stream.h"
 
 namespace merlin::io {
 namespace {
@@ -103,26 +108,75 @@ Result<std::unique_ptr<ByteStream>> openSerial(const std::string& path, int baud
     close();
     return error;
   }
+  askForLowLatency(fd);
   return std::unique_ptr<ByteStream>(std::make_unique<FdStream>(fd, close));
+}
+
+// A transcript that runs on the system's clock, which it brings along.
+class TimedReplay final : public ByteStream {
+ public:
+  explicit TimedReplay(Transcript transcript) : stream_(std::move(transcript), clock_) {}
+  Result<std::size_t> read(std::span<std::byte> buffer, Duration timeout) override {
+    return stream_.read(buffer, timeout);
+  }
+  Result<std::size_t> write(std::span<const std::byte> bytes, Duration timeout) override {
+    return stream_.write(bytes, timeout);
+  }
+  void interrupt() noexcept override { stream_.interrupt(); }
+
+ private:
+  SystemClock clock_;
+  ReplayStream stream_;
+};
+
+Result<std::unique_ptr<ByteStream>> openReplay(const std::string& path) {
+  auto transcript = readTranscript(path);
+  if (!transcript) return transcript.error();
+  return std::unique_ptr<ByteStream>(std::make_unique<TimedReplay>(*std::move(transcript)));
+}
+
+// "HOST:PORT", "[::1]:PORT".
+std::optional<PortAddress> parseTcp(std::string_view rest) {
+  const std::size_t colon = rest.rfind(':');
+  if (colon == std::string_view::npos || colon == 0) return std::nullopt;
+  std::string_view host = rest.substr(0, colon);
+  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
+  int number = 0;
+  const std::string_view port = rest.substr(colon + 1);
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
+  if (error != std::errc{} || end != port.data() + port.size()) return std::nullopt;
+  if (host.empty() || number < 1 || number > 65535) return std::nullopt;
+  return PortAddress{PortKind::kTcp, std::string(host), std::string(port)};
 }
 
 }  // namespace
 
 Result<PortAddress> parsePort(std::string_view text) {
-  constexpr std::pair<std::string_view, PortKind> kForms[] = {{"serial:", PortKind::kSerial},
-                                                              {"pty:", PortKind::kPty}};
+  constexpr std::pair<std::string_view, PortKind> kForms[] = {
+      {"serial:", PortKind::kSerial}, {"pty:", PortKind::kPty}, {"replay:", PortKind::kReplay}};
   for (const auto& [prefix, kind] : kForms) {
     if (text.starts_with(prefix) && text.size() > prefix.size()) {
-      return PortAddress{kind, std::string(text.substr(prefix.size()))};
+      return PortAddress{kind, std::string(text.substr(prefix.size())), {}};
     }
   }
+  constexpr std::string_view kTcp = "tcp://";
+  if (text.starts_with(kTcp)) {
+    if (auto address = parseTcp(text.substr(kTcp.size()))) return *std::move(address);
+  }
   return Error{Errc::kInvalidArgument,
-               fmt::format("\"{}\" is no port; ports are serial:/dev/... and pty:PATH", text)};
+               fmt::format("\"{}\" is no port; ports are serial:/dev/..., pty:PATH, "
+                           "tcp://HOST:PORT and replay:FILE",
+                           text)};
 }
 
 Result<std::unique_ptr<ByteStream>> openPort(const PortAddress& address, int baud) {
-  return address.kind == PortKind::kSerial ? openSerial(address.path, baud)
-                                           : openPty(address.path, baud);
+  switch (address.kind) {
+    case PortKind::kSerial: return openSerial(address.path, baud);
+    case PortKind::kTcp: return openTcp(address.path, address.service);
+    case PortKind::kReplay: return openReplay(address.path);
+    case PortKind::kPty: break;
+  }
+  return openPty(address.path, baud);
 }
 
 }  // namespace merlin::io

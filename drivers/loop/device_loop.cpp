@@ -41,11 +41,17 @@ void DeviceLoop::run(const std::stop_token& stop) {
       retry = settings_.first_retry;
     }
     enter(opened_ && end.code != Errc::kClosed ? HealthState::kFailed : HealthState::kAbsent,
-          end.what);
+          end.what + hintFor(end));
     if (!clock_.sleepUntil(clock_.now() + retry, stop)) break;
     retry = std::min(2 * retry, settings_.longest_retry);
   }
   enter(HealthState::kAbsent, "stopped");
+}
+
+// Bytes that make no sense are, as a rule, another device's, or another speed's.
+std::string DeviceLoop::hintFor(const Error& end) const {
+  if (end.code != Errc::kMalformed || settings_.baud == 0) return {};
+  return " (another device, or another speed than " + std::to_string(settings_.baud) + " baud?)";
 }
 
 Error DeviceLoop::serve(const std::stop_token& stop) {

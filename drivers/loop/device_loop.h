@@ -13,7 +13,8 @@
 namespace merlin {
 
 struct DeviceLoopSettings {
-  std::string port;                                       // as a person wrote it, for the health
+  std::string port;  // as a person wrote it, for the health
+  int baud = 0;      // of the line, for the hint where what comes makes no sense; 0: no hint
   Duration first_retry = std::chrono::milliseconds(100);  // doubled after each failure,
   // Up to this; reset by success. Short, since an attempt costs next to nothing, and a device that
   // is back should be heard within a second, its dialogue included.
@@ -36,6 +37,7 @@ class DeviceLoop {
   Error serve(const std::stop_token& stop);
   Error pollUntilLost(ByteStream& stream, const std::stop_token& stop);
 
+  std::string hintFor(const Error& end) const;
   void enter(HealthState state, std::string_view reason) noexcept;
   void report() noexcept;  // publishes health_, with counters and rate, at most every 100 ms
   void measureRate(Timestamp now) noexcept;

@@ -37,7 +37,8 @@ struct TrackerSample {
   float position_m[3];        // transmitter frame: x away from the cable, y right, z down
   float orientation_wxyz[4];  // unit quaternion q_transmitter_receiver
   char error;                 // ' ' for none, else the unit's built-in-test letter
-  std::uint8_t reserved[3];
+  std::uint8_t stylus;        // 1 while the stylus's button is pressed
+  std::uint8_t reserved[2];
 };
 static_assert(sizeof(TrackerSample) == 48 && offsetof(TrackerSample, position_m) == 16);
 
@@ -61,6 +62,39 @@ struct PostureSample {
   char name[20];             // of the code, NUL-ended; empty where the code has no name
 };
 static_assert(sizeof(PostureSample) == 64 && offsetof(PostureSample, activation) == 24);
+
+// Glove and tracker as one hand: the joints' angles and where the hand is.
+struct HandSample {
+  enum Flag : std::uint32_t { kJoints = 1 };  // a glove's record of the last half second is in it
+
+  std::int64_t received_ns;  // of the tracker's record
+  std::int64_t glove_ns;     // of the glove's record that the joints come from; 0 for none
+  std::uint32_t counter;     // of that tracker's record
+  std::uint32_t flags;       // Flag bits
+  float joint_rad[kGloveSlots];
+  float position_m[3];        // transmitter's frame, smoothed
+  float orientation_wxyz[4];  // smoothed
+  float velocity_m_s[3];      // for a pose at another time: position + velocity * (t - received)
+  float turn_rad_s[3];        // about the transmitter's axes
+  float delay_s;              // that smoothing adds at this moment
+  std::uint32_t reserved;
+};
+static_assert(sizeof(HandSample) == 176 && offsetof(HandSample, position_m) == 116);
+
+// The lines of the panel: projectors, video switch, lamp, button.
+struct GpioSample {
+  enum Power : std::uint32_t { kOff = 0, kWarming = 1, kOn = 2, kCooling = 3 };
+  enum Lamp : std::uint32_t { kLampOff = 0, kLampSlow = 1, kLampFast = 2, kLampOn = 3 };
+
+  std::int64_t changed_ns;
+  std::uint32_t counter;  // of changes
+  std::uint32_t power;    // of the projectors
+  std::uint32_t video;    // 0: A, 1: B
+  std::uint32_t lamp;
+  std::uint32_t presses;  // of the button, since the daemon started
+  float wait_s;           // until the projectors may be switched again; 0: now
+};
+static_assert(sizeof(GpioSample) == 32);
 
 // How a device is.
 enum class HealthState : std::uint32_t {

@@ -23,10 +23,6 @@ constexpr Duration kLongestWait = milliseconds(3500);  // a reset takes about 2 
 constexpr Duration kBannerTime = seconds(10);
 
 constexpr std::string_view kReset = "\r@RESET\r";
-// Binary mode, no null region, 50 ms between packets.
-constexpr std::string_view kSetUp = "CB\rNT\rFT?\rFR?\rP@r@r\r";
-constexpr std::string_view kBallOn = "MSSV\rZ\rk\r";  // 2003, 3003
-constexpr std::string_view kBallOn4000 = "M\rZ\rk\r";
 constexpr std::string_view kPing = "k\r";
 constexpr std::string_view kQuestion = "\rhm\rhv\r";
 
@@ -52,6 +48,7 @@ Result<std::string> SpaceballDevice::open(ByteStream& stream) {
   if (!firmware) return firmware.error();
   model_ = modelOf(*firmware);
   set_ups_ = 0;
+  complaint_ = "";
   if (const auto done = setUp(stream); !done) return done.error();
   last_heard_ = clock_.now();
   const std::uint32_t counter = sample_.counter;
@@ -90,10 +87,18 @@ Result<std::string> SpaceballDevice::awaitBanner(ByteStream& stream) {
 
 Result<Ok> SpaceballDevice::setUp(ByteStream& stream) {
   Dialogue dialogue(stream, clock_);
-  if (const auto sent = dialogue.send(kSetUp); !sent) return sent.error();
+  const char feel = settings_.cubic ? '?' : '@';
+  const char region =
+      static_cast<char>(settings_.null_region < 63 ? '@' + settings_.null_region : '?');
+  // Binary mode, 50 ms between packets.
+  std::string set_up = fmt::format("CB\rN{0}\rFT{1}\rFR{1}\rP@r@r\r", region, feel);
+  if (const auto sent = dialogue.send(set_up); !sent) return sent.error();
   confirmed_ = false;
   set_up_at_ = clock_.now();
-  return dialogue.send(model_ == Model::k4000 ? kBallOn4000 : kBallOn);
+  std::string on = model_ == Model::k4000 ? "M\r" : "MSSV\r";
+  if (settings_.rezero) on += "Z\r";
+  if (!settings_.beep.empty()) on += "B" + settings_.beep.substr(0, 16) + "\r";
+  return dialogue.send(on + "k\r");
 }
 
 Result<Ok> SpaceballDevice::poll(ByteStream& stream) {
@@ -147,6 +152,8 @@ Result<Ok> SpaceballDevice::handle(const Packet& packet, Timestamp first_byte, B
   } else if (std::get<Text>(packet).line.starts_with('M')) {
     confirmed_ = true;
     set_ups_ = 0;
+  } else if (std::get<Text>(packet).line.starts_with('E')) {
+    complaint_ = meaningOf(std::get<Text>(packet).line);
   } else if (std::get<Text>(packet).line.starts_with("@1")) {
     return setUp(stream);  // it reset by itself (power, watchdog): all it was told is gone
   }

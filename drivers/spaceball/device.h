@@ -21,7 +21,7 @@ class SpaceballDevice final : public Device {
   Result<std::string> open(ByteStream& stream) override;
   Result<Ok> poll(ByteStream& stream) override;
   DeviceCounters counters() const noexcept override;
-  const char* complaint() const noexcept override { return ""; }
+  const char* complaint() const noexcept override { return complaint_; }
 
  private:
   Result<std::string> awaitBanner(ByteStream& stream);
@@ -42,7 +42,8 @@ class SpaceballDevice final : public Device {
   bool pinged_ = false;
   bool fresh_ = true;       // nothing published since open()
   bool confirmed_ = false;  // it has said that it is on
-  int set_ups_ = 0;         // sent since it last did
+  const char* complaint_ = "";
+  int set_ups_ = 0;  // sent since it last did
   Timestamp set_up_at_{};
 };
 

@@ -115,7 +115,27 @@ Model modelOf(std::string_view firmware_version) noexcept {
   for (const char* v : {"2.43", "2.45"}) {
     if (firmware_version == v) return Model::k4000;
   }
-  return Model::k2003;
+  return firmware_version == "2.02" ? Model::k1003 : Model::k2003;
+}
+
+const char* meaningOf(std::string_view packet) noexcept {
+  constexpr const char* kErrors[] = {"reports a fault of its sensor chip",
+                                     "reports that its memory has a wrong checksum",
+                                     "reports that its sensor chip does not answer",
+                                     "could not send in time",
+                                     "was told more than it could keep",
+                                     "could not read what it was told",
+                                     "",
+                                     "was told something too long",
+                                     "ignored what it was told",
+                                     "was told something that it does not know"};
+  if (packet.size() < 3) return "reports an error";
+  const unsigned bits =
+      (static_cast<unsigned>(packet[2]) & 0x3F) | (static_cast<unsigned>(packet[1]) & 0x07) << 7;
+  for (unsigned i = 0; i < std::size(kErrors); ++i) {
+    if (bits >> i & 1) return kErrors[i];
+  }
+  return "";
 }
 
 const char* nameOf(Model model) noexcept {
@@ -123,6 +143,7 @@ const char* nameOf(Model model) noexcept {
     case Model::k2003: return "Spaceball 2003";
     case Model::k3003: return "Spaceball 3003";
     case Model::k4000: return "Spaceball 4000 FLX";
+    case Model::k1003: return "Spaceball 1003";
   }
   return "Spaceball";
 }

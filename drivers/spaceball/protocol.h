@@ -63,13 +63,16 @@ class Parser {
   std::uint64_t bad_bytes_ = 0;
 };
 
-enum class Model { k2003, k3003, k4000 };
+enum class Model { k2003, k3003, k4000, k1003 };
 
 // By the firmware's number; 2003 where it is none of the known ones (as spacenavd does).
 Model modelOf(std::string_view firmware_version) noexcept;
 const char* nameOf(Model model) noexcept;
 
-// Bit i = button i + 1. 2003: eight buttons and pick as the ninth. 3003: left, right, rezero.
+// What an 'E' packet of a 4000 complains of, the first of its errors. Source: FLX.
+const char* meaningOf(std::string_view error_packet) noexcept;
+
+// Bit i = button i + 1. 1003, 2003: eight buttons and pick as the ninth. 3003: left, right, rezero.
 // 4000: twelve.
 std::uint32_t buttonsOf(const Keys& keys, Model model) noexcept;
 

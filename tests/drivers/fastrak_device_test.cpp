@@ -55,7 +55,7 @@ TEST(FastrakDevice, SpeaksTheDialogueOfTheFactSheet) {  // section 8
   settings.centimetres = false;
   Tracker tracker({.model = "2"}, settings);
   ASSERT_TRUE(tracker.device->open(tracker.stream));
-  EXPECT_EQ(tracker.stream.written(), "cSl1\rH1,1,0,0\rO1,2,11,0\rH2,0,-0.5,1\rO2,2,11,0\rUfC");
+  EXPECT_EQ(tracker.stream.written(), "cSl1\rUH1,1,0,0\rO1,2,11,0\rH2,0,-0.5,1\rO2,2,11,0\rfC");
 }
 
 TEST(FastrakDevice, StreamsAHundredAndTwentyRecordsASecond) {
@@ -212,10 +212,10 @@ TEST(FastrakDevice, ComplainsOfTheFirstStationWithAnError) {
     char error;
     const char* complaint;
   } kCases[] = {{1, ' ', ""},
-                {2, 'k', "station 2 reports error k"},
-                {1, ' ', "station 2 reports error k"},
-                {1, 'a', "station 1 reports error a"},
-                {2, ' ', "station 1 reports error a"},
+                {2, 'k', "station 2 reports error k (too far or unplugged: low signal)"},
+                {1, ' ', "station 2 reports error k (too far or unplugged: low signal)"},
+                {1, 'a', "station 1 reports error a (a driver of the transmitter)"},
+                {2, ' ', "station 1 reports error a (a driver of the transmitter)"},
                 {1, ' ', ""}};
   for (const auto& [station, error, complaint] : kCases) {
     tracker.stream.feed(record(station, error));

@@ -1,0 +1,131 @@
+#include "drivers/gpio/panel.h"
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace merlin::gpio {
+namespace {
+
+constexpr Duration kSlow = std::chrono::seconds(1);  // half a period of the lamp
+constexpr Duration kFast = std::chrono::milliseconds(125);
+
+Duration halfPeriod(GpioSample::Lamp lamp) { return lamp == GpioSample::kLampSlow ? kSlow : kFast; }
+
+bool blinks(GpioSample::Lamp lamp) {
+  return lamp == GpioSample::kLampSlow || lamp == GpioSample::kLampFast;
+}
+
+}  // namespace
+
+// Whether the projectors were on a moment ago is not known: they are off, and their interlock runs
+// from now.
+Panel::Panel(const GpioSettings& settings, Timestamp now)
+    : settings_(settings), switched_(now), phase_until_(now), changed_(now), raw_since_(now) {}
+
+Result<Ok> Panel::obey(std::string_view command, Timestamp now) {
+  constexpr std::pair<std::string_view, GpioSample::Lamp> kLamps[] = {
+      {"lamp_off", GpioSample::kLampOff},
+      {"lamp_slow", GpioSample::kLampSlow},
+      {"lamp_fast", GpioSample::kLampFast},
+      {"lamp_on", GpioSample::kLampOn}};
+  if (command == "projector_on") return switchPower(true, now);
+  if (command == "projector_off") return switchPower(false, now);
+  if (command == "video_a" || command == "video_b") {
+    video_ = command == "video_b";
+    note(now);
+    return Ok{};
+  }
+  for (const auto& [name, lamp] : kLamps) {
+    if (command != name) continue;
+    lamp_ = lamp;
+    note(now);
+    return Ok{};
+  }
+  return Error{Errc::kInvalidArgument, fmt::format("\"{}\" is no command of the panel", command)};
+}
+
+// A lamp that is switched on while it cools bursts; switching to and fro wears relays out.
+Result<Ok> Panel::switchPower(bool on, Timestamp now) {
+  step(raw_, now);
+  const bool is_on = power_ == GpioSample::kWarming || power_ == GpioSample::kOn;
+  if (is_on == on) return Ok{};
+  if (const Duration wait = powerWait(now); wait > Duration::zero()) {
+    return Error{Errc::kBusy,
+                 fmt::format("the projectors {}: not before {:.0f} s",
+                             power_ == GpioSample::kCooling ? "cool down" : "were just switched",
+                             toSeconds(wait))};
+  }
+  power_ = on ? GpioSample::kWarming : GpioSample::kCooling;
+  switched_ = now;
+  phase_until_ = now + fromSeconds(on ? settings_.warm_up_s : settings_.cool_down_s);
+  note(now);
+  return Ok{};
+}
+
+Duration Panel::powerWait(Timestamp now) const {
+  Timestamp free = switched_ + fromSeconds(settings_.interlock_s);
+  if (power_ == GpioSample::kCooling) free = std::max(free, phase_until_);
+  return std::max<Duration>(free - now, Duration::zero());
+}
+
+bool Panel::step(bool pressed, Timestamp now) {
+  if (now >= phase_until_ && power_ == GpioSample::kWarming) {
+    power_ = GpioSample::kOn;
+    note(now);
+  }
+  if (now >= phase_until_ && power_ == GpioSample::kCooling) {
+    power_ = GpioSample::kOff;
+    note(now);
+  }
+  if (pressed != raw_) {
+    raw_ = pressed;
+    raw_since_ = now;
+  }
+  if (raw_ == down_ || now - raw_since_ < fromSeconds(settings_.debounce_s)) return false;
+  down_ = raw_;
+  if (!down_) return false;
+  ++presses_;
+  note(now);
+  return true;
+}
+
+Outputs Panel::outputs(Timestamp now) const {
+  Outputs o;
+  o.projector = power_ == GpioSample::kWarming || power_ == GpioSample::kOn;
+  o.video = video_;
+  o.lamp = lamp_ == GpioSample::kLampOn ||
+           (blinks(lamp_) && (now.time_since_epoch() / halfPeriod(lamp_)) % 2 == 0);
+  return o;
+}
+
+GpioSample Panel::sample(Timestamp now) const {
+  GpioSample s{};
+  s.changed_ns = toNanoseconds(changed_);
+  s.counter = counter_;
+  s.power = power_;
+  s.video = video_ ? 1 : 0;
+  s.lamp = lamp_;
+  s.presses = presses_;
+  s.wait_s = static_cast<float>(toSeconds(powerWait(now)));
+  return s;
+}
+
+Timestamp Panel::nextDue(Timestamp now) const {
+  Timestamp due = Timestamp::max();
+  if (power_ == GpioSample::kWarming || power_ == GpioSample::kCooling) due = phase_until_;
+  if (raw_ != down_) due = std::min(due, raw_since_ + fromSeconds(settings_.debounce_s));
+  if (blinks(lamp_)) {
+    const Duration half = halfPeriod(lamp_);
+    due = std::min(due, Timestamp((now.time_since_epoch() / half + 1) * half));
+  }
+  return due;
+}
+
+void Panel::note(Timestamp now) {
+  changed_ = now;
+  ++counter_;
+}
+
+}  // namespace merlin::gpio

@@ -1,0 +1,56 @@
+// Panel: what the lines of the wall's control panel do over time: projectors' power with its times,
+// A/B video switch, status lamp, debounced button. Pure: told the time and the button, it says what
+// the lines should be.
+#pragma once
+
+#include <string_view>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/result.h"
+#include "drivers/gpio/settings.h"
+#include "drivers/port/samples.h"
+
+namespace merlin::gpio {
+
+struct Outputs {
+  bool projector = false, video = false, lamp = false;
+  friend bool operator==(const Outputs&, const Outputs&) = default;
+};
+
+// Thread-bound.
+class Panel {
+ public:
+  Panel(const GpioSettings& settings, Timestamp now);
+
+  // "projector_on", "projector_off", "video_a", "video_b", "lamp_off", "lamp_slow", "lamp_fast",
+  // "lamp_on". Errors: kInvalidArgument (no such command), kBusy (a projector that cools down or
+  // was switched a moment ago), with the seconds to wait.
+  Result<Ok> obey(std::string_view command, Timestamp now);
+
+  // Time passes, the button reads `pressed`; true where that makes a press (once, after it has been
+  // down for the debounce time).
+  bool step(bool pressed, Timestamp now);
+
+  Outputs outputs(Timestamp now) const;
+  GpioSample sample(Timestamp now) const;
+
+  // When something changes by itself; Timestamp::max() for never.
+  Timestamp nextDue(Timestamp now) const;
+
+ private:
+  Result<Ok> switchPower(bool on, Timestamp now);
+  Duration powerWait(Timestamp now) const;
+  void note(Timestamp now);
+
+  GpioSettings settings_;
+  GpioSample::Power power_ = GpioSample::kOff;
+  GpioSample::Lamp lamp_ = GpioSample::kLampOff;
+  bool video_ = false;
+  Timestamp switched_, phase_until_;  // projectors: last switched; end of warming or cooling
+  Timestamp changed_;
+  std::uint32_t counter_ = 0, presses_ = 0;
+  bool raw_ = false, down_ = false;  // button: as last read; as debounced
+  Timestamp raw_since_;
+};
+
+}  // namespace merlin::gpio

@@ -1,0 +1,23 @@
+// What the configuration says of the panel: which line is what, and how long things take.
+#pragma once
+
+#include <string>
+
+namespace merlin {
+
+struct GpioSettings {
+  std::string chip;  // "gpiochip0" or "/dev/gpiochip0"; empty: there is no panel
+  // Numbers of the chip's lines; -1: there is none.
+  int projector_line = -1;  // high: power
+  int video_line = -1;      // low: A, high: B
+  int lamp_line = -1;       // high: lit
+  int button_line = -1;     // high while pressed
+  double warm_up_s = 30;    // after which projectors show a picture
+  double cool_down_s = 90;  // after switching off, in which they must not be switched on
+  double interlock_s = 5;   // between any two switchings, at least
+  double debounce_s = 0.02;
+  std::string button_command =
+      "next_mode";  // what a press does: a command of the wall or the panel
+};
+
+}  // namespace merlin

@@ -1,0 +1,46 @@
+// Transcripts: what went over a device's line, as a text file that people can read, write and
+// compare; recorded, dumped by the flight recorder or written by hand.
+//
+//   # device: Spaceball 2003, firmware unknown      # synthetic: yes (merlin emulate, seed 7)
+//   # serial: 9600 8N1 xonxoff                      # driver: spaceball
+//   @0.300000 to 0d405245534554 0d                  <- host to device; comments start like this
+//   @0.350000 4400100001ffff0100000000000000 0d     <- device to host
+//   4400100001ffff0100000000000000 0d               <- no time: when the line is free again
+//   # end
+//
+// Times are seconds since the start. The line "# end" says that nothing was cut off.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/result.h"
+
+namespace merlin::io {
+
+struct TranscriptChunk {
+  Duration at{};           // since the start; never less than the chunk's before
+  bool to_device = false;  // written by the host
+  std::string bytes;
+};
+
+struct Transcript {
+  std::vector<std::pair<std::string, std::string>> header;  // key and value, in the file's order
+  std::vector<TranscriptChunk> chunks;
+
+  // Of the header; empty where it has no such key.
+  std::string_view operator[](std::string_view key) const;
+  int baud() const;  // of "serial"; 9600 where it says nothing
+};
+
+// Errors: kMalformed, naming the line: no hex, half a byte, a time that runs backwards, no "# end".
+Result<Transcript> parseTranscript(std::string_view text);
+std::string formatTranscript(const Transcript& transcript);
+
+// Errors: kNotFound, kIo, and of parseTranscript with the file's name.
+Result<Transcript> readTranscript(const std::string& path);
+
+}  // namespace merlin::io

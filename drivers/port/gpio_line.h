@@ -1,0 +1,29 @@
+// Port: the lines of a GPIO chip. Implemented by drivers/io/gpio_chip (libgpiod) and by a fake in
+// tests.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/result.h"
+
+namespace merlin {
+
+// Thread-bound. An unused line has the number -1: writing it does nothing, reading it gives false.
+class GpioLines {
+ public:
+  virtual ~GpioLines() = default;
+
+  // Errors: kIo (the chip is gone).
+  virtual Result<Ok> write(int line, bool high) = 0;
+  virtual Result<bool> read(int line) = 0;
+
+  // Waits until an input may have changed, or `timeout` passes. Errors: kIo.
+  virtual Result<Ok> wait(Duration timeout) = 0;
+};
+
+// Opens the chip with its lines; called again for each attempt. Errors: kNotFound, kBusy, kIo.
+using GpioOpener = std::function<Result<std::unique_ptr<GpioLines>>()>;
+
+}  // namespace merlin

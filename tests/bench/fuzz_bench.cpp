@@ -1,0 +1,188 @@
+// ./dev bench fuzz: random and mutated bytes through every parser, in a build with AddressSanitizer
+// and UBSan: a fault ends it. Prints how many packets each recovered.
+//
+// Half of the bytes are random; the other half is a good stream in which every so often a byte is
+// flipped, lost, doubled or replaced by a burst, so that a parser is hit in the middle of its work.
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "daemon/base/random.h"
+#include "drivers/cyberglove/protocol.h"
+#include "drivers/emulate/emulator.h"
+#include "drivers/fastrak/protocol.h"
+#include "drivers/io/transcript.h"
+#include "drivers/sample/protocol.h"
+#include "drivers/spaceball/protocol.h"
+
+namespace merlin::bench {
+namespace {
+
+// Takes a piece of the stream; returns how many packets it completed.
+using Feed = std::function<std::uint64_t(const std::string&)>;
+
+struct Target {
+  const char* name;
+  std::function<Feed()> make;
+  std::function<std::string(Random&)> packet;  // a good one
+};
+
+std::int16_t anyShort(Random& r) { return static_cast<std::int16_t>(r.next()); }
+
+template <typename Parser>
+Feed each(std::shared_ptr<Parser> parser) {
+  return [parser](const std::string& bytes) {
+    std::uint64_t packets = 0;
+    for (const char c : bytes) packets += parser->feed(static_cast<std::byte>(c)) ? 1U : 0U;
+    return packets;
+  };
+}
+
+std::string gloveRecord(Random& r) {
+  cyberglove::Record record;
+  for (auto& v : record.values) v = static_cast<std::uint8_t>(1 + r.below(255));
+  record.too_fast = r.below(9) == 0;
+  return cyberglove::encode(record, {});
+}
+
+fastrak::Record trackerRecord(Random& r) {
+  fastrak::Record record;
+  record.station = 1 + static_cast<int>(r.below(4));
+  for (auto& v : record.position) v = static_cast<float>(r.uniform(-300, 300));
+  return record;
+}
+
+std::string ballPacket(Random& r) {
+  spaceball::Displacement d;
+  for (auto& axis : d.axes) axis = anyShort(r);
+  d.period = static_cast<std::uint16_t>(r.next());
+  if (r.below(4) > 0) return spaceball::encode(d);
+  return spaceball::encodeKeys(static_cast<std::uint32_t>(r.next()), spaceball::Model::k4000);
+}
+
+std::string textRecord(Random& r) {
+  sample::Record record;
+  for (auto& axis : record.axes) axis = static_cast<int>(r.below(2001)) - 1000;
+  return sample::encode(record);
+}
+
+std::string transcriptLine(Random& r) {
+  return fmt::format("# device: x # serial: 9600\n@{:.6f} {}{:04x} <- note\n# end\n", r.uniform(),
+                     r.below(2) ? "to " : "", r.below(65536));
+}
+
+const Target kTargets[] = {
+    {"cyberglove", [] { return each(std::make_shared<cyberglove::Parser>()); }, gloveRecord},
+    {"cyberglove stamped",
+     [] {
+       auto parser = std::make_shared<cyberglove::Parser>();
+       parser->expect({.values = 18, .timestamp = true, .status = true});
+       return each(parser);
+     },
+     [](Random& r) {
+       cyberglove::Record record;
+       record.timestamp = static_cast<std::uint32_t>(r.next());
+       return cyberglove::encode(record, {.values = 18, .timestamp = true, .status = true});
+     }},
+    {"fastrak",
+     []() -> Feed {
+       auto parser = std::make_shared<fastrak::Parser>();
+       return [parser](const std::string& bytes) {
+         std::uint64_t packets = 0;
+         for (const char c : bytes) packets += parser->feed(static_cast<std::byte>(c), 1) ? 1U : 0U;
+         return packets;
+       };
+     },
+     [](Random& r) { return fastrak::encode(trackerRecord(r), fastrak::kDriverList, {}); }},
+    {"fastrak replies",
+     []() -> Feed {
+       return [](const std::string& bytes) -> std::uint64_t {
+         return (fastrak::parseStatus(bytes) ? 1U : 0U) + (fastrak::parseStations(bytes) ? 1U : 0U);
+       };
+     },
+     [](Random& r) {
+       if (r.below(2)) return fastrak::encode(fastrak::Stations{true, false, true, false}, 1);
+       return fastrak::encode(fastrak::Status{});
+     }},
+    {"spaceball", [] { return each(std::make_shared<spaceball::Parser>()); }, ballPacket},
+    {"sample", [] { return each(std::make_shared<sample::Parser>()); }, textRecord},
+    {"transcript",
+     []() -> Feed {
+       return [](const std::string& bytes) -> std::uint64_t {
+         return io::parseTranscript(bytes) ? 1U : 0U;
+       };
+     },
+     transcriptLine},
+};
+
+// The packet, now and then damaged.
+std::string mutated(std::string bytes, Random& r) {
+  if (bytes.empty()) return bytes;
+  const std::size_t at = r.below(bytes.size());
+  switch (r.below(8)) {
+    case 0: bytes[at] = static_cast<char>(bytes[at] ^ 1 << r.below(8)); break;
+    case 1: bytes.erase(at, 1); break;
+    case 2: bytes.insert(at, 1, bytes[at]); break;
+    case 3:
+      for (std::uint64_t i = r.below(40); i > 0; --i)
+        bytes.insert(at, 1, static_cast<char>(r.next()));
+      break;
+    default: break;
+  }
+  return bytes;
+}
+
+struct Count {
+  std::uint64_t bytes = 0, sent = 0, recovered = 0, from_noise = 0;
+};
+
+// What recovered more than was sent whole is chance: random bytes that make a packet.
+void fuzz(const Target& target, double most, std::uint64_t seed) {
+  Random random(seed);
+  const auto start = std::chrono::steady_clock::now();
+  Count count;
+  Feed feed = target.make();
+  while (static_cast<double>(count.bytes) < most / 2) {
+    const std::string bytes = mutated(target.packet(random), random);
+    count.bytes += bytes.size();
+    ++count.sent;
+    count.recovered += feed(bytes);
+  }
+  feed = target.make();
+  std::string noise(64, '\0');
+  while (static_cast<double>(count.bytes) < most) {
+    for (char& c : noise) c = static_cast<char>(random.next());
+    count.bytes += noise.size();
+    count.from_noise += feed(noise);
+  }
+  const double took =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  fmt::print(
+      "{:20} {:12} bytes, {:9} packets sent, {:9} recovered ({:.1f} %), {:6} out of noise, "
+      "{:.1f} s\n",
+      target.name, count.bytes, count.sent, count.recovered,
+      100 * static_cast<double>(count.recovered) / static_cast<double>(count.sent),
+      count.from_noise, took);
+  std::fflush(stdout);
+}
+
+}  // namespace
+}  // namespace merlin::bench
+
+int main(int argc, char** argv) {
+  double bytes = 1e8;
+  std::uint64_t seed = 1;
+  CLI::App app("Random and mutated bytes through every parser.");
+  app.add_option("--bytes", bytes, "Through each")->capture_default_str();
+  app.add_option("--seed", seed)->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+#ifndef __SANITIZE_ADDRESS__
+  fmt::print("(without sanitizers: only a crash would show)\n");
+#endif
+  for (const auto& target : merlin::bench::kTargets) merlin::bench::fuzz(target, bytes, seed);
+}
