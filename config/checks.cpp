@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -37,14 +38,77 @@ void checkName(const Settings& s, Checks& checks) {
                                           s.instance));
 }
 
+bool isAddress(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  const std::string port = text.substr(colon + 1);
+  return text.starts_with("tcp://") && colon > 6 && !port.empty() && port.size() <= 5 &&
+         port.find_first_not_of("0123456789") == std::string::npos;
+}
+
+bool knownPort(const std::string& port) {
+  if (port.empty() || isAddress(port)) return true;
+  for (const std::string form : {"serial:", "pty:", "replay:"}) {
+    if (port.starts_with(form) && port.size() > form.size()) return true;
+  }
+  return false;
+}
+
+// Two programs on one line would each hear half of what the device says; so would two drivers.
+void checkPortsDiffer(const DevicesSettings& d, Checks& checks) {
+  std::map<std::string, const char*> taken;
+  const std::pair<const char*, const LineSettings*> lines[] = {
+      {"glove", &d.glove_line}, {"tracker", &d.tracker_line}, {"ball", &d.ball_line}};
+  for (const auto& [device, line] : lines) {
+    if (line->port.empty() || line->port.starts_with("replay:")) continue;
+    const auto [first, fresh] = taken.emplace(line->port, device);
+    if (fresh) continue;
+    checks.wrong(fmt::format("/devices/{}/port", device),
+                 fmt::format("is \"{}\", which is the {}'s port; each device has its own",
+                             line->port, first->second));
+  }
+}
+
+void checkGpio(const GpioSettings& g, Checks& checks) {
+  std::set<int> seen;
+  for (const int line : {g.projector_line, g.video_line, g.lamp_line, g.button_line}) {
+    if (line >= 0 && !seen.insert(line).second)
+      checks.wrong("/devices/gpio", fmt::format("has line {} twice; each has one purpose", line));
+  }
+}
+
+// What speaks over a network is encrypted, or not at all.
+void checkNetwork(const Settings& s, Checks& checks) {
+  if (!s.serve.samples_endpoint.empty() && !isAddress(s.serve.samples_endpoint)) {
+    checks.wrong("/serve/samples_endpoint",
+                 fmt::format("is \"{}\"; allowed is tcp://ADDRESS:PORT, ADDRESS * for any",
+                             s.serve.samples_endpoint));
+  }
+  if (!s.serve.samples_endpoint.empty() &&
+      (s.serve.samples_keys.empty() || s.serve.samples_clients.empty())) {
+    checks.wrong("/serve/samples_endpoint",
+                 "needs samples_keys (merlin keys -o FILE) and samples_clients beside it");
+  }
+  const InputSettings& in = s.wall.input;
+  if (in.endpoint.empty()) return;
+  if (!isAddress(in.endpoint)) {
+    checks.wrong("/wall/input/endpoint",
+                 fmt::format("is \"{}\"; allowed is tcp://HOST:PORT, or \"\" for this machine's "
+                             "devices",
+                             in.endpoint));
+  }
+  if (in.keys.empty() || in.server_key.size() != 40) {
+    checks.wrong(
+        "/wall/input",
+        "needs keys (merlin keys -o FILE) and server_key, the other machine's 40 characters");
+  }
+}
+
 void checkLine(const LineSettings& line, const std::string& device, Checks& checks) {
   const std::string at = "/devices/" + device;
-  const bool known = line.port.empty() ||
-                     (line.port.starts_with("serial:") && line.port.size() > 7) ||
-                     (line.port.starts_with("pty:") && line.port.size() > 4);
-  if (!known) {
+  if (!knownPort(line.port)) {
     checks.wrong(at + "/port",
-                 fmt::format("is \"{}\"; allowed are serial:/dev/..., pty:PATH and \"\" for none",
+                 fmt::format("is \"{}\"; allowed are serial:/dev/..., pty:PATH, tcp://HOST:PORT, "
+                             "replay:FILE and \"\" for none",
                              line.port));
   }
   static const std::set<int> kSpeeds = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
@@ -82,6 +146,9 @@ void checkTogether(const Settings& s, const std::map<std::string, int>& lines,
   checkLine(s.devices.glove_line, "glove", checks);
   checkLine(s.devices.tracker_line, "tracker", checks);
   checkLine(s.devices.ball_line, "ball", checks);
+  checkPortsDiffer(s.devices, checks);
+  checkGpio(s.devices.gpio, checks);
+  checkNetwork(s, checks);
   checkAxes(s.devices.ball.axis_map, "/devices/ball/axis_map", checks);
   checkAxes(s.wall.scene.tracker_axes, "/wall/scene/tracker_axes", checks);
   checkRate(s.wall.governor, checks);

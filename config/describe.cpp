@@ -12,6 +12,11 @@ constexpr const char* kTileKinds[] = {"wall", "operator"};
 constexpr const char* kActions[] = {"grab", "reset_view", "next_mode"};
 constexpr const char* kScripts[] = {"visit", "turning", "still", "grabbing"};
 
+constexpr const char* kWristLights[] = {"switch", "off", "on"};
+constexpr const char* kTrackerNumbers[] = {"binary", "text", "short"};
+constexpr const char* kPanelCommands[] = {"next_mode",     "reset_view", "projector_on",
+                                          "projector_off", "video_a",    "video_b"};
+
 constexpr const char* kGloves[] = {"cyberglove"};
 constexpr const char* kTrackers[] = {"fastrak"};
 constexpr const char* kBalls[] = {"spaceball", "sample"};
@@ -19,8 +24,8 @@ constexpr const char* kBalls[] = {"spaceball", "sample"};
 void describeLine(LineSettings& line, std::span<const char* const> drivers, SettingsVisitor& v) {
   v.choiceOf("driver", line.driver, drivers, "Which device it is.");
   v.text("port", line.port,
-         "Where the device is: serial:/dev/... (best a name under /dev/serial/by-id) or pty:PATH; "
-         "empty: there is none.");
+         "Where the device is: serial:/dev/... (best a name under /dev/serial/by-id), pty:PATH, "
+         "tcp://HOST:PORT (a raw serial server) or replay:FILE; empty: there is none.");
   v.integer("baud", line.baud, {1200, 115200},
             "Speed of the line, bits a second: 1200, 2400, ... 38400, 57600 or 115200.");
 }
@@ -36,7 +41,33 @@ void describeGlove(DevicesSettings& d, SettingsVisitor& v) {
           "What fills slot 7, which no glove measures: 0, the middle, its neighbours' mean, or the "
           "wrist switch.");
   v.number("rate_hz", d.glove.rate_hz, {1, 150}, "Records a second that are asked for.");
+  v.oneOf("light", d.glove.light, kWristLights, "The wrist's light: as the switch, off, or on.");
+  v.flag("time_stamps", d.glove.time_stamps,
+         "The unit stamps its records: the counter then also grows by records that were lost.");
   v.flag("filter", d.glove.filter, "The interface unit's own low-pass filter.");
+}
+
+void describeTrackerForm(FastrakSettings& t, SettingsVisitor& v) {
+  constexpr const char* kAlignments[] = {"alignment1_cm", "alignment2_cm", "alignment3_cm",
+                                         "alignment4_cm"};
+  constexpr const char* kBoresights[] = {"boresight1_wxyz", "boresight2_wxyz", "boresight3_wxyz",
+                                         "boresight4_wxyz"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    v.numbers(
+        kAlignments[i], t.alignment_cm[i], {-1000, 1000},
+        "Of that station: a new origin, a point on its x axis, one on its y axis, centimetres.");
+    v.numbers(kBoresights[i], t.boresight_wxyz[i], {-1, 1},
+              "Of that station: the orientation that counts as straight ahead, a quaternion.");
+  }
+  v.numbers("position_filter", t.position_filter, {0, 1},
+            "The unit's own, of positions: sensitivity, low, high, factor.");
+  v.numbers("angle_filter", t.angle_filter, {0, 1}, "The same, of angles.");
+  v.oneOf("numbers", t.numbers, kTrackerNumbers,
+          "On its line: floats, decimals, or 14-bit numbers (boxes of before 2012).");
+  v.flag("angles", t.angles, "Sends azimuth, elevation and roll in place of a quaternion.");
+  v.flag("stylus", t.stylus, "Station 1 is a stylus: its button comes with the records.");
+  v.numbers("stylus_tip_cm", t.stylus_tip_cm, {-100, 100},
+            "Of the stylus, from its coil, centimetres.");
 }
 
 void describeTracker(DevicesSettings& d, SettingsVisitor& v) {
@@ -47,6 +78,7 @@ void describeTracker(DevicesSettings& d, SettingsVisitor& v) {
               "Into the half of space where that station's receiver is, transmitter's frame; 0, 0, "
               "0: the unit follows it.");
   }
+  describeTrackerForm(d.tracker, v);
   v.flag("centimetres", d.tracker.centimetres,
          "What the unit sends on its line, else inches; samples are in metres.");
 }
@@ -57,6 +89,15 @@ void describeBall(DevicesSettings& d, SettingsVisitor& v) {
             "Counts of a full push.");
   v.integer("full_scale_rotation", d.ball.full_scale_rotation, {100, 32767},
             "Counts of a full twist.");
+  v.integer("null_region", d.ball.null_region, {0, 63},
+            "The ball's own: push that counts as none.");
+  v.flag("cubic", d.ball.cubic,
+         "The ball's own: a harder push counts for more than in proportion.");
+  v.flag("rezero", d.ball.rezero,
+         "Its rest is taken anew when it is opened: nobody may touch it then.");
+  v.text(
+      "beep", d.ball.beep,
+      "What it beeps when it is ready: letters, lower case a tone, upper a pause; empty: nothing.");
   v.integer("dead_zone", d.ball.dead_zone, {0, 99}, "Counts of an axis that are taken for rest.");
   v.numbers(
       "axis_map", d.ball.axis_map, {-6, 6},
@@ -125,6 +166,8 @@ void describeRender(render::RenderSettings& r, SettingsVisitor& v) {
   v.oneOf("backend", r.backend, kBackends, "Which windowless OpenGL draws.");
   v.integer("raster_threads", r.raster_threads, {0, 16},
             "Of Mesa's software renderer; 0: the wall's own thread does all.");
+  v.flag("view_dependent", r.view_dependent,
+         "Triangles where the tiles look, finer near; else as many everywhere.");
   v.numbers("colour", r.look.colour, {0, 1}, "Of a model without colours: red, green, blue.");
   v.numbers("background", r.look.background, {0, 1}, "Red, green, blue.");
   v.number("brightness", r.look.brightness, {0.1, 10},
@@ -134,7 +177,43 @@ void describeRender(render::RenderSettings& r, SettingsVisitor& v) {
   v.flag("wireframe", r.look.wireframe, "Draws edges instead of faces.");
 }
 
+void describeGpio(GpioSettings& g, SettingsVisitor& v) {
+  v.text("chip", g.chip, "gpiochip0 or /dev/gpiochip0; empty: there is no panel.");
+  v.integer("projector_line", g.projector_line, {-1, 1023},
+            "Line that is high while the projectors have power; -1: none.");
+  v.integer("video_line", g.video_line, {-1, 1023},
+            "Line that is low for video A, high for B; -1: none.");
+  v.integer("lamp_line", g.lamp_line, {-1, 1023},
+            "Line that is high while the lamp is lit; -1: none.");
+  v.integer("button_line", g.button_line, {-1, 1023},
+            "Line that is high while the button is pressed; -1: none.");
+  v.number("warm_up_s", g.warm_up_s, {0, 3600}, "Until projectors show a picture, seconds.");
+  v.number("cool_down_s", g.cool_down_s, {0, 3600},
+           "After switching off, in which they are not switched on again, seconds.");
+  v.number("interlock_s", g.interlock_s, {0, 3600}, "Between two switchings, at least, seconds.");
+  v.number("debounce_s", g.debounce_s, {0, 1},
+           "That the button is down before it counts, seconds.");
+  v.choiceOf("button_command", g.button_command, kPanelCommands, "What a press does.");
+}
+
+void describeServe(ServeSettings& s, SettingsVisitor& v) {
+  v.text("spnav_socket", s.spnav_socket,
+         "The ball for programs built on libspnav, usually /run/spnav.sock; empty: none.");
+  v.integer("vrpn_port", s.vrpn_port, {0, 65535},
+            "Hand, tracker and ball for VRPN clients on this machine, usually 3883; 0: none.");
+  v.text("samples_endpoint", s.samples_endpoint,
+         "Samples for other machines' walls, encrypted: tcp://*:7401; empty: none.");
+  v.path("samples_keys", s.samples_keys, "This machine's keys: merlin keys -o FILE.");
+  v.path("samples_clients", s.samples_clients, "Public keys of those who may listen, one a line.");
+}
+
 void describeWall(WallSettings& w, SettingsVisitor& v) {
+  v.group("input", "Another machine's devices, in place of this one's.", [&] {
+    v.text("endpoint", w.input.endpoint,
+           "tcp://HOST:PORT of the merlind that has them; empty: this machine's shared memory.");
+    v.text("server_key", w.input.server_key, "That merlind's public key.");
+    v.path("keys", w.input.keys, "This machine's keys: merlin keys -o FILE.");
+  });
   v.path("model", w.model, "The multiresolution model that is shown, an .mrm file.");
   v.group("rate", "The frame rate, and what is given for it.", [&] {
     v.number("rate_hz", w.governor.rate_hz, {1, 240}, "Frames a second while anything moves.");
@@ -168,12 +247,23 @@ void describe(Settings& s, SettingsVisitor& v) {
     v.group("glove", "A CyberGlove.", [&] { describeGlove(s.devices, v); });
     v.group("tracker", "A Polhemus Fastrak.", [&] { describeTracker(s.devices, v); });
     v.group("ball", "A Spaceball.", [&] { describeBall(s.devices, v); });
+    v.group("hand", "Glove and tracker as one hand.", [&] {
+      v.integer("station", s.devices.hand.station, {1, 4}, "Of the tracker, that the hand wears.");
+      v.number(
+          "cutoff_hz", s.devices.hand.cutoff_hz, {0, 100},
+          "Of the smoothing of a hand at rest; it adds a delay of 1 / (2 pi cut-off); 0: none.");
+      v.number("cutoff_per_m_s", s.devices.hand.cutoff_per_m_s, {0, 1000},
+               "By which the cut-off rises with the hand's speed, Hz for a metre a second.");
+    });
+    v.group("gpio", "The wall's control panel on a GPIO chip.",
+            [&] { describeGpio(s.devices.gpio, v); });
     v.path("postures", s.devices.postures,
            "The posture network, a JSON file; empty: no posture is recognised.");
     v.choiceOf("script", s.devices.script, kScripts,
                "What the emulated person does, with --emulate.");
   });
   v.group("wall", "What is shown.", [&] { describeWall(s.wall, v); });
+  v.group("serve", "Servers for other programs and machines.", [&] { describeServe(s.serve, v); });
 }
 
 }  // namespace merlin

@@ -4,8 +4,11 @@
 
 #include <string>
 
+#include "daemon/serve/settings.h"
 #include "drivers/cyberglove/settings.h"
 #include "drivers/fastrak/settings.h"
+#include "drivers/gpio/settings.h"
+#include "drivers/hand/settings.h"
 #include "drivers/spaceball/settings.h"
 #include "render/gl/settings.h"
 #include "render/governor/settings.h"
@@ -18,7 +21,7 @@ namespace merlin {
 // Which device it is, where, and how fast its line runs.
 struct LineSettings {
   std::string driver;  // a name of drivers/registry
-  std::string port;    // "serial:/dev/...", "pty:PATH"; empty: there is no such device
+  std::string port;  // "serial:/dev/...", "pty:PATH", "tcp://HOST:PORT", "replay:FILE"; empty: none
   int baud = 38400;
 };
 
@@ -29,11 +32,22 @@ struct DevicesSettings {
   FastrakSettings tracker;
   LineSettings ball_line{"spaceball", "", 9600};
   SpaceballSettings ball;
+  HandSettings hand;
+  GpioSettings gpio;
   std::string postures;          // the posture network's file; empty: none is recognised
   std::string script = "visit";  // what the emulated person does, with --emulate
 };
 
+// Where the wall's input comes from, if not from this machine's devices.
+struct InputSettings {
+  std::string
+      endpoint;  // "tcp://HOST:PORT" of another merlind; empty: this machine's shared memory
+  std::string server_key;  // that merlind's public key
+  std::string keys;        // this machine's pair of keys, a file
+};
+
 struct WallSettings {
+  InputSettings input;
   std::string model;  // an .mrm file
   render::GovernorSettings governor;
   render::TilesSettings tiles;
@@ -49,6 +63,7 @@ struct Settings {
   std::string run_directory;
   DevicesSettings devices;
   WallSettings wall;
+  ServeSettings serve;
 };
 
 }  // namespace merlin

@@ -8,6 +8,7 @@
 #include <systemd/sd-daemon.h>
 
 #include "daemon/base/log.h"
+#include "daemon/shm/fields.h"
 #include "daemon/status/documents.h"
 #include "daemon/status/health_events.h"
 #include "daemon/status/run_directory.h"
@@ -18,7 +19,7 @@ namespace {
 constexpr Duration kBeat = std::chrono::milliseconds(100);
 constexpr Duration kSummary = std::chrono::seconds(5);
 constexpr Duration kOnceASecond = std::chrono::seconds(1);
-constexpr Duration kThirtyASecond = std::chrono::milliseconds(33);
+constexpr Duration kSixtyASecond = std::chrono::microseconds(16'667);
 
 sigset_t stopSignals() {
   sigset_t set;
@@ -42,6 +43,7 @@ Result<std::unique_ptr<Daemon>> Daemon::make(Settings settings, const DaemonOpti
   auto directory = status::runDirectory(daemon->settings_.run_directory);
   if (!directory) return directory.error();
   daemon->run_directory_ = *std::move(directory);
+  daemon->settings_.run_directory = daemon->run_directory_;
   if (const auto made = daemon->makeRoles(); !made) return made.error();
   return daemon;
 }
@@ -55,6 +57,9 @@ Daemon::Daemon(Settings settings, const DaemonOptions& options, Clock& clock)
 // In reverse order of start: nobody is asked for what is no more.
 Daemon::~Daemon() {
   servers_.clear();
+  spnav_.reset();
+  vrpn_.reset();
+  link_.reset();
   wall_.reset();
   devices_.reset();
 }
@@ -90,6 +95,9 @@ Result<Ok> Daemon::makeRoles() {
     if (!role) return role.error();
     devices_ = *std::move(role);
   }
+  if (options_.wall && !settings_.wall.input.endpoint.empty()) {
+    if (auto mirrored = mirrorDevices(generation); !mirrored) return mirrored;
+  }
   if (options_.wall) {
     auto role = wall::WallRole::make(settings_, generation, endpoints("wall"), clock_);
     if (!role) return role.error();
@@ -98,15 +106,92 @@ Result<Ok> Daemon::makeRoles() {
   return Ok{};
 }
 
+// The wall reads this machine's shared memory either way: here it is filled from another's.
+Result<Ok> Daemon::mirrorDevices(std::uint64_t generation) {
+  const InputSettings& input = settings_.wall.input;
+  if (devices_) {
+    return Error{Errc::kInvalidArgument,
+                 "/wall/input/endpoint names another machine's devices, and this process reads its "
+                 "own: run it with --role wall"};
+  }
+  auto keys = status::readKeyPair(input.keys);
+  if (!keys) return keys.error();
+  auto segment = shm::SegmentWriter<shm::DevicesSegment>::make(
+      shm::segmentName(settings_.instance, "devices"), shm::devicesFields(), generation,
+      clock_.now(), {});
+  if (!segment) return segment.error();
+  mirror_.emplace(*std::move(segment));
+  auto link = status::SampleLink::start({input.endpoint, input.server_key, *std::move(keys)},
+                                        **mirror_, clock_);
+  if (!link) return link.error();
+  link_ = *std::move(link);
+  return Ok{};
+}
+
+Result<Ok> Daemon::serveOthers(const shm::DevicesSegment& segment) {
+  const ServeSettings& s = settings_.serve;
+  if (!s.spnav_socket.empty()) {
+    auto server = serve::SpnavServer::start(s.spnav_socket, {}, segment);
+    if (!server) return server.error();
+    spnav_ = *std::move(server);
+  }
+  if (s.vrpn_port > 0) {
+    auto server = serve::VrpnServer::start(s.vrpn_port, segment, clock_);
+    if (!server) return server.error();
+    vrpn_ = *std::move(server);
+  }
+  return Ok{};
+}
+
+Result<status::CurveServer> Daemon::network() const {
+  const ServeSettings& s = settings_.serve;
+  if (s.samples_endpoint.empty()) return status::CurveServer{};
+  auto keys = status::readKeyPair(s.samples_keys);
+  if (!keys) return keys.error();
+  auto clients = status::readPublicKeys(s.samples_clients);
+  if (!clients) return clients.error();
+  return status::CurveServer{s.samples_endpoint, *std::move(keys), *std::move(clients)};
+}
+
+// Of the panel or of the wall: what a button may be bound to.
+Result<std::string> Daemon::runCommand(const std::string& name) {
+  if (name == "next_mode" || name == "reset_view") {
+    if (!wall_) return Error{Errc::kInvalidArgument, "this process draws no wall"};
+    wall_->request(name == "next_mode" ? wall::WallLoop::kNextMode : wall::WallLoop::kResetView);
+    return std::string("{}");
+  }
+  if (const auto done = devices_->panel()->obey(name); !done) return done.error();
+  return std::string("{}");
+}
+
+std::vector<status::Command> Daemon::panelCommands() {
+  std::vector<status::Command> commands;
+  if (!devices_->panel()) return commands;
+  for (const char* name : {"projector_on", "projector_off", "video_a", "video_b", "lamp_off",
+                           "lamp_slow", "lamp_fast", "lamp_on"}) {
+    commands.push_back({name, "of the panel", [this, name] { return runCommand(name); }});
+  }
+  return commands;
+}
+
 Result<Ok> Daemon::run() {
   const Timestamp now = clock_.now();
   if (devices_) {
     devices_->beat(now);
+    devices_->onPress([this](const std::string& command) {
+      const auto done = runCommand(command);
+      if (!done) logWarning("the panel's button: {}", done.error().what);
+    });
     devices_->start();
+    if (auto served = serveOthers(devices_->segment()); !served) return served;
     if (auto served = serveDevices(); !served) return served;
   }
   if (wall_) {
     wall_->beat(now);
+    if (mirror_) {
+      mirror_->beat(now);
+      if (auto served = serveOthers(**mirror_); !served) return served;
+    }
     if (auto served = serveWall(); !served) return served;
     if (auto shown = awaitFirstFrame(wall_->start()); !shown) return shown;
   }
@@ -142,6 +227,7 @@ void Daemon::housekeeping() {
   const Timestamp now = clock_.now();
   if (devices_) devices_->beat(now);
   if (wall_) wall_->beat(now);
+  if (mirror_) mirror_->beat(now);
   if (emulators_) {
     for (const std::string& device : emulators_->takeEnded()) {
       logWarning("the emulated {} has ended; start it again with: merlin emulate {} --link ...",
@@ -194,10 +280,20 @@ Result<Ok> Daemon::serveDevices() {
   s.publications = {
       {"status", kOnceASecond, statusNow},
       {"metrics", kOnceASecond, [&segment] { return status::devicesMetrics(segment); }},
-      {"sample", kThirtyASecond,
+      {"sample", kSixtyASecond,
        [this, &segment] { return status::newestSamples(segment, clock_.now()); }}};
   s.commands = {{"status", "the devices' status",
-                 [statusNow]() -> Result<std::string> { return statusNow(); }}};
+                 [statusNow]() -> Result<std::string> { return statusNow(); }},
+                {"flight", "the last minutes of every device's bytes, into files",
+                 [this]() -> Result<std::string> {
+                   const auto files = devices_->flight().dump();
+                   if (!files) return files.error();
+                   return fmt::format("[\"{}\"]", fmt::join(*files, "\",\""));
+                 }}};
+  for (auto& command : panelCommands()) s.commands.push_back(std::move(command));
+  auto network_settings = network();
+  if (!network_settings) return network_settings.error();
+  s.network = *std::move(network_settings);
   auto events = std::make_shared<status::HealthEvents>(segment);  // shared: std::function must copy
   s.events = [this, events] {
     std::vector<std::string> documents;
@@ -205,6 +301,10 @@ Result<Ok> Daemon::serveDevices() {
     for (const std::string& sentence : events->take(now)) {
       logInfo("{}", sentence);
       documents.push_back(status::event("device", sentence, now));
+    }
+    for (const std::string& sentence : devices_->flight().check()) {
+      logInfo("{}", sentence);
+      documents.push_back(status::event("flight", sentence, now));
     }
     return documents;
   };
@@ -228,6 +328,17 @@ Result<Ok> Daemon::serveWall() {
       {"reset_view", "model and viewer back to the start", ask(wall::WallLoop::kResetView)},
       {"next_mode", "the ball moves the model, or the viewer", ask(wall::WallLoop::kNextMode)}};
   s.events = [] { return std::vector<std::string>(); };
+  if (mirror_) {
+    auto events = std::make_shared<status::HealthEvents>(**mirror_);  // shared: function must copy
+    s.events = [this, events] {
+      std::vector<std::string> documents;
+      for (const std::string& sentence : events->take(clock_.now())) {
+        logInfo("{}", sentence);
+        documents.push_back(status::event("device", sentence, clock_.now()));
+      }
+      return documents;
+    };
+  }
   return serveStatus("wall", std::move(s));
 }
 

@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "config/settings.h"
@@ -10,6 +11,9 @@
 #include "daemon/base/result.h"
 #include "daemon/devices/devices_role.h"
 #include "daemon/emulator_children.h"
+#include "daemon/serve/spnav_server.h"
+#include "daemon/serve/vrpn_server.h"
+#include "daemon/status/sample_link.h"
 #include "daemon/status/server.h"
 #include "daemon/status/watchdog.h"
 #include "daemon/wall/wall_role.h"
@@ -41,6 +45,11 @@ class Daemon {
   Result<Ok> serveStatus(const std::string& role, status::StatusServerSettings settings);
   Result<Ok> serveDevices();
   Result<Ok> serveWall();
+  Result<Ok> mirrorDevices(std::uint64_t generation);
+  Result<Ok> serveOthers(const shm::DevicesSegment& segment);
+  Result<status::CurveServer> network() const;
+  Result<std::string> runCommand(const std::string& name);
+  std::vector<status::Command> panelCommands();
   shm::Endpoints endpoints(const std::string& role) const;
   Result<Ok> awaitFirstFrame(std::future<Result<std::string>> ready);
   bool stopAsked(Duration wait);  // waits for a signal
@@ -54,7 +63,12 @@ class Daemon {
   std::string run_directory_;
   std::unique_ptr<EmulatorChildren> emulators_;
   std::unique_ptr<devices::DevicesRole> devices_;
+  // Another machine's devices, where the wall's input is one.
+  std::optional<shm::SegmentWriter<shm::DevicesSegment>> mirror_;
+  std::unique_ptr<status::SampleLink> link_;
   std::unique_ptr<wall::WallRole> wall_;
+  std::unique_ptr<serve::SpnavServer> spnav_;
+  std::unique_ptr<serve::VrpnServer> vrpn_;
   std::vector<std::unique_ptr<status::StatusServer>> servers_;  // last made, first gone
   status::Watchdog watchdog_;
   Timestamp summarised_{};

@@ -14,9 +14,14 @@ namespace merlin::cli {
 using Run = std::function<int()>;
 
 // One file each.
+void addCalibrate(CLI::App& app, Run& run);
 void addEmulate(CLI::App& app, Run& run);
+void addFlight(CLI::App& app, Run& run);
+void addKeys(CLI::App& app, Run& run);
 void addMesh(CLI::App& app, Run& run);
 void addPosture(CLI::App& app, Run& run);
+void addRecord(CLI::App& app, Run& run);
+void addReplay(CLI::App& app, Run& run);
 void addShm(CLI::App& app, Run& run);
 void addSnapshot(CLI::App& app, Run& run);
 void addStatus(CLI::App& app, Run& run);

@@ -4,13 +4,12 @@
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <signal.h>
-#include <sys/signalfd.h>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/unique_fd.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/stop_signals.h"
 #include "drivers/emulate/emulator.h"
 #include "drivers/io/pty_master.h"
 
@@ -24,14 +23,6 @@ struct EmulateOptions {
   std::uint64_t seed = 1;
   std::int64_t epoch_ns = 0;
 };
-
-UniqueFd stopSignals() {
-  sigset_t set;
-  ::sigemptyset(&set);
-  for (const int s : {SIGTERM, SIGINT, SIGHUP}) ::sigaddset(&set, s);
-  ::sigprocmask(SIG_BLOCK, &set, nullptr);
-  return UniqueFd(::signalfd(-1, &set, SFD_CLOEXEC));
-}
 
 // Until a signal. What the other side does not read is lost, as on a wire.
 int serve(const io::PtyMaster& line, emulate::Emulator& device, const Clock& clock, int stop_fd) {

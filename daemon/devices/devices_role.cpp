@@ -8,7 +8,10 @@
 
 #include "daemon/base/log.h"
 #include "daemon/shm/fields.h"
+#include "drivers/io/gpio_chip.h"
+#include "drivers/io/low_latency.h"
 #include "drivers/io/open_stream.h"
+#include "drivers/io/recording_stream.h"
 #include "nn/io/network_file.h"
 
 namespace merlin::devices {
@@ -35,10 +38,39 @@ DeviceHealth notConfigured(Timestamp now) {
   return health;
 }
 
+// Opens a line, listened to by the flight recorder; says once what its adapter costs.
+class Opener {
+ public:
+  Opener(io::PortAddress address, int baud, ByteTap& tap, const Clock& clock)
+      : address_(std::move(address)), baud_(baud), tap_(tap), clock_(clock) {}
+
+  Result<std::unique_ptr<ByteStream>> operator()() {
+    auto stream = io::openPort(address_, baud_);
+    if (!stream) return stream;
+    if (std::string warning = io::adapterWarning(address_.path); warning != warned_) {
+      warned_ = std::move(warning);
+      if (!warned_.empty()) logWarning("{}", warned_);
+    }
+    return std::unique_ptr<ByteStream>(
+        std::make_unique<io::RecordingStream>(*std::move(stream), tap_, clock_));
+  }
+
+ private:
+  io::PortAddress address_;
+  int baud_;
+  ByteTap& tap_;
+  const Clock& clock_;
+  std::string warned_;
+};
+
 }  // namespace
 
-DevicesRole::DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, Clock& clock)
-    : segment_(std::move(segment)), clock_(clock), sink_(*segment_) {}
+DevicesRole::DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, std::string flight_folder,
+                         Clock& clock)
+    : segment_(std::move(segment)),
+      clock_(clock),
+      sink_(*segment_),
+      flight_(*segment_, std::move(flight_folder)) {}
 
 Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
                                                        std::uint64_t generation,
@@ -48,13 +80,17 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
       shm::segmentName(settings.instance, "devices"), shm::devicesFields(), generation, clock.now(),
       endpoints);
   if (!segment) return segment.error();
-  std::unique_ptr<DevicesRole> role(new DevicesRole(*std::move(segment), clock));
+  std::unique_ptr<DevicesRole> role(
+      new DevicesRole(*std::move(segment), settings.run_directory + "/flight", clock));
   if (!settings.devices.postures.empty()) {
     const auto file = nn::loadNetwork(settings.devices.postures);
     if (!file) return file.error();
     role->posture_sink_ =
         std::make_unique<PostureSink>(file->network, role->segment_->posture, role->sink_);
   }
+  role->hand_sink_ =
+      std::make_unique<HandSink>(settings.devices.hand, *role->segment_, role->sink_);
+  role->addPanel(settings.devices.gpio);
   const DevicesSettings& d = settings.devices;
   const std::pair<const LineSettings*, std::pair<SampleKind, shm::DeviceIndex>> kLines[] = {
       {&d.glove_line, {SampleKind::kGlove, shm::kGlove}},
@@ -77,19 +113,41 @@ Result<Ok> DevicesRole::add(const LineSettings& line, SampleKind kind, shm::Devi
   const auto address = io::parsePort(line.port);
   if (!address) return address.error();
   const DriverSettings own{settings.devices.glove, settings.devices.tracker, settings.devices.ball};
-  SampleSink& sink = kind == SampleKind::kGlove && posture_sink_
-                         ? static_cast<SampleSink&>(*posture_sink_)
-                         : sink_;
+  SampleSink* sink = &sink_;
+  if (kind == SampleKind::kGlove && posture_sink_) sink = posture_sink_.get();
+  if (kind == SampleKind::kTracker) sink = hand_sink_.get();
   health_.push_back(std::make_unique<shm::ShmHealthSink>(slot));
   DeviceLoopSettings loop;
   loop.port = line.port;
-  loops_.push_back(std::make_unique<DeviceLoop>(
-      loop, [address = *address, baud = line.baud] { return io::openPort(address, baud); },
-      driver->make(own, clock_, sink), *health_.back(), clock_));
+  loop.baud = line.baud;
+  ByteTap& tap = flight_.add(index, line.driver, line.baud);
+  loops_.push_back(std::make_unique<DeviceLoop>(loop, Opener(*address, line.baud, tap, clock_),
+                                                driver->make(own, clock_, *sink), *health_.back(),
+                                                clock_));
   return Ok{};
 }
 
+void DevicesRole::addPanel(const GpioSettings& settings) {
+  segment_->gpio_health.publish(notConfigured(clock_.now()));
+  if (settings.chip.empty()) return;
+  health_.push_back(std::make_unique<shm::ShmHealthSink>(segment_->gpio_health));
+  const auto open = [settings] {
+    return io::openGpioChip(settings.chip,
+                            {settings.projector_line, settings.video_line, settings.lamp_line},
+                            settings.button_line);
+  };
+  const auto publish = [this](const GpioSample& sample) {
+    const auto last = segment_->gpio.newest();
+    if (!last || last->counter != sample.counter || last->wait_s != sample.wait_s)
+      segment_->gpio.publish(sample);
+  };
+  panel_ =
+      std::make_unique<gpio::PanelLoop>(settings, open, publish, *health_.back(), clock_,
+                                        [this](const std::string& command) { on_press_(command); });
+}
+
 void DevicesRole::start() {
+  if (panel_) threads_.emplace_back([this](const std::stop_token& stop) { panel_->run(stop); });
   for (const auto& loop : loops_) {
     threads_.emplace_back([&loop = *loop](const std::stop_token& stop) {
       askForRealTime();

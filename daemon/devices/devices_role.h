@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -9,9 +10,12 @@
 
 #include "config/settings.h"
 #include "daemon/base/clock.h"
+#include "daemon/devices/flight_recorder.h"
+#include "daemon/devices/hand_sink.h"
 #include "daemon/devices/posture_sink.h"
 #include "daemon/shm/segment.h"
 #include "daemon/shm/shm_sink.h"
+#include "drivers/gpio/panel_loop.h"
 #include "drivers/loop/device_loop.h"
 #include "drivers/registry.h"
 
@@ -21,6 +25,7 @@ class DevicesRole {
  public:
   // Makes the segment; nothing runs yet. Errors: kBusy (a living daemon has the segment), kIo; what
   // is wrong with the posture network's file.
+  // REQUIRES: settings.run_directory is the one that holds.
   static Result<std::unique_ptr<DevicesRole>> make(const Settings& settings,
                                                    std::uint64_t generation,
                                                    const shm::Endpoints& endpoints, Clock& clock);
@@ -33,16 +38,28 @@ class DevicesRole {
 
   void beat(Timestamp now) const { segment_.beat(now); }
   const shm::DevicesSegment& segment() const { return *segment_; }
+  // What a press of the panel's button does; called on the panel's thread. Before start().
+  void onPress(std::function<void(const std::string&)> act) { on_press_ = std::move(act); }
+  // Null where no panel is configured. Thread-safe.
+  gpio::PanelLoop* panel() { return panel_.get(); }
+  // Of every device that has a port. For the status server's thread.
+  FlightRecorder& flight() { return flight_; }
 
  private:
-  DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, Clock& clock);
+  DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, std::string flight_folder,
+              Clock& clock);
+  void addPanel(const GpioSettings& settings);
   Result<Ok> add(const LineSettings& line, SampleKind kind, shm::DeviceIndex index,
                  const Settings& settings);
 
   shm::SegmentWriter<shm::DevicesSegment> segment_;
   Clock& clock_;
   shm::ShmSink sink_;
+  FlightRecorder flight_;
   std::unique_ptr<PostureSink> posture_sink_;
+  std::unique_ptr<HandSink> hand_sink_;
+  std::function<void(const std::string&)> on_press_ = [](const std::string&) {};
+  std::unique_ptr<gpio::PanelLoop> panel_;
   std::vector<std::unique_ptr<shm::ShmHealthSink>> health_;
   std::vector<std::unique_ptr<DeviceLoop>> loops_;
   std::vector<std::jthread> threads_;

@@ -46,6 +46,11 @@ class alignas(64) Channel {
     return n + kHistory > count() ? sample : std::nullopt;  // overtaken while it was read
   }
 
+  // Where its words lie, for the table of fields.
+  static constexpr std::size_t countOffset() { return offsetof(Channel, count_); }
+  static constexpr std::size_t wakeOffset() { return offsetof(Channel, wake_); }
+  static constexpr std::size_t ringOffset() { return offsetof(Channel, ring_); }
+
   // Waits until another sample than number `seen` - 1 is the newest, or `timeout` has passed.
   void wait(std::uint64_t seen, timespec timeout) const noexcept {
     const auto word = wake_.load(std::memory_order_acquire);

@@ -59,6 +59,19 @@ class Table {
     fields_.push_back(f);
   }
 
+  // Without a slot: one word, read and written whole.
+  template <typename Element>
+  void bare(const std::string& name, std::size_t offset, const std::string& unit) {
+    Field f{};
+    assert(name.size() < sizeof f.name && unit.size() < sizeof f.unit);
+    std::copy(name.begin(), name.end(), f.name);
+    std::copy(unit.begin(), unit.end(), f.unit);
+    f.type[0] = kType<Element>;
+    f.count = 1;
+    f.offset = static_cast<std::uint32_t>(offset);
+    fields_.push_back(f);
+  }
+
   std::vector<Field> take() { return std::move(fields_); }
 
  private:
@@ -80,6 +93,16 @@ void addHealth(Table& t, const char* device, std::size_t index) {
   MERLIN_FIELD(t, DeviceHealth, bad_bytes, "");
   MERLIN_FIELD(t, DeviceHealth, rate_hz, "Hz");
   MERLIN_FIELD(t, DeviceHealth, reason, "");
+}
+
+// What a reader needs to wait for samples and to read those that it slept over: how many there
+// were, the futex word, and the ring of the last 256 slots, whose stride its unit tells.
+template <typename T>
+void addChannel(Table& t, const char* name, std::size_t offset) {
+  t.bare<std::uint64_t>(fmt::format("{}.count", name), offset + Channel<T>::countOffset(), "");
+  t.bare<std::uint32_t>(fmt::format("{}.wake", name), offset + Channel<T>::wakeOffset(), "futex");
+  t.bare<std::uint64_t>(fmt::format("{}.ring", name), offset + Channel<T>::ringOffset(),
+                        fmt::format("{} x {} B", kHistory, sizeof(SeqSlot<T>)));
 }
 
 void addTracker(Table& t, std::size_t station) {
@@ -121,6 +144,28 @@ std::vector<Field> devicesFields() {
   MERLIN_FIELD(t, BallSample, translation, "full scale");
   MERLIN_FIELD(t, BallSample, rotation, "full scale");
   MERLIN_FIELD(t, BallSample, raw, "");
+  t.slot("hand", offsetof(DevicesSegment, hand));
+  MERLIN_FIELD(t, HandSample, received_ns, "ns");
+  MERLIN_FIELD(t, HandSample, flags, "bits");
+  MERLIN_FIELD(t, HandSample, joint_rad, "rad");
+  MERLIN_FIELD(t, HandSample, position_m, "m");
+  MERLIN_FIELD(t, HandSample, orientation_wxyz, "");
+  MERLIN_FIELD(t, HandSample, velocity_m_s, "m/s");
+  MERLIN_FIELD(t, HandSample, turn_rad_s, "rad/s");
+  MERLIN_FIELD(t, HandSample, delay_s, "s");
+  t.slot("gpio", offsetof(DevicesSegment, gpio));
+  MERLIN_FIELD(t, GpioSample, power, "Power");
+  MERLIN_FIELD(t, GpioSample, video, "");
+  MERLIN_FIELD(t, GpioSample, lamp, "Lamp");
+  MERLIN_FIELD(t, GpioSample, presses, "");
+  MERLIN_FIELD(t, GpioSample, wait_s, "s");
+  t.slot("gpio.health", offsetof(DevicesSegment, gpio_health));
+  MERLIN_FIELD(t, DeviceHealth, state, "HealthState");
+  MERLIN_FIELD(t, DeviceHealth, reason, "");
+  addChannel<GloveSample>(t, "glove", offsetof(DevicesSegment, glove));
+  addChannel<TrackerSample>(t, "tracker1", offsetof(DevicesSegment, tracker));
+  addChannel<BallSample>(t, "ball", offsetof(DevicesSegment, ball));
+  addChannel<HandSample>(t, "hand", offsetof(DevicesSegment, hand));
   return t.take();
 }
 

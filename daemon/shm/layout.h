@@ -25,7 +25,9 @@ inline constexpr std::size_t kMostFields = 96;
 
 // One field of the segment. `type` is a letter of Python's struct module (q i64, Q u64, i i32, I
 // u32, h i16, B u8, f f32, d f64, s bytes of text); `slot` is the offset of the u64 sequence that
-// guards it (read it before and after; odd or changed: try again), 0 for none.
+// guards it (read it before and after; odd or changed: try again), 0 for none. NAME.ring is where
+// the first of a channel's last samples lies, a slot each, its unit "256 x STRIDE B"; sample number
+// n, of NAME.count, is in slot n % 256.
 struct Field {
   char name[40];  // "glove.angle_rad"
   char unit[16];  // "rad"
@@ -61,6 +63,9 @@ struct DevicesSegment {
   Channel<PostureSample> posture;                      // writer: the same, before the glove
   Channel<TrackerSample> tracker[kStations];           // writer: the tracker's; index: station - 1
   Channel<BallSample> ball;                            // writer: the ball's device thread
+  Channel<HandSample> hand;                            // writer: the tracker's device thread
+  Channel<GpioSample> gpio;                            // writer: the panel's thread
+  alignas(64) SeqSlot<DeviceHealth> gpio_health;       // writer: the panel's thread
 };
 
 // How the wall fares; written once a frame by the wall's thread. Shares are 0..1.

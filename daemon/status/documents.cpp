@@ -23,11 +23,52 @@ std::string text(const char (&field)[N]) {
   return {field, strnlen(field, N)};
 }
 
+// Samples are measurements: a micrometre, a microradian.
 template <typename T>
 Json list(std::span<const T> values) {
   Json json = Json::array();
-  for (const T v : values) json.push_back(round3(static_cast<double>(v)));
+  for (const T v : values) {
+    const double wide = static_cast<double>(v);
+    json.push_back(std::isfinite(wide) ? std::round(wide * 1e6) / 1e6 : 0);
+  }
   return json;
+}
+
+template <typename T>
+Json integers(std::span<const T> values) {
+  Json json = Json::array();
+  for (const T v : values) json.push_back(static_cast<int>(v));
+  return json;
+}
+
+// How each device is, for a client that has nothing but this document.
+Json briefHealth(const shm::DevicesSegment& segment) {
+  Json all = Json::object();
+  for (std::size_t i = 0; i < shm::kDevices; ++i) {
+    const auto h = segment.health[i].read();
+    if (!h) continue;
+    all[kDeviceNames[i]] = {{"state", static_cast<std::uint32_t>(h->state)},
+                            {"since_ns", h->since_ns},
+                            {"identity", text(h->identity)},
+                            {"reason", text(h->reason)},
+                            {"samples", h->samples},
+                            {"reconnects", h->reconnects},
+                            {"rate_hz", round3(static_cast<double>(h->rate_hz))}};
+  }
+  return all;
+}
+
+Json poseJson(const HandSample& h) {
+  return {{"received_ns", h.received_ns},
+          {"glove_ns", h.glove_ns},
+          {"counter", h.counter},
+          {"flags", h.flags},
+          {"joint_rad", list(std::span<const float>(h.joint_rad))},
+          {"position_m", list(std::span<const float>(h.position_m))},
+          {"orientation_wxyz", list(std::span<const float>(h.orientation_wxyz))},
+          {"velocity_m_s", list(std::span<const float>(h.velocity_m_s))},
+          {"turn_rad_s", list(std::span<const float>(h.turn_rad_s))},
+          {"delay_s", h.delay_s}};
 }
 
 double ageSeconds(std::int64_t then_ns, Timestamp now) {
@@ -111,6 +152,8 @@ std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {
   Json json = {{"now_ns", toNanoseconds(now)}};
   if (const auto p = segment.posture.newest()) {
     json["posture"] = {{"received_ns", p->received_ns},
+                       {"since_ns", p->since_ns},
+                       {"counter", p->counter},
                        {"code", p->code},
                        {"name", text(p->name)},
                        {"activation", list(std::span<const float>(p->activation))}};
@@ -119,6 +162,8 @@ std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {
     json["hand"] = {{"received_ns", g->received_ns},
                     {"counter", g->counter},
                     {"flags", g->flags},
+                    {"sensors", g->sensors},
+                    {"raw", integers(std::span<const std::uint8_t>(g->raw))},
                     {"angle_rad", list(std::span<const float>(g->angle_rad))}};
   }
   Json stations = Json::array();
@@ -128,6 +173,7 @@ std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {
     stations.push_back({{"station", t->station},
                         {"received_ns", t->received_ns},
                         {"counter", t->counter},
+                        {"error", std::string(1, t->error)},
                         {"position_m", list(std::span<const float>(t->position_m))},
                         {"orientation_wxyz", list(std::span<const float>(t->orientation_wxyz))}});
   }
@@ -136,9 +182,13 @@ std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {
     json["ball"] = {{"received_ns", b->received_ns},
                     {"counter", b->counter},
                     {"buttons", b->buttons},
+                    {"period_us", b->period_us},
+                    {"raw", integers(std::span<const std::int16_t>(b->raw))},
                     {"translation", list(std::span<const float>(b->translation))},
                     {"rotation", list(std::span<const float>(b->rotation))}};
   }
+  if (const auto h = segment.hand.newest()) json["pose"] = poseJson(*h);
+  json["health"] = briefHealth(segment);
   return dump(json);
 }
 

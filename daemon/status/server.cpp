@@ -1,5 +1,6 @@
 #include "daemon/status/server.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -39,7 +40,29 @@ struct StatusServer::Sockets {
   zmq::context_t context{1};
   zmq::socket_t publisher{context, zmq::socket_type::pub};
   zmq::socket_t replier{context, zmq::socket_type::rep};
+  zmq::socket_t doorman{context, zmq::socket_type::rep};
 };
+
+namespace {
+
+// After the local sockets: what is set here holds for what is bound from here on.
+void bindNetwork(const CurveServer& network, zmq::socket_t& publisher, zmq::socket_t& doorman) {
+  doorman.set(zmq::sockopt::linger, 0);
+  doorman.bind("inproc://zeromq.zap.01");
+  publisher.set(zmq::sockopt::zap_domain, "merlin");
+  publisher.set(zmq::sockopt::curve_server, true);
+  publisher.set(zmq::sockopt::curve_secretkey, network.keys.secret_key);
+  publisher.bind(network.endpoint);
+}
+
+std::string z85(const zmq::message_t& key) {
+  char text[41] = "";
+  if (key.size() != 32) return {};
+  ::zmq_z85_encode(text, static_cast<const std::uint8_t*>(key.data()), key.size());
+  return text;
+}
+
+}  // namespace
 
 Result<std::unique_ptr<StatusServer>> StatusServer::start(StatusServerSettings settings,
                                                           const Clock& clock) {
@@ -54,6 +77,10 @@ Result<std::unique_ptr<StatusServer>> StatusServer::start(StatusServerSettings s
     sockets->publisher.bind(settings.status_endpoint);
     endpoint = &settings.command_endpoint;
     sockets->replier.bind(settings.command_endpoint);
+    if (!settings.network.endpoint.empty()) {
+      endpoint = &settings.network.endpoint;
+      bindNetwork(settings.network, sockets->publisher, sockets->doorman);
+    }
     return std::unique_ptr<StatusServer>(
         new StatusServer(std::move(settings), clock, std::move(sockets)));
   } catch (const zmq::error_t& e) {
@@ -77,15 +104,43 @@ StatusServer::~StatusServer() {
 void StatusServer::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     try {
-      zmq::pollitem_t item{sockets_->replier.handle(), 0, ZMQ_POLLIN, 0};
-      zmq::poll(&item, 1, std::chrono::milliseconds(kRound_ms / 4));
-      if (item.revents & ZMQ_POLLIN) answer();
+      zmq::pollitem_t items[] = {{sockets_->replier.handle(), 0, ZMQ_POLLIN, 0},
+                                 {sockets_->doorman.handle(), 0, ZMQ_POLLIN, 0}};
+      zmq::poll(items, 2, std::chrono::ceil<std::chrono::milliseconds>(untilDue()));
+      if (items[0].revents & ZMQ_POLLIN) answer();
+      if (items[1].revents & ZMQ_POLLIN) admit();
       publishDue();
     } catch (const zmq::error_t& e) {
       if (e.num() != EINTR) return;  // the context is gone
     }
     rounds_.fetch_add(1, std::memory_order_relaxed);
   }
+}
+
+Duration StatusServer::untilDue() const {
+  const Timestamp now = clock_.now();
+  Duration wait = std::chrono::milliseconds(kRound_ms / 4);
+  for (const Timestamp due : due_) wait = std::min<Duration>(wait, due - now);
+  return std::max<Duration>(wait, Duration::zero());
+}
+
+// RFC 27, ZAP: version, request id, domain, address, identity, mechanism, then the client's key.
+void StatusServer::admit() {
+  std::vector<zmq::message_t> request;
+  do {
+    request.emplace_back();
+    if (!sockets_->doorman.recv(request.back(), zmq::recv_flags::dontwait)) return;
+  } while (request.back().more());
+  const bool known = request.size() == 7 && request[5].to_string_view() == "CURVE" &&
+                     std::count(settings_.network.clients.begin(), settings_.network.clients.end(),
+                                z85(request[6])) > 0;
+  const std::string id = request.size() > 1 ? request[1].to_string() : "";
+  const std::string answer[] = {"1.0", id, known ? "200" : "400", known ? "OK" : "no key of ours",
+                                "",    ""};
+  for (std::size_t i = 0; i < std::size(answer); ++i)
+    sockets_->doorman.send(zmq::buffer(answer[i]), i + 1 < std::size(answer)
+                                                       ? zmq::send_flags::sndmore
+                                                       : zmq::send_flags::none);
 }
 
 void StatusServer::publishDue() {

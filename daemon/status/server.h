@@ -11,6 +11,7 @@
 
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
+#include "daemon/status/curve.h"
 
 namespace merlin::status {
 
@@ -30,6 +31,9 @@ struct Command {
 
 struct StatusServerSettings {
   std::string status_endpoint, command_endpoint;  // "ipc://..."
+  // Where the same topics are published for other machines, encrypted, to those whose keys it
+  // knows; commands are not taken from there.
+  CurveServer network;
   std::vector<Publication> publications;
   std::vector<Command> commands;
   // Asked ten times a second; what it returns is published under "event", in order.
@@ -56,6 +60,8 @@ class StatusServer {
   StatusServer(StatusServerSettings settings, const Clock& clock, std::unique_ptr<Sockets> sockets);
   void run(const std::stop_token& stop);
   void publishDue();
+  Duration untilDue() const;
+  void admit();  // answers ZeroMQ's question whether a client's key is known
   void answer();
   std::string reply(std::string_view request);
 

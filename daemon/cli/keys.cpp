@@ -1,0 +1,39 @@
+// merlin keys: a pair of keys for a daemon that speaks over a network.
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "daemon/base/files.h"
+#include "daemon/cli/command.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/status/curve.h"
+
+namespace merlin::cli {
+namespace {
+
+int makeKeys(const std::string& path) {
+  if (MappedFile::open(path)) {
+    return fail({Errc::kInvalidArgument,
+                 path + ": is there already; a new pair would lock out whoever knows the old one"});
+  }
+  const auto keys = status::makeKeyPair();
+  if (!keys) return fail(keys.error());
+  if (const auto written = status::writeKeyPair(path, *keys); !written)
+    return fail(written.error());
+  fmt::print("{}\n", keys->public_key);
+  return kExitDone;
+}
+
+}  // namespace
+
+void addKeys(CLI::App& app, Run& run) {
+  const auto path = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand(
+      "keys",
+      "A pair of keys, for samples over a network: the file stays here, the public key that is "
+      "printed goes to the other side.\nExample: merlin keys -o /etc/merlin/wall.keys");
+  command->add_option("-o,--output", *path, "The file, readable by its owner alone")->required();
+  command->callback([path, &run] { run = [path] { return makeKeys(*path); }; });
+}
+
+}  // namespace merlin::cli

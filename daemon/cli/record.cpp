@@ -1,0 +1,209 @@
+// merlin record, merlin replay: what goes over a device's line, into a file and out of it again.
+#include <csignal>
+#include <ctime>
+#include <memory>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <poll.h>
+
+#include "daemon/base/files.h"
+#include "daemon/cli/command.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/stop_signals.h"
+#include "drivers/io/open_stream.h"
+#include "drivers/io/pty_master.h"
+#include "drivers/io/recording_stream.h"
+#include "drivers/io/replay_stream.h"
+#include "drivers/registry.h"
+
+namespace merlin::cli {
+namespace {
+
+struct RecordOptions {
+  std::string port, device, output;
+  int baud = 0;
+  double seconds = 0;
+};
+
+// Keeps everything, with its times.
+class Recording final : public ByteTap {
+ public:
+  explicit Recording(Timestamp start) : start_(start) {}
+  void opened(Timestamp) noexcept override {}
+  void heard(Timestamp at, std::span<const std::byte> bytes) noexcept override {
+    add(at, false, bytes);
+  }
+  void said(Timestamp at, std::span<const std::byte> bytes) noexcept override {
+    add(at, true, bytes);
+  }
+
+  io::Transcript transcript;
+
+ private:
+  void add(Timestamp at, bool to_device, std::span<const std::byte> bytes) {
+    const auto* text = reinterpret_cast<const char*>(bytes.data());
+    transcript.chunks.push_back({at - start_, to_device, std::string(text, bytes.size())});
+  }
+  Timestamp start_;
+};
+
+struct Nowhere final : SampleSink {
+  void publish(const GloveSample&) noexcept override {}
+  void publish(const TrackerSample&) noexcept override {}
+  void publish(const BallSample&) noexcept override {}
+};
+
+const DriverEntry* driverNamed(const std::string& name) {
+  for (const DriverEntry& entry : drivers()) {
+    if (entry.name == name) return &entry;
+  }
+  return nullptr;
+}
+
+// Until `end`, a signal or the end of the line, which is told; talks as the driver does, or only
+// listens where there is none.
+Result<std::string> listen(ByteStream& line, Device* device, Timestamp end, int stop_fd) {
+  const SystemClock clock;
+  std::string identity = "not known";
+  if (device) {
+    const auto opened = device->open(line);
+    if (!opened) return opened.error();
+    identity = *opened;
+  }
+  std::byte buffer[256];
+  while (clock.now() < end) {
+    pollfd stop{stop_fd, POLLIN, 0};
+    if (::poll(&stop, 1, 0) > 0) break;
+    Result<Ok> heard = Ok{};
+    if (device) {
+      heard = device->poll(line);
+    } else if (const auto got = line.read(buffer, std::chrono::milliseconds(250)); !got) {
+      heard = got.error();
+    }
+    if (heard || heard.error().code == Errc::kTimeout) continue;
+    fmt::print(stderr, "merlin: the line ended: {}\n", heard.error().what);
+    break;
+  }
+  return identity;
+}
+
+int record(const RecordOptions& options) {
+  std::signal(SIGPIPE, SIG_IGN);
+  const UniqueFd stop = stopSignals();
+  const auto address = io::parsePort(options.port);
+  if (!address) return fail(address.error());
+  if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
+  const DriverEntry* driver = driverNamed(options.device);
+  const bool ball = driver && driver->kind == SampleKind::kBall;
+  const int baud = options.baud > 0 ? options.baud : ball ? 9600 : 38400;
+  auto line = io::openPort(*address, baud);
+  if (!line) return fail(line.error());
+  const SystemClock clock;
+  const Timestamp start = clock.now();
+  Recording recording(start);
+  io::RecordingStream stream(*std::move(line), recording, clock);
+  Nowhere nowhere;
+  const auto device = driver ? driver->make({}, clock, nowhere) : nullptr;
+  const Timestamp end =
+      options.seconds > 0 ? start + fromSeconds(options.seconds) : Timestamp::max();
+  const auto identity = listen(stream, device.get(), end, stop.get());
+  recording.transcript.header = {
+      {"device", identity ? *identity : "none that answered: " + identity.error().what},
+      {"driver", driver ? driver->name : "none, only listened"},
+      {"serial", fmt::format("{} 8N1", baud)},
+      {"synthetic", "not known: from " + options.port},
+      {"by", "merlin record"},
+      {"date", fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))}};
+  const auto written = writeFile(options.output, io::formatTranscript(recording.transcript));
+  if (!written) return fail(written.error());
+  std::size_t bytes = 0;
+  for (const auto& chunk : recording.transcript.chunks) bytes += chunk.bytes.size();
+  fmt::print("{}: {} bytes in {} pieces\n", options.output, bytes,
+             recording.transcript.chunks.size());
+  return identity ? kExitDone : fail(identity.error());
+}
+
+struct ReplayOptions {
+  std::string file, link;
+  bool loop = false;
+};
+
+// Serves the transcript until its end or a signal.
+bool serveOnce(const io::PtyMaster& line, const io::Transcript& transcript, const Clock& clock,
+               int stop_fd) {
+  io::Player player(transcript, clock.now());
+  std::byte received[256];
+  std::string out;
+  while (!player.ended()) {
+    player.advance(clock.now(), out);
+    if (!out.empty()) (void)!::write(line.fd(), out.data(), out.size());
+    out.clear();
+    const Duration wait = std::max<Duration>(player.nextDue() - clock.now(), Duration::zero());
+    const timespec limit{wait / std::chrono::seconds(1), (wait % std::chrono::seconds(1)).count()};
+    pollfd fds[] = {{line.fd(), POLLIN, 0}, {stop_fd, POLLIN, 0}};
+    if (player.ended()) return true;
+    if (::ppoll(fds, 2, &limit, nullptr) < 0 && errno != EINTR) return false;
+    if (fds[1].revents != 0) return false;
+    if (fds[0].revents == 0) continue;
+    const ssize_t n = ::read(line.fd(), received, sizeof received);
+    if (n > 0) player.hostSaid(static_cast<std::size_t>(n), clock.now());
+  }
+  return true;
+}
+
+int replay(const ReplayOptions& options) {
+  const UniqueFd stop = stopSignals();
+  const auto transcript = io::readTranscript(options.file);
+  if (!transcript) return fail(transcript.error());
+  const auto line = io::PtyMaster::open(options.link);
+  if (!line) return fail(line.error());
+  fmt::print("{} on pty:{}\n", options.file,
+             options.link.empty() ? line->slavePath() : options.link);
+  std::fflush(stdout);
+  const SystemClock clock;
+  do {
+    if (!serveOnce(*line, *transcript, clock, stop.get())) return kExitDone;
+  } while (options.loop);
+  pollfd item{stop.get(), POLLIN, 0};
+  ::poll(&item, 1, 200);  // the other side reads the last bytes before the line goes
+  return kExitDone;
+}
+
+}  // namespace
+
+void addRecord(CLI::App& app, Run& run) {
+  const auto options = std::make_shared<RecordOptions>();
+  std::vector<std::string> names;
+  for (const DriverEntry& entry : drivers()) names.emplace_back(entry.name);
+  CLI::App* command = app.add_subcommand(
+      "record",
+      "What goes over a device's line, as a transcript.\nA daemon that has the line keeps its own "
+      "record: merlin flight\nExample: merlin record pty:/tmp/ball --device spaceball -o "
+      "ball.bytes");
+  command->add_option("port", options->port, "serial:/dev/..., pty:PATH or tcp://HOST:PORT")
+      ->required();
+  command->add_option("-o,--output", options->output, "The transcript, a text file")->required();
+  command
+      ->add_option("--device", options->device,
+                   "Talks to it as this driver does; without: only listens")
+      ->check(CLI::IsMember(names));
+  command->add_option("--baud", options->baud, "Speed of the line");
+  command->add_option("--seconds", options->seconds, "How long; without: until a signal");
+  command->callback([options, &run] { run = [options] { return record(*options); }; });
+}
+
+void addReplay(CLI::App& app, Run& run) {
+  const auto options = std::make_shared<ReplayOptions>();
+  CLI::App* command = app.add_subcommand(
+      "replay",
+      "A transcript on a pseudo-terminal, at its own pace; waits for what the host said "
+      "then.\nExample: merlin replay ball.bytes --link /tmp/ball");
+  command->add_option("file", options->file, "The transcript")->required();
+  command->add_option("--link", options->link,
+                      "A symbolic link to the pseudo-terminal, made there");
+  command->add_flag("--loop", options->loop, "Again and again");
+  command->callback([options, &run] { run = [options] { return replay(*options); }; });
+}
+
+}  // namespace merlin::cli

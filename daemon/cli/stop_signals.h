@@ -1,0 +1,20 @@
+// The signals that end a subcommand that serves, as a descriptor to wait on.
+#pragma once
+
+#include <signal.h>
+#include <sys/signalfd.h>
+
+#include "daemon/base/unique_fd.h"
+
+namespace merlin::cli {
+
+// Blocks SIGTERM, SIGINT and SIGHUP; the descriptor is readable once one has come.
+inline UniqueFd stopSignals() {
+  sigset_t set;
+  ::sigemptyset(&set);
+  for (const int s : {SIGTERM, SIGINT, SIGHUP}) ::sigaddset(&set, s);
+  ::sigprocmask(SIG_BLOCK, &set, nullptr);
+  return UniqueFd(::signalfd(-1, &set, SFD_CLOEXEC));
+}
+
+}  // namespace merlin::cli

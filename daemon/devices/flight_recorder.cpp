@@ -1,0 +1,74 @@
+#include "daemon/devices/flight_recorder.h"
+
+#include <ctime>
+#include <filesystem>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "daemon/base/files.h"
+
+namespace merlin::devices {
+namespace {
+
+constexpr int kMostDumps = 8;  // of a device
+
+}  // namespace
+
+FlightRing& FlightRecorder::add(shm::DeviceIndex device, std::string driver, int baud) {
+  entries_.push_back({device, std::move(driver), baud, std::make_unique<FlightRing>()});
+  return *entries_.back().ring;
+}
+
+std::vector<std::string> FlightRecorder::check() {
+  std::vector<std::string> sentences;
+  for (Entry& entry : entries_) {
+    const auto health = segment_.health[entry.device].read();
+    if (!health) continue;
+    const bool well = health->state == HealthState::kOk;
+    const bool fell = entry.was_well && !well && std::string_view(health->reason) != "stopped";
+    entry.was_well = well;
+    if (!fell) continue;
+    const auto file = write(entry, health->reason);
+    sentences.push_back(file
+                            ? fmt::format("the last bytes of the {} are in {}", entry.driver, *file)
+                            : file.error().what);
+  }
+  return sentences;
+}
+
+Result<std::vector<std::string>> FlightRecorder::dump() {
+  std::vector<std::string> files;
+  for (Entry& entry : entries_) {
+    auto file = write(entry, "on command");
+    if (!file) return file.error();
+    files.push_back(*std::move(file));
+  }
+  return files;
+}
+
+Result<std::string> FlightRecorder::write(Entry& entry, std::string_view why) {
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error) return Error{Errc::kIo, fmt::format("{}: {}", folder_, error.message())};
+  Duration left_out{};
+  io::Transcript transcript;
+  transcript.chunks = entry.ring->take(&left_out);
+  const auto health = segment_.health[entry.device].read().value_or(DeviceHealth{});
+  transcript.header = {
+      {"device", health.identity[0] ? health.identity : "not known"},
+      {"driver", entry.driver},
+      {"serial", fmt::format("{} 8N1", entry.baud)},
+      {"synthetic", "not known: from the line"},
+      {"by", "merlind's flight recorder"},
+      {"date", fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(std::time(nullptr)))},
+      {"notes",
+       fmt::format("{}; {:.1f} s left out after the beginning", why, toSeconds(left_out))}};
+  const std::string path =
+      fmt::format("{}/{}-{}.bytes", folder_, entry.driver, entry.dumps++ % kMostDumps);
+  if (const auto written = writeFile(path, io::formatTranscript(transcript)); !written)
+    return written.error();
+  return path;
+}
+
+}  // namespace merlin::devices

@@ -1,0 +1,59 @@
+// FlightRing: the last minutes of a device's raw bytes, for the moment when something has gone
+// wrong.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "daemon/shm/seq_slot.h"
+#include "drivers/io/transcript.h"
+#include "drivers/port/byte_tap.h"
+
+namespace merlin::devices {
+
+// Written by the device's thread, wait-free, without a lock or an allocation; read by any other.
+// Keeps the newest bytes, about four and a half minutes of a tracker's 120 records a second, and
+// besides them the beginning of the present connection, so that what is dumped starts with the
+// dialogue and replays as a test.
+class FlightRing final : public ByteTap {
+ public:
+  FlightRing();
+
+  void opened(Timestamp at) noexcept override;
+  void heard(Timestamp at, std::span<const std::byte> bytes) noexcept override;
+  void said(Timestamp at, std::span<const std::byte> bytes) noexcept override;
+
+  // What is in it, as the chunks of a transcript: the connection's beginning, then the newest bytes
+  // of the same connection, if nothing of it has been lost yet in one piece. `left_out` is the time
+  // between the two that is no longer there.
+  std::vector<io::TranscriptChunk> take(Duration* left_out) const;
+
+ private:
+  // Some bytes in a row in one direction.
+  struct Cell {
+    std::int64_t ns;
+    std::uint8_t to_device;
+    std::uint8_t length;
+    std::uint8_t bytes[46];
+  };
+  static constexpr std::size_t kBeginning = 1024;  // cells
+  static constexpr std::size_t kNewest = 32768;
+
+  // Cells one after the other; the last one may still grow.
+  struct Track {
+    std::vector<shm::SeqSlot<Cell>> cells;
+    std::atomic<std::uint64_t> count{0};
+    Cell last{};
+
+    void add(std::int64_t ns, bool to_device, std::span<const std::byte> bytes,
+             bool wraps) noexcept;
+  };
+  void add(Timestamp at, bool to_device, std::span<const std::byte> bytes) noexcept;
+
+  Track beginning_, newest_;
+  std::atomic<std::uint64_t> opened_cell_{0};  // of newest_, where the connection begins
+};
+
+}  // namespace merlin::devices

@@ -1,0 +1,118 @@
+#include "daemon/serve/spnav_protocol.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace merlin::serve {
+namespace {
+
+constexpr std::uint32_t kHandshake = 0x7FAA5500, kHandshakeMask = 0xFFFFFF00;
+constexpr std::uint32_t kRequest = 0x7FAA0000, kRequestMask = 0xFFFF0000;
+constexpr std::uint32_t kMotion = 1, kButton = 2, kDevice = 4;
+constexpr std::int32_t kFailed = -1;
+constexpr std::size_t kChunk = 24;  // bytes of a text in an answer
+
+enum Request : std::uint32_t {
+  kSetName = 0x1000,
+  kSetSensitivity,
+  kGetSensitivity,
+  kSetMask,
+  kGetMask,
+  kDeviceName = 0x2000,
+  kDevicePath,
+  kDeviceAxes,
+  kDeviceButtons,
+  kDeviceUsb,
+  kDeviceType,
+};
+
+template <std::size_t N>
+void append(std::string& out, const std::array<std::int32_t, N>& words) {
+  out.append(reinterpret_cast<const char*>(words.data()), sizeof words);
+}
+
+}  // namespace
+
+void SpnavClient::receive(std::span<const std::byte> bytes, std::string& out) {
+  input_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  while (input_.size() >= 4) {
+    Words words{};
+    std::memcpy(words.data(), input_.data(), 4);
+    const auto first = static_cast<std::uint32_t>(words[0]);
+    std::size_t taken = 4;
+    if ((first & kHandshakeMask) == kHandshake) {
+      version_ = std::min<int>(static_cast<int>(first & 0xFF), 1);
+      append(out, std::array{static_cast<std::int32_t>(kHandshake | unsigned(version_))});
+    } else if (version_ > 0 && (first & kRequestMask) == kRequest) {
+      taken = sizeof words;
+      if (input_.size() < taken) return;
+      std::memcpy(words.data(), input_.data(), taken);
+      request(words, out);
+    } else if (const auto s = std::bit_cast<float>(first); std::isfinite(s)) {
+      sensitivity_ = s;
+    }
+    input_.erase(0, taken);
+  }
+}
+
+void SpnavClient::request(Words words, std::string& out) {
+  const auto number = static_cast<std::uint32_t>(words[0]) & ~kRequestMask;
+  const std::int32_t argument = words[1];
+  std::fill(words.begin() + 1, words.end(), 0);
+  switch (number) {
+    case kSetName: return;  // has no answer
+    case kSetSensitivity: sensitivity_ = std::bit_cast<float>(argument); break;
+    case kGetSensitivity: words[1] = std::bit_cast<std::int32_t>(sensitivity_); break;
+    case kSetMask: mask_ = static_cast<std::uint32_t>(argument); break;
+    case kGetMask: words[1] = static_cast<std::int32_t>(mask_); break;
+    case kDeviceName: return sendText(words[0], device_.name, out);
+    case kDevicePath: return sendText(words[0], device_.path, out);
+    case kDeviceAxes: words[1] = 6; break;
+    case kDeviceButtons: words[1] = device_.buttons; break;
+    case kDeviceType: words[1] = device_.type; break;
+    default: words[7] = kFailed;  // kDeviceUsb too: it is no USB device
+  }
+  append(out, words);
+}
+
+// 24 bytes an answer; the last word says how many are left, and from the second on that it goes on.
+void SpnavClient::sendText(std::int32_t request, const std::string& text, std::string& out) const {
+  for (std::size_t at = 0; at == 0 || at < text.size(); at += kChunk) {
+    Words words{};
+    words[0] = request;
+    const std::size_t left = text.size() - at;
+    std::memcpy(&words[1], text.data() + at, std::min(left, kChunk));
+    words[7] = static_cast<std::int32_t>(left | (at > 0 ? 0x10000 : 0));
+    append(out, words);
+  }
+}
+
+void SpnavClient::sample(const BallSample& s, bool motion, std::string& out) {
+  for (std::uint32_t i = 0; i < 32; ++i) {
+    const std::uint32_t bit = 1U << i;
+    if (!((s.buttons ^ buttons_) & bit) || !(mask_ & kButton)) continue;
+    const bool down = s.buttons & bit;
+    append(out, Words{down ? 1 : 2, static_cast<std::int32_t>(i), down ? 1 : 0});
+  }
+  buttons_ = s.buttons;
+  const bool moves = std::any_of(std::begin(s.raw), std::end(s.raw), [](auto v) { return v != 0; });
+  if (motion && (moves || moving_) && (mask_ & kMotion)) {
+    Words words{0};
+    for (std::size_t i = 0; i < 6; ++i) {
+      const float scaled = std::clamp(sensitivity_ * static_cast<float>(s.raw[i]), -1e9F, 1e9F);
+      words[1 + i] = static_cast<std::int32_t>(std::lround(scaled));
+    }
+    words[7] = static_cast<std::int32_t>(s.period_us / 1000);
+    append(out, words);
+    moving_ = moves;
+  }
+}
+
+void SpnavClient::device(bool there, std::string& out) {
+  if (version_ < 1 || !(mask_ & kDevice)) return;
+  append(out, Words{3, there ? 0 : 1, 0, device_.type});
+}
+
+}  // namespace merlin::serve

@@ -1,0 +1,53 @@
+// VRPN's wire format, as much of it as a server of trackers, buttons and analogs needs. No I/O, no
+// clock.
+//
+// Both sides open with a cookie of 24 bytes. A message: i32be x 5: length (24 + payload), seconds,
+// microseconds, sender, type; i32be sequence number; payload, padded to a multiple of 8. Negative
+// types are the system's: -1 describes a sender, -2 a type, each by a name.
+//
+// Source: vrpn_Connection.C, vrpn_Tracker.C, vrpn_Analog.C, vrpn_Button.C; README.md beside this.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace merlin::serve {
+
+inline constexpr std::size_t kVrpnCookieLength = 24;
+std::string vrpnCookie();
+
+// Whether the other side's cookie agrees up to the last '.' of its version. `cookie` has 24 bytes.
+bool vrpnCookieFits(std::string_view cookie);
+
+struct VrpnMessage {
+  std::int32_t seconds = 0, microseconds = 0;
+  std::int32_t sender = 0, type = 0;
+  std::uint32_t sequence = 0;
+  std::string payload;
+};
+std::string encodeVrpn(const VrpnMessage& message);
+
+// Takes whole messages off the front of `input`; nothing where it holds none yet. A length that
+// cannot be makes `broken` true: the connection is of no more use.
+std::optional<VrpnMessage> takeVrpn(std::string& input, bool& broken);
+
+// Payloads.
+std::string vrpnName(std::string_view name);  // of a description
+std::optional<std::string> readVrpnName(std::string_view payload);
+std::string vrpnPose(std::int32_t sensor, std::span<const float> position_m,
+                     std::span<const float> orientation_wxyz);  // Pos_Quat: x y z, qx qy qz qw
+std::string vrpnChannels(std::span<const double> channels);     // Analog Channel
+std::string vrpnButton(std::int32_t button, bool down);         // Button Change
+
+// "127.0.0.1 59207" + NUL, by which a client asks by UDP to be connected to. Nothing unless it is
+// one, with a port from 1024 on and a host of letters, digits and dots.
+struct VrpnCallback {
+  std::string host;
+  int port;
+};
+std::optional<VrpnCallback> readVrpnCallback(std::string_view datagram);
+
+}  // namespace merlin::serve

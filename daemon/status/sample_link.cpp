@@ -1,0 +1,270 @@
+#include "daemon/status/sample_link.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <zmq.hpp>
+
+#include "daemon/status/documents.h"
+
+namespace merlin::status {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kRound_ms = 100;
+constexpr std::int64_t kLongestDocument = 65536;
+
+template <std::size_t N>
+void setText(char (&field)[N], const std::string& text) {
+  const std::size_t n = std::min(text.size(), N - 1);
+  std::memcpy(field, text.data(), n);
+  std::memset(field + n, 0, N - n);
+}
+
+// A number, or a list of as many as the field has; what is of another kind is left as it is.
+template <typename T>
+void read(const Json& object, const char* key, T& field) {
+  const auto found = object.find(key);
+  if (found != object.end() && found->is_number()) field = found->get<T>();
+}
+template <typename T, std::size_t N>
+void read(const Json& object, const char* key, T (&field)[N]) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_array() || found->size() != N) return;
+  for (std::size_t i = 0; i < N; ++i) {
+    if ((*found)[i].is_number()) field[i] = (*found)[i].get<T>();
+  }
+}
+
+// Reads one document.
+class Apply {
+ public:
+  Apply(const Json& document, const std::string& from, Timestamp now, shm::DevicesSegment& segment)
+      : document_(document), from_(from), now_(now), segment_(segment) {
+    read(document, "now_ns", there_now_ns_);
+  }
+
+  void all() {
+    posture();
+    glove();
+    tracker();
+    ball();
+    hand();
+    for (std::size_t i = 0; i < shm::kDevices; ++i) health(i);
+  }
+
+ private:
+  // As old here as it was there.
+  std::int64_t here(std::int64_t there_ns) const {
+    return toNanoseconds(now_) - (there_now_ns_ - there_ns);
+  }
+  template <typename T>
+  T common(const Json& object) const {
+    T sample{};
+    read(object, "received_ns", sample.received_ns);
+    read(object, "counter", sample.counter);
+    sample.received_ns = here(sample.received_ns);
+    return sample;
+  }
+  template <typename T>
+  void publish(shm::Channel<T>& channel, const T& sample) {
+    const auto last = channel.newest();
+    if (!last || last->counter != sample.counter) channel.publish(sample);
+  }
+  const Json* object(const char* key) const {
+    const auto found = document_.find(key);
+    return found != document_.end() && found->is_object() ? &*found : nullptr;
+  }
+
+  void posture() {
+    const Json* o = object("posture");
+    if (!o) return;
+    auto s = common<PostureSample>(*o);
+    read(*o, "since_ns", s.since_ns);
+    s.since_ns = here(s.since_ns);
+    read(*o, "code", s.code);
+    read(*o, "activation", s.activation);
+    if (const auto name = o->find("name"); name != o->end() && name->is_string())
+      setText(s.name, name->get<std::string>());
+    publish(segment_.posture, s);
+  }
+  void glove() {
+    const Json* o = object("hand");
+    if (!o) return;
+    auto s = common<GloveSample>(*o);
+    read(*o, "flags", s.flags);
+    read(*o, "sensors", s.sensors);
+    read(*o, "angle_rad", s.angle_rad);
+    read(*o, "raw", s.raw);
+    publish(segment_.glove, s);
+  }
+  void tracker() {
+    const auto list = document_.find("tracker");
+    if (list == document_.end() || !list->is_array()) return;
+    for (const Json& o : *list) {
+      auto s = common<TrackerSample>(o);
+      read(o, "station", s.station);
+      if (s.station < 1 || s.station > kStations) continue;
+      read(o, "position_m", s.position_m);
+      read(o, "orientation_wxyz", s.orientation_wxyz);
+      const auto error = o.find("error");
+      const bool text = error != o.end() && error->is_string();
+      s.error = text && error->get<std::string>().size() == 1 ? error->get<std::string>()[0] : ' ';
+      publish(segment_.tracker[s.station - 1], s);
+    }
+  }
+  void ball() {
+    const Json* o = object("ball");
+    if (!o) return;
+    auto s = common<BallSample>(*o);
+    read(*o, "buttons", s.buttons);
+    read(*o, "translation", s.translation);
+    read(*o, "rotation", s.rotation);
+    read(*o, "raw", s.raw);
+    read(*o, "period_us", s.period_us);
+    publish(segment_.ball, s);
+  }
+  void hand() {
+    const Json* o = object("pose");
+    if (!o) return;
+    auto s = common<HandSample>(*o);
+    read(*o, "flags", s.flags);
+    read(*o, "glove_ns", s.glove_ns);
+    s.glove_ns = here(s.glove_ns);
+    read(*o, "joint_rad", s.joint_rad);
+    read(*o, "position_m", s.position_m);
+    read(*o, "orientation_wxyz", s.orientation_wxyz);
+    read(*o, "velocity_m_s", s.velocity_m_s);
+    read(*o, "turn_rad_s", s.turn_rad_s);
+    read(*o, "delay_s", s.delay_s);
+    publish(segment_.hand, s);
+  }
+  void health(std::size_t device) {
+    const Json* all = object("health");
+    const auto found = all ? all->find(kDeviceNames[device]) : Json::const_iterator();
+    if (!all || found == all->end() || !found->is_object()) return;
+    const auto last = segment_.health[device].read();
+    DeviceHealth h{};
+    std::uint32_t state = 0;
+    read(*found, "state", state);
+    h.state = static_cast<HealthState>(std::min(state, 3U));
+    read(*found, "since_ns", h.since_ns);
+    h.since_ns = here(h.since_ns);
+    h.updated_ns = toNanoseconds(now_);
+    read(*found, "samples", h.samples);
+    read(*found, "rate_hz", h.rate_hz);
+    read(*found, "reconnects", h.reconnects);
+    const auto text = [&](const char* key) {
+      const auto t = found->find(key);
+      return t != found->end() && t->is_string() ? t->get<std::string>() : std::string();
+    };
+    setText(h.port, from_);
+    setText(h.identity, text("identity"));
+    setText(h.reason, text("reason"));
+    // `since` is computed anew from each document and trembles by the network's delay.
+    if (last && last->state == h.state) h.since_ns = last->since_ns;
+    segment_.health[device].publish(h);
+  }
+
+  const Json& document_;
+  const std::string& from_;
+  Timestamp now_;
+  shm::DevicesSegment& segment_;
+  std::int64_t there_now_ns_ = 0;
+};
+
+}  // namespace
+
+bool applySamples(const std::string& document, const std::string& from, Timestamp now,
+                  shm::DevicesSegment& segment) {
+  if (document.size() > kLongestDocument) return false;
+  const auto json = Json::parse(document, nullptr, false);
+  if (!json.is_object() || !json.contains("now_ns")) return false;
+  Apply(json, from, now, segment).all();
+  return true;
+}
+
+struct SampleLink::Socket {
+  zmq::context_t context{1};
+  zmq::socket_t subscriber{context, zmq::socket_type::sub};
+};
+
+Result<std::unique_ptr<SampleLink>> SampleLink::start(SampleLinkSettings settings,
+                                                      shm::DevicesSegment& segment,
+                                                      const Clock& clock) {
+  try {
+    auto socket = std::make_unique<Socket>();
+    zmq::socket_t& s = socket->subscriber;
+    s.set(zmq::sockopt::linger, 0);
+    s.set(zmq::sockopt::rcvtimeo, kRound_ms);
+    s.set(zmq::sockopt::rcvhwm, 4);  // what is old is of no use
+    s.set(zmq::sockopt::maxmsgsize, kLongestDocument);
+    s.set(zmq::sockopt::reconnect_ivl, 100);
+    s.set(zmq::sockopt::reconnect_ivl_max, 500);
+    s.set(zmq::sockopt::heartbeat_ivl, 500);
+    s.set(zmq::sockopt::heartbeat_timeout, 1500);
+    s.set(zmq::sockopt::curve_serverkey, settings.server_key);
+    s.set(zmq::sockopt::curve_publickey, settings.keys.public_key);
+    s.set(zmq::sockopt::curve_secretkey, settings.keys.secret_key);
+    s.set(zmq::sockopt::subscribe, "sample");
+    s.connect(settings.endpoint);
+    return std::unique_ptr<SampleLink>(
+        new SampleLink(std::move(settings), std::move(socket), segment, clock));
+  } catch (const zmq::error_t& e) {
+    return Error{Errc::kInvalidArgument, fmt::format("{}: {} (is the address or a key wrong?)",
+                                                     settings.endpoint, e.what())};
+  }
+}
+
+SampleLink::SampleLink(SampleLinkSettings settings, std::unique_ptr<Socket> socket,
+                       shm::DevicesSegment& segment, const Clock& clock)
+    : settings_(std::move(settings)),
+      socket_(std::move(socket)),
+      segment_(segment),
+      clock_(clock),
+      heard_(clock.now()),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+SampleLink::~SampleLink() {
+  thread_.request_stop();
+  thread_.join();
+}
+
+void SampleLink::run(const std::stop_token& stop) {
+  lost(clock_.now());
+  while (!stop.stop_requested()) {
+    try {
+      zmq::message_t topic, document;
+      if (socket_->subscriber.recv(topic) && topic.more() && socket_->subscriber.recv(document) &&
+          applySamples(document.to_string(), settings_.endpoint, clock_.now(), segment_)) {
+        heard_ = clock_.now();
+        ever_ = true;
+        continue;
+      }
+    } catch (const zmq::error_t& e) {
+      if (e.num() != EINTR) return;  // the context is gone
+    }
+    if (const Timestamp now = clock_.now(); now - heard_ >= settings_.silence) lost(now);
+  }
+}
+
+void SampleLink::lost(Timestamp now) {
+  for (auto& slot : segment_.health) {
+    const auto last = slot.read();
+    DeviceHealth h = last.value_or(DeviceHealth{});
+    if (!last || h.state != HealthState::kAbsent) h.since_ns = toNanoseconds(now);
+    h.state = HealthState::kAbsent;
+    h.updated_ns = toNanoseconds(now);
+    h.rate_hz = 0;
+    setText(h.port, settings_.endpoint);
+    setText(h.reason, fmt::format("no word from {}{}", settings_.endpoint,
+                                  ever_ ? ": the link is gone" : " yet"));
+    slot.publish(h);
+  }
+}
+
+}  // namespace merlin::status

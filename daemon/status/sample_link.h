@@ -1,0 +1,58 @@
+// SampleLink: another machine's devices in this machine's shared memory. The wall, and every other
+// client, then reads them as if the serial ports were here.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/result.h"
+#include "daemon/shm/layout.h"
+#include "daemon/status/curve.h"
+
+namespace merlin::status {
+
+struct SampleLinkSettings {
+  std::string endpoint;                               // "tcp://HOST:PORT" of the other daemon
+  std::string server_key;                             // its public key
+  KeyPair keys;                                       // ours
+  Duration silence = std::chrono::milliseconds(500);  // after which the link counts as gone
+};
+
+// Follows the topic "sample" on a thread of its own and writes what it says into `segment`, whose
+// only writer it is. Times become this machine's, as old as they were there when they were sent:
+// the network's own delay is not known and not added. While no word comes, every device is absent,
+// with the reason; ZeroMQ connects again by itself.
+class SampleLink {
+ public:
+  // Errors: kInvalidArgument (an endpoint or a key that is none).
+  static Result<std::unique_ptr<SampleLink>> start(SampleLinkSettings settings,
+                                                   shm::DevicesSegment& segment,
+                                                   const Clock& clock);
+  ~SampleLink();
+  SampleLink(const SampleLink&) = delete;
+  SampleLink& operator=(const SampleLink&) = delete;
+
+ private:
+  struct Socket;
+  SampleLink(SampleLinkSettings settings, std::unique_ptr<Socket> socket,
+             shm::DevicesSegment& segment, const Clock& clock);
+  void run(const std::stop_token& stop);
+  void lost(Timestamp now);
+
+  SampleLinkSettings settings_;
+  std::unique_ptr<Socket> socket_;
+  shm::DevicesSegment& segment_;
+  const Clock& clock_;
+  Timestamp heard_{};
+  bool ever_ = false;
+  std::jthread thread_;
+};
+
+// The document's content into the segment; samples whose counter has not changed are left. False
+// for a document that is none. For SampleLink and its tests.
+bool applySamples(const std::string& document, const std::string& from, Timestamp now,
+                  shm::DevicesSegment& segment);
+
+}  // namespace merlin::status

@@ -1,0 +1,162 @@
+// The flight recorder: the last bytes of a device, and the beginning of its connection.
+#include <filesystem>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "daemon/devices/flight_recorder.h"
+#include "drivers/io/recording_stream.h"
+#include "drivers/io/replay_stream.h"
+#include "drivers/registry.h"
+#include "tests/support/device_bench.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::devices {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+std::span<const std::byte> asBytes(const std::string& text) {
+  return std::as_bytes(std::span(text));
+}
+
+std::string all(const std::vector<io::TranscriptChunk>& chunks) {
+  std::string text;
+  for (const auto& c : chunks) text += (c.to_device ? ">" : "<") + c.bytes;
+  return text;
+}
+
+TEST(FlightRing, KeepsWhatWentBothWaysWithItsTimes) {
+  FlightRing ring;
+  test::FakeClock clock;
+  ring.opened(clock.now());
+  ring.said(clock.now(), asBytes("S"));
+  clock.advance(milliseconds(10));
+  ring.heard(clock.now(), asBytes("one"));
+  ring.heard(clock.now(), asBytes("two"));  // at once: the same piece
+  clock.advance(milliseconds(10));
+  ring.heard(clock.now(), asBytes(std::string(100, 'x')));
+  Duration left_out{};
+  const auto chunks = ring.take(&left_out);
+  EXPECT_EQ(all(chunks), ">S<onetwo<" + std::string(46, 'x') + "<" + std::string(46, 'x') + "<" +
+                             std::string(8, 'x'));
+  EXPECT_EQ(chunks[1].at, milliseconds(10));
+  EXPECT_EQ(left_out, Duration::zero());
+}
+
+TEST(FlightRing, ANewConnectionStartsAnew) {
+  FlightRing ring;
+  test::FakeClock clock;
+  ring.opened(clock.now());
+  ring.heard(clock.now(), asBytes("old"));
+  clock.advance(seconds(1));
+  ring.opened(clock.now());
+  ring.heard(clock.now(), asBytes("new"));
+  Duration left_out{};
+  EXPECT_EQ(all(ring.take(&left_out)), "<new");
+}
+
+TEST(FlightRing, KeepsFourMinutesOfATrackerAndTheDialogueBeforeIt) {
+  FlightRing ring;
+  test::FakeClock clock;
+  ring.opened(clock.now());
+  ring.said(clock.now(), asBytes("hello"));
+  const Timestamp start = clock.now();
+  std::string record(32, 'r');
+  for (int i = 0; i < 120 * 600; ++i) {  // ten minutes
+    clock.advance(std::chrono::nanoseconds(8'333'333));
+    ring.heard(clock.now(), asBytes(record));
+  }
+  Duration left_out{};
+  const auto chunks = ring.take(&left_out);
+  EXPECT_EQ(chunks[0].bytes, "hello");
+  EXPECT_NEAR(toSeconds(clock.now() - start - left_out), 281.6, 1);  // 32767 + 1023 records
+  EXPECT_GT(toSeconds(chunks.back().at), 240);
+  for (std::size_t i = 1; i < chunks.size(); ++i) ASSERT_GE(chunks[i].at, chunks[i - 1].at);
+}
+
+TEST(FlightRing, MayBeTakenWhileItIsWritten) {
+  FlightRing ring;
+  const SystemClock clock;
+  std::jthread writer([&](const std::stop_token& stop) {
+    for (std::uint8_t n = 0; !stop.stop_requested(); ++n) {
+      if (n == 0) ring.opened(clock.now());
+      const std::string same(32, static_cast<char>(n));
+      ring.heard(clock.now(), asBytes(same));
+      std::this_thread::sleep_for(std::chrono::microseconds(20));
+    }
+  });
+  for (int i = 0; i < 50; ++i) {
+    Duration left_out{};
+    for (const auto& chunk : ring.take(&left_out)) ASSERT_LE(chunk.bytes.size(), 46u);
+  }
+}
+
+// A dump of an emulated glove, replayed through the driver, gives the samples that the daemon saw.
+TEST(FlightRecorder, WhatItDumpsReplays) {
+  const test::TempDir dir;
+  const auto segment = std::make_unique<shm::DevicesSegment>();
+  FlightRecorder recorder(*segment, dir / "flight");
+  FlightRing& ring = recorder.add(shm::kGlove, "cyberglove", 38400);
+  test::DeviceBench bench("cyberglove", {}, "visit");
+  struct Borrowed final : ByteStream {
+    explicit Borrowed(ByteStream& s) : stream(s) {}
+    Result<std::size_t> read(std::span<std::byte> b, Duration t) override {
+      return stream.read(b, t);
+    }
+    Result<std::size_t> write(std::span<const std::byte> b, Duration t) override {
+      return stream.write(b, t);
+    }
+    void interrupt() noexcept override {}
+    ByteStream& stream;
+  };
+  io::RecordingStream stream(std::make_unique<Borrowed>(bench.stream), ring, bench.clock);
+  const auto device =
+      findDriver(SampleKind::kGlove, "cyberglove")->make({}, bench.clock, bench.sink);
+  ASSERT_TRUE(device->open(stream));
+  for (const Timestamp end = bench.clock.now() + seconds(2); bench.clock.now() < end;)
+    ASSERT_TRUE(device->poll(stream));
+
+  DeviceHealth health{};
+  health.state = HealthState::kOk;
+  segment->health[shm::kGlove].publish(health);
+  EXPECT_TRUE(recorder.check().empty());
+  health.state = HealthState::kFailed;
+  std::snprintf(health.reason, sizeof health.reason, "no record for 0.5 s");
+  segment->health[shm::kGlove].publish(health);
+  const auto sentences = recorder.check();
+  ASSERT_EQ(sentences.size(), 1u);
+  EXPECT_EQ(sentences[0],
+            "the last bytes of the cyberglove are in " + dir.path() + "/flight/cyberglove-0.bytes");
+  EXPECT_TRUE(recorder.check().empty()) << "once a fault";
+
+  const auto transcript = io::readTranscript(dir / "flight/cyberglove-0.bytes");
+  ASSERT_TRUE(transcript) << transcript.error().what;
+  EXPECT_EQ((*transcript)["notes"], "no record for 0.5 s; 0.0 s left out after the beginning");
+  test::FakeClock clock;
+  test::RecordingSink sink;
+  io::ReplayStream replay(*transcript, clock);
+  const auto again = findDriver(SampleKind::kGlove, "cyberglove")->make({}, clock, sink);
+  ASSERT_TRUE(again->open(replay));
+  while (again->poll(replay)) continue;
+  ASSERT_EQ(sink.glove.size(), bench.sink.glove.size());
+  for (std::size_t i = 0; i < sink.glove.size(); ++i)
+    ASSERT_TRUE(std::equal(std::begin(sink.glove[i].raw), std::end(sink.glove[i].raw),
+                           std::begin(bench.sink.glove[i].raw)));
+}
+
+TEST(FlightRecorder, KeepsEightDumpsOfADevice) {
+  const test::TempDir dir;
+  const auto segment = std::make_unique<shm::DevicesSegment>();
+  FlightRecorder recorder(*segment, dir / "flight");
+  recorder.add(shm::kBall, "spaceball", 9600);
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(recorder.dump());
+  std::size_t files = 0;
+  for ([[maybe_unused]] const auto& f : std::filesystem::directory_iterator(dir / "flight"))
+    ++files;
+  EXPECT_EQ(files, 8u);
+}
+
+}  // namespace
+}  // namespace merlin::devices

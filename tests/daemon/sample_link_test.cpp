@@ -1,0 +1,209 @@
+// Another machine's devices: the document of one end into the shared memory of the other, over a
+// real, encrypted socket.
+#include "daemon/status/sample_link.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "daemon/status/documents.h"
+#include "daemon/status/server.h"
+#include "tests/support/eventually.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::status {
+namespace {
+
+std::unique_ptr<shm::DevicesSegment> filled(std::int64_t received_ns, std::uint32_t counter) {
+  auto segment = std::make_unique<shm::DevicesSegment>();
+  GloveSample glove{};
+  glove.received_ns = received_ns;
+  glove.counter = counter;
+  glove.sensors = 22;
+  glove.angle_rad[4] = 1.234567F;
+  glove.raw[4] = 201;
+  segment->glove.publish(glove);
+  TrackerSample tracker{};
+  tracker.received_ns = received_ns;
+  tracker.counter = counter;
+  tracker.station = 2;
+  tracker.position_m[1] = -0.123456F;
+  tracker.orientation_wxyz[0] = 1;
+  tracker.error = 'k';
+  segment->tracker[1].publish(tracker);
+  BallSample ball{};
+  ball.received_ns = received_ns;
+  ball.counter = counter;
+  ball.rotation[2] = -0.5F;
+  ball.raw[5] = -800;
+  ball.buttons = 0x101;
+  segment->ball.publish(ball);
+  PostureSample posture{};
+  posture.received_ns = posture.since_ns = received_ns;
+  posture.counter = counter;
+  posture.code = 3;
+  std::snprintf(posture.name, sizeof posture.name, "fist");
+  segment->posture.publish(posture);
+  HandSample hand{};
+  hand.received_ns = received_ns;
+  hand.counter = counter;
+  hand.velocity_m_s[0] = 0.25F;
+  segment->hand.publish(hand);
+  for (std::size_t i = 0; i < shm::kDevices; ++i) {
+    DeviceHealth health{};
+    health.state = i == shm::kTracker ? HealthState::kFailed : HealthState::kOk;
+    std::snprintf(health.reason, sizeof health.reason, "reason %d", static_cast<int>(i));
+    segment->health[i].publish(health);
+  }
+  return segment;
+}
+
+TEST(ApplySamples, BringsEverythingOverAsOldAsItWas) {
+  const auto there = filled(5'000'000'000, 7);
+  const auto here = std::make_unique<shm::DevicesSegment>();
+  const std::string document = newestSamples(*there, fromNanoseconds(5'010'000'000));
+  const Timestamp now = fromNanoseconds(99'000'000'000);
+  ASSERT_TRUE(applySamples(document, "tcp://a:1", now, *here));
+  const auto glove = here->glove.newest();
+  ASSERT_TRUE(glove);
+  EXPECT_EQ(glove->received_ns, 98'990'000'000) << "10 ms old";
+  EXPECT_EQ(glove->counter, 7u);
+  EXPECT_NEAR(glove->angle_rad[4], 1.234567F, 1e-6F);
+  EXPECT_EQ(glove->raw[4], 201);
+  EXPECT_EQ(glove->sensors, 22u);
+  const auto tracker = here->tracker[1].newest();
+  ASSERT_TRUE(tracker);
+  EXPECT_NEAR(tracker->position_m[1], -0.123456F, 1e-6F);
+  EXPECT_EQ(tracker->error, 'k');
+  EXPECT_FALSE(here->tracker[0].newest());
+  EXPECT_EQ(here->ball.newest()->raw[5], -800);
+  EXPECT_EQ(here->ball.newest()->buttons, 0x101u);
+  EXPECT_STREQ(here->posture.newest()->name, "fist");
+  EXPECT_EQ(here->posture.newest()->since_ns, 98'990'000'000);
+  EXPECT_FLOAT_EQ(here->hand.newest()->velocity_m_s[0], 0.25F);
+  EXPECT_EQ(here->health[shm::kTracker].read()->state, HealthState::kFailed);
+  EXPECT_STREQ(here->health[shm::kTracker].read()->reason, "reason 1");
+  EXPECT_STREQ(here->health[shm::kBall].read()->port, "tcp://a:1");
+}
+
+TEST(ApplySamples, TheSameSampleIsPublishedOnce) {
+  const auto there = filled(1, 7);
+  const auto here = std::make_unique<shm::DevicesSegment>();
+  for (int i = 0; i < 3; ++i)
+    ASSERT_TRUE(applySamples(newestSamples(*there, fromNanoseconds(2)), "", {}, *here));
+  EXPECT_EQ(here->ball.count(), 1u);
+  ASSERT_TRUE(applySamples(newestSamples(*filled(3, 8), fromNanoseconds(4)), "", {}, *here));
+  EXPECT_EQ(here->ball.count(), 2u);
+}
+
+TEST(ApplySamples, NonsenseIsRefusedAndHalfTruthsDoNoHarm) {
+  const auto here = std::make_unique<shm::DevicesSegment>();
+  for (const char* bad : {"", "[]", "{}", "{\"now_ns\":", "7"})
+    EXPECT_FALSE(applySamples(bad, "", {}, *here)) << bad;
+  for (const char* odd :
+       {R"({"now_ns":1,"ball":7,"tracker":{},"hand":[],"health":3,"posture":"x"})",
+        R"({"now_ns":1,"tracker":[{"station":9},{"station":"x"},7,{"error":"long"}]})",
+        R"({"now_ns":"x","hand":{"angle_rad":[1,2],"raw":"y","counter":{}}})",
+        R"({"now_ns":1,"health":{"ball":{"state":99,"reason":5}}})"}) {
+    EXPECT_TRUE(applySamples(odd, "", {}, *here)) << odd;
+  }
+  const std::string good = newestSamples(*filled(1, 1), {});
+  for (std::size_t n = 0; n < good.size(); n += 7)
+    EXPECT_FALSE(applySamples(good.substr(0, n), "", {}, *here));
+}
+
+TEST(Keys, AreWrittenForTheirOwnerAloneAndReadBack) {
+  const test::TempDir dir;
+  const auto keys = makeKeyPair();
+  ASSERT_TRUE(keys);
+  ASSERT_TRUE(writeKeyPair(dir / "keys", *keys));
+  struct stat status {};
+  ASSERT_EQ(::stat((dir / "keys").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0600u);
+  const auto back = readKeyPair(dir / "keys");
+  ASSERT_TRUE(back) << back.error().what;
+  EXPECT_EQ(back->secret_key, keys->secret_key);
+  test::writeText(dir / "clients", "# the wall's\n" + keys->public_key + " # hall\n\n");
+  EXPECT_EQ(*readPublicKeys(dir / "clients"), std::vector<std::string>{keys->public_key});
+  test::writeText(dir / "clients", "short\n");
+  EXPECT_NE(readPublicKeys(dir / "clients").error().what.find("line 1"), std::string::npos);
+  EXPECT_EQ(readKeyPair(dir / "clients").error().code, Errc::kMalformed);
+}
+
+// A devices' daemon with a network socket.
+struct Devices {
+  Devices(const test::TempDir& dir, int port, const KeyPair& keys, std::vector<std::string> clients)
+      : segment(filled(toNanoseconds(clock.now()), 1)) {
+    StatusServerSettings s;
+    s.status_endpoint = "ipc://" + dir / "status";
+    s.command_endpoint = "ipc://" + dir / "command";
+    s.network = {"tcp://127.0.0.1:" + std::to_string(port), keys, std::move(clients)};
+    s.publications = {{"sample", std::chrono::milliseconds(10),
+                       [this] { return newestSamples(*segment, clock.now()); }}};
+    s.events = [] { return std::vector<std::string>(); };
+    auto started = StatusServer::start(std::move(s), clock);
+    EXPECT_TRUE(started) << started.error().what;
+    if (started) server = *std::move(started);
+  }
+  SystemClock clock;
+  std::unique_ptr<shm::DevicesSegment> segment;
+  std::unique_ptr<StatusServer> server;
+};
+
+HealthState ballOf(const shm::DevicesSegment& segment) {
+  const auto health = segment.health[shm::kBall].read();
+  return health ? health->state : HealthState::kAbsent;
+}
+
+TEST(SampleLink, FollowsSaysWhenItIsGoneAndComesBackByItself) {
+  const test::TempDir dir;
+  const int port = 20000 + ::getpid() % 20000;
+  const KeyPair server = *makeKeyPair(), client = *makeKeyPair();
+  const SystemClock clock;
+  const auto here = std::make_unique<shm::DevicesSegment>();
+  SampleLinkSettings settings;
+  settings.endpoint = "tcp://127.0.0.1:" + std::to_string(port);
+  settings.server_key = server.public_key;
+  settings.keys = client;
+  const auto link = SampleLink::start(settings, *here, clock);
+  ASSERT_TRUE(link) << link.error().what;
+  ASSERT_TRUE(test::eventually([&] { return here->health[shm::kBall].read().has_value(); }));
+  EXPECT_NE(std::string(here->health[shm::kBall].read()->reason).find("yet"), std::string::npos);
+  for (int times = 0; times < 2; ++times) {
+    Devices devices(dir, port, server, {client.public_key});
+    ASSERT_TRUE(test::eventually([&] { return ballOf(*here) == HealthState::kOk; })) << times;
+    EXPECT_EQ(here->ball.newest()->buttons, 0x101u);
+    devices.server.reset();
+    ASSERT_TRUE(test::eventually([&] { return ballOf(*here) == HealthState::kAbsent; }));
+    EXPECT_EQ(std::string(here->health[shm::kBall].read()->reason),
+              "no word from " + settings.endpoint + ": the link is gone");
+  }
+}
+
+TEST(SampleLink, AStrangersKeyHearsNothing) {
+  const test::TempDir dir;
+  const int port = 20000 + (::getpid() + 7919) % 20000;
+  const KeyPair server = *makeKeyPair(), friends = *makeKeyPair(), stranger = *makeKeyPair();
+  const SystemClock clock;
+  const auto theirs = std::make_unique<shm::DevicesSegment>();
+  const auto ours = std::make_unique<shm::DevicesSegment>();
+  Devices devices(dir, port, server, {friends.public_key});
+  const std::string endpoint = "tcp://127.0.0.1:" + std::to_string(port);
+  const auto bad = SampleLink::start({endpoint, server.public_key, stranger}, *theirs, clock);
+  const auto good = SampleLink::start({endpoint, server.public_key, friends}, *ours, clock);
+  ASSERT_TRUE(bad && good);
+  ASSERT_TRUE(test::eventually([&] { return ours->ball.count() > 0; }));
+  EXPECT_EQ(theirs->ball.count(), 0u);
+}
+
+TEST(SampleLink, SaysThatAKeyOrAnAddressIsNone) {
+  const auto here = std::make_unique<shm::DevicesSegment>();
+  const SystemClock clock;
+  const KeyPair keys = *makeKeyPair();
+  EXPECT_EQ(SampleLink::start({"tcp://127.0.0.1:1", "short", keys}, *here, clock).error().code,
+            Errc::kInvalidArgument);
+  EXPECT_EQ(SampleLink::start({"nonsense", keys.public_key, keys}, *here, clock).error().code,
+            Errc::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace merlin::status

@@ -1,0 +1,230 @@
+// VRPN by the bytes that its sources give, and our server over real sockets.
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include "daemon/serve/vrpn_protocol.h"
+#include "daemon/serve/vrpn_server.h"
+#include "tests/support/eventually.h"
+
+namespace merlin::serve {
+namespace {
+
+using namespace std::string_literals;
+
+std::string hex(const std::string& bytes) {
+  std::string text;
+  for (const char c : bytes) {
+    char pair[3];
+    std::snprintf(pair, sizeof pair, "%02X", static_cast<unsigned char>(c));
+    text += pair;
+  }
+  return text;
+}
+
+TEST(VrpnProtocol, TheCookieIsTwentyFourBytes) {
+  EXPECT_EQ(hex(vrpnCookie()), "7672706E3A207665722E2030372E33382020300000000000");
+  EXPECT_TRUE(vrpnCookieFits(vrpnCookie()));
+  EXPECT_TRUE(vrpnCookieFits("vrpn: ver. 07.33  0\0\0\0\0\0"s)) << "a minor version only";
+  EXPECT_FALSE(vrpnCookieFits("vrpn: ver. 06.38  0\0\0\0\0\0"s));
+}
+
+TEST(VrpnProtocol, ASenderIsDescribedByItsName) {
+  VrpnMessage m;
+  m.seconds = 1700000000;
+  m.sender = 1;
+  m.type = -1;
+  m.sequence = 7;
+  m.payload = vrpnName("Fastrak0");
+  const std::string bytes = encodeVrpn(m);
+  EXPECT_EQ(hex(bytes),
+            "000000256553F1000000000000000001FFFFFFFF00000007"
+            "000000094661737472616B3000"
+            "000000");
+  std::string input = bytes;
+  bool broken = false;
+  const auto back = takeVrpn(input, broken);
+  ASSERT_TRUE(back);
+  EXPECT_TRUE(input.empty());
+  EXPECT_EQ(back->sequence, 7u);
+  EXPECT_EQ(readVrpnName(back->payload), "Fastrak0");
+}
+
+TEST(VrpnProtocol, APoseIsSevenDoubles) {
+  const float p[] = {0.254F, -0.1397F, 0.08255F}, q[] = {0.5F, 0, 0, 0.75F};
+  const std::string pose = vrpnPose(2, p, q);
+  ASSERT_EQ(pose.size(), 64u);
+  EXPECT_EQ(hex(pose.substr(0, 8)), "0000000200000000");
+  EXPECT_EQ(hex(pose.substr(8, 3)), "3FD041");   // 0.254
+  EXPECT_EQ(hex(pose.substr(16, 3)), "BFC1E1");  // -0.1397
+  EXPECT_EQ(hex(pose.substr(32, 8)), "0000000000000000");
+  EXPECT_EQ(hex(pose.substr(48, 8)), "3FE8000000000000");  // qz
+  EXPECT_EQ(hex(pose.substr(56, 8)), "3FE0000000000000");  // qw last
+}
+
+TEST(VrpnProtocol, ChannelsAndButtons) {
+  const double two[] = {1.0, -2.0};
+  EXPECT_EQ(hex(vrpnChannels(two)), "40000000000000003FF0000000000000C000000000000000");
+  EXPECT_EQ(hex(vrpnButton(8, true)), "0000000800000001");
+}
+
+TEST(VrpnProtocol, CallbacksAreReadWithCare) {
+  const auto good = readVrpnCallback("127.0.0.1 59207\0"s);
+  ASSERT_TRUE(good);
+  EXPECT_EQ(good->port, 59207);
+  for (const char* bad : {"", "host", "host 80", "host 70000", "ho;st 5000", " 5000", "host 5000x"})
+    EXPECT_FALSE(readVrpnCallback(bad)) << bad;
+}
+
+TEST(VrpnProtocol, EveryPrefixWaitsAndEveryBadLengthIsSaid) {
+  VrpnMessage m;
+  m.payload = vrpnName("x");
+  const std::string whole = encodeVrpn(m);
+  bool broken = false;
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    std::string part = whole.substr(0, n);
+    EXPECT_FALSE(takeVrpn(part, broken)) << n;
+    EXPECT_FALSE(broken);
+  }
+  std::string wild = whole;
+  wild[0] = '\x7F';
+  EXPECT_FALSE(takeVrpn(wild, broken));
+  EXPECT_TRUE(broken);
+  for (std::size_t n = 0; n < 12; ++n) (void)readVrpnName(whole.substr(24, n));
+}
+
+// A client as VRPN's own begins: cookie, descriptions, a ping.
+struct Client {
+  explicit Client(int fd_) : fd(fd_) {
+    timeval limit{10, 0};
+    ::setsockopt(fd.get(), SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+    std::string hello = vrpnCookie();
+    hello += described(0, -1, "Ball0") + described(3, -2, "vrpn_Base ping_message");
+    EXPECT_GT(::send(fd.get(), hello.data(), hello.size(), 0), 0);
+  }
+  static std::string described(int id, int type, const char* name) {
+    VrpnMessage m;
+    m.sender = id;
+    m.type = type;
+    m.payload = vrpnName(name);
+    return encodeVrpn(m);
+  }
+  void ping() {
+    VrpnMessage m;
+    m.sender = 0;
+    m.type = 3;
+    const std::string bytes = encodeVrpn(m);
+    EXPECT_GT(::send(fd.get(), bytes.data(), bytes.size(), 0), 0);
+  }
+  // The next message of a type of that name, by what the server described.
+  std::optional<VrpnMessage> next(const std::string& type) {
+    for (bool broken = false; !broken;) {
+      if (!cookie_seen && input.size() >= 24) {
+        EXPECT_TRUE(vrpnCookieFits(input.substr(0, 24)));
+        input.erase(0, 24);
+        cookie_seen = true;
+      }
+      auto m = cookie_seen ? takeVrpn(input, broken) : std::nullopt;
+      if (!m) {
+        char buffer[4096];
+        const ssize_t n = ::recv(fd.get(), buffer, sizeof buffer, 0);
+        if (n <= 0) return std::nullopt;
+        input.append(buffer, static_cast<std::size_t>(n));
+      } else if (m->type == -1) {
+        senders[m->sender] = *readVrpnName(m->payload);
+      } else if (m->type == -2) {
+        types[m->sender] = *readVrpnName(m->payload);
+      } else if (types[m->type] == type) {
+        return m;
+      }
+    }
+    return std::nullopt;
+  }
+  UniqueFd fd;
+  std::string input;
+  bool cookie_seen = false;
+  std::map<int, std::string> senders, types;
+};
+
+sockaddr_in loopback(int port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  return address;
+}
+
+void checkSamples(Client& client, shm::DevicesSegment& segment) {
+  client.ping();
+  const auto pong = client.next("vrpn_Base pong_message");
+  ASSERT_TRUE(pong);
+  EXPECT_EQ(client.senders[pong->sender], "Ball0");
+  BallSample ball{};
+  ball.translation[2] = 0.5F;
+  ball.buttons = 4;
+  segment.ball.publish(ball);
+  const auto analog = client.next("vrpn_Analog Channel");
+  ASSERT_TRUE(analog);
+  EXPECT_EQ(client.senders[analog->sender], "Ball0");
+  const double channels[] = {0, 0, 0.5, 0, 0, 0};
+  EXPECT_EQ(analog->payload, vrpnChannels(channels));
+  const auto button = client.next("vrpn_Button Change");
+  ASSERT_TRUE(button);
+  EXPECT_EQ(button->payload, vrpnButton(2, true));
+  TrackerSample tracker{};
+  tracker.station = 3;
+  tracker.position_m[0] = 1;
+  tracker.orientation_wxyz[0] = 1;
+  segment.tracker[2].publish(tracker);
+  const auto pose = client.next("vrpn_Tracker Pos_Quat");
+  ASSERT_TRUE(pose);
+  EXPECT_EQ(client.senders[pose->sender], "Tracker0");
+  EXPECT_EQ(pose->payload, vrpnPose(2, tracker.position_m, tracker.orientation_wxyz));
+  EXPECT_GT(pose->seconds, 1'600'000'000) << "the time of day";
+}
+
+TEST(VrpnServer, ServesAClientThatConnects) {
+  const SystemClock clock;
+  const auto segment = std::make_unique<shm::DevicesSegment>();
+  const auto server = VrpnServer::start(0, *segment, clock);
+  ASSERT_TRUE(server) << server.error().what;
+  const sockaddr_in address = loopback((*server)->port());
+  UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  ASSERT_EQ(::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  Client connected(::dup(fd.get()));
+  checkSamples(connected, *segment);
+}
+
+TEST(VrpnServer, ConnectsBackToAClientThatAsksByUdp) {
+  const SystemClock clock;
+  const auto segment = std::make_unique<shm::DevicesSegment>();
+  const auto server = VrpnServer::start(0, *segment, clock);
+  ASSERT_TRUE(server) << server.error().what;
+  const UniqueFd listener(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in here = loopback(0);
+  socklen_t size = sizeof here;
+  ASSERT_EQ(::bind(listener.get(), reinterpret_cast<sockaddr*>(&here), sizeof here), 0);
+  ASSERT_EQ(::listen(listener.get(), 1), 0);
+  ::getsockname(listener.get(), reinterpret_cast<sockaddr*>(&here), &size);
+  const std::string ask = "127.0.0.1 " + std::to_string(ntohs(here.sin_port));
+  const UniqueFd udp(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const sockaddr_in there = loopback((*server)->port());
+  ASSERT_GT(::sendto(udp.get(), ask.c_str(), ask.size() + 1, 0,
+                     reinterpret_cast<const sockaddr*>(&there), sizeof there),
+            0);
+  Client client(::accept(listener.get(), nullptr, nullptr));
+  checkSamples(client, *segment);
+}
+
+TEST(VrpnServer, APortThatIsTakenIsRefused) {
+  const SystemClock clock;
+  const auto segment = std::make_unique<shm::DevicesSegment>();
+  const auto first = VrpnServer::start(0, *segment, clock);
+  ASSERT_TRUE(first);
+  const auto second = VrpnServer::start((*first)->port(), *segment, clock);
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().code, Errc::kBusy);
+}
+
+}  // namespace
+}  // namespace merlin::serve

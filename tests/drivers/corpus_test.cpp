@@ -1,0 +1,286 @@
+// The corpus: every transcript of tests/transcripts through its driver, against what stands beside
+// it: one JSON line a sample, then what was dropped and how it ended.
+//
+//   corpus_test --rebuild      writes every .expect anew, for review as a diff
+//   corpus_test --synthesise   writes the synthetic transcripts anew, by the emulators
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "daemon/base/random.h"
+#include "drivers/io/recording_stream.h"
+#include "drivers/io/replay_stream.h"
+#include "drivers/registry.h"
+#include "tests/support/device_bench.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::test {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kFolder = fs::path(MERLIN_SOURCE_DIR) / "tests/transcripts";
+
+// "slot7=derived rate=50" of the header: what the configuration says beside the defaults.
+DriverSettings settingsOf(std::string_view text) {
+  DriverSettings s;
+  std::istringstream words{std::string(text)};
+  for (std::string word; words >> word;) {
+    const std::string key = word.substr(0, word.find('='));
+    const std::string value = word.substr(std::min(word.find('=') + 1, word.size()));
+    if (key == "slot7") s.cyberglove.slot7 = static_cast<Slot7Rule>(std::stoi(value));
+    if (key == "rate") s.cyberglove.rate_hz = std::stod(value);
+    if (key == "inches") s.fastrak.centimetres = false;
+    if (key == "deadzone") s.spaceball.dead_zone = std::stoi(value);
+    if (key == "turned") s.spaceball.axis_map = {3, -1, 2, 6, -4, 5};
+  }
+  return s;
+}
+
+template <typename T>
+std::string list(const T& values, const char* form) {
+  std::string text;
+  for (const auto v : values) text += fmt::format(fmt::runtime(form), text.empty() ? "" : ",", v);
+  return "[" + text + "]";
+}
+
+// One JSON line a sample. Metres to 0.1 mm, radians to 1 mrad, shares to 0.001.
+class Lines final : public SampleSink {
+ public:
+  void publish(const GloveSample& s) noexcept override {
+    text += fmt::format("{{\"glove\":{},\"flags\":{},\"sensors\":{},\"raw\":{},\"rad\":{}}}\n",
+                        s.counter, s.flags, s.sensors, list(std::span(s.raw).first(23), "{}{}"),
+                        list(s.angle_rad, "{}{:.3f}"));
+  }
+  void publish(const TrackerSample& s) noexcept override {
+    text += fmt::format("{{\"tracker\":{},\"station\":{},\"error\":\"{}\",\"m\":{},\"wxyz\":{}}}\n",
+                        s.counter, s.station, s.error, list(s.position_m, "{}{:.4f}"),
+                        list(s.orientation_wxyz, "{}{:.3f}"));
+  }
+  void publish(const BallSample& s) noexcept override {
+    text += fmt::format("{{\"ball\":{},\"buttons\":{},\"push\":{},\"twist\":{},\"raw\":{}}}\n",
+                        s.counter, s.buttons, list(s.translation, "{}{:.3f}"),
+                        list(s.rotation, "{}{:.3f}"), list(s.raw, "{}{}"));
+  }
+  std::string text;
+};
+
+const DriverEntry* driverNamed(std::string_view name) {
+  for (const DriverEntry& entry : drivers()) {
+    if (entry.name == name) return &entry;
+  }
+  return nullptr;
+}
+
+std::string replayed(const io::Transcript& transcript) {
+  const DriverEntry* driver = driverNamed(transcript["driver"]);
+  if (!driver) return "no driver named in the header\n";
+  FakeClock clock;
+  Lines lines;
+  io::ReplayStream stream(transcript, clock);
+  const auto device = driver->make(settingsOf(transcript["settings"]), clock, lines);
+  const auto opened = device->open(stream);
+  std::string identity, end;
+  if (opened) {
+    identity = *opened;
+    Result<Ok> polled = Ok{};
+    while (polled) polled = device->poll(stream);
+    end = polled.error().what;
+  } else {
+    end = opened.error().what;
+  }
+  std::replace(end.begin(), end.end(), '"', '\'');
+  std::replace(end.begin(), end.end(), '\\', '/');
+  const DeviceCounters c = device->counters();
+  return lines.text +
+         fmt::format(
+             "{{\"identity\":\"{}\",\"dropped\":{},\"bad_bytes\":{},\"complaint\":\"{}\","
+             "\"end\":\"{}\"}}\n",
+             identity, c.bad_packets, c.bad_bytes, device->complaint(), end);
+}
+
+std::vector<fs::path> corpus() {
+  std::vector<fs::path> files;
+  if (!fs::exists(kFolder)) return files;
+  for (const auto& entry : fs::recursive_directory_iterator(kFolder)) {
+    if (entry.path().extension() == ".bytes") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+class Corpus : public testing::TestWithParam<fs::path> {};
+
+TEST_P(Corpus, IsReadAsExpected) {
+  const auto transcript = io::readTranscript(GetParam());
+  ASSERT_TRUE(transcript) << transcript.error().what;
+  EXPECT_FALSE((*transcript)["synthetic"].empty()) << "the header says where it comes from";
+  fs::path expectation = GetParam();
+  expectation.replace_extension(".expect");
+  ASSERT_TRUE(fs::exists(expectation)) << "make it: corpus_test --rebuild";
+  EXPECT_EQ(replayed(*transcript), readText(expectation)) << GetParam();
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, Corpus, testing::ValuesIn(corpus()), [](const auto& file) {
+  std::string name = fs::relative(file.param, kFolder).replace_extension();
+  for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  return name;
+});
+
+TEST(CorpusFolder, HoldsAtLeastTwoHundredOfAllDevices) {
+  std::map<std::string, int> count;
+  for (const fs::path& file : corpus()) ++count[file.parent_path().filename()];
+  EXPECT_GE(corpus().size(), 200u);
+  for (const char* device : {"cyberglove", "fastrak", "spaceball"}) EXPECT_GE(count[device], 50);
+}
+
+int rebuild() {
+  for (fs::path file : corpus()) {
+    const auto transcript = io::readTranscript(file);
+    if (!transcript) {
+      fmt::print(stderr, "{}\n", transcript.error().what);
+      return 1;
+    }
+    writeText(file.replace_extension(".expect"), replayed(*transcript));
+  }
+  fmt::print("{} expectations\n", corpus().size());
+  return 0;
+}
+
+struct Tape final : ByteTap {
+  explicit Tape(Timestamp from) : start(from) {}
+  void opened(Timestamp) noexcept override {}
+  void heard(Timestamp at, std::span<const std::byte> b) noexcept override { add(at, false, b); }
+  void said(Timestamp at, std::span<const std::byte> b) noexcept override { add(at, true, b); }
+  void add(Timestamp at, bool to_device, std::span<const std::byte> b) {
+    const std::string bytes(reinterpret_cast<const char*>(b.data()), b.size());
+    const bool more =
+        !chunks.empty() && chunks.back().to_device == to_device && chunks.back().at == at - start;
+    if (more) {
+      chunks.back().bytes += bytes;
+    } else {
+      chunks.push_back({at - start, to_device, bytes});
+    }
+  }
+  Timestamp start;
+  std::vector<io::TranscriptChunk> chunks;
+};
+
+// The stream inside is the bench's own.
+struct Borrowed final : ByteStream {
+  explicit Borrowed(ByteStream& s) : stream(s) {}
+  Result<std::size_t> read(std::span<std::byte> b, Duration t) override {
+    return stream.read(b, t);
+  }
+  Result<std::size_t> write(std::span<const std::byte> b, Duration t) override {
+    return stream.write(b, t);
+  }
+  void interrupt() noexcept override { stream.interrupt(); }
+  ByteStream& stream;
+};
+
+struct Case {
+  std::string driver, model, script, settings, fault;
+  std::uint64_t seed;
+};
+
+constexpr const char* kFaults[] = {"none",    "garbage", "flip",    "drop",  "double",
+                                   "silence", "zeros",   "another", "burst", "half"};
+
+// Damages what was streamed after the dialogue.
+void damage(std::vector<io::TranscriptChunk>& chunks, const Case& c, Random& random) {
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < chunks.size(); ++i) first = chunks[i].to_device ? i + 1 : first;
+  if (first + 4 >= chunks.size()) return;
+  const std::size_t at = first + 2 + random.below((chunks.size() - first) / 2);
+  std::string& bytes = chunks[at].bytes;
+  const std::size_t byte = random.below(bytes.size());
+  if (c.fault == "flip") bytes[byte] = static_cast<char>(bytes[byte] ^ 1 << random.below(8));
+  if (c.fault == "drop") bytes.erase(byte, 1);
+  if (c.fault == "double") bytes.insert(byte, 1, bytes[byte]);
+  if (c.fault == "half") chunks.resize(at + 1), bytes.resize(byte);
+  if (c.fault == "zeros") bytes.insert(byte, 40, '\0');
+  if (c.fault == "another") bytes += "@1 Spaceball alive and well after a poweron reset.\r\n";
+  if (c.fault == "burst") {
+    for (int i = 0; i < 200; ++i) bytes.push_back(static_cast<char>(random.next()));
+  }
+  if (c.fault == "silence") {
+    for (std::size_t i = at; i < chunks.size(); ++i) chunks[i].at += std::chrono::seconds(4);
+  }
+}
+
+void synthesise(const Case& c, const std::string& name) {
+  emulate::EmulatorSettings emulator;
+  emulator.model = c.model;
+  emulator.seed = c.seed;
+  emulator.garbage_every = c.fault == "garbage" ? 5 : 0;
+  emulator.baud = c.driver == "spaceball" ? 9600 : 38400;
+  DeviceBench bench(c.driver.c_str(), emulator, c.script.c_str());
+  bench.clock.advance(fromSeconds(0.001 * static_cast<double>(c.seed % 7000)));
+  Tape tape(bench.clock.now());
+  io::RecordingStream stream(std::make_unique<Borrowed>(bench.stream), tape, bench.clock);
+  const auto device = driverNamed(c.driver)->make(settingsOf(c.settings), bench.clock, bench.sink);
+  const auto opened = device->open(stream);
+  const Duration length = c.driver == "spaceball" ? fromSeconds(1.0) : fromSeconds(0.2);
+  for (const Timestamp end = bench.clock.now() + length; opened && bench.clock.now() < end;) {
+    if (!device->poll(stream)) break;
+  }
+  Random random(c.seed);
+  damage(tape.chunks, c, random);
+  io::Transcript transcript{
+      {{"device", opened ? *opened : "none"},
+       {"driver", c.driver},
+       {"settings", c.settings.empty() ? "default" : c.settings},
+       {"synthetic", fmt::format("yes (drivers/emulate, model {}, script {}, seed {})", c.model,
+                                 c.script, c.seed)},
+       {"by", "corpus_test --synthesise"},
+       {"notes", "fault: " + c.fault},
+       {"serial", fmt::format("{} 8N1", emulator.baud)}},
+      std::move(tape.chunks)};
+  fs::create_directories(kFolder / c.driver);
+  writeText(kFolder / c.driver / (name + ".bytes"), io::formatTranscript(transcript));
+}
+
+int synthesiseAll() {
+  struct Family {
+    const char* driver;
+    std::vector<const char*> models, scripts, settings;
+  };
+  const Family families[] = {
+      {"cyberglove", {"22", "18"}, {"visit", "grabbing"}, {"", "slot7=2 rate=60", "slot7=3"}},
+      {"fastrak", {"1", "2", "3", "4"}, {"turning", "still"}, {"", "inches"}},
+      {"spaceball",
+       {"1003", "2003", "3003", "4000"},
+       {"visit", "turning"},
+       {"", "turned deadzone=50"}},
+  };
+  std::uint64_t seed = 1;
+  int count = 0;
+  for (const Family& f : families) {
+    for (const char* model : f.models) {
+      for (std::size_t s = 0; s < f.settings.size(); ++s) {
+        for (const char* fault : kFaults) {
+          const char* script = f.scripts[seed % f.scripts.size()];
+          synthesise({f.driver, model, script, f.settings[s], fault, seed},
+                     fmt::format("{}-{}-{}", model, s, fault));
+          ++seed;
+          ++count;
+        }
+      }
+    }
+  }
+  fmt::print("{} transcripts\n", count);
+  return 0;
+}
+
+}  // namespace
+}  // namespace merlin::test
+
+int main(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "--synthesise") return merlin::test::synthesiseAll();
+  if (argc > 1 && std::string_view(argv[1]) == "--rebuild") return merlin::test::rebuild();
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
