@@ -12,45 +12,28 @@ namespace {
 namespace fs = std::filesystem;
 using Folders = std::set<std::string>;
 
-// A folder may include itself, daemon/base, and what stands here. A new folder
-// needs a line, and a review of it. "a/settings.h" allows that header alone.
+// A folder may include itself, daemon/base, and what stands here. A new folder needs a line, and a
+// review of it. "a/settings.h" allows that header alone.
 const std::map<std::string, Folders> kMayInclude = {
     {"daemon/base", {}},
     {"daemon/shm", {"drivers/port"}},
     {"daemon/status", {"daemon/shm", "drivers/port"}},
     {"daemon/serve", {"daemon/shm", "drivers/port"}},
     {"daemon/devices",
-     {"config", "daemon/shm", "drivers", "drivers/gpio", "drivers/hand",
-      "drivers/port", "drivers/loop", "drivers/io", "nn", "nn/io"}},
+     {"config", "daemon/shm", "drivers", "drivers/gpio", "drivers/hand", "drivers/port",
+      "drivers/loop", "drivers/io", "nn", "nn/io"}},
     {"daemon/wall",
-     {"config", "daemon/shm", "drivers/port", "render/mesh", "render/lod",
-      "render/lod/io", "render/scene", "render/governor", "render/tiles",
-      "render/gl", "render/out"}},
+     {"config", "daemon/shm", "drivers/port", "render/mesh", "render/lod", "render/lod/io",
+      "render/scene", "render/governor", "render/tiles", "render/gl", "render/out"}},
     {"daemon/cli",
-     {"daemon/shm",
-      "daemon/status",
-      "daemon/wall",
-      "drivers",
-      "drivers/cyberglove",
-      "drivers/emulate",
-      "drivers/hand",
-      "drivers/io",
-      "drivers/port",
-      "nn",
-      "nn/io",
-      "render/mesh",
-      "render/mesh/io",
-      "render/reduce",
-      "render/compare",
-      "render/lod",
-      "render/lod/io",
-      "render/tiles",
-      "render/gl",
-      "render/out"}},
+     {"daemon/shm",      "daemon/status", "daemon/wall",    "drivers",       "drivers/cyberglove",
+      "drivers/emulate", "drivers/hand",  "drivers/io",     "drivers/port",  "nn",
+      "nn/io",           "render/mesh",   "render/mesh/io", "render/reduce", "render/compare",
+      "render/lod",      "render/lod/io", "render/tiles",   "render/gl",     "render/out"}},
     // The composition root.
     {"daemon",
-     {"config", "daemon/cli", "daemon/devices", "daemon/serve", "daemon/shm",
-      "daemon/status", "daemon/wall", "render/gl"}},
+     {"config", "daemon/cli", "daemon/devices", "daemon/serve", "daemon/shm", "daemon/status",
+      "daemon/wall", "render/gl"}},
     {"drivers/port", {}},
     {"drivers/cyberglove", {"drivers/port"}},
     {"drivers/fastrak", {"drivers/port"}},
@@ -65,8 +48,8 @@ const std::map<std::string, Folders> kMayInclude = {
       "drivers/spaceball"}},
     // The registry: the one place that names every driver.
     {"drivers",
-     {"drivers/port", "drivers/cyberglove", "drivers/fastrak",
-      "drivers/spaceball", "drivers/sample"}},
+     {"drivers/port", "drivers/cyberglove", "drivers/fastrak", "drivers/spaceball",
+      "drivers/sample"}},
     {"nn", {}},
     {"nn/io", {"nn"}},
     {"render/mesh", {}},
@@ -74,8 +57,7 @@ const std::map<std::string, Folders> kMayInclude = {
     {"render/lod", {"render/mesh"}},
     {"render/lod/io", {"render/lod", "render/mesh"}},
     {"render/reduce", {"render/compare", "render/lod", "render/mesh"}},
-    // Pure but for its threads; its figures are the same for any number of
-    // them.
+    // Pure but for its threads; its figures are the same for any number of them.
     {"render/compare", {"render/mesh"}},
     {"render/governor", {}},
     {"render/tiles", {}},
@@ -83,12 +65,10 @@ const std::map<std::string, Folders> kMayInclude = {
     {"render/gl", {"render/lod"}},
     {"render/out", {"render/tiles"}},
     {"config",
-     {"daemon/serve/settings.h", "drivers/gpio/settings.h",
-      "drivers/hand/settings.h", "drivers/cyberglove/settings.h",
-      "drivers/fastrak/settings.h", "drivers/spaceball/settings.h",
-      "render/gl/settings.h", "render/governor/settings.h",
-      "render/out/settings.h", "render/scene/settings.h",
-      "render/tiles/settings.h"}},
+     {"daemon/serve/settings.h", "drivers/gpio/settings.h", "drivers/hand/settings.h",
+      "drivers/cyberglove/settings.h", "drivers/fastrak/settings.h", "drivers/spaceball/settings.h",
+      "render/gl/settings.h", "render/governor/settings.h", "render/out/settings.h",
+      "render/scene/settings.h", "render/tiles/settings.h"}},
 };
 
 // Third-party headers stay behind an adapter.
@@ -97,8 +77,7 @@ const std::map<std::string, Folders> kOnlyIn = {
     {"gpiod.h", {"drivers/io"}},
     {"zmq.hpp", {"daemon/status"}},
     {"zmq.h", {"daemon/status"}},
-    {"nlohmann/json.hpp",
-     {"config", "nn/io", "daemon/status", "daemon/cli", "render/mesh/io"}},
+    {"nlohmann/json.hpp", {"config", "nn/io", "daemon/status", "daemon/cli", "render/mesh/io"}},
     {"nlohmann/json_fwd.hpp", {"nn/io"}},
     {"EGL/egl.h", {"render/gl"}},
     {"EGL/eglext.h", {"render/gl"}},
@@ -140,56 +119,45 @@ const Folders kImpure = {"fstream",
                          "daemon/base/log.h",
                          "daemon/base/shared_memory.h"};
 
-std::string folderOf(const fs::path &header) {
-  return header.parent_path().generic_string();
-}
+std::string folderOf(const fs::path& header) { return header.parent_path().generic_string(); }
 
-// "a/b.h" of `#include "a/b.h"` or `#include <a/b.h>`; empty for any other
-// line.
-std::string included(const std::string &line) {
+// "a/b.h" of `#include "a/b.h"` or `#include <a/b.h>`; empty for any other line.
+std::string included(const std::string& line) {
   constexpr std::string_view kDirective = "#include ";
-  if (!line.starts_with(kDirective))
-    return {};
+  if (!line.starts_with(kDirective)) return {};
   const std::size_t end = line.find_first_of("\">", kDirective.size() + 1);
-  return end == std::string::npos
-             ? ""
-             : line.substr(kDirective.size() + 1, end - kDirective.size() - 1);
+  return end == std::string::npos ? ""
+                                  : line.substr(kDirective.size() + 1, end - kDirective.size() - 1);
 }
 
-void checkInclude(const fs::path &root, const std::string &from,
-                  const std::string &header, const std::string &where) {
+void checkInclude(const fs::path& root, const std::string& from, const std::string& header,
+                  const std::string& where) {
   if (const auto only = kOnlyIn.find(header); only != kOnlyIn.end()) {
     EXPECT_TRUE(only->second.count(from)) << where;
   }
-  EXPECT_FALSE(header.starts_with("OpenMesh/"))
-      << where << ": an oracle of tests";
+  EXPECT_FALSE(header.starts_with("OpenMesh/")) << where << ": an oracle of tests";
   EXPECT_FALSE(kPure.count(from) && kImpure.count(header)) << where;
-  if (!fs::exists(root / header))
-    return; // the standard library or a third party
+  if (!fs::exists(root / header)) return;  // the standard library or a third party
   const std::string to = folderOf(header);
-  const Folders &allowed = kMayInclude.at(from);
-  EXPECT_TRUE(to == from || to == "daemon/base" || allowed.count(to) ||
-              allowed.count(header))
+  const Folders& allowed = kMayInclude.at(from);
+  EXPECT_TRUE(to == from || to == "daemon/base" || allowed.count(to) || allowed.count(header))
       << where;
 }
 
 TEST(Architecture, EveryIncludeFollowsTheRules) {
   const fs::path root = MERLIN_SOURCE_DIR;
   int files = 0;
-  for (const char *top : {"daemon", "drivers", "nn", "render", "config"}) {
-    for (const auto &entry : fs::recursive_directory_iterator(root / top)) {
+  for (const char* top : {"daemon", "drivers", "nn", "render", "config"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       const auto extension = entry.path().extension();
-      if (extension != ".h" && extension != ".cpp")
-        continue;
+      if (extension != ".h" && extension != ".cpp") continue;
       ++files;
       const std::string from = folderOf(fs::relative(entry.path(), root));
-      ASSERT_TRUE(kMayInclude.count(from))
-          << from << " has no line in kMayInclude";
+      ASSERT_TRUE(kMayInclude.count(from)) << from << " has no line in kMayInclude";
       std::ifstream in(entry.path());
       for (std::string line; std::getline(in, line);) {
         const std::string header = included(line);
-        if (!header.empty())
-          checkInclude(root, from, header, entry.path().string() + ": " + line);
+        if (!header.empty()) checkInclude(root, from, header, entry.path().string() + ": " + line);
       }
     }
   }
@@ -198,34 +166,22 @@ TEST(Architecture, EveryIncludeFollowsTheRules) {
 
 TEST(Architecture, EveryFolderSaysWhatItIsForInFortyLines) {
   const fs::path root = MERLIN_SOURCE_DIR;
-  for (const auto &[folder, unused] : kMayInclude) {
+  for (const auto& [folder, unused] : kMayInclude) {
     const fs::path readme = root / folder / "README.md";
     ASSERT_TRUE(fs::exists(readme)) << readme;
     std::ifstream in(readme);
     int lines = 0;
-    for (std::string line; std::getline(in, line);)
-      ++lines;
+    for (std::string line; std::getline(in, line);) ++lines;
     EXPECT_LE(lines, 40) << readme;
   }
 }
 
 TEST(Architecture, TheTopLevelIsFixed) {
-  const Folders kAllowed = {"CMakeLists.txt",
-                            "daemon",
-                            "drivers",
-                            "nn",
-                            "render",
-                            "config",
-                            "systemd",
-                            "tests",
-                            "README.md",
-                            "LICENSE",
-                            "CONTRIBUTING.md",
-                            "CHANGELOG.md",
-                            "CMakePresets.json",
-                            "dev",
-                            "build"};
-  for (const auto &entry : fs::directory_iterator(MERLIN_SOURCE_DIR)) {
+  const Folders kAllowed = {
+      "CMakeLists.txt",    "daemon", "drivers",   "nn",      "render",          "config",
+      "systemd",           "tests",  "README.md", "LICENSE", "CONTRIBUTING.md", "CHANGELOG.md",
+      "CMakePresets.json", "dev",    "build"};
+  for (const auto& entry : fs::directory_iterator(MERLIN_SOURCE_DIR)) {
     const std::string name = entry.path().filename();
     EXPECT_TRUE(name.starts_with(".") || kAllowed.count(name)) << name;
   }
@@ -233,10 +189,9 @@ TEST(Architecture, TheTopLevelIsFixed) {
 
 TEST(Architecture, AFileStartsWithWhatItIsFor) {
   const fs::path root = MERLIN_SOURCE_DIR;
-  for (const char *top : {"daemon", "drivers", "nn", "render", "config"}) {
-    for (const auto &entry : fs::recursive_directory_iterator(root / top)) {
-      if (entry.path().extension() != ".h")
-        continue;
+  for (const char* top : {"daemon", "drivers", "nn", "render", "config"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      if (entry.path().extension() != ".h") continue;
       std::ifstream in(entry.path());
       std::string first;
       std::getline(in, first);
@@ -245,4 +200,4 @@ TEST(Architecture, AFileStartsWithWhatItIsFor) {
   }
 }
 
-} // namespace
+}  // namespace
