@@ -3,28 +3,74 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <vector>
 
 namespace merlin::render {
 namespace {
 
-// Measured on llvmpipe, four views of 640 x 480 (README.md); a wrong exponent costs speed of
-// settling, not safety.
-constexpr double kExponent = 0.65;
-constexpr double kLeastRoom = 0.10, kMostRoom = 0.30, kRoomGain = 0.02;
-constexpr double kSlower = 0.15, kFaster = 0.10;  // how fast c follows dearer, cheaper frames
-constexpr double kFixedGain = 0.1;
+// Measured on llvmpipe, four views of 640 x 480 (README.md), until it is calibrated; a wrong
+// exponent costs speed of settling, not safety.
+constexpr double kExponent = 0.65, kLeastExponent = 0.4, kMostExponent = 1.1;
+constexpr double kLeastRoom = 0.10, kMostRoom = 0.30, kRoomGain = 0.01;
+constexpr double kFixedGain = 0.15;
+// The trend of ln c and its slope (an alpha-beta filter), and how far one frame may pull.
+constexpr double kTrendGain = 0.25, kSlopeGain = 0.05, kMostPull = 0.10, kMostSlope = 0.05;
+// c is moved slowly while the trend is no further from it than its noise.
+constexpr double kSlow = 0.04, kDearer = 0.05, kCheaper = 0.06;
+// A load that rises is met ahead of time, by so many frames of its slope.
+constexpr double kAhead = 3;
+// One frame alone says less of c than the worst of two: that much is left for its noise.
+constexpr double kOneFrame = 1.06, kMostJump = 6;
+// And where the next frame costs no more than this over what it did before, it was a hiccup.
+constexpr double kHiccup = 1.5;
 constexpr double kDeadBand = 0.05, kGrowth = 1.08;
+// A frame of less than this share of the usual triangles says something of p, and nothing of c.
+constexpr double kOtherSize = 0.7;
+constexpr double kExponentGain = 0.1, kMostExponentPull = 0.3;
+
+double log0(double x) { return std::log(std::max(x, 1e-300)); }
+
+double sizeOf(const FrameCost& cost) { return std::max(static_cast<double>(cost.triangles), 1.0); }
+
+double drawingOf(const FrameCost& cost) {
+  return std::max(toSeconds(cost.work) - toSeconds(cost.fixed), 1e-9);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// H. Theil, P. Sen: the median of the slopes of all pairs, which a few hiccups cannot pull.
+std::optional<double> slopeOf(std::span<const FrameCost> frames) {
+  std::vector<double> slopes;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double x = log0(sizeOf(frames[i])) - log0(sizeOf(frames[j]));
+      const double y = log0(drawingOf(frames[i])) - log0(drawingOf(frames[j]));
+      if (std::abs(x) >= std::log(2)) slopes.push_back(y / x);
+    }
+  }
+  return slopes.empty() ? std::nullopt : std::optional(median(std::move(slopes)));
+}
 
 }  // namespace
 
 Governor::Governor(const GovernorSettings& settings) noexcept
     : settings_(settings),
       period_(fromSeconds(1.0 / settings.rate_hz)),
-      triangles_(static_cast<double>(settings.first_triangles)) {
+      triangles_(static_cast<double>(settings.first_triangles)),
+      head_room_(kLeastRoom),
+      exponent_(kExponent) {
   assert(settings.rate_hz > 0);
   assert(settings.min_triangles > 0 && settings.min_triangles <= settings.first_triangles);
   assert(settings.first_triangles <= settings.max_triangles);
   assert(settings.late_share > 0 && settings.late_share < 1);
+}
+
+std::size_t Governor::budget() const noexcept {
+  return static_cast<std::size_t>(held_ ? clamped(static_cast<double>(*held_)) : triangles_);
 }
 
 void Governor::observe(const FrameCost& cost) noexcept {
@@ -36,44 +82,154 @@ void Governor::observe(const FrameCost& cost) noexcept {
   choose();
 }
 
+// Noise is what head room is for. The second late frame in a row is a dearer load, which the model
+// learns.
 void Governor::learnHeadRoom(bool late) noexcept {
+  if (late_in_a_row_ >= 2) return;
   const double q = settings_.late_share;
   head_room_ += late ? kRoomGain * (1 - q) : -kRoomGain * q;
   head_room_ = std::clamp(head_room_, kLeastRoom, kMostRoom);
 }
 
+// By the median of three, so that one hiccup while reading back is not seen.
+void Governor::learnFixed(double fixed) noexcept {
+  fixed_seen_[seen_ % fixed_seen_.size()] = fixed;
+  std::array<double, 3> sorted = fixed_seen_;
+  const std::size_t n = std::min(seen_ + 1, sorted.size());
+  std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n));
+  fixed_ = seen_++ == 0 ? fixed : fixed_ + kFixedGain * (sorted[n / 2] - fixed_);
+}
+
 void Governor::learnCost(const FrameCost& cost) noexcept {
-  const double fixed = toSeconds(cost.fixed);
-  fixed_ = seen_ == 0 ? fixed : fixed_ + kFixedGain * (fixed - fixed_);
-  const double grown = std::max(toSeconds(cost.work) - fixed, 1e-9);
-  const double now =
-      grown / std::pow(std::max<double>(static_cast<double>(cost.triangles), 1), kExponent);
-  work_[seen_++ % work_.size()] = now;
+  const double fixed = toSeconds(cost.fixed), size = sizeOf(cost);
+  const double now = drawingOf(cost) / std::pow(size, exponent_);
+  const bool grave = late_in_a_row_ == 1 && cost.work > 2 * period_;
   if (per_ == 0) {
-    per_ = now;
+    learnFixed(fixed);
+    jumpTo(now);
   } else if (late_in_a_row_ >= 2) {
-    per_ = std::max(per_, now);
+    actOnTheWorst(fixed, now);
+  } else if (grave) {
+    before_ = Model{fixed_, per_, triangles_};
+    actOnTheWorst(fixed, std::min(kOneFrame * now, kMostJump * per_));
   } else if (late_in_a_row_ == 0) {
-    const double typical = medianWork();
-    per_ += (typical > per_ ? kSlower : kFaster) * (typical - per_);
+    if (before_ && now < kHiccup * before_->per) takeBack();
+    before_.reset();
+    learnFixed(fixed);
+    learnFrom(size, now);
   }
 }
 
-double Governor::medianWork() const noexcept {
-  std::array<double, 3> sorted = work_;
-  const std::size_t n = std::min(seen_, sorted.size());
-  std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n));
-  return sorted[n / 2];
+void Governor::takeBack() noexcept {
+  fixed_ = before_->fixed;
+  triangles_ = before_->triangles;
+  jumpTo(before_->per);
+}
+
+// A frame that is smaller than the ones before it, because less than a period was left, shows how
+// cost depends on size under the same load.
+void Governor::learnFrom(double size, double now) noexcept {
+  const bool smaller = size < kOtherSize * usual_ && !was_smaller_;
+  was_smaller_ = smaller;
+  if (smaller) {
+    learnExponent(log0(size / usual_), log0(now) - log0(per_));
+  } else {
+    usual_ = size;
+    follow(log0(now));
+  }
+}
+
+void Governor::actOnTheWorst(double fixed, double per) noexcept {
+  fixed_ = std::max(fixed_, fixed);
+  jumpTo(std::max(per_, per));
+}
+
+void Governor::jumpTo(double per) noexcept {
+  per_ = per;
+  trend_ = log0(per);
+  slope_ = 0;
+}
+
+// The trend follows a load that rises for seconds without lagging behind it, but is noisy; c keeps
+// still as long as the trend is within that noise.
+void Governor::follow(double now) noexcept {
+  const double expected = trend_ + slope_;
+  const double pull = std::clamp(now - expected, -kMostPull, kMostPull);
+  trend_ = expected + kTrendGain * pull;
+  slope_ = std::clamp(slope_ + kSlopeGain * pull, -kMostSlope, kMostSlope);
+  // A cheaper load is taken at its word only: the trend swings through below it.
+  const double ahead = std::max(trend_, slope_ > 0 ? trend_ + kAhead * slope_ : now);
+  const double off = trend_ + slope_ - log0(per_);
+  if (off > kDearer || off < -kCheaper)
+    per_ = std::exp(ahead);
+  else
+    per_ *= std::exp(kSlow * off);
+}
+
+// `off`: how much dearer a frame was than the model says; what that says of the usual size stays.
+void Governor::learnExponent(double size, double off) noexcept {
+  const double pull = std::clamp(off / size, -kMostExponentPull, kMostExponentPull);
+  const double next = std::clamp(exponent_ + kExponentGain * pull, kLeastExponent, kMostExponent);
+  const double same = (exponent_ - next) * log0(usual_);
+  exponent_ = next;
+  per_ *= std::exp(same);
+  trend_ += same;
+}
+
+void Governor::calibrate(std::span<const FrameCost> frames) {
+  if (frames.empty()) return;
+  if (const auto slope = slopeOf(frames))
+    exponent_ = std::clamp(*slope, kLeastExponent, kMostExponent);
+  std::vector<double> fixed, sizes, per;
+  for (const FrameCost& f : frames) {
+    fixed.push_back(toSeconds(f.fixed));
+    sizes.push_back(sizeOf(f));
+  }
+  fixed_ = median(std::move(fixed));
+  // The large ones are nearer to what will be drawn.
+  usual_ = median(sizes);
+  for (const FrameCost& f : frames) {
+    if (sizeOf(f) >= usual_) per.push_back(drawingOf(f) / std::pow(sizeOf(f), exponent_));
+  }
+  jumpTo(median(std::move(per)));
+  fixed_seen_.fill(fixed_);
+  seen_ = fixed_seen_.size();
+  startOver();
+}
+
+void Governor::expect(double ratio) noexcept {
+  assert(ratio > 0 && std::isfinite(ratio));
+  if (per_ == 0) return;
+  jumpTo(per_ * ratio);
+  startOver();
+}
+
+void Governor::setRate(double rate_hz) noexcept {
+  assert(rate_hz > 0);
+  period_ = fromSeconds(1 / rate_hz);
+  if (per_ > 0) startOver();
+}
+
+// What the model says fits, at once: nothing that was seen speaks against it.
+void Governor::startOver() noexcept {
+  late_in_a_row_ = 0;
+  before_.reset();
+  triangles_ = clamped(trianglesIn(toSeconds(period_)));
+}
+
+double Governor::clamped(double triangles) const noexcept {
+  return std::clamp(triangles, static_cast<double>(settings_.min_triangles),
+                    static_cast<double>(settings_.max_triangles));
 }
 
 // The model's inverse, with head room.
 double Governor::trianglesIn(double seconds) const noexcept {
   const double room = seconds * (1 - head_room_) - fixed_;
-  return std::pow(std::max(room, 0.0) / per_, 1 / kExponent);
+  return std::pow(std::max(room, 0.0) / per_, 1 / exponent_);
 }
 
 std::size_t Governor::budgetFor(Duration available) const noexcept {
-  if (per_ == 0 || available >= period_ * 99 / 100) return budget();
+  if (per_ == 0 || held_ || available >= period_ * 99 / 100) return budget();
   const double fits = trianglesIn(toSeconds(available));
   if (fits < static_cast<double>(settings_.min_triangles)) return 0;
   return static_cast<std::size_t>(std::min(fits, triangles_));
@@ -82,19 +238,18 @@ std::size_t Governor::budgetFor(Duration available) const noexcept {
 void Governor::choose() noexcept {
   const double wanted = trianglesIn(toSeconds(period_));
   const double ratio = wanted / triangles_;
-  if (late_in_a_row_ >= 2) {
+  if (late_in_a_row_ >= 2 || before_) {
     triangles_ = std::min(triangles_, wanted);
   } else if (ratio < 1 - kDeadBand) {
     triangles_ = wanted;
   } else if (ratio > 1 + kDeadBand) {
     triangles_ *= std::min(ratio, kGrowth);
   }
-  triangles_ = std::clamp(triangles_, static_cast<double>(settings_.min_triangles),
-                          static_cast<double>(settings_.max_triangles));
+  triangles_ = clamped(triangles_);
 }
 
 double Governor::predict(std::size_t triangles) const noexcept {
-  return fixed_ + per_ * std::pow(static_cast<double>(triangles), kExponent);
+  return fixed_ + per_ * std::pow(static_cast<double>(triangles), exponent_);
 }
 
 }  // namespace merlin::render

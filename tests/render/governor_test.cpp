@@ -34,9 +34,7 @@ Governor settled() {
   return governor;
 }
 
-double shareOf(const Governor& governor, const Governor& of) {
-  return static_cast<double>(governor.budget()) / static_cast<double>(of.budget());
-}
+double budgetOf(const Governor& governor) { return static_cast<double>(governor.budget()); }
 
 TEST(Governor, StartsWithWhatItIsTold) {
   const Governor governor(kSettings);
@@ -57,19 +55,19 @@ TEST(Governor, PredictsByTheModel) {
   EXPECT_NEAR(governor.predict(0), 0.004, 1e-12);
 }
 
-// Head room 0.1 + 0.0198 since it was late; (40 ms x 0.8802 - 4 ms) / 60 ms = 0.52013, and to the
-// power of 1 / 0.65: 0.36576.
+// Head room 0.1 + 0.0099 since it was late; (40 ms x 0.8901 - 4 ms) / 60 ms = 0.52673, and to the
+// power of 1 / 0.65: 0.37295.
 TEST(Governor, ShrinksAtOnceToWhatTheModelSaysFits) {
   Governor governor(kSettings);
   governor.observe(frame(10'000, milliseconds(4), milliseconds(64)));
-  EXPECT_NEAR(static_cast<double>(governor.budget()), 3658, 2);
+  EXPECT_NEAR(budgetOf(governor), 3729, 2);
 }
 
 TEST(Governor, GrowsByEightPercentAFrameAtMost) {
   Governor governor(kSettings);
   for (int i = 1; i <= 20; ++i) {
     governor.observe(frame(10'000, milliseconds(0), milliseconds(1)));
-    EXPECT_NEAR(static_cast<double>(governor.budget()), 10'000 * std::pow(1.08, i), 1) << i;
+    EXPECT_NEAR(budgetOf(governor), 10'000 * std::pow(1.08, i), 1) << i;
   }
 }
 
@@ -87,13 +85,13 @@ TEST(Governor, WaitsForAGainWorthIt) {
 TEST(Governor, OneHiccupChangesNothing) {
   Governor governor = settled();
   const double before = governor.coefficient();
-  governor.observe(frame(10'000, milliseconds(4), milliseconds(400)));
+  governor.observe(frame(10'000, milliseconds(4), milliseconds(79)));
   EXPECT_DOUBLE_EQ(governor.coefficient(), before);
-  EXPECT_GT(shareOf(governor, settled()), 0.95);  // the head room grew by two per cent
+  EXPECT_EQ(governor.budget(), 10'000u);
   for (int i = 0; i < 5; ++i) {
     governor.observe(frame(10'000, milliseconds(4), milliseconds(36)));
-    EXPECT_NEAR(governor.coefficient() / before, 1, 1e-9) << "the median does not see it";
-    EXPECT_GT(shareOf(governor, settled()), 0.95);
+    EXPECT_NEAR(governor.coefficient() / before, 1, 1e-9);
+    EXPECT_EQ(governor.budget(), 10'000u);
   }
 }
 
@@ -101,10 +99,37 @@ TEST(Governor, AHiccupNowAndThenChangesNothingEither) {
   Governor governor = settled();
   const double before = governor.coefficient();
   for (int i = 0; i < 200; ++i) {
-    const int work = i % 20 == 0 ? 200 : 36;
+    const int work = i % 20 == 0 ? 79 : 36;
     governor.observe({10'000, milliseconds(4), milliseconds(work), false});
     EXPECT_NEAR(governor.coefficient() / before, 1, 1e-9) << i;
   }
+  EXPECT_EQ(governor.budget(), 10'000u);
+}
+
+// 4 + 96 ms is three times 32: a frame that misses two deadlines is taken for the load itself, with
+// 6 per cent more for its noise. (40 ms x 0.8901 - 4 ms) / (1.06 x 96 ms) = 0.31058, and to the
+// power of 1 / 0.65: 0.16561.
+TEST(Governor, AFrameThatMissesTwoDeadlinesActsAlone) {
+  Governor governor = settled();
+  const double before = governor.coefficient();
+  governor.observe(frame(10'000, milliseconds(4), milliseconds(100)));
+  EXPECT_NEAR(governor.coefficient() / before, 3 * 1.06, 1e-9);
+  EXPECT_NEAR(budgetOf(governor), 1656, 2);
+  governor.observe(frame(1656, milliseconds(4), milliseconds(35)));  // as the model says
+  EXPECT_NEAR(governor.coefficient() / before, 3 * 1.06, 0.1);
+  EXPECT_LT(governor.budget(), 2000u);
+}
+
+TEST(Governor, ALongHiccupIsTakenBackByTheNextFrame) {
+  Governor governor = settled();
+  const double before = governor.coefficient();
+  governor.observe(frame(10'000, milliseconds(4), milliseconds(400)));
+  EXPECT_NEAR(governor.coefficient() / before, 6, 1e-9) << "at most";
+  const std::size_t shown = governor.budget();
+  EXPECT_NEAR(static_cast<double>(shown), 623, 3);
+  const Duration work = fromSeconds(0.004 + before * std::pow(shown, 0.65));
+  governor.observe(frame(shown, milliseconds(4), work));
+  EXPECT_NEAR(governor.coefficient() / before, 1, 1e-6);
   EXPECT_EQ(governor.budget(), 10'000u);
 }
 
@@ -115,30 +140,29 @@ TEST(Governor, TwoLateInARowActAtOnceOnTheWorstSeen) {
   governor.observe(frame(10'000, milliseconds(4), milliseconds(68)));
   governor.observe(frame(10'000, milliseconds(4), milliseconds(60)));
   EXPECT_NEAR(governor.coefficient() / before, 56.0 / 32.0, 1e-9);
-  EXPECT_NEAR(governor.headRoom(), 0.1396, 1e-9);
-  EXPECT_NEAR(governor.predict(governor.budget()), 0.040 * (1 - 0.1396), 1e-5);
+  EXPECT_NEAR(governor.headRoom(), 0.1099, 1e-9) << "the second is the load, not noise";
+  EXPECT_NEAR(governor.predict(governor.budget()), 0.040 * (1 - 0.1099), 1e-5);
   governor.observe({10'000, milliseconds(4), milliseconds(20), true});
   EXPECT_NEAR(governor.coefficient() / before, 56.0 / 32.0, 1e-9) << "no better figure when late";
 }
 
-// Two of the last three are dearer, but the newest is late for the first time.
 TEST(Governor, TheFirstLateFrameTeachesNothing) {
   Governor governor = settled();
-  const double before = governor.coefficient();
   governor.observe(frame(10'000, milliseconds(4), milliseconds(39)));
-  governor.observe(frame(10'000, milliseconds(4), milliseconds(400)));
-  EXPECT_NEAR(governor.coefficient() / before, 1, 1e-9);
+  const double before = governor.coefficient();
+  governor.observe(frame(10'000, milliseconds(4), milliseconds(70)));
+  EXPECT_DOUBLE_EQ(governor.coefficient(), before);
 }
 
-// 31.1 ms of 32 would let 4.5 per cent more in, which is not worth it; with the head room that two
-// late frames teach 3.4 per cent fewer fit: (40 ms x 0.8604 - 4 ms) / 31.1 ms = 0.97801.
+// 31.8 ms of 32 would let 1 per cent more in, which is not worth it; with the head room that a late
+// frame teaches 1 per cent fewer fit: (40 ms x 0.8901 - 4 ms) / 31.8 ms = 0.99384.
 TEST(Governor, TwoLateInARowDoNotWaitForALossWorthIt) {
-  const Duration work = std::chrono::microseconds(35'100);
+  const Duration work = std::chrono::microseconds(35'800);
   Governor governor = settled();
   for (int i = 0; i < 200; ++i) governor.observe(frame(10'000, milliseconds(4), work));
   EXPECT_EQ(governor.budget(), 10'000u);
   for (int i = 0; i < 2; ++i) governor.observe({10'000, milliseconds(4), work, true});
-  EXPECT_NEAR(static_cast<double>(governor.budget()), 9664, 2);
+  EXPECT_NEAR(budgetOf(governor), 9905, 3);
 }
 
 // Something else made them late: room there is, but the next frame is not the one to take it.
@@ -150,11 +174,13 @@ TEST(Governor, TwoLateInARowNeverGrow) {
   EXPECT_EQ(governor.budget(), 11'664u);
 }
 
-// A tenth of the way a frame.
+// The median of three, 0.15 of the way a frame: one read-back that took long is not seen.
 TEST(Governor, SmoothsTheFixedPart) {
   Governor governor = settled();
   governor.observe(frame(10'000, milliseconds(8), milliseconds(36)));
-  EXPECT_NEAR(governor.fixedSeconds(), 0.0044, 1e-12);
+  EXPECT_NEAR(governor.fixedSeconds(), 0.0040, 1e-12);
+  governor.observe(frame(10'000, milliseconds(8), milliseconds(36)));
+  EXPECT_NEAR(governor.fixedSeconds(), 0.0046, 1e-12);
 }
 
 TEST(Governor, TwoThatBeganLateCountAlthoughTheirWorkFits) {
@@ -175,29 +201,59 @@ TEST(Governor, TwoThatRanOverInARowCountAsLate) {
   EXPECT_NEAR(governor.headRoom(), 0.10, 1e-12) << "and the share of late frames is not touched";
 }
 
-TEST(Governor, FollowsDearerFramesFasterThanCheaperOnes) {
-  Governor dearer = settled(), cheaper = settled();
-  const double before = dearer.coefficient();
-  for (int i = 0; i < 3; ++i) {
-    dearer.observe(frame(10'000, milliseconds(4), milliseconds(39)));
-    cheaper.observe(frame(10'000, milliseconds(4), milliseconds(33)));
+// 3 per cent of noise either way, and a picture that does not pop.
+TEST(Governor, KeepsStillWithinTheNoise) {
+  Governor governor = settled();
+  const double before = governor.coefficient();
+  Random random(7);
+  for (int i = 0; i < 1000; ++i) {
+    const double work = 0.004 + 0.0315 * std::exp(0.03 * random.normal());
+    governor.observe({10'000, milliseconds(4), fromSeconds(work), false});
+    ASSERT_EQ(governor.budget(), 10'000u) << i;
   }
-  // Two of the last three are new from the second frame on: 35 / 32 and 29 / 32, by 15 and 10 %.
-  EXPECT_NEAR(dearer.coefficient() / before, 1 + 3.0 / 32 * (1 - 0.85 * 0.85), 1e-9);
-  EXPECT_NEAR(cheaper.coefficient() / before, 1 - 3.0 / 32 * (1 - 0.9 * 0.9), 1e-9);
+  EXPECT_NEAR(governor.coefficient() / before, 31.5 / 32, 0.01);
 }
 
-TEST(Governor, HeadRoomFollowsTheLateShare) {
+// 2 per cent dearer each frame for a second: the model is never 9 per cent off.
+TEST(Governor, FollowsALoadThatRisesWithoutLagging) {
+  Governor governor = settled();
+  const double before = governor.coefficient();
+  for (int i = 1; i <= 30; ++i) {
+    const double load = std::pow(1.02, i);
+    const double drawing = 0.032 * load * std::pow(budgetOf(governor) / 1e4, 0.65);
+    governor.observe(frame(governor.budget(), milliseconds(4), fromSeconds(0.004 + drawing)));
+    EXPECT_GT(governor.coefficient() / before, load / 1.085) << i;
+    EXPECT_LT(governor.coefficient() / before, load * 1.085) << i;
+  }
+}
+
+TEST(Governor, TakesACheaperLoadAtItsWordAndNoFurther) {
+  Governor governor = settled();
+  const double before = governor.coefficient();
+  for (int i = 0; i < 60; ++i) {
+    const double drawing = 0.008 * std::pow(budgetOf(governor) / 1e4, 0.65);
+    governor.observe(frame(governor.budget(), milliseconds(4), fromSeconds(0.004 + drawing)));
+    EXPECT_GE(governor.coefficient() / before, 0.248) << i;
+  }
+  EXPECT_NEAR(governor.coefficient() / before, 0.25, 0.02);
+}
+
+TEST(Governor, HeadRoomFollowsTheShareOfFramesThatAreLateAlone) {
   Governor governor(kSettings);
   EXPECT_DOUBLE_EQ(governor.headRoom(), 0.10);
   governor.observe({1000, {}, milliseconds(50), true});
-  EXPECT_NEAR(governor.headRoom(), 0.10 + 0.02 * 0.99, 1e-12);
+  EXPECT_NEAR(governor.headRoom(), 0.10 + 0.01 * 0.99, 1e-12);
+  governor.observe({1000, {}, milliseconds(50), true});
+  EXPECT_NEAR(governor.headRoom(), 0.10 + 0.01 * 0.99, 1e-12) << "in a row";
   governor.observe({1000, {}, milliseconds(30), false});
-  EXPECT_NEAR(governor.headRoom(), 0.10 + 0.02 * 0.99 - 0.02 * 0.01, 1e-12);
-  for (int i = 0; i < 50; ++i) governor.observe({1000, {}, milliseconds(50), true});
+  EXPECT_NEAR(governor.headRoom(), 0.10 + 0.01 * 0.99 - 0.01 * 0.01, 1e-12);
+  for (int i = 0; i < 50; ++i) {
+    governor.observe({1000, {}, milliseconds(30), false});
+    governor.observe({1000, {}, milliseconds(50), true});
+  }
   EXPECT_DOUBLE_EQ(governor.headRoom(), 0.30);
   for (int i = 0; i < 2000; ++i) governor.observe({1000, {}, milliseconds(30), false});
-  EXPECT_DOUBLE_EQ(governor.headRoom(), 0.10);
+  EXPECT_NEAR(governor.headRoom(), 0.10, 1e-9);
 }
 
 TEST(Governor, KeepsTheLeastAndTheMost) {

@@ -1,0 +1,129 @@
+// What the governor is told rather than sees: calibration, feed-forward, by hand, another rate; and
+// its exponent.
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "render/governor/governor.h"
+
+namespace merlin::render {
+namespace {
+
+using std::chrono::milliseconds;
+
+// 25 Hz, a period of 40 ms: 36 ms but for the head room that it starts with.
+const GovernorSettings kSettings = {.rate_hz = 25,
+                                    .min_triangles = 100,
+                                    .max_triangles = 1'000'000,
+                                    .first_triangles = 10'000,
+                                    .late_share = 0.01};
+
+FrameCost frame(std::size_t triangles, Duration fixed, Duration work) {
+  return {triangles, fixed, work, work > milliseconds(40)};
+}
+
+// At its target: 10,000 triangles take 36 ms, 4 of them fixed. Nothing is left to change.
+Governor settled() {
+  Governor governor(kSettings);
+  for (int i = 0; i < 10; ++i) governor.observe(frame(10'000, milliseconds(4), milliseconds(36)));
+  return governor;
+}
+
+double budgetOf(const Governor& governor) { return static_cast<double>(governor.budget()); }
+
+// 5,000 triangles in what is left of a period, at 0.8 and not at 0.65: 0.5^0.15 = 0.9013 cheaper,
+// which is 0.15 of exponent. A tenth of it is learnt; the usual size costs what it did.
+TEST(GovernorExponent, IsLearntFromAFrameThatHadLessTime) {
+  Governor governor = settled();
+  EXPECT_DOUBLE_EQ(governor.exponent(), 0.65);
+  const double usual = governor.predict(10'000);
+  const double drawing = 0.032 * std::pow(0.5, 0.8);
+  governor.observe(frame(5'000, milliseconds(4), fromSeconds(0.004 + drawing)));
+  EXPECT_NEAR(governor.exponent(), 0.665, 1e-4);
+  EXPECT_NEAR(governor.predict(10'000) / usual, 1, 1e-9);
+  EXPECT_EQ(governor.budget(), 10'000u);
+}
+
+// A model of fewer triangles than would fit: all of its frames are smaller than the budget.
+TEST(GovernorExponent, IsNotLearntFromFramesThatAreAllSmall) {
+  Governor governor = settled();
+  for (int i = 0; i < 50; ++i) governor.observe(frame(1'000, milliseconds(4), milliseconds(10)));
+  EXPECT_NEAR(governor.exponent(), 0.65, 0.03);
+  EXPECT_NEAR(governor.predict(1'000), 0.010, 2e-4);
+}
+
+std::vector<FrameCost> sweep(double fixed_s, double c, double p) {
+  std::vector<FrameCost> frames;
+  for (const std::size_t t : {1'000U, 4'000U, 16'000U, 64'000U}) {
+    for (int i = 0; i < 3; ++i) {
+      const double work = fixed_s + c * std::pow(static_cast<double>(t), p);
+      frames.push_back({t, fromSeconds(fixed_s), fromSeconds(i == 1 ? work + 0.02 : work), false});
+    }
+  }
+  return frames;
+}
+
+// One in three of these frames has a hiccup of 20 ms.
+TEST(GovernorCalibration, FindsTheModelInSpiteOfHiccups) {
+  for (const double p : {0.5, 0.62, 0.8, 1.0}) {
+    Governor governor(kSettings);
+    const double c = 0.030 / std::pow(30'000, p);
+    governor.calibrate(sweep(0.005, c, p));
+    EXPECT_NEAR(governor.exponent(), p, 0.05) << p;
+    EXPECT_DOUBLE_EQ(governor.fixedSeconds(), 0.005);
+    // 40 ms x 0.9 less 5 ms are 31 of 30 ms: within a tenth of 30,000 x (31 / 30)^(1 / p).
+    EXPECT_NEAR(budgetOf(governor) / (30'000 * std::pow(31.0 / 30, 1 / p)), 1, 0.1) << p;
+  }
+}
+
+TEST(GovernorCalibration, WithFramesOfOneSizeLeavesTheExponent) {
+  Governor governor(kSettings);
+  governor.calibrate(std::vector<FrameCost>(3, frame(10'000, milliseconds(4), milliseconds(36))));
+  EXPECT_DOUBLE_EQ(governor.exponent(), 0.65);
+  EXPECT_NEAR(budgetOf(governor), 10'000, 2);
+  Governor none(kSettings);
+  none.calibrate({});
+  EXPECT_EQ(none.budget(), 10'000u);
+  EXPECT_EQ(none.coefficient(), 0);
+}
+
+// Twice as dear: 32 / 64 to the power of 1 / 0.65 is 0.34429; and at once, both ways.
+TEST(GovernorExpect, FeedsForwardAtOnce) {
+  Governor governor = settled();
+  governor.expect(2);
+  EXPECT_NEAR(budgetOf(governor), 3443, 2);
+  governor.expect(0.5);
+  EXPECT_NEAR(budgetOf(governor), 10'000, 2);
+  Governor fresh(kSettings);
+  fresh.expect(3);
+  EXPECT_EQ(fresh.budget(), 10'000u) << "nothing was measured yet";
+}
+
+TEST(GovernorHold, IsByHandUntilItIsGivenBack) {
+  Governor governor = settled();
+  governor.hold(2'000);
+  EXPECT_TRUE(governor.held());
+  EXPECT_EQ(governor.budget(), 2'000u);
+  EXPECT_EQ(governor.budgetFor(milliseconds(2)), 2'000u) << "whatever the time";
+  for (int i = 0; i < 20; ++i) governor.observe(frame(2'000, milliseconds(4), milliseconds(60)));
+  EXPECT_EQ(governor.budget(), 2'000u);
+  governor.hold(50);
+  EXPECT_EQ(governor.budget(), 100u) << "the least";
+  governor.hold(std::nullopt);
+  EXPECT_FALSE(governor.held());
+  EXPECT_LT(governor.budget(), 1'000u) << "it has gone on learning";
+}
+
+// 80 ms x 0.9 less 4 ms are 68 of 32 ms: to the power of 1 / 0.65, 3.1888.
+TEST(GovernorRate, AnotherPeriodIsFilledAtOnce) {
+  Governor governor = settled();
+  governor.setRate(12.5);
+  EXPECT_EQ(governor.period(), milliseconds(80));
+  EXPECT_NEAR(budgetOf(governor), 31'888, 5);
+  governor.setRate(25);
+  EXPECT_NEAR(budgetOf(governor), 10'000, 2);
+}
+
+}  // namespace
+}  // namespace merlin::render
