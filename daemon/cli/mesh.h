@@ -3,9 +3,12 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "daemon/cli/command.h"
 #include "render/lod/dendrogram.h"
+#include "render/mesh/io/mesh_file.h"
+#include "render/reduce/pattern_space.h"
 
 namespace merlin::cli {
 
@@ -14,9 +17,27 @@ void addMeshExport(CLI::App& mesh, Run& run);
 void addMeshInfo(CLI::App& mesh, Run& run);
 void addMeshPicture(CLI::App& mesh, Run& run);
 void addMeshReduce(CLI::App& mesh, Run& run);
+void addMeshSegment(CLI::App& mesh, Run& run);
 
 // An .mrm file as it is, or a mesh as a dendrogram of one level. Errors: of the readers.
 Result<render::Dendrogram> openModel(const std::string& path);
+
+// A mesh with normals; what was noted while reading it goes to stderr. Errors: of readMesh().
+Result<render::LoadedMesh> loadMesh(const std::string& path);
+
+// What reading had to mend, with a key for programs and a name for people; counts may be 0.
+struct Repair {
+  const char* key;
+  const char* name;
+  std::size_t count;
+};
+std::vector<Repair> repairsOf(const render::LoadedMesh& loaded);
+
+// Those that happened as one line, "mended: 3 triangles with a vertex twice, ..."; else empty.
+std::string mendedText(const render::LoadedMesh& loaded);
+
+// Puts what `text`, "colour=0.5", says into `weights`. Errors: kInvalidArgument.
+Result<Ok> setWeight(const std::string& text, render::Weights& weights);
 
 // A mesh as a model of one level.
 render::Dendrogram asModel(const render::Mesh& mesh);

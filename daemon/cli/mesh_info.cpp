@@ -15,44 +15,76 @@ struct InfoOptions {
   bool json = false;
 };
 
-int info(const InfoOptions& options) {
-  const auto model = openModel(options.file);
-  if (!model) return fail(model.error());
-  const auto& a = model->arrays();
-  const render::Box box = render::boundingBox(a.positions);
-  if (options.json) {
-    nlohmann::ordered_json features = nlohmann::ordered_json::array();
-    for (const auto& f : a.features)
-      features.push_back({{"name", f.name}, {"dimension", f.dimension}});
-    const nlohmann::ordered_json json = {
-        {"file", options.file},
-        {"triangles", model->triangleCount()},
-        {"vertices", model->vertexCount()},
-        {"levels", model->levels()},
-        {"triangles_coarsest", model->trianglesAt(model->levels() - 1)},
-        {"features", std::move(features)},
-        {"box", {{"low", box.low}, {"high", box.high}}},
-        {"diagonal", box.diagonal()},
-        {"about", a.about}};
-    fmt::print("{}\n", json.dump());
-    return kExitDone;
+// A model, and of a mesh what reading it mended.
+struct Opened {
+  std::optional<render::Dendrogram> model;
+  std::vector<Repair> repairs;
+  std::string mended;
+};
+
+Result<Opened> open(const std::string& path) {
+  Opened opened;
+  if (path.ends_with(".mrm")) {
+    auto model = openModel(path);
+    if (!model) return model.error();
+    opened.model = *std::move(model);
+    return opened;
   }
-  fmt::print("{}: {} triangles, {} vertices\n", options.file, model->triangleCount(),
-             model->vertexCount());
-  if (model->levels() > 1) {
-    fmt::print("  levels    {}, down to {} triangles (error estimate {:.3g})\n", model->levels(),
-               model->trianglesAt(model->levels() - 1), model->errorAt(model->levels() - 1));
+  const auto loaded = loadMesh(path);
+  if (!loaded) return loaded.error();
+  opened.model = asModel(loaded->mesh);
+  opened.repairs = repairsOf(*loaded);
+  opened.mended = mendedText(*loaded);
+  return opened;
+}
+
+void printJson(const std::string& file, const Opened& opened) {
+  using Json = nlohmann::ordered_json;
+  const render::Dendrogram& model = *opened.model;
+  const auto& a = model.arrays();
+  const render::Box box = render::boundingBox(a.positions);
+  Json features = Json::array();
+  for (const auto& f : a.features)
+    features.push_back({{"name", f.name}, {"dimension", f.dimension}});
+  Json json = {{"file", file},
+               {"triangles", model.triangleCount()},
+               {"vertices", model.vertexCount()},
+               {"levels", model.levels()},
+               {"triangles_coarsest", model.trianglesAt(model.levels() - 1)},
+               {"features", std::move(features)},
+               {"box", {{"low", box.low}, {"high", box.high}}},
+               {"diagonal", box.diagonal()},
+               {"about", a.about}};
+  for (const Repair& r : opened.repairs) json[r.key] = r.count;
+  fmt::print("{}\n", json.dump());
+}
+
+void printText(const std::string& file, const Opened& opened) {
+  const render::Dendrogram& model = *opened.model;
+  const auto& a = model.arrays();
+  const render::Box box = render::boundingBox(a.positions);
+  fmt::print("{}: {} triangles, {} vertices\n", file, model.triangleCount(), model.vertexCount());
+  if (model.levels() > 1) {
+    fmt::print("  levels    {}, down to {} triangles (error estimate {:.3g})\n", model.levels(),
+               model.trianglesAt(model.levels() - 1), model.errorAt(model.levels() - 1));
   }
   for (const auto& f : a.features) fmt::print("  feature   {} x {}\n", f.name, f.dimension);
   fmt::print("  box       {:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}, diagonal {:.6g}\n",
              box.low[0], box.low[1], box.low[2], box.high[0], box.high[1], box.high[2],
              box.diagonal());
+  if (!opened.mended.empty()) fmt::print("  {}\n", opened.mended);
   std::string_view about = a.about;
   while (!about.empty()) {
     const std::size_t n = std::min(about.find('\n'), about.size());
     fmt::print("  made by   {}\n", about.substr(0, n));
     about.remove_prefix(std::min(n + 1, about.size()));
   }
+}
+
+int info(const InfoOptions& options) {
+  const auto opened = open(options.file);
+  if (!opened) return fail(opened.error());
+  (options.json ? printJson : printText)(options.file, *opened);
   return kExitDone;
 }
 
@@ -60,8 +92,9 @@ int info(const InfoOptions& options) {
 
 void addMeshInfo(CLI::App& mesh, Run& run) {
   const auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = mesh.add_subcommand(
-      "info", "What a mesh or a model holds.\nExample: merlin mesh info scan.mrm --json");
+  CLI::App* command = mesh.add_subcommand("info",
+                                          "What a mesh or a model holds, and what had to be mended "
+                                          "in a mesh.\nExample: merlin mesh info scan.mrm --json");
   command->add_option("file", options->file, ".mrm, .ply or .obj")->required()->type_name("FILE");
   command->add_flag("--json", options->json, "For programs");
   command->callback([options, &run] { run = [options] { return info(*options); }; });

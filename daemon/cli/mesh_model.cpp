@@ -1,23 +1,66 @@
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include <fmt/format.h>
 
 #include "daemon/cli/mesh.h"
 #include "render/lod/io/mrm_file.h"
-#include "render/mesh/io/mesh_file.h"
 
 namespace merlin::cli {
 
 Result<render::Dendrogram> openModel(const std::string& path) {
   if (path.ends_with(".mrm")) return render::readMrm(path);
-  auto loaded = render::readMesh(path);
+  const auto loaded = loadMesh(path);
   if (!loaded) return loaded.error();
-  render::ensureNormals(loaded->mesh);
   return asModel(loaded->mesh);
+}
+
+Result<render::LoadedMesh> loadMesh(const std::string& path) {
+  auto loaded = render::readMesh(path);
+  if (!loaded) return loaded;
+  for (const std::string& note : loaded->notes) fmt::print(stderr, "merlin: note: {}\n", note);
+  render::ensureNormals(loaded->mesh);
+  return loaded;
+}
+
+std::vector<Repair> repairsOf(const render::LoadedMesh& loaded) {
+  const render::TidyReport& t = loaded.tidied;
+  const render::SplitReport& s = loaded.split;
+  return {{"degenerate_dropped", "triangles with a vertex twice dropped", t.degenerate},
+          {"duplicates_dropped", "triangles that were there twice dropped", t.duplicate},
+          {"opposites_dropped", "triangles on the back of another dropped", t.opposite},
+          {"unused_dropped", "vertices of no triangle dropped", t.unused},
+          {"non_manifold_edges", "non-manifold edges split", s.edges},
+          {"non_manifold_vertices", "non-manifold vertices split", s.vertices},
+          {"vertices_added", "vertices added by that", s.added}};
+}
+
+std::string mendedText(const render::LoadedMesh& loaded) {
+  std::string text;
+  for (const Repair& r : repairsOf(loaded)) {
+    if (r.count > 0)
+      text += fmt::format("{}{} {}", text.empty() ? "mended: " : ", ", r.count, r.name);
+  }
+  return text;
 }
 
 render::Dendrogram asModel(const render::Mesh& mesh) {
   render::CollapseLog nothing;
   nothing.features.resize(mesh.features.size());
   return render::buildDendrogram(mesh, nothing);
+}
+
+Result<Ok> setWeight(const std::string& text, render::Weights& weights) {
+  const auto equals = text.find('=');
+  char* end = nullptr;
+  const char* number = text.c_str() + (equals == std::string::npos ? text.size() : equals + 1);
+  const float weight = std::strtof(number, &end);
+  if (equals == 0 || equals == std::string::npos || end == number || *end != '\0') {
+    return Error{Errc::kInvalidArgument, fmt::format("--weight {}: is not FEATURE=NUMBER", text)};
+  }
+  weights[text.substr(0, equals)] = weight;
+  return Ok{};
 }
 
 void LevelChoice::addTo(CLI::App& command) {

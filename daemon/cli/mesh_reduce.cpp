@@ -1,5 +1,4 @@
 // merlin mesh reduce: a mesh to a multiresolution model.
-#include <cstdlib>
 #include <memory>
 
 #include <fmt/format.h>
@@ -24,19 +23,6 @@ struct ReduceOptions {
   render::ReduceSettings settings;
   bool json = false;
 };
-
-// "colour=0.5"
-Result<Ok> setWeight(const std::string& text, render::Weights& weights) {
-  const auto equals = text.find('=');
-  char* end = nullptr;
-  const char* number = text.c_str() + (equals == std::string::npos ? text.size() : equals + 1);
-  const float weight = std::strtof(number, &end);
-  if (equals == 0 || equals == std::string::npos || end == number || *end != '\0') {
-    return Error{Errc::kInvalidArgument, fmt::format("--weight {}: is not FEATURE=NUMBER", text)};
-  }
-  weights[text.substr(0, equals)] = weight;
-  return Ok{};
-}
 
 Result<render::Weights> weightsOf(const ReduceOptions& options, const render::Mesh& mesh) {
   render::Weights weights = options.preset == "typical1998"

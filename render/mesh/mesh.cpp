@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -26,6 +27,53 @@ std::size_t dropDegenerate(Mesh& mesh) {
   const std::size_t dropped = (mesh.triangles.size() - kept) / 3;
   mesh.triangles.resize(kept);
   return dropped;
+}
+
+// The triangle from its smallest vertex on, in its own order.
+std::array<std::uint32_t, 3> turned(const std::uint32_t* t) {
+  const auto k = static_cast<std::size_t>(std::min_element(t, t + 3) - t);
+  return {t[k], t[(k + 1) % 3], t[(k + 2) % 3]};
+}
+
+// Marks what is to go by making it degenerate. `same` are triangles with the same smallest vertex.
+void markDuplicates(Mesh& mesh, std::span<std::uint32_t> same, TidyReport& report) {
+  const auto key = [&](std::uint32_t t) {
+    const auto [a, b, c] = turned(&mesh.triangles[3 * std::size_t{t}]);
+    return std::tuple(std::min(b, c), std::max(b, c), t);
+  };
+  std::sort(same.begin(), same.end(),
+            [&](std::uint32_t s, std::uint32_t t) { return key(s) < key(t); });
+  std::size_t kept = 0;
+  for (std::size_t i = 1; i < same.size(); ++i) {
+    const auto first = turned(&mesh.triangles[3 * std::size_t{same[kept]}]);
+    std::uint32_t* t = &mesh.triangles[3 * std::size_t{same[i]}];
+    const auto other = turned(t);
+    const bool equal = first == other, opposite = first[1] == other[2] && first[2] == other[1];
+    if (!equal && !opposite) {
+      kept = i;
+      continue;
+    }
+    ++(equal ? report.duplicate : report.opposite);
+    t[1] = t[2] = t[0];
+  }
+}
+
+void dropDuplicates(Mesh& mesh, TidyReport& report) {
+  const auto triangles = static_cast<std::uint32_t>(mesh.triangleCount());
+  const auto smallest = [&](std::uint32_t t) {
+    const std::uint32_t* v = &mesh.triangles[3 * std::size_t{t}];
+    return std::min({v[0], v[1], v[2]});
+  };
+  std::vector<std::uint32_t> end(mesh.vertexCount() + 1, 0), list(triangles);
+  for (std::uint32_t t = 0; t < triangles; ++t) ++end[smallest(t) + 1];
+  for (std::size_t v = 0; v + 1 < end.size(); ++v) end[v + 1] += end[v];
+  for (std::uint32_t t = 0; t < triangles; ++t) list[end[smallest(t)]++] = t;
+  std::uint32_t first = 0;
+  for (const std::uint32_t last : end) {
+    if (last - first > 1) markDuplicates(mesh, {list.data() + first, last - first}, report);
+    first = last;
+  }
+  if (report.duplicate + report.opposite > 0) dropDegenerate(mesh);
 }
 
 // Moves the rows of `values` to their new places; new places never lie behind old ones.
@@ -125,8 +173,11 @@ Result<Ok> validate(const Mesh& mesh) {
 }
 
 TidyReport tidy(Mesh& mesh) {
-  const std::size_t degenerate = dropDegenerate(mesh);
-  return {degenerate, dropUnused(mesh)};
+  TidyReport report;
+  report.degenerate = dropDegenerate(mesh);
+  dropDuplicates(mesh, report);
+  report.unused = dropUnused(mesh);
+  return report;
 }
 
 Box boundingBox(std::span<const float> positions) noexcept {

@@ -76,13 +76,49 @@ TEST(WriteMesh, HoldsColoursWithinTheirRange) {
 TEST(WriteMesh, NumbersTheColumnsOfAWideFeature) {
   const TempDir dir;
   Mesh mesh = test::grid(1, 1);
-  mesh.features = {{"flow", 2, {0, 1, 10, 11, 20, 21, 30, 31}}};
+  mesh.features = {{"flow", 2, {0, 1, 10, 11, 20, 21, 30, 31}}, {"heat", 1, {1, 2, 3, 4}}};
   ASSERT_TRUE(writeMesh(dir / "a.ply", mesh));
+  EXPECT_NE(readText(dir / "a.ply").find("property float flow_0\nproperty float flow_1\n"),
+            std::string::npos);
   const auto loaded = readMesh(dir / "a.ply");
   ASSERT_TRUE(loaded) << loaded.error().what;
   ASSERT_EQ(loaded->mesh.features.size(), 2u);
-  EXPECT_EQ(loaded->mesh.find("flow_0")->values, (Floats{0, 10, 20, 30}));
-  EXPECT_EQ(loaded->mesh.find("flow_1")->values, (Floats{1, 11, 21, 31}));
+  EXPECT_EQ(loaded->mesh.find("flow")->dimension, 2u);
+  EXPECT_EQ(loaded->mesh.find("flow")->values, mesh.features[0].values);
+  EXPECT_EQ(loaded->mesh.find("heat")->values, mesh.features[1].values);
+}
+
+TEST(ReadMesh, GroupsNumberedPropertiesThatFollowOneAnother) {
+  const TempDir dir;
+  const auto namesOf = [&](const std::vector<std::string>& properties) {
+    std::string header =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+        "property float y\nproperty float z\n";
+    std::string rest;
+    for (const std::string& p : properties) {
+      header += "property float " + p + "\n";
+      rest += " 5";
+    }
+    writeText(dir / "a.ply", header +
+                                 "element face 1\nproperty list uchar int vertex_indices\n"
+                                 "end_header\n0 0 0" +
+                                 rest + "\n1 0 0" + rest + "\n0 1 0" + rest + "\n3 0 1 2\n");
+    const auto loaded = readMesh(dir / "a.ply");
+    std::string names;
+    for (const Feature& f : loaded->mesh.features)
+      names += (names.empty() ? "" : " ") + f.name + ":" + std::to_string(f.dimension);
+    return names;
+  };
+  EXPECT_EQ(namesOf({"a_0", "a_1", "a_2", "b_0", "b_1"}), "a:3 b:2");
+  EXPECT_EQ(namesOf({"a_0"}), "a_0:1");
+  EXPECT_EQ(namesOf({"a_1", "a_2"}), "a_1:1 a_2:1");
+  EXPECT_EQ(namesOf({"a_0", "a_2"}), "a_0:1 a_2:1");
+  EXPECT_EQ(namesOf({"a_0", "a_01"}), "a_0:1 a_01:1");
+  EXPECT_EQ(namesOf({"a_0", "a_1", "a"}), "a_0:1 a_1:1 a:1");
+  EXPECT_EQ(namesOf({"colour_0", "colour_1"}), "colour_0:1 colour_1:1");
+  EXPECT_EQ(namesOf({"tx", "ty", "diffuse_red", "diffuse_green", "diffuse_blue", "confidence",
+                     "thermal", "radiation", "label"}),
+            "texcoord:2 colour:3 confidence:1 thermal:1 radiation:1 label:1");
 }
 
 TEST(WriteMesh, IsDoneWholeOrNotAtAll) {

@@ -60,5 +60,73 @@ TEST_F(MeshCli, ExportRefusesAnUnknownEndingBeforeAnyWork) {
   EXPECT_NE(refused.output.find(".ply, .obj, .glb, .gltf, .stl and .iv"), std::string::npos);
 }
 
+// A sheet of two triangles at an edge, a fin that stands on it, and of everything that is mended
+// one.
+constexpr const char* kFin =
+    "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float "
+    "z\n"
+    "element face 6\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n1 0 0\n0.5 1 0\n0.5 -1 0\n0.5 0 1\n9 9 9\n"
+    "3 0 1 2\n3 1 0 3\n3 0 1 4\n3 1 2 0\n3 2 1 0\n3 1 1 0\n";
+
+TEST_F(MeshCli, InfoAndReduceCountAndNameWhatTheyMended) {
+  writeText(dir_ / "fin.ply", kFin);
+  const Outcome reduced =
+      run({kMerlin, "mesh", "reduce", dir_ / "fin.ply", "-o", dir_ / "a.mrm", "--json"});
+  ASSERT_EQ(reduced.status, 0) << reduced.output;
+  for (const auto& json :
+       {infoOf(dir_ / "fin.ply"),
+        nlohmann::json::parse(reduced.output.substr(reduced.output.find("{\"output\"")))}) {
+    EXPECT_EQ(json["triangles"], 3);
+    EXPECT_EQ(json["degenerate_dropped"], 1);
+    EXPECT_EQ(json["duplicates_dropped"], 1);
+    EXPECT_EQ(json["opposites_dropped"], 1);
+    EXPECT_EQ(json["unused_dropped"], 1);
+    EXPECT_EQ(json["non_manifold_edges"], 1);
+    EXPECT_EQ(json["non_manifold_vertices"], 2);
+    EXPECT_EQ(json["vertices_added"], 2);
+  }
+  for (const Outcome& text :
+       {run({kMerlin, "mesh", "info", dir_ / "fin.ply"}),
+        run({kMerlin, "mesh", "reduce", dir_ / "fin.ply", "-o", dir_ / "b.mrm"})}) {
+    EXPECT_NE(text.output.find("mended: 1 triangles with a vertex twice dropped, 1 triangles that "
+                               "were there twice dropped, 1 triangles on the back of another "
+                               "dropped, 1 vertices of no triangle dropped, 1 non-manifold edges "
+                               "split, 2 non-manifold vertices split, 2 vertices added by that"),
+              std::string::npos)
+        << text.output;
+  }
+  EXPECT_EQ(run({kMerlin, "mesh", "info", scan_}).output.find("mended"), std::string::npos);
+}
+
+TEST_F(MeshCli, SaysWhichPictureIsMissing) {
+  writeText(dir_ / "a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl x\nf 1 2 3\n");
+  const Outcome info = run({kMerlin, "mesh", "info", dir_ / "a.obj"});
+  EXPECT_EQ(info.status, 0);
+  EXPECT_NE(info.output.find("note: " + (dir_ / "a.mtl") + ": No such file"), std::string::npos)
+      << info.output;
+}
+
+TEST_F(MeshCli, SegmentsAndDrawsThem) {
+  const Outcome done = run({kMerlin, "mesh", "segment", scan_, "-o", dir_ / "a.ply", "--segments",
+                            "5", "--weight", "colour=1", "--picture", dir_ / "a.png", "--json"});
+  ASSERT_EQ(done.status, 0) << done.output;
+  const auto json = nlohmann::json::parse(done.output.substr(done.output.find("{\"output\"")));
+  EXPECT_EQ(json["segments"], 5);
+  EXPECT_EQ(json["sizes"].size(), 5u);
+  EXPECT_EQ(json["vertices"], 34820);
+  EXPECT_EQ(readText(dir_ / "a.png").substr(1, 3), "PNG");
+  EXPECT_NE(readText(dir_ / "a.ply").find("property int label\n"), std::string::npos);
+  ASSERT_EQ(run({kMerlin, "mesh", "segment", scan_, "-o", dir_ / "b.ply", "--segments", "5",
+                 "--weight", "colour=1"})
+                .status,
+            0);
+  EXPECT_TRUE(readText(dir_ / "a.ply") == readText(dir_ / "b.ply")) << "the same every time";
+  EXPECT_EQ(
+      run({kMerlin, "mesh", "segment", scan_, "-o", dir_ / "c.stl", "--segments", "5"}).status, 2);
+  EXPECT_EQ(
+      run({kMerlin, "mesh", "segment", scan_, "-o", dir_ / "c.ply", "--segments", "0"}).status, 2);
+}
+
 }  // namespace
 }  // namespace merlin::test

@@ -79,11 +79,13 @@ Result<LoadedMesh> readMesh(const std::string& path) {
   if (!loaded) return inFile(path, loaded.error());
   if (const auto valid = validate(loaded->mesh); !valid) return inFile(path, valid.error());
   const TidyReport tidied = tidy(loaded->mesh);
-  loaded->tidied.degenerate += tidied.degenerate;
-  loaded->tidied.unused += tidied.unused;
+  const std::size_t in_file = loaded->tidied.degenerate;
+  loaded->tidied = tidied;
+  loaded->tidied.degenerate += in_file;
   if (loaded->mesh.triangles.empty()) {
     return Error{Errc::kMalformed, path + ": has no triangles"};
   }
+  loaded->split = splitNonManifold(loaded->mesh);
   return loaded;
 }
 

@@ -11,8 +11,8 @@
 //            .iv    Open Inventor 2.1 ascii: normal, colour, texcoord
 //            .stl   binary: triangles alone
 //
-// A mesh that is returned has passed validate() and tidy(). Nothing throws, nothing is printed.
-// Reentrant.
+// A mesh that is returned has passed validate(), tidy() and splitNonManifold(). Nothing throws,
+// nothing is printed. Reentrant.
 #pragma once
 
 #include <string>
@@ -20,12 +20,14 @@
 
 #include "daemon/base/result.h"
 #include "render/mesh/mesh.h"
+#include "render/mesh/non_manifold.h"
 
 namespace merlin::render {
 
 struct LoadedMesh {
   Mesh mesh;
   TidyReport tidied;
+  SplitReport split;
   std::size_t skipped_properties = 0;  // of the file, that MERLIN has no place for
   std::vector<std::string> notes;      // for a person: a picture that is not there, and the like
 };

@@ -1,6 +1,7 @@
 #include "render/mesh/io/ply.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -42,6 +43,50 @@ float scaleOf(const Known* known, Scalar type) {
   return 1;
 }
 
+constexpr std::size_t kNotNumbered = std::numeric_limits<std::size_t>::max();
+
+// "heat" and 2 of "heat_2"; kNotNumbered of any other name, and of numbers that the writer would
+// not write.
+std::pair<std::string_view, std::size_t> numbered(std::string_view name) {
+  const std::size_t bar = name.rfind('_');
+  if (bar == std::string_view::npos || bar == 0) return {name, kNotNumbered};
+  const std::string_view digits = name.substr(bar + 1);
+  std::size_t number = 0;
+  const char* end = digits.data() + digits.size();
+  const auto [rest, error] = std::from_chars(digits.data(), end, number);
+  const bool whole = error == std::errc() && rest == end && fmt::format("{}", number) == digits;
+  return whole ? std::pair(name.substr(0, bar), number) : std::pair(name, kNotNumbered);
+}
+
+// Scalars "flow_0", "flow_1", ... that follow one another are one feature "flow", as it was
+// written.
+std::vector<Feature> grouped(std::vector<Feature> features, std::size_t vertices) {
+  std::vector<Feature> groups;
+  for (std::size_t first = 0, end = 0; first < features.size(); first = end) {
+    const auto [base, zero] = numbered(features[first].name);
+    for (end = first + 1; zero == 0 && end < features.size(); ++end) {
+      if (features[end].dimension != 1 ||
+          numbered(features[end].name) != std::pair(base, end - first))
+        break;
+    }
+    const std::size_t n = end - first;
+    const std::string name(base);
+    const bool taken = std::any_of(features.begin(), features.end(),
+                                   [&](const Feature& f) { return f.name == name; });
+    if (n == 1 || features[first].dimension != 1 || taken || isKnownFeature(name)) {
+      for (std::size_t i = first; i < end; ++i) groups.push_back(std::move(features[i]));
+      continue;
+    }
+    Feature group{name, n, std::vector<float>(vertices * n)};
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t v = 0; v < vertices; ++v)
+        group.values[v * n + i] = features[first + i].values[v];
+    }
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
 class Reader {
  public:
   Reader(std::string_view bytes, Header header)
@@ -54,6 +99,7 @@ class Reader {
                                            : skip(e);
       if (!done) return done.error();
     }
+    mesh().features = grouped(std::move(mesh().features), mesh().vertexCount());
     return std::move(loaded_);
   }
 

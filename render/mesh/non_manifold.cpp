@@ -1,0 +1,207 @@
+#include "render/mesh/non_manifold.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+namespace merlin::render {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kMostPairs = 64;  // that are compared at one edge; beyond, by their order
+constexpr int kMostRounds = 3;          // then every edge in question is cut
+
+// Half-edge h = 3 t + k runs from corner k of triangle t to the next one.
+std::uint32_t nextOf(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
+std::uint32_t previousOf(std::uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
+
+class Splitter {
+ public:
+  explicit Splitter(Mesh& mesh)
+      : mesh_(mesh), twins_(mesh.triangles.size(), kNone), fans_(mesh.triangles.size(), kNone) {}
+
+  SplitReport run() {
+    pairAll();
+    SplitReport report;
+    report.edges = singular_.size();
+    for (int round = 0;; ++round) {
+      numberFans();
+      if (!cutWhatIsLeft(round + 1 >= kMostRounds)) break;
+    }
+    report.vertices = split_;
+    report.added = sources_.size();
+    apply();
+    return report;
+  }
+
+ private:
+  struct Edge {
+    std::vector<std::uint32_t> half_edges;
+    bool cut = false;
+  };
+
+  std::uint32_t from(std::uint32_t h) const { return mesh_.triangles[h]; }
+  std::uint32_t to(std::uint32_t h) const { return mesh_.triangles[nextOf(h)]; }
+
+  // Half-edges by their smaller end, then by the larger: those of an edge side by side.
+  void pairAll() {
+    const std::size_t n = mesh_.vertexCount();
+    std::vector<std::uint32_t> begin(n + 1, 0), list(twins_.size());
+    const auto smaller = [&](std::uint32_t h) { return std::min(from(h), to(h)); };
+    const auto larger = [&](std::uint32_t h) { return std::max(from(h), to(h)); };
+    const auto count = static_cast<std::uint32_t>(list.size());
+    for (std::uint32_t h = 0; h < count; ++h) ++begin[smaller(h) + 1];
+    for (std::size_t v = 0; v < n; ++v) begin[v + 1] += begin[v];
+    for (std::uint32_t h = 0; h < count; ++h) list[begin[smaller(h)]++] = h;
+    std::uint32_t first = 0;
+    for (std::size_t v = 0; v < n; ++v) {
+      const std::uint32_t end = begin[v];  // where the next one's began
+      std::sort(list.begin() + first, list.begin() + end, [&](std::uint32_t a, std::uint32_t b) {
+        return std::pair(larger(a), a) < std::pair(larger(b), b);
+      });
+      while (first < end) {
+        std::uint32_t last = first + 1;
+        while (last < end && larger(list[last]) == larger(list[first])) ++last;
+        pairEdge({list.data() + first, last - first});
+        first = last;
+      }
+    }
+  }
+
+  void pairEdge(std::span<const std::uint32_t> half_edges) {
+    if (half_edges.size() == 1) return;
+    if (half_edges.size() == 2 && from(half_edges[0]) == to(half_edges[1])) {
+      glue(half_edges[0], half_edges[1]);
+      return;
+    }
+    singular_.push_back({{half_edges.begin(), half_edges.end()}, false});
+    pairSmoothest(half_edges);
+  }
+
+  void glue(std::uint32_t a, std::uint32_t b) {
+    twins_[a] = b;
+    twins_[b] = a;
+  }
+
+  std::array<float, 3> normalOf(std::uint32_t h) const {
+    const std::uint32_t* t = &mesh_.triangles[h - h % 3];
+    const auto at = [&](std::size_t k) { return &mesh_.positions[3 * std::size_t{t[k]}]; };
+    return faceNormal(at(0), at(1), at(2));
+  }
+
+  void pairSmoothest(std::span<const std::uint32_t> half_edges) {
+    std::vector<std::uint32_t> ways[2];
+    for (const std::uint32_t h : half_edges) ways[from(h) < to(h)].push_back(h);
+    if (ways[0].size() * ways[1].size() > kMostPairs) {
+      for (std::size_t i = 0; i < std::min(ways[0].size(), ways[1].size()); ++i)
+        glue(ways[0][i], ways[1][i]);
+      return;
+    }
+    std::vector<std::tuple<float, std::uint32_t, std::uint32_t>> pairs;
+    for (const std::uint32_t a : ways[0]) {
+      for (const std::uint32_t b : ways[1]) {
+        const auto m = normalOf(a), n = normalOf(b);
+        pairs.emplace_back(-(m[0] * n[0] + m[1] * n[1] + m[2] * n[2]), a, b);
+      }
+    }
+    std::sort(pairs.begin(), pairs.end());
+    for (const auto& [bend, a, b] : pairs) {
+      if (twins_[a] == kNone && twins_[b] == kNone) glue(a, b);
+    }
+  }
+
+  // Corners that hang together around their vertex get one number: the vertex' own for the first
+  // such fan, fresh ones for the others. Corner h is where half-edge h starts.
+  void numberFans() {
+    std::fill(fans_.begin(), fans_.end(), kNone);
+    sources_.clear();
+    split_ = 0;
+    std::vector<std::uint8_t> fans_of(mesh_.vertexCount(), 0);  // 0, 1, more
+    for (std::uint32_t corner = 0; corner < fans_.size(); ++corner) {
+      if (fans_[corner] != kNone) continue;
+      const std::uint32_t v = from(corner);
+      std::uint32_t number = v;
+      if (fans_of[v] > 0) {
+        number = static_cast<std::uint32_t>(mesh_.vertexCount() + sources_.size());
+        sources_.push_back(v);
+        split_ += fans_of[v] == 1;
+        fans_of[v] = 2;
+      } else {
+        fans_of[v] = 1;
+      }
+      numberFan(corner, number);
+    }
+  }
+
+  void numberFan(std::uint32_t corner, std::uint32_t number) {
+    fans_[corner] = number;
+    for (std::uint32_t c = corner;;) {  // over the edge that comes in
+      c = twins_[previousOf(c)];
+      if (c == kNone || fans_[c] != kNone) break;
+      fans_[c] = number;
+    }
+    for (std::uint32_t c = corner;;) {  // over the edge that goes out
+      if (twins_[c] == kNone) break;
+      c = nextOf(twins_[c]);
+      if (fans_[c] != kNone) break;
+      fans_[c] = number;
+    }
+  }
+
+  // A fan may come by the same edge twice. Such edges are cut altogether: then a fan has no more
+  // than its two ends there, which run opposite ways. False where all is well.
+  bool cutWhatIsLeft(bool every) {
+    bool again = false;
+    for (Edge& edge : singular_) {
+      if (edge.cut || isManifold(edge)) continue;
+      again = true;
+      edge.cut = true;
+    }
+    if (!again) return false;
+    for (Edge& edge : singular_) {
+      edge.cut |= every;
+      if (!edge.cut) continue;
+      for (const std::uint32_t h : edge.half_edges) twins_[h] = kNone;
+    }
+    return true;
+  }
+
+  bool isManifold(const Edge& edge) const {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;
+    for (const std::uint32_t h : edge.half_edges) ends.emplace_back(fans_[h], fans_[nextOf(h)]);
+    std::sort(ends.begin(), ends.end());
+    return std::adjacent_find(ends.begin(), ends.end()) == ends.end();  // each way once
+  }
+
+  void apply() {
+    for (std::size_t h = 0; h < fans_.size(); ++h) mesh_.triangles[h] = fans_[h];
+    append(mesh_.positions, 3);
+    for (Feature& f : mesh_.features) append(f.values, f.dimension);
+  }
+
+  void append(std::vector<float>& values, std::size_t dimension) const {
+    values.reserve(values.size() + sources_.size() * dimension);
+    for (const std::uint32_t v : sources_) {
+      for (std::size_t k = 0; k < dimension; ++k) values.push_back(values[v * dimension + k]);
+    }
+  }
+
+  Mesh& mesh_;
+  std::vector<std::uint32_t> twins_;    // by half-edge: the one across, kNone at borders
+  std::vector<std::uint32_t> fans_;     // by corner
+  std::vector<Edge> singular_;          // that are no manifold
+  std::vector<std::uint32_t> sources_;  // of each new vertex: where it comes from
+  std::size_t split_ = 0;
+};
+
+}  // namespace
+
+SplitReport splitNonManifold(Mesh& mesh) {
+  assert(mesh.triangles.size() < kNone);
+  return Splitter(mesh).run();
+}
+
+}  // namespace merlin::render
