@@ -1,0 +1,148 @@
+// merlin mesh segment: the vertices of a mesh clustered in pattern space, as the feature "label".
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/files.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh.h"
+#include "daemon/cli/model_painter.h"
+#include "render/out/png.h"
+#include "render/segment/segment.h"
+
+namespace merlin::cli {
+namespace {
+
+struct SegmentOptions {
+  std::string input, output, picture;
+  std::vector<std::string> weights;
+  render::SegmentSettings settings;
+  View view;
+  bool json = false;
+};
+
+// Colours that differ as much as they can: hues a golden angle apart.
+std::array<float, 3> colourOf(std::uint32_t label) {
+  const float hue = 6 * std::fmod(0.61803399F * static_cast<float>(label) + 0.05F, 1.0F);
+  std::array<float, 3> colour{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float away = std::fabs(std::fmod(hue + 6 - 2 * static_cast<float>(k), 6.0F) - 3);
+    colour[k] = 0.25F + 0.75F * std::clamp(away - 1, 0.0F, 1.0F);
+  }
+  return colour;
+}
+
+void setFeature(render::Mesh& mesh, render::Feature feature) {
+  if (render::Feature* old = mesh.find(feature.name))
+    *old = std::move(feature);
+  else
+    mesh.features.push_back(std::move(feature));
+}
+
+Result<Ok> draw(const SegmentOptions& options, render::Mesh mesh,
+                const std::vector<std::uint32_t>& labels) {
+  render::Feature colour{"colour", 3, {}};
+  for (const std::uint32_t label : labels) {
+    const auto c = colourOf(label);
+    colour.values.insert(colour.values.end(), c.begin(), c.end());
+  }
+  setFeature(mesh, std::move(colour));
+  render::prepareSoftwareGl(0);
+  const render::Dendrogram model = asModel(mesh);
+  const SystemClock clock;
+  auto painter = ModelPainter::make(model, options.view, clock);
+  if (!painter) return painter.error();
+  const Image image = painter->draw(0);
+  return render::writePng(options.picture, image.width, image.height, image.pixels);
+}
+
+void report(const SegmentOptions& options, const render::Segmentation& s, double seconds) {
+  if (options.json) {
+    const nlohmann::ordered_json json = {{"output", options.output}, {"segments", s.sizes.size()},
+                                         {"sizes", s.sizes},         {"vertices", s.labels.size()},
+                                         {"error", s.error},         {"seconds", seconds}};
+    fmt::print("{}\n", json.dump());
+    return;
+  }
+  fmt::print("{}: {} segments of {} vertices, RMS distance in pattern space {:.4g}, {:.2f} s\n",
+             options.output, s.sizes.size(), s.labels.size(), s.error, seconds);
+  constexpr std::size_t kMost = 20;
+  const std::size_t shown = std::min(kMost, s.sizes.size());
+  fmt::print("  sizes {}{}\n",
+             fmt::join(s.sizes.begin(), s.sizes.begin() + static_cast<std::ptrdiff_t>(shown), " "),
+             s.sizes.size() > kMost ? " ..." : "");
+}
+
+int segmentMesh(const SegmentOptions& options) {
+  if (const auto known = render::checkMeshEnding(options.output); !known)
+    return fail(known.error());
+  for (const std::string& path : {options.output, options.picture}) {
+    if (path.empty()) continue;
+    if (const auto writable = checkWritable(path); !writable) return fail(writable.error());
+  }
+  auto loaded = loadMesh(options.input);
+  if (!loaded) return fail(loaded.error());
+  render::Mesh& mesh = loaded->mesh;
+  render::SegmentSettings settings = options.settings;
+  for (const std::string& text : options.weights) {
+    if (const auto set = setWeight(text, settings.weights); !set) return fail(set.error());
+  }
+  const SystemClock clock;
+  const Timestamp began = clock.now();
+  const auto segmentation = render::segment(mesh, settings);
+  if (!segmentation) return fail(segmentation.error());
+  const double seconds = toSeconds(clock.now() - began);
+  setFeature(mesh, {"label", 1, {segmentation->labels.begin(), segmentation->labels.end()}});
+  const auto written = render::writeMesh(options.output, mesh);
+  if (!written) return fail(written.error());
+  if (!options.picture.empty()) {
+    if (const auto drawn = draw(options, mesh, segmentation->labels); !drawn)
+      return fail(drawn.error());
+  }
+  report(options, *segmentation, seconds);
+  return kExitDone;
+}
+
+}  // namespace
+
+void addMeshSegment(CLI::App& mesh, Run& run) {
+  const auto options = std::make_shared<SegmentOptions>();
+  CLI::App* command = mesh.add_subcommand(
+      "segment",
+      "A mesh into parts whose vertices are alike and hang together; their numbers become the "
+      "feature label, 0 the largest.\nExample: merlin mesh segment scan.ply -o parts.ply "
+      "--segments "
+      "12 --weight normal=1 --weight colour=2");
+  command->add_option("input", options->input, "The mesh: .ply or .obj")
+      ->required()
+      ->type_name("IN");
+  command->add_option("-o", options->output, "The mesh with labels: .ply, .glb or .gltf")
+      ->required()
+      ->type_name("OUT.ply")
+      ->check(CLI::Validator(
+          [](const std::string& path) {
+            const bool carries =
+                path.ends_with(".ply") || path.ends_with(".glb") || path.ends_with(".gltf");
+            return carries ? "" : path + ": labels have a place in .ply, .glb and .gltf only";
+          },
+          ""));
+  command->add_option("--segments", options->settings.segments, "How many")
+      ->required()
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 24));
+  command
+      ->add_option("--weight", options->weights,
+                   "Of a feature: geometry, normal, curvature, or any of the mesh's own; without "
+                   "any: normal=1, and colour=1 where there is one")
+      ->type_name("FEATURE=W");
+  command->add_option("--picture", options->picture, "The segments, each in a colour of its own")
+      ->type_name("FILE.png");
+  options->view.addTo(*command);
+  command->add_flag("--json", options->json, "The report for programs");
+  command->callback([options, &run] { run = [options] { return segmentMesh(*options); }; });
+}
+
+}  // namespace merlin::cli
