@@ -1,0 +1,85 @@
+// ./dev bench fuzz-meshes [N]: hostile meshes through reading's repairs, both costs and the
+// dendrogram. Of each kind of fault the
+// first seed is told, which shows it again.
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "daemon/base/clock.h"
+#include "daemon/cli/progress.h"
+#include "tests/bench/mesh_fuzz.h"
+
+namespace merlin::bench {
+namespace {
+
+volatile std::uint64_t current_seed = 0;
+
+// A crash is a fault too, and its seed has to be said. Only what a signal handler may call.
+void sayWhere(int signal) {
+  char text[96] = "\nfault: a crash; again: --count 1 --seed ";
+  char* end = text + std::strlen(text);
+  char digits[24];
+  int n = 0;
+  std::uint64_t seed = current_seed;
+  do digits[n++] = static_cast<char>('0' + seed % 10);
+  while ((seed /= 10) > 0);
+  while (n > 0) *end++ = digits[--n];
+  *end++ = '\n';
+  [[maybe_unused]] const auto written =
+      ::write(STDERR_FILENO, text, static_cast<std::size_t>(end - text));
+  ::signal(signal, SIG_DFL);
+  ::raise(signal);
+}
+
+// Faults of one kind.
+struct Faults {
+  std::uint64_t count = 0, first_seed = 0;
+  std::string first;
+};
+
+int fuzz(std::uint64_t seed, std::uint64_t count) {
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL}) ::signal(signal, sayWhere);
+  const SystemClock clock;
+  const Timestamp began = clock.now();
+  cli::ProgressBar bar("fuzzing", "meshes", clock);
+  MeshFuzz fuzz;
+  std::map<std::string, Faults> faults;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    current_seed = seed + i;
+    if (!fuzz.run(seed + i)) {
+      Faults& kind = faults[kindOf(fuzz.fault)];
+      if (kind.count++ == 0) {
+        kind.first_seed = seed + i;
+        kind.first = fuzz.fault;
+      }
+    }
+    if (i % 1024 == 0) bar.update(static_cast<double>(i) / static_cast<double>(count), i);
+  }
+  bar.finish(count);
+  const double seconds = toSeconds(clock.now() - began);
+  for (const auto& [name, n] : fuzz.counts) fmt::print("{:>12}  {}\n", n, name);
+  fmt::print("{:>12.0f}  meshes a second\n", static_cast<double>(count) / seconds);
+  for (const auto& [kind, f] : faults)
+    fmt::print("{:>12}  FAULT: {}; again: --count 1 --seed {}\n", f.count, f.first, f.first_seed);
+  fmt::print("seeds {} to {}: {}\n", seed, seed + count - 1,
+             faults.empty() ? "no fault" : "with faults");
+  return faults.empty() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace merlin::bench
+
+int main(int argc, char** argv) {
+  CLI::App app("Hostile meshes through everything that a mesh goes through.");
+  std::uint64_t seed = 1, count = 10'000'000;
+  app.add_option("--seed", seed, "Of the first mesh; the next has the next")->capture_default_str();
+  app.add_option("--count", count, "Of meshes")->check(CLI::PositiveNumber)->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  return merlin::bench::fuzz(seed, count);
+}

@@ -1,0 +1,25 @@
+// Ten thousand of the meshes of ./dev bench fuzz-meshes, in every run of the tests.
+#include "tests/bench/mesh_fuzz.h"
+
+#include <gtest/gtest.h>
+
+namespace merlin::bench {
+namespace {
+
+TEST(MeshFuzz, FindsNoFaultInTenThousandHostileMeshes) {
+  MeshFuzz fuzz;
+  for (std::uint64_t seed = 1; seed <= 10'000; ++seed)
+    ASSERT_TRUE(fuzz.run(seed)) << fuzz.fault << "; again: --count 1 --seed " << seed;
+  for (const char* name :
+       {"refused: half a vertex or triangle", "refused: a coordinate that is no place",
+        "refused: an index out of range", "refused: a feature of another size",
+        "refused: a feature that is no number", "refused: no triangles",
+        "mended: triangles with a vertex twice", "mended: triangles that were there twice",
+        "mended: triangles on the back of another", "mended: vertices of no triangle",
+        "mended: non-manifold edges", "mended: non-manifold vertices", "reduced by quadric",
+        "reduced by pattern"})
+    EXPECT_GT(fuzz.counts[name], 20u) << name;
+}
+
+}  // namespace
+}  // namespace merlin::bench
