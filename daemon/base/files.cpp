@@ -90,14 +90,25 @@ MappedFile::~MappedFile() {
 }
 
 Result<Ok> writeFile(const std::string& path, const std::function<bool(const WriteBytes&)>& fill) {
+  return writeFileHeadLast(path, 0, fill, [] { return std::span<const std::byte>(); });
+}
+
+Result<Ok> writeFileHeadLast(const std::string& path, std::size_t head_size,
+                             const std::function<bool(const WriteBytes&)>& fill,
+                             const std::function<std::span<const std::byte>()>& head) {
   if (auto replaceable = checkReplaceable(path); !replaceable) return replaceable;
   const std::string fresh = fmt::format("{}.{}.tmp", path, ::getpid());
   const UniqueFd fd(::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (!fd.valid()) return fileError(path, errno);
   Buffered buffer(fd.get());
+  const auto seek = [&](std::size_t at) {
+    return ::lseek(fd.get(), static_cast<off_t>(at), SEEK_SET) >= 0;
+  };
   const bool written =
+      seek(head_size) &&
       fill([&](std::span<const std::byte> bytes) { return buffer.write(bytes); }) &&
-      buffer.flush() && ::fsync(fd.get()) == 0 && std::rename(fresh.c_str(), path.c_str()) == 0;
+      buffer.flush() && seek(0) && writeAll(fd.get(), head()) && ::fsync(fd.get()) == 0 &&
+      std::rename(fresh.c_str(), path.c_str()) == 0;
   if (written) return Ok{};
   const int error = errno;
   ::unlink(fresh.c_str());

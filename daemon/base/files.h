@@ -44,6 +44,12 @@ using WriteBytes = std::function<bool(std::span<const std::byte>)>;
 Result<Ok> writeFile(const std::string& path, const std::function<bool(const WriteBytes&)>& fill);
 Result<Ok> writeFile(const std::string& path, std::string_view content);
 
+// The same, for a file that opens with what is known last (counts, checksums): `fill` writes what
+// stands behind the first `head_size` bytes, then `head` returns these.
+Result<Ok> writeFileHeadLast(const std::string& path, std::size_t head_size,
+                             const std::function<bool(const WriteBytes&)>& fill,
+                             const std::function<std::span<const std::byte>()>& head);
+
 // Whether writeFile() could put a file there, as far as can be said before: to be asked before long
 // work. Errors: kNotFound (no such folder), kIo (not writable, a folder, a device).
 Result<Ok> checkWritable(const std::string& path);

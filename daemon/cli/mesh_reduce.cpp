@@ -96,7 +96,7 @@ int reduceMesh(const ReduceOptions& options) {
   const double seconds = toSeconds(clock.now() - began);
   bar.finish(reduction->report.collapses);
   const auto written =
-      render::writeMrm(options.output, render::buildDendrogram(loaded->mesh, reduction->log));
+      render::writeMrm(options.output, loaded->mesh, reduction->log, options.settings.threads);
   if (!written) return fail(written.error());
   report(options, *loaded, reduction->report, seconds);
   return kExitDone;

@@ -51,6 +51,15 @@ TEST(WriteFile, AFileAppearsWholeOrTheOldOneStays) {
   ASSERT_TRUE(writeFile(dir / "f", std::string(3 << 20, 'x')));
   EXPECT_EQ(test::readText(dir / "f"), std::string(3 << 20, 'x'));
   EXPECT_EQ(writeFile(dir / "none/f", "x").error().code, Errc::kNotFound);
+  std::string head = "?";
+  ASSERT_TRUE(writeFileHeadLast(
+      dir / "f", 4,
+      [&](const WriteBytes& write) {
+        head = "head";
+        return write(std::as_bytes(std::span("body", 4)));
+      },
+      [&] { return std::as_bytes(std::span(head)); }));
+  EXPECT_EQ(test::readText(dir / "f"), "headbody");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1)
       << "no temporary file is left";
 }

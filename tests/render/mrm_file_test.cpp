@@ -30,12 +30,31 @@ std::string expectRoundTrip(const Dendrogram& d) {
   return readText(dir / "first.mrm");
 }
 
-Dendrogram reducedSphere() {
+Mesh sphere() {
   Mesh mesh = test::sphere(3);
   mesh.features.push_back({"heat", 1, std::vector<float>(mesh.vertexCount(), 0.25F)});
   mesh.features.push_back({"colour", 3, std::vector<float>(mesh.positions.size(), 0.5F)});
   ensureNormals(mesh);
+  return mesh;
+}
+
+Dendrogram reducedSphere() {
+  const Mesh mesh = sphere();
   return buildDendrogram(mesh, reduce(mesh, {})->log);
+}
+
+TEST(MrmFile, IsTheSameWrittenInPiecesStraightFromTheReduction) {
+  const test::TempDir dir;
+  const Mesh mesh = sphere();
+  for (const std::size_t stop : {std::size_t{0}, std::size_t{300}}) {  // one root, and many
+    const Reduction r = *reduce(mesh, {.min_triangles = stop});
+    ASSERT_TRUE(writeMrm(dir / "whole.mrm", buildDendrogram(mesh, r.log)));
+    ASSERT_TRUE(readMrm(dir / "whole.mrm"));
+    for (const unsigned threads : {1U, 3U}) {
+      ASSERT_TRUE(writeMrm(dir / "pieces.mrm", mesh, r.log, threads));
+      EXPECT_EQ(readText(dir / "pieces.mrm"), readText(dir / "whole.mrm"));
+    }
+  }
 }
 
 TEST(MrmFile, ARoundTripGivesTheSameBytes) {

@@ -142,87 +142,12 @@ class MrmReader {
   Dendrogram::Arrays arrays_;
 };
 
-struct Section {
-  SectionEntry entry{};
-  std::span<const std::byte> bytes;
-};
-
-template <typename T>
-Section section(Kind kind, std::span<const T> values, std::size_t dimension,
-                std::string_view name = "") {
-  Section s{};
-  s.bytes = std::as_bytes(values);
-  s.entry.kind = static_cast<std::uint32_t>(kind);
-  s.entry.dimension = static_cast<std::uint32_t>(dimension);
-  s.entry.rows = values.size() / dimension;
-  s.entry.checksum = checksum(s.bytes.data(), s.bytes.size());
-  std::copy_n(name.begin(), std::min(name.size(), sizeof s.entry.name - 1), s.entry.name);
-  return s;
-}
-
-std::vector<Section> sectionsOf(const Dendrogram::Arrays& a) {
-  std::vector<Section> all;
-  all.push_back(section(Kind::kAbout, std::span(a.about.data(), a.about.size()), 1));
-  all.push_back(section(Kind::kAlive, a.alive, 1));
-  all.push_back(section(Kind::kError, a.error, 1));
-  all.push_back(section(Kind::kParents, a.parents, 1));
-  all.push_back(section(Kind::kTriangles, a.triangles, 3));
-  all.push_back(section(Kind::kPositions, a.positions, 3));
-  for (const FeatureView& f : a.features) {
-    all.push_back(section(Kind::kFeature, f.values, f.dimension, f.name));
-  }
-  std::uint64_t at = sizeof(FileHeader) + all.size() * sizeof(SectionEntry);
-  for (Section& s : all) {
-    at = (at + kAlignment - 1) / kAlignment * kAlignment;
-    s.entry.offset = at;
-    at += s.bytes.size();
-  }
-  return all;
-}
-
-FileHeader headerFor(const Dendrogram& d, const std::vector<Section>& sections,
-                     std::span<const SectionEntry> table) {
-  FileHeader h{};
-  std::memcpy(h.magic, kMagic, sizeof kMagic);
-  h.version = kVersion;
-  h.sections = static_cast<std::uint32_t>(sections.size());
-  h.file_size = sections.back().entry.offset + sections.back().bytes.size();
-  h.nodes = d.nodeCount();
-  h.collapses = d.arrays().parents.size();
-  h.triangles = d.triangleCount();
-  const Box box = boundingBox(d.arrays().positions);
-  std::copy(box.low.begin(), box.low.end(), h.box_low);
-  std::copy(box.high.begin(), box.high.end(), h.box_high);
-  h.table_checksum = checksum(table.data(), table.size_bytes());
-  h.header_checksum = checksum(&h, offsetof(FileHeader, header_checksum));
-  return h;
-}
-
 }  // namespace
 
 Result<Dendrogram> readMrm(const std::string& path) {
   auto file = MappedFile::open(path);
   if (!file) return file.error();
   return MrmReader(path, *std::move(file)).read();
-}
-
-Result<Ok> writeMrm(const std::string& path, const Dendrogram& dendrogram) {
-  const std::vector<Section> sections = sectionsOf(dendrogram.arrays());
-  std::vector<SectionEntry> table;
-  for (const Section& s : sections) table.push_back(s.entry);
-  const FileHeader header = headerFor(dendrogram, sections, table);
-  return writeFile(path, [&](const WriteBytes& write) {
-    if (!write(std::as_bytes(std::span(&header, 1))) || !write(std::as_bytes(std::span(table)))) {
-      return false;
-    }
-    std::uint64_t at = sizeof header + table.size() * sizeof(SectionEntry);
-    constexpr std::byte kPadding[kAlignment] = {};
-    for (const Section& s : sections) {
-      if (!write(std::span(kPadding, s.entry.offset - at)) || !write(s.bytes)) return false;
-      at = s.entry.offset + s.bytes.size();
-    }
-    return true;
-  });
 }
 
 }  // namespace merlin::render

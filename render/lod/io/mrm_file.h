@@ -17,4 +17,9 @@ Result<Dendrogram> readMrm(const std::string& path);
 // bytes are kept. Errors: kNotFound (no such folder), kIo.
 Result<Ok> writeMrm(const std::string& path, const Dendrogram& dendrogram);
 
+// The same bytes as of buildDendrogram(mesh, log), without making it: beside mesh and log it takes
+// no more than DeathOrder does. Same errors; `threads`: 0 for all, the file is the same.
+Result<Ok> writeMrm(const std::string& path, const Mesh& mesh, const CollapseLog& log,
+                    unsigned threads = 0);
+
 }  // namespace merlin::render

@@ -1,0 +1,110 @@
+#include "render/lod/death_order.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+#include "daemon/base/blocks.h"
+
+namespace merlin::render {
+namespace {
+
+constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kBlock = 1 << 18;  // triangles
+
+// The forest as it was made: of each two nodes that merge the first one's place goes on, the
+// second one's ends. A place is a vertex of the mesh, so that what is near in space is near in
+// memory; chased by the nodes' numbers, each step would be to somewhere else.
+struct Places {
+  struct End {
+    std::uint32_t collapse = kNever, into = 0;
+  };
+  HugeArray<End> ends;  // by vertex
+
+  Places(std::size_t vertices, const CollapseLog& log) : ends(vertices) {
+    for (std::size_t v = 0; v < vertices; ++v) ends[v] = {};
+    HugeArray<std::uint32_t> place_of(log.children.size());  // of the nodes that collapses make
+    for (std::size_t k = 0; k < log.children.size(); ++k) {
+      const auto place = [&](std::uint32_t n) { return n < vertices ? n : place_of[n - vertices]; };
+      const std::uint32_t on = place(log.children[k][0]), over = place(log.children[k][1]);
+      assert(ends[over].collapse == kNever && ends[on].collapse == kNever);
+      place_of[k] = on;
+      ends[over] = {static_cast<std::uint32_t>(k), on};
+    }
+  }
+
+  // The level from which on the triangle is gone: when two of its corners are in one place. 0 is
+  // impossible.
+  std::uint32_t deathOf(const std::uint32_t* corners) const {
+    std::uint32_t c[] = {corners[0], corners[1], corners[2]};
+    std::uint32_t at[] = {ends[c[0]].collapse, ends[c[1]].collapse, ends[c[2]].collapse};
+    for (;;) {
+      const auto first = static_cast<std::size_t>(std::min_element(at, at + 3) - at);
+      const std::uint32_t collapse = at[first];
+      if (collapse == kNever) return kNever;
+      c[first] = ends[c[first]].into;
+      at[first] = ends[c[first]].collapse;
+      if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return collapse + 1;
+    }
+  }
+};
+
+}  // namespace
+
+DeathOrder::DeathOrder(const Mesh& mesh, const CollapseLog& log, unsigned threads)
+    : log_(log), alive_(log.children.size() + 2) {
+  {
+    HugeArray<std::uint32_t> deaths(mesh.triangleCount());
+    findDeaths(mesh, threads, deaths);
+    sortTriangles(deaths);
+  }
+  numbers_ = HugeArray<std::uint32_t>(mesh.vertexCount() + log.children.size());
+  numberNodes();
+}
+
+// Roots keep their order, then come the children of the last collapse, ...
+void DeathOrder::numberNodes() {
+  const std::size_t nodes = numbers_.size();
+  for (std::size_t n = 0; n < nodes; ++n) numbers_[n] = kNever;
+  for (std::size_t k = 0; k < collapses(); ++k) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      const std::uint32_t child = log_.children[k][side];
+      assert(child < nodes && numbers_[child] == kNever);
+      numbers_[child] = static_cast<std::uint32_t>(nodes - 2 * k - 1 - side);
+    }
+  }
+  for (std::size_t n = 0; n < nodes; ++n) {
+    if (numbers_[n] != kNever) continue;
+    numbers_[n] = static_cast<std::uint32_t>(roots_.size());
+    roots_.push_back(static_cast<std::uint32_t>(n));
+  }
+}
+
+void DeathOrder::findDeaths(const Mesh& mesh, unsigned threads, HugeArray<std::uint32_t>& deaths) {
+  const std::size_t count = mesh.triangleCount();
+  const Places places(mesh.vertexCount(), log_);
+  const auto levels = static_cast<std::uint32_t>(collapses() + 1);
+  forBlocks(threads, (count + kBlock - 1) / kBlock, [&](std::size_t block) {
+    const std::size_t end = std::min(count, (block + 1) * kBlock);
+    for (std::size_t t = block * kBlock; t < end; ++t)
+      deaths[t] = std::min(levels, places.deathOf(&mesh.triangles[3 * t]));  // levels: never
+  });
+}
+
+// By death, last first, then as in the mesh: counted, then dealt out. alive_[d], d the death, is
+// first how many die later, so where those that die then begin; and when all are dealt out, where
+// they end, which is how many were left one level before.
+void DeathOrder::sortTriangles(const HugeArray<std::uint32_t>& deaths) {
+  for (std::size_t t = 0; t < deaths.size(); ++t) ++alive_[deaths[t]];
+  std::uint32_t later = 0;
+  for (std::size_t d = alive_.size(); d-- > 0;) {
+    const std::uint32_t here = alive_[d];
+    alive_[d] = later;
+    later += here;
+  }
+  triangles_ = HugeArray<std::uint32_t>(deaths.size());
+  for (std::size_t t = 0; t < deaths.size(); ++t)
+    triangles_[alive_[deaths[t]]++] = static_cast<std::uint32_t>(t);
+}
+
+}  // namespace merlin::render
