@@ -259,6 +259,13 @@ void describe(Settings& s, SettingsVisitor& v) {
             [&] { describeGpio(s.devices.gpio, v); });
     v.path("postures", s.devices.postures,
            "The posture network, a JSON file; empty: no posture is recognised.");
+    v.number("posture_hold_s", s.devices.posture_hold.hold_s, {0, 10},
+             "That a posture lasts before it counts, seconds.");
+    v.number("posture_leave_s", s.devices.posture_hold.leave_s, {0, 10},
+             "That a posture is gone before it ends, seconds.");
+    v.number("posture_margin", s.devices.posture_hold.least_margin, {0, 1},
+             "Less sure than this, a hand shows no posture; half of it keeps the one that is "
+             "held.");
     v.choiceOf("script", s.devices.script, kScripts,
                "What the emulated person does, with --emulate.");
   });

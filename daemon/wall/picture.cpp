@@ -36,12 +36,14 @@ Result<std::unique_ptr<Picture>> Picture::make(const render::Dendrogram& model,
                                                const render::TilePlan& plan,
                                                const render::RenderSettings& settings,
                                                double radius_m, const Clock& clock) {
-  std::unique_ptr<Picture> picture(new Picture(model, plan, settings.look, radius_m, clock));
+  std::unique_ptr<Picture> picture(new Picture(model, plan, settings, radius_m, clock));
   auto context = render::makeGlContext(settings.backend);
   if (!context) return context.error();
   picture->context_ = *std::move(context);
   const render::GlApi& gl = picture->context_->gl();
-  auto renderer = ModelRenderer::make(gl, model);
+  std::vector<std::uint32_t> full;
+  picture->clusters_.everything(full, picture->full_ends_);
+  auto renderer = ModelRenderer::make(gl, model, full);
   if (!renderer) return renderer.error();
   picture->renderer_ = *std::move(renderer);
   for (const render::Tile& tile : plan.tiles) {
@@ -53,14 +55,17 @@ Result<std::unique_ptr<Picture>> Picture::make(const render::Dendrogram& model,
 }
 
 Picture::Picture(const render::Dendrogram& model, const render::TilePlan& plan,
-                 const render::Look& look, double radius_m, const Clock& clock)
+                 const render::RenderSettings& settings, double radius_m, const Clock& clock)
     : model_(model),
       plan_(plan),
-      look_(look),
+      settings_(settings),
       radius_m_(static_cast<float>(radius_m)),
       metres_from_model_(scaling(model, radius_m_)),
       clock_(clock),
-      cut_(3 * model.triangleCount()),
+      clusters_(model, {}),
+      view_cut_(model, clusters_, settings.look.draw_back_faces),
+      cut_ends_(clusters_.size() + 1),
+      even_levels_(clusters_.size()),
       pixels_(std::size_t{4} * static_cast<std::size_t>(plan.frame_width) *
               static_cast<std::size_t>(plan.frame_height)) {
   tiles_.reserve(plan.tiles.size());
@@ -80,7 +85,7 @@ render::Camera Picture::cameraOf(const render::Tile& tile,
 void Picture::beginTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model) {
   const render::Tile& t = plan_.tiles[tile];
   tiles_[tile].bind();
-  renderer_->begin(t.width, t.height, cameraOf(t, T_eye_model), look_);
+  renderer_->begin(t.width, t.height, cameraOf(t, T_eye_model), settings_.look);
 }
 
 void Picture::readTile(std::size_t tile) {
@@ -90,18 +95,57 @@ void Picture::readTile(std::size_t tile) {
   tiles_[tile].read(pixels_.data() + at, plan_.frame_width);
 }
 
-void Picture::uploadCut(std::size_t level) {
-  const std::size_t triangles = model_.cut(level, cut_);
+render::TileView Picture::viewOf(std::size_t tile, const Eigen::Isometry3f& T_eye_model) const {
+  const render::Tile& t = plan_.tiles[tile];
+  return {cameraOf(t, T_eye_model).clip_from_model, t.width};
+}
+
+void Picture::chooseCut(std::size_t level, std::span<const render::TileView> views) {
+  const std::size_t budget = model_.trianglesAt(level);
+  const bool uneven = level > 0 && settings_.view_dependent && view_cut_.choose(views, budget);
+  if (!uneven) view_cut_.look(views);
+  source_ = level == 0 ? ModelRenderer::Source::kFull : ModelRenderer::Source::kCut;
+  clustered_ = uneven || level == 0 || clusters_.isClustered(level);
+  if (level == 0) return;
+  if (cut_.size() < 3 * budget) cut_.resize(3 * budget);
+  if (clustered_ && !uneven)
+    std::fill(even_levels_.begin(), even_levels_.end(), static_cast<std::uint32_t>(level));
+  const auto levels = uneven ? view_cut_.levels() : std::span<const std::uint32_t>(even_levels_);
+  const std::size_t triangles =
+      clustered_ ? clusters_.cut(levels, cut_, cut_ends_) : clusters_.cutEvenly(level, cut_);
   renderer_->uploadCut(std::span(cut_).first(3 * triangles));
 }
 
-void Picture::drawTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model, DrawTimes& times) {
+// Neighbouring clusters that the view sees are one run.
+void Picture::chooseRuns(std::size_t view, ModelRenderer::Source source) {
+  runs_.clear();
+  if (source == ModelRenderer::Source::kCut && !clustered_) {
+    runs_.push_back({0, renderer_->triangles(source)});
+    return;
+  }
+  const auto& ends = source == ModelRenderer::Source::kCut ? cut_ends_ : full_ends_;
+  std::size_t first = 0;
+  for (std::size_t c = 0; c <= clusters_.size(); ++c) {
+    const std::size_t count = ends[c] - first;
+    const bool seen = c == clusters_.size() || view_cut_.sees(view, c);
+    if (seen && count > 0) {
+      if (!runs_.empty() && runs_.back().first + runs_.back().count == first)
+        runs_.back().count += count;
+      else
+        runs_.push_back({first, count});
+    }
+    first = ends[c];
+  }
+}
+
+void Picture::drawTile(std::size_t tile, std::size_t view, const Eigen::Isometry3f& T_eye_model,
+                       DrawTimes& times) {
   const Timestamp began = clock_.now();
   beginTile(tile, T_eye_model);
   const Timestamp cleared = clock_.now();
-  const std::size_t triangles = renderer_->triangles(ModelRenderer::Source::kCut);
-  for (std::size_t first = 0; first < triangles; first += kSlice) {
-    renderer_->draw(ModelRenderer::Source::kCut, first, std::min(kSlice, triangles - first));
+  chooseRuns(view, source_);
+  for (Progress at; at.run < runs_.size();) {
+    drawSlice(source_, at);
     renderer_->flush();
   }
   const Timestamp drawn = clock_.now();
@@ -110,26 +154,43 @@ void Picture::drawTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model, D
   times.fixed += (cleared - began) + (clock_.now() - drawn);
 }
 
+// About kSlice triangles of the runs, from where `at` is.
+void Picture::drawSlice(ModelRenderer::Source source, Progress& at) {
+  for (std::size_t left = kSlice; left > 0 && at.run < runs_.size();) {
+    const Run& run = runs_[at.run];
+    const std::size_t count = std::min(left, run.count - at.triangles);
+    renderer_->draw(source, run.first + at.triangles, count);
+    left -= count;
+    at.triangles += count;
+    if (at.triangles == run.count) at = {at.run + 1, 0};
+  }
+}
+
 DrawTimes Picture::draw(const Eigen::Isometry3f& T_eye_model, std::size_t level, Timestamp until) {
   DrawTimes times;
   const Timestamp began = clock_.now();
-  uploadCut(level);
+  views_.clear();
+  for (std::size_t i = 0; i < tiles_.size(); ++i) views_.push_back(viewOf(i, T_eye_model));
+  chooseCut(level, views_);
   times.drawing += clock_.now() - began;
-  std::size_t operators = 0;
+  std::vector<std::size_t> operators;
   for (std::size_t i = 0; i < tiles_.size(); ++i) {
     if (plan_.tiles[i].kind == render::TileKind::kWall)
-      drawTile(i, T_eye_model, times);
+      drawTile(i, i, T_eye_model, times);
     else
-      ++operators;
+      operators.push_back(i);
   }
-  if (operators == 0 || operators == tiles_.size()) until = Timestamp::max();
+  if (operators.empty() || operators.size() == tiles_.size()) until = Timestamp::max();
   const Duration wall = times.drawing;
   const std::size_t fits = levelThatFits(level, wall, until - clock_.now());
   times.gave_way = fits != level;
-  if (times.gave_way) uploadCut(fits);
-  for (std::size_t i = 0; i < tiles_.size(); ++i) {
-    if (plan_.tiles[i].kind != render::TileKind::kWall) drawTile(i, T_eye_model, times);
+  if (times.gave_way) {
+    views_.clear();
+    for (const std::size_t i : operators) views_.push_back(viewOf(i, T_eye_model));
+    chooseCut(fits, views_);
   }
+  for (std::size_t k = 0; k < operators.size(); ++k)
+    drawTile(operators[k], times.gave_way ? k : operators[k], T_eye_model, times);
   if (times.gave_way) {
     times.drawing = wall + std::chrono::duration_cast<Duration>(wall * operator_share_);
   } else {
@@ -163,20 +224,26 @@ void Picture::warmUp(const Eigen::Isometry3f& T_eye_model) {
 
 void Picture::beginRefining(const Eigen::Isometry3f& T_eye_model) {
   refined_view_ = T_eye_model;
-  refined_tile_ = refined_triangles_ = 0;
+  refined_tile_ = 0;
+  refined_begun_ = false;
+  views_.clear();
+  for (std::size_t i = 0; i < tiles_.size(); ++i) views_.push_back(viewOf(i, T_eye_model));
+  view_cut_.look(views_);
 }
 
 bool Picture::refine(Timestamp until) {
-  const std::size_t all = renderer_->triangles(ModelRenderer::Source::kFull);
   for (Timestamp now = clock_.now(); now + slice_time_ * 3 / 2 < until;) {
-    if (refined_triangles_ == 0) beginTile(refined_tile_, refined_view_);
-    const std::size_t count = std::min(kSlice, all - refined_triangles_);
-    renderer_->draw(ModelRenderer::Source::kFull, refined_triangles_, count);
+    if (!refined_begun_) {
+      beginTile(refined_tile_, refined_view_);
+      chooseRuns(refined_tile_, ModelRenderer::Source::kFull);
+      refined_ = {};
+      refined_begun_ = true;
+    }
+    drawSlice(ModelRenderer::Source::kFull, refined_);
     renderer_->finish();
-    refined_triangles_ += count;
-    if (refined_triangles_ == all) {
+    if (refined_.run == runs_.size()) {
       readTile(refined_tile_);
-      refined_triangles_ = 0;
+      refined_begun_ = false;
       if (++refined_tile_ == tiles_.size()) return true;
     }
     const Timestamp then = std::exchange(now, clock_.now());

@@ -14,7 +14,9 @@
 #include "render/gl/frame_buffer.h"
 #include "render/gl/gl_context.h"
 #include "render/gl/model_renderer.h"
+#include "render/lod/clusters.h"
 #include "render/lod/dendrogram.h"
+#include "render/lod/view_cut.h"
 #include "render/tiles/tile_plan.h"
 
 namespace merlin::wall {
@@ -40,11 +42,24 @@ class Picture final : public Painter {
   const std::string& renderer() const noexcept { return context_->renderer(); }
 
  private:
-  Picture(const render::Dendrogram& model, const render::TilePlan& plan, const render::Look& look,
-          double radius_m, const Clock& clock);
+  Picture(const render::Dendrogram& model, const render::TilePlan& plan,
+          const render::RenderSettings& settings, double radius_m, const Clock& clock);
   render::Camera cameraOf(const render::Tile& tile, const Eigen::Isometry3f& T_eye_model) const;
-  void uploadCut(std::size_t level);
-  void drawTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model, DrawTimes& times);
+  render::TileView viewOf(std::size_t tile, const Eigen::Isometry3f& T_eye_model) const;
+  // Triangles of one draw call, in the order of its source.
+  struct Run {
+    std::size_t first = 0, count = 0;
+  };
+  // How far a list of runs is drawn.
+  struct Progress {
+    std::size_t run = 0, triangles = 0;
+  };
+  // What is drawn at `level`, for these views; drawTile's `view` is a number of theirs.
+  void chooseCut(std::size_t level, std::span<const render::TileView> views);
+  void chooseRuns(std::size_t view, render::ModelRenderer::Source source);
+  void drawSlice(render::ModelRenderer::Source source, Progress& at);
+  void drawTile(std::size_t tile, std::size_t view, const Eigen::Isometry3f& T_eye_model,
+                DrawTimes& times);
   std::size_t levelThatFits(std::size_t level, Duration wall, Duration left) const;
   void learnOperatorShare(Duration wall, Duration operators);
   void beginTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model);
@@ -52,20 +67,31 @@ class Picture final : public Painter {
 
   const render::Dendrogram& model_;
   render::TilePlan plan_;
-  render::Look look_;
+  render::RenderSettings settings_;
   float radius_m_;
   Eigen::Matrix4f metres_from_model_;  // scale and centring
   const Clock& clock_;
   std::unique_ptr<render::GlContext> context_;
   std::unique_ptr<render::ModelRenderer> renderer_;
   std::vector<render::FrameBuffer> tiles_;
-  std::vector<std::uint32_t> cut_;
+  render::Clusters clusters_;
+  render::ViewCut view_cut_;
+  std::vector<std::uint32_t> full_ends_;  // of clusters, in the full resolution
+  // The cut that is uploaded: its triangles, where clusters end in them (if it is clustered), and
+  // the levels of an even one.
+  std::vector<std::uint32_t> cut_, cut_ends_, even_levels_;
+  bool clustered_ = false;
+  render::ModelRenderer::Source source_ = render::ModelRenderer::Source::kCut;
+  std::vector<render::TileView> views_;
+  std::vector<Run> runs_;
   std::vector<std::uint8_t> pixels_;
   // Operator's views' time as a share of the wall tiles', at the same level; of the last frames.
   double operator_share_ = 0.3;
   // Where refining is.
   Eigen::Isometry3f refined_view_ = Eigen::Isometry3f::Identity();
-  std::size_t refined_tile_ = 0, refined_triangles_ = 0;
+  std::size_t refined_tile_ = 0;
+  bool refined_begun_ = false;
+  Progress refined_;
   Duration slice_time_ = std::chrono::milliseconds(4);  // of the last slices, the worst, fading
 };
 

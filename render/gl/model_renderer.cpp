@@ -55,8 +55,8 @@ T quantise(float value, float scale) {
 
 }  // namespace
 
-Result<std::unique_ptr<ModelRenderer>> ModelRenderer::make(const GlApi& gl,
-                                                           const Dendrogram& model) {
+Result<std::unique_ptr<ModelRenderer>> ModelRenderer::make(const GlApi& gl, const Dendrogram& model,
+                                                           std::span<const std::uint32_t> full) {
   if (model.nodeCount() > std::numeric_limits<std::int32_t>::max() / sizeof(Vertex) * 8) {
     return Error{Errc::kUnsupported,
                  fmt::format("{} nodes are more than one buffer holds", model.nodeCount())};
@@ -66,10 +66,9 @@ Result<std::unique_ptr<ModelRenderer>> ModelRenderer::make(const GlApi& gl,
   r->uploadNodes(model);
   r->makeArray(&r->cut_array_, &r->cut_indices_);
   r->makeArray(&r->full_array_, &r->full_indices_);
-  const auto full = model.arrays().triangles;
   gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(full.size_bytes()), full.data(),
                 GL_STATIC_DRAW);
-  r->full_triangles_ = model.triangleCount();
+  r->full_triangles_ = full.size() / 3;
   gl.BindVertexArray(0);
   if (const GLenum error = gl.GetError(); error != GL_NO_ERROR) {
     return Error{Errc::kUnsupported,

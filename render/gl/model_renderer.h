@@ -27,9 +27,11 @@ struct Camera {
 
 class ModelRenderer {
  public:
-  // Uploads the nodes (20 bytes each) and the full resolution's indices. Keeps no dendrogram.
+  // Uploads the nodes (20 bytes each) and the full resolution's indices, in the order in which they
+  // are to be drawn. Keeps neither.
   // Errors: kUnsupported (a shader that does not compile, with the log; no memory on the GPU).
-  static Result<std::unique_ptr<ModelRenderer>> make(const GlApi& gl, const Dendrogram& model);
+  static Result<std::unique_ptr<ModelRenderer>> make(const GlApi& gl, const Dendrogram& model,
+                                                     std::span<const std::uint32_t> full);
 
   ~ModelRenderer();
   ModelRenderer(const ModelRenderer&) = delete;

@@ -17,7 +17,8 @@ struct Look {
 
 struct RenderSettings {
   GlBackend backend = GlBackend::kEgl;
-  int raster_threads = 0;  // of Mesa's software renderer; 0: the wall's own thread does all
+  int raster_threads = 0;      // of Mesa's software renderer; 0: the wall's own thread does all
+  bool view_dependent = true;  // triangles where the tiles look; else as many everywhere
   Look look;
 };
 

@@ -186,8 +186,17 @@ void Clusters::Builder::measure() {
     }
     seen[cluster] = true;
   };
-  for (std::uint32_t n = 0; n < c.cluster_of_.size(); ++n) {
-    if (c.cluster_of_[n] != kNoCluster) grow(c.cluster_of_[n], n);
+  // Down to the leaves, finer than the finest level too.
+  std::vector<std::uint16_t> of = c.cluster_of_;
+  of.resize(d.nodeCount());
+  for (std::uint32_t n = 0; n < of.size(); ++n) {
+    if (n >= c.cluster_of_.size()) of[n] = of[c.forest_.parents[(c.forest_.nodes - 1 - n) / 2]];
+    if (of[n] != kNoCluster) grow(of[n], n);
+  }
+  const auto leaves = d.arrays().triangles;
+  for (std::size_t i = 0; finest > 0 && i < leaves.size(); ++i) {
+    const std::uint16_t cluster = of[leaves[i - i % 3]];
+    if (of[leaves[i]] != cluster) grow(cluster, leaves[i]);
   }
   // Corners in other clusters, and what they may be chased up to.
   const auto coarse = c.aliveBelow(c.coarsest_);
@@ -319,6 +328,24 @@ std::size_t Clusters::cutEvenly(std::size_t level, std::span<std::uint32_t> out)
     at = chaseTo(level, &rung.corners[3 * std::size_t{rung.begins[g]}],
                  3 * prefix(rung, g, alive_[level]), at);
   return triangles;
+}
+
+void Clusters::everything(std::vector<std::uint32_t>& corners,
+                          std::vector<std::uint32_t>& ends) const {
+  const auto leaves = dendrogram_.arrays().triangles;
+  const std::uint32_t alive = aliveBelow(finestLevel());
+  std::vector<std::uint16_t> cluster(leaves.size() / 3);
+  std::vector<std::uint32_t> at(size() + 1, 0);
+  for (std::size_t t = 0; t < cluster.size(); ++t) {
+    cluster[t] = cluster_of_[forest_.chase(leaves[3 * t], alive)];
+    ++at[cluster[t] + 1U];
+  }
+  std::partial_sum(at.begin(), at.end(), at.begin());
+  ends.assign(at.begin() + 1, at.end());
+  ends.push_back(at.back());
+  corners.resize(leaves.size());
+  for (std::size_t t = 0; t < cluster.size(); ++t)
+    std::copy_n(&leaves[3 * t], 3, &corners[3 * std::size_t{at[cluster[t]]++}]);
 }
 
 std::size_t Clusters::memoryBytes() const noexcept {

@@ -61,10 +61,18 @@ class Clusters {
   std::size_t cut(std::span<const std::uint32_t> levels, std::span<std::uint32_t> out,
                   std::span<std::uint32_t> ends) const noexcept;
 
+  // Whether an even cut at `level` is worth its clusters: not of few triangles.
+  bool isClustered(std::size_t level) const noexcept {
+    return level >= finestLevel() && level < plain_.front().level;
+  }
+
   // All at one level, the same triangles as Dendrogram::cut(level): cluster by cluster; few
   // triangles, and those of levels finer than the finest rung, in the dendrogram's own order.
   // Returns how many.
   std::size_t cutEvenly(std::size_t level, std::span<std::uint32_t> out) const noexcept;
+
+  // All triangles of the mesh, cluster by cluster; `ends` as of cut(). Allocates both.
+  void everything(std::vector<std::uint32_t>& corners, std::vector<std::uint32_t>& ends) const;
 
   std::size_t memoryBytes() const noexcept;  // beyond the dendrogram
 
@@ -82,8 +90,7 @@ class Clusters {
   struct Builder;
   static std::size_t rungFor(std::span<const Rung> rungs, std::size_t level) noexcept;
   static std::size_t prefix(const Rung& rung, std::size_t group, std::uint32_t alive) noexcept;
-  // Appends the first `count` triangles of a group, chased up to `level`, or each corner to its
-  // cluster's level.
+  // Append corners, chased up to `level`, or each to its cluster's level; return the end.
   std::uint32_t* chaseTo(std::size_t level, const std::uint32_t* from, std::size_t corners,
                          std::uint32_t* out) const noexcept;
   std::uint32_t* chaseEach(std::span<const std::uint32_t> levels, const std::uint32_t* from,

@@ -50,7 +50,7 @@ class Studio {
   explicit Studio(GlBackend backend, const Dendrogram& model, int width = 160, int height = 120)
       : context_(*makeGlContext(backend)),
         frame_(*FrameBuffer::make(context_->gl(), width, height)),
-        renderer_(*ModelRenderer::make(context_->gl(), model)) {}
+        renderer_(*ModelRenderer::make(context_->gl(), model, model.arrays().triangles)) {}
 
   ModelRenderer& renderer() { return *renderer_; }
 

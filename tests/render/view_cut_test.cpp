@@ -112,10 +112,12 @@ TEST(ViewCut, TheFarSideOfABallIsCoarseUnlessBackFacesAreDrawn) {
     ViewCut cut(d, clusters, back_faces);
     ASSERT_TRUE(cut.choose(std::span(&tile, 1), 2000));
     for (std::size_t c = 0; c < clusters.size(); ++c) {
-      if (clusters.bounds(c).centre[2] < -0.85F)
+      if (clusters.bounds(c).centre[2] < -0.85F) {
         EXPECT_EQ(cut.levels()[c] == clusters.coarsestLevel(), !back_faces);
-      if (clusters.bounds(c).centre[2] > 0.85F)
+      }
+      if (clusters.bounds(c).centre[2] > 0.85F) {
         EXPECT_LT(cut.levels()[c], clusters.coarsestLevel());
+      }
       EXPECT_TRUE(cut.sees(0, c));
     }
   }
