@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "daemon/base/random.h"
@@ -51,6 +52,8 @@ constexpr Parameter kParameters[] = {
     {'y', false, 1, {}},
 };
 constexpr std::size_t kParameterCount = std::size(kParameters);
+constexpr std::size_t kAlignment = 1;
+static_assert(kParameters[kAlignment].letter == 'A');
 
 // What a program may set; ^K saves it, ^Y restores what was saved, W what the factory set.
 struct State {
@@ -58,8 +61,39 @@ struct State {
   fastrak::Stations active{};
   std::array<std::vector<int>, kStations> list;
   std::array<std::array<std::array<float, 9>, kStations>, kParameterCount> parameters{};
+  std::array<std::array<float, 4>, kStations> ahead = {{{1}, {1}, {1}, {1}}};  // by boresight
   std::string configuration = "OutputCompensat CPG2030-003-10";
 };
+
+using Quaternion = std::array<float, 4>;
+
+Quaternion conjugate(const Quaternion& q) { return {q[0], -q[1], -q[2], -q[3]}; }
+
+Quaternion product(const Quaternion& a, const Quaternion& b) {
+  return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+          a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+          a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+          a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
+}
+
+// Into the frame of an origin, a point on its x axis and one on its y axis, `a`; as it is where
+// that is the transmitter's own.
+void align(const std::array<float, 9>& a, fastrak::Record& record) {
+  if (a == kParameters[kAlignment].initial) return;
+  using Eigen::Vector3f;
+  const Vector3f origin(a[0], a[1], a[2]);
+  const Vector3f x = (Vector3f(a[3], a[4], a[5]) - origin).normalized();
+  Vector3f y = Vector3f(a[6], a[7], a[8]) - origin;
+  y = (y - y.dot(x) * x).normalized();
+  Eigen::Matrix3f axes;
+  axes << x, y, x.cross(y);
+  const Vector3f p(record.position.data());
+  const Vector3f moved = axes.transpose() * (p - origin);
+  std::copy(moved.begin(), moved.end(), record.position.begin());
+  const Eigen::Quaternionf turn(axes);
+  record.orientation_wxyz =
+      product(conjugate({turn.w(), turn.x(), turn.y(), turn.z()}), record.orientation_wxyz);
+}
 
 using Fields = std::vector<std::optional<float>>;  // empty where a field is omitted
 
@@ -196,10 +230,7 @@ class FastrakEmulator final : public Emulator {
       case 'Y':  // leftovers of other trackers that VRPN sends
       case 't':
       case 'o':  // the line has the speed that it has
-      case 'T':
-      case 'R':
-      case 'B':
-      case 'b': return;
+      case 'T': return;
       case 'X': return configure(rest);
       default: break;
     }
@@ -207,6 +238,7 @@ class FastrakEmulator final : public Emulator {
     if (!fields) return refuse(kNotNumeric);
     if (letter == 'l') return setStation(*fields);
     if (letter == 'O') return setList(*fields);
+    if (letter == 'R' || letter == 'B' || letter == 'b') return setFrame(letter, *fields);
     for (std::size_t p = 0; p < kParameterCount; ++p) {
       if (kParameters[p].letter == letter) return setParameter(p, *fields);
     }
@@ -243,6 +275,15 @@ class FastrakEmulator final : public Emulator {
     } else {
       pending_ += fastrak::encode(state_.active, static_cast<int>(*station) + 1);
     }
+  }
+
+  // R resets the alignment; B takes the present orientation as straight ahead, b no longer does.
+  void setFrame(char letter, const Fields& fields) {
+    const auto station = stationOf(fields);
+    if (!station) return;
+    if (letter == 'R') state_.parameters[kAlignment][*station] = kParameters[kAlignment].initial;
+    if (letter == 'b') state_.ahead[*station] = {1, 0, 0, 0};
+    if (letter == 'B') state_.ahead[*station] = measured_[*station];
   }
 
   void setList(const Fields& fields) {
@@ -308,6 +349,10 @@ class FastrakEmulator final : public Emulator {
       record.position[i] = (motion.position_m[i] + aside + noise) / unit_m;
     }
     record.orientation_wxyz = shaken(motion.orientation_wxyz);
+    align(state_.parameters[kAlignment][station], record);
+    measured_[station] = record.orientation_wxyz;
+    record.orientation_wxyz = product(record.orientation_wxyz, conjugate(state_.ahead[station]));
+    record.stylus = station == 0 && motion.ball_buttons != 0;
     return record;
   }
 
@@ -331,6 +376,7 @@ class FastrakEmulator final : public Emulator {
   Random noise_;
   State state_;
   State saved_;
+  std::array<std::array<float, 4>, kStations> measured_{};  // before boresight, newest
   std::string line_;
   std::string pending_;
   bool suspended_ = false;

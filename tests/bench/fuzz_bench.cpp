@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/random.h"
+#include "drivers/cyberglove/calibration_files.h"
 #include "drivers/cyberglove/protocol.h"
 #include "drivers/emulate/emulator.h"
 #include "drivers/fastrak/protocol.h"
@@ -39,6 +40,16 @@ Feed each(std::shared_ptr<Parser> parser) {
   return [parser](const std::string& bytes) {
     std::uint64_t packets = 0;
     for (const char c : bytes) packets += parser->feed(static_cast<std::byte>(c)) ? 1U : 0U;
+    return packets;
+  };
+}
+
+Feed trackerFeed(const fastrak::Layout& layout) {
+  auto parser = std::make_shared<fastrak::Parser>();
+  parser->expect(layout);
+  return [parser](const std::string& bytes) {
+    std::uint64_t packets = 0;
+    for (const char c : bytes) packets += parser->feed(static_cast<std::byte>(c), 1) ? 1U : 0U;
     return packets;
   };
 }
@@ -89,16 +100,18 @@ const Target kTargets[] = {
        record.timestamp = static_cast<std::uint32_t>(r.next());
        return cyberglove::encode(record, {.values = 18, .timestamp = true, .status = true});
      }},
-    {"fastrak",
-     []() -> Feed {
-       auto parser = std::make_shared<fastrak::Parser>();
-       return [parser](const std::string& bytes) {
-         std::uint64_t packets = 0;
-         for (const char c : bytes) packets += parser->feed(static_cast<std::byte>(c), 1) ? 1U : 0U;
-         return packets;
-       };
-     },
+    {"fastrak", [] { return trackerFeed({}); },
      [](Random& r) { return fastrak::encode(trackerRecord(r), fastrak::kDriverList, {}); }},
+    {"fastrak decimals", [] { return trackerFeed({.numbers = fastrak::Layout::Numbers::kText}); },
+     [](Random& r) {
+       return fastrak::encode(trackerRecord(r), fastrak::kDriverList, {.binary = false});
+     }},
+    {"fastrak 14-bit",
+     [] { return trackerFeed({.numbers = fastrak::Layout::Numbers::kShort, .angles = true}); },
+     [](Random& r) {
+       constexpr std::array<int, 3> kItems = {18, 19, 0};
+       return fastrak::encode(trackerRecord(r), kItems, {});
+     }},
     {"fastrak replies",
      []() -> Feed {
        return [](const std::string& bytes) -> std::uint64_t {
@@ -111,6 +124,18 @@ const Target kTargets[] = {
      }},
     {"spaceball", [] { return each(std::make_shared<spaceball::Parser>()); }, ballPacket},
     {"sample", [] { return each(std::make_shared<sample::Parser>()); }, textRecord},
+    {"calibration files",
+     []() -> Feed {
+       return [](const std::string& bytes) -> std::uint64_t {
+         return cyberglove::importCalibration(bytes) ? 1U : 0U;
+       };
+     },
+     [](Random& r) {
+       std::string text;
+       for (int i = 0; i < 23; ++i)
+         text += fmt::format("{} {} {}\n", 40 + r.below(60), 20 + r.below(20), 150 + r.below(100));
+       return text;
+     }},
     {"transcript",
      []() -> Feed {
        return [](const std::string& bytes) -> std::uint64_t {

@@ -331,7 +331,12 @@ void benchReaders(const Options& options) {
   void* at =
       ::mmap(nullptr, sizeof(Times), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   Times& times = *new (at) Times;
-  fmt::print("from the line's byte to a client of the shared memory, microseconds\n");
+  double load = 0;
+  ::getloadavg(&load, 1);
+  fmt::print(
+      "from the line's byte to a client of the shared memory, microseconds (the machine's load "
+      "before: {:.2f}; \"idle\" is idle where that is small)\n",
+      load);
   fmt::print("line        load   reader            n    median       p99      p99.9      CPU\n");
   const auto pair_idle = benchLine(options, kSocketPair, false, times);
   const auto pty_idle = benchLine(options, kPty, false, times);

@@ -32,7 +32,12 @@ DriverSettings settingsOf(std::string_view text) {
     const std::string value = word.substr(std::min(word.find('=') + 1, word.size()));
     if (key == "slot7") s.cyberglove.slot7 = static_cast<Slot7Rule>(std::stoi(value));
     if (key == "rate") s.cyberglove.rate_hz = std::stod(value);
+    if (key == "stamps") s.cyberglove.time_stamps = true;
     if (key == "inches") s.fastrak.centimetres = false;
+    if (key == "text") s.fastrak.numbers = FastrakSettings::Numbers::kText;
+    if (key == "short") s.fastrak.numbers = FastrakSettings::Numbers::kShort;
+    if (key == "angles") s.fastrak.angles = true;
+    if (key == "stylus") s.fastrak.stylus = true;
     if (key == "deadzone") s.spaceball.dead_zone = std::stoi(value);
     if (key == "turned") s.spaceball.axis_map = {3, -1, 2, 6, -4, 5};
   }
@@ -251,6 +256,11 @@ int synthesiseAll() {
   const Family families[] = {
       {"cyberglove", {"22", "18"}, {"visit", "grabbing"}, {"", "slot7=2 rate=60", "slot7=3"}},
       {"fastrak", {"1", "2", "3", "4"}, {"turning", "still"}, {"", "inches"}},
+      {"cyberglove", {"18"}, {"visit"}, {nullptr, nullptr, nullptr, "stamps"}},
+      {"fastrak",
+       {"2"},
+       {"turning"},
+       {nullptr, nullptr, "text", "short angles", "stylus", "short inches"}},
       {"spaceball",
        {"1003", "2003", "3003", "4000"},
        {"visit", "turning"},
@@ -261,6 +271,7 @@ int synthesiseAll() {
   for (const Family& f : families) {
     for (const char* model : f.models) {
       for (std::size_t s = 0; s < f.settings.size(); ++s) {
+        if (f.settings[s] == nullptr) continue;  // another family's
         for (const char* fault : kFaults) {
           const char* script = f.scripts[seed % f.scripts.size()];
           synthesise({f.driver, model, script, f.settings[s], fault, seed},

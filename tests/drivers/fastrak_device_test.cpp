@@ -102,6 +102,74 @@ TEST(FastrakDevice, MeasuresTheHandInMetresInEitherUnit) {
   }
 }
 
+TEST(FastrakDevice, MeasuresTheSameInEveryForm) {
+  using Numbers = FastrakSettings::Numbers;
+  for (const Numbers numbers : {Numbers::kBinary, Numbers::kText, Numbers::kShort}) {
+    for (const int form : {0, 1, 2, 3, 4, 5, 6, 7}) {
+      FastrakSettings settings;
+      settings.numbers = numbers;
+      settings.angles = form & 1;
+      settings.stylus = form & 2;
+      settings.centimetres = form & 4;
+      Tracker tracker({.baud = 115200, .model = "2"}, settings);
+      ASSERT_TRUE(tracker.device->open(tracker.stream));
+      ASSERT_TRUE(tracker.pollFor(*tracker.device, seconds(2)));
+      EXPECT_GT(tracker.sink.tracker.size(), 230u);
+      EXPECT_EQ(tracker.device->counters().bad_bytes, 0u);
+      for (const TrackerSample& s : tracker.sink.tracker) {
+        const auto motion = tracker.script.at(fromNanoseconds(s.received_ns) - tracker.start);
+        ASSERT_NEAR(s.position_m[0], motion.position_m[0], 0.005);
+        float dot = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+          dot += s.orientation_wxyz[i] * motion.orientation_wxyz[i];
+        ASSERT_LT(2 * std::acos(std::min(std::abs(dot), 1.0F)), 0.02);
+      }
+    }
+  }
+}
+
+TEST(FastrakDevice, AlignsItsFrameAndLooksStraightAhead) {
+  FastrakSettings settings;
+  settings.alignment_cm[0] = {50, 0, 0, 50, 100, 0, -50, 0, 0};  // x is the old y, y the old -x
+  settings.boresight_wxyz[1] = {0.6F, 0, 0, 0.8F};
+  for (const bool centimetres : {true, false}) {
+    settings.centimetres = centimetres;
+    Tracker tracker({.model = "2"}, settings);
+    ASSERT_TRUE(tracker.device->open(tracker.stream));
+    ASSERT_TRUE(tracker.pollFor(*tracker.device, seconds(2)));
+    for (const TrackerSample& s : tracker.sink.tracker) {
+      const auto m = tracker.script.at(fromNanoseconds(s.received_ns) - tracker.start);
+      if (s.station == 1) {
+        ASSERT_NEAR(s.position_m[0], m.position_m[1], 0.005);
+        ASSERT_NEAR(s.position_m[1], 0.5F - m.position_m[0], 0.005);
+        ASSERT_NEAR(s.position_m[2], m.position_m[2], 0.005);
+      } else {  // q * conj(0.6, 0, 0, 0.8)
+        const auto& q = m.orientation_wxyz;
+        ASSERT_NEAR(std::abs(s.orientation_wxyz[0]), std::abs(0.6F * q[0] + 0.8F * q[3]), 0.02);
+        ASSERT_NEAR(std::abs(s.orientation_wxyz[3]), std::abs(0.6F * q[3] - 0.8F * q[0]), 0.02);
+      }
+    }
+  }
+}
+
+TEST(FastrakDevice, AStylussButtonComesWithItsRecords) {
+  FastrakSettings settings;
+  settings.stylus = true;
+  Tracker tracker({}, settings);
+  ASSERT_TRUE(tracker.device->open(tracker.stream));
+  EXPECT_NE(tracker.stream.written().find("e1,0\rN1,0.00,0.00,0.00\rO1,2,11,16,0\r"),
+            std::string::npos);
+  tracker.stream.mute();
+  Record r;
+  constexpr std::array<int, 4> kItems = {2, 11, 16, 0};
+  for (const bool pressed : {true, false}) {
+    r.stylus = pressed;
+    tracker.stream.feed(encode(r, kItems, {}));
+    ASSERT_TRUE(tracker.device->poll(tracker.stream));
+    EXPECT_EQ(tracker.sink.tracker.back().stylus, pressed ? 1 : 0);
+  }
+}
+
 TEST(FastrakDevice, NormalisesAQuaternionThatIsNearlyOne) {
   Tracker tracker;
   ASSERT_TRUE(tracker.device->open(tracker.stream));
