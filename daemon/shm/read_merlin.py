@@ -14,9 +14,9 @@ def text(raw):
 def read(memory, type_, count, offset, slot):
     """One field, whole: the sequence of its slot is even, and the same before and after."""
     for _ in range(1000):
-        before, = struct.unpack_from("<Q", memory, slot)
+        before, = struct.unpack_from("<Q", memory, slot) if slot else (2,)  # 0: a word by itself
         values = struct.unpack_from(f"<{count}{type_}", memory, offset)
-        if before % 2 == 0 and before == struct.unpack_from("<Q", memory, slot)[0]:
+        if before % 2 == 0 and (not slot or before == struct.unpack_from("<Q", memory, slot)[0]):
             return (text(values[0]) if type_ == "s" else values) if before else None
     return None
 
