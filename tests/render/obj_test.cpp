@@ -58,7 +58,7 @@ TEST_F(ObjFile, MayNameNormalsAndTextureAtEachCorner) {
 }
 
 TEST_F(ObjFile, CountsNegativeIndicesFromTheVerticesSoFar) {
-  EXPECT_EQ(trianglesOf("f -4 -3 -1\nv 5 5 5\nv 6 6 6\nf -6 -2 -1\n"), (Indices{0, 1, 2, 0, 3, 4}));
+  EXPECT_EQ(trianglesOf("f -4 -3 -1\nv 5 5 5\nf -4 -5 -1\n"), (Indices{0, 1, 2, 1, 0, 3}));
 }
 
 TEST_F(ObjFile, MayHoldWhatMerlinHasNoUseFor) {

@@ -87,15 +87,26 @@ TEST_F(TexturedObj, TakesColoursFromThePicture) {
       << "blue below on the left, white, red, green";
 }
 
+// Two columns of squares; the seam goes from the middle of the lower border to the middle of all.
 TEST_F(TexturedObj, CutsVerticesAtASeamAndNowhereElse) {
-  const auto loaded = read(std::string(kSquare) + kMiddles + "f 1/1 2/2 4/4\nf 1/1 4/3 3/3\n");
-  EXPECT_EQ(loaded.mesh.triangles, (Indices{0, 1, 3, 0, 4, 2})) << "only vertex 3 is cut";
-  ASSERT_EQ(loaded.mesh.vertexCount(), 5u);
-  EXPECT_EQ((Floats{loaded.mesh.positions.end() - 6, loaded.mesh.positions.end()}),
-            (Floats{1, 1, 0, 1, 1, 0}));
-  EXPECT_EQ(samePlace(loaded.mesh.positions), (Indices{0, 1, 2, 4, 3}));
+  const auto loaded = read("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 1 2 0\n" +
+                           std::string(kMiddles) +
+                           "f 1/1 2/1 5/1\nf 1/1 5/1 4/1\nf 4/1 5/1 7/1\nf 2/2 3/1 6/1\n"
+                           "f 2/2 6/1 5/1\nf 5/1 6/1 7/1\n");
+  EXPECT_EQ(loaded.mesh.triangles, (Indices{0, 1, 4, 0, 4, 3, 3, 4, 6, 7, 2, 5, 7, 5, 4, 4, 5, 6}))
+      << "vertex 1 alone is cut";
+  ASSERT_EQ(loaded.mesh.vertexCount(), 8u);
+  EXPECT_EQ(samePlace(loaded.mesh.positions), (Indices{0, 7, 2, 3, 4, 5, 6, 1}));
   EXPECT_EQ(loaded.mesh.find("colour"), nullptr);
-  EXPECT_EQ(loaded.tidied.unused, 0u);
+  EXPECT_EQ(loaded.tidied.unused + loaded.split.added, 0u);
+}
+
+// The seam goes from border to border: what hangs together at one corner only is no fan.
+TEST_F(TexturedObj, CutsTheEndsOfASeamThatLeaveOneFanNoMore) {
+  const auto loaded = read(std::string(kSquare) + kMiddles + "f 1/1 2/2 4/4\nf 1/1 4/3 3/3\n");
+  EXPECT_EQ(loaded.mesh.triangles, (Indices{0, 1, 3, 5, 4, 2}));
+  EXPECT_EQ(samePlace(loaded.mesh.positions), (Indices{5, 1, 2, 4, 3, 0}));
+  EXPECT_EQ(loaded.split.vertices, 1u);
 }
 
 TEST_F(TexturedObj, GivesEachMaterialItsOwn) {
@@ -106,8 +117,8 @@ TEST_F(TexturedObj, GivesEachMaterialItsOwn) {
                   "newmtl twin\nmap_Kd -clamp on four.png\n");
   const auto loaded = read(std::string("mtllib a.mtl\n") + kSquare + kMiddles +
                            "usemtl plain\nf 1/1 2/2 4/4\nusemtl picture\nf 1/1 4/4 3/3\n"
-                           "usemtl twin\nf 3/3 4/4 1/1\n");
-  EXPECT_EQ(loaded.mesh.triangles, (Indices{0, 1, 3, 4, 5, 2, 2, 5, 4}))
+                           "usemtl twin\nv 0 2 0\nf 3/3 4/4 5/4\n");
+  EXPECT_EQ(loaded.mesh.triangles, (Indices{0, 1, 3, 5, 6, 2, 2, 6, 4}))
       << "picture and twin look the same, so no seam is between them";
   const Floats colour = loaded.mesh.find("colour")->values;
   EXPECT_EQ((Floats{colour.begin(), colour.begin() + 3}), (Floats{0.5F, 0.25F, 0}));
