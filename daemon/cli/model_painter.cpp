@@ -54,6 +54,7 @@ Result<ModelPainter> ModelPainter::make(const render::Dendrogram& model, const V
   if (!plan) return plan.error();
   ModelPainter painter(view);
   render::RenderSettings settings = view.render;
+  settings.view_dependent = false;  // shows a level as it is
   settings.backend =
       view.backend == "osmesa" ? render::GlBackend::kOsmesa : render::GlBackend::kEgl;
   auto picture = wall::Picture::make(model, *plan, settings, 1.0, clock);

@@ -95,7 +95,7 @@ void ViewCut::look(std::span<const TileView> tiles) {
       seen_[t * clusters_.size() + c] = 1;
       const float facing = back_faces_ ? 1 : viewer.facing(b, centre);
       const float p = viewer.pixelsAUnit(centre, b.radius);
-      wanted_[c] = std::max(wanted_[c], std::cbrt(p * p * p * p * facing));
+      wanted_[c] = std::max(wanted_[c], p * std::sqrt(facing));
     }
   }
 }

@@ -1,11 +1,12 @@
 // ViewCut: which level each cluster is cut at, so that one budget over all tiles of the wall is
 // spent where they look (rows M7, M9).
 //
-// The error of a surface cut to T triangles falls as 1 / T (measured: 10, 5, 1 % of five scans). A
-// cluster of n triangles of which one pixel shows s model units has n s^-2 g pixels, g the cosine
-// at which it is seen. The squared error over all pixels is least, for a sum of triangles, where
+// What one sees of a coarse surface is its shading: normals that are off by about T^-1/2 where the
+// whole is cut to T triangles. A cluster of n triangles of which p pixels show one model unit has
+// n p^2 g pixels, g the cosine at which it is seen. The squared error over all pixels is least, for
+// a sum of triangles, where
 //
-//   T_c = kappa (s_c^-4 g_c)^(1/3)
+//   T_c = kappa p_c g_c^(1/2)
 //
 // T_c is the count that the whole model would have at the cluster's level. What no tile sees gets
 // the coarsest level. kappa follows from the budget by bisection. Pure.
@@ -56,7 +57,7 @@ class ViewCut {
   const Clusters& clusters_;
   bool back_faces_;
   std::vector<std::uint32_t> level_table_;  // by log2 of triangles, 64 steps an octave
-  std::vector<float> wanted_;               // by cluster: (s^-4 g)^(1/3); 0: not seen
+  std::vector<float> wanted_;               // by cluster: p g^(1/2); 0: not seen
   std::vector<std::uint8_t> seen_;          // tiles x clusters
   std::vector<std::uint32_t> levels_;
 };
