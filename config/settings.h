@@ -10,6 +10,7 @@
 #include "drivers/gpio/settings.h"
 #include "drivers/hand/settings.h"
 #include "drivers/spaceball/settings.h"
+#include "nn/settings.h"
 #include "render/gl/settings.h"
 #include "render/governor/settings.h"
 #include "render/out/settings.h"
@@ -35,6 +36,7 @@ struct DevicesSettings {
   HandSettings hand;
   GpioSettings gpio;
   std::string postures;          // the posture network's file; empty: none is recognised
+  nn::HoldSettings posture_hold;
   std::string script = "visit";  // what the emulated person does, with --emulate
 };
 

@@ -20,20 +20,21 @@ Result<std::vector<Example>> toExamples(std::span<const LabelledHand> hands,
                                hand.posture, network.postures.size())};
     }
     for (std::size_t i = 0; i < kInputs; ++i) {
-      if (std::isfinite(hand.angle_rad[i])) continue;
+      if (std::isfinite(hand.value[i])) continue;
       return Error{Errc::kInvalidArgument,
                    fmt::format("hand {}: the angle of {} is {}; allowed: a finite number", h,
-                               kInputNames[i], hand.angle_rad[i])};
+                               kInputNames[i], hand.value[i])};
     }
-    examples.push_back({normalise(network.ranges, hand.angle_rad), *code});
+    examples.push_back({normalise(network.ranges, hand.value), *code});
   }
   return examples;
 }
 
-Score score(const PostureNetwork& network, std::span<const LabelledHand> hands) noexcept {
+Score score(const PostureNetwork& network, std::span<const LabelledHand> hands) {
+  const Recogniser recognise(network);
   Score s;
   for (const LabelledHand& hand : hands) {
-    const auto name = recognise(network, hand.angle_rad).name;
+    const auto name = recognise(hand.value).name;
     ++s.total;
     if (name.empty()) {
       ++s.rejected;

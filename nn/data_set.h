@@ -13,7 +13,7 @@ namespace merlin::nn {
 
 struct LabelledHand {
   std::string posture;
-  Angles angle_rad{};
+  Angles value{};
 };
 using DataSet = std::vector<LabelledHand>;
 
@@ -39,6 +39,6 @@ struct Score {
 };
 
 // Recognises every hand, and compares names.
-Score score(const PostureNetwork& network, std::span<const LabelledHand> hands) noexcept;
+Score score(const PostureNetwork& network, std::span<const LabelledHand> hands);
 
 }  // namespace merlin::nn

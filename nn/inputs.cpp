@@ -22,12 +22,12 @@ const InputRanges kGloveRanges = {{
     {0.0F, 0.5F}, {-0.7F, 0.9F}, {-0.5F, 0.3F},                 // palm, wrist
 }};
 
-Input normalise(const InputRanges& ranges, const Angles& angle_rad) noexcept {
+Input normalise(const InputRanges& ranges, const Angles& value) noexcept {
   Input x;
   for (std::size_t i = 0; i < kInputs; ++i) {
     const auto [low, high] = ranges[i];
     assert(low < high);
-    x[i] = std::clamp((angle_rad[i] - low) / (high - low), 0.0F, 1.0F);
+    x[i] = std::clamp((value[i] - low) / (high - low), 0.0F, 1.0F);
   }
   return x;
 }

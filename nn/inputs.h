@@ -7,23 +7,30 @@
 
 namespace merlin::nn {
 
-using Angles = std::array<float, kInputs>;  // joint angles in slot order [rad]
+// What a glove measures, in slot order: joint angles [rad], or its sensors' own counts. A network
+// is trained on one of the two and recalls the same.
+enum class InputUnit { kRadians, kRaw };
+using Angles = std::array<float, kInputs>;
 
-// No joint's angle is beyond: a file that says so holds degrees or raw counts.
-inline constexpr double kMostAngle_rad = 6.3;
+// No joint's angle is beyond the first: a file that says so holds degrees or raw counts.
+inline constexpr double kMostAngle_rad = 6.3, kMostRaw = 1e6;
+constexpr double mostValue(InputUnit unit) {
+  return unit == InputUnit::kRaw ? kMostRaw : kMostAngle_rad;
+}
 
+// In the network's unit.
 struct InputRange {
-  float low_rad = 0.0F;   // becomes 0
-  float high_rad = 1.0F;  // becomes 1; above low_rad
+  float low = 0.0F;   // becomes 0
+  float high = 1.0F;  // becomes 1; above low
 };
 using InputRanges = std::array<InputRange, kInputs>;
 
 extern const std::array<const char*, kInputs> kInputNames;  // "thumb-roll" ... "wrist-yaw"
 extern const InputRanges kGloveRanges;                      // sources: nn/README.md, "Inputs"
 
-// x_i = (angle_i - low_i) / (high_i - low_i), held within [0, 1]: a joint bent past its range is as
+// x_i = (value_i - low_i) / (high_i - low_i), held within [0, 1]: a joint bent past its range is as
 // if at its end, so that what reaches the network is never far from what it was trained on. A NaN
 // stays NaN. Allocation-free.
-Input normalise(const InputRanges& ranges, const Angles& angle_rad) noexcept;
+Input normalise(const InputRanges& ranges, const Angles& value) noexcept;
 
 }  // namespace merlin::nn

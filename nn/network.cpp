@@ -1,7 +1,6 @@
 #include "nn/network.h"
 
-#include <cmath>
-#include <numbers>
+#include "nn/phi.h"
 
 namespace merlin::nn {
 namespace {
@@ -13,18 +12,6 @@ struct PhiName {
 constexpr PhiName kPhiNames[] = {
     {Phi::kSigmoid, "sigmoid"}, {Phi::kSignum, "signum"}, {Phi::kAtan, "atan"}};
 
-template <typename Real>
-Real activate(Phi phi, Real sum) noexcept {
-  switch (phi) {
-    case Phi::kSigmoid: return 1 / (1 + std::exp(-sum));
-    case Phi::kSignum:
-      if (std::isnan(sum)) return sum;  // a comparison alone would make it a clean 0
-      return sum > 0 ? Real{1} : Real{0};
-    case Phi::kAtan: return Real{0.5} + std::atan(sum) * std::numbers::inv_pi_v<Real>;
-  }
-  return sum;
-}
-
 // One layer: sums, then values.
 template <typename Real, std::size_t In, std::size_t Out>
 void layer(Phi phi, const std::array<std::array<Real, In + 1>, Out>& weights,
@@ -34,8 +21,8 @@ void layer(Phi phi, const std::array<std::array<Real, In + 1>, Out>& weights,
     Real sum = 0;
     for (std::size_t i = 0; i < In; ++i) sum += weights[j][i] * x[i];
     sums[j] = sum + weights[j][In];
-    values[j] = activate(phi, sums[j]);
   }
+  activate<Real, Out>(phi, sums.data(), values.data());
 }
 
 }  // namespace

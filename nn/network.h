@@ -48,7 +48,7 @@ struct Pass {
 //
 // Pure and allocation-free: it runs in the glove's device thread. Inputs outside [0, 1] are used
 // as they are. A NaN among the inputs makes every output NaN, with each Phi. Sums run from i = 0
-// up, the bias last: the same bits on every machine but for the last one of e^t and atan.
+// up, the bias last; of floats the same bits on every machine (phi.h).
 template <typename Real>
 Pass<Real> propagate(Phi phi, const BasicWeights<Real>& weights,
                      const std::array<Real, kInputs>& x) noexcept;

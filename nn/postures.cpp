@@ -62,12 +62,6 @@ std::size_t PostureTable::size() const noexcept {
       std::count_if(names_.begin(), names_.end(), [](const auto& name) { return name[0] != 0; }));
 }
 
-std::uint32_t evenCode(std::size_t n) noexcept {
-  assert(n < kEvenCodes);
-  const auto upper = static_cast<std::uint32_t>(n + 1);
-  return upper << 1 | (static_cast<std::uint32_t>(std::popcount(upper)) & 1);
-}
-
 std::string formatCode(std::uint32_t code) { return fmt::format("{:0{}b}", code, kOutputs); }
 
 std::optional<std::uint32_t> parseCode(std::string_view digits) noexcept {
@@ -80,15 +74,29 @@ std::optional<std::uint32_t> parseCode(std::string_view digits) noexcept {
   return code;
 }
 
-Recognition recognise(const PostureNetwork& network, const Angles& angle_rad) noexcept {
-  Recognition r{0, {}, {}};
-  if (!std::all_of(angle_rad.begin(), angle_rad.end(), [](float a) { return std::isfinite(a); })) {
+Recogniser::Recogniser(const PostureNetwork& network)
+    : phi_(network.phi),
+      ranges_(network.ranges),
+      lanes_(toLanes(network.weights)),
+      postures_(network.postures) {}
+
+Recognition Recogniser::operator()(const Angles& value) const noexcept {
+  Recognition r{0, {}, {}, 0};
+  float sum = 0;  // not finite where any value is not: one test instead of 23
+  for (const float v : value) sum += v * 0;
+  if (!(sum == 0)) {
     r.activation.fill(std::numeric_limits<float>::quiet_NaN());
+    r.margin = std::numeric_limits<float>::quiet_NaN();
     return r;
   }
-  r.activation = forward(network.phi, network.weights, normalise(network.ranges, angle_rad));
+  LanePass<float> pass;
+  const Input x = normalise(ranges_, value);
+  propagate(phi_, lanes_, x.data(), pass);
+  std::copy_n(pass.output.begin(), kOutputs, r.activation.begin());
   r.code = threshold(r.activation);
-  r.name = network.postures.name(r.code);
+  r.name = postures_.name(r.code);
+  r.margin = 1;
+  for (const float y : r.activation) r.margin = std::min(r.margin, std::abs(2 * y - 1));
   return r;
 }
 

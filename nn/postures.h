@@ -9,6 +9,7 @@
 
 #include "daemon/base/result.h"
 #include "nn/inputs.h"
+#include "nn/lanes.h"
 #include "nn/network.h"
 
 namespace merlin::nn {
@@ -35,13 +36,6 @@ class PostureTable {
   std::array<std::array<char, kLongestName + 1>, kCodes> names_{};  // NUL-ended
 };
 
-// The code of the n-th posture of a table that MERLIN makes, n < kEvenCodes: n + 1 in the upper
-// four bits, and the lowest so that the number of ones is even. Any two differ in at least two
-// bits, so one wrong output is no posture, never another one. 00000 is left out: it is what a
-// network says that has learned nothing.
-inline constexpr std::size_t kEvenCodes = 15;
-std::uint32_t evenCode(std::size_t n) noexcept;
-
 // A code as files write it: five digits, output 4 first, output 0 last.
 std::string formatCode(std::uint32_t code);
 std::optional<std::uint32_t> parseCode(std::string_view digits) noexcept;
@@ -49,6 +43,7 @@ std::optional<std::uint32_t> parseCode(std::string_view digits) noexcept;
 // All that recall needs. Plain data, about 2.6 kB.
 struct PostureNetwork {
   Phi phi = Phi::kSigmoid;
+  InputUnit unit = InputUnit::kRadians;
   InputRanges ranges = kGloveRanges;
   Weights weights;
   PostureTable postures;
@@ -57,11 +52,26 @@ struct PostureNetwork {
 struct Recognition {
   std::uint32_t code;     // threshold(activation)
   Output activation;      // the outputs as they are
-  std::string_view name;  // of the code; empty: no posture. Valid as long as the network
+  std::string_view name;  // of the code; empty: no posture. Valid as long as the recogniser
+  float margin;           // how sure: the least |2 Y_k - 1| over the outputs, 0..1; NaN: not at all
 };
 
-// What the hand shows. An angle that is not finite is never a posture, whatever the table says:
-// code 0, activations NaN, no name. Allocation-free; about 0.4 us.
-Recognition recognise(const PostureNetwork& network, const Angles& angle_rad) noexcept;
+// Recall, made ready: the weights laid out for vector instructions. Immutable: thread-safe.
+class Recogniser {
+ public:
+  explicit Recogniser(const PostureNetwork& network);
+
+  // What the hand shows. A value that is not finite is never a posture, whatever the table says:
+  // code 0, activations NaN, no name. Allocation-free; about 0.1 us.
+  Recognition operator()(const Angles& value) const noexcept;
+
+  std::string_view name(std::uint32_t code) const noexcept { return postures_.name(code); }
+
+ private:
+  Phi phi_;
+  InputRanges ranges_;
+  Lanes<float> lanes_;
+  PostureTable postures_;
+};
 
 }  // namespace merlin::nn

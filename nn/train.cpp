@@ -3,25 +3,15 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "daemon/base/random.h"
+#include "nn/phi.h"
 
 namespace merlin::nn {
 namespace {
-
-// Phi'(sum), where value = Phi(sum).
-double slopeOf(Phi phi, double sum, double value) noexcept {
-  switch (phi) {
-    case Phi::kSigmoid: return value * (1 - value);
-    case Phi::kSignum: break;
-    case Phi::kAtan: return std::numbers::inv_pi / (1 + sum * sum);
-  }
-  return 0.0;
-}
 
 std::array<double, kInputs> widen(const Input& x) noexcept {
   std::array<double, kInputs> wide;  // NOLINT: filled next

@@ -51,15 +51,6 @@ struct Training {
   TrainReport report;
 };
 
-// Where a network's weights come from, as its file says it.
-struct Provenance {
-  std::string how;  // for a person, one line
-  std::uint64_t seed = 0;
-  std::size_t samples = 0;
-  double mse = 0.0;
-  bool synthetic = false;  // trained on hands that nobody had
-};
-
 // Called before each step with the number of steps done and the error there; false stops.
 using Progress = std::function<bool(std::size_t iteration, double mse)>;
 

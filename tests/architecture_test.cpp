@@ -69,8 +69,8 @@ const std::map<std::string, Folders> kMayInclude = {
     {"config",
      {"daemon/serve/settings.h", "drivers/gpio/settings.h", "drivers/hand/settings.h",
       "drivers/cyberglove/settings.h", "drivers/fastrak/settings.h", "drivers/spaceball/settings.h",
-      "render/gl/settings.h", "render/governor/settings.h", "render/out/settings.h",
-      "render/scene/settings.h", "render/tiles/settings.h"}},
+      "nn/settings.h", "render/gl/settings.h", "render/governor/settings.h",
+      "render/out/settings.h", "render/scene/settings.h", "render/tiles/settings.h"}},
 };
 
 // Third-party headers stay behind an adapter.

@@ -86,7 +86,10 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
     const auto file = nn::loadNetwork(settings.devices.postures);
     if (!file) return file.error();
     role->posture_sink_ =
-        std::make_unique<PostureSink>(file->network, role->segment_->posture, role->sink_);
+        std::make_unique<PostureSink>(file->network, settings.devices.posture_hold,
+                                      PostureSink::Outputs{role->segment_->posture,
+                                                           role->segment_->posture_state},
+                                      role->sink_);
   }
   role->hand_sink_ =
       std::make_unique<HandSink>(settings.devices.hand, *role->segment_, role->sink_);

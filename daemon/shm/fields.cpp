@@ -166,6 +166,14 @@ std::vector<Field> devicesFields() {
   addChannel<TrackerSample>(t, "tracker1", offsetof(DevicesSegment, tracker));
   addChannel<BallSample>(t, "ball", offsetof(DevicesSegment, ball));
   addChannel<HandSample>(t, "hand", offsetof(DevicesSegment, hand));
+  t.slot("posture_state", offsetof(DevicesSegment, posture_state));
+  MERLIN_FIELD(t, PostureState, received_ns, "ns");
+  MERLIN_FIELD(t, PostureState, since_ns, "ns");
+  MERLIN_FIELD(t, PostureState, code, "bits");
+  MERLIN_FIELD(t, PostureState, margin, "");
+  MERLIN_FIELD(t, PostureState, entered, "");
+  MERLIN_FIELD(t, PostureState, name, "");
+  MERLIN_FIELD(t, PostureState, seen, "");
   return t.take();
 }
 

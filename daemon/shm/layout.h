@@ -66,6 +66,7 @@ struct DevicesSegment {
   Channel<HandSample> hand;                            // writer: the tracker's device thread
   Channel<GpioSample> gpio;                            // writer: the panel's thread
   alignas(64) SeqSlot<DeviceHealth> gpio_health;       // writer: the panel's thread
+  alignas(64) SeqSlot<PostureState> posture_state;     // writer: the glove's device thread
 };
 
 // How the wall fares; written once a frame by the wall's thread. Shares are 0..1.

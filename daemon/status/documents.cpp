@@ -83,7 +83,24 @@ Json deviceJson(const DeviceHealth& h, Timestamp now) {
           {"bad_packets", h.bad_packets}, {"bad_bytes", h.bad_bytes}};
 }
 
+// What is held, what the newest record shows, and how sure that is.
+Json postureJson(const shm::DevicesSegment& segment, Timestamp now) {
+  const auto held = segment.posture_state.read();
+  const auto shown = segment.posture.newest();
+  if (!held || !shown) return nullptr;
+  return {{"name", text(held->name)},
+          {"code", held->code},
+          {"held_s", ageSeconds(held->since_ns, now)},
+          {"entered", held->entered},
+          {"seen", text(held->seen)},
+          {"seen_code", shown->code},
+          {"margin", round3(static_cast<double>(held->margin))},
+          {"activation", list(std::span<const float>(shown->activation))},
+          {"age_s", ageSeconds(held->received_ns, now)}};
+}
+
 std::string postureName(const shm::DevicesSegment& segment) {
+  if (const auto held = segment.posture_state.read()) return text(held->name);
   const auto posture = segment.posture.newest();
   return posture ? text(posture->name) : "";
 }
@@ -113,6 +130,7 @@ std::string devicesStatus(const shm::DevicesSegment& segment, Timestamp now) {
                {"pid", segment.header.pid},
                {"uptime_s", ageSeconds(segment.header.started_ns, now)},
                {"posture", postureName(segment)},
+               {"posture_detail", postureJson(segment, now)},
                {"devices", std::move(devices)}});
 }
 

@@ -48,6 +48,12 @@ render::SceneInput DeviceFeed::read(Timestamp now) {
   // The line may live while the glove is silent: a posture nobody shows any more lets go.
   if (input.posture && now - fromNanoseconds(input.posture->received_ns) > stale_after_)
     input.posture.reset();
+  // What is held, rather than what one record shows; another machine's samples have the latter only.
+  if (const auto held = d->posture_state.read(); held && input.posture) {
+    std::copy(std::begin(held->name), std::end(held->name), input.posture->name);
+    input.posture->code = held->code;
+    input.posture->since_ns = held->since_ns;
+  }
   if (input.hand && now - fromNanoseconds(input.hand->received_ns) > stale_after_)
     input.hand.reset();
   return input;

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <numbers>
 
 #include "daemon/base/bytes.h"
 #include "daemon/base/random.h"
 #include "drivers/cyberglove/calibration.h"
 #include "drivers/cyberglove/protocol.h"
 #include "drivers/emulate/wire.h"
+#include "drivers/hand/people.h"
 
 namespace merlin::emulate {
 namespace {
@@ -19,6 +22,7 @@ using std::chrono::milliseconds;
 constexpr Duration kRestartTime = milliseconds(1750);
 constexpr Duration kShortestPeriod = std::chrono::nanoseconds(1'000'000'000 / 150);
 constexpr Duration kNever = std::chrono::hours(24 * 365);
+constexpr float kSensorCutoff_hz = 30;
 constexpr double kTick = 1.0 / 115200;  // s, of the rate and of the time stamps
 
 constexpr char kStop = 0x03, kReinitialise = 0x09, kRestart = 0x12;
@@ -59,7 +63,8 @@ class CybergloveEmulator final : public Emulator {
         script_(script),
         start_(start),
         wire_(settings.baud, settings.garbage_every, settings.seed),
-        noise_(settings.seed) {
+        noise_(settings.seed),
+        person_(settings.person) {
     reset();
   }
 
@@ -208,13 +213,12 @@ class CybergloveEmulator final : public Emulator {
   Duration period() const { return std::max(askedPeriod(), kShortestPeriod); }
 
   std::string record(bool single, Timestamp now) {
-    const Motion motion = script_.at(now - start_);
-    const auto raw = cyberglove::rawOf(motion.glove_rad, calibration_);
+    smooth(script_.at(now - start_).glove_rad, now);
+    const auto raw = cyberglove::rawOf(person_.sense(smoothed_, noise_), calibration_);
     const auto slots = cyberglove::slotsOf(state_.mask);
     Record record;
     for (std::size_t i = 0; i < state_.values; ++i) {
-      const int noisy = raw[slots.slot[i]] + static_cast<int>(noise_.below(3)) - 1;
-      record.values[i] = static_cast<std::uint8_t>(std::clamp(noisy, 1, 255));
+      record.values[i] = raw[slots.slot[i]];
     }
     record.single = single;
     record.timestamp =
@@ -225,15 +229,29 @@ class CybergloveEmulator final : public Emulator {
     return cyberglove::encode(record, {state_.values, state_['D'], state_['U']});
   }
 
+  // The analogue low-pass of each sensor, first order.
+  void smooth(const std::array<float, kGloveSlots>& angle_rad, Timestamp now) {
+    const bool first = smoothed_at_ == Timestamp{};
+    const auto dt = static_cast<float>(toSeconds(now - smoothed_at_));
+    const float share =
+        first ? 1 : 1 - std::exp(-2 * std::numbers::pi_v<float> * kSensorCutoff_hz * dt);
+    for (std::size_t i = 0; i < kGloveSlots; ++i)
+      smoothed_[i] += share * (angle_rad[i] - smoothed_[i]);
+    smoothed_at_ = now;
+  }
+
   std::uint32_t hardware_mask_;
   MotionScript script_;
   Timestamp start_;
   Wire wire_;
   Random noise_;
+  hand::Person person_;  // who wears it
   CybergloveSettings calibration_;
   State state_;
   std::string command_;
   std::string pending_;
+  std::array<float, kGloveSlots> smoothed_{};
+  Timestamp smoothed_at_{};
   bool restarting_ = false;
   bool streaming_ = false;
   Timestamp ready_at_{};

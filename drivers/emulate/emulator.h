@@ -31,10 +31,11 @@ class Emulator {
 };
 
 struct EmulatorSettings {
-  int baud = 38400;        // the line's speed: records that do not fit are dropped, as by the box
-  std::string model = {};  // of the device, empty for its default; see the table
-  std::uint64_t seed = 1;  // of noise and garbage
-  int garbage_every = 0;   // records between two bursts of garbage; 0 for none
+  int baud = 38400;          // the line's speed: records that do not fit are dropped, as by the box
+  std::string model = {};    // of the device, empty for its default; see the table
+  std::uint64_t person = 0;  // who wears the glove: drivers/hand/people
+  std::uint64_t seed = 1;    // of noise and garbage
+  int garbage_every = 0;     // records between two bursts of garbage; 0 for none
 };
 
 // One row a device that can be emulated.

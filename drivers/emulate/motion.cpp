@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "drivers/hand/shapes.h"
+#include "drivers/hand/recording.h"
 
 namespace merlin::emulate {
 namespace {
@@ -69,14 +69,15 @@ Motion MotionScript::at(Duration t) const {
   while (i + 1 < phases.size() && since >= phases[i].seconds) since -= phases[i++].seconds;
   const Phase& now = phases[i];
   const Phase& before = phases[(i + phases.size() - 1) % phases.size()];
-  const double share = smooth(since / std::min(kTransition, now.seconds));
+  const double way = since / std::min(kTransition, now.seconds);
+  const double share = smooth(way);
 
   Motion motion;
   const hand::Shape* from = hand::findShape(before.shape);
   const hand::Shape* to = hand::findShape(now.shape);
   assert(from && to);
   for (std::size_t s = 0; s < kGloveSlots; ++s) {
-    motion.glove_rad[s] = mix(from->angle_rad[s], to->angle_rad[s], share);
+    motion.glove_rad[s] = mix(from->angle_rad[s], to->angle_rad[s], hand::wayDone(s, way));
   }
   for (std::size_t a = 0; a < 6; ++a) motion.ball[a] = mix(before.ball[a], now.ball[a], share);
   motion.ball_buttons = now.buttons;

@@ -63,6 +63,20 @@ struct PostureSample {
 };
 static_assert(sizeof(PostureSample) == 64 && offsetof(PostureSample, activation) == 24);
 
+// The posture that a person means: held and left with hysteresis, as the configuration says.
+// PostureSample is what one record shows.
+struct PostureState {
+  std::int64_t received_ns;  // of the glove record that it was last judged by
+  std::int64_t since_ns;     // received_ns of the first record that showed it, or no longer did
+  std::uint32_t counter;     // of that last record
+  std::uint32_t code;        // of the posture that is held; 0 where none is
+  float margin;              // of that last record: the least |2 y - 1| over the outputs, 0..1
+  std::uint32_t entered;     // postures that have begun to be held since the daemon started
+  char name[20];             // that is held, NUL-ended; empty for none
+  char seen[20];             // in that last record alone
+};
+static_assert(sizeof(PostureState) == 72 && offsetof(PostureState, name) == 32);
+
 // Glove and tracker as one hand: the joints' angles and where the hand is.
 struct HandSample {
   enum Flag : std::uint32_t { kJoints = 1 };  // a glove's record of the last half second is in it

@@ -1,5 +1,6 @@
 #include "nn/io/network_file.h"
 
+#include <algorithm>
 #include <exception>
 #include <limits>
 
@@ -14,10 +15,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 constexpr std::uint64_t kMostVersions = 1000;
-constexpr std::size_t kLargestFile = 1 << 20;  // bytes; a network has about 8 kB
+constexpr std::size_t kLargestFile = 1 << 20;  // bytes; a network has about 25 kB
 constexpr double kMostWeight = 1e6;            // far beyond where any Phi is flat
+constexpr double kLeastSpread = 1e-6;          // of a hand, share of a range
 constexpr std::size_t kLongestHow = 200;
 constexpr auto kMostCount = std::numeric_limits<std::uint64_t>::max();
 
@@ -34,21 +36,27 @@ Phi readPhi(JsonView view) {
   return phi.value_or(Phi::kSigmoid);
 }
 
+InputUnit readUnit(JsonView view) {
+  const std::string unit = view.text(kLongestName);
+  if (unit != "rad" && unit != "raw") view.wrong("\"rad\" or \"raw\"");
+  return unit == "raw" ? InputUnit::kRaw : InputUnit::kRadians;
+}
+
 // Slot and name say the same thing twice, so that a file made for another order is found out.
-void readInputs(JsonView inputs, InputRanges& ranges) {
+void readInputs(JsonView inputs, InputUnit unit, InputRanges& ranges) {
+  const double most = mostValue(unit);
   inputs.expectArray(kInputs, kInputs);
   for (std::size_t i = 0; i < kInputs; ++i) {
     JsonView input = inputs.at(i);
-    input.allowKeys({"slot", "name", "low_rad", "high_rad"});
+    input.allowKeys({"slot", "name", "low", "high"});
     input.at("slot").count(i, i);
     JsonView name = input.at("name");
     if (name.text(kLongestHow) != kInputNames[i]) name.wrong(fmt::format("\"{}\"", kInputNames[i]));
-    ranges[i].low_rad =
-        static_cast<float>(input.at("low_rad").number(-kMostAngle_rad, kMostAngle_rad));
-    JsonView high = input.at("high_rad");
-    ranges[i].high_rad = static_cast<float>(high.number(-kMostAngle_rad, kMostAngle_rad));
-    if (!(ranges[i].low_rad < ranges[i].high_rad)) {
-      high.wrong(fmt::format("more than low_rad, {}", ranges[i].low_rad));
+    ranges[i].low = static_cast<float>(input.at("low").number(-most, most));
+    JsonView high = input.at("high");
+    ranges[i].high = static_cast<float>(high.number(-most, most));
+    if (!(ranges[i].low < ranges[i].high)) {
+      high.wrong(fmt::format("more than low, {}", ranges[i].low));
     }
   }
 }
@@ -78,6 +86,26 @@ void readPostures(JsonView list, PostureTable& postures) {
   }
 }
 
+// Rows are in the order of the postures' codes, as the file's own list is.
+std::optional<Memory> readMemory(JsonView view, const PostureTable& postures) {
+  view.allowKeys({"mean", "spread"});
+  Memory memory;
+  for (std::uint32_t code = 0; code < kCodes; ++code) {
+    if (const auto name = postures.name(code); !name.empty()) memory.postures.emplace_back(name);
+  }
+  JsonView mean = view.at("mean"), spread = view.at("spread");
+  const bool any = mean.expectArray(0, kCodes) > 0;
+  memory.mean.resize(any ? memory.postures.size() : 0);
+  if (!any) {
+    spread.expectArray(0, 0);
+    return std::nullopt;
+  }
+  readRows(mean, memory.mean);
+  readRows(spread, memory.spread);
+  for (std::size_t i = 0; i < kInputs; ++i) spread.at(i).at(i).number(kLeastSpread, kMostWeight);
+  return memory;
+}
+
 Provenance readProvenance(JsonView view) {
   view.allowKeys({"how", "seed", "samples", "mse", "synthetic"});
   Provenance trained;
@@ -96,13 +124,16 @@ NetworkFile readDocument(JsonView root) {
     version.wrong(fmt::format("{}, the version that this MERLIN reads", kVersion), {},
                   Errc::kUnsupported);
   }
-  root.allowKeys({"version", "sizes", "phi", "inputs", "hidden", "output", "postures", "trained"});
+  root.allowKeys({"version", "sizes", "phi", "unit", "inputs", "hidden", "output", "postures",
+                  "memory", "trained"});
   readSizes(root.at("sizes"));
   file.network.phi = readPhi(root.at("phi"));
-  readInputs(root.at("inputs"), file.network.ranges);
+  file.network.unit = readUnit(root.at("unit"));
+  readInputs(root.at("inputs"), file.network.unit, file.network.ranges);
   readRows(root.at("hidden"), file.network.weights.hidden);
   readRows(root.at("output"), file.network.weights.output);
   readPostures(root.at("postures"), file.network.postures);
+  file.memory = readMemory(root.at("memory"), file.network.postures);
   file.trained = readProvenance(root.at("trained"));
   return file;
 }
@@ -124,9 +155,9 @@ std::string formatRows(const Rows& rows) {
 std::string formatInputs(const InputRanges& ranges) {
   std::string out;
   for (std::size_t i = 0; i < kInputs; ++i) {
-    out += fmt::format(R"({}    {{"slot": {}, "name": "{}", "low_rad": {}, "high_rad": {}}})",
-                       i == 0 ? "" : ",\n", i, kInputNames[i], number(ranges[i].low_rad),
-                       number(ranges[i].high_rad));
+    out += fmt::format(R"({}    {{"slot": {}, "name": "{}", "low": {}, "high": {}}})",
+                       i == 0 ? "" : ",\n", i, kInputNames[i], number(ranges[i].low),
+                       number(ranges[i].high));
   }
   return out;
 }
@@ -140,6 +171,19 @@ std::string formatPostures(const PostureTable& postures) {
                        formatCode(code), name);
   }
   return out;
+}
+
+std::string formatMemory(const std::optional<Memory>& memory, const PostureTable& postures) {
+  if (!memory) return R"("mean": [], "spread": [])";
+  std::vector<Input> mean;
+  for (std::uint32_t code = 0; code < kCodes; ++code) {
+    const auto name = postures.name(code);
+    const auto at = std::find(memory->postures.begin(), memory->postures.end(), name);
+    if (!name.empty() && at != memory->postures.end())
+      mean.push_back(memory->mean[static_cast<std::size_t>(at - memory->postures.begin())]);
+  }
+  return fmt::format("\n  \"mean\": [\n{}\n  ],\n  \"spread\": [\n{}\n  ]", formatRows(mean),
+                     formatRows(memory->spread));
 }
 
 }  // namespace
@@ -167,27 +211,32 @@ Result<NetworkFile> loadNetwork(const std::string& path) {
   return parseNetwork(file->text(), path);
 }
 
-std::string formatNetwork(const PostureNetwork& network, const Provenance& trained) {
+std::string formatNetwork(const NetworkFile& file) {
   constexpr auto kReplace = json::error_handler_t::replace;  // `how` may hold anything
+  const PostureNetwork& network = file.network;
+  const Provenance& trained = file.trained;
   return fmt::format(
       "{{\n  \"version\": {},\n"
       "  \"sizes\": {{\"inputs\": {}, \"hidden\": {}, \"outputs\": {}}},\n"
       "  \"phi\": \"{}\",\n"
+      "  \"unit\": \"{}\",\n"
       "  \"inputs\": [\n{}\n  ],\n"
       "  \"hidden\": [\n{}\n  ],\n"
       "  \"output\": [\n{}\n  ],\n"
       "  \"postures\": [\n{}\n  ],\n"
+      "  \"memory\": {{{}}},\n"
       "  \"trained\": {{\"how\": {}, \"seed\": {}, \"samples\": {}, \"mse\": {}, "
       "\"synthetic\": {}}}\n}}\n",
-      kVersion, kInputs, kHidden, kOutputs, nameOf(network.phi), formatInputs(network.ranges),
+      kVersion, kInputs, kHidden, kOutputs, nameOf(network.phi),
+      network.unit == InputUnit::kRaw ? "raw" : "rad", formatInputs(network.ranges),
       formatRows(network.weights.hidden), formatRows(network.weights.output),
-      formatPostures(network.postures), json(trained.how).dump(-1, ' ', false, kReplace),
-      trained.seed, trained.samples, trained.mse, trained.synthetic);
+      formatPostures(network.postures), formatMemory(file.memory, network.postures),
+      json(trained.how).dump(-1, ' ', false, kReplace), trained.seed, trained.samples, trained.mse,
+      trained.synthetic);
 }
 
-Result<Ok> saveNetwork(const std::string& path, const PostureNetwork& network,
-                       const Provenance& trained) {
-  const std::string text = formatNetwork(network, trained);
+Result<Ok> saveNetwork(const std::string& path, const NetworkFile& file) {
+  const std::string text = formatNetwork(file);
   if (const auto read = parseNetwork(text, path); !read) {
     return Error{Errc::kInvalidArgument, "not written: " + read.error().what};
   }

@@ -24,7 +24,8 @@ class PostureSinkTest : public testing::Test {
   std::unique_ptr<shm::Channel<PostureSample>> postures_ =
       std::make_unique<shm::Channel<PostureSample>>();
   test::RecordingSink next_;
-  PostureSink sink_{file_.network, *postures_, next_};
+  shm::SeqSlot<PostureState> held_;
+  PostureSink sink_{file_.network, {}, {*postures_, held_}, next_};
 };
 
 TEST_F(PostureSinkTest, RecognisesEachShippedShapeAndHandsTheSampleOn) {
@@ -43,6 +44,19 @@ TEST_F(PostureSinkTest, SaysSinceWhenAPostureLasts) {
   sink_.publish(showing("fist", 3));
   EXPECT_EQ(postures_->newest()->since_ns, 1002);
   EXPECT_EQ(postures_->newest()->received_ns, 1003);
+}
+
+TEST_F(PostureSinkTest, HoldsAPostureThatLasts) {
+  GloveSample fist = showing("fist", 1);
+  for (std::int64_t ms = 0; ms < 200; ms += 10) {
+    fist.received_ns = 1'000'000'000 + ms * 1'000'000;
+    sink_.publish(fist);
+    EXPECT_STREQ(held_.read()->name, ms < 150 ? "" : "fist") << ms;
+    EXPECT_STREQ(held_.read()->seen, "fist");
+  }
+  EXPECT_EQ(held_.read()->since_ns, 1'000'000'000);
+  EXPECT_EQ(held_.read()->entered, 1u);
+  EXPECT_GT(held_.read()->margin, 0.5F);
 }
 
 TEST_F(PostureSinkTest, AHandThatIsNoneHasNoName) {

@@ -1,5 +1,4 @@
-#include <cmath>
-#include <limits>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
@@ -10,111 +9,106 @@
 namespace merlin::nn {
 namespace {
 
-using DataSetFiles = test::FilesTest;
+using test::contentOf;
 
-std::string header() {
-  return "posture,s0,s1,s2,s3,s4,s5,s6,s7,s8,s9,s10,s11,s12,s13,s14,s15,s16,s17,s18,s19,s20,s21,"
-         "s22\n";
-}
-const std::string kFist = "fist,0,1,2,3,4,5,6,-1,-2,-3,-4,-5,-6,.5,1e-3,0.25,0,0,0,0,0,0,-0.125\n";
-
-TEST(DataSetFormat, ReadsAHandALine) {
-  const auto hands = parseDataSet(header() + kFist + kFist, "f.csv");
-  ASSERT_TRUE(hands) << hands.error().what;
-  ASSERT_EQ(hands->size(), 2u);
-  EXPECT_EQ((*hands)[1].posture, "fist");
-  EXPECT_EQ((*hands)[1].angle_rad[2], 2.0F);
-  EXPECT_EQ((*hands)[1].angle_rad[12], -6.0F);
-  EXPECT_EQ((*hands)[1].angle_rad[22], -0.125F);
-  EXPECT_EQ(parseDataSet(header(), "f.csv")->size(), 0u);
+std::string wrongWith(const std::string& text) {
+  const auto read = parseRecording(text, "f.csv");
+  return read ? "" : read.error().what;
 }
 
-TEST(DataSetFormat, IsItsOwnInverse) {
-  const DataSet hands = makeHands(test::shippedShapes(), {.per_shape = 20}, 8);
-  const std::string text = formatDataSet(hands);
-  EXPECT_TRUE(text.starts_with(header()));
-  const auto read = parseDataSet(text, "f");
+// A header of 22 names, and a line of 22 numbers that are their columns.
+std::string twentyTwo(const std::string& end, const std::string& label = "fist") {
+  std::string header = "Label", line = label;
+  for (int i = 0; i < 22; ++i) {
+    header += ",sensor_" + std::to_string(i);
+    line += "," + std::to_string(i) + ".5";
+  }
+  return header + end + line + end;
+}
+
+TEST(Recording, TakesEveryEndOfALine) {
+  for (const char* end : {"\n", "\r", "\r\n"}) {
+    const auto read = parseRecording(twentyTwo(end), "f");
+    ASSERT_TRUE(read) << read.error().what;
+    EXPECT_EQ(read->hands.size(), 1u);
+    EXPECT_EQ(read->hands[0].posture, "fist");
+    EXPECT_EQ(read->hands[0].value[6], 6.5F);
+    EXPECT_EQ(read->hands[0].value[8], 7.5F) << "22 sensors lack slot 7";
+    EXPECT_EQ(read->unit, InputUnit::kRaw) << "beyond 6.3";
+  }
+}
+
+TEST(Recording, TakesSlotsByNameInAnyOrder) {
+  const auto read = parseRecording("s4;gesture;wrist-yaw\n0.5; ILY ;-0.25\n", "f");
   ASSERT_TRUE(read) << read.error().what;
-  ASSERT_EQ(read->size(), hands.size());
-  for (std::size_t n = 0; n < hands.size(); ++n) {
-    EXPECT_EQ((*read)[n].posture, hands[n].posture);
-    EXPECT_EQ((*read)[n].angle_rad, hands[n].angle_rad);
-  }
+  EXPECT_EQ(read->hands[0].posture, "ILY");
+  EXPECT_EQ(read->hands[0].value[4], 0.5F);
+  EXPECT_EQ(read->hands[0].value[22], -0.25F);
+  EXPECT_TRUE(read->measured[4]);
+  EXPECT_FALSE(read->measured[5]);
+  EXPECT_EQ(read->unit, InputUnit::kRadians);
 }
 
-TEST(DataSetDamage, ATruncationIsAnErrorOrEndsAfterAWholeLine) {
-  const std::string text = header() + kFist + kFist;
-  for (std::size_t n = 0; n < text.size(); ++n) {
-    const bool line_end = n > 0 && text[n - 1] == '\n';
-    EXPECT_EQ(parseDataSet(text.substr(0, n), "f").ok(), line_end) << n;
-  }
+TEST(Recording, IsItsOwnInverse) {
+  Recording recording;
+  recording.hands = test::people(hand::shapes(), 1, 2, 3, 1);
+  recording.measured.fill(true);
+  recording.synthetic = true;
+  const std::string text = formatRecording(recording);
+  const auto read = parseRecording(text, "f");
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_TRUE(read->synthetic);
+  ASSERT_EQ(read->hands.size(), recording.hands.size());
+  for (std::size_t n = 0; n < read->hands.size(); ++n)
+    EXPECT_EQ(read->hands[n].value, recording.hands[n].value);
+  EXPECT_EQ(formatRecording(*read), text);
 }
 
-TEST(DataSetDamage, OneWrongByteNeverLoadsHalf) {
-  const std::string good = header() + kFist + kFist;
-  for (std::size_t at = 0; at < good.size(); ++at) {
-    for (int value = 0; value < 256; ++value) {
+TEST(Recording, FaultsNameFileLineFoundAndAllowed) {
+  EXPECT_EQ(wrongWith("posture,s0\nfist\n"),
+            "f.csv:2: found 1 fields; allowed: 2, as many as the header has");
+  EXPECT_EQ(wrongWith("posture,s0\nfist,x\n"), "f.csv:2: found s0 \"x\"; allowed: a number");
+  EXPECT_EQ(wrongWith("posture,s0\nfist,nan\n"), "f.csv:2: found s0 \"nan\"; allowed: a number");
+  EXPECT_EQ(wrongWith("posture,s0\n,1\n"),
+            "f.csv:2: found posture \"\"; allowed: 1 to 19 letters, digits, - or _");
+  EXPECT_EQ(wrongWith("posture,s0,s0\nfist,1,1\n"),
+            "f.csv:1: found two columns \"s0\"; allowed: one a sensor");
+  EXPECT_EQ(wrongWith("posture,s0\n"),
+            "f.csv:1: found no hands; allowed: at least one line after the header");
+  EXPECT_NE(wrongWith("a,b\n1,2\n").find("no column for the label"), std::string::npos);
+  EXPECT_NE(wrongWith("posture,x,y2\nf,1,2\n").find("2 columns of sensors"), std::string::npos);
+  EXPECT_FALSE(wrongWith("").empty());
+}
+
+TEST(Recording, OneWrongByteNeverLoadsHalf) {
+  Recording recording;
+  recording.hands = test::people(hand::shapes(), 1, 1, 1, 1);
+  recording.measured.fill(true);
+  const std::string good = formatRecording(recording);
+  for (std::size_t at = 0; at < good.size(); at += 3) {
+    for (const char c : {'\0', ',', '\n', 'x', '\xFF'}) {
       std::string text = good;
-      text[at] = static_cast<char>(value);
-      const auto read = parseDataSet(text, "f");
-      if (!read) continue;
-      ASSERT_EQ(read->size(), 2u) << at;
-      for (const LabelledHand& hand : *read) {
-        ASSERT_TRUE(isPostureName(hand.posture));
-        for (const float a : hand.angle_rad) ASSERT_LE(std::abs(a), 6.3F);
+      text[at] = c;
+      const auto read = parseRecording(text, "f");
+      if (!read) {
+        EXPECT_TRUE(read.error().what.starts_with("f:")) << read.error().what;
       }
     }
   }
 }
 
-TEST(DataSetFaults, NameFileLineFoundAndAllowed) {
-  const auto error = [](const std::string& text) {
-    return parseDataSet(text, "f.csv").error().what;
-  };
-  const auto hand = [&](const std::string& from, const std::string& to) {
-    std::string line = kFist;
-    return error(header() + kFist + line.replace(line.find(from), from.size(), to));
-  };
-  const std::string angle = "; allowed: an angle in radians, -6.3 to 6.3";
-  EXPECT_EQ(error(""),
-            "f.csv:1: found no end of the line; allowed: lines that end with a line feed");
-  EXPECT_EQ(error(header() + kFist + "fist,0"),
-            "f.csv:3: found no end of the line; allowed: lines that end with a line feed");
-  EXPECT_TRUE(
-      error("s0,posture\n").starts_with("f.csv:1: found \"s0,posture\"; allowed: posture,s0,"));
-  EXPECT_EQ(hand("1e-3", "1e-3x"), "f.csv:3: found s14 \"1e-3x\"" + angle);
-  EXPECT_EQ(hand("0.25", "nan"), "f.csv:3: found s15 \"nan\"" + angle);
-  EXPECT_EQ(hand("0.25", "inf"), "f.csv:3: found s15 \"inf\"" + angle);
-  EXPECT_EQ(hand("0.25", "1e999"), "f.csv:3: found s15 \"1e999\"" + angle);
-  EXPECT_EQ(hand("0.25", "90"), "f.csv:3: found s15 \"90\"" + angle);
-  EXPECT_EQ(hand("0.25", ""), "f.csv:3: found s15 \"\"" + angle);
-  EXPECT_EQ(hand("-0.125", "-0.125\r"), "f.csv:3: found s22 \"-0.125\\x0D\"" + angle);
-  EXPECT_EQ(hand(",-0.125", ""),
-            "f.csv:3: found 23 fields; allowed: 24: the posture and 23 angles");
-  EXPECT_EQ(hand("-0.125", "0,"),
-            "f.csv:3: found 25 fields; allowed: 24: the posture and 23 angles");
-  EXPECT_EQ(hand("fist", ""),
-            "f.csv:3: found posture \"\"; allowed: 1 to 19 letters, digits, - or _");
-  EXPECT_EQ(error(header() + "\n"),
-            "f.csv:2: found posture \"\"; allowed: 1 to 19 letters, digits, - or _");
-}
+using RecordingFiles = test::FilesTest;
 
-TEST_F(DataSetFiles, AreReplacedWholeOrNotAtAll) {
-  const std::string file = path("hands.csv");
-  DataSet hands = makeHands(test::shippedShapes(), {.per_shape = 2}, 9);
-  ASSERT_TRUE(saveDataSet(file, hands));
-  const auto read = loadDataSet(file);
-  ASSERT_TRUE(read) << read.error().what;
-  EXPECT_EQ(formatDataSet(*read), formatDataSet(hands));
-
-  hands[3].angle_rad[5] = std::numeric_limits<float>::infinity();
-  const auto refused = saveDataSet(file, hands);
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().code, Errc::kInvalidArgument);
-  EXPECT_TRUE(refused.error().what.starts_with("not written: " + file + ":5: found s5 \"inf\""));
-  EXPECT_EQ(test::contentOf(file), formatDataSet(*read));
-  EXPECT_EQ(count(), 1u);
-  EXPECT_EQ(loadDataSet(path("none.csv")).error().code, Errc::kNotFound);
+TEST_F(RecordingFiles, AreReplacedWholeOrNotAtAll) {
+  Recording recording;
+  recording.hands = test::people(hand::shapes(), 1, 1, 2, 1);
+  recording.measured.fill(true);
+  ASSERT_TRUE(saveRecording(path("a.csv"), recording));
+  const std::string before = contentOf(path("a.csv"));
+  recording.hands[0].posture = "no posture's name, this";
+  EXPECT_FALSE(saveRecording(path("a.csv"), recording));
+  EXPECT_EQ(contentOf(path("a.csv")), before);
+  EXPECT_EQ(loadRecording(path("none.csv")).error().code, Errc::kNotFound);
 }
 
 }  // namespace

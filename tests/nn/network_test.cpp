@@ -161,7 +161,7 @@ TEST(Inputs, AreScaledFromTheirRangeAndHeldInIt) {
 }
 
 TEST(Inputs, EveryRangeHasAWidth) {
-  for (const InputRange& range : kGloveRanges) EXPECT_LT(range.low_rad, range.high_rad);
+  for (const InputRange& range : kGloveRanges) EXPECT_LT(range.low, range.high);
   for (const char* name : kInputNames) EXPECT_STRNE(name, "");
   EXPECT_STREQ(kInputNames[7], "index-abduction");
   EXPECT_STREQ(kInputNames[22], "wrist-yaw");

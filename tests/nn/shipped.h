@@ -1,27 +1,32 @@
-// What the tests of nn share: the shapes that the shipped network was trained on, and its file.
+// What the tests of nn share: the shipped network's file, and synthetic people.
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "drivers/hand/shapes.h"
+#include "drivers/hand/recording.h"
 #include "nn/io/network_file.h"
-#include "nn/synthetic.h"
 
 namespace merlin::nn::test {
 
 inline const std::string kShippedPath = MERLIN_SOURCE_DIR "/config/postures.json";
 
-inline std::vector<HandShape> shippedShapes() {
-  std::vector<HandShape> shapes;
-  for (const hand::Shape& shape : hand::shapes()) shapes.push_back({shape.name, shape.angle_rad});
-  return shapes;
-}
-
 // The network of config/postures.json; the default one, which names nothing, if it does not load.
 inline PostureNetwork shippedNetwork() {
   const auto file = loadNetwork(kShippedPath);
   return file ? file->network : PostureNetwork{};
+}
+
+inline DataSet people(std::span<const hand::Shape> shapes, std::size_t first, std::size_t count,
+                      std::size_t per_take, std::uint64_t seed, std::size_t takes = 1) {
+  DataSet hands;
+  hand::RecordingSettings settings;
+  settings.first_person = first;
+  settings.people = count;
+  settings.takes = takes;
+  settings.per_take = per_take;
+  for (const hand::Shot& shot : hand::record(shapes, settings, seed))
+    hands.push_back({shot.shape, shot.angle_rad});
+  return hands;
 }
 
 }  // namespace merlin::nn::test

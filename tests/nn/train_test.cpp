@@ -1,14 +1,10 @@
 #include "nn/train.h"
 
-#include <fstream>
 #include <limits>
-#include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "daemon/base/random.h"
-#include "nn/shipped.h"
-#include "tests/nn/shipped.h"
 
 namespace merlin::nn {
 namespace {
@@ -205,34 +201,6 @@ TEST(Train, RefusesWhatItCannotTrain) {
   EXPECT_EQ(trainError(bad, {}), "an example with an input that is not finite");
   EXPECT_EQ(trainError(good, {.rate = 1e300, .max_iterations = 3}),
             "weights ran away after 3 iterations: rate 1e+300 or start too large");
-}
-
-// The fresh seeds 7001 and up played no part in choosing how the network is trained.
-TEST(ShippedNetwork, NamesEveryHeldOutHandRight) {
-  const auto hands = makeHands(test::shippedShapes(), {.per_shape = 1000}, 7001);
-  const Score result = score(test::shippedNetwork(), hands);
-  EXPECT_EQ(result.total, 8000u);
-  EXPECT_EQ(result.right, 8000u);
-  EXPECT_EQ(result.rejected, 0u);
-}
-
-TEST(ShippedNetwork, IsWhatTrainShippedMakesByteForByte) {
-  const auto made = trainShipped(test::shippedShapes(), kShippedSeed);
-  ASSERT_TRUE(made) << made.error().what;
-  EXPECT_EQ(made->report.accuracy, 1.0);
-  std::ostringstream file;
-  file << std::ifstream(test::kShippedPath).rdbuf();
-  EXPECT_EQ(formatNetwork(made->network, made->trained), file.str());
-}
-
-TEST(TrainShipped, RefusesShapesThatGetNoCode) {
-  std::vector<HandShape> shapes = test::shippedShapes();
-  shapes.push_back(shapes[0]);
-  EXPECT_EQ(trainShipped(shapes, 1).error().what, "name \"open\" has two codes, 00011 and 10010");
-  shapes.resize(16);
-  EXPECT_EQ(trainShipped(shapes, 1).error().what,
-            "16 hand shapes; allowed: 15, for two codes to differ in two bits");
-  EXPECT_EQ(trainShipped({}, 1).error().what, "no examples to train on");
 }
 
 }  // namespace

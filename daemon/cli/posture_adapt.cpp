@@ -1,0 +1,107 @@
+// merlin posture adapt: a new person; and merlin posture synthesize: people to try it on.
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "daemon/base/clock.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/posture.h"
+#include "nn/adapt.h"
+
+namespace merlin::cli {
+namespace {
+
+struct AdaptOptions {
+  std::string network, data, output, units = "auto";
+  std::uint64_t seed = 1998;
+};
+
+int adapt(const AdaptOptions& options) {
+  auto file = nn::loadNetwork(options.network);
+  if (!file) return fail(file.error());
+  if (!file->memory)
+    return fail({Errc::kInvalidArgument,
+                 options.network + ": /memory: found none; adapting needs what a network remembers "
+                                   "of its training: train it anew"});
+  const auto recording = readFor(file->network, options.data, unitNamed(options.units));
+  if (!recording) return fail(recording.error());
+  const SystemClock clock;
+  const Timestamp began = clock.now();
+  auto adapted = nn::adapt(file->network, *file->memory, recording->hands, options.seed);
+  if (!adapted) return fail(adapted.error());
+  const double seconds = toSeconds(clock.now() - began);
+  nn::NetworkFile out = *file;
+  out.network = adapted->network;
+  out.trained.how =
+      fmt::format("{}; adapted to {} hands", file->trained.how, recording->hands.size())
+          .substr(0, 200);
+  if (const auto saved = nn::saveNetwork(options.output, out); !saved) return fail(saved.error());
+  fmt::print(
+      "{}: adapted to {} hands in {:.2f} s: {:.2f} % of them right, {:.2f} % before; of hands "
+      "like those it was trained on {:.2f} %, {:.2f} % before\n",
+      options.output, recording->hands.size(), seconds, 100 * adapted->hands_after,
+      100 * adapted->hands_before, 100 * adapted->memory_after, 100 * adapted->memory_before);
+  return kExitDone;
+}
+
+struct SynthesizeOptions {
+  SyntheticPeople people;
+  std::string output;
+};
+
+int synthesizeFile(const SynthesizeOptions& options) {
+  const nn::Recording recording = synthesize(options.people);
+  if (const auto saved = nn::saveRecording(options.output, recording); !saved)
+    return fail(saved.error());
+  fmt::print("{}: {} synthetic hands of {} people\n", options.output, recording.hands.size(),
+             options.people.people);
+  return kExitDone;
+}
+
+}  // namespace
+
+void addPostureAdapt(CLI::App& posture, Run& run) {
+  const auto options = std::make_shared<AdaptOptions>();
+  CLI::App* command = posture.add_subcommand(
+      "adapt",
+      "Teach a network a new person, who held each posture for two seconds, without forgetting the "
+      "others.\nExample: merlin posture adapt postures.json anna.csv -o anna.json");
+  command->add_option("net", options->network, "The network's file")
+      ->required()
+      ->type_name("NET.json");
+  command->add_option("hands", options->data, "The person's hands, CSV")
+      ->required()
+      ->type_name("DATA.csv");
+  command->add_option("-o", options->output, "The new network's file")
+      ->required()
+      ->type_name("FILE.json");
+  command->add_option("--seed", options->seed, "Of everything that is drawn")
+      ->capture_default_str();
+  addUnits(*command, options->units);
+  command->callback([options, &run] { run = [options] { return adapt(*options); }; });
+}
+
+void addPostureSynthesize(CLI::App& posture, Run& run) {
+  const auto options = std::make_shared<SynthesizeOptions>();
+  CLI::App* command = posture.add_subcommand("synthesize",
+                                             "Labelled hands of synthetic people, for tests; "
+                                             "nobody was measured.\nExample: merlin posture "
+                                             "synthesize -o hands.csv --people 10 --first 1001");
+  command->add_option("-o", options->output, "The file")->required()->type_name("FILE.csv");
+  SyntheticPeople& people = options->people;
+  const auto count = [&](const char* name, std::size_t& value, const char* help, std::size_t most) {
+    command->add_option(name, value, help)
+        ->check(CLI::Range(std::size_t{1}, most))
+        ->capture_default_str();
+  };
+  count("--first", people.first, "The first person's number: another number, another person",
+        1 << 30);
+  count("--people", people.people, "How many", 1000);
+  count("--takes", people.takes, "Times that each person takes each posture", 1000);
+  count("--per-take", people.per_take, "Samples of each", 10000);
+  count("--postures", people.postures, "How many, of those that there are", 31);
+  command->add_option("--seed", people.seed, "Of takes and noise")->capture_default_str();
+  command->callback([options, &run] { run = [options] { return synthesizeFile(*options); }; });
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,120 @@
+// merlin posture test: how many hands a network names right, and what it takes for what.
+#include "daemon/cli/posture.h"
+
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/cli/exit_status.h"
+#include "nn/evaluate.h"
+
+namespace merlin::cli {
+namespace {
+
+// People whom no training of ours has seen.
+constexpr std::size_t kUnseen = 1001;
+constexpr std::size_t kShown = 10;  // confusions, and postures, that the table lists
+
+struct TestOptions {
+  std::string network = "config/postures.json", data, beside, units = "auto";
+  double margin = 0.3;
+  bool json = false;
+};
+
+Result<nn::Recording> testHands(const TestOptions& options, const nn::PostureNetwork& network) {
+  if (!options.data.empty()) return readFor(network, options.data, unitNamed(options.units));
+  return synthesize(
+      {.first = kUnseen, .people = 20, .takes = 5, .per_take = 10, .postures = 8, .seed = 2});
+}
+
+nlohmann::ordered_json toJson(const nn::Evaluation& e, bool synthetic) {
+  using Json = nlohmann::ordered_json;
+  Json confusion = Json::array(), postures = Json::array();
+  for (const nn::Confusion& c : e.confusions)
+    confusion.push_back({{"shown", c.shown},
+                         {"taken_for", c.taken_for.empty() ? Json(nullptr) : Json(c.taken_for)},
+                         {"hands", c.hands}});
+  for (const nn::PostureScore& p : e.postures)
+    postures.push_back({{"posture", p.posture},
+                        {"accuracy", p.score.accuracy()},
+                        {"right", p.score.right},
+                        {"total", p.score.total},
+                        {"rejected", p.score.rejected},
+                        {"least_margin", p.least_margin},
+                        {"mean_margin", p.mean_margin}});
+  return {{"accuracy", e.all.accuracy()}, {"right", e.all.right},
+          {"total", e.all.total},         {"rejected", e.all.rejected},
+          {"unsure", e.unsure},           {"right_and_sure", e.right_and_sure},
+          {"synthetic", synthetic},       {"confusion", confusion},
+          {"postures", postures}};
+}
+
+void printTable(const nn::Evaluation& e, bool synthetic, double margin) {
+  fmt::print(
+      "{} of {} {}hands right ({:.3f} %), {} taken for no posture, {} for another; {} with a "
+      "margin below {}\n",
+      e.all.right, e.all.total, synthetic ? "synthetic " : "", 100 * e.all.accuracy(),
+      e.all.rejected, e.all.total - e.all.right - e.all.rejected, e.unsure, margin);
+  if (!e.confusions.empty()) fmt::print("\n  hands  shown                taken for\n");
+  for (std::size_t n = 0; n < std::min(kShown, e.confusions.size()); ++n) {
+    const nn::Confusion& c = e.confusions[n];
+    fmt::print("  {:5}  {:19}  {}\n", c.hands, c.shown, c.taken_for.empty() ? "-" : c.taken_for);
+  }
+  fmt::print("\n  posture                right         margin: least  mean\n");
+  for (const nn::PostureScore& p : e.postures)
+    fmt::print("  {:19}  {:5} / {:5}        {:5.2f}  {:5.2f}\n", p.posture, p.score.right,
+               p.score.total, p.least_margin, p.mean_margin);
+}
+
+int test(const TestOptions& options) {
+  const auto file = nn::loadNetwork(options.network);
+  if (!file) return fail(file.error());
+  const auto recording = testHands(options, file->network);
+  if (!recording) return fail(recording.error());
+  const nn::Evaluation e = nn::evaluate(file->network, recording->hands, options.margin);
+  auto json = toJson(e, recording->synthetic);
+  if (!options.beside.empty()) {
+    const auto train = readFor(file->network, options.beside, unitNamed(options.units));
+    if (!train) return fail(train.error());
+    const nn::Neighbours n = nn::neighbours(train->hands, recording->hands);
+    json["nearest_mean"] = n.mean;
+    json["nearest_neighbour"] = n.nearest;
+    if (!options.json)
+      fmt::print("beside it, from {}: nearest mean {:.3f} %, nearest neighbour {:.3f} %\n",
+                 options.beside, 100 * n.mean, 100 * n.nearest);
+  }
+  if (options.json) {
+    fmt::print("{}\n", json.dump());
+  } else {
+    printTable(e, recording->synthetic, options.margin);
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+void addPostureTest(CLI::App& posture, Run& run) {
+  const auto options = std::make_shared<TestOptions>();
+  CLI::App* command = posture.add_subcommand(
+      "test",
+      "How many hands a network names right, what it takes for what, how sure it is; without DATA "
+      "of synthetic people whom the shipped network has not seen.\nExample: merlin posture test "
+      "postures.json hands.csv --json");
+  command->add_option("net,--network", options->network, "The network's file")
+      ->capture_default_str()
+      ->type_name("NET.json");
+  command->add_option("hands,--data", options->data, "Labelled hands, CSV")->type_name("DATA.csv");
+  command
+      ->add_option("--beside", options->beside,
+                   "The training hands: nearest mean and nearest neighbour are reported too")
+      ->type_name("TRAIN.csv");
+  command->add_option("--margin", options->margin, "Below it a hand counts as unsure")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  addUnits(*command, options->units);
+  command->add_flag("--json", options->json, "For programs");
+  command->callback([options, &run] { run = [options] { return test(*options); }; });
+}
+
+}  // namespace merlin::cli

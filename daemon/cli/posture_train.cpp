@@ -1,0 +1,146 @@
+// merlin posture train: a network from labelled hands; k-fold cross-validation of the same.
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/files.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/learning_curve.h"
+#include "daemon/cli/posture.h"
+#include "daemon/cli/progress.h"
+#include "nn/evaluate.h"
+
+namespace merlin::cli {
+namespace {
+
+struct TrainOptions {
+  std::string data, output, curve, units = "auto", phi = "sigmoid";
+  nn::FitSettings fit;
+  std::size_t folds = 0;
+  bool json = false;
+};
+
+// Without data: the people that the shipped network was trained on.
+Result<nn::Recording> trainingHands(const TrainOptions& options) {
+  if (!options.data.empty()) return readRecording(options.data, unitNamed(options.units));
+  return synthesize({.people = 20, .takes = 2, .postures = 8});
+}
+
+Result<nn::Fitted> fitWithBar(const nn::DataSet& hands, const nn::FitSettings& settings,
+                              const std::string& title, double& seconds) {
+  const SystemClock clock;
+  const Timestamp began = clock.now();
+  ProgressBar bar(title, "passes", clock);
+  std::size_t passes = 0;
+  auto fitted = nn::fit(hands, settings, [&](double share, const nn::CurvePoint& point) {
+    passes = point.pass;
+    bar.update(share, passes);
+    return true;
+  });
+  if (fitted) bar.finish(passes);
+  seconds = toSeconds(clock.now() - began);
+  return fitted;
+}
+
+// Fold f's test hands are the f-th k-th of each posture's hands, in the order of the file.
+int crossValidate(const nn::Recording& recording, const TrainOptions& options) {
+  std::vector<std::size_t> posture;
+  const auto names = nn::posturesOf(recording.hands, posture);
+  std::vector<std::size_t> all(names.size(), 0);
+  for (const std::size_t p : posture) ++all[p];
+  double sum = 0, sum_mean = 0, sum_nearest = 0;
+  for (std::size_t fold = 0; fold < options.folds; ++fold) {
+    nn::DataSet train, test;
+    std::vector<std::size_t> seen(names.size(), 0);
+    for (std::size_t n = 0; n < posture.size(); ++n) {
+      const std::size_t of = seen[posture[n]]++ * options.folds / all[posture[n]];
+      (of == fold ? test : train).push_back(recording.hands[n]);
+    }
+    double seconds = 0;
+    const auto fitted = fitWithBar(train, options.fit,
+                                   fmt::format("fold {} of {}", fold + 1, options.folds), seconds);
+    if (!fitted) return fail(fitted.error());
+    const double accuracy = nn::score(fitted->network, test).accuracy();
+    const nn::Neighbours beside = nn::neighbours(train, test);
+    fmt::print(
+        "fold {}: {:.2f} % of {} hands right (nearest mean {:.2f} %, nearest neighbour "
+        "{:.2f} %), {:.2f} s\n",
+        fold + 1, 100 * accuracy, test.size(), 100 * beside.mean, 100 * beside.nearest, seconds);
+    sum += accuracy;
+    sum_mean += beside.mean;
+    sum_nearest += beside.nearest;
+  }
+  const double k = static_cast<double>(options.folds) / 100;
+  fmt::print("{} folds: {:.2f} % right (nearest mean {:.2f} %, nearest neighbour {:.2f} %)\n",
+             options.folds, sum / k, sum_mean / k, sum_nearest / k);
+  return kExitDone;
+}
+
+int report(const TrainOptions& options, const nn::Fitted& fitted, double seconds) {
+  if (!options.curve.empty()) {
+    const auto written = writeFile(options.curve, curveSvg(fitted.curve, options.output));
+    if (!written) return fail(written.error());
+  }
+  fmt::print("{}", curveText(fitted.curve));
+  fmt::print(
+      "{}: {} postures from {} hands{} in {:.2f} s; {:.2f} % of the training hands right, "
+      "{:.2f} % of those set aside\n",
+      options.output, fitted.network.postures.size(), fitted.trained.samples,
+      fitted.trained.synthetic ? " (synthetic)" : "", seconds, 100 * fitted.training_accuracy,
+      100 * fitted.validation_accuracy);
+  return kExitDone;
+}
+
+int train(TrainOptions options) {
+  const auto recording = trainingHands(options);
+  if (!recording) return fail(recording.error());
+  options.fit.phi = nn::phiNamed(options.phi).value_or(nn::Phi::kSigmoid);
+  options.fit.unit = recording->unit;
+  if (options.folds > 0) return crossValidate(*recording, options);
+  double seconds = 0;
+  auto fitted = fitWithBar(recording->hands, options.fit, "training", seconds);
+  if (!fitted) return fail(fitted.error());
+  fitted->trained.synthetic = recording->synthetic;
+  const auto saved =
+      nn::saveNetwork(options.output, {fitted->network, fitted->trained, fitted->memory});
+  if (!saved) return fail(saved.error());
+  return report(options, *fitted, seconds);
+}
+
+}  // namespace
+
+void addPostureTrain(CLI::App& posture, Run& run) {
+  const auto options = std::make_shared<TrainOptions>();
+  CLI::App* command = posture.add_subcommand(
+      "train",
+      "Train a network on labelled hands; without DATA on the synthetic people of the shipped "
+      "one.\nExample: merlin posture train hands.csv -o postures.json --curve curve.svg");
+  command->add_option("data", options->data, "Labelled hands, CSV")->type_name("DATA.csv");
+  CLI::Option* output =
+      command->add_option("-o", options->output, "The network's file")->type_name("FILE.json");
+  command->add_option("--curve", options->curve, "The learning curve as a picture")
+      ->type_name("FILE.svg");
+  command->add_option("--seed", options->fit.seed, "Of everything that is drawn")
+      ->capture_default_str();
+  command->add_option("--phi", options->phi, "The nodes' function; signum has no slope to train by")
+      ->check(CLI::IsMember({"sigmoid", "atan"}))
+      ->capture_default_str();
+  command->add_option("--starts", options->fit.starts, "Codes and weights to start from")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--passes", options->fit.passes, "Over the hands, of the best start, at most")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command
+      ->add_option("--folds", options->folds,
+                   "Cross-validate instead: train on all but one k-th, test on that, k times")
+      ->check(CLI::Range(2, 100));
+  addUnits(*command, options->units);
+  command->callback([options, output, &run] {
+    if (options->folds == 0 && output->count() == 0) throw CLI::RequiredError("-o or --folds");
+    run = [options] { return train(*options); };
+  });
+}
+
+}  // namespace merlin::cli

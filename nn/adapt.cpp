@@ -1,0 +1,133 @@
+#include "nn/adapt.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "nn/descent.h"
+
+namespace merlin::nn {
+namespace {
+
+constexpr std::size_t kPasses = 120;
+constexpr float kRate = 0.004F;
+constexpr float kNoise = 0.5F;           // standard deviations, of the new hands
+constexpr std::size_t kRehearsed = 100;  // hands of each posture, drawn from the memory
+constexpr float kRehearsedNoise =
+    1.15F;  // standard deviations: others stray further than those that are remembered
+constexpr double kMostForgotten = 0.005;  // share of the memory's hands
+constexpr double kEnough = 0.999;         // of the new hands: no need to go further
+constexpr double kShares[] = {0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1};
+
+Slots usedBy(const Weights& weights) {
+  Slots used{};
+  for (const auto& row : weights.hidden) {
+    for (std::size_t i = 0; i < kInputs; ++i) used[i] = used[i] || row[i] != 0;
+  }
+  return used;
+}
+
+// Hands like those that the network was trained on, in the space of training.
+std::vector<Sample> rehearse(const Space& space, std::size_t each, Random& random) {
+  std::vector<Sample> samples;
+  for (std::size_t k = 0; k < space.means().size(); ++k) {
+    for (std::size_t n = 0; n < each; ++n) {
+      Sample s{space.means()[k], static_cast<std::uint32_t>(k)};
+      for (float& u : s.u) {
+        double bell = -2;
+        for (int i = 0; i < 4; ++i) bell += random.uniform();
+        u += kRehearsedNoise * space.sigma() * static_cast<float>(1.7320508075688772 * bell);
+      }
+      samples.push_back(s);
+    }
+  }
+  return samples;
+}
+
+double shareRight(Phi phi, const Lanes<float>& weights, std::span<const Sample> samples,
+                  std::span<const std::uint32_t> codes) {
+  std::size_t right = 0;
+  LanePass<float> pass;
+  for (const Sample& s : samples) {
+    propagate(phi, weights, s.u.data(), pass);
+    Output output;
+    std::copy_n(pass.output.begin(), kOutputs, output.begin());
+    right += threshold(output) == codes[s.posture] ? 1U : 0U;
+  }
+  return static_cast<double>(right) / static_cast<double>(std::max<std::size_t>(samples.size(), 1));
+}
+
+Lanes<float> between(const Lanes<float>& from, const Lanes<float>& to, double share) {
+  Lanes<float> mixed = from;
+  for (std::size_t i = 0; i < mixed.all.size(); ++i)
+    mixed.all[i] += static_cast<float>(share) * (to.all[i] - from.all[i]);
+  return mixed;
+}
+
+Error unknown(const std::string& posture, const Memory& memory) {
+  std::string names;
+  for (const std::string& name : memory.postures) names += names.empty() ? name : ", " + name;
+  return {Errc::kInvalidArgument, "posture \"" + posture +
+                                      "\" is none of the network's, which are " + names +
+                                      "; a new posture needs training anew"};
+}
+
+Result<std::vector<Sample>> toSamples(std::span<const LabelledHand> hands, const Memory& memory,
+                                      const PostureNetwork& network, const Space& space) {
+  std::vector<Sample> samples;
+  for (const LabelledHand& hand : hands) {
+    const auto at = std::find(memory.postures.begin(), memory.postures.end(), hand.posture);
+    if (at == memory.postures.end()) return unknown(hand.posture, memory);
+    if (!std::all_of(hand.value.begin(), hand.value.end(),
+                     [](float v) { return std::isfinite(v); }))
+      return Error{Errc::kInvalidArgument, "a hand with a value that is not finite"};
+    samples.push_back({space.toSpace(normalise(network.ranges, hand.value)),
+                       static_cast<std::uint32_t>(at - memory.postures.begin())});
+  }
+  return samples;
+}
+
+}  // namespace
+
+Result<Adapted> adapt(const PostureNetwork& network, const Memory& memory,
+                      std::span<const LabelledHand> hands, std::uint64_t seed) {
+  if (hands.empty()) return Error{Errc::kInvalidArgument, "no hands to adapt to"};
+  const Space space(memory, usedBy(network.weights));
+  const auto samples = toSamples(hands, memory, network, space);
+  if (!samples) return samples.error();
+  std::vector<std::uint32_t> codes;
+  for (const std::string& name : memory.postures)
+    codes.push_back(network.postures.code(name).value_or(0));
+
+  Random random(seed);
+  const auto known = rehearse(space, kRehearsed, random);
+  std::vector<Sample> both = known;
+  for (std::size_t n = 0; n < known.size() / 2; ++n)  // two known hands for a new one
+    both.push_back((*samples)[random.below(samples->size())]);
+  const Lanes<float> before = space.unfold(network.weights);
+  Descending at;
+  at.weights = before;
+  Descent descent(network.phi, both, space.means(), Random(random.next()));
+  for (std::size_t i = 0; i < kPasses; ++i) {
+    const float left = 1 - static_cast<float>(i) / kPasses;
+    descent.pass(at, codes, kRate * left, kNoise * space.sigma(), 1.0F);
+  }
+
+  const auto held_out = rehearse(space, kRehearsed, random);
+  Adapted done;
+  done.memory_before = shareRight(network.phi, before, held_out, codes);
+  done.hands_before = shareRight(network.phi, before, *samples, codes);
+  for (const double share : kShares) {
+    const Lanes<float> weights = between(before, at.weights, share);
+    const double memory_after = shareRight(network.phi, weights, held_out, codes);
+    if (share > 0 && memory_after < done.memory_before - kMostForgotten) break;
+    done.share = share;
+    done.memory_after = memory_after;
+    done.hands_after = shareRight(network.phi, weights, *samples, codes);
+    done.network = network;
+    if (share > 0) done.network.weights = space.fold(weights);
+    if (done.hands_after >= kEnough) break;
+  }
+  return done;
+}
+
+}  // namespace merlin::nn

@@ -1,0 +1,119 @@
+#include "nn/descent.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace merlin::nn {
+namespace {
+
+constexpr std::size_t kBatch = 32;
+constexpr std::size_t kFewest = 640, kMost = 2048;  // samples of a pass
+constexpr std::size_t kNoisePool = 1 << 14;
+constexpr float kFirst = 0.9F, kSecond = 0.999F, kLittle = 1e-8F;
+constexpr float kDecay = 1e-4F;
+
+// Mean 0, deviation 1, nearly normal, by arithmetic alone: libm's log and cos differ in their last
+// bits between processors, and one seed gives one network.
+float bell(Random& random) {
+  double sum = -2;
+  for (int i = 0; i < 4; ++i) sum += random.uniform();
+  constexpr double kRootOfThree = 1.7320508075688772;
+  return static_cast<float>(kRootOfThree * sum);
+}
+
+}  // namespace
+
+Descent::Descent(Phi phi, std::span<const Sample> samples, std::span<const Input> means,
+                 Random random)
+    : phi_(phi),
+      samples_(samples),
+      means_(means),
+      random_(random),
+      noise_(kNoisePool),
+      order_(samples.size()) {
+  for (float& v : noise_) v = bell(random_);
+  std::iota(order_.begin(), order_.end(), 0U);
+  next_ = order_.size();
+}
+
+Input Descent::stray(const Sample& sample, float noise, float shrink) {
+  const float* away = &noise_[random_.below(kNoisePool - kInputs)];
+  const Input& mean = means_[sample.posture];
+  Input u;
+  for (std::size_t i = 0; i < kInputs; ++i)
+    u[i] = mean[i] + shrink * (sample.u[i] - mean[i]) + noise * away[i];
+  return u;
+}
+
+double Descent::pass(Descending& at, std::span<const std::uint32_t> codes, float rate, float noise,
+                     float shrink) {
+  const std::size_t all = std::clamp(samples_.size(), kFewest, kMost);
+  double error = 0;
+  for (std::size_t done = 0; done < all;) {
+    Lanes<float> gradient;
+    const std::size_t size = std::min(kBatch, all - done);
+    for (std::size_t n = 0; n < size; ++n) {
+      if (next_ == order_.size()) {
+        for (std::size_t i = order_.size() - 1; i > 0; --i)
+          std::swap(order_[i], order_[random_.below(i + 1)]);
+        next_ = 0;
+      }
+      const Sample& sample = samples_[order_[next_++]];
+      const Input u = stray(sample, noise, shrink);
+      error += static_cast<double>(
+          addGradient(phi_, at.weights, u.data(), codes[sample.posture], gradient));
+    }
+    for (float& g : gradient.all) g /= static_cast<float>(size);
+    step(at, gradient, rate);
+    done += size;
+  }
+  return error / static_cast<double>(all * kOutputs);
+}
+
+void Descent::step(Descending& at, const Lanes<float>& gradient, float rate) {
+  at.first_power *= kFirst;
+  at.second_power *= kSecond;
+  const float first = 1 / (1 - at.first_power), second = 1 / (1 - at.second_power);
+  for (std::size_t i = 0; i < gradient.all.size(); ++i) {
+    const float g = gradient.all[i];
+    float &m = at.first.all[i], &v = at.second.all[i], &w = at.weights.all[i];
+    m = kFirst * m + (1 - kFirst) * g;
+    v = kSecond * v + (1 - kSecond) * g * g;
+    w -= rate * (m * first / (std::sqrt(v * second) + kLittle) + kDecay * w);
+  }
+}
+
+std::vector<std::array<double, kOutputs>> Descent::meanOutputs(const Lanes<float>& weights) const {
+  std::vector<std::array<double, kOutputs>> mean(means_.size());
+  std::vector<double> count(means_.size(), 0.0);
+  LanePass<float> pass;
+  for (const Sample& sample : samples_) {
+    propagate(phi_, weights, sample.u.data(), pass);
+    for (std::size_t k = 0; k < kOutputs; ++k)
+      mean[sample.posture][k] += static_cast<double>(pass.output[k]);
+    ++count[sample.posture];
+  }
+  for (std::size_t k = 0; k < mean.size(); ++k) {
+    for (double& m : mean[k]) m /= std::max(count[k], 1.0);
+  }
+  return mean;
+}
+
+double meanError(Phi phi, std::span<const Sample> samples, const Lanes<float>& weights,
+                 std::span<const std::uint32_t> codes) {
+  double error = 0;
+  LanePass<float> pass;
+  for (const Sample& sample : samples) {
+    propagate(phi, weights, sample.u.data(), pass);
+    for (std::size_t k = 0; k < kOutputs; ++k) {
+      const double e =
+          static_cast<double>(pass.output[k]) - static_cast<double>(codes[sample.posture] >> k & 1);
+      error += e * e;
+    }
+  }
+  return error / static_cast<double>(std::max<std::size_t>(samples.size(), 1) * kOutputs);
+}
+
+}  // namespace merlin::nn
