@@ -14,6 +14,8 @@ constexpr std::size_t kSlice = 10'000;
 // Of the operator's view, where time is short; and how its cost grows with triangles (as the
 // governor has it).
 constexpr std::size_t kLeastOperator = 300;
+// It shows where things are; what they look like the wall shows.
+constexpr float kOperatorWeight = 0.1F;
 constexpr double kCostExponent = 0.65;
 
 // The model's box centred at the origin, its half diagonal `radius_m` long.
@@ -97,7 +99,8 @@ void Picture::readTile(std::size_t tile) {
 
 render::TileView Picture::viewOf(std::size_t tile, const Eigen::Isometry3f& T_eye_model) const {
   const render::Tile& t = plan_.tiles[tile];
-  return {cameraOf(t, T_eye_model).clip_from_model, t.width};
+  const bool operators = t.kind == render::TileKind::kOperator;
+  return {cameraOf(t, T_eye_model).clip_from_model, t.width, operators ? kOperatorWeight : 1};
 }
 
 void Picture::chooseCut(std::size_t level, std::span<const render::TileView> views) {

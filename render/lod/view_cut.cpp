@@ -39,7 +39,8 @@ struct Viewer {
     // z = a w + b, so z = -w at the near plane.
     const float a = m.row(2).head<3>().dot(m.row(3).head<3>()) / (depth_per_unit * depth_per_unit);
     near_w = std::max((a * m(3, 3) - m(2, 3)) / (1 + a), 1e-6F);
-    pixels_per_unit = static_cast<float>(tile.width_px) / 2 * m.row(0).head<3>().norm();
+    pixels_per_unit =
+        tile.weight * static_cast<float>(tile.width_px) / 2 * m.row(0).head<3>().norm();
   }
 
   bool sees(const Eigen::Vector3f& centre, float radius) const {

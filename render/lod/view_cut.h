@@ -26,6 +26,7 @@ namespace merlin::render {
 struct TileView {
   Eigen::Matrix4f clip_from_model;  // OpenGL's clip space; perspective
   int width_px = 0;
+  float weight = 1;  // of its pixels' errors, as a root
 };
 
 // Thread-bound: keeps its tables and the last answer.

@@ -157,7 +157,7 @@ render::TilePlan plan() {
 // Low over the middle of the field, looking along it.
 Eigen::Isometry3f closeUp() {
   Eigen::Isometry3f view = Eigen::Isometry3f::Identity();
-  view.translate(Eigen::Vector3f(0.1F, -0.04F, 0.12F));
+  view.translate(Eigen::Vector3f(0.1F, -0.08F, 0.25F));
   view.rotate(Eigen::AngleAxisf(-1.3F, Eigen::Vector3f::UnitX()));
   view.rotate(Eigen::AngleAxisf(0.4F, Eigen::Vector3f::UnitZ()));
   return view;
