@@ -137,6 +137,47 @@ void checkRate(const render::GovernorSettings& g, Checks& checks) {
                   g.min_triangles, g.first_triangles, g.max_triangles));
 }
 
+bool isInput(const std::string& input) {
+  if (input == "glove.switch") return true;
+  if (input.starts_with("posture.")) return input.size() > 8;
+  for (int button = 1; button <= 12; ++button) {
+    if (input == fmt::format("ball.button.{}", button)) return true;
+  }
+  return false;
+}
+
+// One input does not grab and fly at once, nor the same thing twice.
+bool conflict(const render::Binding& a, const render::Binding& b) {
+  if (a.input != b.input) return false;
+  const bool same_moment = (a.when == render::When::kLeave) == (b.when == render::When::kLeave);
+  return same_moment &&
+         (a.action == b.action || (render::lasts(a.action) && render::lasts(b.action)));
+}
+
+void checkBindings(const std::vector<render::Binding>& bindings, Checks& checks) {
+  for (std::size_t i = 0; i < bindings.size(); ++i) {
+    const render::Binding& b = bindings[i];
+    const std::string at = fmt::format("/wall/scene/bindings/{}", i);
+    if (!isInput(b.input))
+      checks.wrong(at + "/input",
+                   fmt::format("is \"{}\"; allowed are ball.button.1 to ball.button.12, "
+                               "posture.NAME and glove.switch",
+                               b.input));
+    if (b.when != render::When::kByAction &&
+        (b.when == render::When::kHold) != render::lasts(b.action))
+      checks.wrong(at + "/on",
+                   "does not go with the action; allowed is hold for grab and fly, enter or leave "
+                   "for reset_view and next_mode");
+    for (std::size_t j = 0; j < i; ++j) {
+      if (conflict(bindings[j], b))
+        checks.wrong(at,
+                     fmt::format("conflicts with binding {}: both give \"{}\" the same to do, or "
+                                 "grab and fly at once",
+                                 j, b.input));
+    }
+  }
+}
+
 }  // namespace
 
 void checkTogether(const Settings& s, const std::map<std::string, int>& lines,
@@ -152,6 +193,7 @@ void checkTogether(const Settings& s, const std::map<std::string, int>& lines,
   checkAxes(s.devices.ball.axis_map, "/devices/ball/axis_map", checks);
   checkAxes(s.wall.scene.tracker_axes, "/wall/scene/tracker_axes", checks);
   checkRate(s.wall.governor, checks);
+  checkBindings(s.wall.scene.bindings, checks);
 }
 
 }  // namespace merlin

@@ -9,7 +9,8 @@ namespace {
 constexpr const char* kSlot7Rules[] = {"zero", "neutral", "derived", "switch"};
 constexpr const char* kBackends[] = {"egl", "osmesa"};
 constexpr const char* kTileKinds[] = {"wall", "operator"};
-constexpr const char* kActions[] = {"grab", "reset_view", "next_mode"};
+constexpr const char* kActions[] = {"grab", "reset_view", "next_mode", "fly"};
+constexpr const char* kWhen[] = {"by_action", "enter", "hold", "leave"};
 constexpr const char* kScripts[] = {"visit", "turning", "still", "grabbing"};
 
 constexpr const char* kWristLights[] = {"switch", "off", "on"};
@@ -145,6 +146,8 @@ void describeScene(render::SceneSettings& s, SettingsVisitor& v) {
   v.integer("hand_station", s.hand_station, {1, 4},
             "Of the tracker, that the grabbing hand wears.");
   v.number("hand_gain", s.hand_gain, {0.01, 1000}, "Metres of the model for a metre of the hand.");
+  v.number("fly_gain", s.fly_gain, {0.01, 1000},
+           "Metres a second of the viewer for a metre of the hand, while it flies.");
   v.number("hand_noise_m", s.hand_noise_m, {0, 1},
            "Way of the hand that is taken for the tracker's noise, metres.");
   v.number("hand_noise_deg", s.hand_noise_deg, {0, 180},
@@ -158,7 +161,11 @@ void describeScene(render::SceneSettings& s, SettingsVisitor& v) {
   v.listOf<render::Binding>("bindings", s.bindings, "What inputs do.", [&](render::Binding& b) {
     v.text("input", b.input, "ball.button.1 to ball.button.12, posture.NAME or glove.switch.");
     v.oneOf("action", b.action, kActions,
-            "Grab: while held, the hand moves the model; the others: once.");
+            "While held: grab, the hand moves the model, fly, its way is the viewer's speed; the "
+            "others: once.");
+    v.oneOf("on", b.when, kWhen,
+            "Which moment of the input: hold for what lasts, enter or leave for what is done once; "
+            "by_action: hold or enter.");
   });
 }
 

@@ -54,6 +54,14 @@ Result<Scene> Scene::make(const SceneSettings& settings) {
                                "posture.NAME and glove.switch",
                                binding.input)};
     }
+    const bool held = binding.when == When::kHold;
+    if (binding.when != When::kByAction && held != lasts(binding.action)) {
+      return Error{Errc::kInvalidArgument,
+                   fmt::format("binding \"{}\": grab and fly last while it is held, the others are "
+                               "done on enter or on leave",
+                               binding.input)};
+    }
+    bound->on_leave = binding.when == When::kLeave;
     scene.bound_.push_back(std::move(*bound));
   }
   return scene;
@@ -98,6 +106,7 @@ void Scene::reset() {
   T_wall_eye_.setIdentity();
   grab_hand_.reset();
   grab_model_.reset();
+  fly_hand_.reset();
   last_motion_ = last_update_;
   view_ = {T_wall_model_, mode_, false, true};
 }
@@ -109,10 +118,12 @@ SceneView Scene::update(const SceneInput& input, Timestamp now) {
   const auto seconds = first ? 0.0F : static_cast<float>(toSeconds(now - last_update_));
   last_update_ = now;
   if (first) last_motion_ = now;
-  const bool grab = act(input);
-  const bool pushed = moveByBall(input, std::clamp(seconds, 0.0F, kLongestStep_s));
-  const bool carried = moveByHand(input, grab);
-  if (pushed || carried) last_motion_ = now;
+  const Asked asked = act(input);
+  const float step_s = std::clamp(seconds, 0.0F, kLongestStep_s);
+  const bool pushed = moveByBall(input, step_s);
+  const bool carried = moveByHand(input, asked.grab);
+  const bool flown = flyByHand(input, asked.fly && !asked.grab, step_s);
+  if (pushed || carried || flown) last_motion_ = now;
   view_.T_eye_model = T_wall_eye_.inverse() * T_wall_model_;
   view_.mode = mode_;
   view_.grabbed = grab_hand_.has_value();
@@ -132,17 +143,18 @@ bool Scene::isHeld(const Bound& bound, const SceneInput& input) const {
   return held >= fromSeconds(settings_.posture_hold_s);
 }
 
-bool Scene::act(const SceneInput& input) {
-  bool grab = false;
+Scene::Asked Scene::act(const SceneInput& input) {
+  Asked asked;
   for (Bound& bound : bound_) {
     const bool held = isHeld(bound, input);
-    const bool began = held && !bound.was_held;
+    const bool now = held != bound.was_held && held != bound.on_leave;
     bound.was_held = held;
-    if (bound.action == Action::kGrab) grab |= held;
-    if (bound.action == Action::kResetView && began) reset();
-    if (bound.action == Action::kNextMode && began) nextMode();
+    if (bound.action == Action::kGrab) asked.grab |= held;
+    if (bound.action == Action::kFly) asked.fly |= held;
+    if (bound.action == Action::kResetView && now) reset();
+    if (bound.action == Action::kNextMode && now) nextMode();
   }
-  return grab;
+  return asked;
 }
 
 // Turns are about the model's own centre, along the viewer's axes; a flying viewer turns about the
@@ -199,6 +211,20 @@ bool Scene::moveByHand(const SceneInput& input, bool grab) {
       grab_model_->translation() + R_wall_eye * (hand.translation() - grab_hand_->translation()) *
                                        static_cast<float>(settings_.hand_gain);
   return moved;
+}
+
+// Rate control: the further the hand from where it began, the faster; within its noise, none.
+bool Scene::flyByHand(const SceneInput& input, bool fly, float seconds) {
+  if (!fly || !input.hand) {
+    fly_hand_.reset();
+    return false;
+  }
+  const Eigen::Vector3f hand = handPose(*input.hand).translation();
+  if (!fly_hand_) fly_hand_ = hand;
+  const Eigen::Vector3f way = hand - *fly_hand_;
+  if (way.norm() <= 2 * static_cast<float>(settings_.hand_noise_m)) return false;
+  T_wall_eye_.translate(way * static_cast<float>(settings_.fly_gain) * seconds);
+  return true;
 }
 
 Eigen::Isometry3f Scene::handPose(const TrackerSample& s) const {

@@ -37,7 +37,8 @@ struct SceneView {
 
 class Scene {
  public:
-  // Errors: kInvalidArgument: a binding whose input is none, an axis map that is no permutation.
+  // Errors: kInvalidArgument: a binding whose input is none, one that lasts and is not to be held
+  // or the other way round, an axis map that is no permutation.
   static Result<Scene> make(const SceneSettings& settings);
 
   // Once a frame. `now` never falls. Cost: microseconds.
@@ -55,15 +56,20 @@ class Scene {
     enum class Kind { kButton, kPosture, kSwitch } kind = Kind::kButton;
     std::uint32_t button = 0;  // bit
     std::string posture;
+    bool on_leave = false;  // a thing that happens once does so when the input ends
     bool was_held = false;
   };
 
   explicit Scene(const SceneSettings& settings);
   static std::optional<Bound> parse(const Binding& binding);
   bool isHeld(const Bound& bound, const SceneInput& input) const;
-  bool act(const SceneInput& input);  // bindings; returns whether grab is held
+  struct Asked {
+    bool grab = false, fly = false;
+  };
+  Asked act(const SceneInput& input);  // bindings; returns what is held
   bool moveByBall(const SceneInput& input, float seconds);
   bool moveByHand(const SceneInput& input, bool grab);
+  bool flyByHand(const SceneInput& input, bool fly, float seconds);
   Eigen::Isometry3f handPose(const TrackerSample& sample) const;
 
   SceneSettings settings_;
@@ -73,6 +79,7 @@ class Scene {
   BallMode mode_ = BallMode::kObject;
   // While grabbed: where hand and model were when it began, and where the hand last counted.
   std::optional<Eigen::Isometry3f> grab_hand_, grab_model_;
+  std::optional<Eigen::Vector3f> fly_hand_;  // while flying: where the hand was when it began
   Eigen::Isometry3f last_hand_ = Eigen::Isometry3f::Identity();
   SceneView view_;
   Timestamp last_update_{}, last_motion_{};

@@ -12,13 +12,19 @@ enum class Action {
   kGrab,       // while it is held: the tracked hand moves the model
   kResetView,  // once: model and viewer back to where they started
   kNextMode,   // once: the ball moves the model, or the viewer
+  kFly,        // while it is held: the way of the hand from where it began is the viewer's speed
 };
+
+// When it does it: what lasts does it while the input is held, what happens once when it begins.
+enum class When { kByAction, kEnter, kHold, kLeave };
 
 // "ball.button.1" ... "ball.button.12", "posture.NAME", "glove.switch".
 struct Binding {
   std::string input;
   Action action = Action::kGrab;
+  When when = When::kByAction;
 };
+inline constexpr bool lasts(Action a) { return a == Action::kGrab || a == Action::kFly; }
 
 struct SceneSettings {
   double model_radius_m = 1.0;    // the model is scaled to this bounding sphere
@@ -34,6 +40,7 @@ struct SceneSettings {
   std::array<int, 3> tracker_axes = {-2, -3, 1};
   int hand_station = 1;    // of the tracker, that the grabbing hand wears
   double hand_gain = 3.0;  // metres of the model for a metre of the hand
+  double fly_gain = 4.0;   // metres a second of the viewer for a metre of the hand
   // What the tracker's own noise may look like; less is no motion.
   double hand_noise_m = 0.003;
   double hand_noise_deg = 0.6;

@@ -53,6 +53,31 @@ TEST(Config, ReadsEveryKindOfSetting) {
   EXPECT_EQ(s.wall.tiles.tiles[0].kind, render::TileKind::kOperator);
 }
 
+std::string bindingsAre(const std::string& list) {
+  return all(loadSettings("{\"wall\": {\"scene\": {\"bindings\": [" + list + "]}}}", ""));
+}
+
+TEST(Config, BindingsThatConflictOrNameNothingAreFound) {
+  const std::string fist = R"({"input": "posture.fist", "action": "grab"})";
+  EXPECT_EQ(bindingsAre(fist), "");
+  EXPECT_NE(bindingsAre(fist + "," + fist).find("conflicts with binding 0"), std::string::npos);
+  EXPECT_NE(bindingsAre(fist + R"(, {"input": "posture.fist", "action": "fly"})")
+                .find("/wall/scene/bindings/1"),
+            std::string::npos);
+  EXPECT_EQ(
+      bindingsAre(fist + R"(, {"input": "posture.fist", "action": "reset_view", "on": "leave"})"),
+      "");
+  EXPECT_NE(bindingsAre(R"({"input": "ball.button.13", "action": "grab"})")
+                .find("allowed are ball.button.1 to ball.button.12"),
+            std::string::npos);
+  EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "grab", "on": "leave"})")
+                .find("allowed is hold for grab and fly"),
+            std::string::npos);
+  EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "lamp"})").find("fly"),
+            std::string::npos)
+      << "the list of what exists";
+}
+
 TEST(Config, SaysEverythingThatIsWrongAtOnceWithLineAndPointer) {
   const auto loaded = loadSettings(R"({
   "devices": {

@@ -142,6 +142,49 @@ TEST(SceneBindings, ActOnceAPress) {
   EXPECT_EQ(play.update(20).mode, BallMode::kObject) << "not bound";
 }
 
+TEST(SceneBindings, OnLeaveActsWhenTheInputEnds) {
+  SceneSettings settings;
+  settings.bindings = {{"posture.point", Action::kNextMode, render::When::kLeave}};
+  ScenePlay play(settings);
+  play.showPosture("point");
+  EXPECT_EQ(play.update(20).mode, BallMode::kObject);
+  play.showPosture("open");
+  EXPECT_EQ(play.update(20).mode, BallMode::kFly);
+  EXPECT_EQ(play.update(20).mode, BallMode::kFly) << "once";
+}
+
+TEST(SceneBindings, FlyMovesTheViewerAsFastAsTheHandIsAway) {
+  SceneSettings settings;
+  settings.bindings = {{"posture.point", Action::kFly}};
+  settings.tracker_axes = {1, 2, 3};
+  settings.fly_gain = 4;
+  ScenePlay play(settings);
+  play.showPosture("point");
+  play.holdHand({0, 0, 0});
+  play.update(20);
+  const Vector3f before = play.position();
+  play.update(20);
+  EXPECT_EQ(play.position(), before) << "where it began: no speed";
+  play.holdHand({0, 0, -0.1F});
+  for (int i = 0; i < 10; ++i) play.update(50);  // 0.4 m/s for 0.5 s
+  EXPECT_NEAR(play.position().z() - before.z(), 0.2F, 1e-4F);
+  play.showPosture("open");
+  play.update(50);
+  const Vector3f left = play.position();
+  play.update(50);
+  EXPECT_EQ(play.position(), left);
+}
+
+TEST(SceneBindings, WhatLastsIsHeldAndWhatHappensOnceIsNot) {
+  for (const auto& [action, when] : {std::pair{Action::kGrab, render::When::kEnter},
+                                     std::pair{Action::kFly, render::When::kLeave},
+                                     std::pair{Action::kResetView, render::When::kHold}}) {
+    SceneSettings settings;
+    settings.bindings = {{"posture.fist", action, when}};
+    EXPECT_FALSE(render::Scene::make(settings));
+  }
+}
+
 TEST(SceneBindings, ABallThatIsAbsentLetsGo) {
   ScenePlay play;
   play.press(kButton2);
