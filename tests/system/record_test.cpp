@@ -1,0 +1,102 @@
+// merlin record, replay, flight and calibrate, as a person runs them.
+#include <gtest/gtest.h>
+
+#include "drivers/io/transcript.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+TEST(Record, WhatIsRecordedReplaysIntoTheSameSamples) {
+  const TempDir dir;
+  Process ball({kMerlin, "emulate", "spaceball", "--link", dir / "ball", "--script", "turning"});
+  ASSERT_TRUE(ball.saysEventually("spaceball on")) << ball.output();
+  const Outcome recorded = run({kMerlin, "record", "pty:" + dir / "ball", "--device", "spaceball",
+                                "-o", dir / "ball.bytes", "--seconds", "2"});
+  ASSERT_EQ(recorded.status, 0) << recorded.output;
+  const auto first = io::readTranscript(dir / "ball.bytes");
+  ASSERT_TRUE(first) << first.error().what;
+  EXPECT_EQ((*first)["device"], "Spaceball 2003, firmware 2.13");
+
+  Process replay({kMerlin, "replay", dir / "ball.bytes", "--link", dir / "again"});
+  ASSERT_TRUE(replay.saysEventually("on pty:")) << replay.output();
+  const Outcome second = run({kMerlin, "record", "pty:" + dir / "again", "--device", "spaceball",
+                              "-o", dir / "again.bytes", "--seconds", "2"});
+  ASSERT_EQ(second.status, 0) << second.output;
+  EXPECT_EQ(replay.wait(), 0);
+  std::string then, now;
+  for (const auto& c : first->chunks) then += c.to_device ? "" : c.bytes;
+  const auto again = io::readTranscript(dir / "again.bytes");
+  ASSERT_TRUE(again);
+  for (const auto& c : again->chunks) now += c.to_device ? "" : c.bytes;
+  ASSERT_GT(now.size(), 300u);
+  EXPECT_EQ(then.substr(0, now.size()), now);
+}
+
+TEST(Record, BadInputIsOneClearMessage) {
+  const TempDir dir;
+  writeText(dir / "half.bytes", "# device: x\n@0.1 4400\n");
+  const Outcome half = run({kMerlin, "replay", dir / "half.bytes"});
+  EXPECT_EQ(half.status, 2);
+  EXPECT_EQ(half.output,
+            "merlin: " + dir / "half.bytes" +
+                ": ends after line 2 without \"# end\": it was cut off; it is no whole "
+                "transcript\n");
+  const Outcome none = run({kMerlin, "record", "usb:1", "-o", dir / "x"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.output.find("ports are serial:"), std::string::npos) << none.output;
+  const Outcome absent = run({kMerlin, "record", "pty:" + dir / "nothing", "-o", dir / "x"});
+  EXPECT_EQ(absent.status, 2) << absent.output;
+}
+
+TEST(Flight, TheDaemonDumpsOnCommandAndOnAFault) {
+  const TempDir dir;
+  Merlind merlind(dir, "", "flight", {.script = "turning", .role = "devices"});
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  ASSERT_TRUE(merlind.healthIs(shm::kBall, HealthState::kOk));
+  ASSERT_TRUE(eventually([&] { return merlind.devices()->ball.count() > 20; }));
+  const Outcome asked = run({kMerlin, "flight", "--instance", merlind.instance()});
+  ASSERT_EQ(asked.status, 0) << asked.output;
+  const auto dump = io::readTranscript(dir / "flight/spaceball-0.bytes");
+  ASSERT_TRUE(dump) << dump.error().what;
+  EXPECT_EQ((*dump)["driver"], "spaceball");
+  EXPECT_GT(dump->chunks.size(), 20u);
+  for (const pid_t child : merlind.children("spaceball")) ::kill(child, SIGKILL);
+  EXPECT_TRUE(merlind.process().saysEventually("the last bytes of the spaceball are in"))
+      << merlind.process().output();
+}
+
+TEST(Calibrate, WritesIntoAConfigurationThatTheDaemonAccepts) {
+  const TempDir dir;
+  const std::string config = dir / "merlin.json";
+  writeText(config, "{\"instance\": \"kept\"}");
+  EXPECT_EQ(run({kMerlin, "calibrate", "ball", "--axis-map", "1", "2", "-3", "4", "5", "-6",
+                 "--full-scale-translation", "6000", "-o", config})
+                .status,
+            0);
+  EXPECT_EQ(run({kMerlin, "calibrate", "tracker", "--station", "2", "--boresight", "0.6", "0", "0",
+                 "0.8", "-o", config})
+                .status,
+            0);
+  std::string vess;
+  for (int i = 0; i < 23; ++i) vess += "60 40 200\n";
+  writeText(dir / "vess", vess);
+  const Outcome imported = run({kMerlin, "calibrate", "import", dir / "vess", "-o", config});
+  EXPECT_EQ(imported.status, 0) << imported.output;
+  const auto json = nlohmann::json::parse(readText(config));
+  EXPECT_EQ(json["instance"], "kept");
+  EXPECT_EQ(json["devices"]["ball"]["full_scale_translation"], 6000);
+  EXPECT_EQ(json["devices"]["tracker"]["boresight2_wxyz"][3], 0.8);
+  EXPECT_EQ(json["devices"]["glove"]["offset"][4], 60);
+  const Outcome checked = run({kMerlind, "--check-config", config});
+  EXPECT_EQ(checked.status, 0) << checked.output;
+  const std::string before = readText(config);
+  writeText(dir / "flipped", "60 200 40\n" + vess.substr(10));
+  const Outcome flipped = run({kMerlin, "calibrate", "import", dir / "flipped", "-o", config});
+  EXPECT_EQ(flipped.status, 2);
+  EXPECT_NE(flipped.output.find("are they swapped?"), std::string::npos) << flipped.output;
+  EXPECT_EQ(readText(config), before);
+}
+
+}  // namespace
+}  // namespace merlin::test

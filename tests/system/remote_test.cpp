@@ -1,0 +1,91 @@
+// Two machines: a daemon with devices, and a wall that has none and is fed over tcp, encrypted.
+// Both on this machine, with real programs.
+#include <gtest/gtest.h>
+
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+std::string keys(const std::string& path) {
+  const Outcome made = run({kMerlin, "keys", "-o", path});
+  EXPECT_EQ(made.status, 0) << made.output;
+  return made.output.substr(0, 40);
+}
+
+struct TwoMachines : testing::Test {
+  TwoMachines() {
+    const std::string endpoint = fmt::format("tcp://127.0.0.1:{}", 20000 + ::getpid() % 30000);
+    const std::string device_key = keys(dir / "devices.keys"), wall_key = keys(dir / "wall.keys");
+    writeText(dir / "clients", wall_key + "\n");
+    std::filesystem::create_directory(dir / "a");
+    std::filesystem::create_directory(dir / "b");
+    writeText(dir / "devices.json", nlohmann::json{{"instance", devices_name},
+                                                   {"run_directory", dir / "a"},
+                                                   {"devices", {{"script", "turning"}}},
+                                                   {"serve",
+                                                    {{"samples_endpoint", endpoint},
+                                                     {"samples_keys", dir / "devices.keys"},
+                                                     {"samples_clients", dir / "clients"}}}}
+                                        .dump());
+    writeText(
+        dir / "wall.json",
+        nlohmann::json{
+            {"instance", wall_name},
+            {"run_directory", dir / "b"},
+            {"wall",
+             {{"model", makeModel(dir)},
+              {"rate", {{"rate_hz", 10}}},
+              {"input",
+               {{"endpoint", endpoint}, {"server_key", device_key}, {"keys", dir / "wall.keys"}}}}}}
+            .dump());
+  }
+  std::unique_ptr<Process> devices() {
+    return std::make_unique<Process>(std::vector<std::string>{
+        kMerlind, "--config", dir / "devices.json", "--role", "devices", "--emulate"});
+  }
+  TempDir dir;
+  std::string devices_name = privateName("there"), wall_name = privateName("here");
+};
+
+TEST_F(TwoMachines, TheWallMovesWithTheOtherMachinesBallAndOutlivesIt) {
+  Process wall({kMerlind, "--config", dir / "wall.json", "--role", "wall"});
+  ASSERT_TRUE(wall.saysEventually("ready")) << wall.output();
+  const auto segment =
+      shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(wall_name, "wall"));
+  const auto mirror =
+      shm::SegmentReader<shm::DevicesSegment>::open(shm::segmentName(wall_name, "devices"));
+  ASSERT_TRUE(segment && mirror);
+  const auto moving = [&] { return (*segment)->stats.read()->moving != 0; };
+  const auto ball = [&] {
+    const auto health = (*mirror)->health[shm::kBall].read();
+    return health ? health->state : HealthState::kAbsent;
+  };
+  EXPECT_FALSE(moving());
+  for (int times = 0; times < 2; ++times) {
+    auto there = devices();
+    ASSERT_TRUE(eventually([&] { return ball() == HealthState::kOk; })) << wall.output();
+    ASSERT_TRUE(eventually(moving)) << "the emulated person twists the ball there";
+    there->kill(SIGTERM);
+    ASSERT_TRUE(eventually([&] { return ball() == HealthState::kAbsent; }));
+    ASSERT_TRUE(eventually([&] { return !moving(); })) << "nobody holds it any more";
+    EXPECT_TRUE(wall.saysEventually("the link is gone")) << wall.output();
+  }
+  EXPECT_FALSE(wall.ended());
+  EXPECT_EQ(wall.kill(SIGTERM), 0);
+}
+
+TEST_F(TwoMachines, AWallWithoutKeysIsRefusedWithTheWayOut) {
+  auto config = nlohmann::json::parse(readText(dir / "wall.json"));
+  config["wall"]["input"].erase("keys");
+  writeText(dir / "keyless.json", config.dump());
+  const Outcome checked = run({kMerlind, "--check-config", dir / "keyless.json"});
+  EXPECT_EQ(checked.status, 2);
+  EXPECT_NE(checked.output.find("merlin keys -o FILE"), std::string::npos) << checked.output;
+  const Outcome both = run({kMerlind, "--config", dir / "wall.json"});
+  EXPECT_EQ(both.status, 2) << both.output;
+  EXPECT_NE(both.output.find("run it with --role wall"), std::string::npos) << both.output;
+}
+
+}  // namespace
+}  // namespace merlin::test
