@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "drivers/hand/hand.h"
+
 namespace merlin::wall {
 namespace {
 
@@ -12,6 +14,15 @@ bool pushed(const BallSample& b) {
   const auto moves = [](float v) { return v != 0; };
   return std::any_of(std::begin(b.translation), std::end(b.translation), moves) ||
          std::any_of(std::begin(b.rotation), std::end(b.rotation), moves);
+}
+
+// The smoothed hand of the same record, if the devices' side wears that station as its hand.
+void foresee(const shm::DevicesSegment& devices, Timestamp seen, TrackerSample& hand) {
+  const auto h = devices.hand.newest();
+  if (!h || h->received_ns != hand.received_ns) return;
+  const hand::Pose pose = hand::poseAt(*h, seen);
+  std::copy(pose.position_m.begin(), pose.position_m.end(), hand.position_m);
+  std::copy(pose.orientation_wxyz.begin(), pose.orientation_wxyz.end(), hand.orientation_wxyz);
 }
 
 }  // namespace
@@ -48,7 +59,8 @@ render::SceneInput DeviceFeed::read(Timestamp now) {
   // The line may live while the glove is silent: a posture nobody shows any more lets go.
   if (input.posture && now - fromNanoseconds(input.posture->received_ns) > stale_after_)
     input.posture.reset();
-  // What is held, rather than what one record shows; another machine's samples have the latter only.
+  // What is held, rather than what one record shows; another machine's samples have the latter
+  // only.
   if (const auto held = d->posture_state.read(); held && input.posture) {
     std::copy(std::begin(held->name), std::end(held->name), input.posture->name);
     input.posture->code = held->code;
@@ -56,6 +68,7 @@ render::SceneInput DeviceFeed::read(Timestamp now) {
   }
   if (input.hand && now - fromNanoseconds(input.hand->received_ns) > stale_after_)
     input.hand.reset();
+  if (input.hand && ahead_ > Duration::zero()) foresee(*d, now + ahead_, *input.hand);
   return input;
 }
 

@@ -11,8 +11,13 @@ namespace merlin::wall {
 // Thread-bound. Never waits: the newest is read, what is not well is left out.
 class DeviceFeed final : public InputFeed {
  public:
-  DeviceFeed(std::string segment_name, int hand_station, Duration stale_after)
-      : devices_(std::move(segment_name)), hand_station_(hand_station), stale_after_(stale_after) {}
+  // `ahead`: from a frame's begin until it is seen; the hand's pose is predicted to then.
+  DeviceFeed(std::string segment_name, int hand_station, Duration stale_after,
+             Duration ahead = Duration::zero())
+      : devices_(std::move(segment_name)),
+        hand_station_(hand_station),
+        stale_after_(stale_after),
+        ahead_(ahead) {}
 
   render::SceneInput read(Timestamp now) override;
   Duration age() const noexcept override { return age_.value_or(Duration::zero()); }
@@ -25,6 +30,7 @@ class DeviceFeed final : public InputFeed {
   shm::SegmentFollower<shm::DevicesSegment> devices_;
   int hand_station_;
   Duration stale_after_;
+  Duration ahead_;
   std::optional<Duration> age_;
 };
 

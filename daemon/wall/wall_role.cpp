@@ -69,7 +69,8 @@ void WallRole::run(const std::stop_token& stop) {
   (*picture)->warmUp(scene_.view().T_eye_model);
   DeviceFeed feed(shm::segmentName(settings_.instance, "devices"),
                   settings_.wall.scene.hand_station,
-                  fromSeconds(settings_.wall.scene.stale_after_s));
+                  fromSeconds(settings_.wall.scene.stale_after_s),
+                  fromSeconds(1 / settings_.wall.governor.rate_hz));
   std::vector<render::FrameSink*> sinks;
   for (const auto& sink : sinks_) sinks.push_back(sink.get());
   WallLoop loop({model_, **picture, scene_, governor_, feed, sinks, segment_->stats, clock_});

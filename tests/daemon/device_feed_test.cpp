@@ -46,6 +46,29 @@ class DeviceFeedTest : public testing::Test {
   DeviceFeed feed_{name_, 2, kStaleAfter};
 };
 
+// A hand of 1 m/s, 3 ms ago, seen at the next frame's end, 33 ms from now.
+TEST_F(DeviceFeedTest, PredictsTheHandToTheDisplayTime) {
+  DeviceFeed feed(name_, 2, kStaleAfter, milliseconds(33));
+  TrackerSample measured{};
+  measured.received_ns = toNanoseconds(now_ - milliseconds(3));
+  measured.position_m[0] = 0.5F;
+  measured.orientation_wxyz[0] = 1;
+  (*segment_)->tracker[1].publish(measured);
+  HandSample hand{};
+  hand.received_ns = measured.received_ns;
+  hand.position_m[0] = 0.49F;
+  hand.orientation_wxyz[0] = 1;
+  hand.velocity_m_s[0] = 1;
+  hand.delay_s = 0.01F;
+  (*segment_)->hand.publish(hand);
+  segment_->beat(now_);
+  EXPECT_NEAR(feed.read(now_).hand->position_m[0], 0.49 + 0.003 + 0.033 + 0.010, 1e-5);
+  EXPECT_EQ(read().hand->position_m[0], 0.5F) << "not asked to look ahead";
+  measured.received_ns += 1000;  // another station's record, or a newer one: no hand was made of it
+  (*segment_)->tracker[1].publish(measured);
+  EXPECT_EQ(feed.read(now_).hand->position_m[0], 0.5F);
+}
+
 TEST_F(DeviceFeedTest, GivesTheNewestOfWhatThereIs) {
   push();
   TrackerSample hand{};
