@@ -1,21 +1,19 @@
 // The cost `quadric`: weighted features become channels of the quadrics; the others are carried
 // along and mixed by where the new vertex lies between the two old ones.
+#include "render/reduce/quadric.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "daemon/base/blocks.h"
 #include "render/mesh/places.h"
 #include "render/reduce/costs.h"
-#include "render/reduce/quadric_reducer.h"
+#include "render/reduce/memory.h"
 
 namespace merlin::render {
 namespace {
 
-// Feature f of the mesh as channels first .. first + dimension - 1.
-struct ChannelFeature {
-  std::size_t feature, first;
-  float scale;  // model units a difference of 1 weighs
-};
+using ChannelFeature = QuadricPlan::ChannelFeature;
 
 std::vector<ChannelFeature> channelsOf(const Mesh& mesh, const PatternSpace& space) {
   // As in pattern space, geometry counts by the diagonal of the box.
@@ -112,43 +110,47 @@ Weights quadricWeights(const Mesh& mesh) {
   return weights;
 }
 
-Result<Reduction> reduceByQuadric(const Mesh& mesh, const ReduceSettings& settings,
-                                  const Progress& progress) {
-  const Weights weights = weightsFor(mesh, settings);
-  const auto space = PatternSpace::make(mesh, weights);
+Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings) {
+  QuadricPlan plan;
+  plan.weights = weightsFor(mesh, settings);
+  const auto space = PatternSpace::make(mesh, plan.weights);
   if (!space) return space.error();
-  if (const auto checked = checkWeights(mesh, weights, *space); !checked) return checked.error();
-  const auto channels = channelsOf(mesh, *space);
-
-  QuadricReducer reducer(mesh, countOf(mesh, channels));
-  for (const ChannelFeature& c : channels) {
-    const Feature& f = mesh.features[c.feature];
-    for (std::size_t k = 0; k < f.dimension; ++k)
-      reducer.setChannel(c.first + k, f.values.data() + k, f.dimension, c.scale);
-  }
+  if (const auto checked = checkWeights(mesh, plan.weights, *space); !checked)
+    return checked.error();
+  plan.channels = channelsOf(mesh, *space);
   // P12: as good as a colour of very high weight, unless somebody weighs it.
-  if (const Feature* label = mesh.find("label"); label && !space->find("label"))
-    reducer.setLabels(label->values.data());
-  const std::vector<bool> locked = lockedVertices(mesh, settings);
-  if (!locked.empty()) reducer.lock(locked);
-  const auto by_percent = static_cast<std::size_t>(settings.min_percent / 100 *
-                                                   static_cast<double>(mesh.triangleCount()));
-  QuadricReducer::Limits limits;
-  limits.triangles = std::max(settings.min_triangles, by_percent);
+  plan.labels_lock = mesh.find("label") && !space->find("label");
+  plan.by_percent = static_cast<std::size_t>(settings.min_percent / 100 *
+                                             static_cast<double>(mesh.triangleCount()));
+  QuadricReducer::Limits& limits = plan.limits;
+  limits.triangles = std::max(settings.min_triangles, plan.by_percent);
   limits.error =
       static_cast<float>(settings.max_error_percent / 100 * boundingBox(mesh.positions).diagonal());
   limits.preserve_topology = settings.preserve_topology;
   limits.preserve_components = settings.preserve_components;
   limits.threads = threadsOr(settings.threads);
-  const char* stopped = reducer.run(limits, progress);
+  return plan;
+}
+
+Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vector<bool>& locked,
+                     const Progress& progress) {
+  QuadricReducer reducer(mesh, countOf(mesh, plan.channels), plan.limits.threads);
+  for (const ChannelFeature& c : plan.channels) {
+    const Feature& f = mesh.features[c.feature];
+    for (std::size_t k = 0; k < f.dimension; ++k)
+      reducer.setChannel(c.first + k, f.values.data() + k, f.dimension, c.scale);
+  }
+  if (plan.labels_lock) reducer.setLabels(mesh.find("label")->values.data());
+  if (!locked.empty()) reducer.lock(locked);
+  const char* stopped = reducer.run(plan.limits, progress);
 
   Reduction result = reducer.finish(mesh);
-  result.report.stopped = reasonOf(stopped, settings, by_percent);
+  result.report.stopped = stopped;
   for (std::size_t f = 0; f < mesh.features.size(); ++f) {
     if (result.log.features[f].empty())
       result.log.features[f] = carryAlong(mesh, mesh.features[f], result.log);
   }
-  for (const ChannelFeature& c : channels) {
+  for (const ChannelFeature& c : plan.channels) {
     if (mesh.features[c.feature].name == "label") continue;  // is never mixed
     const std::size_t d = mesh.features[c.feature].dimension;
     for (std::size_t k = 0; k < d; ++k) {
@@ -157,7 +159,21 @@ Result<Reduction> reduceByQuadric(const Mesh& mesh, const ReduceSettings& settin
         result.log.features[c.feature][i * d + k] = values[i];
     }
   }
-  result.log.about = aboutText(settings, weights, result.report);
+  return result;
+}
+
+Result<Reduction> reduceByQuadric(const Mesh& mesh, const ReduceSettings& settings,
+                                  const Progress& progress) {
+  const auto plan = planQuadric(mesh, settings);
+  if (!plan) return plan.error();
+  const auto blocks = blocksFor(sizeOf(mesh), settings);
+  if (!blocks) return blocks.error();
+  const std::vector<bool> locked = lockedVertices(mesh, settings);
+  Reduction result = *blocks == 1 ? runQuadric(mesh, *plan, locked, progress)
+                                  : reduceInBlocks(mesh, *plan, locked, *blocks, progress);
+  result.report.stopped = reasonOf(result.report.stopped, settings, plan->by_percent);
+  result.report.blocks = *blocks;
+  result.log.about = aboutText(settings, plan->weights, result.report);
   return result;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <new>
 
+#include "daemon/base/blocks.h"
+
 namespace merlin::render {
 namespace {
 
@@ -13,24 +15,36 @@ std::uint32_t linesFor(std::uint32_t corners) {
   return std::max(1U, (corners + kLine - 1) / kLine);
 }
 
-// 10 bits, spread so that two others fit between each two of them.
-std::uint64_t spread(float unit) {
-  auto v = static_cast<std::uint64_t>(std::clamp(unit, 0.0F, 1.0F) * 1023.0F);
-  v = (v | v << 16) & 0x030000FF;
-  v = (v | v << 8) & 0x0300F00F;
-  v = (v | v << 4) & 0x030C30C3;
-  return (v | v << 2) & 0x09249249;
+constexpr std::size_t kBlock = 1 << 17;  // vertices that a thread takes at a time
+
+// Calls work(v) for each of n vertices; what it writes must be v's own.
+template <typename Work>
+void forEachVertex(std::size_t n, unsigned threads, const Work& work) {
+  forBlocks(threads, (n + kBlock - 1) / kBlock, [&](std::size_t block) {
+    const std::size_t end = std::min(n, (block + 1) * kBlock);
+    for (std::size_t v = block * kBlock; v < end; ++v) work(static_cast<std::uint32_t>(v));
+  });
 }
 
-// By the upper 32 bits' lower 30; stable.
-void radixSort(std::vector<std::uint64_t>& keys) {
-  std::vector<std::uint64_t> other(keys.size());
-  for (const int shift : {32, 42, 52}) {
-    std::array<std::size_t, 1025> at{};
-    for (const std::uint64_t k : keys) ++at[(k >> shift & 1023) + 1];
+// 12 bits, spread so that two others fit between each two of them.
+std::uint64_t spread(std::uint64_t v) {
+  v = (v | v << 32) & 0x001F00000000FFFF;
+  v = (v | v << 16) & 0x001F0000FF0000FF;
+  v = (v | v << 8) & 0x100F00F00F00F00F;
+  v = (v | v << 4) & 0x10C30C30C30C30C3;
+  return (v | v << 2) & 0x1249249249249249;
+}
+
+// By the upper 3 x bits; stable.
+void radixSort(HugeArray<std::uint64_t>& keys, unsigned bits) {
+  HugeArray<std::uint64_t> other(keys.size());
+  const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+  for (unsigned shift = 64 - 3 * bits; shift < 64; shift += bits) {
+    std::vector<std::size_t> at(mask + 2);
+    for (std::size_t i = 0; i < keys.size(); ++i) ++at[(keys[i] >> shift & mask) + 1];
     for (std::size_t i = 1; i < at.size(); ++i) at[i] += at[i - 1];
-    for (const std::uint64_t k : keys) other[at[k >> shift & 1023]++] = k;
-    keys.swap(other);
+    for (std::size_t i = 0; i < keys.size(); ++i) other[at[keys[i] >> shift & mask]++] = keys[i];
+    std::swap(keys, other);
   }
 }
 
@@ -85,18 +99,47 @@ void StarRoom::join(StarRoom&& other) {
   }
 }
 
-QuadricMesh::QuadricMesh(const Mesh& mesh) : scale_(scaleOf(mesh)) {
-  number(mesh);
+// Along a Morton curve of 1,024 steps an axis; of 4,096 where the mesh has so many vertices that
+// too many would share a step, and the number of a vertex still fits beside it.
+std::vector<std::uint32_t> alongCurve(const Mesh& mesh, unsigned threads) {
+  const Box box = boundingBox(mesh.positions);
+  float extent = 0;
+  for (std::size_t k = 0; k < 3; ++k) extent = std::max(extent, box.high[k] - box.low[k]);
+  if (!(extent > 0)) extent = 1;
+  const std::size_t n = mesh.vertexCount();
+  const unsigned bits = n < 1U << 22 || n >= 1U << 28 ? 10 : 12;
+  const float steps = static_cast<float>((1U << bits) - 1);
+  HugeArray<std::uint64_t> keys(n);
+  forEachVertex(n, threads, [&](std::uint32_t v) {
+    std::uint64_t key = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float unit = (mesh.positions[3 * std::size_t{v} + k] - box.low[k]) / extent;
+      key |= spread(static_cast<std::uint64_t>(std::clamp(unit, 0.0F, 1.0F) * steps)) << k;
+    }
+    keys[v] = key << (64 - 3 * bits) | v;
+  });
+  radixSort(keys, bits);
+  const std::uint64_t low = (std::uint64_t{1} << (64 - 3 * bits)) - 1;
+  std::vector<std::uint32_t> curve(n);
+  for (std::size_t i = 0; i < n; ++i) curve[i] = static_cast<std::uint32_t>(keys[i] & low);
+  return curve;
+}
+
+QuadricMesh::QuadricMesh(const Mesh& mesh, unsigned threads)
+    : input_(alongCurve(mesh, threads)), scale_(scaleOf(mesh)) {
+  const Box box = boundingBox(mesh.positions);
+  for (std::size_t k = 0; k < 3; ++k) centre_[k] = (box.low[k] + box.high[k]) / 2;
   const std::size_t n = input_.size();
-  std::vector<std::uint32_t> numbers(n);
-  for (std::uint32_t v = 0; v < n; ++v) numbers[input_[v]] = v;
+  HugeArray<std::uint32_t> numbers(n);
   vertices_ = HugeArray<QuadricVertex>(n);
-  for (std::uint32_t v = 0; v < n; ++v) {
+  forEachVertex(n, threads, [&](std::uint32_t v) {
+    numbers[input_[v]] = v;
     const auto place = toWorking(&mesh.positions[3 * std::size_t{input_[v]}]);
     std::copy(place.begin(), place.end(), vertices_[v].position);
     vertices_[v].node = v;
-  }
+  });
   fillStars(mesh, numbers);
+  forEachVertex(n, threads, [&](std::uint32_t v) { orderStar(vertices_[v]); });
 }
 
 std::array<float, 3> QuadricMesh::toWorking(const float* model) const noexcept {
@@ -109,28 +152,7 @@ std::array<float, 3> QuadricMesh::toModel(const float* position) const noexcept 
           position[2] / scale_ + centre_[2]};
 }
 
-// Along a Morton curve of 1,024 steps an axis.
-void QuadricMesh::number(const Mesh& mesh) {
-  const Box box = boundingBox(mesh.positions);
-  float extent = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    centre_[k] = (box.low[k] + box.high[k]) / 2;
-    extent = std::max(extent, box.high[k] - box.low[k]);
-  }
-  if (!(extent > 0)) extent = 1;
-  std::vector<std::uint64_t> keys(mesh.vertexCount());
-  for (std::size_t v = 0; v < keys.size(); ++v) {
-    std::uint64_t key = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      key |= spread((mesh.positions[3 * v + k] - box.low[k]) / extent) << k;
-    keys[v] = key << 32 | v;
-  }
-  radixSort(keys);
-  input_.resize(keys.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) input_[i] = static_cast<std::uint32_t>(keys[i]);
-}
-
-void QuadricMesh::fillStars(const Mesh& mesh, const std::vector<std::uint32_t>& numbers) {
+void QuadricMesh::fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& numbers) {
   for (const std::uint32_t v : mesh.triangles) ++vertices_[numbers[v]].degree;
   std::uint64_t total = 0;
   for (std::uint32_t v = 0; v < vertexCount(); ++v) {
@@ -154,7 +176,6 @@ void QuadricMesh::fillStars(const Mesh& mesh, const std::vector<std::uint32_t>& 
       stars_[x.star + x.degree++] = {v[(k + 1) % 3], v[(k + 2) % 3]};
     }
   }
-  for (std::uint32_t v = 0; v < vertexCount(); ++v) orderStar(vertices_[v]);
 }
 
 // Puts the corners in the order of the fan; kOpen where they are none that closes.

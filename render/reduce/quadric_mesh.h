@@ -79,10 +79,14 @@ class StarRoom {
   std::vector<std::vector<std::uint32_t>> free_;  // by lines
 };
 
+// The mesh's vertices in the order of a space-filling curve; the same for any number of threads.
+// O(n): a radix sort. 16 bytes a vertex besides.
+std::vector<std::uint32_t> alongCurve(const Mesh& mesh, unsigned threads);
+
 class QuadricMesh {
  public:
-  // REQUIRES: validate(mesh), tidy(mesh). O(n) but for a radix sort.
-  explicit QuadricMesh(const Mesh& mesh);
+  // REQUIRES: validate(mesh), tidy(mesh). O(n).
+  explicit QuadricMesh(const Mesh& mesh, unsigned threads = 1);
 
   std::uint32_t vertexCount() const noexcept { return static_cast<std::uint32_t>(input_.size()); }
   QuadricVertex& operator[](std::uint32_t v) const noexcept { return vertices_[v]; }
@@ -100,8 +104,7 @@ class QuadricMesh {
   void dropStars() { stars_ = {}; }
 
  private:
-  void number(const Mesh& mesh);
-  void fillStars(const Mesh& mesh, const std::vector<std::uint32_t>& number);
+  void fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& numbers);
   void orderStar(QuadricVertex& v);
 
   std::vector<std::uint32_t> input_;

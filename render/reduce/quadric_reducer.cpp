@@ -29,8 +29,8 @@ float trace(const float* h) { return h[0] + h[3] + h[5]; }
 
 }  // namespace
 
-QuadricReducer::QuadricReducer(const Mesh& mesh, std::size_t channels)
-    : mesh_(mesh),
+QuadricReducer::QuadricReducer(const Mesh& mesh, std::size_t channels, unsigned threads)
+    : mesh_(mesh, threads),
       input_positions_(mesh.positions.data()),
       channels_(mesh.vertexCount(), channels),
       ranges_(channels),
@@ -430,7 +430,8 @@ const char* QuadricReducer::run(const Limits& limits, const Progress& progress) 
   const auto stages = {QuadricStage::kAll, QuadricStage::kNoLock, QuadricStage::kNoLink,
                        QuadricStage::kNoFlips};
   for (const QuadricStage stage : stages) {
-    if (triangles_ <= keep || cancelled_) break;
+    if (triangles_ <= keep || cancelled_ || (stage != QuadricStage::kAll && limits.by_all_rules))
+      break;
     // What is left after an error's limit is not what rules are in the way of.
     if (stage != QuadricStage::kAll && whole_.too_coarse) break;
     if (stage == QuadricStage::kNoLock && labels_.empty()) continue;

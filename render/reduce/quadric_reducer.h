@@ -24,7 +24,7 @@ class QuadricReducer {
   using Progress = std::function<bool(const ReduceProgress&)>;
 
   // `channels`: how many values a vertex has that cost. The mesh must outlive this.
-  QuadricReducer(const Mesh& mesh, std::size_t channels);
+  QuadricReducer(const Mesh& mesh, std::size_t channels, unsigned threads);
 
   // Values of a channel, of the mesh's vertices `stride` floats apart. `scale`: how many model
   // units a difference of 1 weighs.
@@ -40,6 +40,7 @@ class QuadricReducer {
     std::size_t triangles = 0;                             // stop when no more are left; 0: none
     float error = std::numeric_limits<float>::infinity();  // no collapse is worse; model units
     bool preserve_topology = false, preserve_components = false;
+    bool by_all_rules = false;  // stop where these allow no more, instead of dropping one
     unsigned threads = 1;
   };
   // Returns why it stopped, in reduce()'s words.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "render/reduce/costs.h"
+#include "render/reduce/memory.h"
 
 namespace merlin::render {
 namespace {
@@ -60,6 +61,7 @@ Result<Reduction> reduce(const Mesh& mesh, const ReduceSettings& settings,
                          const Progress& progress) {
   assert(mesh.find("normal") && mesh.find("normal")->dimension == 3);
   if (const auto checked = check(settings); !checked) return checked.error();
+  if (const auto fits = blocksFor(sizeOf(mesh), settings); !fits) return fits.error();
   return findCost(settings.cost)->reduce(mesh, settings, progress);
 }
 

@@ -29,6 +29,9 @@ struct ReduceSettings {
   std::vector<bool> locked{};  // quadric: of the mesh's vertices, those that stay where they are as
                                // long as anything else can go; empty: none but those of seams
   unsigned threads = 0;        // 0: as many as the machine has; the result is the same
+  // Bytes that it may take beside the mesh, log included; 0: all it wants. Where that is less than
+  // it would take, `quadric` works in blocks, of which the result depends (memory.h).
+  std::size_t memory = 0;
 
   // When to stop, whichever comes first (P10): as soon as no more triangles are left than these,
   // and before the error would be larger. As they stand: when nothing legal is left.
@@ -48,6 +51,7 @@ struct ReduceReport {
   std::size_t flips_refused = 0;     // P8; the same edge counts each time
   std::size_t topology_refused = 0;  // by preserve_topology, or since nothing would be left
   std::size_t triangles = 0;         // left
+  std::size_t blocks = 1;            // that it was cut into for want of memory
   float error = 0;                   // estimate of the last level, model units
   const char* stopped = "";          // why: "nothing left to collapse", "triangles", "percent",
                                      // "error", "cancelled"
@@ -77,7 +81,8 @@ const Cost* findCost(std::string_view name);  // nullptr if there is none
 //
 // mesh      n vertices, m triangles; borders, components, non-manifold edges allowed.
 // progress  called every few thousand collapses; false cancels (what was done is returned).
-// errors    kInvalidArgument: no such cost, a weight or a stop criterion out of range.
+// errors    kInvalidArgument: no such cost, a weight or a stop criterion out of range, too little
+//           memory.
 // order     one input, one log, whatever the number of threads.
 // cost      pattern: O(m log m) time, about 110 bytes an edge with three features beside the mesh;
 //           quadric: O(m), README.md.

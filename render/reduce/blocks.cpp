@@ -1,0 +1,268 @@
+// A mesh in blocks: pieces of the space-filling curve, reduced one after another up to the same
+// error where nothing on their borders moves, then what they leave as one mesh.
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+#include "render/reduce/block_cutter.h"
+#include "render/reduce/memory.h"
+#include "render/reduce/quadric.h"
+
+namespace merlin::render {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kSamples = 32;
+constexpr std::size_t kSampleSize = 20'000;  // vertices
+
+// What came of one block.
+struct Part {
+  std::vector<std::uint32_t> vertices;  // of the whole mesh
+  CollapseLog log;
+};
+
+class InBlocks {
+ public:
+  InBlocks(const Mesh& mesh, const QuadricPlan& plan, const std::vector<bool>& locked,
+           std::size_t blocks, const Progress& progress)
+      : mesh_(mesh), plan_(plan), locked_(locked), blocks_(blocks), progress_(progress) {
+    const double all = static_cast<double>(mesh.triangleCount());
+    target_ = static_cast<double>(plan.limits.triangles) / all;
+    share_ = shareOfBlocks(target_);
+  }
+
+  Reduction run() {
+    result_.report.triangles = mesh_.triangleCount();
+    std::vector<Part> parts = reduceBlocks();
+    join(parts);
+    parts = {};
+    if (cancelled_)
+      result_.report.stopped = "cancelled";
+    else
+      reduceRest();
+    const std::vector<float>& error = result_.log.error;
+    result_.report.error = error.empty() ? 0 : *std::max_element(error.begin(), error.end());
+    result_.report.collapses = result_.log.children.size();
+    return std::move(result_);
+  }
+
+ private:
+  std::uint32_t vertices() const { return static_cast<std::uint32_t>(mesh_.vertexCount()); }
+
+  // --- blocks ------------------------------------------------------------------------------------
+
+  std::vector<Part> reduceBlocks() {
+    const BlockCutter cutter(mesh_, locked_, plan_.limits.threads);
+    QuadricPlan plan = plan_;
+    plan.limits.by_all_rules = true;
+    plan.limits.error = std::min(plan.limits.error, errorForAll(cutter));
+    const std::size_t stride = (mesh_.vertexCount() + blocks_ - 1) / blocks_;
+    std::vector<Part> parts;
+    for (std::size_t b = 0; b < blocks_ && !cancelled_; ++b) {
+      Block block = std::move(cutter.cut({stride, stride, b, b}).front());
+      if (block.mesh.triangles.empty()) continue;
+      plan.limits.triangles = leastOf(block);
+      Reduction r = runQuadric(block.mesh, plan, block.locked, progressOf(block));
+      addReport(r.report, block.mesh.triangleCount() - r.report.triangles);
+      parts.push_back({std::move(block.vertices), std::move(r.log)});
+    }
+    return parts;
+  }
+
+  // A block of nothing but planes is not worn down to its borders.
+  std::size_t leastOf(const Block& block) const {
+    return static_cast<std::size_t>(std::max(share_ / 2, target_) *
+                                    static_cast<double>(block.mesh.triangleCount()));
+  }
+
+  // The error up to which all blocks together keep about their share: all are to be equally coarse,
+  // so it is that of samples along the whole curve.
+  float errorForAll(const BlockCutter& cutter) const {
+    const std::size_t n = mesh_.vertexCount(), stride = (n + kSamples - 1) / kSamples;
+    std::vector<float> errors;
+    std::size_t free = 0;
+    QuadricPlan plan = plan_;
+    plan.limits.by_all_rules = true;
+    for (Block& sample : cutter.cut({stride, std::min(stride, kSampleSize), 0, kSamples - 1})) {
+      if (sample.mesh.triangles.empty()) continue;
+      plan.limits.triangles = leastOf(sample);
+      const Reduction r = runQuadric(sample.mesh, plan, sample.locked, {});
+      float worst = 0;
+      for (const float e : r.log.error) errors.push_back(worst = std::max(worst, e));
+      free +=
+          static_cast<std::size_t>(std::count(sample.locked.begin(), sample.locked.end(), false));
+    }
+    const auto wanted = static_cast<std::size_t>((1 - share_) * static_cast<double>(free));
+    if (wanted >= errors.size()) return std::numeric_limits<float>::infinity();
+    const auto at = errors.begin() + static_cast<std::ptrdiff_t>(wanted);
+    std::nth_element(errors.begin(), at, errors.end());
+    return *at;
+  }
+
+  Progress progressOf(const Block& block) {
+    if (!progress_) return {};
+    return
+        [this, before = result_.report, own = block.mesh.triangleCount()](const ReduceProgress& p) {
+          cancelled_ =
+              !progress_({before.collapses + p.collapses, before.triangles - (own - p.triangles)});
+          return !cancelled_;
+        };
+  }
+
+  void addReport(const ReduceReport& r, std::size_t removed) {
+    ReduceReport& all = result_.report;
+    all.collapses += r.collapses;
+    all.flips_refused += r.flips_refused;
+    all.topology_refused += r.topology_refused;
+    all.triangles -= removed;
+  }
+
+  // --- their logs as one -------------------------------------------------------------------------
+
+  // In the order of the largest error so far, so that all blocks are equally coarse at each level.
+  void join(std::vector<Part>& parts) {
+    using Head = std::tuple<float, std::size_t, std::size_t>;  // error, part, collapse of it
+    std::priority_queue<Head, std::vector<Head>, std::greater<>> heads;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      if (!parts[p].log.error.empty()) heads.push({parts[p].log.error[0], p, 0});
+    }
+    reserve();
+    std::vector<std::vector<std::uint32_t>> nodes(parts.size());  // by collapse: its node
+    while (!heads.empty()) {
+      const auto [error, p, k] = heads.top();
+      heads.pop();
+      append(parts[p], k, nodes[p]);
+      const std::vector<float>& errors = parts[p].log.error;
+      if (k + 1 < errors.size()) heads.push({std::max(error, errors[k + 1]), p, k + 1});
+    }
+  }
+
+  void reserve() {
+    CollapseLog& log = result_.log;
+    log.children.reserve(vertices());
+    log.positions.reserve(3 * std::size_t{vertices()});
+    log.error.reserve(vertices());
+    for (const Feature& f : mesh_.features)
+      log.features.emplace_back().reserve(f.dimension * vertices());
+  }
+
+  // Collapse k of a part; `nodes`: what its earlier ones made.
+  void append(const Part& part, std::size_t k, std::vector<std::uint32_t>& nodes) {
+    CollapseLog& log = result_.log;
+    const auto own = static_cast<std::uint32_t>(part.vertices.size());
+    const auto node = [&](std::uint32_t n) { return n < own ? part.vertices[n] : nodes[n - own]; };
+    const auto [a, b] = part.log.children[k];
+    nodes.push_back(vertices() + static_cast<std::uint32_t>(log.children.size()));
+    log.children.push_back({node(a), node(b)});
+    log.error.push_back(part.log.error[k]);
+    appendRow(part.log.positions, k, 3, log.positions);
+    for (std::size_t f = 0; f < log.features.size(); ++f)
+      appendRow(part.log.features[f], k, mesh_.features[f].dimension, log.features[f]);
+  }
+
+  static void appendRow(const std::vector<float>& from, std::size_t row, std::size_t dimension,
+                        std::vector<float>& to) {
+    const auto first = from.begin() + static_cast<std::ptrdiff_t>(row * dimension);
+    to.insert(to.end(), first, first + static_cast<std::ptrdiff_t>(dimension));
+  }
+
+  // --- what they leave ---------------------------------------------------------------------------
+
+  void reduceRest() {
+    const std::size_t first = result_.log.children.size();
+    Part rest;  // its vertices are nodes
+    Reduction r;
+    {
+      std::vector<bool> locked;
+      const Mesh mesh = restOf(rest.vertices, locked);
+      Progress progress;
+      if (progress_) {
+        progress = [&](const ReduceProgress& p) {
+          return progress_({first + p.collapses, p.triangles});
+        };
+      }
+      r = runQuadric(mesh, plan_, locked, progress);
+    }
+    rest.log = std::move(r.log);
+    std::vector<std::uint32_t> nodes;
+    for (std::size_t k = 0; k < rest.log.children.size(); ++k) append(rest, k, nodes);
+    addReport(r.report, 0);
+    result_.report.triangles = r.report.triangles;
+    result_.report.stopped = r.report.stopped;
+  }
+
+  // The surface after all blocks. nodes: those that are its vertices. locked: where a locked vertex
+  // of the mesh has gone into it.
+  Mesh restOf(std::vector<std::uint32_t>& nodes, std::vector<bool>& locked) const {
+    const CollapseLog& log = result_.log;
+    const std::size_t n = vertices(), all = n + log.children.size();
+    // First the node that each goes into, then the vertex of the rest that it has become.
+    std::vector<std::uint32_t> into(all, kNone);
+    for (std::size_t k = 0; k < log.children.size(); ++k) {
+      for (const std::uint32_t child : log.children[k])
+        into[child] = static_cast<std::uint32_t>(n + k);
+    }
+    nodes.resize(all - 2 * log.children.size());
+    auto number = static_cast<std::uint32_t>(nodes.size());
+    for (std::size_t node = all; node-- > 0;) {
+      if (into[node] == kNone)
+        nodes[into[node] = --number] = static_cast<std::uint32_t>(node);
+      else
+        into[node] = into[into[node]];
+    }
+    if (!locked_.empty()) {
+      locked.resize(nodes.size());
+      for (std::size_t v = 0; v < n; ++v) {
+        if (locked_[v]) locked[into[v]] = true;
+      }
+    }
+    Mesh rest;
+    for (std::size_t i = 0; i < mesh_.triangles.size(); i += 3) {
+      const std::uint32_t* t = &mesh_.triangles[i];
+      const std::uint32_t c[] = {into[t[0]], into[t[1]], into[t[2]]};
+      if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0])
+        rest.triangles.insert(rest.triangles.end(), c, c + 3);
+    }
+    rest.positions = rowsOf(nodes, mesh_.positions, log.positions, 3);
+    for (std::size_t f = 0; f < mesh_.features.size(); ++f) {
+      const Feature& feature = mesh_.features[f];
+      rest.features.push_back({feature.name, feature.dimension,
+                               rowsOf(nodes, feature.values, log.features[f], feature.dimension)});
+    }
+    return rest;
+  }
+
+  static std::vector<float> rowsOf(const std::vector<std::uint32_t>& nodes,
+                                   const std::vector<float>& leaves,
+                                   const std::vector<float>& inner, std::size_t dimension) {
+    std::vector<float> rows(nodes.size() * dimension);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const std::size_t at = nodes[i] * dimension;
+      std::copy_n(at < leaves.size() ? &leaves[at] : &inner[at - leaves.size()], dimension,
+                  &rows[i * dimension]);
+    }
+    return rows;
+  }
+
+  const Mesh& mesh_;
+  const QuadricPlan& plan_;
+  const std::vector<bool>& locked_;
+  std::size_t blocks_;
+  const Progress& progress_;
+  double target_, share_;  // of the triangles: that are asked for, that blocks leave
+  Reduction result_;
+  bool cancelled_ = false;
+};
+
+}  // namespace
+
+Reduction reduceInBlocks(const Mesh& mesh, const QuadricPlan& plan, const std::vector<bool>& locked,
+                         std::size_t blocks, const Progress& progress) {
+  return InBlocks(mesh, plan, locked, blocks, progress).run();
+}
+
+}  // namespace merlin::render

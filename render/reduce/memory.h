@@ -1,0 +1,29 @@
+// What a reduction takes of memory, as far as can be said before.
+//
+// Estimates from measurements (README.md), a little above them, since a limit is a promise: those
+// of `./dev bench size` are within a tenth.
+#pragma once
+
+#include <cstddef>
+
+#include "daemon/base/result.h"
+#include "render/mesh/mesh_size.h"
+#include "render/reduce/reduce.h"
+
+namespace merlin::render {
+
+// Bytes beside the mesh.
+struct ReductionNeed {
+  std::size_t whole = 0;  // all at once
+  std::size_t least = 0;  // in as many blocks as help; the same where the cost has no blocks
+};
+ReductionNeed needOf(const MeshSize& size, const ReduceSettings& settings);
+
+// How many blocks settings.memory asks for; 1 for the mesh as a whole. Errors: kInvalidArgument,
+// where not even blocks fit, with the need and the limit.
+Result<std::size_t> blocksFor(const MeshSize& size, const ReduceSettings& settings);
+
+// What share of its triangles a block keeps, where `target` of all are asked for.
+double shareOfBlocks(double target);
+
+}  // namespace merlin::render

@@ -1,0 +1,38 @@
+// What reduceByQuadric() is made of, for a mesh as a whole and for blocks of it. Private to
+// render/reduce.
+#pragma once
+
+#include <vector>
+
+#include "render/reduce/quadric_reducer.h"
+
+namespace merlin::render {
+
+// What is decided for the whole mesh, so that its blocks are measured alike.
+struct QuadricPlan {
+  // Feature f of the mesh as channels first .. first + dimension - 1.
+  struct ChannelFeature {
+    std::size_t feature, first;
+    float scale;  // model units a difference of 1 weighs
+  };
+  Weights weights;
+  std::vector<ChannelFeature> channels;
+  bool labels_lock = false;
+  std::size_t by_percent = 0;  // triangles that settings.min_percent leaves
+  QuadricReducer::Limits limits;
+};
+
+// Errors: of weights and criteria, as reduce().
+Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings);
+
+// Reduces `mesh`, which has the features that the plan was made with. locked: one a vertex, or
+// empty. The log lacks its `about`.
+Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vector<bool>& locked,
+                     const Progress& progress);
+
+// The same in so many blocks, more than one: blocks.cpp. Of their quadrics those of one block are
+// in memory, then those of what all have left.
+Reduction reduceInBlocks(const Mesh& mesh, const QuadricPlan& plan, const std::vector<bool>& locked,
+                         std::size_t blocks, const Progress& progress);
+
+}  // namespace merlin::render
