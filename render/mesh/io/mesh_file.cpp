@@ -73,10 +73,11 @@ Result<LoadedMesh> readMesh(const std::string& path) {
   if (end != "ply" && end != "obj") {
     return Error{Errc::kUnsupported, fmt::format("{}: meshes are read from .ply and .obj", path)};
   }
-  const auto file = MappedFile::open(path);
+  auto file = MappedFile::open(path);
   if (!file) return file.error();
   auto loaded = end == "ply" ? ply::parse(file->text()) : readObj(file->text(), folderOf(path));
   if (!loaded) return inFile(path, loaded.error());
+  *file = MappedFile();  // as large as the mesh
   if (const auto valid = validate(loaded->mesh); !valid) return inFile(path, valid.error());
   const TidyReport tidied = tidy(loaded->mesh);
   const std::size_t in_file = loaded->tidied.degenerate;

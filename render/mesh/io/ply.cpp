@@ -239,6 +239,10 @@ class Reader {
   }
 
   Result<Ok> readCorners(const Element& e, std::uint64_t row, const Property& p) {
+    if (std::uint32_t t[3]; body_.nextTriangle(p, t)) {
+      mesh().triangles.insert(mesh().triangles.end(), t, t + 3);
+      return Ok{};
+    }
     const auto count = readLength(e, row, p);
     if (!count) return count.error();
     if (*count < 3) ++loaded_.tidied.degenerate;

@@ -8,6 +8,9 @@
 namespace merlin::render::ply {
 namespace {
 
+static_assert(std::endian::native == std::endian::little);
+constexpr std::uint32_t kMostVertices = std::uint32_t{1} << 31;
+
 bool isSpace(char c) noexcept { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
 
 // The unsigned integer of `size` bytes at `p`.
@@ -50,6 +53,19 @@ bool Body::nextBinary(Scalar type, double& value) noexcept {
   if (left() < size) return false;
   value = interpret(load(at_, size, form_ == Form::kBigEndian), type);
   at_ += size;
+  return true;
+}
+
+bool Body::nextTriangle(const Property& list, std::uint32_t* corners) noexcept {
+  constexpr std::size_t kSize = 1 + 3 * sizeof(std::uint32_t);
+  const bool words = list.type == Scalar::kInt32 || list.type == Scalar::kUint32;
+  const bool bytes = list.count_type == Scalar::kUint8 || list.count_type == Scalar::kInt8;
+  if (form_ != Form::kLittleEndian || !words || !bytes || left() < kSize || *at_ != 3) return false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::memcpy(&corners[k], at_ + 1 + 4 * k, 4);
+    if (corners[k] >= kMostVertices) return false;
+  }
+  at_ += kSize;
   return true;
 }
 

@@ -19,6 +19,10 @@ class Body {
     return form_ == Form::kAscii ? nextWord(value) : nextBinary(type, value);
   }
 
+  // The next list of a binary file where it has three corners, a length in a byte and indices in
+  // four: nearly every file is of those. Else false, and the list is read by next().
+  bool nextTriangle(const Property& list, std::uint32_t* corners) noexcept;
+
   std::size_t left() const noexcept { return static_cast<std::size_t>(end_ - at_); }
 
   // What stands where next() stopped, for a message; empty at the end of the file.
