@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <sys/resource.h>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/files.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
+#include "daemon/cli/mesh_memory.h"
 #include "daemon/cli/progress.h"
 #include "render/lod/io/mrm_file.h"
 #include "render/mesh/io/mesh_file.h"
@@ -21,7 +21,14 @@ struct ReduceOptions {
   std::string input, output, preset = "default";
   std::vector<std::string> weights;
   render::ReduceSettings settings;
+  std::uint64_t memory = 0;  // bytes; 0: what is free
   bool json = false;
+};
+
+// What the command took, for the report.
+struct Took {
+  double reducing = 0, all = 0;  // seconds
+  std::size_t limit = 0;         // bytes
 };
 
 Result<render::Weights> weightsOf(const ReduceOptions& options, const render::Mesh& mesh) {
@@ -34,26 +41,25 @@ Result<render::Weights> weightsOf(const ReduceOptions& options, const render::Me
   return weights;
 }
 
-double peakMegabytes() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
-}
+double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
 
 void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
-            const render::ReduceReport& r, double seconds) {
+            const render::ReduceReport& r, const Took& took) {
   const double percent =
       100.0 * static_cast<double>(r.error) / render::boundingBox(loaded.mesh.positions).diagonal();
-  const double rate = seconds > 0 ? static_cast<double>(r.collapses) / seconds : 0;
+  const double rate = took.reducing > 0 ? static_cast<double>(r.collapses) / took.reducing : 0;
   if (options.json) {
     nlohmann::ordered_json json = {{"output", options.output},
                                    {"cost", options.settings.cost},
                                    {"triangles", loaded.mesh.triangleCount()},
                                    {"triangles_left", r.triangles},
                                    {"collapses", r.collapses},
-                                   {"seconds", seconds},
+                                   {"seconds", took.reducing},
+                                   {"seconds_all", took.all},
                                    {"collapses_per_second", rate},
-                                   {"peak_memory_mb", peakMegabytes()},
+                                   {"peak_memory_mb", megabytes(peakMemory())},
+                                   {"memory_limit_mb", megabytes(took.limit)},
+                                   {"blocks", r.blocks},
                                    {"error_estimate", r.error},
                                    {"error_estimate_percent", percent},
                                    {"flips_refused", r.flips_refused},
@@ -65,8 +71,10 @@ void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
   }
   fmt::print("{}: {} triangles down to {} in {} collapses ({})\n", options.output,
              loaded.mesh.triangleCount(), r.triangles, r.collapses, r.stopped);
-  fmt::print("  {:.2f} s, {:.0f} collapses a second, peak memory {:.0f} MB\n", seconds, rate,
-             peakMegabytes());
+  fmt::print("  {:.2f} s, {:.0f} collapses a second; with reading and writing {:.2f} s\n",
+             took.reducing, rate, took.all);
+  fmt::print("  peak memory {:.0f} MB, limit {:.0f} MB{}\n", megabytes(peakMemory()),
+             megabytes(took.limit), r.blocks > 1 ? fmt::format(", {} blocks", r.blocks) : "");
   fmt::print(
       "  error estimate of the coarsest level {:.4g} ({:.3g} % of the diagonal); {} flips "
       "refused\n",
@@ -74,31 +82,47 @@ void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
   if (const std::string mended = mendedText(loaded); !mended.empty()) fmt::print("  {}\n", mended);
 }
 
-int reduceMesh(const ReduceOptions& options) {
-  if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
-  const auto loaded = loadMesh(options.input);
-  if (!loaded) return fail(loaded.error());
-  auto weights = weightsOf(options, loaded->mesh);
-  if (!weights) return fail(weights.error());
+Result<render::Reduction> reduceLoaded(const ReduceOptions& options, const render::Mesh& mesh,
+                                       Took& took) {
   render::ReduceSettings settings = options.settings;
+  auto weights = weightsOf(options, mesh);
+  if (!weights) return weights.error();
   settings.weights = *std::move(weights);
+  const auto room = roomForReduction(sizeOf(mesh), 0, settings, took.limit);
+  if (!room) return Error{room.error().code, options.input + ": " + room.error().what};
+  settings.memory = *room;
 
   const SystemClock clock;
   ProgressBar bar("reducing", "collapses", clock);
   const Timestamp began = clock.now();
-  const auto all = static_cast<double>(loaded->mesh.triangleCount());
-  const auto reduction =
-      render::reduce(loaded->mesh, settings, [&](const render::ReduceProgress& p) {
-        bar.update(1 - static_cast<double>(p.triangles) / all, p.collapses);
-        return true;
-      });
-  if (!reduction) return fail(reduction.error());
-  const double seconds = toSeconds(clock.now() - began);
+  const auto all = static_cast<double>(mesh.triangleCount());
+  auto reduction = render::reduce(mesh, settings, [&](const render::ReduceProgress& p) {
+    bar.update(1 - static_cast<double>(p.triangles) / all, p.collapses);
+    return true;
+  });
+  if (!reduction) return reduction;
+  took.reducing = toSeconds(clock.now() - began);
   bar.finish(reduction->report.collapses);
+  return reduction;
+}
+
+int reduceMesh(const ReduceOptions& options) {
+  const SystemClock clock;
+  const Timestamp began = clock.now();
+  Took took;
+  took.limit = options.memory > 0 ? options.memory : freeMemory();
+  if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
+  if (const auto fits = checkRoom(options.input, options.settings, took.limit); !fits)
+    return fail(fits.error());
+  const auto loaded = loadMesh(options.input);
+  if (!loaded) return fail(loaded.error());
+  const auto reduction = reduceLoaded(options, loaded->mesh, took);
+  if (!reduction) return fail(reduction.error());
   const auto written =
       render::writeMrm(options.output, loaded->mesh, reduction->log, options.settings.threads);
   if (!written) return fail(written.error());
-  report(options, *loaded, reduction->report, seconds);
+  took.all = toSeconds(clock.now() - began);
+  report(options, *loaded, reduction->report, took);
   return kExitDone;
 }
 
@@ -149,6 +173,12 @@ void addMeshReduce(CLI::App& mesh, Run& run) {
       ->add_option("--threads", options->settings.threads,
                    "So many at most; 0: all. The model is the same")
       ->capture_default_str();
+  command
+      ->add_option("--memory", options->memory,
+                   "The most that the whole command may take: 900M, 16G; else what is free. Where "
+                   "it is short the mesh is cut into blocks, and the model is a little different")
+      ->transform(CLI::AsSizeValue(false))
+      ->type_name("SIZE");
   command->add_flag("--json", options->json, "The report for programs");
   command->callback([options, &run] { run = [options] { return reduceMesh(*options); }; });
 }

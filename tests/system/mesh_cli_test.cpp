@@ -60,6 +60,33 @@ TEST_F(MeshCli, ExportRefusesAnUnknownEndingBeforeAnyWork) {
   EXPECT_NE(refused.output.find(".ply, .obj, .glb, .gltf, .stl and .iv"), std::string::npos);
 }
 
+TEST_F(MeshCli, ReduceKeepsToAStatedMemoryOrRefusesBeforeAnyWork) {
+  const auto reduced = [&](const std::string& memory) {
+    return run(
+        {kMerlin, "mesh", "reduce", scan_, "-o", dir_ / "a.mrm", "--memory", memory, "--json"});
+  };
+  const auto reportOf = [](const Outcome& done) {
+    EXPECT_EQ(done.status, 0) << done.output;
+    return nlohmann::json::parse(done.output.substr(done.output.find("{\"output\"")));
+  };
+  const nlohmann::json plenty = reportOf(reduced("16G"));
+  EXPECT_EQ(plenty["memory_limit_mb"], 16384);
+  EXPECT_EQ(plenty["blocks"], 1);
+  const nlohmann::json tight = reportOf(reduced("40M"));
+  EXPECT_EQ(tight["memory_limit_mb"], 40);
+  EXPECT_GT(tight["blocks"], 1);
+  ASSERT_EQ(std::remove((dir_ / "a.mrm").c_str()), 0);
+  const Outcome refused = reduced("33M");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.output.find("34820 vertices and 69636 triangles take 3"), std::string::npos)
+      << refused.output;
+  EXPECT_NE(refused.output.find("the limit (--memory, else what is free) is 33 MiB"),
+            std::string::npos)
+      << refused.output;
+  EXPECT_EQ(readText(dir_ / "a.mrm"), "");
+  EXPECT_EQ(reduced("much").status, 2);
+}
+
 // A sheet of two triangles at an edge, a fin that stands on it, and of everything that is mended
 // one.
 constexpr const char* kFin =

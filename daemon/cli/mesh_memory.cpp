@@ -1,0 +1,88 @@
+#include "daemon/cli/mesh_memory.h"
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include "daemon/base/files.h"
+#include "render/mesh/io/ply_header.h"
+#include "render/reduce/memory.h"
+
+namespace merlin::cli {
+namespace {
+
+// The program itself, and pieces of files on their way.
+constexpr std::size_t kProgram = std::size_t{32} << 20;
+
+// "7.5 GiB"
+std::string sizeText(std::size_t bytes) {
+  const double mib = static_cast<double>(bytes) / (1 << 20);
+  return mib < 1000 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.1f} GiB", mib / 1024);
+}
+
+// At the worst moment of all steps but the reduction itself: the file and the mesh without its
+// normals; splitting, with half-edges and fans; writing, with the log and the order of its rows.
+std::size_t needOfOthers(const render::MeshSize& m, std::size_t file_size) {
+  const std::size_t read = m.bytes() - 12 * m.vertices;
+  const std::size_t split = read + 36 * m.triangles + 5 * m.vertices;
+  const std::size_t write =
+      m.bytes() + m.vertices * (24 + 4 * m.values) + 12 * m.vertices + 6 * m.triangles;
+  return kProgram + std::max({file_size + read, split, write});
+}
+
+}  // namespace
+
+std::size_t freeMemory() {
+  std::ifstream info("/proc/meminfo");
+  for (std::string word; info >> word;) {
+    std::size_t kib = 0;
+    if (word == "MemAvailable:" && info >> kib) return kib * 1024 / 16 * 15;
+  }
+  return std::numeric_limits<std::size_t>::max();
+}
+
+std::size_t peakMemory() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+Result<std::size_t> roomForReduction(const render::MeshSize& mesh, std::size_t file_size,
+                                     const render::ReduceSettings& settings, std::size_t limit) {
+  const std::size_t beside = mesh.bytes() + kProgram;
+  const std::size_t need =
+      std::max(needOfOthers(mesh, file_size), beside + needOf(mesh, settings).least);
+  if (need <= limit) return limit - beside;
+  return Error{Errc::kInvalidArgument,
+               fmt::format("{} vertices and {} triangles take {} to reduce, even in blocks; the "
+                           "limit (--memory, else what is free) is {}",
+                           mesh.vertices, mesh.triangles, sizeText(need), sizeText(limit))};
+}
+
+Result<Ok> checkRoom(const std::string& path, const render::ReduceSettings& settings,
+                     std::size_t limit) {
+  const auto file = MappedFile::open(path);
+  if (!file) return Ok{};
+  const auto header = render::ply::parseHeader(file->text());
+  if (!header) return Ok{};
+  render::MeshSize size{0, 0, 3};  // normals are added
+  for (const auto& element : header->elements) {
+    if (element.name == "face") size.triangles = element.count;
+    if (element.name != "vertex") continue;
+    size.vertices = element.count;
+    for (const auto& p : element.properties)
+      size.values += !p.list && p.name != "x" && p.name != "y" && p.name != "z" && p.name != "nx" &&
+                     p.name != "ny" && p.name != "nz";
+  }
+  // A header may promise anything; what the file has no room for is the reader's to tell.
+  const std::size_t bytes = file->text().size();
+  if (size.vertices > bytes || size.triangles > bytes) return Ok{};
+  const auto room = roomForReduction(size, bytes, settings, limit);
+  if (!room) return Error{room.error().code, path + ": " + room.error().what};
+  return Ok{};
+}
+
+}  // namespace merlin::cli
