@@ -61,7 +61,7 @@ TEST_F(TwoMachines, TheWallMovesWithTheOtherMachinesBallAndOutlivesIt) {
     const auto health = (*mirror)->health[shm::kBall].read();
     return health ? health->state : HealthState::kAbsent;
   };
-  EXPECT_FALSE(moving());
+  ASSERT_TRUE(eventually([&] { return !moving(); }));  // nobody is there
   for (int times = 0; times < 2; ++times) {
     auto there = devices();
     ASSERT_TRUE(eventually([&] { return ball() == HealthState::kOk; })) << wall.output();
