@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""./dev bench size: how merlin mesh reduce goes on from 10^4 to 10^8 triangles.
+
+One scan is laid out in tiles (tile_scan): real surface, synthetic in its tiling. Each size runs the
+whole command with --memory; what is compared is collapses a second of processor time, since other
+programs on the machine cost wall time, and both are printed. Python's own library alone.
+"""
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+
+
+def run(command):
+    """The command's output, and the processor seconds of it alone."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run(command, capture_output=True, text=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if done.returncode != 0:
+        sys.exit(f"size_bench: {' '.join(command)} failed: {done.stderr.strip()[-300:]}")
+    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return done.stdout, seconds
+
+
+def measure(options, triangles, folder):
+    mesh, model = os.path.join(folder, "tiles.ply"), os.path.join(folder, "tiles.mrm")
+    run([options.tile_scan, options.scan, str(triangles), mesh])
+    command = [options.merlin, "mesh", "reduce", mesh, "-o", model, "--json"]
+    if options.memory:
+        command += ["--memory", options.memory]
+    best = None
+    # A short run is noise: the best of some, of about as much work.
+    for _ in range(max(1, min(5, 2_000_000 // triangles))):
+        output, seconds = run(command)
+        report = json.loads(output[output.index("{"):])
+        report["cpu"] = seconds
+        if best is None or seconds < best["cpu"]:
+            best = report
+    os.remove(mesh)
+    os.remove(model)
+    return best
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--merlin", required=True)
+    parser.add_argument("--tile-scan", required=True)
+    parser.add_argument("--scan", required=True)
+    parser.add_argument("--memory", default="16G", help="of the command; 0: what is free")
+    parser.add_argument("--most", type=float, default=1e7,
+                        help="the largest mesh; 1e8 takes 7 GB of disk and 11 GB of memory")
+    parser.add_argument("--folder", help="for the meshes; without: a temporary one")
+    options = parser.parse_args()
+    sizes = [n for n in (10_000, 100_000, 1_000_000, 3_000_000, 10_000_000, 30_000_000,
+                         100_000_000) if n <= options.most]
+    print(f"{options.scan} in tiles, --memory {options.memory}; whole command, rates in collapses a "
+          "second;\n'of 1M': of the rate by processor time at a million triangles; bytes/edge: the peak, mesh "
+          "included")
+    print(f"{'triangles':>11} {'wall s':>8} {'cpu s':>8} {'reducing/s':>11} {'all/s':>9} "
+          f"{'all/cpu s':>9} {'of 1M':>6} {'peak MiB':>9} {'bytes/edge':>10} {'blocks':>6}")
+    rates = {}
+    rows = []
+    with tempfile.TemporaryDirectory(dir=options.folder) as folder:
+        for n in sizes:
+            rows.append((n, measure(options, n, folder)))
+            print(f"  measured {n}", file=sys.stderr)
+    for n, r in rows:
+        rates[n] = r["collapses"] / r["cpu"]
+    for n, r in rows:
+        ratio = f"{rates[n] / rates[1_000_000]:.2f}" if 1_000_000 in rates else "-"
+        bytes_edge = r["peak_memory_mb"] * (1 << 20) / (1.5 * n)
+        print(f"{n:>11} {r['seconds_all']:>8.2f} {r['cpu']:>8.2f} {r['collapses_per_second']:>11.0f} "
+              f"{r['collapses'] / r['seconds_all']:>9.0f} {rates[n]:>9.0f} {ratio:>6} "
+              f"{r['peak_memory_mb']:>9.0f} {bytes_edge:>10.1f} {r['blocks']:>6}")
+
+
+if __name__ == "__main__":
+    main()
