@@ -35,6 +35,25 @@ std::size_t countOf(const Mesh& mesh, const std::vector<ChannelFeature>& channel
   return count;
 }
 
+// Of one value of a feature. Where it is so large or so small that its scale is no number, what
+// comes back from the channels is none either.
+struct Range {
+  float low, high;
+  float nearest(float value) const {
+    if (!(value >= low)) return low;
+    return value <= high ? value : high;
+  }
+};
+
+Range rangeOf(const Feature& feature, std::size_t k) {
+  Range range{feature.values[k], feature.values[k]};
+  for (std::size_t i = k; i < feature.values.size(); i += feature.dimension) {
+    range.low = std::min(range.low, feature.values[i]);
+    range.high = std::max(range.high, feature.values[i]);
+  }
+  return range;
+}
+
 // Where the node lies between its children: 0 at the first, 1 at the second.
 float between(const float* node, const float* a, const float* b) {
   double ab = 0, an = 0;
@@ -59,7 +78,7 @@ std::vector<float> carryAlong(const Mesh& mesh, const Feature& feature, const Co
                       at(mesh.positions, log.positions, b, 3));
     if (feature.name == "label") t = std::round(t);
     const float *x = at(feature.values, values, a, d), *y = at(feature.values, values, b, d);
-    for (std::size_t i = 0; i < d; ++i) values[k * d + i] = x[i] + t * (y[i] - x[i]);
+    for (std::size_t i = 0; i < d; ++i) values[k * d + i] = (1 - t) * x[i] + t * y[i];
   }
   return values;
 }
@@ -155,8 +174,9 @@ Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vecto
     const std::size_t d = mesh.features[c.feature].dimension;
     for (std::size_t k = 0; k < d; ++k) {
       const std::vector<float> values = reducer.channelValues(c.first + k, c.scale);
+      const Range range = rangeOf(mesh.features[c.feature], k);
       for (std::size_t i = 0; i < values.size(); ++i)
-        result.log.features[c.feature][i * d + k] = values[i];
+        result.log.features[c.feature][i * d + k] = range.nearest(values[i]);
     }
   }
   return result;

@@ -12,6 +12,8 @@ namespace {
 constexpr float kTolerance = 1.5F;
 // Steps of cost, in buckets, after which the parts wait for one another: a factor of 1.4.
 constexpr std::size_t kStep = 32;
+// As far as validate() lets a mesh reach.
+constexpr float kFarthest = 1e18F;
 constexpr std::size_t kProgressInterval = 1 << 16;  // triangles
 
 // How many parts a mesh is first reduced in. Few, since seams wait; many enough for some cores.
@@ -484,6 +486,7 @@ Reduction QuadricReducer::finish(const Mesh& mesh) {
     std::memcpy(&r, static_cast<const void*>(mesh_[log_[k]].position), sizeof r);
     log.children.push_back({node(r.children[0]), node(r.children[1])});
     auto p = mesh_.toModel(r.position);
+    for (float& x : p) x = std::clamp(x, -kFarthest, kFarthest);
     if (!pinned_.empty()) pin(k, log.children.back(), r.position, p);
     log.positions.insert(log.positions.end(), p.begin(), p.end());
     log.error.push_back(r.error / mesh_.scale());
