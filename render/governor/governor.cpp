@@ -11,12 +11,15 @@ namespace {
 // Measured on llvmpipe, four views of 640 x 480 (README.md), until it is calibrated; a wrong
 // exponent costs speed of settling, not safety.
 constexpr double kExponent = 0.65, kLeastExponent = 0.4, kMostExponent = 1.1;
-constexpr double kLeastRoom = 0.10, kMostRoom = 0.30, kRoomGain = 0.01;
+constexpr double kLeastRoom = 0.10, kMostRoom = 0.30, kRoomGain = 0.017;
 constexpr double kFixedGain = 0.15;
 // The trend of ln c and its slope (an alpha-beta filter), and how far one frame may pull.
 constexpr double kTrendGain = 0.25, kSlopeGain = 0.05, kMostPull = 0.10, kMostSlope = 0.05;
 // c is moved slowly while the trend is no further from it than its noise.
-constexpr double kSlow = 0.04, kDearer = 0.05, kCheaper = 0.06;
+constexpr double kSlow = 0.05, kSlowUp = 0.15, kDearer = 0.05, kCheaper = 0.10;
+// The median of how far frames are off the trend follows them by such steps; from kQuiet on it
+// widens what counts as noise, and quickens the head room.
+constexpr double kNoiseStep = 1.02, kQuiet = 0.03, kMostUnrest = 3;
 // A load that rises is met ahead of time, by so many frames of its slope.
 constexpr double kAhead = 3;
 // One frame alone says less of c than the worst of two: that much is left for its noise.
@@ -62,7 +65,8 @@ Governor::Governor(const GovernorSettings& settings) noexcept
       period_(fromSeconds(1.0 / settings.rate_hz)),
       triangles_(static_cast<double>(settings.first_triangles)),
       head_room_(kLeastRoom),
-      exponent_(kExponent) {
+      exponent_(kExponent),
+      noise_(kQuiet) {
   assert(settings.rate_hz > 0);
   assert(settings.min_triangles > 0 && settings.min_triangles <= settings.first_triangles);
   assert(settings.first_triangles <= settings.max_triangles);
@@ -87,7 +91,8 @@ void Governor::observe(const FrameCost& cost) noexcept {
 void Governor::learnHeadRoom(bool late) noexcept {
   if (late_in_a_row_ >= 2) return;
   const double q = settings_.late_share;
-  head_room_ += late ? kRoomGain * (1 - q) : -kRoomGain * q;
+  const double gain = kRoomGain * unrest();
+  head_room_ += late ? gain * (1 - q) : -gain * q;
   head_room_ = std::clamp(head_room_, kLeastRoom, kMostRoom);
 }
 
@@ -150,20 +155,25 @@ void Governor::jumpTo(double per) noexcept {
   slope_ = 0;
 }
 
+// 1 on a machine of its own; more where others' work makes the same frame cost now this, now that.
+double Governor::unrest() const noexcept { return std::min(noise_ / kQuiet, kMostUnrest); }
+
 // The trend follows a load that rises for seconds without lagging behind it, but is noisy; c keeps
 // still as long as the trend is within that noise.
 void Governor::follow(double now) noexcept {
   const double expected = trend_ + slope_;
   const double pull = std::clamp(now - expected, -kMostPull, kMostPull);
+  noise_ *= std::abs(pull) > noise_ ? kNoiseStep : 1 / kNoiseStep;
+  noise_ = std::clamp(noise_, kQuiet, kMostPull);
   trend_ = expected + kTrendGain * pull;
   slope_ = std::clamp(slope_ + kSlopeGain * pull, -kMostSlope, kMostSlope);
   // A cheaper load is taken at its word only: the trend swings through below it.
   const double ahead = std::max(trend_, slope_ > 0 ? trend_ + kAhead * slope_ : now);
   const double off = trend_ + slope_ - log0(per_);
-  if (off > kDearer || off < -kCheaper)
+  if (off > kDearer * unrest() || off < -kCheaper * unrest())
     per_ = std::exp(ahead);
   else
-    per_ *= std::exp(kSlow * off);
+    per_ *= std::exp((off > 0 ? kSlowUp : kSlow) * off);
 }
 
 // `off`: how much dearer a frame was than the model says; what that says of the usual size stays.
@@ -222,10 +232,17 @@ double Governor::clamped(double triangles) const noexcept {
                     static_cast<double>(settings_.max_triangles));
 }
 
-// The model's inverse, with head room.
+// The model's inverse.
+double Governor::fitting(double seconds) const noexcept {
+  return std::pow(std::max(seconds - fixed_, 0.0) / per_, 1 / exponent_);
+}
+
 double Governor::trianglesIn(double seconds) const noexcept {
-  const double room = seconds * (1 - head_room_) - fixed_;
-  return std::pow(std::max(room, 0.0) / per_, 1 / exponent_);
+  return fitting(seconds * (1 - head_room_));
+}
+
+std::size_t Governor::trianglesWithin(Duration work) const noexcept {
+  return per_ == 0 ? budget() : static_cast<std::size_t>(clamped(fitting(toSeconds(work))));
 }
 
 std::size_t Governor::budgetFor(Duration available) const noexcept {

@@ -47,6 +47,10 @@ class Governor {
   // says fits; 0 where not even the least does.
   std::size_t budgetFor(Duration available) const noexcept;
 
+  // Triangles whose frame takes `work`, by the model alone: without head room, and however many
+  // were drawn last; the budget before anything was measured.
+  std::size_t trianglesWithin(Duration work) const noexcept;
+
   // REQUIRES: cost.work > 0, 0 <= cost.fixed <= cost.work.
   void observe(const FrameCost& cost) noexcept;
 
@@ -87,6 +91,7 @@ class Governor {
   void learnFrom(double size, double now) noexcept;
   void learnExponent(double size, double off) noexcept;
   void follow(double now) noexcept;
+  double unrest() const noexcept;
   void jumpTo(double per) noexcept;
   void actOnTheWorst(double fixed, double per) noexcept;
   void takeBack() noexcept;
@@ -94,6 +99,7 @@ class Governor {
   void choose() noexcept;
   double clamped(double triangles) const noexcept;
   double trianglesIn(double seconds) const noexcept;
+  double fitting(double seconds) const noexcept;
 
   GovernorSettings settings_;
   Duration period_;
@@ -103,6 +109,7 @@ class Governor {
   double exponent_;
   double fixed_ = 0;
   double per_ = 0;                      // c; follows `trend_`, but not its noise
+  double noise_ = 0;                    // median distance of ln c from its trend
   double trend_ = 0, slope_ = 0;        // ln c, and by how much it grows a frame
   std::array<double, 3> fixed_seen_{};  // of the last frames
   std::size_t seen_ = 0;

@@ -98,7 +98,7 @@ TEST_P(CostModels, FourTimesCheaperIsUsedWithinThreeSeconds) {
   Loop loop;
   loop.run(dearer, 200);
   loop.run(GetParam(), 90);
-  EXPECT_LE(loop.late, GetParam().exponent > 0.9 ? 2u : 0u) << "it takes p for 0.65";
+  EXPECT_LE(loop.late, GetParam().exponent > 0.8 ? 2u : 0u) << "it takes p for 0.65";
   loop.run(GetParam(), 10);
   EXPECT_GT(loop.utilisation(), 0.84);
 }
@@ -124,7 +124,7 @@ TEST(GovernorLateShare, IsTheOneAskedFor) {
     loop.run(renderer, 2000);
     loop.run(renderer, 20'000);
     EXPECT_NEAR(loop.lateShare(), share, 0.2 * share);
-    EXPECT_GT(loop.governor.headRoom(), 0.10);
+    EXPECT_GE(loop.governor.headRoom(), 0.10);
     EXPECT_LT(loop.governor.headRoom(), 0.30);
   }
 }
