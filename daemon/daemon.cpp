@@ -1,6 +1,7 @@
 #include "daemon/daemon.h"
 
 #include <cerrno>
+#include <cstdlib>
 #include <ctime>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "daemon/status/documents.h"
 #include "daemon/status/health_events.h"
 #include "daemon/status/run_directory.h"
+#include "daemon/status/wall_events.h"
 
 namespace merlin {
 namespace {
@@ -33,6 +35,26 @@ Duration watchdogInterval() {
   std::uint64_t usec = 0;
   return ::sd_watchdog_enabled(0, &usec) > 0 ? Duration(std::chrono::microseconds(usec / 2))
                                              : Duration{};
+}
+
+// A command whose argument is a number within these, or "auto".
+status::Command byHand(const std::string& name, const std::string& help, double least, double most,
+                       const std::function<void(std::optional<double>)>& set) {
+  const auto run = [=](const std::string& argument) -> Result<std::string> {
+    if (argument == "auto") {
+      set(std::nullopt);
+      return std::string("{}");
+    }
+    char* end = nullptr;
+    const double value = std::strtod(argument.c_str(), &end);
+    if (argument.empty() || *end != '\0' || !(value >= least && value <= most)) {
+      return Error{Errc::kInvalidArgument,
+                   fmt::format("{}: \"{}\" is not {}", name, argument.substr(0, 64), help)};
+    }
+    set(value);
+    return std::string("{}");
+  };
+  return {name, help, nullptr, run};
 }
 
 }  // namespace
@@ -311,6 +333,25 @@ Result<Ok> Daemon::serveDevices() {
   return serveStatus("devices", std::move(s));
 }
 
+// What the wall gave way, and of another machine's devices, where it shows these.
+std::function<std::vector<std::string>()> Daemon::wallEvents() {
+  // Shared: a std::function must copy.
+  auto events = std::make_shared<status::WallEvents>(wall_->segment());
+  auto health = mirror_ ? std::make_shared<status::HealthEvents>(**mirror_) : nullptr;
+  return [this, events, health] {
+    std::vector<std::string> documents;
+    const auto tell = [&](const char* kind, const std::vector<std::string>& sentences) {
+      for (const std::string& sentence : sentences) {
+        logInfo("{}", sentence);
+        documents.push_back(status::event(kind, sentence, clock_.now()));
+      }
+    };
+    tell("wall", events->take());
+    if (health) tell("device", health->take(clock_.now()));
+    return documents;
+  };
+}
+
 Result<Ok> Daemon::serveWall() {
   const shm::WallSegment& segment = wall_->segment();
   status::StatusServerSettings s;
@@ -326,19 +367,14 @@ Result<Ok> Daemon::serveWall() {
   s.commands = {
       {"status", "the wall's status", [statusNow]() -> Result<std::string> { return statusNow(); }},
       {"reset_view", "model and viewer back to the start", ask(wall::WallLoop::kResetView)},
-      {"next_mode", "the ball moves the model, or the viewer", ask(wall::WallLoop::kNextMode)}};
-  s.events = [] { return std::vector<std::string>(); };
-  if (mirror_) {
-    auto events = std::make_shared<status::HealthEvents>(**mirror_);  // shared: function must copy
-    s.events = [this, events] {
-      std::vector<std::string> documents;
-      for (const std::string& sentence : events->take(clock_.now())) {
-        logInfo("{}", sentence);
-        documents.push_back(status::event("device", sentence, clock_.now()));
-      }
-      return documents;
-    };
-  }
+      {"next_mode", "the ball moves the model, or the viewer", ask(wall::WallLoop::kNextMode)},
+      byHand("triangles", "a number from 4 on, or auto", 4, 1e9,
+             [this](std::optional<double> n) {
+               wall_->hold(n ? std::optional(static_cast<std::size_t>(*n)) : std::nullopt);
+             }),
+      byHand("rate", "frames a second from 1 to 240, or auto", 1, 240,
+             [this](std::optional<double> hz) { wall_->setRate(hz); })};
+  s.events = wallEvents();
   return serveStatus("wall", std::move(s));
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <csignal>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,6 +46,7 @@ class Daemon {
   Result<Ok> serveStatus(const std::string& role, status::StatusServerSettings settings);
   Result<Ok> serveDevices();
   Result<Ok> serveWall();
+  std::function<std::vector<std::string>()> wallEvents();
   Result<Ok> mirrorDevices(std::uint64_t generation);
   Result<Ok> serveOthers(const shm::DevicesSegment& segment);
   Result<status::CurveServer> network() const;

@@ -18,9 +18,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", MERLIN_VERSION);
   cli::Run run;
-  for (const auto add : {cli::addStatus, cli::addWatch, cli::addSnapshot, cli::addMesh,
-                         cli::addPosture, cli::addEmulate, cli::addRecord, cli::addReplay,
-                         cli::addFlight, cli::addCalibrate, cli::addKeys, cli::addShm}) {
+  for (const auto add :
+       {cli::addStatus, cli::addWatch, cli::addSnapshot, cli::addWall, cli::addTrace, cli::addMesh,
+        cli::addPosture, cli::addEmulate, cli::addRecord, cli::addReplay, cli::addFlight,
+        cli::addCalibrate, cli::addKeys, cli::addShm}) {
     add(app, run);
   }
   std::vector<std::string> names;

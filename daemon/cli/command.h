@@ -25,6 +25,8 @@ void addReplay(CLI::App& app, Run& run);
 void addShm(CLI::App& app, Run& run);
 void addSnapshot(CLI::App& app, Run& run);
 void addStatus(CLI::App& app, Run& run);
+void addTrace(CLI::App& app, Run& run);
+void addWall(CLI::App& app, Run& run);
 void addWatch(CLI::App& app, Run& run);
 
 // Prints "merlin: WHAT" to stderr; returns the exit status that belongs to the error.

@@ -1,5 +1,9 @@
 #include "daemon/cli/status_text.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
 #include <fmt/format.h>
 
 #include "daemon/cli/roles.h"
@@ -25,7 +29,55 @@ std::string pictureWord(const Json& s) {
   return s.value("full_detail", false) ? "still, full detail" : "still, refining";
 }
 
+// What the wall gave way, or was told; empty where it is as asked.
+std::string givenWay(const Json& s) {
+  std::string text;
+  if (s.value("rate_divisor", 1) > 1)
+    text += fmt::format("; the rate gave way to {:.3g} Hz", s.value("rate_now", 0.0));
+  if (s.value("operator_coarser", false)) text += "; the operator's view is coarser";
+  if (s.value("held_triangles", 0) > 0)
+    text += fmt::format("; {} triangles by hand", s.value("held_triangles", 0));
+  return text;
+}
+
+std::string paceLines(const Json& s) {
+  std::string text =
+      fmt::format("model    {:.1f} ms + {:.3f} us x triangles^{:.2f}; next frame {} triangles{}\n",
+                  s.value("cost_fixed_ms", 0.0), s.value("cost_coefficient_us", 0.0),
+                  s.value("cost_exponent", 0.0), s.value("budget", 0), givenWay(s));
+  text += fmt::format(
+      "steps    the last settled in {} frames; detail swings by {:.1f} %; standstill to finer "
+      "{:.2f} s, to full {:.2f} s\n",
+      s.value("settle_frames", 0), 100 * s.value("oscillation", 0.0),
+      s.value("still_to_first_s", 0.0), s.value("still_to_full_s", 0.0));
+  return text + histogramChart(s.value("work_histogram", std::vector<std::uint32_t>{}));
+}
+
 }  // namespace
+
+// Pairs of buckets: an eighth of the period a line, those that are not empty and between.
+std::string histogramChart(const std::vector<std::uint32_t>& buckets) {
+  constexpr double kWidth = 40;
+  std::vector<std::uint64_t> eighths((buckets.size() + 1) / 2);
+  for (std::size_t i = 0; i < buckets.size(); ++i) eighths[i / 2] += buckets[i];
+  const auto used = [](std::uint64_t n) { return n > 0; };
+  const auto first = std::find_if(eighths.begin(), eighths.end(), used);
+  if (first == eighths.end()) return {};
+  const auto last = std::find_if(eighths.rbegin(), eighths.rend(), used).base();
+  const auto most = static_cast<double>(*std::max_element(first, last));
+  const auto all = static_cast<double>(std::accumulate(first, last, std::uint64_t{0}));
+  std::string text = "frames by work, of the period\n";
+  for (auto e = first; e != last; ++e) {
+    const auto percent = 12.5 * static_cast<double>(e - eighths.begin());
+    const auto n = static_cast<double>(*e);
+    const bool open = e + 1 == eighths.end();
+    text += fmt::format("  {:5.1f} - {:>5} %  {:<40} {:5.1f} %\n", percent,
+                        open ? "more" : fmt::format("{:.1f}", percent + 12.5),
+                        std::string(static_cast<std::size_t>(std::ceil(kWidth * n / most)), '#'),
+                        100 * n / all);
+  }
+  return text;
+}
 
 void mergeStatus(Json& both, const std::string& document) {
   auto json = Json::parse(document, nullptr, false);
@@ -68,6 +120,7 @@ std::string statusTable(const Json& s) {
         "{:.0f} %\n",
         s.value("work_median_ms", 0.0), 100 * s.value("utilisation", 0.0),
         100 * s.value("head_room", 0.0));
+    text += paceLines(s);
   }
   if (!s.contains("devices")) return text;
   const std::string posture = s.value("posture", "");

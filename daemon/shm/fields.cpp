@@ -115,6 +115,24 @@ void addTracker(Table& t, std::size_t station) {
   MERLIN_FIELD(t, TrackerSample, error, "");
 }
 
+// How the rate is kept.
+void addPace(Table& t) {
+  MERLIN_FIELD(t, WallStats, levels, "");
+  MERLIN_FIELD(t, WallStats, cost_fixed_ms, "ms");
+  MERLIN_FIELD(t, WallStats, cost_coefficient_us, "us");
+  MERLIN_FIELD(t, WallStats, cost_exponent, "");
+  MERLIN_FIELD(t, WallStats, rate_now_hz, "Hz");
+  MERLIN_FIELD(t, WallStats, rate_divisor, "");
+  MERLIN_FIELD(t, WallStats, operator_coarser, "");
+  MERLIN_FIELD(t, WallStats, ladder_steps, "");
+  MERLIN_FIELD(t, WallStats, budget, "");
+  MERLIN_FIELD(t, WallStats, held_triangles, "");
+  MERLIN_FIELD(t, WallStats, oscillation, "");
+  MERLIN_FIELD(t, WallStats, settle_frames, "");
+  MERLIN_FIELD(t, WallStats, still_to_first_s, "s");
+  MERLIN_FIELD(t, WallStats, work_histogram, "1/16 period");
+}
+
 }  // namespace
 
 std::vector<Field> devicesFields() {
@@ -204,6 +222,8 @@ std::vector<Field> wallFields() {
   MERLIN_FIELD(t, WallStats, resumed_late, "");
   MERLIN_FIELD(t, WallStats, mode, "");
   MERLIN_FIELD(t, WallStats, posture, "");
+  addPace(t);
+  addChannel<FrameTrace>(t, "trace", offsetof(WallSegment, trace));
   return t.take();
 }
 

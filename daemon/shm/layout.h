@@ -98,12 +98,57 @@ struct WallStats {
   char mode[16];               // of the ball: "object" or "fly"
   char posture[20];            // the newest, empty for none
   std::uint32_t reserved;
+  float rate_now_hz;                 // the rate asked, divided by what the ladder gave way
+  std::uint32_t rate_divisor;        // 1, or 2, 4: not even the fewest triangles came in time
+  std::uint32_t operator_coarser;    // 1 while the operator's view is coarser, for want of time
+  std::uint32_t ladder_steps;        // of the two above, up and down, since the start
+  std::uint32_t budget;              // triangles for the next moving frame
+  std::uint32_t held_triangles;      // the same, set by hand; 0: the governor's
+  float cost_exponent;               // of the model, where the field above says 0.65
+  float oscillation;                 // (p95 - p5) / mean of the last 100 moving frames' triangles
+  std::uint32_t settle_frames;       // last time: late in a row until five in a row were in time
+  float still_to_first_s;            // last time: from standstill to the first finer picture
+  std::uint32_t work_histogram[32];  // moving frames by work / period, since the start: buckets of
+                                     // 1/16; the last holds all that is longer
 };
-static_assert(sizeof(WallStats) == 160 && offsetof(WallStats, triangles) == 32);
+static_assert(sizeof(WallStats) == 328 && offsetof(WallStats, triangles) == 32);
+static_assert(offsetof(WallStats, rate_now_hz) == 160 && offsetof(WallStats, reserved) == 156);
+
+// What a step of a frame does, by this number; merlin trace has their names.
+enum class StepKind : std::uint16_t {
+  kInput = 0,     // one read of every device's slot
+  kScene = 1,     // input to camera, objects, content
+  kGovernor = 2,  // triangles for this frame
+  kCut = 3,       // of the dendrogram
+  kUpload = 4,    // of the cut
+  kDraw = 5,      // one tile: clearing and triangles
+  kReadBack = 6,  // one tile's pixels
+  kPresent = 7,   // to every sink
+  kRefine = 8     // a slice of a finer picture, while nothing moves
+};
+
+struct TraceStep {
+  std::uint32_t begin_ns;  // after the frame's begin
+  std::uint32_t length_ns;
+  StepKind kind;
+  std::uint16_t tile;  // of the plan, from 0; of kDraw, kReadBack, kRefine
+};
+
+// One frame, or one period while nothing moves: where its time went.
+struct FrameTrace {
+  std::int64_t begin_ns, end_ns, deadline_ns;  // CLOCK_MONOTONIC
+  std::uint64_t period;                        // number, since the start
+  std::uint32_t triangles;
+  std::uint32_t moving, late;
+  std::uint32_t count;  // of steps; those beyond the last are not kept
+  TraceStep steps[32];
+};
+static_assert(sizeof(TraceStep) == 12 && sizeof(FrameTrace) == 48 + 32 * 12);
 
 struct WallSegment {
   Header header;
   alignas(64) SeqSlot<WallStats> stats;  // writer: the wall's thread
+  Channel<FrameTrace> trace;             // writer: the wall's thread; the last 256 periods
 };
 
 }  // namespace merlin::shm

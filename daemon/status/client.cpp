@@ -12,7 +12,7 @@ int milliseconds(Duration d) { return static_cast<int>(d / std::chrono::millisec
 }  // namespace
 
 Result<std::string> ask(const std::string& command_endpoint, const std::string& command,
-                        Duration timeout) {
+                        Duration timeout, const std::string& argument) {
   try {
     zmq::context_t context{1};
     zmq::socket_t socket{context, zmq::socket_type::req};
@@ -20,7 +20,9 @@ Result<std::string> ask(const std::string& command_endpoint, const std::string& 
     socket.set(zmq::sockopt::rcvtimeo, milliseconds(timeout));
     socket.set(zmq::sockopt::sndtimeo, milliseconds(timeout));
     socket.connect(command_endpoint);
-    const std::string request = nlohmann::json{{"command", command}}.dump();
+    nlohmann::json wanted = {{"command", command}};
+    if (!argument.empty()) wanted["argument"] = argument;
+    const std::string request = wanted.dump();
     zmq::message_t answer;
     if (!socket.send(zmq::buffer(request)) || !socket.recv(answer)) {
       return Error{Errc::kTimeout, fmt::format("{}: no answer within {:.1f} s", command_endpoint,

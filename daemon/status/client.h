@@ -10,11 +10,11 @@
 
 namespace merlin::status {
 
-// Sends {"command": name}; returns the JSON text of "result".
+// Sends {"command": name}, with "argument" where there is one; returns the JSON text of "result".
 // Errors: kTimeout (the daemon is there and does not answer), kIo; what the daemon refused,
 // kInvalidArgument.
 Result<std::string> ask(const std::string& command_endpoint, const std::string& command,
-                        Duration timeout);
+                        Duration timeout, const std::string& argument = "");
 
 // Calls `take` with each document of these topics, from all endpoints, until it returns false or
 // nothing has come for `patience` (kTimeout). Errors: kIo, kTimeout.

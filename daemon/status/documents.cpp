@@ -159,6 +159,17 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now) {
                {"head_room", round3(s.head_room)},
                {"cost_fixed_ms", round3(s.cost_fixed_ms)},
                {"cost_coefficient_us", round3(s.cost_coefficient_us)},
+               {"cost_exponent", round3(s.cost_exponent)},
+               {"rate_now", round3(s.rate_now_hz)},
+               {"rate_divisor", s.rate_divisor},
+               {"operator_coarser", s.operator_coarser != 0},
+               {"ladder_steps", s.ladder_steps},
+               {"budget", s.budget},
+               {"held_triangles", s.held_triangles},
+               {"oscillation", round3(s.oscillation)},
+               {"settle_frames", s.settle_frames},
+               {"still_to_first_s", round3(s.still_to_first_s)},
+               {"work_histogram", s.work_histogram},
                {"input_age_ms", round3(s.input_age_ms)},
                {"still_to_full_s", round3(s.still_to_full_s)},
                {"resumed", s.resumed},
@@ -228,7 +239,7 @@ std::string devicesMetrics(const shm::DevicesSegment& segment) {
 
 std::string wallMetrics(const shm::WallSegment& segment) {
   const auto s = segment.stats.read().value_or(shm::WallStats{});
-  return dump({{"role", "wall"},
+  Json json = {{"role", "wall"},
                {"frames_total", s.frames},
                {"deadlines_total", s.deadlines},
                {"late_total", s.late},
@@ -236,7 +247,26 @@ std::string wallMetrics(const shm::WallSegment& segment) {
                {"triangles", s.triangles},
                {"rate_held_hz", round3(s.rate_held_hz)},
                {"work_ms", round3(s.work_ms)},
-               {"utilisation", round3(s.utilisation)}});
+               {"utilisation", round3(s.utilisation)},
+               {"late_share", round3(s.late_share)},
+               {"late_share_1s", round3(s.late_share_1s)},
+               {"late_share_1min", round3(s.late_share_1min)},
+               {"settle_frames", s.settle_frames},
+               {"oscillation", round3(s.oscillation)},
+               {"level", s.level},
+               {"budget", s.budget},
+               {"rate_now_hz", round3(s.rate_now_hz)},
+               {"rate_divisor", s.rate_divisor},
+               {"operator_coarser", s.operator_coarser},
+               {"ladder_steps_total", s.ladder_steps},
+               {"head_room", round3(s.head_room)},
+               {"cost_fixed_ms", round3(s.cost_fixed_ms)},
+               {"cost_coefficient_us", round3(s.cost_coefficient_us)},
+               {"cost_exponent", round3(s.cost_exponent)}};
+  // Frames whose work took up to so many sixteenths of the period, and more than one fewer.
+  for (std::size_t i = 0; i < std::size(s.work_histogram); ++i)
+    json["work_sixteenths_" + std::to_string(i + 1) + "_total"] = s.work_histogram[i];
+  return dump(json);
 }
 
 std::string event(std::string_view kind, std::string_view what, Timestamp now) {

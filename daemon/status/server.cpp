@@ -55,6 +55,14 @@ void bindNetwork(const CurveServer& network, zmq::socket_t& publisher, zmq::sock
   publisher.bind(network.endpoint);
 }
 
+Result<std::string> runWith(const Command& command, const nlohmann::json& request) {
+  const auto argument = request.find("argument");
+  if (argument != request.end() && argument->is_string())
+    return command.run_with(argument->get<std::string>());
+  return Error{Errc::kInvalidArgument,
+               fmt::format("{} wants an \"argument\", a text: {}", command.name, command.help)};
+}
+
 std::string z85(const zmq::message_t& key) {
   char text[41] = "";
   if (key.size() != 32) return {};
@@ -176,7 +184,7 @@ std::string StatusServer::reply(std::string_view request) {
   }
   for (const Command& c : settings_.commands) {
     if (*name != c.name) continue;
-    const auto result = c.run();
+    const auto result = c.run_with ? runWith(c, json) : c.run();
     return result ? fmt::format(R"({{"ok": true, "result": {}}})", *result)
                   : failure(result.error().what);
   }

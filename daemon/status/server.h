@@ -27,6 +27,8 @@ struct Publication {
 struct Command {
   std::string name, help;
   std::function<Result<std::string>()> run;  // thread: the server's; returns a JSON value
+  // In place of `run`, of a command that wants the request's "argument", a text.
+  std::function<Result<std::string>(const std::string& argument)> run_with = nullptr;
 };
 
 struct StatusServerSettings {
@@ -40,7 +42,8 @@ struct StatusServerSettings {
   std::function<std::vector<std::string>()> events;
 };
 
-// Owns its thread. Requests: {"command": NAME}; at most 4 KiB. Replies: {"ok": true, "result": ...}
+// Owns its thread. Requests: {"command": NAME, "argument": TEXT}, the
+// latter only where a command wants one; at most 4 KiB. Replies: {"ok": true, "result": ...}
 // or {"ok": false, "error": "..."}. A socket file that a dead daemon left is replaced: the caller
 // holds the role's shared memory, so no living daemon has it.
 class StatusServer {

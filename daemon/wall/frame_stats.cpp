@@ -1,6 +1,7 @@
 #include "daemon/wall/frame_stats.h"
 
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 namespace merlin::wall {
@@ -18,10 +19,35 @@ void FrameStats::deadline(Timestamp at, bool moving, bool met) {
   late_run_ = met ? 0 : late_run_ + 1;
   late_ += met ? 0 : 1;
   longest_late_ = std::max(longest_late_, late_run_);
+  settle(met);
 }
 
-void FrameStats::frame(Timestamp finished, Duration work, Duration period) {
-  second_.push_back({finished, toSeconds(work), toSeconds(work) / toSeconds(period)});
+// `unsettled_` counts from the first late deadline; a single one is a hiccup, not a step.
+void FrameStats::settle(bool met) {
+  met_run_ = met ? met_run_ + 1 : 0;
+  if (met_run_ < 5) {
+    ++unsettled_;
+  } else if (unsettled_ > 0) {
+    const std::uint32_t until = unsettled_ - 4;  // the first four that were met
+    if (until >= 2) settle_ = until;
+    unsettled_ = 0;
+  }
+}
+
+void FrameStats::frame(Timestamp finished, Duration work, Duration period, std::size_t triangles) {
+  const double share = toSeconds(work) / toSeconds(period);
+  second_.push_back({finished, toSeconds(work), share});
+  const auto bucket = static_cast<std::size_t>(std::min(16 * share, kBuckets - 1.0));
+  ++histogram_[bucket];
+  triangles_[frames_++ % triangles_.size()] = static_cast<double>(triangles);
+}
+
+double FrameStats::oscillation() const {
+  if (frames_ < triangles_.size()) return 0;
+  std::array<double, 100> sorted = triangles_;
+  std::sort(sorted.begin(), sorted.end());
+  const double mean = std::accumulate(sorted.begin(), sorted.end(), 0.0) / 100;
+  return mean > 0 ? (sorted[94] - sorted[5]) / mean : 0;
 }
 
 void FrameStats::advance(Timestamp now) {

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "daemon/base/clock.h"
+#include "daemon/shm/layout.h"
 
 namespace merlin::wall {
 
@@ -14,6 +15,13 @@ struct DrawTimes {
   Duration drawing{};  // cut, upload, triangles; where a view was coarser, what it would have been
   Duration fixed{};    // clearing and read-back
   bool gave_way = false;  // the operator's view was coarser, for want of time
+};
+
+// Where a painter's time went: the steps of its last draw() or refine(), in order.
+struct PaintStep {
+  shm::StepKind kind;
+  std::uint16_t tile;  // of the plan, where it is one tile's
+  Timestamp begin, end;
 };
 
 // Thread-bound to the wall's thread.
@@ -31,6 +39,15 @@ class Painter {
   // time for one; a slice takes a few milliseconds. draw() in between abandons it.
   virtual void beginRefining(const Eigen::Isometry3f& T_eye_model) = 0;
   virtual bool refine(Timestamp until) = 0;
+
+  // The same, but for `level` and not full detail: something finer than what moved, soon, where
+  // full detail takes long. false, and nothing done, where a painter does not do that.
+  virtual bool beginRefiningTo(const Eigen::Isometry3f& /*T_eye_model*/, std::size_t /*level*/) {
+    return false;
+  }
+
+  // For the trace; none where a painter does not say.
+  virtual std::span<const PaintStep> steps() const noexcept { return {}; }
 
   // RGBA, rows from top to bottom, of the plan's frame.
   virtual std::span<const std::uint8_t> pixels() const noexcept = 0;

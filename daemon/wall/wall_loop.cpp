@@ -1,94 +1,200 @@
 #include "daemon/wall/wall_loop.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace merlin::wall {
 namespace {
 
+using shm::StepKind;
+
 // Left free at the end of a period that is spent on refining.
 constexpr Duration kRefineMargin = std::chrono::milliseconds(2);
 // Left for reading the last tile back and handing the frame to the sinks.
 constexpr Duration kPresentMargin = std::chrono::milliseconds(3);
-constexpr Duration kMinute = std::chrono::seconds(60);
-constexpr Duration kSecond = std::chrono::seconds(1);
-
-float ms(Duration d) { return static_cast<float>(1000 * toSeconds(d)); }
+// Work of the first finer picture of a still scene: it is out within two periods.
+constexpr Duration kFirstRefinement = std::chrono::milliseconds(40);
+constexpr std::size_t kNextRefinement = 8;  // times as many triangles
+// A level that is this near to the budget stays: what moves does not pop.
+constexpr double kSameLevel = 0.04;
 
 }  // namespace
 
 WallLoop::WallLoop(WallParts parts)
-    : p_(std::move(parts)), period_(p_.governor.period()), view_(p_.scene.view()) {}
+    : p_(std::move(parts)),
+      asked_hz_(1 / toSeconds(p_.governor.period())),
+      configured_hz_(asked_hz_),
+      period_(p_.governor.period()),
+      view_(p_.scene.view()) {}
 
 void WallLoop::run(const std::stop_token& stop, const std::function<void()>& first_frame) {
   start_ = p_.clock.now();
   for (std::int64_t k = 0; p_.clock.sleepUntil(tick(k), stop);) {
     const Timestamp began = p_.clock.now();
     obeyRequests();
-    const render::SceneInput input = p_.feed.read(began);
-    const bool was_moving = view_.moving;
-    view_ = p_.scene.update(input, began);
-    std::fill(std::begin(out_.posture), std::end(out_.posture), '\0');
-    if (input.posture)
-      std::copy(std::begin(input.posture->name), std::end(input.posture->name), out_.posture);
-    if (was_moving && !view_.moving) still_since_ = began;
-    if (!was_moving && view_.moving) resuming_ = true;
+    if (const Timestamp from = tick(k); applyRate()) {
+      start_ = from;
+      k = 0;
+    }
+    look(k, began);
     k = view_.moving ? movingFrame(k, began) : stillPeriod(k);
+    publishTrace(p_.clock.now());
     publishStats(p_.clock.now());
     if (periods_.fetch_add(1, std::memory_order_relaxed) == 0) first_frame();
   }
 }
 
+void WallLoop::hold(std::optional<std::size_t> triangles) noexcept {
+  hold_.store(triangles ? static_cast<std::int64_t>(*triangles) : -1);
+}
+
+void WallLoop::setRate(std::optional<double> rate_hz) noexcept {
+  rate_hz_.store(rate_hz.value_or(0));
+}
+
 void WallLoop::obeyRequests() {
   const std::uint32_t requests = requests_.exchange(0);
-  if (requests & kResetView) p_.scene.reset();
+  if (requests & kResetView) {
+    p_.scene.reset();
+    // The cost of what will be seen next is known, unlike that of a view which nobody had before.
+    if (home_drawing_s_ > 0) p_.governor.expect(home_drawing_s_ / drawingAtHome());
+  }
   if (requests & kNextMode) p_.scene.nextMode();
+  const std::int64_t held = hold_.load();
+  p_.governor.hold(held < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(held)));
+}
+
+// Whether another rate holds from now on.
+bool WallLoop::applyRate() {
+  const double by_hand = rate_hz_.load();
+  asked_hz_ = by_hand > 0 ? by_hand : configured_hz_;
+  const double now_hz = asked_hz_ / rate_ladder_.divisor();
+  if (period_ == fromSeconds(1 / now_hz)) return false;
+  p_.governor.setRate(now_hz);
+  period_ = p_.governor.period();
+  return true;
+}
+
+void WallLoop::calibrate() {
+  std::vector<render::FrameCost> costs;
+  const auto fits = [&] { return costs.empty() || costs.back().work <= period_; };
+  std::size_t last = p_.model.levels();
+  for (std::size_t triangles = 1000; fits(); triangles *= 4) {
+    const std::size_t level = p_.model.levelFor(triangles);
+    if (std::exchange(last, level) == level) break;
+    for (int i = 0; i < 3 && fits(); ++i) {
+      const DrawTimes t = p_.painter.draw(view_.T_eye_model, level, Timestamp::max());
+      costs.push_back({p_.model.trianglesAt(level), t.fixed, t.fixed + t.drawing, false});
+    }
+    if (level == 0) break;
+  }
+  p_.governor.calibrate(costs);
+  home_triangles_ = p_.governor.budget();
+  home_drawing_s_ = drawingAtHome();
+}
+
+double WallLoop::drawingAtHome() const {
+  return p_.governor.predict(home_triangles_) - p_.governor.fixedSeconds();
+}
+
+void WallLoop::look(std::int64_t k, Timestamp began) {
+  const render::SceneInput input = p_.feed.read(began);
+  const Timestamp read = p_.clock.now();
+  const bool was_moving = view_.moving;
+  view_ = p_.scene.update(input, began);
+  std::fill(std::begin(out_.posture), std::end(out_.posture), '\0');
+  if (input.posture)
+    std::copy(std::begin(input.posture->name), std::end(input.posture->name), out_.posture);
+  if (was_moving && !view_.moving) {
+    still_since_ = began;
+    first_refinement_ = true;
+  }
+  if (!was_moving && view_.moving) resuming_ = true;
+  tracer_.begin(began, tick(k + 1), view_.moving);
+  tracer_.add(StepKind::kInput, began, read);
+  tracer_.add(StepKind::kScene, read, p_.clock.now());
+}
+
+// After a frame that ran over, less than a period is left: fewer triangles, or none before the
+// next. With a whole one, a level that is nearly right stays.
+std::size_t WallLoop::chooseLevel(Duration available) {
+  const std::size_t budget = p_.governor.budgetFor(available);
+  if (budget == 0) return p_.model.levels();
+  if (budget != p_.governor.budget()) return p_.model.levelFor(budget);
+  if (moving_level_ && !p_.governor.held()) {
+    const auto had = static_cast<double>(p_.model.trianglesAt(*moving_level_));
+    if (std::abs(had / static_cast<double>(budget) - 1) < kSameLevel) return *moving_level_;
+  }
+  moving_level_ = p_.model.levelFor(budget);
+  return *moving_level_;
 }
 
 std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
-  // After a frame that ran over, less than a period is left: fewer triangles, or none before the
-  // next.
-  const std::size_t budget = p_.governor.budgetFor(tick(k + 1) - began);
-  if (budget == 0) {
+  const Timestamp looked = p_.clock.now();
+  const std::size_t level = chooseLevel(tick(k + 1) - began);
+  tracer_.add(StepKind::kGovernor, looked, p_.clock.now());
+  if (level == p_.model.levels()) {
     stats_.deadline(tick(k + 1), true, false);
+    climb(true, true);
     return k + 1;
   }
-  level_ = p_.model.levelFor(budget);
+  level_ = level;
   const DrawTimes times = p_.painter.draw(view_.T_eye_model, level_, tick(k + 1) - kPresentMargin);
+  tracer_.add(p_.painter.steps());
   const Timestamp drawn = p_.clock.now();
   present(level_ == 0);
   const Timestamp finished = p_.clock.now();
-  const Duration work = finished - began;
+  tracer_.add(StepKind::kPresent, drawn, finished);
   refining_ = false;
-
-  // A frame that ran over more than its own deadline missed those too.
-  const std::int64_t reached = (finished - start_) / period_;
   const bool met = finished <= tick(k + 1);
-  stats_.deadline(tick(k + 1), true, met);
+  const std::int64_t next = countDeadlines(k, finished);
+  stats_.frame(finished, finished - began, period_, p_.model.trianglesAt(level_));
+  out_.work_ms = static_cast<float>(1000 * toSeconds(finished - began));
+  finishMoving(times, finished - drawn, met);
+  return next;
+}
+
+// A frame that ran over more than its own deadline missed those too.
+std::int64_t WallLoop::countDeadlines(std::int64_t k, Timestamp finished) {
+  const std::int64_t reached = (finished - start_) / period_;
+  stats_.deadline(tick(k + 1), true, finished <= tick(k + 1));
   for (std::int64_t missed = k + 2; missed <= reached; ++missed)
     stats_.deadline(tick(missed), true, false);
-  stats_.frame(finished, work, period_);
-  // What the frame would have cost with every view as fine as the wall.
-  const Duration fixed = times.fixed + (finished - drawn);
-  p_.governor.observe({p_.model.trianglesAt(level_), fixed, fixed + times.drawing, !met});
-  out_.work_ms = ms(work);
-  if (resuming_) {
-    ++out_.resumed;
-    out_.resumed_late += met ? 0 : 1;
-    resuming_ = false;
-  }
   return std::max(k + 1, reached);
+}
+
+void WallLoop::finishMoving(const DrawTimes& times, Duration present, bool met) {
+  const std::size_t triangles = p_.model.trianglesAt(level_);
+  const bool least = triangles <= p_.governor.least() || level_ + 1 == p_.model.levels();
+  // What the frame would have cost with every view as fine as the wall.
+  const Duration fixed = times.fixed + present;
+  p_.governor.observe({triangles, fixed, fixed + times.drawing, !met});
+  climb(!met, least && !p_.governor.held());
+  if (operator_ladder_.observe(times.gave_way, true, true)) ++out_.ladder_steps;
+  if (!std::exchange(resuming_, false)) return;
+  ++out_.resumed;
+  out_.resumed_late += met ? 0 : 1;
+}
+
+// The rate gives way where not even the fewest triangles come in time, and comes back where they
+// would.
+void WallLoop::climb(bool late, bool least) {
+  const double higher_s = toSeconds(period_) / 2;
+  const double needed_s = p_.governor.predict(p_.governor.least());
+  const bool fits = needed_s < higher_s * (1 - p_.governor.headRoom());
+  if (rate_ladder_.observe(late, least, fits)) ++out_.ladder_steps;
 }
 
 std::int64_t WallLoop::stillPeriod(std::int64_t k) {
   if (!full_detail_) {
-    if (!refining_) p_.painter.beginRefining(view_.T_eye_model);
-    refining_ = !p_.painter.refine(tick(k + 1) - kRefineMargin);
-    if (!refining_) {
-      level_ = 0;
-      present(true);
-      out_.still_to_full_s = static_cast<float>(toSeconds(p_.clock.now() - still_since_));
-    }
+    if (!refining_) beginRefining();
+    const Timestamp from = p_.clock.now();
+    const bool whole = p_.painter.refine(tick(k + 1) - kRefineMargin);
+    const auto steps = p_.painter.steps();
+    if (steps.empty()) tracer_.add(StepKind::kRefine, from, p_.clock.now());
+    tracer_.add(steps);
+    if (whole) showRefined();
   }
   // What stands is right: the deadline is met, unless refining ran over it.
   const std::int64_t reached = (p_.clock.now() - start_) / period_;
@@ -97,42 +203,38 @@ std::int64_t WallLoop::stillPeriod(std::int64_t k) {
   return std::max(k + 1, reached);
 }
 
+// Something finer soon, where full detail would take long; then eight times as many triangles, and
+// so on: all that together takes less than half as long again as full detail alone.
+void WallLoop::beginRefining() {
+  refining_ = true;
+  const std::size_t now = p_.model.trianglesAt(level_);
+  const Duration first = std::min<Duration>(period_ * 5 / 4, kFirstRefinement);
+  const std::size_t finer =
+      first_refinement_ ? p_.governor.trianglesWithin(first) : kNextRefinement * now;
+  refined_level_ = p_.model.levelFor(finer);
+  const bool worth = finer > now && finer < p_.model.triangleCount() / 2;
+  if (worth && p_.painter.beginRefiningTo(view_.T_eye_model, refined_level_)) return;
+  refined_level_ = 0;
+  p_.painter.beginRefining(view_.T_eye_model);
+}
+
+void WallLoop::showRefined() {
+  refining_ = false;
+  level_ = refined_level_;
+  const Timestamp drawn = p_.clock.now();
+  present(level_ == 0);
+  const Timestamp now = p_.clock.now();
+  tracer_.add(StepKind::kPresent, drawn, now);
+  const auto since = static_cast<float>(toSeconds(now - still_since_));
+  if (std::exchange(first_refinement_, false)) out_.still_to_first_s = since;
+  if (level_ == 0) out_.still_to_full_s = since;
+}
+
 void WallLoop::present(bool full_detail) {
   full_detail_ = full_detail;
   const auto triangles = static_cast<std::uint32_t>(p_.model.trianglesAt(level_));
   const render::FrameInfo info{++frames_, p_.clock.now(), triangles, full_detail};
   for (render::FrameSink* sink : p_.sinks) sink->present(p_.painter.pixels(), info);
-}
-
-void WallLoop::publishStats(Timestamp now) {
-  stats_.advance(now);
-  out_.updated_ns = toNanoseconds(now);
-  out_.frames = frames_;
-  out_.deadlines = stats_.deadlines();
-  out_.late = stats_.late();
-  out_.triangles = static_cast<std::uint32_t>(p_.model.trianglesAt(level_));
-  out_.level = static_cast<std::uint32_t>(level_);
-  out_.levels = static_cast<std::uint32_t>(p_.model.levels());
-  out_.moving = view_.moving;
-  out_.full_detail = full_detail_;
-  out_.longest_late = stats_.longestLate();
-  out_.rate_asked_hz = static_cast<float>(1 / toSeconds(period_));
-  out_.rate_held_hz = static_cast<float>(stats_.heldRate(now, 1 / toSeconds(period_)));
-  out_.late_share_1s = static_cast<float>(stats_.lateShare(now, kSecond));
-  out_.late_share_1min = static_cast<float>(stats_.lateShare(now, kMinute));
-  const double all = static_cast<double>(std::max<std::uint64_t>(stats_.deadlines(), 1));
-  out_.late_share = static_cast<float>(static_cast<double>(stats_.late()) / all);
-  out_.work_median_ms = static_cast<float>(1000 * stats_.medianWorkSeconds());
-  out_.utilisation = static_cast<float>(stats_.utilisation());
-  out_.head_room = static_cast<float>(p_.governor.headRoom());
-  out_.cost_fixed_ms = static_cast<float>(1000 * p_.governor.fixedSeconds());
-  out_.cost_coefficient_us = static_cast<float>(1e6 * p_.governor.coefficient());
-  out_.input_age_ms = ms(p_.feed.age());
-  out_.grabbed = view_.grabbed;
-  const std::string_view mode = view_.mode == render::BallMode::kFly ? "fly" : "object";
-  std::fill(std::begin(out_.mode), std::end(out_.mode), '\0');
-  std::copy(mode.begin(), mode.end(), out_.mode);
-  p_.stats.publish(out_);
 }
 
 }  // namespace merlin::wall

@@ -2,22 +2,26 @@
 //
 // Frame k begins at t0 + (k-1) x period and is late when its last pixel reaches the sinks after
 // t0 + k x period. While anything moves, each period brings a frame of as many triangles as the
-// governor allows; while nothing does, the periods are spent on drawing full detail in slices, so
-// that the frame that begins after motion resumes begins on time.
+// governor allows; while nothing does, the periods are spent on drawing finer pictures and then
+// full detail in slices, so that the frame that begins after motion resumes begins on time. Where
+// not even the fewest triangles come in time, the rate is halved (render/governor/ladder.h).
 #pragma once
 
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "daemon/base/clock.h"
 #include "daemon/shm/layout.h"
 #include "daemon/wall/frame_stats.h"
+#include "daemon/wall/frame_tracer.h"
 #include "daemon/wall/input_feed.h"
 #include "daemon/wall/painter.h"
 #include "render/governor/governor.h"
+#include "render/governor/ladder.h"
 #include "render/lod/dendrogram.h"
 #include "render/out/frame_sink.h"
 #include "render/scene/scene.h"
@@ -33,12 +37,17 @@ struct WallParts {
   std::vector<render::FrameSink*> sinks;
   shm::SeqSlot<shm::WallStats>& stats;
   Clock& clock;
+  shm::Channel<shm::FrameTrace>* trace = nullptr;  // where steps are told; may be none
 };
 
-// Thread-bound but for request() and frames().
+// Thread-bound but for request(), hold(), setRate() and periods().
 class WallLoop {
  public:
   explicit WallLoop(WallParts parts);
+
+  // Draws a dozen frames of different sizes, a second at most, and tells the governor what they
+  // cost. Nothing is presented. Before run(), or not at all.
+  void calibrate();
 
   // Until `stop`. `first_frame` is called once, after the first frame reached every sink.
   void run(const std::stop_token& stop, const std::function<void()>& first_frame);
@@ -46,6 +55,11 @@ class WallLoop {
   // From another thread: done before the next frame.
   enum Request : std::uint32_t { kResetView = 1, kNextMode = 2 };
   void request(Request what) noexcept { requests_.fetch_or(what); }
+
+  // From another thread, before the next frame: so many triangles while it moves, or as the
+  // governor says; this rate, REQUIRES: > 0, or the configured one.
+  void hold(std::optional<std::size_t> triangles) noexcept;
+  void setRate(std::optional<double> rate_hz) noexcept;
 
   // Periods that were begun, for the watchdog.
   std::uint64_t periods() const noexcept { return periods_.load(std::memory_order_relaxed); }
@@ -55,21 +69,43 @@ class WallLoop {
   // Each returns the number of the next tick.
   std::int64_t movingFrame(std::int64_t k, Timestamp began);
   std::int64_t stillPeriod(std::int64_t k);
+  // Reads the devices, moves the scene.
+  void look(std::int64_t k, Timestamp began);
+  std::size_t chooseLevel(Duration available);  // levels() where there is no time for any
+  std::int64_t countDeadlines(std::int64_t k, Timestamp finished);
+  void finishMoving(const DrawTimes& times, Duration present, bool met);
+  void climb(bool late, bool least);
+  void beginRefining();
+  void showRefined();
   void obeyRequests();
+  bool applyRate();
   void present(bool full_detail);
+  void publishTrace(Timestamp now);
   void publishStats(Timestamp now);
+  void paceStats(Timestamp now);
+  double drawingAtHome() const;
 
   WallParts p_;
+  double asked_hz_, configured_hz_;
   Duration period_;
   Timestamp start_{};
   FrameStats stats_;
+  FrameTracer tracer_;
   render::SceneView view_;
+  render::Ladder rate_ladder_, operator_ladder_{1};
   std::size_t level_ = 0;
+  std::optional<std::size_t> moving_level_;  // of the last moving frame that had a whole period
   bool refining_ = false, full_detail_ = false;
-  bool resuming_ = false;  // the next frame is the first after a standstill
+  std::size_t refined_level_ = 0;
+  bool first_refinement_ = false;  // the next one is, since the standstill
+  bool resuming_ = false;          // the next frame is the first after a standstill
   Timestamp still_since_{};
   std::uint64_t frames_ = 0;
+  std::size_t home_triangles_ = 0;
+  double home_drawing_s_ = 0;  // of as many, where the model stands at first; 0: not known
   shm::WallStats out_{};
+  std::atomic<std::int64_t> hold_{-1};  // triangles; -1: as the governor says
+  std::atomic<double> rate_hz_{0};      // 0: as configured
   std::atomic<std::uint32_t> requests_{0};
   std::atomic<std::uint64_t> periods_{0};
 };

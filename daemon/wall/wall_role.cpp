@@ -73,7 +73,9 @@ void WallRole::run(const std::stop_token& stop) {
                   fromSeconds(1 / settings_.wall.governor.rate_hz));
   std::vector<render::FrameSink*> sinks;
   for (const auto& sink : sinks_) sinks.push_back(sink.get());
-  WallLoop loop({model_, **picture, scene_, governor_, feed, sinks, segment_->stats, clock_});
+  WallLoop loop({model_, **picture, scene_, governor_, feed, sinks, segment_->stats, clock_,
+                 &segment_->trace});
+  loop.calibrate();
   loop_.store(&loop);
   loop.run(stop, [&] { ready_.set_value((*picture)->renderer()); });
   loop_.store(nullptr);
@@ -81,6 +83,14 @@ void WallRole::run(const std::stop_token& stop) {
 
 void WallRole::request(WallLoop::Request what) {
   if (WallLoop* loop = loop_.load()) loop->request(what);
+}
+
+void WallRole::hold(std::optional<std::size_t> triangles) {
+  if (WallLoop* loop = loop_.load()) loop->hold(triangles);
+}
+
+void WallRole::setRate(std::optional<double> rate_hz) {
+  if (WallLoop* loop = loop_.load()) loop->setRate(rate_hz);
 }
 
 std::uint64_t WallRole::periods() const {

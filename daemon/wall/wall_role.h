@@ -34,6 +34,8 @@ class WallRole {
 
   // From any thread, once the first frame is out.
   void request(WallLoop::Request what);
+  void hold(std::optional<std::size_t> triangles);
+  void setRate(std::optional<double> rate_hz);
 
   void beat(Timestamp now) const { segment_.beat(now); }
   const shm::WallSegment& segment() const { return *segment_; }

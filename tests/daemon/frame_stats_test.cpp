@@ -41,11 +41,48 @@ TEST(FrameStats, TheLongestRunOfLateFramesIsOfOneRun) {
 
 TEST(FrameStats, WorkIsTheMedianAndTheMeanShareOfTheLastSecond) {
   FrameStats stats;
-  stats.frame(at(0), milliseconds(1000), kPeriod);  // long ago
-  for (int k = 100; k < 105; ++k) stats.frame(at(k), milliseconds(k == 104 ? 45 : 20), kPeriod);
+  stats.frame(at(0), milliseconds(1000), kPeriod, 1000);  // long ago
+  for (int k = 100; k < 105; ++k)
+    stats.frame(at(k), milliseconds(k == 104 ? 45 : 20), kPeriod, 1000);
   stats.advance(at(105));
   EXPECT_DOUBLE_EQ(stats.medianWorkSeconds(), 0.020);
   EXPECT_DOUBLE_EQ(stats.utilisation(), 1.0);  // (4 x 0.8 + 1.8) / 5
+}
+
+// Two late, one in time, one late, then five in time: four until it has settled.
+TEST(FrameStats, AStepHasSettledWhenFiveInARowAreInTime) {
+  FrameStats stats;
+  int k = 0;
+  const auto add = [&](std::initializer_list<bool> met) {
+    for (const bool m : met) stats.deadline(at(++k), true, m);
+  };
+  add({true, false, true, true, true, true, true});
+  EXPECT_EQ(stats.settleFrames(), 0u) << "one late frame is no step";
+  add({false, false, true, false, true, true, true, true});
+  EXPECT_EQ(stats.settleFrames(), 0u);
+  add({true});
+  EXPECT_EQ(stats.settleFrames(), 4u);
+}
+
+TEST(FrameStats, TheHistogramCountsWorkInSixteenthsOfThePeriod) {
+  FrameStats stats;
+  for (const int us : {0, 1562, 1563, 24999, 25000, 49999, 50000, 900000})
+    stats.frame(at(1), std::chrono::microseconds(us), kPeriod, 1000);
+  const auto& h = stats.histogram();
+  EXPECT_EQ(h[0], 2u);
+  EXPECT_EQ(h[1], 1u);
+  EXPECT_EQ(h[15], 1u);
+  EXPECT_EQ(h[16], 1u);
+  EXPECT_EQ(h[31], 3u) << "and all that is longer";
+}
+
+// 90 frames of 1,000 triangles and 10 of 2,000: the fifth from below and from above.
+TEST(FrameStats, OscillationIsTheSpreadOfTheLastHundredFrames) {
+  FrameStats stats;
+  for (int i = 0; i < 99; ++i) stats.frame(at(1), milliseconds(20), kPeriod, 500);
+  EXPECT_EQ(stats.oscillation(), 0);
+  for (int i = 0; i < 100; ++i) stats.frame(at(1), milliseconds(20), kPeriod, i < 90 ? 1000 : 2000);
+  EXPECT_DOUBLE_EQ(stats.oscillation(), 1000.0 / 1100);
 }
 
 TEST(FrameStats, SayNothingBeforeAnythingHappened) {

@@ -82,6 +82,26 @@ TEST_F(DocumentsTest, TheWallSaysWhatOutsideChecksRelyOn) {
   EXPECT_EQ(s["triangles"], 12345);
 }
 
+TEST_F(DocumentsTest, TheWallSaysHowItKeepsItsRate) {
+  shm::WallStats stats{};
+  stats.cost_exponent = 0.7F;
+  stats.rate_divisor = 2;
+  stats.held_triangles = 9;
+  stats.settle_frames = 3;
+  stats.oscillation = 0.05F;
+  stats.work_histogram[31] = 4;
+  wall_->stats.publish(stats);
+  const json s = json::parse(wallStatus(*wall_, kNow));
+  EXPECT_EQ(s["cost_exponent"], 0.7);
+  EXPECT_EQ(s["rate_divisor"], 2);
+  EXPECT_EQ(s["held_triangles"], 9);
+  EXPECT_EQ(s["settle_frames"], 3);
+  EXPECT_EQ(s["oscillation"], 0.05);
+  EXPECT_EQ(s["operator_coarser"], false);
+  ASSERT_EQ(s["work_histogram"].size(), 32u);
+  EXPECT_EQ(s["work_histogram"][31], 4);
+}
+
 TEST_F(DocumentsTest, SamplesAreTheNewestOfEachThatThereIs) {
   EXPECT_EQ(json::parse(newestSamples(*devices_, kNow)).size(), 1u);  // now_ns
   TrackerSample tracker{};
@@ -104,6 +124,12 @@ TEST_F(DocumentsTest, MetricsAreFlatNumbers) {
   EXPECT_EQ(m["tracker_ok"], 1);
   EXPECT_EQ(m["tracker_samples_total"], 1234);
   EXPECT_EQ(json::parse(wallMetrics(*wall_))["late_total"], 0);
+  shm::WallStats stats{};
+  stats.work_histogram[13] = 77;
+  wall_->stats.publish(stats);
+  const json w = json::parse(wallMetrics(*wall_));
+  EXPECT_EQ(w["work_sixteenths_14_total"], 77);
+  for (const auto& [name, value] : w.items()) EXPECT_TRUE(value.is_number() || name == "role");
 }
 
 TEST_F(DocumentsTest, EventsAreToldOnce) {
@@ -131,9 +157,12 @@ class ServerTest : public testing::Test {
     settings.publications = {{"status", milliseconds(1), [] { return std::string(R"({"n":1})"); }}};
     settings.commands = {
         {"status", "", []() -> Result<std::string> { return std::string(R"({"n":1})"); }},
-        {"fail", "", []() -> Result<std::string> {
+        {"fail", "",
+         []() -> Result<std::string> {
            return Error{Errc::kIo, "it is broken"};
-         }}};
+         }},
+        {"echo", "a word", nullptr,
+         [](const std::string& word) -> Result<std::string> { return '"' + word + '"'; }}};
     settings.events = [this] {
       return events_-- > 0 ? std::vector<std::string>{R"({"kind":"x"})"}
                            : std::vector<std::string>();
@@ -166,6 +195,16 @@ TEST_F(ServerTest, AnswersCommands) {
   const auto failed = ask(command_, "fail", seconds(10));
   ASSERT_FALSE(failed);
   EXPECT_NE(failed.error().what.find("it is broken"), std::string::npos);
+}
+
+TEST_F(ServerTest, ACommandThatWantsAnArgumentIsGivenIt) {
+  EXPECT_EQ(*ask(command_, "echo", seconds(10), "auto"), R"("auto")");
+  for (const char* request : {R"({"command": "echo"})", R"({"command": "echo", "argument": 5})"}) {
+    const json answer = json::parse(raw(request));
+    EXPECT_EQ(answer["ok"], false);
+    EXPECT_NE(answer["error"].get<std::string>().find("echo wants an \"argument\""),
+              std::string::npos);
+  }
 }
 
 TEST_F(ServerTest, ARequestThatIsNoneSaysWhatOneIs) {

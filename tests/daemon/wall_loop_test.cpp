@@ -2,124 +2,14 @@
 // says.
 #include "daemon/wall/wall_loop.h"
 
-#include <cmath>
-#include <optional>
-
 #include <gtest/gtest.h>
 
-#include "render/reduce/reduce.h"
-#include "tests/support/fake_clock.h"
+#include "tests/support/fake_wall.h"
 
 namespace merlin::wall {
 namespace {
 
-using render::Dendrogram;
-using std::chrono::microseconds;
-using std::chrono::milliseconds;
-
-const Duration kPeriod = fromSeconds(1.0 / 30);
-
-// A wavy sheet of 5,000 triangles, reduced to the end.
-const Dendrogram& model() {
-  static const Dendrogram made = [] {
-    render::Mesh mesh;
-    constexpr std::uint32_t kSide = 51;
-    for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
-      const auto x = static_cast<float>(i % kSide), y = static_cast<float>(i / kSide);
-      mesh.positions.insert(mesh.positions.end(), {x, y, std::sin(x / 5) + std::cos(y / 7)});
-      if (i % kSide + 1 == kSide || i / kSide + 1 == kSide) continue;
-      mesh.triangles.insert(mesh.triangles.end(),
-                            {i, i + 1, i + kSide, i + 1, i + kSide + 1, i + kSide});
-    }
-    render::ensureNormals(mesh);
-    return render::buildDendrogram(mesh, render::reduce(mesh, {})->log);
-  }();
-  return made;
-}
-
-// 4 ms a frame and `per_triangle` each; full detail costs `slices` of 3 ms.
-class FakePainter final : public Painter {
- public:
-  FakePainter(test::FakeClock& clock, Duration per_triangle, int slices)
-      : clock_(clock), per_triangle_(per_triangle), slices_(slices) {}
-
-  DrawTimes draw(const Eigen::Isometry3f&, std::size_t level, Timestamp) override {
-    const Duration fixed = milliseconds(4);
-    const Duration drawing =
-        per_triangle_ * static_cast<std::int64_t>(model().trianglesAt(level)) * slow;
-    clock_.advance(fixed + drawing);
-    drawn.push_back(clock_.now());
-    return {drawing, fixed, false};
-  }
-  void beginRefining(const Eigen::Isometry3f&) override { left_ = slices_; }
-  bool refine(Timestamp until) override {
-    while (clock_.now() + milliseconds(3) < until) {
-      clock_.advance(milliseconds(3));
-      if (--left_ == 0) return true;
-    }
-    return false;
-  }
-  std::span<const std::uint8_t> pixels() const noexcept override { return {}; }
-
-  int slow = 1;
-  std::vector<Timestamp> drawn;
-
- private:
-  test::FakeClock& clock_;
-  Duration per_triangle_;
-  int slices_, left_ = 0;
-};
-
-// Pushes the ball while `pushed`; asks the loop to stop after `until`.
-class FakeFeed final : public InputFeed {
- public:
-  render::SceneInput read(Timestamp now) override {
-    begins.push_back(now);
-    if (on_begin) on_begin(now);
-    render::SceneInput input;
-    input.ball.emplace();
-    input.ball->rotation[1] = pushed ? 0.5F : 0.0F;
-    return input;
-  }
-  Duration age() const noexcept override { return milliseconds(7); }
-
-  bool pushed = true;
-  std::function<void(Timestamp)> on_begin;
-  std::vector<Timestamp> begins;
-};
-
-struct RecordingFrames final : render::FrameSink {
-  void present(std::span<const std::uint8_t>, const render::FrameInfo& info) override {
-    frames.push_back(info);
-  }
-  std::vector<render::FrameInfo> frames;
-};
-
-class WallLoopTest : public testing::Test {
- protected:
-  // Runs for `seconds` of virtual time.
-  void run(double seconds, const std::function<void(Timestamp)>& on_begin = {}) {
-    const Timestamp end = clock_.now() + fromSeconds(seconds);
-    feed_.on_begin = [&, end](Timestamp now) {
-      if (on_begin) on_begin(now);
-      if (now >= end) stop_.request_stop();
-    };
-    WallLoop loop({model(), painter_, scene_, governor_, feed_, {&frames_}, *stats_, clock_});
-    loop.run(stop_.get_token(), [&] { ++first_frames_; });
-  }
-  shm::WallStats stats() const { return *stats_->read(); }
-
-  test::FakeClock clock_;
-  FakePainter painter_{clock_, microseconds(10), 40};
-  render::Scene scene_ = *render::Scene::make({});
-  render::Governor governor_{render::GovernorSettings{}};
-  FakeFeed feed_;
-  RecordingFrames frames_;
-  std::unique_ptr<shm::SeqSlot<shm::WallStats>> stats_ =
-      std::make_unique<shm::SeqSlot<shm::WallStats>>();
-  std::stop_source stop_;
-  int first_frames_ = 0;
-};
+class WallLoopTest : public FakeWall {};
 
 TEST_F(WallLoopTest, HoldsTheRateWhileItMoves) {
   run(10);
@@ -198,7 +88,7 @@ TEST_F(WallLoopTest, TheFirstFrameAfterMotionResumesIsInTime) {
 
 TEST_F(WallLoopTest, ARequestIsDoneBeforeTheNextFrame) {
   feed_.pushed = false;
-  WallLoop loop({model(), painter_, scene_, governor_, feed_, {&frames_}, *stats_, clock_});
+  WallLoop loop(parts());
   feed_.on_begin = [&](Timestamp) {
     if (feed_.begins.size() == 3) loop.request(WallLoop::kNextMode);
     if (feed_.begins.size() == 5) stop_.request_stop();
@@ -210,7 +100,7 @@ TEST_F(WallLoopTest, ARequestIsDoneBeforeTheNextFrame) {
 
 TEST_F(WallLoopTest, StopsAtOnce) {
   stop_.request_stop();
-  WallLoop loop({model(), painter_, scene_, governor_, feed_, {&frames_}, *stats_, clock_});
+  WallLoop loop(parts());
   loop.run(stop_.get_token(), [] {});
   EXPECT_TRUE(frames_.frames.empty());
 }

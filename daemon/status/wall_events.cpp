@@ -1,0 +1,36 @@
+#include "daemon/status/wall_events.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace merlin::status {
+
+std::vector<std::string> WallEvents::take() {
+  std::vector<std::string> events;
+  const auto s = segment_.stats.read();
+  if (!s) return events;
+  if (const auto was = std::exchange(operator_coarser_, s->operator_coarser);
+      was != operator_coarser_) {
+    events.push_back(operator_coarser_ != 0
+                         ? "the operator's view is coarser: there is no time for it"
+                         : "the operator's view is as fine as the wall again");
+  }
+  if (const auto was = std::exchange(divisor_, s->rate_divisor); was != divisor_) {
+    events.push_back(was < divisor_
+                         ? fmt::format("down to {:.3g} of {:.3g} Hz: not even the fewest triangles "
+                                       "come in time",
+                                       s->rate_now_hz, s->rate_asked_hz)
+                         : fmt::format("up to {:.3g} of {:.3g} Hz: the fewest triangles fit",
+                                       s->rate_now_hz, s->rate_asked_hz));
+  }
+  if (const auto was = std::exchange(held_, s->held_triangles); was != held_) {
+    events.push_back(held_ != 0 ? fmt::format("{} triangles while it moves, by hand", held_)
+                                : "triangles as the rate allows");
+  }
+  if (const auto was = std::exchange(asked_hz_, s->rate_asked_hz); was != asked_hz_ && was != 0)
+    events.push_back(fmt::format("the rate asked is {:.3g} Hz now", asked_hz_));
+  return events;
+}
+
+}  // namespace merlin::status

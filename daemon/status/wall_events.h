@@ -1,0 +1,26 @@
+// WallEvents: what the wall gave way, and took back, since the last look, as sentences.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "daemon/shm/layout.h"
+
+namespace merlin::status {
+
+// Thread-bound.
+class WallEvents {
+ public:
+  explicit WallEvents(const shm::WallSegment& segment) : segment_(segment) {}
+
+  // "the rate is halved to 15 Hz: ..."; empty while nothing changes.
+  std::vector<std::string> take();
+
+ private:
+  const shm::WallSegment& segment_;
+  std::uint32_t divisor_ = 1, operator_coarser_ = 0, held_ = 0;
+  float asked_hz_ = 0;
+};
+
+}  // namespace merlin::status

@@ -1,0 +1,57 @@
+// What the wall gave way, as sentences.
+#include "daemon/status/wall_events.h"
+
+#include <memory>
+
+#include <gtest/gtest.h>
+
+namespace merlin::status {
+namespace {
+
+using Sentences = std::vector<std::string>;
+
+class WallEventsTest : public testing::Test {
+ protected:
+  Sentences after(const shm::WallStats& stats) {
+    segment_->stats.publish(stats);
+    return events_.take();
+  }
+  std::unique_ptr<shm::WallSegment> segment_ = std::make_unique<shm::WallSegment>();
+  WallEvents events_{*segment_};
+  shm::WallStats stats_ = [] {
+    shm::WallStats s{};
+    s.rate_asked_hz = s.rate_now_hz = 30;
+    s.rate_divisor = 1;
+    return s;
+  }();
+};
+
+TEST_F(WallEventsTest, TellEachStepDownAndUpOnce) {
+  EXPECT_EQ(events_.take(), Sentences{});
+  EXPECT_EQ(after(stats_), Sentences{});
+  stats_.operator_coarser = 1;
+  EXPECT_EQ(after(stats_), Sentences{"the operator's view is coarser: there is no time for it"});
+  EXPECT_EQ(after(stats_), Sentences{});
+  stats_.rate_divisor = 2;
+  stats_.rate_now_hz = 15;
+  EXPECT_EQ(after(stats_),
+            Sentences{"down to 15 of 30 Hz: not even the fewest triangles come in time"});
+  stats_.rate_divisor = 1;
+  stats_.rate_now_hz = 30;
+  stats_.operator_coarser = 0;
+  EXPECT_EQ(after(stats_), (Sentences{"the operator's view is as fine as the wall again",
+                                      "up to 30 of 30 Hz: the fewest triangles fit"}));
+}
+
+TEST_F(WallEventsTest, TellWhatIsSetByHand) {
+  after(stats_);
+  stats_.held_triangles = 5000;
+  stats_.rate_asked_hz = 20;
+  EXPECT_EQ(after(stats_),
+            (Sentences{"5000 triangles while it moves, by hand", "the rate asked is 20 Hz now"}));
+  stats_.held_triangles = 0;
+  EXPECT_EQ(after(stats_), Sentences{"triangles as the rate allows"});
+}
+
+}  // namespace
+}  // namespace merlin::status

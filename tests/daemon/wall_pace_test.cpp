@@ -1,0 +1,159 @@
+// What the wall gives for its rate, and what it says of it: calibration, feed-forward, the ladder,
+// by hand; on a virtual clock.
+#include <gtest/gtest.h>
+
+#include "tests/support/fake_wall.h"
+
+namespace merlin::wall {
+namespace {
+
+class WallPaceTest : public FakeWall {
+ protected:
+  WallPaceTest() : FakeWall(microseconds(10), 40, {.min_triangles = 100}) {}
+  Duration since() const { return clock_.now() - feed_.begins.front(); }
+};
+
+// Without it the first second has late frames: it begins with as much as fits, and in time.
+TEST_F(WallPaceTest, IsCalibratedBeforeTheFirstFrame) {
+  calibrated_ = true;
+  const Timestamp from = clock_.now();
+  run(2);
+  EXPECT_LE(feed_.begins.front() - from, std::chrono::seconds(1));
+  EXPECT_EQ(stats().late, 0u);
+  EXPECT_NEAR(stats().cost_exponent, 1, 0.02);
+  EXPECT_NEAR(stats().cost_fixed_ms, 4, 0.01);
+  EXPECT_NEAR(frames_.frames.front().triangles, 2600, 80);  // (33.3 ms x 0.9 - 4 ms) / 10 us
+}
+
+// The view goes back to the start, where it costs a quarter: the next frame has four times as many.
+TEST_F(WallPaceTest, AJumpToAKnownViewIsFedForward) {
+  calibrated_ = true;
+  std::size_t at_reset = 0;
+  run(3, [&](Timestamp) {
+    painter_.slow = since() > milliseconds(500) && at_reset == 0 ? 4 : 1;
+    if (since() > milliseconds(2000) && at_reset == 0) {
+      at_reset = frames_.frames.size();
+      painter_.slow = 1;
+      loop_->request(WallLoop::kResetView);
+    }
+  });
+  EXPECT_NEAR(frames_.frames[at_reset - 1].triangles, 650, 60);
+  EXPECT_NEAR(frames_.frames[at_reset + 1].triangles, 2600, 200);
+  EXPECT_LE(stats().longest_late, 4u);
+}
+
+// 100 triangles take 44 ms: 30 Hz is lost, 15 Hz is kept. Later they take 1 ms again.
+TEST_F(WallPaceTest, TheRateGivesWayByHalvesAndComesBack) {
+  std::uint32_t divisor = 0;
+  double held = 0;
+  run(60, [&](Timestamp) {
+    painter_.slow = since() < std::chrono::seconds(10) ? 40 : 1;
+    if (since() > std::chrono::seconds(9) && divisor == 0) {
+      divisor = stats().rate_divisor;
+      held = static_cast<double>(stats().rate_held_hz);
+    }
+  });
+  EXPECT_EQ(divisor, 2u);
+  EXPECT_NEAR(held, 15, 0.01);
+  EXPECT_EQ(stats().rate_divisor, 1u);
+  EXPECT_NEAR(stats().rate_held_hz, 30, 0.01);
+  EXPECT_EQ(stats().ladder_steps, 2u);
+  EXPECT_FLOAT_EQ(stats().rate_asked_hz, 30);
+}
+
+TEST_F(WallPaceTest, TheOperatorsViewThatGivesWayForLongIsToldOnce) {
+  run(4, [&](Timestamp) { painter_.gives_way = since() < std::chrono::seconds(2); });
+  EXPECT_EQ(stats().operator_coarser, 1u);
+  EXPECT_EQ(stats().ladder_steps, 1u);
+  EXPECT_EQ(stats().rate_divisor, 1u);
+}
+
+TEST_F(WallPaceTest, TrianglesAndRateAreSetByHandUntilTheyAreGivenBack) {
+  std::uint32_t held = 0;
+  double rate = 0;
+  run(6, [&](Timestamp) {
+    if (since() > std::chrono::seconds(1) && since() < std::chrono::seconds(3)) {
+      loop_->hold(1000);
+      loop_->setRate(20);
+    } else if (since() > std::chrono::seconds(3)) {
+      if (held == 0) {
+        held = frames_.frames.back().triangles;
+        rate = static_cast<double>(stats().rate_held_hz);
+        EXPECT_EQ(stats().held_triangles, 1000u);
+        EXPECT_FLOAT_EQ(stats().rate_asked_hz, 20);
+      }
+      loop_->hold(std::nullopt);
+      loop_->setRate(std::nullopt);
+    }
+  });
+  EXPECT_NEAR(held, 1000, 2);
+  EXPECT_NEAR(rate, 20, 0.01);
+  EXPECT_EQ(stats().held_triangles, 0u);
+  EXPECT_FLOAT_EQ(stats().rate_asked_hz, 30);
+  EXPECT_GT(frames_.frames.back().triangles, 2300u);
+}
+
+// The same cost, two per cent up or down: not one triangle changes.
+TEST_F(WallPaceTest, NothingPopsForAFewPerCent) {
+  calibrated_ = true;
+  run(2);
+  const std::size_t level = painter_.levels.back();
+  painter_.levels.clear();
+  for (const Duration cost : {Duration(10'200), Duration(9'800)}) {
+    painter_.setCost(cost);
+    stop_ = std::stop_source();
+    calibrated_ = false;
+    run(5);
+  }
+  ASSERT_GT(painter_.levels.size(), 250u);
+  for (const std::size_t l : painter_.levels) ASSERT_EQ(l, level);
+}
+
+TEST_F(WallPaceTest, SaysHowItsFramesWere) {
+  run(10);
+  const auto s = stats();
+  std::uint32_t all = 0;
+  for (const std::uint32_t n : s.work_histogram) all += n;
+  EXPECT_NEAR(all, 300, 3);
+  EXPECT_GT(s.work_histogram[13] + s.work_histogram[14], 250u);  // 81 to 94 per cent of the period
+  EXPECT_EQ(s.oscillation, 0);
+  EXPECT_GT(s.budget, 2300u);
+}
+
+const std::vector<shm::FrameTrace> all(const shm::Channel<shm::FrameTrace>& channel) {
+  std::vector<shm::FrameTrace> frames;
+  const std::uint64_t count = channel.count();
+  for (std::uint64_t n = count > 256 ? count - 255 : 0; n < count; ++n) {
+    if (const auto frame = channel.at(n)) frames.push_back(*frame);
+  }
+  return frames;
+}
+
+// Input, scene, governor, cut, the tile, its pixels, present: in this order, inside the frame.
+TEST_F(WallPaceTest, TellsEachStepOfEachFrame) {
+  run(2, [&](Timestamp) { feed_.pushed = since() < std::chrono::seconds(1); });
+  const auto frames = all(*trace_);
+  ASSERT_GT(frames.size(), 50u);
+  using shm::StepKind;
+  const StepKind moving[] = {StepKind::kInput,  StepKind::kScene, StepKind::kGovernor,
+                             StepKind::kCut,    StepKind::kDraw,  StepKind::kReadBack,
+                             StepKind::kPresent};
+  for (const shm::FrameTrace& f : frames) {
+    std::uint32_t end = 0;
+    for (std::uint32_t i = 0; i < f.count; ++i) {
+      EXPECT_GE(f.steps[i].begin_ns, end);
+      end = f.steps[i].begin_ns + f.steps[i].length_ns;
+    }
+    EXPECT_LE(f.begin_ns + end, f.end_ns);
+    if (!f.moving || f.count == 3) continue;  // or there was no time for a frame
+    ASSERT_EQ(f.count, 7u);
+    for (int i = 0; i < 7; ++i) EXPECT_EQ(f.steps[i].kind, moving[i]);
+    EXPECT_EQ(f.late, f.end_ns > f.deadline_ns ? 1u : 0u);
+  }
+  EXPECT_TRUE(std::any_of(frames.begin(), frames.end(), [](const shm::FrameTrace& f) {
+    return f.moving == 0 && f.count >= 3 && f.steps[2].kind == StepKind::kRefine;
+  }));
+}
+
+}  // namespace
+}  // namespace merlin::wall

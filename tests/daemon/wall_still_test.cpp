@@ -1,0 +1,87 @@
+// A model that takes seconds to draw whole, on a virtual clock: something finer soon after a
+// standstill, and motion in time whenever it comes.
+#include <gtest/gtest.h>
+
+#include "tests/support/fake_wall.h"
+
+namespace merlin::wall {
+namespace {
+
+// As the 10-million model on a software renderer, by proportion: moving, one triangle in 20 fits a
+// frame; full detail takes 3,000 slices, 9 s.
+class BigModelTest : public FakeWall {
+ protected:
+  BigModelTest()
+      : FakeWall(microseconds(100), 3000, {.min_triangles = 50, .first_triangles = 200}) {
+    calibrated_ = true;
+  }
+  Duration since() const { return clock_.now() - feed_.begins.front(); }
+};
+
+// Whenever within a period the ball is let go.
+TEST_F(BigModelTest, IsFinerWithinAQuarterOfASecondOfStandstill) {
+  for (int phase_ms = 0; phase_ms < 34; phase_ms += 3) {
+    feed_.begins.clear();
+    frames_.frames.clear();
+    stop_ = std::stop_source();
+    const Duration moves = milliseconds(2000 + phase_ms);
+    std::optional<Timestamp> let_go;
+    run(4, [&](Timestamp) {
+      feed_.pushed = since() < moves;
+      let_go = feed_.begins.front() + moves;
+    });
+    const auto moving = std::find_if(frames_.frames.rbegin(), frames_.frames.rend(),
+                                     [&](auto& f) { return f.finished < *let_go; });
+    const auto finer = std::find_if(frames_.frames.begin(), frames_.frames.end(), [&](auto& f) {
+      return f.finished > *let_go && f.triangles > 1.2 * moving->triangles;
+    });
+    ASSERT_NE(finer, frames_.frames.end());
+    EXPECT_LE(finer->finished - *let_go, milliseconds(250)) << phase_ms;
+    EXPECT_GT(stats().still_to_first_s, 0.03F);
+  }
+}
+
+TEST_F(BigModelTest, GetsFinerInStepsAndThenWhole) {
+  run(16, [&](Timestamp) { feed_.pushed = since() < std::chrono::seconds(2); });
+  std::vector<std::uint32_t> shown;
+  for (const auto& f : frames_.frames) {
+    if (shown.empty() || f.triangles != shown.back()) shown.push_back(f.triangles);
+  }
+  ASSERT_GE(shown.size(), 3u);
+  EXPECT_EQ(shown.back(), model().triangleCount());
+  EXPECT_TRUE(frames_.frames.back().full_detail);
+  EXPECT_FALSE((frames_.frames.rbegin() + 1)->full_detail);
+  EXPECT_NEAR(stats().still_to_full_s, 10, 0.5);  // 9 s of slices in what they may have of a period
+  EXPECT_LE(stats().late, 1u);
+}
+
+// Always, wherever refining is: the first frame that begins after the input meets its deadline, at
+// the level that moved last.
+TEST_F(BigModelTest, MotionAfterAStillPictureIsInTime) {
+  for (int still_ms = 160; still_ms < 2000; still_ms += 37) {
+    feed_.begins.clear();
+    frames_.frames.clear();
+    painter_.levels.clear();
+    stop_ = std::stop_source();
+    std::optional<Timestamp> published;
+    std::size_t level = 0, drawn = 0;
+    run(5, [&](Timestamp now) {
+      const Duration t = now - feed_.begins.front();
+      feed_.pushed = t < std::chrono::seconds(2) || t > milliseconds(2150 + still_ms);
+      if (!feed_.pushed && t < milliseconds(2100)) level = painter_.levels.back();
+      if (feed_.pushed && t > std::chrono::seconds(2) && !published) {
+        published = now;
+        drawn = painter_.levels.size();
+      }
+    });
+    const auto first = std::find_if(frames_.frames.begin(), frames_.frames.end(),
+                                    [&](const auto& f) { return f.finished > *published; });
+    ASSERT_NE(first, frames_.frames.end());
+    EXPECT_LE(first->finished - *published, kPeriod) << still_ms;
+    EXPECT_EQ(painter_.levels[drawn], level) << still_ms;
+    EXPECT_EQ(stats().resumed_late, 0u) << still_ms;
+  }
+}
+
+}  // namespace
+}  // namespace merlin::wall

@@ -1,0 +1,161 @@
+// A wall on a virtual clock: a painter that costs what a model of the renderer says, a feed that is
+// told what to say, and the loop between them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "daemon/wall/wall_loop.h"
+#include "render/reduce/reduce.h"
+#include "tests/support/fake_clock.h"
+
+namespace merlin::wall {
+
+using render::Dendrogram;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+inline const Duration kPeriod = fromSeconds(1.0 / 30);
+
+// A wavy sheet of 5,000 triangles, reduced to the end.
+inline const Dendrogram& model() {
+  static const Dendrogram made = [] {
+    render::Mesh mesh;
+    constexpr std::uint32_t kSide = 51;
+    for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+      const auto x = static_cast<float>(i % kSide), y = static_cast<float>(i / kSide);
+      mesh.positions.insert(mesh.positions.end(), {x, y, std::sin(x / 5) + std::cos(y / 7)});
+      if (i % kSide + 1 == kSide || i / kSide + 1 == kSide) continue;
+      mesh.triangles.insert(mesh.triangles.end(),
+                            {i, i + 1, i + kSide, i + 1, i + kSide + 1, i + kSide});
+    }
+    render::ensureNormals(mesh);
+    return render::buildDendrogram(mesh, render::reduce(mesh, {})->log);
+  }();
+  return made;
+}
+
+// 4 ms a frame and `per_triangle` each; full detail costs `slices` of 3 ms, a level as many as it
+// takes.
+class FakePainter final : public Painter {
+ public:
+  FakePainter(test::FakeClock& clock, Duration per_triangle, int slices)
+      : clock_(clock), per_triangle_(per_triangle), slices_(slices) {}
+
+  DrawTimes draw(const Eigen::Isometry3f&, std::size_t level, Timestamp) override {
+    const Duration fixed = milliseconds(4), drawing = costOf(level) * slow;
+    const Timestamp began = clock_.now();
+    clock_.advance(drawing);
+    const Timestamp read = clock_.now();
+    clock_.advance(fixed);
+    drawn.push_back(clock_.now());
+    levels.push_back(level);
+    steps_ = {{shm::StepKind::kCut, 0, began, began},
+              {shm::StepKind::kDraw, 0, began, read},
+              {shm::StepKind::kReadBack, 0, read, clock_.now()}};
+    return {drawing, fixed, gives_way};
+  }
+  std::span<const PaintStep> steps() const noexcept override { return steps_; }
+  void beginRefining(const Eigen::Isometry3f&) override { left_ = slices_; }
+  bool beginRefiningTo(const Eigen::Isometry3f&, std::size_t level) override {
+    left_ = static_cast<int>(costOf(level) / milliseconds(3)) + 1;
+    return true;
+  }
+  bool refine(Timestamp until) override {
+    steps_.clear();
+    while (clock_.now() + milliseconds(3) < until) {
+      clock_.advance(milliseconds(3));
+      if (--left_ == 0) return true;
+    }
+    return false;
+  }
+  std::span<const std::uint8_t> pixels() const noexcept override { return {}; }
+
+  void setCost(Duration per_triangle) { per_triangle_ = per_triangle; }
+
+  int slow = 1;
+  bool gives_way = false;
+  std::vector<Timestamp> drawn;
+  std::vector<std::size_t> levels;
+
+ private:
+  Duration costOf(std::size_t level) const {
+    return per_triangle_ * static_cast<std::int64_t>(model().trianglesAt(level));
+  }
+  test::FakeClock& clock_;
+  Duration per_triangle_;
+  int slices_, left_ = 0;
+  std::vector<PaintStep> steps_;
+};
+
+// Pushes the ball while `pushed`; asks the loop to stop after `until`.
+class FakeFeed final : public InputFeed {
+ public:
+  render::SceneInput read(Timestamp now) override {
+    begins.push_back(now);
+    if (on_begin) on_begin(now);
+    render::SceneInput input;
+    input.ball.emplace();
+    input.ball->rotation[1] = pushed ? 0.5F : 0.0F;
+    return input;
+  }
+  Duration age() const noexcept override { return milliseconds(7); }
+
+  bool pushed = true;
+  std::function<void(Timestamp)> on_begin;
+  std::vector<Timestamp> begins;
+};
+
+struct RecordingFrames final : render::FrameSink {
+  void present(std::span<const std::uint8_t>, const render::FrameInfo& info) override {
+    frames.push_back(info);
+  }
+  std::vector<render::FrameInfo> frames;
+};
+
+class FakeWall : public testing::Test {
+ protected:
+  explicit FakeWall(Duration per_triangle = microseconds(10), int slices = 40,
+                    const render::GovernorSettings& settings = {})
+      : painter_(clock_, per_triangle, slices), governor_(settings) {}
+
+  // Runs for `seconds` of virtual time.
+  void run(double seconds, const std::function<void(Timestamp)>& on_begin = {}) {
+    const Timestamp end = clock_.now() + fromSeconds(seconds);
+    feed_.on_begin = [&, end](Timestamp now) {
+      if (on_begin) on_begin(now);
+      if (now >= end) stop_.request_stop();
+    };
+    WallLoop loop(parts());
+    loop_ = &loop;
+    if (calibrated_) loop.calibrate();
+    loop.run(stop_.get_token(), [&] { ++first_frames_; });
+  }
+  WallParts parts() {
+    return {model(), painter_, scene_, governor_, feed_, {&frames_}, *stats_, clock_, trace_.get()};
+  }
+  shm::WallStats stats() const { return *stats_->read(); }
+
+  test::FakeClock clock_;
+  FakePainter painter_;
+  render::Scene scene_ = *render::Scene::make({});
+  render::Governor governor_;
+  FakeFeed feed_;
+  RecordingFrames frames_;
+  std::unique_ptr<shm::SeqSlot<shm::WallStats>> stats_ =
+      std::make_unique<shm::SeqSlot<shm::WallStats>>();
+  std::unique_ptr<shm::Channel<shm::FrameTrace>> trace_ =
+      std::make_unique<shm::Channel<shm::FrameTrace>>();
+  std::stop_source stop_;
+  WallLoop* loop_ = nullptr;  // while it runs
+  bool calibrated_ = false;
+  int first_frames_ = 0;
+};
+
+}  // namespace merlin::wall
