@@ -35,7 +35,7 @@ struct DevicesSettings {
   SpaceballSettings ball;
   HandSettings hand;
   GpioSettings gpio;
-  std::string postures;          // the posture network's file; empty: none is recognised
+  std::string postures;  // the posture network's file; empty: none is recognised
   nn::HoldSettings posture_hold;
   std::string script = "visit";  // what the emulated person does, with --emulate
 };

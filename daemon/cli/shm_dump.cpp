@@ -74,8 +74,7 @@ Json readField(const SharedMemory& memory, const shm::Field& f) {
   const std::size_t bytes = sizeOf(f.type[0]) * f.count;
   if (f.offset + bytes > memory.size()) return nullptr;
   if (f.slot == 0) return decode(f, memory.data() + f.offset);
-  if (f.slot + 8 > memory.size() || f.slot % 8 != 0)
-    return nullptr;
+  if (f.slot + 8 > memory.size() || f.slot % 8 != 0) return nullptr;
   const auto& sequence =
       *reinterpret_cast<const std::atomic<std::uint64_t>*>(memory.data() + f.slot);
   std::vector<std::byte> copy(bytes);

@@ -1,4 +1,5 @@
-// A Spaceball 1003, 2003, 3003 or 4000 FLX as a program sees it. Source: drivers/spaceball/README.md.
+// A Spaceball 1003, 2003, 3003 or 4000 FLX as a program sees it. Source:
+// drivers/spaceball/README.md.
 #pragma once
 
 #include <memory>

@@ -20,7 +20,7 @@ struct RecordingSettings {
   std::size_t people = 10;
   std::size_t takes = 1;     // of each shape by each person
   std::size_t per_take = 5;  // samples
-  PeopleSettings spread;
+  PeopleSettings spread{};
 };
 
 // All takes of the first shape first, person by person.

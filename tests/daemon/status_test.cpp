@@ -103,7 +103,7 @@ TEST_F(DocumentsTest, TheWallSaysHowItKeepsItsRate) {
 }
 
 TEST_F(DocumentsTest, SamplesAreTheNewestOfEachThatThereIs) {
-  EXPECT_EQ(json::parse(newestSamples(*devices_, kNow)).size(), 1u);  // now_ns
+  EXPECT_EQ(json::parse(newestSamples(*devices_, kNow)).size(), 2u);  // now_ns, health
   TrackerSample tracker{};
   tracker.station = 2;
   tracker.position_m[1] = 0.5F;

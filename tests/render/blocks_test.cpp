@@ -78,7 +78,7 @@ TEST(Blocks, EveryLevelIsAManifold) {
   const Dendrogram d = buildDendrogram(mesh, r.log);
   ASSERT_TRUE(Dendrogram::make(d.arrays(), nullptr));
   EXPECT_EQ(d.trianglesAt(d.levels() - 1), r.report.triangles);
-  for (const std::size_t percent : {90, 50, 30, 20, 15, 10, 5, 1}) {
+  for (const std::size_t percent : {90U, 50U, 30U, 20U, 15U, 10U, 5U, 1U}) {
     Mesh coarse = extract(d, d.levelFor(mesh.triangleCount() * percent / 100));
     const std::size_t before = coarse.triangleCount();
     tidy(coarse);
@@ -99,7 +99,7 @@ TEST(Blocks, AreAsGoodAsTheWhole) {
     const Dendrogram d = buildDendrogram(mesh, r.log);
     return compare(mesh, extract(d, d.levelFor(keep)), settings)->symmetric().rms;
   };
-  for (const std::size_t percent : {20, 5}) {
+  for (const std::size_t percent : {20U, 5U}) {
     const std::size_t keep = mesh.triangleCount() * percent / 100;
     EXPECT_LT(rms(blocks, keep), 1.12 * rms(whole, keep)) << percent << " %";
   }

@@ -122,6 +122,7 @@ TEST(Weights, WhereNobodySaysOtherwise) {
   EXPECT_EQ(defaultWeights(test::cube()), expected);
   Weights coloured = expected;
   coloured["colour"] = 0.03F;
+  coloured["label"] = 1000;
   EXPECT_EQ(defaultWeights(richGrid()), coloured);
 }
 

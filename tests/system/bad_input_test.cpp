@@ -119,7 +119,7 @@ TEST_F(BadInput, UsageErrorsExitWithTwo) {
   expectOutcome(run({kMerlin, "snapshot"}), 2, {"-o"});
   expectOutcome(run({kMerlin, "emulate", "theremin"}), 2, {"theremin", "spaceball"});
   expectOutcome(run({kMerlin, "emulate", "spaceball", "--model", "9000"}), 2,
-                {"9000", "2003|3003|4000"});
+                {"9000", "2003|1003|3003|4000"});
   expectOutcome(run({kMerlind, "--role", "emperor"}), 2, {"emperor"});
   expectOutcome(run({kMerlin, "--help"}), 0, {"status", "mesh", "emulate"});
 }
@@ -171,15 +171,15 @@ TEST_F(BadInput, MeshCommands) {
                  "boundary, colour"});
   expectOutcome(run({kMerlin, "mesh", "reduce", scan, "-o", "/no/such/folder/o.mrm"}), 2,
                 {"/no/such/folder/o.mrm"});
-  expectOutcome(run({kMerlin, "mesh", "export", scan, "-o", dir_ / "o.stl"}), 2,
-                {"o.stl: meshes are written as .ply"});
+  expectOutcome(run({kMerlin, "mesh", "export", scan, "-o", dir_ / "o.dae"}), 2,
+                {"o.dae: meshes are written as .ply"});
   expectOutcome(run({kMerlin, "mesh", "export", scan, "-o", dir_ / "o.ply", "--percent", "5",
                      "--triangles", "9"}),
                 2, {"triangles"});
 }
 
 TEST_F(BadInput, PostureCommands) {
-  writeText(dir_ / "hands.csv", "posture,s0\nfist,1\n");
+  writeText(dir_ / "hands.csv", "posture,grip\nfist,1\n");
   expectOutcome(run({kMerlin, "posture", "test", "--network", dir_ / "none.json"}), 2,
                 {"none.json"});
   expectOutcome(run({kMerlin, "posture", "test", "--network", kSource + "/config/postures.json",
