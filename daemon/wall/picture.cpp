@@ -104,6 +104,7 @@ render::TileView Picture::viewOf(std::size_t tile, const Eigen::Isometry3f& T_ey
 }
 
 void Picture::chooseCut(std::size_t level, std::span<const render::TileView> views) {
+  const Timestamp began = clock_.now();
   const std::size_t budget = model_.trianglesAt(level);
   const bool uneven = level > 0 && settings_.view_dependent && view_cut_.choose(views, budget);
   if (!uneven) view_cut_.look(views);
@@ -116,17 +117,25 @@ void Picture::chooseCut(std::size_t level, std::span<const render::TileView> vie
   const auto levels = uneven ? view_cut_.levels() : std::span<const std::uint32_t>(even_levels_);
   const std::size_t triangles =
       clustered_ ? clusters_.cut(levels, cut_, cut_ends_) : clusters_.cutEvenly(level, cut_);
+  const Timestamp cut = stepDone(shm::StepKind::kCut, 0, began);
   renderer_->uploadCut(std::span(cut_).first(3 * triangles));
+  stepDone(shm::StepKind::kUpload, 0, cut);
+}
+
+Timestamp Picture::stepDone(shm::StepKind kind, std::size_t tile, Timestamp began) {
+  const Timestamp ended = clock_.now();
+  steps_.push_back({kind, static_cast<std::uint16_t>(tile), began, ended});
+  return ended;
 }
 
 // Neighbouring clusters that the view sees are one run.
-void Picture::chooseRuns(std::size_t view, ModelRenderer::Source source) {
+void Picture::chooseRuns(std::size_t view) {
   runs_.clear();
-  if (source == ModelRenderer::Source::kCut && !clustered_) {
-    runs_.push_back({0, renderer_->triangles(source)});
+  if (source_ == ModelRenderer::Source::kCut && !clustered_) {
+    runs_.push_back({0, renderer_->triangles(source_)});
     return;
   }
-  const auto& ends = source == ModelRenderer::Source::kCut ? cut_ends_ : full_ends_;
+  const auto& ends = source_ == ModelRenderer::Source::kCut ? cut_ends_ : full_ends_;
   std::size_t first = 0;
   for (std::size_t c = 0; c <= clusters_.size(); ++c) {
     const std::size_t count = ends[c] - first;
@@ -146,23 +155,24 @@ void Picture::drawTile(std::size_t tile, std::size_t view, const Eigen::Isometry
   const Timestamp began = clock_.now();
   beginTile(tile, T_eye_model);
   const Timestamp cleared = clock_.now();
-  chooseRuns(view, source_);
+  chooseRuns(view);
   for (Progress at; at.run < runs_.size();) {
-    drawSlice(source_, at);
+    drawSlice(at);
     renderer_->flush();
   }
-  const Timestamp drawn = clock_.now();
+  const Timestamp drawn = stepDone(shm::StepKind::kDraw, tile, began);
   readTile(tile);
+  stepDone(shm::StepKind::kReadBack, tile, drawn);
   times.drawing += drawn - cleared;
   times.fixed += (cleared - began) + (clock_.now() - drawn);
 }
 
 // About kSlice triangles of the runs, from where `at` is.
-void Picture::drawSlice(ModelRenderer::Source source, Progress& at) {
+void Picture::drawSlice(Progress& at) {
   for (std::size_t left = kSlice; left > 0 && at.run < runs_.size();) {
     const Run& run = runs_[at.run];
     const std::size_t count = std::min(left, run.count - at.triangles);
-    renderer_->draw(source, run.first + at.triangles, count);
+    renderer_->draw(source_, run.first + at.triangles, count);
     left -= count;
     at.triangles += count;
     if (at.triangles == run.count) at = {at.run + 1, 0};
@@ -171,6 +181,7 @@ void Picture::drawSlice(ModelRenderer::Source source, Progress& at) {
 
 DrawTimes Picture::draw(const Eigen::Isometry3f& T_eye_model, std::size_t level, Timestamp until) {
   DrawTimes times;
+  steps_.clear();
   const Timestamp began = clock_.now();
   views_.clear();
   for (std::size_t i = 0; i < tiles_.size(); ++i) views_.push_back(viewOf(i, T_eye_model));
@@ -226,35 +237,46 @@ void Picture::warmUp(const Eigen::Isometry3f& T_eye_model) {
 }
 
 void Picture::beginRefining(const Eigen::Isometry3f& T_eye_model) {
+  beginRefiningTo(T_eye_model, 0);
+}
+
+bool Picture::beginRefiningTo(const Eigen::Isometry3f& T_eye_model, std::size_t level) {
   refined_view_ = T_eye_model;
   refined_tile_ = 0;
   refined_begun_ = false;
   views_.clear();
   for (std::size_t i = 0; i < tiles_.size(); ++i) views_.push_back(viewOf(i, T_eye_model));
-  view_cut_.look(views_);
+  steps_.clear();
+  chooseCut(level, views_);
+  return true;
 }
 
+// The steps of beginning to refine count for the first slice.
 bool Picture::refine(Timestamp until) {
-  for (Timestamp now = clock_.now(); now + slice_time_ * 3 / 2 < until;) {
+  if (refined_begun_ || refined_tile_ > 0) steps_.clear();
+  const Timestamp first = clock_.now();
+  bool whole = false;
+  for (Timestamp now = first; !whole && now + slice_time_ * 3 / 2 < until;) {
     if (!refined_begun_) {
       beginTile(refined_tile_, refined_view_);
-      chooseRuns(refined_tile_, ModelRenderer::Source::kFull);
+      chooseRuns(refined_tile_);
       refined_ = {};
       refined_begun_ = true;
     }
-    drawSlice(ModelRenderer::Source::kFull, refined_);
+    drawSlice(refined_);
     renderer_->finish();
     if (refined_.run == runs_.size()) {
       readTile(refined_tile_);
       refined_begun_ = false;
-      if (++refined_tile_ == tiles_.size()) return true;
+      whole = ++refined_tile_ == tiles_.size();
     }
     const Timestamp then = std::exchange(now, clock_.now());
     slice_time_ = std::max<Duration>(now - then, slice_time_ * 9 / 10);
   }
   // Where slices take longer than a period has, the figure fades until one is tried again.
-  slice_time_ = slice_time_ * 9 / 10;
-  return false;
+  if (!whole) slice_time_ = slice_time_ * 9 / 10;
+  stepDone(shm::StepKind::kRefine, 0, first);
+  return whole;
 }
 
 }  // namespace merlin::wall

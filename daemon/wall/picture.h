@@ -36,7 +36,9 @@ class Picture final : public Painter {
 
   DrawTimes draw(const Eigen::Isometry3f& T_eye_model, std::size_t level, Timestamp until) override;
   void beginRefining(const Eigen::Isometry3f& T_eye_model) override;
+  bool beginRefiningTo(const Eigen::Isometry3f& T_eye_model, std::size_t level) override;
   bool refine(Timestamp until) override;
+  std::span<const PaintStep> steps() const noexcept override { return steps_; }
   std::span<const std::uint8_t> pixels() const noexcept override { return pixels_; }
 
   const std::string& renderer() const noexcept { return context_->renderer(); }
@@ -56,8 +58,9 @@ class Picture final : public Painter {
   };
   // What is drawn at `level`, for these views; drawTile's `view` is a number of theirs.
   void chooseCut(std::size_t level, std::span<const render::TileView> views);
-  void chooseRuns(std::size_t view, render::ModelRenderer::Source source);
-  void drawSlice(render::ModelRenderer::Source source, Progress& at);
+  void chooseRuns(std::size_t view);
+  void drawSlice(Progress& at);
+  Timestamp stepDone(shm::StepKind kind, std::size_t tile, Timestamp began);  // returns now
   void drawTile(std::size_t tile, std::size_t view, const Eigen::Isometry3f& T_eye_model,
                 DrawTimes& times);
   std::size_t levelThatFits(std::size_t level, Duration wall, Duration left) const;
@@ -84,6 +87,7 @@ class Picture final : public Painter {
   render::ModelRenderer::Source source_ = render::ModelRenderer::Source::kCut;
   std::vector<render::TileView> views_;
   std::vector<Run> runs_;
+  std::vector<PaintStep> steps_;  // of the last draw() or refine()
   std::vector<std::uint8_t> pixels_;
   // Operator's views' time as a share of the wall tiles', at the same level; of the last frames.
   double operator_share_ = 0.3;

@@ -138,6 +138,36 @@ TEST(Picture, RefiningInSlicesEndsInTheSamePicture) {
   EXPECT_TRUE(std::equal(whole.begin(), whole.end(), wall.picture->pixels().begin()));
 }
 
+TEST(Picture, RefiningToALevelEndsInThatLevelsPicture) {
+  Wall wall(fourTiles());
+  const std::size_t level = model().levelFor(400);
+  wall.draw(level);
+  const std::vector<std::uint8_t> whole(wall.picture->pixels().begin(),
+                                        wall.picture->pixels().end());
+  wall.draw(model().levelFor(100));
+  EXPECT_FALSE(std::equal(whole.begin(), whole.end(), wall.picture->pixels().begin()));
+  ASSERT_TRUE(wall.picture->beginRefiningTo(inFront(), level));
+  while (!wall.picture->refine(wall.clock.now() + std::chrono::milliseconds(20))) {
+  }
+  EXPECT_TRUE(std::equal(whole.begin(), whole.end(), wall.picture->pixels().begin()));
+}
+
+TEST(Picture, SaysWhatItsTimeWentTo) {
+  Wall wall(fourTiles());
+  wall.draw(model().levelFor(200));
+  std::vector<shm::StepKind> kinds;
+  Timestamp last{};
+  for (const PaintStep& step : wall.picture->steps()) {
+    kinds.push_back(step.kind);
+    EXPECT_GE(step.begin, last);
+    EXPECT_GE(step.end, step.begin);
+    last = step.end;
+  }
+  using enum shm::StepKind;
+  EXPECT_EQ(kinds, (std::vector{kCut, kUpload, kDraw, kReadBack, kDraw, kReadBack, kDraw, kReadBack,
+                                kDraw, kReadBack}));
+}
+
 TEST(Picture, OperatorSeesTheWholeModel) {
   Wall wall(fourTiles());
   wall.draw();
