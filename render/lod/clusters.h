@@ -46,6 +46,10 @@ class Clusters {
 
   std::size_t size() const noexcept { return bounds_.size(); }
   const ClusterBounds& bounds(std::size_t cluster) const noexcept { return bounds_[cluster]; }
+  // Clusters that share triangles with this one; it may be among them. Not both ways.
+  std::span<const std::uint16_t> neighbours(std::size_t cluster) const noexcept {
+    return neighbours_[cluster];
+  }
   std::size_t finestLevel() const noexcept { return rungs_.front().level; }
   std::size_t coarsestLevel() const noexcept { return coarsest_; }
 

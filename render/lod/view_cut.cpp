@@ -15,6 +15,10 @@ constexpr float kMuchTheSame = 1.15F;
 // What is seen edge-on is still an outline.
 constexpr float kLeastFacing = 0.1F;
 constexpr int kBisections = 12;
+constexpr float kLeastOfNeighbour = 0.4F;
+constexpr int kGradings = 3;
+// With less a cluster is a handful of triangles, most of them its border's.
+constexpr std::size_t kTimesTheCoarsest = 4;
 
 // A tile's view, taken apart once.
 struct Viewer {
@@ -101,6 +105,18 @@ void ViewCut::look(std::span<const TileView> tiles) {
   }
 }
 
+// So often that what is far from all that is seen is as coarse as can be.
+void ViewCut::grade() {
+  for (int pass = 0; pass < kGradings; ++pass) {
+    for (std::size_t c = 0; c < clusters_.size(); ++c) {
+      for (const std::uint16_t n : clusters_.neighbours(c)) {
+        wanted_[c] = std::max(wanted_[c], kLeastOfNeighbour * wanted_[n]);
+        wanted_[n] = std::max(wanted_[n], kLeastOfNeighbour * wanted_[c]);
+      }
+    }
+  }
+}
+
 std::size_t ViewCut::levelOf(double triangles) const noexcept {
   const double step = std::log2(std::max(triangles, 1.0)) * kStepsAnOctave;
   return level_table_[std::min(static_cast<std::size_t>(step), level_table_.size() - 1)];
@@ -119,9 +135,11 @@ std::size_t ViewCut::spend(double kappa) {
 
 bool ViewCut::choose(std::span<const TileView> tiles, std::size_t budget) {
   look(tiles);
-  if (budget <= dendrogram_.trianglesAt(clusters_.coarsestLevel())) return false;
+  if (budget <= kTimesTheCoarsest * dendrogram_.trianglesAt(clusters_.coarsestLevel()))
+    return false;
   const auto [least, most] = std::minmax_element(wanted_.begin(), wanted_.end());
   if (*most <= 0 || *most <= kMuchTheSame * *least) return false;
+  grade();
   // All as fine as the finest one there is, or as the budget allows.
   double high = 2 * static_cast<double>(dendrogram_.triangleCount()) / *most;
   for (const float w : wanted_) {

@@ -8,8 +8,9 @@
 //
 //   T_c = kappa p_c g_c^(1/2)
 //
-// T_c is the count that the whole model would have at the cluster's level. What no tile sees gets
-// the coarsest level. kappa follows from the budget by bisection. Pure.
+// T_c is the count that the whole model would have at the cluster's level. What no tile sees wants
+// nothing, but a neighbour has at least two fifths of a cluster's T: triangles between fine and
+// very coarse fold over. kappa follows from the budget by bisection. Pure.
 #pragma once
 
 #include <cstdint>
@@ -51,6 +52,7 @@ class ViewCut {
   void look(std::span<const TileView> tiles);
 
  private:
+  void grade();
   std::size_t spend(double kappa);  // sets levels_; returns triangles
   std::size_t levelOf(double triangles) const noexcept;
 

@@ -51,6 +51,11 @@ class OverHills : public ::testing::Test {
     }
     return cut_.levels()[best];
   }
+  // How many times as many triangles the first place's level has.
+  double finerAt(float x, float y, float other_x, float other_y) const {
+    return static_cast<double>(dendrogram_.trianglesAt(levelAt(x, y))) /
+           static_cast<double>(dendrogram_.trianglesAt(levelAt(other_x, other_y)));
+  }
 
   Dendrogram dendrogram_ = dendrogramOf(test::noisyGrid(60, 60, 0.5, 1));
   Clusters clusters_{dendrogram_, {.clusters = 64}};
@@ -58,7 +63,7 @@ class OverHills : public ::testing::Test {
 };
 
 TEST_F(OverHills, TheBudgetIsSpentAndNotExceeded) {
-  for (const std::size_t budget : {300u, 1000u, 3000u}) {
+  for (const std::size_t budget : {500u, 1000u, 3000u}) {
     const TileView tile = fromAbove(15, 15, 40);
     ASSERT_TRUE(cut_.choose(std::span(&tile, 1), budget));
     EXPECT_LE(spent(), budget);
@@ -70,14 +75,14 @@ TEST_F(OverHills, WhatNoTileSeesIsCoarse) {
   const TileView tile = fromAbove(10, 10, 10);
   ASSERT_TRUE(cut_.choose(std::span(&tile, 1), 1500));
   EXPECT_LT(levelAt(10, 10), levelAt(50, 50));
-  EXPECT_EQ(levelAt(50, 50), clusters_.coarsestLevel());
+  EXPECT_GT(finerAt(10, 10, 50, 50), 3);
 }
 
 TEST_F(OverHills, WhatAnyTileSeesIsNot) {
   const TileView tiles[] = {fromAbove(10, 10, 10), fromAbove(50, 50, 10)};
   ASSERT_TRUE(cut_.choose(tiles, 1500));
   EXPECT_LT(levelAt(50, 50), clusters_.coarsestLevel());
-  EXPECT_EQ(levelAt(50, 10), clusters_.coarsestLevel());
+  EXPECT_GT(finerAt(50, 50, 50, 10), 2);
 }
 
 TEST_F(OverHills, NearIsFinerThanFar) {
@@ -111,9 +116,13 @@ TEST(ViewCut, TheFarSideOfABallIsCoarseUnlessBackFacesAreDrawn) {
   for (const bool back_faces : {false, true}) {
     ViewCut cut(d, clusters, back_faces);
     ASSERT_TRUE(cut.choose(std::span(&tile, 1), 2000));
+    std::size_t front = 0;
+    for (std::size_t c = 1; c < clusters.size(); ++c) {
+      if (clusters.bounds(c).centre[2] > clusters.bounds(front).centre[2]) front = c;
+    }
     for (std::size_t c = 0; c < clusters.size(); ++c) {
       if (clusters.bounds(c).centre[2] < -0.85F) {
-        EXPECT_EQ(cut.levels()[c] == clusters.coarsestLevel(), !back_faces);
+        EXPECT_EQ(cut.levels()[c] > 4 * cut.levels()[front] / 3, !back_faces);
       }
       if (clusters.bounds(c).centre[2] > 0.85F) {
         EXPECT_LT(cut.levels()[c], clusters.coarsestLevel());
