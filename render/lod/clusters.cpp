@@ -6,31 +6,16 @@
 #include <limits>
 #include <numeric>
 
+#include "render/mesh/morton.h"
+
 namespace merlin::render {
 namespace {
 
 constexpr std::uint16_t kNoCluster = std::numeric_limits<std::uint16_t>::max();
 constexpr double kRungStep = 1.41421356;
+constexpr unsigned kCurveBits = 10;
 // Cuts of fewer triangles a cluster are made without clusters.
 constexpr std::size_t kFewPerCluster = 64;
-
-std::uint64_t spread(std::uint64_t v) {
-  v = (v | v << 16) & 0x030000FF;
-  v = (v | v << 8) & 0x0300F00F;
-  v = (v | v << 4) & 0x030C30C3;
-  return (v | v << 2) & 0x09249249;
-}
-
-// Along a Morton curve in the box.
-std::uint64_t curveKey(const float* p, const Box& box) {
-  std::uint64_t key = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float extent = box.high[k] - box.low[k];
-    const float unit = extent > 0 ? (p[k] - box.low[k]) / extent : 0;
-    key |= spread(static_cast<std::uint64_t>(std::clamp(unit, 0.0F, 1.0F) * 1023)) << k;
-  }
-  return key;
-}
 
 }  // namespace
 
@@ -75,11 +60,18 @@ void Clusters::Builder::numberClusters() {
   for (std::uint32_t n = 0; n < alive; ++n) {
     if (!made[n]) roots.push_back(n);
   }
-  const Box box = boundingBox(d.arrays().positions);
-  std::stable_sort(roots.begin(), roots.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return curveKey(&d.arrays().positions[3 * std::size_t{a}], box) <
-           curveKey(&d.arrays().positions[3 * std::size_t{b}], box);
-  });
+  const auto positions = d.arrays().positions;
+  const Box box = boundingBox(positions);
+  std::array<float, 3> extent{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    extent[k] = box.high[k] - box.low[k];
+    if (!(extent[k] > 0)) extent[k] = 1;
+  }
+  const auto key = [&](std::uint32_t n) {
+    return mortonKey(&positions[3 * std::size_t{n}], box.low, extent, kCurveBits);
+  };
+  std::stable_sort(roots.begin(), roots.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
   // Where a mesh has more parts than there may be clusters, neighbours share one.
   const std::size_t share = roots.size() / (kNoCluster - 1) + 1;
   for (std::size_t i = 0; i < roots.size(); ++i)

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "daemon/base/blocks.h"
+#include "render/mesh/morton.h"
 
 namespace merlin::render {
 namespace {
@@ -24,15 +25,6 @@ void forEachVertex(std::size_t n, unsigned threads, const Work& work) {
     const std::size_t end = std::min(n, (block + 1) * kBlock);
     for (std::size_t v = block * kBlock; v < end; ++v) work(static_cast<std::uint32_t>(v));
   });
-}
-
-// 12 bits, spread so that two others fit between each two of them.
-std::uint64_t spread(std::uint64_t v) {
-  v = (v | v << 32) & 0x001F00000000FFFF;
-  v = (v | v << 16) & 0x001F0000FF0000FF;
-  v = (v | v << 8) & 0x100F00F00F00F00F;
-  v = (v | v << 4) & 0x10C30C30C30C30C3;
-  return (v | v << 2) & 0x1249249249249249;
 }
 
 // By the upper 3 x bits; stable.
@@ -108,14 +100,10 @@ std::vector<std::uint32_t> alongCurve(const Mesh& mesh, unsigned threads) {
   if (!(extent > 0)) extent = 1;
   const std::size_t n = mesh.vertexCount();
   const unsigned bits = n < 1U << 22 || n >= 1U << 28 ? 10 : 12;
-  const float steps = static_cast<float>((1U << bits) - 1);
   HugeArray<std::uint64_t> keys(n);
   forEachVertex(n, threads, [&](std::uint32_t v) {
-    std::uint64_t key = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const float unit = (mesh.positions[3 * std::size_t{v} + k] - box.low[k]) / extent;
-      key |= spread(static_cast<std::uint64_t>(std::clamp(unit, 0.0F, 1.0F) * steps)) << k;
-    }
+    const float* point = &mesh.positions[3 * std::size_t{v}];
+    const std::uint64_t key = mortonKey(point, box.low, {extent, extent, extent}, bits);
     keys[v] = key << (64 - 3 * bits) | v;
   });
   radixSort(keys, bits);

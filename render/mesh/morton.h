@@ -1,0 +1,34 @@
+// The place of a point on a Morton curve (Z-order) through a box: what is near on it is near in
+// space. G. M. Morton, "A computer oriented geodetic data base ...", IBM, 1966.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace merlin::render {
+
+// 21 bits, spread so that two others fit between each two of them.
+inline std::uint64_t spreadBits(std::uint64_t v) {
+  v = (v | v << 32) & 0x001F00000000FFFF;
+  v = (v | v << 16) & 0x001F0000FF0000FF;
+  v = (v | v << 8) & 0x100F00F00F00F00F;
+  v = (v | v << 4) & 0x10C30C30C30C30C3;
+  return (v | v << 2) & 0x1249249249249249;
+}
+
+// The box begins at `low` and is `extent` long, each > 0; 2^bits steps an axis, so 3 x bits in all.
+// Points outside count as on its side. REQUIRES: bits <= 21.
+inline std::uint64_t mortonKey(const float* point, const std::array<float, 3>& low,
+                               const std::array<float, 3>& extent, unsigned bits) {
+  const auto steps = static_cast<float>((1U << bits) - 1);
+  std::uint64_t key = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float unit = std::clamp((point[k] - low[k]) / extent[k], 0.0F, 1.0F);
+    key |= spreadBits(static_cast<std::uint64_t>(unit * steps)) << k;
+  }
+  return key;
+}
+
+}  // namespace merlin::render
