@@ -35,25 +35,6 @@ std::size_t countOf(const Mesh& mesh, const std::vector<ChannelFeature>& channel
   return count;
 }
 
-// Of one value of a feature. Where it is so large or so small that its scale is no number, what
-// comes back from the channels is none either.
-struct Range {
-  float low, high;
-  float nearest(float value) const {
-    if (!(value >= low)) return low;
-    return value <= high ? value : high;
-  }
-};
-
-Range rangeOf(const Feature& feature, std::size_t k) {
-  Range range{feature.values[k], feature.values[k]};
-  for (std::size_t i = k; i < feature.values.size(); i += feature.dimension) {
-    range.low = std::min(range.low, feature.values[i]);
-    range.high = std::max(range.high, feature.values[i]);
-  }
-  return range;
-}
-
 // Where the node lies between its children: 0 at the first, 1 at the second.
 float between(const float* node, const float* a, const float* b) {
   double ab = 0, an = 0;
@@ -88,7 +69,7 @@ const char* reasonOf(const char* stopped, const ReduceSettings& s, std::size_t b
   return percent ? "percent" : stopped;
 }
 
-Result<Ok> checkWeights(const Mesh& mesh, const Weights& weights, const PatternSpace& space) {
+Result<Ok> checkWeights(const Weights& weights, const PatternSpace& space) {
   const auto normal = weights.find("normal");
   for (const char* name : {"curvature", "boundary"}) {
     const auto w = weights.find(name);
@@ -103,7 +84,6 @@ Result<Ok> checkWeights(const Mesh& mesh, const Weights& weights, const PatternS
   }
   if (!space.find("geometry"))
     return Error{Errc::kInvalidArgument, "weight geometry: has to be more than 0"};
-  (void)mesh;
   return Ok{};
 }
 
@@ -134,8 +114,7 @@ Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings
   plan.weights = weightsFor(mesh, settings);
   const auto space = PatternSpace::make(mesh, plan.weights);
   if (!space) return space.error();
-  if (const auto checked = checkWeights(mesh, plan.weights, *space); !checked)
-    return checked.error();
+  if (const auto checked = checkWeights(plan.weights, *space); !checked) return checked.error();
   plan.channels = channelsOf(mesh, *space);
   // P12: as good as a colour of very high weight, unless somebody weighs it.
   plan.labels_lock = mesh.find("label") && !space->find("label");
@@ -174,9 +153,8 @@ Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vecto
     const std::size_t d = mesh.features[c.feature].dimension;
     for (std::size_t k = 0; k < d; ++k) {
       const std::vector<float> values = reducer.channelValues(c.first + k, c.scale);
-      const Range range = rangeOf(mesh.features[c.feature], k);
       for (std::size_t i = 0; i < values.size(); ++i)
-        result.log.features[c.feature][i * d + k] = range.nearest(values[i]);
+        result.log.features[c.feature][i * d + k] = values[i];
     }
   }
   return result;

@@ -4,29 +4,11 @@
 #include <cmath>
 #include <cstring>
 
-#include "daemon/base/blocks.h"
 namespace merlin::render {
 namespace {
 
 // A popped edge may cost so much more than its bucket and is still taken.
 constexpr float kTolerance = 1.5F;
-// Steps of cost, in buckets, after which the parts wait for one another: a factor of 1.4.
-constexpr std::size_t kStep = 32;
-// As far as validate() lets a mesh reach.
-constexpr float kFarthest = 1e18F;
-constexpr std::size_t kProgressInterval = 1 << 16;  // triangles
-
-// How many parts a mesh is first reduced in. Few, since seams wait; many enough for some cores.
-std::size_t partsFor(std::size_t vertices) {
-  if (vertices < 20'000) return 1;
-  return std::clamp<std::size_t>(vertices / 250'000, 2, 64);
-}
-
-// What the parts leave to the whole, where `target` triangles are asked for.
-std::size_t leftByParts(std::size_t triangles, std::size_t target) {
-  return std::max(triangles / 6, 3 * target);
-}
-
 float trace(const float* h) { return h[0] + h[3] + h[5]; }
 
 }  // namespace
@@ -35,6 +17,7 @@ QuadricReducer::QuadricReducer(const Mesh& mesh, std::size_t channels, unsigned 
     : mesh_(mesh, threads),
       input_positions_(mesh.positions.data()),
       channels_(mesh.vertexCount(), channels),
+      given_(channels),
       ranges_(channels),
       evaluate_(edgeEvaluator()),
       log_(mesh.vertexCount()),
@@ -42,14 +25,15 @@ QuadricReducer::QuadricReducer(const Mesh& mesh, std::size_t channels, unsigned 
 
 void QuadricReducer::setChannel(std::size_t channel, const float* values, std::size_t stride,
                                 float scale) {
-  for (std::uint32_t v = 0; v < mesh_.vertexCount(); ++v)
-    channels_.value(v, channel) = values[mesh_.inputOf(v) * stride] * scale * mesh_.scale();
-  Range& range = ranges_[channel];
-  range = {channels_.value(0, channel), channels_.value(0, channel)};
-  for (std::uint32_t v = 1; v < mesh_.vertexCount(); ++v) {
-    range.low = std::min(range.low, channels_.value(v, channel));
-    range.high = std::max(range.high, channels_.value(v, channel));
+  const auto weighted = [&](float value) { return value * scale * mesh_.scale(); };
+  Range given{values[0], values[0]};
+  for (std::uint32_t v = 0; v < mesh_.vertexCount(); ++v) {
+    const float value = values[mesh_.inputOf(v) * stride];
+    channels_.value(v, channel) = weighted(value);
+    given = {std::min(given.low, value), std::max(given.high, value)};
   }
+  given_[channel] = given;
+  ranges_[channel] = {weighted(given.low), weighted(given.high)};
 }
 
 void QuadricReducer::setLabels(const float* values) {
@@ -289,226 +273,6 @@ void QuadricReducer::mixChannels(std::uint32_t v, std::uint32_t x, const EdgeCos
     const float value = std::clamp(b[3] + s, ranges_[k].low, ranges_[k].high);
     channels_.value(v, k) = channels_.value(x, k) = value;
   }
-}
-
-// --- parts ---------------------------------------------------------------------------------------
-
-void QuadricReducer::forEachPart(const std::function<void(std::size_t)>& work) const {
-  forBlocks(threads_, part_ends_.size(), work);
-}
-
-// Equal parts of the curve.
-void QuadricReducer::planParts() {
-  const std::size_t n = mesh_.vertexCount(), parts = partsFor(n);
-  for (std::size_t p = 1; p <= parts; ++p)
-    part_ends_.push_back(static_cast<std::uint32_t>(n * p / parts));
-}
-
-void QuadricReducer::startPart(std::size_t part, Worker& w) {
-  const std::uint32_t begin = part == 0 ? 0 : part_ends_[part - 1], end = part_ends_[part];
-  const auto is_here = [&](std::uint32_t v) { return v >= begin && v < end; };
-  std::size_t corners = 0;
-  for (std::uint32_t v = begin; v < end; ++v) {
-    const auto star = mesh_.star(mesh_[v]);
-    corners += star.size();
-    if (std::all_of(star.begin(), star.end(),
-                    [&](const Corner& c) { return is_here(c.b) && is_here(c.c); })) {
-      mesh_[v].flags |= kInside;
-    }
-  }
-  w.inside_only = true;
-  w.log = log_.data() + begin;
-  w.triangles = corners / 3;
-  for (std::uint32_t v = end; v-- > begin;) {
-    if (!(mesh_[v].flags & kInside) || mesh_[v].degree == 0) continue;
-    evaluate(w, v);
-    enqueue(w, v);
-  }
-}
-
-// Each part up to the same cost, step by step, until no more than `keep` triangles are left.
-void QuadricReducer::reduceParts(std::size_t keep, const Progress& progress) {
-  std::vector<Worker> parts(part_ends_.size());
-  StarRoom all = mesh_.freeRoom();
-  const std::uint32_t share =
-      (all.end() - all.next()) / static_cast<std::uint32_t>(parts.size()) / 8 * 8;
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    const auto begin = all.next() + static_cast<std::uint32_t>(p) * share;
-    parts[p].room = StarRoom(begin, begin + share);
-  }
-  forEachPart([&](std::size_t p) { startPart(p, parts[p]); });
-  // A part of nothing but planes is not worn down to its seams.
-  const double most = 1 - 0.5 * static_cast<double>(keep) / static_cast<double>(triangles_);
-  std::size_t limit = BucketQueue::buckets();
-  for (const Worker& w : parts) limit = std::min(limit, w.queue.current());
-  const std::size_t before = triangles_;
-  while (triangles_ > keep && limit < BucketQueue::buckets() && !cancelled_) {
-    limit += kStep;
-    forEachPart([&](std::size_t p) {
-      reduceTo(parts[p], static_cast<std::size_t>(most * static_cast<double>(parts[p].triangles)),
-               limit);
-      parts[p].steps.push_back(parts[p].collapses);
-    });
-    triangles_ = before;
-    std::size_t collapses = 0;
-    for (const Worker& w : parts) {
-      triangles_ -= w.removed;
-      collapses += w.collapses;
-    }
-    cancelled_ = progress && !progress({collapses, triangles_});
-  }
-  joinParts(parts);
-}
-
-// The logs as one: of each step a little of every part in turn, so that all parts are equally
-// coarse at every level.
-void QuadricReducer::joinParts(std::vector<Worker>& parts) {
-  HugeArray<std::uint32_t> joined(mesh_.vertexCount());
-  std::size_t n = 0;
-  std::vector<std::size_t> done(parts.size(), 0);
-  for (std::size_t step = 0; step < parts[0].steps.size(); ++step) {
-    const auto behind = [&](std::size_t p, std::size_t q) {  // p's share done is less than q's
-      const std::size_t from_p = step ? parts[p].steps[step - 1] : 0,
-                        from_q = step ? parts[q].steps[step - 1] : 0;
-      return (2 * (done[p] - from_p) + 1) * (parts[q].steps[step] - from_q) <
-             (2 * (done[q] - from_q) + 1) * (parts[p].steps[step] - from_p);
-    };
-    for (;;) {
-      std::size_t best = parts.size();
-      for (std::size_t p = 0; p < parts.size(); ++p) {
-        if (done[p] < parts[p].steps[step] && (best == parts.size() || behind(p, best))) best = p;
-      }
-      if (best == parts.size()) break;
-      joined[n++] = parts[best].log[done[best]++];
-    }
-  }
-  log_ = std::move(joined);
-  whole_.collapses = n;
-  whole_.room = std::move(parts[0].room);
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    if (p > 0) whole_.room.join(std::move(parts[p].room));
-    whole_.flips += parts[p].flips;
-    whole_.links += parts[p].links;
-    whole_.too_coarse |= parts[p].too_coarse;
-  }
-}
-
-// Every vertex that lives, in one queue.
-void QuadricReducer::requeue() {
-  whole_.queue = BucketQueue();
-  for (std::uint32_t v = mesh_.vertexCount(); v-- > 0;) {
-    if ((mesh_[v].flags & kDead) || mesh_[v].degree == 0) continue;
-    mesh_[v].flags &= static_cast<std::uint8_t>(~kIdle);
-    evaluate(whole_, v);
-    enqueue(whole_, v);
-  }
-}
-
-// Until no more than `keep` triangles are left or the stage allows no more.
-void QuadricReducer::reduceWhole(std::size_t keep, const Progress& progress) {
-  requeue();
-  while (triangles_ > keep && !cancelled_) {
-    whole_.removed = 0;
-    reduceTo(whole_, std::min(triangles_ - keep, kProgressInterval), BucketQueue::buckets());
-    if (whole_.removed == 0) return;
-    triangles_ -= whole_.removed;
-    whole_.removed = 0;
-    cancelled_ = progress && !progress({whole_.collapses, triangles_});
-  }
-}
-
-const char* QuadricReducer::run(const Limits& limits, const Progress& progress) {
-  threads_ = std::max(1U, limits.threads);
-  max_error_ = limits.error * mesh_.scale();
-  keep_components_ = limits.preserve_topology || limits.preserve_components;
-  const std::size_t keep = std::max<std::size_t>(limits.triangles, 1);
-  planParts();
-  if (const std::size_t left = leftByParts(triangles_, keep);
-      part_ends_.size() > 1 && left < triangles_)
-    reduceParts(left, progress);
-  else
-    whole_.room = mesh_.freeRoom();
-  whole_.log = log_.data();
-  const auto stages = {QuadricStage::kAll, QuadricStage::kNoLock, QuadricStage::kNoLink,
-                       QuadricStage::kNoFlips};
-  for (const QuadricStage stage : stages) {
-    if (triangles_ <= keep || cancelled_ || (stage != QuadricStage::kAll && limits.by_all_rules))
-      break;
-    // What is left after an error's limit is not what rules are in the way of.
-    if (stage != QuadricStage::kAll && whole_.too_coarse) break;
-    if (stage == QuadricStage::kNoLock && labels_.empty()) continue;
-    if (stage > QuadricStage::kNoLock && limits.preserve_topology) break;
-    stage_ = stage;
-    reduceWhole(keep, progress);
-  }
-  if (cancelled_) return "cancelled";
-  if (triangles_ <= keep && limits.triangles > 0) return "triangles";
-  return whole_.too_coarse ? "error" : "nothing left to collapse";
-}
-
-// --- the result ----------------------------------------------------------------------------------
-
-// A node that stands where a locked vertex was is there to the last bit, so that seams fit.
-void QuadricReducer::pin(std::size_t k, const std::array<std::uint32_t, 2>& children,
-                         const float* position, std::array<float, 3>& p) {
-  for (const std::uint32_t child : children) {
-    const std::uint32_t v = pinned_[child];
-    if (v == kNowhere) continue;
-    const auto place = mesh_.toWorking(&input_positions_[3 * std::size_t{v}]);
-    if (!std::equal(place.begin(), place.end(), position)) continue;
-    std::copy_n(&input_positions_[3 * std::size_t{v}], 3, p.begin());
-    pinned_[mesh_.vertexCount() + k] = v;
-    return;
-  }
-}
-
-Reduction QuadricReducer::finish(const Mesh& mesh) {
-  mesh_.dropStars();
-  const std::uint32_t vertices = mesh_.vertexCount();
-  const std::size_t collapses = whole_.collapses;
-  for (std::size_t k = 0; k < collapses; ++k) mesh_[log_[k]].next = static_cast<std::uint32_t>(k);
-  const auto node = [&](std::uint32_t n) {
-    return n < vertices ? mesh_.inputOf(n) : vertices + mesh_[n - vertices].next;
-  };
-  Reduction result;
-  CollapseLog& log = result.log;
-  log.children.reserve(collapses);
-  log.positions.reserve(3 * collapses);
-  log.error.reserve(collapses);
-  log.features.resize(mesh.features.size());
-  std::vector<float>* normals = nullptr;
-  for (std::size_t f = 0; f < mesh.features.size(); ++f) {
-    if (mesh.features[f].name == "normal") normals = &log.features[f];
-  }
-  if (normals) normals->reserve(3 * collapses);
-  for (std::size_t k = 0; k < collapses; ++k) {
-    NodeRecord r;
-    std::memcpy(&r, static_cast<const void*>(mesh_[log_[k]].position), sizeof r);
-    log.children.push_back({node(r.children[0]), node(r.children[1])});
-    auto p = mesh_.toModel(r.position);
-    for (float& x : p) x = std::clamp(x, -kFarthest, kFarthest);
-    if (!pinned_.empty()) pin(k, log.children.back(), r.position, p);
-    log.positions.insert(log.positions.end(), p.begin(), p.end());
-    log.error.push_back(r.error / mesh_.scale());
-    const float length = std::hypot(r.normal[0], r.normal[1], r.normal[2]);
-    for (const float x : r.normal) {
-      if (normals) normals->push_back(length > 0 ? x / length : 0);
-    }
-  }
-  result.report.collapses = collapses;
-  result.report.flips_refused = whole_.flips;
-  result.report.topology_refused = whole_.links;
-  result.report.triangles = triangles_;
-  result.report.error =
-      log.error.empty() ? 0 : *std::max_element(log.error.begin(), log.error.end());
-  return result;
-}
-
-std::vector<float> QuadricReducer::channelValues(std::size_t channel, float scale) const {
-  std::vector<float> values(whole_.collapses);
-  for (std::size_t k = 0; k < values.size(); ++k)
-    values[k] = channels_.value(log_[k], channel) / (scale * mesh_.scale());
-  return values;
 }
 
 }  // namespace merlin::render

@@ -108,7 +108,8 @@ class QuadricReducer {
   std::vector<float> labels_;          // empty where there are none
   std::vector<std::uint32_t> pinned_;  // by node: the locked vertex that it stands on; if any are
   bool keep_components_ = false;
-  std::vector<Range> ranges_;  // of the channels: no value leaves them
+  // Of the channels, as they were given and weighted: no value leaves them.
+  std::vector<Range> given_, ranges_;
   EvaluateEdges evaluate_;
   HugeArray<std::uint32_t> log_;
   std::vector<std::uint32_t> part_ends_;

@@ -1,0 +1,84 @@
+// What QuadricReducer has done, as a log.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "render/reduce/quadric_reducer.h"
+
+namespace merlin::render {
+namespace {
+
+// As far as validate() lets a mesh reach.
+constexpr float kFarthest = 1e18F;
+
+}  // namespace
+
+// A node that stands where a locked vertex was is there to the last bit, so that seams fit.
+void QuadricReducer::pin(std::size_t k, const std::array<std::uint32_t, 2>& children,
+                         const float* position, std::array<float, 3>& p) {
+  for (const std::uint32_t child : children) {
+    const std::uint32_t v = pinned_[child];
+    if (v == kNowhere) continue;
+    const auto place = mesh_.toWorking(&input_positions_[3 * std::size_t{v}]);
+    if (!std::equal(place.begin(), place.end(), position)) continue;
+    std::copy_n(&input_positions_[3 * std::size_t{v}], 3, p.begin());
+    pinned_[mesh_.vertexCount() + k] = v;
+    return;
+  }
+}
+
+Reduction QuadricReducer::finish(const Mesh& mesh) {
+  mesh_.dropStars();
+  const std::uint32_t vertices = mesh_.vertexCount();
+  const std::size_t collapses = whole_.collapses;
+  for (std::size_t k = 0; k < collapses; ++k) mesh_[log_[k]].next = static_cast<std::uint32_t>(k);
+  const auto node = [&](std::uint32_t n) {
+    return n < vertices ? mesh_.inputOf(n) : vertices + mesh_[n - vertices].next;
+  };
+  Reduction result;
+  CollapseLog& log = result.log;
+  log.children.reserve(collapses);
+  log.positions.reserve(3 * collapses);
+  log.error.reserve(collapses);
+  log.features.resize(mesh.features.size());
+  std::vector<float>* normals = nullptr;
+  for (std::size_t f = 0; f < mesh.features.size(); ++f) {
+    if (mesh.features[f].name == "normal") normals = &log.features[f];
+  }
+  if (normals) normals->reserve(3 * collapses);
+  for (std::size_t k = 0; k < collapses; ++k) {
+    NodeRecord r;
+    std::memcpy(&r, static_cast<const void*>(mesh_[log_[k]].position), sizeof r);
+    log.children.push_back({node(r.children[0]), node(r.children[1])});
+    auto p = mesh_.toModel(r.position);
+    for (float& x : p) x = std::clamp(x, -kFarthest, kFarthest);
+    if (!pinned_.empty()) pin(k, log.children.back(), r.position, p);
+    log.positions.insert(log.positions.end(), p.begin(), p.end());
+    log.error.push_back(r.error / mesh_.scale());
+    const float length = std::hypot(r.normal[0], r.normal[1], r.normal[2]);
+    for (const float x : r.normal) {
+      if (normals) normals->push_back(length > 0 ? x / length : 0);
+    }
+  }
+  result.report.collapses = collapses;
+  result.report.flips_refused = whole_.flips;
+  result.report.topology_refused = whole_.links;
+  result.report.triangles = triangles_;
+  result.report.error =
+      log.error.empty() ? 0 : *std::max_element(log.error.begin(), log.error.end());
+  return result;
+}
+
+// Where a feature is so large or so small that its weight makes it no number, what comes back is
+// none either; then it is the least there was.
+std::vector<float> QuadricReducer::channelValues(std::size_t channel, float scale) const {
+  const Range given = given_[channel];
+  std::vector<float> values(whole_.collapses);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const float value = channels_.value(log_[k], channel) / (scale * mesh_.scale());
+    values[k] = value >= given.low ? std::min(value, given.high) : given.low;
+  }
+  return values;
+}
+
+}  // namespace merlin::render
