@@ -71,6 +71,9 @@ Picture::Picture(const render::Dendrogram& model, const render::TilePlan& plan,
       pixels_(std::size_t{4} * static_cast<std::size_t>(plan.frame_width) *
               static_cast<std::size_t>(plan.frame_height)) {
   tiles_.reserve(plan.tiles.size());
+  for (std::size_t i = 0; i < plan.tiles.size(); ++i) {
+    if (plan.tiles[i].kind == render::TileKind::kOperator) operators_.push_back(i);
+  }
 }
 
 render::Camera Picture::cameraOf(const render::Tile& tile,
@@ -101,6 +104,11 @@ render::TileView Picture::viewOf(std::size_t tile, const Eigen::Isometry3f& T_ey
   const render::Tile& t = plan_.tiles[tile];
   const bool operators = t.kind == render::TileKind::kOperator;
   return {cameraOf(t, T_eye_model).clip_from_model, t.width, operators ? kOperatorWeight : 1};
+}
+
+void Picture::viewAll(const Eigen::Isometry3f& T_eye_model) {
+  views_.clear();
+  for (std::size_t i = 0; i < tiles_.size(); ++i) views_.push_back(viewOf(i, T_eye_model));
 }
 
 void Picture::chooseCut(std::size_t level, std::span<const render::TileView> views) {
@@ -183,28 +191,23 @@ DrawTimes Picture::draw(const Eigen::Isometry3f& T_eye_model, std::size_t level,
   DrawTimes times;
   steps_.clear();
   const Timestamp began = clock_.now();
-  views_.clear();
-  for (std::size_t i = 0; i < tiles_.size(); ++i) views_.push_back(viewOf(i, T_eye_model));
+  viewAll(T_eye_model);
   chooseCut(level, views_);
   times.drawing += clock_.now() - began;
-  std::vector<std::size_t> operators;
   for (std::size_t i = 0; i < tiles_.size(); ++i) {
-    if (plan_.tiles[i].kind == render::TileKind::kWall)
-      drawTile(i, i, T_eye_model, times);
-    else
-      operators.push_back(i);
+    if (plan_.tiles[i].kind == render::TileKind::kWall) drawTile(i, i, T_eye_model, times);
   }
-  if (operators.empty() || operators.size() == tiles_.size()) until = Timestamp::max();
+  if (operators_.empty() || operators_.size() == tiles_.size()) until = Timestamp::max();
   const Duration wall = times.drawing;
   const std::size_t fits = levelThatFits(level, wall, until - clock_.now());
   times.gave_way = fits != level;
   if (times.gave_way) {
     views_.clear();
-    for (const std::size_t i : operators) views_.push_back(viewOf(i, T_eye_model));
+    for (const std::size_t i : operators_) views_.push_back(viewOf(i, T_eye_model));
     chooseCut(fits, views_);
   }
-  for (std::size_t k = 0; k < operators.size(); ++k)
-    drawTile(operators[k], times.gave_way ? k : operators[k], T_eye_model, times);
+  for (std::size_t k = 0; k < operators_.size(); ++k)
+    drawTile(operators_[k], times.gave_way ? k : operators_[k], T_eye_model, times);
   if (times.gave_way) {
     times.drawing = wall + std::chrono::duration_cast<Duration>(wall * operator_share_);
   } else {
@@ -244,8 +247,7 @@ bool Picture::beginRefiningTo(const Eigen::Isometry3f& T_eye_model, std::size_t 
   refined_view_ = T_eye_model;
   refined_tile_ = 0;
   refined_begun_ = false;
-  views_.clear();
-  for (std::size_t i = 0; i < tiles_.size(); ++i) views_.push_back(viewOf(i, T_eye_model));
+  viewAll(T_eye_model);
   steps_.clear();
   chooseCut(level, views_);
   return true;

@@ -48,6 +48,7 @@ class Picture final : public Painter {
           const render::RenderSettings& settings, double radius_m, const Clock& clock);
   render::Camera cameraOf(const render::Tile& tile, const Eigen::Isometry3f& T_eye_model) const;
   render::TileView viewOf(std::size_t tile, const Eigen::Isometry3f& T_eye_model) const;
+  void viewAll(const Eigen::Isometry3f& T_eye_model);  // fills views_
   // Triangles of one draw call, in the order of its source.
   struct Run {
     std::size_t first = 0, count = 0;
@@ -85,6 +86,7 @@ class Picture final : public Painter {
   std::vector<std::uint32_t> cut_, cut_ends_, even_levels_;
   bool clustered_ = false;
   render::ModelRenderer::Source source_ = render::ModelRenderer::Source::kCut;
+  std::vector<std::size_t> operators_;  // the operator's tiles, numbers of the plan's
   std::vector<render::TileView> views_;
   std::vector<Run> runs_;
   std::vector<PaintStep> steps_;  // of the last draw() or refine()
