@@ -11,6 +11,7 @@ void addMesh(CLI::App& app, Run& run) {
   mesh->require_subcommand(1);
   addMeshReduce(*mesh, run);
   addMeshInfo(*mesh, run);
+  addMeshCurve(*mesh, run);
   addMeshExport(*mesh, run);
   addMeshCompare(*mesh, run);
   addMeshPicture(*mesh, run);

@@ -13,6 +13,7 @@
 namespace merlin::cli {
 
 void addMeshCompare(CLI::App& mesh, Run& run);
+void addMeshCurve(CLI::App& mesh, Run& run);
 void addMeshExport(CLI::App& mesh, Run& run);
 void addMeshInfo(CLI::App& mesh, Run& run);
 void addMeshPicture(CLI::App& mesh, Run& run);

@@ -1,4 +1,7 @@
 // What `merlin` prints where all is well, for those who script it.
+#include <sstream>
+
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/system/merlind.h"
@@ -113,6 +116,31 @@ TEST_F(Cli, CompareTakesAResolutionOfAModel) {
                              "--samples", "20000", "--width", "0.1"});
   for (const char* word : {"A to B", "RMS", "max, at least", "colour RMS of 255", "points/s"})
     EXPECT_NE(table.output.find(word), std::string::npos) << word;
+}
+
+// A row of the curve is what compare says of that resolution.
+TEST_F(Cli, CurveSaysWhatCompareSays) {
+  const std::string model = dir_ / "a.mrm", csv = dir_ / "a.csv", svg = dir_ / "a<b.svg";
+  ASSERT_EQ(run({kMerlin, "mesh", "reduce", scan_, "-o", model}).status, 0);
+  const Outcome done = run({kMerlin, "mesh", "curve", model, "--csv", csv, "--svg", svg,
+                            "--samples", "5000", "--width", "0.1"});
+  ASSERT_EQ(done.status, 0) << done.output;
+  EXPECT_NE(done.output.find("max, at most"), std::string::npos);
+  std::istringstream rows(readText(csv));
+  std::string header, row;
+  std::getline(rows, header);
+  EXPECT_EQ(header.rfind("triangles,level,estimate,rms,mean,max_low,max_high,", 0), 0u);
+  std::getline(rows, row);
+  const auto compared =
+      jsonOf(run({kMerlin, "mesh", "compare", model, model, "--triangles",
+                  row.substr(0, row.find(',')), "--samples", "5000", "--width", "0.1", "--json"}));
+  EXPECT_NE(row.find(fmt::format(",{:.9g},", compared["rms"].get<double>())), std::string::npos)
+      << row;
+  EXPECT_NE(row.find(fmt::format(",{:.9g},", compared["max_high"].get<double>())),
+            std::string::npos)
+      << row;
+  EXPECT_EQ(readText(svg).rfind("<svg ", 0), 0u);
+  EXPECT_EQ(run({kMerlin, "mesh", "curve", scan_}).status, 2) << "one resolution has no curve";
 }
 
 TEST_F(Cli, CompareDrawsPictures) {
