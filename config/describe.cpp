@@ -13,6 +13,7 @@ constexpr const char* kActions[] = {"grab", "reset_view", "next_mode", "fly"};
 constexpr const char* kWhen[] = {"by_action", "enter", "hold", "leave"};
 constexpr const char* kScripts[] = {"visit", "turning", "still", "grabbing"};
 
+constexpr const char* kDialogues[] = {"binary", "text"};
 constexpr const char* kWristLights[] = {"switch", "off", "on"};
 constexpr const char* kTrackerNumbers[] = {"binary", "text", "short"};
 constexpr const char* kPanelCommands[] = {"next_mode",     "reset_view", "projector_on",
@@ -42,6 +43,10 @@ void describeGlove(DevicesSettings& d, SettingsVisitor& v) {
           "What fills slot 7, which no glove measures: 0, the middle, its neighbours' mean, or the "
           "wrist switch.");
   v.number("rate_hz", d.glove.rate_hz, {1, 150}, "Records a second that are asked for.");
+  v.oneOf(
+      "dialogue", d.glove.dialogue, kDialogues,
+      "How the interface unit is spoken to: in bytes, or in decimal text, which takes four times "
+      "the line's time.");
   v.oneOf("light", d.glove.light, kWristLights, "The wrist's light: as the switch, off, or on.");
   v.flag("time_stamps", d.glove.time_stamps,
          "The unit stamps its records: the counter then also grows by records that were lost.");

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "drivers/cyberglove/calibration.h"
+#include "drivers/cyberglove/text.h"
 
 namespace merlin::cyberglove {
 namespace {
@@ -24,29 +25,41 @@ constexpr std::string_view kStop = "\x03";
 constexpr const char* kUnplugged = "glove not plugged in";
 constexpr const char* kTooFast = "more records asked for than the glove can measure";
 
-// What follows "?x" in the answer, `count` bytes without the NUL.
-Result<std::string> ask(Dialogue& dialogue, char letter, std::size_t count) {
-  const std::string query{'?', letter};
-  if (const auto sent = dialogue.send(query); !sent) return sent.error();
-  const auto reply = dialogue.readExactly(count + 3, kReplyTime, query);
-  if (!reply) return reply.error();
-  if (!reply->starts_with(query) || reply->back() != '\0') {
-    return Error{Errc::kMalformed,
-                 fmt::format("\"{}\" in answer to {}", quoteBytes(*reply), query)};
-  }
-  return reply->substr(2, count);
+Error noAnswer(std::string_view reply, std::string_view to) {
+  return {Errc::kMalformed, fmt::format("\"{}\" in answer to {}", quoteBytes(reply), to)};
 }
 
-// The answer is the letter and NUL. Old firmware adds a byte, an error has one more: drained.
-Result<Ok> set(Dialogue& dialogue, std::string_view command) {
-  const std::string_view letter = command.substr(0, 1);
-  if (const auto sent = dialogue.send(command); !sent) return sent.error();
-  const auto reply = dialogue.readExactly(2, kReplyTime, letter);
+// The answer to `command`, `count` bytes and NUL of the binary dialogue whichever is spoken;
+// without the NUL; it starts with `begin`, which names the step in errors.
+Result<std::string> exchange(Dialogue& dialogue, bool text, std::string_view command,
+                             std::size_t count, std::string_view begin) {
+  const std::string bytes = text ? asText(command) + '\r' : std::string(command);
+  if (const auto sent = dialogue.send(bytes); !sent) return sent.error();
+  auto reply = text ? dialogue.readUntil('\0', kLongestText, kReplyTime, begin)
+                    : dialogue.readExactly(count + 1, kReplyTime, begin);
   if (!reply) return reply.error();
-  if ((*reply)[0] != letter[0] || (*reply)[1] != '\0') {
-    return Error{Errc::kMalformed,
-                 fmt::format("\"{}\" in answer to {}", quoteBytes(*reply), letter)};
-  }
+  const std::string said = *reply;
+  if (text)
+    *reply = ofText(said).value_or("");
+  else if (said.back() == '\0')
+    reply->pop_back();
+  if (reply->size() != count || !reply->starts_with(begin)) return noAnswer(said, begin);
+  return reply;
+}
+
+// What follows "?x" in the answer, `count` bytes.
+Result<std::string> ask(Dialogue& dialogue, bool text, char letter, std::size_t count) {
+  const std::string query{'?', letter};
+  const auto reply = exchange(dialogue, text, query, 2 + count, query);
+  if (!reply) return reply.error();
+  return reply->substr(2);
+}
+
+// The answer is the letter. Old firmware adds a byte, an error has one more: drained.
+Result<Ok> set(Dialogue& dialogue, bool text, std::string_view command) {
+  const std::string_view letter = command.substr(0, 1);
+  const auto reply = exchange(dialogue, text, command, 1, letter);
+  if (!reply) return reply.error();
   if (const auto done = dialogue.drain(milliseconds(20), milliseconds(40)); !done) {
     return done.error();
   }
@@ -57,7 +70,10 @@ Result<Ok> set(Dialogue& dialogue, std::string_view command) {
 
 CybergloveDevice::CybergloveDevice(const CybergloveSettings& settings, const Clock& clock,
                                    SampleSink& sink)
-    : settings_(settings), clock_(clock), sink_(sink) {}
+    : settings_(settings),
+      text_(settings.dialogue == CybergloveSettings::Dialogue::kText),
+      clock_(clock),
+      sink_(sink) {}
 
 Result<std::string> CybergloveDevice::open(ByteStream& stream) {
   Dialogue dialogue(stream, clock_);
@@ -68,26 +84,26 @@ Result<std::string> CybergloveDevice::open(ByteStream& stream) {
   }
   if (const auto known = identify(dialogue); !known) return known.error();
   if (const auto done = setUp(dialogue); !done) return done.error();
-  parser_.expect({.values = slots_.count, .timestamp = settings_.time_stamps, .status = true});
-  if (const auto sent = dialogue.send("S"); !sent) return sent.error();
+  parser_.expect({slots_.count, settings_.time_stamps, true, text_});
+  if (const auto sent = dialogue.send(text_ ? "s\r" : "S"); !sent) return sent.error();
   last_record_ = clock_.now();
   last_stamp_ = 0;
   return fmt::format("CyberGlove, {} sensors", slots_.count);
 }
 
 Result<Ok> CybergloveDevice::identify(Dialogue& dialogue) {
-  if (const auto sent = dialogue.send("?i"); !sent) return sent.error();
+  if (const auto sent = dialogue.send(text_ ? "?i\r" : "?i"); !sent) return sent.error();
   const auto info = dialogue.readUntil('\0', kLongestText, kReplyTime, "?i");
   if (!info) return info.error();
   if (info->find("CyberGlove") == std::string::npos) {
     return Error{Errc::kMalformed, fmt::format("no CyberGlove: it says \"{}\"", quoteBytes(*info))};
   }
-  const auto state = ask(dialogue, 'G', 1);
+  const auto state = ask(dialogue, text_, 'G', 1);
   if (!state) return state.error();
   if (!((*state)[0] & 2)) complaint_ = kUnplugged;
-  const auto sensors = ask(dialogue, 'S', 1);
+  const auto sensors = ask(dialogue, text_, 'S', 1);
   if (!sensors) return sensors.error();
-  const auto mask = ask(dialogue, 'K', 3);
+  const auto mask = ask(dialogue, text_, 'K', 3);
   if (!mask) return mask.error();
   mask_ = decodeMask(mask->data());
   slots_ = slotsOf(mask_);
@@ -111,11 +127,11 @@ Result<Ok> CybergloveDevice::setUp(Dialogue& dialogue) {
       encodeRate(settings_.rate_hz),
   };
   for (const std::string& command : commands) {
-    if (auto done = set(dialogue, command); !done) return done;
+    if (auto done = set(dialogue, text_, command); !done) return done;
   }
   if (settings_.light == CybergloveSettings::Light::kSwitch) return Ok{};
   const std::string light{'L', settings_.light == CybergloveSettings::Light::kOn ? '\1' : '\0'};
-  return set(dialogue, light);
+  return set(dialogue, text_, light);
 }
 
 Result<Ok> CybergloveDevice::poll(ByteStream& stream) {

@@ -32,6 +32,7 @@ class CybergloveDevice final : public Device {
   void handle(const Packet& packet, Timestamp first_byte) noexcept;
 
   CybergloveSettings settings_;
+  bool text_;  // the ASCII dialogue is spoken
   const Clock& clock_;
   SampleSink& sink_;
   Parser parser_;

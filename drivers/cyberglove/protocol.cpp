@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "daemon/base/bytes.h"
+#include "drivers/cyberglove/text.h"
 
 namespace merlin::cyberglove {
 namespace {
@@ -67,6 +68,8 @@ std::optional<Packet> Parser::finish() noexcept {
 
 // REQUIRES: length_ <= kLongest.
 std::optional<Packet> Parser::read() const noexcept {
+  if (layout_.text)
+    return readText({reinterpret_cast<const char*>(bytes_.data()), length_}, layout_);
   if (length_ == 2 && bytes_[0] == 'e') return Refusal{static_cast<char>(bytes_[1])};
   const std::size_t body = bodyLength(layout_);
   if (length_ != body && length_ != body + 2 && length_ != body + 4) return std::nullopt;
@@ -103,6 +106,7 @@ std::uint32_t unstuffTimestamp(const std::uint8_t* stamp) noexcept {
 }
 
 std::string encode(const Record& record, const Layout& layout) {
+  if (layout.text) return encodeText(record, layout);
   std::string out(1, record.single ? 'G' : 'S');
   for (std::size_t i = 0; i < layout.values; ++i) {
     out.push_back(static_cast<char>(std::max<std::uint8_t>(record.values[i], 1)));

@@ -1,4 +1,5 @@
-// CyberGlove wire format, binary dialogue: bytes to records and back. No I/O, no clock.
+// CyberGlove wire format: bytes to records and back; the ASCII dialogue is text.h. No I/O, no
+// clock.
 //
 // A record is a letter, one byte a sensor, what was switched on, and NUL:
 //   'G' or 'S'  v1 .. vN: u8 [raw, 1..255]  [time stamp: 5 bytes]  [status: u8, bit 7 set]
@@ -38,6 +39,7 @@ struct Layout {
   std::size_t values = 22;  // 1..24
   bool timestamp = false;   // `D`
   bool status = true;       // `U`
+  bool text = false;        // of the ASCII dialogue
 };
 
 struct Record {
@@ -79,7 +81,7 @@ class Parser {
   std::optional<Packet> finish() noexcept;
   std::optional<Packet> read() const noexcept;
 
-  static constexpr std::size_t kLongest = 1 + kSlots + 5 + 1 + 4;
+  static constexpr std::size_t kLongest = 1 + 4 * kSlots + 11 + 4 + 6 + 2;  // of text
   Layout layout_;
   std::array<std::uint8_t, kLongest> bytes_{};  // without the NUL
   std::size_t length_ = 0;

@@ -64,7 +64,9 @@ struct CybergloveSettings {
   }();
   Slot7Rule slot7 = Slot7Rule::kZero;
   double rate_hz = 100;  // records a second that are asked for, 1..150
-  bool filter = true;    // the interface unit's own low-pass filter
+  enum class Dialogue { kBinary, kText };
+  Dialogue dialogue = Dialogue::kBinary;
+  bool filter = true;  // the interface unit's own low-pass filter
   enum class Light { kSwitch, kOff, kOn };
   Light light = Light::kSwitch;  // of the wrist: as its switch, or as it is told
   bool time_stamps = false;      // the unit's own: records that the line lost are then counted

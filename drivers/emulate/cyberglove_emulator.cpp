@@ -9,6 +9,7 @@
 #include "daemon/base/random.h"
 #include "drivers/cyberglove/calibration.h"
 #include "drivers/cyberglove/protocol.h"
+#include "drivers/cyberglove/text.h"
 #include "drivers/emulate/wire.h"
 #include "drivers/hand/people.h"
 
@@ -27,6 +28,7 @@ constexpr double kTick = 1.0 / 115200;  // s, of the rate and of the time stamps
 
 constexpr char kStop = 0x03, kReinitialise = 0x09, kRestart = 0x12;
 constexpr std::string_view kSwitches = "DFJLQUWY";  // commands of one byte, 0 or 1
+constexpr std::size_t kLongestCommand = 64;
 constexpr const char* kInfo =
     "CyberGlove interface unit, emulated by MERLIN\r\n"
     "synthetic data, no glove";
@@ -71,10 +73,7 @@ class CybergloveEmulator final : public Emulator {
   void receive(std::span<const std::byte> bytes, Timestamp now) override {
     for (const std::byte b : bytes) {
       if (restarting_ && now < ready_at_) return;  // deaf while it starts
-      command_.push_back(static_cast<char>(b));
-      if (command_.size() < lengthOf(command_[0])) continue;
-      obey(command_, now);
-      command_.clear();
+      hear(static_cast<char>(b), now);
     }
   }
 
@@ -89,7 +88,7 @@ class CybergloveEmulator final : public Emulator {
     }
     if (!streaming_ || now < nextDue()) return;
     due_ = std::max(due_ + period(), now);
-    wire_.record(record(false, now), now, out);
+    wire_.record(record(false, streams_text_, now), now, out);
   }
 
   Timestamp nextDue() const override {
@@ -108,11 +107,39 @@ class CybergloveEmulator final : public Emulator {
     pending_.clear();
   }
 
+  // A command of the ASCII dialogue ends with CR; after a binary one a CR has no meaning.
+  void hear(char c, Timestamp now) {
+    if (command_.empty() && (c == '\r' || c == '\n')) return;
+    command_.push_back(c);
+    text_ = cyberglove::isText(command_);
+    if (text_ && c == '\r')
+      obeyText(now);
+    else if (!text_ && command_.size() >= lengthOf(command_[0]))
+      obey(command_, now);
+    else if (command_.size() < kLongestCommand)
+      return;
+    command_.clear();
+  }
+
+  void obeyText(Timestamp now) {
+    const auto command = cyberglove::ofText(command_);
+    if (command && command->size() == lengthOf((*command)[0]))
+      obey(*command, now);
+    else
+      refuse('n');
+  }
+
+  // A reply without its end, in the dialogue of what was asked.
+  void reply(const std::string& binary) {
+    pending_ += text_ ? cyberglove::asText(binary) + "\r\n\0"s : binary + '\0';
+  }
+
   void obey(const std::string& command, Timestamp now) {
     switch (command[0]) {
-      case 'G': pending_ += record(true, now); break;
+      case 'G': pending_ += record(true, text_, now); break;
       case 'S':
         streaming_ = true;
+        streams_text_ = text_;
         due_ = now + period();
         break;
       case kStop: streaming_ = false; [[fallthrough]];
@@ -149,10 +176,10 @@ class CybergloveEmulator final : public Emulator {
         if (*data > 1) return refuse('n');
         state_[command[0]] = *data == 1;
     }
-    pending_ += command[0] + "\0"s;
+    reply({command[0]});
   }
 
-  void refuse(char code) { pending_ += {'e', code, '\0'}; }
+  void refuse(char code) { reply({'e', code}); }
 
   std::uint8_t enabled() const { return static_cast<std::uint8_t>(std::popcount(state_.mask)); }
 
@@ -205,14 +232,14 @@ class CybergloveEmulator final : public Emulator {
         if (kSwitches.find(letter) == std::string_view::npos) return refuse('?');
         value = state_[letter] ? '\1' : '\0';
     }
-    pending_ += std::string{'?', letter} + value + '\0';
+    reply(std::string{'?', letter} + value);
   }
 
   // As asked for, 0 where it runs freely.
   Duration askedPeriod() const { return fromSeconds(kTick * state_.w1 * state_.w2); }
   Duration period() const { return std::max(askedPeriod(), kShortestPeriod); }
 
-  std::string record(bool single, Timestamp now) {
+  std::string record(bool single, bool text, Timestamp now) {
     smooth(script_.at(now - start_).glove_rad, now);
     const auto raw = cyberglove::rawOf(person_.sense(smoothed_, noise_), calibration_);
     const auto slots = cyberglove::slotsOf(state_.mask);
@@ -226,7 +253,7 @@ class CybergloveEmulator final : public Emulator {
     record.status = status();
     const Duration asked = askedPeriod();
     record.too_fast = !single && asked > Duration::zero() && asked < kShortestPeriod;
-    return cyberglove::encode(record, {state_.values, state_['D'], state_['U']});
+    return cyberglove::encode(record, {state_.values, state_['D'], state_['U'], text});
   }
 
   // The analogue low-pass of each sensor, first order.
@@ -253,7 +280,8 @@ class CybergloveEmulator final : public Emulator {
   std::array<float, kGloveSlots> smoothed_{};
   Timestamp smoothed_at_{};
   bool restarting_ = false;
-  bool streaming_ = false;
+  bool streaming_ = false, streams_text_ = false;
+  bool text_ = false;  // the command under way is of the ASCII dialogue
   Timestamp ready_at_{};
   Timestamp due_{};
 };

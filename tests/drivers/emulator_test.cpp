@@ -141,7 +141,7 @@ TEST(CybergloveEmulator, ObeysSetsAndRefusesTheRest) {  // fact sheet, sections 
   EXPECT_EQ(box.ask("N\x03"), "N\0"s);
   EXPECT_EQ(box.ask("G").size(), 1 + 3 + 5 + 1 + 1u);
   EXPECT_EQ(box.ask("B\x08"), "B\0"s);
-  EXPECT_EQ(box.ask("z?z"), "e?\0e?\0"s);
+  EXPECT_EQ(box.ask("Z?Z"), "e?\0e?\0"s);
 }
 
 TEST(CybergloveEmulator, StopsAndStartsAgain) {  // fact sheet, section 4.1
