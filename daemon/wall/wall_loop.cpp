@@ -16,6 +16,9 @@ constexpr Duration kPresentMargin = std::chrono::milliseconds(3);
 // Work of the first finer picture of a still scene: it is out within two periods.
 constexpr Duration kFirstRefinement = std::chrono::milliseconds(40);
 constexpr std::size_t kNextRefinement = 8;  // times as many triangles
+// Of a period, for the first frame after a standstill: cores that slept, and caches that hold
+// another picture, are slow at first.
+constexpr double kResumingShare = 0.75;
 // A level that is this near to the budget stays: what moves does not pop.
 constexpr double kSameLevel = 0.04;
 
@@ -132,7 +135,9 @@ std::size_t WallLoop::chooseLevel(Duration available) {
 
 std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
   const Timestamp looked = p_.clock.now();
-  const std::size_t level = chooseLevel(tick(k + 1) - began);
+  const Duration left = tick(k + 1) - began;
+  const std::size_t level = chooseLevel(
+      resuming_ ? std::min(left, fromSeconds(kResumingShare * toSeconds(period_))) : left);
   tracer_.add(StepKind::kGovernor, looked, p_.clock.now());
   if (level == p_.model.levels()) {
     stats_.deadline(tick(k + 1), true, false);
@@ -169,7 +174,7 @@ void WallLoop::finishMoving(const DrawTimes& times, Duration present, bool met) 
   const bool least = triangles <= p_.governor.least() || level_ + 1 == p_.model.levels();
   // What the frame would have cost with every view as fine as the wall.
   const Duration fixed = times.fixed + present;
-  p_.governor.observe({triangles, fixed, fixed + times.drawing, !met});
+  if (!resuming_ || !met) p_.governor.observe({triangles, fixed, fixed + times.drawing, !met});
   climb(!met, least && !p_.governor.held());
   if (operator_ladder_.observe(times.gave_way, true, true)) ++out_.ladder_steps;
   if (!std::exchange(resuming_, false)) return;
