@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kWidth = 640, kHeight = 360, kLeft = 60, kTop = 40, kPlotWidth = 560,
               kPlotHeight = 250;
-constexpr int kLegendStep = 140;
+constexpr int kLegendStep = 15;
 
 // 0 at the axis' low end, 1 at its high one.
 double place(const ChartAxis& axis, double value) {
@@ -80,7 +80,7 @@ std::string svgChart(const std::string& title, const std::string& below, const C
       "fill=\"white\"/>\n",
       kWidth, kHeight);
   out += text(kLeft, 22, "font-size=\"14\"", title) + grid(x, y);
-  double legend = kLeft + kPlotWidth - kLegendStep * static_cast<double>(lines.size());
+  double legend = kTop;
   for (const ChartLine& line : lines) {
     std::string points;
     for (const auto& [px, py] : line.points) {
@@ -89,8 +89,9 @@ std::string svgChart(const std::string& title, const std::string& below, const C
     }
     out +=
         fmt::format("<polyline fill=\"none\" stroke=\"{}\" points=\"{}\"/>\n", line.colour, points);
-    out += text(legend, kHeight - 15, fmt::format("fill=\"{}\"", line.colour), line.name);
     legend += kLegendStep;
+    out += text(kLeft + kPlotWidth - 6, legend,
+                fmt::format("fill=\"{}\" text-anchor=\"end\"", line.colour), line.name);
   }
   return out + text(kLeft, kHeight - 15, "", below) + "</svg>\n";
 }
