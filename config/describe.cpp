@@ -9,7 +9,6 @@ namespace {
 constexpr const char* kSlot7Rules[] = {"zero", "neutral", "derived", "switch"};
 constexpr const char* kBackends[] = {"egl", "osmesa"};
 constexpr const char* kTileKinds[] = {"wall", "operator"};
-constexpr const char* kActions[] = {"grab", "reset_view", "next_mode", "fly"};
 constexpr const char* kWhen[] = {"by_action", "enter", "hold", "leave"};
 constexpr const char* kScripts[] = {"visit", "turning", "still", "grabbing"};
 
@@ -160,7 +159,7 @@ void describeScene(render::SceneSettings& s, SettingsVisitor& v) {
            "After which a device that is no longer well has let go, seconds.");
   v.listOf<render::Binding>("bindings", s.bindings, "What inputs do.", [&](render::Binding& b) {
     v.text("input", b.input, "ball.button.1 to ball.button.12, posture.NAME or glove.switch.");
-    v.oneOf("action", b.action, kActions,
+    v.oneOf("action", b.action, render::kActionNames,
             "While held: grab, the hand moves the model, fly, its way is the viewer's speed; the "
             "others: once.");
     v.oneOf("on", b.when, kWhen,

@@ -57,9 +57,9 @@ Result<Scene> Scene::make(const SceneSettings& settings) {
     const bool held = binding.when == When::kHold;
     if (binding.when != When::kByAction && held != lasts(binding.action)) {
       return Error{Errc::kInvalidArgument,
-                   fmt::format("binding \"{}\": grab and fly last while it is held, the others are "
-                               "done on enter or on leave",
-                               binding.input)};
+                   fmt::format("binding \"{}\": {} {}", binding.input, nameOf(binding.action),
+                               lasts(binding.action) ? "lasts while it is held"
+                                                     : "is done once, on enter or on leave")};
     }
     bound->on_leave = binding.when == When::kLeave;
     scene.bound_.push_back(std::move(*bound));

@@ -15,6 +15,13 @@ enum class Action {
   kFly,        // while it is held: the way of the hand from where it began is the viewer's speed
 };
 
+inline constexpr const char* kActionNames[] = {"grab", "reset_view", "next_mode", "fly"};
+inline constexpr const char* nameOf(Action a) { return kActionNames[static_cast<int>(a)]; }
+
+inline constexpr bool lasts(Action a) { return a == Action::kGrab || a == Action::kFly; }
+// Whether no single moment may do both: one hand does one thing at a time.
+inline constexpr bool exclude(Action a, Action b) { return a == b || (lasts(a) && lasts(b)); }
+
 // When it does it: what lasts does it while the input is held, what happens once when it begins.
 enum class When { kByAction, kEnter, kHold, kLeave };
 
@@ -24,7 +31,6 @@ struct Binding {
   Action action = Action::kGrab;
   When when = When::kByAction;
 };
-inline constexpr bool lasts(Action a) { return a == Action::kGrab || a == Action::kFly; }
 
 struct SceneSettings {
   double model_radius_m = 1.0;    // the model is scaled to this bounding sphere
