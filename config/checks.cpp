@@ -167,6 +167,21 @@ void checkBindings(const std::vector<render::Binding>& bindings, LoadedSettings&
   }
 }
 
+// An action that could never do anything.
+void checkDoers(const Settings& s, LoadedSettings& loaded) {
+  const auto& bindings = s.wall.scene.bindings;
+  for (std::size_t i = 0; i < bindings.size(); ++i) {
+    const render::Action action = bindings[i].action;
+    const std::string at = fmt::format("/wall/scene/bindings/{}/action", i);
+    if (action == render::Action::kSnapshot && s.wall.snapshots.empty())
+      loaded.wrong(at, "is snapshot, which needs a folder: /wall/snapshots names none");
+    if (render::isLamp(action) && (s.devices.gpio.chip.empty() || s.devices.gpio.lamp_line < 0))
+      loaded.wrong(at, fmt::format("is {}, which needs a lamp: /devices/gpio has no chip with a "
+                                   "lamp_line",
+                                   nameOf(action)));
+  }
+}
+
 }  // namespace
 
 void checkTogether(LoadedSettings& loaded) {
@@ -182,6 +197,7 @@ void checkTogether(LoadedSettings& loaded) {
   checkAxes(s.wall.scene.tracker_axes, "/wall/scene/tracker_axes", loaded);
   checkRate(s.wall.governor, loaded);
   checkBindings(s.wall.scene.bindings, loaded);
+  checkDoers(s, loaded);
 }
 
 }  // namespace merlin

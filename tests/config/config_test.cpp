@@ -74,6 +74,26 @@ TEST(Config, BindingsThatConflictAreNamedBoth) {
             "\"posture.fist\" would reset_view twice when left\n");
 }
 
+TEST(Config, ActionsThatNothingCouldDoAreFound) {
+  const std::string bindings =
+      R"("bindings": [{"input": "posture.a", "action": "snapshot"},
+                      {"input": "posture.b", "action": "lamp_slow"}])";
+  EXPECT_EQ(all(loadSettings("{\"wall\": {\"scene\": {" + bindings + "}}}", "")),
+            "f.json:1: /wall/scene/bindings/0/action is snapshot, which needs a folder: "
+            "/wall/snapshots names none\n"
+            "f.json:2: /wall/scene/bindings/1/action is lamp_slow, which needs a lamp: "
+            "/devices/gpio has no chip with a lamp_line\n");
+  EXPECT_EQ(all(loadSettings(R"({"devices": {"gpio": {"chip": "gpiochip0", "lamp_line": 5}},
+                                "wall": {"snapshots": "taken", "scene": {)" +
+                                 bindings + "}}}",
+                             "")),
+            "");
+  EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "lamp_on"},
+                          {"input": "posture.a", "action": "lamp_off"})")
+                .find("\"posture.a\" would both lamp_on and lamp_off when entered"),
+            std::string::npos);
+}
+
 TEST(Config, BindingsThatNameNothingAreFound) {
   EXPECT_NE(bindingsAre(R"({"input": "ball.button.13", "action": "grab"})")
                 .find("allowed are ball.button.1 to ball.button.12"),
