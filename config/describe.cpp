@@ -9,7 +9,6 @@ namespace {
 constexpr const char* kSlot7Rules[] = {"zero", "neutral", "derived", "switch"};
 constexpr const char* kBackends[] = {"egl", "osmesa"};
 constexpr const char* kTileKinds[] = {"wall", "operator"};
-constexpr const char* kActions[] = {"grab", "reset_view", "next_mode", "fly"};
 constexpr const char* kWhen[] = {"by_action", "enter", "hold", "leave"};
 constexpr const char* kScripts[] = {"visit", "turning", "still", "grabbing"};
 
@@ -153,6 +152,11 @@ void describeScene(render::SceneSettings& s, SettingsVisitor& v) {
   v.number("hand_gain", s.hand_gain, {0.01, 1000}, "Metres of the model for a metre of the hand.");
   v.number("fly_gain", s.fly_gain, {0.01, 1000},
            "Metres a second of the viewer for a metre of the hand, while it flies.");
+  v.numbers("tracker_origin_m", s.tracker_origin_m, {-100, 100},
+            "Where the tracker's transmitter stands as seen from the eye, for pointing: x right, y "
+            "up, z towards the person, metres.");
+  v.number("wall_distance_m", s.wall_distance_m, {0.1, 100},
+           "From the eye to the wall, for a hand that points past the model, metres.");
   v.number("hand_noise_m", s.hand_noise_m, {0, 1},
            "Way of the hand that is taken for the tracker's noise, metres.");
   v.number("hand_noise_deg", s.hand_noise_deg, {0, 180},
@@ -165,9 +169,9 @@ void describeScene(render::SceneSettings& s, SettingsVisitor& v) {
            "After which a device that is no longer well has let go, seconds.");
   v.listOf<render::Binding>("bindings", s.bindings, "What inputs do.", [&](render::Binding& b) {
     v.text("input", b.input, "ball.button.1 to ball.button.12, posture.NAME or glove.switch.");
-    v.oneOf("action", b.action, kActions,
-            "While held: grab, the hand moves the model, fly, its way is the viewer's speed; the "
-            "others: once.");
+    v.oneOf("action", b.action, render::kActionNames,
+            "While held: grab, the hand moves the model, fly, its way is the viewer's speed, "
+            "point_at, it marks what it points at; the others: once.");
     v.oneOf("on", b.when, kWhen,
             "Which moment of the input: hold for what lasts, enter or leave for what is done once; "
             "by_action: hold or enter.");
@@ -241,6 +245,8 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
   v.group("scene", "Where the model stands, and what a person's input does.",
           [&] { describeScene(w.scene, v); });
   v.group("render", "How it is drawn.", [&] { describeRender(w.render, v); });
+  v.path("snapshots", w.snapshots,
+         "The folder for the frames that the action snapshot writes; empty: none.");
   v.group("png", "The newest frame as a file, now and then.", [&] {
     v.path("path", w.png.path, "Of the file; empty: none.");
     v.number("interval_s", w.png.interval_s, {1, 86400}, "Between two files, at least, seconds.");

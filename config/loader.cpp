@@ -93,6 +93,7 @@ class Loader final : public SettingsVisitor {
     if (!node) return;
     resize(node->items.size());
     for (std::size_t i = 0; i < node->items.size(); ++i) {
+      lines_[pointer(fmt::format("{}/{}", key, i))] = node->items[i].line;
       const bool object = node->items[i].kind == JsonNode::Kind::kObject;
       if (!object) wrong(node->items[i], fmt::format("{}/{}", key, i), "an object");
       enter(object ? &node->items[i] : nullptr, pointer(fmt::format("{}/{}", key, i)));
@@ -186,6 +187,21 @@ LoadedSettings::Verdict LoadedSettings::verdict() const {
   return all_adjusted ? Verdict::kAdjusted : Verdict::kInvalid;
 }
 
+int LoadedSettings::lineOf(const std::string& pointer) const {
+  for (std::string at = pointer; !at.empty(); at.resize(at.rfind('/'))) {
+    if (const auto found = lines.find(at); found != lines.end()) return found->second;
+  }
+  return 0;
+}
+
+void LoadedSettings::wrong(const std::string& pointer, std::string what) {
+  const Finding finding{false, lineOf(pointer), pointer, std::move(what)};
+  const auto after =
+      std::upper_bound(findings.begin(), findings.end(), finding,
+                       [](const Finding& a, const Finding& b) { return a.line < b.line; });
+  findings.insert(after, finding);
+}
+
 LoadedSettings loadSettings(std::string_view json, const std::string& folder) {
   LoadedSettings loaded;
   const auto tree = parseJson(json);
@@ -204,15 +220,14 @@ LoadedSettings loadSettings(std::string_view json, const std::string& folder) {
         {false, tree->line, "", fmt::format("is {}; allowed is an object", describe(*tree))});
     return loaded;
   }
-  std::map<std::string, int> lines;
   {
     Loader loader(*tree, folder, loaded.findings);
     describe(loaded.settings, loader);
-    lines = loader.lines();
+    loaded.lines = loader.lines();
   }
-  checkTogether(loaded.settings, lines, loaded.findings);
   std::stable_sort(loaded.findings.begin(), loaded.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.line < b.line; });
+  checkTogether(loaded);
   return loaded;
 }
 

@@ -2,6 +2,7 @@
 // was found and what is allowed.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,7 +24,14 @@ struct LoadedSettings {
 
   Settings settings;  // meaningful unless invalid
   std::vector<Finding> findings;
+  std::map<std::string, int> lines;  // of each setting that the file has, by pointer
+
   Verdict verdict() const;
+  // Where a setting stands; one that the file does not have, where the nearest group around it
+  // does.
+  int lineOf(const std::string& pointer) const;
+  // One finding more, that makes the file invalid.
+  void wrong(const std::string& pointer, std::string what);
 };
 
 // Reads a text. Relative paths in it are taken from `folder`. Never fails: syntax errors are

@@ -56,6 +56,7 @@ struct WallSettings {
   render::SceneSettings scene;
   render::RenderSettings render;
   render::PngSinkSettings png;
+  std::string snapshots;  // where the action snapshot puts its files, a folder; empty: nowhere
 };
 
 struct Settings {

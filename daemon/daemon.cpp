@@ -79,6 +79,8 @@ Daemon::Daemon(Settings settings, const DaemonOptions& options, Clock& clock)
 // In reverse order of start: nobody is asked for what is no more.
 Daemon::~Daemon() {
   servers_.clear();
+  orders_.reset();
+  snapshots_.reset();
   spnav_.reset();
   vrpn_.reset();
   link_.reset();
@@ -125,6 +127,7 @@ Result<Ok> Daemon::makeRoles() {
     if (!role) return role.error();
     wall_ = *std::move(role);
   }
+  takeOrders();
   return Ok{};
 }
 
@@ -173,6 +176,24 @@ Result<status::CurveServer> Daemon::network() const {
   auto clients = status::readPublicKeys(s.samples_clients);
   if (!clients) return clients.error();
   return status::CurveServer{s.samples_endpoint, *std::move(keys), *std::move(clients)};
+}
+
+// Frames are written where they are drawn, the lamp is lit where the panel is.
+void Daemon::takeOrders() {
+  wall::Orders::Doers doers;
+  if (wall_ && !settings_.wall.snapshots.empty()) {
+    snapshots_ = std::make_unique<wall::SnapshotWriter>(
+        shm::segmentName(settings_.instance, "framebuffer"), settings_.wall.snapshots);
+    doers.snapshot = [this] { snapshots_->take(); };
+  }
+  if (devices_ && devices_->panel()) {
+    doers.lamp = [this](const std::string& command) {
+      const auto done = devices_->panel()->obey(command);
+      if (!done) logWarning("{}: {}", command, done.error().what);
+    };
+  }
+  orders_ = std::make_unique<wall::Orders>(shm::segmentName(settings_.instance, "wall"),
+                                           std::move(doers));
 }
 
 // Of the panel or of the wall: what a button may be bound to.
@@ -250,6 +271,7 @@ void Daemon::housekeeping() {
   if (devices_) devices_->beat(now);
   if (wall_) wall_->beat(now);
   if (mirror_) mirror_->beat(now);
+  orders_->poll(now);
   if (emulators_) {
     for (const std::string& device : emulators_->takeEnded()) {
       logWarning("the emulated {} has ended; start it again with: merlin emulate {} --link ...",

@@ -17,6 +17,8 @@
 #include "daemon/status/sample_link.h"
 #include "daemon/status/server.h"
 #include "daemon/status/watchdog.h"
+#include "daemon/wall/orders.h"
+#include "daemon/wall/snapshot_writer.h"
 #include "daemon/wall/wall_role.h"
 
 namespace merlin {
@@ -52,6 +54,7 @@ class Daemon {
   Result<status::CurveServer> network() const;
   Result<std::string> runCommand(const std::string& name);
   std::vector<status::Command> panelCommands();
+  void takeOrders();
   shm::Endpoints endpoints(const std::string& role) const;
   Result<Ok> awaitFirstFrame(std::future<Result<std::string>> ready);
   bool stopAsked(Duration wait);  // waits for a signal
@@ -69,6 +72,8 @@ class Daemon {
   std::optional<shm::SegmentWriter<shm::DevicesSegment>> mirror_;
   std::unique_ptr<status::SampleLink> link_;
   std::unique_ptr<wall::WallRole> wall_;
+  std::unique_ptr<wall::SnapshotWriter> snapshots_;
+  std::unique_ptr<wall::Orders> orders_;
   std::unique_ptr<serve::SpnavServer> spnav_;
   std::unique_ptr<serve::VrpnServer> vrpn_;
   std::vector<std::unique_ptr<status::StatusServer>> servers_;  // last made, first gone

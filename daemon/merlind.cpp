@@ -12,6 +12,7 @@
 #include "daemon/base/log.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/daemon.h"
+#include "daemon/devices/posture_bindings.h"
 #include "render/gl/gl_context.h"
 
 namespace merlin {
@@ -30,9 +31,16 @@ void printFindings(const std::string& file, const LoadedSettings& loaded) {
   for (const Finding& finding : loaded.findings) fmt::print(stderr, "{}\n", toText(file, finding));
 }
 
-int checkConfig(const std::string& file) {
-  const LoadedSettings loaded = loadSettingsFile(file);
+// With what other files have to say; a process that draws the wall alone reads no postures.
+LoadedSettings loadConfig(const std::string& file, const std::string& role) {
+  LoadedSettings loaded = loadSettingsFile(file);
+  if (role != "wall") devices::checkPostures(loaded);
   printFindings(file, loaded);
+  return loaded;
+}
+
+int checkConfig(const std::string& file, const std::string& role) {
+  const LoadedSettings loaded = loadConfig(file, role);
   switch (loaded.verdict()) {
     case LoadedSettings::Verdict::kValid: fmt::print("{}: valid\n", file); return 0;
     case LoadedSettings::Verdict::kAdjusted:
@@ -54,8 +62,7 @@ void blockSignals() {
 }
 
 int runDaemon(const Options& options) {
-  LoadedSettings loaded = loadSettingsFile(options.config);
-  printFindings(options.config, loaded);
+  LoadedSettings loaded = loadConfig(options.config, options.role);
   if (loaded.verdict() == LoadedSettings::Verdict::kInvalid) return kExitBadInput;
   if (options.print_config) {
     fmt::print("{}", settingsText(loaded.settings));
@@ -108,7 +115,7 @@ int main(int argc, char** argv) {
     fmt::print("{}", settingsSchema());
     return kExitDone;
   }
-  return options.check.empty() ? runDaemon(options) : checkConfig(options.check);
+  return options.check.empty() ? runDaemon(options) : checkConfig(options.check, options.role);
 }
 
 }  // namespace

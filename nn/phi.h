@@ -1,4 +1,4 @@
-// Phi and its slope, of doubles one by one, of floats four at a time.
+// Phi and its slope, of doubles one by one, of floats a vector at a time.
 //
 // For float, e^t and atan are polynomials of our own (Cephes' coefficients, S. L. Moshier): a
 // vector at a time, within 2e-7 of Phi, and the same bits on every machine, which libm's are not.
@@ -16,45 +16,85 @@
 
 namespace merlin::nn {
 
-// Four at a time: g++ 12 finds the vectors in these polynomials only in part.
-typedef float FloatVector __attribute__((vector_size(16), may_alias));
-typedef std::uint32_t BitVector __attribute__((vector_size(16), may_alias));
+// `Bytes` at a time, 16 or 32: g++ 12 finds the vectors in these polynomials only in part. In place
+// and always inlined: a vector of 32 bytes is no argument where the processor may not have them.
+template <int Bytes>
+struct Vectors {
+  typedef float Floats __attribute__((vector_size(Bytes), may_alias));
+  typedef std::uint32_t Words __attribute__((vector_size(Bytes), may_alias));
 
-// |t| beyond 87 is taken for 87: past that, Phi is 0 or 1 in a float. A NaN gives a NaN.
-inline FloatVector expOf(FloatVector t) noexcept {
-  constexpr float kRound = 12582912.0F;  // 1.5 * 2^23: adding it leaves whole numbers
-  const FloatVector least = FloatVector{} - 87.0F, most = FloatVector{} + 87.0F;
-  FloatVector held = t < least ? least : t;
-  held = held > most ? most : held;
-  const FloatVector shifted = held * 1.44269504F + kRound, n = shifted - kRound;
-  const FloatVector r = held - n * 0.693359375F + n * 2.12194440e-4F;
-  FloatVector p = r * 1.9875691500e-4F + 1.3981999507e-3F;
-  p = p * r + 8.3334519073e-3F;
-  p = p * r + 4.1665795894e-2F;
-  p = p * r + 1.6666665459e-1F;
-  p = p * r + 5.0000001201e-1F;
-  const FloatVector power = p * r * r + r + 1.0F;
-  // 2^n: n stands in the low bits of `shifted`, so that a NaN needs no case.
-  const BitVector bits = ((BitVector)shifted - 0x4B400000U + 127U) << 23;
-  return power * (FloatVector)bits;
-}
+  // t becomes e^t. |t| beyond 87 is taken for 87: past that, Phi is 0 or 1 in a float. A NaN stays.
+  [[gnu::always_inline]] static void toExp(Floats& t) noexcept {
+    constexpr float kRound = 12582912.0F;  // 1.5 * 2^23: adding it leaves whole numbers
+    const Floats least = Floats{} - 87.0F, most = Floats{} + 87.0F;
+    Floats held = t < least ? least : t;
+    held = held > most ? most : held;
+    const Floats shifted = held * 1.44269504F + kRound, n = shifted - kRound;
+    const Floats r = held - n * 0.693359375F + n * 2.12194440e-4F, r2 = r * r;
+    // In pairs (Estrin's way), not one within the other: fewer steps that wait for the last.
+    const Floats high = r * 1.9875691500e-4F + 1.3981999507e-3F;
+    const Floats middle = r * 8.3334519073e-3F + 4.1665795894e-2F;
+    const Floats low = r * 1.6666665459e-1F + 5.0000001201e-1F;
+    const Floats power = (high * (r2 * r2) + (middle * r2 + low)) * r2 + r + 1.0F;
+    // 2^n: n stands in the low bits of `shifted`, so that a NaN needs no case.
+    const Words bits = ((Words)shifted - 0x4B400000U + 127U) << 23;
+    t = power * (Floats)bits;
+  }
 
-inline float expOf(float t) noexcept { return expOf(FloatVector{t, t, t, t})[0]; }
+  [[gnu::always_inline]] static void toAtan(Floats& t) noexcept {
+    const Floats zero{}, one = zero + 1.0F;
+    const Floats a = t < zero ? -t : t;
+    const Floats far = zero + 2.414213562F, middle = zero + 0.414213562F;
+    const Floats top = a > far ? -one : (a > middle ? a - 1.0F : a);
+    const Floats bottom = a > far ? a : (a > middle ? a + 1.0F : one);
+    const Floats base = a > far ? zero + 1.570796327F : (a > middle ? zero + 0.785398163F : zero);
+    const Floats r = top / bottom, z = r * r;
+    Floats p = z * 8.05374449538e-2F - 1.38776856032e-1F;
+    p = p * z + 1.99777106478e-1F;
+    p = p * z - 3.33329491539e-1F;
+    const Floats value = base + (p * z * r + r);
+    t = t < zero ? -value : value;
+  }
 
-inline FloatVector atanOf(FloatVector t) noexcept {
-  const FloatVector zero{}, one = zero + 1.0F;
-  const FloatVector a = t < zero ? -t : t;
-  const FloatVector far = zero + 2.414213562F, middle = zero + 0.414213562F;
-  const FloatVector top = a > far ? -one : (a > middle ? a - 1.0F : a);
-  const FloatVector bottom = a > far ? a : (a > middle ? a + 1.0F : one);
-  const FloatVector base =
-      a > far ? zero + 1.570796327F : (a > middle ? zero + 0.785398163F : zero);
-  const FloatVector r = top / bottom, z = r * r;
-  FloatVector p = z * 8.05374449538e-2F - 1.38776856032e-1F;
-  p = p * z + 1.99777106478e-1F;
-  p = p * z - 3.33329491539e-1F;
-  const FloatVector value = base + (p * z * r + r);
-  return t < zero ? -value : value;
+  // t becomes Phi(t).
+  template <Phi kPhi>
+  [[gnu::always_inline]] static void toPhi(Floats& t) noexcept {
+    const Floats zero{}, one = zero + 1.0F;
+    if constexpr (kPhi == Phi::kSigmoid) {
+      t = -t;
+      toExp(t);
+      t = 1.0F / (1.0F + t);
+    } else if constexpr (kPhi == Phi::kAtan) {
+      toAtan(t);
+      t = 0.5F + t * std::numbers::inv_pi_v<float>;
+    } else {
+      t = t == t ? (t > zero ? one : zero) : t;  // a comparison alone would make a NaN a clean 0
+    }
+  }
+
+  template <Phi kPhi, std::size_t N>
+  [[gnu::always_inline]] static void activate(const float* sums, float* values) noexcept {
+    constexpr std::size_t kAtOnce = Bytes / sizeof(float);
+    constexpr std::size_t kWhole = N / kAtOnce * kAtOnce, kRest = (N - kWhole) * sizeof(float);
+    Floats some{};
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < kWhole; i += kAtOnce) {
+      std::memcpy(&some, sums + i, sizeof some);
+      toPhi<kPhi>(some);
+      std::memcpy(values + i, &some, sizeof some);
+    }
+    if constexpr (kRest > 0) {
+      std::memcpy(&some, sums + kWhole, kRest);
+      toPhi<kPhi>(some);
+      std::memcpy(values + kWhole, &some, kRest);
+    }
+  }
+};
+
+inline float expOf(float t) noexcept {
+  Vectors<16>::Floats four = {t, t, t, t};
+  Vectors<16>::toExp(four);
+  return four[0];
 }
 
 inline double phiOf(Phi phi, double sum) noexcept {
@@ -66,32 +106,16 @@ inline double phiOf(Phi phi, double sum) noexcept {
   return sum;
 }
 
-inline FloatVector phiOf(Phi phi, FloatVector sum) noexcept {
-  const FloatVector zero{}, one = zero + 1.0F;
-  switch (phi) {
-    case Phi::kSigmoid: return 1.0F / (1.0F + expOf(-sum));
-    // A comparison alone would make a NaN a clean 0.
-    case Phi::kSignum: return sum == sum ? (sum > zero ? one : zero) : sum;
-    case Phi::kAtan: return 0.5F + atanOf(sum) * std::numbers::inv_pi_v<float>;
-  }
-  return sum;
-}
-
 // values = Phi(sums), of `N` nodes.
-template <typename Real, std::size_t N>
-void activate(Phi phi, const Real* sums, Real* values) noexcept {
+template <typename Real, std::size_t N, int Bytes = 16>
+[[gnu::always_inline]] inline void activate(Phi phi, const Real* sums, Real* values) noexcept {
   if constexpr (std::is_same_v<Real, float>) {
-    constexpr std::size_t kFours = N / 4 * 4, kRest = (N - kFours) * sizeof(float);
-    FloatVector four{};
-    for (std::size_t i = 0; i < kFours; i += 4) {
-      std::memcpy(&four, sums + i, sizeof four);
-      four = phiOf(phi, four);
-      std::memcpy(values + i, &four, sizeof four);
+    using V = Vectors<Bytes>;
+    switch (phi) {
+      case Phi::kSigmoid: return V::template activate<Phi::kSigmoid, N>(sums, values);
+      case Phi::kSignum: return V::template activate<Phi::kSignum, N>(sums, values);
+      case Phi::kAtan: return V::template activate<Phi::kAtan, N>(sums, values);
     }
-    if (kRest == 0) return;
-    std::memcpy(&four, sums + kFours, kRest);
-    four = phiOf(phi, four);
-    std::memcpy(values + kFours, &four, kRest);
   } else {
     for (std::size_t i = 0; i < N; ++i) values[i] = phiOf(phi, sums[i]);
   }

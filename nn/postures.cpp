@@ -75,10 +75,7 @@ std::optional<std::uint32_t> parseCode(std::string_view digits) noexcept {
 }
 
 Recogniser::Recogniser(const PostureNetwork& network)
-    : phi_(network.phi),
-      ranges_(network.ranges),
-      lanes_(toLanes(network.weights)),
-      postures_(network.postures) {}
+    : ranges_(network.ranges), recall_(network.phi, network.weights), postures_(network.postures) {}
 
 Recognition Recogniser::operator()(const Angles& value) const noexcept {
   Recognition r{0, {}, {}, 0};
@@ -89,10 +86,7 @@ Recognition Recogniser::operator()(const Angles& value) const noexcept {
     r.margin = std::numeric_limits<float>::quiet_NaN();
     return r;
   }
-  LanePass<float> pass;
-  const Input x = normalise(ranges_, value);
-  propagate(phi_, lanes_, x.data(), pass);
-  std::copy_n(pass.output.begin(), kOutputs, r.activation.begin());
+  r.activation = recall_(normalise(ranges_, value));
   r.code = threshold(r.activation);
   r.name = postures_.name(r.code);
   r.margin = 1;

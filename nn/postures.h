@@ -9,8 +9,8 @@
 
 #include "daemon/base/result.h"
 #include "nn/inputs.h"
-#include "nn/lanes.h"
 #include "nn/network.h"
+#include "nn/recall.h"
 
 namespace merlin::nn {
 
@@ -56,7 +56,7 @@ struct Recognition {
   float margin;           // how sure: the least |2 Y_k - 1| over the outputs, 0..1; NaN: not at all
 };
 
-// Recall, made ready: the weights laid out for vector instructions. Immutable: thread-safe.
+// From a glove's values to a posture. Immutable: thread-safe.
 class Recogniser {
  public:
   explicit Recogniser(const PostureNetwork& network);
@@ -68,9 +68,8 @@ class Recogniser {
   std::string_view name(std::uint32_t code) const noexcept { return postures_.name(code); }
 
  private:
-  Phi phi_;
   InputRanges ranges_;
-  Lanes<float> lanes_;
+  Recall recall_;
   PostureTable postures_;
 };
 

@@ -64,23 +64,6 @@ class Opener {
   std::string warned_;
 };
 
-// A binding to a posture that the network does not know would never do anything.
-Result<Ok> checkBindings(const Settings& settings, const nn::PostureTable& postures) {
-  constexpr std::string_view kPosture = "posture.";
-  for (const render::Binding& binding : settings.wall.scene.bindings) {
-    const std::string_view input = binding.input;
-    if (!input.starts_with(kPosture) || postures.code(input.substr(kPosture.size()))) continue;
-    std::vector<std::string_view> names;
-    for (std::uint32_t code = 0; code < nn::kCodes; ++code) {
-      if (!postures.name(code).empty()) names.push_back(postures.name(code));
-    }
-    return Error{Errc::kInvalidArgument,
-                 fmt::format("/wall/scene/bindings: \"{}\" is no posture of {}; it knows {}", input,
-                             settings.devices.postures, fmt::join(names, ", "))};
-  }
-  return Ok{};
-}
-
 }  // namespace
 
 DevicesRole::DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, std::string flight_folder,
@@ -103,8 +86,6 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
   if (!settings.devices.postures.empty()) {
     const auto file = nn::loadNetwork(settings.devices.postures);
     if (!file) return file.error();
-    if (const auto known = checkBindings(settings, file->network.postures); !known)
-      return known.error();
     role->posture_sink_ = std::make_unique<PostureSink>(
         file->network, settings.devices.posture_hold,
         PostureSink::Outputs{role->segment_->posture, role->segment_->posture_state}, role->sink_);

@@ -224,6 +224,13 @@ std::vector<Field> wallFields() {
   MERLIN_FIELD(t, WallStats, posture, "");
   addPace(t);
   addChannel<FrameTrace>(t, "trace", offsetof(WallSegment, trace));
+  t.slot("hand", offsetof(WallSegment, hand));
+  MERLIN_FIELD(t, WallHand, pointing, "0 wall model");
+  MERLIN_FIELD(t, WallHand, pixel, "px");
+  MERLIN_FIELD(t, WallHand, at_model_m, "m");
+  MERLIN_FIELD(t, WallHand, snapshots, "");
+  MERLIN_FIELD(t, WallHand, lamps, "");
+  MERLIN_FIELD(t, WallHand, lamp, "Lamp");
   return t.take();
 }
 

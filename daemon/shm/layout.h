@@ -145,10 +145,26 @@ struct FrameTrace {
 };
 static_assert(sizeof(TraceStep) == 12 && sizeof(FrameTrace) == 48 + 32 * 12);
 
+// What the person asks of the wall by hand; written once a period.
+struct WallHand {
+  enum Pointing : std::uint32_t { kNone = 0, kAtWall = 1, kAtModel = 2 };
+
+  std::int64_t updated_ns;
+  std::uint32_t pointing;
+  std::int32_t pixel[2];  // of the frame, from its upper left corner; -1, -1: no wall tile shows it
+  float at_model_m[3];    // where its ray ends, in the model's metres; on its bounding sphere
+  std::uint32_t snapshots;  // of the frame, asked for since the start
+  std::uint32_t lamps;      // times that a lamp was asked for, since the start
+  std::uint32_t lamp;       // the last of them: GpioSample::Lamp
+  std::uint32_t reserved;
+};
+static_assert(sizeof(WallHand) == 48 && offsetof(WallHand, snapshots) == 32);
+
 struct WallSegment {
   Header header;
   alignas(64) SeqSlot<WallStats> stats;  // writer: the wall's thread
   Channel<FrameTrace> trace;             // writer: the wall's thread; the last 256 periods
+  alignas(64) SeqSlot<WallHand> hand;    // writer: the wall's thread
 };
 
 }  // namespace merlin::shm

@@ -71,6 +71,16 @@ Json poseJson(const HandSample& h) {
           {"delay_s", h.delay_s}};
 }
 
+// Null while no hand points; pixel null where no wall tile shows what it points at.
+Json pointerJson(const shm::WallHand& h) {
+  if (h.pointing == shm::WallHand::kNone) return nullptr;
+  Json pixel = nullptr;
+  if (h.pixel[0] >= 0) pixel = integers(std::span<const std::int32_t>(h.pixel));
+  return {{"at", h.pointing == shm::WallHand::kAtModel ? "model" : "wall"},
+          {"pixel", std::move(pixel)},
+          {"at_model_m", list(std::span<const float>(h.at_model_m))}};
+}
+
 double ageSeconds(std::int64_t then_ns, Timestamp now) {
   return round3(toSeconds(now - fromNanoseconds(then_ns)));
 }
@@ -136,6 +146,7 @@ std::string devicesStatus(const shm::DevicesSegment& segment, Timestamp now) {
 
 std::string wallStatus(const shm::WallSegment& segment, Timestamp now) {
   const auto s = segment.stats.read().value_or(shm::WallStats{});
+  const auto hand = segment.hand.read().value_or(shm::WallHand{});
   return dump({{"role", "wall"},
                {"pid", segment.header.pid},
                {"uptime_s", ageSeconds(segment.header.started_ns, now)},
@@ -153,6 +164,8 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now) {
                {"full_detail", s.full_detail != 0},
                {"mode", text(s.mode)},
                {"grabbed", s.grabbed != 0},
+               {"pointer", pointerJson(hand)},
+               {"snapshots", hand.snapshots},
                {"work_ms", round3(s.work_ms)},
                {"work_median_ms", round3(s.work_median_ms)},
                {"utilisation", round3(s.utilisation)},

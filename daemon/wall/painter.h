@@ -49,8 +49,8 @@ class Painter {
   // For the trace; none where a painter does not say.
   virtual std::span<const PaintStep> steps() const noexcept { return {}; }
 
-  // RGBA, rows from top to bottom, of the plan's frame.
-  virtual std::span<const std::uint8_t> pixels() const noexcept = 0;
+  // RGBA, rows from top to bottom, of the plan's frame. Who draws on them puts them back.
+  virtual std::span<std::uint8_t> pixels() noexcept = 0;
 };
 
 }  // namespace merlin::wall

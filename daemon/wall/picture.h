@@ -39,7 +39,7 @@ class Picture final : public Painter {
   bool beginRefiningTo(const Eigen::Isometry3f& T_eye_model, std::size_t level) override;
   bool refine(Timestamp until) override;
   std::span<const PaintStep> steps() const noexcept override { return steps_; }
-  std::span<const std::uint8_t> pixels() const noexcept override { return pixels_; }
+  std::span<std::uint8_t> pixels() noexcept override { return pixels_; }
 
   const std::string& renderer() const noexcept { return context_->renderer(); }
 

@@ -192,6 +192,7 @@ void WallLoop::climb(bool late, bool least) {
 }
 
 std::int64_t WallLoop::stillPeriod(std::int64_t k) {
+  if (p_.marker && p_.marker->moves(pointedAt())) present(full_detail_);
   if (!full_detail_) {
     if (!refining_) beginRefining();
     const Timestamp from = p_.clock.now();
@@ -239,7 +240,10 @@ void WallLoop::present(bool full_detail) {
   full_detail_ = full_detail;
   const auto triangles = static_cast<std::uint32_t>(p_.model.trianglesAt(level_));
   const render::FrameInfo info{++frames_, p_.clock.now(), triangles, full_detail};
-  for (render::FrameSink* sink : p_.sinks) sink->present(p_.painter.pixels(), info);
+  const std::span<std::uint8_t> pixels = p_.painter.pixels();
+  if (p_.marker) p_.marker->draw(pixels, pointedAt());
+  for (render::FrameSink* sink : p_.sinks) sink->present(pixels, info);
+  if (p_.marker) p_.marker->erase(pixels);
 }
 
 }  // namespace merlin::wall

@@ -20,6 +20,7 @@
 #include "daemon/wall/frame_tracer.h"
 #include "daemon/wall/input_feed.h"
 #include "daemon/wall/painter.h"
+#include "daemon/wall/pointer_marker.h"
 #include "render/governor/governor.h"
 #include "render/governor/ladder.h"
 #include "render/lod/dendrogram.h"
@@ -38,6 +39,8 @@ struct WallParts {
   shm::SeqSlot<shm::WallStats>& stats;
   Clock& clock;
   shm::Channel<shm::FrameTrace>* trace = nullptr;  // where steps are told; may be none
+  PointerMarker* marker = nullptr;                 // who marks where the hand points; the same
+  shm::SeqSlot<shm::WallHand>* hand = nullptr;     // where that is told
 };
 
 // Thread-bound but for request(), hold(), setRate() and periods().
@@ -81,6 +84,8 @@ class WallLoop {
   bool applyRate();
   void present(bool full_detail);
   void publishTrace(Timestamp now);
+  void publishHand(Timestamp now);
+  std::optional<Eigen::Vector3f> pointedAt() const;
   void publishStats(Timestamp now);
   void paceStats(Timestamp now);
   double drawingAtHome() const;

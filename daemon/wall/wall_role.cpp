@@ -73,8 +73,9 @@ void WallRole::run(const std::stop_token& stop) {
                   fromSeconds(1 / settings_.wall.governor.rate_hz));
   std::vector<render::FrameSink*> sinks;
   for (const auto& sink : sinks_) sinks.push_back(sink.get());
+  PointerMarker marker(plan_);
   WallLoop loop({model_, **picture, scene_, governor_, feed, sinks, segment_->stats, clock_,
-                 &segment_->trace});
+                 &segment_->trace, &marker, &segment_->hand});
   loop.calibrate();
   loop_.store(&loop);
   loop.run(stop, [&] { ready_.set_value((*picture)->renderer()); });

@@ -36,6 +36,27 @@ Eigen::Vector3f vector(const std::array<double, 3>& a) {
   return Eigen::Vector3d(a[0], a[1], a[2]).cast<float>();
 }
 
+struct Ray {
+  Eigen::Vector3f from, direction;  // the latter of length 1
+
+  // Where it enters a sphere that it does not begin in.
+  std::optional<Eigen::Vector3f> enters(const Eigen::Vector3f& centre, float radius) const {
+    const Eigen::Vector3f to = centre - from;
+    const float along = to.dot(direction);
+    const float inside = radius * radius - (to - along * direction).squaredNorm();
+    if (inside < 0 || along * along < inside || along < 0) return std::nullopt;
+    return from + (along - std::sqrt(inside)) * direction;
+  }
+
+  // Where it leaves a sphere about the eye; from outside, what it would see far away.
+  Eigen::Vector3f leaves(float radius) const {
+    const float along = -from.dot(direction);
+    const float inside = radius * radius - (from + along * direction).squaredNorm();
+    if (inside < 0 || from.norm() > radius) return radius * direction;
+    return from + (along + std::sqrt(inside)) * direction;
+  }
+};
+
 }  // namespace
 
 Result<Scene> Scene::make(const SceneSettings& settings) {
@@ -57,9 +78,9 @@ Result<Scene> Scene::make(const SceneSettings& settings) {
     const bool held = binding.when == When::kHold;
     if (binding.when != When::kByAction && held != lasts(binding.action)) {
       return Error{Errc::kInvalidArgument,
-                   fmt::format("binding \"{}\": grab and fly last while it is held, the others are "
-                               "done on enter or on leave",
-                               binding.input)};
+                   fmt::format("binding \"{}\": {} {}", binding.input, nameOf(binding.action),
+                               lasts(binding.action) ? "lasts while it is held"
+                                                     : "is done once, on enter or on leave")};
     }
     bound->on_leave = binding.when == When::kLeave;
     scene.bound_.push_back(std::move(*bound));
@@ -108,7 +129,7 @@ void Scene::reset() {
   grab_model_.reset();
   fly_hand_.reset();
   last_motion_ = last_update_;
-  view_ = {T_wall_model_, mode_, false, true};
+  view_ = {T_wall_model_, mode_, false, true, std::nullopt, orders_};
 }
 
 void Scene::nextMode() { mode_ = mode_ == BallMode::kObject ? BallMode::kFly : BallMode::kObject; }
@@ -128,6 +149,8 @@ SceneView Scene::update(const SceneInput& input, Timestamp now) {
   view_.mode = mode_;
   view_.grabbed = grab_hand_.has_value();
   view_.moving = now - last_motion_ < fromSeconds(settings_.still_after_s);
+  view_.pointed = asked.point ? pointByHand(input) : std::nullopt;
+  view_.orders = orders_;
   return view_;
 }
 
@@ -153,6 +176,9 @@ Scene::Asked Scene::act(const SceneInput& input) {
     if (bound.action == Action::kFly) asked.fly |= held;
     if (bound.action == Action::kResetView && now) reset();
     if (bound.action == Action::kNextMode && now) nextMode();
+    if (bound.action == Action::kPointAt) asked.point |= held;
+    if (bound.action == Action::kSnapshot && now) ++orders_.snapshots;
+    if (isLamp(bound.action) && now) orders_ = {orders_.snapshots, orders_.lamps + 1, bound.action};
   }
   return asked;
 }
@@ -225,6 +251,19 @@ bool Scene::flyByHand(const SceneInput& input, bool fly, float seconds) {
   if (way.norm() <= 2 * static_cast<float>(settings_.hand_noise_m)) return false;
   T_wall_eye_.translate(way * static_cast<float>(settings_.fly_gain) * seconds);
   return true;
+}
+
+// Aligned as the transmitter is, the hand points straight into the wall: -z.
+std::optional<Pointed> Scene::pointByHand(const SceneInput& input) const {
+  if (!input.hand) return std::nullopt;
+  const Eigen::Isometry3f hand = handPose(*input.hand);
+  const Ray ray{vector(settings_.tracker_origin_m) + hand.translation(),
+                hand.linear() * -Eigen::Vector3f::UnitZ()};
+  const auto radius = static_cast<float>(settings_.model_radius_m);
+  const auto wall = static_cast<float>(settings_.wall_distance_m);
+  const auto model = ray.enters(view_.T_eye_model.translation(), radius);
+  const Eigen::Vector3f at = model ? *model : ray.leaves(wall);
+  return Pointed{at, view_.T_eye_model.inverse() * at, model.has_value()};
 }
 
 Eigen::Isometry3f Scene::handPose(const TrackerSample& s) const {

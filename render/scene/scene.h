@@ -28,11 +28,25 @@ struct SceneInput {
 
 enum class BallMode { kObject, kFly };  // the ball moves the model; the viewer
 
+// Where the hand's ray ends, metres.
+struct Pointed {
+  Eigen::Vector3f at_eye_m, at_model_m;  // in eye coordinates, in the model's
+  bool on_model = false;                 // on its bounding sphere, else on the wall
+};
+
+// What bindings asked of others than the scene, since the start: the frame's file, the lamp.
+struct Orders {
+  std::uint32_t snapshots = 0, lamps = 0;
+  Action lamp = Action::kLampOff;  // the last of them
+};
+
 struct SceneView {
   Eigen::Isometry3f T_eye_model;  // model in metres, its bounding sphere's centre at its origin
   BallMode mode = BallMode::kObject;
   bool grabbed = false;
-  bool moving = false;  // an input is above its noise, or was within still_after_s
+  bool moving = false;             // an input is above its noise, or was within still_after_s
+  std::optional<Pointed> pointed;  // while a hand points; that is no motion
+  Orders orders;
 };
 
 class Scene {
@@ -64,12 +78,13 @@ class Scene {
   static std::optional<Bound> parse(const Binding& binding);
   bool isHeld(const Bound& bound, const SceneInput& input) const;
   struct Asked {
-    bool grab = false, fly = false;
+    bool grab = false, fly = false, point = false;
   };
   Asked act(const SceneInput& input);  // bindings; returns what is held
   bool moveByBall(const SceneInput& input, float seconds);
   bool moveByHand(const SceneInput& input, bool grab);
   bool flyByHand(const SceneInput& input, bool fly, float seconds);
+  std::optional<Pointed> pointByHand(const SceneInput& input) const;
   Eigen::Isometry3f handPose(const TrackerSample& sample) const;
 
   SceneSettings settings_;
@@ -82,6 +97,7 @@ class Scene {
   std::optional<Eigen::Vector3f> fly_hand_;  // while flying: where the hand was when it began
   Eigen::Isometry3f last_hand_ = Eigen::Isometry3f::Identity();
   SceneView view_;
+  Orders orders_;
   Timestamp last_update_{}, last_motion_{};
 };
 

@@ -13,7 +13,27 @@ enum class Action {
   kResetView,  // once: model and viewer back to where they started
   kNextMode,   // once: the ball moves the model, or the viewer
   kFly,        // while it is held: the way of the hand from where it began is the viewer's speed
+  kPointAt,    // while it is held: a mark on the wall, where the hand points
+  kSnapshot,   // once: the frame as a file
+  kLampOff,    // once, and the next three: the panel's status lamp
+  kLampSlow,
+  kLampFast,
+  kLampOn,
 };
+
+inline constexpr const char* kActionNames[] = {"grab",      "reset_view", "next_mode", "fly",
+                                               "point_at",  "snapshot",   "lamp_off",  "lamp_slow",
+                                               "lamp_fast", "lamp_on"};
+inline constexpr const char* nameOf(Action a) { return kActionNames[static_cast<int>(a)]; }
+
+inline constexpr bool lasts(Action a) {
+  return a == Action::kGrab || a == Action::kFly || a == Action::kPointAt;
+}
+inline constexpr bool isLamp(Action a) { return a >= Action::kLampOff; }
+// Whether no single moment may do both: one hand does one thing at a time, and there is one lamp.
+inline constexpr bool exclude(Action a, Action b) {
+  return a == b || (lasts(a) && lasts(b)) || (isLamp(a) && isLamp(b));
+}
 
 // When it does it: what lasts does it while the input is held, what happens once when it begins.
 enum class When { kByAction, kEnter, kHold, kLeave };
@@ -24,7 +44,6 @@ struct Binding {
   Action action = Action::kGrab;
   When when = When::kByAction;
 };
-inline constexpr bool lasts(Action a) { return a == Action::kGrab || a == Action::kFly; }
 
 struct SceneSettings {
   double model_radius_m = 1.0;    // the model is scaled to this bounding sphere
@@ -41,6 +60,10 @@ struct SceneSettings {
   int hand_station = 1;    // of the tracker, that the grabbing hand wears
   double hand_gain = 3.0;  // metres of the model for a metre of the hand
   double fly_gain = 4.0;   // metres a second of the viewer for a metre of the hand
+  // Where the tracker's transmitter stands as seen from the eye (x right, y up, z towards the
+  // person), and how far the wall is: what a pointing hand hits depends on both.
+  std::array<double, 3> tracker_origin_m = {0, 0, 0};
+  double wall_distance_m = 2.0;
   // What the tracker's own noise may look like; less is no motion.
   double hand_noise_m = 0.003;
   double hand_noise_deg = 0.6;

@@ -57,23 +57,51 @@ std::string bindingsAre(const std::string& list) {
   return all(loadSettings("{\"wall\": {\"scene\": {\"bindings\": [" + list + "]}}}", ""));
 }
 
-TEST(Config, BindingsThatConflictOrNameNothingAreFound) {
+TEST(Config, BindingsThatConflictAreNamedBoth) {
   const std::string fist = R"({"input": "posture.fist", "action": "grab"})";
   EXPECT_EQ(bindingsAre(fist), "");
-  EXPECT_NE(bindingsAre(fist + "," + fist).find("conflicts with binding 0"), std::string::npos);
-  EXPECT_NE(bindingsAre(fist + R"(, {"input": "posture.fist", "action": "fly"})")
-                .find("/wall/scene/bindings/1"),
+  EXPECT_EQ(bindingsAre(fist + "," + fist),
+            "f.json:1: /wall/scene/bindings/1 conflicts with /wall/scene/bindings/0 (line 1): "
+            "\"posture.fist\" would grab twice when held\n");
+  EXPECT_EQ(bindingsAre(fist + ",\n" + R"({"input": "posture.fist", "action": "fly"})"),
+            "f.json:2: /wall/scene/bindings/1 conflicts with /wall/scene/bindings/0 (line 1): "
+            "\"posture.fist\" would both grab and fly when held, which exclude each other\n");
+  const std::string fist_left =
+      R"({"input": "posture.fist", "action": "reset_view", "on": "leave"})";
+  EXPECT_EQ(bindingsAre(fist + "," + fist_left), "");
+  EXPECT_EQ(bindingsAre(fist_left + "," + fist_left),
+            "f.json:1: /wall/scene/bindings/1 conflicts with /wall/scene/bindings/0 (line 1): "
+            "\"posture.fist\" would reset_view twice when left\n");
+}
+
+TEST(Config, ActionsThatNothingCouldDoAreFound) {
+  const std::string bindings =
+      R"("bindings": [{"input": "posture.a", "action": "snapshot"},
+                      {"input": "posture.b", "action": "lamp_slow"}])";
+  EXPECT_EQ(all(loadSettings("{\"wall\": {\"scene\": {" + bindings + "}}}", "")),
+            "f.json:1: /wall/scene/bindings/0/action is snapshot, which needs a folder: "
+            "/wall/snapshots names none\n"
+            "f.json:2: /wall/scene/bindings/1/action is lamp_slow, which needs a lamp: "
+            "/devices/gpio has no chip with a lamp_line\n");
+  EXPECT_EQ(all(loadSettings(R"({"devices": {"gpio": {"chip": "gpiochip0", "lamp_line": 5}},
+                                "wall": {"snapshots": "taken", "scene": {)" +
+                                 bindings + "}}}",
+                             "")),
+            "");
+  EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "lamp_on"},
+                          {"input": "posture.a", "action": "lamp_off"})")
+                .find("\"posture.a\" would both lamp_on and lamp_off when entered"),
             std::string::npos);
-  EXPECT_EQ(
-      bindingsAre(fist + R"(, {"input": "posture.fist", "action": "reset_view", "on": "leave"})"),
-      "");
+}
+
+TEST(Config, BindingsThatNameNothingAreFound) {
   EXPECT_NE(bindingsAre(R"({"input": "ball.button.13", "action": "grab"})")
                 .find("allowed are ball.button.1 to ball.button.12"),
             std::string::npos);
   EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "grab", "on": "leave"})")
-                .find("allowed is hold for grab and fly"),
+                .find("/wall/scene/bindings/0/on does not go with grab; allowed is hold"),
             std::string::npos);
-  EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "lamp"})").find("fly"),
+  EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "dance"})").find("fly"),
             std::string::npos)
       << "the list of what exists";
 }

@@ -82,6 +82,16 @@ TEST_F(DocumentsTest, TheWallSaysWhatOutsideChecksRelyOn) {
   EXPECT_EQ(s["triangles"], 12345);
 }
 
+TEST_F(DocumentsTest, TheWallSaysWhereAHandPoints) {
+  EXPECT_TRUE(json::parse(wallStatus(*wall_, kNow))["pointer"].is_null());
+  wall_->hand.publish({0, shm::WallHand::kAtModel, {960, 240}, {0, 0.25F, 1}, 3, 0, 0, 0});
+  const json s = json::parse(wallStatus(*wall_, kNow));
+  EXPECT_EQ(s["pointer"].dump(), R"({"at":"model","at_model_m":[0.0,0.25,1.0],"pixel":[960,240]})");
+  EXPECT_EQ(s["snapshots"], 3);
+  wall_->hand.publish({0, shm::WallHand::kAtWall, {-1, -1}, {}, 3, 0, 0, 0});
+  EXPECT_TRUE(json::parse(wallStatus(*wall_, kNow))["pointer"]["pixel"].is_null());
+}
+
 TEST_F(DocumentsTest, TheWallSaysHowItKeepsItsRate) {
   shm::WallStats stats{};
   stats.cost_exponent = 0.7F;

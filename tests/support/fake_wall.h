@@ -75,7 +75,9 @@ class FakePainter final : public Painter {
     }
     return false;
   }
-  std::span<const std::uint8_t> pixels() const noexcept override { return {}; }
+  std::span<std::uint8_t> pixels() noexcept override { return pixels_; }
+
+  std::vector<std::uint8_t> pixels_;
 
   void setCost(Duration per_triangle) { per_triangle_ = per_triangle; }
 
@@ -103,11 +105,15 @@ class FakeFeed final : public InputFeed {
     render::SceneInput input;
     input.ball.emplace();
     input.ball->rotation[1] = pushed ? 0.5F : 0.0F;
+    input.ball->buttons = buttons;
+    input.hand = hand;
     return input;
   }
   Duration age() const noexcept override { return milliseconds(7); }
 
   bool pushed = true;
+  std::uint32_t buttons = 0;
+  std::optional<TrackerSample> hand;
   std::function<void(Timestamp)> on_begin;
   std::vector<Timestamp> begins;
 };
@@ -138,7 +144,8 @@ class FakeWall : public testing::Test {
     loop.run(stop_.get_token(), [&] { ++first_frames_; });
   }
   WallParts parts() {
-    return {model(), painter_, scene_, governor_, feed_, {&frames_}, *stats_, clock_, trace_.get()};
+    return {model(), painter_, scene_,       governor_, feed_,      {&frames_},
+            *stats_, clock_,   trace_.get(), marker_,   hand_.get()};
   }
   shm::WallStats stats() const { return *stats_->read(); }
 
@@ -152,6 +159,9 @@ class FakeWall : public testing::Test {
       std::make_unique<shm::SeqSlot<shm::WallStats>>();
   std::unique_ptr<shm::Channel<shm::FrameTrace>> trace_ =
       std::make_unique<shm::Channel<shm::FrameTrace>>();
+  PointerMarker* marker_ = nullptr;
+  std::unique_ptr<shm::SeqSlot<shm::WallHand>> hand_ =
+      std::make_unique<shm::SeqSlot<shm::WallHand>>();
   std::stop_source stop_;
   WallLoop* loop_ = nullptr;  // while it runs
   bool calibrated_ = false;

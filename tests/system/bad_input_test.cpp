@@ -113,6 +113,28 @@ TEST_F(BadInput, ABrokenPostureNetwork) {
   expectOutcome(run({kMerlind, "--config", dir_ / "c.json", "--role", "devices"}), 2, {"p.json"});
 }
 
+TEST_F(BadInput, BindingsToPosturesThatTheNetworkDoesNotKnow) {
+  const std::string postures = kSource + "/config/postures.json";
+  writeText(dir_ / "c.json", "{\"devices\": {\"postures\": \"" + postures + R"("},
+    "wall": {"scene": {"bindings": [
+      {"input": "posture.fist", "action": "grab"},
+      {"input": "posture.pinhc", "action": "next_mode"},
+      {"input": "posture.salute", "action": "reset_view"}]}}})");
+  const std::vector<std::string> said = {
+      "c.json:4: /wall/scene/bindings/1/input is \"posture.pinhc\", which is no posture of " +
+          postures + "; did you mean \"pinch\"? it knows ",
+      "c.json:5: /wall/scene/bindings/2/input is \"posture.salute\", which is no posture of " +
+          postures + "; it knows ",
+      "thumb-up"};
+  expectOutcome(run({kMerlind, "--check-config", dir_ / "c.json"}), 2, said);
+  expectOutcome(run({kMerlind, "--config", dir_ / "c.json"}), 2, said);
+  writeText(dir_ / "n.json", R"({"devices": {
+    "postures": "none.json"}})");
+  expectOutcome(run({kMerlind, "--check-config", dir_ / "n.json"}), 2,
+                {"n.json:2: /devices/postures cannot be used: ", "none.json: No such file"});
+  expectOutcome(run({kMerlind, "--check-config", dir_ / "n.json", "--role", "wall"}), 0, {"valid"});
+}
+
 TEST_F(BadInput, UsageErrorsExitWithTwo) {
   expectOutcome(run({kMerlin}), 2, {"subcommand"});
   expectOutcome(run({kMerlin, "dance"}), 2, {"dance"});

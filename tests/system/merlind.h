@@ -39,6 +39,7 @@ struct MerlindOptions {
   double rate_hz = 10;  // a sanitizer's build cannot do 30
   bool emulate = true;
   std::map<std::string, std::string> environment = {};
+  nlohmann::json also = nlohmann::json::object();  // of the configuration, merged into the rest
 };
 
 class Merlind {
@@ -46,11 +47,12 @@ class Merlind {
   Merlind(const TempDir& dir, const std::string& model, const std::string& name,
           MerlindOptions options = {})
       : instance_(privateName(name)), config_(dir / (name + ".json")) {
-    const nlohmann::json config = {
+    nlohmann::json config = {
         {"instance", instance_},
         {"run_directory", dir.path()},
         {"devices", {{"postures", kSource + "/config/postures.json"}, {"script", options.script}}},
         {"wall", {{"model", model}, {"rate", {{"rate_hz", options.rate_hz}}}}}};
+    config.merge_patch(options.also);
     writeText(config_, config.dump(2));
     std::vector<std::string> arguments = {kMerlind, "--config", config_, "--role", options.role};
     if (options.emulate) arguments.emplace_back("--emulate");

@@ -58,6 +58,30 @@ TEST_F(Wall, AFistWithTheTrackerGrabs) {
   EXPECT_TRUE(eventually([&] { return m.wall().grabbed == 0; }));
 }
 
+// The emulated person makes a fist and opens the hand in turn.
+TEST_F(Wall, AFistPointsAndItsEndTakesASnapshot) {
+  const std::string folder = *dir_ / "taken";
+  const nlohmann::json bindings = {
+      {{"input", "posture.fist"}, {"action", "point_at"}},
+      {{"input", "posture.fist"}, {"action", "snapshot"}, {"on", "leave"}}};
+  Merlind m(*dir_, model_, "points",
+            {.script = "grabbing",
+             .also = {{"wall", {{"snapshots", folder}, {"scene", {{"bindings", bindings}}}}}}});
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  const auto hand = [&] {
+    const auto wall =
+        shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(m.instance(), "wall"));
+    return wall ? (*wall)->hand.read().value_or(shm::WallHand{}) : shm::WallHand{};
+  };
+  EXPECT_TRUE(eventually([&] { return hand().pointing != shm::WallHand::kNone; }));
+  EXPECT_TRUE(m.process().saysEventually("snapshot: " + folder + "/merlin-"))
+      << m.process().output();
+  const auto first = std::filesystem::directory_iterator(folder)->path();
+  EXPECT_EQ(readText(first).substr(1, 3), "PNG");
+  EXPECT_TRUE(m.status().contains("pointer"));
+  EXPECT_GE(m.status()["snapshots"], 1);
+}
+
 // Since `from` samples came, and of the newest of them none is missing.
 template <typename T>
 void expectContiguous(const shm::Channel<T>& channel, std::uint64_t from, const char* what) {

@@ -1,0 +1,46 @@
+#include "daemon/devices/posture_bindings.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "daemon/base/nearest.h"
+#include "nn/io/network_file.h"
+
+namespace merlin::devices {
+namespace {
+
+std::vector<std::string> namesOf(const nn::PostureTable& postures) {
+  std::vector<std::string> names;
+  for (std::uint32_t code = 0; code < nn::kCodes; ++code) {
+    if (!postures.name(code).empty()) names.emplace_back(postures.name(code));
+  }
+  return names;
+}
+
+}  // namespace
+
+void checkPostures(LoadedSettings& loaded) {
+  const std::string& path = loaded.settings.devices.postures;
+  if (path.empty()) return;
+  const auto file = nn::loadNetwork(path);
+  if (!file) return loaded.wrong("/devices/postures", "cannot be used: " + file.error().what);
+  const std::vector<std::string> names = namesOf(file->network.postures);
+  constexpr std::string_view kPosture = "posture.";
+  const auto& bindings = loaded.settings.wall.scene.bindings;
+  for (std::size_t i = 0; i < bindings.size(); ++i) {
+    const std::string& input = bindings[i].input;
+    if (!input.starts_with(kPosture) || input.size() == kPosture.size()) continue;
+    const std::string name = input.substr(kPosture.size());
+    if (file->network.postures.code(name)) continue;
+    const std::string near = nearest(name, names);
+    loaded.wrong(fmt::format("/wall/scene/bindings/{}/input", i),
+                 fmt::format("is \"{}\", which is no posture of {}; {}it knows {}", input, path,
+                             near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near),
+                             fmt::join(names, ", ")));
+  }
+}
+
+}  // namespace merlin::devices

@@ -1,0 +1,146 @@
+// ./dev bench posture: recall beside FANN with the same weights; a pass in double judges both.
+//
+// Built twice, since FANN's libraries share their names: with its floats and with its doubles.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+#ifdef MERLIN_FANN_DOUBLE
+#include <doublefann.h>
+#else
+#include <floatfann.h>
+#endif
+#include <fmt/format.h>
+
+#include "daemon/base/clock.h"
+#include "nn/fit.h"
+#include "nn/recall.h"
+#include "nn/train.h"
+#include "tests/nn/shipped.h"
+
+namespace merlin::bench {
+namespace {
+
+constexpr bool kDouble = sizeof(fann_type) == sizeof(double);
+
+// Nanoseconds of one call of f(n), the least of many rounds: one that nothing else broke into.
+template <typename F>
+double nanoseconds(F f) {
+  constexpr int kCalls = 2000, kRounds = 500;
+  const SystemClock clock;
+  double least = 1e9;
+  for (int r = 0; r < kRounds; ++r) {
+    const Timestamp began = clock.now();
+    for (int n = 0; n < kCalls; ++n) f(static_cast<std::size_t>(n));
+    least = std::min(least, 1e9 * toSeconds(clock.now() - began) / kCalls);
+  }
+  return least;
+}
+
+struct FannDeleter {
+  void operator()(fann* net) const { fann_destroy(net); }
+};
+using FannNetwork = std::unique_ptr<fann, FannDeleter>;
+
+// The same network in FANN: its sigmoid is 1 / (1 + e^(-2 s t)), so s = 1/2.
+FannNetwork toFann(const nn::Weights& weights) {
+  constexpr unsigned kHidden0 = nn::kInputs + 1, kOutput0 = kHidden0 + nn::kHidden + 1;
+  FannNetwork net(fann_create_standard(3, nn::kInputs, nn::kHidden, nn::kOutputs));
+  fann_set_activation_function_hidden(net.get(), FANN_SIGMOID);
+  fann_set_activation_function_output(net.get(), FANN_SIGMOID);
+  fann_set_activation_steepness_hidden(net.get(), fann_type(0.5));
+  fann_set_activation_steepness_output(net.get(), fann_type(0.5));
+  std::vector<fann_connection> all(fann_get_total_connections(net.get()));
+  fann_get_connection_array(net.get(), all.data());
+  for (fann_connection& c : all) {
+    const float w = c.to_neuron >= kOutput0
+                        ? weights.output[c.to_neuron - kOutput0][c.from_neuron - kHidden0]
+                        : weights.hidden[c.to_neuron - kHidden0][c.from_neuron];
+    c.weight = fann_type(w);
+  }
+  fann_set_weight_array(net.get(), all.data(), static_cast<unsigned>(all.size()));
+  return net;
+}
+
+nn::TrainingWeights widen(const nn::Weights& weights) {
+  nn::TrainingWeights w;
+  for (std::size_t j = 0; j < nn::kHidden; ++j)
+    std::copy(weights.hidden[j].begin(), weights.hidden[j].end(), w.hidden[j].begin());
+  for (std::size_t k = 0; k < nn::kOutputs; ++k)
+    std::copy(weights.output[k].begin(), weights.output[k].end(), w.output[k].begin());
+  return w;
+}
+
+using FannInput = std::array<fann_type, nn::kInputs>;
+
+struct Differences {
+  double between = 0, ours = 0, theirs = 0;  // the last two: from the pass in double
+};
+
+Differences differencesOf(const nn::PostureNetwork& network, const std::vector<nn::Input>& inputs) {
+  const FannNetwork net = toFann(network.weights);
+  const nn::Recall recall(network.phi, network.weights);
+  const nn::TrainingWeights weights = widen(network.weights);
+  Differences most;
+  for (const nn::Input& in : inputs) {
+    std::array<double, nn::kInputs> x{};
+    FannInput fann_x{};
+    std::copy(in.begin(), in.end(), x.begin());
+    std::copy(in.begin(), in.end(), fann_x.begin());
+    const auto exact = nn::propagate(network.phi, weights, x).output;
+    const nn::Output our = recall(in);
+    const fann_type* their = fann_run(net.get(), fann_x.data());
+    for (std::size_t k = 0; k < nn::kOutputs; ++k) {
+      const auto o = static_cast<double>(our[k]), t = static_cast<double>(their[k]);
+      most.between = std::max(most.between, std::abs(o - t));
+      most.ours = std::max(most.ours, std::abs(o - exact[k]));
+      most.theirs = std::max(most.theirs, std::abs(t - exact[k]));
+    }
+  }
+  return most;
+}
+
+void times(const nn::PostureNetwork& network, const std::vector<nn::Input>& inputs) {
+  const FannNetwork net = toFann(network.weights);
+  const nn::Recall recall(network.phi, network.weights);
+  std::vector<FannInput> fann_inputs(inputs.size());
+  for (std::size_t n = 0; n < inputs.size(); ++n)
+    std::copy(inputs[n].begin(), inputs[n].end(), fann_inputs[n].begin());
+  volatile double sink = 0;
+  const double theirs = nanoseconds([&](std::size_t n) {
+    sink = static_cast<double>(*fann_run(net.get(), fann_inputs[n % 1024].data()));
+  });
+  const double ours =
+      nanoseconds([&](std::size_t n) { sink = static_cast<double>(recall(inputs[n % 1024])[0]); });
+  const double portably = nanoseconds(
+      [&](std::size_t n) { sink = static_cast<double>(recall.portably(inputs[n % 1024])[0]); });
+  fmt::print(
+      "  MERLIN {:.0f} ns, FANN {:.0f} ns: {:.1f} times faster; {:.0f} ns, {:.1f} times, without "
+      "AVX2\n",
+      ours, theirs, theirs / ours, portably, theirs / portably);
+}
+
+int run() {
+  const auto fitted = nn::fit(nn::test::people(hand::allShapes(), 1, 10, 5, 1), {});
+  if (!fitted) return EXIT_FAILURE;
+  std::vector<nn::Input> inputs;
+  for (const nn::LabelledHand& h : nn::test::people(hand::allShapes(), 5001, 10, 5, 3))
+    inputs.push_back(nn::normalise(fitted->network.ranges, h.value));
+  fmt::print("\nforward pass beside FANN in {}, same weights, 31 postures, {} hands\n",
+             kDouble ? "double" : "float", inputs.size());
+  times(fitted->network, inputs);
+  const Differences d = differencesOf(fitted->network, inputs);
+  fmt::print(
+      "  outputs differ by at most {:.1e}; from a pass in double MERLIN's by {:.1e}, FANN's by "
+      "{:.1e}\n",
+      d.between, d.ours, d.theirs);
+  return EXIT_SUCCESS;
+}
+
+}  // namespace
+}  // namespace merlin::bench
+
+int main() { return merlin::bench::run(); }

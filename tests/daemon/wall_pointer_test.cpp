@@ -1,0 +1,68 @@
+// The pointer's mark on a wall on a virtual clock: it moves while the picture stands.
+#include <gtest/gtest.h>
+
+#include "tests/support/fake_wall.h"
+
+namespace merlin::wall {
+namespace {
+
+class WallPointerTest : public FakeWall {
+ protected:
+  WallPointerTest() {
+    render::SceneSettings settings;
+    settings.tracker_axes = {1, 2, 3};
+    settings.bindings = {{"ball.button.1", render::Action::kPointAt},
+                         {"ball.button.2", render::Action::kSnapshot}};
+    scene_ = *render::Scene::make(settings);
+    painter_.pixels_.assign(4 * 1280 * 960, 90);
+    marker_ = &made_;
+    feed_.pushed = false;
+    feed_.hand.emplace();
+    feed_.hand->orientation_wxyz[0] = 1;
+  }
+  Duration since() const { return clock_.now() - feed_.begins.front(); }
+
+  render::TilePlan plan_ = *render::planTiles({});
+  PointerMarker made_{plan_};
+};
+
+TEST_F(WallPointerTest, EveryPlaceOfTheMarkIsShownWhileThePictureStands) {
+  std::size_t standing = 0, drawn = 0;
+  run(4, [&](Timestamp) {
+    if (since() < std::chrono::seconds(2)) {
+      standing = frames_.frames.size();
+      drawn = painter_.drawn.size();
+      return;
+    }
+    feed_.buttons = 1;
+    feed_.hand->position_m[0] += 0.01F;  // some pixels a frame
+  });
+  ASSERT_GT(standing, 0u);
+  EXPECT_NEAR(static_cast<double>(frames_.frames.size() - standing), 60, 2);
+  EXPECT_EQ(painter_.drawn.size(), drawn) << "no triangle is drawn for it";
+  EXPECT_TRUE(frames_.frames.back().full_detail);
+  EXPECT_EQ(painter_.pixels_, std::vector<std::uint8_t>(4 * 1280 * 960, 90)) << "put back";
+  EXPECT_EQ(hand_->read()->pointing, shm::WallHand::kAtModel);
+}
+
+TEST_F(WallPointerTest, AMarkThatStandsIsShownOnceAndItsEndToo) {
+  std::size_t pointing = 0, standing = 0;
+  run(4, [&](Timestamp) {
+    if (since() < std::chrono::seconds(2)) standing = frames_.frames.size();
+    feed_.buttons = since() > std::chrono::seconds(2) && since() < std::chrono::seconds(3) ? 1 : 0;
+    if (feed_.buttons) pointing = frames_.frames.size();
+  });
+  EXPECT_EQ(pointing, standing + 1);
+  EXPECT_EQ(frames_.frames.size(), standing + 2);
+  EXPECT_EQ(hand_->read()->pointing, shm::WallHand::kNone);
+  EXPECT_EQ(hand_->read()->pixel[0], -1);
+}
+
+TEST_F(WallPointerTest, OrdersAreToldInSharedMemory) {
+  run(1, [&](Timestamp) { feed_.buttons = since() > milliseconds(500) ? 2 : 0; });
+  EXPECT_EQ(hand_->read()->snapshots, 1u);
+  EXPECT_EQ(hand_->read()->lamps, 0u);
+}
+
+}  // namespace
+}  // namespace merlin::wall

@@ -1,0 +1,109 @@
+#include "render/scene/scene.h"
+#include "tests/render/scene_play.h"
+
+namespace merlin::test {
+namespace {
+
+using render::Action;
+
+// The tracker's axes are the wall's, its transmitter stands 0.5 m below the eye; the model is a
+// sphere of 0.5 m, 2 m away, and the wall is 3 m away.
+SceneSettings pointing() {
+  SceneSettings s;
+  s.model_radius_m = 0.5;
+  s.tracker_axes = {1, 2, 3};
+  s.tracker_origin_m = {0, -0.5, 0};
+  s.wall_distance_m = 3;
+  s.bindings = {{"posture.point", Action::kPointAt}};
+  return s;
+}
+
+ScenePlay pointingFrom(const Vector3f& hand,
+                       const Eigen::Matrix3f& turn = Eigen::Matrix3f::Identity()) {
+  ScenePlay play(pointing());
+  play.rest();
+  play.showPosture("point");
+  play.holdHand(hand, turn);
+  play.update(20);
+  return play;
+}
+
+void expectPoint(const Vector3f& got, const Vector3f& want) {
+  EXPECT_LT((got - want).norm(), 1e-4F) << got.transpose() << ", not " << want.transpose();
+}
+
+// From the eye's height: the ray is the eye's axis, and enters the sphere 1.5 m away.
+TEST(ScenePointing, TheRayEntersTheModelsSphere) {
+  const ScenePlay play = pointingFrom({0, 0.5F, 0});
+  const auto& pointed = play.scene.view().pointed;
+  ASSERT_TRUE(pointed);
+  EXPECT_TRUE(pointed->on_model);
+  expectPoint(pointed->at_eye_m, {0, 0, -1.5F});
+  expectPoint(pointed->at_model_m, {0, 0, 0.5F});
+  EXPECT_FALSE(play.scene.view().moving) << "the picture may stay as fine as it is";
+}
+
+TEST(ScenePointing, ItsPlaceIsInTheModelsOwnAxes) {
+  ScenePlay play = pointingFrom({0.3F, 0.5F, 0});  // 0.4 = sqrt(0.5^2 - 0.3^2)
+  expectPoint(play.scene.view().pointed->at_model_m, {0.3F, 0, 0.4F});
+  play.push(Vector3f::Zero(), {0, 1, 0});
+  for (int i = 0; i < 10; ++i) play.update(100);
+  const Vector3f at_eye = play.scene.view().pointed->at_eye_m;
+  expectPoint(at_eye, {0.3F, 0, -1.6F});
+  expectPoint(play.scene.view().pointed->at_model_m,
+              play.turn().transpose() * (at_eye - play.position()));
+}
+
+TEST(ScenePointing, PastTheModelItHitsTheWall) {
+  const ScenePlay play = pointingFrom({0.6F, 0.5F, 0});
+  const auto& pointed = play.scene.view().pointed;
+  ASSERT_TRUE(pointed);
+  EXPECT_FALSE(pointed->on_model);
+  expectPoint(pointed->at_eye_m, {0.6F, 0, -std::sqrt(9 - 0.36F)});
+}
+
+// A turn to the left by 90 degrees points to the left, away from the model.
+TEST(ScenePointing, FollowsTheHandsTurn) {
+  const ScenePlay play = pointingFrom({0, 0.5F, 0}, turnedBy(90, Vector3f::UnitY()));
+  ASSERT_TRUE(play.scene.view().pointed);
+  expectPoint(play.scene.view().pointed->at_eye_m, {-3, 0, 0});
+}
+
+TEST(ScenePointing, TheModelBehindTheHandIsNotHit) {
+  const ScenePlay play = pointingFrom({0, 0.5F, -2.6F});
+  ASSERT_TRUE(play.scene.view().pointed);
+  EXPECT_FALSE(play.scene.view().pointed->on_model);
+  expectPoint(play.scene.view().pointed->at_eye_m, {0, 0, -3});
+}
+
+TEST(ScenePointing, EndsWithThePostureOrTheTracker) {
+  ScenePlay play = pointingFrom({0, 0.5F, 0});
+  play.showPosture("open");
+  EXPECT_FALSE(play.update(20).pointed);
+  play.showPosture("point");
+  EXPECT_TRUE(play.update(20).pointed);
+  play.input.hand.reset();
+  EXPECT_FALSE(play.update(20).pointed);
+}
+
+TEST(SceneOrders, AreCountedOnceAPressAndSurviveAReset) {
+  SceneSettings s;
+  s.bindings = {{"ball.button.1", Action::kSnapshot},
+                {"ball.button.2", Action::kLampSlow},
+                {"ball.button.2", Action::kLampOff, render::When::kLeave},
+                {"ball.button.3", Action::kResetView}};
+  ScenePlay play(s);
+  play.press(1);
+  play.update(20);
+  EXPECT_EQ(play.update(20).orders.snapshots, 1u);
+  play.press(1 | 2);
+  EXPECT_EQ(play.update(20).orders.lamp, Action::kLampSlow);
+  play.press(4);
+  const render::Orders orders = play.update(20).orders;
+  EXPECT_EQ(orders.snapshots, 1u);
+  EXPECT_EQ(orders.lamps, 2u);
+  EXPECT_EQ(orders.lamp, Action::kLampOff);
+}
+
+}  // namespace
+}  // namespace merlin::test

@@ -1,0 +1,114 @@
+// merlin posture collect and merlin calibrate glove, as a person runs them: on an emulated glove's
+// line, and on a recording of one.
+#include <gtest/gtest.h>
+
+#include "nn/io/data_set_file.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+std::vector<std::string> collect(Merlind& merlind, const std::string& label,
+                                 const std::string& file) {
+  return {kMerlin, "posture",   "collect", label,        "-o",
+          file,    "--seconds", "0.5",     "--instance", merlind.instance()};
+}
+
+std::size_t handsOf(const nn::Recording& recording, const std::string& posture) {
+  return static_cast<std::size_t>(
+      std::count_if(recording.hands.begin(), recording.hands.end(),
+                    [&](const nn::LabelledHand& h) { return h.posture == posture; }));
+}
+
+// Nobody moves: the emulated hand is open all the time, whatever it is said to be.
+TEST(PostureCollect, TakesHandsOfALiveGloveAndWarnsOfTwoThatLookAlike) {
+  const TempDir dir;
+  Merlind merlind(dir, "", "collect", {.script = "still", .role = "devices"});
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  ASSERT_TRUE(merlind.healthIs(shm::kGlove, HealthState::kOk));
+  const std::string file = dir / "hands.csv";
+  const Outcome open = run(collect(merlind, "open", file));
+  ASSERT_EQ(open.status, 0) << open.output;
+  EXPECT_NE(open.output.find("hold \"open\" for 0.5 s"), std::string::npos) << open.output;
+  EXPECT_EQ(open.output.find("warning"), std::string::npos) << open.output;
+
+  const Outcome fist = run(collect(merlind, "fist", file));
+  ASSERT_EQ(fist.status, 0) << fist.output;
+  EXPECT_NE(fist.output.find("warning: \"fist\" and \"open\" are hard to tell apart"),
+            std::string::npos)
+      << fist.output;
+  const auto recording = nn::loadRecording(file);
+  ASSERT_TRUE(recording) << recording.error().what;
+  EXPECT_GT(handsOf(*recording, "open"), 20u);
+  EXPECT_GT(handsOf(*recording, "fist"), 20u);
+  EXPECT_EQ(recording->unit, nn::InputUnit::kRadians);
+  EXPECT_TRUE(recording->measured[5]);
+  EXPECT_FALSE(recording->measured[7]) << "no glove has that sensor";
+}
+
+TEST(PostureCollect, ShowsTheSensorsAsBarsOnATerminal) {
+  const TempDir dir;
+  Merlind merlind(dir, "", "bars", {.script = "still", .role = "devices"});
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  std::string command;
+  for (const std::string& word : collect(merlind, "open", dir / "hands.csv")) command += word + " ";
+  const Outcome shown = run({"script", "-qec", command, "/dev/null"});
+  EXPECT_EQ(shown.status, 0) << shown.output;
+  EXPECT_NE(shown.output.find("index-pip"), std::string::npos) << shown.output;
+  EXPECT_NE(shown.output.find("[###"), std::string::npos) << shown.output;
+}
+
+TEST(PostureCollect, TakesHandsOfARecording) {
+  const TempDir dir;
+  Process glove({kMerlin, "emulate", "cyberglove", "--link", dir / "glove", "--script", "still"});
+  ASSERT_TRUE(glove.saysEventually("cyberglove on")) << glove.output();
+  const Outcome recorded = run({kMerlin, "record", "pty:" + dir / "glove", "--device", "cyberglove",
+                                "-o", dir / "glove.bytes", "--seconds", "2"});
+  ASSERT_EQ(recorded.status, 0) << recorded.output;
+  Merlind merlind(
+      dir, "", "replayed",
+      {.role = "devices",
+       .emulate = false,
+       .also = {{"devices", {{"glove", {{"port", "replay:" + dir / "glove.bytes"}}}}}}});
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  const std::string file = dir / "hands.csv";
+  const Outcome open = run(collect(merlind, "open", file));
+  ASSERT_EQ(open.status, 0) << open.output << merlind.process().output();
+  const auto recording = nn::loadRecording(file);
+  ASSERT_TRUE(recording) << recording.error().what;
+  EXPECT_GT(handsOf(*recording, "open"), 20u);
+}
+
+TEST(PostureCollect, SaysWhyThereAreNoHands) {
+  const TempDir dir;
+  Merlind merlind(dir, "", "silent", {.role = "devices", .emulate = false});
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  const Outcome silent = run(collect(merlind, "open", dir / "hands.csv"));
+  EXPECT_EQ(silent.status, 1) << silent.output;
+  EXPECT_NE(silent.output.find("the glove has been silent for 3 s"), std::string::npos);
+  const Outcome name = run(collect(merlind, "two words", dir / "hands.csv"));
+  EXPECT_EQ(name.status, 2) << name.output;
+  EXPECT_NE(name.output.find("LABEL \"two words\": allowed are 1 to 19 letters"),
+            std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(dir / "hands.csv"));
+}
+
+// A hand that stays open through all poses says nothing of its sensors' spans.
+TEST(CalibrateGlove, NamesTheSensorsThatDidNotMoveAndLeavesTheFile) {
+  const TempDir dir;
+  Process glove({kMerlin, "emulate", "cyberglove", "--link", dir / "glove", "--script", "still"});
+  ASSERT_TRUE(glove.saysEventually("cyberglove on")) << glove.output();
+  const std::string config = dir / "merlin.json";
+  writeText(config, "{\"instance\": \"kept\"}");
+  const Outcome done = run({kMerlin, "calibrate", "glove", "pty:" + dir / "glove", "-o", config,
+                            "--pause", "0.1", "--hold", "0.2"});
+  EXPECT_EQ(done.status, 2) << done.output;
+  EXPECT_NE(done.output.find("CyberGlove"), std::string::npos) << "who it is: " << done.output;
+  EXPECT_NE(done.output.find("fist: "), std::string::npos) << "what to do: " << done.output;
+  EXPECT_NE(done.output.find("sensors hardly moved"), std::string::npos) << done.output;
+  EXPECT_NE(done.output.find("in \"wrist aside\""), std::string::npos) << done.output;
+  EXPECT_EQ(readText(config), "{\"instance\": \"kept\"}");
+}
+
+}  // namespace
+}  // namespace merlin::test
