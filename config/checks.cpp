@@ -175,6 +175,8 @@ void checkDoers(const Settings& s, LoadedSettings& loaded) {
     const std::string at = fmt::format("/wall/scene/bindings/{}/action", i);
     if (action == render::Action::kSnapshot && s.wall.snapshots.empty())
       loaded.wrong(at, "is snapshot, which needs a folder: /wall/snapshots names none");
+    if (action == render::Action::kNextContent && s.wall.contents.empty())
+      loaded.wrong(at, "is next_content, and there is one model only: /wall/contents names none");
     if (render::isLamp(action) && (s.devices.gpio.chip.empty() || s.devices.gpio.lamp_line < 0))
       loaded.wrong(at, fmt::format("is {}, which needs a lamp: /devices/gpio has no chip with a "
                                    "lamp_line",

@@ -15,8 +15,9 @@ constexpr const char* kScripts[] = {"visit", "turning", "still", "grabbing"};
 constexpr const char* kDialogues[] = {"binary", "text"};
 constexpr const char* kWristLights[] = {"switch", "off", "on"};
 constexpr const char* kTrackerNumbers[] = {"binary", "text", "short"};
-constexpr const char* kPanelCommands[] = {"next_mode",     "reset_view", "projector_on",
-                                          "projector_off", "video_a",    "video_b"};
+constexpr const char* kPanelCommands[] = {"next_mode",    "reset_view",    "next_content",
+                                          "projector_on", "projector_off", "video_a",
+                                          "video_b"};
 
 constexpr const char* kGloves[] = {"cyberglove"};
 constexpr const char* kTrackers[] = {"fastrak"};
@@ -230,7 +231,9 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
     v.text("server_key", w.input.server_key, "That merlind's public key.");
     v.path("keys", w.input.keys, "This machine's keys: merlin keys -o FILE.");
   });
-  v.path("model", w.model, "The multiresolution model that is shown, an .mrm file.");
+  v.path("model", w.model, "The multiresolution model that is shown (first), an .mrm file.");
+  v.listOf<ContentSettings>("contents", w.contents, "Shown after it, in turn, by next_content.",
+                            [&](ContentSettings& c) { v.path("model", c.model, "An .mrm file."); });
   v.group("rate", "The frame rate, and what is given for it.", [&] {
     v.number("rate_hz", w.governor.rate_hz, {1, 240}, "Frames a second while anything moves.");
     v.integer("min_triangles", w.governor.min_triangles, {4, 1e6},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "daemon/serve/settings.h"
 #include "drivers/cyberglove/settings.h"
@@ -48,9 +49,14 @@ struct InputSettings {
   std::string keys;        // this machine's pair of keys, a file
 };
 
+struct ContentSettings {
+  std::string model;  // an .mrm file
+};
+
 struct WallSettings {
   InputSettings input;
-  std::string model;  // an .mrm file
+  std::string model;                      // an .mrm file, shown first
+  std::vector<ContentSettings> contents;  // shown after it, in turn
   render::GovernorSettings governor;
   render::TilesSettings tiles;
   render::SceneSettings scene;

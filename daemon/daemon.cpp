@@ -37,6 +37,16 @@ Duration watchdogInterval() {
                                              : Duration{};
 }
 
+struct WallRequest {
+  const char* name;
+  wall::WallLoop::Request what;
+  const char* help;
+};
+constexpr WallRequest kWallRequests[] = {
+    {"reset_view", wall::WallLoop::kResetView, "model and viewer back to the start"},
+    {"next_mode", wall::WallLoop::kNextMode, "the ball moves the model, or the viewer"},
+    {"next_content", wall::WallLoop::kNextContent, "the next of the configuration's models"}};
+
 // A command whose argument is a number within these, or "auto".
 status::Command byHand(const std::string& name, const std::string& help, double least, double most,
                        const std::function<void(std::optional<double>)>& set) {
@@ -198,9 +208,10 @@ void Daemon::takeOrders() {
 
 // Of the panel or of the wall: what a button may be bound to.
 Result<std::string> Daemon::runCommand(const std::string& name) {
-  if (name == "next_mode" || name == "reset_view") {
+  for (const WallRequest& request : kWallRequests) {
+    if (name != request.name) continue;
     if (!wall_) return Error{Errc::kInvalidArgument, "this process draws no wall"};
-    wall_->request(name == "next_mode" ? wall::WallLoop::kNextMode : wall::WallLoop::kResetView);
+    wall_->request(request.what);
     return std::string("{}");
   }
   if (const auto done = devices_->panel()->obey(name); !done) return done.error();
@@ -380,22 +391,20 @@ Result<Ok> Daemon::serveWall() {
   const auto statusNow = [this, &segment] { return status::wallStatus(segment, clock_.now()); };
   s.publications = {{"status", kOnceASecond, statusNow},
                     {"metrics", kOnceASecond, [&segment] { return status::wallMetrics(segment); }}};
-  const auto ask = [this](wall::WallLoop::Request what) {
-    return [this, what]() -> Result<std::string> {
-      wall_->request(what);
-      return std::string("{}");
-    };
-  };
   s.commands = {
       {"status", "the wall's status", [statusNow]() -> Result<std::string> { return statusNow(); }},
-      {"reset_view", "model and viewer back to the start", ask(wall::WallLoop::kResetView)},
-      {"next_mode", "the ball moves the model, or the viewer", ask(wall::WallLoop::kNextMode)},
       byHand("triangles", "a number from 4 on, or auto", 4, 1e9,
              [this](std::optional<double> n) {
                wall_->hold(n ? std::optional(static_cast<std::size_t>(*n)) : std::nullopt);
              }),
       byHand("rate", "frames a second from 1 to 240, or auto", 1, 240,
              [this](std::optional<double> hz) { wall_->setRate(hz); })};
+  for (const WallRequest& request : kWallRequests) {
+    s.commands.push_back({request.name, request.help, [this, what = request.what] {
+                            wall_->request(what);
+                            return Result<std::string>("{}");
+                          }});
+  }
   s.events = wallEvents();
   return serveStatus("wall", std::move(s));
 }

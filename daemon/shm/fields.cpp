@@ -231,6 +231,7 @@ std::vector<Field> wallFields() {
   MERLIN_FIELD(t, WallHand, snapshots, "");
   MERLIN_FIELD(t, WallHand, lamps, "");
   MERLIN_FIELD(t, WallHand, lamp, "Lamp");
+  MERLIN_FIELD(t, WallHand, content, "");
   return t.take();
 }
 

@@ -156,7 +156,7 @@ struct WallHand {
   std::uint32_t snapshots;  // of the frame, asked for since the start
   std::uint32_t lamps;      // times that a lamp was asked for, since the start
   std::uint32_t lamp;       // the last of them: GpioSample::Lamp
-  std::uint32_t reserved;
+  std::uint32_t content;    // that is shown: 0 the model, 1 .. the configuration's contents
 };
 static_assert(sizeof(WallHand) == 48 && offsetof(WallHand, snapshots) == 32);
 

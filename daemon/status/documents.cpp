@@ -165,6 +165,7 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now) {
                {"mode", text(s.mode)},
                {"grabbed", s.grabbed != 0},
                {"pointer", pointerJson(hand)},
+               {"content", hand.content},
                {"snapshots", hand.snapshots},
                {"work_ms", round3(s.work_ms)},
                {"work_median_ms", round3(s.work_median_ms)},

@@ -37,11 +37,15 @@ Eigen::Matrix4f scaling(const render::Dendrogram& model, float radius_m) {
 Result<std::unique_ptr<Picture>> Picture::make(const render::Dendrogram& model,
                                                const render::TilePlan& plan,
                                                const render::RenderSettings& settings,
-                                               double radius_m, const Clock& clock) {
+                                               double radius_m, const Clock& clock,
+                                               std::shared_ptr<const render::GlContext> context) {
   std::unique_ptr<Picture> picture(new Picture(model, plan, settings, radius_m, clock));
-  auto context = render::makeGlContext(settings.backend);
-  if (!context) return context.error();
-  picture->context_ = *std::move(context);
+  if (!context) {
+    auto made = render::makeGlContext(settings.backend);
+    if (!made) return made.error();
+    context = *std::move(made);
+  }
+  picture->context_ = std::move(context);
   const render::GlApi& gl = picture->context_->gl();
   std::vector<std::uint32_t> full;
   picture->clusters_.everything(full, picture->full_ends_);

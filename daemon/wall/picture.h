@@ -25,11 +25,12 @@ namespace merlin::wall {
 class Picture final : public Painter {
  public:
   // `radius_m`: the model is scaled to a bounding sphere of this radius about its box's centre.
-  // The model is borrowed. Errors: kUnsupported (no GL of that kind, or not enough of it).
-  static Result<std::unique_ptr<Picture>> make(const render::Dendrogram& model,
-                                               const render::TilePlan& plan,
-                                               const render::RenderSettings& settings,
-                                               double radius_m, const Clock& clock);
+  // The model is borrowed. `context`: another picture's, of this thread, to be drawn in as well;
+  // none: one of its own. Errors: kUnsupported (no GL of that kind, or not enough of it).
+  static Result<std::unique_ptr<Picture>> make(
+      const render::Dendrogram& model, const render::TilePlan& plan,
+      const render::RenderSettings& settings, double radius_m, const Clock& clock,
+      std::shared_ptr<const render::GlContext> context = nullptr);
 
   // Draws every state that a frame uses once, so that no shader is compiled in a frame.
   void warmUp(const Eigen::Isometry3f& T_eye_model);
@@ -41,6 +42,7 @@ class Picture final : public Painter {
   std::span<const PaintStep> steps() const noexcept override { return steps_; }
   std::span<std::uint8_t> pixels() noexcept override { return pixels_; }
 
+  const std::shared_ptr<const render::GlContext>& context() const noexcept { return context_; }
   const std::string& renderer() const noexcept { return context_->renderer(); }
 
  private:
@@ -75,7 +77,7 @@ class Picture final : public Painter {
   float radius_m_;
   Eigen::Matrix4f metres_from_model_;  // scale and centring
   const Clock& clock_;
-  std::unique_ptr<render::GlContext> context_;
+  std::shared_ptr<const render::GlContext> context_;
   std::unique_ptr<render::ModelRenderer> renderer_;
   std::vector<render::FrameBuffer> tiles_;
   render::Clusters clusters_;

@@ -29,7 +29,8 @@ WallLoop::WallLoop(WallParts parts)
       asked_hz_(1 / toSeconds(p_.governor.period())),
       configured_hz_(asked_hz_),
       period_(p_.governor.period()),
-      view_(p_.scene.view()) {}
+      view_(p_.scene.view()),
+      homes_(p_.contents.size()) {}
 
 void WallLoop::run(const std::stop_token& stop, const std::function<void()>& first_frame) {
   start_ = p_.clock.now();
@@ -60,10 +61,10 @@ void WallLoop::obeyRequests() {
   const std::uint32_t requests = requests_.exchange(0);
   if (requests & kResetView) {
     p_.scene.reset();
-    // The cost of what will be seen next is known, unlike that of a view which nobody had before.
-    if (home_drawing_s_ > 0) p_.governor.expect(home_drawing_s_ / drawingAtHome());
+    expectHome();
   }
   if (requests & kNextMode) p_.scene.nextMode();
+  if (requests & kNextContent) p_.scene.nextContent();
   const std::int64_t held = hold_.load();
   p_.governor.hold(held < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(held)));
 }
@@ -82,23 +83,50 @@ bool WallLoop::applyRate() {
 void WallLoop::calibrate() {
   std::vector<render::FrameCost> costs;
   const auto fits = [&] { return costs.empty() || costs.back().work <= period_; };
-  std::size_t last = p_.model.levels();
+  content_ = 0;
+  std::size_t last = model().levels();
   for (std::size_t triangles = 1000; fits(); triangles *= 4) {
-    const std::size_t level = p_.model.levelFor(triangles);
+    const std::size_t level = model().levelFor(triangles);
     if (std::exchange(last, level) == level) break;
     for (int i = 0; i < 3 && fits(); ++i) {
-      const DrawTimes t = p_.painter.draw(view_.T_eye_model, level, Timestamp::max());
-      costs.push_back({p_.model.trianglesAt(level), t.fixed, t.fixed + t.drawing, false});
+      const DrawTimes t = painter().draw(view_.T_eye_model, level, Timestamp::max());
+      costs.push_back({model().trianglesAt(level), t.fixed, t.fixed + t.drawing, false});
     }
     if (level == 0) break;
   }
   p_.governor.calibrate(costs);
-  home_triangles_ = p_.governor.budget();
-  home_drawing_s_ = drawingAtHome();
+  const std::size_t triangles = p_.governor.budget();
+  homes_[0] = {triangles, p_.governor.predict(triangles) - p_.governor.fixedSeconds()};
+  for (content_ = 1; content_ < p_.contents.size(); ++content_) measureHome();
+  content_ = 0;
 }
 
-double WallLoop::drawingAtHome() const {
-  return p_.governor.predict(home_triangles_) - p_.governor.fixedSeconds();
+// As fine as the first one is while it moves; the quickest of three, since the first of a painter
+// is slow.
+void WallLoop::measureHome() {
+  const std::size_t level = model().levelFor(homes_[0].triangles);
+  Home& home = homes_[content_];
+  home.triangles = model().trianglesAt(level);
+  for (int i = 0; i < 3; ++i) {
+    const DrawTimes t = painter().draw(view_.T_eye_model, level, Timestamp::max());
+    const double s = toSeconds(t.drawing);
+    home.drawing_s = i == 0 ? s : std::min(home.drawing_s, s);
+  }
+}
+
+// The cost of what will be seen next is known, unlike that of a view which nobody had before.
+void WallLoop::expectHome() {
+  const Home& home = homes_[content_];
+  const double now_s = p_.governor.predict(home.triangles) - p_.governor.fixedSeconds();
+  if (home.drawing_s > 0 && now_s > 0) p_.governor.expect(home.drawing_s / now_s);
+}
+
+void WallLoop::showNextContent() {
+  content_ = (content_ + 1) % p_.contents.size();
+  level_ = model().levels() - 1;
+  moving_level_.reset();
+  refining_ = full_detail_ = false;
+  expectHome();
 }
 
 void WallLoop::look(std::int64_t k, Timestamp began) {
@@ -106,6 +134,8 @@ void WallLoop::look(std::int64_t k, Timestamp began) {
   const Timestamp read = p_.clock.now();
   const bool was_moving = view_.moving;
   view_ = p_.scene.update(input, began);
+  if (std::exchange(contents_asked_, view_.orders.contents) != view_.orders.contents)
+    showNextContent();
   std::fill(std::begin(out_.posture), std::end(out_.posture), '\0');
   if (input.posture)
     std::copy(std::begin(input.posture->name), std::end(input.posture->name), out_.posture);
@@ -123,13 +153,13 @@ void WallLoop::look(std::int64_t k, Timestamp began) {
 // next. With a whole one, a level that is nearly right stays.
 std::size_t WallLoop::chooseLevel(Duration available) {
   const std::size_t budget = p_.governor.budgetFor(available);
-  if (budget == 0) return p_.model.levels();
-  if (budget != p_.governor.budget()) return p_.model.levelFor(budget);
+  if (budget == 0) return model().levels();
+  if (budget != p_.governor.budget()) return model().levelFor(budget);
   if (moving_level_ && !p_.governor.held()) {
-    const auto had = static_cast<double>(p_.model.trianglesAt(*moving_level_));
+    const auto had = static_cast<double>(model().trianglesAt(*moving_level_));
     if (std::abs(had / static_cast<double>(budget) - 1) < kSameLevel) return *moving_level_;
   }
-  moving_level_ = p_.model.levelFor(budget);
+  moving_level_ = model().levelFor(budget);
   return *moving_level_;
 }
 
@@ -139,14 +169,14 @@ std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
   const std::size_t level = chooseLevel(
       resuming_ ? std::min(left, fromSeconds(kResumingShare * toSeconds(period_))) : left);
   tracer_.add(StepKind::kGovernor, looked, p_.clock.now());
-  if (level == p_.model.levels()) {
+  if (level == model().levels()) {
     stats_.deadline(tick(k + 1), true, false);
     climb(true, true);
     return k + 1;
   }
   level_ = level;
-  const DrawTimes times = p_.painter.draw(view_.T_eye_model, level_, tick(k + 1) - kPresentMargin);
-  tracer_.add(p_.painter.steps());
+  const DrawTimes times = painter().draw(view_.T_eye_model, level_, tick(k + 1) - kPresentMargin);
+  tracer_.add(painter().steps());
   const Timestamp drawn = p_.clock.now();
   present(level_ == 0);
   const Timestamp finished = p_.clock.now();
@@ -154,7 +184,7 @@ std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
   refining_ = false;
   const bool met = finished <= tick(k + 1);
   const std::int64_t next = countDeadlines(k, finished);
-  stats_.frame(finished, finished - began, period_, p_.model.trianglesAt(level_));
+  stats_.frame(finished, finished - began, period_, model().trianglesAt(level_));
   out_.work_ms = static_cast<float>(1000 * toSeconds(finished - began));
   finishMoving(times, finished - drawn, met);
   return next;
@@ -170,8 +200,8 @@ std::int64_t WallLoop::countDeadlines(std::int64_t k, Timestamp finished) {
 }
 
 void WallLoop::finishMoving(const DrawTimes& times, Duration present, bool met) {
-  const std::size_t triangles = p_.model.trianglesAt(level_);
-  const bool least = triangles <= p_.governor.least() || level_ + 1 == p_.model.levels();
+  const std::size_t triangles = model().trianglesAt(level_);
+  const bool least = triangles <= p_.governor.least() || level_ + 1 == model().levels();
   // What the frame would have cost with every view as fine as the wall.
   const Duration fixed = times.fixed + present;
   if (!resuming_ || !met) p_.governor.observe({triangles, fixed, fixed + times.drawing, !met});
@@ -196,8 +226,8 @@ std::int64_t WallLoop::stillPeriod(std::int64_t k) {
   if (!full_detail_) {
     if (!refining_) beginRefining();
     const Timestamp from = p_.clock.now();
-    const bool whole = p_.painter.refine(tick(k + 1) - kRefineMargin);
-    const auto steps = p_.painter.steps();
+    const bool whole = painter().refine(tick(k + 1) - kRefineMargin);
+    const auto steps = painter().steps();
     if (steps.empty()) tracer_.add(StepKind::kRefine, from, p_.clock.now());
     tracer_.add(steps);
     if (whole) showRefined();
@@ -213,15 +243,15 @@ std::int64_t WallLoop::stillPeriod(std::int64_t k) {
 // so on: all that together takes less than half as long again as full detail alone.
 void WallLoop::beginRefining() {
   refining_ = true;
-  const std::size_t now = p_.model.trianglesAt(level_);
+  const std::size_t now = model().trianglesAt(level_);
   const Duration first = std::min<Duration>(period_ * 5 / 4, kFirstRefinement);
   const std::size_t finer =
       first_refinement_ ? p_.governor.trianglesWithin(first) : kNextRefinement * now;
-  refined_level_ = p_.model.levelFor(finer);
-  const bool worth = finer > now && finer < p_.model.triangleCount() / 2;
-  if (worth && p_.painter.beginRefiningTo(view_.T_eye_model, refined_level_)) return;
+  refined_level_ = model().levelFor(finer);
+  const bool worth = finer > now && finer < model().triangleCount() / 2;
+  if (worth && painter().beginRefiningTo(view_.T_eye_model, refined_level_)) return;
   refined_level_ = 0;
-  p_.painter.beginRefining(view_.T_eye_model);
+  painter().beginRefining(view_.T_eye_model);
 }
 
 void WallLoop::showRefined() {
@@ -238,9 +268,9 @@ void WallLoop::showRefined() {
 
 void WallLoop::present(bool full_detail) {
   full_detail_ = full_detail;
-  const auto triangles = static_cast<std::uint32_t>(p_.model.trianglesAt(level_));
+  const auto triangles = static_cast<std::uint32_t>(model().trianglesAt(level_));
   const render::FrameInfo info{++frames_, p_.clock.now(), triangles, full_detail};
-  const std::span<std::uint8_t> pixels = p_.painter.pixels();
+  const std::span<std::uint8_t> pixels = painter().pixels();
   if (p_.marker) p_.marker->draw(pixels, pointedAt());
   for (render::FrameSink* sink : p_.sinks) sink->present(pixels, info);
   if (p_.marker) p_.marker->erase(pixels);

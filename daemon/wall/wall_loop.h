@@ -29,9 +29,14 @@
 
 namespace merlin::wall {
 
+// A model, and who draws it.
+struct Content {
+  const render::Dendrogram* model;
+  Painter* painter;
+};
+
 struct WallParts {
-  const render::Dendrogram& model;
-  Painter& painter;
+  std::vector<Content> contents;  // one at least; the first one is shown first
   render::Scene& scene;
   render::Governor& governor;
   InputFeed& feed;
@@ -48,15 +53,16 @@ class WallLoop {
  public:
   explicit WallLoop(WallParts parts);
 
-  // Draws a dozen frames of different sizes, a second at most, and tells the governor what they
-  // cost. Nothing is presented. Before run(), or not at all.
+  // Draws a dozen frames of different sizes of the first content, a second at most, and tells the
+  // governor what they cost; a few of each other one. Nothing is presented. Before run(), or not at
+  // all.
   void calibrate();
 
   // Until `stop`. `first_frame` is called once, after the first frame reached every sink.
   void run(const std::stop_token& stop, const std::function<void()>& first_frame);
 
   // From another thread: done before the next frame.
-  enum Request : std::uint32_t { kResetView = 1, kNextMode = 2 };
+  enum Request : std::uint32_t { kResetView = 1, kNextMode = 2, kNextContent = 4 };
   void request(Request what) noexcept { requests_.fetch_or(what); }
 
   // From another thread, before the next frame: so many triangles while it moves, or as the
@@ -88,7 +94,11 @@ class WallLoop {
   std::optional<Eigen::Vector3f> pointedAt() const;
   void publishStats(Timestamp now);
   void paceStats(Timestamp now);
-  double drawingAtHome() const;
+  const render::Dendrogram& model() const noexcept { return *p_.contents[content_].model; }
+  Painter& painter() const noexcept { return *p_.contents[content_].painter; }
+  void measureHome();
+  void expectHome();
+  void showNextContent();
 
   WallParts p_;
   double asked_hz_, configured_hz_;
@@ -106,8 +116,14 @@ class WallLoop {
   bool resuming_ = false;          // the next frame is the first after a standstill
   Timestamp still_since_{};
   std::uint64_t frames_ = 0;
-  std::size_t home_triangles_ = 0;
-  double home_drawing_s_ = 0;  // of as many, where the model stands at first; 0: not known
+  // Where a content stands at first, so many triangles take so long; 0: not known.
+  struct Home {
+    std::size_t triangles = 0;
+    double drawing_s = 0;
+  };
+  std::vector<Home> homes_;  // by content
+  std::size_t content_ = 0;
+  std::uint32_t contents_asked_ = 0;
   shm::WallStats out_{};
   std::atomic<std::int64_t> hold_{-1};  // triangles; -1: as the governor says
   std::atomic<double> rate_hz_{0};      // 0: as configured

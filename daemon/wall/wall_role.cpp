@@ -2,11 +2,35 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "daemon/shm/fields.h"
 #include "render/lod/io/mrm_file.h"
 #include "render/out/png_sink.h"
 
 namespace merlin::wall {
+
+namespace {
+
+Result<std::vector<render::Dendrogram>> readModels(const WallSettings& wall) {
+  std::vector<std::pair<std::string, std::string>> named = {{"/wall/model", wall.model}};
+  for (std::size_t i = 0; i < wall.contents.size(); ++i)
+    named.emplace_back(fmt::format("/wall/contents/{}/model", i), wall.contents[i].model);
+  std::vector<render::Dendrogram> models;
+  for (const auto& [setting, path] : named) {
+    if (path.empty()) {
+      return Error{
+          Errc::kInvalidArgument,
+          setting + ": names no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)"};
+    }
+    auto model = render::readMrm(path);
+    if (!model) return model.error();
+    models.push_back(*std::move(model));
+  }
+  return models;
+}
+
+}  // namespace
 
 Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings, std::uint64_t generation,
                                                  const shm::Endpoints& endpoints, Clock& clock) {
@@ -14,18 +38,13 @@ Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings, std::
       shm::segmentName(settings.instance, "wall"), shm::wallFields(), generation, clock.now(),
       endpoints);
   if (!segment) return segment.error();
-  if (settings.wall.model.empty()) {
-    return Error{
-        Errc::kInvalidArgument,
-        "/wall/model: names no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)"};
-  }
-  auto model = render::readMrm(settings.wall.model);
-  if (!model) return model.error();
+  auto models = readModels(settings.wall);
+  if (!models) return models.error();
   auto plan = render::planTiles(settings.wall.tiles);
   if (!plan) return Error{plan.error().code, "/wall/tiles: " + plan.error().what};
   auto scene = render::Scene::make(settings.wall.scene);
   if (!scene) return Error{scene.error().code, "/wall/scene: " + scene.error().what};
-  std::unique_ptr<WallRole> role(new WallRole(settings, *std::move(model), *std::move(plan),
+  std::unique_ptr<WallRole> role(new WallRole(settings, *std::move(models), *std::move(plan),
                                               *std::move(scene), *std::move(segment), clock));
   auto shared = render::ShmFrameSink::make(shm::segmentName(settings.instance, "framebuffer"),
                                            role->plan_, generation);
@@ -38,10 +57,11 @@ Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings, std::
   return role;
 }
 
-WallRole::WallRole(const Settings& settings, render::Dendrogram model, render::TilePlan plan,
-                   render::Scene scene, shm::SegmentWriter<shm::WallSegment> segment, Clock& clock)
+WallRole::WallRole(const Settings& settings, std::vector<render::Dendrogram> models,
+                   render::TilePlan plan, render::Scene scene,
+                   shm::SegmentWriter<shm::WallSegment> segment, Clock& clock)
     : settings_(settings),
-      model_(std::move(model)),
+      models_(std::move(models)),
       plan_(std::move(plan)),
       scene_(std::move(scene)),
       governor_(settings.wall.governor),
@@ -60,13 +80,20 @@ std::future<Result<std::string>> WallRole::start() {
 }
 
 void WallRole::run(const std::stop_token& stop) {
-  auto picture = Picture::make(model_, plan_, settings_.wall.render,
-                               settings_.wall.scene.model_radius_m, clock_);
-  if (!picture) {
-    ready_.set_value(picture.error());
-    return;
+  std::vector<std::unique_ptr<Picture>> pictures;
+  std::vector<Content> contents;
+  for (const render::Dendrogram& model : models_) {
+    auto picture =
+        Picture::make(model, plan_, settings_.wall.render, settings_.wall.scene.model_radius_m,
+                      clock_, pictures.empty() ? nullptr : pictures.front()->context());
+    if (!picture) {
+      ready_.set_value(picture.error());
+      return;
+    }
+    (*picture)->warmUp(scene_.view().T_eye_model);
+    contents.push_back({&model, picture->get()});
+    pictures.push_back(*std::move(picture));
   }
-  (*picture)->warmUp(scene_.view().T_eye_model);
   DeviceFeed feed(shm::segmentName(settings_.instance, "devices"),
                   settings_.wall.scene.hand_station,
                   fromSeconds(settings_.wall.scene.stale_after_s),
@@ -74,11 +101,11 @@ void WallRole::run(const std::stop_token& stop) {
   std::vector<render::FrameSink*> sinks;
   for (const auto& sink : sinks_) sinks.push_back(sink.get());
   PointerMarker marker(plan_);
-  WallLoop loop({model_, **picture, scene_, governor_, feed, sinks, segment_->stats, clock_,
+  WallLoop loop({contents, scene_, governor_, feed, sinks, segment_->stats, clock_,
                  &segment_->trace, &marker, &segment_->hand});
   loop.calibrate();
   loop_.store(&loop);
-  loop.run(stop, [&] { ready_.set_value((*picture)->renderer()); });
+  loop.run(stop, [&] { ready_.set_value(pictures.front()->renderer()); });
   loop_.store(nullptr);
 }
 

@@ -20,7 +20,7 @@ namespace merlin::wall {
 
 class WallRole {
  public:
-  // Loads the model and makes the segments; nothing runs yet. Errors: what is wrong with the
+  // Loads the models and makes the segments; nothing runs yet. Errors: what is wrong with a
   // model's file or the wall's settings; kBusy (a living daemon has the segments), kIo.
   static Result<std::unique_ptr<WallRole>> make(const Settings& settings, std::uint64_t generation,
                                                 const shm::Endpoints& endpoints, Clock& clock);
@@ -42,12 +42,12 @@ class WallRole {
   std::uint64_t periods() const;
 
  private:
-  WallRole(const Settings& settings, render::Dendrogram model, render::TilePlan plan,
+  WallRole(const Settings& settings, std::vector<render::Dendrogram> models, render::TilePlan plan,
            render::Scene scene, shm::SegmentWriter<shm::WallSegment> segment, Clock& clock);
   void run(const std::stop_token& stop);
 
   Settings settings_;
-  render::Dendrogram model_;
+  std::vector<render::Dendrogram> models_;
   render::TilePlan plan_;
   render::Scene scene_;
   render::Governor governor_;

@@ -132,6 +132,11 @@ void Scene::reset() {
   view_ = {T_wall_model_, mode_, false, true, std::nullopt, orders_};
 }
 
+void Scene::nextContent() {
+  ++orders_.contents;
+  reset();
+}
+
 void Scene::nextMode() { mode_ = mode_ == BallMode::kObject ? BallMode::kFly : BallMode::kObject; }
 
 SceneView Scene::update(const SceneInput& input, Timestamp now) {
@@ -178,7 +183,11 @@ Scene::Asked Scene::act(const SceneInput& input) {
     if (bound.action == Action::kNextMode && now) nextMode();
     if (bound.action == Action::kPointAt) asked.point |= held;
     if (bound.action == Action::kSnapshot && now) ++orders_.snapshots;
-    if (isLamp(bound.action) && now) orders_ = {orders_.snapshots, orders_.lamps + 1, bound.action};
+    if (bound.action == Action::kNextContent && now) nextContent();
+    if (isLamp(bound.action) && now) {
+      ++orders_.lamps;
+      orders_.lamp = bound.action;
+    }
   }
   return asked;
 }

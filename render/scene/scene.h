@@ -34,9 +34,10 @@ struct Pointed {
   bool on_model = false;                 // on its bounding sphere, else on the wall
 };
 
-// What bindings asked of others than the scene, since the start: the frame's file, the lamp.
+// What was asked of others than the scene, since the start: another model, the frame's file, the
+// lamp.
 struct Orders {
-  std::uint32_t snapshots = 0, lamps = 0;
+  std::uint32_t contents = 0, snapshots = 0, lamps = 0;
   Action lamp = Action::kLampOff;  // the last of them
 };
 
@@ -63,6 +64,7 @@ class Scene {
 
   void reset();  // model and viewer back to the start; counts as motion
   void nextMode();
+  void nextContent();  // the next model is asked for; as reset()
 
  private:
   struct Bound {

@@ -9,21 +9,22 @@ namespace merlin::render {
 
 // What an input can do.
 enum class Action {
-  kGrab,       // while it is held: the tracked hand moves the model
-  kResetView,  // once: model and viewer back to where they started
-  kNextMode,   // once: the ball moves the model, or the viewer
-  kFly,        // while it is held: the way of the hand from where it began is the viewer's speed
-  kPointAt,    // while it is held: a mark on the wall, where the hand points
-  kSnapshot,   // once: the frame as a file
-  kLampOff,    // once, and the next three: the panel's status lamp
+  kGrab,         // while it is held: the tracked hand moves the model
+  kResetView,    // once: model and viewer back to where they started
+  kNextMode,     // once: the ball moves the model, or the viewer
+  kFly,          // while it is held: the way of the hand from where it began is the viewer's speed
+  kPointAt,      // while it is held: a mark on the wall, where the hand points
+  kNextContent,  // once: the next model, where the first one stood at the start
+  kSnapshot,     // once: the frame as a file
+  kLampOff,      // once, and the next three: the panel's status lamp
   kLampSlow,
   kLampFast,
   kLampOn,
 };
 
-inline constexpr const char* kActionNames[] = {"grab",      "reset_view", "next_mode", "fly",
-                                               "point_at",  "snapshot",   "lamp_off",  "lamp_slow",
-                                               "lamp_fast", "lamp_on"};
+inline constexpr const char* kActionNames[] = {"grab",      "reset_view",   "next_mode", "fly",
+                                               "point_at",  "next_content", "snapshot",  "lamp_off",
+                                               "lamp_slow", "lamp_fast",    "lamp_on"};
 inline constexpr const char* nameOf(Action a) { return kActionNames[static_cast<int>(a)]; }
 
 inline constexpr bool lasts(Action a) {

@@ -77,14 +77,18 @@ TEST(Config, BindingsThatConflictAreNamedBoth) {
 TEST(Config, ActionsThatNothingCouldDoAreFound) {
   const std::string bindings =
       R"("bindings": [{"input": "posture.a", "action": "snapshot"},
-                      {"input": "posture.b", "action": "lamp_slow"}])";
+                      {"input": "posture.b", "action": "lamp_slow"},
+                      {"input": "posture.c", "action": "next_content"}])";
   EXPECT_EQ(all(loadSettings("{\"wall\": {\"scene\": {" + bindings + "}}}", "")),
             "f.json:1: /wall/scene/bindings/0/action is snapshot, which needs a folder: "
             "/wall/snapshots names none\n"
             "f.json:2: /wall/scene/bindings/1/action is lamp_slow, which needs a lamp: "
-            "/devices/gpio has no chip with a lamp_line\n");
+            "/devices/gpio has no chip with a lamp_line\n"
+            "f.json:3: /wall/scene/bindings/2/action is next_content, and there is one model only: "
+            "/wall/contents names none\n");
   EXPECT_EQ(all(loadSettings(R"({"devices": {"gpio": {"chip": "gpiochip0", "lamp_line": 5}},
-                                "wall": {"snapshots": "taken", "scene": {)" +
+                                "wall": {"snapshots": "taken", "contents": [{"model": "b.mrm"}],
+                                         "scene": {)" +
                                  bindings + "}}}",
                              "")),
             "");

@@ -83,6 +83,23 @@ TEST(Picture, MiddleTileAloneIsTheSamePixels) {
   EXPECT_NE(wall.tile(0).pixels, wall.tile(1).pixels);
 }
 
+// As a wall of several models has them: what one draws leaves nothing behind for the other.
+TEST(Picture, TwoInOneContextDrawWhatEachDrawsAlone) {
+  Wall alone(fourTiles()), first(fourTiles());
+  const SystemClock clock;
+  render::RenderSettings cold{.raster_threads = 0, .look = {}};
+  cold.look.brightness = 0.5F;
+  const auto second =
+      *Picture::make(model(), first.plan, cold, 2.0, clock, first.picture->context());
+  alone.draw();
+  first.draw();
+  second->draw(inFront(), 10, Timestamp::max());
+  EXPECT_FALSE(std::ranges::equal(second->pixels(), alone.picture->pixels()));
+  first.draw(5);
+  first.draw();
+  EXPECT_TRUE(std::ranges::equal(first.picture->pixels(), alone.picture->pixels()));
+}
+
 // How much two columns that touch differ, on average, 0..255.
 double step(const Image& left, int x, const Image& right, int y) {
   double sum = 0;

@@ -144,13 +144,14 @@ class FakeWall : public testing::Test {
     loop.run(stop_.get_token(), [&] { ++first_frames_; });
   }
   WallParts parts() {
-    return {model(), painter_, scene_,       governor_, feed_,      {&frames_},
-            *stats_, clock_,   trace_.get(), marker_,   hand_.get()};
+    return {contents_, scene_, governor_,    feed_,   {&frames_},
+            *stats_,   clock_, trace_.get(), marker_, hand_.get()};
   }
   shm::WallStats stats() const { return *stats_->read(); }
 
   test::FakeClock clock_;
   FakePainter painter_;
+  std::vector<Content> contents_ = {{&model(), &painter_}};
   render::Scene scene_ = *render::Scene::make({});
   render::Governor governor_;
   FakeFeed feed_;

@@ -1,0 +1,64 @@
+// Several models on a wall, on a virtual clock: the next one is shown at once, and in time.
+#include <gtest/gtest.h>
+
+#include "tests/support/fake_wall.h"
+
+namespace merlin::wall {
+namespace {
+
+// A triangle of the second model costs four times one of the first.
+class WallContentsTest : public FakeWall {
+ protected:
+  WallContentsTest() {
+    render::SceneSettings settings;
+    settings.bindings = {{"ball.button.1", render::Action::kNextContent}};
+    scene_ = *render::Scene::make(settings);
+    contents_.push_back({&model(), &dear_});
+    calibrated_ = true;
+  }
+  // The button is pressed for a frame after 2 s, and again after 4.
+  void pressTwice(Timestamp) {
+    const auto frame = static_cast<int>(feed_.begins.size());
+    feed_.buttons = frame == 60 || frame == 120 ? 1 : 0;
+  }
+  shm::WallHand hand() const { return *hand_->read(); }
+
+  FakePainter dear_{clock_, microseconds(40), 40};
+};
+
+TEST_F(WallContentsTest, TheNextOneIsInTimeFromItsFirstFrame) {
+  run(6, [&](Timestamp now) { pressTwice(now); });
+  EXPECT_EQ(stats().late, 0u);
+  const std::size_t calibrating = 3;  // frames that were measured of the dear one
+  EXPECT_NEAR(static_cast<double>(dear_.drawn.size() - calibrating), 60, 1);
+  EXPECT_GT(painter_.drawn.back(), dear_.drawn.back()) << "after the last comes the first";
+  const auto triangles = [](const FakePainter& p, std::size_t i) {
+    return static_cast<double>(model().trianglesAt(p.levels[i]));
+  };
+  const double cheap = triangles(painter_, painter_.levels.size() - 1);
+  EXPECT_NEAR(triangles(dear_, calibrating) / cheap, 0.25, 0.05) << "fed forward";
+}
+
+TEST_F(WallContentsTest, AStillWallShowsTheNextOneWhole) {
+  feed_.pushed = false;
+  run(6, [&](Timestamp now) {
+    pressTwice(now);
+    if (feed_.begins.size() == 100) {
+      EXPECT_EQ(hand().content, 1u);
+      EXPECT_TRUE(stats().full_detail);
+    }
+  });
+  EXPECT_EQ(hand().content, 0u);
+  EXPECT_TRUE(stats().full_detail);
+  EXPECT_FALSE(dear_.drawn.empty());
+}
+
+TEST_F(WallContentsTest, ACommandDoesTheSame) {
+  run(3, [&](Timestamp) {
+    if (feed_.begins.size() == 30) loop_->request(WallLoop::kNextContent);
+  });
+  EXPECT_EQ(hand().content, 1u);
+}
+
+}  // namespace
+}  // namespace merlin::wall
