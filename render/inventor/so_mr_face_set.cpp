@@ -11,7 +11,6 @@
 #include <Inventor/details/SoFaceDetail.h>
 #include <Inventor/details/SoPointDetail.h>
 #include <Inventor/elements/SoCacheElement.h>
-#include <Inventor/elements/SoGLCacheContextElement.h>
 #include <Inventor/elements/SoModelMatrixElement.h>
 #include <Inventor/elements/SoProjectionMatrixElement.h>
 #include <Inventor/elements/SoViewingMatrixElement.h>
@@ -140,8 +139,6 @@ void SoMRFaceSet::GLRender(SoGLRenderAction* action) {
   if (automatic()) {
     // A parent's cache would draw the old resolution, and hide frames from the law.
     SoCacheElement::invalidate(action->getState());
-    SoGLCacheContextElement::shouldAutoCache(action->getState(),
-                                             SoGLCacheContextElement::DONT_AUTO_CACHE);
   }
   if (automatic() && first_pass && !viewer_counts_) {
     watchMatrices(action);

@@ -9,6 +9,7 @@
 #include <Inventor/actions/SoGLRenderAction.h>
 #include <Inventor/nodes/SoDirectionalLight.h>
 #include <Inventor/nodes/SoPerspectiveCamera.h>
+#include <Inventor/sensors/SoNodeSensor.h>
 #include <Inventor/sensors/SoSensorManager.h>
 
 #include "tests/support/eventually.h"
@@ -124,24 +125,65 @@ TEST_F(InventorDrawn, ItFindsItsRateByItselfWhileTheViewMovesAndIsWholeAfterward
     return current() < 50;
   }));
   EXPECT_EQ(count(), current());
+  int redraws = 0;
+  SoNodeSensor sensor([](void* times, SoSensor*) { ++*static_cast<int*>(times); }, &redraws);
+  sensor.attach(scene_);
   EXPECT_TRUE(eventually([&] {
     draw();  // the same view: no motion
     turnEventLoop();
     return count() == kTriangles;
   }));
+  EXPECT_EQ(redraws, 1);  // asked for, by the node
   move();
   EXPECT_EQ(count(), current());  // at once
 }
 
+// Longer than the law's second.
+template <typename Step>
+void forAWhile(Step step) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(1200);
+  while (std::chrono::steady_clock::now() < end) step();
+}
+
 TEST_F(InventorDrawn, AStillViewIsNoMotionHoweverOftenItIsDrawn) {
   set("desiredFrameRate", "1e9");
-  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(1200);
-  while (std::chrono::steady_clock::now() < end) {  // longer than the law's second
+  forAWhile([&] {
     draw();
     turnEventLoop();
-    ASSERT_EQ(count(), kTriangles);
-  }
+  });
   EXPECT_EQ(current(), kTriangles);
+}
+
+TEST_F(InventorDrawn, ARestBetweenTwoMotionsIsNoSlowFrame) {
+  set("desiredFrameRate", "1e9");
+  draw();
+  move();
+  forAWhile([] { turnEventLoop(); });
+  move();
+  EXPECT_EQ(current(), kTriangles);
+}
+
+TEST_F(InventorDrawn, FramesOfAnInteractionAreCountedThroughCaches) {
+  root_->renderCaching = SoSeparator::ON;
+  set("desiredFrameRate", "1e9");
+  set("interacting", "TRUE");
+  EXPECT_TRUE(eventually([&] {
+    draw();
+    turnEventLoop();
+    return current() < 50;
+  }));
+}
+
+TEST_F(InventorDrawn, OnceTheViewerSaysItsFramesItsWordAloneCounts) {
+  set("desiredFrameRate", "1e9");
+  ask(100);
+  draw();
+  move();
+  EXPECT_LE(count(), 100);
+  frame(60);
+  EXPECT_EQ(count(), kTriangles);
+  set("interacting", "TRUE");
+  EXPECT_LE(count(), 100);
 }
 
 }  // namespace
