@@ -102,8 +102,11 @@ merlin::render::Surface* SoMRFaceSet::surface() {
   changed_ = false;
   auto made = Surface::make(
       {vertex, normal, diffuseColor, texCoord, faces, parents, aliveCounts, levelErrors});
-  surface_ = made ? *std::move(made) : nullptr;
-  if (surface_) return surface_.get();
+  if (made) {
+    surface_ = *std::move(made);
+    return surface_.get();
+  }
+  surface_.reset();
   SoDebugError::post("SoMRFaceSet",
                      "node \"%s\": %s; nothing is drawn. \"merlin mesh export MODEL.mrm "
                      "--multiresolution -o OUT.iv\" writes a whole one",

@@ -34,6 +34,8 @@ class __attribute__((visibility("default"))) SoMRFaceSet : public SoShape {
  public:
   static void initClass();
   SoMRFaceSet();
+  SoMRFaceSet(const SoMRFaceSet&) = delete;
+  SoMRFaceSet& operator=(const SoMRFaceSet&) = delete;
 
   // In triangles. Current is kept within the other two, and they within what the model has.
   SoSFInt32 minimumResolution, maximumResolution, currentResolution;

@@ -1,5 +1,6 @@
 #include "render/inventor/surface.h"
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -68,7 +69,7 @@ Result<Ok> checkCounts(const Surface::Fields& fields) {
 // 0 for what is no number: a cast of that is undefined.
 std::uint32_t byteOf(float part) {
   if (!(part > 0)) return 0;
-  return part < 1 ? static_cast<std::uint32_t>(part * 255 + 0.5F) : 255;
+  return part < 1 ? static_cast<std::uint32_t>(std::lround(part * 255)) : 255;
 }
 
 void packColours(const SoMFColor& from, SoMFUInt32& to) {
