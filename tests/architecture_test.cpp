@@ -27,11 +27,11 @@ const std::map<std::string, Folders> kMayInclude = {
       "render/lod/io", "render/scene", "render/governor", "render/tiles", "render/gl",
       "render/out"}},
     {"daemon/cli",
-     {"daemon/shm",      "daemon/status", "daemon/wall",    "drivers",       "drivers/cyberglove",
-      "drivers/emulate", "drivers/hand",  "drivers/io",     "drivers/port",  "nn",
-      "nn/io",           "render/mesh",   "render/mesh/io", "render/reduce", "render/segment",
-      "render/compare",  "render/lod",    "render/lod/io",  "render/tiles",  "render/gl",
-      "render/out"}},
+     {"daemon/shm",      "daemon/status", "daemon/wall",    "drivers",         "drivers/cyberglove",
+      "drivers/emulate", "drivers/hand",  "drivers/io",     "drivers/port",    "nn",
+      "nn/io",           "render/mesh",   "render/mesh/io", "render/reduce",   "render/segment",
+      "render/compare",  "render/lod",    "render/lod/io",  "render/inventor", "render/tiles",
+      "render/gl",       "render/out"}},
     // The composition root.
     {"daemon",
      {"config", "daemon/cli", "daemon/devices", "daemon/serve", "daemon/shm", "daemon/status",
@@ -59,6 +59,7 @@ const std::map<std::string, Folders> kMayInclude = {
     {"render/lod", {"render/mesh"}},
     {"render/lod/io", {"render/lod", "render/mesh"}},
     {"render/reduce", {"render/compare", "render/lod", "render/mesh"}},
+    {"render/inventor", {"render/lod", "render/mesh", "render/mesh/io"}},
     {"render/segment", {"render/mesh", "render/reduce"}},
     // Pure but for its threads; its figures are the same for any number of them.
     {"render/compare", {"render/mesh"}},
@@ -140,6 +141,7 @@ void checkInclude(const fs::path& root, const std::string& from, const std::stri
     EXPECT_TRUE(only->second.count(from)) << where;
   }
   EXPECT_FALSE(header.starts_with("OpenMesh/")) << where << ": an oracle of tests";
+  EXPECT_TRUE(from == "render/inventor" || !header.starts_with("Inventor/")) << where << ": Coin";
   EXPECT_FALSE(kPure.count(from) && kImpure.count(header)) << where;
   if (!fs::exists(root / header)) return;  // the standard library or a third party
   const std::string to = folderOf(header);

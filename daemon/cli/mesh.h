@@ -48,7 +48,7 @@ struct LevelChoice {
   std::optional<double> percent, error_percent, error_units;
   std::optional<std::size_t> triangles;
 
-  void addTo(CLI::App& command);
+  CLI::Option_group* addTo(CLI::App& command);
   std::size_t levelOf(const render::Dendrogram& model) const;  // 0 where none is set
 };
 

@@ -1,4 +1,4 @@
-// merlin mesh export: one resolution of a model as a mesh.
+// merlin mesh export: one resolution of a model as a mesh, or all of them for Open Inventor.
 #include <memory>
 
 #include <fmt/format.h>
@@ -7,6 +7,7 @@
 #include "daemon/base/files.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
+#include "render/inventor/multiresolution_writer.h"
 #include "render/mesh/io/mesh_file.h"
 
 namespace merlin::cli {
@@ -15,7 +16,29 @@ namespace {
 struct ExportOptions {
   std::string model, output;
   LevelChoice choice;
+  bool multiresolution = false;
 };
+
+void sayLeftOut(const std::string& format, const std::vector<std::string>& left_out) {
+  if (left_out.empty()) return;
+  fmt::print("  .{} has no place for {}; it is left out\n", format, fmt::join(left_out, ", "));
+}
+
+int exportAll(const ExportOptions& options) {
+  if (!options.output.ends_with(".iv")) {
+    return fail({Errc::kInvalidArgument,
+                 options.output + ": --multiresolution is written as .iv (Open Inventor)"});
+  }
+  if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
+  const auto model = openModel(options.model);
+  if (!model) return fail(model.error());
+  const auto left_out = render::writeMultiresolution(options.output, *model);
+  if (!left_out) return fail(left_out.error());
+  fmt::print("{}: {} to {} triangles, {} levels\n", options.output,
+             model->trianglesAt(model->levels() - 1), model->triangleCount(), model->levels());
+  sayLeftOut("iv", *left_out);
+  return kExitDone;
+}
 
 int exportMesh(const ExportOptions& options) {
   if (const auto known = render::checkMeshEnding(options.output); !known)
@@ -29,10 +52,7 @@ int exportMesh(const ExportOptions& options) {
   if (!written) return fail(written.error());
   fmt::print("{}: {} triangles, {} vertices, error estimate {:.4g}\n", options.output,
              mesh.triangleCount(), mesh.vertexCount(), model->errorAt(level));
-  if (!written->left_out.empty()) {
-    fmt::print("  .{} has no place for {}; it is left out\n", written->format,
-               fmt::join(written->left_out, ", "));
-  }
+  sayLeftOut(written->format, written->left_out);
   return kExitDone;
 }
 
@@ -44,15 +64,23 @@ void addMeshExport(CLI::App& mesh, Run& run) {
       "export",
       "One resolution of a model as a mesh: .ply (every feature), .glb or .gltf (features of up to "
       "4 dimensions), .obj and .iv (Open Inventor; normals, colours, texture coordinates), .stl "
-      "(triangles alone).\nExample: merlin mesh export scan.mrm --percent 5 -o scan5.ply");
+      "(triangles alone).\nExample: merlin mesh export scan.mrm --percent 5 -o scan5.ply\nAll of "
+      "them for an Open Inventor viewer that finds SoMRFaceSet.so: --multiresolution -o scan.iv");
   command->add_option("model", options->model, "The model, or a mesh")
       ->required()
       ->type_name("MODEL.mrm");
   command->add_option("-o", options->output, "The mesh: .ply, .obj, .glb, .gltf, .stl or .iv")
       ->required()
       ->type_name("OUT");
-  options->choice.addTo(*command);
-  command->callback([options, &run] { run = [options] { return exportMesh(*options); }; });
+  CLI::Option* const all = command->add_flag(
+      "--multiresolution", options->multiresolution,
+      "All resolutions as an SoMRFaceSet, .iv alone; at 10,000 triangles without its module");
+  options->choice.addTo(*command)->excludes(all);
+  command->callback([options, &run] {
+    run = [options] {
+      return options->multiresolution ? exportAll(*options) : exportMesh(*options);
+    };
+  });
 }
 
 }  // namespace merlin::cli

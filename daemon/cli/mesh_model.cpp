@@ -63,7 +63,7 @@ Result<Ok> setWeight(const std::string& text, render::Weights& weights) {
   return Ok{};
 }
 
-void LevelChoice::addTo(CLI::App& command) {
+CLI::Option_group* LevelChoice::addTo(CLI::App& command) {
   CLI::Option_group* group =
       command.add_option_group("resolution", "Which resolution; without any: the finest");
   group->add_option("--percent", percent, "Of the triangles")->check(CLI::Range(0.0, 100.0));
@@ -76,6 +76,7 @@ void LevelChoice::addTo(CLI::App& command) {
   group->add_option("--error-units", error_units, "The same, in the model's units")
       ->check(CLI::NonNegativeNumber);
   group->require_option(0, 1);
+  return group;
 }
 
 std::size_t LevelChoice::levelOf(const render::Dendrogram& model) const {

@@ -60,6 +60,23 @@ TEST_F(MeshCli, ExportRefusesAnUnknownEndingBeforeAnyWork) {
   EXPECT_NE(refused.output.find(".ply, .obj, .glb, .gltf, .stl and .iv"), std::string::npos);
 }
 
+TEST_F(MeshCli, ExportOfAllResolutionsIsForOpenInventorAlone) {
+  const auto exported = [&](const std::string& out, std::vector<std::string> more) {
+    std::vector<std::string> arguments = {kMerlin, "mesh", "export", scan_, "-o", dir_ / out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(std::move(arguments));
+  };
+  const Outcome refused = exported("a.ply", {"--multiresolution"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.output.find("a.ply: --multiresolution is written as .iv"), std::string::npos)
+      << refused.output;
+  EXPECT_EQ(exported("a.iv", {"--multiresolution", "--percent", "5"}).status, 2);
+  const Outcome done = exported("a.iv", {"--multiresolution"});
+  EXPECT_EQ(done.status, 0);
+  EXPECT_NE(done.output.find("69636 to 69636 triangles, 1 levels"), std::string::npos)
+      << done.output;
+}
+
 TEST_F(MeshCli, ReduceKeepsToAStatedMemoryOrRefusesBeforeAnyWork) {
   const auto reduced = [&](const std::string& memory) {
     return run(

@@ -1,6 +1,7 @@
 // Open Inventor 2.1, ascii. Normals, colours and texture coordinates are bound per indexed vertex;
 // without index lists of their own they follow coordIndex. J. Wernecke, "The Inventor Mentor",
 // 1994.
+#include "render/mesh/io/inventor_text.h"
 #include "render/mesh/io/writer.h"
 
 namespace merlin::render {
@@ -16,11 +17,15 @@ void printNode(TextSink& out, std::string_view node, std::string_view field,
 
 bool write(const Mesh& mesh, const WriteBytes& bytes) {
   TextSink out(bytes);
-  out.print("#Inventor V2.1 ascii\n\n# written by MERLIN\nSeparator {{\n");
-  // Lit from both sides, since scans have borders.
-  out.print(
-      "  ShapeHints {{\n    vertexOrdering COUNTERCLOCKWISE\n"
-      "    shapeType UNKNOWN_SHAPE_TYPE\n    faceType CONVEX\n  }}\n");
+  out.print("{}", kInventorHeader);
+  printSeparator(out, mesh);
+  return out.finish();
+}
+
+}  // namespace
+
+void printSeparator(TextSink& out, const Mesh& mesh) {
+  out.print("Separator {{\n{}", kInventorHints);
   if (const Feature* colour = findOf(mesh, "colour", 3)) {
     printNode(out, "Material", "diffuseColor", colour->values, 3);
     out.print("  MaterialBinding {{ value PER_VERTEX_INDEXED }}\n");
@@ -40,10 +45,7 @@ bool write(const Mesh& mesh, const WriteBytes& bytes) {
               mesh.triangles[t + 2]);
   }
   out.print("    ]\n  }}\n}}\n");
-  return out.finish();
 }
-
-}  // namespace
 
 const MeshWriter kInventorWriter{"iv", isUsual, write};
 

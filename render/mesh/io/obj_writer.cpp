@@ -1,4 +1,5 @@
 // Wavefront OBJ. Colours stand behind the position, as MeshLab, Blender and OpenMesh read them.
+#include "render/mesh/io/text_sink.h"
 #include "render/mesh/io/writer.h"
 
 namespace merlin::render {

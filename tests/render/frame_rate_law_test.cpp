@@ -1,0 +1,78 @@
+// The law of 1998, by hand-computed figures, on times that are passed in.
+#include "render/inventor/frame_rate_law.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace merlin::render {
+namespace {
+
+using Answer = std::optional<std::int32_t>;
+
+// `frames` intervals of 1 / hz from `start_s`, the first frame included; the last answer.
+Answer draw(FrameRateLaw& law, double start_s, double hz, int frames, std::size_t triangles,
+            double desired_hz) {
+  Answer answer;
+  for (int i = 0; i <= frames; ++i)
+    answer = law.frameDrawn(start_s + i / hz, triangles, desired_hz);
+  return answer;
+}
+
+TEST(FrameRateLaw, IsTrianglesASecondOverTheRate) {
+  FrameRateLaw law;
+  // [GOURLEY98] figure 5.37's model at 8 Hz: 306,144 triangles a second, at 60 Hz 5,102 a frame.
+  EXPECT_EQ(draw(law, 100, 8, 8, 38268, 60), 5102);
+}
+
+TEST(FrameRateLaw, AnswersOnceASecond) {
+  FrameRateLaw law;
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(law.frameDrawn(i / 8.0, 1000, 16), std::nullopt) << i;
+  EXPECT_EQ(law.frameDrawn(1, 1000, 16), 500);
+  for (int i = 9; i < 16; ++i) EXPECT_EQ(law.frameDrawn(i / 8.0, 1000, 16), std::nullopt) << i;
+  EXPECT_EQ(law.frameDrawn(2, 1000, 16), 500);
+}
+
+TEST(FrameRateLaw, AFrameLongerThanTheWindowIsAWindow) {
+  FrameRateLaw law;
+  EXPECT_EQ(draw(law, 0, 0.25, 1, 1000, 10), 25);  // 250 a second
+}
+
+TEST(FrameRateLaw, WithinToleranceItLeavesTheResolution) {
+  FrameRateLaw law;
+  EXPECT_EQ(draw(law, 0, 64, 64, 1000, 60), std::nullopt);   // 1066 a frame
+  EXPECT_EQ(draw(law, 10, 64, 64, 1000, 70), std::nullopt);  // 914
+  EXPECT_EQ(draw(law, 20, 64, 64, 1000, 50), 1280);
+  EXPECT_EQ(draw(law, 30, 64, 64, 1000, 80), 800);
+}
+
+TEST(FrameRateLaw, APauseIsCountedUnlessItWasARest) {
+  FrameRateLaw law;
+  law.frameDrawn(0, 1000, 16);
+  EXPECT_EQ(law.frameDrawn(100, 1000, 16), 0);  // 10 triangles a second
+  law.rest();
+  EXPECT_EQ(draw(law, 200, 8, 8, 1000, 16), 500);
+}
+
+TEST(FrameRateLaw, TimesThatGoBackOrAreNoneBeginAnew) {
+  FrameRateLaw law;
+  law.frameDrawn(50, 1000, 10);
+  EXPECT_EQ(draw(law, 3, 8, 8, 1000, 16), 500);
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
+                           std::numeric_limits<double>::infinity(), -1e308}) {
+    EXPECT_EQ(law.frameDrawn(bad, 1000, 10), std::nullopt) << bad;
+  }
+  law.rest();
+  EXPECT_EQ(draw(law, 4, 8, 8, 1000, 16), 500);
+}
+
+TEST(FrameRateLaw, StaysWithinWhatAFieldHolds) {
+  FrameRateLaw law;
+  EXPECT_EQ(draw(law, 0, 8, 8, 1'000'000'000, 1e-30), 2147483647);
+  EXPECT_EQ(draw(law, 10, 8, 8, 1000, 1e30), 0);
+  EXPECT_EQ(draw(law, 20, 8, 8, 0, 10), std::nullopt);
+}
+
+}  // namespace
+}  // namespace merlin::render
