@@ -176,7 +176,7 @@ std::unique_ptr<wall::Picture> pictureOf(const Dendrogram& model, bool view_depe
 }
 
 // The root of the mean square difference, 0..255, over the wall's tiles.
-double difference(const wall::Picture& picture, const std::vector<std::uint8_t>& full) {
+double difference(wall::Picture& picture, const std::vector<std::uint8_t>& full) {
   double sum = 0, count = 0;
   const render::TilePlan p = plan();
   for (const render::Tile& t : p.tiles) {
@@ -193,7 +193,7 @@ double difference(const wall::Picture& picture, const std::vector<std::uint8_t>&
   return std::sqrt(sum / count);
 }
 
-void save(const wall::Picture& picture, const std::string& path) {
+void save(wall::Picture& picture, const std::string& path) {
   const render::TilePlan p = plan();
   if (const auto saved = render::writePng(path, p.frame_width, p.frame_height, picture.pixels());
       !saved)
