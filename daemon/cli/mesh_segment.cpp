@@ -1,5 +1,4 @@
 // merlin mesh segment: the vertices of a mesh clustered in pattern space, as the feature "label".
-#include <cmath>
 #include <memory>
 
 #include <fmt/format.h>
@@ -25,17 +24,6 @@ struct SegmentOptions {
   bool json = false;
 };
 
-// Colours that differ as much as they can: hues a golden angle apart.
-std::array<float, 3> colourOf(std::uint32_t label) {
-  const float hue = 6 * std::fmod(0.61803399F * static_cast<float>(label) + 0.05F, 1.0F);
-  std::array<float, 3> colour{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float away = std::fabs(std::fmod(hue + 6 - 2 * static_cast<float>(k), 6.0F) - 3);
-    colour[k] = 0.25F + 0.75F * std::clamp(away - 1, 0.0F, 1.0F);
-  }
-  return colour;
-}
-
 void setFeature(render::Mesh& mesh, render::Feature feature) {
   if (render::Feature* old = mesh.find(feature.name))
     *old = std::move(feature);
@@ -43,18 +31,13 @@ void setFeature(render::Mesh& mesh, render::Feature feature) {
     mesh.features.push_back(std::move(feature));
 }
 
-Result<Ok> draw(const SegmentOptions& options, render::Mesh mesh,
-                const std::vector<std::uint32_t>& labels) {
-  render::Feature colour{"colour", 3, {}};
-  for (const std::uint32_t label : labels) {
-    const auto c = colourOf(label);
-    colour.values.insert(colour.values.end(), c.begin(), c.end());
-  }
-  setFeature(mesh, std::move(colour));
+Result<Ok> draw(const SegmentOptions& options, const render::Mesh& mesh) {
   render::prepareSoftwareGl(0);
   const render::Dendrogram model = asModel(mesh);
   const SystemClock clock;
-  auto painter = ModelPainter::make(model, options.view, clock);
+  View view = options.view;
+  if (view.render.show.empty()) view.render.show = "label";
+  auto painter = ModelPainter::make(model, view, clock);
   if (!painter) return painter.error();
   const Image image = painter->draw(0);
   return render::writePng(options.picture, image.width, image.height, image.pixels);
@@ -100,8 +83,7 @@ int segmentMesh(const SegmentOptions& options) {
   const auto written = render::writeMesh(options.output, mesh);
   if (!written) return fail(written.error());
   if (!options.picture.empty()) {
-    if (const auto drawn = draw(options, mesh, segmentation->labels); !drawn)
-      return fail(drawn.error());
+    if (const auto drawn = draw(options, mesh); !drawn) return fail(drawn.error());
   }
   report(options, *segmentation, seconds);
   return kExitDone;

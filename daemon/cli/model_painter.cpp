@@ -28,6 +28,12 @@ void View::addTo(CLI::App& command) {
           "--pitch", pitch_deg,
           "Turn about the horizontal axis before it, degrees; -90 for a model whose up is z")
       ->capture_default_str();
+  command
+      .add_option(
+          "--show", render.show,
+          "A feature as colours, one value on a scale from dark blue to yellow; without: the "
+          "model's own")
+      ->type_name("NAME");
   command.add_option("--brightness", render.look.brightness, "Multiplies colours")
       ->check(CLI::Range(0.1, 10.0))
       ->capture_default_str();

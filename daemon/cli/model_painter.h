@@ -30,7 +30,7 @@ struct View {
   std::string backend = "egl";
   render::RenderSettings render;
 
-  void addTo(CLI::App& command);  // --yaw, --pitch, --brightness, --backend
+  void addTo(CLI::App& command);  // --yaw, --pitch, --show, --brightness, --backend
   Eigen::Isometry3f T_eye_model() const;
 };
 

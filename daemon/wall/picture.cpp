@@ -49,7 +49,7 @@ Result<std::unique_ptr<Picture>> Picture::make(const render::Dendrogram& model,
   const render::GlApi& gl = picture->context_->gl();
   std::vector<std::uint32_t> full;
   picture->clusters_.everything(full, picture->full_ends_);
-  auto renderer = ModelRenderer::make(gl, model, full);
+  auto renderer = ModelRenderer::make(gl, model, full, settings.show);
   if (!renderer) return renderer.error();
   picture->renderer_ = *std::move(renderer);
   for (const render::Tile& tile : plan.tiles) {

@@ -46,24 +46,25 @@ out vec4 pixel;
 void main() { pixel = vec4(shade, 1.0); }
 )";
 
-template <typename T>
-T quantise(float value, float scale) {
-  const float low = std::is_signed_v<T> ? -scale : 0;
-  const float v = std::isfinite(value) ? value * scale : 0;
-  return static_cast<T>(std::lround(std::clamp(v, low, scale)));
+std::int8_t quantise(float component) {
+  const float v = std::isfinite(component) ? 127 * component : 0;
+  return static_cast<std::int8_t>(std::lround(std::clamp(v, -127.0F, 127.0F)));
 }
 
 }  // namespace
 
 Result<std::unique_ptr<ModelRenderer>> ModelRenderer::make(const GlApi& gl, const Dendrogram& model,
-                                                           std::span<const std::uint32_t> full) {
+                                                           std::span<const std::uint32_t> full,
+                                                           std::string_view feature) {
   if (model.nodeCount() > std::numeric_limits<std::int32_t>::max() / sizeof(Vertex) * 8) {
     return Error{Errc::kUnsupported,
                  fmt::format("{} nodes are more than one buffer holds", model.nodeCount())};
   }
   std::unique_ptr<ModelRenderer> r(new ModelRenderer(gl));
   if (const auto built = r->buildProgram(); !built) return built.error();
-  r->uploadNodes(model);
+  const auto colours = coloursOf(model, feature);
+  if (!colours) return colours.error();
+  r->uploadNodes(model, *colours);
   r->makeArray(&r->cut_array_, &r->cut_indices_);
   r->makeArray(&r->full_array_, &r->full_indices_);
   gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(full.size_bytes()), full.data(),
@@ -94,21 +95,18 @@ Result<Ok> ModelRenderer::buildProgram() {
   return Ok{};
 }
 
-void ModelRenderer::uploadNodes(const Dendrogram& model) {
+void ModelRenderer::uploadNodes(const Dendrogram& model, const ShownColours& colours) {
   const auto& a = model.arrays();
   const FeatureView* normal = model.find("normal");
-  const FeatureView* colour = model.find("colour");
   if (normal && normal->dimension != 3) normal = nullptr;
-  if (colour && colour->dimension != 3) colour = nullptr;
-  coloured_ = colour != nullptr;
+  coloured_ = !colours.rgb.empty();
   std::vector<Vertex> vertices(model.nodeCount());
   for (std::size_t n = 0; n < vertices.size(); ++n) {
     Vertex& v = vertices[n];
     for (std::size_t k = 0; k < 3; ++k) {
       v.position[k] = a.positions[3 * n + k];
-      v.normal[k] =
-          quantise<std::int8_t>(normal ? normal->values[3 * n + k] : (k == 2 ? 1.0F : 0.0F), 127);
-      v.colour[k] = quantise<std::uint8_t>(colour ? colour->values[3 * n + k] : 1.0F, 255);
+      v.normal[k] = quantise(normal ? normal->values[3 * n + k] : (k == 2 ? 1.0F : 0.0F));
+      v.colour[k] = coloured_ ? colours.rgb[n][k] : 255;
     }
     v.normal[3] = 0;
     v.colour[3] = 255;

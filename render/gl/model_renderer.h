@@ -1,20 +1,22 @@
 // ModelRenderer: a dendrogram's nodes on the GPU, and its triangles drawn at any level, whole or in
 // slices.
 //
-// Lit per vertex by a light at the eye, vertex colours where the model has them. OpenGL 3.3 core.
-// Thread-bound to its context, which outlives it.
+// Lit per vertex by a light at the eye, colours where the model has them, or a feature that is
+// shown. OpenGL 3.3 core. Thread-bound to its context, which outlives it.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include <Eigen/Core>
 
 #include "daemon/base/result.h"
 #include "render/gl/gl_api.h"
 #include "render/gl/settings.h"
+#include "render/gl/shown_colours.h"
 #include "render/lod/dendrogram.h"
 
 namespace merlin::render {
@@ -28,10 +30,12 @@ struct Camera {
 class ModelRenderer {
  public:
   // Uploads the nodes (20 bytes each) and the full resolution's indices, in the order in which they
-  // are to be drawn. Keeps neither.
-  // Errors: kUnsupported (a shader that does not compile, with the log; no memory on the GPU).
+  // are to be drawn. Keeps neither. `feature`: shown as colours; empty: the model's own.
+  // Errors: kUnsupported (a shader that does not compile, with the log; no memory on the GPU),
+  // those of coloursOf().
   static Result<std::unique_ptr<ModelRenderer>> make(const GlApi& gl, const Dendrogram& model,
-                                                     std::span<const std::uint32_t> full);
+                                                     std::span<const std::uint32_t> full,
+                                                     std::string_view feature = {});
 
   ~ModelRenderer();
   ModelRenderer(const ModelRenderer&) = delete;
@@ -58,7 +62,7 @@ class ModelRenderer {
  private:
   explicit ModelRenderer(const GlApi& gl) : gl_(gl) {}
   Result<Ok> buildProgram();
-  void uploadNodes(const Dendrogram& model);
+  void uploadNodes(const Dendrogram& model, const ShownColours& colours);
   void makeArray(GLuint* array, GLuint* indices);
 
   const GlApi& gl_;

@@ -1,0 +1,27 @@
+// ShownColours: a model's feature as colours of its nodes, for people who look.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "daemon/base/result.h"
+#include "render/lod/dendrogram.h"
+
+namespace merlin::render {
+
+struct ShownColours {
+  std::vector<std::array<std::uint8_t, 3>> rgb;  // of each node; empty: the model has no colours
+  float low = 0, high = 0;                       // of one value: where the scale begins and ends
+};
+
+// By the feature's kind:
+//   dimension 3  red, green, blue, each 0..1; of "normal" -1..1
+//   dimension 1  dark blue, green, yellow (viridis) from the 1st to the 99th percentile of the
+//                finest vertices; "label": a colour each, as different as can be
+// `feature` empty: "colour", where there is one of dimension 3. O(nodes). Reentrant.
+// Errors: kInvalidArgument: no such feature, with those that there are; another dimension.
+Result<ShownColours> coloursOf(const Dendrogram& model, std::string_view feature);
+
+}  // namespace merlin::render
