@@ -20,10 +20,10 @@ constexpr std::size_t kFirstRound = 20;  // passes of each start before the wors
 constexpr float kRate = 0.02F, kLastRate = 1e-5F;
 // As much noise as the network can bear: it grows while the error with noise is below this, so that
 // the margins between postures are as wide as they can be, whatever the hands are like.
-constexpr double kBearableError = 0.01;
+constexpr double kBearableError = 0.005;
 constexpr float kNoiseStep = 1.05F, kFirstNoise = 0.7F, kLeastNoise = 0.35F, kMostNoise = 2.0F;
-constexpr std::size_t kLook = 10;        // passes between two looks at the validation hands
-constexpr std::size_t kPatience = 12;    // looks without a better error, then it ends
+constexpr std::size_t kLook = 4;         // passes between two looks at the validation hands
+constexpr std::size_t kPatience = 8;     // looks without a better error, then it ends
 constexpr std::size_t kLastPasses = 40;  // on all hands, those of the validation too
 constexpr float kLastRates = 0.1F;       // share of kRate
 
@@ -132,9 +132,14 @@ class Fit {
     double least = std::numeric_limits<double>::infinity();
     Lanes<float> best = s.at.weights;
     std::size_t looks = 0;
+    const std::size_t settled = settings_.passes * 4 / 5;
     for (std::size_t i = 0; i < settings_.passes && !stopped_; ++i) {
       const double error = pass(s, descent, kRate * left(i, settings_.passes) + kLastRate);
-      if (i < settings_.passes * 3 / 5) adapt(error);
+      // While the noise grows so do the margins, and the error without noise says nothing of them.
+      if (i < settled) {
+        adapt(error);
+        continue;
+      }
       if (i % kLook != 0 && i + 1 != settings_.passes) continue;
       const double now = aside_.empty() ? error : asideError(s);
       if (now < least) {
@@ -145,7 +150,7 @@ class Fit {
         break;
       }
     }
-    s.at.weights = best;
+    if (std::isfinite(least)) s.at.weights = best;
   }
 
   const FitSettings& settings_;

@@ -20,8 +20,8 @@ struct FitSettings {
   Phi phi = Phi::kSigmoid;  // not signum
   InputUnit unit = InputUnit::kRadians;
   std::uint64_t seed = 1998;
-  std::size_t starts = 10;        // assignments of codes with weights to start from, >= 1
-  std::size_t passes = 320;       // of the best of them, at most, >= 1
+  std::size_t starts = 20;        // assignments of codes with weights to start from, >= 1
+  std::size_t passes = 480;       // of the best of them, at most, >= 1
   double validation_share = 0.1;  // of each posture's hands, its last ones; [0, 0.5]
 };
 
@@ -56,7 +56,7 @@ using FitProgress = std::function<bool(double share, const CurvePoint& point)>;
 
 // errors     kInvalidArgument: phi is signum, fewer than 2 or more than 32 postures, a name that is
 //            none, a value that is not finite, no slot that ever changes, settings out of range.
-// cost       about 1 s on one core for 31 postures; hardly more for more hands.
+// cost       1 to 2 s on one core for 31 postures; hardly more for more hands.
 Result<Fitted> fit(std::span<const LabelledHand> hands, const FitSettings& settings,
                    const FitProgress& progress = {});
 
