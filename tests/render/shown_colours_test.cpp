@@ -19,7 +19,9 @@ Dendrogram fan(std::vector<Feature> features) {
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0};
   mesh.triangles = {0, 1, 2, 0, 2, 3, 0, 3, 4};
   mesh.features = std::move(features);
-  return buildDendrogram(mesh, {});
+  CollapseLog nothing;
+  nothing.features.resize(mesh.features.size());
+  return buildDendrogram(mesh, nothing);
 }
 
 Rgb colourAt(const Dendrogram& model, const ShownColours& shown, const char* feature, float value) {
