@@ -22,6 +22,7 @@
 #include "render/lod/io/mrm_file.h"
 #include "render/out/png.h"
 #include "render/reduce/reduce.h"
+#include "tests/support/statistics.h"
 
 namespace merlin::bench {
 namespace {
@@ -31,17 +32,12 @@ using Steady = std::chrono::steady_clock;
 using render::Clusters;
 using render::Dendrogram;
 using render::Mesh;
+using test::median;
 
 constexpr std::size_t kSide = 1201;
 
 double msSince(Steady::time_point then) {
   return std::chrono::duration<double, std::milli>(Steady::now() - then).count();
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
 }
 
 // Heights in metres, row by row; empty where there is no such file.

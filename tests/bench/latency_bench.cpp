@@ -35,12 +35,14 @@
 #include "drivers/io/fd_stream.h"
 #include "drivers/io/pty_master.h"
 #include "tests/support/process.h"
+#include "tests/support/statistics.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::bench {
 namespace {
 
 using Segment = shm::DevicesSegment;
+using test::quantile;
 
 enum Reader { kMerlin, kSleeping, kSpinning, kBare, kReaders };
 constexpr const char* kReaderNames[] = {"MERLIN", "sleeps 1 ms", "spins", "bare blocking"};
@@ -283,11 +285,6 @@ Round runRound(const Options& options, Reader kind, Line line, Times& times) {
   return round;
 }
 
-double quantile(std::vector<double>& sorted, double share) {
-  if (sorted.empty()) return 0;
-  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
-}
-
 struct Row {
   double median = 0, p99 = 0, p999 = 0;
 };
@@ -314,7 +311,6 @@ std::array<Row, kReaders> benchLine(const Options& options, Line line, bool load
   std::array<Row, kReaders> rows;
   for (std::size_t kind = 0; kind < kReaders; ++kind) {
     auto& v = all[kind].latency_us;
-    std::sort(v.begin(), v.end());
     rows[kind] = {quantile(v, 0.5), quantile(v, 0.99), quantile(v, 0.999)};
     fmt::print("{:11} {:6} {:13} {:5} {:9.1f} {:9.1f} {:10.1f} {:7.1f} %  {}\n", kLineNames[line],
                loaded ? "loaded" : "idle", kReaderNames[kind], v.size(), rows[kind].median,
@@ -421,8 +417,6 @@ void benchEquation(const Options& options, const test::TempDir& dir) {
     work.push_back(static_cast<double>(s->work_ms));
   }
   daemon.kill(SIGTERM);
-  std::sort(age.begin(), age.end());
-  std::sort(work.begin(), work.end());
   const double frame_ms = 1000 / config["wall"]["rate"]["rate_hz"].get<double>();
   fmt::print(
       "\nL = wire + parse and publish + age at pick-up + wait for the frame + draw + present "

@@ -15,11 +15,13 @@
 #include "daemon/base/clock.h"
 #include "daemon/shm/segment.h"
 #include "tests/support/process.h"
+#include "tests/support/statistics.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::bench {
 namespace {
 
+using test::median;
 using test::Process;
 
 struct Options {
@@ -62,11 +64,6 @@ class FixedWork {
  private:
   volatile std::uint64_t state_ = 1;
 };
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values.empty() ? 0 : values[values.size() / 2];
-}
 
 struct BareRun {
   double late = 0, work_s = 0;
@@ -205,8 +202,7 @@ double medianInterval(const shm::Channel<T>& channel, std::uint64_t from, std::u
     }
     last = sample;
   }
-  std::sort(intervals.begin(), intervals.end());
-  return intervals.empty() ? 0 : intervals[intervals.size() / 2];
+  return median(std::move(intervals));
 }
 
 // Kills the emulator of one device for a second; prints what the other two lost by it.

@@ -8,6 +8,7 @@
 #include "drivers/io/recording_stream.h"
 #include "drivers/io/replay_stream.h"
 #include "drivers/registry.h"
+#include "tests/support/borrowed_stream.h"
 #include "tests/support/device_bench.h"
 #include "tests/support/temp_dir.h"
 
@@ -100,18 +101,8 @@ TEST(FlightRecorder, WhatItDumpsReplays) {
   FlightRecorder recorder(*segment, dir / "flight");
   FlightRing& ring = recorder.add(shm::kGlove, "cyberglove", 38400);
   test::DeviceBench bench("cyberglove", {}, "visit");
-  struct Borrowed final : ByteStream {
-    explicit Borrowed(ByteStream& s) : stream(s) {}
-    Result<std::size_t> read(std::span<std::byte> b, Duration t) override {
-      return stream.read(b, t);
-    }
-    Result<std::size_t> write(std::span<const std::byte> b, Duration t) override {
-      return stream.write(b, t);
-    }
-    void interrupt() noexcept override {}
-    ByteStream& stream;
-  };
-  io::RecordingStream stream(std::make_unique<Borrowed>(bench.stream), ring, bench.clock);
+  io::RecordingStream stream(std::make_unique<test::BorrowedStream>(bench.stream), ring,
+                             bench.clock);
   const auto device =
       findDriver(SampleKind::kGlove, "cyberglove")->make({}, bench.clock, bench.sink);
   ASSERT_TRUE(device->open(stream));

@@ -14,6 +14,7 @@
 #include "drivers/io/recording_stream.h"
 #include "drivers/io/replay_stream.h"
 #include "drivers/registry.h"
+#include "tests/support/borrowed_stream.h"
 #include "tests/support/device_bench.h"
 #include "tests/support/temp_dir.h"
 
@@ -173,19 +174,6 @@ struct Tape final : ByteTap {
   std::vector<io::TranscriptChunk> chunks;
 };
 
-// The stream inside is the bench's own.
-struct Borrowed final : ByteStream {
-  explicit Borrowed(ByteStream& s) : stream(s) {}
-  Result<std::size_t> read(std::span<std::byte> b, Duration t) override {
-    return stream.read(b, t);
-  }
-  Result<std::size_t> write(std::span<const std::byte> b, Duration t) override {
-    return stream.write(b, t);
-  }
-  void interrupt() noexcept override { stream.interrupt(); }
-  ByteStream& stream;
-};
-
 struct Case {
   std::string driver, model, script, settings, fault;
   std::uint64_t seed;
@@ -225,7 +213,8 @@ void synthesise(const Case& c, const std::string& name) {
   DeviceBench bench(c.driver.c_str(), emulator, c.script.c_str());
   bench.clock.advance(fromSeconds(0.001 * static_cast<double>(c.seed % 7000)));
   Tape tape(bench.clock.now());
-  io::RecordingStream stream(std::make_unique<Borrowed>(bench.stream), tape, bench.clock);
+  io::RecordingStream stream(std::make_unique<test::BorrowedStream>(bench.stream), tape,
+                             bench.clock);
   const auto device = driverNamed(c.driver)->make(settingsOf(c.settings), bench.clock, bench.sink);
   const auto opened = device->open(stream);
   const Duration length = c.driver == "spaceball" ? fromSeconds(1.0) : fromSeconds(0.2);

@@ -5,32 +5,16 @@
 
 #include <gtest/gtest.h>
 
-#include "render/governor/governor.h"
+#include "tests/render/governed.h"
 
 namespace merlin::render {
 namespace {
 
+using governed::budgetOf;
+using governed::frame;
+using governed::kSettings;
+using governed::settled;
 using std::chrono::milliseconds;
-
-// 25 Hz, a period of 40 ms: 36 ms but for the head room that it starts with.
-const GovernorSettings kSettings = {.rate_hz = 25,
-                                    .min_triangles = 100,
-                                    .max_triangles = 1'000'000,
-                                    .first_triangles = 10'000,
-                                    .late_share = 0.01};
-
-FrameCost frame(std::size_t triangles, Duration fixed, Duration work) {
-  return {triangles, fixed, work, work > milliseconds(40)};
-}
-
-// At its target: 10,000 triangles take 36 ms, 4 of them fixed. Nothing is left to change.
-Governor settled() {
-  Governor governor(kSettings);
-  for (int i = 0; i < 10; ++i) governor.observe(frame(10'000, milliseconds(4), milliseconds(36)));
-  return governor;
-}
-
-double budgetOf(const Governor& governor) { return static_cast<double>(governor.budget()); }
 
 // 5,000 triangles in what is left of a period, at 0.8 and not at 0.65: 0.5^0.15 = 0.9013 cheaper,
 // which is 0.15 of exponent. A tenth of it is learnt; the usual size costs what it did.

@@ -15,6 +15,7 @@
 #include "drivers/registry.h"
 #include "tests/support/emulated_line.h"
 #include "tests/support/eventually.h"
+#include "tests/support/statistics.h"
 
 namespace merlin::test {
 namespace {
@@ -113,12 +114,7 @@ class Windows {
       lost_ += window[i].counter - window[i - 1].counter - 1;
     }
   }
-  double quantile(double share) {
-    std::sort(intervals_ms_.begin(), intervals_ms_.end());
-    if (intervals_ms_.empty()) return 0;
-    const auto last = static_cast<double>(intervals_ms_.size() - 1);
-    return intervals_ms_[static_cast<std::size_t>(share * last)];
-  }
+  double quantile(double share) const { return test::quantile(intervals_ms_, share); }
   std::uint32_t lost() const { return lost_; }
   std::size_t count() const { return intervals_ms_.size(); }
 

@@ -1,0 +1,130 @@
+// ./dev bench rates: what the wall draws in a second, beside the table of 1998 (row W10) and beside
+// a bare loop: the same triangles on the same context, nothing else.
+//
+// W10: textured triangles at full resolution, before reduction. Here they have a colour at each
+// vertex and no texture; the operator's view is a fourth one, as there. Each is the whole model,
+// two copies of the demo's scan side by side, reduced to that many triangles and drawn whole.
+#include <cstdio>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "daemon/wall/picture.h"
+#include "render/mesh/io/mesh_file.h"
+#include "render/reduce/reduce.h"
+#include "tests/support/statistics.h"
+
+namespace merlin::bench {
+namespace {
+
+using test::median;
+using wall::Picture;
+
+constexpr double kRadius_m = 1.5;
+constexpr int kPoses = 24;
+
+struct Row1998 {
+  std::size_t triangles;
+  double rate_hz;
+};
+constexpr Row1998 kRows1998[] = {{16'000, 4}, {30'000, 2}, {63'000, 1.25}, {102'000, 0.7}};
+
+render::Mesh twice(const render::Mesh& mesh) {
+  const render::Box box = render::boundingBox(mesh.positions);
+  const float step = 1.1F * (box.high[0] - box.low[0]);
+  render::Mesh both = mesh;
+  const auto vertices = static_cast<std::uint32_t>(mesh.vertexCount());
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    both.positions.push_back(mesh.positions[i] + (i % 3 == 0 ? step : 0));
+  for (const std::uint32_t v : mesh.triangles) both.triangles.push_back(v + vertices);
+  for (render::Feature& f : both.features) {
+    const std::vector<float> values = f.values;
+    f.values.insert(f.values.end(), values.begin(), values.end());
+  }
+  return both;
+}
+
+// In front of the viewer, turned a little further each time.
+Eigen::Isometry3f pose(int k) {
+  Eigen::Isometry3f view = Eigen::Isometry3f::Identity();
+  view.translate(Eigen::Vector3f(0, 0, -2.05F));
+  view.rotate(
+      Eigen::AngleAxisf(static_cast<float>(k) * 6.2832F / kPoses, Eigen::Vector3f::UnitY()));
+  view.rotate(Eigen::AngleAxisf(-1.5708F, Eigen::Vector3f::UnitX()));
+  return view;
+}
+
+struct Times {
+  double frame_s = 0, bare_s = 0;
+};
+
+// The bare loop's share are the steps that draw and read back: cut, upload and all between are not.
+Times timeOf(Picture& picture, const Eigen::Isometry3f& T_eye_model, std::size_t level,
+             const Clock& clock) {
+  const Timestamp began = clock.now();
+  picture.draw(T_eye_model, level, Timestamp::max());
+  Times times{toSeconds(clock.now() - began), 0};
+  for (const wall::PaintStep& step : picture.steps()) {
+    if (step.kind == shm::StepKind::kDraw || step.kind == shm::StepKind::kReadBack)
+      times.bare_s += toSeconds(step.end - step.begin);
+  }
+  return times;
+}
+
+void bench(const render::Dendrogram& model, Picture& picture, const Clock& clock) {
+  fmt::print("triangles   1998, Hz   now, Hz   times   triangles/s   of a bare loop's\n");
+  for (const Row1998& row : kRows1998) {
+    const std::size_t level = model.levelFor(row.triangles);
+    std::vector<double> frame, share;
+    timeOf(picture, pose(0), level, clock);
+    for (int k = 0; k < kPoses; ++k) {
+      const Times t = timeOf(picture, pose(k), level, clock);
+      frame.push_back(t.frame_s);
+      share.push_back(t.bare_s / t.frame_s);
+    }
+    const double hz = 1 / median(frame);
+    fmt::print("{:9} {:10.2f} {:9.1f} {:7.0f} {:13.0f} {:18.2f}\n", model.trianglesAt(level),
+               row.rate_hz, hz, hz / row.rate_hz, hz * static_cast<double>(row.triangles),
+               median(share));
+  }
+}
+
+int run(const std::string& scan, int raster_threads) {
+  render::prepareSoftwareGl(raster_threads);
+  auto loaded = render::readMesh(scan);
+  if (!loaded) {
+    fmt::print(stderr, "{}\n", loaded.error().what);
+    return 1;
+  }
+  render::Mesh mesh = twice(loaded->mesh);
+  render::ensureNormals(mesh);
+  const auto reduced = render::reduce(mesh, {});
+  if (!reduced) return 1;
+  const render::Dendrogram model = render::buildDendrogram(mesh, reduced->log);
+  const auto plan = render::planTiles({});
+  const SystemClock clock;
+  const auto picture = Picture::make(model, *plan, {}, kRadius_m, clock);
+  if (!picture) {
+    fmt::print(stderr, "{}\n", picture.error().what);
+    return 1;
+  }
+  fmt::print("{}, {} raster threads; three tiles and the operator's view, 640 x 480 each\n",
+             (*picture)->renderer(), raster_threads);
+  bench(model, **picture, clock);
+  return 0;
+}
+
+}  // namespace
+}  // namespace merlin::bench
+
+int main(int argc, char** argv) {
+  std::string scan = MERLIN_SOURCE_DIR "/config/models/ankylosaurus.ply";
+  int raster_threads = 0;
+  CLI::App app("Rates at full resolution, beside those of 1998.");
+  app.add_option("--scan", scan, "A scan with colours")->capture_default_str();
+  app.add_option("--raster-threads", raster_threads, "Of Mesa's software renderer")
+      ->check(CLI::Range(0, 16));
+  CLI11_PARSE(app, argc, argv);
+  return merlin::bench::run(scan, raster_threads);
+}

@@ -1,0 +1,19 @@
+// What benchmarks say of many measurements.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+namespace merlin::test {
+
+// The value that `share` of the others are no larger than; 0 of none.
+inline double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+  return values[at];
+}
+
+inline double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
+
+}  // namespace merlin::test
