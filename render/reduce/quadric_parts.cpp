@@ -168,7 +168,7 @@ const char* QuadricReducer::run(const Limits& limits, const Progress& progress) 
     // What is left after an error's limit is not what rules are in the way of.
     if (stage != QuadricStage::kAll && whole_.too_coarse) break;
     if (stage == QuadricStage::kNoLock && labels_.empty()) continue;
-    if (stage > QuadricStage::kNoLock && limits.preserve_topology) break;
+    if (!keepsTopology(stage) && limits.preserve_topology) break;
     stage_ = stage;
     reduceWhole(keep, progress);
   }

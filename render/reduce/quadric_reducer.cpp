@@ -89,11 +89,11 @@ bool QuadricReducer::guard(Worker& w, std::uint32_t v, std::uint32_t edge) {
   const QuadricVertex &a = mesh_[v], &x = mesh_[w.costs.neighbour[edge]];
   const std::uint8_t flags = a.flags | x.flags;
   const float before = w.costs.cost[edge];
-  if ((flags & kLocked) && stage_ <= QuadricStage::kNoLock) stayAtLocked(view(), v, w.costs, edge);
+  if ((flags & kLocked) && keepsTopology(stage_)) stayAtLocked(view(), v, w.costs, edge);
   if (flags & kOpen) deviation = borderDeviation(view(), v, w.costs, edge);
   if ((flags & kSharp) || a.deviation > 0 || x.deviation > 0)
     deviation = std::max(deviation, tipDeviation(view(), v, w.costs, edge));
-  if (stage_ <= QuadricStage::kNoLock && vanishes(view(), v, w.costs, edge))
+  if (keepsTopology(stage_) && vanishes(view(), v, w.costs, edge))
     deviation = std::max(deviation, reachOf(w.costs) + std::max(a.deviation, x.deviation));
   const float least = deviationCost(deviation);
   w.costs.cost[edge] = std::max(w.costs.cost[edge], least);
@@ -135,8 +135,7 @@ bool QuadricReducer::mayCollapse(Worker& w, std::uint32_t v, std::uint32_t edge)
   if (!w.inside_only && w.costs.shared[edge] >= triangles_ - w.removed) return false;
   const bool locked = stage_ == QuadricStage::kAll && !labels_.empty() &&
                       labels_[v] != labels_[w.costs.neighbour[edge]];
-  if (locked ||
-      (keep_components_ && stage_ <= QuadricStage::kNoLock && vanishes(view(), v, w.costs, edge))) {
+  if (locked || (keep_components_ && keepsTopology(stage_) && vanishes(view(), v, w.costs, edge))) {
     ++w.links;
     return false;
   }
@@ -164,9 +163,9 @@ void QuadricReducer::collapse(Worker& w, std::uint32_t v, std::uint32_t edge) {
   if (channels_.count() > 0) mixChannels(v, x, w.costs, edge);
   mergeStars(w, v, x);
   QuadricVertex &a = mesh_[v], &b = mesh_[x];
-  const bool to_b = (b.flags & kLocked) && stage_ <= QuadricStage::kNoLock;
+  const bool to_b = (b.flags & kLocked) && keepsTopology(stage_);
   a.flags |= b.flags & (kOpen | kLocked);
-  if (stage_ > QuadricStage::kNoLock) a.flags |= kOpen;
+  if (!keepsTopology(stage_)) a.flags |= kOpen;
   b.flags |= kDead;
   a.deviation = std::max({a.deviation, b.deviation, w.costs.deviation[edge]});
   const float step[] = {w.costs.x[edge], w.costs.y[edge], w.costs.z[edge]};
@@ -239,7 +238,7 @@ void QuadricReducer::renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_
     star[kept++] = c;
   }
   ring.degree = kept;
-  if (stage_ > QuadricStage::kNoLock) ring.flags |= kOpen;
+  if (!keepsTopology(stage_)) ring.flags |= kOpen;
 }
 
 // The neighbours that had no legal edge may have one now.

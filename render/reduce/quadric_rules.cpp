@@ -149,7 +149,7 @@ Verdict judge(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs, 
   const std::uint32_t x = costs.neighbour[edge];
   const QuadricVertex& v = view.vertices[x];
   const std::uint32_t shared = costs.shared[edge];
-  if (stage <= QuadricStage::kNoLock && !vanishes(view, w, costs, edge)) {
+  if (keepsTopology(stage) && !vanishes(view, w, costs, edge)) {
     const std::uint32_t left = a.degree + v.degree - 2 * shared;
     if (shared > 2 || left < 1) return Verdict::kLink;
     if (left > kMostDegree && left > std::max(a.degree, v.degree)) return Verdict::kLink;

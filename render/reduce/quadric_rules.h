@@ -15,6 +15,9 @@ enum class QuadricStage : std::uint8_t {
   kNoFlips,  // faces may flip
 };
 
+// While locks, links and seams hold: nothing may go that the mesh's topology needs.
+inline bool keepsTopology(QuadricStage stage) noexcept { return stage <= QuadricStage::kNoLock; }
+
 enum class Verdict : std::uint8_t { kLegal, kLink, kFlip };
 
 // Whether a collapse leaves no surface of a component, or only a tetrahedron folded flat.
