@@ -34,6 +34,7 @@ std::string givenWay(const Json& s) {
   std::string text;
   if (s.value("rate_divisor", 1) > 1)
     text += fmt::format("; the rate gave way to {:.3g} Hz", s.value("rate_now", 0.0));
+  if (s.value("scale_divisor", 1) > 1) text += "; tiles at half their size";
   if (s.value("operator_coarser", false)) text += "; the operator's view is coarser";
   if (s.value("held_triangles", 0) > 0)
     text += fmt::format("; {} triangles by hand", s.value("held_triangles", 0));

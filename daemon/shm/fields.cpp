@@ -222,6 +222,7 @@ std::vector<Field> wallFields() {
   MERLIN_FIELD(t, WallStats, resumed_late, "");
   MERLIN_FIELD(t, WallStats, mode, "");
   MERLIN_FIELD(t, WallStats, posture, "");
+  MERLIN_FIELD(t, WallStats, scale_divisor, "");
   addPace(t);
   addChannel<FrameTrace>(t, "trace", offsetof(WallSegment, trace));
   t.slot("hand", offsetof(WallSegment, hand));

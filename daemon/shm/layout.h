@@ -90,29 +90,29 @@ struct WallStats {
   float head_room;       // the governor's, share of the period
   float cost_fixed_ms;   // its model: work = fixed + coefficient * triangles^0.65
   float cost_coefficient_us;
-  float input_age_ms;          // of the newest sample, when the last frame began
-  float still_to_full_s;       // last time: from standstill to full detail
-  std::uint32_t resumed;       // times that motion resumed after a standstill, since the start
-  std::uint32_t resumed_late;  // of these: the first frame missed its deadline
-  std::uint32_t grabbed;       // 1 while a hand holds the model
-  char mode[16];               // of the ball: "object" or "fly"
-  char posture[20];            // the newest, empty for none
-  std::uint32_t reserved;
-  float rate_now_hz;                 // the rate asked, divided by what the ladder gave way
-  std::uint32_t rate_divisor;        // 1, or 2, 4: not even the fewest triangles came in time
-  std::uint32_t operator_coarser;    // 1 while the operator's view is coarser, for want of time
-  std::uint32_t ladder_steps;        // of the two above, up and down, since the start
-  std::uint32_t budget;              // triangles for the next moving frame
-  std::uint32_t held_triangles;      // the same, set by hand; 0: the governor's
-  float cost_exponent;               // of the model, where the field above says 0.65
-  float oscillation;                 // (p95 - p5) / mean of the last 100 moving frames' triangles
-  std::uint32_t settle_frames;       // last time: late in a row until five in a row were in time
-  float still_to_first_s;            // last time: from standstill to the first finer picture
+  float input_age_ms;              // of the newest sample, when the last frame began
+  float still_to_full_s;           // last time: from standstill to full detail
+  std::uint32_t resumed;           // times that motion resumed after a standstill, since the start
+  std::uint32_t resumed_late;      // of these: the first frame missed its deadline
+  std::uint32_t grabbed;           // 1 while a hand holds the model
+  char mode[16];                   // of the ball: "object" or "fly"
+  char posture[20];                // the newest, empty for none
+  std::uint32_t scale_divisor;     // 1, or 2: while it moves, tiles are drawn at half their size
+  float rate_now_hz;               // the rate asked, divided by what the ladder gave way
+  std::uint32_t rate_divisor;      // 1, or 2, 4: not even the fewest triangles came in time
+  std::uint32_t operator_coarser;  // 1 while the operator's view is coarser, for want of time
+  std::uint32_t ladder_steps;      // of the two above, up and down, since the start
+  std::uint32_t budget;            // triangles for the next moving frame
+  std::uint32_t held_triangles;    // the same, set by hand; 0: the governor's
+  float cost_exponent;             // of the model, where the field above says 0.65
+  float oscillation;               // (p95 - p5) / mean of the last 100 moving frames' triangles
+  std::uint32_t settle_frames;     // last time: late in a row until five in a row were in time
+  float still_to_first_s;          // last time: from standstill to the first finer picture
   std::uint32_t work_histogram[32];  // moving frames by work / period, since the start: buckets of
                                      // 1/16; the last holds all that is longer
 };
 static_assert(sizeof(WallStats) == 328 && offsetof(WallStats, triangles) == 32);
-static_assert(offsetof(WallStats, rate_now_hz) == 160 && offsetof(WallStats, reserved) == 156);
+static_assert(offsetof(WallStats, rate_now_hz) == 160 && offsetof(WallStats, scale_divisor) == 156);
 
 // What a step of a frame does, by this number; merlin trace has their names.
 enum class StepKind : std::uint16_t {

@@ -16,6 +16,11 @@ std::vector<std::string> WallEvents::take() {
                          ? "the operator's view is coarser: there is no time for it"
                          : "the operator's view is as fine as the wall again");
   }
+  if (const auto was = std::exchange(scale_, s->scale_divisor); was != scale_) {
+    events.push_back(scale_ > 1 ? "tiles at half their size while it moves: not even the fewest "
+                                  "triangles come in time"
+                                : "tiles at their full size again: the fewest triangles fit");
+  }
   if (const auto was = std::exchange(divisor_, s->rate_divisor); was != divisor_) {
     events.push_back(was < divisor_
                          ? fmt::format("down to {:.3g} of {:.3g} Hz: not even the fewest triangles "

@@ -19,7 +19,7 @@ class WallEvents {
 
  private:
   const shm::WallSegment& segment_;
-  std::uint32_t divisor_ = 1, operator_coarser_ = 0, held_ = 0;
+  std::uint32_t divisor_ = 1, scale_ = 1, operator_coarser_ = 0, held_ = 0;
   float asked_hz_ = 0;
 };
 

@@ -46,6 +46,10 @@ class Painter {
     return false;
   }
 
+  // Of what draw() draws from now on: tiles of 1/divisor of their size each way, enlarged. What is
+  // refined is whole. 1 until it is told; divisor >= 1. Nothing where a painter cannot.
+  virtual void setScale(int /*divisor*/) {}
+
   // For the trace; none where a painter does not say.
   virtual std::span<const PaintStep> steps() const noexcept { return {}; }
 

@@ -32,6 +32,24 @@ Eigen::Matrix4f scaling(const render::Dendrogram& model, float radius_m) {
   return m;
 }
 
+struct Size {
+  int width, height;
+};
+
+// Each pixel of `from` as `times` x `times` of them; where `to` is no multiple, the last ones go
+// on.
+void enlarge(std::span<const std::uint8_t> from, Size size, int times, std::uint8_t* to,
+             Size enlarged, int stride_px) {
+  for (int y = 0; y < enlarged.height; ++y) {
+    const std::uint8_t* row = &from[static_cast<std::size_t>(4) *
+                                    static_cast<std::size_t>(std::min(y / times, size.height - 1)) *
+                                    static_cast<std::size_t>(size.width)];
+    std::uint8_t* out = to + std::ptrdiff_t{4} * y * stride_px;
+    for (int x = 0; x < enlarged.width; ++x)
+      std::copy_n(row + std::ptrdiff_t{4} * std::min(x / times, size.width - 1), 4, out + 4 * x);
+  }
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Picture>> Picture::make(const render::Dendrogram& model,
@@ -91,17 +109,23 @@ render::Camera Picture::cameraOf(const render::Tile& tile,
   return {tile.projection * view * T_eye_model.matrix() * metres_from_model_, T_eye_model.linear()};
 }
 
-void Picture::beginTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model) {
+void Picture::beginTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model, int scale) {
   const render::Tile& t = plan_.tiles[tile];
   tiles_[tile].bind();
-  renderer_->begin(t.width, t.height, cameraOf(t, T_eye_model), settings_.look);
+  renderer_->begin(t.width / scale, t.height / scale, cameraOf(t, T_eye_model), settings_.look);
 }
 
-void Picture::readTile(std::size_t tile) {
+void Picture::readTile(std::size_t tile, int scale) {
   const render::Tile& t = plan_.tiles[tile];
   const auto at =
       static_cast<std::size_t>(4) * static_cast<std::size_t>(t.y * plan_.frame_width + t.x);
-  tiles_[tile].read(pixels_.data() + at, plan_.frame_width);
+  if (scale == 1) return tiles_[tile].read(pixels_.data() + at, plan_.frame_width);
+  const int width = t.width / scale, height = t.height / scale;
+  small_.resize(std::size_t{4} * static_cast<std::size_t>(width) *
+                static_cast<std::size_t>(height));
+  tiles_[tile].read(small_.data(), width, width, height);
+  enlarge(small_, {width, height}, scale, pixels_.data() + at, {t.width, t.height},
+          plan_.frame_width);
 }
 
 render::TileView Picture::viewOf(std::size_t tile, const Eigen::Isometry3f& T_eye_model) const {
@@ -165,7 +189,7 @@ void Picture::chooseRuns(std::size_t view) {
 void Picture::drawTile(std::size_t tile, std::size_t view, const Eigen::Isometry3f& T_eye_model,
                        DrawTimes& times) {
   const Timestamp began = clock_.now();
-  beginTile(tile, T_eye_model);
+  beginTile(tile, T_eye_model, scale_);
   const Timestamp cleared = clock_.now();
   chooseRuns(view);
   for (Progress at; at.run < runs_.size();) {
@@ -173,7 +197,7 @@ void Picture::drawTile(std::size_t tile, std::size_t view, const Eigen::Isometry
     renderer_->flush();
   }
   const Timestamp drawn = stepDone(shm::StepKind::kDraw, tile, began);
-  readTile(tile);
+  readTile(tile, scale_);
   stepDone(shm::StepKind::kReadBack, tile, drawn);
   times.drawing += drawn - cleared;
   times.fixed += (cleared - began) + (clock_.now() - drawn);
@@ -264,7 +288,7 @@ bool Picture::refine(Timestamp until) {
   bool whole = false;
   for (Timestamp now = first; !whole && now + slice_time_ * 3 / 2 < until;) {
     if (!refined_begun_) {
-      beginTile(refined_tile_, refined_view_);
+      beginTile(refined_tile_, refined_view_, 1);
       chooseRuns(refined_tile_);
       refined_ = {};
       refined_begun_ = true;
@@ -272,7 +296,7 @@ bool Picture::refine(Timestamp until) {
     drawSlice(refined_);
     renderer_->finish();
     if (refined_.run == runs_.size()) {
-      readTile(refined_tile_);
+      readTile(refined_tile_, 1);
       refined_begun_ = false;
       whole = ++refined_tile_ == tiles_.size();
     }

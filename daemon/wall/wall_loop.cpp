@@ -73,7 +73,7 @@ void WallLoop::obeyRequests() {
 bool WallLoop::applyRate() {
   const double by_hand = rate_hz_.load();
   asked_hz_ = by_hand > 0 ? by_hand : configured_hz_;
-  const double now_hz = asked_hz_ / rate_ladder_.divisor();
+  const double now_hz = asked_hz_ / rateDivisor();
   if (period_ == fromSeconds(1 / now_hz)) return false;
   p_.governor.setRate(now_hz);
   period_ = p_.governor.period();
@@ -212,13 +212,19 @@ void WallLoop::finishMoving(const DrawTimes& times, Duration present, bool met) 
   out_.resumed_late += met ? 0 : 1;
 }
 
-// The rate gives way where not even the fewest triangles come in time, and comes back where they
+// Size and rate give way where not even the fewest triangles come in time, and come back where they
 // would.
 void WallLoop::climb(bool late, bool least) {
-  const double higher_s = toSeconds(period_) / 2;
+  if (!ladder_.observe(late, least, higherFits())) return;
+  ++out_.ladder_steps;
+  for (const Content& content : p_.contents) content.painter->setScale(scale());
+}
+
+// At full size a frame costs four times as much at most.
+bool WallLoop::higherFits() const {
   const double needed_s = p_.governor.predict(p_.governor.least());
-  const bool fits = needed_s < higher_s * (1 - p_.governor.headRoom());
-  if (rate_ladder_.observe(late, least, fits)) ++out_.ladder_steps;
+  const double times = ladder_.rung() > 1 ? 2 : 4;
+  return times * needed_s < toSeconds(period_) * (1 - p_.governor.headRoom());
 }
 
 std::int64_t WallLoop::stillPeriod(std::int64_t k) {

@@ -4,9 +4,11 @@
 // t0 + k x period. While anything moves, each period brings a frame of as many triangles as the
 // governor allows; while nothing does, the periods are spent on drawing finer pictures and then
 // full detail in slices, so that the frame that begins after motion resumes begins on time. Where
-// not even the fewest triangles come in time, the rate is halved (render/governor/ladder.h).
+// not even the fewest triangles come in time, tiles are drawn at half their size, and then the rate
+// is halved (render/governor/ladder.h).
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -84,6 +86,9 @@ class WallLoop {
   std::int64_t countDeadlines(std::int64_t k, Timestamp finished);
   void finishMoving(const DrawTimes& times, Duration present, bool met);
   void climb(bool late, bool least);
+  bool higherFits() const;
+  int scale() const noexcept { return ladder_.rung() > 0 ? 2 : 1; }
+  int rateDivisor() const noexcept { return 1 << std::max(ladder_.rung() - 1, 0); }
   void beginRefining();
   void showRefined();
   void obeyRequests();
@@ -107,7 +112,8 @@ class WallLoop {
   FrameStats stats_;
   FrameTracer tracer_;
   render::SceneView view_;
-  render::Ladder rate_ladder_, operator_ladder_{1};
+  // The first rung of the wall's halves the picture's size, each further one the rate.
+  render::Ladder ladder_{3}, operator_ladder_{1};
   std::size_t level_ = 0;
   std::optional<std::size_t> moving_level_;  // of the last moving frame that had a whole period
   bool refining_ = false, full_detail_ = false;

@@ -70,8 +70,9 @@ void WallLoop::paceStats(Timestamp now) {
   out_.rate_asked_hz = static_cast<float>(asked_hz_);
   out_.rate_now_hz = static_cast<float>(now_hz);
   out_.rate_held_hz = static_cast<float>(stats_.heldRate(now, now_hz));
-  out_.rate_divisor = static_cast<std::uint32_t>(rate_ladder_.divisor());
-  out_.operator_coarser = operator_ladder_.divisor() > 1;
+  out_.rate_divisor = static_cast<std::uint32_t>(rateDivisor());
+  out_.scale_divisor = static_cast<std::uint32_t>(scale());
+  out_.operator_coarser = operator_ladder_.rung() > 0;
   out_.work_median_ms = static_cast<float>(1000 * stats_.medianWorkSeconds());
   out_.utilisation = static_cast<float>(stats_.utilisation());
   out_.oscillation = static_cast<float>(stats_.oscillation());

@@ -42,11 +42,11 @@ FrameBuffer::~FrameBuffer() {
 
 void FrameBuffer::bind() const { gl_->BindFramebuffer(GL_FRAMEBUFFER, frame_); }
 
-void FrameBuffer::read(std::uint8_t* pixels, int stride_px) const {
-  assert(stride_px >= width_);
+void FrameBuffer::read(std::uint8_t* pixels, int stride_px, int width, int height) const {
+  assert(width <= width_ && height <= height_ && stride_px >= width);
   bind();
   gl_->PixelStorei(GL_PACK_ROW_LENGTH, stride_px);
-  gl_->ReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+  gl_->ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
 }
 
 }  // namespace merlin::render

@@ -27,7 +27,9 @@ class FrameBuffer {
 
   // Copies the picture to `pixels`, RGBA, rows from top to bottom (MERLIN draws with y downwards,
   // so no row is turned), the next row `stride_px` pixels on. Waits until all is drawn.
-  void read(std::uint8_t* pixels, int stride_px) const;
+  void read(std::uint8_t* pixels, int stride_px) const { read(pixels, stride_px, width_, height_); }
+  // The same of its upper left corner. REQUIRES: no larger than the picture.
+  void read(std::uint8_t* pixels, int stride_px, int width, int height) const;
 
  private:
   FrameBuffer(const GlApi& gl, int width, int height) : gl_(&gl), width_(width), height_(height) {}

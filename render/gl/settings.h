@@ -19,7 +19,7 @@ struct Look {
 struct RenderSettings {
   GlBackend backend = GlBackend::kEgl;
   int raster_threads = 0;      // of Mesa's software renderer; 0: the wall's own thread does all
-  std::string show;            // a feature, as colours; empty: the model's own
+  std::string show{};          // a feature, as colours; empty: the model's own
   bool view_dependent = true;  // triangles where the tiles look; else as many everywhere
   Look look;
 };

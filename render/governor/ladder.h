@@ -1,4 +1,5 @@
-// Ladder: what gives way where not even the fewest triangles come in time: the rate, by halves.
+// Ladder: when something gives way where not even the fewest triangles come in time: the size of
+// the picture, then the rate; what each rung means is the caller's.
 //
 // Counts of frames, not times: 10 late of the last 60 that had the fewest triangles lead one rung
 // down, 300 in a row in time lead back up, if the model says that the fewest fit there. After US
@@ -12,16 +13,15 @@ namespace merlin::render {
 // Pure; thread-bound.
 class Ladder {
  public:
-  // `most`: rungs that there are; the lowest divides by 2^most.
-  explicit Ladder(int most = 2) noexcept : most_(most) {}
+  // `most`: rungs that there are below the top, 0.
+  explicit Ladder(int most) noexcept : most_(most) {}
 
   // A deadline passed while something moved. `least`: its frame had the fewest triangles there
-  // are, or there was no time for one. `higher_fits`: these would fit the next higher rate.
+  // are, or there was no time for one. `higher_fits`: these would fit the next higher rung.
   // Returns whether the rung is another one now.
   bool observe(bool late, bool least, bool higher_fits) noexcept;
 
-  // Of the rate asked: 1, 2, 4 ...
-  int divisor() const noexcept { return 1 << rung_; }
+  int rung() const noexcept { return rung_; }  // 0: nothing gave way
 
  private:
   bool go(int rung) noexcept;

@@ -83,6 +83,29 @@ TEST(Picture, MiddleTileAloneIsTheSamePixels) {
   EXPECT_NE(wall.tile(0).pixels, wall.tile(1).pixels);
 }
 
+// At half its size a tile is the same picture in blocks of 2 x 2; what is refined is whole.
+TEST(Picture, HalfTheSizeIsEnlargedAndGoesWhenItIsRefined) {
+  Wall wall(fourTiles());
+  wall.draw();
+  const Image full = wall.tile(1);
+  wall.picture->setScale(2);
+  wall.draw(1);
+  const Image half = wall.tile(1);
+  double off = 0;
+  for (int y = 0; y < half.height; ++y) {
+    for (int x = 0; x < half.width; ++x) {
+      ASSERT_EQ(test::difference(half.at(x, y), half.at(x / 2 * 2, y / 2 * 2)), 0);
+      off += test::difference(half.at(x, y), full.at(x, y));
+    }
+  }
+  EXPECT_GT(off, 0);
+  EXPECT_LT(off / (half.width * half.height), 8) << "of 255";
+  wall.picture->beginRefining(inFront());
+  while (!wall.picture->refine(Timestamp::max())) {
+  }
+  EXPECT_EQ(wall.tile(1).pixels, full.pixels);
+}
+
 // As a wall of several models has them: what one draws leaves nothing behind for the other.
 TEST(Picture, TwoInOneContextDrawWhatEachDrawsAlone) {
   Wall alone(fourTiles()), first(fourTiles());

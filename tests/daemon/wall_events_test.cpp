@@ -21,7 +21,7 @@ class WallEventsTest : public testing::Test {
   shm::WallStats stats_ = [] {
     shm::WallStats s{};
     s.rate_asked_hz = s.rate_now_hz = 30;
-    s.rate_divisor = 1;
+    s.rate_divisor = s.scale_divisor = 1;
     return s;
   }();
 };
@@ -32,6 +32,9 @@ TEST_F(WallEventsTest, TellEachStepDownAndUpOnce) {
   stats_.operator_coarser = 1;
   EXPECT_EQ(after(stats_), Sentences{"the operator's view is coarser: there is no time for it"});
   EXPECT_EQ(after(stats_), Sentences{});
+  stats_.scale_divisor = 2;
+  EXPECT_EQ(after(stats_), Sentences{"tiles at half their size while it moves: not even the fewest "
+                                     "triangles come in time"});
   stats_.rate_divisor = 2;
   stats_.rate_now_hz = 15;
   EXPECT_EQ(after(stats_),

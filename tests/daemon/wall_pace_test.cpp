@@ -42,6 +42,24 @@ TEST_F(WallPaceTest, AJumpToAKnownViewIsFedForward) {
   EXPECT_LE(stats().longest_late, 4u);
 }
 
+// 100 triangles take 30 ms and the tiles 4 of theirs: 1 at half their size. Later 1 ms again.
+TEST_F(WallPaceTest, TheSizeGivesWayFirstAndComesBack) {
+  std::uint32_t scale = 0;
+  run(40, [&](Timestamp) {
+    painter_.slow = since() < std::chrono::seconds(10) ? 30 : 1;
+    if (since() > std::chrono::seconds(9) && scale == 0) {
+      scale = stats().scale_divisor;
+      EXPECT_EQ(painter_.scale, 2);
+      EXPECT_NEAR(stats().rate_held_hz, 30, 0.01);
+    }
+  });
+  EXPECT_EQ(scale, 2u);
+  EXPECT_EQ(stats().scale_divisor, 1u);
+  EXPECT_EQ(painter_.scale, 1);
+  EXPECT_EQ(stats().rate_divisor, 1u);
+  EXPECT_EQ(stats().ladder_steps, 2u);
+}
+
 // 100 triangles take 44 ms: 30 Hz is lost, 15 Hz is kept. Later they take 1 ms again.
 TEST_F(WallPaceTest, TheRateGivesWayByHalvesAndComesBack) {
   std::uint32_t divisor = 0;
@@ -57,7 +75,7 @@ TEST_F(WallPaceTest, TheRateGivesWayByHalvesAndComesBack) {
   EXPECT_NEAR(held, 15, 0.01);
   EXPECT_EQ(stats().rate_divisor, 1u);
   EXPECT_NEAR(stats().rate_held_hz, 30, 0.01);
-  EXPECT_EQ(stats().ladder_steps, 2u);
+  EXPECT_EQ(stats().ladder_steps, 4u) << "the size before it, and back";
   EXPECT_FLOAT_EQ(stats().rate_asked_hz, 30);
 }
 

@@ -13,19 +13,19 @@ bool observe(Ladder& ladder, int count, bool late, bool least = true, bool fits 
   return changed;
 }
 
-TEST(Ladder, TenLateOfSixtyHalveTheRate) {
-  Ladder ladder;
+TEST(Ladder, TenLateOfSixtyLeadARungDown) {
+  Ladder ladder(2);
   EXPECT_FALSE(observe(ladder, 9, true));
-  EXPECT_EQ(ladder.divisor(), 1);
+  EXPECT_EQ(ladder.rung(), 0);
   EXPECT_TRUE(observe(ladder, 1, true));
-  EXPECT_EQ(ladder.divisor(), 2);
+  EXPECT_EQ(ladder.rung(), 1);
   EXPECT_TRUE(observe(ladder, 10, true));
-  EXPECT_EQ(ladder.divisor(), 4);
+  EXPECT_EQ(ladder.rung(), 2);
   EXPECT_FALSE(observe(ladder, 100, true)) << "the last rung";
 }
 
 TEST(Ladder, NineLateInSixtyDoNot) {
-  Ladder ladder;
+  Ladder ladder(2);
   for (int i = 0; i < 20; ++i) {
     EXPECT_FALSE(observe(ladder, 9, true));
     EXPECT_FALSE(observe(ladder, 51, false));
@@ -33,16 +33,16 @@ TEST(Ladder, NineLateInSixtyDoNot) {
 }
 
 TEST(Ladder, FramesWithMoreThanTheFewestAreTheGovernorsBusiness) {
-  Ladder ladder;
+  Ladder ladder(2);
   EXPECT_FALSE(observe(ladder, 100, true, false));
 }
 
 TEST(Ladder, ThreeHundredInTimeBringItBackIfItFitsThere) {
-  Ladder ladder;
+  Ladder ladder(2);
   observe(ladder, 10, true);
   EXPECT_FALSE(observe(ladder, 1000, false, true, false)) << "it would not fit";
   EXPECT_TRUE(observe(ladder, 1, false));
-  EXPECT_EQ(ladder.divisor(), 1);
+  EXPECT_EQ(ladder.rung(), 0);
   observe(ladder, 10, true);
   EXPECT_FALSE(observe(ladder, 299, false));
   EXPECT_FALSE(observe(ladder, 1, true)) << "one late frame starts the count again";
@@ -54,7 +54,7 @@ TEST(Ladder, HasAsManyRungsAsItIsGiven) {
   Ladder ladder(1);
   EXPECT_TRUE(observe(ladder, 10, true));
   EXPECT_FALSE(observe(ladder, 50, true));
-  EXPECT_EQ(ladder.divisor(), 2);
+  EXPECT_EQ(ladder.rung(), 1);
 }
 
 }  // namespace

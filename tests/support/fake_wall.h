@@ -49,7 +49,7 @@ class FakePainter final : public Painter {
       : clock_(clock), per_triangle_(per_triangle), slices_(slices) {}
 
   DrawTimes draw(const Eigen::Isometry3f&, std::size_t level, Timestamp) override {
-    const Duration fixed = milliseconds(4), drawing = costOf(level) * slow;
+    const Duration fixed = milliseconds(4) / (scale * scale), drawing = costOf(level) * slow;
     const Timestamp began = clock_.now();
     clock_.advance(drawing);
     const Timestamp read = clock_.now();
@@ -61,6 +61,7 @@ class FakePainter final : public Painter {
               {shm::StepKind::kReadBack, 0, read, clock_.now()}};
     return {drawing, fixed, gives_way};
   }
+  void setScale(int divisor) override { scale = divisor; }
   std::span<const PaintStep> steps() const noexcept override { return steps_; }
   void beginRefining(const Eigen::Isometry3f&) override { left_ = slices_; }
   bool beginRefiningTo(const Eigen::Isometry3f&, std::size_t level) override {
@@ -81,7 +82,7 @@ class FakePainter final : public Painter {
 
   void setCost(Duration per_triangle) { per_triangle_ = per_triangle; }
 
-  int slow = 1;
+  int slow = 1, scale = 1;
   bool gives_way = false;
   std::vector<Timestamp> drawn;
   std::vector<std::size_t> levels;
