@@ -99,6 +99,21 @@ void checkLine(const LineSettings& line, const std::string& device, LoadedSettin
   }
 }
 
+// A line's bytes of 10 bits; the longest record of 22 sensors.
+void checkGloveRate(const DevicesSettings& d, LoadedSettings& loaded) {
+  const bool text = d.glove.dialogue == CybergloveSettings::Dialogue::kText;
+  const int stamp = d.glove.time_stamps ? (text ? 11 : 5) : 0;
+  const int bytes = (text ? 96 : 25) + stamp;
+  const double most = d.glove_line.baud / 10.0 / bytes;
+  const bool has_speed = d.glove_line.port.starts_with("serial:") ||
+                         d.glove_line.port.starts_with("pty:");  // what a server's is, who knows
+  if (!has_speed || d.glove.rate_hz <= most) return;
+  loaded.wrong("/devices/glove/rate_hz",
+               fmt::format("is {:g}, and a line of {} baud carries {:.0f} records of {} bytes a "
+                           "second: ask for fewer, or set the line faster",
+                           d.glove.rate_hz, d.glove_line.baud, std::floor(most), bytes));
+}
+
 template <std::size_t N>
 void checkAxes(const std::array<int, N>& axes, const std::string& pointer, LoadedSettings& loaded) {
   std::set<int> seen;
@@ -193,6 +208,7 @@ void checkTogether(LoadedSettings& loaded) {
   checkLine(s.devices.tracker_line, "tracker", loaded);
   checkLine(s.devices.ball_line, "ball", loaded);
   checkPortsDiffer(s.devices, loaded);
+  checkGloveRate(s.devices, loaded);
   checkGpio(s.devices.gpio, loaded);
   checkNetwork(s, loaded);
   checkAxes(s.devices.ball.axis_map, "/devices/ball/axis_map", loaded);

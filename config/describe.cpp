@@ -183,9 +183,11 @@ void describeRender(render::RenderSettings& r, SettingsVisitor& v) {
   v.oneOf("backend", r.backend, kBackends, "Which windowless OpenGL draws.");
   v.integer("raster_threads", r.raster_threads, {0, 16},
             "Of Mesa's software renderer; 0: the wall's own thread does all.");
-  v.text("show", r.show,
+  v.text("show", r.show.feature,
          "The feature that is shown as colours, one value on a scale (thermal, confidence ...); "
-         "empty: the model's own colours.");
+         "empty: the model's own colours. Every content has to have it.");
+  v.numbers("show_range", r.show.range, {-1e9, 1e9},
+            "Where that scale begins and ends; twice the same: as the model's values do.");
   v.flag("view_dependent", r.view_dependent,
          "Triangles where the tiles look, finer near; else as many everywhere.");
   v.numbers("colour", r.look.colour, {0, 1}, "Of a model without colours: red, green, blue.");

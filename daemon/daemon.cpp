@@ -86,7 +86,7 @@ Daemon::Daemon(Settings settings, const DaemonOptions& options, Clock& clock)
       clock_(clock),
       watchdog_(watchdogInterval()) {}
 
-// In reverse order of start: nobody is asked for what is no more.
+// Nobody is asked for what is no more: the panel's button asks the wall.
 Daemon::~Daemon() {
   servers_.clear();
   orders_.reset();
@@ -94,8 +94,8 @@ Daemon::~Daemon() {
   spnav_.reset();
   vrpn_.reset();
   link_.reset();
-  wall_.reset();
   devices_.reset();
+  wall_.reset();
 }
 
 shm::Endpoints Daemon::endpoints(const std::string& role) const {

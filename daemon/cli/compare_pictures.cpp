@@ -9,6 +9,7 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/files.h"
 #include "daemon/cli/mesh.h"
+#include "render/gl/shown_colours.h"
 #include "render/out/png.h"
 
 namespace merlin::cli {
@@ -168,12 +169,18 @@ Result<double> writePictures(const std::string& folder, const render::Mesh& a,
                              const render::Mesh& b, const View& view) {
   if (const auto made = makeFolder(folder); !made) return made.error();
   const render::Mesh first = framed(a, b), second = framed(b, a);
-  View wire = view, plain = view;
+  // Equal values have equal colours in both.
+  const auto shown = render::coloursOf(asModel(first), view.render.show);
+  if (!shown) return shown.error();
+  View same = view;
+  same.render.show.range = {shown->low, shown->high};
+  View wire = same, plain = same;
   wire.render.look.wireframe = true;
   plain.render.look.brightness = 1;
+  plain.render.show = {};
   std::vector<Image> images;
   for (const auto& [mesh, how] :
-       {std::pair{&first, &view}, {&second, &view}, {&first, &wire}, {&second, &wire}}) {
+       {std::pair{&first, &same}, {&second, &same}, {&first, &wire}, {&second, &wire}}) {
     auto image = drawn(*mesh, *how);
     if (!image) return image.error();
     images.push_back(*std::move(image));

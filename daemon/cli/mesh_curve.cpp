@@ -33,7 +33,7 @@ struct Curve {
   std::vector<Row> rows;  // finest first
 };
 
-// From the finest but one to the coarsest, in equal steps of the logarithm.
+// From half of the triangles down in equal steps of the logarithm, and the coarsest.
 std::vector<std::size_t> levelsOf(const render::Dendrogram& model, std::size_t steps_an_octave) {
   std::vector<std::size_t> levels;
   const auto all = static_cast<double>(model.triangleCount());
@@ -44,6 +44,8 @@ std::vector<std::size_t> levelsOf(const render::Dendrogram& model, std::size_t s
     const std::size_t level = model.levelFor(static_cast<std::size_t>(triangles));
     if (levels.empty() || levels.back() != level) levels.push_back(level);
   }
+  const std::size_t coarsest = model.levels() - 1;
+  if (levels.empty() || levels.back() != coarsest) levels.push_back(coarsest);
   return levels;
 }
 

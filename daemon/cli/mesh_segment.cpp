@@ -36,7 +36,7 @@ Result<Ok> draw(const SegmentOptions& options, const render::Mesh& mesh) {
   const render::Dendrogram model = asModel(mesh);
   const SystemClock clock;
   View view = options.view;
-  if (view.render.show.empty()) view.render.show = "label";
+  if (view.render.show.feature.empty()) view.render.show.feature = "label";
   auto painter = ModelPainter::make(model, view, clock);
   if (!painter) return painter.error();
   const Image image = painter->draw(0);

@@ -30,7 +30,7 @@ void View::addTo(CLI::App& command) {
       ->capture_default_str();
   command
       .add_option(
-          "--show", render.show,
+          "--show", render.show.feature,
           "A feature as colours, one value on a scale from dark blue to yellow; without: the "
           "model's own")
       ->type_name("NAME");

@@ -91,7 +91,8 @@ Picture::Picture(const render::Dendrogram& model, const render::TilePlan& plan,
       cut_ends_(clusters_.size() + 1),
       even_levels_(clusters_.size()),
       pixels_(std::size_t{4} * static_cast<std::size_t>(plan.frame_width) *
-              static_cast<std::size_t>(plan.frame_height)) {
+              static_cast<std::size_t>(plan.frame_height)),
+      refined_pixels_(pixels_.size()) {
   tiles_.reserve(plan.tiles.size());
   for (std::size_t i = 0; i < plan.tiles.size(); ++i) {
     if (plan.tiles[i].kind == render::TileKind::kOperator) operators_.push_back(i);
@@ -115,16 +116,16 @@ void Picture::beginTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model, 
   renderer_->begin(t.width / scale, t.height / scale, cameraOf(t, T_eye_model), settings_.look);
 }
 
-void Picture::readTile(std::size_t tile, int scale) {
+void Picture::readTile(std::size_t tile, int scale, std::vector<std::uint8_t>& frame) {
   const render::Tile& t = plan_.tiles[tile];
   const auto at =
       static_cast<std::size_t>(4) * static_cast<std::size_t>(t.y * plan_.frame_width + t.x);
-  if (scale == 1) return tiles_[tile].read(pixels_.data() + at, plan_.frame_width);
+  if (scale == 1) return tiles_[tile].read(frame.data() + at, plan_.frame_width);
   const int width = t.width / scale, height = t.height / scale;
   small_.resize(std::size_t{4} * static_cast<std::size_t>(width) *
                 static_cast<std::size_t>(height));
   tiles_[tile].read(small_.data(), width, width, height);
-  enlarge(small_, {width, height}, scale, pixels_.data() + at, {t.width, t.height},
+  enlarge(small_, {width, height}, scale, frame.data() + at, {t.width, t.height},
           plan_.frame_width);
 }
 
@@ -197,7 +198,7 @@ void Picture::drawTile(std::size_t tile, std::size_t view, const Eigen::Isometry
     renderer_->flush();
   }
   const Timestamp drawn = stepDone(shm::StepKind::kDraw, tile, began);
-  readTile(tile, scale_);
+  readTile(tile, scale_, pixels_);
   stepDone(shm::StepKind::kReadBack, tile, drawn);
   times.drawing += drawn - cleared;
   times.fixed += (cleared - began) + (clock_.now() - drawn);
@@ -296,13 +297,14 @@ bool Picture::refine(Timestamp until) {
     drawSlice(refined_);
     renderer_->finish();
     if (refined_.run == runs_.size()) {
-      readTile(refined_tile_, 1);
+      readTile(refined_tile_, 1, refined_pixels_);
       refined_begun_ = false;
       whole = ++refined_tile_ == tiles_.size();
     }
     const Timestamp then = std::exchange(now, clock_.now());
     slice_time_ = std::max<Duration>(now - then, slice_time_ * 9 / 10);
   }
+  if (whole) std::swap(pixels_, refined_pixels_);
   // Where slices take longer than a period has, the figure fades until one is tried again.
   if (!whole) slice_time_ = slice_time_ * 9 / 10;
   stepDone(shm::StepKind::kRefine, 0, first);

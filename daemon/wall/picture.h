@@ -71,7 +71,7 @@ class Picture final : public Painter {
   std::size_t levelThatFits(std::size_t level, Duration wall, Duration left) const;
   void learnOperatorShare(Duration wall, Duration operators);
   void beginTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model, int scale);
-  void readTile(std::size_t tile, int scale);
+  void readTile(std::size_t tile, int scale, std::vector<std::uint8_t>& frame);
 
   const render::Dendrogram& model_;
   render::TilePlan plan_;
@@ -93,8 +93,9 @@ class Picture final : public Painter {
   std::vector<std::size_t> operators_;  // the operator's tiles, numbers of the plan's
   std::vector<render::TileView> views_;
   std::vector<Run> runs_;
-  std::vector<PaintStep> steps_;              // of the last draw() or refine()
-  std::vector<std::uint8_t> pixels_, small_;  // the latter: of a tile that is enlarged
+  std::vector<PaintStep> steps_;                       // of the last draw() or refine()
+  std::vector<std::uint8_t> pixels_, refined_pixels_;  // shown, and refined until it is whole
+  std::vector<std::uint8_t> small_;                    // of a tile that is enlarged
   int scale_ = 1;
   // Operator's views' time as a share of the wall tiles', at the same level; of the last frames.
   double operator_share_ = 0.3;

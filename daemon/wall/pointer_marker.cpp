@@ -27,6 +27,11 @@ bool within(const render::Tile& tile, const Eigen::Vector2i& p) {
 
 }  // namespace
 
+PointerMarker::PointerMarker(const render::TilePlan& plan) : plan_(plan) {
+  constexpr std::size_t kSide = 2 * kRadius_px + 1;
+  covered_.reserve(plan.tiles.size() * kSide * kSide);
+}
+
 std::optional<Eigen::Vector2i> PointerMarker::pixelOf(const Eigen::Vector3f& at_eye_m) const {
   for (const render::Tile& tile : plan_.tiles) {
     if (tile.kind != render::TileKind::kWall) continue;

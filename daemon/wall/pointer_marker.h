@@ -12,11 +12,11 @@
 
 namespace merlin::wall {
 
-// Thread-bound to the wall's thread. Allocates nothing after the first disc.
+// Thread-bound to the wall's thread. Allocates nothing once it is made.
 class PointerMarker {
  public:
   // Borrowed.
-  explicit PointerMarker(const render::TilePlan& plan) : plan_(plan) {}
+  explicit PointerMarker(const render::TilePlan& plan);
 
   // The pixel of the frame where the wall shows a point (eye coordinates, metres): its middle is at
   // x + 0.5, y + 0.5. Nothing where no wall tile does.

@@ -116,6 +116,7 @@ void WallLoop::measureHome() {
 
 // The cost of what will be seen next is known, unlike that of a view which nobody had before.
 void WallLoop::expectHome() {
+  if (scale() > 1) return;  // homes are of full size
   const Home& home = homes_[content_];
   const double now_s = p_.governor.predict(home.triangles) - p_.governor.fixedSeconds();
   if (home.drawing_s > 0 && now_s > 0) p_.governor.expect(home.drawing_s / now_s);
@@ -166,8 +167,9 @@ std::size_t WallLoop::chooseLevel(Duration available) {
 std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
   const Timestamp looked = p_.clock.now();
   const Duration left = tick(k + 1) - began;
-  const std::size_t level = chooseLevel(
+  std::size_t level = chooseLevel(
       resuming_ ? std::min(left, fromSeconds(kResumingShare * toSeconds(period_))) : left);
+  if (resuming_ && level == model().levels()) level = chooseLevel(left);
   tracer_.add(StepKind::kGovernor, looked, p_.clock.now());
   if (level == model().levels()) {
     stats_.deadline(tick(k + 1), true, false);
@@ -215,8 +217,10 @@ void WallLoop::finishMoving(const DrawTimes& times, Duration present, bool met) 
 // Size and rate give way where not even the fewest triangles come in time, and come back where they
 // would.
 void WallLoop::climb(bool late, bool least) {
+  const int was = scale();
   if (!ladder_.observe(late, least, higherFits())) return;
   ++out_.ladder_steps;
+  if (scale() < was) p_.governor.expect(was * was);  // at most
   for (const Content& content : p_.contents) content.painter->setScale(scale());
 }
 
@@ -250,7 +254,9 @@ std::int64_t WallLoop::stillPeriod(std::int64_t k) {
 void WallLoop::beginRefining() {
   refining_ = true;
   const std::size_t now = model().trianglesAt(level_);
-  const Duration first = std::min<Duration>(period_ * 5 / 4, kFirstRefinement);
+  // The model is of frames at scale(); what is refined is at full size.
+  const Duration first =
+      std::min<Duration>(period_ * 5 / 4, kFirstRefinement) / (scale() * scale());
   const std::size_t finer =
       first_refinement_ ? p_.governor.trianglesWithin(first) : kNextRefinement * now;
   refined_level_ = model().levelFor(finer);

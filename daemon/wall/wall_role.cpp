@@ -82,12 +82,15 @@ std::future<Result<std::string>> WallRole::start() {
 void WallRole::run(const std::stop_token& stop) {
   std::vector<std::unique_ptr<Picture>> pictures;
   std::vector<Content> contents;
+  std::vector<std::string> paths = {settings_.wall.model};
+  for (const ContentSettings& c : settings_.wall.contents) paths.push_back(c.model);
   for (const render::Dendrogram& model : models_) {
     auto picture =
         Picture::make(model, plan_, settings_.wall.render, settings_.wall.scene.model_radius_m,
                       clock_, pictures.empty() ? nullptr : pictures.front()->context());
     if (!picture) {
-      ready_.set_value(picture.error());
+      const std::string& path = paths[contents.size()];
+      ready_.set_value(Error{picture.error().code, path + ": " + picture.error().what});
       return;
     }
     (*picture)->warmUp(scene_.view().T_eye_model);

@@ -110,6 +110,8 @@ class CybergloveEmulator final : public Emulator {
   // A command of the ASCII dialogue ends with CR; after a binary one a CR has no meaning.
   void hear(char c, Timestamp now) {
     if (command_.empty() && (c == '\r' || c == '\n')) return;
+    // A client that died in the middle of a line leaves it to the next one.
+    if (text_ && (c == kStop || c == kRestart)) command_.clear();
     command_.push_back(c);
     text_ = cyberglove::isText(command_);
     if (text_ && c == '\r')

@@ -55,14 +55,14 @@ std::int8_t quantise(float component) {
 
 Result<std::unique_ptr<ModelRenderer>> ModelRenderer::make(const GlApi& gl, const Dendrogram& model,
                                                            std::span<const std::uint32_t> full,
-                                                           std::string_view feature) {
+                                                           const Shown& show) {
   if (model.nodeCount() > std::numeric_limits<std::int32_t>::max() / sizeof(Vertex) * 8) {
     return Error{Errc::kUnsupported,
                  fmt::format("{} nodes are more than one buffer holds", model.nodeCount())};
   }
   std::unique_ptr<ModelRenderer> r(new ModelRenderer(gl));
   if (const auto built = r->buildProgram(); !built) return built.error();
-  const auto colours = coloursOf(model, feature);
+  const auto colours = coloursOf(model, show);
   if (!colours) return colours.error();
   r->uploadNodes(model, *colours);
   r->makeArray(&r->cut_array_, &r->cut_indices_);

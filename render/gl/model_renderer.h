@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string_view>
 
 #include <Eigen/Core>
 
@@ -30,12 +29,12 @@ struct Camera {
 class ModelRenderer {
  public:
   // Uploads the nodes (20 bytes each) and the full resolution's indices, in the order in which they
-  // are to be drawn. Keeps neither. `feature`: shown as colours; empty: the model's own.
+  // are to be drawn. Keeps neither. `show`: what is seen as colours.
   // Errors: kUnsupported (a shader that does not compile, with the log; no memory on the GPU),
   // those of coloursOf().
   static Result<std::unique_ptr<ModelRenderer>> make(const GlApi& gl, const Dendrogram& model,
                                                      std::span<const std::uint32_t> full,
-                                                     std::string_view feature = {});
+                                                     const Shown& show = {});
 
   ~ModelRenderer();
   ModelRenderer(const ModelRenderer&) = delete;

@@ -16,10 +16,17 @@ struct Look {
   bool wireframe = false;
 };
 
+// What is shown as colours.
+struct Shown {
+  std::string feature{};         // empty: the model's own colours
+  std::array<float, 2> range{};  // of one value, where the scale begins and ends; equal: where the
+                                 // model's values do
+};
+
 struct RenderSettings {
   GlBackend backend = GlBackend::kEgl;
-  int raster_threads = 0;      // of Mesa's software renderer; 0: the wall's own thread does all
-  std::string show{};          // a feature, as colours; empty: the model's own
+  int raster_threads = 0;  // of Mesa's software renderer; 0: the wall's own thread does all
+  Shown show{};
   bool view_dependent = true;  // triangles where the tiles look; else as many everywhere
   Look look;
 };

@@ -36,7 +36,8 @@ Rgb scale(float share) {
 
 // Colours that differ as much as they can: hues a golden angle apart.
 Rgb colourOfLabel(float label) {
-  const float hue = 6 * std::fmod(0.61803399F * std::fabs(std::round(label)) + 0.05F, 1.0F);
+  const double turns = 0.61803398875 * std::fabs(std::round(static_cast<double>(label))) + 0.05;
+  const auto hue = static_cast<float>(6 * std::fmod(turns, 1.0));
   Rgb colour{};
   for (std::size_t k = 0; k < 3; ++k) {
     const float away = std::fabs(std::fmod(hue + 6 - 2 * static_cast<float>(k), 6.0F) - 3);
@@ -84,19 +85,24 @@ Rgb colourOf(const FeatureView& feature, std::size_t node, const ShownColours& s
     return {0.5F + rgb[0] / 2, 0.5F + rgb[1] / 2, 0.5F + rgb[2] / 2};
   }
   if (feature.name == "label") return colourOfLabel(finite(*v));
-  const float span = shown.high - shown.low;
-  return scale(span > 0 ? (finite(*v) - shown.low) / span : 0.5F);
+  const double low = static_cast<double>(shown.low), span = static_cast<double>(shown.high) - low;
+  return scale(span > 0 ? static_cast<float>((static_cast<double>(finite(*v)) - low) / span)
+                        : 0.5F);
 }
 
 }  // namespace
 
-Result<ShownColours> coloursOf(const Dendrogram& model, std::string_view feature) {
-  const FeatureView* f = model.find(feature.empty() ? "colour" : feature);
+Result<ShownColours> coloursOf(const Dendrogram& model, const Shown& show) {
+  const std::string& feature = show.feature;
+  const FeatureView* f = model.find(feature.empty() ? std::string_view("colour") : feature);
   const bool usable = f && (f->dimension == 3 || (f->dimension == 1 && !feature.empty()));
   ShownColours shown;
   if (!usable && feature.empty()) return shown;
   if (!usable) return noSuchFeature(model, feature);
-  if (f->dimension == 1 && f->name != "label") findRange(model, f->values, shown);
+  shown.low = show.range[0];
+  shown.high = show.range[1];
+  if (f->dimension == 1 && f->name != "label" && shown.low == shown.high)
+    findRange(model, f->values, shown);
   shown.rgb.resize(model.nodeCount());
   for (std::size_t n = 0; n < shown.rgb.size(); ++n) {
     const Rgb colour = colourOf(*f, n, shown);

@@ -3,10 +3,10 @@
 
 #include <array>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include "daemon/base/result.h"
+#include "render/gl/settings.h"
 #include "render/lod/dendrogram.h"
 
 namespace merlin::render {
@@ -18,10 +18,10 @@ struct ShownColours {
 
 // By the feature's kind:
 //   dimension 3  red, green, blue, each 0..1; of "normal" -1..1
-//   dimension 1  dark blue, green, yellow (viridis) from the 1st to the 99th percentile of the
-//                finest vertices; "label": a colour each, as different as can be
-// `feature` empty: "colour", where there is one of dimension 3. O(nodes). Reentrant.
+//   dimension 1  dark blue, green, yellow (viridis) over the range that is told, or from the 1st to
+//                the 99th percentile of the finest vertices; "label": hues a golden angle apart
+// No feature: "colour", where there is one of dimension 3. O(nodes). Reentrant.
 // Errors: kInvalidArgument: no such feature, with those that there are; another dimension.
-Result<ShownColours> coloursOf(const Dendrogram& model, std::string_view feature);
+Result<ShownColours> coloursOf(const Dendrogram& model, const Shown& show);
 
 }  // namespace merlin::render

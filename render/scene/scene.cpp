@@ -128,7 +128,7 @@ void Scene::reset() {
   grab_hand_.reset();
   grab_model_.reset();
   fly_hand_.reset();
-  last_motion_ = last_update_;
+  jumped_ = true;
   view_ = {T_wall_model_, mode_, false, true, std::nullopt, orders_};
 }
 
@@ -149,7 +149,7 @@ SceneView Scene::update(const SceneInput& input, Timestamp now) {
   const bool pushed = moveByBall(input, step_s);
   const bool carried = moveByHand(input, asked.grab);
   const bool flown = flyByHand(input, asked.fly && !asked.grab, step_s);
-  if (pushed || carried || flown) last_motion_ = now;
+  if (std::exchange(jumped_, false) || pushed || carried || flown) last_motion_ = now;
   view_.T_eye_model = T_wall_eye_.inverse() * T_wall_model_;
   view_.mode = mode_;
   view_.grabbed = grab_hand_.has_value();

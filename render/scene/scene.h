@@ -100,6 +100,7 @@ class Scene {
   Eigen::Isometry3f last_hand_ = Eigen::Isometry3f::Identity();
   SceneView view_;
   Orders orders_;
+  bool jumped_ = false;  // since the last update
   Timestamp last_update_{}, last_motion_{};
 };
 

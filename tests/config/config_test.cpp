@@ -98,6 +98,19 @@ TEST(Config, ActionsThatNothingCouldDoAreFound) {
             std::string::npos);
 }
 
+TEST(Config, AGloveFasterThanItsLineIsFound) {
+  const auto at = [](const std::string& line) {
+    return all(
+        loadSettings("{\"devices\": {\"glove\": {\"dialogue\": \"text\", " + line + "}}}", ""));
+  };
+  EXPECT_EQ(at(R"("port": "serial:/dev/ttyS0")"),
+            "f.json:1: /devices/glove/rate_hz is 100, and a line of 38400 baud carries 40 records "
+            "of 96 bytes a second: ask for fewer, or set the line faster\n");
+  EXPECT_EQ(at(R"("port": "serial:/dev/ttyS0", "baud": 115200)"), "");
+  EXPECT_EQ(at(R"("port": "serial:/dev/ttyS0", "rate_hz": 40)"), "");
+  EXPECT_EQ(at(R"("port": "tcp://server:4001")"), "") << "its line is not ours";
+}
+
 TEST(Config, BindingsThatNameNothingAreFound) {
   EXPECT_NE(bindingsAre(R"({"input": "ball.button.13", "action": "grab"})")
                 .find("allowed are ball.button.1 to ball.button.12"),

@@ -60,6 +60,23 @@ TEST_F(WallPaceTest, TheSizeGivesWayFirstAndComesBack) {
   EXPECT_EQ(stats().ladder_steps, 2u);
 }
 
+// The fewest triangles take 31 ms of 33: with a quarter less time they do not fit, and are drawn.
+TEST_F(WallPaceTest, MotionThatResumesNearTheLeastIsDrawn) {
+  std::size_t resumed = 0, drawn = 0;
+  run(8, [&](Timestamp) {
+    painter_.slow = 27;
+    feed_.pushed = since() < std::chrono::seconds(4) || since() > milliseconds(4500);
+    if (feed_.pushed && since() > std::chrono::seconds(4)) {
+      if (++resumed == 1) drawn = painter_.drawn.size();
+      if (resumed == 3) {
+        EXPECT_GE(painter_.drawn.size(), drawn + 2);
+      }
+    }
+  });
+  EXPECT_GT(resumed, 3u);
+  EXPECT_EQ(stats().rate_divisor, 1u);
+}
+
 // 100 triangles take 44 ms: 30 Hz is lost, 15 Hz is kept. Later they take 1 ms again.
 TEST_F(WallPaceTest, TheRateGivesWayByHalvesAndComesBack) {
   std::uint32_t divisor = 0;

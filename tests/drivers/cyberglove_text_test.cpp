@@ -146,6 +146,7 @@ TEST(CybergloveText, TheEmulatorRefusesWhatItDoesNotKnow) {
   EXPECT_EQ(answer("u 2\r"), "e n\r\n\0"s);
   EXPECT_EQ(answer("u\r"), "e n\r\n\0"s) << "a number is missing";
   EXPECT_EQ(answer("x\r"), "e ?\r\n\0"s);
+  EXPECT_EQ(answer("n 2\x03"), "\x03\r\n\0"s) << "whoever began the line is gone";
   EXPECT_EQ(answer("?n\rN\x05?n\r"), "?n 22\r\n\0N\0?n 5\r\n\0"s) << "each in its own dialogue";
 }
 

@@ -123,6 +123,7 @@ TEST(SceneReset, BringsModelAndViewerBackAndKeepsTheMode) {
   play.scene.reset();
   EXPECT_TRUE(play.scene.view().moving);
   EXPECT_EQ(play.scene.view().mode, BallMode::kFly);
+  EXPECT_TRUE(play.update(200).moving) << "by command, at 5 Hz";
 }
 
 TEST(SceneBindings, ActOnceAPress) {

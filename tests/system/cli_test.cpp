@@ -1,4 +1,5 @@
 // What `merlin` prints where all is well, for those who script it.
+#include <algorithm>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -141,6 +142,11 @@ TEST_F(Cli, CurveSaysWhatCompareSays) {
       << row;
   EXPECT_EQ(readText(svg).rfind("<svg ", 0), 0u);
   EXPECT_EQ(run({kMerlin, "mesh", "curve", scan_}).status, 2) << "one resolution has no curve";
+  ASSERT_EQ(run({kMerlin, "mesh", "reduce", scan_, "-o", model, "--percent", "60"}).status, 0);
+  const Outcome short_one = run({kMerlin, "mesh", "curve", model, "--csv", csv, "--svg", svg,
+                                 "--samples", "5000", "--width", "0.1"});
+  EXPECT_EQ(short_one.status, 0) << short_one.output;
+  EXPECT_EQ(std::ranges::count(readText(csv), '\n'), 2) << "the coarsest, with a header";
 }
 
 TEST_F(Cli, CompareDrawsPictures) {
