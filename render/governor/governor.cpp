@@ -13,6 +13,9 @@ namespace {
 constexpr double kExponent = 0.65, kLeastExponent = 0.4, kMostExponent = 1.1;
 constexpr double kLeastRoom = 0.10, kMostRoom = 0.30, kRoomGain = 0.017;
 constexpr double kFixedGain = 0.15;
+// Of the noise of frames that were drawn for measuring, as the head room to begin with: twelve
+// frames see less than the hundredth frame will.
+constexpr double kRoomForNoise = 3;
 // The trend of ln c and its slope (an alpha-beta filter), and how far one frame may pull.
 constexpr double kTrendGain = 0.25, kSlopeGain = 0.05, kMostPull = 0.10, kMostSlope = 0.05;
 // c is moved slowly while the trend is no further from it than its noise.
@@ -201,7 +204,9 @@ void Governor::calibrate(std::span<const FrameCost> frames) {
   for (const FrameCost& f : frames) {
     if (sizeOf(f) >= usual_) per.push_back(drawingOf(f) / std::pow(sizeOf(f), exponent_));
   }
-  jumpTo(median(std::move(per)));
+  jumpTo(median(per));
+  for (double& p : per) p = std::abs(std::log(p / per_));
+  head_room_ = std::clamp(kRoomForNoise * median(std::move(per)), head_room_, kMostRoom);
   fixed_seen_.fill(fixed_);
   seen_ = fixed_seen_.size();
   startOver();

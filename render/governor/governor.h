@@ -55,8 +55,8 @@ class Governor {
   void observe(const FrameCost& cost) noexcept;
 
   // Frames drawn for measuring, before the first that counts: fits a, c and, where the triangles
-  // differ by a factor of two or more, p; the budget is what then fits. Frames as observe() wants
-  // them; none at all changes nothing.
+  // differ by a factor of two or more, p; head room for their noise; the budget is what then fits.
+  // Frames as observe() wants them; none at all changes nothing.
   void calibrate(std::span<const FrameCost> frames);
 
   // Feed-forward: from the next frame on, triangles cost `ratio` times what they did (a cut to

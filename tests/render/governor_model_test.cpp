@@ -72,6 +72,22 @@ TEST(GovernorCalibration, WithFramesOfOneSizeLeavesTheExponent) {
   EXPECT_EQ(none.coefficient(), 0);
 }
 
+// 32 ms of drawing, of three frames in five 8 per cent more or less: 3 x 0.08 of head room, and not
+// more than there may be.
+TEST(GovernorCalibration, LeavesRoomForTheNoiseThatItSaw) {
+  const auto noisy = [](double noise) {
+    std::vector<FrameCost> frames;
+    for (const double off : {0.0, -noise, noise, noise, 0.0})
+      frames.push_back(frame(10'000, milliseconds(4), fromSeconds(0.004 + 0.032 * std::exp(off))));
+    Governor governor(kSettings);
+    governor.calibrate(frames);
+    return governor.headRoom();
+  };
+  EXPECT_NEAR(noisy(0.08), 0.24, 1e-6);
+  EXPECT_DOUBLE_EQ(noisy(0.01), 0.10);
+  EXPECT_DOUBLE_EQ(noisy(0.50), 0.30);
+}
+
 // Twice as dear: 32 / 64 to the power of 1 / 0.65 is 0.34429; and at once, both ways.
 TEST(GovernorExpect, FeedsForwardAtOnce) {
   Governor governor = settled();
