@@ -124,7 +124,7 @@ TEST_F(Cli, CurveSaysWhatCompareSays) {
   const std::string model = dir_ / "a.mrm", csv = dir_ / "a.csv", svg = dir_ / "a<b.svg";
   ASSERT_EQ(run({kMerlin, "mesh", "reduce", scan_, "-o", model}).status, 0);
   const Outcome done = run({kMerlin, "mesh", "curve", model, "--csv", csv, "--svg", svg,
-                            "--samples", "5000", "--width", "0.1"});
+                            "--samples", "500", "--width", "2"});
   ASSERT_EQ(done.status, 0) << done.output;
   EXPECT_NE(done.output.find("max, at most"), std::string::npos);
   std::istringstream rows(readText(csv));
@@ -134,7 +134,7 @@ TEST_F(Cli, CurveSaysWhatCompareSays) {
   std::getline(rows, row);
   const auto compared =
       jsonOf(run({kMerlin, "mesh", "compare", model, model, "--triangles",
-                  row.substr(0, row.find(',')), "--samples", "5000", "--width", "0.1", "--json"}));
+                  row.substr(0, row.find(',')), "--samples", "500", "--width", "2", "--json"}));
   EXPECT_NE(row.find(fmt::format(",{:.9g},", compared["rms"].get<double>())), std::string::npos)
       << row;
   EXPECT_NE(row.find(fmt::format(",{:.9g},", compared["max_high"].get<double>())),
@@ -144,7 +144,7 @@ TEST_F(Cli, CurveSaysWhatCompareSays) {
   EXPECT_EQ(run({kMerlin, "mesh", "curve", scan_}).status, 2) << "one resolution has no curve";
   ASSERT_EQ(run({kMerlin, "mesh", "reduce", scan_, "-o", model, "--percent", "60"}).status, 0);
   const Outcome short_one = run({kMerlin, "mesh", "curve", model, "--csv", csv, "--svg", svg,
-                                 "--samples", "5000", "--width", "0.1"});
+                                 "--samples", "500", "--width", "2"});
   EXPECT_EQ(short_one.status, 0) << short_one.output;
   EXPECT_EQ(std::ranges::count(readText(csv), '\n'), 2) << "the coarsest, with a header";
 }
