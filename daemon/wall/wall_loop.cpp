@@ -122,8 +122,8 @@ void WallLoop::expectHome() {
   if (home.drawing_s > 0 && now_s > 0) p_.governor.expect(home.drawing_s / now_s);
 }
 
-void WallLoop::showNextContent() {
-  content_ = (content_ + 1) % p_.contents.size();
+void WallLoop::showContent(std::size_t content) {
+  content_ = content;
   level_ = model().levels() - 1;
   moving_level_.reset();
   refining_ = full_detail_ = false;
@@ -135,8 +135,8 @@ void WallLoop::look(std::int64_t k, Timestamp began) {
   const Timestamp read = p_.clock.now();
   const bool was_moving = view_.moving;
   view_ = p_.scene.update(input, began);
-  if (std::exchange(contents_asked_, view_.orders.contents) != view_.orders.contents)
-    showNextContent();
+  const std::size_t asked = view_.orders.contents % p_.contents.size();
+  if (asked != content_) showContent(asked);
   std::fill(std::begin(out_.posture), std::end(out_.posture), '\0');
   if (input.posture)
     std::copy(std::begin(input.posture->name), std::end(input.posture->name), out_.posture);

@@ -103,7 +103,7 @@ class WallLoop {
   Painter& painter() const noexcept { return *p_.contents[content_].painter; }
   void measureHome();
   void expectHome();
-  void showNextContent();
+  void showContent(std::size_t content);
 
   WallParts p_;
   double asked_hz_, configured_hz_;
@@ -128,8 +128,7 @@ class WallLoop {
     double drawing_s = 0;
   };
   std::vector<Home> homes_;  // by content
-  std::size_t content_ = 0;
-  std::uint32_t contents_asked_ = 0;
+  std::size_t content_ = 0;  // that is shown
   shm::WallStats out_{};
   std::atomic<std::int64_t> hold_{-1};  // triangles; -1: as the governor says
   std::atomic<double> rate_hz_{0};      // 0: as configured

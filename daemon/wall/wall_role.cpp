@@ -9,19 +9,27 @@
 #include "render/out/png_sink.h"
 
 namespace merlin::wall {
-
 namespace {
 
-Result<std::vector<render::Dendrogram>> readModels(const WallSettings& wall) {
-  std::vector<std::pair<std::string, std::string>> named = {{"/wall/model", wall.model}};
+struct ModelSetting {
+  std::string pointer, path;
+};
+
+// In the order in which they are shown.
+std::vector<ModelSetting> modelsOf(const WallSettings& wall) {
+  std::vector<ModelSetting> models = {{"/wall/model", wall.model}};
   for (std::size_t i = 0; i < wall.contents.size(); ++i)
-    named.emplace_back(fmt::format("/wall/contents/{}/model", i), wall.contents[i].model);
+    models.push_back({fmt::format("/wall/contents/{}/model", i), wall.contents[i].model});
+  return models;
+}
+
+Result<std::vector<render::Dendrogram>> readModels(const WallSettings& wall) {
   std::vector<render::Dendrogram> models;
-  for (const auto& [setting, path] : named) {
+  for (const auto& [pointer, path] : modelsOf(wall)) {
     if (path.empty()) {
       return Error{
           Errc::kInvalidArgument,
-          setting + ": names no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)"};
+          pointer + ": names no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)"};
     }
     auto model = render::readMrm(path);
     if (!model) return model.error();
@@ -82,14 +90,12 @@ std::future<Result<std::string>> WallRole::start() {
 void WallRole::run(const std::stop_token& stop) {
   std::vector<std::unique_ptr<Picture>> pictures;
   std::vector<Content> contents;
-  std::vector<std::string> paths = {settings_.wall.model};
-  for (const ContentSettings& c : settings_.wall.contents) paths.push_back(c.model);
   for (const render::Dendrogram& model : models_) {
     auto picture =
         Picture::make(model, plan_, settings_.wall.render, settings_.wall.scene.model_radius_m,
                       clock_, pictures.empty() ? nullptr : pictures.front()->context());
     if (!picture) {
-      const std::string& path = paths[contents.size()];
+      const std::string path = modelsOf(settings_.wall)[contents.size()].path;
       ready_.set_value(Error{picture.error().code, path + ": " + picture.error().what});
       return;
     }
