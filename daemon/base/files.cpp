@@ -123,6 +123,14 @@ Result<Ok> checkWritable(const std::string& path) {
   return Ok{};
 }
 
+Result<Ok> checkWritable(std::initializer_list<std::string> paths) {
+  for (const std::string& path : paths) {
+    if (path.empty()) continue;
+    if (auto writable = checkWritable(path); !writable) return writable;
+  }
+  return Ok{};
+}
+
 Result<Ok> writeFile(const std::string& path, std::string_view content) {
   return writeFile(path, [&](const WriteBytes& write) {
     return write(std::as_bytes(std::span(content.data(), content.size())));

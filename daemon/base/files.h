@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <initializer_list>
 #include <span>
 #include <string>
 
@@ -53,5 +54,7 @@ Result<Ok> writeFileHeadLast(const std::string& path, std::size_t head_size,
 // Whether writeFile() could put a file there, as far as can be said before: to be asked before long
 // work. Errors: kNotFound (no such folder), kIo (not writable, a folder, a device).
 Result<Ok> checkWritable(const std::string& path);
+// The same of each that is not empty.
+Result<Ok> checkWritable(std::initializer_list<std::string> paths);
 
 }  // namespace merlin

@@ -121,16 +121,9 @@ void printTable(const Curve& curve) {
   }
 }
 
-Result<Ok> checkOutputs(const CurveOptions& options) {
-  for (const std::string& path : {options.csv, options.svg}) {
-    if (path.empty()) continue;
-    if (auto writable = checkWritable(path); !writable) return writable;
-  }
-  return Ok{};
-}
-
 int curveOfModel(const CurveOptions& options) {
-  if (const auto writable = checkOutputs(options); !writable) return fail(writable.error());
+  if (const auto writable = checkWritable({options.csv, options.svg}); !writable)
+    return fail(writable.error());
   const auto model = openModel(options.model);
   if (!model) return fail(model.error());
   if (model->levels() < 2) {

@@ -63,10 +63,8 @@ void report(const SegmentOptions& options, const render::Segmentation& s, double
 int segmentMesh(const SegmentOptions& options) {
   if (const auto known = render::checkMeshEnding(options.output); !known)
     return fail(known.error());
-  for (const std::string& path : {options.output, options.picture}) {
-    if (path.empty()) continue;
-    if (const auto writable = checkWritable(path); !writable) return fail(writable.error());
-  }
+  if (const auto writable = checkWritable({options.output, options.picture}); !writable)
+    return fail(writable.error());
   auto loaded = loadMesh(options.input);
   if (!loaded) return fail(loaded.error());
   render::Mesh& mesh = loaded->mesh;
