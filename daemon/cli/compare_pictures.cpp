@@ -31,8 +31,7 @@ render::Mesh framed(render::Mesh mesh, const render::Mesh& other) {
   return mesh;
 }
 
-Result<Image> drawn(const render::Mesh& mesh, const View& view) {
-  const render::Dendrogram model = asModel(mesh);
+Result<Image> drawn(const render::Dendrogram& model, const View& view) {
   const SystemClock clock;
   auto painter = ModelPainter::make(model, view, clock);
   if (!painter) return painter.error();
@@ -168,24 +167,25 @@ render::Mesh edgeBands(const render::Mesh& mesh, const View& view) {
 Result<double> writePictures(const std::string& folder, const render::Mesh& a,
                              const render::Mesh& b, const View& view) {
   if (const auto made = makeFolder(folder); !made) return made.error();
-  const render::Mesh first = framed(a, b), second = framed(b, a);
-  // Equal values have equal colours in both.
-  const auto shown = render::coloursOf(asModel(first), view.render.show);
-  if (!shown) return shown.error();
+  const render::Dendrogram first = asModel(framed(a, b)), second = asModel(framed(b, a));
   View same = view;
-  same.render.show.range = {shown->low, shown->high};
+  if (!view.render.show.feature.empty()) {  // equal values have equal colours in both
+    const auto shown = render::coloursOf(first, view.render.show);
+    if (!shown) return shown.error();
+    same.render.show.range = {shown->low, shown->high};
+  }
   View wire = same, plain = same;
   wire.render.look.wireframe = true;
   plain.render.look.brightness = 1;
   plain.render.show = {};
   std::vector<Image> images;
-  for (const auto& [mesh, how] :
+  for (const auto& [model, how] :
        {std::pair{&first, &same}, {&second, &same}, {&first, &wire}, {&second, &wire}}) {
-    auto image = drawn(*mesh, *how);
+    auto image = drawn(*model, *how);
     if (!image) return image.error();
     images.push_back(*std::move(image));
   }
-  auto edges = drawn(framed(edgeBands(b, view), a), plain);
+  auto edges = drawn(asModel(framed(edgeBands(b, view), a)), plain);
   if (!edges) return edges.error();
   Image beside = images[0];
   beside.append(images[1]);
