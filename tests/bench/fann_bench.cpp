@@ -15,30 +15,16 @@
 #endif
 #include <fmt/format.h>
 
-#include "daemon/base/clock.h"
 #include "nn/fit.h"
 #include "nn/recall.h"
 #include "nn/train.h"
+#include "tests/bench/nanoseconds.h"
 #include "tests/nn/shipped.h"
 
 namespace merlin::bench {
 namespace {
 
 constexpr bool kDouble = sizeof(fann_type) == sizeof(double);
-
-// Nanoseconds of one call of f(n), the least of many rounds: one that nothing else broke into.
-template <typename F>
-double nanoseconds(F f) {
-  constexpr int kCalls = 2000, kRounds = 500;
-  const SystemClock clock;
-  double least = 1e9;
-  for (int r = 0; r < kRounds; ++r) {
-    const Timestamp began = clock.now();
-    for (int n = 0; n < kCalls; ++n) f(static_cast<std::size_t>(n));
-    least = std::min(least, 1e9 * toSeconds(clock.now() - began) / kCalls);
-  }
-  return least;
-}
 
 struct FannDeleter {
   void operator()(fann* net) const { fann_destroy(net); }

@@ -11,12 +11,12 @@
 
 #include <fmt/format.h>
 
-#include "daemon/base/clock.h"
 #include "nn/adapt.h"
 #include "nn/evaluate.h"
 #include "nn/fit.h"
 #include "nn/hold.h"
 #include "nn/train.h"
+#include "tests/bench/nanoseconds.h"
 #include "tests/nn/shipped.h"
 
 namespace merlin::bench {
@@ -28,20 +28,6 @@ double cpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 
 DataSet people(std::size_t first, std::size_t count, std::size_t per_take, std::uint64_t seed) {
   return nn::test::people(hand::allShapes(), first, count, per_take, seed);
-}
-
-// Nanoseconds of one call of f(n), the least of many rounds: one that nothing else broke into.
-template <typename F>
-double nanoseconds(F f) {
-  constexpr int kCalls = 2000, kRounds = 500;
-  const SystemClock clock;
-  double least = 1e9;
-  for (int r = 0; r < kRounds; ++r) {
-    const Timestamp began = clock.now();
-    for (int n = 0; n < kCalls; ++n) f(static_cast<std::size_t>(n));
-    least = std::min(least, 1e9 * toSeconds(clock.now() - began) / kCalls);
-  }
-  return least;
 }
 
 void recall(const nn::PostureNetwork& network, const DataSet& hands) {

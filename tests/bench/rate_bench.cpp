@@ -1,5 +1,6 @@
-// ./dev bench rates: what the wall draws in a second, beside the table of 1998 (row W10) and beside
-// a bare loop: the same triangles on the same context, nothing else.
+// ./dev bench rates: what the wall draws in a second, beside the table of 1998 (row W10), and which
+// share of it is drawing: a loop that only drew and read back could not be faster by more than
+// that.
 //
 // W10: textured triangles at full resolution, before reduction. Here they have a colour at each
 // vertex and no texture; the operator's view is a fourth one, as there. Each is the whole model,
@@ -56,10 +57,10 @@ Eigen::Isometry3f pose(int k) {
 }
 
 struct Times {
-  double frame_s = 0, bare_s = 0;
+  double frame_s = 0, drawing_s = 0;
 };
 
-// The bare loop's share are the steps that draw and read back: cut, upload and all between are not.
+// Drawing are the steps that draw and read back: cut, upload and all between are not.
 Times timeOf(Picture& picture, const Eigen::Isometry3f& T_eye_model, std::size_t level,
              const Clock& clock) {
   const Timestamp began = clock.now();
@@ -67,13 +68,13 @@ Times timeOf(Picture& picture, const Eigen::Isometry3f& T_eye_model, std::size_t
   Times times{toSeconds(clock.now() - began), 0};
   for (const wall::PaintStep& step : picture.steps()) {
     if (step.kind == shm::StepKind::kDraw || step.kind == shm::StepKind::kReadBack)
-      times.bare_s += toSeconds(step.end - step.begin);
+      times.drawing_s += toSeconds(step.end - step.begin);
   }
   return times;
 }
 
 void bench(const render::Dendrogram& model, Picture& picture, const Clock& clock) {
-  fmt::print("triangles   1998, Hz   now, Hz   times   triangles/s   of a bare loop's\n");
+  fmt::print("triangles   1998, Hz   now, Hz   times   triangles/s   drawing's share\n");
   for (const Row1998& row : kRows1998) {
     const std::size_t level = model.levelFor(row.triangles);
     std::vector<double> frame, share;
@@ -81,10 +82,10 @@ void bench(const render::Dendrogram& model, Picture& picture, const Clock& clock
     for (int k = 0; k < kPoses; ++k) {
       const Times t = timeOf(picture, pose(k), level, clock);
       frame.push_back(t.frame_s);
-      share.push_back(t.bare_s / t.frame_s);
+      share.push_back(t.drawing_s / t.frame_s);
     }
     const double hz = 1 / median(frame);
-    fmt::print("{:9} {:10.2f} {:9.1f} {:7.0f} {:13.0f} {:18.2f}\n", model.trianglesAt(level),
+    fmt::print("{:9} {:10.2f} {:9.1f} {:7.0f} {:13.0f} {:17.2f}\n", model.trianglesAt(level),
                row.rate_hz, hz, hz / row.rate_hz, hz * static_cast<double>(row.triangles),
                median(share));
   }

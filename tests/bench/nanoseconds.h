@@ -1,0 +1,25 @@
+// How long a call of some hundred nanoseconds takes.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "daemon/base/clock.h"
+
+namespace merlin::bench {
+
+// Nanoseconds of one call of f(n), the least of many rounds: one that nothing else broke into.
+template <typename F>
+double nanoseconds(F f) {
+  constexpr int kCalls = 2000, kRounds = 500;
+  const SystemClock clock;
+  double least = 1e9;
+  for (int r = 0; r < kRounds; ++r) {
+    const Timestamp began = clock.now();
+    for (int n = 0; n < kCalls; ++n) f(static_cast<std::size_t>(n));
+    least = std::min(least, 1e9 * toSeconds(clock.now() - began) / kCalls);
+  }
+  return least;
+}
+
+}  // namespace merlin::bench
