@@ -190,6 +190,11 @@ void describeRender(render::RenderSettings& r, SettingsVisitor& v) {
             "Where that scale begins and ends; twice the same: as the model's values do.");
   v.flag("view_dependent", r.view_dependent,
          "Triangles where the tiles look, finer near; else as many everywhere.");
+  v.number("geomorph", r.geomorph, {0, 0.5},
+           "Share of the triangles whose vertices are on their way to where they merge next, so "
+           "that nothing pops; 0: vertices jump.");
+  v.integer("fade_frames", r.fade_frames, {1, 30},
+            "Frames in which a finer picture of what is still replaces a coarser one; 1: at once.");
   v.numbers("colour", r.look.colour, {0, 1}, "Of a model without colours: red, green, blue.");
   v.numbers("background", r.look.background, {0, 1}, "Red, green, blue.");
   v.number("brightness", r.look.brightness, {0.1, 10},

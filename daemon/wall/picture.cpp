@@ -147,7 +147,7 @@ void Picture::chooseCut(std::size_t level, std::span<const render::TileView> vie
   if (!uneven) view_cut_.look(views);
   source_ = level == 0 ? ModelRenderer::Source::kFull : ModelRenderer::Source::kCut;
   clustered_ = uneven || level == 0 || clusters_.isClustered(level);
-  if (level == 0) return;
+  if (level == 0) return renderer_->morph({});
   if (cut_.size() < 3 * budget) cut_.resize(3 * budget);
   if (clustered_ && !uneven)
     std::fill(even_levels_.begin(), even_levels_.end(), static_cast<std::uint32_t>(level));
@@ -156,7 +156,16 @@ void Picture::chooseCut(std::size_t level, std::span<const render::TileView> vie
       clustered_ ? clusters_.cut(levels, cut_, cut_ends_) : clusters_.cutEvenly(level, cut_);
   const Timestamp cut = stepDone(shm::StepKind::kCut, 0, began);
   renderer_->uploadCut(std::span(cut_).first(3 * triangles));
+  morph(level, uneven);
   stepDone(shm::StepKind::kUpload, 0, cut);
+}
+
+void Picture::morph(std::size_t level, bool uneven) {
+  if (uneven)
+    morphsAt(model_, clusters_, view_cut_.levels(), settings_.geomorph, morphs_);
+  else
+    morphsAt(model_, level, settings_.geomorph, morphs_);
+  renderer_->morph(morphs_);
 }
 
 Timestamp Picture::stepDone(shm::StepKind kind, std::size_t tile, Timestamp began) {

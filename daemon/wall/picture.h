@@ -63,6 +63,7 @@ class Picture final : public Painter {
   };
   // What is drawn at `level`, for these views; drawTile's `view` is a number of theirs.
   void chooseCut(std::size_t level, std::span<const render::TileView> views);
+  void morph(std::size_t level, bool uneven);
   void chooseRuns(std::size_t view);
   void drawSlice(Progress& at);
   Timestamp stepDone(shm::StepKind kind, std::size_t tile, Timestamp began);  // returns now
@@ -88,6 +89,7 @@ class Picture final : public Painter {
   // The cut that is uploaded: its triangles, where clusters end in them (if it is clustered), and
   // the levels of an even one.
   std::vector<std::uint32_t> cut_, cut_ends_, even_levels_;
+  std::vector<render::Morph> morphs_;  // of its vertices
   bool clustered_ = false;
   render::ModelRenderer::Source source_ = render::ModelRenderer::Source::kCut;
   std::vector<std::size_t> operators_;  // the operator's tiles, numbers of the plan's

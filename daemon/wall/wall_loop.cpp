@@ -143,6 +143,7 @@ void WallLoop::look(std::int64_t k, Timestamp began) {
   if (was_moving && !view_.moving) {
     still_since_ = began;
     first_refinement_ = true;
+    fade_.keep(painter().pixels());
   }
   if (!was_moving && view_.moving) resuming_ = true;
   tracer_.begin(began, tick(k + 1), view_.moving);
@@ -177,10 +178,11 @@ std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
     return k + 1;
   }
   level_ = level;
+  fade_.stop();
   const DrawTimes times = painter().draw(view_.T_eye_model, level_, tick(k + 1) - kPresentMargin);
   tracer_.add(painter().steps());
   const Timestamp drawn = p_.clock.now();
-  present(level_ == 0);
+  present(painter().pixels(), level_ == 0);
   const Timestamp finished = p_.clock.now();
   tracer_.add(StepKind::kPresent, drawn, finished);
   refining_ = false;
@@ -232,8 +234,11 @@ bool WallLoop::higherFits() const {
 }
 
 std::int64_t WallLoop::stillPeriod(std::int64_t k) {
-  if (p_.marker && p_.marker->moves(pointedAt())) present(full_detail_);
-  if (!full_detail_) {
+  if (fade_.isOn())
+    fadeOn();
+  else if (p_.marker && p_.marker->moves(pointedAt()))
+    present(painter().pixels(), full_detail_);
+  if (!full_detail_ && !(level_ == 0 && fade_.isOn())) {
     if (!refining_) beginRefining();
     const Timestamp from = p_.clock.now();
     const bool whole = painter().refine(tick(k + 1) - kRefineMargin);
@@ -269,20 +274,27 @@ void WallLoop::beginRefining() {
 void WallLoop::showRefined() {
   refining_ = false;
   level_ = refined_level_;
+  fade_.begin(p_.fade_frames);
+  fadeOn();
+}
+
+// Towards what is refined; full detail is shown when the last frame of it is.
+void WallLoop::fadeOn() {
   const Timestamp drawn = p_.clock.now();
-  present(level_ == 0);
+  const auto pixels = fade_.next(painter().pixels());
+  const bool whole = level_ == 0 && !fade_.isOn();
+  present(pixels, whole);
   const Timestamp now = p_.clock.now();
   tracer_.add(StepKind::kPresent, drawn, now);
   const auto since = static_cast<float>(toSeconds(now - still_since_));
   if (std::exchange(first_refinement_, false)) out_.still_to_first_s = since;
-  if (level_ == 0) out_.still_to_full_s = since;
+  if (whole) out_.still_to_full_s = since;
 }
 
-void WallLoop::present(bool full_detail) {
+void WallLoop::present(std::span<std::uint8_t> pixels, bool full_detail) {
   full_detail_ = full_detail;
   const auto triangles = static_cast<std::uint32_t>(model().trianglesAt(level_));
   const render::FrameInfo info{++frames_, p_.clock.now(), triangles, full_detail};
-  const std::span<std::uint8_t> pixels = painter().pixels();
   if (p_.marker) p_.marker->draw(pixels, pointedAt());
   for (render::FrameSink* sink : p_.sinks) sink->present(pixels, info);
   if (p_.marker) p_.marker->erase(pixels);

@@ -18,6 +18,7 @@
 
 #include "daemon/base/clock.h"
 #include "daemon/shm/layout.h"
+#include "daemon/wall/fade.h"
 #include "daemon/wall/frame_stats.h"
 #include "daemon/wall/frame_tracer.h"
 #include "daemon/wall/input_feed.h"
@@ -48,6 +49,7 @@ struct WallParts {
   shm::Channel<shm::FrameTrace>* trace = nullptr;  // where steps are told; may be none
   PointerMarker* marker = nullptr;                 // who marks where the hand points; the same
   shm::SeqSlot<shm::WallHand>* hand = nullptr;     // where that is told
+  int fade_frames = 1;                             // in which a finer picture replaces a coarser
 };
 
 // Thread-bound but for request(), hold(), setRate() and periods().
@@ -91,9 +93,10 @@ class WallLoop {
   int rateDivisor() const noexcept { return 1 << std::max(ladder_.rung() - 1, 0); }
   void beginRefining();
   void showRefined();
+  void fadeOn();
   void obeyRequests();
   bool applyRate();
-  void present(bool full_detail);
+  void present(std::span<std::uint8_t> pixels, bool full_detail);
   void publishTrace(Timestamp now);
   void publishHand(Timestamp now);
   std::optional<Eigen::Vector3f> pointedAt() const;
@@ -118,6 +121,7 @@ class WallLoop {
   std::optional<std::size_t> moving_level_;  // of the last moving frame that had a whole period
   bool refining_ = false, full_detail_ = false;
   std::size_t refined_level_ = 0;
+  Fade fade_;                      // to what was refined last
   bool first_refinement_ = false;  // the next one is, since the standstill
   bool resuming_ = false;          // the next frame is the first after a standstill
   Timestamp still_since_{};

@@ -111,7 +111,7 @@ void WallRole::run(const std::stop_token& stop) {
   for (const auto& sink : sinks_) sinks.push_back(sink.get());
   PointerMarker marker(plan_);
   WallLoop loop({contents, scene_, governor_, feed, sinks, segment_->stats, clock_,
-                 &segment_->trace, &marker, &segment_->hand});
+                 &segment_->trace, &marker, &segment_->hand, settings_.wall.render.fade_frames});
   loop.calibrate();
   loop_.store(&loop);
   loop.run(stop, [&] { ready_.set_value(pictures.front()->renderer()); });

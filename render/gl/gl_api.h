@@ -56,6 +56,7 @@ namespace merlin::render {
   X(PFNGLGETSTRINGPROC, GetString)                             \
   X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)           \
   X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
+  X(PFNGLMAPBUFFERRANGEPROC, MapBufferRange)                   \
   X(PFNGLPIXELSTOREIPROC, PixelStorei)                         \
   X(PFNGLPOLYGONMODEPROC, PolygonMode)                         \
   X(PFNGLREADPIXELSPROC, ReadPixels)                           \
@@ -65,6 +66,7 @@ namespace merlin::render {
   X(PFNGLUNIFORM3FPROC, Uniform3f)                             \
   X(PFNGLUNIFORMMATRIX3FVPROC, UniformMatrix3fv)               \
   X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)               \
+  X(PFNGLUNMAPBUFFERPROC, UnmapBuffer)                         \
   X(PFNGLUSEPROGRAMPROC, UseProgram)                           \
   X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)         \
   X(PFNGLVIEWPORTPROC, Viewport)

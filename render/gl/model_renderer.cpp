@@ -10,15 +10,15 @@
 #include "render/gl/shader.h"
 
 namespace merlin::render {
-namespace {
 
 // A node as the vertex shader reads it.
-struct Vertex {
+struct ModelRenderer::Vertex {
   float position[3];
   std::int8_t normal[4];  // unit normal x 127
   std::uint8_t colour[4];
 };
-static_assert(sizeof(Vertex) == 20);
+
+namespace {
 
 constexpr GLuint kPosition = 0, kNormal = 1, kColour = 2;
 
@@ -51,20 +51,43 @@ std::int8_t quantise(float component) {
   return static_cast<std::int8_t>(std::lround(std::clamp(v, -127.0F, 127.0F)));
 }
 
+// All of the way from `parent` to `own` that it has gone.
+template <typename Vertex>
+Vertex between(const Vertex& parent, const Vertex& own, float share) {
+  const auto mixed = [&](float from, float to) { return from + share * (to - from); };
+  Vertex v{};
+  float normal[3], square = 0;
+  for (int k = 0; k < 3; ++k) {
+    v.position[k] = mixed(parent.position[k], own.position[k]);
+    normal[k] = mixed(parent.normal[k], own.normal[k]);
+    square += normal[k] * normal[k];
+    v.colour[k] = static_cast<std::uint8_t>(std::lround(mixed(parent.colour[k], own.colour[k])));
+  }
+  for (int k = 0; k < 3; ++k) v.normal[k] = quantise(normal[k] / std::sqrt(square));
+  v.colour[3] = 255;
+  return v;
+}
+
 }  // namespace
+
+ModelRenderer::ModelRenderer(const GlApi& gl, const Dendrogram& model, ShownColours colours)
+    : gl_(gl), model_(model), normal_(model.find("normal")), colours_(std::move(colours)) {
+  if (normal_ && normal_->dimension != 3) normal_ = nullptr;
+}
 
 Result<std::unique_ptr<ModelRenderer>> ModelRenderer::make(const GlApi& gl, const Dendrogram& model,
                                                            std::span<const std::uint32_t> full,
                                                            const Shown& show) {
+  static_assert(sizeof(Vertex) == 20);
   if (model.nodeCount() > std::numeric_limits<std::int32_t>::max() / sizeof(Vertex) * 8) {
     return Error{Errc::kUnsupported,
                  fmt::format("{} nodes are more than one buffer holds", model.nodeCount())};
   }
-  std::unique_ptr<ModelRenderer> r(new ModelRenderer(gl));
-  if (const auto built = r->buildProgram(); !built) return built.error();
-  const auto colours = coloursOf(model, show);
+  auto colours = coloursOf(model, show);
   if (!colours) return colours.error();
-  r->uploadNodes(model, *colours);
+  std::unique_ptr<ModelRenderer> r(new ModelRenderer(gl, model, *std::move(colours)));
+  if (const auto built = r->buildProgram(); !built) return built.error();
+  r->uploadNodes();
   r->makeArray(&r->cut_array_, &r->cut_indices_);
   r->makeArray(&r->full_array_, &r->full_indices_);
   gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(full.size_bytes()), full.data(),
@@ -95,22 +118,59 @@ Result<Ok> ModelRenderer::buildProgram() {
   return Ok{};
 }
 
-void ModelRenderer::uploadNodes(const Dendrogram& model, const ShownColours& colours) {
-  const auto& a = model.arrays();
-  const FeatureView* normal = model.find("normal");
-  if (normal && normal->dimension != 3) normal = nullptr;
-  coloured_ = !colours.rgb.empty();
-  std::vector<Vertex> vertices(model.nodeCount());
-  for (std::size_t n = 0; n < vertices.size(); ++n) {
-    Vertex& v = vertices[n];
-    for (std::size_t k = 0; k < 3; ++k) {
-      v.position[k] = a.positions[3 * n + k];
-      v.normal[k] = quantise(normal ? normal->values[3 * n + k] : (k == 2 ? 1.0F : 0.0F));
-      v.colour[k] = coloured_ ? colours.rgb[n][k] : 255;
-    }
-    v.normal[3] = 0;
-    v.colour[3] = 255;
+ModelRenderer::Vertex ModelRenderer::vertexOf(std::uint32_t node) const {
+  const auto& a = model_.arrays();
+  Vertex v{};
+  const std::size_t n = node;
+  for (std::size_t k = 0; k < 3; ++k) {
+    v.position[k] = a.positions[3 * n + k];
+    v.normal[k] = quantise(normal_ ? normal_->values[3 * n + k] : (k == 2 ? 1.0F : 0.0F));
+    v.colour[k] = colours_.rgb.empty() ? 255 : colours_.rgb[n][k];
   }
+  v.colour[3] = 255;
+  return v;
+}
+
+// As it stands now. REQUIRES: the node has one; morphs_ and morphed_ go up to `node`.
+ModelRenderer::Vertex ModelRenderer::parentOf(std::uint32_t node) const {
+  const std::uint32_t parent = model_.arrays().parents[(model_.nodeCount() - 1 - node) / 2];
+  const auto end = morphs_.begin() + static_cast<std::ptrdiff_t>(morphed_.size());
+  const auto found =
+      std::lower_bound(morphs_.begin(), end, parent,
+                       [](const Morph& morph, std::uint32_t n) { return morph.node < n; });
+  if (found == end || found->node != parent) return vertexOf(parent);
+  return morphed_[static_cast<std::size_t>(found - morphs_.begin())];
+}
+
+// Mapped as it is: parts of it, here and there, change, and nobody reads it meanwhile.
+void ModelRenderer::morph(std::span<const Morph> morphs) {
+  if (morphs_.empty() && morphs.empty()) return;
+  std::uint32_t first = ~std::uint32_t{0}, last = 0;
+  for (const std::span<const Morph> list : {std::span<const Morph>(morphs_), morphs}) {
+    if (list.empty()) continue;
+    first = std::min(first, list.front().node);
+    last = std::max(last, list.back().node);
+  }
+  gl_.BindBuffer(GL_ARRAY_BUFFER, nodes_);
+  auto* at = static_cast<Vertex*>(
+      gl_.MapBufferRange(GL_ARRAY_BUFFER, static_cast<GLintptr>(first * sizeof(Vertex)),
+                         static_cast<GLsizeiptr>((last - first + 1) * sizeof(Vertex)),
+                         GL_MAP_WRITE_BIT | GL_MAP_UNSYNCHRONIZED_BIT));
+  if (!at) return;
+  for (const Morph& morph : morphs_) at[morph.node - first] = vertexOf(morph.node);
+  morphs_.assign(morphs.begin(), morphs.end());
+  morphed_.clear();
+  for (const Morph& morph : morphs_) {
+    morphed_.push_back(between(parentOf(morph.node), vertexOf(morph.node), morph.own));
+    at[morph.node - first] = morphed_.back();
+  }
+  gl_.UnmapBuffer(GL_ARRAY_BUFFER);
+}
+
+void ModelRenderer::uploadNodes() {
+  std::vector<Vertex> vertices(model_.nodeCount());
+  for (std::size_t n = 0; n < vertices.size(); ++n)
+    vertices[n] = vertexOf(static_cast<std::uint32_t>(n));
   gl_.GenBuffers(1, &nodes_);
   gl_.BindBuffer(GL_ARRAY_BUFFER, nodes_);
   gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
@@ -159,7 +219,7 @@ void ModelRenderer::begin(int width, int height, const Camera& camera, const Loo
   gl_.UniformMatrix4fv(clip_location_, 1, GL_FALSE, clip.data());
   gl_.UniformMatrix3fv(eye_location_, 1, GL_FALSE, camera.eye_from_model.data());
   const std::array<float, 3> white{1, 1, 1};
-  const auto& tint = coloured_ ? white : look.colour;
+  const auto& tint = colours_.rgb.empty() ? look.colour : white;
   gl_.Uniform3f(colour_location_, tint[0] * look.brightness, tint[1] * look.brightness,
                 tint[2] * look.brightness);
 }

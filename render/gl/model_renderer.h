@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -17,6 +18,7 @@
 #include "render/gl/settings.h"
 #include "render/gl/shown_colours.h"
 #include "render/lod/dendrogram.h"
+#include "render/lod/geomorph.h"
 
 namespace merlin::render {
 
@@ -29,7 +31,7 @@ struct Camera {
 class ModelRenderer {
  public:
   // Uploads the nodes (20 bytes each) and the full resolution's indices, in the order in which they
-  // are to be drawn. Keeps neither. `show`: what is seen as colours.
+  // are to be drawn, which it does not keep; borrows the model. `show`: what is seen as colours.
   // Errors: kUnsupported (a shader that does not compile, with the log; no memory on the GPU),
   // those of coloursOf().
   static Result<std::unique_ptr<ModelRenderer>> make(const GlApi& gl, const Dendrogram& model,
@@ -42,6 +44,11 @@ class ModelRenderer {
 
   // Node numbers, 3 a triangle, for kCut. Replaces the last ones.
   void uploadCut(std::span<const std::uint32_t> indices);
+
+  // Where nodes stand from now on; all others, at their own place. By rising number, as morphsAt()
+  // gives them. O(what was and what is on its way). REQUIRES: nothing drawn is still under way
+  // (finish(), or read back).
+  void morph(std::span<const Morph> morphs);
 
   enum class Source { kCut, kFull };
   std::size_t triangles(Source source) const noexcept {
@@ -59,16 +66,25 @@ class ModelRenderer {
   void finish() { gl_.Finish(); }  // waits until it is done
 
  private:
-  explicit ModelRenderer(const GlApi& gl) : gl_(gl) {}
+  struct Vertex;
+
+  ModelRenderer(const GlApi& gl, const Dendrogram& model, ShownColours colours);
   Result<Ok> buildProgram();
-  void uploadNodes(const Dendrogram& model, const ShownColours& colours);
+  Vertex vertexOf(std::uint32_t node) const;
+  Vertex parentOf(std::uint32_t node) const;
+  void uploadNodes();
   void makeArray(GLuint* array, GLuint* indices);
 
   const GlApi& gl_;
+  const Dendrogram& model_;
+  const FeatureView* normal_ = nullptr;
+  const ShownColours colours_;
   GLuint program_ = 0, nodes_ = 0;
   GLuint cut_array_ = 0, cut_indices_ = 0, full_array_ = 0, full_indices_ = 0;
   GLint clip_location_ = -1, eye_location_ = -1, colour_location_ = -1;
-  bool coloured_ = false;
+  // That stand elsewhere now, and where.
+  std::vector<Morph> morphs_;
+  std::vector<Vertex> morphed_;
   std::size_t cut_triangles_ = 0, full_triangles_ = 0;
 };
 

@@ -28,6 +28,8 @@ struct RenderSettings {
   int raster_threads = 0;  // of Mesa's software renderer; 0: the wall's own thread does all
   Shown show{};
   bool view_dependent = true;  // triangles where the tiles look; else as many everywhere
+  double geomorph = 0.125;     // share of a cut's triangles that are on their way to the next
+  int fade_frames = 3;         // in which a finer picture of what is still replaces a coarser
   Look look;
 };
 

@@ -106,6 +106,20 @@ TEST(Picture, HalfTheSizeIsEnlargedAndGoesWhenItIsRefined) {
   EXPECT_EQ(wall.tile(1).pixels, full.pixels);
 }
 
+// Vertices that were on their way stand at their own places again.
+TEST(Picture, FullDetailIsWithoutGeomorphs) {
+  Wall wall(fourTiles());
+  wall.draw();
+  const Image full = wall.tile(1);
+  const std::size_t level = model().levelFor(600);
+  wall.draw(level);
+  const Image moving = wall.tile(1);
+  wall.draw();
+  EXPECT_EQ(wall.tile(1).pixels, full.pixels);
+  wall.draw(level);
+  EXPECT_EQ(wall.tile(1).pixels, moving.pixels) << "a function of the level alone";
+}
+
 // As a wall of several models has them: what one draws leaves nothing behind for the other.
 TEST(Picture, TwoInOneContextDrawWhatEachDrawsAlone) {
   Wall alone(fourTiles()), first(fourTiles());

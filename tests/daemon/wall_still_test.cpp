@@ -84,5 +84,42 @@ TEST_F(BigModelTest, MotionAfterAStillPictureIsInTime) {
   }
 }
 
+// 40 slices of full detail.
+class FadingTest : public FakeWall {
+ protected:
+  FadingTest() {
+    fade_frames_ = 3;
+    painter_.pixels_.resize(4);
+  }
+};
+
+TEST_F(FadingTest, FullDetailComesInThreeFramesAPeriodApart) {
+  run(4, [&](Timestamp now) { feed_.pushed = now - feed_.begins.front() < milliseconds(2000); });
+  const auto& f = frames_.frames;
+  ASSERT_GT(f.size(), 10U);
+  EXPECT_TRUE(f.back().full_detail);
+  EXPECT_FALSE((f.end() - 2)->full_detail) << "it is not, until it is there";
+  EXPECT_EQ((f.end() - 2)->triangles, model().triangleCount());
+  EXPECT_EQ(frames_.firsts.back(), FakePainter::kRefined);
+  EXPECT_LT(*(frames_.firsts.end() - 2), FakePainter::kRefined);
+  EXPECT_GT(*(frames_.firsts.end() - 2), *(frames_.firsts.end() - 3));
+  const Duration apart = f.back().finished - (f.end() - 3)->finished;
+  EXPECT_GT(apart, kPeriod);
+  EXPECT_LT(apart, 3 * kPeriod);
+  EXPECT_NEAR(stats().still_to_full_s,
+              toSeconds(f.back().finished - (feed_.begins.front() + milliseconds(2000))), 0.2);
+}
+
+TEST_F(FadingTest, MotionEndsItAtOnce) {
+  bool faded = false;
+  run(4, [&](Timestamp now) {
+    faded |= !frames_.firsts.empty() && frames_.firsts.back() > FakePainter::kMoving;
+    feed_.pushed = faded || now - feed_.begins.front() < milliseconds(2000);
+  });
+  ASSERT_TRUE(faded);
+  EXPECT_EQ(frames_.firsts.back(), FakePainter::kMoving);
+  EXPECT_EQ(std::ranges::count_if(frames_.firsts, [](int byte) { return byte > 0; }), 1);
+}
+
 }  // namespace
 }  // namespace merlin::wall

@@ -82,6 +82,42 @@ class Studio {
 // One triangle that faces the viewer, in the upper right quarter of the picture.
 Mesh upperRight() { return {{0.2F, 0.2F, 0, 0.9F, 0.2F, 0, 0.2F, 0.9F, 0}, {}, {0, 1, 2}}; }
 
+// The first level from `level` on that ends with a merge in front.
+std::size_t mergesInFront(const Dendrogram& model, std::size_t level) {
+  const auto z = [&](std::size_t node) { return model.arrays().positions[3 * node + 2]; };
+  while (z(model.nodeCount() - 2 * level - 1) < 0.3F) ++level;
+  return level;
+}
+
+// With the two that merge next at their parent's place it looks as if they had merged; without, as
+// it was.
+TEST(Gl, AMorphedNodeStandsWhereItIsTold) {
+  const Dendrogram model = wholeModel(ball());
+  Studio studio(GlBackend::kEgl, model);
+  ModelRenderer& renderer = studio.renderer();
+  const std::size_t level = mergesInFront(model, model.levelFor(200));
+  std::vector<std::uint32_t> cut(3 * model.trianglesAt(level));
+  const auto drawn = [&] {
+    studio.begin();
+    renderer.draw(Source::kCut, 0, renderer.triangles(Source::kCut));
+    return studio.finished();
+  };
+  model.cut(level, cut);
+  renderer.uploadCut(cut);
+  const Image before = drawn();
+  const auto last = static_cast<std::uint32_t>(model.nodeCount() - 2 * level);
+  const std::vector<Morph> merged = {{last - 2, 0}, {last - 1, 0}};
+  renderer.morph(merged);
+  const Image on_its_way = drawn();
+  renderer.morph({});
+  EXPECT_EQ(drawn().pixels, before.pixels);
+  EXPECT_NE(on_its_way.pixels, before.pixels);
+  cut.resize(3 * model.trianglesAt(level + 1));
+  model.cut(level + 1, cut);
+  renderer.uploadCut(cut);
+  EXPECT_EQ(drawn().pixels, on_its_way.pixels);
+}
+
 TEST(Gl, BothBackendsDrawTheSamePicture) {
   const Dendrogram model = wholeModel(ball());
   Image egl, osmesa;

@@ -53,6 +53,7 @@ class FakePainter final : public Painter {
     const Timestamp began = clock_.now();
     clock_.advance(drawing);
     const Timestamp read = clock_.now();
+    std::fill(pixels_.begin(), pixels_.end(), kMoving);
     clock_.advance(fixed);
     drawn.push_back(clock_.now());
     levels.push_back(level);
@@ -72,13 +73,16 @@ class FakePainter final : public Painter {
     steps_.clear();
     while (clock_.now() + milliseconds(3) < until) {
       clock_.advance(milliseconds(3));
-      if (--left_ == 0) return true;
+      if (--left_ > 0) continue;
+      std::fill(pixels_.begin(), pixels_.end(), kRefined);
+      return true;
     }
     return false;
   }
   std::span<std::uint8_t> pixels() noexcept override { return pixels_; }
 
-  std::vector<std::uint8_t> pixels_;
+  static constexpr std::uint8_t kMoving = 0, kRefined = 90;
+  std::vector<std::uint8_t> pixels_;  // as many as a test wants
 
   void setCost(Duration per_triangle) { per_triangle_ = per_triangle; }
 
@@ -120,10 +124,12 @@ class FakeFeed final : public InputFeed {
 };
 
 struct RecordingFrames final : render::FrameSink {
-  void present(std::span<const std::uint8_t>, const render::FrameInfo& info) override {
+  void present(std::span<const std::uint8_t> pixels, const render::FrameInfo& info) override {
     frames.push_back(info);
+    firsts.push_back(pixels.empty() ? std::uint8_t{0} : pixels[0]);
   }
   std::vector<render::FrameInfo> frames;
+  std::vector<std::uint8_t> firsts;  // of each frame, its first byte
 };
 
 class FakeWall : public testing::Test {
@@ -145,8 +151,8 @@ class FakeWall : public testing::Test {
     loop.run(stop_.get_token(), [&] { ++first_frames_; });
   }
   WallParts parts() {
-    return {contents_, scene_, governor_,    feed_,   {&frames_},
-            *stats_,   clock_, trace_.get(), marker_, hand_.get()};
+    return {contents_, scene_,       governor_, feed_,       {&frames_},  *stats_,
+            clock_,    trace_.get(), marker_,   hand_.get(), fade_frames_};
   }
   shm::WallStats stats() const { return *stats_->read(); }
 
@@ -167,6 +173,7 @@ class FakeWall : public testing::Test {
   std::stop_source stop_;
   WallLoop* loop_ = nullptr;  // while it runs
   bool calibrated_ = false;
+  int fade_frames_ = 1;
   int first_frames_ = 0;
 };
 

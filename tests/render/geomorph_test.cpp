@@ -1,0 +1,145 @@
+// Geomorphs: what stands where at a level, and that nothing pops from one level to the next.
+#include "render/lod/geomorph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "render/reduce/reduce.h"
+#include "tests/support/meshes.h"
+
+namespace merlin::render {
+namespace {
+
+using Place = std::array<float, 3>;
+
+const Dendrogram& hills() {
+  static const Dendrogram made = [] {
+    Mesh mesh = test::noisyGrid(40, 40, 0.5, 3);
+    ensureNormals(mesh);
+    return buildDendrogram(mesh, reduce(mesh, {.threads = 1})->log);
+  }();
+  return made;
+}
+
+std::uint32_t parentOf(std::uint32_t node) {
+  return hills().arrays().parents[(hills().nodeCount() - 1 - node) / 2];
+}
+
+// Where each node stands, those on their way included.
+class Places {
+ public:
+  explicit Places(const std::vector<Morph>& morphs) {
+    for (const Morph& m : morphs) {
+      const Place own = at(m.node), parent = at(parentOf(m.node));
+      Place& place = moved_[m.node];
+      for (std::size_t k = 0; k < 3; ++k) place[k] = parent[k] + m.own * (own[k] - parent[k]);
+    }
+  }
+  Place at(std::uint32_t node) const {
+    if (const auto found = moved_.find(node); found != moved_.end()) return found->second;
+    const float* p = &hills().arrays().positions[3 * std::size_t{node}];
+    return {p[0], p[1], p[2]};
+  }
+
+ private:
+  std::map<std::uint32_t, Place> moved_;
+};
+
+// Of all vertices of the mesh, how far the node that stands for it is at one level from where it is
+// at the next; squared, the sum.
+double jump(std::size_t level, double share) {
+  std::vector<Morph> morphs;
+  morphsAt(hills(), level, share, morphs);
+  const Places before(morphs);
+  morphsAt(hills(), level + 1, share, morphs);
+  const Places after(morphs);
+  double sum = 0;
+  for (const std::uint32_t corner : hills().arrays().triangles) {
+    std::uint32_t node = corner;
+    const auto alive = [&](std::size_t l) { return hills().nodeCount() - 2 * l; };
+    while (node >= alive(level)) node = parentOf(node);
+    const Place from = before.at(node);
+    while (node >= alive(level + 1)) node = parentOf(node);
+    const Place to = after.at(node);
+    for (std::size_t k = 0; k < 3; ++k) sum += (to[k] - from[k]) * (to[k] - from[k]);
+  }
+  return sum;
+}
+
+TEST(Geomorph, OfTheNodesThatDieNextThoseThatDieFirstHaveGoneFurthest) {
+  const std::size_t level = hills().levelFor(1000), end = hills().levelFor(900);
+  std::vector<Morph> morphs;
+  morphsAt(hills(), level, 0.1, morphs);
+  ASSERT_EQ(morphs.size(), 2 * (end - level));
+  EXPECT_EQ(morphs.back().node, hills().nodeCount() - 2 * level - 1);
+  EXPECT_EQ(morphs.front().node, hills().nodeCount() - 2 * end);
+  const auto steps = static_cast<float>(end - level + 1);
+  EXPECT_FLOAT_EQ(morphs.back().own, 1 / steps);
+  EXPECT_FLOAT_EQ(morphs[morphs.size() - 2].own, 1 / steps) << "both that one collapse merges";
+  EXPECT_FLOAT_EQ(morphs.front().own, 1 - 1 / steps);
+  EXPECT_TRUE(std::is_sorted(morphs.begin(), morphs.end(),
+                             [](const Morph& a, const Morph& b) { return a.node < b.node; }));
+}
+
+TEST(Geomorph, FromOneLevelToTheNextNothingJumps) {
+  double moved = 0, jumped = 0;
+  const std::size_t first = hills().levelFor(1500), last = hills().levelFor(500);
+  for (std::size_t level = first; level < last; ++level) {
+    moved += jump(level, 0.125);
+    jumped += jump(level, 0);
+  }
+  EXPECT_LT(moved, jumped / 20);
+}
+
+TEST(Geomorph, ClustersAtOneLevelAreWhatTheWholeIsThere) {
+  const Clusters clusters(hills(), {.clusters = 12});
+  const std::size_t level = (clusters.finestLevel() + clusters.coarsestLevel()) / 2;
+  const std::vector<std::uint32_t> levels(clusters.size(), static_cast<std::uint32_t>(level));
+  std::vector<Morph> whole, each;
+  morphsAt(hills(), level, 0.1, whole);
+  morphsAt(hills(), clusters, levels, 0.1, each);
+  ASSERT_GT(whole.size(), 10U);
+  ASSERT_EQ(each.size(), whole.size());
+  for (std::size_t i = 0; i < each.size(); ++i) {
+    EXPECT_EQ(each[i].node, whole[i].node);
+    EXPECT_EQ(each[i].own, whole[i].own);
+  }
+}
+
+TEST(Geomorph, EachClusterHasItsOwnWindow) {
+  const Clusters clusters(hills(), {.clusters = 12});
+  ASSERT_GT(clusters.size(), 4U);
+  std::vector<std::uint32_t> levels(clusters.size());
+  const std::size_t range = clusters.coarsestLevel() - clusters.finestLevel();
+  for (std::size_t c = 0; c < levels.size(); ++c) {
+    levels[c] =
+        static_cast<std::uint32_t>(clusters.finestLevel() + range * c / (levels.size() - 1));
+  }
+  std::vector<Morph> morphs;
+  morphsAt(hills(), clusters, levels, 0.2, morphs);
+  std::vector<std::size_t> of(clusters.size());
+  for (const Morph& m : morphs) {
+    const std::size_t c = clusters.clusterOf(m.node);
+    const std::size_t collapse = (hills().nodeCount() - 1 - m.node) / 2;
+    EXPECT_GE(collapse, levels[c]) << "alive at its cluster's level";
+    EXPECT_LT(collapse, clusters.coarsestLevel());
+    ++of[c];
+  }
+  EXPECT_GT(of[0], 0U);
+  EXPECT_GT(of[of.size() / 2], 0U);
+  EXPECT_EQ(of.back(), 0U) << "nothing of it merges any more";
+}
+
+TEST(Geomorph, WithoutAShareOrAtTheEndNothingIsOnItsWay) {
+  std::vector<Morph> morphs(3);
+  morphsAt(hills(), 10, 0, morphs);
+  EXPECT_TRUE(morphs.empty());
+  morphsAt(hills(), hills().levels() - 1, 0.5, morphs);
+  EXPECT_TRUE(morphs.empty());
+}
+
+}  // namespace
+}  // namespace merlin::render
