@@ -52,6 +52,7 @@ void printJson(const std::string& file, const Opened& opened) {
                {"levels", model.levels()},
                {"triangles_coarsest", model.trianglesAt(model.levels() - 1)},
                {"features", std::move(features)},
+               {"texture_bytes", a.texture.size()},
                {"box", {{"low", box.low}, {"high", box.high}}},
                {"diagonal", box.diagonal()},
                {"about", a.about}};
@@ -69,6 +70,7 @@ void printText(const std::string& file, const Opened& opened) {
                model.trianglesAt(model.levels() - 1), model.errorAt(model.levels() - 1));
   }
   for (const auto& f : a.features) fmt::print("  feature   {} x {}\n", f.name, f.dimension);
+  if (!a.texture.empty()) fmt::print("  texture   {} bytes\n", a.texture.size());
   fmt::print("  box       {:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}, diagonal {:.6g}\n",
              box.low[0], box.low[1], box.low[2], box.high[0], box.high[1], box.high[2],
              box.diagonal());

@@ -12,13 +12,14 @@
 #include "daemon/cli/progress.h"
 #include "render/lod/io/mrm_file.h"
 #include "render/mesh/io/mesh_file.h"
+#include "render/mesh/io/picture_file.h"
 #include "render/reduce/reduce.h"
 
 namespace merlin::cli {
 namespace {
 
 struct ReduceOptions {
-  std::string input, output, preset = "default";
+  std::string input, output, texture, preset = "default";
   std::vector<std::string> weights;
   render::ReduceSettings settings;
   std::uint64_t memory = 0;  // bytes; 0: what is free
@@ -106,6 +107,21 @@ Result<render::Reduction> reduceLoaded(const ReduceOptions& options, const rende
   return reduction;
 }
 
+// A picture that the mesh's file does not name.
+Result<Ok> addTexture(const ReduceOptions& options, render::Mesh& mesh) {
+  if (options.texture.empty()) return Ok{};
+  const render::Feature* texcoord = mesh.find("texcoord");
+  if (!texcoord || texcoord->dimension != 2) {
+    return Error{
+        Errc::kInvalidArgument,
+        options.input + ": has no texture coordinates (a PLY's s and t or u and v, an OBJ's vt)"};
+  }
+  auto picture = render::readPicture(options.texture);
+  if (!picture) return picture.error();
+  mesh.texture = std::move(picture->file);
+  return Ok{};
+}
+
 int reduceMesh(const ReduceOptions& options) {
   const SystemClock clock;
   const Timestamp began = clock.now();
@@ -114,8 +130,9 @@ int reduceMesh(const ReduceOptions& options) {
   if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
   if (const auto fits = checkRoom(options.input, options.settings, took.limit); !fits)
     return fail(fits.error());
-  const auto loaded = loadMesh(options.input);
+  auto loaded = loadMesh(options.input);
   if (!loaded) return fail(loaded.error());
+  if (const auto done = addTexture(options, loaded->mesh); !done) return fail(done.error());
   const auto reduction = reduceLoaded(options, loaded->mesh, took);
   if (!reduction) return fail(reduction.error());
   const auto written =
@@ -154,6 +171,11 @@ void addMeshReduce(CLI::App& mesh, Run& run) {
           "Of a feature: geometry, colour or any of the mesh's own, and for pattern normal, "
           "curvature, boundary; 0 leaves it out")
       ->type_name("FEATURE=W");
+  command
+      ->add_option("--texture", options->texture,
+                   "The picture that the texture coordinates are of; else the one that the mesh's "
+                   "material names. It goes into the model")
+      ->type_name("FILE.png|.jpg");
   command->add_flag("--preserve-topology", options->settings.preserve_topology,
                     "Refuse collapses that join or pinch off parts");
   command->add_flag("--preserve-components", options->settings.preserve_components,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/mesh/io/picture_file.h"
+
 namespace merlin::wall {
 namespace {
 
@@ -30,6 +32,15 @@ Eigen::Matrix4f scaling(const render::Dendrogram& model, float radius_m) {
   }
   m(3, 3) = 1;
   return m;
+}
+
+// Nothing where the model has none.
+Result<render::PictureFile> textureOf(const render::Dendrogram& model) {
+  const auto bytes = model.arrays().texture;
+  if (bytes.empty()) return render::PictureFile{};
+  auto picture = render::decodePicture(bytes);
+  if (!picture) return Error{picture.error().code, "its texture: " + picture.error().what};
+  return picture;
 }
 
 struct Size {
@@ -67,7 +78,11 @@ Result<std::unique_ptr<Picture>> Picture::make(const render::Dendrogram& model,
   const render::GlApi& gl = picture->context_->gl();
   std::vector<std::uint32_t> full;
   picture->clusters_.everything(full, picture->full_ends_);
-  auto renderer = ModelRenderer::make(gl, model, full, settings.show);
+  const auto texture = textureOf(model);
+  if (!texture) return texture.error();
+  const render::TextureImage image{texture->width, texture->height, texture->pixels};
+  auto renderer = ModelRenderer::make(gl, model, full, settings.show,
+                                      texture->pixels.empty() ? nullptr : &image);
   if (!renderer) return renderer.error();
   picture->renderer_ = *std::move(renderer);
   for (const render::Tile& tile : plan.tiles) {

@@ -27,7 +27,7 @@ class Picture final : public Painter {
   // `radius_m`: the model is scaled to a bounding sphere of this radius about its box's centre.
   // The model is borrowed. `context`: another picture's, of this thread, to be drawn in as well;
   // none: one of its own. Errors: kUnsupported (no GL of that kind, or not enough of it),
-  // kInvalidArgument (no such feature to be shown).
+  // kInvalidArgument (no such feature to be shown), kMalformed (a texture that cannot be read).
   static Result<std::unique_ptr<Picture>> make(
       const render::Dendrogram& model, const render::TilePlan& plan,
       const render::RenderSettings& settings, double radius_m, const Clock& clock,

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -15,35 +17,57 @@ namespace merlin::render {
 struct ModelRenderer::Vertex {
   float position[3];
   std::int8_t normal[4];  // unit normal x 127
-  std::uint8_t colour[4];
+  // Red, green, blue; of a textured model where in its picture, two numbers of 16 bits, of the
+  // range that its coordinates have.
+  std::uint8_t look[4];
 };
 
 namespace {
 
-constexpr GLuint kPosition = 0, kNormal = 1, kColour = 2;
+constexpr GLuint kPosition = 0, kNormal = 1, kLook = 2;
+
+constexpr const char* kTextured = "#version 330 core\n#define TEXTURED\n";
+constexpr const char* kPlain = "#version 330 core\n";
 
 // One light at the eye, a little from above, and enough of everywhere to see the rest.
-constexpr const char* kVertexShader = R"(#version 330 core
+constexpr const char* kVertexShader = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
-layout(location = 2) in vec3 colour;
+layout(location = 2) in vec3 look;
 uniform mat4 clip_from_model;
 uniform mat3 eye_from_model;
 uniform vec3 tint;
 out vec3 shade;
+#ifdef TEXTURED
+uniform vec4 range;  // lowest u and v, and how far they reach
+out vec2 place;
+#endif
 void main() {
   gl_Position = clip_from_model * vec4(position, 1.0);
   vec3 n = eye_from_model * normal;
   float facing = dot(n, normalize(vec3(0.15, 0.35, 1.0)));
   float light = 0.30 + 0.80 * max(facing, 0.0) + 0.10 * max(-facing, 0.0);
-  shade = min(colour * tint * light, vec3(1.0));
+#ifdef TEXTURED
+  // v goes upwards, the picture's rows downwards.
+  vec2 uv = range.xy + look.xy * range.zw;
+  place = vec2(uv.x, 1.0 - uv.y);
+  shade = tint * light;
+#else
+  shade = min(look * tint * light, vec3(1.0));
+#endif
 }
 )";
 
-constexpr const char* kFragmentShader = R"(#version 330 core
+constexpr const char* kFragmentShader = R"(
 in vec3 shade;
 out vec4 pixel;
+#ifdef TEXTURED
+in vec2 place;
+uniform sampler2D picture;
+void main() { pixel = vec4(min(texture(picture, place).rgb * shade, vec3(1.0)), 1.0); }
+#else
 void main() { pixel = vec4(shade, 1.0); }
+#endif
 )";
 
 std::int8_t quantise(float component) {
@@ -51,41 +75,34 @@ std::int8_t quantise(float component) {
   return static_cast<std::int8_t>(std::lround(std::clamp(v, -127.0F, 127.0F)));
 }
 
-// All of the way from `parent` to `own` that it has gone.
-template <typename Vertex>
-Vertex between(const Vertex& parent, const Vertex& own, float share) {
-  const auto mixed = [&](float from, float to) { return from + share * (to - from); };
-  Vertex v{};
-  float normal[3], square = 0;
-  for (int k = 0; k < 3; ++k) {
-    v.position[k] = mixed(parent.position[k], own.position[k]);
-    normal[k] = mixed(parent.normal[k], own.normal[k]);
-    square += normal[k] * normal[k];
-    v.colour[k] = static_cast<std::uint8_t>(std::lround(mixed(parent.colour[k], own.colour[k])));
-  }
-  for (int k = 0; k < 3; ++k) v.normal[k] = quantise(normal[k] / std::sqrt(square));
-  v.colour[3] = 255;
-  return v;
-}
+float mixed(float from, float to, float share) { return from + share * (to - from); }
+
+using Place = std::array<std::uint16_t, 2>;
 
 }  // namespace
 
-ModelRenderer::ModelRenderer(const GlApi& gl, const Dendrogram& model, ShownColours colours)
-    : gl_(gl), model_(model), normal_(model.find("normal")), colours_(std::move(colours)) {
-  if (normal_ && normal_->dimension != 3) normal_ = nullptr;
-}
+ModelRenderer::ModelRenderer(const GlApi& gl, const Dendrogram& model) : gl_(gl), model_(model) {}
 
 Result<std::unique_ptr<ModelRenderer>> ModelRenderer::make(const GlApi& gl, const Dendrogram& model,
                                                            std::span<const std::uint32_t> full,
-                                                           const Shown& show) {
+                                                           const Shown& show,
+                                                           const TextureImage* texture) {
   static_assert(sizeof(Vertex) == 20);
   if (model.nodeCount() > std::numeric_limits<std::int32_t>::max() / sizeof(Vertex) * 8) {
     return Error{Errc::kUnsupported,
                  fmt::format("{} nodes are more than one buffer holds", model.nodeCount())};
   }
-  auto colours = coloursOf(model, show);
-  if (!colours) return colours.error();
-  std::unique_ptr<ModelRenderer> r(new ModelRenderer(gl, model, *std::move(colours)));
+  std::unique_ptr<ModelRenderer> r(new ModelRenderer(gl, model));
+  if (const FeatureView* normal = model.find("normal"); normal && normal->dimension == 3)
+    r->normal_ = normal;
+  const FeatureView* texcoord = model.find("texcoord");
+  if (texture && show.feature.empty() && texcoord && texcoord->dimension == 2) {
+    r->useTexture(*texcoord, *texture);
+  } else {
+    auto colours = coloursOf(model, show);
+    if (!colours) return colours.error();
+    r->colours_ = *std::move(colours);
+  }
   if (const auto built = r->buildProgram(); !built) return built.error();
   r->uploadNodes();
   r->makeArray(&r->cut_array_, &r->cut_indices_);
@@ -108,13 +125,30 @@ ModelRenderer::~ModelRenderer() {
   for (GLuint buffer : {nodes_, cut_indices_, full_indices_}) gl_.DeleteBuffers(1, &buffer);
 }
 
+void ModelRenderer::useTexture(const FeatureView& texcoord, const TextureImage& image) {
+  texture_ = std::make_unique<Texture>(gl_, image);
+  texcoord_ = &texcoord;
+  for (std::size_t k = 0; k < 2; ++k) {
+    float low = texcoord.values[k], high = low;
+    for (std::size_t i = k; i < texcoord.values.size(); i += 2) {
+      low = std::min(low, texcoord.values[i]);
+      high = std::max(high, texcoord.values[i]);
+    }
+    texcoords_.low[k] = low;
+    texcoords_.size[k] = high - low;
+  }
+}
+
 Result<Ok> ModelRenderer::buildProgram() {
-  const auto program = linkProgram(gl_, kVertexShader, kFragmentShader);
+  const std::string begin = texture_ ? kTextured : kPlain;
+  const auto program =
+      linkProgram(gl_, (begin + kVertexShader).c_str(), (begin + kFragmentShader).c_str());
   if (!program) return program.error();
   program_ = *program;
   clip_location_ = gl_.GetUniformLocation(program_, "clip_from_model");
   eye_location_ = gl_.GetUniformLocation(program_, "eye_from_model");
   colour_location_ = gl_.GetUniformLocation(program_, "tint");
+  range_location_ = gl_.GetUniformLocation(program_, "range");
   return Ok{};
 }
 
@@ -125,9 +159,40 @@ ModelRenderer::Vertex ModelRenderer::vertexOf(std::uint32_t node) const {
   for (std::size_t k = 0; k < 3; ++k) {
     v.position[k] = a.positions[3 * n + k];
     v.normal[k] = quantise(normal_ ? normal_->values[3 * n + k] : (k == 2 ? 1.0F : 0.0F));
-    v.colour[k] = colours_.rgb.empty() ? 255 : colours_.rgb[n][k];
+    v.look[k] = colours_.rgb.empty() ? 255 : colours_.rgb[n][k];
   }
-  v.colour[3] = 255;
+  if (texcoord_) {
+    Place place{};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const float from_low = texcoord_->values[2 * n + k] - texcoords_.low[k];
+      const float share = texcoords_.size[k] > 0 ? from_low / texcoords_.size[k] : 0;
+      place[k] = static_cast<std::uint16_t>(std::lround(65535 * std::clamp(share, 0.0F, 1.0F)));
+    }
+    std::memcpy(v.look, &place, sizeof place);
+  }
+  return v;
+}
+
+// Where a node is that has gone all but `share` of its way to its parent.
+ModelRenderer::Vertex ModelRenderer::between(const Vertex& parent, const Vertex& own,
+                                             float share) const {
+  Vertex v{};
+  float normal[3], square = 0;
+  for (int k = 0; k < 3; ++k) {
+    v.position[k] = mixed(parent.position[k], own.position[k], share);
+    normal[k] = mixed(parent.normal[k], own.normal[k], share);
+    square += normal[k] * normal[k];
+    v.look[k] = static_cast<std::uint8_t>(std::lround(mixed(parent.look[k], own.look[k], share)));
+  }
+  for (int k = 0; k < 3; ++k) v.normal[k] = quantise(normal[k] / std::sqrt(square));
+  if (texcoord_) {
+    Place from{}, to{};
+    std::memcpy(&from, parent.look, sizeof from);
+    std::memcpy(&to, own.look, sizeof to);
+    for (std::size_t k = 0; k < 2; ++k)
+      to[k] = static_cast<std::uint16_t>(std::lround(mixed(from[k], to[k], share)));
+    std::memcpy(v.look, &to, sizeof to);
+  }
   return v;
 }
 
@@ -186,10 +251,9 @@ void ModelRenderer::makeArray(GLuint* array, GLuint* indices) {
                           offset(offsetof(Vertex, position)));
   gl_.VertexAttribPointer(kNormal, 3, GL_BYTE, GL_TRUE, sizeof(Vertex),
                           offset(offsetof(Vertex, normal)));
-  gl_.VertexAttribPointer(kColour, 3, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(Vertex),
-                          offset(offsetof(Vertex, colour)));
-  for (const GLuint attribute : {kPosition, kNormal, kColour})
-    gl_.EnableVertexAttribArray(attribute);
+  gl_.VertexAttribPointer(kLook, texture_ ? 2 : 3, texture_ ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE,
+                          GL_TRUE, sizeof(Vertex), offset(offsetof(Vertex, look)));
+  for (const GLuint attribute : {kPosition, kNormal, kLook}) gl_.EnableVertexAttribArray(attribute);
   gl_.GenBuffers(1, indices);
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, *indices);
 }
@@ -219,9 +283,13 @@ void ModelRenderer::begin(int width, int height, const Camera& camera, const Loo
   gl_.UniformMatrix4fv(clip_location_, 1, GL_FALSE, clip.data());
   gl_.UniformMatrix3fv(eye_location_, 1, GL_FALSE, camera.eye_from_model.data());
   const std::array<float, 3> white{1, 1, 1};
-  const auto& tint = colours_.rgb.empty() ? look.colour : white;
+  const auto& tint = colours_.rgb.empty() && !texture_ ? look.colour : white;
   gl_.Uniform3f(colour_location_, tint[0] * look.brightness, tint[1] * look.brightness,
                 tint[2] * look.brightness);
+  if (!texture_) return;
+  texture_->bind();
+  gl_.Uniform4f(range_location_, texcoords_.low[0], texcoords_.low[1], texcoords_.size[0],
+                texcoords_.size[1]);
 }
 
 void ModelRenderer::draw(Source source, std::size_t first, std::size_t count) {

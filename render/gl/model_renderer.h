@@ -1,8 +1,8 @@
 // ModelRenderer: a dendrogram's nodes on the GPU, and its triangles drawn at any level, whole or in
 // slices.
 //
-// Lit per vertex by a light at the eye, colours where the model has them, or a feature that is
-// shown. OpenGL 3.3 core. Thread-bound to its context, which outlives it.
+// Lit per vertex by a light at the eye, which modulates the model's texture, its colours, or a
+// feature that is shown. OpenGL 3.3 core. Thread-bound to its context, which outlives it.
 #pragma once
 
 #include <array>
@@ -17,6 +17,7 @@
 #include "render/gl/gl_api.h"
 #include "render/gl/settings.h"
 #include "render/gl/shown_colours.h"
+#include "render/gl/texture.h"
 #include "render/lod/dendrogram.h"
 #include "render/lod/geomorph.h"
 
@@ -32,11 +33,14 @@ class ModelRenderer {
  public:
   // Uploads the nodes (20 bytes each) and the full resolution's indices, in the order in which they
   // are to be drawn, which it does not keep; borrows the model. `show`: what is seen as colours.
+  // `texture`: the picture that the model's "texcoord" is of, seen where nothing else is shown and
+  // the model has such a feature of dimension 2.
   // Errors: kUnsupported (a shader that does not compile, with the log; no memory on the GPU),
   // those of coloursOf().
   static Result<std::unique_ptr<ModelRenderer>> make(const GlApi& gl, const Dendrogram& model,
                                                      std::span<const std::uint32_t> full,
-                                                     const Shown& show = {});
+                                                     const Shown& show = {},
+                                                     const TextureImage* texture = nullptr);
 
   ~ModelRenderer();
   ModelRenderer(const ModelRenderer&) = delete;
@@ -68,20 +72,30 @@ class ModelRenderer {
  private:
   struct Vertex;
 
-  ModelRenderer(const GlApi& gl, const Dendrogram& model, ShownColours colours);
+  // A range of texture coordinates, by axis.
+  struct Range {
+    float low[2] = {0, 0}, size[2] = {1, 1};
+  };
+
+  ModelRenderer(const GlApi& gl, const Dendrogram& model);
+  void useTexture(const FeatureView& texcoord, const TextureImage& image);
   Result<Ok> buildProgram();
   Vertex vertexOf(std::uint32_t node) const;
   Vertex parentOf(std::uint32_t node) const;
+  Vertex between(const Vertex& parent, const Vertex& own, float share) const;
   void uploadNodes();
   void makeArray(GLuint* array, GLuint* indices);
 
   const GlApi& gl_;
   const Dendrogram& model_;
   const FeatureView* normal_ = nullptr;
-  const ShownColours colours_;
+  ShownColours colours_;
+  const FeatureView* texcoord_ = nullptr;  // with texture_
+  Range texcoords_;
+  std::unique_ptr<Texture> texture_;
   GLuint program_ = 0, nodes_ = 0;
   GLuint cut_array_ = 0, cut_indices_ = 0, full_array_ = 0, full_indices_ = 0;
-  GLint clip_location_ = -1, eye_location_ = -1, colour_location_ = -1;
+  GLint clip_location_ = -1, eye_location_ = -1, colour_location_ = -1, range_location_ = -1;
   // That stand elsewhere now, and where.
   std::vector<Morph> morphs_;
   std::vector<Vertex> morphed_;

@@ -15,6 +15,7 @@ struct Storage {
   std::vector<std::vector<float>> features;
   std::vector<std::uint32_t> parents, triangles, alive;
   std::vector<float> error;
+  std::vector<std::uint8_t> texture;
 };
 
 std::vector<float> gather(const std::vector<float>& leaves, const std::vector<float>& inner,
@@ -46,13 +47,16 @@ Dendrogram buildDendrogram(const Mesh& mesh, const CollapseLog& log) {
     for (int k = 0; k < 3; ++k) s->triangles.push_back(order.numberOf(corners[k]));
   }
 
-  Dendrogram::Arrays a{s->positions, {}, s->parents, s->triangles, s->alive, s->error, log.about};
+  Dendrogram::Arrays a{s->positions, {},       s->parents, s->triangles,
+                       s->alive,     s->error, log.about,  {}};
   s->features.reserve(mesh.features.size());
   for (std::size_t f = 0; f < mesh.features.size(); ++f) {
     const Feature& feature = mesh.features[f];
     s->features.push_back(gather(feature.values, log.features[f], feature.dimension, order));
     a.features.push_back({feature.name, feature.dimension, s->features.back()});
   }
+  s->texture = mesh.texture;
+  a.texture = s->texture;
   auto made = Dendrogram::make(std::move(a), s);
   assert(made.ok());
   return *std::move(made);

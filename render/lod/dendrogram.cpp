@@ -137,6 +137,8 @@ Mesh extract(const Dendrogram& dendrogram, std::size_t level) {
   for (const FeatureView& f : dendrogram.arrays().features) {
     mesh.features.push_back({f.name, f.dimension, gather(f.values, f.dimension)});
   }
+  const auto texture = dendrogram.arrays().texture;
+  mesh.texture.assign(texture.begin(), texture.end());
   return mesh;
 }
 

@@ -44,6 +44,8 @@ class Dendrogram {
     std::span<const std::uint32_t> alive;      // levels: triangles left at level 0..C
     std::span<const float> error;  // levels: estimate at level 0..C, model units, rising
     std::string about;
+    std::span<const std::uint8_t> texture{};  // the picture of "texcoord", a PNG or JPEG file, not
+                                              // looked into; or none
   };
 
   // Checks everything that a cut relies on, so that no file can lead it astray: sizes that agree,

@@ -33,6 +33,7 @@ struct Mesh {
   std::vector<float> positions;  // vertices x 3, model units
   std::vector<Feature> features;
   std::vector<std::uint32_t> triangles;  // triangles x 3, vertex indices, counter-clockwise outside
+  std::vector<std::uint8_t> texture{};   // the picture of "texcoord", a PNG or JPEG file; or none
 
   std::size_t vertexCount() const noexcept { return positions.size() / 3; }
   std::size_t triangleCount() const noexcept { return triangles.size() / 3; }

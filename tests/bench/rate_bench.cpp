@@ -2,10 +2,12 @@
 // share of it is drawing: a loop that only drew and read back could not be faster by more than
 // that.
 //
-// W10: textured triangles at full resolution, before reduction. Here they have a colour at each
-// vertex and no texture; the operator's view is a fourth one, as there. Each is the whole model,
-// two copies of the demo's scan side by side, reduced to that many triangles and drawn whole.
+// W10: textured triangles at full resolution, before reduction; the operator's view is a fourth
+// one, as there. Each is the whole model, two copies of the demo's scan side by side in a made-up
+// picture of 1024 x 1024, reduced to that many triangles and drawn whole.
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +15,8 @@
 
 #include "daemon/wall/picture.h"
 #include "render/mesh/io/mesh_file.h"
+#include "render/mesh/io/picture_file.h"
+#include "render/out/png.h"
 #include "render/reduce/reduce.h"
 #include "tests/support/statistics.h"
 
@@ -44,6 +48,36 @@ render::Mesh twice(const render::Mesh& mesh) {
     f.values.insert(f.values.end(), values.begin(), values.end());
   }
   return both;
+}
+
+// Round its long axis; a chequered picture with noise.
+Result<Ok> dress(render::Mesh& mesh) {
+  constexpr int kSide = 1024;
+  std::vector<std::uint8_t> rgba;
+  std::uint32_t noise = 1;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    noise = 1664525 * noise + 1013904223;
+    const bool dark = (i / 32 + i / kSide / 32) % 2 == 0;
+    const auto grey = static_cast<std::uint8_t>((dark ? 90 : 170) + (noise >> 26));
+    rgba.insert(rgba.end(), {grey, grey, static_cast<std::uint8_t>(grey / 2), 255});
+  }
+  const std::string path = std::filesystem::temp_directory_path() / "merlin_rates.png";
+  if (auto written = render::writePng(path, kSide, kSide, rgba); !written) return written;
+  auto picture = render::readPicture(path);
+  std::filesystem::remove(path);
+  if (!picture) return picture.error();
+  mesh.texture = std::move(picture->file);
+  const render::Box box = render::boundingBox(mesh.positions);
+  render::Feature texcoord{"texcoord", 2, {}};
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+    const float* p = &mesh.positions[3 * v];
+    const float y = p[1] - (box.low[1] + box.high[1]) / 2,
+                z = p[2] - (box.low[2] + box.high[2]) / 2;
+    texcoord.values.push_back(0.5F + std::atan2(z, y) / 6.2832F);
+    texcoord.values.push_back((p[0] - box.low[0]) / (box.high[0] - box.low[0]));
+  }
+  mesh.features.push_back(std::move(texcoord));
+  return Ok{};
 }
 
 // In front of the viewer, turned a little further each time.
@@ -91,7 +125,7 @@ void bench(const render::Dendrogram& model, Picture& picture, const Clock& clock
   }
 }
 
-int run(const std::string& scan, int raster_threads) {
+int run(const std::string& scan, int raster_threads, bool textured) {
   render::prepareSoftwareGl(raster_threads);
   auto loaded = render::readMesh(scan);
   if (!loaded) {
@@ -99,6 +133,12 @@ int run(const std::string& scan, int raster_threads) {
     return 1;
   }
   render::Mesh mesh = twice(loaded->mesh);
+  if (textured) {
+    if (const auto dressed = dress(mesh); !dressed) {
+      fmt::print(stderr, "{}\n", dressed.error().what);
+      return 1;
+    }
+  }
   render::ensureNormals(mesh);
   const auto reduced = render::reduce(mesh, {});
   if (!reduced) return 1;
@@ -110,8 +150,8 @@ int run(const std::string& scan, int raster_threads) {
     fmt::print(stderr, "{}\n", picture.error().what);
     return 1;
   }
-  fmt::print("{}, {} raster threads; three tiles and the operator's view, 640 x 480 each\n",
-             (*picture)->renderer(), raster_threads);
+  fmt::print("{}, {} raster threads; three tiles and the operator's view, 640 x 480 each; {}\n",
+             (*picture)->renderer(), raster_threads, textured ? "textured" : "coloured");
   bench(model, **picture, clock);
   return 0;
 }
@@ -122,10 +162,12 @@ int run(const std::string& scan, int raster_threads) {
 int main(int argc, char** argv) {
   std::string scan = MERLIN_SOURCE_DIR "/config/models/ankylosaurus.ply";
   int raster_threads = 0;
+  bool textured = true;
   CLI::App app("Rates at full resolution, beside those of 1998.");
   app.add_option("--scan", scan, "A scan with colours")->capture_default_str();
   app.add_option("--raster-threads", raster_threads, "Of Mesa's software renderer")
       ->check(CLI::Range(0, 16));
+  app.add_flag("!--coloured", textured, "Colours at the vertices instead of a texture");
   CLI11_PARSE(app, argc, argv);
-  return merlin::bench::run(scan, raster_threads);
+  return merlin::bench::run(scan, raster_threads, textured);
 }

@@ -47,10 +47,12 @@ Dendrogram unreduced(const Mesh& mesh) {
 // A picture of a model as seen along -z, x and y -1..1 from edge to edge.
 class Studio {
  public:
-  explicit Studio(GlBackend backend, const Dendrogram& model, int width = 160, int height = 120)
+  explicit Studio(GlBackend backend, const Dendrogram& model, int width = 160, int height = 120,
+                  const Shown& show = {}, const TextureImage* texture = nullptr)
       : context_(*makeGlContext(backend)),
         frame_(*FrameBuffer::make(context_->gl(), width, height)),
-        renderer_(*ModelRenderer::make(context_->gl(), model, model.arrays().triangles)) {}
+        renderer_(
+            *ModelRenderer::make(context_->gl(), model, model.arrays().triangles, show, texture)) {}
 
   ModelRenderer& renderer() { return *renderer_; }
 
@@ -256,6 +258,82 @@ TEST_P(GlOf, TooLargeAFrameBufferIsRefused) {
   ASSERT_FALSE(frame);
   EXPECT_EQ(frame.error().code, Errc::kUnsupported);
   EXPECT_NE(frame.error().what.find("1048576 x 16"), std::string::npos) << frame.error().what;
+}
+
+// A square that fills the picture; u goes from -1 to 3, v from 0 to 1.
+Mesh square() {
+  Mesh mesh;
+  mesh.positions = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+  mesh.triangles = {0, 1, 2, 0, 2, 3};
+  mesh.features = {{"normal", 3, {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}},
+                   {"texcoord", 2, {-1, 0, 3, 0, 3, 1, -1, 1}},
+                   {"colour", 3, {1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0}}};
+  return mesh;
+}
+
+// 64 x 64: green above, on the left half blue below it, on the right half white.
+std::vector<std::uint8_t> threeColours() {
+  std::vector<std::uint8_t> rgb;
+  for (int i = 0; i < 64 * 64; ++i) {
+    const bool above = i / 64 < 32, left = i % 64 < 32;
+    const std::array<std::uint8_t, 3> green{0, 100, 0}, blue{0, 0, 100}, white{200, 200, 200};
+    const auto& colour = above ? green : left ? blue : white;
+    rgb.insert(rgb.end(), colour.begin(), colour.end());
+  }
+  return rgb;
+}
+
+TEST_P(GlOf, ATextureIsModulatedWithTheLightAndRepeats) {
+  const auto rgb = threeColours();
+  const TextureImage texture{64, 64, rgb};
+  const Dendrogram model = unreduced(square());
+  Studio studio(GetParam(), model, 160, 120, {}, &texture);
+  const Image image = studio.picture();
+  // Its light is 1.048 at a normal towards the eye; of the five pictures from left to right this is
+  // the second.
+  for (const int picture : {0, 1, 2, 3}) {
+    EXPECT_LE(test::difference(image.at(40 * picture + 10, 20), {0, 105, 0, 255}), 1) << picture;
+    EXPECT_LE(test::difference(image.at(40 * picture + 10, 100), {0, 0, 105, 255}), 1) << picture;
+    EXPECT_LE(test::difference(image.at(40 * picture + 30, 100), {210, 210, 210, 255}), 1);
+  }
+  Look dark;
+  dark.brightness = 0.5F;
+  EXPECT_LE(test::difference(studio.picture(dark).at(10, 20), {0, 52, 0, 255}), 1);
+}
+
+TEST_P(GlOf, AFeatureThatIsShownIsShownInsteadOfTheTexture) {
+  const auto rgb = threeColours();
+  const TextureImage texture{64, 64, rgb};
+  const Dendrogram model = unreduced(square());
+  Studio shown(GetParam(), model, 160, 120, {.feature = "colour"}, &texture);
+  EXPECT_EQ(shown.picture().at(10, 20), (Rgba{255, 0, 0, 255}));
+  Studio plain(GetParam(), model);
+  EXPECT_EQ(plain.picture().at(10, 20), (Rgba{255, 0, 0, 255})) << "no picture, so its colours";
+}
+
+// Corners 0 and 1 become one half way between; on their way there so does what is seen there.
+TEST_P(GlOf, TextureCoordinatesAreOnTheirWayToo) {
+  const auto rgb = threeColours();
+  const TextureImage texture{64, 64, rgb};
+  const Mesh mesh = square();
+  CollapseLog log;
+  log.children = {{0, 3}};
+  log.positions = {-1, 0, 0};
+  log.features = {{0, 0, 1}, {-1, 0.5F}, {1, 0, 0}};
+  log.error = {0.1F};
+  const Dendrogram model = buildDendrogram(mesh, log);
+  Studio studio(GetParam(), model, 160, 120, {}, &texture);
+  const Image before = studio.picture();
+  const auto last = static_cast<std::uint32_t>(model.nodeCount());
+  const std::vector<Morph> half = {{last - 2, 0.5F}, {last - 1, 0.5F}};
+  studio.renderer().morph(half);
+  const Image image = studio.picture();
+  // v of the left side now goes from 0.25 to 0.75, on half of its height.
+  EXPECT_EQ(image.at(1, 10), kBackground);
+  EXPECT_LE(test::difference(image.at(2, 50), {0, 105, 0, 255}), 1);
+  EXPECT_LE(test::difference(image.at(2, 75), {0, 0, 105, 255}), 1);
+  studio.renderer().morph({});
+  EXPECT_EQ(studio.picture().pixels, before.pixels);
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, GlOf, ::testing::Values(GlBackend::kEgl, GlBackend::kOsmesa),

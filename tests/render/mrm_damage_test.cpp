@@ -141,7 +141,7 @@ TEST_F(MrmDamage, AnUnknownSectionIsSkippedFrom1000OnAndRefusedBelow) {
     EXPECT_EQ(faultWith(Kind::kFeature, change, Errc::kUnsupported),
               "section kind " + std::to_string(kind) + " is not known");
   }
-  for (const unsigned kind : {1000U, 1001U, 0xFFFFFFFFU}) {
+  for (const unsigned kind : {1001U, 1002U, 0xFFFFFFFFU}) {
     MrmBytes file = golden_;
     MrmBytes::Entry entry = file.entry(6);
     ASSERT_EQ(entry.kind, 2u);
@@ -155,12 +155,27 @@ TEST_F(MrmDamage, AnUnknownSectionIsSkippedFrom1000OnAndRefusedBelow) {
   }
 }
 
+// The golden file's last feature, 168 bytes a corner of the cube, becomes a texture.
+TEST_F(MrmDamage, ATextureIsCheckedAsAllElseIs) {
+  MrmBytes file = golden_;
+  MrmBytes::Entry entry = file.entry(6);
+  entry.kind = 1000;
+  entry.dimension = 1;
+  entry.rows = 7;
+  file.set(6, entry);
+  const auto result = read(file.seal().bytes);
+  ASSERT_TRUE(result) << result.error().what;
+  EXPECT_EQ(result->arrays().texture.size(), 7U);
+  file.bytes[entry.offset + 6] ^= 1;
+  EXPECT_EQ(faultOf(file.bytes), "section texture is damaged");
+}
+
 // What a value of a kind that is not known takes, only a later reader knows: here 1 or 8 bytes.
 TEST_F(MrmDamage, AnUnknownSectionMayHoldValuesOfAnySize) {
   for (const std::uint32_t dimension : {168U, 21U}) {
     MrmBytes file = golden_;
     MrmBytes::Entry entry = file.entry(6);
-    entry.kind = 1000;
+    entry.kind = 1999;
     entry.dimension = dimension;
     entry.rows = 1;
     file.set(6, entry);
@@ -182,7 +197,7 @@ TEST_F(MrmDamage, AFileHas1024SectionsAtMost) {
     file.set(header);
     for (std::size_t i = 0; i < sections; ++i) {
       MrmBytes::Entry entry = file.entry(i);
-      i < 7 ? entry.offset += more : entry.kind = 1000;
+      i < 7 ? entry.offset += more : entry.kind = 1999;
       file.set(i, entry);
     }
     EXPECT_EQ(faultOf(file.sealTable().bytes),
@@ -208,7 +223,7 @@ TEST_F(MrmDamage, ASectionOutsideTheFileIsRefused) {
 }
 
 TEST_F(MrmDamage, AMissingSectionIsRefused) {
-  const auto skip = [](MrmBytes::Entry& e) { e.kind = 1000; };
+  const auto skip = [](MrmBytes::Entry& e) { e.kind = 1999; };
   for (const Kind kind : {Kind::kPositions, Kind::kParents, Kind::kTriangles}) {
     EXPECT_EQ(faultWith(kind, skip),
               "a section is missing, or its size is not what the header says");

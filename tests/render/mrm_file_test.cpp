@@ -34,6 +34,7 @@ Mesh sphere() {
   Mesh mesh = test::sphere(3);
   mesh.features.push_back({"heat", 1, std::vector<float>(mesh.vertexCount(), 0.25F)});
   mesh.features.push_back({"colour", 3, std::vector<float>(mesh.positions.size(), 0.5F)});
+  mesh.texture = {0x89, 'P', 'N', 'G', 7};  // nobody looks into it here
   ensureNormals(mesh);
   return mesh;
 }
@@ -60,6 +61,14 @@ TEST(MrmFile, IsTheSameWrittenInPiecesStraightFromTheReduction) {
 TEST(MrmFile, ARoundTripGivesTheSameBytes) {
   expectRoundTrip(reducedSphere());
   expectRoundTrip(test::goldenCube());
+}
+
+TEST(MrmFile, KeepsATextureAsItIsAndGivesItToWhatIsExtracted) {
+  const test::TempDir dir;
+  ASSERT_TRUE(writeMrm(dir / "a.mrm", reducedSphere()));
+  const auto read = readMrm(dir / "a.mrm");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(extract(*read, 100).texture, sphere().texture);
 }
 
 TEST(MrmFile, HoldsAMeshThatWasNotReducedAndHasNoFeatures) {

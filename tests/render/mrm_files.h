@@ -66,7 +66,7 @@ class MrmBytes {
     return 0;
   }
   static std::size_t sizeOf(const Entry& e) {
-    return e.rows * e.dimension * (e.kind == static_cast<std::uint32_t>(Kind::kAbout) ? 1 : 4);
+    return e.rows * e.dimension * render::mrm::unitOf(e.kind);
   }
 
   // Puts a number into a section.
@@ -134,6 +134,8 @@ inline void expectSame(const Dendrogram& a, const Dendrogram& b) {
   EXPECT_EQ(copyOf(x.alive), copyOf(y.alive));
   EXPECT_EQ(copyOf(x.error), copyOf(y.error));
   EXPECT_EQ(x.about, y.about);
+  EXPECT_EQ(std::vector<std::uint8_t>(x.texture.begin(), x.texture.end()),
+            std::vector<std::uint8_t>(y.texture.begin(), y.texture.end()));
   ASSERT_EQ(x.features.size(), y.features.size());
   for (std::size_t f = 0; f < x.features.size(); ++f) {
     EXPECT_EQ(x.features[f].name, y.features[f].name);

@@ -123,8 +123,28 @@ TEST_F(TexturedObj, GivesEachMaterialItsOwn) {
   const Floats colour = loaded.mesh.find("colour")->values;
   EXPECT_EQ((Floats{colour.begin(), colour.begin() + 3}), (Floats{0.5F, 0.25F, 0}));
   EXPECT_EQ((Floats{colour.end() - 3, colour.end()}), (Floats{0, 1, 0}));
-  ASSERT_EQ(loaded.notes.size(), 1u);
+  ASSERT_EQ(loaded.notes.size(), 2u);
   EXPECT_NE(loaded.notes[0].find("the option -o is not followed"), std::string::npos);
+  EXPECT_EQ(loaded.notes[1],
+            "not one picture that repeats, everywhere: seen as colours of the vertices");
+  EXPECT_TRUE(loaded.mesh.texture.empty());
+}
+
+// The file itself, so that nothing is lost.
+TEST_F(TexturedObj, HasThePictureThatIsEverywhereForATexture) {
+  writePngFile(dir_ / "four.png", 2, 2, kFour);
+  const std::string file = test::readText(dir_ / "four.png");
+  const std::string begin = std::string("mtllib a.mtl\n") + kSquare + kMiddles;
+  const auto textureOf = [&](const std::string& materials, const std::string& faces) {
+    test::writeText(dir_ / "a.mtl", materials);
+    const auto texture = read(begin + faces).mesh.texture;
+    return std::string(texture.begin(), texture.end());
+  };
+  const std::string two = "newmtl a\nmap_Kd four.png\nnewmtl b\nmap_Kd four.png\nKd 1 0 0\n";
+  EXPECT_EQ(textureOf(two, "usemtl a\nf 1/1 2/2 4/4\nusemtl b\nf 1/1 4/4 3/3\n"), file);
+  EXPECT_EQ(textureOf(two, "usemtl a\nf 1/1 2/2 4/4\nf 1/1 4 3/3\n"), "") << "a bare corner";
+  EXPECT_EQ(textureOf(two, "f 1/1 2/2 4/4\nusemtl b\nf 1/1 4/4 3/3\n"), "") << "a bare face";
+  EXPECT_EQ(textureOf("newmtl a\nmap_Kd -clamp on four.png\n", "usemtl a\nf 1/1 2/2 4/4\n"), "");
 }
 
 TEST_F(TexturedObj, IsReadWithoutThePicturesThatAreNotThere) {

@@ -37,6 +37,7 @@ const char* nameOf(std::uint32_t kind) {
     case Kind::kAlive: return "alive";
     case Kind::kError: return "error";
     case Kind::kAbout: return "about";
+    case Kind::kTexture: return "texture";
   }
   return nullptr;
 }
@@ -95,8 +96,7 @@ class MrmReader {
       return Error{Errc::kUnsupported,
                    fmt::format("{}: section kind {} is not known", path_, e.kind)};
     }
-    const std::uint64_t unit = e.kind == static_cast<std::uint32_t>(Kind::kAbout) ? 1 : 4;
-    const std::uint64_t row = std::uint64_t{e.dimension} * unit;
+    const std::uint64_t row = std::uint64_t{e.dimension} * unitOf(e.kind);
     if (row == 0 || row > size() || e.offset % kAlignment != 0 || e.offset > size() ||
         e.rows > (size() - e.offset) / row) {
       return broken(path_, fmt::format("section {} does not lie in the file", nameOf(e.kind)));
@@ -123,6 +123,9 @@ class MrmReader {
       case Kind::kTriangles: arrays_.triangles = words; break;
       case Kind::kAlive: arrays_.alive = words; break;
       case Kind::kError: arrays_.error = floats; break;
+      case Kind::kTexture:
+        arrays_.texture = {reinterpret_cast<const std::uint8_t*>(at), values};
+        break;
       case Kind::kAbout: arrays_.about.assign(reinterpret_cast<const char*>(at), values); break;
     }
   }

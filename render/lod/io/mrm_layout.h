@@ -19,9 +19,19 @@ enum class Kind : std::uint32_t {
   kAlive = 5,      // u32, a level
   kError = 6,      // f32, a level
   kAbout = 7,      // u8: "key=value" lines of UTF-8 text
+  // Optional: a reader skips kinds from here on that it does not know; below, an unknown kind is an
+  // error.
+  kTexture = 1000,  // u8: a PNG or JPEG file
 };
-// A reader skips kinds from here on that it does not know; below, an unknown kind is an error.
 inline constexpr std::uint32_t kFirstOptional = 1000;
+
+// Bytes of a value.
+constexpr std::uint32_t unitOf(std::uint32_t kind) {
+  return kind == static_cast<std::uint32_t>(Kind::kAbout) ||
+                 kind == static_cast<std::uint32_t>(Kind::kTexture)
+             ? 1
+             : 4;
+}
 
 struct FileHeader {
   char magic[8];

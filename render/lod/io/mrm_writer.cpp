@@ -29,9 +29,7 @@ struct Section {
   SectionEntry entry{};
   Rows rows;
 
-  std::size_t rowBytes() const {
-    return entry.dimension * (entry.kind == static_cast<std::uint32_t>(Kind::kAbout) ? 1U : 4U);
-  }
+  std::size_t rowBytes() const { return std::size_t{entry.dimension} * unitOf(entry.kind); }
   std::size_t bytes() const { return entry.rows * rowBytes(); }
 };
 
@@ -73,6 +71,7 @@ Model modelOf(const Dendrogram& d) {
   model.add(Kind::kTriangles, a.triangles, 3);
   model.add(Kind::kPositions, a.positions, 3);
   for (const FeatureView& f : a.features) model.add(Kind::kFeature, f.values, f.dimension, f.name);
+  if (!a.texture.empty()) model.add(Kind::kTexture, a.texture, 1);
   return model;
 }
 
@@ -131,6 +130,7 @@ Model modelOf(const Mesh& mesh, const CollapseLog& log, const DeathOrder& order,
     model.add(Kind::kFeature, order.nodeCount(), feature.dimension, feature.name,
               gathered(feature.values, log.features[f], feature.dimension, order));
   }
+  if (!mesh.texture.empty()) model.add(Kind::kTexture, std::span(mesh.texture), 1);
   return model;
 }
 

@@ -42,6 +42,11 @@ Result<LoadedMesh> readObj(std::string_view content, const std::string& folder) 
     materials = readMaterials(surface->materials, surface->libraries, folder, loaded.notes);
   }
   loaded.mesh = textured(*std::move(surface), materials);
+  const bool pictures =
+      std::ranges::any_of(materials, [](const ObjMaterial& m) { return m.picture != nullptr; });
+  if (pictures && loaded.mesh.texture.empty())
+    loaded.notes.emplace_back(
+        "not one picture that repeats, everywhere: seen as colours of the vertices");
   return loaded;
 }
 
@@ -118,6 +123,7 @@ Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh) {
   for (const Feature& f : mesh.features) {
     if (!writer.carries(f)) written.left_out.push_back(f.name);
   }
+  if (!mesh.texture.empty()) written.left_out.emplace_back("the texture's picture");
   return written;
 }
 

@@ -39,7 +39,7 @@ Result<LoadedMesh> readMesh(const std::string& path);
 // What a file could not carry.
 struct WrittenMesh {
   std::string format;                 // the ending, in small letters
-  std::vector<std::string> left_out;  // features, by name
+  std::vector<std::string> left_out;  // features, by name; the texture's picture
 };
 
 // Whether writeMesh() knows the ending; to be asked before long work. Errors: kUnsupported.

@@ -21,7 +21,7 @@ Result<PictureFile> sized(std::uint64_t width, std::uint64_t height) {
     return Error{Errc::kUnsupported,
                  fmt::format("{} x {} pixels; 1 to 2^28 are read", width, height)};
   }
-  PictureFile picture{static_cast<int>(width), static_cast<int>(height), {}};
+  PictureFile picture{static_cast<int>(width), static_cast<int>(height), {}, {}};
   picture.pixels.resize(3 * width * height);
   return picture;
 }
@@ -99,16 +99,21 @@ std::array<float, 3> PictureFile::at(float u, float v, bool clamped) const noexc
   return colour;
 }
 
+Result<PictureFile> decodePicture(std::span<const std::uint8_t> file) {
+  const std::string_view bytes(reinterpret_cast<const char*>(file.data()), file.size());
+  if (bytes.starts_with("\x89PNG")) return readPng(bytes);
+  if (bytes.starts_with("\xFF\xD8")) return readJpeg(bytes);
+  return Error{Errc::kUnsupported, "is neither PNG nor JPEG"};
+}
+
 Result<PictureFile> readPicture(const std::string& path) {
   const auto file = MappedFile::open(path);
   if (!file) return file.error();
-  const std::string_view bytes = file->text();
-  const bool png = bytes.starts_with("\x89PNG"), jpeg = bytes.starts_with("\xFF\xD8");
-  if (!png && !jpeg) {
-    return Error{Errc::kUnsupported, path + ": is neither PNG nor JPEG"};
-  }
-  auto picture = png ? readPng(bytes) : readJpeg(bytes);
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(file->bytes().data()),
+                        file->bytes().size());
+  auto picture = decodePicture(bytes);
   if (!picture) return Error{picture.error().code, path + ": " + picture.error().what};
+  picture->file.assign(bytes.begin(), bytes.end());
   return picture;
 }
 

@@ -1,8 +1,9 @@
-// Pictures that lie beside a mesh: PNG by libpng, JPEG by TurboJPEG. Private to render/mesh/io.
+// Pictures that belong to a mesh: PNG by libpng, JPEG by TurboJPEG.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace merlin::render {
 struct PictureFile {
   int width = 0, height = 0;         // [px]
   std::vector<std::uint8_t> pixels;  // RGB, rows from top to bottom
+  std::vector<std::uint8_t> file{};  // of readPicture(): its bytes
 
   // Of the place (u, v), v upwards, as texture coordinates have it: mixed of the four nearest
   // pixels, 0..1 each. The picture repeats, unless `clamped`. REQUIRES: u, v finite, not empty.
@@ -22,5 +24,9 @@ struct PictureFile {
 // By the file's first bytes, whatever its name. Errors, with the file's name: kNotFound, kIo,
 // kMalformed, kUnsupported (neither PNG nor JPEG, or more than 2^28 pixels).
 Result<PictureFile> readPicture(const std::string& path);
+
+// Of a file's bytes. The same errors, without a name. Hostile bytes are refused or read as well as
+// the libraries can.
+Result<PictureFile> decodePicture(std::span<const std::uint8_t> bytes);
 
 }  // namespace merlin::render
