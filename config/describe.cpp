@@ -181,6 +181,9 @@ void describeScene(render::SceneSettings& s, SettingsVisitor& v) {
 
 void describeRender(render::RenderSettings& r, SettingsVisitor& v) {
   v.oneOf("backend", r.backend, kBackends, "Which windowless OpenGL draws.");
+  v.integer("contexts", r.contexts, {0, 2},
+            "OpenGL contexts that share the tiles, each on a thread of its own, EGL only; 0: two "
+            "for a software renderer on two cores or more, else one.");
   v.integer("raster_threads", r.raster_threads, {0, 16},
             "Of Mesa's software renderer; 0: the wall's own thread does all.");
   v.text("show", r.show.feature,

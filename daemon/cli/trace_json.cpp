@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kProcess = 1, kWallTrack = 1;
+constexpr int kProcess = 1, kWallTrack = 1, kOtherTrack = 100;
 
 double microseconds(std::int64_t ns) { return static_cast<double>(ns) / 1000; }
 
@@ -30,10 +30,10 @@ bool ofATile(shm::StepKind kind) {
   return kind == shm::StepKind::kDraw || kind == shm::StepKind::kReadBack;
 }
 
-Json stepEvent(const shm::TraceStep& step, double frame_us) {
+Json stepEvent(const shm::TraceStep& step, double frame_us, int track) {
   std::string name = stepName(step.kind);
   if (ofATile(step.kind)) name += " tile " + std::to_string(step.tile + 1);
-  Json json = event(name, "X", frame_us + microseconds(step.begin_ns), kWallTrack);
+  Json json = event(name, "X", frame_us + microseconds(step.begin_ns), track);
   json["dur"] = microseconds(step.length_ns);
   json["cat"] = stepName(step.kind);
   return json;
@@ -50,7 +50,18 @@ void addFrame(const shm::FrameTrace& f, std::int64_t from_ns, Json& events) {
                    {"deadline_us", microseconds(f.deadline_ns - from_ns)}};
   events.push_back(std::move(frame));
   const std::size_t count = std::min<std::size_t>(f.count, std::size(f.steps));
-  for (std::size_t i = 0; i < count; ++i) events.push_back(stepEvent(f.steps[i], at));
+  // The second thread's part begins with an upload, before the first one's has ended.
+  std::int64_t ended = 0;
+  bool other = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    const shm::TraceStep& step = f.steps[i];
+    if (step.kind == shm::StepKind::kUpload)
+      other = step.begin_ns < ended;
+    else if (!ofATile(step.kind))
+      other = false;
+    if (!other) ended = std::int64_t{step.begin_ns} + step.length_ns;
+    events.push_back(stepEvent(step, at, other ? kOtherTrack : kWallTrack));
+  }
   if (f.late != 0) {
     Json late = event("late", "i", microseconds(f.deadline_ns - from_ns), kWallTrack);
     late["s"] = "t";
@@ -74,6 +85,7 @@ std::string traceJson(std::span<const shm::FrameTrace> frames,
                       std::span<const SampleInstant> samples) {
   Json events = Json::array();
   events.push_back(trackName("wall", kWallTrack));
+  events.push_back(trackName("wall, second thread", kOtherTrack));
   const std::int64_t from = frames.empty() ? 0 : frames.front().begin_ns;
   for (const shm::FrameTrace& f : frames) addFrame(f, from, events);
   std::vector<std::string_view> tracks;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "render/mesh/io/picture_file.h"
 
@@ -10,8 +11,8 @@ namespace {
 
 using render::ModelRenderer;
 
-// Triangles of a slice: 1 to 5 ms on llvmpipe; larger ones are no faster (its bins fall out of L2).
-constexpr std::size_t kSlice = 10'000;
+// Of the frame that is drawn once before the first.
+constexpr std::size_t kWarmUp = 10'000;
 
 // Of the operator's view, where time is short; and how its cost grows with triangles (as the
 // governor has it).
@@ -43,52 +44,61 @@ Result<render::PictureFile> textureOf(const render::Dendrogram& model) {
   return picture;
 }
 
-struct Size {
-  int width, height;
-};
+}  // namespace
 
-// Each pixel of `from` as `times` x `times` of them; where `to` is no multiple, the last ones go
-// on.
-void enlarge(std::span<const std::uint8_t> from, Size size, int times, std::uint8_t* to,
-             Size enlarged, int stride_px) {
-  for (int y = 0; y < enlarged.height; ++y) {
-    const std::uint8_t* row = &from[static_cast<std::size_t>(4) *
-                                    static_cast<std::size_t>(std::min(y / times, size.height - 1)) *
-                                    static_cast<std::size_t>(size.width)];
-    std::uint8_t* out = to + std::ptrdiff_t{4} * y * stride_px;
-    for (int x = 0; x < enlarged.width; ++x)
-      std::copy_n(row + std::ptrdiff_t{4} * std::min(x / times, size.width - 1), 4, out + 4 * x);
-  }
+Result<std::shared_ptr<const DrawContexts>> DrawContexts::make(
+    const render::RenderSettings& settings) {
+  auto contexts = std::make_shared<DrawContexts>();
+  auto own = render::makeGlContext(settings.backend);
+  if (!own) return own.error();
+  contexts->own = *std::move(own);
+  if (settings.contexts == 1) return std::shared_ptr<const DrawContexts>(std::move(contexts));
+  const bool software = contexts->own->renderer().find("llvmpipe") != std::string::npos;
+  const bool pays = software && std::thread::hardware_concurrency() > 1;
+  if (settings.contexts == 0 && !pays)
+    return std::shared_ptr<const DrawContexts>(std::move(contexts));
+  auto other = settings.backend == render::GlBackend::kEgl
+                   ? DrawThread::make()
+                   : Error{Errc::kUnsupported, "render.contexts: OSMesa has one for a process"};
+  if (other)
+    contexts->other = *std::move(other);
+  else if (settings.contexts > 1)
+    return other.error();
+  return std::shared_ptr<const DrawContexts>(std::move(contexts));
 }
 
-}  // namespace
+std::string DrawContexts::renderer() const {
+  return own->renderer() + (other ? ", two contexts" : "");
+}
 
 Result<std::unique_ptr<Picture>> Picture::make(const render::Dendrogram& model,
                                                const render::TilePlan& plan,
                                                const render::RenderSettings& settings,
                                                double radius_m, const Clock& clock,
-                                               std::shared_ptr<const render::GlContext> context) {
+                                               std::shared_ptr<const DrawContexts> contexts) {
   std::unique_ptr<Picture> picture(new Picture(model, plan, settings, radius_m, clock));
-  if (!context) {
-    auto made = render::makeGlContext(settings.backend);
+  if (!contexts) {
+    auto made = DrawContexts::make(settings);
     if (!made) return made.error();
-    context = *std::move(made);
+    contexts = *std::move(made);
   }
-  picture->context_ = std::move(context);
-  const render::GlApi& gl = picture->context_->gl();
-  std::vector<std::uint32_t> full;
-  picture->clusters_.everything(full, picture->full_ends_);
+  picture->contexts_ = std::move(contexts);
   const auto texture = textureOf(model);
   if (!texture) return texture.error();
   const render::TextureImage image{texture->width, texture->height, texture->pixels};
-  auto renderer = ModelRenderer::make(gl, model, full, settings.show,
-                                      texture->pixels.empty() ? nullptr : &image);
-  if (!renderer) return renderer.error();
-  picture->renderer_ = *std::move(renderer);
-  for (const render::Tile& tile : plan.tiles) {
-    auto buffer = render::FrameBuffer::make(gl, tile.width, tile.height);
-    if (!buffer) return buffer.error();
-    picture->tiles_.push_back(*std::move(buffer));
+  std::vector<std::uint32_t> full;
+  picture->clusters_.everything(full, picture->full_ends_);
+  const auto painterIn = [&](const render::GlContext& context) {
+    return TilePainter::make(context.gl(), model, picture->plan_, settings, full,
+                             texture->pixels.empty() ? nullptr : &image, clock);
+  };
+  auto painter = painterIn(*picture->contexts_->own);
+  if (!painter) return painter.error();
+  picture->painter_ = *std::move(painter);
+  if (DrawThread* other = picture->contexts_->other.get()) {
+    other->run([&] { painter = painterIn(other->context()); });
+    if (!painter) return painter.error();
+    picture->other_ = *std::move(painter);
   }
   return picture;
 }
@@ -108,10 +118,18 @@ Picture::Picture(const render::Dendrogram& model, const render::TilePlan& plan,
       pixels_(std::size_t{4} * static_cast<std::size_t>(plan.frame_width) *
               static_cast<std::size_t>(plan.frame_height)),
       refined_pixels_(pixels_.size()) {
-  tiles_.reserve(plan.tiles.size());
   for (std::size_t i = 0; i < plan.tiles.size(); ++i) {
-    if (plan.tiles[i].kind == render::TileKind::kOperator) operators_.push_back(i);
+    all_.push_back(i);
+    (plan.tiles[i].kind == render::TileKind::kOperator ? operators_ : wall_first_).push_back(i);
   }
+  wall_first_.insert(wall_first_.end(), operators_.begin(), operators_.end());
+  content_.cameras.resize(all_.size());
+  content_.runs.resize(all_.size());
+}
+
+// Each part where its context is.
+Picture::~Picture() {
+  if (other_) contexts_->other->run([this] { other_.reset(); });
 }
 
 render::Camera Picture::cameraOf(const render::Tile& tile,
@@ -125,148 +143,165 @@ render::Camera Picture::cameraOf(const render::Tile& tile,
   return {tile.projection * view * T_eye_model.matrix() * metres_from_model_, T_eye_model.linear()};
 }
 
-void Picture::beginTile(std::size_t tile, const Eigen::Isometry3f& T_eye_model, int scale) {
-  const render::Tile& t = plan_.tiles[tile];
-  tiles_[tile].bind();
-  renderer_->begin(t.width / scale, t.height / scale, cameraOf(t, T_eye_model), settings_.look);
-}
-
-void Picture::readTile(std::size_t tile, int scale, std::vector<std::uint8_t>& frame) {
-  const render::Tile& t = plan_.tiles[tile];
-  const auto at =
-      static_cast<std::size_t>(4) * static_cast<std::size_t>(t.y * plan_.frame_width + t.x);
-  if (scale == 1) return tiles_[tile].read(frame.data() + at, plan_.frame_width);
-  const int width = t.width / scale, height = t.height / scale;
-  small_.resize(std::size_t{4} * static_cast<std::size_t>(width) *
-                static_cast<std::size_t>(height));
-  tiles_[tile].read(small_.data(), width, width, height);
-  enlarge(small_, {width, height}, scale, frame.data() + at, {t.width, t.height},
-          plan_.frame_width);
-}
-
 render::TileView Picture::viewOf(std::size_t tile, const Eigen::Isometry3f& T_eye_model) const {
   const render::Tile& t = plan_.tiles[tile];
   const bool operators = t.kind == render::TileKind::kOperator;
   return {cameraOf(t, T_eye_model).clip_from_model, t.width, operators ? kOperatorWeight : 1};
 }
 
-void Picture::viewAll(const Eigen::Isometry3f& T_eye_model) {
-  views_.clear();
-  for (std::size_t i = 0; i < tiles_.size(); ++i) views_.push_back(viewOf(i, T_eye_model));
-}
-
-void Picture::chooseCut(std::size_t level, std::span<const render::TileView> views) {
+void Picture::chooseCut(const Eigen::Isometry3f& T_eye_model, std::size_t level,
+                        std::span<const std::size_t> tiles) {
   const Timestamp began = clock_.now();
-  const std::size_t budget = model_.trianglesAt(level);
-  const bool uneven = level > 0 && settings_.view_dependent && view_cut_.choose(views, budget);
-  if (!uneven) view_cut_.look(views);
-  source_ = level == 0 ? ModelRenderer::Source::kFull : ModelRenderer::Source::kCut;
+  views_.clear();
+  for (const std::size_t tile : tiles) {
+    views_.push_back(viewOf(tile, T_eye_model));
+    content_.cameras[tile] = cameraOf(plan_.tiles[tile], T_eye_model);
+  }
+  const bool uneven =
+      level > 0 && settings_.view_dependent && view_cut_.choose(views_, model_.trianglesAt(level));
+  if (!uneven) view_cut_.look(views_);
+  content_.source = level == 0 ? ModelRenderer::Source::kFull : ModelRenderer::Source::kCut;
   clustered_ = uneven || level == 0 || clusters_.isClustered(level);
-  if (level == 0) return renderer_->morph({});
-  if (cut_.size() < 3 * budget) cut_.resize(3 * budget);
-  if (clustered_ && !uneven)
-    std::fill(even_levels_.begin(), even_levels_.end(), static_cast<std::uint32_t>(level));
-  const auto levels = uneven ? view_cut_.levels() : std::span<const std::uint32_t>(even_levels_);
-  const std::size_t triangles =
-      clustered_ ? clusters_.cut(levels, cut_, cut_ends_) : clusters_.cutEvenly(level, cut_);
-  const Timestamp cut = stepDone(shm::StepKind::kCut, 0, began);
-  renderer_->uploadCut(std::span(cut_).first(3 * triangles));
-  morph(level, uneven);
-  stepDone(shm::StepKind::kUpload, 0, cut);
+  const std::size_t triangles = level == 0 ? 0 : cutTo(level, uneven);
+  content_.cut = std::span(cut_).first(3 * triangles);
+  if (level == 0) morphs_.clear();
+  content_.morphs = morphs_;
+  for (std::size_t view = 0; view < tiles.size(); ++view)
+    chooseRuns(view, content_.runs[tiles[view]]);
+  stepDone(shm::StepKind::kCut, began);
 }
 
-void Picture::morph(std::size_t level, bool uneven) {
+// Fills cut_ and morphs_; returns triangles.
+std::size_t Picture::cutTo(std::size_t level, bool uneven) {
+  const std::size_t budget = model_.trianglesAt(level);
+  if (cut_.size() < 3 * budget) cut_.resize(3 * budget);
   if (uneven)
     morphsAt(model_, clusters_, view_cut_.levels(), settings_.geomorph, morphs_);
   else
     morphsAt(model_, level, settings_.geomorph, morphs_);
-  renderer_->morph(morphs_);
+  if (clustered_ && !uneven)
+    std::fill(even_levels_.begin(), even_levels_.end(), static_cast<std::uint32_t>(level));
+  const auto levels = uneven ? view_cut_.levels() : std::span<const std::uint32_t>(even_levels_);
+  return clustered_ ? clusters_.cut(levels, cut_, cut_ends_) : clusters_.cutEvenly(level, cut_);
 }
 
-Timestamp Picture::stepDone(shm::StepKind kind, std::size_t tile, Timestamp began) {
+Timestamp Picture::stepDone(shm::StepKind kind, Timestamp began) {
   const Timestamp ended = clock_.now();
-  steps_.push_back({kind, static_cast<std::uint16_t>(tile), began, ended});
+  steps_.push_back({kind, 0, began, ended});
   return ended;
 }
 
+void Picture::takeSteps() {
+  for (TilePainter* painter : {painter_.get(), other_.get()}) {
+    if (!painter) continue;
+    steps_.insert(steps_.end(), painter->steps().begin(), painter->steps().end());
+    painter->clearSteps();
+  }
+}
+
 // Neighbouring clusters that the view sees are one run.
-void Picture::chooseRuns(std::size_t view) {
-  runs_.clear();
-  if (source_ == ModelRenderer::Source::kCut && !clustered_) {
-    runs_.push_back({0, renderer_->triangles(source_)});
+void Picture::chooseRuns(std::size_t view, std::vector<TriangleRun>& runs) const {
+  runs.clear();
+  const bool cut = content_.source == ModelRenderer::Source::kCut;
+  if (cut && !clustered_) {
+    runs.push_back({0, content_.cut.size() / 3});
     return;
   }
-  const auto& ends = source_ == ModelRenderer::Source::kCut ? cut_ends_ : full_ends_;
+  const auto& ends = cut ? cut_ends_ : full_ends_;
   std::size_t first = 0;
   for (std::size_t c = 0; c <= clusters_.size(); ++c) {
     const std::size_t count = ends[c] - first;
     const bool seen = c == clusters_.size() || view_cut_.sees(view, c);
     if (seen && count > 0) {
-      if (!runs_.empty() && runs_.back().first + runs_.back().count == first)
-        runs_.back().count += count;
+      if (!runs.empty() && runs.back().first + runs.back().count == first)
+        runs.back().count += count;
       else
-        runs_.push_back({first, count});
+        runs.push_back({first, count});
     }
     first = ends[c];
   }
 }
 
-void Picture::drawTile(std::size_t tile, std::size_t view, const Eigen::Isometry3f& T_eye_model,
-                       DrawTimes& times) {
-  const Timestamp began = clock_.now();
-  beginTile(tile, T_eye_model, scale_);
-  const Timestamp cleared = clock_.now();
-  chooseRuns(view);
-  for (Progress at; at.run < runs_.size();) {
-    drawSlice(at);
-    renderer_->flush();
-  }
-  const Timestamp drawn = stepDone(shm::StepKind::kDraw, tile, began);
-  readTile(tile, scale_, pixels_);
-  stepDone(shm::StepKind::kReadBack, tile, drawn);
-  times.drawing += drawn - cleared;
-  times.fixed += (cleared - began) + (clock_.now() - drawn);
-}
-
-// About kSlice triangles of the runs, from where `at` is.
-void Picture::drawSlice(Progress& at) {
-  for (std::size_t left = kSlice; left > 0 && at.run < runs_.size();) {
-    const Run& run = runs_[at.run];
-    const std::size_t count = std::min(left, run.count - at.triangles);
-    renderer_->draw(source_, run.first + at.triangles, count);
-    left -= count;
-    at.triangles += count;
-    if (at.triangles == run.count) at = {at.run + 1, 0};
-  }
+void Picture::onEach(const std::function<void(TilePainter&, std::size_t)>& work) {
+  const std::function<void()> others = [&] { work(*other_, 1); };
+  if (other_) contexts_->other->start(others);
+  work(*painter_, 0);
+  if (other_) contexts_->other->wait();
 }
 
 DrawTimes Picture::draw(const Eigen::Isometry3f& T_eye_model, std::size_t level, Timestamp until) {
-  DrawTimes times;
   steps_.clear();
   const Timestamp began = clock_.now();
-  viewAll(T_eye_model);
-  chooseCut(level, views_);
-  times.drawing += clock_.now() - began;
-  for (std::size_t i = 0; i < tiles_.size(); ++i) {
-    if (plan_.tiles[i].kind == render::TileKind::kWall) drawTile(i, i, T_eye_model, times);
-  }
-  if (operators_.empty() || operators_.size() == tiles_.size()) until = Timestamp::max();
-  const Duration wall = times.drawing;
-  const std::size_t fits = levelThatFits(level, wall, until - clock_.now());
-  times.gave_way = fits != level;
-  if (times.gave_way) {
-    views_.clear();
-    for (const std::size_t i : operators_) views_.push_back(viewOf(i, T_eye_model));
-    chooseCut(fits, views_);
-  }
-  for (std::size_t k = 0; k < operators_.size(); ++k)
-    drawTile(operators_[k], times.gave_way ? k : operators_[k], T_eye_model, times);
-  if (times.gave_way) {
+  chooseCut(T_eye_model, level, all_);
+  const Duration cut = clock_.now() - began;
+  if (operators_.empty() || operators_.size() == all_.size()) until = Timestamp::max();
+  Drawn drawn = drawTiles(level, until);
+  DrawTimes& times = drawn.times;
+  const Duration elapsed = clock_.now() - began - cut;
+  const Duration wall = times.drawing - drawn.operators;
+  times.gave_way = drawn.gave_way;
+  if (drawn.gave_way)
     times.drawing = wall + std::chrono::duration_cast<Duration>(wall * operator_share_);
-  } else {
-    learnOperatorShare(wall, times.drawing - wall);
-  }
+  else
+    learnOperatorShare(wall, drawn.operators);
+  // Of two threads, what the frame took.
+  const double sum = toSeconds(wall + drawn.operators + times.fixed);
+  const double share = other_ && sum > 0 ? std::min(1.0, toSeconds(elapsed) / sum) : 1;
+  times.drawing = cut + fromSeconds(share * toSeconds(times.drawing));
+  times.fixed = fromSeconds(share * toSeconds(times.fixed));
+  if (drawn.gave_way)
+    drawOperators(T_eye_model, levelThatFits(level, wall, until - clock_.now()), times);
+  takeSteps();
   return times;
+}
+
+// The wall's tiles first.
+Picture::Drawn Picture::drawTiles(std::size_t level, Timestamp until) {
+  queue_.begin(wall_first_);
+  Drawn each[2];
+  onEach([&](TilePainter& painter, std::size_t i) {
+    const Timestamp began = clock_.now();
+    painter.begin(content_);
+    each[i].times.drawing += clock_.now() - began;
+    drawFrom(painter, level, until, each[i]);
+  });
+  Drawn all = each[0];
+  all.times.drawing += each[1].times.drawing;
+  all.times.fixed += each[1].times.fixed;
+  all.operators += each[1].operators;
+  all.gave_way |= each[1].gave_way;
+  return all;
+}
+
+void Picture::drawFrom(TilePainter& painter, std::size_t level, Timestamp until, Drawn& drawn) {
+  for (std::size_t tile; (tile = queue_.take()) != TileQueue::kNone;) {
+    const Duration before = drawn.times.drawing;
+    const bool operators = plan_.tiles[tile].kind == render::TileKind::kOperator;
+    if (operators && operators_.size() < all_.size()) {
+      // As if all of the wall's tiles took what these took.
+      const Duration wall = before * static_cast<std::int64_t>(all_.size() - operators_.size()) /
+                            static_cast<std::int64_t>(std::max<std::size_t>(drawn.wall_tiles, 1));
+      if (levelThatFits(level, wall, until - clock_.now()) != level) {
+        drawn.gave_way = true;
+        continue;
+      }
+    }
+    painter.draw(content_, tile, scale_, pixels_, drawn.times);
+    if (operators)
+      drawn.operators += drawn.times.drawing - before;
+    else
+      ++drawn.wall_tiles;
+  }
+}
+
+// Coarser, in what time is left.
+void Picture::drawOperators(const Eigen::Isometry3f& T_eye_model, std::size_t level,
+                            DrawTimes& times) {
+  chooseCut(T_eye_model, level, operators_);
+  painter_->begin(content_);
+  DrawTimes theirs;
+  for (const std::size_t tile : operators_) painter_->draw(content_, tile, scale_, pixels_, theirs);
+  times.fixed += theirs.fixed;
 }
 
 // The operator's views cost operator_share_ of what the wall's tiles cost now; half as many
@@ -287,9 +322,24 @@ void Picture::learnOperatorShare(Duration wall, Duration operators) {
 }
 
 void Picture::warmUp(const Eigen::Isometry3f& T_eye_model) {
-  draw(T_eye_model, model_.levelFor(kSlice), Timestamp::max());
+  const std::size_t level = model_.levelFor(kWarmUp);
+  for (const bool by_other : {false, true}) {  // each draws all of it
+    if (by_other && !other_) break;
+    chooseCut(T_eye_model, level, all_);
+    const std::function<void()> work = [&] {
+      TilePainter& painter = by_other ? *other_ : *painter_;
+      DrawTimes times;
+      painter.begin(content_);
+      for (const std::size_t tile : all_) painter.draw(content_, tile, scale_, pixels_, times);
+    };
+    if (by_other)
+      contexts_->other->run(work);
+    else
+      work();
+  }
+  takeSteps();
   beginRefining(T_eye_model);
-  refine(clock_.now() + 2 * slice_time_);
+  refine(clock_.now() + 2 * painter_->sliceTime());
 }
 
 void Picture::beginRefining(const Eigen::Isometry3f& T_eye_model) {
@@ -297,41 +347,26 @@ void Picture::beginRefining(const Eigen::Isometry3f& T_eye_model) {
 }
 
 bool Picture::beginRefiningTo(const Eigen::Isometry3f& T_eye_model, std::size_t level) {
-  refined_view_ = T_eye_model;
-  refined_tile_ = 0;
-  refined_begun_ = false;
-  viewAll(T_eye_model);
   steps_.clear();
-  chooseCut(level, views_);
+  chooseCut(T_eye_model, level, all_);
+  queue_.begin(all_);
+  refining_begins_ = true;
   return true;
 }
 
 // The steps of beginning to refine count for the first slice.
 bool Picture::refine(Timestamp until) {
-  if (refined_begun_ || refined_tile_ > 0) steps_.clear();
+  if (!refining_begins_) steps_.clear();
   const Timestamp first = clock_.now();
-  bool whole = false;
-  for (Timestamp now = first; !whole && now + slice_time_ * 3 / 2 < until;) {
-    if (!refined_begun_) {
-      beginTile(refined_tile_, refined_view_, 1);
-      chooseRuns(refined_tile_);
-      refined_ = {};
-      refined_begun_ = true;
-    }
-    drawSlice(refined_);
-    renderer_->finish();
-    if (refined_.run == runs_.size()) {
-      readTile(refined_tile_, 1, refined_pixels_);
-      refined_begun_ = false;
-      whole = ++refined_tile_ == tiles_.size();
-    }
-    const Timestamp then = std::exchange(now, clock_.now());
-    slice_time_ = std::max<Duration>(now - then, slice_time_ * 9 / 10);
-  }
+  onEach([&](TilePainter& painter, std::size_t) {
+    if (refining_begins_) painter.begin(content_);
+    painter.refine(content_, queue_, refined_pixels_, until);
+  });
+  refining_begins_ = false;
+  const bool whole = queue_.allDone();
   if (whole) std::swap(pixels_, refined_pixels_);
-  // Where slices take longer than a period has, the figure fades until one is tried again.
-  if (!whole) slice_time_ = slice_time_ * 9 / 10;
-  stepDone(shm::StepKind::kRefine, 0, first);
+  takeSteps();
+  stepDone(shm::StepKind::kRefine, first);
   return whole;
 }
 

@@ -93,7 +93,7 @@ void WallRole::run(const std::stop_token& stop) {
   for (const render::Dendrogram& model : models_) {
     auto picture =
         Picture::make(model, plan_, settings_.wall.render, settings_.wall.scene.model_radius_m,
-                      clock_, pictures.empty() ? nullptr : pictures.front()->context());
+                      clock_, pictures.empty() ? nullptr : pictures.front()->contexts());
     if (!picture) {
       const std::string path = modelsOf(settings_.wall)[contents.size()].path;
       ready_.set_value(Error{picture.error().code, path + ": " + picture.error().what});
@@ -114,7 +114,7 @@ void WallRole::run(const std::stop_token& stop) {
                  &segment_->trace, &marker, &segment_->hand, settings_.wall.render.fade_frames});
   loop.calibrate();
   loop_.store(&loop);
-  loop.run(stop, [&] { ready_.set_value(pictures.front()->renderer()); });
+  loop.run(stop, [&] { ready_.set_value(pictures.front()->contexts()->renderer()); });
   loop_.store(nullptr);
 }
 

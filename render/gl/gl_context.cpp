@@ -1,6 +1,8 @@
 #include "render/gl/gl_context.h"
 
 #include <cstdlib>
+#include <cstring>
+#include <iterator>
 #include <vector>
 
 #include <EGL/egl.h>
@@ -39,9 +41,9 @@ Error eglError(const char* step) {
 
 class EglContext final : public GlContext {
  public:
-  static Result<std::unique_ptr<GlContext>> make() {
+  static Result<std::unique_ptr<GlContext>> make(EglDisplay display) {
     auto context = std::make_unique<EglContext>();
-    if (const auto made = context->create(); !made) return made.error();
+    if (const auto made = context->create(display); !made) return made.error();
     return std::unique_ptr<GlContext>(std::move(context));
   }
   EglContext() = default;
@@ -55,9 +57,32 @@ class EglContext final : public GlContext {
   EglContext& operator=(const EglContext&) = delete;
 
  private:
-  Result<Ok> create() {
-    display_ = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-    if (display_ == EGL_NO_DISPLAY) return eglError("no surfaceless display");
+  // The software renderer's, if there is one, else the first.
+  static EGLDeviceEXT device() {
+    const auto query =
+        reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
+    const auto text = reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(
+        eglGetProcAddress("eglQueryDeviceStringEXT"));
+    EGLDeviceEXT devices[16];
+    EGLint count = 0;
+    if (!query || !text || !query(std::size(devices), devices, &count) || count == 0)
+      return EGL_NO_DEVICE_EXT;
+    for (EGLint i = 0; i < count; ++i) {
+      const char* extensions = text(devices[i], EGL_EXTENSIONS);
+      if (extensions && std::strstr(extensions, "EGL_MESA_device_software")) return devices[i];
+    }
+    return devices[0];
+  }
+
+  Result<Ok> create(EglDisplay display) {
+    if (display == EglDisplay::kDevice) {
+      const EGLDeviceEXT from = device();
+      if (from == EGL_NO_DEVICE_EXT) return eglError("no device for a second display");
+      display_ = eglGetPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, from, nullptr);
+    } else {
+      display_ = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+    }
+    if (display_ == EGL_NO_DISPLAY) return eglError("no windowless display");
     if (!eglInitialize(display_, nullptr, nullptr)) return eglError("initialisation");
     if (!eglBindAPI(EGL_OPENGL_API)) return eglError("no OpenGL");
     const EGLint kAttributes[] = {EGL_CONTEXT_MAJOR_VERSION,
@@ -158,8 +183,8 @@ class OsmesaContext final : public GlContext {
 
 }  // namespace
 
-Result<std::unique_ptr<GlContext>> makeGlContext(GlBackend backend) {
-  return backend == GlBackend::kEgl ? EglContext::make() : OsmesaContext::make();
+Result<std::unique_ptr<GlContext>> makeGlContext(GlBackend backend, EglDisplay display) {
+  return backend == GlBackend::kEgl ? EglContext::make(display) : OsmesaContext::make();
 }
 
 void prepareSoftwareGl(int raster_threads) {

@@ -25,8 +25,12 @@ class GlContext {
   std::string renderer_;
 };
 
+// Of EGL: where the context is. Mesa's software renderers draw one after the other on one display.
+enum class EglDisplay { kSurfaceless, kDevice };
+
 // Errors: kUnsupported, saying what is missing (no library, no such context, a missing function).
-Result<std::unique_ptr<GlContext>> makeGlContext(GlBackend backend);
+Result<std::unique_ptr<GlContext>> makeGlContext(GlBackend backend,
+                                                 EglDisplay display = EglDisplay::kSurfaceless);
 
 // Settings of Mesa's software renderer that have to stand before the first context is made: how
 // many raster threads (0: none but the caller's), and a heap that keeps what a frame frees, for the

@@ -25,6 +25,8 @@ struct Shown {
 
 struct RenderSettings {
   GlBackend backend = GlBackend::kEgl;
+  int contexts = 0;        // that share the tiles, each on a thread of its own; 0: two where a
+                           // software renderer and a second core make that worth it
   int raster_threads = 0;  // of Mesa's software renderer; 0: the wall's own thread does all
   Shown show{};
   bool view_dependent = true;  // triangles where the tiles look; else as many everywhere

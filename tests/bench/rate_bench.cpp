@@ -125,7 +125,7 @@ void bench(const render::Dendrogram& model, Picture& picture, const Clock& clock
   }
 }
 
-int run(const std::string& scan, int raster_threads, bool textured) {
+int run(const std::string& scan, int raster_threads, int contexts, bool textured) {
   render::prepareSoftwareGl(raster_threads);
   auto loaded = render::readMesh(scan);
   if (!loaded) {
@@ -145,13 +145,15 @@ int run(const std::string& scan, int raster_threads, bool textured) {
   const render::Dendrogram model = render::buildDendrogram(mesh, reduced->log);
   const auto plan = render::planTiles({});
   const SystemClock clock;
-  const auto picture = Picture::make(model, *plan, {}, kRadius_m, clock);
+  const auto picture =
+      Picture::make(model, *plan, {.contexts = contexts, .look = {}}, kRadius_m, clock);
   if (!picture) {
     fmt::print(stderr, "{}\n", picture.error().what);
     return 1;
   }
   fmt::print("{}, {} raster threads; three tiles and the operator's view, 640 x 480 each; {}\n",
-             (*picture)->renderer(), raster_threads, textured ? "textured" : "coloured");
+             (*picture)->contexts()->renderer(), raster_threads,
+             textured ? "textured" : "coloured");
   bench(model, **picture, clock);
   return 0;
 }
@@ -161,13 +163,15 @@ int run(const std::string& scan, int raster_threads, bool textured) {
 
 int main(int argc, char** argv) {
   std::string scan = MERLIN_SOURCE_DIR "/config/models/ankylosaurus.ply";
-  int raster_threads = 0;
+  int raster_threads = 0, contexts = 0;
   bool textured = true;
   CLI::App app("Rates at full resolution, beside those of 1998.");
   app.add_option("--scan", scan, "A scan with colours")->capture_default_str();
   app.add_option("--raster-threads", raster_threads, "Of Mesa's software renderer")
       ->check(CLI::Range(0, 16));
+  app.add_option("--contexts", contexts, "That share the tiles; 0: as the wall does")
+      ->check(CLI::Range(0, 2));
   app.add_flag("!--coloured", textured, "Colours at the vertices instead of a texture");
   CLI11_PARSE(app, argc, argv);
-  return merlin::bench::run(scan, raster_threads, textured);
+  return merlin::bench::run(scan, raster_threads, contexts, textured);
 }

@@ -1,7 +1,9 @@
 // The wall's picture, drawn by Mesa: tiles that continue one another, whatever else is drawn.
 #include "daemon/wall/picture.h"
 
+#include <map>
 #include <numbers>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -49,10 +51,11 @@ TilesSettings fourTiles() {
 }
 
 struct Wall {
-  explicit Wall(const TilesSettings& settings, GlBackend backend = GlBackend::kEgl)
+  explicit Wall(const TilesSettings& settings, GlBackend backend = GlBackend::kEgl,
+                int contexts = 0)
       : plan(*render::planTiles(settings)),
-        picture(*Picture::make(model(), plan, {.backend = backend, .raster_threads = 0, .look = {}},
-                               2.0, clock)) {}
+        picture(*Picture::make(
+            model(), plan, {.backend = backend, .contexts = contexts, .look = {}}, 2.0, clock)) {}
 
   Image tile(std::size_t index) const {
     const render::Tile& t = plan.tiles[index];
@@ -120,6 +123,36 @@ TEST(Picture, FullDetailIsWithoutGeomorphs) {
   EXPECT_EQ(wall.tile(1).pixels, moving.pixels) << "a function of the level alone";
 }
 
+// Whoever draws which tile.
+TEST(Picture, TwoContextsDrawThePixelsOfOne) {
+  Wall one(fourTiles(), GlBackend::kEgl, 1), two(fourTiles(), GlBackend::kEgl, 2);
+  EXPECT_EQ(two.picture->contexts()->renderer(),
+            one.picture->contexts()->renderer() + ", two contexts");
+  const auto same = [&] {
+    return std::ranges::equal(one.picture->pixels(), two.picture->pixels());
+  };
+  for (const std::size_t triangles : {2000U, 800U, 300U, 1500U}) {
+    for (Wall* wall : {&one, &two}) wall->draw(model().levelFor(triangles));
+    EXPECT_TRUE(same()) << triangles;
+  }
+  for (Wall* wall : {&one, &two}) {
+    wall->picture->beginRefining(inFront());
+    while (!wall->picture->refine(wall->clock.now() + std::chrono::milliseconds(20))) continue;
+  }
+  EXPECT_TRUE(same());
+  one.draw();
+  EXPECT_TRUE(same()) << "full detail, drawn at once by one";
+}
+
+TEST(Picture, OsmesaHasOneContextForAProcess) {
+  const auto plan = *render::planTiles(fourTiles());
+  const SystemClock clock;
+  const auto two = Picture::make(
+      model(), plan, {.backend = GlBackend::kOsmesa, .contexts = 2, .look = {}}, 2.0, clock);
+  ASSERT_FALSE(two);
+  EXPECT_EQ(two.error().what, "render.contexts: OSMesa has one for a process");
+}
+
 // As a wall of several models has them: what one draws leaves nothing behind for the other.
 TEST(Picture, TwoInOneContextDrawWhatEachDrawsAlone) {
   Wall alone(fourTiles()), first(fourTiles());
@@ -127,7 +160,7 @@ TEST(Picture, TwoInOneContextDrawWhatEachDrawsAlone) {
   render::RenderSettings cold{.raster_threads = 0, .look = {}};
   cold.look.brightness = 0.5F;
   const auto second =
-      *Picture::make(model(), first.plan, cold, 2.0, clock, first.picture->context());
+      *Picture::make(model(), first.plan, cold, 2.0, clock, first.picture->contexts());
   alone.draw();
   first.draw();
   second->draw(inFront(), 10, Timestamp::max());
@@ -207,7 +240,7 @@ TEST(Picture, RefiningToALevelEndsInThatLevelsPicture) {
 }
 
 TEST(Picture, SaysWhatItsTimeWentTo) {
-  Wall wall(fourTiles());
+  Wall wall(fourTiles(), GlBackend::kEgl, 1);
   wall.draw(model().levelFor(200));
   std::vector<shm::StepKind> kinds;
   Timestamp last{};
@@ -220,6 +253,19 @@ TEST(Picture, SaysWhatItsTimeWentTo) {
   using enum shm::StepKind;
   EXPECT_EQ(kinds, (std::vector{kCut, kUpload, kDraw, kReadBack, kDraw, kReadBack, kDraw, kReadBack,
                                 kDraw, kReadBack}));
+}
+
+// One thread's steps after the other's; each tile is drawn by one of them.
+TEST(Picture, SaysWhatTheTimeOfBothThreadsWentTo) {
+  Wall wall(fourTiles(), GlBackend::kEgl, 2);
+  wall.draw(model().levelFor(200));
+  std::map<shm::StepKind, std::multiset<int>> tiles;
+  for (const PaintStep& step : wall.picture->steps()) tiles[step.kind].insert(step.tile);
+  using enum shm::StepKind;
+  EXPECT_EQ(tiles[kCut].size(), 1U);
+  EXPECT_EQ(tiles[kUpload].size(), 2U);
+  EXPECT_EQ(tiles[kDraw], (std::multiset{0, 1, 2, 3}));
+  EXPECT_EQ(tiles[kReadBack], (std::multiset{0, 1, 2, 3}));
 }
 
 TEST(Picture, OperatorSeesTheWholeModel) {

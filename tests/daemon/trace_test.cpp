@@ -65,6 +65,22 @@ TEST(Trace, HasEachStepOfAFrameInsideOfIt) {
   EXPECT_EQ(by_name.at("refine")["ts"], 36'000.0);
 }
 
+TEST(Trace, HasASecondThreadsStepsOnATrackOfTheirOwn) {
+  shm::FrameTrace frame = frames()[0];
+  using enum StepKind;
+  const std::vector<shm::TraceStep> steps = {
+      {0, 10, kCut, 0},    {10, 10, kUpload, 0}, {20, 60, kDraw, 0},    {80, 5, kReadBack, 0},
+      {11, 9, kUpload, 0}, {20, 70, kDraw, 1},   {90, 5, kReadBack, 1}, {100, 9, kPresent, 0}};
+  frame.count = static_cast<std::uint32_t>(steps.size());
+  std::copy(steps.begin(), steps.end(), frame.steps);
+  const auto document = json::parse(traceJson(std::span(&frame, 1), {}));
+  std::vector<int> tracks;
+  for (const json& e : document["traceEvents"]) {
+    if (e["ph"] == "X" && e["cat"] != "frame") tracks.push_back(e["tid"]);
+  }
+  EXPECT_EQ(tracks, (std::vector{1, 1, 1, 1, 100, 100, 100, 1}));
+}
+
 TEST(Trace, HasSamplesOnTracksOfTheirDevices) {
   const SampleInstant samples[] = {
       {"glove", 5'001'000'000}, {"ball", 5'002'000'000}, {"glove", 5'003'000'000}};

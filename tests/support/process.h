@@ -72,7 +72,7 @@ class Process {
 
   // Waits for its end; its exit status, 128 + signal, or -1 if it does not end.
   int wait() {
-    return eventually([&] { return ended(); }, std::chrono::seconds(60)) ? *status_ : -1;
+    return eventually([&] { return ended(); }, std::chrono::seconds(300)) ? *status_ : -1;
   }
 
   int kill(int signal) {
