@@ -51,7 +51,7 @@ void QuadricReducer::lock(const std::vector<bool>& locked) {
 }
 
 void QuadricReducer::enqueue(Worker& w, std::uint32_t v) {
-  const float cost = w.costs.cost[w.costs.cheapest()];
+  const float cost = w.costs.cost[w.costs.cheapest];
   if (cost >= kNoEdge)
     mesh_[v].flags |= kIdle;
   else
@@ -106,9 +106,8 @@ void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
   const float ceiling = last ? kNoEdge : kTolerance * BucketQueue::floorOf(bucket + 1);
   evaluate(w, v);
   EdgeCosts& costs = w.costs;
-  std::fill_n(costs.deviation.begin(), costs.count, -1.0F);
-  for (;;) {
-    const std::uint32_t edge = costs.cheapest();
+  for (;; costs.findCheapest()) {
+    const std::uint32_t edge = costs.cheapest;
     const float cost = costs.cost[edge];
     if (cost >= kNoEdge) {
       mesh_[v].flags |= kIdle;
