@@ -42,6 +42,10 @@ MERLIN_INLINE float sum(const Lanes& v) {
   return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
 }
 
+MERLIN_INLINE std::int32_t sum(const Mask& v) {
+  return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+}
+
 // Of each of eight its sum, added in the order of sum().
 MERLIN_INLINE Lanes sums(const Lanes (&v)[8]) {
   Lanes half[4];  // {v0 + v4, v1 + v5, v2 + v6, v3 + v7} of two
@@ -98,7 +102,8 @@ MERLIN_INLINE void gather(const float* const p[8], Lanes& a, Lanes& b, Lanes& c,
 }
 
 // The next of each; after the eighth the first.
-MERLIN_INLINE Lanes next(const Lanes& v) {
+template <typename T>
+MERLIN_INLINE T next(const T& v) {
   return __builtin_shufflevector(v, v, 1, 2, 3, 4, 5, 6, 7, 0);
 }
 

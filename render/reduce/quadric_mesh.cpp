@@ -10,8 +10,6 @@
 namespace merlin::render {
 namespace {
 
-constexpr std::uint32_t kLine = 8;  // corners
-
 std::uint32_t linesFor(std::uint32_t corners) {
   return std::max(1U, (corners + kLine - 1) / kLine);
 }

@@ -21,6 +21,8 @@ struct Corner {
   std::uint32_t b, c;  // the triangle (vertex, b, c)
 };
 
+inline constexpr std::uint32_t kLine = 8;  // corners
+
 // Upper triangle of a symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz.
 using Symmetric3 = std::array<float, 6>;
 

@@ -9,7 +9,29 @@ namespace {
 
 // A popped edge may cost so much more than its bucket and is still taken.
 constexpr float kTolerance = 1.5F;
+using TwoCorners = std::uint32_t __attribute__((vector_size(16)));
+
 float trace(const float* h) { return h[0] + h[3] + h[5]; }
+
+// The corners without `other`, from the edge to it on, so that two fans become one. Returns their
+// end. REQUIRES: room for all.
+Corner* appendStar(Corner* to, std::span<const Corner> star, std::uint32_t other) {
+  std::size_t first = 0;
+  while (first < star.size() && star[first].b != other) ++first;
+  if (first == star.size()) {
+    first = 0;
+    while (first < star.size() && star[first].c != other) ++first;
+  }
+  const auto append = [&](std::span<const Corner> corners) {
+    for (const Corner& c : corners) {
+      *to = c;
+      to += c.b != other && c.c != other;
+    }
+  };
+  append(star.subspan(first));
+  append(star.first(first));
+  return to;
+}
 
 }  // namespace
 
@@ -20,6 +42,7 @@ QuadricReducer::QuadricReducer(const Mesh& mesh, std::size_t channels, unsigned 
       given_(channels),
       ranges_(channels),
       evaluate_(edgeEvaluator()),
+      judge_(edgeJudge()),
       log_(mesh.vertexCount()),
       triangles_(mesh.triangleCount()) {}
 
@@ -138,7 +161,7 @@ bool QuadricReducer::mayCollapse(Worker& w, std::uint32_t v, std::uint32_t edge)
     ++w.links;
     return false;
   }
-  const Verdict verdict = judge(view(), v, w.costs, edge, stage_);
+  const Verdict verdict = judge_(view(), v, w.costs, edge, stage_);
   if (verdict != Verdict::kLegal) {
     ++(verdict == Verdict::kFlip ? w.flips : w.links);
     return false;
@@ -186,27 +209,18 @@ void QuadricReducer::collapse(Worker& w, std::uint32_t v, std::uint32_t edge) {
 void QuadricReducer::mergeStars(Worker& w, std::uint32_t v, std::uint32_t x) {
   QuadricVertex &a = mesh_[v], &b = mesh_[x];
   const std::span<Corner> sa = mesh_.star(a), sb = mesh_.star(b);
-  w.merged.clear();
-  // Each from the edge on, so that two fans become one.
-  const auto append = [&](std::span<const Corner> star, std::uint32_t other) {
-    std::size_t first = 0;
-    while (first < star.size() && star[first].b != other) ++first;
-    if (first == star.size()) {
-      first = 0;
-      while (first < star.size() && star[first].c != other) ++first;
-    }
-    for (std::size_t k = 0; k < star.size(); ++k) {
-      const Corner& c = star[first + k < star.size() ? first + k : first + k - star.size()];
-      if (c.b != other && c.c != other) w.merged.push_back(c);
-    }
-  };
-  append(sa, x);
-  append(sb, v);
+  if (w.merged.size() < sa.size() + sb.size()) w.merged.resize(2 * (sa.size() + sb.size()));
+  Corner* const merged = w.merged.data();
+  const Corner* const end = appendStar(appendStar(merged, sa, x), sb, v);
+  const bool open = b.flags & kOpen;
+  std::uint32_t before = open ? v : sb.back().b;
   for (const Corner& c : sb) {
-    if (c.b != v) renameInRing(c.b, v, x);
-    if ((b.flags & kOpen) && c.c != v) renameInRing(c.c, v, x);
+    // In a closed fan two lie beside the edge, before and after v.
+    if (c.b != v) renameInRing(c.b, v, x, open || before == v || c.c == v);
+    if (open && c.c != v) renameInRing(c.c, v, x, true);
+    before = c.b;
   }
-  const auto n = static_cast<std::uint32_t>(w.merged.size());
+  const auto n = static_cast<std::uint32_t>(end - merged);
   if (n <= a.capacity) {
     w.room.give(b.star, b.capacity);
   } else if (n <= b.capacity) {
@@ -219,25 +233,34 @@ void QuadricReducer::mergeStars(Worker& w, std::uint32_t v, std::uint32_t x) {
     w.room.give(old_a.star, old_a.capacity);
     w.room.give(b.star, b.capacity);
   }
-  std::copy(w.merged.begin(), w.merged.end(), mesh_.corners(a.star));
+  std::copy_n(merged, n, mesh_.corners(a.star));
   a.degree = n;
   b.degree = 0;
 }
 
-// In the star of o, a neighbour of x: triangles with both ends go, x becomes v.
-void QuadricReducer::renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_t x) {
+// In the star of o, a neighbour of x, x becomes v; beside the edge triangles with both ends go.
+void QuadricReducer::renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_t x, bool beside) {
   QuadricVertex& ring = mesh_[o];
   Corner* star = mesh_.corners(ring.star);
-  std::uint32_t kept = 0;
-  for (std::uint32_t i = 0; i < ring.degree; ++i) {
-    Corner c = star[i];
-    if ((c.b == v || c.c == v) && (c.b == x || c.c == x)) continue;
-    if (c.b == x) c.b = v;
-    if (c.c == x) c.c = v;
-    star[kept++] = c;
+  // By lines: what stands in one after the last corner has no meaning.
+  for (std::uint32_t line = 0; line < ring.degree; line += kLine) {
+    for (std::uint32_t i = line; i < line + kLine; i += 2) {
+      TwoCorners corners;
+      std::memcpy(&corners, star + i, sizeof corners);
+      corners ^= (corners == x) & (v ^ x);
+      std::memcpy(static_cast<void*>(star + i), &corners, sizeof corners);
+    }
   }
-  ring.degree = kept;
   if (!keepsTopology(stage_)) ring.flags |= kOpen;
+  if (!beside) return;
+  const Corner* const end = star + ring.degree;
+  Corner* to = star;
+  for (const Corner* from = star; from < end; ++from) {
+    const std::uint32_t b = from->b, c = from->c;
+    *to = {b, c};
+    to += b != c;
+  }
+  ring.degree = static_cast<std::uint32_t>(to - star);
 }
 
 // The neighbours that had no legal edge may have one now.

@@ -58,7 +58,7 @@ class QuadricReducer {
     BucketQueue queue;
     StarRoom room;
     EdgeCosts costs;
-    std::vector<Corner> merged;
+    std::vector<Corner> merged;    // scratch
     std::uint32_t* log = nullptr;  // dead vertices, in order
     std::size_t collapses = 0;
     std::size_t removed = 0;  // triangles
@@ -87,7 +87,7 @@ class QuadricReducer {
   void collapse(Worker& w, std::uint32_t v, std::uint32_t edge);
   void mixChannels(std::uint32_t v, std::uint32_t x, const EdgeCosts& costs, std::uint32_t edge);
   void mergeStars(Worker& w, std::uint32_t v, std::uint32_t x);
-  void renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_t x);
+  void renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_t x, bool beside);
   void wakeRing(Worker& w, std::uint32_t v, float cost);
 
   void planParts();
@@ -111,6 +111,7 @@ class QuadricReducer {
   // Of the channels, as they were given and weighted: no value leaves them.
   std::vector<Range> given_, ranges_;
   EvaluateEdges evaluate_;
+  JudgeEdge judge_;
   HugeArray<std::uint32_t> log_;
   std::vector<std::uint32_t> part_ends_;
   Worker whole_;
