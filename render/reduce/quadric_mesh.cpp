@@ -55,6 +55,19 @@ float scaleOf(const Mesh& mesh) {
   return diagonal > 0 ? 1 / diagonal : 1;
 }
 
+// Whether a vertex is the first of two corners: no manifold.
+bool comesTwice(std::span<const Corner> star) {
+  // Of four vertices, how often each is there.
+  using Four = std::uint32_t __attribute__((vector_size(16)));
+  for (std::size_t i = 0; i < star.size(); i += 4) {
+    Four v, times = {};
+    for (std::size_t k = 0; k < 4; ++k) v[k] = star[std::min(i + k, star.size() - 1)].b;
+    for (const Corner& c : star) times -= v == c.b;
+    if ((times[0] | times[1] | times[2] | times[3]) != 1) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::uint32_t StarRoom::take(std::uint32_t corners, std::uint32_t& capacity) {
@@ -178,11 +191,7 @@ void QuadricMesh::orderStar(QuadricVertex& v) {
       closed = false;
   }
   closed = closed && s[n - 1].c == s[0].b;
-  // A vertex that comes by twice: no manifold.
-  for (std::uint32_t i = 0; closed && i < n; ++i) {
-    for (std::uint32_t j = i + 1; j < n; ++j) closed = closed && s[i].b != s[j].b;
-  }
-  if (!closed) v.flags |= kOpen;
+  if (!closed || comesTwice({s, n})) v.flags |= kOpen;
 }
 
 }  // namespace merlin::render

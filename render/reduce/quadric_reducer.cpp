@@ -210,6 +210,7 @@ void QuadricReducer::mergeStars(Worker& w, std::uint32_t v, std::uint32_t x) {
   QuadricVertex &a = mesh_[v], &b = mesh_[x];
   const std::span<Corner> sa = mesh_.star(a), sb = mesh_.star(b);
   if (w.merged.size() < sa.size() + sb.size()) w.merged.resize(2 * (sa.size() + sb.size()));
+  for (const Corner& c : sb) __builtin_prefetch(mesh_.corners(mesh_[c.b].star), 1);
   Corner* const merged = w.merged.data();
   const Corner* const end = appendStar(appendStar(merged, sa, x), sb, v);
   const bool open = b.flags & kOpen;

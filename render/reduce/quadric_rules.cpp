@@ -169,6 +169,8 @@ MERLIN_INLINE Verdict judge(const QuadricView& view, std::uint32_t w, const Edge
   const float here[] = {0, 0, 0}, there[] = {costs.rx[edge], costs.ry[edge], costs.rz[edge]};
   // First, while the star of x is on its way: a has been looked at.
   const bool flips = stage != QuadricStage::kNoFlips && turns(view, a, a.position, here, to, x);
+  for (std::uint32_t k = 0; k < v.degree; ++k)
+    __builtin_prefetch(&view.vertices[view.corners[v.star + k].b]);
   if (keepsTopology(stage) && !vanishes(view, w, costs, edge)) {
     const std::uint32_t left = a.degree + v.degree - 2 * shared;
     if (shared > 2 || left < 1) return Verdict::kLink;
