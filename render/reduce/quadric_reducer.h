@@ -73,7 +73,7 @@ class QuadricReducer {
   };
 
   auto nextOf() const {
-    return [this](std::uint32_t v) -> std::uint32_t& { return mesh_[v].next; };
+    return [this](std::uint32_t v) -> std::uint32_t& { return next_[v]; };
   }
   QuadricView view() const { return {&mesh_[0], mesh_.corners(0), &channels_}; }
   void evaluate(Worker& w, std::uint32_t v) { evaluate_(view(), v, w.costs); }
@@ -113,6 +113,7 @@ class QuadricReducer {
   EvaluateEdges evaluate_;
   JudgeEdge judge_;
   HugeArray<std::uint32_t> log_;
+  HugeArray<std::uint32_t> next_;  // in a vertex' bucket; beside the records, so that it stays near
   std::vector<std::uint32_t> part_ends_;
   Worker whole_;
   std::size_t triangles_;                                     // left

@@ -179,6 +179,11 @@ MERLIN_INLINE Verdict judge(const QuadricView& view, std::uint32_t w, const Edge
       return Verdict::kLink;
   }
   if (stage == QuadricStage::kNoFlips) return Verdict::kLegal;
+  // A collapse will write there.
+  for (std::uint32_t k = 0; k < v.degree; ++k) {
+    const QuadricVertex& ring = view.vertices[view.corners[v.star + k].b];
+    __builtin_prefetch(view.corners + ring.star, 1);
+  }
   return flips || turns(view, v, a.position, there, to, w) ? Verdict::kFlip : Verdict::kLegal;
 }
 
