@@ -60,14 +60,15 @@ class BucketQueue {
   template <std::size_t count, typename Next>
   void peek(std::array<std::uint32_t, count>& out, const Next& next) const {
     std::size_t bucket = current_;
-    std::uint32_t vertex = first_[bucket];
+    std::uint32_t before = kNone;
     for (std::uint32_t& o : out) {
-      if (vertex == kNone) {
-        bucket = filledFrom(bucket + 1);
-        if (bucket < kBuckets) vertex = first_[bucket];
+      // The last one's link is not looked at: that may be far away.
+      o = before == kNone ? first_[bucket] : next(before);
+      if (o == kNone && bucket < kBuckets - 1) {
+        bucket = std::min(filledFrom(bucket + 1), kBuckets - 1);
+        o = first_[bucket];
       }
-      o = vertex;
-      if (vertex != kNone) vertex = next(vertex);
+      before = o;
     }
   }
 
@@ -75,7 +76,7 @@ class BucketQueue {
   static constexpr int kDropped = 17;  // 23 bits of mantissa, 6 count
   // Costs from 2^-80 to 2^80, in squared mean edges times area.
   static constexpr std::int64_t kLowest = std::int64_t{127 - 80} << (23 - kDropped);
-  static constexpr std::int64_t kBuckets = std::int64_t{160} << (23 - kDropped);
+  static constexpr std::size_t kBuckets = std::size_t{160} << (23 - kDropped);
 
   // The first that is not empty, from k on; kBuckets: none.
   std::size_t filledFrom(std::size_t k) const {
