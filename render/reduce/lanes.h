@@ -21,10 +21,7 @@ using Quad = float __attribute__((vector_size(16)));
 inline constexpr Mask kLane = {0, 1, 2, 3, 4, 5, 6, 7};
 
 MERLIN_INLINE Lanes all(float x) { return Lanes{x, x, x, x, x, x, x, x}; }
-MERLIN_INLINE Mask all(std::uint32_t x) {
-  const auto k = static_cast<std::int32_t>(x);
-  return Mask{k, k, k, k, k, k, k, k};
-}
+MERLIN_INLINE Mask all(std::uint32_t x) { return static_cast<std::int32_t>(x) - Mask{}; }
 MERLIN_INLINE Lanes load(const float* p) {
   Lanes v;
   std::memcpy(&v, p, sizeof v);
@@ -83,10 +80,12 @@ MERLIN_INLINE bool any(const Mask& m) {
   return (wide[0] | wide[1]) != 0;
 }
 
-// Four floats of eight places each, as four lanes of eight.
-MERLIN_INLINE void gather(const float* const p[8], Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
+// Four floats from each of eight places, as four lanes of eight. at(k): where the k-th are; no
+// array, which GCC would write down.
+template <typename At>
+MERLIN_INLINE void gather(const At& at, Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
   Quad q[8];
-  for (int k = 0; k < 8; ++k) std::memcpy(&q[k], p[k], sizeof q[k]);
+  for (int k = 0; k < 8; ++k) std::memcpy(&q[k], at(k), sizeof q[k]);
   const Lanes r0 = __builtin_shufflevector(q[0], q[4], 0, 1, 2, 3, 4, 5, 6, 7);
   const Lanes r1 = __builtin_shufflevector(q[1], q[5], 0, 1, 2, 3, 4, 5, 6, 7);
   const Lanes r2 = __builtin_shufflevector(q[2], q[6], 0, 1, 2, 3, 4, 5, 6, 7);

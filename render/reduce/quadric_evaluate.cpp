@@ -60,22 +60,19 @@ struct Neighbours {
 
   MERLIN_INLINE Neighbours(const QuadricView& view, const QuadricVertex& w,
                            const std::uint32_t* numbers) {
-    const float *p[8], *q[8];
-    for (int k = 0; k < 8; ++k) {
-      const QuadricVertex& v = view.vertices[numbers[k]];
-      p[k] = v.position;
-      q[k] = &v.h[1];
-    }
-    gather(p, x, y, z, h[0]);
-    gather(q, h[1], h[2], h[3], h[4]);
-    h[5] = Lanes{q[0][4], q[1][4], q[2][4], q[3][4], q[4][4], q[5][4], q[6][4], q[7][4]};
+    const auto at = [&](int k) -> const QuadricVertex& { return view.vertices[numbers[k]]; };
+    gather([&](int k) { return at(k).position; }, x, y, z, h[0]);
+    gather([&](int k) { return &at(k).h[1]; }, h[1], h[2], h[3], h[4]);
+    h[5] = Lanes{at(0).h[5], at(1).h[5], at(2).h[5], at(3).h[5],
+                 at(4).h[5], at(5).h[5], at(6).h[5], at(7).h[5]};
     x -= w.position[0];
     y -= w.position[1];
     z -= w.position[2];
   }
 };
 
-// Eight edges at a time.
+// Eight edges at a time. `channels`: whether there are any.
+template <bool channels>
 struct Solver {
   const QuadricView& view;
   const float* wh;  // w's quadric
@@ -89,15 +86,11 @@ struct Solver {
   };
 
   MERLIN_INLINE Channel channelOf(const std::uint32_t* x, std::size_t k) const {
-    const float *p[8], *q[8];
-    for (int i = 0; i < 8; ++i) {
-      q[i] = view.channels->block(x[i]);
-      p[i] = q[i] + 1 + 4 * k;
-    }
     Channel c;
-    gather(p, c.bx, c.by, c.bz, c.delta);
+    gather([&](int i) { return view.channels->block(x[i]) + 1 + 4 * k; }, c.bx, c.by, c.bz,
+           c.delta);
     c.delta -= wc[4 + 4 * k];
-    for (int i = 0; i < 8; ++i) c.a[i] = q[i][0];
+    for (int i = 0; i < 8; ++i) c.a[i] = view.channels->block(x[i])[0];
     return c;
   }
 
@@ -116,7 +109,7 @@ struct Solver {
     Lanes r0 = h[0] * X + h[1] * Y + h[2] * Z + half * X;
     Lanes r1 = h[1] * X + h[3] * Y + h[4] * Z + half * Y;
     Lanes r2 = h[2] * X + h[4] * Y + h[5] * Z + half * Z;
-    for (std::size_t k = 0; k < view.channels->count(); ++k) {
+    for (std::size_t k = 0; channels && k < view.channels->count(); ++k) {
       const Channel c = channelOf(x, k);
       const float* wb = wc + 1 + 4 * k;
       const Lanes b0 = c.bx + wb[0], b1 = c.by + wb[1], b2 = c.bz + wb[2];
@@ -145,7 +138,7 @@ struct Solver {
               y * (wh[3] * y + 2.0F * (wh[4] * z)) + z * z * wh[5] +
               e0 * (h[0] * e0 + 2.0F * (h[1] * e1 + h[2] * e2)) +
               e1 * (h[3] * e1 + 2.0F * (h[4] * e2)) + e2 * e2 * h[5];
-    for (std::size_t k = 0; k < view.channels->count(); ++k) {
+    for (std::size_t k = 0; channels && k < view.channels->count(); ++k) {
       const Channel c = channelOf(x, k);
       const float* wb = wc + 1 + 4 * k;
       const Lanes ofw = wb[0] * v + wb[1] * y + wb[2] * z;
@@ -337,21 +330,25 @@ MERLIN_INLINE std::uint32_t rowOfLeast(const Lanes& costs, const Mask& rows) {
   return static_cast<std::uint32_t>(least(cheapest)[0]);
 }
 
-MERLIN_INLINE void evaluate(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
+template <bool channels>
+MERLIN_INLINE void evaluateFan(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
   QuadricVertex& w = view.vertices[vertex];
-  out.makeRoom(w.degree);
-  const float* block = view.channels->count() > 0 ? view.channels->block(vertex) : nullptr;
-  const Solver solver{view, w.h, block, out};
-  if (!(w.flags & kOpen) && w.degree <= 8) {
-    const Neighbours at = closedFan(view, w, out);
-    setSharp(w, out.normal);
-    if (block) addChannels(view, vertex, out, true);
-    out.cheapest = rowOfLeast(solver.solve(at, 0, w.degree), kLane);
-    return;
-  }
+  const float* block = channels ? view.channels->block(vertex) : nullptr;
+  const Neighbours at = closedFan(view, w, out);
+  setSharp(w, out.normal);
+  if (channels) addChannels(view, vertex, out, true);
+  const Solver<channels> solver{view, w.h, block, out};
+  out.cheapest = rowOfLeast(solver.solve(at, 0, w.degree), kLane);
+}
+
+template <bool channels>
+MERLIN_INLINE void evaluateStar(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
+  QuadricVertex& w = view.vertices[vertex];
+  const float* block = channels ? view.channels->block(vertex) : nullptr;
   anyStar(view, w, out);
   setSharp(w, out.normal);
-  if (block) addChannels(view, vertex, out, false);
+  if (channels) addChannels(view, vertex, out, false);
+  const Solver<channels> solver{view, w.h, block, out};
   Lanes costs = all(2 * kNoEdge);
   Mask rows = {};
   for (std::uint32_t i = 0; i < out.count; i += 8) {
@@ -362,15 +359,48 @@ MERLIN_INLINE void evaluate(const QuadricView& view, std::uint32_t vertex, EdgeC
   out.cheapest = rowOfLeast(costs, rows);
 }
 
+MERLIN_INLINE bool isFan(const QuadricVertex& w) { return !(w.flags & kOpen) && w.degree <= 8; }
+
+// All but what evaluate() is quick at.
+MERLIN_INLINE void evaluateRare(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
+  const bool fan = isFan(view.vertices[vertex]);
+  if (view.channels->count() == 0)
+    evaluateStar<false>(view, vertex, out);
+  else if (fan)
+    evaluateFan<true>(view, vertex, out);
+  else
+    evaluateStar<true>(view, vertex, out);
+}
+
+// Most vertices are fans; what they need shares its registers with nothing else.
+MERLIN_INLINE void evaluate(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out,
+                            EvaluateEdges rare) {
+  const QuadricVertex& w = view.vertices[vertex];
+  out.makeRoom(w.degree);
+  if (view.channels->count() == 0 && isFan(w))
+    evaluateFan<false>(view, vertex, out);
+  else
+    rare(view, vertex, out);
+}
+
+[[gnu::noinline]] void rarePortable(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
+  evaluateRare(view, vertex, out);
+}
+
 void evaluatePortable(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
-  evaluate(view, vertex, out);
+  evaluate(view, vertex, out, rarePortable);
 }
 
 #if defined(__x86_64__)
 // The same text: wider registers, no fused operation, so the same bits.
-__attribute__((target("avx2"))) void evaluateAvx2(const QuadricView& view, std::uint32_t vertex,
-                                                  EdgeCosts& out) {
-  evaluate(view, vertex, out);
+[[gnu::noinline, gnu::target("avx2")]] void rareAvx2(const QuadricView& view, std::uint32_t vertex,
+                                                     EdgeCosts& out) {
+  evaluateRare(view, vertex, out);
+}
+
+[[gnu::target("avx2")]] void evaluateAvx2(const QuadricView& view, std::uint32_t vertex,
+                                          EdgeCosts& out) {
+  evaluate(view, vertex, out, rareAvx2);
 }
 #endif
 

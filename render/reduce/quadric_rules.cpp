@@ -58,10 +58,8 @@ MERLIN_INLINE bool fanTurns(const QuadricView& view, const QuadricVertex& v, con
   const Mask ring = firsts(&view.corners[v.star].b, v.degree);
   std::uint32_t numbers[8];
   store(numbers, ring);
-  const float* at[8];
-  for (int k = 0; k < 8; ++k) at[k] = view.vertices[numbers[k]].position;
   Lanes p0, p1, p2, unused;
-  gather(at, p0, p1, p2, unused);
+  gather([&](int k) { return view.vertices[numbers[k]].position; }, p0, p1, p2, unused);
   const Lanes u0 = p0 - origin[0], u1 = p1 - origin[1], u2 = p2 - origin[2];
   const Lanes e0 = next(p0) - p0, e1 = next(p1) - p1, e2 = next(p2) - p2;
   const Lanes a0 = u0 - from[0], a1 = u1 - from[1], a2 = u2 - from[2];
