@@ -56,20 +56,25 @@ class BucketQueue {
   // The bucket that the last pop() looked at; a lower one after a push() there.
   std::size_t current() const noexcept { return current_; }
 
-  // Those that pop() would return next, until a push(): the first ones in `out`, then kNone.
-  template <std::size_t count, typename Next>
-  void peek(std::array<std::uint32_t, count>& out, const Next& next) const {
-    std::size_t bucket = current_;
-    std::uint32_t before = kNone;
-    for (std::uint32_t& o : out) {
-      // The last one's link is not looked at: that may be far away.
-      o = before == kNone ? first_[bucket] : next(before);
-      if (o == kNone && bucket < kBuckets - 1) {
-        bucket = std::min(filledFrom(bucket + 1), kBuckets - 1);
-        o = first_[bucket];
-      }
-      before = o;
+  static constexpr std::size_t kAhead = 5;
+
+  // Those that pop() would return next, then kNone. What push() has put between them since the last
+  // call may be missing.
+  template <typename Next>
+  const std::array<std::uint32_t, kAhead>& peek(const Next& next) {
+    const std::size_t bucket = filledFrom(current_);
+    const std::uint32_t front = bucket == kBuckets ? kNone : first_[bucket];
+    if (front == ahead_[0]) return ahead_;
+    std::size_t known = 1;
+    if (front == ahead_[1]) {
+      known = kAhead - 1;
+      std::copy(ahead_.begin() + 1, ahead_.end(), ahead_.begin());
+    } else {
+      ahead_[0] = front;
+      ahead_bucket_ = bucket;
     }
+    for (std::size_t i = known; i < kAhead; ++i) ahead_[i] = after(ahead_[i - 1], next);
+    return ahead_;
   }
 
  private:
@@ -90,9 +95,20 @@ class BucketQueue {
     return word * 64 + static_cast<std::size_t>(std::countr_zero(bits));
   }
 
+  // What comes after a vertex of ahead_bucket_.
+  template <typename Next>
+  std::uint32_t after(std::uint32_t vertex, const Next& next) {
+    const std::uint32_t follows = vertex == kNone ? kNone : next(vertex);
+    if (follows != kNone || ahead_bucket_ == kBuckets) return follows;
+    ahead_bucket_ = filledFrom(ahead_bucket_ + 1);
+    return ahead_bucket_ == kBuckets ? kNone : first_[ahead_bucket_];
+  }
+
   std::vector<std::uint32_t> first_;
   std::vector<std::uint64_t> filled_;
   std::size_t current_ = kBuckets - 1;
+  std::array<std::uint32_t, kAhead> ahead_ = {kNone, kNone, kNone, kNone, kNone};
+  std::size_t ahead_bucket_ = kBuckets;  // the last one's
 };
 
 }  // namespace merlin::render

@@ -85,9 +85,8 @@ void QuadricReducer::enqueue(Worker& w, std::uint32_t v) {
 // Most of the time goes into waiting for memory: what the next five vertices need is asked for in
 // stages, record, star, ring, with two vertices' time for each: a dead one's is short. Always
 // inlined: GCC takes a call that only prefetches for one without effect and drops it.
-[[gnu::always_inline]] inline void QuadricReducer::prefetch(const Worker& w) const {
-  std::array<std::uint32_t, 5> next;
-  w.queue.peek(next, nextOf());
+[[gnu::always_inline]] inline void QuadricReducer::prefetch(Worker& w) const {
+  const std::array<std::uint32_t, BucketQueue::kAhead>& next = w.queue.peek(nextOf());
   if (next[0] == BucketQueue::kNone) return;
   for (const Corner& c : mesh_.star(mesh_[next[0]])) __builtin_prefetch(&mesh_[c.b]);
   if (next[2] == BucketQueue::kNone) return;

@@ -78,7 +78,7 @@ class QuadricReducer {
   QuadricView view() const { return {&mesh_[0], mesh_.corners(0), &channels_}; }
   void evaluate(Worker& w, std::uint32_t v) { evaluate_(view(), v, w.costs); }
   void enqueue(Worker& w, std::uint32_t v);
-  void prefetch(const Worker& w) const;
+  void prefetch(Worker& w) const;
   void reduceTo(Worker& w, std::size_t removed, std::size_t bucket_limit);
   void tryVertex(Worker& w, std::uint32_t v);
   bool mayCollapse(Worker& w, std::uint32_t v, std::uint32_t edge);
