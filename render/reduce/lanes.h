@@ -109,7 +109,9 @@ MERLIN_INLINE T next(const T& v) {
 // Of eight pairs of numbers the first ones, and the first pair's from `count` on.
 MERLIN_INLINE Mask firsts(const std::uint32_t* pairs, std::uint32_t count) {
   const Mask v = __builtin_shufflevector(load(pairs), load(pairs + 8), 0, 2, 4, 6, 8, 10, 12, 14);
-  return kLane < static_cast<std::int32_t>(count) ? v : all(pairs[0]);
+  return kLane < static_cast<std::int32_t>(count)
+             ? v
+             : __builtin_shufflevector(v, v, 0, 0, 0, 0, 0, 0, 0, 0);
 }
 
 }  // namespace merlin::render

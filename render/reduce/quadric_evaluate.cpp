@@ -164,14 +164,23 @@ struct Sums {
   Lanes most = {};  // h, the normal's x and y
   float z = 0;      // the normal's
 
-  MERLIN_INLINE void add(const Planes& p) {
-    most += sums({p.h[0], p.h[1], p.h[2], p.h[3], p.h[4], p.h[5], p.normal[0], p.normal[1]});
-    z += sum(p.normal[2]);
+  Sums() = default;
+  MERLIN_INLINE explicit Sums(const Planes& p)
+      : most(sums({p.h[0], p.h[1], p.h[2], p.h[3], p.h[4], p.h[5], p.normal[0], p.normal[1]})),
+        z(sum(p.normal[2])) {}
+
+  MERLIN_INLINE void add(const Sums& other) {
+    most += other.most;
+    z += other.z;
   }
+  // By pieces that registers hold: the quadric is read again at once.
   MERLIN_INLINE void store(QuadricVertex& w, EdgeCosts& out) const {
-    std::memcpy(w.h, &most, sizeof w.h);
-    out.normal[0] = most[6];
-    out.normal[1] = most[7];
+    const auto first = __builtin_shufflevector(most, most, 0, 1, 2, 3);
+    const auto then = __builtin_shufflevector(most, most, 4, 5);
+    const auto normal = __builtin_shufflevector(most, most, 6, 7);
+    std::memcpy(w.h, &first, sizeof first);
+    std::memcpy(w.h + 4, &then, sizeof then);
+    std::memcpy(out.normal, &normal, sizeof normal);
     out.normal[2] = z;
   }
 };
@@ -183,9 +192,7 @@ MERLIN_INLINE Neighbours closedFan(const QuadricView& view, QuadricVertex& w, Ed
   store(out.shared.data(), all(2U));
   const Neighbours at(view, w, out.neighbour.data());
   // Those beyond the last are the first again: the fan closes, then come triangles without area.
-  Sums total;
-  total.add(Planes(at.x, at.y, at.z, next(at.x), next(at.y), next(at.z)));
-  total.store(w, out);
+  Sums(Planes(at.x, at.y, at.z, next(at.x), next(at.y), next(at.z))).store(w, out);
   store(out.rx.data(), at.x);
   store(out.ry.data(), at.y);
   store(out.rz.data(), at.z);
@@ -260,9 +267,9 @@ MERLIN_INLINE void anyStar(const QuadricView& view, QuadricVertex& w, EdgeCosts&
   const float *x = out.rx.data(), *y = out.ry.data(), *z = out.rz.data();
   Sums total;
   for (std::uint32_t k = 0; k < w.degree; k += 8) {
-    total.add(closed ? Planes(load(x + k), load(y + k), load(z + k), load(x + k + 1),
-                              load(y + k + 1), load(z + k + 1))
-                     : planesOf(out, k, w.degree));
+    total.add(Sums(closed ? Planes(load(x + k), load(y + k), load(z + k), load(x + k + 1),
+                                   load(y + k + 1), load(z + k + 1))
+                          : planesOf(out, k, w.degree)));
   }
   total.store(w, out);
   if (closed) return;

@@ -57,13 +57,19 @@ float scaleOf(const Mesh& mesh) {
 
 // Whether a vertex is the first of two corners: no manifold.
 bool comesTwice(std::span<const Corner> star) {
-  // Of four vertices, how often each is there.
-  using Four = std::uint32_t __attribute__((vector_size(16)));
-  for (std::size_t i = 0; i < star.size(); i += 4) {
-    Four v, times = {};
-    for (std::size_t k = 0; k < 4; ++k) v[k] = star[std::min(i + k, star.size() - 1)].b;
-    for (const Corner& c : star) times -= v == c.b;
-    if ((times[0] | times[1] | times[2] | times[3]) != 1) return true;
+  // Where no two fall on the same of 64 bits, none do; else each is compared with each.
+  std::uint64_t seen = 0;
+  bool twice = false;
+  for (const Corner& c : star) {
+    const unsigned bit = c.b * 0x9E3779B1U >> 26;
+    twice |= (seen >> bit & 1) != 0;
+    seen |= std::uint64_t{1} << bit;
+  }
+  if (!twice) return false;
+  for (std::size_t i = 0; i < star.size(); ++i) {
+    for (std::size_t j = i + 1; j < star.size(); ++j) {
+      if (star[i].b == star[j].b) return true;
+    }
   }
   return false;
 }
