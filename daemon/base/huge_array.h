@@ -18,7 +18,7 @@ template <typename T>
 class HugeArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
   static constexpr std::size_t kPage = std::size_t{2} << 20;
-  static constexpr std::size_t kWorthIt = std::size_t{32} << 20;
+  static constexpr std::size_t kWorthIt = std::size_t{8} << 20;
 
  public:
   HugeArray() = default;

@@ -183,9 +183,11 @@ TidyReport tidy(Mesh& mesh) {
 Box boundingBox(std::span<const float> positions) noexcept {
   if (positions.size() < 3) return {};
   Box box{{positions[0], positions[1], positions[2]}, {positions[0], positions[1], positions[2]}};
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    box.low[i % 3] = std::min(box.low[i % 3], positions[i]);
-    box.high[i % 3] = std::max(box.high[i % 3], positions[i]);
+  for (std::size_t i = 0; i + 2 < positions.size(); i += 3) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.low[k] = std::min(box.low[k], positions[i + k]);
+      box.high[k] = std::max(box.high[k], positions[i + k]);
+    }
   }
   return box;
 }

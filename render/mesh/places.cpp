@@ -1,31 +1,41 @@
 #include "render/mesh/places.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <numeric>
 
 namespace merlin::render {
+namespace {
 
+// Of all bits of the three; what compares equal has the same: -0 + 0 is 0.
+std::size_t hashOf(const float* p) {
+  std::uint64_t h = 0;
+  for (int k = 0; k < 3; ++k) {
+    h = (h ^ std::bit_cast<std::uint32_t>(p[k] + 0.0F)) * 0x9E3779B97F4A7C15U;
+    h ^= h >> 32;
+  }
+  return static_cast<std::size_t>(h);
+}
+
+}  // namespace
+
+// A table of places with open addressing: of each its last vertex so far, whose next is the first.
 std::vector<std::uint32_t> samePlace(std::span<const float> positions) {
+  constexpr std::uint32_t kEmpty = ~std::uint32_t{0};
   const std::size_t n = positions.size() / 3;
-  std::vector<std::uint32_t> order(n), next(n);
-  std::iota(order.begin(), order.end(), 0U);
+  std::vector<std::uint32_t> next(n), last(std::bit_ceil(2 * n + 1), kEmpty);
   std::iota(next.begin(), next.end(), 0U);
   const auto at = [&](std::uint32_t v) { return positions.data() + 3 * std::size_t{v}; };
-  const auto same = [&](std::uint32_t a, std::uint32_t b) {
-    return std::equal(at(a), at(a) + 3, at(b));
-  };
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    const float *p = at(a), *q = at(b);
-    for (int k = 0; k < 3; ++k) {
-      if (p[k] != q[k]) return p[k] < q[k];
+  for (std::uint32_t v = 0; v < n; ++v) {
+    std::size_t k = hashOf(at(v)) & (last.size() - 1);
+    while (last[k] != kEmpty && !std::equal(at(v), at(v) + 3, at(last[k])))
+      k = (k + 1) & (last.size() - 1);
+    if (last[k] != kEmpty) {
+      next[v] = next[last[k]];
+      next[last[k]] = v;
     }
-    return a < b;
-  });
-  for (std::size_t first = 0, end = 0; first < n; first = end) {
-    for (end = first + 1; end < n && same(order[first], order[end]); ++end)
-      next[order[end - 1]] = order[end];
-    next[order[end - 1]] = order[first];
+    last[k] = v;
   }
   return next;
 }

@@ -1,11 +1,12 @@
 // BucketQueue: vertices by the cost of their best edge, roughly sorted. Private to render/reduce.
 //
 // A bucket holds the costs of one binary exponent and the same upper bits of the mantissa (1.6 %
-// apart). Lists run through the vertices' own records; nothing is ever moved or taken out: what a
+// apart). Lists run through one number a vertex; nothing is ever moved or taken out: what a
 // collapse made stale is measured again when it comes up. O(1) for each operation.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <vector>
@@ -42,31 +43,72 @@ class BucketQueue {
   // From the first bucket that is not empty, if it is before `limit`; else kNone.
   template <typename Next>
   std::uint32_t pop(std::size_t limit, const Next& next) {
-    std::size_t word = current_ / 64;
-    while (word < filled_.size() && filled_[word] == 0) ++word;
-    if (word == filled_.size()) return kNone;
-    const std::size_t k = word * 64 + static_cast<std::size_t>(std::countr_zero(filled_[word]));
+    const std::size_t k = filledFrom(current_);
+    if (k == kBuckets) return kNone;
     current_ = k;
     if (k >= limit) return kNone;
     const std::uint32_t vertex = first_[k];
     first_[k] = next(vertex);
-    if (first_[k] == kNone) filled_[word] &= ~(std::uint64_t{1} << (k % 64));
+    if (first_[k] == kNone) filled_[k / 64] &= ~(std::uint64_t{1} << (k % 64));
     return vertex;
   }
 
   // The bucket that the last pop() looked at; a lower one after a push() there.
   std::size_t current() const noexcept { return current_; }
-  std::uint32_t front() const noexcept { return first_[current_]; }
+
+  static constexpr std::size_t kAhead = 5;
+
+  // Those that pop() would return next, then kNone. What push() has put between them since the last
+  // call may be missing.
+  template <typename Next>
+  const std::array<std::uint32_t, kAhead>& peek(const Next& next) {
+    const std::size_t bucket = filledFrom(current_);
+    const std::uint32_t front = bucket == kBuckets ? kNone : first_[bucket];
+    if (front == ahead_[0]) return ahead_;
+    std::size_t known = 1;
+    if (front == ahead_[1]) {
+      known = kAhead - 1;
+      std::copy(ahead_.begin() + 1, ahead_.end(), ahead_.begin());
+    } else {
+      ahead_[0] = front;
+      ahead_bucket_ = bucket;
+    }
+    for (std::size_t i = known; i < kAhead; ++i) ahead_[i] = after(ahead_[i - 1], next);
+    return ahead_;
+  }
 
  private:
   static constexpr int kDropped = 17;  // 23 bits of mantissa, 6 count
   // Costs from 2^-80 to 2^80, in squared mean edges times area.
   static constexpr std::int64_t kLowest = std::int64_t{127 - 80} << (23 - kDropped);
-  static constexpr std::int64_t kBuckets = std::int64_t{160} << (23 - kDropped);
+  static constexpr std::size_t kBuckets = std::size_t{160} << (23 - kDropped);
+
+  // The first that is not empty, from k on; kBuckets: none.
+  std::size_t filledFrom(std::size_t k) const {
+    std::size_t word = k / 64;
+    if (word >= filled_.size()) return kBuckets;
+    std::uint64_t bits = filled_[word] >> (k % 64) << (k % 64);
+    while (bits == 0) {
+      if (++word == filled_.size()) return kBuckets;
+      bits = filled_[word];
+    }
+    return word * 64 + static_cast<std::size_t>(std::countr_zero(bits));
+  }
+
+  // What comes after a vertex of ahead_bucket_.
+  template <typename Next>
+  std::uint32_t after(std::uint32_t vertex, const Next& next) {
+    const std::uint32_t follows = vertex == kNone ? kNone : next(vertex);
+    if (follows != kNone || ahead_bucket_ == kBuckets) return follows;
+    ahead_bucket_ = filledFrom(ahead_bucket_ + 1);
+    return ahead_bucket_ == kBuckets ? kNone : first_[ahead_bucket_];
+  }
 
   std::vector<std::uint32_t> first_;
   std::vector<std::uint64_t> filled_;
   std::size_t current_ = kBuckets - 1;
+  std::array<std::uint32_t, kAhead> ahead_ = {kNone, kNone, kNone, kNone, kNone};
+  std::size_t ahead_bucket_ = kBuckets;  // the last one's
 };
 
 }  // namespace merlin::render

@@ -1,21 +1,13 @@
 #include "render/reduce/quadric_evaluate.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 
-// Lanes as wide as eight floats are passed to functions that are all inlined: the calling
-// convention that GCC warns about is never used.
-#pragma GCC diagnostic ignored "-Wpsabi"
-#define MERLIN_INLINE [[gnu::always_inline]] inline
+#include "render/reduce/lanes.h"
 
 namespace merlin::render {
 namespace {
-
-using Lanes = float __attribute__((vector_size(32)));
-using Mask = std::int32_t __attribute__((vector_size(32)));
-using Quad = float __attribute__((vector_size(16)));
 
 constexpr float kTiny = 1e-30F;
 constexpr float kLeastCost = 1e-22F;
@@ -24,43 +16,10 @@ constexpr float kLeastCost = 1e-22F;
 constexpr float kSharpMean = 0.6F;
 constexpr float kPull = 1e-5F;  // to the middle of the edge, in the quadric's trace
 
-MERLIN_INLINE Lanes all(float x) { return Lanes{x, x, x, x, x, x, x, x}; }
-MERLIN_INLINE Lanes load(const float* p) {
-  Lanes v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
-}
-MERLIN_INLINE void store(float* p, const Lanes& v) { std::memcpy(p, &v, sizeof v); }
-MERLIN_INLINE float sum(const Lanes& v) {
-  return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
-}
 MERLIN_INLINE Lanes inverseRoot(const Lanes& v) {
   Lanes r;
   for (int k = 0; k < 8; ++k) r[k] = __builtin_sqrtf(v[k]);
   return 1.0F / r;
-}
-
-// Four floats of eight vertices each, as four lanes of eight.
-MERLIN_INLINE void gather(const float* const p[8], Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
-  Quad q[8];
-  for (int k = 0; k < 8; ++k) std::memcpy(&q[k], p[k], sizeof q[k]);
-  const Lanes r0 = __builtin_shufflevector(q[0], q[4], 0, 1, 2, 3, 4, 5, 6, 7);
-  const Lanes r1 = __builtin_shufflevector(q[1], q[5], 0, 1, 2, 3, 4, 5, 6, 7);
-  const Lanes r2 = __builtin_shufflevector(q[2], q[6], 0, 1, 2, 3, 4, 5, 6, 7);
-  const Lanes r3 = __builtin_shufflevector(q[3], q[7], 0, 1, 2, 3, 4, 5, 6, 7);
-  const Lanes t0 = __builtin_shufflevector(r0, r1, 0, 8, 1, 9, 4, 12, 5, 13);
-  const Lanes t1 = __builtin_shufflevector(r0, r1, 2, 10, 3, 11, 6, 14, 7, 15);
-  const Lanes t2 = __builtin_shufflevector(r2, r3, 0, 8, 1, 9, 4, 12, 5, 13);
-  const Lanes t3 = __builtin_shufflevector(r2, r3, 2, 10, 3, 11, 6, 14, 7, 15);
-  a = __builtin_shufflevector(t0, t2, 0, 1, 8, 9, 4, 5, 12, 13);
-  b = __builtin_shufflevector(t0, t2, 2, 3, 10, 11, 6, 7, 14, 15);
-  c = __builtin_shufflevector(t1, t3, 0, 1, 8, 9, 4, 5, 12, 13);
-  d = __builtin_shufflevector(t1, t3, 2, 3, 10, 11, 6, 7, 14, 15);
-}
-
-// The next of each; `last` after the eighth.
-MERLIN_INLINE Lanes next(const Lanes& v, float last) {
-  return __builtin_shufflevector(v, all(last), 1, 2, 3, 4, 5, 6, 7, 8);
 }
 
 // The quadric and the unit normals of up to eight triangles (0, u, v); nothing where they have no
@@ -95,7 +54,25 @@ MERLIN_INLINE void addBorder(float h[6], float x, float y, float z) {
   h[5] += kBorderWeight * (l - z * z);
 }
 
-// Eight edges at a time: neighbours' quadrics, one a lane.
+// Eight neighbours, one a lane: from w, and their quadrics.
+struct Neighbours {
+  Lanes x, y, z, h[6];
+
+  MERLIN_INLINE Neighbours(const QuadricView& view, const QuadricVertex& w,
+                           const std::uint32_t* numbers) {
+    const auto at = [&](int k) -> const QuadricVertex& { return view.vertices[numbers[k]]; };
+    gather([&](int k) { return at(k).position; }, x, y, z, h[0]);
+    gather([&](int k) { return &at(k).h[1]; }, h[1], h[2], h[3], h[4]);
+    h[5] = Lanes{at(0).h[5], at(1).h[5], at(2).h[5], at(3).h[5],
+                 at(4).h[5], at(5).h[5], at(6).h[5], at(7).h[5]};
+    x -= w.position[0];
+    y -= w.position[1];
+    z -= w.position[2];
+  }
+};
+
+// Eight edges at a time. `channels`: whether there are any.
+template <bool channels>
 struct Solver {
   const QuadricView& view;
   const float* wh;  // w's quadric
@@ -109,34 +86,19 @@ struct Solver {
   };
 
   MERLIN_INLINE Channel channelOf(const std::uint32_t* x, std::size_t k) const {
-    const float *p[8], *q[8];
-    for (int i = 0; i < 8; ++i) {
-      q[i] = view.channels->block(x[i]);
-      p[i] = q[i] + 1 + 4 * k;
-    }
     Channel c;
-    gather(p, c.bx, c.by, c.bz, c.delta);
+    gather([&](int i) { return view.channels->block(x[i]) + 1 + 4 * k; }, c.bx, c.by, c.bz,
+           c.delta);
     c.delta -= wc[4 + 4 * k];
-    for (int i = 0; i < 8; ++i) c.a[i] = q[i][0];
+    for (int i = 0; i < 8; ++i) c.a[i] = view.channels->block(x[i])[0];
     return c;
   }
 
-  // REQUIRES: room for 8 rows from `first`; count rows count.
-  MERLIN_INLINE void solve(std::uint32_t first, std::uint32_t count) const {
-    std::uint32_t x[8];
-    const float* p[8];
-    float xx[8], zz[8];
-    for (std::uint32_t k = 0; k < 8; ++k) {
-      x[k] = out.neighbour[first + (k < count ? k : 0)];
-      p[k] = &view.vertices[x[k]].h[1];
-      xx[k] = view.vertices[x[k]].h[0];
-      zz[k] = view.vertices[x[k]].h[5];
-    }
-    Lanes h[6];
-    h[0] = load(xx);
-    h[5] = load(zz);
-    gather(p, h[1], h[2], h[3], h[4]);
-    const Lanes X = load(&out.rx[first]), Y = load(&out.ry[first]), Z = load(&out.rz[first]);
+  // REQUIRES: room for 8 rows from `first`; count rows count. Returns their costs.
+  MERLIN_INLINE Lanes solve(const Neighbours& at, std::uint32_t first, std::uint32_t count) const {
+    const std::uint32_t* x = &out.neighbour[first];
+    const Lanes(&h)[6] = at.h;
+    const Lanes &X = at.x, &Y = at.y, &Z = at.z;
     Lanes A0 = h[0] + wh[0], A1 = h[1] + wh[1], A2 = h[2] + wh[2], A3 = h[3] + wh[3],
           A4 = h[4] + wh[4], A5 = h[5] + wh[5];
     const Lanes pull = kPull * (A0 + A3 + A5) + kTiny;
@@ -147,7 +109,7 @@ struct Solver {
     Lanes r0 = h[0] * X + h[1] * Y + h[2] * Z + half * X;
     Lanes r1 = h[1] * X + h[3] * Y + h[4] * Z + half * Y;
     Lanes r2 = h[2] * X + h[4] * Y + h[5] * Z + half * Z;
-    for (std::size_t k = 0; k < view.channels->count(); ++k) {
+    for (std::size_t k = 0; channels && k < view.channels->count(); ++k) {
       const Channel c = channelOf(x, k);
       const float* wb = wc + 1 + 4 * k;
       const Lanes b0 = c.bx + wb[0], b1 = c.by + wb[1], b2 = c.bz + wb[2];
@@ -176,7 +138,7 @@ struct Solver {
               y * (wh[3] * y + 2.0F * (wh[4] * z)) + z * z * wh[5] +
               e0 * (h[0] * e0 + 2.0F * (h[1] * e1 + h[2] * e2)) +
               e1 * (h[3] * e1 + 2.0F * (h[4] * e2)) + e2 * e2 * h[5];
-    for (std::size_t k = 0; k < view.channels->count(); ++k) {
+    for (std::size_t k = 0; channels && k < view.channels->count(); ++k) {
       const Channel c = channelOf(x, k);
       const float* wb = wc + 1 + 4 * k;
       const Lanes ofw = wb[0] * v + wb[1] * y + wb[2] * z;
@@ -185,40 +147,56 @@ struct Solver {
       const Lanes left = c.delta - s;
       f += s * (wc[0] * s - 2.0F * ofw) + left * (c.a * left + 2.0F * ofx);
     }
-    const Mask lane = {0, 1, 2, 3, 4, 5, 6, 7};
     f = f > kLeastCost ? f : (f == f ? all(kLeastCost) : all(kNoEdge));
     f = f < kNoEdge ? f : all(kNoEdge);
-    f = lane < static_cast<std::int32_t>(count) ? f : all(kNoEdge);
+    f = kLane < static_cast<std::int32_t>(count) ? f : all(kNoEdge);
     store(&out.cost[first], f);
     store(&out.x[first], v);
     store(&out.y[first], y);
     store(&out.z[first], z);
+    store(&out.deviation[first], all(-1.0F));
+    return f;
+  }
+};
+
+// Sums over the planes of a star's triangles.
+struct Sums {
+  Lanes most = {};  // h, the normal's x and y
+  float z = 0;      // the normal's
+
+  Sums() = default;
+  MERLIN_INLINE explicit Sums(const Planes& p)
+      : most(sums({p.h[0], p.h[1], p.h[2], p.h[3], p.h[4], p.h[5], p.normal[0], p.normal[1]})),
+        z(sum(p.normal[2])) {}
+
+  MERLIN_INLINE void add(const Sums& other) {
+    most += other.most;
+    z += other.z;
+  }
+  // By pieces that registers hold: the quadric is read again at once.
+  MERLIN_INLINE void store(QuadricVertex& w, EdgeCosts& out) const {
+    const auto first = __builtin_shufflevector(most, most, 0, 1, 2, 3);
+    const auto then = __builtin_shufflevector(most, most, 4, 5);
+    const auto normal = __builtin_shufflevector(most, most, 6, 7);
+    std::memcpy(w.h, &first, sizeof first);
+    std::memcpy(w.h + 4, &then, sizeof then);
+    std::memcpy(out.normal, &normal, sizeof normal);
+    out.normal[2] = z;
   }
 };
 
 // A closed fan of up to eight: neighbours are the corners' first vertices, in order.
-MERLIN_INLINE void closedFan(const QuadricView& view, QuadricVertex& w, EdgeCosts& out) {
-  const Corner* star = view.corners + w.star;
-  const std::uint32_t n = w.degree;
-  const float* p[8];
-  for (std::uint32_t k = 0; k < 8; ++k) {
-    const std::uint32_t v = star[k < n ? k : 0].b;
-    out.neighbour[k] = v;
-    out.shared[k] = 2;
-    p[k] = view.vertices[v].position;
-  }
-  out.count = n;
-  Lanes x, y, z, unused;
-  gather(p, x, y, z, unused);
-  x -= w.position[0];
-  y -= w.position[1];
-  z -= w.position[2];
-  const Planes planes(x, y, z, next(x, x[0]), next(y, y[0]), next(z, z[0]));
-  for (int k = 0; k < 6; ++k) w.h[k] = sum(planes.h[k]);
-  for (int k = 0; k < 3; ++k) out.normal[k] = sum(planes.normal[k]);
-  store(out.rx.data(), x);
-  store(out.ry.data(), y);
-  store(out.rz.data(), z);
+MERLIN_INLINE Neighbours closedFan(const QuadricView& view, QuadricVertex& w, EdgeCosts& out) {
+  out.count = w.degree;
+  store(out.neighbour.data(), firsts(&view.corners[w.star].b, w.degree));
+  store(out.shared.data(), all(2U));
+  const Neighbours at(view, w, out.neighbour.data());
+  // Those beyond the last are the first again: the fan closes, then come triangles without area.
+  Sums(Planes(at.x, at.y, at.z, next(at.x), next(at.y), next(at.z))).store(w, out);
+  store(out.rx.data(), at.x);
+  store(out.ry.data(), at.y);
+  store(out.rz.data(), at.z);
+  return at;
 }
 
 // Neighbours of any star, each once, with how many triangles it shares.
@@ -240,39 +218,64 @@ void findNeighbours(const QuadricView& view, const QuadricVertex& w, EdgeCosts& 
     out.b[i] = indexOf(star[i].b);
     out.c[i] = indexOf(star[i].c);
   }
-  for (std::uint32_t i = 0; i < out.count + 8; ++i) {
-    const float* p = view.vertices[out.neighbour[i < out.count ? i : 0]].position;
-    out.rx[i] = p[0] - w.position[0];
-    out.ry[i] = p[1] - w.position[1];
-    out.rz[i] = p[2] - w.position[2];
+}
+
+// Of a closed fan they are the corners' first vertices, in order.
+void fanNeighbours(const QuadricView& view, const QuadricVertex& w, EdgeCosts& out) {
+  out.count = w.degree;
+  for (std::uint32_t i = 0; i < w.degree; ++i) {
+    out.neighbour[i] = view.corners[w.star + i].b;
+    out.shared[i] = 2;
+    out.b[i] = i;
+    out.c[i] = i + 1;
   }
+  out.c[w.degree - 1] = 0;
+}
+
+// The triangles of up to eight corners.
+MERLIN_INLINE Planes planesOf(const EdgeCosts& out, std::uint32_t first, std::uint32_t count) {
+  float u[3][8], v[3][8];
+  for (std::uint32_t k = 0; k < 8; ++k) {
+    // Beyond the last, a triangle without area.
+    const std::uint32_t b = out.b[first + k < count ? first + k : 0];
+    const std::uint32_t c = first + k < count ? out.c[first + k] : b;
+    u[0][k] = out.rx[b];
+    u[1][k] = out.ry[b];
+    u[2][k] = out.rz[b];
+    v[0][k] = out.rx[c];
+    v[1][k] = out.ry[c];
+    v[2][k] = out.rz[c];
+  }
+  return {load(u[0]), load(u[1]), load(u[2]), load(v[0]), load(v[1]), load(v[2])};
 }
 
 MERLIN_INLINE void anyStar(const QuadricView& view, QuadricVertex& w, EdgeCosts& out) {
-  findNeighbours(view, w, out);
-  float h[6] = {}, normal[3] = {};
-  for (std::uint32_t first = 0; first < w.degree; first += 8) {
-    float u[3][8], v[3][8];
-    for (std::uint32_t k = 0; k < 8; ++k) {
-      // Beyond the last, a triangle without area.
-      const std::uint32_t b = out.b[first + k < w.degree ? first + k : 0];
-      const std::uint32_t c = first + k < w.degree ? out.c[first + k] : b;
-      u[0][k] = out.rx[b];
-      u[1][k] = out.ry[b];
-      u[2][k] = out.rz[b];
-      v[0][k] = out.rx[c];
-      v[1][k] = out.ry[c];
-      v[2][k] = out.rz[c];
-    }
-    const Planes planes(load(u[0]), load(u[1]), load(u[2]), load(v[0]), load(v[1]), load(v[2]));
-    for (int k = 0; k < 6; ++k) h[k] += sum(planes.h[k]);
-    for (int k = 0; k < 3; ++k) normal[k] += sum(planes.normal[k]);
+  const bool closed = !(w.flags & kOpen);
+  if (closed)
+    fanNeighbours(view, w, out);
+  else
+    findNeighbours(view, w, out);
+  // Beyond the last the first again; a closed fan's last row of eight looks one further.
+  store(&out.neighbour[out.count], all(out.neighbour[0]));
+  store(&out.neighbour[out.count + 8], all(out.neighbour[0]));
+  for (std::uint32_t first = 0; first < out.count + 8; first += 8) {
+    const Neighbours at(view, w, &out.neighbour[first]);
+    store(&out.rx[first], at.x);
+    store(&out.ry[first], at.y);
+    store(&out.rz[first], at.z);
   }
+  const float *x = out.rx.data(), *y = out.ry.data(), *z = out.rz.data();
+  Sums total;
+  for (std::uint32_t k = 0; k < w.degree; k += 8) {
+    total.add(Sums(closed ? Planes(load(x + k), load(y + k), load(z + k), load(x + k + 1),
+                                   load(y + k + 1), load(z + k + 1))
+                          : planesOf(out, k, w.degree)));
+  }
+  total.store(w, out);
+  if (closed) return;
   for (std::uint32_t i = 0; i < out.count; ++i) {
-    if (out.shared[i] == 1) addBorder(h, out.rx[i], out.ry[i], out.rz[i]);
+    if (out.shared[i] == 1) addBorder(w.h, out.rx[i], out.ry[i], out.rz[i]);
   }
-  std::memcpy(w.h, h, sizeof h);
-  std::memcpy(out.normal, normal, sizeof normal);
 }
 
 // The sums of w's channels, and what they add to its quadric.
@@ -320,55 +323,106 @@ MERLIN_INLINE void addChannels(const QuadricView& view, std::uint32_t vertex, Ed
   }
 }
 
-MERLIN_INLINE void evaluate(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
-  QuadricVertex& w = view.vertices[vertex];
-  out.makeRoom(w.degree);
-  const bool small = !(w.flags & kOpen) && w.degree <= 8;
-  if (small)
-    closedFan(view, w, out);
-  else
-    anyStar(view, w, out);
-  const float* n = out.normal;
+// Whether w is a thin tip or a knife's edge.
+MERLIN_INLINE void setSharp(QuadricVertex& w, const float* n) {
   const float upright = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
   const auto faces = static_cast<float>(w.degree);
   w.flags = static_cast<std::uint8_t>(w.flags & ~kSharp);
   if (upright < kSharpMean * kSharpMean * faces * faces) w.flags |= kSharp;
-  const float* block = nullptr;
-  if (view.channels->count() > 0) {
-    addChannels(view, vertex, out, small);
-    block = view.channels->block(vertex);
+}
+
+// The first of the cheapest, where `rows` are ascending in each lane.
+MERLIN_INLINE std::uint32_t rowOfLeast(const Lanes& costs, const Mask& rows) {
+  const Mask cheapest = costs == least(costs) ? rows : all(~0U >> 1);
+  return static_cast<std::uint32_t>(least(cheapest)[0]);
+}
+
+template <bool channels>
+MERLIN_INLINE void evaluateFan(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
+  QuadricVertex& w = view.vertices[vertex];
+  const float* block = channels ? view.channels->block(vertex) : nullptr;
+  const Neighbours at = closedFan(view, w, out);
+  setSharp(w, out.normal);
+  if (channels) addChannels(view, vertex, out, true);
+  const Solver<channels> solver{view, w.h, block, out};
+  out.cheapest = rowOfLeast(solver.solve(at, 0, w.degree), kLane);
+}
+
+template <bool channels>
+MERLIN_INLINE void evaluateStar(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
+  QuadricVertex& w = view.vertices[vertex];
+  const float* block = channels ? view.channels->block(vertex) : nullptr;
+  anyStar(view, w, out);
+  setSharp(w, out.normal);
+  if (channels) addChannels(view, vertex, out, false);
+  const Solver<channels> solver{view, w.h, block, out};
+  Lanes costs = all(2 * kNoEdge);
+  Mask rows = {};
+  for (std::uint32_t i = 0; i < out.count; i += 8) {
+    const Lanes here = solver.solve(Neighbours(view, w, &out.neighbour[i]), i, out.count - i);
+    rows = here < costs ? kLane + static_cast<std::int32_t>(i) : rows;
+    costs = here < costs ? here : costs;
   }
-  const Solver solver{view, w.h, block, out};
-  for (std::uint32_t i = 0; i < out.count; i += 8) solver.solve(i, std::min(8U, out.count - i));
+  out.cheapest = rowOfLeast(costs, rows);
+}
+
+MERLIN_INLINE bool isFan(const QuadricVertex& w) { return !(w.flags & kOpen) && w.degree <= 8; }
+
+// All but what evaluate() is quick at.
+MERLIN_INLINE void evaluateRare(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
+  const bool fan = isFan(view.vertices[vertex]);
+  if (view.channels->count() == 0)
+    evaluateStar<false>(view, vertex, out);
+  else if (fan)
+    evaluateFan<true>(view, vertex, out);
+  else
+    evaluateStar<true>(view, vertex, out);
+}
+
+// Most vertices are fans; what they need shares its registers with nothing else.
+MERLIN_INLINE void evaluate(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out,
+                            EvaluateEdges rare) {
+  const QuadricVertex& w = view.vertices[vertex];
+  out.makeRoom(w.degree);
+  if (view.channels->count() == 0 && isFan(w))
+    evaluateFan<false>(view, vertex, out);
+  else
+    rare(view, vertex, out);
+}
+
+[[gnu::noinline]] void rarePortable(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
+  evaluateRare(view, vertex, out);
 }
 
 void evaluatePortable(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
-  evaluate(view, vertex, out);
+  evaluate(view, vertex, out, rarePortable);
 }
 
 #if defined(__x86_64__)
 // The same text: wider registers, no fused operation, so the same bits.
-__attribute__((target("avx2"))) void evaluateAvx2(const QuadricView& view, std::uint32_t vertex,
-                                                  EdgeCosts& out) {
-  evaluate(view, vertex, out);
+[[gnu::noinline, gnu::target("avx2")]] void rareAvx2(const QuadricView& view, std::uint32_t vertex,
+                                                     EdgeCosts& out) {
+  evaluateRare(view, vertex, out);
+}
+
+[[gnu::target("avx2")]] void evaluateAvx2(const QuadricView& view, std::uint32_t vertex,
+                                          EdgeCosts& out) {
+  evaluate(view, vertex, out, rareAvx2);
 }
 #endif
 
 }  // namespace
 
-void EdgeCosts::makeRoom(std::size_t corners) {
-  const std::size_t rows = 2 * corners + 16;
-  if (neighbour.size() >= rows) return;
+void EdgeCosts::grow(std::size_t rows) {
   for (auto* list : {&neighbour, &shared, &b, &c}) list->resize(2 * rows);
   for (auto* list : {&cost, &x, &y, &z, &rx, &ry, &rz, &deviation}) list->resize(2 * rows);
 }
 
-std::uint32_t EdgeCosts::cheapest() const noexcept {
-  std::uint32_t best = 0;
+void EdgeCosts::findCheapest() noexcept {
+  cheapest = 0;
   for (std::uint32_t i = 1; i < count; ++i) {
-    if (cost[i] < cost[best]) best = i;
+    if (cost[i] < cost[cheapest]) cheapest = i;
   }
-  return best;
 }
 
 EvaluateEdges portableEdgeEvaluator() { return evaluatePortable; }

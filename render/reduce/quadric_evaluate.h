@@ -57,11 +57,19 @@ struct EdgeCosts {
   std::vector<float> cost;            // kNoEdge at most
   std::vector<float> x, y, z;         // the new vertex, from w
   std::vector<float> rx, ry, rz;      // the neighbour, from w
-  std::vector<float> deviation;       // of the border, squared; the reducer's
+  std::vector<float> deviation;       // of the border, squared; the reducer's, -1 at first
   float normal[3] = {};               // sum of the star's unit normals
+  std::uint32_t cheapest = 0;         // the first row of the least cost
 
-  void makeRoom(std::size_t corners);
-  std::uint32_t cheapest() const noexcept;
+  void makeRoom(std::size_t corners) {
+    const std::size_t rows = 2 * corners + 16;
+    if (neighbour.size() < rows) grow(rows);
+  }
+  // Sets `cheapest` anew.
+  void findCheapest() noexcept;
+
+ private:
+  void grow(std::size_t rows);
 };
 
 // Evaluates all edges of w, a vertex with corners; sets w's own quadric (and channels' sums) anew.

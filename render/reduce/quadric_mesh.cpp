@@ -10,8 +10,6 @@
 namespace merlin::render {
 namespace {
 
-constexpr std::uint32_t kLine = 8;  // corners
-
 std::uint32_t linesFor(std::uint32_t corners) {
   return std::max(1U, (corners + kLine - 1) / kLine);
 }
@@ -55,6 +53,25 @@ float scaleOf(const Mesh& mesh) {
   if (sum > 0 && scale < 1e30) return static_cast<float>(scale);
   const float diagonal = boundingBox(mesh.positions).diagonal();
   return diagonal > 0 ? 1 / diagonal : 1;
+}
+
+// Whether a vertex is the first of two corners: no manifold.
+bool comesTwice(std::span<const Corner> star) {
+  // Where no two fall on the same of 64 bits, none do; else each is compared with each.
+  std::uint64_t seen = 0;
+  bool twice = false;
+  for (const Corner& c : star) {
+    const unsigned bit = c.b * 0x9E3779B1U >> 26;
+    twice |= (seen >> bit & 1) != 0;
+    seen |= std::uint64_t{1} << bit;
+  }
+  if (!twice) return false;
+  for (std::size_t i = 0; i < star.size(); ++i) {
+    for (std::size_t j = i + 1; j < star.size(); ++j) {
+      if (star[i].b == star[j].b) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -180,11 +197,7 @@ void QuadricMesh::orderStar(QuadricVertex& v) {
       closed = false;
   }
   closed = closed && s[n - 1].c == s[0].b;
-  // A vertex that comes by twice: no manifold.
-  for (std::uint32_t i = 0; closed && i < n; ++i) {
-    for (std::uint32_t j = i + 1; j < n; ++j) closed = closed && s[i].b != s[j].b;
-  }
-  if (!closed) v.flags |= kOpen;
+  if (!closed || comesTwice({s, n})) v.flags |= kOpen;
 }
 
 }  // namespace merlin::render

@@ -21,6 +21,8 @@ struct Corner {
   std::uint32_t b, c;  // the triangle (vertex, b, c)
 };
 
+inline constexpr std::uint32_t kLine = 8;  // corners
+
 // Upper triangle of a symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz.
 using Symmetric3 = std::array<float, 6>;
 
@@ -33,12 +35,11 @@ struct alignas(64) QuadricVertex {
   std::uint32_t star;      // index of its first corner
   std::uint32_t degree;    // corners
   std::uint32_t capacity;  // corners that its lines hold
-  std::uint32_t next;      // in its bucket
   std::uint32_t node;      // of the log
   float deviation;         // squared distance that what it stands for may be off by now
   std::uint8_t flags;
   std::uint8_t part;  // that it belongs to
-  std::uint16_t unused;
+  std::uint16_t unused[3];
 };
 static_assert(sizeof(QuadricVertex) == 64);
 

@@ -9,7 +9,29 @@ namespace {
 
 // A popped edge may cost so much more than its bucket and is still taken.
 constexpr float kTolerance = 1.5F;
+using TwoCorners = std::uint32_t __attribute__((vector_size(16)));
+
 float trace(const float* h) { return h[0] + h[3] + h[5]; }
+
+// The corners without `other`, from the edge to it on, so that two fans become one. Returns their
+// end. REQUIRES: room for all.
+Corner* appendStar(Corner* to, std::span<const Corner> star, std::uint32_t other) {
+  std::size_t first = 0;
+  while (first < star.size() && star[first].b != other) ++first;
+  if (first == star.size()) {
+    first = 0;
+    while (first < star.size() && star[first].c != other) ++first;
+  }
+  const auto append = [&](std::span<const Corner> corners) {
+    for (const Corner& c : corners) {
+      *to = c;
+      to += c.b != other && c.c != other;
+    }
+  };
+  append(star.subspan(first));
+  append(star.first(first));
+  return to;
+}
 
 }  // namespace
 
@@ -20,7 +42,9 @@ QuadricReducer::QuadricReducer(const Mesh& mesh, std::size_t channels, unsigned 
       given_(channels),
       ranges_(channels),
       evaluate_(edgeEvaluator()),
+      judge_(edgeJudge()),
       log_(mesh.vertexCount()),
+      next_(mesh.vertexCount()),
       triangles_(mesh.triangleCount()) {}
 
 void QuadricReducer::setChannel(std::size_t channel, const float* values, std::size_t stride,
@@ -51,25 +75,25 @@ void QuadricReducer::lock(const std::vector<bool>& locked) {
 }
 
 void QuadricReducer::enqueue(Worker& w, std::uint32_t v) {
-  const float cost = w.costs.cost[w.costs.cheapest()];
+  const float cost = w.costs.cost[w.costs.cheapest];
   if (cost >= kNoEdge)
     mesh_[v].flags |= kIdle;
   else
     w.queue.push(v, cost, nextOf());
 }
 
-// Most of the time goes into waiting for memory: what the next three vertices need is asked for in
-// stages, record, star, ring. Always inlined: GCC takes a call that only prefetches for one without
-// effect and drops it.
-[[gnu::always_inline]] inline void QuadricReducer::prefetch(const Worker& w) const {
-  const std::uint32_t first = w.queue.front();
-  if (first == BucketQueue::kNone) return;
-  for (const Corner& c : mesh_.star(mesh_[first])) __builtin_prefetch(&mesh_[c.b]);
-  const std::uint32_t second = mesh_[first].next;
-  if (second == BucketQueue::kNone) return;
-  __builtin_prefetch(mesh_.corners(mesh_[second].star));
-  const std::uint32_t third = mesh_[second].next;
-  if (third != BucketQueue::kNone) __builtin_prefetch(&mesh_[third]);
+// Most of the time goes into waiting for memory: what the next five vertices need is asked for in
+// stages, record, star, ring, with two vertices' time for each: a dead one's is short. Always
+// inlined: GCC takes a call that only prefetches for one without effect and drops it.
+[[gnu::always_inline]] inline void QuadricReducer::prefetch(Worker& w) const {
+  const std::array<std::uint32_t, BucketQueue::kAhead>& next = w.queue.peek(nextOf());
+  if (next[0] == BucketQueue::kNone) return;
+  for (const Corner& c : mesh_.star(mesh_[next[0]])) __builtin_prefetch(&mesh_[c.b]);
+  if (next[2] == BucketQueue::kNone) return;
+  __builtin_prefetch(mesh_.corners(mesh_[next[2]].star));
+  if (next[4] == BucketQueue::kNone) return;
+  __builtin_prefetch(&mesh_[next[4]]);
+  __builtin_prefetch(&next_[next[4]]);
 }
 
 void QuadricReducer::reduceTo(Worker& w, std::size_t removed, std::size_t bucket_limit) {
@@ -106,9 +130,8 @@ void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
   const float ceiling = last ? kNoEdge : kTolerance * BucketQueue::floorOf(bucket + 1);
   evaluate(w, v);
   EdgeCosts& costs = w.costs;
-  std::fill_n(costs.deviation.begin(), costs.count, -1.0F);
-  for (;;) {
-    const std::uint32_t edge = costs.cheapest();
+  for (;; costs.findCheapest()) {
+    const std::uint32_t edge = costs.cheapest;
     const float cost = costs.cost[edge];
     if (cost >= kNoEdge) {
       mesh_[v].flags |= kIdle;
@@ -139,7 +162,7 @@ bool QuadricReducer::mayCollapse(Worker& w, std::uint32_t v, std::uint32_t edge)
     ++w.links;
     return false;
   }
-  const Verdict verdict = judge(view(), v, w.costs, edge, stage_);
+  const Verdict verdict = judge_(view(), v, w.costs, edge, stage_);
   if (verdict != Verdict::kLegal) {
     ++(verdict == Verdict::kFlip ? w.flips : w.links);
     return false;
@@ -187,27 +210,18 @@ void QuadricReducer::collapse(Worker& w, std::uint32_t v, std::uint32_t edge) {
 void QuadricReducer::mergeStars(Worker& w, std::uint32_t v, std::uint32_t x) {
   QuadricVertex &a = mesh_[v], &b = mesh_[x];
   const std::span<Corner> sa = mesh_.star(a), sb = mesh_.star(b);
-  w.merged.clear();
-  // Each from the edge on, so that two fans become one.
-  const auto append = [&](std::span<const Corner> star, std::uint32_t other) {
-    std::size_t first = 0;
-    while (first < star.size() && star[first].b != other) ++first;
-    if (first == star.size()) {
-      first = 0;
-      while (first < star.size() && star[first].c != other) ++first;
-    }
-    for (std::size_t k = 0; k < star.size(); ++k) {
-      const Corner& c = star[first + k < star.size() ? first + k : first + k - star.size()];
-      if (c.b != other && c.c != other) w.merged.push_back(c);
-    }
-  };
-  append(sa, x);
-  append(sb, v);
+  if (w.merged.size() < sa.size() + sb.size()) w.merged.resize(2 * (sa.size() + sb.size()));
+  Corner* const merged = w.merged.data();
+  const Corner* const end = appendStar(appendStar(merged, sa, x), sb, v);
+  const bool open = b.flags & kOpen;
+  std::uint32_t before = open ? v : sb.back().b;
   for (const Corner& c : sb) {
-    if (c.b != v) renameInRing(c.b, v, x);
-    if ((b.flags & kOpen) && c.c != v) renameInRing(c.c, v, x);
+    // In a closed fan two lie beside the edge, before and after v.
+    if (c.b != v) renameInRing(c.b, v, x, open || before == v || c.c == v);
+    if (open && c.c != v) renameInRing(c.c, v, x, true);
+    before = c.b;
   }
-  const auto n = static_cast<std::uint32_t>(w.merged.size());
+  const auto n = static_cast<std::uint32_t>(end - merged);
   if (n <= a.capacity) {
     w.room.give(b.star, b.capacity);
   } else if (n <= b.capacity) {
@@ -220,25 +234,34 @@ void QuadricReducer::mergeStars(Worker& w, std::uint32_t v, std::uint32_t x) {
     w.room.give(old_a.star, old_a.capacity);
     w.room.give(b.star, b.capacity);
   }
-  std::copy(w.merged.begin(), w.merged.end(), mesh_.corners(a.star));
+  std::copy_n(merged, n, mesh_.corners(a.star));
   a.degree = n;
   b.degree = 0;
 }
 
-// In the star of o, a neighbour of x: triangles with both ends go, x becomes v.
-void QuadricReducer::renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_t x) {
+// In the star of o, a neighbour of x, x becomes v; beside the edge triangles with both ends go.
+void QuadricReducer::renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_t x, bool beside) {
   QuadricVertex& ring = mesh_[o];
   Corner* star = mesh_.corners(ring.star);
-  std::uint32_t kept = 0;
-  for (std::uint32_t i = 0; i < ring.degree; ++i) {
-    Corner c = star[i];
-    if ((c.b == v || c.c == v) && (c.b == x || c.c == x)) continue;
-    if (c.b == x) c.b = v;
-    if (c.c == x) c.c = v;
-    star[kept++] = c;
+  // By lines: what stands in one after the last corner has no meaning.
+  for (std::uint32_t line = 0; line < ring.degree; line += kLine) {
+    for (std::uint32_t i = line; i < line + kLine; i += 2) {
+      TwoCorners corners;
+      std::memcpy(&corners, star + i, sizeof corners);
+      corners ^= (corners == x) & (v ^ x);
+      std::memcpy(static_cast<void*>(star + i), &corners, sizeof corners);
+    }
   }
-  ring.degree = kept;
   if (!keepsTopology(stage_)) ring.flags |= kOpen;
+  if (!beside) return;
+  const Corner* const end = star + ring.degree;
+  Corner* to = star;
+  for (const Corner* from = star; from < end; ++from) {
+    const std::uint32_t b = from->b, c = from->c;
+    *to = {b, c};
+    to += b != c;
+  }
+  ring.degree = static_cast<std::uint32_t>(to - star);
 }
 
 // The neighbours that had no legal edge may have one now.

@@ -58,7 +58,7 @@ class QuadricReducer {
     BucketQueue queue;
     StarRoom room;
     EdgeCosts costs;
-    std::vector<Corner> merged;
+    std::vector<Corner> merged;    // scratch
     std::uint32_t* log = nullptr;  // dead vertices, in order
     std::size_t collapses = 0;
     std::size_t removed = 0;  // triangles
@@ -73,12 +73,12 @@ class QuadricReducer {
   };
 
   auto nextOf() const {
-    return [this](std::uint32_t v) -> std::uint32_t& { return mesh_[v].next; };
+    return [this](std::uint32_t v) -> std::uint32_t& { return next_[v]; };
   }
   QuadricView view() const { return {&mesh_[0], mesh_.corners(0), &channels_}; }
   void evaluate(Worker& w, std::uint32_t v) { evaluate_(view(), v, w.costs); }
   void enqueue(Worker& w, std::uint32_t v);
-  void prefetch(const Worker& w) const;
+  void prefetch(Worker& w) const;
   void reduceTo(Worker& w, std::size_t removed, std::size_t bucket_limit);
   void tryVertex(Worker& w, std::uint32_t v);
   bool mayCollapse(Worker& w, std::uint32_t v, std::uint32_t edge);
@@ -87,7 +87,7 @@ class QuadricReducer {
   void collapse(Worker& w, std::uint32_t v, std::uint32_t edge);
   void mixChannels(std::uint32_t v, std::uint32_t x, const EdgeCosts& costs, std::uint32_t edge);
   void mergeStars(Worker& w, std::uint32_t v, std::uint32_t x);
-  void renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_t x);
+  void renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_t x, bool beside);
   void wakeRing(Worker& w, std::uint32_t v, float cost);
 
   void planParts();
@@ -111,7 +111,9 @@ class QuadricReducer {
   // Of the channels, as they were given and weighted: no value leaves them.
   std::vector<Range> given_, ranges_;
   EvaluateEdges evaluate_;
+  JudgeEdge judge_;
   HugeArray<std::uint32_t> log_;
+  HugeArray<std::uint32_t> next_;  // in a vertex' bucket; beside the records, so that it stays near
   std::vector<std::uint32_t> part_ends_;
   Worker whole_;
   std::size_t triangles_;                                     // left

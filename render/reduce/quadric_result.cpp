@@ -10,6 +10,7 @@ namespace {
 
 // As far as validate() lets a mesh reach.
 constexpr float kFarthest = 1e18F;
+constexpr std::size_t kAhead = 16;  // records asked for
 
 }  // namespace
 
@@ -31,9 +32,9 @@ Reduction QuadricReducer::finish(const Mesh& mesh) {
   mesh_.dropStars();
   const std::uint32_t vertices = mesh_.vertexCount();
   const std::size_t collapses = whole_.collapses;
-  for (std::size_t k = 0; k < collapses; ++k) mesh_[log_[k]].next = static_cast<std::uint32_t>(k);
+  for (std::size_t k = 0; k < collapses; ++k) next_[log_[k]] = static_cast<std::uint32_t>(k);
   const auto node = [&](std::uint32_t n) {
-    return n < vertices ? mesh_.inputOf(n) : vertices + mesh_[n - vertices].next;
+    return n < vertices ? mesh_.inputOf(n) : vertices + next_[n - vertices];
   };
   Reduction result;
   CollapseLog& log = result.log;
@@ -48,6 +49,7 @@ Reduction QuadricReducer::finish(const Mesh& mesh) {
   if (normals) normals->reserve(3 * collapses);
   for (std::size_t k = 0; k < collapses; ++k) {
     NodeRecord r;
+    if (k + kAhead < collapses) __builtin_prefetch(&mesh_[log_[k + kAhead]]);
     std::memcpy(&r, static_cast<const void*>(mesh_[log_[k]].position), sizeof r);
     log.children.push_back({node(r.children[0]), node(r.children[1])});
     auto p = mesh_.toModel(r.position);

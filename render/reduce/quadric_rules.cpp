@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/compare/triangle_distance.h"
+#include "render/reduce/lanes.h"
 
 namespace merlin::render {
 namespace {
@@ -16,36 +17,66 @@ constexpr float kLeastCosine = 0.2F;
 bool isIn(const Corner& corner, std::uint32_t v) { return corner.b == v || corner.c == v; }
 
 // Link condition: the ends have no neighbour in common but those of the triangles they share.
-bool linkHolds(const QuadricView& view, const QuadricVertex& a, const QuadricVertex& x,
-               const EdgeCosts& costs, std::uint32_t edge) {
+MERLIN_INLINE bool linkHolds(const QuadricView& view, const QuadricVertex& a,
+                             const QuadricVertex& x, const EdgeCosts& costs, std::uint32_t edge) {
   const std::uint32_t shared = costs.shared[edge];
   if (shared == 2 && (a.flags & x.flags & kOpen)) return false;  // would pinch the border
   const Corner* star = view.corners + x.star;
   const bool open = x.flags & kOpen;
-  std::uint32_t common = 0;
-  for (std::uint32_t i = 0; i < costs.count; ++i) {
-    bool hit = false;
-    for (std::uint32_t k = 0; k < x.degree; ++k)
-      hit |= star[k].b == costs.neighbour[i] || (open && star[k].c == costs.neighbour[i]);
-    common += hit;
+  Mask common = {};
+  for (std::uint32_t first = 0; first < costs.count; first += 8) {
+    const Mask ring = load(&costs.neighbour[first]);
+    Mask hit = {};
+    for (std::uint32_t k = 0; k < x.degree; ++k) {
+      hit |= ring == all(star[k].b);
+      if (open) hit |= ring == all(star[k].c);
+    }
+    common -= hit & (kLane < static_cast<std::int32_t>(costs.count - first));
   }
-  return common == shared;
+  return sum(common) == static_cast<std::int32_t>(shared);
 }
 
 // Those beside the edge lose a triangle, and must keep enough to be a surface.
-bool sidesKeepEnough(const QuadricView& view, const QuadricVertex& a, std::uint32_t x) {
+MERLIN_INLINE bool sidesKeepEnough(const QuadricView& view, const QuadricVertex& a, std::uint32_t x,
+                                   std::uint32_t edge) {
   const Corner* star = view.corners + a.star;
+  const auto keeps = [&](std::uint32_t side) {
+    const QuadricVertex& o = view.vertices[side];
+    return o.degree >= ((o.flags & kOpen) ? 2U : 4U);
+  };
+  // Of a closed fan, corners stand in the order of the edges.
+  if (!(a.flags & kOpen)) return keeps(star[edge].c) && keeps(star[(edge ? edge : a.degree) - 1].b);
   for (std::uint32_t k = 0; k < a.degree; ++k) {
-    if (!isIn(star[k], x)) continue;
-    const QuadricVertex& o = view.vertices[star[k].b == x ? star[k].c : star[k].b];
-    if (o.degree < ((o.flags & kOpen) ? 2U : 4U)) return false;
+    if (isIn(star[k], x) && !keeps(star[k].b == x ? star[k].c : star[k].b)) return false;
   }
   return true;
 }
 
+// As turns(), of a closed fan of up to eight.
+MERLIN_INLINE bool fanTurns(const QuadricView& view, const QuadricVertex& v, const float* origin,
+                            const float* from, const float* to, std::uint32_t other) {
+  const Mask ring = firsts(&view.corners[v.star].b, v.degree);
+  std::uint32_t numbers[8];
+  store(numbers, ring);
+  Lanes p0, p1, p2, unused;
+  gather([&](int k) { return view.vertices[numbers[k]].position; }, p0, p1, p2, unused);
+  const Lanes u0 = p0 - origin[0], u1 = p1 - origin[1], u2 = p2 - origin[2];
+  const Lanes e0 = next(p0) - p0, e1 = next(p1) - p1, e2 = next(p2) - p2;
+  const Lanes a0 = u0 - from[0], a1 = u1 - from[1], a2 = u2 - from[2];
+  const Lanes b0 = u0 - to[0], b1 = u1 - to[1], b2 = u2 - to[2];
+  const Lanes n0 = a1 * e2 - a2 * e1, n1 = a2 * e0 - a0 * e2, n2 = a0 * e1 - a1 * e0;
+  const Lanes m0 = b1 * e2 - b2 * e1, m1 = b2 * e0 - b0 * e2, m2 = b0 * e1 - b1 * e0;
+  const Lanes nn = n0 * n0 + n1 * n1 + n2 * n2, mm = m0 * m0 + m1 * m1 + m2 * m2;
+  const Lanes d = n0 * m0 + n1 * m1 + n2 * m2, size = d < 0.0F ? -d : d;
+  const Mask fine = (d * size >= kLeastCosine * kLeastCosine * (nn * mm)) & ~((mm == 0) & (nn > 0));
+  const Mask stays = (ring != all(other)) & (next(ring) != all(other)) &
+                     (kLane < static_cast<std::int32_t>(v.degree));
+  return any(stays & ~fine);
+}
+
 // Whether a face of v's star turns by too much when v goes to `to` (from `origin`, as `from` is).
-bool turns(const QuadricView& view, const QuadricVertex& v, const float* origin, const float* from,
-           const float* to, std::uint32_t other) {
+bool anyTurns(const QuadricView& view, const QuadricVertex& v, const float* origin,
+              const float* from, const float* to, std::uint32_t other) {
   const Corner* star = view.corners + v.star;
   for (std::uint32_t k = 0; k < v.degree; ++k) {
     if (isIn(star[k], other)) continue;
@@ -63,6 +94,12 @@ bool turns(const QuadricView& view, const QuadricVertex& v, const float* origin,
       return true;
   }
   return false;
+}
+
+MERLIN_INLINE bool turns(const QuadricView& view, const QuadricVertex& v, const float* origin,
+                         const float* from, const float* to, std::uint32_t other) {
+  return (v.flags & kOpen) || v.degree > 8 ? anyTurns(view, v, origin, from, to, other)
+                                           : fanTurns(view, v, origin, from, to, other);
 }
 
 float segmentDistance2(const float* p, const float* a, const float* b) {
@@ -120,6 +157,47 @@ bool isLast(const QuadricVertex& v) {
   return v.degree <= 3 && !((v.flags & kOpen) && v.degree > 1);
 }
 
+MERLIN_INLINE Verdict judge(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
+                            std::uint32_t edge, QuadricStage stage) {
+  const QuadricVertex& a = view.vertices[w];
+  const std::uint32_t x = costs.neighbour[edge];
+  const QuadricVertex& v = view.vertices[x];
+  const std::uint32_t shared = costs.shared[edge];
+  const float to[] = {costs.x[edge], costs.y[edge], costs.z[edge]};
+  const float here[] = {0, 0, 0}, there[] = {costs.rx[edge], costs.ry[edge], costs.rz[edge]};
+  // First, while the star of x is on its way: a has been looked at.
+  const bool flips = stage != QuadricStage::kNoFlips && turns(view, a, a.position, here, to, x);
+  for (std::uint32_t k = 0; k < v.degree; ++k)
+    __builtin_prefetch(&view.vertices[view.corners[v.star + k].b]);
+  if (keepsTopology(stage) && !vanishes(view, w, costs, edge)) {
+    const std::uint32_t left = a.degree + v.degree - 2 * shared;
+    if (shared > 2 || left < 1) return Verdict::kLink;
+    if (left > kMostDegree && left > std::max(a.degree, v.degree)) return Verdict::kLink;
+    if (!linkHolds(view, a, v, costs, edge) || !sidesKeepEnough(view, a, x, edge))
+      return Verdict::kLink;
+  }
+  if (stage == QuadricStage::kNoFlips) return Verdict::kLegal;
+  // A collapse will write there.
+  for (std::uint32_t k = 0; k < v.degree; ++k) {
+    const QuadricVertex& ring = view.vertices[view.corners[v.star + k].b];
+    __builtin_prefetch(view.corners + ring.star, 1);
+  }
+  return flips || turns(view, v, a.position, there, to, w) ? Verdict::kFlip : Verdict::kLegal;
+}
+
+Verdict judgePortable(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
+                      std::uint32_t edge, QuadricStage stage) {
+  return judge(view, w, costs, edge, stage);
+}
+
+#if defined(__x86_64__)
+__attribute__((target("avx2"))) Verdict judgeAvx2(const QuadricView& view, std::uint32_t w,
+                                                  const EdgeCosts& costs, std::uint32_t edge,
+                                                  QuadricStage stage) {
+  return judge(view, w, costs, edge, stage);
+}
+#endif
+
 }  // namespace
 
 bool vanishes(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
@@ -143,24 +221,13 @@ float reachOf(const EdgeCosts& costs) {
   return reach;
 }
 
-Verdict judge(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs, std::uint32_t edge,
-              QuadricStage stage) {
-  const QuadricVertex& a = view.vertices[w];
-  const std::uint32_t x = costs.neighbour[edge];
-  const QuadricVertex& v = view.vertices[x];
-  const std::uint32_t shared = costs.shared[edge];
-  if (keepsTopology(stage) && !vanishes(view, w, costs, edge)) {
-    const std::uint32_t left = a.degree + v.degree - 2 * shared;
-    if (shared > 2 || left < 1) return Verdict::kLink;
-    if (left > kMostDegree && left > std::max(a.degree, v.degree)) return Verdict::kLink;
-    if (!linkHolds(view, a, v, costs, edge) || !sidesKeepEnough(view, a, x)) return Verdict::kLink;
-  }
-  if (stage == QuadricStage::kNoFlips) return Verdict::kLegal;
-  const float to[] = {costs.x[edge], costs.y[edge], costs.z[edge]};
-  const float here[] = {0, 0, 0}, there[] = {costs.rx[edge], costs.ry[edge], costs.rz[edge]};
-  if (turns(view, a, a.position, here, to, x) || turns(view, v, a.position, there, to, w))
-    return Verdict::kFlip;
-  return Verdict::kLegal;
+JudgeEdge portableEdgeJudge() { return judgePortable; }
+
+JudgeEdge edgeJudge() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2")) return judgeAvx2;
+#endif
+  return judgePortable;
 }
 
 void stayAtLocked(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, std::uint32_t edge) {

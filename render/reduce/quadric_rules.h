@@ -28,8 +28,14 @@ bool vanishes(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs, 
 float reachOf(const EdgeCosts& costs);
 
 // Whether w may collapse with its neighbour number `edge` of `costs`. Pure.
-Verdict judge(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs, std::uint32_t edge,
-              QuadricStage stage);
+using JudgeEdge = Verdict (*)(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
+                              std::uint32_t edge, QuadricStage stage);
+
+// The fastest for this processor. All give the same verdicts.
+JudgeEdge edgeJudge();
+
+// For tests: that of any processor.
+JudgeEdge portableEdgeJudge();
 
 // Puts the new vertex where the locked end is, and says what that costs (of the channels what they
 // cost at their best place). kNoEdge where both ends are locked.

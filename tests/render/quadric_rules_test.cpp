@@ -1,0 +1,109 @@
+// Which collapses may be: slow and wide processors against one another and against a plain look.
+#include "render/reduce/quadric_rules.h"
+
+#include <cmath>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/meshes.h"
+
+namespace merlin::render {
+namespace {
+
+struct Bench {
+  explicit Bench(const Mesh& mesh) : surface(mesh), values(mesh.vertexCount(), 0) {
+    for (std::uint32_t v = 0; v < surface.vertexCount(); ++v) edgeEvaluator()(view(), v, costs);
+  }
+  QuadricView view() const { return {&surface[0], surface.corners(0), &values}; }
+  std::set<std::uint32_t> ringOf(std::uint32_t v) const {
+    std::set<std::uint32_t> ring;
+    for (const Corner& c : surface.star(surface[v])) ring.insert({c.b, c.c});
+    return ring;
+  }
+
+  QuadricMesh surface;
+  QuadricChannels values;
+  EdgeCosts costs;
+};
+
+// So rough that a good part of all collapses would turn a face.
+Mesh roughSurface(std::uint32_t seed) { return test::noisyGrid(40, 40, 2.0, seed); }
+
+TEST(QuadricRules, EveryProcessorGivesTheSameVerdict) {
+  Bench bench(roughSurface(1));
+  std::size_t verdicts[3] = {};
+  for (std::uint32_t v = 0; v < bench.surface.vertexCount(); ++v) {
+    edgeEvaluator()(bench.view(), v, bench.costs);
+    for (std::uint32_t e = 0; e < bench.costs.count; ++e) {
+      for (const auto stage : {QuadricStage::kAll, QuadricStage::kNoLink, QuadricStage::kNoFlips}) {
+        const Verdict wide = edgeJudge()(bench.view(), v, bench.costs, e, stage);
+        ASSERT_EQ(wide, portableEdgeJudge()(bench.view(), v, bench.costs, e, stage));
+        ++verdicts[static_cast<std::size_t>(wide)];
+      }
+    }
+  }
+  for (const std::size_t n : verdicts) EXPECT_GT(n, 0u);
+}
+
+// A star that is no fan in lanes is looked at face by face: the same answer.
+TEST(QuadricRules, LanesSeeTheFlipsThatFacesDo) {
+  Bench bench(roughSurface(2));
+  std::size_t flips = 0, legal = 0;
+  for (std::uint32_t v = 0; v < bench.surface.vertexCount(); ++v) {
+    if (bench.surface[v].flags & kOpen) continue;
+    edgeEvaluator()(bench.view(), v, bench.costs);
+    for (std::uint32_t e = 0; e < bench.costs.count; ++e) {
+      QuadricVertex &a = bench.surface[v], &x = bench.surface[bench.costs.neighbour[e]];
+      const auto flags = std::pair{a.flags, x.flags};
+      const auto judge = [&] {
+        return edgeJudge()(bench.view(), v, bench.costs, e, QuadricStage::kNoLink);
+      };
+      const Verdict in_lanes = judge();
+      a.flags |= kOpen;
+      x.flags |= kOpen;
+      const Verdict by_faces = judge();
+      std::tie(a.flags, x.flags) = flags;
+      ASSERT_EQ(in_lanes, by_faces);
+      ++(in_lanes == Verdict::kFlip ? flips : legal);
+    }
+  }
+  EXPECT_GT(flips, 100u);
+  EXPECT_GT(legal, 100u);
+}
+
+TEST(QuadricRules, TheEndsShareNoNeighbourBesideTheirTriangles) {
+  // A tube of three around: each ring is a triangle without a face.
+  Mesh tube;
+  for (std::uint32_t k = 0; k < 30; ++k) {
+    const double angle = 2.0943951 * (k % 3);
+    tube.positions.insert(tube.positions.end(),
+                          {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)),
+                           static_cast<float>(k / 3)});
+  }
+  for (std::uint32_t k = 0; k < 27; ++k) {
+    const std::uint32_t right = k % 3 == 2 ? k - 2 : k + 1;
+    tube.triangles.insert(tube.triangles.end(), {k, right, k + 3, right, right + 3, k + 3});
+  }
+  Bench bench(tube);
+  std::size_t refused = 0;
+  for (std::uint32_t v = 0; v < 30; ++v) {
+    edgeEvaluator()(bench.view(), v, bench.costs);
+    for (std::uint32_t e = 0; e < bench.costs.count; ++e) {
+      const std::uint32_t x = bench.costs.neighbour[e];
+      if ((bench.surface[v].flags | bench.surface[x].flags) & kOpen) continue;
+      const auto of_v = bench.ringOf(v), of_x = bench.ringOf(x);
+      std::size_t common = 0;
+      for (const std::uint32_t o : of_v) common += of_x.count(o);
+      const Verdict verdict = edgeJudge()(bench.view(), v, bench.costs, e, QuadricStage::kAll);
+      EXPECT_EQ(verdict == Verdict::kLink, common != 2);
+      refused += verdict == Verdict::kLink;
+    }
+  }
+  EXPECT_EQ(refused, 8u * 3 * 2);
+}
+
+}  // namespace
+}  // namespace merlin::render
