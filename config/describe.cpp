@@ -10,7 +10,7 @@ constexpr const char* kSlot7Rules[] = {"zero", "neutral", "derived", "switch"};
 constexpr const char* kBackends[] = {"egl", "osmesa"};
 constexpr const char* kTileKinds[] = {"wall", "operator"};
 constexpr const char* kWhen[] = {"by_action", "enter", "hold", "leave"};
-constexpr const char* kScripts[] = {"visit", "turning", "still", "grabbing"};
+constexpr const char* kScripts[] = {"visit", "turning", "still", "grabbing", "alignment", "pushes"};
 
 constexpr const char* kDialogues[] = {"binary", "text"};
 constexpr const char* kWristLights[] = {"switch", "off", "on"};

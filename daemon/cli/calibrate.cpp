@@ -11,8 +11,8 @@
 
 namespace merlin::cli {
 
-Result<Ok> saveDeviceSettings(const std::string& path, const std::string& device,
-                              const nlohmann::ordered_json& values) {
+Result<nlohmann::ordered_json> readConfiguration(const std::string& path,
+                                                 const std::string& device) {
   auto config = nlohmann::ordered_json::object();
   if (const auto file = MappedFile::open(path)) {
     config = nlohmann::ordered_json::parse(file->text(), nullptr, false);
@@ -26,19 +26,19 @@ Result<Ok> saveDeviceSettings(const std::string& path, const std::string& device
   if (devices.is_null()) devices = nlohmann::ordered_json::object();
   if (!devices.is_object() || (devices.contains(device) && !devices[device].is_object()))
     return Error{Errc::kMalformed, path + ": its /devices is no object; nothing was changed"};
-  devices[device].update(values);
-  return writeFile(path, config.dump(2) + "\n");
+  if (!devices.contains(device)) devices[device] = nlohmann::ordered_json::object();
+  return config;
+}
+
+Result<Ok> saveDeviceSettings(const std::string& path, const std::string& device,
+                              const nlohmann::ordered_json& values) {
+  auto config = readConfiguration(path, device);
+  if (!config) return config.error();
+  (*config)["devices"][device].update(values);
+  return writeFile(path, config->dump(2) + "\n");
 }
 
 namespace {
-
-// Numbers as short as they are exact enough.
-template <typename T>
-nlohmann::ordered_json numbers(const T& values) {
-  auto list = nlohmann::ordered_json::array();
-  for (const auto v : values) list.push_back(std::stod(fmt::format("{:.7g}", v)));
-  return list;
-}
 
 int importGlove(const std::string& input, const std::string& output) {
   const auto file = MappedFile::open(input);
@@ -61,63 +61,6 @@ int importGlove(const std::string& input, const std::string& output) {
   return kExitDone;
 }
 
-struct TrackerOptions {
-  std::string output;
-  int station = 1;
-  std::vector<double> alignment, boresight, hemisphere;
-};
-
-int calibrateTracker(const TrackerOptions& o) {
-  auto values = nlohmann::ordered_json::object();
-  const auto put = [&](const char* key, const std::vector<double>& list) {
-    if (!list.empty()) values[fmt::format(fmt::runtime(key), o.station)] = numbers(list);
-  };
-  put("alignment{}_cm", o.alignment);
-  put("hemisphere{}", o.hemisphere);
-  if (!o.boresight.empty()) {
-    double square = 0;
-    for (const double v : o.boresight) square += v * v;
-    if (square < 0.98 || square > 1.02)
-      return fail({Errc::kInvalidArgument, "--boresight: is no unit quaternion w x y z"});
-    put("boresight{}_wxyz", o.boresight);
-  }
-  if (values.empty())
-    return fail(
-        {Errc::kInvalidArgument, "nothing to save: --alignment, --boresight, --hemisphere"});
-  if (const auto saved = saveDeviceSettings(o.output, "tracker", values); !saved)
-    return fail(saved.error());
-  fmt::print("{}: station {}\n", o.output, o.station);
-  return kExitDone;
-}
-
-struct BallOptions {
-  std::string output;
-  int translation = 0, rotation = 0, dead_zone = -1;
-  std::vector<int> axis_map;
-};
-
-int calibrateBall(const BallOptions& o) {
-  auto values = nlohmann::ordered_json::object();
-  if (o.translation > 0) values["full_scale_translation"] = o.translation;
-  if (o.rotation > 0) values["full_scale_rotation"] = o.rotation;
-  if (o.dead_zone >= 0) values["dead_zone"] = o.dead_zone;
-  if (!o.axis_map.empty()) {
-    std::array<bool, 7> seen{};
-    for (const int axis : o.axis_map) seen[static_cast<std::size_t>(std::abs(axis))] = true;
-    if (seen[0] || std::count(seen.begin(), seen.end(), true) != 6) {
-      return fail({Errc::kInvalidArgument,
-                   "--axis-map: needs each of 1 to 6 once, negative to turn one round"});
-    }
-    values["axis_map"] = o.axis_map;
-  }
-  if (values.empty())
-    return fail({Errc::kInvalidArgument, "nothing to save: see merlin calibrate ball --help"});
-  if (const auto saved = saveDeviceSettings(o.output, "ball", values); !saved)
-    return fail(saved.error());
-  fmt::print("{}: ball\n", o.output);
-  return kExitDone;
-}
-
 }  // namespace
 
 void addCalibrateImport(CLI::App& calibrate, Run& run) {
@@ -130,50 +73,6 @@ void addCalibrateImport(CLI::App& calibrate, Run& run) {
   command->add_option("-o,--output", *output, "The configuration that it goes into")->required();
   command->callback(
       [input, output, &run] { run = [input, output] { return importGlove(*input, *output); }; });
-}
-
-void addCalibrateTracker(CLI::App& calibrate, Run& run) {
-  const auto o = std::make_shared<TrackerOptions>();
-  CLI::App* command = calibrate.add_subcommand(
-      "tracker",
-      "Alignment, boresight and hemisphere of a station.\nExample: merlin calibrate tracker "
-      "--station 1 --boresight 0.7071 0 0 0.7071 -o merlin.json");
-  command->add_option("--station", o->station)->check(CLI::Range(1, 4))->capture_default_str();
-  command
-      ->add_option("--alignment", o->alignment,
-                   "A new origin, a point on its x axis, one on its y axis, centimetres")
-      ->expected(9)
-      ->check(CLI::Range(-1000.0, 1000.0));
-  command
-      ->add_option("--boresight", o->boresight,
-                   "The orientation that counts as straight ahead, w x y z, as merlin shm dump "
-                   "shows it")
-      ->expected(4)
-      ->check(CLI::Range(-1.0, 1.0));
-  command->add_option("--hemisphere", o->hemisphere, "Into the receiver's half of space")
-      ->expected(3)
-      ->check(CLI::Range(-1.0, 1.0));
-  command->add_option("-o,--output", o->output, "The configuration")->required();
-  command->callback([o, &run] { run = [o] { return calibrateTracker(*o); }; });
-}
-
-void addCalibrateBall(CLI::App& calibrate, Run& run) {
-  const auto o = std::make_shared<BallOptions>();
-  CLI::App* command = calibrate.add_subcommand(
-      "ball",
-      "Axis map and sensitivities of the ball.\nExample: merlin calibrate ball --axis-map 1 2 -3 4 "
-      "5 -6 --full-scale-translation 6000 -o merlin.json");
-  command->add_option("--full-scale-translation", o->translation, "Counts of a full push")
-      ->check(CLI::Range(100, 32767));
-  command->add_option("--full-scale-rotation", o->rotation, "Counts of a full twist")
-      ->check(CLI::Range(100, 32767));
-  command->add_option("--dead-zone", o->dead_zone, "Counts that are taken for rest")
-      ->check(CLI::Range(0, 99));
-  command->add_option("--axis-map", o->axis_map, "For x y z and the turns: the ball's axis 1 to 6")
-      ->expected(6)
-      ->check(CLI::Range(-6, 6));
-  command->add_option("-o,--output", o->output, "The configuration")->required();
-  command->callback([o, &run] { run = [o] { return calibrateBall(*o); }; });
 }
 
 void addCalibrate(CLI::App& app, Run& run) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <unistd.h>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/unique_fd.h"
@@ -22,10 +23,32 @@ struct EmulateOptions {
   int garbage_every = 0;
   std::uint64_t seed = 1;
   std::int64_t epoch_ns = 0;
+  bool step = false;
 };
 
+// What ends the serving, and what goes on to the script's next phase.
+struct Commands {
+  int stop_fd, step_fd;  // poll() leaves a descriptor of -1 out
+  std::size_t phases;    // of the script
+  std::size_t& phase;    // that it is in
+};
+
+// A line on standard input.
+void goOn(Commands& commands) {
+  char text[256];
+  const ssize_t n = ::read(commands.step_fd, text, sizeof text);
+  if (n <= 0) commands.step_fd = -1;  // nobody says more
+  for (ssize_t i = 0; i < n; ++i) {
+    if (text[i] != '\n') continue;
+    ++commands.phase;
+    fmt::print("phase {} of {}\n", commands.phase % commands.phases + 1, commands.phases);
+    std::fflush(stdout);
+  }
+}
+
 // Until a signal. What the other side does not read is lost, as on a wire.
-int serve(const io::PtyMaster& line, emulate::Emulator& device, const Clock& clock, int stop_fd) {
+int serve(const io::PtyMaster& line, emulate::Emulator& device, const Clock& clock,
+          Commands commands) {
   std::byte received[256];
   std::string out;
   for (;;) {
@@ -37,9 +60,11 @@ int serve(const io::PtyMaster& line, emulate::Emulator& device, const Clock& clo
     const Duration until = std::max<Duration>(device.nextDue() - clock.now(), Duration::zero());
     const timespec limit{until / std::chrono::seconds(1),
                          (until % std::chrono::seconds(1)).count()};
-    pollfd fds[] = {{line.fd(), POLLIN, 0}, {stop_fd, POLLIN, 0}};
-    if (::ppoll(fds, 2, &limit, nullptr) < 0 && errno != EINTR) return kExitFailed;
+    pollfd fds[] = {
+        {line.fd(), POLLIN, 0}, {commands.stop_fd, POLLIN, 0}, {commands.step_fd, POLLIN, 0}};
+    if (::ppoll(fds, 3, &limit, nullptr) < 0 && errno != EINTR) return kExitFailed;
     if (fds[1].revents != 0) return kExitDone;
+    if (fds[2].revents != 0) goOn(commands);
     if (fds[0].revents == 0) continue;
     const ssize_t n = ::read(line.fd(), received, sizeof received);
     if (n > 0) device.receive(std::span(received, static_cast<std::size_t>(n)), clock.now());
@@ -65,11 +90,15 @@ int emulateDevice(const EmulateOptions& options) {
   const auto line = io::PtyMaster::open(options.link);
   if (!line) return fail(line.error());
   const Timestamp start = options.epoch_ns > 0 ? fromNanoseconds(options.epoch_ns) : clock.now();
-  const auto device = entry->make(settings, *script, start);
+  std::size_t phase = 0;
+  emulate::MotionScript played = *script;
+  if (options.step) played.held = &phase;
+  const auto device = entry->make(settings, played, start);
   fmt::print("{} on pty:{}\n", entry->name,
              options.link.empty() ? line->slavePath() : options.link);
   std::fflush(stdout);
-  return serve(*line, *device, clock, stop.get());
+  return serve(*line, *device, clock,
+               {stop.get(), options.step ? STDIN_FILENO : -1, script->phases.size(), phase});
 }
 
 }  // namespace
@@ -97,6 +126,8 @@ void addEmulate(CLI::App& app, Run& run) {
   command->add_option("--script", options->script, "What the emulated person does")
       ->check(CLI::IsMember(scripts))
       ->capture_default_str();
+  command->add_flag("--step", options->step,
+                    "A phase of the script lasts until Enter is pressed, in place of its time");
   command->add_option("--model", options->model, "Of the device");
   command->add_option("--baud", options->baud, "Speed of the line");
   command

@@ -39,6 +39,17 @@ DeviceHealth notConfigured(Timestamp now) {
   return health;
 }
 
+TrackerFrames framesOf(const FastrakSettings& settings) {
+  TrackerFrames frames;  // NOLINT(*-member-init): filled below
+  for (std::size_t i = 0; i < kStations; ++i) {
+    std::copy(settings.alignment_cm[i].begin(), settings.alignment_cm[i].end(),
+              frames.alignment_cm[i]);
+    std::copy(settings.boresight_wxyz[i].begin(), settings.boresight_wxyz[i].end(),
+              frames.boresight_wxyz[i]);
+  }
+  return frames;
+}
+
 // Opens a line, listened to by the flight recorder; says once what its adapter costs.
 class Opener {
  public:
@@ -93,6 +104,7 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
   role->hand_sink_ =
       std::make_unique<HandSink>(settings.devices.hand, *role->segment_, role->sink_);
   role->addPanel(settings.devices.gpio);
+  role->segment_->tracker_frames.publish(framesOf(settings.devices.tracker));
   const DevicesSettings& d = settings.devices;
   const std::pair<const LineSettings*, std::pair<SampleKind, shm::DeviceIndex>> kLines[] = {
       {&d.glove_line, {SampleKind::kGlove, shm::kGlove}},

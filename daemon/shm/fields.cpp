@@ -192,6 +192,9 @@ std::vector<Field> devicesFields() {
   MERLIN_FIELD(t, PostureState, entered, "");
   MERLIN_FIELD(t, PostureState, name, "");
   MERLIN_FIELD(t, PostureState, seen, "");
+  t.slot("tracker", offsetof(DevicesSegment, tracker_frames));
+  MERLIN_FIELD(t, TrackerFrames, alignment_cm, "4 x 9 cm");
+  MERLIN_FIELD(t, TrackerFrames, boresight_wxyz, "4 x wxyz");
   return t.take();
 }
 

@@ -67,6 +67,7 @@ struct DevicesSegment {
   Channel<GpioSample> gpio;                            // writer: the panel's thread
   alignas(64) SeqSlot<DeviceHealth> gpio_health;       // writer: the panel's thread
   alignas(64) SeqSlot<PostureState> posture_state;     // writer: the glove's device thread
+  alignas(64) SeqSlot<TrackerFrames> tracker_frames;   // writer: the daemon, as it starts
 };
 
 // How the wall fares; written once a frame by the wall's thread. Shares are 0..1.

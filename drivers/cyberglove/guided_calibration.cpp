@@ -8,7 +8,7 @@
 namespace merlin::cyberglove {
 namespace {
 
-constexpr GuidedPose kPoses[] = {
+constexpr GuidedStep kPoses[] = {
     {"flat", "hand flat on the table, fingers together, thumb beside them, wrist straight"},
     {"fist", "a tight fist, thumb outside"},
     {"spread", "fingers and thumb spread as far as they go, hand flat"},
@@ -36,7 +36,7 @@ constexpr double kLeastSpan = 8;  // raw counts; a sensor's noise is one or two
 
 }  // namespace
 
-std::span<const GuidedPose> guidedPoses() { return kPoses; }
+std::span<const GuidedStep> guidedPoses() { return kPoses; }
 
 void GuidedCalibration::begin(std::size_t pose) {
   pose_ = pose;

@@ -8,15 +8,12 @@
 
 #include "daemon/base/result.h"
 #include "drivers/cyberglove/settings.h"
+#include "drivers/port/guided_step.h"
 #include "drivers/port/samples.h"
 
 namespace merlin::cyberglove {
 
-struct GuidedPose {
-  const char* name;
-  const char* instruction;
-};
-std::span<const GuidedPose> guidedPoses();
+std::span<const GuidedStep> guidedPoses();
 
 // What was seen of each sensor while a pose was held, and over all poses.
 class GuidedCalibration {

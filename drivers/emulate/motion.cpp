@@ -33,11 +33,34 @@ constexpr Phase kTurning[] = {{1000.0, "open", kSpin, 0, true}};
 constexpr Phase kStill[] = {{1000.0, "open", kRest, 0, false}};
 constexpr Phase kGrabbing[] = {{1.0, "open", kRest, 0, true}, {4.0, "fist", kRest, 0, true}};
 
+// What merlin calibrate tracker asks for: an origin, a point on x (the transmitter's y), one near y
+// (its -x), straight ahead (turned by 40 degrees).
+constexpr HandPlace kOrigin{}, kOnX{{0.60F, 0.45F, -0.15F}}, kOnY{{0.30F, 0.10F, -0.15F}},
+    kAhead{{0.45F, 0.20F, -0.15F}, 40 * std::numbers::pi / 180};
+constexpr Phase kAlignment[] = {{5, "open", kRest, 0, false, kOrigin},
+                                {5, "open", kRest, 0, false, kOnX},
+                                {5, "open", kRest, 0, false, kOnY},
+                                {5, "open", kRest, 0, false, kAhead}};
+
+// What merlin calibrate ball asks for, of a ball that stands turned by a quarter and never rests
+// quite.
+constexpr Phase kPushes[] = {
+    {5, "open", {0.0015F, 0, 0, 0, -0.005F, 0}, 0, false},
+    {5, "open", {0.1F, -0.8F, 0.05F, 0, 0, 0.2F}, 0, false},
+    {5, "open", {0.7F, 0.1F, 0, 0, 0.2F, 0}, 0, false},
+    {5, "open", {0, 0.05F, -0.9F, 0.1F, 0, 0}, 0, false},
+    {5, "open", {0, 0.1F, 0, 0.1F, -0.8F, 0}, 0, false},
+    {5, "open", {0, 0, 0.1F, 0.75F, 0.1F, 0}, 0, false},
+    {5, "open", {0.1F, 0, 0, 0, 0, -0.9F}, 0, false},
+};
+
 constexpr MotionScript kScripts[] = {
     {"visit", "a visitor turns the model, rests, grabs it with a fist, lets go", kVisit},
     {"turning", "the ball is twisted all the time", kTurning},
     {"still", "nobody is there: open hand, ball at rest, tracker noise only", kStill},
     {"grabbing", "fist and open hand in turn, the hand moves", kGrabbing},
+    {"alignment", "the hand goes where merlin calibrate tracker asks, 5 s each", kAlignment},
+    {"pushes", "the ball is moved as merlin calibrate ball asks, 5 s each", kPushes},
 };
 
 float mix(float a, float b, double share) { return a + (b - a) * static_cast<float>(share); }
@@ -48,13 +71,23 @@ double smooth(double x) {
   return x * x * (3 - 2 * x);
 }
 
-// Where the hand is, relative to the transmitter; wanders where the phase says so.
-void placeHand(Motion& motion, double seconds, double amplitude) {
+HandPlace mix(const HandPlace& a, const HandPlace& b, double share) {
+  HandPlace place;
+  for (std::size_t i = 0; i < 3; ++i)
+    place.position_m[i] = mix(a.position_m[i], b.position_m[i], share);
+  place.turn_rad = a.turn_rad + (b.turn_rad - a.turn_rad) * share;
+  return place;
+}
+
+// Where the hand is, relative to the transmitter; wanders about it where the phase says so.
+void placeHand(Motion& motion, const HandPlace& place, double seconds, double amplitude) {
   const double w = 2 * std::numbers::pi * seconds;
-  motion.position_m = {0.60F + static_cast<float>(amplitude * 0.08 * std::sin(w / 2.7)),
-                       0.05F + static_cast<float>(amplitude * 0.20 * std::sin(w / 3.5)),
-                       -0.15F + static_cast<float>(amplitude * 0.10 * std::sin(w / 2.3))};
-  const double half = amplitude * 0.35 * std::sin(w / 4.1);  // half of the angle about z
+  const auto& p = place.position_m;
+  motion.position_m = {p[0] + static_cast<float>(amplitude * 0.08 * std::sin(w / 2.7)),
+                       p[1] + static_cast<float>(amplitude * 0.20 * std::sin(w / 3.5)),
+                       p[2] + static_cast<float>(amplitude * 0.10 * std::sin(w / 2.3))};
+  // half of the angle about z
+  const double half = place.turn_rad / 2 + amplitude * 0.35 * std::sin(w / 4.1);
   motion.orientation_wxyz = {static_cast<float>(std::cos(half)), 0, 0,
                              static_cast<float>(std::sin(half))};
 }
@@ -67,8 +100,9 @@ Motion MotionScript::at(Duration t) const {
   double since = std::fmod(std::max(toSeconds(t), 0.0), length);
   std::size_t i = 0;
   while (i + 1 < phases.size() && since >= phases[i].seconds) since -= phases[i++].seconds;
+  if (held) i = *held % phases.size();
   const Phase& now = phases[i];
-  const Phase& before = phases[(i + phases.size() - 1) % phases.size()];
+  const Phase& before = held ? now : phases[(i + phases.size() - 1) % phases.size()];
   const double way = since / std::min(kTransition, now.seconds);
   const double share = smooth(way);
 
@@ -81,7 +115,8 @@ Motion MotionScript::at(Duration t) const {
   }
   for (std::size_t a = 0; a < 6; ++a) motion.ball[a] = mix(before.ball[a], now.ball[a], share);
   motion.ball_buttons = now.buttons;
-  placeHand(motion, toSeconds(t), mix(before.wave ? 1 : 0, now.wave ? 1 : 0, share));
+  placeHand(motion, mix(before.place, now.place, share), toSeconds(t),
+            mix(before.wave ? 1 : 0, now.wave ? 1 : 0, share));
   return motion;
 }
 

@@ -22,6 +22,12 @@ struct Motion {
   std::uint32_t ball_buttons = 0;  // bit i = button i + 1
 };
 
+// Where the hand is in a phase.
+struct HandPlace {
+  std::array<float, 3> position_m{0.60F, 0.05F, -0.15F};  // transmitter frame
+  double turn_rad = 0;                                    // about its z
+};
+
 // What the person does during one phase; between phases, hands move over in kTransition.
 struct Phase {
   double seconds;             // how long
@@ -29,12 +35,15 @@ struct Phase {
   std::array<float, 6> ball;  // held push and twist
   std::uint32_t buttons;      // held
   bool wave;                  // the hand moves about; else it is still
+  HandPlace place = {};
 };
 
 struct MotionScript {
   const char* name;
   const char* help;
   std::span<const Phase> phases;  // repeated for ever
+  // The number of the phase that lasts, where the caller says which; null: they follow by time.
+  const std::size_t* held = nullptr;
 
   // At `t` since the start of the script. Tracker noise is the emulator's, not the script's.
   Motion at(Duration t) const;

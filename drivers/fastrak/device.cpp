@@ -139,9 +139,10 @@ std::string FastrakDevice::stationSetUp(std::size_t i) const {
   const int station = static_cast<int>(i) + 1;
   const auto& h = settings_.hemisphere[i];
   std::string commands = fmt::format("H{},{:.4g},{:.4g},{:.4g}\r", station, h[0], h[1], h[2]);
+  commands += fmt::format("R{}\r", station);  // of whoever set it last
   if (settings_.alignment_cm[i] != FastrakSettings::kAligned) {
     const float unit = settings_.centimetres ? 1.0F : 1 / 2.54F;
-    commands += fmt::format("R{0}\rA{0}", station);
+    commands += fmt::format("A{}", station);
     for (const float v : settings_.alignment_cm[i]) commands += fmt::format(",{:.2f}", v * unit);
     commands += '\r';
   }

@@ -42,6 +42,14 @@ struct TrackerSample {
 };
 static_assert(sizeof(TrackerSample) == 48 && offsetof(TrackerSample, position_m) == 16);
 
+// What the tracker's samples are given in, for who wants them in the transmitter's frame; of each
+// station, as FastrakSettings has it.
+struct TrackerFrames {
+  float alignment_cm[kStations][9];  // a point of the origin, one on the x axis, one on the y axis
+  float boresight_wxyz[kStations][4];  // counts as straight ahead, in that frame
+};
+static_assert(sizeof(TrackerFrames) == 208);
+
 struct BallSample {
   std::int64_t received_ns;
   std::uint32_t counter;

@@ -1,4 +1,5 @@
 #include <cstring>
+#include <map>
 #include <set>
 #include <thread>
 
@@ -49,13 +50,16 @@ TEST(Fields, DescribeEachValueOnceAndInsideTheSegment) {
   for (const Field& f : devicesFields()) {
     EXPECT_TRUE(names.insert(f.name).second) << f.name;
     EXPECT_GT(f.offset, f.slot) << f.name;
-    const std::string_view narrow = "sB";
-    const std::size_t most = narrow.find(f.type[0]) != std::string_view::npos ? 1 : 8;
-    EXPECT_LE(f.offset + f.count * most, sizeof(DevicesSegment)) << f.name;
+    const std::size_t size =
+        std::map<char, std::size_t>{{'s', 1}, {'B', 1}, {'h', 2}, {'f', 4}, {'i', 4},
+                                    {'I', 4}, {'d', 8}, {'q', 8}, {'Q', 8}}
+            .at(f.type[0]);
+    EXPECT_LE(f.offset + f.count * size, sizeof(DevicesSegment)) << f.name;
   }
   EXPECT_TRUE(names.count("glove.angle_rad"));
   EXPECT_TRUE(names.count("tracker4.orientation_wxyz"));
-  for (const char* name : {"hand.joint_rad", "gpio.power", "ball.count", "ball.wake", "ball.ring"})
+  for (const char* name : {"tracker.alignment_cm", "tracker.boresight_wxyz", "hand.joint_rad",
+                           "gpio.power", "ball.count", "ball.wake", "ball.ring"})
     EXPECT_TRUE(names.count(name)) << name;
   EXPECT_LE(names.size(), kMostFields);
   EXPECT_LE(wallFields().size(), kMostFields);

@@ -100,6 +100,19 @@ TEST(MotionScript, NeverLeavesItsPhases) {
   }
 }
 
+TEST(MotionScript, HoldsThePhaseThatTheCallerSays) {
+  std::size_t phase = 0;
+  MotionScript script = *findMotionScript("alignment");
+  script.held = &phase;
+  EXPECT_FLOAT_EQ(script.at(seconds(7)).position_m[1], 0.05F);
+  EXPECT_FLOAT_EQ(script.at(seconds(700)).position_m[1], 0.05F);
+  phase = 5;  // of four: the second
+  EXPECT_FLOAT_EQ(script.at(seconds(700)).position_m[1], 0.45F);
+  EXPECT_FLOAT_EQ(script.at(Duration::zero()).position_m[1], 0.45F) << "at once";
+  phase = 3;
+  EXPECT_NEAR(script.at(seconds(1)).orientation_wxyz[3], 0.34202F, 1e-5F);  // half of 40 degrees
+}
+
 TEST(CybergloveEmulator, AnswersQueries) {  // fact sheet, section 4.5 and example 4
   Box box("cyberglove");
   EXPECT_EQ(box.ask("?M"), "\x3F\x4D\x7F\xFF\x7F\x00"s);

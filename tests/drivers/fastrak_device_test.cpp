@@ -55,7 +55,8 @@ TEST(FastrakDevice, SpeaksTheDialogueOfTheFactSheet) {  // section 8
   settings.centimetres = false;
   Tracker tracker({.model = "2"}, settings);
   ASSERT_TRUE(tracker.device->open(tracker.stream));
-  EXPECT_EQ(tracker.stream.written(), "cSl1\rUH1,1,0,0\rO1,2,11,0\rH2,0,-0.5,1\rO2,2,11,0\rfC");
+  EXPECT_EQ(tracker.stream.written(),
+            "cSl1\rUH1,1,0,0\rR1\rO1,2,11,0\rH2,0,-0.5,1\rR2\rO2,2,11,0\rfC");
 }
 
 TEST(FastrakDevice, StreamsAHundredAndTwentyRecordsASecond) {
@@ -150,6 +151,19 @@ TEST(FastrakDevice, AlignsItsFrameAndLooksStraightAhead) {
       }
     }
   }
+}
+
+TEST(FastrakDevice, AnAlignmentOfWhoeverHadTheBoxBeforeIsReset) {
+  Tracker tracker;
+  for (const char c : std::string("A1,50,0,0,50,100,0,-50,0,0\r"))
+    tracker.emulator->receive(std::as_bytes(std::span(&c, 1)), tracker.clock.now());
+  ASSERT_TRUE(tracker.device->open(tracker.stream));
+  ASSERT_TRUE(tracker.pollFor(*tracker.device, seconds(1)));
+  ASSERT_FALSE(tracker.sink.tracker.empty());
+  const TrackerSample& s = tracker.sink.tracker.back();
+  const auto m = tracker.script.at(fromNanoseconds(s.received_ns) - tracker.start);
+  EXPECT_NEAR(s.position_m[0], m.position_m[0], 0.005);
+  EXPECT_NEAR(s.position_m[1], m.position_m[1], 0.005);
 }
 
 TEST(FastrakDevice, AStylussButtonComesWithItsRecords) {

@@ -17,7 +17,8 @@
 
 namespace merlin::test {
 
-// Standard output and standard error go into one file; see output().
+// Standard output and standard error go into one file; see output(). Standard input is what type()
+// says.
 class Process {
  public:
   explicit Process(std::vector<std::string> arguments,
@@ -25,8 +26,15 @@ class Process {
     char name[] = "/tmp/merlin-output-XXXXXX";
     output_ = ::mkstemp(name);
     ::unlink(name);
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) return;
+    input_ = ends[1];
     pid_ = ::fork();
-    if (pid_ != 0) return;
+    if (pid_ != 0) {
+      ::close(ends[0]);
+      return;
+    }
+    ::dup2(ends[0], STDIN_FILENO);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     ::dup2(output_, STDOUT_FILENO);
     ::dup2(output_, STDERR_FILENO);
@@ -40,11 +48,17 @@ class Process {
   ~Process() {
     if (!status_) kill(SIGKILL);
     ::close(output_);
+    ::close(input_);
   }
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
   pid_t pid() const { return pid_; }
+
+  // Into its standard input.
+  void type(const std::string& text) const {
+    EXPECT_EQ(::write(input_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
 
   // What it has written so far.
   std::string output() const {
@@ -82,7 +96,7 @@ class Process {
 
  private:
   pid_t pid_ = -1;
-  int output_ = -1;
+  int output_ = -1, input_ = -1;
   std::optional<int> status_;
 };
 

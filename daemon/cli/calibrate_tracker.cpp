@@ -1,0 +1,222 @@
+// merlin calibrate tracker: a station's alignment and boresight, told or by holding it there.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "daemon/base/files.h"
+#include "daemon/cli/calibrate.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/guide.h"
+#include "daemon/cli/live_samples.h"
+#include "drivers/fastrak/guided_alignment.h"
+#include "drivers/fastrak/protocol.h"
+
+namespace merlin::cli {
+namespace {
+
+using fastrak::GuidedAlignment;
+using fastrak::StationFrame;
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+struct TrackerOptions {
+  std::string output, instance = "merlin";
+  int station = 1;
+  std::vector<double> alignment, boresight, hemisphere;  // told
+  std::vector<std::string> steps = {"alignment", "boresight"};
+  GuideTiming timing;
+
+  bool told() const { return !alignment.empty() || !boresight.empty() || !hemisphere.empty(); }
+  bool has(const char* step) const {
+    return std::find(steps.begin(), steps.end(), step) != steps.end();
+  }
+};
+
+std::string keyOf(const char* form, int station) {
+  return fmt::format(fmt::runtime(form), station);
+}
+constexpr const char *kAlignmentKey = "alignment{}_cm", *kBoresightKey = "boresight{}_wxyz";
+
+int tell(const TrackerOptions& o) {
+  auto values = Json::object();
+  const auto put = [&](const char* key, const std::vector<double>& list) {
+    if (!list.empty()) values[keyOf(key, o.station)] = numbers(list);
+  };
+  put(kAlignmentKey, o.alignment);
+  put("hemisphere{}", o.hemisphere);
+  if (!o.boresight.empty()) {
+    double square = 0;
+    for (const double v : o.boresight) square += v * v;
+    if (square < 0.98 || square > 1.02)
+      return fail({Errc::kInvalidArgument, "--boresight: is no unit quaternion w x y z"});
+    put(kBoresightKey, o.boresight);
+  }
+  if (const auto saved = saveDeviceSettings(o.output, "tracker", values); !saved)
+    return fail(saved.error());
+  fmt::print("{}: station {}\n", o.output, o.station);
+  return kExitDone;
+}
+
+// A station's samples from shared memory.
+class GuidedStation final : public Guided {
+ public:
+  GuidedStation(LiveSamples<TrackerSample> samples, const StationFrame& present, std::size_t first)
+      : samples_(std::move(samples)), present_(present), first_(first), alignment_(present) {}
+
+  Result<Ok> listen(bool measuring) override {
+    return samples_.listen([&](const TrackerSample& sample) {
+      newest_ = sample;
+      if (measuring) alignment_.add(sample);
+    });
+  }
+  void begin(std::size_t step) override { alignment_.begin(first_ + step); }
+  Result<std::string> end() override {
+    const std::string complaint = samples_.complaint();
+    const auto held = alignment_.end();
+    if (!held && !complaint.empty())
+      return Error{held.error().code, fmt::format("the tracker does not stream: {}", complaint)};
+    if (!held) return held.error();
+    const auto& p = held->position_m;
+    return fmt::format(
+        "{} samples about {:.2f} {:.2f} {:.2f} cm, all within {:.2f} cm and {:.2f} "
+        "degrees",
+        held->samples, 100 * p[0], 100 * p[1], 100 * p[2], 100 * held->spread_m,
+        kDegrees * held->spread_rad);
+  }
+  std::string now() const override {
+    if (!newest_) return "no sample yet";
+    const auto sample = fastrak::inTransmitterFrame(*newest_, present_);
+    std::array<float, 4> q{};
+    std::copy(std::begin(sample.orientation_wxyz), std::end(sample.orientation_wxyz), q.begin());
+    const auto angles = fastrak::anglesOf(q);
+    const auto& p = sample.position_m;
+    return fmt::format(
+        "x {:7.2f}  y {:7.2f}  z {:7.2f} cm   az {:6.1f}  el {:6.1f}  roll {:6.1f} "
+        "degrees",
+        100 * p[0], 100 * p[1], 100 * p[2], angles[0], angles[1], angles[2]);
+  }
+  StationFrame solve() const { return alignment_.solve(); }
+
+ private:
+  LiveSamples<TrackerSample> samples_;
+  StationFrame present_;
+  std::size_t first_;
+  GuidedAlignment alignment_;
+  std::optional<TrackerSample> newest_;
+};
+
+// What the running merlind gives this station's samples in. Errors: kTimeout (it has not said so).
+Result<StationFrame> presentFrame(const shm::DevicesSegment& segment, int station) {
+  const auto frames = segment.tracker_frames.read();
+  if (!frames) return Error{Errc::kTimeout, "merlind is still starting: try again"};
+  const auto s = static_cast<std::size_t>(station - 1);
+  StationFrame frame;
+  std::copy_n(frames->alignment_cm[s], 9, frame.alignment_cm.begin());
+  std::copy_n(frames->boresight_wxyz[s], 4, frame.boresight_wxyz.begin());
+  return frame;
+}
+
+// Whether that member of the file, or its default, is what the running merlind has.
+template <std::size_t N>
+bool agrees(const Json& tracker, const std::string& key, const std::array<float, N>& running,
+            const std::array<float, N>& standard) {
+  constexpr float kRounded = 0.006F;  // as it may be written
+  const auto at = tracker.find(key);
+  if (at != tracker.end() && (!at->is_array() || at->size() != N)) return false;
+  for (std::size_t i = 0; i < N; ++i) {
+    if (at != tracker.end() && !(*at)[i].is_number()) return false;
+    const float value = at == tracker.end() ? standard[i] : (*at)[i].template get<float>();
+    if (std::abs(value - running[i]) > kRounded) return false;
+  }
+  return true;
+}
+
+// What is not measured anew is kept, so it has to be the same in the file and in the daemon.
+Result<Ok> checkKept(const TrackerOptions& o, const StationFrame& present) {
+  const auto config = readConfiguration(o.output, "tracker");
+  if (!config) return config.error();
+  const Json& tracker = (*config)["devices"]["tracker"];
+  const std::string alignment = keyOf(kAlignmentKey, o.station);
+  const std::string boresight = keyOf(kBoresightKey, o.station);
+  std::string other;
+  if (!o.has("alignment") &&
+      !agrees(tracker, alignment, present.alignment_cm, FastrakSettings::kAligned))
+    other = alignment;
+  if (!o.has("boresight") &&
+      !agrees(tracker, boresight, present.boresight_wxyz, FastrakSettings::kAhead))
+    other = boresight;
+  if (other.empty()) return Ok{};
+  return Error{Errc::kInvalidArgument,
+               fmt::format("{}: its /devices/tracker/{} is not what merlind runs with, and --steps "
+                           "keeps it: restart merlind with this file, or do both steps",
+                           o.output, other)};
+}
+
+int guideTracker(const TrackerOptions& o) {
+  if (const auto writable = checkWritable(o.output); !writable) return fail(writable.error());
+  const auto station = static_cast<std::size_t>(o.station - 1);
+  auto samples = LiveSamples<TrackerSample>::open(
+      o.instance, shm::kTracker, [station](const shm::DevicesSegment& s) -> const auto& {
+        return s.tracker[station];
+      });
+  if (!samples) return fail(samples.error());
+  const auto present = presentFrame(samples->segment(), o.station);
+  if (!present) return fail(present.error());
+  if (const auto kept = checkKept(o, *present); !kept) return fail(kept.error());
+  const std::size_t first = o.has("alignment") ? fastrak::kOrigin : fastrak::kAhead;
+  const std::size_t end = o.has("boresight") ? fastrak::kAhead + 1 : fastrak::kAhead;
+  GuidedStation guided(*std::move(samples), *present, first);
+  const auto steps = fastrak::alignmentSteps().subspan(first, end - first);
+  if (const auto done = guide(steps, o.timing, guided); !done) return fail(done.error());
+  const StationFrame solved = guided.solve();
+  const Json alignment = numbers(solved.alignment_cm), boresight = numbers(solved.boresight_wxyz);
+  const auto saved = saveDeviceSettings(
+      o.output, "tracker",
+      {{keyOf(kAlignmentKey, o.station), alignment}, {keyOf(kBoresightKey, o.station), boresight}});
+  if (!saved) return fail(saved.error());
+  fmt::print("\n{}: station {}, alignment {} cm, boresight {}; restart merlind to use it\n",
+             o.output, o.station, alignment.dump(), boresight.dump());
+  return kExitDone;
+}
+
+}  // namespace
+
+void addCalibrateTracker(CLI::App& calibrate, Run& run) {
+  const auto o = std::make_shared<TrackerOptions>();
+  CLI::App* command = calibrate.add_subcommand(
+      "tracker",
+      "Alignment and boresight of a station: guides you through holding it there, with the samples "
+      "of a running merlind, or takes the numbers.\nExample: merlin calibrate tracker --station 1 "
+      "-o merlin.json\nExample: merlin calibrate tracker --station 1 --boresight 0.7071 0 0 0.7071 "
+      "-o merlin.json");
+  command->add_option("--station", o->station)->check(CLI::Range(1, 4))->capture_default_str();
+  command->add_option("--steps", o->steps, "What to guide through: alignment, boresight or both")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"alignment", "boresight"}))
+      ->capture_default_str();
+  addGuideTiming(*command, o->timing);
+  addInstance(*command, o->instance);
+  command
+      ->add_option("--alignment", o->alignment,
+                   "A new origin, a point on its x axis, one on its y axis, centimetres")
+      ->expected(9)
+      ->check(CLI::Range(-1000.0, 1000.0));
+  command
+      ->add_option("--boresight", o->boresight,
+                   "The orientation that counts as straight ahead, w x y z, as merlin shm dump "
+                   "shows it")
+      ->expected(4)
+      ->check(CLI::Range(-1.0, 1.0));
+  command->add_option("--hemisphere", o->hemisphere, "Into the receiver's half of space")
+      ->expected(3)
+      ->check(CLI::Range(-1.0, 1.0));
+  command->add_option("-o,--output", o->output, "The configuration")->required();
+  command->callback([o, &run] { run = [o] { return o->told() ? tell(*o) : guideTracker(*o); }; });
+}
+
+}  // namespace merlin::cli

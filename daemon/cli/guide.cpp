@@ -1,0 +1,101 @@
+#include "daemon/cli/guide.h"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include "daemon/base/clock.h"
+
+namespace merlin::cli {
+namespace {
+
+constexpr int kMostTries = 5;  // of a step; a script has no person who would give up
+constexpr Duration kRedraw = std::chrono::milliseconds(100);
+
+bool enterPressed() {
+  pollfd item{STDIN_FILENO, POLLIN, 0};
+  char line[256];
+  return ::poll(&item, 1, 0) > 0 && ::read(STDIN_FILENO, line, sizeof line) >= 0;
+}
+
+// What is heard now, on a line of its own that is written over; nothing where it is no terminal.
+class LiveLine {
+ public:
+  ~LiveLine() {
+    if (drawn_ != Timestamp{}) fmt::print(stderr, "\r\033[K");
+  }
+  void draw(const Guided& guided, Timestamp now) {
+    if (!terminal_ || now - drawn_ < kRedraw) return;
+    const std::string line = guided.now();
+    if (line.empty()) return;
+    drawn_ = now;
+    fmt::print(stderr, "\r\033[K  {}", line);
+  }
+
+ private:
+  bool terminal_ = ::isatty(STDERR_FILENO) == 1;
+  Timestamp drawn_{};
+};
+
+// Listens until `until` says so.
+template <typename Until>
+Result<Ok> listenUntil(Guided& guided, const Clock& clock, bool measuring, Until until) {
+  LiveLine live;
+  while (!until()) {
+    if (auto heard = guided.listen(measuring); !heard) return heard;
+    live.draw(guided, clock.now());
+  }
+  return Ok{};
+}
+
+// Once: what end() says of it; an error that ends the calibration is in `broken`.
+Result<std::string> tryStep(std::size_t step, const GuideTiming& timing, Guided& guided,
+                            Result<Ok>& broken) {
+  const SystemClock clock;
+  const Timestamp ready = clock.now() + fromSeconds(timing.pause_s);
+  broken = listenUntil(guided, clock, false,
+                       [&] { return timing.pause_s > 0 ? clock.now() >= ready : enterPressed(); });
+  if (!broken) return broken.error();
+  guided.begin(step);
+  const Timestamp end = clock.now() + fromSeconds(timing.hold_s);
+  broken = listenUntil(guided, clock, true, [&] { return clock.now() >= end; });
+  if (!broken) return broken.error();
+  return guided.end();
+}
+
+}  // namespace
+
+void addGuideTiming(CLI::App& app, GuideTiming& timing) {
+  app.add_option("--hold", timing.hold_s, "Seconds that each step is measured")
+      ->check(CLI::Range(0.1, 60.0))
+      ->capture_default_str();
+  app.add_option("--pause", timing.pause_s, "Seconds to get ready for a step, in place of Enter")
+      ->check(CLI::Range(0.1, 600.0));
+}
+
+Result<Ok> guide(std::span<const GuidedStep> steps, const GuideTiming& timing, Guided& guided) {
+  for (std::size_t step = 0; step < steps.size(); ++step) {
+    for (int tries = 1;; ++tries) {
+      fmt::print("\n{}: {}{}\n", steps[step].name, steps[step].instruction,
+                 timing.pause_s > 0 ? "" : "; then press Enter");
+      std::fflush(stdout);
+      Result<Ok> broken = Ok{};
+      const auto measured = tryStep(step, timing, guided, broken);
+      if (!broken) return broken;
+      fmt::print("  {}\n", measured ? *measured : "again: " + measured.error().what);
+      std::fflush(stdout);
+      if (measured) break;
+      if (tries == kMostTries) {
+        return Error{measured.error().code,
+                     fmt::format("{}: refused {} times, the last time because {}; nothing was "
+                                 "changed",
+                                 steps[step].name, kMostTries, measured.error().what)};
+      }
+    }
+  }
+  return Ok{};
+}
+
+}  // namespace merlin::cli

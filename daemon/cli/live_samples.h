@@ -1,0 +1,80 @@
+// LiveSamples: one device's samples from the shared memory of a running merlind, each once.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "daemon/base/clock.h"
+#include "daemon/shm/segment.h"
+
+namespace merlin::cli {
+
+// Thread-bound.
+template <typename Sample>
+class LiveSamples {
+ public:
+  using Segment = shm::DevicesSegment;
+  using Pick = std::function<const shm::Channel<Sample>&(const Segment&)>;
+
+  // Errors: kNotFound (no merlind runs as `instance`), kClosed (it has gone), SegmentReader's.
+  static Result<LiveSamples> open(const std::string& instance, shm::DeviceIndex device, Pick pick) {
+    auto segment = shm::SegmentReader<Segment>::open(shm::segmentName(instance, "devices"));
+    if (!segment && segment.error().code == Errc::kNotFound)
+      return Error{Errc::kNotFound,
+                   fmt::format("no merlind with devices runs as \"{}\": start it first, or give "
+                               "--instance",
+                               instance)};
+    if (!segment) return segment.error();
+    LiveSamples samples(*std::move(segment), device, std::move(pick));
+    if (const auto alive = samples.checkAlive(); !alive) return alive.error();
+    return samples;
+  }
+
+  // Gives `take` each sample that has come since; waits up to 0.1 s for one. Of a reader that was
+  // away for long only the last 128. Errors: kClosed (the daemon has gone).
+  template <typename Take>
+  Result<Ok> listen(Take take) {
+    if (auto alive = checkAlive(); !alive) return alive;
+    const auto& channel = pick_(*segment_);
+    channel.wait(next_, {0, 100'000'000});
+    const std::uint64_t count = channel.count();
+    next_ = std::max(next_, count - std::min<std::uint64_t>(count, shm::kHistory / 2));
+    for (; next_ < count; ++next_) {
+      if (const auto sample = channel.at(next_)) take(*sample);
+    }
+    return Ok{};
+  }
+
+  // Why the device does not stream; empty where it does.
+  std::string complaint() const {
+    const auto health = segment_->health[device_].read();
+    if (!health) return "its state is not known yet";
+    if (health->state == HealthState::kOk) return {};
+    return health->reason[0] ? health->reason : "it is being opened";
+  }
+
+  const Segment& segment() const { return *segment_; }
+
+ private:
+  LiveSamples(shm::SegmentReader<Segment> segment, shm::DeviceIndex device, Pick pick)
+      : segment_(std::move(segment)),
+        device_(device),
+        pick_(std::move(pick)),
+        next_(pick_(*segment_).count()) {}
+
+  Result<Ok> checkAlive() const {
+    if (segment_.alive(clock_.now())) return Ok{};
+    return Error{Errc::kClosed, "the merlind that was listened to has gone; nothing was changed"};
+  }
+
+  SystemClock clock_;
+  shm::SegmentReader<Segment> segment_;
+  shm::DeviceIndex device_;
+  Pick pick_;
+  std::uint64_t next_;
+};
+
+}  // namespace merlin::cli

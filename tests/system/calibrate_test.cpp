@@ -1,0 +1,235 @@
+// merlin calibrate tracker and ball, guided: a person at an emulated tracker and ball, a real
+// merlind between them.
+#include <gtest/gtest.h>
+
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+using nlohmann::json;
+
+// An emulated device whose person does the next thing when told, and a merlind that reads it.
+class Bench {
+ public:
+  Bench(const char* device, const char* role, const char* script)
+      : role_(role),
+        device_({kMerlin, "emulate", device, "--link", dir_ / "line", "--script", script, "--step",
+                 "--epoch-ns", "1"}) {
+    EXPECT_TRUE(device_.saysEventually(std::string(device) + " on")) << device_.output();
+  }
+
+  // With what `configuration` says under /devices/ROLE.
+  Merlind& start(json configuration = json::object()) {
+    merlind_.reset();
+    configuration["port"] = "pty:" + dir_ / "line";
+    merlind_ = std::make_unique<Merlind>(
+        dir_, "", "calibrate" + std::to_string(++starts_),
+        MerlindOptions{.role = "devices",
+                       .emulate = false,
+                       .also = {{"devices", {{role_, std::move(configuration)}}}}});
+    EXPECT_TRUE(merlind_->ready()) << merlind_->process().output();
+    EXPECT_TRUE(merlind_->healthIs(role_ == "ball" ? shm::kBall : shm::kTracker, HealthState::kOk))
+        << merlind_->process().output();
+    return *merlind_;
+  }
+  Merlind& merlind() { return *merlind_; }
+
+  void next() {
+    const std::size_t said = device_.output().size();
+    device_.type("\n");
+    EXPECT_TRUE(eventually([&] { return device_.output().size() > said; })) << device_.output();
+  }
+
+  std::vector<std::string> calibrate(std::vector<std::string> also = {}) const {
+    std::vector<std::string> words = {kMerlin, "calibrate",  role_,
+                                      "-o",    file(),       "--hold",
+                                      "0.4",   "--instance", merlind_->instance()};
+    words.insert(words.end(), also.begin(), also.end());
+    return words;
+  }
+  std::string file() const { return dir_ / "merlin.json"; }
+  json saved() const { return json::parse(readText(file()))["devices"][role_]; }
+
+ private:
+  TempDir dir_;
+  std::string role_;
+  Process device_;
+  std::unique_ptr<Merlind> merlind_;
+  int starts_ = 0;
+};
+
+// Waits until the station's samples are within 1 cm of there.
+void isAt(Merlind& merlind, const std::array<float, 3>& cm) {
+  EXPECT_TRUE(eventually([&] {
+    const auto sample = merlind.devices()->tracker[0].newest();
+    if (!sample) return false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (std::abs(100 * sample->position_m[i] - cm[i]) > 1) return false;
+    }
+    return true;
+  })) << cm[0]
+      << " " << cm[1] << " " << cm[2];
+}
+
+void expectNear(const json& list, const std::vector<double>& expected, double tolerance) {
+  ASSERT_EQ(list.size(), expected.size()) << list;
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_NEAR(list[i].get<double>(), expected[i], tolerance) << list;
+}
+
+constexpr std::size_t kSteps = 4;
+using Places = std::array<std::array<float, 3>, kSteps>;  // cm
+
+// A person who waits for each step's words, goes there, and presses Enter.
+void walkThrough(Bench& bench, const Places& places) {
+  Process calibrate(bench.calibrate({"--station", "1"}));
+  const char* const names[kSteps] = {
+      "\norigin: ", "\nx axis: ", "\ny axis: ", "\nstraight ahead: "};
+  for (std::size_t i = 0; i < kSteps; ++i) {
+    ASSERT_TRUE(calibrate.saysEventually(names[i])) << calibrate.output();
+    if (i > 0) bench.next();
+    isAt(bench.merlind(), places[i]);
+    calibrate.type("\n");
+  }
+  EXPECT_EQ(calibrate.wait(), 0) << calibrate.output();
+  EXPECT_NE(calibrate.output().find("cm and"), std::string::npos)
+      << "spread: " << calibrate.output();
+}
+
+const std::vector<double> kAlignment = {60, 5, -15, 60, 45, -15, 30, 10, -15};
+const std::vector<double> kBoresight = {0.90631, 0, 0, -0.42262};
+
+TEST(CalibrateTracker, GoesThroughPlacesAndAPose) {
+  Bench bench("fastrak", "tracker", "alignment");
+  bench.start();
+  writeText(bench.file(), "{\"instance\": \"kept\"}");
+  walkThrough(bench, {{{60, 5, -15}, {60, 45, -15}, {30, 10, -15}, {45, 20, -15}}});
+  expectNear(bench.saved()["alignment1_cm"], kAlignment, 0.2);
+  expectNear(bench.saved()["boresight1_wxyz"], kBoresight, 0.005);
+  EXPECT_EQ(json::parse(readText(bench.file()))["instance"], "kept");
+  EXPECT_EQ(run({kMerlind, "--check-config", bench.file()}).status, 0);
+
+  // With it in force the pose is straight ahead, and the same walk finds the same.
+  const auto& merlind = bench.start(bench.saved());
+  isAt(bench.merlind(), {15, 15, 0});
+  const auto ahead = bench.merlind().devices()->tracker[0].newest();
+  EXPECT_GT(std::abs(ahead->orientation_wxyz[0]), 0.999F);
+  bench.next();  // to the first place again
+  isAt(bench.merlind(), {0, 0, 0});
+  writeText(bench.file(), readText(merlind.config()));
+  walkThrough(bench, {{{0, 0, 0}, {40, 0, 0}, {5, 30, 0}, {15, 15, 0}}});
+  expectNear(bench.saved()["alignment1_cm"], kAlignment, 0.3);
+  expectNear(bench.saved()["boresight1_wxyz"], kBoresight, 0.01);
+}
+
+// A station that never goes anywhere: a script is told so, and the file stays.
+TEST(CalibrateTracker, RefusesPlacesThatMakeNoFrameAndLeavesTheFile) {
+  Bench bench("fastrak", "tracker", "alignment");
+  bench.start();
+  writeText(bench.file(), "{}");
+  const Outcome done = run(bench.calibrate({"--pause", "0.1"}));
+  EXPECT_EQ(done.status, 2) << done.output;
+  EXPECT_NE(done.output.find("again: it is 0."), std::string::npos) << done.output;
+  EXPECT_NE(done.output.find("x axis: refused 5 times"), std::string::npos) << done.output;
+  EXPECT_EQ(readText(bench.file()), "{}");
+  const Outcome absent = run(bench.calibrate({"--pause", "0.1", "--station", "3"}));
+  EXPECT_EQ(absent.status, 1) << absent.output;
+  EXPECT_NE(absent.output.find("0 samples came"), std::string::npos) << absent.output;
+}
+
+TEST(CalibrateTracker, KeepsWhatIsInForceOrSaysThatTheFileHasAnother) {
+  Bench bench("fastrak", "tracker", "alignment");
+  bench.start({{"alignment1_cm", {50, 0, 0, 50, 100, 0, -50, 0, 0}}});
+  writeText(bench.file(), "{}");
+  const Outcome other = run(bench.calibrate({"--pause", "0.1", "--steps", "boresight"}));
+  EXPECT_EQ(other.status, 2) << other.output;
+  EXPECT_NE(other.output.find("/devices/tracker/alignment1_cm is not what merlind runs with"),
+            std::string::npos)
+      << other.output;
+  EXPECT_EQ(readText(bench.file()), "{}");
+  writeText(bench.file(), readText(bench.merlind().config()));
+  const Outcome done = run(bench.calibrate({"--pause", "0.1", "--steps", "boresight"}));
+  EXPECT_EQ(done.status, 0) << done.output;
+  EXPECT_EQ(done.output.find("origin"), std::string::npos) << done.output;
+  expectNear(bench.saved()["alignment1_cm"], {50, 0, 0, 50, 100, 0, -50, 0, 0}, 0.001);
+  expectNear(bench.saved()["boresight1_wxyz"], {0.70711, 0, 0, -0.70711}, 0.005);
+}
+
+TEST(CalibrateTracker, EndsWithoutADaemonAndOnCtrlC) {
+  Bench bench("fastrak", "tracker", "alignment");
+  bench.start();
+  writeText(bench.file(), "{}");
+  Process calibrate(bench.calibrate());
+  ASSERT_TRUE(calibrate.saysEventually("then press Enter")) << calibrate.output();
+  EXPECT_EQ(calibrate.kill(SIGINT), 128 + SIGINT);
+  Process orphan(bench.calibrate());
+  ASSERT_TRUE(orphan.saysEventually("then press Enter")) << orphan.output();
+  bench.merlind().process().kill(SIGTERM);
+  EXPECT_EQ(orphan.wait(), 1) << orphan.output();
+  EXPECT_NE(orphan.output().find("the merlind that was listened to has gone"), std::string::npos)
+      << orphan.output();
+  const Outcome none = run(bench.calibrate());
+  EXPECT_EQ(none.status, 2) << none.output;
+  EXPECT_NE(none.output.find("no merlind with devices runs as"), std::string::npos) << none.output;
+  EXPECT_EQ(readText(bench.file()), "{}");
+}
+
+// A person who waits for each step's words, moves the ball, and presses Enter.
+void moveThrough(Bench& bench) {
+  Process calibrate(bench.calibrate());
+  // what the ball's counts are then, of the axis that is moved
+  const std::pair<const char*, std::pair<int, int>> steps[] = {
+      {"\nrest: ", {0, 12}},           {"\nright: ", {1, -6400}}, {"\nup: ", {0, 5600}},
+      {"\ntowards you: ", {2, -7200}}, {"\ntilt: ", {4, -1280}},  {"\nturn: ", {3, 1200}},
+      {"\nroll: ", {5, -1440}}};
+  for (const auto& [name, counts] : steps) {
+    ASSERT_TRUE(calibrate.saysEventually(name)) << calibrate.output();
+    if (counts.second != 12) bench.next();
+    ASSERT_TRUE(eventually([&, axis = counts.first, raw = counts.second] {
+      const auto sample = bench.merlind().devices()->ball.newest();
+      return sample && sample->raw[axis] == raw;
+    })) << name;
+    calibrate.type("\n");
+  }
+  EXPECT_EQ(calibrate.wait(), 0) << calibrate.output();
+}
+
+TEST(CalibrateBall, GoesThroughPushesAndTwists) {
+  Bench bench("spaceball", "ball", "pushes");
+  // what is in force is not in the raw counts
+  bench.start({{"axis_map", {3, 2, 1, 6, 5, 4}}, {"dead_zone", 99}});
+  writeText(bench.file(), "{\"devices\": {\"ball\": {\"cubic\": false}}}");
+  moveThrough(bench);
+  const json saved = bench.saved();
+  EXPECT_EQ(saved["axis_map"], json({-2, 1, -3, -5, 4, -6}));
+  EXPECT_EQ(saved["dead_zone"], 28);
+  EXPECT_EQ(saved["full_scale_translation"], 5040);
+  EXPECT_EQ(saved["full_scale_rotation"], 1080);
+  EXPECT_EQ(saved["cubic"], false);
+  EXPECT_EQ(run({kMerlind, "--check-config", bench.file()}).status, 0);
+
+  // With it in force, the last twist is a full one about the axis towards the person.
+  bench.start(saved);
+  ASSERT_TRUE(eventually([&] {
+    const auto sample = bench.merlind().devices()->ball.newest();
+    return sample && sample->rotation[2] == 1;
+  }));
+  EXPECT_EQ(bench.merlind().devices()->ball.newest()->rotation[0], 0);
+}
+
+TEST(CalibrateBall, RefusesABallThatNobodyMoves) {
+  Bench bench("spaceball", "ball", "pushes");
+  bench.start();
+  writeText(bench.file(), "{}");
+  const Outcome done = run(bench.calibrate({"--pause", "0.1"}));
+  EXPECT_EQ(done.status, 2) << done.output;
+  EXPECT_NE(done.output.find("rest: "), std::string::npos) << done.output;
+  EXPECT_NE(done.output.find("right: refused 5 times"), std::string::npos) << done.output;
+  EXPECT_NE(done.output.find("8 counts (80 are needed): push it harder"), std::string::npos)
+      << done.output;
+  EXPECT_EQ(readText(bench.file()), "{}");
+}
+
+}  // namespace
+}  // namespace merlin::test
