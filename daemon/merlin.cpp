@@ -18,11 +18,12 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", MERLIN_VERSION);
   cli::Run run;
+  const cli::Command program(app);
   for (const auto add :
        {cli::addStatus, cli::addWatch, cli::addSnapshot, cli::addWall, cli::addTrace, cli::addMesh,
         cli::addPosture, cli::addEmulate, cli::addRecord, cli::addReplay, cli::addFlight,
         cli::addCalibrate, cli::addKeys, cli::addShm}) {
-    add(app, run);
+    add(program, run);
   }
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());

@@ -63,26 +63,25 @@ int importGlove(const std::string& input, const std::string& output) {
 
 }  // namespace
 
-void addCalibrateImport(CLI::App& calibrate, Run& run) {
+void addCalibrateImport(Command calibrate, Run& run) {
   const auto input = std::make_shared<std::string>(), output = std::make_shared<std::string>();
-  CLI::App* command = calibrate.add_subcommand(
+  Command command = calibrate.subcommand(
       "import",
       "A glove's calibration that another program wrote: the vendor's .cal, asr_cyberglove's, "
       "Shadow's XML or YAML, VESS's.\nExample: merlin calibrate import right.cal -o merlin.json");
-  command->add_option("file", *input, "The calibration")->required();
-  command->add_option("-o,--output", *output, "The configuration that it goes into")->required();
-  command->callback(
+  command.option("file", *input, "The calibration").required();
+  command.option("-o,--output", *output, "The configuration that it goes into").required();
+  command.callback(
       [input, output, &run] { run = [input, output] { return importGlove(*input, *output); }; });
 }
 
-void addCalibrate(CLI::App& app, Run& run) {
-  CLI::App* calibrate =
-      app.add_subcommand("calibrate", "A device's calibration, into a configuration.");
-  calibrate->require_subcommand(1);
-  addCalibrateGlove(*calibrate, run);
-  addCalibrateImport(*calibrate, run);
-  addCalibrateTracker(*calibrate, run);
-  addCalibrateBall(*calibrate, run);
+void addCalibrate(Command app, Run& run) {
+  Command calibrate = app.subcommand("calibrate", "A device's calibration, into a configuration.");
+  calibrate.requireSubcommand();
+  addCalibrateGlove(calibrate, run);
+  addCalibrateImport(calibrate, run);
+  addCalibrateTracker(calibrate, run);
+  addCalibrateBall(calibrate, run);
 }
 
 }  // namespace merlin::cli

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/cli/arguments.h"
 #include "daemon/cli/command.h"
 
 namespace merlin::cli {
@@ -29,9 +30,9 @@ nlohmann::ordered_json numbers(const T& values) {
   return list;
 }
 
-void addCalibrateGlove(CLI::App& calibrate, Run& run);
-void addCalibrateImport(CLI::App& calibrate, Run& run);
-void addCalibrateTracker(CLI::App& calibrate, Run& run);
-void addCalibrateBall(CLI::App& calibrate, Run& run);
+void addCalibrateGlove(Command calibrate, Run& run);
+void addCalibrateImport(Command calibrate, Run& run);
+void addCalibrateTracker(Command calibrate, Run& run);
+void addCalibrateBall(Command calibrate, Run& run);
 
 }  // namespace merlin::cli

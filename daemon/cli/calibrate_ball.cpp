@@ -114,27 +114,25 @@ int guideBall(const BallOptions& o) {
 
 }  // namespace
 
-void addCalibrateBall(CLI::App& calibrate, Run& run) {
+void addCalibrateBall(Command calibrate, Run& run) {
   const auto o = std::make_shared<BallOptions>();
-  CLI::App* command = calibrate.add_subcommand(
+  Command command = calibrate.subcommand(
       "ball",
       "Axis map and sensitivities of the ball: guides you through pushes and twists, with the "
       "samples of a running merlind, or takes the numbers.\nExample: merlin calibrate ball -o "
       "merlin.json\nExample: merlin calibrate ball --axis-map 1 2 -3 4 5 -6 "
       "--full-scale-translation 6000 -o merlin.json");
-  addGuideTiming(*command, o->timing);
-  addInstance(*command, o->instance);
-  command->add_option("--full-scale-translation", o->translation, "Counts of a full push")
-      ->check(CLI::Range(100, 32767));
-  command->add_option("--full-scale-rotation", o->rotation, "Counts of a full twist")
-      ->check(CLI::Range(100, 32767));
-  command->add_option("--dead-zone", o->dead_zone, "Counts that are taken for rest")
-      ->check(CLI::Range(0, 99));
-  command->add_option("--axis-map", o->axis_map, "For x y z and the turns: the ball's axis 1 to 6")
-      ->expected(6)
-      ->check(CLI::Range(-6, 6));
-  command->add_option("-o,--output", o->output, "The configuration")->required();
-  command->callback([o, &run] { run = [o] { return o->told() ? tell(*o) : guideBall(*o); }; });
+  addGuideTiming(command, o->timing);
+  addInstance(command, o->instance);
+  command.option("--full-scale-translation", o->translation, "Counts of a full push")
+      .range(100, 32767);
+  command.option("--full-scale-rotation", o->rotation, "Counts of a full twist").range(100, 32767);
+  command.option("--dead-zone", o->dead_zone, "Counts that are taken for rest").range(0, 99);
+  command.option("--axis-map", o->axis_map, "For x y z and the turns: the ball's axis 1 to 6")
+      .expected(6)
+      .range(-6, 6);
+  command.option("-o,--output", o->output, "The configuration").required();
+  command.callback([o, &run] { run = [o] { return o->told() ? tell(*o) : guideBall(*o); }; });
 }
 
 }  // namespace merlin::cli

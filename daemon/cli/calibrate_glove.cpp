@@ -92,17 +92,17 @@ int calibrateGlove(const GloveOptions& o) {
 
 }  // namespace
 
-void addCalibrateGlove(CLI::App& calibrate, Run& run) {
+void addCalibrateGlove(Command calibrate, Run& run) {
   const auto o = std::make_shared<GloveOptions>();
-  CLI::App* command = calibrate.add_subcommand("glove",
-                                               "Guides you through a few poses and shows each "
-                                               "sensor's span.\nExample: merlin calibrate glove "
-                                               "serial:/dev/serial/by-id/usb-GLOVE -o merlin.json");
-  command->add_option("port", o->port, "serial:/dev/..., pty:PATH or tcp://HOST:PORT")->required();
-  command->add_option("-o,--output", o->output, "The configuration")->required();
-  command->add_option("--baud", o->baud, "Speed of the line")->capture_default_str();
-  addGuideTiming(*command, o->timing);
-  command->callback([o, &run] { run = [o] { return calibrateGlove(*o); }; });
+  Command command = calibrate.subcommand("glove",
+                                         "Guides you through a few poses and shows each "
+                                         "sensor's span.\nExample: merlin calibrate glove "
+                                         "serial:/dev/serial/by-id/usb-GLOVE -o merlin.json");
+  command.option("port", o->port, "serial:/dev/..., pty:PATH or tcp://HOST:PORT").required();
+  command.option("-o,--output", o->output, "The configuration").required();
+  command.option("--baud", o->baud, "Speed of the line").showDefault();
+  addGuideTiming(command, o->timing);
+  command.callback([o, &run] { run = [o] { return calibrateGlove(*o); }; });
 }
 
 }  // namespace merlin::cli

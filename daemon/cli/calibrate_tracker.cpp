@@ -186,37 +186,37 @@ int guideTracker(const TrackerOptions& o) {
 
 }  // namespace
 
-void addCalibrateTracker(CLI::App& calibrate, Run& run) {
+void addCalibrateTracker(Command calibrate, Run& run) {
   const auto o = std::make_shared<TrackerOptions>();
-  CLI::App* command = calibrate.add_subcommand(
+  Command command = calibrate.subcommand(
       "tracker",
       "Alignment and boresight of a station: guides you through holding it there, with the samples "
       "of a running merlind, or takes the numbers.\nExample: merlin calibrate tracker --station 1 "
       "-o merlin.json\nExample: merlin calibrate tracker --station 1 --boresight 0.7071 0 0 0.7071 "
       "-o merlin.json");
-  command->add_option("--station", o->station)->check(CLI::Range(1, 4))->capture_default_str();
-  command->add_option("--steps", o->steps, "What to guide through: alignment, boresight or both")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"alignment", "boresight"}))
-      ->capture_default_str();
-  addGuideTiming(*command, o->timing);
-  addInstance(*command, o->instance);
+  command.option("--station", o->station).range(1, 4).showDefault();
+  command.option("--steps", o->steps, "What to guide through: alignment, boresight or both")
+      .separated(',')
+      .oneOf({"alignment", "boresight"})
+      .showDefault();
+  addGuideTiming(command, o->timing);
+  addInstance(command, o->instance);
   command
-      ->add_option("--alignment", o->alignment,
-                   "A new origin, a point on its x axis, one on its y axis, centimetres")
-      ->expected(9)
-      ->check(CLI::Range(-1000.0, 1000.0));
+      .option("--alignment", o->alignment,
+              "A new origin, a point on its x axis, one on its y axis, centimetres")
+      .expected(9)
+      .range(-1000.0, 1000.0);
   command
-      ->add_option("--boresight", o->boresight,
-                   "The orientation that counts as straight ahead, w x y z, as merlin shm dump "
-                   "shows it")
-      ->expected(4)
-      ->check(CLI::Range(-1.0, 1.0));
-  command->add_option("--hemisphere", o->hemisphere, "Into the receiver's half of space")
-      ->expected(3)
-      ->check(CLI::Range(-1.0, 1.0));
-  command->add_option("-o,--output", o->output, "The configuration")->required();
-  command->callback([o, &run] { run = [o] { return o->told() ? tell(*o) : guideTracker(*o); }; });
+      .option("--boresight", o->boresight,
+              "The orientation that counts as straight ahead, w x y z, as merlin shm dump "
+              "shows it")
+      .expected(4)
+      .range(-1.0, 1.0);
+  command.option("--hemisphere", o->hemisphere, "Into the receiver's half of space")
+      .expected(3)
+      .range(-1.0, 1.0);
+  command.option("-o,--output", o->output, "The configuration").required();
+  command.callback([o, &run] { run = [o] { return o->told() ? tell(*o) : guideTracker(*o); }; });
 }
 
 }  // namespace merlin::cli

@@ -13,9 +13,9 @@ int fail(const Error& error) {
   return exitStatus(error);
 }
 
-void addInstance(CLI::App& app, std::string& instance) {
-  app.add_option("--instance", instance, "Which daemon, by the \"instance\" of its configuration")
-      ->capture_default_str();
+void addInstance(Command app, std::string& instance) {
+  app.option("--instance", instance, "Which daemon, by the \"instance\" of its configuration")
+      .showDefault();
 }
 
 }  // namespace merlin::cli

@@ -4,9 +4,8 @@
 #include <functional>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "daemon/base/result.h"
+#include "daemon/cli/arguments.h"
 
 namespace merlin::cli {
 
@@ -14,25 +13,25 @@ namespace merlin::cli {
 using Run = std::function<int()>;
 
 // One file each.
-void addCalibrate(CLI::App& app, Run& run);
-void addEmulate(CLI::App& app, Run& run);
-void addFlight(CLI::App& app, Run& run);
-void addKeys(CLI::App& app, Run& run);
-void addMesh(CLI::App& app, Run& run);
-void addPosture(CLI::App& app, Run& run);
-void addRecord(CLI::App& app, Run& run);
-void addReplay(CLI::App& app, Run& run);
-void addShm(CLI::App& app, Run& run);
-void addSnapshot(CLI::App& app, Run& run);
-void addStatus(CLI::App& app, Run& run);
-void addTrace(CLI::App& app, Run& run);
-void addWall(CLI::App& app, Run& run);
-void addWatch(CLI::App& app, Run& run);
+void addCalibrate(Command app, Run& run);
+void addEmulate(Command app, Run& run);
+void addFlight(Command app, Run& run);
+void addKeys(Command app, Run& run);
+void addMesh(Command app, Run& run);
+void addPosture(Command app, Run& run);
+void addRecord(Command app, Run& run);
+void addReplay(Command app, Run& run);
+void addShm(Command app, Run& run);
+void addSnapshot(Command app, Run& run);
+void addStatus(Command app, Run& run);
+void addTrace(Command app, Run& run);
+void addWall(Command app, Run& run);
+void addWatch(Command app, Run& run);
 
 // Prints "merlin: WHAT" to stderr; returns the exit status that belongs to the error.
 int fail(const Error& error);
 
 // The option --instance, which every subcommand that speaks to a daemon has.
-void addInstance(CLI::App& app, std::string& instance);
+void addInstance(Command app, std::string& instance);
 
 }  // namespace merlin::cli

@@ -103,7 +103,7 @@ int emulateDevice(const EmulateOptions& options) {
 
 }  // namespace
 
-void addEmulate(CLI::App& app, Run& run) {
+void addEmulate(Command app, Run& run) {
   const auto options = std::make_shared<EmulateOptions>();
   std::vector<std::string> devices, scripts;
   std::string help = "A device on a pseudo-terminal, speaking its own protocol.\nDevices:";
@@ -116,28 +116,25 @@ void addEmulate(CLI::App& app, Run& run) {
     scripts.emplace_back(s.name);
     help += fmt::format("\n  {:11} {}", s.name, s.help);
   }
-  CLI::App* command =
-      app.add_subcommand("emulate", help + "\nExample: merlin emulate spaceball --link /tmp/ball");
-  command->add_option("device", options->device, "Which one")
-      ->required()
-      ->check(CLI::IsMember(devices));
-  command->add_option("--link", options->link,
-                      "A symbolic link to the pseudo-terminal, made there");
-  command->add_option("--script", options->script, "What the emulated person does")
-      ->check(CLI::IsMember(scripts))
-      ->capture_default_str();
-  command->add_flag("--step", options->step,
-                    "A phase of the script lasts until Enter is pressed, in place of its time");
-  command->add_option("--model", options->model, "Of the device");
-  command->add_option("--baud", options->baud, "Speed of the line");
+  Command command =
+      app.subcommand("emulate", help + "\nExample: merlin emulate spaceball --link /tmp/ball");
+  command.option("device", options->device, "Which one").required().oneOf(devices);
+  command.option("--link", options->link, "A symbolic link to the pseudo-terminal, made there");
+  command.option("--script", options->script, "What the emulated person does")
+      .oneOf(scripts)
+      .showDefault();
+  command.flag("--step", options->step,
+               "A phase of the script lasts until Enter is pressed, in place of its time");
+  command.option("--model", options->model, "Of the device");
+  command.option("--baud", options->baud, "Speed of the line");
   command
-      ->add_option("--garbage-every", options->garbage_every,
-                   "Records between two bursts of random bytes; 0: none")
-      ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of noise and garbage")->capture_default_str();
-  command->add_option("--epoch-ns", options->epoch_ns,
-                      "When the script began, CLOCK_MONOTONIC; so that several devices agree");
-  command->callback([options, &run] { run = [options] { return emulateDevice(*options); }; });
+      .option("--garbage-every", options->garbage_every,
+              "Records between two bursts of random bytes; 0: none")
+      .showDefault();
+  command.option("--seed", options->seed, "Of noise and garbage").showDefault();
+  command.option("--epoch-ns", options->epoch_ns,
+                 "When the script began, CLOCK_MONOTONIC; so that several devices agree");
+  command.callback([options, &run] { run = [options] { return emulateDevice(*options); }; });
 }
 
 }  // namespace merlin::cli

@@ -28,14 +28,14 @@ int flight(const std::string& instance) {
 
 }  // namespace
 
-void addFlight(CLI::App& app, Run& run) {
+void addFlight(Command app, Run& run) {
   const auto instance = std::make_shared<std::string>("merlin");
-  CLI::App* command = app.add_subcommand(
+  Command command = app.subcommand(
       "flight",
       "Writes down the last minutes of every device's bytes, each as a transcript; a fault does so "
       "by itself.\nExample: merlin flight, then: merlin replay FILE --link /tmp/device");
-  addInstance(*command, *instance);
-  command->callback([instance, &run] { run = [instance] { return flight(*instance); }; });
+  addInstance(command, *instance);
+  command.callback([instance, &run] { run = [instance] { return flight(*instance); }; });
 }
 
 }  // namespace merlin::cli

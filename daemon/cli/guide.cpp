@@ -67,12 +67,12 @@ Result<std::string> tryStep(std::size_t step, const GuideTiming& timing, Guided&
 
 }  // namespace
 
-void addGuideTiming(CLI::App& app, GuideTiming& timing) {
-  app.add_option("--hold", timing.hold_s, "Seconds that each step is measured")
-      ->check(CLI::Range(0.1, 60.0))
-      ->capture_default_str();
-  app.add_option("--pause", timing.pause_s, "Seconds to get ready for a step, in place of Enter")
-      ->check(CLI::Range(0.1, 600.0));
+void addGuideTiming(Command app, GuideTiming& timing) {
+  app.option("--hold", timing.hold_s, "Seconds that each step is measured")
+      .range(0.1, 60.0)
+      .showDefault();
+  app.option("--pause", timing.pause_s, "Seconds to get ready for a step, in place of Enter")
+      .range(0.1, 600.0);
 }
 
 Result<Ok> guide(std::span<const GuidedStep> steps, const GuideTiming& timing, Guided& guided) {

@@ -4,9 +4,8 @@
 #include <span>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "daemon/base/result.h"
+#include "daemon/cli/arguments.h"
 #include "drivers/port/guided_step.h"
 
 namespace merlin::cli {
@@ -36,7 +35,7 @@ struct GuideTiming {
 };
 
 // The options --hold and --pause, which every guided calibration has.
-void addGuideTiming(CLI::App& app, GuideTiming& timing);
+void addGuideTiming(Command app, GuideTiming& timing);
 
 // Every step in its order: says what to do, waits for Enter or for the pause, measures, and has it
 // done again where it was refused. Errors: listen()'s; end()'s of a step that was refused five

@@ -26,14 +26,14 @@ int makeKeys(const std::string& path) {
 
 }  // namespace
 
-void addKeys(CLI::App& app, Run& run) {
+void addKeys(Command app, Run& run) {
   const auto path = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand(
+  Command command = app.subcommand(
       "keys",
       "A pair of keys, for samples over a network: the file stays here, the public key that is "
       "printed goes to the other side.\nExample: merlin keys -o /etc/merlin/wall.keys");
-  command->add_option("-o,--output", *path, "The file, readable by its owner alone")->required();
-  command->callback([path, &run] { run = [path] { return makeKeys(*path); }; });
+  command.option("-o,--output", *path, "The file, readable by its owner alone").required();
+  command.callback([path, &run] { run = [path] { return makeKeys(*path); }; });
 }
 
 }  // namespace merlin::cli

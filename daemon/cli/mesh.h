@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/cli/arguments.h"
 #include "daemon/cli/command.h"
 #include "render/lod/dendrogram.h"
 #include "render/mesh/io/mesh_file.h"
@@ -12,13 +13,13 @@
 
 namespace merlin::cli {
 
-void addMeshCompare(CLI::App& mesh, Run& run);
-void addMeshCurve(CLI::App& mesh, Run& run);
-void addMeshExport(CLI::App& mesh, Run& run);
-void addMeshInfo(CLI::App& mesh, Run& run);
-void addMeshPicture(CLI::App& mesh, Run& run);
-void addMeshReduce(CLI::App& mesh, Run& run);
-void addMeshSegment(CLI::App& mesh, Run& run);
+void addMeshCompare(Command mesh, Run& run);
+void addMeshCurve(Command mesh, Run& run);
+void addMeshExport(Command mesh, Run& run);
+void addMeshInfo(Command mesh, Run& run);
+void addMeshPicture(Command mesh, Run& run);
+void addMeshReduce(Command mesh, Run& run);
+void addMeshSegment(Command mesh, Run& run);
 
 // An .mrm file as it is, or a mesh as a dendrogram of one level. Errors: of the readers.
 Result<render::Dendrogram> openModel(const std::string& path);
@@ -48,7 +49,7 @@ struct LevelChoice {
   std::optional<double> percent, error_percent, error_units;
   std::optional<std::size_t> triangles;
 
-  CLI::Option_group* addTo(CLI::App& command);
+  Command addTo(Command command);
   std::size_t levelOf(const render::Dendrogram& model) const;  // 0 where none is set
 };
 

@@ -159,43 +159,42 @@ int compareMeshes(const CompareOptions& options) {
 
 }  // namespace
 
-void addMeshCompare(CLI::App& mesh, Run& run) {
+void addMeshCompare(Command mesh, Run& run) {
   const auto options = std::make_shared<CompareOptions>();
-  CLI::App* command = mesh.add_subcommand(
+  Command command = mesh.subcommand(
       "compare",
       "How far two surfaces are from one another: RMS, mean, and an interval that holds the "
       "maximum.\nExample: merlin mesh compare scan.ply scan.mrm --percent 5");
-  command->add_option("a", options->original, "The original: .mrm, .ply or .obj")
-      ->required()
-      ->type_name("A");
-  command->add_option("b", options->other, "The other one; a resolution of it if told")
-      ->required()
-      ->type_name("B");
-  options->choice.addTo(*command);
+  command.option("a", options->original, "The original: .mrm, .ply or .obj")
+      .required()
+      .typeName("A");
+  command.option("b", options->other, "The other one; a resolution of it if told")
+      .required()
+      .typeName("B");
+  options->choice.addTo(command);
   command
-      ->add_option("--samples", options->settings.samples,
-                   "Points of each surface for all but the maximum")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}))
-      ->capture_default_str();
-  command->add_option("--seed", options->settings.seed, "Of the samples")->capture_default_str();
+      .option("--samples", options->settings.samples,
+              "Points of each surface for all but the maximum")
+      .range(std::size_t{1}, std::size_t{1'000'000'000})
+      .showDefault();
+  command.option("--seed", options->settings.seed, "Of the samples").showDefault();
   command
-      ->add_option("--width", options->settings.width_percent,
-                   "Of the maximum's interval, percent of the diagonal of A's box")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--feature", options->settings.features,
-                      "Compare these only; without any: all that both have");
-  command->add_option("--threads", options->settings.threads,
-                      "0: as many as there are; any gives the same figures");
+      .option("--width", options->settings.width_percent,
+              "Of the maximum's interval, percent of the diagonal of A's box")
+      .positive()
+      .showDefault();
+  command.option("--feature", options->settings.features,
+                 "Compare these only; without any: all that both have");
+  command.option("--threads", options->settings.threads,
+                 "0: as many as there are; any gives the same figures");
   command
-      ->add_option(
-          "--pictures", options->pictures,
-          "A folder for pictures: a, b, a_wire, b_wire, beside, difference (pixels changed "
-          "by more than 15 %), edges (of B, red the shortest, blue the longest)")
-      ->type_name("DIR");
-  options->view.addTo(*command);
-  command->add_flag("--json", options->json, "For programs");
-  command->callback([options, &run] { run = [options] { return compareMeshes(*options); }; });
+      .option("--pictures", options->pictures,
+              "A folder for pictures: a, b, a_wire, b_wire, beside, difference (pixels changed "
+              "by more than 15 %), edges (of B, red the shortest, blue the longest)")
+      .typeName("DIR");
+  options->view.addTo(command);
+  command.flag("--json", options->json, "For programs");
+  command.callback([options, &run] { run = [options] { return compareMeshes(*options); }; });
 }
 
 }  // namespace merlin::cli

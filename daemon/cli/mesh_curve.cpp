@@ -148,34 +148,33 @@ int curveOfModel(const CurveOptions& options) {
 
 }  // namespace
 
-void addMeshCurve(CLI::App& mesh, Run& run) {
+void addMeshCurve(Command mesh, Run& run) {
   const auto options = std::make_shared<CurveOptions>();
-  CLI::App* command = mesh.add_subcommand(
+  Command command = mesh.subcommand(
       "curve",
       "Error against triangles: the estimate that the model has of itself, and beside it the RMS "
       "and the maximum against its finest resolution (an interval that is certain).\nExample: "
       "merlin mesh curve scan.mrm --csv scan.csv --svg scan.svg");
-  command->add_option("model", options->model, "The model")->required()->type_name("MODEL.mrm");
-  command->add_option("--csv", options->csv, "A table: model units and % of the diagonal")
-      ->type_name("FILE");
-  command->add_option("--svg", options->svg, "A picture, both axes logarithmic")->type_name("FILE");
+  command.option("model", options->model, "The model").required().typeName("MODEL.mrm");
+  command.option("--csv", options->csv, "A table: model units and % of the diagonal")
+      .typeName("FILE");
+  command.option("--svg", options->svg, "A picture, both axes logarithmic").typeName("FILE");
   command
-      ->add_option("--steps", options->steps_an_octave,
-                   "Resolutions for each halving of the triangles")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
-  command->add_option("--samples", options->settings.samples, "Points of each surface for the RMS")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}))
-      ->capture_default_str();
-  command->add_option("--seed", options->settings.seed, "Of the samples")->capture_default_str();
+      .option("--steps", options->steps_an_octave, "Resolutions for each halving of the triangles")
+      .range(1, 16)
+      .showDefault();
+  command.option("--samples", options->settings.samples, "Points of each surface for the RMS")
+      .range(std::size_t{1}, std::size_t{1'000'000'000})
+      .showDefault();
+  command.option("--seed", options->settings.seed, "Of the samples").showDefault();
   command
-      ->add_option("--width", options->settings.width_percent,
-                   "Of the maximum's interval, percent of the diagonal")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--threads", options->settings.threads,
-                      "0: as many as there are; any gives the same figures");
-  command->callback([options, &run] { run = [options] { return curveOfModel(*options); }; });
+      .option("--width", options->settings.width_percent,
+              "Of the maximum's interval, percent of the diagonal")
+      .positive()
+      .showDefault();
+  command.option("--threads", options->settings.threads,
+                 "0: as many as there are; any gives the same figures");
+  command.callback([options, &run] { run = [options] { return curveOfModel(*options); }; });
 }
 
 }  // namespace merlin::cli

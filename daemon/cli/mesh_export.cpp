@@ -58,25 +58,23 @@ int exportMesh(const ExportOptions& options) {
 
 }  // namespace
 
-void addMeshExport(CLI::App& mesh, Run& run) {
+void addMeshExport(Command mesh, Run& run) {
   const auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = mesh.add_subcommand(
+  Command command = mesh.subcommand(
       "export",
       "One resolution of a model as a mesh: .ply (every feature), .glb or .gltf (features of up to "
       "4 dimensions), .obj and .iv (Open Inventor; normals, colours, texture coordinates), .stl "
       "(triangles alone).\nExample: merlin mesh export scan.mrm --percent 5 -o scan5.ply\nAll of "
       "them for an Open Inventor viewer that finds SoMRFaceSet.so: --multiresolution -o scan.iv");
-  command->add_option("model", options->model, "The model, or a mesh")
-      ->required()
-      ->type_name("MODEL.mrm");
-  command->add_option("-o", options->output, "The mesh: .ply, .obj, .glb, .gltf, .stl or .iv")
-      ->required()
-      ->type_name("OUT");
-  CLI::Option* const all = command->add_flag(
+  command.option("model", options->model, "The model, or a mesh").required().typeName("MODEL.mrm");
+  command.option("-o", options->output, "The mesh: .ply, .obj, .glb, .gltf, .stl or .iv")
+      .required()
+      .typeName("OUT");
+  const Argument all = command.flag(
       "--multiresolution", options->multiresolution,
       "All resolutions as an SoMRFaceSet, .iv alone; at 10,000 triangles without its module");
-  options->choice.addTo(*command)->excludes(all);
-  command->callback([options, &run] {
+  options->choice.addTo(command).exclude(all);
+  command.callback([options, &run] {
     run = [options] {
       return options->multiresolution ? exportAll(*options) : exportMesh(*options);
     };

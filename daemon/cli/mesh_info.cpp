@@ -92,14 +92,14 @@ int info(const InfoOptions& options) {
 
 }  // namespace
 
-void addMeshInfo(CLI::App& mesh, Run& run) {
+void addMeshInfo(Command mesh, Run& run) {
   const auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = mesh.add_subcommand("info",
-                                          "What a mesh or a model holds, and what had to be mended "
-                                          "in a mesh.\nExample: merlin mesh info scan.mrm --json");
-  command->add_option("file", options->file, ".mrm, .ply or .obj")->required()->type_name("FILE");
-  command->add_flag("--json", options->json, "For programs");
-  command->callback([options, &run] { run = [options] { return info(*options); }; });
+  Command command = mesh.subcommand("info",
+                                    "What a mesh or a model holds, and what had to be mended "
+                                    "in a mesh.\nExample: merlin mesh info scan.mrm --json");
+  command.option("file", options->file, ".mrm, .ply or .obj").required().typeName("FILE");
+  command.flag("--json", options->json, "For programs");
+  command.callback([options, &run] { run = [options] { return info(*options); }; });
 }
 
 }  // namespace merlin::cli

@@ -63,19 +63,16 @@ Result<Ok> setWeight(const std::string& text, render::Weights& weights) {
   return Ok{};
 }
 
-CLI::Option_group* LevelChoice::addTo(CLI::App& command) {
-  CLI::Option_group* group =
-      command.add_option_group("resolution", "Which resolution; without any: the finest");
-  group->add_option("--percent", percent, "Of the triangles")->check(CLI::Range(0.0, 100.0));
-  group->add_option("--triangles", triangles, "At most so many");
+Command LevelChoice::addTo(Command command) {
+  Command group = command.group("resolution", "Which resolution; without any: the finest");
+  group.option("--percent", percent, "Of the triangles").range(0.0, 100.0);
+  group.option("--triangles", triangles, "At most so many");
   group
-      ->add_option(
-          "--error", error_percent,
-          "The coarsest whose error estimate is at most this, percent of the box' diagonal")
-      ->check(CLI::NonNegativeNumber);
-  group->add_option("--error-units", error_units, "The same, in the model's units")
-      ->check(CLI::NonNegativeNumber);
-  group->require_option(0, 1);
+      .option("--error", error_percent,
+              "The coarsest whose error estimate is at most this, percent of the box' diagonal")
+      .nonNegative();
+  group.option("--error-units", error_units, "The same, in the model's units").nonNegative();
+  group.atMostOne();
   return group;
 }
 

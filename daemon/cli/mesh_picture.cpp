@@ -47,27 +47,25 @@ int picture(const PictureOptions& options) {
 
 }  // namespace
 
-void addMeshPicture(CLI::App& mesh, Run& run) {
+void addMeshPicture(Command mesh, Run& run) {
   const auto options = std::make_shared<PictureOptions>();
-  CLI::App* command = mesh.add_subcommand(
+  Command command = mesh.subcommand(
       "picture",
       "Models, each at one resolution or several, side by side as a PNG file.\nExample: merlin "
       "mesh picture scan.mrm --percent 100 5 -o both.png");
-  command->add_option("models", options->models, ".mrm, .ply or .obj")
-      ->required()
-      ->type_name("MODEL");
-  command->add_option("-o", options->output, "The file")->required()->type_name("FILE.png");
-  command->add_option("--percent", options->percents, "Of the triangles, one picture each")
-      ->check(CLI::Range(0.0, 100.0));
-  command->add_option("--width", options->view.width, "Of one picture, pixels")
-      ->check(CLI::Range(16, 8192))
-      ->capture_default_str();
-  command->add_option("--height", options->view.height, "Of one picture, pixels")
-      ->check(CLI::Range(16, 8192))
-      ->capture_default_str();
-  options->view.addTo(*command);
-  command->add_flag("--wireframe", options->view.render.look.wireframe, "Edges instead of faces");
-  command->callback([options, &run] { run = [options] { return picture(*options); }; });
+  command.option("models", options->models, ".mrm, .ply or .obj").required().typeName("MODEL");
+  command.option("-o", options->output, "The file").required().typeName("FILE.png");
+  command.option("--percent", options->percents, "Of the triangles, one picture each")
+      .range(0.0, 100.0);
+  command.option("--width", options->view.width, "Of one picture, pixels")
+      .range(16, 8192)
+      .showDefault();
+  command.option("--height", options->view.height, "Of one picture, pixels")
+      .range(16, 8192)
+      .showDefault();
+  options->view.addTo(command);
+  command.flag("--wireframe", options->view.render.look.wireframe, "Edges instead of faces");
+  command.callback([options, &run] { run = [options] { return picture(*options); }; });
 }
 
 }  // namespace merlin::cli

@@ -145,64 +145,61 @@ int reduceMesh(const ReduceOptions& options) {
 
 }  // namespace
 
-void addMeshReduce(CLI::App& mesh, Run& run) {
+void addMeshReduce(Command mesh, Run& run) {
   const auto options = std::make_shared<ReduceOptions>();
-  CLI::App* command = mesh.add_subcommand(
+  Command command = mesh.subcommand(
       "reduce",
       "A mesh (.ply, .obj) to a multiresolution model (.mrm): every resolution from all of it down "
       "to next to nothing.\nExample: merlin mesh reduce scan.ply -o scan.mrm --weight colour=0.02");
-  command->add_option("input", options->input, "The mesh")->required()->type_name("IN");
-  command->add_option("-o", options->output, "The model")->required()->type_name("OUT.mrm");
+  command.option("input", options->input, "The mesh").required().typeName("IN");
+  command.option("-o", options->output, "The model").required().typeName("OUT.mrm");
   std::vector<std::string> names;
   std::string help = "What an edge costs";
   for (const render::Cost& cost : render::costs()) {
     names.emplace_back(cost.name);
     help += fmt::format("; {}: {}", cost.name, cost.help);
   }
-  command->add_option("--cost", options->settings.cost, help)
-      ->check(CLI::IsMember(names))
-      ->capture_default_str();
-  command->add_option("--preset", options->preset, "Weights to begin with, of the cost or of 1998")
-      ->check(CLI::IsMember({"default", "typical1998"}))
-      ->capture_default_str();
+  command.option("--cost", options->settings.cost, help).oneOf(names).showDefault();
+  command.option("--preset", options->preset, "Weights to begin with, of the cost or of 1998")
+      .oneOf({"default", "typical1998"})
+      .showDefault();
   command
-      ->add_option(
-          "--weight", options->weights,
-          "Of a feature: geometry, colour or any of the mesh's own, and for pattern normal, "
-          "curvature, boundary; 0 leaves it out")
-      ->type_name("FEATURE=W");
+      .option("--weight", options->weights,
+              "Of a feature: geometry, colour or any of the mesh's own, and for pattern normal, "
+              "curvature, boundary; 0 leaves it out")
+      .typeName("FEATURE=W");
   command
-      ->add_option("--texture", options->texture,
-                   "The picture that the texture coordinates are of; else the one that the mesh's "
-                   "material names. It goes into the model")
-      ->type_name("FILE.png|.jpg");
-  command->add_flag("--preserve-topology", options->settings.preserve_topology,
-                    "Refuse collapses that join or pinch off parts");
-  command->add_flag("--preserve-components", options->settings.preserve_components,
-                    "Keep a triangle of every part until nothing else can go");
-  command->add_option("--triangles", options->settings.min_triangles, "Stop at so many triangles")
-      ->capture_default_str();
+      .option("--texture", options->texture,
+              "The picture that the texture coordinates are of; else the one that the mesh's "
+              "material names. It goes into the model")
+      .typeName("FILE.png|.jpg");
+  command.flag("--preserve-topology", options->settings.preserve_topology,
+               "Refuse collapses that join or pinch off parts");
+  command.flag("--preserve-components", options->settings.preserve_components,
+               "Keep a triangle of every part until nothing else can go");
+  command.option("--triangles", options->settings.min_triangles, "Stop at so many triangles")
+      .showDefault();
   command
-      ->add_option("--percent", options->settings.min_percent,
-                   "Stop at so many percent of the triangles")
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str();
+      .option("--percent", options->settings.min_percent,
+              "Stop at so many percent of the triangles")
+      .range(0.0, 100.0)
+      .showDefault();
   command
-      ->add_option("--error", options->settings.max_error_percent,
-                   "Stop at this error estimate, percent of the box' diagonal")
-      ->check(CLI::NonNegativeNumber);
+      .option("--error", options->settings.max_error_percent,
+              "Stop at this error estimate, percent of the box' diagonal")
+      .nonNegative();
   command
-      ->add_option("--threads", options->settings.threads,
-                   "So many at most; 0: all. The model is the same")
-      ->capture_default_str();
+      .option("--threads", options->settings.threads,
+              "So many at most; 0: all. The model is the same")
+      .showDefault();
   command
-      ->add_option("--memory", options->memory,
-                   "The most that the whole command may take: 900M, 16G; else what is free. Where "
-                   "it is short the mesh is cut into blocks, and the model is a little different")
-      ->transform(CLI::AsSizeValue(false))
-      ->type_name("SIZE");
-  command->add_flag("--json", options->json, "The report for programs");
-  command->callback([options, &run] { run = [options] { return reduceMesh(*options); }; });
+      .option("--memory", options->memory,
+              "The most that the whole command may take: 900M, 16G; else what is free. Where "
+              "it is short the mesh is cut into blocks, and the model is a little different")
+      .size()
+      .typeName("SIZE");
+  command.flag("--json", options->json, "The report for programs");
+  command.callback([options, &run] { run = [options] { return reduceMesh(*options); }; });
 }
 
 }  // namespace merlin::cli

@@ -89,40 +89,36 @@ int segmentMesh(const SegmentOptions& options) {
 
 }  // namespace
 
-void addMeshSegment(CLI::App& mesh, Run& run) {
+void addMeshSegment(Command mesh, Run& run) {
   const auto options = std::make_shared<SegmentOptions>();
-  CLI::App* command = mesh.add_subcommand(
+  Command command = mesh.subcommand(
       "segment",
       "A mesh into parts whose vertices are alike and hang together; their numbers become the "
       "feature label, 0 the largest.\nExample: merlin mesh segment scan.ply -o parts.ply "
       "--segments "
       "12 --weight normal=1 --weight colour=2");
-  command->add_option("input", options->input, "The mesh: .ply or .obj")
-      ->required()
-      ->type_name("IN");
-  command->add_option("-o", options->output, "The mesh with labels: .ply, .glb or .gltf")
-      ->required()
-      ->type_name("OUT.ply")
-      ->check(CLI::Validator(
-          [](const std::string& path) {
-            const bool carries =
-                path.ends_with(".ply") || path.ends_with(".glb") || path.ends_with(".gltf");
-            return carries ? "" : path + ": labels have a place in .ply, .glb and .gltf only";
-          },
-          ""));
-  command->add_option("--segments", options->settings.segments, "How many")
-      ->required()
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 24));
+  command.option("input", options->input, "The mesh: .ply or .obj").required().typeName("IN");
+  command.option("-o", options->output, "The mesh with labels: .ply, .glb or .gltf")
+      .required()
+      .typeName("OUT.ply")
+      .check([](const std::string& path) {
+        const bool carries =
+            path.ends_with(".ply") || path.ends_with(".glb") || path.ends_with(".gltf");
+        return carries ? "" : path + ": labels have a place in .ply, .glb and .gltf only";
+      });
+  command.option("--segments", options->settings.segments, "How many")
+      .required()
+      .range(std::size_t{1}, std::size_t{1} << 24);
   command
-      ->add_option("--weight", options->weights,
-                   "Of a feature: geometry, normal, curvature, or any of the mesh's own; without "
-                   "any: normal=1, and colour=1 where there is one")
-      ->type_name("FEATURE=W");
-  command->add_option("--picture", options->picture, "The segments, each in a colour of its own")
-      ->type_name("FILE.png");
-  options->view.addTo(*command);
-  command->add_flag("--json", options->json, "The report for programs");
-  command->callback([options, &run] { run = [options] { return segmentMesh(*options); }; });
+      .option("--weight", options->weights,
+              "Of a feature: geometry, normal, curvature, or any of the mesh's own; without "
+              "any: normal=1, and colour=1 where there is one")
+      .typeName("FEATURE=W");
+  command.option("--picture", options->picture, "The segments, each in a colour of its own")
+      .typeName("FILE.png");
+  options->view.addTo(command);
+  command.flag("--json", options->json, "The report for programs");
+  command.callback([options, &run] { run = [options] { return segmentMesh(*options); }; });
 }
 
 }  // namespace merlin::cli

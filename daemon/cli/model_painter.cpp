@@ -20,26 +20,23 @@ void Image::append(const Image& right) {
   width += right.width;
 }
 
-void View::addTo(CLI::App& command) {
-  command.add_option("--yaw", yaw_deg, "Turn about the vertical axis, degrees")
-      ->capture_default_str();
+void View::addTo(Command command) {
+  command.option("--yaw", yaw_deg, "Turn about the vertical axis, degrees").showDefault();
   command
-      .add_option(
-          "--pitch", pitch_deg,
-          "Turn about the horizontal axis before it, degrees; -90 for a model whose up is z")
-      ->capture_default_str();
+      .option("--pitch", pitch_deg,
+              "Turn about the horizontal axis before it, degrees; -90 for a model whose up is z")
+      .showDefault();
   command
-      .add_option(
-          "--show", render.show.feature,
-          "A feature as colours, one value on a scale from dark blue to yellow; without: the "
-          "model's own")
-      ->type_name("NAME");
-  command.add_option("--brightness", render.look.brightness, "Multiplies colours")
-      ->check(CLI::Range(0.1, 10.0))
-      ->capture_default_str();
-  command.add_option("--backend", backend, "Which windowless OpenGL draws")
-      ->check(CLI::IsMember({"egl", "osmesa"}))
-      ->capture_default_str();
+      .option("--show", render.show.feature,
+              "A feature as colours, one value on a scale from dark blue to yellow; without: the "
+              "model's own")
+      .typeName("NAME");
+  command.option("--brightness", render.look.brightness, "Multiplies colours")
+      .range(0.1, 10.0)
+      .showDefault();
+  command.option("--backend", backend, "Which windowless OpenGL draws")
+      .oneOf({"egl", "osmesa"})
+      .showDefault();
 }
 
 Eigen::Isometry3f View::T_eye_model() const {

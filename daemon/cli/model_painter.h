@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
+#include "daemon/cli/arguments.h"
 #include "daemon/wall/picture.h"
 
 namespace merlin::cli {
@@ -30,7 +30,7 @@ struct View {
   std::string backend = "egl";
   render::RenderSettings render;
 
-  void addTo(CLI::App& command);  // --yaw, --pitch, --show, --brightness, --backend
+  void addTo(Command command);  // --yaw, --pitch, --show, --brightness, --backend
   Eigen::Isometry3f T_eye_model() const;
 };
 

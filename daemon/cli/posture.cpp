@@ -40,14 +40,13 @@ std::optional<nn::InputUnit> unitNamed(const std::string& name) {
   return std::nullopt;
 }
 
-void addUnits(CLI::App& command, std::string& units) {
+void addUnits(Command command, std::string& units) {
   command
-      .add_option(
-          "--units", units,
-          "Of the recording: rad, raw (counts, degrees, whatever the sensors say), or auto: "
-          "raw if a number is beyond 6.3")
-      ->check(CLI::IsMember({"auto", "rad", "raw"}))
-      ->capture_default_str();
+      .option("--units", units,
+              "Of the recording: rad, raw (counts, degrees, whatever the sensors say), or auto: "
+              "raw if a number is beyond 6.3")
+      .oneOf({"auto", "rad", "raw"})
+      .showDefault();
 }
 
 Result<nn::Recording> readRecording(const std::string& path, std::optional<nn::InputUnit> unit) {
@@ -85,15 +84,15 @@ nn::Recording synthesize(const SyntheticPeople& people) {
   return recording;
 }
 
-void addPosture(CLI::App& app, Run& run) {
-  CLI::App* posture =
-      app.add_subcommand("posture", "The posture network: collect hands, train, test, adapt.");
-  posture->require_subcommand(1);
-  addPostureCollect(*posture, run);
-  addPostureTrain(*posture, run);
-  addPostureTest(*posture, run);
-  addPostureAdapt(*posture, run);
-  addPostureSynthesize(*posture, run);
+void addPosture(Command app, Run& run) {
+  Command posture =
+      app.subcommand("posture", "The posture network: collect hands, train, test, adapt.");
+  posture.requireSubcommand();
+  addPostureCollect(posture, run);
+  addPostureTrain(posture, run);
+  addPostureTest(posture, run);
+  addPostureAdapt(posture, run);
+  addPostureSynthesize(posture, run);
 }
 
 }  // namespace merlin::cli

@@ -4,23 +4,22 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
+#include "daemon/cli/arguments.h"
 #include "daemon/cli/command.h"
 #include "nn/io/data_set_file.h"
 #include "nn/io/network_file.h"
 
 namespace merlin::cli {
 
-void addPostureTrain(CLI::App& posture, Run& run);
-void addPostureTest(CLI::App& posture, Run& run);
-void addPostureAdapt(CLI::App& posture, Run& run);
-void addPostureCollect(CLI::App& posture, Run& run);
-void addPostureSynthesize(CLI::App& posture, Run& run);
+void addPostureTrain(Command posture, Run& run);
+void addPostureTest(Command posture, Run& run);
+void addPostureAdapt(Command posture, Run& run);
+void addPostureCollect(Command posture, Run& run);
+void addPostureSynthesize(Command posture, Run& run);
 
 // "auto", "raw" or "rad" to a unit; nothing for "auto".
 std::optional<nn::InputUnit> unitNamed(const std::string& name);
-void addUnits(CLI::App& command, std::string& units);
+void addUnits(Command command, std::string& units);
 
 // A recording, its notes printed to stderr.
 Result<nn::Recording> readRecording(const std::string& path, std::optional<nn::InputUnit> unit);

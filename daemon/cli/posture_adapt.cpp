@@ -60,39 +60,30 @@ int synthesizeFile(const SynthesizeOptions& options) {
 
 }  // namespace
 
-void addPostureAdapt(CLI::App& posture, Run& run) {
+void addPostureAdapt(Command posture, Run& run) {
   const auto options = std::make_shared<AdaptOptions>();
-  CLI::App* command = posture.add_subcommand(
+  Command command = posture.subcommand(
       "adapt",
       "Teach a network a new person, who held each posture for two seconds, without forgetting the "
       "others.\nExample: merlin posture adapt postures.json anna.csv -o anna.json");
-  command->add_option("net", options->network, "The network's file")
-      ->required()
-      ->type_name("NET.json");
-  command->add_option("hands", options->data, "The person's hands, CSV")
-      ->required()
-      ->type_name("DATA.csv");
-  command->add_option("-o", options->output, "The new network's file")
-      ->required()
-      ->type_name("FILE.json");
-  command->add_option("--seed", options->seed, "Of everything that is drawn")
-      ->capture_default_str();
-  addUnits(*command, options->units);
-  command->callback([options, &run] { run = [options] { return adapt(*options); }; });
+  command.option("net", options->network, "The network's file").required().typeName("NET.json");
+  command.option("hands", options->data, "The person's hands, CSV").required().typeName("DATA.csv");
+  command.option("-o", options->output, "The new network's file").required().typeName("FILE.json");
+  command.option("--seed", options->seed, "Of everything that is drawn").showDefault();
+  addUnits(command, options->units);
+  command.callback([options, &run] { run = [options] { return adapt(*options); }; });
 }
 
-void addPostureSynthesize(CLI::App& posture, Run& run) {
+void addPostureSynthesize(Command posture, Run& run) {
   const auto options = std::make_shared<SynthesizeOptions>();
-  CLI::App* command = posture.add_subcommand("synthesize",
-                                             "Labelled hands of synthetic people, for tests; "
-                                             "nobody was measured.\nExample: merlin posture "
-                                             "synthesize -o hands.csv --people 10 --first 1001");
-  command->add_option("-o", options->output, "The file")->required()->type_name("FILE.csv");
+  Command command = posture.subcommand("synthesize",
+                                       "Labelled hands of synthetic people, for tests; "
+                                       "nobody was measured.\nExample: merlin posture "
+                                       "synthesize -o hands.csv --people 10 --first 1001");
+  command.option("-o", options->output, "The file").required().typeName("FILE.csv");
   SyntheticPeople& people = options->people;
   const auto count = [&](const char* name, std::size_t& value, const char* help, std::size_t most) {
-    command->add_option(name, value, help)
-        ->check(CLI::Range(std::size_t{1}, most))
-        ->capture_default_str();
+    command.option(name, value, help).range(std::size_t{1}, most).showDefault();
   };
   count("--first", people.first, "The first person's number: another number, another person",
         1 << 30);
@@ -100,8 +91,8 @@ void addPostureSynthesize(CLI::App& posture, Run& run) {
   count("--takes", people.takes, "Times that each person takes each posture", 1000);
   count("--per-take", people.per_take, "Samples of each", 10000);
   count("--postures", people.postures, "How many, of those that there are", 31);
-  command->add_option("--seed", people.seed, "Of takes and noise")->capture_default_str();
-  command->callback([options, &run] { run = [options] { return synthesizeFile(*options); }; });
+  command.option("--seed", people.seed, "Of takes and noise").showDefault();
+  command.callback([options, &run] { run = [options] { return synthesizeFile(*options); }; });
 }
 
 }  // namespace merlin::cli

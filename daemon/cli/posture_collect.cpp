@@ -124,26 +124,20 @@ int run(const CollectOptions& options) {
 
 }  // namespace
 
-void addPostureCollect(CLI::App& posture, Run& run_now) {
+void addPostureCollect(Command posture, Run& run_now) {
   const auto options = std::make_shared<CollectOptions>();
-  CLI::App* command = posture.add_subcommand(
+  Command command = posture.subcommand(
       "collect",
       "Hands of one posture from the glove of a running merlind (live, or replayed: port "
       "replay:FILE), appended to a CSV file.\nExample: merlin posture collect fist -o hands.csv");
-  command->add_option("label", options->label, "The posture's name")
-      ->required()
-      ->type_name("LABEL");
-  command->add_option("-o", options->output, "The file")
-      ->capture_default_str()
-      ->type_name("FILE.csv");
-  command->add_option("--seconds", options->seconds, "How long")
-      ->check(CLI::Range(0.1, 600.0))
-      ->capture_default_str();
-  command->add_option("--units", options->units, "Angles, or the sensors' own counts")
-      ->check(CLI::IsMember({"rad", "raw"}))
-      ->capture_default_str();
-  addInstance(*command, options->instance);
-  command->callback([options, &run_now] { run_now = [options] { return run(*options); }; });
+  command.option("label", options->label, "The posture's name").required().typeName("LABEL");
+  command.option("-o", options->output, "The file").showDefault().typeName("FILE.csv");
+  command.option("--seconds", options->seconds, "How long").range(0.1, 600.0).showDefault();
+  command.option("--units", options->units, "Angles, or the sensors' own counts")
+      .oneOf({"rad", "raw"})
+      .showDefault();
+  addInstance(command, options->instance);
+  command.callback([options, &run_now] { run_now = [options] { return run(*options); }; });
 }
 
 }  // namespace merlin::cli

@@ -94,27 +94,27 @@ int test(const TestOptions& options) {
 
 }  // namespace
 
-void addPostureTest(CLI::App& posture, Run& run) {
+void addPostureTest(Command posture, Run& run) {
   const auto options = std::make_shared<TestOptions>();
-  CLI::App* command = posture.add_subcommand(
+  Command command = posture.subcommand(
       "test",
       "How many hands a network names right, what it takes for what, how sure it is; without DATA "
       "of synthetic people whom the shipped network has not seen.\nExample: merlin posture test "
       "postures.json hands.csv --json");
-  command->add_option("net,--network", options->network, "The network's file")
-      ->capture_default_str()
-      ->type_name("NET.json");
-  command->add_option("hands,--data", options->data, "Labelled hands, CSV")->type_name("DATA.csv");
+  command.option("net,--network", options->network, "The network's file")
+      .showDefault()
+      .typeName("NET.json");
+  command.option("hands,--data", options->data, "Labelled hands, CSV").typeName("DATA.csv");
   command
-      ->add_option("--beside", options->beside,
-                   "The training hands: nearest mean and nearest neighbour are reported too")
-      ->type_name("TRAIN.csv");
-  command->add_option("--margin", options->margin, "Below it a hand counts as unsure")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  addUnits(*command, options->units);
-  command->add_flag("--json", options->json, "For programs");
-  command->callback([options, &run] { run = [options] { return test(*options); }; });
+      .option("--beside", options->beside,
+              "The training hands: nearest mean and nearest neighbour are reported too")
+      .typeName("TRAIN.csv");
+  command.option("--margin", options->margin, "Below it a hand counts as unsure")
+      .range(0.0, 1.0)
+      .showDefault();
+  addUnits(command, options->units);
+  command.flag("--json", options->json, "For programs");
+  command.callback([options, &run] { run = [options] { return test(*options); }; });
 }
 
 }  // namespace merlin::cli

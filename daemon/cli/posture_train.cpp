@@ -110,35 +110,33 @@ int train(TrainOptions options) {
 
 }  // namespace
 
-void addPostureTrain(CLI::App& posture, Run& run) {
+void addPostureTrain(Command posture, Run& run) {
   const auto options = std::make_shared<TrainOptions>();
-  CLI::App* command = posture.add_subcommand(
+  Command command = posture.subcommand(
       "train",
       "Train a network on labelled hands; without DATA on the synthetic people of the shipped "
       "one.\nExample: merlin posture train hands.csv -o postures.json --curve curve.svg");
-  command->add_option("data", options->data, "Labelled hands, CSV")->type_name("DATA.csv");
-  CLI::Option* output =
-      command->add_option("-o", options->output, "The network's file")->type_name("FILE.json");
-  command->add_option("--curve", options->curve, "The learning curve as a picture")
-      ->type_name("FILE.svg");
-  command->add_option("--seed", options->fit.seed, "Of everything that is drawn")
-      ->capture_default_str();
-  command->add_option("--phi", options->phi, "The nodes' function; signum has no slope to train by")
-      ->check(CLI::IsMember({"sigmoid", "atan"}))
-      ->capture_default_str();
-  command->add_option("--starts", options->fit.starts, "Codes and weights to start from")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->add_option("--passes", options->fit.passes, "Over the hands, of the best start, at most")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
+  command.option("data", options->data, "Labelled hands, CSV").typeName("DATA.csv");
+  const Argument output =
+      command.option("-o", options->output, "The network's file").typeName("FILE.json");
+  command.option("--curve", options->curve, "The learning curve as a picture").typeName("FILE.svg");
+  command.option("--seed", options->fit.seed, "Of everything that is drawn").showDefault();
+  command.option("--phi", options->phi, "The nodes' function; signum has no slope to train by")
+      .oneOf({"sigmoid", "atan"})
+      .showDefault();
+  command.option("--starts", options->fit.starts, "Codes and weights to start from")
+      .range(1, 1000)
+      .showDefault();
+  command.option("--passes", options->fit.passes, "Over the hands, of the best start, at most")
+      .range(1, 1000000)
+      .showDefault();
   command
-      ->add_option("--folds", options->folds,
-                   "Cross-validate instead: train on all but one k-th, test on that, k times")
-      ->check(CLI::Range(2, 100));
-  addUnits(*command, options->units);
-  command->callback([options, output, &run] {
-    if (options->folds == 0 && output->count() == 0) throw CLI::RequiredError("-o or --folds");
+      .option("--folds", options->folds,
+              "Cross-validate instead: train on all but one k-th, test on that, k times")
+      .range(2, 100);
+  addUnits(command, options->units);
+  command.callback([options, output, &run] {
+    if (options->folds == 0 && !output.isGiven()) lacks("-o or --folds");
     run = [options] { return train(*options); };
   });
 }

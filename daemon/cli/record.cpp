@@ -172,38 +172,35 @@ int replay(const ReplayOptions& options) {
 
 }  // namespace
 
-void addRecord(CLI::App& app, Run& run) {
+void addRecord(Command app, Run& run) {
   const auto options = std::make_shared<RecordOptions>();
   std::vector<std::string> names;
   for (const DriverEntry& entry : drivers()) names.emplace_back(entry.name);
-  CLI::App* command = app.add_subcommand(
+  Command command = app.subcommand(
       "record",
       "What goes over a device's line, as a transcript.\nA daemon that has the line keeps its own "
       "record: merlin flight\nExample: merlin record pty:/tmp/ball --device spaceball -o "
       "ball.bytes");
-  command->add_option("port", options->port, "serial:/dev/..., pty:PATH or tcp://HOST:PORT")
-      ->required();
-  command->add_option("-o,--output", options->output, "The transcript, a text file")->required();
+  command.option("port", options->port, "serial:/dev/..., pty:PATH or tcp://HOST:PORT").required();
+  command.option("-o,--output", options->output, "The transcript, a text file").required();
   command
-      ->add_option("--device", options->device,
-                   "Talks to it as this driver does; without: only listens")
-      ->check(CLI::IsMember(names));
-  command->add_option("--baud", options->baud, "Speed of the line");
-  command->add_option("--seconds", options->seconds, "How long; without: until a signal");
-  command->callback([options, &run] { run = [options] { return record(*options); }; });
+      .option("--device", options->device, "Talks to it as this driver does; without: only listens")
+      .oneOf(names);
+  command.option("--baud", options->baud, "Speed of the line");
+  command.option("--seconds", options->seconds, "How long; without: until a signal");
+  command.callback([options, &run] { run = [options] { return record(*options); }; });
 }
 
-void addReplay(CLI::App& app, Run& run) {
+void addReplay(Command app, Run& run) {
   const auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command = app.add_subcommand(
+  Command command = app.subcommand(
       "replay",
       "A transcript on a pseudo-terminal, at its own pace; waits for what the host said "
       "then.\nExample: merlin replay ball.bytes --link /tmp/ball");
-  command->add_option("file", options->file, "The transcript")->required();
-  command->add_option("--link", options->link,
-                      "A symbolic link to the pseudo-terminal, made there");
-  command->add_flag("--loop", options->loop, "Again and again");
-  command->callback([options, &run] { run = [options] { return replay(*options); }; });
+  command.option("file", options->file, "The transcript").required();
+  command.option("--link", options->link, "A symbolic link to the pseudo-terminal, made there");
+  command.flag("--loop", options->loop, "Again and again");
+  command.callback([options, &run] { run = [options] { return replay(*options); }; });
 }
 
 }  // namespace merlin::cli

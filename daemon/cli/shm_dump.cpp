@@ -143,17 +143,17 @@ int dumpRepeatedly(const DumpOptions& options) {
 
 }  // namespace
 
-void addShm(CLI::App& app, Run& run) {
+void addShm(Command app, Run& run) {
   const auto options = std::make_shared<DumpOptions>();
-  CLI::App* shm = app.add_subcommand("shm", "The shared memory that other programs read.");
-  shm->require_subcommand(1);
-  CLI::App* command = shm->add_subcommand(
-      "dump", "Every field: name, value, unit.\nExample: merlin shm dump --json");
-  addInstance(*command, options->instance);
-  command->add_flag("--json", options->json, "One JSON object");
-  command->add_option("--follow", options->follow_s, "Again and again, every so many seconds")
-      ->type_name("SECONDS");
-  command->callback([options, &run] { run = [options] { return dumpRepeatedly(*options); }; });
+  Command shm = app.subcommand("shm", "The shared memory that other programs read.");
+  shm.requireSubcommand();
+  Command command =
+      shm.subcommand("dump", "Every field: name, value, unit.\nExample: merlin shm dump --json");
+  addInstance(command, options->instance);
+  command.flag("--json", options->json, "One JSON object");
+  command.option("--follow", options->follow_s, "Again and again, every so many seconds")
+      .typeName("SECONDS");
+  command.callback([options, &run] { run = [options] { return dumpRepeatedly(*options); }; });
 }
 
 }  // namespace merlin::cli

@@ -38,15 +38,15 @@ int snapshot(const SnapshotOptions& options) {
 
 }  // namespace
 
-void addSnapshot(CLI::App& app, Run& run) {
+void addSnapshot(Command app, Run& run) {
   const auto options = std::make_shared<SnapshotOptions>();
-  CLI::App* command = app.add_subcommand(
+  Command command = app.subcommand(
       "snapshot", "What the wall shows now, as a PNG file.\nExample: merlin snapshot -o frame.png");
-  addInstance(*command, options->instance);
-  command->add_option("-o", options->output, "The file")->required()->type_name("FILE.png");
-  command->add_flag("--wall", options->wall,
-                    "The picture on the wall: its tiles side by side, without the operator's view");
-  command->callback([options, &run] { run = [options] { return snapshot(*options); }; });
+  addInstance(command, options->instance);
+  command.option("-o", options->output, "The file").required().typeName("FILE.png");
+  command.flag("--wall", options->wall,
+               "The picture on the wall: its tiles side by side, without the operator's view");
+  command.callback([options, &run] { run = [options] { return snapshot(*options); }; });
 }
 
 }  // namespace merlin::cli

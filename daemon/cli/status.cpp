@@ -9,17 +9,17 @@
 
 namespace merlin::cli {
 
-void addStatus(CLI::App& app, Run& run) {
+void addStatus(Command app, Run& run) {
   struct Options {
     std::string instance = "merlin";
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
-      "status", "How the wall and the devices are.\nExample: merlin status --json");
-  addInstance(*command, options->instance);
-  command->add_flag("--json", options->json, "For programs");
-  command->callback([options, &run] {
+  Command command =
+      app.subcommand("status", "How the wall and the devices are.\nExample: merlin status --json");
+  addInstance(command, options->instance);
+  command.flag("--json", options->json, "For programs");
+  command.callback([options, &run] {
     run = [options] {
       const auto status = askStatus(options->instance);
       if (!status) return fail(status.error());

@@ -86,19 +86,18 @@ int trace(const TraceOptions& options) {
 
 }  // namespace
 
-void addTrace(CLI::App& app, Run& run) {
+void addTrace(Command app, Run& run) {
   const auto options = std::make_shared<TraceOptions>();
-  CLI::App* command = app.add_subcommand(
-      "trace",
-      "Where the time of the last frames went, step by step, for a trace viewer.\n"
-      "Example: merlin trace -o trace.json --seconds 5");
-  addInstance(*command, options->instance);
-  command->add_option("-o", options->output, "The file")->required()->type_name("FILE.json");
-  command
-      ->add_option("--seconds", options->seconds, "So long back; what is not there is waited for")
-      ->check(CLI::Range(0.1, 600.0))
-      ->capture_default_str();
-  command->callback([options, &run] { run = [options] { return trace(*options); }; });
+  Command command =
+      app.subcommand("trace",
+                     "Where the time of the last frames went, step by step, for a trace viewer.\n"
+                     "Example: merlin trace -o trace.json --seconds 5");
+  addInstance(command, options->instance);
+  command.option("-o", options->output, "The file").required().typeName("FILE.json");
+  command.option("--seconds", options->seconds, "So long back; what is not there is waited for")
+      .range(0.1, 600.0)
+      .showDefault();
+  command.callback([options, &run] { run = [options] { return trace(*options); }; });
 }
 
 }  // namespace merlin::cli

@@ -39,18 +39,17 @@ int wall(const WallOptions& options) {
 
 }  // namespace
 
-void addWall(CLI::App& app, Run& run) {
+void addWall(Command app, Run& run) {
   const auto options = std::make_shared<WallOptions>();
-  CLI::App* command =
-      app.add_subcommand("wall",
-                         "Triangles and rate by hand, until auto gives them back to the governor.\n"
-                         "Example: merlin wall --triangles 20000 --rate 20");
-  addInstance(*command, options->instance);
-  command->add_option("--triangles", options->triangles, "While it moves, or auto")
-      ->type_name("N|auto");
-  command->add_option("--rate", options->rate, "Frames a second, or auto: as configured")
-      ->type_name("HZ|auto");
-  command->callback([options, &run] { run = [options] { return wall(*options); }; });
+  Command command =
+      app.subcommand("wall",
+                     "Triangles and rate by hand, until auto gives them back to the governor.\n"
+                     "Example: merlin wall --triangles 20000 --rate 20");
+  addInstance(command, options->instance);
+  command.option("--triangles", options->triangles, "While it moves, or auto").typeName("N|auto");
+  command.option("--rate", options->rate, "Frames a second, or auto: as configured")
+      .typeName("HZ|auto");
+  command.callback([options, &run] { run = [options] { return wall(*options); }; });
 }
 
 }  // namespace merlin::cli

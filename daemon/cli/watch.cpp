@@ -46,17 +46,17 @@ int watch(const WatchOptions& options) {
 
 }  // namespace
 
-void addWatch(CLI::App& app, Run& run) {
+void addWatch(Command app, Run& run) {
   const auto options = std::make_shared<WatchOptions>();
-  CLI::App* command =
-      app.add_subcommand("watch",
-                         "One line a second: rate asked, rate held, triangles, late frames, "
-                         "posture, devices.\nExample: merlin watch --for 20");
-  addInstance(*command, options->instance);
-  command->add_option("--for", options->seconds, "Seconds, then end; without it: until interrupted")
-      ->type_name("SECONDS");
-  command->add_flag("--json", options->json, "One JSON document a line");
-  command->callback([options, &run] { run = [options] { return watch(*options); }; });
+  Command command =
+      app.subcommand("watch",
+                     "One line a second: rate asked, rate held, triangles, late frames, "
+                     "posture, devices.\nExample: merlin watch --for 20");
+  addInstance(command, options->instance);
+  command.option("--for", options->seconds, "Seconds, then end; without it: until interrupted")
+      .typeName("SECONDS");
+  command.flag("--json", options->json, "One JSON document a line");
+  command.callback([options, &run] { run = [options] { return watch(*options); }; });
 }
 
 }  // namespace merlin::cli

@@ -199,6 +199,20 @@ void Picture::takeSteps() {
   }
 }
 
+// By the last frame: who takes the longest tile last keeps the other waiting.
+void Picture::longestFirst() {
+  std::vector<Duration> took(all_.size());
+  for (const PaintStep& step : steps_) {
+    if (step.kind == shm::StepKind::kDraw) took[step.tile] = step.end - step.begin;
+  }
+  std::stable_sort(wall_first_.begin(), wall_first_.end(), [&](std::size_t a, std::size_t b) {
+    const auto operators = [&](std::size_t tile) {
+      return plan_.tiles[tile].kind == render::TileKind::kOperator;
+    };
+    return operators(a) != operators(b) ? operators(b) : took[a] > took[b];
+  });
+}
+
 // Neighbouring clusters that the view sees are one run.
 void Picture::chooseRuns(std::size_t view, std::vector<TriangleRun>& runs) const {
   runs.clear();
@@ -249,6 +263,8 @@ DrawTimes Picture::draw(const Eigen::Isometry3f& T_eye_model, std::size_t level,
   const double share = other_ && sum > 0 ? std::min(1.0, toSeconds(elapsed) / sum) : 1;
   times.drawing = cut + fromSeconds(share * toSeconds(times.drawing));
   times.fixed = fromSeconds(share * toSeconds(times.fixed));
+  takeSteps();
+  if (other_) longestFirst();
   if (drawn.gave_way)
     drawOperators(T_eye_model, levelThatFits(level, wall, until - clock_.now()), times);
   takeSteps();

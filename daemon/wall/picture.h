@@ -85,6 +85,7 @@ class Picture final : public Painter {
   void drawFrom(TilePainter& painter, std::size_t level, Timestamp until, Drawn& drawn);
   void drawOperators(const Eigen::Isometry3f& T_eye_model, std::size_t level, DrawTimes& times);
   void takeSteps();
+  void longestFirst();
   Timestamp stepDone(shm::StepKind kind, Timestamp began);  // returns now
   std::size_t levelThatFits(std::size_t level, Duration wall, Duration left) const;
   void learnOperatorShare(Duration wall, Duration operators);
@@ -106,7 +107,8 @@ class Picture final : public Painter {
   std::vector<render::Morph> morphs_;  // of its vertices
   bool clustered_ = false;
   FrameContent content_;
-  std::vector<std::size_t> all_, operators_, wall_first_;  // tiles: numbers of the plan's
+  std::vector<std::size_t> all_, operators_;  // tiles: numbers of the plan's
+  std::vector<std::size_t> wall_first_;       // the same, as they are taken
   TileQueue queue_;
   std::vector<render::TileView> views_;
   std::vector<PaintStep> steps_;                       // of the last draw() or refine()

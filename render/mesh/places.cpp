@@ -20,6 +20,26 @@ std::size_t hashOf(const float* p) {
 
 }  // namespace
 
+std::vector<std::uint32_t> samePlaceBySorting(std::span<const float> positions) {
+  const std::size_t n = positions.size() / 3;
+  std::vector<std::uint32_t> next(n), order(n);
+  std::iota(order.begin(), order.end(), 0U);
+  const auto at = [&](std::uint32_t v) { return positions.data() + 3 * std::size_t{v}; };
+  const auto same = [&](std::uint32_t a, std::uint32_t b) {
+    return std::equal(at(a), at(a) + 3, at(b));
+  };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const bool before = std::lexicographical_compare(at(a), at(a) + 3, at(b), at(b) + 3);
+    return before || (a < b && same(a, b));
+  });
+  for (std::size_t first = 0, i = 0; i < n; ++i) {
+    const bool last = i + 1 == n || !same(order[i], order[i + 1]);
+    next[order[i]] = last ? order[first] : order[i + 1];
+    if (last) first = i + 1;
+  }
+  return next;
+}
+
 // A table of places with open addressing: of each its last vertex so far, whose next is the first.
 std::vector<std::uint32_t> samePlace(std::span<const float> positions) {
   constexpr std::uint32_t kEmpty = ~std::uint32_t{0};
@@ -27,10 +47,14 @@ std::vector<std::uint32_t> samePlace(std::span<const float> positions) {
   std::vector<std::uint32_t> next(n), last(std::bit_ceil(2 * n + 1), kEmpty);
   std::iota(next.begin(), next.end(), 0U);
   const auto at = [&](std::uint32_t v) { return positions.data() + 3 * std::size_t{v}; };
+  // Places that were chosen to meet in the table.
+  std::size_t steps_left = 16 * n + 1024;
   for (std::uint32_t v = 0; v < n; ++v) {
     std::size_t k = hashOf(at(v)) & (last.size() - 1);
-    while (last[k] != kEmpty && !std::equal(at(v), at(v) + 3, at(last[k])))
+    while (last[k] != kEmpty && !std::equal(at(v), at(v) + 3, at(last[k]))) {
       k = (k + 1) & (last.size() - 1);
+      if (--steps_left == 0) return samePlaceBySorting(positions);
+    }
     if (last[k] != kEmpty) {
       next[v] = next[last[k]];
       next[last[k]] = v;

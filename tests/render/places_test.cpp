@@ -28,6 +28,7 @@ TEST(SamePlace, AgreesWithComparingEachWithEach) {
     for (float& x : positions) x = static_cast<float>(random.below(2));
     const Indices next = samePlace(positions);
     ASSERT_EQ(next.size(), positions.size() / 3);
+    EXPECT_EQ(samePlaceBySorting(positions), next);
     for (std::size_t v = 0; v < next.size(); ++v) {
       const auto same = [&](std::size_t w) {
         return std::equal(&positions[3 * v], &positions[3 * v] + 3, &positions[3 * w]);

@@ -1,0 +1,77 @@
+#include "daemon/cli/arguments.h"
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+namespace merlin::cli {
+
+Argument Argument::required() { return Argument(option_->required()); }
+Argument Argument::typeName(const std::string& name) { return Argument(option_->type_name(name)); }
+Argument Argument::expected(int values) { return Argument(option_->expected(values)); }
+Argument Argument::separated(char by) { return Argument(option_->delimiter(by)); }
+Argument Argument::showDefault() { return Argument(option_->capture_default_str()); }
+Argument Argument::excludes(const Argument& other) {
+  return Argument(option_->excludes(other.option_));
+}
+Argument Argument::range(int low, int high) {
+  return Argument(option_->check(CLI::Range(low, high)));
+}
+Argument Argument::range(double low, double high) {
+  return Argument(option_->check(CLI::Range(low, high)));
+}
+Argument Argument::range(std::size_t low, std::size_t high) {
+  return Argument(option_->check(CLI::Range(low, high)));
+}
+Argument Argument::positive() { return Argument(option_->check(CLI::PositiveNumber)); }
+Argument Argument::nonNegative() { return Argument(option_->check(CLI::NonNegativeNumber)); }
+Argument Argument::oneOf(std::vector<std::string> values) {
+  return Argument(option_->check(CLI::IsMember(std::move(values))));
+}
+Argument Argument::size() { return Argument(option_->transform(CLI::AsSizeValue(false))); }
+Argument Argument::check(std::function<std::string(const std::string&)> fault) {
+  return Argument(option_->check(CLI::Validator(
+      [fault = std::move(fault)](const std::string& value) { return fault(value); }, "")));
+}
+bool Argument::isGiven() const { return option_->count() > 0; }
+
+Command Command::subcommand(const std::string& name, const std::string& help) {
+  return Command(*app_->add_subcommand(name, help));
+}
+void Command::requireSubcommand() { app_->require_subcommand(1); }
+Command Command::group(const std::string& name, const std::string& help) {
+  return Command(*app_->add_option_group(name, help));
+}
+void Command::atMostOne() { app_->require_option(0, 1); }
+void Command::callback(const std::function<void()>& chosen) { app_->callback(chosen); }
+void Command::exclude(const Argument& other) { app_->excludes(other.option_); }
+
+Argument Command::flag(const std::string& names, bool& value, const std::string& help) {
+  return Argument(app_->add_flag(names, value, help));
+}
+
+template <typename T>
+Argument Command::option(const std::string& names, T& value, const std::string& help) {
+  return Argument(app_->add_option(names, value, help));
+}
+template Argument Command::option(const std::string&, bool&, const std::string&);
+template Argument Command::option(const std::string&, int&, const std::string&);
+template Argument Command::option(const std::string&, unsigned&, const std::string&);
+template Argument Command::option(const std::string&, std::int64_t&, const std::string&);
+template Argument Command::option(const std::string&, std::uint64_t&, const std::string&);
+template Argument Command::option(const std::string&, float&, const std::string&);
+template Argument Command::option(const std::string&, double&, const std::string&);
+template Argument Command::option(const std::string&, std::string&, const std::string&);
+template Argument Command::option(const std::string&, std::vector<std::string>&,
+                                  const std::string&);
+template Argument Command::option(const std::string&, std::vector<int>&, const std::string&);
+template Argument Command::option(const std::string&, std::vector<double>&, const std::string&);
+template Argument Command::option(const std::string&, std::optional<std::size_t>&,
+                                  const std::string&);
+template Argument Command::option(const std::string&, std::optional<double>&, const std::string&);
+
+void lacks(const std::string& what) { throw CLI::RequiredError(what); }
+
+}  // namespace merlin::cli
