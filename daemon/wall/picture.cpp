@@ -92,14 +92,17 @@ Result<std::unique_ptr<Picture>> Picture::make(const render::Dendrogram& model,
     return TilePainter::make(context.gl(), model, picture->plan_, settings, full,
                              texture->pixels.empty() ? nullptr : &image, clock);
   };
-  auto painter = painterIn(*picture->contexts_->own);
-  if (!painter) return painter.error();
-  picture->painter_ = *std::move(painter);
-  if (DrawThread* other = picture->contexts_->other.get()) {
-    other->run([&] { painter = painterIn(other->context()); });
-    if (!painter) return painter.error();
-    picture->other_ = *std::move(painter);
-  }
+  // At once, each on its thread.
+  DrawThread* const other = picture->contexts_->other.get();
+  Result<std::unique_ptr<TilePainter>> others = std::unique_ptr<TilePainter>();
+  const std::function<void()> makeOthers = [&] { others = painterIn(other->context()); };
+  if (other) other->start(makeOthers);
+  auto own = painterIn(*picture->contexts_->own);
+  if (other) other->wait();
+  if (others) picture->other_ = *std::move(others);
+  if (own) picture->painter_ = *std::move(own);
+  if (!own) return own.error();
+  if (!others) return others.error();
   return picture;
 }
 
