@@ -1,6 +1,6 @@
 // ./dev bench rates: what the wall draws in a second, beside the table of 1998 (row W10), and which
 // share of it is drawing: a loop that only drew and read back could not be faster by more than
-// that.
+// that; and what a second context on a second core is worth.
 //
 // W10: textured triangles at full resolution, before reduction; the operator's view is a fourth
 // one, as there. Each is the whole model, two copies of the demo's scan side by side in a made-up
@@ -107,25 +107,37 @@ Times timeOf(Picture& picture, const Eigen::Isometry3f& T_eye_model, std::size_t
   return times;
 }
 
-void bench(const render::Dendrogram& model, Picture& picture, const Clock& clock) {
-  fmt::print("triangles   1998, Hz   now, Hz   times   triangles/s   drawing's share\n");
+struct Measured {
+  std::vector<double> frame_s, share;
+
+  void add(const Times& t) {
+    frame_s.push_back(t.frame_s);
+    share.push_back(t.drawing_s / t.frame_s);
+  }
+  double hz() const { return 1 / median(frame_s); }
+};
+
+// In turns, pose by pose.
+void bench(const render::Dendrogram& model, Picture& one, Picture& two, const Clock& clock) {
+  fmt::print(
+      "triangles   1998, Hz   one context, Hz   times   triangles/s   drawing's share   two, Hz   "
+      "of one's\n");
   for (const Row1998& row : kRows1998) {
     const std::size_t level = model.levelFor(row.triangles);
-    std::vector<double> frame, share;
-    timeOf(picture, pose(0), level, clock);
+    Measured by_one, by_two;
+    for (Picture* picture : {&one, &two}) timeOf(*picture, pose(0), level, clock);
     for (int k = 0; k < kPoses; ++k) {
-      const Times t = timeOf(picture, pose(k), level, clock);
-      frame.push_back(t.frame_s);
-      share.push_back(t.drawing_s / t.frame_s);
+      by_one.add(timeOf(one, pose(k), level, clock));
+      by_two.add(timeOf(two, pose(k), level, clock));
     }
-    const double hz = 1 / median(frame);
-    fmt::print("{:9} {:10.2f} {:9.1f} {:7.0f} {:13.0f} {:17.2f}\n", model.trianglesAt(level),
-               row.rate_hz, hz, hz / row.rate_hz, hz * static_cast<double>(row.triangles),
-               median(share));
+    fmt::print("{:9} {:10.2f} {:17.1f} {:7.0f} {:13.0f} {:17.2f} {:9.1f} {:10.2f}\n",
+               model.trianglesAt(level), row.rate_hz, by_one.hz(), by_one.hz() / row.rate_hz,
+               by_one.hz() * static_cast<double>(row.triangles), median(by_one.share), by_two.hz(),
+               by_two.hz() / by_one.hz());
   }
 }
 
-int run(const std::string& scan, int raster_threads, int contexts, bool textured) {
+int run(const std::string& scan, int raster_threads, bool textured) {
   render::prepareSoftwareGl(raster_threads);
   auto loaded = render::readMesh(scan);
   if (!loaded) {
@@ -145,16 +157,16 @@ int run(const std::string& scan, int raster_threads, int contexts, bool textured
   const render::Dendrogram model = render::buildDendrogram(mesh, reduced->log);
   const auto plan = render::planTiles({});
   const SystemClock clock;
-  const auto picture =
-      Picture::make(model, *plan, {.contexts = contexts, .look = {}}, kRadius_m, clock);
-  if (!picture) {
-    fmt::print(stderr, "{}\n", picture.error().what);
+  const auto one = Picture::make(model, *plan, {.contexts = 1, .look = {}}, kRadius_m, clock);
+  const auto two = Picture::make(model, *plan, {.contexts = 2, .look = {}}, kRadius_m, clock);
+  for (const auto* picture : {&one, &two}) {
+    if (*picture) continue;
+    fmt::print(stderr, "{}\n", picture->error().what);
     return 1;
   }
   fmt::print("{}, {} raster threads; three tiles and the operator's view, 640 x 480 each; {}\n",
-             (*picture)->contexts()->renderer(), raster_threads,
-             textured ? "textured" : "coloured");
-  bench(model, **picture, clock);
+             (*one)->contexts()->renderer(), raster_threads, textured ? "textured" : "coloured");
+  bench(model, **one, **two, clock);
   return 0;
 }
 
@@ -163,15 +175,13 @@ int run(const std::string& scan, int raster_threads, int contexts, bool textured
 
 int main(int argc, char** argv) {
   std::string scan = MERLIN_SOURCE_DIR "/config/models/ankylosaurus.ply";
-  int raster_threads = 0, contexts = 0;
+  int raster_threads = 0;
   bool textured = true;
   CLI::App app("Rates at full resolution, beside those of 1998.");
   app.add_option("--scan", scan, "A scan with colours")->capture_default_str();
   app.add_option("--raster-threads", raster_threads, "Of Mesa's software renderer")
       ->check(CLI::Range(0, 16));
-  app.add_option("--contexts", contexts, "That share the tiles; 0: as the wall does")
-      ->check(CLI::Range(0, 2));
   app.add_flag("!--coloured", textured, "Colours at the vertices instead of a texture");
   CLI11_PARSE(app, argc, argv);
-  return merlin::bench::run(scan, raster_threads, contexts, textured);
+  return merlin::bench::run(scan, raster_threads, textured);
 }
