@@ -39,7 +39,9 @@ struct Clusters::Builder {
 
 void Clusters::Builder::chooseLevels(const ClusterSettings& settings) {
   const std::size_t vertices = d.vertexCount();
-  const std::size_t wanted = std::clamp<std::size_t>(settings.clusters, 1, kNoCluster - 1);
+  const std::size_t usual = std::clamp<std::size_t>(vertices / 700, 512, 2048);
+  const std::size_t wanted =
+      std::clamp<std::size_t>(settings.clusters > 0 ? settings.clusters : usual, 1, kNoCluster - 1);
   const std::size_t roots = std::clamp<std::size_t>(vertices / 16, 1, wanted);
   c.coarsest_ = std::min(d.levels() - 1, vertices > roots ? vertices - roots : 0);
   // 16 bytes for each of 1 + 1/sqrt(2) + ... times the triangles of the finest, 12 for those of

@@ -26,7 +26,9 @@
 namespace merlin::render {
 
 struct ClusterSettings {
-  std::size_t clusters = 512;                  // about so many; fewer for a small model
+  // About so many; fewer for a small model. 0: 512, and up to 2,048 of a million vertices and more:
+  // smaller clusters follow a close look better, and cost more draw calls.
+  std::size_t clusters = 0;
   std::size_t memory = std::size_t{40} << 20;  // bytes at most, about: bounds the finest rung
 };
 
