@@ -98,6 +98,7 @@ class QuadricReducer {
   void requeue();
   void reduceWhole(std::size_t keep, const Progress& progress);
 
+  void copyTo(CollapseLog& log, std::vector<float>* normals, std::size_t k);
   static constexpr std::uint32_t kNowhere = ~std::uint32_t{0};
   void pin(std::size_t k, const std::array<std::uint32_t, 2>& children, const float* position,
            std::array<float, 3>& p);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "daemon/base/blocks.h"
 #include "render/reduce/quadric_reducer.h"
 
 namespace merlin::render {
@@ -10,7 +11,8 @@ namespace {
 
 // As far as validate() lets a mesh reach.
 constexpr float kFarthest = 1e18F;
-constexpr std::size_t kAhead = 16;  // records asked for
+constexpr std::size_t kAhead = 16;       // records asked for
+constexpr std::size_t kBlock = 1 << 15;  // collapses that a thread takes at a time
 
 }  // namespace
 
@@ -28,40 +30,47 @@ void QuadricReducer::pin(std::size_t k, const std::array<std::uint32_t, 2>& chil
   }
 }
 
-Reduction QuadricReducer::finish(const Mesh& mesh) {
-  mesh_.dropStars();
+// Of collapse k. REQUIRES: next_ says of each dead vertex which collapse it was.
+void QuadricReducer::copyTo(CollapseLog& log, std::vector<float>* normals, std::size_t k) {
   const std::uint32_t vertices = mesh_.vertexCount();
-  const std::size_t collapses = whole_.collapses;
-  for (std::size_t k = 0; k < collapses; ++k) next_[log_[k]] = static_cast<std::uint32_t>(k);
   const auto node = [&](std::uint32_t n) {
     return n < vertices ? mesh_.inputOf(n) : vertices + next_[n - vertices];
   };
+  NodeRecord r;
+  if (k + kAhead < log.error.size()) __builtin_prefetch(&mesh_[log_[k + kAhead]]);
+  std::memcpy(&r, static_cast<const void*>(mesh_[log_[k]].position), sizeof r);
+  log.children[k] = {node(r.children[0]), node(r.children[1])};
+  auto p = mesh_.toModel(r.position);
+  for (float& x : p) x = std::clamp(x, -kFarthest, kFarthest);
+  if (!pinned_.empty()) pin(k, log.children[k], r.position, p);
+  std::copy_n(p.begin(), 3, &log.positions[3 * k]);
+  log.error[k] = r.error / mesh_.scale();
+  const float length = std::hypot(r.normal[0], r.normal[1], r.normal[2]);
+  for (std::size_t i = 0; normals && i < 3; ++i)
+    (*normals)[3 * k + i] = length > 0 ? r.normal[i] / length : 0;
+}
+
+Reduction QuadricReducer::finish(const Mesh& mesh) {
+  mesh_.dropStars();
+  const std::size_t collapses = whole_.collapses;
+  for (std::size_t k = 0; k < collapses; ++k) next_[log_[k]] = static_cast<std::uint32_t>(k);
   Reduction result;
   CollapseLog& log = result.log;
-  log.children.reserve(collapses);
-  log.positions.reserve(3 * collapses);
-  log.error.reserve(collapses);
+  log.children.resize(collapses);
+  log.positions.resize(3 * collapses);
+  log.error.resize(collapses);
   log.features.resize(mesh.features.size());
   std::vector<float>* normals = nullptr;
   for (std::size_t f = 0; f < mesh.features.size(); ++f) {
     if (mesh.features[f].name == "normal") normals = &log.features[f];
   }
-  if (normals) normals->reserve(3 * collapses);
-  for (std::size_t k = 0; k < collapses; ++k) {
-    NodeRecord r;
-    if (k + kAhead < collapses) __builtin_prefetch(&mesh_[log_[k + kAhead]]);
-    std::memcpy(&r, static_cast<const void*>(mesh_[log_[k]].position), sizeof r);
-    log.children.push_back({node(r.children[0]), node(r.children[1])});
-    auto p = mesh_.toModel(r.position);
-    for (float& x : p) x = std::clamp(x, -kFarthest, kFarthest);
-    if (!pinned_.empty()) pin(k, log.children.back(), r.position, p);
-    log.positions.insert(log.positions.end(), p.begin(), p.end());
-    log.error.push_back(r.error / mesh_.scale());
-    const float length = std::hypot(r.normal[0], r.normal[1], r.normal[2]);
-    for (const float x : r.normal) {
-      if (normals) normals->push_back(length > 0 ? x / length : 0);
-    }
-  }
+  if (normals) normals->resize(3 * collapses);
+  // Whether a node is pinned its children say, which were before.
+  const unsigned threads = pinned_.empty() ? threads_ : 1;
+  forBlocks(threads, (collapses + kBlock - 1) / kBlock, [&](std::size_t block) {
+    const std::size_t end = std::min(collapses, (block + 1) * kBlock);
+    for (std::size_t k = block * kBlock; k < end; ++k) copyTo(log, normals, k);
+  });
   result.report.collapses = collapses;
   result.report.flips_refused = whole_.flips;
   result.report.topology_refused = whole_.links;
