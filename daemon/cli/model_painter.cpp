@@ -59,6 +59,7 @@ Result<ModelPainter> ModelPainter::make(const render::Dendrogram& model, const V
   render::RenderSettings settings = view.render;
   settings.view_dependent = false;  // shows a level as it is
   settings.geomorph = 0;
+  settings.contexts = 1;  // one tile
   settings.backend =
       view.backend == "osmesa" ? render::GlBackend::kOsmesa : render::GlBackend::kEgl;
   auto picture = wall::Picture::make(model, *plan, settings, 1.0, clock);
