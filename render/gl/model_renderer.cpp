@@ -198,7 +198,7 @@ ModelRenderer::Vertex ModelRenderer::between(const Vertex& parent, const Vertex&
 
 // As it stands now. REQUIRES: the node has one; morphs_ and morphed_ go up to `node`.
 ModelRenderer::Vertex ModelRenderer::parentOf(std::uint32_t node) const {
-  const std::uint32_t parent = model_.arrays().parents[(model_.nodeCount() - 1 - node) / 2];
+  const std::uint32_t parent = model_.parentOf(node);
   const auto end = morphs_.begin() + static_cast<std::ptrdiff_t>(morphed_.size());
   const auto found =
       std::lower_bound(morphs_.begin(), end, parent,

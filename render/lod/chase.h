@@ -11,9 +11,12 @@ struct Forest {
   std::span<const std::uint32_t> parents;  // as Dendrogram has them
   std::uint32_t nodes;
 
+  std::uint32_t parentOf(std::uint32_t node) const noexcept {
+    return parents[(nodes - 1 - node) / 2];
+  }
   // The first of `node` and its ancestors with a number below `alive`.
   std::uint32_t chase(std::uint32_t node, std::uint32_t alive) const noexcept {
-    while (node >= alive) node = parents[(nodes - 1 - node) / 2];
+    while (node >= alive) node = parentOf(node);
     return node;
   }
 };

@@ -16,6 +16,8 @@ constexpr double kRungStep = 1.41421356;
 constexpr unsigned kCurveBits = 10;
 // Cuts of fewer triangles a cluster are made without clusters.
 constexpr std::size_t kFewPerCluster = 64;
+// Where nobody says how many clusters.
+constexpr std::size_t kVerticesOfACluster = 700, kLeastUsual = 512, kMostUsual = 2048;
 
 }  // namespace
 
@@ -39,7 +41,7 @@ struct Clusters::Builder {
 
 void Clusters::Builder::chooseLevels(const ClusterSettings& settings) {
   const std::size_t vertices = d.vertexCount();
-  const std::size_t usual = std::clamp<std::size_t>(vertices / 700, 512, 2048);
+  const std::size_t usual = std::clamp(vertices / kVerticesOfACluster, kLeastUsual, kMostUsual);
   const std::size_t wanted =
       std::clamp<std::size_t>(settings.clusters > 0 ? settings.clusters : usual, 1, kNoCluster - 1);
   const std::size_t roots = std::clamp<std::size_t>(vertices / 16, 1, wanted);
@@ -78,8 +80,8 @@ void Clusters::Builder::numberClusters() {
   const std::size_t share = roots.size() / (kNoCluster - 1) + 1;
   for (std::size_t i = 0; i < roots.size(); ++i)
     c.cluster_of_[roots[i]] = static_cast<std::uint16_t>(i / share);
-  for (std::size_t n = alive; n < c.cluster_of_.size(); ++n)
-    c.cluster_of_[n] = c.cluster_of_[c.forest_.parents[(c.forest_.nodes - 1 - n) / 2]];
+  for (std::uint32_t n = alive; n < c.cluster_of_.size(); ++n)
+    c.cluster_of_[n] = c.cluster_of_[c.forest_.parentOf(n)];
   c.bounds_.resize((roots.size() + share - 1) / share);
 }
 
@@ -184,7 +186,7 @@ void Clusters::Builder::measure() {
   std::vector<std::uint16_t> of = c.cluster_of_;
   of.resize(d.nodeCount());
   for (std::uint32_t n = 0; n < of.size(); ++n) {
-    if (n >= c.cluster_of_.size()) of[n] = of[c.forest_.parents[(c.forest_.nodes - 1 - n) / 2]];
+    if (n >= c.cluster_of_.size()) of[n] = of[c.forest_.parentOf(n)];
     if (of[n] != kNoCluster) grow(of[n], n);
   }
   const auto leaves = d.arrays().triangles;
@@ -201,7 +203,7 @@ void Clusters::Builder::measure() {
       std::uint32_t node = rung.corners[t];
       if (c.cluster_of_[node] == i) continue;
       grow(i, node);
-      while (node >= coarse) grow(i, node = c.forest_.parents[(c.forest_.nodes - 1 - node) / 2]);
+      while (node >= coarse) grow(i, node = c.forest_.parentOf(node));
     }
   }
   for (std::size_t i = 0; i < c.size(); ++i) {

@@ -20,6 +20,17 @@ Window windowAt(const Dendrogram& dendrogram, std::size_t level, double share) {
   return {level, std::max(level, dendrogram.levelFor(static_cast<std::size_t>(left)))};
 }
 
+struct NodeRange {
+  std::uint32_t begin, end;
+};
+
+// That the window's collapses merge.
+NodeRange nodesOf(const Dendrogram& dendrogram, const Window& window) {
+  const std::size_t nodes = dendrogram.nodeCount();
+  return {static_cast<std::uint32_t>(nodes - 2 * window.end),
+          static_cast<std::uint32_t>(nodes - 2 * window.begin)};
+}
+
 }  // namespace
 
 void morphsAt(const Dendrogram& dendrogram, std::size_t level, double share,
@@ -27,9 +38,9 @@ void morphsAt(const Dendrogram& dendrogram, std::size_t level, double share,
   morphs.clear();
   if (!(share > 0)) return;
   const Window window = windowAt(dendrogram, level, share);
-  const std::size_t nodes = dendrogram.nodeCount();
-  for (std::size_t n = nodes - 2 * window.end; n < nodes - 2 * window.begin; ++n)
-    morphs.push_back({static_cast<std::uint32_t>(n), window.ownAt((nodes - 1 - n) / 2)});
+  const NodeRange nodes = nodesOf(dendrogram, window);
+  for (std::uint32_t n = nodes.begin; n < nodes.end; ++n)
+    morphs.push_back({n, window.ownAt(dendrogram.collapseOf(n))});
 }
 
 void morphsAt(const Dendrogram& dendrogram, const Clusters& clusters,
@@ -48,12 +59,11 @@ void morphsAt(const Dendrogram& dendrogram, const Clusters& clusters,
     all = {std::min(all.begin, window.begin), std::max(all.end, window.end)};
     windows.push_back(window);
   }
-  const std::size_t nodes = dendrogram.nodeCount();
-  for (std::size_t n = nodes - 2 * all.end; n < nodes - 2 * all.begin; ++n) {
-    const std::size_t collapse = (nodes - 1 - n) / 2;
-    const Window& window = windows[clusters.clusterOf(static_cast<std::uint32_t>(n))];
-    if (window.has(collapse))
-      morphs.push_back({static_cast<std::uint32_t>(n), window.ownAt(collapse)});
+  const NodeRange nodes = nodesOf(dendrogram, all);
+  for (std::uint32_t n = nodes.begin; n < nodes.end; ++n) {
+    const std::size_t collapse = dendrogram.collapseOf(n);
+    const Window& window = windows[clusters.clusterOf(n)];
+    if (window.has(collapse)) morphs.push_back({n, window.ownAt(collapse)});
   }
 }
 

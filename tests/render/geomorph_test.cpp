@@ -24,16 +24,12 @@ const Dendrogram& hills() {
   return made;
 }
 
-std::uint32_t parentOf(std::uint32_t node) {
-  return hills().arrays().parents[(hills().nodeCount() - 1 - node) / 2];
-}
-
 // Where each node stands, those on their way included.
 class Places {
  public:
   explicit Places(const std::vector<Morph>& morphs) {
     for (const Morph& m : morphs) {
-      const Place own = at(m.node), parent = at(parentOf(m.node));
+      const Place own = at(m.node), parent = at(hills().parentOf(m.node));
       Place& place = moved_[m.node];
       for (std::size_t k = 0; k < 3; ++k) place[k] = parent[k] + m.own * (own[k] - parent[k]);
     }
@@ -60,9 +56,9 @@ double jump(std::size_t level, double share) {
   for (const std::uint32_t corner : hills().arrays().triangles) {
     std::uint32_t node = corner;
     const auto alive = [&](std::size_t l) { return hills().nodeCount() - 2 * l; };
-    while (node >= alive(level)) node = parentOf(node);
+    while (node >= alive(level)) node = hills().parentOf(node);
     const Place from = before.at(node);
-    while (node >= alive(level + 1)) node = parentOf(node);
+    while (node >= alive(level + 1)) node = hills().parentOf(node);
     const Place to = after.at(node);
     for (std::size_t k = 0; k < 3; ++k) sum += (to[k] - from[k]) * (to[k] - from[k]);
   }
