@@ -46,17 +46,15 @@ Result<render::PictureFile> textureOf(const render::Dendrogram& model) {
 
 }  // namespace
 
-Result<std::shared_ptr<const DrawContexts>> DrawContexts::make(
-    const render::RenderSettings& settings) {
+Result<std::shared_ptr<DrawContexts>> DrawContexts::make(const render::RenderSettings& settings) {
   auto contexts = std::make_shared<DrawContexts>();
   auto own = render::makeGlContext(settings.backend);
   if (!own) return own.error();
   contexts->own = *std::move(own);
-  if (settings.contexts == 1) return std::shared_ptr<const DrawContexts>(std::move(contexts));
+  if (settings.contexts == 1) return contexts;
   const bool software = contexts->own->renderer().find("llvmpipe") != std::string::npos;
   const bool pays = software && std::thread::hardware_concurrency() > 1;
-  if (settings.contexts == 0 && !pays)
-    return std::shared_ptr<const DrawContexts>(std::move(contexts));
+  if (settings.contexts == 0 && !pays) return contexts;
   auto other = settings.backend == render::GlBackend::kEgl
                    ? DrawThread::make()
                    : Error{Errc::kUnsupported, "render.contexts: OSMesa has one for a process"};
@@ -64,7 +62,7 @@ Result<std::shared_ptr<const DrawContexts>> DrawContexts::make(
     contexts->other = *std::move(other);
   else if (settings.contexts > 1)
     return other.error();
-  return std::shared_ptr<const DrawContexts>(std::move(contexts));
+  return contexts;
 }
 
 std::string DrawContexts::renderer() const {
@@ -123,7 +121,7 @@ Picture::Picture(const render::Dendrogram& model, const render::TilePlan& plan,
       refined_pixels_(pixels_.size()) {
   for (std::size_t i = 0; i < plan.tiles.size(); ++i) {
     all_.push_back(i);
-    (plan.tiles[i].kind == render::TileKind::kOperator ? operators_ : wall_first_).push_back(i);
+    (isOperators(i) ? operators_ : wall_first_).push_back(i);
   }
   wall_first_.insert(wall_first_.end(), operators_.begin(), operators_.end());
   content_.cameras.resize(all_.size());
@@ -135,21 +133,14 @@ Picture::~Picture() {
   if (other_) contexts_->other->run([this] { other_.reset(); });
 }
 
-render::Camera Picture::cameraOf(const render::Tile& tile,
-                                 const Eigen::Isometry3f& T_eye_model) const {
-  const bool operators = tile.kind == render::TileKind::kOperator;
+render::Camera Picture::cameraOf(std::size_t tile, const Eigen::Isometry3f& T_eye_model) const {
+  const render::Tile& t = plan_.tiles[tile];
   const Eigen::Matrix4f view =
-      operators ? render::operatorView(tile.projection, T_eye_model.translation(), radius_m_)
-                : tile.view;
+      isOperators(tile) ? render::operatorView(t.projection, T_eye_model.translation(), radius_m_)
+                        : t.view;
   // The light comes from the eye, not from the tile: so a surface is as bright on either side of a
   // seam.
-  return {tile.projection * view * T_eye_model.matrix() * metres_from_model_, T_eye_model.linear()};
-}
-
-render::TileView Picture::viewOf(std::size_t tile, const Eigen::Isometry3f& T_eye_model) const {
-  const render::Tile& t = plan_.tiles[tile];
-  const bool operators = t.kind == render::TileKind::kOperator;
-  return {cameraOf(t, T_eye_model).clip_from_model, t.width, operators ? kOperatorWeight : 1};
+  return {t.projection * view * T_eye_model.matrix() * metres_from_model_, T_eye_model.linear()};
 }
 
 void Picture::chooseCut(const Eigen::Isometry3f& T_eye_model, std::size_t level,
@@ -157,8 +148,9 @@ void Picture::chooseCut(const Eigen::Isometry3f& T_eye_model, std::size_t level,
   const Timestamp began = clock_.now();
   views_.clear();
   for (const std::size_t tile : tiles) {
-    views_.push_back(viewOf(tile, T_eye_model));
-    content_.cameras[tile] = cameraOf(plan_.tiles[tile], T_eye_model);
+    content_.cameras[tile] = cameraOf(tile, T_eye_model);
+    views_.push_back({content_.cameras[tile].clip_from_model, plan_.tiles[tile].width,
+                      isOperators(tile) ? kOperatorWeight : 1});
   }
   const bool uneven =
       level > 0 && settings_.view_dependent && view_cut_.choose(views_, model_.trianglesAt(level));
@@ -209,10 +201,7 @@ void Picture::longestFirst() {
     if (step.kind == shm::StepKind::kDraw) took[step.tile] = step.end - step.begin;
   }
   std::stable_sort(wall_first_.begin(), wall_first_.end(), [&](std::size_t a, std::size_t b) {
-    const auto operators = [&](std::size_t tile) {
-      return plan_.tiles[tile].kind == render::TileKind::kOperator;
-    };
-    return operators(a) != operators(b) ? operators(b) : took[a] > took[b];
+    return isOperators(a) != isOperators(b) ? isOperators(b) : took[a] > took[b];
   });
 }
 
@@ -295,7 +284,7 @@ Picture::Drawn Picture::drawTiles(std::size_t level, Timestamp until) {
 void Picture::drawFrom(TilePainter& painter, std::size_t level, Timestamp until, Drawn& drawn) {
   for (std::size_t tile; (tile = queue_.take()) != TileQueue::kNone;) {
     const Duration before = drawn.times.drawing;
-    const bool operators = plan_.tiles[tile].kind == render::TileKind::kOperator;
+    const bool operators = isOperators(tile);
     if (operators && operators_.size() < all_.size()) {
       // As if all of the wall's tiles took what these took.
       const Duration wall = before * static_cast<std::int64_t>(all_.size() - operators_.size()) /

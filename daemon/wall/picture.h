@@ -30,7 +30,7 @@ struct DrawContexts {
 
   // Current on this thread. `settings`: which, and how many. Errors: kUnsupported (no GL of that
   // kind, or not enough of it).
-  static Result<std::shared_ptr<const DrawContexts>> make(const render::RenderSettings& settings);
+  static Result<std::shared_ptr<DrawContexts>> make(const render::RenderSettings& settings);
 
   std::string renderer() const;  // for a person
 };
@@ -64,9 +64,10 @@ class Picture final : public Painter {
  private:
   Picture(const render::Dendrogram& model, const render::TilePlan& plan,
           const render::RenderSettings& settings, double radius_m, const Clock& clock);
-  render::Camera cameraOf(const render::Tile& tile, const Eigen::Isometry3f& T_eye_model) const;
-  render::TileView viewOf(std::size_t tile, const Eigen::Isometry3f& T_eye_model) const;
-  void viewAll(const Eigen::Isometry3f& T_eye_model);  // fills views_
+  render::Camera cameraOf(std::size_t tile, const Eigen::Isometry3f& T_eye_model) const;
+  bool isOperators(std::size_t tile) const {
+    return plan_.tiles[tile].kind == render::TileKind::kOperator;
+  }
   // Tiles of a frame, or some of them, as they are drawn: times are of all threads together.
   struct Drawn {
     DrawTimes times;
