@@ -13,9 +13,6 @@ Argument Argument::typeName(const std::string& name) { return Argument(option_->
 Argument Argument::expected(int values) { return Argument(option_->expected(values)); }
 Argument Argument::separated(char by) { return Argument(option_->delimiter(by)); }
 Argument Argument::showDefault() { return Argument(option_->capture_default_str()); }
-Argument Argument::excludes(const Argument& other) {
-  return Argument(option_->excludes(other.option_));
-}
 Argument Argument::range(int low, int high) {
   return Argument(option_->check(CLI::Range(low, high)));
 }
@@ -56,7 +53,6 @@ template <typename T>
 Argument Command::option(const std::string& names, T& value, const std::string& help) {
   return Argument(app_->add_option(names, value, help));
 }
-template Argument Command::option(const std::string&, bool&, const std::string&);
 template Argument Command::option(const std::string&, int&, const std::string&);
 template Argument Command::option(const std::string&, unsigned&, const std::string&);
 template Argument Command::option(const std::string&, std::int64_t&, const std::string&);

@@ -24,7 +24,6 @@ class Argument {
   Argument expected(int values);               // exactly so many
   Argument separated(char by);                 // several values in one word
   Argument showDefault();                      // in the help, the value that the variable has now
-  Argument excludes(const Argument& other);
 
   Argument range(int low, int high);
   Argument range(double low, double high);
@@ -53,9 +52,8 @@ class Command {
   Command group(const std::string& name, const std::string& help);
   void atMostOne();  // of a group's options
 
-  // "-o,--output": an option; "name": a positional. T: bool for one that takes true or false, int,
-  // unsigned, std::int64_t, std::uint64_t, float, double, std::string, std::optional and
-  // std::vector of some.
+  // "-o,--output": an option; "name": a positional. T: int, unsigned, std::int64_t, std::uint64_t,
+  // float, double, std::string, std::optional and std::vector of some.
   template <typename T>
   Argument option(const std::string& names, T& value, const std::string& help = "");
   // "!--name": it is false when given.
