@@ -38,8 +38,7 @@ struct alignas(64) QuadricVertex {
   std::uint32_t node;      // of the log
   float deviation;         // squared distance that what it stands for may be off by now
   std::uint8_t flags;
-  std::uint8_t part;  // that it belongs to
-  std::uint16_t unused[3];
+  std::uint8_t unused[7];
 };
 static_assert(sizeof(QuadricVertex) == 64);
 
