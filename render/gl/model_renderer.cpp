@@ -70,9 +70,11 @@ void main() { pixel = vec4(shade, 1.0); }
 #endif
 )";
 
+// To the nearest; without a call of the C library, of which a large model needs tens of millions.
 std::int8_t quantise(float component) {
-  const float v = std::isfinite(component) ? 127 * component : 0;
-  return static_cast<std::int8_t>(std::lround(std::clamp(v, -127.0F, 127.0F)));
+  const float v = component >= -1 ? std::min(127 * component, 127.0F)
+                                  : (component < -1 ? -127.0F : 0.0F);  // 0 of what is no number
+  return static_cast<std::int8_t>(static_cast<int>(double{v} + 127.5) - 127);
 }
 
 float mixed(float from, float to, float share) { return from + share * (to - from); }
@@ -232,14 +234,18 @@ void ModelRenderer::morph(std::span<const Morph> morphs) {
   gl_.UnmapBuffer(GL_ARRAY_BUFFER);
 }
 
+// Written where they stay. Where there is no memory for them, GL's error says so.
 void ModelRenderer::uploadNodes() {
-  std::vector<Vertex> vertices(model_.nodeCount());
-  for (std::size_t n = 0; n < vertices.size(); ++n)
-    vertices[n] = vertexOf(static_cast<std::uint32_t>(n));
+  const auto nodes = static_cast<std::uint32_t>(model_.nodeCount());
+  const auto bytes = static_cast<GLsizeiptr>(nodes * sizeof(Vertex));
   gl_.GenBuffers(1, &nodes_);
   gl_.BindBuffer(GL_ARRAY_BUFFER, nodes_);
-  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
-                 vertices.data(), GL_STATIC_DRAW);
+  gl_.BufferData(GL_ARRAY_BUFFER, bytes, nullptr, GL_STATIC_DRAW);
+  auto* at = static_cast<Vertex*>(gl_.MapBufferRange(
+      GL_ARRAY_BUFFER, 0, bytes, GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT));
+  if (!at) return;
+  for (std::uint32_t n = 0; n < nodes; ++n) at[n] = vertexOf(n);
+  gl_.UnmapBuffer(GL_ARRAY_BUFFER);
 }
 
 void ModelRenderer::makeArray(GLuint* array, GLuint* indices) {

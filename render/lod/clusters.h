@@ -11,8 +11,9 @@
 //
 // A triangle goes when two of its corners become one; that happens in one cluster, at one collapse,
 // so it belongs to that cluster, and those alive of a cluster are a prefix of its list. Rungs hold
-// the lists of levels at steps of sqrt(2) in triangles, corners chased up to there, so that a cut
-// starts near where it ends. Triangles come out cluster by cluster: near in space, near in memory.
+// the lists of levels at steps of sqrt(2) in triangles (of 2 above 300,000, which nobody draws
+// while it moves), corners chased up to there, so that a cut starts near where it ends. Triangles
+// come out cluster by cluster: near in space, near in memory.
 #pragma once
 
 #include <array>
@@ -29,7 +30,7 @@ struct ClusterSettings {
   // About so many; fewer for a small model. 0: 512, and up to 2,048 of a million vertices and more:
   // smaller clusters follow a close look better, and cost more draw calls.
   std::size_t clusters = 0;
-  std::size_t memory = std::size_t{40} << 20;  // bytes at most, about: bounds the finest rung
+  std::size_t memory = 41'000'000;  // bytes at most, about: bounds the finest rung
 };
 
 // Where a cluster's triangles lie: at all levels, in model units.
@@ -43,7 +44,7 @@ struct ClusterBounds {
 // Borrows the dendrogram. Reentrant.
 class Clusters {
  public:
-  // O(finest triangles x log) time.
+  // O(finest triangles x log + nodes) time, on all cores.
   Clusters(const Dendrogram& dendrogram, const ClusterSettings& settings);
 
   std::size_t size() const noexcept { return bounds_.size(); }
@@ -90,14 +91,14 @@ class Clusters {
   // those of none.
   struct Rung {
     std::size_t level = 0;
-    std::vector<std::uint32_t> begins;   // groups + 1
-    std::vector<std::uint32_t> ranks;    // empty: all in the dendrogram's own order, one group
+    std::vector<std::uint32_t> begins;   // groups + 1; empty: one, in the dendrogram's own order
     std::vector<std::uint32_t> corners;  // 3 a triangle: nodes alive at the level
   };
 
   struct Builder;
   static std::size_t rungFor(std::span<const Rung> rungs, std::size_t level) noexcept;
-  static std::size_t prefix(const Rung& rung, std::size_t group, std::uint32_t alive) noexcept;
+  std::size_t prefix(const Rung& rung, std::size_t group, std::uint32_t alive) const noexcept;
+  std::vector<std::uint16_t> clusterOfEach() const;  // of all nodes
   // Append corners, chased up to `level`, or each to its cluster's level; return the end.
   std::uint32_t* chaseTo(std::size_t level, const std::uint32_t* from, std::size_t corners,
                          std::uint32_t* out) const noexcept;
@@ -115,7 +116,8 @@ class Clusters {
   std::size_t coarsest_ = 0;
   std::vector<std::uint16_t> cluster_of_;  // of nodes that are alive at the finest level or later
   std::vector<Rung> rungs_;                // finest first
-  std::vector<Rung> plain_;                // the same without clusters, of few triangles
+  std::vector<std::uint32_t> ranks_;  // of the finest; a coarser one's groups are prefixes of its
+  std::vector<Rung> plain_;           // the same without clusters, of few triangles
   std::vector<std::vector<std::uint16_t>> neighbours_;  // clusters that a cluster's group 2 c + 1
                                                         // has corners in
   std::vector<ClusterBounds> bounds_;

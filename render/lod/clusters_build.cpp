@@ -1,0 +1,354 @@
+// Clusters: made once, for a model; clusters.cpp cuts.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "daemon/base/blocks.h"
+#include "render/lod/clusters.h"
+#include "render/mesh/morton.h"
+
+namespace merlin::render {
+namespace {
+
+constexpr std::uint16_t kNoCluster = std::numeric_limits<std::uint16_t>::max();
+// In triangles, from one rung to the next: up to what a machine draws, and of those that only large
+// budgets begin at.
+constexpr double kRungStep = 1.41421356, kLargeRungStep = 2;
+constexpr std::size_t kLargeRung = 300'000;
+constexpr unsigned kCurveBits = 10;
+// Cuts of fewer triangles a cluster are made without clusters.
+constexpr std::size_t kFewPerCluster = 64;
+// Where nobody says how many clusters.
+constexpr std::size_t kVerticesOfACluster = 700, kLeastUsual = 512, kMostUsual = 2048;
+// Pieces that all nodes or triangles are done in: what comes out does not depend on them.
+constexpr std::size_t kPieces = 16;
+
+// Of the finest rung, so that all rungs fit: 12 bytes for each of theirs, a rank and a node's
+// cluster for each of the finest.
+std::size_t trianglesThatFit(std::size_t memory) {
+  constexpr std::size_t kOfRungs = 12 * 3414 / 1000, kOfLargeRungs = 12 * 2, kOfFinest = 4 + 2;
+  constexpr std::size_t kLeastLarge = (kOfRungs + kOfFinest) * kLargeRung;
+  if (memory <= kLeastLarge) return memory / (kOfRungs + kOfFinest);
+  return kLargeRung + (memory - kLeastLarge) / (kOfLargeRungs + kOfFinest);
+}
+
+// [first, last) of `size` things.
+struct Piece {
+  std::size_t first, last;
+};
+
+Piece pieceOf(std::size_t size, std::size_t piece) {
+  return {size * piece / kPieces, size * (piece + 1) / kPieces};
+}
+
+// By cluster, what they reach.
+class Boxes {
+ public:
+  explicit Boxes(std::size_t clusters)
+      : boxes_(clusters, Box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}}) {}
+
+  void grow(std::size_t cluster, const float* position) {
+    Box& box = boxes_[cluster];
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.low[k] = std::min(box.low[k], position[k]);
+      box.high[k] = std::max(box.high[k], position[k]);
+    }
+  }
+  void grow(const Boxes& others) {
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      if (others.isEmpty(i)) continue;
+      grow(i, others.boxes_[i].low.data());
+      grow(i, others.boxes_[i].high.data());
+    }
+  }
+  bool isEmpty(std::size_t cluster) const { return boxes_[cluster].low[0] == kFar; }
+  const Box& operator[](std::size_t cluster) const { return boxes_[cluster]; }
+
+ private:
+  static constexpr float kFar = std::numeric_limits<float>::infinity();
+  std::vector<Box> boxes_;
+};
+
+}  // namespace
+
+// What the constructor works with, once.
+struct Clusters::Builder {
+  Clusters& c;
+  const Dendrogram& d;
+  std::size_t finest;
+
+  // L0, and the finest level for whose rungs there is memory.
+  void chooseLevels(const ClusterSettings& settings);
+  void numberClusters();
+  void sortFinest();
+  std::vector<std::uint32_t> groupTriangles(std::span<const std::uint32_t> corners) const;
+  void addRungs();
+  void addPlainRungs();
+  void findNeighbours();
+  Boxes boxesOfNodes() const;
+  void measure();
+  void measureCone(std::size_t cluster);
+};
+
+void Clusters::Builder::chooseLevels(const ClusterSettings& settings) {
+  const std::size_t vertices = d.vertexCount();
+  const std::size_t usual = std::clamp(vertices / kVerticesOfACluster, kLeastUsual, kMostUsual);
+  const std::size_t wanted =
+      std::clamp<std::size_t>(settings.clusters > 0 ? settings.clusters : usual, 1, kNoCluster - 1);
+  const std::size_t roots = std::clamp<std::size_t>(vertices / 16, 1, wanted);
+  c.coarsest_ = std::min(d.levels() - 1, vertices > roots ? vertices - roots : 0);
+  const std::size_t plain = std::min(settings.memory / 2, 42 * kFewPerCluster * roots);
+  finest = std::min(d.levelFor(trianglesThatFit(settings.memory - plain)), c.coarsest_);
+}
+
+// Every node goes to the cluster of its parent; those alive at L0 are roots. Clusters are numbered
+// along a curve.
+void Clusters::Builder::numberClusters() {
+  const auto alive = c.aliveBelow(c.coarsest_);
+  c.cluster_of_.assign(c.aliveBelow(finest), kNoCluster);
+  std::vector<std::uint32_t> roots;
+  std::vector<bool> made(alive, false);  // by a later collapse: not there yet at L0
+  for (std::size_t k = c.coarsest_; k < c.forest_.parents.size(); ++k)
+    made[c.forest_.parents[k]] = true;
+  for (std::uint32_t n = 0; n < alive; ++n) {
+    if (!made[n]) roots.push_back(n);
+  }
+  const auto positions = d.arrays().positions;
+  const Box box = boundingBox(positions);
+  std::array<float, 3> extent{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    extent[k] = box.high[k] - box.low[k];
+    if (!(extent[k] > 0)) extent[k] = 1;
+  }
+  const auto key = [&](std::uint32_t n) {
+    return mortonKey(&positions[3 * std::size_t{n}], box.low, extent, kCurveBits);
+  };
+  std::stable_sort(roots.begin(), roots.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  // Where a mesh has more parts than there may be clusters, neighbours share one.
+  const std::size_t share = roots.size() / (kNoCluster - 1) + 1;
+  for (std::size_t i = 0; i < roots.size(); ++i)
+    c.cluster_of_[roots[i]] = static_cast<std::uint16_t>(i / share);
+  for (std::uint32_t n = alive; n < c.cluster_of_.size(); ++n)
+    c.cluster_of_[n] = c.cluster_of_[c.forest_.parentOf(n)];
+  c.bounds_.resize((roots.size() + share - 1) / share);
+}
+
+// Which group each triangle of the finest level belongs to.
+std::vector<std::uint32_t> Clusters::Builder::groupTriangles(
+    std::span<const std::uint32_t> corners) const {
+  std::vector<std::uint32_t> group(corners.size() / 3, static_cast<std::uint32_t>(2 * c.size()));
+  std::size_t level = d.levels() - 1;
+  for (std::size_t rank = c.alive_[c.coarsest_]; rank < group.size(); ++rank) {
+    while (rank >= c.alive_[level]) --level;  // the last level at which it is alive
+    const std::uint16_t dies_in = c.cluster_of_[c.aliveBelow(level) - 1];
+    const std::uint32_t* corner = &corners[3 * rank];
+    const bool inner = c.cluster_of_[corner[0]] == dies_in && c.cluster_of_[corner[1]] == dies_in &&
+                       c.cluster_of_[corner[2]] == dies_in;
+    group[rank] = 2U * dies_in + (inner ? 0 : 1);
+  }
+  return group;
+}
+
+void Clusters::Builder::sortFinest() {
+  std::vector<std::uint32_t> corners(3 * d.trianglesAt(finest));
+  d.cut(finest, corners);
+  const std::vector<std::uint32_t> group = groupTriangles(corners);
+  Rung rung{finest, std::vector<std::uint32_t>(2 * c.size() + 2, 0), {}};
+  for (const std::uint32_t g : group) ++rung.begins[g + 1];
+  std::partial_sum(rung.begins.begin(), rung.begins.end(), rung.begins.begin());
+  c.ranks_.resize(group.size());
+  rung.corners.resize(corners.size());
+  std::vector<std::uint32_t> at(rung.begins.begin(), rung.begins.end() - 1);
+  for (std::size_t rank = 0; rank < group.size(); ++rank) {
+    const std::uint32_t i = at[group[rank]]++;
+    c.ranks_[i] = static_cast<std::uint32_t>(rank);
+    std::copy_n(&corners[3 * rank], 3, &rung.corners[3 * std::size_t{i}]);
+  }
+  c.rungs_.push_back(std::move(rung));
+}
+
+// Each from the one before.
+void Clusters::Builder::addRungs() {
+  auto triangles = static_cast<double>(d.trianglesAt(finest));
+  for (;;) {
+    triangles /= triangles > kLargeRung ? kLargeRungStep : kRungStep;
+    if (triangles <= static_cast<double>(d.trianglesAt(c.coarsest_))) return;
+    const std::size_t level = d.levelFor(static_cast<std::size_t>(triangles));
+    const Rung& finer = c.rungs_.back();
+    if (level <= finer.level || level >= c.coarsest_) continue;
+    Rung rung{level, {0}, {}};
+    rung.corners.resize(3 * std::size_t{c.alive_[level]});
+    std::uint32_t* at = rung.corners.data();
+    for (std::size_t g = 0; g + 1 < finer.begins.size(); ++g) {
+      const std::size_t begin = finer.begins[g], n = c.prefix(finer, g, c.alive_[level]);
+      at = c.chaseTo(level, &finer.corners[3 * begin], 3 * n, at);
+      rung.begins.push_back(static_cast<std::uint32_t>(rung.begins.back() + n));
+    }
+    c.rungs_.push_back(std::move(rung));
+  }
+}
+
+// For cuts of so few triangles that clusters would cost more than they bring.
+void Clusters::Builder::addPlainRungs() {
+  auto triangles = static_cast<double>(std::min(kFewPerCluster * c.size(), d.trianglesAt(finest)));
+  for (; triangles >= 1; triangles /= kRungStep) {
+    const std::size_t level = d.levelFor(static_cast<std::size_t>(triangles));
+    if (!c.plain_.empty() && level <= c.plain_.back().level) continue;
+    Rung rung{level, {}, std::vector<std::uint32_t>(3 * d.trianglesAt(level))};
+    if (c.plain_.empty())
+      d.cut(level, rung.corners);
+    else
+      c.chaseTo(level, c.plain_.back().corners.data(), rung.corners.size(), rung.corners.data());
+    c.plain_.push_back(std::move(rung));
+  }
+}
+
+void Clusters::Builder::findNeighbours() {
+  c.neighbours_.resize(c.size());
+  const Rung& finest_rung = c.rungs_.front();
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    auto& list = c.neighbours_[i];
+    for (std::size_t t = 3 * std::size_t{finest_rung.begins[2 * i + 1]};
+         t < 3 * std::size_t{finest_rung.begins[2 * i + 2]}; ++t)
+      list.push_back(c.cluster_of_[finest_rung.corners[t]]);
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    list.shrink_to_fit();
+  }
+}
+
+// Down to the leaves, finer than the finest level too.
+std::vector<std::uint16_t> Clusters::clusterOfEach() const {
+  std::vector<std::uint16_t> of = cluster_of_;
+  of.resize(forest_.nodes);
+  for (auto n = static_cast<std::uint32_t>(cluster_of_.size()); n < of.size(); ++n)
+    of[n] = of[forest_.parentOf(n)];
+  return of;
+}
+
+// Of each cluster's nodes and of its leaf triangles' corners.
+Boxes Clusters::Builder::boxesOfNodes() const {
+  const auto positions = d.arrays().positions;
+  const auto leaves = d.arrays().triangles;
+  const std::vector<std::uint16_t> of = c.clusterOfEach();
+  const auto at = [&](std::uint32_t node) { return &positions[3 * std::size_t{node}]; };
+  std::vector<Boxes> boxes(kPieces, Boxes(c.size()));
+  forBlocks(threadsOr(0), kPieces, [&](std::size_t piece) {
+    Boxes& own = boxes[piece];
+    const Piece nodes = pieceOf(of.size(), piece);
+    for (std::size_t n = nodes.first; n < nodes.last; ++n) {
+      if (of[n] != kNoCluster) own.grow(of[n], at(static_cast<std::uint32_t>(n)));
+    }
+    if (finest == 0) return;
+    const Piece triangles = pieceOf(leaves.size() / 3, piece);
+    for (std::size_t t = triangles.first; t < triangles.last; ++t) {
+      const std::uint16_t cluster = of[leaves[3 * t]];
+      for (const std::size_t i : {3 * t + 1, 3 * t + 2}) {
+        if (of[leaves[i]] != cluster) own.grow(cluster, at(leaves[i]));
+      }
+    }
+  });
+  for (std::size_t piece = 1; piece < kPieces; ++piece) boxes[0].grow(boxes[piece]);
+  return std::move(boxes[0]);
+}
+
+// Spheres round all that a cluster's triangles can be made of, and cones round the finest normals.
+void Clusters::Builder::measure() {
+  const auto positions = d.arrays().positions;
+  Boxes boxes = boxesOfNodes();
+  // Corners in other clusters, and what they may be chased up to.
+  const auto coarse = c.aliveBelow(c.coarsest_);
+  forBlocks(threadsOr(0), c.size(), [&](std::size_t i) {
+    const Rung& rung = c.rungs_.front();
+    for (std::size_t t = 3 * std::size_t{rung.begins[2 * i + 1]};
+         t < 3 * std::size_t{rung.begins[2 * i + 2]}; ++t) {
+      std::uint32_t node = rung.corners[t];
+      if (c.cluster_of_[node] == i) continue;
+      boxes.grow(i, &positions[3 * std::size_t{node}]);
+      while (node >= coarse) {
+        node = c.forest_.parentOf(node);
+        boxes.grow(i, &positions[3 * std::size_t{node}]);
+      }
+    }
+    if (boxes.isEmpty(i)) return;
+    ClusterBounds& b = c.bounds_[i];
+    for (std::size_t k = 0; k < 3; ++k) b.centre[k] = (boxes[i].low[k] + boxes[i].high[k]) / 2;
+    b.radius = boxes[i].diagonal() / 2;
+    measureCone(i);
+  });
+}
+
+// Of the finest triangles: their mean normal, and how far they turn from it.
+void Clusters::Builder::measureCone(std::size_t cluster) {
+  const auto positions = d.arrays().positions;
+  std::vector<std::array<float, 3>> normals;
+  const Rung& rung = c.rungs_.front();
+  for (std::size_t t = rung.begins[2 * cluster]; t < rung.begins[2 * cluster + 2]; ++t) {
+    const auto at = [&](std::size_t k) {
+      return &positions[3 * std::size_t{rung.corners[3 * t + k]}];
+    };
+    normals.push_back(faceNormal(at(0), at(1), at(2)));
+  }
+  ClusterBounds& b = c.bounds_[cluster];
+  std::array<float, 3> sum{};
+  for (const auto& n : normals) {
+    for (std::size_t k = 0; k < 3; ++k) sum[k] += n[k];
+  }
+  const float length = std::hypot(sum[0], sum[1], sum[2]);
+  if (!(length > 0)) return;
+  for (std::size_t k = 0; k < 3; ++k) b.axis[k] = sum[k] / length;
+  b.cone_cos = 1;
+  for (const auto& n : normals) {
+    const float cosine = n[0] * b.axis[0] + n[1] * b.axis[1] + n[2] * b.axis[2];
+    if (n[0] != 0 || n[1] != 0 || n[2] != 0) b.cone_cos = std::min(b.cone_cos, cosine);
+  }
+}
+
+Clusters::Clusters(const Dendrogram& dendrogram, const ClusterSettings& settings)
+    : dendrogram_(dendrogram),
+      alive_(dendrogram.arrays().alive),
+      forest_{dendrogram.arrays().parents, static_cast<std::uint32_t>(dendrogram.nodeCount())},
+      chase_all_(chaser(dendrogram.nodeCount())) {
+  Builder builder{*this, dendrogram, 0};
+  builder.chooseLevels(settings);
+  builder.numberClusters();
+  builder.sortFinest();
+  builder.addRungs();
+  builder.addPlainRungs();
+  builder.findNeighbours();
+  builder.measure();
+}
+
+// Stable, as if by one thread.
+void Clusters::everything(std::vector<std::uint32_t>& corners,
+                          std::vector<std::uint32_t>& ends) const {
+  const auto leaves = dendrogram_.arrays().triangles;
+  const std::vector<std::uint16_t> of = clusterOfEach();
+  std::vector<std::uint32_t> at(kPieces * size(), 0);  // by piece, where a cluster's next goes
+  forBlocks(threadsOr(0), kPieces, [&](std::size_t piece) {
+    const Piece triangles = pieceOf(leaves.size() / 3, piece);
+    for (std::size_t t = triangles.first; t < triangles.last; ++t)
+      ++at[piece * size() + of[leaves[3 * t]]];
+  });
+  ends.clear();
+  std::uint32_t sum = 0;
+  for (std::size_t cluster = 0; cluster < size(); ++cluster) {
+    for (std::size_t piece = 0; piece < kPieces; ++piece)
+      sum += std::exchange(at[piece * size() + cluster], sum);
+    ends.push_back(sum);
+  }
+  ends.push_back(sum);
+  corners.resize(leaves.size());
+  forBlocks(threadsOr(0), kPieces, [&](std::size_t piece) {
+    const Piece triangles = pieceOf(leaves.size() / 3, piece);
+    for (std::size_t t = triangles.first; t < triangles.last; ++t) {
+      const std::uint32_t to = at[piece * size() + of[leaves[3 * t]]]++;
+      std::copy_n(&leaves[3 * t], 3, &corners[3 * std::size_t{to}]);
+    }
+  });
+}
+
+}  // namespace merlin::render
