@@ -300,6 +300,10 @@ void describe(Settings& s, SettingsVisitor& v) {
     v.number("posture_margin", s.devices.posture_hold.least_margin, {0, 1},
              "Less sure than this, a hand shows no posture; half of it keeps the one that is "
              "held.");
+    v.integer(
+        "cpu_latency_us", s.devices.cpu_latency_us, {-1, 10000},
+        "Within which idle cores wake for a byte, microseconds: 0 keeps them all awake, which "
+        "costs power; -1: as the system has it.");
     v.choiceOf("script", s.devices.script, kScripts,
                "What the emulated person does, with --emulate.");
   });

@@ -38,6 +38,8 @@ struct DevicesSettings {
   GpioSettings gpio;
   std::string postures;  // the posture network's file; empty: none is recognised
   nn::HoldSettings posture_hold;
+  // Within which idle cores wake, for the whole machine; -1: as the system has it.
+  int cpu_latency_us = -1;
   std::string script = "visit";  // what the emulated person does, with --emulate
 };
 

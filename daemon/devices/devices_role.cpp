@@ -9,6 +9,7 @@
 
 #include "daemon/base/log.h"
 #include "daemon/shm/fields.h"
+#include "drivers/io/cpu_latency.h"
 #include "drivers/io/gpio_chip.h"
 #include "drivers/io/low_latency.h"
 #include "drivers/io/open_stream.h"
@@ -104,6 +105,7 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
   role->hand_sink_ =
       std::make_unique<HandSink>(settings.devices.hand, *role->segment_, role->sink_);
   role->addPanel(settings.devices.gpio);
+  role->cpu_latency_us_ = settings.devices.cpu_latency_us;
   role->segment_->tracker_frames.publish(framesOf(settings.devices.tracker));
   const DevicesSettings& d = settings.devices;
   const std::pair<const LineSettings*, std::pair<SampleKind, shm::DeviceIndex>> kLines[] = {
@@ -161,6 +163,12 @@ void DevicesRole::addPanel(const GpioSettings& settings) {
 }
 
 void DevicesRole::start() {
+  if (cpu_latency_us_ >= 0) {
+    if (auto limit = io::limitCpuLatency(cpu_latency_us_))
+      cpu_latency_ = *std::move(limit);
+    else
+      logWarning("/devices/cpu_latency_us: {}", limit.error().what);
+  }
   if (panel_) threads_.emplace_back([this](const std::stop_token& stop) { panel_->run(stop); });
   for (const auto& loop : loops_) {
     threads_.emplace_back([&loop = *loop](const std::stop_token& stop) {

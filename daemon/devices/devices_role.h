@@ -10,6 +10,7 @@
 
 #include "config/settings.h"
 #include "daemon/base/clock.h"
+#include "daemon/base/unique_fd.h"
 #include "daemon/devices/flight_recorder.h"
 #include "daemon/devices/hand_sink.h"
 #include "daemon/devices/posture_sink.h"
@@ -62,6 +63,8 @@ class DevicesRole {
   std::unique_ptr<gpio::PanelLoop> panel_;
   std::vector<std::unique_ptr<shm::ShmHealthSink>> health_;
   std::vector<std::unique_ptr<DeviceLoop>> loops_;
+  int cpu_latency_us_ = -1;
+  UniqueFd cpu_latency_;  // holds while it is open
   std::vector<std::jthread> threads_;
 };
 

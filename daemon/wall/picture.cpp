@@ -57,7 +57,9 @@ Result<std::shared_ptr<DrawContexts>> DrawContexts::make(const render::RenderSet
   if (settings.contexts == 0 && !pays) return contexts;
   auto other = settings.backend == render::GlBackend::kEgl
                    ? DrawThread::make()
-                   : Error{Errc::kUnsupported, "render.contexts: OSMesa has one for a process"};
+                   : Error{Errc::kUnsupported,
+                           "render.contexts: OSMesa has one for a process; "
+                           "set it to 1, or render.backend to egl"};
   if (other)
     contexts->other = *std::move(other);
   else if (settings.contexts > 1)

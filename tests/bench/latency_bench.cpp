@@ -1,7 +1,8 @@
 // ./dev bench latency: from a byte on a line to a client of the shared memory, for MERLIN's reader,
-// for the same reader over a line that is asked once a millisecond, over one that is asked without
-// a pause, and for a bare blocking loop without a device: interleaved in one run, over a pseudo-
-// terminal and over a socket pair, idle and with all cores loaded.
+// for the same with idle cores kept awake (devices.cpu_latency_us = 0), for that reader over a line
+// that is asked once a millisecond, over one that is asked without a pause, and for a bare blocking
+// loop without a device: interleaved in one run, over a pseudo-terminal and over a socket pair,
+// idle and with all cores loaded.
 //
 // Absolute times belong to this machine and this minute; the ratios are what counts. A pty's bytes
 // pass through a kernel worker, a socket pair's do not.
@@ -32,6 +33,7 @@
 #include "drivers/cyberglove/device.h"
 #include "drivers/cyberglove/protocol.h"
 #include "drivers/emulate/emulator.h"
+#include "drivers/io/cpu_latency.h"
 #include "drivers/io/fd_stream.h"
 #include "drivers/io/pty_master.h"
 #include "tests/support/process.h"
@@ -44,8 +46,9 @@ namespace {
 using Segment = shm::DevicesSegment;
 using test::quantile;
 
-enum Reader { kMerlin, kSleeping, kSpinning, kBare, kReaders };
-constexpr const char* kReaderNames[] = {"MERLIN", "sleeps 1 ms", "spins", "bare blocking"};
+enum Reader { kMerlin, kAwake, kSleeping, kSpinning, kBare, kReaders };
+constexpr const char* kReaderNames[] = {"MERLIN", "MERLIN, awake", "sleeps 1 ms", "spins",
+                                        "bare blocking"};
 enum Line { kSocketPair, kPty, kLines };
 constexpr const char* kLineNames[] = {"socket pair", "pty"};
 
@@ -206,7 +209,7 @@ struct ReaderThread {
     shm::ShmSink sink(segment);
     const SystemClock clock;
     std::unique_ptr<ByteStream> stream;
-    if (kind == kMerlin) stream = std::make_unique<io::FdStream>(fd, [] {});
+    if (kind == kMerlin || kind == kAwake) stream = std::make_unique<io::FdStream>(fd, [] {});
     if (kind == kSleeping || kind == kSpinning)
       stream = std::make_unique<AskedStream>(fd, kind == kSleeping);
     const auto device = cyberglove::makeDevice({}, clock, sink);
@@ -251,6 +254,12 @@ Round runRound(const Options& options, Reader kind, Line line, Times& times) {
   std::fill(std::begin(times.received_ns), std::end(times.received_ns), 0);
   times.stop = false;
   times.received = ~0U;
+  const auto awake = kind == kAwake ? io::limitCpuLatency(0)
+                                    : Result<UniqueFd>(Error{Errc::kUnsupported, "not asked for"});
+  if (kind == kAwake && !awake) {
+    fmt::print("{}\n", awake.error().what);
+    return round;
+  }
   const pid_t client = child([&] { runClient(name, times); });
   while (times.received == ~0U) std::this_thread::yield();
   ReaderThread reader;
@@ -338,15 +347,18 @@ void benchReaders(const Options& options) {
   const auto pty_idle = benchLine(options, kPty, false, times);
   const auto pair_loaded = benchLine(options, kSocketPair, true, times);
   benchLine(options, kPty, true, times);
-  const double share = pair_idle[kMerlin].median / pair_idle[kSleeping].median;
-  const double pty_share = pty_idle[kMerlin].median / pty_idle[kSleeping].median;
-  fmt::print(
-      "median of the sleeping loop's, idle: 1/{:.0f} (socket pair), 1/{:.0f} (pty); "
-      "asked at most 1/20: {}\n",
-      1 / share, 1 / pty_share, verdict(share <= 0.05 && pty_share <= 0.05));
-  fmt::print("socket pair p99: idle {:.0f} us (asked 200): {}; loaded {:.0f} us (asked 2000): {}\n",
-             pair_idle[kMerlin].p99, verdict(pair_idle[kMerlin].p99 <= 200),
-             pair_loaded[kMerlin].p99, verdict(pair_loaded[kMerlin].p99 <= 2000));
+  for (const Reader kind : {kMerlin, kAwake}) {
+    const double share = pair_idle[kind].median / pair_idle[kSleeping].median;
+    const double pty_share = pty_idle[kind].median / pty_idle[kSleeping].median;
+    fmt::print(
+        "{}: median of the sleeping loop's, idle: 1/{:.1f} (socket pair), 1/{:.1f} (pty); asked at "
+        "most 1/20: {}\n",
+        kReaderNames[kind], 1 / share, 1 / pty_share, verdict(share <= 0.05 && pty_share <= 0.05));
+    fmt::print(
+        "{}: socket pair p99: idle {:.0f} us (asked 200): {}; loaded {:.0f} us (asked 2000): {}\n",
+        kReaderNames[kind], pair_idle[kind].p99, verdict(pair_idle[kind].p99 <= 200),
+        pair_loaded[kind].p99, verdict(pair_loaded[kind].p99 <= 2000));
+  }
   const double bare = pty_idle[kMerlin].median / pty_idle[kBare].median;
   const double bare99 = pty_idle[kMerlin].p99 / pty_idle[kBare].p99;
   fmt::print(

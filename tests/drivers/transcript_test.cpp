@@ -9,6 +9,7 @@
 #include <sys/socket.h>
 
 #include "daemon/base/unique_fd.h"
+#include "drivers/io/cpu_latency.h"
 #include "drivers/io/low_latency.h"
 #include "drivers/io/open_stream.h"
 #include "drivers/io/recording_stream.h"
@@ -217,6 +218,21 @@ TEST(AdapterWarning, NamesTheDelayAndTheWayOut) {
       dir / "by-id: its USB adapter holds bytes back for up to 16 ms; for 1 ms: echo 1 > " + timer);
   test::writeText(timer, "1\n");
   EXPECT_EQ(adapterWarning(dir / "by-id", dir.path()), "");
+}
+
+// As the kernel wants it: a number of 32 bits, for as long as the device is open.
+TEST(CpuLatency, WritesTheLimitAndSaysWhereItCannot) {
+  const test::TempDir dir;
+  const std::string device = dir / "cpu_dma_latency";
+  const auto none = limitCpuLatency(20, device);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, Errc::kNotFound);
+  EXPECT_NE(none.error().what.find(device + ": No such file"), std::string::npos);
+  test::writeText(device, "");
+  const auto limit = limitCpuLatency(20, device);
+  ASSERT_TRUE(limit);
+  EXPECT_TRUE(limit->valid());
+  EXPECT_EQ(test::readText(device), std::string("\x14\0\0\0", 4));
 }
 
 }  // namespace
