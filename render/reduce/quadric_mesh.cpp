@@ -143,7 +143,7 @@ QuadricMesh::QuadricMesh(const Mesh& mesh, unsigned threads)
     std::copy(place.begin(), place.end(), vertices_[v].position);
     vertices_[v].node = v;
   });
-  fillStars(mesh, numbers);
+  fillStars(mesh, numbers, threads);
   forEachVertex(n, threads, [&](std::uint32_t v) { orderStar(vertices_[v]); });
 }
 
@@ -157,8 +157,24 @@ std::array<float, 3> QuadricMesh::toModel(const float* position) const noexcept 
           position[2] / scale_ + centre_[2]};
 }
 
-void QuadricMesh::fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& numbers) {
-  for (const std::uint32_t v : mesh.triangles) ++vertices_[numbers[v]].degree;
+// Each thread takes the corners of its own vertices.
+void QuadricMesh::fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& numbers,
+                            unsigned threads) {
+  const auto forEachCorner = [&](const auto& work) {
+    const std::size_t ranges = std::min<std::size_t>(threads, 1 + vertexCount() / kBlock * 8);
+    forBlocks(threads, ranges, [&](std::size_t range) {
+      const auto first = static_cast<std::uint32_t>(vertexCount() * range / ranges);
+      const auto last = static_cast<std::uint32_t>(vertexCount() * (range + 1) / ranges);
+      for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+        const std::uint32_t v[] = {numbers[mesh.triangles[t]], numbers[mesh.triangles[t + 1]],
+                                   numbers[mesh.triangles[t + 2]]};
+        for (std::size_t k = 0; k < 3; ++k) {
+          if (v[k] >= first && v[k] < last) work(vertices_[v[k]], v[(k + 1) % 3], v[(k + 2) % 3]);
+        }
+      }
+    });
+  };
+  forEachCorner([](QuadricVertex& x, std::uint32_t, std::uint32_t) { ++x.degree; });
   std::uint64_t total = 0;
   for (std::uint32_t v = 0; v < vertexCount(); ++v) {
     QuadricVertex& x = vertices_[v];
@@ -173,14 +189,9 @@ void QuadricMesh::fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& nu
   if (total >= room) throw std::bad_alloc();
   stars_ = HugeArray<Corner>(room);
   used_ = static_cast<std::uint32_t>(total);
-  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
-    const std::uint32_t v[] = {numbers[mesh.triangles[t]], numbers[mesh.triangles[t + 1]],
-                               numbers[mesh.triangles[t + 2]]};
-    for (std::size_t k = 0; k < 3; ++k) {
-      QuadricVertex& x = vertices_[v[k]];
-      stars_[x.star + x.degree++] = {v[(k + 1) % 3], v[(k + 2) % 3]};
-    }
-  }
+  forEachCorner([&](QuadricVertex& x, std::uint32_t b, std::uint32_t c) {
+    stars_[x.star + x.degree++] = {b, c};
+  });
 }
 
 // Puts the corners in the order of the fan; kOpen where they are none that closes.

@@ -104,7 +104,7 @@ class QuadricMesh {
   void dropStars() { stars_ = {}; }
 
  private:
-  void fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& numbers);
+  void fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& numbers, unsigned threads);
   void orderStar(QuadricVertex& v);
 
   std::vector<std::uint32_t> input_;
