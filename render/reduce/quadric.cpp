@@ -144,18 +144,17 @@ Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vecto
 
   Reduction result = reducer.finish(mesh);
   result.report.stopped = stopped;
+  for (const ChannelFeature& c : plan.channels) {
+    const Feature& f = mesh.features[c.feature];
+    if (f.name == "label") continue;  // is never mixed
+    std::vector<float>& values = result.log.features[c.feature];
+    values.resize(result.log.children.size() * f.dimension);
+    for (std::size_t k = 0; k < f.dimension; ++k)
+      reducer.channelValues(c.first + k, c.scale, values.data() + k, f.dimension);
+  }
   for (std::size_t f = 0; f < mesh.features.size(); ++f) {
     if (result.log.features[f].empty())
       result.log.features[f] = carryAlong(mesh, mesh.features[f], result.log);
-  }
-  for (const ChannelFeature& c : plan.channels) {
-    if (mesh.features[c.feature].name == "label") continue;  // is never mixed
-    const std::size_t d = mesh.features[c.feature].dimension;
-    for (std::size_t k = 0; k < d; ++k) {
-      const std::vector<float> values = reducer.channelValues(c.first + k, c.scale);
-      for (std::size_t i = 0; i < values.size(); ++i)
-        result.log.features[c.feature][i * d + k] = values[i];
-    }
   }
   return result;
 }

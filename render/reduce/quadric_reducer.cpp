@@ -4,11 +4,14 @@
 #include <cmath>
 #include <cstring>
 
+#include "daemon/base/blocks.h"
+
 namespace merlin::render {
 namespace {
 
 // A popped edge may cost so much more than its bucket and is still taken.
 constexpr float kTolerance = 1.5F;
+constexpr std::size_t kBlock = 1 << 16;  // vertices that a thread takes at a time
 using TwoCorners = std::uint32_t __attribute__((vector_size(16)));
 
 float trace(const float* h) { return h[0] + h[3] + h[5]; }
@@ -45,17 +48,20 @@ QuadricReducer::QuadricReducer(const Mesh& mesh, std::size_t channels, unsigned 
       judge_(edgeJudge()),
       log_(mesh.vertexCount()),
       next_(mesh.vertexCount()),
-      triangles_(mesh.triangleCount()) {}
+      triangles_(mesh.triangleCount()),
+      threads_(threads) {}
 
 void QuadricReducer::setChannel(std::size_t channel, const float* values, std::size_t stride,
                                 float scale) {
   const auto weighted = [&](float value) { return value * scale * mesh_.scale(); };
   Range given{values[0], values[0]};
-  for (std::uint32_t v = 0; v < mesh_.vertexCount(); ++v) {
-    const float value = values[mesh_.inputOf(v) * stride];
-    channels_.value(v, channel) = weighted(value);
-    given = {std::min(given.low, value), std::max(given.high, value)};
-  }
+  for (std::uint32_t v = 0; v < mesh_.vertexCount(); ++v)
+    given = {std::min(given.low, values[v * stride]), std::max(given.high, values[v * stride])};
+  forBlocks(threads_, (mesh_.vertexCount() + kBlock - 1) / kBlock, [&](std::size_t block) {
+    const std::size_t end = std::min<std::size_t>(mesh_.vertexCount(), (block + 1) * kBlock);
+    for (auto v = static_cast<std::uint32_t>(block * kBlock); v < end; ++v)
+      channels_.value(v, channel) = weighted(values[mesh_.inputOf(v) * stride]);
+  });
   given_[channel] = given;
   ranges_[channel] = {weighted(given.low), weighted(given.high)};
 }
@@ -88,7 +94,11 @@ void QuadricReducer::enqueue(Worker& w, std::uint32_t v) {
 [[gnu::always_inline]] inline void QuadricReducer::prefetch(Worker& w) const {
   const std::array<std::uint32_t, BucketQueue::kAhead>& next = w.queue.peek(nextOf());
   if (next[0] == BucketQueue::kNone) return;
-  for (const Corner& c : mesh_.star(mesh_[next[0]])) __builtin_prefetch(&mesh_[c.b]);
+  const bool channels = channels_.count() > 0;
+  for (const Corner& c : mesh_.star(mesh_[next[0]])) {
+    __builtin_prefetch(&mesh_[c.b]);
+    if (channels) channels_.prefetch(c.b);
+  }
   if (next[2] == BucketQueue::kNone) return;
   __builtin_prefetch(mesh_.corners(mesh_[next[2]].star));
   if (next[4] == BucketQueue::kNone) return;

@@ -46,8 +46,9 @@ class QuadricReducer {
   // Returns why it stopped, in reduce()'s words.
   const char* run(const Limits& limits, const Progress& progress);
 
-  // Of the nodes that collapses made, in order, as they were given to setChannel().
-  std::vector<float> channelValues(std::size_t channel, float scale) const;
+  // Of the nodes that collapses made, in order, as they were given to setChannel(): `stride` floats
+  // apart.
+  void channelValues(std::size_t channel, float scale, float* values, std::size_t stride) const;
 
   // The log; of the features of `mesh` only "normal" is filled.
   Reduction finish(const Mesh& mesh);

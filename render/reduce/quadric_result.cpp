@@ -82,14 +82,16 @@ Reduction QuadricReducer::finish(const Mesh& mesh) {
 
 // Where a feature is so large or so small that its weight makes it no number, what comes back is
 // none either; then it is the least there was.
-std::vector<float> QuadricReducer::channelValues(std::size_t channel, float scale) const {
+void QuadricReducer::channelValues(std::size_t channel, float scale, float* values,
+                                   std::size_t stride) const {
   const Range given = given_[channel];
-  std::vector<float> values(whole_.collapses);
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const float value = channels_.value(log_[k], channel) / (scale * mesh_.scale());
-    values[k] = value >= given.low ? std::min(value, given.high) : given.low;
-  }
-  return values;
+  forBlocks(threads_, (whole_.collapses + kBlock - 1) / kBlock, [&](std::size_t block) {
+    const std::size_t end = std::min(whole_.collapses, (block + 1) * kBlock);
+    for (std::size_t k = block * kBlock; k < end; ++k) {
+      const float value = channels_.value(log_[k], channel) / (scale * mesh_.scale());
+      values[stride * k] = value >= given.low ? std::min(value, given.high) : given.low;
+    }
+  });
 }
 
 }  // namespace merlin::render
