@@ -150,7 +150,8 @@ TEST(Picture, OsmesaHasOneContextForAProcess) {
   const auto two = Picture::make(
       model(), plan, {.backend = GlBackend::kOsmesa, .contexts = 2, .look = {}}, 2.0, clock);
   ASSERT_FALSE(two);
-  EXPECT_EQ(two.error().what, "render.contexts: OSMesa has one for a process");
+  EXPECT_EQ(two.error().what,
+            "render.contexts: OSMesa has one for a process; set it to 1, or render.backend to egl");
 }
 
 // As a wall of several models has them: what one draws leaves nothing behind for the other.

@@ -81,6 +81,39 @@ TEST(Clusters, LittleMemoryMeansACoarserFinestLevel) {
   EXPECT_LT(few.memoryBytes(), 330'000u);
 }
 
+// Above 300,000 triangles rungs are further apart; those of a million fit in 41 MB.
+TEST(Clusters, LargeCutsAreTheDendrogramsToo) {
+  const Dendrogram d = dendrogramOf(test::noisyGrid(410, 410, 0.4, 3));
+  const Clusters clusters(d, {});
+  ASSERT_GT(d.triangleCount(), 330'000u);
+  EXPECT_EQ(clusters.finestLevel(), 0u);
+  EXPECT_LT(clusters.memoryBytes(), 41'000'000u);
+  Indices expected(3 * d.triangleCount());
+  for (const unsigned triangles : {330'000u, 200'000u, 160'000u, 40'000u}) {
+    const std::size_t level = d.levelFor(triangles), n = d.cut(level, expected);
+    EXPECT_EQ(sorted(evenCut(clusters, d, level)), sorted(std::span(expected).first(3 * n)))
+        << triangles;
+  }
+}
+
+TEST(Clusters, EverythingIsEachLeafTriangleByCluster) {
+  const Dendrogram d = dendrogramOf(test::noisyGrid(40, 40, 0.4, 3));
+  const Clusters clusters(d, {.clusters = 30, .memory = 100'000});
+  ASSERT_GT(clusters.finestLevel(), 0u);
+  Indices corners, ends;
+  clusters.everything(corners, ends);
+  EXPECT_EQ(sorted(corners), sorted(d.arrays().triangles));
+  ASSERT_EQ(ends.size(), clusters.size() + 1);
+  EXPECT_EQ(ends.back(), d.triangleCount());
+  const auto finest = static_cast<std::uint32_t>(d.nodeCount() - 2 * clusters.finestLevel());
+  for (std::size_t t = 0, cluster = 0; t < d.triangleCount(); ++t) {
+    while (t >= ends[cluster]) ++cluster;
+    std::uint32_t node = corners[3 * t];
+    while (node >= finest) node = d.parentOf(node);
+    EXPECT_EQ(clusters.clusterOf(node), cluster) << t;
+  }
+}
+
 // The levels of all clusters at random: what comes out is each triangle of the mesh, its corners
 // chased to their own clusters' levels, if they are three.
 TEST(Clusters, AnUnevenCutIsWhatChasingEveryCornerGives) {
