@@ -44,7 +44,7 @@ void QuadricReducer::copyTo(CollapseLog& log, std::vector<float>* normals, std::
   for (float& x : p) x = std::clamp(x, -kFarthest, kFarthest);
   if (!pinned_.empty()) pin(k, log.children[k], r.position, p);
   std::copy_n(p.begin(), 3, &log.positions[3 * k]);
-  log.error[k] = r.error / mesh_.scale();
+  log.error[k] = std::min(r.error / mesh_.scale(), kFarthest);  // of next to no area it has no end
   const float length = std::hypot(r.normal[0], r.normal[1], r.normal[2]);
   for (std::size_t i = 0; normals && i < 3; ++i)
     (*normals)[3 * k + i] = length > 0 ? r.normal[i] / length : 0;

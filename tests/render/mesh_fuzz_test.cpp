@@ -21,5 +21,13 @@ TEST(MeshFuzz, FindsNoFaultInTenThousandHostileMeshes) {
     EXPECT_GT(fuzz.counts[name], 20u) << name;
 }
 
+// What ten million found: an edge of next to no area, whose error was no number.
+TEST(MeshFuzz, FindsNoFaultWhereItOnceDid) {
+  for (const std::uint64_t seed : {2'857'298u, 8'100'370u}) {
+    MeshFuzz fuzz;
+    EXPECT_TRUE(fuzz.run(seed)) << fuzz.fault << "; again: --count 1 --seed " << seed;
+  }
+}
+
 }  // namespace
 }  // namespace merlin::bench
