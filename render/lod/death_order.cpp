@@ -10,7 +10,6 @@ namespace merlin::render {
 namespace {
 
 constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kBlock = 1 << 18;  // triangles
 
 // The forest as it was made: of each two nodes that merge the first one's place goes on, the
 // second one's ends. A place is a vertex of the mesh, so that what is near in space is near in
@@ -84,10 +83,8 @@ void DeathOrder::findDeaths(const Mesh& mesh, unsigned threads, HugeArray<std::u
   const std::size_t count = mesh.triangleCount();
   const Places places(mesh.vertexCount(), log_);
   const auto levels = static_cast<std::uint32_t>(collapses() + 1);
-  forBlocks(threads, (count + kBlock - 1) / kBlock, [&](std::size_t block) {
-    const std::size_t end = std::min(count, (block + 1) * kBlock);
-    for (std::size_t t = block * kBlock; t < end; ++t)
-      deaths[t] = std::min(levels, places.deathOf(&mesh.triangles[3 * t]));  // levels: never
+  forEach(threads, count, [&](std::size_t t) {
+    deaths[t] = std::min(levels, places.deathOf(&mesh.triangles[3 * t]));  // levels: never
   });
 }
 

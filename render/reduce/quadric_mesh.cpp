@@ -14,15 +14,12 @@ std::uint32_t linesFor(std::uint32_t corners) {
   return std::max(1U, (corners + kLine - 1) / kLine);
 }
 
-constexpr std::size_t kBlock = 1 << 17;  // vertices that a thread takes at a time
+constexpr unsigned kMostScans = 8;  // of all triangles, for the stars
 
 // Calls work(v) for each of n vertices; what it writes must be v's own.
 template <typename Work>
 void forEachVertex(std::size_t n, unsigned threads, const Work& work) {
-  forBlocks(threads, (n + kBlock - 1) / kBlock, [&](std::size_t block) {
-    const std::size_t end = std::min(n, (block + 1) * kBlock);
-    for (std::size_t v = block * kBlock; v < end; ++v) work(static_cast<std::uint32_t>(v));
-  });
+  forEach(threads, n, [&](std::size_t v) { work(static_cast<std::uint32_t>(v)); });
 }
 
 // By the upper 3 x bits; stable.
@@ -161,7 +158,7 @@ std::array<float, 3> QuadricMesh::toModel(const float* position) const noexcept 
 void QuadricMesh::fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& numbers,
                             unsigned threads) {
   const auto forEachCorner = [&](const auto& work) {
-    const std::size_t ranges = std::min<std::size_t>(threads, 1 + vertexCount() / kBlock * 8);
+    const std::size_t ranges = std::min(threads, kMostScans);
     forBlocks(threads, ranges, [&](std::size_t range) {
       const auto first = static_cast<std::uint32_t>(vertexCount() * range / ranges);
       const auto last = static_cast<std::uint32_t>(vertexCount() * (range + 1) / ranges);

@@ -11,7 +11,6 @@ namespace {
 
 // A popped edge may cost so much more than its bucket and is still taken.
 constexpr float kTolerance = 1.5F;
-constexpr std::size_t kBlock = 1 << 16;  // vertices that a thread takes at a time
 using TwoCorners = std::uint32_t __attribute__((vector_size(16)));
 
 float trace(const float* h) { return h[0] + h[3] + h[5]; }
@@ -57,10 +56,9 @@ void QuadricReducer::setChannel(std::size_t channel, const float* values, std::s
   Range given{values[0], values[0]};
   for (std::uint32_t v = 0; v < mesh_.vertexCount(); ++v)
     given = {std::min(given.low, values[v * stride]), std::max(given.high, values[v * stride])};
-  forBlocks(threads_, (mesh_.vertexCount() + kBlock - 1) / kBlock, [&](std::size_t block) {
-    const std::size_t end = std::min<std::size_t>(mesh_.vertexCount(), (block + 1) * kBlock);
-    for (auto v = static_cast<std::uint32_t>(block * kBlock); v < end; ++v)
-      channels_.value(v, channel) = weighted(values[mesh_.inputOf(v) * stride]);
+  forEach(threads_, mesh_.vertexCount(), [&](std::size_t i) {
+    const auto v = static_cast<std::uint32_t>(i);
+    channels_.value(v, channel) = weighted(values[mesh_.inputOf(v) * stride]);
   });
   given_[channel] = given;
   ranges_[channel] = {weighted(given.low), weighted(given.high)};

@@ -11,8 +11,7 @@ namespace {
 
 // As far as validate() lets a mesh reach.
 constexpr float kFarthest = 1e18F;
-constexpr std::size_t kAhead = 16;       // records asked for
-constexpr std::size_t kBlock = 1 << 15;  // collapses that a thread takes at a time
+constexpr std::size_t kAhead = 16;  // records asked for
 
 }  // namespace
 
@@ -67,10 +66,7 @@ Reduction QuadricReducer::finish(const Mesh& mesh) {
   if (normals) normals->resize(3 * collapses);
   // Whether a node is pinned its children say, which were before.
   const unsigned threads = pinned_.empty() ? threads_ : 1;
-  forBlocks(threads, (collapses + kBlock - 1) / kBlock, [&](std::size_t block) {
-    const std::size_t end = std::min(collapses, (block + 1) * kBlock);
-    for (std::size_t k = block * kBlock; k < end; ++k) copyTo(log, normals, k);
-  });
+  forEach(threads, collapses, [&](std::size_t k) { copyTo(log, normals, k); });
   result.report.collapses = collapses;
   result.report.flips_refused = whole_.flips;
   result.report.topology_refused = whole_.links;
@@ -85,12 +81,9 @@ Reduction QuadricReducer::finish(const Mesh& mesh) {
 void QuadricReducer::channelValues(std::size_t channel, float scale, float* values,
                                    std::size_t stride) const {
   const Range given = given_[channel];
-  forBlocks(threads_, (whole_.collapses + kBlock - 1) / kBlock, [&](std::size_t block) {
-    const std::size_t end = std::min(whole_.collapses, (block + 1) * kBlock);
-    for (std::size_t k = block * kBlock; k < end; ++k) {
-      const float value = channels_.value(log_[k], channel) / (scale * mesh_.scale());
-      values[stride * k] = value >= given.low ? std::min(value, given.high) : given.low;
-    }
+  forEach(threads_, whole_.collapses, [&](std::size_t k) {
+    const float value = channels_.value(log_[k], channel) / (scale * mesh_.scale());
+    values[stride * k] = value >= given.low ? std::min(value, given.high) : given.low;
   });
 }
 
