@@ -77,7 +77,7 @@ const std::map<std::string, Folders> kMayInclude = {
     {"render/mesh/io", {"render/mesh"}},
     {"render/lod", {"render/mesh"}},
     {"render/lod/io", {"render/lod", "render/mesh"}},
-    {"render/reduce", {"render/compare", "render/lod", "render/mesh"}},
+    {"render/reduce", {"render/lod", "render/mesh"}},
     {"render/inventor", {"render/lod", "render/mesh", "render/mesh/io"}},
     {"render/segment", {"render/mesh", "render/reduce"}},
     // Pure but for its threads; its figures are the same for any number of them.

@@ -106,12 +106,21 @@ MERLIN_INLINE T next(const T& v) {
   return __builtin_shufflevector(v, v, 1, 2, 3, 4, 5, 6, 7, 0);
 }
 
-// Of eight pairs of numbers the first ones, and the first pair's from `count` on.
-MERLIN_INLINE Mask firsts(const std::uint32_t* pairs, std::uint32_t count) {
-  const Mask v = __builtin_shufflevector(load(pairs), load(pairs + 8), 0, 2, 4, 6, 8, 10, 12, 14);
+// The first of all from `count` on.
+MERLIN_INLINE Mask upTo(std::uint32_t count, const Mask& v) {
   return kLane < static_cast<std::int32_t>(count)
              ? v
              : __builtin_shufflevector(v, v, 0, 0, 0, 0, 0, 0, 0, 0);
+}
+
+// Of eight pairs of numbers the first ones, or the second ones; the first pair's from `count` on.
+MERLIN_INLINE Mask firsts(const std::uint32_t* pairs, std::uint32_t count) {
+  return upTo(count,
+              __builtin_shufflevector(load(pairs), load(pairs + 8), 0, 2, 4, 6, 8, 10, 12, 14));
+}
+MERLIN_INLINE Mask seconds(const std::uint32_t* pairs, std::uint32_t count) {
+  return upTo(count,
+              __builtin_shufflevector(load(pairs), load(pairs + 8), 1, 3, 5, 7, 9, 11, 13, 15));
 }
 
 }  // namespace merlin::render

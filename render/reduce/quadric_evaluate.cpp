@@ -414,7 +414,7 @@ void evaluatePortable(const QuadricView& view, std::uint32_t vertex, EdgeCosts& 
 }  // namespace
 
 void EdgeCosts::grow(std::size_t rows) {
-  for (auto* list : {&neighbour, &shared, &b, &c}) list->resize(2 * rows);
+  for (auto* list : {&neighbour, &shared, &b, &c, &witness}) list->resize(2 * rows);
   for (auto* list : {&cost, &x, &y, &z, &rx, &ry, &rz, &deviation}) list->resize(2 * rows);
 }
 

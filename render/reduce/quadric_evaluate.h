@@ -58,14 +58,15 @@ struct QuadricView {
 struct EdgeCosts {
   std::uint32_t count = 0;
   std::vector<std::uint32_t> neighbour;
-  std::vector<std::uint32_t> shared;  // triangles that have both
-  std::vector<std::uint32_t> b, c;    // of the star's corners: indices into `neighbour`
-  std::vector<float> cost;            // kNoEdge at most
-  std::vector<float> x, y, z;         // the new vertex, from w
-  std::vector<float> rx, ry, rz;      // the neighbour, from w
-  std::vector<float> deviation;       // of the border, squared; the reducer's, -1 at first
-  float normal[3] = {};               // sum of the star's unit normals
-  std::uint32_t cheapest = 0;         // the first row of the least cost
+  std::vector<std::uint32_t> shared;   // triangles that have both
+  std::vector<std::uint32_t> b, c;     // of the star's corners: indices into `neighbour`
+  std::vector<float> cost;             // kNoEdge at most
+  std::vector<float> x, y, z;          // the new vertex, from w
+  std::vector<float> rx, ry, rz;       // the neighbour, from w
+  std::vector<float> deviation;        // squared; the reducer's, as the next, -1 at first
+  std::vector<std::uint32_t> witness;  // whose is the farther: w's (0) or the neighbour's (1)
+  float normal[3] = {};                // sum of the star's unit normals
+  std::uint32_t cheapest = 0;          // the first row of the least cost
 
   void makeRoom(std::size_t corners) {
     const std::size_t rows = 2 * corners + 16;

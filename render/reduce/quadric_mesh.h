@@ -7,8 +7,13 @@
 // bytes. Vertices are numbered along a space-filling curve, so that what is near is near in memory.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -26,6 +31,34 @@ inline constexpr std::uint32_t kLine = 8;  // corners
 // Upper triangle of a symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz.
 using Symmetric3 = std::array<float, 6>;
 
+// A vector in seven bytes, to 1/8,000 of its length.
+class ShortVector {
+ public:
+  std::array<float, 3> get() const noexcept {
+    std::int16_t units[3];
+    std::memcpy(units, units_, sizeof units);
+    const float unit = powerOfTwo(exponent_);
+    return {unit * units[0], unit * units[1], unit * units[2]};
+  }
+  void set(const std::array<float, 3>& v) noexcept {
+    const float most = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
+    const int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(most) >> 23) - 127;
+    exponent_ = static_cast<std::int8_t>(std::clamp(exponent, -100, 100) - 13);
+    const float per_unit = powerOfTwo(-exponent_), end = 1 << 14;  // in range in any case
+    std::int16_t units[3];
+    for (std::size_t k = 0; k < 3; ++k)
+      units[k] = static_cast<std::int16_t>(std::clamp(per_unit * v[k], -end, end));
+    std::memcpy(units_, units, sizeof units);
+  }
+
+ private:
+  static float powerOfTwo(int exponent) noexcept {
+    return std::bit_cast<float>(static_cast<std::uint32_t>(exponent + 127) << 23);
+  }
+  std::int8_t exponent_;
+  std::byte units_[6];
+};
+
 struct alignas(64) QuadricVertex {
   // In mean edges, from the box' centre. The quadric: sum of A n n' over the star's triangles, A
   // twice the area, n the unit normal: all planes pass through the vertex, so that there is no
@@ -38,7 +71,7 @@ struct alignas(64) QuadricVertex {
   std::uint32_t node;      // of the log
   float deviation;         // squared distance that what it stands for may be off by now
   std::uint8_t flags;
-  std::uint8_t unused[7];
+  ShortVector witness;  // where it is (quadric_witness.h), from here
 };
 static_assert(sizeof(QuadricVertex) == 64);
 

@@ -45,6 +45,7 @@ QuadricReducer::QuadricReducer(const Mesh& mesh, std::size_t channels, unsigned 
       ranges_(channels),
       evaluate_(edgeEvaluator()),
       judge_(edgeJudge()),
+      farther_(fartherWitness()),
       log_(mesh.vertexCount()),
       next_(mesh.vertexCount()),
       triangles_(mesh.triangleCount()),
@@ -113,6 +114,19 @@ void QuadricReducer::reduceTo(Worker& w, std::size_t removed, std::size_t bucket
   }
 }
 
+// Squared, of the farther of the edge's two witnesses. By the planes of both stars, which do not
+// see what a thin tip loses, where even that would not raise the cost.
+float QuadricReducer::witnessDeviation(Worker& w, std::uint32_t v, std::uint32_t edge) const {
+  const QuadricVertex &a = mesh_[v], &x = mesh_[w.costs.neighbour[edge]];
+  const float cost = w.costs.cost[edge];
+  const float of_a = a.deviation + cost / trace(a.h), of_x = x.deviation + cost / trace(x.h);
+  FartherWitness farther{std::max(of_a, of_x), of_x > of_a};
+  if (((a.flags | x.flags) & kSharp) || deviationCost(farther.distance2) > cost)
+    farther = farther_(view(), v, w.costs, edge);
+  w.costs.witness[edge] = farther.end;
+  return farther.distance2;
+}
+
 // Raises the edge's cost where area does not say what is lost, once. Returns whether it did.
 bool QuadricReducer::guard(Worker& w, std::uint32_t v, std::uint32_t edge) {
   float& deviation = w.costs.deviation[edge];
@@ -123,8 +137,7 @@ bool QuadricReducer::guard(Worker& w, std::uint32_t v, std::uint32_t edge) {
   const float before = w.costs.cost[edge];
   if ((flags & kLocked) && keepsTopology(stage_)) stayAtLocked(view(), v, w.costs, edge);
   if (flags & kOpen) deviation = borderDeviation(view(), v, w.costs, edge);
-  if ((flags & kSharp) || a.deviation > 0 || x.deviation > 0)
-    deviation = std::max(deviation, tipDeviation(view(), v, w.costs, edge));
+  deviation = std::max(deviation, witnessDeviation(w, v, edge));
   if (keepsTopology(stage_) && vanishes(view(), v, w.costs, edge))
     deviation = std::max(deviation, reachOf(w.costs) + std::max(a.deviation, x.deviation));
   const float least = deviationCost(deviation);
@@ -198,9 +211,13 @@ void QuadricReducer::collapse(Worker& w, std::uint32_t v, std::uint32_t edge) {
   a.flags |= b.flags & (kOpen | kLocked);
   if (!keepsTopology(stage_)) a.flags |= kOpen;
   b.flags |= kDead;
-  a.deviation = std::max({a.deviation, b.deviation, w.costs.deviation[edge]});
+  const float border = (a.flags & kOpen) ? std::max(a.deviation, b.deviation) : 0;
+  a.deviation = std::max(border, w.costs.deviation[edge]);
   const float step[] = {w.costs.x[edge], w.costs.y[edge], w.costs.z[edge]};
-  for (int k = 0; k < 3; ++k) a.position[k] = to_b ? b.position[k] : a.position[k] + step[k];
+  float to[3];
+  for (int k = 0; k < 3; ++k) to[k] = to_b ? b.position[k] : a.position[k] + step[k];
+  keepWitness(a, w.costs.witness[edge] ? b : a, to);
+  std::copy_n(to, 3, a.position);
   NodeRecord record{
       {a.node, b.node}, {a.position[0], a.position[1], a.position[2]}, error, {0, 0, 0}};
   a.node = mesh_.vertexCount() + x;

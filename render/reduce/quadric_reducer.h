@@ -15,6 +15,7 @@
 #include "render/reduce/bucket_queue.h"
 #include "render/reduce/quadric_evaluate.h"
 #include "render/reduce/quadric_rules.h"
+#include "render/reduce/quadric_witness.h"
 #include "render/reduce/reduce.h"
 
 namespace merlin::render {
@@ -84,6 +85,7 @@ class QuadricReducer {
   void tryVertex(Worker& w, std::uint32_t v);
   bool mayCollapse(Worker& w, std::uint32_t v, std::uint32_t edge);
   bool guard(Worker& w, std::uint32_t v, std::uint32_t edge);
+  float witnessDeviation(Worker& w, std::uint32_t v, std::uint32_t edge) const;
   float errorOf(const Worker& w, std::uint32_t v, std::uint32_t edge) const;
   void collapse(Worker& w, std::uint32_t v, std::uint32_t edge);
   void mixChannels(std::uint32_t v, std::uint32_t x, const EdgeCosts& costs, std::uint32_t edge);
@@ -114,6 +116,7 @@ class QuadricReducer {
   std::vector<Range> given_, ranges_;
   EvaluateEdges evaluate_;
   JudgeEdge judge_;
+  FindFarther farther_;
   HugeArray<std::uint32_t> log_;
   HugeArray<std::uint32_t> next_;  // in a vertex' bucket; beside the records, so that it stays near
   std::vector<std::uint32_t> part_ends_;

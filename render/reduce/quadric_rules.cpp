@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/compare/triangle_distance.h"
 #include "render/reduce/lanes.h"
 
 namespace merlin::render {
@@ -134,24 +133,6 @@ std::size_t borderNeighbours(const QuadricView& view, const QuadricVertex& v, st
   return n;
 }
 
-// Squared distance of the two ends' positions to the triangles that v's star has afterwards, where
-// it is less than `nearest`. All from w.
-void nearestOfStar(const QuadricView& view, const QuadricVertex& v, std::uint32_t other,
-                   const float* origin, const Vector& to, const Vector (&ends)[2],
-                   double (&nearest)[2]) {
-  const auto from_origin = [&](std::uint32_t corner) {
-    const float* p = view.vertices[corner].position;
-    return Vector{p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]};
-  };
-  const Corner* star = view.corners + v.star;
-  for (std::uint32_t k = 0; k < v.degree; ++k) {
-    if (isIn(star[k], other)) continue;
-    const std::array<Vector, 3> triangle = {to, from_origin(star[k].b), from_origin(star[k].c)};
-    for (int end = 0; end < 2; ++end)
-      nearest[end] = std::min(nearest[end], nearestOnTriangle(ends[end], triangle).distance2);
-  }
-}
-
 // Whether v is a corner of a closed tetrahedron or of less.
 bool isLast(const QuadricVertex& v) {
   return v.degree <= 3 && !((v.flags & kOpen) && v.degree > 1);
@@ -269,19 +250,6 @@ float borderDeviation(const QuadricView& view, std::uint32_t w, const EdgeCosts&
     deviation = std::max(deviation, d + v.deviation);
   }
   return deviation;
-}
-
-float tipDeviation(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
-                   std::uint32_t edge) {
-  const QuadricVertex& a = view.vertices[w];
-  const QuadricVertex& x = view.vertices[costs.neighbour[edge]];
-  const Vector to{costs.x[edge], costs.y[edge], costs.z[edge]};
-  const Vector ends[] = {{}, {costs.rx[edge], costs.ry[edge], costs.rz[edge]}};
-  double nearest[] = {squared(to), squared(to - ends[1])};
-  nearestOfStar(view, a, costs.neighbour[edge], a.position, to, ends, nearest);
-  nearestOfStar(view, x, w, a.position, to, ends, nearest);
-  return std::max(static_cast<float>(nearest[0]) + a.deviation,
-                  static_cast<float>(nearest[1]) + x.deviation);
 }
 
 }  // namespace merlin::render

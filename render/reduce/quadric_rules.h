@@ -46,12 +46,7 @@ void stayAtLocked(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, st
 float borderDeviation(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
                       std::uint32_t edge);
 
-// Squared distance of both ends, and of what they stand for, to the new vertex' star. A thin tip
-// has little area, so that the quadric sees little of its loss; so it is watched by distance.
-float tipDeviation(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
-                   std::uint32_t edge);
-
 // What an edge costs at least whose deviation (squared) is this.
-inline float deviationCost(float deviation) { return 30 * deviation * deviation; }
+inline float deviationCost(float deviation) { return 100 * deviation * deviation; }
 
 }  // namespace merlin::render

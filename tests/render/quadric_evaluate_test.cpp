@@ -8,22 +8,18 @@
 
 #include "daemon/base/random.h"
 #include "tests/support/meshes.h"
+#include "tests/support/quadric_bench.h"
 
 namespace merlin::render {
 namespace {
 
 using Vec = Eigen::Vector3d;
 
-struct Bench {
-  explicit Bench(const Mesh& m, std::size_t channels = 0)
-      : mesh(m), surface(m), values(m.vertexCount(), channels) {}
+struct Bench : test::QuadricBench {
+  explicit Bench(const Mesh& m, std::size_t channels = 0) : QuadricBench(m, channels), mesh(m) {}
 
-  QuadricView view() const { return {&surface[0], surface.corners(0), &values}; }
   Vec at(std::uint32_t v) const {
     return Eigen::Map<const Eigen::Vector3f>(surface[v].position).cast<double>();
-  }
-  void evaluateAll(EvaluateEdges evaluate) {
-    for (std::uint32_t v = 0; v < surface.vertexCount(); ++v) evaluate(view(), v, costs);
   }
 
   // Twice the area times squared distance to the planes of v's star, and to its borders' planes.
@@ -37,9 +33,6 @@ struct Bench {
   }
 
   Mesh mesh;
-  QuadricMesh surface;
-  QuadricChannels values;
-  EdgeCosts costs;
 };
 
 TEST(QuadricEvaluate, CostIsTheDistanceToThePlanesOfBothStars) {

@@ -9,24 +9,18 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/meshes.h"
+#include "tests/support/quadric_bench.h"
 
 namespace merlin::render {
 namespace {
 
-struct Bench {
-  explicit Bench(const Mesh& mesh) : surface(mesh), values(mesh.vertexCount(), 0) {
-    for (std::uint32_t v = 0; v < surface.vertexCount(); ++v) edgeEvaluator()(view(), v, costs);
-  }
-  QuadricView view() const { return {&surface[0], surface.corners(0), &values}; }
+struct Bench : test::QuadricBench {
+  explicit Bench(const Mesh& mesh) : QuadricBench(mesh) { evaluateAll(); }
   std::set<std::uint32_t> ringOf(std::uint32_t v) const {
     std::set<std::uint32_t> ring;
     for (const Corner& c : surface.star(surface[v])) ring.insert({c.b, c.c});
     return ring;
   }
-
-  QuadricMesh surface;
-  QuadricChannels values;
-  EdgeCosts costs;
 };
 
 // So rough that a good part of all collapses would turn a face.

@@ -157,7 +157,7 @@ TEST(Quadric, SeamsOfItsPartsAreNotSeen) {
     };
     ++fields[static_cast<std::size_t>(10 * cell(1) + cell(0))];
   }
-  const auto mean = static_cast<int>(coarse.vertexCount()) / 100;
+  const double mean = static_cast<double>(coarse.vertexCount()) / 100;
   EXPECT_LT(*std::max_element(fields.begin(), fields.end()), 3 * mean);
 }
 
