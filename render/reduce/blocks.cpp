@@ -59,6 +59,7 @@ class InBlocks {
     const BlockCutter cutter(mesh_, locked_, plan_.limits.threads);
     QuadricPlan plan = plan_;
     plan.limits.by_all_rules = true;
+    plan.seams_shrink = false;  // what hangs on other blocks is locked too
     plan.limits.error = std::min(plan.limits.error, errorForAll(cutter));
     const std::size_t stride = (mesh_.vertexCount() + blocks_ - 1) / blocks_;
     std::vector<Part> parts;
@@ -87,6 +88,7 @@ class InBlocks {
     std::size_t free = 0;
     QuadricPlan plan = plan_;
     plan.limits.by_all_rules = true;
+    plan.seams_shrink = false;
     for (Block& sample : cutter.cut({stride, std::min(stride, kSampleSize), 0, kSamples - 1})) {
       if (sample.mesh.triangles.empty()) continue;
       plan.limits.triangles = leastOf(sample);

@@ -104,7 +104,8 @@ std::vector<bool> lockedVertices(const Mesh& mesh, const ReduceSettings& setting
 Weights quadricWeights(const Mesh& mesh) {
   Weights weights{{"geometry", 1.0F}};
   for (const Feature& f : mesh.features) {
-    if (f.name != "normal" && f.name != "label") weights[f.name] = 0.005F;
+    if (f.name == "normal" || f.name == "label") continue;
+    weights[f.name] = f.name == "texcoord" ? 0.05F : 0.005F;  // a picture slides before it fades
   }
   return weights;
 }
@@ -118,6 +119,7 @@ Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings
   plan.channels = channelsOf(mesh, *space);
   // P12: as good as a colour of very high weight, unless somebody weighs it.
   plan.labels_lock = mesh.find("label") && !space->find("label");
+  plan.seams_shrink = settings.locked.empty();  // what has to stay is no seam's for sure
   plan.by_percent = static_cast<std::size_t>(settings.min_percent / 100 *
                                              static_cast<double>(mesh.triangleCount()));
   QuadricReducer::Limits& limits = plan.limits;
@@ -140,6 +142,7 @@ Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vecto
   }
   if (plan.labels_lock) reducer.setLabels(mesh.find("label")->values.data());
   if (!locked.empty()) reducer.lock(locked);
+  if (!locked.empty() && plan.seams_shrink) reducer.pair(samePlace(mesh.positions));
   const char* stopped = reducer.run(plan.limits, progress);
 
   Reduction result = reducer.finish(mesh);

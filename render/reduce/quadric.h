@@ -18,6 +18,7 @@ struct QuadricPlan {
   Weights weights;
   std::vector<ChannelFeature> channels;
   bool labels_lock = false;
+  bool seams_shrink = false;   // both sides at once; else their vertices stay
   std::size_t by_percent = 0;  // triangles that settings.min_percent leaves
   QuadricReducer::Limits limits;
 };
@@ -26,7 +27,7 @@ struct QuadricPlan {
 Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings);
 
 // Reduces `mesh`, which has the features that the plan was made with. locked: one a vertex, or
-// empty. The log lacks its `about`.
+// empty; seams' vertices are. The log lacks its `about`.
 Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vector<bool>& locked,
                      const Progress& progress);
 

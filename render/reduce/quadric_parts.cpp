@@ -42,7 +42,9 @@ void QuadricReducer::startPart(std::size_t part, Worker& w) {
   for (std::uint32_t v = begin; v < end; ++v) {
     const auto star = mesh_.star(mesh_[v]);
     corners += star.size();
-    if (std::all_of(star.begin(), star.end(),
+    const bool alone = twins_.empty() || twins_[v] == kNowhere;
+    if ((alone || is_here(twins_[v])) &&
+        std::all_of(star.begin(), star.end(),
                     [&](const Corner& c) { return is_here(c.b) && is_here(c.c); })) {
       mesh_[v].flags |= kInside;
     }

@@ -135,7 +135,10 @@ bool QuadricReducer::guard(Worker& w, std::uint32_t v, std::uint32_t edge) {
   const QuadricVertex &a = mesh_[v], &x = mesh_[w.costs.neighbour[edge]];
   const std::uint8_t flags = a.flags | x.flags;
   const float before = w.costs.cost[edge];
-  if ((flags & kLocked) && keepsTopology(stage_)) stayAtLocked(view(), v, w.costs, edge);
+  if (isAlongSeam(w.costs, v, edge))
+    stayOnSeam(w, v, edge);
+  else if ((flags & kLocked) && keepsTopology(stage_))
+    stayAtLocked(view(), v, w.costs, edge);
   if (flags & kOpen) deviation = borderDeviation(view(), v, w.costs, edge);
   deviation = std::max(deviation, witnessDeviation(w, v, edge));
   if (keepsTopology(stage_) && vanishes(view(), v, w.costs, edge))
@@ -165,49 +168,59 @@ void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
     const std::uint32_t x = costs.neighbour[edge];
     __builtin_prefetch(mesh_.corners(mesh_[x].star));
     if (guard(w, v, edge)) continue;
-    if (mayCollapse(w, v, edge)) {
+    if (isAlongSeam(costs, v, edge)) {
+      if (collapseSeam(w, v, edge)) return;
+    } else if (mayCollapse(w, costs, v, edge)) {
       collapse(w, v, edge);
+      if (mesh_[v].degree > 0) enqueue(w, v);
       return;
     }
     costs.cost[edge] = kNoEdge;
   }
 }
 
-bool QuadricReducer::mayCollapse(Worker& w, std::uint32_t v, std::uint32_t edge) {
-  if (w.inside_only && !(mesh_[w.costs.neighbour[edge]].flags & kInside)) return false;
+bool QuadricReducer::mayCollapse(Worker& w, const EdgeCosts& costs, std::uint32_t v,
+                                 std::uint32_t edge) {
+  if (w.inside_only && !(mesh_[costs.neighbour[edge]].flags & kInside)) return false;
   // The last triangle stays. (A part keeps some by the first stage's rules.)
-  if (!w.inside_only && w.costs.shared[edge] >= triangles_ - w.removed) return false;
+  if (!w.inside_only && costs.shared[edge] >= triangles_ - w.removed) return false;
   const bool locked = stage_ == QuadricStage::kAll && !labels_.empty() &&
-                      labels_[v] != labels_[w.costs.neighbour[edge]];
-  if (locked || (keep_components_ && keepsTopology(stage_) && vanishes(view(), v, w.costs, edge))) {
+                      labels_[v] != labels_[costs.neighbour[edge]];
+  if (locked || (keep_components_ && keepsTopology(stage_) && vanishes(view(), v, costs, edge))) {
     ++w.links;
     return false;
   }
-  const Verdict verdict = judge_(view(), v, w.costs, edge, stage_);
+  const Verdict verdict = judge_(view(), v, costs, edge, stage_);
   if (verdict != Verdict::kLegal) {
     ++(verdict == Verdict::kFlip ? w.flips : w.links);
     return false;
   }
-  if (!(errorOf(w, v, edge) > max_error_)) return true;
+  if (!(errorOf(costs, v, edge) > max_error_)) return true;
   w.too_coarse = true;
   return false;
 }
 
 // The root of the mean square distance to the planes of both stars, in mean edges.
-float QuadricReducer::errorOf(const Worker& w, std::uint32_t v, std::uint32_t edge) const {
-  const float area = trace(mesh_[v].h) + trace(mesh_[w.costs.neighbour[edge]].h);
-  return area > 0 ? std::sqrt(w.costs.cost[edge] / area) : 0;
+float QuadricReducer::errorOf(const EdgeCosts& costs, std::uint32_t v, std::uint32_t edge) const {
+  const float area = trace(mesh_[v].h) + trace(mesh_[costs.neighbour[edge]].h);
+  return area > 0 ? std::sqrt(costs.cost[edge] / area) : 0;
 }
 
 void QuadricReducer::collapse(Worker& w, std::uint32_t v, std::uint32_t edge) {
   const std::uint32_t x = w.costs.neighbour[edge];
   const float cost = w.costs.cost[edge];
   const std::uint32_t shared = w.costs.shared[edge];
-  const float error = errorOf(w, v, edge);
+  const float error = errorOf(w.costs, v, edge);
   if (channels_.count() > 0) mixChannels(v, x, w.costs, edge);
   mergeStars(w, v, x);
   QuadricVertex &a = mesh_[v], &b = mesh_[x];
-  const bool to_b = (b.flags & kLocked) && keepsTopology(stage_);
+  const bool stays =
+      (a.flags & kLocked) && w.costs.x[edge] == 0 && w.costs.y[edge] == 0 && w.costs.z[edge] == 0;
+  const bool to_b = (b.flags & kLocked) && keepsTopology(stage_) && !stays;
+  if (!twins_.empty() && !(a.flags & kLocked) && twins_[x] != kNowhere) {
+    twins_[v] = twins_[x];
+    twins_[twins_[v]] = v;
+  }
   a.flags |= b.flags & (kOpen | kLocked);
   if (!keepsTopology(stage_)) a.flags |= kOpen;
   b.flags |= kDead;
@@ -227,7 +240,6 @@ void QuadricReducer::collapse(Worker& w, std::uint32_t v, std::uint32_t edge) {
   if (a.degree > 0) {
     evaluate(w, v);
     std::copy_n(w.costs.normal, 3, record.normal);
-    enqueue(w, v);
   }
   std::memcpy(static_cast<void*>(b.position), &record, sizeof record);
 }

@@ -37,6 +37,10 @@ class QuadricReducer {
   // Of the mesh's vertices: these stay where they are until nothing else is left.
   void lock(const std::vector<bool>& locked);
 
+  // Of seams, once they are locked. next: rings of the mesh's vertices in one place (samePlace());
+  // where there are two, edges along the seam may go, those of both sides in one.
+  void pair(const std::vector<std::uint32_t>& next);
+
   struct Limits {
     std::size_t triangles = 0;                             // stop when no more are left; 0: none
     float error = std::numeric_limits<float>::infinity();  // no collapse is worse; model units
@@ -60,6 +64,7 @@ class QuadricReducer {
     BucketQueue queue;
     StarRoom room;
     EdgeCosts costs;
+    EdgeCosts twin;                // of a seam's other side
     std::vector<Corner> merged;    // scratch
     std::uint32_t* log = nullptr;  // dead vertices, in order
     std::size_t collapses = 0;
@@ -83,11 +88,15 @@ class QuadricReducer {
   void prefetch(Worker& w) const;
   void reduceTo(Worker& w, std::size_t removed, std::size_t bucket_limit);
   void tryVertex(Worker& w, std::uint32_t v);
-  bool mayCollapse(Worker& w, std::uint32_t v, std::uint32_t edge);
+  bool mayCollapse(Worker& w, const EdgeCosts& costs, std::uint32_t v, std::uint32_t edge);
   bool guard(Worker& w, std::uint32_t v, std::uint32_t edge);
   float witnessDeviation(Worker& w, std::uint32_t v, std::uint32_t edge) const;
-  float errorOf(const Worker& w, std::uint32_t v, std::uint32_t edge) const;
+  float errorOf(const EdgeCosts& costs, std::uint32_t v, std::uint32_t edge) const;
   void collapse(Worker& w, std::uint32_t v, std::uint32_t edge);
+  bool isAlongSeam(const EdgeCosts& costs, std::uint32_t v, std::uint32_t edge) const;
+  std::uint32_t findTwin(Worker& w, std::uint32_t v, std::uint32_t edge);
+  void stayOnSeam(Worker& w, std::uint32_t v, std::uint32_t edge);
+  bool collapseSeam(Worker& w, std::uint32_t v, std::uint32_t edge);
   void mixChannels(std::uint32_t v, std::uint32_t x, const EdgeCosts& costs, std::uint32_t edge);
   void mergeStars(Worker& w, std::uint32_t v, std::uint32_t x);
   void renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_t x, bool beside);
@@ -111,6 +120,7 @@ class QuadricReducer {
   QuadricChannels channels_;
   std::vector<float> labels_;          // empty where there are none
   std::vector<std::uint32_t> pinned_;  // by node: the locked vertex that it stands on; if any are
+  std::vector<std::uint32_t> twins_;   // of a seam's vertex the other one in its place; or empty
   bool keep_components_ = false;
   // Of the channels, as they were given and weighted: no value leaves them.
   std::vector<Range> given_, ranges_;

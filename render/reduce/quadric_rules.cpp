@@ -133,6 +133,12 @@ std::size_t borderNeighbours(const QuadricView& view, const QuadricVertex& v, st
   return n;
 }
 
+// r' H r: area times squared distance to the planes of a quadric.
+float costAt(const float* h, const float (&r)[3]) {
+  return r[0] * (h[0] * r[0] + 2 * (h[1] * r[1] + h[2] * r[2])) +
+         r[1] * (h[3] * r[1] + 2 * (h[4] * r[2])) + h[5] * r[2] * r[2];
+}
+
 // Whether v is a corner of a closed tetrahedron or of less.
 bool isLast(const QuadricVertex& v) {
   return v.degree <= 3 && !((v.flags & kOpen) && v.degree > 1);
@@ -223,9 +229,26 @@ void stayAtLocked(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, st
   costs.x[edge] = here ? 0 : r[0];
   costs.y[edge] = here ? 0 : r[1];
   costs.z[edge] = here ? 0 : r[2];
-  const float cost = r[0] * (h[0] * r[0] + 2 * (h[1] * r[1] + h[2] * r[2])) +
-                     r[1] * (h[3] * r[1] + 2 * (h[4] * r[2])) + h[5] * r[2] * r[2];
-  costs.cost[edge] = std::max(costs.cost[edge], std::min(cost, kNoEdge));
+  costs.cost[edge] = std::max(costs.cost[edge], std::min(costAt(h, r), kNoEdge));
+}
+
+void goAlongSeam(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, std::uint32_t edge,
+                 std::uint32_t twin, EdgeCosts& twin_costs, std::uint32_t twin_edge) {
+  const float r[] = {costs.rx[edge], costs.ry[edge], costs.rz[edge]};
+  const auto both = [&](std::uint32_t here, std::uint32_t there) {
+    return costAt(view.vertices[here].h, r) + costAt(view.vertices[there].h, r);
+  };
+  const float go = both(w, twin);
+  const float stay = both(costs.neighbour[edge], twin_costs.neighbour[twin_edge]);
+  const float share = go < stay ? 1 : 0;
+  const auto set = [&](EdgeCosts& of, std::uint32_t row) {
+    of.x[row] = share * r[0];
+    of.y[row] = share * r[1];
+    of.z[row] = share * r[2];
+    of.cost[row] = std::max(of.cost[row], std::min(std::min(go, stay), kNoEdge));
+  };
+  set(costs, edge);
+  set(twin_costs, twin_edge);
 }
 
 float borderDeviation(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,

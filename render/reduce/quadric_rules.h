@@ -41,6 +41,11 @@ JudgeEdge portableEdgeJudge();
 // cost at their best place). kNoEdge where both ends are locked.
 void stayAtLocked(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, std::uint32_t edge);
 
+// Of an edge along a seam whose vertices lie on either side, w's and `twin`'s: both new vertices go
+// to one end of the edge, where the two together cost less; that is what w's edge then costs.
+void goAlongSeam(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, std::uint32_t edge,
+                 std::uint32_t twin, EdgeCosts& twin_costs, std::uint32_t twin_edge);
+
 // Squared distance of the two ends that lie on a border, and of what they stand for, to the border
 // as it would be. A border loses little area where a flap is worn off; so it is watched by length.
 float borderDeviation(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,

@@ -94,23 +94,6 @@ TEST(Quadric, IsTheSameBytesForAnyNumberOfThreads) {
   }
 }
 
-// Two sheets that meet at x = 10 in twin vertices, as a seam of the texture makes them.
-TEST(Quadric, ASeamDoesNotGape) {
-  Mesh mesh = test::noisyGrid(10, 20, 0.3, 1);
-  const std::size_t half = mesh.vertexCount();
-  mesh = test::together(mesh, test::moved(test::noisyGrid(10, 20, 0.3, 2), 10, 0, 0));
-  for (std::size_t row = 0; row <= 20; ++row)
-    std::copy_n(&mesh.positions[3 * (11 * row + 10)], 3, &mesh.positions[3 * (half + 11 * row)]);
-  mesh = withNormals(mesh);
-  const Mesh coarse = levelOf(mesh, reduced(mesh), 150);
-  std::multiset<float> seam;
-  for (std::size_t v = 0; v < coarse.vertexCount(); ++v) {
-    if (coarse.positions[3 * v] == 10) seam.insert(coarse.positions[3 * v + 1]);
-  }
-  EXPECT_EQ(seam.size(), 42u);
-  for (std::size_t row = 0; row <= 20; ++row) EXPECT_EQ(seam.count(static_cast<float>(row)), 2u);
-}
-
 TEST(Quadric, LockedVerticesStay) {
   const Mesh mesh = withNormals(test::noisyGrid(20, 20, 0.3, 5));
   std::vector<bool> locked(mesh.vertexCount());

@@ -1,0 +1,80 @@
+// QuadricReducer along seams: where two vertices lie in one place, because a feature differs on
+// either side, the edges of both sides go together, so that nothing gapes.
+#include "render/reduce/quadric_reducer.h"
+
+namespace merlin::render {
+namespace {
+
+std::uint32_t rowOf(const EdgeCosts& costs, std::uint32_t neighbour) {
+  std::uint32_t row = 0;
+  while (row < costs.count && costs.neighbour[row] != neighbour) ++row;
+  return row;
+}
+
+}  // namespace
+
+void QuadricReducer::pair(const std::vector<std::uint32_t>& next) {
+  std::vector<std::uint32_t> working(mesh_.vertexCount());
+  for (std::uint32_t v = 0; v < working.size(); ++v) working[mesh_.inputOf(v)] = v;
+  twins_.assign(mesh_.vertexCount(), kNowhere);
+  for (std::uint32_t v = 0; v < twins_.size(); ++v) {
+    const std::uint32_t here = mesh_.inputOf(v), there = next[here];
+    if (there != here && next[there] == here) twins_[v] = working[there];
+  }
+}
+
+bool QuadricReducer::isAlongSeam(const EdgeCosts& costs, std::uint32_t v,
+                                 std::uint32_t edge) const {
+  return !twins_.empty() && keepsTopology(stage_) && costs.shared[edge] == 1 &&
+         twins_[v] != kNowhere && twins_[costs.neighbour[edge]] != kNowhere;
+}
+
+// Which edge of v's twin, whose edges are in w.twin afterwards, is the other side of v's. kNowhere
+// where there is none, or both sides are so close that one collapse changes what the other is.
+std::uint32_t QuadricReducer::findTwin(Worker& w, std::uint32_t v, std::uint32_t edge) {
+  const std::uint32_t x = w.costs.neighbour[edge], tv = twins_[v], tx = twins_[x];
+  const std::uint8_t inside = mesh_[tv].flags & mesh_[tx].flags & kInside;
+  const bool dead = (mesh_[tv].flags | mesh_[tx].flags) & kDead;
+  if (dead || mesh_[tv].degree == 0 || (w.inside_only && !inside)) return kNowhere;
+  if (rowOf(w.costs, tv) < w.costs.count || rowOf(w.costs, tx) < w.costs.count) return kNowhere;
+  evaluate_(view(), tv, w.twin);
+  const std::uint32_t row = rowOf(w.twin, tx);
+  if (row == w.twin.count || w.twin.shared[row] != 1) return kNowhere;
+  for (std::uint32_t i = 0; i < w.costs.count; ++i) {  // not even a neighbour in common
+    if (rowOf(w.twin, w.costs.neighbour[i]) < w.twin.count) return kNowhere;
+  }
+  return row;
+}
+
+void QuadricReducer::stayOnSeam(Worker& w, std::uint32_t v, std::uint32_t edge) {
+  const std::uint32_t other = findTwin(w, v, edge);
+  if (other == kNowhere)
+    w.costs.cost[edge] = kNoEdge;
+  else
+    goAlongSeam(view(), v, w.costs, edge, twins_[v], w.twin, other);
+}
+
+// Both sides, if both may; returns whether they did. REQUIRES: guard() has seen the edge.
+bool QuadricReducer::collapseSeam(Worker& w, std::uint32_t v, std::uint32_t edge) {
+  const std::uint32_t tv = twins_[v], other = findTwin(w, v, edge);
+  if (other == kNowhere || (!w.inside_only && triangles_ - w.removed <= 2)) return false;
+  const bool stays = w.costs.x[edge] == 0 && w.costs.y[edge] == 0 && w.costs.z[edge] == 0;
+  w.twin.x[other] = w.costs.x[edge];
+  w.twin.y[other] = w.costs.y[edge];
+  w.twin.z[other] = w.costs.z[edge];
+  w.twin.cost[other] = w.costs.cost[edge];
+  w.twin.deviation[other] = w.costs.deviation[edge];
+  w.twin.witness[other] = stays;  // of the end that moves
+  if (!mayCollapse(w, w.costs, v, edge) || !mayCollapse(w, w.twin, tv, other)) return false;
+  collapse(w, v, edge);
+  if (mesh_[v].degree > 0) enqueue(w, v);
+  std::swap(w.costs, w.twin);
+  collapse(w, tv, other);
+  if ((mesh_[tv].flags & kIdle) && mesh_[tv].degree > 0) {  // else it is in the queue
+    mesh_[tv].flags &= static_cast<std::uint8_t>(~kIdle);
+    enqueue(w, tv);
+  }
+  return true;
+}
+
+}  // namespace merlin::render

@@ -1,0 +1,130 @@
+// Seams under `quadric`: they shrink with the surface, both sides at once, at every level.
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "render/compare/compare.h"
+#include "render/lod/dendrogram.h"
+#include "render/mesh/mesh.h"
+#include "render/reduce/reduce.h"
+#include "tests/support/meshes.h"
+
+namespace merlin::render {
+namespace {
+
+constexpr std::uint32_t kAround = 200, kHigh = 120;  // enough vertices for two parts
+
+// A wavy tube from a rolled-up sheet. Cut: where the sheet's sides meet two vertices lie in each
+// place, since the texture's coordinate is 0 on one side and 1 on the other.
+Mesh tube(bool cut) {
+  Mesh mesh;
+  const std::uint32_t columns = kAround + (cut ? 1 : 0);
+  Feature texcoord{"texcoord", 2, {}};
+  for (std::uint32_t row = 0; row <= kHigh; ++row) {
+    for (std::uint32_t c = 0; c < columns; ++c) {
+      const double angle = 2 * std::numbers::pi * (c % kAround) / kAround, h = 0.05 * row;
+      const double radius =
+          1 + 0.1 * std::sin(5 * angle) * std::cos(3 * h) + 0.05 * std::cos(7 * h);
+      mesh.positions.insert(mesh.positions.end(),
+                            {static_cast<float>(radius * std::cos(angle)),
+                             static_cast<float>(radius * std::sin(angle)), static_cast<float>(h)});
+      texcoord.values.push_back(static_cast<float>(c) / kAround);
+      texcoord.values.push_back(static_cast<float>(row) / kHigh);
+    }
+  }
+  const auto at = [&](std::uint32_t row, std::uint32_t c) { return row * columns + c % columns; };
+  for (std::uint32_t row = 0; row < kHigh; ++row) {
+    for (std::uint32_t c = 0; c < kAround; ++c) {
+      for (const std::uint32_t v : {at(row, c), at(row, c + 1), at(row + 1, c + 1)})
+        mesh.triangles.push_back(v);
+      for (const std::uint32_t v : {at(row, c), at(row + 1, c + 1), at(row + 1, c)})
+        mesh.triangles.push_back(v);
+    }
+  }
+  if (cut) mesh.features.push_back(std::move(texcoord));
+  ensureNormals(mesh);
+  return mesh;
+}
+
+struct Levels {
+  explicit Levels(const Mesh& mesh, const ReduceSettings& settings = {})
+      : made(buildDendrogram(mesh, reduce(mesh, settings)->log)), all(mesh.triangleCount()) {}
+  Mesh at(double share) const {
+    return extract(made, made.levelFor(static_cast<std::size_t>(share * static_cast<double>(all))));
+  }
+  Dendrogram made;
+  std::size_t all;
+};
+
+using Place = std::array<float, 3>;
+
+// Of the vertices on borders, those of the tube's two ends left out: how many lie in each place.
+std::map<Place, int> seamOf(const Mesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = mesh.triangles[t + k], b = mesh.triangles[t + (k + 1) % 3];
+      ++sides[std::minmax(a, b)];
+    }
+  }
+  std::set<std::uint32_t> border;
+  for (const auto& [edge, n] : sides) {
+    if (n == 1) border.insert({edge.first, edge.second});
+  }
+  std::map<Place, int> places;
+  for (const std::uint32_t v : border) {
+    const float* p = &mesh.positions[3 * std::size_t{v}];
+    if (p[2] > 0.25F && p[2] < 5.75F) ++places[{p[0], p[1], p[2]}];
+  }
+  return places;
+}
+
+TEST(QuadricSeams, ShrinkAndNeverGape) {
+  const Levels levels(tube(true));
+  std::size_t before = kHigh;
+  for (const double share : {0.5, 0.2, 0.1, 0.05, 0.02}) {
+    const std::map<Place, int> seam = seamOf(levels.at(share));
+    std::size_t alone = 0;
+    for (const auto& [place, n] : seam) alone += n != 2;
+    EXPECT_LE(alone, 1U) << "but for a pair of which one side has gone, at " << share;
+    EXPECT_LT(seam.size(), before) << share;
+    before = seam.size();
+  }
+  EXPECT_LT(before, kHigh / 3);
+}
+
+TEST(QuadricSeams, CostLittle) {
+  const Mesh whole = tube(false), cut = tube(true);
+  CompareSettings settings;
+  settings.samples = 20'000;
+  const auto of_whole = compare(whole, Levels(whole).at(0.05), settings);
+  const auto of_cut = compare(whole, Levels(cut).at(0.05), settings);
+  ASSERT_TRUE(of_whole && of_cut);
+  EXPECT_LT(of_cut->symmetric().rms, 1.25 * of_whole->symmetric().rms);
+}
+
+TEST(QuadricSeams, AreTheSameForAnyNumberOfThreads) {
+  const Mesh mesh = tube(true);
+  const auto one = reduce(mesh, {.threads = 1}), two = reduce(mesh, {.threads = 2});
+  ASSERT_TRUE(one && two);
+  EXPECT_EQ(one->log.children, two->log.children);
+  EXPECT_EQ(one->log.positions, two->log.positions);
+  EXPECT_EQ(one->log.features, two->log.features);
+}
+
+// Whoever locks vertices himself may mean a seam's.
+TEST(QuadricSeams, StayWhereVerticesAreLocked) {
+  const Mesh mesh = tube(true);
+  std::vector<bool> locked(mesh.vertexCount());
+  locked[0] = true;
+  const std::map<Place, int> seam = seamOf(Levels(mesh, {.locked = locked}).at(0.05));
+  EXPECT_EQ(seam.size(), kHigh - 2 * 5 - 1);
+  for (const auto& [place, n] : seam) EXPECT_EQ(n, 2);
+}
+
+}  // namespace
+}  // namespace merlin::render
