@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "daemon/base/blocks.h"
 #include "render/mesh/places.h"
@@ -134,6 +135,9 @@ Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings
 
 Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vector<bool>& locked,
                      const Progress& progress) {
+  // First, since it needs memory for a while.
+  std::vector<std::uint32_t> places;
+  if (!locked.empty() && plan.seams_shrink) places = samePlace(mesh.positions);
   QuadricReducer reducer(mesh, countOf(mesh, plan.channels), plan.limits.threads);
   for (const ChannelFeature& c : plan.channels) {
     const Feature& f = mesh.features[c.feature];
@@ -142,7 +146,7 @@ Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vecto
   }
   if (plan.labels_lock) reducer.setLabels(mesh.find("label")->values.data());
   if (!locked.empty()) reducer.lock(locked);
-  if (!locked.empty() && plan.seams_shrink) reducer.pair(samePlace(mesh.positions));
+  if (!places.empty()) reducer.pair(std::exchange(places, {}));
   const char* stopped = reducer.run(plan.limits, progress);
 
   Reduction result = reducer.finish(mesh);

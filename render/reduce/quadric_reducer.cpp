@@ -114,14 +114,17 @@ void QuadricReducer::reduceTo(Worker& w, std::size_t removed, std::size_t bucket
   }
 }
 
-// Squared, of the farther of the edge's two witnesses. By the planes of both stars, which do not
-// see what a thin tip loses, where even that would not raise the cost.
+// Squared, of the farther of the edge's two witnesses. By the planes of each end's star, which do
+// not see what a thin tip loses, where that would not raise the cost.
 float QuadricReducer::witnessDeviation(Worker& w, std::uint32_t v, std::uint32_t edge) const {
   const QuadricVertex &a = mesh_[v], &x = mesh_[w.costs.neighbour[edge]];
-  const float cost = w.costs.cost[edge];
-  const float of_a = a.deviation + cost / trace(a.h), of_x = x.deviation + cost / trace(x.h);
+  const EdgeCosts& c = w.costs;
+  const float step[] = {c.x[edge], c.y[edge], c.z[edge]};
+  const float back[] = {step[0] - c.rx[edge], step[1] - c.ry[edge], step[2] - c.rz[edge]};
+  const float of_a = a.deviation + costAt(a.h, step) / trace(a.h);
+  const float of_x = x.deviation + costAt(x.h, back) / trace(x.h);
   FartherWitness farther{std::max(of_a, of_x), of_x > of_a};
-  if (((a.flags | x.flags) & kSharp) || deviationCost(farther.distance2) > cost)
+  if (((a.flags | x.flags) & kSharp) || !(deviationCost(farther.distance2) <= c.cost[edge]))
     farther = farther_(view(), v, w.costs, edge);
   w.costs.witness[edge] = farther.end;
   return farther.distance2;

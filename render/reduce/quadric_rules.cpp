@@ -133,12 +133,6 @@ std::size_t borderNeighbours(const QuadricView& view, const QuadricVertex& v, st
   return n;
 }
 
-// r' H r: area times squared distance to the planes of a quadric.
-float costAt(const float* h, const float (&r)[3]) {
-  return r[0] * (h[0] * r[0] + 2 * (h[1] * r[1] + h[2] * r[2])) +
-         r[1] * (h[3] * r[1] + 2 * (h[4] * r[2])) + h[5] * r[2] * r[2];
-}
-
 // Whether v is a corner of a closed tetrahedron or of less.
 bool isLast(const QuadricVertex& v) {
   return v.degree <= 3 && !((v.flags & kOpen) && v.degree > 1);

@@ -51,6 +51,12 @@ void goAlongSeam(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, std
 float borderDeviation(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
                       std::uint32_t edge);
 
+// r' H r: area times squared distance to the planes of a quadric.
+inline float costAt(const float* h, const float (&r)[3]) {
+  return r[0] * (h[0] * r[0] + 2 * (h[1] * r[1] + h[2] * r[2])) +
+         r[1] * (h[3] * r[1] + 2 * (h[4] * r[2])) + h[5] * r[2] * r[2];
+}
+
 // What an edge costs at least whose deviation (squared) is this.
 inline float deviationCost(float deviation) { return 100 * deviation * deviation; }
 

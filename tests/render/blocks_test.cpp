@@ -88,7 +88,7 @@ TEST(Blocks, EveryLevelIsAManifold) {
   }
 }
 
-// Borders stay as fine as they were for a while: in so small a mesh a tenth of what is kept.
+// Borders stay as fine as they were for a while: in so small a mesh an eighth of what is kept.
 TEST(Blocks, AreAsGoodAsTheWhole) {
   const Mesh mesh = hills(250);
   const Reduction whole = reduced(mesh, {}), blocks = reduced(mesh, tight(mesh));
@@ -101,7 +101,7 @@ TEST(Blocks, AreAsGoodAsTheWhole) {
   };
   for (const std::size_t percent : {20U, 5U}) {
     const std::size_t keep = mesh.triangleCount() * percent / 100;
-    EXPECT_LT(rms(blocks, keep), 1.12 * rms(whole, keep)) << percent << " %";
+    EXPECT_LT(rms(blocks, keep), 1.15 * rms(whole, keep)) << percent << " %";
   }
 }
 

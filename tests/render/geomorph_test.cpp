@@ -124,8 +124,8 @@ TEST(Geomorph, EachClusterHasItsOwnWindow) {
     EXPECT_LT(collapse, clusters.coarsestLevel());
     ++of[c];
   }
-  EXPECT_GT(of[1], 0U);  // the first may be so rough that nothing of it goes early
-  EXPECT_GT(of[of.size() / 2], 0U);
+  // One that is rough may have nothing on its way just now.
+  EXPECT_GT(std::count_if(of.begin(), of.end(), [](std::size_t n) { return n > 0; }), 6);
   EXPECT_EQ(of.back(), 0U) << "nothing of it merges any more";
 }
 
