@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "daemon/base/blocks.h"
@@ -104,7 +105,8 @@ void Clusters::Builder::chooseLevels(const ClusterSettings& settings) {
 }
 
 // Every node goes to the cluster of its parent; those alive at L0 are roots. Clusters are numbered
-// along a curve.
+// along a curve. Roots in one place are the two sides of a seam: they share a cluster, so that both
+// are always at the same level and nothing gapes between them.
 void Clusters::Builder::numberClusters() {
   const auto alive = c.aliveBelow(c.coarsest_);
   c.cluster_of_.assign(c.aliveBelow(finest), kNoCluster);
@@ -125,15 +127,22 @@ void Clusters::Builder::numberClusters() {
   const auto key = [&](std::uint32_t n) {
     return mortonKey(&positions[3 * std::size_t{n}], box.low, extent, kCurveBits);
   };
+  const auto place = [&](std::uint32_t n) {
+    const float* p = &positions[3 * std::size_t{n}];
+    return std::tuple(key(n), p[0], p[1], p[2]);
+  };
   std::stable_sort(roots.begin(), roots.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+                   [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
   // Where a mesh has more parts than there may be clusters, neighbours share one.
   const std::size_t share = roots.size() / (kNoCluster - 1) + 1;
-  for (std::size_t i = 0; i < roots.size(); ++i)
-    c.cluster_of_[roots[i]] = static_cast<std::uint16_t>(i / share);
+  std::size_t places = 0;
+  for (std::size_t i = 0; i < roots.size(); ++i) {
+    if (i > 0 && place(roots[i - 1]) != place(roots[i])) ++places;
+    c.cluster_of_[roots[i]] = static_cast<std::uint16_t>(places / share);
+  }
   for (std::uint32_t n = alive; n < c.cluster_of_.size(); ++n)
     c.cluster_of_[n] = c.cluster_of_[c.forest_.parentOf(n)];
-  c.bounds_.resize((roots.size() + share - 1) / share);
+  c.bounds_.resize(roots.empty() ? 0 : places / share + 1);
 }
 
 // Which group each triangle of the finest level belongs to.

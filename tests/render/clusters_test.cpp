@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "render/mesh/places.h"
 #include "render/reduce/reduce.h"
 #include "tests/support/meshes.h"
 
@@ -234,6 +235,22 @@ TEST(Clusters, TheSmallestModelsAreCutToo) {
       EXPECT_EQ(sorted(evenCut(clusters, d, level)), sorted(std::span(expected).first(3 * n)));
     }
   }
+}
+
+// So at any levels of the clusters nothing gapes between them.
+TEST(Clusters, BothSidesOfASeamAreInOne) {
+  const Dendrogram d = dendrogramOf(test::tube(60, 40, true));
+  const Clusters clusters(d, {.clusters = 100});
+  ASSERT_GT(clusters.size(), 40U);
+  const std::vector<std::uint32_t> next = samePlace(d.arrays().positions);
+  std::size_t pairs = 0;
+  for (std::uint32_t n = 0; n < next.size(); ++n) {
+    const std::size_t one = clusters.clusterOf(n), other = clusters.clusterOf(next[n]);
+    if (next[n] == n || one >= clusters.size() || other >= clusters.size()) continue;
+    ++pairs;  // that are no coarser than clusters are
+    EXPECT_EQ(one, other);
+  }
+  EXPECT_GE(pairs, 2U * 41);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // Seams under `quadric`: they shrink with the surface, both sides at once, at every level.
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 #include <utility>
 
@@ -18,34 +17,8 @@ namespace {
 
 constexpr std::uint32_t kAround = 200, kHigh = 120;  // enough vertices for two parts
 
-// A wavy tube from a rolled-up sheet. Cut: where the sheet's sides meet two vertices lie in each
-// place, since the texture's coordinate is 0 on one side and 1 on the other.
 Mesh tube(bool cut) {
-  Mesh mesh;
-  const std::uint32_t columns = kAround + (cut ? 1 : 0);
-  Feature texcoord{"texcoord", 2, {}};
-  for (std::uint32_t row = 0; row <= kHigh; ++row) {
-    for (std::uint32_t c = 0; c < columns; ++c) {
-      const double angle = 2 * std::numbers::pi * (c % kAround) / kAround, h = 0.05 * row;
-      const double radius =
-          1 + 0.1 * std::sin(5 * angle) * std::cos(3 * h) + 0.05 * std::cos(7 * h);
-      mesh.positions.insert(mesh.positions.end(),
-                            {static_cast<float>(radius * std::cos(angle)),
-                             static_cast<float>(radius * std::sin(angle)), static_cast<float>(h)});
-      texcoord.values.push_back(static_cast<float>(c) / kAround);
-      texcoord.values.push_back(static_cast<float>(row) / kHigh);
-    }
-  }
-  const auto at = [&](std::uint32_t row, std::uint32_t c) { return row * columns + c % columns; };
-  for (std::uint32_t row = 0; row < kHigh; ++row) {
-    for (std::uint32_t c = 0; c < kAround; ++c) {
-      for (const std::uint32_t v : {at(row, c), at(row, c + 1), at(row + 1, c + 1)})
-        mesh.triangles.push_back(v);
-      for (const std::uint32_t v : {at(row, c), at(row + 1, c + 1), at(row + 1, c)})
-        mesh.triangles.push_back(v);
-    }
-  }
-  if (cut) mesh.features.push_back(std::move(texcoord));
+  Mesh mesh = test::tube(kAround, kHigh, cut);
   ensureNormals(mesh);
   return mesh;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -85,6 +86,37 @@ inline Mesh sphere(int times) {
   mesh.positions = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
   mesh.triangles = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
   for (; times > 0; --times) mesh = subdivided(std::move(mesh));
+  return mesh;
+}
+
+// A wavy tube from a rolled-up sheet. Cut: where the sheet's sides meet two vertices lie in each
+// place, since the texture's coordinate is 0 on one side and 1 on the other.
+inline Mesh tube(std::uint32_t around, std::uint32_t high, bool cut) {
+  Mesh mesh;
+  const std::uint32_t columns = around + (cut ? 1 : 0);
+  render::Feature texcoord{"texcoord", 2, {}};
+  for (std::uint32_t row = 0; row <= high; ++row) {
+    for (std::uint32_t c = 0; c < columns; ++c) {
+      const double angle = 2 * std::numbers::pi * (c % around) / around, h = 0.05 * row;
+      const double radius =
+          1 + 0.1 * std::sin(5 * angle) * std::cos(3 * h) + 0.05 * std::cos(7 * h);
+      mesh.positions.insert(mesh.positions.end(),
+                            {static_cast<float>(radius * std::cos(angle)),
+                             static_cast<float>(radius * std::sin(angle)), static_cast<float>(h)});
+      texcoord.values.push_back(static_cast<float>(c) / static_cast<float>(around));
+      texcoord.values.push_back(static_cast<float>(row) / static_cast<float>(high));
+    }
+  }
+  const auto at = [&](std::uint32_t row, std::uint32_t c) { return row * columns + c % columns; };
+  for (std::uint32_t row = 0; row < high; ++row) {
+    for (std::uint32_t c = 0; c < around; ++c) {
+      for (const std::uint32_t v : {at(row, c), at(row, c + 1), at(row + 1, c + 1)})
+        mesh.triangles.push_back(v);
+      for (const std::uint32_t v : {at(row, c), at(row + 1, c + 1), at(row + 1, c)})
+        mesh.triangles.push_back(v);
+    }
+  }
+  if (cut) mesh.features.push_back(std::move(texcoord));
   return mesh;
 }
 
