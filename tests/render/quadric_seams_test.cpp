@@ -74,8 +74,8 @@ TEST(QuadricSeams, CostLittle) {
   const Mesh whole = tube(false), cut = tube(true);
   CompareSettings settings;
   settings.samples = 20'000;
-  const auto of_whole = compare(whole, Levels(whole).at(0.05), settings);
-  const auto of_cut = compare(whole, Levels(cut).at(0.05), settings);
+  const auto of_whole = compare(whole, Levels(whole).at(0.01), settings);
+  const auto of_cut = compare(whole, Levels(cut).at(0.01), settings);
   ASSERT_TRUE(of_whole && of_cut);
   EXPECT_LT(of_cut->symmetric().rms, 1.25 * of_whole->symmetric().rms);
 }
