@@ -11,8 +11,22 @@
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 #define MERLIN_INLINE [[gnu::always_inline]] inline
+#if defined(__x86_64__)
+#define MERLIN_WIDE [[gnu::target("avx2")]]  // of the text that is for wider registers
+#else
+#define MERLIN_WIDE
+#endif
 
 namespace merlin::render {
+
+// Of one text, compiled twice, what this processor runs: `wide` is MERLIN_WIDE.
+template <typename Function>
+Function forThisProcessor(Function wide, Function portable) {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2")) return wide;
+#endif
+  return portable;
+}
 
 using Lanes = float __attribute__((vector_size(32)));
 using Mask = std::int32_t __attribute__((vector_size(32)));  // of numbers, too

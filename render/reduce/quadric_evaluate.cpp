@@ -398,18 +398,14 @@ void evaluatePortable(const QuadricView& view, std::uint32_t vertex, EdgeCosts& 
   evaluate(view, vertex, out, rarePortable);
 }
 
-#if defined(__x86_64__)
-// The same text: wider registers, no fused operation, so the same bits.
-[[gnu::noinline, gnu::target("avx2")]] void rareAvx2(const QuadricView& view, std::uint32_t vertex,
-                                                     EdgeCosts& out) {
+MERLIN_WIDE [[gnu::noinline]] void rareWide(const QuadricView& view, std::uint32_t vertex,
+                                            EdgeCosts& out) {
   evaluateRare(view, vertex, out);
 }
 
-[[gnu::target("avx2")]] void evaluateAvx2(const QuadricView& view, std::uint32_t vertex,
-                                          EdgeCosts& out) {
-  evaluate(view, vertex, out, rareAvx2);
+MERLIN_WIDE void evaluateWide(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
+  evaluate(view, vertex, out, rareWide);
 }
-#endif
 
 }  // namespace
 
@@ -427,11 +423,6 @@ void EdgeCosts::findCheapest() noexcept {
 
 EvaluateEdges portableEdgeEvaluator() { return evaluatePortable; }
 
-EvaluateEdges edgeEvaluator() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return evaluateAvx2;
-#endif
-  return evaluatePortable;
-}
+EvaluateEdges edgeEvaluator() { return forThisProcessor(evaluateWide, evaluatePortable); }
 
 }  // namespace merlin::render

@@ -72,6 +72,10 @@ struct EdgeCosts {
     const std::size_t rows = 2 * corners + 16;
     if (neighbour.size() < rows) grow(rows);
   }
+  // Whether w is where the new vertex of `edge` goes.
+  bool staysAt(std::uint32_t edge) const noexcept {
+    return x[edge] == 0 && y[edge] == 0 && z[edge] == 0;
+  }
   // Sets `cheapest` anew.
   void findCheapest() noexcept;
 

@@ -217,8 +217,7 @@ void QuadricReducer::collapse(Worker& w, std::uint32_t v, std::uint32_t edge) {
   if (channels_.count() > 0) mixChannels(v, x, w.costs, edge);
   mergeStars(w, v, x);
   QuadricVertex &a = mesh_[v], &b = mesh_[x];
-  const bool stays =
-      (a.flags & kLocked) && w.costs.x[edge] == 0 && w.costs.y[edge] == 0 && w.costs.z[edge] == 0;
+  const bool stays = (a.flags & kLocked) && w.costs.staysAt(edge);
   const bool to_b = (b.flags & kLocked) && keepsTopology(stage_) && !stays;
   if (!twins_.empty() && !(a.flags & kLocked) && twins_[x] != kNowhere) {
     twins_[v] = twins_[x];

@@ -171,13 +171,10 @@ Verdict judgePortable(const QuadricView& view, std::uint32_t w, const EdgeCosts&
   return judge(view, w, costs, edge, stage);
 }
 
-#if defined(__x86_64__)
-__attribute__((target("avx2"))) Verdict judgeAvx2(const QuadricView& view, std::uint32_t w,
-                                                  const EdgeCosts& costs, std::uint32_t edge,
-                                                  QuadricStage stage) {
+MERLIN_WIDE Verdict judgeWide(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
+                              std::uint32_t edge, QuadricStage stage) {
   return judge(view, w, costs, edge, stage);
 }
-#endif
 
 }  // namespace
 
@@ -204,12 +201,7 @@ float reachOf(const EdgeCosts& costs) {
 
 JudgeEdge portableEdgeJudge() { return judgePortable; }
 
-JudgeEdge edgeJudge() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return judgeAvx2;
-#endif
-  return judgePortable;
-}
+JudgeEdge edgeJudge() { return forThisProcessor(judgeWide, judgePortable); }
 
 void stayAtLocked(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, std::uint32_t edge) {
   const QuadricVertex &a = view.vertices[w], &x = view.vertices[costs.neighbour[edge]];

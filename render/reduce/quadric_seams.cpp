@@ -58,13 +58,12 @@ void QuadricReducer::stayOnSeam(Worker& w, std::uint32_t v, std::uint32_t edge) 
 bool QuadricReducer::collapseSeam(Worker& w, std::uint32_t v, std::uint32_t edge) {
   const std::uint32_t tv = twins_[v], other = findTwin(w, v, edge);
   if (other == kNowhere || (!w.inside_only && triangles_ - w.removed <= 2)) return false;
-  const bool stays = w.costs.x[edge] == 0 && w.costs.y[edge] == 0 && w.costs.z[edge] == 0;
   w.twin.x[other] = w.costs.x[edge];
   w.twin.y[other] = w.costs.y[edge];
   w.twin.z[other] = w.costs.z[edge];
   w.twin.cost[other] = w.costs.cost[edge];
   w.twin.deviation[other] = w.costs.deviation[edge];
-  w.twin.witness[other] = stays;  // of the end that moves
+  w.twin.witness[other] = w.costs.staysAt(edge);  // of the end that moves
   if (!mayCollapse(w, w.costs, v, edge) || !mayCollapse(w, w.twin, tv, other)) return false;
   collapse(w, v, edge);
   if (mesh_[v].degree > 0) enqueue(w, v);

@@ -19,8 +19,7 @@ MERLIN_INLINE Lanes dot(const Lanes (&a)[3], const Point& p) {
   return a[0] * p.x + a[1] * p.y + a[2] * p.z;
 }
 
-// To the nearest of the segment from the origin along `along`; `pp`, `pa` and `aa`: products of the
-// point and it.
+// Squared distance of a point p to the segment from the origin to a, by their products.
 MERLIN_INLINE Lanes segmentDistance2(const Lanes& pp, const Lanes& pa, const Lanes& aa,
                                      const Lanes& inverse_aa) {
   Lanes t = pa * inverse_aa;
@@ -117,12 +116,10 @@ FartherWitness fartherPortable(const QuadricView& view, std::uint32_t w, const E
   return farther(view, w, costs, edge);
 }
 
-#if defined(__x86_64__)
-[[gnu::target("avx2")]] FartherWitness fartherAvx2(const QuadricView& view, std::uint32_t w,
-                                                   const EdgeCosts& costs, std::uint32_t edge) {
+MERLIN_WIDE FartherWitness fartherWide(const QuadricView& view, std::uint32_t w,
+                                       const EdgeCosts& costs, std::uint32_t edge) {
   return farther(view, w, costs, edge);
 }
-#endif
 
 }  // namespace
 
@@ -134,11 +131,6 @@ void keepWitness(QuadricVertex& a, const QuadricVertex& of, const float* to) noe
 
 FindFarther portableFartherWitness() { return fartherPortable; }
 
-FindFarther fartherWitness() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return fartherAvx2;
-#endif
-  return fartherPortable;
-}
+FindFarther fartherWitness() { return forThisProcessor(fartherWide, fartherPortable); }
 
 }  // namespace merlin::render
