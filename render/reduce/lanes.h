@@ -94,12 +94,12 @@ MERLIN_INLINE bool any(const Mask& m) {
   return (wide[0] | wide[1]) != 0;
 }
 
-// Four floats from each of eight places, as four lanes of eight. at(k): where the k-th are; no
-// array, which GCC would write down.
-template <typename At>
+// Four floats from each of eight places, or `floats` and no more, as four lanes of eight. at(k):
+// where the k-th are; no array, which GCC would write down.
+template <std::size_t floats = 4, typename At>
 MERLIN_INLINE void gather(const At& at, Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
-  Quad q[8];
-  for (int k = 0; k < 8; ++k) std::memcpy(&q[k], at(k), sizeof q[k]);
+  Quad q[8] = {};
+  for (int k = 0; k < 8; ++k) std::memcpy(&q[k], at(k), floats * sizeof(float));
   const Lanes r0 = __builtin_shufflevector(q[0], q[4], 0, 1, 2, 3, 4, 5, 6, 7);
   const Lanes r1 = __builtin_shufflevector(q[1], q[5], 0, 1, 2, 3, 4, 5, 6, 7);
   const Lanes r2 = __builtin_shufflevector(q[2], q[6], 0, 1, 2, 3, 4, 5, 6, 7);

@@ -54,17 +54,20 @@ MERLIN_INLINE void addBorder(float h[6], float x, float y, float z) {
   h[5] += kBorderWeight * (l - z * z);
 }
 
-// Eight neighbours, one a lane: from w, and their quadrics.
+// Eight neighbours, one a lane: from w, and their `quadrics`.
+template <bool quadrics>
 struct Neighbours {
   Lanes x, y, z, h[6];
 
   MERLIN_INLINE Neighbours(const QuadricView& view, const QuadricVertex& w,
                            const std::uint32_t* numbers) {
     const auto at = [&](int k) -> const QuadricVertex& { return view.vertices[numbers[k]]; };
-    gather([&](int k) { return at(k).position; }, x, y, z, h[0]);
-    gather([&](int k) { return &at(k).h[1]; }, h[1], h[2], h[3], h[4]);
-    h[5] = Lanes{at(0).h[5], at(1).h[5], at(2).h[5], at(3).h[5],
-                 at(4).h[5], at(5).h[5], at(6).h[5], at(7).h[5]};
+    gather<quadrics ? 4 : 3>([&](int k) { return at(k).position; }, x, y, z, h[0]);
+    if (quadrics) {
+      gather([&](int k) { return &at(k).h[1]; }, h[1], h[2], h[3], h[4]);
+      h[5] = Lanes{at(0).h[5], at(1).h[5], at(2).h[5], at(3).h[5],
+                   at(4).h[5], at(5).h[5], at(6).h[5], at(7).h[5]};
+    }
     x -= w.position[0];
     y -= w.position[1];
     z -= w.position[2];
@@ -95,7 +98,8 @@ struct Solver {
   }
 
   // REQUIRES: room for 8 rows from `first`; count rows count. Returns their costs.
-  MERLIN_INLINE Lanes solve(const Neighbours& at, std::uint32_t first, std::uint32_t count) const {
+  MERLIN_INLINE Lanes solve(const Neighbours<true>& at, std::uint32_t first,
+                            std::uint32_t count) const {
     const std::uint32_t* x = &out.neighbour[first];
     const Lanes(&h)[6] = at.h;
     const Lanes &X = at.x, &Y = at.y, &Z = at.z;
@@ -186,11 +190,13 @@ struct Sums {
 };
 
 // A closed fan of up to eight: neighbours are the corners' first vertices, in order.
-MERLIN_INLINE Neighbours closedFan(const QuadricView& view, QuadricVertex& w, EdgeCosts& out) {
+template <bool quadrics>
+MERLIN_INLINE Neighbours<quadrics> closedFan(const QuadricView& view, QuadricVertex& w,
+                                             EdgeCosts& out) {
   out.count = w.degree;
   store(out.neighbour.data(), firsts(&view.corners[w.star].b, w.degree));
   store(out.shared.data(), all(2U));
-  const Neighbours at(view, w, out.neighbour.data());
+  const Neighbours<quadrics> at(view, w, out.neighbour.data());
   // Those beyond the last are the first again: the fan closes, then come triangles without area.
   Sums(Planes(at.x, at.y, at.z, next(at.x), next(at.y), next(at.z))).store(w, out);
   store(out.rx.data(), at.x);
@@ -259,7 +265,7 @@ MERLIN_INLINE void anyStar(const QuadricView& view, QuadricVertex& w, EdgeCosts&
   store(&out.neighbour[out.count], all(out.neighbour[0]));
   store(&out.neighbour[out.count + 8], all(out.neighbour[0]));
   for (std::uint32_t first = 0; first < out.count + 8; first += 8) {
-    const Neighbours at(view, w, &out.neighbour[first]);
+    const Neighbours<false> at(view, w, &out.neighbour[first]);
     store(&out.rx[first], at.x);
     store(&out.ry[first], at.y);
     store(&out.rz[first], at.z);
@@ -337,29 +343,33 @@ MERLIN_INLINE std::uint32_t rowOfLeast(const Lanes& costs, const Mask& rows) {
   return static_cast<std::uint32_t>(least(cheapest)[0]);
 }
 
-template <bool channels>
+template <bool channels, bool edges>
 MERLIN_INLINE void evaluateFan(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
   QuadricVertex& w = view.vertices[vertex];
   const float* block = channels ? view.channels->block(vertex) : nullptr;
-  const Neighbours at = closedFan(view, w, out);
+  const Neighbours<edges> at = closedFan<edges>(view, w, out);
   setSharp(w, out.normal);
   if (channels) addChannels(view, vertex, out, true);
-  const Solver<channels> solver{view, w.h, block, out};
-  out.cheapest = rowOfLeast(solver.solve(at, 0, w.degree), kLane);
+  if constexpr (edges) {
+    const Solver<channels> solver{view, w.h, block, out};
+    out.cheapest = rowOfLeast(solver.solve(at, 0, w.degree), kLane);
+  }
 }
 
-template <bool channels>
+template <bool channels, bool edges>
 MERLIN_INLINE void evaluateStar(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
   QuadricVertex& w = view.vertices[vertex];
   const float* block = channels ? view.channels->block(vertex) : nullptr;
   anyStar(view, w, out);
   setSharp(w, out.normal);
   if (channels) addChannels(view, vertex, out, false);
+  if (!edges) return;
   const Solver<channels> solver{view, w.h, block, out};
   Lanes costs = all(2 * kNoEdge);
   Mask rows = {};
   for (std::uint32_t i = 0; i < out.count; i += 8) {
-    const Lanes here = solver.solve(Neighbours(view, w, &out.neighbour[i]), i, out.count - i);
+    const Neighbours<true> at(view, w, &out.neighbour[i]);
+    const Lanes here = solver.solve(at, i, out.count - i);
     rows = here < costs ? kLane + static_cast<std::int32_t>(i) : rows;
     costs = here < costs ? here : costs;
   }
@@ -369,42 +379,48 @@ MERLIN_INLINE void evaluateStar(const QuadricView& view, std::uint32_t vertex, E
 MERLIN_INLINE bool isFan(const QuadricVertex& w) { return !(w.flags & kOpen) && w.degree <= 8; }
 
 // All but what evaluate() is quick at.
+template <bool edges>
 MERLIN_INLINE void evaluateRare(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
   const bool fan = isFan(view.vertices[vertex]);
   if (view.channels->count() == 0)
-    evaluateStar<false>(view, vertex, out);
+    evaluateStar<false, edges>(view, vertex, out);
   else if (fan)
-    evaluateFan<true>(view, vertex, out);
+    evaluateFan<true, edges>(view, vertex, out);
   else
-    evaluateStar<true>(view, vertex, out);
+    evaluateStar<true, edges>(view, vertex, out);
 }
 
 // Most vertices are fans; what they need shares its registers with nothing else.
+template <bool edges>
 MERLIN_INLINE void evaluate(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out,
                             EvaluateEdges rare) {
   const QuadricVertex& w = view.vertices[vertex];
   out.makeRoom(w.degree);
   if (view.channels->count() == 0 && isFan(w))
-    evaluateFan<false>(view, vertex, out);
+    evaluateFan<false, edges>(view, vertex, out);
   else
     rare(view, vertex, out);
 }
 
+template <bool edges>
 [[gnu::noinline]] void rarePortable(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
-  evaluateRare(view, vertex, out);
+  evaluateRare<edges>(view, vertex, out);
 }
 
+template <bool edges>
 void evaluatePortable(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
-  evaluate(view, vertex, out, rarePortable);
+  evaluate<edges>(view, vertex, out, rarePortable<edges>);
 }
 
+template <bool edges>
 MERLIN_WIDE [[gnu::noinline]] void rareWide(const QuadricView& view, std::uint32_t vertex,
                                             EdgeCosts& out) {
-  evaluateRare(view, vertex, out);
+  evaluateRare<edges>(view, vertex, out);
 }
 
+template <bool edges>
 MERLIN_WIDE void evaluateWide(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
-  evaluate(view, vertex, out, rareWide);
+  evaluate<edges>(view, vertex, out, rareWide<edges>);
 }
 
 }  // namespace
@@ -421,8 +437,16 @@ void EdgeCosts::findCheapest() noexcept {
   }
 }
 
-EvaluateEdges portableEdgeEvaluator() { return evaluatePortable; }
+EvaluateEdges portableEdgeEvaluator() { return evaluatePortable<true>; }
 
-EvaluateEdges edgeEvaluator() { return forThisProcessor(evaluateWide, evaluatePortable); }
+EvaluateEdges portableQuadricSetter() { return evaluatePortable<false>; }
+
+EvaluateEdges edgeEvaluator() {
+  return forThisProcessor(evaluateWide<true>, evaluatePortable<true>);
+}
+
+EvaluateEdges quadricSetter() {
+  return forThisProcessor(evaluateWide<false>, evaluatePortable<false>);
+}
 
 }  // namespace merlin::render

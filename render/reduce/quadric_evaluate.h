@@ -90,8 +90,13 @@ using EvaluateEdges = void (*)(const QuadricView&, std::uint32_t w, EdgeCosts&);
 // The fastest for this processor. All give the same bits.
 EvaluateEdges edgeEvaluator();
 
-// For tests: that of any processor.
+// Does no more than set w's own quadric (and sums), as evaluating does: of others it reads what no
+// call writes, so that many may be set at once. Its EdgeCosts are scratch.
+EvaluateEdges quadricSetter();
+
+// For tests: those of any processor.
 EvaluateEdges portableEdgeEvaluator();
+EvaluateEdges portableQuadricSetter();
 
 // Weight of a border's plane, in the planes of its triangles.
 inline constexpr float kBorderWeight = 4;

@@ -1,5 +1,6 @@
 // QuadricReducer in parts and as a whole: who works on what, and until when.
 #include <algorithm>
+#include <cmath>
 
 #include "daemon/base/blocks.h"
 #include "render/reduce/quadric_reducer.h"
@@ -10,6 +11,9 @@ namespace {
 // Steps of cost, in buckets, after which the parts wait for one another: a factor of 1.4.
 constexpr std::size_t kStep = 32;
 constexpr std::size_t kProgressInterval = 1 << 16;  // triangles
+// Of what is left above the goal: a step takes about as much.
+constexpr double kStepTakes = 1.25;
+constexpr std::size_t kMostSteps = 16;
 
 // How many parts a mesh is first reduced in. Few, since seams wait; many enough for some cores.
 std::size_t partsFor(std::size_t vertices) {
@@ -20,6 +24,14 @@ std::size_t partsFor(std::size_t vertices) {
 // What the parts leave to the whole, where `target` triangles are asked for.
 std::size_t leftByParts(std::size_t triangles, std::size_t target) {
   return std::max(triangles / 6, 3 * target);
+}
+
+// How many steps parts may take before they wait for one another, with `left` triangles of which
+// `keep` are to stay: as many as are surely needed.
+std::size_t stepsAtOnce(std::size_t left, std::size_t keep) {
+  const double ratio = static_cast<double>(left) / static_cast<double>(keep);
+  const double steps = std::log(std::max(1.0, ratio)) / std::log(kStepTakes);
+  return std::clamp<std::size_t>(static_cast<std::size_t>(steps), 1, kMostSteps);
 }
 
 }  // namespace
@@ -69,6 +81,7 @@ void QuadricReducer::reduceParts(std::size_t keep, const Progress& progress) {
     const auto begin = all.next() + static_cast<std::uint32_t>(p) * share;
     parts[p].room = StarRoom(begin, begin + share);
   }
+  setQuadrics();
   forEachPart([&](std::size_t p) { startPart(p, parts[p]); });
   // A part of nothing but planes is not worn down to its seams.
   const double most = 1 - 0.5 * static_cast<double>(keep) / static_cast<double>(triangles_);
@@ -76,12 +89,15 @@ void QuadricReducer::reduceParts(std::size_t keep, const Progress& progress) {
   for (const Worker& w : parts) limit = std::min(limit, w.queue.current());
   const std::size_t before = triangles_;
   while (triangles_ > keep && limit < BucketQueue::buckets() && !cancelled_) {
-    limit += kStep;
+    const std::size_t steps = stepsAtOnce(triangles_, keep);
     forEachPart([&](std::size_t p) {
-      reduceTo(parts[p], static_cast<std::size_t>(most * static_cast<double>(parts[p].triangles)),
-               limit);
-      parts[p].steps.push_back(parts[p].collapses);
+      const double share = most * static_cast<double>(parts[p].triangles);
+      for (std::size_t step = 1; step <= steps; ++step) {
+        reduceTo(parts[p], static_cast<std::size_t>(share), limit + step * kStep);
+        parts[p].steps.push_back(parts[p].collapses);
+      }
     });
+    limit += steps * kStep;
     triangles_ = before;
     std::size_t collapses = 0;
     for (const Worker& w : parts) {
@@ -126,8 +142,23 @@ void QuadricReducer::joinParts(std::vector<Worker>& parts) {
   }
 }
 
+// All quadrics anew, so that edges cost what they cost when they are first looked at.
+void QuadricReducer::setQuadrics() {
+  const EvaluateEdges set = quadricSetter();
+  constexpr std::size_t kBlock = 1 << 13;
+  const std::size_t n = mesh_.vertexCount();
+  forBlocks(threads_, (n + kBlock - 1) / kBlock, [&](std::size_t block) {
+    EdgeCosts scratch;
+    const auto end = static_cast<std::uint32_t>(std::min(n, (block + 1) * kBlock));
+    for (auto v = static_cast<std::uint32_t>(block * kBlock); v < end; ++v) {
+      if (!(mesh_[v].flags & kDead) && mesh_[v].degree > 0) set(view(), v, scratch);
+    }
+  });
+}
+
 // Every vertex that lives, in one queue.
 void QuadricReducer::requeue() {
+  setQuadrics();
   whole_.queue = BucketQueue();
   for (std::uint32_t v = mesh_.vertexCount(); v-- > 0;) {
     if ((mesh_[v].flags & kDead) || mesh_[v].degree == 0) continue;

@@ -107,6 +107,7 @@ class QuadricReducer {
   void startPart(std::size_t part, Worker& w);
   void reduceParts(std::size_t keep, const Progress& progress);
   void joinParts(std::vector<Worker>& parts);
+  void setQuadrics();
   void requeue();
   void reduceWhole(std::size_t keep, const Progress& progress);
 
