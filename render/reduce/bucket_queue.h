@@ -53,6 +53,20 @@ class BucketQueue {
     return vertex;
   }
 
+  // Takes over what `other` holds: O(that).
+  template <typename Next>
+  void join(BucketQueue&& other, const Next& next) {
+    for (std::size_t k = other.filledFrom(0); k < kBuckets; k = other.filledFrom(k + 1)) {
+      std::uint32_t last = other.first_[k];
+      while (next(last) != kNone) last = next(last);
+      next(last) = first_[k];
+      first_[k] = other.first_[k];
+      filled_[k / 64] |= std::uint64_t{1} << (k % 64);
+    }
+    current_ = std::min(current_, other.current_);
+    other = BucketQueue();
+  }
+
   // The bucket that the last pop() looked at; a lower one after a push() there.
   std::size_t current() const noexcept { return current_; }
 

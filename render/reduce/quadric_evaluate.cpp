@@ -82,19 +82,24 @@ struct Solver {
   const float* wc;  // and its channels' block
   EdgeCosts& out;
 
-  // Sums that A and the right side get from the channels of edge (w, x) once their best values are
-  // put in; the same sums give the cost afterwards.
+  // Of x: sum area g of a channel; its value less w's.
   struct Channel {
-    Lanes bx, by, bz, a, delta;  // of x: sum area g, sum area; its value less w's
+    Lanes bx, by, bz, delta;
   };
+  static constexpr std::size_t kKept = 8;  // channels that are read once for both passes
 
   MERLIN_INLINE Channel channelOf(const std::uint32_t* x, std::size_t k) const {
     Channel c;
     gather([&](int i) { return view.channels->block(x[i]) + 1 + 4 * k; }, c.bx, c.by, c.bz,
            c.delta);
     c.delta -= wc[4 + 4 * k];
-    for (int i = 0; i < 8; ++i) c.a[i] = view.channels->block(x[i])[0];
     return c;
+  }
+
+  // Of x: sum area.
+  MERLIN_INLINE Lanes areasOf(const std::uint32_t* x) const {
+    const auto at = [&](int i) { return view.channels->block(x[i])[0]; };
+    return Lanes{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
   }
 
   // REQUIRES: room for 8 rows from `first`; count rows count. Returns their costs.
@@ -113,12 +118,17 @@ struct Solver {
     Lanes r0 = h[0] * X + h[1] * Y + h[2] * Z + half * X;
     Lanes r1 = h[1] * X + h[3] * Y + h[4] * Z + half * Y;
     Lanes r2 = h[2] * X + h[4] * Y + h[5] * Z + half * Z;
-    for (std::size_t k = 0; channels && k < view.channels->count(); ++k) {
+    Channel kept[channels ? kKept : 1];
+    const std::size_t n = channels ? view.channels->count() : 0;
+    const Lanes area = channels ? areasOf(x) : all(0.0F);
+    const Lanes s = channels ? 1.0F / (area + wc[0] + kTiny) : all(0.0F);
+    // The sums that A and the right side get once the channels' best values are put in.
+    for (std::size_t k = 0; k < n; ++k) {
       const Channel c = channelOf(x, k);
+      if (k < kKept) kept[k] = c;
       const float* wb = wc + 1 + 4 * k;
       const Lanes b0 = c.bx + wb[0], b1 = c.by + wb[1], b2 = c.bz + wb[2];
-      const Lanes s = 1.0F / (c.a + wc[0] + kTiny);
-      const Lanes g = (c.a * c.delta - (c.bx * X + c.by * Y + c.bz * Z)) * s;
+      const Lanes g = (area * c.delta - (c.bx * X + c.by * Y + c.bz * Z)) * s;
       A0 -= b0 * b0 * s;
       A1 -= b0 * b1 * s;
       A2 -= b0 * b2 * s;
@@ -142,14 +152,14 @@ struct Solver {
               y * (wh[3] * y + 2.0F * (wh[4] * z)) + z * z * wh[5] +
               e0 * (h[0] * e0 + 2.0F * (h[1] * e1 + h[2] * e2)) +
               e1 * (h[3] * e1 + 2.0F * (h[4] * e2)) + e2 * e2 * h[5];
-    for (std::size_t k = 0; channels && k < view.channels->count(); ++k) {
-      const Channel c = channelOf(x, k);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Channel c = k < kKept ? kept[k] : channelOf(x, k);
       const float* wb = wc + 1 + 4 * k;
       const Lanes ofw = wb[0] * v + wb[1] * y + wb[2] * z;
       const Lanes ofx = c.bx * e0 + c.by * e1 + c.bz * e2;
-      const Lanes s = (ofw + ofx + c.a * c.delta) / (c.a + wc[0] + kTiny);
-      const Lanes left = c.delta - s;
-      f += s * (wc[0] * s - 2.0F * ofw) + left * (c.a * left + 2.0F * ofx);
+      const Lanes best = (ofw + ofx + area * c.delta) * s;
+      const Lanes left = c.delta - best;
+      f += best * (wc[0] * best - 2.0F * ofw) + left * (area * left + 2.0F * ofx);
     }
     f = f > kLeastCost ? f : (f == f ? all(kLeastCost) : all(kNoEdge));
     f = f < kNoEdge ? f : all(kNoEdge);
@@ -190,15 +200,15 @@ struct Sums {
 };
 
 // A closed fan of up to eight: neighbours are the corners' first vertices, in order.
-template <bool quadrics>
-MERLIN_INLINE Neighbours<quadrics> closedFan(const QuadricView& view, QuadricVertex& w,
-                                             EdgeCosts& out) {
+template <Evaluate what>
+MERLIN_INLINE auto closedFan(const QuadricView& view, QuadricVertex& w, EdgeCosts& out) {
   out.count = w.degree;
   store(out.neighbour.data(), firsts(&view.corners[w.star].b, w.degree));
   store(out.shared.data(), all(2U));
-  const Neighbours<quadrics> at(view, w, out.neighbour.data());
+  const Neighbours<what != Evaluate::kQuadric> at(view, w, out.neighbour.data());
   // Those beyond the last are the first again: the fan closes, then come triangles without area.
-  Sums(Planes(at.x, at.y, at.z, next(at.x), next(at.y), next(at.z))).store(w, out);
+  if (what != Evaluate::kEdges)
+    Sums(Planes(at.x, at.y, at.z, next(at.x), next(at.y), next(at.z))).store(w, out);
   store(out.rx.data(), at.x);
   store(out.ry.data(), at.y);
   store(out.rz.data(), at.z);
@@ -255,12 +265,11 @@ MERLIN_INLINE Planes planesOf(const EdgeCosts& out, std::uint32_t first, std::ui
   return {load(u[0]), load(u[1]), load(u[2]), load(v[0]), load(v[1]), load(v[2])};
 }
 
-MERLIN_INLINE void anyStar(const QuadricView& view, QuadricVertex& w, EdgeCosts& out) {
-  const bool closed = !(w.flags & kOpen);
-  if (closed)
-    fanNeighbours(view, w, out);
-  else
+MERLIN_INLINE void findRing(const QuadricView& view, const QuadricVertex& w, EdgeCosts& out) {
+  if (w.flags & kOpen)
     findNeighbours(view, w, out);
+  else
+    fanNeighbours(view, w, out);
   // Beyond the last the first again; a closed fan's last row of eight looks one further.
   store(&out.neighbour[out.count], all(out.neighbour[0]));
   store(&out.neighbour[out.count + 8], all(out.neighbour[0]));
@@ -270,6 +279,11 @@ MERLIN_INLINE void anyStar(const QuadricView& view, QuadricVertex& w, EdgeCosts&
     store(&out.ry[first], at.y);
     store(&out.rz[first], at.z);
   }
+}
+
+// Of any star, once findRing() has been there.
+MERLIN_INLINE void setQuadric(QuadricVertex& w, EdgeCosts& out) {
+  const bool closed = !(w.flags & kOpen);
   const float *x = out.rx.data(), *y = out.ry.data(), *z = out.rz.data();
   Sums total;
   for (std::uint32_t k = 0; k < w.degree; k += 8) {
@@ -285,8 +299,7 @@ MERLIN_INLINE void anyStar(const QuadricView& view, QuadricVertex& w, EdgeCosts&
 }
 
 // The sums of w's channels, and what they add to its quadric.
-MERLIN_INLINE void addChannels(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out,
-                               bool closed) {
+MERLIN_INLINE void addChannels(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
   QuadricVertex& w = view.vertices[vertex];
   const QuadricChannels& channels = *view.channels;
   float* block = channels.block(vertex);
@@ -296,8 +309,7 @@ MERLIN_INLINE void addChannels(const QuadricView& view, std::uint32_t vertex, Ed
     b[0] = b[1] = b[2] = 0;
   }
   for (std::uint32_t i = 0; i < w.degree; ++i) {
-    const std::uint32_t ib = closed ? i : out.b[i];
-    const std::uint32_t ic = closed ? (i + 1 < w.degree ? i + 1 : 0) : out.c[i];
+    const std::uint32_t ib = out.b[i], ic = out.c[i];
     const float ux = out.rx[ib], uy = out.ry[ib], uz = out.rz[ib];
     const float vx = out.rx[ic], vy = out.ry[ic], vz = out.rz[ic];
     const float nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
@@ -329,6 +341,48 @@ MERLIN_INLINE void addChannels(const QuadricView& view, std::uint32_t vertex, Ed
   }
 }
 
+// As addChannels(), of a closed fan of up to eight.
+MERLIN_INLINE void addFanChannels(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
+  QuadricVertex& w = view.vertices[vertex];
+  const QuadricChannels& channels = *view.channels;
+  float* block = channels.block(vertex);
+  const Lanes ux = load(out.rx.data()), uy = load(out.ry.data()), uz = load(out.rz.data());
+  const Lanes vx = next(ux), vy = next(uy), vz = next(uz);
+  const Lanes nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+  const Lanes l = nx * nx + ny * ny + nz * nz + kTiny;
+  const Lanes inverse = 1.0F / l;
+  Lanes area;
+  for (int k = 0; k < 8; ++k) area[k] = __builtin_sqrtf(l[k]);
+  const Lanes px = (vy * nz - vz * ny) * inverse, py = (vz * nx - vx * nz) * inverse,
+              pz = (vx * ny - vy * nx) * inverse;
+  const Lanes qx = (ny * uz - nz * uy) * inverse, qy = (nz * ux - nx * uz) * inverse,
+              qz = (nx * uy - ny * ux) * inverse;
+  const auto value = [&](int i, std::size_t k) {
+    return channels.value(out.neighbour[static_cast<std::uint32_t>(i)], k);
+  };
+  Lanes g[6] = {};
+  for (std::size_t k = 0; k < channels.count(); ++k) {
+    float* b = block + 1 + 4 * k;
+    const Lanes s = Lanes{value(0, k), value(1, k), value(2, k), value(3, k),
+                          value(4, k), value(5, k), value(6, k), value(7, k)} -
+                    b[3];
+    const Lanes t = next(s);
+    const Lanes gx = s * px + t * qx, gy = s * py + t * qy, gz = s * pz + t * qz;
+    const Lanes ax = area * gx, ay = area * gy, az = area * gz;
+    const Lanes sum = sums({ax, ay, az, all(0.0F), all(0.0F), all(0.0F), all(0.0F), all(0.0F)});
+    for (int i = 0; i < 3; ++i) b[i] = sum[i];
+    g[0] += ax * gx;
+    g[1] += ax * gy;
+    g[2] += ax * gz;
+    g[3] += ay * gy;
+    g[4] += ay * gz;
+    g[5] += az * gz;
+  }
+  const Lanes sum = sums({g[0], g[1], g[2], g[3], g[4], g[5], area, all(0.0F)});
+  for (int i = 0; i < 6; ++i) w.h[i] += sum[i];
+  block[0] = sum[6];
+}
+
 // Whether w is a thin tip or a knife's edge.
 MERLIN_INLINE void setSharp(QuadricVertex& w, const float* n) {
   const float upright = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
@@ -343,28 +397,35 @@ MERLIN_INLINE std::uint32_t rowOfLeast(const Lanes& costs, const Mask& rows) {
   return static_cast<std::uint32_t>(least(cheapest)[0]);
 }
 
-template <bool channels, bool edges>
-MERLIN_INLINE void evaluateFan(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
-  QuadricVertex& w = view.vertices[vertex];
-  const float* block = channels ? view.channels->block(vertex) : nullptr;
-  const Neighbours<edges> at = closedFan<edges>(view, w, out);
-  setSharp(w, out.normal);
-  if (channels) addChannels(view, vertex, out, true);
-  if constexpr (edges) {
-    const Solver<channels> solver{view, w.h, block, out};
-    out.cheapest = rowOfLeast(solver.solve(at, 0, w.degree), kLane);
-  }
+template <bool channels>
+MERLIN_INLINE Solver<channels> solverFor(const QuadricView& view, std::uint32_t vertex,
+                                         EdgeCosts& out) {
+  return {view, view.vertices[vertex].h, channels ? view.channels->block(vertex) : nullptr, out};
 }
 
-template <bool channels, bool edges>
+template <bool channels, Evaluate what>
+MERLIN_INLINE void evaluateFan(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
+  QuadricVertex& w = view.vertices[vertex];
+  const auto at = closedFan<what>(view, w, out);
+  if (what != Evaluate::kEdges) {
+    setSharp(w, out.normal);
+    if (channels) addFanChannels(view, vertex, out);
+  }
+  if constexpr (what != Evaluate::kQuadric)
+    out.cheapest = rowOfLeast(solverFor<channels>(view, vertex, out).solve(at, 0, w.degree), kLane);
+}
+
+template <bool channels, Evaluate what>
 MERLIN_INLINE void evaluateStar(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
   QuadricVertex& w = view.vertices[vertex];
-  const float* block = channels ? view.channels->block(vertex) : nullptr;
-  anyStar(view, w, out);
-  setSharp(w, out.normal);
-  if (channels) addChannels(view, vertex, out, false);
-  if (!edges) return;
-  const Solver<channels> solver{view, w.h, block, out};
+  findRing(view, w, out);
+  if (what != Evaluate::kEdges) {
+    setQuadric(w, out);
+    setSharp(w, out.normal);
+    if (channels) addChannels(view, vertex, out);
+  }
+  if (what == Evaluate::kQuadric) return;
+  const auto solver = solverFor<channels>(view, vertex, out);
   Lanes costs = all(2 * kNoEdge);
   Mask rows = {};
   for (std::uint32_t i = 0; i < out.count; i += 8) {
@@ -379,48 +440,48 @@ MERLIN_INLINE void evaluateStar(const QuadricView& view, std::uint32_t vertex, E
 MERLIN_INLINE bool isFan(const QuadricVertex& w) { return !(w.flags & kOpen) && w.degree <= 8; }
 
 // All but what evaluate() is quick at.
-template <bool edges>
+template <Evaluate what>
 MERLIN_INLINE void evaluateRare(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
   const bool fan = isFan(view.vertices[vertex]);
   if (view.channels->count() == 0)
-    evaluateStar<false, edges>(view, vertex, out);
+    evaluateStar<false, what>(view, vertex, out);
   else if (fan)
-    evaluateFan<true, edges>(view, vertex, out);
+    evaluateFan<true, what>(view, vertex, out);
   else
-    evaluateStar<true, edges>(view, vertex, out);
+    evaluateStar<true, what>(view, vertex, out);
 }
 
 // Most vertices are fans; what they need shares its registers with nothing else.
-template <bool edges>
+template <Evaluate what>
 MERLIN_INLINE void evaluate(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out,
                             EvaluateEdges rare) {
   const QuadricVertex& w = view.vertices[vertex];
   out.makeRoom(w.degree);
   if (view.channels->count() == 0 && isFan(w))
-    evaluateFan<false, edges>(view, vertex, out);
+    evaluateFan<false, what>(view, vertex, out);
   else
     rare(view, vertex, out);
 }
 
-template <bool edges>
+template <Evaluate what>
 [[gnu::noinline]] void rarePortable(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
-  evaluateRare<edges>(view, vertex, out);
+  evaluateRare<what>(view, vertex, out);
 }
 
-template <bool edges>
+template <Evaluate what>
 void evaluatePortable(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
-  evaluate<edges>(view, vertex, out, rarePortable<edges>);
+  evaluate<what>(view, vertex, out, rarePortable<what>);
 }
 
-template <bool edges>
+template <Evaluate what>
 MERLIN_WIDE [[gnu::noinline]] void rareWide(const QuadricView& view, std::uint32_t vertex,
                                             EdgeCosts& out) {
-  evaluateRare<edges>(view, vertex, out);
+  evaluateRare<what>(view, vertex, out);
 }
 
-template <bool edges>
+template <Evaluate what>
 MERLIN_WIDE void evaluateWide(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
-  evaluate<edges>(view, vertex, out, rareWide<edges>);
+  evaluate<what>(view, vertex, out, rareWide<what>);
 }
 
 }  // namespace
@@ -437,16 +498,25 @@ void EdgeCosts::findCheapest() noexcept {
   }
 }
 
-EvaluateEdges portableEdgeEvaluator() { return evaluatePortable<true>; }
-
-EvaluateEdges portableQuadricSetter() { return evaluatePortable<false>; }
-
-EvaluateEdges edgeEvaluator() {
-  return forThisProcessor(evaluateWide<true>, evaluatePortable<true>);
+EvaluateEdges portableEdgeEvaluator(Evaluate what) {
+  switch (what) {
+    case Evaluate::kQuadric: return evaluatePortable<Evaluate::kQuadric>;
+    case Evaluate::kEdges: return evaluatePortable<Evaluate::kEdges>;
+    case Evaluate::kBoth: break;
+  }
+  return evaluatePortable<Evaluate::kBoth>;
 }
 
-EvaluateEdges quadricSetter() {
-  return forThisProcessor(evaluateWide<false>, evaluatePortable<false>);
+EvaluateEdges edgeEvaluator(Evaluate what) {
+  const auto wide = [&]() -> EvaluateEdges {
+    switch (what) {
+      case Evaluate::kQuadric: return evaluateWide<Evaluate::kQuadric>;
+      case Evaluate::kEdges: return evaluateWide<Evaluate::kEdges>;
+      case Evaluate::kBoth: break;
+    }
+    return evaluateWide<Evaluate::kBoth>;
+  };
+  return forThisProcessor(wide(), portableEdgeEvaluator(what));
 }
 
 }  // namespace merlin::render

@@ -76,6 +76,7 @@ struct EdgeCosts {
   bool staysAt(std::uint32_t edge) const noexcept {
     return x[edge] == 0 && y[edge] == 0 && z[edge] == 0;
   }
+  float least() const noexcept { return cost[cheapest]; }
   // Sets `cheapest` anew.
   void findCheapest() noexcept;
 
@@ -83,20 +84,22 @@ struct EdgeCosts {
   void grow(std::size_t rows);
 };
 
-// Evaluates all edges of w, a vertex with corners; sets w's own quadric (and channels' sums) anew.
-// Neighbours' quadrics are taken as they are.
+// What is to be done for a vertex w that has corners.
+enum class Evaluate {
+  kQuadric,  // w's own quadric (and channels' sums) anew; EdgeCosts are scratch
+  kEdges,    // what its edges cost, by its quadric and its neighbours' as they are
+  kBoth,
+};
+
+// kQuadric reads of others what none writes, kEdges writes EdgeCosts alone: of many vertices each
+// may be done at once.
 using EvaluateEdges = void (*)(const QuadricView&, std::uint32_t w, EdgeCosts&);
 
 // The fastest for this processor. All give the same bits.
-EvaluateEdges edgeEvaluator();
+EvaluateEdges edgeEvaluator(Evaluate what = Evaluate::kBoth);
 
-// Does no more than set w's own quadric (and sums), as evaluating does: of others it reads what no
-// call writes, so that many may be set at once. Its EdgeCosts are scratch.
-EvaluateEdges quadricSetter();
-
-// For tests: those of any processor.
-EvaluateEdges portableEdgeEvaluator();
-EvaluateEdges portableQuadricSetter();
+// For tests: that of any processor.
+EvaluateEdges portableEdgeEvaluator(Evaluate what = Evaluate::kBoth);
 
 // Weight of a border's plane, in the planes of its triangles.
 inline constexpr float kBorderWeight = 4;

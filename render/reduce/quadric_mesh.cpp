@@ -14,7 +14,8 @@ std::uint32_t linesFor(std::uint32_t corners) {
   return std::max(1U, (corners + kLine - 1) / kLine);
 }
 
-constexpr unsigned kMostScans = 8;  // of all triangles, for the stars
+constexpr std::uint32_t kClaim = 1 << 13;  // corners
+constexpr unsigned kMostScans = 8;         // of all triangles, for the stars
 
 // Calls work(v) for each of n vertices; what it writes must be v's own.
 template <typename Work>
@@ -73,20 +74,44 @@ bool comesTwice(std::span<const Corner> star) {
 
 }  // namespace
 
+std::optional<std::uint32_t> FreshLines::claim(std::uint32_t corners) {
+  std::uint32_t begin = next_;
+  do {
+    if (end_ - begin < corners) return std::nullopt;
+  } while (!next_.compare_exchange_weak(begin, begin + corners));
+  return begin;
+}
+
+// In pieces of 64 KiB, so that threads seldom meet; by what is needed where that is more, or is all
+// there is.
+bool StarRoom::claimFresh(std::uint32_t corners) {
+  if (end_ - next_ >= corners) return true;
+  std::uint32_t size = std::max(kClaim, corners);
+  std::optional<std::uint32_t> claimed = fresh_->claim(size);
+  if (!claimed) claimed = fresh_->claim(size = corners);
+  if (!claimed) return false;
+  next_ = *claimed;
+  end_ = next_ + size;
+  return true;
+}
+
 std::uint32_t StarRoom::take(std::uint32_t corners, std::uint32_t& capacity) {
   const std::uint32_t lines = linesFor(corners);
+  const bool exact = lines < free_.size() && !free_[lines].empty();
+  if (!exact && claimFresh(lines * kLine)) {
+    capacity = lines * kLine;
+    next_ += capacity;
+    return next_ - capacity;
+  }
+  // A larger place only where nothing fresh is left.
   for (std::size_t k = lines; k < free_.size(); ++k) {
-    // A larger place only where nothing fresh is left.
-    if (free_[k].empty() || (k > lines && end_ - next_ >= lines * kLine)) continue;
+    if (free_[k].empty()) continue;
     const std::uint32_t star = free_[k].back();
     free_[k].pop_back();
     capacity = static_cast<std::uint32_t>(k) * kLine;
     return star;
   }
-  if (end_ - next_ < lines * kLine) throw std::bad_alloc();
-  capacity = lines * kLine;
-  next_ += capacity;
-  return next_ - capacity;
+  throw std::bad_alloc();
 }
 
 void StarRoom::give(std::uint32_t star, std::uint32_t capacity) {
@@ -99,10 +124,7 @@ void StarRoom::join(StarRoom&& other) {
   if (free_.size() < other.free_.size()) free_.resize(other.free_.size());
   for (std::size_t k = 0; k < other.free_.size(); ++k)
     free_[k].insert(free_[k].end(), other.free_[k].begin(), other.free_[k].end());
-  if (other.end_ - other.next_ > end_ - next_) {
-    next_ = other.next_;
-    end_ = other.end_;
-  }
+  other.free_.clear();
 }
 
 // Along a Morton curve of 1,024 steps an axis; of 4,096 where the mesh has so many vertices that
@@ -166,28 +188,30 @@ void QuadricMesh::fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& nu
         const std::uint32_t v[] = {numbers[mesh.triangles[t]], numbers[mesh.triangles[t + 1]],
                                    numbers[mesh.triangles[t + 2]]};
         for (std::size_t k = 0; k < 3; ++k) {
-          if (v[k] >= first && v[k] < last) work(vertices_[v[k]], v[(k + 1) % 3], v[(k + 2) % 3]);
+          if (v[k] >= first && v[k] < last) work(v[k], v[(k + 1) % 3], v[(k + 2) % 3]);
         }
       }
     });
   };
-  forEachCorner([](QuadricVertex& x, std::uint32_t, std::uint32_t) { ++x.degree; });
+  // How many corners each has, then where its next one goes: beside the records, to stay in caches.
+  HugeArray<std::uint32_t> places(vertexCount());
+  forEachCorner([&](std::uint32_t v, std::uint32_t, std::uint32_t) { ++places[v]; });
   std::uint64_t total = 0;
   for (std::uint32_t v = 0; v < vertexCount(); ++v) {
     QuadricVertex& x = vertices_[v];
-    x.star = static_cast<std::uint32_t>(total);
+    x.degree = places[v];
+    x.star = places[v] = static_cast<std::uint32_t>(total);
     x.capacity = linesFor(x.degree) * kLine;
     total += x.capacity;
-    x.degree = 0;
   }
   // Stars that grow need lines of another size than those that others leave. Room that is never
   // touched is no memory.
   const std::uint64_t room = std::min<std::uint64_t>(5 * total + (1U << 16), 0xFFFFFFF0U);
   if (total >= room) throw std::bad_alloc();
   stars_ = HugeArray<Corner>(room);
-  used_ = static_cast<std::uint32_t>(total);
-  forEachCorner([&](QuadricVertex& x, std::uint32_t b, std::uint32_t c) {
-    stars_[x.star + x.degree++] = {b, c};
+  fresh_.reset(static_cast<std::uint32_t>(total), static_cast<std::uint32_t>(room));
+  forEachCorner([&](std::uint32_t v, std::uint32_t b, std::uint32_t c) {
+    stars_[places[v]++] = {b, c};
   });
 }
 

@@ -9,11 +9,13 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -91,24 +93,39 @@ struct NodeRecord {
 };
 static_assert(sizeof(NodeRecord) == sizeof(QuadricVertex::position) + sizeof(QuadricVertex::h));
 
-// Lines of corners, handed out and taken back by size. One a thread; regions do not overlap.
+// Lines of corners that no star has had yet, for all threads.
+class FreshLines {
+ public:
+  void reset(std::uint32_t begin, std::uint32_t end) {
+    next_ = begin;
+    end_ = end;
+  }
+  // So many more that follow one another; where they begin, or nothing where too few are left.
+  std::optional<std::uint32_t> claim(std::uint32_t corners);
+
+ private:
+  std::atomic<std::uint32_t> next_ = 0;
+  std::uint32_t end_ = 0;
+};
+
+// Lines of corners, handed out and taken back by size. One a thread.
 class StarRoom {
  public:
   StarRoom() = default;
-  StarRoom(std::uint32_t begin, std::uint32_t end) : next_(begin), end_(end) {}
+  explicit StarRoom(FreshLines& fresh) : fresh_(&fresh) {}
 
-  // Throws std::bad_alloc where the region is full. `capacity` becomes the room there is.
+  // Throws std::bad_alloc where there is no room. `capacity` becomes the room there is.
   std::uint32_t take(std::uint32_t corners, std::uint32_t& capacity);
   void give(std::uint32_t star, std::uint32_t capacity);
 
-  // Takes over what another has left.
+  // Takes over what another has been given back.
   void join(StarRoom&& other);
 
-  std::uint32_t next() const noexcept { return next_; }
-  std::uint32_t end() const noexcept { return end_; }
-
  private:
-  std::uint32_t next_ = 0, end_ = 0;
+  bool claimFresh(std::uint32_t corners);
+
+  FreshLines* fresh_ = nullptr;
+  std::uint32_t next_ = 0, end_ = 0;              // of the lines claimed last
   std::vector<std::vector<std::uint32_t>> free_;  // by lines
 };
 
@@ -133,7 +150,7 @@ class QuadricMesh {
   float scale() const noexcept { return scale_; }  // mean edges in a model unit
   std::array<float, 3> toWorking(const float* model) const noexcept;
   std::array<float, 3> toModel(const float* position) const noexcept;
-  StarRoom freeRoom() const { return {used_, static_cast<std::uint32_t>(stars_.size())}; }
+  StarRoom freeRoom() noexcept { return StarRoom(fresh_); }
   void dropStars() { stars_ = {}; }
 
  private:
@@ -143,7 +160,7 @@ class QuadricMesh {
   std::vector<std::uint32_t> input_;
   HugeArray<QuadricVertex> vertices_;
   HugeArray<Corner> stars_;
-  std::uint32_t used_ = 0;
+  FreshLines fresh_;
   float scale_ = 1;
   std::array<float, 3> centre_{};
 };

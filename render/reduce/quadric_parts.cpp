@@ -1,5 +1,6 @@
 // QuadricReducer in parts and as a whole: who works on what, and until when.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "daemon/base/blocks.h"
@@ -8,22 +9,31 @@
 namespace merlin::render {
 namespace {
 
-// Steps of cost, in buckets, after which the parts wait for one another: a factor of 1.4.
+// A step of all parts, in buckets of cost: a factor of 1.4.
 constexpr std::size_t kStep = 32;
 constexpr std::size_t kProgressInterval = 1 << 16;  // triangles
-// Of what is left above the goal: a step takes about as much.
-constexpr double kStepTakes = 1.25;
+constexpr double kStepTakes = 1.25;  // a step leaves a share of one by this, as a rule
 constexpr std::size_t kMostSteps = 16;
+constexpr std::size_t kMostParts = 32;
+constexpr std::size_t kLeastPart = 30'000;  // vertices
+constexpr double kReduction = 6;            // by parts of 200,000 vertices
 
-// How many parts a mesh is first reduced in. Few, since seams wait; many enough for some cores.
+// How many parts a mesh is in at first: a power of two. Few, since borders wait; enough for some
+// cores.
 std::size_t partsFor(std::size_t vertices) {
   if (vertices < 20'000) return 1;
-  return std::clamp<std::size_t>(vertices / 250'000, 2, 64);
+  std::size_t parts = 2;
+  while (parts < kMostParts && vertices / parts >= 2 * kLeastPart) parts *= 2;
+  return parts;
 }
 
-// What the parts leave to the whole, where `target` triangles are asked for.
-std::size_t leftByParts(std::size_t triangles, std::size_t target) {
-  return std::max(triangles / 6, 3 * target);
+// Of `triangles`, how many are left when so many parts become half as many: borders, which wait,
+// are then a tenth of that or less; of small meshes, where it would hardly pay otherwise, a fourth.
+std::size_t leftBy(std::size_t parts, std::size_t vertices, std::size_t triangles) {
+  const double part = static_cast<double>(vertices) / static_cast<double>(parts);
+  const double ratio = kReduction * std::sqrt(part / 200'000);
+  return static_cast<std::size_t>(static_cast<double>(triangles) /
+                                  std::max(ratio, parts == 2 ? kReduction : 1.0));
 }
 
 // How many steps parts may take before they wait for one another, with `left` triangles of which
@@ -36,61 +46,109 @@ std::size_t stepsAtOnce(std::size_t left, std::size_t keep) {
 
 }  // namespace
 
-void QuadricReducer::forEachPart(const std::function<void(std::size_t)>& work) const {
-  forBlocks(threads_, part_ends_.size(), work);
-}
-
-// Equal parts of the curve.
-void QuadricReducer::planParts() {
-  const std::size_t n = mesh_.vertexCount(), parts = partsFor(n);
-  for (std::size_t p = 1; p <= parts; ++p)
-    part_ends_.push_back(static_cast<std::uint32_t>(n * p / parts));
-}
-
-void QuadricReducer::startPart(std::size_t part, Worker& w) {
-  const std::uint32_t begin = part == 0 ? 0 : part_ends_[part - 1], end = part_ends_[part];
-  const auto is_here = [&](std::uint32_t v) { return v >= begin && v < end; };
-  std::size_t corners = 0;
-  for (std::uint32_t v = begin; v < end; ++v) {
-    const auto star = mesh_.star(mesh_[v]);
-    corners += star.size();
-    const bool alone = twins_.empty() || twins_[v] == kNowhere;
-    if ((alone || is_here(twins_[v])) &&
-        std::all_of(star.begin(), star.end(),
-                    [&](const Corner& c) { return is_here(c.b) && is_here(c.c); })) {
-      mesh_[v].flags |= kInside;
+// What lives, in blocks at once; work(v, scratch) writes what is v's own.
+void QuadricReducer::forEachLiving(
+    const std::function<void(std::uint32_t, EdgeCosts&)>& work) const {
+  constexpr std::size_t kBlock = 1 << 12;
+  const std::size_t n = mesh_.vertexCount();
+  forBlocks(threads_, (n + kBlock - 1) / kBlock, [&](std::size_t block) {
+    EdgeCosts scratch;
+    const auto end = static_cast<std::uint32_t>(std::min(n, (block + 1) * kBlock));
+    for (auto v = static_cast<std::uint32_t>(block * kBlock); v < end; ++v) {
+      if (!(mesh_[v].flags & kDead) && mesh_[v].degree > 0) work(v, scratch);
     }
+  });
+}
+
+// All quadrics anew: what an edge costs takes those of both ends.
+void QuadricReducer::setQuadrics() {
+  const EvaluateEdges set = edgeEvaluator(Evaluate::kQuadric);
+  forEachLiving([&](std::uint32_t v, EdgeCosts& scratch) { set(view(), v, scratch); });
+}
+
+// Equal pieces of the curve.
+std::vector<QuadricReducer::Worker> QuadricReducer::makeParts(std::size_t count) {
+  std::vector<Worker> parts(count);
+  const std::size_t n = mesh_.vertexCount();
+  forBlocks(threads_, count, [&](std::size_t p) {
+    Worker& w = parts[p];
+    w.begin = static_cast<std::uint32_t>(n * p / count);
+    w.end = static_cast<std::uint32_t>(n * (p + 1) / count);
+    w.room = mesh_.freeRoom();
+    w.log = log_.data() + w.begin;
+    w.inside_only = true;
+    std::size_t corners = 0;
+    for (std::uint32_t v = w.begin; v < w.end; ++v) corners += mesh_[v].degree;
+    w.triangles = corners / 3;
+  });
+  return parts;
+}
+
+bool QuadricReducer::isInside(const Worker& w, std::uint32_t v) const {
+  const auto is_here = [&](std::uint32_t o) { return o >= w.begin && o < w.end; };
+  if (!twins_.empty() && twins_[v] != kNowhere && !is_here(twins_[v])) return false;
+  const auto star = mesh_.star(mesh_[v]);
+  return std::all_of(star.begin(), star.end(),
+                     [&](const Corner& c) { return is_here(c.b) && is_here(c.c); });
+}
+
+// Into the queue comes what is not there yet and may go now.
+void QuadricReducer::startPart(Worker& w, EvaluateEdges measure) {
+  for (std::uint32_t v = w.end; v-- > w.begin;) {
+    QuadricVertex& x = mesh_[v];
+    const bool queued = (x.flags & kInside) && !(x.flags & kIdle);
+    if (queued || (x.flags & kDead) || x.degree == 0 || !isInside(w, v)) continue;
+    x.flags = static_cast<std::uint8_t>((x.flags | kInside) & ~kIdle);
+    measure(view(), v, w.costs);
+    enqueue(w, v, w.costs.least());
   }
-  w.inside_only = true;
-  w.log = log_.data() + begin;
-  w.triangles = corners / 3;
-  for (std::uint32_t v = end; v-- > begin;) {
-    if (!(mesh_[v].flags & kInside) || mesh_[v].degree == 0) continue;
-    evaluate(w, v);
-    enqueue(w, v);
+}
+
+// Until no more than `keep` triangles are left, or a few parts can't do more.
+void QuadricReducer::reduceParts(std::size_t keep, const Progress& progress) {
+  const std::size_t n = mesh_.vertexCount(), triangles = triangles_;
+  std::vector<Worker> parts = makeParts(partsFor(n));
+  HugeArray<std::uint32_t> joined(n);
+  setQuadrics();
+  EvaluateEdges measure = edgeEvaluator(Evaluate::kEdges);
+  std::size_t limit = 0;
+  for (;;) {
+    forBlocks(threads_, parts.size(), [&](std::size_t p) { startPart(parts[p], measure); });
+    const std::size_t left = leftBy(parts.size(), n, triangles);
+    reduceInSteps(parts, std::max(left, keep), limit, progress);
+    joinLogs(parts, joined);
+    if (parts.size() == 2 || cancelled_) break;
+    forBlocks(threads_, parts.size() / 2,
+              [&](std::size_t p) { joinPart(parts[2 * p], std::move(parts[2 * p + 1])); });
+    for (std::size_t p = 0; 2 * p < parts.size(); ++p) std::swap(parts[p], parts[2 * p]);
+    parts.resize(parts.size() / 2);
+    measure = evaluate_;  // what was at a border has an old quadric
+  }
+  log_ = std::move(joined);
+  whole_.room = mesh_.freeRoom();
+  for (Worker& w : parts) {
+    whole_.room.join(std::move(w.room));
+    whole_.flips += w.flips;
+    whole_.links += w.links;
+    whole_.too_coarse |= w.too_coarse;
   }
 }
 
 // Each part up to the same cost, step by step, until no more than `keep` triangles are left.
-void QuadricReducer::reduceParts(std::size_t keep, const Progress& progress) {
-  std::vector<Worker> parts(part_ends_.size());
-  StarRoom all = mesh_.freeRoom();
-  const std::uint32_t share =
-      (all.end() - all.next()) / static_cast<std::uint32_t>(parts.size()) / 8 * 8;
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    const auto begin = all.next() + static_cast<std::uint32_t>(p) * share;
-    parts[p].room = StarRoom(begin, begin + share);
+// limit: the bucket that they have come to.
+void QuadricReducer::reduceInSteps(std::vector<Worker>& parts, std::size_t keep, std::size_t& limit,
+                                   const Progress& progress) {
+  std::size_t first = BucketQueue::buckets(), before = triangles_;
+  for (const Worker& w : parts) {
+    first = std::min(first, w.queue.current());
+    before += w.removed;
   }
-  setQuadrics();
-  forEachPart([&](std::size_t p) { startPart(p, parts[p]); });
-  // A part of nothing but planes is not worn down to its seams.
-  const double most = 1 - 0.5 * static_cast<double>(keep) / static_cast<double>(triangles_);
-  std::size_t limit = BucketQueue::buckets();
-  for (const Worker& w : parts) limit = std::min(limit, w.queue.current());
-  const std::size_t before = triangles_;
+  limit = std::max(limit, first);
+  // A part of nothing but planes is not worn down to its borders.
+  const double most = 1 - 0.5 * static_cast<double>(keep) / static_cast<double>(before);
   while (triangles_ > keep && limit < BucketQueue::buckets() && !cancelled_) {
     const std::size_t steps = stepsAtOnce(triangles_, keep);
-    forEachPart([&](std::size_t p) {
+    forBlocks(threads_, parts.size(), [&](std::size_t p) {
       const double share = most * static_cast<double>(parts[p].triangles);
       for (std::size_t step = 1; step <= steps; ++step) {
         reduceTo(parts[p], static_cast<std::size_t>(share), limit + step * kStep);
@@ -99,72 +157,62 @@ void QuadricReducer::reduceParts(std::size_t keep, const Progress& progress) {
     });
     limit += steps * kStep;
     triangles_ = before;
-    std::size_t collapses = 0;
+    std::size_t collapses = whole_.collapses;
     for (const Worker& w : parts) {
       triangles_ -= w.removed;
       collapses += w.collapses;
     }
     cancelled_ = progress && !progress({collapses, triangles_});
   }
-  joinParts(parts);
 }
 
-// The logs as one: of each step a little of every part in turn, so that all parts are equally
-// coarse at every level.
-void QuadricReducer::joinParts(std::vector<Worker>& parts) {
-  HugeArray<std::uint32_t> joined(mesh_.vertexCount());
-  std::size_t n = 0;
-  std::vector<std::size_t> done(parts.size(), 0);
+// The parts' logs behind what is joined already: of each step a slice of every part in turn, so
+// that all parts are equally coarse at every level.
+void QuadricReducer::joinLogs(std::vector<Worker>& parts, HugeArray<std::uint32_t>& joined) {
+  constexpr std::size_t kSlices = 64;
   for (std::size_t step = 0; step < parts[0].steps.size(); ++step) {
-    const auto behind = [&](std::size_t p, std::size_t q) {  // p's share done is less than q's
-      const std::size_t from_p = step ? parts[p].steps[step - 1] : 0,
-                        from_q = step ? parts[q].steps[step - 1] : 0;
-      return (2 * (done[p] - from_p) + 1) * (parts[q].steps[step] - from_q) <
-             (2 * (done[q] - from_q) + 1) * (parts[p].steps[step] - from_p);
-    };
-    for (;;) {
-      std::size_t best = parts.size();
-      for (std::size_t p = 0; p < parts.size(); ++p) {
-        if (done[p] < parts[p].steps[step] && (best == parts.size() || behind(p, best))) best = p;
+    for (std::size_t slice = 0; slice < kSlices; ++slice) {
+      for (const Worker& w : parts) {
+        const std::size_t first = step ? w.steps[step - 1] : 0, count = w.steps[step] - first;
+        const std::size_t from = first + count * slice / kSlices;
+        const std::size_t to = first + count * (slice + 1) / kSlices;
+        std::copy(w.log + from, w.log + to, joined.data() + whole_.collapses);
+        whole_.collapses += to - from;
       }
-      if (best == parts.size()) break;
-      joined[n++] = parts[best].log[done[best]++];
     }
   }
-  log_ = std::move(joined);
-  whole_.collapses = n;
-  whole_.room = std::move(parts[0].room);
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    if (p > 0) whole_.room.join(std::move(parts[p].room));
-    whole_.flips += parts[p].flips;
-    whole_.links += parts[p].links;
-    whole_.too_coarse |= parts[p].too_coarse;
+  for (Worker& w : parts) {
+    w.steps.clear();
+    w.collapses = 0;
   }
 }
 
-// All quadrics anew, so that edges cost what they cost when they are first looked at.
-void QuadricReducer::setQuadrics() {
-  const EvaluateEdges set = quadricSetter();
-  constexpr std::size_t kBlock = 1 << 13;
-  const std::size_t n = mesh_.vertexCount();
-  forBlocks(threads_, (n + kBlock - 1) / kBlock, [&](std::size_t block) {
-    EdgeCosts scratch;
-    const auto end = static_cast<std::uint32_t>(std::min(n, (block + 1) * kBlock));
-    for (auto v = static_cast<std::uint32_t>(block * kBlock); v < end; ++v) {
-      if (!(mesh_[v].flags & kDead) && mesh_[v].degree > 0) set(view(), v, scratch);
-    }
-  });
+// The next part on the curve becomes a piece of w.
+void QuadricReducer::joinPart(Worker& w, Worker&& other) {
+  w.end = other.end;
+  w.queue.join(std::move(other.queue), nextOf());
+  w.room.join(std::move(other.room));
+  w.triangles += other.triangles;
+  w.removed += other.removed;
+  w.flips += other.flips;
+  w.links += other.links;
+  w.too_coarse |= other.too_coarse;
 }
 
 // Every vertex that lives, in one queue.
 void QuadricReducer::requeue() {
   setQuadrics();
+  // Costs first, where the queue's links will be.
+  const EvaluateEdges edges = edgeEvaluator(Evaluate::kEdges);
+  forEachLiving([&](std::uint32_t v, EdgeCosts& costs) {
+    edges(view(), v, costs);
+    next_[v] = std::bit_cast<std::uint32_t>(costs.least());
+  });
   whole_.queue = BucketQueue();
   for (std::uint32_t v = mesh_.vertexCount(); v-- > 0;) {
     if ((mesh_[v].flags & kDead) || mesh_[v].degree == 0) continue;
     mesh_[v].flags &= static_cast<std::uint8_t>(~kIdle);
-    evaluate(whole_, v);
-    enqueue(whole_, v);
+    enqueue(whole_, v, std::bit_cast<float>(next_[v]));
   }
 }
 
@@ -186,10 +234,9 @@ const char* QuadricReducer::run(const Limits& limits, const Progress& progress) 
   max_error_ = limits.error * mesh_.scale();
   keep_components_ = limits.preserve_topology || limits.preserve_components;
   const std::size_t keep = std::max<std::size_t>(limits.triangles, 1);
-  planParts();
-  if (const std::size_t left = leftByParts(triangles_, keep);
-      part_ends_.size() > 1 && left < triangles_)
-    reduceParts(left, progress);
+  // Parts leave enough for the whole to be even.
+  if (partsFor(mesh_.vertexCount()) > 1 && 3 * keep < triangles_)
+    reduceParts(3 * keep, progress);
   else
     whole_.room = mesh_.freeRoom();
   whole_.log = log_.data();

@@ -10,7 +10,7 @@ namespace merlin::render {
 namespace {
 
 // A popped edge may cost so much more than its bucket and is still taken.
-constexpr float kTolerance = 1.5F;
+constexpr float kTolerance = 1.25F;
 using TwoCorners = std::uint32_t __attribute__((vector_size(16)));
 
 float trace(const float* h) { return h[0] + h[3] + h[5]; }
@@ -79,8 +79,7 @@ void QuadricReducer::lock(const std::vector<bool>& locked) {
   }
 }
 
-void QuadricReducer::enqueue(Worker& w, std::uint32_t v) {
-  const float cost = w.costs.cost[w.costs.cheapest];
+void QuadricReducer::enqueue(Worker& w, std::uint32_t v, float cost) {
   if (cost >= kNoEdge)
     mesh_[v].flags |= kIdle;
   else
@@ -175,7 +174,7 @@ void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
       if (collapseSeam(w, v, edge)) return;
     } else if (mayCollapse(w, costs, v, edge)) {
       collapse(w, v, edge);
-      if (mesh_[v].degree > 0) enqueue(w, v);
+      if (mesh_[v].degree > 0) enqueue(w, v, costs.least());
       return;
     }
     costs.cost[edge] = kNoEdge;

@@ -2,9 +2,10 @@
 // render/reduce.
 //
 // The vertices come in parts along the space-filling curve. First each part is reduced for itself,
-// step by step up to the same cost, where no collapse reaches across a seam; then, with a sixth of
-// the triangles left, all is one. Parts follow from the mesh alone, so the result does not depend
-// on the number of threads.
+// step by step up to the same cost, where no collapse reaches across its borders. Two by two they
+// become one, so that borders are never much of what is left; with a sixth of the triangles left
+// all is one. Parts follow from the mesh alone, so the result does not depend on the number of
+// threads.
 #pragma once
 
 #include <cstdint>
@@ -70,10 +71,13 @@ class QuadricReducer {
     std::size_t collapses = 0;
     std::size_t removed = 0;  // triangles
     std::size_t flips = 0, links = 0;
-    bool too_coarse = false;         // an edge's error was beyond the limit
-    bool inside_only = false;        // of a part: only vertices whose ring is in it
-    std::size_t triangles = 0;       // of a part, about
-    std::vector<std::size_t> steps;  // of a part: collapses at the end of each
+    bool too_coarse = false;   // an edge's error was beyond the limit
+    bool inside_only = false;  // of a part: only vertices whose ring is in it
+    // Of a part: its vertices on the curve, its triangles (about), collapses at the end of each
+    // step.
+    std::uint32_t begin = 0, end = 0;
+    std::size_t triangles = 0;
+    std::vector<std::size_t> steps;
   };
   struct Range {
     float low, high;
@@ -84,7 +88,7 @@ class QuadricReducer {
   }
   QuadricView view() const { return {&mesh_[0], mesh_.corners(0), &channels_}; }
   void evaluate(Worker& w, std::uint32_t v) { evaluate_(view(), v, w.costs); }
-  void enqueue(Worker& w, std::uint32_t v);
+  void enqueue(Worker& w, std::uint32_t v, float cost);
   void prefetch(Worker& w) const;
   void reduceTo(Worker& w, std::size_t removed, std::size_t bucket_limit);
   void tryVertex(Worker& w, std::uint32_t v);
@@ -102,19 +106,23 @@ class QuadricReducer {
   void renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_t x, bool beside);
   void wakeRing(Worker& w, std::uint32_t v, float cost);
 
-  void planParts();
-  void forEachPart(const std::function<void(std::size_t)>& work) const;
-  void startPart(std::size_t part, Worker& w);
-  void reduceParts(std::size_t keep, const Progress& progress);
-  void joinParts(std::vector<Worker>& parts);
+  void forEachLiving(const std::function<void(std::uint32_t, EdgeCosts&)>& work) const;
   void setQuadrics();
+  std::vector<Worker> makeParts(std::size_t count);
+  bool isInside(const Worker& w, std::uint32_t v) const;
+  void startPart(Worker& w, EvaluateEdges measure);
+  void reduceParts(std::size_t keep, const Progress& progress);
+  void reduceInSteps(std::vector<Worker>& parts, std::size_t keep, std::size_t& limit,
+                     const Progress& progress);
+  void joinLogs(std::vector<Worker>& parts, HugeArray<std::uint32_t>& joined);
+  void joinPart(Worker& w, Worker&& other);
   void requeue();
   void reduceWhole(std::size_t keep, const Progress& progress);
 
-  void copyTo(CollapseLog& log, std::vector<float>* normals, std::size_t k);
+  NodeRecord recordOf(std::uint32_t dead) const;
+  void copyTo(CollapseLog& log, std::vector<float>* normals, std::size_t k) const;
+  void pin(CollapseLog& log);
   static constexpr std::uint32_t kNowhere = ~std::uint32_t{0};
-  void pin(std::size_t k, const std::array<std::uint32_t, 2>& children, const float* position,
-           std::array<float, 3>& p);
 
   QuadricMesh mesh_;
   const float* input_positions_;  // the mesh's, which outlives this
@@ -130,7 +138,6 @@ class QuadricReducer {
   FindFarther farther_;
   HugeArray<std::uint32_t> log_;
   HugeArray<std::uint32_t> next_;  // in a vertex' bucket; beside the records, so that it stays near
-  std::vector<std::uint32_t> part_ends_;
   Worker whole_;
   std::size_t triangles_;                                     // left
   float max_error_ = std::numeric_limits<float>::infinity();  // in mean edges

@@ -16,37 +16,45 @@ constexpr std::size_t kAhead = 16;  // records asked for
 }  // namespace
 
 // A node that stands where a locked vertex was is there to the last bit, so that seams fit.
-void QuadricReducer::pin(std::size_t k, const std::array<std::uint32_t, 2>& children,
-                         const float* position, std::array<float, 3>& p) {
-  for (const std::uint32_t child : children) {
-    const std::uint32_t v = pinned_[child];
-    if (v == kNowhere) continue;
-    const auto place = mesh_.toWorking(&input_positions_[3 * std::size_t{v}]);
-    if (!std::equal(place.begin(), place.end(), position)) continue;
-    std::copy_n(&input_positions_[3 * std::size_t{v}], 3, p.begin());
-    pinned_[mesh_.vertexCount() + k] = v;
-    return;
+void QuadricReducer::pin(CollapseLog& log) {
+  for (std::size_t k = 0; k < log.children.size(); ++k) {
+    for (const std::uint32_t child : log.children[k]) {
+      const std::uint32_t v = pinned_[child];
+      if (v == kNowhere) continue;
+      const float* const there = &input_positions_[3 * std::size_t{v}];
+      const auto place = mesh_.toWorking(there);
+      const NodeRecord r = recordOf(log_[k]);
+      if (!std::equal(place.begin(), place.end(), r.position)) continue;
+      std::copy_n(there, 3, &log.positions[3 * k]);
+      pinned_[mesh_.vertexCount() + k] = v;
+      break;
+    }
   }
 }
 
+NodeRecord QuadricReducer::recordOf(std::uint32_t dead) const {
+  NodeRecord r;
+  std::memcpy(&r, static_cast<const void*>(mesh_[dead].position), sizeof r);
+  return r;
+}
+
 // Of collapse k. REQUIRES: next_ says of each dead vertex which collapse it was.
-void QuadricReducer::copyTo(CollapseLog& log, std::vector<float>* normals, std::size_t k) {
+void QuadricReducer::copyTo(CollapseLog& log, std::vector<float>* normals, std::size_t k) const {
   const std::uint32_t vertices = mesh_.vertexCount();
   const auto node = [&](std::uint32_t n) {
     return n < vertices ? mesh_.inputOf(n) : vertices + next_[n - vertices];
   };
-  NodeRecord r;
   if (k + kAhead < log.error.size()) __builtin_prefetch(&mesh_[log_[k + kAhead]]);
-  std::memcpy(&r, static_cast<const void*>(mesh_[log_[k]].position), sizeof r);
+  const NodeRecord r = recordOf(log_[k]);
   log.children[k] = {node(r.children[0]), node(r.children[1])};
   auto p = mesh_.toModel(r.position);
   for (float& x : p) x = std::clamp(x, -kFarthest, kFarthest);
-  if (!pinned_.empty()) pin(k, log.children[k], r.position, p);
   std::copy_n(p.begin(), 3, &log.positions[3 * k]);
   log.error[k] = std::min(r.error / mesh_.scale(), kFarthest);  // of next to no area it has no end
-  const float length = std::hypot(r.normal[0], r.normal[1], r.normal[2]);
+  const float* const n = r.normal;
+  const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   for (std::size_t i = 0; normals && i < 3; ++i)
-    (*normals)[3 * k + i] = length > 0 ? r.normal[i] / length : 0;
+    (*normals)[3 * k + i] = length > 0 ? n[i] / length : 0;
 }
 
 Reduction QuadricReducer::finish(const Mesh& mesh) {
@@ -64,9 +72,8 @@ Reduction QuadricReducer::finish(const Mesh& mesh) {
     if (mesh.features[f].name == "normal") normals = &log.features[f];
   }
   if (normals) normals->resize(3 * collapses);
-  // Whether a node is pinned its children say, which were before.
-  const unsigned threads = pinned_.empty() ? threads_ : 1;
-  forEach(threads, collapses, [&](std::size_t k) { copyTo(log, normals, k); });
+  forEach(threads_, collapses, [&](std::size_t k) { copyTo(log, normals, k); });
+  if (!pinned_.empty()) pin(log);
   result.report.collapses = collapses;
   result.report.flips_refused = whole_.flips;
   result.report.topology_refused = whole_.links;

@@ -66,12 +66,12 @@ bool QuadricReducer::collapseSeam(Worker& w, std::uint32_t v, std::uint32_t edge
   w.twin.witness[other] = w.costs.staysAt(edge);  // of the end that moves
   if (!mayCollapse(w, w.costs, v, edge) || !mayCollapse(w, w.twin, tv, other)) return false;
   collapse(w, v, edge);
-  if (mesh_[v].degree > 0) enqueue(w, v);
+  if (mesh_[v].degree > 0) enqueue(w, v, w.costs.least());
   std::swap(w.costs, w.twin);
   collapse(w, tv, other);
   if ((mesh_[tv].flags & kIdle) && mesh_[tv].degree > 0) {  // else it is in the queue
     mesh_[tv].flags &= static_cast<std::uint8_t>(~kIdle);
-    enqueue(w, tv);
+    enqueue(w, tv, w.costs.least());
   }
   return true;
 }

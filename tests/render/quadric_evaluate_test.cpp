@@ -92,7 +92,7 @@ TEST(QuadricEvaluate, InAPlaneTheMiddleIsTaken) {
 
 // Slow and wide processors have to agree on every bit: a model reduced on one is the same on all.
 TEST(QuadricEvaluate, EveryProcessorGivesTheSameBits) {
-  for (const std::size_t channels : {0u, 3u}) {
+  for (const std::size_t channels : {0u, 3u, 9u}) {
     Bench a(test::noisyGrid(30, 30, 0.4, 3), channels), b(a.mesh, channels);
     Random random(1);
     for (std::uint32_t v = 0; v < a.surface.vertexCount(); ++v) {
@@ -110,6 +110,32 @@ TEST(QuadricEvaluate, EveryProcessorGivesTheSameBits) {
         ASSERT_EQ(a.costs.x[e], b.costs.x[e]);
         ASSERT_EQ(a.costs.y[e], b.costs.y[e]);
         ASSERT_EQ(a.costs.z[e], b.costs.z[e]);
+      }
+    }
+  }
+}
+
+TEST(QuadricEvaluate, QuadricsFirstThenEdgesIsTheSame) {
+  const Mesh grid = test::noisyGrid(30, 30, 0.4, 3);
+  for (const std::size_t channels : {0u, 2u}) {
+    for (const auto evaluator : {edgeEvaluator, portableEdgeEvaluator}) {
+      Bench both(grid, channels), apart(grid, channels);
+      Random random(1);
+      for (std::uint32_t v = 0; v < both.surface.vertexCount(); ++v) {
+        for (std::size_t k = 0; k < channels; ++k)
+          both.values.value(v, k) = apart.values.value(v, k) = static_cast<float>(random.normal());
+      }
+      both.evaluateAll(evaluator(Evaluate::kBoth));
+      apart.evaluateAll(evaluator(Evaluate::kQuadric));
+      for (std::uint32_t v = 0; v < both.surface.vertexCount(); ++v) {
+        evaluator(Evaluate::kBoth)(both.view(), v, both.costs);
+        evaluator(Evaluate::kEdges)(apart.view(), v, apart.costs);
+        ASSERT_EQ(apart.costs.count, both.costs.count);
+        ASSERT_EQ(apart.costs.cheapest, both.costs.cheapest);
+        for (std::uint32_t e = 0; e < both.costs.count; ++e) {
+          ASSERT_EQ(apart.costs.cost[e], both.costs.cost[e]);
+          ASSERT_EQ(apart.costs.x[e], both.costs.x[e]);
+        }
       }
     }
   }
