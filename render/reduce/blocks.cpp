@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "render/mesh/places.h"
 #include "render/reduce/block_cutter.h"
 #include "render/reduce/memory.h"
 #include "render/reduce/quadric.h"
@@ -59,7 +60,6 @@ class InBlocks {
     const BlockCutter cutter(mesh_, locked_, plan_.limits.threads);
     QuadricPlan plan = plan_;
     plan.limits.by_all_rules = true;
-    plan.seams_shrink = false;  // what hangs on other blocks is locked too
     plan.limits.error = std::min(plan.limits.error, errorForAll(cutter));
     const std::size_t stride = (mesh_.vertexCount() + blocks_ - 1) / blocks_;
     std::vector<Part> parts;
@@ -88,7 +88,6 @@ class InBlocks {
     std::size_t free = 0;
     QuadricPlan plan = plan_;
     plan.limits.by_all_rules = true;
-    plan.seams_shrink = false;
     for (Block& sample : cutter.cut({stride, std::min(stride, kSampleSize), 0, kSamples - 1})) {
       if (sample.mesh.triangles.empty()) continue;
       plan.limits.triangles = leastOf(sample);
@@ -187,7 +186,10 @@ class InBlocks {
           return progress_({first + p.collapses, p.triangles});
         };
       }
-      r = runQuadric(mesh, plan_, locked, progress);
+      // In the blocks no seam shrinks, since what hangs on others is locked too.
+      std::vector<std::uint32_t> places;
+      if (!locked.empty() && plan_.seams_shrink) places = samePlace(mesh.positions);
+      r = runQuadric(mesh, plan_, locked, progress, std::move(places));
     }
     rest.log = std::move(r.log);
     std::vector<std::uint32_t> nodes;

@@ -89,9 +89,9 @@ Result<Ok> checkWeights(const Weights& weights, const PatternSpace& space) {
 }
 
 // Those of the settings, and both sides of a seam, so that it does not gape; empty: none.
-std::vector<bool> lockedVertices(const Mesh& mesh, const ReduceSettings& settings) {
+std::vector<bool> lockedVertices(const ReduceSettings& settings,
+                                 const std::vector<std::uint32_t>& next) {
   std::vector<bool> locked = settings.locked;
-  const std::vector<std::uint32_t> next = samePlace(mesh.positions);
   for (std::uint32_t v = 0; v < next.size(); ++v) {
     if (next[v] == v) continue;
     locked.resize(next.size());
@@ -134,10 +134,7 @@ Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings
 }
 
 Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vector<bool>& locked,
-                     const Progress& progress) {
-  // First, since it needs memory for a while.
-  std::vector<std::uint32_t> places;
-  if (!locked.empty() && plan.seams_shrink) places = samePlace(mesh.positions);
+                     const Progress& progress, std::vector<std::uint32_t> places) {
   QuadricReducer reducer(mesh, countOf(mesh, plan.channels), plan.limits.threads);
   for (const ChannelFeature& c : plan.channels) {
     const Feature& f = mesh.features[c.feature];
@@ -146,7 +143,8 @@ Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vecto
   }
   if (plan.labels_lock) reducer.setLabels(mesh.find("label")->values.data());
   if (!locked.empty()) reducer.lock(locked);
-  if (!places.empty()) reducer.pair(std::exchange(places, {}));
+  if (!places.empty()) reducer.pair(places);
+  places = {};
   const char* stopped = reducer.run(plan.limits, progress);
 
   Reduction result = reducer.finish(mesh);
@@ -172,8 +170,10 @@ Result<Reduction> reduceByQuadric(const Mesh& mesh, const ReduceSettings& settin
   if (!plan) return plan.error();
   const auto blocks = blocksFor(sizeOf(mesh), settings);
   if (!blocks) return blocks.error();
-  const std::vector<bool> locked = lockedVertices(mesh, settings);
-  Reduction result = *blocks == 1 ? runQuadric(mesh, *plan, locked, progress)
+  std::vector<std::uint32_t> places = samePlace(mesh.positions);
+  const std::vector<bool> locked = lockedVertices(settings, places);
+  if (locked.empty() || !plan->seams_shrink || *blocks > 1) places = {};
+  Reduction result = *blocks == 1 ? runQuadric(mesh, *plan, locked, progress, std::move(places))
                                   : reduceInBlocks(mesh, *plan, locked, *blocks, progress);
   result.report.stopped = reasonOf(result.report.stopped, settings, plan->by_percent);
   result.report.blocks = *blocks;

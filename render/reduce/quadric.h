@@ -27,9 +27,10 @@ struct QuadricPlan {
 Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings);
 
 // Reduces `mesh`, which has the features that the plan was made with. locked: one a vertex, or
-// empty; seams' vertices are. The log lacks its `about`.
+// empty; seams' vertices are. places: samePlace(), where seams are to shrink. The log lacks its
+// `about`.
 Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vector<bool>& locked,
-                     const Progress& progress);
+                     const Progress& progress, std::vector<std::uint32_t> places = {});
 
 // The same in so many blocks, more than one: blocks.cpp. Of their quadrics those of one block are
 // in memory, then those of what all have left.
