@@ -49,24 +49,26 @@ class Splitter {
   // Half-edges by their smaller end, then by the larger: those of an edge side by side.
   void pairAll() {
     const std::size_t n = mesh_.vertexCount();
-    std::vector<std::uint32_t> begin(n + 1, 0), list(twins_.size());
-    const auto smaller = [&](std::uint32_t h) { return std::min(from(h), to(h)); };
-    const auto larger = [&](std::uint32_t h) { return std::max(from(h), to(h)); };
+    std::vector<std::uint32_t> begin(n + 1, 0);
+    std::vector<std::uint64_t> list(twins_.size());  // the larger end, then the half-edge
     const auto count = static_cast<std::uint32_t>(list.size());
-    for (std::uint32_t h = 0; h < count; ++h) ++begin[smaller(h) + 1];
+    for (std::uint32_t h = 0; h < count; ++h) ++begin[std::min(from(h), to(h)) + 1];
     for (std::size_t v = 0; v < n; ++v) begin[v + 1] += begin[v];
-    for (std::uint32_t h = 0; h < count; ++h) list[begin[smaller(h)]++] = h;
+    for (std::uint32_t h = 0; h < count; ++h) {
+      const auto [smaller, larger] = std::minmax({from(h), to(h)});
+      list[begin[smaller]++] = std::uint64_t{larger} << 32 | h;
+    }
+    std::vector<std::uint32_t> edge;
     std::uint32_t first = 0;
     for (std::size_t v = 0; v < n; ++v) {
       const std::uint32_t end = begin[v];  // where the next one's began
-      std::sort(list.begin() + first, list.begin() + end, [&](std::uint32_t a, std::uint32_t b) {
-        return std::pair(larger(a), a) < std::pair(larger(b), b);
-      });
+      std::sort(list.begin() + first, list.begin() + end);
       while (first < end) {
-        std::uint32_t last = first + 1;
-        while (last < end && larger(list[last]) == larger(list[first])) ++last;
-        pairEdge({list.data() + first, last - first});
-        first = last;
+        const std::uint64_t larger = list[first] >> 32;
+        edge.clear();
+        for (; first < end && list[first] >> 32 == larger; ++first)
+          edge.push_back(static_cast<std::uint32_t>(list[first]));
+        pairEdge(edge);
       }
     }
   }

@@ -222,12 +222,15 @@ class Reader {
   Result<Ok> readFaces(const Element& e) {
     if (const auto room = checkRoom(e); !room) return room;
     mesh().triangles.reserve(std::min<std::uint64_t>(e.count, body_.left()) * 3);
+    std::vector<bool> corners;
     for (const Property& p : e.properties) {
-      if (!isCorners(p)) ++loaded_.skipped_properties;
+      corners.push_back(isCorners(p));
+      loaded_.skipped_properties += !corners.back();
     }
     for (std::uint64_t row = 0; row < e.count; ++row) {
-      for (const Property& p : e.properties) {
-        const auto done = isCorners(p) ? readCorners(e, row, p) : skipProperty(e, row, p);
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Property& p = e.properties[i];
+        const auto done = corners[i] ? readCorners(e, row, p) : skipProperty(e, row, p);
         if (!done) return done;
       }
     }

@@ -13,14 +13,16 @@ constexpr std::uint32_t kMostVertices = std::uint32_t{1} << 31;
 
 bool isSpace(char c) noexcept { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
 
-// The unsigned integer of `size` bytes at `p`.
+// The unsigned integer of 1, 2, 4 or 8 bytes at `p`.
 std::uint64_t load(const char* p, std::size_t size, bool big) noexcept {
   std::uint64_t v = 0;
-  for (std::size_t i = 0; i < size; ++i) {
-    const auto byte = static_cast<std::uint8_t>(p[big ? i : size - 1 - i]);
-    v = v << 8 | byte;
+  switch (size) {  // each a plain load
+    case 1: std::memcpy(&v, p, 1); break;
+    case 2: std::memcpy(&v, p, 2); break;
+    case 4: std::memcpy(&v, p, 4); break;
+    default: std::memcpy(&v, p, 8); break;
   }
-  return v;
+  return big ? __builtin_bswap64(v) >> (64 - 8 * size) : v;
 }
 
 double interpret(std::uint64_t bits, Scalar type) noexcept {
