@@ -156,11 +156,11 @@ double channelError(const Bench& bench, std::uint32_t v, std::size_t k, const Ve
   return sum;
 }
 
-TEST(QuadricEvaluate, ChannelsCostWhatTheirBestValueLeaves) {
-  Bench bench(test::noisyGrid(9, 9, 0.3, 4), 2);
+void expectChannelsCostWhatTheirBestValueLeaves(std::size_t channels) {
+  Bench bench(test::noisyGrid(9, 9, 0.3, 4), channels);
   Random random(2);
   for (std::uint32_t v = 0; v < bench.surface.vertexCount(); ++v) {
-    for (std::size_t k = 0; k < 2; ++k)
+    for (std::size_t k = 0; k < channels; ++k)
       bench.values.value(v, k) = static_cast<float>(random.normal());
   }
   bench.evaluateAll(edgeEvaluator());
@@ -172,7 +172,7 @@ TEST(QuadricEvaluate, ChannelsCostWhatTheirBestValueLeaves) {
       if (bench.surface[x].flags & kOpen) continue;
       const Vec to = bench.at(v) + Vec(bench.costs.x[e], bench.costs.y[e], bench.costs.z[e]);
       double plain = bench.distanceTo(v, to) + bench.distanceTo(x, to);
-      for (std::size_t k = 0; k < 2; ++k) {
+      for (std::size_t k = 0; k < channels; ++k) {
         // A parabola in s: its least from three of its values.
         const auto f = [&](double s) {
           return channelError(bench, v, k, to, s) + channelError(bench, x, k, to, s);
@@ -183,6 +183,11 @@ TEST(QuadricEvaluate, ChannelsCostWhatTheirBestValueLeaves) {
       EXPECT_NEAR(bench.costs.cost[e], plain, 2e-3 * plain + 1e-4);
     }
   }
+}
+
+TEST(QuadricEvaluate, ChannelsCostWhatTheirBestValueLeaves) {
+  expectChannelsCostWhatTheirBestValueLeaves(2);
+  expectChannelsCostWhatTheirBestValueLeaves(9);  // more than are kept between two passes
 }
 
 }  // namespace
