@@ -19,8 +19,8 @@ PngFrameSink::~PngFrameSink() {
 
 void PngFrameSink::present(std::span<const std::uint8_t> pixels, const FrameInfo& info) {
   if (last_ != Timestamp{} && info.finished - last_ < fromSeconds(settings_.interval_s)) return;
-  const std::unique_lock lock(mutex_, std::try_to_lock);
-  if (!lock || !waiting_.empty()) return;
+  const std::lock_guard lock(mutex_);  // that nobody holds while a file is written
+  if (!waiting_.empty()) return;
   last_ = info.finished;
   waiting_.assign(pixels.begin(), pixels.end());
   wake_.notify_one();
