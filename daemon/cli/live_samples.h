@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -40,6 +41,7 @@ class LiveSamples {
     if (auto alive = checkAlive(); !alive) return alive;
     const auto& channel = pick_(*segment_);
     channel.wait(next_, {0, 100'000'000});
+    keepHealth();
     const std::uint64_t count = channel.count();
     next_ = std::max(next_, count - std::min<std::uint64_t>(count, shm::kHistory / 2));
     for (; next_ < count; ++next_) {
@@ -49,11 +51,11 @@ class LiveSamples {
   }
 
   // Why the device does not stream; empty where it does.
-  std::string complaint() const {
-    const auto health = segment_->health[device_].read();
-    if (!health) return "its state is not known yet";
-    if (health->state == HealthState::kOk) return {};
-    return health->reason[0] ? health->reason : "it is being opened";
+  std::string complaint() {
+    keepHealth();
+    if (!health_) return "its state is not known yet";
+    if (health_->state == HealthState::kOk) return {};
+    return health_->reason[0] ? health_->reason : "it is being opened";
   }
 
   const Segment& segment() const { return *segment_; }
@@ -70,10 +72,16 @@ class LiveSamples {
     return Error{Errc::kClosed, "the merlind that was listened to has gone; nothing was changed"};
   }
 
+  // A read that met a write again and again says nothing: what was known still holds.
+  void keepHealth() {
+    if (const auto health = segment_->health[device_].read()) health_ = *health;
+  }
+
   SystemClock clock_;
   shm::SegmentReader<Segment> segment_;
   shm::DeviceIndex device_;
   Pick pick_;
+  std::optional<DeviceHealth> health_;  // the last known
   std::uint64_t next_;
 };
 

@@ -87,7 +87,8 @@ void SpnavServer::acceptClients() {
 
 void SpnavServer::tellHealth() {
   const auto health = segment_.health[shm::kBall].read();
-  const bool there = health && health->state == HealthState::kOk;
+  if (!health) return;  // not known yet, or being written: as before
+  const bool there = health->state == HealthState::kOk;
   if (there == there_) return;
   there_ = there;
   for (Client& client : clients_) client.protocol.device(there, client.pending);

@@ -1,0 +1,34 @@
+#include "daemon/cli/live_samples.h"
+
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "daemon/shm/fields.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::cli {
+namespace {
+
+TEST(LiveSamples, KnowsAStateThatIsBeingWrittenFromBefore) {
+  const std::string instance = test::privateName("live");
+  const auto segment = shm::SegmentWriter<shm::DevicesSegment>::make(
+      shm::segmentName(instance, "devices"), shm::devicesFields(), 1, SystemClock().now(), {});
+  ASSERT_TRUE(segment);
+  auto samples = LiveSamples<BallSample>::open(
+      instance, shm::kBall, [](const shm::DevicesSegment& s) -> const auto& { return s.ball; });
+  ASSERT_TRUE(samples);
+  EXPECT_EQ(samples->complaint(), "its state is not known yet");
+  auto& slot = (*segment)->health[shm::kBall];
+  DeviceHealth health{};
+  health.state = HealthState::kOk;
+  slot.publish(health);
+  EXPECT_EQ(samples->complaint(), "");
+  const std::uint64_t odd = 3;  // a writer that has lost its processor in the middle
+  std::memcpy(static_cast<void*>(&slot), &odd, sizeof odd);
+  ASSERT_FALSE(slot.read());
+  EXPECT_EQ(samples->complaint(), "");
+}
+
+}  // namespace
+}  // namespace merlin::cli
