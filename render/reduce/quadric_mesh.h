@@ -86,6 +86,10 @@ enum : std::uint8_t {
   kSharp = 16,   // a thin tip or a knife's edge: its faces' normals cancel
 };
 
+// Whether it is part of the surface. (One that has lost its triangles is left, and belongs to
+// none.)
+inline bool lives(const QuadricVertex& v) noexcept { return !(v.flags & kDead) && v.degree > 0; }
+
 // What a collapse made, kept in the dead vertex' record over position and h.
 struct NodeRecord {
   std::uint32_t children[2];

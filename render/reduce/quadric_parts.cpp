@@ -55,7 +55,7 @@ void QuadricReducer::forEachLiving(
     EdgeCosts scratch;
     const auto end = static_cast<std::uint32_t>(std::min(n, (block + 1) * kBlock));
     for (auto v = static_cast<std::uint32_t>(block * kBlock); v < end; ++v) {
-      if (!(mesh_[v].flags & kDead) && mesh_[v].degree > 0) work(v, scratch);
+      if (lives(mesh_[v])) work(v, scratch);
     }
   });
 }
@@ -97,7 +97,7 @@ void QuadricReducer::startPart(Worker& w, EvaluateEdges measure) {
   for (std::uint32_t v = w.end; v-- > w.begin;) {
     QuadricVertex& x = mesh_[v];
     const bool queued = (x.flags & kInside) && !(x.flags & kIdle);
-    if (queued || (x.flags & kDead) || x.degree == 0 || !isInside(w, v)) continue;
+    if (queued || !lives(x) || !isInside(w, v)) continue;
     x.flags = static_cast<std::uint8_t>((x.flags | kInside) & ~kIdle);
     measure(view(), v, w.costs);
     enqueue(w, v, w.costs.least());
@@ -126,12 +126,7 @@ void QuadricReducer::reduceParts(std::size_t keep, const Progress& progress) {
   }
   log_ = std::move(joined);
   whole_.room = mesh_.freeRoom();
-  for (Worker& w : parts) {
-    whole_.room.join(std::move(w.room));
-    whole_.flips += w.flips;
-    whole_.links += w.links;
-    whole_.too_coarse |= w.too_coarse;
-  }
+  for (Worker& w : parts) whole_.takeOver(std::move(w));
 }
 
 // Each part up to the same cost, step by step, until no more than `keep` triangles are left.
@@ -187,16 +182,21 @@ void QuadricReducer::joinLogs(std::vector<Worker>& parts, HugeArray<std::uint32_
   }
 }
 
+// What another has been given back and what it counted; not its queue.
+void QuadricReducer::Worker::takeOver(Worker&& other) {
+  room.join(std::move(other.room));
+  flips += other.flips;
+  links += other.links;
+  too_coarse |= other.too_coarse;
+}
+
 // The next part on the curve becomes a piece of w.
 void QuadricReducer::joinPart(Worker& w, Worker&& other) {
   w.end = other.end;
   w.queue.join(std::move(other.queue), nextOf());
-  w.room.join(std::move(other.room));
   w.triangles += other.triangles;
   w.removed += other.removed;
-  w.flips += other.flips;
-  w.links += other.links;
-  w.too_coarse |= other.too_coarse;
+  w.takeOver(std::move(other));
 }
 
 // Every vertex that lives, in one queue.
@@ -210,7 +210,7 @@ void QuadricReducer::requeue() {
   });
   whole_.queue = BucketQueue();
   for (std::uint32_t v = mesh_.vertexCount(); v-- > 0;) {
-    if ((mesh_[v].flags & kDead) || mesh_[v].degree == 0) continue;
+    if (!lives(mesh_[v])) continue;
     mesh_[v].flags &= static_cast<std::uint8_t>(~kIdle);
     enqueue(whole_, v, std::bit_cast<float>(next_[v]));
   }

@@ -109,7 +109,7 @@ void QuadricReducer::reduceTo(Worker& w, std::size_t removed, std::size_t bucket
     const std::uint32_t v = w.queue.pop(bucket_limit, nextOf());
     if (v == BucketQueue::kNone) return;
     prefetch(w);
-    if (!(mesh_[v].flags & kDead) && mesh_[v].degree > 0) tryVertex(w, v);
+    if (lives(mesh_[v])) tryVertex(w, v);
   }
 }
 

@@ -78,6 +78,8 @@ class QuadricReducer {
     std::uint32_t begin = 0, end = 0;
     std::size_t triangles = 0;
     std::vector<std::size_t> steps;
+
+    void takeOver(Worker&& other);
   };
   struct Range {
     float low, high;

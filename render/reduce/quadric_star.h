@@ -1,0 +1,269 @@
+// What a vertex has of its own, of its star: ring, quadric, normal, channels' sums. Private to
+// quadric_evaluate.cpp, which compiles it twice (lanes.h).
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+
+#include "render/reduce/lanes.h"
+#include "render/reduce/quadric_evaluate.h"
+
+namespace merlin::render {
+
+inline constexpr float kTiny = 1e-30F;
+// Of a sharp vertex the mean of its faces' normals is shorter. A cone's is the sine of the angle
+// between its axis and its side.
+inline constexpr float kSharpMean = 0.6F;
+
+// Eight neighbours, one a lane: from w, and their `quadrics`.
+template <bool quadrics>
+struct Neighbours {
+  Lanes x, y, z, h[6];
+
+  MERLIN_INLINE Neighbours(const QuadricView& view, const QuadricVertex& w,
+                           const std::uint32_t* numbers) {
+    const auto at = [&](int k) -> const QuadricVertex& { return view.vertices[numbers[k]]; };
+    gather<quadrics ? 4 : 3>([&](int k) { return at(k).position; }, x, y, z, h[0]);
+    if (quadrics) {
+      gather([&](int k) { return &at(k).h[1]; }, h[1], h[2], h[3], h[4]);
+      h[5] = Lanes{at(0).h[5], at(1).h[5], at(2).h[5], at(3).h[5],
+                   at(4).h[5], at(5).h[5], at(6).h[5], at(7).h[5]};
+    }
+    x -= w.position[0];
+    y -= w.position[1];
+    z -= w.position[2];
+  }
+};
+
+// Neighbours of any star, each once, with how many triangles it shares.
+inline void findNeighbours(const QuadricView& view, const QuadricVertex& w, EdgeCosts& out) {
+  const Corner* star = view.corners + w.star;
+  out.count = 0;
+  const auto indexOf = [&](std::uint32_t v) {
+    std::uint32_t i = 0;
+    while (i < out.count && out.neighbour[i] != v) ++i;
+    if (i == out.count) {
+      out.neighbour[i] = v;
+      out.shared[i] = 0;
+      ++out.count;
+    }
+    ++out.shared[i];
+    return i;
+  };
+  for (std::uint32_t i = 0; i < w.degree; ++i) {
+    out.b[i] = indexOf(star[i].b);
+    out.c[i] = indexOf(star[i].c);
+  }
+}
+
+// Of a closed fan they are the corners' first vertices, in order.
+inline void fanNeighbours(const QuadricView& view, const QuadricVertex& w, EdgeCosts& out) {
+  out.count = w.degree;
+  for (std::uint32_t i = 0; i < w.degree; ++i) {
+    out.neighbour[i] = view.corners[w.star + i].b;
+    out.shared[i] = 2;
+  }
+}
+
+MERLIN_INLINE void findRing(const QuadricView& view, const QuadricVertex& w, EdgeCosts& out) {
+  if (w.flags & kOpen)
+    findNeighbours(view, w, out);
+  else
+    fanNeighbours(view, w, out);
+  // Beyond the last the first again; a closed fan's last row of eight looks one further.
+  store(&out.neighbour[out.count], all(out.neighbour[0]));
+  store(&out.neighbour[out.count + 8], all(out.neighbour[0]));
+  for (std::uint32_t first = 0; first < out.count + 8; first += 8) {
+    const Neighbours<false> at(view, w, &out.neighbour[first]);
+    store(&out.rx[first], at.x);
+    store(&out.ry[first], at.y);
+    store(&out.rz[first], at.z);
+  }
+}
+
+// Up to eight triangles (0, u, v), v of vertex c and u of vertex b; beyond the last without area.
+struct EightTriangles {
+  Lanes ux, uy, uz, vx, vy, vz;
+  Mask b, c;
+};
+
+// Of a closed fan of up to eight, whose neighbours these are: those beyond the last are the first
+// again, so that the fan closes.
+MERLIN_INLINE EightTriangles fanTriangles(const Lanes& x, const Lanes& y, const Lanes& z,
+                                          const Mask& neighbours) {
+  return {x, y, z, next(x), next(y), next(z), neighbours, next(neighbours)};
+}
+
+// Of a star's corners from `first` on, once findRing() has been there.
+MERLIN_INLINE EightTriangles starTriangles(const QuadricVertex& w, const EdgeCosts& out,
+                                           std::uint32_t first) {
+  const float *x = out.rx.data(), *y = out.ry.data(), *z = out.rz.data();
+  const std::uint32_t* neighbour = out.neighbour.data();
+  if (!(w.flags & kOpen)) {
+    const std::uint32_t k = first;
+    return {load(x + k),     load(y + k),     load(z + k),         load(x + k + 1),
+            load(y + k + 1), load(z + k + 1), load(neighbour + k), load(neighbour + k + 1)};
+  }
+  float u[3][8], v[3][8];
+  std::uint32_t of_b[8], of_c[8];
+  for (std::uint32_t k = 0; k < 8; ++k) {
+    const std::uint32_t b = out.b[first + k < w.degree ? first + k : 0];
+    const std::uint32_t c = first + k < w.degree ? out.c[first + k] : b;
+    u[0][k] = x[b];
+    u[1][k] = y[b];
+    u[2][k] = z[b];
+    v[0][k] = x[c];
+    v[1][k] = y[c];
+    v[2][k] = z[c];
+    of_b[k] = neighbour[b];
+    of_c[k] = neighbour[c];
+  }
+  return {load(u[0]), load(u[1]), load(u[2]), load(v[0]),
+          load(v[1]), load(v[2]), load(of_b), load(of_c)};
+}
+
+// The quadrics and the unit normals of eight triangles; nothing where they have no area.
+struct Planes {
+  Lanes h[6], normal[3];
+  Lanes area, inverse;  // twice it, and one over that
+
+  MERLIN_INLINE explicit Planes(const EightTriangles& t) {
+    const Lanes x = t.uy * t.vz - t.uz * t.vy, y = t.uz * t.vx - t.ux * t.vz,
+                z = t.ux * t.vy - t.uy * t.vx;
+    const Lanes square = x * x + y * y + z * z + kTiny;
+    for (int k = 0; k < 8; ++k) area[k] = __builtin_sqrtf(square[k]);
+    inverse = 1.0F / area;
+    normal[0] = x * inverse;
+    normal[1] = y * inverse;
+    normal[2] = z * inverse;
+    h[0] = normal[0] * x;
+    h[1] = normal[0] * y;
+    h[2] = normal[0] * z;
+    h[3] = normal[1] * y;
+    h[4] = normal[1] * z;
+    h[5] = normal[2] * z;
+  }
+};
+
+// Of eight vertices the values of a channel.
+MERLIN_INLINE Lanes valuesOf(const QuadricChannels& channels, const Mask& vertices, std::size_t k) {
+  const auto at = [&](int i) { return channels.value(static_cast<std::uint32_t>(vertices[i]), k); };
+  return Lanes{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
+}
+
+// Adds what the channels' gradients are: to the triangles' quadrics, and to the sums of w's block.
+// fan: of fanTriangles().
+template <bool fan>
+MERLIN_INLINE void addGradients(const QuadricChannels& channels, const EightTriangles& t,
+                                Planes& planes, float* block) {
+  const Lanes(&n)[3] = planes.normal;
+  const Lanes &area = planes.area, &inverse = planes.inverse;
+  // Rows of the gradient: s (v x n) + t (n x u), n a unit long, over the area.
+  const Lanes px = (t.vy * n[2] - t.vz * n[1]) * inverse,
+              py = (t.vz * n[0] - t.vx * n[2]) * inverse,
+              pz = (t.vx * n[1] - t.vy * n[0]) * inverse;
+  const Lanes qx = (n[1] * t.uz - n[2] * t.uy) * inverse,
+              qy = (n[2] * t.ux - n[0] * t.uz) * inverse,
+              qz = (n[0] * t.uy - n[1] * t.ux) * inverse;
+  block[0] += sum(area);
+  for (std::size_t k = 0; k < channels.count(); ++k) {
+    float* b = block + 1 + 4 * k;
+    const Lanes at_b = valuesOf(channels, t.b, k) - b[3];
+    const Lanes at_c = fan ? next(at_b) : valuesOf(channels, t.c, k) - b[3];
+    const Lanes gx = at_b * px + at_c * qx, gy = at_b * py + at_c * qy, gz = at_b * pz + at_c * qz;
+    const Lanes ax = area * gx, ay = area * gy, az = area * gz;
+    const Lanes none = all(0.0F), g = sums({ax, ay, az, none, none, none, none, none});
+    for (int i = 0; i < 3; ++i) b[i] += g[i];
+    planes.h[0] += ax * gx;
+    planes.h[1] += ax * gy;
+    planes.h[2] += ax * gz;
+    planes.h[3] += ay * gy;
+    planes.h[4] += ay * gz;
+    planes.h[5] += az * gz;
+  }
+}
+
+// Sums over a star's triangles.
+struct Sums {
+  Lanes most = {};  // h, the normal's x and y
+  float z = 0;      // the normal's
+
+  Sums() = default;
+  MERLIN_INLINE explicit Sums(const Planes& p)
+      : most(sums({p.h[0], p.h[1], p.h[2], p.h[3], p.h[4], p.h[5], p.normal[0], p.normal[1]})),
+        z(sum(p.normal[2])) {}
+
+  MERLIN_INLINE void add(const Sums& other) {
+    most += other.most;
+    z += other.z;
+  }
+  // By pieces that registers hold: the quadric is read again at once.
+  MERLIN_INLINE void store(QuadricVertex& w, EdgeCosts& out) const {
+    const auto first = __builtin_shufflevector(most, most, 0, 1, 2, 3);
+    const auto then = __builtin_shufflevector(most, most, 4, 5);
+    const auto normal = __builtin_shufflevector(most, most, 6, 7);
+    std::memcpy(w.h, &first, sizeof first);
+    std::memcpy(w.h + 4, &then, sizeof then);
+    std::memcpy(out.normal, &normal, sizeof normal);
+    out.normal[2] = z;
+  }
+};
+
+// `block`: w's, if there are channels.
+template <bool channels, bool fan>
+MERLIN_INLINE Sums sumsOf(const QuadricView& view, const EightTriangles& triangles, float* block) {
+  Planes planes(triangles);
+  if (channels) addGradients<fan>(*view.channels, triangles, planes, block);
+  return Sums(planes);
+}
+
+MERLIN_INLINE void clearSums(const QuadricChannels& channels, float* block) {
+  block[0] = 0;
+  for (std::size_t k = 0; k < channels.count(); ++k) std::fill_n(block + 1 + 4 * k, 3, 0.0F);
+}
+
+// The plane through the border's edge e that is as upright as can be: |e|^2 I - e e'.
+MERLIN_INLINE void addBorder(float h[6], float x, float y, float z) {
+  const float l = x * x + y * y + z * z;
+  h[0] += kBorderWeight * (l - x * x);
+  h[1] -= kBorderWeight * (x * y);
+  h[2] -= kBorderWeight * (x * z);
+  h[3] += kBorderWeight * (l - y * y);
+  h[4] -= kBorderWeight * (y * z);
+  h[5] += kBorderWeight * (l - z * z);
+}
+
+// Whether w is a thin tip or a knife's edge.
+MERLIN_INLINE void setSharp(QuadricVertex& w, const float* n) {
+  const float upright = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+  const auto faces = static_cast<float>(w.degree);
+  w.flags = static_cast<std::uint8_t>(w.flags & ~kSharp);
+  if (upright < kSharpMean * kSharpMean * faces * faces) w.flags |= kSharp;
+}
+
+// Of any star, once findRing() has been there. `block`: w's, if there are channels.
+template <bool channels>
+MERLIN_INLINE void setOwn(const QuadricView& view, QuadricVertex& w, EdgeCosts& out, float* block) {
+  if (channels) clearSums(*view.channels, block);
+  Sums total;
+  for (std::uint32_t first = 0; first < w.degree; first += 8)
+    total.add(sumsOf<channels, false>(view, starTriangles(w, out, first), block));
+  total.store(w, out);
+  setSharp(w, out.normal);
+  if (!(w.flags & kOpen)) return;
+  for (std::uint32_t i = 0; i < out.count; ++i) {
+    if (out.shared[i] == 1) addBorder(w.h, out.rx[i], out.ry[i], out.rz[i]);
+  }
+}
+
+// Of a closed fan of up to eight, whose neighbours are the corners' first vertices, in order.
+template <bool channels>
+MERLIN_INLINE void setOwnOfFan(const QuadricView& view, QuadricVertex& w, const Lanes& x,
+                               const Lanes& y, const Lanes& z, EdgeCosts& out, float* block) {
+  if (channels) clearSums(*view.channels, block);
+  const Mask neighbours = load(out.neighbour.data());
+  sumsOf<channels, true>(view, fanTriangles(x, y, z, neighbours), block).store(w, out);
+  setSharp(w, out.normal);
+}
+
+}  // namespace merlin::render
