@@ -148,7 +148,7 @@ void addWindow(const Bench& bench, const Marks& from, std::array<Windows, 3>& to
 void provoke(Bench& bench, std::size_t victim, Fault fault, int state, Comparison& result) {
   const Duration kFault = milliseconds(250);
   Marks from = mark(bench);
-  bench.wait(milliseconds(700));
+  bench.wait(milliseconds(350));
   addWindow(bench, from, result.control);
   from = mark(bench);
   const std::int64_t failed = bench.now();
