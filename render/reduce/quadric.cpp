@@ -106,7 +106,10 @@ Weights quadricWeights(const Mesh& mesh) {
   Weights weights{{"geometry", 1.0F}};
   for (const Feature& f : mesh.features) {
     if (f.name == "normal" || f.name == "label") continue;
-    weights[f.name] = f.name == "texcoord" ? 0.05F : 0.005F;  // a picture slides before it fades
+    // Of 0.001, 0.003 and 0.005, pictures of two coloured scans changed least at 0.003 (pixels that
+    // do so by more than 15 %), a few percent off the surface without. A picture slides before it
+    // fades.
+    weights[f.name] = f.name == "texcoord" ? 0.05F : 0.003F;
   }
   return weights;
 }
