@@ -1,5 +1,6 @@
 // merlin: everything that a person types.
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +15,7 @@ namespace merlin {
 namespace {
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file's limit is an error of the write
   CLI::App app("MERLIN: a lab's display wall. The daemon is merlind.");
   app.require_subcommand(1);
   app.set_version_flag("--version", MERLIN_VERSION);

@@ -46,6 +46,14 @@ TEST_F(BadInput, ATruncatedScan) {
   EXPECT_FALSE(std::filesystem::exists(dir_ / "out.mrm"));
 }
 
+TEST_F(BadInput, AFileThatMayNotGrowSoFar) {
+  const std::string reduce = fmt::format("{} mesh reduce {}/config/models/ankylosaurus.ply -o {}",
+                                         kMerlin, kSource, dir_ / "out.mrm");
+  expectOutcome(run({"/bin/bash", "-c", "ulimit -f 200; " + reduce}), 1,
+                {"out.mrm", "File too large"});
+  EXPECT_TRUE(std::filesystem::is_empty(dir_ / ""));
+}
+
 TEST_F(BadInput, AConfigurationWithThreeErrors) {
   writeText(dir_ / "bad.json",
             "{\n\"wall\": {\n\"modle\": \"a.mrm\",\n\"rate\": {\"rate_hz\": "
