@@ -1,7 +1,10 @@
 #include "daemon/cli/arguments.h"
 
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -49,9 +52,37 @@ Argument Command::flag(const std::string& names, bool& value, const std::string&
   return Argument(app_->add_flag(names, value, help));
 }
 
+namespace {
+
+template <typename T>
+struct Plain {
+  using type = T;
+};
+template <typename T>
+struct Plain<std::optional<T>> {
+  using type = T;
+};
+template <typename T>
+struct Plain<std::vector<T>> {
+  using type = T;
+};
+
+// What CLI11 takes for a number of that type and is none: -1 as the largest, "nan".
+template <typename T>
+std::string faultOf(const std::string& value) {
+  if (std::is_unsigned_v<T> && value.starts_with('-')) return value + " is less than 0";
+  if (std::is_floating_point_v<T> && std::isnan(std::strtod(value.c_str(), nullptr)))
+    return value + " is no number";
+  return {};
+}
+
+}  // namespace
+
 template <typename T>
 Argument Command::option(const std::string& names, T& value, const std::string& help) {
-  return Argument(app_->add_option(names, value, help));
+  const Argument argument(app_->add_option(names, value, help));
+  using Number = typename Plain<T>::type;
+  return std::is_arithmetic_v<Number> ? Argument(argument).check(faultOf<Number>) : argument;
 }
 template Argument Command::option(const std::string&, int&, const std::string&);
 template Argument Command::option(const std::string&, unsigned&, const std::string&);

@@ -38,11 +38,18 @@ std::vector<Repair> repairsOf(const render::LoadedMesh& loaded);
 // Those that happened as one line, "mended: 3 triangles with a vertex twice, ..."; else empty.
 std::string mendedText(const render::LoadedMesh& loaded);
 
+// Before any work: whether `output` can be written and is not what is read. Errors:
+// kInvalidArgument, checkWritable()'s.
+Result<Ok> checkOutput(const std::string& input, const std::string& output);
+
 // Puts what `text`, "colour=0.5", says into `weights`. Errors: kInvalidArgument.
 Result<Ok> setWeight(const std::string& text, render::Weights& weights);
 
 // A mesh as a model of one level.
 render::Dendrogram asModel(const render::Mesh& mesh);
+
+// Of the finest resolution: what percentages of the diagonal are of.
+render::Box boxOf(const render::Dendrogram& model);
 
 // Which resolution: at most one is set.
 struct LevelChoice {
@@ -50,7 +57,12 @@ struct LevelChoice {
   std::optional<std::size_t> triangles;
 
   Command addTo(Command command);
-  std::size_t levelOf(const render::Dendrogram& model) const;  // 0 where none is set
+  // 0 where none is set. `path`: the model's; where it does not go down so far stderr says so.
+  // Errors: kInvalidArgument: it is one resolution, and finer than that.
+  Result<std::size_t> levelOf(const render::Dendrogram& model, const std::string& path) const;
+
+ private:
+  std::size_t coarsestAllowed(const render::Dendrogram& model) const;
 };
 
 }  // namespace merlin::cli

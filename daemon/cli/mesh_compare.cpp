@@ -114,7 +114,9 @@ void printTable(const CompareOptions& options, const Answer& answer) {
 Result<render::Mesh> openMesh(const std::string& path, const LevelChoice& choice) {
   const auto model = openModel(path);
   if (!model) return model.error();
-  return render::extract(*model, choice.levelOf(*model));
+  const auto level = choice.levelOf(*model, path);
+  if (!level) return level.error();
+  return render::extract(*model, *level);
 }
 
 Result<render::Comparison> compared(const CompareOptions& options, const render::Mesh& original,

@@ -29,7 +29,8 @@ int exportAll(const ExportOptions& options) {
     return fail({Errc::kInvalidArgument,
                  options.output + ": --multiresolution is written as .iv (Open Inventor)"});
   }
-  if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
+  if (const auto writable = checkOutput(options.model, options.output); !writable)
+    return fail(writable.error());
   const auto model = openModel(options.model);
   if (!model) return fail(model.error());
   const auto left_out = render::writeMultiresolution(options.output, *model);
@@ -43,15 +44,17 @@ int exportAll(const ExportOptions& options) {
 int exportMesh(const ExportOptions& options) {
   if (const auto known = render::checkMeshEnding(options.output); !known)
     return fail(known.error());
-  if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
+  if (const auto writable = checkOutput(options.model, options.output); !writable)
+    return fail(writable.error());
   const auto model = openModel(options.model);
   if (!model) return fail(model.error());
-  const std::size_t level = options.choice.levelOf(*model);
-  const render::Mesh mesh = render::extract(*model, level);
+  const auto level = options.choice.levelOf(*model, options.model);
+  if (!level) return fail(level.error());
+  const render::Mesh mesh = render::extract(*model, *level);
   const auto written = render::writeMesh(options.output, mesh);
   if (!written) return fail(written.error());
   fmt::print("{}: {} triangles, {} vertices, error estimate {:.4g}\n", options.output,
-             mesh.triangleCount(), mesh.vertexCount(), model->errorAt(level));
+             mesh.triangleCount(), mesh.vertexCount(), model->errorAt(*level));
   sayLeftOut(written->format, written->left_out);
   return kExitDone;
 }

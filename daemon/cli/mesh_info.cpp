@@ -42,7 +42,7 @@ void printJson(const std::string& file, const Opened& opened) {
   using Json = nlohmann::ordered_json;
   const render::Dendrogram& model = *opened.model;
   const auto& a = model.arrays();
-  const render::Box box = render::boundingBox(a.positions);
+  const render::Box box = boxOf(model);
   Json features = Json::array();
   for (const auto& f : a.features)
     features.push_back({{"name", f.name}, {"dimension", f.dimension}});
@@ -63,7 +63,7 @@ void printJson(const std::string& file, const Opened& opened) {
 void printText(const std::string& file, const Opened& opened) {
   const render::Dendrogram& model = *opened.model;
   const auto& a = model.arrays();
-  const render::Box box = render::boundingBox(a.positions);
+  const render::Box box = boxOf(model);
   fmt::print("{}: {} triangles, {} vertices\n", file, model.triangleCount(), model.vertexCount());
   if (model.levels() > 1) {
     fmt::print("  levels    {}, down to {} triangles (error estimate {:.3g})\n", model.levels(),

@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 
 #include <fmt/format.h>
 
+#include "daemon/base/files.h"
 #include "daemon/cli/mesh.h"
 #include "render/lod/io/mrm_file.h"
 
@@ -51,6 +54,27 @@ render::Dendrogram asModel(const render::Mesh& mesh) {
   return render::buildDendrogram(mesh, nothing);
 }
 
+render::Box boxOf(const render::Dendrogram& model) {
+  const auto& a = model.arrays();
+  if (a.triangles.empty()) return render::boundingBox(a.positions);
+  const auto at = [&](std::uint32_t corner) { return a.positions.subspan(3 * corner, 3); };
+  render::Box box = render::boundingBox(at(a.triangles[0]));
+  for (const std::uint32_t corner : a.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.low[k] = std::min(box.low[k], at(corner)[k]);
+      box.high[k] = std::max(box.high[k], at(corner)[k]);
+    }
+  }
+  return box;
+}
+
+Result<Ok> checkOutput(const std::string& input, const std::string& output) {
+  std::error_code absent;
+  if (std::filesystem::equivalent(input, output, absent))
+    return Error{Errc::kInvalidArgument, output + ": is what is read; name another file"};
+  return checkWritable(output);
+}
+
 Result<Ok> setWeight(const std::string& text, render::Weights& weights) {
   const auto equals = text.find('=');
   char* end = nullptr;
@@ -76,17 +100,35 @@ Command LevelChoice::addTo(Command command) {
   return group;
 }
 
-std::size_t LevelChoice::levelOf(const render::Dendrogram& model) const {
+std::size_t LevelChoice::coarsestAllowed(const render::Dendrogram& model) const {
   if (triangles) return model.levelFor(*triangles);
   if (percent)
     return model.levelFor(static_cast<std::size_t>(
         std::floor(*percent / 100 * static_cast<double>(model.triangleCount()))));
   if (error_percent) {
-    const float diagonal = render::boundingBox(model.arrays().positions).diagonal();
-    return model.levelForError(static_cast<float>(*error_percent / 100) * diagonal);
+    return model.levelForError(static_cast<float>(*error_percent / 100) * boxOf(model).diagonal());
   }
   if (error_units) return model.levelForError(static_cast<float>(*error_units));
   return 0;
+}
+
+Result<std::size_t> LevelChoice::levelOf(const render::Dendrogram& model,
+                                         const std::string& path) const {
+  const std::size_t level = coarsestAllowed(model);
+  const double asked =
+      triangles ? static_cast<double>(*triangles)
+                : percent.value_or(100) / 100 * static_cast<double>(model.triangleCount());
+  const auto least = static_cast<double>(model.trianglesAt(level));
+  const bool one = model.levels() == 1;
+  if (one && (asked < least || error_percent || error_units)) {
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("{}: has one resolution, {} triangles (all of them make a model: "
+                             "merlin mesh reduce)",
+                             path, model.triangleCount())};
+  }
+  if (std::floor(asked) < least)
+    fmt::print(stderr, "merlin: note: {}: goes down to {} triangles\n", path, least);
+  return level;
 }
 
 }  // namespace merlin::cli

@@ -11,6 +11,7 @@
 #include "daemon/cli/mesh_memory.h"
 #include "daemon/cli/progress.h"
 #include "render/lod/io/mrm_file.h"
+#include "render/mesh/borders.h"
 #include "render/mesh/io/mesh_file.h"
 #include "render/mesh/io/picture_file.h"
 #include "render/reduce/reduce.h"
@@ -23,6 +24,7 @@ struct ReduceOptions {
   std::vector<std::string> weights;
   render::ReduceSettings settings;
   std::uint64_t memory = 0;  // bytes; 0: what is free
+  bool lock_borders = false;
   bool json = false;
 };
 
@@ -33,9 +35,10 @@ struct Took {
 };
 
 Result<render::Weights> weightsOf(const ReduceOptions& options, const render::Mesh& mesh) {
-  render::Weights weights = options.preset == "typical1998"
-                                ? render::typicalWeights(mesh)
-                                : render::findCost(options.settings.cost)->weights(mesh);
+  render::Weights weights = render::findCost(options.settings.cost)->weights(mesh);
+  for (const render::Preset& preset : render::presets()) {
+    if (preset.name == options.preset) weights = render::presetWeights(preset, mesh);
+  }
   for (const std::string& text : options.weights) {
     if (const auto set = setWeight(text, weights); !set) return set.error();
   }
@@ -46,8 +49,8 @@ double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 
 
 void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
             const render::ReduceReport& r, const Took& took) {
-  const double percent =
-      100.0 * static_cast<double>(r.error) / render::boundingBox(loaded.mesh.positions).diagonal();
+  const float diagonal = render::boundingBox(loaded.mesh.positions).diagonal();
+  const double percent = diagonal > 0 ? 100.0 * static_cast<double>(r.error / diagonal) : 0;
   const double rate = took.reducing > 0 ? static_cast<double>(r.collapses) / took.reducing : 0;
   if (options.json) {
     nlohmann::ordered_json json = {{"output", options.output},
@@ -89,6 +92,7 @@ Result<render::Reduction> reduceLoaded(const ReduceOptions& options, const rende
   auto weights = weightsOf(options, mesh);
   if (!weights) return weights.error();
   settings.weights = *std::move(weights);
+  if (options.lock_borders) settings.locked = render::borderVertices(mesh);
   const auto room = roomForReduction(sizeOf(mesh), 0, settings, took.limit);
   if (!room) return Error{room.error().code, options.input + ": " + room.error().what};
   settings.memory = *room;
@@ -122,12 +126,24 @@ Result<Ok> addTexture(const ReduceOptions& options, render::Mesh& mesh) {
   return Ok{};
 }
 
+Result<Ok> checkOptions(const ReduceOptions& options) {
+  const bool pattern = options.settings.cost == "pattern";
+  if (!options.output.ends_with(".mrm"))
+    return Error{Errc::kInvalidArgument, options.output + ": a model's name ends in .mrm"};
+  if (options.preset != "default" && !pattern)
+    return Error{Errc::kInvalidArgument, "--preset " + options.preset + ": add --cost pattern"};
+  if (options.lock_borders && pattern)
+    return Error{Errc::kInvalidArgument,
+                 "--lock-borders: of the cost quadric; for pattern: --weight boundary=W"};
+  return checkOutput(options.input, options.output);
+}
+
 int reduceMesh(const ReduceOptions& options) {
   const SystemClock clock;
   const Timestamp began = clock.now();
   Took took;
   took.limit = options.memory > 0 ? options.memory : freeMemory();
-  if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
+  if (const auto fits = checkOptions(options); !fits) return fail(fits.error());
   if (const auto fits = checkRoom(options.input, options.settings, took.limit); !fits)
     return fail(fits.error());
   auto loaded = loadMesh(options.input);
@@ -160,13 +176,17 @@ void addMeshReduce(Command mesh, Run& run) {
     help += fmt::format("; {}: {}", cost.name, cost.help);
   }
   command.option("--cost", options->settings.cost, help).oneOf(names).showDefault();
-  command.option("--preset", options->preset, "Weights to begin with, of the cost or of 1998")
-      .oneOf({"default", "typical1998"})
+  std::vector<std::string> presets = {"default"};
+  for (const render::Preset& preset : render::presets()) presets.emplace_back(preset.name);
+  command
+      .option("--preset", options->preset,
+              "Weights to begin with: the cost's, or pattern's of 1998")
+      .oneOf(presets)
       .showDefault();
   command
       .option("--weight", options->weights,
               "Of a feature: geometry, colour or any of the mesh's own, and for pattern normal, "
-              "curvature, boundary; 0 leaves it out")
+              "curvature, boundary; 0 leaves it out. Labels without one are kept apart")
       .typeName("FEATURE=W");
   command
       .option("--texture", options->texture,
@@ -177,6 +197,8 @@ void addMeshReduce(Command mesh, Run& run) {
                "Refuse collapses that join or pinch off parts");
   command.flag("--preserve-components", options->settings.preserve_components,
                "Keep a triangle of every part until nothing else can go");
+  command.flag("--lock-borders", options->lock_borders,
+               "Keep the vertices of borders where they are until nothing else can go");
   command.option("--triangles", options->settings.min_triangles, "Stop at so many triangles")
       .showDefault();
   command

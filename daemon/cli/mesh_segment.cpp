@@ -63,7 +63,9 @@ void report(const SegmentOptions& options, const render::Segmentation& s, double
 int segmentMesh(const SegmentOptions& options) {
   if (const auto known = render::checkMeshEnding(options.output); !known)
     return fail(known.error());
-  if (const auto writable = checkWritable({options.output, options.picture}); !writable)
+  if (const auto writable = checkOutput(options.input, options.output); !writable)
+    return fail(writable.error());
+  if (const auto writable = checkWritable({options.picture}); !writable)
     return fail(writable.error());
   auto loaded = loadMesh(options.input);
   if (!loaded) return fail(loaded.error());

@@ -45,9 +45,23 @@ PatternFeature measure(const Mesh& mesh, const std::string& name) {
 
 }  // namespace
 
-Weights typicalWeights(const Mesh& mesh) {
-  Weights weights{{"geometry", 1.0F}, {"normal", 0.5F}, {"boundary", 2.0F}, {"curvature", 1.5F}};
-  if (mesh.find("colour")) weights["colour"] = 1.0F;
+const std::vector<Preset>& presets() {
+  static const std::vector<Preset> all = {{"typical1998", 1, 0.5F, "colour", 1, 2, 1.5F},
+                                          {"plane1998", 5, 0.5F, "", 0, 6, 3},
+                                          {"perceptron-segmented1998", 50, 1, "label", 10, 15, 1},
+                                          {"perceptron-colour1998", 50, 1, "colour", 50, 25, 1},
+                                          {"coleman1998", 20, 0.1F, "confidence", 2, 10, 0.25F},
+                                          {"elevation1998", 15, 0.1F, "", 0, 10, 2},
+                                          {"mug1998", 4, 1, "", 0, 0, 3}};
+  return all;
+}
+
+Weights presetWeights(const Preset& preset, const Mesh& mesh) {
+  Weights weights{{"geometry", preset.geometry},
+                  {"normal", preset.normal},
+                  {"boundary", preset.boundary},
+                  {"curvature", preset.curvature}};
+  if (mesh.find(preset.feature)) weights[preset.feature] = preset.of_feature;
   return weights;
 }
 
@@ -61,9 +75,9 @@ Weights defaultWeights(const Mesh& mesh) {
 Result<PatternSpace> PatternSpace::make(const Mesh& mesh, const Weights& weights) {
   PatternSpace space;
   for (const auto& [name, weight] : weights) {
-    if (!(weight >= 0) || !std::isfinite(weight)) {
+    if (!(weight >= 0) || !(weight <= kMostWeight)) {
       return Error{Errc::kInvalidArgument,
-                   fmt::format("weight {}: {} is not 0 or more", name, weight)};
+                   fmt::format("weight {}: {} is not from 0 to {:.0f}", name, weight, kMostWeight)};
     }
     PatternFeature f = measure(mesh, name);
     if (f.dimension == 0) {

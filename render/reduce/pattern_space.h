@@ -18,8 +18,19 @@ namespace merlin::render {
 // weight is carried along and does not count.
 using Weights = std::map<std::string, float, std::less<>>;
 
-// The typical weights of 1998 (figure 5.2); colour, where the mesh has it, weighs as the geometry.
-Weights typicalWeights(const Mesh& mesh);
+inline constexpr float kMostWeight = 1e6F;  // beyond, floats lose the geometry beside it
+
+// Weights of 1998 (chapter 5), for the cost pattern. The typical ones (figure 5.2) name none for
+// colour, which then weighs as the geometry. That the third number of segmented and of Coleman's
+// data is the label's and the confidence's is inferred.
+struct Preset {
+  const char* name;
+  float geometry, normal;
+  const char* feature;  // weighed where the mesh has it
+  float of_feature, boundary, curvature;
+};
+const std::vector<Preset>& presets();
+Weights presetWeights(const Preset& preset, const Mesh& mesh);
 
 // What MERLIN takes where nobody says otherwise. Against 1998's, normals weigh a tenth and
 // curvature nothing: on scans the RMS error is lowest for a normal's weight of 0.03 to 0.1

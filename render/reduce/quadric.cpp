@@ -105,7 +105,9 @@ std::vector<bool> lockedVertices(const ReduceSettings& settings,
 Weights quadricWeights(const Mesh& mesh) {
   Weights weights{{"geometry", 1.0F}};
   for (const Feature& f : mesh.features) {
-    if (f.name == "normal" || f.name == "label") continue;
+    // The last two: names that mean something else to the cost pattern.
+    if (f.name == "normal" || f.name == "label" || f.name == "curvature" || f.name == "boundary")
+      continue;
     // Of 0.001, 0.003 and 0.005, pictures of two coloured scans changed least at 0.003 (pixels that
     // do so by more than 15 %), a few percent off the surface without. A picture slides before it
     // fades.
@@ -121,8 +123,8 @@ Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings
   if (!space) return space.error();
   if (const auto checked = checkWeights(plan.weights, *space); !checked) return checked.error();
   plan.channels = channelsOf(mesh, *space);
-  // P12: as good as a colour of very high weight, unless somebody weighs it.
-  plan.labels_lock = mesh.find("label") && !space->find("label");
+  // P12: as good as a colour of very high weight, unless somebody weighs it, be it by 0.
+  plan.labels_lock = mesh.find("label") && !plan.weights.contains("label");
   plan.seams_shrink = settings.locked.empty();  // what has to stay is no seam's for sure
   plan.by_percent = static_cast<std::size_t>(settings.min_percent / 100 *
                                              static_cast<double>(mesh.triangleCount()));

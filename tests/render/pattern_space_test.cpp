@@ -1,5 +1,6 @@
 #include "render/reduce/pattern_space.h"
 
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <vector>
@@ -99,11 +100,11 @@ TEST(PatternSpace, NamesTheFeaturesThatThereAre) {
 }
 
 TEST(PatternSpace, NamesTheWeightThatIsNone) {
-  EXPECT_EQ(faultOf({{"heat", -1.0F}}), "weight heat: -1 is not 0 or more");
+  EXPECT_EQ(faultOf({{"heat", -1.0F}}), "weight heat: -1 is not from 0 to 1000000");
   EXPECT_EQ(faultOf({{"heat", std::numeric_limits<float>::quiet_NaN()}}),
-            "weight heat: nan is not 0 or more");
+            "weight heat: nan is not from 0 to 1000000");
   EXPECT_EQ(faultOf({{"heat", std::numeric_limits<float>::infinity()}}),
-            "weight heat: inf is not 0 or more");
+            "weight heat: inf is not from 0 to 1000000");
   EXPECT_EQ(faultOf({{"heat", 0}, {"geometry", 0}}), "no weight is more than 0");
   EXPECT_EQ(faultOf({}), "no weight is more than 0");
 }
@@ -111,10 +112,18 @@ TEST(PatternSpace, NamesTheWeightThatIsNone) {
 TEST(Weights, OfNineteenNinetyEight) {  // figure 5.2
   const Weights expected{
       {"geometry", 1.0F}, {"normal", 0.5F}, {"boundary", 2.0F}, {"curvature", 1.5F}};
-  EXPECT_EQ(typicalWeights(test::cube()), expected);
+  EXPECT_EQ(presetWeights(presets()[0], test::cube()), expected);
   Weights coloured = expected;
   coloured["colour"] = 1;
-  EXPECT_EQ(typicalWeights(richGrid()), coloured);
+  EXPECT_EQ(presetWeights(presets()[0], richGrid()), coloured);
+  const auto segmented =
+      std::ranges::find(presets(), std::string_view("perceptron-segmented1998"), &Preset::name);
+  ASSERT_NE(segmented, presets().end());
+  EXPECT_EQ(presetWeights(*segmented, richGrid()), (Weights{{"geometry", 50.0F},
+                                                            {"normal", 1.0F},
+                                                            {"label", 10.0F},
+                                                            {"boundary", 15.0F},
+                                                            {"curvature", 1.0F}}));
 }
 
 TEST(Weights, WhereNobodySaysOtherwise) {

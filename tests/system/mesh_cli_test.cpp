@@ -189,6 +189,69 @@ TEST_F(MeshCli, ExportsToEveryFormatAndSaysWhatIsLeftOut) {
   EXPECT_EQ(infoOf(dir_ / "a.obj")["triangles"], 1000);
 }
 
+// What would lose something, or be taken and not meant.
+TEST_F(MeshCli, RefusesWhatWouldNotDoWhatItSays) {
+  const std::string copy = dir_ / "scan.ply", model = dir_ / "a.mrm";
+  std::filesystem::copy_file(scan_, copy);
+  std::filesystem::create_symlink(copy, dir_ / "link.mrm");
+  const auto refused = [&](std::vector<std::string> words, const std::string& why) {
+    words.insert(words.begin(), {kMerlin, "mesh"});
+    const Outcome done = run(words);
+    EXPECT_NE(done.status, 0) << done.output;
+    EXPECT_NE(done.output.find(why), std::string::npos) << done.output;
+  };
+  refused({"reduce", copy, "-o", copy}, "a model's name ends in .mrm");
+  refused({"reduce", copy, "-o", dir_ / "link.mrm"}, "link.mrm: is what is read");
+  refused({"export", copy, "-o", copy}, "is what is read");
+  refused({"segment", copy, "-o", copy, "--segments", "2"}, "is what is read");
+  EXPECT_TRUE(readText(copy) == readText(scan_));
+  refused({"export", copy, "--percent", "5", "-o", dir_ / "b.ply"}, "has one resolution");
+  refused({"compare", copy, copy, "--error", "1"}, "has one resolution");
+  refused({"reduce", copy, "-o", model, "--triangles", "-5"}, "-5 is less than 0");
+  refused({"export", copy, "-o", dir_ / "b.ply", "--error", "nan"}, "nan is no number");
+  refused({"reduce", copy, "-o", model, "--weight", "colour=1e18"}, "is not from 0 to 1000000");
+  refused({"reduce", copy, "-o", model, "--preset", "mug1998"}, "add --cost pattern");
+  refused({"reduce", copy, "-o", model, "--cost", "pattern", "--lock-borders"}, "--lock-borders");
+  EXPECT_FALSE(std::filesystem::exists(model));
+}
+
+// A sheet of 20 x 20 vertices, its left half labelled 1, bent upwards.
+std::string labelledSheet() {
+  std::string vertices, faces;
+  for (int y = 0; y < 20; ++y) {
+    for (int x = 0; x < 20; ++x) {
+      vertices += fmt::format("{} {} {} {}\n", x, y, 0.01 * x * x + 0.02 * y * y, x < 10 ? 1 : 0);
+      const int v = 20 * y + x;
+      if (x < 19 && y < 19)
+        faces += fmt::format("3 {} {} {}\n3 {} {} {}\n", v, v + 1, v + 20, v + 1, v + 21, v + 20);
+    }
+  }
+  return "ply\nformat ascii 1.0\nelement vertex 400\nproperty float x\nproperty float y\n"
+         "property float z\nproperty float label\nelement face 722\n"
+         "property list uchar int vertex_indices\nend_header\n" +
+         vertices + faces;
+}
+
+TEST_F(MeshCli, LocksBordersAndLeavesLabelsToWhomWeighsThem) {
+  writeText(dir_ / "sheet.ply", labelledSheet());
+  const auto cornersAt = [&](const std::vector<std::string>& also, const char* triangles) {
+    std::vector<std::string> words = {kMerlin, "mesh",        "reduce", dir_ / "sheet.ply",
+                                      "-o",    dir_ / "a.mrm"};
+    words.insert(words.end(), also.begin(), also.end());
+    EXPECT_EQ(run(words).status, 0);
+    const Outcome out = run({kMerlin, "mesh", "export", dir_ / "a.mrm", "--triangles", triangles,
+                             "-o", dir_ / "a.ply"});
+    EXPECT_EQ(out.status, 0) << out.output;
+    return readText(dir_ / "a.ply");
+  };
+  const auto vertices = [&] { return infoOf(dir_ / "a.ply")["vertices"].get<int>(); };
+  cornersAt({"--lock-borders"}, "90");
+  EXPECT_GE(vertices(), 76) << "as many as the border has";
+  cornersAt({}, "90");
+  EXPECT_LT(vertices(), 70);
+  EXPECT_TRUE(cornersAt({"--weight", "label=0"}, "60") != cornersAt({}, "60"));
+}
+
 TEST_F(MeshCli, ExportTakesAnErrorInPercentOrInUnits) {
   ASSERT_EQ(run({kMerlin, "mesh", "reduce", scan_, "-o", dir_ / "a.mrm"}).status, 0);
   const double diagonal = infoOf(dir_ / "a.mrm")["diagonal"];
