@@ -66,7 +66,8 @@ void addMeshExport(Command mesh, Run& run) {
   Command command = mesh.subcommand(
       "export",
       "One resolution of a model as a mesh: .ply (every feature), .glb or .gltf (features of up to "
-      "4 dimensions), .obj and .iv (Open Inventor; normals, colours, texture coordinates), .stl "
+      "4 dimensions, a texture's picture), .obj and .iv (Open Inventor; normals, colours, texture "
+      "coordinates), .stl "
       "(triangles alone).\nExample: merlin mesh export scan.mrm --percent 5 -o scan5.ply\nAll of "
       "them for an Open Inventor viewer that finds SoMRFaceSet.so: --multiresolution -o scan.iv");
   command.option("model", options->model, "The model, or a mesh").required().typeName("MODEL.mrm");

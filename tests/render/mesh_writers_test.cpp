@@ -229,6 +229,31 @@ TEST(GltfWriter, TurnsFeaturesIntoWhatTheFormatWants) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(colour[i], linear[i], 1e-6) << i;
 }
 
+TEST(GltfWriter, TakesTheTexturesPictureAlong) {
+  const TempDir dir;
+  Mesh mesh = richSquare();
+  mesh.texture = {0x89, 'P', 'N', 'G', 7};
+  EXPECT_EQ(written(dir / "a.glb", mesh), Names{"spectrum"});
+  const Gltf gltf = readGlb(dir / "a.glb");
+  const Json& matt = gltf.json["materials"][0]["pbrMetallicRoughness"];
+  const Json& texture = gltf.json["textures"][matt["baseColorTexture"]["index"].get<std::size_t>()];
+  const Json& image = gltf.json["images"][texture["source"].get<std::size_t>()];
+  EXPECT_EQ(image["mimeType"], "image/png");
+  const Json& view = gltf.json["bufferViews"][image["bufferView"].get<std::size_t>()];
+  EXPECT_EQ(gltf.buffer.substr(view["byteOffset"].get<std::size_t>(),
+                               view["byteLength"].get<std::size_t>()),
+            "\x89PNG\x07");
+  EXPECT_EQ(gltf.json["buffers"][0]["byteLength"], gltf.buffer.size());
+  EXPECT_EQ(gltf.buffer.size() % 4, 0u);
+  const Json& attributes = gltf.json["meshes"][0]["primitives"][0]["attributes"];
+  EXPECT_FALSE(attributes.contains("COLOR_0")) << "glTF would multiply it with the picture's";
+  EXPECT_EQ(gltf.attribute("_colour").size(), 12u);
+  mesh.texture[0] = 0xFF;
+  written(dir / "a.gltf", mesh);
+  EXPECT_EQ(Json::parse(readText(dir / "a.gltf"))["images"][0]["mimeType"], "image/jpeg");
+  EXPECT_EQ(written(dir / "a.stl", mesh).back(), "the texture's picture (.glb and .gltf have)");
+}
+
 TEST(GltfWriter, WritesTheSameBytesIntoOneJsonFile) {
   const TempDir dir;
   for (const std::uint32_t columns : {1U, 2U, 3U}) {  // buffers of every length modulo 3

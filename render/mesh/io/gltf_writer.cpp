@@ -4,7 +4,8 @@
 //
 // The format says that colours are linear, that normals have unit length, and that texture
 // coordinates start at the top left: each is turned into that. Features without a name in glTF are
-// application-specific attributes, "_heat".
+// application-specific attributes, "_heat"; so are colours beside a texture's picture, which glTF
+// would multiply.
 #include <algorithm>
 #include <cmath>
 
@@ -30,8 +31,8 @@ const char* typeOf(std::size_t dimension) {
   return kTypes[dimension];
 }
 
-std::string attributeOf(const Feature& f) {
-  if (!isUsual(f)) return "_" + f.name;
+std::string attributeOf(const Feature& f, bool textured) {
+  if (!isUsual(f) || (textured && f.name == "colour")) return "_" + f.name;
   return f.name == "normal" ? "NORMAL" : f.name == "colour" ? "COLOR_0" : "TEXCOORD_0";
 }
 
@@ -55,11 +56,18 @@ void adapt(const Feature& f, float* row) {
   }
 }
 
-// What stands in the buffer, in order: positions, features, corners; 4 bytes a number.
-std::uint64_t numbersIn(const Mesh& mesh) {
+bool isTextured(const Mesh& mesh) { return !mesh.texture.empty() && findOf(mesh, "texcoord", 2); }
+
+const char* typeOf(std::span<const std::uint8_t> picture) {
+  return picture[0] == 0x89 ? "image/png" : "image/jpeg";  // the two that the mesh may hold
+}
+
+// What stands in the buffer, in order: positions, features, corners, 4 bytes a number; the picture,
+// and up to a multiple of 4.
+std::uint64_t bytesIn(const Mesh& mesh) {
   std::uint64_t numbers = mesh.positions.size() + mesh.triangles.size();
   for (const Feature& f : mesh.features) numbers += carries(f) ? f.values.size() : 0;
-  return numbers;
+  return 4 * numbers + (isTextured(mesh) ? (mesh.texture.size() + 3) / 4 * 4 : 0);
 }
 
 class Document {
@@ -70,13 +78,16 @@ class Document {
     position["min"] = box.low;
     position["max"] = box.high;
     for (const Feature& f : mesh.features) {
-      if (carries(f)) add(attributeOf(f), f.dimension);
+      if (carries(f)) add(attributeOf(f, isTextured(mesh)), f.dimension);
     }
     addView(mesh.triangles.size(), kIndexBuffer);
     accessors_.push_back({{"bufferView", accessors_.size()},
                           {"componentType", kUnsignedInt},
                           {"count", mesh.triangles.size()},
                           {"type", "SCALAR"}});
+    if (!isTextured(mesh)) return;
+    views_.push_back({{"buffer", 0}, {"byteOffset", bytes_}, {"byteLength", mesh.texture.size()}});
+    bytes_ = bytesIn(mesh);
   }
 
   // `uri` is empty where the buffer is the file's binary chunk.
@@ -87,16 +98,22 @@ class Document {
                             {"indices", accessors_.size() - 1},
                             {"material", 0},
                             {"mode", 4}};
-    const Json matt = {{"metallicFactor", 0}, {"roughnessFactor", 1}};
-    const Json document = {{"asset", {{"version", "2.0"}, {"generator", "MERLIN"}}},
-                           {"scene", 0},
-                           {"scenes", {{{"nodes", {0}}}}},
-                           {"nodes", {{{"mesh", 0}}}},
-                           {"meshes", {{{"primitives", {primitive}}}}},
-                           {"materials", {{{"pbrMetallicRoughness", matt}, {"doubleSided", true}}}},
-                           {"buffers", {buffer}},
-                           {"bufferViews", views_},
-                           {"accessors", accessors_}};
+    Json matt = {{"metallicFactor", 0}, {"roughnessFactor", 1}};
+    if (isTextured(mesh_)) matt["baseColorTexture"] = {{"index", 0}};
+    Json document = {{"asset", {{"version", "2.0"}, {"generator", "MERLIN"}}},
+                     {"scene", 0},
+                     {"scenes", {{{"nodes", {0}}}}},
+                     {"nodes", {{{"mesh", 0}}}},
+                     {"meshes", {{{"primitives", {primitive}}}}},
+                     {"materials", {{{"pbrMetallicRoughness", matt}, {"doubleSided", true}}}},
+                     {"buffers", {buffer}},
+                     {"bufferViews", views_},
+                     {"accessors", accessors_}};
+    if (isTextured(mesh_)) {
+      document["images"] =
+          Json::array({{{"bufferView", views_.size() - 1}, {"mimeType", typeOf(mesh_.texture)}}});
+      document["textures"] = Json::array({{{"source", 0}}});
+    }
     return document.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
 
@@ -146,7 +163,10 @@ bool writeBuffer(const Mesh& mesh, const WriteBytes& bytes) {
     appendLe32(row, v);
     if (!put()) return false;
   }
-  return true;
+  if (!isTextured(mesh)) return true;
+  row.assign(mesh.texture.begin(), mesh.texture.end());
+  row.resize((row.size() + 3) / 4 * 4);
+  return put();
 }
 
 std::string jsonChunk(const Mesh& mesh) {
@@ -156,7 +176,7 @@ std::string jsonChunk(const Mesh& mesh) {
 }
 
 std::uint64_t glbSize(const Mesh& mesh) {
-  return 12 + 8 + jsonChunk(mesh).size() + 8 + 4 * numbersIn(mesh);
+  return 12 + 8 + jsonChunk(mesh).size() + 8 + bytesIn(mesh);
 }
 
 Result<Ok> fitsGlb(const Mesh& mesh) {
@@ -173,7 +193,7 @@ bool writeGlb(const Mesh& mesh, const WriteBytes& bytes) {
   appendLe32(head, static_cast<std::uint32_t>(glbSize(mesh)));
   appendLe32(head, static_cast<std::uint32_t>(json.size()));
   head += "JSON" + json;
-  appendLe32(head, static_cast<std::uint32_t>(4 * numbersIn(mesh)));
+  appendLe32(head, static_cast<std::uint32_t>(bytesIn(mesh)));
   head += std::string("BIN\0", 4);
   return bytes(std::as_bytes(std::span(head))) && writeBuffer(mesh, bytes);
 }
@@ -234,7 +254,7 @@ bool writeGltf(const Mesh& mesh, const WriteBytes& bytes) {
 
 }  // namespace
 
-const MeshWriter kGlbWriter{"glb", carries, writeGlb, fitsGlb};
-const MeshWriter kGltfWriter{"gltf", carries, writeGltf};
+const MeshWriter kGlbWriter{"glb", carries, writeGlb, fitsGlb, true};
+const MeshWriter kGltfWriter{"gltf", carries, writeGltf, nullptr, true};
 
 }  // namespace merlin::render

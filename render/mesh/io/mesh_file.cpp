@@ -123,7 +123,8 @@ Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh) {
   for (const Feature& f : mesh.features) {
     if (!writer.carries(f)) written.left_out.push_back(f.name);
   }
-  if (!mesh.texture.empty()) written.left_out.emplace_back("the texture's picture");
+  if (!mesh.texture.empty() && !writer.textured)
+    written.left_out.emplace_back("the texture's picture (.glb and .gltf have)");
   return written;
 }
 

@@ -15,6 +15,7 @@ struct MeshWriter {
   bool (*write)(const Mesh&, const WriteBytes&);  // false where the file takes no more
   // Whether the mesh fits into the format; the error is without the file's name. May be null.
   Result<Ok> (*fits)(const Mesh&) = nullptr;
+  bool textured = false;  // it has a place for the texture's picture
 };
 
 extern const MeshWriter kPlyWriter, kObjWriter, kGlbWriter, kGltfWriter, kStlWriter,
