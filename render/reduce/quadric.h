@@ -18,6 +18,7 @@ struct QuadricPlan {
   Weights weights;
   std::vector<ChannelFeature> channels;
   bool labels_lock = false;
+  float label_scale = 0;       // of the step between locked labels: model units
   bool seams_shrink = false;   // both sides at once; else their vertices stay
   std::size_t by_percent = 0;  // triangles that settings.min_percent leaves
   QuadricReducer::Limits limits;

@@ -316,6 +316,13 @@ TEST(Quadric, LabelsAreNeverMixed) {
   for (const float x : r.log.features[1]) EXPECT_TRUE(x == 0 || x == 1) << x;
 }
 
+TEST(Quadric, LockedLabelsKeepTheEdgeBetweenThem) {
+  const Mesh mesh = step("label");
+  const Mesh kept = levelOf(mesh, reduced(mesh), 60);
+  const Mesh lost = levelOf(mesh, reduced(mesh, {.weights = {{"geometry", 1}, {"label", 0}}}), 60);
+  EXPECT_LT(2 * stepError(kept), stepError(lost));
+}
+
 TEST(Quadric, WeightsOfThePatternAreRefused) {
   const Mesh mesh = withNormals(test::grid(3, 3));
   for (const char* name : {"normal", "curvature", "boundary"}) {
