@@ -80,9 +80,9 @@ std::string faultOf(const std::string& value) {
 
 template <typename T>
 Argument Command::option(const std::string& names, T& value, const std::string& help) {
-  const Argument argument(app_->add_option(names, value, help));
+  Argument argument(app_->add_option(names, value, help));
   using Number = typename Plain<T>::type;
-  return std::is_arithmetic_v<Number> ? Argument(argument).check(faultOf<Number>) : argument;
+  return std::is_arithmetic_v<Number> ? argument.check(faultOf<Number>) : argument;
 }
 template Argument Command::option(const std::string&, int&, const std::string&);
 template Argument Command::option(const std::string&, unsigned&, const std::string&);

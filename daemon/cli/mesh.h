@@ -1,6 +1,7 @@
 // The subcommands of `merlin mesh`, and how they open a model of either kind.
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,15 +39,18 @@ std::vector<Repair> repairsOf(const render::LoadedMesh& loaded);
 // Those that happened as one line, "mended: 3 triangles with a vertex twice, ..."; else empty.
 std::string mendedText(const render::LoadedMesh& loaded);
 
-// Before any work: whether `output` can be written and is not what is read. Errors:
-// kInvalidArgument, checkWritable()'s.
-Result<Ok> checkOutput(const std::string& input, const std::string& output);
+// Before any work: whether these can be written and none is what is read; empty ones are none.
+// Errors: kInvalidArgument, checkWritable()'s.
+Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::string> outputs);
 
 // Puts what `text`, "colour=0.5", says into `weights`. Errors: kInvalidArgument.
 Result<Ok> setWeight(const std::string& text, render::Weights& weights);
 
 // A mesh as a model of one level.
 render::Dendrogram asModel(const render::Mesh& mesh);
+
+// That another resolution than the finest is asked of what has no other.
+Error hasOneResolution(const std::string& path);
 
 // Of the finest resolution: what percentages of the diagonal are of.
 render::Box boxOf(const render::Dendrogram& model);

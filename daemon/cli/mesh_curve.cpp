@@ -122,16 +122,11 @@ void printTable(const Curve& curve) {
 }
 
 int curveOfModel(const CurveOptions& options) {
-  if (const auto writable = checkWritable({options.csv, options.svg}); !writable)
+  if (const auto writable = checkOutputs(options.model, {options.csv, options.svg}); !writable)
     return fail(writable.error());
   const auto model = openModel(options.model);
   if (!model) return fail(model.error());
-  if (model->levels() < 2) {
-    return fail({Errc::kInvalidArgument,
-                 fmt::format("{}: has one resolution only (make a model of it first: merlin mesh "
-                             "reduce {} -o OUT.mrm)",
-                             options.model, options.model)});
-  }
+  if (model->levels() < 2) return fail(hasOneResolution(options.model));
   const auto curve = measure(*model, options);
   if (!curve) return fail({curve.error().code, options.model + ": " + curve.error().what});
   printTable(*curve);

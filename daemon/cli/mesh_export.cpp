@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "daemon/base/files.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
 #include "render/inventor/multiresolution_writer.h"
@@ -29,7 +28,7 @@ int exportAll(const ExportOptions& options) {
     return fail({Errc::kInvalidArgument,
                  options.output + ": --multiresolution is written as .iv (Open Inventor)"});
   }
-  if (const auto writable = checkOutput(options.model, options.output); !writable)
+  if (const auto writable = checkOutputs(options.model, {options.output}); !writable)
     return fail(writable.error());
   const auto model = openModel(options.model);
   if (!model) return fail(model.error());
@@ -44,7 +43,7 @@ int exportAll(const ExportOptions& options) {
 int exportMesh(const ExportOptions& options) {
   if (const auto known = render::checkMeshEnding(options.output); !known)
     return fail(known.error());
-  if (const auto writable = checkOutput(options.model, options.output); !writable)
+  if (const auto writable = checkOutputs(options.model, {options.output}); !writable)
     return fail(writable.error());
   const auto model = openModel(options.model);
   if (!model) return fail(model.error());

@@ -68,11 +68,21 @@ render::Box boxOf(const render::Dendrogram& model) {
   return box;
 }
 
-Result<Ok> checkOutput(const std::string& input, const std::string& output) {
+Error hasOneResolution(const std::string& path) {
+  const std::string advice =
+      path.ends_with(".mrm")
+          ? ""
+          : fmt::format(" (make a model of it first: merlin mesh reduce {} -o OUT.mrm)", path);
+  return {Errc::kInvalidArgument, path + ": has one resolution only" + advice};
+}
+
+Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::string> outputs) {
   std::error_code absent;
-  if (std::filesystem::equivalent(input, output, absent))
-    return Error{Errc::kInvalidArgument, output + ": is what is read; name another file"};
-  return checkWritable(output);
+  for (const std::string& output : outputs) {
+    if (std::filesystem::equivalent(input, output, absent))
+      return Error{Errc::kInvalidArgument, output + ": is what is read; name another file"};
+  }
+  return checkWritable(outputs);
 }
 
 Result<Ok> setWeight(const std::string& text, render::Weights& weights) {
@@ -118,16 +128,11 @@ Result<std::size_t> LevelChoice::levelOf(const render::Dendrogram& model,
   const double asked =
       triangles ? static_cast<double>(*triangles)
                 : percent.value_or(100) / 100 * static_cast<double>(model.triangleCount());
-  const auto least = static_cast<double>(model.trianglesAt(level));
-  const bool one = model.levels() == 1;
-  if (one && (asked < least || error_percent || error_units)) {
-    return Error{Errc::kInvalidArgument,
-                 fmt::format("{}: has one resolution, {} triangles (all of them make a model: "
-                             "merlin mesh reduce)",
-                             path, model.triangleCount())};
-  }
-  if (std::floor(asked) < least)
-    fmt::print(stderr, "merlin: note: {}: goes down to {} triangles\n", path, least);
+  const std::size_t got = model.trianglesAt(level);
+  const bool missed = std::floor(asked) < static_cast<double>(got);
+  if (model.levels() == 1 && (missed || error_percent || error_units))
+    return hasOneResolution(path);
+  if (missed) fmt::print(stderr, "merlin: note: {}: goes down to {} triangles\n", path, got);
   return level;
 }
 

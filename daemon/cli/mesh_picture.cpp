@@ -34,6 +34,10 @@ Result<Ok> appendModel(const PictureOptions& options, const std::string& path, I
 }
 
 int picture(const PictureOptions& options) {
+  for (const std::string& model : options.models) {
+    if (const auto writable = checkOutputs(model, {options.output}); !writable)
+      return fail(writable.error());
+  }
   render::prepareSoftwareGl(0);
   Image strip;
   for (const std::string& model : options.models) {

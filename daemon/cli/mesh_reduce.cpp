@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clock.h"
-#include "daemon/base/files.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
 #include "daemon/cli/mesh_memory.h"
@@ -135,7 +134,7 @@ Result<Ok> checkOptions(const ReduceOptions& options) {
   if (options.lock_borders && pattern)
     return Error{Errc::kInvalidArgument,
                  "--lock-borders: of the cost quadric; for pattern: --weight boundary=W"};
-  return checkOutput(options.input, options.output);
+  return checkOutputs(options.input, {options.output});
 }
 
 int reduceMesh(const ReduceOptions& options) {

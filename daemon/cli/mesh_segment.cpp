@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clock.h"
-#include "daemon/base/files.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
 #include "daemon/cli/model_painter.h"
@@ -63,9 +62,8 @@ void report(const SegmentOptions& options, const render::Segmentation& s, double
 int segmentMesh(const SegmentOptions& options) {
   if (const auto known = render::checkMeshEnding(options.output); !known)
     return fail(known.error());
-  if (const auto writable = checkOutput(options.input, options.output); !writable)
-    return fail(writable.error());
-  if (const auto writable = checkWritable({options.picture}); !writable)
+  if (const auto writable = checkOutputs(options.input, {options.output, options.picture});
+      !writable)
     return fail(writable.error());
   auto loaded = loadMesh(options.input);
   if (!loaded) return fail(loaded.error());

@@ -204,6 +204,12 @@ TEST_F(MeshCli, RefusesWhatWouldNotDoWhatItSays) {
   refused({"reduce", copy, "-o", dir_ / "link.mrm"}, "link.mrm: is what is read");
   refused({"export", copy, "-o", copy}, "is what is read");
   refused({"segment", copy, "-o", copy, "--segments", "2"}, "is what is read");
+  refused({"segment", copy, "-o", dir_ / "b.ply", "--picture", copy, "--segments", "2"},
+          "is what is read");
+  refused({"picture", copy, "-o", copy}, "is what is read");
+  refused({"picture", scan_, copy, "-o", copy}, "is what is read");
+  refused({"curve", copy, "--csv", copy}, "is what is read");
+  refused({"curve", copy, "--svg", copy}, "is what is read");
   EXPECT_TRUE(readText(copy) == readText(scan_));
   refused({"export", copy, "--percent", "5", "-o", dir_ / "b.ply"}, "has one resolution");
   refused({"compare", copy, copy, "--error", "1"}, "has one resolution");

@@ -56,9 +56,12 @@ void adapt(const Feature& f, float* row) {
   }
 }
 
+// Chunks and views begin at multiples of 4.
+std::size_t padded(std::size_t bytes) { return (bytes + 3) / 4 * 4; }
+
 bool isTextured(const Mesh& mesh) { return !mesh.texture.empty() && findOf(mesh, "texcoord", 2); }
 
-const char* typeOf(std::span<const std::uint8_t> picture) {
+const char* mimeTypeOf(std::span<const std::uint8_t> picture) {
   return picture[0] == 0x89 ? "image/png" : "image/jpeg";  // the two that the mesh may hold
 }
 
@@ -67,7 +70,7 @@ const char* typeOf(std::span<const std::uint8_t> picture) {
 std::uint64_t bytesIn(const Mesh& mesh) {
   std::uint64_t numbers = mesh.positions.size() + mesh.triangles.size();
   for (const Feature& f : mesh.features) numbers += carries(f) ? f.values.size() : 0;
-  return 4 * numbers + (isTextured(mesh) ? (mesh.texture.size() + 3) / 4 * 4 : 0);
+  return 4 * numbers + (isTextured(mesh) ? padded(mesh.texture.size()) : 0);
 }
 
 class Document {
@@ -110,8 +113,8 @@ class Document {
                      {"bufferViews", views_},
                      {"accessors", accessors_}};
     if (isTextured(mesh_)) {
-      document["images"] =
-          Json::array({{{"bufferView", views_.size() - 1}, {"mimeType", typeOf(mesh_.texture)}}});
+      document["images"] = Json::array(
+          {{{"bufferView", views_.size() - 1}, {"mimeType", mimeTypeOf(mesh_.texture)}}});
       document["textures"] = Json::array({{{"source", 0}}});
     }
     return document.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -165,13 +168,13 @@ bool writeBuffer(const Mesh& mesh, const WriteBytes& bytes) {
   }
   if (!isTextured(mesh)) return true;
   row.assign(mesh.texture.begin(), mesh.texture.end());
-  row.resize((row.size() + 3) / 4 * 4);
+  row.resize(padded(row.size()));
   return put();
 }
 
 std::string jsonChunk(const Mesh& mesh) {
   std::string json = Document(mesh).text("");
-  json.resize((json.size() + 3) / 4 * 4, ' ');  // chunks are multiples of 4
+  json.resize(padded(json.size()), ' ');
   return json;
 }
 
