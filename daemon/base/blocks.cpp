@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <optional>
 #include <thread>
-#include <vector>
+
+#include "daemon/base/thread_team.h"
 
 namespace merlin {
 
 bool forBlocks(unsigned threads, std::size_t blocks, const std::function<void(std::size_t)>& work,
                const std::function<bool(std::size_t)>& goOn) {
+  if (blocks == 0) return true;
   std::atomic<std::size_t> next{0}, done{0};
   std::atomic<bool> cancelled{false};
   std::atomic_flag thrown;
@@ -28,15 +31,15 @@ bool forBlocks(unsigned threads, std::size_t blocks, const std::function<void(st
     ++done;
     return true;
   };
-  {
-    std::vector<std::jthread> others;
-    const std::size_t wanted = std::min<std::size_t>(threads, blocks);
-    for (std::size_t i = 1; i < wanted; ++i) {
-      others.emplace_back([&] {
-        while (doOne()) {
-        }
-      });
+  const std::function<void()> others = [&] {
+    while (doOne()) {
     }
+  };
+  {
+    std::optional<ThreadTeam> own;
+    ThreadTeam* const idle = ThreadTeam::idle();
+    const std::size_t wanted = std::min<std::size_t>(threads, blocks);
+    const ThreadTeam::Turn turn = (idle ? *idle : own.emplace()).start(wanted - 1, others);
     while (doOne()) {
       if (goOn && !goOn(done)) cancelled = true;
     }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/thread_team.h"
 #include "render/reduce/costs.h"
 #include "render/reduce/memory.h"
 
@@ -62,6 +63,7 @@ Result<Reduction> reduce(const Mesh& mesh, const ReduceSettings& settings,
   assert(mesh.find("normal") && mesh.find("normal")->dimension == 3);
   if (const auto checked = check(settings); !checked) return checked.error();
   if (const auto fits = blocksFor(sizeOf(mesh), settings); !fits) return fits.error();
+  const ThreadTeam team;
   return findCost(settings.cost)->reduce(mesh, settings, progress);
 }
 

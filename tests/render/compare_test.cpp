@@ -4,11 +4,9 @@
 #include <cstring>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
 
 #include <gtest/gtest.h>
 
-#include "daemon/base/blocks.h"
 #include "tests/support/meshes.h"
 
 namespace merlin::render {
@@ -332,20 +330,6 @@ TEST(Compare, TellsHowFarItIsAndIsCancelled) {
       compare(a, b, settings, [&](const CompareProgress& p) { return p.share < 0.7; });
   ASSERT_FALSE(cancelled);
   EXPECT_EQ(cancelled.error().code, Errc::kClosed);
-}
-
-TEST(Blocks, AreDoneOnceEachAndWhatTheyThrowComesOut) {
-  for (const unsigned threads : {1u, 2u, 5u}) {
-    std::vector<int> calls(1000);
-    const auto goOn = [](std::size_t) { return true; };
-    EXPECT_TRUE(forBlocks(
-        threads, 1000, [&](std::size_t block) { ++calls[block]; }, goOn));
-    EXPECT_EQ(calls, std::vector<int>(1000, 1));
-    const auto throwing = [](std::size_t block) {
-      if (block == 500) throw std::runtime_error("500");
-    };
-    EXPECT_THROW(forBlocks(threads, 1000, throwing, goOn), std::runtime_error);
-  }
 }
 
 }  // namespace

@@ -1,0 +1,71 @@
+#include "daemon/base/thread_team.h"
+
+#include <chrono>
+#include <system_error>
+#include <utility>
+
+namespace merlin {
+namespace {
+
+constexpr std::chrono::microseconds kAwake{200};
+
+thread_local ThreadTeam* latest = nullptr;
+
+// Returns the value once it is another than `old`.
+int awaitOther(const std::atomic<int>& value, int old) noexcept {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point until = Clock::now() + kAwake;
+  for (;;) {
+    const int now = value.load(std::memory_order_acquire);
+    if (now != old) return now;
+    if (Clock::now() < until)
+      std::this_thread::yield();
+    else
+      value.wait(old, std::memory_order_acquire);
+  }
+}
+
+}  // namespace
+
+ThreadTeam::ThreadTeam() noexcept : outer_(std::exchange(latest, this)) {}
+
+ThreadTeam::~ThreadTeam() {
+  latest = outer_;
+  job_ = nullptr;
+  ++turn_;
+  turn_.notify_all();
+}
+
+ThreadTeam* ThreadTeam::idle() noexcept { return latest && !latest->job_ ? latest : nullptr; }
+
+ThreadTeam::Turn ThreadTeam::start(std::size_t members, const std::function<void()>& job) {
+  try {
+    while (members_.size() < members) {
+      members_.emplace_back(
+          [this, member = members_.size(), turn = turn_.load()] { work(member, turn); });
+    }
+  } catch (const std::system_error&) {  // then those there are do it
+  }
+  job_ = &job;
+  wanted_ = members;
+  busy_ = static_cast<int>(members_.size());
+  ++turn_;
+  turn_.notify_all();
+  return Turn(*this);
+}
+
+void ThreadTeam::finish() noexcept {
+  for (int left = busy_; left != 0;) left = awaitOther(busy_, left);
+  job_ = nullptr;
+}
+
+void ThreadTeam::work(std::size_t member, int turn) noexcept {
+  for (;;) {
+    turn = awaitOther(turn_, turn);
+    if (!job_) return;
+    if (member < wanted_) (*job_)();
+    if (--busy_ == 0) busy_.notify_one();
+  }
+}
+
+}  // namespace merlin

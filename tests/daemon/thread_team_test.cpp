@@ -1,0 +1,109 @@
+// Blocks of work on several threads, with a team that stays and without.
+#include "daemon/base/thread_team.h"
+
+#include <algorithm>
+#include <atomic>
+#include <barrier>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "daemon/base/blocks.h"
+
+namespace merlin {
+namespace {
+
+const auto goOn = [](std::size_t) { return true; };
+
+// With a team and without.
+class ForBlocks : public testing::TestWithParam<bool> {
+ protected:
+  ForBlocks() {
+    if (GetParam()) team_.emplace();
+  }
+
+ private:
+  std::optional<ThreadTeam> team_;
+};
+INSTANTIATE_TEST_SUITE_P(Team, ForBlocks, testing::Bool(),
+                         [](const auto& test) { return test.param ? "Stays" : "IsNone"; });
+
+TEST_P(ForBlocks, AreDoneOnceEachAndWhatTheyThrowComesOut) {
+  for (const unsigned threads : {1u, 5u, 2u}) {
+    std::vector<int> calls(1000);
+    EXPECT_TRUE(forBlocks(
+        threads, 1000, [&](std::size_t block) { ++calls[block]; }, goOn));
+    EXPECT_EQ(calls, std::vector<int>(1000, 1));
+    const auto throwing = [](std::size_t block) {
+      if (block == 500) throw std::runtime_error("500");
+    };
+    EXPECT_THROW(forBlocks(threads, 1000, throwing, goOn), std::runtime_error);
+  }
+}
+
+TEST_P(ForBlocks, EndBeforeWhatIsThrownBetweenThemComesOut) {
+  std::vector<int> calls(100);
+  const auto work = [&](std::size_t block) { ++calls[block]; };
+  const auto thrower = [](std::size_t) -> bool { throw std::runtime_error("stop"); };
+  EXPECT_THROW(forBlocks(3, 100, work, thrower), std::runtime_error);
+  const std::vector<int> then = calls;
+  EXPECT_TRUE(forBlocks(3, 100, work));
+  for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(calls[i], then[i] + 1);
+}
+
+TEST_P(ForBlocks, MayHaveBlocksOfTheirOwn) {
+  std::atomic<int> calls{0};
+  EXPECT_TRUE(
+      forBlocks(3, 4, [&](std::size_t) { forBlocks(2, 5, [&](std::size_t) { ++calls; }); }));
+  EXPECT_EQ(calls, 20);
+}
+
+thread_local int turns_of_this = 0;
+
+// Turns in which each thread waits for the others, so that all have a part in each; how many the
+// thread that had the fewest has had.
+int fewestTurns(unsigned threads, int turns) {
+  std::vector<int> of(threads);
+  turns_of_this = 0;
+  for (int turn = 0; turn < turns; ++turn) {
+    std::barrier all(threads);
+    forBlocks(threads, threads, [&](std::size_t block) {
+      all.arrive_and_wait();
+      of[block] = ++turns_of_this;
+    });
+  }
+  return *std::min_element(of.begin(), of.end());
+}
+
+TEST(ThreadTeam, Stays) {
+  const ThreadTeam team;
+  EXPECT_EQ(fewestTurns(3, 50), 50);
+  const ThreadTeam inner;
+  EXPECT_EQ(fewestTurns(4, 50), 50);
+}
+
+TEST(ThreadTeam, HasAsManyAtWorkAsIsSaid) {
+  ThreadTeam team;
+  for (const std::size_t members : {3U, 1U, 0U, 2U}) {
+    std::atomic<std::size_t> calls{0};
+    const std::function<void()> job = [&] { ++calls; };
+    {
+      const ThreadTeam::Turn turn = team.start(members, job);
+      EXPECT_EQ(ThreadTeam::idle(), nullptr);
+    }
+    EXPECT_EQ(calls, members);
+    EXPECT_EQ(ThreadTeam::idle(), &team);
+  }
+}
+
+TEST(ThreadTeam, EndsWithItsScope) {
+  { const ThreadTeam team; }
+  EXPECT_EQ(ThreadTeam::idle(), nullptr);
+  EXPECT_EQ(fewestTurns(3, 50), 1);
+}
+
+}  // namespace
+}  // namespace merlin
