@@ -54,6 +54,7 @@ void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
   if (options.json) {
     nlohmann::ordered_json json = {{"output", options.output},
                                    {"cost", options.settings.cost},
+                                   {"fast", options.settings.fast},
                                    {"triangles", loaded.mesh.triangleCount()},
                                    {"triangles_left", r.triangles},
                                    {"collapses", r.collapses},
@@ -198,6 +199,8 @@ void addMeshReduce(Command mesh, Run& run) {
                "Keep a triangle of every part until nothing else can go");
   command.flag("--lock-borders", options->lock_borders,
                "Keep the vertices of borders where they are until nothing else can go");
+  command.flag("--fast", options->settings.fast,
+               "A tenth to a third less time, for about 6 % more error");
   command.option("--triangles", options->settings.min_triangles, "Stop at so many triangles")
       .showDefault();
   command

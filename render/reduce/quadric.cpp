@@ -151,6 +151,7 @@ Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings
       static_cast<float>(settings.max_error_percent / 100 * boundingBox(mesh.positions).diagonal());
   limits.preserve_topology = settings.preserve_topology;
   limits.preserve_components = settings.preserve_components;
+  limits.fast = settings.fast;
   limits.threads = threadsOr(settings.threads);
   return plan;
 }

@@ -232,6 +232,7 @@ void QuadricReducer::reduceWhole(std::size_t keep, const Progress& progress) {
 const char* QuadricReducer::run(const Limits& limits, const Progress& progress) {
   threads_ = std::max(1U, limits.threads);
   max_error_ = limits.error * mesh_.scale();
+  fast_ = limits.fast;
   keep_components_ = limits.preserve_topology || limits.preserve_components;
   const std::size_t keep = std::max<std::size_t>(limits.triangles, 1);
   // Parts leave enough for the whole to be even.

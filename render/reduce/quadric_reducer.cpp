@@ -9,8 +9,6 @@
 namespace merlin::render {
 namespace {
 
-// A popped edge may cost so much more than its bucket and is still taken.
-constexpr float kTolerance = 1.25F;
 using TwoCorners = std::uint32_t __attribute__((vector_size(16)));
 
 float trace(const float* h) { return h[0] + h[3] + h[5]; }
@@ -142,7 +140,7 @@ bool QuadricReducer::guard(Worker& w, std::uint32_t v, std::uint32_t edge) {
   else if ((flags & kLocked) && keepsTopology(stage_))
     stayAtLocked(view(), v, w.costs, edge);
   if (flags & kOpen) deviation = borderDeviation(view(), v, w.costs, edge);
-  deviation = std::max(deviation, witnessDeviation(w, v, edge));
+  if (!fast_) deviation = std::max(deviation, witnessDeviation(w, v, edge));
   if (keepsTopology(stage_) && vanishes(view(), v, w.costs, edge))
     deviation = std::max(deviation, reachOf(w.costs) + std::max(a.deviation, x.deviation));
   const float least = deviationCost(deviation);
@@ -153,7 +151,7 @@ bool QuadricReducer::guard(Worker& w, std::uint32_t v, std::uint32_t edge) {
 void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
   const std::size_t bucket = w.queue.current();
   const bool last = bucket + 1 == BucketQueue::buckets();
-  const float ceiling = last ? kNoEdge : kTolerance * BucketQueue::floorOf(bucket + 1);
+  const float ceiling = last ? kNoEdge : tolerance() * BucketQueue::floorOf(bucket + 1);
   evaluate(w, v);
   EdgeCosts& costs = w.costs;
   for (;; costs.findCheapest()) {
@@ -230,7 +228,7 @@ void QuadricReducer::collapse(Worker& w, std::uint32_t v, std::uint32_t edge) {
   const float step[] = {w.costs.x[edge], w.costs.y[edge], w.costs.z[edge]};
   float to[3];
   for (int k = 0; k < 3; ++k) to[k] = to_b ? b.position[k] : a.position[k] + step[k];
-  keepWitness(a, w.costs.witness[edge] ? b : a, to);
+  if (!fast_) keepWitness(a, w.costs.witness[edge] ? b : a, to);
   std::copy_n(to, 3, a.position);
   NodeRecord record{
       {a.node, b.node}, {a.position[0], a.position[1], a.position[2]}, error, {0, 0, 0}};

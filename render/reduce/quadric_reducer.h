@@ -47,6 +47,7 @@ class QuadricReducer {
     float error = std::numeric_limits<float>::infinity();  // no collapse is worse; model units
     bool preserve_topology = false, preserve_components = false;
     bool by_all_rules = false;  // stop where these allow no more, instead of dropping one
+    bool fast = false;          // what has become dearer goes as well; no witnesses
     unsigned threads = 1;
   };
   // Returns why it stopped, in reduce()'s words.
@@ -90,6 +91,8 @@ class QuadricReducer {
   }
   QuadricView view() const { return {&mesh_[0], mesh_.corners(0), &channels_}; }
   void evaluate(Worker& w, std::uint32_t v) { evaluate_(view(), v, w.costs); }
+  // A popped edge may cost so much more than its bucket and is still taken.
+  float tolerance() const { return fast_ ? 4.0F : 1.25F; }
   void enqueue(Worker& w, std::uint32_t v, float cost);
   void prefetch(Worker& w) const;
   void reduceTo(Worker& w, std::size_t removed, std::size_t bucket_limit);
@@ -132,7 +135,7 @@ class QuadricReducer {
   std::vector<float> labels_;          // empty where there are none
   std::vector<std::uint32_t> pinned_;  // by node: the locked vertex that it stands on; if any are
   std::vector<std::uint32_t> twins_;   // of a seam's vertex the other one in its place; or empty
-  bool keep_components_ = false;
+  bool keep_components_ = false, fast_ = false;
   // Of the channels, as they were given and weighted: no value leaves them.
   std::vector<Range> given_, ranges_;
   EvaluateEdges evaluate_;

@@ -25,6 +25,8 @@ Result<Ok> check(const ReduceSettings& s) {
       known += fmt::format("{}{}", known.empty() ? "" : ", ", cost.name);
     return Error{Errc::kInvalidArgument, fmt::format("cost {}: is none of {}", s.cost, known)};
   }
+  if (s.fast && s.cost != "quadric")
+    return Error{Errc::kInvalidArgument, fmt::format("cost {}: only quadric is fast", s.cost)};
   if (!(s.min_percent >= 0 && s.min_percent <= 100)) {
     return Error{Errc::kInvalidArgument, fmt::format("percent {} is not 0 to 100", s.min_percent)};
   }
@@ -52,8 +54,9 @@ Weights weightsFor(const Mesh& mesh, const ReduceSettings& settings) {
 
 std::string aboutText(const ReduceSettings& settings, const Weights& weights,
                       const ReduceReport& report) {
-  std::string text = fmt::format("cost={}\npreserve_topology={}\nstopped={}\n", settings.cost,
-                                 settings.preserve_topology, report.stopped);
+  std::string text =
+      fmt::format("cost={}\nfast={}\npreserve_topology={}\nstopped={}\n", settings.cost,
+                  settings.fast, settings.preserve_topology, report.stopped);
   for (const auto& [name, weight] : weights) text += fmt::format("weight.{}={}\n", name, weight);
   return text;
 }

@@ -60,23 +60,39 @@ TEST(Quadric, APlateBecomesTwoTrianglesAndKeepsItsCorners) {
   EXPECT_NEAR(box.high[1], 9, 0.05);
 }
 
-TEST(Quadric, ErrorIsFarBelowThePatterns) {
+Mesh bumpyBall() {
   Mesh ball = test::sphere(5);
   for (std::size_t v = 0; v < ball.vertexCount(); ++v) {
     float* p = &ball.positions[3 * v];
     const float bump = 1 + 0.05F * std::sin(6 * p[0]) * std::cos(5 * p[1]) * std::sin(7 * p[2]);
     for (int k = 0; k < 3; ++k) p[k] *= bump;
   }
-  ball = withNormals(ball);
+  return withNormals(ball);
+}
+
+// Of a twentieth of the triangles.
+Deviation errorOf(const Mesh& mesh, const Reduction& r) {
   CompareSettings settings;
   settings.samples = 20'000;
-  const std::size_t keep = ball.triangleCount() / 20;
-  const auto quadric = compare(ball, levelOf(ball, reduced(ball), keep), settings);
-  const auto pattern =
-      compare(ball, levelOf(ball, reduced(ball, {.cost = "pattern"}), keep), settings);
-  ASSERT_TRUE(quadric && pattern);
-  EXPECT_LT(quadric->symmetric().rms, pattern->symmetric().rms / 2);
-  EXPECT_LT(quadric->symmetric().max.high, pattern->symmetric().max.high);
+  const auto compared = compare(mesh, levelOf(mesh, r, mesh.triangleCount() / 20), settings);
+  EXPECT_TRUE(compared);
+  return compared->symmetric();
+}
+
+TEST(Quadric, ErrorIsFarBelowThePatterns) {
+  const Mesh ball = bumpyBall();
+  const auto quadric = errorOf(ball, reduced(ball));
+  const auto pattern = errorOf(ball, reduced(ball, {.cost = "pattern"}));
+  EXPECT_LT(quadric.rms, pattern.rms / 2);
+  EXPECT_LT(quadric.max.high, pattern.max.high);
+}
+
+TEST(Quadric, FastIsNearlyAsGood) {
+  const Mesh ball = bumpyBall();
+  const Reduction fine = reduced(ball), fast = reduced(ball, {.fast = true});
+  EXPECT_NE(fine.log.children, fast.log.children);
+  EXPECT_LT(errorOf(ball, fast).rms, 1.15 * errorOf(ball, fine).rms);
+  EXPECT_NE(fast.log.about.find("fast=true"), std::string::npos);
 }
 
 // Enough vertices for two parts.

@@ -155,16 +155,19 @@ TEST(Reduce, SaysWhatItDid) {
   const Reduction r = reduced(hills(), {.weights = {{"geometry", 1}, {"normal", 0.25F}},
                                         .preserve_topology = true,
                                         .min_triangles = 100});
-  EXPECT_EQ(r.log.about,
-            "cost=pattern\npreserve_topology=true\nstopped=triangles\nweight.geometry=1\n"
-            "weight.normal=0.25\n");
-  EXPECT_EQ(reduced(hills(), {.min_percent = 50}).log.about,
-            "cost=pattern\npreserve_topology=false\nstopped=percent\nweight.boundary=0.5\n"
-            "weight.geometry=1\nweight.normal=0.05\n");
+  EXPECT_EQ(
+      r.log.about,
+      "cost=pattern\nfast=false\npreserve_topology=true\nstopped=triangles\nweight.geometry=1\n"
+      "weight.normal=0.25\n");
+  EXPECT_EQ(
+      reduced(hills(), {.min_percent = 50}).log.about,
+      "cost=pattern\nfast=false\npreserve_topology=false\nstopped=percent\nweight.boundary=0.5\n"
+      "weight.geometry=1\nweight.normal=0.05\n");
 }
 
 TEST(Reduce, RefusesWeightsAndLimitsThatAreNone) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(faultOf({.cost = "pattern", .fast = true}), "cost pattern: only quadric is fast");
   EXPECT_EQ(
       faultOf({.weights = {{"colour", 1}}}),
       "weight colour: the mesh has no such feature; it has geometry, normal, curvature, boundary");

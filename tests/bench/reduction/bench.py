@@ -34,6 +34,9 @@ COSTS = [
     ("quadric, 1 thread", "quadric", "1", "default", ""),
     ("quadric, 2 threads", "quadric", "2", "default", ""),
     ("quadric, without colour", "quadric", "2", "colour=0", "colour"),
+    ("fast, 1 thread", "fast", "1", "default", ""),
+    ("fast, 2 threads", "fast", "2", "default", ""),
+    ("fast, without colour", "fast", "2", "colour=0", "colour"),
     ("pattern, 1 thread", "pattern", "1", "default", ""),
     ("pattern, 2 threads", "pattern", "2", "default", ""),
 ]

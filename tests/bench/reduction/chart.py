@@ -3,13 +3,15 @@ import math
 from xml.sax.saxutils import escape
 
 COLOURS = {"quadric, 1 thread": "#d7191c", "quadric, 2 threads": "#d7191c",
-           "quadric, without colour": "#f46d43", "pattern, 1 thread": "#7b3294",
+           "quadric, without colour": "#f46d43", "fast, 1 thread": "#e7298a",
+           "fast, 2 threads": "#e7298a", "fast, without colour": "#f1b6da",
+           "pattern, 1 thread": "#7b3294",
            "pattern, 2 threads": "#7b3294", "meshoptimizer": "#1a9641",
            "meshoptimizer, colour": "#66bd63", "CGAL Lindstrom-Turk": "#2c7bb6",
            "CGAL Garland-Heckbert": "#00a6ca", "OpenMesh quadric": "#8c510a",
            "VTK quadric": "#525252", "VTK quadric, colour": "#969696",
            "VTK quadric, less colour": "#bdbdbd"}
-DASHED = {"quadric, 1 thread", "pattern, 1 thread"}
+DASHED = {"quadric, 1 thread", "fast, 1 thread", "pattern, 1 thread"}
 
 WIDTH, HEIGHT, LEFT, TOP, GAP = 400, 250, 70, 30, 60  # of a panel, px
 LEGEND = 210

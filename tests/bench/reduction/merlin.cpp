@@ -4,9 +4,9 @@
 //   bench_merlin COST THREADS WEIGHTS IN.ply OUT TRIANGLES...
 //
 // The second reduces to the bottom, since the hierarchy is the product, and writes OUT.mrm and one
-// OUT.N.ply for each number of triangles. WEIGHTS is "default" or NAME=W,NAME=W over the defaults.
-// Each step is measured for itself: normals, reduce (which records every collapse), dendrogram,
-// write.
+// OUT.N.ply for each number of triangles. COST may be "fast": quadric, made so. WEIGHTS is
+// "default" or NAME=W,NAME=W over the defaults. Each step is measured for itself: normals, reduce
+// (which records every collapse), dendrogram, write.
 #include <cstdlib>
 #include <optional>
 
@@ -56,7 +56,8 @@ Result<std::string> writeLevels(const render::Dendrogram& model, const std::stri
 }
 
 int reduce(char** argv, const std::vector<std::size_t>& budgets) {
-  const std::string cost = argv[1], out = argv[5];
+  const bool fast = std::string_view(argv[1]) == "fast";
+  const std::string cost = fast ? "quadric" : argv[1], out = argv[5];
   if (!render::findCost(cost)) return fail(cost + ": no such cost");
   auto loaded = render::readMesh(argv[4]);
   if (!loaded) return fail(loaded.error().what);
@@ -65,6 +66,7 @@ int reduce(char** argv, const std::vector<std::size_t>& budgets) {
 
   render::ReduceSettings settings;
   settings.cost = cost;
+  settings.fast = fast;
   settings.threads = static_cast<unsigned>(std::strtoul(argv[2], nullptr, 10));
   settings.weights = weightsOf(mesh, cost, argv[3]);
   Result<render::Reduction> reduction = Error{Errc::kClosed, "not begun"};

@@ -2,7 +2,8 @@
 import math
 
 LEAD = "quadric, 2 threads"
-GEOMETRY = ("quadric, 2 threads", "quadric, without colour")
+GEOMETRY = ("quadric, 2 threads", "quadric, without colour", "fast, 2 threads",
+            "fast, without colour")
 COLOUR_PEERS = ("meshoptimizer, colour", "VTK quadric, colour", "VTK quadric, less colour")
 SPEED_PEER = "meshoptimizer"
 
@@ -43,7 +44,7 @@ def summary(rows):
                    (program, "max", "CGAL Garland-Heckbert")]
     for peer in COLOUR_PEERS:
         wanted += [(LEAD, "colour", peer), (LEAD, "rms", peer), (LEAD, "max", peer)]
-    for program in ("quadric, 1 thread", LEAD):
+    for program in ("quadric, 1 thread", LEAD, "fast, 1 thread", "fast, 2 threads"):
         wanted += [(program, "rate", SPEED_PEER)]
     wanted += [("quadric, 1 thread", "cpu_rate", SPEED_PEER),
                (LEAD, "whole_rate", SPEED_PEER, "rate")]
@@ -76,7 +77,7 @@ def summary_lines(meshes, rows):
     lines.append("Memory beyond the loaded mesh, bytes an edge: " + ", ".join(
         f"{mesh['name']} {bytes_of(rows, mesh, LEAD)}" for mesh in meshes))
     lines.append("Same bytes with 1 and 2 threads: " + ", ".join(
-        f"{cost} {same_bytes(rows, cost)}" for cost in ("quadric", "pattern")))
+        f"{cost} {same_bytes(rows, cost)}" for cost in ("quadric", "fast", "pattern")))
     return lines
 
 
