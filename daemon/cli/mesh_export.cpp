@@ -54,6 +54,7 @@ int exportMesh(const ExportOptions& options) {
   if (!written) return fail(written.error());
   fmt::print("{}: {} triangles, {} vertices, error estimate {:.4g}\n", options.output,
              mesh.triangleCount(), mesh.vertexCount(), model->errorAt(*level));
+  if (!written->beside.empty()) fmt::print("  with it {}\n", fmt::join(written->beside, " and "));
   sayLeftOut(written->format, written->left_out);
   return kExitDone;
 }
@@ -65,9 +66,9 @@ void addMeshExport(Command mesh, Run& run) {
   Command command = mesh.subcommand(
       "export",
       "One resolution of a model as a mesh: .ply (every feature), .glb or .gltf (features of up to "
-      "4 dimensions, a texture's picture), .obj and .iv (Open Inventor; normals, colours, texture "
-      "coordinates), .stl "
-      "(triangles alone).\nExample: merlin mesh export scan.mrm --percent 5 -o scan5.ply\nAll of "
+      "4 dimensions), .obj and .iv (Open Inventor; normals, colours, texture coordinates), .stl "
+      "(triangles alone). A texture's picture goes into .glb and .gltf, and beside .ply, .obj and "
+      ".iv.\nExample: merlin mesh export scan.mrm --percent 5 -o scan5.ply\nAll of "
       "them for an Open Inventor viewer that finds SoMRFaceSet.so: --multiresolution -o scan.iv");
   command.option("model", options->model, "The model, or a mesh").required().typeName("MODEL.mrm");
   command.option("-o", options->output, "The mesh: .ply, .obj, .glb, .gltf, .stl or .iv")

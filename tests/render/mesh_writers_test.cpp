@@ -251,7 +251,7 @@ TEST(GltfWriter, TakesTheTexturesPictureAlong) {
   mesh.texture[0] = 0xFF;
   written(dir / "a.gltf", mesh);
   EXPECT_EQ(Json::parse(readText(dir / "a.gltf"))["images"][0]["mimeType"], "image/jpeg");
-  EXPECT_EQ(written(dir / "a.stl", mesh).back(), "the texture's picture (.glb and .gltf have)");
+  EXPECT_EQ(written(dir / "a.stl", mesh).back(), "the texture's picture");
 }
 
 TEST(GltfWriter, WritesTheSameBytesIntoOneJsonFile) {
@@ -306,6 +306,18 @@ TEST(WriteMesh, RefusesAnEmptyMeshAndAnUnknownEnding) {
             "a.off: meshes are written as .ply, .obj, .glb, .gltf, .stl and .iv");
   EXPECT_TRUE(checkMeshEnding("a/b.STL"));
   EXPECT_TRUE(std::filesystem::is_empty(dir.path()));
+}
+
+// Without coordinates a picture says nothing; a picture beside it that cannot be is no success.
+TEST(WriteMesh, HasAPictureOnlyWhereItLiesSomewhere) {
+  const TempDir dir;
+  Mesh mesh = test::cube();
+  mesh.texture = {0x89, 'P', 'N', 'G', 7};
+  EXPECT_EQ(written(dir / "a.obj", mesh), Names{"the texture's picture"});
+  mesh.features.push_back({"texcoord", 2, Floats(2 * mesh.vertexCount())});
+  std::filesystem::create_directory(dir / "b.obj.mtl");
+  EXPECT_FALSE(writeMesh(dir / "b.obj", mesh));
+  EXPECT_FALSE(std::filesystem::exists(dir / "b.obj"));
 }
 
 TEST(WriteMesh, SaysSoWhereTheFolderIsGone) {

@@ -147,6 +147,40 @@ TEST_F(TexturedObj, HasThePictureThatIsEverywhereForATexture) {
   EXPECT_EQ(textureOf("newmtl a\nmap_Kd -clamp on four.png\n", "usemtl a\nf 1/1 2/2 4/4\n"), "");
 }
 
+// A folder of its own, so that what lies beside the first is not found beside the second.
+TEST_F(TexturedObj, GoesWithItsPictureIntoOtherFiles) {
+  writePngFile(dir_ / "four.png", 2, 2, kFour);
+  test::writeText(dir_ / "a.mtl", "newmtl a\nmap_Kd four.png\n");
+  const LoadedMesh loaded = read(std::string("mtllib a.mtl\nusemtl a\n") + kSquare + kMiddles +
+                                 "f 1/1 2/2 4/4\nf 1/1 4/4 3/3\n");
+  const std::string picture = test::readText(dir_ / "four.png");
+  const std::pair<const char*, Names> files[] = {
+      {"it's b.obj", {"it_s_b.obj.png", "it_s_b.obj.mtl"}},
+      {"\nb.ply", {"_b.ply.png"}},
+      {"b\".iv", {"b_.iv.png"}}};
+  for (const auto& [name, beside] : files) {
+    const test::TempDir other;
+    const auto written = writeMesh(other / name, loaded.mesh);
+    ASSERT_TRUE(written) << written.error().what;
+    Names expected;
+    for (const std::string& file : beside) expected.push_back(other / file);
+    EXPECT_EQ(written->beside, expected);
+    EXPECT_EQ(test::readText(expected[0]), picture);
+    if (written->format == "iv") {
+      EXPECT_EQ(written->left_out, Names{"colour"}) << "which the picture is multiplied with";
+      EXPECT_NE(test::readText(other / name).find("Texture2 { filename \"b_.iv.png\" }"),
+                std::string::npos);
+      continue;
+    }
+    EXPECT_EQ(written->left_out, Names{});
+    const auto again = readMesh(other / name);
+    ASSERT_TRUE(again) << again.error().what;
+    EXPECT_EQ(again->notes, Names{});
+    EXPECT_EQ(again->mesh.texture, loaded.mesh.texture);
+    EXPECT_EQ(again->mesh.find("texcoord")->values, loaded.mesh.find("texcoord")->values);
+  }
+}
+
 TEST_F(TexturedObj, IsReadWithoutThePicturesThatAreNotThere) {
   test::writeText(dir_ / "a.mtl", "newmtl a\nmap_Kd none.png\nnewmtl b\nmap_Kd text.png\n");
   test::writeText(dir_ / "text.png", "no picture");

@@ -24,7 +24,7 @@ constexpr int kFloat = 5126, kUnsignedInt = 5125;           // componentType
 constexpr int kVertexBuffer = 34962, kIndexBuffer = 34963;  // target
 constexpr const char* kPayload = "data:application/octet-stream;base64,";
 
-bool carries(const Feature& f) { return f.dimension >= 1 && f.dimension <= 4; }
+bool carries(const Mesh&, const Feature& f) { return f.dimension >= 1 && f.dimension <= 4; }
 
 const char* typeOf(std::size_t dimension) {
   constexpr const char* kTypes[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
@@ -59,17 +59,11 @@ void adapt(const Feature& f, float* row) {
 // Chunks and views begin at multiples of 4.
 std::size_t padded(std::size_t bytes) { return (bytes + 3) / 4 * 4; }
 
-bool isTextured(const Mesh& mesh) { return !mesh.texture.empty() && findOf(mesh, "texcoord", 2); }
-
-const char* mimeTypeOf(std::span<const std::uint8_t> picture) {
-  return picture[0] == 0x89 ? "image/png" : "image/jpeg";  // the two that the mesh may hold
-}
-
 // What stands in the buffer, in order: positions, features, corners, 4 bytes a number; the picture,
 // and up to a multiple of 4.
 std::uint64_t bytesIn(const Mesh& mesh) {
   std::uint64_t numbers = mesh.positions.size() + mesh.triangles.size();
-  for (const Feature& f : mesh.features) numbers += carries(f) ? f.values.size() : 0;
+  for (const Feature& f : mesh.features) numbers += carries(mesh, f) ? f.values.size() : 0;
   return 4 * numbers + (isTextured(mesh) ? padded(mesh.texture.size()) : 0);
 }
 
@@ -81,7 +75,7 @@ class Document {
     position["min"] = box.low;
     position["max"] = box.high;
     for (const Feature& f : mesh.features) {
-      if (carries(f)) add(attributeOf(f, isTextured(mesh)), f.dimension);
+      if (carries(mesh, f)) add(attributeOf(f, isTextured(mesh)), f.dimension);
     }
     addView(mesh.triangles.size(), kIndexBuffer);
     accessors_.push_back({{"bufferView", accessors_.size()},
@@ -113,8 +107,9 @@ class Document {
                      {"bufferViews", views_},
                      {"accessors", accessors_}};
     if (isTextured(mesh_)) {
-      document["images"] = Json::array(
-          {{{"bufferView", views_.size() - 1}, {"mimeType", mimeTypeOf(mesh_.texture)}}});
+      document["images"] =
+          Json::array({{{"bufferView", views_.size() - 1},
+                        {"mimeType", isPng(mesh_.texture) ? "image/png" : "image/jpeg"}}});
       document["textures"] = Json::array({{{"source", 0}}});
     }
     return document.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -151,7 +146,7 @@ bool writeBuffer(const Mesh& mesh, const WriteBytes& bytes) {
     if (!put()) return false;
   }
   for (const Feature& f : mesh.features) {
-    if (!carries(f)) continue;
+    if (!carries(mesh, f)) continue;
     for (std::size_t i = 0; i < f.values.size(); i += f.dimension) {
       float values[4];
       std::copy_n(&f.values[i], f.dimension, values);
@@ -189,7 +184,7 @@ Result<Ok> fitsGlb(const Mesh& mesh) {
                fmt::format("{} bytes, and a .glb has 4 GiB at most; write .gltf or .ply", size)};
 }
 
-bool writeGlb(const Mesh& mesh, const WriteBytes& bytes) {
+bool writeGlb(const Mesh& mesh, const std::string&, const WriteBytes& bytes) {
   const std::string json = jsonChunk(mesh);
   std::string head = "glTF";
   appendLe32(head, 2);
@@ -243,7 +238,7 @@ class Base64 {
   unsigned count_ = 0;
 };
 
-bool writeGltf(const Mesh& mesh, const WriteBytes& bytes) {
+bool writeGltf(const Mesh& mesh, const std::string&, const WriteBytes& bytes) {
   const std::string json = Document(mesh).text(kPayload);
   // With its quotes: no name can hold that, since quotes in names are escaped.
   const std::string uri = fmt::format("\"uri\":\"{}", kPayload);
@@ -257,7 +252,7 @@ bool writeGltf(const Mesh& mesh, const WriteBytes& bytes) {
 
 }  // namespace
 
-const MeshWriter kGlbWriter{"glb", carries, writeGlb, fitsGlb, true};
-const MeshWriter kGltfWriter{"gltf", carries, writeGltf, nullptr, true};
+const MeshWriter kGlbWriter{"glb", carries, writeGlb, PicturePlace::kInside, fitsGlb};
+const MeshWriter kGltfWriter{"gltf", carries, writeGltf, PicturePlace::kInside};
 
 }  // namespace merlin::render

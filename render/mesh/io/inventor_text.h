@@ -15,7 +15,8 @@ inline constexpr std::string_view kInventorHints =
     "    shapeType UNKNOWN_SHAPE_TYPE\n    faceType CONVEX\n  }\n";
 
 // "Separator { ... }" with an IndexedFaceSet: "normal", "colour" and "texcoord" where they are
-// there in their usual dimensions.
-void printSeparator(TextSink& out, const Mesh& mesh);
+// there in their usual dimensions; of a picture in a file beside it its name, instead of colours,
+// which it would be multiplied with.
+void printSeparator(TextSink& out, const Mesh& mesh, const std::string& picture = "");
 
 }  // namespace merlin::render

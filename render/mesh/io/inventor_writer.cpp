@@ -15,18 +15,25 @@ void printNode(TextSink& out, std::string_view node, std::string_view field,
   out.print("    ]\n  }}\n");
 }
 
-bool write(const Mesh& mesh, const WriteBytes& bytes) {
+bool carries(const Mesh& mesh, const Feature& f) {
+  return isUsual(f) && !(f.name == "colour" && isTextured(mesh));
+}
+
+bool write(const Mesh& mesh, const std::string& name, const WriteBytes& bytes) {
   TextSink out(bytes);
   out.print("{}", kInventorHeader);
-  printSeparator(out, mesh);
+  printSeparator(out, mesh, isTextured(mesh) ? pictureName(mesh, name) : "");
   return out.finish();
 }
 
 }  // namespace
 
-void printSeparator(TextSink& out, const Mesh& mesh) {
+void printSeparator(TextSink& out, const Mesh& mesh, const std::string& picture) {
   out.print("Separator {{\n{}", kInventorHints);
-  if (const Feature* colour = findOf(mesh, "colour", 3)) {
+  const Feature* colour = findOf(mesh, "colour", 3);
+  if (!picture.empty()) {
+    out.print("  Texture2 {{ filename \"{}\" }}\n", picture);
+  } else if (colour) {
     printNode(out, "Material", "diffuseColor", colour->values, 3);
     out.print("  MaterialBinding {{ value PER_VERTEX_INDEXED }}\n");
   }
@@ -47,6 +54,6 @@ void printSeparator(TextSink& out, const Mesh& mesh) {
   out.print("    ]\n  }}\n}}\n");
 }
 
-const MeshWriter kInventorWriter{"iv", isUsual, write};
+const MeshWriter kInventorWriter{"iv", carries, write, PicturePlace::kBeside};
 
 }  // namespace merlin::render

@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
+#include "render/mesh/io/beside.h"
 #include "render/mesh/io/obj_texture.h"
+#include "render/mesh/io/picture_file.h"
 #include "render/mesh/io/ply.h"
 #include "render/mesh/io/writer.h"
 
@@ -29,9 +31,6 @@ Error inFile(const std::string& path, const Error& error) {
   return {error.code, path + ": " + error.what};
 }
 
-// With its slash; empty where there is none.
-std::string folderOf(const std::string& path) { return path.substr(0, path.rfind('/') + 1); }
-
 Result<LoadedMesh> readObj(std::string_view content, const std::string& folder) {
   auto surface = parseObj(content);
   if (!surface) return surface.error();
@@ -50,6 +49,18 @@ Result<LoadedMesh> readObj(std::string_view content, const std::string& folder) 
   return loaded;
 }
 
+Result<LoadedMesh> readPly(std::string_view content, const std::string& folder) {
+  std::string picture;
+  auto loaded = ply::parse(content, &picture);
+  if (!loaded || picture.empty() || !findOf(loaded->mesh, "texcoord", 2)) return loaded;
+  auto texture = readPicture(pathBeside(folder, picture));
+  if (texture)
+    loaded->mesh.texture = std::move(texture->file);
+  else
+    loaded->notes.push_back(texture.error().what + "; the texture's picture is left out");
+  return loaded;
+}
+
 constexpr std::array kWriters = {&kPlyWriter,  &kObjWriter, &kGlbWriter,
                                  &kGltfWriter, &kStlWriter, &kInventorWriter};
 
@@ -61,12 +72,33 @@ const MeshWriter* writerFor(const std::string& path) {
   return nullptr;
 }
 
+// What the mesh's file will name: the picture, and the material that has it.
+Result<Ok> writeBeside(const MeshWriter& writer, const Mesh& mesh, const std::string& folder,
+                       const std::string& name, std::vector<std::string>& written) {
+  const auto put = [&](const std::string& file, std::string_view content) {
+    written.push_back(folder + file);
+    return writeFile(written.back(), content);
+  };
+  const auto* const picture = reinterpret_cast<const char*>(mesh.texture.data());
+  const auto done = put(pictureName(mesh, name), {picture, mesh.texture.size()});
+  if (!done || !writer.material) return done;
+  return put(name + ".mtl", writer.material(mesh, name));
+}
+
 }  // namespace
 
 bool isUsual(const Feature& f) {
   return (f.name == "normal" && f.dimension == 3) || (f.name == "colour" && f.dimension == 3) ||
          (f.name == "texcoord" && f.dimension == 2);
 }
+
+bool isTextured(const Mesh& mesh) { return !mesh.texture.empty() && findOf(mesh, "texcoord", 2); }
+
+std::string pictureName(const Mesh& mesh, const std::string& name) {
+  return name + (isPng(mesh.texture) ? ".png" : ".jpg");
+}
+
+bool isPng(const std::vector<std::uint8_t>& picture) { return picture[0] == 0x89; }
 
 const Feature* findOf(const Mesh& mesh, std::string_view name, std::size_t dimension) {
   const Feature* f = mesh.find(name);
@@ -80,7 +112,8 @@ Result<LoadedMesh> readMesh(const std::string& path) {
   }
   auto file = MappedFile::open(path);
   if (!file) return file.error();
-  auto loaded = end == "ply" ? ply::parse(file->text()) : readObj(file->text(), folderOf(path));
+  auto loaded =
+      end == "ply" ? readPly(file->text(), folderOf(path)) : readObj(file->text(), folderOf(path));
   if (!loaded) return inFile(path, loaded.error());
   *file = MappedFile();  // as large as the mesh
   if (const auto valid = validate(loaded->mesh); !valid) return inFile(path, valid.error());
@@ -116,15 +149,20 @@ Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh) {
   if (writer.fits) {
     if (const auto fits = writer.fits(mesh); !fits) return inFile(path, fits.error());
   }
-  const auto done =
-      writeFile(path, [&](const WriteBytes& bytes) { return writer.write(mesh, bytes); });
-  if (!done) return done.error();
-  WrittenMesh written{writer.ending, {}};
-  for (const Feature& f : mesh.features) {
-    if (!writer.carries(f)) written.left_out.push_back(f.name);
+  WrittenMesh written{writer.ending, {}, {}};
+  const std::string name = plainName(path);
+  if (isTextured(mesh) && writer.picture == PicturePlace::kBeside) {
+    const auto beside = writeBeside(writer, mesh, folderOf(path), name, written.beside);
+    if (!beside) return beside.error();
   }
-  if (!mesh.texture.empty() && !writer.textured)
-    written.left_out.emplace_back("the texture's picture (.glb and .gltf have)");
+  const auto done =
+      writeFile(path, [&](const WriteBytes& bytes) { return writer.write(mesh, name, bytes); });
+  if (!done) return done.error();
+  for (const Feature& f : mesh.features) {
+    if (!writer.carries(mesh, f)) written.left_out.push_back(f.name);
+  }
+  if (!mesh.texture.empty() && (writer.picture == PicturePlace::kNone || !isTextured(mesh)))
+    written.left_out.emplace_back("the texture's picture");
   return written;
 }
 

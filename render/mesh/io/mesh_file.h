@@ -1,7 +1,7 @@
 // Mesh files: reading and writing, by the name's ending.
 //
 //   read     .ply   ascii and binary of both byte orders; every scalar vertex property becomes a
-//                   feature
+//                   feature; the picture that a comment "TextureFile" names
 //            .obj   colours; texture coordinates, and the colours of the pictures (PNG, JPEG) that
 //                   its materials name
 //   written  .ply   binary little-endian, every feature: normal as nx ny nz, colour as red green
@@ -10,6 +10,8 @@
 //            .glb, .gltf   normal, colour, texcoord, any other feature of 1 to 4 dimensions
 //            .iv    Open Inventor 2.1 ascii: normal, colour, texcoord
 //            .stl   binary: triangles alone
+//            A texture's picture is inside .glb and .gltf, and beside .ply, .obj and .iv: of
+//            a.obj they are a.obj.png (or .jpg) and a.obj.mtl, in plain letters.
 //
 // A mesh that is returned has passed validate(), tidy() and splitNonManifold(). Nothing throws,
 // nothing is printed. Reentrant.
@@ -40,6 +42,7 @@ Result<LoadedMesh> readMesh(const std::string& path);
 struct WrittenMesh {
   std::string format;                 // the ending, in small letters
   std::vector<std::string> left_out;  // features, by name; the texture's picture
+  std::vector<std::string> beside;    // files that it names, with the same folder
 };
 
 // Whether writeMesh() knows the ending; to be asked before long work. Errors: kUnsupported.

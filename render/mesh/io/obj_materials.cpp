@@ -7,21 +7,11 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
+#include "render/mesh/io/beside.h"
 #include "render/mesh/io/text_lines.h"
 
 namespace merlin::render {
 namespace {
-
-// A model that was sent from elsewhere names paths of there, and may name anything.
-std::string pathBeside(const std::string& folder, std::string_view name) {
-  std::string path(name);
-  std::replace(path.begin(), path.end(), '\\', '/');
-  const bool leaves = path.starts_with('/') || path.find("..") != std::string::npos ||
-                      path.find(':') != std::string::npos;
-  if (leaves) path = path.substr(path.find_last_of('/') + 1);
-  while (path.starts_with("./")) path.erase(0, 2);
-  return folder + path;
-}
 
 // How many words follow an option of a map; -1: it is none.
 int wordsOf(std::string_view option) {

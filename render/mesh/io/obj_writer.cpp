@@ -5,12 +5,19 @@
 namespace merlin::render {
 namespace {
 
-bool write(const Mesh& mesh, const WriteBytes& bytes) {
+bool carries(const Mesh&, const Feature& f) { return isUsual(f); }
+
+std::string material(const Mesh& mesh, const std::string& name) {
+  return "# written by MERLIN\nnewmtl textured\nKd 1 1 1\nmap_Kd " + pictureName(mesh, name) + "\n";
+}
+
+bool write(const Mesh& mesh, const std::string& name, const WriteBytes& bytes) {
   const Feature* normal = findOf(mesh, "normal", 3);
   const Feature* colour = findOf(mesh, "colour", 3);
   const Feature* texcoord = findOf(mesh, "texcoord", 2);
   TextSink out(bytes);
   out.print("# written by MERLIN\n");
+  if (isTextured(mesh)) out.print("mtllib {}.mtl\nusemtl textured\n", name);
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     const float* p = &mesh.positions[3 * v];
     out.print("v {} {} {}", p[0], p[1], p[2]);
@@ -42,6 +49,6 @@ bool write(const Mesh& mesh, const WriteBytes& bytes) {
 
 }  // namespace
 
-const MeshWriter kObjWriter{"obj", isUsual, write};
+const MeshWriter kObjWriter{"obj", carries, write, PicturePlace::kBeside, nullptr, material};
 
 }  // namespace merlin::render

@@ -272,9 +272,10 @@ class Reader {
 
 }  // namespace
 
-Result<LoadedMesh> parse(std::string_view bytes) {
+Result<LoadedMesh> parse(std::string_view bytes, std::string* picture) {
   auto header = parseHeader(bytes);
   if (!header) return header.error();
+  if (picture) *picture = header->picture;
   return Reader(bytes, std::move(*header)).read();
 }
 

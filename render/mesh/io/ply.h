@@ -13,6 +13,7 @@ namespace merlin::render::ply {
 
 // `bytes` is a whole file. Faces of more than three corners become fans. The mesh is neither
 // validated nor tidied. Errors: kMalformed, kUnsupported, without the file's name.
-Result<LoadedMesh> parse(std::string_view bytes);
+// picture  gets the name of the file that its last comment "TextureFile" has; empty: none
+Result<LoadedMesh> parse(std::string_view bytes, std::string* picture = nullptr);
 
 }  // namespace merlin::render::ply

@@ -53,6 +53,7 @@ class HeaderParser {
       const auto line = nextLine();
       if (!line) return bad(header_.lines + 1, "the header has no end_header");
       if (*line == "end_header") break;
+      takePicture(*line);
       if (const auto done = keyword(split(*line)); !done) return done.error();
     }
     if (!has_format_) return bad(header_.lines, "the header has no format line");
@@ -69,6 +70,11 @@ class HeaderParser {
     at_ = end + 1;
     ++header_.lines;
     return line;
+  }
+
+  void takePicture(std::string_view line) {
+    constexpr std::string_view kComment = "comment TextureFile ";
+    if (line.starts_with(kComment)) header_.picture = line.substr(kComment.size());
   }
 
   Result<Ok> keyword(const Words& words) {

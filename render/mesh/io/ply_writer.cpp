@@ -48,26 +48,28 @@ void append(std::string& row, float value, Form form) {
   }
 }
 
-std::string headerFor(const Mesh& mesh, const std::vector<Form>& forms) {
+// The picture stands in a comment, as MeshLab has it.
+std::string headerFor(const Mesh& mesh, const std::string& name, const std::vector<Form>& forms) {
   constexpr const char* kTypes[] = {"float", "uchar", "int"};
   std::string text = fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment written by MERLIN\nelement vertex {}\n"
+      "ply\nformat binary_little_endian 1.0\ncomment written by MERLIN\n{}element vertex {}\n"
       "property float x\nproperty float y\nproperty float z\n",
+      isTextured(mesh) ? "comment TextureFile " + pictureName(mesh, name) + "\n" : "",
       mesh.vertexCount());
   for (std::size_t f = 0; f < forms.size(); ++f) {
-    for (const std::string& name : propertiesOf(mesh.features[f]))
-      text += fmt::format("property {} {}\n", kTypes[static_cast<std::size_t>(forms[f])], name);
+    for (const std::string& property : propertiesOf(mesh.features[f]))
+      text += fmt::format("property {} {}\n", kTypes[static_cast<std::size_t>(forms[f])], property);
   }
   return text + fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
                             mesh.triangleCount());
 }
 
-bool carries(const Feature&) { return true; }
+bool carries(const Mesh&, const Feature&) { return true; }
 
-bool write(const Mesh& mesh, const WriteBytes& bytes) {
+bool write(const Mesh& mesh, const std::string& name, const WriteBytes& bytes) {
   std::vector<Form> forms;
   for (const Feature& f : mesh.features) forms.push_back(formOf(f));
-  std::string row = headerFor(mesh, forms);
+  std::string row = headerFor(mesh, name, forms);
   const auto put = [&] { return bytes(std::as_bytes(std::span(row))); };
   if (!put()) return false;
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
@@ -91,6 +93,6 @@ bool write(const Mesh& mesh, const WriteBytes& bytes) {
 }  // namespace
 }  // namespace ply
 
-const MeshWriter kPlyWriter{"ply", ply::carries, ply::write};
+const MeshWriter kPlyWriter{"ply", ply::carries, ply::write, PicturePlace::kBeside};
 
 }  // namespace merlin::render
