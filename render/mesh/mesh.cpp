@@ -4,8 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "render/mesh/places.h"
 
 namespace merlin::render {
 namespace {
@@ -204,7 +207,10 @@ std::array<float, 3> faceNormal(const float* a, const float* b, const float* c) 
           static_cast<float>(n[2] / length)};
 }
 
-std::vector<float> vertexNormals(const Mesh& mesh) {
+namespace {
+
+// Of each vertex' faces the sum of their unit normals.
+std::vector<float> normalSums(const Mesh& mesh) {
   std::vector<float> normals(mesh.positions.size(), 0.0F);
   const float* p = mesh.positions.data();
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
@@ -215,18 +221,58 @@ std::vector<float> vertexNormals(const Mesh& mesh) {
       for (std::size_t k = 0; k < 3; ++k) normals[3 * std::size_t{t[corner]} + k] += f[k];
     }
   }
+  return normals;
+}
+
+// Where a few vertices lie in one place each gets what the others have.
+void joinSeams(const Mesh& mesh, std::vector<float>& sums) {
+  constexpr std::size_t kMostSides = 8;  // where more meet it is no seam
+  const std::vector<std::uint32_t> next = samePlace(mesh.positions);
+  const std::vector<float> own = sums;
+  const auto of = [&](std::uint32_t v) { return &own[3 * std::size_t{v}]; };
+  for (std::uint32_t v = 0; v < next.size(); ++v) {
+    std::size_t here = 1;
+    for (std::uint32_t o = next[v]; o != v && here <= kMostSides; o = next[o]) ++here;
+    if (here > kMostSides) continue;
+    for (std::uint32_t o = next[v]; o != v; o = next[o])
+      addIfOneSurface(&sums[3 * std::size_t{v}], of(v), of(o));
+  }
+}
+
+void normaliseAll(std::vector<float>& normals) {
   for (std::size_t i = 0; i < normals.size(); i += 3) normalise(&normals[i]);
+}
+
+// As vertexNormals(), and as if seams were none.
+std::vector<float> normalsAcrossSeams(const Mesh& mesh) {
+  std::vector<float> normals = normalSums(mesh);
+  joinSeams(mesh, normals);
+  normaliseAll(normals);
+  return normals;
+}
+
+}  // namespace
+
+void addIfOneSurface(float* normal, const float* own, const float* other) noexcept {
+  const float cosine = own[0] * other[0] + own[1] * other[1] + own[2] * other[2];
+  for (std::size_t k = 0; cosine > 0 && k < 3; ++k) normal[k] += other[k];
+}
+
+std::vector<float> vertexNormals(const Mesh& mesh) {
+  std::vector<float> normals = normalSums(mesh);
+  normaliseAll(normals);
   return normals;
 }
 
 void ensureNormals(Mesh& mesh) {
   Feature* present = mesh.find("normal");
   if (present && present->dimension == 3 && areUnit(present->values)) return;
-  if (present) {
-    *present = {"normal", 3, vertexNormals(mesh)};
-  } else {
-    mesh.features.push_back({"normal", 3, vertexNormals(mesh)});
-  }
+  Feature normal{"normal", 3,
+                 mesh.find("texcoord") ? normalsAcrossSeams(mesh) : vertexNormals(mesh)};
+  if (present)
+    *present = std::move(normal);
+  else
+    mesh.features.push_back(std::move(normal));
 }
 
 }  // namespace merlin::render

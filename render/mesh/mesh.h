@@ -69,7 +69,13 @@ std::array<float, 3> faceNormal(const float* a, const float* b, const float* c) 
 // length; zero where they cancel. vertices x 3.
 std::vector<float> vertexNormals(const Mesh& mesh);
 
-// Adds "normal" by vertexNormals() unless the mesh has one of the right size and unit length.
+// Adds the normal of a vertex' other side, where a seam has one: what faces away from its own is
+// another surface's. Both are sums of unit normals, as is `normal`, which may be `own`'s copy.
+void addIfOneSurface(float* normal, const float* own, const float* other) noexcept;
+
+// Adds "normal" by vertexNormals() unless the mesh has one of the right size and unit length. Where
+// there are texture coordinates both sides of a seam get the same, so that it is not seen in the
+// light.
 void ensureNormals(Mesh& mesh);
 
 }  // namespace merlin::render

@@ -102,6 +102,8 @@ class QuadricReducer {
   float witnessDeviation(Worker& w, std::uint32_t v, std::uint32_t edge) const;
   float errorOf(const EdgeCosts& costs, std::uint32_t v, std::uint32_t edge) const;
   void collapse(Worker& w, std::uint32_t v, std::uint32_t edge);
+  void addNormalOf(std::uint32_t twin, float* normal) const;
+  void shareNormal(std::uint32_t from, std::uint32_t to);
   bool isAlongSeam(const EdgeCosts& costs, std::uint32_t v, std::uint32_t edge) const;
   std::uint32_t findTwin(Worker& w, std::uint32_t v, std::uint32_t edge);
   void stayOnSeam(Worker& w, std::uint32_t v, std::uint32_t edge);

@@ -1,5 +1,8 @@
 // QuadricReducer along seams: where two vertices lie in one place, because a feature differs on
 // either side, the edges of both sides go together, so that nothing gapes.
+#include <algorithm>
+#include <cstring>
+
 #include "render/reduce/quadric_reducer.h"
 
 namespace merlin::render {
@@ -54,6 +57,30 @@ void QuadricReducer::stayOnSeam(Worker& w, std::uint32_t v, std::uint32_t edge) 
     goAlongSeam(view(), v, w.costs, edge, twins_[v], w.twin, other);
 }
 
+// Of the vertex' other side, as it is.
+void QuadricReducer::addNormalOf(std::uint32_t twin, float* normal) const {
+  const QuadricVertex& t = mesh_[twin];
+  if (!lives(t)) return;
+  float other[3] = {};
+  for (const Corner& c : mesh_.star(t)) {
+    const auto face = faceNormal(t.position, mesh_[c.b].position, mesh_[c.c].position);
+    for (std::size_t k = 0; k < 3; ++k) other[k] += face[k];
+  }
+  const float own[] = {normal[0], normal[1], normal[2]};
+  addIfOneSurface(normal, own, other);
+}
+
+// From the node of one side to that of the other, if they are one surface.
+void QuadricReducer::shareNormal(std::uint32_t from, std::uint32_t to) {
+  const NodeRecord good = recordOf(from);
+  NodeRecord record = recordOf(to);
+  float sum[3] = {};
+  addIfOneSurface(sum, record.normal, good.normal);
+  if (sum[0] == 0 && sum[1] == 0 && sum[2] == 0) return;
+  std::copy_n(sum, 3, record.normal);
+  std::memcpy(static_cast<void*>(mesh_[to].position), &record, sizeof record);
+}
+
 // Both sides, if both may; returns whether they did. REQUIRES: guard() has seen the edge.
 bool QuadricReducer::collapseSeam(Worker& w, std::uint32_t v, std::uint32_t edge) {
   const std::uint32_t tv = twins_[v], other = findTwin(w, v, edge);
@@ -65,10 +92,12 @@ bool QuadricReducer::collapseSeam(Worker& w, std::uint32_t v, std::uint32_t edge
   w.twin.deviation[other] = w.costs.deviation[edge];
   w.twin.witness[other] = w.costs.staysAt(edge);  // of the end that moves
   if (!mayCollapse(w, w.costs, v, edge) || !mayCollapse(w, w.twin, tv, other)) return false;
+  const std::uint32_t x = w.costs.neighbour[edge], tx = w.twin.neighbour[other];
   collapse(w, v, edge);
   if (mesh_[v].degree > 0) enqueue(w, v, w.costs.least());
   std::swap(w.costs, w.twin);
   collapse(w, tv, other);
+  shareNormal(tx, x);                                       // measured when both had moved
   if ((mesh_[tv].flags & kIdle) && mesh_[tv].degree > 0) {  // else it is in the queue
     mesh_[tv].flags &= static_cast<std::uint8_t>(~kIdle);
     enqueue(w, tv, w.costs.least());

@@ -70,6 +70,25 @@ TEST(QuadricSeams, ShrinkAndNeverGape) {
   EXPECT_LT(before, kHigh / 3);
 }
 
+// The least cosine between the normals of vertices in one place.
+float leastCosine(const Mesh& mesh) {
+  std::map<Place, const float*> first;
+  float least = 1;
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+    const float *p = &mesh.positions[3 * v], *n = &mesh.find("normal")->values[3 * v];
+    const float* other = first.emplace(Place{p[0], p[1], p[2]}, n).first->second;
+    least = std::min(least, n[0] * other[0] + n[1] * other[1] + n[2] * other[2]);
+  }
+  return least;
+}
+
+TEST(QuadricSeams, AreNotSeenInTheLight) {
+  const Levels levels(tube(true));
+  EXPECT_GT(leastCosine(levels.at(1)), 0.99999F);
+  for (const double share : {0.5, 0.2, 0.1})
+    EXPECT_GT(leastCosine(levels.at(share)), 0.999F) << share;
+}
+
 TEST(QuadricSeams, CostLittle) {
   const Mesh whole = tube(false), cut = tube(true);
   CompareSettings settings;
