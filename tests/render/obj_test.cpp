@@ -70,6 +70,12 @@ TEST_F(ObjFile, MayHoldWhatMerlinHasNoUseFor) {
   EXPECT_EQ(loaded->mesh.triangles, (Indices{0, 1, 2}));
 }
 
+TEST_F(ObjFile, GoesOnInTheNextLineBehindABackslash) {
+  EXPECT_EQ(trianglesOf("f 1 \\\n2 \\ \r\n  4\nf 1 4 3"), (Indices{0, 1, 3, 0, 3, 2}));
+  EXPECT_EQ(faultOfFaces("f 1 2\\\n x\n"), "line 6: \"x\" is no corner of a face");
+  EXPECT_EQ(trianglesOf("f 1 2 3 \\"), (Indices{0, 1, 2}));
+}
+
 TEST_F(ObjFile, HasColoursWhereEveryVertexHasOne) {
   const auto loaded = read("v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 0.25\nf 1 2 3\n");
   ASSERT_TRUE(loaded) << loaded.error().what;
@@ -112,9 +118,9 @@ TEST_F(ObjFile, NamesTheLineOfAWordThatIsNoNumber) {
 }
 
 TEST_F(ObjFile, IsRefusedWhereAFacePointsNowhere) {
-  EXPECT_EQ(faultOfFaces("f 1 2 4\nf 1 2 5\n"), "triangle 1: vertex 4 of 4 (0 to 3 exist)");
-  EXPECT_EQ(faultOfFaces("f 0 2 3\n"), "triangle 0: vertex 4294967295 of 4 (0 to 3 exist)");
-  EXPECT_EQ(faultOfFaces("f 1 2 -5\n"), "triangle 0: vertex 4294967295 of 4 (0 to 3 exist)");
+  EXPECT_EQ(faultOfFaces("f 1 2 4\nf 1 2 5\n"), "line 6: a corner names vertex 5, there are 4");
+  EXPECT_EQ(faultOfFaces("f 0 2 3\n"), "line 5: a corner names vertex 0, there are 4");
+  EXPECT_EQ(faultOfFaces("f 1 2 -5\n"), "line 5: a corner names vertex -5, there are 4");
 }
 
 TEST_F(ObjFile, WithoutFacesOrOfSomethingElseIsNoMesh) {

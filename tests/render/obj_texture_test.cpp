@@ -230,7 +230,7 @@ TEST_F(TexturedObj, KeepsItsOwnColoursWhereNoPictureIs) {
 TEST_F(TexturedObj, NamesTheLineOfACornerWithoutItsCoordinate) {
   test::writeText(dir_ / "a.obj", std::string(kSquare) + "vt 0 0\nf 1/1 2/1 3/1\nf 1/2 2/1 3/1\n");
   EXPECT_EQ(readMesh(dir_ / "a.obj").error().what,
-            dir_ / "a.obj: line 7: a corner names a texture coordinate that is none of the 1");
+            dir_ / "a.obj: line 7: a corner names texture coordinate 2, there are 1");
   read(std::string(kSquare) + "f 1/1 2/1 3/1\nvt 0 0\n");  // behind its use
   read(std::string(kSquare) + "vt 0 0\nvt 1 1\nf 1/-1 2/-2 3/-1\n");
 }

@@ -23,6 +23,22 @@ std::uint32_t indexOf(int number, std::size_t count) {
   return number == 0 || index < 0 ? 0xFFFFFFFF : static_cast<std::uint32_t>(index);
 }
 
+// The farthest of what corners name.
+struct Farthest {
+  std::uint32_t index = 0;
+  int number = 0;  // as it stands there
+  std::size_t line = 0;
+
+  void take(std::uint32_t i, int as, std::size_t at) {
+    if (line == 0 || i > index) *this = {i, as, at};
+  }
+  Result<Ok> check(const char* what, std::size_t count) const {
+    if (line == 0 || index < count) return Ok{};
+    return Error{Errc::kMalformed, fmt::format("line {}: a corner names {} {}, there are {}", line,
+                                               what, number, count)};
+  }
+};
+
 class ObjParser {
  public:
   explicit ObjParser(std::string_view content) : left_(content) {}
@@ -30,17 +46,33 @@ class ObjParser {
   Result<ObjSurface> parse() {
     surface_.materials = {""};
     while (!left_.empty()) {
-      ++line_;
-      std::string_view line = takeLine(left_);
+      std::string_view line = nextLine();
       const std::string_view keyword = takeWord(line);
       if (const auto done = take(keyword, line); !done) return done.error();
     }
-    if (const auto checked = checkTexcoords(); !checked) return checked.error();
+    if (const auto checked = checkCorners(); !checked) return checked.error();
     finish();
     return std::move(surface_);
   }
 
  private:
+  // "\\" at its end: the next one goes on with it.
+  std::string_view nextLine() {
+    const auto next = [&] {
+      ++line_;
+      return trimmed(takeLine(left_));
+    };
+    std::string_view line = next();
+    if (!line.ends_with('\\')) return line;
+    joined_.clear();
+    for (; line.ends_with('\\'); line = left_.empty() ? "" : next()) {
+      joined_ += line.substr(0, line.size() - 1);
+      joined_ += ' ';
+    }
+    joined_ += line;
+    return joined_;
+  }
+
   Error bad(std::string_view word, const char* what) const {
     return {Errc::kMalformed, fmt::format("line {}: \"{}\" is no {}", line_, word, what)};
   }
@@ -113,16 +145,14 @@ class ObjParser {
     int number = 0;
     if (!readNumber(vertex, number)) return false;
     corner.vertex = indexOf(number, surface_.mesh.vertexCount());
+    vertices_.take(corner.vertex, number, line_);
     if (vertex.size() == word.size()) return true;
     word.remove_prefix(vertex.size() + 1);
     const std::string_view texcoord = word.substr(0, word.find('/'));
     if (texcoord.empty()) return true;
     if (!readNumber(texcoord, number)) return false;
     corner.texcoord = indexOf(number, surface_.texcoords.size() / 2);
-    if (farthest_.texcoord == kNoTexcoord || corner.texcoord > farthest_.texcoord) {
-      farthest_.texcoord = std::min(corner.texcoord, kNoTexcoord - 1);
-      farthest_line_ = line_;
-    }
+    texcoords_.take(corner.texcoord, number, line_);
     textured_ = true;
     return true;
   }
@@ -142,13 +172,11 @@ class ObjParser {
     return static_cast<std::uint32_t>(std::find(names.begin(), names.end(), name) - names.begin());
   }
 
-  // Coordinates may stand behind the faces that use them.
-  Result<Ok> checkTexcoords() const {
-    const std::size_t count = surface_.texcoords.size() / 2;
-    if (!textured_ || farthest_.texcoord < count) return Ok{};
-    return Error{Errc::kMalformed,
-                 fmt::format("line {}: a corner names a texture coordinate that is none of the {}",
-                             farthest_line_, count)};
+  // Vertices and coordinates may stand behind the faces that use them.
+  Result<Ok> checkCorners() const {
+    const auto vertices = vertices_.check("vertex", surface_.mesh.vertexCount());
+    return vertices ? texcoords_.check("texture coordinate", surface_.texcoords.size() / 2)
+                    : vertices;
   }
 
   void finish() {
@@ -161,11 +189,12 @@ class ObjParser {
   }
 
   std::string_view left_;
-  std::size_t line_ = 0, farthest_line_ = 0;
+  std::string joined_;  // lines that go on
+  std::size_t line_ = 0;
   ObjSurface surface_;
   std::vector<float> colours_;
   std::uint32_t material_ = 0;
-  ObjCorner farthest_;
+  Farthest vertices_, texcoords_;
   bool textured_ = false;
 };
 
