@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/render/ply_files.h"
@@ -15,6 +16,7 @@ using namespace std::string_literals;
 using namespace test;  // ply_files.h
 using Floats = std::vector<float>;
 using Indices = std::vector<std::uint32_t>;
+using Notes = std::vector<std::string>;
 
 void expectSquare(const Mesh& mesh) {
   EXPECT_EQ(mesh.positions, (Floats{0, 0, 0.5F, 1, 0, 0.5F, 0, 1, 0.5F, 1, 1, 0.5F}));
@@ -40,7 +42,7 @@ TEST_P(PlyForms, AreReadAlike) {
   const auto loaded = read(squareFile(GetParam()));
   ASSERT_TRUE(loaded) << loaded.error().what;
   expectSquare(loaded->mesh);
-  EXPECT_EQ(loaded->skipped_properties, 0u);
+  EXPECT_EQ(loaded->notes, Notes{});
 }
 
 TEST_P(PlyForms, MayHaveCarriageReturnsInTheirHeader) {
@@ -98,7 +100,7 @@ TEST_P(PlyForms, MayCarryWhatNobodyKnows) {
   EXPECT_EQ(loaded->mesh.positions, (Floats{0, 0, 0, 1, 0, 0, 0, 1, 0}));
   EXPECT_EQ(loaded->mesh.triangles, (Indices{0, 1, 2}));
   EXPECT_TRUE(loaded->mesh.features.empty());
-  EXPECT_EQ(loaded->skipped_properties, 4u);
+  EXPECT_EQ(loaded->notes, Notes{"left out: camera, nothing, bones (a list), flags (of faces)"});
 }
 
 const std::string kAscii = squareFile(Form::kAscii);
@@ -157,6 +159,45 @@ TEST(PlyRead, TakesColoursInFloatAsTheyAre) {
   EXPECT_EQ((Floats{colour.begin() + 3, colour.begin() + 6}), (Floats{51, 0.5F, 1.5F}));
 }
 
+TEST(PlyRead, TakesTheFirstOfTwoThatAreOne) {
+  const auto loaded = read(replaced(kAscii, "property double heat", "property float red"));
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->notes, Notes{"left out: red (there is one before it)"});
+  EXPECT_EQ(loaded->mesh.find("colour")->values, read(kAscii)->mesh.find("colour")->values);
+}
+
+TEST(PlyRead, NamesAFewOfManyThatAreLeftOut) {
+  std::string lists;
+  for (int i = 0; i < 12; ++i) lists += fmt::format("property list uchar int l{}\n", i);
+  const auto loaded = read(
+      "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\n"
+      "property float y\nproperty float z\n" +
+      lists + "end_header\n");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->notes,
+            Notes{"left out: l0 (a list), l1 (a list), l2 (a list), l3 (a list), l4 (a list), "
+                  "l5 (a list), l6 (a list), l7 (a list) and 4 more"});
+}
+
+TEST(PlyRead, CountsWholeNumbersThatAFloatHasNot) {
+  const auto loaded = read(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty int label\nend_header\n0 0 0 16777216\n0 0 0 16777217\n"
+      "0 0 0 -33554433\n");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->notes, Notes{"2 whole numbers beyond 2^24 are rounded"});
+}
+
+// What a terminal would follow, or JSON could not hold.
+TEST(PlyRead, RefusesNamesThatAreNoText) {
+  for (const char* name : {"he\x1b[31mat", "he\xff", "he\x7f", "\xc2\x9bheat", "\xc3"}) {
+    const auto refused = read(replaced(kAscii, "property double heat", "property double "s + name));
+    ASSERT_FALSE(refused);
+    EXPECT_TRUE(refused.error().what.ends_with(": the property's name is no text (UTF-8)"));
+  }
+  EXPECT_TRUE(read(replaced(kAscii, "double heat", "double \xce\xb8-\xe2\x84\x83")));
+}
+
 // A scalar that is called "colour" is not a colour's red; nor may its neighbours be written beside
 // it.
 TEST(PlyRead, LeavesOutAScalarThatBearsTheNameOfAKnownFeature) {
@@ -165,7 +206,9 @@ TEST(PlyRead, LeavesOutAScalarThatBearsTheNameOfAKnownFeature) {
         read(replaced(replaced(kAscii, "property double heat", "property uchar blue"),
                       "property uchar red", "property uchar "s + name));
     ASSERT_TRUE(loaded) << loaded.error().what;
-    EXPECT_EQ(loaded->skipped_properties, 1u);
+    EXPECT_EQ(loaded->notes,
+              Notes{"left out: "s + name +
+                    " (has to be several properties), blue (there is one before it)"});
     ASSERT_EQ(loaded->mesh.features.size(), 1u);
     EXPECT_EQ(loaded->mesh.features[0].name, "colour");
     EXPECT_EQ(loaded->mesh.features[0].dimension, 3u);

@@ -30,8 +30,7 @@ struct LoadedMesh {
   Mesh mesh;
   TidyReport tidied;
   SplitReport split;
-  std::size_t skipped_properties = 0;  // of the file, that MERLIN has no place for
-  std::vector<std::string> notes;      // for a person: a picture that is not there, and the like
+  std::vector<std::string> notes;  // for a person: what is left out, a picture that is not there
 };
 
 // Errors, each with the file's name and where in it: kNotFound, kIo, kMalformed (cut short, broken,

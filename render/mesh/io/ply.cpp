@@ -21,7 +21,12 @@ struct Column {
   std::size_t stride = 1;
   std::size_t offset = 0;
   float scale = 1;
+  bool whole = false;  // of an integer type
+
+  bool isOf(const Column& o) const { return values == o.values && offset == o.offset; }
 };
+
+bool isInteger(Scalar type) { return type != Scalar::kFloat32 && type != Scalar::kFloat64; }
 
 const Known* knownAs(std::string_view property) {
   for (const Known& k : kKnown) {
@@ -100,6 +105,7 @@ class Reader {
       if (!done) return done.error();
     }
     mesh().features = grouped(std::move(mesh().features), mesh().vertexCount());
+    noteLosses();
     return std::move(loaded_);
   }
 
@@ -126,7 +132,7 @@ class Reader {
   }
 
   Result<Ok> skip(const Element& e) {
-    ++loaded_.skipped_properties;
+    leaveOut(e.name, "");
     if (e.properties.empty()) return Ok{};
     for (std::uint64_t row = 0; row < e.count; ++row) {
       for (const Property& p : e.properties) {
@@ -168,13 +174,19 @@ class Reader {
     for (const Property& p : e.properties) {
       Column c;
       if (p.list) {
-        ++loaded_.skipped_properties;
+        leaveOut(p.name, " (a list)");
       } else if (p.name.size() == 1 && kAxes.find(p.name) != std::string_view::npos) {
         c = {&mesh().positions, 3, kAxes.find(p.name), 1};
         axes |= 1U << c.offset;
       } else {
         c = featureColumn(p, e.count);
       }
+      const auto same = [&](const Column& o) { return c.values && o.isOf(c); };
+      if (std::any_of(columns.begin(), columns.end(), same)) {
+        leaveOut(p.name, " (there is one before it)");
+        c = {};
+      }
+      c.whole = isInteger(p.type);
       columns.push_back(c);
     }
     if (axes == 0b111) return columns;
@@ -184,7 +196,7 @@ class Reader {
   Column featureColumn(const Property& p, std::uint64_t count) {
     const Known* known = knownAs(p.name);
     if (!known && isKnownFeature(p.name)) {  // a scalar "colour" has no room for a green
-      ++loaded_.skipped_properties;
+      leaveOut(p.name, " (has to be several properties)");
       return {};
     }
     const std::string name = known ? known->feature : p.name;
@@ -213,7 +225,10 @@ class Reader {
         } else if (!body_.next(p.type, value)) {
           return brokenAt(e, row, p);
         }
-        if (c.values) (*c.values)[row * c.stride + c.offset] = static_cast<float>(value) * c.scale;
+        if (!c.values) continue;
+        const auto kept = static_cast<float>(value);
+        if (c.whole && static_cast<double>(kept) != value) ++rounded_;
+        (*c.values)[row * c.stride + c.offset] = kept * c.scale;
       }
     }
     return Ok{};
@@ -225,7 +240,7 @@ class Reader {
     std::vector<bool> corners;
     for (const Property& p : e.properties) {
       corners.push_back(isCorners(p));
-      loaded_.skipped_properties += !corners.back();
+      if (!corners.back()) leaveOut(p.name, " (of faces)");
     }
     for (std::uint64_t row = 0; row < e.count; ++row) {
       for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -265,9 +280,25 @@ class Reader {
     return Ok{};
   }
 
+  void leaveOut(const std::string& name, std::string_view why) {
+    constexpr std::size_t kMostNamed = 8;
+    if (++left_out_count_ <= kMostNamed)
+      left_out_ += fmt::format("{}{}{}", left_out_.empty() ? "" : ", ", name, why);
+    else
+      left_out_more_ = fmt::format(" and {} more", left_out_count_ - kMostNamed);
+  }
+
+  void noteLosses() {
+    if (left_out_count_ > 0) loaded_.notes.push_back("left out: " + left_out_ + left_out_more_);
+    if (rounded_ > 0)
+      loaded_.notes.push_back(fmt::format("{} whole numbers beyond 2^24 are rounded", rounded_));
+  }
+
   Header header_;
   Body body_;
   LoadedMesh loaded_;
+  std::string left_out_, left_out_more_;  // properties and elements
+  std::size_t left_out_count_ = 0, rounded_ = 0;
 };
 
 }  // namespace
