@@ -6,6 +6,8 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "daemon/base/text.h"
+
 namespace merlin {
 namespace {
 
@@ -47,9 +49,9 @@ void initLog(LogLevel lowest) {
 
 void logLine(LogLevel level, std::string_view text) {
   if (underJournal()) {
-    spdlog::log(toSpdlog(level), "{}{}", syslogPriority(level), text);
+    spdlog::log(toSpdlog(level), "{}{}", syslogPriority(level), printable(text));
   } else {
-    spdlog::log(toSpdlog(level), "{}", text);
+    spdlog::log(toSpdlog(level), "{}", printable(text));
   }
 }
 

@@ -5,12 +5,19 @@
 #include <fmt/format.h>
 
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
 
 namespace merlin::cli {
 
 int fail(const Error& error) {
-  fmt::print(stderr, "merlin: {}\n", error.what);
+  fmt::print(stderr, "merlin: {}\n", printable(error.what));
   return exitStatus(error);
+}
+
+Result<Ok> checkEnding(const std::string& path, const char* what, const char* ending) {
+  if (path.ends_with(ending)) return Ok{};
+  return Error{Errc::kInvalidArgument,
+               fmt::format("{}: a {}'s name ends in {}", path, what, ending)};
 }
 
 void addInstance(Command app, std::string& instance) {

@@ -31,6 +31,10 @@ void addWatch(Command app, Run& run);
 // Prints "merlin: WHAT" to stderr; returns the exit status that belongs to the error.
 int fail(const Error& error);
 
+// Whether a file that a command writes is named after what it is: "shot.jpg: a picture's name ends
+// in .png". Errors: kInvalidArgument.
+Result<Ok> checkEnding(const std::string& path, const char* what, const char* ending);
+
 // The option --instance, which every subcommand that speaks to a daemon has.
 void addInstance(Command app, std::string& instance);
 

@@ -39,6 +39,10 @@ std::vector<Repair> repairsOf(const render::LoadedMesh& loaded);
 // Those that happened as one line, "mended: 3 triangles with a vertex twice, ..."; else empty.
 std::string mendedText(const render::LoadedMesh& loaded);
 
+// Of a mesh that was written, for people: the files beside it, and what its format has no place
+// for.
+void printWritten(const render::WrittenMesh& written);
+
 // Before any work: whether these can be written and none is what is read; empty ones are none.
 // Errors: kInvalidArgument, checkWritable()'s.
 Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::string> outputs);

@@ -8,6 +8,7 @@
 #include "daemon/cli/compare_pictures.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
+#include "daemon/cli/print.h"
 #include "daemon/cli/progress.h"
 #include "render/compare/compare.h"
 
@@ -79,7 +80,7 @@ void printJson(const CompareOptions& options, const Answer& answer) {
   json["backward"] = jsonOf(c.backward, c.diagonal);
   if (answer.changed_percent) json["changed_pixels_percent"] = *answer.changed_percent;
   json["seconds"] = answer.seconds;
-  fmt::print("{}\n", json.dump());
+  printJsonLine(json);
 }
 
 std::string cell(const std::optional<double>& value) {

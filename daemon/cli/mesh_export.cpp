@@ -18,11 +18,6 @@ struct ExportOptions {
   bool multiresolution = false;
 };
 
-void sayLeftOut(const std::string& format, const std::vector<std::string>& left_out) {
-  if (left_out.empty()) return;
-  fmt::print("  .{} has no place for {}; it is left out\n", format, fmt::join(left_out, ", "));
-}
-
 int exportAll(const ExportOptions& options) {
   if (!options.output.ends_with(".iv")) {
     return fail({Errc::kInvalidArgument,
@@ -36,7 +31,7 @@ int exportAll(const ExportOptions& options) {
   if (!left_out) return fail(left_out.error());
   fmt::print("{}: {} to {} triangles, {} levels\n", options.output,
              model->trianglesAt(model->levels() - 1), model->triangleCount(), model->levels());
-  sayLeftOut("iv", *left_out);
+  printWritten({"iv", *left_out, {}});
   return kExitDone;
 }
 
@@ -54,8 +49,7 @@ int exportMesh(const ExportOptions& options) {
   if (!written) return fail(written.error());
   fmt::print("{}: {} triangles, {} vertices, error estimate {:.4g}\n", options.output,
              mesh.triangleCount(), mesh.vertexCount(), model->errorAt(*level));
-  if (!written->beside.empty()) fmt::print("  with it {}\n", fmt::join(written->beside, " and "));
-  sayLeftOut(written->format, written->left_out);
+  printWritten(*written);
   return kExitDone;
 }
 

@@ -6,6 +6,7 @@
 
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
+#include "daemon/cli/print.h"
 
 namespace merlin::cli {
 namespace {
@@ -57,7 +58,7 @@ void printJson(const std::string& file, const Opened& opened) {
                {"diagonal", box.diagonal()},
                {"about", a.about}};
   for (const Repair& r : opened.repairs) json[r.key] = r.count;
-  fmt::print("{}\n", json.dump());
+  printJsonLine(json);
 }
 
 void printText(const std::string& file, const Opened& opened) {

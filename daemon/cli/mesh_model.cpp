@@ -5,9 +5,11 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "daemon/base/files.h"
 #include "daemon/cli/mesh.h"
+#include "daemon/cli/print.h"
 #include "render/lod/io/mrm_file.h"
 
 namespace merlin::cli {
@@ -22,7 +24,7 @@ Result<render::Dendrogram> openModel(const std::string& path) {
 Result<render::LoadedMesh> loadMesh(const std::string& path) {
   auto loaded = render::readMesh(path);
   if (!loaded) return loaded;
-  for (const std::string& note : loaded->notes) fmt::print(stderr, "merlin: note: {}\n", note);
+  for (const std::string& note : loaded->notes) printNote(note);
   render::ensureNormals(loaded->mesh);
   return loaded;
 }
@@ -74,6 +76,14 @@ Error hasOneResolution(const std::string& path) {
           ? ""
           : fmt::format(" (make a model of it first: merlin mesh reduce {} -o OUT.mrm)", path);
   return {Errc::kInvalidArgument, path + ": has one resolution only" + advice};
+}
+
+void printWritten(const render::WrittenMesh& written) {
+  if (!written.beside.empty())
+    fmt::print("  with it {}\n", printable(fmt::format("{}", fmt::join(written.beside, " and "))));
+  if (!written.left_out.empty())
+    fmt::print("  .{} has no place for {}; it is left out\n", written.format,
+               fmt::join(written.left_out, ", "));
 }
 
 Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::string> outputs) {
@@ -132,7 +142,7 @@ Result<std::size_t> LevelChoice::levelOf(const render::Dendrogram& model,
   const bool missed = std::floor(asked) < static_cast<double>(got);
   if (model.levels() == 1 && (missed || error_percent || error_units))
     return hasOneResolution(path);
-  if (missed) fmt::print(stderr, "merlin: note: {}: goes down to {} triangles\n", path, got);
+  if (missed) printNote(fmt::format("{}: goes down to {} triangles", path, got));
   return level;
 }
 

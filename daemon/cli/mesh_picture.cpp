@@ -38,6 +38,8 @@ int picture(const PictureOptions& options) {
     if (const auto writable = checkOutputs(model, {options.output}); !writable)
       return fail(writable.error());
   }
+  if (const auto named = checkEnding(options.output, "picture", ".png"); !named)
+    return fail(named.error());
   render::prepareSoftwareGl(0);
   Image strip;
   for (const std::string& model : options.models) {

@@ -8,6 +8,7 @@
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
 #include "daemon/cli/mesh_memory.h"
+#include "daemon/cli/print.h"
 #include "daemon/cli/progress.h"
 #include "render/lod/io/mrm_file.h"
 #include "render/mesh/borders.h"
@@ -70,7 +71,7 @@ void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
                                    {"topology_refused", r.topology_refused},
                                    {"stopped", r.stopped}};
     for (const Repair& repair : repairsOf(loaded)) json[repair.key] = repair.count;
-    fmt::print("{}\n", json.dump());
+    printJsonLine(json);
     return;
   }
   fmt::print("{}: {} triangles down to {} in {} collapses ({})\n", options.output,
@@ -128,8 +129,7 @@ Result<Ok> addTexture(const ReduceOptions& options, render::Mesh& mesh) {
 
 Result<Ok> checkOptions(const ReduceOptions& options) {
   const bool pattern = options.settings.cost == "pattern";
-  if (!options.output.ends_with(".mrm"))
-    return Error{Errc::kInvalidArgument, options.output + ": a model's name ends in .mrm"};
+  if (const auto named = checkEnding(options.output, "model", ".mrm"); !named) return named;
   if (options.preset != "default" && !pattern)
     return Error{Errc::kInvalidArgument, "--preset " + options.preset + ": add --cost pattern"};
   if (options.lock_borders && pattern)
@@ -149,6 +149,8 @@ int reduceMesh(const ReduceOptions& options) {
   auto loaded = loadMesh(options.input);
   if (!loaded) return fail(loaded.error());
   if (const auto done = addTexture(options, loaded->mesh); !done) return fail(done.error());
+  if (const auto named = render::checkNames(loaded->mesh); !named)
+    return fail({named.error().code, options.input + ": " + named.error().what});
   const auto reduction = reduceLoaded(options, loaded->mesh, took);
   if (!reduction) return fail(reduction.error());
   const auto written =

@@ -9,6 +9,7 @@
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
 #include "daemon/cli/model_painter.h"
+#include "daemon/cli/print.h"
 #include "render/out/png.h"
 #include "render/segment/segment.h"
 
@@ -47,7 +48,7 @@ void report(const SegmentOptions& options, const render::Segmentation& s, double
     const nlohmann::ordered_json json = {{"output", options.output}, {"segments", s.sizes.size()},
                                          {"sizes", s.sizes},         {"vertices", s.labels.size()},
                                          {"error", s.error},         {"seconds", seconds}};
-    fmt::print("{}\n", json.dump());
+    printJsonLine(json);
     return;
   }
   fmt::print("{}: {} segments of {} vertices, RMS distance in pattern space {:.4g}, {:.2f} s\n",
@@ -65,6 +66,10 @@ int segmentMesh(const SegmentOptions& options) {
   if (const auto writable = checkOutputs(options.input, {options.output, options.picture});
       !writable)
     return fail(writable.error());
+  if (!options.picture.empty()) {
+    const auto named = checkEnding(options.picture, "picture", ".png");
+    if (!named) return fail(named.error());
+  }
   auto loaded = loadMesh(options.input);
   if (!loaded) return fail(loaded.error());
   render::Mesh& mesh = loaded->mesh;
@@ -84,6 +89,7 @@ int segmentMesh(const SegmentOptions& options) {
     if (const auto drawn = draw(options, mesh); !drawn) return fail(drawn.error());
   }
   report(options, *segmentation, seconds);
+  if (!options.json) printWritten(*written);
   return kExitDone;
 }
 

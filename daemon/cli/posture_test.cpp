@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
 #include "nn/evaluate.h"
 
 namespace merlin::cli {
@@ -85,7 +86,7 @@ int test(const TestOptions& options) {
                  options.beside, 100 * n.mean, 100 * n.nearest);
   }
   if (options.json) {
-    fmt::print("{}\n", json.dump());
+    printJsonLine(json);
   } else {
     printTable(e, recording->synthetic, options.margin);
   }

@@ -10,6 +10,7 @@
 
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
 #include "daemon/shm/segment.h"
 
 namespace merlin::cli {
@@ -120,7 +121,7 @@ int dump(const DumpOptions& options) {
              "there is no shared memory /{0}-devices or /{0}-wall: no merlind runs as \"{0}\"",
              options.instance)});
   if (options.json) {
-    fmt::print("{}\n", all.dump());
+    printJsonLine(all);
     return kExitDone;
   }
   for (const auto& [segment, fields] : all.items()) {

@@ -19,6 +19,8 @@ struct SnapshotOptions {
 };
 
 int snapshot(const SnapshotOptions& options) {
+  if (const auto named = checkEnding(options.output, "picture", ".png"); !named)
+    return fail(named.error());
   auto frame = render::captureFrame(shm::segmentName(options.instance, "framebuffer"));
   if (!frame && frame.error().code == Errc::kNotFound) {
     return fail({Errc::kIo, fmt::format("no merlind shows a wall as \"{}\": {}", options.instance,

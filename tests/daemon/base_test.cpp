@@ -12,10 +12,27 @@
 #include "daemon/base/files.h"
 #include "daemon/base/nearest.h"
 #include "daemon/base/random.h"
+#include "daemon/base/text.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin {
 namespace {
+
+TEST(Text, IsUtf8WithoutControls) {
+  for (const char* text : {"", "heat", "\xc2\xb5", "\xe2\x84\x83", "\xf0\x9f\xa6\x96",
+                           "\xed\x9f\xbf", "\xf4\x8f\xbf\xbf"})
+    EXPECT_TRUE(isText(text)) << text;
+  // Controls, cut short, overlong, a surrogate, beyond the last, no beginning.
+  for (const char* none : {"\n", "\x1b", "\x7f", "\xc2\x9b", "\xc3", "\xe2\x84", "\xe2\x84x",
+                           "\xc1\xbf", "\xe0\x9f\xbf", "\xf0\x8f\xbf\xbf", "\xed\xa0\x80",
+                           "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\x80"})
+    EXPECT_FALSE(isText(none)) << printable(none);
+}
+
+TEST(Text, ShowsWhatATerminalWouldFollow) {
+  EXPECT_EQ(printable("a\tb\n\xc2\xb5"), "a\tb\n\xc2\xb5");
+  EXPECT_EQ(printable("\x1b[31m\xffz\xc2\x9b"), "\\x1b[31m\\xffz\\xc2\\x9b");
+}
 
 TEST(Nearest, FindsTypingErrorsAndNothingFarAway) {
   const std::vector<std::string> known = {"port", "baud", "rate_hz", "model_radius_m"};

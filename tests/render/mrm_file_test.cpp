@@ -77,17 +77,22 @@ TEST(MrmFile, HoldsAMeshThatWasNotReducedAndHasNoFeatures) {
   EXPECT_EQ(MrmBytes(bytes).header().collapses, 0u);
 }
 
-TEST(MrmFile, KeepsTheFirst31BytesOfAFeaturesName) {
+TEST(MrmFile, KeepsWhatHasRoomOfAFeaturesName) {
+  const std::string x30(30, 'x'), micro = "\xc2\xb5";
   Mesh mesh = test::cube();
-  for (const std::size_t length : {std::size_t{31}, std::size_t{32}}) {
-    mesh.features.push_back({std::string(length, 'x'), 1, std::vector<float>(8)});
-  }
+  for (const std::string& name : {x30 + "yz", x30 + micro})
+    mesh.features.push_back({name, 1, std::vector<float>(8)});
+  EXPECT_TRUE(checkNames(mesh));
   const test::TempDir dir;
   ASSERT_TRUE(writeMrm(dir / "x.mrm", buildDendrogram(mesh, {{}, {}, {{}, {}}, {}, ""})));
   const auto read = readMrm(dir / "x.mrm");
   ASSERT_TRUE(read);
-  EXPECT_EQ(read->arrays().features[0].name, std::string(31, 'x'));
-  EXPECT_EQ(read->arrays().features[1].name, std::string(31, 'x'));
+  EXPECT_EQ(read->arrays().features[0].name, x30 + "y");
+  EXPECT_EQ(read->arrays().features[1].name, x30) << "whole characters";
+  mesh.features.push_back({x30 + "ya", 1, std::vector<float>(8)});
+  EXPECT_EQ(checkNames(mesh).error().what,
+            "two features are \"" + x30 +
+                "y\" in a model, which has 31 bytes for a name; rename \"" + x30 + "ya\"");
 }
 
 TEST(MrmFile, SaysInItsHeaderWhatIsInIt) {

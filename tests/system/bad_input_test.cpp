@@ -201,6 +201,10 @@ TEST_F(BadInput, MeshCommands) {
                  "boundary, colour"});
   expectOutcome(run({kMerlin, "mesh", "reduce", scan, "-o", "/no/such/folder/o.mrm"}), 2,
                 {"/no/such/folder/o.mrm"});
+  expectOutcome(run({kMerlin, "mesh", "picture", scan, "-o", dir_ / "o.jpg"}), 2,
+                {"o.jpg: a picture's name ends in .png"});
+  expectOutcome(run({kMerlin, "mesh", "info", dir_ / "a\033[31m\xff.ply"}), 2,
+                {"/a\\x1b[31m\\xff.ply: No such file or directory"});
   expectOutcome(run({kMerlin, "mesh", "export", scan, "-o", dir_ / "o.dae"}), 2,
                 {"o.dae: meshes are written as .ply"});
   expectOutcome(run({kMerlin, "mesh", "export", scan, "-o", dir_ / "o.ply", "--percent", "5",

@@ -10,6 +10,7 @@
 #include <xxhash.h>
 
 #include "daemon/base/files.h"
+#include "daemon/base/text.h"
 #include "render/lod/io/mrm_layout.h"
 
 namespace merlin::render {
@@ -105,8 +106,13 @@ class MrmReader {
     if (e.checksum != checksum(at, e.rows * row)) {
       return broken(path_, fmt::format("section {} is damaged", nameOf(e.kind)));
     }
+    if (!isText(nameIn(e))) return broken(path_, "a feature's name is no text (UTF-8)");
     place(e, at);
     return Ok{};
+  }
+
+  static std::string_view nameIn(const SectionEntry& e) {
+    return {e.name, strnlen(e.name, sizeof e.name)};
   }
 
   void place(const SectionEntry& e, const std::byte* at) {
@@ -116,8 +122,7 @@ class MrmReader {
     switch (static_cast<Kind>(e.kind)) {
       case Kind::kPositions: arrays_.positions = floats; break;
       case Kind::kFeature:
-        arrays_.features.push_back(
-            {std::string(e.name, strnlen(e.name, sizeof e.name)), e.dimension, floats});
+        arrays_.features.push_back({std::string(nameIn(e)), e.dimension, floats});
         break;
       case Kind::kParents: arrays_.parents = words; break;
       case Kind::kTriangles: arrays_.triangles = words; break;

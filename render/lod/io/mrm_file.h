@@ -13,8 +13,13 @@ namespace merlin::render {
 // cut short), kUnsupported (a later version).
 Result<Dendrogram> readMrm(const std::string& path);
 
-// Writes atomically; the same dendrogram gives the same bytes. Of a feature's name, the first 31
-// bytes are kept. Errors: kNotFound (no such folder), kIo.
+// Whether its features can be told from one another in a model, which keeps of each name as many
+// characters as 31 bytes hold; to be asked before long work. Errors: kUnsupported, without the
+// file's name.
+Result<Ok> checkNames(const Mesh& mesh);
+
+// Writes atomically; the same dendrogram gives the same bytes. Errors: kNotFound (no such folder),
+// kIo.
 Result<Ok> writeMrm(const std::string& path, const Dendrogram& dendrogram);
 
 // The same bytes as of buildDendrogram(mesh, log), without making it: beside mesh and log it takes

@@ -4,13 +4,16 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <set>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <xxhash.h>
 
 #include "daemon/base/blocks.h"
 #include "daemon/base/files.h"
+#include "daemon/base/text.h"
 #include "render/lod/death_order.h"
 #include "render/lod/io/mrm_file.h"
 #include "render/lod/io/mrm_layout.h"
@@ -33,6 +36,13 @@ struct Section {
   std::size_t bytes() const { return entry.rows * rowBytes(); }
 };
 
+// What there is room for, in whole characters.
+std::string_view shortName(std::string_view name) {
+  std::string_view kept = name.substr(0, sizeof SectionEntry::name - 1);
+  while (kept.size() < name.size() && !isText(kept)) kept.remove_suffix(1);
+  return kept;
+}
+
 // What a file is made of, wherever it comes from.
 struct Model {
   std::size_t nodes = 0, collapses = 0, triangles = 0;
@@ -43,7 +53,7 @@ struct Model {
     s.entry.kind = static_cast<std::uint32_t>(kind);
     s.entry.dimension = static_cast<std::uint32_t>(dimension);
     s.entry.rows = rows;
-    std::copy_n(name.begin(), std::min(name.size(), sizeof s.entry.name - 1), s.entry.name);
+    std::ranges::copy(shortName(name), s.entry.name);
     s.rows = std::move(fill);
     sections.push_back(std::move(s));
   }
@@ -232,6 +242,19 @@ class MrmWriter {
 };
 
 }  // namespace
+
+Result<Ok> checkNames(const Mesh& mesh) {
+  std::set<std::string_view> names;
+  for (const Feature& f : mesh.features) {
+    if (!names.insert(shortName(f.name)).second) {
+      return Error{Errc::kUnsupported,
+                   fmt::format("two features are \"{}\" in a model, which has 31 bytes for a name; "
+                               "rename \"{}\"",
+                               shortName(f.name), f.name)};
+    }
+  }
+  return Ok{};
+}
 
 Result<Ok> writeMrm(const std::string& path, const Dendrogram& dendrogram) {
   return MrmWriter(modelOf(dendrogram), 1).write(path);

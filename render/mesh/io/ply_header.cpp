@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/text.h"
+
 namespace merlin::render::ply {
 namespace {
 
@@ -129,6 +131,7 @@ class HeaderParser {
     }
     p.type = *type;
     p.count_type = *count;
+    if (!isText(words.back())) return bad(header_.lines, "the property's name is no text (UTF-8)");
     p.name = words.back();
     header_.elements.back().properties.push_back(std::move(p));
     return Ok{};

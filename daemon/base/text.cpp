@@ -1,0 +1,53 @@
+#include "daemon/base/text.h"
+
+#include <cstdint>
+
+#include <fmt/format.h>
+
+namespace merlin {
+namespace {
+
+// Bytes of the character that `bytes` begins with; 0: it begins with none, or with a control
+// character. REQUIRES: not empty.
+std::size_t characterAt(std::string_view bytes) noexcept {
+  const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(bytes[i]); };
+  const std::uint8_t lead = byte(0);
+  if (lead < 0x80) return lead >= 0x20 && lead != 0x7F ? 1 : 0;
+  const std::size_t size = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
+  if (lead < 0xC2 || lead > 0xF4 || bytes.size() < size) return 0;
+  std::uint32_t code = lead & (0x7FU >> size);
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+    code = code << 6 | (byte(i) & 0x3FU);
+  }
+  constexpr std::uint32_t kLeast[] = {0xA0, 0x800, 0x10000};  // below 0xA0: controls again
+  const bool surrogate = code >= 0xD800 && code < 0xE000;
+  return code < kLeast[size - 2] || code > 0x10FFFF || surrogate ? 0 : size;
+}
+
+}  // namespace
+
+bool isText(std::string_view bytes) noexcept {
+  while (!bytes.empty()) {
+    const std::size_t size = characterAt(bytes);
+    if (size == 0) return false;
+    bytes.remove_prefix(size);
+  }
+  return true;
+}
+
+std::string printable(std::string_view bytes) {
+  std::string text;
+  while (!bytes.empty()) {
+    const bool white = bytes[0] == '\n' || bytes[0] == '\t';
+    const std::size_t size = white ? 1 : characterAt(bytes);
+    if (size == 0)
+      text += fmt::format("\\x{:02x}", static_cast<std::uint8_t>(bytes[0]));
+    else
+      text += bytes.substr(0, size);
+    bytes.remove_prefix(size == 0 ? 1 : size);
+  }
+  return text;
+}
+
+}  // namespace merlin
