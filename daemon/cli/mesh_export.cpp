@@ -1,11 +1,15 @@
 // merlin mesh export: one resolution of a model as a mesh, or all of them for Open Inventor.
+#include <cmath>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
+#include "daemon/cli/progress.h"
+#include "render/compare/compare.h"
 #include "render/inventor/multiresolution_writer.h"
 #include "render/mesh/io/mesh_file.h"
 
@@ -15,8 +19,61 @@ namespace {
 struct ExportOptions {
   std::string model, output;
   LevelChoice choice;
+  std::optional<double> within;  // percent of the diagonal
   bool multiresolution = false;
 };
+
+// A level, and how far from the finest one it is at most; model units.
+struct Within {
+  std::size_t level = 0;
+  double at_most = 0;
+};
+
+// The coarsest level found that is certainly within `percent` of the diagonal: by halves of the
+// logarithm of its triangles, to 2 % of them.
+Result<Within> coarsestWithin(const render::Dendrogram& model, double percent) {
+  constexpr double kNearEnough = 1.02;
+  const SystemClock clock;
+  ProgressBar bar("comparing", "resolutions", clock);
+  std::size_t compared_so_far = 0;
+  const render::Mesh finest = render::extract(model, 0);
+  const double distance = percent / 100 * static_cast<double>(boxOf(model).diagonal());
+  const render::CompareSettings settings{.samples = 1, .width_percent = percent / 20};
+  Within best;
+  auto too_few = static_cast<double>(model.trianglesAt(model.levels() - 1)) / kNearEnough;
+  auto enough = static_cast<double>(model.triangleCount());
+  const double span = std::log(enough / too_few);
+  while (enough > kNearEnough * too_few) {
+    const double triangles = std::sqrt(too_few * enough);
+    const std::size_t level = model.levelFor(static_cast<std::size_t>(triangles));
+    const auto compared =
+        render::compare(finest, render::extract(model, level), settings, [&](const auto&) {
+          bar.update(1 - std::log(enough / too_few) / span, compared_so_far);
+          return true;
+        });
+    if (!compared) return compared.error();
+    ++compared_so_far;
+    const double at_most = compared->symmetric().max.high;
+    if (at_most <= distance) {
+      best = {level, at_most};
+      enough = triangles;
+    } else {
+      too_few = triangles;
+    }
+  }
+  bar.finish(compared_so_far);
+  return best;
+}
+
+Result<std::size_t> levelOf(const ExportOptions& options, const render::Dendrogram& model) {
+  if (!options.within) return options.choice.levelOf(model, options.model);
+  if (model.levels() == 1) return hasOneResolution(options.model);
+  const auto found = coarsestWithin(model, *options.within);
+  if (!found) return Error{found.error().code, options.model + ": " + found.error().what};
+  fmt::print("at most {:.4g} from the finest, {:.4g} % of the diagonal\n", found->at_most,
+             100 * found->at_most / static_cast<double>(boxOf(model).diagonal()));
+  return found->level;
+}
 
 int exportAll(const ExportOptions& options) {
   if (!options.output.ends_with(".iv")) {
@@ -42,7 +99,7 @@ int exportMesh(const ExportOptions& options) {
     return fail(writable.error());
   const auto model = openModel(options.model);
   if (!model) return fail(model.error());
-  const auto level = options.choice.levelOf(*model, options.model);
+  const auto level = levelOf(options, *model);
   if (!level) return fail(level.error());
   const render::Mesh mesh = render::extract(*model, *level);
   const auto written = render::writeMesh(options.output, mesh);
@@ -71,7 +128,14 @@ void addMeshExport(Command mesh, Run& run) {
   const Argument all = command.flag(
       "--multiresolution", options->multiresolution,
       "All resolutions as an SoMRFaceSet, .iv alone; at 10,000 triangles without its module");
-  options->choice.addTo(command).exclude(all);
+  Command resolution = options->choice.addTo(command);
+  resolution
+      .option(
+          "--within", options->within,
+          "The coarsest found that is certainly no farther from the finest, percent of the box' "
+          "diagonal; some ten are compared for it")
+      .range(1e-6, 100.0);
+  resolution.exclude(all);
   command.callback([options, &run] {
     run = [options] {
       return options->multiresolution ? exportAll(*options) : exportMesh(*options);

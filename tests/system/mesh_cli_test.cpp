@@ -125,6 +125,24 @@ TEST_F(MeshCli, CompareTakesAResolutionOfAModel) {
     EXPECT_NE(table.output.find(word), std::string::npos) << word;
 }
 
+TEST_F(MeshCli, ExportKeepsWithinADistanceForCertain) {
+  ASSERT_EQ(run({kMerlin, "mesh", "reduce", scan_, "-o", dir_ / "a.mrm"}).status, 0);
+  std::size_t before = 0;
+  for (const char* percent : {"1", "0.2"}) {
+    const Outcome done =
+        run({kMerlin, "mesh", "export", dir_ / "a.mrm", "--within", percent, "-o", dir_ / "a.ply"});
+    EXPECT_NE(done.output.find("at most"), std::string::npos) << done.output;
+    const auto c = jsonOf(run({kMerlin, "mesh", "compare", scan_, dir_ / "a.ply", "--samples", "10",
+                               "--width", "0.01", "--json"}));
+    EXPECT_LE(c["max_low_percent"], std::stod(percent));
+    EXPECT_GT(c["max_high_percent"], 0.5 * std::stod(percent)) << "no finer than it has to be";
+    const std::size_t triangles =
+        jsonOf(run({kMerlin, "mesh", "info", dir_ / "a.ply", "--json"}))["triangles"];
+    EXPECT_GT(triangles, before);
+    before = triangles;
+  }
+}
+
 // A row of the curve is what compare says of that resolution.
 TEST_F(MeshCli, CurveSaysWhatCompareSays) {
   const std::string model = dir_ / "a.mrm", csv = dir_ / "a.csv", svg = dir_ / "a<b.svg";
