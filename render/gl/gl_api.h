@@ -64,6 +64,7 @@ namespace merlin::render {
   X(PFNGLMAPBUFFERRANGEPROC, MapBufferRange)                   \
   X(PFNGLPIXELSTOREIPROC, PixelStorei)                         \
   X(PFNGLPOLYGONMODEPROC, PolygonMode)                         \
+  X(PFNGLPOLYGONOFFSETPROC, PolygonOffset)                     \
   X(PFNGLREADPIXELSPROC, ReadPixels)                           \
   X(PFNGLRENDERBUFFERSTORAGEPROC, RenderbufferStorage)         \
   X(PFNGLSCISSORPROC, Scissor)                                 \

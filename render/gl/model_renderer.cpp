@@ -83,7 +83,8 @@ using Place = std::array<std::uint16_t, 2>;
 
 }  // namespace
 
-ModelRenderer::ModelRenderer(const GlApi& gl, const Dendrogram& model) : gl_(gl), model_(model) {}
+ModelRenderer::ModelRenderer(const GlApi& gl, const Dendrogram& model)
+    : gl_(gl), model_(model), wires_(gl) {}
 
 Result<std::unique_ptr<ModelRenderer>> ModelRenderer::make(const GlApi& gl, const Dendrogram& model,
                                                            std::span<const std::uint32_t> full,
@@ -151,7 +152,7 @@ Result<Ok> ModelRenderer::buildProgram() {
   eye_location_ = gl_.GetUniformLocation(program_, "eye_from_model");
   colour_location_ = gl_.GetUniformLocation(program_, "tint");
   range_location_ = gl_.GetUniformLocation(program_, "range");
-  return Ok{};
+  return wires_.build();
 }
 
 ModelRenderer::Vertex ModelRenderer::vertexOf(std::uint32_t node) const {
@@ -276,17 +277,17 @@ void ModelRenderer::begin(int width, int height, const Camera& camera, const Loo
   gl_.ClearColor(look.background[0], look.background[1], look.background[2], 1);
   gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   gl_.Enable(GL_DEPTH_TEST);
-  gl_.PolygonMode(GL_FRONT_AND_BACK, look.wireframe ? GL_LINE : GL_FILL);
   if (look.draw_back_faces)
     gl_.Disable(GL_CULL_FACE);
   else
     gl_.Enable(GL_CULL_FACE);
   // The picture's first row is its upper one, so y is turned over, and with it every triangle.
-  Eigen::Matrix4f clip = camera.clip_from_model;
-  clip.row(1) *= -1;
+  clip_ = camera.clip_from_model;
+  clip_.row(1) *= -1;
+  look_ = look;
   gl_.FrontFace(GL_CW);
   gl_.UseProgram(program_);
-  gl_.UniformMatrix4fv(clip_location_, 1, GL_FALSE, clip.data());
+  gl_.UniformMatrix4fv(clip_location_, 1, GL_FALSE, clip_.data());
   gl_.UniformMatrix3fv(eye_location_, 1, GL_FALSE, camera.eye_from_model.data());
   const std::array<float, 3> white{1, 1, 1};
   const auto& tint = colours_.rgb.empty() && !texture_ ? look.colour : white;
@@ -300,8 +301,14 @@ void ModelRenderer::begin(int width, int height, const Camera& camera, const Loo
 
 void ModelRenderer::draw(Source source, std::size_t first, std::size_t count) {
   gl_.BindVertexArray(source == Source::kCut ? cut_array_ : full_array_);
-  const auto offset = reinterpret_cast<const void*>(first * 3 * sizeof(std::uint32_t));
-  gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT, offset);
+  const auto triangles = [&] {
+    const auto offset = reinterpret_cast<const void*>(first * 3 * sizeof(std::uint32_t));
+    gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT, offset);
+  };
+  if (look_.wireframe)
+    wires_.draw(clip_, look_, triangles);
+  else
+    triangles();
 }
 
 }  // namespace merlin::render

@@ -18,6 +18,7 @@
 #include "render/gl/settings.h"
 #include "render/gl/shown_colours.h"
 #include "render/gl/texture.h"
+#include "render/gl/wires.h"
 #include "render/lod/dendrogram.h"
 #include "render/lod/geomorph.h"
 
@@ -94,6 +95,10 @@ class ModelRenderer {
   Range texcoords_;
   std::unique_ptr<Texture> texture_;
   GLuint program_ = 0, nodes_ = 0;
+  Wires wires_;
+  // Of begin().
+  Look look_;
+  Eigen::Matrix4f clip_ = Eigen::Matrix4f::Identity();
   GLuint cut_array_ = 0, cut_indices_ = 0, full_array_ = 0, full_indices_ = 0;
   GLint clip_location_ = -1, eye_location_ = -1, colour_location_ = -1, range_location_ = -1;
   // That stand elsewhere now, and where.

@@ -237,6 +237,20 @@ TEST_P(GlOf, NearerHidesFarther) {
   }
 }
 
+TEST_P(GlOf, WiresAreSeenWhateverTheModelsColoursAndHiddenByFaces) {
+  const Mesh near = upperRight();
+  Mesh far = near;
+  for (std::size_t i = 0; i < 9; ++i)
+    far.positions[i] = i % 3 == 2 ? -0.5F : 0.5F * near.positions[i] + 0.15F;
+  Mesh both = test::together(far, near);
+  both.features = {{"colour", 3, std::vector<float>(18, 0.0F)}};
+  ensureNormals(both);
+  const Dendrogram alone = wholeModel(near), model = unreduced(both);
+  const Look wires{.wireframe = true};
+  const Image expected = Studio(GetParam(), alone).picture(wires);
+  EXPECT_EQ(Studio(GetParam(), model).picture(wires).pixels, expected.pixels);
+}
+
 TEST_P(GlOf, ReadKeepsToItsColumns) {
   const Dendrogram model = wholeModel(upperRight());
   Studio studio(GetParam(), model, 32, 16);
