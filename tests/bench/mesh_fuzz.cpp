@@ -56,18 +56,25 @@ std::string faultOfLevels(const Dendrogram& model, const Mesh& mesh, Random& ran
   return faultOf(render::extract(model, random.below(model.levels())));
 }
 
-render::ReduceSettings settingsFor(const char* cost, Random& random) {
+render::ReduceSettings settingsFor(const Mesh& mesh, const char* cost, Random& random) {
   render::ReduceSettings settings;
   settings.cost = cost;
   settings.threads = 1;
   settings.preserve_topology = random.below(4) == 0;
+  settings.preserve_components = random.below(4) == 0;
+  settings.fast = settings.cost == "quadric" && random.below(4) == 0;
+  if (settings.cost == "quadric" && random.below(8) == 0) {
+    settings.locked.resize(mesh.vertexCount());
+    for (std::size_t v = 0; v < settings.locked.size(); ++v)
+      settings.locked[v] = random.below(8) == 0;
+  }
   if (random.below(8) == 0) settings.min_triangles = random.below(10);
   if (random.below(8) == 0) settings.max_error_percent = random.uniform(0, 10);
   return settings;
 }
 
 std::string faultOfReduction(const Mesh& mesh, const char* cost, Random& random, MeshFuzz& fuzz) {
-  const auto settings = settingsFor(cost, random);
+  const auto settings = settingsFor(mesh, cost, random);
   const auto reduction = render::reduce(mesh, settings);
   if (!reduction) {
     ++fuzz.counts[fmt::format("refused by {}: {}", cost, reduction.error().what)];
