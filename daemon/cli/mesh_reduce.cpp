@@ -58,6 +58,7 @@ void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
                                    {"fast", options.settings.fast},
                                    {"triangles", loaded.mesh.triangleCount()},
                                    {"triangles_left", r.triangles},
+                                   {"triangles_by_all_rules", r.by_all_rules},
                                    {"collapses", r.collapses},
                                    {"seconds", took.reducing},
                                    {"seconds_all", took.all},
@@ -76,6 +77,10 @@ void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
   }
   fmt::print("{}: {} triangles down to {} in {} collapses ({})\n", options.output,
              loaded.mesh.triangleCount(), r.triangles, r.collapses, r.stopped);
+  if (r.by_all_rules > r.triangles) {
+    fmt::print("  all rules (labels, locks, seams, links, flips) held down to {} triangles\n",
+               r.by_all_rules);
+  }
   fmt::print("  {:.2f} s, {:.0f} collapses a second; with reading and writing {:.2f} s\n",
              took.reducing, rate, took.all);
   fmt::print("  peak memory {:.0f} MB, limit {:.0f} MB{}\n", megabytes(peakMemory()),

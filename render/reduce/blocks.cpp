@@ -196,6 +196,7 @@ class InBlocks {
     for (std::size_t k = 0; k < rest.log.children.size(); ++k) append(rest, k, nodes);
     addReport(r.report, 0);
     result_.report.triangles = r.report.triangles;
+    result_.report.by_all_rules = r.report.by_all_rules;
     result_.report.stopped = r.report.stopped;
   }
 

@@ -1,4 +1,6 @@
 // The cost `pattern`: the loop around PatternReducer, until a stop criterion (P10) holds.
+#include <algorithm>
+
 #include "render/reduce/costs.h"
 #include "render/reduce/pattern_reducer.h"
 
@@ -29,15 +31,18 @@ Result<Reduction> reduceByPattern(const Mesh& mesh, const ReduceSettings& settin
   const double max_error =
       settings.max_error_percent / 100 * boundingBox(mesh.positions).diagonal();
   const char* stopped = nullptr;
+  std::size_t by_all_rules = 0;
   while (!stopped) {
     stopped = reasonToStop(reducer.triangles(), settings, mesh.triangleCount());
     if (stopped) break;
     const auto step = reducer.collapseShortest(max_error);
     if (step == PatternReducer::Step::kNothingLeft) {
-      if (components_stay)
+      if (components_stay) {
+        by_all_rules = reducer.triangles();
         reducer.releaseComponents();
-      else
+      } else {
         stopped = "nothing left to collapse";
+      }
       components_stay = false;
     }
     if (step == PatternReducer::Step::kTooCoarse) stopped = "error";
@@ -48,6 +53,7 @@ Result<Reduction> reduceByPattern(const Mesh& mesh, const ReduceSettings& settin
   }
   Reduction result = std::move(reducer).finish();
   result.report.stopped = stopped;
+  result.report.by_all_rules = std::max(by_all_rules, result.report.triangles);
   result.log.about = aboutText(settings, weights, result.report);
   return result;
 }

@@ -241,6 +241,7 @@ const char* QuadricReducer::run(const Limits& limits, const Progress& progress) 
   else
     whole_.room = mesh_.freeRoom();
   whole_.log = log_.data();
+  by_all_rules_ = triangles_;
   const auto stages = {QuadricStage::kAll, QuadricStage::kNoLock, QuadricStage::kNoLink,
                        QuadricStage::kNoFlips};
   for (const QuadricStage stage : stages) {
@@ -252,6 +253,7 @@ const char* QuadricReducer::run(const Limits& limits, const Progress& progress) 
     if (!keepsTopology(stage) && limits.preserve_topology) break;
     stage_ = stage;
     reduceWhole(keep, progress);
+    if (stage == QuadricStage::kAll) by_all_rules_ = triangles_;
   }
   if (cancelled_) return "cancelled";
   if (triangles_ <= keep && limits.triangles > 0) return "triangles";

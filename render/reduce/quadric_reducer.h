@@ -147,6 +147,7 @@ class QuadricReducer {
   HugeArray<std::uint32_t> next_;  // in a vertex' bucket; beside the records, so that it stays near
   Worker whole_;
   std::size_t triangles_;                                     // left
+  std::size_t by_all_rules_ = 0;                              // left when the first rule gave way
   float max_error_ = std::numeric_limits<float>::infinity();  // in mean edges
   QuadricStage stage_ = QuadricStage::kAll;
   unsigned threads_ = 1;

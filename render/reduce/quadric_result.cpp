@@ -78,6 +78,7 @@ Reduction QuadricReducer::finish(const Mesh& mesh) {
   result.report.flips_refused = whole_.flips;
   result.report.topology_refused = whole_.links;
   result.report.triangles = triangles_;
+  result.report.by_all_rules = by_all_rules_;
   result.report.error =
       log.error.empty() ? 0 : *std::max_element(log.error.begin(), log.error.end());
   return result;

@@ -52,6 +52,7 @@ struct ReduceReport {
   std::size_t flips_refused = 0;     // P8; the same edge counts each time
   std::size_t topology_refused = 0;  // by preserve_topology, or since nothing would be left
   std::size_t triangles = 0;         // left
+  std::size_t by_all_rules = 0;      // triangles left when the first rule gave way, or at the end
   std::size_t blocks = 1;            // that it was cut into for want of memory
   float error = 0;                   // estimate of the last level, model units
   const char* stopped = "";          // why: "nothing left to collapse", "triangles", "percent",

@@ -211,6 +211,7 @@ TEST(Quadric, LabelsLock) {
     ++k;
   EXPECT_GT(k, mesh.vertexCount() / 2);
   EXPECT_LT(k, r.log.children.size());
+  EXPECT_EQ(r.report.by_all_rules, buildDendrogram(mesh, r.log).trianglesAt(k));
 }
 
 TEST(Quadric, TopologyIsKeptWhereAsked) {
@@ -227,6 +228,7 @@ TEST(Quadric, StopsWhereItIsTold) {
   EXPECT_STREQ(by_count.report.stopped, "triangles");
   EXPECT_LE(by_count.report.triangles, 300u);
   EXPECT_GE(by_count.report.triangles, 299u);
+  EXPECT_EQ(by_count.report.by_all_rules, by_count.report.triangles);
   const Reduction by_percent = reduced(mesh, {.min_percent = 10});
   EXPECT_STREQ(by_percent.report.stopped, "percent");
   EXPECT_LE(by_percent.report.triangles, 80u);
