@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -56,7 +57,7 @@ class ObjParser {
   }
 
  private:
-  // "\\" at its end: the next one goes on with it.
+  // "\\" at the end of numbers: the next line goes on with them. A name may end so.
   std::string_view nextLine() {
     const auto next = [&] {
       ++line_;
@@ -64,6 +65,9 @@ class ObjParser {
     };
     std::string_view line = next();
     if (!line.ends_with('\\')) return line;
+    std::string_view words = line;
+    const std::string_view keyword = takeWord(words);
+    if (keyword != "v" && keyword != "vt" && keyword != "f") return line;
     joined_.clear();
     for (; line.ends_with('\\'); line = left_.empty() ? "" : next()) {
       joined_ += line.substr(0, line.size() - 1);
@@ -166,10 +170,10 @@ class ObjParser {
   }
 
   std::uint32_t materialOf(const std::string& name) {
-    auto& names = surface_.materials;
-    const auto at = std::find(names.begin(), names.end(), name);
-    if (at == names.end()) names.push_back(name);
-    return static_cast<std::uint32_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    const auto number = static_cast<std::uint32_t>(surface_.materials.size());
+    const auto [at, fresh] = material_numbers_.emplace(name, number);
+    if (fresh) surface_.materials.push_back(name);
+    return at->second;
   }
 
   // Vertices and coordinates may stand behind the faces that use them.
@@ -193,6 +197,7 @@ class ObjParser {
   std::size_t line_ = 0;
   ObjSurface surface_;
   std::vector<float> colours_;
+  std::unordered_map<std::string, std::uint32_t> material_numbers_{{"", 0}};
   std::uint32_t material_ = 0;
   Farthest vertices_, texcoords_;
   bool textured_ = false;

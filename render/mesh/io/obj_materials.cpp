@@ -1,7 +1,9 @@
 #include "render/mesh/io/obj_materials.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -28,7 +30,9 @@ class Library {
  public:
   Library(const std::vector<std::string>& names, std::string folder,
           std::vector<std::string>& notes)
-      : names_(names), folder_(std::move(folder)), notes_(notes), materials_(names.size()) {}
+      : folder_(std::move(folder)), notes_(notes), materials_(names.size()) {
+    for (std::size_t i = 0; i < names.size(); ++i) numbers_.emplace(names[i], i);
+  }
 
   void read(const std::string& name) {
     const auto file = MappedFile::open(pathBeside(folder_, name));
@@ -53,10 +57,8 @@ class Library {
 
  private:
   ObjMaterial* find(std::string_view name) {
-    const auto at = std::find(names_.begin(), names_.end(), name);
-    return at == names_.end() || name.empty()
-               ? nullptr
-               : &materials_[static_cast<std::size_t>(at - names_.begin())];
+    const auto at = numbers_.find(name);
+    return at == numbers_.end() || name.empty() ? nullptr : &materials_[at->second];
   }
 
   static void takeDiffuse(std::string_view line, ObjMaterial& material) {
@@ -102,7 +104,7 @@ class Library {
     return picture;
   }
 
-  const std::vector<std::string>& names_;
+  std::map<std::string, std::size_t, std::less<>> numbers_;  // of the materials
   std::string folder_;
   std::vector<std::string>& notes_;
   std::vector<ObjMaterial> materials_;
@@ -115,7 +117,13 @@ std::vector<ObjMaterial> readMaterials(const std::vector<std::string>& names,
                                        const std::vector<std::string>& libraries,
                                        const std::string& folder, std::vector<std::string>& notes) {
   Library library(names, folder, notes);
-  for (const std::string& name : libraries) library.read(name);
+  constexpr std::size_t kMost = 64;
+  std::set<std::string_view> read;
+  for (const std::string& name : libraries) {
+    if (read.size() < kMost && read.insert(name).second) library.read(name);
+  }
+  if (read.size() == kMost)
+    notes.push_back(fmt::format("of material libraries the first {} are read", kMost));
   return library.take();
 }
 

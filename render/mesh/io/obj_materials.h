@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,7 +17,7 @@ struct ObjMaterial {
   bool clamped = false;                         // the picture does not repeat
   std::optional<std::array<float, 3>> diffuse;  // Kd
 
-  bool operator==(const ObjMaterial&) const = default;
+  auto operator<=>(const ObjMaterial&) const = default;
 };
 
 // The materials of these names, from the libraries that an OBJ file in `folder` ("" or with a

@@ -1,7 +1,9 @@
 #include "render/mesh/io/obj_texture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 namespace merlin::render {
@@ -13,41 +15,64 @@ struct Wedge {
   bool operator==(const Wedge&) const = default;
 };
 
-// The first wedge of each vertex has the vertex' number, the others stand behind all of them;
-// `triangles` then holds wedges. Those of one vertex are a chain: linear but for vertices with
-// many.
+// The first wedge of each vertex has the vertex' number, the others stand behind all of them. Those
+// of one vertex are a chain, which is short as a rule; what is behind its end stands in a table.
+class Wedges {
+ public:
+  explicit Wedges(std::size_t vertices)
+      : wedges_(vertices), next_(vertices, kEnd), used_(vertices, false) {
+    for (std::uint32_t v = 0; v < vertices; ++v) wedges_[v] = {v, kNoTexcoord, 0};
+  }
+
+  std::uint32_t numberOf(const Wedge& wedge) {
+    std::uint32_t at = wedge.vertex;
+    if (!used_[at]) wedges_[at] = wedge;
+    used_[at] = true;
+    std::size_t length = 1;
+    for (; wedges_[at] != wedge && next_[at] != kEnd; ++length) at = next_[at];
+    if (wedges_[at] == wedge) return at;
+    if (length < kLongest) return next_[at] = add(wedge);
+    const auto key = std::array{wedge.vertex, wedge.texcoord, wedge.material};
+    const auto [found, fresh] = others_.emplace(key, 0);
+    if (fresh) found->second = add(wedge);
+    return found->second;
+  }
+
+  std::vector<Wedge> take() { return std::move(wedges_); }
+
+ private:
+  static constexpr std::uint32_t kEnd = 0xFFFFFFFF;
+  static constexpr std::size_t kLongest = 16;
+
+  std::uint32_t add(const Wedge& wedge) {
+    wedges_.push_back(wedge);
+    next_.push_back(kEnd);
+    return static_cast<std::uint32_t>(wedges_.size() - 1);
+  }
+
+  std::vector<Wedge> wedges_;
+  std::vector<std::uint32_t> next_;
+  std::vector<bool> used_;
+  std::map<std::array<std::uint32_t, 3>, std::uint32_t> others_;
+};
+
+// `triangles` then holds wedges.
 std::vector<Wedge> wedgesOf(const ObjSurface& surface, std::vector<std::uint32_t>& triangles) {
-  constexpr std::uint32_t kEnd = 0xFFFFFFFF;
-  const std::size_t vertices = surface.mesh.vertexCount();
-  std::vector<Wedge> wedges(vertices);
-  std::vector<std::uint32_t> next(vertices, kEnd);
-  std::vector<bool> used(vertices, false);
-  for (std::uint32_t v = 0; v < vertices; ++v) wedges[v] = {v, kNoTexcoord, 0};
+  Wedges wedges(surface.mesh.vertexCount());
   triangles.resize(surface.mesh.triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const std::uint32_t v = surface.mesh.triangles[i];
-    const Wedge wedge{v, surface.corner_texcoord[i], surface.triangle_material[i / 3]};
-    if (!used[v]) wedges[v] = wedge;
-    used[v] = true;
-    std::uint32_t at = v;
-    while (wedges[at] != wedge && next[at] != kEnd) at = next[at];
-    if (wedges[at] != wedge) {
-      at = next[at] = static_cast<std::uint32_t>(wedges.size());
-      wedges.push_back(wedge);
-      next.push_back(kEnd);
-    }
-    triangles[i] = at;
+    triangles[i] = wedges.numberOf(
+        {surface.mesh.triangles[i], surface.corner_texcoord[i], surface.triangle_material[i / 3]});
   }
-  return wedges;
+  return wedges.take();
 }
 
 // Materials that look the same are one: no seam runs between them.
 void mergeMaterials(ObjSurface& surface, const std::vector<ObjMaterial>& materials) {
   std::vector<std::uint32_t> same(materials.size());
-  for (std::size_t m = 0; m < same.size(); ++m) {
-    const auto at = std::find(materials.begin(), materials.end(), materials[m]);
-    same[m] = static_cast<std::uint32_t>(at - materials.begin());
-  }
+  std::map<ObjMaterial, std::uint32_t> first;
+  for (std::uint32_t m = 0; m < same.size(); ++m)
+    same[m] = first.emplace(materials[m], m).first->second;
   for (std::uint32_t& m : surface.triangle_material) m = same[m];
 }
 
