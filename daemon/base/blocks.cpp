@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <exception>
 #include <optional>
 #include <thread>
@@ -12,6 +13,7 @@ namespace merlin {
 
 bool forBlocks(unsigned threads, std::size_t blocks, const std::function<void(std::size_t)>& work,
                const std::function<bool(std::size_t)>& goOn) {
+  assert(threads > 0);
   if (blocks == 0) return true;
   std::atomic<std::size_t> next{0}, done{0};
   std::atomic<bool> cancelled{false};

@@ -48,6 +48,7 @@ ThreadTeam::Turn ThreadTeam::start(std::size_t members, const std::function<void
   }
   job_ = &job;
   wanted_ = members;
+  if (members == 0) return Turn(*this);  // nobody need wake
   busy_ = static_cast<int>(members_.size());
   ++turn_;
   turn_.notify_all();

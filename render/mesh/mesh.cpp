@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kMost = std::size_t{1} << 31;
-constexpr float kFarthest = 1e18F;  // the square of a distance is still a float
+constexpr std::size_t kMostSides = 8;  // where more vertices lie in one place it is no seam
+constexpr float kFarthest = 1e18F;     // the square of a distance is still a float
 
 bool repeats(const std::uint32_t* t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
@@ -224,18 +225,39 @@ std::vector<float> normalSums(const Mesh& mesh) {
   return normals;
 }
 
-// Where a few vertices lie in one place each gets what the others have.
+// Where a few vertices lie in one place, those that face one another's way, or a third's that does,
+// get the sum of theirs.
+void joinSides(const std::vector<std::uint32_t>& sides, std::vector<float>& sums) {
+  const auto of = [&](std::size_t side) { return &sums[3 * std::size_t{sides[side]}]; };
+  std::array<std::size_t, kMostSides> group{};
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    group[i] = i;
+    for (std::size_t k = 0; k < i; ++k) {
+      if (areOneSurface(of(i), of(k))) std::ranges::replace(group, group[k], group[i]);
+    }
+  }
+  for (std::size_t g = 0; g < sides.size(); ++g) {
+    float sum[3] = {};
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      for (std::size_t k = 0; group[i] == g && k < 3; ++k) sum[k] += of(i)[k];
+    }
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      if (group[i] == g) std::copy_n(sum, 3, of(i));
+    }
+  }
+}
+
 void joinSeams(const Mesh& mesh, std::vector<float>& sums) {
-  constexpr std::size_t kMostSides = 8;  // where more meet it is no seam
   const std::vector<std::uint32_t> next = samePlace(mesh.positions);
-  const std::vector<float> own = sums;
-  const auto of = [&](std::uint32_t v) { return &own[3 * std::size_t{v}]; };
+  std::vector<std::uint32_t> sides;
   for (std::uint32_t v = 0; v < next.size(); ++v) {
-    std::size_t here = 1;
-    for (std::uint32_t o = next[v]; o != v && here <= kMostSides; o = next[o]) ++here;
-    if (here > kMostSides) continue;
-    for (std::uint32_t o = next[v]; o != v; o = next[o])
-      addIfOneSurface(&sums[3 * std::size_t{v}], of(v), of(o));
+    sides.assign(1, v);
+    bool first = true;  // of its place
+    for (std::uint32_t o = next[v]; o != v && first && sides.size() <= kMostSides; o = next[o]) {
+      first = o > v;
+      sides.push_back(o);
+    }
+    if (first && sides.size() > 1 && sides.size() <= kMostSides) joinSides(sides, sums);
   }
 }
 
@@ -253,9 +275,8 @@ std::vector<float> normalsAcrossSeams(const Mesh& mesh) {
 
 }  // namespace
 
-void addIfOneSurface(float* normal, const float* own, const float* other) noexcept {
-  const float cosine = own[0] * other[0] + own[1] * other[1] + own[2] * other[2];
-  for (std::size_t k = 0; cosine > 0 && k < 3; ++k) normal[k] += other[k];
+bool areOneSurface(const float* normal, const float* other) noexcept {
+  return normal[0] * other[0] + normal[1] * other[1] + normal[2] * other[2] > 0;
 }
 
 std::vector<float> vertexNormals(const Mesh& mesh) {

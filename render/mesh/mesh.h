@@ -69,13 +69,13 @@ std::array<float, 3> faceNormal(const float* a, const float* b, const float* c) 
 // length; zero where they cancel. vertices x 3.
 std::vector<float> vertexNormals(const Mesh& mesh);
 
-// Adds the normal of a vertex' other side, where a seam has one: what faces away from its own is
-// another surface's. Both are sums of unit normals, as is `normal`, which may be `own`'s copy.
-void addIfOneSurface(float* normal, const float* own, const float* other) noexcept;
+// Whether the two sides of a seam, of which these are normals of any length, are one surface: what
+// faces away is another's.
+bool areOneSurface(const float* normal, const float* other) noexcept;
 
 // Adds "normal" by vertexNormals() unless the mesh has one of the right size and unit length. Where
-// there are texture coordinates both sides of a seam get the same, so that it is not seen in the
-// light.
+// there are texture coordinates all sides of a seam that are one surface get the same, so that it
+// is not seen in the light (where more than eight vertices lie in one place each has its own).
 void ensureNormals(Mesh& mesh);
 
 }  // namespace merlin::render

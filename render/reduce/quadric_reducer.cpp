@@ -239,7 +239,8 @@ void QuadricReducer::collapse(Worker& w, std::uint32_t v, std::uint32_t edge) {
   if (a.degree > 0) {
     evaluate(w, v);
     std::copy_n(w.costs.normal, 3, record.normal);
-    if (!twins_.empty() && twins_[v] != kNowhere) addNormalOf(twins_[v], record.normal);
+    const bool seam = !twins_.empty() && twins_[v] != kNowhere && keepsTopology(stage_);
+    if (seam) addNormalOf(twins_[v], record.normal);
   }
   std::memcpy(static_cast<void*>(b.position), &record, sizeof record);
 }

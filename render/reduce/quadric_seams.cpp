@@ -66,18 +66,16 @@ void QuadricReducer::addNormalOf(std::uint32_t twin, float* normal) const {
     const auto face = faceNormal(t.position, mesh_[c.b].position, mesh_[c.c].position);
     for (std::size_t k = 0; k < 3; ++k) other[k] += face[k];
   }
-  const float own[] = {normal[0], normal[1], normal[2]};
-  addIfOneSurface(normal, own, other);
+  const bool one = areOneSurface(normal, other);
+  for (std::size_t k = 0; one && k < 3; ++k) normal[k] += other[k];
 }
 
 // From the node of one side to that of the other, if they are one surface.
 void QuadricReducer::shareNormal(std::uint32_t from, std::uint32_t to) {
   const NodeRecord good = recordOf(from);
   NodeRecord record = recordOf(to);
-  float sum[3] = {};
-  addIfOneSurface(sum, record.normal, good.normal);
-  if (sum[0] == 0 && sum[1] == 0 && sum[2] == 0) return;
-  std::copy_n(sum, 3, record.normal);
+  if (!areOneSurface(record.normal, good.normal)) return;
+  std::copy_n(good.normal, 3, record.normal);
   std::memcpy(static_cast<void*>(mesh_[to].position), &record, sizeof record);
 }
 

@@ -66,7 +66,7 @@ Result<Reduction> reduce(const Mesh& mesh, const ReduceSettings& settings,
   assert(mesh.find("normal") && mesh.find("normal")->dimension == 3);
   if (const auto checked = check(settings); !checked) return checked.error();
   if (const auto fits = blocksFor(sizeOf(mesh), settings); !fits) return fits.error();
-  const ThreadTeam team;
+  ThreadTeam team;
   return findCost(settings.cost)->reduce(mesh, settings, progress);
 }
 

@@ -79,9 +79,9 @@ int fewestTurns(unsigned threads, int turns) {
 }
 
 TEST(ThreadTeam, Stays) {
-  const ThreadTeam team;
+  ThreadTeam team;
   EXPECT_EQ(fewestTurns(3, 50), 50);
-  const ThreadTeam inner;
+  ThreadTeam inner;
   EXPECT_EQ(fewestTurns(4, 50), 50);
 }
 
@@ -100,7 +100,7 @@ TEST(ThreadTeam, HasAsManyAtWorkAsIsSaid) {
 }
 
 TEST(ThreadTeam, EndsWithItsScope) {
-  { const ThreadTeam team; }
+  { ThreadTeam team; }
   EXPECT_EQ(ThreadTeam::idle(), nullptr);
   EXPECT_EQ(fewestTurns(3, 50), 1);
 }

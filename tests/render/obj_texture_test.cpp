@@ -1,7 +1,9 @@
 // OBJ with texture coordinates, materials and pictures; pictures made here by libpng and TurboJPEG.
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <png.h>
 #include <sys/stat.h>
@@ -15,6 +17,7 @@
 namespace merlin::render {
 namespace {
 
+using namespace std::string_literals;
 using Floats = std::vector<float>;
 using Indices = std::vector<std::uint32_t>;
 using Names = std::vector<std::string>;
@@ -155,9 +158,9 @@ TEST_F(TexturedObj, GoesWithItsPictureIntoOtherFiles) {
                                  "f 1/1 2/2 4/4\nf 1/1 4/4 3/3\n");
   const std::string picture = test::readText(dir_ / "four.png");
   const std::pair<const char*, Names> files[] = {
-      {"it's b.obj", {"it_s_b.obj.png", "it_s_b.obj.mtl"}},
-      {"\nb.ply", {"_b.ply.png"}},
-      {"b\".iv", {"b_.iv.png"}}};
+      {"it's b=_1.obj", {"it=27s=20b=3D_1.obj.png", "it=27s=20b=3D_1.obj.mtl"}},
+      {"\n\xc3\xa9.ply", {"=0A=C3=A9.ply.png"}},
+      {"b\".iv", {"b=22.iv.png"}}};
   for (const auto& [name, beside] : files) {
     const test::TempDir other;
     const auto written = writeMesh(other / name, loaded.mesh);
@@ -168,7 +171,7 @@ TEST_F(TexturedObj, GoesWithItsPictureIntoOtherFiles) {
     EXPECT_EQ(test::readText(expected[0]), picture);
     if (written->format == "iv") {
       EXPECT_EQ(written->left_out, Names{"colour"}) << "which the picture is multiplied with";
-      EXPECT_NE(test::readText(other / name).find("Texture2 { filename \"b_.iv.png\" }"),
+      EXPECT_NE(test::readText(other / name).find("Texture2 { filename \"b=22.iv.png\" }"),
                 std::string::npos);
       continue;
     }
@@ -179,6 +182,83 @@ TEST_F(TexturedObj, GoesWithItsPictureIntoOtherFiles) {
     EXPECT_EQ(again->mesh.texture, loaded.mesh.texture);
     EXPECT_EQ(again->mesh.find("texcoord")->values, loaded.mesh.find("texcoord")->values);
   }
+}
+
+// A PLY of a triangle with texture coordinates, and these lines in its header.
+std::string texturedPly(const std::string& comments) {
+  return "ply\nformat ascii 1.0\n" + comments +
+         "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "
+         "s\n"
+         "property float t\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+         "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
+}
+
+TEST_F(TexturedObj, MayBeAPlyThatNamesItsPicture) {
+  writePngFile(dir_ / "four pixels.png", 2, 2, kFour);
+  writePngFile(dir_ / "other.png", 2, 2, kFour);
+  test::writeText(dir_ / "broken.png", "no picture");
+  const auto readPly = [&](const std::string& comments, const std::string& text = "") {
+    test::writeText(dir_ / "a.ply", text.empty() ? texturedPly(comments) : text);
+    auto loaded = readMesh(dir_ / "a.ply");
+    EXPECT_TRUE(loaded) << loaded.error().what;
+    return *std::move(loaded);
+  };
+  const std::string four = "comment TextureFile four pixels.png\n";
+  for (const std::string& comments : {four, "comment  TextureFile\tfour pixels.png  \r\n"s,
+                                      four + four, "comment TextureFile ../x/four pixels.png\n"s}) {
+    const LoadedMesh loaded = readPly(comments);
+    EXPECT_EQ(loaded.notes, Names{}) << comments;
+    EXPECT_EQ(std::string(loaded.mesh.texture.begin(), loaded.mesh.texture.end()),
+              test::readText(dir_ / "four pixels.png"))
+        << comments;
+  }
+  const std::pair<std::string, std::string> faults[] = {
+      {four + "comment TextureFile other.png\n", "left out: 2 pictures of textures"},
+      {"comment TextureFile none.png\n",
+       dir_ / "none.png: No such file or directory; the texture's picture is left out"},
+      {"comment TextureFile broken.png\n",
+       dir_ / "broken.png: is neither PNG nor JPEG; the texture's picture is left out"},
+      {"comment TextureFile a\x1b.png\n",
+       "a\x1b.png: is no name; the texture's picture is left out"}};
+  for (const auto& [comments, note] : faults) {
+    const LoadedMesh loaded = readPly(comments);
+    EXPECT_EQ(loaded.notes, Names{note});
+    EXPECT_TRUE(loaded.mesh.texture.empty());
+  }
+  EXPECT_TRUE(readPly("comment texture four pixels.png\n").mesh.texture.empty());
+}
+
+// Nobody has asked for them by name.
+TEST_F(TexturedObj, WritesOverNothingBesideItsFile) {
+  writePngFile(dir_ / "four.png", 2, 2, kFour);
+  test::writeText(dir_ / "a.mtl", "newmtl a\nmap_Kd four.png\n");
+  LoadedMesh loaded = read(std::string("mtllib a.mtl\nusemtl a\n") + kSquare + kMiddles +
+                           "f 1/1 2/2 4/4\nf 1/1 4/4 3/3\n");
+  ASSERT_TRUE(writeMesh(dir_ / "b.obj", loaded.mesh));
+  ASSERT_TRUE(writeMesh(dir_ / "b.obj", loaded.mesh)) << "the same again";
+  test::writeText(dir_ / "c.obj.mtl", "mine");
+  const auto refused = writeMesh(dir_ / "c.obj", loaded.mesh);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().what,
+            dir_ / "c.obj.mtl: is there and is another; remove it or name another output");
+  EXPECT_EQ(test::readText(dir_ / "c.obj.mtl"), "mine");
+  for (const char* name : {"c.obj", "c.obj.png"})
+    EXPECT_FALSE(std::filesystem::exists(dir_ / name)) << name;
+  ::mkdir((dir_ / "d.obj").c_str(), 0700);
+  EXPECT_FALSE(writeMesh(dir_ / "d.obj", loaded.mesh));
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "d.obj.png")) << "goes when the mesh cannot be";
+}
+
+// More than a chain's length of corners at one vertex, each with a texture coordinate of its own.
+TEST_F(TexturedObj, HasAnyNumberOfCoordinatesAtOneVertex) {
+  std::string text = kSquare, faces;
+  for (int i = 1; i <= 100; ++i) {
+    text += fmt::format("vt {} 0\n", 0.01 * i);
+    faces += fmt::format("f 1/{0} 2/1 3/1\nf 1/{0} 3/1 4/1\n", i);
+  }
+  const LoadedMesh loaded = read(text + faces);
+  EXPECT_EQ(loaded.mesh.triangleCount(), 200u);
+  EXPECT_EQ(loaded.mesh.vertexCount(), 100u + 3u + loaded.split.added);
 }
 
 TEST_F(TexturedObj, IsReadWithoutThePicturesThatAreNotThere) {

@@ -70,16 +70,19 @@ TEST(QuadricSeams, ShrinkAndNeverGape) {
   EXPECT_LT(before, kHigh / 3);
 }
 
-// The least cosine between the normals of vertices in one place.
+// The least cosine between the normals of vertices in one place; -1 where no two are.
 float leastCosine(const Mesh& mesh) {
   std::map<Place, const float*> first;
   float least = 1;
+  bool any = false;
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     const float *p = &mesh.positions[3 * v], *n = &mesh.find("normal")->values[3 * v];
-    const float* other = first.emplace(Place{p[0], p[1], p[2]}, n).first->second;
+    const auto [other_at, alone] = first.emplace(Place{p[0], p[1], p[2]}, n);
+    const float* other = other_at->second;
+    any |= !alone;
     least = std::min(least, n[0] * other[0] + n[1] * other[1] + n[2] * other[2]);
   }
-  return least;
+  return any ? least : -1;
 }
 
 TEST(QuadricSeams, AreNotSeenInTheLight) {

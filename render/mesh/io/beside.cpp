@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include <fmt/format.h>
+
 namespace merlin::render {
 
 std::string folderOf(const std::string& path) { return path.substr(0, path.rfind('/') + 1); }
@@ -18,12 +20,12 @@ std::string pathBeside(const std::string& folder, std::string_view name) {
 }
 
 std::string plainName(const std::string& path) {
-  std::string name = path.substr(folderOf(path).size());
-  const auto plain = [](unsigned char c) {
-    return std::isalnum(c) || c == '.' || c == '-' || c == '_';
-  };
-  std::replace_if(
-      name.begin(), name.end(), [&](char c) { return !plain(static_cast<unsigned char>(c)); }, '_');
+  std::string name;
+  for (const char c : path.substr(folderOf(path).size())) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = byte < 0x80 && (std::isalnum(byte) || c == '.' || c == '-' || c == '_');
+    name += plain ? std::string(1, c) : fmt::format("={:02X}", byte);
+  }
   return name;
 }
 

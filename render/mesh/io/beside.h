@@ -1,4 +1,4 @@
-// Files that lie beside a mesh's and that it names: materials, pictures. Private to render/mesh/io.
+// Files that lie beside a mesh's and that it names: materials, pictures.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ std::string folderOf(const std::string& path);
 // of there, and may name anything: what would leave the folder is looked for in it.
 std::string pathBeside(const std::string& folder, std::string_view name);
 
-// What the names of files beside `path` begin with: its own, without what a file that names them
-// might take for the end of a name.
+// What the names of files beside `path` begin with: its own, where bytes that a file that names
+// them might take for the end of a name are "=20". Of two names they are two.
 std::string plainName(const std::string& path);
 
 }  // namespace merlin::render

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
+#include "daemon/base/text.h"
 #include "render/mesh/io/beside.h"
 #include "render/mesh/io/obj_texture.h"
 #include "render/mesh/io/picture_file.h"
@@ -49,11 +52,20 @@ Result<LoadedMesh> readObj(std::string_view content, const std::string& folder) 
   return loaded;
 }
 
+// Which vertices a picture of several is of, a PLY says of faces if at all.
 Result<LoadedMesh> readPly(std::string_view content, const std::string& folder) {
-  std::string picture;
-  auto loaded = ply::parse(content, &picture);
-  if (!loaded || picture.empty() || !findOf(loaded->mesh, "texcoord", 2)) return loaded;
-  auto texture = readPicture(pathBeside(folder, picture));
+  std::vector<std::string> pictures;
+  auto loaded = ply::parse(content, &pictures);
+  if (!loaded || pictures.empty() || !findOf(loaded->mesh, "texcoord", 2)) return loaded;
+  if (pictures.size() > 1) {
+    loaded->notes.push_back(fmt::format("left out: {} pictures of textures", pictures.size()));
+    return loaded;
+  }
+  if (!isText(pictures[0])) {
+    loaded->notes.push_back(pictures[0] + ": is no name; the texture's picture is left out");
+    return loaded;
+  }
+  auto texture = readPicture(pathBeside(folder, pictures[0]));
   if (texture)
     loaded->mesh.texture = std::move(texture->file);
   else
@@ -72,17 +84,52 @@ const MeshWriter* writerFor(const std::string& path) {
   return nullptr;
 }
 
+// Files beside a mesh's, which nobody has asked for by name: what is there stays. Those that were
+// made go again unless they are kept.
+class Beside {
+ public:
+  explicit Beside(std::string folder) : folder_(std::move(folder)) {}
+  ~Beside() {
+    std::error_code gone;
+    for (const std::string& path : made_) std::filesystem::remove(path, gone);
+  }
+  Beside(const Beside&) = delete;
+  Beside& operator=(const Beside&) = delete;
+
+  // Errors: kInvalidArgument (there is one with another content), writeFile()'s.
+  Result<Ok> put(const std::string& name, std::string_view content) {
+    const std::string path = folder_ + name;
+    all_.push_back(path);
+    std::error_code absent;
+    if (std::filesystem::exists(std::filesystem::symlink_status(path, absent))) {
+      const auto there = MappedFile::open(path);
+      if (there && there->text() == content) return Ok{};
+      return Error{Errc::kInvalidArgument,
+                   path + ": is there and is another; remove it or name another output"};
+    }
+    const auto done = writeFile(path, content);
+    if (done) made_.push_back(path);
+    return done;
+  }
+
+  std::vector<std::string> keep() {
+    made_.clear();
+    return std::move(all_);
+  }
+
+ private:
+  std::string folder_;
+  std::vector<std::string> all_, made_;
+};
+
 // What the mesh's file will name: the picture, and the material that has it.
-Result<Ok> writeBeside(const MeshWriter& writer, const Mesh& mesh, const std::string& folder,
-                       const std::string& name, std::vector<std::string>& written) {
-  const auto put = [&](const std::string& file, std::string_view content) {
-    written.push_back(folder + file);
-    return writeFile(written.back(), content);
-  };
+Result<Ok> writeBeside(const MeshWriter& writer, const Mesh& mesh, const std::string& name,
+                       Beside& beside) {
+  if (!isTextured(mesh) || writer.picture != PicturePlace::kBeside) return Ok{};
   const auto* const picture = reinterpret_cast<const char*>(mesh.texture.data());
-  const auto done = put(pictureName(mesh, name), {picture, mesh.texture.size()});
+  const auto done = beside.put(pictureName(mesh, name), {picture, mesh.texture.size()});
   if (!done || !writer.material) return done;
-  return put(name + ".mtl", writer.material(mesh, name));
+  return beside.put(name + ".mtl", writer.material(mesh, name));
 }
 
 }  // namespace
@@ -149,15 +196,13 @@ Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh) {
   if (writer.fits) {
     if (const auto fits = writer.fits(mesh); !fits) return inFile(path, fits.error());
   }
-  WrittenMesh written{writer.ending, {}, {}};
   const std::string name = plainName(path);
-  if (isTextured(mesh) && writer.picture == PicturePlace::kBeside) {
-    const auto beside = writeBeside(writer, mesh, folderOf(path), name, written.beside);
-    if (!beside) return beside.error();
-  }
+  Beside beside(folderOf(path));
+  if (const auto done = writeBeside(writer, mesh, name, beside); !done) return done.error();
   const auto done =
       writeFile(path, [&](const WriteBytes& bytes) { return writer.write(mesh, name, bytes); });
   if (!done) return done.error();
+  WrittenMesh written{writer.ending, {}, beside.keep()};
   for (const Feature& f : mesh.features) {
     if (!writer.carries(mesh, f)) written.left_out.push_back(f.name);
   }

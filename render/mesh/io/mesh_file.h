@@ -11,7 +11,7 @@
 //            .iv    Open Inventor 2.1 ascii: normal, colour, texcoord
 //            .stl   binary: triangles alone
 //            A texture's picture is inside .glb and .gltf, and beside .ply, .obj and .iv: of
-//            a.obj they are a.obj.png (or .jpg) and a.obj.mtl, in plain letters.
+//            a.obj they are a.obj.png (or .jpg) and a.obj.mtl, in plain letters (beside.h).
 //
 // A mesh that is returned has passed validate(), tidy() and splitNonManifold(). Nothing throws,
 // nothing is printed. Reentrant.
@@ -47,8 +47,9 @@ struct WrittenMesh {
 // Whether writeMesh() knows the ending; to be asked before long work. Errors: kUnsupported.
 Result<Ok> checkMeshEnding(const std::string& path);
 
-// The file appears whole or not at all. Errors: kIo, kNotFound, kUnsupported (another ending; a
-// mesh too large for the format, or without triangles).
+// The file appears whole or not at all, and with it those that it names. Errors: kIo, kNotFound,
+// kUnsupported (another ending; a mesh too large for the format, or without triangles),
+// kInvalidArgument (a file beside it is there already, and is another).
 // REQUIRES: validate(mesh).
 Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh);
 

@@ -16,17 +16,18 @@ namespace {
 
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 28;
 
-Result<PictureFile> sized(std::uint64_t width, std::uint64_t height) {
+// With room for pixels, or, where the head is all that is asked for, without.
+Result<PictureFile> sized(std::uint64_t width, std::uint64_t height, bool head) {
   if (width == 0 || height == 0 || width > kMostPixels / height) {
     return Error{Errc::kUnsupported,
                  fmt::format("{} x {} pixels; 1 to 2^28 are read", width, height)};
   }
   PictureFile picture{static_cast<int>(width), static_cast<int>(height), {}, {}};
-  picture.pixels.resize(3 * width * height);
+  if (!head) picture.pixels.resize(3 * width * height);
   return picture;
 }
 
-Result<PictureFile> readPng(std::string_view bytes) {
+Result<PictureFile> readPng(std::string_view bytes, bool head) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   const auto broken = [&] {
@@ -36,8 +37,8 @@ Result<PictureFile> readPng(std::string_view bytes) {
   };
   if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size())) return broken();
   image.format = PNG_FORMAT_RGB;
-  auto picture = sized(image.width, image.height);
-  if (!picture) {
+  auto picture = sized(image.width, image.height, head);
+  if (!picture || head) {
     png_image_free(&image);
     return picture;
   }
@@ -46,7 +47,7 @@ Result<PictureFile> readPng(std::string_view bytes) {
   return picture;
 }
 
-Result<PictureFile> readJpeg(std::string_view bytes) {
+Result<PictureFile> readJpeg(std::string_view bytes, bool head) {
   const std::unique_ptr<void, decltype(&tjDestroy)> jpeg(tjInitDecompress(), &tjDestroy);
   const auto broken = [&] {
     return Error{Errc::kMalformed, fmt::format("JPEG: {}", tjGetErrorStr2(jpeg.get()))};
@@ -55,13 +56,19 @@ Result<PictureFile> readJpeg(std::string_view bytes) {
   int width = 0, height = 0, sampling = 0, space = 0;
   if (tjDecompressHeader3(jpeg.get(), data, bytes.size(), &width, &height, &sampling, &space) != 0)
     return broken();
-  auto picture = sized(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height));
-  if (!picture) return picture;
+  auto picture = sized(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), head);
+  if (!picture || head) return picture;
   // The slow transform: the same bytes whatever the processor's lanes.
   if (tjDecompress2(jpeg.get(), data, bytes.size(), picture->pixels.data(), width, 0, height,
                     TJPF_RGB, TJFLAG_ACCURATEDCT) != 0)
     return broken();
   return picture;
+}
+
+Result<PictureFile> readAny(std::string_view bytes, bool head) {
+  if (bytes.starts_with("\x89PNG")) return readPng(bytes, head);
+  if (bytes.starts_with("\xFF\xD8")) return readJpeg(bytes, head);
+  return Error{Errc::kUnsupported, "is neither PNG nor JPEG"};
 }
 
 // Of n pixels in a row, the two that a place 0..1 lies between, and how far towards the second.
@@ -100,10 +107,16 @@ std::array<float, 3> PictureFile::at(float u, float v, bool clamped) const noexc
 }
 
 Result<PictureFile> decodePicture(std::span<const std::uint8_t> file) {
-  const std::string_view bytes(reinterpret_cast<const char*>(file.data()), file.size());
-  if (bytes.starts_with("\x89PNG")) return readPng(bytes);
-  if (bytes.starts_with("\xFF\xD8")) return readJpeg(bytes);
-  return Error{Errc::kUnsupported, "is neither PNG nor JPEG"};
+  return readAny({reinterpret_cast<const char*>(file.data()), file.size()}, false);
+}
+
+Result<std::size_t> pixelBytes(const std::string& path) {
+  const auto file = MappedFile::open(path);
+  if (!file) return file.error();
+  const auto picture = readAny(file->text(), true);
+  if (!picture) return Error{picture.error().code, path + ": " + picture.error().what};
+  return std::size_t{3} * static_cast<std::size_t>(picture->width) *
+         static_cast<std::size_t>(picture->height);
 }
 
 Result<PictureFile> readPicture(const std::string& path) {

@@ -25,6 +25,9 @@ struct PictureFile {
 // kMalformed, kUnsupported (neither PNG nor JPEG, or more than 2^28 pixels).
 Result<PictureFile> readPicture(const std::string& path);
 
+// Bytes that readPicture() takes for its pixels, by the file's head. The same errors.
+Result<std::size_t> pixelBytes(const std::string& path);
+
 // Of a file's bytes. The same errors, without a name. Hostile bytes are refused or read as well as
 // the libraries can.
 Result<PictureFile> decodePicture(std::span<const std::uint8_t> bytes);

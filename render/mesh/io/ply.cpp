@@ -303,10 +303,10 @@ class Reader {
 
 }  // namespace
 
-Result<LoadedMesh> parse(std::string_view bytes, std::string* picture) {
+Result<LoadedMesh> parse(std::string_view bytes, std::vector<std::string>* pictures) {
   auto header = parseHeader(bytes);
   if (!header) return header.error();
-  if (picture) *picture = header->picture;
+  if (pictures) *pictures = header->pictures;
   return Reader(bytes, std::move(*header)).read();
 }
 

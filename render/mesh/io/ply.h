@@ -5,6 +5,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "daemon/base/result.h"
 #include "render/mesh/io/mesh_file.h"
@@ -13,7 +14,7 @@ namespace merlin::render::ply {
 
 // `bytes` is a whole file. Faces of more than three corners become fans. The mesh is neither
 // validated nor tidied. Errors: kMalformed, kUnsupported, without the file's name.
-// picture  gets the name of the file that its last comment "TextureFile" has; empty: none
-Result<LoadedMesh> parse(std::string_view bytes, std::string* picture = nullptr);
+// pictures  gets the names of files that its comments "TextureFile" have
+Result<LoadedMesh> parse(std::string_view bytes, std::vector<std::string>* pictures = nullptr);
 
 }  // namespace merlin::render::ply

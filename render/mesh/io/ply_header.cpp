@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/text.h"
+#include "render/mesh/io/text_lines.h"
 
 namespace merlin::render::ply {
 namespace {
@@ -75,8 +76,10 @@ class HeaderParser {
   }
 
   void takePicture(std::string_view line) {
-    constexpr std::string_view kComment = "comment TextureFile ";
-    if (line.starts_with(kComment)) header_.picture = line.substr(kComment.size());
+    if (takeWord(line) != "comment" || takeWord(line) != "TextureFile") return;
+    std::string name(trimmed(line));
+    if (std::ranges::count(header_.pictures, name) == 0)
+      header_.pictures.push_back(std::move(name));
   }
 
   Result<Ok> keyword(const Words& words) {

@@ -43,9 +43,9 @@ struct Element {
 struct Header {
   Form form = Form::kAscii;
   std::vector<Element> elements;
-  std::string picture;    // of the comment "TextureFile", MeshLab's
-  std::size_t size = 0;   // bytes, where the body starts
-  std::size_t lines = 0;  // where an ascii body starts, for messages
+  std::vector<std::string> pictures;  // of comments "TextureFile", MeshLab's; each once
+  std::size_t size = 0;               // bytes, where the body starts
+  std::size_t lines = 0;              // where an ascii body starts, for messages
 };
 
 // Errors: kMalformed, kUnsupported; each names the header's line.
