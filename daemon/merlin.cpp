@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "daemon/base/log.h"
 #include "daemon/base/nearest.h"
+#include "daemon/base/text.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
 
@@ -32,7 +34,7 @@ int main(int argc, char** argv) {
   if (argc > 1 && argv[1][0] != '-' &&
       std::find(names.begin(), names.end(), argv[1]) == names.end()) {
     const std::string near = nearest(argv[1], names);
-    fmt::print(stderr, "merlin: \"{}\" is no command; {}\n", argv[1],
+    fmt::print(stderr, "merlin: \"{}\" is no command; {}\n", printable(argv[1]),
                near.empty() ? fmt::format("commands are {}", fmt::join(names, ", "))
                             : fmt::format("did you mean \"{}\"?", near));
     return kExitBadInput;
@@ -40,7 +42,11 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kExitDone : kExitBadInput;
+    std::ostringstream help, why;
+    const int status = app.exit(e, help, why);
+    fmt::print("{}", help.str());
+    fmt::print(stderr, "{}", printable(why.str()));
+    return status == 0 ? kExitDone : kExitBadInput;
   }
   initLog(LogLevel::kWarning);
   return run();

@@ -7,6 +7,7 @@
 
 #include "daemon/base/files.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
 #include "drivers/cyberglove/calibration_files.h"
 
 namespace merlin::cli {
@@ -56,8 +57,8 @@ int importGlove(const std::string& input, const std::string& output) {
   const auto saved = saveDeviceSettings(
       output, "glove", {{"offset", numbers(settings.offset)}, {"gain", numbers(settings.gain)}});
   if (!saved) return fail(saved.error());
-  fmt::print("{}: {} joints from {} ({}), the others as shipped\n", output, given, input,
-             imported->format);
+  say("{}: {} joints from {} ({}), the others as shipped\n", output, given, input,
+      imported->format);
   return kExitDone;
 }
 

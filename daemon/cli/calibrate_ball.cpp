@@ -12,6 +12,7 @@
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/guide.h"
 #include "daemon/cli/live_samples.h"
+#include "daemon/cli/print.h"
 #include "drivers/spaceball/guided_axes.h"
 
 namespace merlin::cli {
@@ -44,7 +45,7 @@ int tell(const BallOptions& o) {
   }
   if (const auto saved = saveDeviceSettings(o.output, "ball", values); !saved)
     return fail(saved.error());
-  fmt::print("{}: ball\n", o.output);
+  say("{}: ball\n", o.output);
   return kExitDone;
 }
 
@@ -104,8 +105,7 @@ int guideBall(const BallOptions& o) {
                                          {"axis_map", s.axis_map}};
   if (const auto saved = saveDeviceSettings(o.output, "ball", values); !saved)
     return fail(saved.error());
-  fmt::print(
-      "\n{}: ball, axis map {}, full push {} counts, full twist {}, dead zone {}; restart "
+  say("\n{}: ball, axis map {}, full push {} counts, full twist {}, dead zone {}; restart "
       "merlind to use it\n",
       o.output, values["axis_map"].dump(), s.full_scale_translation, s.full_scale_rotation,
       s.dead_zone);

@@ -7,6 +7,7 @@
 #include "daemon/cli/calibrate.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/guide.h"
+#include "daemon/cli/print.h"
 #include "drivers/cyberglove/device.h"
 #include "drivers/cyberglove/guided_calibration.h"
 #include "drivers/hand/hand.h"
@@ -78,7 +79,7 @@ int calibrateGlove(const GloveOptions& o) {
   GuidedGlove guided(**line, clock);
   const auto identity = guided.open();
   if (!identity) return fail(identity.error());
-  fmt::print("{}\n", *identity);
+  say("{}\n", *identity);
   if (const auto done = guide(cyberglove::guidedPoses(), o.timing, guided); !done)
     return fail(done.error());
   const auto solved = guided.solve();
@@ -86,7 +87,7 @@ int calibrateGlove(const GloveOptions& o) {
   const auto saved =
       saveDeviceSettings(o.output, "glove", {{"offset", solved->offset}, {"gain", solved->gain}});
   if (!saved) return fail(saved.error());
-  fmt::print("\n{}: offsets and gains of this hand\n", o.output);
+  say("\n{}: offsets and gains of this hand\n", o.output);
   return kExitDone;
 }
 

@@ -12,6 +12,7 @@
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/guide.h"
 #include "daemon/cli/live_samples.h"
+#include "daemon/cli/print.h"
 #include "drivers/fastrak/guided_alignment.h"
 #include "drivers/fastrak/protocol.h"
 
@@ -58,7 +59,7 @@ int tell(const TrackerOptions& o) {
   }
   if (const auto saved = saveDeviceSettings(o.output, "tracker", values); !saved)
     return fail(saved.error());
-  fmt::print("{}: station {}\n", o.output, o.station);
+  say("{}: station {}\n", o.output, o.station);
   return kExitDone;
 }
 
@@ -179,8 +180,8 @@ int guideTracker(const TrackerOptions& o) {
       o.output, "tracker",
       {{keyOf(kAlignmentKey, o.station), alignment}, {keyOf(kBoresightKey, o.station), boresight}});
   if (!saved) return fail(saved.error());
-  fmt::print("\n{}: station {}, alignment {} cm, boresight {}; restart merlind to use it\n",
-             o.output, o.station, alignment.dump(), boresight.dump());
+  say("\n{}: station {}, alignment {} cm, boresight {}; restart merlind to use it\n", o.output,
+      o.station, alignment.dump(), boresight.dump());
   return kExitDone;
 }
 

@@ -10,6 +10,7 @@
 #include "daemon/base/unique_fd.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
 #include "daemon/cli/stop_signals.h"
 #include "drivers/emulate/emulator.h"
 #include "drivers/io/pty_master.h"
@@ -41,7 +42,7 @@ void goOn(Commands& commands) {
   for (ssize_t i = 0; i < n; ++i) {
     if (text[i] != '\n') continue;
     ++commands.phase;
-    fmt::print("phase {} of {}\n", commands.phase % commands.phases + 1, commands.phases);
+    say("phase {} of {}\n", commands.phase % commands.phases + 1, commands.phases);
     std::fflush(stdout);
   }
 }
@@ -94,8 +95,7 @@ int emulateDevice(const EmulateOptions& options) {
   emulate::MotionScript played = *script;
   if (options.step) played.held = &phase;
   const auto device = entry->make(settings, played, start);
-  fmt::print("{} on pty:{}\n", entry->name,
-             options.link.empty() ? line->slavePath() : options.link);
+  say("{} on pty:{}\n", entry->name, options.link.empty() ? line->slavePath() : options.link);
   std::fflush(stdout);
   return serve(*line, *device, clock,
                {stop.get(), options.step ? STDIN_FILENO : -1, script->phases.size(), phase});

@@ -6,6 +6,7 @@
 
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
 #include "daemon/cli/roles.h"
 #include "daemon/status/client.h"
 
@@ -20,7 +21,7 @@ int flight(const std::string& instance) {
     const auto files = status::ask(role.endpoints.command, "flight", std::chrono::seconds(10));
     if (!files) return fail(files.error());
     for (const auto& file : nlohmann::json::parse(*files, nullptr, false))
-      fmt::print("{}\n", file.get<std::string>());
+      say("{}\n", file.get<std::string>());
     return kExitDone;
   }
   return fail({Errc::kIo, fmt::format("merlind \"{}\" runs without devices", instance)});

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "daemon/base/clock.h"
+#include "daemon/cli/print.h"
 
 namespace merlin::cli {
 namespace {
@@ -78,13 +79,13 @@ void addGuideTiming(Command app, GuideTiming& timing) {
 Result<Ok> guide(std::span<const GuidedStep> steps, const GuideTiming& timing, Guided& guided) {
   for (std::size_t step = 0; step < steps.size(); ++step) {
     for (int tries = 1;; ++tries) {
-      fmt::print("\n{}: {}{}\n", steps[step].name, steps[step].instruction,
-                 timing.pause_s > 0 ? "" : "; then press Enter");
+      say("\n{}: {}{}\n", steps[step].name, steps[step].instruction,
+          timing.pause_s > 0 ? "" : "; then press Enter");
       std::fflush(stdout);
       Result<Ok> broken = Ok{};
       const auto measured = tryStep(step, timing, guided, broken);
       if (!broken) return broken;
-      fmt::print("  {}\n", measured ? *measured : "again: " + measured.error().what);
+      say("  {}\n", measured ? *measured : "again: " + measured.error().what);
       std::fflush(stdout);
       if (measured) break;
       if (tries == kMostTries) {

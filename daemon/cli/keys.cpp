@@ -6,6 +6,7 @@
 #include "daemon/base/files.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
 #include "daemon/status/curve.h"
 
 namespace merlin::cli {
@@ -20,7 +21,7 @@ int makeKeys(const std::string& path) {
   if (!keys) return fail(keys.error());
   if (const auto written = status::writeKeyPair(path, *keys); !written)
     return fail(written.error());
-  fmt::print("{}\n", keys->public_key);
+  say("{}\n", keys->public_key);
   return kExitDone;
 }
 

@@ -89,9 +89,9 @@ std::string cell(const std::optional<double>& value) {
 
 void printTable(const CompareOptions& options, const Answer& answer) {
   const render::Comparison& c = answer.comparison;
-  fmt::print("{} (A) and {} (B): diagonal of A {:.6g}, {:.1f} s\n", options.original, options.other,
-             c.diagonal, answer.seconds);
-  fmt::print("{:30}{:>12}{:>12}{:>12}{:>16}\n", "", "A to B", "B to A", "larger", "% of diagonal");
+  say("{} (A) and {} (B): diagonal of A {:.6g}, {:.1f} s\n", options.original, options.other,
+      c.diagonal, answer.seconds);
+  say("{:30}{:>12}{:>12}{:>12}{:>16}\n", "", "A to B", "B to A", "larger", "% of diagonal");
   const render::Deviation symmetric = c.symmetric();
   const auto forward = figuresOf(c.forward), backward = figuresOf(c.backward);
   const auto larger = figuresOf(symmetric);
@@ -99,16 +99,16 @@ void printTable(const CompareOptions& options, const Answer& answer) {
     if (!larger[i].value) continue;
     const std::string percent =
         larger[i].is_length ? fmt::format("{:.4f}", 100 * *larger[i].value / c.diagonal) : "";
-    fmt::print("{:30}{:>12}{:>12}{:>12}{:>16}\n", larger[i].name, cell(forward[i].value),
-               cell(backward[i].value), cell(larger[i].value), percent);
+    say("{:30}{:>12}{:>12}{:>12}{:>16}\n", larger[i].name, cell(forward[i].value),
+        cell(backward[i].value), cell(larger[i].value), percent);
   }
   for (std::size_t i = 0; i < symmetric.features.size(); ++i) {
-    fmt::print("{:30}{:>12.4g}{:>12.4g}{:>12.4g}\n", symmetric.features[i].name + " RMS",
-               c.forward.features[i].rms, c.backward.features[i].rms, symmetric.features[i].rms);
+    say("{:30}{:>12.4g}{:>12.4g}{:>12.4g}\n", symmetric.features[i].name + " RMS",
+        c.forward.features[i].rms, c.backward.features[i].rms, symmetric.features[i].rms);
   }
   if (answer.changed_percent) {
-    fmt::print("pixels changed by more than 15 %: {:.3g} % of the model's ({}/difference.png)\n",
-               *answer.changed_percent, options.pictures);
+    say("pixels changed by more than 15 %: {:.3g} % of the model's ({}/difference.png)\n",
+        *answer.changed_percent, options.pictures);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "daemon/base/files.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
+#include "daemon/cli/print.h"
 #include "daemon/cli/progress.h"
 #include "daemon/cli/svg_chart.h"
 #include "render/compare/compare.h"
@@ -112,12 +113,12 @@ std::string svgOf(const Curve& curve, const std::string& title) {
 }
 
 void printTable(const Curve& curve) {
-  fmt::print("{:>10}{:>12}{:>12}{:>16}{:>16}   % of the diagonal, {:.6g}\n", "triangles",
-             "estimate", "RMS", "max, at least", "max, at most", curve.diagonal);
+  say("{:>10}{:>12}{:>12}{:>16}{:>16}   % of the diagonal, {:.6g}\n", "triangles", "estimate",
+      "RMS", "max, at least", "max, at most", curve.diagonal);
   const double percent = 100 / curve.diagonal;
   for (const Row& r : curve.rows) {
-    fmt::print("{:>10}{:>12.4g}{:>12.4g}{:>16.4g}{:>16.4g}\n", r.triangles, percent * r.estimate,
-               percent * r.error.rms, percent * r.error.max.low, percent * r.error.max.high);
+    say("{:>10}{:>12.4g}{:>12.4g}{:>16.4g}{:>16.4g}\n", r.triangles, percent * r.estimate,
+        percent * r.error.rms, percent * r.error.max.low, percent * r.error.max.high);
   }
 }
 

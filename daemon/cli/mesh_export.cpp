@@ -8,6 +8,7 @@
 
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
+#include "daemon/cli/print.h"
 #include "daemon/cli/progress.h"
 #include "render/compare/compare.h"
 #include "render/inventor/multiresolution_writer.h"
@@ -70,8 +71,8 @@ Result<std::size_t> levelOf(const ExportOptions& options, const render::Dendrogr
   if (model.levels() == 1) return hasOneResolution(options.model);
   const auto found = coarsestWithin(model, *options.within);
   if (!found) return Error{found.error().code, options.model + ": " + found.error().what};
-  fmt::print("at most {:.4g} from the finest, {:.4g} % of the diagonal\n", found->at_most,
-             100 * found->at_most / static_cast<double>(boxOf(model).diagonal()));
+  say("at most {:.4g} from the finest, {:.4g} % of the diagonal\n", found->at_most,
+      100 * found->at_most / static_cast<double>(boxOf(model).diagonal()));
   return found->level;
 }
 
@@ -86,8 +87,8 @@ int exportAll(const ExportOptions& options) {
   if (!model) return fail(model.error());
   const auto left_out = render::writeMultiresolution(options.output, *model);
   if (!left_out) return fail(left_out.error());
-  fmt::print("{}: {} to {} triangles, {} levels\n", options.output,
-             model->trianglesAt(model->levels() - 1), model->triangleCount(), model->levels());
+  say("{}: {} to {} triangles, {} levels\n", options.output,
+      model->trianglesAt(model->levels() - 1), model->triangleCount(), model->levels());
   printWritten({"iv", *left_out, {}});
   return kExitDone;
 }
@@ -104,8 +105,8 @@ int exportMesh(const ExportOptions& options) {
   const render::Mesh mesh = render::extract(*model, *level);
   const auto written = render::writeMesh(options.output, mesh);
   if (!written) return fail(written.error());
-  fmt::print("{}: {} triangles, {} vertices, error estimate {:.4g}\n", options.output,
-             mesh.triangleCount(), mesh.vertexCount(), model->errorAt(*level));
+  say("{}: {} triangles, {} vertices, error estimate {:.4g}\n", options.output,
+      mesh.triangleCount(), mesh.vertexCount(), model->errorAt(*level));
   printWritten(*written);
   return kExitDone;
 }

@@ -65,21 +65,20 @@ void printText(const std::string& file, const Opened& opened) {
   const render::Dendrogram& model = *opened.model;
   const auto& a = model.arrays();
   const render::Box box = boxOf(model);
-  fmt::print("{}: {} triangles, {} vertices\n", file, model.triangleCount(), model.vertexCount());
+  say("{}: {} triangles, {} vertices\n", file, model.triangleCount(), model.vertexCount());
   if (model.levels() > 1) {
-    fmt::print("  levels    {}, down to {} triangles (error estimate {:.3g})\n", model.levels(),
-               model.trianglesAt(model.levels() - 1), model.errorAt(model.levels() - 1));
+    say("  levels    {}, down to {} triangles (error estimate {:.3g})\n", model.levels(),
+        model.trianglesAt(model.levels() - 1), model.errorAt(model.levels() - 1));
   }
-  for (const auto& f : a.features) fmt::print("  feature   {} x {}\n", f.name, f.dimension);
-  if (!a.texture.empty()) fmt::print("  texture   {} bytes\n", a.texture.size());
-  fmt::print("  box       {:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}, diagonal {:.6g}\n",
-             box.low[0], box.low[1], box.low[2], box.high[0], box.high[1], box.high[2],
-             box.diagonal());
-  if (!opened.mended.empty()) fmt::print("  {}\n", opened.mended);
+  for (const auto& f : a.features) say("  feature   {} x {}\n", f.name, f.dimension);
+  if (!a.texture.empty()) say("  texture   {} bytes\n", a.texture.size());
+  say("  box       {:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}, diagonal {:.6g}\n", box.low[0],
+      box.low[1], box.low[2], box.high[0], box.high[1], box.high[2], box.diagonal());
+  if (!opened.mended.empty()) say("  {}\n", opened.mended);
   std::string_view about = a.about;
   while (!about.empty()) {
     const std::size_t n = std::min(about.find('\n'), about.size());
-    fmt::print("  made by   {}\n", about.substr(0, n));
+    say("  made by   {}\n", about.substr(0, n));
     about.remove_prefix(std::min(n + 1, about.size()));
   }
 }

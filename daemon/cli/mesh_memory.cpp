@@ -8,6 +8,8 @@
 #include <sys/resource.h>
 
 #include "daemon/base/files.h"
+#include "render/mesh/io/beside.h"
+#include "render/mesh/io/picture_file.h"
 #include "render/mesh/io/ply_header.h"
 #include "render/reduce/memory.h"
 
@@ -62,6 +64,17 @@ Result<std::size_t> roomForReduction(const render::MeshSize& mesh, std::size_t f
                            mesh.vertices, mesh.triangles, sizeText(need), sizeText(limit))};
 }
 
+Result<Ok> roomForPicture(const std::string& picture, const render::MeshSize& mesh,
+                          std::size_t limit) {
+  const auto pixels = render::pixelBytes(picture);
+  const std::size_t need = mesh.bytes() + kProgram + (pixels ? *pixels : 0);
+  if (!pixels || need <= limit) return Ok{};
+  return Error{Errc::kInvalidArgument,
+               fmt::format("{}: with its mesh takes {} to read; the limit (--memory, else what is "
+                           "free) is {}",
+                           picture, sizeText(need), sizeText(limit))};
+}
+
 Result<Ok> checkRoom(const std::string& path, const render::ReduceSettings& settings,
                      std::size_t limit) {
   const auto file = MappedFile::open(path);
@@ -80,6 +93,11 @@ Result<Ok> checkRoom(const std::string& path, const render::ReduceSettings& sett
   // A header may promise anything; what the file has no room for is the reader's to tell.
   const std::size_t bytes = file->text().size();
   if (size.vertices > bytes || size.triangles > bytes) return Ok{};
+  if (header->pictures.size() == 1) {
+    const std::string picture =
+        render::pathBeside(render::folderOf(path), header->pictures.front());
+    if (const auto fits = roomForPicture(picture, size, limit); !fits) return fits;
+  }
   const auto room = roomForReduction(size, bytes, settings, limit);
   if (!room) return Error{room.error().code, path + ": " + room.error().what};
   return Ok{};

@@ -22,8 +22,14 @@ std::size_t peakMemory();
 Result<std::size_t> roomForReduction(const render::MeshSize& mesh, std::size_t file_size,
                                      const render::ReduceSettings& settings, std::size_t limit);
 
-// The same before anything is read, as far as a file says in its header (.ply) how much is in it.
-// Errors: with the file's name; none where it cannot be read, since reading it will say that.
+// Whether a mesh' picture can be looked at beside it. Errors: as above; none where the picture
+// cannot be read, since reading it will say that.
+Result<Ok> roomForPicture(const std::string& picture, const render::MeshSize& mesh,
+                          std::size_t limit);
+
+// The same as roomForReduction() before anything is read, as far as a file says in its header
+// (.ply) how much is in it. Errors: with the file's name; none where it cannot be read, since
+// reading it will say that.
 Result<Ok> checkRoom(const std::string& path, const render::ReduceSettings& settings,
                      std::size_t limit);
 

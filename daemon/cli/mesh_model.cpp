@@ -80,10 +80,10 @@ Error hasOneResolution(const std::string& path) {
 
 void printWritten(const render::WrittenMesh& written) {
   if (!written.beside.empty())
-    fmt::print("  with it {}\n", printable(fmt::format("{}", fmt::join(written.beside, " and "))));
+    say("  with it {}\n", printable(fmt::format("{}", fmt::join(written.beside, " and "))));
   if (!written.left_out.empty())
-    fmt::print("  .{} has no place for {}; it is left out\n", written.format,
-               fmt::join(written.left_out, ", "));
+    say("  .{} has no place for {}; it is left out\n", written.format,
+        fmt::join(written.left_out, ", "));
 }
 
 Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::string> outputs) {

@@ -6,6 +6,7 @@
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
 #include "daemon/cli/model_painter.h"
+#include "daemon/cli/print.h"
 #include "render/out/png.h"
 
 namespace merlin::cli {
@@ -28,7 +29,7 @@ Result<Ok> appendModel(const PictureOptions& options, const std::string& path, I
     const std::size_t level = model->levelFor(
         static_cast<std::size_t>(percent / 100 * static_cast<double>(model->triangleCount())));
     strip.append(painter->draw(level));
-    fmt::print("{}: {} of {} triangles\n", path, model->trianglesAt(level), model->triangleCount());
+    say("{}: {} of {} triangles\n", path, model->trianglesAt(level), model->triangleCount());
   }
   return Ok{};
 }
@@ -47,7 +48,7 @@ int picture(const PictureOptions& options) {
   }
   const auto written = render::writePng(options.output, strip.width, strip.height, strip.pixels);
   if (!written) return fail(written.error());
-  fmt::print("{}: {} x {}\n", options.output, strip.width, strip.height);
+  say("{}: {} x {}\n", options.output, strip.width, strip.height);
   return kExitDone;
 }
 

@@ -75,21 +75,20 @@ void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
     printJsonLine(json);
     return;
   }
-  fmt::print("{}: {} triangles down to {} in {} collapses ({})\n", options.output,
-             loaded.mesh.triangleCount(), r.triangles, r.collapses, r.stopped);
+  say("{}: {} triangles down to {} in {} collapses ({})\n", options.output,
+      loaded.mesh.triangleCount(), r.triangles, r.collapses, r.stopped);
   if (r.by_all_rules > r.triangles) {
-    fmt::print("  all rules (labels, locks, seams, links, flips) held down to {} triangles\n",
-               r.by_all_rules);
+    say("  all rules (labels, locks, seams, links, flips) held down to {} triangles\n",
+        r.by_all_rules);
   }
-  fmt::print("  {:.2f} s, {:.0f} collapses a second; with reading and writing {:.2f} s\n",
-             took.reducing, rate, took.all);
-  fmt::print("  peak memory {:.0f} MB, limit {:.0f} MB{}\n", megabytes(peakMemory()),
-             megabytes(took.limit), r.blocks > 1 ? fmt::format(", {} blocks", r.blocks) : "");
-  fmt::print(
-      "  error estimate of the coarsest level {:.4g} ({:.3g} % of the diagonal); {} flips "
+  say("  {:.2f} s, {:.0f} collapses a second; with reading and writing {:.2f} s\n", took.reducing,
+      rate, took.all);
+  say("  peak memory {:.0f} MB, limit {:.0f} MB{}\n", megabytes(peakMemory()),
+      megabytes(took.limit), r.blocks > 1 ? fmt::format(", {} blocks", r.blocks) : "");
+  say("  error estimate of the coarsest level {:.4g} ({:.3g} % of the diagonal); {} flips "
       "refused\n",
       r.error, percent, r.flips_refused);
-  if (const std::string mended = mendedText(loaded); !mended.empty()) fmt::print("  {}\n", mended);
+  if (const std::string mended = mendedText(loaded); !mended.empty()) say("  {}\n", mended);
 }
 
 Result<render::Reduction> reduceLoaded(const ReduceOptions& options, const render::Mesh& mesh,
@@ -118,7 +117,7 @@ Result<render::Reduction> reduceLoaded(const ReduceOptions& options, const rende
 }
 
 // A picture that the mesh's file does not name.
-Result<Ok> addTexture(const ReduceOptions& options, render::Mesh& mesh) {
+Result<Ok> addTexture(const ReduceOptions& options, render::Mesh& mesh, std::size_t limit) {
   if (options.texture.empty()) return Ok{};
   const render::Feature* texcoord = mesh.find("texcoord");
   if (!texcoord || texcoord->dimension != 2) {
@@ -126,6 +125,7 @@ Result<Ok> addTexture(const ReduceOptions& options, render::Mesh& mesh) {
         Errc::kInvalidArgument,
         options.input + ": has no texture coordinates (a PLY's s and t or u and v, an OBJ's vt)"};
   }
+  if (const auto fits = roomForPicture(options.texture, sizeOf(mesh), limit); !fits) return fits;
   auto picture = render::readPicture(options.texture);
   if (!picture) return picture.error();
   mesh.texture = std::move(picture->file);
@@ -137,6 +137,8 @@ Result<Ok> checkOptions(const ReduceOptions& options) {
   if (const auto named = checkEnding(options.output, "model", ".mrm"); !named) return named;
   if (options.preset != "default" && !pattern)
     return Error{Errc::kInvalidArgument, "--preset " + options.preset + ": add --cost pattern"};
+  if (options.settings.fast && pattern)
+    return Error{Errc::kInvalidArgument, "--fast: of the cost quadric"};
   if (options.lock_borders && pattern)
     return Error{Errc::kInvalidArgument,
                  "--lock-borders: of the cost quadric; for pattern: --weight boundary=W"};
@@ -153,7 +155,8 @@ int reduceMesh(const ReduceOptions& options) {
     return fail(fits.error());
   auto loaded = loadMesh(options.input);
   if (!loaded) return fail(loaded.error());
-  if (const auto done = addTexture(options, loaded->mesh); !done) return fail(done.error());
+  if (const auto done = addTexture(options, loaded->mesh, took.limit); !done)
+    return fail(done.error());
   if (const auto named = render::checkNames(loaded->mesh); !named)
     return fail({named.error().code, options.input + ": " + named.error().what});
   const auto reduction = reduceLoaded(options, loaded->mesh, took);

@@ -43,21 +43,25 @@ Result<Ok> draw(const SegmentOptions& options, const render::Mesh& mesh) {
   return render::writePng(options.picture, image.width, image.height, image.pixels);
 }
 
-void report(const SegmentOptions& options, const render::Segmentation& s, double seconds) {
+void report(const SegmentOptions& options, const render::Segmentation& s, double seconds,
+            const render::WrittenMesh& written) {
   if (options.json) {
-    const nlohmann::ordered_json json = {{"output", options.output}, {"segments", s.sizes.size()},
-                                         {"sizes", s.sizes},         {"vertices", s.labels.size()},
-                                         {"error", s.error},         {"seconds", seconds}};
+    const nlohmann::ordered_json json = {
+        {"output", options.output}, {"segments", s.sizes.size()},
+        {"sizes", s.sizes},         {"vertices", s.labels.size()},
+        {"error", s.error},         {"seconds", seconds},
+        {"beside", written.beside}, {"left_out", written.left_out}};
     printJsonLine(json);
     return;
   }
-  fmt::print("{}: {} segments of {} vertices, RMS distance in pattern space {:.4g}, {:.2f} s\n",
-             options.output, s.sizes.size(), s.labels.size(), s.error, seconds);
+  say("{}: {} segments of {} vertices, RMS distance in pattern space {:.4g}, {:.2f} s\n",
+      options.output, s.sizes.size(), s.labels.size(), s.error, seconds);
   constexpr std::size_t kMost = 20;
   const std::size_t shown = std::min(kMost, s.sizes.size());
-  fmt::print("  sizes {}{}\n",
-             fmt::join(s.sizes.begin(), s.sizes.begin() + static_cast<std::ptrdiff_t>(shown), " "),
-             s.sizes.size() > kMost ? " ..." : "");
+  say("  sizes {}{}\n",
+      fmt::join(s.sizes.begin(), s.sizes.begin() + static_cast<std::ptrdiff_t>(shown), " "),
+      s.sizes.size() > kMost ? " ..." : "");
+  printWritten(written);
 }
 
 int segmentMesh(const SegmentOptions& options) {
@@ -88,8 +92,7 @@ int segmentMesh(const SegmentOptions& options) {
   if (!options.picture.empty()) {
     if (const auto drawn = draw(options, mesh); !drawn) return fail(drawn.error());
   }
-  report(options, *segmentation, seconds);
-  if (!options.json) printWritten(*written);
+  report(options, *segmentation, seconds, *written);
   return kExitDone;
 }
 

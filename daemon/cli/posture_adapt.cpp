@@ -6,6 +6,7 @@
 #include "daemon/base/clock.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/posture.h"
+#include "daemon/cli/print.h"
 #include "nn/adapt.h"
 
 namespace merlin::cli {
@@ -36,8 +37,7 @@ int adapt(const AdaptOptions& options) {
       fmt::format("{}; adapted to {} hands", file->trained.how, recording->hands.size())
           .substr(0, 200);
   if (const auto saved = nn::saveNetwork(options.output, out); !saved) return fail(saved.error());
-  fmt::print(
-      "{}: adapted to {} hands in {:.2f} s: {:.2f} % of them right, {:.2f} % before; of hands "
+  say("{}: adapted to {} hands in {:.2f} s: {:.2f} % of them right, {:.2f} % before; of hands "
       "like those it was trained on {:.2f} %, {:.2f} % before\n",
       options.output, recording->hands.size(), seconds, 100 * adapted->hands_after,
       100 * adapted->hands_before, 100 * adapted->memory_after, 100 * adapted->memory_before);
@@ -53,8 +53,8 @@ int synthesizeFile(const SynthesizeOptions& options) {
   const nn::Recording recording = synthesize(options.people);
   if (const auto saved = nn::saveRecording(options.output, recording); !saved)
     return fail(saved.error());
-  fmt::print("{}: {} synthetic hands of {} people\n", options.output, recording.hands.size(),
-             options.people.people);
+  say("{}: {} synthetic hands of {} people\n", options.output, recording.hands.size(),
+      options.people.people);
   return kExitDone;
 }
 

@@ -9,6 +9,7 @@
 #include "daemon/base/clock.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/posture.h"
+#include "daemon/cli/print.h"
 #include "daemon/shm/segment.h"
 #include "nn/evaluate.h"
 
@@ -112,8 +113,8 @@ int run(const CollectOptions& options) {
   if (const auto added = addTo(*recording, options.output); !added) return fail(added.error());
   if (const auto saved = nn::saveRecording(options.output, *recording); !saved)
     return fail(saved.error());
-  fmt::print("{}: {} hands of \"{}\" taken, {} in all\n", options.output, taken, options.label,
-             recording->hands.size());
+  say("{}: {} hands of \"{}\" taken, {} in all\n", options.output, taken, options.label,
+      recording->hands.size());
   for (const nn::Overlap& o : nn::overlapsOf(options.label, recording->hands))
     fmt::print(stderr,
                "warning: \"{}\" and \"{}\" are hard to tell apart: {:.1f} standard deviations, {} "

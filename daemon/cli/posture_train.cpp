@@ -8,6 +8,7 @@
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/learning_curve.h"
 #include "daemon/cli/posture.h"
+#include "daemon/cli/print.h"
 #include "daemon/cli/progress.h"
 #include "nn/evaluate.h"
 
@@ -63,8 +64,7 @@ int crossValidate(const nn::Recording& recording, const TrainOptions& options) {
     if (!fitted) return fail(fitted.error());
     const double accuracy = nn::score(fitted->network, test).accuracy();
     const nn::Neighbours beside = nn::neighbours(train, test);
-    fmt::print(
-        "fold {}: {:.2f} % of {} hands right (nearest mean {:.2f} %, nearest neighbour "
+    say("fold {}: {:.2f} % of {} hands right (nearest mean {:.2f} %, nearest neighbour "
         "{:.2f} %), {:.2f} s\n",
         fold + 1, 100 * accuracy, test.size(), 100 * beside.mean, 100 * beside.nearest, seconds);
     sum += accuracy;
@@ -72,8 +72,8 @@ int crossValidate(const nn::Recording& recording, const TrainOptions& options) {
     sum_nearest += beside.nearest;
   }
   const double k = static_cast<double>(options.folds) / 100;
-  fmt::print("{} folds: {:.2f} % right (nearest mean {:.2f} %, nearest neighbour {:.2f} %)\n",
-             options.folds, sum / k, sum_mean / k, sum_nearest / k);
+  say("{} folds: {:.2f} % right (nearest mean {:.2f} %, nearest neighbour {:.2f} %)\n",
+      options.folds, sum / k, sum_mean / k, sum_nearest / k);
   return kExitDone;
 }
 
@@ -82,9 +82,8 @@ int report(const TrainOptions& options, const nn::Fitted& fitted, double seconds
     const auto written = writeFile(options.curve, curveSvg(fitted.curve, options.output));
     if (!written) return fail(written.error());
   }
-  fmt::print("{}", curveText(fitted.curve));
-  fmt::print(
-      "{}: {} postures from {} hands{} in {:.2f} s; {:.2f} % of the training hands right, "
+  say("{}", curveText(fitted.curve));
+  say("{}: {} postures from {} hands{} in {:.2f} s; {:.2f} % of the training hands right, "
       "{:.2f} % of those set aside\n",
       options.output, fitted.network.postures.size(), fitted.trained.samples,
       fitted.trained.synthetic ? " (synthetic)" : "", seconds, 100 * fitted.training_accuracy,

@@ -10,6 +10,7 @@
 #include "daemon/base/files.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
 #include "daemon/cli/stop_signals.h"
 #include "drivers/io/open_stream.h"
 #include "drivers/io/pty_master.h"
@@ -119,8 +120,7 @@ int record(const RecordOptions& options) {
   if (!written) return fail(written.error());
   std::size_t bytes = 0;
   for (const auto& chunk : recording.transcript.chunks) bytes += chunk.bytes.size();
-  fmt::print("{}: {} bytes in {} pieces\n", options.output, bytes,
-             recording.transcript.chunks.size());
+  say("{}: {} bytes in {} pieces\n", options.output, bytes, recording.transcript.chunks.size());
   return identity ? kExitDone : fail(identity.error());
 }
 
@@ -158,8 +158,7 @@ int replay(const ReplayOptions& options) {
   if (!transcript) return fail(transcript.error());
   const auto line = io::PtyMaster::open(options.link);
   if (!line) return fail(line.error());
-  fmt::print("{} on pty:{}\n", options.file,
-             options.link.empty() ? line->slavePath() : options.link);
+  say("{} on pty:{}\n", options.file, options.link.empty() ? line->slavePath() : options.link);
   std::fflush(stdout);
   const SystemClock clock;
   do {

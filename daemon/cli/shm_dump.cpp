@@ -125,9 +125,9 @@ int dump(const DumpOptions& options) {
     return kExitDone;
   }
   for (const auto& [segment, fields] : all.items()) {
-    fmt::print("{}\n", segment);
+    say("{}\n", segment);
     for (const auto& [name, field] : fields.items()) {
-      fmt::print("  {:28} {} {}\n", name, field["value"].dump(), field["unit"].get<std::string>());
+      say("  {:28} {} {}\n", name, jsonText(field["value"]), field["unit"].get<std::string>());
     }
   }
   return kExitDone;

@@ -5,6 +5,7 @@
 
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
 #include "daemon/shm/segment.h"
 #include "render/out/png.h"
 #include "render/out/shm_sink.h"
@@ -32,9 +33,8 @@ int snapshot(const SnapshotOptions& options) {
     return fail({Errc::kUnsupported, "this wall has no tiles but the operator's view"});
   const auto written = render::writePng(options.output, frame->width, frame->height, frame->pixels);
   if (!written) return fail(written.error());
-  fmt::print("{}: {} x {}, frame {}, {} triangles{}\n", options.output, frame->width, frame->height,
-             frame->info.sequence, frame->info.triangles,
-             frame->info.full_detail ? ", full detail" : "");
+  say("{}: {} x {}, frame {}, {} triangles{}\n", options.output, frame->width, frame->height,
+      frame->info.sequence, frame->info.triangles, frame->info.full_detail ? ", full detail" : "");
   return kExitDone;
 }
 

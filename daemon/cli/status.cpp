@@ -5,6 +5,7 @@
 
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
 #include "daemon/cli/status_text.h"
 
 namespace merlin::cli {
@@ -23,7 +24,7 @@ void addStatus(Command app, Run& run) {
     run = [options] {
       const auto status = askStatus(options->instance);
       if (!status) return fail(status.error());
-      fmt::print("{}", options->json ? status->dump(2) + "\n" : statusTable(*status));
+      say("{}", options->json ? status->dump(2) + "\n" : statusTable(*status));
       return kExitDone;
     };
   });

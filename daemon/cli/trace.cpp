@@ -9,6 +9,7 @@
 #include "daemon/base/files.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
 #include "daemon/cli/trace_json.h"
 #include "daemon/shm/segment.h"
 
@@ -79,8 +80,8 @@ int trace(const TraceOptions& options) {
   }
   const std::string json = traceJson(*frames, samples);
   if (const auto written = writeFile(options.output, json); !written) return fail(written.error());
-  fmt::print("{}: {} frames, {} samples; open it in ui.perfetto.dev or chrome://tracing\n",
-             options.output, frames->size(), samples.size());
+  say("{}: {} frames, {} samples; open it in ui.perfetto.dev or chrome://tracing\n", options.output,
+      frames->size(), samples.size());
   return kExitDone;
 }
 

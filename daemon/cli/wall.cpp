@@ -5,6 +5,7 @@
 
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
 #include "daemon/cli/roles.h"
 #include "daemon/status/client.h"
 
@@ -30,7 +31,7 @@ int wall(const WallOptions& options) {
       if (value.empty()) continue;
       const auto done = status::ask(role.endpoints.command, name, kPatience, value);
       if (!done) return fail(done.error());
-      fmt::print("{}: {}\n", name, value);
+      say("{}: {}\n", name, value);
     }
     return kExitDone;
   }

@@ -6,6 +6,7 @@
 #include "daemon/base/clock.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
 #include "daemon/cli/roles.h"
 #include "daemon/cli/status_text.h"
 #include "daemon/status/client.h"
@@ -34,7 +35,7 @@ int watch(const WatchOptions& options) {
       [&](const std::string&, const std::string& document) {
         mergeStatus(both, document);
         if (++documents % roles->size() == 0) {
-          fmt::print("{}\n", options.json ? both.dump() : statusLine(both));
+          say("{}\n", options.json ? both.dump() : statusLine(both));
           std::fflush(stdout);
         }
         return options.seconds <= 0 || toSeconds(clock.now() - began) < options.seconds;

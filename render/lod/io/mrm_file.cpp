@@ -106,13 +106,19 @@ class MrmReader {
     if (e.checksum != checksum(at, e.rows * row)) {
       return broken(path_, fmt::format("section {} is damaged", nameOf(e.kind)));
     }
-    if (!isText(nameIn(e))) return broken(path_, "a feature's name is no text (UTF-8)");
+    if (e.kind == static_cast<std::uint32_t>(Kind::kFeature) && !isText(nameIn(e)))
+      return broken(path_, "a feature's name is no text (UTF-8)");
     place(e, at);
     return Ok{};
   }
 
   static std::string_view nameIn(const SectionEntry& e) {
-    return {e.name, strnlen(e.name, sizeof e.name)};
+    std::string_view name(e.name, strnlen(e.name, sizeof e.name));
+    // Of a long one its last character may be cut.
+    for (std::size_t cut = 0; cut < 3 && name.size() + cut == sizeof e.name - 1 && !isText(name);
+         ++cut)
+      name.remove_suffix(1);
+    return name;
   }
 
   void place(const SectionEntry& e, const std::byte* at) {
