@@ -233,7 +233,8 @@ void joinSides(const std::vector<std::uint32_t>& sides, std::vector<float>& sums
   for (std::size_t i = 0; i < sides.size(); ++i) {
     group[i] = i;
     for (std::size_t k = 0; k < i; ++k) {
-      if (areOneSurface(of(i), of(k))) std::ranges::replace(group, group[k], group[i]);
+      const std::size_t other = group[k];
+      if (areOneSurface(of(i), of(k))) std::ranges::replace(group, other, i);
     }
   }
   for (std::size_t g = 0; g < sides.size(); ++g) {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -177,6 +179,33 @@ TEST(EnsureNormals, AddsThemOnce) {
   EXPECT_EQ(mesh.features[0].values, (Floats{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}));
   ensureNormals(mesh);
   EXPECT_EQ(mesh.features.size(), 1u);
+}
+
+// Leaves of a book that share its spine's place, opened to these angles. The first three are one
+// surface, two of them by the third; the last faces away from all.
+TEST(EnsureNormals, AreOneWhereSidesOfASeamAreOneSurface) {
+  const auto radians = [](double degrees) { return degrees * std::numbers::pi / 180; };
+  Mesh book;
+  for (const double degrees : {60.0, 0.0, 120.0, 240.0}) {
+    const double a = radians(degrees);
+    const auto first = static_cast<std::uint32_t>(book.vertexCount());
+    for (const double x : {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, std::cos(a), std::sin(a)})
+      book.positions.push_back(static_cast<float>(x));
+    for (std::uint32_t k = 0; k < 3; ++k) book.triangles.push_back(first + k);
+  }
+  Mesh plain = book;
+  ensureNormals(plain);
+  EXPECT_NEAR(plain.features[0].values[3 * 3 + 2], 1, 1e-6) << "no seam without a texture";
+  book.features = {{"texcoord", 2, Floats(2 * book.vertexCount())}};
+  ensureNormals(book);
+  const Floats& n = book.features[1].values;
+  for (const auto& [leaf, degrees] : {std::pair{0, 60.0}, {1, 60.0}, {2, 60.0}, {3, 240.0}}) {
+    for (const int spine : {0, 1}) {
+      const std::size_t at = 3 * static_cast<std::size_t>(3 * leaf + spine);
+      EXPECT_NEAR(n[at + 1], -std::sin(radians(degrees)), 1e-6) << leaf;
+      EXPECT_NEAR(n[at + 2], std::cos(radians(degrees)), 1e-6) << leaf;
+    }
+  }
 }
 
 TEST(EnsureNormals, KeepsThoseThatTheMeshCameWith) {
