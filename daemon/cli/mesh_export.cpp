@@ -100,6 +100,9 @@ int exportMesh(const ExportOptions& options) {
     return fail(writable.error());
   const auto model = openModel(options.model);
   if (!model) return fail(model.error());
+  const auto coarsest = render::extract(*model, model->levels() - 1);
+  if (const auto free = render::checkBeside(options.output, coarsest); !free)
+    return fail(free.error());
   const auto level = levelOf(options, *model);
   if (!level) return fail(level.error());
   const render::Mesh mesh = render::extract(*model, *level);

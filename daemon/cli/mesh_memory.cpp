@@ -93,7 +93,7 @@ Result<Ok> checkRoom(const std::string& path, const render::ReduceSettings& sett
   // A header may promise anything; what the file has no room for is the reader's to tell.
   const std::size_t bytes = file->text().size();
   if (size.vertices > bytes || size.triangles > bytes) return Ok{};
-  if (header->pictures.size() == 1) {
+  if (header->pictures.size() == 1 && render::ply::hasTexcoord(*header)) {
     const std::string picture =
         render::pathBeside(render::folderOf(path), header->pictures.front());
     if (const auto fits = roomForPicture(picture, size, limit); !fits) return fits;

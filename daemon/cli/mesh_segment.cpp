@@ -81,6 +81,7 @@ int segmentMesh(const SegmentOptions& options) {
   for (const std::string& text : options.weights) {
     if (const auto set = setWeight(text, settings.weights); !set) return fail(set.error());
   }
+  if (const auto free = render::checkBeside(options.output, mesh); !free) return fail(free.error());
   const SystemClock clock;
   const Timestamp began = clock.now();
   const auto segmentation = render::segment(mesh, settings);

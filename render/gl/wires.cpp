@@ -42,7 +42,9 @@ void Wires::draw(const Eigen::Matrix4f& clip_from_model, const Look& look,
   gl_.PolygonOffset(1, 1);
   triangles();
   gl_.Disable(GL_POLYGON_OFFSET_FILL);
-  setColour(look.colour);
+  std::array<float, 3> colour = look.colour;
+  for (float& x : colour) x *= look.brightness;
+  setColour(colour);
   gl_.PolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   triangles();
   gl_.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);

@@ -210,6 +210,8 @@ std::array<float, 3> faceNormal(const float* a, const float* b, const float* c) 
 
 namespace {
 
+float dot(const float* a, const float* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
 // Of each vertex' faces the sum of their unit normals.
 std::vector<float> normalSums(const Mesh& mesh) {
   std::vector<float> normals(mesh.positions.size(), 0.0F);
@@ -237,15 +239,20 @@ void joinSides(const std::vector<std::uint32_t>& sides, std::vector<float>& sums
       if (areOneSurface(of(i), of(k))) std::ranges::replace(group, other, i);
     }
   }
-  for (std::size_t g = 0; g < sides.size(); ++g) {
-    float sum[3] = {};
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-      for (std::size_t k = 0; group[i] == g && k < 3; ++k) sum[k] += of(i)[k];
+  std::array<std::array<float, 3>, kMostSides> joined{};
+  const auto addThose = [&](std::size_t i, const auto& are) {
+    joined[i] = {};
+    for (std::size_t o = 0; o < sides.size(); ++o) {
+      for (std::size_t k = 0; are(o) && k < 3; ++k) joined[i][k] += of(o)[k];
     }
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-      if (group[i] == g) std::copy_n(sum, 3, of(i));
-    }
+  };
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    addThose(i, [&](std::size_t o) { return group[o] == group[i]; });
+    // Blades about an axis are a group as well, whose sum is nothing.
+    if (dot(joined[i].data(), of(i)) < 0.5F * dot(of(i), of(i)))
+      addThose(i, [&](std::size_t o) { return o == i || areOneSurface(of(i), of(o)); });
   }
+  for (std::size_t i = 0; i < sides.size(); ++i) std::ranges::copy(joined[i], of(i));
 }
 
 void joinSeams(const Mesh& mesh, std::vector<float>& sums) {
@@ -277,7 +284,7 @@ std::vector<float> normalsAcrossSeams(const Mesh& mesh) {
 }  // namespace
 
 bool areOneSurface(const float* normal, const float* other) noexcept {
-  return normal[0] * other[0] + normal[1] * other[1] + normal[2] * other[2] > 0;
+  return dot(normal, other) > 0;
 }
 
 std::vector<float> vertexNormals(const Mesh& mesh) {

@@ -208,6 +208,23 @@ TEST(EnsureNormals, AreOneWhereSidesOfASeamAreOneSurface) {
   }
 }
 
+// Six blades about an axis: each faces the next one's way, and all of them together none.
+TEST(EnsureNormals, AreTheirOwnWhereManySidesCancel) {
+  Mesh blades;
+  for (int k = 0; k < 6; ++k) {
+    const double a = k * std::numbers::pi / 3;
+    for (const double x : {0.0, 0.0, 0.0, std::cos(a), std::sin(a), 0.5, 0.0, 0.0, 1.0})
+      blades.positions.push_back(static_cast<float>(x));
+    for (int corner = 0; corner < 3; ++corner)
+      blades.triangles.push_back(static_cast<std::uint32_t>(3 * k + corner));
+  }
+  blades.features = {{"texcoord", 2, Floats(2 * blades.vertexCount())}};
+  const Floats own = vertexNormals(blades);
+  ensureNormals(blades);
+  for (std::size_t i = 0; i < own.size(); ++i)
+    EXPECT_NEAR(blades.features[1].values[i], own[i], 1e-6);
+}
+
 TEST(EnsureNormals, KeepsThoseThatTheMeshCameWith) {
   Mesh mesh = square();
   const Floats own{0, 1, 0, 1, 0, 0, 0, 0.6F, 0.8F, 0, 0, -1};

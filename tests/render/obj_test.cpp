@@ -75,6 +75,7 @@ TEST_F(ObjFile, GoesOnInTheNextLineBehindABackslash) {
   EXPECT_EQ(faultOfFaces("f 1 2\\\n x\n"), "line 6: \"x\" is no corner of a face");
   EXPECT_EQ(trianglesOf("f 1 2 3 \\"), (Indices{0, 1, 2}));
   EXPECT_EQ(trianglesOf("g C:\\parts\\\nf 1 2 3\n"), (Indices{0, 1, 2})) << "a name";
+  EXPECT_EQ(trianglesOf("g a \\\nf b\nf\\\n1 2 3\n"), (Indices{0, 1, 2})) << "a name that goes on";
 }
 
 TEST_F(ObjFile, HasColoursWhereEveryVertexHasOne) {

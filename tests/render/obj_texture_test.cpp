@@ -160,6 +160,7 @@ TEST_F(TexturedObj, GoesWithItsPictureIntoOtherFiles) {
   const std::pair<const char*, Names> files[] = {
       {"it's b=_1.obj", {"it=27s=20b=3D_1.obj.png", "it=27s=20b=3D_1.obj.mtl"}},
       {"\n\xc3\xa9.ply", {"=0A=C3=A9.ply.png"}},
+      {"\xe6\xa8\xa1.obj", {"\xe6\xa8\xa1.obj.png", "\xe6\xa8\xa1.obj.mtl"}},
       {"b\".iv", {"b=22.iv.png"}}};
   for (const auto& [name, beside] : files) {
     const test::TempDir other;
@@ -204,8 +205,9 @@ TEST_F(TexturedObj, MayBeAPlyThatNamesItsPicture) {
     return *std::move(loaded);
   };
   const std::string four = "comment TextureFile four pixels.png\n";
-  for (const std::string& comments : {four, "comment  TextureFile\tfour pixels.png  \r\n"s,
-                                      four + four, "comment TextureFile ../x/four pixels.png\n"s}) {
+  for (const std::string& comments :
+       {four, "comment  TextureFile\tfour pixels.png  \r\n"s, four + four,
+        "comment TextureFile\n" + four, "comment TextureFile ../x/four pixels.png\n"s}) {
     const LoadedMesh loaded = readPly(comments);
     EXPECT_EQ(loaded.notes, Names{}) << comments;
     EXPECT_EQ(std::string(loaded.mesh.texture.begin(), loaded.mesh.texture.end()),
@@ -218,8 +220,8 @@ TEST_F(TexturedObj, MayBeAPlyThatNamesItsPicture) {
        dir_ / "none.png: No such file or directory; the texture's picture is left out"},
       {"comment TextureFile broken.png\n",
        dir_ / "broken.png: is neither PNG nor JPEG; the texture's picture is left out"},
-      {"comment TextureFile a\x1b.png\n",
-       "a\x1b.png: is no name; the texture's picture is left out"}};
+      {"comment TextureFile a\0.png\n"s,
+       "a\0.png: is no name; the texture's picture is left out"s}};
   for (const auto& [comments, note] : faults) {
     const LoadedMesh loaded = readPly(comments);
     EXPECT_EQ(loaded.notes, Names{note});

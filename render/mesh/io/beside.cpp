@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/text.h"
+
 namespace merlin::render {
 
 std::string folderOf(const std::string& path) { return path.substr(0, path.rfind('/') + 1); }
@@ -20,10 +22,12 @@ std::string pathBeside(const std::string& folder, std::string_view name) {
 }
 
 std::string plainName(const std::string& path) {
+  const std::string own = path.substr(folderOf(path).size());
+  const bool text = isText(own);
   std::string name;
-  for (const char c : path.substr(folderOf(path).size())) {
+  for (const char c : own) {
     const auto byte = static_cast<unsigned char>(c);
-    const bool plain = byte < 0x80 && (std::isalnum(byte) || c == '.' || c == '-' || c == '_');
+    const bool plain = byte < 0x80 ? std::isalnum(byte) || c == '.' || c == '-' || c == '_' : text;
     name += plain ? std::string(1, c) : fmt::format("={:02X}", byte);
   }
   return name;

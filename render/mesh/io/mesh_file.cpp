@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
-#include "daemon/base/text.h"
 #include "render/mesh/io/beside.h"
 #include "render/mesh/io/obj_texture.h"
 #include "render/mesh/io/picture_file.h"
@@ -61,7 +60,7 @@ Result<LoadedMesh> readPly(std::string_view content, const std::string& folder) 
     loaded->notes.push_back(fmt::format("left out: {} pictures of textures", pictures.size()));
     return loaded;
   }
-  if (!isText(pictures[0])) {
+  if (pictures[0].find('\0') != std::string::npos) {
     loaded->notes.push_back(pictures[0] + ": is no name; the texture's picture is left out");
     return loaded;
   }
@@ -84,53 +83,52 @@ const MeshWriter* writerFor(const std::string& path) {
   return nullptr;
 }
 
-// Files beside a mesh's, which nobody has asked for by name: what is there stays. Those that were
-// made go again unless they are kept.
-class Beside {
- public:
-  explicit Beside(std::string folder) : folder_(std::move(folder)) {}
-  ~Beside() {
-    std::error_code gone;
-    for (const std::string& path : made_) std::filesystem::remove(path, gone);
-  }
-  Beside(const Beside&) = delete;
-  Beside& operator=(const Beside&) = delete;
-
-  // Errors: kInvalidArgument (there is one with another content), writeFile()'s.
-  Result<Ok> put(const std::string& name, std::string_view content) {
-    const std::string path = folder_ + name;
-    all_.push_back(path);
-    std::error_code absent;
-    if (std::filesystem::exists(std::filesystem::symlink_status(path, absent))) {
-      const auto there = MappedFile::open(path);
-      if (there && there->text() == content) return Ok{};
-      return Error{Errc::kInvalidArgument,
-                   path + ": is there and is another; remove it or name another output"};
-    }
-    const auto done = writeFile(path, content);
-    if (done) made_.push_back(path);
-    return done;
-  }
-
-  std::vector<std::string> keep() {
-    made_.clear();
-    return std::move(all_);
-  }
-
- private:
-  std::string folder_;
-  std::vector<std::string> all_, made_;
+struct BesideFile {
+  std::string path, content;
 };
 
 // What the mesh's file will name: the picture, and the material that has it.
-Result<Ok> writeBeside(const MeshWriter& writer, const Mesh& mesh, const std::string& name,
-                       Beside& beside) {
-  if (!isTextured(mesh) || writer.picture != PicturePlace::kBeside) return Ok{};
-  const auto* const picture = reinterpret_cast<const char*>(mesh.texture.data());
-  const auto done = beside.put(pictureName(mesh, name), {picture, mesh.texture.size()});
-  if (!done || !writer.material) return done;
-  return beside.put(name + ".mtl", writer.material(mesh, name));
+std::vector<BesideFile> filesBeside(const MeshWriter& writer, const Mesh& mesh,
+                                    const std::string& path) {
+  if (!isTextured(mesh) || writer.picture != PicturePlace::kBeside) return {};
+  const std::string name = plainName(path), folder = folderOf(path);
+  std::vector<BesideFile> files = {
+      {folder + pictureName(mesh, name), {mesh.texture.begin(), mesh.texture.end()}}};
+  if (writer.material) files.push_back({folder + name + ".mtl", writer.material(mesh, name)});
+  return files;
 }
+
+// Nobody has asked for them by name: what is there stays. Errors: kInvalidArgument (another one).
+Result<bool> isThere(const BesideFile& file) {
+  std::error_code absent;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(file.path, absent))) return false;
+  const auto there = MappedFile::open(file.path);
+  if (there && there->text() == file.content) return true;
+  return Error{Errc::kInvalidArgument,
+               file.path + ": is there and is another; remove it or name another output"};
+}
+
+// Files that go again unless they are kept.
+class Made {
+ public:
+  Made() = default;
+  ~Made() {
+    std::error_code gone;
+    for (const std::string& path : paths_) std::filesystem::remove(path, gone);
+  }
+  Made(const Made&) = delete;
+  Made& operator=(const Made&) = delete;
+
+  Result<Ok> make(const BesideFile& file) {
+    const auto done = writeFile(file.path, file.content);
+    if (done) paths_.push_back(file.path);
+    return done;
+  }
+  void keep() { paths_.clear(); }
+
+ private:
+  std::vector<std::string> paths_;
+};
 
 }  // namespace
 
@@ -187,6 +185,15 @@ Result<Ok> checkMeshEnding(const std::string& path) {
   return Error{Errc::kUnsupported, fmt::format("{}: meshes are written as {}", path, known)};
 }
 
+Result<Ok> checkBeside(const std::string& path, const Mesh& mesh) {
+  const MeshWriter* writer = writerFor(path);
+  if (!writer) return Ok{};
+  for (const BesideFile& file : filesBeside(*writer, mesh, path)) {
+    if (const auto there = isThere(file); !there) return there.error();
+  }
+  return Ok{};
+}
+
 Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh) {
   if (const auto known = checkMeshEnding(path); !known) return known.error();
   const MeshWriter& writer = *writerFor(path);
@@ -197,12 +204,19 @@ Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh) {
     if (const auto fits = writer.fits(mesh); !fits) return inFile(path, fits.error());
   }
   const std::string name = plainName(path);
-  Beside beside(folderOf(path));
-  if (const auto done = writeBeside(writer, mesh, name, beside); !done) return done.error();
+  WrittenMesh written{writer.ending, {}, {}};
+  Made made;
+  for (const BesideFile& file : filesBeside(writer, mesh, path)) {
+    const auto there = isThere(file);
+    if (!there) return there.error();
+    const auto done = *there ? Result<Ok>(Ok{}) : made.make(file);
+    if (!done) return done.error();
+    written.beside.push_back(file.path);
+  }
   const auto done =
       writeFile(path, [&](const WriteBytes& bytes) { return writer.write(mesh, name, bytes); });
   if (!done) return done.error();
-  WrittenMesh written{writer.ending, {}, beside.keep()};
+  made.keep();
   for (const Feature& f : mesh.features) {
     if (!writer.carries(mesh, f)) written.left_out.push_back(f.name);
   }

@@ -47,6 +47,10 @@ struct WrittenMesh {
 // Whether writeMesh() knows the ending; to be asked before long work. Errors: kUnsupported.
 Result<Ok> checkMeshEnding(const std::string& path);
 
+// Whether writeMesh() would find another file where it puts one beside the mesh's; to be asked
+// before long work, with any mesh of that picture. Errors: kInvalidArgument.
+Result<Ok> checkBeside(const std::string& path, const Mesh& mesh);
+
 // The file appears whole or not at all, and with it those that it names. Errors: kIo, kNotFound,
 // kUnsupported (another ending; a mesh too large for the format, or without triangles),
 // kInvalidArgument (a file beside it is there already, and is another).

@@ -57,17 +57,22 @@ class ObjParser {
   }
 
  private:
-  // "\\" at the end of numbers: the next line goes on with them. A name may end so.
+  // By a "\\" at its end, which of a name that it stands at without a blank is a part.
+  static bool goesOn(std::string_view line) {
+    if (!line.ends_with('\\')) return false;
+    line.remove_suffix(1);
+    if (line.empty() || line.ends_with(' ') || line.ends_with('\t')) return true;
+    const std::string_view keyword = takeWord(line);
+    return keyword == "v" || keyword == "vt" || keyword == "vn" || keyword == "f";
+  }
+
   std::string_view nextLine() {
     const auto next = [&] {
       ++line_;
       return trimmed(takeLine(left_));
     };
     std::string_view line = next();
-    if (!line.ends_with('\\')) return line;
-    std::string_view words = line;
-    const std::string_view keyword = takeWord(words);
-    if (keyword != "v" && keyword != "vt" && keyword != "f") return line;
+    if (!goesOn(line)) return line;
     joined_.clear();
     for (; line.ends_with('\\'); line = left_.empty() ? "" : next()) {
       joined_ += line.substr(0, line.size() - 1);

@@ -118,11 +118,11 @@ std::vector<ObjMaterial> readMaterials(const std::vector<std::string>& names,
                                        const std::string& folder, std::vector<std::string>& notes) {
   Library library(names, folder, notes);
   constexpr std::size_t kMost = 64;
-  std::set<std::string_view> read;
+  std::set<std::string_view> named;
   for (const std::string& name : libraries) {
-    if (read.size() < kMost && read.insert(name).second) library.read(name);
+    if (named.insert(name).second && named.size() <= kMost) library.read(name);
   }
-  if (read.size() == kMost)
+  if (named.size() > kMost)
     notes.push_back(fmt::format("of material libraries the first {} are read", kMost));
   return library.take();
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/text.h"
+#include "render/mesh/io/ply_features.h"
 #include "render/mesh/io/text_lines.h"
 
 namespace merlin::render::ply {
@@ -78,7 +79,7 @@ class HeaderParser {
   void takePicture(std::string_view line) {
     if (takeWord(line) != "comment" || takeWord(line) != "TextureFile") return;
     std::string name(trimmed(line));
-    if (std::ranges::count(header_.pictures, name) == 0)
+    if (!name.empty() && std::ranges::count(header_.pictures, name) == 0)
       header_.pictures.push_back(std::move(name));
   }
 
@@ -159,6 +160,18 @@ std::size_t Element::leastBytes(Form form) const noexcept {
     bytes += form == Form::kAscii ? 2 : sizeOf(p.list ? p.count_type : p.type);
   }
   return bytes;
+}
+
+bool hasTexcoord(const Header& header) {
+  for (const Element& e : header.elements) {
+    for (const Property& p : e.properties) {
+      const auto is = [&](const Known& k) {
+        return p.name == k.property && std::string_view(k.feature) == "texcoord";
+      };
+      if (e.name == "vertex" && !p.list && std::ranges::any_of(kKnown, is)) return true;
+    }
+  }
+  return false;
 }
 
 Result<Header> parseHeader(std::string_view bytes) { return HeaderParser(bytes).parse(); }

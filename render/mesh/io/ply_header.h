@@ -48,6 +48,9 @@ struct Header {
   std::size_t lines = 0;              // where an ascii body starts, for messages
 };
 
+// Whether its vertices have texture coordinates, or one of the two.
+bool hasTexcoord(const Header& header);
+
 // Errors: kMalformed, kUnsupported; each names the header's line.
 Result<Header> parseHeader(std::string_view bytes);
 
