@@ -36,6 +36,14 @@ bool isText(std::string_view bytes) noexcept {
   return true;
 }
 
+std::string_view wholeCharacters(std::string_view bytes) noexcept {
+  for (std::size_t cut = 0; cut < 4 && cut <= bytes.size(); ++cut) {
+    const std::string_view kept = bytes.substr(0, bytes.size() - cut);
+    if (isText(kept)) return kept;
+  }
+  return bytes;
+}
+
 std::string printable(std::string_view bytes) {
   std::string text;
   while (!bytes.empty()) {

@@ -9,6 +9,9 @@ namespace merlin {
 // Whether it is UTF-8 (RFC 3629) without control characters. Empty is text.
 bool isText(std::string_view bytes) noexcept;
 
+// Without what is at its end of a character that was cut off there.
+std::string_view wholeCharacters(std::string_view bytes) noexcept;
+
 // With control characters (all but tabs and ends of lines) and bytes that are no UTF-8 as "\x1b": a
 // terminal would follow them. Plain text stays as it is.
 std::string printable(std::string_view bytes);

@@ -24,10 +24,10 @@ struct ExportOptions {
   bool multiresolution = false;
 };
 
-// A level, and how far from the finest one it is at most; model units.
+// A level, and how far from the finest one it is at most.
 struct Within {
   std::size_t level = 0;
-  double at_most = 0;
+  double at_most = 0, percent = 0;  // model units; of the diagonal
 };
 
 // The coarsest level found that is certainly within `percent` of the diagonal: by halves of the
@@ -38,7 +38,6 @@ Result<Within> coarsestWithin(const render::Dendrogram& model, double percent) {
   ProgressBar bar("comparing", "resolutions", clock);
   std::size_t compared_so_far = 0;
   const render::Mesh finest = render::extract(model, 0);
-  const double distance = percent / 100 * static_cast<double>(boxOf(model).diagonal());
   const render::CompareSettings settings{.samples = 1, .width_percent = percent / 20};
   Within best;
   auto too_few = static_cast<double>(model.trianglesAt(model.levels() - 1)) / kNearEnough;
@@ -55,8 +54,8 @@ Result<Within> coarsestWithin(const render::Dendrogram& model, double percent) {
     if (!compared) return compared.error();
     ++compared_so_far;
     const double at_most = compared->symmetric().max.high;
-    if (at_most <= distance) {
-      best = {level, at_most};
+    if (const double reached = 100 * at_most / compared->diagonal; reached <= percent) {
+      best = {level, at_most, reached};
       enough = triangles;
     } else {
       too_few = triangles;
@@ -69,10 +68,11 @@ Result<Within> coarsestWithin(const render::Dendrogram& model, double percent) {
 Result<std::size_t> levelOf(const ExportOptions& options, const render::Dendrogram& model) {
   if (!options.within) return options.choice.levelOf(model, options.model);
   if (model.levels() == 1) return hasOneResolution(options.model);
+  const render::Mesh coarsest = render::extract(model, model.levels() - 1);
+  if (const auto free = render::checkBeside(options.output, coarsest); !free) return free.error();
   const auto found = coarsestWithin(model, *options.within);
   if (!found) return Error{found.error().code, options.model + ": " + found.error().what};
-  say("at most {:.4g} from the finest, {:.4g} % of the diagonal\n", found->at_most,
-      100 * found->at_most / static_cast<double>(boxOf(model).diagonal()));
+  say("at most {:.4g} from the finest, {:.4g} % of the diagonal\n", found->at_most, found->percent);
   return found->level;
 }
 
@@ -100,9 +100,6 @@ int exportMesh(const ExportOptions& options) {
     return fail(writable.error());
   const auto model = openModel(options.model);
   if (!model) return fail(model.error());
-  const auto coarsest = render::extract(*model, model->levels() - 1);
-  if (const auto free = render::checkBeside(options.output, coarsest); !free)
-    return fail(free.error());
   const auto level = levelOf(options, *model);
   if (!level) return fail(level.error());
   const render::Mesh mesh = render::extract(*model, *level);

@@ -79,8 +79,7 @@ Error hasOneResolution(const std::string& path) {
 }
 
 void printWritten(const render::WrittenMesh& written) {
-  if (!written.beside.empty())
-    say("  with it {}\n", printable(fmt::format("{}", fmt::join(written.beside, " and "))));
+  if (!written.beside.empty()) say("  with it {}\n", fmt::join(written.beside, " and "));
   if (!written.left_out.empty())
     say("  .{} has no place for {}; it is left out\n", written.format,
         fmt::join(written.left_out, ", "));

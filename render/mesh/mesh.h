@@ -62,6 +62,11 @@ TidyReport tidy(Mesh& mesh);
 // Of all vertices; zero for a mesh without any.
 Box boundingBox(std::span<const float> positions) noexcept;
 
+// Of two vectors of three.
+inline float dot(const float* a, const float* b) noexcept {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 // Unit normal of the triangle with these corners; zero where it has no area.
 std::array<float, 3> faceNormal(const float* a, const float* b, const float* c) noexcept;
 

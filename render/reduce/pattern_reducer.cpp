@@ -14,10 +14,6 @@ constexpr float kNever = std::numeric_limits<float>::infinity();
 constexpr float kLengthening = 4;
 constexpr float kShortest = 1e-6F;
 
-float dot(const float* a, const float* b) noexcept {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 }  // namespace
 
 PatternReducer::PatternReducer(const Mesh& mesh, const PatternSpace& space, bool preserve_topology,

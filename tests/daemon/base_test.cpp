@@ -29,6 +29,13 @@ TEST(Text, IsUtf8WithoutControls) {
     EXPECT_FALSE(isText(none)) << printable(none);
 }
 
+TEST(Text, EndsWithAWholeCharacter) {
+  EXPECT_EQ(wholeCharacters("a\xc2\xb5"), "a\xc2\xb5");
+  EXPECT_EQ(wholeCharacters("a\xc2"), "a");
+  EXPECT_EQ(wholeCharacters("\xf0\x9f\xa6"), "");
+  EXPECT_EQ(wholeCharacters("a\xff\xff\xff\xff"), "a\xff\xff\xff\xff") << "is none";
+}
+
 TEST(Text, ShowsWhatATerminalWouldFollow) {
   EXPECT_EQ(printable("a\tb\n\xc2\xb5"), "a\tb\n\xc2\xb5");
   EXPECT_EQ(printable("\x1b[31m\xffz\xc2\x9b"), "\\x1b[31m\\xffz\\xc2\\x9b");

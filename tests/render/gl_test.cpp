@@ -249,6 +249,14 @@ TEST_P(GlOf, WiresAreSeenWhateverTheModelsColoursAndHiddenByFaces) {
   const Look wires{.wireframe = true};
   const Image expected = Studio(GetParam(), alone).picture(wires);
   EXPECT_EQ(Studio(GetParam(), model).picture(wires).pixels, expected.pixels);
+  const Image dim = Studio(GetParam(), alone).picture({.brightness = 0.5F, .wireframe = true});
+  // Alpha is 255 everywhere.
+  const auto brightest = [](const Image& image) {
+    return *std::max_element(image.pixels.begin(), image.pixels.end(),
+                             [](auto a, auto b) { return a % 255 < b % 255; });
+  };
+  EXPECT_NEAR(brightest(expected), 0.75 * 255, 1);
+  EXPECT_NEAR(brightest(dim), 0.375 * 255, 1);
 }
 
 TEST_P(GlOf, ReadKeepsToItsColumns) {

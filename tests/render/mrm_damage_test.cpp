@@ -155,6 +155,22 @@ TEST_F(MrmDamage, AnUnknownSectionIsSkippedFrom1000OnAndRefusedBelow) {
   }
 }
 
+TEST_F(MrmDamage, AFeaturesNameIsText) {
+  const auto named = [&](const std::string& name) {
+    MrmBytes file = golden_;
+    MrmBytes::Entry entry = file.entry(6);
+    entry.name[name.copy(entry.name, sizeof entry.name - 1)] = 0;
+    file.set(6, entry);
+    return file.seal().bytes;
+  };
+  for (const char* name : {"he\x1b[31mat", "he\xff", "\xc2\x9bheat"})
+    EXPECT_EQ(faultOf(named(name)), "a feature's name is no text (UTF-8)");
+  // As once it was written: cut in the middle of a character.
+  const auto cut = read(named(std::string(30, 'x') + '\xc2'));
+  ASSERT_TRUE(cut) << cut.error().what;
+  EXPECT_EQ(cut->arrays().features[0].name, std::string(30, 'x'));
+}
+
 // The golden file's last feature, 168 bytes a corner of the cube, becomes a texture.
 TEST_F(MrmDamage, ATextureIsCheckedAsAllElseIs) {
   MrmBytes file = golden_;

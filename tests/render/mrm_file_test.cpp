@@ -89,6 +89,7 @@ TEST(MrmFile, KeepsWhatHasRoomOfAFeaturesName) {
   ASSERT_TRUE(read);
   EXPECT_EQ(read->arrays().features[0].name, x30 + "y");
   EXPECT_EQ(read->arrays().features[1].name, x30) << "whole characters";
+  EXPECT_EQ(readText(dir / "x.mrm").find(x30 + '\xc2'), std::string::npos) << "for any reader";
   mesh.features.push_back({x30 + "ya", 1, std::vector<float>(8)});
   EXPECT_EQ(checkNames(mesh).error().what,
             "two features are \"" + x30 +

@@ -113,12 +113,8 @@ class MrmReader {
   }
 
   static std::string_view nameIn(const SectionEntry& e) {
-    std::string_view name(e.name, strnlen(e.name, sizeof e.name));
-    // Of a long one its last character may be cut.
-    for (std::size_t cut = 0; cut < 3 && name.size() + cut == sizeof e.name - 1 && !isText(name);
-         ++cut)
-      name.remove_suffix(1);
-    return name;
+    const std::string_view name(e.name, strnlen(e.name, sizeof e.name));
+    return name.size() == sizeof e.name - 1 ? wholeCharacters(name) : name;
   }
 
   void place(const SectionEntry& e, const std::byte* at) {

@@ -38,9 +38,8 @@ struct Section {
 
 // What there is room for, in whole characters.
 std::string_view shortName(std::string_view name) {
-  std::string_view kept = name.substr(0, sizeof SectionEntry::name - 1);
-  while (kept.size() < name.size() && !isText(kept)) kept.remove_suffix(1);
-  return kept;
+  constexpr std::size_t kRoom = sizeof SectionEntry::name - 1;
+  return name.size() > kRoom ? wholeCharacters(name.substr(0, kRoom)) : name;
 }
 
 // What a file is made of, wherever it comes from.
