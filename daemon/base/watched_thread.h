@@ -1,0 +1,90 @@
+// WatchedThread: a thread that works until it is asked to stop, under the eyes of a ThreadWatch.
+//
+// The rule behind it: a thread that serves others ends on nothing but its stop. Where one ends all
+// the same (an exception that nobody caught, a return too early), the watch knows its name and the
+// reason, and merlind says so and exits, so that systemd starts it again. Each thread counts its
+// own progress, so that the watchdog sees one that hangs beside others that do not.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace merlin {
+
+// Counts the rounds of one thread's loop. Thread-safe.
+class Progress {
+ public:
+  void step() noexcept { count_.fetch_add(1, std::memory_order_relaxed); }
+  std::uint64_t count() const noexcept { return count_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<std::uint64_t> count_{0};
+};
+
+// What is known of one running thread.
+struct ThreadState {
+  std::uint64_t id = 0;  // never used twice by one watch
+  std::string name;      // for a person: "status of the wall"
+  std::uint64_t progress = 0;
+  bool ended = false;  // without having been asked to
+  std::string reason;  // why it ended
+};
+
+// The threads of one process. Thread-safe. It outlives its threads.
+class ThreadWatch {
+ public:
+  // Those that run, or ended without having been asked to, in the order of their start.
+  std::vector<ThreadState> threads() const;
+
+ private:
+  friend class WatchedThread;
+  struct Entry {
+    std::uint64_t id = 0;
+    std::string name;
+    Progress progress;
+    bool ended = false;
+    std::string reason;
+  };
+  std::shared_ptr<Entry> add(std::string name);
+  void remove(const std::shared_ptr<Entry>& entry);
+  void ended(const std::shared_ptr<Entry>& entry, std::string reason);
+
+  mutable std::mutex mutex_;
+  std::uint64_t next_id_ = 1;
+  // Shared with the thread itself: each may be the last one to use it.
+  std::vector<std::shared_ptr<Entry>> entries_;
+};
+
+// Thread-bound to its owner.
+class WatchedThread {
+ public:
+  // The body of the thread. It steps `progress` at least once a second, and returns after a stop.
+  using Body = std::function<void(const std::stop_token& stop, Progress& progress)>;
+
+  WatchedThread() = default;
+  // Starts the thread. `watch` outlives this.
+  WatchedThread(ThreadWatch& watch, std::string name, Body body);
+  WatchedThread(WatchedThread&&) noexcept = default;
+  WatchedThread& operator=(WatchedThread&& other) noexcept;
+  WatchedThread(const WatchedThread&) = delete;
+  WatchedThread& operator=(const WatchedThread&) = delete;
+  ~WatchedThread() { stop(); }
+
+  void requestStop() noexcept { thread_.request_stop(); }
+  // Asks it to stop and waits until it has. Nothing where none runs.
+  void stop();
+
+ private:
+  ThreadWatch* watch_ = nullptr;
+  std::shared_ptr<ThreadWatch::Entry> entry_;  // shared: see ThreadWatch
+  std::jthread thread_;
+};
+
+}  // namespace merlin

@@ -1,0 +1,24 @@
+// Peer: who is at the other end of a connection, as the kernel says, never as the peer says.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <string>
+
+namespace merlin::net {
+
+// Over a local socket: user and process. Over TCP: the IPv4 address.
+struct Peer {
+  std::int64_t user = -1;     // uid; -1 over TCP
+  std::int64_t process = -1;  // pid; -1 over TCP
+  std::uint32_t address = 0;  // host byte order; 0 for a local socket
+  auto operator<=>(const Peer&) const = default;
+};
+
+// Of an accepted or connected socket. Unknown values stay as above.
+Peer peerOf(int fd);
+
+// "user 1000, process 4321" or "192.168.1.7".
+std::string peerName(const Peer& peer);
+
+}  // namespace merlin::net
