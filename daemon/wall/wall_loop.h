@@ -1,7 +1,7 @@
 // WallLoop: the wall's frames. design: one frame is input, scene, governor, cut, draw, present.
 //
-// Frame k begins at t0 + (k-1) x period and is late when its last pixel reaches the sinks after
-// t0 + k x period. While anything moves, each period brings a frame of as many triangles as the
+// A frame is late when its last pixel reaches the sinks after its deadline, as the FrameClock says.
+// While anything moves, each period brings a frame of as many triangles as the
 // governor allows; while nothing does, the periods are spent on drawing finer pictures and then
 // full detail in slices, so that the frame that begins after motion resumes begins on time. Where
 // not even the fewest triangles come in time, tiles are drawn at half their size, and then the rate
@@ -27,6 +27,7 @@
 #include "render/governor/governor.h"
 #include "render/governor/ladder.h"
 #include "render/lod/dendrogram.h"
+#include "render/out/frame_clock.h"
 #include "render/out/frame_sink.h"
 #include "render/scene/scene.h"
 
@@ -46,6 +47,7 @@ struct WallParts {
   std::vector<render::FrameSink*> sinks;
   shm::SeqSlot<shm::WallStats>& stats;
   Clock& clock;
+  render::FrameClock& frame_clock;                 // when a frame has to be there
   shm::Channel<shm::FrameTrace>* trace = nullptr;  // where steps are told; may be none
   PointerMarker* marker = nullptr;                 // who marks where the hand points; the same
   shm::SeqSlot<shm::WallHand>* hand = nullptr;     // where that is told
@@ -78,8 +80,8 @@ class WallLoop {
   std::uint64_t periods() const noexcept { return periods_.load(std::memory_order_relaxed); }
 
  private:
-  Timestamp tick(std::int64_t k) const { return start_ + k * period_; }
-  // Each returns the number of the next tick.
+  Timestamp deadline(std::int64_t k) const { return p_.frame_clock.deadline(k); }
+  // Each returns the number of the next frame.
   std::int64_t movingFrame(std::int64_t k, Timestamp began);
   std::int64_t stillPeriod(std::int64_t k);
   // Reads the devices, moves the scene.
@@ -111,7 +113,6 @@ class WallLoop {
   WallParts p_;
   double asked_hz_, configured_hz_;
   Duration period_;
-  Timestamp start_{};
   FrameStats stats_;
   FrameTracer tracer_;
   render::SceneView view_;

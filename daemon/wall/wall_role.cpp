@@ -110,7 +110,8 @@ void WallRole::run(const std::stop_token& stop) {
   std::vector<render::FrameSink*> sinks;
   for (const auto& sink : sinks_) sinks.push_back(sink.get());
   PointerMarker marker(plan_);
-  WallLoop loop({contents, scene_, governor_, feed, sinks, segment_->stats, clock_,
+  render::TimerFrameClock frame_clock(clock_);
+  WallLoop loop({contents, scene_, governor_, feed, sinks, segment_->stats, clock_, frame_clock,
                  &segment_->trace, &marker, &segment_->hand, settings_.wall.render.fade_frames});
   loop.calibrate();
   loop_.store(&loop);

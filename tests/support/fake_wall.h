@@ -151,12 +151,13 @@ class FakeWall : public testing::Test {
     loop.run(stop_.get_token(), [&] { ++first_frames_; });
   }
   WallParts parts() {
-    return {contents_, scene_,       governor_, feed_,       {&frames_},  *stats_,
-            clock_,    trace_.get(), marker_,   hand_.get(), fade_frames_};
+    return {contents_, scene_,       governor_,    feed_,   {&frames_},  *stats_,
+            clock_,    frame_clock_, trace_.get(), marker_, hand_.get(), fade_frames_};
   }
   shm::WallStats stats() const { return *stats_->read(); }
 
   test::FakeClock clock_;
+  render::TimerFrameClock frame_clock_{clock_};
   FakePainter painter_;
   std::vector<Content> contents_ = {{&model(), &painter_}};
   render::Scene scene_ = *render::Scene::make({});
