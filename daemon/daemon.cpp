@@ -9,6 +9,8 @@
 #include <systemd/sd-daemon.h>
 
 #include "daemon/base/log.h"
+#include "daemon/serve/spnav_server.h"
+#include "daemon/serve/vrpn_server.h"
 #include "daemon/shm/fields.h"
 #include "daemon/status/documents.h"
 #include "daemon/status/health_events.h"
@@ -20,10 +22,11 @@ namespace {
 
 constexpr Duration kBeat = std::chrono::milliseconds(100);
 constexpr Duration kSummary = std::chrono::seconds(5);
+constexpr Duration kTellServers = std::chrono::seconds(5);
 constexpr Duration kOnceASecond = std::chrono::seconds(1);
 constexpr Duration kSixtyASecond = std::chrono::microseconds(16'667);
 
-sigset_t stopSignals() {
+sigset_t takenSignals() {
   sigset_t set;
   ::sigemptyset(&set);
   for (const int s : {SIGTERM, SIGINT, SIGHUP, SIGCHLD}) ::sigaddset(&set, s);
@@ -86,13 +89,20 @@ Daemon::Daemon(Settings settings, const DaemonOptions& options, Clock& clock)
       clock_(clock),
       watchdog_(watchdogInterval()) {}
 
-// Nobody is asked for what is no more: the panel's button asks the wall.
+// Callers before callees: sockets and orders call devices_ and wall_; the panel's button, in
+// devices_, calls wall_.
 Daemon::~Daemon() {
-  servers_.clear();
+  decltype(kept_) kept;
+  decltype(roles_) roles;
+  {
+    const std::lock_guard lock(servers_mutex_);
+    kept.swap(kept_);
+    roles.swap(roles_);
+  }
+  kept.clear();  // the samples' relay stands on a role's server
+  roles.clear();
   orders_.reset();
   snapshots_.reset();
-  spnav_.reset();
-  vrpn_.reset();
   link_.reset();
   devices_.reset();
   wall_.reset();
@@ -125,7 +135,8 @@ Result<Ok> Daemon::makeRoles() {
     emulators_ = std::make_unique<EmulatorChildren>(*std::move(started));
   }
   if (options_.devices) {
-    auto role = devices::DevicesRole::make(settings_, generation, endpoints("devices"), clock_);
+    auto role =
+        devices::DevicesRole::make(settings_, generation, endpoints("devices"), threads_, clock_);
     if (!role) return role.error();
     devices_ = *std::move(role);
   }
@@ -133,7 +144,7 @@ Result<Ok> Daemon::makeRoles() {
     if (auto mirrored = mirrorDevices(generation); !mirrored) return mirrored;
   }
   if (options_.wall) {
-    auto role = wall::WallRole::make(settings_, generation, endpoints("wall"), clock_);
+    auto role = wall::WallRole::make(settings_, generation, endpoints("wall"), threads_, clock_);
     if (!role) return role.error();
     wall_ = *std::move(role);
   }
@@ -157,25 +168,77 @@ Result<Ok> Daemon::mirrorDevices(std::uint64_t generation) {
   if (!segment) return segment.error();
   mirror_.emplace(*std::move(segment));
   auto link = status::SampleLink::start({input.endpoint, input.server_key, *std::move(keys)},
-                                        **mirror_, clock_);
+                                        **mirror_, threads_, clock_);
   if (!link) return link.error();
   link_ = *std::move(link);
   return Ok{};
 }
 
-Result<Ok> Daemon::serveOthers(const shm::DevicesSegment& segment) {
+void Daemon::keep(const std::string& name, net::ServerKeeper::Start start) {
+  auto keeper = std::make_unique<net::ServerKeeper>(name, std::move(start));
+  keeper->tend(clock_.now());
+  const std::lock_guard lock(servers_mutex_);
+  kept_.push_back(std::move(keeper));
+}
+
+void Daemon::serveOthers(const shm::DevicesSegment& segment) {
   const ServeSettings& s = settings_.serve;
   if (!s.spnav_socket.empty()) {
-    auto server = serve::SpnavServer::start(s.spnav_socket, {}, segment);
-    if (!server) return server.error();
-    spnav_ = *std::move(server);
+    keep("space mouse", [this, &segment]() -> Result<std::unique_ptr<net::Server>> {
+      auto server =
+          serve::SpnavServer::start(settings_.serve.spnav_socket, segment, threads_, clock_);
+      if (!server) return server.error();
+      return std::unique_ptr<net::Server>(*std::move(server));
+    });
   }
   if (s.vrpn_port > 0) {
-    auto server = serve::VrpnServer::start(s.vrpn_port, segment, clock_);
-    if (!server) return server.error();
-    vrpn_ = *std::move(server);
+    keep("VRPN", [this, &segment]() -> Result<std::unique_ptr<net::Server>> {
+      auto server = serve::VrpnServer::start(settings_.serve.vrpn_port, segment, threads_, clock_);
+      if (!server) return server.error();
+      return std::unique_ptr<net::Server>(*std::move(server));
+    });
   }
-  return Ok{};
+}
+
+// Of a role: its own sockets, and the servers for others, which belong to the devices, or to the
+// wall where that shows another machine's.
+std::vector<net::ServerHealth> Daemon::serverHealth(const std::string& role) const {
+  std::vector<net::ServerHealth> all;
+  const std::lock_guard lock(servers_mutex_);
+  if (const auto found = roles_.find(role); found != roles_.end()) {
+    for (const net::ServerReport& report : found->second.server->reports())
+      all.push_back({report.name, "", report});
+  }
+  if ((role == "devices") != static_cast<bool>(devices_)) return all;
+  for (const auto& keeper : kept_) all.push_back(keeper->health());
+  return all;
+}
+
+std::vector<std::string> Daemon::serverEvents(const std::string& role) {
+  std::vector<std::string> events;
+  const Timestamp now = clock_.now();
+  const std::lock_guard lock(servers_mutex_);
+  if (const auto found = roles_.find(role); found != roles_.end()) {
+    for (const net::ServerReport& report : found->second.server->reports()) {
+      std::uint64_t& told = found->second.told_sent_away[report.name];
+      if (now - told_servers_[role] < kTellServers) continue;
+      if (auto sentence = net::sentAwaySentence(report, told); !sentence.empty())
+        events.push_back(std::move(sentence));
+    }
+    if (now - told_servers_[role] >= kTellServers) told_servers_[role] = now;
+  }
+  if ((role == "devices") == static_cast<bool>(devices_)) {
+    for (const auto& keeper : kept_) {
+      for (auto& sentence : keeper->takeEvents(now)) events.push_back(std::move(sentence));
+    }
+  }
+  for (const ThreadState& thread : threads_.threads()) {
+    if (!thread.ended || told_threads_[role] == thread.id) continue;
+    told_threads_[role] = thread.id;
+    events.push_back(
+        fmt::format("thread {}: failed ({}); merlind ends", thread.name, thread.reason));
+  }
+  return events;
 }
 
 Result<status::CurveServer> Daemon::network() const {
@@ -237,24 +300,47 @@ Result<Ok> Daemon::run() {
       if (!done) logWarning("the panel's button: {}", done.error().what);
     });
     devices_->start();
-    if (auto served = serveOthers(devices_->segment()); !served) return served;
     if (auto served = serveDevices(); !served) return served;
+    serveOthers(devices_->segment());
   }
   if (wall_) {
     wall_->beat(now);
     if (mirror_) {
       mirror_->beat(now);
-      if (auto served = serveOthers(**mirror_); !served) return served;
     }
     if (auto served = serveWall(); !served) return served;
+    if (mirror_) serveOthers(**mirror_);
     if (auto shown = awaitFirstFrame(wall_->start()); !shown) return shown;
   }
   ::sd_notify(0, "READY=1");
   logInfo("ready");
-  while (!stopAsked(kBeat)) housekeeping();
+  const auto ran = runUntilStopped();
   ::sd_notify(0, "STOPPING=1");
   logInfo("stopping");
+  return ran;
+}
+
+// A thread that ends by itself ends the daemon, which systemd starts again; before that the events
+// that say so have a second to go out.
+Result<Ok> Daemon::runUntilStopped() {
+  Timestamp ends_at = Timestamp::max();
+  while (!stopAsked(kBeat)) {
+    housekeeping();
+    const Timestamp now = clock_.now();
+    const auto ended = endedThread();
+    if (!ended) continue;
+    if (ends_at == Timestamp::max()) ends_at = now + kOnceASecond;
+    if (now >= ends_at) return *ended;
+  }
   return Ok{};
+}
+
+std::optional<Error> Daemon::endedThread() {
+  for (const ThreadState& thread : threads_.threads()) {
+    if (thread.ended)
+      return Error{Errc::kIo, fmt::format("thread {} ended: {}", thread.name, thread.reason)};
+  }
+  return std::nullopt;
 }
 
 Result<Ok> Daemon::awaitFirstFrame(std::future<Result<std::string>> ready) {
@@ -269,12 +355,13 @@ Result<Ok> Daemon::awaitFirstFrame(std::future<Result<std::string>> ready) {
   return Ok{};
 }
 
-// A signal ends it at once; SIGCHLD is looked after in housekeeping().
+// SIGTERM and SIGINT end it at once; SIGCHLD is looked after in housekeeping().
 bool Daemon::stopAsked(Duration wait) {
-  const sigset_t set = stopSignals();
+  const sigset_t set = takenSignals();
   const timespec limit{0, wait.count()};
   const int signal = ::sigtimedwait(&set, nullptr, &limit);
-  return signal == SIGTERM || signal == SIGINT || signal == SIGHUP;
+  if (signal == SIGHUP) logInfo("SIGHUP is ignored: a changed configuration takes a restart");
+  return signal == SIGTERM || signal == SIGINT;
 }
 
 void Daemon::housekeeping() {
@@ -283,6 +370,7 @@ void Daemon::housekeeping() {
   if (wall_) wall_->beat(now);
   if (mirror_) mirror_->beat(now);
   orders_->poll(now);
+  for (const auto& keeper : kept_) keeper->tend(now);
   if (emulators_) {
     for (const std::string& device : emulators_->takeEnded()) {
       logWarning("the emulated {} has ended; start it again with: merlin emulate {} --link ...",
@@ -297,10 +385,7 @@ void Daemon::housekeeping() {
 }
 
 void Daemon::pingWatchdog(Timestamp now) {
-  std::vector<std::uint64_t> progress;
-  if (wall_) progress.push_back(wall_->periods());
-  for (const auto& server : servers_) progress.push_back(server->rounds());
-  if (watchdog_.ping(now, progress)) ::sd_notify(0, "WATCHDOG=1");
+  if (watchdog_.ping(now, threads_.threads())) ::sd_notify(0, "WATCHDOG=1");
 }
 
 std::string Daemon::summary(Timestamp now) const {
@@ -322,16 +407,27 @@ Result<Ok> Daemon::serveStatus(const std::string& role, status::StatusServerSett
   const shm::Endpoints at = endpoints(role);
   settings.status_endpoint = at.status;
   settings.command_endpoint = at.command;
-  auto server = status::StatusServer::start(std::move(settings), clock_);
-  if (!server) return server.error();
-  servers_.push_back(*std::move(server));
+  settings.name = role;
+  const bool samples = !settings.network.endpoint.empty();
+  auto started = status::StatusServer::start(std::move(settings), threads_, clock_);
+  if (!started) return started.error();
+  const status::StatusServer* server = started->get();
+  {
+    const std::lock_guard lock(servers_mutex_);
+    roles_[role].server = *std::move(started);
+  }
+  if (samples) {
+    keep("samples for other machines", [this, server] { return server->startSamples(threads_); });
+  }
   return Ok{};
 }
 
 Result<Ok> Daemon::serveDevices() {
   const shm::DevicesSegment& segment = devices_->segment();
   status::StatusServerSettings s;
-  const auto statusNow = [this, &segment] { return status::devicesStatus(segment, clock_.now()); };
+  const auto statusNow = [this, &segment] {
+    return status::devicesStatus(segment, clock_.now(), serverHealth("devices"));
+  };
   s.publications = {
       {"status", kOnceASecond, statusNow},
       {"metrics", kOnceASecond, [&segment] { return status::devicesMetrics(segment); }},
@@ -361,6 +457,10 @@ Result<Ok> Daemon::serveDevices() {
       logInfo("{}", sentence);
       documents.push_back(status::event("flight", sentence, now));
     }
+    for (const std::string& sentence : serverEvents("devices")) {
+      logInfo("{}", sentence);
+      documents.push_back(status::event("server", sentence, now));
+    }
     return documents;
   };
   return serveStatus("devices", std::move(s));
@@ -381,6 +481,7 @@ std::function<std::vector<std::string>()> Daemon::wallEvents() {
     };
     tell("wall", events->take());
     if (health) tell("device", health->take(clock_.now()));
+    tell("server", serverEvents("wall"));
     return documents;
   };
 }
@@ -388,7 +489,9 @@ std::function<std::vector<std::string>()> Daemon::wallEvents() {
 Result<Ok> Daemon::serveWall() {
   const shm::WallSegment& segment = wall_->segment();
   status::StatusServerSettings s;
-  const auto statusNow = [this, &segment] { return status::wallStatus(segment, clock_.now()); };
+  const auto statusNow = [this, &segment] {
+    return status::wallStatus(segment, clock_.now(), serverHealth("wall"));
+  };
   s.publications = {{"status", kOnceASecond, statusNow},
                     {"metrics", kOnceASecond, [&segment] { return status::wallMetrics(segment); }}};
   s.commands = {

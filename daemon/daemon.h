@@ -3,17 +3,20 @@
 
 #include <csignal>
 #include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "config/settings.h"
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
+#include "daemon/base/watched_thread.h"
 #include "daemon/devices/devices_role.h"
 #include "daemon/emulator_children.h"
-#include "daemon/serve/spnav_server.h"
-#include "daemon/serve/vrpn_server.h"
+#include "daemon/net/server_keeper.h"
 #include "daemon/status/sample_link.h"
 #include "daemon/status/server.h"
 #include "daemon/status/watchdog.h"
@@ -39,7 +42,7 @@ class Daemon {
   Daemon& operator=(const Daemon&) = delete;
 
   // Runs until a signal; tells systemd when the first frame is out, and that there is progress.
-  // Errors: why there will be no first frame.
+  // Errors: why there will be no first frame; that a thread ended which should not have.
   Result<Ok> run();
 
  private:
@@ -50,13 +53,19 @@ class Daemon {
   Result<Ok> serveWall();
   std::function<std::vector<std::string>()> wallEvents();
   Result<Ok> mirrorDevices(std::uint64_t generation);
-  Result<Ok> serveOthers(const shm::DevicesSegment& segment);
+  // Servers for other programs, from here on kept running.
+  void serveOthers(const shm::DevicesSegment& segment);
+  void keep(const std::string& name, net::ServerKeeper::Start start);
+  std::vector<net::ServerHealth> serverHealth(const std::string& role) const;
+  std::vector<std::string> serverEvents(const std::string& role);
+  std::optional<Error> endedThread();
   Result<status::CurveServer> network() const;
   Result<std::string> runCommand(const std::string& name);
   std::vector<status::Command> panelCommands();
   void takeOrders();
   shm::Endpoints endpoints(const std::string& role) const;
   Result<Ok> awaitFirstFrame(std::future<Result<std::string>> ready);
+  Result<Ok> runUntilStopped();
   bool stopAsked(Duration wait);  // waits for a signal
   void housekeeping();
   void pingWatchdog(Timestamp now);
@@ -65,6 +74,7 @@ class Daemon {
   Settings settings_;
   DaemonOptions options_;
   Clock& clock_;
+  ThreadWatch threads_;  // before whoever has threads
   std::string run_directory_;
   std::unique_ptr<EmulatorChildren> emulators_;
   std::unique_ptr<devices::DevicesRole> devices_;
@@ -74,11 +84,19 @@ class Daemon {
   std::unique_ptr<wall::WallRole> wall_;
   std::unique_ptr<wall::SnapshotWriter> snapshots_;
   std::unique_ptr<wall::Orders> orders_;
-  std::unique_ptr<serve::SpnavServer> spnav_;
-  std::unique_ptr<serve::VrpnServer> vrpn_;
-  std::vector<std::unique_ptr<status::StatusServer>> servers_;  // last made, first gone
+  // One role's status server; its relays' clients that events told of.
+  struct Role {
+    std::unique_ptr<status::StatusServer> server;
+    std::map<std::string, std::uint64_t> told_sent_away;
+  };
+  mutable std::mutex servers_mutex_;  // of the next two: the status threads look at them
+  std::map<std::string, Role> roles_;
+  std::vector<std::unique_ptr<net::ServerKeeper>> kept_;
   status::Watchdog watchdog_;
   Timestamp summarised_{};
+  // Of the status threads, by role: when servers were told of, and which thread that ended.
+  std::map<std::string, Timestamp> told_servers_;
+  std::map<std::string, std::uint64_t> told_threads_;
 };
 
 }  // namespace merlin

@@ -1,11 +1,13 @@
 // merlind: the daemon. The only place where an adapter meets a port: read the configuration, make
 // everything, run, stop.
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <string>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include "config/loader.h"
 #include "config/writer.h"
@@ -58,8 +60,18 @@ void blockSignals() {
   ::sigemptyset(&set);
   for (const int s : {SIGTERM, SIGINT, SIGHUP, SIGCHLD}) ::sigaddset(&set, s);
   ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  ::signal(SIGPIPE, SIG_IGN);
-  ::signal(SIGXFSZ, SIG_IGN);  // a file's limit is an error of the write
+  // None of these means anything to merlind; SIGXFSZ: a file's limit is an error of the write.
+  for (const int s : {SIGPIPE, SIGXFSZ, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF})
+    ::signal(s, SIG_IGN);
+}
+
+// Servers bound their connections; what is needed for all of them together must not be missing.
+void raiseDescriptorLimit() {
+  constexpr rlim_t kEnough = 8192;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kEnough) return;
+  limit.rlim_cur = std::min(limit.rlim_max, kEnough);
+  ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
 int runDaemon(const Options& options) {
@@ -70,6 +82,7 @@ int runDaemon(const Options& options) {
     return kExitDone;
   }
   blockSignals();
+  raiseDescriptorLimit();
   render::prepareSoftwareGl(loaded.settings.wall.render.raster_threads);
   SystemClock clock;
   DaemonOptions daemon_options;

@@ -11,7 +11,8 @@ std::vector<ThreadState> ThreadWatch::threads() const {
   std::vector<ThreadState> states;
   states.reserve(entries_.size());
   for (const auto& e : entries_)
-    states.push_back({e->id, e->name, e->progress.count(), e->ended, e->reason});
+    states.push_back(
+        {e->id, e->name, e->progress.count(), e->progress.paused(), e->ended, e->reason});
   return states;
 }
 

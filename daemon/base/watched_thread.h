@@ -24,8 +24,26 @@ class Progress {
   void step() noexcept { count_.fetch_add(1, std::memory_order_relaxed); }
   std::uint64_t count() const noexcept { return count_.load(std::memory_order_relaxed); }
 
+  // Around a call that may take long and cannot be cut short (a name that is looked up): nobody
+  // takes the thread for hung meanwhile.
+  class Pause {
+   public:
+    explicit Pause(Progress& progress) noexcept : progress_(progress) { progress_.paused_ = true; }
+    ~Pause() {
+      progress_.step();
+      progress_.paused_ = false;
+    }
+    Pause(const Pause&) = delete;
+    Pause& operator=(const Pause&) = delete;
+
+   private:
+    Progress& progress_;
+  };
+  bool paused() const noexcept { return paused_; }
+
  private:
   std::atomic<std::uint64_t> count_{0};
+  std::atomic<bool> paused_{false};
 };
 
 // What is known of one running thread.
@@ -33,8 +51,9 @@ struct ThreadState {
   std::uint64_t id = 0;  // never used twice by one watch
   std::string name;      // for a person: "status of the wall"
   std::uint64_t progress = 0;
-  bool ended = false;  // without having been asked to
-  std::string reason;  // why it ended
+  bool paused = false;  // in a call that may take long
+  bool ended = false;   // without having been asked to
+  std::string reason;   // why it ended
 };
 
 // The threads of one process. Thread-safe. It outlives its threads.

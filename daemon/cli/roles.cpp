@@ -10,6 +10,8 @@ std::optional<FoundRole> find(const std::string& instance, const char* role) {
   const auto segment = shm::SegmentReader<Segment>::open(shm::segmentName(instance, role));
   if (!segment || !segment->alive(SystemClock().now())) return std::nullopt;
   const shm::Header& h = (*segment)->header;
+  // Another machine's devices, mirrored: nobody answers for them here but the wall that shows them.
+  if (h.command_endpoint[0] == '\0') return std::nullopt;
   return FoundRole{role, {h.status_endpoint, h.command_endpoint}};
 }
 

@@ -90,7 +90,7 @@ void mergeStatus(Json& both, const std::string& document) {
     json.erase(key);
   }
   json.erase("role");
-  both.update(json);
+  both.update(json, true);  // "servers" are of both
 }
 
 Result<Json> askStatus(const std::string& instance) {
@@ -104,6 +104,25 @@ Result<Json> askStatus(const std::string& instance) {
   }
   return both;
 }
+
+namespace {
+
+// Servers that fail, or that sent somebody away.
+std::string serverLines(const Json& s) {
+  std::string text;
+  if (!s.contains("servers")) return text;
+  for (const auto& [name, server] : s["servers"].items()) {
+    const std::string reason = server.value("reason", ""), last = server.value("last", "");
+    if (!reason.empty())
+      text += fmt::format("{:8} failed   {}\n", name, reason);
+    else if (!last.empty())
+      text += fmt::format("{:8} ok       {} connected; the last sent away: {}\n", name,
+                          server.value("connections", 0), last);
+  }
+  return text;
+}
+
+}  // namespace
 
 std::string statusTable(const Json& s) {
   std::string text;
@@ -123,13 +142,13 @@ std::string statusTable(const Json& s) {
         100 * s.value("head_room", 0.0));
     text += paceLines(s);
   }
-  if (!s.contains("devices")) return text;
+  if (!s.contains("devices")) return text + serverLines(s);
   const std::string posture = s.value("posture", "");
   text += fmt::format("posture  {}\n", posture.empty() ? "-" : posture);
   for (const auto& [name, device] : s["devices"].items()) {
     text += fmt::format("{:8} {:8} {}\n", name, device.value("health", ""), deviceDetail(device));
   }
-  return text;
+  return text + serverLines(s);
 }
 
 std::string statusLine(const Json& s) {

@@ -51,27 +51,57 @@ TrackerFrames framesOf(const FastrakSettings& settings) {
   return frames;
 }
 
+// A stream whose reader's progress the watch sees, also during a dialogue that takes long.
+class WatchedStream final : public ByteStream {
+ public:
+  WatchedStream(std::unique_ptr<ByteStream> inner, Progress& progress)
+      : inner_(std::move(inner)), progress_(progress) {}
+
+  Result<std::size_t> read(std::span<std::byte> buffer, Duration timeout) override {
+    progress_.step();
+    return inner_->read(buffer, timeout);
+  }
+  Result<std::size_t> write(std::span<const std::byte> bytes, Duration timeout) override {
+    progress_.step();
+    return inner_->write(bytes, timeout);
+  }
+  void interrupt() noexcept override { inner_->interrupt(); }
+
+ private:
+  std::unique_ptr<ByteStream> inner_;
+  Progress& progress_;
+};
+
 // Opens a line, listened to by the flight recorder; says once what its adapter costs.
 class Opener {
  public:
-  Opener(io::PortAddress address, int baud, ByteTap& tap, const Clock& clock)
-      : address_(std::move(address)), baud_(baud), tap_(tap), clock_(clock) {}
+  // `progress`: of the thread that opens, once it runs.
+  Opener(io::PortAddress address, int baud, ByteTap& tap, Progress* const& progress,
+         const Clock& clock)
+      : address_(std::move(address)), baud_(baud), tap_(tap), progress_(progress), clock_(clock) {}
 
   Result<std::unique_ptr<ByteStream>> operator()() {
-    auto stream = io::openPort(address_, baud_);
+    auto stream = open();
     if (!stream) return stream;
     if (std::string warning = io::adapterWarning(address_.path); warning != warned_) {
       warned_ = std::move(warning);
       if (!warned_.empty()) logWarning("{}", warned_);
     }
+    auto watched = std::make_unique<WatchedStream>(*std::move(stream), *progress_);
     return std::unique_ptr<ByteStream>(
-        std::make_unique<io::RecordingStream>(*std::move(stream), tap_, clock_));
+        std::make_unique<io::RecordingStream>(std::move(watched), tap_, clock_));
   }
 
  private:
+  Result<std::unique_ptr<ByteStream>> open() {
+    const Progress::Pause pause(*progress_);  // a host's name may take long to look up
+    return io::openPort(address_, baud_);
+  }
+
   io::PortAddress address_;
   int baud_;
   ByteTap& tap_;
+  Progress* const& progress_;
   const Clock& clock_;
   std::string warned_;
 };
@@ -79,8 +109,9 @@ class Opener {
 }  // namespace
 
 DevicesRole::DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, std::string flight_folder,
-                         Clock& clock)
+                         ThreadWatch& watch, Clock& clock)
     : segment_(std::move(segment)),
+      watch_(watch),
       clock_(clock),
       sink_(*segment_),
       flight_(*segment_, std::move(flight_folder)) {}
@@ -88,13 +119,13 @@ DevicesRole::DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, std::s
 Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
                                                        std::uint64_t generation,
                                                        const shm::Endpoints& endpoints,
-                                                       Clock& clock) {
+                                                       ThreadWatch& watch, Clock& clock) {
   auto segment = shm::SegmentWriter<shm::DevicesSegment>::make(
       shm::segmentName(settings.instance, "devices"), shm::devicesFields(), generation, clock.now(),
       endpoints);
   if (!segment) return segment.error();
   std::unique_ptr<DevicesRole> role(
-      new DevicesRole(*std::move(segment), settings.run_directory + "/flight", clock));
+      new DevicesRole(*std::move(segment), settings.run_directory + "/flight", watch, clock));
   if (!settings.devices.postures.empty()) {
     const auto file = nn::loadNetwork(settings.devices.postures);
     if (!file) return file.error();
@@ -137,9 +168,12 @@ Result<Ok> DevicesRole::add(const LineSettings& line, SampleKind kind, shm::Devi
   loop.port = line.port;
   loop.baud = line.baud;
   ByteTap& tap = flight_.add(index, line.driver, line.baud);
-  loops_.push_back(std::make_unique<DeviceLoop>(loop, Opener(*address, line.baud, tap, clock_),
-                                                driver->make(own, clock_, *sink), *health_.back(),
-                                                clock_));
+  lines_.push_back(std::make_unique<Line>());
+  Line& entry = *lines_.back();
+  entry.name = line.driver;
+  entry.loop =
+      std::make_unique<DeviceLoop>(loop, Opener(*address, line.baud, tap, entry.progress, clock_),
+                                   driver->make(own, clock_, *sink), *health_.back(), clock_);
   return Ok{};
 }
 
@@ -169,17 +203,23 @@ void DevicesRole::start() {
     else
       logWarning("/devices/cpu_latency_us: {}", limit.error().what);
   }
-  if (panel_) threads_.emplace_back([this](const std::stop_token& stop) { panel_->run(stop); });
-  for (const auto& loop : loops_) {
-    threads_.emplace_back([&loop = *loop](const std::stop_token& stop) {
-      askForRealTime();
-      loop.run(stop);
+  if (panel_) {
+    threads_.emplace_back(watch_, "panel", [this](const std::stop_token& stop, Progress& progress) {
+      panel_->run(stop, [&progress] { progress.step(); });
     });
+  }
+  for (const auto& line : lines_) {
+    threads_.emplace_back(watch_, line->name,
+                          [&line = *line](const std::stop_token& stop, Progress& progress) {
+                            line.progress = &progress;
+                            askForRealTime();
+                            line.loop->run(stop, [&progress] { progress.step(); });
+                          });
   }
 }
 
 DevicesRole::~DevicesRole() {
-  for (std::jthread& thread : threads_) thread.request_stop();
+  for (WatchedThread& thread : threads_) thread.requestStop();
   threads_.clear();
 }
 

@@ -5,12 +5,12 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "config/settings.h"
 #include "daemon/base/clock.h"
 #include "daemon/base/unique_fd.h"
+#include "daemon/base/watched_thread.h"
 #include "daemon/devices/flight_recorder.h"
 #include "daemon/devices/hand_sink.h"
 #include "daemon/devices/posture_sink.h"
@@ -29,7 +29,8 @@ class DevicesRole {
   // REQUIRES: settings.run_directory is the one that holds.
   static Result<std::unique_ptr<DevicesRole>> make(const Settings& settings,
                                                    std::uint64_t generation,
-                                                   const shm::Endpoints& endpoints, Clock& clock);
+                                                   const shm::Endpoints& endpoints,
+                                                   ThreadWatch& watch, Clock& clock);
   ~DevicesRole();  // stops and joins the device threads
   DevicesRole(const DevicesRole&) = delete;
   DevicesRole& operator=(const DevicesRole&) = delete;
@@ -48,12 +49,13 @@ class DevicesRole {
 
  private:
   DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, std::string flight_folder,
-              Clock& clock);
+              ThreadWatch& watch, Clock& clock);
   void addPanel(const GpioSettings& settings);
   Result<Ok> add(const LineSettings& line, SampleKind kind, shm::DeviceIndex index,
                  const Settings& settings);
 
   shm::SegmentWriter<shm::DevicesSegment> segment_;
+  ThreadWatch& watch_;
   Clock& clock_;
   shm::ShmSink sink_;
   FlightRecorder flight_;
@@ -62,10 +64,16 @@ class DevicesRole {
   std::function<void(const std::string&)> on_press_ = [](const std::string&) {};
   std::unique_ptr<gpio::PanelLoop> panel_;
   std::vector<std::unique_ptr<shm::ShmHealthSink>> health_;
-  std::vector<std::unique_ptr<DeviceLoop>> loops_;
+  // A device's loop; `progress` is of its thread, once that runs.
+  struct Line {
+    std::string name;
+    Progress* progress = nullptr;
+    std::unique_ptr<DeviceLoop> loop;
+  };
+  std::vector<std::unique_ptr<Line>> lines_;
   int cpu_latency_us_ = -1;
   UniqueFd cpu_latency_;  // holds while it is open
-  std::vector<std::jthread> threads_;
+  std::vector<WatchedThread> threads_;
 };
 
 }  // namespace merlin::devices

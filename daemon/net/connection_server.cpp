@@ -7,6 +7,8 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 
@@ -26,8 +28,7 @@ struct ConnectionServer::Client {
   std::unique_ptr<Session> session;
   std::string input, output;
   TokenBucket messages, bytes;
-  bool more = false;     // whole messages may be left, of which it was not the turn
-  bool blocked = false;  // the far side of a relay takes no more for now
+  bool more = false;  // whole messages may be left, of which it was not the turn
   bool ended = false;
 
   Client(UniqueFd f, const Peer& peer, std::unique_ptr<Session> s, const ServerLimits& limits,
@@ -73,6 +74,7 @@ bool ConnectionServer::add(UniqueFd fd, const Peer& peer, const MakeSession& mak
   if (!session) return false;
   clients_.push_back(
       std::make_unique<Client>(std::move(fd), peer, std::move(session), limits_, now));
+  clients_.back()->session->open(clients_.back()->output);
   const std::lock_guard lock(mutex_);
   ++report_.accepted;
   report_.connections = clients_.size();
@@ -90,6 +92,8 @@ void ConnectionServer::accept(Listener& listener) {
       return;
     }
     const Peer peer = peerOf(fd.get());
+    const int yes = 1;  // what is sent is whole messages: none waits for another
+    if (peer.user < 0) ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
     add(std::move(fd), peer, listener.make);
   }
 }
@@ -115,7 +119,9 @@ std::vector<pollfd> ConnectionServer::pollSet(std::span<const int> wakers, Times
                    static_cast<short>((reads ? POLLIN : 0) | (c.output.empty() ? 0 : POLLOUT)), 0});
     if (const int far = c.session->farFd(); far >= 0) {
       const bool takes = c.output.size() < limits_.output_bytes / 2;
-      set.push_back({far, static_cast<short>((takes ? POLLIN : 0) | (c.blocked ? POLLOUT : 0)), 0});
+      set.push_back(
+          {far, static_cast<short>((takes ? POLLIN : 0) | (c.session->farPending() ? POLLOUT : 0)),
+           0});
     }
   }
   return set;
@@ -141,15 +147,9 @@ void ConnectionServer::round(Duration at_most, std::span<const int> wakers) {
 void ConnectionServer::serve(Client& c, const pollfd& own, const pollfd* far, Timestamp now) {
   if ((own.revents & POLLIN) != 0 && !read(c, now)) return;
   if (hung(own) && (own.revents & POLLIN) == 0) return end(c, End::kGone, "");
-  if (far && (far->revents & POLLOUT)) c.blocked = false;
-  if (!c.input.empty()) process(c, now);
+  if (far && !serveFar(c, *far)) return;
+  if (!c.input.empty() && !c.session->farPending()) process(c, now);
   if (c.ended) return;
-  if (far && (far->revents & (POLLIN | POLLHUP | POLLERR))) {
-    const std::size_t held = std::min(c.output.size(), limits_.output_bytes);
-    if (const auto done = c.session->readFar(limits_.output_bytes - held, c.output); !done)
-      return end(c, done.error().code == Errc::kClosed ? End::kGone : End::kBroken,
-                 done.error().what);
-  }
   c.occupant.established = c.session->established();
   if (!c.occupant.established && now - c.occupant.since >= limits_.opening) {
     return end(
@@ -157,6 +157,20 @@ void ConnectionServer::serve(Client& c, const pollfd& own, const pollfd* far, Ti
         fmt::format("it did not open the protocol within {:.1f} s", toSeconds(limits_.opening)));
   }
   write(c, now);
+}
+
+// False once the client has ended.
+bool ConnectionServer::serveFar(Client& c, const pollfd& far) {
+  Result<Ok> done = Ok{};
+  if (far.revents & POLLOUT) done = c.session->writeFar();
+  if (done && (far.revents & (POLLIN | POLLHUP | POLLERR))) {
+    const std::size_t held = std::min(c.output.size(), limits_.output_bytes);
+    done = c.session->readFar(limits_.output_bytes - held, c.output);
+  }
+  if (done) return true;
+  const bool gone = done.error().code == Errc::kClosed;
+  end(c, gone ? End::kGone : End::kBroken, done.error().what);
+  return false;
 }
 
 // False once the client has ended.
@@ -187,9 +201,7 @@ void ConnectionServer::process(Client& c, Timestamp now) {
   c.messages.charge(static_cast<double>(taken->messages), now);
   c.input.erase(0, taken->bytes);
   c.more = taken->messages >= most && !c.input.empty();
-  c.blocked = c.session->farFd() >= 0 && !c.input.empty() && !c.more;
-  const bool full = taken->bytes == 0 && c.input.size() >= limits_.input_bytes;
-  if (full && c.session->farFd() < 0) {
+  if (taken->bytes == 0 && c.input.size() >= limits_.input_bytes && !c.session->farPending()) {
     end(c, End::kBroken,
         fmt::format("it sent a message of more than {} bytes", limits_.input_bytes));
   }

@@ -46,6 +46,9 @@ class Session {
 
   virtual ~Session() = default;
 
+  // What the server says first, before the client has said anything.
+  virtual void open(std::string& /*output*/) {}
+
   // Takes at most `most` whole messages off the front of `input`, and appends what is to be sent
   // back to `output`. What it leaves is offered again, with more behind it. An error closes the
   // connection; its text is the reason.
@@ -54,9 +57,13 @@ class Session {
   // Whether the client has said what the protocol opens with.
   virtual bool established() const noexcept = 0;
 
-  // For a relay, the descriptor of the far side: it is polled for bytes to be read, and, while
-  // receive() leaves input, for room to write. -1: none.
+  // For a relay, the descriptor of the far side; -1: none. It is polled for bytes to be read, and,
+  // while farPending(), for room to write.
   virtual int farFd() const noexcept { return -1; }
+  // Whether something waits until the far side takes it; receive() is not called meanwhile.
+  virtual bool farPending() const noexcept { return false; }
+  // The far side takes more.
+  virtual Result<Ok> writeFar() { return Ok{}; }
   // The far side has something: at most `room` bytes of it are appended to `output`.
   virtual Result<Ok> readFar(std::size_t /*room*/, std::string& /*output*/) { return Ok{}; }
 };
@@ -121,6 +128,7 @@ class ConnectionServer {
   std::vector<pollfd> pollSet(std::span<const int> wakers, Timestamp now, Duration& wait) const;
   void accept(Listener& listener);
   void serve(Client& client, const pollfd& own, const pollfd* far, Timestamp now);
+  bool serveFar(Client& client, const pollfd& far);
   bool read(Client& client, Timestamp now);
   void process(Client& client, Timestamp now);
   void write(Client& client, Timestamp now);

@@ -9,8 +9,8 @@ namespace merlin::serve {
 namespace {
 
 constexpr std::uint32_t kHandshake = 0x7FAA5500, kHandshakeMask = 0xFFFFFF00;
-constexpr std::uint32_t kRequest = 0x7FAA0000, kRequestMask = 0xFFFF0000;
-constexpr std::uint32_t kMotion = 1, kButton = 2, kDevice = 4;
+constexpr std::uint32_t kRequestMask = 0xFFFF0000;
+constexpr std::uint32_t kMotion = 1, kButton = 2, kDevice = 4, kRawAxis = 0x10, kRawButton = 0x20;
 constexpr std::int32_t kFailed = -1;
 constexpr std::size_t kChunk = 24;  // bytes of a text in an answer
 
@@ -35,26 +35,46 @@ void append(std::string& out, const std::array<std::int32_t, N>& words) {
 
 }  // namespace
 
-void SpnavClient::receive(std::span<const std::byte> bytes, std::string& out) {
-  input_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  while (input_.size() >= 4) {
+SpnavDevice spnavDevice(std::string_view identity, std::string_view port) {
+  SpnavDevice device;
+  if (!identity.empty()) device.name = identity.substr(0, identity.find(','));
+  device.path = port.substr(std::min(port.size(), port.find(':') + 1));
+  struct Known {
+    const char* model;
+    int type, buttons;
+  };
+  // Buttons as drivers/spaceball numbers them: a 2003's ninth is pick, a 3003's third rezero.
+  constexpr Known kKnown[] = {
+      {"1003", 0x100, 9}, {"2003", 0x100, 9}, {"3003", 0x101, 3}, {"4000", 0x102, 12}};
+  for (const Known& known : kKnown) {
+    if (device.name.find(known.model) == std::string::npos) continue;
+    device.type = known.type;
+    device.buttons = known.buttons;
+  }
+  return device;
+}
+
+SpnavClient::Taken SpnavClient::receive(std::string_view input, std::size_t most,
+                                        std::string& out) {
+  Taken taken;
+  for (; taken.messages < most; ++taken.messages) {
+    const std::string_view rest = input.substr(taken.bytes);
     Words words{};
-    std::memcpy(words.data(), input_.data(), 4);
+    const std::size_t size = version_ > 0 ? sizeof words : 4;
+    if (rest.size() < size) break;
+    std::memcpy(words.data(), rest.data(), size);
+    taken.bytes += size;
     const auto first = static_cast<std::uint32_t>(words[0]);
-    std::size_t taken = 4;
-    if ((first & kHandshakeMask) == kHandshake) {
+    if (version_ > 0) {
+      request(words, out);
+    } else if ((first & kHandshakeMask) == kHandshake) {
       version_ = std::min<int>(static_cast<int>(first & 0xFF), 1);
       append(out, std::array{static_cast<std::int32_t>(kHandshake | unsigned(version_))});
-    } else if (version_ > 0 && (first & kRequestMask) == kRequest) {
-      taken = sizeof words;
-      if (input_.size() < taken) return;
-      std::memcpy(words.data(), input_.data(), taken);
-      request(words, out);
     } else if (const auto s = std::bit_cast<float>(first); std::isfinite(s)) {
       sensitivity_ = s;
     }
-    input_.erase(0, taken);
   }
+  return taken;
 }
 
 void SpnavClient::request(Words words, std::string& out) {
@@ -63,7 +83,12 @@ void SpnavClient::request(Words words, std::string& out) {
   std::fill(words.begin() + 1, words.end(), 0);
   switch (number) {
     case kSetName: return;  // has no answer
-    case kSetSensitivity: sensitivity_ = std::bit_cast<float>(argument); break;
+    case kSetSensitivity:
+      if (const auto s = std::bit_cast<float>(argument); std::isfinite(s))
+        sensitivity_ = s;
+      else
+        words[7] = kFailed;
+      break;
     case kGetSensitivity: words[1] = std::bit_cast<std::int32_t>(sensitivity_); break;
     case kSetMask: mask_ = static_cast<std::uint32_t>(argument); break;
     case kGetMask: words[1] = static_cast<std::int32_t>(mask_); break;
@@ -96,6 +121,7 @@ void SpnavClient::sample(const BallSample& s, bool motion, std::string& out) {
     const bool down = s.buttons & bit;
     append(out, Words{down ? 1 : 2, static_cast<std::int32_t>(i), down ? 1 : 0});
   }
+  tellRaw(s, out);
   buttons_ = s.buttons;
   const bool moves = std::any_of(std::begin(s.raw), std::end(s.raw), [](auto v) { return v != 0; });
   if (motion && (moves || moving_) && (mask_ & kMotion)) {
@@ -110,7 +136,21 @@ void SpnavClient::sample(const BallSample& s, bool motion, std::string& out) {
   }
 }
 
-void SpnavClient::device(bool there, std::string& out) {
+// As the device sends them, for who asked for that.
+void SpnavClient::tellRaw(const BallSample& s, std::string& out) {
+  for (std::int32_t i = 0; i < 6 && (mask_ & kRawAxis); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (s.raw[at] != axes_[at]) append(out, Words{5, i, s.raw[at]});
+  }
+  for (std::int32_t i = 0; i < 32 && (mask_ & kRawButton); ++i) {
+    if ((s.buttons ^ buttons_) >> i & 1)
+      append(out, Words{6, i, static_cast<std::int32_t>(s.buttons >> i & 1)});
+  }
+  std::copy(std::begin(s.raw), std::end(s.raw), axes_.begin());
+}
+
+void SpnavClient::device(bool there, const SpnavDevice& device, std::string& out) {
+  device_ = device;
   if (version_ < 1 || !(mask_ & kDevice)) return;
   append(out, Words{3, there ? 0 : 1, 0, device_.type});
 }

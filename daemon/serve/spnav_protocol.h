@@ -2,18 +2,19 @@
 // events. No I/O, no clock.
 //
 // To the client, 32 bytes each: i32[8] in the machine's order. An event: 0 motion x y z rx ry rz
-// ms; 1 press, 2 release: the button; 3 device: 0 added or 1 removed, id, type. From the client:
-// version 0, a float (sensitivity); version 1, the word 0x7FAA5501 first, which is echoed, then
-// requests of 32 bytes, 0x7FAA0000 + number and seven words, answered by the same word, the last
-// one 0 or -1.
+// ms; 1 press, 2 release: the button; 3 device: 0 added or 1 removed, id, type; 5 raw axis: number,
+// value; 6 raw button: number, 1 down. From the client: version 0, 4 bytes, a float (sensitivity);
+// version 1, the word 0x7FAA5501 first, which is echoed, and then frames of 32 bytes alone: a word
+// whose lower half is the request's number, and seven words. The upper half is 0x7FAA, or 0
+// (libspnav 1.0 sends a client's name so). The answer is the same word, the last one 0 or -1.
 //
 // Source: FreeSpacenav, spacenavd/src/proto_unix.c and libspnav/src/spnav.c; README.md beside this.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <string>
+#include <string_view>
 
 #include "drivers/port/samples.h"
 
@@ -24,36 +25,46 @@ struct SpnavDevice {
   std::string name = "MERLIN ball";
   std::string path;
   int buttons = 12;
-  int type = 0x101;  // 0x100 Spaceball 1003 or 2003, 0x101 3003, 0x102 4000
+  int type = 0;  // 0x100 Spaceball 1003 or 2003, 0x101 3003, 0x102 4000; 0: not known
 };
+
+// Of the ball that a health record describes: its identity ("Spaceball 2003, firmware 2.43") and
+// port
+// ("serial:/dev/ttyS0").
+SpnavDevice spnavDevice(std::string_view identity, std::string_view port);
 
 class SpnavClient {
  public:
   explicit SpnavClient(const SpnavDevice& device) : device_(device) {}
 
-  // Takes what came from the client; what is to be sent back is appended to `out`.
-  void receive(std::span<const std::byte> bytes, std::string& out);
+  struct Taken {
+    std::size_t bytes = 0, messages = 0;
+  };
+  // Takes at most `most` whole messages off the front of `input`; what is to be sent back is
+  // appended to `out`.
+  Taken receive(std::string_view input, std::size_t most, std::string& out);
 
   // Appends the events of a new sample, as the client wants them: buttons that have changed since
   // the client's last sample, then a motion if any axis is not 0, or has just become so. `motion`
   // false leaves that out: for a client that is too slow, buttons are never lost.
   void sample(const BallSample& sample, bool motion, std::string& out);
 
-  // The ball came or went.
-  void device(bool there, std::string& out);
+  // The ball came or went; `device` is what may be asked about it from now on.
+  void device(bool there, const SpnavDevice& device, std::string& out);
 
   int version() const noexcept { return version_; }
 
  private:
   using Words = std::array<std::int32_t, 8>;
   void request(Words words, std::string& out);
+  void tellRaw(const BallSample& sample, std::string& out);
   void sendText(std::int32_t request, const std::string& text, std::string& out) const;
 
   SpnavDevice device_;
   int version_ = 0;
   float sensitivity_ = 1;
-  std::uint32_t mask_ = 0x7;  // 1 motion, 2 button, 4 device
-  std::string input_;
+  std::uint32_t mask_ = 0x7;            // 1 motion, 2 button, 4 device
+  std::array<std::int16_t, 6> axes_{};  // of the last sample
   std::uint32_t buttons_ = 0;
   bool moving_ = false;
 };

@@ -1,87 +1,120 @@
 #include "daemon/serve/spnav_server.h"
 
-#include <cerrno>
 #include <cstring>
-#include <optional>
 #include <utility>
 
-#include <fmt/format.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
+#include <unistd.h>
 
 namespace merlin::serve {
 namespace {
 
-constexpr long kRound_ns = 20'000'000;  // a handshake must be answered within 300 ms
-constexpr std::size_t kMostClients = 32;
-constexpr std::size_t kMostPending = 4096;  // of a client that does not read: it is let go
+constexpr Duration kRound = std::chrono::milliseconds(20);
+constexpr Duration kQuiet = std::chrono::milliseconds(60);
+constexpr unsigned kMode = 0666;  // any user's programs may read the ball, as with spacenavd
+constexpr std::size_t kMostPending = 4096;
 
-std::optional<sockaddr_un> addressOf(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.size() >= sizeof address.sun_path) return std::nullopt;
-  std::copy(path.begin(), path.end(), address.sun_path);
-  return address;
+net::ServerLimits limits() {
+  net::ServerLimits l;
+  l.input_bytes = 1024;
+  l.output_bytes = kMostPending;
+  return l;
 }
 
-UniqueFd newSocket() {
-  return UniqueFd(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+std::uint64_t inodeOf(const std::string& path) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0 ? status.st_ino : 0;
+}
+
+class SpnavSession final : public net::Session {
+ public:
+  SpnavSession(const SpnavDevice& device, const Clock& clock)
+      : clock_(clock), client_(device), quiet_until_(clock.now() + kQuiet) {}
+
+  Result<Taken> receive(std::string_view input, std::size_t most, std::string& output) override {
+    const auto taken = client_.receive(input, most, output);
+    if (taken.messages > 0) quiet_until_ = clock_.now() + kQuiet;
+    return Taken{taken.bytes, taken.messages};
+  }
+  // The protocol opens with nothing: a client of version 0 may only listen.
+  bool established() const noexcept override { return true; }
+
+  void sample(const BallSample& sample, std::string& output) {
+    missed_ = clock_.now() < quiet_until_;
+    // A client that is too slow loses motions, never buttons.
+    if (!missed_) client_.sample(sample, output.empty(), output);
+  }
+  // What came while it was asking.
+  void tellMissed(const std::optional<BallSample>& newest, std::string& output) {
+    if (clock_.now() < quiet_until_) return;
+    if (missed_device_) client_.device(there_, device_, output);
+    missed_device_ = false;
+    if (missed_ && newest) sample(*newest, output);
+  }
+  void device(bool there, const SpnavDevice& device) {
+    there_ = there;
+    device_ = device;
+    missed_device_ = true;
+  }
+
+ private:
+  const Clock& clock_;
+  SpnavClient client_;
+  Timestamp quiet_until_;
+  bool missed_ = false;  // a sample
+  // The ball came or went, and the client was not told yet.
+  bool missed_device_ = false, there_ = false;
+  SpnavDevice device_;
+};
+
+template <std::size_t N>
+std::string_view text(const char (&field)[N]) {
+  return {field, strnlen(field, N)};
 }
 
 }  // namespace
 
 Result<std::unique_ptr<SpnavServer>> SpnavServer::start(const std::string& path,
-                                                        const SpnavDevice& device,
-                                                        const shm::DevicesSegment& segment) {
-  const auto address = addressOf(path);
-  if (!address) return Error{Errc::kInvalidArgument, path + ": is too long for a socket's name"};
-  const auto* generic = reinterpret_cast<const sockaddr*>(&*address);
-  if (::connect(newSocket().get(), generic, sizeof *address) == 0) {
-    return Error{Errc::kBusy, path + ": another program serves this socket (spacenavd?)"};
-  }
-  UniqueFd listener = newSocket();
-  ::unlink(path.c_str());
-  if (::bind(listener.get(), generic, sizeof *address) != 0 || ::listen(listener.get(), 8) != 0 ||
-      ::chmod(path.c_str(), 0666) !=
-          0) {  // any user's programs may read the ball, as with spacenavd
-    return Error{Errc::kIo, fmt::format("{}: {}", path, std::strerror(errno))};
-  }
-  return std::unique_ptr<SpnavServer>(new SpnavServer(path, std::move(listener), device, segment));
+                                                        const shm::DevicesSegment& segment,
+                                                        ThreadWatch& watch, const Clock& clock) {
+  auto listener = net::listenLocal(path, kMode);
+  if (!listener) return listener.error();
+  return std::unique_ptr<SpnavServer>(
+      new SpnavServer(path, *std::move(listener), segment, watch, clock));
 }
 
-SpnavServer::SpnavServer(std::string path, UniqueFd listener, SpnavDevice device,
-                         const shm::DevicesSegment& segment)
+SpnavServer::SpnavServer(std::string path, UniqueFd listener, const shm::DevicesSegment& segment,
+                         ThreadWatch& watch, const Clock& clock)
     : path_(std::move(path)),
-      listener_(std::move(listener)),
-      device_(std::move(device)),
+      file_(inodeOf(path_)),
       segment_(segment),
+      clock_(clock),
+      server_("space mouse", limits(), clock),
       seen_(segment.ball.count()),
-      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+      waker_({&segment.ball.wakeWord()}, watch, "samples for the space mouse") {
+  tellHealth();
+  server_.listen(std::move(listener), [this](const net::Peer&) {
+    return std::make_unique<SpnavSession>(device_, clock_);
+  });
+  thread_ = WatchedThread(
+      watch, "space mouse",
+      [this](const std::stop_token& stop, Progress& progress) { run(stop, progress); });
+}
 
 SpnavServer::~SpnavServer() {
-  thread_.request_stop();
-  thread_.join();
-  ::unlink(path_.c_str());
+  thread_.stop();
+  if (inodeOf(path_) == file_) ::unlink(path_.c_str());
 }
 
-void SpnavServer::run(const std::stop_token& stop) {
+void SpnavServer::run(const std::stop_token& stop, Progress& progress) {
   while (!stop.stop_requested()) {
-    segment_.ball.wait(seen_, {0, kRound_ns});
-    acceptClients();
+    const int wakers[] = {waker_.fd()};
+    server_.round(kRound, wakers);
+    waker_.clear();
     tellHealth();
     tellSamples();
-    std::erase_if(clients_, [](Client& client) { return !serve(client); });
-  }
-}
-
-void SpnavServer::acceptClients() {
-  for (;;) {
-    UniqueFd fd(::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
-    if (!fd.valid()) return;
-    if (clients_.size() < kMostClients) {
-      clients_.push_back({std::move(fd), SpnavClient(device_), {}});
-    }
+    tellMissed();
+    progress.step();
   }
 }
 
@@ -91,7 +124,10 @@ void SpnavServer::tellHealth() {
   const bool there = health->state == HealthState::kOk;
   if (there == there_) return;
   there_ = there;
-  for (Client& client : clients_) client.protocol.device(there, client.pending);
+  if (there) device_ = spnavDevice(text(health->identity), text(health->port));
+  server_.tell([&](net::Session& session, std::string&) {
+    static_cast<SpnavSession&>(session).device(there, device_);
+  });
 }
 
 void SpnavServer::tellSamples() {
@@ -100,24 +136,17 @@ void SpnavServer::tellSamples() {
   for (; seen_ < count; ++seen_) {
     const auto sample = segment_.ball.at(seen_);
     if (!sample) continue;
-    for (Client& client : clients_)
-      client.protocol.sample(*sample, client.pending.empty(), client.pending);
+    server_.tell([&](net::Session& session, std::string& output) {
+      static_cast<SpnavSession&>(session).sample(*sample, output);
+    });
   }
 }
 
-bool SpnavServer::serve(Client& client) {
-  std::byte bytes[256];
-  for (;;) {
-    const ssize_t n = ::recv(client.fd.get(), bytes, sizeof bytes, MSG_DONTWAIT);
-    if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR)) return false;
-    if (n < 0) break;
-    client.protocol.receive(std::span(bytes, static_cast<std::size_t>(n)), client.pending);
-  }
-  if (client.pending.empty()) return true;
-  const ssize_t n = ::send(client.fd.get(), client.pending.data(), client.pending.size(),
-                           MSG_DONTWAIT | MSG_NOSIGNAL);
-  if (n > 0) client.pending.erase(0, static_cast<std::size_t>(n));
-  return client.pending.size() <= kMostPending;
+void SpnavServer::tellMissed() {
+  const auto newest = segment_.ball.newest();
+  server_.tell([&](net::Session& session, std::string& output) {
+    static_cast<SpnavSession&>(session).tellMissed(newest, output);
+  });
 }
 
 }  // namespace merlin::serve

@@ -4,52 +4,53 @@
 
 #include <memory>
 #include <string>
-#include <thread>
-#include <vector>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
 #include "daemon/base/unique_fd.h"
+#include "daemon/base/watched_thread.h"
+#include "daemon/net/server_keeper.h"
+#include "daemon/serve/sample_waker.h"
 #include "daemon/serve/spnav_protocol.h"
 #include "daemon/shm/layout.h"
 
 namespace merlin::serve {
 
-// Owns its thread; reads the segment as any client does, so that a slow program delays nobody.
-class SpnavServer {
+// Owns its threads; reads the segment as any client does, so that a slow program delays nobody.
+//
+// libspnav takes whatever comes after a question for its answer. So a client hears no event from
+// its connection, or a question, until it has been silent for a moment (kQuiet): then it hears the
+// newest state, buttons included.
+class SpnavServer final : public net::Server {
  public:
-  // Errors: kBusy (spacenavd, or another, answers on that socket), kIo. A socket that nobody
-  // answers on is replaced. `segment` outlives this.
+  // Errors: listenLocal()'s. `segment`, `watch` and `clock` outlive this.
   static Result<std::unique_ptr<SpnavServer>> start(const std::string& socket_path,
-                                                    const SpnavDevice& device,
-                                                    const shm::DevicesSegment& segment);
-  ~SpnavServer();  // removes the socket
+                                                    const shm::DevicesSegment& segment,
+                                                    ThreadWatch& watch, const Clock& clock);
+  ~SpnavServer() override;  // removes the socket
   SpnavServer(const SpnavServer&) = delete;
   SpnavServer& operator=(const SpnavServer&) = delete;
 
+  net::ServerReport report() const override { return server_.report(); }
+
  private:
-  struct Client {
-    UniqueFd fd;
-    SpnavClient protocol;
-    std::string pending;  // what it has not taken yet
-  };
-  SpnavServer(std::string path, UniqueFd listener, SpnavDevice device,
-              const shm::DevicesSegment& segment);
-  void run(const std::stop_token& stop);
-  void acceptClients();
+  SpnavServer(std::string path, UniqueFd listener, const shm::DevicesSegment& segment,
+              ThreadWatch& watch, const Clock& clock);
+  void run(const std::stop_token& stop, Progress& progress);
   void tellSamples();
+  void tellMissed();
   void tellHealth();
-  // Reads and writes; false once the client is gone.
-  static bool serve(Client& client);
 
   std::string path_;
-  UniqueFd listener_;
-  SpnavDevice device_;
+  std::uint64_t file_;  // inode of the socket's file
   const shm::DevicesSegment& segment_;
-  std::vector<Client> clients_;
-  std::uint64_t seen_ = 0;  // samples of the ball
+  const Clock& clock_;
+  net::ConnectionServer server_;
+  SpnavDevice device_;
+  std::uint64_t seen_;  // samples of the ball
   bool there_ = false;
-  std::jthread thread_;
+  SampleWaker waker_;
+  WatchedThread thread_;
 };
 
 }  // namespace merlin::serve

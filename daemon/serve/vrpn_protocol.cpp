@@ -11,7 +11,6 @@ namespace merlin::serve {
 namespace {
 
 constexpr std::size_t kHeader = 24;
-constexpr std::size_t kLongest = 65536;
 constexpr std::string_view kMagic = "vrpn: ver. 07.38";
 
 void appendBe32(std::string& out, std::uint32_t v) {
@@ -56,14 +55,14 @@ std::string encodeVrpn(const VrpnMessage& m) {
   return out;
 }
 
-std::optional<VrpnMessage> takeVrpn(std::string& input, bool& broken) {
-  broken = false;
-  if (input.size() < kHeader) return std::nullopt;
+VrpnFront readVrpn(std::string_view input) {
+  VrpnFront front;
+  if (input.size() < kHeader) return front;
   const std::size_t length = loadBe32(input, 0);
-  broken = length < kHeader || length > kLongest;
-  if (broken) return std::nullopt;
+  front.broken = length < kHeader || kHeader + padded(length - kHeader) > kVrpnLongest;
+  if (front.broken) return front;
   const std::size_t whole = kHeader + padded(length - kHeader);
-  if (input.size() < whole) return std::nullopt;
+  if (input.size() < whole) return front;
   VrpnMessage m;
   m.seconds = static_cast<std::int32_t>(loadBe32(input, 4));
   m.microseconds = static_cast<std::int32_t>(loadBe32(input, 8));
@@ -71,8 +70,9 @@ std::optional<VrpnMessage> takeVrpn(std::string& input, bool& broken) {
   m.type = static_cast<std::int32_t>(loadBe32(input, 16));
   m.sequence = loadBe32(input, 20);
   m.payload = input.substr(kHeader, length - kHeader);
-  input.erase(0, whole);
-  return m;
+  front.message = std::move(m);
+  front.bytes = whole;
+  return front;
 }
 
 std::string vrpnName(std::string_view name) {
@@ -110,6 +110,13 @@ std::string vrpnButton(std::int32_t button, bool down) {
   std::string out;
   appendBe32(out, static_cast<std::uint32_t>(button));
   appendBe32(out, down ? 1 : 0);
+  return out;
+}
+
+std::string vrpnButtons(std::uint32_t down, std::int32_t count) {
+  std::string out;
+  appendBe32(out, static_cast<std::uint32_t>(count));
+  for (std::int32_t i = 0; i < count; ++i) appendBe32(out, down >> i & 1);
   return out;
 }
 

@@ -30,9 +30,16 @@ struct VrpnMessage {
 };
 std::string encodeVrpn(const VrpnMessage& message);
 
-// Takes whole messages off the front of `input`; nothing where it holds none yet. A length that
-// cannot be makes `broken` true: the connection is of no more use.
-std::optional<VrpnMessage> takeVrpn(std::string& input, bool& broken);
+// The longest message that is taken, header and padding included.
+inline constexpr std::size_t kVrpnLongest = 8192;
+
+// The message at the front of `input`; nothing where it is not whole yet.
+struct VrpnFront {
+  std::optional<VrpnMessage> message;
+  std::size_t bytes = 0;  // that it takes
+  bool broken = false;    // a length that cannot be: the connection is of no more use
+};
+VrpnFront readVrpn(std::string_view input);
 
 // Payloads.
 std::string vrpnName(std::string_view name);  // of a description
@@ -41,6 +48,8 @@ std::string vrpnPose(std::int32_t sensor, std::span<const float> position_m,
                      std::span<const float> orientation_wxyz);  // Pos_Quat: x y z, qx qy qz qw
 std::string vrpnChannels(std::span<const double> channels);     // Analog Channel
 std::string vrpnButton(std::int32_t button, bool down);         // Button Change
+std::string vrpnButtons(std::uint32_t down,
+                        std::int32_t count);  // Button States: bit i is button i
 
 // "127.0.0.1 59207" + NUL, by which a client asks by UDP to be connected to. Nothing unless it is
 // one, with a port from 1024 on and a host of letters, digits and dots.

@@ -46,6 +46,9 @@ class alignas(64) Channel {
     return n + kHistory > count() ? sample : std::nullopt;  // overtaken while it was read
   }
 
+  // Grows with each sample, for a reader that waits for several channels at once.
+  const std::atomic<std::uint32_t>& wakeWord() const noexcept { return wake_; }
+
   // Where its words lie, for the table of fields.
   static constexpr std::size_t countOffset() { return offsetof(Channel, count_); }
   static constexpr std::size_t wakeOffset() { return offsetof(Channel, wake_); }

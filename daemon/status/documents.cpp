@@ -109,6 +109,24 @@ Json postureJson(const shm::DevicesSegment& segment, Timestamp now) {
           {"age_s", ageSeconds(held->received_ns, now)}};
 }
 
+// Who serves other programs, and whom it sent away.
+Json serversJson(const std::vector<net::ServerHealth>& servers) {
+  Json all = Json::object();
+  for (const net::ServerHealth& s : servers) {
+    all[s.name] = {{"state", s.failure.empty() ? "ok" : "failed"},
+                   {"reason", s.failure},
+                   {"connections", s.report.connections},
+                   {"accepted", s.report.accepted},
+                   {"refused", s.report.refused},
+                   {"replaced", s.report.replaced},
+                   {"silent", s.report.silent},
+                   {"broken", s.report.broken},
+                   {"slow", s.report.slow},
+                   {"last", s.report.last}};
+  }
+  return all;
+}
+
 std::string postureName(const shm::DevicesSegment& segment) {
   if (const auto held = segment.posture_state.read()) return text(held->name);
   const auto posture = segment.posture.newest();
@@ -130,24 +148,36 @@ const char* healthName(const DeviceHealth& health, Timestamp now) {
   return "failed";
 }
 
-std::string devicesStatus(const shm::DevicesSegment& segment, Timestamp now) {
+namespace {
+
+Json devicesJson(const shm::DevicesSegment& segment, Timestamp now) {
   Json devices = Json::object();
   for (std::size_t i = 0; i < shm::kDevices; ++i) {
     if (const auto health = segment.health[i].read())
       devices[kDeviceNames[i]] = deviceJson(*health, now);
   }
+  return devices;
+}
+
+}  // namespace
+
+std::string devicesStatus(const shm::DevicesSegment& segment, Timestamp now,
+                          const std::vector<net::ServerHealth>& servers) {
   return dump({{"role", "devices"},
                {"pid", segment.header.pid},
                {"uptime_s", ageSeconds(segment.header.started_ns, now)},
                {"posture", postureName(segment)},
                {"posture_detail", postureJson(segment, now)},
-               {"devices", std::move(devices)}});
+               {"devices", devicesJson(segment, now)},
+               {"servers", serversJson(servers)}});
 }
 
-std::string wallStatus(const shm::WallSegment& segment, Timestamp now) {
+std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
+                       const std::vector<net::ServerHealth>& servers,
+                       const shm::DevicesSegment* remote) {
   const auto s = segment.stats.read().value_or(shm::WallStats{});
   const auto hand = segment.hand.read().value_or(shm::WallHand{});
-  return dump({{"role", "wall"},
+  Json json = {{"role", "wall"},
                {"pid", segment.header.pid},
                {"uptime_s", ageSeconds(segment.header.started_ns, now)},
                {"rate_asked", round3(s.rate_asked_hz)},
@@ -189,7 +219,13 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now) {
                {"still_to_full_s", round3(s.still_to_full_s)},
                {"resumed", s.resumed},
                {"resumed_late", s.resumed_late},
-               {"stale_s", ageSeconds(s.updated_ns, now)}});
+               {"stale_s", ageSeconds(s.updated_ns, now)},
+               {"servers", serversJson(servers)}};
+  if (remote) {
+    json["posture"] = postureName(*remote);
+    json["devices"] = devicesJson(*remote, now);
+  }
+  return dump(json);
 }
 
 std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {

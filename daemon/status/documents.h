@@ -3,16 +3,21 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "daemon/base/clock.h"
+#include "daemon/net/server_keeper.h"
 #include "daemon/shm/layout.h"
 
 namespace merlin::status {
 
 // Topic "status": how the devices are, and the posture. About 1 kB.
-std::string devicesStatus(const shm::DevicesSegment& segment, Timestamp now);
-// Topic "status": how the wall fares.
-std::string wallStatus(const shm::WallSegment& segment, Timestamp now);
+std::string devicesStatus(const shm::DevicesSegment& segment, Timestamp now,
+                          const std::vector<net::ServerHealth>& servers = {});
+// Topic "status": how the wall fares; with it `remote`, devices of another machine that it shows.
+std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
+                       const std::vector<net::ServerHealth>& servers = {},
+                       const shm::DevicesSegment* remote = nullptr);
 // Topic "sample": the newest posture, hand, tracker and ball.
 std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now);
 // Topic "metrics": counters and gauges of either, flat, as a metrics collector wants them.

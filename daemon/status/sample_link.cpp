@@ -6,8 +6,11 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <sys/socket.h>
 #include <zmq.hpp>
 
+#include "daemon/base/log.h"
+#include "daemon/base/unique_fd.h"
 #include "daemon/status/documents.h"
 
 namespace merlin::status {
@@ -195,61 +198,98 @@ struct SampleLink::Socket {
 
 Result<std::unique_ptr<SampleLink>> SampleLink::start(SampleLinkSettings settings,
                                                       shm::DevicesSegment& segment,
-                                                      const Clock& clock) {
+                                                      ThreadWatch& watch, const Clock& clock) {
+  // libzmq aborts where no network socket may be opened.
+  const UniqueFd probe(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (settings.endpoint.starts_with("tcp://") && !probe.valid()) {
+    return Error{Errc::kUnsupported,
+                 fmt::format("{}: no network socket may be opened: {} (under systemd: "
+                             "RestrictAddressFamilies of the unit)",
+                             settings.endpoint, std::strerror(errno))};
+  }
+  std::unique_ptr<SampleLink> link(new SampleLink(std::move(settings), segment, clock));
   try {
-    auto socket = std::make_unique<Socket>();
-    zmq::socket_t& s = socket->subscriber;
-    s.set(zmq::sockopt::linger, 0);
-    s.set(zmq::sockopt::rcvtimeo, kRound_ms);
-    s.set(zmq::sockopt::rcvhwm, 4);  // what is old is of no use
-    s.set(zmq::sockopt::maxmsgsize, kLongestDocument);
-    s.set(zmq::sockopt::reconnect_ivl, 100);
-    s.set(zmq::sockopt::reconnect_ivl_max, 500);
-    s.set(zmq::sockopt::heartbeat_ivl, 500);
-    s.set(zmq::sockopt::heartbeat_timeout, 1500);
-    s.set(zmq::sockopt::curve_serverkey, settings.server_key);
-    s.set(zmq::sockopt::curve_publickey, settings.keys.public_key);
-    s.set(zmq::sockopt::curve_secretkey, settings.keys.secret_key);
-    s.set(zmq::sockopt::subscribe, "sample");
-    s.connect(settings.endpoint);
-    return std::unique_ptr<SampleLink>(
-        new SampleLink(std::move(settings), std::move(socket), segment, clock));
+    link->connect();
   } catch (const zmq::error_t& e) {
     return Error{Errc::kInvalidArgument, fmt::format("{}: {} (is the address or a key wrong?)",
-                                                     settings.endpoint, e.what())};
+                                                     link->settings_.endpoint, e.what())};
   }
+  link->thread_ = WatchedThread(
+      watch, "devices of another machine",
+      [l = link.get()](const std::stop_token& stop, Progress& p) { l->run(stop, p); });
+  return link;
 }
 
-SampleLink::SampleLink(SampleLinkSettings settings, std::unique_ptr<Socket> socket,
-                       shm::DevicesSegment& segment, const Clock& clock)
+SampleLink::SampleLink(SampleLinkSettings settings, shm::DevicesSegment& segment,
+                       const Clock& clock)
     : settings_(std::move(settings)),
-      socket_(std::move(socket)),
       segment_(segment),
       clock_(clock),
       heard_(clock.now()),
-      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+      renew_after_(settings_.renew_after) {}
 
-SampleLink::~SampleLink() {
-  thread_.request_stop();
-  thread_.join();
+SampleLink::~SampleLink() { thread_.stop(); }
+
+void SampleLink::connect() {
+  socket_.reset();  // the old one first: its connection ends
+  auto socket = std::make_unique<Socket>();
+  zmq::socket_t& s = socket->subscriber;
+  s.set(zmq::sockopt::linger, 0);
+  s.set(zmq::sockopt::rcvtimeo, kRound_ms);
+  s.set(zmq::sockopt::rcvhwm, 4);  // what is old is of no use
+  s.set(zmq::sockopt::maxmsgsize, kLongestDocument);
+  s.set(zmq::sockopt::reconnect_ivl, 100);
+  s.set(zmq::sockopt::reconnect_ivl_max, 500);
+  s.set(zmq::sockopt::heartbeat_ivl, 500);
+  s.set(zmq::sockopt::heartbeat_timeout, 1500);
+  s.set(zmq::sockopt::curve_serverkey, settings_.server_key);
+  s.set(zmq::sockopt::curve_publickey, settings_.keys.public_key);
+  s.set(zmq::sockopt::curve_secretkey, settings_.keys.secret_key);
+  s.set(zmq::sockopt::subscribe, "sample");
+  s.connect(settings_.endpoint);
+  socket_ = std::move(socket);
+  connected_ = clock_.now();
 }
 
-void SampleLink::run(const std::stop_token& stop) {
+void SampleLink::run(const std::stop_token& stop, Progress& progress) {
   lost(clock_.now());
   while (!stop.stop_requested()) {
+    progress.step();
     try {
-      zmq::message_t topic, document;
-      if (socket_->subscriber.recv(topic) && topic.more() && socket_->subscriber.recv(document) &&
-          applySamples(document.to_string(), settings_.endpoint, clock_.now(), segment_)) {
-        heard_ = clock_.now();
-        ever_ = true;
-        continue;
-      }
-    } catch (const zmq::error_t& e) {
-      if (e.num() != EINTR) return;  // the context is gone
+      if (socket_ && take()) continue;
+      const Timestamp now = clock_.now();
+      if (now - heard_ >= settings_.silence) lost(now);
+      renewWhereSilent(now);
+    } catch (const std::exception& e) {
+      if (said_ != e.what()) logWarning("{}: {}", settings_.endpoint, e.what());
+      said_ = e.what();
+      std::this_thread::sleep_for(std::chrono::milliseconds(kRound_ms));
     }
-    if (const Timestamp now = clock_.now(); now - heard_ >= settings_.silence) lost(now);
   }
+}
+
+bool SampleLink::take() {
+  zmq::message_t topic, document;
+  if (!socket_->subscriber.recv(topic) || !topic.more() || !socket_->subscriber.recv(document))
+    return false;
+  bool more = document.more();
+  while (more) {  // nothing of ours; taken, so that the next document begins with its topic
+    zmq::message_t part;
+    if (!socket_->subscriber.recv(part)) break;
+    more = part.more();
+  }
+  if (!applySamples(document.to_string(), settings_.endpoint, clock_.now(), segment_)) return false;
+  heard_ = clock_.now();
+  renew_after_ = settings_.renew_after;
+  ever_ = true;
+  return true;
+}
+
+void SampleLink::renewWhereSilent(Timestamp now) {
+  if (now - std::max(heard_, connected_) < renew_after_) return;
+  renew_after_ = std::min(2 * renew_after_, settings_.renew_at_most);
+  connected_ = now;  // also where it fails: not again at once
+  connect();
 }
 
 void SampleLink::lost(Timestamp now) {

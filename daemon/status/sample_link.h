@@ -4,10 +4,10 @@
 
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
+#include "daemon/base/watched_thread.h"
 #include "daemon/shm/layout.h"
 #include "daemon/status/curve.h"
 
@@ -18,17 +18,21 @@ struct SampleLinkSettings {
   std::string server_key;                             // its public key
   KeyPair keys;                                       // ours
   Duration silence = std::chrono::milliseconds(500);  // after which the link counts as gone
+  // After so much silence the socket is made anew, then each time after twice as long, up to the
+  // second figure: libzmq never connects again by itself where the peer once broke the protocol (it
+  // did not know our key, or another program answered on its port).
+  Duration renew_after = std::chrono::seconds(2), renew_at_most = std::chrono::seconds(5);
 };
 
 // Follows the topic "sample" on a thread of its own and writes what it says into `segment`, whose
 // only writer it is. Times become this machine's, as old as they were there when they were sent:
 // the network's own delay is not known and not added. While no word comes, every device is absent,
-// with the reason; ZeroMQ connects again by itself.
+// with the reason.
 class SampleLink {
  public:
   // Errors: kInvalidArgument (an endpoint or a key that is none).
   static Result<std::unique_ptr<SampleLink>> start(SampleLinkSettings settings,
-                                                   shm::DevicesSegment& segment,
+                                                   shm::DevicesSegment& segment, ThreadWatch& watch,
                                                    const Clock& clock);
   ~SampleLink();
   SampleLink(const SampleLink&) = delete;
@@ -36,9 +40,11 @@ class SampleLink {
 
  private:
   struct Socket;
-  SampleLink(SampleLinkSettings settings, std::unique_ptr<Socket> socket,
-             shm::DevicesSegment& segment, const Clock& clock);
-  void run(const std::stop_token& stop);
+  SampleLink(SampleLinkSettings settings, shm::DevicesSegment& segment, const Clock& clock);
+  void connect();  // throws what libzmq throws
+  void run(const std::stop_token& stop, Progress& progress);
+  bool take();  // one document, where one has come
+  void renewWhereSilent(Timestamp now);
   void lost(Timestamp now);
 
   SampleLinkSettings settings_;
@@ -46,8 +52,11 @@ class SampleLink {
   shm::DevicesSegment& segment_;
   const Clock& clock_;
   Timestamp heard_{};
+  Timestamp connected_{};
+  Duration renew_after_;
   bool ever_ = false;
-  std::jthread thread_;
+  std::string said_;  // what went wrong last
+  WatchedThread thread_;
 };
 
 // The document's content into the segment; samples whose counter has not changed are left. False

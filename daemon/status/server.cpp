@@ -1,12 +1,17 @@
 #include "daemon/status/server.h"
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>
+#include <unistd.h>
 #include <zmq.hpp>
+
+#include "daemon/base/log.h"
 
 namespace merlin::status {
 namespace {
@@ -15,12 +20,16 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kRound_ms = 100;
 constexpr int kMostRequestBytes = 4096;
-constexpr int kMostQueued = 100;  // documents for a subscriber that does not read
+constexpr int kMostSaidBytes = 4096;  // by a subscriber, in one frame
+constexpr int kMostQueued = 100;      // documents for a subscriber that does not read
+constexpr int kHandshake_ms = 2000;
+constexpr Duration kLook = std::chrono::seconds(1);
+constexpr Duration kSayAgain = std::chrono::seconds(10);
 
-// Sockets are for the daemon's user and group.
+// What libzmq binds is for the daemon's user alone.
 class Umask {
  public:
-  Umask() : before_(::umask(0117)) {}
+  Umask() : before_(::umask(0177)) {}
   ~Umask() { ::umask(before_); }
   Umask(const Umask&) = delete;
   Umask& operator=(const Umask&) = delete;
@@ -28,6 +37,13 @@ class Umask {
  private:
   mode_t before_;
 };
+
+// The path of the socket behind a public endpoint.
+std::string innerOf(const std::string& endpoint) {
+  return endpoint.substr(std::string("ipc://").size()) + ".inner";
+}
+
+bool isThere(const std::string& path) { return ::access(path.c_str(), F_OK) == 0; }
 
 std::string failure(std::string_view what) {
   return Json{{"ok", false}, {"error", std::string(what)}}.dump(-1, ' ', false,
@@ -41,18 +57,26 @@ struct StatusServer::Sockets {
   zmq::socket_t publisher{context, zmq::socket_type::pub};
   zmq::socket_t replier{context, zmq::socket_type::rep};
   zmq::socket_t doorman{context, zmq::socket_type::rep};
+  // Sockets and the paths that they are bound to.
+  std::vector<std::pair<zmq::socket_t*, std::string>> bound;
+  std::string samples;  // the path of the encrypted one; empty: none
+
+  ~Sockets() {
+    for (const auto& [socket, path] : bound) ::unlink(path.c_str());
+  }
+  void bind(zmq::socket_t& socket, const std::string& path) {
+    socket.bind("ipc://" + path);
+    bound.emplace_back(&socket, path);
+  }
 };
 
 namespace {
 
-// After the local sockets: what is set here holds for what is bound from here on.
-void bindNetwork(const CurveServer& network, zmq::socket_t& publisher, zmq::socket_t& doorman) {
-  doorman.set(zmq::sockopt::linger, 0);
-  doorman.bind("inproc://zeromq.zap.01");
-  publisher.set(zmq::sockopt::zap_domain, "merlin");
-  publisher.set(zmq::sockopt::curve_server, true);
-  publisher.set(zmq::sockopt::curve_secretkey, network.keys.secret_key);
-  publisher.bind(network.endpoint);
+// Whatever a client sends, and however slowly.
+void limit(zmq::socket_t& socket, int most_bytes) {
+  socket.set(zmq::sockopt::linger, 0);
+  socket.set(zmq::sockopt::maxmsgsize, std::int64_t{most_bytes});
+  socket.set(zmq::sockopt::handshake_ivl, kHandshake_ms);
 }
 
 Result<std::string> runWith(const Command& command, const nlohmann::json& request) {
@@ -73,55 +97,134 @@ std::string z85(const zmq::message_t& key) {
 }  // namespace
 
 Result<std::unique_ptr<StatusServer>> StatusServer::start(StatusServerSettings settings,
-                                                          const Clock& clock) {
-  const std::string* endpoint = &settings.status_endpoint;
+                                                          ThreadWatch& watch, const Clock& clock) {
+  std::unique_ptr<StatusServer> server(new StatusServer(std::move(settings), clock));
+  if (const auto opened = server->openSockets(); !opened) return opened.error();
+  if (const auto started = server->startRelays(watch); !started) return started.error();
+  server->thread_ = WatchedThread(
+      watch, fmt::format("status of the {}", server->settings_.name),
+      [s = server.get()](const std::stop_token& stop, Progress& p) { s->run(stop, p); });
+  return server;
+}
+
+StatusServer::StatusServer(StatusServerSettings settings, const Clock& clock)
+    : settings_(std::move(settings)), clock_(clock), due_(settings_.publications.size()) {}
+
+StatusServer::~StatusServer() {
+  relays_.clear();
+  thread_.stop();
+}
+
+// What is set for the encrypted address holds for what is bound after it.
+Result<Ok> StatusServer::openSockets() {
   try {
-    auto sockets = std::make_unique<Sockets>();
-    sockets->publisher.set(zmq::sockopt::sndhwm, kMostQueued);
-    sockets->publisher.set(zmq::sockopt::linger, 0);
-    sockets->replier.set(zmq::sockopt::maxmsgsize, std::int64_t{kMostRequestBytes});
-    sockets->replier.set(zmq::sockopt::linger, 0);
+    sockets_ = std::make_unique<Sockets>();
+    limit(sockets_->publisher, kMostSaidBytes);
+    sockets_->publisher.set(zmq::sockopt::sndhwm, kMostQueued);
+    limit(sockets_->replier, kMostRequestBytes);
     const Umask umask;
-    sockets->publisher.bind(settings.status_endpoint);
-    endpoint = &settings.command_endpoint;
-    sockets->replier.bind(settings.command_endpoint);
-    if (!settings.network.endpoint.empty()) {
-      endpoint = &settings.network.endpoint;
-      bindNetwork(settings.network, sockets->publisher, sockets->doorman);
+    sockets_->bind(sockets_->publisher, innerOf(settings_.status_endpoint));
+    sockets_->bind(sockets_->replier, innerOf(settings_.command_endpoint));
+    if (!settings_.network.endpoint.empty()) {
+      limit(sockets_->doorman, kMostSaidBytes);
+      sockets_->doorman.bind("inproc://zeromq.zap.01");
+      sockets_->publisher.set(zmq::sockopt::zap_domain, "merlin");
+      sockets_->publisher.set(zmq::sockopt::curve_server, true);
+      sockets_->publisher.set(zmq::sockopt::curve_secretkey, settings_.network.keys.secret_key);
+      sockets_->samples = innerOf(settings_.status_endpoint + ".samples");
+      sockets_->bind(sockets_->publisher, sockets_->samples);
     }
-    return std::unique_ptr<StatusServer>(
-        new StatusServer(std::move(settings), clock, std::move(sockets)));
+    return Ok{};
   } catch (const zmq::error_t& e) {
-    return Error{Errc::kIo, fmt::format("{}: {}", *endpoint, e.what())};
+    return Error{Errc::kIo,
+                 fmt::format("the sockets of {}: {}", settings_.status_endpoint, e.what())};
   }
 }
 
-StatusServer::StatusServer(StatusServerSettings settings, const Clock& clock,
-                           std::unique_ptr<Sockets> sockets)
-    : settings_(std::move(settings)),
-      clock_(clock),
-      sockets_(std::move(sockets)),
-      due_(settings_.publications.size()),
-      thread_([this](const std::stop_token& stop) { run(stop); }) {}
-
-StatusServer::~StatusServer() {
-  thread_.request_stop();
-  thread_.join();
+// A subscriber says little: what it follows, and heartbeats.
+RelaySettings StatusServer::topicsRelay() const {
+  RelaySettings relay;
+  relay.name = fmt::format("topics of the {}", settings_.name);
+  relay.endpoint = settings_.status_endpoint;
+  relay.inner = innerOf(settings_.status_endpoint);
+  relay.limits.output_bytes = 1 << 20;
+  relay.limits.messages_per_s = 20;
+  relay.limits.messages_burst = 100;
+  relay.zmtp = {1024, 1, 4096};
+  return relay;
 }
 
-void StatusServer::run(const std::stop_token& stop) {
+Result<Ok> StatusServer::startRelays(ThreadWatch& watch) {
+  RelaySettings commands;
+  commands.name = fmt::format("commands of the {}", settings_.name);
+  commands.endpoint = settings_.command_endpoint;
+  commands.inner = innerOf(settings_.command_endpoint);
+  commands.zmtp = {kMostRequestBytes, 2, 0};
+  for (const RelaySettings& settings : {commands, topicsRelay()}) {
+    auto relay = Relay::start(settings, watch, clock_);
+    if (!relay) return relay.error();
+    relays_.push_back(*std::move(relay));
+  }
+  return Ok{};
+}
+
+Result<std::unique_ptr<net::Server>> StatusServer::startSamples(ThreadWatch& watch) const {
+  RelaySettings samples = topicsRelay();
+  samples.name = "samples for other machines";
+  samples.endpoint = settings_.network.endpoint;
+  samples.inner = sockets_->samples;
+  samples.limits.opening = std::chrono::seconds(5);  // over a network, with encryption
+  samples.zmtp = {1024, 1, 16384};
+  auto relay = Relay::start(std::move(samples), watch, clock_);
+  if (!relay) return relay.error();
+  return std::unique_ptr<net::Server>(*std::move(relay));
+}
+
+std::vector<net::ServerReport> StatusServer::reports() const {
+  std::vector<net::ServerReport> reports;
+  for (const auto& relay : relays_) reports.push_back(relay->report());
+  return reports;
+}
+
+void StatusServer::run(const std::stop_token& stop, Progress& progress) {
   while (!stop.stop_requested()) {
     try {
-      zmq::pollitem_t items[] = {{sockets_->replier.handle(), 0, ZMQ_POLLIN, 0},
-                                 {sockets_->doorman.handle(), 0, ZMQ_POLLIN, 0}};
-      zmq::poll(items, 2, std::chrono::ceil<std::chrono::milliseconds>(untilDue()));
-      if (items[0].revents & ZMQ_POLLIN) answer();
-      if (items[1].revents & ZMQ_POLLIN) admit();
-      publishDue();
-    } catch (const zmq::error_t& e) {
-      if (e.num() != EINTR) return;  // the context is gone
+      round();
+      bindAgainWhereGone();
+    } catch (const std::exception& e) {
+      const Timestamp now = clock_.now();
+      if (now - said_ >= kSayAgain) {
+        said_ = now;
+        logError("status of the {}: {}; it goes on", settings_.name, e.what());
+      }
     }
-    rounds_.fetch_add(1, std::memory_order_relaxed);
+    progress.step();
+  }
+}
+
+void StatusServer::round() {
+  zmq::pollitem_t items[] = {{sockets_->replier.handle(), 0, ZMQ_POLLIN, 0},
+                             {sockets_->doorman.handle(), 0, ZMQ_POLLIN, 0}};
+  zmq::poll(items, 2, std::chrono::ceil<std::chrono::milliseconds>(untilDue()));
+  if (items[0].revents & ZMQ_POLLIN) answer();
+  if (items[1].revents & ZMQ_POLLIN) admit();
+  publishDue();
+}
+
+// As Relay does with the public sockets' files.
+void StatusServer::bindAgainWhereGone() {
+  const Timestamp now = clock_.now();
+  if (now - looked_ < kLook) return;
+  looked_ = now;
+  for (auto& [socket, path] : sockets_->bound) {
+    if (isThere(path)) continue;
+    std::error_code ignored;
+    std::filesystem::create_directories(std::filesystem::path(path).parent_path(), ignored);
+    const Umask umask;
+    socket->unbind("ipc://" + path);
+    socket->bind("ipc://" + path);
+    logWarning("status of the {}: the socket {} was removed and is there again", settings_.name,
+               path);
   }
 }
 
@@ -165,10 +268,23 @@ void StatusServer::publishDue() {
   }
 }
 
+// All parts of a request are taken, so that the socket may answer.
 void StatusServer::answer() {
   zmq::message_t request;
   if (!sockets_->replier.recv(request, zmq::recv_flags::dontwait)) return;
-  const std::string text = reply({static_cast<const char*>(request.data()), request.size()});
+  bool parts = false;
+  for (bool more = request.more(); more; parts = true) {
+    zmq::message_t part;
+    if (!sockets_->replier.recv(part, zmq::recv_flags::dontwait)) break;
+    more = part.more();
+  }
+  std::string text;
+  try {
+    text = parts ? failure("a request is one part; this one had several")
+                 : reply(request.to_string_view());
+  } catch (const std::exception& e) {  // an answer there has to be, or the socket takes no more
+    text = failure(e.what());
+  }
   sockets_->replier.send(zmq::buffer(text), zmq::send_flags::none);
 }
 

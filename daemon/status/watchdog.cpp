@@ -2,12 +2,15 @@
 
 namespace merlin::status {
 
-bool Watchdog::ping(Timestamp now, std::span<const std::uint64_t> counters) {
+bool Watchdog::ping(Timestamp now, const std::vector<ThreadState>& threads) {
   if (interval_ == Duration::zero() || now - last_ < interval_) return false;
-  for (std::size_t i = 0; i < seen_.size() && i < counters.size(); ++i) {
-    if (counters[i] <= seen_[i]) return false;
+  for (const ThreadState& thread : threads) {
+    const auto seen = seen_.find(thread.id);
+    const bool stands = seen != seen_.end() && thread.progress <= seen->second;
+    if (thread.ended || (stands && !thread.paused)) return false;
   }
-  seen_.assign(counters.begin(), counters.end());
+  seen_.clear();
+  for (const ThreadState& thread : threads) seen_[thread.id] = thread.progress;
   last_ = now;
   return true;
 }

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <map>
 #include <vector>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/watched_thread.h"
 
 namespace merlin::status {
 
@@ -15,14 +16,14 @@ class Watchdog {
   // `interval`: between two pings; zero: nobody watches, never ping.
   explicit Watchdog(Duration interval) : interval_(interval) {}
 
-  // True where a ping is due and each counter has grown since the last one; `counters` are the same
-  // ones, in the same order, each time.
-  bool ping(Timestamp now, std::span<const std::uint64_t> counters);
+  // True where a ping is due and each thread that was there at the last one has made progress
+  // since, or has stopped as it was asked to.
+  bool ping(Timestamp now, const std::vector<ThreadState>& threads);
 
  private:
   Duration interval_;
   Timestamp last_{};
-  std::vector<std::uint64_t> seen_;
+  std::map<std::uint64_t, std::uint64_t> seen_;  // progress by thread
 };
 
 }  // namespace merlin::status

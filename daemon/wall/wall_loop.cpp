@@ -34,6 +34,7 @@ WallLoop::WallLoop(WallParts parts)
 
 void WallLoop::run(const std::stop_token& stop, const std::function<void()>& first_frame) {
   p_.frame_clock.start(p_.clock.now(), period_);
+  bool first = true;
   for (std::int64_t k = 0; p_.frame_clock.waitFor(k, stop);) {
     const Timestamp began = p_.clock.now();
     obeyRequests();
@@ -45,7 +46,8 @@ void WallLoop::run(const std::stop_token& stop, const std::function<void()>& fir
     k = view_.moving ? movingFrame(k, began) : stillPeriod(k);
     publishTrace(p_.clock.now());
     publishStats(p_.clock.now());
-    if (periods_.fetch_add(1, std::memory_order_relaxed) == 0) first_frame();
+    if (p_.progress) p_.progress->step();
+    if (std::exchange(first, false)) first_frame();
   }
 }
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/watched_thread.h"
 #include "daemon/shm/layout.h"
 #include "daemon/wall/fade.h"
 #include "daemon/wall/frame_stats.h"
@@ -52,9 +53,10 @@ struct WallParts {
   PointerMarker* marker = nullptr;                 // who marks where the hand points; the same
   shm::SeqSlot<shm::WallHand>* hand = nullptr;     // where that is told
   int fade_frames = 1;                             // in which a finer picture replaces a coarser
+  Progress* progress = nullptr;                    // stepped once a period; may be none
 };
 
-// Thread-bound but for request(), hold(), setRate() and periods().
+// Thread-bound but for request(), hold() and setRate().
 class WallLoop {
  public:
   explicit WallLoop(WallParts parts);
@@ -75,9 +77,6 @@ class WallLoop {
   // governor says; this rate, REQUIRES: > 0, or the configured one.
   void hold(std::optional<std::size_t> triangles) noexcept;
   void setRate(std::optional<double> rate_hz) noexcept;
-
-  // Periods that were begun, for the watchdog.
-  std::uint64_t periods() const noexcept { return periods_.load(std::memory_order_relaxed); }
 
  private:
   Timestamp deadline(std::int64_t k) const { return p_.frame_clock.deadline(k); }
@@ -138,7 +137,6 @@ class WallLoop {
   std::atomic<std::int64_t> hold_{-1};  // triangles; -1: as the governor says
   std::atomic<double> rate_hz_{0};      // 0: as configured
   std::atomic<std::uint32_t> requests_{0};
-  std::atomic<std::uint64_t> periods_{0};
 };
 
 }  // namespace merlin::wall

@@ -41,7 +41,8 @@ Result<std::vector<render::Dendrogram>> readModels(const WallSettings& wall) {
 }  // namespace
 
 Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings, std::uint64_t generation,
-                                                 const shm::Endpoints& endpoints, Clock& clock) {
+                                                 const shm::Endpoints& endpoints,
+                                                 ThreadWatch& watch, Clock& clock) {
   auto segment = shm::SegmentWriter<shm::WallSegment>::make(
       shm::segmentName(settings.instance, "wall"), shm::wallFields(), generation, clock.now(),
       endpoints);
@@ -53,7 +54,8 @@ Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings, std::
   auto scene = render::Scene::make(settings.wall.scene);
   if (!scene) return Error{scene.error().code, "/wall/scene: " + scene.error().what};
   std::unique_ptr<WallRole> role(new WallRole(settings, *std::move(models), *std::move(plan),
-                                              *std::move(scene), *std::move(segment), clock));
+                                              *std::move(scene), *std::move(segment), watch,
+                                              clock));
   auto shared = render::ShmFrameSink::make(shm::segmentName(settings.instance, "framebuffer"),
                                            role->plan_, generation);
   if (!shared) return shared.error();
@@ -67,27 +69,27 @@ Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings, std::
 
 WallRole::WallRole(const Settings& settings, std::vector<render::Dendrogram> models,
                    render::TilePlan plan, render::Scene scene,
-                   shm::SegmentWriter<shm::WallSegment> segment, Clock& clock)
+                   shm::SegmentWriter<shm::WallSegment> segment, ThreadWatch& watch, Clock& clock)
     : settings_(settings),
       models_(std::move(models)),
       plan_(std::move(plan)),
       scene_(std::move(scene)),
       governor_(settings.wall.governor),
       segment_(std::move(segment)),
+      watch_(watch),
       clock_(clock) {}
 
-WallRole::~WallRole() {
-  thread_.request_stop();
-  if (thread_.joinable()) thread_.join();
-}
+WallRole::~WallRole() { thread_.stop(); }
 
 std::future<Result<std::string>> WallRole::start() {
   auto ready = ready_.get_future();
-  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  thread_ = WatchedThread(watch_, "wall", [this](const std::stop_token& stop, Progress& progress) {
+    run(stop, progress);
+  });
   return ready;
 }
 
-void WallRole::run(const std::stop_token& stop) {
+void WallRole::run(const std::stop_token& stop, Progress& progress) {
   std::vector<std::unique_ptr<Picture>> pictures;
   std::vector<Content> contents;
   for (const render::Dendrogram& model : models_) {
@@ -112,7 +114,8 @@ void WallRole::run(const std::stop_token& stop) {
   PointerMarker marker(plan_);
   render::TimerFrameClock frame_clock(clock_);
   WallLoop loop({contents, scene_, governor_, feed, sinks, segment_->stats, clock_, frame_clock,
-                 &segment_->trace, &marker, &segment_->hand, settings_.wall.render.fade_frames});
+                 &segment_->trace, &marker, &segment_->hand, settings_.wall.render.fade_frames,
+                 &progress});
   loop.calibrate();
   loop_.store(&loop);
   loop.run(stop, [&] { ready_.set_value(pictures.front()->contexts()->renderer()); });
@@ -129,11 +132,6 @@ void WallRole::hold(std::optional<std::size_t> triangles) {
 
 void WallRole::setRate(std::optional<double> rate_hz) {
   if (WallLoop* loop = loop_.load()) loop->setRate(rate_hz);
-}
-
-std::uint64_t WallRole::periods() const {
-  const WallLoop* loop = loop_.load();
-  return loop ? loop->periods() : 0;
 }
 
 }  // namespace merlin::wall

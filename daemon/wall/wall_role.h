@@ -5,11 +5,11 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "config/settings.h"
 #include "daemon/base/clock.h"
+#include "daemon/base/watched_thread.h"
 #include "daemon/shm/segment.h"
 #include "daemon/wall/device_feed.h"
 #include "daemon/wall/picture.h"
@@ -23,7 +23,8 @@ class WallRole {
   // Loads the models and makes the segments; nothing runs yet. Errors: what is wrong with a
   // model's file or the wall's settings; kBusy (a living daemon has the segments), kIo.
   static Result<std::unique_ptr<WallRole>> make(const Settings& settings, std::uint64_t generation,
-                                                const shm::Endpoints& endpoints, Clock& clock);
+                                                const shm::Endpoints& endpoints, ThreadWatch& watch,
+                                                Clock& clock);
   ~WallRole();  // stops and joins the wall's thread
   WallRole(const WallRole&) = delete;
   WallRole& operator=(const WallRole&) = delete;
@@ -39,12 +40,12 @@ class WallRole {
 
   void beat(Timestamp now) const { segment_.beat(now); }
   const shm::WallSegment& segment() const { return *segment_; }
-  std::uint64_t periods() const;
 
  private:
   WallRole(const Settings& settings, std::vector<render::Dendrogram> models, render::TilePlan plan,
-           render::Scene scene, shm::SegmentWriter<shm::WallSegment> segment, Clock& clock);
-  void run(const std::stop_token& stop);
+           render::Scene scene, shm::SegmentWriter<shm::WallSegment> segment, ThreadWatch& watch,
+           Clock& clock);
+  void run(const std::stop_token& stop, Progress& progress);
 
   Settings settings_;
   std::vector<render::Dendrogram> models_;
@@ -52,11 +53,12 @@ class WallRole {
   render::Scene scene_;
   render::Governor governor_;
   shm::SegmentWriter<shm::WallSegment> segment_;
+  ThreadWatch& watch_;
   Clock& clock_;
   std::vector<std::unique_ptr<render::FrameSink>> sinks_;
   std::promise<Result<std::string>> ready_;
   std::atomic<WallLoop*> loop_{nullptr};
-  std::jthread thread_;
+  WatchedThread thread_;
 };
 
 }  // namespace merlin::wall

@@ -32,9 +32,10 @@ PanelLoop::PanelLoop(const GpioSettings& settings, GpioOpener open, GpioSink sin
   setText(health_.port, settings.chip);
 }
 
-void PanelLoop::run(const std::stop_token& stop) {
+void PanelLoop::run(const std::stop_token& stop, const std::function<void()>& alive) {
   while (!stop.stop_requested()) {
-    const Error end = serve(stop);
+    alive();
+    const Error end = serve(stop, alive);
     if (stop.stop_requested()) break;
     {
       const std::lock_guard lock(mutex_);
@@ -46,7 +47,7 @@ void PanelLoop::run(const std::stop_token& stop) {
   report(HealthState::kAbsent, "stopped");
 }
 
-Error PanelLoop::serve(const std::stop_token& stop) {
+Error PanelLoop::serve(const std::stop_token& stop, const std::function<void()>& alive) {
   auto lines = open_();
   if (!lines) return lines.error();
   {
@@ -56,6 +57,7 @@ Error PanelLoop::serve(const std::stop_token& stop) {
   fresh_ = true;
   report(HealthState::kOk, "");
   while (!stop.stop_requested()) {
+    alive();
     const auto pressed = (*lines)->read(settings_.button_line);
     if (!pressed) return pressed.error();
     bool press = false;

@@ -23,14 +23,16 @@ class PanelLoop {
   PanelLoop(const GpioSettings& settings, GpioOpener open, GpioSink sink, HealthSink& health,
             Clock& clock, std::function<void(const std::string&)> on_press);
 
-  // Until `stop`, then everything off but the projectors: they keep what they have.
-  void run(const std::stop_token& stop);
+  // Until `stop`, then everything off but the projectors: they keep what they have. `alive` is
+  // called several times a second.
+  void run(
+      const std::stop_token& stop, const std::function<void()>& alive = [] {});
 
   // As Panel::obey, from any thread; is seen by the lines within 50 ms. kIo while the chip is lost.
   Result<Ok> obey(const std::string& command);
 
  private:
-  Error serve(const std::stop_token& stop);
+  Error serve(const std::stop_token& stop, const std::function<void()>& alive);
   Result<Ok> apply(GpioLines& lines);
   void report(HealthState state, const std::string& reason);
 

@@ -29,10 +29,11 @@ DeviceLoop::DeviceLoop(DeviceLoopSettings settings, StreamOpener open_stream,
   setText(health_.port, settings_.port);
 }
 
-void DeviceLoop::run(const std::stop_token& stop) {
+void DeviceLoop::run(const std::stop_token& stop, const std::function<void()>& alive) {
   enter(HealthState::kAbsent, "not opened yet");
   Duration retry = settings_.first_retry;
   while (!stop.stop_requested()) {
+    alive();
     opened_ = streamed_ = false;
     const Error end = serve(stop);
     if (stop.stop_requested()) break;

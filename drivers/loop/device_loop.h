@@ -1,6 +1,7 @@
 // DeviceLoop: keeps one device alive and publishing, whatever happens to its line.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <stop_token>
 #include <string>
@@ -30,7 +31,10 @@ class DeviceLoop {
 
   // Opens, talks, polls, backs off and starts again, until `stop`; returns within about 50 ms of
   // it. Blocks no other device: it shares nothing with them.
-  void run(const std::stop_token& stop);
+  // `alive` is called several times a second while it waits to try again; while a port is open, its
+  // stream sees the progress.
+  void run(
+      const std::stop_token& stop, const std::function<void()>& alive = [] {});
 
  private:
   // One connection, from opening the port to losing it; returns why it ended.

@@ -3,6 +3,7 @@
 #include "daemon/status/sample_link.h"
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 
 #include "daemon/status/documents.h"
@@ -140,13 +141,23 @@ struct Devices {
     s.publications = {{"sample", std::chrono::milliseconds(10),
                        [this] { return newestSamples(*segment, clock.now()); }}};
     s.events = [] { return std::vector<std::string>(); };
-    auto started = StatusServer::start(std::move(s), clock);
+    auto started = StatusServer::start(std::move(s), threads, clock);
     EXPECT_TRUE(started) << started.error().what;
-    if (started) server = *std::move(started);
+    if (!started) return;
+    server = *std::move(started);
+    auto relay = server->startSamples(threads);
+    EXPECT_TRUE(relay) << relay.error().what;
+    if (relay) samples = *std::move(relay);
+  }
+  void stop() {
+    samples.reset();
+    server.reset();
   }
   SystemClock clock;
+  ThreadWatch threads;
   std::unique_ptr<shm::DevicesSegment> segment;
   std::unique_ptr<StatusServer> server;
+  std::unique_ptr<net::Server> samples;  // stands on `server`
 };
 
 HealthState ballOf(const shm::DevicesSegment& segment) {
@@ -159,12 +170,13 @@ TEST(SampleLink, FollowsSaysWhenItIsGoneAndComesBackByItself) {
   const int port = 20000 + ::getpid() % 20000;
   const KeyPair server = *makeKeyPair(), client = *makeKeyPair();
   const SystemClock clock;
+  ThreadWatch threads;
   const auto here = std::make_unique<shm::DevicesSegment>();
   SampleLinkSettings settings;
   settings.endpoint = "tcp://127.0.0.1:" + std::to_string(port);
   settings.server_key = server.public_key;
   settings.keys = client;
-  const auto link = SampleLink::start(settings, *here, clock);
+  const auto link = SampleLink::start(settings, *here, threads, clock);
   ASSERT_TRUE(link) << link.error().what;
   ASSERT_TRUE(test::eventually([&] { return here->health[shm::kBall].read().has_value(); }));
   EXPECT_NE(std::string(here->health[shm::kBall].read()->reason).find("yet"), std::string::npos);
@@ -172,7 +184,7 @@ TEST(SampleLink, FollowsSaysWhenItIsGoneAndComesBackByItself) {
     Devices devices(dir, port, server, {client.public_key});
     ASSERT_TRUE(test::eventually([&] { return ballOf(*here) == HealthState::kOk; })) << times;
     EXPECT_EQ(here->ball.newest()->buttons, 0x101u);
-    devices.server.reset();
+    devices.stop();
     ASSERT_TRUE(test::eventually([&] { return ballOf(*here) == HealthState::kAbsent; }));
     EXPECT_EQ(std::string(here->health[shm::kBall].read()->reason),
               "no word from " + settings.endpoint + ": the link is gone");
@@ -184,25 +196,78 @@ TEST(SampleLink, AStrangersKeyHearsNothing) {
   const int port = 20000 + (::getpid() + 7919) % 20000;
   const KeyPair server = *makeKeyPair(), friends = *makeKeyPair(), stranger = *makeKeyPair();
   const SystemClock clock;
+  ThreadWatch threads;
   const auto theirs = std::make_unique<shm::DevicesSegment>();
   const auto ours = std::make_unique<shm::DevicesSegment>();
   Devices devices(dir, port, server, {friends.public_key});
   const std::string endpoint = "tcp://127.0.0.1:" + std::to_string(port);
-  const auto bad = SampleLink::start({endpoint, server.public_key, stranger}, *theirs, clock);
-  const auto good = SampleLink::start({endpoint, server.public_key, friends}, *ours, clock);
+  const auto bad =
+      SampleLink::start({endpoint, server.public_key, stranger}, *theirs, threads, clock);
+  const auto good =
+      SampleLink::start({endpoint, server.public_key, friends}, *ours, threads, clock);
   ASSERT_TRUE(bad && good);
   ASSERT_TRUE(test::eventually([&] { return ours->ball.count() > 0; }));
   EXPECT_EQ(theirs->ball.count(), 0u);
 }
 
+// The natural order of an installation: our key is listed after we first asked.
+TEST(SampleLink, AKeyThatIsListedLaterIsHeardAfterTheOthersRestart) {
+  const test::TempDir dir;
+  const int port = 20000 + (::getpid() + 3571) % 20000;
+  const KeyPair server = *makeKeyPair(), ours = *makeKeyPair(), other = *makeKeyPair();
+  const SystemClock clock;
+  ThreadWatch threads;
+  const auto here = std::make_unique<shm::DevicesSegment>();
+  SampleLinkSettings settings{"tcp://127.0.0.1:" + std::to_string(port), server.public_key, ours};
+  settings.renew_after = settings.renew_at_most = std::chrono::milliseconds(300);
+  auto devices = std::make_unique<Devices>(dir, port, server, std::vector{other.public_key});
+  const auto link = SampleLink::start(settings, *here, threads, clock);
+  ASSERT_TRUE(link) << link.error().what;
+  // Refused at least once, as the peer's doorman says.
+  ASSERT_TRUE(test::eventually([&] { return devices->samples->report().accepted > 0; }));
+  devices->stop();
+  devices = std::make_unique<Devices>(dir, port, server, std::vector{ours.public_key});
+  EXPECT_TRUE(test::eventually([&] { return ballOf(*here) == HealthState::kOk; }));
+}
+
+TEST(SampleLink, ComesBackAfterAnotherProgramAnsweredOnThePort) {
+  const test::TempDir dir;
+  const int port = 20000 + (::getpid() + 4567) % 20000;
+  const KeyPair server = *makeKeyPair(), ours = *makeKeyPair();
+  const SystemClock clock;
+  ThreadWatch threads;
+  const auto here = std::make_unique<shm::DevicesSegment>();
+  SampleLinkSettings settings{"tcp://127.0.0.1:" + std::to_string(port), server.public_key, ours};
+  settings.renew_after = settings.renew_at_most = std::chrono::milliseconds(300);
+  auto listener = net::listenTcp("127.0.0.1", port);
+  ASSERT_TRUE(listener) << listener.error().what;
+  const auto link = SampleLink::start(settings, *here, threads, clock);
+  ASSERT_TRUE(link) << link.error().what;
+  UniqueFd web;
+  ASSERT_TRUE(test::eventually([&] {
+    web.reset(::accept(listener->get(), nullptr, nullptr));
+    return web.valid();
+  }));
+  const std::string answer =
+      "HTTP/1.1 400 Bad Request\r\nConnection: close\r\n\r\n" + std::string(200, ' ');
+  ASSERT_GT(::send(web.get(), answer.data(), answer.size(), MSG_NOSIGNAL), 0);
+  web.reset();
+  listener->reset();
+  Devices devices(dir, port, server, {ours.public_key});
+  EXPECT_TRUE(test::eventually([&] { return ballOf(*here) == HealthState::kOk; }));
+}
+
 TEST(SampleLink, SaysThatAKeyOrAnAddressIsNone) {
   const auto here = std::make_unique<shm::DevicesSegment>();
   const SystemClock clock;
+  ThreadWatch threads;
   const KeyPair keys = *makeKeyPair();
-  EXPECT_EQ(SampleLink::start({"tcp://127.0.0.1:1", "short", keys}, *here, clock).error().code,
-            Errc::kInvalidArgument);
-  EXPECT_EQ(SampleLink::start({"nonsense", keys.public_key, keys}, *here, clock).error().code,
-            Errc::kInvalidArgument);
+  EXPECT_EQ(
+      SampleLink::start({"tcp://127.0.0.1:1", "short", keys}, *here, threads, clock).error().code,
+      Errc::kInvalidArgument);
+  EXPECT_EQ(
+      SampleLink::start({"nonsense", keys.public_key, keys}, *here, threads, clock).error().code,
+      Errc::kInvalidArgument);
 }
 
 }  // namespace

@@ -1,8 +1,11 @@
 #include <atomic>
+#include <filesystem>
 #include <thread>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <zmq.hpp>
 
 #include "daemon/status/client.h"
@@ -11,11 +14,13 @@
 #include "daemon/status/run_directory.h"
 #include "daemon/status/server.h"
 #include "daemon/status/watchdog.h"
+#include "tests/support/eventually.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::status {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -177,7 +182,7 @@ class ServerTest : public testing::Test {
       return events_-- > 0 ? std::vector<std::string>{R"({"kind":"x"})"}
                            : std::vector<std::string>();
     };
-    auto started = StatusServer::start(std::move(settings), clock_);
+    auto started = StatusServer::start(std::move(settings), threads_, clock_);
     ASSERT_TRUE(started) << started.error().what;
     server_ = *std::move(started);
   }
@@ -196,6 +201,7 @@ class ServerTest : public testing::Test {
   test::TempDir dir_;
   std::string status_ = "ipc://" + dir_ / "s", command_ = "ipc://" + dir_ / "c";
   SystemClock clock_;
+  ThreadWatch threads_;
   std::atomic<int> events_{1'000'000};
   std::unique_ptr<StatusServer> server_;
 };
@@ -247,11 +253,10 @@ TEST_F(ServerTest, PublishesTopics) {
                                });
   EXPECT_TRUE(followed);
   EXPECT_TRUE(status && event);
-  EXPECT_GT(server_->rounds(), 0u);
+  EXPECT_GT(threads_.threads().back().progress, 0u);
 }
 
 TEST_F(ServerTest, SocketsAreForUserAndGroupOnly) {
-  namespace fs = std::filesystem;
   for (const char* name : {"s", "c"}) {
     const auto mode = fs::status(dir_ / name).permissions();
     EXPECT_EQ(mode & fs::perms::others_all, fs::perms::none);
@@ -259,12 +264,128 @@ TEST_F(ServerTest, SocketsAreForUserAndGroupOnly) {
   }
 }
 
+// ---- what strangers send
+
+// A connection of no library's.
+UniqueFd rawConnection(const std::string& endpoint) {
+  UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  endpoint.substr(6).copy(address.sun_path, sizeof address.sun_path - 1);
+  if (::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    fd.reset();
+  timeval patience{10, 0};
+  ::setsockopt(fd.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  return fd;
+}
+
+void sendRaw(const UniqueFd& fd, const std::string& bytes) {
+  (void)::send(fd.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+}
+
+// Whether the other side closes it, whatever it says before.
+bool isClosed(const UniqueFd& fd) {
+  char bytes[4096];
+  for (;;) {
+    const ssize_t n = ::recv(fd.get(), bytes, sizeof bytes, 0);
+    if (n == 0 || (n < 0 && errno == ECONNRESET)) return true;
+    if (n < 0) return false;
+  }
+}
+
+const std::string kGreeting =
+    std::string("\xff\0\0\0\0\0\0\0\1\x7f\3\0NULL", 16) + std::string(48, '\0');
+
+TEST_F(ServerTest, ATwoPartRequestIsRefusedAndTheNextOneAnswered) {
+  for (int i = 0; i < 3; ++i) {
+    zmq::context_t context;
+    zmq::socket_t socket(context, zmq::socket_type::req);
+    socket.set(zmq::sockopt::linger, 0);
+    socket.set(zmq::sockopt::rcvtimeo, 200);
+    socket.connect(command_);
+    socket.send(zmq::str_buffer("a"), zmq::send_flags::sndmore);
+    socket.send(zmq::str_buffer("b"), zmq::send_flags::none);
+    zmq::message_t answer;
+    EXPECT_FALSE(socket.recv(answer));
+    EXPECT_TRUE(ask(command_, "status", seconds(10)));
+  }
+  EXPECT_TRUE(test::eventually([&] { return server_->reports()[0].broken >= 3; }));
+  EXPECT_NE(server_->reports()[0].last.find("more than 2 parts"), std::string::npos);
+  for (const ThreadState& thread : threads_.threads()) EXPECT_FALSE(thread.ended) << thread.name;
+}
+
+TEST_F(ServerTest, NoiseIsClosedAndEndsNothing) {
+  std::uint64_t state = 1;
+  for (int i = 0; i < 600; ++i) {
+    std::string noise;
+    for (int k = 0; k < 300; ++k) {
+      state = state * 6364136223846793005U + 1442695040888963407U;
+      noise.push_back(static_cast<char>(state >> 56));
+    }
+    const UniqueFd fd = rawConnection(i % 2 ? command_ : status_);
+    if (fd.valid()) sendRaw(fd, noise);
+  }
+  EXPECT_TRUE(test::eventually([&] { return ask(command_, "status", seconds(1)).ok(); }));
+  for (const ThreadState& thread : threads_.threads()) EXPECT_FALSE(thread.ended) << thread.name;
+}
+
+TEST_F(ServerTest, AFrameThatIsDeclaredTooLongIsClosedBeforeItComes) {
+  for (const std::string& endpoint : {status_, command_}) {
+    const UniqueFd fd = rawConnection(endpoint);
+    ASSERT_TRUE(fd.valid());
+    sendRaw(fd, kGreeting + std::string("\6\0\0\0\0\x80\0\0\0", 9));
+    EXPECT_TRUE(isClosed(fd)) << endpoint;
+  }
+  EXPECT_NE(server_->reports()[1].last.find("a frame of 2147483648 bytes; at most 1024 are taken"),
+            std::string::npos)
+      << server_->reports()[1].last;
+}
+
+TEST_F(ServerTest, SubscriptionsAreBounded) {
+  zmq::context_t context;
+  zmq::socket_t socket(context, zmq::socket_type::sub);
+  socket.set(zmq::sockopt::linger, 0);
+  socket.set(zmq::sockopt::reconnect_ivl, -1);
+  socket.connect(status_);
+  for (int i = 0; i < 40; ++i)
+    socket.set(zmq::sockopt::subscribe, std::string(200, static_cast<char>('a' + i)));
+  EXPECT_TRUE(test::eventually([&] { return server_->reports()[1].broken == 1; }));
+  EXPECT_NE(server_->reports()[1].last.find("subscriptions of more than 4096 bytes"),
+            std::string::npos)
+      << server_->reports()[1].last;
+}
+
+TEST_F(ServerTest, StrangersWhoHoldEveryPlaceDoNotKeepOthersOut) {
+  std::vector<UniqueFd> silent;
+  for (int i = 0; i < 200; ++i) {
+    silent.push_back(rawConnection(command_));
+    if (i % 2 && silent.back().valid()) sendRaw(silent.back(), kGreeting);
+  }
+  EXPECT_TRUE(ask(command_, "status", seconds(5))) << "within five seconds";
+  EXPECT_LE(server_->reports()[0].connections, 32U);
+  EXPECT_GE(server_->reports()[0].sentAway(), 150U);
+}
+
+TEST_F(ServerTest, SocketsThatAreRemovedAreThereAgain) {
+  for (const char* name : {"s", "c", "s.inner", "c.inner"}) fs::remove(dir_ / name);
+  EXPECT_TRUE(test::eventually([&] {
+    return fs::exists(dir_ / "c") && fs::exists(dir_ / "c.inner") &&
+           ask(command_, "status", seconds(1)).ok();
+  }));
+}
+
+TEST_F(ServerTest, ACleanStopLeavesNoSocket) {
+  server_.reset();
+  EXPECT_TRUE(fs::is_empty(dir_.path()));
+}
+
 TEST(Server, AnEndpointThatCannotBeBoundIsNamed) {
   StatusServerSettings settings;
   settings.status_endpoint = "ipc:///no/such/folder/s";
   settings.events = [] { return std::vector<std::string>(); };
   const SystemClock clock;
-  const auto started = StatusServer::start(std::move(settings), clock);
+  ThreadWatch threads;
+  const auto started = StatusServer::start(std::move(settings), threads, clock);
   ASSERT_FALSE(started);
   EXPECT_NE(started.error().what.find("ipc:///no/such/folder/s"), std::string::npos);
 }
@@ -280,18 +401,33 @@ TEST(Client, ASilentDaemonIsATimeOut) {
       Errc::kTimeout);
 }
 
-TEST(Watchdog, PingsOnlyWhileEachCounterGrows) {
+TEST(Watchdog, PingsOnlyWhileEachThreadMakesProgress) {
   Watchdog watchdog(seconds(2));
-  const auto ping = [&](int at, std::vector<std::uint64_t> counters) {
-    return watchdog.ping(kNow + seconds(at), counters);
+  const auto ping = [&](int at, std::uint64_t first, std::uint64_t second) {
+    return watchdog.ping(kNow + seconds(at), {{1, "first", first, false, false, ""},
+                                              {2, "second", second, false, false, ""}});
   };
-  EXPECT_TRUE(ping(0, {0, 0}));
-  EXPECT_FALSE(ping(1, {5, 5})) << "not due";
-  EXPECT_TRUE(ping(2, {5, 5}));
-  EXPECT_FALSE(ping(4, {1000, 5})) << "the second one is stuck, whatever the first does";
-  EXPECT_FALSE(ping(6, {2000, 5}));
-  EXPECT_TRUE(ping(8, {2001, 6}));
+  EXPECT_TRUE(ping(0, 0, 0));
+  EXPECT_FALSE(ping(1, 5, 5)) << "not due";
+  EXPECT_TRUE(ping(2, 5, 5));
+  EXPECT_FALSE(ping(4, 1000, 5)) << "the second one is stuck, whatever the first does";
+  EXPECT_FALSE(ping(6, 2000, 5));
+  EXPECT_TRUE(ping(8, 2001, 6));
   EXPECT_FALSE(Watchdog(Duration::zero()).ping(kNow, {}));
+}
+
+TEST(Watchdog, KnowsThreadsThatPauseEndStopAndStart) {
+  Watchdog watchdog(seconds(2));
+  ThreadState a{1, "a", 7, false, false, ""}, b{2, "b", 7, false, false, ""};
+  EXPECT_TRUE(watchdog.ping(kNow, {a, b}));
+  a.progress = 8;
+  b.paused = true;
+  EXPECT_TRUE(watchdog.ping(kNow + seconds(2), {a, b})) << "in a call that may take long";
+  a.progress = 9;
+  EXPECT_TRUE(watchdog.ping(kNow + seconds(4), {a, {3, "c", 0, false, false, ""}}))
+      << "b was stopped, c is new";
+  a.progress = 10;
+  EXPECT_FALSE(watchdog.ping(kNow + seconds(6), {a, {3, "c", 5, false, true, "gone"}}));
 }
 
 TEST(RunDirectory, IsMadeAndRefusedWhereItIsNotOurs) {

@@ -41,13 +41,11 @@ TEST(VrpnProtocol, ASenderIsDescribedByItsName) {
             "000000256553F1000000000000000001FFFFFFFF00000007"
             "000000094661737472616B3000"
             "000000");
-  std::string input = bytes;
-  bool broken = false;
-  const auto back = takeVrpn(input, broken);
-  ASSERT_TRUE(back);
-  EXPECT_TRUE(input.empty());
-  EXPECT_EQ(back->sequence, 7u);
-  EXPECT_EQ(readVrpnName(back->payload), "Fastrak0");
+  const VrpnFront back = readVrpn(bytes);
+  ASSERT_TRUE(back.message);
+  EXPECT_EQ(back.bytes, bytes.size());
+  EXPECT_EQ(back.message->sequence, 7u);
+  EXPECT_EQ(readVrpnName(back.message->payload), "Fastrak0");
 }
 
 TEST(VrpnProtocol, APoseIsSevenDoubles) {
@@ -80,16 +78,20 @@ TEST(VrpnProtocol, EveryPrefixWaitsAndEveryBadLengthIsSaid) {
   VrpnMessage m;
   m.payload = vrpnName("x");
   const std::string whole = encodeVrpn(m);
-  bool broken = false;
   for (std::size_t n = 0; n < whole.size(); ++n) {
-    std::string part = whole.substr(0, n);
-    EXPECT_FALSE(takeVrpn(part, broken)) << n;
-    EXPECT_FALSE(broken);
+    const VrpnFront front = readVrpn(whole.substr(0, n));
+    EXPECT_FALSE(front.message) << n;
+    EXPECT_FALSE(front.broken);
   }
+  EXPECT_EQ(readVrpn(whole + "more").bytes, whole.size());
   std::string wild = whole;
   wild[0] = '\x7F';
-  EXPECT_FALSE(takeVrpn(wild, broken));
-  EXPECT_TRUE(broken);
+  EXPECT_TRUE(readVrpn(wild).broken);
+  VrpnMessage longest;
+  longest.payload.resize(kVrpnLongest - 24);
+  EXPECT_FALSE(readVrpn(encodeVrpn(longest).substr(0, 100)).broken);
+  longest.payload.resize(kVrpnLongest - 23);
+  EXPECT_TRUE(readVrpn(encodeVrpn(longest).substr(0, 100)).broken);
   for (std::size_t n = 0; n < 12; ++n) (void)readVrpnName(whole.substr(24, n));
 }
 
@@ -118,13 +120,15 @@ struct Client {
   }
   // The next message of a type of that name, by what the server described.
   std::optional<VrpnMessage> next(const std::string& type) {
-    for (bool broken = false; !broken;) {
+    for (VrpnFront front; !front.broken;) {
       if (!cookie_seen && input.size() >= 24) {
         EXPECT_TRUE(vrpnCookieFits(input.substr(0, 24)));
         input.erase(0, 24);
         cookie_seen = true;
       }
-      auto m = cookie_seen ? takeVrpn(input, broken) : std::nullopt;
+      front = cookie_seen ? readVrpn(input) : VrpnFront{};
+      const auto m = front.message;
+      input.erase(0, front.bytes);
       if (!m) {
         char buffer[4096];
         const ssize_t n = ::recv(fd.get(), buffer, sizeof buffer, 0);
@@ -185,8 +189,9 @@ void checkSamples(Client& client, shm::DevicesSegment& segment) {
 
 TEST(VrpnServer, ServesAClientThatConnects) {
   const SystemClock clock;
+  ThreadWatch threads;
   const auto segment = std::make_unique<shm::DevicesSegment>();
-  const auto server = VrpnServer::start(0, *segment, clock);
+  const auto server = VrpnServer::start(0, *segment, threads, clock);
   ASSERT_TRUE(server) << server.error().what;
   const sockaddr_in address = loopback((*server)->port());
   UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
@@ -197,8 +202,9 @@ TEST(VrpnServer, ServesAClientThatConnects) {
 
 TEST(VrpnServer, ConnectsBackToAClientThatAsksByUdp) {
   const SystemClock clock;
+  ThreadWatch threads;
   const auto segment = std::make_unique<shm::DevicesSegment>();
-  const auto server = VrpnServer::start(0, *segment, clock);
+  const auto server = VrpnServer::start(0, *segment, threads, clock);
   ASSERT_TRUE(server) << server.error().what;
   const UniqueFd listener(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in here = loopback(0);
@@ -216,12 +222,72 @@ TEST(VrpnServer, ConnectsBackToAClientThatAsksByUdp) {
   checkSamples(client, *segment);
 }
 
+UniqueFd connectedTo(const VrpnServer& server) {
+  UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const sockaddr_in address = loopback(server.port());
+  if (::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    fd.reset();
+  return fd;
+}
+
+TEST(VrpnServer, AClientHearsOfAButtonThatIsHeldAlready) {
+  const SystemClock clock;
+  ThreadWatch threads;
+  const auto segment = std::make_unique<shm::DevicesSegment>();
+  BallSample ball{};
+  ball.buttons = 5;
+  segment->ball.publish(ball);
+  const auto server = VrpnServer::start(0, *segment, threads, clock);
+  ASSERT_TRUE(server) << server.error().what;
+  Client client(::dup(connectedTo(**server).get()));
+  const auto states = client.next("vrpn_Button States");
+  ASSERT_TRUE(states);
+  EXPECT_EQ(hex(states->payload.substr(0, 16)), "0000000C000000010000000000000001");
+}
+
+// Each of its messages is well-formed; it is read at its pace, and others are served meanwhile.
+TEST(VrpnServer, AFloodOfOneClientNeitherGrowsNorKeepsAnyoneWaiting) {
+  const SystemClock clock;
+  ThreadWatch threads;
+  const auto segment = std::make_unique<shm::DevicesSegment>();
+  auto server = VrpnServer::start(0, *segment, threads, clock);
+  ASSERT_TRUE(server) << server.error().what;
+  const UniqueFd flood = connectedTo(**server);
+  VrpnMessage empty;
+  empty.type = 999;
+  std::string bytes = vrpnCookie();
+  while (bytes.size() < 1 << 20) bytes += encodeVrpn(empty);
+  std::size_t taken = 0;
+  for (int i = 0; i < 64; ++i) {
+    const ssize_t n = ::send(flood.get(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (n > 0) taken += static_cast<std::size_t>(n);
+  }
+  EXPECT_LT(taken, std::size_t{16} << 20) << "what sockets hold, not more";
+  Client other(::dup(connectedTo(**server).get()));
+  checkSamples(other, *segment);
+  server->reset();  // ends at once, or the test does not
+}
+
+TEST(VrpnServer, SilentClientsGiveTheirPlacesUp) {
+  const SystemClock clock;
+  ThreadWatch threads;
+  const auto segment = std::make_unique<shm::DevicesSegment>();
+  const auto server = VrpnServer::start(0, *segment, threads, clock);
+  ASSERT_TRUE(server) << server.error().what;
+  std::vector<UniqueFd> silent;
+  for (int i = 0; i < 16; ++i) silent.push_back(connectedTo(**server));
+  EXPECT_TRUE(test::eventually([&] { return (*server)->report().silent >= 12; }));
+  Client client(::dup(connectedTo(**server).get()));
+  checkSamples(client, *segment);
+}
+
 TEST(VrpnServer, APortThatIsTakenIsRefused) {
   const SystemClock clock;
+  ThreadWatch threads;
   const auto segment = std::make_unique<shm::DevicesSegment>();
-  const auto first = VrpnServer::start(0, *segment, clock);
+  const auto first = VrpnServer::start(0, *segment, threads, clock);
   ASSERT_TRUE(first);
-  const auto second = VrpnServer::start((*first)->port(), *segment, clock);
+  const auto second = VrpnServer::start((*first)->port(), *segment, threads, clock);
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, Errc::kBusy);
 }

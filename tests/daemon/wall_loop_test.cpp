@@ -88,14 +88,17 @@ TEST_F(WallLoopTest, TheFirstFrameAfterMotionResumesIsInTime) {
 
 TEST_F(WallLoopTest, ARequestIsDoneBeforeTheNextFrame) {
   feed_.pushed = false;
-  WallLoop loop(parts());
+  Progress progress;
+  WallParts with_progress = parts();
+  with_progress.progress = &progress;
+  WallLoop loop(with_progress);
   feed_.on_begin = [&](Timestamp) {
     if (feed_.begins.size() == 3) loop.request(WallLoop::kNextMode);
     if (feed_.begins.size() == 5) stop_.request_stop();
   };
   loop.run(stop_.get_token(), [] {});
   EXPECT_STREQ(stats().mode, "fly");
-  EXPECT_GE(loop.periods(), 5u);
+  EXPECT_GE(progress.count(), 5u);
 }
 
 TEST_F(WallLoopTest, StopsAtOnce) {

@@ -1,12 +1,16 @@
 // Our space-mouse socket against Debian's libspnav, the real one; and its protocol by the byte.
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <thread>
 
 #include <gtest/gtest.h>
 #include <spnav.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "daemon/serve/spnav_server.h"
 #include "tests/support/eventually.h"
@@ -38,7 +42,7 @@ std::string bytesOf(const std::string& text) {  // hex, blanks ignored
 
 std::string feed(SpnavClient& client, const std::string& bytes) {
   std::string out;
-  client.receive(std::as_bytes(std::span(bytes)), out);
+  client.receive(bytes, 100, out);
   return out;
 }
 
@@ -57,13 +61,44 @@ TEST(SpnavProtocol, VersionOneIsEchoedAndAnswersRequests) {
   const std::string axes = bytesOf("0220AA7F") + std::string(28, '\0');
   std::string answer = bytesOf("0220AA7F 06000000") + std::string(24, '\0');
   EXPECT_EQ(feed(client, axes), answer);
-  std::string in_parts;
-  for (const char c : axes) in_parts += feed(client, std::string(1, c));
-  EXPECT_EQ(in_parts, answer);
+  std::string out;
+  for (std::size_t n = 0; n < axes.size(); ++n)
+    EXPECT_EQ(client.receive(axes.substr(0, n), 100, out).bytes, 0U) << "not whole";
   // a request that is not served is answered -1; setting a name is not answered
   EXPECT_EQ(feed(client, bytesOf("0030AA7F") + std::string(28, '\0')),
             bytesOf("0030AA7F") + std::string(24, '\0') + bytesOf("FFFFFFFF"));
   EXPECT_EQ(feed(client, bytesOf("0010AA7F") + std::string(28, 'x')), "");
+}
+
+// libspnav 1.0 sends the client's name without the upper half of the word.
+TEST(SpnavProtocol, ANameWithoutItsTagIsANameAndNoSensitivity) {
+  SpnavClient client({});
+  feed(client, bytesOf("0155AA7F"));
+  EXPECT_EQ(feed(client, bytesOf("00100000") + "a program's name        " + std::string(4, '\0')),
+            "");
+  std::string out;
+  client.sample(pushed({256, 0, 0, 0, 0, 0}), true, out);
+  EXPECT_EQ(out.substr(4, 4), bytesOf("00010000"));
+}
+
+TEST(SpnavProtocol, RawEventsAreToldToWhoAsksForThem) {
+  SpnavClient client({});
+  feed(client, bytesOf("0155AA7F") + bytesOf("0310AA7F 30000000") + std::string(24, '\0'));
+  std::string out;
+  client.sample(pushed({7, 0, 0, 0, 0, -1}, 2), true, out);
+  EXPECT_EQ(out, bytesOf("05000000 00000000 07000000") + std::string(20, '\0') +
+                     bytesOf("05000000 05000000 FFFFFFFF") + std::string(20, '\0') +
+                     bytesOf("06000000 01000000 01000000") + std::string(20, '\0'));
+}
+
+TEST(SpnavProtocol, TheDeviceIsTheOneThatIsThere) {
+  const SpnavDevice d = spnavDevice("Spaceball 2003, firmware 2.43", "serial:/dev/ttyS0");
+  EXPECT_EQ(d.name, "Spaceball 2003");
+  EXPECT_EQ(d.path, "/dev/ttyS0");
+  EXPECT_EQ(d.type, 0x100);
+  EXPECT_EQ(d.buttons, 9);
+  EXPECT_EQ(spnavDevice("Spaceball 4000 FLX, firmware 2.45", "pty:/x").type, 0x102);
+  EXPECT_EQ(spnavDevice("", "").name, "MERLIN ball");
 }
 
 TEST(SpnavProtocol, ALongNameComesInPieces) {
@@ -93,11 +128,13 @@ TEST(SpnavProtocol, ARestIsToldOnceAndASlowClientLosesNoButton) {
 TEST(SpnavProtocol, RandomBytesAreSurvived) {
   SpnavClient client({});
   std::string out;
+  std::string input;
   std::uint64_t state = 1;
   for (int i = 0; i < 200'000; ++i) {
     state = state * 6364136223846793005U + 1442695040888963407U;
     const std::byte b = static_cast<std::byte>(state >> 56);
-    client.receive(std::span(&b, 1), out);
+    input.push_back(static_cast<char>(b));
+    input.erase(0, client.receive(input, 100, out).bytes);
     out.clear();
   }
 }
@@ -106,26 +143,133 @@ struct Served : testing::Test {
   Served() : segment(std::make_unique<shm::DevicesSegment>()) {
     DeviceHealth health{};
     health.state = HealthState::kOk;
+    std::snprintf(health.identity, sizeof health.identity, "Spaceball 3003, firmware 2.13");
+    std::snprintf(health.port, sizeof health.port, "pty:/tmp/ball");
     segment->health[shm::kBall].publish(health);
-    auto started = SpnavServer::start(path, {}, *segment);
+    auto started = SpnavServer::start(path, *segment, threads, clock);
     EXPECT_TRUE(started) << started.error().what;
     if (started) server = *std::move(started);
     ::setenv("SPNAV_SOCKET", path.c_str(), 1);
   }
   test::TempDir dir;
   std::string path = dir / "spnav.sock";
+  SystemClock clock;
+  ThreadWatch threads;
   std::unique_ptr<shm::DevicesSegment> segment;
   std::unique_ptr<SpnavServer> server;
 };
+
+// Moves the ball a hundred times a second, as fast as one can.
+class MovingBall {
+ public:
+  explicit MovingBall(shm::DevicesSegment& segment)
+      : thread_([&segment](const std::stop_token& stop) {
+          SystemClock clock;
+          for (std::int16_t i = 1;
+               clock.sleepUntil(clock.now() + std::chrono::milliseconds(10), stop);
+               i = static_cast<std::int16_t>(i % 1000 + 1))
+            segment.ball.publish(pushed({i, 1, 1, 1, 1, 1}));
+        }) {}
+
+ private:
+  std::jthread thread_;
+};
+
+TEST_F(Served, AHundredHandshakesAndQuestionsAreRightWhileTheBallMoves) {
+  const MovingBall moving(*segment);
+  int right = 0;
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_NE(::spnav_open(), -1);
+    if (i % 2) ::spnav_client_name("a program");
+    char name[64] = "";
+    const bool asked = ::spnav_protocol() == 1 && ::spnav_dev_name(name, sizeof name) > 0 &&
+                       std::string(name) == "Spaceball 3003" && ::spnav_dev_buttons() == 3 &&
+                       ::spnav_dev_axes() == 6 && ::spnav_dev_type() == 0x101;
+    spnav_event event{};
+    const bool moved = test::eventually(
+        [&] { return ::spnav_poll_event(&event) == SPNAV_EVENT_MOTION && event.motion.x > 0; });
+    right += asked && moved;
+    ::spnav_close();
+  }
+  EXPECT_EQ(right, 100);
+}
+
+// As programs of before 2021 do: they connect and read.
+TEST_F(Served, AClientOfVersionZeroIsToldWithoutAWord) {
+  const UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM, 0));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  path.copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  const MovingBall moving(*segment);
+  std::int32_t event[8] = {};
+  ASSERT_EQ(::recv(fd.get(), event, sizeof event, MSG_WAITALL), ssize_t{sizeof event});
+  EXPECT_EQ(event[0], 0);
+  EXPECT_GT(event[1], 0);
+}
+
+// A process of its own that holds connections and says nothing, until this is destroyed.
+class SilentProcess {
+ public:
+  SilentProcess(const std::string& path, int connections) : pid_(::fork()) {
+    if (pid_ != 0) return;
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    for (int i = 0; i < connections; ++i) {
+      const int fd = ::socket(AF_UNIX, SOCK_STREAM, 0);
+      (void)::connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+    }
+    ::pause();
+    ::_exit(0);
+  }
+  ~SilentProcess() {
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+  }
+  SilentProcess(const SilentProcess&) = delete;
+  SilentProcess& operator=(const SilentProcess&) = delete;
+
+ private:
+  pid_t pid_;
+};
+
+TEST_F(Served, SilentClientsDoNotKeepOthersOut) {
+  const SilentProcess a(path, 20), b(path, 20), c(path, 20);
+  ASSERT_TRUE(test::eventually(
+      [&] { return server->report().connections == 32 && server->report().refused > 0; }));
+  // A place is given up a second after it was last used.
+  ASSERT_TRUE(test::eventually([&] {
+    const UniqueFd newcomer(::socket(AF_UNIX, SOCK_STREAM, 0));
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    (void)::connect(newcomer.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
+    return test::eventually([&] { return server->report().replaced > 0; }, std::chrono::seconds(1));
+  }));
+  ASSERT_NE(::spnav_open(), -1);
+  EXPECT_EQ(::spnav_protocol(), 1);
+  EXPECT_EQ(::spnav_dev_axes(), 6);
+  ::spnav_close();
+}
+
+TEST_F(Served, AFileThatIsNoSocketStays) {
+  const std::string file = dir / "precious";
+  test::writeText(file, "data");
+  const auto refused = SpnavServer::start(file, *segment, threads, clock);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::kInvalidArgument);
+  EXPECT_EQ(test::readText(file), "data");
+}
 
 TEST_F(Served, LibspnavSeesTheBall) {
   ASSERT_NE(::spnav_open(), -1);
   EXPECT_EQ(::spnav_protocol(), 1);
   EXPECT_EQ(::spnav_dev_axes(), 6);
-  EXPECT_EQ(::spnav_dev_buttons(), 12);
+  EXPECT_EQ(::spnav_dev_buttons(), 3);
   char name[64] = "";
   ::spnav_dev_name(name, sizeof name);
-  EXPECT_STREQ(name, "MERLIN ball");
+  EXPECT_STREQ(name, "Spaceball 3003");
   EXPECT_EQ(::spnav_dev_type(), 0x101);
   EXPECT_EQ(::spnav_client_name("test"), 0);
 
@@ -155,13 +299,14 @@ TEST_F(Served, LibspnavSeesTheBall) {
 }
 
 TEST_F(Served, ASecondServerIsRefusedAndADeadOnesSocketIsReplaced) {
-  const auto second = SpnavServer::start(path, {}, *segment);
+  const auto second = SpnavServer::start(path, *segment, threads, clock);
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, Errc::kBusy);
   server.reset();
   EXPECT_NE(::access(path.c_str(), F_OK), 0) << "gone with its server";
-  test::writeText(path, "");  // what a killed one leaves behind answers nobody
-  EXPECT_TRUE(SpnavServer::start(path, {}, *segment));
+  // What a killed one leaves behind answers nobody.
+  { const UniqueFd dead = *net::listenLocal(path, 0600); }
+  EXPECT_TRUE(SpnavServer::start(path, *segment, threads, clock));
 }
 
 }  // namespace

@@ -1,0 +1,56 @@
+// Relay: accepts clients at a public address and passes them on to a ZeroMQ socket behind it.
+//
+// libzmq accepts by itself, without a limit of connections or memory; what it cannot do is done
+// here, before it (README.md, "Why a relay"). Its own socket is bound to an inner address that only
+// the daemon's user may open.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/result.h"
+#include "daemon/base/watched_thread.h"
+#include "daemon/net/server_keeper.h"
+#include "daemon/status/zmtp_guard.h"
+
+namespace merlin::status {
+
+struct RelaySettings {
+  std::string name;      // for reports: "status of the wall"
+  std::string endpoint;  // public: "ipc://PATH" or "tcp://ADDRESS:PORT", ADDRESS an IPv4 one or '*'
+  std::string inner;     // path of the local socket that libzmq is bound to
+  net::ServerLimits limits;
+  ZmtpLimits zmtp;
+};
+
+// Owns its thread.
+class Relay final : public net::Server {
+ public:
+  // Errors: listenLocal()'s and listenTcp()'s; kInvalidArgument (not such an endpoint).
+  static Result<std::unique_ptr<Relay>> start(RelaySettings settings, ThreadWatch& watch,
+                                              const Clock& clock);
+  ~Relay() override;  // removes its socket's file
+  Relay(const Relay&) = delete;
+  Relay& operator=(const Relay&) = delete;
+
+  // Thread-safe.
+  net::ServerReport report() const override { return server_.report(); }
+  const std::string& endpoint() const noexcept { return settings_.endpoint; }
+
+ private:
+  Relay(RelaySettings settings, const Clock& clock);
+  Result<Ok> listen();
+  void run(const std::stop_token& stop, Progress& progress);
+  void listenAgainWhereGone();
+  std::string path() const;  // of a local public address; empty for TCP
+
+  RelaySettings settings_;
+  const Clock& clock_;
+  net::ConnectionServer server_;
+  std::uint64_t file_ = 0;  // inode of the public socket's file
+  Timestamp looked_{};      // whether it is there
+  WatchedThread thread_;
+};
+
+}  // namespace merlin::status

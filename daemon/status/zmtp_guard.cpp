@@ -1,0 +1,98 @@
+#include "daemon/status/zmtp_guard.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace merlin::status {
+namespace {
+
+constexpr std::size_t kGreeting = 64, kVersionAt = 10, kSignatureEnd = 9;
+constexpr std::uint8_t kMore = 1, kLong = 2, kCommand = 4;
+constexpr std::string_view kReady = "\5READY";
+// The bodies of PING and PONG as CURVE encrypts them: an 8-byte name, an 8-byte nonce, a 16-byte
+// authenticator and a byte of flags before 7 and 5 bytes.
+constexpr std::uint64_t kCurvePing = 40, kCurvePong = 38;
+
+Error malformed(std::string what) { return {Errc::kMalformed, std::move(what)}; }
+
+std::uint64_t lengthIn(std::string_view header) {
+  std::uint64_t length = 0;
+  for (const char c : header.substr(1)) length = length << 8 | static_cast<std::uint8_t>(c);
+  return length;
+}
+
+}  // namespace
+
+Result<ZmtpGuard::Accepted> ZmtpGuard::follow(std::string_view input, std::size_t most) {
+  Accepted accepted;
+  while (accepted.bytes < input.size()) {
+    const auto byte = static_cast<std::uint8_t>(input[accepted.bytes]);
+    if (greeting_ < kGreeting) {
+      if (const auto greeted = greet(byte); !greeted) return greeted.error();
+      ++accepted.bytes;
+    } else if (in_body_) {
+      const auto rest = input.substr(accepted.bytes);
+      const std::size_t n = std::min<std::size_t>(rest.size(), body_left_);
+      if (command_ && name_.size() < kReady.size())
+        name_ += rest.substr(0, std::min(n, kReady.size() - name_.size()));
+      body_left_ -= n;
+      accepted.bytes += n;
+      if (body_left_ > 0) continue;
+      if (const auto ended = endFrame(); !ended) return ended.error();
+    } else {
+      if (header_.empty() && accepted.frames == most) break;
+      if (header_.empty()) ++accepted.frames;
+      header_ += static_cast<char>(byte);
+      ++accepted.bytes;
+      if (const auto begun = begin(); !begun) return begun.error();
+    }
+  }
+  return accepted;
+}
+
+Result<Ok> ZmtpGuard::greet(std::uint8_t byte) {
+  const std::size_t at = greeting_++;
+  const bool signature = (at == 0 && byte != 0xFF) || (at == kSignatureEnd && byte != 0x7F);
+  if (signature || (at == kVersionAt && byte < 3))
+    return malformed("it does not open with a greeting of ZMTP 3 (ZeroMQ 4 or newer)");
+  return Ok{};
+}
+
+// Nothing until the header is whole.
+Result<Ok> ZmtpGuard::begin() {
+  const auto flags = static_cast<std::uint8_t>(header_[0]);
+  if (flags & ~(kMore | kLong | kCommand)) return malformed("a frame has unknown flags");
+  if (header_.size() < (flags & kLong ? 9U : 2U)) return Ok{};
+  body_left_ = lengthIn(header_);
+  header_.clear();
+  command_ = flags & kCommand;
+  name_.clear();
+  in_body_ = true;
+  if (body_left_ > limits_.frame_bytes) {
+    return malformed(
+        fmt::format("a frame of {} bytes; at most {} are taken", body_left_, limits_.frame_bytes));
+  }
+  if (!command_ && ++parts_ > limits_.parts)
+    return malformed(fmt::format("a message of more than {} parts", limits_.parts));
+  if (!(flags & kMore)) parts_ = 0;
+  size_ = body_left_;
+  return body_left_ == 0 ? endFrame() : Result<Ok>(Ok{});
+}
+
+// Heartbeats are free, or a connection would not live long.
+Result<Ok> ZmtpGuard::endFrame() {
+  in_body_ = false;
+  ready_ |= command_ && name_ == kReady;
+  const bool plain_heartbeat =
+      command_ && (name_.starts_with("\4PING") || name_.starts_with("\4PONG"));
+  const bool encrypted_heartbeat = !command_ && (size_ == kCurvePing || size_ == kCurvePong);
+  if (!plain_heartbeat && !encrypted_heartbeat) total_ += size_ + 1;
+  if (limits_.total_bytes > 0 && total_ > limits_.total_bytes) {
+    return malformed(
+        fmt::format("subscriptions of more than {} bytes altogether", limits_.total_bytes));
+  }
+  return Ok{};
+}
+
+}  // namespace merlin::status
