@@ -26,15 +26,18 @@ std::string sentenceOf(double bytes_s) {
 
 ReadPace::ReadPace(double bytes_s, std::function<void()> changed)
     : burst_(std::clamp(kBurst_s * bytes_s, kLeastBurst, kMostBurst)),
+      step_(std::clamp(bytes_s * toSeconds(kPause), 1.0, burst_ / 2)),
       bucket_(bytes_s, burst_),
       changed_(std::move(changed)),
       sentence_(sentenceOf(bytes_s)) {}
 
 std::size_t ReadPace::allowed(Timestamp now) {
   const double bytes = bucket_.available(now);
-  if (bytes < 1) setAbove(true);
+  if (bytes < step_ / 4) waits_ = true;
+  if (bytes >= step_) waits_ = false;
+  if (waits_) setAbove(true);
   if (bytes >= burst_ / 2) setAbove(false);
-  return bytes < 1 ? 0 : static_cast<std::size_t>(bytes);
+  return waits_ || bytes < 1 ? 0 : static_cast<std::size_t>(bytes);
 }
 
 void ReadPace::charge(std::size_t bytes, Timestamp now) noexcept {

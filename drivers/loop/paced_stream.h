@@ -41,7 +41,10 @@ class ReadPace {
  private:
   void setAbove(bool above);
 
-  double burst_;
+  // While it waits: until a pause's bytes are there. Else each byte would be read as it is allowed,
+  // and a system call takes as long as that.
+  double burst_, step_;
+  bool waits_ = false;
   TokenBucket bucket_;
   std::function<void()> changed_;
   std::string sentence_;

@@ -17,7 +17,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// Sends one byte over and over, as fast as it is read, which takes no time; or nothing.
+// Sends one byte over and over, as fast as it is read, which takes 1 us a read; or nothing.
 class FloodStream final : public ByteStream {
  public:
   FloodStream(test::FakeClock& clock, char byte) : clock_(clock), byte_(byte) {}
@@ -29,6 +29,7 @@ class FloodStream final : public ByteStream {
       clock_.advance(timeout);
       return Error{Errc::kTimeout, "time-out"};
     }
+    clock_.advance(std::chrono::microseconds(1));
     std::fill(buffer.begin(), buffer.end(), static_cast<std::byte>(byte_));
     bytes += buffer.size();
     return buffer.size();
@@ -71,6 +72,19 @@ TEST_F(PacedStreamTest, ReadsAFloodAtItsPaceInFewReads) {
   EXPECT_TRUE(pace_.above());
   EXPECT_EQ(changes_, 1);
   EXPECT_EQ(pace_.sentence(), "sends more than 15.4 kB/s: read at that pace");
+}
+
+// Where a system call takes as long as a byte, none is made for each.
+TEST_F(PacedStreamTest, ReadsAFastFloodInFewReadsToo) {
+  ReadPace fast(1e6, [] {});
+  auto line = std::make_unique<FloodStream>(clock_, 'x');
+  FloodStream& flood = *line;
+  PacedStream stream(std::move(line), fast, clock_);
+  std::byte buffer[256];
+  for (const Timestamp end = clock_.now() + seconds(10); clock_.now() < end;)
+    (void)stream.read(buffer, milliseconds(250));
+  EXPECT_NEAR(static_cast<double>(flood.bytes), 1e7, 1e5);
+  EXPECT_LE(flood.reads, 13'000u);
 }
 
 TEST_F(PacedStreamTest, SoDoesADialogueThatTakesSingleBytes) {
@@ -212,7 +226,7 @@ TEST(FloodedLine, WhatCameWhileTheMachineWasAsleepIsNone) {
   bool above = false;
   ReadPace pace(4 * 9600 / 10.0, [&] { above = true; });
   EXPECT_GE(pace.allowed(clock.now()), 4096u);
-  pace.charge(4095, clock.now());
+  pace.charge(4080, clock.now());
   EXPECT_GT(pace.allowed(clock.now()), 0u);
   EXPECT_FALSE(above);
 }

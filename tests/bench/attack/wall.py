@@ -68,8 +68,8 @@ class Wall:
 
     def deadlines(self):
         """How many deadlines there were while it moved, and how many were missed."""
-        values = self.fields("wall", "stats.deadlines", "stats.late")
-        return [int(values[f"stats.{name}"].strip("(,) ")) for name in ("deadlines", "late")]
+        values = self.fields("wall", "wall.deadlines", "wall.late")
+        return [int(values[f"wall.{name}"].strip("(,) ")) for name in ("deadlines", "late")]
 
     def status(self):
         done = subprocess.run([f"{self.options.bin}/merlin", "status", "--json", "--instance",
