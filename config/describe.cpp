@@ -30,6 +30,10 @@ void describeLine(LineSettings& line, std::span<const char* const> drivers, Sett
          "tcp://HOST:PORT (a raw serial server) or replay:FILE; empty: there is none.");
   v.integer("baud", line.baud, {1200, 115200},
             "Speed of the line, bits a second: 1200, 2400, ... 38400, 57600 or 115200.");
+  v.integer("max_bytes_s", line.max_bytes_s, {0, 100'000'000},
+            "Bytes a second that are read, at most; a line that sends more is read at this pace, "
+            "without real-time priority, and its health says so. 0: four times what its baud "
+            "carry; of tcp:// and replay: 1000000.");
 }
 
 void describeGlove(DevicesSettings& d, SettingsVisitor& v) {
@@ -168,6 +172,9 @@ void describeScene(render::SceneSettings& s, SettingsVisitor& v) {
            "That a posture lasts before it acts, seconds.");
   v.number("stale_after_s", s.stale_after_s, {0.1, 10},
            "After which a device that is no longer well has let go, seconds.");
+  v.number("return_after_s", s.return_after_s, {0, 86400},
+           "That no tile of the wall has shown any of the content, after which the start view "
+           "returns once nobody moves it, seconds; 0: never.");
   v.listOf<render::Binding>("bindings", s.bindings, "What inputs do.", [&](render::Binding& b) {
     v.text("input", b.input, "ball.button.1 to ball.button.12, posture.NAME or glove.switch.");
     v.oneOf("action", b.action, render::kActionNames,

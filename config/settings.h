@@ -25,6 +25,7 @@ struct LineSettings {
   std::string driver;  // a name of drivers/registry
   std::string port;  // "serial:/dev/...", "pty:PATH", "tcp://HOST:PORT", "replay:FILE"; empty: none
   int baud = 38400;
+  int max_bytes_s = 0;  // that are read; 0: four times what the baud carry, of tcp:// a million
 };
 
 struct DevicesSettings {

@@ -21,7 +21,17 @@ namespace {
 
 constexpr int kRealTimePriority = 50;
 
-// Wire to shared memory within microseconds even while the wall draws, where the unit allows it.
+constexpr double kStreamBytes_s = 1e6;  // of a line without a speed of its own
+constexpr int kSpare = 4;               // times what a line's baud carry, that are read
+
+double paceOf(const LineSettings& line, io::PortKind kind) {
+  if (line.max_bytes_s > 0) return line.max_bytes_s;
+  const bool has_speed = kind == io::PortKind::kSerial || kind == io::PortKind::kPty;
+  return has_speed ? kSpare * line.baud / 10.0 : kStreamBytes_s;
+}
+
+// Of the calling thread. Wire to shared memory within microseconds even while the wall draws, where
+// the unit allows it.
 void askForRealTime() {
   const sched_param priority{kRealTimePriority};
   if (::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &priority) != 0) {
@@ -29,6 +39,13 @@ void askForRealTime() {
     if (!said.exchange(true))
       logInfo("no real-time priority for device threads (LimitRTPRIO would allow it)");
   }
+}
+
+// Of the calling thread, whose line sends more than a device can: it waits for its turn, and takes
+// it from nobody when it wakes.
+void giveUpRealTime() {
+  const sched_param none{};
+  (void)::pthread_setschedparam(::pthread_self(), SCHED_BATCH, &none);
 }
 
 DeviceHealth notConfigured(Timestamp now) {
@@ -167,6 +184,8 @@ Result<Ok> DevicesRole::add(const LineSettings& line, SampleKind kind, shm::Devi
   DeviceLoopSettings loop;
   loop.port = line.port;
   loop.baud = line.baud;
+  loop.max_bytes_s = paceOf(line, address->kind);
+  loop.on_pace = [](bool above) { above ? giveUpRealTime() : askForRealTime(); };
   ByteTap& tap = flight_.add(index, line.driver, line.baud);
   lines_.push_back(std::make_unique<Line>());
   Line& entry = *lines_.back();

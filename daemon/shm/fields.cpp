@@ -131,6 +131,7 @@ void addPace(Table& t) {
   MERLIN_FIELD(t, WallStats, settle_frames, "");
   MERLIN_FIELD(t, WallStats, still_to_first_s, "s");
   MERLIN_FIELD(t, WallStats, work_histogram, "1/16 period");
+  MERLIN_FIELD(t, WallStats, returned, "");
 }
 
 }  // namespace

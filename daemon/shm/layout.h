@@ -111,8 +111,10 @@ struct WallStats {
   float still_to_first_s;          // last time: from standstill to the first finer picture
   std::uint32_t work_histogram[32];  // moving frames by work / period, since the start: buckets of
                                      // 1/16; the last holds all that is longer
+  std::uint32_t returned;  // times that the start view came back by itself, since the start
+  std::uint32_t reserved;
 };
-static_assert(sizeof(WallStats) == 328 && offsetof(WallStats, triangles) == 32);
+static_assert(sizeof(WallStats) == 336 && offsetof(WallStats, triangles) == 32);
 static_assert(offsetof(WallStats, rate_now_hz) == 160 && offsetof(WallStats, scale_divisor) == 156);
 
 // What a step of a frame does, by this number; merlin trace has their names.

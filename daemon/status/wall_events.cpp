@@ -35,6 +35,8 @@ std::vector<std::string> WallEvents::take() {
   }
   if (const auto was = std::exchange(asked_hz_, s->rate_asked_hz); was != asked_hz_ && was != 0)
     events.push_back(fmt::format("the rate asked is {:.3g} Hz now", asked_hz_));
+  if (const auto was = std::exchange(returned_, s->returned); was != returned_)
+    events.push_back("the start view has returned: no tile of the wall showed any of the content");
   return events;
 }
 

@@ -1,4 +1,5 @@
-// WallEvents: what the wall gave way, and took back, since the last look, as sentences.
+// WallEvents: what the wall gave way, took back, and did by itself since the last look, as
+// sentences.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ class WallEvents {
 
  private:
   const shm::WallSegment& segment_;
-  std::uint32_t divisor_ = 1, scale_ = 1, operator_coarser_ = 0, held_ = 0;
+  std::uint32_t divisor_ = 1, scale_ = 1, operator_coarser_ = 0, held_ = 0, returned_ = 0;
   float asked_hz_ = 0;
 };
 

@@ -50,6 +50,9 @@ class Painter {
   // refined is whole. 1 until it is told; divisor >= 1. Nothing where a painter cannot.
   virtual void setScale(int /*divisor*/) {}
 
+  // Whether a tile of the wall may show any of it. True where a painter does not know.
+  virtual bool sees(const Eigen::Isometry3f& /*T_eye_model*/) const { return true; }
+
   // For the trace; none where a painter does not say.
   virtual std::span<const PaintStep> steps() const noexcept { return {}; }
 

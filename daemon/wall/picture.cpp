@@ -35,6 +35,16 @@ Eigen::Matrix4f scaling(const render::Dendrogram& model, float radius_m) {
   return m;
 }
 
+Eigen::Matrix4f boxOf(const render::Dendrogram& model, const Eigen::Matrix4f& metres_from_model) {
+  const render::Box box = render::boundingBox(model.arrays().positions);
+  Eigen::Matrix4f m = Eigen::Matrix4f::Identity();
+  for (int k = 0; k < 3; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    m(k, k) = metres_from_model(k, k) * (box.high[i] - box.low[i]) / 2;
+  }
+  return m;
+}
+
 // Nothing where the model has none.
 Result<render::PictureFile> textureOf(const render::Dendrogram& model) {
   const auto bytes = model.arrays().texture;
@@ -113,6 +123,7 @@ Picture::Picture(const render::Dendrogram& model, const render::TilePlan& plan,
       settings_(settings),
       radius_m_(static_cast<float>(radius_m)),
       metres_from_model_(scaling(model, radius_m_)),
+      T_metres_box_(boxOf(model, metres_from_model_)),
       clock_(clock),
       clusters_(model, {}),
       view_cut_(model, clusters_, settings.look.draw_back_faces),
@@ -143,6 +154,10 @@ render::Camera Picture::cameraOf(std::size_t tile, const Eigen::Isometry3f& T_ey
   // The light comes from the eye, not from the tile: so a surface is as bright on either side of a
   // seam.
   return {t.projection * view * T_eye_model.matrix() * metres_from_model_, T_eye_model.linear()};
+}
+
+bool Picture::sees(const Eigen::Isometry3f& T_eye_model) const {
+  return render::seesBox(plan_, T_eye_model.matrix() * T_metres_box_);
 }
 
 void Picture::chooseCut(const Eigen::Isometry3f& T_eye_model, std::size_t level,

@@ -56,6 +56,7 @@ class Picture final : public Painter {
   bool beginRefiningTo(const Eigen::Isometry3f& T_eye_model, std::size_t level) override;
   bool refine(Timestamp until) override;
   void setScale(int divisor) override { scale_ = divisor; }
+  bool sees(const Eigen::Isometry3f& T_eye_model) const override;
   std::span<const PaintStep> steps() const noexcept override { return steps_; }
   std::span<std::uint8_t> pixels() noexcept override { return pixels_; }
 
@@ -96,6 +97,7 @@ class Picture final : public Painter {
   render::RenderSettings settings_;
   float radius_m_;
   Eigen::Matrix4f metres_from_model_;  // scale and centring
+  Eigen::Matrix4f T_metres_box_;       // the model's box, of the cube -1..1
   const Clock& clock_;
   std::shared_ptr<const DrawContexts> contexts_;
   std::unique_ptr<TilePainter> painter_, other_;  // other_: of the other thread; may be none

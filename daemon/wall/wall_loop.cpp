@@ -30,6 +30,7 @@ WallLoop::WallLoop(WallParts parts)
       configured_hz_(asked_hz_),
       period_(p_.governor.period()),
       view_(p_.scene.view()),
+      lost_(p_.return_after_s),
       homes_(p_.contents.size()) {}
 
 void WallLoop::run(const std::stop_token& stop, const std::function<void()>& first_frame) {
@@ -61,10 +62,7 @@ void WallLoop::setRate(std::optional<double> rate_hz) noexcept {
 
 void WallLoop::obeyRequests() {
   const std::uint32_t requests = requests_.exchange(0);
-  if (requests & kResetView) {
-    p_.scene.reset();
-    expectHome();
-  }
+  if (requests & kResetView) returnHome();
   if (requests & kNextMode) p_.scene.nextMode();
   if (requests & kNextContent) p_.scene.nextContent();
   const std::int64_t held = hold_.load();
@@ -124,6 +122,11 @@ void WallLoop::expectHome() {
   if (home.drawing_s > 0 && now_s > 0) p_.governor.expect(home.drawing_s / now_s);
 }
 
+void WallLoop::returnHome() {
+  p_.scene.reset();
+  expectHome();
+}
+
 void WallLoop::showContent(std::size_t content) {
   content_ = content;
   level_ = model().levels() - 1;
@@ -139,6 +142,10 @@ void WallLoop::look(std::int64_t k, Timestamp began) {
   view_ = p_.scene.update(input, began);
   const std::size_t asked = view_.orders.contents % p_.contents.size();
   if (asked != content_) showContent(asked);
+  if (lost_.update(painter().sees(view_.T_eye_model), view_.moving, began)) {
+    ++out_.returned;
+    returnHome();  // from the next period on
+  }
   std::fill(std::begin(out_.posture), std::end(out_.posture), '\0');
   if (input.posture)
     std::copy(std::begin(input.posture->name), std::end(input.posture->name), out_.posture);

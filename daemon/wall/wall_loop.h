@@ -30,6 +30,7 @@
 #include "render/lod/dendrogram.h"
 #include "render/out/frame_clock.h"
 #include "render/out/frame_sink.h"
+#include "render/scene/lost_view.h"
 #include "render/scene/scene.h"
 
 namespace merlin::wall {
@@ -53,6 +54,7 @@ struct WallParts {
   PointerMarker* marker = nullptr;                 // who marks where the hand points; the same
   shm::SeqSlot<shm::WallHand>* hand = nullptr;     // where that is told
   int fade_frames = 1;                             // in which a finer picture replaces a coarser
+  double return_after_s = 0;                       // of a view that shows nothing; 0: never
   Progress* progress = nullptr;                    // stepped once a period; may be none
 };
 
@@ -107,6 +109,7 @@ class WallLoop {
   Painter& painter() const noexcept { return *p_.contents[content_].painter; }
   void measureHome();
   void expectHome();
+  void returnHome();
   void showContent(std::size_t content);
 
   WallParts p_;
@@ -115,6 +118,7 @@ class WallLoop {
   FrameStats stats_;
   FrameTracer tracer_;
   render::SceneView view_;
+  render::LostView lost_;
   // The first rung of the wall's halves the picture's size, each further one the rate.
   render::Ladder ladder_{3}, operator_ladder_{1};
   std::size_t level_ = 0;

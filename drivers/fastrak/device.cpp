@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "drivers/port/plausible.h"
+
 namespace merlin::fastrak {
 namespace {
 
@@ -38,6 +40,18 @@ std::array<float, 4> ofBoresight(const std::array<float, 4>& q, const std::array
           -q[0] * a[3] - q[1] * a[2] + q[2] * a[1] + q[3] * a[0]};
 }
 
+// Of a coordinate on the line: the reach of a receiver, from the furthest origin that is set, and a
+// stylus's tip.
+float furthestOf(const FastrakSettings& settings) {
+  float origin_cm = 0, tip_cm = 0;
+  for (const auto& a : settings.alignment_cm)
+    origin_cm = std::max(origin_cm, std::hypot(a[0], a[1], a[2]));
+  const auto& t = settings.stylus_tip_cm;
+  if (settings.stylus) tip_cm = std::hypot(t[0], t[1], t[2]);
+  const float cm = kTrackerReach_m / kMetresPerCentimetre + origin_cm + tip_cm;
+  return settings.centimetres ? cm : cm * kMetresPerCentimetre / kMetresPerInch;
+}
+
 // The line works, and what is on it did not answer, or not as a Fastrak does.
 bool isOfTheBox(const Error& error) noexcept {
   return error.code == Errc::kTimeout || error.code == Errc::kMalformed;
@@ -50,7 +64,7 @@ FastrakDevice::FastrakDevice(const FastrakSettings& settings, const Clock& clock
       clock_(clock),
       sink_(sink),
       layout_{static_cast<Layout::Numbers>(settings.numbers), settings.angles, settings.stylus,
-              settings.centimetres} {}
+              settings.centimetres, furthestOf(settings)} {}
 
 Result<std::string> FastrakDevice::open(ByteStream& stream) {
   Dialogue dialogue(stream, clock_);

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kPosition = 3;  // after '0', station and error
 constexpr std::size_t kTextWidth = 7;
+constexpr float kWidest_deg = 180.5F;  // of az, el and roll; rounding included
 
 bool isErrorLetter(std::uint8_t c) noexcept {
   return c == ' ' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
@@ -172,7 +173,7 @@ bool Parser::readNumbers(Record& record) const noexcept {
         at += 2;
       }
     }
-    if (!std::isfinite(v[i])) return false;
+    if (i < 3 && !(std::abs(v[i]) <= layout_.furthest)) return false;  // a NaN as well
   }
   if (layout_.stylus) {
     if (at[0] != ' ' || (at[1] != '0' && at[1] != '1')) return false;
@@ -181,7 +182,8 @@ bool Parser::readNumbers(Record& record) const noexcept {
   std::copy_n(v.begin(), 3, record.position.begin());
   if (layout_.angles) {
     record.orientation_wxyz = quaternionOf({v[3], v[4], v[5]});
-    return std::abs(v[3]) <= 360 && std::abs(v[4]) <= 360 && std::abs(v[5]) <= 360;
+    return std::abs(v[3]) <= kWidest_deg && std::abs(v[4]) <= kWidest_deg &&
+           std::abs(v[5]) <= kWidest_deg;  // false of a NaN
   }
   std::copy_n(v.begin() + 3, 4, record.orientation_wxyz.begin());
   const float square = v[3] * v[3] + v[4] * v[4] + v[5] * v[5] + v[6] * v[6];

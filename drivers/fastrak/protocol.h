@@ -41,13 +41,15 @@ struct Layout {
   bool angles = false;                  // az el rl in place of the quaternion
   bool stylus = false;                  // item 16
   bool centimetres = true;              // the unit that 14-bit positions are scaled by
+  float furthest = 500;                 // of a coordinate; more is damage [the unit's own length]
   std::size_t length() const noexcept;  // of a record [bytes]
   std::string items() const;            // of the output list: "2,11,0"
 };
 
 // A window slides over the stream. What stands in it is a record if the fixed bytes are right, the
-// numbers are finite and the quaternion is a rotation; after a failure the next record's '0' must
-// follow as well. If not, one byte is dropped and the rest tried again.
+// coordinates are within the layout's `furthest`, angles within 180 degrees, and the quaternion is
+// a rotation; after a failure the next record's '0' must follow as well. If not, one byte is
+// dropped and the rest tried again.
 class Parser {
  public:
   // Forgets what is under way, not the counts; the next byte is taken for the first of a record.

@@ -18,6 +18,8 @@ namespace merlin::io {
 namespace {
 
 constexpr int kConnectTime_ms = 1000;
+// Of what comes and is not read yet: a line that is read at a pace of its own is soon over it.
+constexpr int kReceiveBuffer = 64 << 10;
 
 void setOption(int fd, int level, int option, int value) {
   (void)::setsockopt(fd, level, option, &value, sizeof value);
@@ -27,6 +29,7 @@ void setOption(int fd, int level, int option, int value) {
 int connectTo(const addrinfo& address, UniqueFd& fd) {
   fd.reset(::socket(address.ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!fd.valid()) return errno;
+  setOption(fd.get(), SOL_SOCKET, SO_RCVBUF, kReceiveBuffer);  // before the window is agreed on
   if (::connect(fd.get(), address.ai_addr, address.ai_addrlen) == 0) return 0;
   if (errno != EINPROGRESS) return errno;
   pollfd item{fd.get(), POLLOUT, 0};

@@ -27,6 +27,7 @@ DeviceLoop::DeviceLoop(DeviceLoopSettings settings, StreamOpener open_stream,
       sink_(health),
       clock_(clock) {
   setText(health_.port, settings_.port);
+  if (settings_.max_bytes_s > 0) pace_.emplace(settings_.max_bytes_s, [this] { paceChanged(); });
 }
 
 void DeviceLoop::run(const std::stop_token& stop, const std::function<void()>& alive) {
@@ -42,11 +43,29 @@ void DeviceLoop::run(const std::stop_token& stop, const std::function<void()>& a
       retry = settings_.first_retry;
     }
     enter(opened_ && end.code != Errc::kClosed ? HealthState::kFailed : HealthState::kAbsent,
-          end.what + hintFor(end));
+          withPace(end.what + hintFor(end)));
     if (!clock_.sleepUntil(clock_.now() + retry, stop)) break;
     retry = std::min(2 * retry, settings_.longest_retry);
   }
   enter(HealthState::kAbsent, "stopped");
+}
+
+std::unique_ptr<ByteStream> DeviceLoop::paced(std::unique_ptr<ByteStream> stream) {
+  if (!pace_) return stream;
+  return std::make_unique<PacedStream>(std::move(stream), *pace_, clock_);
+}
+
+// In the midst of a read: of the dialogue or of the stream.
+void DeviceLoop::paceChanged() {
+  settings_.on_pace(pace_->above());
+  if (health_.state == HealthState::kOpening) enter(health_.state, withPace({}));
+}
+
+std::string DeviceLoop::withPace(const std::string& reason) {
+  if (!pace_) return reason;
+  (void)pace_->allowed(clock_.now());  // what is past is not said
+  if (!pace_->above()) return reason;
+  return pace_->sentence() + (reason.empty() ? "" : "; " + reason);
 }
 
 // Bytes that make no sense are, as a rule, another device's, or another speed's.
@@ -56,18 +75,19 @@ std::string DeviceLoop::hintFor(const Error& end) const {
 }
 
 Error DeviceLoop::serve(const std::stop_token& stop) {
-  auto stream = open_stream_();
-  if (!stream) return stream.error();
+  auto opened = open_stream_();
+  if (!opened) return opened.error();
+  const std::unique_ptr<ByteStream> stream = paced(*std::move(opened));
   opened_ = true;
-  const std::stop_callback wake(stop, [&] { (*stream)->interrupt(); });
-  enter(HealthState::kOpening, "");
-  const auto identity = device_->open(**stream);
+  const std::stop_callback wake(stop, [&] { stream->interrupt(); });
+  enter(HealthState::kOpening, withPace({}));
+  const auto identity = device_->open(*stream);
   if (!identity) return identity.error();
   setText(health_.identity, *identity);
   rate_since_ = clock_.now();
   rate_samples_ = device_->counters().samples;
   enter(HealthState::kOk, "");
-  return pollUntilLost(**stream, stop);
+  return pollUntilLost(*stream, stop);
 }
 
 Error DeviceLoop::pollUntilLost(ByteStream& stream, const std::stop_token& stop) {
@@ -99,7 +119,8 @@ void DeviceLoop::report() noexcept {
   health_.bad_bytes = counters.bad_bytes;
   health_.bad_packets = counters.bad_packets;
   if (health_.state == HealthState::kOk) {
-    setText(health_.reason, device_->complaint());
+    const bool above = pace_ && pace_->above();
+    setText(health_.reason, above ? pace_->sentence() : std::string_view(device_->complaint()));
     measureRate(now);
   }
   sink_.publish(health_);

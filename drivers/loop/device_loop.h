@@ -3,10 +3,12 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 
 #include "daemon/base/clock.h"
+#include "drivers/loop/paced_stream.h"
 #include "drivers/port/byte_stream.h"
 #include "drivers/port/device.h"
 #include "drivers/port/sample_sink.h"
@@ -16,6 +18,12 @@ namespace merlin {
 struct DeviceLoopSettings {
   std::string port;  // as a person wrote it, for the health
   int baud = 0;      // of the line, for the hint where what comes makes no sense; 0: no hint
+  // What the line is read at, at most; 0: as fast as it sends. Bytes beyond wait in the system's
+  // buffers, which block the sender, or drop what it sends.
+  double max_bytes_s = 0;
+  // Told, on the loop's thread, when the line begins or ceases to send more than that; no time of
+  // others is for such a line.
+  std::function<void(bool above)> on_pace = [](bool) {};
   Duration first_retry = std::chrono::milliseconds(100);  // doubled after each failure,
   // Up to this; reset by success. Short, since an attempt costs next to nothing, and a device that
   // is back should be heard within a second, its dialogue included.
@@ -41,6 +49,10 @@ class DeviceLoop {
   Error serve(const std::stop_token& stop);
   Error pollUntilLost(ByteStream& stream, const std::stop_token& stop);
 
+  std::unique_ptr<ByteStream> paced(std::unique_ptr<ByteStream> stream);
+  void paceChanged();
+  // What the health says: of the line where it sends too much, then `reason`.
+  std::string withPace(const std::string& reason);
   std::string hintFor(const Error& end) const;
   void enter(HealthState state, std::string_view reason) noexcept;
   void report() noexcept;  // publishes health_, with counters and rate, at most every 100 ms
@@ -51,6 +63,7 @@ class DeviceLoop {
   std::unique_ptr<Device> device_;
   HealthSink& sink_;
   Clock& clock_;
+  std::optional<ReadPace> pace_;  // where the line has one
   DeviceHealth health_{};
   bool opened_ = false;    // this connection came as far as an open port
   bool streamed_ = false;  // and as far as a sample

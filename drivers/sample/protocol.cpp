@@ -5,6 +5,11 @@
 #include <fmt/format.h>
 
 namespace merlin::sample {
+namespace {
+
+constexpr int kAllButtons = 0xFFF;  // twelve, as BallSample has them
+
+}  // namespace
 
 std::optional<Record> Parser::feed(std::byte byte) noexcept {
   const char c = static_cast<char>(byte);
@@ -37,7 +42,7 @@ std::optional<Record> Parser::read() const noexcept {
     if (numbers[i] < -1000 || numbers[i] > 1000) return std::nullopt;
     record.axes[i] = numbers[i];
   }
-  if (at != end || numbers[6] < 0) return std::nullopt;
+  if (at != end || numbers[6] < 0 || numbers[6] > kAllButtons) return std::nullopt;
   record.buttons = static_cast<std::uint32_t>(numbers[6]);
   return record;
 }

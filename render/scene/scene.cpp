@@ -13,12 +13,26 @@ namespace {
 constexpr float kRadian = std::numbers::pi_v<float> / 180;
 // A frame that took longer moves the model no further than this would.
 constexpr float kLongestStep_s = 0.1F;
+constexpr float kMostShear = 1e-4F;
 
 Eigen::Isometry3f isometry(const Eigen::Quaternionf& q, const Eigen::Vector3f& p) {
   Eigen::Isometry3f t = Eigen::Isometry3f::Identity();
   t.linear() = q.normalized().toRotationMatrix();
   t.translation() = p;
   return t;
+}
+
+// A float tells places 1 mm apart within kWorld_m, and what is further is not seen. Each turn adds
+// its rounding to a rotation: years of it would shear the model. False where there is no way back.
+bool bounded(Eigen::Isometry3f& pose) {
+  if (!pose.matrix().allFinite()) return false;
+  const float away = pose.translation().stableNorm();
+  if (away > Scene::kWorld_m) pose.translation() *= Scene::kWorld_m / away;
+  const Eigen::Matrix3f error =
+      pose.linear().transpose() * pose.linear() - Eigen::Matrix3f::Identity();
+  if (error.cwiseAbs().maxCoeff() > kMostShear)
+    pose.linear() = Eigen::Quaternionf(pose.linear()).normalized().toRotationMatrix();
+  return true;
 }
 
 std::optional<Eigen::Matrix3f> axisMap(const std::array<int, 3>& axes) {
@@ -149,6 +163,7 @@ SceneView Scene::update(const SceneInput& input, Timestamp now) {
   const bool pushed = moveByBall(input, step_s);
   const bool carried = moveByHand(input, asked.grab);
   const bool flown = flyByHand(input, asked.fly && !asked.grab, step_s);
+  bound();
   if (std::exchange(jumped_, false) || pushed || carried || flown) last_motion_ = now;
   view_.T_eye_model = T_wall_eye_.inverse() * T_wall_model_;
   view_.mode = mode_;
@@ -157,6 +172,10 @@ SceneView Scene::update(const SceneInput& input, Timestamp now) {
   view_.pointed = asked.point ? pointByHand(input) : std::nullopt;
   view_.orders = orders_;
   return view_;
+}
+
+void Scene::bound() {
+  if (!bounded(T_wall_model_) || !bounded(T_wall_eye_)) reset();
 }
 
 bool Scene::isHeld(const Bound& bound, const SceneInput& input) const {

@@ -56,11 +56,15 @@ class Scene {
   // or the other way round, an axis map that is no permutation.
   static Result<Scene> make(const SceneSettings& settings);
 
-  // Once a frame. `now` never falls. Cost: microseconds.
+  // Once a frame. `now` never falls. Cost: microseconds. Whatever `input` holds, both of the poses
+  // behind the view stay rotations of norm 1 within kWorld_m of where they started from, or the
+  // start view returns.
   SceneView update(const SceneInput& input, Timestamp now);
 
   // Where it would be drawn without any further input.
   const SceneView& view() const noexcept { return view_; }
+
+  static constexpr float kWorld_m = 10'000;
 
   void reset();  // model and viewer back to the start; counts as motion
   void nextMode();
@@ -87,6 +91,7 @@ class Scene {
   bool moveByHand(const SceneInput& input, bool grab);
   bool flyByHand(const SceneInput& input, bool fly, float seconds);
   std::optional<Pointed> pointByHand(const SceneInput& input) const;
+  void bound();  // see update()
   Eigen::Isometry3f handPose(const TrackerSample& sample) const;
 
   SceneSettings settings_;

@@ -71,6 +71,9 @@ struct SceneSettings {
   double still_after_s = 0.15;   // without input until the scene counts as still
   double posture_hold_s = 0.10;  // that a posture lasts before it acts
   double stale_after_s = 0.5;    // of a device that is no longer well, its input ends
+  // That no wall tile has shown any of the content, after which, once nobody moves it, the start
+  // view returns; 0: never.
+  double return_after_s = 60;
 
   std::vector<Binding> bindings = {{"posture.fist", Action::kGrab},
                                    {"ball.button.1", Action::kResetView},

@@ -72,6 +72,20 @@ void layOutWall(TilePlan& plan, const TilesSettings& s) {
   plan.wall_height = order.empty() ? 0 : s.tile_height;
 }
 
+// Of the six planes of a frustum in clip coordinates, one that all eight corners are beyond.
+bool isBeyondOne(const Eigen::Matrix4f& clip_from_box) noexcept {
+  int beyond[6] = {};
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const auto side = [&](unsigned axis) { return (corner >> axis & 1) != 0 ? 1.0F : -1.0F; };
+    const Eigen::Vector4f p = clip_from_box * Eigen::Vector4f(side(0), side(1), side(2), 1);
+    for (int axis = 0; axis < 3; ++axis) {
+      beyond[2 * axis] += p[axis] <= p[3] ? 0 : 1;  // a NaN is beyond
+      beyond[2 * axis + 1] += p[axis] >= -p[3] ? 0 : 1;
+    }
+  }
+  return std::any_of(std::begin(beyond), std::end(beyond), [](int n) { return n == 8; });
+}
+
 }  // namespace
 
 Eigen::Matrix4f perspective(float field_of_view_rad, float aspect, float near_m, float far_m) {
@@ -93,6 +107,12 @@ Eigen::Matrix4f operatorView(const Eigen::Matrix4f& projection, const Eigen::Vec
   Eigen::Matrix4f m = Eigen::Matrix4f::Identity();
   m.block<3, 1>(0, 3) = -centre - Eigen::Vector3f(0, 0, distance);
   return m;
+}
+
+bool seesBox(const TilePlan& plan, const Eigen::Matrix4f& T_eye_box) noexcept {
+  return std::any_of(plan.tiles.begin(), plan.tiles.end(), [&](const Tile& t) {
+    return t.kind == TileKind::kWall && !isBeyondOne(t.projection * t.view * T_eye_box);
+  });
 }
 
 Eigen::Matrix4f yawView(float yaw_rad) {

@@ -45,6 +45,10 @@ Eigen::Matrix4f perspective(float field_of_view_rad, float aspect, float near_m,
 Eigen::Matrix4f operatorView(const Eigen::Matrix4f& projection, const Eigen::Vector3f& centre,
                              float radius);
 
+// Whether any part of a box may be in a tile of the wall: false where all of it is beyond one plane
+// of each of their frusta, or nowhere (NaN). `T_eye_box` takes the cube -1..1 to eye coordinates.
+bool seesBox(const TilePlan& plan, const Eigen::Matrix4f& T_eye_box) noexcept;
+
 // Turns the view to the left by `yaw_rad`.
 Eigen::Matrix4f yawView(float yaw_rad);
 

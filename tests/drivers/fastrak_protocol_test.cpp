@@ -274,6 +274,44 @@ TEST(FastrakStatus, FlagsComeBack) {  // 3F1 binary, 3F2 centimetres, 3F8 contin
   }
 }
 
+// kGood with other coordinates.
+std::string withPosition(const std::array<float, 3>& position) {
+  std::string bytes = kGood.substr(0, 3);
+  for (const float v : position) appendLeFloat(bytes, v);
+  return bytes + kGood.substr(15);
+}
+
+TEST(FastrakParser, TakesAPlaceThatNoReceiverCanHaveForDamage) {
+  for (const float good : {-500.0F, 0.0F, 499.0F, 500.0F}) {
+    Parser parser;
+    EXPECT_EQ(parse(parser, withPosition({0, good, 0})).size(), 1u) << good;
+  }
+  for (const float bad : {500.1F, -501.0F, 1e6F, 1e10F, 1e30F, 3e38F, -3e38F}) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::array<float, 3> position{};
+      position[axis] = bad;
+      Parser parser;
+      const auto records = parse(parser, withPosition(position) + kGood + kGood);
+      ASSERT_EQ(records.size(), 2u) << bad;
+      expectGood(records[0]);
+      EXPECT_EQ(parser.badPackets(), 1u) << bad;
+      EXPECT_EQ(parser.badBytes(), 32u) << bad;
+    }
+  }
+}
+
+TEST(FastrakParser, OfDecimalsTheSame) {
+  Parser parser;
+  parser.expect({.numbers = Layout::Numbers::kText, .angles = true});
+  const auto record = [](const char* place, const char* roll) {
+    return "01 "s + place + "   0.00   0.00   0.00   0.00" + roll + " ";
+  };
+  EXPECT_EQ(parse(parser, record("-500.00", "-180.00")).size(), 1u);
+  EXPECT_EQ(parse(parser, record("9999999", "   0.00")).size(), 0u);
+  parser.reset();
+  EXPECT_EQ(parse(parser, record("   0.00", " 181.00")).size(), 0u);
+}
+
 TEST(FastrakStatus, RefusesWhatIsNone) {
   for (std::size_t n = 0; n < kStatus.size(); ++n) EXPECT_FALSE(parseStatus(kStatus.substr(0, n)));
   for (const std::size_t at : {0u, 1u, 2u, 3u, 5u, 7u, 53u, 54u}) {

@@ -295,5 +295,56 @@ TEST(SceneSettings, AnAxisMapThatIsNoTurnIsRefused) {
   EXPECT_EQ(turns, 24) << "as many as a cube has";
 }
 
+TEST(SceneBounds, NothingThatIsPushedForEverLeavesTheWorld) {
+  SceneSettings settings;
+  settings.ball_speed_m_s = {100, 100, 100};
+  ScenePlay play(settings);
+  play.push({1, 1, -1}, {1, 1, 1});
+  for (int i = 0; i < 3000; ++i) play.update(100);
+  EXPECT_NEAR(play.position().norm(), render::Scene::kWorld_m, 1);
+  play.scene.nextMode();
+  for (int i = 0; i < 3000; ++i) play.update(100);
+  EXPECT_LE(play.position().norm(), 2.001F * render::Scene::kWorld_m);
+  play.scene.reset();
+  play.push({0, 0, 0});
+  play.update(100);
+  expectAt(play, {0, 0, -2});
+}
+
+TEST(SceneBounds, ARotationStaysOne) {
+  ScenePlay play;
+  play.push({0, 0, 0}, {1, 0.7F, -0.3F});
+  for (int i = 0; i < 300'000; ++i) play.update(33);
+  EXPECT_LT((play.turn().transpose() * play.turn() - Eigen::Matrix3f::Identity()).norm(), 1e-3F);
+}
+
+TEST(SceneBounds, WhateverAHandSaysTheViewIsOneThatCanBeDrawn) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  SceneSettings settings;
+  settings.bindings = {{"ball.button.1", render::Action::kGrab},
+                       {"ball.button.2", render::Action::kFly}};
+  for (const float bad : {nan, std::numeric_limits<float>::infinity(), 1e30F, 3e38F, 1e-40F}) {
+    for (const std::uint32_t button : {1u, 2u}) {
+      ScenePlay play(settings);
+      play.press(button);
+      play.holdHand({1, 0, 0});
+      play.update(33);
+      play.holdHand({bad, -bad, bad});
+      std::fill_n(play.input.hand->orientation_wxyz, 4, bad);
+      play.update(33);
+      play.update(33);
+      EXPECT_TRUE(play.scene.view().T_eye_model.matrix().allFinite()) << bad;
+      EXPECT_LE(play.position().norm(), 2.001F * render::Scene::kWorld_m) << bad;
+      play.holdHand({1, 0, 0});
+      play.update(33);
+      play.scene.reset();
+      play.update(33);
+      play.press(0);
+      play.update(33);
+      expectAt(play, {0, 0, -2});
+    }
+  }
+}
+
 }  // namespace
 }  // namespace merlin::render

@@ -216,6 +216,33 @@ TEST(OperatorView, LooksFromTheFrontAndDoesNotTurn) {
   EXPECT_TRUE(centre.isApprox(Vector3f(0, 0, -std::numbers::sqrt2_v<float>), 1e-6F)) << centre;
 }
 
+// Three tiles of 40 degrees about the eye: 60 degrees to either side, up to far_m.
+TEST(SeesBox, OfTheWallsTilesOnlyAndByTheirFrusta) {
+  const TilePlan plan = planned({});
+  const auto sees = [&](const Vector3f& centre, float half = 0.5F) {
+    Matrix4f box = Matrix4f::Identity() * half;
+    box.block<3, 1>(0, 3) = centre;
+    box(3, 3) = 1;
+    return seesBox(plan, box);
+  };
+  EXPECT_TRUE(sees({0, 0, -2}));
+  EXPECT_TRUE(sees({0, 0, 0}));
+  EXPECT_TRUE(sees({-3, 0, -2}));
+  EXPECT_TRUE(sees({3, 0, -2}));
+  EXPECT_TRUE(sees({0, 0, 30}, 100));  // the eye is in it
+  EXPECT_TRUE(sees({0, 0, -50.4F}));
+  EXPECT_FALSE(sees({0, 0, -50.6F}));
+  EXPECT_FALSE(sees({0, 0, 2}));
+  EXPECT_FALSE(sees({0, 9, -2}));
+  EXPECT_FALSE(sees({-20, 0, -2}));
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(sees({nan, 0, 0}));
+  EXPECT_FALSE(sees({0, 0, -1e30F}));
+  TilesSettings operators_only;
+  operators_only.tiles.erase(operators_only.tiles.begin(), operators_only.tiles.begin() + 3);
+  EXPECT_FALSE(seesBox(planned(operators_only), Matrix4f::Identity()));
+}
+
 TEST(TilePlan, TheOperatorsTileHasNoTurn) {
   TilesSettings settings;
   settings.tiles[3].turns = 3;

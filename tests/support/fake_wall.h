@@ -63,6 +63,9 @@ class FakePainter final : public Painter {
     return {drawing, fixed, gives_way};
   }
   void setScale(int divisor) override { scale = divisor; }
+  bool sees(const Eigen::Isometry3f& T_eye_model) const override {
+    return T_eye_model.translation().norm() < furthest_seen_m;
+  }
   std::span<const PaintStep> steps() const noexcept override { return steps_; }
   void beginRefining(const Eigen::Isometry3f&) override { left_ = slices_; }
   bool beginRefiningTo(const Eigen::Isometry3f&, std::size_t level) override {
@@ -87,6 +90,7 @@ class FakePainter final : public Painter {
   void setCost(Duration per_triangle) { per_triangle_ = per_triangle; }
 
   int slow = 1, scale = 1;
+  float furthest_seen_m = 50;
   bool gives_way = false;
   std::vector<Timestamp> drawn;
   std::vector<std::size_t> levels;
@@ -151,8 +155,9 @@ class FakeWall : public testing::Test {
     loop.run(stop_.get_token(), [&] { ++first_frames_; });
   }
   WallParts parts() {
-    return {contents_, scene_,       governor_,    feed_,   {&frames_},  *stats_,
-            clock_,    frame_clock_, trace_.get(), marker_, hand_.get(), fade_frames_};
+    return {contents_,   scene_,       governor_,      feed_,        {&frames_},
+            *stats_,     clock_,       frame_clock_,   trace_.get(), marker_,
+            hand_.get(), fade_frames_, return_after_s_};
   }
   shm::WallStats stats() const { return *stats_->read(); }
 
@@ -175,6 +180,7 @@ class FakeWall : public testing::Test {
   WallLoop* loop_ = nullptr;  // while it runs
   bool calibrated_ = false;
   int fade_frames_ = 1;
+  double return_after_s_ = 0;
   int first_frames_ = 0;
 };
 

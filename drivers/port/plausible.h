@@ -1,0 +1,26 @@
+// Whether a sample is one that its device can have measured. Pure; for samples that come from
+// another machine or program. A driver's protocol checks its own records by the same limits or
+// narrower ones.
+#pragma once
+
+#include "drivers/port/samples.h"
+
+namespace merlin {
+
+// Of a Fastrak's receiver from its transmitter: 3.05 m (10 ft), with the long-range transmitter
+// 4.57 m (15 ft), and a margin. Sources: MAN12 of
+// drivers/fastrak for the former, the vendor's data sheet of the Long Ranger for the latter.
+inline constexpr float kTrackerReach_m = 5;
+// Of any coordinate of a tracker's sample: the reach, and the furthest origin that a configuration
+// can set (10 m along each axis), with the stylus's tip (1 m along each).
+inline constexpr float kFurthest_m = 25;
+
+// False of a number that is NaN, infinite or out of its range, of a quaternion whose norm is not
+// 0.98..1.02, and of a code that is none. Counters and times may be anything.
+bool plausible(const GloveSample& sample) noexcept;
+bool plausible(const TrackerSample& sample) noexcept;
+bool plausible(const BallSample& sample) noexcept;
+bool plausible(const PostureSample& sample) noexcept;
+bool plausible(const HandSample& sample) noexcept;
+
+}  // namespace merlin

@@ -1,0 +1,85 @@
+// The wall survives what a device says: a place that a hand was carried to out of sight.
+#include <gtest/gtest.h>
+
+#include "drivers/emulate/emulator.h"
+#include "drivers/io/pty_master.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+// An emulated device on a pty, served by the test itself: whoever waits pumps.
+class Line {
+ public:
+  Line(const char* device, int baud, const emulate::MotionScript& script, const std::string& link)
+      : pty_(*io::PtyMaster::open(link)),
+        emulator_(emulate::findEmulator(device)->make({.baud = baud}, script, clock_.now())) {}
+
+  void pump() {
+    std::byte in[512];
+    for (ssize_t n; (n = ::read(pty_.fd(), in, sizeof in)) > 0;)
+      emulator_->receive(std::span(in, static_cast<std::size_t>(n)), clock_.now());
+    emulator_->advance(clock_.now(), out_);
+    const ssize_t n = out_.empty() ? 0 : ::write(pty_.fd(), out_.data(), out_.size());
+    if (n > 0) out_.erase(0, static_cast<std::size_t>(n));
+  }
+
+ private:
+  SystemClock clock_;
+  io::PtyMaster pty_;
+  std::unique_ptr<emulate::Emulator> emulator_;
+  std::string out_;
+};
+
+enum Step : std::size_t { kRest, kGrab, kDamage, kLetGo };
+
+constexpr emulate::HandPlace kNear = {{0.6F, 0, 0}}, kFar = {{4.9F, 0, 0}};
+constexpr emulate::Phase kPhases[] = {
+    {1, "flat", {}, 0, false, kNear},  // kRest
+    {1, "flat", {}, 1, false, kNear},  // kGrab
+    {1, "flat", {}, 1, false, kFar},   // kDamage
+    {1, "flat", {}, 0, false, kFar},   // kLetGo
+};
+
+TEST(Survival, AContentThatOneRecordFlungOutOfSightReturns) {
+  const TempDir dir;
+  std::size_t step = kRest;
+  const emulate::MotionScript script{"damage", "", kPhases, &step};
+  Line tracker("fastrak", 38400, script, dir / "tracker");
+  Line ball("spaceball", 9600, script, dir / "ball");
+  const nlohmann::json bindings = {{{"input", "ball.button.1"}, {"action", "grab"}}};
+  Merlind m(dir, makeModel(dir, 5), "survival",
+            {.emulate = false,
+             .also = {{"devices",
+                       {{"tracker", {{"port", "pty:" + (dir / "tracker")}}},
+                        {"ball", {{"port", "pty:" + (dir / "ball")}}}}},
+                      {"wall", {{"scene", {{"return_after_s", 0.5}, {"bindings", bindings}}}}}}});
+  const auto served = [&](auto condition) {
+    return eventually([&] {
+      tracker.pump();
+      ball.pump();
+      return condition();
+    });
+  };
+  const auto hand_m = [&] {
+    const auto sample = m.devices() ? m.devices()->tracker[0].newest() : std::nullopt;
+    return sample ? sample->position_m[0] : 0;
+  };
+  ASSERT_TRUE(served([&] { return hand_m() > 0.5F && m.wall().frames > 0; }))
+      << m.process().output();
+  step = kGrab;
+  ASSERT_TRUE(served([&] { return m.wall().grabbed == 1; })) << m.process().output();
+  step = kDamage;
+  ASSERT_TRUE(served([&] { return hand_m() > 4.8F; }));
+  const std::uint64_t frames = m.wall().frames;
+  ASSERT_TRUE(served([&] { return m.wall().frames > frames + 1; }));
+  step = kLetGo;
+  ASSERT_TRUE(served([&] { return m.wall().grabbed == 0; }));
+  EXPECT_TRUE(served([&] { return m.wall().returned == 1; })) << m.process().output();
+  EXPECT_TRUE(served([&] {
+    return m.process().output().find("the start view has returned") != std::string::npos;
+  })) << m.process().output();
+}
+
+}  // namespace
+}  // namespace merlin::test
