@@ -228,14 +228,14 @@ std::vector<Field> wallFields() {
   MERLIN_FIELD(t, WallStats, scale_divisor, "");
   addPace(t);
   addChannel<FrameTrace>(t, "trace", offsetof(WallSegment, trace));
-  t.slot("hand", offsetof(WallSegment, hand));
-  MERLIN_FIELD(t, WallHand, pointing, "0 wall model");
-  MERLIN_FIELD(t, WallHand, pixel, "px");
-  MERLIN_FIELD(t, WallHand, at_model_m, "m");
-  MERLIN_FIELD(t, WallHand, snapshots, "");
-  MERLIN_FIELD(t, WallHand, lamps, "");
-  MERLIN_FIELD(t, WallHand, lamp, "Lamp");
-  MERLIN_FIELD(t, WallHand, content, "");
+  t.slot("interaction", offsetof(WallSegment, interaction));
+  MERLIN_FIELD(t, WallInteraction, pointing, "0 wall model");
+  MERLIN_FIELD(t, WallInteraction, pixel, "px");
+  MERLIN_FIELD(t, WallInteraction, at_model_m, "m");
+  MERLIN_FIELD(t, WallInteraction, snapshots, "");
+  MERLIN_FIELD(t, WallInteraction, lamps, "");
+  MERLIN_FIELD(t, WallInteraction, lamp, "Lamp");
+  MERLIN_FIELD(t, WallInteraction, content, "");
   return t.take();
 }
 

@@ -146,8 +146,8 @@ struct FrameTrace {
 };
 static_assert(sizeof(TraceStep) == 12 && sizeof(FrameTrace) == 48 + 32 * 12);
 
-// What the person asks of the wall by hand; written once a period.
-struct WallHand {
+// What people ask of the wall: pointing, snapshots, lamps, contents. Written once a period.
+struct WallInteraction {
   enum Pointing : std::uint32_t { kNone = 0, kAtWall = 1, kAtModel = 2 };
 
   std::int64_t updated_ns;
@@ -159,13 +159,13 @@ struct WallHand {
   std::uint32_t lamp;       // the last of them: GpioSample::Lamp
   std::uint32_t content;    // that is shown: 0 the model, 1 .. the configuration's contents
 };
-static_assert(sizeof(WallHand) == 48 && offsetof(WallHand, snapshots) == 32);
+static_assert(sizeof(WallInteraction) == 48 && offsetof(WallInteraction, snapshots) == 32);
 
 struct WallSegment {
   Header header;
   alignas(64) SeqSlot<WallStats> stats;  // writer: the wall's thread
   Channel<FrameTrace> trace;             // writer: the wall's thread; the last 256 periods
-  alignas(64) SeqSlot<WallHand> hand;    // writer: the wall's thread
+  alignas(64) SeqSlot<WallInteraction> interaction;  // writer: the wall's thread
 };
 
 }  // namespace merlin::shm

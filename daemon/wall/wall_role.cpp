@@ -112,7 +112,8 @@ void WallRole::run(const std::stop_token& stop) {
   PointerMarker marker(plan_);
   render::TimerFrameClock frame_clock(clock_);
   WallLoop loop({contents, scene_, governor_, feed, sinks, segment_->stats, clock_, frame_clock,
-                 &segment_->trace, &marker, &segment_->hand, settings_.wall.render.fade_frames});
+                 &segment_->trace, &marker, &segment_->interaction,
+                 settings_.wall.render.fade_frames});
   loop.calibrate();
   loop_.store(&loop);
   loop.run(stop, [&] { ready_.set_value(pictures.front()->contexts()->renderer()); });

@@ -34,7 +34,7 @@ TEST(Layout, OffsetsOfVersion1) {
   EXPECT_EQ(offsetof(BallSample, rotation), 28u);
   EXPECT_EQ(offsetof(PostureSample, name), 44u);
   EXPECT_EQ(offsetof(WallStats, rate_held_hz), 60u);
-  EXPECT_EQ(offsetof(WallHand, snapshots), 32u);
+  EXPECT_EQ(offsetof(WallInteraction, snapshots), 32u);
   EXPECT_EQ(offsetof(WallSegment, stats), 7232u);
   EXPECT_EQ(offsetof(WallSegment, trace), 7616u);
 }
