@@ -34,4 +34,11 @@ bool SystemClock::sleepUntil(Timestamp when, const std::stop_token& stop) noexce
   }
 }
 
+Duration realtimeOffset() noexcept {
+  const Duration before = std::chrono::steady_clock::now().time_since_epoch();
+  const Duration utc = std::chrono::system_clock::now().time_since_epoch();
+  const Duration after = std::chrono::steady_clock::now().time_since_epoch();
+  return utc - (before + (after - before) / 2);
+}
+
 }  // namespace merlin

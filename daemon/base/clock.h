@@ -35,4 +35,8 @@ class SystemClock final : public Clock {
   bool sleepUntil(Timestamp when, const std::stop_token& stop) noexcept override;
 };
 
+// What to add to a Timestamp for the time of day: CLOCK_REALTIME minus CLOCK_MONOTONIC, measured to
+// about a microsecond. It changes when the system's clock is set. Thread-safe.
+Duration realtimeOffset() noexcept;
+
 }  // namespace merlin

@@ -1,8 +1,10 @@
 // merlin shm dump: every field of the shared memory, as its own table describes it.
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <string_view>
 #include <thread>
 
 #include <fmt/format.h>
@@ -25,54 +27,67 @@ struct DumpOptions {
 };
 
 template <typename T>
-void appendNumbers(Json& list, const std::byte* at, std::uint32_t count) {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    T value;
-    std::memcpy(&value, at + i * sizeof value, sizeof value);
-    if constexpr (std::is_floating_point_v<T>) {
-      list.push_back(std::isfinite(value) ? Json(std::stod(fmt::format("{:.6g}", value)))
-                                          : Json(nullptr));
-    } else {
-      list.push_back(value);
-    }
+Json number(const std::byte* at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  if constexpr (std::is_floating_point_v<T>) {
+    return std::isfinite(value) ? Json(std::stod(fmt::format("{:.6g}", value))) : Json(nullptr);
+  } else {
+    return value;
   }
 }
 
-std::size_t sizeOf(char type) {
-  switch (type) {
+// Of one value, as the type says: "20s" is a text of 20 bytes. 0 for a type that we do not know.
+std::size_t sizeOf(const shm::Field& f) {
+  const std::string_view type(f.type, strnlen(f.type, sizeof f.type));
+  if (type.ends_with('s')) return static_cast<std::size_t>(std::atoi(f.type));
+  if (type.size() != 1) return 0;
+  switch (type[0]) {
     case 'q':
     case 'Q':
     case 'd': return 8;
     case 'i':
     case 'I':
     case 'f': return 4;
-    case 'h': return 2;
-    default: return 1;
+    case 'h':
+    case 'H': return 2;
+    case 'B': return 1;
+    default: return 0;
   }
 }
 
-Json decode(const shm::Field& f, const std::byte* at) {
-  Json list = Json::array();
+Json decodeOne(const shm::Field& f, const std::byte* at) {
   switch (f.type[0]) {
-    case 'q': appendNumbers<std::int64_t>(list, at, f.count); break;
-    case 'Q': appendNumbers<std::uint64_t>(list, at, f.count); break;
-    case 'i': appendNumbers<std::int32_t>(list, at, f.count); break;
-    case 'I': appendNumbers<std::uint32_t>(list, at, f.count); break;
-    case 'h': appendNumbers<std::int16_t>(list, at, f.count); break;
-    case 'B': appendNumbers<std::uint8_t>(list, at, f.count); break;
-    case 'f': appendNumbers<float>(list, at, f.count); break;
-    case 'd': appendNumbers<double>(list, at, f.count); break;
+    case 'q': return number<std::int64_t>(at);
+    case 'Q': return number<std::uint64_t>(at);
+    case 'i': return number<std::int32_t>(at);
+    case 'I': return number<std::uint32_t>(at);
+    case 'h': return number<std::int16_t>(at);
+    case 'H': return number<std::uint16_t>(at);
+    case 'B': return number<std::uint8_t>(at);
+    case 'f': return number<float>(at);
+    case 'd': return number<double>(at);
     default: {
       const auto* text = reinterpret_cast<const char*>(at);
-      return std::string(text, strnlen(text, f.count));
+      return std::string(text, strnlen(text, sizeOf(f)));
     }
   }
-  return f.count == 1 ? list[0] : list;
+}
+
+// `values` are those between the field's first byte and its last.
+Json decode(const shm::Field& f, const std::byte* values) {
+  if (f.count == 1) return decodeOne(f, values);
+  Json list = Json::array();
+  for (std::uint32_t i = 0; i < f.count; ++i)
+    list.push_back(decodeOne(f, values + std::size_t{i} * f.step));
+  return list;
 }
 
 // The field's value, whole; null where it was never written, or is being written each time we look.
 Json readField(const SharedMemory& memory, const shm::Field& f) {
-  const std::size_t bytes = sizeOf(f.type[0]) * f.count;
+  const std::size_t one = sizeOf(f);
+  if (one == 0 || f.count == 0 || f.step < one) return nullptr;
+  const std::size_t bytes = (f.count - std::size_t{1}) * f.step + one;
   if (f.offset + bytes > memory.size()) return nullptr;
   if (f.slot == 0) return decode(f, memory.data() + f.offset);
   if (f.slot + 8 > memory.size() || f.slot % 8 != 0) return nullptr;
@@ -98,8 +113,10 @@ Result<Json> readSegment(const std::string& name) {
   const auto& header = *reinterpret_cast<const shm::Header*>(memory->data());
   Json fields = Json::object();
   for (std::uint32_t i = 0; i < header.field_count; ++i) {
-    shm::Field f = header.fields[i];
-    f.name[sizeof f.name - 1] = f.unit[sizeof f.unit - 1] = '\0';
+    shm::Field f;
+    std::memcpy(&f, memory->data() + header.field_offset + std::size_t{i} * header.field_size,
+                sizeof f);
+    f.name[sizeof f.name - 1] = f.unit[sizeof f.unit - 1] = f.type[sizeof f.type - 1] = '\0';
     fields[f.name] = {{"value", readField(*memory, f)}, {"unit", f.unit}};
   }
   return fields;

@@ -11,7 +11,4 @@ namespace merlin::shm {
 std::vector<Field> devicesFields();
 std::vector<Field> wallFields();
 
-// Copies a table into a header. REQUIRES: fields.size() <= kMostFields.
-void setFields(Header& header, const std::vector<Field>& fields);
-
 }  // namespace merlin::shm

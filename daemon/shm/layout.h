@@ -1,18 +1,21 @@
 // The shared-memory contract of MERLIN: what a client process maps. Clients: read this file first.
 //
 // Two segments, read-only for clients: /merlin-devices (what the devices measure) and /merlin-wall
-// (how the wall fares). Each starts with a Header and carries a table of its own fields, so that C,
-// C++ and Python readers need no header file; read_merlin.py beside this file is one in 30 lines.
+// (how the wall fares). Each starts with a Header and carries a table of all its fields, the
+// header's own included, so that readers in C, C++ and Python need no header file: README.md beside
+// this file shows one of each. The frame buffer, /merlin-framebuffer, has the same kind of table
+// (render/out/framebuffer_layout.h).
 //
 // One writer a slot, named here. No pointers, no locks; a field's meaning never changes. Fields are
 // only ever appended; any change of an offset bumps kVersion, and a client refuses a version that
-// it does not know.
+// it does not know. The table lies last and may move: its offset stands in the header.
 #pragma once
 
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 
+#include "daemon/base/field_table.h"
 #include "daemon/shm/channel.h"
 #include "daemon/shm/seq_slot.h"
 #include "drivers/port/samples.h"
@@ -20,38 +23,29 @@
 namespace merlin::shm {
 
 inline constexpr std::uint32_t kMagic = 0x4E4C524D;  // "MRLN" in memory
-inline constexpr std::uint32_t kVersion = 1;
-inline constexpr std::size_t kMostFields = 96;
+inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::size_t kMostFields = 512;
 
-// One field of the segment. `type` is a letter of Python's struct module (q i64, Q u64, i i32, I
-// u32, h i16, B u8, f f32, d f64, s bytes of text); `slot` is the offset of the u64 sequence that
-// guards it (read it before and after; odd or changed: try again), 0 for none. NAME.ring is where
-// the first of a channel's last samples lies, a slot each, its unit "256 x STRIDE B"; sample number
-// n, of NAME.count, is in slot n % 256.
-struct Field {
-  char name[40];  // "glove.angle_rad"
-  char unit[16];  // "rad"
-  char type[4];
-  std::uint32_t count;   // of values of that type
-  std::uint32_t offset;  // from the segment's start [bytes]
-  std::uint32_t slot;
-};
-static_assert(sizeof(Field) == 72);
-
+// The first 40 bytes are all that a reader needs to know beforehand: they say where the table of
+// fields is, and the table describes all else. They are the same in the frame buffer's segment.
 struct Header {
   std::uint32_t magic, version;
-  std::uint64_t size;        // of the whole segment [bytes]
-  std::uint64_t generation;  // new at each start of the daemon: re-open when it changes
+  std::uint64_t size;          // of the whole segment [bytes]
+  std::uint64_t generation;    // new at each start of the daemon: re-open when it changes
+  std::uint32_t field_offset;  // of the table, from the segment's start [bytes]
+  std::uint32_t field_count;
+  std::uint32_t field_size;  // of one entry [bytes]; more than sizeof(Field) in a later version
+  std::uint32_t pid;
   std::atomic<std::int64_t> heartbeat_ns;  // CLOCK_MONOTONIC, ten times a second; old: it is gone
   std::int64_t started_ns;                 // CLOCK_MONOTONIC
-  std::uint32_t pid;
-  std::uint32_t field_count;
+  // CLOCK_REALTIME minus CLOCK_MONOTONIC, measured anew with each heartbeat: add it to any stamp
+  // for the UTC time in nanoseconds since 1970. It jumps when the system's clock is set.
+  std::atomic<std::int64_t> realtime_offset_ns;
   char status_endpoint[108];   // ZeroMQ PUB: one JSON document a topic
   char command_endpoint[108];  // ZeroMQ REP: commands
-  Field fields[kMostFields];
 };
-static_assert(offsetof(Header, status_endpoint) == 48 && offsetof(Header, fields) == 264);
-static_assert(sizeof(Header) == 264 + kMostFields * 72);
+static_assert(offsetof(Header, field_offset) == 24 && offsetof(Header, heartbeat_ns) == 40);
+static_assert(offsetof(Header, status_endpoint) == 64 && sizeof(Header) == 280);
 
 // Health of the three devices, by this number.
 enum DeviceIndex : std::size_t { kGlove = 0, kTracker = 1, kBall = 2, kDevices = 3 };
@@ -68,6 +62,7 @@ struct DevicesSegment {
   alignas(64) SeqSlot<DeviceHealth> gpio_health;       // writer: the panel's thread
   alignas(64) SeqSlot<PostureState> posture_state;     // writer: the glove's device thread
   alignas(64) SeqSlot<TrackerFrames> tracker_frames;   // writer: the daemon, as it starts
+  alignas(64) Field fields[kMostFields];               // writer: the daemon, as it starts
 };
 
 // How the wall fares; written once a frame by the wall's thread. Shares are 0..1.
@@ -148,8 +143,8 @@ struct FrameTrace {
 };
 static_assert(sizeof(TraceStep) == 12 && sizeof(FrameTrace) == 48 + 32 * 12);
 
-// What the person asks of the wall by hand; written once a period.
-struct WallHand {
+// What people ask of the wall: pointing, snapshots, lamps, contents. Written once a period.
+struct WallInteraction {
   enum Pointing : std::uint32_t { kNone = 0, kAtWall = 1, kAtModel = 2 };
 
   std::int64_t updated_ns;
@@ -161,13 +156,14 @@ struct WallHand {
   std::uint32_t lamp;       // the last of them: GpioSample::Lamp
   std::uint32_t content;    // that is shown: 0 the model, 1 .. the configuration's contents
 };
-static_assert(sizeof(WallHand) == 48 && offsetof(WallHand, snapshots) == 32);
+static_assert(sizeof(WallInteraction) == 48 && offsetof(WallInteraction, snapshots) == 32);
 
 struct WallSegment {
   Header header;
   alignas(64) SeqSlot<WallStats> stats;  // writer: the wall's thread
   Channel<FrameTrace> trace;             // writer: the wall's thread; the last 256 periods
-  alignas(64) SeqSlot<WallHand> hand;    // writer: the wall's thread
+  alignas(64) SeqSlot<WallInteraction> interaction;  // writer: the wall's thread
+  alignas(64) Field fields[kMostFields];             // writer: the daemon, as it starts
 };
 
 }  // namespace merlin::shm

@@ -1,6 +1,6 @@
-/* Prints values from MERLIN's shared memory, by the table that it carries, and waits for the next
- * sample: read_merlin SEGMENT FIELD ... [--follow CHANNEL COUNT]. Plain C99, no header of MERLIN's.
- * Build: cc -std=gnu99 -O2 read_merlin.c -o read_merlin */
+/* Prints values from MERLIN's shared memory, by the table of fields that it carries, and follows a
+ * device without missing a sample: read_merlin SEGMENT FIELD ... [--follow FIELD COUNT].
+ * Plain C99, no header of MERLIN's. Build: cc -std=gnu99 -O2 read_merlin.c -o read_merlin */
 #include <fcntl.h>
 #include <linux/futex.h>
 #include <stdint.h>
@@ -13,95 +13,128 @@
 #include <time.h>
 #include <unistd.h>
 
-struct field { char name[40], unit[16], type[4]; uint32_t count, offset, slot; };
-struct header {
-  uint32_t magic, version; uint64_t size, generation; int64_t heartbeat_ns, started_ns;
-  uint32_t pid, field_count; char status_endpoint[108], command_endpoint[108]; struct field fields[];
+/* daemon/base/field_table.h says what each of these means. */
+struct field {
+  char name[48], unit[24], type[8];
+  uint32_t count, step, offset, slot, ring, ring_stride, ring_slots, reserved;
+};
+struct header { /* its first 40 bytes; the table describes the others */
+  uint32_t magic, version; uint64_t size, generation;
+  uint32_t field_offset, field_count, field_size, pid;
 };
 
 static const char* memory;
 
-static uint64_t word(uint32_t offset) {
+static uint64_t word(uint64_t offset) {
   return __atomic_load_n((const uint64_t*)(memory + offset), __ATOMIC_ACQUIRE);
 }
 
-static size_t width(char type) { return type == 's' || type == 'B' ? 1 : type == 'h' ? 2
-                                      : type == 'q' || type == 'Q' || type == 'd' ? 8 : 4; }
+/* Bytes of one value: a type is a letter, or "20s" for a text of 20 bytes. */
+static size_t width(const char* type) {
+  if (type[0] >= '0' && type[0] <= '9') return (size_t)atoi(type);
+  return strchr("qQd", type[0]) ? 8 : strchr("iIf", type[0]) ? 4 : strchr("hH", type[0]) ? 2 : 1;
+}
 
-/* Copies a field whole: its slot's sequence is even, and the same before and after. At most 1000
- * tries, so that a writer that died in the middle of one costs no more than that. */
-static int copy_field(const struct field* f, void* to, size_t most) {
-  size_t bytes = width(f->type[0]) * f->count;
+/* Copies the values at `from`, whole, into `to`: the sequence at `slot` is even, and the same before
+ * and after. A field without a slot has no sequence. At most 1000 tries, so that a writer that died
+ * in the middle of a value costs no more than that. Returns 0 for a value that was never written. */
+static int copy_values(const struct field* f, uint64_t slot, uint64_t from, void* to, size_t most) {
+  size_t bytes = (f->count - 1) * (size_t)f->step + width(f->type);
   if (bytes > most) return 0;
   for (int i = 0; i < 1000; ++i) {
-    uint64_t before = f->slot ? word(f->slot) : 2;
-    memcpy(to, memory + f->offset, bytes);
+    uint64_t before = f->slot ? word(slot) : 2;
+    memcpy(to, memory + from, bytes);
     __atomic_thread_fence(__ATOMIC_ACQUIRE);
-    if (before && before % 2 == 0 && (!f->slot || word(f->slot) == before)) return 1;
+    if (before && before % 2 == 0 && (!f->slot || word(slot) == before)) return 1;
   }
   return 0;
 }
 
-static void print_field(const struct field* f) {
-  char value[4096];
-  printf("%s", f->name);
-  if (!copy_field(f, value, sizeof value)) { puts(" -"); return; }
-  if (f->type[0] == 's') { printf(" %.*s\n", (int)f->count, value); return; }
-  for (uint32_t i = 0; i < f->count; ++i) {
-    const char* at = value + i * width(f->type[0]);
-    switch (f->type[0]) {
-      case 'q': { int64_t v; memcpy(&v, at, 8); printf(" %lld", (long long)v); break; }
-      case 'Q': { uint64_t v; memcpy(&v, at, 8); printf(" %llu", (unsigned long long)v); break; }
-      case 'i': { int32_t v; memcpy(&v, at, 4); printf(" %d", v); break; }
-      case 'I': { uint32_t v; memcpy(&v, at, 4); printf(" %u", v); break; }
-      case 'h': { int16_t v; memcpy(&v, at, 2); printf(" %d", v); break; }
-      case 'B': printf(" %u", (unsigned char)*at); break;
-      case 'f': { float v; memcpy(&v, at, 4); printf(" %.6g", (double)v); break; }
-      case 'd': { double v; memcpy(&v, at, 8); printf(" %.9g", v); break; }
-    }
+static void print_value(const char* type, const char* at) {
+  switch (type[0]) {
+    case 'q': { int64_t v; memcpy(&v, at, 8); printf(" %lld", (long long)v); break; }
+    case 'Q': { uint64_t v; memcpy(&v, at, 8); printf(" %llu", (unsigned long long)v); break; }
+    case 'i': { int32_t v; memcpy(&v, at, 4); printf(" %d", v); break; }
+    case 'I': { uint32_t v; memcpy(&v, at, 4); printf(" %u", v); break; }
+    case 'h': { int16_t v; memcpy(&v, at, 2); printf(" %d", v); break; }
+    case 'H': { uint16_t v; memcpy(&v, at, 2); printf(" %u", v); break; }
+    case 'B': printf(" %u", (unsigned char)*at); break;
+    case 'f': { float v; memcpy(&v, at, 4); printf(" %.6g", (double)v); break; }
+    case 'd': { double v; memcpy(&v, at, 8); printf(" %.9g", v); break; }
+    default: printf(" %.*s", (int)width(type), at); /* a text */
   }
+}
+
+static void print_values(const struct field* f, const char* values) {
+  for (uint32_t i = 0; i < f->count; ++i) print_value(f->type, values + (size_t)i * f->step);
   printf(" %s\n", f->unit);
 }
 
-static const struct field* find(const struct header* h, const char* name) {
-  for (uint32_t i = 0; i < h->field_count; ++i)
-    if (strncmp(h->fields[i].name, name, sizeof h->fields[i].name) == 0) return &h->fields[i];
+static const struct field* find(const char* name) {
+  const struct header* h = (const struct header*)memory;
+  for (uint32_t i = 0; i < h->field_count; ++i) {
+    const struct field* f = (const void*)(memory + h->field_offset + (size_t)i * h->field_size);
+    if (strncmp(f->name, name, sizeof f->name) == 0) return f;
+  }
   fprintf(stderr, "read_merlin: the segment has no field %s\n", name);
   exit(2);
 }
 
-/* Sleeps on CHANNEL.wake until CHANNEL.count has grown by `count`; a dead daemon ends it. */
-static void follow(const struct header* h, const char* channel, uint64_t count) {
-  char name[64];
-  snprintf(name, sizeof name, "%s.count", channel);
-  const struct field* counter = find(h, name);
-  snprintf(name, sizeof name, "%s.wake", channel);
-  const uint32_t* wake = (const uint32_t*)(memory + find(h, name)->offset);
-  for (uint64_t first = word(counter->offset), seen = first; seen < first + count;) {
-    uint32_t before = __atomic_load_n(wake, __ATOMIC_ACQUIRE);
+static void print_newest(const struct field* f) {
+  char values[4096];
+  printf("%s", f->name);
+  if (copy_values(f, f->slot, f->offset, values, sizeof values)) print_values(f, values);
+  else puts(" -");
+}
+
+/* Sample number n of a channel, from its ring; `counter` is the field CHANNEL.count. A sample that
+ * was overwritten before it was read is reported, not mixed up with the newer one. */
+static void print_sample(const struct field* f, const struct field* counter, uint64_t n) {
+  char values[4096];
+  uint64_t slot = f->ring + (n % f->ring_slots) * f->ring_stride;
+  int whole = copy_values(f, slot, slot + (f->offset - f->slot), values, sizeof values);
+  printf("%s %llu", f->name, (unsigned long long)n);
+  if (whole && n + f->ring_slots > word(counter->offset)) print_values(f, values);
+  else puts(" missed");
+}
+
+/* Prints FIELD of each of the next `count` samples of its channel. Sleeps on CHANNEL.wake. */
+static void follow(const char* name, uint64_t count) {
+  const struct field* f = find(name);
+  const char* dot = strrchr(name, '.');
+  char other[64];
+  if (!f->ring || !dot) { fprintf(stderr, "read_merlin: %s has no ring\n", name); exit(2); }
+  snprintf(other, sizeof other, "%.*s.count", (int)(dot - name), name);
+  const struct field* counter = find(other);
+  snprintf(other, sizeof other, "%.*s.wake", (int)(dot - name), name);
+  const uint32_t* wake = (const uint32_t*)(memory + find(other)->offset);
+  uint64_t seen = word(counter->offset), last = seen + count;
+  while (seen < last) {
+    uint32_t before = __atomic_load_n(wake, __ATOMIC_ACQUIRE); /* before the count is looked at */
     struct timespec limit = {2, 0};
     if (word(counter->offset) == seen && syscall(SYS_futex, wake, FUTEX_WAIT, before, &limit, 0, 0) &&
         word(counter->offset) == seen) { fprintf(stderr, "read_merlin: no sample for 2 s\n"); exit(1); }
-    for (uint64_t now = word(counter->offset); seen < now; ++seen) printf("%s %llu\n", channel, (unsigned long long)seen);
+    for (uint64_t now = word(counter->offset); seen < now; ++seen) print_sample(f, counter, seen);
   }
 }
 
 int main(int argc, char** argv) {
   char path[256];
   struct stat status;
-  if (argc < 3) { fprintf(stderr, "usage: read_merlin SEGMENT FIELD ... | --follow CHANNEL COUNT\n"); return 2; }
+  if (argc < 3) { fprintf(stderr, "usage: read_merlin SEGMENT FIELD ... | --follow FIELD COUNT\n"); return 2; }
   snprintf(path, sizeof path, "/dev/shm/%s", argv[1]);
   int fd = open(path, O_RDONLY);
   if (fd < 0 || fstat(fd, &status) != 0) { perror(path); return 2; }
   memory = mmap(0, (size_t)status.st_size, PROT_READ, MAP_SHARED, fd, 0);
   const struct header* h = (const struct header*)memory;
-  if (memory == MAP_FAILED || h->magic != 0x4E4C524D || h->version != 1) {
-    fprintf(stderr, "read_merlin: %s is no segment of MERLIN's that this program knows\n", path);
+  int frames = memory != MAP_FAILED && h->magic == 0x42464D4D; /* the frame buffer's segment */
+  if (memory == MAP_FAILED || (h->magic != 0x4E4C524D && !frames) || h->version != 2) {
+    fprintf(stderr, "read_merlin: %s is not a segment of MERLIN that this program knows\n", path);
     return 2;
   }
   for (int i = 2; i < argc; ++i) {
-    if (strcmp(argv[i], "--follow") == 0 && i + 2 < argc) { follow(h, argv[i + 1], strtoull(argv[i + 2], 0, 10)); i += 2; }
-    else print_field(find(h, argv[i]));
+    if (strcmp(argv[i], "--follow") == 0 && i + 2 < argc) { follow(argv[i + 1], strtoull(argv[i + 2], 0, 10)); i += 2; }
+    else print_newest(find(argv[i]));
   }
   return 0;
 }

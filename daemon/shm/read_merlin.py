@@ -1,32 +1,41 @@
 #!/usr/bin/env python3
-"""Prints the newest values from MERLIN's shared memory: read_merlin.py [NAME [FIELD ...]]
+"""Prints the newest values from MERLIN's shared memory: read_merlin.py [SEGMENT [FIELD ...]]
 
-Needs nothing but Python 3: the segment describes itself. NAME is merlin-devices or merlin-wall.
+Needs nothing but Python 3: the segment describes itself. SEGMENT is merlin-devices, merlin-wall or
+merlin-framebuffer.
 """
 import mmap, struct, sys
 
-HEADER = "<IIQQqqII108s108s"   # magic .. field_count, endpoints; then the table of fields
-FIELD = "<40s16s4sIII"         # name, unit, type, count, offset, slot
+HEADER = "<IIQQIIII"             # magic, version, size, generation, table: offset, count, size; pid
+FIELD = "<48s24s8sIIIIIIII"      # name, unit, type, count, step, offset, slot, ring (3 numbers)
+MAGICS = (0x4E4C524D, 0x42464D4D)
 
 def text(raw):
-    return raw.split(b"\0")[0].decode()
+    return raw.split(b"\0")[0].decode(errors="replace")
 
-def read(memory, type_, count, offset, slot):
-    """One field, whole: the sequence of its slot is even, and the same before and after."""
+def values(memory, type_, count, step, offset):
+    """`type_` is a format of the struct module for one value; they lie `step` bytes apart."""
+    found = [struct.unpack_from("<" + type_, memory, offset + i * step)[0] for i in range(count)]
+    return [text(v) if isinstance(v, bytes) else v for v in found]
+
+def read(memory, type_, count, step, offset, slot):
+    """A field's newest values, whole: the sequence of its slot is even, and the same before and
+    after. None where it was never written. A field without a slot has no sequence."""
     for _ in range(1000):
-        before, = struct.unpack_from("<Q", memory, slot) if slot else (2,)  # 0: a word by itself
-        values = struct.unpack_from(f"<{count}{type_}", memory, offset)
+        before, = struct.unpack_from("<Q", memory, slot) if slot else (2,)
+        found = values(memory, type_, count, step, offset)
         if before % 2 == 0 and (not slot or before == struct.unpack_from("<Q", memory, slot)[0]):
-            return (text(values[0]) if type_ == "s" else values) if before else None
+            return found if before else None
     return None
 
 name, wanted = (sys.argv[1:2] or ["merlin-devices"])[0], sys.argv[2:]
 with open(f"/dev/shm/{name}", "rb") as file:
     memory = mmap.mmap(file.fileno(), 0, prot=mmap.PROT_READ)
-magic, version, *_, count, _, _ = struct.unpack_from(HEADER, memory)
-assert magic == 0x4E4C524D and version == 1, "not a segment of MERLIN's that this script knows"
-for i in range(count):
-    raw = struct.unpack_from(FIELD, memory, struct.calcsize(HEADER) + i * struct.calcsize(FIELD))
-    field, unit, type_ = map(text, raw[:3])
+magic, version, _, _, table, fields, size, _ = struct.unpack_from(HEADER, memory)
+if magic not in MAGICS or version != 2:
+    sys.exit(f"read_merlin.py: {name} is not a segment of MERLIN that this program knows")
+for i in range(fields):
+    entry = struct.unpack_from(FIELD, memory, table + i * size)
+    field, unit, type_ = map(text, entry[:3])
     if not wanted or field in wanted:
-        print(field, read(memory, type_, *raw[3:]), unit)
+        print(field, read(memory, type_, *entry[3:7]), unit)

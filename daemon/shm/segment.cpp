@@ -19,6 +19,13 @@ void setText(char (&field)[N], const std::string& text) {
   field[n] = '\0';
 }
 
+// The table's entries lie inside the segment, each at least as long as those that we read.
+bool tableFits(const Header& h, std::size_t size) {
+  if (h.field_count == 0) return true;
+  const std::uint64_t end = h.field_offset + std::uint64_t{h.field_count} * h.field_size;
+  return h.field_size >= sizeof(Field) && end <= size;
+}
+
 }  // namespace
 
 std::string segmentName(const std::string& instance, const char* what) {
@@ -38,6 +45,7 @@ void fillHeader(Header& h, std::size_t size, std::uint64_t generation, Timestamp
   h.generation = generation;
   h.heartbeat_ns.store(toNanoseconds(now), std::memory_order_relaxed);
   h.started_ns = toNanoseconds(now);
+  h.realtime_offset_ns.store(realtimeOffset().count(), std::memory_order_relaxed);
   h.pid = static_cast<std::uint32_t>(::getpid());
   setText(h.status_endpoint, endpoints.status);
   setText(h.command_endpoint, endpoints.command);
@@ -61,7 +69,7 @@ Result<Ok> checkHeader(const SharedMemory& memory, std::size_t least_size,
                  fmt::format("shared memory {}: is version {}, this program reads {}", name,
                              h.version, kVersion)};
   }
-  if (memory.size() < least_size || h.size != memory.size() || h.field_count > kMostFields) {
+  if (memory.size() < least_size || h.size != memory.size() || !tableFits(h, memory.size())) {
     return Error{Errc::kMalformed, fmt::format("shared memory {}: its header is damaged", name)};
   }
   return Ok{};
@@ -75,7 +83,7 @@ Result<SegmentWriter<Segment>> SegmentWriter<Segment>::make(const std::string& n
   auto memory = SharedMemory::create(name, sizeof(Segment));
   if (!memory) return memory.error();
   auto* segment = new (memory->data()) Segment{};
-  setFields(segment->header, fields);
+  setFields(segment->header, segment->fields, fields);
   fillHeader(segment->header, sizeof(Segment), generation, now, endpoints);
   return SegmentWriter(*std::move(memory));
 }

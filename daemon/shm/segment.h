@@ -43,7 +43,9 @@ class SegmentWriter {
   Segment* operator->() const { return &**this; }
 
   void beat(Timestamp now) const {
-    (*this)->header.heartbeat_ns.store(toNanoseconds(now), std::memory_order_relaxed);
+    Header& header = (*this)->header;
+    header.heartbeat_ns.store(toNanoseconds(now), std::memory_order_relaxed);
+    header.realtime_offset_ns.store(realtimeOffset().count(), std::memory_order_relaxed);
   }
 
  private:

@@ -58,7 +58,7 @@ Json briefHealth(const shm::DevicesSegment& segment) {
   return all;
 }
 
-Json poseJson(const HandSample& h) {
+Json handJson(const HandSample& h) {
   return {{"received_ns", h.received_ns},
           {"glove_ns", h.glove_ns},
           {"counter", h.counter},
@@ -72,11 +72,11 @@ Json poseJson(const HandSample& h) {
 }
 
 // Null while no hand points; pixel null where no wall tile shows what it points at.
-Json pointerJson(const shm::WallHand& h) {
-  if (h.pointing == shm::WallHand::kNone) return nullptr;
+Json pointerJson(const shm::WallInteraction& h) {
+  if (h.pointing == shm::WallInteraction::kNone) return nullptr;
   Json pixel = nullptr;
   if (h.pixel[0] >= 0) pixel = integers(std::span<const std::int32_t>(h.pixel));
-  return {{"at", h.pointing == shm::WallHand::kAtModel ? "model" : "wall"},
+  return {{"at", h.pointing == shm::WallInteraction::kAtModel ? "model" : "wall"},
           {"pixel", std::move(pixel)},
           {"at_model_m", list(std::span<const float>(h.at_model_m))}};
 }
@@ -176,7 +176,7 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                        const std::vector<net::ServerHealth>& servers,
                        const shm::DevicesSegment* remote) {
   const auto s = segment.stats.read().value_or(shm::WallStats{});
-  const auto hand = segment.hand.read().value_or(shm::WallHand{});
+  const auto interaction = segment.interaction.read().value_or(shm::WallInteraction{});
   Json json = {{"role", "wall"},
                {"pid", segment.header.pid},
                {"uptime_s", ageSeconds(segment.header.started_ns, now)},
@@ -194,9 +194,9 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                {"full_detail", s.full_detail != 0},
                {"mode", text(s.mode)},
                {"grabbed", s.grabbed != 0},
-               {"pointer", pointerJson(hand)},
-               {"content", hand.content},
-               {"snapshots", hand.snapshots},
+               {"pointer", pointerJson(interaction)},
+               {"content", interaction.content},
+               {"snapshots", interaction.snapshots},
                {"work_ms", round3(s.work_ms)},
                {"work_median_ms", round3(s.work_median_ms)},
                {"utilisation", round3(s.utilisation)},
@@ -239,12 +239,12 @@ std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {
                        {"activation", list(std::span<const float>(p->activation))}};
   }
   if (const auto g = segment.glove.newest()) {
-    json["hand"] = {{"received_ns", g->received_ns},
-                    {"counter", g->counter},
-                    {"flags", g->flags},
-                    {"sensors", g->sensors},
-                    {"raw", integers(std::span<const std::uint8_t>(g->raw))},
-                    {"angle_rad", list(std::span<const float>(g->angle_rad))}};
+    json["glove"] = {{"received_ns", g->received_ns},
+                     {"counter", g->counter},
+                     {"flags", g->flags},
+                     {"sensors", g->sensors},
+                     {"raw", integers(std::span<const std::uint8_t>(g->raw))},
+                     {"angle_rad", list(std::span<const float>(g->angle_rad))}};
   }
   Json stations = Json::array();
   for (const auto& channel : segment.tracker) {
@@ -267,7 +267,7 @@ std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {
                     {"translation", list(std::span<const float>(b->translation))},
                     {"rotation", list(std::span<const float>(b->rotation))}};
   }
-  if (const auto h = segment.hand.newest()) json["pose"] = poseJson(*h);
+  if (const auto h = segment.hand.newest()) json["hand"] = handJson(*h);
   json["health"] = briefHealth(segment);
   return dump(json);
 }

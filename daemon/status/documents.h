@@ -18,7 +18,7 @@ std::string devicesStatus(const shm::DevicesSegment& segment, Timestamp now,
 std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                        const std::vector<net::ServerHealth>& servers = {},
                        const shm::DevicesSegment* remote = nullptr);
-// Topic "sample": the newest posture, hand, tracker and ball.
+// Topic "sample": the newest posture, glove, hand, tracker and ball.
 std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now);
 // Topic "metrics": counters and gauges of either, flat, as a metrics collector wants them.
 std::string devicesMetrics(const shm::DevicesSegment& segment);

@@ -96,7 +96,7 @@ class Apply {
     publish(segment_.posture, s);
   }
   void glove() {
-    const Json* o = object("hand");
+    const Json* o = object("glove");
     if (!o) return;
     auto s = common<GloveSample>(*o);
     read(*o, "flags", s.flags);
@@ -132,7 +132,7 @@ class Apply {
     publish(segment_.ball, s);
   }
   void hand() {
-    const Json* o = object("pose");
+    const Json* o = object("hand");
     if (!o) return;
     auto s = common<HandSample>(*o);
     read(*o, "flags", s.flags);

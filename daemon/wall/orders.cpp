@@ -15,15 +15,15 @@ constexpr auto kLamps = static_cast<std::uint32_t>(Action::kLampOn) - kFirstLamp
 
 void Orders::poll(Timestamp now) {
   const shm::WallSegment* wall = wall_.get(now);
-  const auto hand = wall ? wall->hand.read() : std::nullopt;
-  if (!hand) return;
+  const auto interaction = wall ? wall->interaction.read() : std::nullopt;
+  if (!interaction) return;
   // What another wall was asked, or this one before this process began, is past.
   const bool same = generation_ == wall->header.generation;
-  if (same && doers_.snapshot && hand->snapshots != seen_.snapshots) doers_.snapshot();
-  if (same && doers_.lamp && hand->lamps != seen_.lamps && hand->lamp < kLamps)
-    doers_.lamp(nameOf(static_cast<Action>(kFirstLamp + hand->lamp)));
+  if (same && doers_.snapshot && interaction->snapshots != seen_.snapshots) doers_.snapshot();
+  if (same && doers_.lamp && interaction->lamps != seen_.lamps && interaction->lamp < kLamps)
+    doers_.lamp(nameOf(static_cast<Action>(kFirstLamp + interaction->lamp)));
   generation_ = wall->header.generation;
-  seen_ = *hand;
+  seen_ = *interaction;
 }
 
 }  // namespace merlin::wall

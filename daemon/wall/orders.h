@@ -28,7 +28,7 @@ class Orders {
   shm::SegmentFollower<shm::WallSegment> wall_;
   Doers doers_;
   std::uint64_t generation_ = 0;  // of the wall whose orders were seen last
-  shm::WallHand seen_{};
+  shm::WallInteraction seen_{};
 };
 
 }  // namespace merlin::wall

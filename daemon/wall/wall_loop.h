@@ -52,10 +52,10 @@ struct WallParts {
   render::FrameClock& frame_clock;                 // when a frame has to be there
   shm::Channel<shm::FrameTrace>* trace = nullptr;  // where steps are told; may be none
   PointerMarker* marker = nullptr;                 // who marks where the hand points; the same
-  shm::SeqSlot<shm::WallHand>* hand = nullptr;     // where that is told
-  int fade_frames = 1;                             // in which a finer picture replaces a coarser
-  double return_after_s = 0;                       // of a view that shows nothing; 0: never
-  Progress* progress = nullptr;                    // stepped once a period; may be none
+  shm::SeqSlot<shm::WallInteraction>* interaction = nullptr;  // where that is told
+  int fade_frames = 1;           // in which a finer picture replaces a coarser
+  double return_after_s = 0;     // of a view that shows nothing; 0: never
+  Progress* progress = nullptr;  // stepped once a period; may be none
 };
 
 // Thread-bound but for request(), hold() and setRate().
@@ -101,7 +101,7 @@ class WallLoop {
   bool applyRate();
   void present(std::span<std::uint8_t> pixels, bool full_detail);
   void publishTrace(Timestamp now);
-  void publishHand(Timestamp now);
+  void publishInteraction(Timestamp now);
   std::optional<Eigen::Vector3f> pointedAt() const;
   void publishStats(Timestamp now);
   void paceStats(Timestamp now);

@@ -41,7 +41,7 @@ void WallLoop::publishStats(Timestamp now) {
   std::copy(mode.begin(), mode.end(), out_.mode);
   paceStats(now);
   p_.stats.publish(out_);
-  if (p_.hand) publishHand(now);
+  if (p_.interaction) publishInteraction(now);
 }
 
 std::optional<Eigen::Vector3f> WallLoop::pointedAt() const {
@@ -49,20 +49,22 @@ std::optional<Eigen::Vector3f> WallLoop::pointedAt() const {
   return view_.pointed->at_eye_m;
 }
 
-void WallLoop::publishHand(Timestamp now) {
-  shm::WallHand hand{toNanoseconds(now), shm::WallHand::kNone, {-1, -1}, {}, 0, 0, 0, 0};
+void WallLoop::publishInteraction(Timestamp now) {
+  shm::WallInteraction interaction{
+      toNanoseconds(now), shm::WallInteraction::kNone, {-1, -1}, {}, 0, 0, 0, 0};
   if (const auto& pointed = view_.pointed) {
-    hand.pointing = pointed->on_model ? shm::WallHand::kAtModel : shm::WallHand::kAtWall;
+    interaction.pointing =
+        pointed->on_model ? shm::WallInteraction::kAtModel : shm::WallInteraction::kAtWall;
     const auto pixel = p_.marker ? p_.marker->pixelOf(pointed->at_eye_m) : std::nullopt;
-    if (pixel) std::copy_n(pixel->data(), 2, hand.pixel);
-    std::copy_n(pointed->at_model_m.data(), 3, hand.at_model_m);
+    if (pixel) std::copy_n(pixel->data(), 2, interaction.pixel);
+    std::copy_n(pointed->at_model_m.data(), 3, interaction.at_model_m);
   }
-  hand.snapshots = view_.orders.snapshots;
-  hand.lamps = view_.orders.lamps;
-  hand.content = static_cast<std::uint32_t>(content_);
-  hand.lamp = static_cast<std::uint32_t>(view_.orders.lamp) -
-              static_cast<std::uint32_t>(render::Action::kLampOff);
-  p_.hand->publish(hand);
+  interaction.snapshots = view_.orders.snapshots;
+  interaction.lamps = view_.orders.lamps;
+  interaction.content = static_cast<std::uint32_t>(content_);
+  interaction.lamp = static_cast<std::uint32_t>(view_.orders.lamp) -
+                     static_cast<std::uint32_t>(render::Action::kLampOff);
+  p_.interaction->publish(interaction);
 }
 
 void WallLoop::paceStats(Timestamp now) {

@@ -114,8 +114,9 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
   PointerMarker marker(plan_);
   render::TimerFrameClock frame_clock(clock_);
   WallLoop loop({contents, scene_, governor_, feed, sinks, segment_->stats, clock_, frame_clock,
-                 &segment_->trace, &marker, &segment_->hand, settings_.wall.render.fade_frames,
-                 settings_.wall.scene.return_after_s, &progress});
+                 &segment_->trace, &marker, &segment_->interaction,
+                 settings_.wall.render.fade_frames, settings_.wall.scene.return_after_s,
+                 &progress});
   loop.calibrate();
   loop_.store(&loop);
   loop.run(stop, [&] { ready_.set_value(pictures.front()->contexts()->renderer()); });

@@ -23,7 +23,7 @@ class OrdersTest : public testing::Test {
     wall_->beat(now_);
   }
   void say(std::uint32_t snapshots, std::uint32_t lamps, std::uint32_t lamp) {
-    (*wall_)->hand.publish({0, 0, {-1, -1}, {}, snapshots, lamps, lamp, 0});
+    (*wall_)->interaction.publish({0, 0, {-1, -1}, {}, snapshots, lamps, lamp, 0});
     now_ += seconds(1);
     wall_->beat(now_);
     orders_.poll(now_);

@@ -103,7 +103,7 @@ TEST(ApplySamples, NonsenseIsRefusedAndHalfTruthsDoNoHarm) {
   for (const char* odd :
        {R"({"now_ns":1,"ball":7,"tracker":{},"hand":[],"health":3,"posture":"x"})",
         R"({"now_ns":1,"tracker":[{"station":9},{"station":"x"},7,{"error":"long"}]})",
-        R"({"now_ns":"x","hand":{"angle_rad":[1,2],"raw":"y","counter":{}}})",
+        R"({"now_ns":"x","glove":{"angle_rad":[1,2],"raw":"y","counter":{}}})",
         R"({"now_ns":1,"health":{"ball":{"state":99,"reason":5}}})"}) {
     EXPECT_TRUE(applySamples(odd, "", {}, *here)) << odd;
   }

@@ -89,11 +89,12 @@ TEST_F(DocumentsTest, TheWallSaysWhatOutsideChecksRelyOn) {
 
 TEST_F(DocumentsTest, TheWallSaysWhereAHandPoints) {
   EXPECT_TRUE(json::parse(wallStatus(*wall_, kNow))["pointer"].is_null());
-  wall_->hand.publish({0, shm::WallHand::kAtModel, {960, 240}, {0, 0.25F, 1}, 3, 0, 0, 0});
+  wall_->interaction.publish(
+      {0, shm::WallInteraction::kAtModel, {960, 240}, {0, 0.25F, 1}, 3, 0, 0, 0});
   const json s = json::parse(wallStatus(*wall_, kNow));
   EXPECT_EQ(s["pointer"].dump(), R"({"at":"model","at_model_m":[0.0,0.25,1.0],"pixel":[960,240]})");
   EXPECT_EQ(s["snapshots"], 3);
-  wall_->hand.publish({0, shm::WallHand::kAtWall, {-1, -1}, {}, 3, 0, 0, 0});
+  wall_->interaction.publish({0, shm::WallInteraction::kAtWall, {-1, -1}, {}, 3, 0, 0, 0});
   EXPECT_TRUE(json::parse(wallStatus(*wall_, kNow))["pointer"]["pixel"].is_null());
 }
 
@@ -130,7 +131,21 @@ TEST_F(DocumentsTest, SamplesAreTheNewestOfEachThatThereIs) {
   EXPECT_EQ(s["tracker"][0]["station"], 2);
   EXPECT_EQ(s["tracker"][0]["position_m"], json({0, 0.5, 0}));
   EXPECT_EQ(s["ball"]["counter"], 3);
-  EXPECT_FALSE(s.contains("hand"));
+  EXPECT_FALSE(s.contains("glove"));
+}
+
+// The same words as in shared memory: the glove is what the glove measured, the hand is both.
+TEST_F(DocumentsTest, TheGloveIsCalledGloveAndTheHandHand) {
+  GloveSample glove{};
+  glove.sensors = 22;
+  devices_->glove.publish(glove);
+  HandSample hand{};
+  hand.delay_s = 0.25F;
+  devices_->hand.publish(hand);
+  const json s = json::parse(newestSamples(*devices_, kNow));
+  EXPECT_EQ(s["glove"]["sensors"], 22);
+  EXPECT_EQ(s["hand"]["delay_s"], 0.25);
+  EXPECT_FALSE(s.contains("pose"));
 }
 
 TEST_F(DocumentsTest, MetricsAreFlatNumbers) {

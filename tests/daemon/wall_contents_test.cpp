@@ -21,7 +21,7 @@ class WallContentsTest : public FakeWall {
     const auto frame = static_cast<int>(feed_.begins.size());
     feed_.buttons = frame == 60 || frame == 120 ? 1 : 0;
   }
-  shm::WallHand hand() const { return *hand_->read(); }
+  shm::WallInteraction interaction() const { return *interaction_->read(); }
 
   FakePainter dear_{clock_, microseconds(40), 40};
 };
@@ -44,11 +44,11 @@ TEST_F(WallContentsTest, AStillWallShowsTheNextOneWhole) {
   run(6, [&](Timestamp now) {
     pressTwice(now);
     if (feed_.begins.size() == 100) {
-      EXPECT_EQ(hand().content, 1u);
+      EXPECT_EQ(interaction().content, 1u);
       EXPECT_TRUE(stats().full_detail);
     }
   });
-  EXPECT_EQ(hand().content, 0u);
+  EXPECT_EQ(interaction().content, 0u);
   EXPECT_TRUE(stats().full_detail);
   EXPECT_FALSE(dear_.drawn.empty());
 }
@@ -57,7 +57,7 @@ TEST_F(WallContentsTest, ACommandDoesTheSame) {
   run(3, [&](Timestamp) {
     if (feed_.begins.size() == 30) loop_->request(WallLoop::kNextContent);
   });
-  EXPECT_EQ(hand().content, 1u);
+  EXPECT_EQ(interaction().content, 1u);
 }
 
 }  // namespace

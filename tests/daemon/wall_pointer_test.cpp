@@ -42,7 +42,7 @@ TEST_F(WallPointerTest, EveryPlaceOfTheMarkIsShownWhileThePictureStands) {
   EXPECT_EQ(painter_.drawn.size(), drawn) << "no triangle is drawn for it";
   EXPECT_TRUE(frames_.frames.back().full_detail);
   EXPECT_EQ(painter_.pixels_, std::vector<std::uint8_t>(4 * 1280 * 960, 90)) << "put back";
-  EXPECT_EQ(hand_->read()->pointing, shm::WallHand::kAtModel);
+  EXPECT_EQ(interaction_->read()->pointing, shm::WallInteraction::kAtModel);
 }
 
 TEST_F(WallPointerTest, AMarkThatStandsIsShownOnceAndItsEndToo) {
@@ -54,14 +54,14 @@ TEST_F(WallPointerTest, AMarkThatStandsIsShownOnceAndItsEndToo) {
   });
   EXPECT_EQ(pointing, standing + 1);
   EXPECT_EQ(frames_.frames.size(), standing + 2);
-  EXPECT_EQ(hand_->read()->pointing, shm::WallHand::kNone);
-  EXPECT_EQ(hand_->read()->pixel[0], -1);
+  EXPECT_EQ(interaction_->read()->pointing, shm::WallInteraction::kNone);
+  EXPECT_EQ(interaction_->read()->pixel[0], -1);
 }
 
 TEST_F(WallPointerTest, OrdersAreToldInSharedMemory) {
   run(1, [&](Timestamp) { feed_.buttons = since() > milliseconds(500) ? 2 : 0; });
-  EXPECT_EQ(hand_->read()->snapshots, 1u);
-  EXPECT_EQ(hand_->read()->lamps, 0u);
+  EXPECT_EQ(interaction_->read()->snapshots, 1u);
+  EXPECT_EQ(interaction_->read()->lamps, 0u);
 }
 
 }  // namespace

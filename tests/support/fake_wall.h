@@ -155,9 +155,9 @@ class FakeWall : public testing::Test {
     loop.run(stop_.get_token(), [&] { ++first_frames_; });
   }
   WallParts parts() {
-    return {contents_,   scene_,       governor_,      feed_,        {&frames_},
-            *stats_,     clock_,       frame_clock_,   trace_.get(), marker_,
-            hand_.get(), fade_frames_, return_after_s_};
+    return {contents_,      scene_,       governor_,    feed_,   {&frames_},         *stats_,
+            clock_,         frame_clock_, trace_.get(), marker_, interaction_.get(), fade_frames_,
+            return_after_s_};
   }
   shm::WallStats stats() const { return *stats_->read(); }
 
@@ -174,8 +174,8 @@ class FakeWall : public testing::Test {
   std::unique_ptr<shm::Channel<shm::FrameTrace>> trace_ =
       std::make_unique<shm::Channel<shm::FrameTrace>>();
   PointerMarker* marker_ = nullptr;
-  std::unique_ptr<shm::SeqSlot<shm::WallHand>> hand_ =
-      std::make_unique<shm::SeqSlot<shm::WallHand>>();
+  std::unique_ptr<shm::SeqSlot<shm::WallInteraction>> interaction_ =
+      std::make_unique<shm::SeqSlot<shm::WallInteraction>>();
   std::stop_source stop_;
   WallLoop* loop_ = nullptr;  // while it runs
   bool calibrated_ = false;

@@ -68,12 +68,13 @@ TEST_F(Wall, AFistPointsAndItsEndTakesASnapshot) {
             {.script = "grabbing",
              .also = {{"wall", {{"snapshots", folder}, {"scene", {{"bindings", bindings}}}}}}});
   ASSERT_TRUE(m.ready()) << m.process().output();
-  const auto hand = [&] {
+  const auto interaction = [&] {
     const auto wall =
         shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(m.instance(), "wall"));
-    return wall ? (*wall)->hand.read().value_or(shm::WallHand{}) : shm::WallHand{};
+    return wall ? (*wall)->interaction.read().value_or(shm::WallInteraction{})
+                : shm::WallInteraction{};
   };
-  EXPECT_TRUE(eventually([&] { return hand().pointing != shm::WallHand::kNone; }));
+  EXPECT_TRUE(eventually([&] { return interaction().pointing != shm::WallInteraction::kNone; }));
   EXPECT_TRUE(m.process().saysEventually("snapshot: " + folder + "/merlin-"))
       << m.process().output();
   const auto first = std::filesystem::directory_iterator(folder)->path();
