@@ -239,6 +239,8 @@ std::vector<Field> wallFields() {
   addPace(t);
   addTrace(t);
   addInteraction(t);
+  t.bare("segment", 0);
+  MERLIN_FIELD(t, WallSegment, framebuffer, "");
   return t.take();
 }
 

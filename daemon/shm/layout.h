@@ -163,7 +163,9 @@ struct WallSegment {
   alignas(64) SeqSlot<WallStats> stats;  // writer: the wall's thread
   Channel<FrameTrace> trace;             // writer: the wall's thread; the last 256 periods
   alignas(64) SeqSlot<WallInteraction> interaction;  // writer: the wall's thread
-  alignas(64) Field fields[kMostFields];             // writer: the daemon, as it starts
+  // The name of the frame buffer's segment, "/merlin-framebuffer"; empty until it is there.
+  alignas(64) char framebuffer[64];
+  alignas(64) Field fields[kMostFields];  // writer: the daemon, as it starts
 };
 
 }  // namespace merlin::shm

@@ -2,14 +2,30 @@
 
 #include <cmath>
 #include <cstring>
+#include <ctime>
 #include <span>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace merlin::status {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// ISO 8601, to the microsecond: "2026-11-23T14:05:07.000250Z".
+std::string isoUtc(std::int64_t utc_ns) {
+  const std::int64_t us = utc_ns / 1000;
+  const auto seconds = static_cast<std::time_t>(us / 1'000'000);
+  std::tm tm{};
+  ::gmtime_r(&seconds, &tm);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:06}Z", tm.tm_year + 1900, tm.tm_mon + 1,
+                     tm.tm_mday, tm.tm_hour, tm.tm_min, tm.tm_sec, us % 1'000'000);
+}
+
+std::string timeUtc(const shm::Header& header, Timestamp now) {
+  return isoUtc(toNanoseconds(now) + header.realtime_offset_ns.load(std::memory_order_relaxed));
+}
 
 // As short as a reader needs it.
 double round3(double value) { return std::isfinite(value) ? std::round(value * 1000) / 1000 : 0; }
@@ -165,6 +181,7 @@ std::string devicesStatus(const shm::DevicesSegment& segment, Timestamp now,
                           const std::vector<net::ServerHealth>& servers) {
   return dump({{"role", "devices"},
                {"pid", segment.header.pid},
+               {"time_utc", timeUtc(segment.header, now)},
                {"uptime_s", ageSeconds(segment.header.started_ns, now)},
                {"posture", postureName(segment)},
                {"posture_detail", postureJson(segment, now)},
@@ -179,6 +196,7 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
   const auto interaction = segment.interaction.read().value_or(shm::WallInteraction{});
   Json json = {{"role", "wall"},
                {"pid", segment.header.pid},
+               {"time_utc", timeUtc(segment.header, now)},
                {"uptime_s", ageSeconds(segment.header.started_ns, now)},
                {"rate_asked", round3(s.rate_asked_hz)},
                {"rate_held", round3(s.rate_held_hz)},
@@ -229,7 +247,7 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
 }
 
 std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {
-  Json json = {{"now_ns", toNanoseconds(now)}};
+  Json json = {{"now_ns", toNanoseconds(now)}, {"time_utc", timeUtc(segment.header, now)}};
   if (const auto p = segment.posture.newest()) {
     json["posture"] = {{"received_ns", p->received_ns},
                        {"since_ns", p->since_ns},
@@ -322,8 +340,10 @@ std::string wallMetrics(const shm::WallSegment& segment) {
 }
 
 std::string event(std::string_view kind, std::string_view what, Timestamp now) {
-  return dump(
-      {{"now_ns", toNanoseconds(now)}, {"kind", std::string(kind)}, {"what", std::string(what)}});
+  return dump({{"now_ns", toNanoseconds(now)},
+               {"time_utc", isoUtc(toNanoseconds(now) + realtimeOffset().count())},
+               {"kind", std::string(kind)},
+               {"what", std::string(what)}});
 }
 
 }  // namespace merlin::status

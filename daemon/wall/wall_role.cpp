@@ -1,5 +1,6 @@
 #include "daemon/wall/wall_role.h"
 
+#include <cstdio>
 #include <utility>
 
 #include <fmt/format.h>
@@ -56,9 +57,11 @@ Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings, std::
   std::unique_ptr<WallRole> role(new WallRole(settings, *std::move(models), *std::move(plan),
                                               *std::move(scene), *std::move(segment), watch,
                                               clock));
-  auto shared = render::ShmFrameSink::make(shm::segmentName(settings.instance, "framebuffer"),
-                                           role->plan_, generation);
+  const std::string framebuffer = shm::segmentName(settings.instance, "framebuffer");
+  auto shared = render::ShmFrameSink::make(framebuffer, role->plan_, generation);
   if (!shared) return shared.error();
+  std::snprintf(role->segment_->framebuffer, sizeof role->segment_->framebuffer, "%s",
+                framebuffer.c_str());
   role->sinks_.push_back(*std::move(shared));
   if (!settings.wall.png.path.empty()) {
     role->sinks_.push_back(std::make_unique<render::PngFrameSink>(

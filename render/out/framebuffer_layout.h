@@ -3,19 +3,25 @@
 // Three pictures in turn. A reader takes `newest`, reads that buffer, and then looks whether the
 // buffer's `sequence` is still the same: the writer needs two more frames to come round to it.
 // Little-endian. A change of meaning bumps kVersion; clients refuse a version they do not know.
+//
+// The first 40 bytes are those of the other segments (daemon/shm/layout.h), and so is the table of
+// fields behind the header: a reader of that table reads this segment as well.
 #pragma once
 
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 
+#include "daemon/base/field_table.h"
+
 namespace merlin::render::framebuffer {
 
 inline constexpr std::uint32_t kMagic = 0x42464D4D;  // "MMFB" in memory
-inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kVersion = 2;
 inline constexpr std::uint32_t kFormatRgba8 = 1;
 inline constexpr std::size_t kBuffers = 3;
 inline constexpr std::size_t kMostTiles = 32;
+inline constexpr std::size_t kMostFields = 64;
 
 struct TileRectangle {
   char name[16];                     // NUL-ended
@@ -36,8 +42,12 @@ static_assert(sizeof(Buffer) == 32);
 
 struct Header {
   std::uint32_t magic, version;
-  std::uint64_t size;           // of the whole segment [bytes]
-  std::uint64_t generation;     // new at each start of the daemon
+  std::uint64_t size;          // of the whole segment [bytes]
+  std::uint64_t generation;    // new at each start of the daemon
+  std::uint32_t field_offset;  // of the table, from the segment's start [bytes]
+  std::uint32_t field_count;
+  std::uint32_t field_size;  // of one entry [bytes]
+  std::uint32_t pid;
   std::uint32_t width, height;  // of the frame [px]
   std::uint32_t stride;         // of a row [bytes]
   std::uint32_t format;
@@ -47,7 +57,13 @@ struct Header {
   Buffer buffers[kBuffers];
   TileRectangle tiles[kMostTiles];
 };
-static_assert(offsetof(Header, buffers) == 56 && sizeof(Header) == 56 + 96 + 1280);
+static_assert(offsetof(Header, buffers) == 72 && sizeof(Header) == 72 + 96 + 1280);
+
+// What lies before the pixels.
+struct Front {
+  Header header;
+  shm::Field fields[kMostFields];
+};
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
 }  // namespace merlin::render::framebuffer

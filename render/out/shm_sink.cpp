@@ -6,11 +6,13 @@
 #include <new>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace merlin::render {
 namespace {
 
 using framebuffer::Buffer;
+using framebuffer::Front;
 using framebuffer::Header;
 using framebuffer::TileRectangle;
 
@@ -18,7 +20,7 @@ constexpr std::size_t kPixelAlignment = 4096;
 constexpr int kCaptureTries = 10;
 
 std::size_t headerRoom() {
-  return (sizeof(Header) + kPixelAlignment - 1) / kPixelAlignment * kPixelAlignment;
+  return (sizeof(Front) + kPixelAlignment - 1) / kPixelAlignment * kPixelAlignment;
 }
 
 TileRectangle rectangleOf(const Tile& tile) {
@@ -33,11 +35,63 @@ TileRectangle rectangleOf(const Tile& tile) {
   return r;
 }
 
+template <typename Member>
+void buffers(shm::FieldTable& t, const char* name, std::size_t at, const char* unit) {
+  t.addOfEach<Member>(name, at, unit, framebuffer::kBuffers, sizeof(Buffer));
+}
+
+template <typename Member>
+void tiles(shm::FieldTable& t, const char* name, std::size_t at, const char* unit) {
+  t.addOfEach<Member>(name, at, unit, framebuffer::kMostTiles, sizeof(TileRectangle));
+}
+
+void addBuffersAndTiles(shm::FieldTable& t) {
+  t.bare("buffer", offsetof(Header, buffers));
+  buffers<std::uint64_t>(t, "offset", offsetof(Buffer, offset), "B");
+  buffers<std::uint64_t>(t, "sequence", offsetof(Buffer, sequence), "");
+  buffers<std::int64_t>(t, "finished_ns", offsetof(Buffer, finished_ns), "ns");
+  buffers<std::uint32_t>(t, "triangles", offsetof(Buffer, triangles), "");
+  buffers<std::uint32_t>(t, "full_detail", offsetof(Buffer, full_detail), "");
+  t.bare("tile", offsetof(Header, tiles));
+  tiles<decltype(TileRectangle::name)>(t, "name", offsetof(TileRectangle, name), "");
+  tiles<std::uint32_t>(t, "kind", offsetof(TileRectangle, kind), "0 wall 1 operator");
+  tiles<std::int32_t>(t, "x", offsetof(TileRectangle, x), "px");
+  tiles<std::int32_t>(t, "y", offsetof(TileRectangle, y), "px");
+  tiles<std::int32_t>(t, "width", offsetof(TileRectangle, width), "px");
+  tiles<std::int32_t>(t, "height", offsetof(TileRectangle, height), "px");
+  tiles<std::int32_t>(t, "wall_x", offsetof(TileRectangle, wall_x), "px");
+}
+
+// A buffer's pixels are whole if its buffer.sequence is not 0 and the same before and after.
+std::vector<shm::Field> framebufferFields() {
+  shm::FieldTable t;
+  t.bare("frame", 0);
+  MERLIN_FIELD(t, Header, magic, "");
+  MERLIN_FIELD(t, Header, version, "");
+  MERLIN_FIELD(t, Header, size, "B");
+  MERLIN_FIELD(t, Header, generation, "");
+  MERLIN_FIELD(t, Header, field_offset, "B");
+  MERLIN_FIELD(t, Header, field_count, "");
+  MERLIN_FIELD(t, Header, field_size, "B");
+  MERLIN_FIELD(t, Header, pid, "");
+  MERLIN_FIELD(t, Header, width, "px");
+  MERLIN_FIELD(t, Header, height, "px");
+  MERLIN_FIELD(t, Header, stride, "B");
+  MERLIN_FIELD(t, Header, format, "");
+  MERLIN_FIELD(t, Header, wall_width, "px");
+  MERLIN_FIELD(t, Header, wall_height, "px");
+  MERLIN_FIELD(t, Header, tile_count, "");
+  t.add<std::uint32_t>("newest", offsetof(Header, newest), "buffer");
+  addBuffersAndTiles(t);
+  return t.take();
+}
+
 void fillHeader(Header& h, const TilePlan& plan, std::size_t size, std::uint64_t generation) {
   const auto frame_bytes = static_cast<std::uint64_t>(plan.frame_width) *
                            static_cast<std::uint64_t>(plan.frame_height) * 4;
   h.size = size;
   h.generation = generation;
+  h.pid = static_cast<std::uint32_t>(::getpid());
   h.width = static_cast<std::uint32_t>(plan.frame_width);
   h.height = static_cast<std::uint32_t>(plan.frame_height);
   h.stride = h.width * 4;
@@ -104,7 +158,9 @@ Result<std::unique_ptr<ShmFrameSink>> ShmFrameSink::make(const std::string& name
   auto memory = SharedMemory::create(name, size);
   if (!memory) return memory.error();
   std::unique_ptr<ShmFrameSink> sink(new ShmFrameSink(*std::move(memory)));
-  fillHeader(*new (sink->memory_.data()) Header{}, plan, size, generation);
+  auto& front = *new (sink->memory_.data()) Front{};
+  shm::setFields(front.header, front.fields, framebufferFields());
+  fillHeader(front.header, plan, size, generation);
   return sink;
 }
 

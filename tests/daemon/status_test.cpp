@@ -119,7 +119,7 @@ TEST_F(DocumentsTest, TheWallSaysHowItKeepsItsRate) {
 }
 
 TEST_F(DocumentsTest, SamplesAreTheNewestOfEachThatThereIs) {
-  EXPECT_EQ(json::parse(newestSamples(*devices_, kNow)).size(), 2u);  // now_ns, health
+  EXPECT_EQ(json::parse(newestSamples(*devices_, kNow)).size(), 3u) << "now_ns, time_utc, health";
   TrackerSample tracker{};
   tracker.station = 2;
   tracker.position_m[1] = 0.5F;
@@ -146,6 +146,18 @@ TEST_F(DocumentsTest, TheGloveIsCalledGloveAndTheHandHand) {
   EXPECT_EQ(s["glove"]["sensors"], 22);
   EXPECT_EQ(s["hand"]["delay_s"], 0.25);
   EXPECT_FALSE(s.contains("pose"));
+}
+
+TEST_F(DocumentsTest, EachSaysTheTimeOfDayBesideTheMonotonicOne) {
+  devices_->header.realtime_offset_ns = 1'795'399'507'000'250'000;
+  wall_->header.realtime_offset_ns = 1'795'399'507'000'250'000;
+  const char* then = "2026-11-23T02:21:47.000250Z";  // kNow is 1000 s
+  EXPECT_EQ(json::parse(newestSamples(*devices_, kNow))["time_utc"], then);
+  EXPECT_EQ(json::parse(devicesStatus(*devices_, kNow))["time_utc"], then);
+  EXPECT_EQ(json::parse(wallStatus(*wall_, kNow))["time_utc"], then);
+  const std::string today = json::parse(event("x", "y", SystemClock().now()))["time_utc"];
+  EXPECT_EQ(today.size(), 27u);
+  EXPECT_GT(today, "2024");
 }
 
 TEST_F(DocumentsTest, MetricsAreFlatNumbers) {

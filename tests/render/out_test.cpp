@@ -13,6 +13,7 @@
 #include "render/out/shm_sink.h"
 #include "tests/support/eventually.h"
 #include "tests/support/pictures.h"
+#include "tests/support/process.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::render {
@@ -151,13 +152,29 @@ Error captureDamaged(Damage damage) {
   return frame ? Error{Errc::kIo, "none"} : frame.error();
 }
 
+// The reader that knows the table alone, and nothing of this segment.
+TEST(Framebuffer, DescribesItself) {
+  const auto sink = ShmFrameSink::make(name("table"), smallPlan(), 1);
+  ASSERT_TRUE(sink);
+  (*sink)->present(frameOf(7), {7, {}, 5, true});
+  const auto out = test::run({"python3", "-B", MERLIN_SOURCE_DIR "/daemon/shm/read_merlin.py",
+                              name("table").substr(1), "frame.width", "frame.stride",
+                              "buffer.sequence", "buffer.offset", "tile.wall_x", "tile.name"});
+  EXPECT_EQ(out.status, 0) << out.output;
+  EXPECT_EQ(out.output.find("frame.width [128] px\n"), 0u) << out.output;
+  EXPECT_NE(out.output.find("frame.stride [512] B\n"), std::string::npos);
+  EXPECT_NE(out.output.find("buffer.sequence [7, 0, 0]"), std::string::npos) << out.output;
+  EXPECT_NE(out.output.find("tile.name ['" + smallPlan().tiles[0].name + "'"), std::string::npos)
+      << out.output;
+}
+
 TEST(Framebuffer, DamagedHeadersAreRefused) {
   using Header = framebuffer::Header;
   EXPECT_EQ(captureDamaged([](Header&) {}).what, "none");
   EXPECT_EQ(captureDamaged([](Header& h) { h.magic = 1; }).code, Errc::kMalformed);
   const Error version = captureDamaged([](Header& h) { h.version = 9; });
   EXPECT_EQ(version.code, Errc::kUnsupported);
-  EXPECT_NE(version.what.find("is version 9, this program reads 1"), std::string::npos);
+  EXPECT_NE(version.what.find("is version 9, this program reads 2"), std::string::npos);
   const std::vector<void (*)(Header&)> damages = {
       [](Header& h) { h.format = 2; },
       [](Header& h) { h.stride = 4; },
