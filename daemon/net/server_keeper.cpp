@@ -24,8 +24,15 @@ ServerKeeper::ServerKeeper(std::string name, Start start)
     : name_(std::move(name)), start_(std::move(start)), failure_("not started yet") {}
 
 void ServerKeeper::tend(Timestamp now) {
+  std::unique_ptr<Server> ended;  // after the lock: its end waits for its thread
   {
     const std::lock_guard lock(mutex_);
+    if (server_ && !server_->failure().empty()) {
+      failure_ = server_->failure();
+      next_try_ = now + kRetry;
+      told_sent_away_ = 0;
+      ended = std::move(server_);
+    }
     if (server_ || now < next_try_) return;
     next_try_ = now + kRetry;
   }

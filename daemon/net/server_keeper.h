@@ -1,5 +1,5 @@
 // ServerKeeper: a server that the configuration asks for, kept running: one that cannot start is
-// tried again every few seconds, and the rest of the daemon runs.
+// tried again every few seconds, and so is one that ends; the rest of the daemon runs.
 #pragma once
 
 #include <functional>
@@ -19,6 +19,8 @@ class Server {
  public:
   virtual ~Server() = default;
   virtual ServerReport report() const = 0;  // thread-safe
+  // Why it serves no more; empty while it does. Thread-safe.
+  virtual std::string failure() const { return {}; }
 };
 
 // How a server is, for the status.
@@ -36,7 +38,8 @@ class ServerKeeper {
   // `name` is what events and the status call it.
   ServerKeeper(std::string name, Start start);
 
-  // Starts the server where none runs and a try is due. Cost: that of a start.
+  // Starts the server where none runs and a try is due; ends one that serves no more. Cost: that of
+  // a start or an end.
   void tend(Timestamp now);
 
   ServerHealth health() const;

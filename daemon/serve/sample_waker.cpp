@@ -36,7 +36,8 @@ void waitForAny(const std::vector<const std::atomic<std::uint32_t>*>& words,
   }
   const long done =
       ::syscall(SYS_futex_waitv, waiters.data(), waiters.size(), 0, &until, CLOCK_MONOTONIC);
-  if (done >= 0 || errno != ENOSYS) return;
+  // All else says that the call cannot be made: an older kernel, or a filter of system calls.
+  if (done >= 0 || errno == EAGAIN || errno == ETIMEDOUT || errno == EINTR) return;
 #endif
   const timespec nap{0, kWithoutWaitv_ns};
   ::syscall(SYS_futex, words[0], FUTEX_WAIT, seen[0], &nap, nullptr, 0);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace merlin::serve {
 namespace {
@@ -26,6 +27,21 @@ enum Request : std::uint32_t {
   kDeviceButtons,
   kDeviceUsb,
   kDeviceType,
+  // Configuration: each setting has a request to set it, and the next number asks for it.
+  kGetSensitivityOfAll = 0x3001,
+  kGetSensitivityOfAxes = 0x3003,
+  kGetDeadZone = 0x3005,
+  kGetInverted = 0x3007,
+  kGetAxisMap = 0x3009,
+  kGetButtonMap = 0x300B,
+  kGetButtonAction = 0x300D,
+  kGetKeyMap = 0x300F,
+  kGetSwapYZ = 0x3011,
+  kGetLed = 0x3013,
+  kGetGrab = 0x3015,
+  kSetSerialDevice = 0x3016,
+  kGetSerialDevice = 0x3017,
+  kGetRepeat = 0x3019,
 };
 
 template <std::size_t N>
@@ -38,7 +54,9 @@ void append(std::string& out, const std::array<std::int32_t, N>& words) {
 SpnavDevice spnavDevice(std::string_view identity, std::string_view port) {
   SpnavDevice device;
   if (!identity.empty()) device.name = identity.substr(0, identity.find(','));
-  device.path = port.substr(std::min(port.size(), port.find(':') + 1));
+  if (const auto path = port.substr(std::min(port.size(), port.find(':') + 1));
+      path.starts_with('/') && !path.starts_with("//"))
+    device.path = path;
   struct Known {
     const char* model;
     int type, buttons;
@@ -57,6 +75,7 @@ SpnavDevice spnavDevice(std::string_view identity, std::string_view port) {
 SpnavClient::Taken SpnavClient::receive(std::string_view input, std::size_t most,
                                         std::string& out) {
   Taken taken;
+  const std::size_t before = out.size();
   for (; taken.messages < most; ++taken.messages) {
     const std::string_view rest = input.substr(taken.bytes);
     Words words{};
@@ -74,6 +93,7 @@ SpnavClient::Taken SpnavClient::receive(std::string_view input, std::size_t most
       sensitivity_ = s;
     }
   }
+  taken.answered = out.size() > before;
   return taken;
 }
 
@@ -82,7 +102,8 @@ void SpnavClient::request(Words words, std::string& out) {
   const std::int32_t argument = words[1];
   std::fill(words.begin() + 1, words.end(), 0);
   switch (number) {
-    case kSetName: return;  // has no answer
+    case kSetName:
+    case kSetSerialDevice: return;  // have no answer
     case kSetSensitivity:
       if (const auto s = std::bit_cast<float>(argument); std::isfinite(s))
         sensitivity_ = s;
@@ -97,9 +118,41 @@ void SpnavClient::request(Words words, std::string& out) {
     case kDeviceAxes: words[1] = 6; break;
     case kDeviceButtons: words[1] = device_.buttons; break;
     case kDeviceType: words[1] = device_.type; break;
-    default: words[7] = kFailed;  // kDeviceUsb too: it is no USB device
+    case kGetSerialDevice: return sendText(words[0], device_.path, out);
+    default:  // kDeviceUsb too: it is no USB device
+      words[1] = argument;
+      if (!configuration(number, words)) words[7] = kFailed;
   }
   append(out, words);
+}
+
+// What holds of MERLIN's ball, in the terms of spacenavd's configuration: all of it is as the
+// device sends it. `words[1]` is the axis or button that is asked about. False: no such question,
+// or a request to set something: the ball is configured in MERLIN.
+bool SpnavClient::configuration(std::uint32_t number, Words& words) const {
+  constexpr auto kOne = std::bit_cast<std::int32_t>(1.0F);
+  const std::int32_t of = std::exchange(words[1], 0);
+  const bool axis = of >= 0 && of < 6, button = of >= 0 && of < device_.buttons;
+  const auto answer = [&](bool fits, std::int32_t value) {
+    words[1] = of;
+    words[2] = value;
+    return fits;
+  };
+  switch (number) {
+    case kGetSensitivityOfAll: words[1] = kOne; return true;
+    case kGetSensitivityOfAxes: std::fill(words.begin() + 1, words.begin() + 7, kOne); return true;
+    case kGetDeadZone: return answer(axis, 0);
+    case kGetAxisMap: return answer(axis, of);
+    case kGetButtonMap: return answer(button, of);
+    case kGetButtonAction:
+    case kGetKeyMap: return answer(button, 0);
+    case kGetInverted:
+    case kGetSwapYZ:
+    case kGetLed:
+    case kGetGrab: return true;
+    case kGetRepeat: words[1] = -1; return true;  // never
+    default: return false;
+  }
 }
 
 // 24 bytes an answer; the last word says how many are left, and from the second on that it goes on.

@@ -29,8 +29,7 @@ struct SpnavDevice {
 };
 
 // Of the ball that a health record describes: its identity ("Spaceball 2003, firmware 2.43") and
-// port
-// ("serial:/dev/ttyS0").
+// port ("serial:/dev/ttyS0", "tcp://host:port"). A path is told where the port is one.
 SpnavDevice spnavDevice(std::string_view identity, std::string_view port);
 
 class SpnavClient {
@@ -39,6 +38,7 @@ class SpnavClient {
 
   struct Taken {
     std::size_t bytes = 0, messages = 0;
+    bool answered = false;  // one of the messages has an answer, which the client waits for
   };
   // Takes at most `most` whole messages off the front of `input`; what is to be sent back is
   // appended to `out`.
@@ -57,6 +57,7 @@ class SpnavClient {
  private:
   using Words = std::array<std::int32_t, 8>;
   void request(Words words, std::string& out);
+  bool configuration(std::uint32_t number, Words& words) const;
   void tellRaw(const BallSample& sample, std::string& out);
   void sendText(std::int32_t request, const std::string& text, std::string& out) const;
 

@@ -1,6 +1,7 @@
 #include "daemon/serve/spnav_server.h"
 
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include <sys/stat.h>
@@ -11,6 +12,7 @@ namespace {
 
 constexpr Duration kRound = std::chrono::milliseconds(20);
 constexpr Duration kQuiet = std::chrono::milliseconds(60);
+constexpr Duration kLongestQuiet = std::chrono::milliseconds(500);  // for who asks all the time
 constexpr unsigned kMode = 0666;  // any user's programs may read the ball, as with spacenavd
 constexpr std::size_t kMostPending = 4096;
 
@@ -33,23 +35,28 @@ class SpnavSession final : public net::Session {
 
   Result<Taken> receive(std::string_view input, std::size_t most, std::string& output) override {
     const auto taken = client_.receive(input, most, output);
-    if (taken.messages > 0) quiet_until_ = clock_.now() + kQuiet;
+    if (taken.answered) quiet_until_ = clock_.now() + kQuiet;
     return Taken{taken.bytes, taken.messages};
   }
   // The protocol opens with nothing: a client of version 0 may only listen.
   bool established() const noexcept override { return true; }
 
   void sample(const BallSample& sample, std::string& output) {
-    missed_ = clock_.now() < quiet_until_;
-    // A client that is too slow loses motions, never buttons.
-    if (!missed_) client_.sample(sample, output.empty(), output);
+    const bool quiet = waits();
+    if (!quiet) output += std::exchange(held_, {});
+    std::string& told = quiet ? held_ : output;
+    // A client that is too slow, or asking, misses motions, never buttons.
+    missed_ = quiet || !output.empty();
+    client_.sample(sample, !missed_, told);
   }
-  // What came while it was asking.
+  // What came while it was asking or did not read.
   void tellMissed(const std::optional<BallSample>& newest, std::string& output) {
-    if (clock_.now() < quiet_until_) return;
+    if (waits()) return;
+    waiting_since_.reset();
+    output += std::exchange(held_, {});
     if (missed_device_) client_.device(there_, device_, output);
     missed_device_ = false;
-    if (missed_ && newest) sample(*newest, output);
+    if (missed_ && newest && output.empty()) sample(*newest, output);
   }
   void device(bool there, const SpnavDevice& device) {
     there_ = there;
@@ -60,8 +67,18 @@ class SpnavSession final : public net::Session {
  private:
   const Clock& clock_;
   SpnavClient client_;
+  // Whether events have to wait: not for long in a row, nor for many of them.
+  bool waits() {
+    const Timestamp now = clock_.now();
+    if (now >= quiet_until_ || held_.size() >= kMostPending / 2) return false;
+    if (!waiting_since_) waiting_since_ = now;
+    return now - *waiting_since_ < kLongestQuiet;
+  }
+
   Timestamp quiet_until_;
-  bool missed_ = false;  // a sample
+  std::optional<Timestamp> waiting_since_;
+  std::string held_;     // buttons that waited
+  bool missed_ = false;  // the motion of the newest sample
   // The ball came or went, and the client was not told yet.
   bool missed_device_ = false, there_ = false;
   SpnavDevice device_;
@@ -96,9 +113,7 @@ SpnavServer::SpnavServer(std::string path, UniqueFd listener, const shm::Devices
   server_.listen(std::move(listener), [this](const net::Peer&) {
     return std::make_unique<SpnavSession>(device_, clock_);
   });
-  thread_ = WatchedThread(
-      watch, "space mouse",
-      [this](const std::stop_token& stop, Progress& progress) { run(stop, progress); });
+  thread_ = net::ServerThread(watch, "space mouse", [this] { round(); });
 }
 
 SpnavServer::~SpnavServer() {
@@ -106,16 +121,13 @@ SpnavServer::~SpnavServer() {
   if (inodeOf(path_) == file_) ::unlink(path_.c_str());
 }
 
-void SpnavServer::run(const std::stop_token& stop, Progress& progress) {
-  while (!stop.stop_requested()) {
-    const int wakers[] = {waker_.fd()};
-    server_.round(kRound, wakers);
-    waker_.clear();
-    tellHealth();
-    tellSamples();
-    tellMissed();
-    progress.step();
-  }
+void SpnavServer::round() {
+  const int wakers[] = {waker_.fd()};
+  server_.round(kRound, wakers);
+  waker_.clear();
+  tellHealth();
+  tellSamples();
+  tellMissed();
 }
 
 void SpnavServer::tellHealth() {

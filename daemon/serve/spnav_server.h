@@ -10,6 +10,7 @@
 #include "daemon/base/unique_fd.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/net/server_keeper.h"
+#include "daemon/net/server_thread.h"
 #include "daemon/serve/sample_waker.h"
 #include "daemon/serve/spnav_protocol.h"
 #include "daemon/shm/layout.h"
@@ -19,8 +20,8 @@ namespace merlin::serve {
 // Owns its threads; reads the segment as any client does, so that a slow program delays nobody.
 //
 // libspnav takes whatever comes after a question for its answer. So a client hears no event from
-// its connection, or a question, until it has been silent for a moment (kQuiet): then it hears the
-// newest state, buttons included.
+// its connection, or a question, until it has been silent for a moment (60 ms; 0.5 s for one that
+// asks all the time): then it hears which buttons changed, and the newest motion.
 class SpnavServer final : public net::Server {
  public:
   // Errors: listenLocal()'s. `segment`, `watch` and `clock` outlive this.
@@ -32,11 +33,12 @@ class SpnavServer final : public net::Server {
   SpnavServer& operator=(const SpnavServer&) = delete;
 
   net::ServerReport report() const override { return server_.report(); }
+  std::string failure() const override { return thread_.failure(); }
 
  private:
   SpnavServer(std::string path, UniqueFd listener, const shm::DevicesSegment& segment,
               ThreadWatch& watch, const Clock& clock);
-  void run(const std::stop_token& stop, Progress& progress);
+  void round();
   void tellSamples();
   void tellMissed();
   void tellHealth();
@@ -50,7 +52,7 @@ class SpnavServer final : public net::Server {
   std::uint64_t seen_;  // samples of the ball
   bool there_ = false;
   SampleWaker waker_;
-  WatchedThread thread_;
+  net::ServerThread thread_;
 };
 
 }  // namespace merlin::serve

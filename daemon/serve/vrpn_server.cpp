@@ -1,22 +1,25 @@
 #include "daemon/serve/vrpn_server.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <sys/socket.h>
 
 namespace merlin::serve {
 namespace {
 
 constexpr Duration kRound = std::chrono::milliseconds(50);
-constexpr Duration kAskAgain = std::chrono::milliseconds(500);  // clients ask once a second
-constexpr double kDatagrams = 20;                               // a second, and at once
+constexpr double kDatagrams = 20;  // that are answered, a second and at once
 constexpr std::int32_t kButtons = 12;
 
 // Our numbers for names; each is described to a client before anything else.
@@ -58,11 +61,26 @@ Result<UniqueFd> listenUdp(int port) {
 
 }  // namespace
 
+// A port that is connected back to, until this is gone: a client asks once a second until it is
+// connected to, and one connection is enough.
+class PortClaim {
+ public:
+  PortClaim(std::set<int>& ports, int port) : ports_(ports), port_(port) { ports_.insert(port_); }
+  ~PortClaim() { ports_.erase(port_); }
+  PortClaim(const PortClaim&) = delete;
+  PortClaim& operator=(const PortClaim&) = delete;
+
+ private:
+  std::set<int>& ports_;
+  int port_;
+};
+
 // One client: its numbers for names, and what it was told.
 class VrpnSession final : public net::Session {
  public:
-  VrpnSession(const shm::DevicesSegment& segment, const Clock& clock)
-      : segment_(segment), clock_(clock) {}
+  VrpnSession(const shm::DevicesSegment& segment, const Clock& clock,
+              std::unique_ptr<PortClaim> port = nullptr)
+      : segment_(segment), clock_(clock), port_(std::move(port)) {}
 
   Result<Taken> receive(std::string_view input, std::size_t most, std::string& output) override;
   bool established() const noexcept override { return greeted_; }
@@ -75,11 +93,15 @@ class VrpnSession final : public net::Session {
 
  private:
   void handle(const VrpnMessage& message, std::string& output);
+  void describe(const VrpnMessage& message);
 
   const shm::DevicesSegment& segment_;
   const Clock& clock_;
-  bool greeted_ = false;                                 // its cookie has come
-  std::map<std::int32_t, std::string> senders_, types_;  // its numbers for names
+  std::unique_ptr<PortClaim> port_;  // of one that was connected back to
+  bool greeted_ = false;             // its cookie has come
+  // Its numbers for our senders, and for a ping: all else that it describes is not kept.
+  std::map<std::int32_t, std::int32_t> senders_;
+  std::optional<std::int32_t> ping_;
   std::uint32_t sequence_ = 0;
   std::uint32_t buttons_ = 0;
 };
@@ -134,20 +156,26 @@ void VrpnSession::send(std::int32_t sender, std::int32_t type, std::string paylo
 }
 
 void VrpnSession::handle(const VrpnMessage& m, std::string& output) {
-  constexpr std::size_t kMostNames = 256;
-  if (m.type == kDescribeSender || m.type == kDescribeType) {
-    auto& names = m.type == kDescribeSender ? senders_ : types_;
-    const auto name = readVrpnName(m.payload);
-    if (name && (names.size() < kMostNames || names.count(m.sender))) names[m.sender] = *name;
+  if (m.type == kDescribeSender) return describe(m);
+  if (m.type == kDescribeType) {
+    if (readVrpnName(m.payload) == kTypes[kPing])
+      ping_ = m.sender;
+    else if (ping_ == m.sender)
+      ping_.reset();
     return;
   }
-  const auto type = types_.find(m.type);
   const auto sender = senders_.find(m.sender);
-  if (type == types_.end() || type->second != kTypes[kPing]) return;
-  for (std::int32_t i = 0; i < std::ssize(kSenders); ++i) {
-    if (sender != senders_.end() && sender->second == kSenders[i])
-      send(i, kPong, {}, toNanoseconds(clock_.now()), output);
-  }
+  if (m.type == ping_ && sender != senders_.end())
+    send(sender->second, kPong, {}, toNanoseconds(clock_.now()), output);
+}
+
+void VrpnSession::describe(const VrpnMessage& m) {
+  constexpr std::size_t kMostNumbers = 64;  // for the same few names
+  senders_.erase(m.sender);
+  const auto name = readVrpnName(m.payload);
+  const auto* known = std::find(std::begin(kSenders), std::end(kSenders), name.value_or(""));
+  if (known != std::end(kSenders) && senders_.size() < kMostNumbers)
+    senders_[m.sender] = static_cast<std::int32_t>(known - std::begin(kSenders));
 }
 
 void VrpnSession::tellButtons(const BallSample& s, std::string& output) {
@@ -187,27 +215,20 @@ VrpnServer::VrpnServer(UniqueFd tcp, UniqueFd udp, const shm::DevicesSegment& se
           }(),
           watch, "samples for VRPN") {
   for (std::size_t i = 0; i < kStations; ++i) seen_tracker_[i] = segment.tracker[i].count();
-  server_.listen(std::move(tcp), [this](const net::Peer&) { return makeSession(); });
-  thread_ = WatchedThread(watch, "VRPN", [this](const std::stop_token& stop, Progress& progress) {
-    run(stop, progress);
+  server_.listen(std::move(tcp), [this](const net::Peer&) {
+    return std::make_unique<VrpnSession>(segment_, clock_);
   });
+  thread_ = net::ServerThread(watch, "VRPN", [this] { round(); });
 }
 
 VrpnServer::~VrpnServer() { thread_.stop(); }
 
-std::unique_ptr<net::Session> VrpnServer::makeSession() const {
-  return std::make_unique<VrpnSession>(segment_, clock_);
-}
-
-void VrpnServer::run(const std::stop_token& stop, Progress& progress) {
-  while (!stop.stop_requested()) {
-    const int wakers[] = {waker_.fd(), udp_.get()};
-    server_.round(kRound, wakers);
-    waker_.clear();
-    answerDatagrams();
-    tellSamples();
-    progress.step();
-  }
+void VrpnServer::round() {
+  const int wakers[] = {waker_.fd(), udp_.get()};
+  server_.round(kRound, wakers);
+  waker_.clear();
+  answerDatagrams();
+  tellSamples();
 }
 
 // A client that asks by UDP is connected to. Only on this machine, whatever the datagram says: the
@@ -223,16 +244,19 @@ void VrpnServer::answerDatagrams() {
 }
 
 void VrpnServer::connectBack(int port) {
-  const Timestamp now = clock_.now();
-  std::erase_if(asked_from_, [&](const auto& asked) { return now - asked.second >= kAskAgain; });
-  if (!asked_from_.emplace(port, now).second) return;
+  if (connected_back_.count(port)) return;
   UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  const int yes = 1;
+  ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
   const sockaddr_in address = loopback(port);
   const auto* generic = reinterpret_cast<const sockaddr*>(&address);
   if (::connect(fd.get(), generic, sizeof address) != 0 && errno != EINPROGRESS) return;
   net::Peer peer;
   peer.address = INADDR_LOOPBACK;
-  server_.add(std::move(fd), peer, [this](const net::Peer&) { return makeSession(); });
+  server_.add(std::move(fd), peer, [this, port](const net::Peer&) {
+    return std::make_unique<VrpnSession>(segment_, clock_,
+                                         std::make_unique<PortClaim>(connected_back_, port));
+  });
 }
 
 template <typename T>

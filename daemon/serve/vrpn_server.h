@@ -3,8 +3,8 @@
 
 #include <array>
 #include <functional>
-#include <map>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "daemon/base/clock.h"
@@ -13,6 +13,7 @@
 #include "daemon/base/unique_fd.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/net/server_keeper.h"
+#include "daemon/net/server_thread.h"
 #include "daemon/serve/sample_waker.h"
 #include "daemon/serve/vrpn_protocol.h"
 #include "daemon/shm/layout.h"
@@ -37,12 +38,12 @@ class VrpnServer final : public net::Server {
 
   int port() const noexcept { return port_; }
   net::ServerReport report() const override { return server_.report(); }
+  std::string failure() const override { return thread_.failure(); }
 
  private:
   VrpnServer(UniqueFd tcp, UniqueFd udp, const shm::DevicesSegment& segment, ThreadWatch& watch,
              const Clock& clock);
-  void run(const std::stop_token& stop, Progress& progress);
-  std::unique_ptr<net::Session> makeSession() const;
+  void round();
   void answerDatagrams();
   void connectBack(int port);
   void tellSamples();
@@ -54,13 +55,13 @@ class VrpnServer final : public net::Server {
   int port_;
   const shm::DevicesSegment& segment_;
   const Clock& clock_;
+  std::set<int> connected_back_;  // ports, each while its connection lives; outlives server_
   net::ConnectionServer server_;
-  TokenBucket datagrams_;                // a second
-  std::map<int, Timestamp> asked_from_;  // ports that were connected to in the last second
+  TokenBucket datagrams_;
   std::uint64_t seen_hand_, seen_ball_;
   std::array<std::uint64_t, kStations> seen_tracker_{};
   SampleWaker waker_;
-  WatchedThread thread_;
+  net::ServerThread thread_;
 };
 
 }  // namespace merlin::serve

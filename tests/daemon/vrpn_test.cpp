@@ -281,6 +281,50 @@ TEST(VrpnServer, SilentClientsGiveTheirPlacesUp) {
   checkSamples(client, *segment);
 }
 
+// A datagram costs its sender nothing: what it asks for must not cost others their places.
+TEST(VrpnServer, DatagramsThatAskForSilentConnectionsKeepNobodyOut) {
+  const SystemClock clock;
+  ThreadWatch threads;
+  const auto segment = std::make_unique<shm::DevicesSegment>();
+  const auto server = VrpnServer::start(0, *segment, threads, clock);
+  ASSERT_TRUE(server) << server.error().what;
+  const UniqueFd udp(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const sockaddr_in there = loopback((*server)->port());
+  std::vector<UniqueFd> listeners;  // the kernel accepts for them, and nobody speaks
+  for (int i = 0; i < 20; ++i) {
+    listeners.push_back(*net::listenTcp("127.0.0.1", 0));
+    const std::string ask = "127.0.0.1 " + std::to_string(net::portOf(listeners.back().get()));
+    ASSERT_GT(::sendto(udp.get(), ask.c_str(), ask.size() + 1, 0,
+                       reinterpret_cast<const sockaddr*>(&there), sizeof there),
+              0);
+  }
+  ASSERT_TRUE(test::eventually([&] { return (*server)->report().accepted >= 12; }));
+  EXPECT_TRUE(test::eventually([&] { return (*server)->report().connections == 0; }))
+      << "closed after 2 s";
+  Client client(::dup(connectedTo(**server).get()));
+  checkSamples(client, *segment);
+}
+
+TEST(VrpnServer, OnePortIsConnectedToOnceHoweverOftenItIsAskedFor) {
+  const SystemClock clock;
+  ThreadWatch threads;
+  const auto segment = std::make_unique<shm::DevicesSegment>();
+  const auto server = VrpnServer::start(0, *segment, threads, clock);
+  ASSERT_TRUE(server) << server.error().what;
+  const auto listener = net::listenTcp("127.0.0.1", 0);
+  ASSERT_TRUE(listener);
+  const UniqueFd udp(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const sockaddr_in there = loopback((*server)->port());
+  const std::string ask = "127.0.0.1 " + std::to_string(net::portOf(listener->get()));
+  // Until the first has been closed for its silence: the port was asked for all that time.
+  EXPECT_TRUE(test::eventually([&] {
+    ::sendto(udp.get(), ask.c_str(), ask.size() + 1, 0, reinterpret_cast<const sockaddr*>(&there),
+             sizeof there);
+    EXPECT_LE((*server)->report().connections, 1U);
+    return (*server)->report().silent > 0;
+  }));
+}
+
 TEST(VrpnServer, APortThatIsTakenIsRefused) {
   const SystemClock clock;
   ThreadWatch threads;

@@ -3,9 +3,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <thread>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <spnav.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -91,6 +93,31 @@ TEST(SpnavProtocol, RawEventsAreToldToWhoAsksForThem) {
                      bytesOf("06000000 01000000 01000000") + std::string(20, '\0'));
 }
 
+// Questions of libspnav's spnav_config.h: what holds of a ball that is configured in MERLIN.
+TEST(SpnavProtocol, QuestionsAboutTheConfigurationAreAnsweredAndRequestsToChangeItRefused) {
+  SpnavClient client(spnavDevice("Spaceball 2003, firmware 2.43", "serial:/dev/ttyS0"));
+  feed(client, bytesOf("0155AA7F"));
+  const auto ask = [&](const std::string& words) {
+    const std::string bytes = bytesOf(words);
+    return feed(client, bytes + std::string(32 - bytes.size(), '\0'));
+  };
+  const auto answer = [](const std::string& words, const std::string& last) {
+    const std::string bytes = bytesOf(words);
+    return bytes + std::string(28 - bytes.size(), '\0') + bytesOf(last);
+  };
+  const std::string done = "00000000", failed = "FFFFFFFF";
+  EXPECT_EQ(ask("0130AA7F"), answer("0130AA7F 0000803F", done));                    // sensitivity 1
+  EXPECT_EQ(ask("0930AA7F 05000000"), answer("0930AA7F 05000000 05000000", done));  // axis 5
+  EXPECT_EQ(ask("0930AA7F 06000000").substr(28), bytesOf(failed));  // there is no axis 6
+  EXPECT_EQ(ask("0B30AA7F 08000000"), answer("0B30AA7F 08000000 08000000", done));  // button 8
+  EXPECT_EQ(ask("0B30AA7F 09000000").substr(28), bytesOf(failed));
+  EXPECT_EQ(ask("1130AA7F"), answer("1130AA7F", done));           // axes are not swapped
+  EXPECT_EQ(ask("1930AA7F"), answer("1930AA7F FFFFFFFF", done));  // nothing is repeated
+  EXPECT_EQ(ask("1730AA7F").substr(4, 10), "/dev/ttyS0");
+  EXPECT_EQ(ask("1030AA7F 01000000").substr(28), bytesOf(failed));  // to swap them is refused
+  EXPECT_EQ(ask("1630AA7F"), "") << "a text is not answered";
+}
+
 TEST(SpnavProtocol, TheDeviceIsTheOneThatIsThere) {
   const SpnavDevice d = spnavDevice("Spaceball 2003, firmware 2.43", "serial:/dev/ttyS0");
   EXPECT_EQ(d.name, "Spaceball 2003");
@@ -99,6 +126,7 @@ TEST(SpnavProtocol, TheDeviceIsTheOneThatIsThere) {
   EXPECT_EQ(d.buttons, 9);
   EXPECT_EQ(spnavDevice("Spaceball 4000 FLX, firmware 2.45", "pty:/x").type, 0x102);
   EXPECT_EQ(spnavDevice("", "").name, "MERLIN ball");
+  EXPECT_EQ(spnavDevice("Spaceball 2003", "tcp://ball:4001").path, "") << "is no path";
 }
 
 TEST(SpnavProtocol, ALongNameComesInPieces) {
@@ -194,16 +222,76 @@ TEST_F(Served, AHundredHandshakesAndQuestionsAreRightWhileTheBallMoves) {
   EXPECT_EQ(right, 100);
 }
 
-// As programs of before 2021 do: they connect and read.
-TEST_F(Served, AClientOfVersionZeroIsToldWithoutAWord) {
-  const UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM, 0));
+// Our own end of a connection to the server's socket.
+UniqueFd connectedTo(const std::string& path) {
+  UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM, 0));
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   path.copy(address.sun_path, sizeof address.sun_path - 1);
-  ASSERT_EQ(::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  if (::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    fd.reset();
+  return fd;
+}
+
+using Event = std::array<std::int32_t, 8>;
+Event nextEvent(const UniqueFd& fd) {
+  timeval limit{10, 0};
+  ::setsockopt(fd.get(), SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+  Event event{-1};
+  if (::recv(fd.get(), event.data(), sizeof event, MSG_WAITALL) != ssize_t{sizeof event})
+    event[0] = -1;
+  return event;
+}
+
+TEST_F(Served, AClickWhileAClientConnectsIsToldToIt) {
+  const UniqueFd fd = connectedTo(path);
+  ASSERT_TRUE(test::eventually([&] { return server->report().connections == 1; }));
+  segment->ball.publish(pushed({}, 1));
+  segment->ball.publish(pushed({}, 0));
+  EXPECT_EQ(nextEvent(fd), (Event{1, 0, 1}));
+  EXPECT_EQ(nextEvent(fd), (Event{2, 0, 0}));
+}
+
+TEST_F(Served, AProgramThatAsksAllTheTimeSeesTheBallAllTheSame) {
   const MovingBall moving(*segment);
-  std::int32_t event[8] = {};
-  ASSERT_EQ(::recv(fd.get(), event, sizeof event, MSG_WAITALL), ssize_t{sizeof event});
+  const UniqueFd fd = connectedTo(path);
+  const std::string hello = bytesOf("0155AA7F");
+  ASSERT_EQ(::send(fd.get(), hello.data(), hello.size(), 0), 4);
+  std::int32_t echo = 0;
+  ASSERT_EQ(::recv(fd.get(), &echo, sizeof echo, MSG_WAITALL), 4);
+  const std::string axes = bytesOf("0220AA7F") + std::string(28, '\0');
+  EXPECT_TRUE(test::eventually([&] {
+    (void)::send(fd.get(), axes.data(), axes.size(), MSG_NOSIGNAL);
+    const Event event = nextEvent(fd);
+    return event[0] == 0 && event[1] > 0;
+  }));
+}
+
+// The last motion says that the ball is let go: a program that reads late hears it too.
+TEST_F(Served, AClientThatReadsLateHearsThatTheBallRests) {
+  const UniqueFd fd = connectedTo(path);
+  ASSERT_TRUE(test::eventually([&] { return server->report().connections == 1; }));
+  // Until the socket is full, and motions are left out.
+  int queued = 0, before = -1, same = 0;
+  ASSERT_TRUE(test::eventually([&] {
+    for (int i = 0; i < 16; ++i) segment->ball.publish(pushed({1, 2, 3, 4, 5, 6}));
+    before = std::exchange(queued, 0);
+    ::ioctl(fd.get(), FIONREAD, &queued);
+    same = queued > 4096 && queued == before ? same + 1 : 0;
+    return same == 50;
+  }));
+  segment->ball.publish(pushed({}));
+  Event event{};
+  const auto rests = [&] { return event[0] == 0 && event[1] == 0 && event[6] == 0; };
+  for (int i = 0; i < 100'000 && !rests() && event[0] != -1; ++i) event = nextEvent(fd);
+  EXPECT_TRUE(rests()) << event[0];
+}
+
+// As programs of before 2021 do: they connect and read.
+TEST_F(Served, AClientOfVersionZeroIsToldWithoutAWord) {
+  const UniqueFd fd = connectedTo(path);
+  const MovingBall moving(*segment);
+  const Event event = nextEvent(fd);
   EXPECT_EQ(event[0], 0);
   EXPECT_GT(event[1], 0);
 }
@@ -240,11 +328,7 @@ TEST_F(Served, SilentClientsDoNotKeepOthersOut) {
       [&] { return server->report().connections == 32 && server->report().refused > 0; }));
   // A place is given up a second after it was last used.
   ASSERT_TRUE(test::eventually([&] {
-    const UniqueFd newcomer(::socket(AF_UNIX, SOCK_STREAM, 0));
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    path.copy(address.sun_path, sizeof address.sun_path - 1);
-    (void)::connect(newcomer.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
+    const UniqueFd newcomer = connectedTo(path);
     return test::eventually([&] { return server->report().replaced > 0; }, std::chrono::seconds(1));
   }));
   ASSERT_NE(::spnav_open(), -1);

@@ -1,0 +1,82 @@
+// A server that the wall can do without: kept running, and never the end of the process.
+#include "daemon/net/server_keeper.h"
+
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "daemon/net/server_thread.h"
+#include "tests/support/eventually.h"
+
+namespace merlin::net {
+namespace {
+
+// Serves until it is told to fail.
+class Failing final : public Server {
+ public:
+  Failing(ThreadWatch& threads, std::atomic<bool>& fails)
+      : thread_(threads, "failing", [&fails] {
+          if (fails.exchange(false)) throw std::runtime_error("no memory");
+          std::this_thread::yield();
+        }) {}
+  ServerReport report() const override { return {}; }
+  std::string failure() const override { return thread_.failure(); }
+
+ private:
+  ServerThread thread_;
+};
+
+TEST(Keeper, AServerWhoseThreadEndsIsStartedAgainAndTheProcessIsNotTold) {
+  ThreadWatch threads;
+  std::atomic<bool> fails = false;
+  int starts = 0;
+  ServerKeeper keeper("mouse", [&]() -> Result<std::unique_ptr<Server>> {
+    ++starts;
+    return std::unique_ptr<Server>(std::make_unique<Failing>(threads, fails));
+  });
+  Timestamp now{std::chrono::seconds(1000)};
+  keeper.tend(now);
+  EXPECT_EQ(keeper.takeEvents(now), std::vector<std::string>{"mouse: serves"});
+  fails = true;
+  ASSERT_TRUE(test::eventually([&] {
+    keeper.tend(now);
+    return !keeper.health().failure.empty();
+  }));
+  EXPECT_EQ(keeper.takeEvents(now),
+            std::vector<std::string>{
+                "mouse: failed (its thread ended: no memory); it is tried again every 5 s"});
+  EXPECT_TRUE(threads.threads().empty()) << "no thread is left, nor one that ended unasked";
+  keeper.tend(now + std::chrono::milliseconds(4999));
+  EXPECT_EQ(starts, 1);
+  keeper.tend(now + std::chrono::seconds(5));
+  EXPECT_EQ(starts, 2);
+  EXPECT_EQ(keeper.health().failure, "");
+}
+
+TEST(Keeper, AServerThatCannotStartIsTriedEveryFiveSecondsAndToldOnce) {
+  bool taken = true;
+  ThreadWatch threads;
+  std::atomic<bool> fails = false;
+  ServerKeeper keeper("mouse", [&]() -> Result<std::unique_ptr<Server>> {
+    if (taken) return Error{Errc::kBusy, "another program serves this socket"};
+    return std::unique_ptr<Server>(std::make_unique<Failing>(threads, fails));
+  });
+  const Timestamp now{std::chrono::seconds(1000)};
+  keeper.tend(now);
+  EXPECT_EQ(keeper.takeEvents(now),
+            std::vector<std::string>{"mouse: failed (another program serves this socket); it is "
+                                     "tried again every 5 s"});
+  keeper.tend(now + std::chrono::seconds(5));
+  EXPECT_TRUE(keeper.takeEvents(now).empty());
+  taken = false;
+  keeper.tend(now + std::chrono::seconds(9));
+  EXPECT_EQ(keeper.health().failure, "another program serves this socket");
+  keeper.tend(now + std::chrono::seconds(10));
+  EXPECT_EQ(keeper.health().failure, "");
+  EXPECT_EQ(keeper.takeEvents(now), std::vector<std::string>{"mouse: serves"});
+}
+
+}  // namespace
+}  // namespace merlin::net

@@ -1,0 +1,125 @@
+// Servers for other programs in a real merlind: what keeps one from starting does not keep the wall
+// from running, and no client of theirs takes its memory, or its end, away.
+#include <chrono>
+#include <thread>
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include "daemon/net/connection_server.h"
+#include "daemon/serve/vrpn_protocol.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+using Json = nlohmann::json;
+
+sockaddr_in loopback(int port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  return address;
+}
+
+UniqueFd connectTo(int port) {
+  UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const sockaddr_in address = loopback(port);
+  if (::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    fd.reset();
+  return fd;
+}
+
+// A port that the system has just given out and nobody uses.
+int freePort() {
+  const auto probe = net::listenTcp("127.0.0.1", 0);
+  return probe ? net::portOf(probe->get()) : 0;
+}
+
+MerlindOptions devicesThatServe(const Json& serve) {
+  MerlindOptions options;
+  options.role = "devices";
+  options.also = {{"serve", serve}};
+  return options;
+}
+
+std::string stateOf(Merlind& merlind, const std::string& server) {
+  const Json status = merlind.status();
+  if (!status.is_object() || !status.contains("servers")) return "no status";
+  return status["servers"].value(server, Json::object()).value("state", "");
+}
+
+long residentKb(pid_t pid) {
+  const std::string status = readText("/proc/" + std::to_string(pid) + "/status");
+  const std::size_t at = status.find("VmRSS:");
+  return at == std::string::npos ? -1 : std::stol(status.substr(at + 6));
+}
+
+TEST(Servers, OneWhosePortIsTakenIsToldAndServesOnceItIsFree) {
+  const TempDir dir;
+  auto taken = net::listenTcp("127.0.0.1", 0);
+  ASSERT_TRUE(taken);
+  writeText(dir / "spnav.sock", "no socket");
+  Merlind merlind(dir, "", "servers",
+                  devicesThatServe({{"vrpn_port", net::portOf(taken->get())},
+                                    {"spnav_socket", dir / "spnav.sock"}}));
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  EXPECT_TRUE(eventually([&] { return stateOf(merlind, "VRPN") == "failed"; }));
+  EXPECT_EQ(stateOf(merlind, "space mouse"), "failed");
+  EXPECT_EQ(readText(dir / "spnav.sock"), "no socket");
+  EXPECT_TRUE(merlind.process().saysEventually("VRPN: failed ("));
+  taken->reset();
+  std::filesystem::remove(dir / "spnav.sock");
+  EXPECT_TRUE(eventually([&] {
+    return stateOf(merlind, "VRPN") == "ok" && stateOf(merlind, "space mouse") == "ok";
+  })) << merlind.process().output();
+  EXPECT_EQ(merlind.process().kill(SIGTERM), 0);
+}
+
+// Sends for three seconds what `bytes` holds, again and again; at most 40 MB.
+std::size_t flood(const UniqueFd& fd, const std::string& bytes) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(3);
+  timeval limit{0, 50'000};
+  ::setsockopt(fd.get(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
+  std::size_t sent = 0;
+  while (sent < 40'000'000 && std::chrono::steady_clock::now() < end) {
+    const ssize_t n = ::send(fd.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (n < 0 && errno != EAGAIN) break;
+    sent += static_cast<std::size_t>(std::max<ssize_t>(n, 0));
+  }
+  return sent;
+}
+
+TEST(Servers, AVrpnClientThatFloodsTakesNoMemoryAndMerlindStopsAtOnce) {
+  const TempDir dir;
+  const int port = freePort();
+  Merlind merlind(dir, "", "flooded", devicesThatServe({{"vrpn_port", port}}));
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  UniqueFd client;
+  ASSERT_TRUE(eventually([&] { return (client = connectTo(port)).valid(); }));
+  ASSERT_TRUE(merlind.healthIs(shm::kBall, HealthState::kOk)) << "all that it needs is in memory";
+  const long before = residentKb(merlind.process().pid());
+  std::string bytes;
+  for (int i = 0; i < 1000; ++i) {
+    serve::VrpnMessage empty;
+    empty.type = 999;
+    bytes += serve::encodeVrpn(empty);
+  }
+  const std::string cookie = serve::vrpnCookie();
+  ASSERT_EQ(::send(client.get(), cookie.data(), cookie.size(), 0), ssize_t{24});
+  const std::size_t sent = flood(client, bytes);
+  const long after = residentKb(merlind.process().pid());
+  EXPECT_LT(after - before, 8192) << sent << " bytes were sent";
+  const auto asked = std::chrono::steady_clock::now();
+  EXPECT_EQ(merlind.process().kill(SIGTERM), 0) << merlind.process().output();
+  const auto took = std::chrono::steady_clock::now() - asked;
+  std::printf("%zu bytes in 3 s; memory %ld -> %ld kB; stopped in %.2f s\n", sent, before, after,
+              std::chrono::duration<double>(took).count());
+  EXPECT_LT(took, std::chrono::seconds(10)) << "by arithmetic it was an hour";
+}
+
+}  // namespace
+}  // namespace merlin::test
