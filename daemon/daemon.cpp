@@ -9,6 +9,7 @@
 #include <systemd/sd-daemon.h>
 
 #include "daemon/base/log.h"
+#include "daemon/net/network_allowed.h"
 #include "daemon/shm/fields.h"
 #include "daemon/status/documents.h"
 #include "daemon/status/health_events.h"
@@ -69,9 +70,9 @@ status::Command byHand(const std::string& name, const std::string& help, double 
 
 }  // namespace
 
-Result<std::unique_ptr<Daemon>> Daemon::make(Settings settings, const DaemonOptions& options,
-                                             Clock& clock) {
-  std::unique_ptr<Daemon> daemon(new Daemon(std::move(settings), options, clock));
+Result<std::unique_ptr<Daemon>> Daemon::make(Configuration configuration,
+                                             const DaemonOptions& options, Clock& clock) {
+  std::unique_ptr<Daemon> daemon(new Daemon(std::move(configuration), options, clock));
   auto directory = status::runDirectory(daemon->settings_.run_directory);
   if (!directory) return directory.error();
   daemon->run_directory_ = *std::move(directory);
@@ -80,8 +81,9 @@ Result<std::unique_ptr<Daemon>> Daemon::make(Settings settings, const DaemonOpti
   return daemon;
 }
 
-Daemon::Daemon(Settings settings, const DaemonOptions& options, Clock& clock)
-    : settings_(std::move(settings)),
+Daemon::Daemon(Configuration configuration, const DaemonOptions& options, Clock& clock)
+    : settings_(std::move(configuration.loaded.settings)),
+      models_(std::move(configuration.models)),
       options_(options),
       clock_(clock),
       watchdog_(watchdogInterval()) {}
@@ -133,7 +135,8 @@ Result<Ok> Daemon::makeRoles() {
     if (auto mirrored = mirrorDevices(generation); !mirrored) return mirrored;
   }
   if (options_.wall) {
-    auto role = wall::WallRole::make(settings_, generation, endpoints("wall"), clock_);
+    auto role =
+        wall::WallRole::make(settings_, std::move(models_), generation, endpoints("wall"), clock_);
     if (!role) return role.error();
     wall_ = *std::move(role);
   }
@@ -144,18 +147,17 @@ Result<Ok> Daemon::makeRoles() {
 // The wall reads this machine's shared memory either way: here it is filled from another's.
 Result<Ok> Daemon::mirrorDevices(std::uint64_t generation) {
   const InputSettings& input = settings_.wall.input;
-  if (devices_) {
-    return Error{Errc::kInvalidArgument,
-                 "/wall/input/endpoint names another machine's devices, and this process reads its "
-                 "own: run it with --role wall"};
-  }
-  auto keys = status::readKeyPair(input.keys);
-  if (!keys) return keys.error();
   auto segment = shm::SegmentWriter<shm::DevicesSegment>::make(
       shm::segmentName(settings_.instance, "devices"), shm::devicesFields(), generation,
       clock_.now(), {});
   if (!segment) return segment.error();
   mirror_.emplace(*std::move(segment));
+  if (const auto allowed = net::networkAllowed(); !allowed) {
+    services_.failed("input", "/wall/input/endpoint: " + allowed.error().what);
+    return Ok{};
+  }
+  auto keys = status::readKeyPair(input.keys);
+  if (!keys) return keys.error();
   auto link = status::SampleLink::start({input.endpoint, input.server_key, *std::move(keys)},
                                         **mirror_, clock_);
   if (!link) return link.error();
@@ -163,24 +165,33 @@ Result<Ok> Daemon::mirrorDevices(std::uint64_t generation) {
   return Ok{};
 }
 
-Result<Ok> Daemon::serveOthers(const shm::DevicesSegment& segment) {
+// What cannot be served is said; it takes nothing with it.
+void Daemon::serveOthers(const shm::DevicesSegment& segment) {
   const ServeSettings& s = settings_.serve;
   if (!s.spnav_socket.empty()) {
     auto server = serve::SpnavServer::start(s.spnav_socket, {}, segment);
-    if (!server) return server.error();
-    spnav_ = *std::move(server);
+    if (server)
+      spnav_ = *std::move(server);
+    else
+      services_.failed("space_mouse", "/serve/spnav_socket: " + server.error().what);
   }
-  if (s.vrpn_port > 0) {
-    auto server = serve::VrpnServer::start(s.vrpn_port, segment, clock_);
-    if (!server) return server.error();
+  if (s.vrpn_port <= 0) return;
+  if (const auto allowed = net::networkAllowed(); !allowed)
+    return services_.failed("vrpn", "/serve/vrpn_port: " + allowed.error().what);
+  auto server = serve::VrpnServer::start(s.vrpn_port, segment, clock_);
+  if (server)
     vrpn_ = *std::move(server);
-  }
-  return Ok{};
+  else
+    services_.failed("vrpn", "/serve/vrpn_port: " + server.error().what);
 }
 
-Result<status::CurveServer> Daemon::network() const {
+Result<status::CurveServer> Daemon::network() {
   const ServeSettings& s = settings_.serve;
   if (s.samples_endpoint.empty()) return status::CurveServer{};
+  if (const auto allowed = net::networkAllowed(); !allowed) {
+    services_.failed("samples", "/serve/samples_endpoint: " + allowed.error().what);
+    return status::CurveServer{};
+  }
   auto keys = status::readKeyPair(s.samples_keys);
   if (!keys) return keys.error();
   auto clients = status::readPublicKeys(s.samples_clients);
@@ -236,22 +247,25 @@ Result<Ok> Daemon::run() {
       const auto done = runCommand(command);
       if (!done) logWarning("the panel's button: {}", done.error().what);
     });
-    devices_->start();
-    if (auto served = serveOthers(devices_->segment()); !served) return served;
+    devices_->start(threads_);
+    serveOthers(devices_->segment());
     if (auto served = serveDevices(); !served) return served;
   }
   if (wall_) {
     wall_->beat(now);
     if (mirror_) {
       mirror_->beat(now);
-      if (auto served = serveOthers(**mirror_); !served) return served;
+      serveOthers(**mirror_);
     }
     if (auto served = serveWall(); !served) return served;
-    if (auto shown = awaitFirstFrame(wall_->start()); !shown) return shown;
+    if (auto shown = awaitFirstFrame(wall_->start(threads_)); !shown) return shown;
   }
   ::sd_notify(0, "READY=1");
   logInfo("ready");
-  while (!stopAsked(kBeat)) housekeeping();
+  while (!stopAsked(kBeat)) {
+    housekeeping();
+    if (const auto ended = ended_threads_.check(clock_.now())) return *ended;
+  }
   ::sd_notify(0, "STOPPING=1");
   logInfo("stopping");
   return Ok{};
@@ -261,6 +275,8 @@ Result<Ok> Daemon::awaitFirstFrame(std::future<Result<std::string>> ready) {
   while (ready.wait_for(std::chrono::milliseconds(0)) != std::future_status::ready) {
     if (stopAsked(kBeat)) return Error{Errc::kClosed, "stopped before the first frame"};
     housekeeping();
+    if (ready.wait_for(std::chrono::milliseconds(0)) == std::future_status::ready) break;
+    if (const auto ended = ended_threads_.check(clock_.now())) return *ended;
   }
   const auto first = ready.get();
   if (!first) return first.error();
@@ -274,7 +290,8 @@ bool Daemon::stopAsked(Duration wait) {
   const sigset_t set = stopSignals();
   const timespec limit{0, wait.count()};
   const int signal = ::sigtimedwait(&set, nullptr, &limit);
-  return signal == SIGTERM || signal == SIGINT || signal == SIGHUP;
+  if (signal == SIGHUP) logInfo("SIGHUP is ignored: a changed configuration is read by a restart");
+  return signal == SIGTERM || signal == SIGINT;
 }
 
 void Daemon::housekeeping() {
@@ -282,6 +299,11 @@ void Daemon::housekeeping() {
   if (devices_) devices_->beat(now);
   if (wall_) wall_->beat(now);
   if (mirror_) mirror_->beat(now);
+  if (wall_ && !settings_.wall.png.path.empty()) {
+    const std::string fault = wall_->pictureFault();
+    fault.empty() ? services_.ok("picture")
+                  : services_.failed("picture", "/wall/png/path: " + fault);
+  }
   orders_->poll(now);
   if (emulators_) {
     for (const std::string& device : emulators_->takeEnded()) {
@@ -298,6 +320,7 @@ void Daemon::housekeeping() {
 
 void Daemon::pingWatchdog(Timestamp now) {
   std::vector<std::uint64_t> progress;
+  if (devices_) progress = devices_->progress(now);
   if (wall_) progress.push_back(wall_->periods());
   for (const auto& server : servers_) progress.push_back(server->rounds());
   if (watchdog_.ping(now, progress)) ::sd_notify(0, "WATCHDOG=1");
@@ -331,7 +354,9 @@ Result<Ok> Daemon::serveStatus(const std::string& role, status::StatusServerSett
 Result<Ok> Daemon::serveDevices() {
   const shm::DevicesSegment& segment = devices_->segment();
   status::StatusServerSettings s;
-  const auto statusNow = [this, &segment] { return status::devicesStatus(segment, clock_.now()); };
+  const auto statusNow = [this, &segment] {
+    return services_.addTo(status::devicesStatus(segment, clock_.now()));
+  };
   s.publications = {
       {"status", kOnceASecond, statusNow},
       {"metrics", kOnceASecond, [&segment] { return status::devicesMetrics(segment); }},
@@ -343,7 +368,7 @@ Result<Ok> Daemon::serveDevices() {
                  [this]() -> Result<std::string> {
                    const auto files = devices_->flight().dump();
                    if (!files) return files.error();
-                   return fmt::format("[\"{}\"]", fmt::join(*files, "\",\""));
+                   return status::textList(*files);
                  }}};
   for (auto& command : panelCommands()) s.commands.push_back(std::move(command));
   auto network_settings = network();
@@ -361,9 +386,18 @@ Result<Ok> Daemon::serveDevices() {
       logInfo("{}", sentence);
       documents.push_back(status::event("flight", sentence, now));
     }
+    tellServices(documents);
     return documents;
   };
   return serveStatus("devices", std::move(s));
+}
+
+// By whichever role's server comes first.
+void Daemon::tellServices(std::vector<std::string>& documents) {
+  for (const std::string& sentence : services_.takeEvents()) {
+    logWarning("{}", sentence);
+    documents.push_back(status::event("service", sentence, clock_.now()));
+  }
 }
 
 // What the wall gave way, and of another machine's devices, where it shows these.
@@ -381,6 +415,7 @@ std::function<std::vector<std::string>()> Daemon::wallEvents() {
     };
     tell("wall", events->take());
     if (health) tell("device", health->take(clock_.now()));
+    tellServices(documents);
     return documents;
   };
 }
@@ -388,7 +423,9 @@ std::function<std::vector<std::string>()> Daemon::wallEvents() {
 Result<Ok> Daemon::serveWall() {
   const shm::WallSegment& segment = wall_->segment();
   status::StatusServerSettings s;
-  const auto statusNow = [this, &segment] { return status::wallStatus(segment, clock_.now()); };
+  const auto statusNow = [this, &segment] {
+    return services_.addTo(status::wallStatus(segment, clock_.now()));
+  };
   s.publications = {{"status", kOnceASecond, statusNow},
                     {"metrics", kOnceASecond, [&segment] { return status::wallMetrics(segment); }}};
   s.commands = {

@@ -10,12 +10,16 @@
 #include "config/settings.h"
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
+#include "daemon/base/watched_thread.h"
+#include "daemon/configuration.h"
 #include "daemon/devices/devices_role.h"
 #include "daemon/emulator_children.h"
 #include "daemon/serve/spnav_server.h"
 #include "daemon/serve/vrpn_server.h"
+#include "daemon/status/ended_threads.h"
 #include "daemon/status/sample_link.h"
 #include "daemon/status/server.h"
+#include "daemon/status/services.h"
 #include "daemon/status/watchdog.h"
 #include "daemon/wall/orders.h"
 #include "daemon/wall/snapshot_writer.h"
@@ -23,35 +27,31 @@
 
 namespace merlin {
 
-struct DaemonOptions {
-  bool devices = true, wall = true;  // roles
-  bool emulate = false;
-};
-
 class Daemon {
  public:
-  // Everything is made and checked, nothing runs. REQUIRES: SIGTERM, SIGINT, SIGHUP and SIGCHLD are
-  // blocked, no thread has been started. Errors: of its parts.
-  static Result<std::unique_ptr<Daemon>> make(Settings settings, const DaemonOptions& options,
-                                              Clock& clock);
+  // Everything is made, nothing runs. REQUIRES: the configuration is not invalid, SIGTERM, SIGINT,
+  // SIGHUP and SIGCHLD are blocked, no thread has been started. Errors: of its parts.
+  static Result<std::unique_ptr<Daemon>> make(Configuration configuration,
+                                              const DaemonOptions& options, Clock& clock);
   ~Daemon();
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
   // Runs until a signal; tells systemd when the first frame is out, and that there is progress.
-  // Errors: why there will be no first frame.
+  // Errors: why there will be no first frame; a thread that has ended.
   Result<Ok> run();
 
  private:
-  Daemon(Settings settings, const DaemonOptions& options, Clock& clock);
+  Daemon(Configuration configuration, const DaemonOptions& options, Clock& clock);
   Result<Ok> makeRoles();
   Result<Ok> serveStatus(const std::string& role, status::StatusServerSettings settings);
   Result<Ok> serveDevices();
   Result<Ok> serveWall();
   std::function<std::vector<std::string>()> wallEvents();
   Result<Ok> mirrorDevices(std::uint64_t generation);
-  Result<Ok> serveOthers(const shm::DevicesSegment& segment);
-  Result<status::CurveServer> network() const;
+  void serveOthers(const shm::DevicesSegment& segment);
+  Result<status::CurveServer> network();
+  void tellServices(std::vector<std::string>& documents);
   Result<std::string> runCommand(const std::string& name);
   std::vector<status::Command> panelCommands();
   void takeOrders();
@@ -63,9 +63,13 @@ class Daemon {
   std::string summary(Timestamp now) const;
 
   Settings settings_;
+  std::vector<render::Dendrogram> models_;  // until the wall has them
   DaemonOptions options_;
   Clock& clock_;
   std::string run_directory_;
+  status::Services services_;
+  ThreadWatch threads_;  // outlives the roles, whose threads it watches
+  status::EndedThreads ended_threads_{threads_, services_};
   std::unique_ptr<EmulatorChildren> emulators_;
   std::unique_ptr<devices::DevicesRole> devices_;
   // Another machine's devices, where the wall's input is one.

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -113,6 +114,25 @@ Result<Ok> writeFileHeadLast(const std::string& path, std::size_t head_size,
   const int error = errno;
   ::unlink(fresh.c_str());
   return fileError(path, error);
+}
+
+Result<Ok> checkWritableFolder(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return fileError(path, errno);
+  if (!S_ISDIR(status.st_mode)) return fileError(path, ENOTDIR);
+  if (::access(path.c_str(), W_OK | X_OK) != 0) return fileError(path, errno);
+  return Ok{};
+}
+
+Result<Ok> checkFolder(const std::string& path) {
+  struct stat status {};
+  std::filesystem::path there = path;
+  while (::lstat(there.c_str(), &status) != 0 && errno == ENOENT && there.has_relative_path()) {
+    if (!there.has_filename()) there = there.parent_path();  // "folder/"
+    there = there.parent_path();
+    if (there.empty()) there = ".";
+  }
+  return checkWritableFolder(there.string());
 }
 
 Result<Ok> checkWritable(const std::string& path) {

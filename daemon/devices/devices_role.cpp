@@ -20,6 +20,9 @@ namespace merlin::devices {
 namespace {
 
 constexpr int kRealTimePriority = 50;
+// That a device's thread may wait for its line to open.
+constexpr Duration kPatience = std::chrono::seconds(60);
+constexpr const char* kThreadNames[] = {"glove", "tracker", "ball"};
 
 // Wire to shared memory within microseconds even while the wall draws, where the unit allows it.
 void askForRealTime() {
@@ -132,6 +135,7 @@ Result<Ok> DevicesRole::add(const LineSettings& line, SampleKind kind, shm::Devi
   SampleSink* sink = &sink_;
   if (kind == SampleKind::kGlove && posture_sink_) sink = posture_sink_.get();
   if (kind == SampleKind::kTracker) sink = hand_sink_.get();
+  started_.push_back(index);
   health_.push_back(std::make_unique<shm::ShmHealthSink>(slot));
   DeviceLoopSettings loop;
   loop.port = line.port;
@@ -162,24 +166,39 @@ void DevicesRole::addPanel(const GpioSettings& settings) {
                                         [this](const std::string& command) { on_press_(command); });
 }
 
-void DevicesRole::start() {
+void DevicesRole::start(ThreadWatch& watch) {
   if (cpu_latency_us_ >= 0) {
     if (auto limit = io::limitCpuLatency(cpu_latency_us_))
       cpu_latency_ = *std::move(limit);
     else
       logWarning("/devices/cpu_latency_us: {}", limit.error().what);
   }
-  if (panel_) threads_.emplace_back([this](const std::stop_token& stop) { panel_->run(stop); });
-  for (const auto& loop : loops_) {
-    threads_.emplace_back([&loop = *loop](const std::stop_token& stop) {
-      askForRealTime();
-      loop.run(stop);
-    });
+  if (panel_) {
+    threads_.emplace_back(watch, "panel",
+                          [this](const std::stop_token& stop, Progress&) { panel_->run(stop); });
+  }
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    threads_.emplace_back(watch, kThreadNames[started_[i]],
+                          [&loop = *loops_[i]](const std::stop_token& stop, Progress&) {
+                            askForRealTime();
+                            loop.run(stop);
+                          });
   }
 }
 
+std::vector<std::uint64_t> DevicesRole::progress(Timestamp now) const {
+  std::vector<std::uint64_t> counters;
+  for (const shm::DeviceIndex device : started_) {
+    const auto health = segment_->health[device].read();
+    const Timestamp last = health ? fromNanoseconds(health->updated_ns) : Timestamp{};
+    counters.push_back(
+        static_cast<std::uint64_t>(toNanoseconds(now - last < kPatience ? now : last)));
+  }
+  return counters;
+}
+
 DevicesRole::~DevicesRole() {
-  for (std::jthread& thread : threads_) thread.request_stop();
+  for (WatchedThread& thread : threads_) thread.requestStop();
   threads_.clear();
 }
 

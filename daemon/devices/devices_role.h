@@ -11,6 +11,7 @@
 #include "config/settings.h"
 #include "daemon/base/clock.h"
 #include "daemon/base/unique_fd.h"
+#include "daemon/base/watched_thread.h"
 #include "daemon/devices/flight_recorder.h"
 #include "daemon/devices/hand_sink.h"
 #include "daemon/devices/posture_sink.h"
@@ -35,7 +36,12 @@ class DevicesRole {
   DevicesRole& operator=(const DevicesRole&) = delete;
 
   // Starts a thread for each device that has a port. Real-time priority where the system allows it.
-  void start();
+  // `watch` outlives this.
+  void start(ThreadWatch& watch);
+
+  // Of each device's thread a number that grows while the thread goes on. One that waits for its
+  // line's other end (a name is looked up, a server does not answer) goes on for a minute.
+  std::vector<std::uint64_t> progress(Timestamp now) const;
 
   void beat(Timestamp now) const { segment_.beat(now); }
   const shm::DevicesSegment& segment() const { return *segment_; }
@@ -65,7 +71,8 @@ class DevicesRole {
   std::vector<std::unique_ptr<DeviceLoop>> loops_;
   int cpu_latency_us_ = -1;
   UniqueFd cpu_latency_;  // holds while it is open
-  std::vector<std::jthread> threads_;
+  std::vector<shm::DeviceIndex> started_;
+  std::vector<WatchedThread> threads_;
 };
 
 }  // namespace merlin::devices

@@ -285,6 +285,8 @@ std::string wallMetrics(const shm::WallSegment& segment) {
   return dump(json);
 }
 
+std::string textList(const std::vector<std::string>& texts) { return dump(Json(texts)); }
+
 std::string event(std::string_view kind, std::string_view what, Timestamp now) {
   return dump(
       {{"now_ns", toNanoseconds(now)}, {"kind", std::string(kind)}, {"what", std::string(what)}});
