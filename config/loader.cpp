@@ -31,7 +31,8 @@ class Loader final : public SettingsVisitor {
       : folder_(std::move(folder)), loaded_(loaded) {
     enter(&root, "");
   }
-  ~Loader() override { leave(); }
+  // Of the whole file: what is unknown. After the description; a destructor must not throw.
+  void finish() { leave(); }
   Loader(const Loader&) = delete;
   Loader& operator=(const Loader&) = delete;
 
@@ -123,8 +124,8 @@ class Loader final : public SettingsVisitor {
   // Whatever of the object was not asked for is unknown.
   void leave() {
     const Level& level = levels_.back();
-    for (const auto& member :
-         level.object ? level.object->members : std::vector<JsonNode::Member>()) {
+    static const std::vector<JsonNode::Member> kNone;
+    for (const auto& member : level.object ? level.object->members : kNone) {
       if (std::find(level.known.begin(), level.known.end(), member.key) != level.known.end())
         continue;
       if (member.key == "$schema" && levels_.size() == 1) continue;
@@ -234,6 +235,7 @@ LoadedSettings loadSettings(std::string_view json, const std::string& folder) {
   {
     Loader loader(*tree, folder, loaded);
     describe(loaded.settings, loader);
+    loader.finish();
     loaded.lines = loader.lines();
   }
   checkTogether(loaded);
