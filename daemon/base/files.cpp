@@ -99,6 +99,8 @@ Result<Ok> writeFileHeadLast(const std::string& path, std::size_t head_size,
                              const std::function<std::span<const std::byte>()>& head) {
   if (auto replaceable = checkReplaceable(path); !replaceable) return replaceable;
   const std::string fresh = fmt::format("{}.{}.tmp", path, ::getpid());
+  // One that bears our number is left of an attempt of ours, whose folder was moved meanwhile.
+  ::unlink(fresh.c_str());
   const UniqueFd fd(::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (!fd.valid()) return fileError(path, errno);
   Buffered buffer(fd.get());

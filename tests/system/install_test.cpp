@@ -20,6 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+constexpr unsigned kNobody = 65534;  // who under_unit makes of root
+
 int freePort() {
   const UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in address{};
@@ -58,7 +60,9 @@ class Install : public testing::Test {
   std::string runDirectory() {
     const std::string path = dir_ / "run";
     fs::create_directories(path);
-    EXPECT_EQ(::chmod(path.c_str(), 0777), 0);
+    if (::geteuid() == 0) {
+      EXPECT_EQ(::chown(path.c_str(), kNobody, kNobody), 0);
+    }
     return path;
   }
 
@@ -150,7 +154,7 @@ class InstalledServers : public Install {
     ASSERT_EQ(run({kMerlin, "keys", "-o", dir_ / "keys"}).status, 0);
     // The daemon's user owns them; nobody else may read them.
     if (::geteuid() == 0) {
-      ASSERT_EQ(::chown((dir_ / "keys").c_str(), 65534, 65534), 0);
+      ASSERT_EQ(::chown((dir_ / "keys").c_str(), kNobody, kNobody), 0);
     }
     writeText(dir_ / "clients", "");
     vrpn_ = freePort();
