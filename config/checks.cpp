@@ -1,9 +1,13 @@
 #include "config/checks.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -19,11 +23,32 @@ void checkName(const Settings& s, LoadedSettings& loaded) {
                                           s.instance));
 }
 
-bool isAddress(const std::string& text) {
+bool isNumber(std::string_view text, int low, int high) {
+  int number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc() && stop == end && number >= low && number <= high;
+}
+
+// A name is anything; what has digits and dots alone is an address of four bytes.
+bool isHost(std::string_view host) {
+  if (host.empty() || host.find_first_of("/ \t\n") != std::string_view::npos) return false;
+  if (host.find_first_not_of("0123456789.") != std::string_view::npos) return true;
+  int parts = 1;
+  for (std::size_t dot = 0; (dot = host.find('.')) != std::string_view::npos; ++parts) {
+    if (!isNumber(host.substr(0, dot), 0, 255)) return false;
+    host.remove_prefix(dot + 1);
+  }
+  return parts == 4 && isNumber(host, 0, 255);
+}
+
+// "tcp://HOST:PORT", with a port from 1 to 65535.
+bool isAddress(std::string_view text) {
+  if (!text.starts_with("tcp://")) return false;
+  text.remove_prefix(6);
   const std::size_t colon = text.rfind(':');
-  const std::string port = text.substr(colon + 1);
-  return text.starts_with("tcp://") && colon > 6 && !port.empty() && port.size() <= 5 &&
-         port.find_first_not_of("0123456789") == std::string::npos;
+  return colon != std::string_view::npos && isHost(text.substr(0, colon)) &&
+         isNumber(text.substr(colon + 1), 1, 65535);
 }
 
 bool knownPort(const std::string& port) {
@@ -60,9 +85,11 @@ void checkGpio(const GpioSettings& g, LoadedSettings& loaded) {
 // What speaks over a network is encrypted, or not at all.
 void checkNetwork(const Settings& s, LoadedSettings& loaded) {
   if (!s.serve.samples_endpoint.empty() && !isAddress(s.serve.samples_endpoint)) {
-    loaded.wrong("/serve/samples_endpoint",
-                 fmt::format("is \"{}\"; allowed is tcp://ADDRESS:PORT, ADDRESS * for any",
-                             s.serve.samples_endpoint));
+    loaded.wrong(
+        "/serve/samples_endpoint",
+        fmt::format("is \"{}\"; allowed is tcp://ADDRESS:PORT, ADDRESS * for any, PORT 1 to "
+                    "65535",
+                    s.serve.samples_endpoint));
   }
   if (!s.serve.samples_endpoint.empty() &&
       (s.serve.samples_keys.empty() || s.serve.samples_clients.empty())) {
@@ -73,8 +100,8 @@ void checkNetwork(const Settings& s, LoadedSettings& loaded) {
   if (in.endpoint.empty()) return;
   if (!isAddress(in.endpoint)) {
     loaded.wrong("/wall/input/endpoint",
-                 fmt::format("is \"{}\"; allowed is tcp://HOST:PORT, or \"\" for this machine's "
-                             "devices",
+                 fmt::format("is \"{}\"; allowed is tcp://HOST:PORT, PORT 1 to 65535, or \"\" for "
+                             "this machine's devices",
                              in.endpoint));
   }
   if (in.keys.empty() || in.server_key.size() != 40) {
@@ -144,11 +171,6 @@ bool isInput(const std::string& input) {
 
 bool atLeave(const render::Binding& b) { return b.when == render::When::kLeave; }
 
-// One moment of one input does not do two things that exclude each other, nor one of them twice.
-bool conflict(const render::Binding& a, const render::Binding& b) {
-  return a.input == b.input && atLeave(a) == atLeave(b) && render::exclude(a.action, b.action);
-}
-
 std::string conflictText(const render::Binding& a, const render::Binding& b) {
   const char* when = render::lasts(b.action) ? "held" : atLeave(b) ? "left" : "entered";
   if (a.action == b.action)
@@ -157,8 +179,11 @@ std::string conflictText(const render::Binding& a, const render::Binding& b) {
                      nameOf(a.action), nameOf(b.action), when);
 }
 
+// One moment of one input does not do two things that exclude each other, nor one of them twice.
+// Linear: of a moment no more bindings are remembered than there are actions.
 void checkBindings(const std::vector<render::Binding>& bindings, LoadedSettings& loaded) {
   constexpr const char* kPointer = "/wall/scene/bindings/{}";
+  std::map<std::pair<std::string, bool>, std::vector<std::size_t>> before;
   for (std::size_t i = 0; i < bindings.size(); ++i) {
     const render::Binding& b = bindings[i];
     const std::string at = fmt::format(kPointer, i);
@@ -173,12 +198,17 @@ void checkBindings(const std::vector<render::Binding>& bindings, LoadedSettings&
                    fmt::format("does not go with {}; allowed is {}", nameOf(b.action),
                                render::lasts(b.action) ? "hold: it lasts"
                                                        : "enter or leave: it happens once"));
-    for (std::size_t j = 0; j < i; ++j) {
-      if (!conflict(bindings[j], b)) continue;
-      const std::string other = fmt::format(kPointer, j);
-      loaded.wrong(at, fmt::format("conflicts with {} (line {}): {}", other, loaded.lineOf(other),
-                                   conflictText(bindings[j], b)));
+    auto& same_moment = before[{b.input, atLeave(b)}];
+    const auto j = std::find_if(same_moment.begin(), same_moment.end(), [&](std::size_t k) {
+      return render::exclude(bindings[k].action, b.action);
+    });
+    if (j == same_moment.end()) {
+      same_moment.push_back(i);
+      continue;
     }
+    const std::string other = fmt::format(kPointer, *j);
+    loaded.wrong(at, fmt::format("conflicts with {} (line {}): {}", other, loaded.lineOf(other),
+                                 conflictText(bindings[*j], b)));
   }
 }
 
@@ -199,6 +229,11 @@ void checkDoers(const Settings& s, LoadedSettings& loaded) {
   }
 }
 
+void checkGroup(const SettingFaults& faults, const std::string& group, LoadedSettings& loaded) {
+  for (const auto& [pointer, what] : faults)
+    loaded.wrong(group + pointer, "cannot be used: " + what);
+}
+
 }  // namespace
 
 void checkTogether(LoadedSettings& loaded) {
@@ -212,7 +247,8 @@ void checkTogether(LoadedSettings& loaded) {
   checkGpio(s.devices.gpio, loaded);
   checkNetwork(s, loaded);
   checkAxes(s.devices.ball.axis_map, "/devices/ball/axis_map", loaded);
-  checkAxes(s.wall.scene.tracker_axes, "/wall/scene/tracker_axes", loaded);
+  checkGroup(render::validate(s.wall.tiles), "/wall/tiles", loaded);
+  checkGroup(render::validate(s.wall.scene), "/wall/scene", loaded);
   checkRate(s.wall.governor, loaded);
   checkBindings(s.wall.scene.bindings, loaded);
   checkDoers(s, loaded);

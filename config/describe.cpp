@@ -234,7 +234,7 @@ void describeGpio(GpioSettings& g, SettingsVisitor& v) {
 }
 
 void describeServe(ServeSettings& s, SettingsVisitor& v) {
-  v.text("spnav_socket", s.spnav_socket,
+  v.path("spnav_socket", s.spnav_socket,
          "The ball for programs built on libspnav, usually /run/spnav.sock; empty: none.");
   v.integer("vrpn_port", s.vrpn_port, {0, 65535},
             "Hand, tracker and ball for VRPN clients on this machine, usually 3883; 0: none.");

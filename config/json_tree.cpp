@@ -1,7 +1,9 @@
 #include "config/json_tree.h"
 
-#include <algorithm>
 #include <iterator>
+#include <string>
+#include <unordered_map>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -72,14 +74,12 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
   bool key(string_t& value) override {
-    auto& members = open_.back()->members;
-    const auto same = [&](const JsonNode::Member& m) { return m.key == value; };
-    if (const auto found = std::find_if(members.begin(), members.end(), same);
-        found != members.end()) {
+    const auto [before, fresh] = keys_.back().emplace(value, *line_);
+    if (!fresh) {
       return fail(fmt::format("the key \"{}\" stands twice in one object, before on line {}", value,
-                              found->line));
+                              before->second));
     }
-    members.push_back({std::move(value), *line_, {}});
+    open_.back()->members.push_back({std::move(value), *line_, {}});
     return true;
   }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& e) override {
@@ -119,16 +119,21 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
       return fail(fmt::format("more than {} levels deep", kMostLevels));
     if (!place(kind)) return false;
     open_.push_back(last_);
+    keys_.emplace_back();
     return true;
   }
   bool close() {
     open_.pop_back();
+    keys_.pop_back();
     return true;
   }
 
   const int* line_;
   // Pointers stay good: only the innermost open array or object grows.
   std::vector<JsonNode*> open_;
+  // Of each that is open: its keys and their lines; a search through the members would be
+  // quadratic.
+  std::vector<std::unordered_map<std::string, int>> keys_;
   JsonNode* last_ = nullptr;
 };
 

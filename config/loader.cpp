@@ -13,6 +13,7 @@
 #include "config/visitor.h"
 #include "daemon/base/files.h"
 #include "daemon/base/nearest.h"
+#include "daemon/base/text.h"
 
 namespace merlin {
 namespace {
@@ -26,11 +27,12 @@ std::string escapePointer(std::string_view key) {
 // Takes settings out of a tree; what it does not take is unknown.
 class Loader final : public SettingsVisitor {
  public:
-  Loader(const JsonNode& root, std::string folder, std::vector<Finding>& findings)
-      : folder_(std::move(folder)), findings_(findings) {
+  Loader(const JsonNode& root, std::string folder, LoadedSettings& loaded)
+      : folder_(std::move(folder)), loaded_(loaded) {
     enter(&root, "");
   }
-  ~Loader() override { leave(); }
+  // Of the whole file: what is unknown. After the description; a destructor must not throw.
+  void finish() { leave(); }
   Loader(const Loader&) = delete;
   Loader& operator=(const Loader&) = delete;
 
@@ -122,19 +124,21 @@ class Loader final : public SettingsVisitor {
   // Whatever of the object was not asked for is unknown.
   void leave() {
     const Level& level = levels_.back();
-    for (const auto& member :
-         level.object ? level.object->members : std::vector<JsonNode::Member>()) {
+    static const std::vector<JsonNode::Member> kNone;
+    for (const auto& member : level.object ? level.object->members : kNone) {
       if (std::find(level.known.begin(), level.known.end(), member.key) != level.known.end())
         continue;
       if (member.key == "$schema" && levels_.size() == 1) continue;
-      findings_.push_back({false, member.line, level.pointer + "/" + escapePointer(member.key),
-                           "is no setting; " + suggestion(member.key, level.known)});
+      loaded_.add({false, member.line, level.pointer + "/" + escapePointer(member.key),
+                   "is no setting; " + suggestion(member.key, level.known)});
     }
     levels_.pop_back();
   }
 
-  static std::string suggestion(const std::string& key, const std::vector<std::string>& known) {
-    const std::string near = nearest(key, known);
+  std::string suggestion(const std::string& key, const std::vector<std::string>& known) const {
+    if (loaded_.left_out > 0) return {};  // nobody reads it
+    constexpr std::size_t kLongest = 64;  // the comparison is quadratic in the key's length
+    const std::string near = key.size() > kLongest ? "" : nearest(key, known);
     return near.empty() ? fmt::format("here are {}", fmt::join(known, ", "))
                         : fmt::format("did you mean \"{}\"?", near);
   }
@@ -155,8 +159,8 @@ class Loader final : public SettingsVisitor {
   }
 
   void wrong(const JsonNode& node, std::string_view key, std::string_view allowed) {
-    findings_.push_back({false, node.line, pointer(key),
-                         fmt::format("is {}; allowed is {}", describe(node), allowed)});
+    loaded_.add({false, node.line, pointer(key),
+                 fmt::format("is {}; allowed is {}", describe(node), allowed)});
   }
 
   double clamp(const JsonNode& node, std::string_view key, Range range) {
@@ -166,14 +170,14 @@ class Loader final : public SettingsVisitor {
       wrong(node, key, "a number");
       return range.low;
     }
-    findings_.push_back({true, node.line, pointer(key),
-                         fmt::format("is {}; allowed is {} to {}; {} is taken", node.number,
-                                     range.low, range.high, value)});
+    loaded_.add({true, node.line, pointer(key),
+                 fmt::format("is {}; allowed is {} to {}; {} is taken", node.number, range.low,
+                             range.high, value)});
     return value;
   }
 
   std::string folder_;
-  std::vector<Finding>& findings_;
+  LoadedSettings& loaded_;
   std::vector<Level> levels_;
   std::map<std::string, int> lines_;
 };
@@ -183,6 +187,7 @@ class Loader final : public SettingsVisitor {
 LoadedSettings::Verdict LoadedSettings::verdict() const {
   if (findings.empty()) return Verdict::kValid;
   const bool all_adjusted =
+      !left_out_invalid_ &&
       std::all_of(findings.begin(), findings.end(), [](const Finding& f) { return f.adjusted; });
   return all_adjusted ? Verdict::kAdjusted : Verdict::kInvalid;
 }
@@ -195,11 +200,18 @@ int LoadedSettings::lineOf(const std::string& pointer) const {
 }
 
 void LoadedSettings::wrong(const std::string& pointer, std::string what) {
-  const Finding finding{false, lineOf(pointer), pointer, std::move(what)};
-  const auto after =
-      std::upper_bound(findings.begin(), findings.end(), finding,
-                       [](const Finding& a, const Finding& b) { return a.line < b.line; });
-  findings.insert(after, finding);
+  add({false, lineOf(pointer), pointer, std::move(what)});
+}
+
+void LoadedSettings::add(Finding finding) {
+  if (findings.size() < kMostFindings) return findings.push_back(std::move(finding));
+  ++left_out;
+  left_out_invalid_ = left_out_invalid_ || !finding.adjusted;
+}
+
+void LoadedSettings::sortFindings() {
+  std::stable_sort(findings.begin(), findings.end(),
+                   [](const Finding& a, const Finding& b) { return a.line < b.line; });
 }
 
 LoadedSettings loadSettings(std::string_view json, const std::string& folder) {
@@ -212,22 +224,22 @@ LoadedSettings loadSettings(std::string_view json, const std::string& folder) {
       line = std::atoi(what.c_str() + 5);
       what = what.substr(colon + 2);
     }
-    loaded.findings.push_back({false, line, "", what});
+    loaded.add({false, line, "", what});
     return loaded;
   }
   if (tree->kind != JsonNode::Kind::kObject) {
-    loaded.findings.push_back(
+    loaded.add(
         {false, tree->line, "", fmt::format("is {}; allowed is an object", describe(*tree))});
     return loaded;
   }
   {
-    Loader loader(*tree, folder, loaded.findings);
+    Loader loader(*tree, folder, loaded);
     describe(loaded.settings, loader);
+    loader.finish();
     loaded.lines = loader.lines();
   }
-  std::stable_sort(loaded.findings.begin(), loaded.findings.end(),
-                   [](const Finding& a, const Finding& b) { return a.line < b.line; });
   checkTogether(loaded);
+  loaded.sortFindings();
   return loaded;
 }
 
@@ -237,7 +249,7 @@ LoadedSettings loadSettingsFile(const std::string& path) {
     LoadedSettings loaded;
     std::string what = file.error().what;
     if (what.starts_with(path + ": ")) what = what.substr(path.size() + 2);
-    loaded.findings.push_back({false, 0, "", what});
+    loaded.add({false, 0, "", what});
     return loaded;
   }
   return loadSettings(file->text(), std::filesystem::path(path).parent_path().string());
@@ -247,7 +259,7 @@ std::string toText(const std::string& file, const Finding& f) {
   std::string text = file;
   if (f.line > 0) text += fmt::format(":{}", f.line);
   if (!f.pointer.empty()) text += ": " + f.pointer;
-  return text + (f.pointer.empty() ? ": " : " ") + f.what;
+  return oneLine(text + (f.pointer.empty() ? ": " : " ") + f.what);
 }
 
 }  // namespace merlin

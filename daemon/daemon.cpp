@@ -9,6 +9,7 @@
 #include <systemd/sd-daemon.h>
 
 #include "daemon/base/log.h"
+#include "daemon/net/network_allowed.h"
 #include "daemon/serve/spnav_server.h"
 #include "daemon/serve/vrpn_server.h"
 #include "daemon/shm/fields.h"
@@ -38,6 +39,11 @@ Duration watchdogInterval() {
   std::uint64_t usec = 0;
   return ::sd_watchdog_enabled(0, &usec) > 0 ? Duration(std::chrono::microseconds(usec / 2))
                                              : Duration{};
+}
+
+// An error of what a setting asks for.
+Error errorAt(const char* pointer, const Error& error) {
+  return {error.code, fmt::format("{}: {}", pointer, error.what)};
 }
 
 struct WallRequest {
@@ -72,9 +78,9 @@ status::Command byHand(const std::string& name, const std::string& help, double 
 
 }  // namespace
 
-Result<std::unique_ptr<Daemon>> Daemon::make(Settings settings, const DaemonOptions& options,
-                                             Clock& clock) {
-  std::unique_ptr<Daemon> daemon(new Daemon(std::move(settings), options, clock));
+Result<std::unique_ptr<Daemon>> Daemon::make(Configuration configuration,
+                                             const DaemonOptions& options, Clock& clock) {
+  std::unique_ptr<Daemon> daemon(new Daemon(std::move(configuration), options, clock));
   auto directory = status::runDirectory(daemon->settings_.run_directory);
   if (!directory) return directory.error();
   daemon->run_directory_ = *std::move(directory);
@@ -83,8 +89,9 @@ Result<std::unique_ptr<Daemon>> Daemon::make(Settings settings, const DaemonOpti
   return daemon;
 }
 
-Daemon::Daemon(Settings settings, const DaemonOptions& options, Clock& clock)
-    : settings_(std::move(settings)),
+Daemon::Daemon(Configuration configuration, const DaemonOptions& options, Clock& clock)
+    : settings_(std::move(configuration.loaded.settings)),
+      models_(std::move(configuration.models)),
       options_(options),
       clock_(clock),
       watchdog_(watchdogInterval()) {}
@@ -144,7 +151,8 @@ Result<Ok> Daemon::makeRoles() {
     if (auto mirrored = mirrorDevices(generation); !mirrored) return mirrored;
   }
   if (options_.wall) {
-    auto role = wall::WallRole::make(settings_, generation, endpoints("wall"), threads_, clock_);
+    auto role = wall::WallRole::make(settings_, std::move(models_), generation, endpoints("wall"),
+                                     threads_, clock_);
     if (!role) return role.error();
     wall_ = *std::move(role);
   }
@@ -155,18 +163,17 @@ Result<Ok> Daemon::makeRoles() {
 // The wall reads this machine's shared memory either way: here it is filled from another's.
 Result<Ok> Daemon::mirrorDevices(std::uint64_t generation) {
   const InputSettings& input = settings_.wall.input;
-  if (devices_) {
-    return Error{Errc::kInvalidArgument,
-                 "/wall/input/endpoint names another machine's devices, and this process reads its "
-                 "own: run it with --role wall"};
-  }
-  auto keys = status::readKeyPair(input.keys);
-  if (!keys) return keys.error();
   auto segment = shm::SegmentWriter<shm::DevicesSegment>::make(
       shm::segmentName(settings_.instance, "devices"), shm::devicesFields(), generation,
       clock_.now(), {});
   if (!segment) return segment.error();
   mirror_.emplace(*std::move(segment));
+  if (const auto allowed = net::networkAllowed(); !allowed) {
+    services_.failed("input", "/wall/input/endpoint: " + allowed.error().what);
+    return Ok{};
+  }
+  auto keys = status::readKeyPair(input.keys);
+  if (!keys) return keys.error();
   auto link = status::SampleLink::start({input.endpoint, input.server_key, *std::move(keys)},
                                         **mirror_, threads_, clock_);
   if (!link) return link.error();
@@ -187,14 +194,14 @@ void Daemon::serveOthers(const shm::DevicesSegment& segment) {
     keep("space mouse", [this, &segment]() -> Result<std::unique_ptr<net::Server>> {
       auto server =
           serve::SpnavServer::start(settings_.serve.spnav_socket, segment, threads_, clock_);
-      if (!server) return server.error();
+      if (!server) return errorAt("/serve/spnav_socket", server.error());
       return std::unique_ptr<net::Server>(*std::move(server));
     });
   }
   if (s.vrpn_port > 0) {
     keep("VRPN", [this, &segment]() -> Result<std::unique_ptr<net::Server>> {
       auto server = serve::VrpnServer::start(settings_.serve.vrpn_port, segment, threads_, clock_);
-      if (!server) return server.error();
+      if (!server) return errorAt("/serve/vrpn_port", server.error());
       return std::unique_ptr<net::Server>(*std::move(server));
     });
   }
@@ -231,12 +238,6 @@ std::vector<std::string> Daemon::serverEvents(const std::string& role) {
     for (const auto& keeper : kept_) {
       for (auto& sentence : keeper->takeEvents(now)) events.push_back(std::move(sentence));
     }
-  }
-  for (const ThreadState& thread : threads_.threads()) {
-    if (!thread.ended || told_threads_[role] == thread.id) continue;
-    told_threads_[role] = thread.id;
-    events.push_back(
-        fmt::format("thread {}: failed ({}); merlind ends", thread.name, thread.reason));
   }
   return events;
 }
@@ -314,39 +315,21 @@ Result<Ok> Daemon::run() {
   }
   ::sd_notify(0, "READY=1");
   logInfo("ready");
-  const auto ran = runUntilStopped();
-  ::sd_notify(0, "STOPPING=1");
-  logInfo("stopping");
-  return ran;
-}
-
-// A thread that ends by itself ends the daemon, which systemd starts again; before that the events
-// that say so have a second to go out.
-Result<Ok> Daemon::runUntilStopped() {
-  Timestamp ends_at = Timestamp::max();
   while (!stopAsked(kBeat)) {
     housekeeping();
-    const Timestamp now = clock_.now();
-    const auto ended = endedThread();
-    if (!ended) continue;
-    if (ends_at == Timestamp::max()) ends_at = now + kOnceASecond;
-    if (now >= ends_at) return *ended;
+    if (const auto ended = ended_threads_.check(clock_.now())) return *ended;
   }
+  ::sd_notify(0, "STOPPING=1");
+  logInfo("stopping");
   return Ok{};
-}
-
-std::optional<Error> Daemon::endedThread() {
-  for (const ThreadState& thread : threads_.threads()) {
-    if (thread.ended)
-      return Error{Errc::kIo, fmt::format("thread {} ended: {}", thread.name, thread.reason)};
-  }
-  return std::nullopt;
 }
 
 Result<Ok> Daemon::awaitFirstFrame(std::future<Result<std::string>> ready) {
   while (ready.wait_for(std::chrono::milliseconds(0)) != std::future_status::ready) {
     if (stopAsked(kBeat)) return Error{Errc::kClosed, "stopped before the first frame"};
     housekeeping();
+    if (ready.wait_for(std::chrono::milliseconds(0)) == std::future_status::ready) break;
+    if (const auto ended = ended_threads_.check(clock_.now())) return *ended;
   }
   const auto first = ready.get();
   if (!first) return first.error();
@@ -360,7 +343,7 @@ bool Daemon::stopAsked(Duration wait) {
   const sigset_t set = takenSignals();
   const timespec limit{0, wait.count()};
   const int signal = ::sigtimedwait(&set, nullptr, &limit);
-  if (signal == SIGHUP) logInfo("SIGHUP is ignored: a changed configuration takes a restart");
+  if (signal == SIGHUP) logInfo("SIGHUP is ignored: a changed configuration is read by a restart");
   return signal == SIGTERM || signal == SIGINT;
 }
 
@@ -369,6 +352,11 @@ void Daemon::housekeeping() {
   if (devices_) devices_->beat(now);
   if (wall_) wall_->beat(now);
   if (mirror_) mirror_->beat(now);
+  if (wall_ && !settings_.wall.png.path.empty()) {
+    const std::string fault = wall_->pictureFault();
+    fault.empty() ? services_.ok("picture")
+                  : services_.failed("picture", "/wall/png/path: " + fault);
+  }
   orders_->poll(now);
   for (const auto& keeper : kept_) keeper->tend(now);
   if (emulators_) {
@@ -417,7 +405,11 @@ Result<Ok> Daemon::serveStatus(const std::string& role, status::StatusServerSett
     roles_[role].server = *std::move(started);
   }
   if (samples) {
-    keep("samples for other machines", [this, server] { return server->startSamples(threads_); });
+    keep("samples for other machines", [this, server]() -> Result<std::unique_ptr<net::Server>> {
+      auto relay = server->startSamples(threads_);
+      if (!relay) return errorAt("/serve/samples_endpoint", relay.error());
+      return relay;
+    });
   }
   return Ok{};
 }
@@ -426,7 +418,7 @@ Result<Ok> Daemon::serveDevices() {
   const shm::DevicesSegment& segment = devices_->segment();
   status::StatusServerSettings s;
   const auto statusNow = [this, &segment] {
-    return status::devicesStatus(segment, clock_.now(), serverHealth("devices"));
+    return services_.addTo(status::devicesStatus(segment, clock_.now(), serverHealth("devices")));
   };
   s.publications = {
       {"status", kOnceASecond, statusNow},
@@ -439,7 +431,7 @@ Result<Ok> Daemon::serveDevices() {
                  [this]() -> Result<std::string> {
                    const auto files = devices_->flight().dump();
                    if (!files) return files.error();
-                   return fmt::format("[\"{}\"]", fmt::join(*files, "\",\""));
+                   return status::textList(*files);
                  }}};
   for (auto& command : panelCommands()) s.commands.push_back(std::move(command));
   auto network_settings = network();
@@ -461,9 +453,18 @@ Result<Ok> Daemon::serveDevices() {
       logInfo("{}", sentence);
       documents.push_back(status::event("server", sentence, now));
     }
+    tellServices(documents);
     return documents;
   };
   return serveStatus("devices", std::move(s));
+}
+
+// By whichever role's server comes first.
+void Daemon::tellServices(std::vector<std::string>& documents) {
+  for (const std::string& sentence : services_.takeEvents()) {
+    logWarning("{}", sentence);
+    documents.push_back(status::event("service", sentence, clock_.now()));
+  }
 }
 
 // What the wall gave way, and of another machine's devices, where it shows these.
@@ -482,6 +483,7 @@ std::function<std::vector<std::string>()> Daemon::wallEvents() {
     tell("wall", events->take());
     if (health) tell("device", health->take(clock_.now()));
     tell("server", serverEvents("wall"));
+    tellServices(documents);
     return documents;
   };
 }
@@ -490,7 +492,8 @@ Result<Ok> Daemon::serveWall() {
   const shm::WallSegment& segment = wall_->segment();
   status::StatusServerSettings s;
   const auto statusNow = [this, &segment] {
-    return status::wallStatus(segment, clock_.now(), serverHealth("wall"));
+    return services_.addTo(status::wallStatus(segment, clock_.now(), serverHealth("wall"),
+                                              mirror_ ? &**mirror_ : nullptr));
   };
   s.publications = {{"status", kOnceASecond, statusNow},
                     {"metrics", kOnceASecond, [&segment] { return status::wallMetrics(segment); }}};

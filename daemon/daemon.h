@@ -14,11 +14,14 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
 #include "daemon/base/watched_thread.h"
+#include "daemon/configuration.h"
 #include "daemon/devices/devices_role.h"
 #include "daemon/emulator_children.h"
 #include "daemon/net/server_keeper.h"
+#include "daemon/status/ended_threads.h"
 #include "daemon/status/sample_link.h"
 #include "daemon/status/server.h"
+#include "daemon/status/services.h"
 #include "daemon/status/watchdog.h"
 #include "daemon/wall/orders.h"
 #include "daemon/wall/snapshot_writer.h"
@@ -26,27 +29,22 @@
 
 namespace merlin {
 
-struct DaemonOptions {
-  bool devices = true, wall = true;  // roles
-  bool emulate = false;
-};
-
 class Daemon {
  public:
-  // Everything is made and checked, nothing runs. REQUIRES: SIGTERM, SIGINT, SIGHUP and SIGCHLD are
-  // blocked, no thread has been started. Errors: of its parts.
-  static Result<std::unique_ptr<Daemon>> make(Settings settings, const DaemonOptions& options,
-                                              Clock& clock);
+  // Everything is made, nothing runs. REQUIRES: the configuration is not invalid, SIGTERM, SIGINT,
+  // SIGHUP and SIGCHLD are blocked, no thread has been started. Errors: of its parts.
+  static Result<std::unique_ptr<Daemon>> make(Configuration configuration,
+                                              const DaemonOptions& options, Clock& clock);
   ~Daemon();
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
   // Runs until a signal; tells systemd when the first frame is out, and that there is progress.
-  // Errors: why there will be no first frame; that a thread ended which should not have.
+  // Errors: why there will be no first frame; a thread that has ended.
   Result<Ok> run();
 
  private:
-  Daemon(Settings settings, const DaemonOptions& options, Clock& clock);
+  Daemon(Configuration configuration, const DaemonOptions& options, Clock& clock);
   Result<Ok> makeRoles();
   Result<Ok> serveStatus(const std::string& role, status::StatusServerSettings settings);
   Result<Ok> serveDevices();
@@ -58,24 +56,26 @@ class Daemon {
   void keep(const std::string& name, net::ServerKeeper::Start start);
   std::vector<net::ServerHealth> serverHealth(const std::string& role) const;
   std::vector<std::string> serverEvents(const std::string& role);
-  std::optional<Error> endedThread();
   Result<status::CurveServer> network() const;
+  void tellServices(std::vector<std::string>& documents);
   Result<std::string> runCommand(const std::string& name);
   std::vector<status::Command> panelCommands();
   void takeOrders();
   shm::Endpoints endpoints(const std::string& role) const;
   Result<Ok> awaitFirstFrame(std::future<Result<std::string>> ready);
-  Result<Ok> runUntilStopped();
   bool stopAsked(Duration wait);  // waits for a signal
   void housekeeping();
   void pingWatchdog(Timestamp now);
   std::string summary(Timestamp now) const;
 
   Settings settings_;
+  std::vector<render::Dendrogram> models_;  // until the wall has them
   DaemonOptions options_;
   Clock& clock_;
   ThreadWatch threads_;  // before whoever has threads
   std::string run_directory_;
+  status::Services services_;
+  status::EndedThreads ended_threads_{threads_, services_};
   std::unique_ptr<EmulatorChildren> emulators_;
   std::unique_ptr<devices::DevicesRole> devices_;
   // Another machine's devices, where the wall's input is one.
@@ -94,9 +94,8 @@ class Daemon {
   std::vector<std::unique_ptr<net::ServerKeeper>> kept_;
   status::Watchdog watchdog_;
   Timestamp summarised_{};
-  // Of the status threads, by role: when servers were told of, and which thread that ended.
+  // Of the status threads, by role: when servers were told of.
   std::map<std::string, Timestamp> told_servers_;
-  std::map<std::string, std::uint64_t> told_threads_;
 };
 
 }  // namespace merlin

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <sstream>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -12,9 +13,10 @@
 #include "config/loader.h"
 #include "config/writer.h"
 #include "daemon/base/log.h"
+#include "daemon/base/text.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/configuration.h"
 #include "daemon/daemon.h"
-#include "daemon/devices/posture_bindings.h"
 #include "render/gl/gl_context.h"
 
 namespace merlin {
@@ -31,27 +33,41 @@ struct Options {
 
 void printFindings(const std::string& file, const LoadedSettings& loaded) {
   for (const Finding& finding : loaded.findings) fmt::print(stderr, "{}\n", toText(file, finding));
+  if (loaded.left_out > 0)
+    fmt::print(stderr, "{}: and {} more findings\n", oneLine(file), loaded.left_out);
 }
 
-// With what other files have to say; a process that draws the wall alone reads no postures.
-LoadedSettings loadConfig(const std::string& file, const std::string& role) {
-  LoadedSettings loaded = loadSettingsFile(file);
-  if (role != "wall") devices::checkPostures(loaded);
-  printFindings(file, loaded);
-  return loaded;
+DaemonOptions daemonOptions(const Options& options) {
+  return {options.role != "wall", options.role != "devices", options.emulate};
 }
 
-int checkConfig(const std::string& file, const std::string& role) {
-  const LoadedSettings loaded = loadConfig(file, role);
+Configuration checkedConfiguration(const std::string& file, const Options& options) {
+  Configuration configuration = readConfiguration(file, daemonOptions(options));
+  printFindings(file, configuration.loaded);
+  return configuration;
+}
+
+int checkConfig(const Options& options) {
+  const std::string file = oneLine(options.check);
+  const LoadedSettings loaded = checkedConfiguration(options.check, options).loaded;
+  const std::size_t findings = loaded.findings.size() + loaded.left_out;
   switch (loaded.verdict()) {
     case LoadedSettings::Verdict::kValid: fmt::print("{}: valid\n", file); return 0;
     case LoadedSettings::Verdict::kAdjusted:
-      fmt::print("{}: valid after {} adjustments\n", file, loaded.findings.size());
+      fmt::print("{}: valid after {} adjustments\n", file, findings);
       return 1;
     case LoadedSettings::Verdict::kInvalid: break;
   }
-  fmt::print("{}: invalid, {} findings\n", file, loaded.findings.size());
-  return 2;
+  fmt::print("{}: invalid, {} findings\n", file, findings);
+  return kExitBadInput;
+}
+
+int printConfig(const Options& options) {
+  LoadedSettings loaded = loadSettingsFile(options.config);
+  printFindings(options.config, loaded);
+  if (loaded.verdict() == LoadedSettings::Verdict::kInvalid) return kExitBadInput;
+  fmt::print("{}", settingsText(loaded.settings));
+  return kExitDone;
 }
 
 // Every thread inherits this mask; the main loop takes the signals one by one.
@@ -75,21 +91,13 @@ void raiseDescriptorLimit() {
 }
 
 int runDaemon(const Options& options) {
-  LoadedSettings loaded = loadConfig(options.config, options.role);
-  if (loaded.verdict() == LoadedSettings::Verdict::kInvalid) return kExitBadInput;
-  if (options.print_config) {
-    fmt::print("{}", settingsText(loaded.settings));
-    return kExitDone;
-  }
+  Configuration configuration = checkedConfiguration(options.config, options);
+  if (configuration.loaded.verdict() == LoadedSettings::Verdict::kInvalid) return kExitBadInput;
   blockSignals();
   raiseDescriptorLimit();
-  render::prepareSoftwareGl(loaded.settings.wall.render.raster_threads);
+  render::prepareSoftwareGl(configuration.loaded.settings.wall.render.raster_threads);
   SystemClock clock;
-  DaemonOptions daemon_options;
-  daemon_options.devices = options.role != "wall";
-  daemon_options.wall = options.role != "devices";
-  daemon_options.emulate = options.emulate;
-  const auto daemon = Daemon::make(std::move(loaded.settings), daemon_options, clock);
+  const auto daemon = Daemon::make(std::move(configuration), daemonOptions(options), clock);
   if (!daemon) {
     logError("{}", daemon.error().what);
     return exitStatus(daemon.error());
@@ -105,10 +113,18 @@ int main(int argc, char** argv) {
   CLI::App app(
       "MERLIN's daemon: reads the devices, draws the wall.\n\nExample: merlind --config "
       "config/demo.json --emulate");
-  app.add_option("--config", options.config, "The configuration, JSON")->capture_default_str();
-  app.add_option("--check-config", options.check,
-                 "Only check FILE: exits 0 valid, 1 adjusted, 2 invalid")
-      ->type_name("FILE");
+  // An unset variable of a shell must not start the daemon in place of a check.
+  const CLI::Validator named(
+      [](const std::string& file) { return std::string(file.empty() ? "names no file" : ""); }, "");
+  app.add_option("--config", options.config, "The configuration, JSON")
+      ->check(named)
+      ->capture_default_str();
+  const CLI::Option* check =
+      app.add_option("--check-config", options.check,
+                     "Only check FILE and the files that it names, for this --role: exits 0 valid, "
+                     "1 adjusted, 2 invalid or not checked to the end")
+          ->check(named)
+          ->type_name("FILE");
   app.add_option("--role", options.role, "What this process does")
       ->check(CLI::IsMember({"devices", "wall", "all"}))
       ->capture_default_str();
@@ -122,14 +138,21 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kExitDone : kExitBadInput;
+    std::ostringstream help, why;
+    const int status = app.exit(e, help, why);
+    fmt::print("{}", help.str());
+    fmt::print(stderr, "{}", printable(why.str()));
+    return status == 0 ? kExitDone : kExitBadInput;
   }
   initLog(LogLevel::kInfo);
   if (options.print_schema) {
     fmt::print("{}", settingsSchema());
     return kExitDone;
   }
-  return options.check.empty() ? runDaemon(options) : checkConfig(options.check, options.role);
+  if (options.print_config) return printConfig(options);
+  if (check->count() == 0) return runDaemon(options);
+  return guarded(
+      "merlind", [&] { return checkConfig(options); }, kExitBadInput);
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ const std::map<std::string, Folders> kMayInclude = {
     // The composition root.
     {"daemon",
      {"config", "daemon/cli", "daemon/devices", "daemon/net", "daemon/serve", "daemon/shm",
-      "daemon/status", "daemon/wall", "render/gl"}},
+      "daemon/status", "daemon/wall", "render/gl", "render/lod"}},
     {"drivers/port", {}},
     {"drivers/cyberglove", {"drivers/port"}},
     {"drivers/fastrak", {"drivers/port"}},

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -98,6 +99,8 @@ Result<Ok> writeFileHeadLast(const std::string& path, std::size_t head_size,
                              const std::function<std::span<const std::byte>()>& head) {
   if (auto replaceable = checkReplaceable(path); !replaceable) return replaceable;
   const std::string fresh = fmt::format("{}.{}.tmp", path, ::getpid());
+  // One that bears our number is left of an attempt of ours, whose folder was moved meanwhile.
+  ::unlink(fresh.c_str());
   const UniqueFd fd(::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (!fd.valid()) return fileError(path, errno);
   Buffered buffer(fd.get());
@@ -113,6 +116,25 @@ Result<Ok> writeFileHeadLast(const std::string& path, std::size_t head_size,
   const int error = errno;
   ::unlink(fresh.c_str());
   return fileError(path, error);
+}
+
+Result<Ok> checkWritableFolder(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return fileError(path, errno);
+  if (!S_ISDIR(status.st_mode)) return fileError(path, ENOTDIR);
+  if (::access(path.c_str(), W_OK | X_OK) != 0) return fileError(path, errno);
+  return Ok{};
+}
+
+Result<Ok> checkFolder(const std::string& path) {
+  struct stat status {};
+  std::filesystem::path there = path;
+  while (::lstat(there.c_str(), &status) != 0 && errno == ENOENT && there.has_relative_path()) {
+    if (!there.has_filename()) there = there.parent_path();  // "folder/"
+    there = there.parent_path();
+    if (there.empty()) there = ".";
+  }
+  return checkWritableFolder(there.string());
 }
 
 Result<Ok> checkWritable(const std::string& path) {

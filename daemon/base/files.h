@@ -39,6 +39,11 @@ class MappedFile {
 // Takes bytes in order; false where the file could not take them (the disk is full).
 using WriteBytes = std::function<bool(std::span<const std::byte>)>;
 
+// Whether files can be made in this folder. Errors: kNotFound, kIo (not a folder, not ours).
+Result<Ok> checkWritableFolder(const std::string& path);
+// The same of one that may be missing, and would then be made with those above it.
+Result<Ok> checkFolder(const std::string& path);
+
 // Calls `fill` to write a temporary file in the same folder, then syncs it and renames it to
 // `path`: readers see the old file or the whole new one. Where anything fails the old one stays.
 // Errors: kNotFound (no such folder), kIo (also where `path` is a device, a pipe, a socket).

@@ -49,9 +49,9 @@ void initLog(LogLevel lowest) {
 
 void logLine(LogLevel level, std::string_view text) {
   if (underJournal()) {
-    spdlog::log(toSpdlog(level), "{}{}", syslogPriority(level), printable(text));
+    spdlog::log(toSpdlog(level), "{}{}", syslogPriority(level), oneLine(text));
   } else {
-    spdlog::log(toSpdlog(level), "{}", printable(text));
+    spdlog::log(toSpdlog(level), "{}", oneLine(text));
   }
 }
 

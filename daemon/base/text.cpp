@@ -44,11 +44,13 @@ std::string_view wholeCharacters(std::string_view bytes) noexcept {
   return bytes;
 }
 
-std::string printable(std::string_view bytes) {
+namespace {
+
+std::string escaped(std::string_view bytes, bool keep_white) {
   std::string text;
   while (!bytes.empty()) {
     const bool white = bytes[0] == '\n' || bytes[0] == '\t';
-    const std::size_t size = white ? 1 : characterAt(bytes);
+    const std::size_t size = white && keep_white ? 1 : characterAt(bytes);
     if (size == 0)
       text += fmt::format("\\x{:02x}", static_cast<std::uint8_t>(bytes[0]));
     else
@@ -57,5 +59,11 @@ std::string printable(std::string_view bytes) {
   }
   return text;
 }
+
+}  // namespace
+
+std::string printable(std::string_view bytes) { return escaped(bytes, true); }
+
+std::string oneLine(std::string_view bytes) { return escaped(bytes, false); }
 
 }  // namespace merlin

@@ -16,4 +16,7 @@ std::string_view wholeCharacters(std::string_view bytes) noexcept;
 // terminal would follow them. Plain text stays as it is.
 std::string printable(std::string_view bytes);
 
+// The same, with tabs and ends of lines as "\x0a" too: what is said of one thing stays one line.
+std::string oneLine(std::string_view bytes);
+
 }  // namespace merlin

@@ -27,6 +27,13 @@ Argument Argument::range(std::size_t low, std::size_t high) {
 }
 Argument Argument::positive() { return Argument(option_->check(CLI::PositiveNumber)); }
 Argument Argument::nonNegative() { return Argument(option_->check(CLI::NonNegativeNumber)); }
+Argument Argument::seconds() {
+  return Argument(option_->type_name("SECONDS")->check(CLI::Range(0.1, 1e7)));
+}
+Argument Argument::baud() {
+  return Argument(option_->check(
+      CLI::IsMember(std::vector<int>{1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200})));
+}
 Argument Argument::oneOf(std::vector<std::string> values) {
   return Argument(option_->check(CLI::IsMember(std::move(values))));
 }
@@ -67,12 +74,12 @@ struct Plain<std::vector<T>> {
   using type = T;
 };
 
-// What CLI11 takes for a number of that type and is none: -1 as the largest, "nan".
+// What CLI11 takes for a number of that type and is none: -1 as the largest, "nan", "inf".
 template <typename T>
 std::string faultOf(const std::string& value) {
   if (std::is_unsigned_v<T> && value.starts_with('-')) return value + " is less than 0";
-  if (std::is_floating_point_v<T> && std::isnan(std::strtod(value.c_str(), nullptr)))
-    return value + " is no number";
+  if (std::is_floating_point_v<T> && !std::isfinite(std::strtod(value.c_str(), nullptr)))
+    return value + " is no number that there is";
   return {};
 }
 

@@ -30,6 +30,8 @@ class Argument {
   Argument range(std::size_t low, std::size_t high);
   Argument positive();
   Argument nonNegative();
+  Argument seconds();  // a duration: 0.1 to 10 million
+  Argument baud();     // a speed that serial lines have
   Argument oneOf(std::vector<std::string> values);
   Argument size();  // 900M, 16G: 1000 to the step
   // Empty, or what is wrong with a value.

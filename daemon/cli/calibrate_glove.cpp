@@ -101,7 +101,7 @@ void addCalibrateGlove(Command calibrate, Run& run) {
                                          "serial:/dev/serial/by-id/usb-GLOVE -o merlin.json");
   command.option("port", o->port, "serial:/dev/..., pty:PATH or tcp://HOST:PORT").required();
   command.option("-o,--output", o->output, "The configuration").required();
-  command.option("--baud", o->baud, "Speed of the line").showDefault();
+  command.option("--baud", o->baud, "Speed of the line").baud().showDefault();
   addGuideTiming(command, o->timing);
   command.callback([o, &run] { run = [o] { return calibrateGlove(*o); }; });
 }

@@ -126,14 +126,17 @@ void addEmulate(Command app, Run& run) {
   command.flag("--step", options->step,
                "A phase of the script lasts until Enter is pressed, in place of its time");
   command.option("--model", options->model, "Of the device");
-  command.option("--baud", options->baud, "Speed of the line");
+  command.option("--baud", options->baud, "Speed of the line").baud();
   command
       .option("--garbage-every", options->garbage_every,
               "Records between two bursts of random bytes; 0: none")
+      .range(0, 1'000'000'000)
       .showDefault();
   command.option("--seed", options->seed, "Of noise and garbage").showDefault();
-  command.option("--epoch-ns", options->epoch_ns,
-                 "When the script began, CLOCK_MONOTONIC; so that several devices agree");
+  command
+      .option("--epoch-ns", options->epoch_ns,
+              "When the script began, CLOCK_MONOTONIC; so that several devices agree")
+      .positive();
   command.callback([options, &run] { run = [options] { return emulateDevice(*options); }; });
 }
 

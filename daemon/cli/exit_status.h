@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <new>
 
 #include "daemon/base/result.h"
 
@@ -28,15 +29,18 @@ inline int exitStatus(const Error& error) {
 }
 
 // What a program's main returns; where something was thrown and nobody caught it (no memory, as a
-// rule) one line says so.
+// rule) one line says so, and `failed` is returned.
 template <typename Main>
-int guarded(const char* program, Main main) noexcept {
+int guarded(const char* program, Main main, int failed = kExitFailed) noexcept {
   try {
     return main();
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "%s: ended: no memory is left (a limit as of ulimit -v counts too)\n",
+                 program);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s: ended: %s\n", program, e.what());
   }
-  return kExitFailed;
+  return failed;
 }
 
 }  // namespace merlin

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "daemon/base/files.h"
 #include "render/mesh/io/beside.h"
@@ -25,6 +26,18 @@ std::string sizeText(std::size_t bytes) {
   return mib < 1000 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.1f} GiB", mib / 1024);
 }
 
+// What a limit of the address space (ulimit -v) leaves, less an eighth for what the allocator and
+// threads only reserve.
+std::size_t freeAddresses() {
+  rlimit limit{};
+  std::size_t pages = 0;
+  std::ifstream used("/proc/self/statm");
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || !(used >> pages))
+    return std::numeric_limits<std::size_t>::max();
+  const std::size_t taken = pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  return limit.rlim_cur > taken ? (limit.rlim_cur - taken) / 8 * 7 : 0;
+}
+
 // At the worst moment of all steps but the reduction itself: the file and the mesh without its
 // normals; splitting, with half-edges and fans; writing, with the log and the order of its rows.
 std::size_t needOfOthers(const render::MeshSize& m, std::size_t file_size) {
@@ -41,9 +54,10 @@ std::size_t freeMemory() {
   std::ifstream info("/proc/meminfo");
   for (std::string word; info >> word;) {
     std::size_t kib = 0;
-    if (word == "MemAvailable:" && info >> kib) return kib * 1024 / 16 * 15;
+    if (word == "MemAvailable:" && info >> kib)
+      return std::min(kib * 1024 / 16 * 15, freeAddresses());
   }
-  return std::numeric_limits<std::size_t>::max();
+  return freeAddresses();
 }
 
 std::size_t peakMemory() {

@@ -10,7 +10,8 @@
 
 namespace merlin::cli {
 
-// What the machine has free, less a sixteenth, bytes; a very large number where it does not say.
+// What the machine has free, less a sixteenth, or what a limit of this process's address space
+// leaves, less an eighth, if that is less; bytes. A very large number where it does not say.
 std::size_t freeMemory();
 
 // The most that this process has had in memory so far, bytes; what it maps of files counts.

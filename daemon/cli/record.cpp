@@ -185,8 +185,8 @@ void addRecord(Command app, Run& run) {
   command
       .option("--device", options->device, "Talks to it as this driver does; without: only listens")
       .oneOf(names);
-  command.option("--baud", options->baud, "Speed of the line");
-  command.option("--seconds", options->seconds, "How long; without: until a signal");
+  command.option("--baud", options->baud, "Speed of the line").baud();
+  command.option("--seconds", options->seconds, "How long; without: until a signal").seconds();
   command.callback([options, &run] { run = [options] { return record(*options); }; });
 }
 

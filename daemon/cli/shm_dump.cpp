@@ -169,8 +169,7 @@ void addShm(Command app, Run& run) {
       shm.subcommand("dump", "Every field: name, value, unit.\nExample: merlin shm dump --json");
   addInstance(command, options->instance);
   command.flag("--json", options->json, "One JSON object");
-  command.option("--follow", options->follow_s, "Again and again, every so many seconds")
-      .typeName("SECONDS");
+  command.option("--follow", options->follow_s, "Again and again, every so many seconds").seconds();
   command.callback([options, &run] { run = [options] { return dumpRepeatedly(*options); }; });
 }
 

@@ -55,7 +55,7 @@ void addWatch(Command app, Run& run) {
                      "posture, devices.\nExample: merlin watch --for 20");
   addInstance(command, options->instance);
   command.option("--for", options->seconds, "Seconds, then end; without it: until interrupted")
-      .typeName("SECONDS");
+      .seconds();
   command.flag("--json", options->json, "One JSON document a line");
   command.callback([options, &run] { run = [options] { return watch(*options); }; });
 }

@@ -10,6 +10,7 @@
 #include <sys/un.h>
 
 #include "daemon/net/connection_server.h"
+#include "daemon/net/network_allowed.h"
 
 namespace merlin::net {
 namespace {
@@ -74,10 +75,8 @@ Result<UniqueFd> listenTcp(const std::string& text, int port) {
   UniqueFd fd = newSocket(AF_INET);
   if (!fd.valid()) {
     const int error = errno;
-    return Error{error == EAFNOSUPPORT || error == EPERM ? Errc::kUnsupported : Errc::kIo,
-                 fmt::format("port {}: no network socket may be opened: {} (under systemd: "
-                             "RestrictAddressFamilies of the unit)",
-                             port, std::strerror(error))};
+    if (const auto allowed = networkAllowed(); !allowed) return allowed.error();
+    return Error{Errc::kIo, fmt::format("port {}: {}", port, std::strerror(error))};
   }
   const int yes = 1;
   ::setsockopt(fd.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);

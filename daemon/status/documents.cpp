@@ -339,6 +339,8 @@ std::string wallMetrics(const shm::WallSegment& segment) {
   return dump(json);
 }
 
+std::string textList(const std::vector<std::string>& texts) { return dump(Json(texts)); }
+
 std::string event(std::string_view kind, std::string_view what, Timestamp now) {
   return dump({{"now_ns", toNanoseconds(now)},
                {"time_utc", isoUtc(toNanoseconds(now) + realtimeOffset().count())},

@@ -26,6 +26,9 @@ std::string wallMetrics(const shm::WallSegment& segment);
 // Topic "event": one thing that happened. `kind` is a word, `what` a sentence.
 std::string event(std::string_view kind, std::string_view what, Timestamp now);
 
+// A list of texts, as a command's reply.
+std::string textList(const std::vector<std::string>& texts);
+
 // "absent", "opening", "ok", "failed"; also "stale" where a health was not written for a second.
 const char* healthName(const DeviceHealth& health, Timestamp now);
 

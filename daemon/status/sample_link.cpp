@@ -6,11 +6,9 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <sys/socket.h>
 #include <zmq.hpp>
 
 #include "daemon/base/log.h"
-#include "daemon/base/unique_fd.h"
 #include "daemon/status/documents.h"
 
 namespace merlin::status {
@@ -199,14 +197,6 @@ struct SampleLink::Socket {
 Result<std::unique_ptr<SampleLink>> SampleLink::start(SampleLinkSettings settings,
                                                       shm::DevicesSegment& segment,
                                                       ThreadWatch& watch, const Clock& clock) {
-  // libzmq aborts where no network socket may be opened.
-  const UniqueFd probe(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  if (settings.endpoint.starts_with("tcp://") && !probe.valid()) {
-    return Error{Errc::kUnsupported,
-                 fmt::format("{}: no network socket may be opened: {} (under systemd: "
-                             "RestrictAddressFamilies of the unit)",
-                             settings.endpoint, std::strerror(errno))};
-  }
   std::unique_ptr<SampleLink> link(new SampleLink(std::move(settings), segment, clock));
   try {
     link->connect();

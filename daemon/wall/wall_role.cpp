@@ -6,55 +6,31 @@
 #include <fmt/format.h>
 
 #include "daemon/shm/fields.h"
-#include "render/lod/io/mrm_file.h"
-#include "render/out/png_sink.h"
 
 namespace merlin::wall {
 namespace {
 
-struct ModelSetting {
-  std::string pointer, path;
-};
-
 // In the order in which they are shown.
-std::vector<ModelSetting> modelsOf(const WallSettings& wall) {
-  std::vector<ModelSetting> models = {{"/wall/model", wall.model}};
-  for (std::size_t i = 0; i < wall.contents.size(); ++i)
-    models.push_back({fmt::format("/wall/contents/{}/model", i), wall.contents[i].model});
-  return models;
-}
-
-Result<std::vector<render::Dendrogram>> readModels(const WallSettings& wall) {
-  std::vector<render::Dendrogram> models;
-  for (const auto& [pointer, path] : modelsOf(wall)) {
-    if (path.empty()) {
-      return Error{
-          Errc::kInvalidArgument,
-          pointer + ": names no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)"};
-    }
-    auto model = render::readMrm(path);
-    if (!model) return model.error();
-    models.push_back(*std::move(model));
-  }
-  return models;
+const std::string& modelFile(const WallSettings& wall, std::size_t i) {
+  return i == 0 ? wall.model : wall.contents[i - 1].model;
 }
 
 }  // namespace
 
-Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings, std::uint64_t generation,
+Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings,
+                                                 std::vector<render::Dendrogram> models,
+                                                 std::uint64_t generation,
                                                  const shm::Endpoints& endpoints,
                                                  ThreadWatch& watch, Clock& clock) {
   auto segment = shm::SegmentWriter<shm::WallSegment>::make(
       shm::segmentName(settings.instance, "wall"), shm::wallFields(), generation, clock.now(),
       endpoints);
   if (!segment) return segment.error();
-  auto models = readModels(settings.wall);
-  if (!models) return models.error();
   auto plan = render::planTiles(settings.wall.tiles);
   if (!plan) return Error{plan.error().code, "/wall/tiles: " + plan.error().what};
   auto scene = render::Scene::make(settings.wall.scene);
   if (!scene) return Error{scene.error().code, "/wall/scene: " + scene.error().what};
-  std::unique_ptr<WallRole> role(new WallRole(settings, *std::move(models), *std::move(plan),
+  std::unique_ptr<WallRole> role(new WallRole(settings, std::move(models), *std::move(plan),
                                               *std::move(scene), *std::move(segment), watch,
                                               clock));
   const std::string framebuffer = shm::segmentName(settings.instance, "framebuffer");
@@ -64,8 +40,10 @@ Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings, std::
                 framebuffer.c_str());
   role->sinks_.push_back(*std::move(shared));
   if (!settings.wall.png.path.empty()) {
-    role->sinks_.push_back(std::make_unique<render::PngFrameSink>(
-        settings.wall.png, role->plan_.frame_width, role->plan_.frame_height));
+    auto png = std::make_unique<render::PngFrameSink>(settings.wall.png, role->plan_.frame_width,
+                                                      role->plan_.frame_height);
+    role->png_ = png.get();
+    role->sinks_.push_back(std::move(png));
   }
   return role;
 }
@@ -100,7 +78,7 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
         Picture::make(model, plan_, settings_.wall.render, settings_.wall.scene.model_radius_m,
                       clock_, pictures.empty() ? nullptr : pictures.front()->contexts());
     if (!picture) {
-      const std::string path = modelsOf(settings_.wall)[contents.size()].path;
+      const std::string& path = modelFile(settings_.wall, contents.size());
       ready_.set_value(Error{picture.error().code, path + ": " + picture.error().what});
       return;
     }

@@ -14,15 +14,18 @@
 #include "daemon/wall/device_feed.h"
 #include "daemon/wall/picture.h"
 #include "daemon/wall/wall_loop.h"
+#include "render/out/png_sink.h"
 #include "render/out/shm_sink.h"
 
 namespace merlin::wall {
 
 class WallRole {
  public:
-  // Loads the models and makes the segments; nothing runs yet. Errors: what is wrong with a
-  // model's file or the wall's settings; kBusy (a living daemon has the segments), kIo.
-  static Result<std::unique_ptr<WallRole>> make(const Settings& settings, std::uint64_t generation,
+  // Makes the segments; nothing runs yet. `models`: readModels()'s, at least one. Errors: what is
+  // wrong with the wall's settings; kBusy (a living daemon has the segments), kIo.
+  static Result<std::unique_ptr<WallRole>> make(const Settings& settings,
+                                                std::vector<render::Dendrogram> models,
+                                                std::uint64_t generation,
                                                 const shm::Endpoints& endpoints, ThreadWatch& watch,
                                                 Clock& clock);
   ~WallRole();  // stops and joins the wall's thread
@@ -31,12 +34,16 @@ class WallRole {
 
   // Starts the wall's thread. The future holds, once: after the first frame what draws ("EGL,
   // llvmpipe ..."), or why there will be none.
+  // `watch` outlives this.
   std::future<Result<std::string>> start();
 
   // From any thread, once the first frame is out.
   void request(WallLoop::Request what);
   void hold(std::optional<std::size_t> triangles);
   void setRate(std::optional<double> rate_hz);
+
+  // Why the picture of /wall/png is not written; empty while it is, or none is asked for.
+  std::string pictureFault() const { return png_ ? png_->error() : std::string(); }
 
   void beat(Timestamp now) const { segment_.beat(now); }
   const shm::WallSegment& segment() const { return *segment_; }
@@ -56,6 +63,7 @@ class WallRole {
   ThreadWatch& watch_;
   Clock& clock_;
   std::vector<std::unique_ptr<render::FrameSink>> sinks_;
+  render::PngFrameSink* png_ = nullptr;  // of sinks_
   std::promise<Result<std::string>> ready_;
   std::atomic<WallLoop*> loop_{nullptr};
   WatchedThread thread_;

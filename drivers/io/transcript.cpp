@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
+#include "daemon/base/text.h"
 
 namespace merlin::io {
 namespace {
@@ -146,7 +147,9 @@ Result<Transcript> parseTranscript(std::string_view text) { return Reader().read
 
 std::string formatTranscript(const Transcript& transcript) {
   std::string text;
-  for (const auto& [key, value] : transcript.header) text += fmt::format("# {}: {}\n", key, value);
+  // A header line is one line, whatever a device has said of itself.
+  for (const auto& [key, value] : transcript.header)
+    text += fmt::format("# {}: {}\n", oneLine(key), oneLine(value));
   for (const TranscriptChunk& chunk : transcript.chunks) {
     text += fmt::format("@{:.6f} {}", toSeconds(chunk.at), chunk.to_device ? "to " : "");
     for (const char c : chunk.bytes) text += fmt::format("{:02x}", static_cast<std::uint8_t>(c));

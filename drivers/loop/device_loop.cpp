@@ -70,7 +70,9 @@ std::string DeviceLoop::withPace(const std::string& reason) {
 
 // Bytes that make no sense are, as a rule, another device's, or another speed's.
 std::string DeviceLoop::hintFor(const Error& end) const {
-  if (end.code != Errc::kMalformed || settings_.baud == 0) return {};
+  const bool has_speed =
+      settings_.port.starts_with("serial:") || settings_.port.starts_with("pty:");
+  if (end.code != Errc::kMalformed || settings_.baud == 0 || !has_speed) return {};
   return " (another device, or another speed than " + std::to_string(settings_.baud) + " baud?)";
 }
 

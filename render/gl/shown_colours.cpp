@@ -92,13 +92,20 @@ Rgb colourOf(const FeatureView& feature, std::size_t node, const ShownColours& s
 
 }  // namespace
 
+Result<Ok> checkShown(const Dendrogram& model, const Shown& show) {
+  if (show.feature.empty()) return Ok{};
+  const FeatureView* f = model.find(show.feature);
+  if (!f || (f->dimension != 1 && f->dimension != 3)) return noSuchFeature(model, show.feature);
+  return Ok{};
+}
+
 Result<ShownColours> coloursOf(const Dendrogram& model, const Shown& show) {
   const std::string& feature = show.feature;
   const FeatureView* f = model.find(feature.empty() ? std::string_view("colour") : feature);
   const bool usable = f && (f->dimension == 3 || (f->dimension == 1 && !feature.empty()));
   ShownColours shown;
   if (!usable && feature.empty()) return shown;
-  if (!usable) return noSuchFeature(model, feature);
+  if (const auto checked = checkShown(model, show); !checked) return checked.error();
   shown.low = show.range[0];
   shown.high = show.range[1];
   if (f->dimension == 1 && f->name != "label" && shown.low == shown.high)

@@ -16,6 +16,9 @@ struct ShownColours {
   float low = 0, high = 0;                       // of one value: where the scale begins and ends
 };
 
+// Whether coloursOf() can show it. Same errors.
+Result<Ok> checkShown(const Dendrogram& model, const Shown& show);
+
 // By the feature's kind:
 //   dimension 3  red, green, blue, each 0..1; of "normal" -1..1
 //   dimension 1  dark blue, green, yellow (viridis) over the range that is told, or from the 1st to

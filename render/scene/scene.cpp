@@ -74,12 +74,8 @@ struct Ray {
 }  // namespace
 
 Result<Scene> Scene::make(const SceneSettings& settings) {
-  if (!axisMap(settings.tracker_axes)) {
-    return Error{
-        Errc::kInvalidArgument,
-        fmt::format("tracker_axes {}, {}, {}: each of 1, 2, 3 once, right-handed with its signs",
-                    settings.tracker_axes[0], settings.tracker_axes[1], settings.tracker_axes[2])};
-  }
+  if (const SettingFaults faults = validate(settings); !faults.empty())
+    return Error{Errc::kInvalidArgument, faults.front().what};
   Scene scene(settings);
   for (const Binding& binding : settings.bindings) {
     auto bound = parse(binding);

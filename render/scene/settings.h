@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/base/setting_fault.h"
+
 namespace merlin::render {
 
 // What an input can do.
@@ -79,5 +81,9 @@ struct SceneSettings {
                                    {"ball.button.1", Action::kResetView},
                                    {"ball.button.2", Action::kNextMode}};
 };
+
+// What no scene can be made of: an axis map that is no right-handed permutation. What single
+// bindings can have wrong, config/checks finds. Pure.
+SettingFaults validate(const SceneSettings& settings);
 
 }  // namespace merlin::render

@@ -4,7 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "daemon/base/setting_fault.h"
+
 namespace merlin::render {
+
+// What the shared-memory framebuffer has room for.
+inline constexpr std::size_t kMostTiles = 32;
 
 enum class TileKind {
   kWall,      // a piece of the picture on the wall
@@ -29,5 +34,10 @@ struct TilesSettings {
                                      {"right", TileKind::kWall, 0, 480, -1},
                                      {"operator", TileKind::kOperator, 640, 480, 0}};
 };
+
+// Everything that no wall can be made of: a tile outside the frame, two that overlap, two of one
+// name or turn, no tile or more than kMostTiles, a field of view that is not 1..179 degrees, near
+// or far out of order, a tile without pixels, figures that are no numbers. Pure.
+SettingFaults validate(const TilesSettings& settings);
 
 }  // namespace merlin::render

@@ -4,58 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include <fmt/format.h>
-
 namespace merlin::render {
 namespace {
 
 constexpr double kRadian = std::numbers::pi / 180;
-
-Error wrong(std::string what) { return {Errc::kInvalidArgument, std::move(what)}; }
-
-bool overlap(const TileSettings& a, const TileSettings& b, const TilesSettings& s) {
-  return std::abs(a.x - b.x) < s.tile_width && std::abs(a.y - b.y) < s.tile_height;
-}
-
-Result<Ok> checkPair(const TileSettings& a, const TileSettings& b, const TilesSettings& s) {
-  if (a.name == b.name) return wrong(fmt::format("two tiles are named \"{}\"", a.name));
-  if (overlap(a, b, s))
-    return wrong(fmt::format("tiles {} and {} overlap in the frame", a.name, b.name));
-  const bool both = a.kind == TileKind::kWall && b.kind == TileKind::kWall;
-  if (both && std::abs(a.turns - b.turns) < 1e-6) {
-    return wrong(fmt::format("tiles {} and {} both look {} tile widths to the left", a.name, b.name,
-                             a.turns));
-  }
-  return Ok{};
-}
-
-Result<Ok> check(const TilesSettings& s) {
-  if (!(s.field_of_view_deg >= 1 && s.field_of_view_deg <= 179)) {
-    return wrong(fmt::format("a field of view of {} degrees is not 1 to 179", s.field_of_view_deg));
-  }
-  if (!(s.near_m > 0 && s.far_m > s.near_m && std::isfinite(s.far_m))) {
-    return wrong(fmt::format("near {} m and far {} m: 0 < near < far", s.near_m, s.far_m));
-  }
-  if (s.tile_width <= 0 || s.tile_height <= 0) {
-    return wrong(
-        fmt::format("a tile of {} x {} pixels has no picture", s.tile_width, s.tile_height));
-  }
-  if (s.tiles.empty()) return wrong("a wall has at least one tile");
-  for (std::size_t i = 0; i < s.tiles.size(); ++i) {
-    const TileSettings& t = s.tiles[i];
-    if (t.x < 0 || t.y < 0 || t.x > s.frame_width - s.tile_width ||
-        t.y > s.frame_height - s.tile_height) {
-      return wrong(fmt::format("tile {} at {}, {} does not lie in the frame of {} x {}", t.name,
-                               t.x, t.y, s.frame_width, s.frame_height));
-    }
-    if (!std::isfinite(t.turns))
-      return wrong(fmt::format("tile {}: turns are {}", t.name, t.turns));
-    for (std::size_t j = 0; j < i; ++j) {
-      if (const auto pair = checkPair(s.tiles[j], t, s); !pair) return pair;
-    }
-  }
-  return Ok{};
-}
 
 // Wall tiles side by side, the one that looks furthest left first.
 void layOutWall(TilePlan& plan, const TilesSettings& s) {
@@ -127,7 +79,8 @@ Eigen::Matrix4f yawView(float yaw_rad) {
 }
 
 Result<TilePlan> planTiles(const TilesSettings& s) {
-  if (const auto checked = check(s); !checked) return checked.error();
+  if (const SettingFaults faults = validate(s); !faults.empty())
+    return Error{Errc::kInvalidArgument, faults.front().what};
   TilePlan plan{s.frame_width, s.frame_height, 0, 0, {}};
   const double fov = s.field_of_view_deg * kRadian;
   const Eigen::Matrix4f projection = perspective(

@@ -32,9 +32,7 @@ struct TilePlan {
   std::vector<Tile> tiles;
 };
 
-// Errors: kInvalidArgument: a tile outside the frame, two that overlap, two of one name or turn, a
-// field of view that is not 1..179 degrees, near or far out of order, a tile without pixels,
-// figures that are no numbers.
+// Errors: kInvalidArgument: the first that validate() finds.
 Result<TilePlan> planTiles(const TilesSettings& settings);
 
 // Frustum of a field of view (horizontal, radians) and an aspect (width / height).

@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "config/loader.h"
@@ -223,6 +224,27 @@ TEST(Config, DeepNestingIsRefused) {
   EXPECT_NE(all(loaded).find("more than 32 levels deep"), std::string::npos);
   EXPECT_NE(all(loadSettings(std::string(2 << 20, ' '), "")).find("1048576 are the most"),
             std::string::npos);
+}
+
+// What is shown and kept is bounded, and the verdict holds for all of it.
+TEST(Config, ManyFindingsAreCounted) {
+  std::string keys;
+  for (int i = 0; i < 50'000; ++i) keys += fmt::format("\"key{}\": 1,\n", i);
+  const auto unknown = loadSettings("{" + keys + "\"instance\": \"a\"}", "");
+  EXPECT_EQ(unknown.verdict(), Verdict::kInvalid);
+  EXPECT_EQ(unknown.findings.size(), LoadedSettings::kMostFindings);
+  EXPECT_EQ(unknown.left_out, 50'000 - LoadedSettings::kMostFindings);
+  LoadedSettings adjusted;
+  for (std::size_t i = 0; i <= LoadedSettings::kMostFindings; ++i)
+    adjusted.add({true, 1, "/a", "is adjusted"});
+  EXPECT_EQ(adjusted.verdict(), Verdict::kAdjusted);
+  adjusted.wrong("/a", "is wrong");
+  EXPECT_EQ(adjusted.verdict(), Verdict::kInvalid);
+}
+
+TEST(Config, AFindingIsOneLineThatNoTerminalFollows) {
+  const Finding finding{false, 3, "/a\nb", "is \"\x1b[2J\ttext\n\""};
+  EXPECT_EQ(toText("f\n.json", finding), "f\\x0a.json:3: /a\\x0ab is \"\\x1b[2J\\x09text\\x0a\"");
 }
 
 TEST(Config, AMissingFileIsOneFinding) {

@@ -235,5 +235,15 @@ TEST(CpuLatency, WritesTheLimitAndSaysWhereItCannot) {
   EXPECT_EQ(test::readText(device), std::string("\x14\0\0\0", 4));
 }
 
+// A device may say anything of itself.
+TEST(Transcript, AHeaderStaysOneLineWhateverIsInIt) {
+  Transcript transcript;
+  transcript.header = {{"device", "Fastrak\n4400 no comment\x1b[2J"}};
+  const auto read = parseTranscript(formatTranscript(transcript));
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ((*read)["device"], "Fastrak\\x0a4400 no comment\\x1b[2J");
+  EXPECT_TRUE(read->chunks.empty());
+}
+
 }  // namespace
 }  // namespace merlin::io

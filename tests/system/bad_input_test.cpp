@@ -46,6 +46,15 @@ TEST_F(BadInput, ATruncatedScan) {
   EXPECT_FALSE(std::filesystem::exists(dir_ / "out.mrm"));
 }
 
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_F(BadInput, ALimitOfTheAddressSpaceCountsAsWhatIsFree) {
+  const std::string reduce = fmt::format("{} mesh reduce {}/config/models/ankylosaurus.ply -o {}",
+                                         kMerlin, kSource, dir_ / "out.mrm");
+  expectOutcome(run({"/bin/bash", "-c", "ulimit -v 50000; " + reduce}), 2,
+                {"to reduce, even in blocks; the limit (--memory, else what is free) is"});
+}
+#endif
+
 TEST_F(BadInput, AFileThatMayNotGrowSoFar) {
   const std::string reduce = fmt::format("{} mesh reduce {}/config/models/ankylosaurus.ply -o {}",
                                          kMerlin, kSource, dir_ / "out.mrm");
@@ -69,8 +78,9 @@ TEST_F(BadInput, AConfigurationWithThreeErrors) {
 TEST_F(BadInput, CheckConfigSaysValidAdjustedOrInvalid) {
   writeText(dir_ / "good.json", "{}");
   writeText(dir_ / "adjusted.json", "{\"wall\": {\"rate\": {\"rate_hz\": 100000}}}");
-  expectOutcome(run({kMerlind, "--check-config", dir_ / "good.json"}), 0, {"good.json: valid"});
-  expectOutcome(run({kMerlind, "--check-config", dir_ / "adjusted.json"}), 1,
+  expectOutcome(run({kMerlind, "--check-config", dir_ / "good.json", "--role", "devices"}), 0,
+                {"good.json: valid"});
+  expectOutcome(run({kMerlind, "--check-config", dir_ / "adjusted.json", "--role", "devices"}), 1,
                 {"is 100000; allowed is 1 to 240; 240 is taken"});
   expectOutcome(run({kMerlind, "--check-config", dir_ / "none.json"}), 2,
                 {"none.json: No such file or directory"});
@@ -140,7 +150,9 @@ TEST_F(BadInput, BindingsToPosturesThatTheNetworkDoesNotKnow) {
     "postures": "none.json"}})");
   expectOutcome(run({kMerlind, "--check-config", dir_ / "n.json"}), 2,
                 {"n.json:2: /devices/postures cannot be used: ", "none.json: No such file"});
-  expectOutcome(run({kMerlind, "--check-config", dir_ / "n.json", "--role", "wall"}), 0, {"valid"});
+  // A process that draws the wall alone reads no postures.
+  const Outcome wall = run({kMerlind, "--check-config", dir_ / "n.json", "--role", "wall"});
+  EXPECT_EQ(wall.output.find("/devices/postures"), std::string::npos) << wall.output;
 }
 
 TEST_F(BadInput, UsageErrorsExitWithTwo) {
@@ -152,6 +164,22 @@ TEST_F(BadInput, UsageErrorsExitWithTwo) {
                 {"9000", "2003|1003|3003|4000"});
   expectOutcome(run({kMerlind, "--role", "emperor"}), 2, {"emperor"});
   expectOutcome(run({kMerlin, "--help"}), 0, {"status", "mesh", "emulate"});
+}
+
+TEST_F(BadInput, NumbersBeyondWhatThereIs) {
+  for (const char* baud : {"0", "-1", "31337"}) {
+    expectOutcome(run({kMerlin, "emulate", "spaceball", "--baud", baud}), 2, {"--baud", "9600"});
+    expectOutcome(run({kMerlin, "record", "pty:x", "-o", dir_ / "r", "--baud", baud}), 2,
+                  {"--baud", "9600"});
+  }
+  expectOutcome(run({kMerlin, "emulate", "spaceball", "--garbage-every", "-1"}), 2,
+                {"--garbage-every"});
+  for (const char* seconds : {"0", "-1", "nan", "inf"}) {
+    expectOutcome(run({kMerlin, "watch", "--for", seconds}), 2, {"--for", seconds});
+    expectOutcome(run({kMerlin, "shm", "dump", "--follow", seconds}), 2, {"--follow", seconds});
+    expectOutcome(run({kMerlin, "record", "pty:x", "-o", dir_ / "r", "--seconds", seconds}), 2,
+                  {"--seconds", seconds});
+  }
 }
 
 TEST_F(BadInput, CommandsForADaemonThatIsNotThere) {

@@ -88,7 +88,7 @@ TEST(Calibrate, WritesIntoAConfigurationThatTheDaemonAccepts) {
   EXPECT_EQ(json["devices"]["ball"]["full_scale_translation"], 6000);
   EXPECT_EQ(json["devices"]["tracker"]["boresight2_wxyz"][3], 0.8);
   EXPECT_EQ(json["devices"]["glove"]["offset"][4], 60);
-  const Outcome checked = run({kMerlind, "--check-config", config});
+  const Outcome checked = run({kMerlind, "--check-config", config, "--role", "devices"});
   EXPECT_EQ(checked.status, 0) << checked.output;
   const std::string before = readText(config);
   writeText(dir / "flipped", "60 200 40\n" + vess.substr(10));

@@ -1,4 +1,4 @@
-#include "daemon/devices/posture_bindings.h"
+#include "daemon/devices/device_checks.h"
 
 #include <string>
 #include <string_view>
@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "daemon/base/nearest.h"
+#include "drivers/io/open_stream.h"
+#include "drivers/io/transcript.h"
 #include "nn/io/network_file.h"
 
 namespace merlin::devices {
@@ -27,6 +29,7 @@ void checkPostures(LoadedSettings& loaded) {
   if (path.empty()) return;
   const auto file = nn::loadNetwork(path);
   if (!file) return loaded.wrong("/devices/postures", "cannot be used: " + file.error().what);
+  if (!loaded.lines.contains("/wall/scene/bindings")) return;
   const std::vector<std::string> names = namesOf(file->network.postures);
   constexpr std::string_view kPosture = "posture.";
   const auto& bindings = loaded.settings.wall.scene.bindings;
@@ -40,6 +43,23 @@ void checkPostures(LoadedSettings& loaded) {
                  fmt::format("is \"{}\", which is no posture of {}; {}it knows {}", input, path,
                              near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near),
                              fmt::join(names, ", ")));
+  }
+}
+
+void checkPorts(LoadedSettings& loaded) {
+  const DevicesSettings& d = loaded.settings.devices;
+  const std::pair<const char*, const std::string&> ports[] = {
+      {"glove", d.glove_line.port}, {"tracker", d.tracker_line.port}, {"ball", d.ball_line.port}};
+  for (const auto& [device, port] : ports) {
+    if (port.empty()) continue;
+    const std::string at = fmt::format("/devices/{}/port", device);
+    const auto address = io::parsePort(port);
+    if (!address) {
+      loaded.wrong(at, "cannot be used: " + address.error().what);
+    } else if (address->kind == io::PortKind::kReplay) {
+      const auto transcript = io::readTranscript(address->path);
+      if (!transcript) loaded.wrong(at, "cannot be used: " + transcript.error().what);
+    }
   }
 }
 

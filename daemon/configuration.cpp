@@ -1,0 +1,125 @@
+#include "daemon/configuration.h"
+
+#include <filesystem>
+#include <string_view>
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <net/if.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+
+#include "daemon/base/files.h"
+#include "daemon/devices/device_checks.h"
+#include "daemon/status/curve.h"
+#include "daemon/wall/wall_checks.h"
+
+namespace merlin {
+namespace {
+
+constexpr const char* kCannot = "cannot be used: ";
+constexpr std::size_t kMostSocketName = sizeof sockaddr_un::sun_path - 1;
+
+template <typename T>
+void take(const Result<T>& result, const char* pointer, LoadedSettings& loaded) {
+  if (!result) loaded.wrong(pointer, kCannot + result.error().what);
+}
+
+void checkRunDirectory(LoadedSettings& loaded) {
+  const std::string& path = loaded.settings.run_directory;
+  if (path.empty()) return;
+  // The longest name of a socket in it.
+  const std::size_t longest = path.size() + 1 + loaded.settings.instance.size() +
+                              std::string_view("-devices.command").size();
+  if (longest > kMostSocketName) {
+    return loaded.wrong("/run_directory",
+                        fmt::format("is too long: the names of sockets in it would have {} bytes; "
+                                    "{} are the most",
+                                    longest, kMostSocketName));
+  }
+  take(checkFolder(path), "/run_directory", loaded);
+}
+
+// Nothing that has this name is deleted unless it is a socket.
+void checkSpnavSocket(LoadedSettings& loaded) {
+  constexpr const char* kPointer = "/serve/spnav_socket";
+  const std::string& path = loaded.settings.serve.spnav_socket;
+  if (path.empty()) return;
+  if (path.size() > kMostSocketName) {
+    return loaded.wrong(kPointer, fmt::format("has {} bytes; a socket's name has {} at most",
+                                              path.size(), kMostSocketName));
+  }
+  struct stat status {};
+  if (::lstat(path.c_str(), &status) == 0 && !S_ISSOCK(status.st_mode)) {
+    return loaded.wrong(kPointer, fmt::format("{}{}: is not a socket and is not replaced; name "
+                                              "another file, or remove it",
+                                              kCannot, path));
+  }
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  take(checkWritableFolder(folder.empty() ? "." : folder), kPointer, loaded);
+}
+
+// What a socket can be bound to: any address, one of this machine's, a network interface.
+void checkBindable(const std::string& endpoint, LoadedSettings& loaded) {
+  constexpr std::string_view kTcp = "tcp://";
+  if (!endpoint.starts_with(kTcp)) return;  // a finding already
+  std::string host = endpoint.substr(kTcp.size(), endpoint.rfind(':') - kTcp.size());
+  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
+  in6_addr address{};
+  const bool good = host == "*" || ::inet_pton(AF_INET, host.c_str(), &address) == 1 ||
+                    ::inet_pton(AF_INET6, host.c_str(), &address) == 1 ||
+                    ::if_nametoindex(host.c_str()) != 0;
+  if (!good) {
+    loaded.wrong("/serve/samples_endpoint",
+                 fmt::format("{}{} is neither *, nor an address, nor a network interface of this "
+                             "machine",
+                             kCannot, host));
+  }
+}
+
+void checkSamples(LoadedSettings& loaded) {
+  const ServeSettings& s = loaded.settings.serve;
+  if (s.samples_endpoint.empty()) return;
+  checkBindable(s.samples_endpoint, loaded);
+  if (!s.samples_keys.empty())
+    take(status::readKeyPair(s.samples_keys), "/serve/samples_keys", loaded);
+  if (!s.samples_clients.empty())
+    take(status::readPublicKeys(s.samples_clients), "/serve/samples_clients", loaded);
+}
+
+void checkInput(const DaemonOptions& options, LoadedSettings& loaded) {
+  const InputSettings& input = loaded.settings.wall.input;
+  if (input.endpoint.empty()) return;
+  if (options.devices) {
+    loaded.wrong("/wall/input/endpoint",
+                 "names another machine's devices, and this process reads its own: run it with "
+                 "--role wall");
+  }
+  if (!input.keys.empty()) take(status::readKeyPair(input.keys), "/wall/input/keys", loaded);
+}
+
+}  // namespace
+
+Configuration readConfiguration(const std::string& file, const DaemonOptions& options) {
+  Configuration read{loadSettingsFile(file), {}};
+  LoadedSettings& loaded = read.loaded;
+  // What was clamped is good; where anything is wrong, the rest would be looked for in vain.
+  if (loaded.findings.size() == 1 && loaded.findings[0].pointer.empty()) return read;
+  checkRunDirectory(loaded);
+  if (options.devices) {
+    devices::checkPostures(loaded);
+    if (!options.emulate) devices::checkPorts(loaded);
+    checkSamples(loaded);
+  }
+  const bool mirrors = options.wall && !loaded.settings.wall.input.endpoint.empty();
+  if (options.devices || mirrors) checkSpnavSocket(loaded);
+  if (options.wall) {
+    checkInput(options, loaded);
+    wall::checkOutputs(loaded);
+    read.models = wall::readModels(loaded);
+  }
+  loaded.sortFindings();
+  return read;
+}
+
+}  // namespace merlin

@@ -1,0 +1,41 @@
+#include "daemon/status/services.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace merlin::status {
+
+void Services::set(const std::string& service, std::string reason) {
+  const std::lock_guard lock(mutex_);
+  auto found = std::find_if(services_.begin(), services_.end(),
+                            [&](const Service& s) { return s.name == service; });
+  const bool fresh = found == services_.end();
+  if (fresh) found = services_.insert(found, {service, {}});
+  if (found->reason == reason) return;
+  events_.push_back(reason.empty() ? fmt::format("{}: works again", service)
+                                   : fmt::format("{}: failed ({})", service, reason));
+  found->reason = std::move(reason);
+}
+
+std::vector<std::string> Services::takeEvents() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(events_, {});
+}
+
+std::string Services::addTo(const std::string& document) const {
+  using Json = nlohmann::ordered_json;
+  const std::lock_guard lock(mutex_);
+  Json json = Json::parse(document, nullptr, false);
+  if (services_.empty() || !json.is_object()) return document;
+  Json& services = json["services"];
+  for (const Service& s : services_) {
+    services[s.name]["health"] = s.reason.empty() ? "ok" : "failed";
+    services[s.name]["reason"] = s.reason;
+  }
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace merlin::status

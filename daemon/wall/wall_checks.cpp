@@ -1,0 +1,62 @@
+#include "daemon/wall/wall_checks.h"
+
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "daemon/base/files.h"
+#include "render/gl/shown_colours.h"
+#include "render/lod/io/mrm_file.h"
+
+namespace merlin::wall {
+namespace {
+
+constexpr const char* kCannot = "cannot be used: ";
+
+struct ModelSetting {
+  std::string pointer, path;
+};
+
+std::vector<ModelSetting> modelsOf(const WallSettings& wall) {
+  std::vector<ModelSetting> models = {{"/wall/model", wall.model}};
+  for (std::size_t i = 0; i < wall.contents.size(); ++i)
+    models.push_back({fmt::format("/wall/contents/{}/model", i), wall.contents[i].model});
+  return models;
+}
+
+}  // namespace
+
+std::vector<render::Dendrogram> readModels(LoadedSettings& loaded) {
+  std::vector<render::Dendrogram> models;
+  const render::Shown& show = loaded.settings.wall.render.show;
+  for (const auto& [pointer, path] : modelsOf(loaded.settings.wall)) {
+    if (path.empty()) {
+      loaded.wrong(pointer, "names no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)");
+      continue;
+    }
+    auto model = render::readMrm(path);
+    if (!model) {
+      loaded.wrong(pointer, kCannot + model.error().what);
+      continue;
+    }
+    if (const auto shown = render::checkShown(*model, show); !shown)
+      loaded.wrong("/wall/render/show", fmt::format("{}{}: {}", kCannot, path, shown.error().what));
+    models.push_back(*std::move(model));
+  }
+  return models;
+}
+
+void checkOutputs(LoadedSettings& loaded) {
+  const WallSettings& wall = loaded.settings.wall;
+  if (!wall.png.path.empty()) {
+    if (const auto writable = checkWritable(wall.png.path); !writable)
+      loaded.wrong("/wall/png/path", kCannot + writable.error().what);
+  }
+  if (!wall.snapshots.empty()) {
+    if (const auto usable = checkFolder(wall.snapshots); !usable)
+      loaded.wrong("/wall/snapshots", kCannot + usable.error().what);
+  }
+}
+
+}  // namespace merlin::wall

@@ -1,0 +1,20 @@
+// What the configuration says of the wall, held against the files that it names: the loader reads
+// no other file.
+#pragma once
+
+#include <vector>
+
+#include "config/loader.h"
+#include "render/lod/dendrogram.h"
+
+namespace merlin::wall {
+
+// The models, in the order in which they are shown: /wall/model, then /wall/contents. Adds
+// findings: one that is not named or cannot be read, one without the feature that /wall/render/show
+// names. The models are meaningful where it added none. O(files).
+std::vector<render::Dendrogram> readModels(LoadedSettings& loaded);
+
+// Adds findings: a picture's file or a folder of snapshots that cannot be written.
+void checkOutputs(LoadedSettings& loaded);
+
+}  // namespace merlin::wall

@@ -1,0 +1,37 @@
+#include "render/scene/settings.h"
+
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+namespace merlin::render {
+namespace {
+
+// Of a permutation of x, y, z with signs; 0 where it is none.
+int handedness(const std::array<int, 3>& axes) {
+  int sign = 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (axes[i] == 0 || axes[i] < -3 || axes[i] > 3) return 0;  // abs(the least int) is none
+    if (axes[i] < 0) sign = -sign;
+    for (std::size_t j = 0; j < i; ++j) {
+      const int a = std::abs(axes[j]), b = std::abs(axes[i]);
+      if (a == b) return 0;
+      if (a > b) sign = -sign;
+    }
+  }
+  return sign;
+}
+
+}  // namespace
+
+SettingFaults validate(const SceneSettings& s) {
+  const std::array<int, 3>& axes = s.tracker_axes;
+  if (handedness(axes) == 1) return {};
+  return {
+      {"/tracker_axes",
+       fmt::format("tracker_axes {}, {}, {}: allowed is each of 1 to 3 once, right-handed with its "
+                   "signs",
+                   axes[0], axes[1], axes[2])}};
+}
+
+}  // namespace merlin::render

@@ -1,0 +1,176 @@
+// under_unit UNIT... -- PROGRAM ARGUMENT...: runs a program with what these unit files forbid,
+// without systemd: address families, system calls, new privileges, the umask; as the user nobody
+// where root starts it. Later files add to earlier ones, as drop-ins do. What else a unit has is
+// not looked at.
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <grp.h>
+#include <linux/audit.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <stddef.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+[[noreturn]] void fail(const std::string& what) {
+  std::fprintf(stderr, "under_unit: %s\n", what.c_str());
+  std::exit(99);
+}
+
+std::string outputOf(const char* command) {
+  std::string text;
+  FILE* const pipe = ::popen(command, "r");
+  if (!pipe) return text;
+  char buffer[4096];
+  for (std::size_t n = 0; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;)
+    text.append(buffer, n);
+  ::pclose(pipe);
+  return text;
+}
+
+// All values of a key, over all files.
+Words valuesOf(const Words& units, const std::string& key) {
+  Words values;
+  for (const std::string& unit : units) {
+    std::ifstream file(unit);
+    if (!file) fail(unit + ": cannot be read");
+    for (std::string line; std::getline(file, line);) {
+      if (!line.starts_with(key + "=")) continue;
+      std::istringstream words(line.substr(key.size() + 1));
+      for (std::string word; words >> word;) values.push_back(word);
+    }
+  }
+  return values;
+}
+
+std::uint32_t familyOf(const std::string& name) {
+  static const std::map<std::string, std::uint32_t> kFamilies = {{"AF_UNIX", AF_UNIX},
+                                                                 {"AF_INET", AF_INET},
+                                                                 {"AF_INET6", AF_INET6},
+                                                                 {"AF_NETLINK", AF_NETLINK}};
+  const auto found = kFamilies.find(name);
+  if (found == kFamilies.end()) fail(name + ": is no family that this program knows");
+  return found->second;
+}
+
+// Names of calls, by systemd's own tables; empty where systemd is not installed.
+std::set<std::string> callsOf(const Words& sets) {
+  std::map<std::string, Words> table;
+  std::istringstream lines(outputOf("systemd-analyze syscall-filter 2>/dev/null"));
+  std::string current;
+  for (std::string line; std::getline(lines, line);) {
+    const auto from = line.find_first_not_of(' ');
+    if (from == std::string::npos || line[from] == '#') continue;
+    if (from == 0)
+      current = line;
+    else
+      table[current].push_back(line.substr(from));
+  }
+  std::set<std::string> calls, seen;
+  Words open = sets;
+  while (!open.empty() && !table.empty()) {
+    const std::string name = open.back();
+    open.pop_back();
+    if (!seen.insert(name).second) continue;
+    if (name[0] == '@')
+      open.insert(open.end(), table[name].begin(), table[name].end());
+    else
+      calls.insert(name);
+  }
+  return calls;
+}
+
+std::set<std::uint32_t> numbersOf(const std::set<std::string>& calls) {
+  std::set<std::uint32_t> numbers;
+  std::istringstream lines(outputOf("echo '#include <sys/syscall.h>' | cc -E -dM - 2>/dev/null"));
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string define, name;
+    std::uint32_t number = 0;
+    if (!(words >> define >> name >> number) || !name.starts_with("__NR_")) continue;
+    if (calls.count(name.substr(5)) > 0) numbers.insert(number);
+  }
+  return numbers;
+}
+
+void install(const std::vector<sock_filter>& code) {
+  sock_fprog program{static_cast<unsigned short>(code.size()),
+                     const_cast<sock_filter*>(code.data())};
+  if (::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) != 0) fail("no seccomp filter");
+}
+
+constexpr std::uint16_t kLoad = BPF_LD | BPF_W | BPF_ABS;
+constexpr std::uint16_t kEqual = BPF_JMP | BPF_JEQ | BPF_K;
+constexpr std::uint16_t kReturn = BPF_RET | BPF_K;
+
+// As systemd's RestrictAddressFamilies=: a socket of another family fails with EAFNOSUPPORT.
+void restrictFamilies(const Words& names) {
+  if (names.empty()) return;
+  std::vector<sock_filter> code = {
+      BPF_STMT(kLoad, offsetof(seccomp_data, nr)), BPF_JUMP(kEqual, SYS_socket, 1, 0),
+      BPF_STMT(kReturn, SECCOMP_RET_ALLOW), BPF_STMT(kLoad, offsetof(seccomp_data, args))};
+  for (const std::string& name : names) {
+    code.push_back(BPF_JUMP(kEqual, familyOf(name), 0, 1));
+    code.push_back(BPF_STMT(kReturn, SECCOMP_RET_ALLOW));
+  }
+  code.push_back(BPF_STMT(kReturn, SECCOMP_RET_ERRNO | EAFNOSUPPORT));
+  install(code);
+}
+
+// As SystemCallFilter=: any other call ends the process.
+void restrictCalls(const Words& sets) {
+  const auto numbers = numbersOf(callsOf(sets));
+  if (numbers.size() < 100) {
+    std::fprintf(stderr, "under_unit: no table of system calls; they are not restricted\n");
+    return;
+  }
+  std::vector<sock_filter> code = {BPF_STMT(kLoad, offsetof(seccomp_data, nr))};
+  for (const std::uint32_t number : numbers) {
+    code.push_back(BPF_JUMP(kEqual, number, 0, 1));
+    code.push_back(BPF_STMT(kReturn, SECCOMP_RET_ALLOW));
+  }
+  code.push_back(BPF_STMT(kReturn, SECCOMP_RET_KILL_PROCESS));
+  install(code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  constexpr unsigned kNobody = 65534;
+  Words units;
+  int at = 1;
+  for (; at < argc && std::string(argv[at]) != "--"; ++at) units.emplace_back(argv[at]);
+  if (at + 1 >= argc || units.empty()) fail("usage: under_unit UNIT... -- PROGRAM ARGUMENT...");
+  const Words families = valuesOf(units, "RestrictAddressFamilies");
+  const Words sets = valuesOf(units, "SystemCallFilter");
+  for (const std::string& mask : valuesOf(units, "UMask"))
+    ::umask(static_cast<mode_t>(std::strtoul(mask.c_str(), nullptr, 8)));
+  if (::geteuid() == 0 &&
+      (::setgroups(0, nullptr) != 0 || ::setgid(kNobody) != 0 || ::setuid(kNobody) != 0)) {
+    fail("cannot become nobody");
+  }
+  // It outlives nobody: a change of user has cleared what the parent asked for.
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) fail("no PR_SET_NO_NEW_PRIVS");
+  restrictFamilies(families);
+  restrictCalls(sets);
+  ::execv(argv[at + 1], argv + at + 1);
+  fail(std::string(argv[at + 1]) + ": cannot be executed");
+}

@@ -1,0 +1,192 @@
+// One check: what merlind refuses to start with, --check-config refuses with the same words.
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+using nlohmann::json;
+
+// Lines of `output` that name a place in the file.
+std::string findingsOf(const std::string& output, const std::string& file) {
+  std::string found;
+  std::istringstream lines(output);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(file + ":") && line.find(": /") != std::string::npos) found += line + "\n";
+  }
+  return found;
+}
+
+class CheckConfig : public testing::Test {
+ protected:
+  // A configuration that starts, with `patch` merged into it.
+  std::string file(const json& patch) {
+    json config = {{"instance", privateName("check")},
+                   {"run_directory", dir_.path()},
+                   {"wall", {{"model", model_}}}};
+    config.merge_patch(patch);
+    writeText(dir_ / "c.json", config.dump(1));
+    return dir_ / "c.json";
+  }
+
+  void expectRefused(const json& patch, const std::string& pointer, const std::string& what,
+                     const std::string& role = "all") {
+    SCOPED_TRACE(patch.dump());
+    const std::string config = file(patch);
+    const Outcome checked = run({kMerlind, "--check-config", config, "--role", role});
+    const Outcome started = run({"timeout", "30", kMerlind, "--config", config, "--role", role});
+    EXPECT_EQ(checked.status, 2) << checked.output;
+    EXPECT_EQ(started.status, 2) << started.output;
+    const std::string findings = findingsOf(checked.output, config);
+    EXPECT_NE(findings.find(": " + pointer + " "), std::string::npos) << checked.output;
+    EXPECT_NE(findings.find(what), std::string::npos) << checked.output;
+    EXPECT_EQ(findings, findingsOf(started.output, config));
+  }
+
+  TempDir dir_;
+  std::string model_ = makeModel(dir_, 2);
+};
+
+TEST_F(CheckConfig, RefusesWallsThatCannotBeDrawn) {
+  EXPECT_EQ(run({kMerlind, "--check-config", file(json::object())}).status, 0);
+  const auto tiles = [](const json& settings) { return json{{"wall", {{"tiles", settings}}}}; };
+  const json far = {{"name", "far"}, {"kind", "wall"}, {"x", 9000}, {"y", 0}, {"turns", 0}};
+  expectRefused(tiles({{"tiles", json::array({far})}}), "/wall/tiles/tiles/0",
+                "tile far at 9000, 0 does not lie in the frame of 1280 x 960");
+  expectRefused(tiles({{"tiles", json::array()}}), "/wall/tiles/tiles",
+                "a wall has at least one tile");
+  expectRefused(tiles({{"near_m", 5}, {"far_m", 1}}), "/wall/tiles", "0 < near < far");
+  expectRefused({{"wall", {{"scene", {{"tracker_axes", {1, 2, -3}}}}}}}, "/wall/scene/tracker_axes",
+                "right-handed");
+  expectRefused({{"wall", {{"render", {{"show", "heat"}}}}}}, "/wall/render/show",
+                "no feature \"heat\" to show");
+}
+
+TEST_F(CheckConfig, RefusesModelsThatCannotBeRead) {
+  const auto model = [](const std::string& path) { return json{{"wall", {{"model", path}}}}; };
+  expectRefused(model(""), "/wall/model", "names no .mrm file");
+  expectRefused(model("none.mrm"), "/wall/model", "none.mrm: No such file");
+  expectRefused(model("."), "/wall/model", "is not a regular file");
+  ASSERT_EQ(::mkfifo((dir_ / "pipe").c_str(), 0600), 0);
+  expectRefused(model("pipe"), "/wall/model", "is not a regular file");  // and nobody waits for it
+  expectRefused({{"wall", {{"contents", json::array({{{"model", "c.json"}}})}}}},
+                "/wall/contents/0/model", "c.json: is ");
+}
+
+TEST_F(CheckConfig, RefusesFilesThatCannotBeWritten) {
+  writeText(dir_ / "file", "kept");
+  expectRefused({{"run_directory", "file"}}, "/run_directory", "file: Not a directory");
+  expectRefused({{"run_directory", std::string(100, 'x')}}, "/run_directory", "is too long");
+  expectRefused({{"wall", {{"png", {{"path", "none/wall.png"}}}}}}, "/wall/png/path",
+                "none/wall.png: No such file or directory");
+  expectRefused({{"wall", {{"png", {{"path", "."}}}}}}, "/wall/png/path", "Is a directory");
+  expectRefused({{"wall", {{"snapshots", "file/taken"}}}}, "/wall/snapshots", "Not a directory");
+  EXPECT_EQ(readText(dir_ / "file"), "kept");
+}
+
+TEST_F(CheckConfig, RefusesSocketsAndPortsThatCannotBeServed) {
+  writeText(dir_ / "file", "kept");
+  const auto serve = [](const json& settings) { return json{{"serve", settings}}; };
+  expectRefused(serve({{"spnav_socket", "file"}}), "/serve/spnav_socket",
+                "is not a socket and is not replaced");
+  EXPECT_EQ(readText(dir_ / "file"), "kept");
+  expectRefused(serve({{"spnav_socket", "none/s.sock"}}), "/serve/spnav_socket",
+                "none: No such file or directory");
+  expectRefused(serve({{"spnav_socket", std::string(200, 's')}}), "/serve/spnav_socket",
+                "a socket's name has 107 at most");
+  for (const char* endpoint : {"tcp://*:99999", "tcp://127.0.0.1:0", "tcp://256.1.1.1:7401"}) {
+    expectRefused(serve({{"samples_endpoint", endpoint},
+                         {"samples_keys", "keys"},
+                         {"samples_clients", "clients"}}),
+                  "/serve/samples_endpoint", "allowed is tcp://ADDRESS:PORT");
+  }
+  expectRefused(serve({{"samples_endpoint", "tcp://nohost:7401"},
+                       {"samples_keys", "keys"},
+                       {"samples_clients", "clients"}}),
+                "/serve/samples_keys", "keys: No such file or directory");
+  expectRefused(serve({{"samples_endpoint", "tcp://nohost:7401"},
+                       {"samples_keys", "keys"},
+                       {"samples_clients", "clients"}}),
+                "/serve/samples_endpoint", "nohost is neither *, nor an address");
+}
+
+TEST_F(CheckConfig, RefusesPortsThatCannotBePlayed) {
+  writeText(dir_ / "bad.bytes", "no transcript\n");
+  const auto ball = [](const std::string& port) {
+    return json{{"devices", {{"ball", {{"port", port}}}}}};
+  };
+  expectRefused(ball("replay:" + dir_ / "bad.bytes"), "/devices/ball/port", "bad.bytes: line 1");
+  expectRefused(ball("replay:" + dir_ / "none"), "/devices/ball/port", "No such file");
+  expectRefused(ball("tcp://256.1.1.1:99999"), "/devices/ball/port", "allowed are serial:");
+}
+
+TEST_F(CheckConfig, LooksAtWhatTheRoleNeeds) {
+  const std::string config = file({{"wall", {{"model", "none.mrm"}}}});
+  EXPECT_EQ(run({kMerlind, "--check-config", config, "--role", "devices"}).status, 0);
+  EXPECT_EQ(run({kMerlind, "--check-config", config, "--role", "wall"}).status, 2);
+  const std::string replay = file({{"devices", {{"ball", {{"port", "replay:none"}}}}}});
+  EXPECT_EQ(run({kMerlind, "--check-config", replay, "--role", "wall"}).status, 0);
+}
+
+// A network that lacks a posture of the default bindings; the file itself binds none.
+TEST_F(CheckConfig, ADefaultBindingIsNobodysMistake) {
+  std::string network = readText(kSource + "/config/postures.json");
+  for (std::size_t at = 0; (at = network.find("\"fist\"", at)) != std::string::npos;)
+    network.replace(at, 6, "\"ball\"");
+  writeText(dir_ / "own.json", network);
+  const json devices = {{"devices", {{"postures", "own.json"}}}};
+  for (const char* role : {"devices", "all"}) {
+    const Outcome checked = run({kMerlind, "--check-config", file(devices), "--role", role});
+    EXPECT_EQ(checked.status, 0) << role << ": " << checked.output;
+  }
+  json bound = devices;
+  bound["wall"]["scene"]["bindings"] =
+      json::array({{{"input", "posture.fist"}, {"action", "grab"}}});
+  expectRefused(bound, "/wall/scene/bindings/0/input", "is no posture of");
+}
+
+TEST_F(CheckConfig, AnEmptyNameIsBadUsageAndStartsNothing) {
+  for (const char* option : {"--check-config", "--config"}) {
+    const Outcome refused = run({kMerlind, option, ""});
+    EXPECT_EQ(refused.status, 2) << option;
+    EXPECT_NE(refused.output.find("names no file"), std::string::npos) << refused.output;
+  }
+}
+
+// Out of memory, as any check that does not come to its end, is not "adjusted".
+TEST_F(CheckConfig, ACheckThatDoesNotEndIsNotValid) {
+  std::string bindings;
+  for (int i = 0; i < 340'000; ++i) bindings += i == 0 ? "{}" : ",{}";
+  writeText(dir_ / "c.json", "{\"wall\": {\"scene\": {\"bindings\": [" + bindings + "]}}}");
+  const std::string check = kMerlind + " --check-config " + dir_ / "c.json";
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  const Outcome starved = run({"/bin/bash", "-c", "ulimit -v 150000; exec " + check});
+  EXPECT_EQ(starved.status, 2) << starved.output;
+#endif
+  const Outcome whole = run({"/bin/bash", "-c", check});
+  EXPECT_EQ(whole.status, 2);
+  EXPECT_NE(whole.output.find("more findings"), std::string::npos);
+  EXPECT_LT(whole.output.size(), 100'000u);
+}
+
+TEST_F(CheckConfig, FindingsAreLinesThatNoTerminalFollows) {
+  writeText(dir_ / "c.json", R"({"\u001b[2Jx": 1, "y\nc.json:9: /forged": 2,
+    "instance": "a\u001bb\nc"})");
+  const Outcome checked = run({kMerlind, "--check-config", dir_ / "c.json"});
+  EXPECT_EQ(checked.status, 2);
+  EXPECT_EQ(checked.output.find('\033'), std::string::npos) << checked.output;
+  EXPECT_EQ(checked.output.find("\nc.json"), std::string::npos) << checked.output;
+  EXPECT_NE(checked.output.find("\\x1b[2Jx"), std::string::npos) << checked.output;
+  const Outcome named = run({kMerlind, "--check-config", dir_ / "no\033[31m\nfile"});
+  EXPECT_EQ(named.output.find('\033'), std::string::npos);
+  EXPECT_NE(named.output.find("no\\x1b[31m\\x0afile: No such file"), std::string::npos)
+      << named.output;
+}
+
+}  // namespace
+}  // namespace merlin::test

@@ -1,0 +1,200 @@
+// What `cmake --install` leaves is a service: the installed programs, configuration and unit, run
+// under what the unit forbids, without systemd.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <nlohmann/json.hpp>
+#include <sys/socket.h>
+#include <sys/stat.h>
+
+#include "daemon/base/unique_fd.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr unsigned kNobody = 65534;  // who under_unit makes of root
+
+int freePort() {
+  const UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  auto* const raw = reinterpret_cast<sockaddr*>(&address);
+  if (::bind(fd.get(), raw, sizeof address) != 0 || ::getsockname(fd.get(), raw, &size) != 0)
+    return 0;
+  return ntohs(address.sin_port);
+}
+
+bool connects(int port) {
+  const UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  return ::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+}
+
+class Install : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(::chmod(dir_.path().c_str(), 0755), 0);
+    const Outcome done = install();
+    ASSERT_EQ(done.status, 0) << done.output;
+  }
+
+  Outcome install() {
+    return run({"env", "DESTDIR=" + root_, "cmake", "--install", MERLIN_BINARY_DIR, "--prefix",
+                "/usr", "--component", "merlin"});
+  }
+
+  // A service's own folder, that its user can write.
+  std::string runDirectory() {
+    const std::string path = dir_ / "run";
+    fs::create_directories(path);
+    if (::geteuid() == 0) {
+      EXPECT_EQ(::chown(path.c_str(), kNobody, kNobody), 0);
+    }
+    return path;
+  }
+
+  // The installed configuration, with a model, this test's names, and `patch`.
+  std::string configuration(const json& patch) {
+    const std::string model = makeModel(dir_, 5);
+    json config = json::parse(readText(root_ + "/etc/merlin/merlin.json"));
+    config.merge_patch({{"instance", instance_},
+                        {"run_directory", runDirectory()},
+                        {"wall", {{"model", model}, {"rate", {{"rate_hz", 10}}}}}});
+    config.merge_patch(patch);
+    const std::string path = root_ + "/etc/merlin/test.json";
+    writeText(path, config.dump());
+    EXPECT_EQ(::chmod(path.c_str(), 0644), 0);
+    return path;
+  }
+
+  std::vector<std::string> underUnit(std::vector<std::string> program,
+                                     const std::vector<std::string>& drop_ins = {}) {
+    std::vector<std::string> arguments = {MERLIN_BIN_DIR "/under_unit",
+                                          root_ + "/usr/lib/systemd/system/merlind.service"};
+    for (const std::string& name : drop_ins)
+      arguments.push_back(root_ + "/usr/share/merlin/merlind.service.d/" + name);
+    arguments.emplace_back("--");
+    arguments.insert(arguments.end(), program.begin(), program.end());
+    return arguments;
+  }
+
+  Outcome merlin(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), root_ + "/usr/bin/merlin");
+    arguments.insert(arguments.end(), {"--instance", instance_});
+    return run(arguments);
+  }
+
+  TempDir dir_;
+  std::string root_ = dir_ / "root";
+  std::string merlind_ = root_ + "/usr/bin/merlind";
+  std::string instance_ = privateName("installed");
+};
+
+TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
+  for (const char* path :
+       {"/usr/bin/merlind", "/usr/bin/merlin", "/usr/lib/systemd/system/merlind.service",
+        "/usr/lib/sysusers.d/merlin.conf", "/usr/share/merlin/merlind.service.d/network.conf",
+        "/usr/share/merlin/merlind.service.d/gpio.conf",
+        "/usr/share/merlin/merlind.service.d/gpu.conf",
+        "/usr/share/merlin/merlind.service.d/files.conf", "/usr/share/merlin/spnav.tmpfiles.conf",
+        "/usr/share/doc/merlin/LICENSE", "/usr/share/doc/merlin/systemd.md",
+        "/etc/merlin/merlin.json", "/etc/merlin/postures.json", "/etc/merlin/merlin.schema.json"}) {
+    EXPECT_TRUE(fs::is_regular_file(root_ + path)) << path;
+  }
+  // The unit starts what was installed, with what was installed.
+  const std::string unit = readText(root_ + "/usr/lib/systemd/system/merlind.service");
+  EXPECT_NE(unit.find("ExecStart=/usr/bin/merlind --config /etc/merlin/merlin.json"),
+            std::string::npos);
+  writeText(root_ + "/etc/merlin/merlin.json", "{\"instance\": \"mine\"}");
+  ASSERT_EQ(install().status, 0);
+  EXPECT_EQ(readText(root_ + "/etc/merlin/merlin.json"), "{\"instance\": \"mine\"}");
+}
+
+// Of the shipped configuration nothing is wrong but what only the lab can give: its model.
+TEST_F(Install, TheInstalledConfigurationLacksAModelOnly) {
+  const Outcome checked = run({merlind_, "--check-config", root_ + "/etc/merlin/merlin.json"});
+  EXPECT_NE(checked.output.find("/wall/model cannot be used: /var/lib/merlin/model.mrm"),
+            std::string::npos)
+      << checked.output;
+  EXPECT_NE(checked.output.find("invalid, 1 findings"), std::string::npos) << checked.output;
+  const std::string config = configuration(json::object());
+  const Outcome whole = run({merlind_, "--check-config", config});
+  EXPECT_EQ(whole.status, 0) << whole.output;
+}
+
+TEST_F(Install, TheInstalledDaemonRunsUnderItsUnit) {
+  Process merlind(underUnit({merlind_, "--config", configuration(json::object())}));
+  ASSERT_TRUE(merlind.saysEventually("ready")) << merlind.output();
+  const Outcome status = merlin({"status", "--json"});
+  ASSERT_EQ(status.status, 0) << status.output;
+  EXPECT_GT(json::parse(status.output)["rate_asked"], 0);
+  const Outcome snapshot = merlin({"snapshot", "-o", dir_ / "frame.png"});
+  EXPECT_EQ(snapshot.status, 0) << snapshot.output;
+  EXPECT_TRUE(fs::is_regular_file(dir_ / "frame.png"));
+  EXPECT_EQ(merlind.kill(SIGTERM), 0) << merlind.output();
+}
+
+class InstalledServers : public Install {
+ protected:
+  void SetUp() override {
+    Install::SetUp();
+    ASSERT_EQ(run({kMerlin, "keys", "-o", dir_ / "keys"}).status, 0);
+    // The daemon's user owns them; nobody else may read them.
+    if (::geteuid() == 0) {
+      ASSERT_EQ(::chown((dir_ / "keys").c_str(), kNobody, kNobody), 0);
+    }
+    writeText(dir_ / "clients", "");
+    vrpn_ = freePort();
+    samples_ = freePort();
+    config_ = configuration({{"serve",
+                              {{"vrpn_port", vrpn_},
+                               {"samples_endpoint", "tcp://127.0.0.1:" + std::to_string(samples_)},
+                               {"samples_keys", dir_ / "keys"},
+                               {"samples_clients", dir_ / "clients"}}}});
+  }
+
+  int vrpn_ = 0, samples_ = 0;
+  std::string config_;
+};
+
+TEST_F(InstalledServers, AreSaidToBeForbiddenAndTheWallRuns) {
+  Process merlind(underUnit({merlind_, "--config", config_}));
+  ASSERT_TRUE(merlind.saysEventually("ready")) << merlind.output();
+  for (const char* what : {"VRPN: failed (/serve/vrpn_port: network sockets are forbidden",
+                           "samples for other machines: failed (/serve/samples_endpoint: network "
+                           "sockets are forbidden",
+                           "drop-in network.conf"}) {
+    EXPECT_TRUE(merlind.saysEventually(what)) << merlind.output();
+  }
+  const Outcome status = merlin({"status", "--json"});
+  ASSERT_EQ(status.status, 0) << status.output;
+  const json servers = json::parse(status.output)["servers"];
+  EXPECT_EQ(servers["VRPN"]["state"], "failed") << status.output;
+  EXPECT_EQ(servers["samples for other machines"]["state"], "failed") << status.output;
+  EXPECT_EQ(merlind.kill(SIGTERM), 0);
+}
+
+TEST_F(InstalledServers, AreServedWithTheDropIn) {
+  Process merlind(underUnit({merlind_, "--config", config_}, {"network.conf"}));
+  ASSERT_TRUE(merlind.saysEventually("ready")) << merlind.output();
+  EXPECT_TRUE(connects(vrpn_)) << merlind.output();
+  EXPECT_TRUE(connects(samples_)) << merlind.output();
+  EXPECT_EQ(merlind.output().find("failed (/serve"), std::string::npos) << merlind.output();
+  EXPECT_EQ(merlind.kill(SIGTERM), 0);
+}
+
+}  // namespace
+}  // namespace merlin::test

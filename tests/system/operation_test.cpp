@@ -1,0 +1,54 @@
+// What happens to a daemon that runs for months: signals, disks that come and go, odd names.
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+using nlohmann::json;
+
+TEST(Operation, SignalsThatAskForNothingEndNothing) {
+  const TempDir dir;
+  Merlind m(dir, "", "signals", {.role = "devices"});
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  for (const int signal : {SIGUSR1, SIGUSR2, SIGALRM, SIGHUP})
+    ASSERT_EQ(::kill(m.process().pid(), signal), 0);
+  EXPECT_TRUE(m.process().saysEventually("SIGHUP is ignored")) << m.process().output();
+  EXPECT_FALSE(m.process().ended()) << m.process().output();
+  EXPECT_TRUE(m.status()["devices"].contains("ball")) << m.status();
+  EXPECT_EQ(m.process().kill(SIGTERM), 0);
+}
+
+TEST(Operation, APictureThatCannotBeWrittenIsSaidAndSoIsItsReturn) {
+  const TempDir dir;
+  const std::string folder = dir / "pictures", away = dir / "away";
+  std::filesystem::create_directory(folder);
+  Merlind m(dir, makeModel(dir, 2), "png",
+            {.also = {{"wall", {{"png", {{"path", folder + "/w.png"}, {"interval_s", 1}}}}}}});
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  std::filesystem::rename(folder, away);
+  EXPECT_TRUE(m.process().saysEventually("picture: failed (/wall/png/path: " + folder +
+                                         "/w.png: No such file or directory)"))
+      << m.process().output();
+  EXPECT_EQ(m.status()["services"]["picture"]["health"], "failed");
+  std::filesystem::rename(away, folder);
+  EXPECT_TRUE(m.process().saysEventually("picture: works again")) << m.process().output();
+  EXPECT_EQ(m.process().kill(SIGTERM), 0);
+}
+
+TEST(Operation, ARunDirectoryMayHaveAnyName) {
+  const TempDir dir;
+  Merlind m(dir, "", "quoted", {.role = "devices", .also = {{"run_directory", dir / "a\"b"}}});
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  const Outcome flight = run({kMerlin, "flight", "--instance", m.instance()});
+  EXPECT_EQ(flight.status, 0) << flight.output;
+  EXPECT_NE(flight.output.find("a\"b/flight/"), std::string::npos) << flight.output;
+}
+
+}  // namespace
+}  // namespace merlin::test
