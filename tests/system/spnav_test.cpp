@@ -124,7 +124,7 @@ TEST(SpnavProtocol, TheDeviceIsTheOneThatIsThere) {
   EXPECT_EQ(d.path, "/dev/ttyS0");
   EXPECT_EQ(d.type, 0x100);
   EXPECT_EQ(d.buttons, 9);
-  EXPECT_EQ(spnavDevice("Spaceball 4000 FLX, firmware 2.45", "pty:/x").type, 0x102);
+  EXPECT_EQ(spnavDevice("Spaceball 4000 FLX", "pty:/x").type, 0x102);
   EXPECT_EQ(spnavDevice("", "").name, "MERLIN ball");
   EXPECT_EQ(spnavDevice("Spaceball 2003", "tcp://ball:4001").path, "") << "is no path";
 }
@@ -368,12 +368,9 @@ TEST_F(Served, LibspnavSeesTheBall) {
     return test::eventually([&] { return ::spnav_poll_event(&event) == type; });
   };
   ASSERT_TRUE(next(SPNAV_EVENT_MOTION));
-  EXPECT_EQ(event.motion.x, 256);
-  EXPECT_EQ(event.motion.y, -512);
-  EXPECT_EQ(event.motion.z, 1000);
-  EXPECT_EQ(event.motion.rx, -1);
-  EXPECT_EQ(event.motion.ry, 39);
-  EXPECT_EQ(event.motion.rz, -10);
+  const auto& m = event.motion;
+  EXPECT_EQ((std::array{m.x, m.y, m.z, m.rx, m.ry, m.rz}),
+            (std::array{256, -512, 1000, -1, 39, -10}));
   EXPECT_EQ(event.motion.period, 50u);
 
   segment->ball.publish(pushed({}, 0x100));
