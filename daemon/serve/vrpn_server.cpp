@@ -35,7 +35,7 @@ net::ServerLimits limits() {
   net::ServerLimits l;
   l.places = {.all = 16, .per_peer = 12};  // all clients are of one address
   l.input_bytes = kVrpnLongest;
-  l.output_bytes = 1 << 20;
+  l.output_bytes = 1 << 18;  // a second of all devices, beside what the socket holds
   l.messages_per_s = l.messages_burst = 500;
   return l;
 }

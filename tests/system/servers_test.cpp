@@ -1,6 +1,7 @@
 // Servers for other programs in a real merlind: what keeps one from starting does not keep the wall
 // from running, and no client of theirs takes its memory, or its end, away.
 #include <chrono>
+#include <sstream>
 #include <thread>
 
 #include <arpa/inet.h>
@@ -77,6 +78,34 @@ TEST(Servers, OneWhosePortIsTakenIsToldAndServesOnceItIsFree) {
     return stateOf(merlind, "VRPN") == "ok" && stateOf(merlind, "space mouse") == "ok";
   })) << merlind.process().output();
   EXPECT_EQ(merlind.process().kill(SIGTERM), 0);
+}
+
+// libspnav's own example, as Debian ships it: it gives its name, asks, and prints what it hears.
+TEST(Servers, TheExampleOfLibspnavSeesTheEmulatedBallTurn) {
+  const std::string source = "/usr/share/doc/libspnav-dev/examples/simple/simple.c";
+  if (!std::filesystem::exists(source)) GTEST_SKIP() << source << " is not installed";
+  const TempDir dir;
+  const Outcome built =
+      run({"cc", "-DBUILD_AF_UNIX", source, "-lspnav", "-lm", "-o", dir / "simple"});
+  ASSERT_EQ(built.status, 0) << built.output;
+  MerlindOptions options = devicesThatServe({{"spnav_socket", dir / "spnav.sock"}});
+  options.script = "turning";
+  Merlind merlind(dir, "", "libspnav", options);
+  ASSERT_TRUE(merlind.healthIs(shm::kBall, HealthState::kOk)) << merlind.process().output();
+  Process simple({"stdbuf", "-oL", dir / "simple"}, {{"SPNAV_SOCKET", dir / "spnav.sock"}});
+  ASSERT_TRUE(simple.saysEventually("protocol version: 1")) << simple.output();
+  ASSERT_TRUE(simple.saysEventually("Device: Spaceball")) << simple.output();
+  ASSERT_TRUE(simple.saysEventually("motion event: t(")) << simple.output();
+  // The ball turns about one axis: from the first event on, not all is 0.
+  EXPECT_TRUE(eventually([&] {
+    std::istringstream lines(simple.output());
+    for (std::string line; std::getline(lines, line);) {
+      if (line.find("motion event") != std::string::npos &&
+          line.find("t(0, 0, 0) r(0, 0, 0)") == std::string::npos && line.back() == ')')
+        return true;
+    }
+    return false;
+  })) << simple.output();
 }
 
 // Sends for three seconds what `bytes` holds, again and again; at most 40 MB.

@@ -124,7 +124,7 @@ TEST(SpnavProtocol, TheDeviceIsTheOneThatIsThere) {
   EXPECT_EQ(d.path, "/dev/ttyS0");
   EXPECT_EQ(d.type, 0x100);
   EXPECT_EQ(d.buttons, 9);
-  EXPECT_EQ(spnavDevice("Spaceball 4000 FLX, firmware 2.45", "pty:/x").type, 0x102);
+  EXPECT_EQ(spnavDevice("Spaceball 4000 FLX", "pty:/x").type, 0x102);
   EXPECT_EQ(spnavDevice("", "").name, "MERLIN ball");
   EXPECT_EQ(spnavDevice("Spaceball 2003", "tcp://ball:4001").path, "") << "is no path";
 }
@@ -155,13 +155,11 @@ TEST(SpnavProtocol, ARestIsToldOnceAndASlowClientLosesNoButton) {
 
 TEST(SpnavProtocol, RandomBytesAreSurvived) {
   SpnavClient client({});
-  std::string out;
-  std::string input;
+  std::string input, out;
   std::uint64_t state = 1;
   for (int i = 0; i < 200'000; ++i) {
     state = state * 6364136223846793005U + 1442695040888963407U;
-    const std::byte b = static_cast<std::byte>(state >> 56);
-    input.push_back(static_cast<char>(b));
+    input.push_back(static_cast<char>(state >> 56));
     input.erase(0, client.receive(input, 100, out).bytes);
     out.clear();
   }
@@ -281,7 +279,14 @@ TEST_F(Served, AClientThatReadsLateHearsThatTheBallRests) {
     return same == 50;
   }));
   segment->ball.publish(pushed({}));
-  Event event{};
+  const UniqueFd other = connectedTo(path);  // two of its rounds say that the sample was seen
+  for (int i = 0; i < 2; ++i) {
+    const std::string question = bytesOf("0055AA7F");
+    std::int32_t echo = 0;
+    ASSERT_EQ(::send(other.get(), question.data(), question.size(), 0), 4);
+    ASSERT_EQ(::recv(other.get(), &echo, sizeof echo, MSG_WAITALL), 4);
+  }
+  Event event = nextEvent(fd);
   const auto rests = [&] { return event[0] == 0 && event[1] == 0 && event[6] == 0; };
   for (int i = 0; i < 100'000 && !rests() && event[0] != -1; ++i) event = nextEvent(fd);
   EXPECT_TRUE(rests()) << event[0];
@@ -363,12 +368,9 @@ TEST_F(Served, LibspnavSeesTheBall) {
     return test::eventually([&] { return ::spnav_poll_event(&event) == type; });
   };
   ASSERT_TRUE(next(SPNAV_EVENT_MOTION));
-  EXPECT_EQ(event.motion.x, 256);
-  EXPECT_EQ(event.motion.y, -512);
-  EXPECT_EQ(event.motion.z, 1000);
-  EXPECT_EQ(event.motion.rx, -1);
-  EXPECT_EQ(event.motion.ry, 39);
-  EXPECT_EQ(event.motion.rz, -10);
+  const auto& m = event.motion;
+  EXPECT_EQ((std::array{m.x, m.y, m.z, m.rx, m.ry, m.rz}),
+            (std::array{256, -512, 1000, -1, 39, -10}));
   EXPECT_EQ(event.motion.period, 50u);
 
   segment->ball.publish(pushed({}, 0x100));
