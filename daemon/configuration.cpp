@@ -5,7 +5,6 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
-#include <net/if.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 
@@ -30,7 +29,7 @@ void checkRunDirectory(LoadedSettings& loaded) {
   if (path.empty()) return;
   // The longest name of a socket in it.
   const std::size_t longest = path.size() + 1 + loaded.settings.instance.size() +
-                              std::string_view("-devices.command").size();
+                              std::string_view("-devices.status.samples.inner").size();
   if (longest > kMostSocketName) {
     return loaded.wrong("/run_directory",
                         fmt::format("is too long: the names of sockets in it would have {} bytes; "
@@ -59,22 +58,15 @@ void checkSpnavSocket(LoadedSettings& loaded) {
   take(checkWritableFolder(folder.empty() ? "." : folder), kPointer, loaded);
 }
 
-// What a socket can be bound to: any address, one of this machine's, a network interface.
+// What a socket can be bound to: any address, or one of this machine's.
 void checkBindable(const std::string& endpoint, LoadedSettings& loaded) {
   constexpr std::string_view kTcp = "tcp://";
   if (!endpoint.starts_with(kTcp)) return;  // a finding already
-  std::string host = endpoint.substr(kTcp.size(), endpoint.rfind(':') - kTcp.size());
-  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
-  in6_addr address{};
-  const bool good = host == "*" || ::inet_pton(AF_INET, host.c_str(), &address) == 1 ||
-                    ::inet_pton(AF_INET6, host.c_str(), &address) == 1 ||
-                    ::if_nametoindex(host.c_str()) != 0;
-  if (!good) {
-    loaded.wrong("/serve/samples_endpoint",
-                 fmt::format("{}{} is neither *, nor an address, nor a network interface of this "
-                             "machine",
-                             kCannot, host));
-  }
+  const std::string host = endpoint.substr(kTcp.size(), endpoint.rfind(':') - kTcp.size());
+  in_addr address{};
+  if (host == "*" || ::inet_pton(AF_INET, host.c_str(), &address) == 1) return;
+  loaded.wrong("/serve/samples_endpoint",
+               fmt::format("{}{} is neither * nor an IPv4 address of this machine", kCannot, host));
 }
 
 void checkSamples(LoadedSettings& loaded) {

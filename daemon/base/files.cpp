@@ -65,16 +65,53 @@ Result<Ok> checkReplaceable(const std::string& path) {
 
 }  // namespace
 
-Result<MappedFile> MappedFile::open(const std::string& path) {
-  const UniqueFd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // a pipe would wait
+namespace {
+
+struct OpenFile {
+  UniqueFd fd;
+  std::size_t size = 0;
+};
+
+Result<OpenFile> openRegular(const std::string& path) {
+  OpenFile file{UniqueFd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)),
+                0};  // a pipe would wait
   struct stat status {};
-  if (!fd.valid() || ::fstat(fd.get(), &status) != 0) return fileError(path, errno);
+  if (!file.fd.valid() || ::fstat(file.fd.get(), &status) != 0) return fileError(path, errno);
   if (!S_ISREG(status.st_mode)) return Error{Errc::kMalformed, path + ": is not a regular file"};
-  const auto size = static_cast<std::size_t>(status.st_size);
-  if (size == 0) return MappedFile();
-  void* data = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd.get(), 0);
+  file.size = static_cast<std::size_t>(status.st_size);
+  return file;
+}
+
+}  // namespace
+
+Result<MappedFile> MappedFile::open(const std::string& path) {
+  const auto file = openRegular(path);
+  if (!file) return file.error();
+  if (file->size == 0) return MappedFile();
+  void* data = ::mmap(nullptr, file->size, PROT_READ, MAP_PRIVATE, file->fd.get(), 0);
   if (data == MAP_FAILED) return fileError(path, errno);
-  return MappedFile(static_cast<const std::byte*>(data), size);
+  return MappedFile(static_cast<const std::byte*>(data), file->size);
+}
+
+Result<FileCopy> FileCopy::read(const std::string& path) {
+  const auto file = openRegular(path);
+  if (!file) return file.error();
+  FileCopy copy;
+  if (file->size == 0) return copy;
+  try {
+    copy.bytes_ = HugeArray<std::byte>(file->size);
+  } catch (const std::bad_alloc&) {
+    return Error{Errc::kIo, fmt::format("{}: no memory for its {} bytes", path, file->size)};
+  }
+  while (copy.size_ < file->size) {
+    const ssize_t n =
+        ::read(file->fd.get(), copy.bytes_.data() + copy.size_, file->size - copy.size_);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return fileError(path, errno);
+    if (n == 0) return Error{Errc::kIo, path + ": got shorter while it was read"};
+    copy.size_ += static_cast<std::size_t>(n);
+  }
+  return copy;
 }
 
 MappedFile::MappedFile(MappedFile&& other) noexcept

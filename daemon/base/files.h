@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "daemon/base/huge_array.h"
 #include "daemon/base/result.h"
 
 namespace merlin {
@@ -33,6 +34,22 @@ class MappedFile {
   MappedFile(const std::byte* data, std::size_t size) : data_(data), size_(size) {}
 
   const std::byte* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+// A whole file as bytes in memory of our own: what others do to the file afterwards changes
+// nothing. Reentrant.
+class FileCopy {
+ public:
+  // Errors: as MappedFile::open(); kIo also where the file gets shorter while it is read, or there
+  // is not enough memory for it.
+  static Result<FileCopy> read(const std::string& path);
+
+  FileCopy() = default;
+  std::span<const std::byte> bytes() const noexcept { return {bytes_.data(), size_}; }
+
+ private:
+  HugeArray<std::byte> bytes_;
   std::size_t size_ = 0;
 };
 

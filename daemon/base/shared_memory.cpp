@@ -5,37 +5,37 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <grp.h>
+#include <pwd.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 
 namespace merlin {
 namespace {
 
-constexpr mode_t kMode = 0644;  // the umask of the service may narrow it
+constexpr mode_t kMode = 0644;      // the umask of the service may narrow it
+constexpr mode_t kLockMode = 0600;  // nobody else can hold it
 
 Error shmError(const std::string& name, const char* step, int error) {
   return {error == ENOENT ? Errc::kNotFound : Errc::kIo,
           fmt::format("shared memory {}: {}: {}", name, step, std::strerror(error))};
 }
 
-// An open-file-description lock: asking about it (isLocked) does not take it, so that a reader can
-// never be in an owner's way.
-struct flock wholeFile(short type) {
+std::string lockName(const std::string& name) { return name + ".lock"; }
+
+// An open-file-description lock for writing: it takes a descriptor that may write.
+struct flock wholeFile() {
   struct flock lock {};
-  lock.l_type = type;
+  lock.l_type = F_WRLCK;
   lock.l_whence = SEEK_SET;
   return lock;
 }
-bool lock(int fd) {
-  struct flock exclusive = wholeFile(F_WRLCK);
+bool takeLock(int fd) {
+  struct flock exclusive = wholeFile();
   return ::fcntl(fd, F_OFD_SETLK, &exclusive) == 0;
 }
-bool isLocked(int fd) {
-  struct flock probe = wholeFile(F_RDLCK);
-  return ::fcntl(fd, F_OFD_GETLK, &probe) == 0 && probe.l_type != F_UNLCK;
-}
 
-// Whether `fd` is still what the name stands for: a stale object may be replaced under our feet.
+// Whether `fd` is still what the name stands for: its owner may just have removed it.
 bool isCurrent(int fd, const std::string& name) {
   const UniqueFd again(::shm_open(name.c_str(), O_RDONLY | O_CLOEXEC, 0));
   struct stat mine {
@@ -44,69 +44,121 @@ bool isCurrent(int fd, const std::string& name) {
          mine.st_ino == named.st_ino;
 }
 
-// A fresh object under the name, locked; what is found there unlocked is left over and goes.
+std::string userName(uid_t user) {
+  passwd entry{};
+  passwd* found = nullptr;
+  char buffer[1024];
+  ::getpwuid_r(user, &entry, buffer, sizeof buffer, &found);
+  return found ? found->pw_name : fmt::format("number {}", user);
+}
+
+// Removes an object that is in the way. Only root may remove another user's.
+Result<Ok> removeObject(const std::string& name) {
+  if (::shm_unlink(name.c_str()) == 0 || errno == ENOENT) return Ok{};
+  const int error = errno;
+  struct stat status {};
+  const std::string path = "/dev/shm" + name;
+  if (::lstat(path.c_str(), &status) == 0 && status.st_uid != ::geteuid()) {
+    return Error{Errc::kIo,
+                 fmt::format("{} belongs to user {}, who may not be a merlind's; remove it "
+                             "as root, or set another \"instance\"",
+                             path, userName(status.st_uid))};
+  }
+  return shmError(name, "remove", error);
+}
+
+// The lock of the name, taken.
 Result<UniqueFd> claim(const std::string& name) {
+  const std::string lock = lockName(name);
   for (int attempt = 0; attempt < 100; ++attempt) {
-    UniqueFd fd(::shm_open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode));
-    if (fd.valid()) {
-      if (lock(fd.get()) && isCurrent(fd.get(), name)) return fd;
-      continue;  // somebody took it for left over before we had locked it
+    UniqueFd fd(::shm_open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kLockMode));
+    struct stat status {};
+    const bool ours = fd.valid() && ::fstat(fd.get(), &status) == 0 && status.st_uid == ::geteuid();
+    if (!ours) {
+      if (const auto removed = removeObject(lock); !removed) return removed.error();
+      continue;
     }
-    if (errno != EEXIST) return shmError(name, "open", errno);
-    const UniqueFd found(::shm_open(name.c_str(), O_RDWR | O_CLOEXEC, kMode));
-    if (!found.valid() && errno == ENOENT) continue;
-    if (!found.valid()) return shmError(name, "open", errno);
-    if (!lock(found.get())) {
+    if (!takeLock(fd.get()))
       return Error{Errc::kBusy, fmt::format("shared memory {}: another merlind owns it", name)};
-    }
-    if (isCurrent(found.get(), name)) ::shm_unlink(name.c_str());
+    if (isCurrent(fd.get(), lock)) return fd;
   }
   return Error{Errc::kBusy, fmt::format("shared memory {}: others keep taking it", name)};
+}
+
+// A fresh object under a name that is ours.
+Result<UniqueFd> makeObject(const std::string& name) {
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    UniqueFd fd(::shm_open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode));
+    if (fd.valid()) return fd;
+    if (errno != EEXIST) return shmError(name, "open", errno);
+    if (const auto removed = removeObject(name); !removed) return removed.error();
+  }
+  return Error{Errc::kBusy, fmt::format("shared memory {}: others keep taking it", name)};
+}
+
+Error notReadable(const std::string& name) {
+  struct stat status {};
+  group entry{};
+  group* found = nullptr;
+  char buffer[4096];
+  if (::lstat(("/dev/shm" + name).c_str(), &status) == 0)
+    ::getgrgid_r(status.st_gid, &entry, buffer, sizeof buffer, &found);
+  return {Errc::kIo,
+          fmt::format("shared memory {}: Permission denied; who is of the group {} may read it "
+                      "(usermod -aG GROUP USER, then log in again)",
+                      name, found ? found->gr_name : "that owns it")};
 }
 
 }  // namespace
 
 Result<SharedMemory> SharedMemory::create(const std::string& name, std::size_t size) {
-  auto fd = claim(name);
+  auto lock = claim(name);
+  if (!lock) return lock.error();
+  auto fd = makeObject(name);
   if (!fd) return fd.error();
+  const auto undo = [&](const Error& error) {
+    ::shm_unlink(name.c_str());
+    ::shm_unlink(lockName(name).c_str());
+    return error;
+  };
   // Not ftruncate: on tmpfs that succeeds beyond its size, and a write faults later.
-  if (const int error = ::posix_fallocate(fd->get(), 0, static_cast<off_t>(size)); error != 0) {
-    ::shm_unlink(name.c_str());
-    return shmError(name, fmt::format("{} bytes", size).c_str(), error);
-  }
+  if (const int error = ::posix_fallocate(fd->get(), 0, static_cast<off_t>(size)); error != 0)
+    return undo(shmError(name, fmt::format("{} bytes", size).c_str(), error));
   void* data = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd->get(), 0);
-  if (data == MAP_FAILED) {
-    const int error = errno;
-    ::shm_unlink(name.c_str());
-    return shmError(name, "map", error);
-  }
-  return SharedMemory(*std::move(fd), static_cast<std::byte*>(data), size, name);
+  if (data == MAP_FAILED) return undo(shmError(name, "map", errno));
+  return SharedMemory(*std::move(lock), static_cast<std::byte*>(data), size, name);
 }
 
-Result<SharedMemory> SharedMemory::open(const std::string& name) {
-  UniqueFd fd(::shm_open(name.c_str(), O_RDONLY | O_CLOEXEC, 0));
+Result<SharedMemory> SharedMemory::open(const std::string& name, From from) {
+  const UniqueFd fd(::shm_open(name.c_str(), O_RDONLY | O_CLOEXEC, 0));
   struct stat status {};
+  if (!fd.valid() && errno == EACCES) return notReadable(name);
   if (!fd.valid() || ::fstat(fd.get(), &status) != 0) return shmError(name, "open", errno);
+  if (from == From::kOwnUserOrRoot && status.st_uid != ::geteuid() && status.st_uid != 0) {
+    return Error{Errc::kIo, fmt::format("shared memory {}: belongs to user {} and is not taken",
+                                        name, userName(status.st_uid))};
+  }
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size == 0) return Error{Errc::kMalformed, fmt::format("shared memory {}: is empty", name)};
   void* data = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, fd.get(), 0);
   if (data == MAP_FAILED) return shmError(name, "map", errno);
-  return SharedMemory(std::move(fd), static_cast<std::byte*>(data), size, {});
+  return SharedMemory({}, static_cast<std::byte*>(data), size, {});
 }
 
 bool SharedMemory::owned(const std::string& name) {
-  const UniqueFd fd(::shm_open(name.c_str(), O_RDONLY | O_CLOEXEC, 0));
-  return fd.valid() && isLocked(fd.get());
+  const UniqueFd fd(::shm_open(lockName(name).c_str(), O_RDWR | O_CLOEXEC, 0));
+  struct flock probe = wholeFile();
+  return fd.valid() && ::fcntl(fd.get(), F_OFD_GETLK, &probe) == 0 && probe.l_type != F_UNLCK;
 }
 
 SharedMemory::SharedMemory(SharedMemory&& other) noexcept
-    : fd_(std::move(other.fd_)),
+    : lock_(std::move(other.lock_)),
       data_(std::exchange(other.data_, nullptr)),
       size_(std::exchange(other.size_, 0)),
       owned_name_(std::exchange(other.owned_name_, {})) {}
 
 SharedMemory& SharedMemory::operator=(SharedMemory&& other) noexcept {
-  std::swap(fd_, other.fd_);
+  std::swap(lock_, other.lock_);
   std::swap(data_, other.data_);
   std::swap(size_, other.size_);
   std::swap(owned_name_, other.owned_name_);
@@ -115,7 +167,9 @@ SharedMemory& SharedMemory::operator=(SharedMemory&& other) noexcept {
 
 SharedMemory::~SharedMemory() {
   if (data_) ::munmap(data_, size_);
-  if (!owned_name_.empty()) ::shm_unlink(owned_name_.c_str());
+  if (owned_name_.empty()) return;
+  ::shm_unlink(owned_name_.c_str());
+  ::shm_unlink(lockName(owned_name_).c_str());
 }
 
 }  // namespace merlin

@@ -12,16 +12,23 @@ namespace merlin {
 
 class SharedMemory {
  public:
-  // A new object of `size` zero bytes under `name` ("/merlin-wall"), locked for as long as this
-  // lives; what a dead owner left under the name is replaced. Its pages are there from the start,
-  // so that no later write can fault for want of memory.
-  // Errors: kBusy (a living process owns it), kIo.
+  // A new object of `size` zero bytes under `name` ("/merlin-wall"), owned for as long as this
+  // lives; what a dead owner left under the name is replaced. Ownership is a lock on the object
+  // NAME.lock, which only the owner's user may open: no reader can hold it. Pages are there from
+  // the start, so that no later write can fault for want of memory. Errors: kBusy (a living process
+  // owns it), kIo (also where another user's object has the name).
   static Result<SharedMemory> create(const std::string& name, std::size_t size);
 
-  // What another process made, read-only. Errors: kNotFound, kIo, kMalformed (empty).
-  static Result<SharedMemory> open(const std::string& name);
+  // Whose object a reader takes. A daemon that steers by what it reads takes its own user's or
+  // root's alone: anybody may make an object of a name that nobody has.
+  enum class From { kAnyone, kOwnUserOrRoot };
 
-  // True where a living process holds the object of that name.
+  // What another process made, read-only. Errors: kNotFound, kIo (with the group to join where it
+  // may not be read; another user's), kMalformed (empty). Who may write the object can cut it
+  // short, which ends a reader that touches it with SIGBUS: that is its owner and root alone.
+  static Result<SharedMemory> open(const std::string& name, From from = From::kAnyone);
+
+  // True where a living process of this user owns the object of that name.
   static bool owned(const std::string& name);
 
   SharedMemory() = default;
@@ -35,10 +42,10 @@ class SharedMemory {
   std::size_t size() const noexcept { return size_; }
 
  private:
-  SharedMemory(UniqueFd fd, std::byte* data, std::size_t size, std::string owned_name)
-      : fd_(std::move(fd)), data_(data), size_(size), owned_name_(std::move(owned_name)) {}
+  SharedMemory(UniqueFd lock, std::byte* data, std::size_t size, std::string owned_name)
+      : lock_(std::move(lock)), data_(data), size_(size), owned_name_(std::move(owned_name)) {}
 
-  UniqueFd fd_;
+  UniqueFd lock_;  // of an owner
   std::byte* data_ = nullptr;
   std::size_t size_ = 0;
   std::string owned_name_;  // empty for a reader

@@ -5,9 +5,12 @@
 namespace merlin::cli {
 namespace {
 
+// `denied`: filled in where there is one that may not be read.
 template <typename Segment>
-std::optional<FoundRole> find(const std::string& instance, const char* role) {
+std::optional<FoundRole> find(const std::string& instance, const char* role,
+                              std::optional<Error>& denied) {
   const auto segment = shm::SegmentReader<Segment>::open(shm::segmentName(instance, role));
+  if (!segment && segment.error().code == Errc::kIo) denied = segment.error();
   if (!segment || !segment->alive(SystemClock().now())) return std::nullopt;
   const shm::Header& h = (*segment)->header;
   // Another machine's devices, mirrored: nobody answers for them here but the wall that shows them.
@@ -19,9 +22,11 @@ std::optional<FoundRole> find(const std::string& instance, const char* role) {
 
 Result<std::vector<FoundRole>> findRoles(const std::string& instance) {
   std::vector<FoundRole> roles;
-  if (auto role = find<shm::WallSegment>(instance, "wall")) roles.push_back(*role);
-  if (auto role = find<shm::DevicesSegment>(instance, "devices")) roles.push_back(*role);
+  std::optional<Error> denied;
+  if (auto role = find<shm::WallSegment>(instance, "wall", denied)) roles.push_back(*role);
+  if (auto role = find<shm::DevicesSegment>(instance, "devices", denied)) roles.push_back(*role);
   if (!roles.empty()) return roles;
+  if (denied) return *denied;
   return Error{
       Errc::kIo,
       fmt::format("no merlind runs as \"{0}\" (no living shared memory /{0}-wall or /{0}-devices)",

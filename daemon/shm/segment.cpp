@@ -89,8 +89,9 @@ Result<SegmentWriter<Segment>> SegmentWriter<Segment>::make(const std::string& n
 }
 
 template <typename Segment>
-Result<SegmentReader<Segment>> SegmentReader<Segment>::open(const std::string& name) {
-  auto memory = SharedMemory::open(name);
+Result<SegmentReader<Segment>> SegmentReader<Segment>::open(const std::string& name,
+                                                            SharedMemory::From from) {
+  auto memory = SharedMemory::open(name, from);
   if (!memory) return memory.error();
   if (const auto checked = checkHeader(*memory, sizeof(Segment), name); !checked)
     return checked.error();
@@ -104,7 +105,7 @@ const Segment* SegmentFollower<Segment>::get(Timestamp now) {
   reader_.reset();
   if (now - tried_ < kRetry) return nullptr;
   tried_ = now;
-  auto opened = SegmentReader<Segment>::open(name_);
+  auto opened = SegmentReader<Segment>::open(name_, SharedMemory::From::kOwnUserOrRoot);
   if (!opened || !opened->alive(now)) return nullptr;
   reader_.emplace(*std::move(opened));
   return &**reader_;

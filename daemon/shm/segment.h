@@ -58,7 +58,8 @@ template <typename Segment>
 class SegmentReader {
  public:
   // Errors: kNotFound (no daemon has made it), kMalformed, kUnsupported.
-  static Result<SegmentReader> open(const std::string& name);
+  static Result<SegmentReader> open(const std::string& name,
+                                    SharedMemory::From from = SharedMemory::From::kAnyone);
 
   const Segment& operator*() const { return *reinterpret_cast<const Segment*>(memory_.data()); }
   const Segment* operator->() const { return &**this; }
@@ -75,8 +76,8 @@ class SegmentReader {
   SharedMemory memory_;
 };
 
-// As SegmentReader, for a process that outlives daemons: opens the segment when there is one, and
-// again after its daemon was started anew. Thread-bound.
+// As SegmentReader, for a daemon, which outlives others: opens the segment when there is one of its
+// own user or root, and again after its daemon was started anew. Thread-bound.
 template <typename Segment>
 class SegmentFollower {
  public:

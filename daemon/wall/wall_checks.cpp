@@ -35,7 +35,7 @@ std::vector<render::Dendrogram> readModels(LoadedSettings& loaded) {
       loaded.wrong(pointer, "names no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)");
       continue;
     }
-    auto model = render::readMrm(path);
+    auto model = render::readMrmCopy(path);
     if (!model) {
       loaded.wrong(pointer, kCannot + model.error().what);
       continue;

@@ -45,8 +45,9 @@ const char* nameOf(std::uint32_t kind) {
 
 class MrmReader {
  public:
-  MrmReader(std::string path, MappedFile file)
-      : path_(std::move(path)), file_(std::make_shared<MappedFile>(std::move(file))) {}
+  // `owner` keeps the bytes.
+  MrmReader(std::string path, std::span<const std::byte> bytes, std::shared_ptr<const void> owner)
+      : path_(std::move(path)), bytes_(bytes), owner_(std::move(owner)) {}
 
   Result<Dendrogram> read() {
     if (const auto done = readHeader(); !done) return done.error();
@@ -56,14 +57,14 @@ class MrmReader {
       if (const auto done = readSection(entry); !done) return done.error();
     }
     if (const auto done = checkCounts(); !done) return done.error();
-    auto made = Dendrogram::make(std::move(arrays_), file_);
+    auto made = Dendrogram::make(std::move(arrays_), owner_);
     if (!made) return broken(path_, made.error().what);
     return made;
   }
 
  private:
-  const std::byte* data() const { return file_->bytes().data(); }
-  std::uint64_t size() const { return file_->bytes().size(); }
+  const std::byte* data() const { return bytes_.data(); }
+  std::uint64_t size() const { return bytes_.size(); }
 
   Result<Ok> readHeader() {
     if (size() < sizeof header_) return broken(path_, "is too short for an .mrm file");
@@ -147,17 +148,31 @@ class MrmReader {
   }
 
   std::string path_;
-  std::shared_ptr<MappedFile> file_;
+  std::span<const std::byte> bytes_;
+  std::shared_ptr<const void> owner_;  // shared with the dendrogram
   FileHeader header_{};
   Dendrogram::Arrays arrays_;
 };
 
 }  // namespace
 
-Result<Dendrogram> readMrm(const std::string& path) {
-  auto file = MappedFile::open(path);
+namespace {
+
+template <typename File>
+Result<Dendrogram> readFrom(const std::string& path, Result<File> file) {
   if (!file) return file.error();
-  return MrmReader(path, *std::move(file)).read();
+  const auto kept = std::make_shared<File>(*std::move(file));
+  return MrmReader(path, kept->bytes(), kept).read();
+}
+
+}  // namespace
+
+Result<Dendrogram> readMrm(const std::string& path) {
+  return readFrom(path, MappedFile::open(path));
+}
+
+Result<Dendrogram> readMrmCopy(const std::string& path) {
+  return readFrom(path, FileCopy::read(path));
 }
 
 }  // namespace merlin::render

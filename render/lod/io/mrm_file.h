@@ -13,6 +13,11 @@ namespace merlin::render {
 // cut short), kUnsupported (a later version).
 Result<Dendrogram> readMrm(const std::string& path);
 
+// The same, but read into memory of our own before it is checked: for who lives long, since another
+// program may write over the file at any time, or cut it short (a mapping would change under the
+// checks, or end the program with SIGBUS). Takes the file's size of memory.
+Result<Dendrogram> readMrmCopy(const std::string& path);
+
 // Whether its features can be told from one another in a model, which keeps of each name as many
 // characters as 31 bytes hold; to be asked before long work. Errors: kUnsupported, without the
 // file's name.
