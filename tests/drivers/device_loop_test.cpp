@@ -209,5 +209,30 @@ TEST(DeviceLoop, StopsWithinOnePollWhateverItDoes) {
   }
 }
 
+// Only a line that has a speed can have the wrong one.
+TEST(DeviceLoop, AsksForTheSpeedOfLinesThatHaveOne) {
+  const auto reason = [](const std::string& port) {
+    Loop loop;
+    int tries = 0;
+    DeviceLoop device(
+        {.port = port, .baud = 9600},
+        [&]() -> Result<std::unique_ptr<ByteStream>> {
+          if (++tries == 2) loop.stop.request_stop();
+          return Error{Errc::kMalformed, "line 2 makes no sense"};
+        },
+        cyberglove::makeDevice(CybergloveSettings{}, loop.clock, loop.sink), loop.health,
+        loop.clock);
+    device.run(loop.stop.get_token());
+    for (const DeviceHealth& h : loop.health.all) {
+      if (std::string_view(h.reason).starts_with("line 2")) return std::string(h.reason);
+    }
+    return std::string();
+  };
+  EXPECT_EQ(reason("serial:/dev/ttyS0"),
+            "line 2 makes no sense (another device, or another speed than 9600 baud?)");
+  EXPECT_EQ(reason("replay:glove.bytes"), "line 2 makes no sense");
+  EXPECT_EQ(reason("tcp://server:4001"), "line 2 makes no sense");
+}
+
 }  // namespace
 }  // namespace merlin
