@@ -1,6 +1,8 @@
 #include "daemon/base/files.h"
 
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -131,28 +133,85 @@ Result<Ok> writeFile(const std::string& path, const std::function<bool(const Wri
   return writeFileHeadLast(path, 0, fill, [] { return std::span<const std::byte>(); });
 }
 
+namespace {
+
+std::string folderOf(const std::string& path) {
+  const auto slash = path.rfind('/');
+  return slash == std::string::npos ? "." : path.substr(0, slash + 1);
+}
+
+// The file that becomes `path` once it is whole. Where the file system can, it has no name until
+// then, so that whoever is killed meanwhile leaves nothing behind.
+class FreshFile {
+ public:
+  explicit FreshFile(const std::string& path)
+      : path_(path), named_(fmt::format("{}.{}.tmp", path, ::getpid())) {
+    removeLeftOvers();
+    fd_.reset(::open(folderOf(path).c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666));
+    if (fd_.valid()) return;
+    fd_.reset(::open(named_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    has_name_ = fd_.valid();
+  }
+  ~FreshFile() {
+    if (has_name_) ::unlink(named_.c_str());
+  }
+  FreshFile(const FreshFile&) = delete;
+  FreshFile& operator=(const FreshFile&) = delete;
+
+  int fd() const noexcept { return fd_.get(); }
+
+  // On the disk, and in the place of what was there. False with errno set.
+  bool replace() {
+    if (::fsync(fd_.get()) != 0) return false;
+    const std::string self = fmt::format("/proc/self/fd/{}", fd_.get());
+    if (!has_name_ &&
+        ::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, named_.c_str(), AT_SYMLINK_FOLLOW) != 0)
+      return false;
+    has_name_ = true;
+    if (std::rename(named_.c_str(), path_.c_str()) != 0) return false;
+    has_name_ = false;
+    return true;
+  }
+
+ private:
+  // What runs that were killed have left beside `path`, and what an attempt of this one has.
+  void removeLeftOvers() const {
+    std::error_code error;
+    const std::string start = std::filesystem::path(path_).filename().string() + ".";
+    for (const auto& entry : std::filesystem::directory_iterator(folderOf(path_), error)) {
+      const std::string name = entry.path().filename().string();
+      if (!name.starts_with(start) || !name.ends_with(".tmp")) continue;
+      const std::string number = name.substr(start.size(), name.size() - start.size() - 4);
+      int pid = 0;
+      const auto [end, wrong] = std::from_chars(number.data(), number.data() + number.size(), pid);
+      if (wrong != std::errc{} || end != number.data() + number.size() || pid <= 0) continue;
+      const bool dead = ::kill(pid, 0) != 0 && errno == ESRCH;
+      if (dead || pid == ::getpid()) ::unlink(entry.path().c_str());
+    }
+  }
+
+  std::string path_, named_;
+  UniqueFd fd_;
+  bool has_name_ = false;
+};
+
+}  // namespace
+
 Result<Ok> writeFileHeadLast(const std::string& path, std::size_t head_size,
                              const std::function<bool(const WriteBytes&)>& fill,
                              const std::function<std::span<const std::byte>()>& head) {
   if (auto replaceable = checkReplaceable(path); !replaceable) return replaceable;
-  const std::string fresh = fmt::format("{}.{}.tmp", path, ::getpid());
-  // One that bears our number is left of an attempt of ours, whose folder was moved meanwhile.
-  ::unlink(fresh.c_str());
-  const UniqueFd fd(::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (!fd.valid()) return fileError(path, errno);
-  Buffered buffer(fd.get());
+  FreshFile fresh(path);
+  if (fresh.fd() < 0) return fileError(path, errno);
+  Buffered buffer(fresh.fd());
   const auto seek = [&](std::size_t at) {
-    return ::lseek(fd.get(), static_cast<off_t>(at), SEEK_SET) >= 0;
+    return ::lseek(fresh.fd(), static_cast<off_t>(at), SEEK_SET) >= 0;
   };
   const bool written =
       seek(head_size) &&
       fill([&](std::span<const std::byte> bytes) { return buffer.write(bytes); }) &&
-      buffer.flush() && seek(0) && writeAll(fd.get(), head()) && ::fsync(fd.get()) == 0 &&
-      std::rename(fresh.c_str(), path.c_str()) == 0;
-  if (written) return Ok{};
-  const int error = errno;
-  ::unlink(fresh.c_str());
-  return fileError(path, error);
+      buffer.flush() && seek(0) && writeAll(fresh.fd(), head()) && fresh.replace();
+  return written ? Result<Ok>(Ok{}) : fileError(path, errno);
 }
 
 Result<Ok> checkWritableFolder(const std::string& path) {
@@ -175,8 +234,7 @@ Result<Ok> checkFolder(const std::string& path) {
 }
 
 Result<Ok> checkWritable(const std::string& path) {
-  const auto slash = path.rfind('/');
-  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  const std::string folder = folderOf(path);
   if (auto replaceable = checkReplaceable(path); !replaceable) return replaceable;
   if (::access(folder.c_str(), W_OK) != 0) return fileError(path, errno);
   return Ok{};

@@ -1,7 +1,9 @@
 // What programs exit with; outside checks rely on it.
 #pragma once
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 
@@ -33,7 +35,12 @@ inline int exitStatus(const Error& error) {
 template <typename Main>
 int guarded(const char* program, Main main, int failed = kExitFailed) noexcept {
   try {
-    return main();
+    const int status = main();
+    // What was printed may be in a buffer still: a disk that is full shows here.
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+    std::fprintf(stderr, "%s: what it printed could not be written: %s\n", program,
+                 std::strerror(errno));
+    return kExitFailed;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "%s: ended: no memory is left (a limit as of ulimit -v counts too)\n",
                  program);

@@ -2,8 +2,8 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
-#include "daemon/base/files.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
@@ -13,7 +13,9 @@ namespace merlin::cli {
 namespace {
 
 int makeKeys(const std::string& path) {
-  if (MappedFile::open(path)) {
+  struct stat status {};
+  // Whatever it is: a file that may not be read, a link that leads nowhere.
+  if (::lstat(path.c_str(), &status) == 0) {
     return fail({Errc::kInvalidArgument,
                  path + ": is there already; a new pair would lock out whoever knows the old one"});
   }

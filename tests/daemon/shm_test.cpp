@@ -3,7 +3,9 @@
 #include <set>
 #include <thread>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -145,7 +147,7 @@ TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
 
 TEST(Fields, CoverEveryByteOfTheWallsSegmentButPadding) {
   EXPECT_EQ(undescribed(wallFields(), offsetof(WallSegment, fields)),
-            (Runs{"segment.command_endpoint 40", "wall.work_histogram 48", "trace.wake 4",
+            (Runs{"segment.command_endpoint 40", "wall.returned 44", "trace.wake 4",
                   "trace.step.tile's ring 56", "interaction.content 8"}));
 }
 
@@ -240,6 +242,57 @@ TEST(Segment, OfADeadWriterIsReplaced) {
   ASSERT_TRUE(next);
   EXPECT_TRUE(SharedMemory::owned(name));
   EXPECT_EQ((*SegmentReader<WallSegment>::open(name))->header.generation, 2u);
+}
+
+// A reader may take a read lock on what it may read; no lock of a reader's is the owner's.
+TEST(SharedMemory, AReadersLockDoesNotForbidTheRestart) {
+  const std::string name = "/" + privateName("locked");
+  { ASSERT_TRUE(SharedMemory::create(name, 4096)); }
+  const pid_t child = ::fork();
+  if (child == 0) {
+    auto left = SharedMemory::create(name, 4096);
+    ::_exit(left.ok() ? 0 : 1);  // as killed: the object stays
+  }
+  ::waitpid(child, nullptr, 0);
+  const UniqueFd reader(::shm_open(name.c_str(), O_RDONLY, 0));
+  ASSERT_TRUE(reader.valid());
+  struct flock lock {};
+  lock.l_type = F_RDLCK;
+  lock.l_whence = SEEK_SET;
+  ASSERT_EQ(::fcntl(reader.get(), F_OFD_SETLK, &lock), 0);
+  const auto again = SharedMemory::create(name, 4096);
+  EXPECT_TRUE(again) << again.error().what;
+}
+
+TEST(SharedMemory, TwoLivingOwnersCannotShareAName) {
+  const std::string name = "/" + privateName("owned");
+  const auto first = SharedMemory::create(name, 4096);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(SharedMemory::create(name, 4096).error().code, Errc::kBusy);
+  EXPECT_TRUE(SharedMemory::owned(name));
+}
+
+// Anybody may make an object of a name that nobody has.
+TEST(SharedMemory, AStrangersObjectIsNotTakenAndGoesForRoot) {
+  if (::geteuid() != 0) GTEST_SKIP() << "takes root, to act as another user";
+  const std::string name = "/" + privateName("stranger");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (::setgid(65534) != 0 || ::setuid(65534) != 0) ::_exit(1);
+    const int fd = ::shm_open(name.c_str(), O_RDWR | O_CREAT, 0644);
+    ::_exit(fd >= 0 && ::ftruncate(fd, 4096) == 0 ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_EQ(status, 0);
+  EXPECT_TRUE(SharedMemory::open(name));
+  const auto taken = SharedMemory::open(name, SharedMemory::From::kOwnUserOrRoot);
+  ASSERT_FALSE(taken);
+  EXPECT_NE(taken.error().what.find("belongs to user nobody and is not taken"), std::string::npos)
+      << taken.error().what;
+  const auto ours = SharedMemory::create(name, 4096);
+  EXPECT_TRUE(ours) << ours.error().what;
+  EXPECT_TRUE(SharedMemory::open(name, SharedMemory::From::kOwnUserOrRoot));
 }
 
 TEST(Segment, OfAnotherVersionOrMakerIsRefused) {

@@ -214,6 +214,20 @@ TEST(MrmFile, IsNotFoundWhereThereIsNone) {
   EXPECT_FALSE(readMrm(dir.path()));  // a folder
 }
 
+// What is shown for months must not change, or end the program, with the file.
+TEST(MrmFile, ACopyStaysAsItIsWhateverBecomesOfTheFile) {
+  const test::TempDir dir;
+  const Dendrogram model = reducedSphere();
+  ASSERT_TRUE(writeMrm(dir / "x.mrm", model));
+  const auto copy = readMrmCopy(dir / "x.mrm");
+  ASSERT_TRUE(copy) << copy.error().what;
+  const std::string before = test::readText(dir / "x.mrm");
+  test::writeText(dir / "x.mrm", std::string(before.size(), '\xff'));
+  ASSERT_EQ(::truncate((dir / "x.mrm").c_str(), 0), 0);
+  ASSERT_TRUE(writeMrm(dir / "again.mrm", *copy));
+  EXPECT_EQ(test::readText(dir / "again.mrm"), before);
+}
+
 TEST(MrmFile, IsWrittenWholeOrNotAtAll) {
   const test::TempDir dir;
   const auto written = writeMrm(dir / "no/such/folder.mrm", test::goldenCube());

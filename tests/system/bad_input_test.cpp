@@ -155,6 +155,37 @@ TEST_F(BadInput, BindingsToPosturesThatTheNetworkDoesNotKnow) {
   EXPECT_EQ(wall.output.find("/devices/postures"), std::string::npos) << wall.output;
 }
 
+TEST_F(BadInput, AFullStandardOutputIsAFailure) {
+  for (const char* command : {"mesh info config/models/ankylosaurus.ply", "--help"}) {
+    const Outcome o =
+        run({"sh", "-c", "cd " + kSource + "; " + kMerlin + " " + command + " > /dev/full"});
+    EXPECT_EQ(o.status, 1) << command << o.output;
+    EXPECT_NE(o.output.find("No space left on device"), std::string::npos) << o.output;
+  }
+}
+
+TEST_F(BadInput, KeysNeverReplaceWhatIsThere) {
+  std::filesystem::create_symlink(dir_ / "nowhere", dir_ / "link");
+  const Outcome o = run({kMerlin, "keys", "-o", dir_ / "link"});
+  EXPECT_EQ(o.status, 2) << o.output;
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "nowhere"));
+}
+
+// A writer that is killed leaves nothing; what an older one left goes with the next.
+TEST_F(BadInput, AWriterThatIsKilledLeavesNothing) {
+  writeText(dir_ / "x.mrm.999999999.tmp", "left by one that is no more");
+  Process writer({kMerlin, "mesh", "reduce", kSource + "/config/models/ankylosaurus.ply", "-o",
+                  dir_ / "x.mrm"});
+  EXPECT_TRUE(writer.saysEventually("%"));
+  writer.kill(SIGTERM);
+  EXPECT_EQ(run({kMerlin, "mesh", "reduce", kSource + "/config/models/ankylosaurus.ply", "-o",
+                 dir_ / "x.mrm"})
+                .status,
+            0);
+  for (const auto& entry : std::filesystem::directory_iterator(dir_.path()))
+    EXPECT_EQ(entry.path().string().find(".tmp"), std::string::npos) << entry.path();
+}
+
 TEST_F(BadInput, UsageErrorsExitWithTwo) {
   expectOutcome(run({kMerlin}), 2, {"subcommand"});
   expectOutcome(run({kMerlin, "dance"}), 2, {"dance"});

@@ -1,4 +1,6 @@
 // The wall survives what a device says: a place that a hand was carried to out of sight.
+#include <fstream>
+
 #include <gtest/gtest.h>
 
 #include "drivers/emulate/emulator.h"
@@ -40,6 +42,31 @@ constexpr emulate::Phase kPhases[] = {
     {1, "flat", {}, 1, false, kFar},   // kDamage
     {1, "flat", {}, 0, false, kFar},   // kLetGo
 };
+
+// The wall shows a copy of its own: whatever becomes of the file, it draws on.
+TEST(Survival, AModelThatIsOverwrittenWhileItIsShown) {
+  const TempDir dir;
+  const std::string model = makeModel(dir);
+  Merlind merlind(dir, model, "overwritten", {.script = "turning"});
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  const auto drawsOn = [&](const char* after) {
+    const std::uint64_t before = merlind.wall().frames;
+    EXPECT_TRUE(eventually([&] { return merlind.wall().frames > before + 5; })) << after;
+  };
+  const std::string whole = readText(model);
+  const auto overwrite = [&](const std::string& bytes) {
+    std::ofstream(model, std::ios::binary | std::ios::trunc) << bytes;
+  };
+  overwrite(whole.substr(0, whole.size() / 2));
+  drawsOn("a smaller one");
+  overwrite(std::string(whole.size(), '\xff'));
+  drawsOn("other bytes");
+  overwrite("");
+  drawsOn("nothing");
+  std::filesystem::remove(model);
+  drawsOn("no file");
+  EXPECT_EQ(merlind.process().kill(SIGTERM), 0);
+}
 
 TEST(Survival, AContentThatOneRecordFlungOutOfSightReturns) {
   const TempDir dir;

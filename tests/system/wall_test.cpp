@@ -173,7 +173,7 @@ TEST_F(Wall, SharedMemoryIsReadByItsDumpAndByPython) {
   const Outcome python = run({"python3", kSource + "/daemon/shm/read_merlin.py",
                               m.instance() + "-devices", "posture.name", "glove.sensors"});
   EXPECT_EQ(python.status, 0) << python.output;
-  EXPECT_EQ(python.output, "glove.sensors (22,) \nposture.name open \n");
+  EXPECT_EQ(python.output, "glove.sensors [22] \nposture.name ['open'] \n");
   EXPECT_LE(std::count(python.output.begin(), python.output.end(), '\n'), 30);
 }
 
