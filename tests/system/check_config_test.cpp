@@ -112,7 +112,7 @@ TEST_F(CheckConfig, RefusesSocketsAndPortsThatCannotBeServed) {
   expectRefused(serve({{"samples_endpoint", "tcp://nohost:7401"},
                        {"samples_keys", "keys"},
                        {"samples_clients", "clients"}}),
-                "/serve/samples_endpoint", "nohost is neither *, nor an address");
+                "/serve/samples_endpoint", "nohost is neither * nor an IPv4 address");
 }
 
 TEST_F(CheckConfig, RefusesPortsThatCannotBePlayed) {
