@@ -8,6 +8,7 @@
 #include <sys/un.h>
 #include <zmq.hpp>
 
+#include "daemon/base/log.h"
 #include "daemon/status/client.h"
 #include "daemon/status/documents.h"
 #include "daemon/status/health_events.h"
@@ -192,6 +193,9 @@ TEST_F(DocumentsTest, EventsAreToldOnce) {
 // Real sockets, in a folder of the test's own.
 class ServerTest : public testing::Test {
  protected:
+  // As the programs do, before a thread starts.
+  static void SetUpTestSuite() { initLog(LogLevel::kWarning); }
+
   void SetUp() override {
     StatusServerSettings settings;
     settings.status_endpoint = status_;

@@ -141,7 +141,10 @@ TEST(Servers, AVrpnClientThatFloodsTakesNoMemoryAndMerlindStopsAtOnce) {
   ASSERT_EQ(::send(client.get(), cookie.data(), cookie.size(), 0), ssize_t{24});
   const std::size_t sent = flood(client, bytes);
   const long after = residentKb(merlind.process().pid());
+#if !defined(__SANITIZE_THREAD__) && \
+    !defined(__SANITIZE_ADDRESS__)  // they keep memory of their own
   EXPECT_LT(after - before, 8192) << sent << " bytes were sent";
+#endif
   const auto asked = std::chrono::steady_clock::now();
   EXPECT_EQ(merlind.process().kill(SIGTERM), 0) << merlind.process().output();
   const auto took = std::chrono::steady_clock::now() - asked;
