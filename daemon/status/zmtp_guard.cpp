@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::size_t kGreeting = 64, kVersionAt = 10, kSignatureEnd = 9;
 constexpr std::uint8_t kMore = 1, kLong = 2, kCommand = 4;
+constexpr std::size_t kMechanismAt = 12;
+constexpr std::string_view kCurve{"CURVE\0", 6};
 constexpr std::string_view kReady = "\5READY";
 // The bodies of PING and PONG as CURVE encrypts them: an 8-byte name, an 8-byte nonce, a 16-byte
 // authenticator and a byte of flags before 7 and 5 bytes.
@@ -56,6 +58,8 @@ Result<Ok> ZmtpGuard::greet(std::uint8_t byte) {
   const bool signature = (at == 0 && byte != 0xFF) || (at == kSignatureEnd && byte != 0x7F);
   if (signature || (at == kVersionAt && byte < 3))
     return malformed("it does not open with a greeting of ZMTP 3 (ZeroMQ 4 or newer)");
+  if (at >= kMechanismAt && at < kMechanismAt + kCurve.size())
+    curve_ &= byte == static_cast<std::uint8_t>(kCurve[at - kMechanismAt]);
   return Ok{};
 }
 
@@ -73,9 +77,12 @@ Result<Ok> ZmtpGuard::begin() {
     return malformed(
         fmt::format("a frame of {} bytes; at most {} are taken", body_left_, limits_.frame_bytes));
   }
-  if (!command_ && ++parts_ > limits_.parts)
-    return malformed(fmt::format("a message of more than {} parts", limits_.parts));
-  if (!(flags & kMore)) parts_ = 0;
+  if (command_ && (flags & kMore)) return malformed("a command of several parts");
+  if (!command_) {  // a command between two parts does not end the message
+    if (++parts_ > limits_.parts)
+      return malformed(fmt::format("a message of more than {} parts", limits_.parts));
+    if (!(flags & kMore)) parts_ = 0;
+  }
   size_ = body_left_;
   return body_left_ == 0 ? endFrame() : Result<Ok>(Ok{});
 }
@@ -86,7 +93,8 @@ Result<Ok> ZmtpGuard::endFrame() {
   ready_ |= command_ && name_ == kReady;
   const bool plain_heartbeat =
       command_ && (name_.starts_with("\4PING") || name_.starts_with("\4PONG"));
-  const bool encrypted_heartbeat = !command_ && (size_ == kCurvePing || size_ == kCurvePong);
+  const bool encrypted_heartbeat =
+      curve_ && !command_ && (size_ == kCurvePing || size_ == kCurvePong);
   if (!plain_heartbeat && !encrypted_heartbeat) total_ += size_ + 1;
   if (limits_.total_bytes > 0 && total_ > limits_.total_bytes) {
     return malformed(

@@ -47,6 +47,7 @@ class ZmtpGuard {
 
   ZmtpLimits limits_;
   std::size_t greeting_ = 0;  // bytes of it that have come
+  bool curve_ = true;         // as far as the greeting has come: it names CURVE
   std::string header_;        // of the frame that begins
   std::uint64_t body_left_ = 0, size_ = 0;
   std::string name_;  // the first bytes of a command's body
