@@ -12,13 +12,31 @@ bool mayGo(const Occupant& o, const Places& places, Timestamp now) {
   return o.established ? now - o.active >= places.idle : now - o.since >= places.opening;
 }
 
+struct Held {
+  std::ptrdiff_t group, own;
+};
+
+// The places that a peer holds: its user's or address's, and its own.
+Held heldBy(const Peer& peer, std::span<const Occupant> all) {
+  Held held{};
+  for (const Occupant& o : all) {
+    held.group += sameGroup(o.peer, peer);
+    held.own += o.peer == peer;
+  }
+  return held;
+}
+
 // The larger, the sooner it goes.
 auto rank(const Occupant& o, std::span<const Occupant> all, Timestamp now) {
-  const auto group = std::count_if(
-      all.begin(), all.end(), [&](const Occupant& other) { return sameGroup(other.peer, o.peer); });
-  const auto own = std::count_if(all.begin(), all.end(),
-                                 [&](const Occupant& other) { return other.peer == o.peer; });
-  return std::tuple(!o.established, group, own, now - o.active);
+  const Held held = heldBy(o.peer, all);
+  return std::tuple(!o.established, held.group, held.own, now - o.active);
+}
+
+// Whether the other would hold at least as many places as the newcomer once it had given it one.
+// With a smaller difference two peers could take one place from each other in turns.
+bool holdsMore(const Held& other, const Held& newcomer) {
+  return other.group > newcomer.group + 1 ||
+         (other.group >= newcomer.group && other.own > newcomer.own + 1);
 }
 
 }  // namespace
@@ -29,11 +47,21 @@ Decision decide(std::span<const Occupant> occupants, const Peer& newcomer, const
       occupants.begin(), occupants.end(), [&](const Occupant& o) { return o.peer == newcomer; }));
   const bool over_share = own >= places.per_peer;
   if (!over_share && occupants.size() < places.all) return {};
-  std::optional<std::size_t> victim;
-  for (std::size_t i = 0; i < occupants.size(); ++i) {
-    const Occupant& o = occupants[i];
-    if ((over_share && o.peer != newcomer) || !mayGo(o, places, now)) continue;
-    if (!victim || rank(o, occupants, now) > rank(occupants[*victim], occupants, now)) victim = i;
+  const auto pick = [&](const auto& eligible) {
+    std::optional<std::size_t> victim;
+    for (std::size_t i = 0; i < occupants.size(); ++i) {
+      if (!eligible(occupants[i])) continue;
+      if (!victim || rank(occupants[i], occupants, now) > rank(occupants[*victim], occupants, now))
+        victim = i;
+    }
+    return victim;
+  };
+  auto victim = pick([&](const Occupant& o) {
+    return (!over_share || o.peer == newcomer) && mayGo(o, places, now);
+  });
+  if (!victim && !over_share) {
+    const Held held = heldBy(newcomer, occupants);
+    victim = pick([&](const Occupant& o) { return holdsMore(heldBy(o.peer, occupants), held); });
   }
   if (!victim) return {Decision::Kind::kRefuse, 0};
   return {Decision::Kind::kReplace, *victim};

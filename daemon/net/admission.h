@@ -4,9 +4,12 @@
 // peer (process of a local socket, address of a TCP one) already has its share, the place of a
 // connection that does least with it is given to the newcomer: first one that has not yet said what
 // the protocol opens with, then one of the user or address that holds the most places, then the one
-// that has been idle for longest. So nobody who only holds places can keep others out. A connection
-// keeps its place for a short time in any case, so that a flood of newcomers cannot push out one
-// that is just being set up: then the newcomer is refused.
+// that has been idle for longest. A connection keeps its place while it is active, and for a short
+// time while it is set up, but only against those who hold no fewer places: a newcomer whose user
+// or address, or whose process, holds at least two places fewer than another gets one of the
+// latter's in any case. So whoever holds places, busy or idle, or floods with connections, keeps
+// out only those who hold as many; among the processes of one user that takes as many processes as
+// there are places.
 #pragma once
 
 #include <cstddef>

@@ -80,6 +80,29 @@ TEST_F(Admission, APeerOverItsShareReplacesItsOwnAlone) {
   EXPECT_EQ(decision.victim, 1U);
 }
 
+TEST_F(Admission, WhoHoldsSeveralBusyPlacesGivesOneToAProcessThatHasNone) {
+  all_ = {occupant(process(1), seconds(9), true, milliseconds(10)),
+          occupant(process(2), seconds(9), true, milliseconds(50)),
+          occupant(process(2), milliseconds(20), false, milliseconds(20)),
+          occupant(process(3), seconds(9), true, milliseconds(90))};
+  const Decision decision = decideFor(process(5));
+  EXPECT_EQ(decision.kind, Decision::Kind::kReplace);
+  EXPECT_EQ(decision.victim, 2U) << "also one that has just come: a flood gives no more right";
+  EXPECT_EQ(decideFor(process(3)).kind, Decision::Kind::kRefuse)
+      << "it has as many as it would get";
+}
+
+TEST_F(Admission, AUserWithManyBusyProcessesGivesAPlaceToAnother) {
+  all_ = {occupant(process(1, 7), seconds(9), true, milliseconds(10)),
+          occupant(process(2, 7), seconds(9), true, milliseconds(90)),
+          occupant(process(3, 7), seconds(9), true, milliseconds(50)),
+          occupant(process(4, 8), seconds(9), true, milliseconds(95))};
+  const Decision decision = decideFor(process(5, 9));
+  EXPECT_EQ(decision.kind, Decision::Kind::kReplace);
+  EXPECT_EQ(decision.victim, 1U);
+  EXPECT_EQ(decideFor(process(6, 7)).kind, Decision::Kind::kRefuse);
+}
+
 // ---- the server
 
 // A protocol of lines, each answered by itself; "bad" breaks it. Established by the first line.

@@ -7,7 +7,9 @@
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 
 #include "daemon/net/connection_server.h"
 #include "daemon/serve/vrpn_protocol.h"
@@ -106,6 +108,101 @@ TEST(Servers, TheExampleOfLibspnavSeesTheEmulatedBallTurn) {
     }
     return false;
   })) << simple.output();
+}
+
+// A ZeroMQ client by hand whose handshake is through; invalid where it is not let in.
+UniqueFd zmqClient(const std::string& path) {
+  UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  path.copy(address.sun_path, sizeof address.sun_path - 1);
+  const timeval patience{2, 0};
+  ::setsockopt(fd.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  std::string opening("\xff\0\0\0\0\0\0\0\1\x7f\3\0NULL", 16);
+  opening.resize(64);
+  opening += std::string("\4\x1c\5READY\vSocket-Type\0\0\0\6DEALER", 30);
+  std::string heard;
+  char bytes[256];
+  if (::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+      ::send(fd.get(), opening.data(), opening.size(), MSG_NOSIGNAL) < 0)
+    return UniqueFd();
+  while (heard.find("READY") == std::string::npos) {
+    const ssize_t n = ::recv(fd.get(), bytes, sizeof bytes, 0);
+    if (n <= 0) return UniqueFd();
+    heard.append(bytes, static_cast<std::size_t>(n));
+  }
+  return fd;
+}
+
+// A process of its own that holds 16 places and is never idle; for a minute at most.
+class BusyHolder {
+ public:
+  explicit BusyHolder(const std::string& path) {
+    int ends[2];
+    EXPECT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+    const UniqueFd hears(ends[0]), says(ends[1]);
+    pid_ = ::fork();
+    if (pid_ == 0) hold(path, says.get());
+    char held = 0;
+    EXPECT_EQ(::read(hears.get(), &held, 1), 1);
+    held_ = held;
+  }
+  ~BusyHolder() {
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+  }
+  BusyHolder(const BusyHolder&) = delete;
+  BusyHolder& operator=(const BusyHolder&) = delete;
+  int held() const { return held_; }
+
+ private:
+  [[noreturn]] static void hold(const std::string& path, int says) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    std::vector<UniqueFd> places;
+    for (int i = 0; i < 16; ++i) {
+      if (UniqueFd place = zmqClient(path); place.valid()) places.push_back(std::move(place));
+    }
+    const char held = static_cast<char>(places.size());
+    (void)!::write(says, &held, 1);
+    char answers[256];
+    for (int round = 0; round < 300; ++round) {
+      for (const UniqueFd& place : places) {
+        (void)::send(place.get(), "\4\7\4PING\0\x10", 9, MSG_NOSIGNAL | MSG_DONTWAIT);
+        (void)::recv(place.get(), answers, sizeof answers, MSG_DONTWAIT);
+      }
+      ::poll(nullptr, 0, 200);
+    }
+    ::_exit(0);
+  }
+  pid_t pid_ = -1;
+  int held_ = 0;
+};
+
+TEST(Servers, ProcessesThatKeepEveryPlaceBusyDoNotKeepStatusOut) {
+  const TempDir dir;
+  Merlind merlind(dir, "", "busy", devicesThatServe(Json::object()));
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  const std::string command = dir / (merlind.instance() + "-devices.command");
+  const BusyHolder one(command), other(command);
+  ASSERT_EQ(one.held() + other.held(), 32);
+  for (int i = 0; i < 3; ++i) {
+    const Json status = merlind.status();
+    ASSERT_TRUE(status.is_object() && status.contains("servers")) << merlind.process().output();
+  }
+}
+
+TEST(Servers, AMessageThatDoesNotEndIsClosed) {
+  const TempDir dir;
+  Merlind merlind(dir, "", "endless", devicesThatServe(Json::object()));
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  const UniqueFd fd = zmqClient(dir / (merlind.instance() + "-devices.command"));
+  ASSERT_TRUE(fd.valid());
+  // A part, more to come, and a heartbeat that asks for no time-out, so that libzmq closes nothing.
+  for (int i = 0; i < 4; ++i) (void)::send(fd.get(), "\1\1x\4\7\4PING\0\0", 12, MSG_NOSIGNAL);
+  char bytes[256];
+  ssize_t n = 1;
+  while (n > 0) n = ::recv(fd.get(), bytes, sizeof bytes, 0);
+  EXPECT_TRUE(n == 0 || errno == ECONNRESET || errno == EPIPE) << "it is still open";
 }
 
 // Sends for three seconds what `bytes` holds, again and again; at most 40 MB.
