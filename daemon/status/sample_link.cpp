@@ -10,6 +10,7 @@
 
 #include "daemon/base/log.h"
 #include "daemon/status/documents.h"
+#include "drivers/port/plausible.h"
 
 namespace merlin::status {
 namespace {
@@ -59,9 +60,13 @@ class Apply {
   }
 
  private:
-  // As old here as it was there.
+  // As old here as it was there; of a time that there cannot be, 0.
   std::int64_t here(std::int64_t there_ns) const {
-    return toNanoseconds(now_) - (there_now_ns_ - there_ns);
+    std::int64_t age = 0, here = 0;
+    if (__builtin_sub_overflow(there_now_ns_, there_ns, &age) ||
+        __builtin_sub_overflow(toNanoseconds(now_), age, &here))
+      return 0;
+    return here;
   }
   template <typename T>
   T common(const Json& object) const {
@@ -73,6 +78,7 @@ class Apply {
   }
   template <typename T>
   void publish(shm::Channel<T>& channel, const T& sample) {
+    if (!plausible(sample)) return;  // the other machine is believed no more than a device
     const auto last = channel.newest();
     if (!last || last->counter != sample.counter) channel.publish(sample);
   }

@@ -47,6 +47,7 @@ std::unique_ptr<shm::DevicesSegment> filled(std::int64_t received_ns, std::uint3
   HandSample hand{};
   hand.received_ns = received_ns;
   hand.counter = counter;
+  hand.orientation_wxyz[0] = 1;
   hand.velocity_m_s[0] = 0.25F;
   segment->hand.publish(hand);
   for (std::size_t i = 0; i < shm::kDevices; ++i) {
@@ -110,6 +111,32 @@ TEST(ApplySamples, NonsenseIsRefusedAndHalfTruthsDoNoHarm) {
   const std::string good = newestSamples(*filled(1, 1), {});
   for (std::size_t n = 0; n < good.size(); n += 7)
     EXPECT_FALSE(applySamples(good.substr(0, n), "", {}, *here));
+}
+
+TEST(ApplySamples, WhatNoDeviceCanMeasureIsNotTaken) {
+  const auto there = filled(1, 1);
+  TrackerSample far = *there->tracker[1].newest();
+  far.counter = 2;
+  far.position_m[0] = 1e30F;
+  there->tracker[1].publish(far);
+  BallSample ball = *there->ball.newest();
+  ball.counter = 2;
+  ball.rotation[2] = 3;
+  there->ball.publish(ball);
+  const auto here = std::make_unique<shm::DevicesSegment>();
+  ASSERT_TRUE(applySamples(newestSamples(*there, {}), "", {}, *here));
+  EXPECT_EQ(here->tracker[1].count(), 0U);
+  EXPECT_EQ(here->ball.count(), 0U);
+  EXPECT_EQ(here->glove.count(), 1U) << "the others are";
+}
+
+TEST(ApplySamples, ATimeThatCannotBeIsNone) {
+  const auto here = std::make_unique<shm::DevicesSegment>();
+  ASSERT_TRUE(applySamples(
+      R"({"now_ns":9223372036854775807,"ball":{"received_ns":-9223372036854775807,"counter":1}})",
+      "", fromNanoseconds(5), *here));
+  ASSERT_EQ(here->ball.count(), 1U);
+  EXPECT_EQ(here->ball.newest()->received_ns, 0);
 }
 
 TEST(Keys, AreWrittenForTheirOwnerAloneAndReadBack) {
