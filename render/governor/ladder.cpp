@@ -1,26 +1,33 @@
 #include "render/governor/ladder.h"
 
-#include <bit>
+#include <algorithm>
 
 namespace merlin::render {
 namespace {
 
-constexpr int kLateFrames = 10, kCleanFrames = 300;
-constexpr std::uint64_t kLast60 = (std::uint64_t{1} << 60) - 1;
+constexpr double kLateFrame = 1.139434;    // ln(0.25 / 0.08)
+constexpr double kFrameInTime = 0.204300;  // ln(0.92 / 0.75)
+constexpr double kEnough = 11;             // ten late frames in a row are enough, nine are not
+constexpr int kCleanFrames = 300;
 
 }  // namespace
 
 bool Ladder::observe(bool late, bool least, bool higher_fits) noexcept {
-  late_ = (late_ << 1 | (late && least ? 1U : 0U)) & kLast60;
+  // A late frame that had more than the fewest triangles says nothing about the fewest; a frame in
+  // time says that the fewest come in time, however many it had.
+  if (!late)
+    evidence_ = std::max(0.0, evidence_ - kFrameInTime);
+  else if (least)
+    evidence_ += kLateFrame;
   clean_ = late ? 0 : clean_ + 1;
-  if (rung_ < most_ && std::popcount(late_) >= kLateFrames) return go(rung_ + 1);
+  if (rung_ < most_ && evidence_ >= kEnough) return go(rung_ + 1);
   if (rung_ > 0 && clean_ >= kCleanFrames && higher_fits) return go(rung_ - 1);
   return false;
 }
 
 bool Ladder::go(int rung) noexcept {
   rung_ = rung;
-  late_ = 0;
+  evidence_ = 0;
   clean_ = 0;
   return true;
 }

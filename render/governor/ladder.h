@@ -1,12 +1,13 @@
 // Ladder: when something gives way where not even the fewest triangles come in time: the size of
 // the picture, then the rate; what each rung means is the caller's.
 //
-// Counts of frames, not times: 10 late of the last 60 that had the fewest triangles lead one rung
-// down, 300 in a row in time lead back up, if the model says that the fewest fit there. After US
-// patent 7,450,130 (a compositor's rate by counts of missed, late and early frames).
+// Both rules are tests of the share of late frames, over frames and not over seconds. README.md
+// says where the figures come from.
+//   down  Page's cumulative sum: a late frame adds the logarithm of how much likelier it is when
+//         25 % of the frames are late than when 8 % are; a frame in time takes its own away; the
+//         sum is never below 0. At 11 the ladder goes one rung down.
+//   up    300 frames in a row in time, if the model says that the fewest fit there.
 #pragma once
-
-#include <cstdint>
 
 namespace merlin::render {
 
@@ -28,8 +29,8 @@ class Ladder {
 
   int most_;
   int rung_ = 0;
-  std::uint64_t late_ = 0;  // of the last frames, a bit each, the newest lowest
-  int clean_ = 0;           // in a row
+  double evidence_ = 0;  // cumulative sum of logarithms of likelihood ratios, >= 0
+  int clean_ = 0;        // in a row
 };
 
 }  // namespace merlin::render

@@ -13,7 +13,7 @@ bool observe(Ladder& ladder, int count, bool late, bool least = true, bool fits 
   return changed;
 }
 
-TEST(Ladder, TenLateOfSixtyLeadARungDown) {
+TEST(Ladder, TenLateFramesInARowLeadARungDown) {
   Ladder ladder(2);
   EXPECT_FALSE(observe(ladder, 9, true));
   EXPECT_EQ(ladder.rung(), 0);
@@ -30,6 +30,31 @@ TEST(Ladder, NineLateInSixtyDoNot) {
     EXPECT_FALSE(observe(ladder, 9, true));
     EXPECT_FALSE(observe(ladder, 51, false));
   }
+}
+
+// How many frames, every `period`-th of which is late, lead a rung down; 0 where `most` do not.
+int framesToStepDown(int period, int most) {
+  Ladder ladder(1);
+  for (int i = 1; i <= most; ++i) {
+    if (ladder.observe(i % period == 0, true, true)) return i;
+  }
+  return 0;
+}
+
+TEST(Ladder, TheShareOfLateFramesDecidesHowSoonItGoesDown) {
+  EXPECT_EQ(framesToStepDown(2, 100'000), 24);
+  EXPECT_EQ(framesToStepDown(3, 100'000), 45);
+  EXPECT_EQ(framesToStepDown(4, 100'000), 80);
+  EXPECT_EQ(framesToStepDown(6, 100'000), 510);
+  EXPECT_EQ(framesToStepDown(7, 100'000), 0) << "14 % are allowed";
+  EXPECT_EQ(framesToStepDown(100, 100'000), 0) << "hiccups";
+}
+
+TEST(Ladder, LateFramesWithMoreThanTheFewestTakeNoEvidenceAway) {
+  Ladder ladder(1);
+  EXPECT_FALSE(observe(ladder, 9, true));
+  EXPECT_FALSE(observe(ladder, 100, true, false));
+  EXPECT_TRUE(observe(ladder, 1, true));
 }
 
 TEST(Ladder, FramesWithMoreThanTheFewestAreTheGovernorsBusiness) {
