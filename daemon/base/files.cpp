@@ -1,5 +1,6 @@
 #include "daemon/base/files.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/sysinfo.h>
 
 #include "daemon/base/unique_fd.h"
 
@@ -63,7 +65,66 @@ Result<Ok> checkReplaceable(const std::string& path) {
   return Error{Errc::kIo, path + ": is no regular file and is not replaced; name another"};
 }
 
+FileStamp stampOf(const struct stat& s) {
+  const auto ns = [](const timespec& t) {
+    return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+  };
+  return {s.st_dev, s.st_ino, static_cast<std::uint64_t>(s.st_size), ns(s.st_mtim), ns(s.st_ctim)};
+}
+
+bool fitsIntoMemory(std::size_t size) {
+  struct sysinfo machine {};
+  return ::sysinfo(&machine) != 0 || size / machine.mem_unit < machine.totalram;
+}
+
+// How many bytes came before the file's end; -1 on an error.
+ssize_t readAll(int fd, std::span<std::byte> to) {
+  std::size_t done = 0;
+  while (done < to.size()) {
+    const ssize_t n = ::pread(fd, to.data() + done, to.size() - done, static_cast<off_t>(done));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return -1;
+    if (n == 0) break;
+    done += static_cast<std::size_t>(n);
+  }
+  return static_cast<ssize_t>(done);
+}
+
 }  // namespace
+
+std::optional<FileStamp> fileStamp(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+  return stampOf(status);
+}
+
+Result<FileCopy> FileCopy::read(const std::string& path, std::size_t most) {
+  const UniqueFd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // a pipe would wait
+  struct stat status {};
+  if (!fd.valid() || ::fstat(fd.get(), &status) != 0) return fileError(path, errno);
+  if (!S_ISREG(status.st_mode)) return Error{Errc::kMalformed, path + ": is not a regular file"};
+  FileCopy copy;
+  copy.stamp_ = stampOf(status);
+  copy.size_ = std::min<std::size_t>(copy.stamp_.size, most);
+  if (copy.size_ == 0) return copy;
+  const Error too_large{Errc::kIo, fmt::format("{}: its {} bytes do not fit into this machine's "
+                                               "memory",
+                                               path, copy.size_)};
+  if (!fitsIntoMemory(copy.size_)) return too_large;
+  try {
+    copy.bytes_ = HugeArray<std::byte>(copy.size_);
+  } catch (const std::bad_alloc&) {
+    return too_large;
+  }
+  const ssize_t n = readAll(fd.get(), {copy.bytes_.data(), copy.size_});
+  if (n < 0) return fileError(path, errno);
+  if (static_cast<std::size_t>(n) != copy.size_ || ::fstat(fd.get(), &status) != 0 ||
+      stampOf(status).size != copy.stamp_.size ||
+      stampOf(status).modified_ns != copy.stamp_.modified_ns) {
+    return Error{Errc::kIo, path + ": another program changed it while it was read; try again"};
+  }
+  return copy;
+}
 
 Result<MappedFile> MappedFile::open(const std::string& path) {
   const UniqueFd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // a pipe would wait

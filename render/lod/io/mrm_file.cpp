@@ -18,7 +18,7 @@ namespace {
 
 using namespace mrm;
 
-static_assert(std::endian::native == std::endian::little, "an .mrm file is mapped as it stands");
+static_assert(std::endian::native == std::endian::little, "an .mrm file is read as it stands");
 
 constexpr std::uint32_t kMostSections = 1024;
 
@@ -45,11 +45,15 @@ const char* nameOf(std::uint32_t kind) {
 
 class MrmReader {
  public:
-  MrmReader(std::string path, MappedFile file)
-      : path_(std::move(path)), file_(std::make_shared<MappedFile>(std::move(file))) {}
+  MrmReader(std::string path, FileCopy file)
+      : path_(std::move(path)), file_(std::make_shared<FileCopy>(std::move(file))) {}
+
+  // Of a file that is `file_size` long, of which the reader has the header alone.
+  Result<Ok> checkHeader(std::uint64_t file_size) { return readHeader(file_size); }
 
   Result<Dendrogram> read() {
-    if (const auto done = readHeader(); !done) return done.error();
+    if (const auto done = readHeader(size()); !done) return done.error();
+    if (const auto done = readTable(); !done) return done.error();
     for (std::uint32_t i = 0; i < header_.sections; ++i) {
       SectionEntry entry{};
       std::memcpy(&entry, data() + sizeof header_ + i * sizeof entry, sizeof entry);
@@ -65,7 +69,7 @@ class MrmReader {
   const std::byte* data() const { return file_->bytes().data(); }
   std::uint64_t size() const { return file_->bytes().size(); }
 
-  Result<Ok> readHeader() {
+  Result<Ok> readHeader(std::uint64_t file_size) {
     if (size() < sizeof header_) return broken(path_, "is too short for an .mrm file");
     std::memcpy(&header_, data(), sizeof header_);
     if (std::memcmp(header_.magic, kMagic, sizeof kMagic) != 0) {
@@ -79,10 +83,14 @@ class MrmReader {
     if (header_.header_checksum != checksum(&header_, offsetof(FileHeader, header_checksum))) {
       return broken(path_, "the header is damaged");
     }
-    if (header_.file_size != size()) {
+    if (header_.file_size != file_size) {
       return broken(path_, fmt::format("has {} bytes, its header says {}: cut short or overwritten",
-                                       size(), header_.file_size));
+                                       file_size, header_.file_size));
     }
+    return Ok{};
+  }
+
+  Result<Ok> readTable() const {
     const std::uint64_t table = header_.sections * sizeof(SectionEntry);
     if (header_.sections > kMostSections || sizeof header_ + table > size() ||
         header_.table_checksum != checksum(data() + sizeof header_, table)) {
@@ -147,16 +155,24 @@ class MrmReader {
   }
 
   std::string path_;
-  std::shared_ptr<MappedFile> file_;
+  std::shared_ptr<FileCopy> file_;
   FileHeader header_{};
   Dendrogram::Arrays arrays_;
 };
 
 }  // namespace
 
-Result<Dendrogram> readMrm(const std::string& path) {
-  auto file = MappedFile::open(path);
+// The header by itself first: a large file of another kind is not read to its end for nothing. What
+// counts is the second look, at the whole copy.
+Result<Dendrogram> readMrm(const std::string& path, FileStamp* stamp) {
+  auto head = FileCopy::read(path, sizeof(FileHeader));
+  if (!head) return head.error();
+  const std::uint64_t file_size = head->stamp().size;
+  if (const auto good = MrmReader(path, *std::move(head)).checkHeader(file_size); !good)
+    return good.error();
+  auto file = FileCopy::read(path);
   if (!file) return file.error();
+  if (stamp) *stamp = file->stamp();
   return MrmReader(path, *std::move(file)).read();
 }
 

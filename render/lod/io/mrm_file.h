@@ -1,17 +1,20 @@
-// .mrm, the multiresolution model file, version 1: written whole, read by mmap. Format: FORMAT.md.
+// .mrm, the multiresolution model file, version 1: written whole, read whole. Format: FORMAT.md.
 #pragma once
 
 #include <string>
 
+#include "daemon/base/files.h"
 #include "daemon/base/result.h"
 #include "render/lod/dendrogram.h"
 
 namespace merlin::render {
 
-// Maps and checks the file: checksums, sizes, and all that Dendrogram::make() checks. O(file), at
-// memory speed. Errors, with the file's name and the section: kNotFound, kIo, kMalformed (damaged,
-// cut short), kUnsupported (a later version).
-Result<Dendrogram> readMrm(const std::string& path);
+// Reads the file into the dendrogram's own memory and checks that: checksums, sizes, and all that
+// Dendrogram::make() checks. Whatever happens to the file afterwards changes nothing. O(file), at
+// memory speed. `stamp`, where given: of the file that was read. Errors, with the file's name and
+// the section: kNotFound, kIo (also: it changed while it was read, it does not fit into memory),
+// kMalformed (damaged, cut short), kUnsupported (a later version).
+Result<Dendrogram> readMrm(const std::string& path, FileStamp* stamp = nullptr);
 
 // Whether its features can be told from one another in a model, which keeps of each name as many
 // characters as 31 bytes hold; to be asked before long work. Errors: kUnsupported, without the
