@@ -244,7 +244,7 @@ LoadedSettings loadSettings(std::string_view json, const std::string& folder) {
 }
 
 LoadedSettings loadSettingsFile(const std::string& path) {
-  const auto file = MappedFile::open(path);
+  const auto file = FileCopy::read(path);
   if (!file) {
     LoadedSettings loaded;
     std::string what = file.error().what;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "config/loader.h"
-#include "render/lod/dendrogram.h"
+#include "daemon/wall/wall_checks.h"
 
 namespace merlin {
 
@@ -16,8 +16,8 @@ struct DaemonOptions {
 };
 
 struct Configuration {
-  LoadedSettings loaded;                   // with every finding
-  std::vector<render::Dendrogram> models;  // of the wall's role; meaningful unless invalid
+  LoadedSettings loaded;            // with every finding
+  std::vector<wall::Model> models;  // of the wall's role; meaningful unless invalid
 };
 
 // Reads the file, and what else a start with these roles would read; what another role would need

@@ -481,6 +481,7 @@ std::function<std::vector<std::string>()> Daemon::wallEvents() {
       }
     };
     tell("wall", events->take());
+    tell("model", wall_->modelEvents());
     if (health) tell("device", health->take(clock_.now()));
     tell("server", serverEvents("wall"));
     tellServices(documents);

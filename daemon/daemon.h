@@ -69,7 +69,7 @@ class Daemon {
   std::string summary(Timestamp now) const;
 
   Settings settings_;
-  std::vector<render::Dendrogram> models_;  // until the wall has them
+  std::vector<wall::Model> models_;  // until the wall has them
   DaemonOptions options_;
   Clock& clock_;
   ThreadWatch threads_;  // before whoever has threads

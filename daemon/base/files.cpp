@@ -1,5 +1,6 @@
 #include "daemon/base/files.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/sysinfo.h>
 
 #include "daemon/base/unique_fd.h"
 
@@ -65,55 +67,77 @@ Result<Ok> checkReplaceable(const std::string& path) {
   return Error{Errc::kIo, path + ": is no regular file and is not replaced; name another"};
 }
 
-}  // namespace
-
-namespace {
-
-struct OpenFile {
-  UniqueFd fd;
-  std::size_t size = 0;
-};
-
-Result<OpenFile> openRegular(const std::string& path) {
-  OpenFile file{UniqueFd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)),
-                0};  // a pipe would wait
-  struct stat status {};
-  if (!file.fd.valid() || ::fstat(file.fd.get(), &status) != 0) return fileError(path, errno);
-  if (!S_ISREG(status.st_mode)) return Error{Errc::kMalformed, path + ": is not a regular file"};
-  file.size = static_cast<std::size_t>(status.st_size);
-  return file;
+FileStamp stampOf(const struct stat& s) {
+  const auto ns = [](const timespec& t) {
+    return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+  };
+  return {s.st_dev, s.st_ino, static_cast<std::uint64_t>(s.st_size), ns(s.st_mtim), ns(s.st_ctim)};
 }
 
-}  // namespace
-
-Result<MappedFile> MappedFile::open(const std::string& path) {
-  const auto file = openRegular(path);
-  if (!file) return file.error();
-  if (file->size == 0) return MappedFile();
-  void* data = ::mmap(nullptr, file->size, PROT_READ, MAP_PRIVATE, file->fd.get(), 0);
-  if (data == MAP_FAILED) return fileError(path, errno);
-  return MappedFile(static_cast<const std::byte*>(data), file->size);
+bool fitsIntoMemory(std::size_t size) {
+  struct sysinfo machine {};
+  return ::sysinfo(&machine) != 0 || size / machine.mem_unit < machine.totalram;
 }
 
-Result<FileCopy> FileCopy::read(const std::string& path) {
-  const auto file = openRegular(path);
-  if (!file) return file.error();
-  FileCopy copy;
-  if (file->size == 0) return copy;
-  try {
-    copy.bytes_ = HugeArray<std::byte>(file->size);
-  } catch (const std::bad_alloc&) {
-    return Error{Errc::kIo, fmt::format("{}: no memory for its {} bytes", path, file->size)};
-  }
-  while (copy.size_ < file->size) {
-    const ssize_t n =
-        ::read(file->fd.get(), copy.bytes_.data() + copy.size_, file->size - copy.size_);
+// How many bytes came before the file's end; -1 on an error.
+ssize_t readAll(int fd, std::span<std::byte> to) {
+  std::size_t done = 0;
+  while (done < to.size()) {
+    const ssize_t n = ::pread(fd, to.data() + done, to.size() - done, static_cast<off_t>(done));
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) return fileError(path, errno);
-    if (n == 0) return Error{Errc::kIo, path + ": got shorter while it was read"};
-    copy.size_ += static_cast<std::size_t>(n);
+    if (n < 0) return -1;
+    if (n == 0) break;
+    done += static_cast<std::size_t>(n);
+  }
+  return static_cast<ssize_t>(done);
+}
+
+}  // namespace
+
+std::optional<FileStamp> fileStamp(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+  return stampOf(status);
+}
+
+Result<FileCopy> FileCopy::read(const std::string& path, std::size_t most) {
+  const UniqueFd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // a pipe would wait
+  struct stat status {};
+  if (!fd.valid() || ::fstat(fd.get(), &status) != 0) return fileError(path, errno);
+  if (!S_ISREG(status.st_mode)) return Error{Errc::kMalformed, path + ": is not a regular file"};
+  FileCopy copy;
+  copy.stamp_ = stampOf(status);
+  copy.size_ = std::min<std::size_t>(copy.stamp_.size, most);
+  if (copy.size_ == 0) return copy;
+  const Error too_large{Errc::kIo, fmt::format("{}: its {} bytes do not fit into this machine's "
+                                               "memory",
+                                               path, copy.size_)};
+  if (!fitsIntoMemory(copy.size_)) return too_large;
+  try {
+    copy.bytes_ = HugeArray<std::byte>(copy.size_);
+  } catch (const std::bad_alloc&) {
+    return too_large;
+  }
+  const ssize_t n = readAll(fd.get(), {copy.bytes_.data(), copy.size_});
+  if (n < 0) return fileError(path, errno);
+  if (static_cast<std::size_t>(n) != copy.size_ || ::fstat(fd.get(), &status) != 0 ||
+      stampOf(status).size != copy.stamp_.size ||
+      stampOf(status).modified_ns != copy.stamp_.modified_ns) {
+    return Error{Errc::kIo, path + ": another program changed it while it was read; try again"};
   }
   return copy;
+}
+
+Result<MappedFile> MappedFile::open(const std::string& path) {
+  const UniqueFd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // a pipe would wait
+  struct stat status {};
+  if (!fd.valid() || ::fstat(fd.get(), &status) != 0) return fileError(path, errno);
+  if (!S_ISREG(status.st_mode)) return Error{Errc::kMalformed, path + ": is not a regular file"};
+  const auto size = static_cast<std::size_t>(status.st_size);
+  if (size == 0) return MappedFile();
+  void* data = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd.get(), 0);
+  if (data == MAP_FAILED) return fileError(path, errno);
+  return MappedFile(static_cast<const std::byte*>(data), size);
 }
 
 MappedFile::MappedFile(MappedFile&& other) noexcept

@@ -1,18 +1,59 @@
-// Files: a read-only mapping of one, and writing one whole or not at all.
+// Files: a copy of one in our own memory, a read-only mapping of one, and writing one whole or not
+// at all.
+//
+// The rule: what merlind reads it reads by FileCopy, so that nothing that another program does to
+// a file afterwards changes what was checked, or ends the wall. MappedFile is for the tools' large
+// inputs, which need not fit into memory.
 #pragma once
 
+#include <compare>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "daemon/base/huge_array.h"
 #include "daemon/base/result.h"
 
 namespace merlin {
 
-// A whole file as bytes, by mmap: pages come as they are touched. Reentrant.
+// What tells a file's content from another one under the same name: it changes when the file is
+// written, cut, or replaced.
+struct FileStamp {
+  std::uint64_t device = 0, inode = 0, size = 0;
+  std::int64_t modified_ns = 0, changed_ns = 0;  // of the file system's clock
+  auto operator<=>(const FileStamp&) const = default;
+};
+// Of what `path` names, through links; nothing where there is no regular file.
+std::optional<FileStamp> fileStamp(const std::string& path);
+
+// A whole file, copied into our own memory. Reentrant.
+class FileCopy {
+ public:
+  static constexpr std::size_t kAll = ~std::size_t{0};
+  // Reads the first `most` bytes, all of them where the file has no more. O(file).
+  // Errors: kNotFound; kIo (also: larger than this machine's memory, or it changed while it was
+  // read); kMalformed (not a regular file).
+  static Result<FileCopy> read(const std::string& path, std::size_t most = kAll);
+
+  std::span<const std::byte> bytes() const noexcept { return {bytes_.data(), size_}; }
+  std::string_view text() const noexcept {
+    return {reinterpret_cast<const char*>(bytes_.data()), size_};
+  }
+  // Of the file when it was read.
+  const FileStamp& stamp() const noexcept { return stamp_; }
+
+ private:
+  HugeArray<std::byte> bytes_;
+  std::size_t size_ = 0;
+  FileStamp stamp_;
+};
+
+// A whole file as bytes, by mmap: pages come as they are touched. Reentrant. Not for merlind.
 // A file that another program cuts short while it is mapped ends this one with SIGBUS, as every
 // mapping does; MERLIN's own writers replace files and never cut them.
 class MappedFile {
@@ -34,22 +75,6 @@ class MappedFile {
   MappedFile(const std::byte* data, std::size_t size) : data_(data), size_(size) {}
 
   const std::byte* data_ = nullptr;
-  std::size_t size_ = 0;
-};
-
-// A whole file as bytes in memory of our own: what others do to the file afterwards changes
-// nothing. Reentrant.
-class FileCopy {
- public:
-  // Errors: as MappedFile::open(); kIo also where the file gets shorter while it is read, or there
-  // is not enough memory for it.
-  static Result<FileCopy> read(const std::string& path);
-
-  FileCopy() = default;
-  std::span<const std::byte> bytes() const noexcept { return {bytes_.data(), size_}; }
-
- private:
-  HugeArray<std::byte> bytes_;
   std::size_t size_ = 0;
 };
 

@@ -15,7 +15,7 @@ namespace merlin::cli {
 Result<nlohmann::ordered_json> readConfiguration(const std::string& path,
                                                  const std::string& device) {
   auto config = nlohmann::ordered_json::object();
-  if (const auto file = MappedFile::open(path)) {
+  if (const auto file = FileCopy::read(path)) {
     config = nlohmann::ordered_json::parse(file->text(), nullptr, false);
     if (!config.is_object())
       return Error{Errc::kMalformed,
@@ -42,7 +42,7 @@ Result<Ok> saveDeviceSettings(const std::string& path, const std::string& device
 namespace {
 
 int importGlove(const std::string& input, const std::string& output) {
-  const auto file = MappedFile::open(input);
+  const auto file = FileCopy::read(input);
   if (!file) return fail(file.error());
   const auto imported = cyberglove::importCalibration(file->text());
   if (!imported) return fail({imported.error().code, input + ": " + imported.error().what});

@@ -17,9 +17,9 @@ constexpr std::string_view kAlphabet =
     "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:+=^!/*?&<>()[]{}@%$#";
 
 Result<std::string> readAll(const std::string& path) {
-  const auto file = MappedFile::open(path);
+  const auto file = FileCopy::read(path, 65536);
   if (!file) return file.error();
-  return std::string(file->text().substr(0, 65536));
+  return std::string(file->text());
 }
 
 }  // namespace

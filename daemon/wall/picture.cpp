@@ -86,34 +86,51 @@ Result<std::unique_ptr<Picture>> Picture::make(const render::Dendrogram& model,
                                                const render::RenderSettings& settings,
                                                double radius_m, const Clock& clock,
                                                std::shared_ptr<const DrawContexts> contexts) {
-  std::unique_ptr<Picture> picture(new Picture(model, plan, settings, radius_m, clock));
   if (!contexts) {
     auto made = DrawContexts::make(settings);
     if (!made) return made.error();
     contexts = *std::move(made);
   }
-  picture->contexts_ = std::move(contexts);
-  const auto texture = textureOf(model);
+  auto picture = prepare(model, plan, settings, radius_m, clock);
+  if (!picture) return picture.error();
+  if (const auto done = (*picture)->upload(std::move(contexts)); !done) return done.error();
+  return picture;
+}
+
+Result<std::unique_ptr<Picture>> Picture::prepare(const render::Dendrogram& model,
+                                                  const render::TilePlan& plan,
+                                                  const render::RenderSettings& settings,
+                                                  double radius_m, const Clock& clock) {
+  std::unique_ptr<Picture> picture(new Picture(model, plan, settings, radius_m, clock));
+  auto texture = textureOf(model);
   if (!texture) return texture.error();
-  const render::TextureImage image{texture->width, texture->height, texture->pixels};
-  std::vector<std::uint32_t> full;
-  picture->clusters_.everything(full, picture->full_ends_);
+  picture->prepared_ = std::make_unique<Prepared>();
+  Prepared& prepared = *picture->prepared_;
+  prepared.texels = std::move(texture->pixels);
+  prepared.texture = {texture->width, texture->height, prepared.texels};
+  picture->clusters_.everything(prepared.full, picture->full_ends_);
+  return picture;
+}
+
+Result<Ok> Picture::upload(std::shared_ptr<const DrawContexts> contexts) {
+  contexts_ = std::move(contexts);
+  const auto prepared = std::move(prepared_);
   const auto painterIn = [&](const render::GlContext& context) {
-    return TilePainter::make(context.gl(), model, picture->plan_, settings, full,
-                             texture->pixels.empty() ? nullptr : &image, clock);
+    return TilePainter::make(context.gl(), model_, plan_, settings_, prepared->full,
+                             prepared->texels.empty() ? nullptr : &prepared->texture, clock_);
   };
   // At once, each on its thread.
-  DrawThread* const other = picture->contexts_->other.get();
+  DrawThread* const other = contexts_->other.get();
   Result<std::unique_ptr<TilePainter>> others = std::unique_ptr<TilePainter>();
   const std::function<void()> makeOthers = [&] { others = painterIn(other->context()); };
   if (other) other->start(makeOthers);
-  auto own = painterIn(*picture->contexts_->own);
+  auto own = painterIn(*contexts_->own);
   if (other) other->wait();
-  if (others) picture->other_ = *std::move(others);
-  if (own) picture->painter_ = *std::move(own);
+  if (others) other_ = *std::move(others);
+  if (own) painter_ = *std::move(own);
   if (!own) return own.error();
   if (!others) return others.error();
-  return picture;
+  return Ok{};
 }
 
 Picture::Picture(const render::Dendrogram& model, const render::TilePlan& plan,

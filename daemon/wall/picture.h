@@ -35,7 +35,8 @@ struct DrawContexts {
   std::string renderer() const;  // for a person
 };
 
-// Thread-bound: made, used and destroyed on the wall's thread (its GL context is current there).
+// Thread-bound: uploaded, used and destroyed on the wall's thread (its GL context is current
+// there).
 class Picture final : public Painter {
  public:
   // `radius_m`: the model is scaled to a bounding sphere of this radius about its box's centre.
@@ -46,6 +47,13 @@ class Picture final : public Painter {
       const render::Dendrogram& model, const render::TilePlan& plan,
       const render::RenderSettings& settings, double radius_m, const Clock& clock,
       std::shared_ptr<const DrawContexts> contexts = nullptr);
+  // make() in two steps: prepare(), on any thread, does what needs no OpenGL, which is most of it;
+  // upload(), once, on the wall's thread, the rest. Errors: as make()'s.
+  static Result<std::unique_ptr<Picture>> prepare(const render::Dendrogram& model,
+                                                  const render::TilePlan& plan,
+                                                  const render::RenderSettings& settings,
+                                                  double radius_m, const Clock& clock);
+  Result<Ok> upload(std::shared_ptr<const DrawContexts> contexts);
   ~Picture() override;
 
   // Draws every state that a frame uses once, so that no shader is compiled in a frame.
@@ -104,6 +112,13 @@ class Picture final : public Painter {
   render::Clusters clusters_;
   render::ViewCut view_cut_;
   std::vector<std::uint32_t> full_ends_;  // of clusters, in the full resolution
+  // From prepare() to upload().
+  struct Prepared {
+    std::vector<std::uint32_t> full;
+    render::TextureImage texture{};
+    std::vector<std::uint8_t> texels;
+  };
+  std::unique_ptr<Prepared> prepared_;
   // The cut: its triangles, where clusters end in them (if it is clustered), and the levels of an
   // even one.
   std::vector<std::uint32_t> cut_, cut_ends_, even_levels_;

@@ -27,22 +27,29 @@ std::vector<ModelSetting> modelsOf(const WallSettings& wall) {
 
 }  // namespace
 
-std::vector<render::Dendrogram> readModels(LoadedSettings& loaded) {
-  std::vector<render::Dendrogram> models;
-  const render::Shown& show = loaded.settings.wall.render.show;
+Result<Model> readModel(const std::string& path, const render::Shown& show) {
+  FileStamp stamp;
+  auto model = render::readMrmCopy(path, &stamp);
+  if (!model) return model.error();
+  if (const auto shown = render::checkShown(*model, show); !shown)
+    return Error{Errc::kInvalidArgument, fmt::format("{}: {}", path, shown.error().what)};
+  return Model{*std::move(model), path, stamp};
+}
+
+std::vector<Model> readModels(LoadedSettings& loaded) {
+  std::vector<Model> models;
   for (const auto& [pointer, path] : modelsOf(loaded.settings.wall)) {
     if (path.empty()) {
       loaded.wrong(pointer, "names no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)");
       continue;
     }
-    auto model = render::readMrmCopy(path);
-    if (!model) {
-      loaded.wrong(pointer, kCannot + model.error().what);
+    auto model = readModel(path, loaded.settings.wall.render.show);
+    if (model) {
+      models.push_back(*std::move(model));
       continue;
     }
-    if (const auto shown = render::checkShown(*model, show); !shown)
-      loaded.wrong("/wall/render/show", fmt::format("{}{}: {}", kCannot, path, shown.error().what));
-    models.push_back(*std::move(model));
+    const bool shows = model.error().code == Errc::kInvalidArgument;
+    loaded.wrong(shows ? "/wall/render/show" : pointer, kCannot + model.error().what);
   }
   return models;
 }

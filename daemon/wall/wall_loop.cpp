@@ -49,6 +49,7 @@ void WallLoop::run(const std::stop_token& stop, const std::function<void()>& fir
     publishStats(p_.clock.now());
     if (p_.progress) p_.progress->step();
     if (std::exchange(first, false)) first_frame();
+    replaceContents();
   }
 }
 
@@ -133,6 +134,19 @@ void WallLoop::showContent(std::size_t content) {
   moving_level_.reset();
   refining_ = full_detail_ = false;
   expectHome();
+}
+
+// What the new one costs is not known: the governor learns it as it does on any other view.
+void WallLoop::replaceContents() {
+  if (!p_.replacements) return;
+  const auto fresh = p_.replacements->take(view_.moving, view_.T_eye_model);
+  if (!fresh) return;
+  p_.contents[fresh->place] = fresh->content;
+  fresh->content.painter->setScale(scale());
+  homes_[fresh->place].drawing_s = 0;
+  if (fresh->place != content_) return;
+  first_refinement_ = true;  // something of it is seen soon
+  showContent(content_);
 }
 
 void WallLoop::look(std::int64_t k, Timestamp began) {

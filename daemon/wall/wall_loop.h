@@ -41,6 +41,19 @@ struct Content {
   Painter* painter;
 };
 
+// Port: contents that take the places of others while the wall runs. Implemented by ShownModels.
+class ContentSource {
+ public:
+  virtual ~ContentSource() = default;
+  struct Replacement {
+    std::size_t place;
+    Content content;
+  };
+  // Asked between frames. What stood in that place is not used again. `T_eye_model`: the view that
+  // it will be seen from. May take long where nothing moves.
+  virtual std::optional<Replacement> take(bool moving, const Eigen::Isometry3f& T_eye_model) = 0;
+};
+
 struct WallParts {
   std::vector<Content> contents;  // one at least; the first one is shown first
   render::Scene& scene;
@@ -53,9 +66,10 @@ struct WallParts {
   shm::Channel<shm::FrameTrace>* trace = nullptr;  // where steps are told; may be none
   PointerMarker* marker = nullptr;                 // who marks where the hand points; the same
   shm::SeqSlot<shm::WallInteraction>* interaction = nullptr;  // where that is told
-  int fade_frames = 1;           // in which a finer picture replaces a coarser
-  double return_after_s = 0;     // of a view that shows nothing; 0: never
-  Progress* progress = nullptr;  // stepped once a period; may be none
+  int fade_frames = 1;                    // in which a finer picture replaces a coarser
+  double return_after_s = 0;              // of a view that shows nothing; 0: never
+  Progress* progress = nullptr;           // stepped once a period; may be none
+  ContentSource* replacements = nullptr;  // the same
 };
 
 // Thread-bound but for request(), hold() and setRate().
@@ -111,6 +125,7 @@ class WallLoop {
   void expectHome();
   void returnHome();
   void showContent(std::size_t content);
+  void replaceContents();
 
   WallParts p_;
   double asked_hz_, configured_hz_;

@@ -10,15 +10,17 @@
 namespace merlin::wall {
 namespace {
 
-// In the order in which they are shown.
-const std::string& modelFile(const WallSettings& wall, std::size_t i) {
-  return i == 0 ? wall.model : wall.contents[i - 1].model;
+// With the stamps of the files that were read: one that was replaced since is noticed.
+std::vector<ModelWatch::Watched> filesOf(const std::vector<Model>& models) {
+  std::vector<ModelWatch::Watched> files;
+  for (const Model& model : models) files.push_back({model.path, model.stamp});
+  return files;
 }
 
 }  // namespace
 
 Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings,
-                                                 std::vector<render::Dendrogram> models,
+                                                 std::vector<Model> models,
                                                  std::uint64_t generation,
                                                  const shm::Endpoints& endpoints,
                                                  ThreadWatch& watch, Clock& clock) {
@@ -48,9 +50,9 @@ Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings,
   return role;
 }
 
-WallRole::WallRole(const Settings& settings, std::vector<render::Dendrogram> models,
-                   render::TilePlan plan, render::Scene scene,
-                   shm::SegmentWriter<shm::WallSegment> segment, ThreadWatch& watch, Clock& clock)
+WallRole::WallRole(const Settings& settings, std::vector<Model> models, render::TilePlan plan,
+                   render::Scene scene, shm::SegmentWriter<shm::WallSegment> segment,
+                   ThreadWatch& watch, Clock& clock)
     : settings_(settings),
       models_(std::move(models)),
       plan_(std::move(plan)),
@@ -58,7 +60,9 @@ WallRole::WallRole(const Settings& settings, std::vector<render::Dendrogram> mod
       governor_(settings.wall.governor),
       segment_(std::move(segment)),
       watch_(watch),
-      clock_(clock) {}
+      clock_(clock),
+      model_watch_(filesOf(models_), ShownModels::maker(plan_, settings_.wall, clock_), watch_,
+                   clock_) {}
 
 WallRole::~WallRole() { thread_.stop(); }
 
@@ -71,21 +75,13 @@ std::future<Result<std::string>> WallRole::start() {
 }
 
 void WallRole::run(const std::stop_token& stop, Progress& progress) {
-  std::vector<std::unique_ptr<Picture>> pictures;
-  std::vector<Content> contents;
-  for (const render::Dendrogram& model : models_) {
-    auto picture =
-        Picture::make(model, plan_, settings_.wall.render, settings_.wall.scene.model_radius_m,
-                      clock_, pictures.empty() ? nullptr : pictures.front()->contexts());
-    if (!picture) {
-      const std::string& path = modelFile(settings_.wall, contents.size());
-      ready_.set_value(Error{picture.error().code, path + ": " + picture.error().what});
-      return;
-    }
-    (*picture)->warmUp(scene_.view().T_eye_model);
-    contents.push_back({&model, picture->get()});
-    pictures.push_back(*std::move(picture));
+  auto made = ShownModels::make(std::move(models_), plan_, settings_.wall, model_watch_,
+                                scene_.view().T_eye_model, clock_);
+  if (!made) {
+    ready_.set_value(made.error());
+    return;
   }
+  ShownModels& models = **made;
   DeviceFeed feed(shm::segmentName(settings_.instance, "devices"),
                   settings_.wall.scene.hand_station,
                   fromSeconds(settings_.wall.scene.stale_after_s),
@@ -94,13 +90,13 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
   for (const auto& sink : sinks_) sinks.push_back(sink.get());
   PointerMarker marker(plan_);
   render::TimerFrameClock frame_clock(clock_);
-  WallLoop loop({contents, scene_, governor_, feed, sinks, segment_->stats, clock_, frame_clock,
-                 &segment_->trace, &marker, &segment_->interaction,
-                 settings_.wall.render.fade_frames, settings_.wall.scene.return_after_s,
-                 &progress});
+  WallLoop loop({models.contents(), scene_, governor_, feed, sinks, segment_->stats, clock_,
+                 frame_clock, &segment_->trace, &marker, &segment_->interaction,
+                 settings_.wall.render.fade_frames, settings_.wall.scene.return_after_s, &progress,
+                 &models});
   loop.calibrate();
   loop_.store(&loop);
-  loop.run(stop, [&] { ready_.set_value(pictures.front()->contexts()->renderer()); });
+  loop.run(stop, [&] { ready_.set_value(models.contexts().renderer()); });
   loop_.store(nullptr);
 }
 

@@ -12,7 +12,8 @@
 #include "daemon/base/watched_thread.h"
 #include "daemon/shm/segment.h"
 #include "daemon/wall/device_feed.h"
-#include "daemon/wall/picture.h"
+#include "daemon/wall/shown_models.h"
+#include "daemon/wall/wall_checks.h"
 #include "daemon/wall/wall_loop.h"
 #include "render/out/png_sink.h"
 #include "render/out/shm_sink.h"
@@ -23,8 +24,7 @@ class WallRole {
  public:
   // Makes the segments; nothing runs yet. `models`: readModels()'s, at least one. Errors: what is
   // wrong with the wall's settings; kBusy (a living daemon has the segments), kIo.
-  static Result<std::unique_ptr<WallRole>> make(const Settings& settings,
-                                                std::vector<render::Dendrogram> models,
+  static Result<std::unique_ptr<WallRole>> make(const Settings& settings, std::vector<Model> models,
                                                 std::uint64_t generation,
                                                 const shm::Endpoints& endpoints, ThreadWatch& watch,
                                                 Clock& clock);
@@ -45,17 +45,20 @@ class WallRole {
   // Why the picture of /wall/png is not written; empty while it is, or none is asked for.
   std::string pictureFault() const { return png_ ? png_->error() : std::string(); }
 
+  // What became of models whose files were replaced, since the last call. Thread-safe.
+  std::vector<std::string> modelEvents() { return model_watch_.takeEvents(); }
+
   void beat(Timestamp now) const { segment_.beat(now); }
   const shm::WallSegment& segment() const { return *segment_; }
 
  private:
-  WallRole(const Settings& settings, std::vector<render::Dendrogram> models, render::TilePlan plan,
+  WallRole(const Settings& settings, std::vector<Model> models, render::TilePlan plan,
            render::Scene scene, shm::SegmentWriter<shm::WallSegment> segment, ThreadWatch& watch,
            Clock& clock);
   void run(const std::stop_token& stop, Progress& progress);
 
   Settings settings_;
-  std::vector<render::Dendrogram> models_;
+  std::vector<Model> models_;
   render::TilePlan plan_;
   render::Scene scene_;
   render::Governor governor_;
@@ -66,6 +69,7 @@ class WallRole {
   render::PngFrameSink* png_ = nullptr;  // of sinks_
   std::promise<Result<std::string>> ready_;
   std::atomic<WallLoop*> loop_{nullptr};
+  ModelWatch model_watch_;  // before the wall's thread, which takes from it
   WatchedThread thread_;
 };
 

@@ -159,7 +159,7 @@ std::string formatTranscript(const Transcript& transcript) {
 }
 
 Result<Transcript> readTranscript(const std::string& path) {
-  const auto file = MappedFile::open(path);
+  const auto file = FileCopy::read(path, kLongestFile + 1);
   if (!file) return file.error();
   if (file->text().size() > kLongestFile)
     return Error{Errc::kMalformed, fmt::format("{}: is too long for a transcript", path)};

@@ -200,7 +200,7 @@ Result<Recording> parseRecording(std::string_view text, const std::string& file,
 }
 
 Result<Recording> loadRecording(const std::string& path, std::optional<InputUnit> unit) {
-  const auto file = MappedFile::open(path);
+  const auto file = FileCopy::read(path);
   if (!file) return file.error();
   return parseRecording(file->text(), path, unit);
 }

@@ -206,7 +206,7 @@ Result<NetworkFile> parseNetwork(std::string_view text, const std::string& file)
 }
 
 Result<NetworkFile> loadNetwork(const std::string& path) {
-  const auto file = MappedFile::open(path);
+  const auto file = FileCopy::read(path);
   if (!file) return file.error();
   return parseNetwork(file->text(), path);
 }

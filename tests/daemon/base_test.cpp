@@ -50,6 +50,37 @@ TEST(Nearest, FindsTypingErrorsAndNothingFarAway) {
   EXPECT_EQ(nearest(std::string(100'000, 'x'), known), "");
 }
 
+TEST(FileCopy, IsTheFilesBytesAndStaysThemWhateverBecomesOfTheFile) {
+  const test::TempDir dir;
+  test::writeText(dir / "f", std::string(10'000, 'a'));
+  const auto copy = FileCopy::read(dir / "f");
+  ASSERT_TRUE(copy);
+  EXPECT_EQ(copy->stamp(), fileStamp(dir / "f"));
+  test::writeText(dir / "f", std::string(10'000, 'b'));  // in place
+  EXPECT_NE(copy->stamp(), fileStamp(dir / "f"));
+  ASSERT_EQ(::truncate((dir / "f").c_str(), 0), 0);
+  EXPECT_EQ(copy->text(), std::string(10'000, 'a'));
+  EXPECT_EQ(FileCopy::read(dir / "f")->text(), "");
+  test::writeText(dir / "f", "abc");
+  EXPECT_EQ(FileCopy::read(dir / "f", 2)->text(), "ab");
+}
+
+TEST(FileCopy, WhatCannotBeReadIsAnError) {
+  const test::TempDir dir;
+  EXPECT_EQ(FileCopy::read(dir / "none").error().code, Errc::kNotFound);
+  EXPECT_EQ(FileCopy::read(dir.path()).error().code, Errc::kMalformed);
+  ASSERT_EQ(::mkfifo((dir / "pipe").c_str(), 0600), 0);
+  EXPECT_EQ(FileCopy::read(dir / "pipe").error().code, Errc::kMalformed) << "and does not wait";
+  EXPECT_FALSE(fileStamp(dir / "pipe"));
+  test::writeText(dir / "vast", "");
+  ASSERT_EQ(::truncate((dir / "vast").c_str(), off_t{1} << 42), 0);  // no bytes on the disk
+  const auto vast = FileCopy::read(dir / "vast");
+  ASSERT_FALSE(vast);
+  EXPECT_EQ(vast.error().code, Errc::kIo);
+  EXPECT_NE(vast.error().what.find("do not fit into this machine's memory"), std::string::npos);
+  EXPECT_TRUE(FileCopy::read(dir / "vast", 100)) << "its beginning does";
+}
+
 TEST(MappedFile, IsTheFilesBytes) {
   const test::TempDir dir;
   test::writeText(dir / "f", "abc");

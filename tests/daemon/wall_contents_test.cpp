@@ -60,5 +60,56 @@ TEST_F(WallContentsTest, ACommandDoesTheSame) {
   EXPECT_EQ(interaction().content, 1u);
 }
 
+// Has one other content for one place, when it is told to.
+class OneReplacement final : public ContentSource {
+ public:
+  OneReplacement(std::size_t place, Content content) : fresh_({place, content}) {}
+  std::optional<Replacement> take(bool, const Eigen::Isometry3f&) override {
+    return due ? std::exchange(fresh_, std::nullopt) : std::nullopt;
+  }
+  bool due = false;
+
+ private:
+  std::optional<Replacement> fresh_;
+};
+
+TEST_F(WallContentsTest, AReplacedOneIsDrawnFromTheNextFrameAndTheOldOneNeverAgain) {
+  OneReplacement fresh(0, {&model(), &dear_});
+  replacements_ = &fresh;
+  std::size_t old_frames = 0;
+  run(4, [&](Timestamp) {
+    if (feed_.begins.size() == 60) {
+      fresh.due = true;
+      old_frames = painter_.drawn.size() + 1;  // that of this period
+    }
+  });
+  EXPECT_EQ(painter_.drawn.size(), old_frames);
+  EXPECT_GT(dear_.drawn.size(), 40u);
+  EXPECT_GT(painter_.levels.back(), 0u);
+}
+
+TEST_F(WallContentsTest, AReplacedOneOfAStillWallIsShownWhole) {
+  feed_.pushed = false;
+  OneReplacement fresh(0, {&model(), &dear_});
+  replacements_ = &fresh;
+  std::size_t before = 0;
+  run(6, [&](Timestamp) {
+    if (feed_.begins.size() != 100) return;
+    fresh.due = true;
+    EXPECT_TRUE(stats().full_detail);
+    before = frames_.frames.size();
+  });
+  EXPECT_GT(frames_.frames.size(), before);
+  EXPECT_TRUE(stats().full_detail);
+}
+
+TEST_F(WallContentsTest, AReplacedOneThatIsNotShownWaitsForItsTurn) {
+  OneReplacement fresh(1, {&model(), &painter_});
+  fresh.due = true;
+  replacements_ = &fresh;
+  run(3);
+  EXPECT_EQ(dear_.drawn.size(), 3u) << "measured before the first frame, and never again";
+}
+
 }  // namespace
 }  // namespace merlin::wall

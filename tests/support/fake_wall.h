@@ -155,9 +155,9 @@ class FakeWall : public testing::Test {
     loop.run(stop_.get_token(), [&] { ++first_frames_; });
   }
   WallParts parts() {
-    return {contents_,      scene_,       governor_,    feed_,   {&frames_},         *stats_,
-            clock_,         frame_clock_, trace_.get(), marker_, interaction_.get(), fade_frames_,
-            return_after_s_};
+    return {contents_,       scene_,       governor_,    feed_,   {&frames_},         *stats_,
+            clock_,          frame_clock_, trace_.get(), marker_, interaction_.get(), fade_frames_,
+            return_after_s_, nullptr,      replacements_};
   }
   shm::WallStats stats() const { return *stats_->read(); }
 
@@ -174,6 +174,7 @@ class FakeWall : public testing::Test {
   std::unique_ptr<shm::Channel<shm::FrameTrace>> trace_ =
       std::make_unique<shm::Channel<shm::FrameTrace>>();
   PointerMarker* marker_ = nullptr;
+  ContentSource* replacements_ = nullptr;
   std::unique_ptr<shm::SeqSlot<shm::WallInteraction>> interaction_ =
       std::make_unique<shm::SeqSlot<shm::WallInteraction>>();
   std::stop_source stop_;

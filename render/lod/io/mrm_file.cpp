@@ -49,8 +49,12 @@ class MrmReader {
   MrmReader(std::string path, std::span<const std::byte> bytes, std::shared_ptr<const void> owner)
       : path_(std::move(path)), bytes_(bytes), owner_(std::move(owner)) {}
 
+  // Of a file that is `file_size` long, of which the reader has the header alone.
+  Result<Ok> checkHeader(std::uint64_t file_size) { return readHeader(file_size); }
+
   Result<Dendrogram> read() {
-    if (const auto done = readHeader(); !done) return done.error();
+    if (const auto done = readHeader(size()); !done) return done.error();
+    if (const auto done = readTable(); !done) return done.error();
     for (std::uint32_t i = 0; i < header_.sections; ++i) {
       SectionEntry entry{};
       std::memcpy(&entry, data() + sizeof header_ + i * sizeof entry, sizeof entry);
@@ -66,7 +70,7 @@ class MrmReader {
   const std::byte* data() const { return bytes_.data(); }
   std::uint64_t size() const { return bytes_.size(); }
 
-  Result<Ok> readHeader() {
+  Result<Ok> readHeader(std::uint64_t file_size) {
     if (size() < sizeof header_) return broken(path_, "is too short for an .mrm file");
     std::memcpy(&header_, data(), sizeof header_);
     if (std::memcmp(header_.magic, kMagic, sizeof kMagic) != 0) {
@@ -80,10 +84,14 @@ class MrmReader {
     if (header_.header_checksum != checksum(&header_, offsetof(FileHeader, header_checksum))) {
       return broken(path_, "the header is damaged");
     }
-    if (header_.file_size != size()) {
+    if (header_.file_size != file_size) {
       return broken(path_, fmt::format("has {} bytes, its header says {}: cut short or overwritten",
-                                       size(), header_.file_size));
+                                       file_size, header_.file_size));
     }
+    return Ok{};
+  }
+
+  Result<Ok> readTable() const {
     const std::uint64_t table = header_.sections * sizeof(SectionEntry);
     if (header_.sections > kMostSections || sizeof header_ + table > size() ||
         header_.table_checksum != checksum(data() + sizeof header_, table)) {
@@ -171,8 +179,16 @@ Result<Dendrogram> readMrm(const std::string& path) {
   return readFrom(path, MappedFile::open(path));
 }
 
-Result<Dendrogram> readMrmCopy(const std::string& path) {
-  return readFrom(path, FileCopy::read(path));
+// The header by itself first: a large file of another kind is not read to its end for nothing. What
+// counts is the second look, at the whole copy.
+Result<Dendrogram> readMrmCopy(const std::string& path, FileStamp* stamp) {
+  const auto head = FileCopy::read(path, sizeof(FileHeader));
+  if (!head) return head.error();
+  const auto good = MrmReader(path, head->bytes(), nullptr).checkHeader(head->stamp().size);
+  if (!good) return good.error();
+  auto file = FileCopy::read(path);
+  if (stamp && file) *stamp = file->stamp();
+  return readFrom(path, std::move(file));
 }
 
 }  // namespace merlin::render

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "daemon/base/files.h"
 #include "daemon/base/result.h"
 #include "render/lod/dendrogram.h"
 
@@ -15,8 +16,10 @@ Result<Dendrogram> readMrm(const std::string& path);
 
 // The same, but read into memory of our own before it is checked: for who lives long, since another
 // program may write over the file at any time, or cut it short (a mapping would change under the
-// checks, or end the program with SIGBUS). Takes the file's size of memory.
-Result<Dendrogram> readMrmCopy(const std::string& path);
+// checks, or end the program with SIGBUS). Takes the file's size of memory. `stamp`, where given: of
+// the file that was read. Errors: also kIo where it changed while it was read, or does not fit into
+// memory.
+Result<Dendrogram> readMrmCopy(const std::string& path, FileStamp* stamp = nullptr);
 
 // Whether its features can be told from one another in a model, which keeps of each name as many
 // characters as 31 bytes hold; to be asked before long work. Errors: kUnsupported, without the

@@ -1,0 +1,94 @@
+#include "daemon/wall/model_watch.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace merlin::wall {
+namespace {
+
+constexpr std::chrono::seconds kLook{1};
+
+// The wall's frames come first: this thread, and those that it starts, take what they leave.
+void giveWay() { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 19); }
+
+}  // namespace
+
+bool ReplacedFile::look(const std::optional<FileStamp>& found, Timestamp now) {
+  if (!found) return false;  // between two names, or gone: what is shown stays
+  if (*found != seen_) {
+    seen_ = *found;
+    since_ = now;
+  }
+  if (seen_ == shown_ || now - since_ < kStable) return false;
+  shown_ = seen_;
+  return true;
+}
+
+ModelWatch::ModelWatch(std::vector<Watched> files, Make make, ThreadWatch& watch,
+                       const Clock& clock)
+    : files_(std::move(files)), make_(std::move(make)), clock_(clock) {
+  for (const Watched& file : files_) replaced_.emplace_back(file.shown);
+  thread_ =
+      WatchedThread(watch, "models", [this](const std::stop_token& s, Progress& p) { run(s, p); });
+}
+
+void ModelWatch::run(const std::stop_token& stop, Progress& progress) {
+  giveWay();
+  std::mutex mutex;
+  std::condition_variable_any stopped;
+  std::unique_lock lock(mutex);
+  while (!stop.stop_requested()) {
+    for (std::size_t place = 0; place < files_.size(); ++place) lookAt(place, progress);
+    progress.step();
+    stopped.wait_for(lock, stop, kLook, [] { return false; });
+  }
+}
+
+// A file that cannot be read is looked at again when it changes.
+void ModelWatch::lookAt(std::size_t place, Progress& progress) {
+  const std::string& path = files_[place].path;
+  if (!replaced_[place].look(fileStamp(path), clock_.now())) return;
+  const Progress::Pause pause(progress);  // of a large model
+  Result<ReadyModel> ready = Error{Errc::kIo, path + ": not enough memory"};
+  try {
+    ready = make_(place, path);
+  } catch (const std::exception& e) {
+    ready = Error{Errc::kIo, fmt::format("{}: {}", path, e.what())};
+  }
+  if (!ready) {
+    say(
+        fmt::format("the model's file was replaced by one that cannot be shown ({}); the model "
+                    "that was read before stays",
+                    ready.error().what));
+    return;
+  }
+  const std::lock_guard lock(mutex_);
+  // One that was overtaken before the wall took it: its picture has no part on the wall's thread.
+  std::erase_if(ready_, [&](const ReadyModel& r) { return r.place == place; });
+  ready_.push_back(*std::move(ready));
+}
+
+std::optional<ReadyModel> ModelWatch::take() {
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock || ready_.empty()) return std::nullopt;
+  ReadyModel first = std::move(ready_.front());
+  ready_.erase(ready_.begin());
+  return first;
+}
+
+void ModelWatch::say(std::string sentence) {
+  const std::lock_guard lock(mutex_);
+  events_.push_back(std::move(sentence));
+}
+
+std::vector<std::string> ModelWatch::takeEvents() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(events_, {});
+}
+
+}  // namespace merlin::wall

@@ -1,0 +1,71 @@
+// Files of models that are replaced while the wall runs: when they are read.
+#include "daemon/wall/model_watch.h"
+
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/eventually.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::wall {
+namespace {
+
+using std::chrono::milliseconds;
+
+FileStamp stamp(std::uint64_t size, std::int64_t modified_ns) {
+  return {1, 2, size, modified_ns, modified_ns};
+}
+
+TEST(ReplacedFile, IsReadOnceItHasStayedTheSameForASecond) {
+  ReplacedFile file(stamp(100, 1));
+  Timestamp now{};
+  const auto look = [&](const std::optional<FileStamp>& found, int after_ms) {
+    now += milliseconds(after_ms);
+    return file.look(found, now);
+  };
+  EXPECT_FALSE(look(stamp(100, 1), 5000)) << "what is shown";
+  EXPECT_FALSE(look(stamp(40, 2), 500)) << "a copy has begun";
+  EXPECT_FALSE(look(stamp(80, 3), 900));
+  EXPECT_FALSE(look(stamp(80, 3), 900)) << "not for a second yet";
+  EXPECT_FALSE(look(std::nullopt, 900)) << "between two names";
+  EXPECT_TRUE(look(stamp(80, 3), 100));
+  EXPECT_FALSE(look(stamp(80, 3), 5000)) << "once";
+  EXPECT_FALSE(look(stamp(100, 1), 500));
+  EXPECT_TRUE(look(stamp(100, 1), 1000)) << "the first one is back";
+}
+
+TEST(ReplacedFile, ThatComesBackBeforeItIsReadIsNoOther) {
+  ReplacedFile file(stamp(100, 1));
+  EXPECT_FALSE(file.look(stamp(1, 2), Timestamp(milliseconds(0))));
+  EXPECT_FALSE(file.look(stamp(100, 1), Timestamp(milliseconds(500))));
+  EXPECT_FALSE(file.look(stamp(100, 1), Timestamp(milliseconds(5000))));
+}
+
+TEST(ModelWatch, OffersTheNewestOfAPlaceAndSaysWhyOneIsRefused) {
+  const test::TempDir dir;
+  test::writeText(dir / "good", "1");
+  test::writeText(dir / "bad", "1");
+  ThreadWatch watch;
+  const SystemClock clock;
+  const auto make = [&](std::size_t place, const std::string& path) -> Result<ReadyModel> {
+    if (path == dir / "bad") return Error{Errc::kMalformed, path + ": is damaged"};
+    return ReadyModel{place, test::readText(path), nullptr, nullptr};
+  };
+  ModelWatch models({{dir / "bad", *fileStamp(dir / "bad")}, {dir / "good", FileStamp{}}}, make,
+                    watch, clock);
+  std::optional<ReadyModel> ready;
+  ASSERT_TRUE(test::eventually([&] { return (ready = models.take()).has_value(); }));
+  EXPECT_EQ(ready->place, 1u) << "it was another one when it was read";
+  EXPECT_TRUE(models.takeEvents().empty());
+  test::writeText(dir / "bad", "22");
+  std::vector<std::string> events;
+  ASSERT_TRUE(test::eventually([&] { return !(events = models.takeEvents()).empty(); }));
+  EXPECT_EQ(events.front(), "the model's file was replaced by one that cannot be shown (" +
+                                (dir / "bad") +
+                                ": is damaged); the model that was read before stays");
+  EXPECT_FALSE(models.take());
+}
+
+}  // namespace
+}  // namespace merlin::wall
