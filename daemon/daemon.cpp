@@ -365,11 +365,28 @@ void Daemon::housekeeping() {
                  device, device);
     }
   }
+  if (now - mended_ >= kOnceASecond) {
+    mended_ = now;
+    mendSharedMemory();
+  }
   if (now - summarised_ >= kSummary) {
     summarised_ = now;
     ::sd_notify(0, ("STATUS=" + summary(now)).c_str());
   }
   pingWatchdog(now);
+}
+
+// Where another program removed an object (an administrator, logind as its user logs out).
+void Daemon::mendSharedMemory() {
+  std::string happened;
+  const auto look = [&happened](const Result<std::string>& mended) {
+    const std::string& what = mended ? *mended : mended.error().what;
+    if (!what.empty()) happened = what;
+  };
+  if (devices_) look(devices_->mend());
+  if (mirror_) look(mirror_->mend());
+  if (wall_) look(wall_->mend());
+  happened.empty() ? services_.ok("shared memory") : services_.failed("shared memory", happened);
 }
 
 void Daemon::pingWatchdog(Timestamp now) {

@@ -65,6 +65,7 @@ class Daemon {
   Result<Ok> awaitFirstFrame(std::future<Result<std::string>> ready);
   bool stopAsked(Duration wait);  // waits for a signal
   void housekeeping();
+  void mendSharedMemory();
   void pingWatchdog(Timestamp now);
   std::string summary(Timestamp now) const;
 
@@ -93,7 +94,7 @@ class Daemon {
   std::map<std::string, Role> roles_;
   std::vector<std::unique_ptr<net::ServerKeeper>> kept_;
   status::Watchdog watchdog_;
-  Timestamp summarised_{};
+  Timestamp summarised_{}, mended_{};
   // Of the status threads, by role: when servers were told of.
   std::map<std::string, Timestamp> told_servers_;
 };

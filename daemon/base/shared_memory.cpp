@@ -85,15 +85,22 @@ Result<UniqueFd> claim(const std::string& name) {
   return Error{Errc::kBusy, fmt::format("shared memory {}: others keep taking it", name)};
 }
 
-// A fresh object under a name that is ours.
-Result<UniqueFd> makeObject(const std::string& name) {
-  for (int attempt = 0; attempt < 100; ++attempt) {
-    UniqueFd fd(::shm_open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode));
-    if (fd.valid()) return fd;
+// A fresh object of zeros under a name that is ours.
+Result<UniqueFd> makeObject(const std::string& name, std::size_t size) {
+  UniqueFd fd;
+  for (int attempt = 0; attempt < 100 && !fd.valid(); ++attempt) {
+    fd = UniqueFd(::shm_open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode));
+    if (fd.valid()) break;
     if (errno != EEXIST) return shmError(name, "open", errno);
     if (const auto removed = removeObject(name); !removed) return removed.error();
   }
-  return Error{Errc::kBusy, fmt::format("shared memory {}: others keep taking it", name)};
+  if (!fd.valid())
+    return Error{Errc::kBusy, fmt::format("shared memory {}: others keep taking it", name)};
+  // Not ftruncate: on tmpfs that succeeds beyond its size, and a write faults later.
+  const int error = ::posix_fallocate(fd.get(), 0, static_cast<off_t>(size));
+  if (error == 0) return fd;
+  ::shm_unlink(name.c_str());
+  return shmError(name, fmt::format("{} bytes", size).c_str(), error);
 }
 
 Error notReadable(const std::string& name) {
@@ -114,19 +121,52 @@ Error notReadable(const std::string& name) {
 Result<SharedMemory> SharedMemory::create(const std::string& name, std::size_t size) {
   auto lock = claim(name);
   if (!lock) return lock.error();
-  auto fd = makeObject(name);
-  if (!fd) return fd.error();
-  const auto undo = [&](const Error& error) {
+  auto object = makeObject(name, size);
+  if (!object) {
+    ::shm_unlink(lockName(name).c_str());
+    return object.error();
+  }
+  void* data = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, object->get(), 0);
+  if (data == MAP_FAILED) {
+    const int error = errno;
     ::shm_unlink(name.c_str());
     ::shm_unlink(lockName(name).c_str());
-    return error;
-  };
-  // Not ftruncate: on tmpfs that succeeds beyond its size, and a write faults later.
-  if (const int error = ::posix_fallocate(fd->get(), 0, static_cast<off_t>(size)); error != 0)
-    return undo(shmError(name, fmt::format("{} bytes", size).c_str(), error));
-  void* data = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd->get(), 0);
-  if (data == MAP_FAILED) return undo(shmError(name, "map", errno));
-  return SharedMemory(*std::move(lock), static_cast<std::byte*>(data), size, name);
+    return shmError(name, "map", error);
+  }
+  return SharedMemory(*std::move(lock), *std::move(object), static_cast<std::byte*>(data), size,
+                      name);
+}
+
+Result<std::string> SharedMemory::mend() {
+  const bool lock_is_there = isCurrent(lock_.get(), lockName(owned_name_));
+  const bool object_is_there = isCurrent(object_.get(), owned_name_);
+  if (lock_is_there && object_is_there) return std::string();
+  if (!lock_is_there) {
+    auto lock = claim(owned_name_);
+    if (!lock) return lock.error();
+    lock_ = *std::move(lock);
+  }
+  if (!object_is_there) {
+    if (const auto remade = remake(); !remade) return remade.error();
+  }
+  return fmt::format("another program had removed shared memory {}; it is made again",
+                     object_is_there ? lockName(owned_name_) : owned_name_);
+}
+
+// Its pages take the place of the old ones at once, for every thread.
+Result<Ok> SharedMemory::remake() {
+  auto fresh = makeObject(owned_name_, size_);
+  if (!fresh) return fresh.error();
+  for (std::size_t done = 0; done < size_;) {
+    const ssize_t n = ::pwrite(fresh->get(), data_ + done, size_ - done, static_cast<off_t>(done));
+    if (n <= 0) return shmError(owned_name_, "copy", errno);
+    done += static_cast<std::size_t>(n);
+  }
+  constexpr int kInPlace = MAP_SHARED | MAP_FIXED;
+  if (::mmap(data_, size_, PROT_READ | PROT_WRITE, kInPlace, fresh->get(), 0) == MAP_FAILED)
+    return shmError(owned_name_, "map", errno);
+  object_ = *std::move(fresh);
+  return Ok{};
 }
 
 Result<SharedMemory> SharedMemory::open(const std::string& name, From from) {
@@ -142,7 +182,7 @@ Result<SharedMemory> SharedMemory::open(const std::string& name, From from) {
   if (size == 0) return Error{Errc::kMalformed, fmt::format("shared memory {}: is empty", name)};
   void* data = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, fd.get(), 0);
   if (data == MAP_FAILED) return shmError(name, "map", errno);
-  return SharedMemory({}, static_cast<std::byte*>(data), size, {});
+  return SharedMemory({}, {}, static_cast<std::byte*>(data), size, {});
 }
 
 bool SharedMemory::owned(const std::string& name) {
@@ -153,12 +193,14 @@ bool SharedMemory::owned(const std::string& name) {
 
 SharedMemory::SharedMemory(SharedMemory&& other) noexcept
     : lock_(std::move(other.lock_)),
+      object_(std::move(other.object_)),
       data_(std::exchange(other.data_, nullptr)),
       size_(std::exchange(other.size_, 0)),
       owned_name_(std::exchange(other.owned_name_, {})) {}
 
 SharedMemory& SharedMemory::operator=(SharedMemory&& other) noexcept {
   std::swap(lock_, other.lock_);
+  std::swap(object_, other.object_);
   std::swap(data_, other.data_);
   std::swap(size_, other.size_);
   std::swap(owned_name_, other.owned_name_);
@@ -167,7 +209,8 @@ SharedMemory& SharedMemory::operator=(SharedMemory&& other) noexcept {
 
 SharedMemory::~SharedMemory() {
   if (data_) ::munmap(data_, size_);
-  if (owned_name_.empty()) return;
+  // Another owner may have the name where ours was removed.
+  if (owned_name_.empty() || !isCurrent(lock_.get(), lockName(owned_name_))) return;
   ::shm_unlink(owned_name_.c_str());
   ::shm_unlink(lockName(owned_name_).c_str());
 }

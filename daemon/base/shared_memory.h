@@ -28,6 +28,13 @@ class SharedMemory {
   // short, which ends a reader that touches it with SIGBUS: that is its owner and root alone.
   static Result<SharedMemory> open(const std::string& name, From from = From::kAnyone);
 
+  // For the owner, once a second, from one thread: where the object or its lock was removed or
+  // replaced, it is made again, with the same bytes at the same address. What a thread was writing
+  // at that moment may be lost or torn until it is written again. Returns what had happened, a
+  // sentence; empty: nothing. Errors: it cannot be made again (another process took the name, no
+  // memory); then ours goes on without a name. Cost: three calls of the kernel.
+  Result<std::string> mend();
+
   // True where a living process of this user owns the object of that name.
   static bool owned(const std::string& name);
 
@@ -42,10 +49,16 @@ class SharedMemory {
   std::size_t size() const noexcept { return size_; }
 
  private:
-  SharedMemory(UniqueFd lock, std::byte* data, std::size_t size, std::string owned_name)
-      : lock_(std::move(lock)), data_(data), size_(size), owned_name_(std::move(owned_name)) {}
+  SharedMemory(UniqueFd lock, UniqueFd object, std::byte* data, std::size_t size,
+               std::string owned_name)
+      : lock_(std::move(lock)),
+        object_(std::move(object)),
+        data_(data),
+        size_(size),
+        owned_name_(std::move(owned_name)) {}
+  Result<Ok> remake();
 
-  UniqueFd lock_;  // of an owner
+  UniqueFd lock_, object_;  // of an owner
   std::byte* data_ = nullptr;
   std::size_t size_ = 0;
   std::string owned_name_;  // empty for a reader

@@ -39,6 +39,7 @@ class DevicesRole {
   void start();
 
   void beat(Timestamp now) const { segment_.beat(now); }
+  Result<std::string> mend() { return segment_.mend(); }  // SegmentWriter::mend()
   const shm::DevicesSegment& segment() const { return *segment_; }
   // What a press of the panel's button does; called on the panel's thread. Before start().
   void onPress(std::function<void(const std::string&)> act) { on_press_ = std::move(act); }

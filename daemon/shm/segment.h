@@ -48,6 +48,9 @@ class SegmentWriter {
     header.realtime_offset_ns.store(realtimeOffset().count(), std::memory_order_relaxed);
   }
 
+  // Once a second, from beat()'s thread: SharedMemory::mend().
+  Result<std::string> mend() { return memory_.mend(); }
+
  private:
   explicit SegmentWriter(SharedMemory memory) : memory_(std::move(memory)) {}
   SharedMemory memory_;

@@ -28,12 +28,14 @@ class SeqSlot {
   void publish(const T& value) noexcept {
     Words words{};
     std::memcpy(words.data(), &value, sizeof value);
-    const auto even = sequence_.load(std::memory_order_relaxed);
-    sequence_.store(even + 1, std::memory_order_relaxed);  // odd: being written
+    // Odd: being written. So it may be found as well, where the memory was made again from a copy
+    // that was taken during a write (SharedMemory::mend()).
+    const auto odd = (sequence_.load(std::memory_order_relaxed) + 1) | 1;
+    sequence_.store(odd, std::memory_order_relaxed);
     for (std::size_t i = 0; i < kWords; ++i) {
       payload_[i].store(words[i], std::memory_order_release);
     }
-    sequence_.store(even + 2, std::memory_order_release);
+    sequence_.store(odd + 1, std::memory_order_release);
   }
 
   // The last published value; nothing before the first publish(), or where kTries reads in a row

@@ -40,6 +40,7 @@ Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings,
   if (!shared) return shared.error();
   std::snprintf(role->segment_->framebuffer, sizeof role->segment_->framebuffer, "%s",
                 framebuffer.c_str());
+  role->framebuffer_ = shared->get();
   role->sinks_.push_back(*std::move(shared));
   if (!settings.wall.png.path.empty()) {
     auto png = std::make_unique<render::PngFrameSink>(settings.wall.png, role->plan_.frame_width,
@@ -98,6 +99,12 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
   loop_.store(&loop);
   loop.run(stop, [&] { ready_.set_value(models.contexts().renderer()); });
   loop_.store(nullptr);
+}
+
+Result<std::string> WallRole::mend() {
+  const auto segment = segment_.mend();
+  if (!segment || !segment->empty()) return segment;
+  return framebuffer_->mend();
 }
 
 void WallRole::request(WallLoop::Request what) {

@@ -49,6 +49,8 @@ class WallRole {
   std::vector<std::string> modelEvents() { return model_watch_.takeEvents(); }
 
   void beat(Timestamp now) const { segment_.beat(now); }
+  // Once a second, from beat()'s thread: both objects in shared memory, by SharedMemory::mend().
+  Result<std::string> mend();
   const shm::WallSegment& segment() const { return *segment_; }
 
  private:
@@ -66,7 +68,8 @@ class WallRole {
   ThreadWatch& watch_;
   Clock& clock_;
   std::vector<std::unique_ptr<render::FrameSink>> sinks_;
-  render::PngFrameSink* png_ = nullptr;  // of sinks_
+  render::ShmFrameSink* framebuffer_ = nullptr;  // of sinks_
+  render::PngFrameSink* png_ = nullptr;          // the same
   std::promise<Result<std::string>> ready_;
   std::atomic<WallLoop*> loop_{nullptr};
   ModelWatch model_watch_;  // before the wall's thread, which takes from it

@@ -1,6 +1,7 @@
 #include "render/out/shm_sink.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstring>
 #include <new>
@@ -21,6 +22,10 @@ constexpr int kCaptureTries = 10;
 
 std::size_t headerRoom() {
   return (sizeof(Front) + kPixelAlignment - 1) / kPixelAlignment * kPixelAlignment;
+}
+
+std::size_t bufferOffset(std::size_t buffer, std::size_t frame_bytes) {
+  return headerRoom() + buffer * frame_bytes;
 }
 
 TileRectangle rectangleOf(const Tile& tile) {
@@ -100,7 +105,7 @@ void fillHeader(Header& h, const TilePlan& plan, std::size_t size, std::uint64_t
   h.wall_height = static_cast<std::uint32_t>(plan.wall_height);
   h.tile_count = static_cast<std::uint32_t>(plan.tiles.size());
   for (std::size_t i = 0; i < framebuffer::kBuffers; ++i)
-    h.buffers[i].offset = headerRoom() + i * frame_bytes;
+    h.buffers[i].offset = bufferOffset(i, frame_bytes);
   for (std::size_t i = 0; i < plan.tiles.size(); ++i) h.tiles[i] = rectangleOf(plan.tiles[i]);
   h.version = framebuffer::kVersion;
   h.magic = framebuffer::kMagic;
@@ -132,12 +137,14 @@ Result<Ok> check(const Header& h, std::size_t size, const std::string& name) {
   return good ? Result<Ok>(Ok{}) : Result<Ok>(broken(name, "its header is damaged"));
 }
 
-// True where the copy is whole.
-bool copyNewest(const Header& h, const std::byte* base, CapturedFrame& frame) {
-  const Buffer& b = h.buffers[h.newest.load(std::memory_order_acquire) % framebuffer::kBuffers];
+// True where the copy is whole. `checked` does not change; `base` may at any time.
+bool copyNewest(const Header& checked, const std::byte* base, CapturedFrame& frame) {
+  const auto& h = *reinterpret_cast<const Header*>(base);
+  const std::size_t newest = h.newest.load(std::memory_order_acquire) % framebuffer::kBuffers;
+  const Buffer& b = h.buffers[newest];
   const std::uint64_t before = b.sequence.load(std::memory_order_acquire);
   if (before == 0) return false;
-  std::memcpy(frame.pixels.data(), base + b.offset, frame.pixels.size());
+  std::memcpy(frame.pixels.data(), base + checked.buffers[newest].offset, frame.pixels.size());
   frame.info = {before, fromNanoseconds(b.finished_ns), b.triangles, b.full_detail != 0};
   std::atomic_thread_fence(std::memory_order_acquire);
   return b.sequence.load(std::memory_order_relaxed) == before;
@@ -157,7 +164,7 @@ Result<std::unique_ptr<ShmFrameSink>> ShmFrameSink::make(const std::string& name
   const std::size_t size = headerRoom() + framebuffer::kBuffers * frame_bytes;
   auto memory = SharedMemory::create(name, size);
   if (!memory) return memory.error();
-  std::unique_ptr<ShmFrameSink> sink(new ShmFrameSink(*std::move(memory)));
+  std::unique_ptr<ShmFrameSink> sink(new ShmFrameSink(*std::move(memory), frame_bytes));
   auto& front = *new (sink->memory_.data()) Front{};
   shm::setFields(front.header, front.fields, framebufferFields());
   fillHeader(front.header, plan, size, generation);
@@ -165,12 +172,13 @@ Result<std::unique_ptr<ShmFrameSink>> ShmFrameSink::make(const std::string& name
 }
 
 void ShmFrameSink::present(std::span<const std::uint8_t> pixels, const FrameInfo& info) {
+  assert(pixels.size() == frame_bytes_);
+  const std::lock_guard lock(mutex_);
   Header& h = header();
-  assert(pixels.size() == std::size_t{h.stride} * h.height);
   Buffer& b = h.buffers[next_];
   b.sequence.store(0, std::memory_order_relaxed);
   std::atomic_thread_fence(std::memory_order_release);  // before any pixel changes
-  std::memcpy(memory_.data() + b.offset, pixels.data(), pixels.size());
+  std::memcpy(memory_.data() + bufferOffset(next_, frame_bytes_), pixels.data(), pixels.size());
   b.finished_ns = toNanoseconds(info.finished);
   b.triangles = info.triangles;
   b.full_detail = info.full_detail ? 1 : 0;
@@ -179,11 +187,19 @@ void ShmFrameSink::present(std::span<const std::uint8_t> pixels, const FrameInfo
   next_ = static_cast<std::uint32_t>((next_ + 1) % framebuffer::kBuffers);
 }
 
+Result<std::string> ShmFrameSink::mend() {
+  const std::lock_guard lock(mutex_);
+  return memory_.mend();
+}
+
 Result<CapturedFrame> captureFrame(const std::string& name) {
   const auto memory = SharedMemory::open(name);
   if (!memory) return memory.error();
   if (memory->size() < sizeof(Header)) return broken(name, "is no framebuffer of MERLIN's");
-  const auto& h = *reinterpret_cast<const Header*>(memory->data());
+  // A copy: what was checked stays as it was.
+  alignas(Header) std::array<std::byte, sizeof(Header)> copy;
+  std::copy_n(memory->data(), sizeof(Header), copy.begin());
+  const auto& h = *reinterpret_cast<const Header*>(copy.data());
   if (const auto checked = check(h, memory->size(), name); !checked) return checked.error();
   CapturedFrame frame;
   frame.width = static_cast<int>(h.width);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -15,16 +16,23 @@ namespace merlin::render {
 class ShmFrameSink final : public FrameSink {
  public:
   // `name` as "/merlin-framebuffer". Errors: kBusy (a living daemon writes it), kIo.
+  // Nothing is believed of what lies in it later: its owner's programs may write there.
   static Result<std::unique_ptr<ShmFrameSink>> make(const std::string& name, const TilePlan& plan,
                                                     std::uint64_t generation);
 
   void present(std::span<const std::uint8_t> pixels, const FrameInfo& info) override;
 
+  // Once a second, from any thread: SharedMemory::mend(). A frame waits for it.
+  Result<std::string> mend();
+
  private:
-  ShmFrameSink(SharedMemory memory) : memory_(std::move(memory)) {}
+  ShmFrameSink(SharedMemory memory, std::size_t frame_bytes)
+      : memory_(std::move(memory)), frame_bytes_(frame_bytes) {}
   framebuffer::Header& header() { return *reinterpret_cast<framebuffer::Header*>(memory_.data()); }
 
+  std::mutex mutex_;  // between present() and mend()
   SharedMemory memory_;
+  std::size_t frame_bytes_;
   std::uint32_t next_ = 0;
 };
 

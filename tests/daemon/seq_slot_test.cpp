@@ -63,6 +63,18 @@ TEST(SeqSlot, AWriterThatDiedInTheMiddleIsNothingAndNoWait) {
   EXPECT_FALSE(reinterpret_cast<const SeqSlot<std::uint64_t>&>(torn).read());
 }
 
+// SharedMemory::mend() copies a segment while others write to it.
+TEST(SeqSlot, ACopyThatWasTakenDuringAWriteIsWholeWithTheNextOne) {
+  struct Torn {
+    std::uint64_t sequence = 7, payload = 1;
+  } torn;
+  auto& slot = reinterpret_cast<SeqSlot<std::uint64_t>&>(torn);
+  slot.publish(2);
+  EXPECT_EQ(slot.read(), 2u);
+  slot.publish(3);
+  EXPECT_EQ(slot.read(), 3u);
+}
+
 TEST(Channel, KeepsTheLast256AndSaysWhichAreGone) {
   auto channel = std::make_unique<Channel<std::uint64_t>>();
   for (std::uint64_t n = 0; n < 300; ++n) channel->publish(1000 + n);

@@ -272,6 +272,49 @@ TEST(SharedMemory, TwoLivingOwnersCannotShareAName) {
   EXPECT_TRUE(SharedMemory::owned(name));
 }
 
+// An administrator removes it, or logind as its user logs out.
+TEST(SharedMemory, WhatWasRemovedIsMadeAgainWithTheSameBytes) {
+  const std::string name = "/" + privateName("mended");
+  auto memory = SharedMemory::create(name, 10'000);
+  ASSERT_TRUE(memory);
+  std::byte* const data = memory->data();
+  data[0] = std::byte{7};
+  data[9'999] = std::byte{8};
+  EXPECT_EQ(*memory->mend(), "") << "nothing was wrong";
+  for (const std::string& lost : {name, name + ".lock"}) {
+    ASSERT_EQ(::shm_unlink(lost.c_str()), 0);
+    EXPECT_EQ(*memory->mend(),
+              "another program had removed shared memory " + lost + "; it is made again");
+    EXPECT_EQ(*memory->mend(), "");
+  }
+  EXPECT_EQ(SharedMemory::create(name, 10'000).error().code, Errc::kBusy);
+  EXPECT_EQ(memory->data(), data);
+  data[1] = std::byte{9};
+  const auto reader = SharedMemory::open(name);
+  ASSERT_TRUE(reader) << reader.error().what;
+  ASSERT_EQ(reader->size(), 10'000u);
+  EXPECT_EQ(reader->data()[0], std::byte{7});
+  EXPECT_EQ(reader->data()[9'999], std::byte{8});
+  EXPECT_EQ(reader->data()[1], std::byte{9}) << "what is written from then on is there too";
+}
+
+TEST(SharedMemory, ANameThatAnotherTookMeanwhileStaysTheOthers) {
+  const std::string name = "/" + privateName("usurped");
+  Result<SharedMemory> second = Error{Errc::kNotFound, "not made yet"};
+  {
+    auto first = SharedMemory::create(name, 4096);
+    ASSERT_TRUE(first);
+    ::shm_unlink(name.c_str());
+    ::shm_unlink((name + ".lock").c_str());
+    second = SharedMemory::create(name, 4096);
+    ASSERT_TRUE(second);
+    EXPECT_EQ(first->mend().error().code, Errc::kBusy);
+    first->data()[0] = std::byte{1};  // still the first's own
+  }
+  EXPECT_TRUE(SharedMemory::open(name)) << "the first's end removed the second's";
+  EXPECT_EQ(second->data()[0], std::byte{0});
+}
+
 // Anybody may make an object of a name that nobody has.
 TEST(SharedMemory, AStrangersObjectIsNotTakenAndGoesForRoot) {
   if (::geteuid() != 0) GTEST_SKIP() << "takes root, to act as another user";

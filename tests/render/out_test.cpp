@@ -1,11 +1,15 @@
 // Where frames go: the shared framebuffer as another process reads it, PNG files as libpng reads
 // them.
 #include <csignal>
+#include <cstring>
 #include <thread>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <png.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "daemon/base/random.h"
 #include "render/out/png.h"
@@ -166,6 +170,23 @@ TEST(Framebuffer, DescribesItself) {
   EXPECT_NE(out.output.find("buffer.sequence [7, 0, 0]"), std::string::npos) << out.output;
   EXPECT_NE(out.output.find("tile.name ['" + smallPlan().tiles[0].name + "'"), std::string::npos)
       << out.output;
+}
+
+// A program of the same user writes over the segment.
+TEST(Framebuffer, RubbishOverTheHeaderDoesNotLeadTheWriterAstray) {
+  const auto sink = ShmFrameSink::make(name("rubbish"), smallPlan(), 1);
+  ASSERT_TRUE(sink);
+  const UniqueFd other(::shm_open(name("rubbish").c_str(), O_RDWR | O_CLOEXEC, 0));
+  ASSERT_TRUE(other.valid());
+  const std::vector<char> rubbish(sizeof(framebuffer::Header), '\xa5');
+  ASSERT_EQ(::pwrite(other.get(), rubbish.data(), rubbish.size(), 0),
+            static_cast<ssize_t>(rubbish.size()));
+  for (std::uint64_t n = 1; n <= 3; ++n) (*sink)->present(frameOf(n), {n, {}, 1, false});
+  const auto memory = SharedMemory::open(name("rubbish"));
+  const auto pixels = frameOf(3);
+  EXPECT_EQ(std::memcmp(memory->data() + memory->size() - kFrameBytes, pixels.data(), kFrameBytes),
+            0)
+      << "the third frame lies in the third buffer";
 }
 
 TEST(Framebuffer, DamagedHeadersAreRefused) {

@@ -41,6 +41,28 @@ TEST(Operation, APictureThatCannotBeWrittenIsSaidAndSoIsItsReturn) {
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
 }
 
+// As an administrator does by mistake, or logind as an ordinary user logs out.
+TEST(Operation, WhatIsRemovedFromSharedMemoryIsMadeAgain) {
+  const TempDir dir;
+  Merlind m(dir, makeModel(dir, 2), "removed");
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  const std::vector<std::string> objects = m.leftInSharedMemory();
+  ASSERT_EQ(objects.size(), 6u) << "devices, wall, framebuffer and their locks";
+  for (const std::string& object : objects) std::filesystem::remove(object);
+  EXPECT_TRUE(eventually([&] { return m.leftInSharedMemory().size() == objects.size(); }));
+  EXPECT_TRUE(m.process().saysEventually("shared memory: works again")) << m.process().output();
+  EXPECT_TRUE(m.status()["devices"].contains("ball")) << m.status();
+  const std::string picture = dir / "frame.png";
+  EXPECT_EQ(run({kMerlin, "snapshot", "--instance", m.instance(), "-o", picture}).status, 0);
+  EXPECT_TRUE(std::filesystem::is_regular_file(picture));
+  const Outcome second = run({kMerlind, "--config", m.config(), "--emulate"});
+  EXPECT_NE(second.status, 0);
+  EXPECT_NE(second.output.find("another merlind already runs as"), std::string::npos)
+      << second.output;
+  EXPECT_EQ(m.process().kill(SIGTERM), 0);
+  EXPECT_EQ(m.leftInSharedMemory().size(), 0u);
+}
+
 TEST(Operation, ARunDirectoryMayHaveAnyName) {
   const TempDir dir;
   Merlind m(dir, "", "quoted", {.role = "devices", .also = {{"run_directory", dir / "a\"b"}}});
