@@ -270,6 +270,8 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
   v.group("render", "How it is drawn.", [&] { describeRender(w.render, v); });
   v.path("snapshots", w.snapshots,
          "The folder for the frames that the action snapshot writes; empty: none.");
+  v.integer("snapshots_kept", w.snapshots_kept, {1, 1e6},
+            "The number of snapshots that are kept in the folder; the oldest are removed.");
   v.group("png", "The newest frame as a file, now and then.", [&] {
     v.path("path", w.png.path, "Of the file; empty: none.");
     v.number("interval_s", w.png.interval_s, {1, 86400}, "Between two files, at least, seconds.");

@@ -66,6 +66,7 @@ struct WallSettings {
   render::RenderSettings render;
   render::PngSinkSettings png;
   std::string snapshots;  // where the action snapshot puts its files, a folder; empty: nowhere
+  int snapshots_kept = 1000;
 };
 
 struct Settings {

@@ -257,7 +257,10 @@ void Daemon::takeOrders() {
   wall::Orders::Doers doers;
   if (wall_ && !settings_.wall.snapshots.empty()) {
     snapshots_ = std::make_unique<wall::SnapshotWriter>(
-        shm::segmentName(settings_.instance, "framebuffer"), settings_.wall.snapshots);
+        shm::segmentName(settings_.instance, "framebuffer"),
+        DatedFiles(settings_.wall.snapshots, settings_.instance, ".png",
+                   static_cast<std::size_t>(settings_.wall.snapshots_kept)),
+        threads_);
     doers.snapshot = [this] { snapshots_->take(); };
   }
   if (devices_ && devices_->panel()) {

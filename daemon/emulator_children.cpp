@@ -44,10 +44,11 @@ pid_t spawn(const std::vector<std::string>& arguments) {
 }
 
 // Where the device's line is to be; made the device's port.
-std::string placeLine(LineSettings& line, const std::string& run_directory) {
+std::string placeLine(LineSettings& line, const std::string& instance,
+                      const std::string& run_directory) {
   constexpr std::string_view kPty = "pty:";
   if (!line.port.starts_with(kPty))
-    line.port = fmt::format("pty:{}/{}.pty", run_directory, line.driver);
+    line.port = fmt::format("pty:{}/{}-{}.pty", run_directory, instance, line.driver);
   return line.port.substr(kPty.size());
 }
 
@@ -61,7 +62,7 @@ Result<EmulatorChildren> EmulatorChildren::start(Settings& settings,
   const auto epoch = std::to_string(toNanoseconds(SystemClock().now()));
   for (LineSettings* line : {&settings.devices.glove_line, &settings.devices.tracker_line,
                              &settings.devices.ball_line}) {
-    const std::string link = placeLine(*line, run_directory);
+    const std::string link = placeLine(*line, settings.instance, run_directory);
     const pid_t pid =
         spawn({*program, "emulate", line->driver, "--link", link, "--script",
                settings.devices.script, "--baud", std::to_string(line->baud), "--epoch-ns", epoch});

@@ -125,13 +125,13 @@ class Opener {
 
 }  // namespace
 
-DevicesRole::DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, std::string flight_folder,
+DevicesRole::DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, const Settings& settings,
                          ThreadWatch& watch, Clock& clock)
     : segment_(std::move(segment)),
       watch_(watch),
       clock_(clock),
       sink_(*segment_),
-      flight_(*segment_, std::move(flight_folder)) {}
+      flight_(*segment_, settings.run_directory + "/flight", settings.instance) {}
 
 Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
                                                        std::uint64_t generation,
@@ -141,8 +141,7 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
       shm::segmentName(settings.instance, "devices"), shm::devicesFields(), generation, clock.now(),
       endpoints);
   if (!segment) return segment.error();
-  std::unique_ptr<DevicesRole> role(
-      new DevicesRole(*std::move(segment), settings.run_directory + "/flight", watch, clock));
+  std::unique_ptr<DevicesRole> role(new DevicesRole(*std::move(segment), settings, watch, clock));
   if (!settings.devices.postures.empty()) {
     const auto file = nn::loadNetwork(settings.devices.postures);
     if (!file) return file.error();

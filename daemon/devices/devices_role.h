@@ -49,7 +49,7 @@ class DevicesRole {
   FlightRecorder& flight() { return flight_; }
 
  private:
-  DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, std::string flight_folder,
+  DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, const Settings& settings,
               ThreadWatch& watch, Clock& clock);
   void addPanel(const GpioSettings& settings);
   Result<Ok> add(const LineSettings& line, SampleKind kind, shm::DeviceIndex index,

@@ -1,17 +1,17 @@
 #include "daemon/devices/flight_recorder.h"
 
 #include <ctime>
-#include <filesystem>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "daemon/base/dated_files.h"
 #include "daemon/base/files.h"
 
 namespace merlin::devices {
 namespace {
 
-constexpr int kMostDumps = 8;  // of a device
+constexpr std::size_t kMostDumps = 8;  // of a device
 
 }  // namespace
 
@@ -39,7 +39,7 @@ std::vector<std::string> FlightRecorder::check() {
 
 Result<std::vector<std::string>> FlightRecorder::dump() {
   std::vector<std::string> files;
-  for (Entry& entry : entries_) {
+  for (const Entry& entry : entries_) {
     auto file = write(entry, "on command");
     if (!file) return file.error();
     files.push_back(*std::move(file));
@@ -47,27 +47,27 @@ Result<std::vector<std::string>> FlightRecorder::dump() {
   return files;
 }
 
-Result<std::string> FlightRecorder::write(Entry& entry, std::string_view why) {
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error) return Error{Errc::kIo, fmt::format("{}: {}", folder_, error.message())};
+Result<std::string> FlightRecorder::write(const Entry& entry, std::string_view why) {
+  const DatedFiles files(folder_, fmt::format("{}-{}", instance_, entry.driver), ".bytes",
+                         kMostDumps);
+  const std::time_t now = std::time(nullptr);
+  auto path = files.next(now);
+  if (!path) return path.error();
   Duration left_out{};
   io::Transcript transcript;
   transcript.chunks = entry.ring->take(&left_out);
   const auto health = segment_.health[entry.device].read().value_or(DeviceHealth{});
-  transcript.header = {
-      {"device", health.identity[0] ? health.identity : "not known"},
-      {"driver", entry.driver},
-      {"serial", fmt::format("{} 8N1", entry.baud)},
-      {"synthetic", "not known: from the line"},
-      {"by", "merlind's flight recorder"},
-      {"date", fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(std::time(nullptr)))},
-      {"notes",
-       fmt::format("{}; {:.1f} s left out after the beginning", why, toSeconds(left_out))}};
-  const std::string path =
-      fmt::format("{}/{}-{}.bytes", folder_, entry.driver, entry.dumps++ % kMostDumps);
-  if (const auto written = writeFile(path, io::formatTranscript(transcript)); !written)
+  transcript.header = {{"device", health.identity[0] ? health.identity : "not known"},
+                       {"driver", entry.driver},
+                       {"serial", fmt::format("{} 8N1", entry.baud)},
+                       {"synthetic", "not known: from the line"},
+                       {"by", "merlind's flight recorder"},
+                       {"date", fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(now))},
+                       {"notes", fmt::format("{}; {:.1f} s left out after the beginning", why,
+                                             toSeconds(left_out))}};
+  if (const auto written = writeFile(*path, io::formatTranscript(transcript)); !written)
     return written.error();
+  files.removeOldest();
   return path;
 }
 

@@ -14,9 +14,10 @@ namespace merlin::devices {
 // Thread-bound to the status server's thread, but for the rings.
 class FlightRecorder {
  public:
-  // Dumps go into `folder`, made at the first: NAME-0.bytes ... NAME-7.bytes, the oldest replaced.
-  FlightRecorder(const shm::DevicesSegment& segment, std::string folder)
-      : segment_(segment), folder_(std::move(folder)) {}
+  // Dumps go into `folder`: INSTANCE-DRIVER-TIME.bytes, the newest eight of a driver, also those of
+  // earlier runs (DatedFiles).
+  FlightRecorder(const shm::DevicesSegment& segment, std::string folder, std::string instance)
+      : segment_(segment), folder_(std::move(folder)), instance_(std::move(instance)) {}
 
   // The ring of a device that has a line; lives as long as this. `driver` and `baud` go into the
   // header of what is dumped.
@@ -35,12 +36,11 @@ class FlightRecorder {
     int baud;
     std::unique_ptr<FlightRing> ring;
     bool was_well = false;
-    int dumps = 0;
   };
-  Result<std::string> write(Entry& entry, std::string_view why);
+  Result<std::string> write(const Entry& entry, std::string_view why);
 
   const shm::DevicesSegment& segment_;
-  std::string folder_;
+  std::string folder_, instance_;
   std::vector<Entry> entries_;
 };
 

@@ -1,5 +1,7 @@
 #include "daemon/status/client.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <zmq.hpp>
@@ -9,10 +11,10 @@ namespace {
 
 int milliseconds(Duration d) { return static_cast<int>(d / std::chrono::milliseconds(1)); }
 
-}  // namespace
+constexpr Duration kAttempt = std::chrono::seconds(1);
 
-Result<std::string> ask(const std::string& command_endpoint, const std::string& command,
-                        Duration timeout, const std::string& argument) {
+Result<std::string> askOnce(const std::string& command_endpoint, const std::string& command,
+                            Duration timeout, const std::string& argument) {
   try {
     zmq::context_t context{1};
     zmq::socket_t socket{context, zmq::socket_type::req};
@@ -25,8 +27,7 @@ Result<std::string> ask(const std::string& command_endpoint, const std::string& 
     const std::string request = wanted.dump();
     zmq::message_t answer;
     if (!socket.send(zmq::buffer(request)) || !socket.recv(answer)) {
-      return Error{Errc::kTimeout, fmt::format("{}: no answer within {:.1f} s", command_endpoint,
-                                               toSeconds(timeout))};
+      return Error{Errc::kTimeout, "no answer"};
     }
     const auto json = nlohmann::json::parse(answer.to_string_view(), nullptr, false);
     if (json.is_object() && json.value("ok", false) && json.contains("result"))
@@ -35,6 +36,21 @@ Result<std::string> ask(const std::string& command_endpoint, const std::string& 
     return Error{Errc::kInvalidArgument, fmt::format("{}: {}", command_endpoint, why)};
   } catch (const std::exception& e) {
     return Error{Errc::kIo, fmt::format("{}: {}", command_endpoint, e.what())};
+  }
+}
+
+}  // namespace
+
+Result<std::string> ask(const std::string& command_endpoint, const std::string& command,
+                        Duration timeout, const std::string& argument) {
+  const bool again = command == "status" && argument.empty();
+  const int attempts = again ? std::max(1, static_cast<int>(timeout / kAttempt)) : 1;
+  for (int attempt = 1;; ++attempt) {
+    auto answer = askOnce(command_endpoint, command, timeout / attempts, argument);
+    if (answer || answer.error().code != Errc::kTimeout) return answer;
+    if (attempt < attempts) continue;
+    return Error{Errc::kTimeout, fmt::format("{}: no answer within {:.1f} s", command_endpoint,
+                                             toSeconds(timeout))};
   }
 }
 

@@ -12,7 +12,8 @@ namespace merlin::status {
 
 // Sends {"command": name}, with "argument" where there is one; returns the JSON text of "result".
 // Errors: kTimeout (the daemon is there and does not answer), kIo; what the daemon refused,
-// kInvalidArgument.
+// kInvalidArgument. A connection that the daemon closed (strangers held every place) takes a
+// request with it: `status`, which changes nothing, is asked again every second until `timeout`.
 Result<std::string> ask(const std::string& command_endpoint, const std::string& command,
                         Duration timeout, const std::string& argument = "");
 

@@ -33,9 +33,15 @@ Result<std::string> runDirectory(const std::string& wanted) {
     return Error{Errc::kIo,
                  fmt::format("{}: {}", path, error ? error.message() : std::strerror(errno))};
   }
-  // Somebody else's folder under our name in /tmp could hand us somebody else's sockets.
-  if (S_ISLNK(status.st_mode) || (path.starts_with("/tmp/") && status.st_uid != ::geteuid())) {
-    return Error{Errc::kIo, fmt::format("{}: belongs to somebody else; set run_directory", path)};
+  // Who may write to the folder could put his sockets into the place of ours.
+  const bool others = status.st_uid != ::geteuid() && status.st_uid != 0;
+  const bool anybody = (status.st_mode & S_IWOTH) != 0 && (status.st_mode & S_ISVTX) == 0;
+  if (S_ISLNK(status.st_mode) || others || anybody) {
+    return Error{Errc::kIo,
+                 fmt::format("{}: {}; set run_directory to a folder of this user's", path,
+                             others    ? "belongs to another user"
+                             : anybody ? "can be written to by every user"
+                                       : "is a link")};
   }
   // A UNIX socket's name has 107 bytes at most.
   if (path.size() > 70)

@@ -8,8 +8,8 @@
 namespace merlin::status {
 
 // `wanted` if not empty; else $RUNTIME_DIRECTORY (systemd's), /run/merlin for root,
-// $XDG_RUNTIME_DIR/merlin, /tmp/merlin-UID. Made if it is not there, mode 0755; one in /tmp has to
-// be ours. Errors: kIo.
+// $XDG_RUNTIME_DIR/merlin, /tmp/merlin-UID. Made if it is not there, mode 0755. Errors: kIo; also
+// where it is another user's (but root's), a link, or everybody's to write to.
 Result<std::string> runDirectory(const std::string& wanted);
 
 }  // namespace merlin::status

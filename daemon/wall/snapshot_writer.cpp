@@ -1,27 +1,26 @@
 #include "daemon/wall/snapshot_writer.h"
 
 #include <ctime>
-#include <filesystem>
 #include <utility>
-
-#include <fmt/chrono.h>
-#include <fmt/format.h>
 
 #include "daemon/base/log.h"
 #include "render/out/png.h"
 #include "render/out/shm_sink.h"
 
 namespace merlin::wall {
+namespace {
 
-SnapshotWriter::SnapshotWriter(std::string framebuffer, std::string folder)
+constexpr auto kStep = std::chrono::milliseconds(500);
+
+}  // namespace
+
+SnapshotWriter::SnapshotWriter(std::string framebuffer, DatedFiles files, ThreadWatch& watch)
     : framebuffer_(std::move(framebuffer)),
-      folder_(std::move(folder)),
-      thread_([this](const std::stop_token& stop) { loop(stop); }) {}
+      files_(std::move(files)),
+      thread_(watch, "snapshots",
+              [this](const std::stop_token& stop, Progress& progress) { loop(stop, progress); }) {}
 
-SnapshotWriter::~SnapshotWriter() {
-  thread_.request_stop();
-  thread_.join();
-}
+SnapshotWriter::~SnapshotWriter() { thread_.stop(); }
 
 void SnapshotWriter::take() {
   const std::lock_guard lock(mutex_);
@@ -32,23 +31,25 @@ void SnapshotWriter::take() {
 Result<std::string> SnapshotWriter::write() const {
   const auto frame = render::captureFrame(framebuffer_);
   if (!frame) return frame.error();
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error) return Error{Errc::kIo, fmt::format("{}: {}", folder_, error.message())};
-  std::string path = fmt::format("{}/merlin-{:%Y%m%d-%H%M%S}-frame-{}.png", folder_,
-                                 fmt::localtime(std::time(nullptr)), frame->info.sequence);
-  const auto written = render::writePng(path, frame->width, frame->height, frame->pixels);
+  auto path = files_.next(std::time(nullptr));
+  if (!path) return path;
+  const auto written = render::writePng(*path, frame->width, frame->height, frame->pixels);
   if (!written) return written.error();
+  files_.removeOldest();
   return path;
 }
 
-void SnapshotWriter::loop(const std::stop_token& stop) {
+void SnapshotWriter::loop(const std::stop_token& stop, Progress& progress) {
   for (;;) {
     {
       std::unique_lock lock(mutex_);
-      if (!wake_.wait(lock, stop, [&] { return asked_; })) return;
+      const bool asked = wake_.wait_for(lock, stop, kStep, [&] { return asked_; });
+      progress.step();
+      if (!asked && stop.stop_requested()) return;
+      if (!asked) continue;
       asked_ = false;
     }
+    const Progress::Pause pause(progress);  // a disk may take its time
     const auto path = write();
     if (path)
       logInfo("snapshot: {}", *path);

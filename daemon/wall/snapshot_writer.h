@@ -5,17 +5,19 @@
 #include <condition_variable>
 #include <mutex>
 #include <string>
-#include <thread>
 
+#include "daemon/base/dated_files.h"
 #include "daemon/base/result.h"
+#include "daemon/base/watched_thread.h"
 
 namespace merlin::wall {
 
 // Thread-safe.
 class SnapshotWriter {
  public:
-  // `framebuffer`: as "/merlin-framebuffer". The folder is made when it is needed.
-  SnapshotWriter(std::string framebuffer, std::string folder);
+  // `framebuffer`: as "/merlin-framebuffer". `files` says where the pictures go, and how many stay.
+  // `watch` outlives this.
+  SnapshotWriter(std::string framebuffer, DatedFiles files, ThreadWatch& watch);
   ~SnapshotWriter();  // what was asked for is still written
   SnapshotWriter(const SnapshotWriter&) = delete;
   SnapshotWriter& operator=(const SnapshotWriter&) = delete;
@@ -24,18 +26,19 @@ class SnapshotWriter {
   // What became of it is logged.
   void take();
 
-  // Writes the newest frame now: FOLDER/merlin-DATE-TIME-frame-N.png; returns its path. Errors:
-  // captureFrame()'s and writePng()'s, kIo where the folder cannot be made.
+  // Writes the newest frame now; returns its path. Errors: captureFrame()'s, writePng()'s and
+  // DatedFiles::next()'s.
   Result<std::string> write() const;
 
  private:
-  void loop(const std::stop_token& stop);
+  void loop(const std::stop_token& stop, Progress& progress);
 
-  std::string framebuffer_, folder_;
+  std::string framebuffer_;
+  DatedFiles files_;
   std::mutex mutex_;
   std::condition_variable_any wake_;
   bool asked_ = false;
-  std::jthread thread_;
+  WatchedThread thread_;
 };
 
 }  // namespace merlin::wall

@@ -44,7 +44,7 @@ Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings,
   role->sinks_.push_back(*std::move(shared));
   if (!settings.wall.png.path.empty()) {
     auto png = std::make_unique<render::PngFrameSink>(settings.wall.png, role->plan_.frame_width,
-                                                      role->plan_.frame_height);
+                                                      role->plan_.frame_height, watch);
     role->png_ = png.get();
     role->sinks_.push_back(std::move(png));
   }

@@ -5,17 +5,21 @@
 #include "render/out/png.h"
 
 namespace merlin::render {
+namespace {
 
-PngFrameSink::PngFrameSink(PngSinkSettings settings, int width, int height)
+constexpr auto kStep = std::chrono::milliseconds(500);
+
+}  // namespace
+
+PngFrameSink::PngFrameSink(PngSinkSettings settings, int width, int height, ThreadWatch& watch)
     : settings_(std::move(settings)),
       width_(width),
       height_(height),
-      thread_([this](const std::stop_token& stop) { encodeLoop(stop); }) {}
+      thread_(watch, "picture's file", [this](const std::stop_token& stop, Progress& progress) {
+        encodeLoop(stop, progress);
+      }) {}
 
-PngFrameSink::~PngFrameSink() {
-  thread_.request_stop();
-  thread_.join();
-}
+PngFrameSink::~PngFrameSink() { thread_.stop(); }
 
 void PngFrameSink::present(std::span<const std::uint8_t> pixels, const FrameInfo& info) {
   if (last_ != Timestamp{} && info.finished - last_ < fromSeconds(settings_.interval_s)) return;
@@ -31,14 +35,18 @@ std::string PngFrameSink::error() const {
   return error_;
 }
 
-void PngFrameSink::encodeLoop(const std::stop_token& stop) {
+void PngFrameSink::encodeLoop(const std::stop_token& stop, Progress& progress) {
   std::vector<std::uint8_t> pixels;
   for (;;) {
     {
       std::unique_lock lock(mutex_);
-      if (!wake_.wait(lock, stop, [&] { return !waiting_.empty(); })) return;
+      const bool waits = wake_.wait_for(lock, stop, kStep, [&] { return !waiting_.empty(); });
+      progress.step();
+      if (!waits && stop.stop_requested()) return;
+      if (!waits) continue;
       pixels = std::exchange(waiting_, {});
     }
+    const Progress::Pause pause(progress);  // a disk may take its time
     const auto written = writePng(settings_.path, width_, height_, pixels);
     const std::lock_guard lock(mutex_);
     error_ = written ? std::string() : written.error().what;

@@ -4,9 +4,9 @@
 #include <condition_variable>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "daemon/base/watched_thread.h"
 #include "render/out/frame_sink.h"
 #include "render/out/settings.h"
 
@@ -16,7 +16,8 @@ namespace merlin::render {
 // for a disk. What went wrong last is told by error().
 class PngFrameSink final : public FrameSink {
  public:
-  PngFrameSink(PngSinkSettings settings, int width, int height);
+  // `watch` outlives this.
+  PngFrameSink(PngSinkSettings settings, int width, int height, ThreadWatch& watch);
   ~PngFrameSink() override;
   PngFrameSink(const PngFrameSink&) = delete;
   PngFrameSink& operator=(const PngFrameSink&) = delete;
@@ -27,7 +28,7 @@ class PngFrameSink final : public FrameSink {
   std::string error() const;
 
  private:
-  void encodeLoop(const std::stop_token& stop);
+  void encodeLoop(const std::stop_token& stop, Progress& progress);
 
   PngSinkSettings settings_;
   int width_, height_;
@@ -36,7 +37,7 @@ class PngFrameSink final : public FrameSink {
   std::condition_variable_any wake_;
   std::vector<std::uint8_t> waiting_;  // empty: nothing to do
   std::string error_;
-  std::jthread thread_;
+  WatchedThread thread_;
 };
 
 }  // namespace merlin::render

@@ -9,6 +9,7 @@
 
 #include "daemon/base/bytes.h"
 #include "daemon/base/clock.h"
+#include "daemon/base/dated_files.h"
 #include "daemon/base/files.h"
 #include "daemon/base/nearest.h"
 #include "daemon/base/random.h"
@@ -173,6 +174,32 @@ TEST(Random, NormalHasMeanZeroAndDeviationOne) {
   }
   EXPECT_NEAR(sum / 100'000, 0, 0.01);
   EXPECT_NEAR(squares / 100'000, 1, 0.02);
+}
+
+TEST(DatedFiles, AreNamedByTimeAndTheOldestGo) {
+  const test::TempDir dir;
+  const DatedFiles files(dir / "f", "lab-ball", ".bytes", 3);
+  constexpr std::time_t kThen = 1'795'410'000;  // 2026-11-23 05:00:00 UTC
+  std::vector<std::string> made;
+  for (const std::time_t at : {kThen + 1, kThen, kThen, kThen + 2, kThen}) {
+    const auto path = files.next(at);
+    ASSERT_TRUE(path) << path.error().what;
+    ASSERT_TRUE(writeFile(*path, "x"));
+    made.push_back(*path);
+  }
+  const std::string start = dir / "f/lab-ball-20261123T05000";
+  EXPECT_EQ(made,
+            (std::vector<std::string>{start + "1Z.bytes", start + "0Z.bytes", start + "0Z-2.bytes",
+                                      start + "2Z.bytes", start + "0Z-3.bytes"}));
+  const std::vector<std::string> others = {start + "0Z.txt", start + "0Z-x.bytes",
+                                           dir / "f/lab-ball-mine.bytes",
+                                           dir / "f/lab-ball-2-20261123T050000Z.bytes"};
+  for (const std::string& other : others) ASSERT_TRUE(writeFile(other, "x"));
+  files.removeOldest();
+  for (const std::string& other : others) EXPECT_TRUE(std::filesystem::exists(other)) << other;
+  const auto stays = [](const std::string& path) { return std::filesystem::exists(path); };
+  EXPECT_FALSE(stays(made[1]) || stays(made[2])) << "the oldest two";
+  EXPECT_TRUE(stays(made[0]) && stays(made[3]) && stays(made[4]));
 }
 
 TEST(Bytes, InTheirStatedOrder) {

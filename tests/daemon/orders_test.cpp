@@ -67,7 +67,9 @@ TEST_F(OrdersTest, WithoutAWallNothingIsDone) {
 
 TEST(SnapshotWriterTest, SaysWhyThereIsNone) {
   const test::TempDir dir;
-  const SnapshotWriter writer("/" + test::privateName("noframes"), dir.path());
+  ThreadWatch watch;
+  const SnapshotWriter writer("/" + test::privateName("noframes"),
+                              DatedFiles(dir.path(), "lab", ".png", 3), watch);
   const auto written = writer.write();
   ASSERT_FALSE(written);
   EXPECT_NE(written.error().what.find("noframes"), std::string::npos) << written.error().what;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <zmq.hpp>
 
@@ -461,6 +462,34 @@ TEST(Watchdog, KnowsThreadsThatPauseEndStopAndStart) {
   EXPECT_FALSE(watchdog.ping(kNow + seconds(6), {a, {3, "c", 5, false, true, "gone"}}));
 }
 
+// A daemon whose places strangers hold closes connections, and requests are lost with them.
+TEST(Client, AsksForTheStatusAgainAndForNothingElse) {
+  const test::TempDir dir;
+  const std::string endpoint = "ipc://" + dir.path() + "/c";
+  zmq::context_t context{1};
+  zmq::socket_t router{context, zmq::socket_type::router};
+  router.bind(endpoint);
+  std::atomic<int> heard{0};
+  const std::jthread server([&](const std::stop_token& stop) {
+    router.set(zmq::sockopt::rcvtimeo, 20);
+    while (!stop.stop_requested()) {
+      zmq::message_t from, empty, request;
+      if (!router.recv(from) || !router.recv(empty) || !router.recv(request)) continue;
+      if (++heard != 2) continue;  // the first one is lost
+      router.send(from, zmq::send_flags::sndmore);
+      router.send(empty, zmq::send_flags::sndmore);
+      router.send(zmq::str_buffer(R"({"ok": true, "result": 5})"), zmq::send_flags::none);
+    }
+  });
+  const auto answer = ask(endpoint, "status", seconds(20));
+  ASSERT_TRUE(answer) << answer.error().what;
+  EXPECT_EQ(*answer, "5");
+  EXPECT_EQ(heard, 2);
+  EXPECT_EQ(ask(endpoint, "next_content", milliseconds(1500)).error().what,
+            endpoint + ": no answer within 1.5 s");
+  EXPECT_EQ(heard, 3) << "it might have been obeyed already";
+}
+
 TEST(RunDirectory, IsMadeAndRefusedWhereItIsNotOurs) {
   const test::TempDir dir;
   EXPECT_EQ(*runDirectory(dir / "a/b"), dir / "a/b");
@@ -469,6 +498,13 @@ TEST(RunDirectory, IsMadeAndRefusedWhereItIsNotOurs) {
   EXPECT_FALSE(runDirectory(dir / std::string(90, 'x'))) << "too long for a socket's name";
   std::filesystem::create_directory_symlink("/tmp", dir / "link");
   EXPECT_FALSE(runDirectory(dir / "link"));
+  std::filesystem::create_directory(dir / "open");
+  ASSERT_EQ(::chmod((dir / "open").c_str(), 0777), 0);
+  EXPECT_FALSE(runDirectory(dir / "open")) << "everybody may write to it";
+  if (::geteuid() != 0) return;  // only root can give a folder away
+  std::filesystem::create_directory(dir / "given");
+  ASSERT_EQ(::chown((dir / "given").c_str(), 65534, 65534), 0);
+  EXPECT_FALSE(runDirectory(dir / "given")) << "another user's, wherever it lies";
 }
 
 }  // namespace

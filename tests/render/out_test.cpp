@@ -255,19 +255,20 @@ TEST(Png, FullDiskLeavesNothingHalfWritten) {
 TEST(PngSink, WritesNoMoreOftenThanAsked) {
   const test::TempDir folder;
   const std::string path = folder / "frame.png";
+  ThreadWatch watch;
   const auto present = [](PngFrameSink& sink, std::uint8_t n, int seconds) {
     sink.present(Pixels(std::size_t{4} * 16 * 16, n),
                  {n, Timestamp{std::chrono::seconds(seconds)}, 1, true});
   };
   const auto red = [&] { return readPng(path).at(0, 0).red; };
   {
-    PngFrameSink sink({path, 60}, 16, 16);
+    PngFrameSink sink({path, 60}, 16, 16, watch);
     present(sink, 1, 1000);
     ASSERT_TRUE(test::eventually([&] { return std::filesystem::exists(path); }));
     present(sink, 2, 1059);
   }
   EXPECT_EQ(red(), 1);
-  PngFrameSink sink({path, 60}, 16, 16);
+  PngFrameSink sink({path, 60}, 16, 16, watch);
   present(sink, 3, 1000);
   // One that finds the encoder at work is left out; so the time goes on until one is taken.
   int seconds = 1060;
@@ -279,7 +280,8 @@ TEST(PngSink, WritesNoMoreOftenThanAsked) {
 }
 
 TEST(PngSink, SaysWhatWentWrongAndGoesOn) {
-  PngFrameSink sink({"/nowhere/frame.png", 0}, 16, 16);
+  ThreadWatch watch;
+  PngFrameSink sink({"/nowhere/frame.png", 0}, 16, 16, watch);
   sink.present(Pixels(std::size_t{4} * 16 * 16), {1, fromNanoseconds(1), 1, true});
   ASSERT_TRUE(test::eventually([&] { return !sink.error().empty(); }));
   EXPECT_NE(sink.error().find("/nowhere/frame.png"), std::string::npos);

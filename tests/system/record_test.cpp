@@ -57,7 +57,10 @@ TEST(Flight, TheDaemonDumpsOnCommandAndOnAFault) {
   ASSERT_TRUE(eventually([&] { return merlind.devices()->ball.count() > 20; }));
   const Outcome asked = run({kMerlin, "flight", "--instance", merlind.instance()});
   ASSERT_EQ(asked.status, 0) << asked.output;
-  const auto dump = io::readTranscript(dir / "flight/spaceball-0.bytes");
+  const auto at = asked.output.find(dir / "flight/" + merlind.instance() + "-spaceball-");
+  ASSERT_NE(at, std::string::npos) << asked.output;
+  const auto dump =
+      io::readTranscript(asked.output.substr(at, asked.output.find(".bytes", at) + 6 - at));
   ASSERT_TRUE(dump) << dump.error().what;
   EXPECT_EQ((*dump)["driver"], "spaceball");
   EXPECT_GT(dump->chunks.size(), 20u);

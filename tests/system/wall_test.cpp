@@ -75,7 +75,7 @@ TEST_F(Wall, AFistPointsAndItsEndTakesASnapshot) {
                 : shm::WallInteraction{};
   };
   EXPECT_TRUE(eventually([&] { return interaction().pointing != shm::WallInteraction::kNone; }));
-  EXPECT_TRUE(m.process().saysEventually("snapshot: " + folder + "/merlin-"))
+  EXPECT_TRUE(m.process().saysEventually("snapshot: " + folder + "/" + m.instance() + "-"))
       << m.process().output();
   const auto first = std::filesystem::directory_iterator(folder)->path();
   EXPECT_EQ(readText(first).substr(1, 3), "PNG");
@@ -128,7 +128,7 @@ TEST_F(Wall, EachDeviceMayDieAndComeBackWithoutTheOthersNoticing) {
 
     restarted.push_back(std::make_unique<Process>(
         std::vector<std::string>{kMerlin, "emulate", victim.driver, "--link",
-                                 *dir_ / (std::string(victim.driver) + ".pty")}));
+                                 *dir_ / fmt::format("{}-{}.pty", m.instance(), victim.driver)}));
     EXPECT_TRUE(m.healthIs(victim.index, HealthState::kOk)) << victim.name;
     EXPECT_EQ(m.status()["devices"][victim.name]["health"], "ok");
     EXPECT_EQ(m.devices()->health[victim.index].read()->reconnects, 1u);
