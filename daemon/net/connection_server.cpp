@@ -16,6 +16,7 @@ namespace merlin::net {
 namespace {
 
 constexpr int kAcceptedPerRound = 64;
+constexpr double kAcceptedAfterWait = 10;  // at once, so that a flood does not wake us for each
 constexpr Duration kWithoutDescriptors = std::chrono::milliseconds(100);
 
 short hung(const pollfd& p) { return p.revents & (POLLHUP | POLLERR | POLLNVAL); }
@@ -42,7 +43,10 @@ struct ConnectionServer::Client {
 };
 
 ConnectionServer::ConnectionServer(std::string name, const ServerLimits& limits, const Clock& clock)
-    : name_(std::move(name)), limits_(limits), clock_(clock) {
+    : name_(std::move(name)),
+      limits_(limits),
+      clock_(clock),
+      accepts_(limits.accepts_per_s, limits.accepts_burst) {
   report_.name = name_;
 }
 
@@ -83,10 +87,15 @@ bool ConnectionServer::add(UniqueFd fd, const Peer& peer, const MakeSession& mak
 
 void ConnectionServer::accept(Listener& listener) {
   for (int i = 0; i < kAcceptedPerRound; ++i) {
+    const Timestamp now = clock_.now();
+    if (!accepts_.take(1, now)) {
+      accept_from_ = now + accepts_.waitFor(kAcceptedAfterWait, now);
+      return;
+    }
     UniqueFd fd(::accept4(listener.fd.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (!fd.valid()) {
       if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
-        accept_from_ = clock_.now() + kWithoutDescriptors;
+        accept_from_ = now + kWithoutDescriptors;
         count(End::kRefused, {}, std::strerror(errno));
       }
       return;

@@ -33,7 +33,10 @@ struct ServerLimits {
   std::size_t output_bytes = 65536;            // for a client that does not read; more closes it
   std::size_t messages_per_round = 16;         // of one client, before the next one's turn
   double messages_per_s = 500, messages_burst = 500;  // of one client; more wait in the socket
-  double bytes_per_s = 65536, bytes_burst = 65536;    // read from one client; likewise
+  // Newcomers of all listeners together; more wait in the system's queue. Who connects and is sent
+  // away in a loop would take a third of a processor core without it.
+  double accepts_per_s = 1000, accepts_burst = 200;
+  double bytes_per_s = 65536, bytes_burst = 65536;  // read from one client; likewise
 };
 
 // One client's side of a protocol. Thread-bound to the server's thread.
@@ -142,7 +145,8 @@ class ConnectionServer {
   const Clock& clock_;
   std::vector<Listener> listeners_;
   std::vector<std::unique_ptr<Client>> clients_;
-  Timestamp accept_from_{};  // no descriptor was left: not before this
+  TokenBucket accepts_;
+  Timestamp accept_from_{};  // no descriptor was left, or enough have come: not before this
   mutable std::mutex mutex_;
   ServerReport report_;  // guarded by mutex_
 };

@@ -339,6 +339,30 @@ TEST_F(Listening, AClientIsAcceptedAndKnownByItsProcess) {
   EXPECT_EQ(status.st_mode & 0777, 0600U);
 }
 
+TEST_F(Listening, WhoConnectsAllTheTimeIsAcceptedAtARate) {
+  const std::string path = dir_ / "s";
+  test::FakeClock clock;
+  ServerLimits limits;
+  limits.accepts_per_s = 100;
+  limits.accepts_burst = 20;
+  ConnectionServer server("s", limits, clock);
+  server.listen(*listenLocal(path, 0600), [](const Peer&) { return std::make_unique<Lines>(); });
+  std::vector<UniqueFd> clients;
+  for (int i = 0; i < 100; ++i) clients.push_back(connectTo(path));
+  const auto came = [&] {
+    for (int i = 0; i < 5; ++i) server.round(Duration::zero());
+    const ServerReport report = server.report();
+    return report.accepted + report.refused;
+  };
+  EXPECT_EQ(came(), 20U) << "a burst";
+  clock.advance(milliseconds(99));
+  EXPECT_EQ(came(), 20U) << "ten at once";
+  clock.advance(milliseconds(2));
+  EXPECT_EQ(came(), 30U);
+  clock.advance(milliseconds(500));
+  EXPECT_EQ(came(), 50U) << "a burst again";
+}
+
 TEST_F(Listening, OnlyADeadProgramsSocketIsReplaced) {
   const std::string path = dir_ / "s";
   {

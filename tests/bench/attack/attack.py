@@ -11,8 +11,9 @@ import sys
 import tempfile
 
 import devices
+import sockets
 
-GROUPS = [devices]
+GROUPS = [devices, sockets]
 
 
 def main():
@@ -21,7 +22,8 @@ def main():
     parser.add_argument("--source", required=True, help="the source tree")
     parser.add_argument("--seconds", type=float, default=15, help="of one turn")
     parser.add_argument("--rounds", type=int, default=3, help="turns of each side")
-    parser.add_argument("case", nargs="*", help="names; without: all")
+    parser.add_argument("--soak-seconds", type=float, default=600, help="of the case soak")
+    parser.add_argument("case", nargs="*", help="names; without: all but soak")
     options = parser.parse_args()
     cases = [case for group in GROUPS for case in group.CASES]
     unknown = set(options.case) - {case.name for case in cases}
@@ -32,7 +34,8 @@ def main():
     with tempfile.TemporaryDirectory(prefix="merlin-attack-") as folder:
         options.folder, options.model = folder, os.path.join(folder, "model.mrm")
         for case in cases:
-            if options.case and case.name not in options.case:
+            by_name_only = getattr(case, "by_name_only", False)
+            if case.name not in options.case and (options.case or by_name_only):
                 continue
             try:
                 case.run(options)

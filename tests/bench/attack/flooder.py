@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The attacker and the bare sink: flooder.py send|sink tcp:PORT|pty:LINK [BYTES|RATE]
+"""The attacker and the bare sink: flooder.py send|sink tcp:PORT|pty:LINK [BYTES|RATE], and of
+sockets: flooder.py knock|answer PORT|PATH [BYTES]
 
 send: a line on which BYTES (newlines, noise) comes as fast as somebody takes it; one at a time.
 sink: opens such a line as merlind does and reads RATE bytes a second in steps of 10 ms, into
@@ -55,6 +56,37 @@ def open_line(where):
     return line.recv
 
 
+def address_of(where):
+    return ("127.0.0.1", int(where)) if where.isdigit() else where
+
+
+def knock(where, data):
+    """Connects, sends until it is sent away, connects again at once."""
+    address = address_of(where)
+    family = socket.AF_UNIX if isinstance(address, str) else socket.AF_INET
+    while True:
+        with socket.socket(family) as s:
+            try:
+                s.connect(address)
+                while True:
+                    s.sendall(data[:1024])
+            except OSError:
+                pass
+
+
+def answer(where):
+    """Takes a client, hears its first words and sends it away, and does no more."""
+    address = address_of(where)
+    family = socket.AF_UNIX if isinstance(address, str) else socket.AF_INET
+    if isinstance(address, str) and os.path.exists(address):
+        os.unlink(address)
+    with socket.create_server(address, family=family) as listener:
+        while True:
+            client, _ = listener.accept()
+            with client:
+                client.recv(1024)
+
+
 def sink(where, rate):
     for _ in range(500):
         try:
@@ -72,8 +104,12 @@ def sink(where, rate):
 
 
 if __name__ == "__main__":
-    role, target, what = sys.argv[1:4]
-    if role == "sink":
+    role, target, what = (sys.argv + [""])[1:4]
+    if role == "knock":
+        knock(target, payload(what))
+    elif role == "answer":
+        answer(target)
+    elif role == "sink":
         sink(target, float(what))
     elif target.startswith("tcp:"):
         send_tcp(int(target[4:]), payload(what))

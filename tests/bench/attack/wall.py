@@ -17,7 +17,8 @@ def make_model(options):
 
 
 class Wall:
-    """merlind on a configuration of its own; `lines` maps glove, tracker and ball to ports."""
+    """merlind on a configuration of its own; `lines` maps glove, tracker and ball to ports, or is
+    None: emulated devices, a ball that turns."""
 
     def __init__(self, options, lines, also=None):
         make_model(options)
@@ -27,14 +28,19 @@ class Wall:
         config.pop("$schema")
         config["instance"], config["run_directory"] = self.instance, options.folder
         config["wall"]["model"] = options.model
-        config["devices"] = {name: {"port": port} for name, port in lines.items()}
+        if lines is None:
+            config["devices"] = {"script": "turning"}
+        else:
+            config["devices"] = {name: {"port": port} for name, port in lines.items()}
         config.update(also or {})
         path = os.path.join(options.folder, "attack.json")
         with open(path, "w", encoding="utf8") as file:
             json.dump(config, file)
         self.log = open(os.path.join(options.folder, "merlind.log"), "w+", encoding="utf8")
-        self.process = subprocess.Popen([f"{options.bin}/merlind", "--config", path],
+        emulate = ["--emulate"] if lines is None else []
+        self.process = subprocess.Popen([f"{options.bin}/merlind", "--config", path, *emulate],
                                         stdout=self.log, stderr=self.log)
+        self.end = ""  # all that it said, once it has ended
 
     def __enter__(self):
         deadline = time.monotonic() + 60
@@ -53,6 +59,7 @@ class Wall:
             self.process.wait()
             raise AssertionError("merlind did not obey SIGTERM within 20 s") from None
         finally:
+            self.end = self.said()
             self.log.close()
 
     def said(self):
@@ -61,21 +68,27 @@ class Wall:
             return file.read()
 
     def fields(self, role, *names):
+        """Whole numbers of the shared memory, one of each name."""
         reader = os.path.join(self.options.source, "daemon/shm/read_merlin.py")
         done = subprocess.run([sys.executable, reader, f"{self.instance}-{role}", *names],
                               capture_output=True, text=True, check=True)
-        return dict(line.split(" ", 1) for line in done.stdout.splitlines())
+        rows = (line.split(" ", 1) for line in done.stdout.splitlines())
+        return {name: int(value.split("]")[0].strip("[")) for name, value in rows}
 
     def deadlines(self):
         """How many deadlines there were while it moved, and how many were missed."""
         values = self.fields("wall", "wall.deadlines", "wall.late")
-        return [int(values[f"wall.{name}"].strip("(,) ")) for name in ("deadlines", "late")]
+        return [values[f"wall.{name}"] for name in ("deadlines", "late")]
 
     def status(self):
         done = subprocess.run([f"{self.options.bin}/merlin", "status", "--json", "--instance",
                                self.instance], capture_output=True, text=True, check=False)
         assert done.returncode == 0, f"merlin status: {done.stderr.strip()}"
         return json.loads(done.stdout)
+
+    def connections(self):
+        """Of each server, now."""
+        return [server["connections"] for server in self.status()["servers"].values()]
 
     def cores(self):
         """Processor seconds of all of its threads so far."""
