@@ -44,6 +44,19 @@ struct TwoMachines : testing::Test {
     return std::make_unique<Process>(std::vector<std::string>{
         kMerlind, "--config", dir / "devices.json", "--role", "devices", "--emulate"});
   }
+  // The wall's own merlin says how it is, and how the devices are that feed it.
+  void expectStatusOfTheOthersDevices() {
+    const Outcome json = run({kMerlin, "status", "--json", "--instance", wall_name});
+    ASSERT_EQ(json.status, 0) << json.output;
+    const auto status = nlohmann::json::parse(json.output, nullptr, false);
+    EXPECT_EQ(status["devices"]["ball"]["health"], "ok") << json.output;
+    EXPECT_EQ(status["rate_asked"], 10) << json.output;
+    const Outcome text = run({kMerlin, "status", "--instance", wall_name});
+    EXPECT_EQ(text.status, 0) << text.output;
+    EXPECT_NE(text.output.find("ball"), std::string::npos) << text.output;
+    const Outcome watch = run({kMerlin, "watch", "--for", "1", "--instance", wall_name});
+    EXPECT_EQ(watch.status, 0) << watch.output;
+  }
   TempDir dir;
   std::string devices_name = privateName("there"), wall_name = privateName("here");
 };
@@ -66,6 +79,7 @@ TEST_F(TwoMachines, TheWallMovesWithTheOtherMachinesBallAndOutlivesIt) {
     auto there = devices();
     ASSERT_TRUE(eventually([&] { return ball() == HealthState::kOk; })) << wall.output();
     ASSERT_TRUE(eventually(moving)) << "the emulated person twists the ball there";
+    expectStatusOfTheOthersDevices();
     there->kill(SIGTERM);
     ASSERT_TRUE(eventually([&] { return ball() == HealthState::kAbsent; }));
     ASSERT_TRUE(eventually([&] { return !moving(); })) << "nobody holds it any more";
