@@ -212,6 +212,16 @@ void checkBindings(const std::vector<render::Binding>& bindings, LoadedSettings&
   }
 }
 
+// A button that could never do anything.
+void checkButton(const Settings& s, LoadedSettings& loaded) {
+  const std::string at = "/devices/gpio/button_command", &command = s.devices.gpio.button_command;
+  if (s.devices.gpio.chip.empty() || s.devices.gpio.button_line < 0) return;
+  if (command == "snapshot" && s.wall.snapshots.empty())
+    loaded.wrong(at, "is snapshot, which needs a folder: /wall/snapshots names none");
+  if (command == "next_content" && s.wall.contents.empty())
+    loaded.wrong(at, "is next_content, and there is one model only: /wall/contents names none");
+}
+
 // An action that could never do anything.
 void checkDoers(const Settings& s, LoadedSettings& loaded) {
   const auto& bindings = s.wall.scene.bindings;
@@ -251,6 +261,7 @@ void checkTogether(LoadedSettings& loaded) {
   checkGroup(render::validate(s.wall.scene), "/wall/scene", loaded);
   checkRate(s.wall.governor, loaded);
   checkBindings(s.wall.scene.bindings, loaded);
+  checkButton(s, loaded);
   checkDoers(s, loaded);
 }
 

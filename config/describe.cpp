@@ -2,6 +2,7 @@
 // `merlind --print-config` follow from it.
 #include "config/settings.h"
 #include "config/visitor.h"
+#include "daemon/base/commands.h"
 
 namespace merlin {
 namespace {
@@ -15,10 +16,6 @@ constexpr const char* kScripts[] = {"visit", "turning", "still", "grabbing", "al
 constexpr const char* kDialogues[] = {"binary", "text"};
 constexpr const char* kWristLights[] = {"switch", "off", "on"};
 constexpr const char* kTrackerNumbers[] = {"binary", "text", "short"};
-constexpr const char* kPanelCommands[] = {"next_mode",    "reset_view",    "next_content",
-                                          "projector_on", "projector_off", "video_a",
-                                          "video_b"};
-
 constexpr const char* kGloves[] = {"cyberglove"};
 constexpr const char* kTrackers[] = {"fastrak"};
 constexpr const char* kBalls[] = {"spaceball", "sample"};
@@ -230,7 +227,8 @@ void describeGpio(GpioSettings& g, SettingsVisitor& v) {
   v.number("interlock_s", g.interlock_s, {0, 3600}, "Between two switchings, at least, seconds.");
   v.number("debounce_s", g.debounce_s, {0, 1},
            "That the button is down before it counts, seconds.");
-  v.choiceOf("button_command", g.button_command, kPanelCommands, "What a press does.");
+  v.choiceOf("button_command", g.button_command, kButtonCommands,
+             "What a press of the panel's button does: a command of the wall or of the panel.");
 }
 
 void describeServe(ServeSettings& s, SettingsVisitor& v) {

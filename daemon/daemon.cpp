@@ -1,7 +1,6 @@
 #include "daemon/daemon.h"
 
 #include <cerrno>
-#include <cstdlib>
 #include <ctime>
 #include <utility>
 
@@ -23,7 +22,6 @@ namespace {
 
 constexpr Duration kBeat = std::chrono::milliseconds(100);
 constexpr Duration kSummary = std::chrono::seconds(5);
-constexpr Duration kTellServers = std::chrono::seconds(5);
 constexpr Duration kOnceASecond = std::chrono::seconds(1);
 constexpr Duration kSixtyASecond = std::chrono::microseconds(16'667);
 
@@ -46,36 +44,6 @@ Error errorAt(const char* pointer, const Error& error) {
   return {error.code, fmt::format("{}: {}", pointer, error.what)};
 }
 
-struct WallRequest {
-  const char* name;
-  wall::WallLoop::Request what;
-  const char* help;
-};
-constexpr WallRequest kWallRequests[] = {
-    {"reset_view", wall::WallLoop::kResetView, "model and viewer back to the start"},
-    {"next_mode", wall::WallLoop::kNextMode, "the ball moves the model, or the viewer"},
-    {"next_content", wall::WallLoop::kNextContent, "the next of the configuration's models"}};
-
-// A command whose argument is a number within these, or "auto".
-status::Command byHand(const std::string& name, const std::string& help, double least, double most,
-                       const std::function<void(std::optional<double>)>& set) {
-  const auto run = [=](const std::string& argument) -> Result<std::string> {
-    if (argument == "auto") {
-      set(std::nullopt);
-      return std::string("{}");
-    }
-    char* end = nullptr;
-    const double value = std::strtod(argument.c_str(), &end);
-    if (argument.empty() || *end != '\0' || !(value >= least && value <= most)) {
-      return Error{Errc::kInvalidArgument,
-                   fmt::format("{}: \"{}\" is not {}", name, argument.substr(0, 64), help)};
-    }
-    set(value);
-    return std::string("{}");
-  };
-  return {name, help, nullptr, run};
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Daemon>> Daemon::make(Configuration configuration,
@@ -94,20 +62,12 @@ Daemon::Daemon(Configuration configuration, const DaemonOptions& options, Clock&
       models_(std::move(configuration.models)),
       options_(options),
       clock_(clock),
+      servers_(std::in_place, options.devices ? "devices" : "wall", threads_, clock),
       watchdog_(watchdogInterval()) {}
 
-// Callers before callees: sockets and orders call devices_ and wall_; the panel's button, in
-// devices_, calls wall_.
+// Its threads ask for what stands beside it; the panel's button, in devices_, calls wall_.
 Daemon::~Daemon() {
-  decltype(kept_) kept;
-  decltype(roles_) roles;
-  {
-    const std::lock_guard lock(servers_mutex_);
-    kept.swap(kept_);
-    roles.swap(roles_);
-  }
-  kept.clear();  // the samples' relay stands on a role's server
-  roles.clear();
+  servers_.reset();
   orders_.reset();
   snapshots_.reset();
   link_.reset();
@@ -181,17 +141,10 @@ Result<Ok> Daemon::mirrorDevices(std::uint64_t generation) {
   return Ok{};
 }
 
-void Daemon::keep(const std::string& name, net::ServerKeeper::Start start) {
-  auto keeper = std::make_unique<net::ServerKeeper>(name, std::move(start));
-  keeper->tend(clock_.now());
-  const std::lock_guard lock(servers_mutex_);
-  kept_.push_back(std::move(keeper));
-}
-
 void Daemon::serveOthers(const shm::DevicesSegment& segment) {
   const ServeSettings& s = settings_.serve;
   if (!s.spnav_socket.empty()) {
-    keep("space mouse", [this, &segment]() -> Result<std::unique_ptr<net::Server>> {
+    servers_->keep("space mouse", [this, &segment]() -> Result<std::unique_ptr<net::Server>> {
       auto server =
           serve::SpnavServer::start(settings_.serve.spnav_socket, segment, threads_, clock_);
       if (!server) return errorAt("/serve/spnav_socket", server.error());
@@ -199,47 +152,12 @@ void Daemon::serveOthers(const shm::DevicesSegment& segment) {
     });
   }
   if (s.vrpn_port > 0) {
-    keep("VRPN", [this, &segment]() -> Result<std::unique_ptr<net::Server>> {
+    servers_->keep("VRPN", [this, &segment]() -> Result<std::unique_ptr<net::Server>> {
       auto server = serve::VrpnServer::start(settings_.serve.vrpn_port, segment, threads_, clock_);
       if (!server) return errorAt("/serve/vrpn_port", server.error());
       return std::unique_ptr<net::Server>(*std::move(server));
     });
   }
-}
-
-// Of a role: its own sockets, and the servers for others, which belong to the devices, or to the
-// wall where that shows another machine's.
-std::vector<net::ServerHealth> Daemon::serverHealth(const std::string& role) const {
-  std::vector<net::ServerHealth> all;
-  const std::lock_guard lock(servers_mutex_);
-  if (const auto found = roles_.find(role); found != roles_.end()) {
-    for (const net::ServerReport& report : found->second.server->reports())
-      all.push_back({report.name, "", report});
-  }
-  if ((role == "devices") != static_cast<bool>(devices_)) return all;
-  for (const auto& keeper : kept_) all.push_back(keeper->health());
-  return all;
-}
-
-std::vector<std::string> Daemon::serverEvents(const std::string& role) {
-  std::vector<std::string> events;
-  const Timestamp now = clock_.now();
-  const std::lock_guard lock(servers_mutex_);
-  if (const auto found = roles_.find(role); found != roles_.end()) {
-    for (const net::ServerReport& report : found->second.server->reports()) {
-      std::uint64_t& told = found->second.told_sent_away[report.name];
-      if (now - told_servers_[role] < kTellServers) continue;
-      if (auto sentence = net::sentAwaySentence(report, told); !sentence.empty())
-        events.push_back(std::move(sentence));
-    }
-    if (now - told_servers_[role] >= kTellServers) told_servers_[role] = now;
-  }
-  if ((role == "devices") == static_cast<bool>(devices_)) {
-    for (const auto& keeper : kept_) {
-      for (auto& sentence : keeper->takeEvents(now)) events.push_back(std::move(sentence));
-    }
-  }
-  return events;
 }
 
 Result<status::CurveServer> Daemon::network() const {
@@ -269,30 +187,9 @@ void Daemon::takeOrders() {
       if (!done) logWarning("{}: {}", command, done.error().what);
     };
   }
+  commands_.emplace(RoleCommands::Parts{devices_.get(), wall_.get(), snapshots_.get()});
   orders_ = std::make_unique<wall::Orders>(shm::segmentName(settings_.instance, "wall"),
                                            std::move(doers));
-}
-
-// Of the panel or of the wall: what a button may be bound to.
-Result<std::string> Daemon::runCommand(const std::string& name) {
-  for (const WallRequest& request : kWallRequests) {
-    if (name != request.name) continue;
-    if (!wall_) return Error{Errc::kInvalidArgument, "this process draws no wall"};
-    wall_->request(request.what);
-    return std::string("{}");
-  }
-  if (const auto done = devices_->panel()->obey(name); !done) return done.error();
-  return std::string("{}");
-}
-
-std::vector<status::Command> Daemon::panelCommands() {
-  std::vector<status::Command> commands;
-  if (!devices_->panel()) return commands;
-  for (const char* name : {"projector_on", "projector_off", "video_a", "video_b", "lamp_off",
-                           "lamp_slow", "lamp_fast", "lamp_on"}) {
-    commands.push_back({name, "of the panel", [this, name] { return runCommand(name); }});
-  }
-  return commands;
 }
 
 Result<Ok> Daemon::run() {
@@ -300,7 +197,7 @@ Result<Ok> Daemon::run() {
   if (devices_) {
     devices_->beat(now);
     devices_->onPress([this](const std::string& command) {
-      const auto done = runCommand(command);
+      const auto done = commands_->run(command);
       if (!done) logWarning("the panel's button: {}", done.error().what);
     });
     devices_->start();
@@ -361,7 +258,7 @@ void Daemon::housekeeping() {
                   : services_.failed("picture", "/wall/png/path: " + fault);
   }
   orders_->poll(now);
-  for (const auto& keeper : kept_) keeper->tend(now);
+  servers_->tend(now);
   if (emulators_) {
     for (const std::string& device : emulators_->takeEnded()) {
       logWarning("the emulated {} has ended; start it again with: merlin emulate {} --link ...",
@@ -411,49 +308,35 @@ std::string Daemon::summary(Timestamp now) const {
   return text;
 }
 
-Result<Ok> Daemon::serveStatus(const std::string& role, status::StatusServerSettings settings) {
+Result<Ok> Daemon::serveStatus(const std::string& role, CommandOf commands,
+                               status::StatusServerSettings settings) {
   const shm::Endpoints at = endpoints(role);
   settings.status_endpoint = at.status;
   settings.command_endpoint = at.command;
-  settings.name = role;
-  const bool samples = !settings.network.endpoint.empty();
-  auto started = status::StatusServer::start(std::move(settings), threads_, clock_);
-  if (!started) return started.error();
-  const status::StatusServer* server = started->get();
-  {
-    const std::lock_guard lock(servers_mutex_);
-    roles_[role].server = *std::move(started);
+  const auto status = settings.publications[0].document;
+  settings.commands = commands_->of(commands);
+  if (commands == CommandOf::kDevices) {
+    for (auto& command : commands_->of(CommandOf::kPanel))
+      settings.commands.push_back(std::move(command));
   }
-  if (samples) {
-    keep("samples for other machines", [this, server]() -> Result<std::unique_ptr<net::Server>> {
-      auto relay = server->startSamples(threads_);
-      if (!relay) return errorAt("/serve/samples_endpoint", relay.error());
-      return relay;
-    });
-  }
-  return Ok{};
+  settings.commands.insert(settings.commands.begin(),
+                           {"status", std::string(findCommand("status")->help),
+                            [status]() -> Result<std::string> { return status(); }});
+  return servers_->startRole(role, std::move(settings));
 }
 
 Result<Ok> Daemon::serveDevices() {
   const shm::DevicesSegment& segment = devices_->segment();
   status::StatusServerSettings s;
   const auto statusNow = [this, &segment] {
-    return services_.addTo(status::devicesStatus(segment, clock_.now(), serverHealth("devices")));
+    return services_.addTo(
+        status::devicesStatus(segment, clock_.now(), servers_->health("devices")));
   };
   s.publications = {
       {"status", kOnceASecond, statusNow},
       {"metrics", kOnceASecond, [&segment] { return status::devicesMetrics(segment); }},
       {"sample", kSixtyASecond,
        [this, &segment] { return status::newestSamples(segment, clock_.now()); }}};
-  s.commands = {{"status", "the devices' status",
-                 [statusNow]() -> Result<std::string> { return statusNow(); }},
-                {"flight", "the last minutes of every device's bytes, into files",
-                 [this]() -> Result<std::string> {
-                   const auto files = devices_->flight().dump();
-                   if (!files) return files.error();
-                   return status::textList(*files);
-                 }}};
-  for (auto& command : panelCommands()) s.commands.push_back(std::move(command));
   auto network_settings = network();
   if (!network_settings) return network_settings.error();
   s.network = *std::move(network_settings);
@@ -469,14 +352,14 @@ Result<Ok> Daemon::serveDevices() {
       logInfo("{}", sentence);
       documents.push_back(status::event("flight", sentence, now));
     }
-    for (const std::string& sentence : serverEvents("devices")) {
+    for (const std::string& sentence : servers_->events("devices")) {
       logInfo("{}", sentence);
       documents.push_back(status::event("server", sentence, now));
     }
     tellServices(documents);
     return documents;
   };
-  return serveStatus("devices", std::move(s));
+  return serveStatus("devices", CommandOf::kDevices, std::move(s));
 }
 
 // By whichever role's server comes first.
@@ -503,7 +386,7 @@ std::function<std::vector<std::string>()> Daemon::wallEvents() {
     tell("wall", events->take());
     tell("model", wall_->modelEvents());
     if (health) tell("device", health->take(clock_.now()));
-    tell("server", serverEvents("wall"));
+    tell("server", servers_->events("wall"));
     tellServices(documents);
     return documents;
   };
@@ -513,27 +396,13 @@ Result<Ok> Daemon::serveWall() {
   const shm::WallSegment& segment = wall_->segment();
   status::StatusServerSettings s;
   const auto statusNow = [this, &segment] {
-    return services_.addTo(status::wallStatus(segment, clock_.now(), serverHealth("wall"),
+    return services_.addTo(status::wallStatus(segment, clock_.now(), servers_->health("wall"),
                                               mirror_ ? &**mirror_ : nullptr));
   };
   s.publications = {{"status", kOnceASecond, statusNow},
                     {"metrics", kOnceASecond, [&segment] { return status::wallMetrics(segment); }}};
-  s.commands = {
-      {"status", "the wall's status", [statusNow]() -> Result<std::string> { return statusNow(); }},
-      byHand("triangles", "a number from 4 on, or auto", 4, 1e9,
-             [this](std::optional<double> n) {
-               wall_->hold(n ? std::optional(static_cast<std::size_t>(*n)) : std::nullopt);
-             }),
-      byHand("rate", "frames a second from 1 to 240, or auto", 1, 240,
-             [this](std::optional<double> hz) { wall_->setRate(hz); })};
-  for (const WallRequest& request : kWallRequests) {
-    s.commands.push_back({request.name, request.help, [this, what = request.what] {
-                            wall_->request(what);
-                            return Result<std::string>("{}");
-                          }});
-  }
   s.events = wallEvents();
-  return serveStatus("wall", std::move(s));
+  return serveStatus("wall", CommandOf::kWall, std::move(s));
 }
 
 }  // namespace merlin

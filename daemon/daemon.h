@@ -3,9 +3,7 @@
 
 #include <csignal>
 #include <functional>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,10 +15,10 @@
 #include "daemon/configuration.h"
 #include "daemon/devices/devices_role.h"
 #include "daemon/emulator_children.h"
-#include "daemon/net/server_keeper.h"
+#include "daemon/role_commands.h"
+#include "daemon/servers.h"
 #include "daemon/status/ended_threads.h"
 #include "daemon/status/sample_link.h"
-#include "daemon/status/server.h"
 #include "daemon/status/services.h"
 #include "daemon/status/watchdog.h"
 #include "daemon/wall/orders.h"
@@ -46,20 +44,17 @@ class Daemon {
  private:
   Daemon(Configuration configuration, const DaemonOptions& options, Clock& clock);
   Result<Ok> makeRoles();
-  Result<Ok> serveStatus(const std::string& role, status::StatusServerSettings settings);
+  // The first of `settings`' publications is the status.
+  Result<Ok> serveStatus(const std::string& role, CommandOf commands,
+                         status::StatusServerSettings settings);
   Result<Ok> serveDevices();
   Result<Ok> serveWall();
   std::function<std::vector<std::string>()> wallEvents();
   Result<Ok> mirrorDevices(std::uint64_t generation);
   // Servers for other programs, from here on kept running.
   void serveOthers(const shm::DevicesSegment& segment);
-  void keep(const std::string& name, net::ServerKeeper::Start start);
-  std::vector<net::ServerHealth> serverHealth(const std::string& role) const;
-  std::vector<std::string> serverEvents(const std::string& role);
   Result<status::CurveServer> network() const;
   void tellServices(std::vector<std::string>& documents);
-  Result<std::string> runCommand(const std::string& name);
-  std::vector<status::Command> panelCommands();
   void takeOrders();
   shm::Endpoints endpoints(const std::string& role) const;
   Result<Ok> awaitFirstFrame(std::future<Result<std::string>> ready);
@@ -85,18 +80,10 @@ class Daemon {
   std::unique_ptr<wall::WallRole> wall_;
   std::unique_ptr<wall::SnapshotWriter> snapshots_;
   std::unique_ptr<wall::Orders> orders_;
-  // One role's status server; its relays' clients that events told of.
-  struct Role {
-    std::unique_ptr<status::StatusServer> server;
-    std::map<std::string, std::uint64_t> told_sent_away;
-  };
-  mutable std::mutex servers_mutex_;  // of the next two: the status threads look at them
-  std::map<std::string, Role> roles_;
-  std::vector<std::unique_ptr<net::ServerKeeper>> kept_;
+  std::optional<RoleCommands> commands_;
+  std::optional<Servers> servers_;
   status::Watchdog watchdog_;
   Timestamp summarised_{}, mended_{};
-  // Of the status threads, by role: when servers were told of.
-  std::map<std::string, Timestamp> told_servers_;
 };
 
 }  // namespace merlin

@@ -1,30 +1,22 @@
 // merlin flight: the daemon writes down the last minutes of every device's bytes.
 #include <memory>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
 #include "daemon/cli/roles.h"
-#include "daemon/status/client.h"
 
 namespace merlin::cli {
 namespace {
 
 int flight(const std::string& instance) {
-  const auto roles = findRoles(instance);
-  if (!roles) return fail(roles.error());
-  for (const FoundRole& role : *roles) {
-    if (role.role != "devices") continue;
-    const auto files = status::ask(role.endpoints.command, "flight", std::chrono::seconds(10));
-    if (!files) return fail(files.error());
-    for (const auto& file : nlohmann::json::parse(*files, nullptr, false))
-      say("{}\n", file.get<std::string>());
-    return kExitDone;
-  }
-  return fail({Errc::kIo, fmt::format("merlind \"{}\" runs without devices", instance)});
+  const auto files = askRole(instance, "devices", {"flight", "", std::chrono::seconds(10)});
+  if (!files) return fail(files.error());
+  for (const auto& file : nlohmann::json::parse(*files, nullptr, false))
+    say("{}\n", file.get<std::string>());
+  return kExitDone;
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "daemon/status/client.h"
+
 namespace merlin::cli {
 namespace {
 
@@ -31,6 +33,19 @@ Result<std::vector<FoundRole>> findRoles(const std::string& instance) {
       Errc::kIo,
       fmt::format("no merlind runs as \"{0}\" (no living shared memory /{0}-wall or /{0}-devices)",
                   instance)};
+}
+
+Result<std::string> askRole(const std::string& instance, const std::string& role,
+                            const Asked& asked) {
+  const auto roles = findRoles(instance);
+  if (!roles) return roles.error();
+  for (const FoundRole& found : *roles) {
+    if (found.role == role)
+      return status::ask(found.endpoints.command, asked.command, asked.patience, asked.argument);
+  }
+  return Error{Errc::kIo, role == "wall"
+                              ? fmt::format("no merlind shows a wall as \"{}\"", instance)
+                              : fmt::format("merlind \"{}\" runs without devices", instance)};
 }
 
 }  // namespace merlin::cli

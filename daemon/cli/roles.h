@@ -18,4 +18,15 @@ struct FoundRole {
 // Roles of this instance whose daemon lives. Errors: kIo, none does, saying what was looked for.
 Result<std::vector<FoundRole>> findRoles(const std::string& instance);
 
+// A command of daemon/base/commands.h.
+struct Asked {
+  std::string command, argument = {};
+  Duration patience = std::chrono::seconds(2);
+};
+
+// The role's answer to a command, JSON. Errors: findRoles()'s; kIo, this daemon has no such role;
+// status::ask()'s.
+Result<std::string> askRole(const std::string& instance, const std::string& role,
+                            const Asked& asked);
+
 }  // namespace merlin::cli

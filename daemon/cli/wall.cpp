@@ -1,18 +1,13 @@
 // merlin wall: triangles and rate by hand, until they are given back.
 #include <memory>
 
-#include <fmt/format.h>
-
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
 #include "daemon/cli/roles.h"
-#include "daemon/status/client.h"
 
 namespace merlin::cli {
 namespace {
-
-constexpr Duration kPatience = std::chrono::seconds(2);
 
 struct WallOptions {
   std::string instance = "merlin";
@@ -22,20 +17,14 @@ struct WallOptions {
 int wall(const WallOptions& options) {
   if (options.triangles.empty() && options.rate.empty())
     return fail({Errc::kInvalidArgument, "wall: nothing to set; give --triangles or --rate"});
-  const auto roles = findRoles(options.instance);
-  if (!roles) return fail(roles.error());
-  for (const FoundRole& role : *roles) {
-    if (role.role != "wall") continue;
-    for (const auto& [name, value] :
-         {std::pair{"triangles", options.triangles}, std::pair{"rate", options.rate}}) {
-      if (value.empty()) continue;
-      const auto done = status::ask(role.endpoints.command, name, kPatience, value);
-      if (!done) return fail(done.error());
-      say("{}: {}\n", name, value);
-    }
-    return kExitDone;
+  for (const auto& [name, value] :
+       {std::pair{"triangles", options.triangles}, std::pair{"rate", options.rate}}) {
+    if (value.empty()) continue;
+    const auto done = askRole(options.instance, "wall", {name, value});
+    if (!done) return fail(done.error());
+    say("{}: {}\n", name, value);
   }
-  return fail({Errc::kIo, fmt::format("no merlind shows a wall as \"{}\"", options.instance)});
+  return kExitDone;
 }
 
 }  // namespace

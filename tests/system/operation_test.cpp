@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include "daemon/base/commands.h"
+#include "daemon/status/client.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -61,6 +63,39 @@ TEST(Operation, WhatIsRemovedFromSharedMemoryIsMadeAgain) {
       << second.output;
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
   EXPECT_EQ(m.leftInSharedMemory().size(), 0u);
+}
+
+// The list of commands is what the daemon carries out, each by the role that it names.
+TEST(Operation, EveryCommandOfTheListIsCarriedOut) {
+  const TempDir dir;
+  Merlind m(dir, makeModel(dir, 2), "commands",
+            {.also = {{"wall", {{"snapshots", dir / "shots"}}}}});
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  for (const CommandInfo& command : kCommands) {
+    const bool by_wall = command.role == CommandOf::kWall;
+    const std::string argument = command.argument.empty() ? "" : "auto";
+    const auto answer = status::ask(fmt::format("ipc://{}/{}-{}.command", dir.path(), m.instance(),
+                                                by_wall ? "wall" : "devices"),
+                                    std::string(command.name), std::chrono::seconds(10), argument);
+    if (command.role != CommandOf::kPanel) {
+      EXPECT_TRUE(answer) << command.name << ": " << answer.error().what;
+      continue;
+    }
+    ASSERT_FALSE(answer);
+    EXPECT_NE(answer.error().what.find("this process has no panel"), std::string::npos)
+        << answer.error().what;
+  }
+  EXPECT_TRUE(m.process().saysEventually("snapshot: " + dir / "shots"));
+  for (const CommandInfo& command : kCommands) {
+    if (!command.by_name) continue;
+    const Outcome done = run({kMerlin, std::string(command.name), "--instance", m.instance()});
+    EXPECT_EQ(done.status, command.role == CommandOf::kPanel ? 2 : 0) << done.output;
+  }
+  const Outcome wrong = run({kMerlin, "wall", "--rate", "fast", "--instance", m.instance()});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.output.find("rate: \"fast\" is not a number from 1 to 240, or auto"),
+            std::string::npos)
+      << wrong.output;
 }
 
 TEST(Operation, ARunDirectoryMayHaveAnyName) {

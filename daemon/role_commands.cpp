@@ -1,0 +1,115 @@
+#include "daemon/role_commands.h"
+
+#include <charconv>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "daemon/status/documents.h"
+
+namespace merlin {
+namespace {
+
+using Parts = RoleCommands::Parts;
+using Answer = Result<std::string>;
+
+Answer done() { return std::string("{}"); }
+Answer lacks(std::string_view what) {
+  return Error{Errc::kInvalidArgument, fmt::format("this process {}", what)};
+}
+
+struct Range {
+  double least, most;
+};
+
+// A number within the range, or nothing for "auto".
+Result<std::optional<double>> numberOrAuto(std::string_view argument, const Range& range) {
+  if (argument == "auto") return std::optional<double>();
+  double value = 0;
+  const char* const end = argument.data() + argument.size();
+  const auto [rest, error] = std::from_chars(argument.data(), end, value);
+  if (error == std::errc() && rest == end && value >= range.least && value <= range.most)
+    return std::optional(value);
+  return Error{Errc::kInvalidArgument,
+               fmt::format("\"{}\" is not a number from {} to {}, or auto", argument.substr(0, 64),
+                           range.least, range.most)};
+}
+
+Answer request(const Parts& p, wall::WallLoop::Request what) {
+  p.wall->request(what);
+  return done();
+}
+
+Answer triangles(const Parts& p, const std::string& argument) {
+  const auto number = numberOrAuto(argument, {4, 1e9});
+  if (!number) return number.error();
+  p.wall->hold(*number ? std::optional(static_cast<std::size_t>(**number)) : std::nullopt);
+  return done();
+}
+
+Answer rate(const Parts& p, const std::string& argument) {
+  const auto number = numberOrAuto(argument, {1, 240});
+  if (!number) return number.error();
+  p.wall->setRate(*number);
+  return done();
+}
+
+Answer snapshot(const Parts& p) {
+  if (!p.snapshots) return lacks("has no folder for snapshots: /wall/snapshots names none");
+  p.snapshots->take();
+  return done();
+}
+
+Answer flight(const Parts& p) {
+  const auto files = p.devices->flight().dump();
+  if (!files) return files.error();
+  return status::textList(*files);
+}
+
+Answer ofWall(const Parts& p, std::string_view name, const std::string& argument) {
+  if (!p.wall) return lacks("draws no wall");
+  if (name == "reset_view") return request(p, wall::WallLoop::kResetView);
+  if (name == "next_mode") return request(p, wall::WallLoop::kNextMode);
+  if (name == "next_content") return request(p, wall::WallLoop::kNextContent);
+  if (name == "snapshot") return snapshot(p);
+  if (name == "triangles") return triangles(p, argument);
+  if (name == "rate") return rate(p, argument);
+  return lacks("does not know the command");
+}
+
+Answer ofDevices(const Parts& p, const CommandInfo& command) {
+  if (!p.devices) return lacks("has no devices");
+  if (command.name == "flight") return flight(p);
+  if (command.role != CommandOf::kPanel) return lacks("does not know the command");
+  if (!p.devices->panel()) return lacks("has no panel: /devices/gpio names no chip");
+  const auto obeyed = p.devices->panel()->obey(std::string(command.name));
+  return obeyed ? done() : Answer(obeyed.error());
+}
+
+}  // namespace
+
+Result<std::string> RoleCommands::run(std::string_view name, const std::string& argument) const {
+  const CommandInfo* const command = findCommand(name);
+  if (!command)
+    return Error{Errc::kInvalidArgument, fmt::format("there is no command \"{}\"", name)};
+  auto answer = command->role == CommandOf::kWall ? ofWall(parts_, name, argument)
+                                                  : ofDevices(parts_, *command);
+  if (answer) return answer;
+  return Error{answer.error().code, fmt::format("{}: {}", name, answer.error().what)};
+}
+
+std::vector<status::Command> RoleCommands::of(CommandOf role) const {
+  std::vector<status::Command> commands;
+  for (const CommandInfo& c : kCommands) {
+    if (c.role != role) continue;
+    status::Command command{std::string(c.name), std::string(c.help), nullptr, nullptr};
+    if (c.argument.empty())
+      command.run = [this, name = c.name] { return run(name); };
+    else
+      command.run_with = [this, name = c.name](const std::string& a) { return run(name, a); };
+    commands.push_back(std::move(command));
+  }
+  return commands;
+}
+
+}  // namespace merlin

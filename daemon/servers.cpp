@@ -1,0 +1,89 @@
+#include "daemon/servers.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace merlin {
+namespace {
+
+constexpr Duration kTellSentAway = std::chrono::seconds(5);
+
+}  // namespace
+
+// The samples' relay stands on a role's server. Threads that end here look at what is guarded.
+Servers::~Servers() {
+  decltype(kept_) kept;
+  decltype(roles_) roles;
+  {
+    const std::lock_guard lock(mutex_);
+    kept.swap(kept_);
+    roles.swap(roles_);
+  }
+  kept.clear();
+  roles.clear();
+}
+
+Result<Ok> Servers::startRole(const std::string& role, status::StatusServerSettings settings) {
+  settings.name = role;
+  const bool samples = !settings.network.endpoint.empty();
+  auto started = status::StatusServer::start(std::move(settings), watch_, clock_);
+  if (!started) return started.error();
+  const status::StatusServer* server = started->get();
+  {
+    const std::lock_guard lock(mutex_);
+    roles_[role].server = *std::move(started);
+  }
+  if (!samples) return Ok{};
+  keep("samples for other machines", [this, server]() -> Result<std::unique_ptr<net::Server>> {
+    auto relay = server->startSamples(watch_);
+    if (relay) return relay;
+    return Error{relay.error().code,
+                 fmt::format("/serve/samples_endpoint: {}", relay.error().what)};
+  });
+  return Ok{};
+}
+
+void Servers::keep(const std::string& name, net::ServerKeeper::Start start) {
+  auto keeper = std::make_unique<net::ServerKeeper>(name, std::move(start));
+  keeper->tend(clock_.now());
+  const std::lock_guard lock(mutex_);
+  kept_.push_back(std::move(keeper));
+}
+
+void Servers::tend(Timestamp now) {
+  for (const auto& keeper : kept_) keeper->tend(now);
+}
+
+std::vector<net::ServerHealth> Servers::health(const std::string& role) const {
+  std::vector<net::ServerHealth> all;
+  const std::lock_guard lock(mutex_);
+  if (const auto found = roles_.find(role); found != roles_.end()) {
+    for (const net::ServerReport& report : found->second.server->reports())
+      all.push_back({report.name, "", report});
+  }
+  if (role != host_) return all;
+  for (const auto& keeper : kept_) all.push_back(keeper->health());
+  return all;
+}
+
+std::vector<std::string> Servers::events(const std::string& role) {
+  std::vector<std::string> events;
+  const Timestamp now = clock_.now();
+  const std::lock_guard lock(mutex_);
+  const auto found = roles_.find(role);
+  if (found != roles_.end() && now - found->second.told >= kTellSentAway) {
+    found->second.told = now;
+    for (const net::ServerReport& report : found->second.server->reports()) {
+      auto sentence = net::sentAwaySentence(report, found->second.told_sent_away[report.name]);
+      if (!sentence.empty()) events.push_back(std::move(sentence));
+    }
+  }
+  if (role != host_) return events;
+  for (const auto& keeper : kept_) {
+    for (auto& sentence : keeper->takeEvents(now)) events.push_back(std::move(sentence));
+  }
+  return events;
+}
+
+}  // namespace merlin
