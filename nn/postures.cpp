@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/text.h"
 namespace merlin::nn {
 namespace {
 
@@ -31,7 +32,7 @@ Result<Ok> PostureTable::add(std::uint32_t code, std::string_view name) {
   if (!isPostureName(name)) {
     return Error{Errc::kInvalidArgument,
                  fmt::format("name \"{}\" of code {}; allowed: 1 to {} letters, digits, - or _",
-                             name, formatCode(code), kLongestName)};
+                             excerpt(name), formatCode(code), kLongestName)};
   }
   if (!this->name(code).empty()) {
     return Error{Errc::kInvalidArgument, fmt::format("code {} is both \"{}\" and \"{}\"",

@@ -66,4 +66,10 @@ std::string printable(std::string_view bytes) { return escaped(bytes, true); }
 
 std::string oneLine(std::string_view bytes) { return escaped(bytes, false); }
 
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t kMost = 64;
+  if (text.size() <= kMost) return std::string(text);
+  return std::string(wholeCharacters(text.substr(0, kMost))) + "...";
+}
+
 }  // namespace merlin

@@ -19,4 +19,8 @@ std::string printable(std::string_view bytes);
 // The same, with tabs and ends of lines as "\x0a" too: what is said of one thing stays one line.
 std::string oneLine(std::string_view bytes);
 
+// What a message quotes of a file or a peer: all of it, or its first 64 bytes or a few less (no
+// character is cut) and "...". A word there may be as long as the file.
+std::string excerpt(std::string_view text);
+
 }  // namespace merlin

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/text.h"
 namespace merlin::nn {
 namespace {
 
@@ -88,7 +89,7 @@ std::optional<std::string> readHeader(const std::vector<std::string>& names, Csv
     header.slot[c] = slotNamed(plain[c]);
     const bool other = header.slot[c] == kNone && has(kOtherNames, plain[c]);
     if (other) {
-      header.notes.push_back(fmt::format("column \"{}\" is left out", names[c]));
+      header.notes.push_back(fmt::format("column \"{}\" is left out", excerpt(names[c])));
       continue;
     }
     sensors.push_back(c);
@@ -107,7 +108,7 @@ std::optional<std::string> readHeader(const std::vector<std::string>& names, Csv
     return fmt::format(
         "{} columns of sensors whose names say no slot (\"{}\"); allowed: 18, 22 or "
         "23 of them, or the names s0 to s22 or {} to {}",
-        sensors.size(), sensors.empty() ? "" : names[sensors.front()], kInputNames.front(),
+        sensors.size(), sensors.empty() ? "" : excerpt(names[sensors.front()]), kInputNames.front(),
         kInputNames.back());
   for (std::size_t n = 0; n < sensors.size(); ++n) header.slot[sensors[n]] = slots[n];
   header.notes.push_back(

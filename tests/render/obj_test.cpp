@@ -119,6 +119,18 @@ TEST_F(ObjFile, NamesTheLineOfAWordThatIsNoNumber) {
   }
 }
 
+// A line may be as long as the file; nobody reads a message of that length.
+TEST_F(ObjFile, IsQuotedInShort) {
+  const std::string word(1 << 20, 'x'), quoted(64, 'x');
+  EXPECT_EQ(faultOf("v 1 2 " + word), "line 1: \"" + quoted + "...\" is no number");
+  EXPECT_EQ(faultOfFaces("f 1 2 " + word), "line 5: \"" + quoted + "...\" is no corner of a face");
+}
+
+TEST_F(ObjFile, IsRefusedAtOnceWhereItIsNoText) {
+  EXPECT_EQ(faultOf(std::string(1 << 20, '\0')), "byte 0 is 0: an OBJ file is text");
+  EXPECT_EQ(faultOf("v 0 0 0\n" + std::string(1, '\0')), "byte 8 is 0: an OBJ file is text");
+}
+
 TEST_F(ObjFile, IsRefusedWhereAFacePointsNowhere) {
   EXPECT_EQ(faultOfFaces("f 1 2 4\nf 1 2 5\n"), "line 6: a corner names vertex 5, there are 4");
   EXPECT_EQ(faultOfFaces("f 0 2 3\n"), "line 5: a corner names vertex 0, there are 4");
@@ -128,7 +140,7 @@ TEST_F(ObjFile, IsRefusedWhereAFacePointsNowhere) {
 TEST_F(ObjFile, WithoutFacesOrOfSomethingElseIsNoMesh) {
   EXPECT_EQ(faultOfFaces(""), "has no triangles");
   EXPECT_EQ(faultOf("banana\n"), "has no triangles");
-  EXPECT_EQ(faultOf(std::string(1000, '\0')), "has no triangles");
+  EXPECT_EQ(faultOf(std::string(1000, '\0')), "byte 0 is 0: an OBJ file is text");
 }
 
 // What one wrong byte, or an early end, leaves is a sound mesh or an error.

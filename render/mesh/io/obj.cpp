@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/text.h"
 #include "render/mesh/io/text_lines.h"
 
 namespace merlin::render {
@@ -40,11 +41,17 @@ struct Farthest {
   }
 };
 
+constexpr std::size_t kFirstBlock = 4096;
+
 class ObjParser {
  public:
   explicit ObjParser(std::string_view content) : left_(content) {}
 
   Result<ObjSurface> parse() {
+    // Before gigabytes are read that are no text.
+    const std::size_t zero = left_.substr(0, kFirstBlock).find('\0');
+    if (zero != std::string_view::npos)
+      return Error{Errc::kMalformed, fmt::format("byte {} is 0: an OBJ file is text", zero)};
     surface_.materials = {""};
     while (!left_.empty()) {
       std::string_view line = nextLine();
@@ -83,7 +90,7 @@ class ObjParser {
   }
 
   Error bad(std::string_view word, const char* what) const {
-    return {Errc::kMalformed, fmt::format("line {}: \"{}\" is no {}", line_, word, what)};
+    return {Errc::kMalformed, fmt::format("line {}: \"{}\" is no {}", line_, excerpt(word), what)};
   }
 
   Result<Ok> take(std::string_view keyword, std::string_view line) {

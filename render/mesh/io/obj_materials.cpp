@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
+#include "daemon/base/text.h"
 #include "render/mesh/io/beside.h"
 #include "render/mesh/io/text_lines.h"
 
@@ -77,7 +78,8 @@ class Library {
       int words = wordsOf(option);
       if (words < 0) break;  // a file's name may begin so
       if (option == "-s" || option == "-o")
-        notes_.push_back(fmt::format("map_Kd {}: the option {} is not followed", line, option));
+        notes_.push_back(
+            fmt::format("map_Kd {}: the option {} is not followed", excerpt(line), option));
       float number = 0;
       for (bool first = true; words > 0; --words, first = false) {
         std::string_view next = after;

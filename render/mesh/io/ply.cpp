@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/text.h"
 #include "render/mesh/io/ply_body.h"
 #include "render/mesh/io/ply_features.h"
 #include "render/mesh/io/ply_header.h"
@@ -128,7 +129,7 @@ class Reader {
     return {Errc::kMalformed, rest.empty() ? fmt::format("cut short in {} {} of {}, property {}",
                                                          e.name, row, e.count, p.name)
                                            : fmt::format("{} {}, property {}: \"{}\" is no number",
-                                                         e.name, row, p.name, rest)};
+                                                         e.name, row, p.name, excerpt(rest))};
   }
 
   Result<Ok> skip(const Element& e) {

@@ -43,6 +43,8 @@ std::optional<Scalar> scalarNamed(std::string_view name) {
   return std::nullopt;
 }
 
+constexpr std::size_t kLongestName = 255;  // bytes
+
 Error bad(std::size_t line, std::string_view what) {
   return {Errc::kMalformed, fmt::format("line {}: {}", line, what)};
 }
@@ -85,10 +87,14 @@ class HeaderParser {
 
   Result<Ok> keyword(const Words& words) {
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return Ok{};
+    // Messages say the names of elements and properties.
+    if (words.back().size() > kLongestName || (words.size() > 1 && words[1].size() > kLongestName))
+      return bad(header_.lines, fmt::format("a name of more than {} bytes", kLongestName));
     if (words[0] == "format") return format(words);
     if (words[0] == "element") return element(words);
     if (words[0] == "property") return property(words);
-    return bad(header_.lines, fmt::format("\"{}\" is no keyword of a PLY header", words[0]));
+    return bad(header_.lines,
+               fmt::format("\"{}\" is no keyword of a PLY header", excerpt(words[0])));
   }
 
   Result<Ok> format(const Words& words) {
