@@ -119,6 +119,7 @@ class InBlocks {
     all.collapses += r.collapses;
     all.flips_refused += r.flips_refused;
     all.topology_refused += r.topology_refused;
+    all.visited += r.visited;
     all.triangles -= removed;
   }
 

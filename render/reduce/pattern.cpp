@@ -37,6 +37,7 @@ Result<Reduction> reduceByPattern(const Mesh& mesh, const ReduceSettings& settin
     if (stopped) break;
     const auto step = reducer.collapseShortest(max_error);
     if (step == PatternReducer::Step::kNothingLeft) {
+      if (reducer.allowLargerStars()) continue;
       if (components_stay) {
         by_all_rules = reducer.triangles();
         reducer.releaseComponents();

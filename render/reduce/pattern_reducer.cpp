@@ -49,8 +49,16 @@ Reduction PatternReducer::finish() && {
 PatternReducer::Step PatternReducer::collapseShortest(double max_error) {
   while (!heap_.empty() && heap_.length(heap_.top()) < kNever) {
     const std::uint32_t edge = heap_.top();
+    if (!isSmallEnough(edge)) {
+      lengthen(edge);
+      continue;
+    }
+    for (const std::uint32_t end : surface_.ends(edge)) {
+      surface_.tidy(end);
+      result_.report.visited += surface_.triangleCount(end);
+    }
     const Plan p = plan(edge);
-    if (!mayGo(p)) {
+    if (!mayGo(p, edge)) {
       ++result_.report.topology_refused;
       lengthen(edge);
     } else if (flips(p)) {
@@ -67,17 +75,42 @@ PatternReducer::Step PatternReducer::collapseShortest(double max_error) {
 }
 
 // A last triangle stays, of all or of each component.
-bool PatternReducer::mayGo(const Plan& p) {
-  const std::size_t shared = surface_.trianglesAt(p.a, p.b);
+bool PatternReducer::mayGo(const Plan& p, std::uint32_t edge) {
+  const std::size_t shared = surface_.trianglesAt(edge);
   if (shared == surface_.liveTriangles()) return false;
   const std::size_t around = surface_.trianglesOf(p.a).size() + surface_.trianglesOf(p.b).size();
   if (preserve_components_ && around == 2 * shared) return false;
-  return !preserve_topology_ || surface_.linkCondition(p.a, p.b);
+  return !preserve_topology_ || surface_.linkCondition(edge);
+}
+
+// Whether neither the ends nor what would come of them have more triangles than may be now. What a
+// collapse takes is as long as these are many.
+bool PatternReducer::isSmallEnough(std::uint32_t edge) {
+  const auto [a, b] = surface_.ends(edge);
+  const std::size_t of_a = surface_.triangleCount(a), of_b = surface_.triangleCount(b);
+  const std::size_t most = std::max({of_a, of_b, of_a + of_b - 2 * surface_.trianglesAt(edge)});
+  if (most <= most_triangles_) return true;
+  smallest_left_out_ = std::min(smallest_left_out_, most);
+  return false;
+}
+
+bool PatternReducer::allowLargerStars() {
+  constexpr std::size_t kGrowth = 4;
+  if (smallest_left_out_ == kNoneLeftOut) return false;
+  most_triangles_ = std::max(smallest_left_out_, kGrowth * most_triangles_);
+  smallest_left_out_ = kNoneLeftOut;
+  measureAll();
+  return true;
 }
 
 void PatternReducer::releaseComponents() {
   preserve_components_ = false;
+  measureAll();
+}
+
+void PatternReducer::measureAll() {
   for (std::uint32_t v = 0; v < node_.size(); ++v) {
+    surface_.tidy(v);
     for (const std::uint32_t e : surface_.edgesOf(v)) heap_.update(e, lengthOf(e));
   }
 }
@@ -104,7 +137,7 @@ float PatternReducer::sharpness(std::uint32_t v) const {
   std::size_t found = 0;
   for (const std::uint32_t e : surface_.edgesOf(v)) {
     const std::uint32_t x = surface_.otherEnd(e, v);
-    if (surface_.trianglesAt(v, x) != 1) continue;
+    if (surface_.trianglesAt(e) != 1) continue;
     if (found == 2) return 4;
     for (std::size_t k = 0; k < 3; ++k) direction[found][k] = position(x)[k] - position(v)[k];
     ++found;

@@ -27,6 +27,10 @@ class PatternReducer {
   // Collapses the shortest edge that may be, unless its error is more than `max_error`.
   Step collapseShortest(double max_error = std::numeric_limits<double>::infinity());
 
+  // From here on vertices may have more triangles than before. Measures all edges again. False, and
+  // nothing done, where no edge had to wait for that.
+  bool allowLargerStars();
+
   // From here on components may vanish. Measures all edges again.
   void releaseComponents();
 
@@ -48,7 +52,9 @@ class PatternReducer {
 
   const float* position(std::uint32_t v) const noexcept { return &positions_[3 * std::size_t{v}]; }
   Plan plan(std::uint32_t edge) const;
-  bool mayGo(const Plan& plan);
+  bool isSmallEnough(std::uint32_t edge);
+  bool mayGo(const Plan& plan, std::uint32_t edge);
+  void measureAll();
   float sharpness(std::uint32_t v) const;
   bool flips(const Plan& plan);
   std::array<float, 2> planeDistances(const Plan& plan) const;
@@ -63,6 +69,9 @@ class PatternReducer {
   WorkingMesh surface_;
   const PatternSpace& space_;
   bool preserve_topology_, preserve_components_;
+  // That a vertex may have: more than on a surface of any use. The least that waits for more.
+  static constexpr std::size_t kNoneLeftOut = std::numeric_limits<std::size_t>::max();
+  std::size_t most_triangles_ = 128, smallest_left_out_ = kNoneLeftOut;
   std::vector<float> positions_;        // by vertex, as they move
   std::vector<Feature> features_;       // by vertex, as they change
   std::size_t normal_ = 0;              // index of "normal" in features_

@@ -1,6 +1,8 @@
 #include "render/reduce/quadric_evaluate.h"
 
+#include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "render/reduce/lanes.h"
 #include "render/reduce/quadric_star.h"
@@ -226,6 +228,17 @@ void EdgeCosts::findCheapest() noexcept {
   for (std::uint32_t i = 1; i < count; ++i) {
     if (cost[i] < cost[cheapest]) cheapest = i;
   }
+}
+
+void EdgeCosts::keepCheapest(std::size_t edges) {
+  if (count <= edges) return;
+  std::vector<std::uint32_t> rows(count);
+  std::iota(rows.begin(), rows.end(), 0U);
+  const auto first_left_out = rows.begin() + static_cast<std::ptrdiff_t>(edges);
+  std::nth_element(rows.begin(), first_left_out, rows.end(), [&](std::uint32_t i, std::uint32_t j) {
+    return cost[i] < cost[j] || (cost[i] == cost[j] && i < j);
+  });
+  for (auto row = first_left_out; row != rows.end(); ++row) cost[*row] = kNoEdge;
 }
 
 EvaluateEdges portableEdgeEvaluator(Evaluate what) {

@@ -17,11 +17,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/reduce/number_table.h"
 #include "render/reduce/quadric_mesh.h"
 
 namespace merlin::render {
 
 inline constexpr float kNoEdge = 1e30F;  // the cost of what must not be
+// Stars of so many corners are searched by comparing each with each; larger ones by a table.
+inline constexpr std::uint32_t kPairwise = 16;
 
 // Values that cost, by vertex: one block {a, (b x, y, z, s) a channel} each. In mean edges.
 class QuadricChannels {
@@ -65,6 +68,7 @@ struct EdgeCosts {
   std::vector<float> rx, ry, rz;       // the neighbour, from w
   std::vector<float> deviation;        // squared; the reducer's, as the next, -1 at first
   std::vector<std::uint32_t> witness;  // whose is the farther: w's (0) or the neighbour's (1)
+  NumberTable numbers;                 // scratch, for stars of more than kPairwise corners
   float normal[3] = {};                // sum of the star's unit normals
   std::uint32_t cheapest = 0;          // the first row of the least cost
 
@@ -79,6 +83,8 @@ struct EdgeCosts {
   float least() const noexcept { return cost[cheapest]; }
   // Sets `cheapest` anew.
   void findCheapest() noexcept;
+  // Only so many edges, the cheapest, stay candidates; the others cost kNoEdge. O(count).
+  void keepCheapest(std::size_t edges);
 
  private:
   void grow(std::size_t rows);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <utility>
 
 #include "daemon/base/blocks.h"
 #include "render/mesh/morton.h"
@@ -213,6 +214,23 @@ void QuadricMesh::fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& nu
   forEachCorner([&](std::uint32_t v, std::uint32_t b, std::uint32_t c) {
     stars_[places[v]++] = {b, c};
   });
+}
+
+void QuadricMesh::tidyHub(std::uint32_t hub) noexcept {
+  const auto living = [&](std::uint32_t v) {
+    std::uint32_t end = v;
+    while (vertices_[end].flags & kDead) end = mergedInto(vertices_[end]);
+    while (vertices_[v].flags & kDead) v = std::exchange(mergedInto(vertices_[v]), end);
+    return end;
+  };
+  Corner* const star = corners(vertices_[hub].star);
+  Corner* to = star;
+  for (const Corner* from = star; from < star + vertices_[hub].degree; ++from) {
+    const std::uint32_t b = living(from->b), c = living(from->c);
+    *to = {b, c};
+    to += b != c;
+  }
+  vertices_[hub].degree = static_cast<std::uint32_t>(to - star);
 }
 
 // Puts the corners in the order of the fan; kOpen where they are none that closes.

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -84,11 +85,42 @@ enum : std::uint8_t {
   kInside = 8,   // its whole ring is in its part
   kLocked = 32,  // stays where it is
   kSharp = 16,   // a thin tip or a knife's edge: its faces' normals cancel
+  kHub = 64,     // has so many triangles that it takes no part for now: hub()
 };
 
 // Whether it is part of the surface. (One that has lost its triangles is left, and belongs to
 // none.)
 inline bool lives(const QuadricVertex& v) noexcept { return !(v.flags & kDead) && v.degree > 0; }
+
+// A hub is a vertex of so many triangles that each step beside it would take long. While it is one
+// its record holds no quadric, so that no edge to it costs less than kNoEdge, and collapses beside
+// it do not write into its star: names of dead vertices there stand for those that they merged
+// into (mergedInto()), and a corner whose two names have become one is no triangle any more. How
+// many triangles it still has is counted.
+struct HubRecord {
+  float no_number;  // in the place of h[0]
+  std::uint32_t triangles;
+};
+
+inline HubRecord hubRecordOf(const QuadricVertex& v) noexcept {
+  HubRecord hub;
+  std::memcpy(&hub, v.h, sizeof hub);
+  return hub;
+}
+
+inline void setHub(QuadricVertex& v, std::uint32_t triangles) noexcept {
+  const HubRecord hub{std::numeric_limits<float>::quiet_NaN(), triangles};
+  std::memcpy(v.h, &hub, sizeof hub);
+  v.flags |= kHub;
+}
+
+// How many triangles v has.
+inline std::uint32_t trianglesOf(const QuadricVertex& v) noexcept {
+  return v.flags & kHub ? hubRecordOf(v).triangles : v.degree;
+}
+
+// Of a dead vertex: the one that it merged into, in the place of its star.
+inline std::uint32_t& mergedInto(QuadricVertex& dead) noexcept { return dead.star; }
 
 // What a collapse made, kept in the dead vertex' record over position and h.
 struct NodeRecord {
@@ -156,6 +188,9 @@ class QuadricMesh {
   std::array<float, 3> toModel(const float* position) const noexcept;
   StarRoom freeRoom() noexcept { return StarRoom(fresh_); }
   void dropStars() { stars_ = {}; }
+  // A hub's star as it is by now: names of living vertices, no corner that is no triangle.
+  // Amortised O(corners). Of other stars that are tidied at once no name may be the same.
+  void tidyHub(std::uint32_t hub) noexcept;
 
  private:
   void fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& numbers, unsigned threads);

@@ -1,5 +1,6 @@
 // QuadricReducer in parts and as a whole: who works on what, and until when.
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 
@@ -60,10 +61,31 @@ void QuadricReducer::forEachLiving(
   });
 }
 
-// All quadrics anew: what an edge costs takes those of both ends.
+// One by one: the stars of several may name the same dead vertices.
+void QuadricReducer::releaseHubs() {
+  for (std::uint32_t v = 0; hubs_ && v < mesh_.vertexCount(); ++v) {
+    if (!(mesh_[v].flags & kHub)) continue;
+    mesh_.tidyHub(v);
+    mesh_[v].flags &= static_cast<std::uint8_t>(~kHub);
+  }
+}
+
+// All quadrics anew, but of what has too many triangles to take part: what an edge costs takes
+// those of both ends.
 void QuadricReducer::setQuadrics() {
+  releaseHubs();
+  std::atomic<bool> hubs = false;
   const EvaluateEdges set = edgeEvaluator(Evaluate::kQuadric);
-  forEachLiving([&](std::uint32_t v, EdgeCosts& scratch) { set(view(), v, scratch); });
+  forEachLiving([&](std::uint32_t v, EdgeCosts& scratch) {
+    const std::uint32_t triangles = mesh_[v].degree;
+    if (triangles <= most_corners_) {
+      set(view(), v, scratch);
+      return;
+    }
+    setHub(mesh_[v], triangles);
+    hubs = true;
+  });
+  hubs_ = hubs;
 }
 
 // Equal pieces of the curve.
@@ -99,6 +121,10 @@ void QuadricReducer::startPart(Worker& w, EvaluateEdges measure) {
     const bool queued = (x.flags & kInside) && !(x.flags & kIdle);
     if (queued || !lives(x) || !isInside(w, v)) continue;
     x.flags = static_cast<std::uint8_t>((x.flags | kInside) & ~kIdle);
+    if (x.flags & kHub) {
+      x.flags |= kIdle;
+      continue;
+    }
     measure(view(), v, w.costs);
     enqueue(w, v, w.costs.least());
   }
@@ -187,6 +213,7 @@ void QuadricReducer::Worker::takeOver(Worker&& other) {
   room.join(std::move(other.room));
   flips += other.flips;
   links += other.links;
+  visited += other.visited;
   too_coarse |= other.too_coarse;
 }
 
@@ -205,8 +232,9 @@ void QuadricReducer::requeue() {
   // Costs first, where the queue's links will be.
   const EvaluateEdges edges = edgeEvaluator(Evaluate::kEdges);
   forEachLiving([&](std::uint32_t v, EdgeCosts& costs) {
-    edges(view(), v, costs);
-    next_[v] = std::bit_cast<std::uint32_t>(costs.least());
+    const bool hub = mesh_[v].flags & kHub;
+    if (!hub) edges(view(), v, costs);
+    next_[v] = std::bit_cast<std::uint32_t>(hub ? kNoEdge : costs.least());
   });
   whole_.queue = BucketQueue();
   for (std::uint32_t v = mesh_.vertexCount(); v-- > 0;) {
@@ -226,6 +254,30 @@ void QuadricReducer::reduceWhole(std::size_t keep, const Progress& progress) {
     triangles_ -= whole_.removed;
     whole_.removed = 0;
     cancelled_ = progress && !progress({whole_.collapses, triangles_});
+  }
+}
+
+// Of the stars that most_corners_ leaves out, of hubs and of what collapses would have made, how
+// many triangles the smallest has.
+std::uint32_t QuadricReducer::smallestLeftOut() const {
+  std::uint32_t smallest = whole_.refused_star;
+  for (std::uint32_t v = 0; hubs_ && v < mesh_.vertexCount(); ++v) {
+    if (mesh_[v].flags & kHub) smallest = std::min(smallest, trianglesOf(mesh_[v]));
+  }
+  return smallest;
+}
+
+// With small stars first, where a step takes as long as on any surface; with larger ones only what
+// is left then, which is less the larger they are.
+void QuadricReducer::reduceStage(std::size_t keep, const Progress& progress) {
+  constexpr std::uint32_t kGrowth = 4, kNoneLeftOut = std::numeric_limits<std::uint32_t>::max();
+  most_corners_ = keepsTopology(stage_) ? kMostCorners : kMostUnordered;
+  for (;;) {
+    whole_.refused_star = kNoneLeftOut;
+    reduceWhole(keep, progress);
+    const std::uint32_t left_out = smallestLeftOut();
+    if (left_out == kNoneLeftOut || triangles_ <= keep || cancelled_) return;
+    most_corners_ = std::max(left_out, kGrowth * std::min(most_corners_, kNoneLeftOut / kGrowth));
   }
 }
 
@@ -252,7 +304,7 @@ const char* QuadricReducer::run(const Limits& limits, const Progress& progress) 
     if (stage == QuadricStage::kNoLock && labels_.empty()) continue;
     if (!keepsTopology(stage) && limits.preserve_topology) break;
     stage_ = stage;
-    reduceWhole(keep, progress);
+    reduceStage(keep, progress);
     if (stage == QuadricStage::kAll) by_all_rules_ = triangles_;
   }
   if (cancelled_) return "cancelled";

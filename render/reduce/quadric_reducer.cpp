@@ -9,6 +9,9 @@
 namespace merlin::render {
 namespace {
 
+// So many edges a vertex of more than kMostCorners corners tries: the cheapest.
+constexpr std::size_t kMostCandidates = 8;
+
 using TwoCorners = std::uint32_t __attribute__((vector_size(16)));
 
 float trace(const float* h) { return h[0] + h[3] + h[5]; }
@@ -133,13 +136,17 @@ bool QuadricReducer::guard(Worker& w, std::uint32_t v, std::uint32_t edge) {
   if (deviation >= 0) return false;
   deviation = 0;
   const QuadricVertex &a = mesh_[v], &x = mesh_[w.costs.neighbour[edge]];
+  w.visited += a.degree + x.degree;
   const std::uint8_t flags = a.flags | x.flags;
   const float before = w.costs.cost[edge];
   if (isAlongSeam(w.costs, v, edge))
     stayOnSeam(w, v, edge);
   else if ((flags & kLocked) && keepsTopology(stage_))
     stayAtLocked(view(), v, w.costs, edge);
-  if (flags & kOpen) deviation = borderDeviation(view(), v, w.costs, edge);
+  if (w.costs.cost[edge] >= kNoEdge) return before < kNoEdge;
+  // What many triangles without an order have for a border says nothing of a shape.
+  const bool unordered = !keepsTopology(stage_) && a.degree + x.degree > 2 * kManyCorners;
+  if ((flags & kOpen) && !unordered) deviation = borderDeviation(view(), v, w.costs, edge);
   if (!fast_) deviation = std::max(deviation, witnessDeviation(w, v, edge));
   if (keepsTopology(stage_) && vanishes(view(), v, w.costs, edge))
     deviation = std::max(deviation, reachOf(w.costs) + std::max(a.deviation, x.deviation));
@@ -153,7 +160,9 @@ void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
   const bool last = bucket + 1 == BucketQueue::buckets();
   const float ceiling = last ? kNoEdge : tolerance() * BucketQueue::floorOf(bucket + 1);
   evaluate(w, v);
+  w.visited += mesh_[v].degree;
   EdgeCosts& costs = w.costs;
+  if (!keepsTopology(stage_) || most_corners_ > kMostCorners) leaveOut(v, costs);
   for (;; costs.findCheapest()) {
     const std::uint32_t edge = costs.cheapest;
     const float cost = costs.cost[edge];
@@ -179,6 +188,18 @@ void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
   }
 }
 
+// Each edge that is tried looks at both of its stars. So that n corners do not take n^2, a large
+// star tries a few of its edges, and no other tries an edge to a larger one.
+void QuadricReducer::leaveOut(std::uint32_t v, EdgeCosts& costs) const {
+  for (std::uint32_t i = 0; most_corners_ > kMostCorners && i < costs.count; ++i) {
+    const std::uint32_t there = mesh_[costs.neighbour[i]].degree;
+    if (there > kMostCorners && there > mesh_[v].degree) costs.cost[i] = kNoEdge;
+  }
+  if (mesh_[v].degree > (keepsTopology(stage_) ? kMostCorners : kManyCorners))
+    costs.keepCheapest(kMostCandidates);
+  costs.findCheapest();
+}
+
 bool QuadricReducer::mayCollapse(Worker& w, const EdgeCosts& costs, std::uint32_t v,
                                  std::uint32_t edge) {
   if (w.inside_only && !(mesh_[costs.neighbour[edge]].flags & kInside)) return false;
@@ -187,6 +208,13 @@ bool QuadricReducer::mayCollapse(Worker& w, const EdgeCosts& costs, std::uint32_
   const bool locked = stage_ == QuadricStage::kAll && !labels_.empty() &&
                       labels_[v] != labels_[costs.neighbour[edge]];
   if (locked || (keep_components_ && keepsTopology(stage_) && vanishes(view(), v, costs, edge))) {
+    ++w.links;
+    return false;
+  }
+  const std::uint32_t star =
+      mesh_[v].degree + mesh_[costs.neighbour[edge]].degree - 2 * costs.shared[edge];
+  if (star > most_corners_) {
+    w.refused_star = std::min(w.refused_star, star);
     ++w.links;
     return false;
   }
@@ -223,6 +251,7 @@ void QuadricReducer::collapse(Worker& w, std::uint32_t v, std::uint32_t edge) {
   a.flags |= b.flags & (kOpen | kLocked);
   if (!keepsTopology(stage_)) a.flags |= kOpen;
   b.flags |= kDead;
+  mergedInto(b) = v;
   const float border = (a.flags & kOpen) ? std::max(a.deviation, b.deviation) : 0;
   a.deviation = std::max(border, w.costs.deviation[edge]);
   const float step[] = {w.costs.x[edge], w.costs.y[edge], w.costs.z[edge]};
@@ -243,6 +272,29 @@ void QuadricReducer::collapse(Worker& w, std::uint32_t v, std::uint32_t edge) {
     if (seam) addNormalOf(twins_[v], record.normal);
   }
   std::memcpy(static_cast<void*>(b.position), &record, sizeof record);
+  if (!w.revived.empty()) reviveHubs(w, cost);
+}
+
+// Counts, of a hub.
+void QuadricReducer::loseTriangle(Worker& w, std::uint32_t o) {
+  QuadricVertex& hub = mesh_[o];
+  if (!(hub.flags & kHub)) return;
+  const std::uint32_t left = hubRecordOf(hub).triangles - 1;
+  setHub(hub, left);
+  if (left == most_corners_ / 2 && (!w.inside_only || (hub.flags & kInside)))
+    w.revived.push_back(o);
+}
+
+// Those that have few triangles by now take part again.
+void QuadricReducer::reviveHubs(Worker& w, float cost) {
+  const EvaluateEdges set = edgeEvaluator(Evaluate::kQuadric);
+  for (const std::uint32_t hub : w.revived) {
+    mesh_.tidyHub(hub);
+    mesh_[hub].flags &= static_cast<std::uint8_t>(~(kHub | kIdle));
+    set(view(), hub, w.hub);
+    w.queue.push(hub, cost, nextOf());
+  }
+  w.revived.clear();
 }
 
 void QuadricReducer::mergeStars(Worker& w, std::uint32_t v, std::uint32_t x) {
@@ -254,9 +306,10 @@ void QuadricReducer::mergeStars(Worker& w, std::uint32_t v, std::uint32_t x) {
   const bool open = b.flags & kOpen;
   std::uint32_t before = open ? v : sb.back().b;
   for (const Corner& c : sb) {
+    if (hubs_ && (c.b == v || c.c == v)) loseTriangle(w, c.b == v ? c.c : c.b);
     // In a closed fan two lie beside the edge, before and after v.
-    if (c.b != v) renameInRing(c.b, v, x, open || before == v || c.c == v);
-    if (open && c.c != v) renameInRing(c.c, v, x, true);
+    if (c.b != v) renameInRing(w, c.b, v, x, open || before == v || c.c == v);
+    if (open && c.c != v) renameInRing(w, c.c, v, x, true);
     before = c.b;
   }
   const auto n = static_cast<std::uint32_t>(end - merged);
@@ -278,8 +331,14 @@ void QuadricReducer::mergeStars(Worker& w, std::uint32_t v, std::uint32_t x) {
 }
 
 // In the star of o, a neighbour of x, x becomes v; beside the edge triangles with both ends go.
-void QuadricReducer::renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_t x, bool beside) {
+void QuadricReducer::renameInRing(Worker& w, std::uint32_t o, std::uint32_t v, std::uint32_t x,
+                                  bool beside) {
   QuadricVertex& ring = mesh_[o];
+  if (ring.flags & kHub) {
+    if (!keepsTopology(stage_)) ring.flags |= kOpen;
+    return;
+  }
+  w.visited += ring.degree;
   Corner* star = mesh_.corners(ring.star);
   // By lines: what stands in one after the last corner has no meaning.
   for (std::uint32_t line = 0; line < ring.degree; line += kLine) {
@@ -305,7 +364,10 @@ void QuadricReducer::renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_
 // The neighbours that had no legal edge may have one now.
 void QuadricReducer::wakeRing(Worker& w, std::uint32_t v, float cost) {
   const auto wake = [&](std::uint32_t o) {
-    if (!(mesh_[o].flags & kIdle)) return;
+    if ((mesh_[o].flags & (kIdle | kHub)) != kIdle) return;
+    // A large one would look at all its corners each time that one changes.
+    const std::uint32_t rarely = mesh_[o].degree / kMostCorners;
+    if (rarely > 0 && w.collapses % rarely != 0) return;
     mesh_[o].flags &= static_cast<std::uint8_t>(~kIdle);
     w.queue.push(o, cost, nextOf());
   };

@@ -67,13 +67,17 @@ class QuadricReducer {
     StarRoom room;
     EdgeCosts costs;
     EdgeCosts twin;                // of a seam's other side
+    EdgeCosts hub;                 // scratch
     std::vector<Corner> merged;    // scratch
     std::uint32_t* log = nullptr;  // dead vertices, in order
     std::size_t collapses = 0;
     std::size_t removed = 0;  // triangles
     std::size_t flips = 0, links = 0;
-    bool too_coarse = false;   // an edge's error was beyond the limit
-    bool inside_only = false;  // of a part: only vertices whose ring is in it
+    std::size_t visited = 0;             // triangles of stars
+    bool too_coarse = false;             // an edge's error was beyond the limit
+    std::uint32_t refused_star = ~0U;    // the least that was refused for its size
+    std::vector<std::uint32_t> revived;  // hubs that have few triangles by now
+    bool inside_only = false;            // of a part: only vertices whose ring is in it
     // Of a part: its vertices on the curve, its triangles (about), collapses at the end of each
     // step.
     std::uint32_t begin = 0, end = 0;
@@ -97,6 +101,7 @@ class QuadricReducer {
   void prefetch(Worker& w) const;
   void reduceTo(Worker& w, std::size_t removed, std::size_t bucket_limit);
   void tryVertex(Worker& w, std::uint32_t v);
+  void leaveOut(std::uint32_t v, EdgeCosts& costs) const;
   bool mayCollapse(Worker& w, const EdgeCosts& costs, std::uint32_t v, std::uint32_t edge);
   bool guard(Worker& w, std::uint32_t v, std::uint32_t edge);
   float witnessDeviation(Worker& w, std::uint32_t v, std::uint32_t edge) const;
@@ -110,10 +115,13 @@ class QuadricReducer {
   bool collapseSeam(Worker& w, std::uint32_t v, std::uint32_t edge);
   void mixChannels(std::uint32_t v, std::uint32_t x, const EdgeCosts& costs, std::uint32_t edge);
   void mergeStars(Worker& w, std::uint32_t v, std::uint32_t x);
-  void renameInRing(std::uint32_t o, std::uint32_t v, std::uint32_t x, bool beside);
+  void renameInRing(Worker& w, std::uint32_t o, std::uint32_t v, std::uint32_t x, bool beside);
   void wakeRing(Worker& w, std::uint32_t v, float cost);
+  void loseTriangle(Worker& w, std::uint32_t o);
+  void reviveHubs(Worker& w, float cost);
 
   void forEachLiving(const std::function<void(std::uint32_t, EdgeCosts&)>& work) const;
+  void releaseHubs();
   void setQuadrics();
   std::vector<Worker> makeParts(std::size_t count);
   bool isInside(const Worker& w, std::uint32_t v) const;
@@ -125,11 +133,17 @@ class QuadricReducer {
   void joinPart(Worker& w, Worker&& other);
   void requeue();
   void reduceWhole(std::size_t keep, const Progress& progress);
+  std::uint32_t smallestLeftOut() const;
+  void reduceStage(std::size_t keep, const Progress& progress);
 
   NodeRecord recordOf(std::uint32_t dead) const;
   void copyTo(CollapseLog& log, std::vector<float>* normals, std::size_t k) const;
   void pin(CollapseLog& log);
   static constexpr std::uint32_t kNowhere = ~std::uint32_t{0};
+  // More than a surface of any use has; a step beside more would take too long.
+  static constexpr std::uint32_t kMostCorners = 128;
+  // Once topology may change, where stars have no order.
+  static constexpr std::uint32_t kManyCorners = 16, kMostUnordered = 32;
 
   QuadricMesh mesh_;
   const float* input_positions_;  // the mesh's, which outlives this
@@ -150,6 +164,8 @@ class QuadricReducer {
   std::size_t by_all_rules_ = 0;                              // left when the first rule gave way
   float max_error_ = std::numeric_limits<float>::infinity();  // in mean edges
   QuadricStage stage_ = QuadricStage::kAll;
+  std::uint32_t most_corners_ = kMostCorners;  // of what takes part
+  bool hubs_ = false;                          // there are some
   unsigned threads_ = 1;
   bool cancelled_ = false;
 };

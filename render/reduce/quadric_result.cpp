@@ -77,6 +77,7 @@ Reduction QuadricReducer::finish(const Mesh& mesh) {
   result.report.collapses = collapses;
   result.report.flips_refused = whole_.flips;
   result.report.topology_refused = whole_.links;
+  result.report.visited = whole_.visited;
   result.report.triangles = triangles_;
   result.report.by_all_rules = by_all_rules_;
   result.report.error =

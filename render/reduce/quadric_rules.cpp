@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "render/reduce/lanes.h"
 
@@ -41,7 +42,7 @@ MERLIN_INLINE bool sidesKeepEnough(const QuadricView& view, const QuadricVertex&
   const Corner* star = view.corners + a.star;
   const auto keeps = [&](std::uint32_t side) {
     const QuadricVertex& o = view.vertices[side];
-    return o.degree >= ((o.flags & kOpen) ? 2U : 4U);
+    return trianglesOf(o) >= ((o.flags & kOpen) ? 2U : 4U);
   };
   // Of a closed fan, corners stand in the order of the edges.
   if (!(a.flags & kOpen)) return keeps(star[edge].c) && keeps(star[(edge ? edge : a.degree) - 1].b);
@@ -116,9 +117,28 @@ float segmentDistance2(const float* p, const float* a, const float* b) {
   return sum;
 }
 
+// As borderNeighbours(), of a large star: O(corners).
+std::size_t borderOfMany(const QuadricView& view, const QuadricVertex& v, std::uint32_t other,
+                         std::uint32_t* found, std::size_t room, NumberTable& numbers) {
+  constexpr std::uint32_t kIsB = 1, kIsC = 2;
+  const std::span<const Corner> star(view.corners + v.star, v.degree);
+  numbers.reset(2 * star.size());
+  for (const Corner& c : star) {
+    numbers[c.b] |= kIsB;
+    numbers[c.c] |= kIsC;
+  }
+  std::size_t n = 0;
+  for (const Corner& c : star) {
+    if (!(numbers[c.b] & kIsC) && c.b != other && n < room) found[n++] = c.b;
+    if (!(numbers[c.c] & kIsB) && c.c != other && n < room) found[n++] = c.c;
+  }
+  return n;
+}
+
 // The neighbours that v's border goes to, without `other`. At most `room`.
 std::size_t borderNeighbours(const QuadricView& view, const QuadricVertex& v, std::uint32_t other,
-                             std::uint32_t* found, std::size_t room) {
+                             std::uint32_t* found, std::size_t room, NumberTable& numbers) {
+  if (v.degree > kPairwise) return borderOfMany(view, v, other, found, room, numbers);
   const Corner* star = view.corners + v.star;
   std::size_t n = 0;
   for (std::uint32_t i = 0; i < v.degree; ++i) {
@@ -135,7 +155,8 @@ std::size_t borderNeighbours(const QuadricView& view, const QuadricVertex& v, st
 
 // Whether v is a corner of a closed tetrahedron or of less.
 bool isLast(const QuadricVertex& v) {
-  return v.degree <= 3 && !((v.flags & kOpen) && v.degree > 1);
+  const std::uint32_t triangles = trianglesOf(v);
+  return triangles <= 3 && !((v.flags & kOpen) && triangles > 1);
 }
 
 MERLIN_INLINE Verdict judge(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
@@ -185,7 +206,7 @@ bool vanishes(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
   if (!isLast(a) || a.degree != 3) return false;
   for (std::uint32_t k = 0; k < 3; ++k) {
     const QuadricVertex& o = view.vertices[view.corners[a.star + k].b];
-    if (!isLast(o) || o.degree != 3) return false;
+    if (!isLast(o) || trianglesOf(o) != 3) return false;
   }
   return true;
 }
@@ -237,7 +258,7 @@ void goAlongSeam(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, std
   set(twin_costs, twin_edge);
 }
 
-float borderDeviation(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
+float borderDeviation(const QuadricView& view, std::uint32_t w, EdgeCosts& costs,
                       std::uint32_t edge) {
   const std::uint32_t ends[] = {w, costs.neighbour[edge]};
   const float* origin = view.vertices[w].position;
@@ -247,7 +268,8 @@ float borderDeviation(const QuadricView& view, std::uint32_t w, const EdgeCosts&
   std::size_t n = 0;
   for (std::size_t side = 0; side < 2; ++side) {
     const QuadricVertex& v = view.vertices[ends[side]];
-    if (v.flags & kOpen) n += borderNeighbours(view, v, ends[1 - side], around + n, 4);
+    if (v.flags & kOpen)
+      n += borderNeighbours(view, v, ends[1 - side], around + n, 4, costs.numbers);
   }
   float deviation = 0;
   for (const std::uint32_t end : ends) {

@@ -48,7 +48,7 @@ void goAlongSeam(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, std
 
 // Squared distance of the two ends that lie on a border, and of what they stand for, to the border
 // as it would be. A border loses little area where a flap is worn off; so it is watched by length.
-float borderDeviation(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
+float borderDeviation(const QuadricView& view, std::uint32_t w, EdgeCosts& costs,
                       std::uint32_t edge);
 
 // r' H r: area times squared distance to the planes of a quadric.

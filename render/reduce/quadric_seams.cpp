@@ -37,8 +37,8 @@ bool QuadricReducer::isAlongSeam(const EdgeCosts& costs, std::uint32_t v,
 std::uint32_t QuadricReducer::findTwin(Worker& w, std::uint32_t v, std::uint32_t edge) {
   const std::uint32_t x = w.costs.neighbour[edge], tv = twins_[v], tx = twins_[x];
   const std::uint8_t inside = mesh_[tv].flags & mesh_[tx].flags & kInside;
-  const bool dead = (mesh_[tv].flags | mesh_[tx].flags) & kDead;
-  if (dead || mesh_[tv].degree == 0 || (w.inside_only && !inside)) return kNowhere;
+  const bool gone = (mesh_[tv].flags | mesh_[tx].flags) & (kDead | kHub);
+  if (gone || mesh_[tv].degree == 0 || (w.inside_only && !inside)) return kNowhere;
   if (rowOf(w.costs, tv) < w.costs.count || rowOf(w.costs, tx) < w.costs.count) return kNowhere;
   evaluate_(view(), tv, w.twin);
   const std::uint32_t row = rowOf(w.twin, tx);
@@ -60,7 +60,7 @@ void QuadricReducer::stayOnSeam(Worker& w, std::uint32_t v, std::uint32_t edge) 
 // Of the vertex' other side, as it is.
 void QuadricReducer::addNormalOf(std::uint32_t twin, float* normal) const {
   const QuadricVertex& t = mesh_[twin];
-  if (!lives(t)) return;
+  if (!lives(t) || (t.flags & kHub)) return;
   float other[3] = {};
   for (const Corner& c : mesh_.star(t)) {
     const auto face = faceNormal(t.position, mesh_[c.b].position, mesh_[c.c].position);

@@ -35,8 +35,32 @@ struct Neighbours {
   }
 };
 
+// As findNeighbours(), of a large star: O(corners).
+inline void findManyNeighbours(const QuadricView& view, const QuadricVertex& w, EdgeCosts& out) {
+  out.count = 0;
+  out.numbers.reset(2 * std::size_t{w.degree});
+  const auto indexOf = [&](std::uint32_t v) {
+    std::uint32_t& after = out.numbers[v];  // the index and one more
+    if (after == 0) {
+      out.neighbour[out.count] = v;
+      out.shared[out.count] = 0;
+      after = ++out.count;
+    }
+    ++out.shared[after - 1];
+    return after - 1;
+  };
+  for (std::uint32_t i = 0; i < w.degree; ++i) {
+    out.b[i] = indexOf(view.corners[w.star + i].b);
+    out.c[i] = indexOf(view.corners[w.star + i].c);
+  }
+}
+
 // Neighbours of any star, each once, with how many triangles it shares.
 inline void findNeighbours(const QuadricView& view, const QuadricVertex& w, EdgeCosts& out) {
+  if (w.degree > kPairwise) {
+    findManyNeighbours(view, w, out);
+    return;
+  }
   const Corner* star = view.corners + w.star;
   out.count = 0;
   const auto indexOf = [&](std::uint32_t v) {

@@ -1,9 +1,14 @@
 #include "render/reduce/working_mesh.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace merlin::render {
 namespace {
+
+constexpr std::uint32_t kGone = ~std::uint32_t{0};  // the first of what is gone
+// From longer lists nothing is taken out at once.
+constexpr std::size_t kLongList = 64;
 
 std::vector<WorkingMesh::Corners> cornersOf(const Mesh& mesh) {
   std::vector<WorkingMesh::Corners> corners(mesh.triangleCount());
@@ -48,28 +53,65 @@ WorkingMesh::WorkingMesh(const Mesh& mesh)
       ends_(uniqueEdges(corners_)),
       around_(listsOf(mesh.vertexCount(), corners_)),
       spokes_(listsOf(mesh.vertexCount(), ends_)),
+      shared_(ends_.size(), 0),
+      stale_triangles_(mesh.vertexCount(), 0),
+      stale_edges_(mesh.vertexCount(), 0),
       mark_(mesh.vertexCount(), 0),
-      live_(corners_.size()) {}
+      count_(mesh.vertexCount(), 0),
+      live_(corners_.size()) {
+  for (std::uint32_t v = 0; v < mark_.size(); ++v) countTriangles(v);
+}
 
-std::size_t WorkingMesh::trianglesAt(std::uint32_t a, std::uint32_t b) const noexcept {
-  std::size_t count = 0;
-  for (const std::uint32_t t : around_[a]) count += contains(t, b);
-  return count;
+// Of each edge of a.
+void WorkingMesh::countTriangles(std::uint32_t a) {
+  for (const std::uint32_t e : spokes_[a]) count_[otherEnd(e, a)] = 0;
+  for (const std::uint32_t t : around_[a]) {
+    for (const std::uint32_t v : corners_[t]) ++count_[v];
+  }
+  for (const std::uint32_t e : spokes_[a]) shared_[e] = count_[otherEnd(e, a)];
+}
+
+void WorkingMesh::tidy(std::uint32_t v) {
+  const auto drop = [&](ListPool& lists, std::uint32_t& stale, const auto& is_gone) {
+    if (stale == 0) return;
+    const auto list = lists[v];
+    scratch_.clear();
+    std::remove_copy_if(list.begin(), list.end(), std::back_inserter(scratch_), is_gone);
+    lists.assign(v, scratch_);
+    stale = 0;
+  };
+  drop(around_, stale_triangles_[v], [&](std::uint32_t t) { return corners_[t][0] == kGone; });
+  drop(spokes_, stale_edges_[v], [&](std::uint32_t e) { return ends_[e][0] == kGone; });
+}
+
+void WorkingMesh::loseTriangle(std::uint32_t v, std::uint32_t t) {
+  if (around_[v].size() > kLongList)
+    ++stale_triangles_[v];
+  else
+    around_.remove(v, t);
+}
+
+void WorkingMesh::loseEdge(std::uint32_t v, std::uint32_t e) {
+  if (spokes_[v].size() > kLongList)
+    ++stale_edges_[v];
+  else
+    spokes_.remove(v, e);
 }
 
 bool WorkingMesh::isBoundary(std::uint32_t v) const noexcept {
   for (const std::uint32_t e : spokes_[v]) {
-    if (trianglesAt(v, otherEnd(e, v)) == 1) return true;
+    if (shared_[e] == 1) return true;
   }
   return false;
 }
 
-bool WorkingMesh::linkCondition(std::uint32_t a, std::uint32_t b) noexcept {
+bool WorkingMesh::linkCondition(std::uint32_t edge) noexcept {
+  const auto [a, b] = ends_[edge];
   ++stamp_;
   for (const std::uint32_t e : spokes_[a]) mark_[otherEnd(e, a)] = stamp_;
   std::size_t common = 0;
   for (const std::uint32_t e : spokes_[b]) common += mark_[otherEnd(e, b)] == stamp_;
-  const std::size_t shared = trianglesAt(a, b);
+  const std::size_t shared = shared_[edge];
   if (common != shared) return false;
   if (around_[a].size() + around_[b].size() == 2 * shared) return false;  // nothing would be left
   if (shared == 2 && linksShareAnEdge(a, b)) return false;
@@ -105,8 +147,9 @@ void WorkingMesh::mergeTriangles(std::uint32_t a, std::uint32_t b) {
     if (contains(t, a)) {
       --live_;
       for (const std::uint32_t v : corners_[t]) {
-        if (v != a && v != b) around_.remove(v, t);
+        if (v != a && v != b) loseTriangle(v, t);
       }
+      corners_[t][0] = kGone;
       continue;
     }
     for (std::uint32_t& v : corners_[t]) {
@@ -135,22 +178,24 @@ void WorkingMesh::mergeEdges(std::uint32_t a, std::uint32_t b) {
     if (x == a) continue;
     if (mark_[x] == stamp_) {  // a and b both had an edge to x: one remains
       gone_.push_back(e);
-      spokes_.remove(x, e);
+      loseEdge(x, e);
       continue;
     }
     ends_[e] = {a, x};
     scratch_.push_back(e);
   }
-  // An edge whose only triangle has gone is no edge any more.
-  std::erase_if(scratch_, [&](std::uint32_t e) {
-    const std::uint32_t x = otherEnd(e, a);
-    if (trianglesAt(a, x) > 0) return false;
-    gone_.push_back(e);
-    spokes_.remove(x, e);
-    return true;
-  });
   spokes_.assign(b, {});
   spokes_.assign(a, scratch_);
+  countTriangles(a);
+  // An edge whose only triangle has gone is no edge any more.
+  std::erase_if(scratch_, [&](std::uint32_t e) {
+    if (shared_[e] > 0) return false;
+    gone_.push_back(e);
+    loseEdge(otherEnd(e, a), e);
+    return true;
+  });
+  spokes_.assign(a, scratch_);
+  for (const std::uint32_t e : gone_) ends_[e][0] = kGone;
 }
 
 }  // namespace merlin::render

@@ -1,6 +1,7 @@
 // Meshes made in code, for the tests of render.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>

@@ -1,0 +1,66 @@
+// Shapes of many triangles at one vertex take no more work a triangle than others do.
+#include "tests/support/hostile_shapes.h"
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "render/mesh/non_manifold.h"
+#include "render/reduce/reduce.h"
+#include "tests/support/meshes.h"
+
+namespace merlin::render {
+namespace {
+
+struct Way {
+  const char* name;
+  ReduceSettings settings;
+};
+
+// Elements that a reduction looked at, for each triangle.
+double workOf(const test::HostileShape& shape, Way way) {
+  Mesh mesh = shape.make(24'000);
+  splitNonManifold(mesh);
+  ensureNormals(mesh);
+  way.settings.threads = 1;
+  const auto r = reduce(mesh, way.settings);
+  if (!r) ADD_FAILURE() << way.name << ": " << r.error().what;
+  if (!r) return 0;
+  EXPECT_GT(r->report.collapses, 0u) << way.name;
+  EXPECT_LE(r->report.triangles, 2u) << way.name;
+  return static_cast<double>(r->report.visited) / static_cast<double>(mesh.triangleCount());
+}
+
+std::vector<Way> waysFor(const test::HostileShape& shape) {
+  std::vector<Way> ways(4);
+  ways[0].name = "default";
+  ways[1].name = "fast";
+  ways[1].settings.fast = true;
+  ways[2].name = "locks";
+  ways[2].settings.locked.resize(shape.make(24'000).vertexCount());
+  for (std::size_t v = 1; v < ways[2].settings.locked.size(); ++v)
+    ways[2].settings.locked[v] = v % 16 != 0;
+  ways[3].name = "pattern";
+  ways[3].settings.cost = "pattern";
+  return ways;
+}
+
+// A step that looks at all triangles of one vertex each time takes thousands.
+class HostileShape : public testing::TestWithParam<test::HostileShape> {};
+
+TEST_P(HostileShape, TakesTenTimesTheWorkOfARegularMeshAtMost) {
+  const test::HostileShape regular = test::hostileShapes().front();
+  ASSERT_STREQ(regular.name, "regular");
+  const std::vector<Way> ways = waysFor(GetParam()), regular_ways = waysFor(regular);
+  for (std::size_t i = 0; i < ways.size(); ++i)
+    EXPECT_LT(workOf(GetParam(), ways[i]), 10 * workOf(regular, regular_ways[i])) << ways[i].name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, HostileShape, testing::ValuesIn(test::hostileShapes()),
+                         [](const auto& shape) { return std::string(shape.param.name); });
+
+}  // namespace
+}  // namespace merlin::render
