@@ -7,7 +7,6 @@
 // kept under --out; without the file, synthetic hills of the same size.
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -22,7 +21,7 @@
 #include "render/lod/io/mrm_file.h"
 #include "render/out/png.h"
 #include "render/reduce/reduce.h"
-#include "tests/support/statistics.h"
+#include "tests/bench/figures.h"
 
 namespace merlin::bench {
 namespace {
@@ -32,7 +31,6 @@ using Steady = std::chrono::steady_clock;
 using render::Clusters;
 using render::Dendrogram;
 using render::Mesh;
-using test::median;
 
 constexpr std::size_t kSide = 1201;
 
@@ -92,23 +90,28 @@ Mesh heightField(const std::vector<float>& heights, std::size_t times) {
   return mesh;
 }
 
-bool makeModel(const std::vector<float>& heights, std::size_t times, const std::string& path) {
-  if (fs::exists(path)) return true;
-  fmt::print("making {} ...\n", path);
-  std::fflush(stdout);
+// The value; else the benchmark ends.
+template <typename T>
+T expect(Result<T> result, const std::string& subject) {
+  if (!result) didNotRun(subject, result.error().what, "--out names the folder of the models");
+  return *std::move(result);
+}
+
+void makeModel(const std::vector<float>& heights, std::size_t times, const std::string& path) {
+  if (fs::exists(path)) return;
+  note(fmt::format("making {} ...", path));
   const Mesh mesh = heightField(heights, times);
-  const auto reduced = render::reduce(mesh, {});
-  if (!reduced) return false;
-  return render::writeMrm(path, render::buildDendrogram(mesh, reduced->log)).ok();
+  const auto reduced = expect(render::reduce(mesh, {}), path);
+  expect(render::writeMrm(path, render::buildDendrogram(mesh, reduced.log)), path);
 }
 
 // --- cuts ----------------------------------------------------------------------------------------
 
 // Budgets in random order, every cut beside a memcpy of what it returned.
-void timeCuts(const Dendrogram& model) {
+void timeCuts(const Dendrogram& model, const std::string& name, Report& report) {
   const auto began = Steady::now();
   const Clusters clusters(model, {});
-  fmt::print(
+  report.text(
       "  index buffers and clusters: {:.0f} ms, {:.1f} MB beyond the file ({} clusters, "
       "ready from {} triangles down)\n",
       msSince(began), static_cast<double>(clusters.memoryBytes()) / (1 << 20), clusters.size(),
@@ -129,16 +132,22 @@ void timeCuts(const Dendrogram& model) {
     plain[b].push_back(msSince(then));
     then = Steady::now();
     const std::size_t n = clusters.cutEvenly(level, out);
+    if (n == 0) didNotRun("the cut", "it returned no triangle", "see render/lod");
     cut[b].push_back(msSince(then));
     then = Steady::now();
     std::memcpy(copied.data(), out.data(), 12 * n);
     copy[b].push_back(msSince(then));
   }
-  fmt::print("  {:>9} {:>10} {:>10} {:>7}   {}\n", "triangles", "cut ms", "memcpy ms", "ratio",
-             "from the leaves, ms");
+  report.text("  {:>9} {:>10} {:>10} {:>7}   {}\n", "triangles", "cut ms", "memcpy ms", "ratio",
+              "from the leaves, ms");
   for (std::size_t b = 0; b < budgets.size(); ++b) {
-    fmt::print("  {:>9} {:>10.3f} {:>10.3f} {:>7.1f}   {:.3f}\n", budgets[b], median(cut[b]),
-               median(copy[b]), median(cut[b]) / median(copy[b]), median(plain[b]));
+    const Measured ms = medianOf(cut[b], "cuts");
+    const Measured ratio = ratioOf(ms, medianOf(copy[b], "copies"), "cuts");
+    report.text("  {:>9} {:>10.3f} {:>10.3f} {:>7.1f}   {:.3f}\n", budgets[b], ms.value(),
+                medianOf(copy[b], "copies").value(), ratio.value(),
+                medianOf(plain[b], "cuts from the leaves").value());
+    report.figure(fmt::format("{}.{}.cut", name, budgets[b]), ms, "ms");
+    report.figure(fmt::format("{}.{}.by_memcpy", name, budgets[b]), ratio, "1");
   }
 }
 
@@ -164,10 +173,7 @@ std::unique_ptr<wall::Picture> pictureOf(const Dendrogram& model, bool view_depe
   render::RenderSettings settings;
   settings.view_dependent = view_dependent;
   auto made = wall::Picture::make(model, plan(), settings, 1.5, clock);
-  if (!made) {
-    fmt::print("  no picture: {}\n", made.error().what);
-    return nullptr;
-  }
+  if (!made) didNotRun("the renderer", made.error().what, "see EGL");
   return *std::move(made);
 }
 
@@ -191,19 +197,17 @@ double difference(wall::Picture& picture, const std::vector<std::uint8_t>& full)
 
 void save(wall::Picture& picture, const std::string& path) {
   const render::TilePlan p = plan();
-  if (const auto saved = render::writePng(path, p.frame_width, p.frame_height, picture.pixels());
-      !saved)
-    fmt::print("  {}\n", saved.error().what);
+  expect(render::writePng(path, p.frame_width, p.frame_height, picture.pixels()), path);
 }
 
-void comparePictures(const Dendrogram& model, const std::string& prefix) {
+void comparePictures(const Dendrogram& model, const std::string& prefix, const std::string& name,
+                     Report& report) {
   SystemClock clock;
   std::vector<std::uint8_t> full;
   double error[2] = {}, drawing[2] = {};
   const std::size_t level = model.levelFor(60'000);
   for (const bool view_dependent : {false, true}) {
     const auto picture = pictureOf(model, view_dependent, clock);
-    if (!picture) return;
     if (full.empty()) {
       picture->draw(closeUp(), 0, Timestamp::max());
       full.assign(picture->pixels().begin(), picture->pixels().end());
@@ -212,63 +216,74 @@ void comparePictures(const Dendrogram& model, const std::string& prefix) {
     std::vector<double> times;
     for (int i = 0; i < 7; ++i)
       times.push_back(1000 * toSeconds(picture->draw(closeUp(), level, Timestamp::max()).drawing));
-    drawing[view_dependent] = median(times);
+    drawing[view_dependent] = medianOf(times, "frames");
     error[view_dependent] = difference(*picture, full);
     save(*picture, prefix + (view_dependent ? "-view.png" : "-even.png"));
   }
-  fmt::print(
+  const auto frames = [](double value) { return Measured::of(value, 1, "pictures"); };
+  const Measured ratio = ratioOf(frames(error[1]), frames(error[0]), "pictures");
+  report.text(
       "  close-up over three tiles, {} triangles: pixel error {:.2f} of 255 spent evenly "
       "({:.1f} ms), {:.2f} where the tiles look ({:.1f} ms): {:.2f} of it\n",
-      model.trianglesAt(level), error[0], drawing[0], error[1], drawing[1], error[1] / error[0]);
-  fmt::print("  pictures: {0}-full.png, {0}-even.png, {0}-view.png\n", prefix);
+      model.trianglesAt(level), error[0], drawing[0], error[1], drawing[1], ratio.value());
+  report.figure(name + ".view_error_by_even", ratio, "1");
+  report.text("  pictures: {0}-full.png, {0}-even.png, {0}-view.png\n", prefix);
 }
 
 // From a file that no cache holds to the first picture in memory.
-void firstPicture(const std::string& path) {
+void firstPicture(const std::string& path, const std::string& name, Report& report) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   ::fsync(fd);
   ::posix_fadvise(fd, 0, 0, POSIX_FADV_DONTNEED);
   ::close(fd);
   SystemClock clock;
   const auto then = Steady::now();
-  const auto model = render::readMrm(path);
-  if (!model) return;
+  const auto model = expect(render::readMrm(path), path);
   const double opened = msSince(then);
-  const auto picture = pictureOf(*model, true, clock);
-  if (!picture) return;
+  const auto picture = pictureOf(model, true, clock);
   const double made = msSince(then);
-  picture->draw(closeUp(), model->levelFor(40'000), Timestamp::max());
-  fmt::print(
+  picture->draw(closeUp(), model.levelFor(40'000), Timestamp::max());
+  const auto all = Measured::of(msSince(then), 1, "first pictures");
+  report.text(
       "  cold file to first picture: {:.0f} ms (opened and checked {:.0f}, on the GPU {:.0f})\n",
-      msSince(then), opened, made);
+      all.value(), opened, made);
+  report.figure(name + ".first_picture", all, "ms");
 }
 
-int run(const std::string& hgt, const std::string& out, bool large) {
-  fs::create_directories(out);
+struct Options {
+  std::string hgt;  // empty: synthetic hills, or the tile beside the repository
+  std::string out = "build/bench/cut";
+  bool small = false;
+};
+
+constexpr const char* kTile = "../shared/data/dem/N44W072.hgt";
+
+bool run(const Options& options, Report& report) {
+  fs::create_directories(options.out);
   render::prepareSoftwareGl(0);
-  auto heights = readHeights(hgt);
+  const std::string tile = options.hgt.empty() ? kTile : options.hgt;
+  auto heights = readHeights(tile);
   const bool real = !heights.empty();
+  if (!real && !options.hgt.empty())
+    didNotRun("the model of " + options.hgt, "it is no tile of 1201 x 1201 heights",
+              "without --hgt the model is made of synthetic hills");
   if (!real) {
-    fmt::print("{}: no such tile; synthetic hills instead\n", hgt);
+    report.text("{}: no such tile; synthetic hills instead\n", kTile);
     heights = hills();
   }
-  for (std::size_t times = 1; times <= (large ? 2U : 1U); ++times) {
-    const std::string path = fmt::format("{}/{}{}.mrm", out, real ? "dem" : "hills", times);
-    if (!makeModel(heights, times, path)) {
-      fmt::print(stderr, "{}: cannot be made\n", path);
-      return 1;
-    }
-    firstPicture(path);
-    const auto model = render::readMrm(path);
-    if (!model) {
-      fmt::print(stderr, "{}\n", model.error().what);
-      return 1;
-    }
-    fmt::print("{}: {} triangles\n", path, model->triangleCount());
-    timeCuts(*model);
-    comparePictures(*model, path.substr(0, path.size() - 4));
+  for (std::size_t times = 1; times <= (options.small ? 1U : 2U); ++times) {
+    const std::string name =
+        fmt::format("{}-{}x{}", real ? fs::path(tile).stem().string() : "hills", times, times);
+    const std::string prefix = fmt::format("{}/{}", options.out, name), path = prefix + ".mrm";
+    makeModel(heights, times, path);
+    firstPicture(path, name, report);
+    const auto model = expect(render::readMrm(path), path);
+    report.text("{}: {} triangles\n", path, model.triangleCount());
+    note(name + ": cuts");
+    timeCuts(model, name, report);
+    comparePictures(model, prefix, name, report);
   }
-  return 0;
+  return true;
 }
 
 }  // namespace
@@ -277,11 +292,16 @@ int run(const std::string& hgt, const std::string& out, bool large) {
 int main(int argc, char** argv) {
   CLI::App app{
       "Cuts of large models beside a memcpy; pictures of a budget spent evenly and by view"};
-  std::string hgt = "../shared/data/dem/N44W072.hgt", out = "build/bench/cut";
-  bool small = false;
-  app.add_option("--hgt", hgt, "An SRTM 3 tile")->capture_default_str();
-  app.add_option("--out", out, "Where models and pictures go")->capture_default_str();
-  app.add_flag("--small", small, "Without the model of 11.5 million triangles");
+  merlin::bench::Options options;
+  bool json = false;
+  app.add_option("--hgt", options.hgt,
+                 "An SRTM 3 tile; without: " + std::string(merlin::bench::kTile) +
+                     ", and synthetic hills where that is not there");
+  app.add_option("--out", options.out, "Where models and pictures go")->capture_default_str();
+  app.add_flag("--small", options.small, "Without the model of 11.5 million triangles");
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
-  return merlin::bench::run(hgt, out, !small);
+  return merlin::bench::runBench("cut", json, [&](merlin::bench::Report& report) {
+    return merlin::bench::run(options, report);
+  });
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
 #include <vector>
 
@@ -13,11 +12,13 @@
 #else
 #include <floatfann.h>
 #endif
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "nn/fit.h"
 #include "nn/recall.h"
 #include "nn/train.h"
+#include "tests/bench/figures.h"
 #include "tests/bench/nanoseconds.h"
 #include "tests/nn/shipped.h"
 
@@ -89,44 +90,60 @@ Differences differencesOf(const nn::PostureNetwork& network, const std::vector<n
   return most;
 }
 
-void times(const nn::PostureNetwork& network, const std::vector<nn::Input>& inputs) {
+void times(const nn::PostureNetwork& network, const std::vector<nn::Input>& inputs,
+           Report& report) {
   const FannNetwork net = toFann(network.weights);
   const nn::Recall recall(network.phi, network.weights);
   std::vector<FannInput> fann_inputs(inputs.size());
   for (std::size_t n = 0; n < inputs.size(); ++n)
     std::copy(inputs[n].begin(), inputs[n].end(), fann_inputs[n].begin());
   volatile double sink = 0;
-  const double theirs = nanoseconds([&](std::size_t n) {
+  const Measured theirs = nanoseconds([&](std::size_t n) {
     sink = static_cast<double>(*fann_run(net.get(), fann_inputs[n % 1024].data()));
   });
-  const double ours =
+  const Measured ours =
       nanoseconds([&](std::size_t n) { sink = static_cast<double>(recall(inputs[n % 1024])[0]); });
-  const double portably = nanoseconds(
+  const Measured portably = nanoseconds(
       [&](std::size_t n) { sink = static_cast<double>(recall.portably(inputs[n % 1024])[0]); });
-  fmt::print(
+  report.text(
       "  MERLIN {:.0f} ns, FANN {:.0f} ns: {:.1f} times faster; {:.0f} ns, {:.1f} times, without "
       "AVX2\n",
-      ours, theirs, theirs / ours, portably, theirs / portably);
+      ours.value(), theirs.value(), theirs / ours, portably.value(), theirs / portably);
+  report.figure("recall", ours, "ns");
+  report.figure("recall.without_avx2", portably, "ns");
+  report.figure("recall.fann", theirs, "ns");
 }
 
-int run() {
+bool run(Report& report) {
   const auto fitted = nn::fit(nn::test::people(hand::allShapes(), 1, 10, 5, 1), {});
-  if (!fitted) return EXIT_FAILURE;
+  if (!fitted) didNotRun("the training", fitted.error().what, "see nn/README.md");
   std::vector<nn::Input> inputs;
   for (const nn::LabelledHand& h : nn::test::people(hand::allShapes(), 5001, 10, 5, 3))
     inputs.push_back(nn::normalise(fitted->network.ranges, h.value));
-  fmt::print("\nforward pass beside FANN in {}, same weights, 31 postures, {} hands\n",
-             kDouble ? "double" : "float", inputs.size());
-  times(fitted->network, inputs);
+  report.text("\nforward pass beside FANN in {}, same weights, 31 postures, {} hands\n",
+              kDouble ? "double" : "float", inputs.size());
+  times(fitted->network, inputs, report);
   const Differences d = differencesOf(fitted->network, inputs);
-  fmt::print(
+  report.text(
       "  outputs differ by at most {:.1e}; from a pass in double MERLIN's by {:.1e}, FANN's by "
       "{:.1e}\n",
       d.between, d.ours, d.theirs);
-  return EXIT_SUCCESS;
+  const auto most = [&](double d) { return Measured::of(d, inputs.size(), "hands"); };
+  report.figure("difference_from_fann", most(d.between), "1");
+  report.figure("error", most(d.ours), "1");
+  report.figure("error.fann", most(d.theirs), "1");
+  return true;
 }
 
 }  // namespace
 }  // namespace merlin::bench
 
-int main() { return merlin::bench::run(); }
+int main(int argc, char** argv) {
+  bool json = false;
+  CLI::App app("Recall beside FANN with the same weights.");
+  app.add_flag("--json", json, "The figures as one JSON object");
+  CLI11_PARSE(app, argc, argv);
+  return merlin::bench::runBench(
+      merlin::bench::kDouble ? "posture beside FANN in double" : "posture beside FANN in float",
+      json, merlin::bench::run);
+}

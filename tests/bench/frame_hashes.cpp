@@ -1,14 +1,17 @@
 // ./dev bench frames: a fixed script of frames of each model, as hashes. Equal hashes before and
 // after a change of the drawing code mean equal pixels. Not for comparing machines: drivers differ.
-#include <cstdio>
+#include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "daemon/wall/picture.h"
 #include "daemon/wall/pointer_marker.h"
 #include "render/lod/io/mrm_file.h"
+#include "tests/bench/figures.h"
 
 namespace merlin::bench {
 namespace {
@@ -33,30 +36,35 @@ Isometry3f pose(int i) {
 class Script {
  public:
   Script(const render::Dendrogram& model, const std::string& name,
-         const render::RenderSettings& settings)
-      : model_(model), name_(name), settings_(settings) {}
+         const render::RenderSettings& settings, Report& report)
+      : model_(model), name_(name), settings_(settings), report_(report) {}
 
-  // False where there is no such context on this machine.
-  bool run() {
+  void run() {
     auto made = wall::Picture::make(model_, plan_, settings_, 1.0, clock_);
-    if (!made) {
-      fmt::print(stderr, "frames: {}: {}\n", name_, made.error().what);
-      return false;
-    }
+    if (!made) didNotRun(fmt::format("{} of {}", context(), name_), made.error().what, "see EGL");
     picture_ = *std::move(made);
     moving(1);
     moving(2);
     picture_->setScale(1);
     refined();
     pointed();
-    return true;
   }
 
  private:
-  void print(const std::string& what, std::uint64_t h) const {
-    fmt::print("{:<28} {:<7} {} {:<16} {:016x}\n", name_,
-               settings_.backend == render::GlBackend::kEgl ? "egl" : "osmesa", settings_.contexts,
-               what, h);
+  std::string context() const {
+    return fmt::format("{:<7} {}", settings_.backend == render::GlBackend::kEgl ? "egl" : "osmesa",
+                       settings_.contexts);
+  }
+  // A picture of one colour is none of the model.
+  void expectDrawn() const {
+    const auto pixels = picture_->pixels();
+    if (std::equal(pixels.begin() + 4, pixels.end(), pixels.begin()))
+      didNotRun(fmt::format("{} of {}", context(), name_), "it drew nothing", "see EGL");
+  }
+  void print(const std::string& what, std::uint64_t h, std::uint64_t frames = 1) {
+    const std::string hex = fmt::format("{:016x}", h);
+    report_.text("{:<28} {} {:<16} {}\n", name_, context(), what, hex);
+    report_.figure(fmt::format("{} {} {}", name_, context(), what), hex, frames);
   }
   void moving(int divisor) {
     picture_->setScale(divisor);
@@ -64,9 +72,10 @@ class Script {
     for (int i = 0; i < kPoses; ++i) {
       const std::size_t level = model_.levelFor(std::size_t{1000} << i);
       picture_->draw(pose(i), level, Timestamp::max());
+      expectDrawn();
       h = hash(picture_->pixels(), h);
     }
-    print(divisor == 1 ? "moving" : "half size", h);
+    print(divisor == 1 ? "moving" : "half size", h, kPoses);
   }
   void refined() {
     for (const bool full : {false, true}) {
@@ -90,38 +99,37 @@ class Script {
   const render::Dendrogram& model_;
   std::string name_;
   render::RenderSettings settings_;
+  Report& report_;
   SystemClock clock_;
   render::TilePlan plan_ = *render::planTiles({});
   std::unique_ptr<wall::Picture> picture_;
 };
 
-int main(int argc, char** argv) {
-  if (argc < 2) {
-    fmt::print(stderr, "usage: frame_hashes MODEL.mrm...\n");
-    return 2;
-  }
-  for (int i = 1; i < argc; ++i) {
-    const std::string path = argv[i];
+bool run(const std::vector<std::string>& paths, Report& report) {
+  for (const std::string& path : paths) {
     const auto model = render::readMrm(path);
-    if (!model) {
-      fmt::print(stderr, "frames: {}\n", model.error().what);
-      return 1;
-    }
+    if (!model) didNotRun("the model", model.error().what, "'./dev bench frames' makes the demo's");
     const std::string name = path.substr(path.rfind('/') + 1);
-    for (const int contexts : {1, 2}) {
-      if (!Script(*model, name,
-                  {.backend = render::GlBackend::kEgl, .contexts = contexts, .look = {}})
-               .run())
-        return 1;
+    for (const auto& [backend, contexts] :
+         {std::pair{render::GlBackend::kEgl, 1}, std::pair{render::GlBackend::kEgl, 2},
+          std::pair{render::GlBackend::kOsmesa, 1}}) {
+      Script(*model, name, {.backend = backend, .contexts = contexts, .look = {}}, report).run();
     }
-    if (!Script(*model, name, {.backend = render::GlBackend::kOsmesa, .contexts = 1, .look = {}})
-             .run())
-      return 1;
   }
-  return 0;
+  return true;
 }
 
 }  // namespace
 }  // namespace merlin::bench
 
-int main(int argc, char** argv) { return merlin::bench::main(argc, argv); }
+int main(int argc, char** argv) {
+  std::vector<std::string> models;
+  bool json = false;
+  CLI::App app("A fixed script of frames of each model, as hashes.");
+  app.add_option("models", models, "Models (.mrm)")->required();
+  app.add_flag("--json", json, "The figures as one JSON object");
+  CLI11_PARSE(app, argc, argv);
+  return merlin::bench::runBench("frames", json, [&](merlin::bench::Report& report) {
+    return merlin::bench::run(models, report);
+  });
+}

@@ -4,7 +4,6 @@
 // Half of the bytes are random; the other half is a good stream in which every so often a byte is
 // flipped, lost, doubled or replaced by a burst, so that a parser is hit in the middle of its work.
 #include <chrono>
-#include <cstdio>
 #include <functional>
 #include <optional>
 #include <string>
@@ -20,6 +19,7 @@
 #include "drivers/io/transcript.h"
 #include "drivers/sample/protocol.h"
 #include "drivers/spaceball/protocol.h"
+#include "tests/bench/figures.h"
 
 namespace merlin::bench {
 namespace {
@@ -167,7 +167,8 @@ struct Count {
 };
 
 // What recovered more than was sent whole is chance: random bytes that make a packet.
-void fuzz(const Target& target, double most, std::uint64_t seed) {
+void fuzz(const Target& target, double most, std::uint64_t seed, Report& report) {
+  note(fmt::format("{} ...", target.name));
   Random random(seed);
   const auto start = std::chrono::steady_clock::now();
   Count count;
@@ -187,13 +188,19 @@ void fuzz(const Target& target, double most, std::uint64_t seed) {
   }
   const double took =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  fmt::print(
+  if (count.sent > 0 && count.recovered == 0) {
+    throw DidNotRun(fmt::format("the parser of {} recovered none of {} packets; --bytes gives more",
+                                target.name, count.sent));
+  }
+  const auto recovered =
+      Measured::of(static_cast<double>(count.recovered) / static_cast<double>(count.sent),
+                   count.sent, fmt::format("packets for {}", target.name));
+  report.text(
       "{:20} {:12} bytes, {:9} packets sent, {:9} recovered ({:.1f} %), {:6} out of noise, "
       "{:.1f} s\n",
-      target.name, count.bytes, count.sent, count.recovered,
-      100 * static_cast<double>(count.recovered) / static_cast<double>(count.sent),
-      count.from_noise, took);
-  std::fflush(stdout);
+      target.name, count.bytes, count.sent, count.recovered, 100 * recovered, count.from_noise,
+      took);
+  report.figure(fmt::format("{}.recovered", target.name), recovered, "1");
 }
 
 }  // namespace
@@ -202,12 +209,20 @@ void fuzz(const Target& target, double most, std::uint64_t seed) {
 int main(int argc, char** argv) {
   double bytes = 1e8;
   std::uint64_t seed = 1;
+  bool json = false;
   CLI::App app("Random and mutated bytes through every parser.");
-  app.add_option("--bytes", bytes, "Through each")->capture_default_str();
+  app.add_option("--bytes", bytes, "Through each")
+      ->check(CLI::Range(1.0, 1e15))
+      ->capture_default_str();
   app.add_option("--seed", seed)->capture_default_str();
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
+  return merlin::bench::runBench("fuzz", json, [&](merlin::bench::Report& report) {
 #ifndef __SANITIZE_ADDRESS__
-  fmt::print("(without sanitizers: only a crash would show)\n");
+    report.text("(without sanitizers: only a crash would show)\n");
 #endif
-  for (const auto& target : merlin::bench::kTargets) merlin::bench::fuzz(target, bytes, seed);
+    for (const auto& target : merlin::bench::kTargets)
+      merlin::bench::fuzz(target, bytes, seed, report);
+    return true;
+  });
 }

@@ -4,12 +4,13 @@
 // same hiccups, 20 seeds of 1,200 frames each. MERLIN's frames begin on the wall's grid, where one
 // that runs over takes from the next one's time and counts for every deadline that passes; the
 // others' are each judged alone, which is kinder to them. The first second is not counted.
-#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "tests/bench/figures.h"
 #include "tests/bench/governor_laws.h"
 #include "tests/support/governor_plant.h"
 
@@ -29,7 +30,10 @@ struct Figure {
     sum += value;
     worst = count++ == 0 ? value : least_is_worst ? std::min(worst, value) : std::max(worst, value);
   }
-  double mean() const { return sum / static_cast<double>(count); }
+  Measured measured() const {
+    return Measured::of(sum / static_cast<double>(count), count, "runs of a law");
+  }
+  double mean() const { return measured(); }
 };
 
 using RunLaw = std::function<Outcome(const Plant&)>;
@@ -61,22 +65,31 @@ struct Scenario {
 };
 
 // Of the real renderer, with its own noise and hiccups; how it was made stands in the file.
-Trace recordedTrace() {
-  std::ifstream in(MERLIN_SOURCE_DIR "/tests/data/governor_demo.txt");
+Trace recordedTrace(const std::string& path) {
+  constexpr const char* kWayOut = "--trace names tests/data/governor_demo.txt";
+  std::ifstream in(path);
   Trace trace;
   for (std::string line; std::getline(in, line);) {
-    if (!line.empty() && line.front() != '#') trace.push_back({0.004, std::stod(line)});
+    if (line.empty() || line.front() == '#') continue;
+    char* end = nullptr;
+    trace.push_back({0.004, std::strtod(line.c_str(), &end)});
+    if (end == line.c_str())
+      didNotRun("the recorded trace", fmt::format("{}: '{}' is no number", path, line), kWayOut);
   }
+  if (trace.size() <= test::kRelease)
+    didNotRun("the recorded trace",
+              fmt::format("{} has {} frames, not more than {}", path, trace.size(), test::kRelease),
+              kWayOut);
   return trace;
 }
 
-std::vector<Scenario> scenarios() {
+std::vector<Scenario> scenarios(const std::string& recorded) {
   return {{"steady", test::steadyTrace(), Scenario::kSteady},
           {"cost x 2 and back", test::stepTrace(2), Scenario::kSteps},
           {"cost x 4 and back", test::stepTrace(4), Scenario::kSteps},
           {"fixed part 4 to 14 ms and back", test::stepTrace(1, 0.014), Scenario::kSteps},
           {"ramps of 2", test::rampTrace(), Scenario::kRamp},
-          {"the demo, recorded", recordedTrace(), Scenario::kRecorded}};
+          {"the demo, recorded", recordedTrace(recorded), Scenario::kRecorded}};
 }
 
 struct Figures {
@@ -128,51 +141,58 @@ std::string percent(bool there, const Figure& x) {
 
 constexpr const char* kRow = "{:18} {:>7} {:>8} {:>7} {:>13} {:>13} {:>9} {:>9} {:>8}\n";
 
-void printRow(const std::string& name, const Scenario& s, const Figures& f) {
+void printRow(const std::string& name, const Scenario& s, const Figures& f, Report& report) {
   const bool steps = s.kind == Scenario::kSteps, made = s.kind != Scenario::kRecorded;
-  fmt::print(kRow, name, percent(true, f.late_with), percent(made, f.late_without),
-             fmt::format("{:.1f} %", 100 * f.used.mean()), meanAndWorst(steps, f.settled),
-             meanAndWorst(steps, f.back), meanAndWorst(true, f.run_with),
-             meanAndWorst(made, f.run_without), percent(s.kind == Scenario::kSteady, f.swing));
+  report.text(kRow, name, percent(true, f.late_with), percent(made, f.late_without),
+              fmt::format("{:.1f} %", 100 * f.used.mean()), meanAndWorst(steps, f.settled),
+              meanAndWorst(steps, f.back), meanAndWorst(true, f.run_with),
+              meanAndWorst(made, f.run_without), percent(s.kind == Scenario::kSteady, f.swing));
+  const std::string prefix = fmt::format("{}.{}.", s.name, name);
+  report.figure(prefix + "late", f.late_with.measured(), "1");
+  if (made) report.figure(prefix + "late_without_hiccups", f.late_without.measured(), "1");
+  report.figure(prefix + "period_used", f.used.measured(), "1");
+  report.figure(prefix + "longest_late_run", f.run_with.measured(), "frames");
+  if (steps) report.figure(prefix + "to_settle", f.settled.measured(), "frames");
+  if (steps) report.figure(prefix + "until_back", f.back.measured(), "frames");
 }
 
-void judge(const Scenario& s, const Figures& f, Verdicts& v) {
+void judge(const Scenario& s, const Figures& f, Verdicts& v, Report& report) {
   const auto verdict = [&](bool asked, bool met) { return asked ? v.of(met) : ""; };
   const bool steps = s.kind == Scenario::kSteps, made = s.kind != Scenario::kRecorded;
   const bool varies = s.kind == Scenario::kRamp || !made;
   const double within = std::string_view(s.name).find("x 4") != std::string_view::npos ? 5 : 3;
   // With hiccups the mean run: one that falls on the step's own frame makes it longer by itself.
-  fmt::print(kRow, "  asked of MERLIN", verdict(true, f.late_with.mean() <= 0.015),
-             verdict(made, f.late_without.mean() <= 0.005),
-             verdict(true, f.used.mean() >= (varies ? 0.80 : 0.85)),
-             verdict(steps, f.settled.worst <= within), verdict(steps, f.back.worst <= 40),
-             verdict(true, f.run_with.mean() < 3.5), verdict(made, f.run_without.worst <= 3),
-             verdict(s.kind == Scenario::kSteady, f.swing.mean() <= 0.05));
+  report.text(kRow, "  asked of MERLIN", verdict(true, f.late_with.mean() <= 0.015),
+              verdict(made, f.late_without.mean() <= 0.005),
+              verdict(true, f.used.mean() >= (varies ? 0.80 : 0.85)),
+              verdict(steps, f.settled.worst <= within), verdict(steps, f.back.worst <= 40),
+              verdict(true, f.run_with.mean() < 3.5), verdict(made, f.run_without.worst <= 3),
+              verdict(s.kind == Scenario::kSteady, f.swing.mean() <= 0.05));
 }
 
-void printHead(const Scenario& s) {
-  fmt::print("\n{}\n", s.name);
-  fmt::print(kRow, "", "late", "late, no", "period", "frames to", "frames until", "longest",
-             "the same,", "swing of");
-  fmt::print(kRow, "", "", "hiccups", "used", "settle", "90 % is back", "late run", "no hicc.",
-             "detail");
+void printHead(const Scenario& s, Report& report) {
+  report.text("\n{}\n", s.name);
+  report.text(kRow, "", "late", "late, no", "period", "frames to", "frames until", "longest",
+              "the same,", "swing of");
+  report.text(kRow, "", "", "hiccups", "used", "settle", "90 % is back", "late run", "no hicc.",
+              "detail");
 }
 
-int bench(std::size_t seeds) {
-  fmt::print("{} frames of 33.3 ms, {} seeds; mean (worst seed)\n", test::kFrames, seeds);
+bool bench(std::size_t seeds, const std::string& recorded, Report& report) {
+  report.text("{} frames of 33.3 ms, {} seeds; mean (worst seed)\n", test::kFrames, seeds);
   Verdicts verdicts;
-  for (const Scenario& s : scenarios()) {
-    printHead(s);
+  for (const Scenario& s : scenarios(recorded)) {
+    printHead(s, report);
     for (const Contestant& c : contestants()) {
       const Figures f = figuresOf(c.run, s, seeds);
-      printRow(c.name, s, f);
-      if (c.name == "MERLIN") judge(s, f, verdicts);
+      printRow(c.name, s, f, report);
+      if (c.name == "MERLIN") judge(s, f, verdicts, report);
     }
   }
-  fmt::print("\n{}\n", verdicts.missing() == 0
-                           ? "MERLIN meets every figure"
-                           : fmt::format("{} figures are short", verdicts.missing()));
-  return verdicts.missing() == 0 ? 0 : 1;
+  report.text("\n{}\n", verdicts.missing() == 0
+                            ? "MERLIN meets every figure"
+                            : fmt::format("{} figures are short", verdicts.missing()));
+  return verdicts.missing() == 0;
 }
 
 }  // namespace
@@ -180,8 +200,14 @@ int bench(std::size_t seeds) {
 
 int main(int argc, char** argv) {
   std::size_t seeds = 20;
+  std::string trace = MERLIN_SOURCE_DIR "/tests/data/governor_demo.txt";
+  bool json = false;
   CLI::App app("MERLIN's governor beside other laws, on a virtual clock.");
   app.add_option("--seeds", seeds, "Runs of each law on each trace")->check(CLI::Range(1, 1000));
+  app.add_option("--trace", trace, "Frames of the real renderer")->capture_default_str();
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
-  return merlin::bench::bench(seeds);
+  return merlin::bench::runBench("governor", json, [&](merlin::bench::Report& report) {
+    return merlin::bench::bench(seeds, trace, report);
+  });
 }

@@ -2,7 +2,6 @@
 // dendrogram. Of each kind of fault the
 // first seed is told, which shows it again.
 #include <csignal>
-#include <cstdio>
 #include <cstring>
 #include <map>
 #include <string>
@@ -13,6 +12,7 @@
 
 #include "daemon/base/clock.h"
 #include "daemon/cli/progress.h"
+#include "tests/bench/figures.h"
 #include "tests/bench/mesh_fuzz.h"
 
 namespace merlin::bench {
@@ -43,7 +43,7 @@ struct Faults {
   std::string first;
 };
 
-int fuzz(std::uint64_t seed, std::uint64_t count) {
+bool fuzz(std::uint64_t seed, std::uint64_t count, Report& report) {
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL}) ::signal(signal, sayWhere);
   const SystemClock clock;
   const Timestamp began = clock.now();
@@ -63,13 +63,27 @@ int fuzz(std::uint64_t seed, std::uint64_t count) {
   }
   bar.finish(count);
   const double seconds = toSeconds(clock.now() - began);
-  for (const auto& [name, n] : fuzz.counts) fmt::print("{:>12}  {}\n", n, name);
-  fmt::print("{:>12.0f}  meshes a second\n", static_cast<double>(count) / seconds);
+  std::uint64_t reduced = 0;
+  for (const auto& [name, n] : fuzz.counts) {
+    if (name.starts_with("reduced by ")) reduced += n;
+    report.text("{:>12}  {}\n", n, name);
+  }
+  // Meshes that are all refused at the door test no reduction.
+  if (reduced == 0 && faults.empty()) {
+    throw DidNotRun(
+        fmt::format("none of {} meshes came as far as a reduction; --count gives more", count));
+  }
+  const double rate = static_cast<double>(count) / seconds;
+  report.text("{:>12.0f}  meshes a second\n", rate);
   for (const auto& [kind, f] : faults)
-    fmt::print("{:>12}  FAULT: {}; again: --count 1 --seed {}\n", f.count, f.first, f.first_seed);
-  fmt::print("seeds {} to {}: {}\n", seed, seed + count - 1,
-             faults.empty() ? "no fault" : "with faults");
-  return faults.empty() ? 0 : 1;
+    report.text("{:>12}  FAULT: {}; again: --count 1 --seed {}\n", f.count, f.first, f.first_seed);
+  report.text("seeds {} to {}: {}\n", seed, seed + count - 1,
+              faults.empty() ? "no fault" : "with faults");
+  const auto total = [&](std::uint64_t n) { return Measured::of(double(n), count, "meshes"); };
+  report.figure("rate", Measured::of(rate, count, "meshes"), "1/s");
+  report.figure("reduced", total(reduced), "1");
+  report.figure("kinds_of_faults", total(faults.size()), "1");
+  return faults.empty();
 }
 
 }  // namespace
@@ -78,8 +92,14 @@ int fuzz(std::uint64_t seed, std::uint64_t count) {
 int main(int argc, char** argv) {
   CLI::App app("Hostile meshes through everything that a mesh goes through.");
   std::uint64_t seed = 1, count = 10'000'000;
+  bool json = false;
   app.add_option("--seed", seed, "Of the first mesh; the next has the next")->capture_default_str();
-  app.add_option("--count", count, "Of meshes")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--count", count, "Of meshes")
+      ->check(CLI::Range(1, 1'000'000'000))
+      ->capture_default_str();
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
-  return merlin::bench::fuzz(seed, count);
+  return merlin::bench::runBench("fuzz-meshes", json, [&](merlin::bench::Report& report) {
+    return merlin::bench::fuzz(seed, count, report);
+  });
 }

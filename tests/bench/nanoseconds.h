@@ -5,12 +5,13 @@
 #include <cstddef>
 
 #include "daemon/base/clock.h"
+#include "tests/bench/figures.h"
 
 namespace merlin::bench {
 
 // Nanoseconds of one call of f(n), the least of many rounds: one that nothing else broke into.
 template <typename F>
-double nanoseconds(F f) {
+Measured nanoseconds(F f) {
   constexpr int kCalls = 2000, kRounds = 500;
   const SystemClock clock;
   double least = 1e9;
@@ -19,7 +20,7 @@ double nanoseconds(F f) {
     for (int n = 0; n < kCalls; ++n) f(static_cast<std::size_t>(n));
     least = std::min(least, 1e9 * toSeconds(clock.now() - began) / kCalls);
   }
-  return least;
+  return Measured::of(least, std::uint64_t{kCalls} * kRounds, "calls");
 }
 
 }  // namespace merlin::bench

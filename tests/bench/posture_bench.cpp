@@ -9,6 +9,7 @@
 #include <ctime>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "nn/adapt.h"
@@ -16,6 +17,7 @@
 #include "nn/fit.h"
 #include "nn/hold.h"
 #include "nn/train.h"
+#include "tests/bench/figures.h"
 #include "tests/bench/nanoseconds.h"
 #include "tests/nn/shipped.h"
 
@@ -30,17 +32,29 @@ DataSet people(std::size_t first, std::size_t count, std::size_t per_take, std::
   return nn::test::people(hand::allShapes(), first, count, per_take, seed);
 }
 
-void recall(const nn::PostureNetwork& network, const DataSet& hands) {
+// The value of a training that came to its end; else the benchmark ends.
+template <typename T>
+const T& expect(const Result<T>& result, const char* subject) {
+  if (!result) didNotRun(subject, result.error().what, "see nn/README.md");
+  return *result;
+}
+
+Measured accuracyOf(const nn::PostureNetwork& network, const DataSet& hands) {
+  return Measured::of(nn::score(network, hands).accuracy(), hands.size(), "hands");
+}
+
+void recall(const nn::PostureNetwork& network, const DataSet& hands, Report& report) {
   const nn::Recogniser recognise(network);
   volatile std::uint32_t sink = 0;
-  const double ns =
+  const Measured ns =
       nanoseconds([&](std::size_t n) { sink = recognise(hands[n % 1024].value).code; });
-  fmt::print("recall, scaling and names and all: {:.0f} ns\n", ns);
+  report.text("recall, scaling and names and all: {:.0f} ns\n", ns.value());
+  report.figure("recall", ns, "ns");
 }
 
 // The 1998 way, as plain as it can be: running numbers as codes, ranges of the glove, descent down
 // the gradient of everything.
-double plainAccuracy(const DataSet& train, const DataSet& test) {
+Measured plainAccuracy(const DataSet& train, const DataSet& test) {
   nn::PostureNetwork network;
   std::vector<std::size_t> posture;
   const auto names = nn::posturesOf(train, posture);
@@ -49,49 +63,56 @@ double plainAccuracy(const DataSet& train, const DataSet& test) {
   const auto examples = nn::toExamples(train, network);
   const auto trained = nn::train(nn::initialWeights(1), *examples,
                                  {.rate = 5, .max_iterations = 1500, .mse_limit = 1e-4});
-  if (!trained) return 0;
-  network.weights = trained->weights;
-  return nn::score(network, test).accuracy();
+  network.weights = expect(trained, "the plain descent").weights;
+  return accuracyOf(network, test);
 }
 
-nn::Fitted trainingTable() {
-  fmt::print(
+nn::Fitted trainingTable(Report& report) {
+  report.text(
       "\n31 postures x 50 hands of 10 people, tested on 10 others (synthetic)\n"
       "  seed  network %  nearest mean %  nearest neighbour %  rejected  training s (CPU)\n");
   nn::Fitted first;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const DataSet train = people(1 + 100 * (seed - 1), 10, 5, seed), test = people(5001, 10, 5, 99);
     const double began = cpuSeconds();
-    auto fitted = nn::fit(train, {});
+    const auto result = nn::fit(train, {});
     const double took = cpuSeconds() - began;
-    const nn::Score s = nn::score(fitted->network, test);
+    const nn::Fitted& fitted = expect(result, "the training");
+    const nn::Score s = nn::score(fitted.network, test);
+    const Measured accuracy = accuracyOf(fitted.network, test);
     const nn::Neighbours n = nn::neighbours(train, test);
-    fmt::print("  {:4}  {:9.2f}  {:14.2f}  {:19.2f}  {:8}  {:16.2f}\n", seed, 100 * s.accuracy(),
-               100 * n.mean, 100 * n.nearest, s.rejected, took);
+    report.text("  {:4}  {:9.2f}  {:14.2f}  {:19.2f}  {:8}  {:16.2f}\n", seed, 100 * accuracy,
+                100 * n.mean, 100 * n.nearest, s.rejected, took);
+    report.figure(fmt::format("accuracy.seed{}", seed), accuracy, "1");
+    report.figure(fmt::format("training.seed{}", seed), Measured::of(took, 1, "trainings"), "s");
     if (seed == 1) {
-      fmt::print("        {:.2f} % with running numbers as codes and plain descent\n",
-                 100 * plainAccuracy(train, test));
-      first = *std::move(fitted);
+      const Measured plain = plainAccuracy(train, test);
+      report.text("        {:.2f} % with running numbers as codes and plain descent\n",
+                  100 * plain);
+      report.figure("accuracy.plain_descent", plain, "1");
+      first = fitted;
     }
   }
   return first;
 }
 
-void adapting(const nn::Fitted& fitted) {
-  fmt::print(
+void adapting(const nn::Fitted& fitted, Report& report) {
+  report.text(
       "\nadapting to one person more, 200 hands of each posture\n"
       "  person  theirs before %  after %  ten others before %  after %  s (CPU)\n");
   const DataSet others = people(5001, 10, 5, 7);
   for (const std::size_t person : {9001U, 9002U, 9003U}) {
     const DataSet own = people(person, 1, 200, 1), later = people(person, 1, 50, 2);
     const double began = cpuSeconds();
-    const auto adapted = nn::adapt(fitted.network, fitted.memory, own, 1);
+    const auto result = nn::adapt(fitted.network, fitted.memory, own, 1);
     const double took = cpuSeconds() - began;
-    fmt::print("  {:6}  {:15.2f}  {:7.2f}  {:19.2f}  {:7.2f}  {:7.2f}\n", person,
-               100 * nn::score(fitted.network, later).accuracy(),
-               100 * nn::score(adapted->network, later).accuracy(),
-               100 * nn::score(fitted.network, others).accuracy(),
-               100 * nn::score(adapted->network, others).accuracy(), took);
+    const nn::PostureNetwork& adapted = expect(result, "the adapting").network;
+    const Measured before = accuracyOf(fitted.network, later), after = accuracyOf(adapted, later);
+    report.text("  {:6}  {:15.2f}  {:7.2f}  {:19.2f}  {:7.2f}  {:7.2f}\n", person, 100 * before,
+                100 * after, 100 * accuracyOf(fitted.network, others),
+                100 * accuracyOf(adapted, others), took);
+    report.figure(fmt::format("accuracy.person{}", person), before, "1");
+    report.figure(fmt::format("accuracy.person{}.adapted", person), after, "1");
   }
 }
 
@@ -127,7 +148,7 @@ struct Reported {
   std::vector<std::string> held, plain;  // with hold and hysteresis, and without
 };
 
-Reported report(const nn::PostureNetwork& network, std::span<const hand::Shot> shots) {
+Reported reportedBy(const nn::PostureNetwork& network, std::span<const hand::Shot> shots) {
   constexpr std::int64_t kPeriod_ns = 10'000'000;
   const nn::Recogniser recognise(network);
   Reported r;
@@ -145,39 +166,49 @@ Reported report(const nn::PostureNetwork& network, std::span<const hand::Shot> s
   return r;
 }
 
-void printFlicker(std::size_t person, const char* what, const Flicker& f) {
-  fmt::print("  {}  {:25}  {:8}  {:6}  {:8}  {:8}\n", person, what, f.reported, f.missed,
-             f.repeated, f.invented);
+void printFlicker(std::size_t person, const char* what, const Flicker& f, Report& report) {
+  report.text("  {}  {:25}  {:8}  {:6}  {:8}  {:8}\n", person, what, f.reported, f.missed,
+              f.repeated, f.invented);
+  const auto invented = shareOf(f.invented, f.reported, "postures reported");
+  report.figure(fmt::format("person{}.{}.invented", person, what), invented, "1");
 }
 
-void flicker(const nn::Fitted& fitted) {
+void flicker(const nn::Fitted& fitted, Report& report) {
   const auto ten = hand::allShapes().subspan(0, 10);
-  fmt::print(
+  report.text(
       "\nten postures, 1 s each, 0.35 s from one to the next, 100 records a second\n"
       "  {:31}  reported  missed  repeated  invented\n",
       "person");
   for (const std::size_t person : {9001U, 9002U, 9003U}) {
     const auto shots = hand::goThrough(ten, hand::Person(person), 100, 35, 1);
-    const auto adapted =
-        nn::adapt(fitted.network, fitted.memory, people(person, 1, 200, 1), 1)->network;
-    const Reported unseen = report(fitted.network, shots), known = report(adapted, shots);
-    printFlicker(person, "never seen, held", countOf(unseen.held, ten));
-    printFlicker(person, "never seen, as recognised", countOf(unseen.plain, ten));
-    printFlicker(person, "adapted to, held", countOf(known.held, ten));
-    printFlicker(person, "adapted to, as recognised", countOf(known.plain, ten));
+    const auto result = nn::adapt(fitted.network, fitted.memory, people(person, 1, 200, 1), 1);
+    const Reported unseen = reportedBy(fitted.network, shots),
+                   known = reportedBy(expect(result, "the adapting").network, shots);
+    printFlicker(person, "never seen, held", countOf(unseen.held, ten), report);
+    printFlicker(person, "never seen, as recognised", countOf(unseen.plain, ten), report);
+    printFlicker(person, "adapted to, held", countOf(known.held, ten), report);
+    printFlicker(person, "adapted to, as recognised", countOf(known.plain, ten), report);
   }
 }
 
-int run() {
-  const nn::Fitted fitted = trainingTable();
-  adapting(fitted);
-  flicker(fitted);
-  fmt::print("\n");
-  recall(fitted.network, people(5001, 10, 5, 3));
-  return 0;
+bool run(Report& report) {
+  note("training");
+  const nn::Fitted fitted = trainingTable(report);
+  note("adapting");
+  adapting(fitted, report);
+  flicker(fitted, report);
+  report.text("\n");
+  recall(fitted.network, people(5001, 10, 5, 3), report);
+  return true;
 }
 
 }  // namespace
 }  // namespace merlin::bench
 
-int main() { return merlin::bench::run(); }
+int main(int argc, char** argv) {
+  bool json = false;
+  CLI::App app("The posture network: training, adapting, flicker, recall.");
+  app.add_flag("--json", json, "The figures as one JSON object");
+  CLI11_PARSE(app, argc, argv);
+  return merlin::bench::runBench("posture", json, merlin::bench::run);
+}

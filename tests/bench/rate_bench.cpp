@@ -6,7 +6,6 @@
 // one, as there. Each is the whole model, two copies of the demo's scan side by side in a made-up
 // picture of 1024 x 1024, reduced to that many triangles and drawn whole.
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <string>
 
@@ -18,12 +17,11 @@
 #include "render/mesh/io/picture_file.h"
 #include "render/out/png.h"
 #include "render/reduce/reduce.h"
-#include "tests/support/statistics.h"
+#include "tests/bench/figures.h"
 
 namespace merlin::bench {
 namespace {
 
-using test::median;
 using wall::Picture;
 
 constexpr double kRadius_m = 1.5;
@@ -107,81 +105,112 @@ Times timeOf(Picture& picture, const Eigen::Isometry3f& T_eye_model, std::size_t
   return times;
 }
 
-struct Measured {
-  std::vector<double> frame_s, share;
-
+class Rate {
+ public:
   void add(const Times& t) {
-    frame_s.push_back(t.frame_s);
-    share.push_back(t.drawing_s / t.frame_s);
+    frame_s_.push_back(t.frame_s);
+    share_.push_back(t.drawing_s / t.frame_s);
   }
-  double hz() const { return 1 / median(frame_s); }
+  Measured hz() const {
+    const Measured frame_s = medianOf(frame_s_, "frames");
+    return Measured::of(1 / frame_s, frame_s.count(), "frames");
+  }
+  // Nothing that was drawn is no rate.
+  Measured drawingShare() const {
+    const Measured share = medianOf(share_, "frames");
+    if (share <= 0)
+      didNotRun("drawing", "no step of a frame drew or read back", "see the renderer");
+    return share;
+  }
+
+ private:
+  std::vector<double> frame_s_, share_;
 };
 
 // In turns, pose by pose.
-void bench(const render::Dendrogram& model, Picture& one, Picture& two, const Clock& clock) {
-  fmt::print(
+void bench(const render::Dendrogram& model, Picture& one, Picture& two, Report& report) {
+  const SystemClock clock;
+  report.text(
       "triangles   1998, Hz   one context, Hz   times   triangles/s   drawing's share   two, Hz   "
       "of one's\n");
   for (const Row1998& row : kRows1998) {
-    const std::size_t level = model.levelFor(row.triangles);
-    Measured by_one, by_two;
+    const std::size_t level = model.levelFor(row.triangles), drawn = model.trianglesAt(level);
+    Rate by_one, by_two;
     for (Picture* picture : {&one, &two}) timeOf(*picture, pose(0), level, clock);
     for (int k = 0; k < kPoses; ++k) {
       by_one.add(timeOf(one, pose(k), level, clock));
       by_two.add(timeOf(two, pose(k), level, clock));
     }
-    fmt::print("{:9} {:10.2f} {:17.1f} {:7.0f} {:13.0f} {:17.2f} {:9.1f} {:10.2f}\n",
-               model.trianglesAt(level), row.rate_hz, by_one.hz(), by_one.hz() / row.rate_hz,
-               by_one.hz() * static_cast<double>(row.triangles), median(by_one.share), by_two.hz(),
-               by_two.hz() / by_one.hz());
+    const Measured hz = by_one.hz(), two_hz = by_two.hz(), share = by_one.drawingShare();
+    report.text("{:9} {:10.2f} {:17.1f} {:7.0f} {:13.0f} {:17.2f} {:9.1f} {:10.2f}\n", drawn,
+                row.rate_hz, hz.value(), hz / row.rate_hz, hz * static_cast<double>(row.triangles),
+                share.value(), two_hz.value(), two_hz / hz);
+    const std::string name = fmt::format("{}.", row.triangles);
+    report.figure(name + "one_context", hz, "Hz");
+    report.figure(name + "two_contexts", two_hz, "Hz");
+    report.figure(name + "by_1998", scaled(hz, 1 / row.rate_hz), "1");
+    report.figure(name + "drawing_share", share, "1");
   }
 }
 
-int run(const std::string& scan, int raster_threads, bool textured) {
-  render::prepareSoftwareGl(raster_threads);
-  auto loaded = render::readMesh(scan);
-  if (!loaded) {
-    fmt::print(stderr, "{}\n", loaded.error().what);
-    return 1;
-  }
-  render::Mesh mesh = twice(loaded->mesh);
-  if (textured) {
-    if (const auto dressed = dress(mesh); !dressed) {
-      fmt::print(stderr, "{}\n", dressed.error().what);
-      return 1;
-    }
-  }
+struct Options {
+  std::string scan = MERLIN_SOURCE_DIR "/config/models/ankylosaurus.ply";
+  int raster_threads = 0;
+  bool textured = true;
+};
+
+// The value; else the benchmark ends.
+template <typename T>
+T expect(Result<T> result, const char* subject) {
+  if (!result) didNotRun(subject, result.error().what, "see --scan");
+  return *std::move(result);
+}
+
+render::Dendrogram makeModel(const Options& options) {
+  render::Mesh mesh = twice(expect(render::readMesh(options.scan), "the scan").mesh);
+  if (options.textured) expect(dress(mesh), "the texture");
   render::ensureNormals(mesh);
-  const auto reduced = render::reduce(mesh, {});
-  if (!reduced) return 1;
-  const render::Dendrogram model = render::buildDendrogram(mesh, reduced->log);
+  const auto reduced = expect(render::reduce(mesh, {}), "the reduction");
+  return render::buildDendrogram(mesh, reduced.log);
+}
+
+bool run(const Options& options, Report& report) {
+  render::prepareSoftwareGl(options.raster_threads);
+  const render::Dendrogram model = makeModel(options);
+  // Not fewer: else the rate would be of another model.
+  if (model.triangleCount() < kRows1998[std::size(kRows1998) - 1].triangles) {
+    didNotRun("the scan",
+              fmt::format("twice {} has {} triangles", options.scan, model.triangleCount()),
+              "it takes 51,000 in the scan");
+  }
   const auto plan = render::planTiles({});
   const SystemClock clock;
-  const auto one = Picture::make(model, *plan, {.contexts = 1, .look = {}}, kRadius_m, clock);
-  const auto two = Picture::make(model, *plan, {.contexts = 2, .look = {}}, kRadius_m, clock);
-  for (const auto* picture : {&one, &two}) {
-    if (*picture) continue;
-    fmt::print(stderr, "{}\n", picture->error().what);
-    return 1;
-  }
-  fmt::print("{}, {} raster threads; three tiles and the operator's view, 640 x 480 each; {}\n",
-             (*one)->contexts()->renderer(), raster_threads, textured ? "textured" : "coloured");
-  bench(model, **one, **two, clock);
-  return 0;
+  const auto picture = [&](int contexts) {
+    return expect(Picture::make(model, *plan, {.contexts = contexts, .look = {}}, kRadius_m, clock),
+                  "the renderer");
+  };
+  const auto one = picture(1), two = picture(2);
+  report.text("{}, {} raster threads; three tiles and the operator's view, 640 x 480 each; {}\n",
+              one->contexts()->renderer(), options.raster_threads,
+              options.textured ? "textured" : "coloured");
+  bench(model, *one, *two, report);
+  return true;
 }
 
 }  // namespace
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  std::string scan = MERLIN_SOURCE_DIR "/config/models/ankylosaurus.ply";
-  int raster_threads = 0;
-  bool textured = true;
+  merlin::bench::Options options;
+  bool json = false;
   CLI::App app("Rates at full resolution, beside those of 1998.");
-  app.add_option("--scan", scan, "A scan with colours")->capture_default_str();
-  app.add_option("--raster-threads", raster_threads, "Of Mesa's software renderer")
+  app.add_option("--scan", options.scan, "A scan with colours")->capture_default_str();
+  app.add_option("--raster-threads", options.raster_threads, "Of Mesa's software renderer")
       ->check(CLI::Range(0, 16));
-  app.add_flag("!--coloured", textured, "Colours at the vertices instead of a texture");
+  app.add_flag("!--coloured", options.textured, "Colours at the vertices instead of a texture");
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
-  return merlin::bench::run(scan, raster_threads, textured);
+  return merlin::bench::runBench("rates", json, [&](merlin::bench::Report& report) {
+    return merlin::bench::run(options, report);
+  });
 }

@@ -9,20 +9,20 @@ import argparse
 import json
 import os
 import resource
-import subprocess
-import sys
 import tempfile
+
+import figures
+
+SIZES = (10_000, 100_000, 1_000_000, 3_000_000, 10_000_000, 30_000_000, 100_000_000)
+WAY_OUT = "'./dev bench size' builds merlin and tile_scan"
 
 
 def run(command):
     """The command's output, and the processor seconds of it alone."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run(command, capture_output=True, text=True)
+    output = figures.run(command, os.path.basename(command[0]), WAY_OUT)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    if done.returncode != 0:
-        sys.exit(f"size_bench: {' '.join(command)} failed: {done.stderr.strip()[-300:]}")
-    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return done.stdout, seconds
+    return output, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 def measure(options, triangles, folder):
@@ -44,6 +44,26 @@ def measure(options, triangles, folder):
     return best
 
 
+def table(options, rows, report):
+    report.text(f"{options.scan} in tiles, --memory {options.memory}; whole command, rates in "
+                "collapses a second;\n'of 1M': of the rate by processor time at a million "
+                "triangles; bytes/edge: the peak, mesh included")
+    report.text(f"{'triangles':>11} {'wall s':>8} {'cpu s':>8} {'reducing/s':>11} {'all/s':>9} "
+                f"{'all/cpu s':>9} {'of 1M':>6} {'peak MiB':>9} {'bytes/edge':>10} {'blocks':>6}")
+    rates = {n: figures.Measured(r["collapses"] / r["cpu"], r["collapses"],
+                                 f"collapses of {n} triangles") for n, r in rows}
+    for n, r in rows:
+        ratio = f"{rates[n] / rates[1_000_000]:.2f}" if 1_000_000 in rates else "-"
+        memory = figures.Measured(r["peak_memory_mb"] * (1 << 20) / (1.5 * n), r["collapses"],
+                                  "collapses")
+        report.text(f"{n:>11} {r['seconds_all']:>8.2f} {r['cpu']:>8.2f} "
+                    f"{r['collapses_per_second']:>11.0f} {r['collapses'] / r['seconds_all']:>9.0f} "
+                    f"{rates[n]:>9.0f} {ratio:>6} {r['peak_memory_mb']:>9.0f} {memory:>10.1f} "
+                    f"{r['blocks']:>6}")
+        report.figure(f"{n}.rate_by_cpu", rates[n], "1/s")
+        report.figure(f"{n}.memory_by_edge", memory, "B")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--merlin", required=True)
@@ -53,28 +73,21 @@ def main():
     parser.add_argument("--most", type=float, default=1e7,
                         help="the largest mesh; 1e8 takes 7 GB of disk and 11 GB of memory")
     parser.add_argument("--folder", help="for the meshes; without: a temporary one")
+    parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
     options = parser.parse_args()
-    sizes = [n for n in (10_000, 100_000, 1_000_000, 3_000_000, 10_000_000, 30_000_000,
-                         100_000_000) if n <= options.most]
-    print(f"{options.scan} in tiles, --memory {options.memory}; whole command, rates in collapses a "
-          "second;\n'of 1M': of the rate by processor time at a million triangles; bytes/edge: the peak, mesh "
-          "included")
-    print(f"{'triangles':>11} {'wall s':>8} {'cpu s':>8} {'reducing/s':>11} {'all/s':>9} "
-          f"{'all/cpu s':>9} {'of 1M':>6} {'peak MiB':>9} {'bytes/edge':>10} {'blocks':>6}")
-    rates = {}
-    rows = []
-    with tempfile.TemporaryDirectory(dir=options.folder) as folder:
-        for n in sizes:
-            rows.append((n, measure(options, n, folder)))
-            print(f"  measured {n}", file=sys.stderr)
-    for n, r in rows:
-        rates[n] = r["collapses"] / r["cpu"]
-    for n, r in rows:
-        ratio = f"{rates[n] / rates[1_000_000]:.2f}" if 1_000_000 in rates else "-"
-        bytes_edge = r["peak_memory_mb"] * (1 << 20) / (1.5 * n)
-        print(f"{n:>11} {r['seconds_all']:>8.2f} {r['cpu']:>8.2f} {r['collapses_per_second']:>11.0f} "
-              f"{r['collapses'] / r['seconds_all']:>9.0f} {rates[n]:>9.0f} {ratio:>6} "
-              f"{r['peak_memory_mb']:>9.0f} {bytes_edge:>10.1f} {r['blocks']:>6}")
+    if not options.most >= SIZES[0]:
+        parser.error(f"--most is at least {SIZES[0]}, the smallest mesh")
+
+    def bench(report):
+        rows = []
+        with tempfile.TemporaryDirectory(dir=options.folder) as folder:
+            for n in (n for n in SIZES if n <= options.most):
+                rows.append((n, measure(options, n, folder)))
+                figures.note(f"  measured {n}")
+        table(options, rows, report)
+        return True
+
+    figures.run_bench("size", options.json, bench)
 
 
 if __name__ == "__main__":

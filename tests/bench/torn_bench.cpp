@@ -4,11 +4,11 @@
 // mix of two. Then writers are killed with -9, most of them in the middle of a write: a reader must
 // neither hang nor believe what it finds. Exits 1 where one of the two happened.
 #include <atomic>
-#include <cstdio>
 #include <cstring>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -18,6 +18,7 @@
 #include "daemon/base/random.h"
 #include "daemon/shm/fields.h"
 #include "daemon/shm/segment.h"
+#include "tests/bench/figures.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::bench {
@@ -112,15 +113,21 @@ void readUntil(const std::string& name, std::uint64_t reads, Shared& shared) {
   shared.empty += empty;
 }
 
-bool benchTorn(const Options& options) {
+// That there is a segment, and that it is writable: the subject.
+const Writer& expectMade(const Result<Writer>& segment) {
+  if (!segment) didNotRun("the shared memory", segment.error().what, "see /dev/shm");
+  return *segment;
+}
+
+bool benchTorn(const Options& options, Report& report) {
   const std::string name = shm::segmentName(test::privateName("torn"), "devices");
   const SystemClock clock;
-  const auto segment = Writer::make(name, shm::devicesFields(), 1, clock.now(), {});
-  if (!segment) return false;
+  const auto made = Writer::make(name, shm::devicesFields(), 1, clock.now(), {});
+  const Writer& segment = expectMade(made);
   Shared& shared = *makeShared();
   const Timestamp start = clock.now();
-  (**segment).glove.publish(sampleOf(1));
-  const pid_t writer = child([&] { publishForEver(**segment, shared.stop); });
+  (*segment).glove.publish(sampleOf(1));
+  const pid_t writer = child([&] { publishForEver(*segment, shared.stop); });
   std::vector<pid_t> readers;
   const auto each = static_cast<std::uint64_t>(options.reads / options.readers);
   for (int i = 0; i < options.readers; ++i)
@@ -129,12 +136,16 @@ bool benchTorn(const Options& options) {
   shared.stop = true;
   ::waitpid(writer, nullptr, 0);
   const double took = toSeconds(clock.now() - start);
-  const std::uint64_t written = (**segment).glove.count();
-  fmt::print(
+  const std::uint64_t written = (*segment).glove.count() - 1;
+  const auto writes = Measured::of(static_cast<double>(written), written, "writes");
+  const auto torn = shareOf(shared.torn, shared.reads - shared.empty, "reads of a whole value");
+  report.text(
       "torn reads: {} of {:.3g} reads against {:.3g} writes in {:.1f} s; {:.2g} times nothing "
       "whole was found in 64 tries\n",
-      shared.torn.load(), static_cast<double>(shared.reads.load()), static_cast<double>(written),
-      took, static_cast<double>(shared.empty.load()));
+      shared.torn.load(), static_cast<double>(shared.reads.load()), writes.value(), took,
+      static_cast<double>(shared.empty.load()));
+  report.figure("torn", torn, "1");
+  report.figure("writes", writes, "1");
   return shared.torn == 0 && static_cast<double>(shared.reads.load()) >= 0.999 * options.reads;
 }
 
@@ -176,19 +187,22 @@ void liveAndWrite(const std::string& name, std::uint64_t generation, int ready) 
   }
 }
 
-bool benchKills(const Options& options) {
+bool benchKills(const Options& options, Report& report) {
   const std::string name = shm::segmentName(test::privateName("killed"), "devices");
   const SystemClock clock;
   Random random(1);
   Wreck wreck;
   int unreadable = 0, killed = 0;
   int ready[2];
-  if (::pipe(ready) != 0) return false;
+  if (::pipe(ready) != 0)
+    didNotRun("the pipe of the writers", "it cannot be made", "see 'ulimit -n'");
   for (; wreck.middle < options.kills && killed < 20 * options.kills; ++killed) {
     const auto generation = static_cast<std::uint64_t>(killed) + 1;
     const pid_t writer = child([&] { liveAndWrite(name, generation, ready[1]); });
     char byte = 0;
-    (void)!::read(ready[0], &byte, 1);
+    pollfd item{ready[0], POLLIN, 0};
+    if (::poll(&item, 1, 30'000) <= 0 || ::read(ready[0], &byte, 1) != 1)
+      didNotRun("a writer", "it wrote nothing within 30 s", "see /dev/shm");
     const auto reader = Reader::open(name);
     const timespec moment{0, static_cast<long>(random.below(200'000))};
     ::nanosleep(&moment, nullptr);
@@ -201,10 +215,20 @@ bool benchKills(const Options& options) {
     }
   }
   (void)SharedMemory::create(name, 4096);  // takes the last wreck away
-  fmt::print(
+  const auto middle = static_cast<std::uint64_t>(wreck.middle);
+  if (wreck.middle < options.kills) {
+    throw DidNotRun(fmt::format("of {} killed writers {} were in the middle of a value, not {}",
+                                killed, wreck.middle, options.kills));
+  }
+  report.text(
       "killed writers: {}, {} of them in the middle of a value; believed rubbish {}, next "
       "daemon not found {}, slowest look at 258 slots {:.2f} ms\n",
-      options.kills, wreck.middle, wreck.rubbish, unreadable, 1000 * wreck.slowest_s);
+      killed, wreck.middle, wreck.rubbish, unreadable, 1000 * wreck.slowest_s);
+  report.figure("believed_rubbish",
+                Measured::of(static_cast<double>(wreck.rubbish), middle,
+                             "writers killed in the middle of a value"),
+                "1");
+  report.figure("slowest_look", Measured::of(1000 * wreck.slowest_s, middle, "looks"), "ms");
   return wreck.rubbish == 0 && unreadable == 0;
 }
 
@@ -213,14 +237,23 @@ bool benchKills(const Options& options) {
 
 int main(int argc, char** argv) {
   merlin::bench::Options options;
+  bool json = false;
   CLI::App app("Torn reads of the shared memory; killed writers.");
-  app.add_option("--reads", options.reads, "In all")->capture_default_str();
+  app.add_option("--reads", options.reads, "In all")
+      ->check(CLI::Range(1.0, 1e15))
+      ->capture_default_str();
   app.add_option("--kills", options.kills,
                  "Writers that are killed with -9 in the middle of a value")
+      ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  app.add_option("--readers", options.readers, "Processes that read")->capture_default_str();
+  app.add_option("--readers", options.readers, "Processes that read")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
-  const bool torn = merlin::bench::benchTorn(options);
-  const bool killed = merlin::bench::benchKills(options);
-  return torn && killed ? 0 : 1;
+  return merlin::bench::runBench("torn", json, [&](merlin::bench::Report& report) {
+    const bool torn = benchTorn(options, report);
+    const bool killed = benchKills(options, report);
+    return torn && killed;
+  });
 }

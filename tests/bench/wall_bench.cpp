@@ -5,48 +5,29 @@
 // Absolute times differ from machine to machine and from second to second; what counts is the last
 // column: how much later than the bare loop.
 #include <algorithm>
-#include <cstdio>
+#include <map>
+#include <sstream>
 #include <thread>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "daemon/base/clock.h"
-#include "daemon/shm/segment.h"
-#include "tests/support/process.h"
-#include "tests/support/statistics.h"
-#include "tests/support/temp_dir.h"
+#include "tests/bench/demo_daemon.h"
+#include "tests/bench/figures.h"
 
 namespace merlin::bench {
 namespace {
 
-using test::median;
 using test::Process;
 
-struct Options {
-  std::string bin, config;
+struct Options : DemoOptions {
   double seconds = 20;
   int rounds = 3;
 };
 
-// The configuration with a name and a folder of this run's own, and another script.
-std::string privateConfig(const Options& options, const test::TempDir& dir, const std::string& name,
-                          const std::string& script) {
-  auto config = nlohmann::json::parse(test::readText(options.config));
-  const auto folder = std::filesystem::absolute(options.config).parent_path();
-  const auto absolute = [&](nlohmann::json& path) {
-    path = (folder / path.get<std::string>()).string();
-  };
-  absolute(config["devices"]["postures"]);
-  absolute(config["wall"]["model"]);
-  config["instance"] = name;
-  config["run_directory"] = dir.path();
-  config["devices"]["script"] = script;
-  config.erase("$schema");
-  const std::string path = dir / (script + ".json");
-  test::writeText(path, config.dump());
-  return path;
+DemoDaemon::Change withScript(const std::string& script) {
+  return [script](nlohmann::json& config) { config["devices"]["script"] = script; };
 }
 
 void sleepSeconds(double seconds) {
@@ -66,7 +47,7 @@ class FixedWork {
 };
 
 struct BareRun {
-  double late = 0, work_s = 0;
+  Measured late, work_s;
 };
 
 // A loop that does nothing but that work, on the same grid.
@@ -83,10 +64,12 @@ BareRun bareLoop(FixedWork& fixed, double rate_hz, double seconds) {
     work.push_back(toSeconds(clock.now() - began));
     const std::int64_t reached = (clock.now() - start) / period;
     late += std::max<std::int64_t>(reached - k, 0);
-    deadlines += std::max<std::int64_t>(reached - k, 1);
+    deadlines += std::max<std::int64_t>(reached - k, 1);  // its own, where it met that
     k = std::max(k + 1, reached);
   }
-  return {static_cast<double>(late) / static_cast<double>(deadlines), median(work)};
+  constexpr const char* kWhat = "turns of the bare loop";
+  return {shareOf(static_cast<std::uint64_t>(late), static_cast<std::uint64_t>(deadlines), kWhat),
+          medianOf(work, kWhat)};
 }
 
 // Chooses the amount of work so that its median, in such a loop, is `work_s`.
@@ -99,177 +82,249 @@ FixedWork workThatTakes(double work_s, double rate_hz) {
   return fixed;
 }
 
-shm::WallStats statsOf(const std::string& name) {
-  const auto segment = shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(name, "wall"));
-  return segment ? (*segment)->stats.read().value_or(shm::WallStats{}) : shm::WallStats{};
-}
-
 struct WallRun {
-  double late = 0, work_s = 0, held = 0, utilisation = 0;
-  shm::WallStats end{};
+  Measured late, work_s, held, utilisation;
+  shm::WallStats end;
 };
 
 WallRun runWall(const Options& options, const test::TempDir& dir, const std::string& script) {
-  const std::string name = test::privateName("bench");
-  Process wall({options.bin + "/merlind", "--config", privateConfig(options, dir, name, script),
-                "--emulate"});
-  if (!wall.saysEventually("ready")) {
-    fmt::print("{}", wall.output());
-    return {};
-  }
+  DemoDaemon daemon(options, dir, "all", withScript(script));
   sleepSeconds(3);  // the first frames calibrate the governor
-  const shm::WallStats from = statsOf(name);
+  const shm::WallStats from = daemon.wall();
   std::vector<double> work, held, use;
   for (int i = 0; i < static_cast<int>(options.seconds); ++i) {
     sleepSeconds(1);
-    const auto s = statsOf(name);
+    const auto s = daemon.wall();
     held.push_back(static_cast<double>(s.rate_held_hz));
     if (!s.moving) continue;
     work.push_back(static_cast<double>(s.work_median_ms) / 1000);
     use.push_back(static_cast<double>(s.utilisation));
   }
-  WallRun run;
-  run.end = statsOf(name);
-  const auto deadlines =
-      static_cast<double>(std::max<std::uint64_t>(run.end.deadlines - from.deadlines, 1));
-  run.late = static_cast<double>(run.end.late - from.late) / deadlines;
-  run.work_s = median(work);
-  run.held = median(held);
-  run.utilisation = median(use);
-  wall.kill(SIGTERM);
-  return run;
+  const shm::WallStats end = daemon.wall();
+  daemon.stop();
+  constexpr const char* kMoving = "seconds in which the wall moved";
+  return {shareOf(end.late - from.late, end.deadlines - from.deadlines,
+                  "deadlines of the wall, which did not move,"),
+          medianOf(work, kMoving), medianOf(held, "seconds of the wall"), medianOf(use, kMoving),
+          end};
 }
 
 // The bare loop has the same devices beside it: read by a merlind without a wall.
 BareRun runBare(const Options& options, const test::TempDir& dir, const std::string& script,
                 double work_s, double rate_hz) {
-  const std::string name = test::privateName("bare");
-  Process devices({options.bin + "/merlind", "--config", privateConfig(options, dir, name, script),
-                   "--emulate", "--role", "devices"});
-  if (!devices.saysEventually("ready")) return {};
+  DemoDaemon devices(options, dir, "devices", withScript(script));
   FixedWork fixed = workThatTakes(work_s, rate_hz);
+  const std::uint64_t before = devices.devices().glove.count();
   const BareRun run = bareLoop(fixed, rate_hz, options.seconds);
-  devices.kill(SIGTERM);
+  devices.expectRunning();
+  if (devices.devices().glove.count() == before)
+    didNotRun("the glove beside the bare loop", "it sent no sample", "see merlin status");
+  devices.stop();
   return run;
 }
 
-void benchLate(const Options& options, const test::TempDir& dir) {
-  fmt::print(
+// Of all rounds of one script.
+struct Rounds {
+  std::vector<double> wall, bare;
+  std::uint64_t wall_deadlines = 0, bare_deadlines = 0;
+
+  void add(const WallRun& w, const BareRun& b) {
+    wall.push_back(w.late);
+    bare.push_back(b.late);
+    wall_deadlines += w.late.count();
+    bare_deadlines += b.late.count();
+  }
+};
+
+void say(Report& report, const std::string& script, int round, const WallRun& wall,
+         const BareRun& bare) {
+  const auto percent = [](double share) { return 100 * share; };
+  report.text(
+      "{:8} {:5} {:7.0f} {:6.1f} {:9.1f} {:5.0f} % {:6.2f} % | {:12.1f} {:6.2f} % | {:+.2f} %\n",
+      script, round, wall.end.rate_asked_hz, wall.held.value(), 1000 * wall.work_s,
+      percent(wall.utilisation), percent(wall.late), 1000 * bare.work_s, percent(bare.late),
+      percent(wall.late - bare.late));
+  if (script == "visit") {
+    report.text(
+        "         standstill to full detail {:.0f} ms; motion resumed {} times, first frame late "
+        "{} "
+        "times; longest late run {}\n",
+        1000 * static_cast<double>(wall.end.still_to_full_s) + 150, wall.end.resumed,
+        wall.end.resumed_late, wall.end.longest_late);
+  }
+  const std::string name = fmt::format("{}.round{}", script, round);
+  report.figure(name + ".wall_late", wall.late, "1");
+  report.figure(name + ".bare_late", bare.late, "1");
+  report.figure(name + ".wall_work", wall.work_s, "s");
+  report.figure(name + ".bare_work", bare.work_s, "s");
+  report.figure(name + ".rate_held", wall.held, "Hz");
+  report.figure(name + ".utilisation", wall.utilisation, "1");
+}
+
+void benchLate(const Options& options, const test::TempDir& dir, Report& report) {
+  report.text(
       "late frames while the model moves ({} s a run, {} rounds, wall and bare loop in turns)\n",
       options.seconds, options.rounds);
-  fmt::print(
+  report.text(
       "script   round   asked   held   work ms   used    late | bare: work ms   late | "
       "difference\n");
   for (const char* script : {"turning", "visit"}) {
-    double wall_sum = 0, bare_sum = 0;
+    Rounds all;
     for (int round = 1; round <= options.rounds; ++round) {
+      note(fmt::format("{}: round {} of {}", script, round, options.rounds));
       const WallRun wall = runWall(options, dir, script);
-      const double rate = static_cast<double>(wall.end.rate_asked_hz);
+      const auto rate = static_cast<double>(wall.end.rate_asked_hz);
       const BareRun bare = runBare(options, dir, script, wall.work_s, rate);
-      wall_sum += wall.late;
-      bare_sum += bare.late;
-      fmt::print(
-          "{:8} {:5} {:7.0f} {:6.1f} {:9.1f} {:5.0f} % {:6.2f} % | {:12.1f} {:6.2f} % | {:+.2f} "
-          "%\n",
-          script, round, rate, wall.held, 1000 * wall.work_s, 100 * wall.utilisation,
-          100 * wall.late, 1000 * bare.work_s, 100 * bare.late, 100 * (wall.late - bare.late));
-      if (std::string(script) == "visit") {
-        fmt::print(
-            "         standstill to full detail {:.0f} ms; motion resumed {} times, first frame "
-            "late {} times; longest late run {}\n",
-            1000 * static_cast<double>(wall.end.still_to_full_s) + 150, wall.end.resumed,
-            wall.end.resumed_late, wall.end.longest_late);
-      }
-      std::fflush(stdout);
+      all.add(wall, bare);
+      say(report, script, round, wall, bare);
     }
-    fmt::print(
+    const auto wall = Measured::of(meanOf(all.wall, "rounds"), all.wall_deadlines, "deadlines");
+    const auto bare = Measured::of(meanOf(all.bare, "rounds"), all.bare_deadlines, "deadlines");
+    report.text(
         "{:8}  mean: late {:.2f} %, bare loop {:.2f} % (asked: at most 2 %, or bare loop + 1 %)\n",
-        script, 100 * wall_sum / options.rounds, 100 * bare_sum / options.rounds);
+        script, 100 * wall, 100 * bare);
+    report.figure(std::string(script) + ".wall_late", wall, "1");
+    report.figure(std::string(script) + ".bare_late", bare, "1");
   }
 }
 
+// Of a channel's samples, of a device that is not the one that was killed.
+struct Intervals {
+  Measured median_ms;
+  std::uint64_t missing;
+};
+
 template <typename T>
-double medianInterval(const shm::Channel<T>& channel, std::uint64_t from, std::uint64_t to,
-                      std::uint64_t* missing) {
+Intervals intervalsOf(const shm::Channel<T>& channel, std::uint64_t from, const char* device) {
   std::vector<double> intervals;
   std::optional<T> last;
-  for (std::uint64_t n = from; n < to; ++n) {
+  std::uint64_t missing = 0;
+  for (std::uint64_t n = from, to = channel.count(); n < to; ++n) {
     const auto sample = channel.at(n);
     if (!sample) continue;
     if (last) {
       intervals.push_back(static_cast<double>(sample->received_ns - last->received_ns) * 1e-6);
-      *missing += sample->counter - last->counter - 1;
+      missing += sample->counter - last->counter - 1;
     }
     last = sample;
   }
-  return median(std::move(intervals));
+  return {medianOf(intervals, fmt::format("intervals of the {}'s samples", device)), missing};
 }
 
-// Kills the emulator of one device for a second; prints what the other two lost by it.
-void killOne(const Options& options, const test::TempDir& dir, const std::string& name,
-             Process& wall, shm::DeviceIndex victim, const std::string& driver) {
-  const auto segment =
-      shm::SegmentReader<shm::DevicesSegment>::open(shm::segmentName(name, "devices"));
-  if (!segment) return;
-  const shm::DevicesSegment& d = **segment;
-  std::uint64_t missing = 0, glove = d.glove.count(), tracker = d.tracker[0].count();
-  sleepSeconds(1);
-  const double glove_before = medianInterval(d.glove, glove, d.glove.count(), &missing);
-  const double tracker_before =
-      medianInterval(d.tracker[0], tracker, d.tracker[0].count(), &missing);
+struct Victim {
+  shm::DeviceIndex device;
+  const char* driver;
+};
+
+void killEmulator(const DemoDaemon& wall, const std::string& driver) {
   const std::string pid = std::to_string(wall.pid());
   std::istringstream children(test::readText("/proc/" + pid + "/task/" + pid + "/children"));
+  bool found = false;
   for (pid_t child = 0; children >> child;) {
-    if (test::readText(fmt::format("/proc/{}/cmdline", child)).find(driver) != std::string::npos)
-      ::kill(child, SIGKILL);
+    if (test::readText(fmt::format("/proc/{}/cmdline", child)).find(driver) == std::string::npos)
+      continue;
+    found = ::kill(child, SIGKILL) == 0 || found;
   }
-  glove = d.glove.count();
-  tracker = d.tracker[0].count();
-  missing = 0;
-  const shm::WallStats before = statsOf(name);
-  sleepSeconds(1.5);
-  static std::vector<std::unique_ptr<Process>> restarted;  // live to the end
-  restarted.push_back(std::make_unique<Process>(std::vector<std::string>{
-      options.bin + "/merlin", "emulate", driver, "--link", dir / (driver + ".pty")}));
-  restarted.back()->saysEventually(" on pty:");
-  const SystemClock clock;
-  const Timestamp answered = clock.now();
-  test::eventually([&] {
-    return d.health[victim].read()->state == HealthState::kOk &&
-           d.health[victim].read()->reconnects > 0;
-  });
-  const double back = toSeconds(clock.now() - answered);
-  const double glove_during = medianInterval(d.glove, glove, d.glove.count(), &missing);
-  const double tracker_during =
-      medianInterval(d.tracker[0], tracker, d.tracker[0].count(), &missing);
-  const shm::WallStats after = statsOf(name);
-  const auto change = [](double during, double was) {
-    return was > 0 ? 100 * (during / was - 1) : 0;
-  };
-  fmt::print("{:11} {:9.2f} s", driver, back);
-  fmt::print("   {:>9}", victim == shm::kGlove
-                             ? "-"
-                             : fmt::format("{:+.1f} %", change(glove_during, glove_before)));
-  fmt::print("   {:>9}", victim == shm::kTracker
-                             ? "-"
-                             : fmt::format("{:+.1f} %", change(tracker_during, tracker_before)));
-  fmt::print("   {:9}   {:8}\n", missing,
-             after.updated_ns > before.updated_ns ? "ran on" : "STOPPED");
+  if (!found)
+    didNotRun("the fault of " + driver, "merlind has no emulator of it to kill", "see --emulate");
 }
 
-void benchFaults(const Options& options, const test::TempDir& dir) {
-  const std::string name = test::privateName("faults");
-  Process wall({options.bin + "/merlind", "--config", privateConfig(options, dir, name, "visit"),
-                "--emulate"});
-  if (!wall.saysEventually("ready")) return;
+// How long merlind took to read an emulator in the place of the killed one.
+Measured secondsUntilBack(const shm::DevicesSegment& devices, const Victim& victim,
+                          Process& emulator) {
+  if (!emulator.saysEventually(" on pty:"))
+    didNotRun(fmt::format("merlin emulate {}", victim.driver), emulator.output(), "see --bin");
+  const SystemClock clock;
+  const Timestamp answered = clock.now();
+  const bool back = test::eventually([&] {
+    const auto health = devices.health[victim.device].read();
+    return health && health->state == HealthState::kOk && health->reconnects > 0;
+  });
+  if (!back)
+    didNotRun(victim.driver, "merlind did not read it again within 30 s", "see merlin status");
+  return Measured::of(toSeconds(clock.now() - answered), 1, "reconnections");
+}
+
+// Of glove and tracker since the last look, without the device that is killed.
+class Others {
+ public:
+  Others(const shm::DevicesSegment& devices, shm::DeviceIndex victim)
+      : devices_(devices), victim_(victim) {
+    begin();
+  }
+  void begin() {
+    glove_ = devices_.glove.count();
+    tracker_ = devices_.tracker[0].count();
+  }
+  std::map<std::string, Intervals> end() const {
+    std::map<std::string, Intervals> all;
+    if (victim_ != shm::kGlove) all.emplace("glove", intervalsOf(devices_.glove, glove_, "glove"));
+    if (victim_ != shm::kTracker)
+      all.emplace("tracker", intervalsOf(devices_.tracker[0], tracker_, "tracker"));
+    return all;
+  }
+
+ private:
+  const shm::DevicesSegment& devices_;
+  shm::DeviceIndex victim_;
+  std::uint64_t glove_ = 0, tracker_ = 0;
+};
+
+using Emulators = std::vector<std::unique_ptr<Process>>;
+
+// Kills the emulator of one device for a second; says what the other two lost by it, and whether
+// the wall ran on.
+bool killOne(const Victim& victim, const std::function<Process&()>& restart, DemoDaemon& wall,
+             Report& report) {
+  const std::string driver = victim.driver;
+  note(driver + ": killed and restarted");
+  Others others(wall.devices(), victim.device);
+  sleepSeconds(1);
+  const auto before = others.end();
+  killEmulator(wall, driver);
+  others.begin();
+  const std::int64_t drawn = wall.wall().updated_ns;
+  sleepSeconds(1.5);
+  const Measured back = secondsUntilBack(wall.devices(), victim, restart());
+  const auto during = others.end();
+  report.text("{:11} {:9.2f} s", driver, back.value());
+  report.figure(driver + ".back", back, "s");
+  std::uint64_t missing = 0;
+  for (const char* other : {"glove", "tracker"}) {
+    const auto now = during.find(other);
+    if (now == during.end()) {
+      report.text("   {:>9}", "-");
+      continue;
+    }
+    const auto ratio = ratioOf(now->second.median_ms, before.at(other).median_ms, "intervals");
+    report.text("   {:>9}", fmt::format("{:+.1f} %", 100 * (ratio - 1)));
+    report.figure(fmt::format("{}.interval_of_{}", driver, other), ratio, "1");
+    missing += now->second.missing;
+  }
+  const bool ran_on = wall.wall().updated_ns > drawn;
+  report.text("   {:9}   {:8}\n", missing, ran_on ? "ran on" : "STOPPED");
+  return ran_on;
+}
+
+bool benchFaults(const Options& options, const test::TempDir& dir, Report& report) {
+  DemoDaemon wall(options, dir, "all", withScript("visit"));
+  Emulators emulators;  // restarted ones live to the end
+  bool ran_on = true;
   sleepSeconds(3);
-  fmt::print("\na device killed and restarted (its emulator, kill -9)\n");
-  fmt::print("killed      back after   glove's     tracker's   samples     wall\n");
-  fmt::print("            1st answer   median      median      missing\n");
-  killOne(options, dir, name, wall, shm::kGlove, "cyberglove");
-  killOne(options, dir, name, wall, shm::kTracker, "fastrak");
-  killOne(options, dir, name, wall, shm::kBall, "spaceball");
-  wall.kill(SIGTERM);
+  report.text("\na device killed and restarted (its emulator, kill -9)\n");
+  report.text("killed      back after   glove's     tracker's   samples     wall\n");
+  report.text("            1st answer   median      median      missing\n");
+  for (const Victim& victim : {Victim{shm::kGlove, "cyberglove"}, Victim{shm::kTracker, "fastrak"},
+                               Victim{shm::kBall, "spaceball"}}) {
+    const auto restart = [&]() -> Process& {
+      return *emulators.emplace_back(std::make_unique<Process>(
+          std::vector<std::string>{options.bin + "/merlin", "emulate", victim.driver, "--link",
+                                   dir / (std::string(victim.driver) + ".pty")}));
+    };
+    ran_on = killOne(victim, restart, wall, report) && ran_on;
+  }
+  wall.stop();
+  return ran_on;
 }
 
 }  // namespace
@@ -277,13 +332,19 @@ void benchFaults(const Options& options, const test::TempDir& dir) {
 
 int main(int argc, char** argv) {
   merlin::bench::Options options;
+  bool json = false;
   CLI::App app("Late frames of the wall beside a bare loop.");
   app.add_option("--bin", options.bin, "Folder of merlind and merlin")->required();
   app.add_option("--config", options.config, "The wall's configuration")->required();
-  app.add_option("--seconds", options.seconds, "Of a run")->capture_default_str();
-  app.add_option("--rounds", options.rounds)->capture_default_str();
+  app.add_option("--seconds", options.seconds, "Of a run")
+      ->check(CLI::Range(1, 86'400))
+      ->capture_default_str();
+  app.add_option("--rounds", options.rounds)->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
-  const merlin::test::TempDir dir;
-  merlin::bench::benchLate(options, dir);
-  merlin::bench::benchFaults(options, dir);
+  return merlin::bench::runBench("wall", json, [&](merlin::bench::Report& report) {
+    const merlin::test::TempDir dir;
+    benchLate(options, dir, report);
+    return benchFaults(options, dir, report);
+  });
 }

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """./dev bench attack: what an attack does to the wall, beside the same attacker on a bare sink.
 
-A table of cases, each of which prints its figures, and fails where they are beyond its limit or
-where the attack did not reach merlind. Python's own library alone. A group of cases is a module
+A table of cases, each of which reports its figures, and fails where they are beyond its limit. Where
+the attack did not reach merlind, the benchmark has no figures. Python's own library alone. A group of cases is a module
 with a list CASES, named in GROUPS below.
 """
 import argparse
@@ -10,7 +10,10 @@ import os
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir))
+
 import devices
+import figures
 import sockets
 
 GROUPS = [devices, sockets]
@@ -23,6 +26,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=15, help="of one turn")
     parser.add_argument("--rounds", type=int, default=3, help="turns of each side")
     parser.add_argument("--soak-seconds", type=float, default=600, help="of the case soak")
+    parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
     parser.add_argument("case", nargs="*", help="names; without: all but soak")
     options = parser.parse_args()
     cases = [case for group in GROUPS for case in group.CASES]
@@ -30,19 +34,27 @@ def main():
     if unknown:
         sys.exit(f"attack: no case is named {', '.join(sorted(unknown))}; there are "
                  f"{', '.join(case.name for case in cases)}")
-    failed = []
-    with tempfile.TemporaryDirectory(prefix="merlin-attack-") as folder:
-        options.folder, options.model = folder, os.path.join(folder, "model.mrm")
-        for case in cases:
-            by_name_only = getattr(case, "by_name_only", False)
-            if case.name not in options.case and (options.case or by_name_only):
-                continue
-            try:
-                case.run(options)
-            except AssertionError as wrong:
-                failed.append(case.name)
-                print(f"{case.name}: FAILED: {wrong}", flush=True)
-    sys.exit(f"attack: {len(failed)} failed: {', '.join(failed)}" if failed else 0)
+    if not options.seconds > 0 or options.rounds < 1:
+        parser.error("--seconds is more than 0, and --rounds at least 1")
+
+    def measure(report):
+        failed = []
+        with tempfile.TemporaryDirectory(prefix="merlin-attack-") as folder:
+            options.folder, options.model = folder, os.path.join(folder, "model.mrm")
+            for case in cases:
+                by_name_only = getattr(case, "by_name_only", False)
+                if case.name not in options.case and (options.case or by_name_only):
+                    continue
+                try:
+                    case.run(options, report)
+                except AssertionError as wrong:
+                    failed.append(case.name)
+                    report.text(f"{case.name}: FAILED: {wrong}")
+        if failed:
+            figures.note(f"attack: {len(failed)} failed: {', '.join(failed)}")
+        return not failed
+
+    figures.run_bench("attack", options.json, measure)
 
 
 if __name__ == "__main__":

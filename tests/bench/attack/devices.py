@@ -1,14 +1,15 @@
 """Cases: lines that flood, beside the same flooders on sinks that block them the same way."""
 import os
 import socket
-import statistics
 import sys
 import time
 
+from figures import did_not_run, mean_of, note, Measured
 from wall import Children, Wall, wait_for
 
 FLOODER = os.path.join(os.path.dirname(__file__), "flooder.py")
 LIMIT = 1.0  # percentage points of late frames above those beside the sinks
+SEE = "see merlin status and tests/bench/attack/flooder.py"
 RATE_HZ = 30  # of the demo's wall
 TCP_RATE, SERIAL_RATE = 1_000_000, 4 * 38400 / 10  # bytes a second that merlind reads
 
@@ -26,20 +27,26 @@ class Flood:
         self.name, self.kind, self.devices, self.data = name, kind, devices, data
         self.ball_garbage = ball_garbage
 
-    def run(self, options):
+    def run(self, options, report):
         results = {"sink": [], "merlind": []}
         for turn in range(2 * options.rounds):
             side = ("sink", "merlind")[(turn + turn // 2) % 2]  # ABBA
             results[side].append(self.turn(options, side))
             late, cores = results[side][-1]
-            print(f"{self.name:16} {side:8} late {late:6.2f} %  merlind {cores:5.2f} cores",
-                  flush=True)
-        mean = {side: statistics.mean(late for late, _ in all_) for side, all_ in results.items()}
-        cores = {side: statistics.mean(c for _, c in all_) for side, all_ in results.items()}
+            note(f"{self.name}: turn {turn + 1} of {2 * options.rounds}")
+            report.text(f"{self.name:16} {side:8} late {late:6.2f} %  merlind {cores:5.2f} cores")
+        mean = {side: mean_of((late for late, _ in all_), f"turns of {self.name}")
+                for side, all_ in results.items()}
+        cores = {side: mean_of((c for _, c in all_), "turns") for side, all_ in results.items()}
         more = mean["merlind"] - mean["sink"]
-        print(f"{self.name:16} late {mean['merlind']:.2f} % beside {mean['sink']:.2f} % of the "
-              f"sinks: {more:+.2f} points (at most {LIMIT:+.1f}); merlind takes "
-              f"{cores['merlind'] - cores['sink']:+.2f} cores more", flush=True)
+        report.text(f"{self.name:16} late {mean['merlind']:.2f} % beside {mean['sink']:.2f} % of the "
+                    f"sinks: {more:+.2f} points (at most {LIMIT:+.1f}); merlind takes "
+                    f"{cores['merlind'] - cores['sink']:+.2f} cores more")
+        for side in results:
+            deadlines = sum(late.count for late, _ in results[side])
+            report.figure(f"{self.name}.{side}.late",
+                          Measured(mean[side], deadlines, "deadlines"), "%")
+            report.figure(f"{self.name}.{side}.cores", cores[side], "1")
         assert more <= LIMIT, f"{more:+.2f} percentage points of late frames"
 
     def turn(self, options, side):
@@ -75,22 +82,24 @@ class Flood:
         asked = RATE_HZ * (time.monotonic() - began)
         deadlines, late = (b - a for a, b in zip(before, after))
         status = wall.status()
-        assert status["moving"] and deadlines >= asked / 8, \
-            f"the wall did not move: {deadlines} deadlines of {asked:.0f}"
+        if not status["moving"] or deadlines < asked / 8:
+            did_not_run("the wall", f"it did not move: {deadlines} deadlines of {asked:.0f}",
+                        "the emulated ball turns it")
         if side == "merlind":
             self.expect_flooded(status)
-        return max(0, 100 * (1 - (deadlines - late) / asked)), cores / options.seconds
+        share = max(0, 100 * (1 - (deadlines - late) / asked))
+        return Measured(share, deadlines, "deadlines"), cores / options.seconds
 
     def expect_flooded(self, status):
         """That the attack reached merlind: each line's health says so, and the ball is well."""
         health = status["devices"]
         for device in self.devices:
-            reason = health[device].get("reason", "")
-            assert "sends more than" in reason, f"the {device} was not flooded: {health[device]}"
-        assert health["ball"]["health"] == "ok", f"the ball is not well: {health['ball']}"
-        if self.ball_garbage:
-            bad = health["ball"].get("bad_bytes", 0)
-            assert bad > 0, f"the ball sent no garbage: {health['ball']}"
+            if "sends more than" not in health[device].get("reason", ""):
+                did_not_run("the flood", f"the {device} was not flooded: {health[device]}", SEE)
+        if health["ball"]["health"] != "ok":
+            did_not_run("the ball", f"it is not well: {health['ball']}", SEE)
+        if self.ball_garbage and not health["ball"].get("bad_bytes", 0) > 0:
+            did_not_run("the garbage", f"the ball sent none: {health['ball']}", SEE)
 
 
 CASES = [

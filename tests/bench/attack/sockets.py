@@ -1,14 +1,15 @@
 """Cases: strangers on every socket of one merlind; the same for ten minutes, as a soak."""
 import os
 import re
-import subprocess
 import sys
 import threading
 import time
 
+import figures
 import strangers
 from devices import FLOODER, Flood, free_port
-from wall import Children, Wall
+from figures import Measured, did_not_run
+from wall import WAY_OUT, Children, Wall
 
 MOST_MORE_MB = 8  # of resident memory, above its value after the first round
 MOST_WAIT_S = 5  # of `merlin status`, while strangers hold every place
@@ -23,10 +24,9 @@ def attacked(options):
     for name in ("server", "client"):
         path = os.path.join(options.folder, f"{name}.keys")
         if not os.path.exists(path):
-            done = subprocess.run([f"{options.bin}/merlin", "keys", "-o", path],
-                                  capture_output=True, text=True, check=True)
+            public = figures.run([f"{options.bin}/merlin", "keys", "-o", path], "merlin keys", WAY_OUT)
             with open(path + ".public", "w", encoding="utf8") as file:
-                file.write(done.stdout[:40] + "\n")
+                file.write(public[:40] + "\n")
         keys.append(path)
     vrpn, samples = free_port(), free_port()
     spnav = os.path.join(options.folder, "spnav.sock")
@@ -80,14 +80,17 @@ def attack(wall, target, stranger):
             break
         time.sleep(0.2)
     thread.join()
-    assert said, f"{stranger.__name__}: the attacker failed"
+    if not said:
+        did_not_run(f"the attack {stranger.__name__}", "its thread failed", "see strangers.py")
     return said[0], max(waits), mb
 
 
 def expect_sent_away(status):
     """That the attacks reached every server: each says that it sent somebody away."""
     for name in ATTACKED:
-        assert sent_away(status, name) > 0, f"no attack reached {name}: {status['servers'][name]}"
+        if not sent_away(status, name) > 0:
+            did_not_run(f"the attack on {name}", f"it did not reach it: {status['servers'][name]}",
+                        "see strangers.py")
 
 
 def sent_away(status, name):
@@ -104,7 +107,7 @@ def expect_sound(wall):
 class Sockets:
     name = "sockets"
 
-    def run(self, options):
+    def run(self, options, report):
         wall, target = attacked(options)
         with wall:
             held = [settled(wall)]
@@ -112,20 +115,25 @@ class Sockets:
                 for stranger in strangers.ALL:
                     said, wait, mb = attack(wall, target, stranger)
                     if turn == 1:
-                        print(f"{self.name:16} {said}: merlin status within {wait:.2f} s, "
-                              f"{mb:.0f} MB", flush=True)
+                        report.text(f"{self.name:16} {said}: merlin status within {wait:.2f} s, "
+                                    f"{mb:.0f} MB")
+                        report.figure(f"{self.name}.{stranger.__name__}.status_wait",
+                                      Measured(wait, 1, "attacks"), "s")
                 held.append(settled(wall))
-                print(f"{self.name:16} round {turn}: {held[-1]}", flush=True)
+                figures.note(f"{self.name}: round {turn} of {options.rounds}")
+                report.text(f"{self.name:16} round {turn}: {held[-1]}")
             expect_sent_away(wall.status())
             expect_sound(wall)
             warm, last = held[1], held[-1]
+            report.figure(f"{self.name}.more_memory", Measured(last.mb - warm.mb, options.rounds,
+                                                               "rounds"), "MiB")
             assert last.descriptors <= warm.descriptors, f"descriptors: {warm}, then {last}"
             assert last.threads <= warm.threads, f"threads: {warm}, then {last}"
             assert last.mb <= warm.mb + MOST_MORE_MB, f"memory: {warm}, then {last}"
             began = time.monotonic()
         expect_clean_end(wall)
-        print(f"{self.name:16} from {warm} to {last}; stopped in {time.monotonic() - began:.1f} s",
-              flush=True)
+        report.text(f"{self.name:16} from {warm} to {last}; stopped in "
+                    f"{time.monotonic() - began:.1f} s")
 
 
 def expect_clean_end(wall):
@@ -140,7 +148,7 @@ class Soak:
     name, by_name_only = "soak", True
     RATES = {"glove": 100.0, "tracker1": 120.0}  # the emulators'
 
-    def run(self, options):
+    def run(self, options, report):
         wall, target = attacked(options)
         with wall:
             time.sleep(3)
@@ -150,6 +158,8 @@ class Soak:
                 stranger = strangers.ALL[attacks % len(strangers.ALL)]
                 attack(wall, target, stranger)
                 attacks += 1
+                if attacks % len(strangers.ALL) == 0:
+                    figures.note(f"{self.name}: {attacks} attacks")
             took, after = time.monotonic() - began, self.counts(wall)
             deadlines, late = (b - a for a, b in zip(late_before, wall.deadlines()))
             expect_sent_away(wall.status())
@@ -158,11 +168,16 @@ class Soak:
         for name, rate in self.RATES.items():
             seconds = after[name][1] - before[name][1]
             count = after[name][0] - before[name][0]
-            print(f"{self.name:16} {name}: {count} samples in {seconds:.1f} s, "
-                  f"{count / seconds:.2f} Hz, {round(seconds * rate) - count} missing", flush=True)
-            assert abs(round(seconds * rate) - count) <= 2, f"{name}: samples are missing"
-        print(f"{self.name:16} {attacks} attacks in {took:.0f} s; late {100 * late / deadlines:.2f} "
-              f"% of {deadlines} deadlines", flush=True)
+            hz = Measured(count / seconds if count else 0, count, f"samples of {name}")
+            missing = round(seconds * rate) - count
+            report.text(f"{self.name:16} {name}: {count} samples in {seconds:.1f} s, "
+                        f"{hz:.2f} Hz, {missing} missing")
+            report.figure(f"{self.name}.{name}.rate", hz, "Hz")
+            assert abs(missing) <= 2, f"{name}: samples are missing"
+        share = figures.share_of(late, deadlines, "deadlines of the wall, which did not move,")
+        report.text(f"{self.name:16} {attacks} attacks in {took:.0f} s; late {100 * share:.2f} % of "
+                    f"{deadlines} deadlines")
+        report.figure(f"{self.name}.late", share, "1")
 
     def counts(self, wall):
         """Of each device: the number of its newest sample, and when that was taken, seconds."""
@@ -193,8 +208,9 @@ class Knocking(Flood):
             return self.measure(options, wall, side)
 
     def expect_flooded(self, status):
-        assert sent_away(status, self.server) > 0, \
-            f"{self.server} was not flooded: {status['servers'][self.server]}"
+        if not sent_away(status, self.server) > 0:
+            did_not_run(f"the flood of {self.server}",
+                        f"it did not reach it: {status['servers'][self.server]}", "see flooder.py")
 
 
 CASES = [Knocking("knock-commands", "commands of the wall", "commands"),

@@ -6,14 +6,19 @@ import subprocess
 import sys
 import time
 
+import figures
+from figures import did_not_run
+
+WAY_OUT = "'./dev bench attack' builds merlind and merlin"
+
 
 def make_model(options):
     """The demo's model, once a run."""
     if os.path.exists(options.model):
         return
     scan = os.path.join(options.source, "config/models/ankylosaurus.ply")
-    subprocess.run([f"{options.bin}/merlin", "mesh", "reduce", scan, "-o", options.model],
-                   check=True, capture_output=True)
+    figures.run([f"{options.bin}/merlin", "mesh", "reduce", scan, "-o", options.model], "the model",
+                WAY_OUT)
 
 
 class Wall:
@@ -45,8 +50,11 @@ class Wall:
     def __enter__(self):
         deadline = time.monotonic() + 60
         while "ready" not in self.said():
-            assert self.process.poll() is None, f"merlind ended: {self.said()[-500:]}"
-            assert time.monotonic() < deadline, f"merlind is not ready: {self.said()[-500:]}"
+            if self.process.poll() is not None:
+                did_not_run("merlind", f"it ended: {self.said()[-500:]}", WAY_OUT)
+            if time.monotonic() > deadline:
+                self.process.kill()
+                did_not_run("merlind", f"it is not ready: {self.said()[-500:]}", WAY_OUT)
             time.sleep(0.05)
         return self
 
@@ -70,10 +78,13 @@ class Wall:
     def fields(self, role, *names):
         """Whole numbers of the shared memory, one of each name."""
         reader = os.path.join(self.options.source, "daemon/shm/read_merlin.py")
-        done = subprocess.run([sys.executable, reader, f"{self.instance}-{role}", *names],
-                              capture_output=True, text=True, check=True)
-        rows = (line.split(" ", 1) for line in done.stdout.splitlines())
-        return {name: int(value.split("]")[0].strip("[")) for name, value in rows}
+        output = figures.run([sys.executable, reader, f"{self.instance}-{role}", *names],
+                             "merlind", WAY_OUT)
+        rows = dict(line.split(" ", 1) for line in output.splitlines())
+        for name in names:
+            if not rows.get(name, "").startswith("["):
+                did_not_run(f"merlind's {role}", f"it has not published {name}", WAY_OUT)
+        return {name: int(value.split("]")[0].strip("[")) for name, value in rows.items()}
 
     def deadlines(self):
         """How many deadlines there were while it moved, and how many were missed."""
@@ -81,10 +92,8 @@ class Wall:
         return [values[f"wall.{name}"] for name in ("deadlines", "late")]
 
     def status(self):
-        done = subprocess.run([f"{self.options.bin}/merlin", "status", "--json", "--instance",
-                               self.instance], capture_output=True, text=True, check=False)
-        assert done.returncode == 0, f"merlin status: {done.stderr.strip()}"
-        return json.loads(done.stdout)
+        return json.loads(figures.run([f"{self.options.bin}/merlin", "status", "--json",
+                                       "--instance", self.instance], "merlin status", WAY_OUT))
 
     def connections(self):
         """Of each server, now."""
@@ -121,5 +130,6 @@ class Children:
 def wait_for(path):
     deadline = time.monotonic() + 10
     while not os.path.exists(path):
-        assert time.monotonic() < deadline, f"{path} was not made within 10 s"
+        if time.monotonic() > deadline:
+            did_not_run(path, "it was not made within 10 s", WAY_OUT)
         time.sleep(0.02)

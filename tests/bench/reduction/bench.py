@@ -11,11 +11,15 @@ import pathlib
 import subprocess
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+
 import chart
 import data
+import figures
 import report
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
+WAY_OUT = "'./dev bench reduction' builds it"
 
 # name, executable, arguments before the file, what it needs of the mesh, Debian package
 PEERS = [
@@ -41,6 +45,8 @@ COSTS = [
     ("pattern, 2 threads", "pattern", "2", "default", ""),
 ]
 
+OURS = {cost[0] for cost in COSTS}
+
 # name, how it is made. The scans of several kinds that lie beside the repository, if they do.
 SCANS = [
     ("nefertiti", lambda d, ply: d / "models/odedstein/nefertiti/nefertiti-lowres.obj"),
@@ -50,10 +56,6 @@ SCANS = [
                                                d / "range/pcl/milk_cartoon.colour.ppm", ply)),
     ("n44w072", lambda d, ply: data.heights(d / "dem/N44W072.hgt", ply, 2)),
 ]
-
-
-def note(text):
-    print(text, file=sys.stderr, flush=True)
 
 
 def digest(path):
@@ -79,6 +81,9 @@ class Bench:
         self.memo = options.out / "memo"
         for folder in (self.work, self.memo):
             folder.mkdir(parents=True, exist_ok=True)
+        for subject in (self.programs / "bench_merlin", self.merlin):
+            if not subject.exists():
+                figures.did_not_run(subject, "there is no such program", WAY_OUT)
         self.missing = set()
         self.seen = {}  # errors of this run by the bytes of the file
 
@@ -89,7 +94,7 @@ class Bench:
         ply = self.work / f"{name}.ply"
         kind = line_of([self.programs / "bench_merlin", "prepare", source, ply])
         if "skipped" in kind:
-            note(f"skipped: {name}: {kind['skipped']}")
+            figures.note(f"skipped: {name}: {kind['skipped']}")
             return None
         kind.update(name=name, path=ply, sha=digest(ply))
         return kind
@@ -104,7 +109,10 @@ class Bench:
             made = self.work / f"{name}.source.ply"
             yield self.prepare(name, source_of(self.options.data, made) or made)
         for path in self.options.meshes:
-            yield self.prepare(pathlib.Path(path).stem, path)
+            mesh = self.prepare(pathlib.Path(path).stem, path)
+            if mesh is None:
+                figures.did_not_run(path, "it cannot be read as a mesh", "name a .ply or .obj")
+            yield mesh
 
     # Runs
 
@@ -171,7 +179,7 @@ class Bench:
                     keep_least(rows.setdefault((name, level), line), line)
                     if line.get("seconds", self.options.slow + 1) > self.options.slow:
                         done.add(job)  # so long that one run has to do, or skipped
-            note(f"{mesh['name']}: round {number + 1} of {self.options.rounds}")
+            figures.note(f"{mesh['name']}: round {number + 1} of {self.options.rounds}")
         return rows
 
     # Errors
@@ -192,7 +200,7 @@ class Bench:
                 "sha": sha}
 
     def measure(self, mesh):
-        note(f"{mesh['name']}: " + report.kind(mesh))
+        figures.note(f"{mesh['name']}: " + report.kind(mesh))
         rows = []
         for (name, level), line in self.rounds(mesh).items():
             row = {"mesh": mesh["name"], "level": level, "target": target(mesh, level),
@@ -204,6 +212,9 @@ class Bench:
                 row["cpu_rate"] = row["collapses"] / row["cpu_seconds"]
                 row["bytes_per_edge"] = row["memory_bytes"] / mesh["edges"]
             rows.append(row)
+        ours = [row for row in rows if row["program"] in OURS]
+        if all("skipped" in row for row in ours):
+            figures.did_not_run(f"MERLIN on {mesh['name']}", ours[0]["skipped"], WAY_OUT)
         return rows
 
 
@@ -244,29 +255,47 @@ def options_of():
     return options
 
 
-def figures(meshes, rows):
+def all_of(meshes, rows):
     return {"meshes": meshes, "rows": rows, "summary": report.summary(rows)}
 
 
 def write(out, meshes, rows, missing):
     (out / "table.txt").write_text(report.text(meshes, rows, missing))
-    (out / "figures.json").write_text(json.dumps(figures(meshes, rows), indent=1))
+    (out / "figures.json").write_text(json.dumps(all_of(meshes, rows), indent=1))
     chart.write(out / "chart.svg", meshes, rows)
 
 
-def main():
-    options = options_of()
+def tell(result, meshes, rows, missing):
+    """MERLIN's rates, and the ratios to each peer that was there; all else as members beside."""
+    result.text(report.text(meshes, rows, missing).rstrip("\n"))
+    for row in rows:
+        if row["program"] in OURS and "skipped" not in row:
+            result.figure(f"{row['mesh']}.{row['level']:g}.{row['program']}.rate", figures.Measured(
+                row["rate"], row["collapses"], "collapses"), "1/s")
+    for ratio in report.summary(rows):
+        name = f"{ratio['program']}.{ratio['figure']}.by.{ratio['peer']}"
+        result.figure(name, figures.Measured(ratio["mean"], ratio["cells"], "cells"), "1")
+    result.more = all_of(meshes, rows)
+
+
+def measure(options, result):
     bench = Bench(options)
-    meshes, rows = [], []
+    meshes, rows, missing = [], [], []
     for mesh in filter(None, bench.meshes()):
         meshes.append({k: v for k, v in mesh.items() if k != "path"})
         rows += bench.measure(mesh)
         missing = sorted(bench.missing)
         write(options.out, meshes, rows, missing)  # after each: a long run is of use early
     if not meshes:
-        sys.exit("no mesh to reduce")
-    print(json.dumps(figures(meshes, rows)) if options.json else report.text(meshes, rows, missing))
-    note(f"in {options.out}: table.txt, chart.svg, figures.json")
+        figures.did_not_run("MERLIN", "there is no mesh to reduce", "see --scans and --data")
+    tell(result, meshes, rows, missing)
+    figures.note(f"in {options.out}: table.txt, chart.svg, figures.json")
+    return True
+
+
+def main():
+    options = options_of()
+    figures.run_bench("reduction", options.json, lambda result: measure(options, result))
 
 
 if __name__ == "__main__":

@@ -1,0 +1,85 @@
+#include "tests/bench/demo_daemon.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "tests/bench/figures.h"
+
+namespace merlin::bench {
+namespace {
+
+constexpr const char* kWayOut = "'./dev bench wall' and 'latency' build it and make its model";
+
+nlohmann::json demoConfig(const DemoOptions& options, const std::string& instance,
+                          const test::TempDir& dir) {
+  auto config = nlohmann::json::parse(test::readText(options.config), nullptr, false);
+  if (!config.is_object()) {
+    didNotRun("merlind", fmt::format("{} is not there or no configuration", options.config),
+              "--config names the demo's, config/demo.json");
+  }
+  const auto folder = std::filesystem::absolute(options.config).parent_path();
+  for (auto* path : {&config["devices"]["postures"], &config["wall"]["model"]})
+    *path = (folder / path->get<std::string>()).string();
+  config["instance"] = instance;
+  config["run_directory"] = dir.path();
+  config.erase("$schema");
+  return config;
+}
+
+// The last lines: a message that ends a program stands there.
+std::string endOf(const std::string& output) {
+  constexpr std::size_t kMost = 400;
+  const std::size_t end = output.find_last_not_of('\n');
+  if (end == std::string::npos) return "it said nothing";
+  const std::size_t begin = end + 1 > kMost ? end + 1 - kMost : 0;
+  return "it said: " + output.substr(begin, end + 1 - begin);
+}
+
+// Opens a segment that is there as soon as merlind is ready. Returns why not, or nothing.
+template <typename Segment>
+std::string open(std::optional<shm::SegmentReader<Segment>>& reader, const std::string& instance,
+                 const char* role) {
+  auto opened = shm::SegmentReader<Segment>::open(shm::segmentName(instance, role));
+  if (!opened) return opened.error().what;
+  reader.emplace(*std::move(opened));
+  return "";
+}
+
+}  // namespace
+
+DemoDaemon::DemoDaemon(const DemoOptions& options, const test::TempDir& dir,
+                       const std::string& role, const Change& change)
+    : subject_(options.bin + "/merlind --role " + role) {
+  static int started = 0;  // one that has just ended may still have its name
+  instance_ = test::privateName(fmt::format("bench{}", ++started));
+  if (::access((options.bin + "/merlind").c_str(), X_OK) != 0) fail("there is no such program");
+  auto config = demoConfig(options, instance_, dir);
+  change(config);
+  const std::string path = dir / (instance_ + ".json");
+  test::writeText(path, config.dump());
+  process_.emplace(std::vector<std::string>{options.bin + "/merlind", "--config", path, "--role",
+                                            role, "--emulate"});
+  if (!process_->saysEventually("ready")) {
+    fail((process_->ended() ? "it ended before it was ready; " : "it was not ready within 30 s; ") +
+         endOf(process_->output()));
+  }
+  std::string fault = open(devices_, instance_, "devices");
+  if (fault.empty() && role == "all") fault = open(wall_, instance_, "wall");
+  if (!fault.empty()) fail(fault);
+}
+
+void DemoDaemon::expectRunning() {
+  if (process_->ended()) fail("it ended while it was measured; " + endOf(process_->output()));
+}
+
+shm::WallStats DemoDaemon::wall() {
+  expectRunning();
+  const auto stats = (*wall_)->stats.read();
+  if (!stats || stats->updated_ns == 0) fail("its wall has published nothing");
+  return *stats;
+}
+
+void DemoDaemon::fail(const std::string& found) const { didNotRun(subject_, found, kWayOut); }
+
+}  // namespace merlin::bench

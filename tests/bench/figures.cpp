@@ -1,0 +1,101 @@
+#include "tests/bench/figures.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+
+namespace merlin::bench {
+namespace {
+
+#ifdef NDEBUG
+constexpr const char* kBuild = "without assertions";
+#else
+constexpr const char* kBuild = "with assertions";
+#endif
+
+}  // namespace
+
+void didNotRun(std::string_view subject, std::string_view found, std::string_view way_out) {
+  throw DidNotRun(fmt::format("{}: {}; {}", subject, found, way_out));
+}
+
+Measured Measured::of(double value, std::uint64_t count, std::string_view what) {
+  if (count == 0) throw DidNotRun(fmt::format("no {} were measured", what));
+  if (!std::isfinite(value))
+    throw DidNotRun(fmt::format("{}: {} of {} measurements is no figure", what, value, count));
+  return {value, count};
+}
+
+Measured shareOf(std::uint64_t part, std::uint64_t whole, std::string_view what) {
+  return Measured::of(static_cast<double>(part) / static_cast<double>(whole), whole, what);
+}
+
+Measured quantileOf(const std::vector<double>& values, double share, std::string_view what) {
+  if (values.empty()) return Measured::of(0, 0, what);  // throws
+  std::vector<double> sorted = values;
+  const auto at = static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(at), sorted.end());
+  return Measured::of(sorted[at], sorted.size(), what);
+}
+
+Measured medianOf(const std::vector<double>& values, std::string_view what) {
+  return quantileOf(values, 0.5, what);
+}
+
+Measured meanOf(const std::vector<double>& values, std::string_view what) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return Measured::of(sum / static_cast<double>(values.size()), values.size(), what);
+}
+
+Measured ratioOf(const Measured& over, const Measured& under, std::string_view what) {
+  return Measured::of(over / under, std::min(over.count(), under.count()), what);
+}
+
+Measured scaled(const Measured& measured, double factor) {
+  return Measured::of(factor * measured, measured.count(), "measurements");
+}
+
+void Report::figure(const std::string& name, const Measured& measured, const std::string& unit) {
+  assert(!figures_.contains(name));
+  figures_[name] = {{"value", measured.value()}, {"unit", unit}, {"count", measured.count()}};
+}
+
+void Report::figure(const std::string& name, const std::string& value, std::uint64_t count) {
+  assert(!figures_.contains(name));
+  if (count == 0) throw DidNotRun(fmt::format("no {} were measured", name));
+  figures_[name] = {{"value", value}, {"count", count}};
+}
+
+void Report::print(bool json) const {
+  if (figures_.empty()) throw DidNotRun("it measured nothing");
+  const nlohmann::ordered_json object = {
+      {"bench", bench_},
+      {"machine", {{"cores", std::thread::hardware_concurrency()}, {"build", kBuild}}},
+      {"figures", figures_}};
+  fmt::print("{}", json ? object.dump() + "\n" : text_);
+  if (std::fflush(stdout) != 0) throw DidNotRun("standard output cannot be written");
+}
+
+void note(std::string_view what) {
+  fmt::print(stderr, "{}\n", what);
+  std::fflush(stderr);
+}
+
+int runBench(const std::string& bench, bool json, const std::function<bool(Report&)>& measure) {
+  // Also what was not foreseen (a configuration that is no JSON, a folder that cannot be made)
+  // leaves no figure.
+  try {
+    Report report(bench);
+    const bool kept = measure(report);
+    report.print(json);
+    return kept ? 0 : 1;
+  } catch (const std::exception& e) {
+    note(fmt::format("bench {}: no figures: {}", bench, e.what()));
+    return 1;
+  }
+}
+
+}  // namespace merlin::bench

@@ -1,0 +1,98 @@
+"""What every benchmark in Python prints, and the rule that one whose subject did not run fails and
+prints no figure. As figures.h, which says why. Python's own library alone.
+"""
+import json
+import math
+import os
+import statistics
+import subprocess
+import sys
+
+
+class DidNotRun(Exception):
+    """The message that the benchmark ends with."""
+
+
+def did_not_run(subject, found, way_out):
+    """Which subject does not run or is not there, what was found instead, and the way out."""
+    raise DidNotRun(f"{subject}: {found}; {way_out}")
+
+
+class Measured(float):
+    """A finite number made of `count` measurements, at least one. `what` names them."""
+
+    def __new__(cls, value, count, what):
+        if not count > 0:
+            raise DidNotRun(f"no {what} were measured")
+        if not math.isfinite(value):
+            raise DidNotRun(f"{what}: {value} of {count} measurements is no figure")
+        made = super().__new__(cls, value)
+        made.count = count
+        return made
+
+
+def share_of(part, whole, what):
+    return Measured(part / whole if whole else math.nan, whole, what)
+
+
+def mean_of(values, what):
+    values = list(values)
+    return Measured(statistics.mean(values) if values else math.nan, len(values), what)
+
+
+class Report:
+    """What was measured so far, held back until all of it was."""
+
+    def __init__(self, bench):
+        self.bench, self.lines, self.figures, self.more = bench, [], {}, {}
+
+    def text(self, line):
+        """For people: a line of the table."""
+        self.lines.append(line)
+
+    def figure(self, name, measured, unit):
+        """For programs: `unit` is a unit's symbol, "1" for a pure number."""
+        assert name not in self.figures, name
+        self.figures[name] = {"value": float(measured), "unit": unit, "count": measured.count}
+
+    def object(self):
+        """One object for programs; `more` are members of the benchmark's own."""
+        return {"bench": self.bench, "machine": {"cores": os.cpu_count()},
+                "figures": self.figures, **self.more}
+
+    def print(self, as_json):
+        if not self.figures:
+            raise DidNotRun("it measured nothing")
+        print(json.dumps(self.object()) if as_json else "\n".join(self.lines), flush=True)
+
+
+def note(what):
+    """Says at once, on standard error, what a benchmark is doing: no figures."""
+    print(what, file=sys.stderr, flush=True)
+
+
+def run(command, subject, way_out):
+    """The standard output of a command that has to succeed."""
+    command = [str(word) for word in command]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    except OSError as error:
+        did_not_run(subject, f"{command[0]}: {error.strerror}", way_out)
+    if done.returncode != 0:
+        said = done.stderr.strip()[-300:] or "it said nothing"
+        did_not_run(subject, f"exit status {done.returncode} of {' '.join(command)}; {said}", way_out)
+    return done.stdout
+
+
+def run_bench(bench, as_json, measure):
+    """The whole of a benchmark's main() after its options were read: ends the process. `measure`
+    says whether what was measured is what is promised."""
+    # Also what was not foreseen leaves no figure.
+    try:
+        report = Report(bench)
+        kept = measure(report)
+        report.print(as_json)
+    except (DidNotRun, OSError, ValueError, LookupError, TypeError,
+            subprocess.SubprocessError) as error:
+        sys.exit(f"bench {bench}: no figures: {error}")
+    sys.exit(0 if kept else 1)

@@ -1,0 +1,308 @@
+#include "tests/bench/latency_round.h"
+
+#include <algorithm>
+#include <atomic>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+
+#include "daemon/shm/fields.h"
+#include "daemon/shm/segment.h"
+#include "daemon/shm/shm_sink.h"
+#include "drivers/cyberglove/device.h"
+#include "drivers/cyberglove/protocol.h"
+#include "drivers/emulate/emulator.h"
+#include "drivers/io/cpu_latency.h"
+#include "drivers/io/fd_stream.h"
+#include "drivers/io/pty_master.h"
+#include "tests/bench/figures.h"
+#include "tests/support/eventually.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::bench {
+
+// Between the processes of one round; written once each, by sample number.
+struct Times {
+  static constexpr std::size_t kMost = 1 << 16;
+  std::atomic<std::uint32_t> received;
+  std::atomic<bool> stop;
+  std::int64_t sent_ns[kMost], received_ns[kMost];
+};
+
+Times& makeTimes() {
+  void* at =
+      ::mmap(nullptr, sizeof(Times), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  return *new (at) Times;
+}
+
+pid_t child(const std::function<void()>& body) {
+  const pid_t pid = ::fork();
+  if (pid != 0) return pid;
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  body();
+  ::_exit(0);
+}
+
+namespace {
+
+using Segment = shm::DevicesSegment;
+
+std::int64_t now() { return toNanoseconds(SystemClock().now()); }
+
+bool askForRealTime() {
+  const sched_param priority{50};
+  return ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &priority) == 0;
+}
+
+// A client as any other: maps the segment, sleeps on the glove's word, notes when it has a sample.
+void runClient(const std::string& name, Times& times) {
+  askForRealTime();
+  const auto reader = shm::SegmentReader<Segment>::open(name);
+  if (!reader) return;
+  const auto& glove = (*reader)->glove;
+  times.received = 0;
+  for (std::uint64_t seen = 0; !times.stop;) {
+    glove.wait(seen, {0, 100'000'000});
+    const std::uint64_t count = glove.count();
+    if (count == seen) continue;
+    const std::int64_t at = now();
+    const auto sample = glove.newest();
+    seen = count;
+    if (!sample || sample->counter >= Times::kMost) continue;
+    times.received_ns[sample->counter] = at;
+    times.received = sample->counter;
+  }
+}
+
+// A line that is asked, not waited for: with a pause of a millisecond, or with none.
+class AskedStream final : public ByteStream {
+ public:
+  AskedStream(int fd, bool sleeps) : fd_(fd), sleeps_(sleeps) {}
+  Result<std::size_t> read(std::span<std::byte> buffer, Duration timeout) override {
+    for (const Timestamp end = clock_.now() + timeout; clock_.now() < end;) {
+      const ssize_t n = ::read(fd_, buffer.data(), buffer.size());
+      if (n > 0) return static_cast<std::size_t>(n);
+      if (stop_) return Error{Errc::kClosed, "stopped"};
+      const timespec pause{0, 1'000'000};
+      if (sleeps_) ::nanosleep(&pause, nullptr);
+    }
+    return Error{Errc::kTimeout, "time-out"};
+  }
+  Result<std::size_t> write(std::span<const std::byte> bytes, Duration) override {
+    (void)!::write(fd_, bytes.data(), bytes.size());
+    return bytes.size();
+  }
+  void interrupt() noexcept override { stop_ = true; }
+
+ private:
+  SystemClock clock_;
+  int fd_;
+  bool sleeps_;
+  std::atomic<bool> stop_{false};
+};
+
+// Both ends of a line, the device's and the reader's, non-blocking.
+struct Ends {
+  UniqueFd device, reader;
+  std::optional<io::PtyMaster> pty;
+  int deviceFd() const { return pty ? pty->fd() : device.get(); }
+};
+
+Ends makeLine(Line kind) {
+  Ends ends;
+  if (kind == kPty) {
+    auto pty = io::PtyMaster::open("");
+    if (!pty) return ends;
+    ends.pty.emplace(*std::move(pty));
+    ends.reader.reset(
+        ::open(ends.pty->slavePath().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+    return ends;
+  }
+  int fds[2];
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, fds) != 0) return ends;
+  ends.device.reset(fds[0]);
+  ends.reader.reset(fds[1]);
+  return ends;
+}
+
+std::string record(std::uint32_t n) {
+  cyberglove::Record r;
+  for (std::size_t i = 0; i < 22; ++i) r.values[i] = static_cast<std::uint8_t>(1 + (n + i) % 255);
+  return cyberglove::encode(r, {.values = 22, .timestamp = false, .status = true});
+}
+
+// Reads, publishes and wakes, and does nothing else: what any blocking reader needs at least.
+void bareLoop(int fd, Segment& segment, const std::atomic<bool>& stop) {
+  std::byte buffer[256];
+  GloveSample sample{};
+  std::size_t bytes = 0;
+  while (!stop) {
+    pollfd item{fd, POLLIN, 0};
+    if (::poll(&item, 1, 100) <= 0) continue;
+    const ssize_t n = ::read(fd, buffer, sizeof buffer);
+    if (n <= 0) continue;
+    bytes += static_cast<std::size_t>(n);
+    for (const std::size_t length = record(0).size(); bytes >= length; bytes -= length) {
+      ++sample.counter;
+      segment.glove.publish(sample);
+    }
+  }
+}
+
+// Answers the driver's dialogue until `done`.
+void serveDialogue(int fd, emulate::Emulator& emulator, const std::function<bool()>& done) {
+  const SystemClock clock;
+  std::byte received[64];
+  std::string out;
+  while (!done()) {
+    pollfd item{fd, POLLIN, 0};
+    ::poll(&item, 1, 1);
+    const ssize_t n = ::read(fd, received, sizeof received);
+    if (n > 0) emulator.receive(std::span(received, static_cast<std::size_t>(n)), clock.now());
+    emulator.advance(clock.now(), out);
+    if (!out.empty()) (void)!::write(fd, out.data(), out.size());
+    out.clear();
+  }
+}
+
+// The reader's thread: opens as the driver does, says so, reads until it is stopped.
+struct ReaderThread {
+  std::atomic<bool> streaming{false}, stop{false}, ended{false}, real_time{false};
+  std::atomic<double> cpu_s{0};
+
+  void run(Reader kind, int fd, Segment& segment) {
+    read(kind, fd, segment);
+    ended = true;
+  }
+
+ private:
+  void read(Reader kind, int fd, Segment& segment) {
+    real_time = kind != kSpinning && askForRealTime();  // a spinning one would stop the machine
+    shm::ShmSink sink(segment);
+    const SystemClock clock;
+    std::unique_ptr<ByteStream> stream;
+    if (kind == kMerlin || kind == kAwake) stream = std::make_unique<io::FdStream>(fd, [] {});
+    if (kind == kSleeping || kind == kSpinning)
+      stream = std::make_unique<AskedStream>(fd, kind == kSleeping);
+    const auto device = cyberglove::makeDevice({}, clock, sink);
+    if (stream && !device->open(*stream)) return;
+    streaming = true;
+    timespec before{}, after{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &before);
+    if (stream) {
+      while (!stop && device->poll(*stream)) continue;
+    } else {
+      bareLoop(fd, segment, stop);
+    }
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &after);
+    cpu_s = static_cast<double>(after.tv_sec - before.tv_sec) +
+            1e-9 * static_cast<double>(after.tv_nsec - before.tv_nsec);
+  }
+};
+
+// Sends `samples` records at irregular intervals about the rate, so that no loop can fall in step.
+void sendRecords(int fd, int samples, double rate_hz, std::uint32_t first, Times& times) {
+  const SystemClock clock;
+  Timestamp due = clock.now();
+  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(samples); ++i) {
+    due += fromSeconds((0.5 + static_cast<double>(i * 7919 % 1000) / 1000) / rate_hz);
+    timespec at{due.time_since_epoch() / std::chrono::seconds(1),
+                (due.time_since_epoch() % std::chrono::seconds(1)).count()};
+    ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, nullptr);
+    const std::string bytes = record(first + i);
+    times.sent_ns[first + i] = now();
+    (void)!::write(fd, bytes.data(), bytes.size());
+  }
+}
+
+// How long each record took from the line to the client.
+std::vector<double> latencies(const Times& times, std::uint32_t first, std::uint32_t last) {
+  std::vector<double> all_us;
+  for (std::uint32_t n = first; n < last; ++n) {
+    // One that the client slept over was replaced by the next: it waited for as long.
+    std::uint32_t m = n;
+    while (m < last && times.received_ns[m] == 0) ++m;
+    if (m < last)
+      all_us.push_back(1e-3 * static_cast<double>(times.received_ns[m] - times.sent_ns[n]));
+  }
+  return all_us;
+}
+
+// A client of the segment, in a process of its own, that has opened it.
+class Client {
+ public:
+  Client(const std::string& name, Times& times) : times_(times) {
+    times.stop = false;
+    times.received = kNone;
+    pid_ = child([&] { runClient(name, times); });
+    if (test::eventually([&] { return times.received != kNone; })) return;
+    stop();
+    didNotRun("a client of " + name, "it did not open the segment within 30 s", "see /dev/shm");
+  }
+  ~Client() { stop(); }
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+ private:
+  static constexpr std::uint32_t kNone = ~0U;
+  void stop() {
+    times_.stop = true;
+    ::waitpid(pid_, nullptr, 0);
+  }
+  Times& times_;
+  pid_t pid_ = -1;
+};
+
+}  // namespace
+
+Round runRound(const RoundSize& size, Reader kind, Line line, Times& times) {
+  const std::string name = shm::segmentName(test::privateName("latency"), "devices");
+  const SystemClock clock;
+  const auto segment =
+      shm::SegmentWriter<Segment>::make(name, shm::devicesFields(), 1, clock.now(), {});
+  if (!segment) didNotRun("the shared memory", segment.error().what, "see /dev/shm");
+  Ends ends = makeLine(line);
+  if (!ends.reader.valid())
+    didNotRun(kLineNames[line], "it cannot be made", "see 'ulimit -n' and /dev/pts");
+  std::fill(std::begin(times.received_ns), std::end(times.received_ns), 0);
+  std::optional<UniqueFd> awake;
+  if (kind == kAwake) awake.emplace(*io::limitCpuLatency(0));
+  std::optional<Client> client(std::in_place, name, times);
+  ReaderThread reader;
+  std::thread thread([&] { reader.run(kind, ends.reader.get(), **segment); });
+  const auto emulator = emulate::findEmulator("cyberglove")
+                            ->make({}, *emulate::findMotionScript("still"), clock.now());
+  serveDialogue(ends.deviceFd(), *emulator, [&] { return reader.streaming || reader.ended; });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const auto first = static_cast<std::uint32_t>((**segment).glove.count()) + 1;
+  const Timestamp start = clock.now();
+  std::thread sender([&] {
+    askForRealTime();  // it stands for the hardware
+    sendRecords(ends.deviceFd(), size.samples, size.rate_hz, first, times);
+  });
+  sender.join();
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const double took = toSeconds(clock.now() - start);
+  const bool ended_early = reader.ended;
+  reader.stop = true;
+  thread.join();
+  client.reset();
+  if (ended_early)
+    didNotRun(fmt::format("{} on a {}", kReaderNames[kind], kLineNames[line]),
+              "it ended before its line did", "see drivers/cyberglove");
+  return {latencies(times, first, first + static_cast<std::uint32_t>(size.samples)),
+          reader.cpu_s / took, reader.real_time};
+}
+
+}  // namespace merlin::bench
