@@ -238,7 +238,7 @@ void firstPicture(const std::string& path, const std::string& name, Report& repo
   ::close(fd);
   SystemClock clock;
   const auto then = Steady::now();
-  const auto model = expect(render::readMrm(path), path);
+  const auto model = expect(render::readMrm(path), "the model");
   const double opened = msSince(then);
   const auto picture = pictureOf(model, true, clock);
   const double made = msSince(then);
@@ -277,7 +277,7 @@ bool run(const Options& options, Report& report) {
     const std::string prefix = fmt::format("{}/{}", options.out, name), path = prefix + ".mrm";
     makeModel(heights, times, path);
     firstPicture(path, name, report);
-    const auto model = expect(render::readMrm(path), path);
+    const auto model = expect(render::readMrm(path), "the model");
     report.text("{}: {} triangles\n", path, model.triangleCount());
     note(name + ": cuts");
     timeCuts(model, name, report);

@@ -4,7 +4,6 @@ prints no figure. As figures.h, which says why. Python's own library alone.
 import json
 import math
 import os
-import statistics
 import subprocess
 import sys
 
@@ -36,8 +35,8 @@ def share_of(part, whole, what):
 
 
 def mean_of(values, what):
-    values = list(values)
-    return Measured(statistics.mean(values) if values else math.nan, len(values), what)
+    values = [float(value) for value in values]
+    return Measured(sum(values) / len(values) if values else math.nan, len(values), what)
 
 
 class Report:
@@ -92,7 +91,8 @@ def run_bench(bench, as_json, measure):
         report = Report(bench)
         kept = measure(report)
         report.print(as_json)
-    except (DidNotRun, OSError, ValueError, LookupError, TypeError,
-            subprocess.SubprocessError) as error:
+    except DidNotRun as error:
         sys.exit(f"bench {bench}: no figures: {error}")
+    except (OSError, ValueError, LookupError, subprocess.SubprocessError) as error:
+        sys.exit(f"bench {bench}: no figures: {type(error).__name__}: {error}")
     sys.exit(0 if kept else 1)

@@ -52,7 +52,7 @@ class Script {
 
  private:
   std::string context() const {
-    return fmt::format("{:<7} {}", settings_.backend == render::GlBackend::kEgl ? "egl" : "osmesa",
+    return fmt::format("{} {}", settings_.backend == render::GlBackend::kEgl ? "egl" : "osmesa",
                        settings_.contexts);
   }
   // A picture of one colour is none of the model.
@@ -63,7 +63,7 @@ class Script {
   }
   void print(const std::string& what, std::uint64_t h, std::uint64_t frames = 1) {
     const std::string hex = fmt::format("{:016x}", h);
-    report_.text("{:<28} {} {:<16} {}\n", name_, context(), what, hex);
+    report_.text("{:<28} {:<9} {:<16} {}\n", name_, context(), what, hex);
     report_.figure(fmt::format("{} {} {}", name_, context(), what), hex, frames);
   }
   void moving(int divisor) {

@@ -175,6 +175,16 @@ TEST_F(Bench, AttackWithoutMerlindOrFloodHasNoFigures) {
                   {"merlind", "it ended", "no wall"});
 }
 
+// Whether the figures are within their limits is a matter of the machine.
+TEST_F(Bench, AnAttackThatReachesTheWallHasFigures) {
+  const Said s = said({"python3", "-B", kBench + "/attack/attack.py", "--bin", kBin, "--source",
+                       kSource, "--rounds", "1", "--seconds", "2", "pty-newlines", "--json"});
+  const auto object = nlohmann::json::parse(s.output, nullptr, false);
+  ASSERT_TRUE(object.is_object()) << s.message;
+  EXPECT_GE(object["figures"]["pty-newlines.merlind.late"]["count"], 1) << s.output;
+  EXPECT_GE(object["figures"]["pty-newlines.sink.late"]["count"], 1) << s.output;
+}
+
 TEST_F(Bench, ReductionWithoutMerlinHasNoFigures) {
   const auto reduction = [&](const std::string& bin) {
     return std::vector<std::string>{

@@ -50,6 +50,7 @@ def main():
                 except AssertionError as wrong:
                     failed.append(case.name)
                     report.text(f"{case.name}: FAILED: {wrong}")
+                    figures.note(f"{case.name}: FAILED: {wrong}")  # also where it is the only case
         if failed:
             figures.note(f"attack: {len(failed)} failed: {', '.join(failed)}")
         return not failed
