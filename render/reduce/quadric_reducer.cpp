@@ -158,7 +158,9 @@ bool QuadricReducer::guard(Worker& w, std::uint32_t v, std::uint32_t edge) {
 void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
   const std::size_t bucket = w.queue.current();
   const bool last = bucket + 1 == BucketQueue::buckets();
-  const float ceiling = last ? kNoEdge : tolerance() * BucketQueue::floorOf(bucket + 1);
+  // Of a star without order each try costs more than a cheaper place in the queue is worth.
+  const bool large = !keepsTopology(stage_) && mesh_[v].degree > kManyCorners;
+  const float ceiling = last || large ? kNoEdge : tolerance() * BucketQueue::floorOf(bucket + 1);
   evaluate(w, v);
   w.visited += mesh_[v].degree;
   EdgeCosts& costs = w.costs;
@@ -176,6 +178,13 @@ void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
     }
     const std::uint32_t x = costs.neighbour[edge];
     __builtin_prefetch(mesh_.corners(mesh_[x].star));
+    // What a large star may not do it is not measured for.
+    const bool many = mesh_[v].degree + mesh_[x].degree > 2 * kManyCorners;
+    if (many && !isAlongSeam(costs, v, edge) && costs.deviation[edge] < 0 &&
+        !mayCollapse(w, costs, v, edge)) {
+      costs.cost[edge] = kNoEdge;
+      continue;
+    }
     if (guard(w, v, edge)) continue;
     if (isAlongSeam(costs, v, edge)) {
       if (collapseSeam(w, v, edge)) return;

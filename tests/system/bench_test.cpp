@@ -130,6 +130,11 @@ TEST_F(Bench, MissingScansTracesAndModelsGiveNoFigures) {
   expectNoFigures({kBin + "/cut_bench", "--small", "--out", "/proc/none"}, "cut", {"/proc/none"});
 }
 
+TEST_F(Bench, HostileShapesOfNoTriangleAreNotReduced) {
+  expectNoFigures({kBin + "/hostile_bench", "--triangles", "0", "--turns", "1"}, "hostile", {});
+  expectNoFigures({kBin + "/hostile_bench", "--turns", "0"}, "hostile", {"regular mesh"});
+}
+
 TEST_F(Bench, AScanOfTooFewTrianglesIsNotThatOfTheRates) {
   writeText(dir_ / "one.ply",
             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"

@@ -1,0 +1,79 @@
+// ./dev bench hostile: shapes that have many triangles where others have few, reduced as merlin
+// mesh reduce does, beside a regular mesh of the same number of triangles, in turns.
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "render/mesh/non_manifold.h"
+#include "render/reduce/reduce.h"
+#include "tests/bench/figures.h"
+#include "tests/support/hostile_shapes.h"
+
+namespace merlin::bench {
+namespace {
+
+constexpr double kMostRatio = 10;  // of a shape's time to the regular mesh's
+
+struct Options {
+  std::size_t triangles = 100'000;
+  int turns = 3;
+};
+
+// All that a reduction does with a mesh that was read, seconds.
+double secondsOf(const test::HostileShape& shape, std::size_t triangles) {
+  render::Mesh mesh = shape.make(triangles);
+  const auto began = std::chrono::steady_clock::now();
+  splitNonManifold(mesh);
+  ensureNormals(mesh);
+  const auto reduced = render::reduce(mesh, {});
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+  if (!reduced) didNotRun(shape.name, reduced.error().what, "see hostile_shapes_test");
+  if (reduced->report.collapses == 0)
+    didNotRun(shape.name, "nothing was collapsed", "give more --triangles");
+  return took.count();
+}
+
+bool run(const Options& options, Report& report) {
+  const std::vector<test::HostileShape> shapes = test::hostileShapes();  // the first is the regular
+  std::vector<std::vector<double>> seconds(shapes.size());
+  for (int turn = 0; turn < options.turns; ++turn) {
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      note(shapes[i].name);
+      seconds[i].push_back(secondsOf(shapes[i], options.triangles));
+    }
+  }
+  const Measured regular = medianOf(seconds[0], "reductions of the regular mesh");
+  report.text("{} triangles, median of {} turns\n", options.triangles, options.turns);
+  bool kept = true;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const std::string name = shapes[i].name;
+    const Measured median = medianOf(seconds[i], "reductions of " + name);
+    const Measured ratio = ratioOf(median, regular, name);
+    report.text("{:12} {:8.3f} s, {:6.2f} of the regular mesh's\n", name, median.value(),
+                ratio.value());
+    report.figure(name, median, "s");
+    report.figure(name + ".to_regular", ratio, "1");
+    kept = kept && ratio.value() <= kMostRatio;
+  }
+  report.text("at most {:.0f} is asked: {}\n", kMostRatio, kept ? "kept" : "MISSED");
+  return kept;
+}
+
+}  // namespace
+}  // namespace merlin::bench
+
+int main(int argc, char** argv) {
+  CLI::App app{"Reduces hostile shapes beside a regular mesh of the same size"};
+  merlin::bench::Options options;
+  bool json = false;
+  app.add_option("--triangles", options.triangles, "Of each shape")->capture_default_str();
+  app.add_option("--turns", options.turns, "Of all shapes")->capture_default_str();
+  app.add_flag("--json", json, "The figures as one JSON object");
+  CLI11_PARSE(app, argc, argv);
+  return merlin::bench::runBench("hostile", json, [&](merlin::bench::Report& report) {
+    return merlin::bench::run(options, report);
+  });
+}
