@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <systemd/sd-daemon.h>
+#include <unistd.h>
 
 #include "daemon/base/log.h"
 #include "daemon/net/network_allowed.h"
@@ -39,6 +40,21 @@ Duration watchdogInterval() {
                                              : Duration{};
 }
 
+// A thread that stands in a file system which does not answer cannot be joined.
+void limitStop() {
+  constexpr unsigned kSeconds = 20;  // below what systemd waits
+  ::signal(SIGALRM, [](int) {
+    constexpr std::string_view kWhy = "merlind: a thread does not stop; the process ends now\n";
+    const auto written = ::write(STDERR_FILENO, kWhy.data(), kWhy.size());
+    ::_exit(written > 0 ? 1 : 2);
+  });
+  sigset_t set;
+  ::sigemptyset(&set);
+  ::sigaddset(&set, SIGALRM);
+  ::pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+  ::alarm(kSeconds);
+}
+
 // An error of what a setting asks for.
 Error errorAt(const char* pointer, const Error& error) {
   return {error.code, fmt::format("{}: {}", pointer, error.what)};
@@ -67,6 +83,7 @@ Daemon::Daemon(Configuration configuration, const DaemonOptions& options, Clock&
 
 // Its threads ask for what stands beside it; the panel's button, in devices_, calls wall_.
 Daemon::~Daemon() {
+  limitStop();
   servers_.reset();
   orders_.reset();
   snapshots_.reset();

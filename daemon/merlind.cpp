@@ -77,8 +77,10 @@ void blockSignals() {
   for (const int s : {SIGTERM, SIGINT, SIGHUP, SIGCHLD}) ::sigaddset(&set, s);
   ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
   // None of these means anything to merlind; SIGXFSZ: a file's limit is an error of the write.
-  for (const int s : {SIGPIPE, SIGXFSZ, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF})
+  for (const int s : {SIGPIPE, SIGXFSZ, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU,
+                      SIGIO, SIGPWR, SIGSTKFLT, SIGTSTP, SIGTTIN, SIGTTOU})
     ::signal(s, SIG_IGN);
+  for (int s = SIGRTMIN; s <= SIGRTMAX; ++s) ::signal(s, SIG_IGN);
 }
 
 // Servers bound their connections; what is needed for all of them together must not be missing.
@@ -91,9 +93,9 @@ void raiseDescriptorLimit() {
 }
 
 int runDaemon(const Options& options) {
+  blockSignals();  // first: reading a large model takes a while
   Configuration configuration = checkedConfiguration(options.config, options);
   if (configuration.loaded.verdict() == LoadedSettings::Verdict::kInvalid) return kExitBadInput;
-  blockSignals();
   raiseDescriptorLimit();
   render::prepareSoftwareGl(configuration.loaded.settings.wall.render.raster_threads);
   SystemClock clock;

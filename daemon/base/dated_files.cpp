@@ -21,6 +21,8 @@ using Order = std::pair<std::string, int>;
 
 constexpr std::string_view kTimeForm = "ddddddddTddddddZ";  // 20261123T045500Z
 
+std::string timeOf(std::time_t time) { return fmt::format("{:%Y%m%dT%H%M%SZ}", fmt::gmtime(time)); }
+
 bool isTime(std::string_view text) {
   return std::equal(
       text.begin(), text.end(), kTimeForm.begin(), kTimeForm.end(),
@@ -46,7 +48,7 @@ Result<std::string> DatedFiles::next(std::time_t now) const {
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) return Error{Errc::kIo, fmt::format("{}: {}", folder_, error.message())};
-  const auto start = fmt::format("{}/{}-{:%Y%m%dT%H%M%SZ}", folder_, name_, fmt::gmtime(now));
+  const std::string start = fmt::format("{}/{}-{}", folder_, name_, timeOf(now));
   for (int number = 1; number < 100'000; ++number) {
     auto path = number == 1 ? start + ending_ : fmt::format("{}-{}{}", start, number, ending_);
     if (!fs::exists(fs::symlink_status(path, error))) return path;
@@ -54,7 +56,8 @@ Result<std::string> DatedFiles::next(std::time_t now) const {
   return Error{Errc::kIo, start + ending_ + ": there are too many files of this second"};
 }
 
-void DatedFiles::removeOldest() const {
+void DatedFiles::removeOldest(std::time_t now) const {
+  const std::string latest = timeOf(now);
   std::vector<std::pair<Order, fs::path>> files;
   std::error_code error;
   for (fs::directory_iterator entry(folder_, error), end; !error && entry != end;
@@ -66,7 +69,9 @@ void DatedFiles::removeOldest() const {
       continue;
     const std::string_view middle =
         std::string_view(file).substr(name_.size(), file.size() - name_.size() - ending_.size());
-    if (const auto order = orderOf(middle)) files.emplace_back(*order, entry->path());
+    auto order = orderOf(middle);
+    if (order && order->first > latest) order->first.clear();
+    if (order) files.emplace_back(*order, entry->path());
   }
   std::sort(files.begin(), files.end());
   for (std::size_t i = 0; i + most_ < files.size(); ++i) fs::remove(files[i].second, error);

@@ -25,8 +25,9 @@ class DatedFiles {
   Result<std::string> next(std::time_t now) const;
 
   // Once the new file is whole: removes the oldest regular files of exactly this form, until `most`
-  // are left. What cannot be removed stays. O(files in the folder).
-  void removeOldest() const;
+  // are left. One that is later than `now` was made by a clock that was wrong, and counts as old.
+  // What cannot be removed stays. O(files in the folder).
+  void removeOldest(std::time_t now) const;
 
  private:
   std::string folder_, name_, ending_;

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <utility>
 
@@ -14,7 +15,6 @@
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
-#include <sys/sysinfo.h>
 
 #include "daemon/base/unique_fd.h"
 
@@ -74,9 +74,15 @@ FileStamp stampOf(const struct stat& s) {
   return {s.st_dev, s.st_ino, static_cast<std::uint64_t>(s.st_size), ns(s.st_mtim), ns(s.st_ctim)};
 }
 
+// With something to spare for others; what the kernel cannot tell is no reason to refuse.
 bool fitsIntoMemory(std::size_t size) {
-  struct sysinfo machine {};
-  return ::sysinfo(&machine) != 0 || size / machine.mem_unit < machine.totalram;
+  std::ifstream info("/proc/meminfo");
+  std::string word;
+  std::uint64_t kib = 0;
+  while (info >> word) {
+    if (word == "MemAvailable:" && info >> kib) return size < kib * 1024 / 10 * 9;
+  }
+  return true;
 }
 
 // How many bytes came before the file's end; -1 on an error.

@@ -2,9 +2,12 @@
 
 #include <cstdlib>
 #include <memory>
+#include <mutex>
 
-#include <spdlog/sinks/stdout_sinks.h>
+#include <poll.h>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "daemon/base/text.h"
 
@@ -31,6 +34,40 @@ std::string_view syslogPriority(LogLevel level) {
   return "<6>";
 }
 
+// Standard error, for which nobody waits: a pager that was stopped, or a log's reader that hangs,
+// would hold the daemon otherwise. What finds no room is counted, and told with the next line.
+class PatientSink final : public spdlog::sinks::base_sink<std::mutex> {
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    spdlog::memory_buf_t line;
+    formatter_->format(message, line);
+    if (line.size() > kMostBytes) {  // a pipe that has room takes so many at once
+      line.resize(kMostBytes);
+      line[kMostBytes - 1] = '\n';
+    }
+    if (lost_ > 0 && hasRoom()) {
+      const std::string said = fmt::format("({} lines of the log found no room)\n", lost_);
+      if (write(said)) lost_ = 0;
+    }
+    if (lost_ > 0 || !hasRoom() || !write({line.data(), line.size()})) ++lost_;
+  }
+  void flush_() override {}
+
+ private:
+  static constexpr std::size_t kMostBytes = 4096;  // PIPE_BUF
+
+  static bool hasRoom() {
+    pollfd error{STDERR_FILENO, POLLOUT, 0};
+    return ::poll(&error, 1, 0) == 1 && (error.revents & POLLOUT) != 0;
+  }
+  // Whatever went: half a line on a disk that is full is not mended by waiting.
+  static bool write(std::string_view text) {
+    return ::write(STDERR_FILENO, text.data(), text.size()) > 0;
+  }
+
+  std::uint64_t lost_ = 0;
+};
+
 bool underJournal() {
   static const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;
   return journal;
@@ -39,8 +76,7 @@ bool underJournal() {
 }  // namespace
 
 void initLog(LogLevel lowest) {
-  auto logger =
-      std::make_shared<spdlog::logger>("merlin", std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  auto logger = std::make_shared<spdlog::logger>("merlin", std::make_shared<PatientSink>());
   logger->set_pattern(underJournal() ? "%v" : "%H:%M:%S.%e %l: %v");
   logger->set_level(toSpdlog(lowest));
   logger->flush_on(spdlog::level::debug);

@@ -187,8 +187,11 @@ Result<SharedMemory> SharedMemory::open(const std::string& name, From from) {
 
 bool SharedMemory::owned(const std::string& name) {
   const UniqueFd fd(::shm_open(lockName(name).c_str(), O_RDWR | O_CLOEXEC, 0));
+  struct stat status {};
+  // A stranger's lock under this name keeps nobody out: claim() removes it.
+  if (!fd.valid() || ::fstat(fd.get(), &status) != 0 || status.st_uid != ::geteuid()) return false;
   struct flock probe = wholeFile();
-  return fd.valid() && ::fcntl(fd.get(), F_OFD_GETLK, &probe) == 0 && probe.l_type != F_UNLCK;
+  return ::fcntl(fd.get(), F_OFD_GETLK, &probe) == 0 && probe.l_type != F_UNLCK;
 }
 
 SharedMemory::SharedMemory(SharedMemory&& other) noexcept

@@ -4,7 +4,12 @@
 #include <exception>
 #include <utility>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 namespace merlin {
+
+void giveWay() noexcept { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 19); }
 
 std::vector<ThreadState> ThreadWatch::threads() const {
   const std::lock_guard lock(mutex_);

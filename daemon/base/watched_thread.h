@@ -46,6 +46,9 @@ class Progress {
   std::atomic<bool> paused_{false};
 };
 
+// The frames come first: the calling thread, and those that it starts, take what others leave.
+void giveWay() noexcept;
+
 // What is known of one running thread.
 struct ThreadState {
   std::uint64_t id = 0;  // never used twice by one watch

@@ -67,7 +67,7 @@ Result<std::string> FlightRecorder::write(const Entry& entry, std::string_view w
                                              toSeconds(left_out))}};
   if (const auto written = writeFile(*path, io::formatTranscript(transcript)); !written)
     return written.error();
-  files.removeOldest();
+  files.removeOldest(now);
   return path;
 }
 

@@ -7,10 +7,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "daemon/base/log.h"
+
 namespace merlin::serve {
 namespace {
 
 constexpr Duration kRound = std::chrono::milliseconds(20);
+constexpr Duration kLook = std::chrono::seconds(1);
 constexpr Duration kQuiet = std::chrono::milliseconds(60);
 constexpr Duration kLongestQuiet = std::chrono::milliseconds(500);  // for who asks all the time
 constexpr unsigned kMode = 0666;  // any user's programs may read the ball, as with spacenavd
@@ -103,17 +106,34 @@ Result<std::unique_ptr<SpnavServer>> SpnavServer::start(const std::string& path,
 SpnavServer::SpnavServer(std::string path, UniqueFd listener, const shm::DevicesSegment& segment,
                          ThreadWatch& watch, const Clock& clock)
     : path_(std::move(path)),
-      file_(inodeOf(path_)),
       segment_(segment),
       clock_(clock),
       server_("space mouse", limits(), clock),
       seen_(segment.ball.count()),
       waker_({&segment.ball.wakeWord()}, watch, "samples for the space mouse") {
   tellHealth();
+  listen(std::move(listener));
+  thread_ = net::ServerThread(watch, "space mouse", [this] { round(); });
+}
+
+void SpnavServer::listen(UniqueFd listener) {
+  file_ = inodeOf(path_);
   server_.listen(std::move(listener), [this](const net::Peer&) {
     return std::make_unique<SpnavSession>(device_, clock_);
   });
-  thread_ = net::ServerThread(watch, "space mouse", [this] { round(); });
+}
+
+// As a relay does. Those who are connected stay.
+void SpnavServer::listenAgainWhereGone() {
+  const Timestamp now = clock_.now();
+  if (now - looked_ < kLook) return;
+  looked_ = now;
+  if (inodeOf(path_) == file_) return;
+  auto listener = net::listenLocal(path_, kMode);
+  if (!listener) return;  // something else is there, or its folder has gone: tried again
+  server_.stopListening();
+  listen(*std::move(listener));
+  logWarning("space mouse: its socket {} was removed and is there again", path_);
 }
 
 SpnavServer::~SpnavServer() {
@@ -125,6 +145,7 @@ void SpnavServer::round() {
   const int wakers[] = {waker_.fd()};
   server_.round(kRound, wakers);
   waker_.clear();
+  listenAgainWhereGone();
   tellHealth();
   tellSamples();
   tellMissed();

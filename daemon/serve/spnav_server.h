@@ -39,12 +39,15 @@ class SpnavServer final : public net::Server {
   SpnavServer(std::string path, UniqueFd listener, const shm::DevicesSegment& segment,
               ThreadWatch& watch, const Clock& clock);
   void round();
+  void listen(UniqueFd listener);
+  void listenAgainWhereGone();
   void tellSamples();
   void tellMissed();
   void tellHealth();
 
   std::string path_;
-  std::uint64_t file_;  // inode of the socket's file
+  std::uint64_t file_ = 0;  // inode of the socket's file
+  Timestamp looked_{};      // whether it is still there
   const shm::DevicesSegment& segment_;
   const Clock& clock_;
   net::ConnectionServer server_;

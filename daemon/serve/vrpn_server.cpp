@@ -244,7 +244,7 @@ void VrpnServer::answerDatagrams() {
 }
 
 void VrpnServer::connectBack(int port) {
-  if (connected_back_.count(port)) return;
+  if (port == port_ || connected_back_.count(port)) return;
   UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int yes = 1;
   ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);

@@ -159,7 +159,7 @@ Result<Ok> StatusServer::startRelays(ThreadWatch& watch) {
   commands.name = fmt::format("commands of the {}", settings_.name);
   commands.endpoint = settings_.command_endpoint;
   commands.inner = innerOf(settings_.command_endpoint);
-  commands.zmtp = {kMostRequestBytes, 2, 0};
+  commands.zmtp = {kMostRequestBytes, 2, 0, true};
   for (const RelaySettings& settings : {commands, topicsRelay()}) {
     auto relay = Relay::start(settings, watch, clock_);
     if (!relay) return relay.error();

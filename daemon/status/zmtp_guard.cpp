@@ -81,7 +81,10 @@ Result<Ok> ZmtpGuard::begin() {
   if (!command_) {  // a command between two parts does not end the message
     if (++parts_ > limits_.parts)
       return malformed(fmt::format("a message of more than {} parts", limits_.parts));
-    if (!(flags & kMore)) parts_ = 0;
+    const bool opens = parts_ == 1, more = flags & kMore;
+    if (limits_.requests && (opens != more || (opens && body_left_ > 0)))
+      return malformed("a request that is not an empty part and one more");
+    if (!more) parts_ = 0;
   }
   size_ = body_left_;
   return body_left_ == 0 ? endFrame() : Result<Ok>(Ok{});

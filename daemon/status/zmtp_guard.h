@@ -22,6 +22,9 @@ struct ZmtpLimits {
   // Of the bodies of all frames of a connection but heartbeats: what a subscriber may say in its
   // life. 0: no limit.
   std::size_t total_bytes = 0;
+  // Each message is a request: an empty part, then one more. libzmq 4.3.4 forgets a client that
+  // sends another form and goes, and then drops the next client's reply.
+  bool requests = false;
 };
 
 // One direction of one connection. Thread-bound.

@@ -5,16 +5,12 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 namespace merlin::wall {
 namespace {
 
 constexpr std::chrono::seconds kLook{1};
-
-// The wall's frames come first: this thread, and those that it starts, take what they leave.
-void giveWay() { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 19); }
+constexpr int kLooksUntilGone = 3;
 
 }  // namespace
 
@@ -33,6 +29,7 @@ ModelWatch::ModelWatch(std::vector<Watched> files, Make make, ThreadWatch& watch
                        const Clock& clock)
     : files_(std::move(files)), make_(std::move(make)), clock_(clock) {
   for (const Watched& file : files_) replaced_.emplace_back(file.shown);
+  gone_.resize(files_.size());
   thread_ =
       WatchedThread(watch, "models", [this](const std::stop_token& s, Progress& p) { run(s, p); });
 }
@@ -52,8 +49,10 @@ void ModelWatch::run(const std::stop_token& stop, Progress& progress) {
 // A file that cannot be read is looked at again when it changes.
 void ModelWatch::lookAt(std::size_t place, Progress& progress) {
   const std::string& path = files_[place].path;
-  if (!replaced_[place].look(fileStamp(path), clock_.now())) return;
-  const Progress::Pause pause(progress);  // of a large model
+  const Progress::Pause pause(progress);  // a file server may take its time, and a large model
+  const auto found = fileStamp(path);
+  tellWhetherThere(place, found.has_value());
+  if (!replaced_[place].look(found, clock_.now())) return;
   Result<ReadyModel> ready = Error{Errc::kIo, path + ": not enough memory"};
   try {
     ready = make_(place, path);
@@ -71,6 +70,19 @@ void ModelWatch::lookAt(std::size_t place, Progress& progress) {
   // One that was overtaken before the wall took it: its picture has no part on the wall's thread.
   std::erase_if(ready_, [&](const ReadyModel& r) { return r.place == place; });
   ready_.push_back(*std::move(ready));
+}
+
+// Once a look: between two names a file may be gone for a moment.
+void ModelWatch::tellWhetherThere(std::size_t place, bool there) {
+  const bool was_gone = gone_[place] >= kLooksUntilGone;
+  gone_[place] = there ? 0 : std::min(gone_[place] + 1, kLooksUntilGone);
+  const bool is_gone = gone_[place] >= kLooksUntilGone;
+  if (is_gone == was_gone) return;
+  const std::string& path = files_[place].path;
+  say(is_gone ? fmt::format("the model's file {} is gone, or no regular file any more; what was "
+                            "read of it is shown, and a restart would fail",
+                            path)
+              : fmt::format("the model's file {} is there again", path));
 }
 
 std::optional<ReadyModel> ModelWatch::take() {

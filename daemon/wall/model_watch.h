@@ -69,9 +69,11 @@ class ModelWatch {
  private:
   void run(const std::stop_token& stop, Progress& progress);
   void lookAt(std::size_t place, Progress& progress);
+  void tellWhetherThere(std::size_t place, bool there);
 
   std::vector<Watched> files_;
   std::vector<ReplacedFile> replaced_;
+  std::vector<int> gone_;  // looks in a row that found no file, by place
   Make make_;
   const Clock& clock_;
   std::mutex mutex_;  // of the next two

@@ -29,17 +29,19 @@ void SnapshotWriter::take() {
 }
 
 Result<std::string> SnapshotWriter::write() const {
-  const auto frame = render::captureFrame(framebuffer_);
+  const auto frame = render::captureFrame(framebuffer_, SharedMemory::From::kOwnUserOrRoot);
   if (!frame) return frame.error();
-  auto path = files_.next(std::time(nullptr));
+  const std::time_t now = std::time(nullptr);
+  auto path = files_.next(now);
   if (!path) return path;
   const auto written = render::writePng(*path, frame->width, frame->height, frame->pixels);
   if (!written) return written.error();
-  files_.removeOldest();
+  files_.removeOldest(now);
   return path;
 }
 
 void SnapshotWriter::loop(const std::stop_token& stop, Progress& progress) {
+  giveWay();
   for (;;) {
     {
       std::unique_lock lock(mutex_);

@@ -192,8 +192,8 @@ Result<std::string> ShmFrameSink::mend() {
   return memory_.mend();
 }
 
-Result<CapturedFrame> captureFrame(const std::string& name) {
-  const auto memory = SharedMemory::open(name);
+Result<CapturedFrame> captureFrame(const std::string& name, SharedMemory::From from) {
+  const auto memory = SharedMemory::open(name, from);
   if (!memory) return memory.error();
   if (memory->size() < sizeof(Header)) return broken(name, "is no framebuffer of MERLIN's");
   // A copy: what was checked stays as it was.

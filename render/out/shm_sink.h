@@ -44,9 +44,11 @@ struct CapturedFrame {
   FrameInfo info;
 };
 
-// Errors: kNotFound (no daemon has it), kMalformed (not one of ours, or cut short), kUnsupported
-// (another version), kTimeout (overtaken by the writer each time).
-Result<CapturedFrame> captureFrame(const std::string& name);
+// `from`: whose frame a daemon believes. Errors: kNotFound (no daemon has it), kIo, kMalformed (not
+// one of ours, or cut short), kUnsupported (another version), kTimeout (overtaken by the writer
+// each time).
+Result<CapturedFrame> captureFrame(const std::string& name,
+                                   SharedMemory::From from = SharedMemory::From::kAnyone);
 
 // The wall's picture: the wall tiles side by side. Empty pixels if there is no wall tile.
 CapturedFrame wallPicture(const CapturedFrame& frame);

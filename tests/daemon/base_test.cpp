@@ -195,11 +195,17 @@ TEST(DatedFiles, AreNamedByTimeAndTheOldestGo) {
                                            dir / "f/lab-ball-mine.bytes",
                                            dir / "f/lab-ball-2-20261123T050000Z.bytes"};
   for (const std::string& other : others) ASSERT_TRUE(writeFile(other, "x"));
-  files.removeOldest();
+  files.removeOldest(kThen + 2);
   for (const std::string& other : others) EXPECT_TRUE(std::filesystem::exists(other)) << other;
   const auto stays = [](const std::string& path) { return std::filesystem::exists(path); };
   EXPECT_FALSE(stays(made[1]) || stays(made[2])) << "the oldest two";
   EXPECT_TRUE(stays(made[0]) && stays(made[3]) && stays(made[4]));
+  files.removeOldest(kThen);
+  ASSERT_TRUE(writeFile(*files.next(kThen), "x"));
+  files.removeOldest(kThen);
+  EXPECT_TRUE(stays(start + "0Z.bytes")) << "the newest by a clock that was set back";
+  EXPECT_TRUE(stays(made[4]));
+  EXPECT_FALSE(stays(made[0])) << "of the future";
 }
 
 TEST(Bytes, InTheirStatedOrder) {

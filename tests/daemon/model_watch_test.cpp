@@ -65,6 +65,12 @@ TEST(ModelWatch, OffersTheNewestOfAPlaceAndSaysWhyOneIsRefused) {
                                 (dir / "bad") +
                                 ": is damaged); the model that was read before stays");
   EXPECT_FALSE(models.take());
+  std::filesystem::remove(dir / "good");
+  ASSERT_TRUE(test::eventually([&] { return !(events = models.takeEvents()).empty(); }));
+  EXPECT_NE(events.front().find(dir / "good is gone"), std::string::npos) << events.front();
+  test::writeText(dir / "good", "1");
+  ASSERT_TRUE(test::eventually([&] { return !(events = models.takeEvents()).empty(); }));
+  EXPECT_NE(events.front().find("is there again"), std::string::npos) << events.front();
 }
 
 }  // namespace

@@ -315,6 +315,33 @@ TEST(SharedMemory, ANameThatAnotherTookMeanwhileStaysTheOthers) {
   EXPECT_EQ(second->data()[0], std::byte{0});
 }
 
+TEST(SharedMemory, AStrangersLockKeepsNobodyOut) {
+  if (::geteuid() != 0) GTEST_SKIP() << "takes root, to act as another user";
+  const std::string name = "/" + privateName("squatted");
+  int ready[2], done[2];
+  ASSERT_TRUE(::pipe(ready) == 0 && ::pipe(done) == 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    char byte = 0;
+    struct flock lock {};
+    lock.l_type = F_WRLCK;
+    const bool stranger = ::setgid(65534) == 0 && ::setuid(65534) == 0;
+    const int fd = ::shm_open((name + ".lock").c_str(), O_RDWR | O_CREAT, 0666);
+    const bool held = stranger && fd >= 0 && ::fcntl(fd, F_OFD_SETLK, &lock) == 0;
+    if (::write(ready[1], held ? "y" : "n", 1) == 1) (void)!::read(done[0], &byte, 1);
+    ::_exit(0);
+  }
+  char held = 0;
+  ASSERT_EQ(::read(ready[0], &held, 1), 1);
+  EXPECT_EQ(held, 'y');
+  EXPECT_FALSE(SharedMemory::owned(name));
+  const auto ours = SharedMemory::create(name, 4096);
+  EXPECT_TRUE(ours) << ours.error().what;
+  EXPECT_TRUE(SharedMemory::owned(name));
+  ASSERT_EQ(::write(done[1], "x", 1), 1);
+  ::waitpid(child, nullptr, 0);
+}
+
 // Anybody may make an object of a name that nobody has.
 TEST(SharedMemory, AStrangersObjectIsNotTakenAndGoesForRoot) {
   if (::geteuid() != 0) GTEST_SKIP() << "takes root, to act as another user";

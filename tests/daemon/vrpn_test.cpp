@@ -305,6 +305,25 @@ TEST(VrpnServer, DatagramsThatAskForSilentConnectionsKeepNobodyOut) {
   checkSamples(client, *segment);
 }
 
+TEST(VrpnServer, IsNotItsOwnClient) {
+  const SystemClock clock;
+  ThreadWatch threads;
+  const auto segment = std::make_unique<shm::DevicesSegment>();
+  const auto server = VrpnServer::start(0, *segment, threads, clock);
+  ASSERT_TRUE(server) << server.error().what;
+  const auto listener = net::listenTcp("127.0.0.1", 0);
+  const UniqueFd udp(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const sockaddr_in there = loopback((*server)->port());
+  for (const int port : {(*server)->port(), net::portOf(listener->get())}) {
+    const std::string ask = "127.0.0.1 " + std::to_string(port);
+    ::sendto(udp.get(), ask.c_str(), ask.size() + 1, 0, reinterpret_cast<const sockaddr*>(&there),
+             sizeof there);
+  }
+  ASSERT_TRUE(test::eventually([&] { return (*server)->report().accepted > 0; }));
+  EXPECT_EQ((*server)->report().accepted, 1U)
+      << "the other port's alone, which was asked for later";
+}
+
 TEST(VrpnServer, OnePortIsConnectedToOnceHoweverOftenItIsAskedFor) {
   const SystemClock clock;
   ThreadWatch threads;

@@ -44,6 +44,14 @@ TEST_F(Guard, ACommandBetweenTwoPartsDoesNotEndTheMessage) {
             "a message of more than 2 parts");
 }
 
+TEST_F(Guard, ARequestIsAnEmptyPartAndOneMore) {
+  const ZmtpLimits limits{4096, 2, 0, true};
+  const std::string start = greeting("NULL"), empty = frame(1, ""), body = frame(0, "{}");
+  EXPECT_EQ(refusal(limits, start + empty + body + kPing + empty + kPing + body), "");
+  for (const std::string& bad : {body, frame(0, ""), frame(1, "x") + body, empty + empty + body})
+    EXPECT_NE(refusal(limits, start + empty + body + bad), "") << "a reply would go astray";
+}
+
 TEST_F(Guard, ACommandIsOnePart) {
   EXPECT_EQ(refusal({}, greeting("NULL") + frame(5, std::string("\4PING\0\x10", 7))),
             "a command of several parts");

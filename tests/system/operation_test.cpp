@@ -2,8 +2,10 @@
 #include <filesystem>
 #include <string>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
 
 #include "daemon/base/commands.h"
 #include "daemon/status/client.h"
@@ -18,12 +20,42 @@ TEST(Operation, SignalsThatAskForNothingEndNothing) {
   const TempDir dir;
   Merlind m(dir, "", "signals", {.role = "devices"});
   ASSERT_TRUE(m.ready()) << m.process().output();
-  for (const int signal : {SIGUSR1, SIGUSR2, SIGALRM, SIGHUP})
+  for (const int signal : {SIGUSR1, SIGUSR2, SIGALRM, SIGXCPU, SIGIO, SIGPWR, SIGTSTP, SIGTTIN,
+                           SIGTTOU, SIGRTMIN + 3, SIGRTMAX, SIGHUP})
     ASSERT_EQ(::kill(m.process().pid(), signal), 0);
   EXPECT_TRUE(m.process().saysEventually("SIGHUP is ignored")) << m.process().output();
   EXPECT_FALSE(m.process().ended()) << m.process().output();
   EXPECT_TRUE(m.status()["devices"].contains("ball")) << m.status();
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
+}
+
+// A pager that was stopped, or a log's reader that hangs.
+TEST(Operation, ALogThatNobodyReadsHoldsNothing) {
+  const TempDir dir;
+  const std::string fifo = dir / "log";
+  ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
+  const UniqueFd log(::open(fifo.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
+  ASSERT_TRUE(log.valid());
+  while (::write(log.get(), "x", 1) == 1) continue;  // it is full to the last byte
+  const std::string instance = privateName("unread");
+  writeText(dir / "c.json", json{{"instance", instance}, {"run_directory", dir.path()}}.dump());
+  Process merlind({"/bin/sh", "-c",
+                   fmt::format("exec '{}' --config '{}/c.json' --role devices --emulate 2>'{}'",
+                               kMerlind, dir.path(), fifo)});
+  const auto status = [&] { return run({kMerlin, "status", "--json", "--instance", instance}); };
+  ASSERT_TRUE(eventually([&] { return status().status == 0; }));
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(::kill(merlind.pid(), SIGHUP), 0);  // a line each
+  EXPECT_EQ(status().status, 0);
+  char bytes[65536];
+  while (::read(log.get(), bytes, sizeof bytes) > 0) continue;
+  ASSERT_EQ(::kill(merlind.pid(), SIGHUP), 0);
+  std::string said;
+  EXPECT_TRUE(eventually([&] {
+    const ssize_t n = ::read(log.get(), bytes, sizeof bytes);
+    if (n > 0) said.append(bytes, static_cast<std::size_t>(n));
+    return said.find("lines of the log found no room") != std::string::npos;
+  })) << said;
+  EXPECT_EQ(merlind.kill(SIGTERM), 0);
 }
 
 TEST(Operation, APictureThatCannotBeWrittenIsSaidAndSoIsItsReturn) {

@@ -2,6 +2,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <thread>
 #include <utility>
 
@@ -349,6 +350,14 @@ TEST_F(Served, AFileThatIsNoSocketStays) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Errc::kInvalidArgument);
   EXPECT_EQ(test::readText(file), "data");
+}
+
+TEST_F(Served, ASocketThatIsRemovedIsMadeAgain) {
+  const std::string path = dir / "again";
+  const auto made = SpnavServer::start(path, *segment, threads, clock);
+  ASSERT_TRUE(made) << made.error().what;
+  std::filesystem::remove(path);
+  EXPECT_TRUE(test::eventually([&] { return std::filesystem::is_socket(path); }));
 }
 
 TEST_F(Served, LibspnavSeesTheBall) {
