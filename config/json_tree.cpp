@@ -11,7 +11,6 @@
 namespace merlin {
 namespace {
 
-constexpr std::size_t kMostBytes = 1 << 20;
 constexpr std::size_t kMostLevels = 32;
 
 // Counts the lines that the parser has come to. A line begins with its first character, not with
@@ -154,9 +153,9 @@ std::string describe(const JsonNode& node) {
 }
 
 Result<JsonNode> parseJson(std::string_view text) {
-  if (text.size() > kMostBytes) {
+  if (text.size() > kMostJsonBytes) {
     return Error{Errc::kMalformed,
-                 fmt::format("line 1: {} bytes; {} are the most", text.size(), kMostBytes)};
+                 fmt::format("line 1: {} bytes; {} are the most", text.size(), kMostJsonBytes)};
   }
   int line = 1;
   TreeBuilder builder(&line);

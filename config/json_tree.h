@@ -11,6 +11,9 @@
 
 namespace merlin {
 
+// Of a configuration.
+inline constexpr std::size_t kMostJsonBytes = 1 << 20;
+
 struct JsonNode {
   enum class Kind { kNull, kBool, kNumber, kString, kArray, kObject };
 

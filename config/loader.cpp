@@ -151,7 +151,9 @@ class Loader final : public SettingsVisitor {
     for (const auto& member : level.object->members) {
       if (member.key != key) continue;
       lines_[pointer(key)] = member.line;
-      if (member.value.kind == kind) return &member.value;
+      const bool whole = member.value.text.find('\0') == std::string::npos;
+      if (member.value.kind == kind && whole) return &member.value;
+      if (!whole) allowed = "without the character 0, at which the system would cut it off";
       wrong(member.value, key, allowed);
       return nullptr;
     }
@@ -244,7 +246,7 @@ LoadedSettings loadSettings(std::string_view json, const std::string& folder) {
 }
 
 LoadedSettings loadSettingsFile(const std::string& path) {
-  const auto file = FileCopy::read(path);
+  const auto file = FileCopy::read(path, kMostJsonBytes + 1);
   if (!file) {
     LoadedSettings loaded;
     std::string what = file.error().what;

@@ -5,12 +5,14 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 
 #include "daemon/base/files.h"
 #include "daemon/devices/device_checks.h"
 #include "daemon/status/curve.h"
+#include "daemon/status/run_directory.h"
 #include "daemon/wall/wall_checks.h"
 
 namespace merlin {
@@ -24,8 +26,21 @@ void take(const Result<T>& result, const char* pointer, LoadedSettings& loaded) 
   if (!result) loaded.wrong(pointer, kCannot + result.error().what);
 }
 
+// libzmq ends the process where it finds no descriptor.
+void checkDescriptors(LoadedSettings& loaded) {
+  constexpr rlim_t kLeast = 256;  // all places of all servers are 216
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_max >= kLeast) return;
+  loaded.add({false, 0, "",
+              fmt::format("this process may open {} files at once, and merlind needs "
+                          "{}: raise the limit (ulimit -n, LimitNOFILE=)",
+                          limit.rlim_max, kLeast)});
+}
+
 void checkRunDirectory(LoadedSettings& loaded) {
   const std::string& path = loaded.settings.run_directory;
+  if (const auto good = status::checkRunDirectory(path); !good)
+    return take(good, "/run_directory", loaded);
   if (path.empty()) return;
   // The longest name of a socket in it.
   const std::size_t longest = path.size() + 1 + loaded.settings.instance.size() +
@@ -97,6 +112,7 @@ Configuration readConfiguration(const std::string& file, const DaemonOptions& op
   LoadedSettings& loaded = read.loaded;
   // What was clamped is good; where anything is wrong, the rest would be looked for in vain.
   if (loaded.findings.size() == 1 && loaded.findings[0].pointer.empty()) return read;
+  checkDescriptors(loaded);
   checkRunDirectory(loaded);
   if (options.devices) {
     devices::checkPostures(loaded);

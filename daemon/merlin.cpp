@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
   if (argc > 1 && argv[1][0] != '-' &&
       std::find(names.begin(), names.end(), argv[1]) == names.end()) {
     const std::string near = nearest(argv[1], names);
-    fmt::print(stderr, "merlin: \"{}\" is no command; {}\n", printable(argv[1]),
+    printError("merlin: \"{}\" is no command; {}\n", printable(argv[1]),
                near.empty() ? fmt::format("commands are {}", fmt::join(names, ", "))
                             : fmt::format("did you mean \"{}\"?", near));
     return kExitBadInput;
@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
     std::ostringstream help, why;
     const int status = app.exit(e, help, why);
     fmt::print("{}", help.str());
-    fmt::print(stderr, "{}", printable(why.str()));
+    printError("{}", printable(why.str()));
     return status == 0 ? kExitDone : kExitBadInput;
   }
   initLog(LogLevel::kWarning);
@@ -56,5 +56,6 @@ int main(int argc, char** argv) {
 }  // namespace merlin
 
 int main(int argc, char** argv) {
+  merlin::openStandardStreams();
   return merlin::guarded("merlin", [&] { return merlin::main(argc, argv); });
 }

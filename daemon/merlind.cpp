@@ -32,9 +32,8 @@ struct Options {
 };
 
 void printFindings(const std::string& file, const LoadedSettings& loaded) {
-  for (const Finding& finding : loaded.findings) fmt::print(stderr, "{}\n", toText(file, finding));
-  if (loaded.left_out > 0)
-    fmt::print(stderr, "{}: and {} more findings\n", oneLine(file), loaded.left_out);
+  for (const Finding& finding : loaded.findings) printError("{}\n", toText(file, finding));
+  if (loaded.left_out > 0) printError("{}: and {} more findings\n", oneLine(file), loaded.left_out);
 }
 
 DaemonOptions daemonOptions(const Options& options) {
@@ -143,7 +142,7 @@ int main(int argc, char** argv) {
     std::ostringstream help, why;
     const int status = app.exit(e, help, why);
     fmt::print("{}", help.str());
-    fmt::print(stderr, "{}", printable(why.str()));
+    printError("{}", printable(why.str()));
     return status == 0 ? kExitDone : kExitBadInput;
   }
   initLog(LogLevel::kInfo);
@@ -161,5 +160,6 @@ int main(int argc, char** argv) {
 }  // namespace merlin
 
 int main(int argc, char** argv) {
+  merlin::openStandardStreams();
   return merlin::guarded("merlind", [&] { return merlin::main(argc, argv); });
 }

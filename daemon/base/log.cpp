@@ -1,9 +1,11 @@
 #include "daemon/base/log.h"
 
+#include <cerrno>
 #include <cstdlib>
 #include <memory>
 #include <mutex>
 
+#include <fcntl.h>
 #include <poll.h>
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
@@ -74,6 +76,12 @@ bool underJournal() {
 }
 
 }  // namespace
+
+void openStandardStreams() {
+  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(fd, F_GETFD) < 0 && errno == EBADF) (void)::open("/dev/null", O_RDWR);
+  }
+}
 
 void initLog(LogLevel lowest) {
   auto logger = std::make_shared<spdlog::logger>("merlin", std::make_shared<PatientSink>());

@@ -5,6 +5,8 @@
 // return Results, and the composition root says what happened.
 #pragma once
 
+#include <cstdio>
+#include <string>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -31,5 +33,17 @@ template <typename... Args>
 void logError(fmt::format_string<Args...> format, Args&&... args) {
   logLine(LogLevel::kError, fmt::format(format, std::forward<Args>(args)...));
 }
+
+// To standard error as fmt::print() does, but where that cannot be written (it is closed, a disk is
+// full) nothing happens: no work ends for want of a place for its words.
+template <typename... Args>
+void printError(fmt::format_string<Args...> format, Args&&... args) {
+  const std::string text = fmt::format(format, std::forward<Args>(args)...);
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+// First of all: where descriptor 0, 1 or 2 is closed, /dev/null takes its place. Else the next file
+// would, and the log would be written into shared memory.
+void openStandardStreams();
 
 }  // namespace merlin

@@ -4,13 +4,14 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/log.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
 
 namespace merlin::cli {
 
 int fail(const Error& error) {
-  fmt::print(stderr, "merlin: {}\n", printable(error.what));
+  printError("merlin: {}\n", printable(error.what));
   return exitStatus(error);
 }
 

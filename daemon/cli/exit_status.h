@@ -1,6 +1,7 @@
 // What programs exit with; outside checks rely on it.
 #pragma once
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -40,7 +41,7 @@ int guarded(const char* program, Main main, int failed = kExitFailed) noexcept {
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
     std::fprintf(stderr, "%s: what it printed could not be written: %s\n", program,
                  std::strerror(errno));
-    return kExitFailed;
+    return std::max(status, failed);  // a check that failed inside stays one
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "%s: ended: no memory is left (a limit as of ulimit -v counts too)\n",
                  program);

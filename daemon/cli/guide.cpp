@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/log.h"
 #include "daemon/cli/print.h"
 
 namespace merlin::cli {
@@ -25,14 +26,14 @@ bool enterPressed() {
 class LiveLine {
  public:
   ~LiveLine() {
-    if (drawn_ != Timestamp{}) fmt::print(stderr, "\r\033[K");
+    if (drawn_ != Timestamp{}) printError("\r\033[K");
   }
   void draw(const Guided& guided, Timestamp now) {
     if (!terminal_ || now - drawn_ < kRedraw) return;
     const std::string line = guided.now();
     if (line.empty()) return;
     drawn_ = now;
-    fmt::print(stderr, "\r\033[K  {}", line);
+    printError("\r\033[K  {}", line);
   }
 
  private:

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/log.h"
 #include "drivers/cyberglove/settings.h"
 #include "drivers/hand/recording.h"
 
@@ -28,7 +29,7 @@ Result<nn::Recording> toRadians(nn::Recording recording, const std::string& path
     }
   }
   recording.unit = nn::InputUnit::kRadians;
-  fmt::print(stderr, "{}: raw counts made angles by the shipped calibration\n", path);
+  printError("{}: raw counts made angles by the shipped calibration\n", path);
   return recording;
 }
 
@@ -52,7 +53,7 @@ void addUnits(Command command, std::string& units) {
 Result<nn::Recording> readRecording(const std::string& path, std::optional<nn::InputUnit> unit) {
   auto recording = nn::loadRecording(path, unit);
   if (!recording) return recording;
-  for (const std::string& note : recording->notes) fmt::print(stderr, "{}: {}\n", path, note);
+  for (const std::string& note : recording->notes) printError("{}: {}\n", path, note);
   return recording;
 }
 

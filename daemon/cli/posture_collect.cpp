@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/log.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/posture.h"
 #include "daemon/cli/print.h"
@@ -47,7 +48,7 @@ void drawBars(const GloveSample& sample, bool again) {
                        full, "", kBar - full, last ? "\033[K\n" : "  ");
     lines += last ? 1 : 0;
   }
-  fmt::print(stderr, "{}{}", again ? fmt::format("\033[{}A", lines) : "", out);
+  printError("{}{}", again ? fmt::format("\033[{}A", lines) : "", out);
 }
 
 // What the glove says for as long as asked. Errors: kNotFound (no daemon), kTimeout (no samples).
@@ -106,7 +107,7 @@ int run(const CollectOptions& options) {
     return fail({Errc::kInvalidArgument,
                  fmt::format("LABEL \"{}\": allowed are 1 to {} letters, digits, - or _",
                              options.label, nn::kLongestName)});
-  fmt::print(stderr, "hold \"{}\" for {} s\n", options.label, options.seconds);
+  printError("hold \"{}\" for {} s\n", options.label, options.seconds);
   auto recording = collect(options);
   if (!recording) return fail(recording.error());
   const std::size_t taken = recording->hands.size();
@@ -116,10 +117,10 @@ int run(const CollectOptions& options) {
   say("{}: {} hands of \"{}\" taken, {} in all\n", options.output, taken, options.label,
       recording->hands.size());
   for (const nn::Overlap& o : nn::overlapsOf(options.label, recording->hands))
-    fmt::print(stderr,
-               "warning: \"{}\" and \"{}\" are hard to tell apart: {:.1f} standard deviations, {} "
-               "hands nearer to the other\n",
-               o.first, o.second, o.deviations, o.mixed_up);
+    printError(
+        "warning: \"{}\" and \"{}\" are hard to tell apart: {:.1f} standard deviations, {} "
+        "hands nearer to the other\n",
+        o.first, o.second, o.deviations, o.mixed_up);
   return kExitDone;
 }
 

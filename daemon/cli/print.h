@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/log.h"
 #include "daemon/base/text.h"
 
 namespace merlin::cli {
@@ -19,9 +20,7 @@ void say(fmt::format_string<Args...> format, Args&&... args) {
 }
 
 // "merlin: note: TEXT" to stderr.
-inline void printNote(std::string_view text) {
-  fmt::print(stderr, "merlin: note: {}\n", printable(text));
-}
+inline void printNote(std::string_view text) { printError("merlin: note: {}\n", printable(text)); }
 
 // On one line; what is no UTF-8 in it is replaced.
 template <typename Json>

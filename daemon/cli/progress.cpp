@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "daemon/base/log.h"
+
 namespace merlin::cli {
 namespace {
 
@@ -36,7 +38,7 @@ void ProgressBar::update(double share, std::size_t count) {
 
 void ProgressBar::finish(std::size_t count) {
   if (terminal_ || tenths_ < 10) draw(1, count);
-  if (terminal_) fmt::print(stderr, "\n");
+  if (terminal_) printError("\n");
 }
 
 void ProgressBar::draw(double share, std::size_t count) {
@@ -44,9 +46,9 @@ void ProgressBar::draw(double share, std::size_t count) {
   const double rate = seconds > 0 ? static_cast<double>(count) / seconds : 0;
   const double left = share > 0 ? seconds * (1 - share) / share : 0;
   const int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * kWidth);
-  fmt::print(stderr, "{}{} [{:#<{}}{:.<{}}] {:3.0f} %  {:.0f} {}/s  {:.1f} s left{}",
-             terminal_ ? "\r" : "", title_, "", full, "", kWidth - full, 100 * share, rate, unit_,
-             left, terminal_ ? "  " : "\n");
+  printError("{}{} [{:#<{}}{:.<{}}] {:3.0f} %  {:.0f} {}/s  {:.1f} s left{}", terminal_ ? "\r" : "",
+             title_, "", full, "", kWidth - full, 100 * share, rate, unit_, left,
+             terminal_ ? "  " : "\n");
   std::fflush(stderr);
 }
 

@@ -8,6 +8,7 @@
 #include <poll.h>
 
 #include "daemon/base/files.h"
+#include "daemon/base/log.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
@@ -83,7 +84,7 @@ Result<std::string> listen(ByteStream& line, Device* device, Timestamp end, int 
       heard = got.error();
     }
     if (heard || heard.error().code == Errc::kTimeout) continue;
-    fmt::print(stderr, "merlin: the line ended: {}\n", heard.error().what);
+    printError("merlin: the line ended: {}\n", heard.error().what);
     break;
   }
   return identity;

@@ -25,7 +25,9 @@ Result<std::string> readAll(const std::string& path) {
 }  // namespace
 
 bool isKey(const std::string& text) {
-  return text.size() == kKeyLength && text.find_first_not_of(kAlphabet) == std::string::npos;
+  std::uint8_t key[kKeyLength / 5 * 4];
+  return text.size() == kKeyLength && text.find_first_not_of(kAlphabet) == std::string::npos &&
+         ::zmq_z85_decode(key, text.c_str()) != nullptr;
 }
 
 Result<KeyPair> makeKeyPair() {

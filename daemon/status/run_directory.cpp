@@ -24,28 +24,33 @@ std::string usual() {
 
 }  // namespace
 
-Result<std::string> runDirectory(const std::string& wanted) {
-  const std::string path = wanted.empty() ? usual() : wanted;
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  struct stat status {};
-  if (error || ::lstat(path.c_str(), &status) != 0) {
-    return Error{Errc::kIo,
-                 fmt::format("{}: {}", path, error ? error.message() : std::strerror(errno))};
-  }
-  // Who may write to the folder could put his sockets into the place of ours.
-  const bool others = status.st_uid != ::geteuid() && status.st_uid != 0;
-  const bool anybody = (status.st_mode & S_IWOTH) != 0 && (status.st_mode & S_ISVTX) == 0;
-  if (S_ISLNK(status.st_mode) || others || anybody) {
-    return Error{Errc::kIo,
-                 fmt::format("{}: {}; set run_directory to a folder of this user's", path,
-                             others    ? "belongs to another user"
-                             : anybody ? "can be written to by every user"
-                                       : "is a link")};
-  }
+Result<Ok> checkRunDirectory(const std::string& wanted) {
+  std::string path = wanted.empty() ? usual() : wanted;
   // A UNIX socket's name has 107 bytes at most.
   if (path.size() > 70)
     return Error{Errc::kIo, fmt::format("{}: is too long for sockets in it", path)};
+  while (path.size() > 1 && path.back() == '/') path.pop_back();  // lstat() would follow a link
+  struct stat status {};
+  if (::lstat(path.c_str(), &status) != 0) return Ok{};
+  const bool link = S_ISLNK(status.st_mode);
+  // Who may write to the folder could put his sockets into the place of ours.
+  const bool others = status.st_uid != ::geteuid() && status.st_uid != 0;
+  const bool anybody = (status.st_mode & S_IWOTH) != 0 && (status.st_mode & S_ISVTX) == 0;
+  if (!link && !others && !anybody && S_ISDIR(status.st_mode)) return Ok{};
+  return Error{Errc::kIo, fmt::format("{}: {}; set run_directory to a folder of this user's", path,
+                                      link      ? "is a link"
+                                      : others  ? "belongs to another user"
+                                      : anybody ? "can be written to by every user"
+                                                : "is not a folder")};
+}
+
+Result<std::string> runDirectory(const std::string& wanted) {
+  if (const auto good = checkRunDirectory(wanted); !good) return good.error();
+  const std::string path = wanted.empty() ? usual() : wanted;
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) return Error{Errc::kIo, fmt::format("{}: {}", path, error.message())};
+  if (const auto good = checkRunDirectory(wanted); !good) return good.error();
   return path;
 }
 

@@ -12,4 +12,8 @@ namespace merlin::status {
 // where it is another user's (but root's), a link, or everybody's to write to.
 Result<std::string> runDirectory(const std::string& wanted);
 
+// Whether runDirectory() would take it, where it is there: its owner, its mode, its length.
+// `wanted` as there. Errors: kIo.
+Result<Ok> checkRunDirectory(const std::string& wanted);
+
 }  // namespace merlin::status

@@ -1,5 +1,7 @@
 #include "daemon/wall/wall_checks.h"
 
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <utility>
 
@@ -54,8 +56,34 @@ std::vector<Model> readModels(LoadedSettings& loaded) {
   return models;
 }
 
+namespace {
+
+// A picture must not replace a file that the daemon lives on.
+void checkPictureReplacesNothing(LoadedSettings& loaded) {
+  const Settings& s = loaded.settings;
+  std::vector<std::string> read = {s.devices.postures, s.serve.samples_keys,
+                                   s.serve.samples_clients, s.wall.input.keys};
+  for (const auto& [pointer, path] : modelsOf(s.wall)) read.push_back(path);
+  for (const std::string& path : read) {
+    std::error_code error;
+    if (path.empty() || !std::filesystem::equivalent(path, s.wall.png.path, error)) continue;
+    loaded.wrong("/wall/png/path",
+                 fmt::format("names {}, which is read; it would be replaced", path));
+  }
+  std::ifstream there(s.wall.png.path, std::ios::binary);
+  char signature[8] = {};
+  there.read(signature, sizeof signature);
+  if (there.gcount() > 0 && std::string_view(signature, sizeof signature) != "\x89PNG\r\n\x1a\n") {
+    loaded.wrong("/wall/png/path",
+                 s.wall.png.path + ": is there and is not a PNG file; name another, or remove it");
+  }
+}
+
+}  // namespace
+
 void checkOutputs(LoadedSettings& loaded) {
   const WallSettings& wall = loaded.settings.wall;
+  if (!wall.png.path.empty()) checkPictureReplacesNothing(loaded);
   if (!wall.png.path.empty()) {
     if (const auto writable = checkWritable(wall.png.path); !writable)
       loaded.wrong("/wall/png/path", kCannot + writable.error().what);

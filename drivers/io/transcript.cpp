@@ -95,7 +95,7 @@ class Reader {
     }
     if (const auto hex = readHex(line, chunk.bytes); !hex) return hex;
     const auto bits = 10 * static_cast<std::int64_t>(chunk.bytes.size());
-    free_at_ = chunk.at + std::chrono::nanoseconds(bits * 1'000'000'000 / transcript_.baud());
+    free_at_ = chunk.at + std::chrono::nanoseconds(bits * 1'000'000'000 / baud());
     transcript_.chunks.push_back(std::move(chunk));
     return Ok{};
   }
@@ -121,8 +121,15 @@ class Reader {
     return Ok{};
   }
 
+  // Of the header, which is whole by the first chunk; looked up once.
+  int baud() {
+    if (baud_ == 0) baud_ = transcript_.baud();
+    return baud_;
+  }
+
   Transcript transcript_;
   int line_ = 1;
+  int baud_ = 0;
   bool ended_ = false;
   Duration free_at_{};
 };

@@ -206,7 +206,7 @@ Result<NetworkFile> parseNetwork(std::string_view text, const std::string& file)
 }
 
 Result<NetworkFile> loadNetwork(const std::string& path) {
-  const auto file = FileCopy::read(path);
+  const auto file = FileCopy::read(path, kLargestFile + 1);
   if (!file) return file.error();
   return parseNetwork(file->text(), path);
 }

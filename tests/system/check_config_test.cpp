@@ -80,11 +80,21 @@ TEST_F(CheckConfig, RefusesModelsThatCannotBeRead) {
 
 TEST_F(CheckConfig, RefusesFilesThatCannotBeWritten) {
   writeText(dir_ / "file", "kept");
-  expectRefused({{"run_directory", "file"}}, "/run_directory", "file: Not a directory");
+  expectRefused({{"run_directory", "file"}}, "/run_directory", "file: is not a folder");
+  std::filesystem::create_directory(dir_ / "open");
+  ASSERT_EQ(::chmod((dir_ / "open").c_str(), 0777), 0);
+  expectRefused({{"run_directory", "open"}}, "/run_directory", "can be written to by every user");
+  std::filesystem::create_directory_symlink(dir_.path(), dir_ / "link");
+  expectRefused({{"run_directory", "link"}}, "/run_directory", "is a link");
   expectRefused({{"run_directory", std::string(100, 'x')}}, "/run_directory", "is too long");
   expectRefused({{"wall", {{"png", {{"path", "none/wall.png"}}}}}}, "/wall/png/path",
                 "none/wall.png: No such file or directory");
   expectRefused({{"wall", {{"png", {{"path", "."}}}}}}, "/wall/png/path", "Is a directory");
+  expectRefused({{"wall", {{"png", {{"path", model_}}}}}}, "/wall/png/path",
+                "it would be replaced");
+  expectRefused({{"wall", {{"png", {{"path", "file"}}}}}}, "/wall/png/path", "is not a PNG file");
+  expectRefused({{"wall", {{"png", {{"path", std::string("x\0y.png", 7)}}}}}}, "/wall/png/path",
+                "without the character 0");
   expectRefused({{"wall", {{"snapshots", "file/taken"}}}}, "/wall/snapshots", "Not a directory");
   EXPECT_EQ(readText(dir_ / "file"), "kept");
 }
@@ -172,6 +182,20 @@ TEST_F(CheckConfig, ACheckThatDoesNotEndIsNotValid) {
   EXPECT_EQ(whole.status, 2);
   EXPECT_NE(whole.output.find("more findings"), std::string::npos);
   EXPECT_LT(whole.output.size(), 100'000u);
+}
+
+TEST_F(CheckConfig, ACheckWhoseWordsCannotBeWrittenIsNotDone) {
+  writeText(dir_ / "bad.json", R"({"bogus": 1})");
+  for (const char* where : {">/dev/full", ">&-", "2>/dev/full", "2>&-"}) {
+    const Outcome checked =
+        run({"/bin/sh", "-c",
+             fmt::format("{} --check-config {}/bad.json {}", kMerlind, dir_.path(), where)});
+    EXPECT_EQ(checked.status, 2) << where;
+  }
+  const Outcome few =
+      run({"/bin/bash", "-c",
+           fmt::format("ulimit -n 64; {} --check-config {}/bad.json", kMerlind, dir_.path())});
+  EXPECT_NE(few.output.find("may open 64 files at once"), std::string::npos) << few.output;
 }
 
 TEST_F(CheckConfig, FindingsAreLinesThatNoTerminalFollows) {

@@ -58,6 +58,24 @@ TEST(Operation, ALogThatNobodyReadsHoldsNothing) {
   EXPECT_EQ(merlind.kill(SIGTERM), 0);
 }
 
+// Else the log would be written into the first object in shared memory.
+TEST(Operation, ClosedStandardStreamsTakeNoPlaceOfAFile) {
+  const TempDir dir;
+  const std::string instance = privateName("closed");
+  writeText(dir / "c.json", json{{"instance", instance}, {"run_directory", dir.path()}}.dump());
+  Process merlind({"/bin/sh", "-c",
+                   fmt::format("exec '{}' --config '{}/c.json' --role devices --emulate "
+                               "<&- >&- 2>&-",
+                               kMerlind, dir.path())});
+  const auto status = [&] { return run({kMerlin, "status", "--json", "--instance", instance}); };
+  ASSERT_TRUE(eventually([&] { return status().status == 0; }));
+  for (const char* fd : {"0", "1", "2"}) {
+    EXPECT_EQ(std::filesystem::read_symlink(fmt::format("/proc/{}/fd/{}", merlind.pid(), fd)),
+              "/dev/null");
+  }
+  EXPECT_EQ(merlind.kill(SIGTERM), 0);
+}
+
 TEST(Operation, APictureThatCannotBeWrittenIsSaidAndSoIsItsReturn) {
   const TempDir dir;
   const std::string folder = dir / "pictures", away = dir / "away";

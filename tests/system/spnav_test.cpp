@@ -353,11 +353,11 @@ TEST_F(Served, AFileThatIsNoSocketStays) {
 }
 
 TEST_F(Served, ASocketThatIsRemovedIsMadeAgain) {
-  const std::string path = dir / "again";
-  const auto made = SpnavServer::start(path, *segment, threads, clock);
+  const std::string file = dir / "again";
+  const auto made = SpnavServer::start(file, *segment, threads, clock);
   ASSERT_TRUE(made) << made.error().what;
-  std::filesystem::remove(path);
-  EXPECT_TRUE(test::eventually([&] { return std::filesystem::is_socket(path); }));
+  std::filesystem::remove(file);
+  EXPECT_TRUE(test::eventually([&] { return std::filesystem::is_socket(file); }));
 }
 
 TEST_F(Served, LibspnavSeesTheBall) {
