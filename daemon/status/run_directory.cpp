@@ -22,6 +22,15 @@ std::string usual() {
   return fmt::format("/tmp/merlin-{}", ::geteuid());
 }
 
+bool everybodyWritesTo(const std::string& folder) {
+  struct stat status {};
+  return ::stat(folder.c_str(), &status) == 0 && (status.st_mode & S_IWOTH) != 0;
+}
+
+std::string parentOf(const std::string& path) {
+  return std::filesystem::path(path + "/..").lexically_normal().string();
+}
+
 }  // namespace
 
 Result<Ok> checkRunDirectory(const std::string& wanted) {
@@ -33,8 +42,11 @@ Result<Ok> checkRunDirectory(const std::string& wanted) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0) return Ok{};
   const bool link = S_ISLNK(status.st_mode);
-  // Who may write to the folder could put his sockets into the place of ours.
-  const bool others = status.st_uid != ::geteuid() && status.st_uid != 0;
+  // Who may write to the folder could put his sockets into the place of ours. Root checks a
+  // service's folder for the user that it will run as; where everybody may make folders, one of
+  // another user is nobody's service's.
+  const bool foreign = status.st_uid != ::geteuid() && status.st_uid != 0;
+  const bool others = foreign && (::geteuid() != 0 || everybodyWritesTo(parentOf(path)));
   const bool anybody = (status.st_mode & S_IWOTH) != 0 && (status.st_mode & S_ISVTX) == 0;
   if (!link && !others && !anybody && S_ISDIR(status.st_mode)) return Ok{};
   return Error{Errc::kIo, fmt::format("{}: {}; set run_directory to a folder of this user's", path,

@@ -502,9 +502,13 @@ TEST(RunDirectory, IsMadeAndRefusedWhereItIsNotOurs) {
   ASSERT_EQ(::chmod((dir / "open").c_str(), 0777), 0);
   EXPECT_FALSE(runDirectory(dir / "open")) << "everybody may write to it";
   if (::geteuid() != 0) return;  // only root can give a folder away
-  std::filesystem::create_directory(dir / "given");
-  ASSERT_EQ(::chown((dir / "given").c_str(), 65534, 65534), 0);
-  EXPECT_FALSE(runDirectory(dir / "given")) << "another user's, wherever it lies";
+  for (const char* given : {"given", "tmp/given"}) {
+    std::filesystem::create_directories(dir / given);
+    ASSERT_EQ(::chown((dir / given).c_str(), 65534, 65534), 0);
+  }
+  EXPECT_TRUE(runDirectory(dir / "given")) << "a service's, that root checks";
+  ASSERT_EQ(::chmod((dir / "tmp").c_str(), 01777), 0);
+  EXPECT_FALSE(runDirectory(dir / "tmp/given")) << "whoever made it there";
 }
 
 }  // namespace
