@@ -16,9 +16,9 @@ Result<Dendrogram> readMrm(const std::string& path);
 
 // The same, but read into memory of our own before it is checked: for who lives long, since another
 // program may write over the file at any time, or cut it short (a mapping would change under the
-// checks, or end the program with SIGBUS). Takes the file's size of memory. `stamp`, where given: of
-// the file that was read. Errors: also kIo where it changed while it was read, or does not fit into
-// memory.
+// checks, or end the program with SIGBUS). Takes the file's size of memory. `stamp`, where given:
+// of the file that was read. Errors: also kIo where it changed while it was read, or does not fit
+// into memory.
 Result<Dendrogram> readMrmCopy(const std::string& path, FileStamp* stamp = nullptr);
 
 // Whether its features can be told from one another in a model, which keeps of each name as many
