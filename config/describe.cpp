@@ -184,31 +184,32 @@ void describeScene(render::SceneSettings& s, SettingsVisitor& v) {
 }
 
 void describeRender(render::RenderSettings& r, SettingsVisitor& v) {
-  v.oneOf("backend", r.backend, kBackends, "Which windowless OpenGL draws.");
-  v.integer("contexts", r.contexts, {0, 2},
+  v.oneOf("backend", r.gl.backend, kBackends, "Which windowless OpenGL draws.");
+  v.integer("contexts", r.gl.contexts, {0, 2},
             "OpenGL contexts that share the tiles, each on a thread of its own, EGL only; 0: two "
             "for a software renderer on two cores or more, else one.");
-  v.integer("raster_threads", r.raster_threads, {0, 16},
+  v.integer("raster_threads", r.gl.raster_threads, {0, 16},
             "Of Mesa's software renderer; 0: the wall's own thread does all.");
-  v.text("show", r.show.feature,
+  v.text("show", r.model.show.feature,
          "The feature that is shown as colours, one value on a scale (thermal, confidence ...); "
          "empty: the model's own colours. Every content has to have it.");
-  v.numbers("show_range", r.show.range, {-1e9, 1e9},
+  v.numbers("show_range", r.model.show.range, {-1e9, 1e9},
             "Where that scale begins and ends; twice the same: as the model's values do.");
-  v.flag("view_dependent", r.view_dependent,
+  v.flag("view_dependent", r.model.view_dependent,
          "Triangles where the tiles look, finer near; else as many everywhere.");
-  v.number("geomorph", r.geomorph, {0, 0.5},
+  v.number("geomorph", r.model.geomorph, {0, 0.5},
            "Share of the triangles whose vertices are on their way to where they merge next, so "
            "that nothing pops; 0: vertices jump.");
   v.integer("fade_frames", r.fade_frames, {1, 30},
             "Frames in which a finer picture of what is still replaces a coarser one; 1: at once.");
-  v.numbers("colour", r.look.colour, {0, 1}, "Of a model without colours: red, green, blue.");
-  v.numbers("background", r.look.background, {0, 1}, "Red, green, blue.");
-  v.number("brightness", r.look.brightness, {0.1, 10},
+  v.numbers("colour", r.model.style.colour, {0, 1},
+            "Of a model without colours: red, green, blue.");
+  v.numbers("background", r.model.style.background, {0, 1}, "Red, green, blue.");
+  v.number("brightness", r.model.style.brightness, {0.1, 10},
            "Multiplies the model's colours; for dark scans.");
-  v.flag("draw_back_faces", r.look.draw_back_faces,
+  v.flag("draw_back_faces", r.model.style.draw_back_faces,
          "For open scans that are seen from behind; costs 1.6 to 1.9 times the time.");
-  v.flag("wireframe", r.look.wireframe, "Draws edges instead of faces.");
+  v.flag("wireframe", r.model.style.wireframe, "Draws edges instead of faces.");
 }
 
 void describeGpio(GpioSettings& g, SettingsVisitor& v) {

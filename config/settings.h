@@ -12,7 +12,7 @@
 #include "drivers/hand/settings.h"
 #include "drivers/spaceball/settings.h"
 #include "nn/settings.h"
-#include "render/gl/settings.h"
+#include "render/frame/settings.h"
 #include "render/governor/settings.h"
 #include "render/out/settings.h"
 #include "render/scene/settings.h"

@@ -96,7 +96,7 @@ int runDaemon(const Options& options) {
   Configuration configuration = checkedConfiguration(options.config, options);
   if (configuration.loaded.verdict() == LoadedSettings::Verdict::kInvalid) return kExitBadInput;
   raiseDescriptorLimit();
-  render::prepareSoftwareGl(configuration.loaded.settings.wall.render.raster_threads);
+  render::prepareSoftwareGl(configuration.loaded.settings.wall.render.gl.raster_threads);
   SystemClock clock;
   const auto daemon = Daemon::make(std::move(configuration), daemonOptions(options), clock);
   if (!daemon) {

@@ -9,8 +9,8 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/files.h"
 #include "daemon/cli/mesh.h"
-#include "render/gl/shown_colours.h"
-#include "render/out/png.h"
+#include "render/content/shown_colours.h"
+#include "render/image/png_writer.h"
 
 namespace merlin::cli {
 namespace {
@@ -31,9 +31,9 @@ render::Mesh framed(render::Mesh mesh, const render::Mesh& other) {
   return mesh;
 }
 
-Result<Image> drawn(const render::Dendrogram& model, const View& view) {
+Result<render::Image> drawn(const render::Dendrogram& model, const View& view) {
   const SystemClock clock;
-  auto painter = ModelPainter::make(model, view, clock);
+  auto painter = render::OffscreenModel::make(model, view.asAsked(), clock);
   if (!painter) return painter.error();
   return painter->draw(0);
 }
@@ -45,7 +45,7 @@ Result<Ok> makeFolder(const std::string& folder) {
   return checkWritable(folder + "/a.png");
 }
 
-Result<Ok> write(const std::string& folder, const char* name, const Image& image) {
+Result<Ok> write(const std::string& folder, const char* name, const render::Image& image) {
   return render::writePng(fmt::format("{}/{}.png", folder, name), image.width, image.height,
                           image.pixels);
 }
@@ -121,7 +121,7 @@ class Polygons {
 
 }  // namespace
 
-PictureDifference differenceOf(const Image& a, const Image& b,
+PictureDifference differenceOf(const render::Image& a, const render::Image& b,
                                const std::array<float, 3>& background) {
   PictureDifference difference{{a.width, a.height, std::vector<std::uint8_t>(a.pixels.size(), 0)}};
   std::size_t covered = 0, changed = 0;
@@ -169,16 +169,16 @@ Result<double> writePictures(const std::string& folder, const render::Mesh& a,
   if (const auto made = makeFolder(folder); !made) return made.error();
   const render::Dendrogram first = asModel(framed(a, b)), second = asModel(framed(b, a));
   View same = view;
-  if (!view.render.show.feature.empty()) {  // equal values have equal colours in both
-    const auto shown = render::coloursOf(first, view.render.show);
+  if (!view.model.show.feature.empty()) {  // equal values have equal colours in both
+    const auto shown = render::coloursOf(first, view.model.show);
     if (!shown) return shown.error();
-    same.render.show.range = {shown->low, shown->high};
+    same.model.show.range = {shown->low, shown->high};
   }
   View wire = same, plain = same;
-  wire.render.look.wireframe = true;
-  plain.render.look.brightness = 1;
-  plain.render.show = {};
-  std::vector<Image> images;
+  wire.model.style.wireframe = true;
+  plain.model.style.brightness = 1;
+  plain.model.show = {};
+  std::vector<render::Image> images;
   for (const auto& [model, how] :
        {std::pair{&first, &same}, {&second, &same}, {&first, &wire}, {&second, &wire}}) {
     auto image = drawn(*model, *how);
@@ -187,9 +187,9 @@ Result<double> writePictures(const std::string& folder, const render::Mesh& a,
   }
   auto edges = drawn(asModel(framed(edgeBands(b, view), a)), plain);
   if (!edges) return edges.error();
-  Image beside = images[0];
+  render::Image beside = images[0];
   beside.append(images[1]);
-  auto difference = differenceOf(images[0], images[1], view.render.look.background);
+  auto difference = differenceOf(images[0], images[1], view.model.style.background);
   images.insert(images.end(), {beside, difference.image, *edges});
   constexpr const char* kNames[] = {"a", "b", "a_wire", "b_wire", "beside", "difference", "edges"};
   for (std::size_t i = 0; i < images.size(); ++i) {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "daemon/cli/model_painter.h"
+#include "daemon/cli/view_options.h"
 #include "render/mesh/mesh.h"
 
 namespace merlin::cli {
@@ -11,11 +11,11 @@ namespace merlin::cli {
 // How much of two pictures of one size differs: a pixel has changed where a channel has by more
 // than 15 % of its range (P14).
 struct PictureDifference {
-  Image image;  // changed pixels white, the others black
+  render::Image image;  // changed pixels white, the others black
   // Of the pixels that are not `background` in both pictures.
   double changed_percent = 0;
 };
-PictureDifference differenceOf(const Image& a, const Image& b,
+PictureDifference differenceOf(const render::Image& a, const render::Image& b,
                                const std::array<float, 3>& background);
 
 // `mesh` as bands of colour along its edges, the shortest red, the longest blue, by rank (P13); to

@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "daemon/base/files.h"
+#include "render/image/image_file.h"
 #include "render/mesh/io/beside.h"
-#include "render/mesh/io/picture_file.h"
 #include "render/mesh/io/ply_header.h"
 #include "render/reduce/memory.h"
 
@@ -80,7 +80,7 @@ Result<std::size_t> roomForReduction(const render::MeshSize& mesh, std::size_t f
 
 Result<Ok> roomForPicture(const std::string& picture, const render::MeshSize& mesh,
                           std::size_t limit) {
-  const auto pixels = render::pixelBytes(picture);
+  const auto pixels = render::imageBytes(picture);
   const std::size_t need = mesh.bytes() + kProgram + (pixels ? *pixels : 0);
   if (!pixels || need <= limit) return Ok{};
   return Error{Errc::kInvalidArgument,

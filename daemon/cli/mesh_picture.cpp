@@ -5,9 +5,9 @@
 
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
-#include "daemon/cli/model_painter.h"
 #include "daemon/cli/print.h"
-#include "render/out/png.h"
+#include "daemon/cli/view_options.h"
+#include "render/image/png_writer.h"
 
 namespace merlin::cli {
 namespace {
@@ -19,11 +19,12 @@ struct PictureOptions {
   View view;
 };
 
-Result<Ok> appendModel(const PictureOptions& options, const std::string& path, Image& strip) {
+Result<Ok> appendModel(const PictureOptions& options, const std::string& path,
+                       render::Image& strip) {
   const auto model = openModel(path);
   if (!model) return model.error();
   const SystemClock clock;
-  auto painter = ModelPainter::make(*model, options.view, clock);
+  auto painter = render::OffscreenModel::make(*model, options.view.asAsked(), clock);
   if (!painter) return painter.error();
   for (const double percent : options.percents) {
     const std::size_t level = model->levelFor(
@@ -42,7 +43,7 @@ int picture(const PictureOptions& options) {
   if (const auto named = checkEnding(options.output, "picture", ".png"); !named)
     return fail(named.error());
   render::prepareSoftwareGl(0);
-  Image strip;
+  render::Image strip;
   for (const std::string& model : options.models) {
     if (const auto done = appendModel(options, model, strip); !done) return fail(done.error());
   }
@@ -71,7 +72,7 @@ void addMeshPicture(Command mesh, Run& run) {
       .range(16, 8192)
       .showDefault();
   options->view.addTo(command);
-  command.flag("--wireframe", options->view.render.look.wireframe, "Edges instead of faces");
+  command.flag("--wireframe", options->view.model.style.wireframe, "Edges instead of faces");
   command.callback([options, &run] { run = [options] { return picture(*options); }; });
 }
 

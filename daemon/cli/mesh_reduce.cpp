@@ -10,10 +10,10 @@
 #include "daemon/cli/mesh_memory.h"
 #include "daemon/cli/print.h"
 #include "daemon/cli/progress.h"
+#include "render/image/image_file.h"
 #include "render/lod/io/mrm_file.h"
 #include "render/mesh/borders.h"
 #include "render/mesh/io/mesh_file.h"
-#include "render/mesh/io/picture_file.h"
 #include "render/reduce/reduce.h"
 
 namespace merlin::cli {
@@ -125,7 +125,7 @@ Result<Ok> addTexture(const ReduceOptions& options, render::Mesh& mesh, std::siz
         options.input + ": has no texture coordinates (a PLY's s and t or u and v, an OBJ's vt)"};
   }
   if (const auto fits = roomForPicture(options.texture, sizeOf(mesh), limit); !fits) return fits;
-  auto picture = render::readPicture(options.texture);
+  auto picture = render::readImage(options.texture);
   if (!picture) return picture.error();
   mesh.texture = std::move(picture->file);
   return Ok{};

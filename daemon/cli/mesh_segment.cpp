@@ -8,9 +8,9 @@
 #include "daemon/base/clock.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh.h"
-#include "daemon/cli/model_painter.h"
 #include "daemon/cli/print.h"
-#include "render/out/png.h"
+#include "daemon/cli/view_options.h"
+#include "render/image/png_writer.h"
 #include "render/segment/segment.h"
 
 namespace merlin::cli {
@@ -36,10 +36,10 @@ Result<Ok> draw(const SegmentOptions& options, const render::Mesh& mesh) {
   const render::Dendrogram model = asModel(mesh);
   const SystemClock clock;
   View view = options.view;
-  if (view.render.show.feature.empty()) view.render.show.feature = "label";
-  auto painter = ModelPainter::make(model, view, clock);
+  if (view.model.show.feature.empty()) view.model.show.feature = "label";
+  auto painter = render::OffscreenModel::make(model, view.asAsked(), clock);
   if (!painter) return painter.error();
-  const Image image = painter->draw(0);
+  const render::Image image = painter->draw(0);
   return render::writePng(options.picture, image.width, image.height, image.pixels);
 }
 

@@ -7,7 +7,7 @@
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
 #include "daemon/shm/segment.h"
-#include "render/out/png.h"
+#include "render/image/png_writer.h"
 #include "render/out/shm_sink.h"
 
 namespace merlin::cli {

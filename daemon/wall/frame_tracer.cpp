@@ -13,6 +13,18 @@ std::uint32_t clampedNs(Duration d) {
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(d.count(), 0, kMost));
 }
 
+shm::StepKind inSharedMemory(render::FrameStep::Kind kind) {
+  using Kind = render::FrameStep::Kind;
+  switch (kind) {
+    case Kind::kChoose: return shm::StepKind::kCut;
+    case Kind::kUpload: return shm::StepKind::kUpload;
+    case Kind::kReadBack: return shm::StepKind::kReadBack;
+    case Kind::kRefine: return shm::StepKind::kRefine;
+    case Kind::kDraw: break;
+  }
+  return shm::StepKind::kDraw;
+}
+
 }  // namespace
 
 void FrameTracer::begin(Timestamp at, Timestamp deadline, bool moving) {
@@ -29,8 +41,8 @@ void FrameTracer::add(shm::StepKind kind, Timestamp from, Timestamp to, std::uin
   frame_.steps[frame_.count++] = {clampedNs(from - begin), clampedNs(to - from), kind, tile};
 }
 
-void FrameTracer::add(std::span<const PaintStep> steps) {
-  for (const PaintStep& s : steps) add(s.kind, s.begin, s.end, s.tile);
+void FrameTracer::add(std::span<const render::FrameStep> steps) {
+  for (const render::FrameStep& s : steps) add(inSharedMemory(s.kind), s.begin, s.end, s.tile);
 }
 
 void FrameTracer::end(Timestamp at, std::uint32_t triangles) {

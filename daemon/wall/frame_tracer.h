@@ -5,7 +5,7 @@
 
 #include "daemon/base/clock.h"
 #include "daemon/shm/layout.h"
-#include "daemon/wall/painter.h"
+#include "render/frame/frame_step.h"
 
 namespace merlin::wall {
 
@@ -15,7 +15,7 @@ class FrameTracer {
   void begin(Timestamp at, Timestamp deadline, bool moving);
   // What took from `from` to `to`. More than there is room for are dropped.
   void add(shm::StepKind kind, Timestamp from, Timestamp to, std::uint16_t tile = 0);
-  void add(std::span<const PaintStep> steps);
+  void add(std::span<const render::FrameStep> steps);
   void end(Timestamp at, std::uint32_t triangles);
   const shm::FrameTrace& frame() const noexcept { return frame_; }
 

@@ -13,8 +13,8 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/files.h"
 #include "daemon/base/watched_thread.h"
-#include "daemon/wall/picture.h"
 #include "daemon/wall/wall_checks.h"
+#include "render/content/model_content.h"
 
 namespace merlin::wall {
 
@@ -36,12 +36,12 @@ class ReplacedFile {
   Timestamp since_{};
 };
 
-// A model with its picture, as far as it can be made off the wall's thread.
+// A model and its content, ready to be attached to the wall's drawing contexts.
 struct ReadyModel {
   std::size_t place = 0;
   std::string path;
-  std::unique_ptr<const render::Dendrogram> model;  // the picture's; it does not move
-  std::unique_ptr<Picture> picture;                 // prepared
+  std::unique_ptr<const render::Dendrogram> model;  // the content borrows it
+  std::unique_ptr<render::Content> content;
 };
 
 // take() and say() are for the wall's thread, takeEvents() is for any.

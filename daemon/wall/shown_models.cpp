@@ -7,24 +7,15 @@
 namespace merlin::wall {
 namespace {
 
-Result<ReadyModel> prepare(std::size_t place, Model model, const render::TilePlan& plan,
-                           const WallSettings& settings, const Clock& clock) {
+Result<ReadyModel> prepare(std::size_t place, Model model, const WallSettings& settings) {
   ReadyModel ready{place, std::move(model.path),
                    std::make_unique<const render::Dendrogram>(std::move(model.dendrogram)),
                    nullptr};
-  auto picture =
-      Picture::prepare(*ready.model, plan, settings.render, settings.scene.model_radius_m, clock);
-  if (!picture) return Error{picture.error().code, ready.path + ": " + picture.error().what};
-  ready.picture = *std::move(picture);
+  auto content = render::ModelContent::make(*ready.model, settings.render.model,
+                                            settings.scene.model_radius_m);
+  if (!content) return Error{content.error().code, ready.path + ": " + content.error().what};
+  ready.content = *std::move(content);
   return ready;
-}
-
-Result<Ok> upload(ReadyModel& ready, std::shared_ptr<const DrawContexts> contexts,
-                  const Eigen::Isometry3f& T_eye_model) {
-  const auto done = ready.picture->upload(std::move(contexts));
-  if (!done) return Error{done.error().code, ready.path + ": " + done.error().what};
-  ready.picture->warmUp(T_eye_model);
-  return Ok{};
 }
 
 }  // namespace
@@ -32,30 +23,38 @@ Result<Ok> upload(ReadyModel& ready, std::shared_ptr<const DrawContexts> context
 Result<std::unique_ptr<ShownModels>> ShownModels::make(
     std::vector<Model> models, const render::TilePlan& plan, const WallSettings& settings,
     ModelWatch& watch, const Eigen::Isometry3f& T_eye_model, const Clock& clock) {
-  auto made = DrawContexts::make(settings.render);
-  if (!made) return made.error();
-  const std::shared_ptr<const DrawContexts> contexts = *std::move(made);
-  std::unique_ptr<ShownModels> shown(new ShownModels(watch, clock));
+  std::unique_ptr<ShownModels> shown(new ShownModels(watch, plan, clock));
+  auto contexts = render::DrawContexts::make(settings.render.gl);
+  if (!contexts) return contexts.error();
+  shown->contexts_ = *std::move(contexts);
   for (Model& model : models) {
-    auto ready = prepare(shown->shown_.size(), std::move(model), plan, settings, clock);
+    auto ready = prepare(shown->shown_.size(), std::move(model), settings);
     if (!ready) return ready.error();
-    if (const auto done = upload(*ready, contexts, T_eye_model); !done) return done.error();
-    shown->shown_.push_back(*std::move(ready));
+    auto attached = shown->attach(*std::move(ready), T_eye_model);
+    if (!attached) return attached.error();
+    shown->shown_.push_back(*std::move(attached));
   }
   return shown;
 }
 
-ModelWatch::Make ShownModels::maker(const render::TilePlan& plan, const WallSettings& settings,
-                                    const Clock& clock) {
+Result<ShownModels::Shown> ShownModels::attach(ReadyModel ready,
+                                               const Eigen::Isometry3f& T_eye_model) const {
+  auto renderer = render::FrameRenderer::make(std::move(ready.content), plan_, contexts_, clock_);
+  if (!renderer) return Error{renderer.error().code, ready.path + ": " + renderer.error().what};
+  (*renderer)->warmUp(T_eye_model);
+  return Shown{std::move(ready.model), *std::move(renderer)};
+}
+
+ModelWatch::Make ShownModels::maker(const WallSettings& settings) {
   return [&](std::size_t place, const std::string& path) -> Result<ReadyModel> {
-    auto model = readModel(path, settings.render.show);
+    auto model = readModel(path, settings.render.model.show);
     if (!model) return model.error();
-    return prepare(place, *std::move(model), plan, settings, clock);
+    return prepare(place, *std::move(model), settings);
   };
 }
 
-std::vector<Content> ShownModels::contents() const {
-  std::vector<Content> contents;
+std::vector<ShownContent> ShownModels::contents() const {
+  std::vector<ShownContent> contents;
   for (std::size_t place = 0; place < shown_.size(); ++place) contents.push_back(contentAt(place));
   return contents;
 }
@@ -69,16 +68,19 @@ std::optional<ContentSource::Replacement> ShownModels::take(bool moving,
   }
   if (!waiting_ || (moving && now - waits_since_ < kPatience)) return std::nullopt;
   ReadyModel ready = *std::exchange(waiting_, std::nullopt);
-  if (const auto done = upload(ready, shown_.front().picture->contexts(), T_eye_model); !done) {
+  const std::size_t place = ready.place;
+  const std::string path = ready.path;
+  auto attached = attach(std::move(ready), T_eye_model);
+  if (!attached) {
     watch_.say(
         fmt::format("the model's file was replaced by one that cannot be shown ({}); the "
                     "model that was read before stays",
-                    done.error().what));
+                    attached.error().what));
     return std::nullopt;
   }
-  watch_.say(fmt::format("model {} was replaced and is shown", ready.path));
-  const std::size_t place = ready.place;
-  std::swap(shown_[place], ready);  // the old picture goes, and then its model
+  watch_.say(fmt::format("model {} was replaced and is shown", path));
+  shown_[place].renderer = std::move(attached->renderer);  // the old one goes before its model
+  shown_[place].model = std::move(attached->model);
   return Replacement{place, contentAt(place)};
 }
 

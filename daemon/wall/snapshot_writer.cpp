@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "daemon/base/log.h"
-#include "render/out/png.h"
+#include "render/image/png_writer.h"
 #include "render/out/shm_sink.h"
 
 namespace merlin::wall {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
-#include "render/gl/shown_colours.h"
+#include "render/content/shown_colours.h"
 #include "render/lod/io/mrm_file.h"
 
 namespace merlin::wall {
@@ -29,7 +29,7 @@ std::vector<ModelSetting> modelsOf(const WallSettings& wall) {
 
 }  // namespace
 
-Result<Model> readModel(const std::string& path, const render::Shown& show) {
+Result<Model> readModel(const std::string& path, const render::ShownFeature& show) {
   FileStamp stamp;
   auto model = render::readMrmCopy(path, &stamp);
   if (!model) return model.error();
@@ -45,7 +45,7 @@ std::vector<Model> readModels(LoadedSettings& loaded) {
       loaded.wrong(pointer, "names no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)");
       continue;
     }
-    auto model = readModel(path, loaded.settings.wall.render.show);
+    auto model = readModel(path, loaded.settings.wall.render.model.show);
     if (model) {
       models.push_back(*std::move(model));
       continue;

@@ -7,6 +7,7 @@
 
 #include "config/loader.h"
 #include "daemon/base/files.h"
+#include "render/content/settings.h"
 #include "render/lod/dendrogram.h"
 
 namespace merlin::wall {
@@ -18,7 +19,7 @@ struct Model {
   FileStamp stamp;
 };
 // Errors: readMrmCopy()'s; kInvalidArgument, one without the feature that `show` names. O(file).
-Result<Model> readModel(const std::string& path, const render::Shown& show);
+Result<Model> readModel(const std::string& path, const render::ShownFeature& show);
 
 // The models, in the order in which they are shown: /wall/model, then /wall/contents. Adds
 // findings: one that is not named or cannot be read, one without the feature that /wall/render/show

@@ -85,41 +85,42 @@ void WallLoop::calibrate() {
   std::vector<render::FrameCost> costs;
   const auto fits = [&] { return costs.empty() || costs.back().work <= period_; };
   content_ = 0;
-  std::size_t last = model().levels();
-  for (std::size_t triangles = 1000; fits(); triangles *= 4) {
-    const std::size_t level = model().levelFor(triangles);
-    if (std::exchange(last, level) == level) break;
+  std::size_t last = detail().steps();
+  for (std::size_t cost = detail().leastUseful() * 10 / 3; fits(); cost *= 4) {
+    const std::size_t step = detail().stepWithin(cost);
+    if (std::exchange(last, step) == step) break;
     for (int i = 0; i < 3 && fits(); ++i) {
-      const DrawTimes t = painter().draw(view_.T_eye_model, level, Timestamp::max());
-      costs.push_back({model().trianglesAt(level), t.fixed, t.fixed + t.drawing, false});
+      const render::DrawTimes t = draw(step, Timestamp::max());
+      costs.push_back({detail().costOf(step), t.fixed, t.fixed + t.drawing, false});
     }
-    if (level == 0) break;
+    if (step == 0) break;
   }
   p_.governor.calibrate(costs);
-  const std::size_t triangles = p_.governor.budget();
-  homes_[0] = {triangles, p_.governor.predict(triangles) - p_.governor.fixedSeconds()};
+  const std::size_t cost = p_.governor.budget();
+  homes_[0] = {cost, p_.governor.predict(cost) - p_.governor.fixedSeconds()};
   for (content_ = 1; content_ < p_.contents.size(); ++content_) measureHome();
   content_ = 0;
 }
 
-// As fine as the first one is while it moves; the quickest of three, since the first of a painter
-// is slow.
+// Measures this content's start view at the first content's cost. The fastest of three draws
+// counts, since the first one warms caches.
 void WallLoop::measureHome() {
-  const std::size_t level = model().levelFor(homes_[0].triangles);
+  const std::size_t step = detail().stepWithin(homes_[0].cost);
   Home& home = homes_[content_];
-  home.triangles = model().trianglesAt(level);
+  home.cost = detail().costOf(step);
   for (int i = 0; i < 3; ++i) {
-    const DrawTimes t = painter().draw(view_.T_eye_model, level, Timestamp::max());
+    const render::DrawTimes t = draw(step, Timestamp::max());
     const double s = toSeconds(t.drawing);
     home.drawing_s = i == 0 ? s : std::min(home.drawing_s, s);
   }
 }
 
-// The cost of what will be seen next is known, unlike that of a view which nobody had before.
+// Feed-forward: the start view was measured, so the governor is told its cost ratio before it is
+// drawn.
 void WallLoop::expectHome() {
   if (scale() > 1) return;  // homes are of full size
   const Home& home = homes_[content_];
-  const double now_s = p_.governor.predict(home.triangles) - p_.governor.fixedSeconds();
+  const double now_s = p_.governor.predict(home.cost) - p_.governor.fixedSeconds();
   if (home.drawing_s > 0 && now_s > 0) p_.governor.expect(home.drawing_s / now_s);
 }
 
@@ -130,8 +131,8 @@ void WallLoop::returnHome() {
 
 void WallLoop::showContent(std::size_t content) {
   content_ = content;
-  level_ = model().levels() - 1;
-  moving_level_.reset();
+  step_ = detail().steps() - 1;
+  moving_step_.reset();
   refining_ = full_detail_ = false;
   expectHome();
 }
@@ -142,11 +143,15 @@ void WallLoop::replaceContents() {
   const auto fresh = p_.replacements->take(view_.moving, view_.T_eye_model);
   if (!fresh) return;
   p_.contents[fresh->place] = fresh->content;
-  fresh->content.painter->setScale(scale());
+  fresh->content.painter->setSizeDivisor(scale());
   homes_[fresh->place].drawing_s = 0;
   if (fresh->place != content_) return;
   first_refinement_ = true;  // something of it is seen soon
   showContent(content_);
+}
+
+render::DrawTimes WallLoop::draw(std::size_t step, Timestamp until) {
+  return painter().draw({view_.T_eye_model, step, until, p_.governor.exponent()});
 }
 
 void WallLoop::look(std::int64_t k, Timestamp began) {
@@ -176,42 +181,42 @@ void WallLoop::look(std::int64_t k, Timestamp began) {
 
 // After a frame that ran over, less than a period is left: fewer triangles, or none before the
 // next. With a whole one, a level that is nearly right stays.
-std::size_t WallLoop::chooseLevel(Duration available) {
+std::size_t WallLoop::chooseStep(Duration available) {
   const std::size_t budget = p_.governor.budgetFor(available);
-  if (budget == 0) return model().levels();
-  if (budget != p_.governor.budget()) return model().levelFor(budget);
-  if (moving_level_ && !p_.governor.held()) {
-    const auto had = static_cast<double>(model().trianglesAt(*moving_level_));
-    if (std::abs(had / static_cast<double>(budget) - 1) < kSameLevel) return *moving_level_;
+  if (budget == 0) return detail().steps();
+  if (budget != p_.governor.budget()) return detail().stepWithin(budget);
+  if (moving_step_ && !p_.governor.held()) {
+    const auto had = static_cast<double>(detail().costOf(*moving_step_));
+    if (std::abs(had / static_cast<double>(budget) - 1) < kSameLevel) return *moving_step_;
   }
-  moving_level_ = model().levelFor(budget);
-  return *moving_level_;
+  moving_step_ = detail().stepWithin(budget);
+  return *moving_step_;
 }
 
 std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
   const Timestamp looked = p_.clock.now();
   const Duration left = deadline(k) - began;
-  std::size_t level = chooseLevel(
+  std::size_t step = chooseStep(
       resuming_ ? std::min(left, fromSeconds(kResumingShare * toSeconds(period_))) : left);
-  if (resuming_ && level == model().levels()) level = chooseLevel(left);
+  if (resuming_ && step == detail().steps()) step = chooseStep(left);
   tracer_.add(StepKind::kGovernor, looked, p_.clock.now());
-  if (level == model().levels()) {
+  if (step == detail().steps()) {
     stats_.deadline(deadline(k), true, false);
     climb(true, true);
     return k + 1;
   }
-  level_ = level;
+  step_ = step;
   fade_.stop();
-  const DrawTimes times = painter().draw(view_.T_eye_model, level_, deadline(k) - kPresentMargin);
+  const render::DrawTimes times = draw(step_, deadline(k) - kPresentMargin);
   tracer_.add(painter().steps());
   const Timestamp drawn = p_.clock.now();
-  present(painter().pixels(), level_ == 0);
+  present(painter().pixels(), step_ == 0);
   const Timestamp finished = p_.clock.now();
   tracer_.add(StepKind::kPresent, drawn, finished);
   refining_ = false;
   const bool met = finished <= deadline(k);
   const std::int64_t next = countDeadlines(k, finished);
-  stats_.frame(finished, finished - began, period_, model().trianglesAt(level_));
+  stats_.frame(finished, finished - began, period_, detail().costOf(step_));
   out_.work_ms = static_cast<float>(1000 * toSeconds(finished - began));
   finishMoving(times, finished - drawn, met);
   return next;
@@ -226,12 +231,12 @@ std::int64_t WallLoop::countDeadlines(std::int64_t k, Timestamp finished) {
   return std::max(k + 1, reached);
 }
 
-void WallLoop::finishMoving(const DrawTimes& times, Duration present, bool met) {
-  const std::size_t triangles = model().trianglesAt(level_);
-  const bool least = triangles <= p_.governor.least() || level_ + 1 == model().levels();
+void WallLoop::finishMoving(const render::DrawTimes& times, Duration present, bool met) {
+  const std::size_t cost = detail().costOf(step_);
+  const bool least = cost <= p_.governor.least() || step_ + 1 == detail().steps();
   // What the frame would have cost with every view as fine as the wall.
   const Duration fixed = times.fixed + present;
-  if (!resuming_ || !met) p_.governor.observe({triangles, fixed, fixed + times.drawing, !met});
+  if (!resuming_ || !met) p_.governor.observe({cost, fixed, fixed + times.drawing, !met});
   climb(!met, least && !p_.governor.held());
   if (operator_ladder_.observe(times.gave_way, true, true)) ++out_.ladder_steps;
   if (!std::exchange(resuming_, false)) return;
@@ -246,7 +251,7 @@ void WallLoop::climb(bool late, bool least) {
   if (!ladder_.observe(late, least, higherFits())) return;
   ++out_.ladder_steps;
   if (scale() < was) p_.governor.expect(was * was);  // at most
-  for (const Content& content : p_.contents) content.painter->setScale(scale());
+  for (const ShownContent& content : p_.contents) content.painter->setSizeDivisor(scale());
 }
 
 // At full size a frame costs four times as much at most.
@@ -261,7 +266,7 @@ std::int64_t WallLoop::stillPeriod(std::int64_t k) {
     fadeOn();
   else if (p_.marker && p_.marker->moves(pointedAt()))
     present(painter().pixels(), full_detail_);
-  if (!full_detail_ && !(level_ == 0 && fade_.isOn())) {
+  if (!full_detail_ && !(step_ == 0 && fade_.isOn())) {
     if (!refining_) beginRefining();
     const Timestamp from = p_.clock.now();
     const bool whole = painter().refine(deadline(k) - kRefineMargin);
@@ -281,22 +286,21 @@ std::int64_t WallLoop::stillPeriod(std::int64_t k) {
 // so on: all that together takes less than half as long again as full detail alone.
 void WallLoop::beginRefining() {
   refining_ = true;
-  const std::size_t now = model().trianglesAt(level_);
+  const std::size_t now = detail().costOf(step_);
   // The model is of frames at scale(); what is refined is at full size.
   const Duration first =
       std::min<Duration>(period_ * 5 / 4, kFirstRefinement) / (scale() * scale());
   const std::size_t finer =
       first_refinement_ ? p_.governor.trianglesWithin(first) : kNextRefinement * now;
-  refined_level_ = model().levelFor(finer);
-  const bool worth = finer > now && finer < model().triangleCount() / 2;
-  if (worth && painter().beginRefiningTo(view_.T_eye_model, refined_level_)) return;
-  refined_level_ = 0;
-  painter().beginRefining(view_.T_eye_model);
+  refined_step_ = detail().stepWithin(finer);
+  const bool worth = finer > now && finer < detail().fullCost() / 2;
+  if (!worth) refined_step_ = 0;
+  painter().beginRefining(view_.T_eye_model, refined_step_);
 }
 
 void WallLoop::showRefined() {
   refining_ = false;
-  level_ = refined_level_;
+  step_ = refined_step_;
   fade_.begin(p_.fade_frames);
   fadeOn();
 }
@@ -305,7 +309,7 @@ void WallLoop::showRefined() {
 void WallLoop::fadeOn() {
   const Timestamp drawn = p_.clock.now();
   const auto pixels = fade_.next(painter().pixels());
-  const bool whole = level_ == 0 && !fade_.isOn();
+  const bool whole = step_ == 0 && !fade_.isOn();
   present(pixels, whole);
   const Timestamp now = p_.clock.now();
   tracer_.add(StepKind::kPresent, drawn, now);
@@ -316,7 +320,7 @@ void WallLoop::fadeOn() {
 
 void WallLoop::present(std::span<std::uint8_t> pixels, bool full_detail) {
   full_detail_ = full_detail;
-  const auto triangles = static_cast<std::uint32_t>(model().trianglesAt(level_));
+  const auto triangles = static_cast<std::uint32_t>(detail().costOf(step_));
   const render::FrameInfo info{++frames_, p_.clock.now(), triangles, full_detail};
   if (p_.marker) p_.marker->draw(pixels, pointedAt());
   for (render::FrameSink* sink : p_.sinks) sink->present(pixels, info);

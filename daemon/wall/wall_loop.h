@@ -1,7 +1,7 @@
 // WallLoop: the wall's frames. design: one frame is input, scene, governor, cut, draw, present.
 //
 // A frame is late when its last pixel reaches the sinks after its deadline, as the FrameClock says.
-// While anything moves, each period brings a frame of as many triangles as the
+// While anything moves, each period brings a frame of as much detail as the
 // governor allows; while nothing does, the periods are spent on drawing finer pictures and then
 // full detail in slices, so that the frame that begins after motion resumes begins on time. Where
 // not even the fewest triangles come in time, tiles are drawn at half their size, and then the rate
@@ -19,15 +19,15 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/shm/layout.h"
-#include "daemon/wall/fade.h"
 #include "daemon/wall/frame_stats.h"
 #include "daemon/wall/frame_tracer.h"
 #include "daemon/wall/input_feed.h"
-#include "daemon/wall/painter.h"
-#include "daemon/wall/pointer_marker.h"
+#include "render/content/content.h"
+#include "render/frame/fade.h"
+#include "render/frame/frame_painter.h"
+#include "render/frame/pointer_marker.h"
 #include "render/governor/governor.h"
 #include "render/governor/ladder.h"
-#include "render/lod/dendrogram.h"
 #include "render/out/frame_clock.h"
 #include "render/out/frame_sink.h"
 #include "render/scene/lost_view.h"
@@ -35,10 +35,10 @@
 
 namespace merlin::wall {
 
-// A model, and who draws it.
-struct Content {
-  const render::Dendrogram* model;
-  Painter* painter;
+// A content as the loop sees it: how finely it can be drawn, and who draws it.
+struct ShownContent {
+  const render::DetailAxis* detail;
+  render::FramePainter* painter;
 };
 
 // Port: contents that take the places of others while the wall runs. Implemented by ShownModels.
@@ -47,7 +47,7 @@ class ContentSource {
   virtual ~ContentSource() = default;
   struct Replacement {
     std::size_t place;
-    Content content;
+    ShownContent content;
   };
   // Asked between frames. What stood in that place is not used again. `T_eye_model`: the view that
   // it will be seen from. May take long where nothing moves.
@@ -55,7 +55,7 @@ class ContentSource {
 };
 
 struct WallParts {
-  std::vector<Content> contents;  // one at least; the first one is shown first
+  std::vector<ShownContent> contents;  // one at least; the first one is shown first
   render::Scene& scene;
   render::Governor& governor;
   InputFeed& feed;
@@ -64,7 +64,7 @@ struct WallParts {
   Clock& clock;
   render::FrameClock& frame_clock;                 // when a frame has to be there
   shm::Channel<shm::FrameTrace>* trace = nullptr;  // where steps are told; may be none
-  PointerMarker* marker = nullptr;                 // who marks where the hand points; the same
+  render::PointerMarker* marker = nullptr;         // who marks where the hand points; the same
   shm::SeqSlot<shm::WallInteraction>* interaction = nullptr;  // where that is told
   int fade_frames = 1;                    // in which a finer picture replaces a coarser
   double return_after_s = 0;              // of a view that shows nothing; 0: never
@@ -101,9 +101,10 @@ class WallLoop {
   std::int64_t stillPeriod(std::int64_t k);
   // Reads the devices, moves the scene.
   void look(std::int64_t k, Timestamp began);
-  std::size_t chooseLevel(Duration available);  // levels() where there is no time for any
+  render::DrawTimes draw(std::size_t step, Timestamp until);
+  std::size_t chooseStep(Duration available);  // detail().steps() where there is no time for any
   std::int64_t countDeadlines(std::int64_t k, Timestamp finished);
-  void finishMoving(const DrawTimes& times, Duration present, bool met);
+  void finishMoving(const render::DrawTimes& times, Duration present, bool met);
   void climb(bool late, bool least);
   bool higherFits() const;
   int scale() const noexcept { return ladder_.rung() > 0 ? 2 : 1; }
@@ -119,8 +120,8 @@ class WallLoop {
   std::optional<Eigen::Vector3f> pointedAt() const;
   void publishStats(Timestamp now);
   void paceStats(Timestamp now);
-  const render::Dendrogram& model() const noexcept { return *p_.contents[content_].model; }
-  Painter& painter() const noexcept { return *p_.contents[content_].painter; }
+  const render::DetailAxis& detail() const noexcept { return *p_.contents[content_].detail; }
+  render::FramePainter& painter() const noexcept { return *p_.contents[content_].painter; }
   void measureHome();
   void expectHome();
   void returnHome();
@@ -136,18 +137,19 @@ class WallLoop {
   render::LostView lost_;
   // The first rung of the wall's halves the picture's size, each further one the rate.
   render::Ladder ladder_{3}, operator_ladder_{1};
-  std::size_t level_ = 0;
-  std::optional<std::size_t> moving_level_;  // of the last moving frame that had a whole period
+  std::size_t step_ = 0;
+  std::optional<std::size_t> moving_step_;  // of the last moving frame that had a whole period
   bool refining_ = false, full_detail_ = false;
-  std::size_t refined_level_ = 0;
-  Fade fade_;                      // to what was refined last
+  std::size_t refined_step_ = 0;
+  render::Fade fade_;              // to what was refined last
   bool first_refinement_ = false;  // the next one is, since the standstill
   bool resuming_ = false;          // the next frame is the first after a standstill
   Timestamp still_since_{};
   std::uint64_t frames_ = 0;
-  // Where a content stands at first, so many triangles take so long; 0: not known.
+  // What the start view of a content costs: drawing so many units of detail took so long; 0: not
+  // known.
   struct Home {
-    std::size_t triangles = 0;
+    std::size_t cost = 0;
     double drawing_s = 0;
   };
   std::vector<Home> homes_;  // by content

@@ -14,7 +14,7 @@ float ms(Duration d) { return static_cast<float>(1000 * toSeconds(d)); }
 }  // namespace
 
 void WallLoop::publishTrace(Timestamp now) {
-  tracer_.end(now, static_cast<std::uint32_t>(model().trianglesAt(level_)));
+  tracer_.end(now, static_cast<std::uint32_t>(detail().costOf(step_)));
   if (p_.trace) p_.trace->publish(tracer_.frame());
 }
 
@@ -24,9 +24,9 @@ void WallLoop::publishStats(Timestamp now) {
   out_.frames = frames_;
   out_.deadlines = stats_.deadlines();
   out_.late = stats_.late();
-  out_.triangles = static_cast<std::uint32_t>(model().trianglesAt(level_));
-  out_.level = static_cast<std::uint32_t>(level_);
-  out_.levels = static_cast<std::uint32_t>(model().levels());
+  out_.triangles = static_cast<std::uint32_t>(detail().costOf(step_));
+  out_.level = static_cast<std::uint32_t>(step_);
+  out_.levels = static_cast<std::uint32_t>(detail().steps());
   out_.moving = view_.moving;
   out_.full_detail = full_detail_;
   out_.longest_late = stats_.longestLate();

@@ -62,8 +62,7 @@ WallRole::WallRole(const Settings& settings, std::vector<Model> models, render::
       segment_(std::move(segment)),
       watch_(watch),
       clock_(clock),
-      model_watch_(filesOf(models_), ShownModels::maker(plan_, settings_.wall, clock_), watch_,
-                   clock_) {}
+      model_watch_(filesOf(models_), ShownModels::maker(settings_.wall), watch_, clock_) {}
 
 WallRole::~WallRole() { thread_.stop(); }
 
@@ -89,7 +88,7 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
                   fromSeconds(1 / settings_.wall.governor.rate_hz));
   std::vector<render::FrameSink*> sinks;
   for (const auto& sink : sinks_) sinks.push_back(sink.get());
-  PointerMarker marker(plan_);
+  render::PointerMarker marker(plan_);
   render::TimerFrameClock frame_clock(clock_);
   WallLoop loop({models.contents(), scene_, governor_, feed, sinks, segment_->stats, clock_,
                  frame_clock, &segment_->trace, &marker, &segment_->interaction,

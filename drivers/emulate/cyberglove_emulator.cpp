@@ -87,7 +87,8 @@ class CybergloveEmulator final : public Emulator {
       pending_.clear();
     }
     if (!streaming_ || now < nextDue()) return;
-    due_ = std::max(due_ + period(), now);
+    due_ += period();
+    if (now - due_ > kLongestDelay) due_ = now;
     wire_.record(record(false, streams_text_, now), now, out);
   }
 

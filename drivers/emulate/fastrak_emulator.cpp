@@ -146,11 +146,12 @@ class FastrakEmulator final : public Emulator {
       pending_.clear();
     }
     if (!streaming() || now < due_) return;
-    // By the cycle's own time: a process that wakes late must not make the line busy for longer.
-    Timestamp cycle = due_;
-    for (; due_ <= now; due_ += kCycle) cycle = due_;
-    nextStation();
-    if (wire_.free(cycle)) wire_.record(record(station_, cycle), cycle, out);  // else it is dropped
+    if (now - due_ > kLongestDelay) due_ = now;
+    // By each cycle's own time: a process that wakes late must not make the line busy for longer.
+    for (; due_ <= now; due_ += kCycle) {
+      nextStation();
+      if (wire_.free(due_)) wire_.record(record(station_, due_), due_, out);  // else it is dropped
+    }
   }
 
   Timestamp nextDue() const override { return streaming() ? due_ : start_ + kNever; }

@@ -11,6 +11,10 @@
 
 namespace merlin::emulate {
 
+// A process that wakes late sends what its device would have sent meanwhile, as far back as this: a
+// serial port's buffer holds it.
+inline constexpr Duration kLongestDelay = std::chrono::seconds(1);
+
 class Wire {
  public:
   // 8N1: ten bits a byte. `garbage_every` records apart a burst of 1..12 random bytes is sent.

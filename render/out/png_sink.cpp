@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "render/out/png.h"
+#include "render/image/png_writer.h"
 
 namespace merlin::render {
 namespace {

@@ -17,11 +17,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "daemon/wall/picture.h"
+#include "render/image/png_writer.h"
 #include "render/lod/io/mrm_file.h"
-#include "render/out/png.h"
 #include "render/reduce/reduce.h"
 #include "tests/bench/figures.h"
+#include "tests/support/model_frames.h"
 
 namespace merlin::bench {
 namespace {
@@ -168,17 +168,18 @@ Eigen::Isometry3f closeUp() {
   return view;
 }
 
-std::unique_ptr<wall::Picture> pictureOf(const Dendrogram& model, bool view_dependent,
-                                         const Clock& clock) {
+std::unique_ptr<render::FrameRenderer> rendererOf(const Dendrogram& model, bool view_dependent,
+                                                  const Clock& clock) {
+  static const render::TilePlan kPlan = plan();
   render::RenderSettings settings;
-  settings.view_dependent = view_dependent;
-  auto made = wall::Picture::make(model, plan(), settings, 1.5, clock);
+  settings.model.view_dependent = view_dependent;
+  auto made = test::rendererOf(model, kPlan, settings, 1.5, clock);
   if (!made) didNotRun("the renderer", made.error().what, "see EGL");
   return *std::move(made);
 }
 
 // The root of the mean square difference, 0..255, over the wall's tiles.
-double difference(wall::Picture& picture, const std::vector<std::uint8_t>& full) {
+double difference(render::FrameRenderer& renderer, const std::vector<std::uint8_t>& full) {
   double sum = 0, count = 0;
   const render::TilePlan p = plan();
   for (const render::Tile& t : p.tiles) {
@@ -186,7 +187,7 @@ double difference(wall::Picture& picture, const std::vector<std::uint8_t>& full)
     for (int y = t.y; y < t.y + t.height; ++y) {
       for (int x = 4 * t.x; x < 4 * (t.x + t.width); ++x) {
         const auto i = static_cast<std::size_t>(4 * y * p.frame_width + x);
-        const double d = double{static_cast<double>(picture.pixels()[i])} - full[i];
+        const double d = double{static_cast<double>(renderer.pixels()[i])} - full[i];
         sum += x % 4 == 3 ? 0 : d * d;
         count += x % 4 == 3 ? 0 : 1;
       }
@@ -195,9 +196,9 @@ double difference(wall::Picture& picture, const std::vector<std::uint8_t>& full)
   return std::sqrt(sum / count);
 }
 
-void save(wall::Picture& picture, const std::string& path) {
+void save(render::FrameRenderer& renderer, const std::string& path) {
   const render::TilePlan p = plan();
-  expect(render::writePng(path, p.frame_width, p.frame_height, picture.pixels()), path);
+  expect(render::writePng(path, p.frame_width, p.frame_height, renderer.pixels()), path);
 }
 
 void comparePictures(const Dendrogram& model, const std::string& prefix, const std::string& name,
@@ -207,18 +208,19 @@ void comparePictures(const Dendrogram& model, const std::string& prefix, const s
   double error[2] = {}, drawing[2] = {};
   const std::size_t level = model.levelFor(60'000);
   for (const bool view_dependent : {false, true}) {
-    const auto picture = pictureOf(model, view_dependent, clock);
+    const auto renderer = rendererOf(model, view_dependent, clock);
     if (full.empty()) {
-      picture->draw(closeUp(), 0, Timestamp::max());
-      full.assign(picture->pixels().begin(), picture->pixels().end());
-      save(*picture, prefix + "-full.png");
+      renderer->draw({.T_eye_content = closeUp(), .step = 0});
+      full.assign(renderer->pixels().begin(), renderer->pixels().end());
+      save(*renderer, prefix + "-full.png");
     }
     std::vector<double> times;
     for (int i = 0; i < 7; ++i)
-      times.push_back(1000 * toSeconds(picture->draw(closeUp(), level, Timestamp::max()).drawing));
+      times.push_back(
+          1000 * toSeconds(renderer->draw({.T_eye_content = closeUp(), .step = level}).drawing));
     drawing[view_dependent] = medianOf(times, "frames");
-    error[view_dependent] = difference(*picture, full);
-    save(*picture, prefix + (view_dependent ? "-view.png" : "-even.png"));
+    error[view_dependent] = difference(*renderer, full);
+    save(*renderer, prefix + (view_dependent ? "-view.png" : "-even.png"));
   }
   const auto frames = [](double value) { return Measured::of(value, 1, "pictures"); };
   const Measured ratio = ratioOf(frames(error[1]), frames(error[0]), "pictures");
@@ -240,9 +242,9 @@ void firstPicture(const std::string& path, const std::string& name, Report& repo
   const auto then = Steady::now();
   const auto model = expect(render::readMrm(path), "the model");
   const double opened = msSince(then);
-  const auto picture = pictureOf(model, true, clock);
+  const auto renderer = rendererOf(model, true, clock);
   const double made = msSince(then);
-  picture->draw(closeUp(), model.levelFor(40'000), Timestamp::max());
+  renderer->draw({.T_eye_content = closeUp(), .step = model.levelFor(40'000)});
   const auto all = Measured::of(msSince(then), 1, "first pictures");
   report.text(
       "  cold file to first picture: {:.0f} ms (opened and checked {:.0f}, on the GPU {:.0f})\n",

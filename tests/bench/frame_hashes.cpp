@@ -8,10 +8,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "daemon/wall/picture.h"
-#include "daemon/wall/pointer_marker.h"
+#include "render/frame/pointer_marker.h"
 #include "render/lod/io/mrm_file.h"
 #include "tests/bench/figures.h"
+#include "tests/support/model_frames.h"
 
 namespace merlin::bench {
 namespace {
@@ -40,24 +40,24 @@ class Script {
       : model_(model), name_(name), settings_(settings), report_(report) {}
 
   void run() {
-    auto made = wall::Picture::make(model_, plan_, settings_, 1.0, clock_);
+    auto made = test::rendererOf(model_, plan_, settings_, 1.0, clock_);
     if (!made) didNotRun(fmt::format("{} of {}", context(), name_), made.error().what, "see EGL");
-    picture_ = *std::move(made);
+    renderer_ = *std::move(made);
     moving(1);
     moving(2);
-    picture_->setScale(1);
+    renderer_->setSizeDivisor(1);
     refined();
     pointed();
   }
 
  private:
   std::string context() const {
-    return fmt::format("{} {}", settings_.backend == render::GlBackend::kEgl ? "egl" : "osmesa",
-                       settings_.contexts);
+    return fmt::format("{} {}", settings_.gl.backend == render::GlBackend::kEgl ? "egl" : "osmesa",
+                       settings_.gl.contexts);
   }
   // A picture of one colour is none of the model.
   void expectDrawn() const {
-    const auto pixels = picture_->pixels();
+    const auto pixels = renderer_->pixels();
     if (std::equal(pixels.begin() + 4, pixels.end(), pixels.begin()))
       didNotRun(fmt::format("{} of {}", context(), name_), "it drew nothing", "see EGL");
   }
@@ -67,33 +67,30 @@ class Script {
     report_.figure(fmt::format("{} {} {}", name_, context(), what), hex, frames);
   }
   void moving(int divisor) {
-    picture_->setScale(divisor);
+    renderer_->setSizeDivisor(divisor);
     std::uint64_t h = hash({});
     for (int i = 0; i < kPoses; ++i) {
       const std::size_t level = model_.levelFor(std::size_t{1000} << i);
-      picture_->draw(pose(i), level, Timestamp::max());
+      renderer_->draw({.T_eye_content = pose(i), .step = level});
       expectDrawn();
-      h = hash(picture_->pixels(), h);
+      h = hash(renderer_->pixels(), h);
     }
     print(divisor == 1 ? "moving" : "half size", h, kPoses);
   }
   void refined() {
     for (const bool full : {false, true}) {
-      if (full)
-        picture_->beginRefining(pose(1));
-      else
-        picture_->beginRefiningTo(pose(1), model_.levelFor(5000));
-      while (!picture_->refine(clock_.now() + std::chrono::milliseconds(20))) {
+      renderer_->beginRefining(pose(1), full ? 0 : model_.levelFor(5000));
+      while (!renderer_->refine(clock_.now() + std::chrono::milliseconds(20))) {
       }
-      print(full ? "full detail" : "finer", hash(picture_->pixels()));
+      print(full ? "full detail" : "finer", hash(renderer_->pixels()));
     }
   }
   void pointed() {
-    wall::PointerMarker marker(plan_);
-    marker.draw(picture_->pixels(), Eigen::Vector3f(0.2F, 0.1F, -2.0F));
-    print("pointer", hash(picture_->pixels()));
-    marker.erase(picture_->pixels());
-    print("pointer gone", hash(picture_->pixels()));
+    render::PointerMarker marker(plan_);
+    marker.draw(renderer_->pixels(), Eigen::Vector3f(0.2F, 0.1F, -2.0F));
+    print("pointer", hash(renderer_->pixels()));
+    marker.erase(renderer_->pixels());
+    print("pointer gone", hash(renderer_->pixels()));
   }
 
   const render::Dendrogram& model_;
@@ -102,7 +99,7 @@ class Script {
   Report& report_;
   SystemClock clock_;
   render::TilePlan plan_ = *render::planTiles({});
-  std::unique_ptr<wall::Picture> picture_;
+  std::unique_ptr<render::FrameRenderer> renderer_;
 };
 
 bool run(const std::vector<std::string>& paths, Report& report) {
@@ -113,7 +110,7 @@ bool run(const std::vector<std::string>& paths, Report& report) {
     for (const auto& [backend, contexts] :
          {std::pair{render::GlBackend::kEgl, 1}, std::pair{render::GlBackend::kEgl, 2},
           std::pair{render::GlBackend::kOsmesa, 1}}) {
-      Script(*model, name, {.backend = backend, .contexts = contexts, .look = {}}, report).run();
+      Script(*model, name, {.gl = {backend, contexts, 0}, .model = {}}, report).run();
     }
   }
   return true;

@@ -12,17 +12,15 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "daemon/wall/picture.h"
+#include "render/image/image_file.h"
+#include "render/image/png_writer.h"
 #include "render/mesh/io/mesh_file.h"
-#include "render/mesh/io/picture_file.h"
-#include "render/out/png.h"
 #include "render/reduce/reduce.h"
 #include "tests/bench/figures.h"
+#include "tests/support/model_frames.h"
 
 namespace merlin::bench {
 namespace {
-
-using wall::Picture;
 
 constexpr double kRadius_m = 1.5;
 constexpr int kPoses = 24;
@@ -61,7 +59,7 @@ Result<Ok> dress(render::Mesh& mesh) {
   }
   const std::string path = std::filesystem::temp_directory_path() / "merlin_rates.png";
   if (auto written = render::writePng(path, kSide, kSide, rgba); !written) return written;
-  auto picture = render::readPicture(path);
+  auto picture = render::readImage(path);
   std::filesystem::remove(path);
   if (!picture) return picture.error();
   mesh.texture = std::move(picture->file);
@@ -93,13 +91,14 @@ struct Times {
 };
 
 // Drawing are the steps that draw and read back: cut, upload and all between are not.
-Times timeOf(Picture& picture, const Eigen::Isometry3f& T_eye_model, std::size_t level,
-             const Clock& clock) {
+Times timeOf(render::FrameRenderer& renderer, const Eigen::Isometry3f& T_eye_model,
+             std::size_t level, const Clock& clock) {
   const Timestamp began = clock.now();
-  picture.draw(T_eye_model, level, Timestamp::max());
+  renderer.draw({.T_eye_content = T_eye_model, .step = level});
   Times times{toSeconds(clock.now() - began), 0};
-  for (const wall::PaintStep& step : picture.steps()) {
-    if (step.kind == shm::StepKind::kDraw || step.kind == shm::StepKind::kReadBack)
+  for (const render::FrameStep& step : renderer.steps()) {
+    using Kind = render::FrameStep::Kind;
+    if (step.kind == Kind::kDraw || step.kind == Kind::kReadBack)
       times.drawing_s += toSeconds(step.end - step.begin);
   }
   return times;
@@ -128,7 +127,8 @@ class Rate {
 };
 
 // In turns, pose by pose.
-void bench(const render::Dendrogram& model, Picture& one, Picture& two, Report& report) {
+void bench(const render::Dendrogram& model, render::FrameRenderer& one, render::FrameRenderer& two,
+           Report& report) {
   const SystemClock clock;
   report.text(
       "triangles   1998, Hz   one context, Hz   times   triangles/s   drawing's share   two, Hz   "
@@ -136,7 +136,7 @@ void bench(const render::Dendrogram& model, Picture& one, Picture& two, Report& 
   for (const Row1998& row : kRows1998) {
     const std::size_t level = model.levelFor(row.triangles), drawn = model.trianglesAt(level);
     Rate by_one, by_two;
-    for (Picture* picture : {&one, &two}) timeOf(*picture, pose(0), level, clock);
+    for (render::FrameRenderer* renderer : {&one, &two}) timeOf(*renderer, pose(0), level, clock);
     for (int k = 0; k < kPoses; ++k) {
       by_one.add(timeOf(one, pose(k), level, clock));
       by_two.add(timeOf(two, pose(k), level, clock));
@@ -185,11 +185,12 @@ bool run(const Options& options, Report& report) {
   }
   const auto plan = render::planTiles({});
   const SystemClock clock;
-  const auto picture = [&](int contexts) {
-    return expect(Picture::make(model, *plan, {.contexts = contexts, .look = {}}, kRadius_m, clock),
+  const auto renderer = [&](int contexts) {
+    return expect(test::rendererOf(model, *plan, {.gl = {.contexts = contexts}, .model = {}},
+                                   kRadius_m, clock),
                   "the renderer");
   };
-  const auto one = picture(1), two = picture(2);
+  const auto one = renderer(1), two = renderer(2);
   report.text("{}, {} raster threads; three tiles and the operator's view, 640 x 480 each; {}\n",
               one->contexts()->renderer(), options.raster_threads,
               options.textured ? "textured" : "coloured");

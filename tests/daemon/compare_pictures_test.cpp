@@ -13,7 +13,7 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::array<float, 3> kBlack{0, 0, 0};
 
 TEST(Image, AppendsToTheRight) {
-  Image strip;
+  render::Image strip;
   strip.append({1, 2, {1, 1, 1, 1, 2, 2, 2, 2}});
   strip.append({2, 2, {3, 3, 3, 3, 4, 4, 4, 4, 5, 5, 5, 5, 6, 6, 6, 6}});
   EXPECT_EQ(strip.width, 3);
@@ -24,8 +24,10 @@ TEST(Image, AppendsToTheRight) {
 
 // 15 % of 255 are 38.25. The last pixel is empty in both.
 TEST(PictureDifference, CountsPixelsOfWhichAChannelHasChangedByMoreThan15Percent) {
-  const Image a{5, 1, {100, 100, 100, 9, 100, 100, 100, 9, 0, 0, 0, 9, 50, 50, 50, 9, 0, 0, 1, 9}};
-  const Image b{5, 1, {100, 138, 62, 8, 100, 100, 139, 9, 39, 0, 0, 9, 50, 50, 50, 9, 0, 1, 0, 9}};
+  const render::Image a{
+      5, 1, {100, 100, 100, 9, 100, 100, 100, 9, 0, 0, 0, 9, 50, 50, 50, 9, 0, 0, 1, 9}};
+  const render::Image b{
+      5, 1, {100, 138, 62, 8, 100, 100, 139, 9, 39, 0, 0, 9, 50, 50, 50, 9, 0, 1, 0, 9}};
   const PictureDifference d = differenceOf(a, b, kBlack);
   EXPECT_EQ(d.image.pixels,
             (Bytes{0, 0, 0, 0, 255, 255, 255, 0, 255, 255, 255, 0, 0, 0, 0, 0, 0, 0, 0, 0}));

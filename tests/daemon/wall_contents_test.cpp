@@ -13,7 +13,7 @@ class WallContentsTest : public FakeWall {
     render::SceneSettings settings;
     settings.bindings = {{"ball.button.1", render::Action::kNextContent}};
     scene_ = *render::Scene::make(settings);
-    contents_.push_back({&model(), &dear_});
+    contents_.push_back({&detail_, &dear_});
     calibrated_ = true;
   }
   // The button is pressed for a frame after 2 s, and again after 4.
@@ -33,9 +33,9 @@ TEST_F(WallContentsTest, TheNextOneIsInTimeFromItsFirstFrame) {
   EXPECT_NEAR(static_cast<double>(dear_.drawn.size() - calibrating), 60, 1);
   EXPECT_GT(painter_.drawn.back(), dear_.drawn.back()) << "after the last comes the first";
   const auto triangles = [](const FakePainter& p, std::size_t i) {
-    return static_cast<double>(model().trianglesAt(p.levels[i]));
+    return static_cast<double>(model().trianglesAt(p.steps_drawn[i]));
   };
-  const double cheap = triangles(painter_, painter_.levels.size() - 1);
+  const double cheap = triangles(painter_, painter_.steps_drawn.size() - 1);
   EXPECT_NEAR(triangles(dear_, calibrating) / cheap, 0.25, 0.05) << "fed forward";
 }
 
@@ -63,7 +63,7 @@ TEST_F(WallContentsTest, ACommandDoesTheSame) {
 // Has one other content for one place, when it is told to.
 class OneReplacement final : public ContentSource {
  public:
-  OneReplacement(std::size_t place, Content content) : fresh_({place, content}) {}
+  OneReplacement(std::size_t place, ShownContent content) : fresh_({place, content}) {}
   std::optional<Replacement> take(bool, const Eigen::Isometry3f&) override {
     return due ? std::exchange(fresh_, std::nullopt) : std::nullopt;
   }
@@ -74,7 +74,7 @@ class OneReplacement final : public ContentSource {
 };
 
 TEST_F(WallContentsTest, AReplacedOneIsDrawnFromTheNextFrameAndTheOldOneNeverAgain) {
-  OneReplacement fresh(0, {&model(), &dear_});
+  OneReplacement fresh(0, {&detail_, &dear_});
   replacements_ = &fresh;
   std::size_t old_frames = 0;
   run(4, [&](Timestamp) {
@@ -85,12 +85,12 @@ TEST_F(WallContentsTest, AReplacedOneIsDrawnFromTheNextFrameAndTheOldOneNeverAga
   });
   EXPECT_EQ(painter_.drawn.size(), old_frames);
   EXPECT_GT(dear_.drawn.size(), 40u);
-  EXPECT_GT(painter_.levels.back(), 0u);
+  EXPECT_GT(painter_.steps_drawn.back(), 0u);
 }
 
 TEST_F(WallContentsTest, AReplacedOneOfAStillWallIsShownWhole) {
   feed_.pushed = false;
-  OneReplacement fresh(0, {&model(), &dear_});
+  OneReplacement fresh(0, {&detail_, &dear_});
   replacements_ = &fresh;
   std::size_t before = 0;
   run(6, [&](Timestamp) {
@@ -104,7 +104,7 @@ TEST_F(WallContentsTest, AReplacedOneOfAStillWallIsShownWhole) {
 }
 
 TEST_F(WallContentsTest, AReplacedOneThatIsNotShownWaitsForItsTurn) {
-  OneReplacement fresh(1, {&model(), &painter_});
+  OneReplacement fresh(1, {&detail_, &painter_});
   fresh.due = true;
   replacements_ = &fresh;
   run(3);

@@ -49,13 +49,13 @@ TEST_F(WallPaceTest, TheSizeGivesWayFirstAndComesBack) {
     painter_.slow = since() < std::chrono::seconds(10) ? 30 : 1;
     if (since() > std::chrono::seconds(9) && scale == 0) {
       scale = stats().scale_divisor;
-      EXPECT_EQ(painter_.scale, 2);
+      EXPECT_EQ(painter_.divisor, 2);
       EXPECT_NEAR(stats().rate_held_hz, 30, 0.01);
     }
   });
   EXPECT_EQ(scale, 2u);
   EXPECT_EQ(stats().scale_divisor, 1u);
-  EXPECT_EQ(painter_.scale, 1);
+  EXPECT_EQ(painter_.divisor, 1);
   EXPECT_EQ(stats().rate_divisor, 1u);
   EXPECT_EQ(stats().ladder_steps, 2u);
 }
@@ -132,16 +132,16 @@ TEST_F(WallPaceTest, TrianglesAndRateAreSetByHandUntilTheyAreGivenBack) {
 TEST_F(WallPaceTest, NothingPopsForAFewPerCent) {
   calibrated_ = true;
   run(2);
-  const std::size_t level = painter_.levels.back();
-  painter_.levels.clear();
+  const std::size_t level = painter_.steps_drawn.back();
+  painter_.steps_drawn.clear();
   for (const Duration cost : {Duration(10'200), Duration(9'800)}) {
     painter_.setCost(cost);
     stop_ = std::stop_source();
     calibrated_ = false;
     run(5);
   }
-  ASSERT_GT(painter_.levels.size(), 250u);
-  for (const std::size_t l : painter_.levels) ASSERT_EQ(l, level);
+  ASSERT_GT(painter_.steps_drawn.size(), 250u);
+  for (const std::size_t l : painter_.steps_drawn) ASSERT_EQ(l, level);
 }
 
 TEST_F(WallPaceTest, SaysHowItsFramesWere) {

@@ -23,7 +23,7 @@ class WallPointerTest : public FakeWall {
   Duration since() const { return clock_.now() - feed_.begins.front(); }
 
   render::TilePlan plan_ = *render::planTiles({});
-  PointerMarker made_{plan_};
+  render::PointerMarker made_{plan_};
 };
 
 TEST_F(WallPointerTest, EveryPlaceOfTheMarkIsShownWhileThePictureStands) {

@@ -61,25 +61,26 @@ TEST_F(BigModelTest, MotionAfterAStillPictureIsInTime) {
   for (int still_ms = 160; still_ms < 2000; still_ms += 37) {
     feed_.begins.clear();
     frames_.frames.clear();
-    painter_.levels.clear();
+    painter_.steps_drawn.clear();
     stop_ = std::stop_source();
     std::optional<Timestamp> published;
     std::size_t level = 0, drawn = 0;
     run(5, [&](Timestamp now) {
       const Duration t = now - feed_.begins.front();
       feed_.pushed = t < std::chrono::seconds(2) || t > milliseconds(2150 + still_ms);
-      if (!feed_.pushed && t < milliseconds(2100)) level = painter_.levels.back();
+      if (!feed_.pushed && t < milliseconds(2100)) level = painter_.steps_drawn.back();
       if (feed_.pushed && t > std::chrono::seconds(2) && !published) {
         published = now;
-        drawn = painter_.levels.size();
+        drawn = painter_.steps_drawn.size();
       }
     });
     const auto first = std::find_if(frames_.frames.begin(), frames_.frames.end(),
                                     [&](const auto& f) { return f.finished > *published; });
     ASSERT_NE(first, frames_.frames.end());
     EXPECT_LE(first->finished - *published, kPeriod) << still_ms;
-    EXPECT_GT(painter_.levels[drawn], level) << "cores that slept are slow at first; " << still_ms;
-    EXPECT_EQ(painter_.levels[drawn + 1], level) << still_ms;
+    EXPECT_GT(painter_.steps_drawn[drawn], level)
+        << "cores that slept are slow at first; " << still_ms;
+    EXPECT_EQ(painter_.steps_drawn[drawn + 1], level) << still_ms;
     EXPECT_EQ(stats().resumed_late, 0u) << still_ms;
   }
 }

@@ -1,9 +1,9 @@
 // Drawn by Mesa's software renderer, through EGL without a surface and through OSMesa.
 #include <gtest/gtest.h>
 
-#include "render/gl/frame_buffer.h"
+#include "render/content/model_renderer.h"
 #include "render/gl/gl_context.h"
-#include "render/gl/model_renderer.h"
+#include "render/gl/render_target.h"
 #include "render/reduce/reduce.h"
 #include "tests/support/meshes.h"
 #include "tests/support/pictures.h"
@@ -15,7 +15,7 @@ using test::Image;
 using test::Rgba;
 using Source = ModelRenderer::Source;
 
-const Rgba kBackground{15, 18, 23, 255};  // of Look, x 255, rounded
+const Rgba kBackground{15, 18, 23, 255};  // of RenderStyle, x 255, rounded
 
 // A bumpy ball whose colours are its normals'.
 Mesh ball() {
@@ -48,15 +48,15 @@ Dendrogram unreduced(const Mesh& mesh) {
 class Studio {
  public:
   explicit Studio(GlBackend backend, const Dendrogram& model, int width = 160, int height = 120,
-                  const Shown& show = {}, const TextureImage* texture = nullptr)
+                  const ShownFeature& show = {}, const TextureImage* texture = nullptr)
       : context_(*makeGlContext(backend)),
-        frame_(*FrameBuffer::make(context_->gl(), width, height)),
+        frame_(*RenderTarget::make(context_->gl(), width, height)),
         renderer_(
             *ModelRenderer::make(context_->gl(), model, model.arrays().triangles, show, texture)) {}
 
   ModelRenderer& renderer() { return *renderer_; }
 
-  void begin(const Look& look = {}) {
+  void begin(const RenderStyle& look = {}) {
     Camera camera{Eigen::Matrix4f::Identity(), Eigen::Matrix3f::Identity()};
     camera.clip_from_model(2, 2) = -1;  // nearer is smaller in depth
     frame_.bind();
@@ -68,16 +68,16 @@ class Studio {
     frame_.read(image.pixels.data(), image.width);
     return image;
   }
-  Image picture(const Look& look = {}) {
+  Image picture(const RenderStyle& look = {}) {
     begin(look);
     renderer_->draw(Source::kFull, 0, renderer_->triangles(Source::kFull));
     return finished();
   }
-  const FrameBuffer& frame() const { return frame_; }
+  const RenderTarget& frame() const { return frame_; }
 
  private:
   std::unique_ptr<GlContext> context_;
-  FrameBuffer frame_;
+  RenderTarget frame_;
   std::unique_ptr<ModelRenderer> renderer_;
 };
 
@@ -246,7 +246,7 @@ TEST_P(GlOf, WiresAreSeenWhateverTheModelsColoursAndHiddenByFaces) {
   both.features = {{"colour", 3, std::vector<float>(18, 0.0F)}};
   ensureNormals(both);
   const Dendrogram alone = wholeModel(near), model = unreduced(both);
-  const Look wires{.wireframe = true};
+  const RenderStyle wires{.wireframe = true};
   const Image expected = Studio(GetParam(), alone).picture(wires);
   EXPECT_EQ(Studio(GetParam(), model).picture(wires).pixels, expected.pixels);
   const Image dim = Studio(GetParam(), alone).picture({.brightness = 0.5F, .wireframe = true});
@@ -276,7 +276,7 @@ TEST_P(GlOf, ReadKeepsToItsColumns) {
 TEST_P(GlOf, TooLargeAFrameBufferIsRefused) {
   const auto context = makeGlContext(GetParam());
   ASSERT_TRUE(context) << context.error().what;
-  const auto frame = FrameBuffer::make((*context)->gl(), 1 << 20, 16);
+  const auto frame = RenderTarget::make((*context)->gl(), 1 << 20, 16);
   ASSERT_FALSE(frame);
   EXPECT_EQ(frame.error().code, Errc::kUnsupported);
   EXPECT_NE(frame.error().what.find("1048576 x 16"), std::string::npos) << frame.error().what;
@@ -318,7 +318,7 @@ TEST_P(GlOf, ATextureIsModulatedWithTheLightAndRepeats) {
     EXPECT_LE(test::difference(image.at(40 * picture + 10, 100), {0, 0, 105, 255}), 1) << picture;
     EXPECT_LE(test::difference(image.at(40 * picture + 30, 100), {210, 210, 210, 255}), 1);
   }
-  Look dark;
+  RenderStyle dark;
   dark.brightness = 0.5F;
   EXPECT_LE(test::difference(studio.picture(dark).at(10, 20), {0, 52, 0, 255}), 1);
 }

@@ -9,8 +9,8 @@
 #include <sys/stat.h>
 #include <turbojpeg.h>
 
+#include "render/image/image_file.h"
 #include "render/mesh/io/mesh_file.h"
-#include "render/mesh/io/picture_file.h"
 #include "render/mesh/places.h"
 #include "tests/support/temp_dir.h"
 
@@ -317,8 +317,8 @@ TEST_F(TexturedObj, NamesTheLineOfACornerWithoutItsCoordinate) {
   read(std::string(kSquare) + "vt 0 0\nvt 1 1\nf 1/-1 2/-2 3/-1\n");
 }
 
-TEST(PictureFile, IsMixedOfTheNearestPixels) {
-  const PictureFile four{2, 2, kFour};
+TEST(ImageFile, IsMixedOfTheNearestPixels) {
+  const ImageFile four{2, 2, kFour};
   EXPECT_EQ(four.at(0.25F, 0.75F, false), (Colour{1, 0, 0}));
   EXPECT_EQ(four.at(0.5F, 0.75F, false), (Colour{0.5F, 0.5F, 0}));
   EXPECT_EQ(four.at(0.5F, 0.5F, false), (Colour{0.5F, 0.5F, 0.5F}));
@@ -329,10 +329,10 @@ TEST(PictureFile, IsMixedOfTheNearestPixels) {
   EXPECT_EQ(four.at(1e30F, -1e30F, false), four.at(0, 0, false));
 }
 
-TEST(PictureFile, MayBeAJpegOfAnyName) {
+TEST(ImageFile, MayBeAJpegOfAnyName) {
   const test::TempDir dir;
   test::writeText(dir / "a.png", jpegOf(2, 1, {250, 10, 10, 250, 10, 10}));
-  const auto picture = readPicture(dir / "a.png");
+  const auto picture = readImage(dir / "a.png");
   ASSERT_TRUE(picture) << picture.error().what;
   EXPECT_EQ(picture->width, 2);
   EXPECT_EQ(picture->height, 1);
@@ -341,7 +341,7 @@ TEST(PictureFile, MayBeAJpegOfAnyName) {
   EXPECT_NEAR(picture->pixels[4], 10, 3);
 }
 
-TEST(PictureFile, SaysWhatIsBroken) {
+TEST(ImageFile, SaysWhatIsBroken) {
   const test::TempDir dir;
   writePngFile(dir / "a.png", 2, 2, kFour);
   const std::string png = test::readText(dir / "a.png");
@@ -350,7 +350,7 @@ TEST(PictureFile, SaysWhatIsBroken) {
     std::size_t refused = 0;
     for (std::size_t n = 0; n < file.size(); ++n) {
       test::writeText(dir / "b", file.substr(0, n));
-      const auto picture = readPicture(dir / "b");
+      const auto picture = readImage(dir / "b");
       refused += !picture;
       EXPECT_TRUE(picture || picture.error().what.starts_with(dir / "b: ")) << n;
     }
@@ -359,7 +359,7 @@ TEST(PictureFile, SaysWhatIsBroken) {
   std::string huge = png;
   huge.replace(16, 8, std::string("\x7F\xFF\xFF\xFF\x7F\xFF\xFF\xFF", 8));
   test::writeText(dir / "b", huge);
-  EXPECT_FALSE(readPicture(dir / "b"));
+  EXPECT_FALSE(readImage(dir / "b"));
 }
 
 }  // namespace

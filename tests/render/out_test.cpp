@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "daemon/base/random.h"
-#include "render/out/png.h"
+#include "render/image/png_writer.h"
 #include "render/out/png_sink.h"
 #include "render/out/shm_sink.h"
 #include "tests/support/eventually.h"

@@ -1,5 +1,5 @@
 // Which colours show a feature.
-#include "render/gl/shown_colours.h"
+#include "render/content/shown_colours.h"
 
 #include <cmath>
 #include <set>

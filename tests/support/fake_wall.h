@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/wall/wall_loop.h"
+#include "render/content/model_content.h"
 #include "render/reduce/reduce.h"
 #include "tests/support/fake_clock.h"
 
@@ -41,36 +42,36 @@ inline const Dendrogram& model() {
   return made;
 }
 
-// 4 ms a frame and `per_triangle` each; full detail costs `slices` of 3 ms, a level as many as it
-// takes.
-class FakePainter final : public Painter {
+// 4 ms a frame and `per_triangle` each; full detail costs `slices` of 3 ms, any other step as many
+// as it takes.
+class FakePainter final : public render::FramePainter {
  public:
   FakePainter(test::FakeClock& clock, Duration per_triangle, int slices)
       : clock_(clock), per_triangle_(per_triangle), slices_(slices) {}
 
-  DrawTimes draw(const Eigen::Isometry3f&, std::size_t level, Timestamp) override {
-    const Duration fixed = milliseconds(4) / (scale * scale), drawing = costOf(level) * slow;
+  render::DrawTimes draw(const Request& request) override {
+    const Duration fixed = milliseconds(4) / (divisor * divisor);
+    const Duration drawing = costOf(request.step) * slow;
     const Timestamp began = clock_.now();
     clock_.advance(drawing);
     const Timestamp read = clock_.now();
     std::fill(pixels_.begin(), pixels_.end(), kMoving);
     clock_.advance(fixed);
     drawn.push_back(clock_.now());
-    levels.push_back(level);
-    steps_ = {{shm::StepKind::kCut, 0, began, began},
-              {shm::StepKind::kDraw, 0, began, read},
-              {shm::StepKind::kReadBack, 0, read, clock_.now()}};
+    steps_drawn.push_back(request.step);
+    using Kind = render::FrameStep::Kind;
+    steps_ = {{Kind::kChoose, 0, began, began},
+              {Kind::kDraw, 0, began, read},
+              {Kind::kReadBack, 0, read, clock_.now()}};
     return {drawing, fixed, gives_way};
   }
-  void setScale(int divisor) override { scale = divisor; }
+  void setSizeDivisor(int now) override { divisor = now; }
   bool sees(const Eigen::Isometry3f& T_eye_model) const override {
     return T_eye_model.translation().norm() < furthest_seen_m;
   }
-  std::span<const PaintStep> steps() const noexcept override { return steps_; }
-  void beginRefining(const Eigen::Isometry3f&) override { left_ = slices_; }
-  bool beginRefiningTo(const Eigen::Isometry3f&, std::size_t level) override {
-    left_ = static_cast<int>(costOf(level) / milliseconds(3)) + 1;
-    return true;
+  std::span<const render::FrameStep> steps() const noexcept override { return steps_; }
+  void beginRefining(const Eigen::Isometry3f&, std::size_t step) override {
+    left_ = step == 0 ? slices_ : static_cast<int>(costOf(step) / milliseconds(3)) + 1;
   }
   bool refine(Timestamp until) override {
     steps_.clear();
@@ -89,11 +90,11 @@ class FakePainter final : public Painter {
 
   void setCost(Duration per_triangle) { per_triangle_ = per_triangle; }
 
-  int slow = 1, scale = 1;
+  int slow = 1, divisor = 1;
   float furthest_seen_m = 50;
   bool gives_way = false;
   std::vector<Timestamp> drawn;
-  std::vector<std::size_t> levels;
+  std::vector<std::size_t> steps_drawn;
 
  private:
   Duration costOf(std::size_t level) const {
@@ -102,7 +103,7 @@ class FakePainter final : public Painter {
   test::FakeClock& clock_;
   Duration per_triangle_;
   int slices_, left_ = 0;
-  std::vector<PaintStep> steps_;
+  std::vector<render::FrameStep> steps_;
 };
 
 // Pushes the ball while `pushed`; asks the loop to stop after `until`.
@@ -164,7 +165,8 @@ class FakeWall : public testing::Test {
   test::FakeClock clock_;
   render::TimerFrameClock frame_clock_{clock_};
   FakePainter painter_;
-  std::vector<Content> contents_ = {{&model(), &painter_}};
+  render::ModelDetail detail_{model()};
+  std::vector<ShownContent> contents_ = {{&detail_, &painter_}};
   render::Scene scene_ = *render::Scene::make({});
   render::Governor governor_;
   FakeFeed feed_;
@@ -173,7 +175,7 @@ class FakeWall : public testing::Test {
       std::make_unique<shm::SeqSlot<shm::WallStats>>();
   std::unique_ptr<shm::Channel<shm::FrameTrace>> trace_ =
       std::make_unique<shm::Channel<shm::FrameTrace>>();
-  PointerMarker* marker_ = nullptr;
+  render::PointerMarker* marker_ = nullptr;
   ContentSource* replacements_ = nullptr;
   std::unique_ptr<shm::SeqSlot<shm::WallInteraction>> interaction_ =
       std::make_unique<shm::SeqSlot<shm::WallInteraction>>();

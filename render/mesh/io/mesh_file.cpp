@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
+#include "render/image/image_file.h"
 #include "render/mesh/io/beside.h"
 #include "render/mesh/io/obj_texture.h"
-#include "render/mesh/io/picture_file.h"
 #include "render/mesh/io/ply.h"
 #include "render/mesh/io/writer.h"
 
@@ -64,7 +64,7 @@ Result<LoadedMesh> readPly(std::string_view content, const std::string& folder) 
     loaded->notes.push_back(pictures[0] + ": is no name; the texture's picture is left out");
     return loaded;
   }
-  auto texture = readPicture(pathBeside(folder, pictures[0]));
+  auto texture = readImage(pathBeside(folder, pictures[0]));
   if (texture)
     loaded->mesh.texture = std::move(texture->file);
   else

@@ -94,12 +94,12 @@ class Library {
     material.picture = pictureOf(pathBeside(folder_, rest));
   }
 
-  std::shared_ptr<const PictureFile> pictureOf(const std::string& path) {
+  std::shared_ptr<const ImageFile> pictureOf(const std::string& path) {
     const auto known = pictures_.find(path);
     if (known != pictures_.end()) return known->second;
-    std::shared_ptr<const PictureFile> picture;
-    if (auto read = readPicture(path))
-      picture = std::make_shared<const PictureFile>(*std::move(read));
+    std::shared_ptr<const ImageFile> picture;
+    if (auto read = readImage(path))
+      picture = std::make_shared<const ImageFile>(*std::move(read));
     else
       notes_.push_back(read.error().what + "; its colours are left out");
     pictures_[path] = picture;
@@ -110,7 +110,7 @@ class Library {
   std::string folder_;
   std::vector<std::string>& notes_;
   std::vector<ObjMaterial> materials_;
-  std::map<std::string, std::shared_ptr<const PictureFile>> pictures_;
+  std::map<std::string, std::shared_ptr<const ImageFile>> pictures_;
 };
 
 }  // namespace

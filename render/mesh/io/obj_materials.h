@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "render/mesh/io/picture_file.h"
+#include "render/image/image_file.h"
 
 namespace merlin::render {
 
 struct ObjMaterial {
-  std::shared_ptr<const PictureFile> picture;   // map_Kd; shared by materials that name one file
+  std::shared_ptr<const ImageFile> picture;     // map_Kd; shared by materials that name one file
   bool clamped = false;                         // the picture does not repeat
   std::optional<std::array<float, 3>> diffuse;  // Kd
 

@@ -77,11 +77,10 @@ void mergeMaterials(ObjSurface& surface, const std::vector<ObjMaterial>& materia
 }
 
 // That of every corner, if there is one, and if it repeats as a texture does.
-const PictureFile* onlyPicture(const ObjSurface& surface,
-                               const std::vector<ObjMaterial>& materials) {
+const ImageFile* onlyPicture(const ObjSurface& surface, const std::vector<ObjMaterial>& materials) {
   const auto& used = surface.triangle_material;
   if (used.empty() || std::ranges::count(surface.corner_texcoord, kNoTexcoord) > 0) return nullptr;
-  const PictureFile* picture = materials[used[0]].picture.get();
+  const ImageFile* picture = materials[used[0]].picture.get();
   const bool everywhere = std::ranges::all_of(used, [&](std::uint32_t m) {
     return materials[m].picture.get() == picture && !materials[m].clamped;
   });
@@ -143,7 +142,7 @@ Mesh textured(ObjSurface surface, const std::vector<ObjMaterial>& materials) {
   }
   if (dresser.hasColours()) mesh.features.push_back(std::move(colour));
   if (!surface.texcoords.empty()) mesh.features.push_back(std::move(texcoord));
-  if (const PictureFile* picture = onlyPicture(surface, materials)) mesh.texture = picture->file;
+  if (const ImageFile* picture = onlyPicture(surface, materials)) mesh.texture = picture->file;
   return mesh;
 }
 

@@ -1,0 +1,48 @@
+#include "render/frame/offscreen_model.h"
+
+#include <numbers>
+#include <utility>
+
+#include "render/content/model_content.h"
+
+namespace merlin::render {
+
+Eigen::Isometry3f ModelView::T_eye_model() const {
+  constexpr float kRadian = std::numbers::pi_v<float> / 180;
+  Eigen::Isometry3f view = Eigen::Isometry3f::Identity();
+  view.rotate(Eigen::AngleAxisf(static_cast<float>(yaw_deg) * kRadian, Eigen::Vector3f::UnitY()));
+  view.rotate(Eigen::AngleAxisf(static_cast<float>(pitch_deg) * kRadian, Eigen::Vector3f::UnitX()));
+  return view;
+}
+
+Result<OffscreenModel> OffscreenModel::make(const Dendrogram& model, const ModelView& view,
+                                            const Clock& clock) {
+  TilesSettings tiles;
+  tiles.tile_width = tiles.frame_width = view.width;
+  tiles.tile_height = tiles.frame_height = view.height;
+  tiles.tiles = {{"model", TileKind::kOperator, 0, 0, 0}};
+  auto plan = planTiles(tiles);
+  if (!plan) return plan.error();
+  OffscreenModel made(view);
+  made.plan_ = std::make_unique<const TilePlan>(*std::move(plan));
+  ModelSettings settings = view.model;
+  settings.view_dependent = false;
+  settings.geomorph = 0;
+  auto contexts = DrawContexts::make({view.backend, 1, 0});
+  if (!contexts) return contexts.error();
+  auto content = ModelContent::make(model, settings, 1.0);
+  if (!content) return content.error();
+  auto renderer =
+      FrameRenderer::make(*std::move(content), *made.plan_, *std::move(contexts), clock);
+  if (!renderer) return renderer.error();
+  made.renderer_ = *std::move(renderer);
+  return made;
+}
+
+Image OffscreenModel::draw(std::size_t level) {
+  renderer_->draw({.T_eye_content = view_.T_eye_model(), .step = level});
+  const auto pixels = renderer_->pixels();
+  return {view_.width, view_.height, {pixels.begin(), pixels.end()}};
+}
+
+}  // namespace merlin::render

@@ -1,0 +1,81 @@
+#include "render/frame/pointer_marker.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace merlin::render {
+namespace {
+
+// Seen from across a hall, on a bright model as on a dark background.
+constexpr int kRadius_px = 9, kRim_px = 3;
+constexpr std::uint8_t kDisc[3] = {255, 120, 0}, kRim[3] = {20, 20, 20};
+
+// In the tile's own pixels, from its upper left corner; also beyond its edges.
+std::optional<Eigen::Vector2i> pixelIn(const Tile& tile, const Eigen::Vector3f& at_eye_m) {
+  const Eigen::Vector4f clip = tile.projection * tile.view * at_eye_m.homogeneous();
+  if (clip.w() <= 0) return std::nullopt;  // behind
+  const Eigen::Vector2f ndc = clip.head<2>() / clip.w();
+  if (ndc.cwiseAbs().maxCoeff() > 2) return std::nullopt;
+  return Eigen::Vector2i(
+      static_cast<int>(std::floor((ndc.x() + 1) / 2 * static_cast<float>(tile.width))),
+      static_cast<int>(std::floor((1 - ndc.y()) / 2 * static_cast<float>(tile.height))));
+}
+
+bool within(const Tile& tile, const Eigen::Vector2i& p) {
+  return p.x() >= 0 && p.y() >= 0 && p.x() < tile.width && p.y() < tile.height;
+}
+
+}  // namespace
+
+PointerMarker::PointerMarker(const TilePlan& plan) : plan_(plan) {
+  constexpr std::size_t kSide = 2 * kRadius_px + 1;
+  covered_.reserve(plan.tiles.size() * kSide * kSide);
+}
+
+std::optional<Eigen::Vector2i> PointerMarker::pixelOf(const Eigen::Vector3f& at_eye_m) const {
+  for (const Tile& tile : plan_.tiles) {
+    if (tile.kind != TileKind::kWall) continue;
+    const auto p = pixelIn(tile, at_eye_m);
+    if (p && within(tile, *p)) return Eigen::Vector2i(tile.x, tile.y) + *p;
+  }
+  return std::nullopt;
+}
+
+void PointerMarker::draw(std::span<std::uint8_t> pixels,
+                         const std::optional<Eigen::Vector3f>& at_eye_m) {
+  drawn_ = at_eye_m ? pixelOf(*at_eye_m) : std::nullopt;
+  if (!drawn_) return;
+  for (const Tile& tile : plan_.tiles) {
+    if (tile.kind == TileKind::kWall) drawIn(tile, *at_eye_m, pixels);
+  }
+}
+
+void PointerMarker::drawIn(const Tile& tile, const Eigen::Vector3f& at_eye_m,
+                           std::span<std::uint8_t> pixels) {
+  const auto middle = pixelIn(tile, at_eye_m);
+  if (!middle) return;
+  for (int y = -kRadius_px; y <= kRadius_px; ++y) {
+    for (int x = -kRadius_px; x <= kRadius_px; ++x) {
+      const Eigen::Vector2i p = *middle + Eigen::Vector2i(x, y);
+      const int from_middle = x * x + y * y;
+      if (from_middle > kRadius_px * kRadius_px || !within(tile, p)) continue;
+      const auto row = static_cast<std::size_t>(tile.y + p.y());
+      const std::size_t at = 4 * (row * static_cast<std::size_t>(plan_.frame_width) +
+                                  static_cast<std::size_t>(tile.x + p.x()));
+      covered_.push_back({at, {pixels[at], pixels[at + 1], pixels[at + 2]}});
+      constexpr int kInner = (kRadius_px - kRim_px) * (kRadius_px - kRim_px);
+      std::copy_n(from_middle <= kInner ? kDisc : kRim, 3, &pixels[at]);
+    }
+  }
+}
+
+void PointerMarker::erase(std::span<std::uint8_t> pixels) {
+  for (const Covered& c : covered_) std::copy_n(c.rgb, 3, &pixels[c.at]);
+  covered_.clear();
+}
+
+bool PointerMarker::moves(const std::optional<Eigen::Vector3f>& at_eye_m) const {
+  return (at_eye_m ? pixelOf(*at_eye_m) : std::nullopt) != drawn_;
+}
+
+}  // namespace merlin::render

@@ -1,0 +1,117 @@
+#include "render/frame/tile_painter.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace merlin::render {
+namespace {
+
+struct Size {
+  int width, height;
+};
+
+// Repeats each pixel of `from` `times` x `times` times. Where `to` is no multiple, the last row and
+// column fill what is left.
+void upscale(std::span<const std::uint8_t> from, Size size, int times, std::uint8_t* to,
+             Size upscaled, int stride_px) {
+  for (int y = 0; y < upscaled.height; ++y) {
+    const std::uint8_t* row = &from[static_cast<std::size_t>(4) *
+                                    static_cast<std::size_t>(std::min(y / times, size.height - 1)) *
+                                    static_cast<std::size_t>(size.width)];
+    std::uint8_t* out = to + std::ptrdiff_t{4} * y * stride_px;
+    for (int x = 0; x < upscaled.width; ++x)
+      std::copy_n(row + std::ptrdiff_t{4} * std::min(x / times, size.width - 1), 4, out + 4 * x);
+  }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<TilePainter>> TilePainter::make(const GlApi& gl, const Content& content,
+                                                       const TilePlan& plan, const Clock& clock) {
+  std::unique_ptr<TilePainter> painter(new TilePainter(gl, plan, clock));
+  auto renderer = content.attach(gl);
+  if (!renderer) return renderer.error();
+  painter->renderer_ = *std::move(renderer);
+  painter->targets_.reserve(plan.tiles.size());
+  for (const Tile& tile : plan.tiles) {
+    auto target = RenderTarget::make(gl, tile.width, tile.height);
+    if (!target) return target.error();
+    painter->targets_.push_back(*std::move(target));
+  }
+  return painter;
+}
+
+void TilePainter::begin() {
+  const Timestamp began = clock_.now();
+  refined_tile_ = TileQueue::kNone;
+  renderer_->beginFrame();
+  stepDone(FrameStep::Kind::kUpload, 0, began);
+}
+
+Timestamp TilePainter::stepDone(FrameStep::Kind kind, std::size_t tile, Timestamp began) {
+  const Timestamp ended = clock_.now();
+  steps_.push_back({kind, static_cast<std::uint16_t>(tile), began, ended});
+  return ended;
+}
+
+void TilePainter::beginTile(std::size_t tile, int divisor) {
+  const Tile& t = plan_.tiles[tile];
+  targets_[tile].bind();
+  renderer_->beginView(tile, t.width / divisor, t.height / divisor);
+}
+
+void TilePainter::readTile(std::size_t tile, int divisor, std::span<std::uint8_t> canvas) {
+  const Tile& t = plan_.tiles[tile];
+  const auto at =
+      static_cast<std::size_t>(4) * static_cast<std::size_t>(t.y * plan_.frame_width + t.x);
+  if (divisor == 1) return targets_[tile].read(canvas.data() + at, plan_.frame_width);
+  const int width = t.width / divisor, height = t.height / divisor;
+  small_.resize(std::size_t{4} * static_cast<std::size_t>(width) *
+                static_cast<std::size_t>(height));
+  targets_[tile].read(small_.data(), width, width, height);
+  upscale(small_, {width, height}, divisor, canvas.data() + at, {t.width, t.height},
+          plan_.frame_width);
+}
+
+void TilePainter::draw(std::size_t tile, int divisor, std::span<std::uint8_t> canvas,
+                       DrawTimes& times) {
+  const Timestamp began = clock_.now();
+  beginTile(tile, divisor);
+  const Timestamp cleared = clock_.now();
+  DrawProgress progress;
+  for (bool whole = false; !whole;) {
+    whole = renderer_->drawSlice(tile, progress);
+    gl_.Flush();
+  }
+  const Timestamp drawn = stepDone(FrameStep::Kind::kDraw, tile, began);
+  readTile(tile, divisor, canvas);
+  const Timestamp read = stepDone(FrameStep::Kind::kReadBack, tile, drawn);
+  times.drawing += drawn - cleared;
+  times.fixed += (cleared - began) + (read - drawn);
+}
+
+void TilePainter::refine(TileQueue& queue, std::span<std::uint8_t> canvas, Timestamp until) {
+  bool idle = true;
+  for (Timestamp now = clock_.now(); now + slice_time_ * 3 / 2 < until;) {
+    idle = false;
+    if (refined_tile_ == TileQueue::kNone) {
+      refined_tile_ = queue.take();
+      if (refined_tile_ == TileQueue::kNone) return;
+      refined_ = {};
+      beginTile(refined_tile_, 1);
+    }
+    const bool whole = renderer_->drawSlice(refined_tile_, refined_);
+    gl_.Finish();
+    if (whole) {
+      readTile(refined_tile_, 1, canvas);
+      refined_tile_ = TileQueue::kNone;
+      queue.done();
+    }
+    const Timestamp then = std::exchange(now, clock_.now());
+    slice_time_ = std::max<Duration>(now - then, slice_time_ * 9 / 10);
+  }
+  // Where slices take longer than a period has, the figure fades until one is tried again.
+  if (idle) slice_time_ = slice_time_ * 9 / 10;
+}
+
+}  // namespace merlin::render

@@ -1,0 +1,133 @@
+#include "render/image/image_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <png.h>
+#include <turbojpeg.h>
+
+#include "daemon/base/files.h"
+
+namespace merlin::render {
+namespace {
+
+constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 28;
+
+// With room for pixels, or, where the head is all that is asked for, without.
+Result<ImageFile> sized(std::uint64_t width, std::uint64_t height, bool head) {
+  if (width == 0 || height == 0 || width > kMostPixels / height) {
+    return Error{Errc::kUnsupported,
+                 fmt::format("{} x {} pixels; 1 to 2^28 are read", width, height)};
+  }
+  ImageFile picture{static_cast<int>(width), static_cast<int>(height), {}, {}};
+  if (!head) picture.pixels.resize(3 * width * height);
+  return picture;
+}
+
+Result<ImageFile> readPng(std::string_view bytes, bool head) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  const auto broken = [&] {
+    const std::string what = image.message;
+    png_image_free(&image);
+    return Error{Errc::kMalformed, "PNG: " + what};
+  };
+  if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size())) return broken();
+  image.format = PNG_FORMAT_RGB;
+  auto picture = sized(image.width, image.height, head);
+  if (!picture || head) {
+    png_image_free(&image);
+    return picture;
+  }
+  const png_color black{0, 0, 0};  // behind what is transparent
+  if (!png_image_finish_read(&image, &black, picture->pixels.data(), 0, nullptr)) return broken();
+  return picture;
+}
+
+Result<ImageFile> readJpeg(std::string_view bytes, bool head) {
+  const std::unique_ptr<void, decltype(&tjDestroy)> jpeg(tjInitDecompress(), &tjDestroy);
+  const auto broken = [&] {
+    return Error{Errc::kMalformed, fmt::format("JPEG: {}", tjGetErrorStr2(jpeg.get()))};
+  };
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+  int width = 0, height = 0, sampling = 0, space = 0;
+  if (tjDecompressHeader3(jpeg.get(), data, bytes.size(), &width, &height, &sampling, &space) != 0)
+    return broken();
+  auto picture = sized(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), head);
+  if (!picture || head) return picture;
+  // The slow transform: the same bytes whatever the processor's lanes.
+  if (tjDecompress2(jpeg.get(), data, bytes.size(), picture->pixels.data(), width, 0, height,
+                    TJPF_RGB, TJFLAG_ACCURATEDCT) != 0)
+    return broken();
+  return picture;
+}
+
+Result<ImageFile> readAny(std::string_view bytes, bool head) {
+  if (bytes.starts_with("\x89PNG")) return readPng(bytes, head);
+  if (bytes.starts_with("\xFF\xD8")) return readJpeg(bytes, head);
+  return Error{Errc::kUnsupported, "is neither PNG nor JPEG"};
+}
+
+// Of n pixels in a row, the two that a place 0..1 lies between, and how far towards the second.
+struct Between {
+  int low, high;
+  float share;
+};
+
+Between between(float place, int n, bool clamped) noexcept {
+  const double unit =
+      clamped ? std::clamp(double{place}, 0.0, 1.0) : place - std::floor(double{place});
+  const double x = unit * n - 0.5;
+  const int low = static_cast<int>(std::floor(x));
+  const auto inside = [&](int i) { return clamped ? std::clamp(i, 0, n - 1) : (i + n) % n; };
+  return {inside(low), inside(low + 1), static_cast<float>(x - low)};
+}
+
+}  // namespace
+
+std::array<float, 3> ImageFile::at(float u, float v, bool clamped) const noexcept {
+  const Between x = between(u, width, clamped),
+                y = between(-v + (clamped ? 1.0F : 0.0F), height, clamped);
+  const auto pixel = [&](int column, int row) {
+    return &pixels[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                        static_cast<std::size_t>(column))];
+  };
+  const std::uint8_t *a = pixel(x.low, y.low), *b = pixel(x.high, y.low);
+  const std::uint8_t *c = pixel(x.low, y.high), *d = pixel(x.high, y.high);
+  std::array<float, 3> colour{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float top = static_cast<float>(a[k]) + x.share * static_cast<float>(b[k] - a[k]);
+    const float bottom = static_cast<float>(c[k]) + x.share * static_cast<float>(d[k] - c[k]);
+    colour[k] = (top + y.share * (bottom - top)) / 255;
+  }
+  return colour;
+}
+
+Result<ImageFile> decodeImage(std::span<const std::uint8_t> file) {
+  return readAny({reinterpret_cast<const char*>(file.data()), file.size()}, false);
+}
+
+Result<std::size_t> imageBytes(const std::string& path) {
+  const auto file = MappedFile::open(path);
+  if (!file) return file.error();
+  const auto picture = readAny(file->text(), true);
+  if (!picture) return Error{picture.error().code, path + ": " + picture.error().what};
+  return std::size_t{3} * static_cast<std::size_t>(picture->width) *
+         static_cast<std::size_t>(picture->height);
+}
+
+Result<ImageFile> readImage(const std::string& path) {
+  const auto file = MappedFile::open(path);
+  if (!file) return file.error();
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(file->bytes().data()),
+                        file->bytes().size());
+  auto picture = decodeImage(bytes);
+  if (!picture) return Error{picture.error().code, path + ": " + picture.error().what};
+  picture->file.assign(bytes.begin(), bytes.end());
+  return picture;
+}
+
+}  // namespace merlin::render

@@ -1,0 +1,312 @@
+// The wall's picture, drawn by Mesa: tiles that continue one another, whatever else is drawn.
+#include "render/frame/frame_renderer.h"
+
+#include <map>
+#include <numbers>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "render/reduce/reduce.h"
+#include "tests/support/meshes.h"
+#include "tests/support/model_frames.h"
+#include "tests/support/pictures.h"
+
+namespace merlin::render {
+namespace {
+
+using test::Image;
+
+constexpr int kTileWidth = 160, kTileHeight = 120;
+
+const render::Dendrogram& model() {
+  static const render::Dendrogram made = [] {
+    render::Mesh mesh = test::noisyGrid(60, 20, 0.3, 5);
+    render::ensureNormals(mesh);
+    return render::buildDendrogram(mesh, render::reduce(mesh, {})->log);
+  }();
+  return made;
+}
+
+// Right in front of the eye and so wide that all three tiles are full of it.
+Eigen::Isometry3f inFront() {
+  Eigen::Isometry3f T_eye_model(Eigen::Translation3f(0.1F, 0.05F, -1.2F));
+  T_eye_model.rotate(Eigen::AngleAxisf(0.2F, Eigen::Vector3f::UnitY()));
+  return T_eye_model;
+}
+
+TilesSettings fourTiles() {
+  TilesSettings s;
+  s.tile_width = kTileWidth;
+  s.tile_height = kTileHeight;
+  s.frame_width = 2 * kTileWidth;
+  s.frame_height = 2 * kTileHeight;
+  for (render::TileSettings& t : s.tiles) {
+    t.x /= 4;
+    t.y /= 4;
+  }
+  return s;
+}
+
+struct Wall {
+  explicit Wall(const TilesSettings& settings, GlBackend backend = GlBackend::kEgl,
+                int contexts = 0)
+      : plan(*render::planTiles(settings)),
+        renderer(*test::rendererOf(model(), plan, {.gl = {backend, contexts, 0}, .model = {}}, 2.0,
+                                   clock)) {}
+
+  Image tile(std::size_t index) const {
+    const render::Tile& t = plan.tiles[index];
+    Image image{t.width, t.height, {}};
+    for (int y = t.y; y < t.y + t.height; ++y) {
+      const auto from = renderer->pixels().begin() + 4 * (y * plan.frame_width + t.x);
+      image.pixels.insert(image.pixels.end(), from, from + 4 * t.width);
+    }
+    return image;
+  }
+  void draw(std::size_t level = 0) { renderer->draw({.T_eye_content = inFront(), .step = level}); }
+
+  SystemClock clock;
+  render::TilePlan plan;
+  std::unique_ptr<FrameRenderer> renderer;
+};
+
+TEST(FrameRenderer, MiddleTileAloneIsTheSamePixels) {
+  Wall wall(fourTiles());
+  wall.draw();
+  TilesSettings alone = fourTiles();
+  alone.frame_width = kTileWidth;
+  alone.frame_height = kTileHeight;
+  alone.tiles = {{"centre", TileKind::kWall, 0, 0, 0}};
+  Wall one(alone);
+  one.draw();
+  EXPECT_EQ(one.tile(0).pixels, wall.tile(1).pixels);
+  EXPECT_NE(wall.tile(0).pixels, wall.tile(1).pixels);
+}
+
+// At half its size a tile is the same picture in blocks of 2 x 2; what is refined is whole.
+TEST(FrameRenderer, HalfTheSizeIsEnlargedAndGoesWhenItIsRefined) {
+  Wall wall(fourTiles());
+  wall.draw();
+  const Image full = wall.tile(1);
+  wall.renderer->setSizeDivisor(2);
+  wall.draw(1);
+  const Image half = wall.tile(1);
+  double off = 0;
+  for (int y = 0; y < half.height; ++y) {
+    for (int x = 0; x < half.width; ++x) {
+      ASSERT_EQ(test::difference(half.at(x, y), half.at(x / 2 * 2, y / 2 * 2)), 0);
+      off += test::difference(half.at(x, y), full.at(x, y));
+    }
+  }
+  EXPECT_GT(off, 0);
+  EXPECT_LT(off / (half.width * half.height), 8) << "of 255";
+  wall.renderer->beginRefining(inFront(), 0);
+  while (!wall.renderer->refine(wall.clock.now() + std::chrono::milliseconds(20)))
+    ASSERT_EQ(wall.tile(1).pixels, half.pixels) << "shown when it is whole";
+  EXPECT_EQ(wall.tile(1).pixels, full.pixels);
+}
+
+// Vertices that were on their way stand at their own places again.
+TEST(FrameRenderer, FullDetailIsWithoutGeomorphs) {
+  Wall wall(fourTiles());
+  wall.draw();
+  const Image full = wall.tile(1);
+  const std::size_t level = model().levelFor(600);
+  wall.draw(level);
+  const Image moving = wall.tile(1);
+  wall.draw();
+  EXPECT_EQ(wall.tile(1).pixels, full.pixels);
+  wall.draw(level);
+  EXPECT_EQ(wall.tile(1).pixels, moving.pixels) << "a function of the level alone";
+}
+
+// Whoever draws which tile.
+TEST(FrameRenderer, TwoContextsDrawThePixelsOfOne) {
+  Wall one(fourTiles(), GlBackend::kEgl, 1), two(fourTiles(), GlBackend::kEgl, 2);
+  EXPECT_EQ(two.renderer->contexts()->renderer(),
+            one.renderer->contexts()->renderer() + ", two contexts");
+  const auto same = [&] {
+    return std::ranges::equal(one.renderer->pixels(), two.renderer->pixels());
+  };
+  for (const std::size_t triangles : {2000U, 800U, 300U, 1500U}) {
+    for (Wall* wall : {&one, &two}) wall->draw(model().levelFor(triangles));
+    EXPECT_TRUE(same()) << triangles;
+  }
+  for (Wall* wall : {&one, &two}) {
+    wall->renderer->beginRefining(inFront(), 0);
+    while (!wall->renderer->refine(wall->clock.now() + std::chrono::milliseconds(20))) continue;
+  }
+  EXPECT_TRUE(same());
+  one.draw();
+  EXPECT_TRUE(same()) << "full detail, drawn at once by one";
+}
+
+TEST(FrameRenderer, OsmesaHasOneContextForAProcess) {
+  const auto plan = *render::planTiles(fourTiles());
+  const SystemClock clock;
+  const auto two =
+      test::rendererOf(model(), plan, {.gl = {GlBackend::kOsmesa, 2, 0}, .model = {}}, 2.0, clock);
+  ASSERT_FALSE(two);
+  EXPECT_EQ(two.error().what,
+            "render.contexts: OSMesa has one for a process; set it to 1, or render.backend to egl");
+}
+
+// As a wall of several models has them: what one draws leaves nothing behind for the other.
+TEST(FrameRenderer, TwoInOneContextDrawWhatEachDrawsAlone) {
+  Wall alone(fourTiles()), first(fourTiles());
+  const SystemClock clock;
+  RenderSettings dark;
+  dark.model.style.brightness = 0.5F;
+  const auto second =
+      *test::rendererOf(model(), first.plan, dark, 2.0, clock, first.renderer->contexts());
+  alone.draw();
+  first.draw();
+  second->draw({.T_eye_content = inFront(), .step = 10});
+  EXPECT_FALSE(std::ranges::equal(second->pixels(), alone.renderer->pixels()));
+  first.draw(5);
+  first.draw();
+  EXPECT_TRUE(std::ranges::equal(first.renderer->pixels(), alone.renderer->pixels()));
+}
+
+// How much two columns that touch differ, on average, 0..255.
+double step(const Image& left, int x, const Image& right, int y) {
+  double sum = 0;
+  for (int row = 0; row < left.height; ++row)
+    sum += test::difference(left.at(x, row), right.at(y, row));
+  return sum / left.height;
+}
+
+TEST(FrameRenderer, TilesContinueOneAnotherAtTheSeams) {
+  Wall wall(fourTiles());
+  wall.draw();
+  const Image left = wall.tile(0), centre = wall.tile(1), right = wall.tile(2);
+  const int last = kTileWidth - 1;
+  const double inside = (step(left, last - 1, left, last) + step(centre, 0, centre, 1) +
+                         step(centre, last - 1, centre, last) + step(right, 0, right, 1)) /
+                        4;
+  ASSERT_GT(inside, 0.5);  // there is something to see
+  EXPECT_LT(step(left, last, centre, 0), 2 * inside);
+  EXPECT_LT(step(centre, last, right, 0), 2 * inside);
+  EXPECT_GT(step(right, last, left, 0), 3 * inside);  // what two edges that do not touch look like
+}
+
+// One wide view of both tiles' field, halfway between them, has what each has at the seam.
+TEST(FrameRenderer, SeamIsWhereOneWideViewHasIt) {
+  Wall wall(fourTiles());
+  wall.draw();
+  TilesSettings between = fourTiles();
+  between.frame_width = kTileWidth;
+  between.frame_height = kTileHeight;
+  between.tiles = {{"half left", TileKind::kWall, 0, 0, 0.5}};
+  Wall one(between);
+  one.draw();
+  // The seam is the middle of this view: its ray is the same, its pixels are a little smaller.
+  const Image left = wall.tile(0), centre = wall.tile(1), half = one.tile(0);
+  const auto far = [](const Image& a, int x, int y, const Image& b) {
+    return test::difference(a.at(x, y), b.at(kTileWidth / 2, kTileHeight / 2));
+  };
+  EXPECT_LE(std::min(far(left, kTileWidth - 1, kTileHeight / 2, half),
+                     far(centre, 0, kTileHeight / 2, half)),
+            12);
+}
+
+TEST(FrameRenderer, RefiningInSlicesEndsInTheSamePicture) {
+  Wall wall(fourTiles());
+  wall.draw(0);
+  const std::vector<std::uint8_t> whole(wall.renderer->pixels().begin(),
+                                        wall.renderer->pixels().end());
+  wall.draw(model().levelFor(200));
+  EXPECT_FALSE(std::equal(whole.begin(), whole.end(), wall.renderer->pixels().begin()));
+  wall.renderer->beginRefining(inFront(), 0);
+  while (!wall.renderer->refine(wall.clock.now() + std::chrono::milliseconds(20))) {
+  }
+  EXPECT_TRUE(std::equal(whole.begin(), whole.end(), wall.renderer->pixels().begin()));
+}
+
+TEST(FrameRenderer, RefiningToALevelEndsInThatLevelsPicture) {
+  Wall wall(fourTiles());
+  const std::size_t level = model().levelFor(400);
+  wall.draw(level);
+  const std::vector<std::uint8_t> whole(wall.renderer->pixels().begin(),
+                                        wall.renderer->pixels().end());
+  wall.draw(model().levelFor(100));
+  EXPECT_FALSE(std::equal(whole.begin(), whole.end(), wall.renderer->pixels().begin()));
+  wall.renderer->beginRefining(inFront(), level);
+  while (!wall.renderer->refine(wall.clock.now() + std::chrono::milliseconds(20))) {
+  }
+  EXPECT_TRUE(std::equal(whole.begin(), whole.end(), wall.renderer->pixels().begin()));
+}
+
+TEST(FrameRenderer, SaysWhatItsTimeWentTo) {
+  Wall wall(fourTiles(), GlBackend::kEgl, 1);
+  wall.draw(model().levelFor(200));
+  std::vector<FrameStep::Kind> kinds;
+  Timestamp last{};
+  for (const FrameStep& step : wall.renderer->steps()) {
+    kinds.push_back(step.kind);
+    EXPECT_GE(step.begin, last);
+    EXPECT_GE(step.end, step.begin);
+    last = step.end;
+  }
+  using enum FrameStep::Kind;
+  EXPECT_EQ(kinds, (std::vector{kChoose, kUpload, kDraw, kReadBack, kDraw, kReadBack, kDraw,
+                                kReadBack, kDraw, kReadBack}));
+}
+
+// One thread's steps after the other's; each tile is drawn by one of them.
+TEST(FrameRenderer, SaysWhatTheTimeOfBothThreadsWentTo) {
+  Wall wall(fourTiles(), GlBackend::kEgl, 2);
+  wall.draw(model().levelFor(200));
+  std::map<FrameStep::Kind, std::multiset<int>> tiles;
+  for (const FrameStep& step : wall.renderer->steps()) tiles[step.kind].insert(step.tile);
+  using enum FrameStep::Kind;
+  EXPECT_EQ(tiles[kChoose].size(), 1U);
+  EXPECT_EQ(tiles[kUpload].size(), 2U);
+  EXPECT_EQ(tiles[kDraw], (std::multiset{0, 1, 2, 3}));
+  EXPECT_EQ(tiles[kReadBack], (std::multiset{0, 1, 2, 3}));
+}
+
+TEST(FrameRenderer, OperatorSeesTheWholeModel) {
+  Wall wall(fourTiles());
+  wall.draw();
+  const Image operators = wall.tile(3);
+  const test::Rgba background{15, 18, 23, 255};
+  EXPECT_GT(operators.covered(background), kTileWidth * kTileHeight / 20);
+  for (int x = 0; x < kTileWidth; ++x) {
+    EXPECT_EQ(operators.at(x, 0), background);
+    EXPECT_EQ(operators.at(x, kTileHeight - 1), background);
+  }
+  for (int y = 0; y < kTileHeight; ++y) {
+    EXPECT_EQ(operators.at(0, y), background);
+    EXPECT_EQ(operators.at(kTileWidth - 1, y), background);
+  }
+}
+
+TEST(FrameRenderer, OperatorsViewGivesWayBeforeTheFrameIsLate) {
+  Wall wall(fourTiles());
+  wall.draw();
+  const Image left = wall.tile(0), operators = wall.tile(3);
+  const DrawTimes times = wall.renderer->draw({inFront(), 0, wall.clock.now()});
+  EXPECT_TRUE(times.gave_way);
+  EXPECT_EQ(wall.tile(0).pixels, left.pixels);
+  EXPECT_NE(wall.tile(3).pixels, operators.pixels);
+}
+
+TEST(FrameRenderer, OsmesaDrawsTheSameWall) {
+  Image egl, osmesa;
+  {
+    Wall wall(fourTiles());
+    wall.draw();
+    egl = wall.tile(1);
+  }
+  {
+    Wall wall(fourTiles(), GlBackend::kOsmesa);
+    wall.draw();
+    osmesa = wall.tile(1);
+  }
+  EXPECT_LE(1000 * test::differing(egl, osmesa, 2), kTileWidth * kTileHeight);
+}
+
+}  // namespace
+}  // namespace merlin::render

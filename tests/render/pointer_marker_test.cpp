@@ -1,0 +1,85 @@
+#include "render/frame/pointer_marker.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace merlin::render {
+namespace {
+
+using Eigen::Vector2i;
+using Eigen::Vector3f;
+
+class PointerMarkerTest : public testing::Test {
+ protected:
+  std::size_t at(int x, int y) const {
+    return 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(plan_.frame_width) +
+                static_cast<std::size_t>(x));
+  }
+  // A pixel that nothing was drawn on is grey.
+  bool marked(int x, int y) const { return pixels_[at(x, y)] != 90; }
+  std::size_t markedPixels() const {
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < pixels_.size(); i += 4) n += pixels_[i] != 90;
+    return n;
+  }
+
+  render::TilePlan plan_ = *render::planTiles({});  // W1: 640 x 480, 40 degrees each
+  std::vector<std::uint8_t> pixels_ = std::vector<std::uint8_t>(4 * 1280 * 960, 90);
+  PointerMarker marker_{plan_};
+};
+
+// The centre tile is the frame's upper right one.
+TEST_F(PointerMarkerTest, StraightAheadIsTheMiddleOfTheCentreTile) {
+  EXPECT_EQ(marker_.pixelOf({0, 0, -2}), Vector2i(960, 240));
+  marker_.draw(pixels_, Vector3f(0, 0, -2));
+  EXPECT_EQ(pixels_[at(960, 240)], 255);
+  EXPECT_EQ(pixels_[at(960, 240) + 1], 120);
+  EXPECT_TRUE(marked(969, 240));
+  EXPECT_FALSE(marked(970, 240));
+  EXPECT_EQ(pixels_[at(969, 240)], 20) << "a dark rim";
+  EXPECT_EQ(pixels_[at(960, 240) + 3], 90) << "alpha stays";
+}
+
+// 20 degrees to the left is the seam of the left tile (upper left in the frame) and the centre's.
+TEST_F(PointerMarkerTest, ADiscOverASeamIsInBothTiles) {
+  const float seam = 20 * std::numbers::pi_v<float> / 180 - 0.001F;
+  marker_.draw(pixels_, Vector3f(-std::sin(seam), 0, -std::cos(seam)));
+  EXPECT_TRUE(marked(641, 240));
+  EXPECT_TRUE(marked(638, 240)) << "the left tile's right edge";
+  EXPECT_FALSE(marked(700, 240));
+}
+
+TEST_F(PointerMarkerTest, EraseBringsThePixelsBack) {
+  const auto before = pixels_;
+  for (const Vector3f& p : {Vector3f(0, 0, -2), Vector3f(0.1F, 0.5F, -2), Vector3f(-0.7F, 0, -2)}) {
+    marker_.draw(pixels_, p);
+    EXPECT_NE(pixels_, before);
+    marker_.erase(pixels_);
+    EXPECT_EQ(pixels_, before);
+  }
+}
+
+TEST_F(PointerMarkerTest, WhatNoWallTileShowsIsNotDrawn) {
+  for (const Vector3f& p : {Vector3f(0, 0, 2), Vector3f(0, 2, -1), Vector3f(5, 0, 0.1F)}) {
+    EXPECT_EQ(marker_.pixelOf(p), std::nullopt);
+    marker_.draw(pixels_, p);
+    EXPECT_EQ(markedPixels(), 0u);
+  }
+  marker_.draw(pixels_, std::nullopt);
+  EXPECT_EQ(markedPixels(), 0u);
+}
+
+TEST_F(PointerMarkerTest, MovesByWholePixels) {
+  EXPECT_FALSE(marker_.moves(std::nullopt));
+  EXPECT_TRUE(marker_.moves(Vector3f(0, 0, -2)));
+  marker_.draw(pixels_, Vector3f(0, 0, -2));
+  marker_.erase(pixels_);
+  EXPECT_FALSE(marker_.moves(Vector3f(0.0001F, 0, -2)));
+  EXPECT_TRUE(marker_.moves(Vector3f(0.01F, 0, -2)));
+  EXPECT_TRUE(marker_.moves(std::nullopt)) << "it goes";
+}
+
+}  // namespace
+}  // namespace merlin::render
