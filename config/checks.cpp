@@ -239,6 +239,19 @@ void checkDoers(const Settings& s, LoadedSettings& loaded) {
   }
 }
 
+void checkOutputs(const WallSettings& wall, LoadedSettings& loaded) {
+  for (const auto& [pointer, what] : render::validate(wall.outputs))
+    loaded.wrong("/wall/outputs" + pointer, what);
+  const bool shared = std::any_of(wall.outputs.begin(), wall.outputs.end(), [](const auto& o) {
+    return o.kind == render::OutputKind::kSharedMemory;
+  });
+  if (!wall.snapshots.empty() && !shared) {
+    loaded.wrong("/wall/snapshots",
+                 "needs an output of kind shared_memory, from which snapshots are taken; "
+                 "/wall/outputs has none");
+  }
+}
+
 void checkGroup(const SettingFaults& faults, const std::string& group, LoadedSettings& loaded) {
   for (const auto& [pointer, what] : faults)
     loaded.wrong(group + pointer, "cannot be used: " + what);
@@ -259,6 +272,7 @@ void checkTogether(LoadedSettings& loaded) {
   checkAxes(s.devices.ball.axis_map, "/devices/ball/axis_map", loaded);
   checkGroup(render::validate(s.wall.tiles), "/wall/tiles", loaded);
   checkGroup(render::validate(s.wall.scene), "/wall/scene", loaded);
+  checkOutputs(s.wall, loaded);
   checkRate(s.wall.governor, loaded);
   checkBindings(s.wall.scene.bindings, loaded);
   checkButton(s, loaded);

@@ -271,10 +271,17 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
          "The folder for the frames that the action snapshot writes; empty: none.");
   v.integer("snapshots_kept", w.snapshots_kept, {1, 1e6},
             "The number of snapshots that are kept in the folder; the oldest are removed.");
-  v.group("png", "The newest frame as a file, now and then.", [&] {
-    v.path("path", w.png.path, "Of the file; empty: none.");
-    v.number("interval_s", w.png.interval_s, {1, 86400}, "Between two files, at least, seconds.");
-  });
+  v.listOf<render::OutputSettings>(
+      "outputs", w.outputs, "Where the frames go. One that fails takes nothing with it.",
+      [&](render::OutputSettings& o) {
+        v.oneOf("kind", o.kind, render::kOutputKindNames,
+                "shared_memory: for merlin snapshot and other programs on this machine, at most "
+                "once; png: the newest frame as a file, now and then.");
+        v.text("name", o.name, "The output's name in status and events; empty: its kind.");
+        v.path("path", o.path, "The file that an output of kind png writes.");
+        v.number("interval_s", o.interval_s, {1, 86400},
+                 "The shortest time between two files of an output of kind png, in seconds.");
+      });
 }
 
 }  // namespace

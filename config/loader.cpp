@@ -10,6 +10,7 @@
 
 #include "config/checks.h"
 #include "config/json_tree.h"
+#include "config/migrate.h"
 #include "config/visitor.h"
 #include "daemon/base/files.h"
 #include "daemon/base/nearest.h"
@@ -130,9 +131,20 @@ class Loader final : public SettingsVisitor {
         continue;
       if (member.key == "$schema" && levels_.size() == 1) continue;
       loaded_.add({false, member.line, level.pointer + "/" + escapePointer(member.key),
-                   "is no setting; " + suggestion(member.key, level.known)});
+                   whatOf(level.pointer + "/" + member.key, member.key, level.known)});
     }
     levels_.pop_back();
+  }
+
+  std::string whatOf(const std::string& pointer, const std::string& key,
+                     const std::vector<std::string>& known) const {
+    if (const MovedSetting* moved = findMoved(pointer)) {
+      return fmt::format(
+          "is the form of an earlier version; {}; merlin config migrate FILE "
+          "rewrites the file",
+          moved->now);
+    }
+    return "is not a known setting; " + suggestion(key, known);
   }
 
   std::string suggestion(const std::string& key, const std::vector<std::string>& known) const {

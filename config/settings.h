@@ -64,7 +64,7 @@ struct WallSettings {
   render::TilesSettings tiles;
   render::SceneSettings scene;
   render::RenderSettings render;
-  render::PngSinkSettings png;
+  std::vector<render::OutputSettings> outputs = {{}};
   std::string snapshots;  // where the action snapshot puts its files, a folder; empty: nowhere
   int snapshots_kept = 1000;
 };

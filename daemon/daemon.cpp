@@ -269,11 +269,6 @@ void Daemon::housekeeping() {
   if (devices_) devices_->beat(now);
   if (wall_) wall_->beat(now);
   if (mirror_) mirror_->beat(now);
-  if (wall_ && !settings_.wall.png.path.empty()) {
-    const std::string fault = wall_->pictureFault();
-    fault.empty() ? services_.ok("picture")
-                  : services_.failed("picture", "/wall/png/path: " + fault);
-  }
   orders_->poll(now);
   servers_->tend(now);
   if (emulators_) {

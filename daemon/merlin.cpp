@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   for (const auto add :
        {cli::addStatus, cli::addWatch, cli::addSnapshot, cli::addWall, cli::addTrace, cli::addMesh,
         cli::addPosture, cli::addEmulate, cli::addRecord, cli::addReplay, cli::addFlight,
-        cli::addCalibrate, cli::addKeys, cli::addShm, cli::addCommandsByName}) {
+        cli::addCalibrate, cli::addConfig, cli::addKeys, cli::addShm, cli::addCommandsByName}) {
     add(program, run);
   }
   std::vector<std::string> names;

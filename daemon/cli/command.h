@@ -15,6 +15,7 @@ using Run = std::function<int()>;
 // One file each.
 void addCalibrate(Command app, Run& run);
 void addCommandsByName(Command app, Run& run);
+void addConfig(Command app, Run& run);
 void addEmulate(Command app, Run& run);
 void addFlight(Command app, Run& run);
 void addKeys(Command app, Run& run);

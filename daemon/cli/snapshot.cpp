@@ -8,7 +8,7 @@
 #include "daemon/cli/print.h"
 #include "daemon/shm/segment.h"
 #include "render/image/png_writer.h"
-#include "render/out/shm_sink.h"
+#include "render/out/shared_frame.h"
 
 namespace merlin::cli {
 namespace {
@@ -34,7 +34,7 @@ int snapshot(const SnapshotOptions& options) {
   const auto written = render::writePng(options.output, frame->width, frame->height, frame->pixels);
   if (!written) return fail(written.error());
   say("{}: {} x {}, frame {}, {} triangles{}\n", options.output, frame->width, frame->height,
-      frame->info.sequence, frame->info.triangles, frame->info.full_detail ? ", full detail" : "");
+      frame->info.sequence, frame->info.cost, frame->info.full_detail ? ", full detail" : "");
   return kExitDone;
 }
 

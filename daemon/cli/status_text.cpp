@@ -54,6 +54,20 @@ std::string paceLines(const Json& s) {
   return text + histogramChart(s.value("work_histogram", std::vector<std::uint32_t>{}));
 }
 
+std::string outputLines(const Json& s) {
+  std::string text;
+  if (!s.contains("outputs")) return text;
+  for (const auto& [name, output] : s["outputs"].items()) {
+    const bool failed = output.value("health", "") == "failed";
+    text += fmt::format(
+        "output   {:14} {:8} {}\n", name, output.value("health", ""),
+        failed ? output.value("reason", "")
+               : fmt::format("{:.1f} Hz shown, {:.2f} % late", output.value("shown_hz", 0.0),
+                             output.value("late_percent", 0.0)));
+  }
+  return text;
+}
+
 }  // namespace
 
 // Pairs of buckets: an eighth of the period a line, those that are not empty and between.
@@ -140,7 +154,7 @@ std::string statusTable(const Json& s) {
         "{:.0f} %\n",
         s.value("work_median_ms", 0.0), 100 * s.value("utilisation", 0.0),
         100 * s.value("head_room", 0.0));
-    text += paceLines(s);
+    text += paceLines(s) + outputLines(s);
   }
   if (!s.contains("devices")) return text + serverLines(s);
   const std::string posture = s.value("posture", "");

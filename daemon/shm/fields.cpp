@@ -210,6 +210,23 @@ void addInteraction(FieldTable& t) {
   MERLIN_FIELD(t, WallInteraction, content, "");
 }
 
+void addOutputs(FieldTable& t) {
+  t.slot("outputs", offsetof(WallSegment, outputs));
+  MERLIN_FIELD(t, WallOutputs, count, "");
+  const auto each = [&t]<typename Member>(Member OutputStats::*, const char* name, std::size_t at,
+                                          const char* unit) {
+    t.addOfEach<Member>(name, offsetof(WallOutputs, outputs) + at, unit,
+                        std::extent_v<decltype(WallOutputs::outputs)>, sizeof(OutputStats));
+  };
+  each(&OutputStats::name, "name", offsetof(OutputStats, name), "");
+  each(&OutputStats::kind, "kind", offsetof(OutputStats, kind), "");
+  each(&OutputStats::frames, "frames", offsetof(OutputStats, frames), "");
+  each(&OutputStats::failed, "failed", offsetof(OutputStats, failed), "");
+  each(&OutputStats::shown_hz, "shown_hz", offsetof(OutputStats, shown_hz), "Hz");
+  each(&OutputStats::late_share, "late_share", offsetof(OutputStats, late_share), "");
+  each(&OutputStats::fault, "fault", offsetof(OutputStats, fault), "");
+}
+
 }  // namespace
 
 std::vector<Field> devicesFields() {
@@ -239,6 +256,7 @@ std::vector<Field> wallFields() {
   addPace(t);
   addTrace(t);
   addInteraction(t);
+  addOutputs(t);
   t.bare("segment", 0);
   MERLIN_FIELD(t, WallSegment, framebuffer, "");
   return t.take();

@@ -4,7 +4,7 @@
 // (how the wall fares). Each starts with a Header and carries a table of all its fields, the
 // header's own included, so that readers in C, C++ and Python need no header file: README.md beside
 // this file shows one of each. The frame buffer, /merlin-framebuffer, has the same kind of table
-// (render/out/framebuffer_layout.h).
+// (render/out/shared_frame_layout.h).
 //
 // One writer a slot, named here. No pointers, no locks; a field's meaning never changes. Fields are
 // only ever appended; any change of an offset bumps kVersion, and a client refuses a version that
@@ -158,6 +158,25 @@ struct WallInteraction {
 };
 static_assert(sizeof(WallInteraction) == 48 && offsetof(WallInteraction, snapshots) == 32);
 
+// One output of the wall, and how it fares.
+struct OutputStats {
+  char name[24];         // of the configuration
+  char kind[24];         // "shared_memory", "png"
+  std::uint64_t frames;  // shown since the start
+  std::uint32_t failed;  // 1 while it cannot show frames
+  float shown_hz;        // frames shown in the last second
+  float late_share;      // of its frames while something moved, since the start: shown too late
+  char fault[140];       // why it failed; empty while it works
+};
+static_assert(sizeof(OutputStats) == 208);
+
+// Written once a period.
+struct WallOutputs {
+  std::uint32_t count;  // of outputs that are used
+  std::uint32_t reserved;
+  OutputStats outputs[8];
+};
+
 struct WallSegment {
   Header header;
   alignas(64) SeqSlot<WallStats> stats;  // writer: the wall's thread
@@ -165,7 +184,8 @@ struct WallSegment {
   alignas(64) SeqSlot<WallInteraction> interaction;  // writer: the wall's thread
   // The name of the frame buffer's segment, "/merlin-framebuffer"; empty until it is there.
   alignas(64) char framebuffer[64];
-  alignas(64) Field fields[kMostFields];  // writer: the daemon, as it starts
+  alignas(64) SeqSlot<WallOutputs> outputs;  // writer: the wall's thread
+  alignas(64) Field fields[kMostFields];     // writer: the daemon, as it starts
 };
 
 }  // namespace merlin::shm

@@ -189,6 +189,23 @@ std::string devicesStatus(const shm::DevicesSegment& segment, Timestamp now,
                {"servers", serversJson(servers)}});
 }
 
+namespace {
+
+Json outputsJson(const shm::WallSegment& segment) {
+  Json json = Json::object();
+  const auto all = segment.outputs.read();
+  if (!all) return json;
+  for (const shm::OutputStats& o : std::span(all->outputs).first(all->count)) {
+    json[text(o.name)] = {
+        {"kind", text(o.kind)},           {"health", o.failed != 0 ? "failed" : "ok"},
+        {"reason", text(o.fault)},        {"frames", o.frames},
+        {"shown_hz", round3(o.shown_hz)}, {"late_percent", round3(100 * o.late_share)}};
+  }
+  return json;
+}
+
+}  // namespace
+
 std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                        const std::vector<net::ServerHealth>& servers,
                        const shm::DevicesSegment* remote) {
@@ -238,6 +255,7 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                {"resumed", s.resumed},
                {"resumed_late", s.resumed_late},
                {"stale_s", ageSeconds(s.updated_ns, now)},
+               {"outputs", outputsJson(segment)},
                {"servers", serversJson(servers)}};
   if (remote) {
     json["posture"] = postureName(*remote);

@@ -1,5 +1,8 @@
 #include "daemon/status/wall_events.h"
 
+#include <algorithm>
+#include <cstring>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -37,7 +40,24 @@ std::vector<std::string> WallEvents::take() {
     events.push_back(fmt::format("the rate asked is {:.3g} Hz now", asked_hz_));
   if (const auto was = std::exchange(returned_, s->returned); was != returned_)
     events.push_back("the start view has returned: no tile of the wall showed any of the content");
+  takeOutputs(events);
   return events;
+}
+
+void WallEvents::takeOutputs(std::vector<std::string>& events) {
+  const auto all = segment_.outputs.read();
+  if (!all) return;
+  const std::size_t count = std::min<std::size_t>(all->count, std::size(all->outputs));
+  faults_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const shm::OutputStats& o = all->outputs[i];
+    std::string fault(o.fault, ::strnlen(o.fault, sizeof o.fault));
+    if (fault == faults_[i]) continue;
+    const std::string name(o.name, ::strnlen(o.name, sizeof o.name));
+    events.push_back(fault.empty() ? fmt::format("output {} works again", name)
+                                   : fmt::format("output {} failed: {}", name, fault));
+    faults_[i] = std::move(fault);
+  }
 }
 
 }  // namespace merlin::status

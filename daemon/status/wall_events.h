@@ -19,9 +19,12 @@ class WallEvents {
   std::vector<std::string> take();
 
  private:
+  void takeOutputs(std::vector<std::string>& events);
+
   const shm::WallSegment& segment_;
   std::uint32_t divisor_ = 1, scale_ = 1, operator_coarser_ = 0, held_ = 0, returned_ = 0;
   float asked_hz_ = 0;
+  std::vector<std::string> faults_;  // of the outputs, by number; empty: it works
 };
 
 }  // namespace merlin::status

@@ -5,7 +5,7 @@
 
 #include "daemon/base/log.h"
 #include "render/image/png_writer.h"
-#include "render/out/shm_sink.h"
+#include "render/out/shared_frame.h"
 
 namespace merlin::wall {
 namespace {

@@ -58,35 +58,36 @@ std::vector<Model> readModels(LoadedSettings& loaded) {
 
 namespace {
 
-// A picture must not replace a file that the daemon lives on.
-void checkPictureReplacesNothing(LoadedSettings& loaded) {
+// An image must not replace a file that the daemon lives on.
+void checkReplacesNothing(LoadedSettings& loaded, const std::string& path, const std::string& at) {
   const Settings& s = loaded.settings;
   std::vector<std::string> read = {s.devices.postures, s.serve.samples_keys,
                                    s.serve.samples_clients, s.wall.input.keys};
-  for (const auto& [pointer, path] : modelsOf(s.wall)) read.push_back(path);
-  for (const std::string& path : read) {
+  for (const auto& [pointer, model] : modelsOf(s.wall)) read.push_back(model);
+  for (const std::string& other : read) {
     std::error_code error;
-    if (path.empty() || !std::filesystem::equivalent(path, s.wall.png.path, error)) continue;
-    loaded.wrong("/wall/png/path",
-                 fmt::format("names {}, which is read; it would be replaced", path));
+    if (other.empty() || !std::filesystem::equivalent(other, path, error)) continue;
+    loaded.wrong(at, fmt::format("names {}, which is read; it would be replaced", other));
   }
-  std::ifstream there(s.wall.png.path, std::ios::binary);
+  std::ifstream there(path, std::ios::binary);
   char signature[8] = {};
   there.read(signature, sizeof signature);
   if (there.gcount() > 0 && std::string_view(signature, sizeof signature) != "\x89PNG\r\n\x1a\n") {
-    loaded.wrong("/wall/png/path",
-                 s.wall.png.path + ": is there and is not a PNG file; name another, or remove it");
+    loaded.wrong(at, path + ": is there and is not a PNG file; name another, or remove it");
   }
 }
 
 }  // namespace
 
 void checkOutputs(LoadedSettings& loaded) {
-  const WallSettings& wall = loaded.settings.wall;
-  if (!wall.png.path.empty()) checkPictureReplacesNothing(loaded);
-  if (!wall.png.path.empty()) {
-    if (const auto writable = checkWritable(wall.png.path); !writable)
-      loaded.wrong("/wall/png/path", kCannot + writable.error().what);
+  const WallSettings wall = loaded.settings.wall;
+  for (std::size_t i = 0; i < wall.outputs.size(); ++i) {
+    const std::string& path = wall.outputs[i].path;
+    if (path.empty()) continue;
+    const std::string at = fmt::format("/wall/outputs/{}/path", i);
+    checkReplacesNothing(loaded, path, at);
+    if (const auto writable = checkWritable(path); !writable)
+      loaded.wrong(at, kCannot + writable.error().what);
   }
   if (!wall.snapshots.empty()) {
     if (const auto usable = checkFolder(wall.snapshots); !usable)

@@ -159,6 +159,7 @@ void WallLoop::look(std::int64_t k, Timestamp began) {
   const Timestamp read = p_.clock.now();
   const bool was_moving = view_.moving;
   view_ = p_.scene.update(input, began);
+  if (p_.marker) p_.marker->pointAt(pointedAt());
   const std::size_t asked = view_.orders.contents % p_.contents.size();
   if (asked != content_) showContent(asked);
   if (lost_.update(painter().sees(view_.T_eye_model), view_.moving, began)) {
@@ -210,7 +211,7 @@ std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
   const render::DrawTimes times = draw(step_, deadline(k) - kPresentMargin);
   tracer_.add(painter().steps());
   const Timestamp drawn = p_.clock.now();
-  present(painter().pixels(), step_ == 0);
+  present(painter().pixels(), step_ == 0, deadline(k));
   const Timestamp finished = p_.clock.now();
   tracer_.add(StepKind::kPresent, drawn, finished);
   refining_ = false;
@@ -264,7 +265,7 @@ bool WallLoop::higherFits() const {
 std::int64_t WallLoop::stillPeriod(std::int64_t k) {
   if (fade_.isOn())
     fadeOn();
-  else if (p_.marker && p_.marker->moves(pointedAt()))
+  else if (p_.delivery.overlaysHaveChanged())
     present(painter().pixels(), full_detail_);
   if (!full_detail_ && !(step_ == 0 && fade_.isOn())) {
     if (!refining_) beginRefining();
@@ -318,13 +319,11 @@ void WallLoop::fadeOn() {
   if (whole) out_.still_to_full_s = since;
 }
 
-void WallLoop::present(std::span<std::uint8_t> pixels, bool full_detail) {
+void WallLoop::present(std::span<std::uint8_t> canvas, bool full_detail,
+                       std::optional<Timestamp> deadline) {
   full_detail_ = full_detail;
-  const auto triangles = static_cast<std::uint32_t>(detail().costOf(step_));
-  const render::FrameInfo info{++frames_, p_.clock.now(), triangles, full_detail};
-  if (p_.marker) p_.marker->draw(pixels, pointedAt());
-  for (render::FrameSink* sink : p_.sinks) sink->present(pixels, info);
-  if (p_.marker) p_.marker->erase(pixels);
+  const auto cost = static_cast<std::uint32_t>(detail().costOf(step_));
+  p_.delivery.show(canvas, {++frames_, p_.clock.now(), cost, full_detail}, deadline);
 }
 
 }  // namespace merlin::wall

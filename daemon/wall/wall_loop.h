@@ -23,13 +23,13 @@
 #include "daemon/wall/frame_tracer.h"
 #include "daemon/wall/input_feed.h"
 #include "render/content/content.h"
+#include "render/frame/delivery.h"
 #include "render/frame/fade.h"
 #include "render/frame/frame_painter.h"
 #include "render/frame/pointer_marker.h"
 #include "render/governor/governor.h"
 #include "render/governor/ladder.h"
 #include "render/out/frame_clock.h"
-#include "render/out/frame_sink.h"
 #include "render/scene/lost_view.h"
 #include "render/scene/scene.h"
 
@@ -59,17 +59,18 @@ struct WallParts {
   render::Scene& scene;
   render::Governor& governor;
   InputFeed& feed;
-  std::vector<render::FrameSink*> sinks;
+  render::Delivery& delivery;  // where frames go
   shm::SeqSlot<shm::WallStats>& stats;
   Clock& clock;
   render::FrameClock& frame_clock;                 // when a frame has to be there
   shm::Channel<shm::FrameTrace>* trace = nullptr;  // where steps are told; may be none
   render::PointerMarker* marker = nullptr;         // who marks where the hand points; the same
   shm::SeqSlot<shm::WallInteraction>* interaction = nullptr;  // where that is told
-  int fade_frames = 1;                    // in which a finer picture replaces a coarser
-  double return_after_s = 0;              // of a view that shows nothing; 0: never
-  Progress* progress = nullptr;           // stepped once a period; may be none
-  ContentSource* replacements = nullptr;  // the same
+  shm::SeqSlot<shm::WallOutputs>* outputs = nullptr;  // where it is told how the outputs fare
+  int fade_frames = 1;                                // in which a finer picture replaces a coarser
+  double return_after_s = 0;                          // of a view that shows nothing; 0: never
+  Progress* progress = nullptr;                       // stepped once a period; may be none
+  ContentSource* replacements = nullptr;              // the same
 };
 
 // Thread-bound but for request(), hold() and setRate().
@@ -114,9 +115,11 @@ class WallLoop {
   void fadeOn();
   void obeyRequests();
   bool applyRate();
-  void present(std::span<std::uint8_t> pixels, bool full_detail);
+  void present(std::span<std::uint8_t> canvas, bool full_detail,
+               std::optional<Timestamp> deadline = std::nullopt);
   void publishTrace(Timestamp now);
   void publishInteraction(Timestamp now);
+  void publishOutputs(Timestamp now);
   std::optional<Eigen::Vector3f> pointedAt() const;
   void publishStats(Timestamp now);
   void paceStats(Timestamp now);

@@ -1,5 +1,6 @@
 // What the loop tells of itself in shared memory.
 #include <algorithm>
+#include <iterator>
 
 #include "daemon/wall/wall_loop.h"
 
@@ -42,6 +43,7 @@ void WallLoop::publishStats(Timestamp now) {
   paceStats(now);
   p_.stats.publish(out_);
   if (p_.interaction) publishInteraction(now);
+  if (p_.outputs) publishOutputs(now);
 }
 
 std::optional<Eigen::Vector3f> WallLoop::pointedAt() const {
@@ -65,6 +67,24 @@ void WallLoop::publishInteraction(Timestamp now) {
   interaction.lamp = static_cast<std::uint32_t>(view_.orders.lamp) -
                      static_cast<std::uint32_t>(render::Action::kLampOff);
   p_.interaction->publish(interaction);
+}
+
+void WallLoop::publishOutputs(Timestamp now) {
+  const render::OutputSet& outputs = p_.delivery.outputs();
+  shm::WallOutputs all{};
+  all.count = static_cast<std::uint32_t>(std::min(outputs.size(), std::size(all.outputs)));
+  for (std::size_t i = 0; i < all.count; ++i) {
+    const render::OutputState& state = outputs.state(i);
+    shm::OutputStats& o = all.outputs[i];
+    outputs.name(i).copy(o.name, sizeof o.name - 1);
+    outputs.kind(i).copy(o.kind, sizeof o.kind - 1);
+    o.failed = state.fault.empty() ? 0 : 1;
+    state.fault.copy(o.fault, sizeof o.fault - 1);
+    o.frames = state.frames;
+    o.shown_hz = static_cast<float>(outputs.shownHz(i, now));
+    o.late_share = static_cast<float>(state.lateShare());
+  }
+  p_.outputs->publish(all);
 }
 
 void WallLoop::paceStats(Timestamp now) {

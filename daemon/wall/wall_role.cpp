@@ -1,11 +1,11 @@
 #include "daemon/wall/wall_role.h"
 
-#include <cstdio>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "daemon/shm/fields.h"
+#include "render/out/output_kinds.h"
 
 namespace merlin::wall {
 namespace {
@@ -35,20 +35,24 @@ Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& settings,
   std::unique_ptr<WallRole> role(new WallRole(settings, std::move(models), *std::move(plan),
                                               *std::move(scene), *std::move(segment), watch,
                                               clock));
-  const std::string framebuffer = shm::segmentName(settings.instance, "framebuffer");
-  auto shared = render::ShmFrameSink::make(framebuffer, role->plan_, generation);
-  if (!shared) return shared.error();
-  std::snprintf(role->segment_->framebuffer, sizeof role->segment_->framebuffer, "%s",
-                framebuffer.c_str());
-  role->framebuffer_ = shared->get();
-  role->sinks_.push_back(*std::move(shared));
-  if (!settings.wall.png.path.empty()) {
-    auto png = std::make_unique<render::PngFrameSink>(settings.wall.png, role->plan_.frame_width,
-                                                      role->plan_.frame_height, watch);
-    role->png_ = png.get();
-    role->sinks_.push_back(std::move(png));
-  }
+  if (const auto made = role->makeOutputs(generation); !made) return made.error();
   return role;
+}
+
+Result<Ok> WallRole::makeOutputs(std::uint64_t generation) {
+  const std::string frame_name = shm::segmentName(settings_.instance, "framebuffer");
+  std::vector<render::NamedOutput> outputs;
+  for (const render::OutputSettings& settings : settings_.wall.outputs) {
+    auto output = render::makeOutput(settings, {plan_, frame_name, generation, watch_, clock_});
+    if (!output)
+      return Error{output.error().code,
+                   fmt::format("output {}: {}", settings.shownName(), output.error().what)};
+    outputs.push_back({settings.shownName(), nameOf(settings.kind), *std::move(output)});
+    if (settings.kind == render::OutputKind::kSharedMemory)
+      frame_name.copy(segment_->framebuffer, sizeof segment_->framebuffer - 1);
+  }
+  outputs_ = render::OutputSet(std::move(outputs));
+  return Ok{};
 }
 
 WallRole::WallRole(const Settings& settings, std::vector<Model> models, render::TilePlan plan,
@@ -86,12 +90,11 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
                   settings_.wall.scene.hand_station,
                   fromSeconds(settings_.wall.scene.stale_after_s),
                   fromSeconds(1 / settings_.wall.governor.rate_hz));
-  std::vector<render::FrameSink*> sinks;
-  for (const auto& sink : sinks_) sinks.push_back(sink.get());
   render::PointerMarker marker(plan_);
+  render::Delivery delivery(plan_, outputs_, {&marker});
   render::TimerFrameClock frame_clock(clock_);
-  WallLoop loop({models.contents(), scene_, governor_, feed, sinks, segment_->stats, clock_,
-                 frame_clock, &segment_->trace, &marker, &segment_->interaction,
+  WallLoop loop({models.contents(), scene_, governor_, feed, delivery, segment_->stats, clock_,
+                 frame_clock, &segment_->trace, &marker, &segment_->interaction, &segment_->outputs,
                  settings_.wall.render.fade_frames, settings_.wall.scene.return_after_s, &progress,
                  &models});
   loop.calibrate();
@@ -103,7 +106,7 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
 Result<std::string> WallRole::mend() {
   const auto segment = segment_.mend();
   if (!segment || !segment->empty()) return segment;
-  return framebuffer_->mend();
+  return outputs_.mend();
 }
 
 void WallRole::request(WallLoop::Request what) {

@@ -1,4 +1,4 @@
-// WallRole: a configuration's wall: model, scene, governor, GL, sinks, on a thread of its own.
+// WallRole: a configuration's wall: model, scene, governor, GL, outputs, on a thread of its own.
 #pragma once
 
 #include <future>
@@ -15,8 +15,7 @@
 #include "daemon/wall/shown_models.h"
 #include "daemon/wall/wall_checks.h"
 #include "daemon/wall/wall_loop.h"
-#include "render/out/png_sink.h"
-#include "render/out/shm_sink.h"
+#include "render/out/output_set.h"
 
 namespace merlin::wall {
 
@@ -42,9 +41,6 @@ class WallRole {
   void hold(std::optional<std::size_t> triangles);
   void setRate(std::optional<double> rate_hz);
 
-  // Why the picture of /wall/png is not written; empty while it is, or none is asked for.
-  std::string pictureFault() const { return png_ ? png_->error() : std::string(); }
-
   // What became of models whose files were replaced, since the last call. Thread-safe.
   std::vector<std::string> modelEvents() { return model_watch_.takeEvents(); }
 
@@ -57,6 +53,7 @@ class WallRole {
   WallRole(const Settings& settings, std::vector<Model> models, render::TilePlan plan,
            render::Scene scene, shm::SegmentWriter<shm::WallSegment> segment, ThreadWatch& watch,
            Clock& clock);
+  Result<Ok> makeOutputs(std::uint64_t generation);
   void run(const std::stop_token& stop, Progress& progress);
 
   Settings settings_;
@@ -67,9 +64,7 @@ class WallRole {
   shm::SegmentWriter<shm::WallSegment> segment_;
   ThreadWatch& watch_;
   Clock& clock_;
-  std::vector<std::unique_ptr<render::FrameSink>> sinks_;
-  render::ShmFrameSink* framebuffer_ = nullptr;  // of sinks_
-  render::PngFrameSink* png_ = nullptr;          // the same
+  render::OutputSet outputs_{{}};
   std::promise<Result<std::string>> ready_;
   std::atomic<WallLoop*> loop_{nullptr};
   ModelWatch model_watch_;  // before the wall's thread, which takes from it

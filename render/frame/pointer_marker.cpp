@@ -41,12 +41,11 @@ std::optional<Eigen::Vector2i> PointerMarker::pixelOf(const Eigen::Vector3f& at_
   return std::nullopt;
 }
 
-void PointerMarker::draw(std::span<std::uint8_t> pixels,
-                         const std::optional<Eigen::Vector3f>& at_eye_m) {
-  drawn_ = at_eye_m ? pixelOf(*at_eye_m) : std::nullopt;
+void PointerMarker::draw(std::span<std::uint8_t> canvas) {
+  drawn_ = at_eye_m_ ? pixelOf(*at_eye_m_) : std::nullopt;
   if (!drawn_) return;
   for (const Tile& tile : plan_.tiles) {
-    if (tile.kind == TileKind::kWall) drawIn(tile, *at_eye_m, pixels);
+    if (tile.kind == TileKind::kWall) drawIn(tile, *at_eye_m_, canvas);
   }
 }
 
@@ -69,13 +68,13 @@ void PointerMarker::drawIn(const Tile& tile, const Eigen::Vector3f& at_eye_m,
   }
 }
 
-void PointerMarker::erase(std::span<std::uint8_t> pixels) {
-  for (const Covered& c : covered_) std::copy_n(c.rgb, 3, &pixels[c.at]);
+void PointerMarker::erase(std::span<std::uint8_t> canvas) {
+  for (const Covered& c : covered_) std::copy_n(c.rgb, 3, &canvas[c.at]);
   covered_.clear();
 }
 
-bool PointerMarker::moves(const std::optional<Eigen::Vector3f>& at_eye_m) const {
-  return (at_eye_m ? pixelOf(*at_eye_m) : std::nullopt) != drawn_;
+bool PointerMarker::hasChanged() const {
+  return (at_eye_m_ ? pixelOf(*at_eye_m_) : std::nullopt) != drawn_;
 }
 
 }  // namespace merlin::render

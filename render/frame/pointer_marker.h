@@ -8,12 +8,13 @@
 
 #include <Eigen/Geometry>
 
+#include "render/frame/overlay.h"
 #include "render/tiles/tile_plan.h"
 
 namespace merlin::render {
 
 // Thread-bound to the wall's thread. Allocates nothing once it is made.
-class PointerMarker {
+class PointerMarker final : public Overlay {
  public:
   // Borrowed.
   explicit PointerMarker(const TilePlan& plan);
@@ -22,15 +23,13 @@ class PointerMarker {
   // x + 0.5, y + 0.5. Nothing where no wall tile does.
   std::optional<Eigen::Vector2i> pixelOf(const Eigen::Vector3f& at_eye_m) const;
 
-  // Draws the disc around that pixel, over the seams of wall tiles too; none for no point. `pixels`
-  // are RGBA of the plan's frame. Cost: microseconds.
-  void draw(std::span<std::uint8_t> pixels, const std::optional<Eigen::Vector3f>& at_eye_m);
+  // Where the disc is drawn from now on; nowhere at first.
+  void pointAt(const std::optional<Eigen::Vector3f>& at_eye_m) { at_eye_m_ = at_eye_m; }
 
-  // The pixels as draw() found them. REQUIRES: nobody else wrote them since.
-  void erase(std::span<std::uint8_t> pixels);
-
-  // Whether draw() would draw another disc than it did last.
-  bool moves(const std::optional<Eigen::Vector3f>& at_eye_m) const;
+  bool hasChanged() const override;
+  // Draws the disc around that pixel, over the seams of wall tiles too. Cost: microseconds.
+  void draw(std::span<std::uint8_t> canvas) override;
+  void erase(std::span<std::uint8_t> canvas) override;
 
  private:
   struct Covered {
@@ -40,6 +39,7 @@ class PointerMarker {
   void drawIn(const Tile& tile, const Eigen::Vector3f& at_eye_m, std::span<std::uint8_t> pixels);
 
   const TilePlan& plan_;
+  std::optional<Eigen::Vector3f> at_eye_m_;
   std::optional<Eigen::Vector2i> drawn_;
   std::vector<Covered> covered_;
 };

@@ -87,7 +87,8 @@ class Script {
   }
   void pointed() {
     render::PointerMarker marker(plan_);
-    marker.draw(renderer_->pixels(), Eigen::Vector3f(0.2F, 0.1F, -2.0F));
+    marker.pointAt(Eigen::Vector3f(0.2F, 0.1F, -2.0F));
+    marker.draw(renderer_->pixels());
     print("pointer", hash(renderer_->pixels()));
     marker.erase(renderer_->pixels());
     print("pointer gone", hash(renderer_->pixels()));

@@ -148,7 +148,8 @@ TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
 TEST(Fields, CoverEveryByteOfTheWallsSegmentButPadding) {
   EXPECT_EQ(undescribed(wallFields(), offsetof(WallSegment, fields)),
             (Runs{"segment.command_endpoint 40", "wall.returned 44", "trace.wake 4",
-                  "trace.step.tile's ring 56", "interaction.content 8"}));
+                  "trace.step.tile's ring 56", "interaction.content 8", "outputs.count 4",
+                  "outputs.fault 48"}));
 }
 
 // As a reader does that knows the table alone: sample 258 from its place in the ring.

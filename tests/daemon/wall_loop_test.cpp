@@ -55,7 +55,7 @@ TEST_F(WallLoopTest, ShowsFullDetailWithinHalfASecondOfStandstill) {
     return f.full_detail && f.finished > *let_go;
   });
   ASSERT_NE(full, frames_.frames.end());
-  EXPECT_EQ(full->triangles, model().triangleCount());
+  EXPECT_EQ(full->cost, model().triangleCount());
   EXPECT_LE(full->finished - *let_go, milliseconds(500));
   EXPECT_EQ(full + 1, frames_.frames.end()) << "a picture that stands is not drawn again";
   EXPECT_EQ(stats().full_detail, 1u);

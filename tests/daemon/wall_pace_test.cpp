@@ -22,7 +22,7 @@ TEST_F(WallPaceTest, IsCalibratedBeforeTheFirstFrame) {
   EXPECT_EQ(stats().late, 0u);
   EXPECT_NEAR(stats().cost_exponent, 1, 0.02);
   EXPECT_NEAR(stats().cost_fixed_ms, 4, 0.01);
-  EXPECT_NEAR(frames_.frames.front().triangles, 2600, 80);  // (33.3 ms x 0.9 - 4 ms) / 10 us
+  EXPECT_NEAR(frames_.frames.front().cost, 2600, 80);  // (33.3 ms x 0.9 - 4 ms) / 10 us
 }
 
 // The view goes back to the start, where it costs a quarter: the next frame has four times as many.
@@ -37,8 +37,8 @@ TEST_F(WallPaceTest, AJumpToAKnownViewIsFedForward) {
       loop_->request(WallLoop::kResetView);
     }
   });
-  EXPECT_NEAR(frames_.frames[at_reset - 1].triangles, 650, 60);
-  EXPECT_NEAR(frames_.frames[at_reset + 1].triangles, 2600, 200);
+  EXPECT_NEAR(frames_.frames[at_reset - 1].cost, 650, 60);
+  EXPECT_NEAR(frames_.frames[at_reset + 1].cost, 2600, 200);
   EXPECT_LE(stats().longest_late, 4u);
 }
 
@@ -112,7 +112,7 @@ TEST_F(WallPaceTest, TrianglesAndRateAreSetByHandUntilTheyAreGivenBack) {
       loop_->setRate(20);
     } else if (since() > std::chrono::seconds(3)) {
       if (held == 0) {
-        held = frames_.frames.back().triangles;
+        held = frames_.frames.back().cost;
         rate = static_cast<double>(stats().rate_held_hz);
         EXPECT_EQ(stats().held_triangles, 1000u);
         EXPECT_FLOAT_EQ(stats().rate_asked_hz, 20);
@@ -125,7 +125,7 @@ TEST_F(WallPaceTest, TrianglesAndRateAreSetByHandUntilTheyAreGivenBack) {
   EXPECT_NEAR(rate, 20, 0.01);
   EXPECT_EQ(stats().held_triangles, 0u);
   EXPECT_FLOAT_EQ(stats().rate_asked_hz, 30);
-  EXPECT_GT(frames_.frames.back().triangles, 2300u);
+  EXPECT_GT(frames_.frames.back().cost, 2300u);
 }
 
 // The same cost, two per cent up or down: not one triangle changes.

@@ -22,7 +22,6 @@ class WallPointerTest : public FakeWall {
   }
   Duration since() const { return clock_.now() - feed_.begins.front(); }
 
-  render::TilePlan plan_ = *render::planTiles({});
   render::PointerMarker made_{plan_};
 };
 

@@ -33,7 +33,7 @@ TEST_F(BigModelTest, IsFinerWithinAQuarterOfASecondOfStandstill) {
     const auto moving = std::find_if(frames_.frames.rbegin(), frames_.frames.rend(),
                                      [&](auto& f) { return f.finished < *let_go; });
     const auto finer = std::find_if(frames_.frames.begin(), frames_.frames.end(), [&](auto& f) {
-      return f.finished > *let_go && f.triangles > 1.2 * moving->triangles;
+      return f.finished > *let_go && f.cost > 1.2 * moving->cost;
     });
     ASSERT_NE(finer, frames_.frames.end());
     EXPECT_LE(finer->finished - *let_go, milliseconds(250)) << phase_ms;
@@ -45,7 +45,7 @@ TEST_F(BigModelTest, GetsFinerInStepsAndThenWhole) {
   run(16, [&](Timestamp) { feed_.pushed = since() < std::chrono::seconds(2); });
   std::vector<std::uint32_t> shown;
   for (const auto& f : frames_.frames) {
-    if (shown.empty() || f.triangles != shown.back()) shown.push_back(f.triangles);
+    if (shown.empty() || f.cost != shown.back()) shown.push_back(f.cost);
   }
   ASSERT_GE(shown.size(), 3u);
   EXPECT_EQ(shown.back(), model().triangleCount());
@@ -100,7 +100,7 @@ TEST_F(FadingTest, FullDetailComesInThreeFramesAPeriodApart) {
   ASSERT_GT(f.size(), 10U);
   EXPECT_TRUE(f.back().full_detail);
   EXPECT_FALSE((f.end() - 2)->full_detail) << "it is not, until it is there";
-  EXPECT_EQ((f.end() - 2)->triangles, model().triangleCount());
+  EXPECT_EQ((f.end() - 2)->cost, model().triangleCount());
   EXPECT_EQ(frames_.firsts.back(), FakePainter::kRefined);
   EXPECT_LT(*(frames_.firsts.end() - 2), FakePainter::kRefined);
   EXPECT_GT(*(frames_.firsts.end() - 2), *(frames_.firsts.end() - 3));

@@ -13,8 +13,8 @@
 
 #include "daemon/base/random.h"
 #include "render/image/png_writer.h"
-#include "render/out/png_sink.h"
-#include "render/out/shm_sink.h"
+#include "render/out/png_output.h"
+#include "render/out/shared_frame.h"
 #include "tests/support/eventually.h"
 #include "tests/support/pictures.h"
 #include "tests/support/process.h"
@@ -40,6 +40,12 @@ TilePlan smallPlan() {
 }
 
 constexpr std::size_t kFrameBytes = 4 * 128 * 96;
+const SystemClock kClock;
+
+// Of smallPlan()'s frame.
+void present(Output& output, const Pixels& pixels, const FrameInfo& info) {
+  EXPECT_TRUE(output.present({128, 96, pixels}, info));
+}
 
 // All bytes of frame n are n, but for the first of each row: the row's number.
 Pixels frameOf(std::uint64_t n) {
@@ -70,26 +76,26 @@ Image readPng(const std::string& path) {
 std::string name(const std::string& what) { return "/" + test::privateName(what); }
 
 TEST(Framebuffer, GivesTheNewestFrameWithWhatIsKnownOfIt) {
-  const auto sink = ShmFrameSink::make(name("fb"), smallPlan(), 1);
+  const auto sink = SharedFrameOutput::make(name("fb"), smallPlan(), 1, kClock);
   ASSERT_TRUE(sink) << sink.error().what;
   EXPECT_EQ(captureFrame(name("fb")).error().code, Errc::kTimeout);  // nothing in it yet
   for (std::uint64_t n = 1; n <= 8; ++n) {
-    (*sink)->present(frameOf(n),
-                     {n, fromNanoseconds(1000), static_cast<std::uint32_t>(10 * n), n == 7});
+    present(**sink, frameOf(n),
+            {n, fromNanoseconds(1000), static_cast<std::uint32_t>(10 * n), n == 7});
     const auto frame = captureFrame(name("fb"));
     ASSERT_TRUE(frame) << frame.error().what;
     EXPECT_EQ(frame->pixels, frameOf(n));
     EXPECT_EQ(frame->info.sequence, n);
-    EXPECT_EQ(frame->info.triangles, 10 * n);
+    EXPECT_EQ(frame->info.cost, 10 * n);
     EXPECT_EQ(frame->info.full_detail, n == 7);
     EXPECT_EQ(toNanoseconds(frame->info.finished), 1000);
   }
 }
 
 TEST(Framebuffer, WallIsItsTilesSideBySideWithoutTheOperators) {
-  const auto sink = ShmFrameSink::make(name("wall"), smallPlan(), 1);
+  const auto sink = SharedFrameOutput::make(name("wall"), smallPlan(), 1, kClock);
   const Pixels pixels = noise(kFrameBytes, 3);
-  (*sink)->present(pixels, {1, {}, 1, true});
+  present(**sink, pixels, {1, {}, 1, true});
   const Image frame{128, 96, pixels};
   const CapturedFrame captured = wallPicture(*captureFrame(name("wall")));
   const Image wall{captured.width, captured.height, captured.pixels};
@@ -105,11 +111,11 @@ TEST(Framebuffer, WallIsItsTilesSideBySideWithoutTheOperators) {
 }
 
 TEST(Framebuffer, ReaderNeverSeesTwoFramesInOne) {
-  const auto sink = ShmFrameSink::make(name("torn"), smallPlan(), 1);
-  (*sink)->present(frameOf(1), {1, {}, 1, false});
+  const auto sink = SharedFrameOutput::make(name("torn"), smallPlan(), 1, kClock);
+  present(**sink, frameOf(1), {1, {}, 1, false});
   std::jthread writer([&](const std::stop_token& stop) {
     for (std::uint64_t n = 2; !stop.stop_requested(); ++n)
-      (*sink)->present(frameOf(n), {n, {}, 1, false});
+      present(**sink, frameOf(n), {n, {}, 1, false});
   });
   int seen = 0;
   for (int i = 0; i < 20000 && seen < 300; ++i) {
@@ -123,8 +129,8 @@ TEST(Framebuffer, ReaderNeverSeesTwoFramesInOne) {
 
 TEST(Framebuffer, IsGoneWithItsWriterAndThereCanBeOnlyOne) {
   {
-    const auto sink = ShmFrameSink::make(name("one"), smallPlan(), 1);
-    const auto second = ShmFrameSink::make(name("one"), smallPlan(), 2);
+    const auto sink = SharedFrameOutput::make(name("one"), smallPlan(), 1, kClock);
+    const auto second = SharedFrameOutput::make(name("one"), smallPlan(), 2, kClock);
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().code, Errc::kBusy);
   }
@@ -158,9 +164,9 @@ Error captureDamaged(Damage damage) {
 
 // The reader that knows the table alone, and nothing of this segment.
 TEST(Framebuffer, DescribesItself) {
-  const auto sink = ShmFrameSink::make(name("table"), smallPlan(), 1);
+  const auto sink = SharedFrameOutput::make(name("table"), smallPlan(), 1, kClock);
   ASSERT_TRUE(sink);
-  (*sink)->present(frameOf(7), {7, {}, 5, true});
+  present(**sink, frameOf(7), {7, {}, 5, true});
   const auto out = test::run({"python3", "-B", MERLIN_SOURCE_DIR "/daemon/shm/read_merlin.py",
                               name("table").substr(1), "frame.width", "frame.stride",
                               "buffer.sequence", "buffer.offset", "tile.wall_x", "tile.name"});
@@ -174,14 +180,14 @@ TEST(Framebuffer, DescribesItself) {
 
 // A program of the same user writes over the segment.
 TEST(Framebuffer, RubbishOverTheHeaderDoesNotLeadTheWriterAstray) {
-  const auto sink = ShmFrameSink::make(name("rubbish"), smallPlan(), 1);
+  const auto sink = SharedFrameOutput::make(name("rubbish"), smallPlan(), 1, kClock);
   ASSERT_TRUE(sink);
   const UniqueFd other(::shm_open(name("rubbish").c_str(), O_RDWR | O_CLOEXEC, 0));
   ASSERT_TRUE(other.valid());
   const std::vector<char> rubbish(sizeof(framebuffer::Header), '\xa5');
   ASSERT_EQ(::pwrite(other.get(), rubbish.data(), rubbish.size(), 0),
             static_cast<ssize_t>(rubbish.size()));
-  for (std::uint64_t n = 1; n <= 3; ++n) (*sink)->present(frameOf(n), {n, {}, 1, false});
+  for (std::uint64_t n = 1; n <= 3; ++n) present(**sink, frameOf(n), {n, {}, 1, false});
   const auto memory = SharedMemory::open(name("rubbish"));
   const auto pixels = frameOf(3);
   EXPECT_EQ(std::memcmp(memory->data() + memory->size() - kFrameBytes, pixels.data(), kFrameBytes),
@@ -252,40 +258,44 @@ TEST(Png, FullDiskLeavesNothingHalfWritten) {
 }
 
 // What a sink took is in the file when it is gone.
-TEST(PngSink, WritesNoMoreOftenThanAsked) {
+TEST(PngOutput, WritesNoMoreOftenThanAsked) {
   const test::TempDir folder;
   const std::string path = folder / "frame.png";
   ThreadWatch watch;
-  const auto present = [](PngFrameSink& sink, std::uint8_t n, int seconds) {
-    sink.present(Pixels(std::size_t{4} * 16 * 16, n),
-                 {n, Timestamp{std::chrono::seconds(seconds)}, 1, true});
+  const auto present = [](PngOutput& output, std::uint8_t n, int seconds) {
+    const Pixels pixels(std::size_t{4} * 16 * 16, n);
+    return output.present({16, 16, pixels}, {n, Timestamp{std::chrono::seconds(seconds)}, 1, true});
   };
   const auto red = [&] { return readPng(path).at(0, 0).red; };
   {
-    PngFrameSink sink({path, 60}, 16, 16, watch);
-    present(sink, 1, 1000);
+    PngOutput output(path, 60, watch);
+    EXPECT_EQ(*present(output, 1, 1000), Timestamp{std::chrono::seconds(1000)});
     ASSERT_TRUE(test::eventually([&] { return std::filesystem::exists(path); }));
-    present(sink, 2, 1059);
+    EXPECT_EQ(*present(output, 2, 1059), std::nullopt) << "left out";
   }
   EXPECT_EQ(red(), 1);
-  PngFrameSink sink({path, 60}, 16, 16, watch);
-  present(sink, 3, 1000);
+  PngOutput output(path, 60, watch);
+  ASSERT_TRUE(present(output, 3, 1000));
   // One that finds the encoder at work is left out; so the time goes on until one is taken.
   int seconds = 1060;
-  EXPECT_TRUE(test::eventually([&] {
-    present(sink, 4, seconds += 60);
-    return red() == 4;
-  }));
-  EXPECT_EQ(sink.error(), "");
+  EXPECT_TRUE(test::eventually([&] { return present(output, 4, seconds += 60) && red() == 4; }));
 }
 
-TEST(PngSink, SaysWhatWentWrongAndGoesOn) {
+TEST(PngOutput, SaysWhatWentWrongUntilAFileIsWrittenAgain) {
+  const test::TempDir folder;
+  const std::string path = folder / "made/frame.png";
   ThreadWatch watch;
-  PngFrameSink sink({"/nowhere/frame.png", 0}, 16, 16, watch);
-  sink.present(Pixels(std::size_t{4} * 16 * 16), {1, fromNanoseconds(1), 1, true});
-  ASSERT_TRUE(test::eventually([&] { return !sink.error().empty(); }));
-  EXPECT_NE(sink.error().find("/nowhere/frame.png"), std::string::npos);
-  sink.present(Pixels(std::size_t{4} * 16 * 16), {2, fromNanoseconds(2), 1, true});
+  PngOutput output(path, 0, watch);
+  const Pixels pixels(std::size_t{4} * 16 * 16);
+  std::uint64_t n = 0;
+  const auto present = [&] {
+    return output.present({16, 16, pixels}, {++n, fromNanoseconds(static_cast<int>(n)), 1, true});
+  };
+  EXPECT_TRUE(present()) << "nothing is known of the file yet";
+  ASSERT_TRUE(test::eventually([&] { return !present(); }));
+  EXPECT_NE(present().error().what.find(path), std::string::npos);
+  std::filesystem::create_directory(folder / "made");
+  EXPECT_TRUE(test::eventually([&] { return bool{present()}; }));
 }
 
 }  // namespace

@@ -128,13 +128,25 @@ class FakeFeed final : public InputFeed {
   std::vector<Timestamp> begins;
 };
 
-struct RecordingFrames final : render::FrameSink {
-  void present(std::span<const std::uint8_t> pixels, const render::FrameInfo& info) override {
-    frames.push_back(info);
-    firsts.push_back(pixels.empty() ? std::uint8_t{0} : pixels[0]);
-  }
+struct RecordedFrames {
   std::vector<render::FrameInfo> frames;
   std::vector<std::uint8_t> firsts;  // of each frame, its first byte
+};
+
+class RecordingOutput final : public render::Output {
+ public:
+  RecordingOutput(RecordedFrames& recorded, const Clock& clock)
+      : recorded_(recorded), clock_(clock) {}
+  Result<std::optional<Timestamp>> present(const render::Signal& signal,
+                                           const render::FrameInfo& info) override {
+    recorded_.frames.push_back(info);
+    recorded_.firsts.push_back(signal.pixels.empty() ? std::uint8_t{0} : signal.pixels[0]);
+    return std::optional(clock_.now());
+  }
+
+ private:
+  RecordedFrames& recorded_;
+  const Clock& clock_;
 };
 
 class FakeWall : public testing::Test {
@@ -156,11 +168,31 @@ class FakeWall : public testing::Test {
     loop.run(stop_.get_token(), [&] { ++first_frames_; });
   }
   WallParts parts() {
-    return {contents_,       scene_,       governor_,    feed_,   {&frames_},         *stats_,
-            clock_,          frame_clock_, trace_.get(), marker_, interaction_.get(), fade_frames_,
-            return_after_s_, nullptr,      replacements_};
+    delivery_ = std::make_unique<render::Delivery>(
+        plan_, outputs_,
+        marker_ ? std::vector<render::Overlay*>{marker_} : std::vector<render::Overlay*>{});
+    return {.contents = contents_,
+            .scene = scene_,
+            .governor = governor_,
+            .feed = feed_,
+            .delivery = *delivery_,
+            .stats = *stats_,
+            .clock = clock_,
+            .frame_clock = frame_clock_,
+            .trace = trace_.get(),
+            .marker = marker_,
+            .interaction = interaction_.get(),
+            .outputs = output_stats_.get(),
+            .fade_frames = fade_frames_,
+            .return_after_s = return_after_s_,
+            .replacements = replacements_};
   }
   shm::WallStats stats() const { return *stats_->read(); }
+  render::OutputSet recordingOutputs() {
+    std::vector<render::NamedOutput> outputs;
+    outputs.push_back({"recorder", "fake", std::make_unique<RecordingOutput>(frames_, clock_)});
+    return render::OutputSet(std::move(outputs));
+  }
 
   test::FakeClock clock_;
   render::TimerFrameClock frame_clock_{clock_};
@@ -170,7 +202,10 @@ class FakeWall : public testing::Test {
   render::Scene scene_ = *render::Scene::make({});
   render::Governor governor_;
   FakeFeed feed_;
-  RecordingFrames frames_;
+  RecordedFrames frames_;
+  render::TilePlan plan_ = *render::planTiles({});
+  render::OutputSet outputs_ = recordingOutputs();
+  std::unique_ptr<render::Delivery> delivery_;
   std::unique_ptr<shm::SeqSlot<shm::WallStats>> stats_ =
       std::make_unique<shm::SeqSlot<shm::WallStats>>();
   std::unique_ptr<shm::Channel<shm::FrameTrace>> trace_ =
@@ -179,6 +214,8 @@ class FakeWall : public testing::Test {
   ContentSource* replacements_ = nullptr;
   std::unique_ptr<shm::SeqSlot<shm::WallInteraction>> interaction_ =
       std::make_unique<shm::SeqSlot<shm::WallInteraction>>();
+  std::unique_ptr<shm::SeqSlot<shm::WallOutputs>> output_stats_ =
+      std::make_unique<shm::SeqSlot<shm::WallOutputs>>();
   std::stop_source stop_;
   WallLoop* loop_ = nullptr;  // while it runs
   bool calibrated_ = false;

@@ -52,6 +52,10 @@ class CheckConfig : public testing::Test {
   std::string model_ = makeModel(dir_, 2);
 };
 
+json pngOutput(const std::string& path) {
+  return {{"wall", {{"outputs", json::array({{{"kind", "png"}, {"path", path}}})}}}};
+}
+
 TEST_F(CheckConfig, RefusesWallsThatCannotBeDrawn) {
   EXPECT_EQ(run({kMerlind, "--check-config", file(json::object())}).status, 0);
   const auto tiles = [](const json& settings) { return json{{"wall", {{"tiles", settings}}}}; };
@@ -87,13 +91,12 @@ TEST_F(CheckConfig, RefusesFilesThatCannotBeWritten) {
   std::filesystem::create_directory_symlink(dir_.path(), dir_ / "link");
   expectRefused({{"run_directory", "link"}}, "/run_directory", "is a link");
   expectRefused({{"run_directory", std::string(100, 'x')}}, "/run_directory", "is too long");
-  expectRefused({{"wall", {{"png", {{"path", "none/wall.png"}}}}}}, "/wall/png/path",
+  expectRefused(pngOutput("none/wall.png"), "/wall/outputs/0/path",
                 "none/wall.png: No such file or directory");
-  expectRefused({{"wall", {{"png", {{"path", "."}}}}}}, "/wall/png/path", "Is a directory");
-  expectRefused({{"wall", {{"png", {{"path", model_}}}}}}, "/wall/png/path",
-                "it would be replaced");
-  expectRefused({{"wall", {{"png", {{"path", "file"}}}}}}, "/wall/png/path", "is not a PNG file");
-  expectRefused({{"wall", {{"png", {{"path", std::string("x\0y.png", 7)}}}}}}, "/wall/png/path",
+  expectRefused(pngOutput("."), "/wall/outputs/0/path", "Is a directory");
+  expectRefused(pngOutput(model_), "/wall/outputs/0/path", "it would be replaced");
+  expectRefused(pngOutput("file"), "/wall/outputs/0/path", "is not a PNG file");
+  expectRefused(pngOutput(std::string("x\0y.png", 7)), "/wall/outputs/0/path",
                 "without the character 0");
   expectRefused({{"wall", {{"snapshots", "file/taken"}}}}, "/wall/snapshots", "Not a directory");
   EXPECT_EQ(readText(dir_ / "file"), "kept");

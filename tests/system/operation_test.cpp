@@ -80,16 +80,22 @@ TEST(Operation, APictureThatCannotBeWrittenIsSaidAndSoIsItsReturn) {
   const TempDir dir;
   const std::string folder = dir / "pictures", away = dir / "away";
   std::filesystem::create_directory(folder);
-  Merlind m(dir, makeModel(dir, 2), "png",
-            {.also = {{"wall", {{"png", {{"path", folder + "/w.png"}, {"interval_s", 1}}}}}}});
+  Merlind m(
+      dir, makeModel(dir, 2), "png",
+      {.also = {{"wall",
+                 {{"outputs",
+                   json::array(
+                       {{{"kind", "shared_memory"}},
+                        {{"kind", "png"}, {"path", folder + "/w.png"}, {"interval_s", 1}}})}}}}});
   ASSERT_TRUE(m.ready()) << m.process().output();
   std::filesystem::rename(folder, away);
-  EXPECT_TRUE(m.process().saysEventually("picture: failed (/wall/png/path: " + folder +
-                                         "/w.png: No such file or directory)"))
+  EXPECT_TRUE(m.process().saysEventually("output png failed: " + folder +
+                                         "/w.png: No such file or directory"))
       << m.process().output();
-  EXPECT_EQ(m.status()["services"]["picture"]["health"], "failed");
+  EXPECT_EQ(m.status()["outputs"]["png"]["health"], "failed");
+  EXPECT_EQ(m.status()["outputs"]["shared_memory"]["health"], "ok");
   std::filesystem::rename(away, folder);
-  EXPECT_TRUE(m.process().saysEventually("picture: works again")) << m.process().output();
+  EXPECT_TRUE(m.process().saysEventually("output png works again")) << m.process().output();
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
 }
 

@@ -7,32 +7,37 @@
 #include <vector>
 
 #include "daemon/base/shared_memory.h"
-#include "render/out/frame_sink.h"
-#include "render/out/framebuffer_layout.h"
+#include "render/out/output.h"
+#include "render/out/shared_frame_layout.h"
 #include "render/tiles/tile_plan.h"
 
 namespace merlin::render {
 
-class ShmFrameSink final : public FrameSink {
+class SharedFrameOutput final : public Output {
  public:
-  // `name` as "/merlin-framebuffer". Errors: kBusy (a living daemon writes it), kIo.
+  // `name` as "/merlin-framebuffer". `clock` outlives this. Errors: kBusy (a living daemon writes
+  // it), kIo.
   // Nothing is believed of what lies in it later: its owner's programs may write there.
-  static Result<std::unique_ptr<ShmFrameSink>> make(const std::string& name, const TilePlan& plan,
-                                                    std::uint64_t generation);
+  static Result<std::unique_ptr<SharedFrameOutput>> make(const std::string& name,
+                                                         const TilePlan& plan,
+                                                         std::uint64_t generation,
+                                                         const Clock& clock);
 
-  void present(std::span<const std::uint8_t> pixels, const FrameInfo& info) override;
+  // REQUIRES: a signal of the plan's frame.
+  Result<std::optional<Timestamp>> present(const Signal& signal, const FrameInfo& info) override;
 
-  // Once a second, from any thread: SharedMemory::mend(). A frame waits for it.
-  Result<std::string> mend();
+  // SharedMemory::mend(). A frame waits for it.
+  Result<std::string> mend() override;
 
  private:
-  ShmFrameSink(SharedMemory memory, std::size_t frame_bytes)
-      : memory_(std::move(memory)), frame_bytes_(frame_bytes) {}
+  SharedFrameOutput(SharedMemory memory, std::size_t frame_bytes, const Clock& clock)
+      : memory_(std::move(memory)), frame_bytes_(frame_bytes), clock_(clock) {}
   framebuffer::Header& header() { return *reinterpret_cast<framebuffer::Header*>(memory_.data()); }
 
   std::mutex mutex_;  // between present() and mend()
   SharedMemory memory_;
   std::size_t frame_bytes_;
+  const Clock& clock_;
   std::uint32_t next_ = 0;
 };
 

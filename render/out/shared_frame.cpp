@@ -1,4 +1,4 @@
-#include "render/out/shm_sink.h"
+#include "render/out/shared_frame.h"
 
 #include <algorithm>
 #include <array>
@@ -152,9 +152,10 @@ bool copyNewest(const Header& checked, const std::byte* base, CapturedFrame& fra
 
 }  // namespace
 
-Result<std::unique_ptr<ShmFrameSink>> ShmFrameSink::make(const std::string& name,
-                                                         const TilePlan& plan,
-                                                         std::uint64_t generation) {
+Result<std::unique_ptr<SharedFrameOutput>> SharedFrameOutput::make(const std::string& name,
+                                                                   const TilePlan& plan,
+                                                                   std::uint64_t generation,
+                                                                   const Clock& clock) {
   if (plan.tiles.size() > framebuffer::kMostTiles) {
     return Error{Errc::kUnsupported, fmt::format("{} tiles; a framebuffer describes {} at most",
                                                  plan.tiles.size(), framebuffer::kMostTiles)};
@@ -164,14 +165,17 @@ Result<std::unique_ptr<ShmFrameSink>> ShmFrameSink::make(const std::string& name
   const std::size_t size = headerRoom() + framebuffer::kBuffers * frame_bytes;
   auto memory = SharedMemory::create(name, size);
   if (!memory) return memory.error();
-  std::unique_ptr<ShmFrameSink> sink(new ShmFrameSink(*std::move(memory), frame_bytes));
+  std::unique_ptr<SharedFrameOutput> sink(
+      new SharedFrameOutput(*std::move(memory), frame_bytes, clock));
   auto& front = *new (sink->memory_.data()) Front{};
   shm::setFields(front.header, front.fields, framebufferFields());
   fillHeader(front.header, plan, size, generation);
   return sink;
 }
 
-void ShmFrameSink::present(std::span<const std::uint8_t> pixels, const FrameInfo& info) {
+Result<std::optional<Timestamp>> SharedFrameOutput::present(const Signal& signal,
+                                                            const FrameInfo& info) {
+  const auto pixels = signal.pixels;
   assert(pixels.size() == frame_bytes_);
   const std::lock_guard lock(mutex_);
   Header& h = header();
@@ -180,14 +184,15 @@ void ShmFrameSink::present(std::span<const std::uint8_t> pixels, const FrameInfo
   std::atomic_thread_fence(std::memory_order_release);  // before any pixel changes
   std::memcpy(memory_.data() + bufferOffset(next_, frame_bytes_), pixels.data(), pixels.size());
   b.finished_ns = toNanoseconds(info.finished);
-  b.triangles = info.triangles;
+  b.triangles = info.cost;
   b.full_detail = info.full_detail ? 1 : 0;
   b.sequence.store(info.sequence, std::memory_order_release);
   h.newest.store(next_, std::memory_order_release);
   next_ = static_cast<std::uint32_t>((next_ + 1) % framebuffer::kBuffers);
+  return std::optional(clock_.now());
 }
 
-Result<std::string> ShmFrameSink::mend() {
+Result<std::string> SharedFrameOutput::mend() {
   const std::lock_guard lock(mutex_);
   return memory_.mend();
 }

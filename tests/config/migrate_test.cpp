@@ -1,0 +1,74 @@
+// Configurations of earlier versions in the form of this one.
+#include "config/migrate.h"
+
+#include <gtest/gtest.h>
+
+#include "config/loader.h"
+
+namespace merlin {
+namespace {
+
+TEST(Migrate, APngGroupBecomesAnOutput) {
+  const auto migrated = migrate(R"({
+  "instance": "lab",
+  "wall": {"png": {"path": "w.png", "interval_s": 5}, "model": "a.mrm"}
+})");
+  ASSERT_TRUE(migrated) << migrated.error().what;
+  EXPECT_EQ(migrated->text, R"({
+  "instance": "lab",
+  "wall": {
+    "model": "a.mrm",
+    "outputs": [
+      {
+        "kind": "shared_memory"
+      },
+      {
+        "kind": "png",
+        "path": "w.png",
+        "interval_s": 5
+      }
+    ]
+  }
+}
+)");
+  ASSERT_EQ(migrated->changes.size(), 1u);
+  const auto loaded = loadSettings(migrated->text, "/lab");
+  EXPECT_TRUE(loaded.findings.empty()) << loaded.findings[0].what;
+  ASSERT_EQ(loaded.settings.wall.outputs.size(), 2u);
+  EXPECT_EQ(loaded.settings.wall.outputs[1].path, "/lab/w.png");
+  EXPECT_EQ(loaded.settings.wall.outputs[1].interval_s, 5);
+  EXPECT_TRUE(migrate(migrated->text)->changes.empty()) << "once is enough";
+}
+
+TEST(Migrate, AnEmptyPngGroupGoes) {
+  const auto migrated = migrate(R"({"wall": {"png": {"path": ""}}})");
+  ASSERT_TRUE(migrated);
+  EXPECT_EQ(migrated->text, "{\n  \"wall\": {}\n}\n");
+}
+
+TEST(Migrate, WhatIsOfThisVersionStaysByteByByte) {
+  constexpr const char* kText = "{ \"wall\" : {\"model\":\"a.mrm\"} }";
+  const auto migrated = migrate(kText);
+  ASSERT_TRUE(migrated);
+  EXPECT_EQ(migrated->text, kText);
+  EXPECT_TRUE(migrated->changes.empty());
+}
+
+TEST(Migrate, RefusesWhatItCannotRead) {
+  EXPECT_EQ(migrate("[]").error().what, "line 1: is not a JSON object");
+  EXPECT_EQ(migrate("{\n,").error().what.find("line 2"), 0u);
+  EXPECT_EQ(migrate(R"({"wall": {"png": {"path": "a"}, "outputs": []}})").error().code,
+            Errc::kInvalidArgument);
+}
+
+TEST(Migrate, TheLoaderNamesTheNewForm) {
+  const auto loaded = loadSettings(R"({"wall": {"png": {"path": "w.png"}}})", ".");
+  ASSERT_EQ(loaded.findings.size(), 1u);
+  EXPECT_EQ(loaded.findings[0].pointer, "/wall/png");
+  EXPECT_EQ(loaded.findings[0].what,
+            "is the form of an earlier version; an entry {\"kind\": \"png\", \"path\": ...} of "
+            "/wall/outputs stands in its place; merlin config migrate FILE rewrites the file");
+}
+
+}  // namespace
+}  // namespace merlin
