@@ -11,7 +11,7 @@ constexpr Duration kSecond = std::chrono::seconds(1);
 }  // namespace
 
 OutputSet::OutputSet(std::vector<NamedOutput> outputs) {
-  for (NamedOutput& output : outputs) entries_.push_back({std::move(output), {}, {}});
+  for (NamedOutput& output : outputs) entries_.emplace_back(std::move(output));
 }
 
 void OutputSet::present(std::size_t i, const Signal& signal, const FrameInfo& info,

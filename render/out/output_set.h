@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "render/out/output.h"
@@ -49,6 +50,7 @@ class OutputSet {
 
  private:
   struct Entry {
+    explicit Entry(NamedOutput output) : named(std::move(output)) {}
     NamedOutput named;
     OutputState state;
     std::deque<Timestamp> shown;  // of the last second
