@@ -68,7 +68,7 @@ TEST_F(BadInput, AConfigurationWithThreeErrors) {
             "{\n\"wall\": {\n\"modle\": \"a.mrm\",\n\"rate\": {\"rate_hz\": "
             "\"fast\"}},\n\"devices\": {\"ball\": {\"port\": \"COM1\"}}\n}\n");
   const std::vector<std::string> findings = {
-      "bad.json:3: /wall/modle is no setting; did you mean \"model\"?",
+      "bad.json:3: /wall/modle is not a known setting; did you mean \"model\"?",
       "bad.json:4: /wall/rate/rate_hz is the string \"fast\"; allowed is a number",
       "bad.json:5: /devices/ball/port is \"COM1\"; allowed are"};
   expectOutcome(run({kMerlind, "--check-config", dir_ / "bad.json"}), 2, findings);
@@ -81,7 +81,7 @@ TEST_F(BadInput, CheckConfigSaysValidAdjustedOrInvalid) {
   expectOutcome(run({kMerlind, "--check-config", dir_ / "good.json", "--role", "devices"}), 0,
                 {"good.json: valid"});
   expectOutcome(run({kMerlind, "--check-config", dir_ / "adjusted.json", "--role", "devices"}), 1,
-                {"is 100000; allowed is 1 to 240; 240 is taken"});
+                {"is 100000; allowed is 1 to 240; 240 is used"});
   expectOutcome(run({kMerlind, "--check-config", dir_ / "none.json"}), 2,
                 {"none.json: No such file or directory"});
 }

@@ -94,7 +94,7 @@ TEST_F(CheckConfig, RefusesFilesThatCannotBeWritten) {
                 "it would be replaced");
   expectRefused({{"wall", {{"png", {{"path", "file"}}}}}}, "/wall/png/path", "is not a PNG file");
   expectRefused({{"wall", {{"png", {{"path", std::string("x\0y.png", 7)}}}}}}, "/wall/png/path",
-                "without the character 0");
+                "without the character NUL");
   expectRefused({{"wall", {{"snapshots", "file/taken"}}}}, "/wall/snapshots", "Not a directory");
   EXPECT_EQ(readText(dir_ / "file"), "kept");
 }
