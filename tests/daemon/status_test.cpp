@@ -250,7 +250,7 @@ TEST_F(ServerTest, ACommandThatWantsAnArgumentIsGivenIt) {
   for (const char* request : {R"({"command": "echo"})", R"({"command": "echo", "argument": 5})"}) {
     const json answer = json::parse(raw(request));
     EXPECT_EQ(answer["ok"], false);
-    EXPECT_NE(answer["error"].get<std::string>().find("echo wants an \"argument\""),
+    EXPECT_NE(answer["error"].get<std::string>().find("echo needs an \"argument\""),
               std::string::npos);
   }
 }
