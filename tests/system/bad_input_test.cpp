@@ -139,9 +139,9 @@ TEST_F(BadInput, BindingsToPosturesThatTheNetworkDoesNotKnow) {
       {"input": "posture.pinhc", "action": "next_mode"},
       {"input": "posture.salute", "action": "reset_view"}]}}})");
   const std::vector<std::string> said = {
-      "c.json:4: /wall/scene/bindings/1/input is \"posture.pinhc\", which is no posture of " +
+      "c.json:4: /wall/scene/bindings/1/input is \"posture.pinhc\", which is not a posture of " +
           postures + "; did you mean \"pinch\"? it knows ",
-      "c.json:5: /wall/scene/bindings/2/input is \"posture.salute\", which is no posture of " +
+      "c.json:5: /wall/scene/bindings/2/input is \"posture.salute\", which is not a posture of " +
           postures + "; it knows ",
       "thumb-up"};
   expectOutcome(run({kMerlind, "--check-config", dir_ / "c.json"}), 2, said);

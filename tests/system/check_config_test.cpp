@@ -157,7 +157,7 @@ TEST_F(CheckConfig, ADefaultBindingIsNobodysMistake) {
   json bound = devices;
   bound["wall"]["scene"]["bindings"] =
       json::array({{{"input", "posture.fist"}, {"action", "grab"}}});
-  expectRefused(bound, "/wall/scene/bindings/0/input", "is no posture of");
+  expectRefused(bound, "/wall/scene/bindings/0/input", "is not a posture of");
 }
 
 TEST_F(CheckConfig, AnEmptyNameIsBadUsageAndStartsNothing) {
