@@ -129,7 +129,7 @@ std::string serverLines(const Json& s) {
 std::string statusTable(const Json& s) {
   std::string text;
   if (s.contains("rate_asked")) {
-    text += fmt::format("wall     {:.1f} of {:.0f} Hz, {} triangles, {} (ball moves: {})\n",
+    text += fmt::format("wall     {:.1f} of {:.0f} Hz, {} triangles, {} (ball mode: {})\n",
                         s.value("rate_held", 0.0), s.value("rate_asked", 0.0),
                         s.value("triangles", 0), pictureWord(s), s.value("mode", ""));
     text += fmt::format(
