@@ -108,7 +108,7 @@ TEST_F(CheckConfig, RefusesSocketsAndPortsThatCannotBeServed) {
   expectRefused(serve({{"spnav_socket", "none/s.sock"}}), "/serve/spnav_socket",
                 "none: No such file or directory");
   expectRefused(serve({{"spnav_socket", std::string(200, 's')}}), "/serve/spnav_socket",
-                "a socket's name has 107 at most");
+                "a socket's name has at most 107");
   for (const char* endpoint : {"tcp://*:99999", "tcp://127.0.0.1:0", "tcp://256.1.1.1:7401"}) {
     expectRefused(serve({{"samples_endpoint", endpoint},
                          {"samples_keys", "keys"},

@@ -338,7 +338,7 @@ TEST_F(MeshCli, ReduceKeepsToAStatedMemoryOrRefusesBeforeAnyWork) {
   ASSERT_EQ(std::remove((dir_ / "a.mrm").c_str()), 0);
   const Outcome refused = reduced("33M");
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.output.find("34820 vertices and 69636 triangles take 3"), std::string::npos)
+  EXPECT_NE(refused.output.find("34820 vertices and 69636 triangles takes 3"), std::string::npos)
       << refused.output;
   EXPECT_NE(refused.output.find("the limit (--memory, else what is free) is 33 MiB"),
             std::string::npos)
