@@ -144,8 +144,9 @@ TEST(CalibrateTracker, KeepsWhatIsInForceOrSaysThatTheFileHasAnother) {
   writeText(bench.file(), "{}");
   const Outcome other = run(bench.calibrate({"--pause", "0.1", "--steps", "boresight"}));
   EXPECT_EQ(other.status, 2) << other.output;
-  EXPECT_NE(other.output.find("/devices/tracker/alignment1_cm differs from that of the running merlind"),
-            std::string::npos)
+  EXPECT_NE(
+      other.output.find("/devices/tracker/alignment1_cm differs from that of the running merlind"),
+      std::string::npos)
       << other.output;
   EXPECT_EQ(readText(bench.file()), "{}");
   writeText(bench.file(), readText(bench.merlind().config()));
