@@ -29,7 +29,7 @@ namespace merlin {
 
 class Daemon {
  public:
-  // Makes all parts; starts only what run() does not: emulators and the link to another machine.
+  // Makes all parts. Only the emulators and the link to another machine run afterwards.
   // REQUIRES: the configuration's verdict is not kInvalid; SIGTERM, SIGINT, SIGHUP and SIGCHLD are
   // blocked; no thread has been started. Errors: those of its parts.
   static Result<std::unique_ptr<Daemon>> make(Configuration configuration,
