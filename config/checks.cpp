@@ -30,7 +30,7 @@ bool isNumber(std::string_view text, int low, int high) {
   return error == std::errc() && stop == end && number >= low && number <= high;
 }
 
-// A name is anything; what has digits and dots alone is an address of four bytes.
+// Host names are not checked further; a text of digits and dots alone must be an IPv4 address.
 bool isHost(std::string_view host) {
   if (host.empty() || host.find_first_of("/ \t\n") != std::string_view::npos) return false;
   if (host.find_first_not_of("0123456789.") != std::string_view::npos) return true;
@@ -42,7 +42,7 @@ bool isHost(std::string_view host) {
   return parts == 4 && isNumber(host, 0, 255);
 }
 
-// "tcp://HOST:PORT", with a port from 1 to 65535.
+// Whether the text is "tcp://HOST:PORT" with a port from 1 to 65535.
 bool isAddress(std::string_view text) {
   if (!text.starts_with("tcp://")) return false;
   text.remove_prefix(6);
@@ -59,7 +59,7 @@ bool knownPort(const std::string& port) {
   return false;
 }
 
-// Two programs on one line would each hear half of what the device says; so would two drivers.
+// Two drivers on one serial line would each read only a part of the device's bytes.
 void checkPortsDiffer(const DevicesSettings& d, LoadedSettings& loaded) {
   std::map<std::string, const char*> taken;
   const std::pair<const char*, const LineSettings*> lines[] = {
@@ -82,7 +82,7 @@ void checkGpio(const GpioSettings& g, LoadedSettings& loaded) {
   }
 }
 
-// What speaks over a network is encrypted, or not at all.
+// Traffic over a network must be encrypted, so an address needs keys beside it.
 void checkNetwork(const Settings& s, LoadedSettings& loaded) {
   if (!s.serve.samples_endpoint.empty() && !isAddress(s.serve.samples_endpoint)) {
     loaded.wrong(
@@ -105,9 +105,9 @@ void checkNetwork(const Settings& s, LoadedSettings& loaded) {
                              in.endpoint));
   }
   if (in.keys.empty() || in.server_key.size() != 40) {
-    loaded.wrong(
-        "/wall/input",
-        "needs keys (merlin keys -o FILE) and server_key, the other machine's 40 characters");
+    loaded.wrong("/wall/input",
+                 "needs keys (merlin keys -o FILE) and server_key, the other machine's public key "
+                 "of 40 characters");
   }
 }
 
@@ -126,14 +126,16 @@ void checkLine(const LineSettings& line, const std::string& device, LoadedSettin
   }
 }
 
-// A line's bytes of 10 bits; the longest record of 22 sensors.
+// Whether the line can carry rate_hz records: 10 bits a byte (8N1), the longest record (22
+// sensors).
 void checkGloveRate(const DevicesSettings& d, LoadedSettings& loaded) {
   const bool text = d.glove.dialogue == CybergloveSettings::Dialogue::kText;
   const int stamp = d.glove.time_stamps ? (text ? 11 : 5) : 0;
   const int bytes = (text ? 96 : 25) + stamp;
   const double most = d.glove_line.baud / 10.0 / bytes;
-  const bool has_speed = d.glove_line.port.starts_with("serial:") ||
-                         d.glove_line.port.starts_with("pty:");  // what a server's is, who knows
+  const bool has_speed =
+      d.glove_line.port.starts_with("serial:") ||
+      d.glove_line.port.starts_with("pty:");  // the speed behind a server is unknown
   if (!has_speed || d.glove.rate_hz <= most) return;
   loaded.wrong("/devices/glove/rate_hz",
                fmt::format("is {:g}, and a line of {} baud carries {:.0f} records of {} bytes a "
@@ -154,10 +156,9 @@ void checkAxes(const std::array<int, N>& axes, const std::string& pointer, Loade
 
 void checkRate(const render::GovernorSettings& g, LoadedSettings& loaded) {
   if (g.min_triangles <= g.first_triangles && g.first_triangles <= g.max_triangles) return;
-  loaded.wrong(
-      "/wall/rate",
-      fmt::format("has min_triangles {}, first_triangles {}, max_triangles {}; they must rise",
-                  g.min_triangles, g.first_triangles, g.max_triangles));
+  loaded.wrong("/wall/rate", fmt::format("has min_triangles {}, first_triangles {}, max_triangles "
+                                         "{}; they must be in ascending order",
+                                         g.min_triangles, g.first_triangles, g.max_triangles));
 }
 
 bool isInput(const std::string& input) {
@@ -179,8 +180,9 @@ std::string conflictText(const render::Binding& a, const render::Binding& b) {
                      nameOf(a.action), nameOf(b.action), when);
 }
 
-// One moment of one input does not do two things that exclude each other, nor one of them twice.
-// Linear: of a moment no more bindings are remembered than there are actions.
+// At one moment (hold, enter, leave) one input must not trigger two actions that exclude each
+// other, nor one action twice. Linear in the bindings: for each moment, at most one binding of each
+// action is remembered.
 void checkBindings(const std::vector<render::Binding>& bindings, LoadedSettings& loaded) {
   constexpr const char* kPointer = "/wall/scene/bindings/{}";
   std::map<std::pair<std::string, bool>, std::vector<std::size_t>> before;
@@ -212,7 +214,7 @@ void checkBindings(const std::vector<render::Binding>& bindings, LoadedSettings&
   }
 }
 
-// A button that could never do anything.
+// Finds a panel button whose command could never have an effect.
 void checkButton(const Settings& s, LoadedSettings& loaded) {
   const std::string at = "/devices/gpio/button_command", &command = s.devices.gpio.button_command;
   if (s.devices.gpio.chip.empty() || s.devices.gpio.button_line < 0) return;
@@ -222,7 +224,7 @@ void checkButton(const Settings& s, LoadedSettings& loaded) {
     loaded.wrong(at, "is next_content, and there is one model only: /wall/contents names none");
 }
 
-// An action that could never do anything.
+// Finds bindings whose action could never have an effect.
 void checkDoers(const Settings& s, LoadedSettings& loaded) {
   const auto& bindings = s.wall.scene.bindings;
   for (std::size_t i = 0; i < bindings.size(); ++i) {

@@ -1,11 +1,11 @@
-// What no single setting can be wrong about: values that must fit one another.
+// Checks of settings beyond range and type, above all of values that must fit one another.
 #pragma once
 
 #include "config/loader.h"
 
 namespace merlin {
 
-// Adds findings.
+// Adds a finding to `loaded` for each fault.
 void checkTogether(LoadedSettings& loaded);
 
 }  // namespace merlin

@@ -13,8 +13,9 @@ namespace {
 
 constexpr std::size_t kMostLevels = 32;
 
-// Counts the lines that the parser has come to. A line begins with its first character, not with
-// the newline before it: the parser looks one character past a number.
+// Iterator that counts the lines up to the parser's position. The count rises when the first
+// character of a line is passed, not at the newline, because the parser reads one character beyond
+// a number.
 class CountingIterator {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -75,14 +76,15 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   bool key(string_t& value) override {
     const auto [before, fresh] = keys_.back().emplace(value, *line_);
     if (!fresh) {
-      return fail(fmt::format("the key \"{}\" stands twice in one object, before on line {}", value,
+      return fail(fmt::format("duplicate key \"{}\" in one object, first on line {}", value,
                               before->second));
     }
     open_.back()->members.push_back({std::move(value), *line_, {}});
     return true;
   }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& e) override {
-    // "[json.exception.parse_error.101] parse error at line 3, column 5: ...": keep what follows.
+    // "[json.exception.parse_error.101] parse error at line 3, column 5: ...": keep the part after
+    // the position.
     const std::string what = e.what();
     const auto from = what.find(": ", what.find("column"));
     return fail(from == std::string::npos ? what : what.substr(from + 2));
@@ -128,10 +130,9 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   }
 
   const int* line_;
-  // Pointers stay good: only the innermost open array or object grows.
+  // These pointers stay valid: only the innermost open array or object grows.
   std::vector<JsonNode*> open_;
-  // Of each that is open: its keys and their lines; a search through the members would be
-  // quadratic.
+  // Keys of each open object and their lines; searching the members instead would be quadratic.
   std::vector<std::unordered_map<std::string, int>> keys_;
   JsonNode* last_ = nullptr;
 };
@@ -154,8 +155,8 @@ std::string describe(const JsonNode& node) {
 
 Result<JsonNode> parseJson(std::string_view text) {
   if (text.size() > kMostJsonBytes) {
-    return Error{Errc::kMalformed,
-                 fmt::format("line 1: {} bytes; {} are the most", text.size(), kMostJsonBytes)};
+    return Error{Errc::kMalformed, fmt::format("line 1: {} bytes; at most {} are allowed",
+                                               text.size(), kMostJsonBytes)};
   }
   int line = 1;
   TreeBuilder builder(&line);
@@ -167,8 +168,9 @@ Result<JsonNode> parseJson(std::string_view text) {
   } catch (const std::exception& e) {
     return Error{Errc::kMalformed, fmt::format("line {}: {}", line, e.what())};
   }
-  return Error{Errc::kMalformed,
-               builder.error.empty() ? fmt::format("line {}: no JSON", line) : builder.error};
+  return Error{Errc::kMalformed, builder.error.empty()
+                                     ? fmt::format("line {}: not valid JSON", line)
+                                     : builder.error};
 }
 
 }  // namespace merlin

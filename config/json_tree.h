@@ -1,6 +1,6 @@
-// A JSON text as a tree that knows where each value stands. nlohmann-json parses; it gives
-// positions for syntax errors only, lets later keys win over earlier ones without a word, and
-// recurses without bound, so the tree is built here from its SAX events.
+// A JSON text as a tree that holds the line of each value. nlohmann-json parses the text; its own
+// tree has no positions, accepts duplicate keys silently and is recursive without a limit, so the
+// tree is built here from its SAX events.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace merlin {
 
-// Of a configuration.
+// Maximum size of a configuration.
 inline constexpr std::size_t kMostJsonBytes = 1 << 20;
 
 struct JsonNode {
@@ -23,9 +23,9 @@ struct JsonNode {
   int line = 0;
   bool boolean = false;
   double number = 0;
-  std::string text;             // of a string
-  std::vector<JsonNode> items;  // of an array
-  std::vector<Member> members;  // of an object, in the file's order
+  std::string text;             // value of a string
+  std::vector<JsonNode> items;  // elements of an array
+  std::vector<Member> members;  // members of an object, in the file's order
 };
 
 struct JsonNode::Member {
@@ -34,11 +34,11 @@ struct JsonNode::Member {
   JsonNode value;
 };
 
-// As a person would say what was found: `a string "abc"`, `the number 3`, `an object`.
+// Describes the value for a message: `the string "abc"`, `the number 3`, `an object`.
 std::string describe(const JsonNode& node);
 
-// Errors: kMalformed, starting with the line ("line 12: ..."): what nlohmann finds, a key that
-// stands twice in one object, more than 32 levels, more than 1 MiB.
+// Errors: kMalformed, with a text that starts with the line ("line 12: ..."): syntax errors found
+// by nlohmann-json, a duplicate key in an object, more than 32 levels, more than 1 MiB.
 Result<JsonNode> parseJson(std::string_view text);
 
 }  // namespace merlin

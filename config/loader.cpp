@@ -25,14 +25,15 @@ std::string escapePointer(std::string_view key) {
   return out;
 }
 
-// Takes settings out of a tree; what it does not take is unknown.
+// Takes the settings from a JSON tree; a key that it does not take is reported as unknown.
 class Loader final : public SettingsVisitor {
  public:
   Loader(const JsonNode& root, std::string folder, LoadedSettings& loaded)
       : folder_(std::move(folder)), loaded_(loaded) {
     enter(&root, "");
   }
-  // Of the whole file: what is unknown. After the description; a destructor must not throw.
+  // Reports the unknown keys of the file's root. To be called after describe(); not the destructor,
+  // which must not throw.
   void finish() { leave(); }
   Loader(const Loader&) = delete;
   Loader& operator=(const Loader&) = delete;
@@ -109,7 +110,7 @@ class Loader final : public SettingsVisitor {
 
  private:
   struct Level {
-    const JsonNode* object;  // null where the file has none
+    const JsonNode* object;  // null if the file has no such object
     std::string pointer;
     std::vector<std::string> known;
   };
@@ -122,7 +123,7 @@ class Loader final : public SettingsVisitor {
     levels_.push_back({object, pointer, {}});
   }
 
-  // Whatever of the object was not asked for is unknown.
+  // Leaves the object and reports those of its keys that were not asked for.
   void leave() {
     const Level& level = levels_.back();
     static const std::vector<JsonNode::Member> kNone;
@@ -148,14 +149,14 @@ class Loader final : public SettingsVisitor {
   }
 
   std::string suggestion(const std::string& key, const std::vector<std::string>& known) const {
-    if (loaded_.left_out > 0) return {};  // nobody reads it
+    if (loaded_.left_out > 0) return {};  // this finding is only counted, not kept
     constexpr std::size_t kLongest = 64;  // the comparison is quadratic in the key's length
     const std::string near = key.size() > kLongest ? "" : nearest(key, known);
-    return near.empty() ? fmt::format("here are {}", fmt::join(known, ", "))
+    return near.empty() ? fmt::format("known here are {}", fmt::join(known, ", "))
                         : fmt::format("did you mean \"{}\"?", near);
   }
 
-  // The value of `key` if it is there and of that kind; says what is wrong otherwise.
+  // The value of `key`; null if it is not there, or with a finding if it is of another kind.
   const JsonNode* take(const char* key, JsonNode::Kind kind, std::string_view allowed) {
     Level& level = levels_.back();
     level.known.emplace_back(key);
@@ -165,7 +166,8 @@ class Loader final : public SettingsVisitor {
       lines_[pointer(key)] = member.line;
       const bool whole = member.value.text.find('\0') == std::string::npos;
       if (member.value.kind == kind && whole) return &member.value;
-      if (!whole) allowed = "without the character 0, at which the system would cut it off";
+      if (!whole)
+        allowed = "a text without the character NUL, at which the system would cut it off";
       wrong(member.value, key, allowed);
       return nullptr;
     }
@@ -185,7 +187,7 @@ class Loader final : public SettingsVisitor {
       return range.low;
     }
     loaded_.add({true, node.line, pointer(key),
-                 fmt::format("is {}; allowed is {} to {}; {} is taken", node.number, range.low,
+                 fmt::format("is {}; allowed is {} to {}; {} is used", node.number, range.low,
                              range.high, value)});
     return value;
   }

@@ -22,38 +22,38 @@ struct Finding {
 struct LoadedSettings {
   enum class Verdict { kValid, kAdjusted, kInvalid };
 
-  // More are counted only: a file of 1 MiB can have hundreds of thousands.
+  // Further findings are only counted: a file of 1 MiB can have hundreds of thousands.
   static constexpr std::size_t kMostFindings = 200;
 
-  Settings settings;                 // meaningful unless invalid
+  Settings settings;                 // meaningful unless the verdict is kInvalid
   std::vector<Finding> findings;     // the first ones, in the order of the file's lines
-  std::size_t left_out = 0;          // findings beyond those
-  std::map<std::string, int> lines;  // of each setting that the file has, by pointer
+  std::size_t left_out = 0;          // number of further findings, not kept
+  std::map<std::string, int> lines;  // line of each setting that the file has, by pointer
 
   Verdict verdict() const;
-  // Where a setting stands; one that the file does not have, where the nearest group around it
-  // does.
+  // Line of a setting; if the file does not have it, the line of the nearest enclosing group that
+  // it has; 0 if there is none.
   int lineOf(const std::string& pointer) const;
-  // One finding more. Cost: bounded, whatever there are already.
+  // Adds a finding. Cost: constant, however many there are already.
   void add(Finding finding);
-  // One that makes the file invalid.
+  // Adds a finding that makes the file invalid.
   void wrong(const std::string& pointer, std::string what);
-  // To be called after the last of these, for the order by lines.
+  // Sorts the findings by line; to be called after the last add() or wrong().
   void sortFindings();
 
  private:
   bool left_out_invalid_ = false;
 };
 
-// Reads a text. Relative paths in it are taken from `folder`. Never fails: syntax errors are
-// findings.
+// Reads settings from a JSON text. Relative paths in it are relative to `folder`. Never fails:
+// syntax errors are findings.
 LoadedSettings loadSettings(std::string_view json, const std::string& folder);
 
-// Reads a file; what cannot be opened is a finding too (line 0).
+// Reads settings from a file; a file that cannot be opened is a finding too (line 0).
 LoadedSettings loadSettingsFile(const std::string& path);
 
-// "demo.json:12: /wall/rate/rate_hz ...": one line, without what a terminal would follow, whatever
-// the file's name and its keys and values have in them.
+// The finding as one line, "demo.json:12: /wall/rate/rate_hz ...". Line breaks and terminal escape
+// sequences in the file's name, keys or values are replaced.
 std::string toText(const std::string& file, const Finding& finding);
 
 }  // namespace merlin

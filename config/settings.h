@@ -1,5 +1,4 @@
-// Settings: everything that a configuration file says, with the values that hold where it is
-// silent.
+// Settings: everything that a configuration file can set, with default values.
 #pragma once
 
 #include <string>
@@ -20,12 +19,14 @@
 
 namespace merlin {
 
-// Which device it is, where, and how fast its line runs.
+// How one device is connected.
 struct LineSettings {
-  std::string driver;  // a name of drivers/registry
+  std::string driver;  // a name from drivers/registry
   std::string port;  // "serial:/dev/...", "pty:PATH", "tcp://HOST:PORT", "replay:FILE"; empty: none
   int baud = 38400;
-  int max_bytes_s = 0;  // that are read; 0: four times what the baud carry, of tcp:// a million
+  // Maximum number of bytes read per second; 0: four times what the baud rate carries, or a million
+  // for tcp:// and replay:.
+  int max_bytes_s = 0;
 };
 
 struct DevicesSettings {
@@ -37,19 +38,19 @@ struct DevicesSettings {
   SpaceballSettings ball;
   HandSettings hand;
   GpioSettings gpio;
-  std::string postures;  // the posture network's file; empty: none is recognised
+  std::string postures;  // file of the posture network; empty: no posture is recognised
   nn::HoldSettings posture_hold;
-  // Within which idle cores wake, for the whole machine; -1: as the system has it.
+  // Maximum wake-up latency of idle cores, for the whole machine [us]; -1: the system's setting.
   int cpu_latency_us = -1;
   std::string script = "visit";  // what the emulated person does, with --emulate
 };
 
-// Where the wall's input comes from, if not from this machine's devices.
+// Another machine whose devices the wall uses instead of this machine's.
 struct InputSettings {
   std::string
       endpoint;  // "tcp://HOST:PORT" of another merlind; empty: this machine's shared memory
   std::string server_key;  // that merlind's public key
-  std::string keys;        // this machine's pair of keys, a file
+  std::string keys;        // file with this machine's key pair
 };
 
 struct ContentSettings {
@@ -59,20 +60,21 @@ struct ContentSettings {
 struct WallSettings {
   InputSettings input;
   std::string model;                      // an .mrm file, shown first
-  std::vector<ContentSettings> contents;  // shown after it, in turn
+  std::vector<ContentSettings> contents;  // further models, shown in turn by next_content
   render::GovernorSettings governor;
   render::TilesSettings tiles;
   render::SceneSettings scene;
   render::RenderSettings render;
   std::vector<render::OutputSettings> outputs = {{}};
-  std::string snapshots;  // where the action snapshot puts its files, a folder; empty: nowhere
+  std::string snapshots;  // folder for the files of the action snapshot; empty: snapshots are off
   int snapshots_kept = 1000;
 };
 
 struct Settings {
-  // Keeps two daemons on one machine apart: names of shared memory and sockets.
+  // Part of the names of shared memory and sockets: distinguishes daemons on one machine.
   std::string instance = "merlin";
-  // Where sockets and emulators' lines lie; empty: /run/merlin for root, else the user's own.
+  // Folder for sockets and the emulators' pseudo-terminals; empty: /run/merlin for root, the user's
+  // own run directory for others.
   std::string run_directory;
   DevicesSettings devices;
   WallSettings wall;

@@ -1,5 +1,5 @@
-// SettingsVisitor: is shown every setting once, by describe(). Reading a file, writing the schema
-// and printing what holds are three visitors of one description, so they cannot drift apart.
+// SettingsVisitor: describe() calls it once for every setting. Reading a file, writing the schema
+// and printing the settings in effect are three visitors of one description, so they always agree.
 #pragma once
 
 #include <array>
@@ -24,21 +24,21 @@ class SettingsVisitor {
   virtual void integer(const char* key, int& value, Range range, const char* help) = 0;
   virtual void flag(const char* key, bool& value, const char* help) = 0;
   virtual void text(const char* key, std::string& value, const char* help) = 0;
-  // A file's name; relative to the folder of the configuration.
+  // A file name, relative to the folder of the configuration.
   virtual void path(const char* key, std::string& value, const char* help) = 0;
   // One of `names`; `value` is its index.
   virtual void choice(const char* key, int& value, std::span<const char* const> names,
                       const char* help) = 0;
-  // Exactly as many numbers.
+  // A list of exactly values.size() numbers.
   virtual void numbers(const char* key, std::span<double> values, Range range,
                        const char* help) = 0;
   virtual void group(const char* key, const char* help, const std::function<void()>& members) = 0;
-  // Any number of objects: resize(n) makes room, member(i) describes one.
+  // A list of any number of objects: resize(n) sets their number, member(i) describes one.
   virtual void list(const char* key, std::size_t count, const char* help,
                     const std::function<void(std::size_t)>& resize,
                     const std::function<void(std::size_t)>& member) = 0;
 
-  // The same for other types of number and for enumerations.
+  // Overloads for other types of number and for enumerations.
   void number(const char* key, float& value, Range range, const char* help) {
     double wide = static_cast<double>(value);
     number(key, wide, range, help);
@@ -83,7 +83,7 @@ class SettingsVisitor {
 
 struct Settings;
 
-// Shows every setting of `settings` to `visitor`, in the order of the files.
+// Calls `visitor` for every setting of `settings`, in the order in which files are written.
 void describe(Settings& settings, SettingsVisitor& visitor);
 
 }  // namespace merlin

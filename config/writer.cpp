@@ -12,8 +12,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;  // in the order of the description
 
-// A number as a person would write it: one that went through a float shall be 0.1 again, not
-// 0.10000000149.
+// The shortest number that gives the same float: a value that was stored in a float is written as
+// 0.1, not as 0.10000000149.
 Json plain(double value) {
   if (value == std::floor(value) && std::abs(value) < 1e15) return static_cast<std::int64_t>(value);
   return std::stod(fmt::format("{}", static_cast<float>(value)));
@@ -109,12 +109,14 @@ class SchemaWriter final : public SettingsVisitor {
     within(object, members);
     put(key, std::move(object));
   }
-  void list(const char* key, std::size_t count, const char* help,
-            const std::function<void(std::size_t)>&,
+  // Describes an item that has no value but its defaults, whatever the default list holds.
+  void list(const char* key, std::size_t, const char* help,
+            const std::function<void(std::size_t)>& resize,
             const std::function<void(std::size_t)>& member) override {
     Json item = object_("");
     item.erase("description");
-    if (count > 0) within(item, [&] { member(0); });
+    resize(1);
+    within(item, [&] { member(0); });
     put(key, {{"type", "array"}, {"items", std::move(item)}, {"description", help}});
   }
 
@@ -151,7 +153,7 @@ std::string settingsSchema() {
 }
 
 std::string settingsText(const Settings& settings) {
-  Settings copy = settings;  // a visitor takes what it may change
+  Settings copy = settings;  // describe() needs settings that a visitor may change
   TextWriter writer;
   describe(copy, writer);
   return writer.root.dump(2) + "\n";

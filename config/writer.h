@@ -7,10 +7,11 @@
 
 namespace merlin {
 
-// JSON Schema, draft 2020-12, with every default; config/merlin.schema.json is this text.
+// The JSON Schema (draft 2020-12) of a configuration, with every default; this is the text of
+// config/merlin.schema.json.
 std::string settingsSchema();
 
-// Every setting with the value that holds.
+// A configuration that has every setting with its value in `settings`.
 std::string settingsText(const Settings& settings);
 
 }  // namespace merlin

@@ -26,13 +26,13 @@ void take(const Result<T>& result, const char* pointer, LoadedSettings& loaded) 
   if (!result) loaded.wrong(pointer, kCannot + result.error().what);
 }
 
-// libzmq ends the process where it finds no descriptor.
+// Checks the limit of open files: libzmq ends the process if it gets no descriptor.
 void checkDescriptors(LoadedSettings& loaded) {
-  constexpr rlim_t kLeast = 256;  // all places of all servers are 216
+  constexpr rlim_t kLeast = 256;  // the servers have 216 places for connections
   rlimit limit{};
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_max >= kLeast) return;
   loaded.add({false, 0, "",
-              fmt::format("this process may open {} files at once, and merlind needs "
+              fmt::format("this process may open {} files at once, but merlind needs "
                           "{}: raise the limit (ulimit -n, LimitNOFILE=)",
                           limit.rlim_max, kLeast)});
 }
@@ -42,41 +42,41 @@ void checkRunDirectory(LoadedSettings& loaded) {
   if (const auto good = status::checkRunDirectory(path); !good)
     return take(good, "/run_directory", loaded);
   if (path.empty()) return;
-  // The longest name of a socket in it.
+  // Length of the longest socket name in the folder.
   const std::size_t longest = path.size() + 1 + loaded.settings.instance.size() +
                               std::string_view("-devices.status.samples.inner").size();
   if (longest > kMostSocketName) {
     return loaded.wrong("/run_directory",
                         fmt::format("is too long: the names of sockets in it would have {} bytes; "
-                                    "{} are the most",
+                                    "at most {} are allowed",
                                     longest, kMostSocketName));
   }
   take(checkFolder(path), "/run_directory", loaded);
 }
 
-// Nothing that has this name is deleted unless it is a socket.
+// The server replaces an existing socket of this name, but no other file.
 void checkSpnavSocket(LoadedSettings& loaded) {
   constexpr const char* kPointer = "/serve/spnav_socket";
   const std::string& path = loaded.settings.serve.spnav_socket;
   if (path.empty()) return;
   if (path.size() > kMostSocketName) {
-    return loaded.wrong(kPointer, fmt::format("has {} bytes; a socket's name has {} at most",
+    return loaded.wrong(kPointer, fmt::format("has {} bytes; a socket's name has at most {}",
                                               path.size(), kMostSocketName));
   }
   struct stat status {};
   if (::lstat(path.c_str(), &status) == 0 && !S_ISSOCK(status.st_mode)) {
-    return loaded.wrong(kPointer, fmt::format("{}{}: is not a socket and is not replaced; name "
-                                              "another file, or remove it",
+    return loaded.wrong(kPointer, fmt::format("{}{}: is not a socket and is not replaced; "
+                                              "choose another name, or remove it",
                                               kCannot, path));
   }
   const std::string folder = std::filesystem::path(path).parent_path().string();
   take(checkWritableFolder(folder.empty() ? "." : folder), kPointer, loaded);
 }
 
-// What a socket can be bound to: any address, or one of this machine's.
+// Checks that a socket can be bound to the address: '*' or an IPv4 address.
 void checkBindable(const std::string& endpoint, LoadedSettings& loaded) {
   constexpr std::string_view kTcp = "tcp://";
-  if (!endpoint.starts_with(kTcp)) return;  // a finding already
+  if (!endpoint.starts_with(kTcp)) return;  // already reported by the loader
   const std::string host = endpoint.substr(kTcp.size(), endpoint.rfind(':') - kTcp.size());
   in_addr address{};
   if (host == "*" || ::inet_pton(AF_INET, host.c_str(), &address) == 1) return;
@@ -99,7 +99,7 @@ void checkInput(const DaemonOptions& options, LoadedSettings& loaded) {
   if (input.endpoint.empty()) return;
   if (options.devices) {
     loaded.wrong("/wall/input/endpoint",
-                 "names another machine's devices, and this process reads its own: run it with "
+                 "names another machine's devices, but this process reads its own: run it with "
                  "--role wall");
   }
   if (!input.keys.empty()) take(status::readKeyPair(input.keys), "/wall/input/keys", loaded);
@@ -110,7 +110,7 @@ void checkInput(const DaemonOptions& options, LoadedSettings& loaded) {
 Configuration readConfiguration(const std::string& file, const DaemonOptions& options) {
   Configuration read{loadSettingsFile(file), {}};
   LoadedSettings& loaded = read.loaded;
-  // What was clamped is good; where anything is wrong, the rest would be looked for in vain.
+  // A single finding without a pointer: the file could not be read or parsed at all.
   if (loaded.findings.size() == 1 && loaded.findings[0].pointer.empty()) return read;
   checkDescriptors(loaded);
   checkRunDirectory(loaded);

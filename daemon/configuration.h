@@ -1,5 +1,5 @@
-// Configuration: a file with all that a start takes from it, checked. `--check-config` and the
-// start are the same check, so that neither accepts what the other refuses.
+// Configuration: the configuration file and the files that it names, read and checked.
+// `--check-config` and the start use the same check, so that they always agree.
 #pragma once
 
 #include <string>
@@ -16,13 +16,14 @@ struct DaemonOptions {
 };
 
 struct Configuration {
-  LoadedSettings loaded;            // with every finding
-  std::vector<wall::Model> models;  // of the wall's role; meaningful unless invalid
+  LoadedSettings loaded;            // the settings, with all findings
+  std::vector<wall::Model> models;  // for the role wall; meaningful unless the verdict is kInvalid
 };
 
-// Reads the file, and what else a start with these roles would read; what another role would need
-// is not looked for. Changes nothing on disk. Never fails: what is wrong is a finding. What may
-// come or go while merlind runs (a device, a port that another program has) is none. O(models).
+// Reads the file, and all other files that a start with these roles would read; files that only
+// other roles need are not checked. Changes nothing on disk. Never fails: faults are findings.
+// Things that may change while merlind runs (a missing device, a port in use) are not faults.
+// O(models).
 Configuration readConfiguration(const std::string& file, const DaemonOptions& options);
 
 }  // namespace merlin

@@ -33,16 +33,17 @@ sigset_t takenSignals() {
   return set;
 }
 
-// Half of what systemd waits; zero where nobody watches.
+// Half of systemd's watchdog time; zero if there is no watchdog.
 Duration watchdogInterval() {
   std::uint64_t usec = 0;
   return ::sd_watchdog_enabled(0, &usec) > 0 ? Duration(std::chrono::microseconds(usec / 2))
                                              : Duration{};
 }
 
-// A thread that stands in a file system which does not answer cannot be joined.
+// Ends the process after 20 s: a thread that hangs, for example in a file system that does not
+// answer, cannot be joined.
 void limitStop() {
-  constexpr unsigned kSeconds = 20;  // below what systemd waits
+  constexpr unsigned kSeconds = 20;  // less than systemd's stop time-out
   ::signal(SIGALRM, [](int) {
     constexpr std::string_view kWhy = "merlind: a thread does not stop; the process ends now\n";
     const auto written = ::write(STDERR_FILENO, kWhy.data(), kWhy.size());
@@ -55,7 +56,7 @@ void limitStop() {
   ::alarm(kSeconds);
 }
 
-// An error of what a setting asks for.
+// Adds the setting's pointer to an error.
 Error errorAt(const char* pointer, const Error& error) {
   return {error.code, fmt::format("{}: {}", pointer, error.what)};
 }
@@ -81,7 +82,8 @@ Daemon::Daemon(Configuration configuration, const DaemonOptions& options, Clock&
       servers_(std::in_place, options.devices ? "devices" : "wall", threads_, clock),
       watchdog_(watchdogInterval()) {}
 
-// Its threads ask for what stands beside it; the panel's button, in devices_, calls wall_.
+// Stops callers before callees: the servers and orders call devices_ and wall_; the panel's button,
+// in devices_, calls wall_, so devices_ goes first.
 Daemon::~Daemon() {
   limitStop();
   servers_.reset();
@@ -97,12 +99,13 @@ shm::Endpoints Daemon::endpoints(const std::string& role) const {
   return {at + ".status", at + ".command"};
 }
 
-// The segments first: their locks say that no other daemon of this name lives, so that the sockets'
-// files are ours to replace. Emulators before any thread, since they are forked.
+// Creates the segments before the sockets: holding their locks means that no other daemon of this
+// name runs, so that we may replace the sockets' files. Emulators come before any thread, because
+// they are forked.
 Result<Ok> Daemon::makeRoles() {
   const std::uint64_t generation = shm::newGeneration();
   for (const char* role : {"devices", "wall"}) {
-    // Before the emulators, which would take another daemon's lines over.
+    // To be checked before the emulators start, which would replace another daemon's lines.
     const std::string name = shm::segmentName(settings_.instance, role);
     if ((role[0] == 'd' ? options_.devices : options_.wall) && SharedMemory::owned(name)) {
       return Error{
@@ -137,7 +140,8 @@ Result<Ok> Daemon::makeRoles() {
   return Ok{};
 }
 
-// The wall reads this machine's shared memory either way: here it is filled from another's.
+// Makes a devices' segment on this machine that is filled with the samples of another one; the wall
+// reads it like a local one.
 Result<Ok> Daemon::mirrorDevices(std::uint64_t generation) {
   const InputSettings& input = settings_.wall.input;
   auto segment = shm::SegmentWriter<shm::DevicesSegment>::make(
@@ -187,7 +191,7 @@ Result<status::CurveServer> Daemon::network() const {
   return status::CurveServer{s.samples_endpoint, *std::move(keys), *std::move(clients)};
 }
 
-// Frames are written where they are drawn, the lamp is lit where the panel is.
+// Connects the actions of the wall's bindings that other parts execute: snapshots and the lamp.
 void Daemon::takeOrders() {
   wall::Orders::Doers doers;
   if (wall_ && !settings_.wall.snapshots.empty()) {
@@ -250,12 +254,12 @@ Result<Ok> Daemon::awaitFirstFrame(std::future<Result<std::string>> ready) {
   }
   const auto first = ready.get();
   if (!first) return first.error();
-  logInfo("first frame is out, drawn by {}; {} levels of detail", *first,
+  logInfo("the first frame is shown, drawn by {}; {} levels of detail", *first,
           wall_->segment().stats.read()->levels);
   return Ok{};
 }
 
-// SIGTERM and SIGINT end it at once; SIGCHLD is looked after in housekeeping().
+// Waits for a signal; true for SIGTERM and SIGINT. SIGCHLD is handled in housekeeping().
 bool Daemon::stopAsked(Duration wait) {
   const sigset_t set = takenSignals();
   const timespec limit{0, wait.count()};
@@ -288,7 +292,7 @@ void Daemon::housekeeping() {
   pingWatchdog(now);
 }
 
-// Where another program removed an object (an administrator, logind as its user logs out).
+// Restores shared memory that was removed by an administrator, or by logind when its user logs out.
 void Daemon::mendSharedMemory() {
   std::string happened;
   const auto look = [&happened](const Result<std::string>& mended) {
@@ -352,7 +356,8 @@ Result<Ok> Daemon::serveDevices() {
   auto network_settings = network();
   if (!network_settings) return network_settings.error();
   s.network = *std::move(network_settings);
-  auto events = std::make_shared<status::HealthEvents>(segment);  // shared: std::function must copy
+  // Shared because a std::function must be copyable.
+  auto events = std::make_shared<status::HealthEvents>(segment);
   s.events = [this, events] {
     std::vector<std::string> documents;
     const Timestamp now = clock_.now();
@@ -374,7 +379,7 @@ Result<Ok> Daemon::serveDevices() {
   return serveStatus("devices", CommandOf::kDevices, std::move(s));
 }
 
-// By whichever role's server comes first.
+// Takes the events of the services; the first role's server that asks publishes them.
 void Daemon::tellServices(std::vector<std::string>& documents) {
   for (const std::string& sentence : services_.takeEvents()) {
     logWarning("{}", sentence);
@@ -382,9 +387,10 @@ void Daemon::tellServices(std::vector<std::string>& documents) {
   }
 }
 
-// What the wall gave way, and of another machine's devices, where it shows these.
+// Events of the wall's role: of the wall, its models and servers, and of another machine's devices
+// if the wall uses them.
 std::function<std::vector<std::string>()> Daemon::wallEvents() {
-  // Shared: a std::function must copy.
+  // Shared because a std::function must be copyable.
   auto events = std::make_shared<status::WallEvents>(wall_->segment());
   auto health = mirror_ ? std::make_shared<status::HealthEvents>(**mirror_) : nullptr;
   return [this, events, health] {

@@ -1,4 +1,4 @@
-// Daemon: the roles of one merlind, put together, and its main loop.
+// Daemon: the composition root of merlind: makes its roles and runs the main loop.
 #pragma once
 
 #include <csignal>
@@ -29,29 +29,30 @@ namespace merlin {
 
 class Daemon {
  public:
-  // Everything is made, nothing runs. REQUIRES: the configuration is not invalid, SIGTERM, SIGINT,
-  // SIGHUP and SIGCHLD are blocked, no thread has been started. Errors: of its parts.
+  // Makes all parts. Only the emulators and the link to another machine run afterwards.
+  // REQUIRES: the configuration's verdict is not kInvalid; SIGTERM, SIGINT, SIGHUP and SIGCHLD are
+  // blocked; no thread has been started. Errors: those of its parts.
   static Result<std::unique_ptr<Daemon>> make(Configuration configuration,
                                               const DaemonOptions& options, Clock& clock);
   ~Daemon();
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
-  // Runs until a signal; tells systemd when the first frame is out, and that there is progress.
-  // Errors: why there will be no first frame; a thread that has ended.
+  // Runs until a signal; notifies systemd of the first frame and of progress. Errors: the first
+  // frame could not be drawn; a thread has ended unexpectedly.
   Result<Ok> run();
 
  private:
   Daemon(Configuration configuration, const DaemonOptions& options, Clock& clock);
   Result<Ok> makeRoles();
-  // The first of `settings`' publications is the status.
+  // REQUIRES: the first of `settings`' publications is the status.
   Result<Ok> serveStatus(const std::string& role, CommandOf commands,
                          status::StatusServerSettings settings);
   Result<Ok> serveDevices();
   Result<Ok> serveWall();
   std::function<std::vector<std::string>()> wallEvents();
   Result<Ok> mirrorDevices(std::uint64_t generation);
-  // Servers for other programs, from here on kept running.
+  // Starts the servers for other programs and keeps them running.
   void serveOthers(const shm::DevicesSegment& segment);
   Result<status::CurveServer> network() const;
   void tellServices(std::vector<std::string>& documents);
@@ -65,16 +66,16 @@ class Daemon {
   std::string summary(Timestamp now) const;
 
   Settings settings_;
-  std::vector<wall::Model> models_;  // until the wall has them
+  std::vector<wall::Model> models_;  // moved to the wall
   DaemonOptions options_;
   Clock& clock_;
-  ThreadWatch threads_;  // before whoever has threads
+  ThreadWatch threads_;  // before all members that have threads
   std::string run_directory_;
   status::Services services_;
   status::EndedThreads ended_threads_{threads_, services_};
   std::unique_ptr<EmulatorChildren> emulators_;
   std::unique_ptr<devices::DevicesRole> devices_;
-  // Another machine's devices, where the wall's input is one.
+  // The segment for another machine's devices, if /wall/input names one.
   std::optional<shm::SegmentWriter<shm::DevicesSegment>> mirror_;
   std::unique_ptr<status::SampleLink> link_;
   std::unique_ptr<wall::WallRole> wall_;

@@ -16,14 +16,15 @@
 namespace merlin {
 namespace {
 
-// `merlin` lies beside this program.
+// The path of `merlin`, which is in the same folder as this program.
 Result<std::string> merlinProgram() {
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
   const auto program = self.parent_path() / "merlin";
   if (!error && ::access(program.c_str(), X_OK) == 0) return program.string();
   return Error{Errc::kIo,
-               fmt::format("{}: is needed for --emulate and is not there", program.string())};
+               fmt::format("{}: does not exist or cannot be executed, and --emulate needs it",
+                           program.string())};
 }
 
 pid_t spawn(const std::vector<std::string>& arguments) {
@@ -33,7 +34,7 @@ pid_t spawn(const std::vector<std::string>& arguments) {
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // whatever happens to merlind, none is left behind
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // the emulator ends with merlind
   if (::getppid() != parent) ::_exit(1);
   std::vector<char*> argv;
   argv.reserve(arguments.size() + 1);
@@ -43,7 +44,7 @@ pid_t spawn(const std::vector<std::string>& arguments) {
   ::_exit(127);
 }
 
-// Where the device's line is to be; made the device's port.
+// Sets the device's port to a pseudo-terminal and returns the path of its link.
 std::string placeLine(LineSettings& line, const std::string& instance,
                       const std::string& run_directory) {
   constexpr std::string_view kPty = "pty:";
@@ -67,7 +68,7 @@ Result<EmulatorChildren> EmulatorChildren::start(Settings& settings,
         spawn({*program, "emulate", line->driver, "--link", link, "--script",
                settings.devices.script, "--baud", std::to_string(line->baud), "--epoch-ns", epoch});
     if (pid < 0)
-      return Error{Errc::kIo, fmt::format("no process for an emulator: {}", std::strerror(errno))};
+      return Error{Errc::kIo, fmt::format("cannot start an emulator: {}", std::strerror(errno))};
     started.children_.push_back({line->driver, pid});
   }
   return started;

@@ -1,5 +1,5 @@
-// The processes that `merlind --emulate` starts: `merlin emulate DEVICE --link PATH`, one a device,
-// so that each can be killed alone.
+// The processes that `merlind --emulate` starts: `merlin emulate DEVICE --link PATH`, one per
+// device, so that each can be killed separately.
 #pragma once
 
 #include <string>
@@ -20,13 +20,14 @@ class EmulatorChildren {
   EmulatorChildren& operator=(EmulatorChildren&&) = delete;
   EmulatorChildren(const EmulatorChildren&) = delete;
   EmulatorChildren& operator=(const EmulatorChildren&) = delete;
-  ~EmulatorChildren();  // ends them
+  ~EmulatorChildren();  // ends the processes
 
-  // Starts one for each device and sets `settings`' ports to their lines: where a port is a pty:
-  // its path, else one in the run directory. REQUIRES: no thread has been started. Errors: kIo.
+  // Starts a process for each device and sets the devices' ports in `settings` to their
+  // pseudo-terminals: a port pty:PATH stays, any other becomes a path in the run directory.
+  // REQUIRES: no thread has been started. Errors: kIo.
   static Result<EmulatorChildren> start(Settings& settings, const std::string& run_directory);
 
-  // Names of children that have ended since the last call.
+  // Names of the devices whose process has ended since the last call.
   std::vector<std::string> takeEnded();
 
  private:

@@ -1,4 +1,4 @@
-// merlin: everything that a person types.
+// merlin: the command-line program; its subcommands are in daemon/cli.
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -17,8 +17,9 @@ namespace merlin {
 namespace {
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file's limit is an error of the write
-  CLI::App app("MERLIN: a lab's display wall. The daemon is merlind.");
+  std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file-size limit is then an error of write()
+  CLI::App app(
+      "MERLIN runs a lab's display wall. This is its command-line tool; the daemon is merlind.");
   app.require_subcommand(1);
   app.set_version_flag("--version", MERLIN_VERSION);
   cli::Run run;
@@ -34,7 +35,7 @@ int main(int argc, char** argv) {
   if (argc > 1 && argv[1][0] != '-' &&
       std::find(names.begin(), names.end(), argv[1]) == names.end()) {
     const std::string near = nearest(argv[1], names);
-    printError("merlin: \"{}\" is no command; {}\n", printable(argv[1]),
+    printError("merlin: \"{}\" is not a known command; {}\n", printable(argv[1]),
                near.empty() ? fmt::format("commands are {}", fmt::join(names, ", "))
                             : fmt::format("did you mean \"{}\"?", near));
     return kExitBadInput;

@@ -1,5 +1,4 @@
-// merlind: the daemon. The only place where an adapter meets a port: read the configuration, make
-// everything, run, stop.
+// merlind: the daemon's main(): reads the configuration, makes the Daemon, runs it.
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -69,20 +68,21 @@ int printConfig(const Options& options) {
   return kExitDone;
 }
 
-// Every thread inherits this mask; the main loop takes the signals one by one.
+// Blocks the signals that the main loop waits for; every thread inherits the mask.
 void blockSignals() {
   sigset_t set;
   ::sigemptyset(&set);
   for (const int s : {SIGTERM, SIGINT, SIGHUP, SIGCHLD}) ::sigaddset(&set, s);
   ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  // None of these means anything to merlind; SIGXFSZ: a file's limit is an error of the write.
+  // Ignored: they have no meaning for merlind. SIGXFSZ: exceeding a file-size limit is then an
+  // error of write().
   for (const int s : {SIGPIPE, SIGXFSZ, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU,
                       SIGIO, SIGPWR, SIGSTKFLT, SIGTSTP, SIGTTIN, SIGTTOU})
     ::signal(s, SIG_IGN);
   for (int s = SIGRTMIN; s <= SIGRTMAX; ++s) ::signal(s, SIG_IGN);
 }
 
-// Servers bound their connections; what is needed for all of them together must not be missing.
+// Raises the limit of open files so that all connections that the servers allow are possible.
 void raiseDescriptorLimit() {
   constexpr rlim_t kEnough = 8192;
   rlimit limit{};
@@ -112,29 +112,30 @@ int runDaemon(const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app(
-      "MERLIN's daemon: reads the devices, draws the wall.\n\nExample: merlind --config "
+      "MERLIN's daemon: reads the devices and draws the wall.\n\nExample: merlind --config "
       "config/demo.json --emulate");
-  // An unset variable of a shell must not start the daemon in place of a check.
+  // An empty name, from an unset shell variable, must not start the daemon instead of a check.
   const CLI::Validator named(
       [](const std::string& file) { return std::string(file.empty() ? "names no file" : ""); }, "");
-  app.add_option("--config", options.config, "The configuration, JSON")
+  app.add_option("--config", options.config, "The configuration file, JSON")
       ->check(named)
       ->capture_default_str();
   const CLI::Option* check =
       app.add_option("--check-config", options.check,
-                     "Only check FILE and the files that it names, for this --role: exits 0 valid, "
-                     "1 adjusted, 2 invalid or not checked to the end")
+                     "Only check FILE and the files that it names, for this --role. Exit status: 0 "
+                     "valid, 1 valid after adjustments, 2 invalid or not checked completely")
           ->check(named)
           ->type_name("FILE");
-  app.add_option("--role", options.role, "What this process does")
+  app.add_option("--role", options.role,
+                 "Role of this process: it reads the devices, draws the wall, or does both")
       ->check(CLI::IsMember({"devices", "wall", "all"}))
       ->capture_default_str();
   app.add_flag("--emulate", options.emulate,
-               "Start an emulator for each device, on pseudo-terminals");
+               "Start an emulator for each device, on a pseudo-terminal");
   app.add_flag("--print-config", options.print_config,
-               "Print every setting that the configuration gives, and end");
+               "Print the configuration with every setting, including defaults, and exit");
   app.add_flag("--print-schema", options.print_schema,
-               "Print the JSON Schema of configurations, and end");
+               "Print the JSON Schema of configuration files, and exit");
   app.set_version_flag("--version", MERLIN_VERSION);
   try {
     app.parse(argc, argv);

@@ -22,7 +22,7 @@ struct Range {
   double least, most;
 };
 
-// A number within the range, or nothing for "auto".
+// Parses a number within the range; nothing for "auto".
 Result<std::optional<double>> numberOrAuto(std::string_view argument, const Range& range) {
   if (argument == "auto") return std::optional<double>();
   double value = 0;
@@ -67,7 +67,7 @@ Answer flight(const Parts& p) {
 }
 
 Answer ofWall(const Parts& p, std::string_view name, const std::string& argument) {
-  if (!p.wall) return lacks("draws no wall");
+  if (!p.wall) return lacks("does not draw a wall");
   if (name == "reset_view") return request(p, wall::WallLoop::kResetView);
   if (name == "next_mode") return request(p, wall::WallLoop::kNextMode);
   if (name == "next_content") return request(p, wall::WallLoop::kNextContent);

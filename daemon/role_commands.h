@@ -1,5 +1,5 @@
-// RoleCommands: carries out the commands of daemon/base/commands.h, whoever asks: a client of a
-// socket, or the panel's button.
+// RoleCommands: executes the commands of daemon/base/commands.h for clients of the sockets and for
+// the panel's button.
 #pragma once
 
 #include <string>
@@ -13,10 +13,10 @@
 
 namespace merlin {
 
-// Thread-safe, as its parts are.
+// Thread-safe, because its parts are.
 class RoleCommands {
  public:
-  // What there is of them in this process; they outlive this.
+  // The parts that exist in this process; they must outlive this.
   struct Parts {
     devices::DevicesRole* devices = nullptr;
     wall::WallRole* wall = nullptr;
@@ -24,11 +24,11 @@ class RoleCommands {
   };
   explicit RoleCommands(const Parts& parts) : parts_(parts) {}
 
-  // Returns the answer as JSON. Errors: kInvalidArgument (no such command, its argument is wrong,
-  // this process lacks what it needs); of what carries it out.
+  // Executes a command and returns the answer as JSON. Errors: kInvalidArgument (unknown command,
+  // invalid argument, or this process lacks a part that it needs); those of the part.
   Result<std::string> run(std::string_view name, const std::string& argument = {}) const;
 
-  // Those of the list that a role's socket takes and this process can carry out, but for `status`.
+  // The commands that a role's socket accepts, except `status`.
   std::vector<status::Command> of(CommandOf role) const;
 
  private:

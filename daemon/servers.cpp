@@ -11,7 +11,8 @@ constexpr Duration kTellSentAway = std::chrono::seconds(5);
 
 }  // namespace
 
-// The samples' relay stands on a role's server. Threads that end here look at what is guarded.
+// Destroys the servers in `kept` before the roles, because the samples' relay uses a role's server;
+// without the lock, because their threads may wait for it.
 Servers::~Servers() {
   decltype(kept_) kept;
   decltype(roles_) roles;

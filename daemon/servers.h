@@ -1,5 +1,5 @@
-// Servers: the sockets that each role of a daemon has for its status, and the servers for other
-// programs, which are kept running. What they did is told in the status and as events.
+// Servers: each role's sockets for status and commands, and the servers for other programs, which
+// are kept running. Their health and counters are in the status and in events.
 #pragma once
 
 #include <map>
@@ -17,40 +17,40 @@ namespace merlin {
 
 class Servers {
  public:
-  // `host`: the role whose status and events tell of the servers for other programs. `watch` and
-  // `clock` outlive this.
+  // `host`: the role whose status and events include the servers for other programs. `watch` and
+  // `clock` must outlive this.
   Servers(std::string host, ThreadWatch& watch, const Clock& clock)
       : host_(std::move(host)), watch_(watch), clock_(clock) {}
   ~Servers();
   Servers(const Servers&) = delete;
   Servers& operator=(const Servers&) = delete;
 
-  // A role's own sockets, and the samples for other machines where `settings` asks for them. From
-  // the main thread. Errors: StatusServer::start()'s.
+  // Starts a role's own sockets, and the server of samples for other machines if `settings` has
+  // one. To be called from the main thread. Errors: those of StatusServer::start().
   Result<Ok> startRole(const std::string& role, status::StatusServerSettings settings);
-  // A server for other programs: from here on it is started again where it ends or cannot start.
-  // From the main thread.
+  // Adds a server for other programs, which is started again whenever it cannot start or has ended.
+  // To be called from the main thread.
   void keep(const std::string& name, net::ServerKeeper::Start start);
-  // Some ten times a second, from the main thread.
+  // Restarts servers; to be called about ten times a second from the main thread.
   void tend(Timestamp now);
 
-  // What the status of a role says of its servers. Thread-safe.
+  // Health of a role's servers, for its status. Thread-safe.
   std::vector<net::ServerHealth> health(const std::string& role) const;
-  // Who was sent away, and which server failed or works again, since the last call for that role; a
-  // sentence each. Thread-safe.
+  // Events since the last call for that role, a sentence each: connections refused or closed,
+  // servers that failed or run again. Thread-safe.
   std::vector<std::string> events(const std::string& role);
 
  private:
   struct Role {
     std::unique_ptr<status::StatusServer> server;
-    std::map<std::string, std::uint64_t> told_sent_away;  // by relay, when events told of it last
+    std::map<std::string, std::uint64_t> told_sent_away;  // by relay, as last reported
     Timestamp told{};
   };
 
   std::string host_;
   ThreadWatch& watch_;
   const Clock& clock_;
-  mutable std::mutex mutex_;  // of the next two: status threads look at them
+  mutable std::mutex mutex_;  // guards the next two, which status threads read
   std::map<std::string, Role> roles_;
   std::vector<std::unique_ptr<net::ServerKeeper>> kept_;
 };

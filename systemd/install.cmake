@@ -1,5 +1,5 @@
-# What depends on the prefix, which is known when it is installed. /usr has its configuration in /etc,
-# any other prefix below itself. `source` is the source tree.
+# Installs what depends on the prefix, which is known at installation. The configuration of the prefix
+# /usr is in /etc, that of any other prefix below it. `source` is the source tree.
 set(configuration "${CMAKE_INSTALL_PREFIX}/etc/merlin")
 if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
   set(configuration /etc/merlin)
@@ -12,8 +12,8 @@ set(path "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/lib/systemd/system/merlind.servic
 message(STATUS "Installing: ${path}")
 file(WRITE "${path}" "${unit}")
 
-# A configuration that is there is somebody's work, and stays. wall.json names postures.json and
-# the schema as its neighbours.
+# An existing configuration is somebody's work and is kept. wall.json names postures.json and the
+# schema, which must be in the same folder.
 foreach(pair "wall.json>merlin.json" "postures.json>postures.json"
              "merlin.schema.json>merlin.schema.json")
   string(REPLACE ">" ";" pair "${pair}")

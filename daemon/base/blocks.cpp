@@ -25,7 +25,7 @@ bool forBlocks(unsigned threads, std::size_t blocks, const std::function<void(st
     if (block >= blocks) return false;
     try {
       work(block);
-    } catch (...) {  // no memory, as a rule
+    } catch (...) {  // usually std::bad_alloc
       if (!thrown.test_and_set()) exception = std::current_exception();
       cancelled = true;
       return false;

@@ -1,4 +1,4 @@
-// Blocks: work cut into numbered pieces that several threads do.
+// Parallel loops: work in numbered blocks that several threads process.
 #pragma once
 
 #include <algorithm>
@@ -7,15 +7,15 @@
 
 namespace merlin {
 
-// Calls work(0) .. work(blocks - 1), each once, on `threads` threads, the caller's among them;
-// what they write must not overlap, and then does not depend on the number of threads. `goOn` is
-// called on the caller's thread with how many are done; once it says false no block is begun.
-// Returns whether all were done. What `work` throws comes out here, after all threads have ended.
-// REQUIRES: threads > 0.
+// Calls work(0) .. work(blocks - 1), each once, on `threads` threads including the caller's. The
+// blocks must not write to the same memory; the result then does not depend on the number of
+// threads. `goOn` is called on the caller's thread with the number of finished blocks; after it
+// returns false no further block begins. Returns whether all blocks were done. An exception of
+// `work` is rethrown here, after all threads have finished. REQUIRES: threads > 0.
 bool forBlocks(unsigned threads, std::size_t blocks, const std::function<void(std::size_t)>& work,
                const std::function<bool(std::size_t)>& goOn = {});
 
-// Calls work(i) for each i of [0, count), in blocks, as above.
+// Calls work(i) for each i of [0, count), in blocks of 16384, with forBlocks().
 template <typename Work>
 void forEach(unsigned threads, std::size_t count, const Work& work) {
   constexpr std::size_t kBlock = 1 << 14;
@@ -25,7 +25,7 @@ void forEach(unsigned threads, std::size_t count, const Work& work) {
   });
 }
 
-// `wanted`, or for 0 as many as the machine runs at once.
+// Returns `wanted`, or the number of hardware threads if it is 0.
 unsigned threadsOr(unsigned wanted);
 
 }  // namespace merlin

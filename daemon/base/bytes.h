@@ -1,5 +1,5 @@
-// Reading and writing numbers in a stated byte order, one byte at a time: right on every machine,
-// no alignment asked for. `p` points at as many bytes as the name says.
+// Reads and writes numbers in a given byte order, byte by byte: works on every machine and without
+// alignment. `p` points to as many bytes as the type has.
 #pragma once
 
 #include <bit>

@@ -6,8 +6,9 @@
 namespace merlin {
 namespace {
 
-// How long a stop may go unseen. A slice, not a condition variable: ThreadSanitizer of g++ 12 does
-// not know pthread_cond_clockwait, and 20 wake-ups a second cost nothing.
+// Longest delay before a stop request is noticed. Sleeps in slices instead of waiting on a
+// condition variable: the ThreadSanitizer of g++ 12 does not know pthread_cond_clockwait, and 20
+// wake-ups a second cost nothing.
 constexpr Duration kSlice = std::chrono::milliseconds(50);
 
 void sleepPlain(Timestamp when) noexcept {

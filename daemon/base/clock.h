@@ -1,4 +1,4 @@
-// Time: the only clock that MERLIN reads. CLOCK_MONOTONIC, in nanoseconds; fake in tests.
+// Time: the only clock that MERLIN reads. CLOCK_MONOTONIC in nanoseconds; replaced in tests.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@ namespace merlin {
 using Duration = std::chrono::nanoseconds;
 using Timestamp = std::chrono::time_point<std::chrono::steady_clock, Duration>;
 
-// What a sample or a header carries: nanoseconds of CLOCK_MONOTONIC.
+// Samples and headers store times as nanoseconds of CLOCK_MONOTONIC.
 inline std::int64_t toNanoseconds(Timestamp t) noexcept { return t.time_since_epoch().count(); }
 inline Timestamp fromNanoseconds(std::int64_t ns) noexcept { return Timestamp(Duration(ns)); }
 inline double toSeconds(Duration d) noexcept { return std::chrono::duration<double>(d).count(); }
@@ -25,7 +25,7 @@ class Clock {
 
   virtual Timestamp now() const noexcept = 0;
 
-  // Returns true at or after `when`, false within 50 ms of a stop that is asked for.
+  // Sleeps until `when` and returns true, or returns false within 50 ms of a stop request.
   virtual bool sleepUntil(Timestamp when, const std::stop_token& stop) noexcept = 0;
 };
 
@@ -35,8 +35,8 @@ class SystemClock final : public Clock {
   bool sleepUntil(Timestamp when, const std::stop_token& stop) noexcept override;
 };
 
-// What to add to a Timestamp for the time of day: CLOCK_REALTIME minus CLOCK_MONOTONIC, measured to
-// about a microsecond. It changes when the system's clock is set. Thread-safe.
+// CLOCK_REALTIME minus CLOCK_MONOTONIC: added to a Timestamp it gives the time of day. Measured to
+// about a microsecond; changes when the system's clock is set. Thread-safe.
 Duration realtimeOffset() noexcept;
 
 }  // namespace merlin

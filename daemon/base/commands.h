@@ -1,6 +1,6 @@
-// The commands that a merlind carries out: one list. The sockets' commands, what the panel's button
-// may do, the subcommands of `merlin` and the schema come from it; daemon/role_commands.cpp has
-// what each one does.
+// The list of all commands of merlind. The sockets' commands, the commands of the panel's button,
+// the subcommands of `merlin` and the schema are made from it; daemon/role_commands.cpp implements
+// them.
 #pragma once
 
 #include <algorithm>
@@ -10,34 +10,35 @@
 
 namespace merlin {
 
-// Which role of merlind takes a command; the panel's are taken by the role devices.
+// The role of merlind that executes a command; the role devices executes the panel's.
 enum class CommandOf { kEachRole, kDevices, kPanel, kWall };
 
 struct CommandInfo {
   std::string_view name;
   CommandOf role;
-  std::string_view argument;  // its form, "N|auto"; empty: it takes none
-  std::string_view help;      // for a person: what it does
-  bool by_button;             // the panel's button may be set to it
-  bool by_name;               // `merlin NAME` sends it; else another subcommand does
+  std::string_view argument;  // form of its argument, "N|auto"; empty: none
+  std::string_view help;      // what it does, for a person
+  bool by_button;             // whether the panel's button may be set to it
+  bool by_name;               // whether `merlin NAME` sends it; otherwise another subcommand does
 };
 
 inline constexpr CommandInfo kCommands[] = {
-    {"status", CommandOf::kEachRole, "", "Tell how the role is.", false, false},
+    {"status", CommandOf::kEachRole, "", "Show the state of the role.", false, false},
     {"flight", CommandOf::kDevices, "",
      "Write the last minutes of every device's bytes into files.", false, false},
-    {"reset_view", CommandOf::kWall, "", "Put the model and the viewer back to the start.", true,
-     true},
-    {"next_mode", CommandOf::kWall, "",
-     "Let the ball move the viewer instead of the model, or back.", true, true},
-    {"next_content", CommandOf::kWall, "", "Show the next of the configuration's models.", true,
-     true},
-    {"snapshot", CommandOf::kWall, "", "Write the newest frame into the folder /wall/snapshots.",
-     true, false},
+    {"reset_view", CommandOf::kWall, "",
+     "Return the model and the viewer to their initial positions.", true, true},
+    {"next_mode", CommandOf::kWall, "", "Switch whether the ball moves the model or the viewer.",
+     true, true},
+    {"next_content", CommandOf::kWall, "", "Show the next model of the configuration.", true, true},
+    {"snapshot", CommandOf::kWall, "",
+     "Write the newest frame into the folder that /wall/snapshots names.", true, false},
     {"triangles", CommandOf::kWall, "N|auto",
-     "Draw this many triangles while anything moves, or let the governor decide.", false, false},
+     "Set the number of triangles per frame while anything moves; auto lets the governor choose "
+     "it.",
+     false, false},
     {"rate", CommandOf::kWall, "HZ|auto",
-     "Draw this many frames a second, from 1 to 240, or as many as configured.", false, false},
+     "Set the frame rate, 1 to 240 per second; auto returns to the configured rate.", false, false},
     {"projector_on", CommandOf::kPanel, "", "Switch the projectors on.", true, true},
     {"projector_off", CommandOf::kPanel, "", "Switch the projectors off.", true, true},
     {"video_a", CommandOf::kPanel, "", "Show input A on the projectors.", true, true},
@@ -48,14 +49,14 @@ inline constexpr CommandInfo kCommands[] = {
     {"lamp_on", CommandOf::kPanel, "", "Switch the panel's lamp on.", false, true},
 };
 
-// Null where there is none of that name.
+// The command of that name; null if there is none.
 constexpr const CommandInfo* findCommand(std::string_view name) {
   const auto* const found = std::find_if(std::begin(kCommands), std::end(kCommands),
                                          [&](const CommandInfo& c) { return c.name == name; });
   return found == std::end(kCommands) ? nullptr : found;
 }
 
-// The names of those that the panel's button may be set to, as C strings.
+// Names of the commands that the panel's button may be set to, as C strings.
 inline constexpr auto kButtonCommands = [] {
   constexpr auto kIs = [](const CommandInfo& c) { return c.by_button; };
   constexpr auto kCount = std::count_if(std::begin(kCommands), std::end(kCommands), kIs);

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// When a file was made: its time, then its number within the second.
+// Sort key of a file: its time, then its number within the second.
 using Order = std::pair<std::string, int>;
 
 constexpr std::string_view kTimeForm = "ddddddddTddddddZ";  // 20261123T045500Z
@@ -29,7 +29,7 @@ bool isTime(std::string_view text) {
       [](char c, char form) { return form == 'd' ? c >= '0' && c <= '9' : c == form; });
 }
 
-// Of a file's name without name and ending: "-20261123T045500Z" or "-20261123T045500Z-2".
+// Parses the middle of a file's name, "-20261123T045500Z" or "-20261123T045500Z-2".
 std::optional<Order> orderOf(std::string_view middle) {
   constexpr std::size_t kTime = 1 + kTimeForm.size();
   if (middle.size() < kTime || middle[0] != '-' || !isTime(middle.substr(1, kTime - 1)))
@@ -53,7 +53,7 @@ Result<std::string> DatedFiles::next(std::time_t now) const {
     auto path = number == 1 ? start + ending_ : fmt::format("{}-{}{}", start, number, ending_);
     if (!fs::exists(fs::symlink_status(path, error))) return path;
   }
-  return Error{Errc::kIo, start + ending_ + ": there are too many files of this second"};
+  return Error{Errc::kIo, start + ending_ + ": too many files were made in this second"};
 }
 
 void DatedFiles::removeOldest(std::time_t now) const {

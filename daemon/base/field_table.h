@@ -1,5 +1,5 @@
-// The table by which a shared-memory segment describes itself to readers without a header file, and
-// what a writer needs to fill it.
+// The table by which a shared-memory segment describes its fields to readers that do not use our
+// header files, and a class that builds it.
 #pragma once
 
 #include <algorithm>
@@ -19,13 +19,13 @@ namespace merlin::shm {
 // `type` is a format of Python's struct module for one value: q i64, Q u64, i i32, I u32, h i16,
 // H u16, B u8, f f32, d f64, 20s a NUL-ended text of at most 20 bytes. Little-endian.
 //
-// `slot` is the offset of the u64 sequence that guards the values: read it before and after them;
-// odd or changed means try again, 0 means never written. A `slot` of 0: no guard; a word is read
-// whole.
+// `slot` is the offset of the u64 sequence number that guards the values: read it before and after
+// them; if it is odd or has changed, read again; 0 means never written. A `slot` of 0 means that
+// the field has no guard; a single word is read atomically.
 //
-// `ring` is the offset of a channel's last samples, 0 for a field that has none. Sample number n
-// lies in ring slot n % ring_slots, which starts at ring + (n % ring_slots) * ring_stride with a
-// sequence of its own; the field's values start (offset - slot) bytes after that.
+// `ring` is the offset of a channel's ring of last samples, 0 for a field without one. Sample
+// number n is in ring slot n % ring_slots, which starts at ring + (n % ring_slots) * ring_stride
+// with a sequence number of its own; the field's values start (offset - slot) bytes after that.
 struct Field {
   char name[48];  // "glove.angle_rad"
   char unit[24];  // "rad"
@@ -41,10 +41,10 @@ struct Field {
 };
 static_assert(sizeof(Field) == 112 && offsetof(Field, count) == 80);
 
-// Where a slot's value begins: after its sequence.
+// Offset of a slot's value from the slot's start: it follows the sequence number.
 inline constexpr std::size_t kSlotPayload = 8;
 
-// The letter of a C++ type; '?' for none.
+// The type letter of a C++ type; '?' if it has none.
 template <typename T>
 constexpr char fieldType() {
   if constexpr (std::is_enum_v<T>) {
@@ -61,17 +61,17 @@ constexpr char fieldType() {
   }
 }
 
-// Gathers a segment's fields. REQUIRES of all: names and units fit into a Field.
+// Collects the fields of a segment. REQUIRES: all names and units fit into a Field.
 class FieldTable {
  public:
-  // The fields added from here on lie in the slot at `offset`; their names begin with `prefix`.
+  // The fields added from now on are in the slot at `offset`; their names begin with `prefix`.
   void slot(std::string_view prefix, std::size_t offset) {
     now_ = {};
     prefix_ = prefix;
     now_.slot = static_cast<std::uint32_t>(offset);
     base_ = offset + kSlotPayload;
   }
-  // The same, of a slot whose last samples lie in a ring of slots.
+  // The fields added from now on are in the slot at `offset`, whose last samples are in a ring.
   void slot(std::string_view prefix, std::size_t offset, std::size_t ring, std::size_t stride,
             std::size_t slots) {
     slot(prefix, offset);
@@ -79,14 +79,14 @@ class FieldTable {
     now_.ring_stride = static_cast<std::uint32_t>(stride);
     now_.ring_slots = static_cast<std::uint32_t>(slots);
   }
-  // The fields added from here on have no guard; their offsets count from `offset`.
+  // The fields added from now on have no guard; their offsets count from `offset`.
   void bare(std::string_view prefix, std::size_t offset) {
     now_ = {};
     prefix_ = prefix;
     base_ = offset;
   }
 
-  // A member, or an array of them: one field.
+  // Adds a member, or an array, as one field.
   template <typename Member>
   void add(std::string_view name, std::size_t offset, std::string_view unit) {
     using Element = std::remove_all_extents_t<Member>;
@@ -99,7 +99,8 @@ class FieldTable {
              {kElements, sizeof(Element)});
     }
   }
-  // The same member of each of `count` structs that lie `step` bytes apart.
+  // Adds one field of `count` values: the same member of `count` structs that are `step` bytes
+  // apart.
   template <typename Member>
   void addOfEach(std::string_view name, std::size_t offset, std::string_view unit,
                  std::size_t count, std::size_t step) {
@@ -136,9 +137,9 @@ class FieldTable {
 #define MERLIN_FIELD(table, Struct, member, unit) \
   (table).add<decltype(Struct::member)>(#member, offsetof(Struct, member), unit)
 
-// Copies the fields into their place in a segment and says in its header where that is. Header has
-// field_offset, field_count and field_size. REQUIRES: `place` lies behind `header` in one segment
-// and holds all of them.
+// Copies the fields to `place` in a segment and stores its offset, size and count in the header.
+// Header has field_offset, field_count and field_size. REQUIRES: `place` is after `header` in the
+// same segment and has room for all fields.
 template <typename Header>
 void setFields(Header& header, std::span<Field> place, const std::vector<Field>& fields) {
   assert(fields.size() <= place.size());

@@ -36,7 +36,7 @@ bool writeAll(int fd, std::span<const std::byte> bytes) {
   return true;
 }
 
-// Gathers small writes; 1 MiB at a time reaches the file.
+// Collects small writes and writes 1 MiB at a time.
 class Buffered {
  public:
   explicit Buffered(int fd) : fd_(fd) { pending_.reserve(kSize); }
@@ -59,12 +59,13 @@ class Buffered {
   std::string pending_;
 };
 
-// The rename would put a file in the place of a device, a pipe or a socket.
+// Refuses a path that is not a regular file: the rename would replace a device, a pipe or a socket.
 Result<Ok> checkReplaceable(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode)) return Ok{};
   if (S_ISDIR(status.st_mode)) return fileError(path, EISDIR);
-  return Error{Errc::kIo, path + ": is no regular file and is not replaced; name another"};
+  return Error{Errc::kIo,
+               path + ": is not a regular file and is not replaced; choose another name"};
 }
 
 FileStamp stampOf(const struct stat& s) {
@@ -74,7 +75,7 @@ FileStamp stampOf(const struct stat& s) {
   return {s.st_dev, s.st_ino, static_cast<std::uint64_t>(s.st_size), ns(s.st_mtim), ns(s.st_ctim)};
 }
 
-// With something to spare for others; what the kernel cannot tell is no reason to refuse.
+// Whether `size` bytes leave a tenth of the available memory free; true if that is unknown.
 bool fitsIntoMemory(std::size_t size) {
   std::ifstream info("/proc/meminfo");
   std::string word;
@@ -85,7 +86,7 @@ bool fitsIntoMemory(std::size_t size) {
   return true;
 }
 
-// How many bytes came before the file's end; -1 on an error.
+// Number of bytes read before the end of the file; -1 on an error.
 ssize_t readAll(int fd, std::span<std::byte> to) {
   std::size_t done = 0;
   while (done < to.size()) {
@@ -107,7 +108,8 @@ std::optional<FileStamp> fileStamp(const std::string& path) {
 }
 
 Result<FileCopy> FileCopy::read(const std::string& path, std::size_t most) {
-  const UniqueFd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // a pipe would wait
+  const UniqueFd fd(::open(
+      path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // O_NONBLOCK: opening a pipe would block
   struct stat status {};
   if (!fd.valid() || ::fstat(fd.get(), &status) != 0) return fileError(path, errno);
   if (!S_ISREG(status.st_mode)) return Error{Errc::kMalformed, path + ": is not a regular file"};
@@ -129,13 +131,15 @@ Result<FileCopy> FileCopy::read(const std::string& path, std::size_t most) {
   if (static_cast<std::size_t>(n) != copy.size_ || ::fstat(fd.get(), &status) != 0 ||
       stampOf(status).size != copy.stamp_.size ||
       stampOf(status).modified_ns != copy.stamp_.modified_ns) {
-    return Error{Errc::kIo, path + ": another program changed it while it was read; try again"};
+    return Error{Errc::kIo,
+                 path + ": another program changed the file while it was read; try again"};
   }
   return copy;
 }
 
 Result<MappedFile> MappedFile::open(const std::string& path) {
-  const UniqueFd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // a pipe would wait
+  const UniqueFd fd(::open(
+      path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // O_NONBLOCK: opening a pipe would block
   struct stat status {};
   if (!fd.valid() || ::fstat(fd.get(), &status) != 0) return fileError(path, errno);
   if (!S_ISREG(status.st_mode)) return Error{Errc::kMalformed, path + ": is not a regular file"};
@@ -170,8 +174,8 @@ std::string folderOf(const std::string& path) {
   return slash == std::string::npos ? "." : path.substr(0, slash + 1);
 }
 
-// The file that becomes `path` once it is whole. Where the file system can, it has no name until
-// then, so that whoever is killed meanwhile leaves nothing behind.
+// The file that becomes `path` once it is complete. If the file system supports it (O_TMPFILE), it
+// has no name until then, so that a killed process leaves nothing behind.
 class FreshFile {
  public:
   explicit FreshFile(const std::string& path)
@@ -190,7 +194,7 @@ class FreshFile {
 
   int fd() const noexcept { return fd_.get(); }
 
-  // On the disk, and in the place of what was there. False with errno set.
+  // Syncs the file to the disk and renames it to `path`. Returns false with errno set on failure.
   bool replace() {
     if (::fsync(fd_.get()) != 0) return false;
     const std::string self = fmt::format("/proc/self/fd/{}", fd_.get());
@@ -204,7 +208,7 @@ class FreshFile {
   }
 
  private:
-  // What runs that were killed have left beside `path`, and what an attempt of this one has.
+  // Removes temporary files beside `path` that killed processes, or this one, have left.
   void removeLeftOvers() const {
     std::error_code error;
     const std::string start = std::filesystem::path(path_).filename().string() + ".";

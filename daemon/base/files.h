@@ -1,9 +1,8 @@
-// Files: a copy of one in our own memory, a read-only mapping of one, and writing one whole or not
-// at all.
+// Files: reading a file into memory, mapping a file read-only, and writing a file atomically.
 //
-// The rule: what merlind reads it reads by FileCopy, so that nothing that another program does to
-// a file afterwards changes what was checked, or ends the wall. MappedFile is for the tools' large
-// inputs, which need not fit into memory.
+// merlind reads files by FileCopy only, so that changes by other programs can neither alter content
+// that has been checked nor crash the wall. MappedFile is for the tools' large inputs, which need
+// not fit into memory.
 #pragma once
 
 #include <compare>
@@ -21,30 +20,29 @@
 
 namespace merlin {
 
-// What tells a file's content from another one under the same name: it changes when the file is
-// written, cut, or replaced.
+// Identifies the content of a file: changes when the file is written, truncated or replaced.
 struct FileStamp {
   std::uint64_t device = 0, inode = 0, size = 0;
-  std::int64_t modified_ns = 0, changed_ns = 0;  // of the file system's clock
+  std::int64_t modified_ns = 0, changed_ns = 0;  // by the file system's clock
   auto operator<=>(const FileStamp&) const = default;
 };
-// Of what `path` names, through links; nothing where there is no regular file.
+// The stamp of the file at `path` (links are followed); nothing if it is not a regular file.
 std::optional<FileStamp> fileStamp(const std::string& path);
 
 // A whole file, copied into our own memory. Reentrant.
 class FileCopy {
  public:
   static constexpr std::size_t kAll = ~std::size_t{0};
-  // Reads the first `most` bytes, all of them where the file has no more. O(file).
-  // Errors: kNotFound; kIo (also: larger than this machine's memory, or it changed while it was
-  // read); kMalformed (not a regular file).
+  // Reads the file, or its first `most` bytes. O(file). Errors: kNotFound; kIo (also if it is
+  // larger than this machine's memory, or changed while it was read); kMalformed (not a regular
+  // file).
   static Result<FileCopy> read(const std::string& path, std::size_t most = kAll);
 
   std::span<const std::byte> bytes() const noexcept { return {bytes_.data(), size_}; }
   std::string_view text() const noexcept {
     return {reinterpret_cast<const char*>(bytes_.data()), size_};
   }
-  // Of the file when it was read.
+  // The file's stamp when it was read.
   const FileStamp& stamp() const noexcept { return stamp_; }
 
  private:
@@ -53,9 +51,9 @@ class FileCopy {
   FileStamp stamp_;
 };
 
-// A whole file as bytes, by mmap: pages come as they are touched. Reentrant. Not for merlind.
-// A file that another program cuts short while it is mapped ends this one with SIGBUS, as every
-// mapping does; MERLIN's own writers replace files and never cut them.
+// A whole file as bytes, by mmap: pages are read when they are touched. Reentrant. Not for merlind:
+// if another program truncates a mapped file, access to it ends this process with SIGBUS. MERLIN's
+// own writers replace files and never truncate them.
 class MappedFile {
  public:
   // Errors: kNotFound, kIo, kMalformed (not a regular file). An empty file is an empty span.
@@ -78,30 +76,33 @@ class MappedFile {
   std::size_t size_ = 0;
 };
 
-// Takes bytes in order; false where the file could not take them (the disk is full).
+// Appends bytes to a file; false if that failed (the disk is full).
 using WriteBytes = std::function<bool(std::span<const std::byte>)>;
 
-// Whether files can be made in this folder. Errors: kNotFound, kIo (not a folder, not ours).
+// Checks that files can be created in this folder. Errors: kNotFound, kIo (not a folder, or no
+// permission).
 Result<Ok> checkWritableFolder(const std::string& path);
-// The same of one that may be missing, and would then be made with those above it.
+// Checks the same for a folder that may be missing: then it must be possible to create it, and its
+// parents.
 Result<Ok> checkFolder(const std::string& path);
 
 // Calls `fill` to write a temporary file in the same folder, then syncs it and renames it to
-// `path`: readers see the old file or the whole new one. Where anything fails the old one stays.
+// `path`: readers see either the old file or the complete new one. After any failure the old one
+// stays.
 // Errors: kNotFound (no such folder), kIo (also where `path` is a device, a pipe, a socket).
 Result<Ok> writeFile(const std::string& path, const std::function<bool(const WriteBytes&)>& fill);
 Result<Ok> writeFile(const std::string& path, std::string_view content);
 
-// The same, for a file that opens with what is known last (counts, checksums): `fill` writes what
-// stands behind the first `head_size` bytes, then `head` returns these.
+// Like writeFile(), for a file whose head is known last (counts, checksums): `fill` writes
+// everything after the first `head_size` bytes, then `head` returns those.
 Result<Ok> writeFileHeadLast(const std::string& path, std::size_t head_size,
                              const std::function<bool(const WriteBytes&)>& fill,
                              const std::function<std::span<const std::byte>()>& head);
 
-// Whether writeFile() could put a file there, as far as can be said before: to be asked before long
-// work. Errors: kNotFound (no such folder), kIo (not writable, a folder, a device).
+// Checks, before long work and as far as possible, that writeFile() could write this file.
+// Errors: kNotFound (no such folder), kIo (not writable, a folder, a device).
 Result<Ok> checkWritable(const std::string& path);
-// The same of each that is not empty.
+// Checks each path that is not empty.
 Result<Ok> checkWritable(std::initializer_list<std::string> paths);
 
 }  // namespace merlin

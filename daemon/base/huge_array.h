@@ -1,7 +1,7 @@
-// HugeArray: a large array of plain values on huge pages, zero at first.
+// HugeArray: a large array of plain values on huge pages, initially zero.
 //
-// Where a walk over the array is random, 4 KiB pages cost a page walk for each step; 2 MiB pages
-// do not. Pages that were never touched cost no memory. What is small stays on small pages.
+// With random access, 4 KiB pages cost a page-table walk (a TLB miss) for each access; 2 MiB pages
+// do not. Pages that were never touched use no memory. Small arrays stay on small pages.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ class HugeArray {
     std::size_t room = bytes_;
     data_ = static_cast<T*>(std::align(kPage, size * sizeof(T), at, room));
     if (size * sizeof(T) >= kWorthIt)
-      ::madvise(data_, roundUp(size * sizeof(T)), MADV_HUGEPAGE);  // a wish
+      ::madvise(data_, roundUp(size * sizeof(T)), MADV_HUGEPAGE);  // a hint
   }
   HugeArray(HugeArray&& other) noexcept { *this = std::move(other); }
   HugeArray& operator=(HugeArray&& other) noexcept {

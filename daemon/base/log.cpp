@@ -36,19 +36,20 @@ std::string_view syslogPriority(LogLevel level) {
   return "<6>";
 }
 
-// Standard error, for which nobody waits: a pager that was stopped, or a log's reader that hangs,
-// would hold the daemon otherwise. What finds no room is counted, and told with the next line.
+// Writes to standard error without blocking: a stopped pager or a hanging reader of the log must
+// not block the daemon. Lines that cannot be written are counted; the next line reports their
+// number.
 class PatientSink final : public spdlog::sinks::base_sink<std::mutex> {
  protected:
   void sink_it_(const spdlog::details::log_msg& message) override {
     spdlog::memory_buf_t line;
     formatter_->format(message, line);
-    if (line.size() > kMostBytes) {  // a pipe that has room takes so many at once
+    if (line.size() > kMostBytes) {  // a pipe with room takes this many at once
       line.resize(kMostBytes);
       line[kMostBytes - 1] = '\n';
     }
     if (lost_ > 0 && hasRoom()) {
-      const std::string said = fmt::format("({} lines of the log found no room)\n", lost_);
+      const std::string said = fmt::format("({} lines of the log were lost)\n", lost_);
       if (write(said)) lost_ = 0;
     }
     if (lost_ > 0 || !hasRoom() || !write({line.data(), line.size()})) ++lost_;
@@ -62,7 +63,7 @@ class PatientSink final : public spdlog::sinks::base_sink<std::mutex> {
     pollfd error{STDERR_FILENO, POLLOUT, 0};
     return ::poll(&error, 1, 0) == 1 && (error.revents & POLLOUT) != 0;
   }
-  // Whatever went: half a line on a disk that is full is not mended by waiting.
+  // A partial write counts as written: on a full disk, waiting would not help.
   static bool write(std::string_view text) {
     return ::write(STDERR_FILENO, text.data(), text.size()) > 0;
   }

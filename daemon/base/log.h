@@ -1,8 +1,8 @@
-// Logging: one line an event to stderr, which systemd's journal takes as it is.
+// Logging: one line per event to stderr, in a form that systemd's journal understands.
 //
-// Under the journal (JOURNAL_STREAM is set) a line starts with its syslog priority, "<4>", and
-// carries no time; in a terminal it starts with the time of day. Pure folders do not log: they
-// return Results, and the composition root says what happened.
+// Under the journal (JOURNAL_STREAM is set) a line starts with its syslog priority, "<4>", and has
+// no time; in a terminal it starts with the time of day. Pure folders do not log: they return
+// Results, and the composition root logs them.
 #pragma once
 
 #include <cstdio>
@@ -15,7 +15,7 @@ namespace merlin {
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
-// Once, before any thread starts. Lines below `lowest` are dropped.
+// To be called once, before any thread starts. Lines below `lowest` are dropped.
 void initLog(LogLevel lowest);
 
 // Thread-safe.
@@ -34,16 +34,17 @@ void logError(fmt::format_string<Args...> format, Args&&... args) {
   logLine(LogLevel::kError, fmt::format(format, std::forward<Args>(args)...));
 }
 
-// To standard error as fmt::print() does, but where that cannot be written (it is closed, a disk is
-// full) nothing happens: no work ends for want of a place for its words.
+// Prints to standard error like fmt::print(), but ignores failures (closed stream, full disk), so
+// that they cannot end the program.
 template <typename... Args>
 void printError(fmt::format_string<Args...> format, Args&&... args) {
   const std::string text = fmt::format(format, std::forward<Args>(args)...);
   std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
-// First of all: where descriptor 0, 1 or 2 is closed, /dev/null takes its place. Else the next file
-// would, and the log would be written into shared memory.
+// To be called first: opens /dev/null for each of the descriptors 0, 1 and 2 that is closed.
+// Otherwise the next file opened would get that number, and the log might be written into shared
+// memory.
 void openStandardStreams();
 
 }  // namespace merlin

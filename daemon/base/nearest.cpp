@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::size_t kLongest = 64;
 
-// F. J. Damerau, "A technique for computer detection and correction of spelling errors", 1964, in
-// the form that edits no part twice.
+// Optimal string alignment distance: F. J. Damerau, "A technique for computer detection and
+// correction of spelling errors", 1964, restricted so that no part is edited twice.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   std::iota(last.begin(), last.end(), std::size_t{0});

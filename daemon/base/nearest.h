@@ -1,4 +1,4 @@
-// The nearest of some known words to one that was mistyped.
+// Spelling suggestion: the known word nearest to a mistyped one.
 #pragma once
 
 #include <string>
@@ -7,8 +7,9 @@
 
 namespace merlin {
 
-// By edits of one letter or swaps of two neighbours (optimal string alignment distance), at most
-// half of the word's length away; empty if none is that near. Ties go to the first.
+// The known word with the smallest optimal string alignment distance (edits of one letter, swaps of
+// two neighbours) from `word`, the first one if several are equally near; empty if the distance
+// exceeds half of the word's length.
 std::string nearest(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace merlin

@@ -1,7 +1,7 @@
 // Random: a small seeded generator whose numbers are the same on every machine and compiler.
 //
-// std::mt19937 is portable, the distributions of <random> are not; MERLIN promises the same bytes
-// for the same seed. SplitMix64: G. L. Steele et al., "Fast splittable pseudorandom number
+// std::mt19937 is portable, but the distributions of <random> are not; MERLIN guarantees the same
+// bytes for the same seed. SplitMix64: G. L. Steele et al., "Fast splittable pseudorandom number
 // generators", 2014. Not for secrets. Reentrant; an instance is thread-bound.
 #pragma once
 
@@ -26,7 +26,7 @@ class Random {
   double uniform() noexcept { return static_cast<double>(next() >> 11) * 0x1p-53; }
   double uniform(double low, double high) noexcept { return low + (high - low) * uniform(); }
 
-  // In [0, bound), bound > 0. The bias, bound / 2^64, is below what any use here could see.
+  // In [0, bound), bound > 0. The bias, bound / 2^64, is negligible for every use here.
   std::uint64_t below(std::uint64_t bound) noexcept { return next() % bound; }
 
   // Mean 0, standard deviation 1 (Box-Muller, one of the pair).

@@ -1,10 +1,10 @@
-// Result<T>: a value, or the one reason why there is none.
+// Result<T>: a value, or an error that says why there is none.
 //
-// Every call that can fail at run time (a port, a file, a peer) returns a Result. A broken
-// precondition is a bug, not a result: it is an assert(). Nothing in MERLIN throws across a
-// component's border; third-party exceptions are caught in the adapter that calls the third party.
+// Every call that can fail at run time (a port, a file, a peer) returns a Result. A violated
+// precondition is a bug and an assert(). No exception crosses a component's border; third-party
+// exceptions are caught in the adapter that calls the third party.
 //
-// C++20 has no std::expected (C++23); when the compiler moves, this file becomes a `using`.
+// C++20 has no std::expected; with C++23 this class becomes an alias of it.
 #pragma once
 
 #include <cassert>
@@ -15,14 +15,14 @@
 namespace merlin {
 
 enum class Errc {
-  kTimeout,          // nothing came in time; the thing itself is fine
-  kClosed,           // the peer went away, or we were asked to stop
-  kIo,               // the operating system refused
-  kNotFound,         // a file, port or key that is not there
-  kMalformed,        // bytes or text that do not follow their format
-  kInvalidArgument,  // a value out of its range
-  kUnsupported,      // understood, and not available here
-  kBusy,             // somebody else holds it
+  kTimeout,          // nothing arrived in time; the peer or device may be fine
+  kClosed,           // the peer has closed the connection, or we were asked to stop
+  kIo,               // the operating system reported an error
+  kNotFound,         // a file, port or key does not exist
+  kMalformed,        // bytes or text do not follow their format
+  kInvalidArgument,  // a value is out of range
+  kUnsupported,      // valid, but not available here
+  kBusy,             // another process uses it
 };
 
 struct [[nodiscard]] Error {

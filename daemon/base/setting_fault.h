@@ -1,4 +1,4 @@
-// SettingFault: what is wrong with a group of settings, wherever in it that is.
+// SettingFault: a fault in a group of settings, with its place in the group.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@ namespace merlin {
 
 struct SettingFault {
   std::string pointer;  // below the group, "/tiles/2"; empty: the group itself
-  std::string what;     // with the figures
+  std::string what;     // what is wrong, with the figures
 };
 
 using SettingFaults = std::vector<SettingFault>;

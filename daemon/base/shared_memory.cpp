@@ -14,7 +14,7 @@ namespace merlin {
 namespace {
 
 constexpr mode_t kMode = 0644;      // the umask of the service may narrow it
-constexpr mode_t kLockMode = 0600;  // nobody else can hold it
+constexpr mode_t kLockMode = 0600;  // no other user can hold the lock
 
 Error shmError(const std::string& name, const char* step, int error) {
   return {error == ENOENT ? Errc::kNotFound : Errc::kIo,
@@ -23,7 +23,7 @@ Error shmError(const std::string& name, const char* step, int error) {
 
 std::string lockName(const std::string& name) { return name + ".lock"; }
 
-// An open-file-description lock for writing: it takes a descriptor that may write.
+// An open-file-description write lock on the whole file; needs a descriptor open for writing.
 struct flock wholeFile() {
   struct flock lock {};
   lock.l_type = F_WRLCK;
@@ -35,7 +35,7 @@ bool takeLock(int fd) {
   return ::fcntl(fd, F_OFD_SETLK, &exclusive) == 0;
 }
 
-// Whether `fd` is still what the name stands for: its owner may just have removed it.
+// Whether the name still refers to `fd`'s object: it may have been removed or replaced.
 bool isCurrent(int fd, const std::string& name) {
   const UniqueFd again(::shm_open(name.c_str(), O_RDONLY | O_CLOEXEC, 0));
   struct stat mine {
@@ -52,7 +52,7 @@ std::string userName(uid_t user) {
   return found ? found->pw_name : fmt::format("number {}", user);
 }
 
-// Removes an object that is in the way. Only root may remove another user's.
+// Removes an object that has our name. Only root can remove another user's.
 Result<Ok> removeObject(const std::string& name) {
   if (::shm_unlink(name.c_str()) == 0 || errno == ENOENT) return Ok{};
   const int error = errno;
@@ -60,14 +60,14 @@ Result<Ok> removeObject(const std::string& name) {
   const std::string path = "/dev/shm" + name;
   if (::lstat(path.c_str(), &status) == 0 && status.st_uid != ::geteuid()) {
     return Error{Errc::kIo,
-                 fmt::format("{} belongs to user {}, who may not be a merlind's; remove it "
-                             "as root, or set another \"instance\"",
+                 fmt::format("{} belongs to user {} and cannot be replaced; remove it as root, or "
+                             "set another \"instance\"",
                              path, userName(status.st_uid))};
   }
   return shmError(name, "remove", error);
 }
 
-// The lock of the name, taken.
+// Creates the lock of the name and takes it.
 Result<UniqueFd> claim(const std::string& name) {
   const std::string lock = lockName(name);
   for (int attempt = 0; attempt < 100; ++attempt) {
@@ -82,10 +82,11 @@ Result<UniqueFd> claim(const std::string& name) {
       return Error{Errc::kBusy, fmt::format("shared memory {}: another merlind owns it", name)};
     if (isCurrent(fd.get(), lock)) return fd;
   }
-  return Error{Errc::kBusy, fmt::format("shared memory {}: others keep taking it", name)};
+  return Error{Errc::kBusy,
+               fmt::format("shared memory {}: other processes keep recreating it", name)};
 }
 
-// A fresh object of zeros under a name that is ours.
+// Creates a new object of zeros. REQUIRES: we hold the name's lock.
 Result<UniqueFd> makeObject(const std::string& name, std::size_t size) {
   UniqueFd fd;
   for (int attempt = 0; attempt < 100 && !fd.valid(); ++attempt) {
@@ -95,8 +96,9 @@ Result<UniqueFd> makeObject(const std::string& name, std::size_t size) {
     if (const auto removed = removeObject(name); !removed) return removed.error();
   }
   if (!fd.valid())
-    return Error{Errc::kBusy, fmt::format("shared memory {}: others keep taking it", name)};
-  // Not ftruncate: on tmpfs that succeeds beyond its size, and a write faults later.
+    return Error{Errc::kBusy,
+                 fmt::format("shared memory {}: other processes keep recreating it", name)};
+  // Not ftruncate(): on a full tmpfs that succeeds, and a later write ends the process.
   const int error = ::posix_fallocate(fd.get(), 0, static_cast<off_t>(size));
   if (error == 0) return fd;
   ::shm_unlink(name.c_str());
@@ -111,7 +113,7 @@ Error notReadable(const std::string& name) {
   if (::lstat(("/dev/shm" + name).c_str(), &status) == 0)
     ::getgrgid_r(status.st_gid, &entry, buffer, sizeof buffer, &found);
   return {Errc::kIo,
-          fmt::format("shared memory {}: Permission denied; who is of the group {} may read it "
+          fmt::format("shared memory {}: Permission denied; members of the group {} may read it "
                       "(usermod -aG GROUP USER, then log in again)",
                       name, found ? found->gr_name : "that owns it")};
 }
@@ -149,11 +151,12 @@ Result<std::string> SharedMemory::mend() {
   if (!object_is_there) {
     if (const auto remade = remake(); !remade) return remade.error();
   }
-  return fmt::format("another program had removed shared memory {}; it is made again",
+  return fmt::format("another program removed shared memory {}; it was created again",
                      object_is_there ? lockName(owned_name_) : owned_name_);
 }
 
-// Its pages take the place of the old ones at once, for every thread.
+// Copies the bytes into a new object, whose pages then replace the old ones at the same address,
+// atomically for all threads.
 Result<Ok> SharedMemory::remake() {
   auto fresh = makeObject(owned_name_, size_);
   if (!fresh) return fresh.error();
@@ -175,7 +178,7 @@ Result<SharedMemory> SharedMemory::open(const std::string& name, From from) {
   if (!fd.valid() && errno == EACCES) return notReadable(name);
   if (!fd.valid() || ::fstat(fd.get(), &status) != 0) return shmError(name, "open", errno);
   if (from == From::kOwnUserOrRoot && status.st_uid != ::geteuid() && status.st_uid != 0) {
-    return Error{Errc::kIo, fmt::format("shared memory {}: belongs to user {} and is not taken",
+    return Error{Errc::kIo, fmt::format("shared memory {}: belongs to user {} and is not accepted",
                                         name, userName(status.st_uid))};
   }
   const auto size = static_cast<std::size_t>(status.st_size);
@@ -188,7 +191,7 @@ Result<SharedMemory> SharedMemory::open(const std::string& name, From from) {
 bool SharedMemory::owned(const std::string& name) {
   const UniqueFd fd(::shm_open(lockName(name).c_str(), O_RDWR | O_CLOEXEC, 0));
   struct stat status {};
-  // A stranger's lock under this name keeps nobody out: claim() removes it.
+  // Another user's lock under this name does not count: claim() removes it.
   if (!fd.valid() || ::fstat(fd.get(), &status) != 0 || status.st_uid != ::geteuid()) return false;
   struct flock probe = wholeFile();
   return ::fcntl(fd.get(), F_OFD_GETLK, &probe) == 0 && probe.l_type != F_UNLCK;
@@ -212,7 +215,7 @@ SharedMemory& SharedMemory::operator=(SharedMemory&& other) noexcept {
 
 SharedMemory::~SharedMemory() {
   if (data_) ::munmap(data_, size_);
-  // Another owner may have the name where ours was removed.
+  // If our lock was removed, another owner may have the name now.
   if (owned_name_.empty() || !isCurrent(lock_.get(), lockName(owned_name_))) return;
   ::shm_unlink(owned_name_.c_str());
   ::shm_unlink(lockName(owned_name_).c_str());

@@ -7,8 +7,8 @@
 namespace merlin {
 namespace {
 
-// Bytes of the character that `bytes` begins with; 0: it begins with none, or with a control
-// character. REQUIRES: not empty.
+// Size in bytes of the first character; 0 if it is invalid or a control character.
+// REQUIRES: `bytes` is not empty.
 std::size_t characterAt(std::string_view bytes) noexcept {
   const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(bytes[i]); };
   const std::uint8_t lead = byte(0);
@@ -20,7 +20,7 @@ std::size_t characterAt(std::string_view bytes) noexcept {
     if ((byte(i) & 0xC0) != 0x80) return 0;
     code = code << 6 | (byte(i) & 0x3FU);
   }
-  constexpr std::uint32_t kLeast[] = {0xA0, 0x800, 0x10000};  // below 0xA0: controls again
+  constexpr std::uint32_t kLeast[] = {0xA0, 0x800, 0x10000};  // 0x80 to 0x9F are control characters
   const bool surrogate = code >= 0xD800 && code < 0xE000;
   return code < kLeast[size - 2] || code > 0x10FFFF || surrogate ? 0 : size;
 }

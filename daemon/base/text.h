@@ -1,4 +1,4 @@
-// Text from outside: what may be a name, and what may be shown on a terminal.
+// Text from outside: checks it, and makes it safe to print on a terminal.
 #pragma once
 
 #include <string>
@@ -6,21 +6,21 @@
 
 namespace merlin {
 
-// Whether it is UTF-8 (RFC 3629) without control characters. Empty is text.
+// Whether the bytes are UTF-8 (RFC 3629) without control characters; true if empty.
 bool isText(std::string_view bytes) noexcept;
 
-// Without what is at its end of a character that was cut off there.
+// The bytes without an incomplete character at their end.
 std::string_view wholeCharacters(std::string_view bytes) noexcept;
 
-// With control characters (all but tabs and ends of lines) and bytes that are no UTF-8 as "\x1b": a
-// terminal would follow them. Plain text stays as it is.
+// Escapes control characters except tab and newline, and bytes that are not valid UTF-8, as "\x1b",
+// so that a terminal does not interpret them. Other text is unchanged.
 std::string printable(std::string_view bytes);
 
-// The same, with tabs and ends of lines as "\x0a" too: what is said of one thing stays one line.
+// Like printable(), but also escapes tab and newline ("\x0a"), so that the text stays on one line.
 std::string oneLine(std::string_view bytes);
 
-// What a message quotes of a file or a peer: all of it, or its first 64 bytes or a few less (no
-// character is cut) and "...". A word there may be as long as the file.
+// A text from a file or a peer, shortened for a message: all of it, or "..." after its first 64
+// bytes or a few less, so that no character is cut.
 std::string excerpt(std::string_view text);
 
 }  // namespace merlin

@@ -11,7 +11,7 @@ constexpr std::chrono::microseconds kAwake{200};
 
 thread_local ThreadTeam* latest = nullptr;
 
-// Returns the value once it is another than `old`.
+// Waits until the value differs from `old` and returns it; spins for kAwake, then sleeps.
 int awaitOther(const std::atomic<int>& value, int old) noexcept {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point until = Clock::now() + kAwake;
@@ -44,11 +44,11 @@ ThreadTeam::Turn ThreadTeam::start(std::size_t members, const std::function<void
       members_.emplace_back(
           [this, member = members_.size(), turn = turn_.load()] { work(member, turn); });
     }
-  } catch (const std::system_error&) {  // then those there are do it
+  } catch (const std::system_error&) {  // thread limit reached: continue with the threads that run
   }
   job_ = &job;
   wanted_ = members;
-  if (members == 0) return Turn(*this);  // nobody need wake
+  if (members == 0) return Turn(*this);  // no thread needs to wake
   busy_ = static_cast<int>(members_.size());
   ++turn_;
   turn_.notify_all();

@@ -1,5 +1,5 @@
-// ThreadTeam: threads that stay for work in many short turns. A thread that has just been started,
-// or wakes up, comes 50 us late, which is too late for work of 0.5 ms.
+// ThreadTeam: a pool of threads for short work (0.5 ms) that comes many times a second. Starting or
+// waking a thread takes 50 us, too long for that, so idle threads spin briefly.
 #pragma once
 
 #include <atomic>
@@ -10,9 +10,9 @@
 
 namespace merlin {
 
-// Belongs to the thread that makes it, until it goes; forBlocks() finds it there. Its members are
-// started when they are first needed, with that thread's affinity and priority. They wait on their
-// processors for 0.2 ms, then asleep.
+// Belongs to the thread that constructs it; forBlocks() on that thread uses it until it is
+// destroyed. Its threads are started when first needed, with that thread's affinity and priority.
+// When idle they spin for 0.2 ms, then sleep.
 class ThreadTeam {
  public:
   ThreadTeam() noexcept;
@@ -20,10 +20,10 @@ class ThreadTeam {
   ThreadTeam(const ThreadTeam&) = delete;
   ThreadTeam& operator=(const ThreadTeam&) = delete;
 
-  // The calling thread's latest; null where there is none, or it is at work.
+  // The calling thread's most recent team; null if there is none or it is working.
   static ThreadTeam* idle() noexcept;
 
-  // Ends once all members have ended what they do.
+  // One job of the team; the destructor waits until all threads have finished it.
   class Turn {
    public:
     explicit Turn(ThreadTeam& team) : team_(team) {}
@@ -35,8 +35,9 @@ class ThreadTeam {
     ThreadTeam& team_;
   };
 
-  // Has `members` threads call job() once each, or fewer where the system has no more of them. It
-  // must not throw, and outlive the turn. REQUIRES: the team is idle, and the caller's.
+  // Lets `members` threads call job() once each; fewer if the system's thread limit is reached.
+  // `job` must not throw and must outlive the turn. REQUIRES: the team is idle and belongs to the
+  // calling thread.
   [[nodiscard]] Turn start(std::size_t members, const std::function<void()>& job);
 
  private:
@@ -44,7 +45,7 @@ class ThreadTeam {
   void work(std::size_t member, int turn) noexcept;
 
   ThreadTeam* const outer_;
-  const std::function<void()>* job_ = nullptr;  // null in a new turn: the end
+  const std::function<void()>* job_ = nullptr;  // null in a new turn: the threads end
   std::size_t wanted_ = 0;
   std::atomic<int> turn_{0}, busy_{0};
   std::vector<std::jthread> members_;

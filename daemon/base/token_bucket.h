@@ -1,4 +1,4 @@
-// TokenBucket: a limit of so much a second, with a reserve for bursts. Pure: the caller says when.
+// TokenBucket: limits a rate, with a reserve for bursts. Pure: the caller passes the time.
 #pragma once
 
 #include <algorithm>
@@ -10,17 +10,17 @@ namespace merlin {
 // Thread-bound.
 class TokenBucket {
  public:
-  // `rate`: tokens a second; `burst`: the most that the bucket holds, and what it starts with.
+  // `rate`: tokens per second; `burst`: capacity of the bucket, which is full at first.
   // REQUIRES: both are above 0.
   TokenBucket(double rate, double burst) noexcept : rate_(rate), burst_(burst), tokens_(burst) {}
 
-  // How many whole tokens there are at `now`.
+  // Number of tokens in the bucket at `now`; negative after charge().
   double available(Timestamp now) noexcept {
     refill(now);
     return tokens_;
   }
 
-  // Takes `amount` where the bucket holds it; else takes nothing and returns false.
+  // Takes `amount` if the bucket holds it; otherwise takes nothing and returns false.
   bool take(double amount, Timestamp now) noexcept {
     refill(now);
     if (tokens_ < amount) return false;
@@ -28,14 +28,14 @@ class TokenBucket {
     return true;
   }
 
-  // Takes `amount` whatever the bucket holds, for work that is already done: the debt is waited for
-  // by whoever comes next.
+  // Takes `amount` even if the bucket holds less, for work that is already done; the next caller
+  // waits for the debt.
   void charge(double amount, Timestamp now) noexcept {
     refill(now);
     tokens_ -= amount;
   }
 
-  // How long from `now` until the bucket holds `amount`, at most its burst; zero where it does.
+  // Time from `now` until the bucket holds `amount` (at most `burst`); zero if it does.
   Duration waitFor(double amount, Timestamp now) noexcept {
     refill(now);
     const double missing = std::min(amount, burst_) - tokens_;

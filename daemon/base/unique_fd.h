@@ -1,4 +1,4 @@
-// UniqueFd: owns one file descriptor; closes it once.
+// UniqueFd: owns a file descriptor and closes it.
 #pragma once
 
 #include <utility>

@@ -1,9 +1,10 @@
-// WatchedThread: a thread that works until it is asked to stop, under the eyes of a ThreadWatch.
+// WatchedThread: a thread that works until it is asked to stop, and is registered with a
+// ThreadWatch.
 //
-// The rule behind it: a thread that serves others ends on nothing but its stop. Where one ends all
-// the same (an exception that nobody caught, a return too early), the watch knows its name and the
-// reason, and merlind says so and exits, so that systemd starts it again. Each thread counts its
-// own progress, so that the watchdog sees one that hangs beside others that do not.
+// A thread that serves others must only end when it is asked to stop. If one ends otherwise (an
+// uncaught exception, an early return), the watch knows its name and the reason; merlind reports it
+// and exits, so that systemd restarts it. Each thread counts its own progress, so that the watchdog
+// notices a single thread that hangs.
 #pragma once
 
 #include <atomic>
@@ -24,8 +25,8 @@ class Progress {
   void step() noexcept { count_.fetch_add(1, std::memory_order_relaxed); }
   std::uint64_t count() const noexcept { return count_.load(std::memory_order_relaxed); }
 
-  // Around a call that may take long and cannot be cut short (a name that is looked up): nobody
-  // takes the thread for hung meanwhile.
+  // Scope of a call that may take long and cannot be interrupted (a host name look-up): the thread
+  // does not count as hung meanwhile.
   class Pause {
    public:
     explicit Pause(Progress& progress) noexcept : progress_(progress) { progress_.paused_ = true; }
@@ -46,23 +47,24 @@ class Progress {
   std::atomic<bool> paused_{false};
 };
 
-// The frames come first: the calling thread, and those that it starts, take what others leave.
+// Gives the calling thread, and threads that it starts, the lowest priority (nice 19), so that
+// drawing frames comes first.
 void giveWay() noexcept;
 
-// What is known of one running thread.
+// State of one thread.
 struct ThreadState {
-  std::uint64_t id = 0;  // never used twice by one watch
+  std::uint64_t id = 0;  // unique within the watch
   std::string name;      // for a person: "status of the wall"
   std::uint64_t progress = 0;
   bool paused = false;  // in a call that may take long
-  bool ended = false;   // without having been asked to
+  bool ended = false;   // ended without having been asked to
   std::string reason;   // why it ended
 };
 
 // The threads of one process. Thread-safe. It outlives its threads.
 class ThreadWatch {
  public:
-  // Those that run, or ended without having been asked to, in the order of their start.
+  // The threads that run, or ended without having been asked to, in the order of their start.
   std::vector<ThreadState> threads() const;
 
  private:
@@ -80,18 +82,18 @@ class ThreadWatch {
 
   mutable std::mutex mutex_;
   std::uint64_t next_id_ = 1;
-  // Shared with the thread itself: each may be the last one to use it.
+  // Shared between the watch and the thread: either may be the last to use an entry.
   std::vector<std::shared_ptr<Entry>> entries_;
 };
 
 // Thread-bound to its owner.
 class WatchedThread {
  public:
-  // The body of the thread. It steps `progress` at least once a second, and returns after a stop.
+  // The body of the thread. It must step `progress` at least once a second and return after a stop.
   using Body = std::function<void(const std::stop_token& stop, Progress& progress)>;
 
   WatchedThread() = default;
-  // Starts the thread. `watch` outlives this.
+  // Starts the thread. `watch` must outlive it.
   WatchedThread(ThreadWatch& watch, std::string name, Body body);
   WatchedThread(WatchedThread&&) noexcept = default;
   WatchedThread& operator=(WatchedThread&& other) noexcept;
@@ -100,7 +102,7 @@ class WatchedThread {
   ~WatchedThread() { stop(); }
 
   void requestStop() noexcept { thread_.request_stop(); }
-  // Asks it to stop and waits until it has. Nothing where none runs.
+  // Asks the thread to stop and waits for its end; does nothing if none runs.
   void stop();
 
  private:

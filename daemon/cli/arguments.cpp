@@ -74,12 +74,13 @@ struct Plain<std::vector<T>> {
   using type = T;
 };
 
-// What CLI11 takes for a number of that type and is none: -1 as the largest, "nan", "inf".
+// What is wrong with a value that CLI11 would accept: -1 for an unsigned type (it would wrap to the
+// largest value), "nan" and "inf" for a floating-point type.
 template <typename T>
 std::string faultOf(const std::string& value) {
   if (std::is_unsigned_v<T> && value.starts_with('-')) return value + " is less than 0";
   if (std::is_floating_point_v<T> && !std::isfinite(std::strtod(value.c_str(), nullptr)))
-    return value + " is no number that there is";
+    return value + " is not a finite number";
   return {};
 }
 

@@ -1,5 +1,5 @@
-// Arguments: what a command line may say. CLI11 behind a few names: its header takes ten seconds of
-// every file that includes it, so one does.
+// Command-line options: a small wrapper around CLI11. Its header adds ten seconds to each file that
+// includes it, so only arguments.cpp does.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,16 @@ class Option;
 
 namespace merlin::cli {
 
-// An option, a flag or a positional argument; a handle, good as long as its command is.
+// A handle of an option, a flag or a positional argument; valid as long as its command.
 class Argument {
  public:
   explicit Argument(CLI::Option* option) : option_(option) {}
 
   Argument required();
-  Argument typeName(const std::string& name);  // what stands for the value in the help
-  Argument expected(int values);               // exactly so many
-  Argument separated(char by);                 // several values in one word
-  Argument showDefault();                      // in the help, the value that the variable has now
+  Argument typeName(const std::string& name);  // placeholder for the value in the help
+  Argument expected(int values);               // number of values, exactly
+  Argument separated(char by);                 // several values in one word, separated by `by`
+  Argument showDefault();                      // the help shows the variable's current value
 
   Argument range(int low, int high);
   Argument range(double low, double high);
@@ -31,10 +31,10 @@ class Argument {
   Argument positive();
   Argument nonNegative();
   Argument seconds();  // a duration: 0.1 to 10 million
-  Argument baud();     // a speed that serial lines have
+  Argument baud();     // a standard speed of serial lines
   Argument oneOf(std::vector<std::string> values);
-  Argument size();  // 900M, 16G: 1000 to the step
-  // Empty, or what is wrong with a value.
+  Argument size();  // bytes with a suffix, 900M or 16G; powers of 1000
+  // `fault` returns what is wrong with a value, or an empty string.
   Argument check(std::function<std::string(const std::string&)> fault);
 
   bool isGiven() const;  // after parsing
@@ -44,33 +44,33 @@ class Argument {
   CLI::Option* option_;
 };
 
-// A command, a subcommand or a group of options; a handle, good as long as its program's is.
+// A handle of a command, a subcommand or a group of options; valid as long as the CLI::App.
 class Command {
  public:
   explicit Command(CLI::App& app) : app_(&app) {}
 
   Command subcommand(const std::string& name, const std::string& help);
-  void requireSubcommand();  // one
+  void requireSubcommand();  // exactly one
   Command group(const std::string& name, const std::string& help);
-  void atMostOne();  // of a group's options
+  void atMostOne();  // at most one of the group's options may be given
 
-  // "-o,--output": an option; "name": a positional. T: int, unsigned, std::int64_t, std::uint64_t,
-  // float, double, std::string, std::optional and std::vector of some.
+  // "-o,--output": an option; "name": a positional argument. T: int, unsigned, std::int64_t,
+  // std::uint64_t, float, double, std::string, and std::optional and std::vector of some of them.
   template <typename T>
   Argument option(const std::string& names, T& value, const std::string& help = "");
-  // "!--name": it is false when given.
+  // With names "!--name", giving the flag sets `value` to false.
   Argument flag(const std::string& names, bool& value, const std::string& help = "");
 
-  // Called after parsing where the command is the one that was chosen.
+  // Called after parsing if this command was chosen.
   void callback(const std::function<void()>& chosen);
 
-  void exclude(const Argument& other);  // by a group, all of it
+  void exclude(const Argument& other);  // neither this command nor its options with `other`
 
  private:
   CLI::App* app_;
 };
 
-// Of a callback: the command line lacks this. Does not return.
+// To be called by a callback if the command line lacks `what`: throws the parser's error.
 [[noreturn]] void lacks(const std::string& what);
 
 }  // namespace merlin::cli

@@ -1,4 +1,4 @@
-// merlin calibrate: a device's settings, measured or told, into a configuration.
+// merlin calibrate: writes a device's calibration, measured or given, into a configuration.
 #include "daemon/cli/calibrate.h"
 
 #include <memory>
@@ -19,14 +19,15 @@ Result<nlohmann::ordered_json> readConfiguration(const std::string& path,
     config = nlohmann::ordered_json::parse(file->text(), nullptr, false);
     if (!config.is_object())
       return Error{Errc::kMalformed,
-                   path + ": is there and is no JSON object; nothing was changed"};
+                   path + ": exists and is not a JSON object; nothing was changed"};
   } else if (file.error().code != Errc::kNotFound) {
     return file.error();
   }
   auto& devices = config["devices"];
   if (devices.is_null()) devices = nlohmann::ordered_json::object();
   if (!devices.is_object() || (devices.contains(device) && !devices[device].is_object()))
-    return Error{Errc::kMalformed, path + ": its /devices is no object; nothing was changed"};
+    return Error{Errc::kMalformed,
+                 path + ": /devices, or the device in it, is not an object; nothing was changed"};
   if (!devices.contains(device)) devices[device] = nlohmann::ordered_json::object();
   return config;
 }
@@ -57,7 +58,7 @@ int importGlove(const std::string& input, const std::string& output) {
   const auto saved = saveDeviceSettings(
       output, "glove", {{"offset", numbers(settings.offset)}, {"gain", numbers(settings.gain)}});
   if (!saved) return fail(saved.error());
-  say("{}: {} joints from {} ({}), the others as shipped\n", output, given, input,
+  say("{}: {} joints from {} ({}), defaults for the others\n", output, given, input,
       imported->format);
   return kExitDone;
 }
@@ -68,16 +69,18 @@ void addCalibrateImport(Command calibrate, Run& run) {
   const auto input = std::make_shared<std::string>(), output = std::make_shared<std::string>();
   Command command = calibrate.subcommand(
       "import",
-      "A glove's calibration that another program wrote: the vendor's .cal, asr_cyberglove's, "
-      "Shadow's XML or YAML, VESS's.\nExample: merlin calibrate import right.cal -o merlin.json");
-  command.option("file", *input, "The calibration").required();
-  command.option("-o,--output", *output, "The configuration that it goes into").required();
+      "Import a glove's calibration from a file of another program: the vendor's .cal, "
+      "asr_cyberglove's, Shadow's XML or YAML, VESS's.\nExample: merlin calibrate import right.cal "
+      "-o merlin.json");
+  command.option("file", *input, "The calibration file").required();
+  command.option("-o,--output", *output, "The configuration to write it into").required();
   command.callback(
       [input, output, &run] { run = [input, output] { return importGlove(*input, *output); }; });
 }
 
 void addCalibrate(Command app, Run& run) {
-  Command calibrate = app.subcommand("calibrate", "A device's calibration, into a configuration.");
+  Command calibrate =
+      app.subcommand("calibrate", "Calibrate a device and write the result into a configuration.");
   calibrate.requireSubcommand();
   addCalibrateGlove(calibrate, run);
   addCalibrateImport(calibrate, run);

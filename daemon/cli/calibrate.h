@@ -1,4 +1,4 @@
-// What the subcommands of `merlin calibrate` share: settings into a configuration file.
+// Helpers of the `merlin calibrate` subcommands: they write settings into a configuration file.
 #pragma once
 
 #include <string>
@@ -11,18 +11,19 @@
 
 namespace merlin::cli {
 
-// The configuration `path`, or an empty one where there is none; /devices/DEVICE is made where it
-// is not there. Errors: kMalformed (no JSON object, or one of these is none), kIo.
+// Reads the configuration `path`, or an empty one if the file does not exist; adds /devices/DEVICE
+// if it is missing. Errors: kMalformed (the file, /devices or /devices/DEVICE is not a JSON
+// object), kIo.
 Result<nlohmann::ordered_json> readConfiguration(const std::string& path,
                                                  const std::string& device);
 
-// Puts the members of `values` under /devices/DEVICE of the configuration `path`, and leaves all
-// else there as it is; makes the file where there is none. Comments cannot be in JSON, order is
-// kept. Errors: kMalformed (no JSON object), kIo; the old file stays where anything fails.
+// Sets the members of `values` in /devices/DEVICE of the configuration `path` and keeps all other
+// settings and their order; creates the file if it does not exist. Errors: those of
+// readConfiguration(); the old file is unchanged after any failure.
 Result<Ok> saveDeviceSettings(const std::string& path, const std::string& device,
                               const nlohmann::ordered_json& values);
 
-// Numbers as short as they are exact enough.
+// The numbers as a JSON list, rounded to seven digits.
 template <typename T>
 nlohmann::ordered_json numbers(const T& values) {
   auto list = nlohmann::ordered_json::array();

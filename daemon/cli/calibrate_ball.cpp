@@ -1,4 +1,4 @@
-// merlin calibrate ball: axis map and sensitivities, told or by pushing and twisting it.
+// merlin calibrate ball: sets axis map and sensitivities, from options or from pushes and twists.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -20,7 +20,7 @@ namespace {
 
 struct BallOptions {
   std::string output, instance = "merlin";
-  int translation = 0, rotation = 0, dead_zone = -1;  // told
+  int translation = 0, rotation = 0, dead_zone = -1;  // if given on the command line
   std::vector<int> axis_map;
   GuideTiming timing;
 
@@ -39,7 +39,7 @@ int tell(const BallOptions& o) {
     for (const int axis : o.axis_map) seen[static_cast<std::size_t>(std::abs(axis))] = true;
     if (seen[0] || std::count(seen.begin(), seen.end(), true) != 6) {
       return fail({Errc::kInvalidArgument,
-                   "--axis-map: needs each of 1 to 6 once, negative to turn one round"});
+                   "--axis-map: needs each of 1 to 6 once; a negative number reverses the axis"});
     }
     values["axis_map"] = o.axis_map;
   }
@@ -49,7 +49,7 @@ int tell(const BallOptions& o) {
   return kExitDone;
 }
 
-// The ball's raw counts from shared memory.
+// Measures the ball by its raw counts in shared memory.
 class GuidedBall final : public Guided {
  public:
   explicit GuidedBall(LiveSamples<BallSample> samples) : samples_(std::move(samples)) {}
@@ -75,7 +75,7 @@ class GuidedBall final : public Guided {
                        spaceball::nameOfAxis(answer->next_axis), answer->next_counts);
   }
   std::string now() const override {
-    const BallSample sample = newest_.value_or(BallSample{});  // one that says nothing is at rest
+    const BallSample sample = newest_.value_or(BallSample{});  // a silent ball is at rest
     std::string line;
     for (int axis = 1; axis <= 6; ++axis)
       line += fmt::format("{} {:6}  ", spaceball::nameOfAxis(axis), sample.raw[axis - 1]);
@@ -118,20 +118,24 @@ void addCalibrateBall(Command calibrate, Run& run) {
   const auto o = std::make_shared<BallOptions>();
   Command command = calibrate.subcommand(
       "ball",
-      "Axis map and sensitivities of the ball: guides you through pushes and twists, with the "
-      "samples of a running merlind, or takes the numbers.\nExample: merlin calibrate ball -o "
+      "Set the ball's axis map and sensitivities: guides you through pushes and twists, which a "
+      "running merlind measures, or writes the given values.\nExample: merlin calibrate ball -o "
       "merlin.json\nExample: merlin calibrate ball --axis-map 1 2 -3 4 5 -6 "
       "--full-scale-translation 6000 -o merlin.json");
   addGuideTiming(command, o->timing);
   addInstance(command, o->instance);
-  command.option("--full-scale-translation", o->translation, "Counts of a full push")
+  command.option("--full-scale-translation", o->translation, "Raw counts of a full push")
       .range(100, 32767);
-  command.option("--full-scale-rotation", o->rotation, "Counts of a full twist").range(100, 32767);
-  command.option("--dead-zone", o->dead_zone, "Counts that are taken for rest").range(0, 99);
-  command.option("--axis-map", o->axis_map, "For x y z and the turns: the ball's axis 1 to 6")
+  command.option("--full-scale-rotation", o->rotation, "Raw counts of a full twist")
+      .range(100, 32767);
+  command.option("--dead-zone", o->dead_zone, "Raw counts that are treated as rest").range(0, 99);
+  command
+      .option(
+          "--axis-map", o->axis_map,
+          "Device axis (1 to 6, negative: reversed) for x, y, z and the rotations about x, y, z")
       .expected(6)
       .range(-6, 6);
-  command.option("-o,--output", o->output, "The configuration").required();
+  command.option("-o,--output", o->output, "The configuration to write into").required();
   command.callback([o, &run] { run = [o] { return o->told() ? tell(*o) : guideBall(*o); }; });
 }
 

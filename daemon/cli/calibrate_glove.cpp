@@ -1,4 +1,4 @@
-// merlin calibrate glove: guides a person through a few poses.
+// merlin calibrate glove: guides a person through a few poses and computes offsets and gains.
 #include <memory>
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ struct GloveOptions {
   GuideTiming timing;
 };
 
-// The glove on its line.
+// Measures the glove directly on its serial line.
 class GuidedGlove final : public Guided, private SampleSink {
  public:
   GuidedGlove(ByteStream& line, const Clock& clock)
@@ -53,7 +53,7 @@ class GuidedGlove final : public Guided, private SampleSink {
   bool measuring_ = false;
 };
 
-// One line a sensor: its raw values from 1 to 255, with what has been seen of them.
+// One line per sensor: a bar from 1 to 255 that marks the range of raw values seen so far.
 std::string GuidedGlove::spans() const {
   constexpr int kWidth = 51;
   const auto column = [](int raw) { return static_cast<std::size_t>(raw * (kWidth - 1) / 255); };
@@ -95,12 +95,14 @@ int calibrateGlove(const GloveOptions& o) {
 
 void addCalibrateGlove(Command calibrate, Run& run) {
   const auto o = std::make_shared<GloveOptions>();
-  Command command = calibrate.subcommand("glove",
-                                         "Guides you through a few poses and shows each "
-                                         "sensor's span.\nExample: merlin calibrate glove "
-                                         "serial:/dev/serial/by-id/usb-GLOVE -o merlin.json");
-  command.option("port", o->port, "serial:/dev/..., pty:PATH or tcp://HOST:PORT").required();
-  command.option("-o,--output", o->output, "The configuration").required();
+  Command command =
+      calibrate.subcommand("glove",
+                           "Calibrate the glove: guides you through a few poses and "
+                           "shows each sensor's range.\nExample: merlin calibrate glove "
+                           "serial:/dev/serial/by-id/usb-GLOVE -o merlin.json");
+  command.option("port", o->port, "Port of the glove: serial:/dev/..., pty:PATH or tcp://HOST:PORT")
+      .required();
+  command.option("-o,--output", o->output, "The configuration to write into").required();
   command.option("--baud", o->baud, "Speed of the line").baud().showDefault();
   addGuideTiming(command, o->timing);
   command.callback([o, &run] { run = [o] { return calibrateGlove(*o); }; });

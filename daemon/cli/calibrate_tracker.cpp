@@ -1,4 +1,5 @@
-// merlin calibrate tracker: a station's alignment and boresight, told or by holding it there.
+// merlin calibrate tracker: sets a station's alignment and boresight, from options or by holding
+// the station at the places.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -28,7 +29,7 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 struct TrackerOptions {
   std::string output, instance = "merlin";
   int station = 1;
-  std::vector<double> alignment, boresight, hemisphere;  // told
+  std::vector<double> alignment, boresight, hemisphere;  // if given on the command line
   std::vector<std::string> steps = {"alignment", "boresight"};
   GuideTiming timing;
 
@@ -54,7 +55,7 @@ int tell(const TrackerOptions& o) {
     double square = 0;
     for (const double v : o.boresight) square += v * v;
     if (square < 0.98 || square > 1.02)
-      return fail({Errc::kInvalidArgument, "--boresight: is no unit quaternion w x y z"});
+      return fail({Errc::kInvalidArgument, "--boresight: is not a unit quaternion w x y z"});
     put(kBoresightKey, o.boresight);
   }
   if (const auto saved = saveDeviceSettings(o.output, "tracker", values); !saved)
@@ -63,7 +64,7 @@ int tell(const TrackerOptions& o) {
   return kExitDone;
 }
 
-// A station's samples from shared memory.
+// Measures a station by its samples in shared memory.
 class GuidedStation final : public Guided {
  public:
   GuidedStation(LiveSamples<TrackerSample> samples, const StationFrame& present, std::size_t first)
@@ -80,7 +81,7 @@ class GuidedStation final : public Guided {
     const std::string complaint = samples_.complaint();
     const auto held = alignment_.end();
     if (!held && !complaint.empty())
-      return Error{held.error().code, fmt::format("the tracker does not stream: {}", complaint)};
+      return Error{held.error().code, fmt::format("the tracker sends no samples: {}", complaint)};
     if (!held) return held.error();
     const auto& p = held->position_m;
     return fmt::format(
@@ -111,7 +112,8 @@ class GuidedStation final : public Guided {
   std::optional<TrackerSample> newest_;
 };
 
-// What the running merlind gives this station's samples in. Errors: kTimeout (it has not said so).
+// The frame in which the running merlind reports this station's samples. Errors: kTimeout (not yet
+// published).
 Result<StationFrame> presentFrame(const shm::DevicesSegment& segment, int station) {
   const auto frames = segment.tracker_frames.read();
   if (!frames) return Error{Errc::kTimeout, "merlind is still starting: try again"};
@@ -122,11 +124,11 @@ Result<StationFrame> presentFrame(const shm::DevicesSegment& segment, int statio
   return frame;
 }
 
-// Whether that member of the file, or its default, is what the running merlind has.
+// Whether the setting `key` of the file, or its default, equals that of the running merlind.
 template <std::size_t N>
 bool agrees(const Json& tracker, const std::string& key, const std::array<float, N>& running,
             const std::array<float, N>& standard) {
-  constexpr float kRounded = 0.006F;  // as it may be written
+  constexpr float kRounded = 0.006F;  // rounding of numbers in the file
   const auto at = tracker.find(key);
   if (at != tracker.end() && (!at->is_array() || at->size() != N)) return false;
   for (std::size_t i = 0; i < N; ++i) {
@@ -137,7 +139,8 @@ bool agrees(const Json& tracker, const std::string& key, const std::array<float,
   return true;
 }
 
-// What is not measured anew is kept, so it has to be the same in the file and in the daemon.
+// A setting that is not measured anew is kept, so it must be the same in the file and in the
+// daemon.
 Result<Ok> checkKept(const TrackerOptions& o, const StationFrame& present) {
   const auto config = readConfiguration(o.output, "tracker");
   if (!config) return config.error();
@@ -152,10 +155,11 @@ Result<Ok> checkKept(const TrackerOptions& o, const StationFrame& present) {
       !agrees(tracker, boresight, present.boresight_wxyz, FastrakSettings::kAhead))
     other = boresight;
   if (other.empty()) return Ok{};
-  return Error{Errc::kInvalidArgument,
-               fmt::format("{}: its /devices/tracker/{} is not what merlind runs with, and --steps "
-                           "keeps it: restart merlind with this file, or do both steps",
-                           o.output, other)};
+  return Error{
+      Errc::kInvalidArgument,
+      fmt::format("{}: its /devices/tracker/{} differs from that of the running merlind, and "
+                  "--steps keeps it: restart merlind with this file, or do both steps",
+                  o.output, other)};
 }
 
 int guideTracker(const TrackerOptions& o) {
@@ -191,12 +195,14 @@ void addCalibrateTracker(Command calibrate, Run& run) {
   const auto o = std::make_shared<TrackerOptions>();
   Command command = calibrate.subcommand(
       "tracker",
-      "Alignment and boresight of a station: guides you through holding it there, with the samples "
-      "of a running merlind, or takes the numbers.\nExample: merlin calibrate tracker --station 1 "
+      "Set the alignment and boresight of a station: guides you through places to hold it at, "
+      "which "
+      "a running merlind measures, or writes the given values.\nExample: merlin calibrate tracker "
+      "--station 1 "
       "-o merlin.json\nExample: merlin calibrate tracker --station 1 --boresight 0.7071 0 0 0.7071 "
       "-o merlin.json");
   command.option("--station", o->station).range(1, 4).showDefault();
-  command.option("--steps", o->steps, "What to guide through: alignment, boresight or both")
+  command.option("--steps", o->steps, "Settings to measure: alignment, boresight or both")
       .separated(',')
       .oneOf({"alignment", "boresight"})
       .showDefault();
@@ -204,19 +210,20 @@ void addCalibrateTracker(Command calibrate, Run& run) {
   addInstance(command, o->instance);
   command
       .option("--alignment", o->alignment,
-              "A new origin, a point on its x axis, one on its y axis, centimetres")
+              "New origin, a point on the new x axis and a point on the new y axis, in centimetres")
       .expected(9)
       .range(-1000.0, 1000.0);
   command
       .option("--boresight", o->boresight,
-              "The orientation that counts as straight ahead, w x y z, as merlin shm dump "
+              "Orientation that counts as straight ahead: a quaternion w x y z, as merlin shm dump "
               "shows it")
       .expected(4)
       .range(-1.0, 1.0);
-  command.option("--hemisphere", o->hemisphere, "Into the receiver's half of space")
+  command
+      .option("--hemisphere", o->hemisphere, "Vector into the half of space where the receiver is")
       .expected(3)
       .range(-1.0, 1.0);
-  command.option("-o,--output", o->output, "The configuration").required();
+  command.option("-o,--output", o->output, "The configuration to write into").required();
   command.callback([o, &run] { run = [o] { return o->told() ? tell(*o) : guideTracker(*o); }; });
 }
 

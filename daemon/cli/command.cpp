@@ -18,11 +18,11 @@ int fail(const Error& error) {
 Result<Ok> checkEnding(const std::string& path, const char* what, const char* ending) {
   if (path.ends_with(ending)) return Ok{};
   return Error{Errc::kInvalidArgument,
-               fmt::format("{}: a {}'s name ends in {}", path, what, ending)};
+               fmt::format("{}: the name of a {} must end in {}", path, what, ending)};
 }
 
 void addInstance(Command app, std::string& instance) {
-  app.option("--instance", instance, "Which daemon, by the \"instance\" of its configuration")
+  app.option("--instance", instance, "The daemon's name, \"instance\" in its configuration")
       .showDefault();
 }
 

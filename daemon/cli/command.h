@@ -1,4 +1,4 @@
-// The subcommands of `merlin`: how each adds itself to the command line, and what they share.
+// The subcommands of `merlin`: functions that add them to the command line, and shared helpers.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@ namespace merlin::cli {
 // Set by the subcommand that was chosen, called after parsing; returns the exit status.
 using Run = std::function<int()>;
 
-// One file each.
+// Each is defined in a file of its own.
 void addCalibrate(Command app, Run& run);
 void addCommandsByName(Command app, Run& run);
 void addConfig(Command app, Run& run);
@@ -30,14 +30,14 @@ void addTrace(Command app, Run& run);
 void addWall(Command app, Run& run);
 void addWatch(Command app, Run& run);
 
-// Prints "merlin: WHAT" to stderr; returns the exit status that belongs to the error.
+// Prints "merlin: WHAT" to stderr; returns the error's exit status.
 int fail(const Error& error);
 
-// Whether a file that a command writes is named after what it is: "shot.jpg: a picture's name ends
-// in .png". Errors: kInvalidArgument.
+// Checks that the name of an output file ends in `ending`. `what`: the kind of file, for the
+// message "shot.jpg: the name of a picture must end in .png". Errors: kInvalidArgument.
 Result<Ok> checkEnding(const std::string& path, const char* what, const char* ending);
 
-// The option --instance, which every subcommand that speaks to a daemon has.
+// Adds the option --instance, which every subcommand that speaks to a daemon has.
 void addInstance(Command app, std::string& instance);
 
 }  // namespace merlin::cli

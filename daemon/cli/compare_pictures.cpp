@@ -15,12 +15,12 @@
 namespace merlin::cli {
 namespace {
 
-constexpr double kChanged = 0.15;  // of a channel's range
-constexpr float kBand = 0.25F;     // of the way from an edge to the triangle's middle
+constexpr double kChanged = 0.15;  // threshold, share of a channel's range
+constexpr float kBand = 0.25F;     // band's width, share of the way from the edge to the centroid
 const Eigen::Vector3f kInside{0.1F, 0.1F, 0.12F};  // colour between the bands
 
-// Room for what a picture shows: a model's scale comes from the box of its vertices, so both get
-// the corners of a box around both, as vertices of no triangle.
+// Adds the corners of the other mesh's bounding box as vertices of no triangle: a model is scaled
+// by the box of its vertices, so both meshes then have the same scale.
 render::Mesh framed(render::Mesh mesh, const render::Mesh& other) {
   render::ensureNormals(mesh);
   const render::Box box = render::boundingBox(other.positions);
@@ -50,7 +50,7 @@ Result<Ok> write(const std::string& folder, const char* name, const render::Imag
                           image.pixels);
 }
 
-// From red by yellow, green and cyan to blue.
+// Colour scale from red (0) over yellow, green and cyan to blue (1).
 Eigen::Vector3f rainbow(float share) {
   const float at = 4 * std::clamp(share, 0.0F, 1.0F);
   const auto ramp = [at](float middle) {
@@ -73,7 +73,7 @@ float lengthOf(const Corners& corners, std::size_t edge) {
   return (corners[(edge + 1) % 3] - corners[edge]).norm();
 }
 
-// Sorted, each edge once a triangle.
+// The lengths of all edges, sorted; an edge that two triangles share counts twice.
 std::vector<float> lengthsOf(const render::Mesh& mesh) {
   std::vector<float> lengths;
   lengths.reserve(mesh.triangles.size());
@@ -85,14 +85,14 @@ std::vector<float> lengthsOf(const render::Mesh& mesh) {
   return lengths;
 }
 
-// The middle of those as long as this one, so that equal edges have one colour.
+// Rank of a length, 0..1: the middle rank of all equal lengths, so that they get one colour.
 float rankOf(const std::vector<float>& lengths, float length) {
   const auto [first, last] = std::equal_range(lengths.begin(), lengths.end(), length);
   const auto sum = static_cast<float>((first - lengths.begin()) + (last - lengths.begin()));
   return sum / (2 * static_cast<float>(lengths.size()));
 }
 
-// Collects polygons of one colour each.
+// Collects polygons, each of one colour, as a mesh.
 class Polygons {
  public:
   explicit Polygons(const Eigen::Vector3f& normal) : normal_(normal) {}
@@ -134,7 +134,7 @@ PictureDifference differenceOf(const render::Image& a, const render::Image& b,
       from_background = std::max({from_background, std::abs(of_a - empty), std::abs(of_b - empty)});
     }
     const bool is_changed = most > kChanged * 255;
-    covered += from_background > 1 ? 1 : 0;  // GL rounds as it likes
+    covered += from_background > 1 ? 1 : 0;  // tolerates GL's rounding
     changed += is_changed ? 1 : 0;
     std::fill_n(difference.image.pixels.begin() + static_cast<std::ptrdiff_t>(i), 3,
                 static_cast<std::uint8_t>(is_changed ? 255 : 0));
@@ -146,7 +146,7 @@ PictureDifference differenceOf(const render::Image& a, const render::Image& b,
 
 render::Mesh edgeBands(const render::Mesh& mesh, const View& view) {
   const std::vector<float> lengths = lengthsOf(mesh);
-  // The renderer's light comes from here: all that faces it is as bright as its colour.
+  // Direction of the renderer's light: surfaces with this normal show their full colour.
   const Eigen::Vector3f light = Eigen::Vector3f(0.15F, 0.35F, 1).normalized();
   Polygons polygons(view.T_eye_model().linear().transpose() * light);
   for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {

@@ -1,4 +1,4 @@
-// What two surfaces look like beside one another: the pictures of `merlin mesh compare`.
+// The pictures of `merlin mesh compare`: two surfaces from the same view, and how they differ.
 #pragma once
 
 #include <string>
@@ -8,24 +8,24 @@
 
 namespace merlin::cli {
 
-// How much of two pictures of one size differs: a pixel has changed where a channel has by more
-// than 15 % of its range (P14).
+// Difference of two pictures of equal size. A pixel counts as changed if a channel differs by more
+// than 15 % of its range ([GOURLEY98] figures 5.30 to 5.35).
 struct PictureDifference {
   render::Image image;  // changed pixels white, the others black
-  // Of the pixels that are not `background` in both pictures.
+  // Changed pixels as a share of those that are not `background` in at least one picture.
   double changed_percent = 0;
 };
 PictureDifference differenceOf(const render::Image& a, const render::Image& b,
                                const std::array<float, 3>& background);
 
-// `mesh` as bands of colour along its edges, the shortest red, the longest blue, by rank (P13); to
-// be drawn from `view`, in which it has no shading.
+// `mesh` with a coloured band along each edge, from red (shortest) to blue (longest) by rank
+// ([GOURLEY98] figure 5.1). The normals are such that drawing it from `view` shows no shading.
 render::Mesh edgeBands(const render::Mesh& mesh, const View& view);
 
-// Writes a.png, b.png, a_wire.png, b_wire.png, beside.png (a and b), difference.png and edges.png
-// (of b) into `folder`, made where it is not there: all from one eye and at one scale. Returns
-// changed_percent. Takes about 0.6 kB a triangle of b. Errors: kIo, kNotFound (the folder),
-// kUnsupported (no GL).
+// Writes a.png, b.png, a_wire.png, b_wire.png, beside.png (a and b side by side), difference.png
+// and edges.png (edgeBands() of b) into `folder`, which is created if necessary; all from the same
+// eye and at the same scale. Returns changed_percent. Memory: about 0.6 kB per triangle of b.
+// Errors: kIo, kNotFound (the folder), kUnsupported (no GL).
 Result<double> writePictures(const std::string& folder, const render::Mesh& a,
                              const render::Mesh& b, const View& view);
 

@@ -1,4 +1,4 @@
-// merlin emulate: a device on a pseudo-terminal, for a wall without hardware.
+// merlin emulate: emulates a device on a pseudo-terminal, for a wall without hardware.
 #include <cerrno>
 #include <memory>
 
@@ -27,18 +27,18 @@ struct EmulateOptions {
   bool step = false;
 };
 
-// What ends the serving, and what goes on to the script's next phase.
+// Descriptors that end the emulation or start the script's next phase.
 struct Commands {
-  int stop_fd, step_fd;  // poll() leaves a descriptor of -1 out
-  std::size_t phases;    // of the script
-  std::size_t& phase;    // that it is in
+  int stop_fd, step_fd;  // poll() ignores a descriptor of -1
+  std::size_t phases;    // number of phases of the script
+  std::size_t& phase;    // current phase, not reduced modulo `phases`
 };
 
-// A line on standard input.
+// Reads standard input: each line starts the next phase.
 void goOn(Commands& commands) {
   char text[256];
   const ssize_t n = ::read(commands.step_fd, text, sizeof text);
-  if (n <= 0) commands.step_fd = -1;  // nobody says more
+  if (n <= 0) commands.step_fd = -1;  // end of input
   for (ssize_t i = 0; i < n; ++i) {
     if (text[i] != '\n') continue;
     ++commands.phase;
@@ -47,7 +47,7 @@ void goOn(Commands& commands) {
   }
 }
 
-// Until a signal. What the other side does not read is lost, as on a wire.
+// Serves until a signal. Bytes that the other side does not read are lost, as on a serial line.
 int serve(const io::PtyMaster& line, emulate::Emulator& device, const Clock& clock,
           Commands commands) {
   std::byte received[256];
@@ -106,7 +106,7 @@ int emulateDevice(const EmulateOptions& options) {
 void addEmulate(Command app, Run& run) {
   const auto options = std::make_shared<EmulateOptions>();
   std::vector<std::string> devices, scripts;
-  std::string help = "A device on a pseudo-terminal, speaking its own protocol.\nDevices:";
+  std::string help = "Emulate a device on a pseudo-terminal, with its own protocol.\nDevices:";
   for (const auto& e : emulate::emulators()) {
     devices.emplace_back(e.name);
     help += fmt::format("\n  {:11} {} (models {})", e.name, e.help, e.models);
@@ -118,24 +118,24 @@ void addEmulate(Command app, Run& run) {
   }
   Command command =
       app.subcommand("emulate", help + "\nExample: merlin emulate spaceball --link /tmp/ball");
-  command.option("device", options->device, "Which one").required().oneOf(devices);
-  command.option("--link", options->link, "A symbolic link to the pseudo-terminal, made there");
+  command.option("device", options->device, "Device to emulate").required().oneOf(devices);
+  command.option("--link", options->link, "Path of a symbolic link to make to the pseudo-terminal");
   command.option("--script", options->script, "What the emulated person does")
       .oneOf(scripts)
       .showDefault();
   command.flag("--step", options->step,
-               "A phase of the script lasts until Enter is pressed, in place of its time");
-  command.option("--model", options->model, "Of the device");
+               "Each phase of the script lasts until Enter is pressed, instead of its set time");
+  command.option("--model", options->model, "Model of the device");
   command.option("--baud", options->baud, "Speed of the line").baud();
   command
       .option("--garbage-every", options->garbage_every,
-              "Records between two bursts of random bytes; 0: none")
+              "Number of records between two bursts of random bytes; 0: no bursts")
       .range(0, 1'000'000'000)
       .showDefault();
-  command.option("--seed", options->seed, "Of noise and garbage").showDefault();
+  command.option("--seed", options->seed, "Seed of noise and random bytes").showDefault();
   command
       .option("--epoch-ns", options->epoch_ns,
-              "When the script began, CLOCK_MONOTONIC; so that several devices agree")
+              "Start time of the script (CLOCK_MONOTONIC), so that several devices play in step")
       .positive();
   command.callback([options, &run] { run = [options] { return emulateDevice(*options); }; });
 }

@@ -1,4 +1,4 @@
-// What programs exit with; outside checks rely on it.
+// Exit status of the programs; scripts outside the project rely on it.
 #pragma once
 
 #include <algorithm>
@@ -13,9 +13,9 @@
 namespace merlin {
 
 inline constexpr int kExitDone = 0;
-inline constexpr int kExitFailed = 1;    // while running
+inline constexpr int kExitFailed = 1;    // failed while running
 inline constexpr int kExitBadInput = 2;  // bad usage or bad input
-inline constexpr int kExitBusy = 3;
+inline constexpr int kExitBusy = 3;      // already running
 
 inline int exitStatus(const Error& error) {
   switch (error.code) {
@@ -31,19 +31,19 @@ inline int exitStatus(const Error& error) {
   return kExitFailed;
 }
 
-// What a program's main returns; where something was thrown and nobody caught it (no memory, as a
-// rule) one line says so, and `failed` is returned.
+// Runs `main` and returns its status. After an uncaught exception (usually bad_alloc) it prints one
+// line to stderr and returns `failed`; also if stdout could not be written.
 template <typename Main>
 int guarded(const char* program, Main main, int failed = kExitFailed) noexcept {
   try {
     const int status = main();
-    // What was printed may be in a buffer still: a disk that is full shows here.
+    // Output may still be buffered: a full disk is only noticed here.
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
-    std::fprintf(stderr, "%s: what it printed could not be written: %s\n", program,
+    std::fprintf(stderr, "%s: the output could not be written: %s\n", program,
                  std::strerror(errno));
-    return std::max(status, failed);  // a check that failed inside stays one
+    return std::max(status, failed);  // a worse status of main() is kept
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "%s: ended: no memory is left (a limit as of ulimit -v counts too)\n",
+    std::fprintf(stderr, "%s: ended: out of memory (or above a limit such as ulimit -v)\n",
                  program);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s: ended: %s\n", program, e.what());

@@ -1,4 +1,4 @@
-// merlin flight: the daemon writes down the last minutes of every device's bytes.
+// merlin flight: makes the daemon write the last minutes of every device's bytes to files.
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -25,8 +25,9 @@ void addFlight(Command app, Run& run) {
   const auto instance = std::make_shared<std::string>("merlin");
   Command command = app.subcommand(
       "flight",
-      "Writes down the last minutes of every device's bytes, each as a transcript; a fault does so "
-      "by itself.\nExample: merlin flight, then: merlin replay FILE --link /tmp/device");
+      "Write the last minutes of every device's bytes to files, a transcript for each device. The "
+      "daemon also does so by itself after a fault.\nExample: merlin flight, then: merlin replay "
+      "FILE --link /tmp/device");
   addInstance(command, *instance);
   command.callback([instance, &run] { run = [instance] { return flight(*instance); }; });
 }

@@ -13,7 +13,7 @@
 namespace merlin::cli {
 namespace {
 
-constexpr int kMostTries = 5;  // of a step; a script has no person who would give up
+constexpr int kMostTries = 5;  // per step, so that a run without a person ends too
 constexpr Duration kRedraw = std::chrono::milliseconds(100);
 
 bool enterPressed() {
@@ -22,7 +22,8 @@ bool enterPressed() {
   return ::poll(&item, 1, 0) > 0 && ::read(STDIN_FILENO, line, sizeof line) >= 0;
 }
 
-// What is heard now, on a line of its own that is written over; nothing where it is no terminal.
+// Shows Guided::now() on one line of the terminal, redrawn in place; nothing if stderr is not a
+// terminal.
 class LiveLine {
  public:
   ~LiveLine() {
@@ -41,7 +42,7 @@ class LiveLine {
   Timestamp drawn_{};
 };
 
-// Listens until `until` says so.
+// Listens until `until()` is true.
 template <typename Until>
 Result<Ok> listenUntil(Guided& guided, const Clock& clock, bool measuring, Until until) {
   LiveLine live;
@@ -52,7 +53,8 @@ Result<Ok> listenUntil(Guided& guided, const Clock& clock, bool measuring, Until
   return Ok{};
 }
 
-// Once: what end() says of it; an error that ends the calibration is in `broken`.
+// Tries a step once and returns the result of end(). `broken`: set to an error that ends the
+// calibration.
 Result<std::string> tryStep(std::size_t step, const GuideTiming& timing, Guided& guided,
                             Result<Ok>& broken) {
   const SystemClock clock;
@@ -70,10 +72,11 @@ Result<std::string> tryStep(std::size_t step, const GuideTiming& timing, Guided&
 }  // namespace
 
 void addGuideTiming(Command app, GuideTiming& timing) {
-  app.option("--hold", timing.hold_s, "Seconds that each step is measured")
+  app.option("--hold", timing.hold_s, "How long each step is measured, in seconds")
       .range(0.1, 60.0)
       .showDefault();
-  app.option("--pause", timing.pause_s, "Seconds to get ready for a step, in place of Enter")
+  app.option("--pause", timing.pause_s,
+             "Time to get ready for a step, in seconds, instead of pressing Enter")
       .range(0.1, 600.0);
 }
 

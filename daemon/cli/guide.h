@@ -1,4 +1,4 @@
-// A guided calibration: a person is told what to do, step by step, and is measured while doing it.
+// A guided calibration: a person is told what to do, step by step, while a device is measured.
 #pragma once
 
 #include <span>
@@ -10,36 +10,37 @@
 
 namespace merlin::cli {
 
-// What is calibrated: where its samples come from, and what is made of them.
+// Interface of one calibration: reads the device's samples and evaluates each step.
 class Guided {
  public:
   virtual ~Guided() = default;
 
-  // Waits for samples, up to a quarter of a second; they count where `measuring`. An error ends the
-  // calibration.
+  // Waits up to a quarter of a second for samples; they are used only if `measuring`. An error ends
+  // the calibration.
   virtual Result<Ok> listen(bool measuring) = 0;
 
-  // What is measured from now on belongs to that step; again: anew.
+  // Begins to measure this step; discards what was measured of it before.
   virtual void begin(std::size_t step) = 0;
 
-  // What was measured, for the person to read; an error has the step done again.
+  // Ends the step and returns the result as a text for the person; after an error the step is
+  // repeated.
   virtual Result<std::string> end() = 0;
 
-  // What is heard at this moment, one line for a terminal; empty: nothing is shown.
+  // The device's current values, one line for a terminal; empty: nothing is shown.
   virtual std::string now() const { return {}; }
 };
 
 struct GuideTiming {
   double hold_s = 1;
-  double pause_s = 0;  // 0: Enter begins a step
+  double pause_s = 0;  // time to get ready for a step; 0: the person presses Enter
 };
 
-// The options --hold and --pause, which every guided calibration has.
+// Adds the options --hold and --pause, which every guided calibration has.
 void addGuideTiming(Command app, GuideTiming& timing);
 
-// Every step in its order: says what to do, waits for Enter or for the pause, measures, and has it
-// done again where it was refused. Errors: listen()'s; end()'s of a step that was refused five
-// times.
+// Goes through the steps in order: prints the instruction, waits for Enter or for the pause,
+// measures, and repeats the step if end() refused it. Errors: those of listen(); that of end() for
+// a step that was refused five times.
 Result<Ok> guide(std::span<const GuidedStep> steps, const GuideTiming& timing, Guided& guided);
 
 }  // namespace merlin::cli

@@ -1,4 +1,4 @@
-// merlin keys: a pair of keys for a daemon that speaks over a network.
+// merlin keys: makes a key pair for a daemon that communicates over a network.
 #include <memory>
 
 #include <fmt/format.h>
@@ -14,10 +14,10 @@ namespace {
 
 int makeKeys(const std::string& path) {
   struct stat status {};
-  // Whatever it is: a file that may not be read, a link that leads nowhere.
+  // lstat(), so that an unreadable file or a dangling link counts as existing too.
   if (::lstat(path.c_str(), &status) == 0) {
-    return fail({Errc::kInvalidArgument,
-                 path + ": is there already; a new pair would lock out whoever knows the old one"});
+    return fail({Errc::kInvalidArgument, path + ": exists already; a new key pair would lock out "
+                                                "everyone who knows the old public key"});
   }
   const auto keys = status::makeKeyPair();
   if (!keys) return fail(keys.error());
@@ -33,9 +33,10 @@ void addKeys(Command app, Run& run) {
   const auto path = std::make_shared<std::string>();
   Command command = app.subcommand(
       "keys",
-      "A pair of keys, for samples over a network: the file stays here, the public key that is "
-      "printed goes to the other side.\nExample: merlin keys -o /etc/merlin/wall.keys");
-  command.option("-o,--output", *path, "The file, readable by its owner alone").required();
+      "Make a key pair for samples over a network. The file stays on this machine; the public key, "
+      "which is printed, goes to the other side.\nExample: merlin keys -o /etc/merlin/wall.keys");
+  command.option("-o,--output", *path, "Name of the key file; only its owner can read it")
+      .required();
   command.callback([path, &run] { run = [path] { return makeKeys(*path); }; });
 }
 

@@ -10,10 +10,11 @@
 namespace merlin::cli {
 namespace {
 
-constexpr double kLeast = 1e-5, kMost = 1.0;  // of the errors that are drawn
+constexpr double kLeast = 1e-5, kMost = 1.0;  // range of the error axis
 constexpr std::size_t kLines = 10;
 constexpr int kBar = 30;
-// 0 at kLeast, 1 at kMost.
+
+// Position on the logarithmic error axis: 0 at kLeast, 1 at kMost.
 double place(double error) {
   const double held = std::clamp(error, kLeast, kMost);
   return std::log10(held / kLeast) / std::log10(kMost / kLeast);

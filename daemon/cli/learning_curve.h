@@ -8,10 +8,11 @@
 
 namespace merlin::cli {
 
-// About ten lines: pass, both errors, noise, a bar of the error on a logarithmic scale.
+// About ten lines: pass, training and validation error, noise, and a bar of the training error on a
+// logarithmic scale.
 std::string curveText(std::span<const nn::CurvePoint> curve);
 
-// Both errors over the passes, the errors on a logarithmic scale.
+// Training and validation error over the passes, on a logarithmic scale.
 std::string curveSvg(std::span<const nn::CurvePoint> curve, const std::string& title);
 
 }  // namespace merlin::cli

@@ -1,4 +1,4 @@
-// LiveSamples: one device's samples from the shared memory of a running merlind, each once.
+// LiveSamples: reads one device's samples from the shared memory of a running merlind, each once.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ class LiveSamples {
   using Segment = shm::DevicesSegment;
   using Pick = std::function<const shm::Channel<Sample>&(const Segment&)>;
 
-  // Errors: kNotFound (no merlind runs as `instance`), kClosed (it has gone), SegmentReader's.
+  // Errors: kNotFound (no merlind runs as `instance`), kClosed (it has ended), SegmentReader's.
   static Result<LiveSamples> open(const std::string& instance, shm::DeviceIndex device, Pick pick) {
     auto segment = shm::SegmentReader<Segment>::open(shm::segmentName(instance, "devices"));
     if (!segment && segment.error().code == Errc::kNotFound)
@@ -34,8 +34,8 @@ class LiveSamples {
     return samples;
   }
 
-  // Gives `take` each sample that has come since; waits up to 0.1 s for one. Of a reader that was
-  // away for long only the last 128. Errors: kClosed (the daemon has gone).
+  // Calls `take` for each sample since the last call; waits up to 0.1 s for one. If more than 128
+  // have arrived, only the last 128. Errors: kClosed (the daemon has ended).
   template <typename Take>
   Result<Ok> listen(Take take) {
     if (auto alive = checkAlive(); !alive) return alive;
@@ -50,7 +50,7 @@ class LiveSamples {
     return Ok{};
   }
 
-  // Why the device does not stream; empty where it does.
+  // Why the device does not deliver samples; empty if it does.
   std::string complaint() {
     keepHealth();
     if (!health_) return "its state is not known yet";
@@ -69,10 +69,10 @@ class LiveSamples {
 
   Result<Ok> checkAlive() const {
     if (segment_.alive(clock_.now())) return Ok{};
-    return Error{Errc::kClosed, "the merlind that was listened to has gone; nothing was changed"};
+    return Error{Errc::kClosed, "merlind has ended; nothing was changed"};
   }
 
-  // A read that met a write again and again says nothing: what was known still holds.
+  // read() fails if writes kept interfering; the last known health is kept then.
   void keepHealth() {
     if (const auto health = segment_->health[device_].read()) health_ = *health;
   }

@@ -6,8 +6,9 @@
 namespace merlin::cli {
 
 void addMesh(Command app, Run& run) {
-  Command mesh =
-      app.subcommand("mesh", "Models: reduce, look into, export, compare, picture, segment.");
+  Command mesh = app.subcommand(
+      "mesh",
+      "Meshes and multiresolution models: reduce, inspect, export, compare, draw, segment.");
   mesh.requireSubcommand();
   addMeshReduce(mesh, run);
   addMeshInfo(mesh, run);

@@ -1,4 +1,4 @@
-// The subcommands of `merlin mesh`, and how they open a model of either kind.
+// The subcommands of `merlin mesh`, and helpers to open meshes and models.
 #pragma once
 
 #include <initializer_list>
@@ -22,13 +22,15 @@ void addMeshPicture(Command mesh, Run& run);
 void addMeshReduce(Command mesh, Run& run);
 void addMeshSegment(Command mesh, Run& run);
 
-// An .mrm file as it is, or a mesh as a dendrogram of one level. Errors: of the readers.
+// Opens an .mrm file, or a mesh as a dendrogram of one level. Errors: those of the readers.
 Result<render::Dendrogram> openModel(const std::string& path);
 
-// A mesh with normals; what was noted while reading it goes to stderr. Errors: of readMesh().
+// Reads a mesh and adds normals if it has none; prints the reader's notes to stderr. Errors: those
+// of readMesh().
 Result<render::LoadedMesh> loadMesh(const std::string& path);
 
-// What reading had to mend, with a key for programs and a name for people; counts may be 0.
+// One kind of repair made while reading a mesh: key for programs, name for people; the count may
+// be 0.
 struct Repair {
   const char* key;
   const char* name;
@@ -36,37 +38,39 @@ struct Repair {
 };
 std::vector<Repair> repairsOf(const render::LoadedMesh& loaded);
 
-// Those that happened as one line, "mended: 3 triangles with a vertex twice, ..."; else empty.
+// The repairs with a count above 0 as one line, "repaired: 3 duplicate triangles dropped, ...";
+// empty if there were none.
 std::string mendedText(const render::LoadedMesh& loaded);
 
-// Of a mesh that was written, for people: the files beside it, and what its format has no place
-// for.
+// Prints, for a person, the companion files of a mesh that was written, and the features that its
+// format cannot hold.
 void printWritten(const render::WrittenMesh& written);
 
-// Before any work: whether these can be written and none is what is read; empty ones are none.
-// Errors: kInvalidArgument, checkWritable()'s.
+// To be called before any work: checks that the outputs can be written and that none of them is the
+// input; empty names are ignored. Errors: kInvalidArgument, those of checkWritable().
 Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::string> outputs);
 
-// Puts what `text`, "colour=0.5", says into `weights`. Errors: kInvalidArgument.
+// Parses `text`, such as "colour=0.5", and sets that weight. Errors: kInvalidArgument.
 Result<Ok> setWeight(const std::string& text, render::Weights& weights);
 
-// A mesh as a model of one level.
+// Makes a model of one level from a mesh.
 render::Dendrogram asModel(const render::Mesh& mesh);
 
-// That another resolution than the finest is asked of what has no other.
+// The error for a model of one level of which another resolution was requested.
 Error hasOneResolution(const std::string& path);
 
-// Of the finest resolution: what percentages of the diagonal are of.
+// Bounding box of the finest resolution; errors in percent refer to its diagonal.
 render::Box boxOf(const render::Dendrogram& model);
 
-// Which resolution: at most one is set.
+// The resolution that the command line selects; at most one member is set.
 struct LevelChoice {
   std::optional<double> percent, error_percent, error_units;
   std::optional<std::size_t> triangles;
 
   Command addTo(Command command);
-  // 0 where none is set. `path`: the model's; where it does not go down so far stderr says so.
-  // Errors: kInvalidArgument: it is one resolution, and finer than that.
+  // The selected level; 0, the finest, if none is set. `path`: the model's file, for messages.
+  // Prints a note if the coarsest level has more triangles than requested. Errors: kInvalidArgument
+  // if the model has one level only and a coarser one is requested.
   Result<std::size_t> levelOf(const render::Dendrogram& model, const std::string& path) const;
 
  private:

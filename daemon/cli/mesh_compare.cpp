@@ -1,4 +1,4 @@
-// merlin mesh compare: how far two surfaces are from one another.
+// merlin mesh compare: measures the distance of two surfaces.
 #include <memory>
 
 #include <fmt/format.h>
@@ -19,9 +19,9 @@ using Json = nlohmann::ordered_json;
 
 struct CompareOptions {
   std::string original, other;
-  LevelChoice choice;  // of the other one
+  LevelChoice choice;  // resolution of `other`
   render::CompareSettings settings;
-  std::string pictures;  // a folder; empty: none
+  std::string pictures;  // folder for pictures; empty: none
   View view;
   bool json = false;
 };
@@ -29,15 +29,15 @@ struct CompareOptions {
 struct Answer {
   render::Comparison comparison;
   double seconds = 0;
-  std::optional<double> changed_percent;  // of the pixels, where there are pictures
+  std::optional<double> changed_percent;  // changed pixels, if pictures were drawn
 };
 
-// The rows of the table and the keys of the JSON that are numbers of one direction.
+// One figure of a Deviation: a row of the table and a key of the JSON.
 struct Figure {
   const char* name;
   const char* key;
   std::optional<double> value;
-  bool is_length = false;  // model units, shown as percent of the diagonal too
+  bool is_length = false;  // in model units; also shown in percent of the diagonal
 };
 
 std::optional<double> colourError(const render::Deviation& d) {
@@ -57,7 +57,7 @@ std::vector<Figure> figuresOf(const render::Deviation& d) {
           {"vertex normals RMS, degrees", "vertex_normal_rms_deg", d.normal_rms_deg}};
 }
 
-// null where there is no figure.
+// The figure as JSON; null if there is none.
 Json valueOf(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
 Json jsonOf(const render::Deviation& d, double diagonal) {
@@ -144,7 +144,7 @@ int compareMeshes(const CompareOptions& options) {
   const auto other = openMesh(options.other, options.choice);
   if (!other) return fail(other.error());
   Answer answer;
-  if (!options.pictures.empty()) {  // first, since it is known soon whether they can be drawn
+  if (!options.pictures.empty()) {  // first, because a failure to draw shows quickly
     render::prepareSoftwareGl(0);
     const auto changed = writePictures(options.pictures, *original, *other, options.view);
     if (!changed) return fail(changed.error());
@@ -164,39 +164,41 @@ int compareMeshes(const CompareOptions& options) {
 
 void addMeshCompare(Command mesh, Run& run) {
   const auto options = std::make_shared<CompareOptions>();
-  Command command = mesh.subcommand(
-      "compare",
-      "How far two surfaces are from one another: RMS, mean, and an interval that holds the "
-      "maximum.\nExample: merlin mesh compare scan.ply scan.mrm --percent 5");
-  command.option("a", options->original, "The original: .mrm, .ply or .obj")
+  Command command =
+      mesh.subcommand("compare",
+                      "Measure the distance of two surfaces: RMS, mean, and an interval that is "
+                      "certain to hold the "
+                      "maximum.\nExample: merlin mesh compare scan.ply scan.mrm --percent 5");
+  command.option("a", options->original, "The original surface: .mrm, .ply or .obj")
       .required()
       .typeName("A");
-  command.option("b", options->other, "The other one; a resolution of it if told")
+  command.option("b", options->other, "The surface to compare with it: .mrm, .ply or .obj")
       .required()
       .typeName("B");
   options->choice.addTo(command);
   command
       .option("--samples", options->settings.samples,
-              "Points of each surface for all but the maximum")
+              "Number of points sampled on each surface, for all figures but the maximum")
       .range(std::size_t{1}, std::size_t{1'000'000'000})
       .showDefault();
-  command.option("--seed", options->settings.seed, "Of the samples").showDefault();
+  command.option("--seed", options->settings.seed, "Seed of the sampling").showDefault();
   command
       .option("--width", options->settings.width_percent,
-              "Of the maximum's interval, percent of the diagonal of A's box")
+              "Width of the interval that holds the maximum, in percent of the diagonal of A's "
+              "bounding box")
       .positive()
       .showDefault();
   command.option("--feature", options->settings.features,
-                 "Compare these only; without any: all that both have");
+                 "Features to compare; the default is all that both surfaces have");
   command.option("--threads", options->settings.threads,
-                 "0: as many as there are; any gives the same figures");
+                 "Number of threads; 0: all cores. The figures do not depend on it");
   command
       .option("--pictures", options->pictures,
-              "A folder for pictures: a, b, a_wire, b_wire, beside, difference (pixels changed "
-              "by more than 15 %), edges (of B, red the shortest, blue the longest)")
+              "Write pictures into this folder: a, b, a_wire, b_wire, beside (a and b), difference "
+              "(pixels changed by more than 15 %), edges (of B, from red, the shortest, to blue)")
       .typeName("DIR");
   options->view.addTo(command);
-  command.flag("--json", options->json, "For programs");
+  command.flag("--json", options->json, "Print JSON, for programs");
   command.callback([options, &run] { run = [options] { return compareMeshes(*options); }; });
 }
 

@@ -1,4 +1,4 @@
-// merlin mesh curve: error against triangles, the model's own estimate beside what is certain.
+// merlin mesh curve: error against number of triangles, both estimated and certified.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -22,7 +22,7 @@ struct CurveOptions {
   render::CompareSettings settings{.samples = 100'000};
 };
 
-// One resolution against the finest; lengths in model units.
+// One resolution compared with the finest; lengths in model units.
 struct Row {
   std::size_t level, triangles;
   double estimate;
@@ -34,7 +34,7 @@ struct Curve {
   std::vector<Row> rows;  // finest first
 };
 
-// From half of the triangles down in equal steps of the logarithm, and the coarsest.
+// Levels from half of the triangles down, in equal steps of the logarithm, then the coarsest.
 std::vector<std::size_t> levelsOf(const render::Dendrogram& model, std::size_t steps_an_octave) {
   std::vector<std::size_t> levels;
   const auto all = static_cast<double>(model.triangleCount());
@@ -88,7 +88,7 @@ std::string csvOf(const Curve& curve) {
   return out;
 }
 
-// Both axes logarithmic; percent of the diagonal.
+// The curve as SVG; both axes are logarithmic, errors in percent of the diagonal.
 std::string svgOf(const Curve& curve, const std::string& title) {
   ChartLine estimate{"estimate", "#7f7f7f", {}}, rms{"RMS", "#1f77b4", {}},
       most{"maximum, at most", "#d62728", {}};
@@ -148,28 +148,31 @@ void addMeshCurve(Command mesh, Run& run) {
   const auto options = std::make_shared<CurveOptions>();
   Command command = mesh.subcommand(
       "curve",
-      "Error against triangles: the estimate that the model has of itself, and beside it the RMS "
-      "and the maximum against its finest resolution (an interval that is certain).\nExample: "
-      "merlin mesh curve scan.mrm --csv scan.csv --svg scan.svg");
+      "Tabulate error against number of triangles: the estimate stored in the model, and the RMS "
+      "and maximum distance from its finest resolution (the maximum as a certified "
+      "interval).\nExample: merlin mesh curve scan.mrm --csv scan.csv --svg scan.svg");
   command.option("model", options->model, "The model").required().typeName("MODEL.mrm");
-  command.option("--csv", options->csv, "A table: model units and % of the diagonal")
+  command.option("--csv", options->csv, "Write a table, in model units and in % of the diagonal")
       .typeName("FILE");
-  command.option("--svg", options->svg, "A picture, both axes logarithmic").typeName("FILE");
+  command.option("--svg", options->svg, "Write a chart with logarithmic axes").typeName("FILE");
   command
-      .option("--steps", options->steps_an_octave, "Resolutions for each halving of the triangles")
+      .option("--steps", options->steps_an_octave,
+              "Number of resolutions per halving of the triangles")
       .range(1, 16)
       .showDefault();
-  command.option("--samples", options->settings.samples, "Points of each surface for the RMS")
+  command
+      .option("--samples", options->settings.samples,
+              "Number of points sampled on each surface for the RMS")
       .range(std::size_t{1}, std::size_t{1'000'000'000})
       .showDefault();
-  command.option("--seed", options->settings.seed, "Of the samples").showDefault();
+  command.option("--seed", options->settings.seed, "Seed of the sampling").showDefault();
   command
       .option("--width", options->settings.width_percent,
-              "Of the maximum's interval, percent of the diagonal")
+              "Width of the interval that holds the maximum, in percent of the diagonal")
       .positive()
       .showDefault();
   command.option("--threads", options->settings.threads,
-                 "0: as many as there are; any gives the same figures");
+                 "Number of threads; 0: all cores. The figures do not depend on it");
   command.callback([options, &run] { run = [options] { return curveOfModel(*options); }; });
 }
 

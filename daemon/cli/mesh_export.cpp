@@ -1,4 +1,4 @@
-// merlin mesh export: one resolution of a model as a mesh, or all of them for Open Inventor.
+// merlin mesh export: writes one resolution of a model as a mesh, or all of them for Open Inventor.
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -20,18 +20,18 @@ namespace {
 struct ExportOptions {
   std::string model, output;
   LevelChoice choice;
-  std::optional<double> within;  // percent of the diagonal
+  std::optional<double> within;  // maximum distance, percent of the diagonal
   bool multiresolution = false;
 };
 
-// A level, and how far from the finest one it is at most.
+// A level and the upper bound of its distance from the finest level.
 struct Within {
   std::size_t level = 0;
-  double at_most = 0, percent = 0;  // model units; of the diagonal
+  double at_most = 0, percent = 0;  // in model units; in percent of the diagonal
 };
 
-// The coarsest level found that is certainly within `percent` of the diagonal: by halves of the
-// logarithm of its triangles, to 2 % of them.
+// A level whose distance from the finest is certainly at most `percent` of the diagonal, and nearly
+// the coarsest such: bisects the logarithm of the number of triangles down to 2 %.
 Result<Within> coarsestWithin(const render::Dendrogram& model, double percent) {
   constexpr double kNearEnough = 1.02;
   const SystemClock clock;
@@ -72,7 +72,8 @@ Result<std::size_t> levelOf(const ExportOptions& options, const render::Dendrogr
   if (const auto free = render::checkBeside(options.output, coarsest); !free) return free.error();
   const auto found = coarsestWithin(model, *options.within);
   if (!found) return Error{found.error().code, options.model + ": " + found.error().what};
-  say("at most {:.4g} from the finest, {:.4g} % of the diagonal\n", found->at_most, found->percent);
+  say("distance from the finest resolution at most {:.4g}, {:.4g} % of the diagonal\n",
+      found->at_most, found->percent);
   return found->level;
 }
 
@@ -117,24 +118,27 @@ void addMeshExport(Command mesh, Run& run) {
   const auto options = std::make_shared<ExportOptions>();
   Command command = mesh.subcommand(
       "export",
-      "One resolution of a model as a mesh: .ply (every feature), .glb or .gltf (features of up to "
-      "4 dimensions), .obj and .iv (Open Inventor; normals, colours, texture coordinates), .stl "
-      "(triangles alone). A texture's picture goes into .glb and .gltf, and beside .ply, .obj and "
-      ".iv.\nExample: merlin mesh export scan.mrm --percent 5 -o scan5.ply\nAll of "
-      "them for an Open Inventor viewer that finds SoMRFaceSet.so: --multiresolution -o scan.iv");
+      "Write one resolution of a model as a mesh: .ply (all features), .glb or .gltf (features of "
+      "up to 4 dimensions), .obj and .iv (Open Inventor; normals, colours, texture coordinates), "
+      ".stl (triangles only). A texture is stored inside .glb and .gltf, and in a file of its own "
+      "beside .ply, .obj and .iv.\nExample: merlin mesh export scan.mrm --percent 5 -o "
+      "scan5.ply\nTo write all resolutions for an Open Inventor viewer that finds SoMRFaceSet.so: "
+      "--multiresolution -o scan.iv");
   command.option("model", options->model, "The model, or a mesh").required().typeName("MODEL.mrm");
   command.option("-o", options->output, "The mesh: .ply, .obj, .glb, .gltf, .stl or .iv")
       .required()
       .typeName("OUT");
   const Argument all = command.flag(
       "--multiresolution", options->multiresolution,
-      "All resolutions as an SoMRFaceSet, .iv alone; at 10,000 triangles without its module");
+      "Write all resolutions as an SoMRFaceSet (.iv only); viewers without its module show 10,000 "
+      "triangles");
   Command resolution = options->choice.addTo(command);
   resolution
       .option(
           "--within", options->within,
-          "The coarsest found that is certainly no farther from the finest, percent of the box' "
-          "diagonal; some ten are compared for it")
+          "Maximum distance from the finest resolution, certified, in percent of the diagonal of "
+          "the bounding box; the coarsest resolution found within it is taken, after about ten "
+          "comparisons")
       .range(1e-6, 100.0);
   resolution.exclude(all);
   command.callback([options, &run] {

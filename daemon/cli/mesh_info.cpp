@@ -1,4 +1,4 @@
-// merlin mesh info: what a mesh or a model holds.
+// merlin mesh info: prints the contents of a mesh or a model.
 #include <memory>
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ struct InfoOptions {
   bool json = false;
 };
 
-// A model, and of a mesh what reading it mended.
+// A model; if it was read from a mesh, with the repairs.
 struct Opened {
   std::optional<render::Dendrogram> model;
   std::vector<Repair> repairs;
@@ -94,11 +94,14 @@ int info(const InfoOptions& options) {
 
 void addMeshInfo(Command mesh, Run& run) {
   const auto options = std::make_shared<InfoOptions>();
-  Command command = mesh.subcommand("info",
-                                    "What a mesh or a model holds, and what had to be mended "
-                                    "in a mesh.\nExample: merlin mesh info scan.mrm --json");
-  command.option("file", options->file, ".mrm, .ply or .obj").required().typeName("FILE");
-  command.flag("--json", options->json, "For programs");
+  Command command = mesh.subcommand(
+      "info",
+      "Show the contents of a mesh or a model, and the "
+      "repairs that reading a mesh needed.\nExample: merlin mesh info scan.mrm --json");
+  command.option("file", options->file, "Model (.mrm) or mesh (.ply, .obj)")
+      .required()
+      .typeName("FILE");
+  command.flag("--json", options->json, "Print JSON, for programs");
   command.callback([options, &run] { run = [options] { return info(*options); }; });
 }
 

@@ -17,17 +17,17 @@
 namespace merlin::cli {
 namespace {
 
-// The program itself, and pieces of files on their way.
+// The program itself and its file buffers.
 constexpr std::size_t kProgram = std::size_t{32} << 20;
 
-// "7.5 GiB"
+// Such as "7.5 GiB".
 std::string sizeText(std::size_t bytes) {
   const double mib = static_cast<double>(bytes) / (1 << 20);
   return mib < 1000 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.1f} GiB", mib / 1024);
 }
 
-// What a limit of the address space (ulimit -v) leaves, less an eighth for what the allocator and
-// threads only reserve.
+// What the limit of the address space (ulimit -v) leaves, less an eighth for addresses that the
+// allocator and threads reserve but do not use.
 std::size_t freeAddresses() {
   rlimit limit{};
   std::size_t pages = 0;
@@ -38,8 +38,8 @@ std::size_t freeAddresses() {
   return limit.rlim_cur > taken ? (limit.rlim_cur - taken) / 8 * 7 : 0;
 }
 
-// At the worst moment of all steps but the reduction itself: the file and the mesh without its
-// normals; splitting, with half-edges and fans; writing, with the log and the order of its rows.
+// Peak need of all steps but the reduction: reading (the file, and the mesh without normals),
+// splitting (half-edges and fans), writing (the collapse log and the order of its rows).
 std::size_t needOfOthers(const render::MeshSize& m, std::size_t file_size) {
   const std::size_t read = m.bytes() - 12 * m.vertices;
   const std::size_t split = read + 36 * m.triangles + 5 * m.vertices;
@@ -73,7 +73,7 @@ Result<std::size_t> roomForReduction(const render::MeshSize& mesh, std::size_t f
       std::max(needOfOthers(mesh, file_size), beside + needOf(mesh, settings).least);
   if (need <= limit) return limit - beside;
   return Error{Errc::kInvalidArgument,
-               fmt::format("{} vertices and {} triangles take {} to reduce, even in blocks; the "
+               fmt::format("reducing {} vertices and {} triangles takes {}, even in blocks; the "
                            "limit (--memory, else what is free) is {}",
                            mesh.vertices, mesh.triangles, sizeText(need), sizeText(limit))};
 }
@@ -83,10 +83,11 @@ Result<Ok> roomForPicture(const std::string& picture, const render::MeshSize& me
   const auto pixels = render::imageBytes(picture);
   const std::size_t need = mesh.bytes() + kProgram + (pixels ? *pixels : 0);
   if (!pixels || need <= limit) return Ok{};
-  return Error{Errc::kInvalidArgument,
-               fmt::format("{}: with its mesh takes {} to read; the limit (--memory, else what is "
-                           "free) is {}",
-                           picture, sizeText(need), sizeText(limit))};
+  return Error{
+      Errc::kInvalidArgument,
+      fmt::format("{}: reading it beside its mesh takes {}; the limit (--memory, else what is "
+                  "free) is {}",
+                  picture, sizeText(need), sizeText(limit))};
 }
 
 Result<Ok> checkRoom(const std::string& path, const render::ReduceSettings& settings,
@@ -104,7 +105,7 @@ Result<Ok> checkRoom(const std::string& path, const render::ReduceSettings& sett
       size.values += !p.list && p.name != "x" && p.name != "y" && p.name != "z" && p.name != "nx" &&
                      p.name != "ny" && p.name != "nz";
   }
-  // A header may promise anything; what the file has no room for is the reader's to tell.
+  // A header may claim any counts; the reader reports those that the file cannot hold.
   const std::size_t bytes = file->text().size();
   if (size.vertices > bytes || size.triangles > bytes) return Ok{};
   if (header->pictures.size() == 1 && render::ply::hasTexcoord(*header)) {

@@ -1,4 +1,4 @@
-// How much memory `merlin mesh reduce` may take, how much it would, and how much it took.
+// Memory of `merlin mesh reduce`: what is available, what it needs, and what it used.
 #pragma once
 
 #include <cstddef>
@@ -10,27 +10,28 @@
 
 namespace merlin::cli {
 
-// What the machine has free, less a sixteenth, or what a limit of this process's address space
-// leaves, less an eighth, if that is less; bytes. A very large number where it does not say.
+// Available memory in bytes: the machine's free memory less a sixteenth, or what the limit of this
+// process' address space leaves less an eighth, whichever is smaller. A very large number if
+// neither is known.
 std::size_t freeMemory();
 
-// The most that this process has had in memory so far, bytes; what it maps of files counts.
+// Peak resident memory of this process so far in bytes, mapped files included.
 std::size_t peakMemory();
 
-// What the reduction of a mesh of that size may take beside it, so that the whole command keeps to
-// `limit` bytes: reading (of a file of so many bytes), repairs, reduction and writing. Errors:
-// kInvalidArgument, with the need and the limit, where not even blocks fit.
+// Bytes that the reduction of a mesh of that size may use beside the mesh, so that all steps of the
+// command (reading a file of `file_size` bytes, repairs, reduction, writing) stay within `limit`
+// bytes. Errors: kInvalidArgument, with need and limit, if not even a reduction in blocks fits.
 Result<std::size_t> roomForReduction(const render::MeshSize& mesh, std::size_t file_size,
                                      const render::ReduceSettings& settings, std::size_t limit);
 
-// Whether a mesh' picture can be looked at beside it. Errors: as above; none where the picture
-// cannot be read, since reading it will say that.
+// Checks that the texture's picture can be decoded while the mesh is in memory. Errors:
+// kInvalidArgument; none if the picture cannot be read, because reading it will report that.
 Result<Ok> roomForPicture(const std::string& picture, const render::MeshSize& mesh,
                           std::size_t limit);
 
-// The same as roomForReduction() before anything is read, as far as a file says in its header
-// (.ply) how much is in it. Errors: with the file's name; none where it cannot be read, since
-// reading it will say that.
+// The check of roomForReduction() before the mesh is read, from the sizes in a .ply file's header.
+// Errors: kInvalidArgument, with the file's name; none if the header cannot be read, because
+// reading the mesh will report that.
 Result<Ok> checkRoom(const std::string& path, const render::ReduceSettings& settings,
                      std::size_t limit);
 

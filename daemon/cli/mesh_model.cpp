@@ -32,20 +32,21 @@ Result<render::LoadedMesh> loadMesh(const std::string& path) {
 std::vector<Repair> repairsOf(const render::LoadedMesh& loaded) {
   const render::TidyReport& t = loaded.tidied;
   const render::SplitReport& s = loaded.split;
-  return {{"degenerate_dropped", "triangles with a vertex twice dropped", t.degenerate},
-          {"duplicates_dropped", "triangles that were there twice dropped", t.duplicate},
-          {"opposites_dropped", "triangles on the back of another dropped", t.opposite},
-          {"unused_dropped", "vertices of no triangle dropped", t.unused},
+  return {{"degenerate_dropped", "degenerate triangles (a vertex twice) dropped", t.degenerate},
+          {"duplicates_dropped", "duplicate triangles dropped", t.duplicate},
+          {"opposites_dropped", "triangles with the vertices of another, but reversed, dropped",
+           t.opposite},
+          {"unused_dropped", "unused vertices dropped", t.unused},
           {"non_manifold_edges", "non-manifold edges split", s.edges},
           {"non_manifold_vertices", "non-manifold vertices split", s.vertices},
-          {"vertices_added", "vertices added by that", s.added}};
+          {"vertices_added", "vertices added by splitting", s.added}};
 }
 
 std::string mendedText(const render::LoadedMesh& loaded) {
   std::string text;
   for (const Repair& r : repairsOf(loaded)) {
     if (r.count > 0)
-      text += fmt::format("{}{} {}", text.empty() ? "mended: " : ", ", r.count, r.name);
+      text += fmt::format("{}{} {}", text.empty() ? "repaired: " : ", ", r.count, r.name);
   }
   return text;
 }
@@ -74,14 +75,16 @@ Error hasOneResolution(const std::string& path) {
   const std::string advice =
       path.ends_with(".mrm")
           ? ""
-          : fmt::format(" (make a model of it first: merlin mesh reduce {} -o OUT.mrm)", path);
+          : fmt::format(
+                " (first make a multiresolution model of it: merlin mesh reduce {} -o OUT.mrm)",
+                path);
   return {Errc::kInvalidArgument, path + ": has one resolution only" + advice};
 }
 
 void printWritten(const render::WrittenMesh& written) {
-  if (!written.beside.empty()) say("  with it {}\n", fmt::join(written.beside, " and "));
+  if (!written.beside.empty()) say("  companion files: {}\n", fmt::join(written.beside, " and "));
   if (!written.left_out.empty())
-    say("  .{} has no place for {}; it is left out\n", written.format,
+    say("  the format .{} cannot hold {}: left out\n", written.format,
         fmt::join(written.left_out, ", "));
 }
 
@@ -89,7 +92,7 @@ Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::str
   std::error_code absent;
   for (const std::string& output : outputs) {
     if (std::filesystem::equivalent(input, output, absent))
-      return Error{Errc::kInvalidArgument, output + ": is what is read; name another file"};
+      return Error{Errc::kInvalidArgument, output + ": is an input; choose another output file"};
   }
   return checkWritable(outputs);
 }
@@ -107,14 +110,18 @@ Result<Ok> setWeight(const std::string& text, render::Weights& weights) {
 }
 
 Command LevelChoice::addTo(Command command) {
-  Command group = command.group("resolution", "Which resolution; without any: the finest");
-  group.option("--percent", percent, "Of the triangles").range(0.0, 100.0);
-  group.option("--triangles", triangles, "At most so many");
+  Command group = command.group("resolution", "Selects a resolution; the default is the finest");
+  group.option("--percent", percent, "Number of triangles, in percent of the finest")
+      .range(0.0, 100.0);
+  group.option("--triangles", triangles, "Maximum number of triangles");
   group
-      .option("--error", error_percent,
-              "The coarsest whose error estimate is at most this, percent of the box' diagonal")
+      .option(
+          "--error", error_percent,
+          "Maximum error estimate, in percent of the diagonal of the bounding box; the coarsest "
+          "resolution within it is taken")
       .nonNegative();
-  group.option("--error-units", error_units, "The same, in the model's units").nonNegative();
+  group.option("--error-units", error_units, "Maximum error estimate, in the model's units")
+      .nonNegative();
   group.atMostOne();
   return group;
 }
@@ -141,7 +148,7 @@ Result<std::size_t> LevelChoice::levelOf(const render::Dendrogram& model,
   const bool missed = std::floor(asked) < static_cast<double>(got);
   if (model.levels() == 1 && (missed || error_percent || error_units))
     return hasOneResolution(path);
-  if (missed) printNote(fmt::format("{}: goes down to {} triangles", path, got));
+  if (missed) printNote(fmt::format("{}: the coarsest resolution has {} triangles", path, got));
   return level;
 }
 

@@ -1,4 +1,4 @@
-// merlin mesh picture: models, or one model at several resolutions, side by side in a PNG file.
+// merlin mesh picture: draws models, each at one or several resolutions, side by side.
 #include <memory>
 
 #include <fmt/format.h>
@@ -57,22 +57,26 @@ int picture(const PictureOptions& options) {
 
 void addMeshPicture(Command mesh, Run& run) {
   const auto options = std::make_shared<PictureOptions>();
-  Command command = mesh.subcommand(
-      "picture",
-      "Models, each at one resolution or several, side by side as a PNG file.\nExample: merlin "
-      "mesh picture scan.mrm --percent 100 5 -o both.png");
-  command.option("models", options->models, ".mrm, .ply or .obj").required().typeName("MODEL");
-  command.option("-o", options->output, "The file").required().typeName("FILE.png");
-  command.option("--percent", options->percents, "Of the triangles, one picture each")
+  Command command = mesh.subcommand("picture",
+                                    "Draw models, each at one resolution or several, side by side "
+                                    "in a PNG file.\nExample: merlin "
+                                    "mesh picture scan.mrm --percent 100 5 -o both.png");
+  command.option("models", options->models, "Models (.mrm) or meshes (.ply, .obj)")
+      .required()
+      .typeName("MODEL");
+  command.option("-o", options->output, "The PNG file").required().typeName("FILE.png");
+  command
+      .option("--percent", options->percents,
+              "Resolutions, in percent of the finest's triangles; one picture each")
       .range(0.0, 100.0);
-  command.option("--width", options->view.width, "Of one picture, pixels")
+  command.option("--width", options->view.width, "Width of one picture in pixels")
       .range(16, 8192)
       .showDefault();
-  command.option("--height", options->view.height, "Of one picture, pixels")
+  command.option("--height", options->view.height, "Height of one picture in pixels")
       .range(16, 8192)
       .showDefault();
   options->view.addTo(command);
-  command.flag("--wireframe", options->view.model.style.wireframe, "Edges instead of faces");
+  command.flag("--wireframe", options->view.model.style.wireframe, "Draw edges instead of faces");
   command.callback([options, &run] { run = [options] { return picture(*options); }; });
 }
 

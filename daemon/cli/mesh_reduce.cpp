@@ -1,4 +1,4 @@
-// merlin mesh reduce: a mesh to a multiresolution model.
+// merlin mesh reduce: makes a multiresolution model from a mesh.
 #include <memory>
 
 #include <fmt/format.h>
@@ -23,15 +23,15 @@ struct ReduceOptions {
   std::string input, output, texture, preset = "default";
   std::vector<std::string> weights;
   render::ReduceSettings settings;
-  std::uint64_t memory = 0;  // bytes; 0: what is free
+  std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
   bool lock_borders = false;
   bool json = false;
 };
 
-// What the command took, for the report.
+// Time and memory of the command, for the report.
 struct Took {
-  double reducing = 0, all = 0;  // seconds
-  std::size_t limit = 0;         // bytes
+  double reducing = 0, all = 0;  // reduction alone, and with reading and writing [s]
+  std::size_t limit = 0;         // memory limit [bytes]
 };
 
 Result<render::Weights> weightsOf(const ReduceOptions& options, const render::Mesh& mesh) {
@@ -78,9 +78,9 @@ void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
   say("{}: {} triangles down to {} in {} collapses ({})\n", options.output,
       loaded.mesh.triangleCount(), r.triangles, r.collapses, r.stopped);
   if (r.by_all_rules > r.triangles) {
-    say("  all rules held down to {} triangles\n", r.by_all_rules);
+    say("  all constraints were kept down to {} triangles\n", r.by_all_rules);
   }
-  say("  {:.2f} s, {:.0f} collapses a second; with reading and writing {:.2f} s\n", took.reducing,
+  say("  {:.2f} s, {:.0f} collapses per second; {:.2f} s with reading and writing\n", took.reducing,
       rate, took.all);
   say("  peak memory {:.0f} MB, limit {:.0f} MB{}\n", megabytes(peakMemory()),
       megabytes(took.limit), r.blocks > 1 ? fmt::format(", {} blocks", r.blocks) : "");
@@ -115,7 +115,7 @@ Result<render::Reduction> reduceLoaded(const ReduceOptions& options, const rende
   return reduction;
 }
 
-// A picture that the mesh's file does not name.
+// Adds the texture that --texture names to the mesh.
 Result<Ok> addTexture(const ReduceOptions& options, render::Mesh& mesh, std::size_t limit) {
   if (options.texture.empty()) return Ok{};
   const render::Feature* texcoord = mesh.find("texcoord");
@@ -137,10 +137,10 @@ Result<Ok> checkOptions(const ReduceOptions& options) {
   if (options.preset != "default" && !pattern)
     return Error{Errc::kInvalidArgument, "--preset " + options.preset + ": add --cost pattern"};
   if (options.settings.fast && pattern)
-    return Error{Errc::kInvalidArgument, "--fast: of the cost quadric"};
+    return Error{Errc::kInvalidArgument, "--fast: only with --cost quadric"};
   if (options.lock_borders && pattern)
     return Error{Errc::kInvalidArgument,
-                 "--lock-borders: of the cost quadric; for pattern: --weight boundary=W"};
+                 "--lock-borders: only with --cost quadric; for pattern: --weight boundary=W"};
   return checkOutputs(options.input, {options.output});
 }
 
@@ -189,49 +189,52 @@ void addMeshReduce(Command mesh, Run& run) {
   for (const render::Preset& preset : render::presets()) presets.emplace_back(preset.name);
   command
       .option("--preset", options->preset,
-              "Weights to begin with: the cost's, or pattern's of 1998")
+              "Initial weights: those of the cost, or weights that the dissertation of 1998 used "
+              "with pattern")
       .oneOf(presets)
       .showDefault();
   command
       .option("--weight", options->weights,
-              "Of a feature: geometry, colour or any of the mesh's own, and for pattern normal, "
-              "curvature, boundary; 0 leaves it out. Labels without one are kept apart")
+              "Weight of a feature: geometry, colour or any other feature of the mesh; for pattern "
+              "also normal, curvature and boundary. 0 ignores the feature. Regions of different "
+              "labels stay separate unless label has a weight")
       .typeName("FEATURE=W");
   command
       .option("--texture", options->texture,
-              "The picture that the texture coordinates are of; else the one that the mesh's "
-              "material names. It goes into the model")
+              "Texture, which is stored in the model; the default is the one that the mesh's "
+              "material names")
       .typeName("FILE.png|.jpg");
   command.flag("--preserve-topology", options->settings.preserve_topology,
-               "Refuse collapses that join or pinch off parts");
-  command.flag("--preserve-components", options->settings.preserve_components,
-               "Keep a triangle of every part until nothing else can go");
+               "Refuse collapses that connect or separate parts of the surface");
+  command.flag(
+      "--preserve-components", options->settings.preserve_components,
+      "Keep at least one triangle of every connected part as long as others can be removed");
   command.flag("--lock-borders", options->lock_borders,
-               "Keep the vertices of borders where they are until nothing else can go");
+               "Keep border vertices at their place as long as others can be removed");
   command.flag("--fast", options->settings.fast,
-               "A tenth to a third less time, for about 6 % more error");
-  command.option("--triangles", options->settings.min_triangles, "Stop at so many triangles")
+               "Take a tenth to a third less time, at about 6 % more error");
+  command.option("--triangles", options->settings.min_triangles, "Stop at this number of triangles")
       .showDefault();
   command
       .option("--percent", options->settings.min_percent,
-              "Stop at so many percent of the triangles")
+              "Stop at this percentage of the triangles")
       .range(0.0, 100.0)
       .showDefault();
   command
       .option("--error", options->settings.max_error_percent,
-              "Stop at this error estimate, percent of the box' diagonal")
+              "Stop at this error estimate, in percent of the diagonal of the bounding box")
       .nonNegative();
   command
       .option("--threads", options->settings.threads,
-              "So many at most; 0: all. The model is the same")
+              "Maximum number of threads; 0: all cores. The model does not depend on it")
       .showDefault();
   command
       .option("--memory", options->memory,
-              "The most that the whole command may take: 900M, 16G; else what is free. Where "
-              "it is short the mesh is cut into blocks, and the model is a little different")
+              "Maximum memory of the whole command, such as 900M or 16G; the default is what is "
+              "free. If it is short, the mesh is reduced in blocks, and the model differs slightly")
       .size()
       .typeName("SIZE");
-  command.flag("--json", options->json, "The report for programs");
+  command.flag("--json", options->json, "Print the report as JSON, for programs");
   command.callback([options, &run] { run = [options] { return reduceMesh(*options); }; });
 }
 

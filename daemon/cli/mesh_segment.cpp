@@ -1,4 +1,5 @@
-// merlin mesh segment: the vertices of a mesh clustered in pattern space, as the feature "label".
+// merlin mesh segment: clusters the vertices of a mesh in pattern space; the clusters' numbers
+// become the feature "label".
 #include <memory>
 
 #include <fmt/format.h>
@@ -103,10 +104,9 @@ void addMeshSegment(Command mesh, Run& run) {
   const auto options = std::make_shared<SegmentOptions>();
   Command command = mesh.subcommand(
       "segment",
-      "A mesh into parts whose vertices are alike and hang together; their numbers become the "
-      "feature label, 0 the largest.\nExample: merlin mesh segment scan.ply -o parts.ply "
-      "--segments "
-      "12 --weight normal=1 --weight colour=2");
+      "Divide a mesh into connected segments of similar vertices. Their numbers become the feature "
+      "label; 0 is the largest segment.\nExample: merlin mesh segment scan.ply -o parts.ply "
+      "--segments 12 --weight normal=1 --weight colour=2");
   command.option("input", options->input, "The mesh: .ply or .obj").required().typeName("IN");
   command.option("-o", options->output, "The mesh with labels: .ply, .glb or .gltf")
       .required()
@@ -114,20 +114,20 @@ void addMeshSegment(Command mesh, Run& run) {
       .check([](const std::string& path) {
         const bool carries =
             path.ends_with(".ply") || path.ends_with(".glb") || path.ends_with(".gltf");
-        return carries ? "" : path + ": labels have a place in .ply, .glb and .gltf only";
+        return carries ? "" : path + ": only .ply, .glb and .gltf can hold labels";
       });
-  command.option("--segments", options->settings.segments, "How many")
+  command.option("--segments", options->settings.segments, "Number of segments")
       .required()
       .range(std::size_t{1}, std::size_t{1} << 24);
   command
       .option("--weight", options->weights,
-              "Of a feature: geometry, normal, curvature, or any of the mesh's own; without "
-              "any: normal=1, and colour=1 where there is one")
+              "Weight of a feature: geometry, normal, curvature, or any other feature of the mesh; "
+              "the default is normal=1, and colour=1 if the mesh has colours")
       .typeName("FEATURE=W");
-  command.option("--picture", options->picture, "The segments, each in a colour of its own")
+  command.option("--picture", options->picture, "Draw the segments, each in a colour of its own")
       .typeName("FILE.png");
   options->view.addTo(command);
-  command.flag("--json", options->json, "The report for programs");
+  command.flag("--json", options->json, "Print the report as JSON, for programs");
   command.callback([options, &run] { run = [options] { return segmentMesh(*options); }; });
 }
 

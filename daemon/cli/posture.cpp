@@ -12,24 +12,26 @@
 namespace merlin::cli {
 namespace {
 
-constexpr float kMostCount = 255;
+constexpr float kMostCount = 255;  // largest raw count
 
-// The shipped calibration's line of each sensor; what no sensor measures is 0.
+// Converts raw counts to angles with the shipped calibration; slots without a sensor stay as they
+// are.
 Result<nn::Recording> toRadians(nn::Recording recording, const std::string& path) {
   const CybergloveSettings calibration;
   for (nn::LabelledHand& hand : recording.hands) {
     for (std::size_t i = 0; i < nn::kInputs; ++i) {
       if (!recording.measured[i]) continue;
       if (hand.value[i] < 0 || hand.value[i] > kMostCount)
-        return Error{Errc::kInvalidArgument,
-                     fmt::format("{}: {} is {}, no raw count of a glove (0 to {}), and the network "
-                                 "takes angles; train one on such data",
-                                 path, nn::kInputNames[i], hand.value[i], kMostCount)};
+        return Error{
+            Errc::kInvalidArgument,
+            fmt::format("{}: {} is {}, which is not a raw count of a glove (0 to {}), and the "
+                        "network takes angles; train a network on such data",
+                        path, nn::kInputNames[i], hand.value[i], kMostCount)};
       hand.value[i] = (hand.value[i] - calibration.offset[i]) * calibration.gain[i];
     }
   }
   recording.unit = nn::InputUnit::kRadians;
-  printError("{}: raw counts made angles by the shipped calibration\n", path);
+  printError("{}: raw counts converted to angles with the shipped calibration\n", path);
   return recording;
 }
 
@@ -44,8 +46,8 @@ std::optional<nn::InputUnit> unitNamed(const std::string& name) {
 void addUnits(Command command, std::string& units) {
   command
       .option("--units", units,
-              "Of the recording: rad, raw (counts, degrees, whatever the sensors say), or auto: "
-              "raw if a number is beyond 6.3")
+              "Unit of the recording: rad, raw (counts, degrees or any other unit of the sensors), "
+              "or auto (raw if any number is beyond 6.3)")
       .oneOf({"auto", "rad", "raw"})
       .showDefault();
 }
@@ -62,8 +64,8 @@ Result<nn::Recording> readFor(const nn::PostureNetwork& network, const std::stri
   const bool raw = network.unit == nn::InputUnit::kRaw;
   if (raw && unit == nn::InputUnit::kRadians)
     return Error{Errc::kInvalidArgument,
-                 fmt::format("{}: angles, and the network takes raw counts; give --units raw if "
-                             "the numbers are of the kind that it was trained on",
+                 fmt::format("{}: has angles, and the network takes raw counts; give --units raw "
+                             "if the numbers are of the kind that it was trained on",
                              path)};
   auto recording = readRecording(path, raw ? nn::InputUnit::kRaw : unit);
   if (!recording || recording->unit == network.unit) return recording;
@@ -86,8 +88,8 @@ nn::Recording synthesize(const SyntheticPeople& people) {
 }
 
 void addPosture(Command app, Run& run) {
-  Command posture =
-      app.subcommand("posture", "The posture network: collect hands, train, test, adapt.");
+  Command posture = app.subcommand(
+      "posture", "The posture network: collect labelled hands, train, test, adapt, synthesize.");
   posture.requireSubcommand();
   addPostureCollect(posture, run);
   addPostureTrain(posture, run);

@@ -1,4 +1,4 @@
-// merlin posture ...: how each of its subcommands adds itself, and what they share.
+// merlin posture ...: functions that add its subcommands, and shared helpers.
 #pragma once
 
 #include <optional>
@@ -17,19 +17,22 @@ void addPostureAdapt(Command posture, Run& run);
 void addPostureCollect(Command posture, Run& run);
 void addPostureSynthesize(Command posture, Run& run);
 
-// "auto", "raw" or "rad" to a unit; nothing for "auto".
+// The unit named "raw" or "rad"; nothing for "auto".
 std::optional<nn::InputUnit> unitNamed(const std::string& name);
+// Adds the option --units.
 void addUnits(Command command, std::string& units);
 
-// A recording, its notes printed to stderr.
+// Reads a recording and prints its notes to stderr.
 Result<nn::Recording> readRecording(const std::string& path, std::optional<nn::InputUnit> unit);
 
-// A recording in the network's unit: as it stands, or raw counts made angles by the shipped
-// calibration. Errors: those of reading; kInvalidArgument: angles for a network of raw counts.
+// Reads a recording in the network's unit; raw counts for a network of angles are converted with
+// the shipped calibration. Errors: those of readRecording(); kInvalidArgument if the recording has
+// angles and the network takes raw counts.
 Result<nn::Recording> readFor(const nn::PostureNetwork& network, const std::string& path,
                               std::optional<nn::InputUnit> unit);
 
-// Synthetic people who hold the first `postures` of hand::allShapes(), from person `first` on.
+// Settings of synthesize(): `people` synthetic people from number `first` on, each of whom holds
+// the first `postures` of hand::allShapes().
 struct SyntheticPeople {
   std::size_t first = 1, people = 10, takes = 1, per_take = 5, postures = 31;
   std::uint64_t seed = 1;

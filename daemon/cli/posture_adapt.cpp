@@ -1,4 +1,5 @@
-// merlin posture adapt: a new person; and merlin posture synthesize: people to try it on.
+// merlin posture adapt: adapts a network to a new person. merlin posture synthesize: makes hands of
+// synthetic people for tests.
 #include <memory>
 
 #include <fmt/format.h>
@@ -22,8 +23,8 @@ int adapt(const AdaptOptions& options) {
   if (!file) return fail(file.error());
   if (!file->memory)
     return fail({Errc::kInvalidArgument,
-                 options.network + ": /memory: found none; adapting needs what a network remembers "
-                                   "of its training: train it anew"});
+                 options.network + ": has no /memory, the statistics of its training, which "
+                                   "adapting needs: train the network anew"});
   const auto recording = readFor(file->network, options.data, unitNamed(options.units));
   if (!recording) return fail(recording.error());
   const SystemClock clock;
@@ -37,8 +38,8 @@ int adapt(const AdaptOptions& options) {
       fmt::format("{}; adapted to {} hands", file->trained.how, recording->hands.size())
           .substr(0, 200);
   if (const auto saved = nn::saveNetwork(options.output, out); !saved) return fail(saved.error());
-  say("{}: adapted to {} hands in {:.2f} s: {:.2f} % of them right, {:.2f} % before; of hands "
-      "like those it was trained on {:.2f} %, {:.2f} % before\n",
+  say("{}: adapted to {} hands in {:.2f} s: {:.2f} % of them right (before: {:.2f} %); of hands "
+      "like those of its training {:.2f} % right (before: {:.2f} %)\n",
       options.output, recording->hands.size(), seconds, 100 * adapted->hands_after,
       100 * adapted->hands_before, 100 * adapted->memory_after, 100 * adapted->memory_before);
   return kExitDone;
@@ -64,12 +65,17 @@ void addPostureAdapt(Command posture, Run& run) {
   const auto options = std::make_shared<AdaptOptions>();
   Command command = posture.subcommand(
       "adapt",
-      "Teach a network a new person, who held each posture for two seconds, without forgetting the "
-      "others.\nExample: merlin posture adapt postures.json anna.csv -o anna.json");
-  command.option("net", options->network, "The network's file").required().typeName("NET.json");
-  command.option("hands", options->data, "The person's hands, CSV").required().typeName("DATA.csv");
-  command.option("-o", options->output, "The new network's file").required().typeName("FILE.json");
-  command.option("--seed", options->seed, "Of everything that is drawn").showDefault();
+      "Adapt a network to a new person, who held each posture for two seconds, without losing the "
+      "people it was trained on.\nExample: merlin posture adapt postures.json anna.csv -o "
+      "anna.json");
+  command.option("net", options->network, "File of the network").required().typeName("NET.json");
+  command.option("hands", options->data, "The person's labelled hands, CSV")
+      .required()
+      .typeName("DATA.csv");
+  command.option("-o", options->output, "File of the adapted network")
+      .required()
+      .typeName("FILE.json");
+  command.option("--seed", options->seed, "Seed of all random numbers").showDefault();
   addUnits(command, options->units);
   command.callback([options, &run] { run = [options] { return adapt(*options); }; });
 }
@@ -77,21 +83,21 @@ void addPostureAdapt(Command posture, Run& run) {
 void addPostureSynthesize(Command posture, Run& run) {
   const auto options = std::make_shared<SynthesizeOptions>();
   Command command = posture.subcommand("synthesize",
-                                       "Labelled hands of synthetic people, for tests; "
-                                       "nobody was measured.\nExample: merlin posture "
+                                       "Make labelled hands of synthetic people, for tests; "
+                                       "no real person was measured.\nExample: merlin posture "
                                        "synthesize -o hands.csv --people 10 --first 1001");
-  command.option("-o", options->output, "The file").required().typeName("FILE.csv");
+  command.option("-o", options->output, "The CSV file").required().typeName("FILE.csv");
   SyntheticPeople& people = options->people;
   const auto count = [&](const char* name, std::size_t& value, const char* help, std::size_t most) {
     command.option(name, value, help).range(std::size_t{1}, most).showDefault();
   };
-  count("--first", people.first, "The first person's number: another number, another person",
-        1 << 30);
-  count("--people", people.people, "How many", 1000);
-  count("--takes", people.takes, "Times that each person takes each posture", 1000);
-  count("--per-take", people.per_take, "Samples of each", 10000);
-  count("--postures", people.postures, "How many, of those that there are", 31);
-  command.option("--seed", people.seed, "Of takes and noise").showDefault();
+  count("--first", people.first,
+        "Number of the first person; each number stands for another person", 1 << 30);
+  count("--people", people.people, "Number of people", 1000);
+  count("--takes", people.takes, "Number of times that each person takes each posture", 1000);
+  count("--per-take", people.per_take, "Number of samples of each take", 10000);
+  count("--postures", people.postures, "Number of postures, the first of the 31 known ones", 31);
+  command.option("--seed", people.seed, "Seed of takes and noise").showDefault();
   command.callback([options, &run] { run = [options] { return synthesizeFile(*options); }; });
 }
 

@@ -1,4 +1,5 @@
-// merlin posture collect: hands of one posture, from the glove of a running daemon into a CSV file.
+// merlin posture collect: records hands of one posture from a running daemon's glove into a CSV
+// file.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -20,7 +21,7 @@ namespace {
 constexpr int kBar = 24;
 constexpr std::size_t kBarsALine = 2;
 constexpr Duration kRedraw = std::chrono::milliseconds(100);
-constexpr Duration kPatience = std::chrono::seconds(3);  // without a sample
+constexpr Duration kPatience = std::chrono::seconds(3);  // longest time without a sample
 
 struct CollectOptions {
   std::string label, output = "hands.csv", instance = "merlin", units = "rad";
@@ -37,7 +38,7 @@ nn::LabelledHand handOf(const GloveSample& sample, const std::string& label, nn:
   return hand;
 }
 
-// A bar for each sensor over its raw range; moves up again over what it drew before.
+// Draws a bar for each sensor over its raw range; `again`: over the bars drawn before.
 void drawBars(const GloveSample& sample, bool again) {
   std::string out;
   std::size_t lines = 0;
@@ -51,7 +52,7 @@ void drawBars(const GloveSample& sample, bool again) {
   printError("{}{}", again ? fmt::format("\033[{}A", lines) : "", out);
 }
 
-// What the glove says for as long as asked. Errors: kNotFound (no daemon), kTimeout (no samples).
+// Records the glove for options.seconds. Errors: kNotFound (no daemon), kTimeout (no samples).
 Result<nn::Recording> collect(const CollectOptions& options) {
   const auto segment =
       shm::SegmentReader<shm::DevicesSegment>::open(shm::segmentName(options.instance, "devices"));
@@ -68,7 +69,7 @@ Result<nn::Recording> collect(const CollectOptions& options) {
     glove.wait(next, {0, 100'000'000});
     if (next == glove.count()) {
       if (clock.now() - heard < kPatience) continue;
-      return Error{Errc::kTimeout, "the glove has been silent for 3 s: see merlin status"};
+      return Error{Errc::kTimeout, "the glove has sent nothing for 3 s: see merlin status"};
     }
     heard = clock.now();
     if (began == Timestamp{}) began = heard;
@@ -89,7 +90,8 @@ Result<nn::Recording> collect(const CollectOptions& options) {
   return recording;
 }
 
-// Adds what was collected before; a slot that either glove measured is kept.
+// Puts the hands that `path` already has before those of `recording`; both must have the same
+// sensors.
 Result<Ok> addTo(nn::Recording& recording, const std::string& path) {
   if (!std::filesystem::exists(path)) return Ok{};
   auto before = nn::loadRecording(path, recording.unit);
@@ -114,12 +116,12 @@ int run(const CollectOptions& options) {
   if (const auto added = addTo(*recording, options.output); !added) return fail(added.error());
   if (const auto saved = nn::saveRecording(options.output, *recording); !saved)
     return fail(saved.error());
-  say("{}: {} hands of \"{}\" taken, {} in all\n", options.output, taken, options.label,
+  say("{}: {} hands of \"{}\" recorded, {} in all\n", options.output, taken, options.label,
       recording->hands.size());
   for (const nn::Overlap& o : nn::overlapsOf(options.label, recording->hands))
     printError(
-        "warning: \"{}\" and \"{}\" are hard to tell apart: {:.1f} standard deviations, {} "
-        "hands nearer to the other\n",
+        "warning: \"{}\" and \"{}\" are hard to tell apart: {:.1f} standard deviations apart, {} "
+        "hands nearer to the other posture\n",
         o.first, o.second, o.deviations, o.mixed_up);
   return kExitDone;
 }
@@ -130,12 +132,15 @@ void addPostureCollect(Command posture, Run& run_now) {
   const auto options = std::make_shared<CollectOptions>();
   Command command = posture.subcommand(
       "collect",
-      "Hands of one posture from the glove of a running merlind (live, or replayed: port "
-      "replay:FILE), appended to a CSV file.\nExample: merlin posture collect fist -o hands.csv");
+      "Record hands of one posture from the glove of a running merlind (live, or replayed with "
+      "port replay:FILE) and append them to a CSV file.\nExample: merlin posture collect fist -o "
+      "hands.csv");
   command.option("label", options->label, "The posture's name").required().typeName("LABEL");
-  command.option("-o", options->output, "The file").showDefault().typeName("FILE.csv");
-  command.option("--seconds", options->seconds, "How long").range(0.1, 600.0).showDefault();
-  command.option("--units", options->units, "Angles, or the sensors' own counts")
+  command.option("-o", options->output, "The CSV file").showDefault().typeName("FILE.csv");
+  command.option("--seconds", options->seconds, "Duration of the recording in seconds")
+      .range(0.1, 600.0)
+      .showDefault();
+  command.option("--units", options->units, "Angles in radians, or raw counts of the sensors")
       .oneOf({"rad", "raw"})
       .showDefault();
   addInstance(command, options->instance);

@@ -1,4 +1,4 @@
-// merlin posture test: how many hands a network names right, and what it takes for what.
+// merlin posture test: a network's accuracy on labelled hands, its confusions and margins.
 #include "daemon/cli/posture.h"
 
 #include <memory>
@@ -13,9 +13,9 @@
 namespace merlin::cli {
 namespace {
 
-// People whom no training of ours has seen.
+// Number of the first person that was not used for training.
 constexpr std::size_t kUnseen = 1001;
-constexpr std::size_t kShown = 10;  // confusions, and postures, that the table lists
+constexpr std::size_t kShown = 10;  // maximum number of confusions in the table
 
 struct TestOptions {
   std::string network = "config/postures.json", data, beside, units = "auto";
@@ -52,11 +52,11 @@ nlohmann::ordered_json toJson(const nn::Evaluation& e, bool synthetic) {
 }
 
 void printTable(const nn::Evaluation& e, bool synthetic, double margin) {
-  say("{} of {} {}hands right ({:.3f} %), {} taken for no posture, {} for another; {} with a "
+  say("{} of {} {}hands right ({:.3f} %), {} recognised as no posture, {} as another; {} with a "
       "margin below {}\n",
       e.all.right, e.all.total, synthetic ? "synthetic " : "", 100 * e.all.accuracy(),
       e.all.rejected, e.all.total - e.all.right - e.all.rejected, e.unsure, margin);
-  if (!e.confusions.empty()) say("\n  hands  shown                taken for\n");
+  if (!e.confusions.empty()) say("\n  hands  shown                recognised as\n");
   for (std::size_t n = 0; n < std::min(kShown, e.confusions.size()); ++n) {
     const nn::Confusion& c = e.confusions[n];
     say("  {:5}  {:19}  {}\n", c.hands, c.shown, c.taken_for.empty() ? "-" : c.taken_for);
@@ -81,8 +81,8 @@ int test(const TestOptions& options) {
     json["nearest_mean"] = n.mean;
     json["nearest_neighbour"] = n.nearest;
     if (!options.json)
-      say("beside it, from {}: nearest mean {:.3f} %, nearest neighbour {:.3f} %\n", options.beside,
-          100 * n.mean, 100 * n.nearest);
+      say("for comparison, from {}: nearest mean {:.3f} %, nearest neighbour {:.3f} %\n",
+          options.beside, 100 * n.mean, 100 * n.nearest);
   }
   if (options.json) {
     printJsonLine(json);
@@ -98,22 +98,24 @@ void addPostureTest(Command posture, Run& run) {
   const auto options = std::make_shared<TestOptions>();
   Command command = posture.subcommand(
       "test",
-      "How many hands a network names right, what it takes for what, how sure it is; without DATA "
-      "of synthetic people whom the shipped network has not seen.\nExample: merlin posture test "
+      "Test a network on labelled hands: its accuracy, confusions and margins. Without DATA, on "
+      "hands of synthetic people whom the shipped network was not trained on.\nExample: merlin "
+      "posture test "
       "postures.json hands.csv --json");
-  command.option("net,--network", options->network, "The network's file")
+  command.option("net,--network", options->network, "File of the network")
       .showDefault()
       .typeName("NET.json");
   command.option("hands,--data", options->data, "Labelled hands, CSV").typeName("DATA.csv");
   command
       .option("--beside", options->beside,
-              "The training hands: nearest mean and nearest neighbour are reported too")
+              "The training hands, CSV: also reports the accuracy of nearest mean and nearest "
+              "neighbour, for comparison")
       .typeName("TRAIN.csv");
-  command.option("--margin", options->margin, "Below it a hand counts as unsure")
+  command.option("--margin", options->margin, "Margin below which a hand counts as unsure")
       .range(0.0, 1.0)
       .showDefault();
   addUnits(command, options->units);
-  command.flag("--json", options->json, "For programs");
+  command.flag("--json", options->json, "Print JSON, for programs");
   command.callback([options, &run] { run = [options] { return test(*options); }; });
 }
 

@@ -1,4 +1,4 @@
-// merlin posture train: a network from labelled hands; k-fold cross-validation of the same.
+// merlin posture train: trains a network on labelled hands, or cross-validates such a training.
 #include <memory>
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ struct TrainOptions {
   bool json = false;
 };
 
-// Without data: the people that the shipped network was trained on.
+// The hands to train on; without --data the synthetic people of the shipped network.
 Result<nn::Recording> trainingHands(const TrainOptions& options) {
   if (!options.data.empty()) return readRecording(options.data, unitNamed(options.units));
   return synthesize({.people = 20, .takes = 2, .postures = 8});
@@ -44,7 +44,8 @@ Result<nn::Fitted> fitWithBar(const nn::DataSet& hands, const nn::FitSettings& s
   return fitted;
 }
 
-// Fold f's test hands are the f-th k-th of each posture's hands, in the order of the file.
+// k-fold cross-validation: fold f tests on the f-th of k equal parts of each posture's hands, in
+// the order of the file, and trains on the others.
 int crossValidate(const nn::Recording& recording, const TrainOptions& options) {
   std::vector<std::size_t> posture;
   const auto names = nn::posturesOf(recording.hands, posture);
@@ -84,7 +85,7 @@ int report(const TrainOptions& options, const nn::Fitted& fitted, double seconds
   }
   say("{}", curveText(fitted.curve));
   say("{}: {} postures from {} hands{} in {:.2f} s; {:.2f} % of the training hands right, "
-      "{:.2f} % of those set aside\n",
+      "{:.2f} % of the validation hands\n",
       options.output, fitted.network.postures.size(), fitted.trained.samples,
       fitted.trained.synthetic ? " (synthetic)" : "", seconds, 100 * fitted.training_accuracy,
       100 * fitted.validation_accuracy);
@@ -113,25 +114,35 @@ void addPostureTrain(Command posture, Run& run) {
   const auto options = std::make_shared<TrainOptions>();
   Command command = posture.subcommand(
       "train",
-      "Train a network on labelled hands; without DATA on the synthetic people of the shipped "
-      "one.\nExample: merlin posture train hands.csv -o postures.json --curve curve.svg");
+      "Train a network on labelled hands; without DATA, on the synthetic people that the shipped "
+      "network was trained on.\nExample: merlin posture train hands.csv -o postures.json --curve "
+      "curve.svg");
   command.option("data", options->data, "Labelled hands, CSV").typeName("DATA.csv");
   const Argument output =
-      command.option("-o", options->output, "The network's file").typeName("FILE.json");
-  command.option("--curve", options->curve, "The learning curve as a picture").typeName("FILE.svg");
-  command.option("--seed", options->fit.seed, "Of everything that is drawn").showDefault();
-  command.option("--phi", options->phi, "The nodes' function; signum has no slope to train by")
+      command.option("-o", options->output, "File of the network").typeName("FILE.json");
+  command.option("--curve", options->curve, "Write the learning curve as a chart")
+      .typeName("FILE.svg");
+  command.option("--seed", options->fit.seed, "Seed of all random numbers").showDefault();
+  command
+      .option("--phi", options->phi,
+              "Activation function of the nodes (signum cannot be trained: its slope is 0)")
       .oneOf({"sigmoid", "atan"})
       .showDefault();
-  command.option("--starts", options->fit.starts, "Codes and weights to start from")
+  command
+      .option("--starts", options->fit.starts,
+              "Number of random initial codes and weights that are tried")
       .range(1, 1000)
       .showDefault();
-  command.option("--passes", options->fit.passes, "Over the hands, of the best start, at most")
+  command
+      .option("--passes", options->fit.passes,
+              "Maximum number of passes over the hands, from the best start")
       .range(1, 1000000)
       .showDefault();
   command
-      .option("--folds", options->folds,
-              "Cross-validate instead: train on all but one k-th, test on that, k times")
+      .option(
+          "--folds", options->folds,
+          "Cross-validate instead: divide the hands into k parts; for each, train on the others "
+          "and test on it")
       .range(2, 100);
   addUnits(command, options->units);
   command.callback([options, output, &run] {

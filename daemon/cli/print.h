@@ -1,4 +1,4 @@
-// What commands print for people and for programs, whatever bytes a file or an argument has in it.
+// Output of the commands for people and for programs; safe for any bytes from files and arguments.
 #pragma once
 
 #include <cstdio>
@@ -13,22 +13,22 @@
 
 namespace merlin::cli {
 
-// To stdout as fmt::print() does, but nothing that a terminal would follow.
+// Prints to stdout like fmt::print(), with control characters escaped (printable()).
 template <typename... Args>
 void say(fmt::format_string<Args...> format, Args&&... args) {
   fmt::print("{}", printable(fmt::format(format, std::forward<Args>(args)...)));
 }
 
-// "merlin: note: TEXT" to stderr.
+// Prints "merlin: note: TEXT" to stderr.
 inline void printNote(std::string_view text) { printError("merlin: note: {}\n", printable(text)); }
 
-// On one line; what is no UTF-8 in it is replaced.
+// The JSON on one line; bytes that are not valid UTF-8 are replaced.
 template <typename Json>
 std::string jsonText(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// The same to stdout.
+// Prints the JSON on one line to stdout.
 template <typename Json>
 void printJsonLine(const Json& json) {
   fmt::print("{}\n", jsonText(json));

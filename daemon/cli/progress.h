@@ -1,4 +1,4 @@
-// ProgressBar: how far a long piece of work is, how fast it goes, and how long it will take yet.
+// ProgressBar: shows the progress of a long operation, its rate and the remaining time.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace merlin::cli {
 
-// On a terminal one line that is redrawn ten times a second; elsewhere a line every tenth of the
-// way. Writes to stderr. Thread-bound.
+// On a terminal, one line that is redrawn ten times a second; otherwise a line for each tenth of
+// the work. Writes to stderr. Thread-bound.
 class ProgressBar {
  public:
   ProgressBar(std::string title, std::string unit, const Clock& clock);
 
-  // `share` of the work is done, 0..1; `count` of `unit` so far, for the rate.
+  // `share`: part of the work that is done, 0..1; `count`: number of `unit` so far, for the rate.
   void update(double share, std::size_t count);
   void finish(std::size_t count);
 

@@ -1,4 +1,4 @@
-// merlin record, merlin replay: what goes over a device's line, into a file and out of it again.
+// merlin record, merlin replay: record the bytes on a device's line into a file, and replay them.
 #include <csignal>
 #include <ctime>
 #include <memory>
@@ -28,7 +28,7 @@ struct RecordOptions {
   double seconds = 0;
 };
 
-// Keeps everything, with its times.
+// Stores all bytes with their times.
 class Recording final : public ByteTap {
  public:
   explicit Recording(Timestamp start) : start_(start) {}
@@ -50,6 +50,7 @@ class Recording final : public ByteTap {
   Timestamp start_;
 };
 
+// A sink that discards all samples.
 struct Nowhere final : SampleSink {
   void publish(const GloveSample&) noexcept override {}
   void publish(const TrackerSample&) noexcept override {}
@@ -63,8 +64,8 @@ const DriverEntry* driverNamed(const std::string& name) {
   return nullptr;
 }
 
-// Until `end`, a signal or the end of the line, which is told; talks as the driver does, or only
-// listens where there is none.
+// Reads the line until `end`, a signal or the end of the line, which is printed. With a device its
+// driver sets it up and polls it; without one it only reads. Returns the device's identity.
 Result<std::string> listen(ByteStream& line, Device* device, Timestamp end, int stop_fd) {
   const SystemClock clock;
   std::string identity = "not known";
@@ -111,7 +112,7 @@ int record(const RecordOptions& options) {
       options.seconds > 0 ? start + fromSeconds(options.seconds) : Timestamp::max();
   const auto identity = listen(stream, device.get(), end, stop.get());
   recording.transcript.header = {
-      {"device", identity ? *identity : "none that answered: " + identity.error().what},
+      {"device", identity ? *identity : "no device answered: " + identity.error().what},
       {"driver", driver ? driver->name : "none, only listened"},
       {"serial", fmt::format("{} 8N1", baud)},
       {"synthetic", "not known: from " + options.port},
@@ -166,7 +167,7 @@ int replay(const ReplayOptions& options) {
     if (!serveOnce(*line, *transcript, clock, stop.get())) return kExitDone;
   } while (options.loop);
   pollfd item{stop.get(), POLLIN, 0};
-  ::poll(&item, 1, 200);  // the other side reads the last bytes before the line goes
+  ::poll(&item, 1, 200);  // lets the other side read the last bytes before the line closes
   return kExitDone;
 }
 
@@ -176,18 +177,23 @@ void addRecord(Command app, Run& run) {
   const auto options = std::make_shared<RecordOptions>();
   std::vector<std::string> names;
   for (const DriverEntry& entry : drivers()) names.emplace_back(entry.name);
-  Command command = app.subcommand(
-      "record",
-      "What goes over a device's line, as a transcript.\nA daemon that has the line keeps its own "
-      "record: merlin flight\nExample: merlin record pty:/tmp/ball --device spaceball -o "
-      "ball.bytes");
-  command.option("port", options->port, "serial:/dev/..., pty:PATH or tcp://HOST:PORT").required();
-  command.option("-o,--output", options->output, "The transcript, a text file").required();
+  Command command = app.subcommand("record",
+                                   "Record the bytes on a device's line as a transcript.\nA daemon "
+                                   "that has opened the line keeps "
+                                   "a record of its own: merlin flight\nExample: merlin record "
+                                   "pty:/tmp/ball --device spaceball -o "
+                                   "ball.bytes");
   command
-      .option("--device", options->device, "Talks to it as this driver does; without: only listens")
+      .option("port", options->port,
+              "Port of the device: serial:/dev/..., pty:PATH or tcp://HOST:PORT")
+      .required();
+  command.option("-o,--output", options->output, "File for the transcript (text)").required();
+  command
+      .option("--device", options->device,
+              "Driver that sets up and polls the device; without it, only listens")
       .oneOf(names);
   command.option("--baud", options->baud, "Speed of the line").baud();
-  command.option("--seconds", options->seconds, "How long; without: until a signal").seconds();
+  command.option("--seconds", options->seconds, "Duration; without it until interrupted").seconds();
   command.callback([options, &run] { run = [options] { return record(*options); }; });
 }
 
@@ -195,11 +201,12 @@ void addReplay(Command app, Run& run) {
   const auto options = std::make_shared<ReplayOptions>();
   Command command = app.subcommand(
       "replay",
-      "A transcript on a pseudo-terminal, at its own pace; waits for what the host said "
-      "then.\nExample: merlin replay ball.bytes --link /tmp/ball");
+      "Replay a transcript on a pseudo-terminal with its original timing. Where the host had sent "
+      "bytes, waits until the host sends as many.\nExample: merlin replay ball.bytes --link "
+      "/tmp/ball");
   command.option("file", options->file, "The transcript").required();
-  command.option("--link", options->link, "A symbolic link to the pseudo-terminal, made there");
-  command.flag("--loop", options->loop, "Again and again");
+  command.option("--link", options->link, "Path of a symbolic link to make to the pseudo-terminal");
+  command.flag("--loop", options->loop, "Repeat until interrupted");
   command.callback([options, &run] { run = [options] { return replay(*options); }; });
 }
 

@@ -7,7 +7,7 @@
 namespace merlin::cli {
 namespace {
 
-// `denied`: filled in where there is one that may not be read.
+// The role if it runs. `denied`: set if its segment exists but may not be read.
 template <typename Segment>
 std::optional<FoundRole> find(const std::string& instance, const char* role,
                               std::optional<Error>& denied) {
@@ -15,7 +15,7 @@ std::optional<FoundRole> find(const std::string& instance, const char* role,
   if (!segment && segment.error().code == Errc::kIo) denied = segment.error();
   if (!segment || !segment->alive(SystemClock().now())) return std::nullopt;
   const shm::Header& h = (*segment)->header;
-  // Another machine's devices, mirrored: nobody answers for them here but the wall that shows them.
+  // A mirror of another machine's devices: no process here takes their commands.
   if (h.command_endpoint[0] == '\0') return std::nullopt;
   return FoundRole{role, {h.status_endpoint, h.command_endpoint}};
 }
@@ -29,10 +29,9 @@ Result<std::vector<FoundRole>> findRoles(const std::string& instance) {
   if (auto role = find<shm::DevicesSegment>(instance, "devices", denied)) roles.push_back(*role);
   if (!roles.empty()) return roles;
   if (denied) return *denied;
-  return Error{
-      Errc::kIo,
-      fmt::format("no merlind runs as \"{0}\" (no living shared memory /{0}-wall or /{0}-devices)",
-                  instance)};
+  return Error{Errc::kIo, fmt::format("no merlind runs as \"{0}\" (no shared memory /{0}-wall or "
+                                      "/{0}-devices of a running one)",
+                                      instance)};
 }
 
 Result<std::string> askRole(const std::string& instance, const std::string& role,

@@ -1,4 +1,4 @@
-// Finding the running roles of a daemon, for subcommands that read or ask them.
+// Finds the running roles of a daemon, for subcommands that read their state or send commands.
 #pragma once
 
 #include <optional>
@@ -15,17 +15,17 @@ struct FoundRole {
   shm::Endpoints endpoints;
 };
 
-// Roles of this instance whose daemon lives. Errors: kIo, none does, saying what was looked for.
+// The running roles of this instance. Errors: kIo, with what was looked for, if there is none.
 Result<std::vector<FoundRole>> findRoles(const std::string& instance);
 
-// A command of daemon/base/commands.h.
+// A command of daemon/base/commands.h, its argument, and how long to wait for the answer.
 struct Asked {
   std::string command, argument = {};
   Duration patience = std::chrono::seconds(2);
 };
 
-// The role's answer to a command, JSON. Errors: findRoles()'s; kIo, this daemon has no such role;
-// status::ask()'s.
+// Sends a command to the role and returns its answer, JSON. Errors: those of findRoles() and
+// status::ask(); kIo if this daemon does not run the role.
 Result<std::string> askRole(const std::string& instance, const std::string& role,
                             const Asked& asked);
 

@@ -1,4 +1,4 @@
-// merlin shm dump: every field of the shared memory, as its own table describes it.
+// merlin shm dump: prints every field of the shared memory, using the field table in it.
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
@@ -37,7 +37,7 @@ Json number(const std::byte* at) {
   }
 }
 
-// Of one value, as the type says: "20s" is a text of 20 bytes. 0 for a type that we do not know.
+// Size in bytes of one value of the field's type; "20s" is a text of 20 bytes. 0: unknown type.
 std::size_t sizeOf(const shm::Field& f) {
   const std::string_view type(f.type, strnlen(f.type, sizeof f.type));
   if (type.ends_with('s')) return static_cast<std::size_t>(std::atoi(f.type));
@@ -83,7 +83,8 @@ Json decode(const shm::Field& f, const std::byte* values) {
   return list;
 }
 
-// The field's value, whole; null where it was never written, or is being written each time we look.
+// A consistent copy of the field's value; null if it was never written, or if every attempt met a
+// write.
 Json readField(const SharedMemory& memory, const shm::Field& f) {
   const std::size_t one = sizeOf(f);
   if (one == 0 || f.count == 0 || f.step < one) return nullptr;
@@ -165,11 +166,11 @@ void addShm(Command app, Run& run) {
   const auto options = std::make_shared<DumpOptions>();
   Command shm = app.subcommand("shm", "The shared memory that other programs read.");
   shm.requireSubcommand();
-  Command command =
-      shm.subcommand("dump", "Every field: name, value, unit.\nExample: merlin shm dump --json");
+  Command command = shm.subcommand(
+      "dump", "Print every field: name, value, unit.\nExample: merlin shm dump --json");
   addInstance(command, options->instance);
-  command.flag("--json", options->json, "One JSON object");
-  command.option("--follow", options->follow_s, "Again and again, every so many seconds").seconds();
+  command.flag("--json", options->json, "Print one JSON object");
+  command.option("--follow", options->follow_s, "Repeat with this interval in seconds").seconds();
   command.callback([options, &run] { run = [options] { return dumpRepeatedly(*options); }; });
 }
 

@@ -1,4 +1,4 @@
-// merlin snapshot: what the wall shows now, as a PNG file.
+// merlin snapshot: writes the frame that the wall shows now as a PNG file.
 #include <memory>
 
 #include <fmt/format.h>
@@ -42,12 +42,13 @@ int snapshot(const SnapshotOptions& options) {
 
 void addSnapshot(Command app, Run& run) {
   const auto options = std::make_shared<SnapshotOptions>();
-  Command command = app.subcommand(
-      "snapshot", "What the wall shows now, as a PNG file.\nExample: merlin snapshot -o frame.png");
+  Command command = app.subcommand("snapshot",
+                                   "Write the frame that the wall shows now as a PNG "
+                                   "file.\nExample: merlin snapshot -o frame.png");
   addInstance(command, options->instance);
-  command.option("-o", options->output, "The file").required().typeName("FILE.png");
+  command.option("-o", options->output, "The PNG file").required().typeName("FILE.png");
   command.flag("--wall", options->wall,
-               "The picture on the wall: its tiles side by side, without the operator's view");
+               "Only the wall's tiles, side by side, without the operator's view");
   command.callback([options, &run] { run = [options] { return snapshot(*options); }; });
 }
 

@@ -1,4 +1,4 @@
-// merlin status: how the daemon is, once.
+// merlin status: prints the state of the daemon once.
 #include <memory>
 
 #include <fmt/format.h>
@@ -16,10 +16,10 @@ void addStatus(Command app, Run& run) {
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  Command command =
-      app.subcommand("status", "How the wall and the devices are.\nExample: merlin status --json");
+  Command command = app.subcommand(
+      "status", "Show the state of the wall and of the devices.\nExample: merlin status --json");
   addInstance(command, options->instance);
-  command.flag("--json", options->json, "For programs");
+  command.flag("--json", options->json, "Print JSON, for programs");
   command.callback([options, &run] {
     run = [options] {
       const auto status = askStatus(options->instance);

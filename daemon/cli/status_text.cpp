@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr Duration kPatience = std::chrono::seconds(5);
 
-// What a device's line says after its health.
+// The part of a device's line after its health.
 std::string deviceDetail(const Json& d) {
   std::string reason = d.value("reason", "");
   if (d.value("health", "") != "ok") return reason;
@@ -29,15 +29,16 @@ std::string pictureWord(const Json& s) {
   return s.value("full_detail", false) ? "still, full detail" : "still, refining";
 }
 
-// What the wall gave way, or was told; empty where it is as asked.
+// How the wall differs from its configuration: degradations under load, and triangles set by hand.
+// Empty if it does not.
 std::string givenWay(const Json& s) {
   std::string text;
   if (s.value("rate_divisor", 1) > 1)
-    text += fmt::format("; the rate gave way to {:.3g} Hz", s.value("rate_now", 0.0));
-  if (s.value("scale_divisor", 1) > 1) text += "; tiles at half their size";
-  if (s.value("operator_coarser", false)) text += "; the operator's view is coarser";
+    text += fmt::format("; rate reduced to {:.3g} Hz", s.value("rate_now", 0.0));
+  if (s.value("scale_divisor", 1) > 1) text += "; tiles drawn at half size";
+  if (s.value("operator_coarser", false)) text += "; operator's view coarser";
   if (s.value("held_triangles", 0) > 0)
-    text += fmt::format("; {} triangles by hand", s.value("held_triangles", 0));
+    text += fmt::format("; {} triangles set by hand", s.value("held_triangles", 0));
   return text;
 }
 
@@ -47,8 +48,8 @@ std::string paceLines(const Json& s) {
                   s.value("cost_fixed_ms", 0.0), s.value("cost_coefficient_us", 0.0),
                   s.value("cost_exponent", 0.0), s.value("budget", 0), givenWay(s));
   text += fmt::format(
-      "steps    the last settled in {} frames; detail swings by {:.1f} %; standstill to finer "
-      "{:.2f} s, to full {:.2f} s\n",
+      "steps    the last load change settled in {} frames; detail oscillates by {:.1f} %; first "
+      "refinement {:.2f} s after standstill, full detail after {:.2f} s\n",
       s.value("settle_frames", 0), 100 * s.value("oscillation", 0.0),
       s.value("still_to_first_s", 0.0), s.value("still_to_full_s", 0.0));
   return text + histogramChart(s.value("work_histogram", std::vector<std::uint32_t>{}));
@@ -70,7 +71,8 @@ std::string outputLines(const Json& s) {
 
 }  // namespace
 
-// Pairs of buckets: an eighth of the period a line, those that are not empty and between.
+// Prints two histogram buckets (1/8 of the period) per line, from the first to the last non-empty
+// one.
 std::string histogramChart(const std::vector<std::uint32_t>& buckets) {
   constexpr double kWidth = 40;
   std::vector<std::uint64_t> eighths((buckets.size() + 1) / 2);
@@ -81,7 +83,7 @@ std::string histogramChart(const std::vector<std::uint32_t>& buckets) {
   const auto last = std::find_if(eighths.rbegin(), eighths.rend(), used).base();
   const auto most = static_cast<double>(*std::max_element(first, last));
   const auto all = static_cast<double>(std::accumulate(first, last, std::uint64_t{0}));
-  std::string text = "frames by work, of the period\n";
+  std::string text = "frames by work, as a share of the period\n";
   for (auto e = first; e != last; ++e) {
     const auto percent = 12.5 * static_cast<double>(e - eighths.begin());
     const auto n = static_cast<double>(*e);
@@ -104,7 +106,7 @@ void mergeStatus(Json& both, const std::string& document) {
     json.erase(key);
   }
   json.erase("role");
-  both.update(json, true);  // "servers" are of both
+  both.update(json, true);  // merges recursively: both roles have "servers"
 }
 
 Result<Json> askStatus(const std::string& instance) {
@@ -121,7 +123,7 @@ Result<Json> askStatus(const std::string& instance) {
 
 namespace {
 
-// Servers that fail, or that sent somebody away.
+// A line for each server that has failed or has refused a connection.
 std::string serverLines(const Json& s) {
   std::string text;
   if (!s.contains("servers")) return text;
@@ -130,7 +132,7 @@ std::string serverLines(const Json& s) {
     if (!reason.empty())
       text += fmt::format("{:8} failed   {}\n", name, reason);
     else if (!last.empty())
-      text += fmt::format("{:8} ok       {} connected; the last sent away: {}\n", name,
+      text += fmt::format("{:8} ok       {} connected; last refused: {}\n", name,
                           server.value("connections", 0), last);
   }
   return text;
@@ -141,17 +143,18 @@ std::string serverLines(const Json& s) {
 std::string statusTable(const Json& s) {
   std::string text;
   if (s.contains("rate_asked")) {
-    text += fmt::format("wall     {:.1f} of {:.0f} Hz held, {} triangles, {} (ball: {})\n",
+    text += fmt::format("wall     {:.1f} of {:.0f} Hz, {} triangles, {} (ball mode: {})\n",
                         s.value("rate_held", 0.0), s.value("rate_asked", 0.0),
                         s.value("triangles", 0), pictureWord(s), s.value("mode", ""));
     text += fmt::format(
-        "frames   {} drawn; late {:.2f} % of those due while it moved (last minute {:.2f} %), at "
+        "frames   {} drawn; {:.2f} % of those due while moving were late (last minute {:.2f} %), "
+        "at "
         "most {} in a row\n",
         s.value("frames", 0), s.value("late_percent", 0.0), s.value("late_percent_1min", 0.0),
         s.value("longest_late", 0));
     text += fmt::format(
-        "work     {:.1f} ms a frame (median of the last second), {:.0f} % of the period, head room "
-        "{:.0f} %\n",
+        "work     {:.1f} ms per frame (median of the last second), {:.0f} % of the period, head "
+        "room {:.0f} %\n",
         s.value("work_median_ms", 0.0), 100 * s.value("utilisation", 0.0),
         100 * s.value("head_room", 0.0));
     text += paceLines(s) + outputLines(s);

@@ -1,4 +1,4 @@
-// A daemon's status as JSON of both roles, and as a table for a person.
+// A daemon's status: the JSON of both roles in one object, and as text for a person.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,21 @@
 
 namespace merlin::cli {
 
-// One object: the wall's and the devices' documents side by side, with "roles" for what both have.
-// Errors: no daemon (kIo), one that does not answer (kTimeout).
+// Asks both roles and merges their documents into one object; keys that both have (pid, uptime_s)
+// go into "roles". Errors: kIo (no daemon), kTimeout (it does not answer).
 Result<nlohmann::ordered_json> askStatus(const std::string& instance);
 
-// Adds one role's document ("status" topic) to the object of both.
+// Merges one role's document (topic "status") into the object of both roles.
 void mergeStatus(nlohmann::ordered_json& both, const std::string& document);
 
-// Some lines.
+// The status as a table of several lines.
 std::string statusTable(const nlohmann::ordered_json& status);
 
-// Frames by work / period, 1/16 a bucket, as bars of eighths; empty where there were none.
+// A bar chart of frames by work / period. `buckets`: counts for each 1/16 of the period; one line
+// for each 1/8. Empty if there were no frames.
 std::string histogramChart(const std::vector<std::uint32_t>& buckets);
 
-// One line: rate asked and held, triangles, frames late, posture, devices.
+// The status as one line: desired and actual rate, triangles, late frames, posture, devices.
 std::string statusLine(const nlohmann::ordered_json& status);
 
 }  // namespace merlin::cli

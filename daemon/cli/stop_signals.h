@@ -1,4 +1,4 @@
-// The signals that end a subcommand that serves, as a descriptor to wait on.
+// The signals that end a long-running subcommand, as a descriptor to wait on.
 #pragma once
 
 #include <signal.h>
@@ -8,7 +8,7 @@
 
 namespace merlin::cli {
 
-// Blocks SIGTERM, SIGINT and SIGHUP; the descriptor is readable once one has come.
+// Blocks SIGTERM, SIGINT and SIGHUP; the descriptor becomes readable when one of them arrives.
 inline UniqueFd stopSignals() {
   sigset_t set;
   ::sigemptyset(&set);

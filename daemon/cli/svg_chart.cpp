@@ -12,7 +12,7 @@ constexpr int kWidth = 640, kHeight = 360, kLeft = 60, kTop = 40, kPlotWidth = 5
               kPlotHeight = 250;
 constexpr int kLegendStep = 15;
 
-// 0 at the axis' low end, 1 at its high one.
+// Position of a value on the axis: 0 at its low end, 1 at its high end.
 double place(const ChartAxis& axis, double value) {
   const double held = std::clamp(value, axis.low, axis.high);
   return axis.logarithmic ? std::log(held / axis.low) / std::log(axis.high / axis.low)

@@ -1,4 +1,4 @@
-// Lines over a logarithmic axis, as an SVG picture.
+// A line chart with linear or logarithmic axes, as SVG.
 #pragma once
 
 #include <string>
@@ -8,20 +8,21 @@
 namespace merlin::cli {
 
 struct ChartAxis {
-  double low = 1, high = 10;  // low < high; above 0 where it is logarithmic
-  bool logarithmic = true;    // a line and its figure at each power of ten; else only at the ends
+  double low = 1, high = 10;  // low < high; both > 0 if the axis is logarithmic
+  bool logarithmic = true;    // a grid line at each power of ten; linear: at the two ends only
 };
 
 struct ChartLine {
   std::string name;
-  std::string colour;                             // as CSS has it
-  std::vector<std::pair<double, double>> points;  // x, y; what is not finite is left out
+  std::string colour;                             // CSS colour
+  std::vector<std::pair<double, double>> points;  // x, y; points that are not finite are left out
 };
 
-// Any text as SVG has to have it: without markup of its own.
+// Escapes a text for SVG.
 std::string svgText(const std::string& text);
 
-// What lies outside the axes is held at their ends. Titles and names are taken as they are.
+// The chart as SVG. `below`: the text below it. Points outside the axes are clamped to their ends.
+// Titles and names are not escaped: use svgText().
 std::string svgChart(const std::string& title, const std::string& below, const ChartAxis& x,
                      const ChartAxis& y, const std::vector<ChartLine>& lines);
 

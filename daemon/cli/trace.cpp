@@ -1,4 +1,4 @@
-// merlin trace: where the time of the wall's frames went, for a trace viewer.
+// merlin trace: writes what the time of the wall's frames was spent on, for a trace viewer.
 #include <algorithm>
 #include <memory>
 #include <vector>
@@ -22,8 +22,8 @@ struct TraceOptions {
   double seconds = 5;
 };
 
-// The last `seconds` of frames: those that shared memory has, and as long as these are fewer, those
-// that come.
+// The frames of the last `wanted`: those in shared memory and, if they cover less, the following
+// ones.
 Result<std::vector<shm::FrameTrace>> collect(const shm::WallSegment& wall, Duration wanted) {
   std::vector<shm::FrameTrace> frames;
   const std::uint64_t have = wall.trace.count();
@@ -91,11 +91,13 @@ void addTrace(Command app, Run& run) {
   const auto options = std::make_shared<TraceOptions>();
   Command command =
       app.subcommand("trace",
-                     "Where the time of the last frames went, step by step, for a trace viewer.\n"
+                     "Write the time that each step of the last frames took, for a trace viewer.\n"
                      "Example: merlin trace -o trace.json --seconds 5");
   addInstance(command, options->instance);
-  command.option("-o", options->output, "The file").required().typeName("FILE.json");
-  command.option("--seconds", options->seconds, "So long back; what is not there is waited for")
+  command.option("-o", options->output, "The trace file").required().typeName("FILE.json");
+  command
+      .option("--seconds", options->seconds,
+              "Duration of the trace; if fewer frames are stored, waits for more")
       .range(0.1, 600.0)
       .showDefault();
   command.callback([options, &run] { run = [options] { return trace(*options); }; });

@@ -50,7 +50,8 @@ void addFrame(const shm::FrameTrace& f, std::int64_t from_ns, Json& events) {
                    {"deadline_us", microseconds(f.deadline_ns - from_ns)}};
   events.push_back(std::move(frame));
   const std::size_t count = std::min<std::size_t>(f.count, std::size(f.steps));
-  // The second thread's part begins with an upload, before the first one's has ended.
+  // An upload that begins before the previous step ended is the second thread's; so are the tile
+  // steps after it.
   std::int64_t ended = 0;
   bool other = false;
   for (std::size_t i = 0; i < count; ++i) {

@@ -1,4 +1,4 @@
-// Where frames' time went, as the trace-event JSON that Perfetto and chrome://tracing show.
+// Frame traces as trace-event JSON, which Perfetto and chrome://tracing show.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,19 @@
 
 namespace merlin::cli {
 
-// When a sample's first byte came.
+// When the first byte of a sample arrived.
 struct SampleInstant {
   const char* device;
   std::int64_t at_ns;
 };
 
-// One event an entry: each frame on the wall's track with its steps inside, a mark where one was
-// late, the triangles as a counter, and samples on a track of each device's. Times count from the
-// first frame.
+// Trace events, one per line of the array: each frame on the wall's track with its steps inside, a
+// mark at the deadline of each late frame, the triangles as a counter, and the samples on a track
+// for each device. Times count from the begin of the first frame.
 std::string traceJson(std::span<const shm::FrameTrace> frames,
                       std::span<const SampleInstant> samples);
 
-// As design's "one frame" calls it: "input", "scene", ...
+// Name of a step: "input", "scene", ...
 const char* stepName(shm::StepKind kind);
 
 }  // namespace merlin::cli

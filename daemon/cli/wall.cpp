@@ -1,4 +1,4 @@
-// merlin wall: triangles and rate by hand, until they are given back.
+// merlin wall: sets triangles and rate by hand.
 #include <memory>
 
 #include "daemon/cli/command.h"
@@ -33,11 +33,14 @@ void addWall(Command app, Run& run) {
   const auto options = std::make_shared<WallOptions>();
   Command command =
       app.subcommand("wall",
-                     "Triangles and rate by hand, until auto gives them back to the governor.\n"
+                     "Set triangles and rate by hand; auto returns the control to the governor.\n"
                      "Example: merlin wall --triangles 20000 --rate 20");
   addInstance(command, options->instance);
-  command.option("--triangles", options->triangles, "While it moves, or auto").typeName("N|auto");
-  command.option("--rate", options->rate, "Frames a second, or auto: as configured")
+  command
+      .option("--triangles", options->triangles,
+              "Number of triangles while anything moves, or auto")
+      .typeName("N|auto");
+  command.option("--rate", options->rate, "Frames per second, or auto for the configured rate")
       .typeName("HZ|auto");
   command.callback([options, &run] { run = [options] { return wall(*options); }; });
 }

@@ -1,4 +1,4 @@
-// merlin watch: one line a second, until interrupted.
+// merlin watch: prints the status as one line per second until interrupted.
 #include <memory>
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ struct WatchOptions {
   bool json = false;
 };
 
-// A line after each of the role's documents that comes last in a second.
+// Each role publishes a document every second; a line is printed once all roles have sent one.
 int watch(const WatchOptions& options) {
   const auto roles = findRoles(options.instance);
   if (!roles) return fail(roles.error());
@@ -41,7 +41,7 @@ int watch(const WatchOptions& options) {
         return options.seconds <= 0 || toSeconds(clock.now() - began) < options.seconds;
       });
   if (!followed)
-    return fail({followed.error().code, "the daemon has gone: " + followed.error().what});
+    return fail({followed.error().code, "the daemon has ended: " + followed.error().what});
   return kExitDone;
 }
 
@@ -51,12 +51,12 @@ void addWatch(Command app, Run& run) {
   const auto options = std::make_shared<WatchOptions>();
   Command command =
       app.subcommand("watch",
-                     "One line a second: rate asked, rate held, triangles, late frames, "
+                     "Print one line per second: actual and desired rate, triangles, late frames, "
                      "posture, devices.\nExample: merlin watch --for 20");
   addInstance(command, options->instance);
-  command.option("--for", options->seconds, "Seconds, then end; without it: until interrupted")
+  command.option("--for", options->seconds, "Duration in seconds; without it until interrupted")
       .seconds();
-  command.flag("--json", options->json, "One JSON document a line");
+  command.flag("--json", options->json, "Print one JSON document per line");
   command.callback([options, &run] { run = [options] { return watch(*options); }; });
 }
 

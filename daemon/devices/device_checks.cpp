@@ -40,7 +40,7 @@ void checkPostures(LoadedSettings& loaded) {
     if (file->network.postures.code(name)) continue;
     const std::string near = nearest(name, names);
     loaded.wrong(fmt::format("/wall/scene/bindings/{}/input", i),
-                 fmt::format("is \"{}\", which is no posture of {}; {}it knows {}", input, path,
+                 fmt::format("is \"{}\", which is not a posture of {}; {}it knows {}", input, path,
                              near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near),
                              fmt::join(names, ", ")));
   }

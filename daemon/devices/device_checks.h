@@ -1,18 +1,18 @@
-// What the configuration says of devices, held against the files that it names: the loader reads no
-// other file.
+// Checks of the device settings against the files that they name; the loader itself reads no other
+// file.
 #pragma once
 
 #include "config/loader.h"
 
 namespace merlin::devices {
 
-// Adds findings: a network that cannot be read, bindings to postures that it does not know.
-// Bindings that stand in the file alone: a network without a posture that is bound by default is
-// no mistake of anybody's.
+// Adds a finding for a network that cannot be read, and for each binding to a posture that the
+// network does not know. Only bindings in the file are checked: a network may lack a posture that
+// is bound by default.
 void checkPostures(LoadedSettings& loaded);
 
-// Adds findings: a port that cannot be read, a transcript ("replay:FILE") that cannot be played.
-// A device that is not there is none: it may come.
+// Adds a finding for each port whose text is invalid, and for each transcript ("replay:FILE") that
+// cannot be played. A missing device is not a fault: it may be connected later.
 void checkPorts(LoadedSettings& loaded);
 
 }  // namespace merlin::devices

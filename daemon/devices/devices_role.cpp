@@ -21,8 +21,8 @@ namespace {
 
 constexpr int kRealTimePriority = 50;
 
-constexpr double kStreamBytes_s = 1e6;  // of a line without a speed of its own
-constexpr int kSpare = 4;               // times what a line's baud carry, that are read
+constexpr double kStreamBytes_s = 1e6;  // byte-rate limit of a line without a baud rate
+constexpr int kSpare = 4;               // byte-rate limit of a line, relative to its baud rate
 
 double paceOf(const LineSettings& line, io::PortKind kind) {
   if (line.max_bytes_s > 0) return line.max_bytes_s;
@@ -30,8 +30,8 @@ double paceOf(const LineSettings& line, io::PortKind kind) {
   return has_speed ? kSpare * line.baud / 10.0 : kStreamBytes_s;
 }
 
-// Of the calling thread. Wire to shared memory within microseconds even while the wall draws, where
-// the unit allows it.
+// Gives the calling thread real-time priority if the systemd unit allows it, so that samples reach
+// shared memory within microseconds even while the wall draws.
 void askForRealTime() {
   const sched_param priority{kRealTimePriority};
   if (::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &priority) != 0) {
@@ -41,8 +41,8 @@ void askForRealTime() {
   }
 }
 
-// Of the calling thread, whose line sends more than a device can: it waits for its turn, and takes
-// it from nobody when it wakes.
+// Takes real-time priority from the calling thread, whose line sends more than a device can; with
+// SCHED_BATCH it does not preempt others when it wakes.
 void giveUpRealTime() {
   const sched_param none{};
   (void)::pthread_setschedparam(::pthread_self(), SCHED_BATCH, &none);
@@ -68,7 +68,7 @@ TrackerFrames framesOf(const FastrakSettings& settings) {
   return frames;
 }
 
-// A stream whose reader's progress the watch sees, also during a dialogue that takes long.
+// A stream that counts each read and write as progress of the thread, also during long dialogues.
 class WatchedStream final : public ByteStream {
  public:
   WatchedStream(std::unique_ptr<ByteStream> inner, Progress& progress)
@@ -89,10 +89,11 @@ class WatchedStream final : public ByteStream {
   Progress& progress_;
 };
 
-// Opens a line, listened to by the flight recorder; says once what its adapter costs.
+// Opens a line whose bytes also go to the flight recorder; logs a warning about a slow adapter
+// once.
 class Opener {
  public:
-  // `progress`: of the thread that opens, once it runs.
+  // `progress`: set to the opening thread's once it runs.
   Opener(io::PortAddress address, int baud, ByteTap& tap, Progress* const& progress,
          const Clock& clock)
       : address_(std::move(address)), baud_(baud), tap_(tap), progress_(progress), clock_(clock) {}
@@ -111,7 +112,7 @@ class Opener {
 
  private:
   Result<std::unique_ptr<ByteStream>> open() {
-    const Progress::Pause pause(*progress_);  // a host's name may take long to look up
+    const Progress::Pause pause(*progress_);  // a host name look-up may take long
     return io::openPort(address_, baud_);
   }
 
@@ -172,7 +173,7 @@ Result<Ok> DevicesRole::add(const LineSettings& line, SampleKind kind, shm::Devi
   slot.publish(notConfigured(clock_.now()));
   if (line.port.empty()) return Ok{};
   const DriverEntry* driver = findDriver(kind, line.driver);
-  if (!driver) return Error{Errc::kInvalidArgument, "no driver is named " + line.driver};
+  if (!driver) return Error{Errc::kInvalidArgument, "there is no driver named " + line.driver};
   const auto address = io::parsePort(line.port);
   if (!address) return address.error();
   const DriverSettings own{settings.devices.glove, settings.devices.tracker, settings.devices.ball};

@@ -1,4 +1,5 @@
-// DevicesRole: the devices of a configuration, each on its own thread, into shared memory.
+// DevicesRole: reads the configured devices, each on its own thread, and writes their samples into
+// shared memory.
 #pragma once
 
 #include <atomic>
@@ -24,9 +25,9 @@ namespace merlin::devices {
 
 class DevicesRole {
  public:
-  // Makes the segment; nothing runs yet. Errors: kBusy (a living daemon has the segment), kIo; what
-  // is wrong with the posture network's file.
-  // REQUIRES: settings.run_directory is the one that holds.
+  // Creates the segment; starts no thread. Errors: kBusy (a running daemon owns the segment), kIo,
+  // those of the posture network's file.
+  // REQUIRES: settings.run_directory is the directory in use, not empty.
   static Result<std::unique_ptr<DevicesRole>> make(const Settings& settings,
                                                    std::uint64_t generation,
                                                    const shm::Endpoints& endpoints,
@@ -35,17 +36,19 @@ class DevicesRole {
   DevicesRole(const DevicesRole&) = delete;
   DevicesRole& operator=(const DevicesRole&) = delete;
 
-  // Starts a thread for each device that has a port. Real-time priority where the system allows it.
+  // Starts a thread for each device that has a port, with real-time priority if the system allows
+  // it.
   void start();
 
   void beat(Timestamp now) const { segment_.beat(now); }
   Result<std::string> mend() { return segment_.mend(); }  // SegmentWriter::mend()
   const shm::DevicesSegment& segment() const { return *segment_; }
-  // What a press of the panel's button does; called on the panel's thread. Before start().
+  // Sets what a press of the panel's button does; called on the panel's thread. To be set before
+  // start().
   void onPress(std::function<void(const std::string&)> act) { on_press_ = std::move(act); }
-  // Null where no panel is configured. Thread-safe.
+  // Null if no panel is configured. Thread-safe.
   gpio::PanelLoop* panel() { return panel_.get(); }
-  // Of every device that has a port. For the status server's thread.
+  // The flight recorder of all devices that have a port. For the status server's thread.
   FlightRecorder& flight() { return flight_; }
 
  private:
@@ -65,7 +68,7 @@ class DevicesRole {
   std::function<void(const std::string&)> on_press_ = [](const std::string&) {};
   std::unique_ptr<gpio::PanelLoop> panel_;
   std::vector<std::unique_ptr<shm::ShmHealthSink>> health_;
-  // A device's loop; `progress` is of its thread, once that runs.
+  // A device's loop; `progress` is its thread's, once that runs.
   struct Line {
     std::string name;
     Progress* progress = nullptr;
@@ -73,7 +76,7 @@ class DevicesRole {
   };
   std::vector<std::unique_ptr<Line>> lines_;
   int cpu_latency_us_ = -1;
-  UniqueFd cpu_latency_;  // holds while it is open
+  UniqueFd cpu_latency_;  // the limit is in effect while this is open
   std::vector<WatchedThread> threads_;
 };
 

@@ -11,7 +11,7 @@
 namespace merlin::devices {
 namespace {
 
-constexpr std::size_t kMostDumps = 8;  // of a device
+constexpr std::size_t kMostDumps = 8;  // files kept per device
 
 }  // namespace
 
@@ -63,7 +63,7 @@ Result<std::string> FlightRecorder::write(const Entry& entry, std::string_view w
                        {"synthetic", "not known: from the line"},
                        {"by", "merlind's flight recorder"},
                        {"date", fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(now))},
-                       {"notes", fmt::format("{}; {:.1f} s left out after the beginning", why,
+                       {"notes", fmt::format("{}; {:.1f} s after the beginning are missing", why,
                                              toSeconds(left_out))}};
   if (const auto written = writeFile(*path, io::formatTranscript(transcript)); !written)
     return written.error();

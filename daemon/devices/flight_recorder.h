@@ -1,4 +1,5 @@
-// FlightRecorder: writes a device's last minutes into a file when it fails, or when asked.
+// FlightRecorder: writes the last minutes of a device's bytes to a file when it fails, or on
+// command.
 #pragma once
 
 #include <array>
@@ -11,22 +12,22 @@
 
 namespace merlin::devices {
 
-// Thread-bound to the status server's thread, but for the rings.
+// Thread-bound to the status server's thread, except for the rings.
 class FlightRecorder {
  public:
-  // Dumps go into `folder`: INSTANCE-DRIVER-TIME.bytes, the newest eight of a driver, also those of
-  // earlier runs (DatedFiles).
+  // Dumps are written into `folder` as INSTANCE-DRIVER-TIME.bytes; the newest eight of each driver
+  // are kept, including those of earlier runs (DatedFiles).
   FlightRecorder(const shm::DevicesSegment& segment, std::string folder, std::string instance)
       : segment_(segment), folder_(std::move(folder)), instance_(std::move(instance)) {}
 
-  // The ring of a device that has a line; lives as long as this. `driver` and `baud` go into the
-  // header of what is dumped.
+  // Adds a ring for a device and returns it; it lives as long as this. `driver` and `baud` go into
+  // the headers of its dumps.
   FlightRing& add(shm::DeviceIndex device, std::string driver, int baud);
 
-  // Dumps each device that was well at the last look and is not any more; a sentence for each.
+  // Dumps each device that has stopped working since the last call; returns a sentence for each.
   std::vector<std::string> check();
 
-  // Dumps every device; the files' names. Errors: kIo.
+  // Dumps every device and returns the files' names. Errors: kIo.
   Result<std::vector<std::string>> dump();
 
  private:

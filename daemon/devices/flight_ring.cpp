@@ -6,7 +6,7 @@
 namespace merlin::devices {
 namespace {
 
-constexpr std::int64_t kTogether_ns = 1'000'000;  // bytes that come one by one share a cell
+constexpr std::int64_t kTogether_ns = 1'000'000;  // bytes that arrive within this time share a cell
 
 }  // namespace
 
@@ -61,7 +61,7 @@ std::vector<io::TranscriptChunk> FlightRing::take(Duration* left_out) const {
   const std::uint64_t opened = opened_cell_.load(std::memory_order_acquire);
   const std::uint64_t begun = beginning_.count.load(std::memory_order_acquire);
   const std::uint64_t count = newest_.count.load(std::memory_order_acquire);
-  // One cell is left alone: it may be overwritten while we look.
+  // The oldest cell is skipped: it may be overwritten while we read.
   const std::uint64_t oldest = count >= kNewest ? count - kNewest + 1 : 0;
   for (std::uint64_t i = 0; i < begun && oldest > opened; ++i) {
     if (const auto cell = beginning_.cells[i].read()) cells.push_back(*cell);

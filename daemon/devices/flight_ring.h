@@ -1,5 +1,5 @@
-// FlightRing: the last minutes of a device's raw bytes, for the moment when something has gone
-// wrong.
+// FlightRing: a ring buffer of the last minutes of a device's raw bytes, for the analysis of
+// faults.
 #pragma once
 
 #include <array>
@@ -13,10 +13,10 @@
 
 namespace merlin::devices {
 
-// Written by the device's thread, wait-free, without a lock or an allocation; read by any other.
-// Keeps the newest bytes, about four and a half minutes of a tracker's 120 records a second, and
-// besides them the beginning of the present connection, so that what is dumped starts with the
-// dialogue and replays as a test.
+// Written by the device's thread, wait-free, without locks or allocations; read by any other
+// thread. Keeps the newest bytes, about four and a half minutes of a tracker's 120 records a
+// second, and also the beginning of the current connection, so that a dump begins with the set-up
+// dialogue and can be replayed as a test.
 class FlightRing final : public ByteTap {
  public:
   FlightRing();
@@ -25,13 +25,13 @@ class FlightRing final : public ByteTap {
   void heard(Timestamp at, std::span<const std::byte> bytes) noexcept override;
   void said(Timestamp at, std::span<const std::byte> bytes) noexcept override;
 
-  // What is in it, as the chunks of a transcript: the connection's beginning, then the newest bytes
-  // of the same connection, if nothing of it has been lost yet in one piece. `left_out` is the time
-  // between the two that is no longer there.
+  // The contents as the chunks of a transcript: the beginning of the connection, then the newest
+  // bytes of the same connection; in one piece if nothing between has been overwritten yet.
+  // `left_out`: set to the time between the two that is no longer stored.
   std::vector<io::TranscriptChunk> take(Duration* left_out) const;
 
  private:
-  // Some bytes in a row in one direction.
+  // Consecutive bytes in one direction.
   struct Cell {
     std::int64_t ns;
     std::uint8_t to_device;
@@ -41,7 +41,7 @@ class FlightRing final : public ByteTap {
   static constexpr std::size_t kBeginning = 1024;  // cells
   static constexpr std::size_t kNewest = 32768;
 
-  // Cells one after the other; the last one may still grow.
+  // A sequence of cells; the last one may still grow.
   struct Track {
     std::vector<shm::SeqSlot<Cell>> cells;
     std::atomic<std::uint64_t> count{0};
@@ -53,7 +53,7 @@ class FlightRing final : public ByteTap {
   void add(Timestamp at, bool to_device, std::span<const std::byte> bytes) noexcept;
 
   Track beginning_, newest_;
-  std::atomic<std::uint64_t> opened_cell_{0};  // of newest_, where the connection begins
+  std::atomic<std::uint64_t> opened_cell_{0};  // cell of newest_ where the connection begins
 };
 
 }  // namespace merlin::devices

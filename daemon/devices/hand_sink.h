@@ -1,5 +1,5 @@
-// HandSink: makes the hand of each record of its station, on the tracker's own thread, and hands
-// both on.
+// HandSink: for each tracker record of the hand's station, combines it with the newest glove sample
+// into a HandSample; passes all samples on. Runs on the tracker's thread.
 #pragma once
 
 #include "daemon/shm/layout.h"
@@ -8,8 +8,8 @@
 
 namespace merlin::devices {
 
-// Takes no lock, allocates nothing: the glove's newest is read from shared memory, as any client
-// reads it.
+// Takes no lock and allocates nothing: the newest glove sample is read from shared memory, as any
+// client does.
 class HandSink final : public SampleSink {
  public:
   HandSink(const HandSettings& settings, shm::DevicesSegment& segment, SampleSink& next)

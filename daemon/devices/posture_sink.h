@@ -1,5 +1,5 @@
-// PostureSink: recognises the posture of each glove sample, on the glove's own thread, and hands
-// both on.
+// PostureSink: recognises the posture of each glove sample and publishes it; passes all samples on.
+// Runs on the glove's thread.
 #pragma once
 
 #include "daemon/shm/layout.h"
@@ -9,11 +9,11 @@
 
 namespace merlin::devices {
 
-// Takes no lock, allocates nothing. The posture is published before its glove sample, so that
-// whoever wakes for the sample finds the posture.
+// Takes no lock and allocates nothing. The posture is published before its glove sample, so that a
+// reader that waits for the sample finds the posture.
 class PostureSink final : public SampleSink {
  public:
-  // Where what one record shows goes, and what is held.
+  // `shown`: the posture of each record; `held`: the current posture, after the minimum hold time.
   struct Outputs {
     shm::Channel<PostureSample>& shown;
     shm::SeqSlot<PostureState>& held;

@@ -16,7 +16,7 @@ struct Held {
   std::ptrdiff_t group, own;
 };
 
-// The places that a peer holds: its user's or address's, and its own.
+// Numbers of places that are held by the peer's user or address, and by the peer itself.
 Held heldBy(const Peer& peer, std::span<const Occupant> all) {
   Held held{};
   for (const Occupant& o : all) {
@@ -26,14 +26,14 @@ Held heldBy(const Peer& peer, std::span<const Occupant> all) {
   return held;
 }
 
-// The larger, the sooner it goes.
+// Order in which connections are closed for a newcomer: the largest first.
 auto rank(const Occupant& o, std::span<const Occupant> all, Timestamp now) {
   const Held held = heldBy(o.peer, all);
   return std::tuple(!o.established, held.group, held.own, now - o.active);
 }
 
-// Whether the other would hold at least as many places as the newcomer once it had given it one.
-// With a smaller difference two peers could take one place from each other in turns.
+// Whether `other` would still hold at least as many places as the newcomer after giving it one.
+// With a smaller difference two peers could take a place from each other alternately.
 bool holdsMore(const Held& other, const Held& newcomer) {
   return other.group > newcomer.group + 1 ||
          (other.group >= newcomer.group && other.own > newcomer.own + 1);

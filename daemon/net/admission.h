@@ -1,15 +1,14 @@
-// Who gets a place at a server, and who has to give one up for it. Pure.
+// Admission: decides which connections get the places of a server. Pure.
 //
-// A server has a fixed number of places. A newcomer gets a free one. Where none is free, or its own
-// peer (process of a local socket, address of a TCP one) already has its share, the place of a
-// connection that does least with it is given to the newcomer: first one that has not yet said what
-// the protocol opens with, then one of the user or address that holds the most places, then the one
-// that has been idle for longest. A connection keeps its place while it is active, and for a short
-// time while it is set up, but only against those who hold no fewer places: a newcomer whose user
-// or address, or whose process, holds at least two places fewer than another gets one of the
-// latter's in any case. So whoever holds places, busy or idle, or floods with connections, keeps
-// out only those who hold as many; among the processes of one user that takes as many processes as
-// there are places.
+// A server has a fixed number of places. A newcomer gets a free one. If none is free, or if its own
+// peer (process of a local socket, address of a TCP one) already has its share, it replaces the
+// least useful connection: first one that has not completed the handshake, then one of the user or
+// address that holds most places, then the one that has been idle longest. A connection cannot be
+// replaced while it is active, or for a short time after it was accepted. This protection does not
+// hold against a newcomer whose user or address, or whose process, holds at least two places fewer
+// than another: it gets one of the latter's places in any case. So a client that holds places, busy
+// or idle, or floods the server with connections only keeps out those that hold as many; to keep
+// out processes of its own user it needs as many processes as there are places.
 #pragma once
 
 #include <cstddef>
@@ -22,9 +21,9 @@
 namespace merlin::net {
 
 struct Places {
-  std::size_t all = 32;       // connections of the server
-  std::size_t per_peer = 16;  // of one process or one address
-  // Time for which a connection keeps its place: while it opens, and after it was last active.
+  std::size_t all = 32;       // maximum number of connections of the server
+  std::size_t per_peer = 16;  // maximum number of one process or one address
+  // Time for which a connection is protected: after it was accepted, and after it was last active.
   Duration opening = std::chrono::milliseconds(250);
   Duration idle = std::chrono::seconds(1);
 };
@@ -32,17 +31,17 @@ struct Places {
 struct Occupant {
   Peer peer;
   Timestamp since{};         // accepted
-  Timestamp active{};        // bytes last went either way
-  bool established = false;  // has said what the protocol opens with
+  Timestamp active{};        // last read or write
+  bool established = false;  // has completed the protocol's handshake
 };
 
 struct Decision {
   enum class Kind { kAdmit, kReplace, kRefuse };
   Kind kind = Kind::kAdmit;
-  std::size_t victim = 0;  // of kReplace: which occupant goes
+  std::size_t victim = 0;  // for kReplace: index of the occupant to close
 };
 
-// O(n^2) in the number of occupants. Reentrant.
+// Decides about a newcomer. O(n^2) in the number of occupants. Reentrant.
 Decision decide(std::span<const Occupant> occupants, const Peer& newcomer, const Places& places,
                 Timestamp now);
 

@@ -16,7 +16,8 @@ namespace merlin::net {
 namespace {
 
 constexpr int kAcceptedPerRound = 64;
-constexpr double kAcceptedAfterWait = 10;  // at once, so that a flood does not wake us for each
+constexpr double kAcceptedAfterWait =
+    10;  // at least this many at once, to limit wake-ups in a flood
 constexpr Duration kWithoutDescriptors = std::chrono::milliseconds(100);
 
 short hung(const pollfd& p) { return p.revents & (POLLHUP | POLLERR | POLLNVAL); }
@@ -29,7 +30,7 @@ struct ConnectionServer::Client {
   std::unique_ptr<Session> session;
   std::string input, output;
   TokenBucket messages, bytes;
-  bool more = false;  // whole messages may be left, of which it was not the turn
+  bool more = false;  // complete messages may be left for the next round
   bool ended = false;
 
   Client(UniqueFd f, const Peer& peer, std::unique_ptr<Session> s, const ServerLimits& limits,
@@ -67,7 +68,7 @@ bool ConnectionServer::add(UniqueFd fd, const Peer& peer, const MakeSession& mak
   const Timestamp now = clock_.now();
   const Decision decision = decide(occupants(), peer, limits_.places, now);
   if (decision.kind == Decision::Kind::kRefuse) {
-    count(End::kRefused, peer, "every place it could have is in use");
+    count(End::kRefused, peer, "all places that it could have are in use");
     return false;
   }
   if (decision.kind == Decision::Kind::kReplace) {
@@ -101,13 +102,13 @@ void ConnectionServer::accept(Listener& listener) {
       return;
     }
     const Peer peer = peerOf(fd.get());
-    const int yes = 1;  // what is sent is whole messages: none waits for another
+    const int yes = 1;  // output is complete messages: do not delay them
     if (peer.user < 0) ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
     add(std::move(fd), peer, listener.make);
   }
 }
 
-// In this order: listeners, wakers, then each client and, of a relay, its far side.
+// In this order: listeners, wakers, then each client followed by its farFd() if it has one.
 std::vector<pollfd> ConnectionServer::pollSet(std::span<const int> wakers, Timestamp now,
                                               Duration& wait) const {
   std::vector<pollfd> set;
@@ -161,14 +162,14 @@ void ConnectionServer::serve(Client& c, const pollfd& own, const pollfd* far, Ti
   if (c.ended) return;
   c.occupant.established = c.session->established();
   if (!c.occupant.established && now - c.occupant.since >= limits_.opening) {
-    return end(
-        c, End::kSilent,
-        fmt::format("it did not open the protocol within {:.1f} s", toSeconds(limits_.opening)));
+    return end(c, End::kSilent,
+               fmt::format("it did not complete the handshake within {:.1f} s",
+                           toSeconds(limits_.opening)));
   }
   write(c, now);
 }
 
-// False once the client has ended.
+// Returns false if the client was closed.
 bool ConnectionServer::serveFar(Client& c, const pollfd& far) {
   Result<Ok> done = Ok{};
   if (far.revents & POLLOUT) done = c.session->writeFar();
@@ -182,7 +183,7 @@ bool ConnectionServer::serveFar(Client& c, const pollfd& far) {
   return false;
 }
 
-// False once the client has ended.
+// Returns false if the client was closed.
 bool ConnectionServer::read(Client& c, Timestamp now) {
   const std::size_t held = c.input.size();
   const auto allowed = static_cast<std::size_t>(std::max(1.0, c.bytes.available(now)));
@@ -228,7 +229,7 @@ void ConnectionServer::write(Client& c, Timestamp now) {
     }
   }
   if (c.output.size() > limits_.output_bytes) {
-    end(c, End::kSlow, fmt::format("it did not read, and {} bytes waited for it", c.output.size()));
+    end(c, End::kSlow, fmt::format("it did not read, and {} bytes were waiting", c.output.size()));
   }
 }
 
@@ -259,9 +260,9 @@ void ConnectionServer::count(End why, const Peer& peer, const std::string& reaso
     case End::kBroken: ++report_.broken; break;
     case End::kSlow: ++report_.slow; break;
   }
-  report_.last =
-      fmt::format("{} {}: {}", why == End::kRefused ? "refused a connection of" : "closed that of",
-                  peerName(peer), reason);
+  report_.last = fmt::format(
+      "{} {}: {}", why == End::kRefused ? "refused a connection of" : "closed a connection of",
+      peerName(peer), reason);
 }
 
 void ConnectionServer::removeEnded() {

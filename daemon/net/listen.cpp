@@ -1,4 +1,4 @@
-// The sockets that servers listen at.
+// Listening sockets.
 #include <cerrno>
 #include <cstring>
 
@@ -21,21 +21,21 @@ UniqueFd newSocket(int family) {
   return UniqueFd(::socket(family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
 }
 
-// What is at `path` may be replaced only where it is a socket that nobody answers at.
+// Removes what is at `path` if it is a socket of a dead program; errors for anything else.
 Result<Ok> makeRoom(const std::string& path, const sockaddr_un& address) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0) return Ok{};
   if (!S_ISSOCK(status.st_mode)) {
     return Error{Errc::kInvalidArgument,
-                 path + ": is not a socket and is not replaced; name another file, or remove it"};
+                 path + ": is not a socket and is not replaced; choose another name, or remove it"};
   }
   const UniqueFd probe = newSocket(AF_UNIX);
   const int connected =
       ::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
-  // A full queue of connections is one of a program that lives.
+  // EAGAIN: the queue of a running program is full.
   if (connected == 0 || errno == EAGAIN)
     return Error{Errc::kBusy,
-                 path + ": another program serves this socket; stop it, or name another"};
+                 path + ": another program serves this socket; stop it, or choose another name"};
   if (errno != ECONNREFUSED)
     return Error{Errc::kIo, fmt::format("{}: {}", path, std::strerror(errno))};
   ::unlink(path.c_str());
@@ -49,13 +49,13 @@ Result<UniqueFd> listenLocal(const std::string& path, unsigned mode) {
   address.sun_family = AF_UNIX;
   if (path.size() >= sizeof address.sun_path) {
     return Error{Errc::kInvalidArgument,
-                 fmt::format("{}: is too long for the name of a socket ({} bytes at most)", path,
+                 fmt::format("{}: the name is too long for a socket ({} bytes at most)", path,
                              sizeof address.sun_path - 1)};
   }
   std::memcpy(address.sun_path, path.data(), path.size());
   if (const auto made = makeRoom(path, address); !made) return made.error();
   UniqueFd fd = newSocket(AF_UNIX);
-  // Bound before anybody can connect, so that its mode holds from the first connection on.
+  // chmod() before listen(), so that the mode holds from the first connection on.
   if (!fd.valid() ||
       ::bind(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
       ::chmod(path.c_str(), mode) != 0 || ::listen(fd.get(), kBacklog) != 0) {

@@ -20,7 +20,7 @@ Result<Ok> networkAllowed() {
                              "drop-in network.conf allows them",
                              std::strerror(error))};
   }
-  return Error{Errc::kIo, fmt::format("no network socket: {}", std::strerror(error))};
+  return Error{Errc::kIo, fmt::format("cannot open a network socket: {}", std::strerror(error))};
 }
 
 }  // namespace merlin::net

@@ -1,4 +1,4 @@
-// Peer: who is at the other end of a connection, as the kernel says, never as the peer says.
+// Peer: who is at the other end of a connection, according to the kernel, not to the peer itself.
 #pragma once
 
 #include <compare>
@@ -15,7 +15,7 @@ struct Peer {
   auto operator<=>(const Peer&) const = default;
 };
 
-// Of an accepted or connected socket. Unknown values stay as above.
+// The peer of an accepted or connected socket. Unknown values keep their defaults.
 Peer peerOf(int fd);
 
 // "user 1000, process 4321" or "192.168.1.7".

@@ -16,7 +16,7 @@ std::string sentAwaySentence(const ServerReport& report, std::uint64_t& told) {
   const std::uint64_t now = report.sentAway();
   const std::uint64_t fresh = now - std::exchange(told, now);
   if (fresh == 0) return {};
-  return fmt::format("{}: {} connection{} sent away; the last: {}", report.name, fresh,
+  return fmt::format("{}: {} connection{} refused or closed; the last: {}", report.name, fresh,
                      fresh == 1 ? " was" : "s were", report.last);
 }
 
@@ -24,7 +24,7 @@ ServerKeeper::ServerKeeper(std::string name, Start start)
     : name_(std::move(name)), start_(std::move(start)), failure_("not started yet") {}
 
 void ServerKeeper::tend(Timestamp now) {
-  std::unique_ptr<Server> ended;  // after the lock: its end waits for its thread
+  std::unique_ptr<Server> ended;  // destroyed after the lock, because that waits for its thread
   {
     const std::lock_guard lock(mutex_);
     if (server_ && !server_->failure().empty()) {
@@ -56,10 +56,10 @@ std::vector<std::string> ServerKeeper::takeEvents(Timestamp now) {
   if (!server_ && next_try_ == Timestamp{}) return events;  // not tried yet
   if (!told_ || failure_ != told_failure_) {
     if (!failure_.empty())
-      events.push_back(fmt::format("{}: failed ({}); it is tried again every {:.0f} s", name_,
-                                   failure_, toSeconds(kRetry)));
+      events.push_back(fmt::format("{}: failed ({}); retried every {:.0f} s", name_, failure_,
+                                   toSeconds(kRetry)));
     else
-      events.push_back(name_ + ": serves");
+      events.push_back(name_ + ": running");
     told_ = true;
     told_failure_ = failure_;
   }

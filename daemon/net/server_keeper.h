@@ -1,5 +1,5 @@
-// ServerKeeper: a server that the configuration asks for, kept running: one that cannot start is
-// tried again every few seconds, and so is one that ends; the rest of the daemon runs.
+// ServerKeeper: keeps a configured server running. If it cannot start, or ends, it is started again
+// every few seconds; the rest of the daemon continues.
 #pragma once
 
 #include <functional>
@@ -14,53 +14,54 @@
 
 namespace merlin::net {
 
-// Anything that serves clients by a ConnectionServer.
+// Interface of a server that uses a ConnectionServer.
 class Server {
  public:
   virtual ~Server() = default;
   virtual ServerReport report() const = 0;  // thread-safe
-  // Why it serves no more; empty while it does. Thread-safe.
+  // Why it has stopped serving; empty while it serves. Thread-safe.
   virtual std::string failure() const { return {}; }
 };
 
-// How a server is, for the status.
+// Health of a server, for the status.
 struct ServerHealth {
   std::string name;     // "VRPN"
-  std::string failure;  // why it does not serve; empty: it does
+  std::string failure;  // why it does not serve; empty while it does
   ServerReport report;
 };
 
-// tend() and takeEvents() are for one thread each; health() is thread-safe.
+// tend() and takeEvents() must be called from one thread each; health() is thread-safe.
 class ServerKeeper {
  public:
   using Start = std::function<Result<std::unique_ptr<Server>>()>;
 
-  // `name` is what events and the status call it.
+  // `name`: the server's name in events and the status.
   ServerKeeper(std::string name, Start start);
 
-  // Starts the server where none runs and a try is due; ends one that serves no more. Cost: that of
-  // a start or an end.
+  // Starts the server if it does not run and a try is due; destroys it if it has stopped serving.
+  // Cost: that of starting or destroying it.
   void tend(Timestamp now);
 
   ServerHealth health() const;
 
-  // What has changed, as sentences: that it failed and why, that it serves again, and, at most
-  // every five seconds, how many clients were sent away.
+  // Changes since the last call, as sentences: that it failed and why, that it runs again, and, at
+  // most every five seconds, how many connections were refused or closed.
   std::vector<std::string> takeEvents(Timestamp now);
 
  private:
   std::string name_;
   Start start_;
   mutable std::mutex mutex_;
-  std::unique_ptr<Server> server_;  // guarded by mutex_, as all below
+  std::unique_ptr<Server> server_;  // guarded by mutex_, like everything below
   std::string failure_, told_failure_;
-  bool told_ = false;  // how it is, once
+  bool told_ = false;  // whether its state has been reported yet
   Timestamp next_try_{}, told_at_{};
   std::uint64_t told_sent_away_ = 0;
 };
 
-// The same sentence for any server: "VRPN: 154 connections were sent away in the last 5 s; the
-// last: refused ..."; empty where there is none since `told`, which is brought up to date.
+// A sentence about refused and closed connections, for any server: "VRPN: 154 connections were
+// refused or closed; the last: refused ...". `told`: their number at the last call, which is
+// updated; empty if there are none since.
 std::string sentAwaySentence(const ServerReport& report, std::uint64_t& told);
 
 }  // namespace merlin::net

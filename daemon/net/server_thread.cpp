@@ -8,7 +8,7 @@
 namespace merlin::net {
 namespace {
 
-// Until it is asked to stop.
+// Waits until the thread is asked to stop.
 void idle(const std::stop_token& stop, Progress& progress) {
   std::mutex mutex;
   std::condition_variable_any stopped;
@@ -35,7 +35,7 @@ ServerThread::ServerThread(ThreadWatch& threads, std::string name, std::function
                   const std::lock_guard lock(state->mutex);
                   state->failure = std::string("its thread ended: ") + e.what();
                 }
-                idle(stop, progress);  // the owner looks at failure(), and stops it
+                idle(stop, progress);  // the owner checks failure() and stops the thread
               }) {}
 
 std::string ServerThread::failure() const {

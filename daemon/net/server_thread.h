@@ -1,4 +1,4 @@
-// ServerThread: the loop of one server that merlind can do without.
+// ServerThread: the loop of a server that merlind can run without.
 #pragma once
 
 #include <functional>
@@ -10,18 +10,18 @@
 
 namespace merlin::net {
 
-// A server for other programs is no reason to end the wall: an exception of its loop ends the
-// server, not the process. Its owner sees failure(), and starts it anew. Thread-safe.
+// An exception in the loop ends the server, not the process, so that a server for other programs
+// cannot stop the wall. Its owner checks failure() and starts it again. Thread-safe.
 class ServerThread {
  public:
   ServerThread() = default;
-  // Starts it. `round`: one round of the loop; it takes at most half a second. `threads` outlives
-  // this.
+  // Starts the thread. `round`: one round of the loop, which must take at most half a second.
+  // `threads` must outlive this.
   ServerThread(ThreadWatch& threads, std::string name, std::function<void()> round);
 
   // Why the loop has ended; empty while it runs.
   std::string failure() const;
-  // Asks it to stop and waits until it has.
+  // Asks the thread to stop and waits for its end.
   void stop() { thread_.stop(); }
 
  private:
@@ -29,7 +29,7 @@ class ServerThread {
     mutable std::mutex mutex;
     std::string failure;  // guarded by mutex
   };
-  std::shared_ptr<State> state_;  // shared: the thread writes it, wherever this is moved to
+  std::shared_ptr<State> state_;  // shared with the thread, so that this can be moved
   WatchedThread thread_;
 };
 

@@ -15,9 +15,10 @@ namespace merlin::serve {
 namespace {
 
 constexpr Duration kRound = std::chrono::milliseconds(50);
-constexpr long kWithoutWaitv_ns = 2'000'000;  // a kernel before 5.16 waits for one word only
+constexpr long kWithoutWaitv_ns =
+    2'000'000;  // poll interval before Linux 5.16, which has no futex_waitv
 
-// Until a word is another than in `seen`, or `kRound` has passed.
+// Waits until one of the words differs from its value in `seen`, or kRound has passed.
 void waitForAny(const std::vector<const std::atomic<std::uint32_t>*>& words,
                 const std::vector<std::uint32_t>& seen) {
 #ifdef SYS_futex_waitv
@@ -36,7 +37,7 @@ void waitForAny(const std::vector<const std::atomic<std::uint32_t>*>& words,
   }
   const long done =
       ::syscall(SYS_futex_waitv, waiters.data(), waiters.size(), 0, &until, CLOCK_MONOTONIC);
-  // All else says that the call cannot be made: an older kernel, or a filter of system calls.
+  // Any other error: the call is not available (older kernel, or a system-call filter).
   if (done >= 0 || errno == EAGAIN || errno == ETIMEDOUT || errno == EINTR) return;
 #endif
   const timespec nap{0, kWithoutWaitv_ns};

@@ -1,6 +1,5 @@
-// SampleWaker: makes a descriptor readable when a sample comes, so that a server waits for its
-// clients and for samples at once: shared memory's words can be waited on, but not polled with
-// sockets.
+// SampleWaker: makes a descriptor readable when a sample arrives, so that a server can poll its
+// clients and the samples together; the futex words in shared memory cannot be polled with sockets.
 #pragma once
 
 #include <atomic>
@@ -13,19 +12,19 @@
 
 namespace merlin::serve {
 
-// Has a thread of its own. Costs a second wake-up a sample, some 20 us.
+// Has a thread of its own. Cost: a second wake-up per sample, about 20 us.
 class SampleWaker {
  public:
-  // `words`: of shm::Channel; they outlive this, as `watch` does.
+  // `words`: wake words of shm::Channel. They and `watch` must outlive this.
   SampleWaker(std::vector<const std::atomic<std::uint32_t>*> words, ThreadWatch& watch,
               const std::string& name);
   ~SampleWaker();
   SampleWaker(const SampleWaker&) = delete;
   SampleWaker& operator=(const SampleWaker&) = delete;
 
-  // Readable since the last clear() where a sample has come.
+  // Readable if a sample has arrived since the last clear().
   int fd() const noexcept { return event_.get(); }
-  // Before the samples are read: one that comes meanwhile makes it readable again.
+  // To be called before the samples are read: a later sample then makes it readable again.
   void clear() const noexcept;
 
  private:

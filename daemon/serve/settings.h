@@ -1,4 +1,4 @@
-// What the configuration says of the servers for other programs.
+// Settings of the servers for other programs.
 #pragma once
 
 #include <string>
@@ -6,14 +6,14 @@
 namespace merlin {
 
 struct ServeSettings {
-  // The space-mouse socket that libspnav looks for; empty: none. /run/spnav.sock is the usual one.
+  // The space-mouse socket that libspnav opens, usually /run/spnav.sock; empty: no such server.
   std::string spnav_socket;
-  // VRPN's port, TCP and UDP, on the loopback device; 0: none. 3883 is the usual one.
+  // VRPN's port, TCP and UDP, on the loopback device, usually 3883; 0: no such server.
   int vrpn_port = 0;
-  // Where samples go to other machines, encrypted: "tcp://*:7401"; empty: nowhere.
+  // Address at which other machines get samples, encrypted, "tcp://*:7401"; empty: no such server.
   std::string samples_endpoint;
-  std::string samples_keys;     // this machine's pair of keys, a file
-  std::string samples_clients;  // public keys of those who may listen, a file, one a line
+  std::string samples_keys;     // file with this machine's key pair
+  std::string samples_clients;  // file with the public keys of allowed clients, one per line
 };
 
 }  // namespace merlin

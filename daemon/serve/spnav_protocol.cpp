@@ -13,7 +13,7 @@ constexpr std::uint32_t kHandshake = 0x7FAA5500, kHandshakeMask = 0xFFFFFF00;
 constexpr std::uint32_t kRequestMask = 0xFFFF0000;
 constexpr std::uint32_t kMotion = 1, kButton = 2, kDevice = 4, kRawAxis = 0x10, kRawButton = 0x20;
 constexpr std::int32_t kFailed = -1;
-constexpr std::size_t kChunk = 24;  // bytes of a text in an answer
+constexpr std::size_t kChunk = 24;  // bytes of text per answer
 
 enum Request : std::uint32_t {
   kSetName = 0x1000,
@@ -27,7 +27,7 @@ enum Request : std::uint32_t {
   kDeviceButtons,
   kDeviceUsb,
   kDeviceType,
-  // Configuration: each setting has a request to set it, and the next number asks for it.
+  // Configuration: the request before each of these sets the same value.
   kGetSensitivityOfAll = 0x3001,
   kGetSensitivityOfAxes = 0x3003,
   kGetDeadZone = 0x3005,
@@ -61,7 +61,8 @@ SpnavDevice spnavDevice(std::string_view identity, std::string_view port) {
     const char* model;
     int type, buttons;
   };
-  // Buttons as drivers/spaceball numbers them: a 2003's ninth is pick, a 3003's third rezero.
+  // Buttons are numbered as in drivers/spaceball: the 2003's ninth is pick, the 3003's third
+  // rezero.
   constexpr Known kKnown[] = {
       {"1003", 0x100, 9}, {"2003", 0x100, 9}, {"3003", 0x101, 3}, {"4000", 0x102, 12}};
   for (const Known& known : kKnown) {
@@ -103,7 +104,7 @@ void SpnavClient::request(Words words, std::string& out) {
   std::fill(words.begin() + 1, words.end(), 0);
   switch (number) {
     case kSetName:
-    case kSetSerialDevice: return;  // have no answer
+    case kSetSerialDevice: return;  // these have no answer
     case kSetSensitivity:
       if (const auto s = std::bit_cast<float>(argument); std::isfinite(s))
         sensitivity_ = s;
@@ -119,16 +120,16 @@ void SpnavClient::request(Words words, std::string& out) {
     case kDeviceButtons: words[1] = device_.buttons; break;
     case kDeviceType: words[1] = device_.type; break;
     case kGetSerialDevice: return sendText(words[0], device_.path, out);
-    default:  // kDeviceUsb too: it is no USB device
+    default:  // also kDeviceUsb: the ball is not a USB device
       words[1] = argument;
       if (!configuration(number, words)) words[7] = kFailed;
   }
   append(out, words);
 }
 
-// What holds of MERLIN's ball, in the terms of spacenavd's configuration: all of it is as the
-// device sends it. `words[1]` is the axis or button that is asked about. False: no such question,
-// or a request to set something: the ball is configured in MERLIN.
+// Answers a query of spacenavd's configuration: everything is passed on as the device sends it.
+// `words[1]` is the axis or button of the query. False for an unknown query and for requests that
+// set something, because the ball is configured in MERLIN.
 bool SpnavClient::configuration(std::uint32_t number, Words& words) const {
   constexpr auto kOne = std::bit_cast<std::int32_t>(1.0F);
   const std::int32_t of = std::exchange(words[1], 0);
@@ -155,7 +156,8 @@ bool SpnavClient::configuration(std::uint32_t number, Words& words) const {
   }
 }
 
-// 24 bytes an answer; the last word says how many are left, and from the second on that it goes on.
+// Sends a text in answers of 24 bytes; the last word has the number of bytes left and, from the
+// second answer on, a flag for a continuation.
 void SpnavClient::sendText(std::int32_t request, const std::string& text, std::string& out) const {
   for (std::size_t at = 0; at == 0 || at < text.size(); at += kChunk) {
     Words words{};
@@ -189,7 +191,7 @@ void SpnavClient::sample(const BallSample& s, bool motion, std::string& out) {
   }
 }
 
-// As the device sends them, for who asked for that.
+// Appends raw axis and raw button events for a client whose mask requests them.
 void SpnavClient::tellRaw(const BallSample& s, std::string& out) {
   for (std::int32_t i = 0; i < 6 && (mask_ & kRawAxis); ++i) {
     const auto at = static_cast<std::size_t>(i);

@@ -15,8 +15,9 @@ namespace {
 constexpr Duration kRound = std::chrono::milliseconds(20);
 constexpr Duration kLook = std::chrono::seconds(1);
 constexpr Duration kQuiet = std::chrono::milliseconds(60);
-constexpr Duration kLongestQuiet = std::chrono::milliseconds(500);  // for who asks all the time
-constexpr unsigned kMode = 0666;  // any user's programs may read the ball, as with spacenavd
+constexpr Duration kLongestQuiet =
+    std::chrono::milliseconds(500);  // for a client that keeps asking
+constexpr unsigned kMode = 0666;     // any user's programs may read the ball, as with spacenavd
 constexpr std::size_t kMostPending = 4096;
 
 net::ServerLimits limits() {
@@ -41,18 +42,18 @@ class SpnavSession final : public net::Session {
     if (taken.answered) quiet_until_ = clock_.now() + kQuiet;
     return Taken{taken.bytes, taken.messages};
   }
-  // The protocol opens with nothing: a client of version 0 may only listen.
+  // The protocol has no handshake: a client of version 0 may only listen.
   bool established() const noexcept override { return true; }
 
   void sample(const BallSample& sample, std::string& output) {
     const bool quiet = waits();
     if (!quiet) output += std::exchange(held_, {});
     std::string& told = quiet ? held_ : output;
-    // A client that is too slow, or asking, misses motions, never buttons.
+    // A client that is too slow, or waits for an answer, misses motions, but no buttons.
     missed_ = quiet || !output.empty();
     client_.sample(sample, !missed_, told);
   }
-  // What came while it was asking or did not read.
+  // Appends what the client missed while it waited for an answer or did not read.
   void tellMissed(const std::optional<BallSample>& newest, std::string& output) {
     if (waits()) return;
     waiting_since_.reset();
@@ -70,7 +71,7 @@ class SpnavSession final : public net::Session {
  private:
   const Clock& clock_;
   SpnavClient client_;
-  // Whether events have to wait: not for long in a row, nor for many of them.
+  // Whether events have to wait; limited in time and in the number of events held back.
   bool waits() {
     const Timestamp now = clock_.now();
     if (now >= quiet_until_ || held_.size() >= kMostPending / 2) return false;
@@ -80,9 +81,9 @@ class SpnavSession final : public net::Session {
 
   Timestamp quiet_until_;
   std::optional<Timestamp> waiting_since_;
-  std::string held_;     // buttons that waited
-  bool missed_ = false;  // the motion of the newest sample
-  // The ball came or went, and the client was not told yet.
+  std::string held_;     // button events held back
+  bool missed_ = false;  // the client missed the motion of the newest sample
+  // The ball was connected or lost, and the client has not been told yet.
   bool missed_device_ = false, there_ = false;
   SpnavDevice device_;
 };
@@ -123,17 +124,17 @@ void SpnavServer::listen(UniqueFd listener) {
   });
 }
 
-// As a relay does. Those who are connected stay.
+// Creates the socket again if its file was removed, as status/relay does; connections stay.
 void SpnavServer::listenAgainWhereGone() {
   const Timestamp now = clock_.now();
   if (now - looked_ < kLook) return;
   looked_ = now;
   if (inodeOf(path_) == file_) return;
   auto listener = net::listenLocal(path_, kMode);
-  if (!listener) return;  // something else is there, or its folder has gone: tried again
+  if (!listener) return;  // another file is there, or the folder is missing: tried again later
   server_.stopListening();
   listen(*std::move(listener));
-  logWarning("space mouse: its socket {} was removed and is there again", path_);
+  logWarning("space mouse: its socket {} was removed and has been created again", path_);
 }
 
 SpnavServer::~SpnavServer() {
@@ -153,7 +154,7 @@ void SpnavServer::round() {
 
 void SpnavServer::tellHealth() {
   const auto health = segment_.health[shm::kBall].read();
-  if (!health) return;  // not known yet, or being written: as before
+  if (!health) return;  // not known yet, or being written: unchanged
   const bool there = health->state == HealthState::kOk;
   if (there == there_) return;
   there_ = there;

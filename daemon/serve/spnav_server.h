@@ -1,5 +1,4 @@
-// SpnavServer: MERLIN's ball for programs that know a space mouse, on the socket that libspnav
-// opens.
+// SpnavServer: offers MERLIN's ball as a space mouse, on the socket that libspnav opens.
 #pragma once
 
 #include <memory>
@@ -19,12 +18,12 @@ namespace merlin::serve {
 
 // Owns its threads; reads the segment as any client does, so that a slow program delays nobody.
 //
-// libspnav takes whatever comes after a question for its answer. So a client hears no event from
-// its connection, or a question, until it has been silent for a moment (60 ms; 0.5 s for one that
-// asks all the time): then it hears which buttons changed, and the newest motion.
+// libspnav takes the first message after a request as its answer. So after it has connected or sent
+// a request, a client gets no events until it has sent nothing for 60 ms (at most 0.5 s if it keeps
+// asking); then it gets the button events of that time and the newest motion.
 class SpnavServer final : public net::Server {
  public:
-  // Errors: listenLocal()'s. `segment`, `watch` and `clock` outlive this.
+  // Errors: those of listenLocal(). `segment`, `watch` and `clock` must outlive the server.
   static Result<std::unique_ptr<SpnavServer>> start(const std::string& socket_path,
                                                     const shm::DevicesSegment& segment,
                                                     ThreadWatch& watch, const Clock& clock);
@@ -47,12 +46,12 @@ class SpnavServer final : public net::Server {
 
   std::string path_;
   std::uint64_t file_ = 0;  // inode of the socket's file
-  Timestamp looked_{};      // whether it is still there
+  Timestamp looked_{};      // when the file was last checked
   const shm::DevicesSegment& segment_;
   const Clock& clock_;
   net::ConnectionServer server_;
   SpnavDevice device_;
-  std::uint64_t seen_;  // samples of the ball
+  std::uint64_t seen_;  // number of ball samples processed
   bool there_ = false;
   SampleWaker waker_;
   net::ServerThread thread_;

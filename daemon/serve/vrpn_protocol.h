@@ -1,7 +1,7 @@
-// VRPN's wire format, as much of it as a server of trackers, buttons and analogs needs. No I/O, no
+// VRPN's wire format, as far as a server of trackers, buttons and analogs needs it. No I/O, no
 // clock.
 //
-// Both sides open with a cookie of 24 bytes. A message: i32be x 5: length (24 + payload), seconds,
+// Both sides begin with a cookie of 24 bytes. A message: i32be x 5: length (24 + payload), seconds,
 // microseconds, sender, type; i32be sequence number; payload, padded to a multiple of 8. Negative
 // types are the system's: -1 describes a sender, -2 a type, each by a name.
 //
@@ -17,9 +17,11 @@
 namespace merlin::serve {
 
 inline constexpr std::size_t kVrpnCookieLength = 24;
+// The cookie that we send.
 std::string vrpnCookie();
 
-// Whether the other side's cookie agrees up to the last '.' of its version. `cookie` has 24 bytes.
+// Whether the peer's cookie agrees with ours up to the last '.' of the version. REQUIRES: `cookie`
+// has 24 bytes.
 bool vrpnCookieFits(std::string_view cookie);
 
 struct VrpnMessage {
@@ -30,19 +32,19 @@ struct VrpnMessage {
 };
 std::string encodeVrpn(const VrpnMessage& message);
 
-// The longest message that is taken, header and padding included.
+// The longest message that is accepted, including header and padding.
 inline constexpr std::size_t kVrpnLongest = 8192;
 
-// The message at the front of `input`; nothing where it is not whole yet.
+// The message at the front of the input; nothing if it is not complete yet.
 struct VrpnFront {
   std::optional<VrpnMessage> message;
-  std::size_t bytes = 0;  // that it takes
-  bool broken = false;    // a length that cannot be: the connection is of no more use
+  std::size_t bytes = 0;  // length of the message in the input
+  bool broken = false;    // invalid length: the connection must be closed
 };
 VrpnFront readVrpn(std::string_view input);
 
-// Payloads.
-std::string vrpnName(std::string_view name);  // of a description
+// Encode and decode payloads.
+std::string vrpnName(std::string_view name);  // of a message that describes a sender or type
 std::optional<std::string> readVrpnName(std::string_view payload);
 std::string vrpnPose(std::int32_t sensor, std::span<const float> position_m,
                      std::span<const float> orientation_wxyz);  // Pos_Quat: x y z, qx qy qz qw
@@ -51,8 +53,9 @@ std::string vrpnButton(std::int32_t button, bool down);         // Button Change
 std::string vrpnButtons(std::uint32_t down,
                         std::int32_t count);  // Button States: bit i is button i
 
-// "127.0.0.1 59207" + NUL, by which a client asks by UDP to be connected to. Nothing unless it is
-// one, with a port from 1024 on and a host of letters, digits and dots.
+// Parses a UDP datagram, "127.0.0.1 59207" + NUL, by which a client asks us to connect to it.
+// Nothing if it is malformed, the port is below 1024, or the host has characters other than
+// letters, digits and dots.
 struct VrpnCallback {
   std::string host;
   int port;

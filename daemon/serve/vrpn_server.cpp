@@ -19,10 +19,10 @@ namespace merlin::serve {
 namespace {
 
 constexpr Duration kRound = std::chrono::milliseconds(50);
-constexpr double kDatagrams = 20;  // that are answered, a second and at once
+constexpr double kDatagrams = 20;  // answered per second, and at once
 constexpr std::int32_t kButtons = 12;
 
-// Our numbers for names; each is described to a client before anything else.
+// Our numbers of senders and types; a client gets the name of each before anything else.
 enum Sender : std::int32_t { kControl, kHand, kTracker, kBall };
 constexpr const char* kSenders[] = {"VRPN Control", "Hand0", "Tracker0", "Ball0"};
 enum Type : std::int32_t { kPing, kPong, kPose, kChannels, kButtonChange, kButtonStates };
@@ -33,9 +33,9 @@ constexpr std::int32_t kDescribeSender = -1, kDescribeType = -2;
 
 net::ServerLimits limits() {
   net::ServerLimits l;
-  l.places = {.all = 16, .per_peer = 12};  // all clients are of one address
+  l.places = {.all = 16, .per_peer = 12};  // all clients have the same address
   l.input_bytes = kVrpnLongest;
-  l.output_bytes = 1 << 18;  // a second of all devices, beside what the socket holds
+  l.output_bytes = 1 << 18;  // one second of all devices, besides the socket's buffer
   l.messages_per_s = l.messages_burst = 500;
   return l;
 }
@@ -61,8 +61,8 @@ Result<UniqueFd> listenUdp(int port) {
 
 }  // namespace
 
-// A port that is connected back to, until this is gone: a client asks once a second until it is
-// connected to, and one connection is enough.
+// Marks a client's port as connected until it is destroyed: a client repeats its request every
+// second until we connect, and must get only one connection.
 class PortClaim {
  public:
   PortClaim(std::set<int>& ports, int port) : ports_(ports), port_(port) { ports_.insert(port_); }
@@ -75,7 +75,7 @@ class PortClaim {
   int port_;
 };
 
-// One client: its numbers for names, and what it was told.
+// One client: its own numbers of names, and what was sent to it.
 class VrpnSession final : public net::Session {
  public:
   VrpnSession(const shm::DevicesSegment& segment, const Clock& clock,
@@ -97,9 +97,9 @@ class VrpnSession final : public net::Session {
 
   const shm::DevicesSegment& segment_;
   const Clock& clock_;
-  std::unique_ptr<PortClaim> port_;  // of one that was connected back to
-  bool greeted_ = false;             // its cookie has come
-  // Its numbers for our senders, and for a ping: all else that it describes is not kept.
+  std::unique_ptr<PortClaim> port_;  // if we connected to the client
+  bool greeted_ = false;             // its cookie has arrived
+  // The client's numbers of our senders and of the ping message; other descriptions are ignored.
   std::map<std::int32_t, std::int32_t> senders_;
   std::optional<std::int32_t> ping_;
   std::uint32_t sequence_ = 0;
@@ -118,7 +118,7 @@ Result<net::Session::Taken> VrpnSession::receive(std::string_view input, std::si
   }
   while (taken.messages < most) {
     const VrpnFront front = readVrpn(input.substr(taken.bytes));
-    if (front.broken) return Error{Errc::kMalformed, "a message of a length that cannot be"};
+    if (front.broken) return Error{Errc::kMalformed, "a message with an invalid length"};
     if (!front.message) break;
     handle(*front.message, output);
     taken.bytes += front.bytes;
@@ -134,7 +134,7 @@ void VrpnSession::open(std::string& output) {
     send(i, kDescribeSender, vrpnName(kSenders[i]), now_ns, output);
   for (std::int32_t i = 0; i < std::ssize(kTypes); ++i)
     send(i, kDescribeType, vrpnName(kTypes[i]), now_ns, output);
-  // A button may be held already.
+  // A button may already be pressed.
   const auto ball = segment_.ball.newest();
   buttons_ = ball ? ball->buttons : 0;
   send(kBall, kButtonStates, vrpnButtons(buttons_, kButtons), now_ns, output);
@@ -170,7 +170,8 @@ void VrpnSession::handle(const VrpnMessage& m, std::string& output) {
 }
 
 void VrpnSession::describe(const VrpnMessage& m) {
-  constexpr std::size_t kMostNumbers = 64;  // for the same few names
+  constexpr std::size_t kMostNumbers =
+      64;  // limits memory: a client could give the same name many numbers
   senders_.erase(m.sender);
   const auto name = readVrpnName(m.payload);
   const auto* known = std::find(std::begin(kSenders), std::end(kSenders), name.value_or(""));
@@ -231,11 +232,11 @@ void VrpnServer::round() {
   tellSamples();
 }
 
-// A client that asks by UDP is connected to. Only on this machine, whatever the datagram says: the
-// server must be nobody's reflector.
+// Connects to clients that ask by UDP; only on this machine, whatever host the datagram names, so
+// that the server cannot be used as a reflector.
 void VrpnServer::answerDatagrams() {
   char datagram[256];
-  for (int i = 0; i < 64; ++i) {  // what is left waits for the next round
+  for (int i = 0; i < 64; ++i) {  // further datagrams wait for the next round
     const ssize_t n = ::recv(udp_.get(), datagram, sizeof datagram, 0);
     if (n < 0) return;
     const auto callback = readVrpnCallback({datagram, static_cast<std::size_t>(n)});

@@ -22,14 +22,14 @@ namespace merlin::serve {
 
 class VrpnSession;
 
-// Devices: Hand0 (tracker, sensor 0, smoothed; analog, 23 joints in radians), Tracker0 (tracker,
-// sensors 0 to 3), Ball0 (analog, 6 shares of full scale; buttons). Positions in metres, in the
-// transmitter's frame. Over TCP, asked for by TCP or by UDP. Owns its threads; reads the segment as
-// any client does.
+// Devices: Hand0 (tracker, sensor 0, smoothed; analog, 23 joint angles in radians), Tracker0
+// (tracker, sensors 0 to 3), Ball0 (analog, 6 shares of full scale; buttons). Positions are in
+// metres, in the transmitter's frame. Data are sent over TCP; clients connect by TCP or ask by UDP.
+// Owns its threads; reads the segment as any client does.
 class VrpnServer final : public net::Server {
  public:
-  // `port` 0 takes any free one. Errors: listenTcp()'s. `segment`, `watch` and `clock` outlive
-  // this.
+  // `port` 0 takes any free one. Errors: those of listenTcp(). `segment`, `watch` and `clock` must
+  // outlive the server.
   static Result<std::unique_ptr<VrpnServer>> start(int port, const shm::DevicesSegment& segment,
                                                    ThreadWatch& watch, const Clock& clock);
   ~VrpnServer() override;
@@ -55,7 +55,7 @@ class VrpnServer final : public net::Server {
   int port_;
   const shm::DevicesSegment& segment_;
   const Clock& clock_;
-  std::set<int> connected_back_;  // ports, each while its connection lives; outlives server_
+  std::set<int> connected_back_;  // clients' ports that we are connected to; must outlive server_
   net::ConnectionServer server_;
   TokenBucket datagrams_;
   std::uint64_t seen_hand_, seen_ball_;

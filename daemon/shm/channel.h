@@ -1,5 +1,5 @@
-// Channel: one device's samples in shared memory: the newest, a ring of the last, and a word to
-// wait on.
+// Channel: one device's samples in shared memory: the newest sample, a ring of the last 256, and a
+// futex word to wait on.
 #pragma once
 
 #include <array>
@@ -18,13 +18,13 @@ namespace merlin::shm {
 
 inline constexpr std::size_t kHistory = 256;
 
-// One writing thread. Each channel has cache lines of its own, so that one device's writes never
-// disturb a reader of another.
+// One thread writes. Each channel has cache lines of its own, so that writes to one never slow down
+// readers of another.
 template <typename T>
 class alignas(64) Channel {
  public:
-  // Wait-free but for one futex call, which wakes whoever waits and is nothing otherwise.
-  // REQUIRES: called from one thread only.
+  // Wait-free except for one futex call, which wakes waiting readers. REQUIRES: called from one
+  // thread only.
   void publish(const T& sample) noexcept {
     const auto n = count_.load(std::memory_order_relaxed);
     ring_[n % kHistory].publish(sample);
@@ -36,25 +36,25 @@ class alignas(64) Channel {
 
   std::optional<T> newest() const noexcept { return newest_.read(); }
 
-  // How many were published since the segment was made.
+  // Number of samples published since the segment was created.
   std::uint64_t count() const noexcept { return count_.load(std::memory_order_acquire); }
 
-  // Sample number n, counted from 0; nothing where it is not there yet, or no longer.
+  // Sample number n, counted from 0; nothing if it was not published yet or was overwritten.
   std::optional<T> at(std::uint64_t n) const noexcept {
     if (n >= count() || n + kHistory <= count()) return std::nullopt;
     const auto sample = ring_[n % kHistory].read();
-    return n + kHistory > count() ? sample : std::nullopt;  // overtaken while it was read
+    return n + kHistory > count() ? sample : std::nullopt;  // overwritten while it was read
   }
 
   // Grows with each sample, for a reader that waits for several channels at once.
   const std::atomic<std::uint32_t>& wakeWord() const noexcept { return wake_; }
 
-  // Where its words lie, for the table of fields.
+  // Offsets of its members, for the table of fields.
   static constexpr std::size_t countOffset() { return offsetof(Channel, count_); }
   static constexpr std::size_t wakeOffset() { return offsetof(Channel, wake_); }
   static constexpr std::size_t ringOffset() { return offsetof(Channel, ring_); }
 
-  // Waits until another sample than number `seen` - 1 is the newest, or `timeout` has passed.
+  // Waits until count() differs from `seen`, or `timeout` has passed; may return early.
   void wait(std::uint64_t seen, timespec timeout) const noexcept {
     const auto word = wake_.load(std::memory_order_acquire);
     if (count() != seen) return;

@@ -24,8 +24,8 @@ void addHeader(FieldTable& t) {
   MERLIN_FIELD(t, Header, command_endpoint, "");
 }
 
-// What a reader needs to wait for samples: how many there were, and the futex word. The fields
-// added after it are the samples'; each tells where the ring of the last 256 lies.
+// Adds what a reader needs to wait for samples: their count and the futex word. The fields added
+// afterwards are those of a sample; each has the offset of the ring of the last 256 samples.
 template <typename T>
 void channel(FieldTable& t, const std::string& name, std::size_t offset) {
   t.bare(name, offset);
@@ -127,7 +127,7 @@ void addPanel(FieldTable& t) {
   MERLIN_FIELD(t, GpioSample, wait_s, "s");
 }
 
-// What the wall shows, and how it keeps its rate.
+// Adds the first part of WallStats.
 void addWall(FieldTable& t) {
   t.slot("wall", offsetof(WallSegment, stats));
   MERLIN_FIELD(t, WallStats, updated_ns, "ns");
@@ -151,7 +151,7 @@ void addWall(FieldTable& t) {
   MERLIN_FIELD(t, WallStats, head_room, "");
 }
 
-// The rest of the same slot.
+// Adds the rest of WallStats.
 void addPace(FieldTable& t) {
   MERLIN_FIELD(t, WallStats, cost_fixed_ms, "ms");
   MERLIN_FIELD(t, WallStats, cost_coefficient_us, "us");

@@ -1,5 +1,5 @@
-// The tables that describe the segments to readers without a header: every field by name, type,
-// offset and unit. Written into the segments, printed by `merlin shm dump`.
+// The tables that describe the segments to readers that do not include layout.h: name, type, offset
+// and unit of every field. They are stored in the segments and printed by `merlin shm dump`.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-/* Prints values from MERLIN's shared memory, by the table of fields that it carries, and follows a
- * device without missing a sample: read_merlin SEGMENT FIELD ... [--follow FIELD COUNT].
+/* Prints values from MERLIN's shared memory, using the table of fields in it, and follows a device
+ * without missing a sample: read_merlin SEGMENT FIELD ... [--follow FIELD COUNT].
  * Plain C99, no header of MERLIN's. Build: cc -std=gnu99 -O2 read_merlin.c -o read_merlin */
 #include <fcntl.h>
 #include <linux/futex.h>
@@ -13,7 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* daemon/base/field_table.h says what each of these means. */
+/* daemon/base/field_table.h explains these members. */
 struct field {
   char name[48], unit[24], type[8];
   uint32_t count, step, offset, slot, ring, ring_stride, ring_slots, reserved;
@@ -35,9 +35,9 @@ static size_t width(const char* type) {
   return strchr("qQd", type[0]) ? 8 : strchr("iIf", type[0]) ? 4 : strchr("hH", type[0]) ? 2 : 1;
 }
 
-/* Copies the values at `from`, whole, into `to`: the sequence at `slot` is even, and the same before
- * and after. A field without a slot has no sequence. At most 1000 tries, so that a writer that died
- * in the middle of a value costs no more than that. Returns 0 for a value that was never written. */
+/* Copies the values at `from` consistently into `to`: the sequence number at `slot` is even, and the
+ * same before and after. A field without a slot has no sequence number. At most 1000 tries, in case
+ * the writer died while writing. Returns 0 if that fails or the value was never written. */
 static int copy_values(const struct field* f, uint64_t slot, uint64_t from, void* to, size_t most) {
   size_t bytes = (f->count - 1) * (size_t)f->step + width(f->type);
   if (bytes > most) return 0;
@@ -87,8 +87,8 @@ static void print_newest(const struct field* f) {
   else puts(" -");
 }
 
-/* Sample number n of a channel, from its ring; `counter` is the field CHANNEL.count. A sample that
- * was overwritten before it was read is reported, not mixed up with the newer one. */
+/* Prints sample number n of a channel, from its ring; `counter` is the field CHANNEL.count. Prints
+ * "missed" if the sample was overwritten before it was read. */
 static void print_sample(const struct field* f, const struct field* counter, uint64_t n) {
   char values[4096];
   uint64_t slot = f->ring + (n % f->ring_slots) * f->ring_stride;
@@ -110,7 +110,7 @@ static void follow(const char* name, uint64_t count) {
   const uint32_t* wake = (const uint32_t*)(memory + find(other)->offset);
   uint64_t seen = word(counter->offset), last = seen + count;
   while (seen < last) {
-    uint32_t before = __atomic_load_n(wake, __ATOMIC_ACQUIRE); /* before the count is looked at */
+    uint32_t before = __atomic_load_n(wake, __ATOMIC_ACQUIRE); /* read before the count */
     struct timespec limit = {2, 0};
     if (word(counter->offset) == seen && syscall(SYS_futex, wake, FUTEX_WAIT, before, &limit, 0, 0) &&
         word(counter->offset) == seen) { fprintf(stderr, "read_merlin: no sample for 2 s\n"); exit(1); }

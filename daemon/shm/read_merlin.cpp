@@ -15,7 +15,7 @@
 
 using merlin::shm::DevicesSegment;
 
-// Maps the segment read-only; null where there is none that this program knows.
+// Maps the segment read-only; null if there is none that this program knows.
 static const DevicesSegment* map(const std::string& name) {
   const int fd = ::open(("/dev/shm/" + name).c_str(), O_RDONLY | O_CLOEXEC);
   struct stat status {};

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Prints the newest values from MERLIN's shared memory: read_merlin.py [SEGMENT [FIELD ...]]
 
-Needs nothing but Python 3: the segment describes itself. SEGMENT is merlin-devices, merlin-wall or
-merlin-framebuffer.
+Needs only Python 3, because the segment describes itself. SEGMENT is merlin-devices, merlin-wall
+or merlin-framebuffer.
 """
 import mmap, struct, sys
 
@@ -14,13 +14,13 @@ def text(raw):
     return raw.split(b"\0")[0].decode(errors="replace")
 
 def values(memory, type_, count, step, offset):
-    """`type_` is a format of the struct module for one value; they lie `step` bytes apart."""
+    """The values of a field. `type_`: struct format of one value; `step`: bytes between values."""
     found = [struct.unpack_from("<" + type_, memory, offset + i * step)[0] for i in range(count)]
     return [text(v) if isinstance(v, bytes) else v for v in found]
 
 def read(memory, type_, count, step, offset, slot):
-    """A field's newest values, whole: the sequence of its slot is even, and the same before and
-    after. None where it was never written. A field without a slot has no sequence."""
+    """A consistent copy of a field's newest values: the sequence number of its slot is even, and the
+    same before and after. None if it was never written. A field without a slot has no sequence."""
     for _ in range(1000):
         before, = struct.unpack_from("<Q", memory, slot) if slot else (2,)
         found = values(memory, type_, count, step, offset)

@@ -19,7 +19,7 @@ void setText(char (&field)[N], const std::string& text) {
   field[n] = '\0';
 }
 
-// The table's entries lie inside the segment, each at least as long as those that we read.
+// Whether the table lies inside the segment and its entries are at least as long as Field.
 bool tableFits(const Header& h, std::size_t size) {
   if (h.field_count == 0) return true;
   const std::uint64_t end = h.field_offset + std::uint64_t{h.field_count} * h.field_size;
@@ -50,19 +50,21 @@ void fillHeader(Header& h, std::size_t size, std::uint64_t generation, Timestamp
   setText(h.status_endpoint, endpoints.status);
   setText(h.command_endpoint, endpoints.command);
   h.version = kVersion;
-  std::atomic_ref(h.magic).store(kMagic,
-                                 std::memory_order_release);  // last: a reader sees all or none
+  std::atomic_ref(h.magic).store(
+      kMagic,
+      std::memory_order_release);  // last: a reader sees the complete header or none
 }
 
 Result<Ok> checkHeader(const SharedMemory& memory, std::size_t least_size,
                        const std::string& name) {
   if (memory.size() < sizeof(Header)) {
     return Error{Errc::kMalformed,
-                 fmt::format("shared memory {}: {} bytes are too few", name, memory.size())};
+                 fmt::format("shared memory {}: is too small ({} bytes)", name, memory.size())};
   }
   const auto& h = *reinterpret_cast<const Header*>(memory.data());
   if (h.magic != kMagic) {
-    return Error{Errc::kMalformed, fmt::format("shared memory {}: is none of MERLIN's", name)};
+    return Error{Errc::kMalformed,
+                 fmt::format("shared memory {}: is not a segment of MERLIN", name)};
   }
   if (h.version != kVersion) {
     return Error{Errc::kUnsupported,

@@ -1,4 +1,4 @@
-// Segments: the writer's (made once, by the daemon) and the reader's (any process, any time).
+// Access to segments for their writer, the daemon, and for readers, any process.
 #pragma once
 
 #include <optional>
@@ -11,30 +11,32 @@
 
 namespace merlin::shm {
 
-// "/merlin-devices" for instance "merlin" and "devices". An instance's name keeps two daemons on
-// one machine, and tests from a daemon, apart.
+// The name of a segment, "/merlin-devices" for instance "merlin" and "devices". The instance
+// distinguishes daemons on one machine, and tests from a daemon.
 std::string segmentName(const std::string& instance, const char* what);
 
+// Addresses of a role's ZeroMQ sockets.
 struct Endpoints {
   std::string status, command;
 };
 
-// What the writer fills into a header. `generation` is new at each start.
+// Fills in a header. `generation` must be new at each start.
 void fillHeader(Header& header, std::size_t size, std::uint64_t generation, Timestamp now,
                 const Endpoints& endpoints);
 
-// A number that no other start of the daemon has used.
+// A random number, not 0, that no other start of the daemon has used.
 std::uint64_t newGeneration();
 
-// Errors: kMalformed (not ours, too short), kUnsupported (another version); name the segment.
+// Checks a segment's header. Errors, with the segment's name: kMalformed (not MERLIN's, too small,
+// damaged), kUnsupported (another version).
 Result<Ok> checkHeader(const SharedMemory& memory, std::size_t least_size, const std::string& name);
 
-// Owns a segment and writes it. Segment is DevicesSegment or WallSegment. The slots' writers are
-// the threads that layout.h names; beat() is for one thread more.
+// Owns a segment for writing. Segment is DevicesSegment or WallSegment. layout.h names the thread
+// that writes each slot; beat() must be called from one thread.
 template <typename Segment>
 class SegmentWriter {
  public:
-  // Errors: kBusy (a living daemon owns it), kIo.
+  // Creates the segment. Errors: kBusy (a running daemon owns it), kIo.
   static Result<SegmentWriter> make(const std::string& name, const std::vector<Field>& fields,
                                     std::uint64_t generation, Timestamp now,
                                     const Endpoints& endpoints);
@@ -42,13 +44,14 @@ class SegmentWriter {
   Segment& operator*() const { return *reinterpret_cast<Segment*>(memory_.data()); }
   Segment* operator->() const { return &**this; }
 
+  // Writes the heartbeat; to be called ten times a second.
   void beat(Timestamp now) const {
     Header& header = (*this)->header;
     header.heartbeat_ns.store(toNanoseconds(now), std::memory_order_relaxed);
     header.realtime_offset_ns.store(realtimeOffset().count(), std::memory_order_relaxed);
   }
 
-  // Once a second, from beat()'s thread: SharedMemory::mend().
+  // SharedMemory::mend(); to be called once a second from beat()'s thread.
   Result<std::string> mend() { return memory_.mend(); }
 
  private:
@@ -60,14 +63,14 @@ class SegmentWriter {
 template <typename Segment>
 class SegmentReader {
  public:
-  // Errors: kNotFound (no daemon has made it), kMalformed, kUnsupported.
+  // Errors: kNotFound (no daemon has created it), kIo, kMalformed, kUnsupported.
   static Result<SegmentReader> open(const std::string& name,
                                     SharedMemory::From from = SharedMemory::From::kAnyone);
 
   const Segment& operator*() const { return *reinterpret_cast<const Segment*>(memory_.data()); }
   const Segment* operator->() const { return &**this; }
 
-  // False once its daemon is gone (killed, or stopped and started anew): open it again.
+  // False once its daemon has ended or was restarted: open the segment again.
   bool alive(Timestamp now) const {
     constexpr Duration kGone = std::chrono::seconds(1);
     return now - fromNanoseconds((*this)->header.heartbeat_ns.load(std::memory_order_relaxed)) <
@@ -79,14 +82,14 @@ class SegmentReader {
   SharedMemory memory_;
 };
 
-// As SegmentReader, for a daemon, which outlives others: opens the segment when there is one of its
-// own user or root, and again after its daemon was started anew. Thread-bound.
+// A SegmentReader for a daemon, which may outlive the segment's owner: opens the segment when one
+// of its own user or root exists, and again after its owner was restarted. Thread-bound.
 template <typename Segment>
 class SegmentFollower {
  public:
   explicit SegmentFollower(std::string name) : name_(std::move(name)) {}
 
-  // The segment, or null while no living daemon has one. Tries to open at most twice a second.
+  // The segment, or null while no running daemon has one. Tries to open it at most twice a second.
   const Segment* get(Timestamp now);
 
  private:

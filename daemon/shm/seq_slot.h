@@ -1,4 +1,4 @@
-// SeqSlot: the newest value of T between one writer and any number of readers, in any process.
+// SeqSlot: passes the newest value of T from one writer to any number of readers in any process.
 #pragma once
 
 #include <array>
@@ -10,14 +10,15 @@
 
 namespace merlin::shm {
 
-// publish() is wait-free; read() never blocks the writer. A reader sees one whole published value
-// or nothing, never a mix of two. There is no queue: a value nobody read is gone, by design.
+// publish() is wait-free; read() never blocks the writer. A reader gets one complete published
+// value or nothing, never a mix of two. There is no queue: a value is lost when the next one is
+// published.
 //
-// The payload is an array of atomics rather than plain memory, so that a read that races a write
-// is a lost race and not undefined behaviour (and stays silent under ThreadSanitizer).
+// The payload is an array of atomics rather than plain memory, so that a read during a write is not
+// undefined behaviour but is detected and repeated (and ThreadSanitizer accepts it).
 // Source: H.-J. Boehm, "Can Seqlocks Get Along With Programming Language Memory Models?", 2012.
 //
-// In memory: sequence (u64, odd while a value is being written), then T, padded to 8 bytes.
+// In memory: sequence number (u64, odd while a value is being written), then T, padded to 8 bytes.
 template <typename T>
 class SeqSlot {
   static_assert(std::is_trivially_copyable_v<T>, "T crosses a process border");
@@ -28,8 +29,8 @@ class SeqSlot {
   void publish(const T& value) noexcept {
     Words words{};
     std::memcpy(words.data(), &value, sizeof value);
-    // Odd: being written. So it may be found as well, where the memory was made again from a copy
-    // that was taken during a write (SharedMemory::mend()).
+    // Odd while a value is being written. It may already be odd here if the memory was restored
+    // from a copy made during a write (SharedMemory::mend()).
     const auto odd = (sequence_.load(std::memory_order_relaxed) + 1) | 1;
     sequence_.store(odd, std::memory_order_relaxed);
     for (std::size_t i = 0; i < kWords; ++i) {
@@ -38,8 +39,8 @@ class SeqSlot {
     sequence_.store(odd + 1, std::memory_order_release);
   }
 
-  // The last published value; nothing before the first publish(), or where kTries reads in a row
-  // met a write (a writer that died in the middle of one, for example).
+  // The last published value; nothing before the first publish(), or if kTries reads in a row met a
+  // write (for example after the writer died while writing).
   std::optional<T> read() const noexcept {
     for (int i = 0; i < kTries; ++i) {
       const auto before = sequence_.load(std::memory_order_acquire);

@@ -1,4 +1,4 @@
-// ShmSink: samples and health from device threads into the devices' segment.
+// ShmSink: writes samples and health from the device threads into the devices' segment.
 #pragma once
 
 #include "daemon/shm/layout.h"

@@ -32,7 +32,8 @@ Result<std::string> askOnce(const std::string& command_endpoint, const std::stri
     const auto json = nlohmann::json::parse(answer.to_string_view(), nullptr, false);
     if (json.is_object() && json.value("ok", false) && json.contains("result"))
       return json["result"].dump();
-    const std::string why = json.is_object() ? json.value("error", "no reason") : "no JSON";
+    const std::string why =
+        json.is_object() ? json.value("error", "no reason") : "the answer is not JSON";
     return Error{Errc::kInvalidArgument, fmt::format("{}: {}", command_endpoint, why)};
   } catch (const std::exception& e) {
     return Error{Errc::kIo, fmt::format("{}: {}", command_endpoint, e.what())};

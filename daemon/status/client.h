@@ -1,4 +1,4 @@
-// The other side of StatusServer, for `merlin`: ask a command, follow topics.
+// The client of StatusServer, for `merlin`: sends commands and follows topics.
 #pragma once
 
 #include <functional>
@@ -10,15 +10,15 @@
 
 namespace merlin::status {
 
-// Sends {"command": name}, with "argument" where there is one; returns the JSON text of "result".
-// Errors: kTimeout (the daemon is there and does not answer), kIo; what the daemon refused,
-// kInvalidArgument. A connection that the daemon closed (strangers held every place) takes a
-// request with it: `status`, which changes nothing, is asked again every second until `timeout`.
+// Sends {"command": name}, with "argument" if it is not empty; returns the JSON text of "result".
+// Errors: kTimeout (no answer), kInvalidArgument (the daemon refused the command), kIo. If the
+// daemon closes the connection (all places taken), the request is lost; `status`, which changes
+// nothing, is therefore sent again every second until `timeout`.
 Result<std::string> ask(const std::string& command_endpoint, const std::string& command,
                         Duration timeout, const std::string& argument = "");
 
-// Calls `take` with each document of these topics, from all endpoints, until it returns false or
-// nothing has come for `patience` (kTimeout). Errors: kIo, kTimeout.
+// Calls `take` with each document of these topics, from all endpoints, until it returns false.
+// Errors: kTimeout (nothing was received for `patience`), kIo.
 Result<Ok> follow(
     const std::vector<std::string>& status_endpoints, const std::vector<std::string>& topics,
     Duration patience,

@@ -33,7 +33,7 @@ bool isKey(const std::string& text) {
 Result<KeyPair> makeKeyPair() {
   char public_key[kKeyLength + 1], secret_key[kKeyLength + 1];
   if (::zmq_curve_keypair(public_key, secret_key) != 0)
-    return Error{Errc::kUnsupported, "this libzmq has no CURVE"};
+    return Error{Errc::kUnsupported, "this libzmq was built without CURVE"};
   return KeyPair{public_key, secret_key};
 }
 
@@ -56,9 +56,8 @@ Result<KeyPair> readKeyPair(const std::string& path) {
     if (name == "secret") keys.secret_key = key;
   }
   if (isKey(keys.public_key) && isKey(keys.secret_key)) return keys;
-  return Error{
-      Errc::kMalformed,
-      fmt::format("{}: holds no pair of keys; make one with: merlin keys -o {}", path, path)};
+  return Error{Errc::kMalformed,
+               fmt::format("{}: has no key pair; make one with: merlin keys -o {}", path, path)};
 }
 
 Result<std::vector<std::string>> readPublicKeys(const std::string& path) {
@@ -76,8 +75,8 @@ Result<std::vector<std::string>> readPublicKeys(const std::string& path) {
     if (!isKey(key)) {
       return Error{
           Errc::kMalformed,
-          fmt::format("{}: line {}: \"{}\" is no public key (40 characters, as merlin keys "
-                      "prints them)",
+          fmt::format("{}: line {}: \"{}\" is not a valid public key (40 characters, as merlin "
+                      "keys prints them)",
                       path, number, key)};
     }
     keys.push_back(key);

@@ -1,4 +1,4 @@
-// Keys of CURVE, ZeroMQ's encryption: who may listen to a daemon over a network.
+// Keys of CURVE, ZeroMQ's encryption, which decides who may receive samples over a network.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace merlin::status {
 
-// Each 40 characters of Z85.
+// Each key is 40 characters of Z85 (ZeroMQ RFC 32).
 struct KeyPair {
   std::string public_key, secret_key;
 };
@@ -16,21 +16,23 @@ struct KeyPair {
 // Errors: kUnsupported (a libzmq without CURVE).
 Result<KeyPair> makeKeyPair();
 
-// A file of two lines, "public KEY" and "secret KEY", that nobody but its owner may read.
-// Errors: kNotFound, kIo, kMalformed, naming the file.
+// Write and read a file of two lines, "public KEY" and "secret KEY", which only its owner can read.
+// Errors, with the file's name: kNotFound, kIo, kMalformed.
 Result<Ok> writeKeyPair(const std::string& path, const KeyPair& keys);
 Result<KeyPair> readKeyPair(const std::string& path);
 
-// Public keys, one a line; what follows a '#' is a comment. Errors: as above, naming the line.
+// Reads a file of public keys, one per line; '#' begins a comment. Errors: kNotFound, kIo,
+// kMalformed, with the file's name and the line.
 Result<std::vector<std::string>> readPublicKeys(const std::string& path);
 
+// Whether the text is a valid key.
 bool isKey(const std::string& text);
 
-// What a server of samples needs.
+// Settings of the server of samples for other machines.
 struct CurveServer {
   std::string endpoint;  // "tcp://*:7401"; empty: none
   KeyPair keys;
-  std::vector<std::string> clients;  // public keys of those who may listen
+  std::vector<std::string> clients;  // public keys of the clients that may connect
 };
 
 }  // namespace merlin::status

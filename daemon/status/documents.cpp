@@ -27,11 +27,12 @@ std::string timeUtc(const shm::Header& header, Timestamp now) {
   return isoUtc(toNanoseconds(now) + header.realtime_offset_ns.load(std::memory_order_relaxed));
 }
 
-// As short as a reader needs it.
+// Rounds to three decimals; 0 if not finite.
 double round3(double value) { return std::isfinite(value) ? std::round(value * 1000) / 1000 : 0; }
 
 std::string dump(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);  // device text may be no UTF-8
+  return json.dump(-1, ' ', false,
+                   Json::error_handler_t::replace);  // device texts may be invalid UTF-8
 }
 
 template <std::size_t N>
@@ -39,7 +40,7 @@ std::string text(const char (&field)[N]) {
   return {field, strnlen(field, N)};
 }
 
-// Samples are measurements: a micrometre, a microradian.
+// Rounds to six decimals (a micrometre, a microradian), enough for measurements.
 template <typename T>
 Json list(std::span<const T> values) {
   Json json = Json::array();
@@ -57,7 +58,7 @@ Json integers(std::span<const T> values) {
   return json;
 }
 
-// How each device is, for a client that has nothing but this document.
+// Short health of each device, for a client that only receives samples.
 Json briefHealth(const shm::DevicesSegment& segment) {
   Json all = Json::object();
   for (std::size_t i = 0; i < shm::kDevices; ++i) {
@@ -87,7 +88,7 @@ Json handJson(const HandSample& h) {
           {"delay_s", h.delay_s}};
 }
 
-// Null while no hand points; pixel null where no wall tile shows what it points at.
+// Null while no hand points; "pixel" is null if no wall tile shows the place pointed at.
 Json pointerJson(const shm::WallInteraction& h) {
   if (h.pointing == shm::WallInteraction::kNone) return nullptr;
   Json pixel = nullptr;
@@ -109,7 +110,7 @@ Json deviceJson(const DeviceHealth& h, Timestamp now) {
           {"bad_packets", h.bad_packets}, {"bad_bytes", h.bad_bytes}};
 }
 
-// What is held, what the newest record shows, and how sure that is.
+// The current posture (after the minimum hold time), the one of the newest record, and its margin.
 Json postureJson(const shm::DevicesSegment& segment, Timestamp now) {
   const auto held = segment.posture_state.read();
   const auto shown = segment.posture.newest();
@@ -125,7 +126,7 @@ Json postureJson(const shm::DevicesSegment& segment, Timestamp now) {
           {"age_s", ageSeconds(held->received_ns, now)}};
 }
 
-// Who serves other programs, and whom it sent away.
+// The servers for other programs, with their counters of refused and closed connections.
 Json serversJson(const std::vector<net::ServerHealth>& servers) {
   Json all = Json::object();
   for (const net::ServerHealth& s : servers) {
@@ -351,7 +352,7 @@ std::string wallMetrics(const shm::WallSegment& segment) {
                {"cost_fixed_ms", round3(s.cost_fixed_ms)},
                {"cost_coefficient_us", round3(s.cost_coefficient_us)},
                {"cost_exponent", round3(s.cost_exponent)}};
-  // Frames whose work took up to so many sixteenths of the period, and more than one fewer.
+  // work_sixteenths_N: frames whose work took between (N - 1)/16 and N/16 of the period.
   for (std::size_t i = 0; i < std::size(s.work_histogram); ++i)
     json["work_sixteenths_" + std::to_string(i + 1) + "_total"] = s.work_histogram[i];
   return dump(json);

@@ -1,6 +1,6 @@
-// EndedThreads: a thread that serves others ends on nothing but its stop. One that ended all the
-// same is said, as an event and as the health of a service, and then the daemon has to end, so that
-// systemd starts it again.
+// EndedThreads: finds threads that have ended though nobody stopped them. Such an end is reported
+// as an event and as the health of a service; then the daemon has to end, so that systemd restarts
+// it.
 #pragma once
 
 #include <optional>
@@ -18,8 +18,8 @@ class EndedThreads {
   // Both outlive this.
   EndedThreads(const ThreadWatch& watch, Services& services) : watch_(watch), services_(services) {}
 
-  // To be called several times a second. Says at once which thread has ended; half a second later,
-  // when whoever listens has heard it, the error that the daemon ends with.
+  // To be called several times a second. Reports an ended thread at once; half a second later, when
+  // clients have received the report, returns the error with which the daemon shall end.
   std::optional<Error> check(Timestamp now);
 
  private:

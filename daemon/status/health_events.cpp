@@ -13,7 +13,7 @@ std::vector<std::string> HealthEvents::take(Timestamp now) {
   std::vector<std::string> events;
   for (std::size_t i = 0; i < shm::kDevices; ++i) {
     const auto health = segment_.health[i].read();
-    // Opening is no event: an absent device is opened again every second.
+    // Opening is not an event: an absent device is opened again every second.
     if (!health || health->state == HealthState::kOpening) continue;
     const std::string_view state = healthName(*health, now);
     const std::string_view why = health->state == HealthState::kOk && health->reason[0] == '\0'

@@ -1,5 +1,4 @@
-// HealthEvents: what changed of the devices since the last look, as sentences and as event
-// documents.
+// HealthEvents: changes of the devices' health, as sentences.
 #pragma once
 
 #include <array>
@@ -16,8 +15,8 @@ class HealthEvents {
  public:
   explicit HealthEvents(const shm::DevicesSegment& segment) : segment_(segment) {}
 
-  // "glove: ok (CyberGlove, 22 sensors)", "tracker: absent (/run/merlin/t: No such file)"; a device
-  // that only tries again and again is told once.
+  // The changes since the last call: "glove: ok (CyberGlove, 22 sensors)", "tracker: absent
+  // (/run/merlin/t: No such file)". A device that is retried with the same result is reported once.
   std::vector<std::string> take(Timestamp now);
 
  private:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Follows what MERLIN publishes, or sends it a command, over ZeroMQ (Debian: python3-zmq).
+"""Follows a topic of MERLIN, or sends it a command, over ZeroMQ (Debian: python3-zmq).
 
     read_status.py merlin-devices sample 10      prints 10 documents of the topic "sample"
     read_status.py merlin-wall --command status  sends a command and prints its result

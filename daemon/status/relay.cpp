@@ -20,7 +20,7 @@ namespace {
 
 constexpr Duration kRound = std::chrono::milliseconds(200);
 constexpr Duration kLook = std::chrono::seconds(1);
-constexpr std::size_t kMostToFar = 16384;  // held for libzmq; it takes all at once as a rule
+constexpr std::size_t kMostToFar = 16384;  // buffered for libzmq, which usually takes all at once
 constexpr unsigned kMode = 0660;           // the daemon's user and group
 constexpr std::string_view kIpc = "ipc://", kTcp = "tcp://";
 
@@ -50,7 +50,7 @@ class RelaySession final : public net::Session {
     if (const auto written = writeFar(); !written) return written.error();
     return Taken{accepted->bytes, accepted->frames};
   }
-  // The handshake is through. A client that only connects never comes so far.
+  // Whether the handshake is complete; a client that only connects never gets so far.
   bool established() const noexcept override { return from_far_.ready(); }
 
   int farFd() const noexcept override { return far_.get(); }
@@ -60,7 +60,8 @@ class RelaySession final : public net::Session {
         ::send(far_.get(), to_far_.data(), to_far_.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     if (n > 0) to_far_.erase(0, static_cast<std::size_t>(n));
     const bool gone = n < 0 && errno != EAGAIN && errno != EINTR;
-    if (gone || to_far_.size() > kMostToFar) return Error{Errc::kClosed, "libzmq closed it"};
+    if (gone || to_far_.size() > kMostToFar)
+      return Error{Errc::kClosed, "libzmq closed the connection"};
     return Ok{};
   }
   Result<Ok> readFar(std::size_t room, std::string& output) override {
@@ -69,7 +70,7 @@ class RelaySession final : public net::Session {
     const ssize_t n = room == 0 ? -1 : ::recv(far_.get(), output.data() + held, room, MSG_DONTWAIT);
     output.resize(held + static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
     if (n == 0 || (n < 0 && room > 0 && errno != EAGAIN && errno != EINTR))
-      return Error{Errc::kClosed, "libzmq closed it"};
+      return Error{Errc::kClosed, "libzmq closed the connection"};
     if (!from_far_.ready()) {
       if (const auto followed =
               from_far_.follow(std::string_view(output).substr(held), ~std::size_t{0});
@@ -164,7 +165,7 @@ void Relay::run(const std::stop_token& stop, Progress& progress) {
   }
 }
 
-// Whoever removed the socket's file (or its folder) did not mean the daemon to be out of reach.
+// If the socket's file (or its folder) was removed, creates it again, so that clients can connect.
 void Relay::listenAgainWhereGone() {
   const Timestamp now = clock_.now();
   if (path().empty() || now - looked_ < kLook) return;
@@ -175,7 +176,7 @@ void Relay::listenAgainWhereGone() {
   server_.stopListening();
   const auto listening = listen();
   if (listening)
-    logWarning("{}: its socket {} was removed and is there again", settings_.name, path());
+    logWarning("{}: its socket {} was removed and has been created again", settings_.name, path());
 }
 
 }  // namespace merlin::status

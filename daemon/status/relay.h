@@ -1,8 +1,8 @@
-// Relay: accepts clients at a public address and passes them on to a ZeroMQ socket behind it.
+// Relay: accepts clients at a public address and connects them to a ZeroMQ socket behind it.
 //
-// libzmq accepts by itself, without a limit of connections or memory; what it cannot do is done
-// here, before it (README.md, "Why a relay"). Its own socket is bound to an inner address that only
-// the daemon's user may open.
+// libzmq accepts connections by itself, without a limit on their number or memory; the relay
+// applies these limits before libzmq (README.md, "Why a relay"). libzmq's own socket is bound to an
+// inner address that only the daemon's user may open.
 #pragma once
 
 #include <memory>
@@ -18,8 +18,8 @@ namespace merlin::status {
 
 struct RelaySettings {
   std::string name;      // for reports: "status of the wall"
-  std::string endpoint;  // public: "ipc://PATH" or "tcp://ADDRESS:PORT", ADDRESS an IPv4 one or '*'
-  std::string inner;     // path of the local socket that libzmq is bound to
+  std::string endpoint;  // public: "ipc://PATH" or "tcp://ADDRESS:PORT"; ADDRESS: IPv4 or '*'
+  std::string inner;     // path of the local socket to which libzmq is bound
   net::ServerLimits limits;
   ZmtpLimits zmtp;
 };
@@ -27,7 +27,7 @@ struct RelaySettings {
 // Owns its thread.
 class Relay final : public net::Server {
  public:
-  // Errors: listenLocal()'s and listenTcp()'s; kInvalidArgument (not such an endpoint).
+  // Errors: those of listenLocal() and listenTcp(); kInvalidArgument (an invalid endpoint).
   static Result<std::unique_ptr<Relay>> start(RelaySettings settings, ThreadWatch& watch,
                                               const Clock& clock);
   ~Relay() override;  // removes its socket's file
@@ -43,13 +43,13 @@ class Relay final : public net::Server {
   Result<Ok> listen();
   void run(const std::stop_token& stop, Progress& progress);
   void listenAgainWhereGone();
-  std::string path() const;  // of a local public address; empty for TCP
+  std::string path() const;  // path of a local public address; empty for TCP
 
   RelaySettings settings_;
   const Clock& clock_;
   net::ConnectionServer server_;
   std::uint64_t file_ = 0;  // inode of the public socket's file
-  Timestamp looked_{};      // whether it is there
+  Timestamp looked_{};      // when the file was last checked
   WatchedThread thread_;
 };
 

@@ -35,21 +35,22 @@ std::string parentOf(const std::string& path) {
 
 Result<Ok> checkRunDirectory(const std::string& wanted) {
   std::string path = wanted.empty() ? usual() : wanted;
-  // A UNIX socket's name has 107 bytes at most.
+  // The path of a UNIX socket has at most 107 bytes.
   if (path.size() > 70)
-    return Error{Errc::kIo, fmt::format("{}: is too long for sockets in it", path)};
+    return Error{Errc::kIo,
+                 fmt::format("{}: the name is too long for sockets in this folder", path)};
   while (path.size() > 1 && path.back() == '/') path.pop_back();  // lstat() would follow a link
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0) return Ok{};
   const bool link = S_ISLNK(status.st_mode);
-  // Who may write to the folder could put his sockets into the place of ours. Root checks a
-  // service's folder for the user that it will run as; where everybody may make folders, one of
-  // another user is nobody's service's.
+  // Anyone who can write to the folder could replace our sockets. Root may check the folder of a
+  // service for the user that it will run as, so it accepts another user's folder; but not in a
+  // folder where everybody can create folders, since no service's folder is there.
   const bool foreign = status.st_uid != ::geteuid() && status.st_uid != 0;
   const bool others = foreign && (::geteuid() != 0 || everybodyWritesTo(parentOf(path)));
   const bool anybody = (status.st_mode & S_IWOTH) != 0 && (status.st_mode & S_ISVTX) == 0;
   if (!link && !others && !anybody && S_ISDIR(status.st_mode)) return Ok{};
-  return Error{Errc::kIo, fmt::format("{}: {}; set run_directory to a folder of this user's", path,
+  return Error{Errc::kIo, fmt::format("{}: {}; set run_directory to a folder of this user", path,
                                       link      ? "is a link"
                                       : others  ? "belongs to another user"
                                       : anybody ? "can be written to by every user"

@@ -1,4 +1,4 @@
-// Where a daemon keeps its sockets and emulators' lines.
+// The folder of a daemon's sockets and emulators' pseudo-terminals.
 #pragma once
 
 #include <string>
@@ -7,14 +7,15 @@
 
 namespace merlin::status {
 
-// `wanted` if not empty; else $RUNTIME_DIRECTORY (systemd's), /run/merlin for root,
-// $XDG_RUNTIME_DIR/merlin, /tmp/merlin-UID. Made if it is not there, mode 0755. Errors: kIo; also
-// where it is another user's (root's is taken; by root any, but not in
-// a folder that is everybody's to write to, as /tmp is), a link, or everybody's to write to.
+// Returns `wanted` if it is not empty; otherwise the first that applies of $RUNTIME_DIRECTORY (set
+// by systemd), /run/merlin (root), $XDG_RUNTIME_DIR/merlin, /tmp/merlin-UID. Creates the folder,
+// mode 0755, if it does not exist. Errors: kIo; also if the folder is a link, is writable for
+// everybody, or belongs to another user. A folder of root's is accepted; root accepts any user's,
+// unless it is in a folder that everybody can write to, such as /tmp.
 Result<std::string> runDirectory(const std::string& wanted);
 
-// Whether runDirectory() would take it, where it is there: its owner, its mode, its length.
-// `wanted` as there. Errors: kIo.
+// Checks whether runDirectory(wanted) would accept the folder, by the length of its name and, if it
+// exists, its owner and mode. Errors: kIo.
 Result<Ok> checkRunDirectory(const std::string& wanted);
 
 }  // namespace merlin::status

@@ -27,7 +27,8 @@ void setText(char (&field)[N], const std::string& text) {
   std::memset(field + n, 0, N - n);
 }
 
-// A number, or a list of as many as the field has; what is of another kind is left as it is.
+// Read a number, or a list of exactly N numbers; `field` is unchanged if the value is of another
+// kind.
 template <typename T>
 void read(const Json& object, const char* key, T& field) {
   const auto found = object.find(key);
@@ -42,7 +43,7 @@ void read(const Json& object, const char* key, T (&field)[N]) {
   }
 }
 
-// Reads one document.
+// Applies one document to the segment.
 class Apply {
  public:
   Apply(const Json& document, const std::string& from, Timestamp now, shm::DevicesSegment& segment)
@@ -60,7 +61,8 @@ class Apply {
   }
 
  private:
-  // As old here as it was there; of a time that there cannot be, 0.
+  // Converts a time stamp of the other machine to this machine's clock, keeping its age; 0 if it
+  // cannot be represented.
   std::int64_t here(std::int64_t there_ns) const {
     std::int64_t age = 0, here = 0;
     if (__builtin_sub_overflow(there_now_ns_, there_ns, &age) ||
@@ -78,7 +80,7 @@ class Apply {
   }
   template <typename T>
   void publish(shm::Channel<T>& channel, const T& sample) {
-    if (!plausible(sample)) return;  // the other machine is believed no more than a device
+    if (!plausible(sample)) return;  // checked like a device's samples: the network is not trusted
     const auto last = channel.newest();
     if (!last || last->counter != sample.counter) channel.publish(sample);
   }
@@ -172,7 +174,8 @@ class Apply {
     setText(h.port, from_);
     setText(h.identity, text("identity"));
     setText(h.reason, text("reason"));
-    // `since` is computed anew from each document and trembles by the network's delay.
+    // since_ns, computed anew from each document, would vary with the network's delay: keep the
+    // first.
     if (last && last->state == h.state) h.since_ns = last->since_ns;
     segment_.health[device].publish(h);
   }
@@ -227,12 +230,12 @@ SampleLink::SampleLink(SampleLinkSettings settings, shm::DevicesSegment& segment
 SampleLink::~SampleLink() { thread_.stop(); }
 
 void SampleLink::connect() {
-  socket_.reset();  // the old one first: its connection ends
+  socket_.reset();  // closes the old connection first
   auto socket = std::make_unique<Socket>();
   zmq::socket_t& s = socket->subscriber;
   s.set(zmq::sockopt::linger, 0);
   s.set(zmq::sockopt::rcvtimeo, kRound_ms);
-  s.set(zmq::sockopt::rcvhwm, 4);  // what is old is of no use
+  s.set(zmq::sockopt::rcvhwm, 4);  // old samples are useless
   s.set(zmq::sockopt::maxmsgsize, kLongestDocument);
   s.set(zmq::sockopt::reconnect_ivl, 100);
   s.set(zmq::sockopt::reconnect_ivl_max, 500);
@@ -269,7 +272,7 @@ bool SampleLink::take() {
   if (!socket_->subscriber.recv(topic) || !topic.more() || !socket_->subscriber.recv(document))
     return false;
   bool more = document.more();
-  while (more) {  // nothing of ours; taken, so that the next document begins with its topic
+  while (more) {  // discards further parts, so that the next document begins with its topic
     zmq::message_t part;
     if (!socket_->subscriber.recv(part)) break;
     more = part.more();
@@ -284,7 +287,7 @@ bool SampleLink::take() {
 void SampleLink::renewWhereSilent(Timestamp now) {
   if (now - std::max(heard_, connected_) < renew_after_) return;
   renew_after_ = std::min(2 * renew_after_, settings_.renew_at_most);
-  connected_ = now;  // also where it fails: not again at once
+  connected_ = now;  // set even if connect() fails, so that it is not tried again at once
   connect();
 }
 
@@ -297,8 +300,8 @@ void SampleLink::lost(Timestamp now) {
     h.updated_ns = toNanoseconds(now);
     h.rate_hz = 0;
     setText(h.port, settings_.endpoint);
-    setText(h.reason, fmt::format("no word from {}{}", settings_.endpoint,
-                                  ever_ ? ": the link is gone" : " yet"));
+    setText(h.reason, fmt::format("nothing received from {}{}", settings_.endpoint,
+                                  ever_ ? ": the link is lost" : " yet"));
     slot.publish(h);
   }
 }

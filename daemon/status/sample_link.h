@@ -1,5 +1,5 @@
-// SampleLink: another machine's devices in this machine's shared memory. The wall, and every other
-// client, then reads them as if the serial ports were here.
+// SampleLink: copies the samples of another machine's devices into this machine's shared memory,
+// where the wall and every other client read them like those of local devices.
 #pragma once
 
 #include <memory>
@@ -17,20 +17,20 @@ struct SampleLinkSettings {
   std::string endpoint;                               // "tcp://HOST:PORT" of the other daemon
   std::string server_key;                             // its public key
   KeyPair keys;                                       // ours
-  Duration silence = std::chrono::milliseconds(500);  // after which the link counts as gone
-  // After so much silence the socket is made anew, then each time after twice as long, up to the
-  // second figure: libzmq never connects again by itself where the peer once broke the protocol (it
-  // did not know our key, or another program answered on its port).
+  Duration silence = std::chrono::milliseconds(500);  // after which the link counts as lost
+  // The socket is recreated after renew_after of silence, then each time after twice as long, up to
+  // renew_at_most: libzmq does not reconnect by itself after a protocol error (the peer did not
+  // know our key, or another program answered on its port).
   Duration renew_after = std::chrono::seconds(2), renew_at_most = std::chrono::seconds(5);
 };
 
-// Follows the topic "sample" on a thread of its own and writes what it says into `segment`, whose
-// only writer it is. Times become this machine's, as old as they were there when they were sent:
-// the network's own delay is not known and not added. While no word comes, every device is absent,
-// with the reason.
+// Follows the topic "sample" on a thread of its own and writes the samples into `segment`, whose
+// only writer it is. Times are converted to this machine's clock such that a sample is as old as it
+// was when it was sent; the delay of the network is unknown and not added. While nothing is
+// received, the health of every device is absent, with the reason.
 class SampleLink {
  public:
-  // Errors: kInvalidArgument (an endpoint or a key that is none).
+  // Errors: kInvalidArgument (an invalid endpoint or key).
   static Result<std::unique_ptr<SampleLink>> start(SampleLinkSettings settings,
                                                    shm::DevicesSegment& segment, ThreadWatch& watch,
                                                    const Clock& clock);
@@ -41,9 +41,9 @@ class SampleLink {
  private:
   struct Socket;
   SampleLink(SampleLinkSettings settings, shm::DevicesSegment& segment, const Clock& clock);
-  void connect();  // throws what libzmq throws
+  void connect();  // throws zmq::error_t
   void run(const std::stop_token& stop, Progress& progress);
-  bool take();  // one document, where one has come
+  bool take();  // receives a document, if there is one, and applies it
   void renewWhereSilent(Timestamp now);
   void lost(Timestamp now);
 
@@ -55,12 +55,12 @@ class SampleLink {
   Timestamp connected_{};
   Duration renew_after_;
   bool ever_ = false;
-  std::string said_;  // what went wrong last
+  std::string said_;  // the last error that was logged
   WatchedThread thread_;
 };
 
-// The document's content into the segment; samples whose counter has not changed are left. False
-// for a document that is none. For SampleLink and its tests.
+// Publishes the document's samples in `segment`, except those whose counter has not changed. False
+// if the document is invalid. For SampleLink and its tests.
 bool applySamples(const std::string& document, const std::string& from, Timestamp now,
                   shm::DevicesSegment& segment);
 

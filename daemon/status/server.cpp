@@ -20,13 +20,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kRound_ms = 100;
 constexpr int kMostRequestBytes = 4096;
-constexpr int kMostSaidBytes = 4096;  // by a subscriber, in one frame
-constexpr int kMostQueued = 100;      // documents for a subscriber that does not read
+constexpr int kMostSaidBytes = 4096;  // of one frame from a subscriber
+constexpr int kMostQueued = 100;      // documents queued for a subscriber that does not read
 constexpr int kHandshake_ms = 2000;
 constexpr Duration kLook = std::chrono::seconds(1);
 constexpr Duration kSayAgain = std::chrono::seconds(10);
 
-// What libzmq binds is for the daemon's user alone.
+// Restricts sockets that libzmq binds to the daemon's user.
 class Umask {
  public:
   Umask() : before_(::umask(0177)) {}
@@ -59,7 +59,7 @@ struct StatusServer::Sockets {
   zmq::socket_t doorman{context, zmq::socket_type::rep};
   // Sockets and the paths that they are bound to.
   std::vector<std::pair<zmq::socket_t*, std::string>> bound;
-  std::string samples;  // the path of the encrypted one; empty: none
+  std::string samples;  // path of the encrypted socket; empty: none
 
   ~Sockets() {
     for (const auto& [socket, path] : bound) ::unlink(path.c_str());
@@ -72,7 +72,7 @@ struct StatusServer::Sockets {
 
 namespace {
 
-// Whatever a client sends, and however slowly.
+// Limits the size of a client's messages and the duration of its handshake.
 void limit(zmq::socket_t& socket, int most_bytes) {
   socket.set(zmq::sockopt::linger, 0);
   socket.set(zmq::sockopt::maxmsgsize, std::int64_t{most_bytes});
@@ -84,7 +84,7 @@ Result<std::string> runWith(const Command& command, const nlohmann::json& reques
   if (argument != request.end() && argument->is_string())
     return command.run_with(argument->get<std::string>());
   return Error{Errc::kInvalidArgument,
-               fmt::format("{} wants an \"argument\", a text: {}", command.name, command.help)};
+               fmt::format("{} needs an \"argument\", a text: {}", command.name, command.help)};
 }
 
 std::string z85(const zmq::message_t& key) {
@@ -115,7 +115,8 @@ StatusServer::~StatusServer() {
   thread_.stop();
 }
 
-// What is set for the encrypted address holds for what is bound after it.
+// libzmq applies a socket's options to addresses bound afterwards; the encrypted one comes last, so
+// that CURVE holds for it only.
 Result<Ok> StatusServer::openSockets() {
   try {
     sockets_ = std::make_unique<Sockets>();
@@ -141,7 +142,7 @@ Result<Ok> StatusServer::openSockets() {
   }
 }
 
-// A subscriber says little: what it follows, and heartbeats.
+// The limits are low because a subscriber only sends subscriptions and heartbeats.
 RelaySettings StatusServer::topicsRelay() const {
   RelaySettings relay;
   relay.name = fmt::format("topics of the {}", settings_.name);
@@ -195,7 +196,7 @@ void StatusServer::run(const std::stop_token& stop, Progress& progress) {
       const Timestamp now = clock_.now();
       if (now - said_ >= kSayAgain) {
         said_ = now;
-        logError("status of the {}: {}; it goes on", settings_.name, e.what());
+        logError("status of the {}: {}; it continues", settings_.name, e.what());
       }
     }
     progress.step();
@@ -211,7 +212,7 @@ void StatusServer::round() {
   publishDue();
 }
 
-// As Relay does with the public sockets' files.
+// Binds the inner sockets again if their files were removed, as Relay does for the public ones.
 void StatusServer::bindAgainWhereGone() {
   const Timestamp now = clock_.now();
   if (now - looked_ < kLook) return;
@@ -223,8 +224,8 @@ void StatusServer::bindAgainWhereGone() {
     const Umask umask;
     socket->unbind("ipc://" + path);
     socket->bind("ipc://" + path);
-    logWarning("status of the {}: the socket {} was removed and is there again", settings_.name,
-               path);
+    logWarning("status of the {}: the socket {} was removed and has been created again",
+               settings_.name, path);
   }
 }
 
@@ -246,7 +247,7 @@ void StatusServer::admit() {
                      std::count(settings_.network.clients.begin(), settings_.network.clients.end(),
                                 z85(request[6])) > 0;
   const std::string id = request.size() > 1 ? request[1].to_string() : "";
-  const std::string answer[] = {"1.0", id, known ? "200" : "400", known ? "OK" : "no key of ours",
+  const std::string answer[] = {"1.0", id, known ? "200" : "400", known ? "OK" : "unknown key",
                                 "",    ""};
   for (std::size_t i = 0; i < std::size(answer); ++i)
     sockets_->doorman.send(zmq::buffer(answer[i]), i + 1 < std::size(answer)
@@ -268,7 +269,7 @@ void StatusServer::publishDue() {
   }
 }
 
-// All parts of a request are taken, so that the socket may answer.
+// Receives all parts of a request, because the socket can answer only then.
 void StatusServer::answer() {
   zmq::message_t request;
   if (!sockets_->replier.recv(request, zmq::recv_flags::dontwait)) return;
@@ -280,16 +281,16 @@ void StatusServer::answer() {
   }
   std::string text;
   try {
-    text = parts ? failure("a request is one part; this one had several")
+    text = parts ? failure("a request must have one part; this one had several")
                  : reply(request.to_string_view());
-  } catch (const std::exception& e) {  // an answer there has to be, or the socket takes no more
+  } catch (const std::exception& e) {  // without an answer the socket would take no more requests
     text = failure(e.what());
   }
   sockets_->replier.send(zmq::buffer(text), zmq::send_flags::none);
 }
 
 std::string StatusServer::reply(std::string_view request) {
-  // At most 4 KiB come in, so that no depth of nesting can hurt the parser's copies.
+  // A request has at most 4 KiB, so deep nesting cannot overflow the stack in recursive copies.
   const auto json = nlohmann::json::parse(request, nullptr, false);
   const auto name = json.is_object() ? json.find("command") : json.end();
   std::vector<std::string> names;
@@ -304,7 +305,7 @@ std::string StatusServer::reply(std::string_view request) {
     return result ? fmt::format(R"({{"ok": true, "result": {}}})", *result)
                   : failure(result.error().what);
   }
-  return failure(fmt::format("\"{}\" is no command; commands are {}",
+  return failure(fmt::format("\"{}\" is not a known command; commands are {}",
                              name->get<std::string>().substr(0, 64), fmt::join(names, ", ")));
 }
 

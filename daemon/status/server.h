@@ -1,4 +1,5 @@
-// StatusServer: one role's pair of ZeroMQ sockets. PUB: one JSON document a topic. REP: commands.
+// StatusServer: one role's two ZeroMQ sockets. PUB publishes JSON documents by topic; REP answers
+// commands.
 #pragma once
 
 #include <functional>
@@ -14,55 +15,57 @@
 
 namespace merlin::status {
 
-// One topic that is published by itself.
+// One topic that is published periodically.
 struct Publication {
   std::string topic;  // "status", "metrics", "sample"
   Duration interval;
-  std::function<std::string()> document;  // thread: the server's
+  std::function<std::string()> document;  // called in the server's thread
 };
 
-// A command's answer, JSON without the outer braces' "ok"; an Error becomes
-// {"ok":false,"error":...}.
+// A command. Its function returns the JSON value that becomes "result"; an Error becomes
+// {"ok": false, "error": ...}. Called in the server's thread.
 struct Command {
   std::string name, help;
-  std::function<Result<std::string>()> run;  // thread: the server's; returns a JSON value
-  // In place of `run`, of a command that wants the request's "argument", a text.
+  std::function<Result<std::string>()> run;
+  // Instead of `run`, for a command that needs the request's "argument", a text.
   std::function<Result<std::string>(const std::string& argument)> run_with = nullptr;
 };
 
 struct StatusServerSettings {
-  std::string name;                               // of the role, "wall": for reports and threads
+  std::string name;                               // the role, "wall", for reports and threads
   std::string status_endpoint, command_endpoint;  // "ipc://..."
-  // Where the same topics are published for other machines, encrypted, to those whose keys it
-  // knows; commands are not taken from there.
+  // Where the same topics are published, encrypted, for clients on other machines whose keys are
+  // listed; it takes no commands.
   CurveServer network;
   std::vector<Publication> publications;
   std::vector<Command> commands;
-  // Asked ten times a second; what it returns is published under "event", in order.
+  // Called at least ten times a second; the documents it returns are published under "event", in
+  // order.
   std::function<std::vector<std::string>()> events;
 };
 
-// Requests: {"command": NAME, "argument": TEXT}, the latter only where a command wants one, one
+// Requests: {"command": NAME, "argument": TEXT} (the argument only if the command needs one), one
 // part, at most 4 KiB. Replies: {"ok": true, "result": ...} or {"ok": false, "error": "..."}.
 //
-// Clients connect to relays (relay.h), which bound what each may take; libzmq's own sockets lie
-// behind them. The thread that publishes and answers ends on nothing but its stop: whatever goes
-// wrong in a round is logged, and the next round goes on.
+// Clients connect to relays (relay.h), which limit what each may use; libzmq's own sockets are
+// behind them. The thread that publishes and answers only ends when it is stopped: an error in a
+// round is logged, and the next round follows.
 class StatusServer {
  public:
-  // Errors: kBusy (another program serves the endpoint), kIo; they name the endpoint. `watch` and
-  // `clock` outlive this.
+  // Errors, with the endpoint: kBusy (another program serves it), kIo. `watch` and `clock` must
+  // outlive the server.
   static Result<std::unique_ptr<StatusServer>> start(StatusServerSettings settings,
                                                      ThreadWatch& watch, const Clock& clock);
   ~StatusServer();
   StatusServer(const StatusServer&) = delete;
   StatusServer& operator=(const StatusServer&) = delete;
 
-  // The relay at the encrypted address of `network`: it may fail where the others do not (a port
-  // that is taken), and be tried again. REQUIRES: such an address is set. Errors: Relay::start()'s.
+  // Starts the relay at the encrypted address of `network`. It is separate because it may fail
+  // alone (the port is in use) and be tried again. REQUIRES: that address is set. Errors: those of
+  // Relay::start().
   Result<std::unique_ptr<net::Server>> startSamples(ThreadWatch& watch) const;
 
-  // Of the relays: who was let in, and who was not. Thread-safe.
+  // Reports of the relays: counters of accepted and refused connections. Thread-safe.
   std::vector<net::ServerReport> reports() const;
 
  private:
@@ -76,7 +79,7 @@ class StatusServer {
   void bindAgainWhereGone();
   void publishDue();
   Duration untilDue() const;
-  void admit();  // answers ZeroMQ's question whether a client's key is known
+  void admit();  // answers libzmq's authentication request: is the client's key listed?
   void answer();
   std::string reply(std::string_view request);
 
@@ -84,8 +87,8 @@ class StatusServer {
   const Clock& clock_;
   std::unique_ptr<Sockets> sockets_;
   std::vector<Timestamp> due_;
-  Timestamp looked_{};  // whether the inner sockets' files are there
-  Timestamp said_{};    // that something went wrong
+  Timestamp looked_{};  // when the inner sockets' files were last checked
+  Timestamp said_{};    // when an error was last logged
   std::vector<std::unique_ptr<Relay>> relays_;
   WatchedThread thread_;
 };

@@ -1,5 +1,5 @@
-// Services: how the servers of a daemon fare that it can do without: one that cannot start is said,
-// and the wall runs.
+// Services: health of the servers and outputs that the daemon can run without; a failure is
+// reported, and the daemon continues.
 #pragma once
 
 #include <mutex>
@@ -13,15 +13,14 @@ namespace merlin::status {
 // Thread-safe.
 class Services {
  public:
-  // `service`: a word, "samples". It works, or has failed for this reason. What changes is an
-  // event.
+  // Set a service's state. `service`: a word such as "samples". A change becomes an event.
   void ok(const std::string& service) { set(service, {}); }
   void failed(const std::string& service, const std::string& reason) { set(service, reason); }
 
-  // What has changed since the last call, a sentence each.
+  // The changes since the last call, a sentence each.
   std::vector<std::string> takeEvents();
 
-  // `document`, a JSON object, with the member "services" where there are any:
+  // Returns `document`, a JSON object, with the member "services" added if there are any:
   // {"samples": {"health": "failed", "reason": "..."}}.
   std::string addTo(const std::string& document) const;
 

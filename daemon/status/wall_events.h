@@ -1,5 +1,4 @@
-// WallEvents: what the wall gave way, took back, and did by itself since the last look, as
-// sentences.
+// WallEvents: degradations and recoveries of the wall, and changes it made by itself, as sentences.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +14,7 @@ class WallEvents {
  public:
   explicit WallEvents(const shm::WallSegment& segment) : segment_(segment) {}
 
-  // "the rate is halved to 15 Hz: ..."; empty while nothing changes.
+  // The changes since the last call, such as "rate reduced to 15 of 30 Hz: ...".
   std::vector<std::string> take();
 
  private:

@@ -1,4 +1,5 @@
-// Watchdog: whether the service may be told alive: only while all that should move on does. Pure.
+// Watchdog: decides whether systemd may be told that the service is alive, namely while every
+// thread makes progress. Pure.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +14,11 @@ namespace merlin::status {
 // Thread-bound.
 class Watchdog {
  public:
-  // `interval`: between two pings; zero: nobody watches, never ping.
+  // `interval`: time between two pings; zero: no watchdog, never ping.
   explicit Watchdog(Duration interval) : interval_(interval) {}
 
-  // True where a ping is due and each thread that was there at the last one has made progress
-  // since, or has stopped as it was asked to.
+  // True if a ping is due, no thread has ended unexpectedly, and each thread that existed at the
+  // last ping has made progress since or is paused.
   bool ping(Timestamp now, const std::vector<ThreadState>& threads);
 
  private:

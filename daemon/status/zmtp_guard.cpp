@@ -12,8 +12,8 @@ constexpr std::uint8_t kMore = 1, kLong = 2, kCommand = 4;
 constexpr std::size_t kMechanismAt = 12;
 constexpr std::string_view kCurve{"CURVE\0", 6};
 constexpr std::string_view kReady = "\5READY";
-// The bodies of PING and PONG as CURVE encrypts them: an 8-byte name, an 8-byte nonce, a 16-byte
-// authenticator and a byte of flags before 7 and 5 bytes.
+// Sizes of the bodies of PING and PONG encrypted by CURVE: an 8-byte name, an 8-byte nonce, a
+// 16-byte authenticator and a byte of flags before the 7 and 5 bytes of PING and PONG.
 constexpr std::uint64_t kCurvePing = 40, kCurvePong = 38;
 
 Error malformed(std::string what) { return {Errc::kMalformed, std::move(what)}; }
@@ -57,13 +57,13 @@ Result<Ok> ZmtpGuard::greet(std::uint8_t byte) {
   const std::size_t at = greeting_++;
   const bool signature = (at == 0 && byte != 0xFF) || (at == kSignatureEnd && byte != 0x7F);
   if (signature || (at == kVersionAt && byte < 3))
-    return malformed("it does not open with a greeting of ZMTP 3 (ZeroMQ 4 or newer)");
+    return malformed("it does not begin with a greeting of ZMTP 3 (ZeroMQ 4 or newer)");
   if (at >= kMechanismAt && at < kMechanismAt + kCurve.size())
     curve_ &= byte == static_cast<std::uint8_t>(kCurve[at - kMechanismAt]);
   return Ok{};
 }
 
-// Nothing until the header is whole.
+// Does nothing until the header is complete.
 Result<Ok> ZmtpGuard::begin() {
   const auto flags = static_cast<std::uint8_t>(header_[0]);
   if (flags & ~(kMore | kLong | kCommand)) return malformed("a frame has unknown flags");
@@ -74,8 +74,8 @@ Result<Ok> ZmtpGuard::begin() {
   name_.clear();
   in_body_ = true;
   if (body_left_ > limits_.frame_bytes) {
-    return malformed(
-        fmt::format("a frame of {} bytes; at most {} are taken", body_left_, limits_.frame_bytes));
+    return malformed(fmt::format("a frame of {} bytes; at most {} are allowed", body_left_,
+                                 limits_.frame_bytes));
   }
   if (command_ && (flags & kMore)) return malformed("a command of several parts");
   if (!command_) {  // a command between two parts does not end the message
@@ -90,7 +90,7 @@ Result<Ok> ZmtpGuard::begin() {
   return body_left_ == 0 ? endFrame() : Result<Ok>(Ok{});
 }
 
-// Heartbeats are free, or a connection would not live long.
+// Heartbeats do not count towards total_bytes, or they would use it up.
 Result<Ok> ZmtpGuard::endFrame() {
   in_body_ = false;
   ready_ |= command_ && name_ == kReady;
@@ -101,7 +101,7 @@ Result<Ok> ZmtpGuard::endFrame() {
   if (!plain_heartbeat && !encrypted_heartbeat) total_ += size_ + 1;
   if (limits_.total_bytes > 0 && total_ > limits_.total_bytes) {
     return malformed(
-        fmt::format("subscriptions of more than {} bytes altogether", limits_.total_bytes));
+        fmt::format("subscriptions of more than {} bytes in total", limits_.total_bytes));
   }
   return Ok{};
 }

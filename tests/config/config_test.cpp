@@ -143,7 +143,7 @@ TEST(Config, SaysEverythingThatIsWrongAtOnceWithLineAndPointer) {
       all(loaded),
       "f.json:3: /devices/glove/prot is not a known setting; did you mean \"port\"?\n"
       "f.json:4: /devices/ball/baud is the string \"fast\"; allowed is a whole number\n"
-      "f.json:8: /wall/rate/rate_hz is 900; allowed is 1 to 240; 240 is taken\n"
+      "f.json:8: /wall/rate/rate_hz is 900; allowed is 1 to 240; 240 is used\n"
       "f.json:10: /wall/render/backend is the string \"vulkan\"; allowed is one of egl, osmesa\n");
 }
 
@@ -173,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{\n\"wall\": {,}}", "f.json:2: "},
         Bad{"{\"wall\": 1}", "/wall is the number 1; allowed is an object"},
         Bad{"{\"wall\": {}, \n\"wall\": {}}",
-            "f.json:2: the key \"wall\" stands twice in one object, before on line 1"},
+            "f.json:2: duplicate key \"wall\" in one object, first on line 1"},
         Bad{"{\"devices\": {\"ball\": {\"dead_zone\": 1.5}}}",
             "is the number 1.5; allowed is a whole number"},
         Bad{"{\"devices\": {\"ball\": {\"axis_map\": [1, 2]}}}",
@@ -194,10 +194,10 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{\"wall\": {\"scene\": {\"bindings\": [{\"input\": \"x\", \"acton\": \"grab\"}]}}}",
             "/wall/scene/bindings/0/acton is not a known setting; did you mean \"action\"?"},
         Bad{"{\"wall\": {\"rate\": {\"min_triangles\": 5000, \"first_triangles\": 100}}}",
-            "they must rise"},
+            "they must be in ascending order"},
         Bad{"{\"a~b/c\": 1}",
-            "f.json:1: /a~0b~1c is not a known setting; here are instance, run_directory, devices, "
-            "wall"},
+            "f.json:1: /a~0b~1c is not a known setting; known here are instance, run_directory, "
+            "devices, wall"},
         Bad{"{\"wall\": {\"rate\": {\"rate_hz\": 1e999}}}", "f.json:1: "}));
 
 TEST(Config, EveryTruncationOfAFileIsInvalidAndNoCrash) {
@@ -223,7 +223,7 @@ TEST(Config, DeepNestingIsRefused) {
   const auto loaded = loadSettings(std::string(100'000, '['), "");
   EXPECT_EQ(loaded.verdict(), Verdict::kInvalid);
   EXPECT_NE(all(loaded).find("more than 32 levels deep"), std::string::npos);
-  EXPECT_NE(all(loadSettings(std::string(2 << 20, ' '), "")).find("1048576 are the most"),
+  EXPECT_NE(all(loadSettings(std::string(2 << 20, ' '), "")).find("at most 1048576 are allowed"),
             std::string::npos);
 }
 
@@ -269,6 +269,16 @@ TEST(Config, WritingAndReadingGivesTheSame) {
 }
 
 // The schema, the shipped configurations and the program say the same.
+// A list that is empty by default is described like any other.
+TEST(Config, TheSchemaDescribesTheItemsOfEveryList) {
+  const std::string schema = settingsSchema();
+  const std::size_t contents = schema.find("\"contents\"");
+  ASSERT_NE(contents, std::string::npos);
+  const std::size_t model = schema.find("\"model\"", contents);
+  EXPECT_LT(model, schema.find("\"rate\"", contents));
+  EXPECT_EQ(schema.find("\"properties\": {}"), std::string::npos);
+}
+
 TEST(Config, TheSchemaInTheRepositoryIsTheProgramsOwn) {
   EXPECT_EQ(test::readText(MERLIN_SOURCE_DIR "/config/merlin.schema.json"), settingsSchema())
       << "merlind --print-schema > config/merlin.schema.json";

@@ -125,7 +125,7 @@ TEST(FlightRecorder, WhatItDumpsReplays) {
 
   const auto transcript = io::readTranscript(sentences[0].substr(said.size()));
   ASSERT_TRUE(transcript) << transcript.error().what;
-  EXPECT_EQ((*transcript)["notes"], "no record for 0.5 s; 0.0 s left out after the beginning");
+  EXPECT_EQ((*transcript)["notes"], "no record for 0.5 s; 0.0 s after the beginning are missing");
   test::FakeClock clock;
   test::RecordingSink sink;
   io::ReplayStream replay(*transcript, clock);

@@ -187,7 +187,8 @@ TEST_F(Server, WhoDoesNotOpenTheProtocolInTimeIsClosed) {
   EXPECT_EQ(received(speaks), "hello\n");
   EXPECT_EQ(server_.report().silent, 1U);
   EXPECT_EQ(server_.report().last,
-            "closed that of user 1000, process 1: it did not open the protocol within 2.0 s");
+            "closed a connection of user 1000, process 1: it did not complete the handshake within "
+            "2.0 s");
 }
 
 TEST_F(Server, EachClientHasItsTurnWhateverAnotherSends) {
@@ -226,7 +227,7 @@ TEST_F(Server, WhatBreaksTheProtocolClosesTheConnection) {
   send(client, "bad\n");
   round();
   EXPECT_EQ(received(client), "(closed)");
-  EXPECT_EQ(server_.report().last, "closed that of user 1000, process 1: a bad line");
+  EXPECT_EQ(server_.report().last, "closed a connection of user 1000, process 1: a bad line");
 }
 
 TEST_F(Server, WhoDoesNotReadIsClosed) {

@@ -214,7 +214,7 @@ TEST(SampleLink, FollowsSaysWhenItIsGoneAndComesBackByItself) {
     devices.stop();
     ASSERT_TRUE(test::eventually([&] { return ballOf(*here) == HealthState::kAbsent; }));
     EXPECT_EQ(std::string(here->health[shm::kBall].read()->reason),
-              "no word from " + settings.endpoint + ": the link is gone");
+              "nothing received from " + settings.endpoint + ": the link is lost");
   }
 }
 

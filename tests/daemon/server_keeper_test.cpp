@@ -38,15 +38,15 @@ TEST(Keeper, AServerWhoseThreadEndsIsStartedAgainAndTheProcessIsNotTold) {
   });
   Timestamp now{std::chrono::seconds(1000)};
   keeper.tend(now);
-  EXPECT_EQ(keeper.takeEvents(now), std::vector<std::string>{"mouse: serves"});
+  EXPECT_EQ(keeper.takeEvents(now), std::vector<std::string>{"mouse: running"});
   fails = true;
   ASSERT_TRUE(test::eventually([&] {
     keeper.tend(now);
     return !keeper.health().failure.empty();
   }));
-  EXPECT_EQ(keeper.takeEvents(now),
-            std::vector<std::string>{
-                "mouse: failed (its thread ended: no memory); it is tried again every 5 s"});
+  EXPECT_EQ(
+      keeper.takeEvents(now),
+      std::vector<std::string>{"mouse: failed (its thread ended: no memory); retried every 5 s"});
   EXPECT_TRUE(threads.threads().empty()) << "no thread is left, nor one that ended unasked";
   keeper.tend(now + std::chrono::milliseconds(4999));
   EXPECT_EQ(starts, 1);
@@ -66,8 +66,8 @@ TEST(Keeper, AServerThatCannotStartIsTriedEveryFiveSecondsAndToldOnce) {
   const Timestamp now{std::chrono::seconds(1000)};
   keeper.tend(now);
   EXPECT_EQ(keeper.takeEvents(now),
-            std::vector<std::string>{"mouse: failed (another program serves this socket); it is "
-                                     "tried again every 5 s"});
+            std::vector<std::string>{"mouse: failed (another program serves this socket); "
+                                     "retried every 5 s"});
   keeper.tend(now + std::chrono::seconds(5));
   EXPECT_TRUE(keeper.takeEvents(now).empty());
   taken = false;
@@ -75,7 +75,7 @@ TEST(Keeper, AServerThatCannotStartIsTriedEveryFiveSecondsAndToldOnce) {
   EXPECT_EQ(keeper.health().failure, "another program serves this socket");
   keeper.tend(now + std::chrono::seconds(10));
   EXPECT_EQ(keeper.health().failure, "");
-  EXPECT_EQ(keeper.takeEvents(now), std::vector<std::string>{"mouse: serves"});
+  EXPECT_EQ(keeper.takeEvents(now), std::vector<std::string>{"mouse: running"});
 }
 
 }  // namespace

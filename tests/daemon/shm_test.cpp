@@ -285,7 +285,7 @@ TEST(SharedMemory, WhatWasRemovedIsMadeAgainWithTheSameBytes) {
   for (const std::string& lost : {name, name + ".lock"}) {
     ASSERT_EQ(::shm_unlink(lost.c_str()), 0);
     EXPECT_EQ(*memory->mend(),
-              "another program had removed shared memory " + lost + "; it is made again");
+              "another program removed shared memory " + lost + "; it was created again");
     EXPECT_EQ(*memory->mend(), "");
   }
   EXPECT_EQ(SharedMemory::create(name, 10'000).error().code, Errc::kBusy);
@@ -359,7 +359,8 @@ TEST(SharedMemory, AStrangersObjectIsNotTakenAndGoesForRoot) {
   EXPECT_TRUE(SharedMemory::open(name));
   const auto taken = SharedMemory::open(name, SharedMemory::From::kOwnUserOrRoot);
   ASSERT_FALSE(taken);
-  EXPECT_NE(taken.error().what.find("belongs to user nobody and is not taken"), std::string::npos)
+  EXPECT_NE(taken.error().what.find("belongs to user nobody and is not accepted"),
+            std::string::npos)
       << taken.error().what;
   const auto ours = SharedMemory::create(name, 4096);
   EXPECT_TRUE(ours) << ours.error().what;

@@ -250,7 +250,7 @@ TEST_F(ServerTest, ACommandThatWantsAnArgumentIsGivenIt) {
   for (const char* request : {R"({"command": "echo"})", R"({"command": "echo", "argument": 5})"}) {
     const json answer = json::parse(raw(request));
     EXPECT_EQ(answer["ok"], false);
-    EXPECT_NE(answer["error"].get<std::string>().find("echo wants an \"argument\""),
+    EXPECT_NE(answer["error"].get<std::string>().find("echo needs an \"argument\""),
               std::string::npos);
   }
 }
@@ -368,7 +368,7 @@ TEST_F(ServerTest, AFrameThatIsDeclaredTooLongIsClosedBeforeItComes) {
     sendRaw(fd, kGreeting + std::string("\6\0\0\0\0\x80\0\0\0", 9));
     EXPECT_TRUE(isClosed(fd)) << endpoint;
   }
-  EXPECT_NE(server_->reports()[1].last.find("a frame of 2147483648 bytes; at most 1024 are taken"),
+  EXPECT_NE(server_->reports()[1].last.find("a frame of 2147483648 bytes; at most 1024 are allowed"),
             std::string::npos)
       << server_->reports()[1].last;
 }

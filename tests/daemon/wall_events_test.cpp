@@ -30,30 +30,30 @@ TEST_F(WallEventsTest, TellEachStepDownAndUpOnce) {
   EXPECT_EQ(events_.take(), Sentences{});
   EXPECT_EQ(after(stats_), Sentences{});
   stats_.operator_coarser = 1;
-  EXPECT_EQ(after(stats_), Sentences{"the operator's view is coarser: there is no time for it"});
+  EXPECT_EQ(after(stats_), Sentences{"the operator's view is coarser: there is too little time"});
   EXPECT_EQ(after(stats_), Sentences{});
   stats_.scale_divisor = 2;
-  EXPECT_EQ(after(stats_), Sentences{"tiles at half their size while it moves: not even the fewest "
-                                     "triangles come in time"});
+  EXPECT_EQ(after(stats_), Sentences{"tiles at half size while moving: even the fewest triangles "
+                                     "take too long"});
   stats_.rate_divisor = 2;
   stats_.rate_now_hz = 15;
   EXPECT_EQ(after(stats_),
-            Sentences{"down to 15 of 30 Hz: not even the fewest triangles come in time"});
+            Sentences{"rate reduced to 15 of 30 Hz: even the fewest triangles take too long"});
   stats_.rate_divisor = 1;
   stats_.rate_now_hz = 30;
   stats_.operator_coarser = 0;
   EXPECT_EQ(after(stats_), (Sentences{"the operator's view is as fine as the wall again",
-                                      "up to 30 of 30 Hz: the fewest triangles fit"}));
+                                      "rate raised to 30 of 30 Hz: the fewest triangles fit"}));
 }
 
 TEST_F(WallEventsTest, TellWhatIsSetByHand) {
   after(stats_);
   stats_.held_triangles = 5000;
   stats_.rate_asked_hz = 20;
-  EXPECT_EQ(after(stats_),
-            (Sentences{"5000 triangles while it moves, by hand", "the rate asked is 20 Hz now"}));
+  EXPECT_EQ(after(stats_), (Sentences{"5000 triangles while moving, set by hand",
+                                      "the desired rate is 20 Hz now"}));
   stats_.held_triangles = 0;
-  EXPECT_EQ(after(stats_), Sentences{"triangles as the rate allows"});
+  EXPECT_EQ(after(stats_), Sentences{"number of triangles chosen by the governor again"});
 }
 
 }  // namespace

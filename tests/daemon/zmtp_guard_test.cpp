@@ -60,11 +60,11 @@ TEST_F(Guard, ACommandIsOnePart) {
 TEST_F(Guard, ASubscriptionAsLongAsAnEncryptedHeartbeatCountsWhereNothingIsEncrypted) {
   for (const std::size_t size : {38U, 39U, 40U}) {
     const std::string subscription = frame(0, '\1' + std::string(size - 1, 'x'));
-    EXPECT_EQ(ofMany("NULL", subscription, 120), "subscriptions of more than 4096 bytes altogether")
+    EXPECT_EQ(ofMany("NULL", subscription, 120), "subscriptions of more than 4096 bytes in total")
         << size;
   }
   EXPECT_EQ(ofMany("CURVE", frame(0, std::string(39, 'x')), 120),
-            "subscriptions of more than 4096 bytes altogether");
+            "subscriptions of more than 4096 bytes in total");
 }
 
 TEST_F(Guard, HeartbeatsAreFree) {

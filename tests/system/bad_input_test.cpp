@@ -51,7 +51,7 @@ TEST_F(BadInput, ALimitOfTheAddressSpaceCountsAsWhatIsFree) {
   const std::string reduce = fmt::format("{} mesh reduce {}/config/models/ankylosaurus.ply -o {}",
                                          kMerlin, kSource, dir_ / "out.mrm");
   expectOutcome(run({"/bin/bash", "-c", "ulimit -v 50000; " + reduce}), 2,
-                {"to reduce, even in blocks; the limit (--memory, else what is free) is"});
+                {"even in blocks; the limit (--memory, else what is free) is"});
 }
 #endif
 
@@ -81,7 +81,7 @@ TEST_F(BadInput, CheckConfigSaysValidAdjustedOrInvalid) {
   expectOutcome(run({kMerlind, "--check-config", dir_ / "good.json", "--role", "devices"}), 0,
                 {"good.json: valid"});
   expectOutcome(run({kMerlind, "--check-config", dir_ / "adjusted.json", "--role", "devices"}), 1,
-                {"is 100000; allowed is 1 to 240; 240 is taken"});
+                {"is 100000; allowed is 1 to 240; 240 is used"});
   expectOutcome(run({kMerlind, "--check-config", dir_ / "none.json"}), 2,
                 {"none.json: No such file or directory"});
 }
@@ -139,9 +139,9 @@ TEST_F(BadInput, BindingsToPosturesThatTheNetworkDoesNotKnow) {
       {"input": "posture.pinhc", "action": "next_mode"},
       {"input": "posture.salute", "action": "reset_view"}]}}})");
   const std::vector<std::string> said = {
-      "c.json:4: /wall/scene/bindings/1/input is \"posture.pinhc\", which is no posture of " +
+      "c.json:4: /wall/scene/bindings/1/input is \"posture.pinhc\", which is not a posture of " +
           postures + "; did you mean \"pinch\"? it knows ",
-      "c.json:5: /wall/scene/bindings/2/input is \"posture.salute\", which is no posture of " +
+      "c.json:5: /wall/scene/bindings/2/input is \"posture.salute\", which is not a posture of " +
           postures + "; it knows ",
       "thumb-up"};
   expectOutcome(run({kMerlind, "--check-config", dir_ / "c.json"}), 2, said);
@@ -261,7 +261,7 @@ TEST_F(BadInput, MeshCommands) {
   expectOutcome(run({kMerlin, "mesh", "reduce", scan, "-o", "/no/such/folder/o.mrm"}), 2,
                 {"/no/such/folder/o.mrm"});
   expectOutcome(run({kMerlin, "mesh", "picture", scan, "-o", dir_ / "o.jpg"}), 2,
-                {"o.jpg: a picture's name ends in .png"});
+                {"o.jpg: the name of a picture must end in .png"});
   expectOutcome(run({kMerlin, "mesh", "info", dir_ / "a\033[31m\xff.ply"}), 2,
                 {"/a\\x1b[31m\\xff.ply: No such file or directory"});
   expectOutcome(run({kMerlin, "mesh", "export", scan, "-o", dir_ / "o.dae"}), 2,

@@ -97,7 +97,7 @@ TEST_F(CheckConfig, RefusesFilesThatCannotBeWritten) {
   expectRefused(pngOutput(model_), "/wall/outputs/0/path", "it would be replaced");
   expectRefused(pngOutput("file"), "/wall/outputs/0/path", "is not a PNG file");
   expectRefused(pngOutput(std::string("x\0y.png", 7)), "/wall/outputs/0/path",
-                "without the character 0");
+                "without the character NUL");
   expectRefused({{"wall", {{"snapshots", "file/taken"}}}}, "/wall/snapshots", "Not a directory");
   EXPECT_EQ(readText(dir_ / "file"), "kept");
 }
@@ -111,7 +111,7 @@ TEST_F(CheckConfig, RefusesSocketsAndPortsThatCannotBeServed) {
   expectRefused(serve({{"spnav_socket", "none/s.sock"}}), "/serve/spnav_socket",
                 "none: No such file or directory");
   expectRefused(serve({{"spnav_socket", std::string(200, 's')}}), "/serve/spnav_socket",
-                "a socket's name has 107 at most");
+                "a socket's name has at most 107");
   for (const char* endpoint : {"tcp://*:99999", "tcp://127.0.0.1:0", "tcp://256.1.1.1:7401"}) {
     expectRefused(serve({{"samples_endpoint", endpoint},
                          {"samples_keys", "keys"},
@@ -160,7 +160,7 @@ TEST_F(CheckConfig, ADefaultBindingIsNobodysMistake) {
   json bound = devices;
   bound["wall"]["scene"]["bindings"] =
       json::array({{{"input", "posture.fist"}, {"action", "grab"}}});
-  expectRefused(bound, "/wall/scene/bindings/0/input", "is no posture of");
+  expectRefused(bound, "/wall/scene/bindings/0/input", "is not a posture of");
 }
 
 TEST_F(CheckConfig, AnEmptyNameIsBadUsageAndStartsNothing) {

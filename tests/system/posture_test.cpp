@@ -85,7 +85,7 @@ TEST(PostureCollect, SaysWhyThereAreNoHands) {
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
   const Outcome silent = run(collect(merlind, "open", dir / "hands.csv"));
   EXPECT_EQ(silent.status, 1) << silent.output;
-  EXPECT_NE(silent.output.find("the glove has been silent for 3 s"), std::string::npos);
+  EXPECT_NE(silent.output.find("the glove has sent nothing for 3 s"), std::string::npos);
   const Outcome name = run(collect(merlind, "two words", dir / "hands.csv"));
   EXPECT_EQ(name.status, 2) << name.output;
   EXPECT_NE(name.output.find("LABEL \"two words\": allowed are 1 to 19 letters"),

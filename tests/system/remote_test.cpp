@@ -83,7 +83,7 @@ TEST_F(TwoMachines, TheWallMovesWithTheOtherMachinesBallAndOutlivesIt) {
     there->kill(SIGTERM);
     ASSERT_TRUE(eventually([&] { return ball() == HealthState::kAbsent; }));
     ASSERT_TRUE(eventually([&] { return !moving(); })) << "nobody holds it any more";
-    EXPECT_TRUE(wall.saysEventually("the link is gone")) << wall.output();
+    EXPECT_TRUE(wall.saysEventually("the link is lost")) << wall.output();
   }
   EXPECT_FALSE(wall.ended());
   EXPECT_EQ(wall.kill(SIGTERM), 0);
