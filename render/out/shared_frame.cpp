@@ -118,7 +118,7 @@ Error broken(const std::string& name, const std::string& what) {
 // Everything that a copy relies on; the writer may be any program.
 Result<Ok> check(const Header& h, std::size_t size, const std::string& name) {
   if (size < sizeof(Header) || h.magic != framebuffer::kMagic)
-    return broken(name, "is no framebuffer of MERLIN's");
+    return broken(name, "is not a frame of MERLIN");
   if (h.version != framebuffer::kVersion) {
     return Error{Errc::kUnsupported,
                  fmt::format("shared memory {}: is version {}, this program reads {}", name,
@@ -200,7 +200,7 @@ Result<std::string> SharedFrameOutput::mend() {
 Result<CapturedFrame> captureFrame(const std::string& name, SharedMemory::From from) {
   const auto memory = SharedMemory::open(name, from);
   if (!memory) return memory.error();
-  if (memory->size() < sizeof(Header)) return broken(name, "is no framebuffer of MERLIN's");
+  if (memory->size() < sizeof(Header)) return broken(name, "is not a frame of MERLIN");
   // A copy: what was checked stays as it was.
   alignas(Header) std::array<std::byte, sizeof(Header)> copy;
   std::copy_n(memory->data(), sizeof(Header), copy.begin());

@@ -1,0 +1,78 @@
+// The samples of a content and of an output do what their ports ask for.
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "render/content/sample/chequers.h"
+#include "render/frame/frame_renderer.h"
+#include "render/out/sample/checksum_output.h"
+#include "tests/support/fake_clock.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::render {
+namespace {
+
+// One tile of 64 x 64 pixels, into which the plane of 2 x 2 m just fits.
+TilePlan onePlane() {
+  TilesSettings s;
+  s.tile_width = s.tile_height = s.frame_width = s.frame_height = 64;
+  s.field_of_view_deg = 90;
+  s.tiles = {{"all", TileKind::kWall, 0, 0, 0}};
+  return *planTiles(s);
+}
+
+class ChequersTest : public testing::Test {
+ protected:
+  std::uint8_t at(int x, int y) {
+    return renderer_->pixels()[static_cast<std::size_t>(4 * (64 * y + x))];
+  }
+
+  SystemClock clock_;
+  TilePlan plan_ = onePlane();
+  Eigen::Isometry3f T_eye_content_{Eigen::Translation3f(0, 0, -1)};
+  std::unique_ptr<FrameRenderer> renderer_ =
+      *FrameRenderer::make(std::make_unique<Chequers>(), plan_, *DrawContexts::make({}), clock_);
+};
+
+// 8 x 8 squares of 8 pixels, then 2 x 2 of 32.
+TEST_F(ChequersTest, IsDrawnAtAnyStep) {
+  const DetailAxis& detail = renderer_->content().detail();
+  EXPECT_EQ(detail.stepWithin(64), 3u);
+  renderer_->draw({.T_eye_content = T_eye_content_, .step = 3});
+  EXPECT_EQ(at(3, 3), at(11, 11));
+  EXPECT_NE(at(3, 3), at(11, 3));
+  EXPECT_EQ(detail.stepWithin(1), 5u) << "the coarsest";
+  renderer_->draw({.T_eye_content = T_eye_content_, .step = 5});
+  EXPECT_EQ(at(3, 3), at(28, 28));
+  EXPECT_NE(at(3, 3), at(40, 3));
+  EXPECT_EQ(at(40, 3), 255) << "the lower left square is bright, and so is the upper right one";
+}
+
+TEST_F(ChequersTest, RefinesInSlicesToWhatIsDrawnAtOnce) {
+  renderer_->draw({.T_eye_content = T_eye_content_, .step = 0});
+  const std::vector<std::uint8_t> whole(renderer_->pixels().begin(), renderer_->pixels().end());
+  renderer_->draw({.T_eye_content = T_eye_content_, .step = 5});
+  renderer_->beginRefining(T_eye_content_, 0);
+  while (!renderer_->refine(clock_.now() + std::chrono::milliseconds(50))) continue;
+  EXPECT_TRUE(std::ranges::equal(renderer_->pixels(), whole));
+  EXPECT_TRUE(renderer_->sees(T_eye_content_));
+  EXPECT_FALSE(renderer_->sees(Eigen::Isometry3f(Eigen::Translation3f(0, 0, 5))));
+}
+
+TEST(ChecksumOutput, WritesALineAFrameAndSaysWhatFails) {
+  const test::TempDir folder;
+  test::FakeClock clock;
+  const std::vector<std::uint8_t> pixels = {'a'};
+  ChecksumOutput output(folder / "sums", clock);
+  const auto shown = output.present({1, 1, pixels}, {.sequence = 7});
+  ASSERT_TRUE(shown);
+  EXPECT_EQ(*shown, clock.now());
+  EXPECT_EQ(test::readText(folder / "sums"), "7 af63dc4c8601ec8c\n");
+  ChecksumOutput nowhere(folder / "none/sums", clock);
+  const auto failed = nowhere.present({1, 1, pixels}, {});
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().code, Errc::kIo);
+}
+
+}  // namespace
+}  // namespace merlin::render
