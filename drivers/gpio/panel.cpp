@@ -43,7 +43,8 @@ Result<Ok> Panel::obey(std::string_view command, Timestamp now) {
     note(now);
     return Ok{};
   }
-  return Error{Errc::kInvalidArgument, fmt::format("\"{}\" is no command of the panel", command)};
+  return Error{Errc::kInvalidArgument,
+               fmt::format("\"{}\" is not a command of the panel", command)};
 }
 
 // A lamp that is switched on while it cools bursts; switching to and fro wears relays out.

@@ -164,7 +164,7 @@ Result<PortAddress> parsePort(std::string_view text) {
     if (auto address = parseTcp(text.substr(kTcp.size()))) return *std::move(address);
   }
   return Error{Errc::kInvalidArgument,
-               fmt::format("\"{}\" is no port; ports are serial:/dev/..., pty:PATH, "
+               fmt::format("\"{}\" is not a valid port; ports are serial:/dev/..., pty:PATH, "
                            "tcp://HOST:PORT and replay:FILE",
                            text)};
 }

@@ -1,4 +1,4 @@
-// Texture: a registered picture on the GPU (row R7).
+// Texture: a registered picture on the GPU ([GOURLEY98] figure A.2).
 #pragma once
 
 #include <cstdint>

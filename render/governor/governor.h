@@ -1,6 +1,6 @@
 // Governor: frame times in, triangles for the next frame out, so that the rate asked is held.
 //
-// [GOURLEY98] 5.4, figure 5.36 divides last second's triangles a second by the rate (row M3). That
+// [GOURLEY98] 5.4, figure 5.36 divides last second's triangles a second by the rate. That
 // law takes cost for linear, reacts after a second and aims at the deadline itself, so it is late
 // in a sixth of its frames. Here the cost of a frame is modelled as
 //

@@ -7,7 +7,7 @@
 // clusters fit together: no cracks, whatever they are (vertex clustering: J. Rossignac, P. Borrel,
 // "Multi-resolution 3D approximations for rendering complex scenes", 1993, on the forest of
 // [GOURLEY98]; levels that depend on the view: H. Hoppe, "View-dependent refinement of progressive
-// meshes", 1997, row M9).
+// meshes", 1997; wished for in [GOURLEY98] 6.1).
 //
 // A triangle goes when two of its corners become one; that happens in one cluster, at one collapse,
 // so it belongs to that cluster, and those alive of a cluster are a prefix of its list. Rungs hold

@@ -1,5 +1,5 @@
 // Geomorphs: vertices that merge next are already on their way to where they will, so that nothing
-// pops when they do (row M9).
+// pops when they do ([GOURLEY98] 6.1).
 //
 // At level L, of the collapses L .. E-1 that come next, the two nodes that collapse k merges stand
 //

@@ -1,5 +1,5 @@
 // ViewCut: which level each cluster is cut at, so that one budget over all tiles of the wall is
-// spent where they look (rows M7, M9).
+// spent where they look ([GOURLEY98] 5.4, 6.1).
 //
 // What one sees of a coarse surface is its shading: normals that are off by about T^-1/2 where the
 // whole is cut to T triangles. A cluster of n triangles of which p pixels show one model unit has

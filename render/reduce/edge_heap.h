@@ -1,4 +1,4 @@
-// EdgeHeap: edges by length, shortest first, updated in place (row P5; [GOURLEY98] 4.2.2).
+// EdgeHeap: edges by length, shortest first, updated in place ([GOURLEY98] 4.2.2).
 //
 // A binary heap with the place of each edge in it. Ties go to the smaller edge number, so one input
 // gives one order on every machine. Thread-bound.

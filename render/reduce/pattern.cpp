@@ -1,4 +1,4 @@
-// The cost `pattern`: the loop around PatternReducer, until a stop criterion (P10) holds.
+// The cost `pattern`: the loop around PatternReducer, until a stop criterion holds.
 #include <algorithm>
 
 #include "render/reduce/costs.h"

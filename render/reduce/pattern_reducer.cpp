@@ -115,7 +115,7 @@ void PatternReducer::measureAll() {
   }
 }
 
-// P6: both on the boundary, to the sharper corner; one, to it; none, to the middle.
+// [GOURLEY98] 4.3: both on the boundary, to the sharper corner; one, to it; none, to the middle.
 PatternReducer::Plan PatternReducer::plan(std::uint32_t edge) const {
   const auto [a, b] = surface_.ends(edge);
   Plan p{a, b, 0.5F, {}};
@@ -150,7 +150,8 @@ float PatternReducer::sharpness(std::uint32_t v) const {
   return std::numbers::pi_v<float> - std::acos(std::clamp(dot(d, e) / lengths, -1.0F, 1.0F));
 }
 
-// P8: whether a face of the new star would turn over, or lose its area. Fills new_normals_.
+// [GOURLEY98] 4.3: whether a face of the new star would turn over, or lose its area. Fills
+// new_normals_.
 bool PatternReducer::flips(const Plan& p) {
   new_normals_.clear();
   const float* moved = p.position.data();
@@ -264,7 +265,7 @@ void PatternReducer::makePattern(std::uint32_t v) {
   }
 }
 
-// P4, equation 4.3.
+// [GOURLEY98] equation 4.3.
 float PatternReducer::lengthOf(std::uint32_t edge) const noexcept {
   const auto [a, b] = surface_.ends(edge);
   const std::size_t d = space_.dimension();

@@ -68,7 +68,7 @@ Weights presetWeights(const Preset& preset, const Mesh& mesh) {
 Weights defaultWeights(const Mesh& mesh) {
   Weights weights{{"geometry", 1.0F}, {"normal", 0.05F}, {"boundary", 0.5F}};
   if (mesh.find("colour")) weights["colour"] = 0.03F;
-  if (mesh.find("label")) weights["label"] = 1000;  // P12: "a very high weight"
+  if (mesh.find("label")) weights["label"] = 1000;  // [GOURLEY98] 5.2.2: "a very high weight"
   return weights;
 }
 

@@ -1,5 +1,5 @@
 // Pattern space: each vertex as a vector of all its modalities, weighted, so that the length of an
-// edge is the plain distance of its ends. [GOURLEY98] 4.2.1, equations 4.1 to 4.3; rows P1 to P4.
+// edge is the plain distance of its ends. [GOURLEY98] 4.2.1, equations 4.1 to 4.3.
 #pragma once
 
 #include <cstdint>
@@ -46,10 +46,10 @@ struct PatternFeature {
 
 class PatternSpace {
  public:
-  // Normalisation (P3): geometry by the diagonal of the mesh's box; normals, curvature and boundary
-  // as they are; any other feature by its largest extent over the mesh.
-  // Errors: kInvalidArgument: a weight that is negative or not finite, or names no feature; none
-  // that is more than 0.
+  // Normalisation (4.2.1): geometry by the diagonal of the mesh's box; normals, curvature and
+  // boundary as they are; any other feature by its largest extent over the mesh. Errors:
+  // kInvalidArgument: a weight that is negative or not finite, or names no feature; none that is
+  // more than 0.
   static Result<PatternSpace> make(const Mesh& mesh, const Weights& weights);
 
   std::size_t dimension() const noexcept { return dimension_; }

@@ -139,7 +139,8 @@ Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings
   if (!space) return space.error();
   if (const auto checked = checkWeights(plan.weights, *space); !checked) return checked.error();
   plan.channels = channelsOf(mesh, *space);
-  // P12: as good as a colour of very high weight, unless somebody weighs it, be it by 0.
+  // [GOURLEY98] 5.2.2: as good as a colour of very high weight, unless somebody weighs it, be it by
+  // 0.
   plan.labels_lock = mesh.find("label") && !plan.weights.contains("label");
   plan.label_scale = kLabelWeight / space->find("geometry")->scale;
   plan.seams_shrink = settings.locked.empty();  // what has to stay is no seam's for sure

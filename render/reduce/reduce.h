@@ -20,9 +20,10 @@
 namespace merlin::render {
 
 struct ReduceSettings {
-  std::string cost = "quadric";    // of costs()
-  Weights weights{};               // empty: the cost's own
-  bool preserve_topology = false;  // refuse collapses that join or pinch off parts (P11)
+  std::string cost = "quadric";  // of costs()
+  Weights weights{};             // empty: the cost's own
+  bool preserve_topology =
+      false;  // refuse collapses that join or pinch off parts ([GOURLEY98] 6.1)
   // Keep of every component a triangle as long as anything else can go; without it what is smaller
   // than the error goes as well.
   bool preserve_components = false;
@@ -34,7 +35,7 @@ struct ReduceSettings {
   // it would take, `quadric` works in blocks, of which the result depends (memory.h).
   std::size_t memory = 0;
 
-  // When to stop, whichever comes first (P10): as soon as no more triangles are left than these,
+  // When to stop, whichever comes first: as soon as no more triangles are left than these,
   // and before the error would be larger. As they stand: when nothing legal is left.
   std::size_t min_triangles = 0;
   double min_percent = 0;  // of the mesh's triangles left, 0..100
@@ -49,7 +50,7 @@ struct ReduceProgress {
 
 struct ReduceReport {
   std::size_t collapses = 0;
-  std::size_t flips_refused = 0;     // P8; the same edge counts each time
+  std::size_t flips_refused = 0;     // the same edge counts each time
   std::size_t topology_refused = 0;  // by preserve_topology, or since nothing would be left
   std::size_t triangles = 0;         // left
   std::size_t by_all_rules = 0;      // triangles left when the first rule gave way, or at the end

@@ -51,7 +51,7 @@ class WorkingMesh {
   // preserving edge contraction", 1999, with borders. REQUIRES: both ends are tidy.
   bool linkCondition(std::uint32_t edge) noexcept;
 
-  // Merges b into a (P7): triangles with both are gone, edges that became one are merged; returns
+  // Merges b into a: triangles with both are gone, edges that became one are merged; returns
   // the edges that are no more, the collapsed one among them. Valid until the next call. REQUIRES:
   // a and b are tidy.
   std::span<const std::uint32_t> collapse(std::uint32_t a, std::uint32_t b);

@@ -28,7 +28,7 @@ struct TilesSettings {
   int frame_width = 1280, frame_height = 960;  // [px]
   double field_of_view_deg = 40;               // of one tile, horizontally
   double near_m = 0.05, far_m = 50;            // what is drawn, along the view
-  // W1: upper left, upper right, lower left, lower right.
+  // [GOURLEY98] figure 2.15: upper left, upper right, lower left, lower right.
   std::vector<TileSettings> tiles = {{"left", TileKind::kWall, 0, 0, 1},
                                      {"centre", TileKind::kWall, 640, 0, 0},
                                      {"right", TileKind::kWall, 0, 480, -1},

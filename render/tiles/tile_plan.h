@@ -2,7 +2,7 @@
 //
 // Wall tiles look from one point, each turned about the vertical axis by a whole field of view from
 // its neighbour, so that the frusta touch and do not overlap: three make one wide picture
-// ([GOURLEY98] 2.4, rows W1 and W2). The operator's tile sees the whole model from further back.
+// ([GOURLEY98] 2.4). The operator's tile sees the whole model from further back.
 //
 // Axes: x right, y up, the eye looks along -z. Angles to the left are positive.
 #pragma once

@@ -1,8 +1,8 @@
-// ./dev bench rates: what the wall draws in a second, beside the table of 1998 (row W10), and which
-// share of it is drawing: a loop that only drew and read back could not be faster by more than
-// that; and what a second context on a second core is worth.
+// ./dev bench rates: what the wall draws in a second, beside the table of 1998 ([GOURLEY98] 2.5),
+// and which share of it is drawing: a loop that only drew and read back could not be faster by more
+// than that; and what a second context on a second core is worth.
 //
-// W10: textured triangles at full resolution, before reduction; the operator's view is a fourth
+// There: textured triangles at full resolution, before reduction; the operator's view is a fourth
 // one, as there. Each is the whole model, two copies of the demo's scan side by side in a made-up
 // picture of 1024 x 1024, reduced to that many triangles and drawn whole.
 #include <cmath>

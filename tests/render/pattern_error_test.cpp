@@ -24,7 +24,7 @@ Mesh window(float x5) {
   return mesh;
 }
 
-TEST(Flip, IsRefusedAndTheNextEdgeGoes) {  // P8
+TEST(Flip, IsRefusedAndTheNextEdgeGoes) {  // [GOURLEY98] 4.3
   // 4 5 8 as 1 5 8 turns over where 5 lies left of the line from 1 to 8, which passes (1.5, 1).
   const Reduction refused = collapseInOrder(window(1.2F), 1);
   EXPECT_EQ(refused.report.flips_refused, 1u);

@@ -22,7 +22,7 @@ Mesh orderedStrip() {
   return mesh;
 }
 
-TEST(Placement, OfTwoInnerVerticesIsTheMiddle) {  // P6
+TEST(Placement, OfTwoInnerVerticesIsTheMiddle) {
   Mesh mesh = orderedStrip();
   moveTo(mesh, 6, 2, 1, 0.5F);
   const Reduction r = collapseInOrder(mesh, 1);
@@ -98,7 +98,7 @@ float firstOfStrip(float p2, float unit_of_p) {
   return static_cast<float>(r.log.children[0][0]);
 }
 
-TEST(EdgeLength, IsTheDistanceOfTheWeightedVectors) {  // P4, equation 4.3
+TEST(EdgeLength, IsTheDistanceOfTheWeightedVectors) {  // [GOURLEY98] equation 4.3
   EXPECT_EQ(firstOfStrip(4.99F, 1), 1);
   EXPECT_EQ(firstOfStrip(5.01F, 1), 5);
   // At half the weight: L(5, 6) = |(1.5, 4)| = 4.272, and 1-2 counts half.

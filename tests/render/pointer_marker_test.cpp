@@ -34,7 +34,7 @@ class PointerMarkerTest : public testing::Test {
     return marker_.hasChanged();
   }
 
-  TilePlan plan_ = *planTiles({});  // W1: 640 x 480, 40 degrees each
+  TilePlan plan_ = *planTiles({});  // 640 x 480, 40 degrees each
   std::vector<std::uint8_t> pixels_ = std::vector<std::uint8_t>(4 * 1280 * 960, 90);
   PointerMarker marker_{plan_};
 };

@@ -196,7 +196,7 @@ long crossings(float weight) {
   });
 }
 
-TEST(Reduce, DoesNotCrossALabelOfHighWeight) {  // P12
+TEST(Reduce, DoesNotCrossALabelOfHighWeight) {
   EXPECT_EQ(crossings(100), 0);
   EXPECT_GT(crossings(0), 10);
 }
@@ -212,7 +212,7 @@ long eulerNumber(const Mesh& mesh) {
          static_cast<long>(edges.size());
 }
 
-TEST(Reduce, KeepsTheTopologyWhereItIsAskedTo) {  // P11
+TEST(Reduce, KeepsTheTopologyWhereItIsAskedTo) {
   const Mesh two =
       withNormals(test::together(test::sphere(2), test::moved(test::sphere(1), 3, 0, 0)));
   const Reduction r = reduced(two, {.preserve_topology = true});

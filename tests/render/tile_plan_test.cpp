@@ -1,4 +1,5 @@
-// The plan of the wall, rows W1 and W2: rectangles, frusta that touch, the operator's view.
+// The plan of the wall of 1998 ([GOURLEY98] 2.4): rectangles, frusta that touch, the operator's
+// view.
 #include "render/tiles/tile_plan.h"
 
 #include <cmath>
@@ -48,7 +49,7 @@ float columnOf(const Tile& tile, const Vector3f& eye) {
          (drawnAt(tile, eye).x() + 1) / 2 * static_cast<float>(tile.width);
 }
 
-TEST(TilePlan, IsFourQuadrantsAsShipped) {  // W1
+TEST(TilePlan, IsFourQuadrantsAsShipped) {
   const TilePlan plan = planned();
   EXPECT_EQ(plan.frame_width, 1280);
   EXPECT_EQ(plan.frame_height, 960);
@@ -75,7 +76,7 @@ TEST(TilePlan, IsFourQuadrantsAsShipped) {  // W1
   }
 }
 
-// W2. What the left tile shows at its right edge, the centre shows at its left edge, as high.
+// What the left tile shows at its right edge, the centre shows at its left edge, as high.
 TEST(TilePlan, FrustaTouchAndDoNotOverlap) {
   const TilePlan plan = planned();
   const Tile &left = plan.tiles[0], &centre = plan.tiles[1], &right = plan.tiles[2];

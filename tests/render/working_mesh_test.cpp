@@ -88,7 +88,7 @@ TEST(WorkingMesh, TakesAnEdgeOfManyTrianglesForNoBorder) {
   for (std::uint32_t v = 0; v < 6; ++v) EXPECT_FALSE(mesh.isBoundary(v)) << v;
 }
 
-TEST(WorkingMesh, AnInnerCollapseRemovesTwoFacesAndMergesTwoPairsOfEdges) {  // P7
+TEST(WorkingMesh, AnInnerCollapseRemovesTwoFacesAndMergesTwoPairsOfEdges) {
   const WorkingMesh before(leaf());
   WorkingMesh mesh = before;
   EXPECT_EQ(endsOf(before, mesh.collapse(0, 1)), (Pairs{{0, 1}, {1, 2}, {1, 3}}));
@@ -134,7 +134,7 @@ TEST(WorkingMesh, ThreeTrianglesAtAnEdgeGoTogether) {
   EXPECT_EQ(mesh.liveTriangles(), 0u);
 }
 
-TEST(WorkingMesh, TwoTrianglesMayBecomeOneAndBothStay) {  // P11
+TEST(WorkingMesh, TwoTrianglesMayBecomeOneAndBothStay) {
   WorkingMesh mesh(tetrahedron());
   mesh.collapse(0, 1);
   EXPECT_EQ(mesh.liveTriangles(), 2u);
