@@ -1,5 +1,7 @@
 // The only description of every setting: its key, range and meaning. The loader, the schema and
 // `merlind --print-config` are generated from it.
+#include <fmt/format.h>
+
 #include "config/settings.h"
 #include "config/visitor.h"
 #include "daemon/base/commands.h"
@@ -26,9 +28,11 @@ void describeLine(LineSettings& line, std::span<const char* const> drivers, Sett
       "port", line.port,
       "Where the device is connected: serial:/dev/... (preferably a name under /dev/serial/by-id), "
       "pty:PATH, tcp://HOST:PORT (a raw serial server) or replay:FILE. Empty: no device.");
-  v.integer("baud", line.baud, {1200, 115200},
-            "Speed of the serial line in bits per second: 1200, 2400, 4800, 9600, 19200, 38400, "
-            "57600 or 115200.");
+  static const std::string kBaud = fmt::format("Speed of the serial line in bits per second: {}.",
+                                               fmt::join(lineSpeeds(), ", "));
+  v.integer("baud", line.baud,
+            {static_cast<double>(lineSpeeds().front()), static_cast<double>(lineSpeeds().back())},
+            kBaud.c_str());
   v.integer("max_bytes_s", line.max_bytes_s, {0, 100'000'000},
             "Maximum number of bytes per second that are read from the line. A line that sends "
             "more is read at this rate and without real-time priority, and its health reports it. "
@@ -178,7 +182,6 @@ void describeScene(render::SceneSettings& s, SettingsVisitor& v) {
   v.numbers("tracker_axes", s.tracker_axes, {-3, 3},
             "Axes of the tracker that correspond to the wall's x (right), y (up) and z (towards "
             "the person): 1 is x, 2 is y, 3 is z; a negative number reverses the axis.");
-  v.integer("hand_station", s.hand_station, {1, 4}, "Tracker station on the hand that grabs.");
   v.number(
       "hand_gain", s.hand_gain, {0.01, 1000},
       "Motion of the model in metres for one metre of motion of the hand, while the hand grabs.");
@@ -197,27 +200,9 @@ void describeScene(render::SceneSettings& s, SettingsVisitor& v) {
            "Rotation of the hand that is treated as noise of the tracker, in degrees.");
   v.number("still_after_s", s.still_after_s, {0.01, 10},
            "Time without input after which the scene counts as still, in seconds.");
-  v.number("posture_hold_s", s.posture_hold_s, {0, 10},
-           "Minimum time that a posture must be held before its bindings take effect, in seconds.");
-  v.number("stale_after_s", s.stale_after_s, {0.1, 10},
-           "Time after which the input of a device that has stopped working properly is released, "
-           "in seconds.");
   v.number("return_after_s", s.return_after_s, {0, 86400},
            "Time for which no tile of the wall has shown any part of the content, after which the "
            "initial view returns as soon as nobody moves it, in seconds; 0: never.");
-  v.listOf<render::Binding>(
-      "bindings", s.bindings, "What each input does.", [&](render::Binding& b) {
-        v.text("input", b.input,
-               "Name of the input: ball.button.1 to ball.button.12, posture.NAME or glove.switch.");
-        v.oneOf("action", b.action, render::kActionNames,
-                "What the input does. While it is held: grab (the hand moves the model), fly (the "
-                "hand's displacement sets the viewer's speed), point_at (a mark shows where the "
-                "hand points). Once: all others.");
-        v.oneOf("on", b.when, kWhen,
-                "When the action happens: hold (as long as the input is held; grab, fly, "
-                "point_at), enter or leave (once, when the input begins or ends; all others). "
-                "by_action: hold or enter, as the action requires.");
-      });
 }
 
 void describeRender(render::RenderSettings& r, SettingsVisitor& v) {
@@ -279,9 +264,37 @@ void describeGpio(GpioSettings& g, SettingsVisitor& v) {
            "Minimum time between two switching operations of the projectors, in seconds.");
   v.number("debounce_s", g.debounce_s, {0, 1},
            "Minimum time that the button must be pressed before it takes effect, in seconds.");
-  v.choiceOf("button_command", g.button_command, kButtonCommands,
-             "Command that a press of the panel's button executes: a command of the wall or of the "
-             "panel.");
+}
+
+// "What the input does. While it is held: grab (The tracked ...), ... Once: reset_view (...), ..."
+std::string actionsHelp() {
+  std::string held, once;
+  for (const CommandInfo& c : kCommands) {
+    if (c.bindable == Bindable::kNo) continue;
+    std::string& list = c.bindable == Bindable::kHeld ? held : once;
+    list += fmt::format("{}{}: {}", list.empty() ? "" : " ", c.name, c.help);
+  }
+  return fmt::format("What the input does. As long as it is held: {} Once: {}", held, once);
+}
+
+void describeBindings(DevicesSettings& d, SettingsVisitor& v) {
+  static const std::string kInput = fmt::format("Name of the input: {}.", kInputForms);
+  static const std::string kAction = actionsHelp();
+  v.listOf<Binding>(
+      "bindings", d.bindings,
+      "What each input does. A wall executes the actions that are for walls, also on another "
+      "machine; the machine that has the panel executes those of the panel.",
+      [&](Binding& b) {
+        v.text("input", b.input, kInput.c_str());
+        v.choiceOf("action", b.action, kActions, kAction.c_str());
+        v.oneOf("on", b.when, kWhen,
+                "When the action happens: hold (as long as the input is held), enter or leave "
+                "(once, when the input begins or ends). by_action: hold or enter, as the action "
+                "requires.");
+      });
+  v.number("stale_after_s", d.stale_after_s, {0.1, 10},
+           "Time after which the input of a device that has stopped working is released, in "
+           "seconds.");
 }
 
 void describeServe(ServeSettings& s, SettingsVisitor& v) {
@@ -366,8 +379,10 @@ void describe(Settings& s, SettingsVisitor& v) {
     v.group("tracker", "A Polhemus Fastrak.", [&] { describeTracker(s.devices, v); });
     v.group("ball", "A Spaceball.", [&] { describeBall(s.devices, v); });
     v.group("hand", "The hand, which combines glove and tracker.", [&] {
-      v.integer("station", s.devices.hand.station, {1, 4},
-                "Tracker station that is worn on the hand.");
+      v.integer(
+          "station", s.devices.hand.station, {1, 4},
+          "Tracker station that is worn on the hand, 1 to 4; it moves the model while the "
+          "hand grabs. A wall that gets its devices from another machine uses its own value.");
       v.number("cutoff_hz", s.devices.hand.cutoff_hz, {0, 100},
                "Cut-off frequency, in Hz, of the low-pass filter on the pose of a hand at rest. It "
                "adds a delay of 1 / (2 pi cut-off). 0: no filter.");
@@ -386,6 +401,7 @@ void describe(Settings& s, SettingsVisitor& v) {
     v.number("posture_margin", s.devices.posture_hold.least_margin, {0, 1},
              "Minimum margin (0 to 1) of the network's decision for a posture to be recognised; "
              "half of it suffices to keep the current posture.");
+    describeBindings(s.devices, v);
     v.integer("cpu_latency_us", s.devices.cpu_latency_us, {-1, 10000},
               "Maximum time that idle CPU cores may take to wake up, for the whole machine, in "
               "microseconds. 0 keeps them from sleeping, which costs power; -1 leaves the system's "

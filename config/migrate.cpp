@@ -1,5 +1,7 @@
 #include "config/migrate.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -29,6 +31,107 @@ Result<bool> movePng(Json& root) {
   return true;
 }
 
+// The group, made where the file lacks it. Errors: kInvalidArgument (it is not an object).
+Result<Json*> groupOf(Json& parent, const char* key, const char* pointer) {
+  if (!parent.contains(key)) parent[key] = Json::object();
+  Json& group = parent[key];
+  if (!group.is_object())
+    return Error{Errc::kInvalidArgument, fmt::format("{} is not an object", pointer)};
+  return &group;
+}
+
+// Takes /wall/scene/KEY out of the file; null where there is none.
+Json takeOfScene(Json& root, const char* key) {
+  const auto wall = root.find("wall");
+  if (wall == root.end() || !wall->is_object() || !wall->contains("scene")) return nullptr;
+  Json& scene = (*wall)["scene"];
+  if (!scene.is_object() || !scene.contains(key)) return nullptr;
+  Json value = scene[key];
+  scene.erase(key);
+  if (scene.empty()) wall->erase("scene");
+  return value;
+}
+
+Error bothForms(const char* was, const char* now) {
+  return {Errc::kInvalidArgument,
+          fmt::format("has both {} and {}: keep the latter by hand", was, now)};
+}
+
+bool hasPanel(const Json& devices) {
+  const auto gpio = devices.find("gpio");
+  return gpio != devices.end() && gpio->is_object() && gpio->value("chip", Json("")) != "";
+}
+
+// Bindings of the wall's scene became bindings of the devices; the panel's button is one of them.
+Result<bool> moveBindings(Json& root) {
+  Json bindings = takeOfScene(root, "bindings");
+  if (bindings.is_null()) return false;
+  const auto devices = groupOf(root, "devices", "/devices");
+  if (!devices) return devices.error();
+  if ((*devices)->contains("bindings"))
+    return bothForms("/wall/scene/bindings", "/devices/bindings");
+  const bool button = (*devices)->contains("gpio") && (**devices)["gpio"].is_object() &&
+                      (**devices)["gpio"].contains("button_command");
+  if (bindings.is_array() && hasPanel(**devices) && !button)
+    bindings.push_back({{"input", "panel.button"}, {"action", "next_mode"}});
+  (**devices)["bindings"] = std::move(bindings);
+  return true;
+}
+
+Result<bool> moveButton(Json& root) {
+  const auto devices = root.find("devices");
+  if (devices == root.end() || !devices->is_object() || !devices->contains("gpio")) return false;
+  Json& gpio = (*devices)["gpio"];
+  if (!gpio.is_object() || !gpio.contains("button_command")) return false;
+  const Json command = gpio["button_command"];
+  gpio.erase("button_command");
+  Json& bindings = (*devices)["bindings"];
+  if (bindings.is_null()) {  // those that were in force
+    bindings = Json::array({{{"input", "posture.fist"}, {"action", "grab"}},
+                            {{"input", "ball.button.1"}, {"action", "reset_view"}},
+                            {{"input", "ball.button.2"}, {"action", "next_mode"}}});
+  }
+  if (bindings.is_array()) bindings.push_back({{"input", "panel.button"}, {"action", command}});
+  return true;
+}
+
+Result<bool> moveStation(Json& root) {
+  const Json station = takeOfScene(root, "hand_station");
+  if (station.is_null()) return false;
+  const auto devices = groupOf(root, "devices", "/devices");
+  if (!devices) return devices.error();
+  const auto hand = groupOf(**devices, "hand", "/devices/hand");
+  if (!hand) return hand.error();
+  if ((*hand)->contains("station") && (**hand)["station"] != station)
+    return bothForms("/wall/scene/hand_station", "/devices/hand/station");
+  (**hand)["station"] = station;
+  return true;
+}
+
+Result<bool> moveStaleAfter(Json& root) {
+  const Json after = takeOfScene(root, "stale_after_s");
+  if (after.is_null()) return false;
+  const auto devices = groupOf(root, "devices", "/devices");
+  if (!devices) return devices.error();
+  if ((*devices)->contains("stale_after_s"))
+    return bothForms("/wall/scene/stale_after_s", "/devices/stale_after_s");
+  (**devices)["stale_after_s"] = after;
+  return true;
+}
+
+// Both times had to pass: the longer one was in force.
+Result<bool> movePostureHold(Json& root) {
+  const Json hold = takeOfScene(root, "posture_hold_s");
+  if (hold.is_null()) return false;
+  const auto devices = groupOf(root, "devices", "/devices");
+  if (!devices) return devices.error();
+  constexpr double kDefault_s = 0.15;
+  const Json own = (*devices)->value("posture_hold_s", Json(kDefault_s));
+  if (hold.is_number() && own.is_number() && hold.get<double>() > own.get<double>())
+    (**devices)["posture_hold_s"] = hold;
+  return true;
+}
+
 struct Step {
   MovedSetting moved;
   Result<bool> (*rewrite)(Json& root);  // whether it changed anything
@@ -39,6 +142,15 @@ constexpr Step kSteps[] = {
     {{"/wall/png",
       "an entry {\"kind\": \"png\", \"path\": ...} of /wall/outputs stands in its place"},
      movePng},
+    {{"/wall/scene/bindings", "/devices/bindings stands in its place"}, moveBindings},
+    {{"/devices/gpio/button_command",
+      "an entry {\"input\": \"panel.button\", \"action\": ...} of /devices/bindings stands in its "
+      "place"},
+     moveButton},
+    {{"/wall/scene/hand_station", "/devices/hand/station stands in its place"}, moveStation},
+    {{"/wall/scene/stale_after_s", "/devices/stale_after_s stands in its place"}, moveStaleAfter},
+    {{"/wall/scene/posture_hold_s", "/devices/posture_hold_s, in force before, stands alone"},
+     movePostureHold},
 };
 
 }  // namespace

@@ -4,11 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "daemon/actions/settings.h"
 #include "daemon/serve/settings.h"
 #include "drivers/cyberglove/settings.h"
 #include "drivers/fastrak/settings.h"
 #include "drivers/gpio/settings.h"
 #include "drivers/hand/settings.h"
+#include "drivers/port/port_address.h"
 #include "drivers/spaceball/settings.h"
 #include "nn/settings.h"
 #include "render/frame/settings.h"
@@ -18,16 +20,6 @@
 #include "render/tiles/settings.h"
 
 namespace merlin {
-
-// How one device is connected.
-struct LineSettings {
-  std::string driver;  // a name from drivers/registry
-  std::string port;  // "serial:/dev/...", "pty:PATH", "tcp://HOST:PORT", "replay:FILE"; empty: none
-  int baud = 38400;
-  // Maximum number of bytes read per second; 0: four times what the baud rate carries, or a million
-  // for tcp:// and replay:.
-  int max_bytes_s = 0;
-};
 
 struct DevicesSettings {
   LineSettings glove_line{"cyberglove", "", 38400};
@@ -40,6 +32,8 @@ struct DevicesSettings {
   GpioSettings gpio;
   std::string postures;  // file of the posture network; empty: no posture is recognised
   nn::HoldSettings posture_hold;
+  std::vector<Binding> bindings = defaultBindings();
+  double stale_after_s = 0.5;  // of a device that does not work: then its input is released
   // Maximum wake-up latency of idle cores, for the whole machine [us]; -1: the system's setting.
   int cpu_latency_us = -1;
   std::string script = "visit";  // what the emulated person does, with --emulate

@@ -82,16 +82,14 @@ Daemon::Daemon(Configuration configuration, const DaemonOptions& options, Clock&
       servers_(std::in_place, options.devices ? "devices" : "wall", threads_, clock),
       watchdog_(watchdogInterval()) {}
 
-// Stops callers before callees: the servers and orders call devices_ and wall_; the panel's button,
-// in devices_, calls wall_, so devices_ goes first.
+// Stops callers before callees: the servers call devices_ and wall_, and wall_ calls snapshots_.
 Daemon::~Daemon() {
   limitStop();
   servers_.reset();
-  orders_.reset();
-  snapshots_.reset();
   link_.reset();
   devices_.reset();
   wall_.reset();
+  snapshots_.reset();
 }
 
 shm::Endpoints Daemon::endpoints(const std::string& role) const {
@@ -136,7 +134,7 @@ Result<Ok> Daemon::makeRoles() {
     if (!role) return role.error();
     wall_ = *std::move(role);
   }
-  takeOrders();
+  makeSnapshots();
   return Ok{};
 }
 
@@ -191,36 +189,32 @@ Result<status::CurveServer> Daemon::network() const {
   return status::CurveServer{s.samples_endpoint, *std::move(keys), *std::move(clients)};
 }
 
-// Connects the actions of the wall's bindings that other parts execute: snapshots and the lamp.
-void Daemon::takeOrders() {
-  wall::Orders::Doers doers;
+void Daemon::makeSnapshots() {
   if (wall_ && !settings_.wall.snapshots.empty()) {
     snapshots_ = std::make_unique<wall::SnapshotWriter>(
         shm::segmentName(settings_.instance, "framebuffer"),
         DatedFiles(settings_.wall.snapshots, settings_.instance, ".png",
                    static_cast<std::size_t>(settings_.wall.snapshots_kept)),
         threads_);
-    doers.snapshot = [this] { snapshots_->take(); };
-  }
-  if (devices_ && devices_->panel()) {
-    doers.lamp = [this](const std::string& command) {
-      const auto done = devices_->panel()->obey(command);
-      if (!done) logWarning("{}: {}", command, done.error().what);
-    };
+    wall_->onSnapshot([this] { snapshots_->take(); });
   }
   commands_.emplace(RoleCommands::Parts{devices_.get(), wall_.get(), snapshots_.get()});
-  orders_ = std::make_unique<wall::Orders>(shm::segmentName(settings_.instance, "wall"),
-                                           std::move(doers));
+}
+
+// Executes the actions of the devices' role and of the panel; each wall executes its own.
+void Daemon::executeActions() {
+  for (const std::size_t action : device_actions_.read(devices_->segment()).in_order) {
+    const CommandInfo* const command = findCommand(kActions[action]);
+    if (command->role == CommandOf::kWall) continue;
+    const auto done = commands_->run(command->name);
+    if (!done) logWarning("an input is bound to {}", done.error().what);
+  }
 }
 
 Result<Ok> Daemon::run() {
   const Timestamp now = clock_.now();
   if (devices_) {
     devices_->beat(now);
-    devices_->onPress([this](const std::string& command) {
-      const auto done = commands_->run(command);
-      if (!done) logWarning("the panel's button: {}", done.error().what);
-    });
     devices_->start();
     if (auto served = serveDevices(); !served) return served;
     serveOthers(devices_->segment());
@@ -273,7 +267,7 @@ void Daemon::housekeeping() {
   if (devices_) devices_->beat(now);
   if (wall_) wall_->beat(now);
   if (mirror_) mirror_->beat(now);
-  orders_->poll(now);
+  if (devices_) executeActions();
   servers_->tend(now);
   if (emulators_) {
     for (const std::string& device : emulators_->takeEnded()) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/settings.h"
+#include "daemon/actions/action_reader.h"
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
 #include "daemon/base/watched_thread.h"
@@ -21,7 +22,6 @@
 #include "daemon/status/sample_link.h"
 #include "daemon/status/services.h"
 #include "daemon/status/watchdog.h"
-#include "daemon/wall/orders.h"
 #include "daemon/wall/snapshot_writer.h"
 #include "daemon/wall/wall_role.h"
 
@@ -56,7 +56,8 @@ class Daemon {
   void serveOthers(const shm::DevicesSegment& segment);
   Result<status::CurveServer> network() const;
   void tellServices(std::vector<std::string>& documents);
-  void takeOrders();
+  void makeSnapshots();
+  void executeActions();
   shm::Endpoints endpoints(const std::string& role) const;
   Result<Ok> awaitFirstFrame(std::future<Result<std::string>> ready);
   bool stopAsked(Duration wait);  // waits for a signal
@@ -80,8 +81,8 @@ class Daemon {
   std::unique_ptr<status::SampleLink> link_;
   std::unique_ptr<wall::WallRole> wall_;
   std::unique_ptr<wall::SnapshotWriter> snapshots_;
-  std::unique_ptr<wall::Orders> orders_;
   std::optional<RoleCommands> commands_;
+  actions::ActionReader device_actions_;
   std::optional<Servers> servers_;
   status::Watchdog watchdog_;
   Timestamp summarised_{}, mended_{};

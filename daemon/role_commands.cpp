@@ -101,7 +101,7 @@ Result<std::string> RoleCommands::run(std::string_view name, const std::string& 
 std::vector<status::Command> RoleCommands::of(CommandOf role) const {
   std::vector<status::Command> commands;
   for (const CommandInfo& c : kCommands) {
-    if (c.role != role) continue;
+    if (c.role != role || c.bindable == Bindable::kHeld) continue;
     status::Command command{std::string(c.name), std::string(c.help), nullptr, nullptr};
     if (c.argument.empty())
       command.run = [this, name = c.name] { return run(name); };

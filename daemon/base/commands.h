@@ -1,5 +1,6 @@
-// The list of all commands of merlind. The sockets' commands, the commands of the panel's button,
-// the subcommands of `merlin` and the schema are made from it; daemon/role_commands.cpp implements
+// The list of all commands of merlind. The sockets' commands, the actions that inputs may be bound
+// to (ball buttons, postures, the panel's button), their fields in shared memory, the subcommands
+// of `merlin` and the schema are made from it; daemon/role_commands.cpp and daemon/wall execute
 // them.
 #pragma once
 
@@ -13,40 +14,52 @@ namespace merlin {
 // The role of merlind that executes a command; the role devices executes the panel's.
 enum class CommandOf { kEachRole, kDevices, kPanel, kWall };
 
+// Whether inputs may be bound to a command. kOnce: it is executed when the input begins (or ends).
+// kHeld: it lasts while the input is held; it cannot be sent to a socket.
+enum class Bindable { kNo, kOnce, kHeld };
+
 struct CommandInfo {
   std::string_view name;
   CommandOf role;
   std::string_view argument;  // form of its argument, "N|auto"; empty: none
   std::string_view help;      // what it does, for a person
-  bool by_button;             // whether the panel's button may be set to it
-  bool by_name;               // whether `merlin NAME` sends it; otherwise another subcommand does
+  Bindable bindable;
+  bool by_name;  // whether `merlin NAME` sends it; otherwise another subcommand does
 };
 
 inline constexpr CommandInfo kCommands[] = {
-    {"status", CommandOf::kEachRole, "", "Show the state of the role.", false, false},
+    {"status", CommandOf::kEachRole, "", "Show the state of the role.", Bindable::kNo, false},
     {"flight", CommandOf::kDevices, "",
-     "Write the last minutes of every device's bytes into files.", false, false},
+     "Write the last minutes of every device's bytes into files.", Bindable::kNo, false},
     {"reset_view", CommandOf::kWall, "",
-     "Return the model and the viewer to their initial positions.", true, true},
+     "Return the model and the viewer to their initial positions.", Bindable::kOnce, true},
     {"next_mode", CommandOf::kWall, "", "Switch whether the ball moves the model or the viewer.",
-     true, true},
-    {"next_content", CommandOf::kWall, "", "Show the next model of the configuration.", true, true},
+     Bindable::kOnce, true},
+    {"next_content", CommandOf::kWall, "", "Show the next model of the configuration.",
+     Bindable::kOnce, true},
     {"snapshot", CommandOf::kWall, "",
-     "Write the newest frame into the folder that /wall/snapshots names.", true, false},
+     "Write the newest frame into the folder that /wall/snapshots names.", Bindable::kOnce, false},
     {"triangles", CommandOf::kWall, "N|auto",
      "Set the number of triangles per frame while anything moves; auto lets the governor choose "
      "it.",
-     false, false},
+     Bindable::kNo, false},
     {"rate", CommandOf::kWall, "HZ|auto",
-     "Set the frame rate, 1 to 240 per second; auto returns to the configured rate.", false, false},
-    {"projector_on", CommandOf::kPanel, "", "Switch the projectors on.", true, true},
-    {"projector_off", CommandOf::kPanel, "", "Switch the projectors off.", true, true},
-    {"video_a", CommandOf::kPanel, "", "Show input A on the projectors.", true, true},
-    {"video_b", CommandOf::kPanel, "", "Show input B on the projectors.", true, true},
-    {"lamp_off", CommandOf::kPanel, "", "Switch the panel's lamp off.", false, true},
-    {"lamp_slow", CommandOf::kPanel, "", "Let the panel's lamp blink slowly.", false, true},
-    {"lamp_fast", CommandOf::kPanel, "", "Let the panel's lamp blink fast.", false, true},
-    {"lamp_on", CommandOf::kPanel, "", "Switch the panel's lamp on.", false, true},
+     "Set the frame rate, 1 to 240 per second; auto returns to the configured rate.", Bindable::kNo,
+     false},
+    {"projector_on", CommandOf::kPanel, "", "Switch the projectors on.", Bindable::kOnce, true},
+    {"projector_off", CommandOf::kPanel, "", "Switch the projectors off.", Bindable::kOnce, true},
+    {"video_a", CommandOf::kPanel, "", "Show input A on the projectors.", Bindable::kOnce, true},
+    {"video_b", CommandOf::kPanel, "", "Show input B on the projectors.", Bindable::kOnce, true},
+    {"lamp_off", CommandOf::kPanel, "", "Switch the panel's lamp off.", Bindable::kOnce, true},
+    {"lamp_slow", CommandOf::kPanel, "", "Let the panel's lamp blink slowly.", Bindable::kOnce,
+     true},
+    {"lamp_fast", CommandOf::kPanel, "", "Let the panel's lamp blink fast.", Bindable::kOnce, true},
+    {"lamp_on", CommandOf::kPanel, "", "Switch the panel's lamp on.", Bindable::kOnce, true},
+    {"grab", CommandOf::kWall, "", "The tracked hand moves the model.", Bindable::kHeld, false},
+    {"fly", CommandOf::kWall, "", "The hand's displacement sets the viewer's speed.",
+     Bindable::kHeld, false},
+    {"point_at", CommandOf::kWall, "", "A mark shows where the hand points.", Bindable::kHeld,
+     false},
 };
 
 // The command of that name; null if there is none.
@@ -56,9 +69,10 @@ constexpr const CommandInfo* findCommand(std::string_view name) {
   return found == std::end(kCommands) ? nullptr : found;
 }
 
-// Names of the commands that the panel's button may be set to, as C strings.
-inline constexpr auto kButtonCommands = [] {
-  constexpr auto kIs = [](const CommandInfo& c) { return c.by_button; };
+// An action: a command that inputs may be bound to. Names of all actions, as C strings; an index
+// into this list identifies an action inside one build only.
+inline constexpr auto kActions = [] {
+  constexpr auto kIs = [](const CommandInfo& c) { return c.bindable != Bindable::kNo; };
   constexpr auto kCount = std::count_if(std::begin(kCommands), std::end(kCommands), kIs);
   std::array<const char*, static_cast<std::size_t>(kCount)> names{};
   std::size_t i = 0;
@@ -67,5 +81,19 @@ inline constexpr auto kButtonCommands = [] {
   }
   return names;
 }();
+
+// Index of an action in kActions. REQUIRES: it is one; otherwise it does not compile.
+consteval std::size_t actionIndex(std::string_view name) {
+  for (std::size_t i = 0; i < kActions.size(); ++i) {
+    if (name == kActions[i]) return i;
+  }
+  throw "there is no such action";
+}
+
+// Whether the action lasts while its input is held; otherwise it happens once.
+constexpr bool isHeldAction(std::string_view name) {
+  const CommandInfo* const command = findCommand(name);
+  return command && command->bindable == Bindable::kHeld;
+}
 
 }  // namespace merlin

@@ -7,8 +7,9 @@
 namespace merlin {
 
 struct SettingFault {
-  std::string pointer;  // below the group, "/tiles/2"; empty: the group itself
-  std::string what;     // what is wrong, with the figures
+  std::string pointer;     // below the group, "/tiles/2"; empty: the group itself
+  std::string what;        // what is wrong, with the figures
+  std::string other = {};  // another setting of the group that it conflicts with; empty: none
 };
 
 using SettingFaults = std::vector<SettingFault>;

@@ -70,7 +70,7 @@ std::string GuidedGlove::spans() const {
 }
 
 int calibrateGlove(const GloveOptions& o) {
-  const auto address = io::parsePort(o.port);
+  const auto address = parsePort(o.port);
   if (!address) return fail(address.error());
   if (const auto writable = checkWritable(o.output); !writable) return fail(writable.error());
   auto line = io::openPort(*address, o.baud);

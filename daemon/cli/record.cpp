@@ -94,7 +94,7 @@ Result<std::string> listen(ByteStream& line, Device* device, Timestamp end, int 
 int record(const RecordOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);
   const UniqueFd stop = stopSignals();
-  const auto address = io::parsePort(options.port);
+  const auto address = parsePort(options.port);
   if (!address) return fail(address.error());
   if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
   const DriverEntry* driver = driverNamed(options.device);

@@ -29,17 +29,17 @@ void checkPostures(LoadedSettings& loaded) {
   if (path.empty()) return;
   const auto file = nn::loadNetwork(path);
   if (!file) return loaded.wrong("/devices/postures", "cannot be used: " + file.error().what);
-  if (!loaded.lines.contains("/wall/scene/bindings")) return;
+  if (!loaded.lines.contains("/devices/bindings")) return;
   const std::vector<std::string> names = namesOf(file->network.postures);
   constexpr std::string_view kPosture = "posture.";
-  const auto& bindings = loaded.settings.wall.scene.bindings;
+  const auto& bindings = loaded.settings.devices.bindings;
   for (std::size_t i = 0; i < bindings.size(); ++i) {
     const std::string& input = bindings[i].input;
     if (!input.starts_with(kPosture) || input.size() == kPosture.size()) continue;
     const std::string name = input.substr(kPosture.size());
     if (file->network.postures.code(name)) continue;
     const std::string near = nearest(name, names);
-    loaded.wrong(fmt::format("/wall/scene/bindings/{}/input", i),
+    loaded.wrong(fmt::format("/devices/bindings/{}/input", i),
                  fmt::format("is \"{}\", which is not a posture of {}; {}it knows {}", input, path,
                              near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near),
                              fmt::join(names, ", ")));
@@ -53,10 +53,10 @@ void checkPorts(LoadedSettings& loaded) {
   for (const auto& [device, port] : ports) {
     if (port.empty()) continue;
     const std::string at = fmt::format("/devices/{}/port", device);
-    const auto address = io::parsePort(port);
+    const auto address = parsePort(port);
     if (!address) {
       loaded.wrong(at, "cannot be used: " + address.error().what);
-    } else if (address->kind == io::PortKind::kReplay) {
+    } else if (address->kind == PortKind::kReplay) {
       const auto transcript = io::readTranscript(address->path);
       if (!transcript) loaded.wrong(at, "cannot be used: " + transcript.error().what);
     }

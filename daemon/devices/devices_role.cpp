@@ -24,10 +24,9 @@ constexpr int kRealTimePriority = 50;
 constexpr double kStreamBytes_s = 1e6;  // byte-rate limit of a line without a baud rate
 constexpr int kSpare = 4;               // byte-rate limit of a line, relative to its baud rate
 
-double paceOf(const LineSettings& line, io::PortKind kind) {
+double paceOf(const LineSettings& line, const PortAddress& address) {
   if (line.max_bytes_s > 0) return line.max_bytes_s;
-  const bool has_speed = kind == io::PortKind::kSerial || kind == io::PortKind::kPty;
-  return has_speed ? kSpare * line.baud / 10.0 : kStreamBytes_s;
+  return address.hasSpeed() ? kSpare * line.baud / 10.0 : kStreamBytes_s;
 }
 
 // Gives the calling thread real-time priority if the systemd unit allows it, so that samples reach
@@ -94,8 +93,7 @@ class WatchedStream final : public ByteStream {
 class Opener {
  public:
   // `progress`: set to the opening thread's once it runs.
-  Opener(io::PortAddress address, int baud, ByteTap& tap, Progress* const& progress,
-         const Clock& clock)
+  Opener(PortAddress address, int baud, ByteTap& tap, Progress* const& progress, const Clock& clock)
       : address_(std::move(address)), baud_(baud), tap_(tap), progress_(progress), clock_(clock) {}
 
   Result<std::unique_ptr<ByteStream>> operator()() {
@@ -116,7 +114,7 @@ class Opener {
     return io::openPort(address_, baud_);
   }
 
-  io::PortAddress address_;
+  PortAddress address_;
   int baud_;
   ByteTap& tap_;
   Progress* const& progress_;
@@ -127,12 +125,13 @@ class Opener {
 }  // namespace
 
 DevicesRole::DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, const Settings& settings,
-                         ThreadWatch& watch, Clock& clock)
+                         std::uint64_t generation, ThreadWatch& watch, Clock& clock)
     : segment_(std::move(segment)),
       watch_(watch),
       clock_(clock),
       sink_(*segment_),
-      flight_(*segment_, settings.run_directory + "/flight", settings.instance) {}
+      flight_(*segment_, settings.run_directory + "/flight", settings.instance),
+      generation_(generation) {}
 
 Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
                                                        std::uint64_t generation,
@@ -142,17 +141,9 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
       shm::segmentName(settings.instance, "devices"), shm::devicesFields(), generation, clock.now(),
       endpoints);
   if (!segment) return segment.error();
-  std::unique_ptr<DevicesRole> role(new DevicesRole(*std::move(segment), settings, watch, clock));
-  if (!settings.devices.postures.empty()) {
-    const auto file = nn::loadNetwork(settings.devices.postures);
-    if (!file) return file.error();
-    role->posture_sink_ = std::make_unique<PostureSink>(
-        file->network, settings.devices.posture_hold,
-        PostureSink::Outputs{role->segment_->posture, role->segment_->posture_state}, role->sink_);
-  }
-  role->hand_sink_ =
-      std::make_unique<HandSink>(settings.devices.hand, *role->segment_, role->sink_);
-  role->addPanel(settings.devices.gpio);
+  std::unique_ptr<DevicesRole> role(
+      new DevicesRole(*std::move(segment), settings, generation, watch, clock));
+  role->addPanel(settings.devices);
   role->cpu_latency_us_ = settings.devices.cpu_latency_us;
   role->segment_->tracker_frames.publish(framesOf(settings.devices.tracker));
   const DevicesSettings& d = settings.devices;
@@ -174,29 +165,52 @@ Result<Ok> DevicesRole::add(const LineSettings& line, SampleKind kind, shm::Devi
   if (line.port.empty()) return Ok{};
   const DriverEntry* driver = findDriver(kind, line.driver);
   if (!driver) return Error{Errc::kInvalidArgument, "there is no driver named " + line.driver};
-  const auto address = io::parsePort(line.port);
+  const auto address = parsePort(line.port);
   if (!address) return address.error();
   const DriverSettings own{settings.devices.glove, settings.devices.tracker, settings.devices.ball};
-  SampleSink* sink = &sink_;
-  if (kind == SampleKind::kGlove && posture_sink_) sink = posture_sink_.get();
-  if (kind == SampleKind::kTracker) sink = hand_sink_.get();
   health_.push_back(std::make_unique<shm::ShmHealthSink>(slot));
+  const auto chain = sinksFor(kind, *health_.back(), settings.devices);
+  if (!chain) return chain.error();
   DeviceLoopSettings loop;
   loop.port = line.port;
   loop.baud = line.baud;
-  loop.max_bytes_s = paceOf(line, address->kind);
+  loop.max_bytes_s = paceOf(line, *address);
   loop.on_pace = [](bool above) { above ? giveUpRealTime() : askForRealTime(); };
   ByteTap& tap = flight_.add(index, line.driver, line.baud);
   lines_.push_back(std::make_unique<Line>());
   Line& entry = *lines_.back();
   entry.name = line.driver;
-  entry.loop =
-      std::make_unique<DeviceLoop>(loop, Opener(*address, line.baud, tap, entry.progress, clock_),
-                                   driver->make(own, clock_, *sink), *health_.back(), clock_);
+  entry.loop = std::make_unique<DeviceLoop>(
+      loop, Opener(*address, line.baud, tap, entry.progress, clock_),
+      driver->make(own, clock_, *chain->samples), *chain->health, clock_);
   return Ok{};
 }
 
-void DevicesRole::addPanel(const GpioSettings& settings) {
+// Makes what a device's samples and health pass through on their way into shared memory. Each part
+// publishes before it passes a sample on.
+Result<DevicesRole::Sinks> DevicesRole::sinksFor(SampleKind kind, HealthSink& health,
+                                                 const DevicesSettings& settings) {
+  if (kind == SampleKind::kTracker) {
+    hand_sink_ = std::make_unique<HandSink>(settings.hand, *segment_, sink_);
+    return Sinks{hand_sink_.get(), &health};
+  }
+  const auto source = kind == SampleKind::kBall ? shm::kBallActions : shm::kGloveActions;
+  actions::ActionWriter writer(settings.bindings, source, generation_, segment_->actions[source]);
+  action_sinks_.push_back(std::make_unique<actions::ActionSink>(
+      std::move(writer), actions::ActionSink::Parts{segment_->posture_state, sink_, health,
+                                                    fromSeconds(settings.stale_after_s)}));
+  actions::ActionSink& actions = *action_sinks_.back();
+  if (kind == SampleKind::kBall || settings.postures.empty()) return Sinks{&actions, &actions};
+  const auto file = nn::loadNetwork(settings.postures);
+  if (!file) return file.error();
+  posture_sink_ = std::make_unique<PostureSink>(
+      file->network, settings.posture_hold,
+      PostureSink::Outputs{segment_->posture, segment_->posture_state}, actions);
+  return Sinks{posture_sink_.get(), &actions};
+}
+
+void DevicesRole::addPanel(const DevicesSettings& devices) {
+  const GpioSettings& settings = devices.gpio;
   segment_->gpio_health.publish(notConfigured(clock_.now()));
   if (settings.chip.empty()) return;
   health_.push_back(std::make_unique<shm::ShmHealthSink>(segment_->gpio_health));
@@ -210,9 +224,11 @@ void DevicesRole::addPanel(const GpioSettings& settings) {
     if (!last || last->counter != sample.counter || last->wait_s != sample.wait_s)
       segment_->gpio.publish(sample);
   };
-  panel_ =
-      std::make_unique<gpio::PanelLoop>(settings, open, publish, *health_.back(), clock_,
-                                        [this](const std::string& command) { on_press_(command); });
+  panel_actions_ = std::make_unique<actions::ActionWriter>(
+      devices.bindings, shm::kPanelActions, generation_, segment_->actions[shm::kPanelActions]);
+  panel_ = std::make_unique<gpio::PanelLoop>(
+      settings, open, publish, *health_.back(), clock_,
+      [this] { panel_actions_->press(toNanoseconds(clock_.now())); });
 }
 
 void DevicesRole::start() {

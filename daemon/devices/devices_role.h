@@ -3,12 +3,13 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "config/settings.h"
+#include "daemon/actions/action_sink.h"
+#include "daemon/actions/action_writer.h"
 #include "daemon/base/clock.h"
 #include "daemon/base/unique_fd.h"
 #include "daemon/base/watched_thread.h"
@@ -43,9 +44,6 @@ class DevicesRole {
   void beat(Timestamp now) const { segment_.beat(now); }
   Result<std::string> mend() { return segment_.mend(); }  // SegmentWriter::mend()
   const shm::DevicesSegment& segment() const { return *segment_; }
-  // Sets what a press of the panel's button does; called on the panel's thread. To be set before
-  // start().
-  void onPress(std::function<void(const std::string&)> act) { on_press_ = std::move(act); }
   // Null if no panel is configured. Thread-safe.
   gpio::PanelLoop* panel() { return panel_.get(); }
   // The flight recorder of all devices that have a port. For the status server's thread.
@@ -53,10 +51,15 @@ class DevicesRole {
 
  private:
   DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, const Settings& settings,
-              ThreadWatch& watch, Clock& clock);
-  void addPanel(const GpioSettings& settings);
+              std::uint64_t generation, ThreadWatch& watch, Clock& clock);
+  void addPanel(const DevicesSettings& settings);
   Result<Ok> add(const LineSettings& line, SampleKind kind, shm::DeviceIndex index,
                  const Settings& settings);
+  struct Sinks {
+    SampleSink* samples;
+    HealthSink* health;
+  };
+  Result<Sinks> sinksFor(SampleKind kind, HealthSink& health, const DevicesSettings& settings);
 
   shm::SegmentWriter<shm::DevicesSegment> segment_;
   ThreadWatch& watch_;
@@ -65,9 +68,11 @@ class DevicesRole {
   FlightRecorder flight_;
   std::unique_ptr<PostureSink> posture_sink_;
   std::unique_ptr<HandSink> hand_sink_;
-  std::function<void(const std::string&)> on_press_ = [](const std::string&) {};
+  std::unique_ptr<actions::ActionWriter> panel_actions_;
   std::unique_ptr<gpio::PanelLoop> panel_;
   std::vector<std::unique_ptr<shm::ShmHealthSink>> health_;
+  std::vector<std::unique_ptr<actions::ActionSink>> action_sinks_;
+  std::uint64_t generation_;
   // A device's loop; `progress` is its thread's, once that runs.
   struct Line {
     std::string name;

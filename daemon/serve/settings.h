@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "daemon/base/setting_fault.h"
+
 namespace merlin {
 
 struct ServeSettings {
@@ -15,5 +17,9 @@ struct ServeSettings {
   std::string samples_keys;     // file with this machine's key pair
   std::string samples_clients;  // file with the public keys of allowed clients, one per line
 };
+
+// Finds an address that cannot be used, or that has no keys: traffic over a network must be
+// encrypted. Pointer: "/samples_endpoint".
+SettingFaults validate(const ServeSettings& serve);
 
 }  // namespace merlin

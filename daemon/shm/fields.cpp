@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/commands.h"
+
 namespace merlin::shm {
 namespace {
 
@@ -127,6 +129,24 @@ void addPanel(FieldTable& t) {
   MERLIN_FIELD(t, GpioSample, wait_s, "s");
 }
 
+// Adds the state of each action by its name: "actions.ball.reset_view.begun", and ".held" if it
+// lasts as long as its input; and whole arrays, in the order of the named fields.
+void addActions(FieldTable& t, const char* device, std::size_t offset) {
+  t.slot(fmt::format("actions.{}", device), offset);
+  MERLIN_FIELD(t, ActionState, changed_ns, "ns");
+  MERLIN_FIELD(t, ActionState, generation, "");
+  MERLIN_FIELD(t, ActionState, begun, "");
+  MERLIN_FIELD(t, ActionState, held, "");
+  MERLIN_FIELD(t, ActionState, sequence, "");
+  MERLIN_FIELD(t, ActionState, recent, "");
+  for (std::size_t i = 0; i < kActions.size(); ++i) {
+    t.add<std::uint32_t>(fmt::format("{}.begun", kActions[i]),
+                         offsetof(ActionState, begun) + i * sizeof(std::uint32_t), "");
+    if (isHeldAction(kActions[i]))
+      t.add<std::uint8_t>(fmt::format("{}.held", kActions[i]), offsetof(ActionState, held) + i, "");
+  }
+}
+
 // Adds the first part of WallStats.
 void addWall(FieldTable& t) {
   t.slot("wall", offsetof(WallSegment, stats));
@@ -205,8 +225,6 @@ void addInteraction(FieldTable& t) {
   MERLIN_FIELD(t, WallInteraction, pixel, "px");
   MERLIN_FIELD(t, WallInteraction, at_model_m, "m");
   MERLIN_FIELD(t, WallInteraction, snapshots, "");
-  MERLIN_FIELD(t, WallInteraction, lamps, "");
-  MERLIN_FIELD(t, WallInteraction, lamp, "Lamp");
   MERLIN_FIELD(t, WallInteraction, content, "");
 }
 
@@ -246,6 +264,11 @@ std::vector<Field> devicesFields() {
   addHand(t);
   addPanel(t);
   addHealth(t, "gpio", offsetof(DevicesSegment, gpio_health));
+  constexpr const char* kSources[kActionSources] = {"glove", "ball", "panel"};
+  for (std::size_t i = 0; i < kActionSources; ++i) {
+    addActions(t, kSources[i],
+               offsetof(DevicesSegment, actions) + i * sizeof(SeqSlot<ActionState>));
+  }
   return t.take();
 }
 

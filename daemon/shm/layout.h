@@ -23,7 +23,7 @@
 namespace merlin::shm {
 
 inline constexpr std::uint32_t kMagic = 0x4E4C524D;  // "MRLN" in memory
-inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::uint32_t kVersion = 3;
 inline constexpr std::size_t kMostFields = 512;
 
 // A reader only needs to know the first 40 bytes beforehand: they have the offset of the table of
@@ -51,6 +51,29 @@ static_assert(offsetof(Header, status_endpoint) == 64 && sizeof(Header) == 280);
 // Index of a device in DevicesSegment::health.
 enum DeviceIndex : std::size_t { kGlove = 0, kTracker = 1, kBall = 2, kDevices = 3 };
 
+// Maximum number of actions (daemon/base/commands.h).
+inline constexpr std::size_t kMostActions = 32;
+
+// Whose inputs trigger actions: index of DevicesSegment::actions.
+enum ActionSource : std::size_t {
+  kGloveActions = 0,  // postures and the wrist switch
+  kBallActions = 1,
+  kPanelActions = 2,
+  kActionSources = 3
+};
+
+// Actions that the inputs of one device are bound to. Written when one begins or ends. Index of the
+// arrays: kActions of daemon/base/commands.h; other processes find an action by its field's name.
+struct ActionState {
+  std::int64_t changed_ns;            // time of the input that changed it; 0: none has
+  std::uint64_t generation;           // of the daemon that counts; if it differs, counts start anew
+  std::uint32_t begun[kMostActions];  // times that the action has begun
+  std::uint8_t held[kMostActions];    // 1 while an action is held that lasts as long as its input
+  std::uint32_t sequence;             // actions of all kinds that have begun
+  std::uint8_t recent[12];            // index of the n-th of them, at n % 12
+};
+static_assert(sizeof(ActionState) == 192);
+
 struct DevicesSegment {
   Header header;
   alignas(64) SeqSlot<DeviceHealth> health[kDevices];  // writer: each device's thread
@@ -63,7 +86,8 @@ struct DevicesSegment {
   alignas(64) SeqSlot<DeviceHealth> gpio_health;      // writer: the panel's thread
   alignas(64) SeqSlot<PostureState> posture_state;    // writer: the glove's device thread
   alignas(64) SeqSlot<TrackerFrames> tracker_frames;  // writer: the daemon, as it starts
-  alignas(64) Field fields[kMostFields];              // writer: the daemon, as it starts
+  alignas(64) SeqSlot<ActionState> actions[kActionSources];  // writer: each device's thread
+  alignas(64) Field fields[kMostFields];                     // writer: the daemon, as it starts
 };
 
 // Statistics of the wall, written once per frame by the wall's thread. Shares are 0..1.
@@ -144,7 +168,7 @@ struct FrameTrace {
 };
 static_assert(sizeof(TraceStep) == 12 && sizeof(FrameTrace) == 48 + 32 * 12);
 
-// Actions of people at the wall: pointing, snapshots, lamps, contents. Written once per period.
+// What people do at the wall: pointing, snapshots, contents. Written once per period.
 struct WallInteraction {
   enum Pointing : std::uint32_t { kNone = 0, kAtWall = 1, kAtModel = 2 };
 
@@ -153,11 +177,9 @@ struct WallInteraction {
   std::int32_t pixel[2];    // pixel pointed at, from the frame's upper left corner; -1, -1: none
   float at_model_m[3];      // point of the bounding sphere pointed at, model coordinates [m]
   std::uint32_t snapshots;  // snapshots requested since the start
-  std::uint32_t lamps;      // lamp changes requested since the start
-  std::uint32_t lamp;       // the last lamp state requested: GpioSample::Lamp
   std::uint32_t content;    // content shown: 0 the model, 1 .. the configuration's contents
 };
-static_assert(sizeof(WallInteraction) == 48 && offsetof(WallInteraction, snapshots) == 32);
+static_assert(sizeof(WallInteraction) == 40 && offsetof(WallInteraction, snapshots) == 32);
 
 // One output of the wall, and how it fares.
 struct OutputStats {

@@ -8,7 +8,7 @@ import mmap, struct, sys
 
 HEADER = "<IIQQIIII"             # magic, version, size, generation, table: offset, count, size; pid
 FIELD = "<48s24s8sIIIIIIII"      # name, unit, type, count, step, offset, slot, ring (3 numbers)
-MAGICS = (0x4E4C524D, 0x42464D4D)
+VERSIONS = {0x4E4C524D: 3, 0x42464D4D: 2}  # of each kind of segment, by its magic
 
 def text(raw):
     return raw.split(b"\0")[0].decode(errors="replace")
@@ -32,7 +32,7 @@ name, wanted = (sys.argv[1:2] or ["merlin-devices"])[0], sys.argv[2:]
 with open(f"/dev/shm/{name}", "rb") as file:
     memory = mmap.mmap(file.fileno(), 0, prot=mmap.PROT_READ)
 magic, version, _, _, table, fields, size, _ = struct.unpack_from(HEADER, memory)
-if magic not in MAGICS or version != 2:
+if VERSIONS.get(magic) != version:
     sys.exit(f"read_merlin.py: {name} is not a segment of MERLIN that this program knows")
 for i in range(fields):
     entry = struct.unpack_from(FIELD, memory, table + i * size)

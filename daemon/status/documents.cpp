@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/base/commands.h"
+
 namespace merlin::status {
 namespace {
 
@@ -205,6 +207,19 @@ Json outputsJson(const shm::WallSegment& segment) {
   return json;
 }
 
+// The actions that have begun at least once; "held": names of those that are held.
+Json actionsJson(const shm::ActionState& state) {
+  Json begun = Json::object(), held = Json::array();
+  for (std::size_t i = 0; i < kActions.size(); ++i) {
+    if (state.begun[i] > 0) begun[kActions[i]] = state.begun[i];
+    if (state.held[i] != 0) held.push_back(kActions[i]);
+  }
+  return {{"changed_ns", state.changed_ns},
+          {"generation", state.generation},
+          {"begun", std::move(begun)},
+          {"held", std::move(held)}};
+}
+
 }  // namespace
 
 std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
@@ -305,6 +320,10 @@ std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {
                     {"rotation", list(std::span<const float>(b->rotation))}};
   }
   if (const auto h = segment.hand.newest()) json["hand"] = handJson(*h);
+  for (std::size_t i = 0; i < shm::kActionSources; ++i) {
+    if (const auto a = segment.actions[i].read())
+      json["actions"][kSourceNames[i]] = actionsJson(*a);
+  }
   json["health"] = briefHealth(segment);
   return dump(json);
 }

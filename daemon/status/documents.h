@@ -18,7 +18,8 @@ std::string devicesStatus(const shm::DevicesSegment& segment, Timestamp now,
 std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                        const std::vector<net::ServerHealth>& servers = {},
                        const shm::DevicesSegment* remote = nullptr);
-// Topic "sample": the newest posture, glove, hand, tracker and ball.
+// Topic "sample": the newest posture, glove, hand, tracker and ball, and the actions of their
+// inputs.
 std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now);
 // Topic "metrics" of either role: a flat list of counters and gauges for a metrics collector.
 std::string devicesMetrics(const shm::DevicesSegment& segment);
@@ -33,5 +34,7 @@ std::string textList(const std::vector<std::string>& texts);
 const char* healthName(const DeviceHealth& health, Timestamp now);
 
 inline constexpr const char* kDeviceNames[] = {"glove", "tracker", "ball"};
+// Keys of the object "actions" of the topic "sample", by shm::ActionSource.
+inline constexpr const char* kSourceNames[] = {"glove", "ball", "panel"};
 
 }  // namespace merlin::status

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <zmq.hpp>
 
+#include "daemon/base/commands.h"
 #include "daemon/base/log.h"
 #include "daemon/status/documents.h"
 #include "drivers/port/plausible.h"
@@ -57,6 +58,7 @@ class Apply {
     tracker();
     ball();
     hand();
+    for (std::size_t i = 0; i < shm::kActionSources; ++i) actions(i);
     for (std::size_t i = 0; i < shm::kDevices; ++i) health(i);
   }
 
@@ -151,6 +153,29 @@ class Apply {
     read(*o, "turn_rad_s", s.turn_rad_s);
     read(*o, "delay_s", s.delay_s);
     publish(segment_.hand, s);
+  }
+  // The order of the actions is not transmitted: those that begin between two documents are taken
+  // in the order of kActions.
+  void actions(std::size_t source) {
+    const Json* all = object("actions");
+    const auto found = all ? all->find(kSourceNames[source]) : Json::const_iterator();
+    if (!all || found == all->end() || !found->is_object()) return;
+    const auto last = segment_.actions[source].read();
+    shm::ActionState s{};
+    read(*found, "changed_ns", s.changed_ns);
+    s.changed_ns = here(s.changed_ns);
+    read(*found, "generation", s.generation);
+    const auto begun = found->find("begun"), held = found->find("held");
+    for (std::size_t i = 0; i < kActions.size(); ++i) {
+      if (begun != found->end() && begun->is_object()) read(*begun, kActions[i], s.begun[i]);
+      const bool is_held = held != found->end() && held->is_array() &&
+                           std::find(held->begin(), held->end(), kActions[i]) != held->end();
+      s.held[i] = is_held && isHeldAction(kActions[i]) ? 1 : 0;
+    }
+    const bool same = last && last->generation == s.generation;
+    const bool news = !same || !std::equal(std::begin(s.begun), std::end(s.begun), last->begun) ||
+                      !std::equal(std::begin(s.held), std::end(s.held), last->held);
+    if (news) segment_.actions[source].publish(s);
   }
   void health(std::size_t device) {
     const Json* all = object("health");

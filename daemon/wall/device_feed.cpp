@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "daemon/base/commands.h"
 #include "drivers/hand/hand.h"
 
 namespace merlin::wall {
@@ -41,34 +42,50 @@ std::optional<T> DeviceFeed::fresh(const shm::Channel<T>& channel,
   return sample;
 }
 
-render::SceneInput DeviceFeed::read(Timestamp now) {
-  render::SceneInput input;
+void DeviceFeed::readPosture(const shm::DevicesSegment& devices, Timestamp now, WallInput& input) {
+  const auto shown = fresh(devices.posture, devices.health[shm::kGlove], now);
+  if (!shown || now - fromNanoseconds(shown->received_ns) > stale_after_) return;
+  const auto held = devices.posture_state.read();
+  static_assert(sizeof held->name == sizeof input.posture);
+  if (held) std::copy(std::begin(held->name), std::end(held->name), input.posture.begin());
+}
+
+// What a device holds counts only while it works: a process that ended cannot let go of it.
+void DeviceFeed::readActions(const shm::DevicesSegment& devices, Timestamp now, WallInput& input) {
+  const auto glove = fresh(devices.glove, devices.health[shm::kGlove], now);
+  const bool glove_works = glove && now - fromNanoseconds(glove->received_ns) <= stale_after_;
+  const actions::Actions actions = actions_.read(
+      devices,
+      {glove_works, fresh(devices.ball, devices.health[shm::kBall], now).has_value(), true});
+  const auto begun = [&](std::size_t action) { return actions.begun[action]; };
+  const auto held = [&](std::size_t action) { return actions.held[action]; };
+  input.scene.grab = held(actionIndex("grab"));
+  input.scene.fly = held(actionIndex("fly"));
+  input.scene.point_at = held(actionIndex("point_at"));
+  input.scene.reset_view = begun(actionIndex("reset_view"));
+  input.scene.next_mode = begun(actionIndex("next_mode"));
+  input.next_content = begun(actionIndex("next_content"));
+  input.snapshot = begun(actionIndex("snapshot"));
+}
+
+WallInput DeviceFeed::read(Timestamp now) {
+  WallInput input;
   age_.reset();
   const shm::DevicesSegment* d = devices_.get(now);
   if (!d) return input;
-  input.ball = fresh(d->ball, d->health[shm::kBall], now);
-  if (input.ball && pushed(*input.ball) &&
-      now - fromNanoseconds(input.ball->received_ns) > kPushLasts) {
-    std::fill(std::begin(input.ball->translation), std::end(input.ball->translation), 0.0F);
-    std::fill(std::begin(input.ball->rotation), std::end(input.ball->rotation), 0.0F);
+  auto& ball = input.scene.ball;
+  ball = fresh(d->ball, d->health[shm::kBall], now);
+  if (ball && pushed(*ball) && now - fromNanoseconds(ball->received_ns) > kPushLasts) {
+    std::fill(std::begin(ball->translation), std::end(ball->translation), 0.0F);
+    std::fill(std::begin(ball->rotation), std::end(ball->rotation), 0.0F);
   }
+  auto& hand = input.scene.hand;
   const auto station = static_cast<std::size_t>(hand_station_ - 1);
-  input.hand = fresh(d->tracker[station], d->health[shm::kTracker], now);
-  input.glove = fresh(d->glove, d->health[shm::kGlove], now);
-  input.posture = fresh(d->posture, d->health[shm::kGlove], now);
-  // The line may live while the glove is silent: a posture nobody shows any more lets go.
-  if (input.posture && now - fromNanoseconds(input.posture->received_ns) > stale_after_)
-    input.posture.reset();
-  // What is held, rather than what one record shows; another machine's samples have the latter
-  // only.
-  if (const auto held = d->posture_state.read(); held && input.posture) {
-    std::copy(std::begin(held->name), std::end(held->name), input.posture->name);
-    input.posture->code = held->code;
-    input.posture->since_ns = held->since_ns;
-  }
-  if (input.hand && now - fromNanoseconds(input.hand->received_ns) > stale_after_)
-    input.hand.reset();
-  if (input.hand && ahead_ > Duration::zero()) foresee(*d, now + ahead_, *input.hand);
+  hand = fresh(d->tracker[station], d->health[shm::kTracker], now);
+  if (hand && now - fromNanoseconds(hand->received_ns) > stale_after_) hand.reset();
+  if (hand && ahead_ > Duration::zero()) foresee(*d, now + ahead_, *hand);
+  readPosture(*d, now, input);
+  readActions(*d, now, input);
   return input;
 }
 

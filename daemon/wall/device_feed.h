@@ -1,7 +1,8 @@
-// DeviceFeed: what the scene is told of the devices, from their segment, in this process or
-// another.
+// DeviceFeed: the input of the wall from the devices' segment, which this process or another one
+// writes.
 #pragma once
 
+#include "daemon/actions/action_reader.h"
 #include "daemon/base/clock.h"
 #include "daemon/shm/segment.h"
 #include "daemon/wall/input_feed.h"
@@ -19,19 +20,22 @@ class DeviceFeed final : public InputFeed {
         stale_after_(stale_after),
         ahead_(ahead) {}
 
-  render::SceneInput read(Timestamp now) override;
+  WallInput read(Timestamp now) override;
   Duration age() const noexcept override { return age_.value_or(Duration::zero()); }
 
  private:
   template <typename T>
   std::optional<T> fresh(const shm::Channel<T>& channel, const shm::SeqSlot<DeviceHealth>& health,
                          Timestamp now);
+  void readPosture(const shm::DevicesSegment& devices, Timestamp now, WallInput& input);
+  void readActions(const shm::DevicesSegment& devices, Timestamp now, WallInput& input);
 
   shm::SegmentFollower<shm::DevicesSegment> devices_;
   int hand_station_;
   Duration stale_after_;
   Duration ahead_;
   std::optional<Duration> age_;
+  actions::ActionReader actions_;
 };
 
 }  // namespace merlin::wall

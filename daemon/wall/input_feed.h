@@ -1,20 +1,31 @@
-// Port: what the scene is told of the devices. Implemented by DeviceFeed and by a fake in tests.
+// Port: the devices' input to the wall. Implemented by DeviceFeed and by a fake in tests.
 #pragma once
+
+#include <array>
+#include <cstdint>
 
 #include "daemon/base/clock.h"
 #include "render/scene/scene.h"
 
 namespace merlin::wall {
 
+// Input of one frame.
+struct WallInput {
+  render::SceneInput scene;
+  // Times that these were asked for since the last read.
+  std::uint32_t next_content = 0, snapshot = 0;
+  std::array<char, 20> posture{};  // name of the current posture, NUL-ended; empty: none
+};
+
 // Thread-bound to the wall's thread.
 class InputFeed {
  public:
   virtual ~InputFeed() = default;
 
-  // The newest of everything that is well; never waits.
-  virtual render::SceneInput read(Timestamp now) = 0;
+  // Reads the newest input of every device that works; never waits.
+  virtual WallInput read(Timestamp now) = 0;
 
-  // Of the newest sample that read() gave last; zero where there was none.
+  // Age of the newest sample that the last read() returned; zero if there was none.
   virtual Duration age() const noexcept = 0;
 };
 

@@ -65,7 +65,7 @@ void WallLoop::obeyRequests() {
   const std::uint32_t requests = requests_.exchange(0);
   if (requests & kResetView) returnHome();
   if (requests & kNextMode) p_.scene.nextMode();
-  if (requests & kNextContent) p_.scene.nextContent();
+  if (requests & kNextContent) nextContent(1);
   const std::int64_t held = hold_.load();
   p_.governor.hold(held < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(held)));
 }
@@ -129,6 +129,12 @@ void WallLoop::returnHome() {
   expectHome();
 }
 
+// The next content is shown after the scene's update, from its initial view.
+void WallLoop::nextContent(std::uint32_t times) {
+  next_contents_ += times;
+  if (times > 0) p_.scene.reset();
+}
+
 void WallLoop::showContent(std::size_t content) {
   content_ = content;
   step_ = detail().steps() - 1;
@@ -155,20 +161,21 @@ render::DrawTimes WallLoop::draw(std::size_t step, Timestamp until) {
 }
 
 void WallLoop::look(std::int64_t k, Timestamp began) {
-  const render::SceneInput input = p_.feed.read(began);
+  const WallInput input = p_.feed.read(began);
   const Timestamp read = p_.clock.now();
   const bool was_moving = view_.moving;
-  view_ = p_.scene.update(input, began);
+  nextContent(input.next_content);
+  for (std::uint32_t i = 0; i < input.snapshot; ++i) p_.on_snapshot();
+  snapshots_ += input.snapshot;
+  view_ = p_.scene.update(input.scene, began);
   if (p_.marker) p_.marker->pointAt(pointedAt());
-  const std::size_t asked = view_.orders.contents % p_.contents.size();
+  const std::size_t asked = next_contents_ % p_.contents.size();
   if (asked != content_) showContent(asked);
   if (lost_.update(painter().sees(view_.T_eye_model), view_.moving, began)) {
     ++out_.returned;
     returnHome();  // from the next period on
   }
-  std::fill(std::begin(out_.posture), std::end(out_.posture), '\0');
-  if (input.posture)
-    std::copy(std::begin(input.posture->name), std::end(input.posture->name), out_.posture);
+  std::copy(input.posture.begin(), input.posture.end(), out_.posture);
   if (was_moving && !view_.moving) {
     still_since_ = began;
     first_refinement_ = true;

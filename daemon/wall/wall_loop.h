@@ -71,6 +71,7 @@ struct WallParts {
   double return_after_s = 0;                          // of a view that shows nothing; 0: never
   Progress* progress = nullptr;                       // stepped once a period; may be none
   ContentSource* replacements = nullptr;              // the same
+  std::function<void()> on_snapshot = [] {};  // a person asks for the newest frame as a file
 };
 
 // Thread-bound but for request(), hold() and setRate().
@@ -128,6 +129,7 @@ class WallLoop {
   void measureHome();
   void expectHome();
   void returnHome();
+  void nextContent(std::uint32_t times);
   void showContent(std::size_t content);
   void replaceContents();
 
@@ -155,8 +157,10 @@ class WallLoop {
     std::size_t cost = 0;
     double drawing_s = 0;
   };
-  std::vector<Home> homes_;  // by content
-  std::size_t content_ = 0;  // that is shown
+  std::vector<Home> homes_;          // by content
+  std::size_t content_ = 0;          // that is shown
+  std::uint32_t next_contents_ = 0;  // times that another content was asked for, since the start
+  std::uint32_t snapshots_ = 0;      // likewise snapshots
   shm::WallStats out_{};
   std::atomic<std::int64_t> hold_{-1};  // triangles; -1: as the governor says
   std::atomic<double> rate_hz_{0};      // 0: as configured

@@ -53,7 +53,7 @@ std::optional<Eigen::Vector3f> WallLoop::pointedAt() const {
 
 void WallLoop::publishInteraction(Timestamp now) {
   shm::WallInteraction interaction{
-      toNanoseconds(now), shm::WallInteraction::kNone, {-1, -1}, {}, 0, 0, 0, 0};
+      toNanoseconds(now), shm::WallInteraction::kNone, {-1, -1}, {}, 0, 0};
   if (const auto& pointed = view_.pointed) {
     interaction.pointing =
         pointed->on_model ? shm::WallInteraction::kAtModel : shm::WallInteraction::kAtWall;
@@ -61,11 +61,8 @@ void WallLoop::publishInteraction(Timestamp now) {
     if (pixel) std::copy_n(pixel->data(), 2, interaction.pixel);
     std::copy_n(pointed->at_model_m.data(), 3, interaction.at_model_m);
   }
-  interaction.snapshots = view_.orders.snapshots;
-  interaction.lamps = view_.orders.lamps;
+  interaction.snapshots = snapshots_;
   interaction.content = static_cast<std::uint32_t>(content_);
-  interaction.lamp = static_cast<std::uint32_t>(view_.orders.lamp) -
-                     static_cast<std::uint32_t>(render::Action::kLampOff);
   p_.interaction->publish(interaction);
 }
 

@@ -86,9 +86,8 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
     return;
   }
   ShownModels& models = **made;
-  DeviceFeed feed(shm::segmentName(settings_.instance, "devices"),
-                  settings_.wall.scene.hand_station,
-                  fromSeconds(settings_.wall.scene.stale_after_s),
+  DeviceFeed feed(shm::segmentName(settings_.instance, "devices"), settings_.devices.hand.station,
+                  fromSeconds(settings_.devices.stale_after_s),
                   fromSeconds(1 / settings_.wall.governor.rate_hz));
   render::PointerMarker marker(plan_);
   render::Delivery delivery(plan_, outputs_, {&marker});
@@ -96,7 +95,7 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
   WallLoop loop({models.contents(), scene_, governor_, feed, delivery, segment_->stats, clock_,
                  frame_clock, &segment_->trace, &marker, &segment_->interaction, &segment_->outputs,
                  settings_.wall.render.fade_frames, settings_.wall.scene.return_after_s, &progress,
-                 &models});
+                 &models, on_snapshot_});
   loop.calibrate();
   loop_.store(&loop);
   loop.run(stop, [&] { ready_.set_value(models.contexts().renderer()); });

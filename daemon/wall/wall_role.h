@@ -36,6 +36,9 @@ class WallRole {
   // `watch` outlives this.
   std::future<Result<std::string>> start();
 
+  // Sets what is done, on the wall's thread, when an input is bound to a snapshot. Before start().
+  void onSnapshot(std::function<void()> act) { on_snapshot_ = std::move(act); }
+
   // From any thread, once the first frame is out.
   void request(WallLoop::Request what);
   void hold(std::optional<std::size_t> triangles);
@@ -65,6 +68,7 @@ class WallRole {
   ThreadWatch& watch_;
   Clock& clock_;
   render::OutputSet outputs_{{}};
+  std::function<void()> on_snapshot_ = [] {};
   std::promise<Result<std::string>> ready_;
   std::atomic<WallLoop*> loop_{nullptr};
   ModelWatch model_watch_;  // before the wall's thread, which takes from it

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 
+#include "drivers/port/port_address.h"
+
 namespace merlin {
 
 // What fills slot 7, the index finger's own abduction, which no known glove measures.
@@ -71,5 +73,8 @@ struct CybergloveSettings {
   Light light = Light::kSwitch;  // of the wrist: as its switch, or as it is told
   bool time_stamps = false;      // the unit's own: records that the line lost are then counted
 };
+
+// Finds a rate that the line cannot carry. Pointer: "/rate_hz".
+SettingFaults validate(const CybergloveSettings& glove, const LineSettings& line);
 
 }  // namespace merlin

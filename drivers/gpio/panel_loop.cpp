@@ -20,8 +20,7 @@ void setText(char (&field)[N], const std::string& text) {
 }  // namespace
 
 PanelLoop::PanelLoop(const GpioSettings& settings, GpioOpener open, GpioSink sink,
-                     HealthSink& health, Clock& clock,
-                     std::function<void(const std::string&)> on_press)
+                     HealthSink& health, Clock& clock, std::function<void()> on_press)
     : settings_(settings),
       open_(std::move(open)),
       sink_(std::move(sink)),
@@ -67,7 +66,7 @@ Error PanelLoop::serve(const std::stop_token& stop, const std::function<void()>&
       press = panel_.step(*pressed, clock_.now());
       due = panel_.nextDue(clock_.now());
     }
-    if (press) on_press_(settings_.button_command);
+    if (press) on_press_();
     if (const auto applied = apply(**lines); !applied) return applied.error();
     report(HealthState::kOk, "");
     const Duration wait = std::clamp<Duration>(due - clock_.now(), Duration::zero(), kRound);

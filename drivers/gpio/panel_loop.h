@@ -19,9 +19,9 @@ using GpioSink = std::function<void(const GpioSample&)>;
 
 class PanelLoop {
  public:
-  // `on_press` is called on the loop's thread with the button's command.
+  // `on_press` is called on the loop's thread when the button was pressed.
   PanelLoop(const GpioSettings& settings, GpioOpener open, GpioSink sink, HealthSink& health,
-            Clock& clock, std::function<void(const std::string&)> on_press);
+            Clock& clock, std::function<void()> on_press);
 
   // Until `stop`, then everything off but the projectors: they keep what they have. `alive` is
   // called several times a second.
@@ -41,7 +41,7 @@ class PanelLoop {
   GpioSink sink_;
   HealthSink& health_sink_;
   Clock& clock_;
-  std::function<void(const std::string&)> on_press_;
+  std::function<void()> on_press_;
   std::mutex mutex_;  // of panel_ and lost_; no device thread takes it
   Panel panel_;
   std::string lost_ = "the panel's chip is not open yet";

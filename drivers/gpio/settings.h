@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "daemon/base/setting_fault.h"
+
 namespace merlin {
 
 struct GpioSettings {
@@ -16,8 +18,9 @@ struct GpioSettings {
   double cool_down_s = 90;  // after switching off, in which they must not be switched on
   double interlock_s = 5;   // between any two switchings, at least
   double debounce_s = 0.02;
-  std::string button_command =
-      "next_mode";  // what a press does: a command of the wall or the panel
 };
+
+// Finds a line that has two purposes. Pointer: "".
+SettingFaults validate(const GpioSettings& gpio);
 
 }  // namespace merlin

@@ -1,9 +1,7 @@
 #include "drivers/io/open_stream.h"
 
 #include <cerrno>
-#include <charconv>
 #include <cstring>
-#include <optional>
 #include <utility>
 
 #include <fcntl.h>
@@ -135,39 +133,7 @@ Result<std::unique_ptr<ByteStream>> openReplay(const std::string& path) {
   return std::unique_ptr<ByteStream>(std::make_unique<TimedReplay>(*std::move(transcript)));
 }
 
-// "HOST:PORT", "[::1]:PORT".
-std::optional<PortAddress> parseTcp(std::string_view rest) {
-  const std::size_t colon = rest.rfind(':');
-  if (colon == std::string_view::npos || colon == 0) return std::nullopt;
-  std::string_view host = rest.substr(0, colon);
-  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
-  int number = 0;
-  const std::string_view port = rest.substr(colon + 1);
-  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
-  if (error != std::errc{} || end != port.data() + port.size()) return std::nullopt;
-  if (host.empty() || number < 1 || number > 65535) return std::nullopt;
-  return PortAddress{PortKind::kTcp, std::string(host), std::string(port)};
-}
-
 }  // namespace
-
-Result<PortAddress> parsePort(std::string_view text) {
-  constexpr std::pair<std::string_view, PortKind> kForms[] = {
-      {"serial:", PortKind::kSerial}, {"pty:", PortKind::kPty}, {"replay:", PortKind::kReplay}};
-  for (const auto& [prefix, kind] : kForms) {
-    if (text.starts_with(prefix) && text.size() > prefix.size()) {
-      return PortAddress{kind, std::string(text.substr(prefix.size())), {}};
-    }
-  }
-  constexpr std::string_view kTcp = "tcp://";
-  if (text.starts_with(kTcp)) {
-    if (auto address = parseTcp(text.substr(kTcp.size()))) return *std::move(address);
-  }
-  return Error{Errc::kInvalidArgument,
-               fmt::format("\"{}\" is not a valid port; ports are serial:/dev/..., pty:PATH, "
-                           "tcp://HOST:PORT and replay:FILE",
-                           text)};
-}
 
 Result<std::unique_ptr<ByteStream>> openPort(const PortAddress& address, int baud) {
   switch (address.kind) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <string>
 
+#include "daemon/base/setting_fault.h"
+
 namespace merlin {
 
 struct SpaceballSettings {
@@ -23,5 +25,8 @@ struct SpaceballSettings {
   // turn it round.
   std::array<int, 6> axis_map = {1, 2, -3, 4, 5, -6};
 };
+
+// Finds an axis map that does not have each axis once. Pointer: "/axis_map".
+SettingFaults validate(const SpaceballSettings& ball);
 
 }  // namespace merlin

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "daemon/base/setting_fault.h"
+
 namespace merlin::render {
 
 struct GovernorSettings {
@@ -12,5 +14,8 @@ struct GovernorSettings {
   std::size_t first_triangles = 10'000;   // before anything was measured
   double late_share = 0.01;               // of frames, that the head room is learnt for
 };
+
+// Finds numbers of triangles that are not in ascending order. Pointer: "".
+SettingFaults validate(const GovernorSettings& governor);
 
 }  // namespace merlin::render

@@ -1,7 +1,6 @@
 #include "render/scene/scene.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -76,55 +75,12 @@ struct Ray {
 Result<Scene> Scene::make(const SceneSettings& settings) {
   if (const SettingFaults faults = validate(settings); !faults.empty())
     return Error{Errc::kInvalidArgument, faults.front().what};
-  Scene scene(settings);
-  for (const Binding& binding : settings.bindings) {
-    auto bound = parse(binding);
-    if (!bound) {
-      return Error{Errc::kInvalidArgument,
-                   fmt::format("binding \"{}\": inputs are ball.button.1 to ball.button.12, "
-                               "posture.NAME and glove.switch",
-                               binding.input)};
-    }
-    const bool held = binding.when == When::kHold;
-    if (binding.when != When::kByAction && held != lasts(binding.action)) {
-      return Error{Errc::kInvalidArgument,
-                   fmt::format("binding \"{}\": {} {}", binding.input, nameOf(binding.action),
-                               lasts(binding.action) ? "lasts while it is held"
-                                                     : "is done once, on enter or on leave")};
-    }
-    bound->on_leave = binding.when == When::kLeave;
-    scene.bound_.push_back(std::move(*bound));
-  }
-  return scene;
+  return Scene(settings);
 }
 
 Scene::Scene(const SceneSettings& settings)
     : settings_(settings), R_wall_tracker_(*axisMap(settings.tracker_axes)) {
   reset();
-}
-
-std::optional<Scene::Bound> Scene::parse(const Binding& binding) {
-  constexpr std::string_view kButton = "ball.button.", kPosture = "posture.";
-  const std::string_view input = binding.input;
-  Bound bound;
-  bound.action = binding.action;
-  if (input == "glove.switch") {
-    bound.kind = Bound::Kind::kSwitch;
-    return bound;
-  }
-  if (input.starts_with(kPosture) && input.size() > kPosture.size()) {
-    bound.kind = Bound::Kind::kPosture;
-    bound.posture = input.substr(kPosture.size());
-    return bound;
-  }
-  unsigned number = 0;
-  if (!input.starts_with(kButton)) return std::nullopt;
-  const char* end = input.data() + input.size();
-  const auto parsed = std::from_chars(input.data() + kButton.size(), end, number);
-  if (parsed.ec != std::errc() || parsed.ptr != end || number < 1 || number > 12)
-    return std::nullopt;
-  bound.button = 1U << (number - 1);
-  return bound;
 }
 
 void Scene::reset() {
@@ -139,12 +95,7 @@ void Scene::reset() {
   grab_model_.reset();
   fly_hand_.reset();
   jumped_ = true;
-  view_ = {T_wall_model_, mode_, false, true, std::nullopt, orders_};
-}
-
-void Scene::nextContent() {
-  ++orders_.contents;
-  reset();
+  view_ = {T_wall_model_, mode_, false, true, std::nullopt};
 }
 
 void Scene::nextMode() { mode_ = mode_ == BallMode::kObject ? BallMode::kFly : BallMode::kObject; }
@@ -154,57 +105,24 @@ SceneView Scene::update(const SceneInput& input, Timestamp now) {
   const auto seconds = first ? 0.0F : static_cast<float>(toSeconds(now - last_update_));
   last_update_ = now;
   if (first) last_motion_ = now;
-  const Asked asked = act(input);
+  if (input.reset_view > 0) reset();
+  if (input.next_mode % 2 == 1) nextMode();
   const float step_s = std::clamp(seconds, 0.0F, kLongestStep_s);
   const bool pushed = moveByBall(input, step_s);
-  const bool carried = moveByHand(input, asked.grab);
-  const bool flown = flyByHand(input, asked.fly && !asked.grab, step_s);
+  const bool carried = moveByHand(input, input.grab);
+  const bool flown = flyByHand(input, input.fly && !input.grab, step_s);
   bound();
   if (std::exchange(jumped_, false) || pushed || carried || flown) last_motion_ = now;
   view_.T_eye_model = T_wall_eye_.inverse() * T_wall_model_;
   view_.mode = mode_;
   view_.grabbed = grab_hand_.has_value();
   view_.moving = now - last_motion_ < fromSeconds(settings_.still_after_s);
-  view_.pointed = asked.point ? pointByHand(input) : std::nullopt;
-  view_.orders = orders_;
+  view_.pointed = input.point_at ? pointByHand(input) : std::nullopt;
   return view_;
 }
 
 void Scene::bound() {
   if (!bounded(T_wall_model_) || !bounded(T_wall_eye_)) reset();
-}
-
-bool Scene::isHeld(const Bound& bound, const SceneInput& input) const {
-  switch (bound.kind) {
-    case Bound::Kind::kButton: return input.ball && (input.ball->buttons & bound.button) != 0;
-    case Bound::Kind::kSwitch:
-      return input.glove && (input.glove->flags & GloveSample::kWristSwitch) != 0;
-    case Bound::Kind::kPosture: break;
-  }
-  if (!input.posture || bound.posture != input.posture->name) return false;
-  const auto held = Duration(input.posture->received_ns - input.posture->since_ns);
-  return held >= fromSeconds(settings_.posture_hold_s);
-}
-
-Scene::Asked Scene::act(const SceneInput& input) {
-  Asked asked;
-  for (Bound& bound : bound_) {
-    const bool held = isHeld(bound, input);
-    const bool now = held != bound.was_held && held != bound.on_leave;
-    bound.was_held = held;
-    if (bound.action == Action::kGrab) asked.grab |= held;
-    if (bound.action == Action::kFly) asked.fly |= held;
-    if (bound.action == Action::kResetView && now) reset();
-    if (bound.action == Action::kNextMode && now) nextMode();
-    if (bound.action == Action::kPointAt) asked.point |= held;
-    if (bound.action == Action::kSnapshot && now) ++orders_.snapshots;
-    if (bound.action == Action::kNextContent && now) nextContent();
-    if (isLamp(bound.action) && now) {
-      ++orders_.lamps;
-      orders_.lamp = bound.action;
-    }
-  }
-  return asked;
 }
 
 // Turns are about the model's own centre, along the viewer's axes; a flying viewer turns about the

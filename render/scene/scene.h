@@ -5,8 +5,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
-#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -17,13 +15,12 @@
 
 namespace merlin::render {
 
-// What is known of the devices when a frame begins. Absent: never heard, or not well for longer
-// than stale_after_s; its input then counts as let go.
+// Input of one frame. A device that is absent, or has not worked for a while, is left out.
 struct SceneInput {
   std::optional<BallSample> ball;
   std::optional<TrackerSample> hand;
-  std::optional<PostureSample> posture;
-  std::optional<GloveSample> glove;
+  bool grab = false, fly = false, point_at = false;  // actions that are held
+  std::uint32_t reset_view = 0, next_mode = 0;       // times that they were asked for
 };
 
 enum class BallMode { kObject, kFly };  // the ball moves the model; the viewer
@@ -34,26 +31,17 @@ struct Pointed {
   bool on_model = false;                 // on its bounding sphere, else on the wall
 };
 
-// What was asked of others than the scene, since the start: another model, the frame's file, the
-// lamp.
-struct Orders {
-  std::uint32_t contents = 0, snapshots = 0, lamps = 0;
-  Action lamp = Action::kLampOff;  // the last of them
-};
-
 struct SceneView {
   Eigen::Isometry3f T_eye_model;  // model in metres, its bounding sphere's centre at its origin
   BallMode mode = BallMode::kObject;
   bool grabbed = false;
   bool moving = false;             // an input is above its noise, or was within still_after_s
   std::optional<Pointed> pointed;  // while a hand points; that is no motion
-  Orders orders;
 };
 
 class Scene {
  public:
-  // Errors: kInvalidArgument: a binding whose input is none, one that lasts and is not to be held
-  // or the other way round, an axis map that is no permutation.
+  // Errors: kInvalidArgument (an axis map that is not a right-handed permutation).
   static Result<Scene> make(const SceneSettings& settings);
 
   // Once a frame. `now` never falls. Cost: microseconds. Whatever `input` holds, both of the poses
@@ -68,25 +56,9 @@ class Scene {
 
   void reset();  // model and viewer back to the start; counts as motion
   void nextMode();
-  void nextContent();  // the next model is asked for; as reset()
 
  private:
-  struct Bound {
-    Action action = Action::kGrab;
-    enum class Kind { kButton, kPosture, kSwitch } kind = Kind::kButton;
-    std::uint32_t button = 0;  // bit
-    std::string posture;
-    bool on_leave = false;  // a thing that happens once does so when the input ends
-    bool was_held = false;
-  };
-
   explicit Scene(const SceneSettings& settings);
-  static std::optional<Bound> parse(const Binding& binding);
-  bool isHeld(const Bound& bound, const SceneInput& input) const;
-  struct Asked {
-    bool grab = false, fly = false, point = false;
-  };
-  Asked act(const SceneInput& input);  // bindings; returns what is held
   bool moveByBall(const SceneInput& input, float seconds);
   bool moveByHand(const SceneInput& input, bool grab);
   bool flyByHand(const SceneInput& input, bool fly, float seconds);
@@ -95,7 +67,6 @@ class Scene {
   Eigen::Isometry3f handPose(const TrackerSample& sample) const;
 
   SceneSettings settings_;
-  std::vector<Bound> bound_;
   Eigen::Matrix3f R_wall_tracker_;
   Eigen::Isometry3f T_wall_model_, T_wall_eye_;
   BallMode mode_ = BallMode::kObject;
@@ -104,7 +75,6 @@ class Scene {
   std::optional<Eigen::Vector3f> fly_hand_;  // while flying: where the hand was when it began
   Eigen::Isometry3f last_hand_ = Eigen::Isometry3f::Identity();
   SceneView view_;
-  Orders orders_;
   bool jumped_ = false;  // since the last update
   Timestamp last_update_{}, last_motion_{};
 };

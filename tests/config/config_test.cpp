@@ -33,10 +33,11 @@ TEST(Config, ReadsEveryKindOfSetting) {
   const auto loaded = loadSettings(R"({
     "instance": "lab-2",
     "devices": {"glove": {"port": "serial:/dev/ttyUSB0", "baud": 115200, "slot7": "switch", "filter": false},
-                "ball": {"axis_map": [1, 2, 3, 4, 5, 6], "dead_zone": 20}},
+                "ball": {"axis_map": [1, 2, 3, 4, 5, 6], "dead_zone": 20},
+                "bindings": [{"input": "posture.fist", "action": "grab"},
+                             {"input": "glove.switch", "action": "next_mode"}]},
     "wall": {"model": "models/a.mrm",
-             "scene": {"ball_speed_m_s": [1, 2, 3.5], "bindings": [{"input": "posture.fist", "action": "grab"},
-                                                                   {"input": "glove.switch", "action": "next_mode"}]},
+             "scene": {"ball_speed_m_s": [1, 2, 3.5]},
              "tiles": {"tiles": [{"name": "only", "kind": "operator", "x": 640, "y": 0, "turns": 0.5}]}}})",
                                    "/etc/merlin");
   ASSERT_EQ(loaded.verdict(), Verdict::kValid) << all(loaded);
@@ -48,30 +49,30 @@ TEST(Config, ReadsEveryKindOfSetting) {
   EXPECT_EQ(s.devices.ball.axis_map, (std::array<int, 6>{1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(s.wall.model, "/etc/merlin/models/a.mrm") << "relative to the configuration's folder";
   EXPECT_EQ(s.wall.scene.ball_speed_m_s, (std::array<double, 3>{1, 2, 3.5}));
-  ASSERT_EQ(s.wall.scene.bindings.size(), 2u) << "a list replaces the default one";
-  EXPECT_EQ(s.wall.scene.bindings[1].action, render::Action::kNextMode);
+  ASSERT_EQ(s.devices.bindings.size(), 2u) << "a list replaces the default one";
+  EXPECT_EQ(s.devices.bindings[1].action, "next_mode");
   ASSERT_EQ(s.wall.tiles.tiles.size(), 1u);
   EXPECT_EQ(s.wall.tiles.tiles[0].kind, render::TileKind::kOperator);
 }
 
 std::string bindingsAre(const std::string& list) {
-  return all(loadSettings("{\"wall\": {\"scene\": {\"bindings\": [" + list + "]}}}", ""));
+  return all(loadSettings("{\"devices\": {\"bindings\": [" + list + "]}}", ""));
 }
 
 TEST(Config, BindingsThatConflictAreNamedBoth) {
   const std::string fist = R"({"input": "posture.fist", "action": "grab"})";
   EXPECT_EQ(bindingsAre(fist), "");
   EXPECT_EQ(bindingsAre(fist + "," + fist),
-            "f.json:1: /wall/scene/bindings/1 conflicts with /wall/scene/bindings/0 (line 1): "
+            "f.json:1: /devices/bindings/1 conflicts with /devices/bindings/0 (line 1): "
             "\"posture.fist\" would grab twice when held\n");
   EXPECT_EQ(bindingsAre(fist + ",\n" + R"({"input": "posture.fist", "action": "fly"})"),
-            "f.json:2: /wall/scene/bindings/1 conflicts with /wall/scene/bindings/0 (line 1): "
+            "f.json:2: /devices/bindings/1 conflicts with /devices/bindings/0 (line 1): "
             "\"posture.fist\" would both grab and fly when held, which exclude each other\n");
   const std::string fist_left =
       R"({"input": "posture.fist", "action": "reset_view", "on": "leave"})";
   EXPECT_EQ(bindingsAre(fist + "," + fist_left), "");
   EXPECT_EQ(bindingsAre(fist_left + "," + fist_left),
-            "f.json:1: /wall/scene/bindings/1 conflicts with /wall/scene/bindings/0 (line 1): "
+            "f.json:1: /devices/bindings/1 conflicts with /devices/bindings/0 (line 1): "
             "\"posture.fist\" would reset_view twice when left\n");
 }
 
@@ -80,17 +81,16 @@ TEST(Config, ActionsThatNothingCouldDoAreFound) {
       R"("bindings": [{"input": "posture.a", "action": "snapshot"},
                       {"input": "posture.b", "action": "lamp_slow"},
                       {"input": "posture.c", "action": "next_content"}])";
-  EXPECT_EQ(all(loadSettings("{\"wall\": {\"scene\": {" + bindings + "}}}", "")),
-            "f.json:1: /wall/scene/bindings/0/action is snapshot, which needs a folder: "
+  EXPECT_EQ(all(loadSettings("{\"devices\": {" + bindings + "}}", "")),
+            "f.json:1: /devices/bindings/0/action is snapshot, which needs a folder: "
             "/wall/snapshots names none\n"
-            "f.json:2: /wall/scene/bindings/1/action is lamp_slow, which needs a lamp: "
+            "f.json:2: /devices/bindings/1/action is lamp_slow, which needs a lamp: "
             "/devices/gpio has no chip with a lamp_line\n"
-            "f.json:3: /wall/scene/bindings/2/action is next_content, and there is one model only: "
+            "f.json:3: /devices/bindings/2/action is next_content, and there is one model only: "
             "/wall/contents names none\n");
-  EXPECT_EQ(all(loadSettings(R"({"devices": {"gpio": {"chip": "gpiochip0", "lamp_line": 5}},
-                                "wall": {"snapshots": "taken", "contents": [{"model": "b.mrm"}],
-                                         "scene": {)" +
-                                 bindings + "}}}",
+  EXPECT_EQ(all(loadSettings(R"({"wall": {"snapshots": "taken", "contents": [{"model": "b.mrm"}]},
+                                "devices": {"gpio": {"chip": "gpiochip0", "lamp_line": 5}, )" +
+                                 bindings + "}}",
                              "")),
             "");
   EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "lamp_on"},
@@ -105,8 +105,8 @@ TEST(Config, AGloveFasterThanItsLineIsFound) {
         loadSettings("{\"devices\": {\"glove\": {\"dialogue\": \"text\", " + line + "}}}", ""));
   };
   EXPECT_EQ(at(R"("port": "serial:/dev/ttyS0")"),
-            "f.json:1: /devices/glove/rate_hz is 100, and a line of 38400 baud carries 40 records "
-            "of 96 bytes a second: ask for fewer, or set the line faster\n");
+            "f.json:1: /devices/glove/rate_hz is 100, but a line of 38400 baud carries 40 records "
+            "of 96 bytes per second: lower the rate or raise the speed\n");
   EXPECT_EQ(at(R"("port": "serial:/dev/ttyS0", "baud": 115200)"), "");
   EXPECT_EQ(at(R"("port": "serial:/dev/ttyS0", "rate_hz": 40)"), "");
   EXPECT_EQ(at(R"("port": "tcp://server:4001")"), "") << "its line is not ours";
@@ -117,7 +117,7 @@ TEST(Config, BindingsThatNameNothingAreFound) {
                 .find("allowed are ball.button.1 to ball.button.12"),
             std::string::npos);
   EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "grab", "on": "leave"})")
-                .find("/wall/scene/bindings/0/on does not go with grab; allowed is hold"),
+                .find("/devices/bindings/0/on does not go with grab; allowed is hold"),
             std::string::npos);
   EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "dance"})").find("fly"),
             std::string::npos)
@@ -189,10 +189,10 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{\"instance\": \"a/b\"}", "is \"a/b\"; allowed are 1 to 32 letters, digits, - and _"},
         Bad{"{\"wall\": {\"scene\": {\"tracker_axes\": [1, 1, 2]}}}",
             "allowed is each of 1 to 3 once"},
-        Bad{"{\"wall\": {\"scene\": {\"bindings\": [7]}}}",
-            "/wall/scene/bindings/0 is the number 7; allowed is an object"},
-        Bad{"{\"wall\": {\"scene\": {\"bindings\": [{\"input\": \"x\", \"acton\": \"grab\"}]}}}",
-            "/wall/scene/bindings/0/acton is not a known setting; did you mean \"action\"?"},
+        Bad{"{\"devices\": {\"bindings\": [7]}}",
+            "/devices/bindings/0 is the number 7; allowed is an object"},
+        Bad{"{\"devices\": {\"bindings\": [{\"input\": \"x\", \"acton\": \"grab\"}]}}",
+            "/devices/bindings/0/acton is not a known setting; did you mean \"action\"?"},
         Bad{"{\"wall\": {\"rate\": {\"min_triangles\": 5000, \"first_triangles\": 100}}}",
             "they must be in ascending order"},
         Bad{"{\"a~b/c\": 1}",

@@ -46,6 +46,41 @@ TEST(Migrate, AnEmptyPngGroupGoes) {
   EXPECT_EQ(migrated->text, "{\n  \"wall\": {}\n}\n");
 }
 
+TEST(Migrate, BindingsGoToTheDevicesWithThePanelsButton) {
+  const auto migrated = migrate(R"({"devices": {"gpio": {"chip": "gpiochip0", "button_line": 3}},
+    "wall": {"scene": {"bindings": [{"input": "posture.fist", "action": "grab"}],
+                       "hand_station": 2, "stale_after_s": 0.7, "posture_hold_s": 0.4}}})");
+  ASSERT_TRUE(migrated) << migrated.error().what;
+  EXPECT_EQ(migrated->changes.size(), 4u);
+  const auto loaded = loadSettings(migrated->text, "");
+  ASSERT_TRUE(loaded.findings.empty()) << loaded.findings[0].what;
+  const DevicesSettings& d = loaded.settings.devices;
+  ASSERT_EQ(d.bindings.size(), 2u);
+  EXPECT_EQ(d.bindings[0].input, "posture.fist");
+  EXPECT_EQ(d.bindings[1].input, "panel.button");
+  EXPECT_EQ(d.bindings[1].action, "next_mode") << "the button's default";
+  EXPECT_EQ(d.hand.station, 2);
+  EXPECT_EQ(d.stale_after_s, 0.7);
+  EXPECT_EQ(d.posture_hold.hold_s, 0.4) << "the longer of both times was in force";
+}
+
+TEST(Migrate, TheButtonsCommandBecomesABinding) {
+  const auto migrated =
+      migrate(R"({"devices": {"gpio": {"chip": "gpiochip0", "button_command": "projector_on"}}})");
+  ASSERT_TRUE(migrated) << migrated.error().what;
+  const auto loaded = loadSettings(migrated->text, "");
+  ASSERT_TRUE(loaded.findings.empty()) << loaded.findings[0].what;
+  const auto& bindings = loaded.settings.devices.bindings;
+  ASSERT_EQ(bindings.size(), 4u) << "beside those that were in force by default";
+  EXPECT_EQ(bindings[3].input, "panel.button");
+  EXPECT_EQ(bindings[3].action, "projector_on");
+  const auto both =
+      migrate(R"({"wall": {"scene": {"bindings": []}}, "devices": {"bindings": []}})");
+  ASSERT_FALSE(both);
+  EXPECT_EQ(both.error().what,
+            "has both /wall/scene/bindings and /devices/bindings: keep the latter by hand");
+}
+
 TEST(Migrate, WhatIsOfThisVersionStaysByteByByte) {
   constexpr const char* kText = "{ \"wall\" : {\"model\":\"a.mrm\"} }";
   const auto migrated = migrate(kText);

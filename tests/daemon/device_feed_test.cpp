@@ -1,7 +1,11 @@
 #include "daemon/wall/device_feed.h"
 
+#include <algorithm>
+#include <string>
+
 #include <gtest/gtest.h>
 
+#include "daemon/base/commands.h"
 #include "daemon/shm/fields.h"
 #include "tests/support/temp_dir.h"
 
@@ -28,7 +32,7 @@ class DeviceFeedTest : public testing::Test {
     h.since_ns = h.updated_ns = toNanoseconds(now_);
     return h;
   }
-  render::SceneInput read() {
+  WallInput read() {
     segment_->beat(now_);
     return feed_.read(now_);
   }
@@ -62,11 +66,11 @@ TEST_F(DeviceFeedTest, PredictsTheHandToTheDisplayTime) {
   hand.delay_s = 0.01F;
   (*segment_)->hand.publish(hand);
   segment_->beat(now_);
-  EXPECT_NEAR(feed.read(now_).hand->position_m[0], 0.49 + 0.003 + 0.033 + 0.010, 1e-5);
-  EXPECT_EQ(read().hand->position_m[0], 0.5F) << "not asked to look ahead";
+  EXPECT_NEAR(feed.read(now_).scene.hand->position_m[0], 0.49 + 0.003 + 0.033 + 0.010, 1e-5);
+  EXPECT_EQ(read().scene.hand->position_m[0], 0.5F) << "not asked to look ahead";
   measured.received_ns += 1000;  // another station's record, or a newer one: no hand was made of it
   (*segment_)->tracker[1].publish(measured);
-  EXPECT_EQ(feed.read(now_).hand->position_m[0], 0.5F);
+  EXPECT_EQ(feed.read(now_).scene.hand->position_m[0], 0.5F);
 }
 
 TEST_F(DeviceFeedTest, GivesTheNewestOfWhatThereIs) {
@@ -75,48 +79,82 @@ TEST_F(DeviceFeedTest, GivesTheNewestOfWhatThereIs) {
   hand.received_ns = toNanoseconds(now_ - milliseconds(3));
   (*segment_)->tracker[1].publish(hand);
   const auto input = read();
-  ASSERT_TRUE(input.ball);
-  EXPECT_EQ(input.ball->translation[0], 1);
-  EXPECT_TRUE(input.hand) << "station 2";
-  EXPECT_FALSE(input.glove);
-  EXPECT_FALSE(input.posture);
+  ASSERT_TRUE(input.scene.ball);
+  EXPECT_EQ(input.scene.ball->translation[0], 1);
+  EXPECT_TRUE(input.scene.hand) << "station 2";
+  EXPECT_EQ(input.posture[0], 0);
   EXPECT_EQ(feed_.age(), Duration::zero()) << "of the ball, the newest";
 }
 
 TEST_F(DeviceFeedTest, ADeviceThatIsNotWellForAWhileIsLeftOut) {
   push();
   (*segment_)->health[shm::kBall].publish(health(HealthState::kAbsent));
-  EXPECT_TRUE(read().ball);
+  EXPECT_TRUE(read().scene.ball);
   now_ += kStaleAfter;
-  EXPECT_FALSE(read().ball);
+  EXPECT_FALSE(read().scene.ball);
 }
 
 TEST_F(DeviceFeedTest, APushThatIsOldIsALostLettingGo) {
   push();
   now_ += milliseconds(501);
   const auto input = read();
-  ASSERT_TRUE(input.ball);
-  EXPECT_EQ(input.ball->translation[0], 0);
-  EXPECT_EQ(input.ball->buttons, 2u) << "a ball at rest is silent: its buttons stand";
+  ASSERT_TRUE(input.scene.ball);
+  EXPECT_EQ(input.scene.ball->translation[0], 0);
+  EXPECT_EQ(input.scene.ball->buttons, 2u) << "a ball at rest is silent: its buttons stand";
 }
 
 TEST_F(DeviceFeedTest, AHandOrPostureThatIsOldIsNone) {
   TrackerSample hand{};
   PostureSample posture{};
+  PostureState held{};
   hand.received_ns = posture.received_ns = toNanoseconds(now_);
+  std::string("fist").copy(held.name, sizeof held.name - 1);
   (*segment_)->tracker[1].publish(hand);
   (*segment_)->posture.publish(posture);
-  EXPECT_TRUE(read().hand && read().posture);
+  (*segment_)->posture_state.publish(held);
+  EXPECT_TRUE(read().scene.hand);
+  EXPECT_STREQ(read().posture.data(), "fist");
   now_ += kStaleAfter + milliseconds(1);
-  EXPECT_FALSE(read().hand);
-  EXPECT_FALSE(read().posture);
+  EXPECT_FALSE(read().scene.hand);
+  EXPECT_STREQ(read().posture.data(), "");
+}
+
+TEST_F(DeviceFeedTest, GivesTheActionsOfDevicesThatWork) {
+  push();
+  shm::ActionState actions{};
+  actions.generation = 7;
+  const auto begin = [&](const char* name) {
+    const auto at = static_cast<std::size_t>(
+        std::find_if(kActions.begin(), kActions.end(),
+                     [&](const char* a) { return std::string_view(a) == name; }) -
+        kActions.begin());
+    ++actions.begun[at];
+    actions.held[at] = isHeldAction(name) ? 1 : 0;
+    (*segment_)->actions[shm::kBallActions].publish(actions);
+  };
+  begin("next_content");
+  EXPECT_EQ(read().next_content, 0u) << "it began before the wall looked";
+  for (const char* name : {"next_content", "snapshot", "snapshot", "reset_view", "next_mode",
+                           "grab", "fly", "point_at"})
+    begin(name);
+  const WallInput input = read();
+  EXPECT_EQ(input.next_content, 1u);
+  EXPECT_EQ(input.snapshot, 2u);
+  EXPECT_EQ(input.scene.reset_view, 1u);
+  EXPECT_EQ(input.scene.next_mode, 1u);
+  EXPECT_TRUE(input.scene.grab && input.scene.fly && input.scene.point_at);
+  EXPECT_EQ(read().snapshot, 0u) << "once";
+  EXPECT_TRUE(read().scene.grab) << "as long as it is held";
+  (*segment_)->health[shm::kBall].publish(health(HealthState::kAbsent));
+  now_ += kStaleAfter;
+  EXPECT_FALSE(read().scene.grab) << "the ball is lost";
 }
 
 TEST_F(DeviceFeedTest, WithoutADaemonThereIsNothing) {
   push();
-  EXPECT_TRUE(read().ball);
+  EXPECT_TRUE(read().scene.ball);
   now_ += seconds(2);  // no heartbeat
-  EXPECT_FALSE(feed_.read(now_).ball);
+  EXPECT_FALSE(feed_.read(now_).scene.ball);
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ using test::privateName;
 const Endpoints kEndpoints{"ipc:///run/merlin/a.status", "ipc:///run/merlin/a.command"};
 
 // The contract with other programs: these figures never change under version 2.
-TEST(Layout, OffsetsOfVersion2) {
-  EXPECT_EQ(kVersion, 2u);
+TEST(Layout, OffsetsOfVersion3) {
+  EXPECT_EQ(kVersion, 3u);
   EXPECT_EQ(offsetof(Header, generation), 16u);
   EXPECT_EQ(offsetof(Header, field_offset), 24u);
   EXPECT_EQ(offsetof(Header, field_count), 28u);
@@ -142,13 +142,13 @@ TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
                   "gpio.wait_s's ring 8",
                   "gpio.health.rate_hz 4",
                   "posture_state.seen 48",
-                  "tracker.boresight_wxyz 40"}));
+                  "tracker.boresight_wxyz 40", "actions.panel.recent 40"}));
 }
 
 TEST(Fields, CoverEveryByteOfTheWallsSegmentButPadding) {
   EXPECT_EQ(undescribed(wallFields(), offsetof(WallSegment, fields)),
             (Runs{"segment.command_endpoint 40", "wall.returned 44", "trace.wake 4",
-                  "trace.step.tile's ring 56", "interaction.content 8", "outputs.count 4",
+                  "trace.step.tile's ring 56", "interaction.content 16", "outputs.count 4",
                   "outputs.fault 48"}));
 }
 

@@ -92,11 +92,11 @@ TEST_F(DocumentsTest, TheWallSaysWhatOutsideChecksRelyOn) {
 TEST_F(DocumentsTest, TheWallSaysWhereAHandPoints) {
   EXPECT_TRUE(json::parse(wallStatus(*wall_, kNow))["pointer"].is_null());
   wall_->interaction.publish(
-      {0, shm::WallInteraction::kAtModel, {960, 240}, {0, 0.25F, 1}, 3, 0, 0, 0});
+      {0, shm::WallInteraction::kAtModel, {960, 240}, {0, 0.25F, 1}, 3, 0});
   const json s = json::parse(wallStatus(*wall_, kNow));
   EXPECT_EQ(s["pointer"].dump(), R"({"at":"model","at_model_m":[0.0,0.25,1.0],"pixel":[960,240]})");
   EXPECT_EQ(s["snapshots"], 3);
-  wall_->interaction.publish({0, shm::WallInteraction::kAtWall, {-1, -1}, {}, 3, 0, 0, 0});
+  wall_->interaction.publish({0, shm::WallInteraction::kAtWall, {-1, -1}, {}, 3, 0});
   EXPECT_TRUE(json::parse(wallStatus(*wall_, kNow))["pointer"]["pixel"].is_null());
 }
 

@@ -10,16 +10,13 @@ namespace {
 class WallContentsTest : public FakeWall {
  protected:
   WallContentsTest() {
-    render::SceneSettings settings;
-    settings.bindings = {{"ball.button.1", render::Action::kNextContent}};
-    scene_ = *render::Scene::make(settings);
     contents_.push_back({&detail_, &dear_});
     calibrated_ = true;
   }
-  // The button is pressed for a frame after 2 s, and again after 4.
+  // The next content is asked for after 2 s, and again after 4.
   void pressTwice(Timestamp) {
     const auto frame = static_cast<int>(feed_.begins.size());
-    feed_.buttons = frame == 60 || frame == 120 ? 1 : 0;
+    feed_.actions.next_content = frame == 60 || frame == 120 ? 1 : 0;
   }
   shm::WallInteraction interaction() const { return *interaction_->read(); }
 

@@ -11,8 +11,6 @@ class WallPointerTest : public FakeWall {
   WallPointerTest() {
     render::SceneSettings settings;
     settings.tracker_axes = {1, 2, 3};
-    settings.bindings = {{"ball.button.1", render::Action::kPointAt},
-                         {"ball.button.2", render::Action::kSnapshot}};
     scene_ = *render::Scene::make(settings);
     painter_.pixels_.assign(4 * 1280 * 960, 90);
     marker_ = &made_;
@@ -33,7 +31,7 @@ TEST_F(WallPointerTest, EveryPlaceOfTheMarkIsShownWhileThePictureStands) {
       drawn = painter_.drawn.size();
       return;
     }
-    feed_.buttons = 1;
+    feed_.actions.scene.point_at = true;
     feed_.hand->position_m[0] += 0.01F;  // some pixels a frame
   });
   ASSERT_GT(standing, 0u);
@@ -48,8 +46,9 @@ TEST_F(WallPointerTest, AMarkThatStandsIsShownOnceAndItsEndToo) {
   std::size_t pointing = 0, standing = 0;
   run(4, [&](Timestamp) {
     if (since() < std::chrono::seconds(2)) standing = frames_.frames.size();
-    feed_.buttons = since() > std::chrono::seconds(2) && since() < std::chrono::seconds(3) ? 1 : 0;
-    if (feed_.buttons) pointing = frames_.frames.size();
+    bool& point = feed_.actions.scene.point_at;
+    point = since() > std::chrono::seconds(2) && since() < std::chrono::seconds(3);
+    if (point) pointing = frames_.frames.size();
   });
   EXPECT_EQ(pointing, standing + 1);
   EXPECT_EQ(frames_.frames.size(), standing + 2);
@@ -57,10 +56,15 @@ TEST_F(WallPointerTest, AMarkThatStandsIsShownOnceAndItsEndToo) {
   EXPECT_EQ(interaction_->read()->pixel[0], -1);
 }
 
-TEST_F(WallPointerTest, OrdersAreToldInSharedMemory) {
-  run(1, [&](Timestamp) { feed_.buttons = since() > milliseconds(500) ? 2 : 0; });
-  EXPECT_EQ(interaction_->read()->snapshots, 1u);
-  EXPECT_EQ(interaction_->read()->lamps, 0u);
+TEST_F(WallPointerTest, SnapshotsAreTakenAndCounted) {
+  bool asked = false;
+  int taken = 0;
+  on_snapshot_ = [&] { ++taken; };
+  run(1, [&](Timestamp) {
+    if (since() > milliseconds(500) && !std::exchange(asked, true)) feed_.actions.snapshot = 2;
+  });
+  EXPECT_EQ(taken, 2);
+  EXPECT_EQ(interaction_->read()->snapshots, 2u);
 }
 
 }  // namespace

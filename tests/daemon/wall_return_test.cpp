@@ -12,14 +12,11 @@ class WallReturnTest : public FakeWall {
     feed_.pushed = false;
     painter_.furthest_seen_m = 5;
     return_after_s_ = 60;
-    render::SceneSettings settings;
-    settings.bindings = {{"ball.button.1", render::Action::kGrab}};
-    scene_ = *render::Scene::make(settings);
   }
   // A hand that grabs after a second, is 3 m further away a moment later, and lets go there.
   void carryAway(Timestamp now) {
     const double s = toSeconds(now - feed_.begins.front());
-    feed_.buttons = s > 1 && s < 2 ? 1 : 0;
+    feed_.actions.scene.grab = s > 1 && s < 2;
     feed_.hand.emplace();
     feed_.hand->position_m[0] = s < 1.5 ? 1 : 4;
     feed_.hand->orientation_wxyz[0] = 1;

@@ -27,7 +27,7 @@ ScenePlay grabbed(const SceneSettings& settings = plain(),
   ScenePlay play(settings);
   play.rest();
   play.holdHand(kHand, hand_turn);
-  play.showPosture("fist");
+  play.input.grab = true;
   EXPECT_TRUE(play.update(20).grabbed);
   EXPECT_TRUE(play.scene.view().moving);
   return play;
@@ -84,7 +84,7 @@ TEST(SceneHand, CarriesAlongTheAxesOfAViewerWhoHasTurned) {
   play.push(Vector3f::Zero(), kY);
   for (int i = 0; i < 10; ++i) play.update(100);  // 90 degrees to the left
   play.push(Vector3f::Zero());
-  play.showPosture("fist");
+  play.input.grab = true;
   play.holdHand(kHand);
   play.update(20);
   expectAt(play, {2, 0, 0}, turnedBy(-90, kY));
@@ -93,32 +93,20 @@ TEST(SceneHand, CarriesAlongTheAxesOfAViewerWhoHasTurned) {
   expectAt(play, {2.3F, 0, 0}, turnedBy(30, kX) * turnedBy(-90, kY));
 }
 
-TEST(SceneHand, GrabsOnlyWithAPostureThatLasts) {
-  ScenePlay play(plain());
-  play.holdHand(kHand);
-  play.showPosture("open");
-  EXPECT_FALSE(play.update(20).grabbed);
-  play.showPosture("fist", 99);
-  EXPECT_FALSE(play.update(20).grabbed);
-  play.showPosture("fist", 100);
-  EXPECT_TRUE(play.update(20).grabbed);
-}
-
 // Each lets go; the model stays, and at the next grab it does not jump to where the hand is now.
-TEST(SceneHand, WithoutFistOrTrackerItLetsGo) {
-  for (const int gone : {0, 1, 2}) {
+TEST(SceneHand, WithoutTheActionOrTheTrackerItLetsGo) {
+  for (const int gone : {0, 1}) {
     ScenePlay play = grabbed();
     play.holdHand(kHand + 0.1F * kX);
     play.update(20);
-    if (gone == 0) play.input.posture.reset();
+    if (gone == 0) play.input.grab = false;
     if (gone == 1) play.input.hand.reset();
-    if (gone == 2) play.showPosture("open");
     EXPECT_FALSE(play.update(20).grabbed) << gone;
     if (gone != 1) play.holdHand(kHand + kZ);
     play.update(20);
     expectAt(play, kStart + 0.3F * kX);
     play.holdHand(kHand - kX, turnedBy(90, kZ));
-    play.showPosture("fist");
+    play.input.grab = true;
     EXPECT_TRUE(play.update(20).grabbed);
     expectAt(play, kStart + 0.3F * kX);
     play.holdHand(kHand - kX + 0.1F * kY, turnedBy(90, kZ));
@@ -131,7 +119,7 @@ TEST(SceneHand, ResetWhileItHoldsBeginsANewGrab) {
   ScenePlay play = grabbed();
   play.holdHand(kHand + 0.1F * kX, turnedBy(20, kY));
   play.update(20);
-  play.press(1);
+  play.input.reset_view = 1;
   EXPECT_TRUE(play.update(20).grabbed);
   expectAt(play, kStart);
   play.update(20);

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
-#include <string>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -35,6 +34,7 @@ class ScenePlay {
   const SceneView& update(int after_ms) {
     now_ += std::chrono::milliseconds(after_ms);
     scene.update(input, now_);
+    input.reset_view = input.next_mode = 0;
     return scene.view();
   }
   // Until nothing moves.
@@ -50,7 +50,6 @@ class ScenePlay {
       b.rotation[k] = rotation[k];
     }
   }
-  void press(std::uint32_t buttons) { ball().buttons = buttons; }
 
   // Of the tracker's own frame.
   void holdHand(const Vector3f& position,
@@ -61,13 +60,6 @@ class ScenePlay {
     const float wxyz[] = {q.w(), q.x(), q.y(), q.z()};
     std::copy_n(wxyz, 4, input.hand->orientation_wxyz);
   }
-  void showPosture(const std::string& name, int since_ms_ago = 1000) {
-    input.posture = PostureSample{};
-    input.posture->received_ns = 5'000'000'000;
-    input.posture->since_ns = 5'000'000'000 - since_ms_ago * std::int64_t{1'000'000};
-    name.copy(input.posture->name, sizeof input.posture->name - 1);
-  }
-
   Vector3f position() const { return scene.view().T_eye_model.translation(); }
   Eigen::Matrix3f turn() const { return scene.view().T_eye_model.linear(); }
 

@@ -4,8 +4,6 @@
 namespace merlin::test {
 namespace {
 
-using render::Action;
-
 // The tracker's axes are the wall's, its transmitter stands 0.5 m below the eye; the model is a
 // sphere of 0.5 m, 2 m away, and the wall is 3 m away.
 SceneSettings pointing() {
@@ -14,7 +12,6 @@ SceneSettings pointing() {
   s.tracker_axes = {1, 2, 3};
   s.tracker_origin_m = {0, -0.5, 0};
   s.wall_distance_m = 3;
-  s.bindings = {{"posture.point", Action::kPointAt}};
   return s;
 }
 
@@ -22,7 +19,7 @@ ScenePlay pointingFrom(const Vector3f& hand,
                        const Eigen::Matrix3f& turn = Eigen::Matrix3f::Identity()) {
   ScenePlay play(pointing());
   play.rest();
-  play.showPosture("point");
+  play.input.point_at = true;
   play.holdHand(hand, turn);
   play.update(20);
   return play;
@@ -76,33 +73,14 @@ TEST(ScenePointing, TheModelBehindTheHandIsNotHit) {
   expectPoint(play.scene.view().pointed->at_eye_m, {0, 0, -3});
 }
 
-TEST(ScenePointing, EndsWithThePostureOrTheTracker) {
+TEST(ScenePointing, EndsWithTheActionOrTheTracker) {
   ScenePlay play = pointingFrom({0, 0.5F, 0});
-  play.showPosture("open");
+  play.input.point_at = false;
   EXPECT_FALSE(play.update(20).pointed);
-  play.showPosture("point");
+  play.input.point_at = true;
   EXPECT_TRUE(play.update(20).pointed);
   play.input.hand.reset();
   EXPECT_FALSE(play.update(20).pointed);
-}
-
-TEST(SceneOrders, AreCountedOnceAPressAndSurviveAReset) {
-  SceneSettings s;
-  s.bindings = {{"ball.button.1", Action::kSnapshot},
-                {"ball.button.2", Action::kLampSlow},
-                {"ball.button.2", Action::kLampOff, render::When::kLeave},
-                {"ball.button.3", Action::kResetView}};
-  ScenePlay play(s);
-  play.press(1);
-  play.update(20);
-  EXPECT_EQ(play.update(20).orders.snapshots, 1u);
-  play.press(1 | 2);
-  EXPECT_EQ(play.update(20).orders.lamp, Action::kLampSlow);
-  play.press(4);
-  const render::Orders orders = play.update(20).orders;
-  EXPECT_EQ(orders.snapshots, 1u);
-  EXPECT_EQ(orders.lamps, 2u);
-  EXPECT_EQ(orders.lamp, Action::kLampOff);
 }
 
 }  // namespace

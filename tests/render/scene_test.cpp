@@ -18,7 +18,6 @@ using test::turnedBy;
 
 const Vector3f kX = Vector3f::UnitX(), kY = Vector3f::UnitY(), kZ = Vector3f::UnitZ();
 const Vector3f kStart(0, 0, -2);  // as shipped
-constexpr std::uint32_t kButton1 = 1, kButton2 = 2;
 
 TEST(Scene, StartsWhereTheSettingsSay) {
   expectAt(ScenePlay(), kStart);
@@ -114,53 +113,35 @@ TEST(SceneReset, BringsModelAndViewerBackAndKeepsTheMode) {
   play.update(100);
   play.push(Vector3f::Zero());
   play.rest();
-  play.press(kButton1);
+  play.input.reset_view = 1;
   const SceneView view = play.update(20);
   expectAt(play, kStart);
   EXPECT_TRUE(view.moving);
   EXPECT_EQ(view.mode, BallMode::kFly);
-  EXPECT_FALSE(play.update(150).moving) << "held: once is enough";
+  EXPECT_FALSE(play.update(150).moving);
   play.scene.reset();
   EXPECT_TRUE(play.scene.view().moving);
   EXPECT_EQ(play.scene.view().mode, BallMode::kFly);
   EXPECT_TRUE(play.update(200).moving) << "by command, at 5 Hz";
 }
 
-TEST(SceneBindings, ActOnceAPress) {
+TEST(SceneActions, AreDoneAsOftenAsTheyWereAskedFor) {
   ScenePlay play;
-  for (int press = 0; press < 3; ++press) {
-    const BallMode expected = press % 2 == 0 ? BallMode::kFly : BallMode::kObject;
-    play.press(kButton2);
-    for (int i = 0; i < 5; ++i) EXPECT_EQ(play.update(20).mode, expected) << press;
-    play.press(0);
-    for (int i = 0; i < 5; ++i) EXPECT_EQ(play.update(20).mode, expected) << press;
-  }
-  play.press(kButton2 | 4);
-  EXPECT_EQ(play.update(20).mode, BallMode::kObject);
-  play.press(kButton2 | 8);  // others come and go while it is held
-  EXPECT_EQ(play.update(20).mode, BallMode::kObject);
-  play.press(4);
-  EXPECT_EQ(play.update(20).mode, BallMode::kObject) << "not bound";
-}
-
-TEST(SceneBindings, OnLeaveActsWhenTheInputEnds) {
-  SceneSettings settings;
-  settings.bindings = {{"posture.point", Action::kNextMode, render::When::kLeave}};
-  ScenePlay play(settings);
-  play.showPosture("point");
-  EXPECT_EQ(play.update(20).mode, BallMode::kObject);
-  play.showPosture("open");
+  play.input.next_mode = 1;
   EXPECT_EQ(play.update(20).mode, BallMode::kFly);
   EXPECT_EQ(play.update(20).mode, BallMode::kFly) << "once";
+  play.input.next_mode = 2;
+  EXPECT_EQ(play.update(20).mode, BallMode::kFly) << "there and back";
+  play.input.next_mode = 3;
+  EXPECT_EQ(play.update(20).mode, BallMode::kObject);
 }
 
-TEST(SceneBindings, FlyMovesTheViewerAsFastAsTheHandIsAway) {
+TEST(SceneActions, FlyMovesTheViewerAsFastAsTheHandIsAway) {
   SceneSettings settings;
-  settings.bindings = {{"posture.point", Action::kFly}};
   settings.tracker_axes = {1, 2, 3};
   settings.fly_gain = 4;
   ScenePlay play(settings);
-  play.showPosture("point");
+  play.input.fly = true;
   play.holdHand({0, 0, 0});
   play.update(20);
   const Vector3f before = play.position();
@@ -169,76 +150,11 @@ TEST(SceneBindings, FlyMovesTheViewerAsFastAsTheHandIsAway) {
   play.holdHand({0, 0, -0.1F});
   for (int i = 0; i < 10; ++i) play.update(50);  // 0.4 m/s for 0.5 s
   EXPECT_NEAR(play.position().z() - before.z(), 0.2F, 1e-4F);
-  play.showPosture("open");
+  play.input.fly = false;
   play.update(50);
   const Vector3f left = play.position();
   play.update(50);
   EXPECT_EQ(play.position(), left);
-}
-
-TEST(SceneBindings, WhatLastsIsHeldAndWhatHappensOnceIsNot) {
-  for (const auto& [action, when] : {std::pair{Action::kGrab, render::When::kEnter},
-                                     std::pair{Action::kFly, render::When::kLeave},
-                                     std::pair{Action::kResetView, render::When::kHold}}) {
-    SceneSettings settings;
-    settings.bindings = {{"posture.fist", action, when}};
-    EXPECT_FALSE(render::Scene::make(settings));
-  }
-}
-
-TEST(SceneBindings, ABallThatIsAbsentLetsGo) {
-  ScenePlay play;
-  play.press(kButton2);
-  play.push(kX);
-  EXPECT_EQ(play.update(20).mode, BallMode::kFly);
-  const Vector3f before = play.position();
-  play.input.ball.reset();
-  play.rest();
-  EXPECT_EQ(play.position(), before);
-  EXPECT_EQ(play.scene.view().mode, BallMode::kFly);
-  play.press(kButton2);
-  EXPECT_EQ(play.update(20).mode, BallMode::kObject) << "back, it is pressed again";
-}
-
-TEST(SceneBindings, EveryInputDoesWhatItIsBoundTo) {
-  SceneSettings settings;
-  settings.bindings = {{"ball.button.12", Action::kNextMode},
-                       {"glove.switch", Action::kNextMode},
-                       {"posture.point", Action::kNextMode}};
-  ScenePlay play(settings);
-  const auto mode = [&] { return play.update(20).mode; };
-  play.press(1U << 11);
-  EXPECT_EQ(mode(), BallMode::kFly);
-  play.press(0x7FF);  // the eleven others
-  EXPECT_EQ(mode(), BallMode::kFly);
-  play.input.glove = GloveSample{};
-  play.input.glove->flags = GloveSample::kPlugged | GloveSample::kLight;
-  EXPECT_EQ(mode(), BallMode::kFly);
-  play.input.glove->flags = GloveSample::kWristSwitch;
-  EXPECT_EQ(mode(), BallMode::kObject);
-  play.input.glove.reset();
-  play.showPosture("fist");
-  EXPECT_EQ(mode(), BallMode::kObject);
-  play.showPosture("point");
-  EXPECT_EQ(mode(), BallMode::kFly);
-}
-
-TEST(SceneBindings, APostureActsOnceItHasLasted) {
-  SceneSettings settings;
-  settings.bindings = {{"posture.point", Action::kNextMode}};
-  ScenePlay play(settings);
-  for (const int ms : {0, 50, 99}) {
-    play.showPosture("point", ms);
-    EXPECT_EQ(play.update(20).mode, BallMode::kObject) << ms;
-  }
-  play.showPosture("point", 100);
-  EXPECT_EQ(play.update(20).mode, BallMode::kFly);
-  play.showPosture("point", 500);
-  EXPECT_EQ(play.update(20).mode, BallMode::kFly) << "held";
-  play.showPosture("point", 0);  // shown anew
-  EXPECT_EQ(play.update(20).mode, BallMode::kFly);
-  play.showPosture("point", 100);
-  EXPECT_EQ(play.update(20).mode, BallMode::kObject);
 }
 
 TEST(SceneMotion, EndsAWhileAfterTheLastInput) {
@@ -254,22 +170,6 @@ TEST(SceneMotion, EndsAWhileAfterTheLastInput) {
   EXPECT_TRUE(play.update(20).moving);
   play.input.ball.reset();
   EXPECT_FALSE(play.update(150).moving);
-}
-
-TEST(SceneSettings, ABindingOfNoInputIsRefused) {
-  for (const std::string input :
-       {"", "ball", "ball.button.", "ball.button.0", "ball.button.13", "ball.button.-1",
-        "ball.button.+1", "ball.button.1x", "ball.button.x1", "ball.button. 1",
-        "ball.button.99999999999", "posture.", "posture", "glove", "glove.switch.1", "Glove.switch",
-        "tracker.button.1"}) {
-    const auto scene = Scene::make({.bindings = {{"glove.switch"}, {input}}});
-    ASSERT_FALSE(scene) << input;
-    EXPECT_EQ(scene.error().code, Errc::kInvalidArgument);
-    EXPECT_TRUE(scene.error().what.starts_with("binding \"" + input + "\": inputs are ")) << input;
-  }
-  for (int n = 1; n <= 12; ++n) {
-    EXPECT_TRUE(Scene::make({.bindings = {{"ball.button." + std::to_string(n)}}})) << n;
-  }
 }
 
 TEST(SceneSettings, AnAxisMapThatIsNoTurnIsRefused) {
@@ -321,12 +221,11 @@ TEST(SceneBounds, ARotationStaysOne) {
 TEST(SceneBounds, WhateverAHandSaysTheViewIsOneThatCanBeDrawn) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   SceneSettings settings;
-  settings.bindings = {{"ball.button.1", render::Action::kGrab},
-                       {"ball.button.2", render::Action::kFly}};
   for (const float bad : {nan, std::numeric_limits<float>::infinity(), 1e30F, 3e38F, 1e-40F}) {
-    for (const std::uint32_t button : {1u, 2u}) {
+    for (const bool grab : {true, false}) {
       ScenePlay play(settings);
-      play.press(button);
+      play.input.grab = grab;
+      play.input.fly = !grab;
       play.holdHand({1, 0, 0});
       play.update(33);
       play.holdHand({bad, -bad, bad});
@@ -339,7 +238,7 @@ TEST(SceneBounds, WhateverAHandSaysTheViewIsOneThatCanBeDrawn) {
       play.update(33);
       play.scene.reset();
       play.update(33);
-      play.press(0);
+      play.input.grab = play.input.fly = false;
       play.update(33);
       expectAt(play, {0, 0, -2});
     }

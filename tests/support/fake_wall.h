@@ -109,20 +109,20 @@ class FakePainter final : public render::FramePainter {
 // Pushes the ball while `pushed`; asks the loop to stop after `until`.
 class FakeFeed final : public InputFeed {
  public:
-  render::SceneInput read(Timestamp now) override {
+  WallInput read(Timestamp now) override {
     begins.push_back(now);
     if (on_begin) on_begin(now);
-    render::SceneInput input;
-    input.ball.emplace();
-    input.ball->rotation[1] = pushed ? 0.5F : 0.0F;
-    input.ball->buttons = buttons;
-    input.hand = hand;
+    WallInput input = actions;
+    actions.next_content = actions.snapshot = 0;
+    input.scene.ball.emplace();
+    input.scene.ball->rotation[1] = pushed ? 0.5F : 0.0F;
+    input.scene.hand = hand;
     return input;
   }
   Duration age() const noexcept override { return milliseconds(7); }
 
   bool pushed = true;
-  std::uint32_t buttons = 0;
+  WallInput actions;  // what is held, and what was asked for since the last read
   std::optional<TrackerSample> hand;
   std::function<void(Timestamp)> on_begin;
   std::vector<Timestamp> begins;
@@ -185,7 +185,8 @@ class FakeWall : public testing::Test {
             .outputs = output_stats_.get(),
             .fade_frames = fade_frames_,
             .return_after_s = return_after_s_,
-            .replacements = replacements_};
+            .replacements = replacements_,
+            .on_snapshot = on_snapshot_};
   }
   shm::WallStats stats() const { return *stats_->read(); }
   render::OutputSet recordingOutputs() {
@@ -212,6 +213,7 @@ class FakeWall : public testing::Test {
       std::make_unique<shm::Channel<shm::FrameTrace>>();
   render::PointerMarker* marker_ = nullptr;
   ContentSource* replacements_ = nullptr;
+  std::function<void()> on_snapshot_ = [] {};
   std::unique_ptr<shm::SeqSlot<shm::WallInteraction>> interaction_ =
       std::make_unique<shm::SeqSlot<shm::WallInteraction>>();
   std::unique_ptr<shm::SeqSlot<shm::WallOutputs>> output_stats_ =

@@ -133,15 +133,15 @@ TEST_F(BadInput, ABrokenPostureNetwork) {
 
 TEST_F(BadInput, BindingsToPosturesThatTheNetworkDoesNotKnow) {
   const std::string postures = kSource + "/config/postures.json";
-  writeText(dir_ / "c.json", "{\"devices\": {\"postures\": \"" + postures + R"("},
-    "wall": {"scene": {"bindings": [
+  writeText(dir_ / "c.json", "{\"devices\": {\"postures\": \"" + postures + R"(",
+    "bindings": [
       {"input": "posture.fist", "action": "grab"},
       {"input": "posture.pinhc", "action": "next_mode"},
-      {"input": "posture.salute", "action": "reset_view"}]}}})");
+      {"input": "posture.salute", "action": "reset_view"}]}})");
   const std::vector<std::string> said = {
-      "c.json:4: /wall/scene/bindings/1/input is \"posture.pinhc\", which is not a posture of " +
+      "c.json:4: /devices/bindings/1/input is \"posture.pinhc\", which is not a posture of " +
           postures + "; did you mean \"pinch\"? it knows ",
-      "c.json:5: /wall/scene/bindings/2/input is \"posture.salute\", which is not a posture of " +
+      "c.json:5: /devices/bindings/2/input is \"posture.salute\", which is not a posture of " +
           postures + "; it knows ",
       "thumb-up"};
   expectOutcome(run({kMerlind, "--check-config", dir_ / "c.json"}), 2, said);

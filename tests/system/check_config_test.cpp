@@ -158,9 +158,8 @@ TEST_F(CheckConfig, ADefaultBindingIsNobodysMistake) {
     EXPECT_EQ(checked.status, 0) << role << ": " << checked.output;
   }
   json bound = devices;
-  bound["wall"]["scene"]["bindings"] =
-      json::array({{{"input", "posture.fist"}, {"action", "grab"}}});
-  expectRefused(bound, "/wall/scene/bindings/0/input", "is not a posture of");
+  bound["devices"]["bindings"] = json::array({{{"input", "posture.fist"}, {"action", "grab"}}});
+  expectRefused(bound, "/devices/bindings/0/input", "is not a posture of");
 }
 
 TEST_F(CheckConfig, AnEmptyNameIsBadUsageAndStartsNothing) {
@@ -175,7 +174,7 @@ TEST_F(CheckConfig, AnEmptyNameIsBadUsageAndStartsNothing) {
 TEST_F(CheckConfig, ACheckThatDoesNotEndIsNotValid) {
   std::string bindings;
   for (int i = 0; i < 340'000; ++i) bindings += i == 0 ? "{}" : ",{}";
-  writeText(dir_ / "c.json", "{\"wall\": {\"scene\": {\"bindings\": [" + bindings + "]}}}");
+  writeText(dir_ / "c.json", "{\"devices\": {\"bindings\": [" + bindings + "]}}");
   const std::string check = kMerlind + " --check-config " + dir_ / "c.json";
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   const Outcome starved = run({"/bin/bash", "-c", "ulimit -v 150000; exec " + check});

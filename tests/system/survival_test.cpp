@@ -79,8 +79,9 @@ TEST(Survival, AContentThatOneRecordFlungOutOfSightReturns) {
             {.emulate = false,
              .also = {{"devices",
                        {{"tracker", {{"port", "pty:" + (dir / "tracker")}}},
-                        {"ball", {{"port", "pty:" + (dir / "ball")}}}}},
-                      {"wall", {{"scene", {{"return_after_s", 0.5}, {"bindings", bindings}}}}}}});
+                        {"ball", {{"port", "pty:" + (dir / "ball")}}},
+                        {"bindings", bindings}}},
+                      {"wall", {{"scene", {{"return_after_s", 0.5}}}}}}});
   const auto served = [&](auto condition) {
     return eventually([&] {
       tracker.pump();

@@ -66,7 +66,7 @@ TEST_F(Wall, AFistPointsAndItsEndTakesASnapshot) {
       {{"input", "posture.fist"}, {"action", "snapshot"}, {"on", "leave"}}};
   Merlind m(*dir_, model_, "points",
             {.script = "grabbing",
-             .also = {{"wall", {{"snapshots", folder}, {"scene", {{"bindings", bindings}}}}}}});
+             .also = {{"wall", {{"snapshots", folder}}}, {"devices", {{"bindings", bindings}}}}});
   ASSERT_TRUE(m.ready()) << m.process().output();
   const auto interaction = [&] {
     const auto wall =

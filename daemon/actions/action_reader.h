@@ -1,0 +1,35 @@
+// ActionReader: reads from shared memory which actions have begun since it was last asked, and
+// which are held.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "daemon/shm/layout.h"
+
+namespace merlin::actions {
+
+// State of all actions, indexed like kActions (daemon/base/commands.h).
+struct Actions {
+  std::array<std::uint32_t, shm::kMostActions> begun{};  // times since the last read()
+  std::array<bool, shm::kMostActions> held{};
+  // The actions that have begun, of each device in their order; if more than a dozen of one device
+  // have, the last ones.
+  std::vector<std::size_t> in_order;
+};
+
+// Thread-bound. Never waits; allocates only while actions begin.
+class ActionReader {
+ public:
+  // Actions that began before the first read, or before the first one after a restart of the daemon
+  // that counts them, are not reported. `held_by`: the sources whose held actions are reported.
+  Actions read(const shm::DevicesSegment& devices,
+               const std::array<bool, shm::kActionSources>& held_by = {true, true, true});
+
+ private:
+  std::array<std::optional<shm::ActionState>, shm::kActionSources> last_;
+};
+
+}  // namespace merlin::actions

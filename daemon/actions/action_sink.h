@@ -1,0 +1,49 @@
+// ActionSink: passes a device's samples and health on, and tells an ActionWriter of them first.
+// Runs on the device's thread.
+#pragma once
+
+#include <algorithm>
+
+#include "daemon/actions/action_writer.h"
+#include "daemon/base/clock.h"
+#include "drivers/port/sample_sink.h"
+
+namespace merlin::actions {
+
+// One for each device. Takes no lock and allocates nothing. The actions are published before the
+// sample, so that a reader that waits for the sample finds them.
+class ActionSink final : public SampleSink, public HealthSink {
+ public:
+  // `postures`: where the current posture is published before each glove sample.
+  // `stale_after`: a device that has not worked for this time counts as lost: its inputs end.
+  struct Parts {
+    const shm::SeqSlot<PostureState>& postures;
+    SampleSink& samples;
+    HealthSink& health;
+    Duration stale_after;
+  };
+  ActionSink(ActionWriter writer, const Parts& parts) : writer_(std::move(writer)), p_(parts) {}
+
+  void publish(const GloveSample& sample) noexcept override {
+    const auto posture = p_.postures.read();
+    writer_.update(sample, posture ? &*posture : nullptr);
+    p_.samples.publish(sample);
+  }
+  void publish(const TrackerSample& sample) noexcept override { p_.samples.publish(sample); }
+  void publish(const BallSample& sample) noexcept override {
+    writer_.update(sample);
+    p_.samples.publish(sample);
+  }
+  void publish(const DeviceHealth& health) noexcept override {
+    p_.health.publish(health);
+    const bool lost = health.state != HealthState::kOk &&
+                      health.updated_ns - health.since_ns >= p_.stale_after.count();
+    if (lost) writer_.release(health.updated_ns);
+  }
+
+ private:
+  ActionWriter writer_;
+  Parts p_;
+};
+
+}  // namespace merlin::actions

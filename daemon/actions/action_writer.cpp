@@ -1,0 +1,75 @@
+#include "daemon/actions/action_writer.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "daemon/base/commands.h"
+
+namespace merlin::actions {
+
+ActionWriter::ActionWriter(const std::vector<Binding>& bindings, shm::ActionSource source,
+                           std::uint64_t generation, shm::SeqSlot<shm::ActionState>& slot)
+    : slot_(slot) {
+  static_assert(kActions.size() <= shm::kMostActions);
+  for (const Binding& binding : bindings) {
+    auto input = parseInput(binding.input);
+    const auto action = std::find(kActions.begin(), kActions.end(), binding.action);
+    if (!input || input->source() != source || action == kActions.end()) continue;
+    bound_.push_back({*std::move(input), static_cast<std::size_t>(action - kActions.begin()),
+                      isHeldAction(binding.action), binding.when == When::kLeave});
+  }
+  state_.generation = generation;
+  slot_.publish(state_);
+}
+
+// Returns whether the state changed.
+bool ActionWriter::step(Bound& bound, bool held) noexcept {
+  if (held == bound.was_held) return false;
+  bound.was_held = held;
+  if (!bound.lasts && held == bound.on_leave) return false;
+  if (bound.lasts && !held) return true;
+  ++state_.begun[bound.action];
+  state_.recent[state_.sequence++ % std::size(state_.recent)] =
+      static_cast<std::uint8_t>(bound.action);
+  return true;
+}
+
+void ActionWriter::updateHeld() noexcept {
+  std::fill(std::begin(state_.held), std::end(state_.held), std::uint8_t{0});
+  for (const Bound& bound : bound_) {
+    if (bound.lasts && bound.was_held) state_.held[bound.action] = 1;
+  }
+}
+
+template <typename IsHeld>
+void ActionWriter::apply(std::int64_t now_ns, const IsHeld& isHeld) noexcept {
+  bool changed = false;
+  for (Bound& bound : bound_) changed = step(bound, isHeld(bound.input)) || changed;
+  if (!changed) return;
+  updateHeld();
+  state_.changed_ns = now_ns;
+  slot_.publish(state_);
+}
+
+void ActionWriter::update(const BallSample& ball) noexcept {
+  apply(ball.received_ns, [&](const Input& input) { return (ball.buttons & input.button) != 0; });
+}
+
+void ActionWriter::update(const GloveSample& glove, const PostureState* posture) noexcept {
+  const std::string_view name = posture ? std::string_view(posture->name) : std::string_view();
+  apply(glove.received_ns, [&](const Input& input) {
+    if (input.kind == Input::Kind::kPosture) return input.posture == name;
+    return (glove.flags & GloveSample::kWristSwitch) != 0;
+  });
+}
+
+void ActionWriter::press(std::int64_t now_ns) noexcept {
+  apply(now_ns, [](const Input&) { return true; });
+  apply(now_ns, [](const Input&) { return false; });
+}
+
+void ActionWriter::release(std::int64_t now_ns) noexcept {
+  apply(now_ns, [](const Input&) { return false; });
+}
+
+}  // namespace merlin::actions

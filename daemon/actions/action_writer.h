@@ -1,0 +1,47 @@
+// ActionWriter: turns the state of one device's inputs into the actions that they are bound to, in
+// shared memory.
+#pragma once
+
+#include <vector>
+
+#include "daemon/actions/input.h"
+#include "daemon/actions/settings.h"
+#include "daemon/shm/layout.h"
+
+namespace merlin::actions {
+
+// Thread-bound to the device's thread. Takes no lock; allocates nothing after construction. Each
+// call costs a comparison per binding of this device and writes only when an action begins or ends.
+class ActionWriter {
+ public:
+  // Uses the bindings whose input belongs to `source`; others, and invalid ones, are ignored.
+  // `generation`: the daemon's, which tells readers that counts begin again.
+  ActionWriter(const std::vector<Binding>& bindings, shm::ActionSource source,
+               std::uint64_t generation, shm::SeqSlot<shm::ActionState>& slot);
+
+  void update(const BallSample& ball) noexcept;
+  // `posture`: the current posture, after its minimum hold time; may be null.
+  void update(const GloveSample& glove, const PostureState* posture) noexcept;
+  // The panel's button was pressed.
+  void press(std::int64_t now_ns) noexcept;
+  // The device is lost: all its inputs end.
+  void release(std::int64_t now_ns) noexcept;
+
+ private:
+  struct Bound {
+    Input input;
+    std::size_t action;  // index into kActions
+    bool lasts, on_leave;
+    bool was_held = false;
+  };
+  template <typename IsHeld>
+  void apply(std::int64_t now_ns, const IsHeld& isHeld) noexcept;
+  bool step(Bound& bound, bool held) noexcept;
+  void updateHeld() noexcept;
+
+  std::vector<Bound> bound_;
+  shm::ActionState state_{};
+  shm::SeqSlot<shm::ActionState>& slot_;
+};
+
+}  // namespace merlin::actions

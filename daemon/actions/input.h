@@ -1,0 +1,27 @@
+// Input: a button, posture or switch that a binding names.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "daemon/shm/layout.h"
+
+namespace merlin::actions {
+
+struct Input {
+  enum class Kind { kBallButton, kPosture, kWristSwitch, kPanelButton };
+
+  Kind kind = Kind::kBallButton;
+  std::uint32_t button = 0;  // kBallButton: its bit in BallSample::buttons
+  std::string posture;       // kPosture: its name
+
+  // The device that it belongs to.
+  shm::ActionSource source() const;
+};
+
+// Parses the name of an input (kInputForms); nothing if there is no such input.
+std::optional<Input> parseInput(std::string_view name);
+
+}  // namespace merlin::actions

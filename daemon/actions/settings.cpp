@@ -1,0 +1,73 @@
+#include "daemon/actions/settings.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "daemon/actions/input.h"
+#include "daemon/base/commands.h"
+
+namespace merlin {
+namespace {
+
+bool isLamp(std::string_view action) { return action.starts_with("lamp_"); }
+
+// Whether no single moment may trigger both: a hand does one thing at a time, and the lamp has one
+// state.
+bool exclude(std::string_view a, std::string_view b) {
+  return a == b || (isHeldAction(a) && isHeldAction(b)) || (isLamp(a) && isLamp(b));
+}
+
+bool atLeave(const Binding& b) { return b.when == When::kLeave; }
+
+std::string conflictText(const Binding& a, const Binding& b) {
+  const char* when = isHeldAction(b.action) ? "held" : atLeave(b) ? "left" : "entered";
+  if (a.action == b.action)
+    return fmt::format("\"{}\" would {} twice when {}", b.input, b.action, when);
+  return fmt::format("\"{}\" would both {} and {} when {}, which exclude each other", b.input,
+                     a.action, b.action, when);
+}
+
+void checkOne(const Binding& b, const std::string& at, SettingFaults& faults) {
+  const auto input = actions::parseInput(b.input);
+  if (!input)
+    faults.push_back(
+        {at + "/input", fmt::format("is \"{}\"; allowed are {}", b.input, kInputForms)});
+  const bool held = isHeldAction(b.action);
+  if (b.when != When::kByAction && (b.when == When::kHold) != held)
+    faults.push_back(
+        {at + "/on", fmt::format("does not go with {}; allowed is {}", b.action,
+                                 held ? "hold: it lasts" : "enter or leave: it happens once")});
+  const bool panel = input && input->kind == actions::Input::Kind::kPanelButton;
+  if (panel && (held || atLeave(b)))
+    faults.push_back({at, fmt::format("binds panel.button to {}; the panel's button only triggers "
+                                      "actions that happen once, when it is pressed",
+                                      held ? b.action : "its release")});
+}
+
+}  // namespace
+
+// For each moment of an input, at most one binding of each action is remembered, hence linear.
+SettingFaults validate(const std::vector<Binding>& bindings) {
+  SettingFaults faults;
+  std::map<std::pair<std::string, bool>, std::vector<std::size_t>> before;
+  for (std::size_t i = 0; i < bindings.size(); ++i) {
+    const Binding& b = bindings[i];
+    const std::string at = fmt::format("/{}", i);
+    checkOne(b, at, faults);
+    auto& same_moment = before[{b.input, atLeave(b)}];
+    const auto j = std::find_if(same_moment.begin(), same_moment.end(), [&](std::size_t k) {
+      return exclude(bindings[k].action, b.action);
+    });
+    if (j == same_moment.end()) {
+      same_moment.push_back(i);
+      continue;
+    }
+    faults.push_back({at, conflictText(bindings[*j], b), fmt::format("/{}", *j)});
+  }
+  return faults;
+}
+
+}  // namespace merlin

@@ -1,0 +1,36 @@
+// Settings of bindings: which input triggers which action.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/base/setting_fault.h"
+
+namespace merlin {
+
+// When an action happens. kByAction: as the action requires, kHold or kEnter.
+enum class When { kByAction, kEnter, kHold, kLeave };
+
+struct Binding {
+  std::string input;            // in a form of kInputForms
+  std::string action = "grab";  // a name of kActions (daemon/base/commands.h)
+  When when = When::kByAction;
+};
+
+// All names of inputs, for descriptions and messages.
+inline constexpr const char* kInputForms =
+    "ball.button.1 to ball.button.12, posture.NAME, glove.switch and panel.button";
+
+inline std::vector<Binding> defaultBindings() {
+  return {{"posture.fist", "grab"},
+          {"ball.button.1", "reset_view"},
+          {"ball.button.2", "next_mode"},
+          {"panel.button", "next_mode"}};
+}
+
+// Finds bindings of unknown inputs, actions that do not go with `when`, and two actions of one
+// input at one moment that exclude each other or are the same. Pointers: "/INDEX/input" ... Cost:
+// linear.
+SettingFaults validate(const std::vector<Binding>& bindings);
+
+}  // namespace merlin

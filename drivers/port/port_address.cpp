@@ -1,0 +1,47 @@
+#include "drivers/port/port_address.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "daemon/base/tcp_address.h"
+
+namespace merlin {
+namespace {
+
+constexpr int kSpeeds[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
+constexpr const char* kForms = "serial:/dev/..., pty:PATH, tcp://HOST:PORT and replay:FILE";
+
+}  // namespace
+
+std::span<const int> lineSpeeds() { return kSpeeds; }
+
+Result<PortAddress> parsePort(std::string_view text) {
+  constexpr std::pair<std::string_view, PortKind> kPrefixes[] = {
+      {"serial:", PortKind::kSerial}, {"pty:", PortKind::kPty}, {"replay:", PortKind::kReplay}};
+  for (const auto& [prefix, kind] : kPrefixes) {
+    if (text.starts_with(prefix) && text.size() > prefix.size())
+      return PortAddress{kind, std::string(text.substr(prefix.size())), {}};
+  }
+  if (auto tcp = parseTcpAddress(text); tcp && tcp->host != "*")
+    return PortAddress{PortKind::kTcp, std::move(tcp->host), std::move(tcp->port)};
+  return Error{Errc::kInvalidArgument,
+               fmt::format("\"{}\" is not a valid port; ports are {}", text, kForms)};
+}
+
+SettingFaults validate(const LineSettings& line) {
+  SettingFaults faults;
+  if (!line.port.empty() && !parsePort(line.port)) {
+    faults.push_back({"/port", fmt::format("is \"{}\"; allowed are {}, or \"\" for no device",
+                                           line.port, kForms)});
+  }
+  if (std::find(std::begin(kSpeeds), std::end(kSpeeds), line.baud) == std::end(kSpeeds)) {
+    faults.push_back(
+        {"/baud", fmt::format("is {}; allowed are {}", line.baud, fmt::join(kSpeeds, ", "))});
+  }
+  return faults;
+}
+
+}  // namespace merlin

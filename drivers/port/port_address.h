@@ -1,0 +1,45 @@
+// PortAddress: where a device's line is: `serial:/dev/...`, `pty:PATH` (an emulator or another
+// program's pseudo-terminal), `tcp://HOST:PORT` (a raw serial server) or `replay:FILE` (a
+// transcript).
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "daemon/base/result.h"
+#include "daemon/base/setting_fault.h"
+
+namespace merlin {
+
+enum class PortKind { kSerial, kPty, kTcp, kReplay };
+
+struct PortAddress {
+  PortKind kind = PortKind::kPty;
+  std::string path;     // path of the device or file; for kTcp the host
+  std::string service;  // for kTcp only: the port's number
+
+  // Whether the line has a speed that we set.
+  bool hasSpeed() const noexcept { return kind == PortKind::kSerial || kind == PortKind::kPty; }
+};
+
+// Errors: kInvalidArgument, with the allowed forms.
+Result<PortAddress> parsePort(std::string_view text);
+
+// Speeds of a serial line that the drivers support, ascending [baud].
+std::span<const int> lineSpeeds();
+
+// Settings of one device's line.
+struct LineSettings {
+  std::string driver;  // a name from drivers/registry
+  std::string port;    // in a form that parsePort() understands; empty: no device
+  int baud = 38400;
+  // Maximum number of bytes read per second; 0: four times what the baud rate carries, or a million
+  // for tcp:// and replay:.
+  int max_bytes_s = 0;
+};
+
+// Finds a port or speed that is not allowed. Pointers: "/port", "/baud".
+SettingFaults validate(const LineSettings& line);
+
+}  // namespace merlin

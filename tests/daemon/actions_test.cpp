@@ -1,0 +1,209 @@
+// Bindings: inputs of the devices become actions in shared memory, and readers see each once.
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "daemon/actions/action_reader.h"
+#include "daemon/actions/action_sink.h"
+#include "daemon/actions/action_writer.h"
+#include "daemon/actions/settings.h"
+#include "daemon/base/commands.h"
+#include "tests/support/recording_sink.h"
+
+namespace merlin::actions {
+namespace {
+
+constexpr std::size_t kGrab = actionIndex("grab"), kNextMode = actionIndex("next_mode"),
+                      kReset = actionIndex("reset_view"), kLampOn = actionIndex("lamp_on"),
+                      kLampOff = actionIndex("lamp_off");
+
+class ActionsTest : public testing::Test {
+ protected:
+  ActionWriter writer(const std::vector<Binding>& bindings, shm::ActionSource source,
+                      std::uint64_t generation = 1) {
+    return {bindings, source, generation, segment_->actions[source]};
+  }
+  Actions read() { return reader_.read(*segment_); }
+  shm::ActionState state(shm::ActionSource source) const {
+    return *segment_->actions[source].read();
+  }
+  static BallSample ball(std::uint32_t buttons) {
+    BallSample b{};
+    b.buttons = buttons;
+    b.received_ns = 5;
+    return b;
+  }
+  static PostureState posture(const std::string& name) {
+    PostureState p{};
+    name.copy(p.name, sizeof p.name - 1);
+    return p;
+  }
+
+  std::unique_ptr<shm::DevicesSegment> segment_ = std::make_unique<shm::DevicesSegment>();
+  ActionReader reader_;
+};
+
+TEST_F(ActionsTest, AnActionBeginsOnceAPress) {
+  ActionWriter w = writer({{"ball.button.2", "next_mode"}}, shm::kBallActions);
+  (void)read();
+  for (int press = 0; press < 3; ++press) {
+    for (int i = 0; i < 5; ++i) w.update(ball(2));
+    EXPECT_EQ(read().begun[kNextMode], 1u) << press;
+    for (int i = 0; i < 5; ++i) w.update(ball(0));
+    EXPECT_EQ(read().begun[kNextMode], 0u) << press;
+  }
+  w.update(ball(2 | 4));
+  w.update(ball(2 | 8));  // others come and go while it is held
+  w.update(ball(4));
+  EXPECT_EQ(read().begun[kNextMode], 1u);
+  EXPECT_EQ(state(shm::kBallActions).begun[kNextMode], 4u);
+  EXPECT_EQ(state(shm::kBallActions).changed_ns, 5);
+}
+
+TEST_F(ActionsTest, OnLeaveAnActionBeginsWhenTheInputEnds) {
+  ActionWriter w =
+      writer({{"ball.button.1", "lamp_on"}, {"ball.button.1", "lamp_off", When::kLeave}},
+             shm::kBallActions);
+  (void)read();
+  w.update(ball(1));
+  EXPECT_EQ(read().in_order, std::vector<std::size_t>{kLampOn});
+  w.update(ball(0));
+  EXPECT_EQ(read().in_order, std::vector<std::size_t>{kLampOff});
+}
+
+// Both between two looks: the list says which came last.
+TEST_F(ActionsTest, TheirOrderIsKept) {
+  ActionWriter w =
+      writer({{"ball.button.1", "lamp_on"}, {"ball.button.1", "lamp_off", When::kLeave}},
+             shm::kBallActions);
+  (void)read();
+  w.update(ball(1));
+  w.update(ball(0));
+  w.update(ball(1));
+  EXPECT_EQ(read().in_order, (std::vector<std::size_t>{kLampOn, kLampOff, kLampOn}));
+  for (int i = 0; i < 100; ++i) w.update(ball(i % 2 ? 1 : 0));
+  const auto last = read().in_order;
+  EXPECT_EQ(last.size(), 12u) << "more than a dozen: the last ones";
+  EXPECT_EQ(last.back(), kLampOn);
+}
+
+TEST_F(ActionsTest, WhatLastsIsHeldUntilTheInputEnds) {
+  ActionWriter w =
+      writer({{"ball.button.1", "grab"}, {"ball.button.2", "grab"}}, shm::kBallActions);
+  w.update(ball(1));
+  EXPECT_TRUE(read().held[kGrab]);
+  w.update(ball(1 | 2));
+  w.update(ball(2));
+  EXPECT_TRUE(read().held[kGrab]) << "the other button holds it";
+  w.update(ball(0));
+  EXPECT_FALSE(read().held[kGrab]);
+}
+
+TEST_F(ActionsTest, EveryInputDoesWhatItIsBoundTo) {
+  const std::vector<Binding> bindings = {{"ball.button.12", "next_mode"},
+                                         {"glove.switch", "reset_view"},
+                                         {"posture.point", "grab"},
+                                         {"panel.button", "next_mode"}};
+  ActionWriter glove = writer(bindings, shm::kGloveActions);
+  ActionWriter ball_writer = writer(bindings, shm::kBallActions);
+  ActionWriter panel = writer(bindings, shm::kPanelActions);
+  (void)read();
+  ball_writer.update(ball(0x7FF));  // the eleven others
+  EXPECT_TRUE(read().in_order.empty());
+  ball_writer.update(ball(1U << 11));
+  EXPECT_EQ(read().in_order, std::vector<std::size_t>{kNextMode});
+  GloveSample sample{};
+  sample.flags = GloveSample::kPlugged | GloveSample::kLight;
+  glove.update(sample, nullptr);
+  EXPECT_TRUE(read().in_order.empty());
+  sample.flags = GloveSample::kWristSwitch;
+  const PostureState fist = posture("fist"), point = posture("point");
+  glove.update(sample, &fist);
+  const Actions switched = read();
+  EXPECT_EQ(switched.begun[kReset], 1u);
+  EXPECT_FALSE(switched.held[kGrab]);
+  glove.update(sample, &point);
+  EXPECT_TRUE(read().held[kGrab]);
+  panel.press(7);
+  panel.press(8);
+  EXPECT_EQ(read().begun[kNextMode], 2u);
+}
+
+TEST_F(ActionsTest, ADeviceThatIsLostLetsGo) {
+  const std::vector<Binding> bindings = {{"ball.button.1", "grab"},
+                                         {"ball.button.2", "next_mode", When::kLeave}};
+  test::RecordingSink samples;
+  struct Healths final : HealthSink {
+    void publish(const DeviceHealth&) noexcept override { ++published; }
+    int published = 0;
+  } healths;
+  ActionSink sink(writer(bindings, shm::kBallActions),
+                  {segment_->posture_state, samples, healths, std::chrono::milliseconds(500)});
+  (void)read();
+  sink.publish(ball(3));
+  DeviceHealth health{};
+  health.state = HealthState::kAbsent;
+  health.since_ns = 1'000'000'000;
+  health.updated_ns = 1'499'999'999;
+  sink.publish(health);
+  EXPECT_TRUE(read().held[kGrab]) << "it may come back";
+  health.updated_ns = 1'500'000'000;
+  sink.publish(health);
+  const Actions actions = read();
+  EXPECT_FALSE(actions.held[kGrab]);
+  EXPECT_EQ(actions.begun[kNextMode], 1u) << "the input has ended";
+  EXPECT_EQ(healths.published, 2);
+}
+
+TEST_F(ActionsTest, WhatBeganBeforeTheFirstLookOrBeforeARestartIsPast) {
+  const std::vector<Binding> bindings = {{"ball.button.2", "next_mode"}};
+  {
+    ActionWriter w = writer(bindings, shm::kBallActions);
+    w.update(ball(2));
+  }
+  EXPECT_EQ(read().begun[kNextMode], 0u);
+  ActionWriter restarted = writer(bindings, shm::kBallActions, 2);
+  restarted.update(ball(2));
+  restarted.update(ball(0));
+  restarted.update(ball(2));
+  EXPECT_EQ(read().begun[kNextMode], 0u);
+  restarted.update(ball(0));
+  restarted.update(ball(2));
+  EXPECT_EQ(read().begun[kNextMode], 1u);
+}
+
+TEST(BindingSettings, AnInputThatIsNoneIsFound) {
+  for (const std::string input :
+       {"", "ball", "ball.button.", "ball.button.0", "ball.button.13", "ball.button.-1",
+        "ball.button.+1", "ball.button.1x", "ball.button.x1", "ball.button. 1",
+        "ball.button.99999999999", "posture.", "posture", "glove", "glove.switch.1", "Glove.switch",
+        "tracker.button.1", "panel", "panel.button.1"}) {
+    const SettingFaults faults = validate({{"glove.switch", "grab"}, {input, "reset_view"}});
+    ASSERT_EQ(faults.size(), 1u) << input;
+    EXPECT_EQ(faults[0].pointer, "/1/input");
+  }
+  for (int n = 1; n <= 12; ++n)
+    EXPECT_TRUE(validate({{"ball.button." + std::to_string(n), "grab"}}).empty()) << n;
+  EXPECT_TRUE(validate(defaultBindings()).empty());
+}
+
+TEST(BindingSettings, WhatLastsIsHeldAndWhatHappensOnceIsNot) {
+  for (const auto& [action, when] :
+       {std::pair{"grab", When::kEnter}, {"fly", When::kLeave}, {"reset_view", When::kHold}}) {
+    const SettingFaults faults = validate({{"posture.fist", action, when}});
+    ASSERT_EQ(faults.size(), 1u) << action;
+    EXPECT_EQ(faults[0].pointer, "/0/on");
+  }
+}
+
+TEST(BindingSettings, ThePanelsButtonTriggersWhatHappensOnce) {
+  EXPECT_TRUE(validate({{"panel.button", "projector_on"}}).empty());
+  EXPECT_EQ(validate({{"panel.button", "grab"}}).size(), 1u);
+  EXPECT_EQ(validate({{"panel.button", "lamp_on", When::kLeave}}).size(), 1u);
+}
+
+}  // namespace
+}  // namespace merlin::actions
