@@ -169,10 +169,12 @@ void addMeshCompare(Command mesh, Run& run) {
                       "Measure the distance of two surfaces: RMS, mean, and an interval that is "
                       "certain to hold the "
                       "maximum.\nExample: merlin mesh compare scan.ply scan.mrm --percent 5");
-  command.option("a", options->original, "The original surface: .mrm, .ply or .obj")
+  command.option("a", options->original, "The original surface: .mrm, " + render::readableEndings())
       .required()
       .typeName("A");
-  command.option("b", options->other, "The surface to compare with it: .mrm, .ply or .obj")
+  command
+      .option("b", options->other,
+              "The surface to compare with it: .mrm, " + render::readableEndings())
       .required()
       .typeName("B");
   options->choice.addTo(command);

@@ -98,7 +98,7 @@ void addMeshInfo(Command mesh, Run& run) {
       "info",
       "Show the contents of a mesh or a model, and the "
       "repairs that reading a mesh needed.\nExample: merlin mesh info scan.mrm --json");
-  command.option("file", options->file, "Model (.mrm) or mesh (.ply, .obj)")
+  command.option("file", options->file, "Model (.mrm) or mesh (" + render::readableEndings() + ")")
       .required()
       .typeName("FILE");
   command.flag("--json", options->json, "Print JSON, for programs");

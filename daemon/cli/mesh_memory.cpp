@@ -1,6 +1,7 @@
 #include "daemon/cli/mesh_memory.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 
@@ -8,10 +9,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "daemon/base/files.h"
 #include "render/image/image_file.h"
-#include "render/mesh/io/beside.h"
-#include "render/mesh/io/ply_header.h"
+#include "render/mesh/io/mesh_file.h"
 #include "render/reduce/memory.h"
 
 namespace merlin::cli {
@@ -92,28 +91,16 @@ Result<Ok> roomForPicture(const std::string& picture, const render::MeshSize& me
 
 Result<Ok> checkRoom(const std::string& path, const render::ReduceSettings& settings,
                      std::size_t limit) {
-  const auto file = MappedFile::open(path);
-  if (!file) return Ok{};
-  const auto header = render::ply::parseHeader(file->text());
-  if (!header) return Ok{};
-  render::MeshSize size{0, 0, 3};  // normals are added
-  for (const auto& element : header->elements) {
-    if (element.name == "face") size.triangles = element.count;
-    if (element.name != "vertex") continue;
-    size.vertices = element.count;
-    for (const auto& p : element.properties)
-      size.values += !p.list && p.name != "x" && p.name != "y" && p.name != "z" && p.name != "nx" &&
-                     p.name != "ny" && p.name != "nz";
+  auto found = render::meshFileSize(path);
+  if (!found) return Ok{};  // the reader reports what is wrong
+  render::MeshSize& size = found->mesh;
+  size.values += 3;  // normals are added
+  if (!found->picture.empty()) {
+    if (const auto fits = roomForPicture(found->picture, size, limit); !fits) return fits;
   }
-  // A header may claim any counts; the reader reports those that the file cannot hold.
-  const std::size_t bytes = file->text().size();
-  if (size.vertices > bytes || size.triangles > bytes) return Ok{};
-  if (header->pictures.size() == 1 && render::ply::hasTexcoord(*header)) {
-    const std::string picture =
-        render::pathBeside(render::folderOf(path), header->pictures.front());
-    if (const auto fits = roomForPicture(picture, size, limit); !fits) return fits;
-  }
-  const auto room = roomForReduction(size, bytes, settings, limit);
+  std::error_code unknown;
+  const auto bytes = std::filesystem::file_size(path, unknown);
+  const auto room = roomForReduction(size, unknown ? 0 : bytes, settings, limit);
   if (!room) return Error{room.error().code, path + ": " + room.error().what};
   return Ok{};
 }

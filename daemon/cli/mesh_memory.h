@@ -29,9 +29,9 @@ Result<std::size_t> roomForReduction(const render::MeshSize& mesh, std::size_t f
 Result<Ok> roomForPicture(const std::string& picture, const render::MeshSize& mesh,
                           std::size_t limit);
 
-// The check of roomForReduction() before the mesh is read, from the sizes in a .ply file's header.
-// Errors: kInvalidArgument, with the file's name; none if the header cannot be read, because
-// reading the mesh will report that.
+// The check of roomForReduction() before the mesh is read, from the sizes in the file's header.
+// Errors: kInvalidArgument, with the file's name; none if the header does not say them or
+// cannot be read; reading the mesh will report that.
 Result<Ok> checkRoom(const std::string& path, const render::ReduceSettings& settings,
                      std::size_t limit);
 

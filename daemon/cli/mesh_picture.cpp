@@ -61,7 +61,9 @@ void addMeshPicture(Command mesh, Run& run) {
                                     "Draw models, each at one resolution or several, side by side "
                                     "in a PNG file.\nExample: merlin "
                                     "mesh picture scan.mrm --percent 100 5 -o both.png");
-  command.option("models", options->models, "Models (.mrm) or meshes (.ply, .obj)")
+  command
+      .option("models", options->models,
+              "Models (.mrm) or meshes (" + render::readableEndings() + ")")
       .required()
       .typeName("MODEL");
   command.option("-o", options->output, "The PNG file").required().typeName("FILE.png");

@@ -173,9 +173,10 @@ int reduceMesh(const ReduceOptions& options) {
 void addMeshReduce(Command mesh, Run& run) {
   const auto options = std::make_shared<ReduceOptions>();
   Command command = mesh.subcommand(
-      "reduce",
-      "A mesh (.ply, .obj) to a multiresolution model (.mrm): every resolution from all of it down "
-      "to next to nothing.\nExample: merlin mesh reduce scan.ply -o scan.mrm --weight colour=0.02");
+      "reduce", "A mesh (" + render::readableEndings() +
+                    ") to a multiresolution model (.mrm): every resolution from all of it down "
+                    "to next to nothing.\nExample: merlin mesh reduce scan.ply -o scan.mrm "
+                    "--weight colour=0.02");
   command.option("input", options->input, "The mesh").required().typeName("IN");
   command.option("-o", options->output, "The model").required().typeName("OUT.mrm");
   std::vector<std::string> names;

@@ -107,7 +107,9 @@ void addMeshSegment(Command mesh, Run& run) {
       "Divide a mesh into connected segments of similar vertices. Their numbers become the feature "
       "label; 0 is the largest segment.\nExample: merlin mesh segment scan.ply -o parts.ply "
       "--segments 12 --weight normal=1 --weight colour=2");
-  command.option("input", options->input, "The mesh: .ply or .obj").required().typeName("IN");
+  command.option("input", options->input, "The mesh: " + render::readableEndings())
+      .required()
+      .typeName("IN");
   command.option("-o", options->output, "The mesh with labels: .ply, .glb or .gltf")
       .required()
       .typeName("OUT.ply")

@@ -1,4 +1,5 @@
 // The bottom layer: files, words, clocks.
+#include <atomic>
 #include <csignal>
 #include <filesystem>
 #include <thread>
@@ -8,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "daemon/base/bytes.h"
+#include "daemon/base/child_work.h"
 #include "daemon/base/clock.h"
 #include "daemon/base/dated_files.h"
 #include "daemon/base/files.h"
@@ -227,6 +229,37 @@ TEST(SystemClock, SleepsUntilThenAndWakesForAStop) {
   std::stop_source stop;
   std::jthread stopper([&] { stop.request_stop(); });
   EXPECT_FALSE(clock.sleepUntil(clock.now() + std::chrono::hours(1), stop.get_token()));
+}
+
+TEST(ChildWork, HandsOverItsResultOrItsError) {
+  using std::chrono::seconds;
+  const std::string large(1'000'000, 'x');
+  EXPECT_EQ(*inChild([&]() -> Result<std::string> { return large; }, "ended", seconds(10)), large);
+  const auto failed = inChild(
+      []() -> Result<std::string> {
+        return Error{Errc::kUnsupported, "why"};
+      },
+      "ended", seconds(10));
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().code, Errc::kUnsupported);
+  EXPECT_EQ(failed.error().what, "why");
+}
+
+TEST(ChildWork, AnEndOfTheChildIsAnError) {
+  const auto aborted = inChild([]() -> Result<std::string> { std::abort(); }, "is damaged",
+                               std::chrono::seconds(10));
+  ASSERT_FALSE(aborted);
+  EXPECT_EQ(aborted.error().code, Errc::kMalformed);
+  EXPECT_EQ(aborted.error().what, "is damaged");
+  const auto endless = inChild(
+      []() -> Result<std::string> {
+        const std::atomic<bool> on{true};
+        while (on) {
+        }
+      },
+      "takes too long", std::chrono::seconds(1));
+  ASSERT_FALSE(endless);
+  EXPECT_EQ(endless.error().what, "takes too long");
 }
 
 }  // namespace

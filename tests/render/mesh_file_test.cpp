@@ -140,11 +140,12 @@ TEST(ReadMesh, GoesByTheEndingInSmallOrLargeLetters) {
   ASSERT_TRUE(readMesh(dir / "a.PLY"));
   writeText(dir / "a.Obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   ASSERT_TRUE(readMesh(dir / "a.Obj"));
-  for (const char* name : {"a.stl", "ply", "a.ply.gz", "x.ply/a"}) {
+  for (const char* name : {"a.glb", "ply", "a.ply.gz", "x.ply/a"}) {
     const auto refused = readMesh(dir / name);
     ASSERT_FALSE(refused) << name;
     EXPECT_EQ(refused.error().code, Errc::kUnsupported) << name;
-    EXPECT_EQ(refused.error().what, dir / name + ": meshes are read from .ply and .obj");
+    EXPECT_EQ(refused.error().what,
+              dir / name + ": meshes are read from .ply, .obj, .off, .om and .stl");
   }
 }
 

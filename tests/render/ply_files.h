@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/mesh/io/ply.h"
+#include "render/mesh/io/ply/ply.h"
 
 namespace merlin::test {
 

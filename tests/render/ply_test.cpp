@@ -1,4 +1,4 @@
-#include "render/mesh/io/ply.h"
+#include "render/mesh/io/ply/ply.h"
 
 #include <cmath>
 #include <string>

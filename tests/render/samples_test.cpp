@@ -1,10 +1,11 @@
-// The samples of a content and of an output do what their ports ask for.
+// The samples of a content, of an output and of a reader do what their ports ask for.
 #include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "render/content/sample/chequers.h"
 #include "render/frame/frame_renderer.h"
+#include "render/mesh/io/sample/raw_triangles.h"
 #include "render/out/sample/checksum_output.h"
 #include "tests/support/fake_clock.h"
 #include "tests/support/temp_dir.h"
@@ -72,6 +73,19 @@ TEST(ChecksumOutput, WritesALineAFrameAndSaysWhatFails) {
   const auto failed = nowhere.present({1, 1, pixels}, {});
   ASSERT_FALSE(failed);
   EXPECT_EQ(failed.error().code, Errc::kIo);
+}
+
+TEST(RawTriangles, IsReadLikeAnyOtherFormat) {
+  const test::TempDir dir;
+  test::writeText(dir / "a.raw", "0 0 0 1 0 0 0 1 0\n\n0 0 1\t1 0 1 0 1 1\r\n");
+  const auto loaded = readMeshAs(kRawTrianglesReader, dir / "a.raw");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->mesh.triangleCount(), 2u);
+  EXPECT_EQ(loaded->mesh.positions[17], 1);
+  test::writeText(dir / "b.raw", "0 0 0 1 0 0 0 1 0\n1 2 3\n");
+  EXPECT_EQ(readMeshAs(kRawTrianglesReader, dir / "b.raw").error().what,
+            dir / "b.raw" + ": line 2: has 3 of 9 numbers");
+  EXPECT_EQ(readMesh(dir / "a.raw").error().code, Errc::kUnsupported) << "not in the table";
 }
 
 }  // namespace

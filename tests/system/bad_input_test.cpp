@@ -250,7 +250,7 @@ TEST_F(BadInput, MeshCommands) {
   expectOutcome(run({kMerlin, "mesh", "info", dir_ / "empty.ply"}), 2,
                 {"empty.ply: line 1: a PLY file starts with"});
   expectOutcome(run({kMerlin, "mesh", "info", dir_ / "a.xyz"}), 2,
-                {"a.xyz: meshes are read from .ply and .obj"});
+                {"a.xyz: meshes are read from .ply, .obj, .off, .om and .stl"});
   const std::string scan = kSource + "/config/models/ankylosaurus.ply";
   expectOutcome(run({kMerlin, "mesh", "reduce", scan, "-o", dir_ / "o.mrm", "--weight", "colour"}),
                 2, {"--weight colour: is not FEATURE=NUMBER"});

@@ -10,10 +10,8 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
-#include "render/image/image_file.h"
 #include "render/mesh/io/beside.h"
-#include "render/mesh/io/obj_texture.h"
-#include "render/mesh/io/ply.h"
+#include "render/mesh/io/reader.h"
 #include "render/mesh/io/writer.h"
 
 namespace merlin::render {
@@ -33,45 +31,7 @@ Error inFile(const std::string& path, const Error& error) {
   return {error.code, path + ": " + error.what};
 }
 
-Result<LoadedMesh> readObj(std::string_view content, const std::string& folder) {
-  auto surface = parseObj(content);
-  if (!surface) return surface.error();
-  if (const auto valid = validate(surface->mesh); !valid) return valid.error();
-  LoadedMesh loaded;
-  std::vector<ObjMaterial> materials(surface->materials.size());
-  if (!surface->corner_texcoord.empty()) {
-    materials = readMaterials(surface->materials, surface->libraries, folder, loaded.notes);
-  }
-  loaded.mesh = textured(*std::move(surface), materials);
-  const bool pictures =
-      std::ranges::any_of(materials, [](const ObjMaterial& m) { return m.picture != nullptr; });
-  if (pictures && loaded.mesh.texture.empty())
-    loaded.notes.emplace_back(
-        "not one picture that repeats, everywhere: seen as colours of the vertices");
-  return loaded;
-}
-
-// Which vertices a picture of several is of, a PLY says of faces if at all.
-Result<LoadedMesh> readPly(std::string_view content, const std::string& folder) {
-  std::vector<std::string> pictures;
-  auto loaded = ply::parse(content, &pictures);
-  if (!loaded || pictures.empty() || !findOf(loaded->mesh, "texcoord", 2)) return loaded;
-  if (pictures.size() > 1) {
-    loaded->notes.push_back(fmt::format("left out: {} pictures of textures", pictures.size()));
-    return loaded;
-  }
-  if (pictures[0].find('\0') != std::string::npos) {
-    loaded->notes.push_back(pictures[0] + ": is no name; the texture's picture is left out");
-    return loaded;
-  }
-  auto texture = readImage(pathBeside(folder, pictures[0]));
-  if (texture)
-    loaded->mesh.texture = std::move(texture->file);
-  else
-    loaded->notes.push_back(texture.error().what + "; the texture's picture is left out");
-  return loaded;
-}
-
+constexpr std::array kReaders = {&kPlyReader, &kObjReader, &kOffReader, &kOmReader, &kStlReader};
 constexpr std::array kWriters = {&kPlyWriter,  &kObjWriter, &kGlbWriter,
                                  &kGltfWriter, &kStlWriter, &kInventorWriter};
 
@@ -81,6 +41,27 @@ const MeshWriter* writerFor(const std::string& path) {
     if (end == w->ending) return w;
   }
   return nullptr;
+}
+
+const MeshReader* readerFor(const std::string& path) {
+  const std::string end = ending(path);
+  for (const MeshReader* r : kReaders) {
+    if (end == r->ending) return r;
+  }
+  return nullptr;
+}
+
+// ".ply, .obj and .stl".
+template <typename Rows>
+std::string endingsOf(const Rows& rows) {
+  std::string list;
+  for (const auto* row : rows)
+    list += fmt::format("{}.{}",
+                        list.empty()         ? ""
+                        : row == rows.back() ? " and "
+                                             : ", ",
+                        row->ending);
+  return list;
 }
 
 struct BesideFile {
@@ -150,15 +131,29 @@ const Feature* findOf(const Mesh& mesh, std::string_view name, std::size_t dimen
   return f && f->dimension == dimension ? f : nullptr;
 }
 
+std::string readableEndings() { return endingsOf(kReaders); }
+
+std::optional<MeshFileSize> meshFileSize(const std::string& path) {
+  const MeshReader* const reader = readerFor(path);
+  if (!reader || !reader->size) return std::nullopt;
+  const auto file = MappedFile::open(path);
+  if (!file) return std::nullopt;
+  auto size = reader->size(file->text(), folderOf(path));
+  const std::size_t bytes = file->text().size();
+  if (!size || size->mesh.vertices > bytes || size->mesh.triangles > bytes) return std::nullopt;
+  return size;
+}
+
 Result<LoadedMesh> readMesh(const std::string& path) {
-  const std::string end = ending(path);
-  if (end != "ply" && end != "obj") {
-    return Error{Errc::kUnsupported, fmt::format("{}: meshes are read from .ply and .obj", path)};
-  }
+  if (const MeshReader* const reader = readerFor(path)) return readMeshAs(*reader, path);
+  return Error{Errc::kUnsupported,
+               fmt::format("{}: meshes are read from {}", path, readableEndings())};
+}
+
+Result<LoadedMesh> readMeshAs(const MeshReader& reader, const std::string& path) {
   auto file = MappedFile::open(path);
   if (!file) return file.error();
-  auto loaded =
-      end == "ply" ? readPly(file->text(), folderOf(path)) : readObj(file->text(), folderOf(path));
+  auto loaded = reader.read(file->text(), folderOf(path));
   if (!loaded) return inFile(path, loaded.error());
   *file = MappedFile();  // as large as the mesh
   if (const auto valid = validate(loaded->mesh); !valid) return inFile(path, valid.error());
@@ -175,14 +170,8 @@ Result<LoadedMesh> readMesh(const std::string& path) {
 
 Result<Ok> checkMeshEnding(const std::string& path) {
   if (writerFor(path)) return Ok{};
-  std::string known;
-  for (const MeshWriter* w : kWriters)
-    known += fmt::format("{}.{}",
-                         known.empty()          ? ""
-                         : w == kWriters.back() ? " and "
-                                                : ", ",
-                         w->ending);
-  return Error{Errc::kUnsupported, fmt::format("{}: meshes are written as {}", path, known)};
+  return Error{Errc::kUnsupported,
+               fmt::format("{}: meshes are written as {}", path, endingsOf(kWriters))};
 }
 
 Result<Ok> checkBeside(const std::string& path, const Mesh& mesh) {

@@ -4,6 +4,9 @@
 //                   feature; the picture that a comment "TextureFile" names
 //            .obj   colours; texture coordinates, and the colours of the pictures (PNG, JPEG) that
 //                   its materials name
+//            .off   in plain letters: normals, colours, texture coordinates
+//            .om, .stl   through OpenMesh: normals, colours, texture coordinates; faces that
+//                   OpenMesh's own meshes cannot hold are kept
 //   written  .ply   binary little-endian, every feature: normal as nx ny nz, colour as red green
 //                   blue (bytes), label as int, any other as float properties
 //            .obj   normal, colour, texcoord
@@ -17,11 +20,13 @@
 // nothing is printed. Reentrant.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "daemon/base/result.h"
 #include "render/mesh/mesh.h"
+#include "render/mesh/mesh_size.h"
 #include "render/mesh/non_manifold.h"
 
 namespace merlin::render {
@@ -32,6 +37,19 @@ struct LoadedMesh {
   SplitReport split;
   std::vector<std::string> notes;  // for a person: what is left out, a picture that is not there
 };
+
+// Size of a mesh in a file.
+struct MeshFileSize {
+  MeshSize mesh;        // features without normals
+  std::string picture;  // path of the texture's picture; empty: none
+};
+
+// Size of the mesh by the file's header; nothing if the file cannot be opened, its format does not
+// say, or it claims more than its bytes can hold. Reads the header only.
+std::optional<MeshFileSize> meshFileSize(const std::string& path);
+
+// The endings that are read, for messages and help: ".ply, .obj and .stl".
+std::string readableEndings();
 
 // Errors, each with the file's name and where in it: kNotFound, kIo, kMalformed (cut short, broken,
 // no triangles), kUnsupported (an ending or a variant that is not read).

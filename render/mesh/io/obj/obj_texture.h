@@ -2,8 +2,8 @@
 // render/mesh/io.
 #pragma once
 
-#include "render/mesh/io/obj.h"
-#include "render/mesh/io/obj_materials.h"
+#include "render/mesh/io/obj/obj.h"
+#include "render/mesh/io/obj/obj_materials.h"
 
 namespace merlin::render {
 

@@ -1,4 +1,4 @@
-#include "render/mesh/io/obj_materials.h"
+#include "render/mesh/io/obj/obj_materials.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "render/mesh/io/ply.h"
+#include "render/mesh/io/ply/ply.h"
 
 #include <algorithm>
 #include <charconv>
@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 
 #include "daemon/base/text.h"
-#include "render/mesh/io/ply_body.h"
-#include "render/mesh/io/ply_features.h"
-#include "render/mesh/io/ply_header.h"
+#include "render/mesh/io/ply/ply_body.h"
+#include "render/mesh/io/ply/ply_features.h"
+#include "render/mesh/io/ply/ply_header.h"
 
 namespace merlin::render::ply {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/mesh/io/obj_texture.h"
+#include "render/mesh/io/obj/obj_texture.h"
 
 #include <algorithm>
 #include <array>

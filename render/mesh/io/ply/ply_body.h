@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "render/mesh/io/ply_header.h"
+#include "render/mesh/io/ply/ply_header.h"
 
 namespace merlin::render::ply {
 

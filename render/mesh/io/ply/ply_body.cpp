@@ -1,4 +1,4 @@
-#include "render/mesh/io/ply_body.h"
+#include "render/mesh/io/ply/ply_body.h"
 
 #include <algorithm>
 #include <bit>

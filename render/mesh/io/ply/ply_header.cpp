@@ -1,4 +1,4 @@
-#include "render/mesh/io/ply_header.h"
+#include "render/mesh/io/ply/ply_header.h"
 
 #include <array>
 #include <charconv>
@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/text.h"
-#include "render/mesh/io/ply_features.h"
+#include "render/mesh/io/ply/ply_features.h"
 #include "render/mesh/io/text_lines.h"
 
 namespace merlin::render::ply {

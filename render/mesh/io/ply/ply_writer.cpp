@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/bytes.h"
-#include "render/mesh/io/ply_features.h"
+#include "render/mesh/io/ply/ply_features.h"
 #include "render/mesh/io/writer.h"
 
 namespace merlin::render {

@@ -1,4 +1,4 @@
-#include "render/mesh/io/obj.h"
+#include "render/mesh/io/obj/obj.h"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,180 @@
+// OFF files in plain letters, as a row of the table of readers.
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "render/mesh/io/reader.h"
+#include "render/mesh/io/text_lines.h"
+
+namespace merlin::render {
+namespace {
+
+Error malformed(std::size_t line, const std::string& what) {
+  return {Errc::kMalformed, fmt::format("line {}: {}", line, what)};
+}
+
+// What the first word says that each vertex has behind its coordinates.
+struct Form {
+  bool normal = false, colour = false, texcoord = false;
+};
+
+std::optional<Form> formOf(std::string_view keyword) {
+  Form form;
+  const auto take = [&keyword](std::string_view prefix) {
+    if (!keyword.starts_with(prefix)) return false;
+    keyword.remove_prefix(prefix.size());
+    return true;
+  };
+  form.texcoord = take("ST");
+  form.colour = take("C");
+  form.normal = take("N");
+  if (keyword != "OFF") return std::nullopt;
+  return form;
+}
+
+class OffFile {
+ public:
+  explicit OffFile(std::string_view content) : rest_(content), bytes_(content.size()) {}
+
+  // The first word and the numbers of vertices and faces.
+  Result<Ok> header() {
+    std::string_view line = nextLine();
+    const std::string_view keyword = takeWord(line);
+    const auto form = formOf(keyword);
+    if (!form)
+      return malformed(line_, "does not begin with OFF, COFF, NOFF, STOFF or a union of these");
+    form_ = *form;
+    if (trimmed(line) == "BINARY")
+      return Error{Errc::kUnsupported, "is a binary OFF file; only plain letters are read"};
+    if (trimmed(line).empty()) line = nextLine();
+    if (!readNumber(takeWord(line), vertices_) || !readNumber(takeWord(line), faces_))
+      return malformed(line_, "has no numbers of vertices and faces");
+    if (vertices_ > bytes_ || faces_ > bytes_)
+      return malformed(line_, fmt::format("promises {} vertices and {} faces in {} bytes",
+                                          vertices_, faces_, bytes_));
+    return Ok{};
+  }
+
+  Result<Ok> body() {
+    for (std::size_t i = 0; i < vertices_; ++i) {
+      if (const auto added = addVertex(nextLine(), i); !added) return added;
+    }
+    for (std::size_t i = 0; i < faces_; ++i) {
+      if (const auto added = addFace(nextLine(), i); !added) return added;
+    }
+    return Ok{};
+  }
+
+  Mesh take() {
+    for (Feature* f : {&normal_, &colour_, &texcoord_}) {
+      if (!f->values.empty()) mesh_.features.push_back(std::move(*f));
+    }
+    return std::move(mesh_);
+  }
+  MeshSize size() const {
+    return {vertices_, faces_, std::size_t{form_.colour ? 3U : 0U} + (form_.texcoord ? 2U : 0U)};
+  }
+
+ private:
+  // The next line that holds anything; empty at the end.
+  std::string_view nextLine() {
+    while (!rest_.empty()) {
+      const std::string_view line = trimmed(takeLine(rest_));
+      ++line_;
+      if (!line.empty()) return line;
+    }
+    return {};
+  }
+
+  bool take(std::string_view& line, std::size_t count, std::vector<float>& to, float full = 1) {
+    for (std::size_t k = 0; k < count; ++k) {
+      float value = 0;
+      if (!readNumber(takeWord(line), value)) return false;
+      to.push_back(value / full);
+    }
+    return true;
+  }
+
+  // Three or four numbers, whole ones up to 255 or fractions up to 1: as the first vertex has them.
+  bool takeColour(std::string_view& line) {
+    if (colour_.values.empty()) {
+      std::string_view ahead = line;
+      std::size_t words = 0;
+      for (; !takeWord(ahead).empty(); ++words) {
+      }
+      has_alpha_ = words == (form_.texcoord ? 6U : 4U);
+      ahead = line;
+      colour_full_ = 255;
+      for (int k = 0; k < 3; ++k) {
+        if (takeWord(ahead).find_first_of(".eE") != std::string_view::npos) colour_full_ = 1;
+      }
+    }
+    if (!take(line, 3, colour_.values, colour_full_)) return false;
+    return !has_alpha_ || !takeWord(line).empty();
+  }
+
+  Result<Ok> addVertex(std::string_view line, std::size_t i) {
+    if (line.empty())
+      return malformed(line_, fmt::format("ends after {} of {} vertices", i, vertices_));
+    const bool whole =
+        take(line, 3, mesh_.positions) && (!form_.normal || take(line, 3, normal_.values)) &&
+        (!form_.colour || takeColour(line)) && (!form_.texcoord || take(line, 2, texcoord_.values));
+    if (!whole) return malformed(line_, fmt::format("vertex {} lacks a number", i));
+    return Ok{};
+  }
+
+  // A polygon becomes a fan; what follows the corners is the face's colour, which has no place.
+  Result<Ok> addFace(std::string_view line, std::size_t i) {
+    if (line.empty()) return malformed(line_, fmt::format("ends after {} of {} faces", i, faces_));
+    std::size_t corners = 0;
+    if (!readNumber(takeWord(line), corners))
+      return malformed(line_, fmt::format("face {} has no number of corners", i));
+    std::uint32_t first = 0, before = 0;
+    for (std::size_t k = 0; k < corners; ++k) {
+      std::uint32_t v = 0;
+      if (!readNumber(takeWord(line), v))
+        return malformed(line_, fmt::format("face {} has {} of {} corners", i, k, corners));
+      if (v >= vertices_)
+        return malformed(line_,
+                         fmt::format("face {} names vertex {}, and there are {}", i, v, vertices_));
+      if (k == 0) first = v;
+      if (k >= 2) mesh_.triangles.insert(mesh_.triangles.end(), {first, before, v});
+      before = v;
+    }
+    return Ok{};
+  }
+
+  std::string_view rest_;
+  std::size_t bytes_, line_ = 0;
+  Form form_;
+  std::size_t vertices_ = 0, faces_ = 0;
+  bool has_alpha_ = false;
+  float colour_full_ = 255;
+  Mesh mesh_;
+  Feature normal_{"normal", 3, {}}, colour_{"colour", 3, {}}, texcoord_{"texcoord", 2, {}};
+};
+
+Result<LoadedMesh> read(std::string_view content, const std::string&) {
+  OffFile file(content);
+  if (const auto header = file.header(); !header) return header.error();
+  if (const auto body = file.body(); !body) return body.error();
+  LoadedMesh loaded;
+  loaded.mesh = file.take();
+  return loaded;
+}
+
+std::optional<MeshFileSize> size(std::string_view content, const std::string&) {
+  OffFile file(content);
+  if (!file.header()) return std::nullopt;
+  return MeshFileSize{file.size(), {}};
+}
+
+}  // namespace
+
+const MeshReader kOffReader = {"off",
+                               "plain letters: normals, colours and texture coordinates; polygons "
+                               "become fans",
+                               read, size};
+
+}  // namespace merlin::render
