@@ -137,7 +137,7 @@ struct WallStats {
 static_assert(sizeof(WallStats) == 336 && offsetof(WallStats, triangles) == 32);
 static_assert(offsetof(WallStats, rate_now_hz) == 160 && offsetof(WallStats, scale_divisor) == 156);
 
-// Steps of a frame; stepName() of daemon/cli/trace_json has their names.
+// Steps of a frame; stepName() of daemon/cli/wall/trace_json.has their names.
 enum class StepKind : std::uint16_t {
   kInput = 0,     // reads the slots of all devices
   kScene = 1,     // applies the input to camera, objects, content

@@ -256,6 +256,7 @@ TEST(ChildWork, AnEndOfTheChildIsAnError) {
         const std::atomic<bool> on{true};
         while (on) {
         }
+        return std::string();
       },
       "takes too long", std::chrono::seconds(1));
   ASSERT_FALSE(endless);

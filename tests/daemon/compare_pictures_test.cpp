@@ -1,8 +1,9 @@
 // The pictures of `merlin mesh compare`, where no OpenGL is needed.
-#include "daemon/cli/compare_pictures.h"
+#include "daemon/cli/mesh/compare_pictures.h"
 
 #include <gtest/gtest.h>
 
+#include "render/image/picture_difference.h"
 #include "tests/support/meshes.h"
 
 namespace merlin::cli {
@@ -28,11 +29,12 @@ TEST(PictureDifference, CountsPixelsOfWhichAChannelHasChangedByMoreThan15Percent
       5, 1, {100, 100, 100, 9, 100, 100, 100, 9, 0, 0, 0, 9, 50, 50, 50, 9, 0, 0, 1, 9}};
   const render::Image b{
       5, 1, {100, 138, 62, 8, 100, 100, 139, 9, 39, 0, 0, 9, 50, 50, 50, 9, 0, 1, 0, 9}};
-  const PictureDifference d = differenceOf(a, b, kBlack);
+  const render::PictureDifference d = render::differenceOf(a, b, kBlack);
   EXPECT_EQ(d.image.pixels,
             (Bytes{0, 0, 0, 0, 255, 255, 255, 0, 255, 255, 255, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(d.changed_percent, 50) << "2 of the 4 that show something";
-  EXPECT_EQ(differenceOf({1, 1, {0, 0, 0, 0}}, {1, 1, {0, 0, 0, 0}}, kBlack).changed_percent, 0);
+  EXPECT_EQ(
+      render::differenceOf({1, 1, {0, 0, 0, 0}}, {1, 1, {0, 0, 0, 0}}, kBlack).changed_percent, 0);
 }
 
 TEST(EdgeBands, AreRedWhereAnEdgeIsShortAndBlueWhereItIsLong) {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/cli/status_text.h"
-#include "daemon/cli/trace_json.h"
+#include "daemon/cli/wall/status_text.h"
+#include "daemon/cli/wall/trace_json.h"
 
 namespace merlin::cli {
 namespace {

@@ -8,6 +8,7 @@
 #include "nn/adapt.h"
 #include "nn/codes.h"
 #include "nn/evaluate.h"
+#include "nn/folds.h"
 #include "nn/hold.h"
 #include "nn/train.h"
 #include "tests/nn/shipped.h"
@@ -205,6 +206,26 @@ TEST(PostureHold, TenPosturesOnTheirWayAreReportedOnceEach) {
   }
   ASSERT_EQ(reported.size(), 10u);
   for (std::size_t n = 0; n < 10; ++n) EXPECT_EQ(reported[n], ten[n].name);
+}
+
+TEST(Folds, EachHandIsTestedOnceAndEachPostureInEachFold) {
+  DataSet hands;
+  for (int n = 0; n < 10; ++n) {
+    for (const char* name : {"fist", "open"}) {
+      LabelledHand hand;
+      hand.posture = name;
+      hand.value.fill(static_cast<float>(n));
+      hands.push_back(hand);
+    }
+  }
+  std::vector<int> tested(10, 0);
+  for (std::size_t fold = 0; fold < 5; ++fold) {
+    const Fold split = splitFold(hands, 5, fold);
+    ASSERT_EQ(split.test.size(), 4u);
+    EXPECT_EQ(split.train.size(), 16u);
+    for (const LabelledHand& hand : split.test) ++tested[static_cast<std::size_t>(hand.value[0])];
+  }
+  EXPECT_EQ(tested, std::vector<int>(10, 2));
 }
 
 }  // namespace

@@ -1,0 +1,142 @@
+// merlin calibrate ball: sets axis map and sensitivities, from options or from pushes and twists.
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "daemon/base/files.h"
+#include "daemon/cli/calibrate/calibrate.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/guide.h"
+#include "daemon/cli/live_samples.h"
+#include "daemon/cli/print.h"
+#include "drivers/spaceball/guided_axes.h"
+
+namespace merlin::cli {
+namespace {
+
+struct BallOptions {
+  std::string output, instance = "merlin";
+  int translation = 0, rotation = 0, dead_zone = -1;  // if given on the command line
+  std::vector<int> axis_map;
+  GuideTiming timing;
+
+  bool told() const {
+    return translation > 0 || rotation > 0 || dead_zone >= 0 || !axis_map.empty();
+  }
+};
+
+int tell(const BallOptions& o) {
+  auto values = nlohmann::ordered_json::object();
+  if (o.translation > 0) values["full_scale_translation"] = o.translation;
+  if (o.rotation > 0) values["full_scale_rotation"] = o.rotation;
+  if (o.dead_zone >= 0) values["dead_zone"] = o.dead_zone;
+  if (!o.axis_map.empty()) {
+    std::array<bool, 7> seen{};
+    for (const int axis : o.axis_map) seen[static_cast<std::size_t>(std::abs(axis))] = true;
+    if (seen[0] || std::count(seen.begin(), seen.end(), true) != 6) {
+      return fail({Errc::kInvalidArgument,
+                   "--axis-map: needs each of 1 to 6 once; a negative number reverses the axis"});
+    }
+    values["axis_map"] = o.axis_map;
+  }
+  if (const auto saved = saveDeviceSettings(o.output, "ball", values); !saved)
+    return fail(saved.error());
+  say("{}: ball\n", o.output);
+  return kExitDone;
+}
+
+// Measures the ball by its raw counts in shared memory.
+class GuidedBall final : public Guided {
+ public:
+  explicit GuidedBall(LiveSamples<BallSample> samples) : samples_(std::move(samples)) {}
+
+  Result<Ok> listen(bool measuring) override {
+    return samples_.listen([&](const BallSample& sample) {
+      newest_ = sample;
+      if (measuring) axes_.add(sample);
+    });
+  }
+  void begin(std::size_t step) override {
+    step_ = step;
+    axes_.begin(step);
+  }
+  Result<std::string> end() override {
+    if (const std::string complaint = samples_.complaint(); !complaint.empty())
+      return Error{Errc::kTimeout, "the ball does not answer: " + complaint};
+    const auto answer = axes_.end();
+    if (!answer) return answer.error();
+    if (step_ == 0) return fmt::format("at most {} counts", answer->counts);
+    return fmt::format("{}{} with {} counts, then {} with {}", answer->axis < 0 ? '-' : '+',
+                       spaceball::nameOfAxis(answer->axis), answer->counts,
+                       spaceball::nameOfAxis(answer->next_axis), answer->next_counts);
+  }
+  std::string now() const override {
+    const BallSample sample = newest_.value_or(BallSample{});  // a silent ball is at rest
+    std::string line;
+    for (int axis = 1; axis <= 6; ++axis)
+      line += fmt::format("{} {:6}  ", spaceball::nameOfAxis(axis), sample.raw[axis - 1]);
+    return line + "counts";
+  }
+  SpaceballSettings solve() const { return axes_.solve({}); }
+
+ private:
+  LiveSamples<BallSample> samples_;
+  std::size_t step_ = 0;
+  spaceball::GuidedAxes axes_;
+  std::optional<BallSample> newest_;
+};
+
+int guideBall(const BallOptions& o) {
+  if (const auto writable = checkWritable(o.output); !writable) return fail(writable.error());
+  auto samples = LiveSamples<BallSample>::open(
+      o.instance, shm::kBall, [](const shm::DevicesSegment& s) -> const auto& { return s.ball; });
+  if (!samples) return fail(samples.error());
+  GuidedBall guided(*std::move(samples));
+  if (const auto done = guide(spaceball::axesSteps(), o.timing, guided); !done)
+    return fail(done.error());
+  const SpaceballSettings s = guided.solve();
+  const nlohmann::ordered_json values = {{"full_scale_translation", s.full_scale_translation},
+                                         {"full_scale_rotation", s.full_scale_rotation},
+                                         {"dead_zone", s.dead_zone},
+                                         {"axis_map", s.axis_map}};
+  if (const auto saved = saveDeviceSettings(o.output, "ball", values); !saved)
+    return fail(saved.error());
+  say("\n{}: ball, axis map {}, full push {} counts, full twist {}, dead zone {}; restart "
+      "merlind to use it\n",
+      o.output, values["axis_map"].dump(), s.full_scale_translation, s.full_scale_rotation,
+      s.dead_zone);
+  return kExitDone;
+}
+
+}  // namespace
+
+void addCalibrateBall(Command calibrate, Run& run) {
+  const auto o = std::make_shared<BallOptions>();
+  Command command = calibrate.subcommand(
+      "ball",
+      "Set the ball's axis map and sensitivities: guides you through pushes and twists, which a "
+      "running merlind measures, or writes the given values.\nExample: merlin calibrate ball -o "
+      "merlin.json\nExample: merlin calibrate ball --axis-map 1 2 -3 4 5 -6 "
+      "--full-scale-translation 6000 -o merlin.json");
+  addGuideTiming(command, o->timing);
+  addInstance(command, o->instance);
+  command.option("--full-scale-translation", o->translation, "Raw counts of a full push")
+      .range(100, 32767);
+  command.option("--full-scale-rotation", o->rotation, "Raw counts of a full twist")
+      .range(100, 32767);
+  command.option("--dead-zone", o->dead_zone, "Raw counts that are treated as rest").range(0, 99);
+  command
+      .option(
+          "--axis-map", o->axis_map,
+          "Device axis (1 to 6, negative: reversed) for x, y, z and the rotations about x, y, z")
+      .expected(6)
+      .range(-6, 6);
+  command.option("-o,--output", o->output, "The configuration to write into").required();
+  command.callback([o, &run] { run = [o] { return o->told() ? tell(*o) : guideBall(*o); }; });
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,111 @@
+// merlin calibrate glove: guides a person through a few poses and computes offsets and gains.
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "daemon/base/files.h"
+#include "daemon/cli/calibrate/calibrate.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/guide.h"
+#include "daemon/cli/print.h"
+#include "drivers/cyberglove/device.h"
+#include "drivers/cyberglove/guided_calibration.h"
+#include "drivers/hand/hand.h"
+#include "drivers/io/open_stream.h"
+
+namespace merlin::cli {
+namespace {
+
+using cyberglove::GuidedCalibration;
+
+struct GloveOptions {
+  std::string port, output;
+  int baud = 38400;
+  GuideTiming timing;
+};
+
+// Measures the glove directly on its serial line.
+class GuidedGlove final : public Guided, private SampleSink {
+ public:
+  GuidedGlove(ByteStream& line, const Clock& clock)
+      : line_(line), device_(cyberglove::makeDevice({}, clock, *this)) {}
+
+  Result<std::string> open() { return device_->open(line_); }
+  Result<Ok> listen(bool measuring) override {
+    measuring_ = measuring;
+    return device_->poll(line_);
+  }
+  void begin(std::size_t pose) override { calibration_.begin(pose); }
+  Result<std::string> end() override { return spans(); }
+  Result<CybergloveSettings> solve() const { return calibration_.solve({}); }
+
+ private:
+  void publish(const GloveSample& sample) noexcept override {
+    if (measuring_) calibration_.add(sample);
+  }
+  void publish(const TrackerSample&) noexcept override {}
+  void publish(const BallSample&) noexcept override {}
+  std::string spans() const;
+
+  ByteStream& line_;
+  std::unique_ptr<Device> device_;
+  GuidedCalibration calibration_;
+  bool measuring_ = false;
+};
+
+// One line per sensor: a bar from 1 to 255 that marks the range of raw values seen so far.
+std::string GuidedGlove::spans() const {
+  constexpr int kWidth = 51;
+  const auto column = [](int raw) { return static_cast<std::size_t>(raw * (kWidth - 1) / 255); };
+  std::string text;
+  for (std::size_t i = 0; i < kGloveSlots; ++i) {
+    const int low = calibration_.low(i), high = calibration_.high(i);
+    if (high == 0) continue;
+    std::string bar(kWidth, '.');
+    for (std::size_t at = column(low); at <= column(high); ++at) bar[at] = '#';
+    text += fmt::format("{}{:23} {} {:3} to {:3}", text.empty() ? "" : "\n  ", hand::kJointNames[i],
+                        bar, low, high);
+  }
+  return text;
+}
+
+int calibrateGlove(const GloveOptions& o) {
+  const auto address = parsePort(o.port);
+  if (!address) return fail(address.error());
+  if (const auto writable = checkWritable(o.output); !writable) return fail(writable.error());
+  auto line = io::openPort(*address, o.baud);
+  if (!line) return fail(line.error());
+  const SystemClock clock;
+  GuidedGlove guided(**line, clock);
+  const auto identity = guided.open();
+  if (!identity) return fail(identity.error());
+  say("{}\n", *identity);
+  if (const auto done = guide(cyberglove::guidedPoses(), o.timing, guided); !done)
+    return fail(done.error());
+  const auto solved = guided.solve();
+  if (!solved) return fail(solved.error());
+  const auto saved =
+      saveDeviceSettings(o.output, "glove", {{"offset", solved->offset}, {"gain", solved->gain}});
+  if (!saved) return fail(saved.error());
+  say("\n{}: offsets and gains of this hand\n", o.output);
+  return kExitDone;
+}
+
+}  // namespace
+
+void addCalibrateGlove(Command calibrate, Run& run) {
+  const auto o = std::make_shared<GloveOptions>();
+  Command command =
+      calibrate.subcommand("glove",
+                           "Calibrate the glove: guides you through a few poses and "
+                           "shows each sensor's range.\nExample: merlin calibrate glove "
+                           "serial:/dev/serial/by-id/usb-GLOVE -o merlin.json");
+  command.option("port", o->port, "Port of the glove: serial:/dev/..., pty:PATH or tcp://HOST:PORT")
+      .required();
+  command.option("-o,--output", o->output, "The configuration to write into").required();
+  command.option("--baud", o->baud, "Speed of the line").baud().showDefault();
+  addGuideTiming(command, o->timing);
+  command.callback([o, &run] { run = [o] { return calibrateGlove(*o); }; });
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,230 @@
+// merlin calibrate tracker: sets a station's alignment and boresight, from options or by holding
+// the station at the places.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "daemon/base/files.h"
+#include "daemon/cli/calibrate/calibrate.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/guide.h"
+#include "daemon/cli/live_samples.h"
+#include "daemon/cli/print.h"
+#include "drivers/fastrak/guided_alignment.h"
+#include "drivers/fastrak/protocol.h"
+
+namespace merlin::cli {
+namespace {
+
+using fastrak::GuidedAlignment;
+using fastrak::StationFrame;
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+struct TrackerOptions {
+  std::string output, instance = "merlin";
+  int station = 1;
+  std::vector<double> alignment, boresight, hemisphere;  // if given on the command line
+  std::vector<std::string> steps = {"alignment", "boresight"};
+  GuideTiming timing;
+
+  bool told() const { return !alignment.empty() || !boresight.empty() || !hemisphere.empty(); }
+  bool has(const char* step) const {
+    return std::find(steps.begin(), steps.end(), step) != steps.end();
+  }
+};
+
+std::string keyOf(const char* form, int station) {
+  return fmt::format(fmt::runtime(form), station);
+}
+constexpr const char *kAlignmentKey = "alignment{}_cm", *kBoresightKey = "boresight{}_wxyz";
+
+int tell(const TrackerOptions& o) {
+  auto values = Json::object();
+  const auto put = [&](const char* key, const std::vector<double>& list) {
+    if (!list.empty()) values[keyOf(key, o.station)] = numbers(list);
+  };
+  put(kAlignmentKey, o.alignment);
+  put("hemisphere{}", o.hemisphere);
+  if (!o.boresight.empty()) {
+    double square = 0;
+    for (const double v : o.boresight) square += v * v;
+    if (square < 0.98 || square > 1.02)
+      return fail({Errc::kInvalidArgument, "--boresight: is not a unit quaternion w x y z"});
+    put(kBoresightKey, o.boresight);
+  }
+  if (const auto saved = saveDeviceSettings(o.output, "tracker", values); !saved)
+    return fail(saved.error());
+  say("{}: station {}\n", o.output, o.station);
+  return kExitDone;
+}
+
+// Measures a station by its samples in shared memory.
+class GuidedStation final : public Guided {
+ public:
+  GuidedStation(LiveSamples<TrackerSample> samples, const StationFrame& present, std::size_t first)
+      : samples_(std::move(samples)), present_(present), first_(first), alignment_(present) {}
+
+  Result<Ok> listen(bool measuring) override {
+    return samples_.listen([&](const TrackerSample& sample) {
+      newest_ = sample;
+      if (measuring) alignment_.add(sample);
+    });
+  }
+  void begin(std::size_t step) override { alignment_.begin(first_ + step); }
+  Result<std::string> end() override {
+    const std::string complaint = samples_.complaint();
+    const auto held = alignment_.end();
+    if (!held && !complaint.empty())
+      return Error{held.error().code, fmt::format("the tracker sends no samples: {}", complaint)};
+    if (!held) return held.error();
+    const auto& p = held->position_m;
+    return fmt::format(
+        "{} samples about {:.2f} {:.2f} {:.2f} cm, all within {:.2f} cm and {:.2f} "
+        "degrees",
+        held->samples, 100 * p[0], 100 * p[1], 100 * p[2], 100 * held->spread_m,
+        kDegrees * held->spread_rad);
+  }
+  std::string now() const override {
+    if (!newest_) return "no sample yet";
+    const auto sample = fastrak::inTransmitterFrame(*newest_, present_);
+    std::array<float, 4> q{};
+    std::copy(std::begin(sample.orientation_wxyz), std::end(sample.orientation_wxyz), q.begin());
+    const auto angles = fastrak::anglesOf(q);
+    const auto& p = sample.position_m;
+    return fmt::format(
+        "x {:7.2f}  y {:7.2f}  z {:7.2f} cm   az {:6.1f}  el {:6.1f}  roll {:6.1f} "
+        "degrees",
+        100 * p[0], 100 * p[1], 100 * p[2], angles[0], angles[1], angles[2]);
+  }
+  StationFrame solve() const { return alignment_.solve(); }
+
+ private:
+  LiveSamples<TrackerSample> samples_;
+  StationFrame present_;
+  std::size_t first_;
+  GuidedAlignment alignment_;
+  std::optional<TrackerSample> newest_;
+};
+
+// The frame in which the running merlind reports this station's samples. Errors: kTimeout (not yet
+// published).
+Result<StationFrame> presentFrame(const shm::DevicesSegment& segment, int station) {
+  const auto frames = segment.tracker_frames.read();
+  if (!frames) return Error{Errc::kTimeout, "merlind is still starting: try again"};
+  const auto s = static_cast<std::size_t>(station - 1);
+  StationFrame frame;
+  std::copy_n(frames->alignment_cm[s], 9, frame.alignment_cm.begin());
+  std::copy_n(frames->boresight_wxyz[s], 4, frame.boresight_wxyz.begin());
+  return frame;
+}
+
+// Whether the setting `key` of the file, or its default, equals that of the running merlind.
+template <std::size_t N>
+bool agrees(const Json& tracker, const std::string& key, const std::array<float, N>& running,
+            const std::array<float, N>& standard) {
+  constexpr float kRounded = 0.006F;  // rounding of numbers in the file
+  const auto at = tracker.find(key);
+  if (at != tracker.end() && (!at->is_array() || at->size() != N)) return false;
+  for (std::size_t i = 0; i < N; ++i) {
+    if (at != tracker.end() && !(*at)[i].is_number()) return false;
+    const float value = at == tracker.end() ? standard[i] : (*at)[i].template get<float>();
+    if (std::abs(value - running[i]) > kRounded) return false;
+  }
+  return true;
+}
+
+// A setting that is not measured anew is kept, so it must be the same in the file and in the
+// daemon.
+Result<Ok> checkKept(const TrackerOptions& o, const StationFrame& present) {
+  const auto config = readConfiguration(o.output, "tracker");
+  if (!config) return config.error();
+  const Json& tracker = (*config)["devices"]["tracker"];
+  const std::string alignment = keyOf(kAlignmentKey, o.station);
+  const std::string boresight = keyOf(kBoresightKey, o.station);
+  std::string other;
+  if (!o.has("alignment") &&
+      !agrees(tracker, alignment, present.alignment_cm, FastrakSettings::kAligned))
+    other = alignment;
+  if (!o.has("boresight") &&
+      !agrees(tracker, boresight, present.boresight_wxyz, FastrakSettings::kAhead))
+    other = boresight;
+  if (other.empty()) return Ok{};
+  return Error{
+      Errc::kInvalidArgument,
+      fmt::format("{}: its /devices/tracker/{} differs from that of the running merlind, and "
+                  "--steps keeps it: restart merlind with this file, or do both steps",
+                  o.output, other)};
+}
+
+int guideTracker(const TrackerOptions& o) {
+  if (const auto writable = checkWritable(o.output); !writable) return fail(writable.error());
+  const auto station = static_cast<std::size_t>(o.station - 1);
+  auto samples = LiveSamples<TrackerSample>::open(
+      o.instance, shm::kTracker, [station](const shm::DevicesSegment& s) -> const auto& {
+        return s.tracker[station];
+      });
+  if (!samples) return fail(samples.error());
+  const auto present = presentFrame(samples->segment(), o.station);
+  if (!present) return fail(present.error());
+  if (const auto kept = checkKept(o, *present); !kept) return fail(kept.error());
+  const std::size_t first = o.has("alignment") ? fastrak::kOrigin : fastrak::kAhead;
+  const std::size_t end = o.has("boresight") ? fastrak::kAhead + 1 : fastrak::kAhead;
+  GuidedStation guided(*std::move(samples), *present, first);
+  const auto steps = fastrak::alignmentSteps().subspan(first, end - first);
+  if (const auto done = guide(steps, o.timing, guided); !done) return fail(done.error());
+  const StationFrame solved = guided.solve();
+  const Json alignment = numbers(solved.alignment_cm), boresight = numbers(solved.boresight_wxyz);
+  const auto saved = saveDeviceSettings(
+      o.output, "tracker",
+      {{keyOf(kAlignmentKey, o.station), alignment}, {keyOf(kBoresightKey, o.station), boresight}});
+  if (!saved) return fail(saved.error());
+  say("\n{}: station {}, alignment {} cm, boresight {}; restart merlind to use it\n", o.output,
+      o.station, alignment.dump(), boresight.dump());
+  return kExitDone;
+}
+
+}  // namespace
+
+void addCalibrateTracker(Command calibrate, Run& run) {
+  const auto o = std::make_shared<TrackerOptions>();
+  Command command = calibrate.subcommand(
+      "tracker",
+      "Set the alignment and boresight of a station: guides you through places to hold it at, "
+      "which "
+      "a running merlind measures, or writes the given values.\nExample: merlin calibrate tracker "
+      "--station 1 "
+      "-o merlin.json\nExample: merlin calibrate tracker --station 1 --boresight 0.7071 0 0 0.7071 "
+      "-o merlin.json");
+  command.option("--station", o->station).range(1, 4).showDefault();
+  command.option("--steps", o->steps, "Settings to measure: alignment, boresight or both")
+      .separated(',')
+      .oneOf({"alignment", "boresight"})
+      .showDefault();
+  addGuideTiming(command, o->timing);
+  addInstance(command, o->instance);
+  command
+      .option("--alignment", o->alignment,
+              "New origin, a point on the new x axis and a point on the new y axis, in centimetres")
+      .expected(9)
+      .range(-1000.0, 1000.0);
+  command
+      .option("--boresight", o->boresight,
+              "Orientation that counts as straight ahead: a quaternion w x y z, as merlin shm dump "
+              "shows it")
+      .expected(4)
+      .range(-1.0, 1.0);
+  command
+      .option("--hemisphere", o->hemisphere, "Vector into the half of space where the receiver is")
+      .expected(3)
+      .range(-1.0, 1.0);
+  command.option("-o,--output", o->output, "The configuration to write into").required();
+  command.callback([o, &run] { run = [o] { return o->told() ? tell(*o) : guideTracker(*o); }; });
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,22 @@
+// merlin mesh: its subcommands, one file each.
+#include "daemon/cli/mesh/mesh.h"
+
+#include "daemon/cli/command.h"
+
+namespace merlin::cli {
+
+void addMesh(Command app, Run& run) {
+  Command mesh = app.subcommand(
+      "mesh",
+      "Meshes and multiresolution models: reduce, inspect, export, compare, draw, segment.");
+  mesh.requireSubcommand();
+  addMeshReduce(mesh, run);
+  addMeshInfo(mesh, run);
+  addMeshCurve(mesh, run);
+  addMeshExport(mesh, run);
+  addMeshCompare(mesh, run);
+  addMeshPicture(mesh, run);
+  addMeshSegment(mesh, run);
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,207 @@
+// merlin mesh compare: measures the distance of two surfaces.
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/clock.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/compare_pictures.h"
+#include "daemon/cli/mesh/mesh.h"
+#include "daemon/cli/print.h"
+#include "daemon/cli/progress.h"
+#include "render/compare/compare.h"
+
+namespace merlin::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct CompareOptions {
+  std::string original, other;
+  LevelChoice choice;  // resolution of `other`
+  render::CompareSettings settings;
+  std::string pictures;  // folder for pictures; empty: none
+  View view;
+  bool json = false;
+};
+
+struct Answer {
+  render::Comparison comparison;
+  double seconds = 0;
+  std::optional<double> changed_percent;  // changed pixels, if pictures were drawn
+};
+
+// One figure of a Deviation: a row of the table and a key of the JSON.
+struct Figure {
+  const char* name;
+  const char* key;
+  std::optional<double> value;
+  bool is_length = false;  // in model units; also shown in percent of the diagonal
+};
+
+std::optional<double> colourError(const render::Deviation& d) {
+  for (const auto& f : d.features) {
+    if (f.name == "colour") return 255 * f.rms;
+  }
+  return std::nullopt;
+}
+
+std::vector<Figure> figuresOf(const render::Deviation& d) {
+  return {{"RMS", "rms", d.rms, true},
+          {"mean", "mean", d.mean, true},
+          {"max, at least", "max_low", d.max.low, true},
+          {"max, at most", "max_high", d.max.high, true},
+          {"colour RMS of 255", "colour_rms_255", colourError(d)},
+          {"facets' normals RMS, degrees", "normal_rms_deg", d.facet_rms_deg},
+          {"vertex normals RMS, degrees", "vertex_normal_rms_deg", d.normal_rms_deg}};
+}
+
+// The figure as JSON; null if there is none.
+Json valueOf(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+Json jsonOf(const render::Deviation& d, double diagonal) {
+  Json json;
+  for (const Figure& f : figuresOf(d)) {
+    json[f.key] = valueOf(f.value);
+    if (f.is_length) json[std::string(f.key) + "_percent"] = 100 * *f.value / diagonal;
+  }
+  json["features"] = Json::object();
+  for (const auto& f : d.features) json["features"][f.name] = f.rms;
+  json["points_tested"] = d.max.evaluations;
+  return json;
+}
+
+void printJson(const CompareOptions& options, const Answer& answer) {
+  const render::Comparison& c = answer.comparison;
+  Json json = {{"original", options.original}, {"other", options.other}, {"diagonal", c.diagonal}};
+  json.update(jsonOf(c.symmetric(), c.diagonal));
+  json["forward"] = jsonOf(c.forward, c.diagonal);
+  json["backward"] = jsonOf(c.backward, c.diagonal);
+  if (answer.changed_percent) json["changed_pixels_percent"] = *answer.changed_percent;
+  json["seconds"] = answer.seconds;
+  printJsonLine(json);
+}
+
+std::string cell(const std::optional<double>& value) {
+  return value ? fmt::format("{:.4g}", *value) : "-";
+}
+
+void printTable(const CompareOptions& options, const Answer& answer) {
+  const render::Comparison& c = answer.comparison;
+  say("{} (A) and {} (B): diagonal of A {:.6g}, {:.1f} s\n", options.original, options.other,
+      c.diagonal, answer.seconds);
+  say("{:30}{:>12}{:>12}{:>12}{:>16}\n", "", "A to B", "B to A", "larger", "% of diagonal");
+  const render::Deviation symmetric = c.symmetric();
+  const auto forward = figuresOf(c.forward), backward = figuresOf(c.backward);
+  const auto larger = figuresOf(symmetric);
+  for (std::size_t i = 0; i < larger.size(); ++i) {
+    if (!larger[i].value) continue;
+    const std::string percent =
+        larger[i].is_length ? fmt::format("{:.4f}", 100 * *larger[i].value / c.diagonal) : "";
+    say("{:30}{:>12}{:>12}{:>12}{:>16}\n", larger[i].name, cell(forward[i].value),
+        cell(backward[i].value), cell(larger[i].value), percent);
+  }
+  for (std::size_t i = 0; i < symmetric.features.size(); ++i) {
+    say("{:30}{:>12.4g}{:>12.4g}{:>12.4g}\n", symmetric.features[i].name + " RMS",
+        c.forward.features[i].rms, c.backward.features[i].rms, symmetric.features[i].rms);
+  }
+  if (answer.changed_percent) {
+    say("pixels changed by more than 15 %: {:.3g} % of the model's ({}/difference.png)\n",
+        *answer.changed_percent, options.pictures);
+  }
+}
+
+Result<render::Mesh> openMesh(const std::string& path, const LevelChoice& choice) {
+  const auto model = openModel(path);
+  if (!model) return model.error();
+  const auto level = choice.levelOf(*model, path);
+  if (!level) return level.error();
+  return render::extract(*model, *level);
+}
+
+Result<render::Comparison> compared(const CompareOptions& options, const render::Mesh& original,
+                                    const render::Mesh& other, const Clock& clock) {
+  ProgressBar bar("comparing", "points", clock);
+  std::size_t points = 0;
+  auto comparison =
+      render::compare(original, other, options.settings, [&](const render::CompareProgress& p) {
+        points = p.points;
+        bar.update(p.share, p.points);
+        return true;
+      });
+  if (!comparison) {
+    return Error{comparison.error().code, fmt::format("{}, {}: {}", options.original, options.other,
+                                                      comparison.error().what)};
+  }
+  bar.finish(points);
+  return comparison;
+}
+
+int compareMeshes(const CompareOptions& options) {
+  const auto original = openMesh(options.original, {});
+  if (!original) return fail(original.error());
+  const auto other = openMesh(options.other, options.choice);
+  if (!other) return fail(other.error());
+  Answer answer;
+  if (!options.pictures.empty()) {  // first, because a failure to draw shows quickly
+    render::prepareSoftwareGl(0);
+    const auto changed = writePictures(options.pictures, *original, *other, options.view);
+    if (!changed) return fail(changed.error());
+    answer.changed_percent = *changed;
+  }
+  const SystemClock clock;
+  const Timestamp began = clock.now();
+  const auto comparison = compared(options, *original, *other, clock);
+  if (!comparison) return fail(comparison.error());
+  answer.comparison = *comparison;
+  answer.seconds = toSeconds(clock.now() - began);
+  (options.json ? printJson : printTable)(options, answer);
+  return kExitDone;
+}
+
+}  // namespace
+
+void addMeshCompare(Command mesh, Run& run) {
+  const auto options = std::make_shared<CompareOptions>();
+  Command command =
+      mesh.subcommand("compare",
+                      "Measure the distance of two surfaces: RMS, mean, and an interval that is "
+                      "certain to hold the "
+                      "maximum.\nExample: merlin mesh compare scan.ply scan.mrm --percent 5");
+  command.option("a", options->original, "The original surface: .mrm, " + render::readableEndings())
+      .required()
+      .typeName("A");
+  command
+      .option("b", options->other,
+              "The surface to compare with it: .mrm, " + render::readableEndings())
+      .required()
+      .typeName("B");
+  options->choice.addTo(command);
+  command
+      .option("--samples", options->settings.samples,
+              "Number of points sampled on each surface, for all figures but the maximum")
+      .range(std::size_t{1}, std::size_t{1'000'000'000})
+      .showDefault();
+  command.option("--seed", options->settings.seed, "Seed of the sampling").showDefault();
+  command
+      .option("--width", options->settings.width_percent,
+              "Width of the interval that holds the maximum, in percent of the diagonal of A's "
+              "bounding box")
+      .positive()
+      .showDefault();
+  command.option("--feature", options->settings.features,
+                 "Features to compare; the default is all that both surfaces have");
+  command.option("--threads", options->settings.threads,
+                 "Number of threads; 0: all cores. The figures do not depend on it");
+  command
+      .option("--pictures", options->pictures,
+              "Write pictures into this folder: a, b, a_wire, b_wire, beside (a and b), difference "
+              "(pixels changed by more than 15 %), edges (of B, from red, the shortest, to blue)")
+      .typeName("DIR");
+  options->view.addTo(command);
+  command.flag("--json", options->json, "Print JSON, for programs");
+  command.callback([options, &run] { run = [options] { return compareMeshes(*options); }; });
+}
+
+}  // namespace merlin::cli

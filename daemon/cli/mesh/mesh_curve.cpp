@@ -1,0 +1,179 @@
+// merlin mesh curve: error against number of triangles, both estimated and certified.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "daemon/base/files.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/mesh.h"
+#include "daemon/cli/print.h"
+#include "daemon/cli/progress.h"
+#include "daemon/cli/svg_chart.h"
+#include "render/compare/compare.h"
+
+namespace merlin::cli {
+namespace {
+
+struct CurveOptions {
+  std::string model, csv, svg;
+  std::size_t steps_an_octave = 1;
+  render::CompareSettings settings{.samples = 100'000};
+};
+
+// One resolution compared with the finest; lengths in model units.
+struct Row {
+  std::size_t level, triangles;
+  double estimate;
+  render::Deviation error;
+};
+
+struct Curve {
+  double diagonal = 0;
+  std::vector<Row> rows;  // finest first
+};
+
+// Levels from half of the triangles down, in equal steps of the logarithm, then the coarsest.
+std::vector<std::size_t> levelsOf(const render::Dendrogram& model, std::size_t steps_an_octave) {
+  std::vector<std::size_t> levels;
+  const auto all = static_cast<double>(model.triangleCount());
+  const auto least = static_cast<double>(model.trianglesAt(model.levels() - 1));
+  for (double step = 1;; ++step) {
+    const double triangles = all * std::exp2(-step / static_cast<double>(steps_an_octave));
+    if (triangles < std::max(least, 1.0)) break;
+    const std::size_t level = model.levelFor(static_cast<std::size_t>(triangles));
+    if (levels.empty() || levels.back() != level) levels.push_back(level);
+  }
+  const std::size_t coarsest = model.levels() - 1;
+  if (levels.empty() || levels.back() != coarsest) levels.push_back(coarsest);
+  return levels;
+}
+
+Result<Curve> measure(const render::Dendrogram& model, const CurveOptions& options) {
+  const SystemClock clock;
+  ProgressBar bar("comparing", "resolutions", clock);
+  const std::vector<std::size_t> levels = levelsOf(model, options.steps_an_octave);
+  const render::Mesh original = render::extract(model, 0);
+  Curve curve;
+  for (const std::size_t level : levels) {
+    const auto done = static_cast<double>(curve.rows.size());
+    const auto compared = render::compare(
+        original, render::extract(model, level), options.settings, [&](const auto& p) {
+          bar.update((done + p.share) / static_cast<double>(levels.size()), curve.rows.size());
+          return true;
+        });
+    if (!compared) return compared.error();
+    curve.diagonal = compared->diagonal;
+    curve.rows.push_back({level, model.trianglesAt(level),
+                          static_cast<double>(model.errorAt(level)), compared->symmetric()});
+  }
+  bar.finish(curve.rows.size());
+  return curve;
+}
+
+std::string csvOf(const Curve& curve) {
+  std::string out =
+      "triangles,level,estimate,rms,mean,max_low,max_high,estimate_percent,rms_percent,"
+      "mean_percent,max_low_percent,max_high_percent\n";
+  for (const Row& r : curve.rows) {
+    const double lengths[] = {r.estimate, r.error.rms, r.error.mean, r.error.max.low,
+                              r.error.max.high};
+    out += fmt::format("{},{}", r.triangles, r.level);
+    for (const double length : lengths) out += fmt::format(",{:.9g}", length);
+    for (const double length : lengths)
+      out += fmt::format(",{:.6g}", 100 * length / curve.diagonal);
+    out += '\n';
+  }
+  return out;
+}
+
+// The curve as SVG; both axes are logarithmic, errors in percent of the diagonal.
+std::string svgOf(const Curve& curve, const std::string& title) {
+  ChartLine estimate{"estimate", "#7f7f7f", {}}, rms{"RMS", "#1f77b4", {}},
+      most{"maximum, at most", "#d62728", {}};
+  double low = 1e30, high = 0;
+  for (const Row& r : curve.rows) {
+    const auto triangles = static_cast<double>(r.triangles);
+    const auto add = [&](ChartLine& line, double length) {
+      const double percent = 100 * length / curve.diagonal;
+      line.points.emplace_back(triangles, percent);
+      if (percent > 0) low = std::min(low, percent);
+      high = std::max(high, percent);
+    };
+    add(estimate, r.estimate);
+    add(rms, r.error.rms);
+    add(most, r.error.max.high);
+  }
+  const auto first = static_cast<double>(curve.rows.back().triangles);
+  const auto last = static_cast<double>(curve.rows.front().triangles);
+  return svgChart(svgText(title), "error, % of the diagonal, by triangles",
+                  {first, std::max(last, first + 1)}, {std::min(low, high / 10), high},
+                  {estimate, rms, most});
+}
+
+void printTable(const Curve& curve) {
+  say("{:>10}{:>12}{:>12}{:>16}{:>16}   % of the diagonal, {:.6g}\n", "triangles", "estimate",
+      "RMS", "max, at least", "max, at most", curve.diagonal);
+  const double percent = 100 / curve.diagonal;
+  for (const Row& r : curve.rows) {
+    say("{:>10}{:>12.4g}{:>12.4g}{:>16.4g}{:>16.4g}\n", r.triangles, percent * r.estimate,
+        percent * r.error.rms, percent * r.error.max.low, percent * r.error.max.high);
+  }
+}
+
+int curveOfModel(const CurveOptions& options) {
+  if (const auto writable = checkOutputs(options.model, {options.csv, options.svg}); !writable)
+    return fail(writable.error());
+  const auto model = openModel(options.model);
+  if (!model) return fail(model.error());
+  if (model->levels() < 2) return fail(hasOneResolution(options.model));
+  const auto curve = measure(*model, options);
+  if (!curve) return fail({curve.error().code, options.model + ": " + curve.error().what});
+  printTable(*curve);
+  if (!options.csv.empty()) {
+    if (const auto done = writeFile(options.csv, csvOf(*curve)); !done) return fail(done.error());
+  }
+  if (!options.svg.empty()) {
+    const std::string name = options.model.substr(options.model.rfind('/') + 1);
+    if (const auto done = writeFile(options.svg, svgOf(*curve, name)); !done)
+      return fail(done.error());
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+void addMeshCurve(Command mesh, Run& run) {
+  const auto options = std::make_shared<CurveOptions>();
+  Command command = mesh.subcommand(
+      "curve",
+      "Tabulate error against number of triangles: the estimate stored in the model, and the RMS "
+      "and maximum distance from its finest resolution (the maximum as a certified "
+      "interval).\nExample: merlin mesh curve scan.mrm --csv scan.csv --svg scan.svg");
+  command.option("model", options->model, "The model").required().typeName("MODEL.mrm");
+  command.option("--csv", options->csv, "Write a table, in model units and in % of the diagonal")
+      .typeName("FILE");
+  command.option("--svg", options->svg, "Write a chart with logarithmic axes").typeName("FILE");
+  command
+      .option("--steps", options->steps_an_octave,
+              "Number of resolutions per halving of the triangles")
+      .range(1, 16)
+      .showDefault();
+  command
+      .option("--samples", options->settings.samples,
+              "Number of points sampled on each surface for the RMS")
+      .range(std::size_t{1}, std::size_t{1'000'000'000})
+      .showDefault();
+  command.option("--seed", options->settings.seed, "Seed of the sampling").showDefault();
+  command
+      .option("--width", options->settings.width_percent,
+              "Width of the interval that holds the maximum, in percent of the diagonal")
+      .positive()
+      .showDefault();
+  command.option("--threads", options->settings.threads,
+                 "Number of threads; 0: all cores. The figures do not depend on it");
+  command.callback([options, &run] { run = [options] { return curveOfModel(*options); }; });
+}
+
+}  // namespace merlin::cli

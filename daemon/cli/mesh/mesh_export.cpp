@@ -1,0 +1,117 @@
+// merlin mesh export: writes one resolution of a model as a mesh, or all of them for Open Inventor.
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/mesh.h"
+#include "daemon/cli/print.h"
+#include "daemon/cli/progress.h"
+#include "render/compare/coarsest_within.h"
+#include "render/inventor/multiresolution_writer.h"
+#include "render/mesh/io/mesh_file.h"
+
+namespace merlin::cli {
+namespace {
+
+struct ExportOptions {
+  std::string model, output;
+  LevelChoice choice;
+  std::optional<double> within;  // maximum distance, percent of the diagonal
+  bool multiresolution = false;
+};
+
+Result<std::size_t> levelOf(const ExportOptions& options, const render::Dendrogram& model) {
+  if (!options.within) return options.choice.levelOf(model, options.model);
+  if (model.levels() == 1) return hasOneResolution(options.model);
+  const render::Mesh coarsest = render::extract(model, model.levels() - 1);
+  if (const auto free = render::checkBeside(options.output, coarsest); !free) return free.error();
+  const SystemClock clock;
+  ProgressBar bar("comparing", "resolutions", clock);
+  std::size_t compared = 0;
+  const auto found =
+      render::coarsestWithin(model, *options.within, [&](double share, std::size_t n) {
+        bar.update(share, n);
+        compared = n;
+      });
+  if (!found) return Error{found.error().code, options.model + ": " + found.error().what};
+  bar.finish(compared);
+  say("distance from the finest resolution at most {:.4g}, {:.4g} % of the diagonal\n",
+      found->at_most, found->percent);
+  return found->level;
+}
+
+int exportAll(const ExportOptions& options) {
+  if (!options.output.ends_with(".iv")) {
+    return fail({Errc::kInvalidArgument,
+                 options.output + ": --multiresolution is written as .iv (Open Inventor)"});
+  }
+  if (const auto writable = checkOutputs(options.model, {options.output}); !writable)
+    return fail(writable.error());
+  const auto model = openModel(options.model);
+  if (!model) return fail(model.error());
+  const auto left_out = render::writeMultiresolution(options.output, *model);
+  if (!left_out) return fail(left_out.error());
+  say("{}: {} to {} triangles, {} levels\n", options.output,
+      model->trianglesAt(model->levels() - 1), model->triangleCount(), model->levels());
+  printWritten({"iv", *left_out, {}});
+  return kExitDone;
+}
+
+int exportMesh(const ExportOptions& options) {
+  if (const auto known = render::checkMeshEnding(options.output); !known)
+    return fail(known.error());
+  if (const auto writable = checkOutputs(options.model, {options.output}); !writable)
+    return fail(writable.error());
+  const auto model = openModel(options.model);
+  if (!model) return fail(model.error());
+  const auto level = levelOf(options, *model);
+  if (!level) return fail(level.error());
+  const render::Mesh mesh = render::extract(*model, *level);
+  const auto written = render::writeMesh(options.output, mesh);
+  if (!written) return fail(written.error());
+  say("{}: {} triangles, {} vertices, error estimate {:.4g}\n", options.output,
+      mesh.triangleCount(), mesh.vertexCount(), model->errorAt(*level));
+  printWritten(*written);
+  return kExitDone;
+}
+
+}  // namespace
+
+void addMeshExport(Command mesh, Run& run) {
+  const auto options = std::make_shared<ExportOptions>();
+  Command command = mesh.subcommand(
+      "export",
+      "Write one resolution of a model as a mesh: .ply (all features), .glb or .gltf (features of "
+      "up to 4 dimensions), .obj and .iv (Open Inventor; normals, colours, texture coordinates), "
+      ".stl (triangles only). A texture is stored inside .glb and .gltf, and in a file of its own "
+      "beside .ply, .obj and .iv.\nExample: merlin mesh export scan.mrm --percent 5 -o "
+      "scan5.ply\nTo write all resolutions for an Open Inventor viewer that finds SoMRFaceSet.so: "
+      "--multiresolution -o scan.iv");
+  command.option("model", options->model, "The model, or a mesh").required().typeName("MODEL.mrm");
+  command.option("-o", options->output, "The mesh: .ply, .obj, .glb, .gltf, .stl or .iv")
+      .required()
+      .typeName("OUT");
+  const Argument all = command.flag(
+      "--multiresolution", options->multiresolution,
+      "Write all resolutions as an SoMRFaceSet (.iv only); viewers without its module show 10,000 "
+      "triangles");
+  Command resolution = options->choice.addTo(command);
+  resolution
+      .option(
+          "--within", options->within,
+          "Maximum distance from the finest resolution, certified, in percent of the diagonal of "
+          "the bounding box; the coarsest resolution found within it is taken, after about ten "
+          "comparisons")
+      .range(1e-6, 100.0);
+  resolution.exclude(all);
+  command.callback([options, &run] {
+    run = [options] {
+      return options->multiresolution ? exportAll(*options) : exportMesh(*options);
+    };
+  });
+}
+
+}  // namespace merlin::cli

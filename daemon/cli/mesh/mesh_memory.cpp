@@ -1,0 +1,108 @@
+#include "daemon/cli/mesh/mesh_memory.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "render/image/image_file.h"
+#include "render/mesh/io/mesh_file.h"
+#include "render/reduce/memory.h"
+
+namespace merlin::cli {
+namespace {
+
+// The program itself and its file buffers.
+constexpr std::size_t kProgram = std::size_t{32} << 20;
+
+// Such as "7.5 GiB".
+std::string sizeText(std::size_t bytes) {
+  const double mib = static_cast<double>(bytes) / (1 << 20);
+  return mib < 1000 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.1f} GiB", mib / 1024);
+}
+
+// What the limit of the address space (ulimit -v) leaves, less an eighth for addresses that the
+// allocator and threads reserve but do not use.
+std::size_t freeAddresses() {
+  rlimit limit{};
+  std::size_t pages = 0;
+  std::ifstream used("/proc/self/statm");
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || !(used >> pages))
+    return std::numeric_limits<std::size_t>::max();
+  const std::size_t taken = pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  return limit.rlim_cur > taken ? (limit.rlim_cur - taken) / 8 * 7 : 0;
+}
+
+// Peak need of all steps but the reduction: reading (the file, and the mesh without normals),
+// splitting (half-edges and fans), writing (the collapse log and the order of its rows).
+std::size_t needOfOthers(const render::MeshSize& m, std::size_t file_size) {
+  const std::size_t read = m.bytes() - 12 * m.vertices;
+  const std::size_t split = read + 36 * m.triangles + 5 * m.vertices;
+  const std::size_t write =
+      m.bytes() + m.vertices * (24 + 4 * m.values) + 12 * m.vertices + 6 * m.triangles;
+  return kProgram + std::max({file_size + read, split, write});
+}
+
+}  // namespace
+
+std::size_t freeMemory() {
+  std::ifstream info("/proc/meminfo");
+  for (std::string word; info >> word;) {
+    std::size_t kib = 0;
+    if (word == "MemAvailable:" && info >> kib)
+      return std::min(kib * 1024 / 16 * 15, freeAddresses());
+  }
+  return freeAddresses();
+}
+
+std::size_t peakMemory() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+Result<std::size_t> roomForReduction(const render::MeshSize& mesh, std::size_t file_size,
+                                     const render::ReduceSettings& settings, std::size_t limit) {
+  const std::size_t beside = mesh.bytes() + kProgram;
+  const std::size_t need =
+      std::max(needOfOthers(mesh, file_size), beside + needOf(mesh, settings).least);
+  if (need <= limit) return limit - beside;
+  return Error{Errc::kInvalidArgument,
+               fmt::format("reducing {} vertices and {} triangles takes {}, even in blocks; the "
+                           "limit (--memory, else what is free) is {}",
+                           mesh.vertices, mesh.triangles, sizeText(need), sizeText(limit))};
+}
+
+Result<Ok> roomForPicture(const std::string& picture, const render::MeshSize& mesh,
+                          std::size_t limit) {
+  const auto pixels = render::imageBytes(picture);
+  const std::size_t need = mesh.bytes() + kProgram + (pixels ? *pixels : 0);
+  if (!pixels || need <= limit) return Ok{};
+  return Error{
+      Errc::kInvalidArgument,
+      fmt::format("{}: reading it beside its mesh takes {}; the limit (--memory, else what is "
+                  "free) is {}",
+                  picture, sizeText(need), sizeText(limit))};
+}
+
+Result<Ok> checkRoom(const std::string& path, const render::ReduceSettings& settings,
+                     std::size_t limit) {
+  auto found = render::meshFileSize(path);
+  if (!found) return Ok{};  // the reader reports what is wrong
+  render::MeshSize& size = found->mesh;
+  size.values += 3;  // normals are added
+  if (!found->picture.empty()) {
+    if (const auto fits = roomForPicture(found->picture, size, limit); !fits) return fits;
+  }
+  std::error_code unknown;
+  const auto bytes = std::filesystem::file_size(path, unknown);
+  const auto room = roomForReduction(size, unknown ? 0 : bytes, settings, limit);
+  if (!room) return Error{room.error().code, path + ": " + room.error().what};
+  return Ok{};
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "daemon/base/files.h"
+#include "daemon/cli/mesh/mesh.h"
+#include "daemon/cli/print.h"
+#include "render/lod/io/mrm_file.h"
+
+namespace merlin::cli {
+
+Result<render::Dendrogram> openModel(const std::string& path) {
+  if (path.ends_with(".mrm")) return render::readMrm(path);
+  const auto loaded = loadMesh(path);
+  if (!loaded) return loaded.error();
+  return asModel(loaded->mesh);
+}
+
+Result<render::LoadedMesh> loadMesh(const std::string& path) {
+  auto loaded = render::readMesh(path);
+  if (!loaded) return loaded;
+  for (const std::string& note : loaded->notes) printNote(note);
+  render::ensureNormals(loaded->mesh);
+  return loaded;
+}
+
+std::vector<Repair> repairsOf(const render::LoadedMesh& loaded) {
+  const render::TidyReport& t = loaded.tidied;
+  const render::SplitReport& s = loaded.split;
+  return {{"degenerate_dropped", "degenerate triangles (a vertex twice) dropped", t.degenerate},
+          {"duplicates_dropped", "duplicate triangles dropped", t.duplicate},
+          {"opposites_dropped", "triangles with the vertices of another, but reversed, dropped",
+           t.opposite},
+          {"unused_dropped", "unused vertices dropped", t.unused},
+          {"non_manifold_edges", "non-manifold edges split", s.edges},
+          {"non_manifold_vertices", "non-manifold vertices split", s.vertices},
+          {"vertices_added", "vertices added by splitting", s.added}};
+}
+
+std::string mendedText(const render::LoadedMesh& loaded) {
+  std::string text;
+  for (const Repair& r : repairsOf(loaded)) {
+    if (r.count > 0)
+      text += fmt::format("{}{} {}", text.empty() ? "repaired: " : ", ", r.count, r.name);
+  }
+  return text;
+}
+
+render::Dendrogram asModel(const render::Mesh& mesh) {
+  render::CollapseLog nothing;
+  nothing.features.resize(mesh.features.size());
+  return render::buildDendrogram(mesh, nothing);
+}
+
+render::Box boxOf(const render::Dendrogram& model) {
+  const auto& a = model.arrays();
+  if (a.triangles.empty()) return render::boundingBox(a.positions);
+  const auto at = [&](std::uint32_t corner) { return a.positions.subspan(3 * corner, 3); };
+  render::Box box = render::boundingBox(at(a.triangles[0]));
+  for (const std::uint32_t corner : a.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.low[k] = std::min(box.low[k], at(corner)[k]);
+      box.high[k] = std::max(box.high[k], at(corner)[k]);
+    }
+  }
+  return box;
+}
+
+Error hasOneResolution(const std::string& path) {
+  const std::string advice =
+      path.ends_with(".mrm")
+          ? ""
+          : fmt::format(
+                " (first make a multiresolution model of it: merlin mesh reduce {} -o OUT.mrm)",
+                path);
+  return {Errc::kInvalidArgument, path + ": has one resolution only" + advice};
+}
+
+void printWritten(const render::WrittenMesh& written) {
+  if (!written.beside.empty()) say("  companion files: {}\n", fmt::join(written.beside, " and "));
+  if (!written.left_out.empty())
+    say("  the format .{} cannot hold {}: left out\n", written.format,
+        fmt::join(written.left_out, ", "));
+}
+
+Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::string> outputs) {
+  std::error_code absent;
+  for (const std::string& output : outputs) {
+    if (std::filesystem::equivalent(input, output, absent))
+      return Error{Errc::kInvalidArgument, output + ": is an input; choose another output file"};
+  }
+  return checkWritable(outputs);
+}
+
+Result<Ok> setWeight(const std::string& text, render::Weights& weights) {
+  const auto equals = text.find('=');
+  char* end = nullptr;
+  const char* number = text.c_str() + (equals == std::string::npos ? text.size() : equals + 1);
+  const float weight = std::strtof(number, &end);
+  if (equals == 0 || equals == std::string::npos || end == number || *end != '\0') {
+    return Error{Errc::kInvalidArgument, fmt::format("--weight {}: is not FEATURE=NUMBER", text)};
+  }
+  weights[text.substr(0, equals)] = weight;
+  return Ok{};
+}
+
+Command LevelChoice::addTo(Command command) {
+  Command group = command.group("resolution", "Selects a resolution; the default is the finest");
+  group.option("--percent", percent, "Number of triangles, in percent of the finest")
+      .range(0.0, 100.0);
+  group.option("--triangles", triangles, "Maximum number of triangles");
+  group
+      .option(
+          "--error", error_percent,
+          "Maximum error estimate, in percent of the diagonal of the bounding box; the coarsest "
+          "resolution within it is taken")
+      .nonNegative();
+  group.option("--error-units", error_units, "Maximum error estimate, in the model's units")
+      .nonNegative();
+  group.atMostOne();
+  return group;
+}
+
+std::size_t LevelChoice::coarsestAllowed(const render::Dendrogram& model) const {
+  if (triangles) return model.levelFor(*triangles);
+  if (percent)
+    return model.levelFor(static_cast<std::size_t>(
+        std::floor(*percent / 100 * static_cast<double>(model.triangleCount()))));
+  if (error_percent) {
+    return model.levelForError(static_cast<float>(*error_percent / 100) * boxOf(model).diagonal());
+  }
+  if (error_units) return model.levelForError(static_cast<float>(*error_units));
+  return 0;
+}
+
+Result<std::size_t> LevelChoice::levelOf(const render::Dendrogram& model,
+                                         const std::string& path) const {
+  const std::size_t level = coarsestAllowed(model);
+  const double asked =
+      triangles ? static_cast<double>(*triangles)
+                : percent.value_or(100) / 100 * static_cast<double>(model.triangleCount());
+  const std::size_t got = model.trianglesAt(level);
+  const bool missed = std::floor(asked) < static_cast<double>(got);
+  if (model.levels() == 1 && (missed || error_percent || error_units))
+    return hasOneResolution(path);
+  if (missed) printNote(fmt::format("{}: the coarsest resolution has {} triangles", path, got));
+  return level;
+}
+
+}  // namespace merlin::cli

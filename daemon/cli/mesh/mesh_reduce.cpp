@@ -1,0 +1,242 @@
+// merlin mesh reduce: makes a multiresolution model from a mesh.
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/clock.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/mesh.h"
+#include "daemon/cli/mesh/mesh_memory.h"
+#include "daemon/cli/print.h"
+#include "daemon/cli/progress.h"
+#include "render/image/image_file.h"
+#include "render/lod/io/mrm_file.h"
+#include "render/mesh/borders.h"
+#include "render/mesh/io/mesh_file.h"
+#include "render/reduce/reduce.h"
+
+namespace merlin::cli {
+namespace {
+
+struct ReduceOptions {
+  std::string input, output, texture, preset = "default";
+  std::vector<std::string> weights;
+  render::ReduceSettings settings;
+  std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
+  bool lock_borders = false;
+  bool json = false;
+};
+
+// Time and memory of the command, for the report.
+struct Took {
+  double reducing = 0, all = 0;  // reduction alone, and with reading and writing [s]
+  std::size_t limit = 0;         // memory limit [bytes]
+};
+
+Result<render::Weights> weightsOf(const ReduceOptions& options, const render::Mesh& mesh) {
+  render::Weights weights = render::findCost(options.settings.cost)->weights(mesh);
+  for (const render::Preset& preset : render::presets()) {
+    if (preset.name == options.preset) weights = render::presetWeights(preset, mesh);
+  }
+  for (const std::string& text : options.weights) {
+    if (const auto set = setWeight(text, weights); !set) return set.error();
+  }
+  return weights;
+}
+
+double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
+
+void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
+            const render::ReduceReport& r, const Took& took) {
+  const float diagonal = render::boundingBox(loaded.mesh.positions).diagonal();
+  const double percent = diagonal > 0 ? 100.0 * static_cast<double>(r.error / diagonal) : 0;
+  const double rate = took.reducing > 0 ? static_cast<double>(r.collapses) / took.reducing : 0;
+  if (options.json) {
+    nlohmann::ordered_json json = {{"output", options.output},
+                                   {"cost", options.settings.cost},
+                                   {"fast", options.settings.fast},
+                                   {"triangles", loaded.mesh.triangleCount()},
+                                   {"triangles_left", r.triangles},
+                                   {"triangles_by_all_rules", r.by_all_rules},
+                                   {"collapses", r.collapses},
+                                   {"seconds", took.reducing},
+                                   {"seconds_all", took.all},
+                                   {"collapses_per_second", rate},
+                                   {"peak_memory_mb", megabytes(peakMemory())},
+                                   {"memory_limit_mb", megabytes(took.limit)},
+                                   {"blocks", r.blocks},
+                                   {"error_estimate", r.error},
+                                   {"error_estimate_percent", percent},
+                                   {"flips_refused", r.flips_refused},
+                                   {"topology_refused", r.topology_refused},
+                                   {"stopped", r.stopped}};
+    for (const Repair& repair : repairsOf(loaded)) json[repair.key] = repair.count;
+    printJsonLine(json);
+    return;
+  }
+  say("{}: {} triangles down to {} in {} collapses ({})\n", options.output,
+      loaded.mesh.triangleCount(), r.triangles, r.collapses, r.stopped);
+  if (r.by_all_rules > r.triangles) {
+    say("  all constraints were kept down to {} triangles\n", r.by_all_rules);
+  }
+  say("  {:.2f} s, {:.0f} collapses per second; {:.2f} s with reading and writing\n", took.reducing,
+      rate, took.all);
+  say("  peak memory {:.0f} MB, limit {:.0f} MB{}\n", megabytes(peakMemory()),
+      megabytes(took.limit), r.blocks > 1 ? fmt::format(", {} blocks", r.blocks) : "");
+  say("  error estimate of the coarsest level {:.4g} ({:.3g} % of the diagonal); {} flips "
+      "refused\n",
+      r.error, percent, r.flips_refused);
+  if (const std::string mended = mendedText(loaded); !mended.empty()) say("  {}\n", mended);
+}
+
+Result<render::Reduction> reduceLoaded(const ReduceOptions& options, const render::Mesh& mesh,
+                                       Took& took) {
+  render::ReduceSettings settings = options.settings;
+  auto weights = weightsOf(options, mesh);
+  if (!weights) return weights.error();
+  settings.weights = *std::move(weights);
+  if (options.lock_borders) settings.locked = render::borderVertices(mesh);
+  const auto room = roomForReduction(sizeOf(mesh), 0, settings, took.limit);
+  if (!room) return Error{room.error().code, options.input + ": " + room.error().what};
+  settings.memory = *room;
+
+  const SystemClock clock;
+  ProgressBar bar("reducing", "collapses", clock);
+  const Timestamp began = clock.now();
+  const auto all = static_cast<double>(mesh.triangleCount());
+  auto reduction = render::reduce(mesh, settings, [&](const render::ReduceProgress& p) {
+    bar.update(1 - static_cast<double>(p.triangles) / all, p.collapses);
+    return true;
+  });
+  if (!reduction) return reduction;
+  took.reducing = toSeconds(clock.now() - began);
+  bar.finish(reduction->report.collapses);
+  return reduction;
+}
+
+// Adds the texture that --texture names to the mesh.
+Result<Ok> addTexture(const ReduceOptions& options, render::Mesh& mesh, std::size_t limit) {
+  if (options.texture.empty()) return Ok{};
+  const render::Feature* texcoord = mesh.find("texcoord");
+  if (!texcoord || texcoord->dimension != 2) {
+    return Error{
+        Errc::kInvalidArgument,
+        options.input + ": has no texture coordinates (a PLY's s and t or u and v, an OBJ's vt)"};
+  }
+  if (const auto fits = roomForPicture(options.texture, sizeOf(mesh), limit); !fits) return fits;
+  auto picture = render::readImage(options.texture);
+  if (!picture) return picture.error();
+  mesh.texture = std::move(picture->file);
+  return Ok{};
+}
+
+Result<Ok> checkOptions(const ReduceOptions& options) {
+  const bool pattern = options.settings.cost == "pattern";
+  if (const auto named = checkEnding(options.output, "model", ".mrm"); !named) return named;
+  if (options.preset != "default" && !pattern)
+    return Error{Errc::kInvalidArgument, "--preset " + options.preset + ": add --cost pattern"};
+  if (options.settings.fast && pattern)
+    return Error{Errc::kInvalidArgument, "--fast: only with --cost quadric"};
+  if (options.lock_borders && pattern)
+    return Error{Errc::kInvalidArgument,
+                 "--lock-borders: only with --cost quadric; for pattern: --weight boundary=W"};
+  return checkOutputs(options.input, {options.output});
+}
+
+int reduceMesh(const ReduceOptions& options) {
+  const SystemClock clock;
+  const Timestamp began = clock.now();
+  Took took;
+  took.limit = options.memory > 0 ? options.memory : freeMemory();
+  if (const auto fits = checkOptions(options); !fits) return fail(fits.error());
+  if (const auto fits = checkRoom(options.input, options.settings, took.limit); !fits)
+    return fail(fits.error());
+  auto loaded = loadMesh(options.input);
+  if (!loaded) return fail(loaded.error());
+  if (const auto done = addTexture(options, loaded->mesh, took.limit); !done)
+    return fail(done.error());
+  if (const auto named = render::checkNames(loaded->mesh); !named)
+    return fail({named.error().code, options.input + ": " + named.error().what});
+  const auto reduction = reduceLoaded(options, loaded->mesh, took);
+  if (!reduction) return fail(reduction.error());
+  const auto written =
+      render::writeMrm(options.output, loaded->mesh, reduction->log, options.settings.threads);
+  if (!written) return fail(written.error());
+  took.all = toSeconds(clock.now() - began);
+  report(options, *loaded, reduction->report, took);
+  return kExitDone;
+}
+
+}  // namespace
+
+void addMeshReduce(Command mesh, Run& run) {
+  const auto options = std::make_shared<ReduceOptions>();
+  Command command = mesh.subcommand(
+      "reduce", "A mesh (" + render::readableEndings() +
+                    ") to a multiresolution model (.mrm): every resolution from all of it down "
+                    "to next to nothing.\nExample: merlin mesh reduce scan.ply -o scan.mrm "
+                    "--weight colour=0.02");
+  command.option("input", options->input, "The mesh").required().typeName("IN");
+  command.option("-o", options->output, "The model").required().typeName("OUT.mrm");
+  std::vector<std::string> names;
+  std::string help = "What an edge costs";
+  for (const render::Cost& cost : render::costs()) {
+    names.emplace_back(cost.name);
+    help += fmt::format("; {}: {}", cost.name, cost.help);
+  }
+  command.option("--cost", options->settings.cost, help).oneOf(names).showDefault();
+  std::vector<std::string> presets = {"default"};
+  for (const render::Preset& preset : render::presets()) presets.emplace_back(preset.name);
+  command
+      .option("--preset", options->preset,
+              "Initial weights: those of the cost, or weights that the dissertation of 1998 used "
+              "with pattern")
+      .oneOf(presets)
+      .showDefault();
+  command
+      .option("--weight", options->weights,
+              "Weight of a feature: geometry, colour or any other feature of the mesh; for pattern "
+              "also normal, curvature and boundary. 0 ignores the feature. Regions of different "
+              "labels stay separate unless label has a weight")
+      .typeName("FEATURE=W");
+  command
+      .option("--texture", options->texture,
+              "Texture, which is stored in the model; the default is the one that the mesh's "
+              "material names")
+      .typeName("FILE.png|.jpg");
+  command.flag("--preserve-topology", options->settings.preserve_topology,
+               "Refuse collapses that connect or separate parts of the surface");
+  command.flag(
+      "--preserve-components", options->settings.preserve_components,
+      "Keep at least one triangle of every connected part as long as others can be removed");
+  command.flag("--lock-borders", options->lock_borders,
+               "Keep border vertices at their place as long as others can be removed");
+  command.flag("--fast", options->settings.fast,
+               "Take a tenth to a third less time, at about 6 % more error");
+  command.option("--triangles", options->settings.min_triangles, "Stop at this number of triangles")
+      .showDefault();
+  command
+      .option("--percent", options->settings.min_percent,
+              "Stop at this percentage of the triangles")
+      .range(0.0, 100.0)
+      .showDefault();
+  command
+      .option("--error", options->settings.max_error_percent,
+              "Stop at this error estimate, in percent of the diagonal of the bounding box")
+      .nonNegative();
+  command
+      .option("--threads", options->settings.threads,
+              "Maximum number of threads; 0: all cores. The model does not depend on it")
+      .showDefault();
+  command
+      .option("--memory", options->memory,
+              "Maximum memory of the whole command, such as 900M or 16G; the default is what is "
+              "free. If it is short, the mesh is reduced in blocks, and the model differs slightly")
+      .size()
+      .typeName("SIZE");
+  command.flag("--json", options->json, "Print the report as JSON, for programs");
+  command.callback([options, &run] { run = [options] { return reduceMesh(*options); }; });
+}
+
+}  // namespace merlin::cli

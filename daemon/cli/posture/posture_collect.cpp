@@ -1,0 +1,150 @@
+// merlin posture collect: records hands of one posture from a running daemon's glove into a CSV
+// file.
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/log.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/posture/posture.h"
+#include "daemon/cli/print.h"
+#include "daemon/shm/segment.h"
+#include "nn/evaluate.h"
+
+namespace merlin::cli {
+namespace {
+
+constexpr int kBar = 24;
+constexpr std::size_t kBarsALine = 2;
+constexpr Duration kRedraw = std::chrono::milliseconds(100);
+constexpr Duration kPatience = std::chrono::seconds(3);  // longest time without a sample
+
+struct CollectOptions {
+  std::string label, output = "hands.csv", instance = "merlin", units = "rad";
+  double seconds = 2;
+};
+
+nn::LabelledHand handOf(const GloveSample& sample, const std::string& label, nn::InputUnit unit) {
+  nn::LabelledHand hand{label, {}};
+  if (unit == nn::InputUnit::kRaw) {
+    std::copy_n(std::begin(sample.raw), hand.value.size(), hand.value.begin());
+  } else {
+    std::copy(std::begin(sample.angle_rad), std::end(sample.angle_rad), hand.value.begin());
+  }
+  return hand;
+}
+
+// Draws a bar for each sensor over its raw range; `again`: over the bars drawn before.
+void drawBars(const GloveSample& sample, bool again) {
+  std::string out;
+  std::size_t lines = 0;
+  for (std::size_t i = 0; i < nn::kInputs; ++i) {
+    const int full = kBar * sample.raw[i] / 255;
+    const bool last = i % kBarsALine == kBarsALine - 1 || i + 1 == nn::kInputs;
+    out += fmt::format("{:>22} {:3} [{:#<{}}{:.<{}}]{}", nn::kInputNames[i], sample.raw[i], "",
+                       full, "", kBar - full, last ? "\033[K\n" : "  ");
+    lines += last ? 1 : 0;
+  }
+  printError("{}{}", again ? fmt::format("\033[{}A", lines) : "", out);
+}
+
+// Records the glove for options.seconds. Errors: kNotFound (no daemon), kTimeout (no samples).
+Result<nn::Recording> collect(const CollectOptions& options) {
+  const auto segment =
+      shm::SegmentReader<shm::DevicesSegment>::open(shm::segmentName(options.instance, "devices"));
+  if (!segment) return segment.error();
+  const auto& glove = (*segment)->glove;
+  const SystemClock clock;
+  nn::Recording recording;
+  recording.unit = unitNamed(options.units).value_or(nn::InputUnit::kRadians);
+  const bool terminal = ::isatty(STDERR_FILENO) == 1;
+  Timestamp heard = clock.now(), drawn{}, began{};
+  bool again = false;
+  for (std::uint64_t next = glove.count();
+       began == Timestamp{} || heard - began < fromSeconds(options.seconds);) {
+    glove.wait(next, {0, 100'000'000});
+    if (next == glove.count()) {
+      if (clock.now() - heard < kPatience) continue;
+      return Error{Errc::kTimeout, "the glove has sent nothing for 3 s: see merlin status"};
+    }
+    heard = clock.now();
+    if (began == Timestamp{}) began = heard;
+    next =
+        std::max(next, glove.count() - std::min<std::uint64_t>(glove.count(), shm::kHistory / 2));
+    for (; next < glove.count(); ++next) {
+      const auto sample = glove.at(next);
+      if (!sample) continue;
+      recording.hands.push_back(handOf(*sample, options.label, recording.unit));
+      for (std::size_t i = 0; i < nn::kInputs; ++i)
+        recording.measured[i] = recording.measured[i] || sample->raw[i] != 0;
+      if (!terminal || heard - drawn < kRedraw) continue;
+      drawBars(*sample, again);
+      drawn = heard;
+      again = true;
+    }
+  }
+  return recording;
+}
+
+// Puts the hands that `path` already has before those of `recording`; both must have the same
+// sensors.
+Result<Ok> addTo(nn::Recording& recording, const std::string& path) {
+  if (!std::filesystem::exists(path)) return Ok{};
+  auto before = nn::loadRecording(path, recording.unit);
+  if (!before) return before.error();
+  if (before->measured != recording.measured)
+    return Error{Errc::kInvalidArgument,
+                 path + ": was collected with another glove (other sensors); give another -o"};
+  before->hands.insert(before->hands.end(), recording.hands.begin(), recording.hands.end());
+  recording = *std::move(before);
+  return Ok{};
+}
+
+int run(const CollectOptions& options) {
+  if (!nn::isPostureName(options.label))
+    return fail({Errc::kInvalidArgument,
+                 fmt::format("LABEL \"{}\": allowed are 1 to {} letters, digits, - or _",
+                             options.label, nn::kLongestName)});
+  printError("hold \"{}\" for {} s\n", options.label, options.seconds);
+  auto recording = collect(options);
+  if (!recording) return fail(recording.error());
+  const std::size_t taken = recording->hands.size();
+  if (const auto added = addTo(*recording, options.output); !added) return fail(added.error());
+  if (const auto saved = nn::saveRecording(options.output, *recording); !saved)
+    return fail(saved.error());
+  say("{}: {} hands of \"{}\" recorded, {} in all\n", options.output, taken, options.label,
+      recording->hands.size());
+  for (const nn::Overlap& o : nn::overlapsOf(options.label, recording->hands))
+    printError(
+        "warning: \"{}\" and \"{}\" are hard to tell apart: {:.1f} standard deviations apart, {} "
+        "hands nearer to the other posture\n",
+        o.first, o.second, o.deviations, o.mixed_up);
+  return kExitDone;
+}
+
+}  // namespace
+
+void addPostureCollect(Command posture, Run& run_now) {
+  const auto options = std::make_shared<CollectOptions>();
+  Command command = posture.subcommand(
+      "collect",
+      "Record hands of one posture from the glove of a running merlind (live, or replayed with "
+      "port replay:FILE) and append them to a CSV file.\nExample: merlin posture collect fist -o "
+      "hands.csv");
+  command.option("label", options->label, "The posture's name").required().typeName("LABEL");
+  command.option("-o", options->output, "The CSV file").showDefault().typeName("FILE.csv");
+  command.option("--seconds", options->seconds, "Duration of the recording in seconds")
+      .range(0.1, 600.0)
+      .showDefault();
+  command.option("--units", options->units, "Angles in radians, or raw counts of the sensors")
+      .oneOf({"rad", "raw"})
+      .showDefault();
+  addInstance(command, options->instance);
+  command.callback([options, &run_now] { run_now = [options] { return run(*options); }; });
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,122 @@
+// merlin posture test: a network's accuracy on labelled hands, its confusions and margins.
+#include "daemon/cli/posture/posture.h"
+
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
+#include "nn/evaluate.h"
+
+namespace merlin::cli {
+namespace {
+
+// Number of the first person that was not used for training.
+constexpr std::size_t kUnseen = 1001;
+constexpr std::size_t kShown = 10;  // maximum number of confusions in the table
+
+struct TestOptions {
+  std::string network = "config/postures.json", data, beside, units = "auto";
+  double margin = 0.3;
+  bool json = false;
+};
+
+Result<nn::Recording> testHands(const TestOptions& options, const nn::PostureNetwork& network) {
+  if (!options.data.empty()) return readFor(network, options.data, unitNamed(options.units));
+  return synthesize(
+      {.first = kUnseen, .people = 20, .takes = 5, .per_take = 10, .postures = 8, .seed = 2});
+}
+
+nlohmann::ordered_json toJson(const nn::Evaluation& e, bool synthetic) {
+  using Json = nlohmann::ordered_json;
+  Json confusion = Json::array(), postures = Json::array();
+  for (const nn::Confusion& c : e.confusions)
+    confusion.push_back({{"shown", c.shown},
+                         {"taken_for", c.taken_for.empty() ? Json(nullptr) : Json(c.taken_for)},
+                         {"hands", c.hands}});
+  for (const nn::PostureScore& p : e.postures)
+    postures.push_back({{"posture", p.posture},
+                        {"accuracy", p.score.accuracy()},
+                        {"right", p.score.right},
+                        {"total", p.score.total},
+                        {"rejected", p.score.rejected},
+                        {"least_margin", p.least_margin},
+                        {"mean_margin", p.mean_margin}});
+  return {{"accuracy", e.all.accuracy()}, {"right", e.all.right},
+          {"total", e.all.total},         {"rejected", e.all.rejected},
+          {"unsure", e.unsure},           {"right_and_sure", e.right_and_sure},
+          {"synthetic", synthetic},       {"confusion", confusion},
+          {"postures", postures}};
+}
+
+void printTable(const nn::Evaluation& e, bool synthetic, double margin) {
+  say("{} of {} {}hands right ({:.3f} %), {} recognised as no posture, {} as another; {} with a "
+      "margin below {}\n",
+      e.all.right, e.all.total, synthetic ? "synthetic " : "", 100 * e.all.accuracy(),
+      e.all.rejected, e.all.total - e.all.right - e.all.rejected, e.unsure, margin);
+  if (!e.confusions.empty()) say("\n  hands  shown                recognised as\n");
+  for (std::size_t n = 0; n < std::min(kShown, e.confusions.size()); ++n) {
+    const nn::Confusion& c = e.confusions[n];
+    say("  {:5}  {:19}  {}\n", c.hands, c.shown, c.taken_for.empty() ? "-" : c.taken_for);
+  }
+  say("\n  posture                right         margin: least  mean\n");
+  for (const nn::PostureScore& p : e.postures)
+    say("  {:19}  {:5} / {:5}        {:5.2f}  {:5.2f}\n", p.posture, p.score.right, p.score.total,
+        p.least_margin, p.mean_margin);
+}
+
+int test(const TestOptions& options) {
+  const auto file = nn::loadNetwork(options.network);
+  if (!file) return fail(file.error());
+  const auto recording = testHands(options, file->network);
+  if (!recording) return fail(recording.error());
+  const nn::Evaluation e = nn::evaluate(file->network, recording->hands, options.margin);
+  auto json = toJson(e, recording->synthetic);
+  if (!options.beside.empty()) {
+    const auto train = readFor(file->network, options.beside, unitNamed(options.units));
+    if (!train) return fail(train.error());
+    const nn::Neighbours n = nn::neighbours(train->hands, recording->hands);
+    json["nearest_mean"] = n.mean;
+    json["nearest_neighbour"] = n.nearest;
+    if (!options.json)
+      say("for comparison, from {}: nearest mean {:.3f} %, nearest neighbour {:.3f} %\n",
+          options.beside, 100 * n.mean, 100 * n.nearest);
+  }
+  if (options.json) {
+    printJsonLine(json);
+  } else {
+    printTable(e, recording->synthetic, options.margin);
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+void addPostureTest(Command posture, Run& run) {
+  const auto options = std::make_shared<TestOptions>();
+  Command command = posture.subcommand(
+      "test",
+      "Test a network on labelled hands: its accuracy, confusions and margins. Without DATA, on "
+      "hands of synthetic people whom the shipped network was not trained on.\nExample: merlin "
+      "posture test "
+      "postures.json hands.csv --json");
+  command.option("net,--network", options->network, "File of the network")
+      .showDefault()
+      .typeName("NET.json");
+  command.option("hands,--data", options->data, "Labelled hands, CSV").typeName("DATA.csv");
+  command
+      .option("--beside", options->beside,
+              "The training hands, CSV: also reports the accuracy of nearest mean and nearest "
+              "neighbour, for comparison")
+      .typeName("TRAIN.csv");
+  command.option("--margin", options->margin, "Margin below which a hand counts as unsure")
+      .range(0.0, 1.0)
+      .showDefault();
+  addUnits(command, options->units);
+  command.flag("--json", options->json, "Print JSON, for programs");
+  command.callback([options, &run] { run = [options] { return test(*options); }; });
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,144 @@
+// merlin posture train: trains a network on labelled hands, or cross-validates such a training.
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/files.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/posture/learning_curve.h"
+#include "daemon/cli/posture/posture.h"
+#include "daemon/cli/print.h"
+#include "daemon/cli/progress.h"
+#include "nn/evaluate.h"
+#include "nn/folds.h"
+
+namespace merlin::cli {
+namespace {
+
+struct TrainOptions {
+  std::string data, output, curve, units = "auto", phi = "sigmoid";
+  nn::FitSettings fit;
+  std::size_t folds = 0;
+  bool json = false;
+};
+
+// The hands to train on; without --data the synthetic people of the shipped network.
+Result<nn::Recording> trainingHands(const TrainOptions& options) {
+  if (!options.data.empty()) return readRecording(options.data, unitNamed(options.units));
+  return synthesize({.people = 20, .takes = 2, .postures = 8});
+}
+
+Result<nn::Fitted> fitWithBar(const nn::DataSet& hands, const nn::FitSettings& settings,
+                              const std::string& title, double& seconds) {
+  const SystemClock clock;
+  const Timestamp began = clock.now();
+  ProgressBar bar(title, "passes", clock);
+  std::size_t passes = 0;
+  auto fitted = nn::fit(hands, settings, [&](double share, const nn::CurvePoint& point) {
+    passes = point.pass;
+    bar.update(share, passes);
+    return true;
+  });
+  if (fitted) bar.finish(passes);
+  seconds = toSeconds(clock.now() - began);
+  return fitted;
+}
+
+int crossValidate(const nn::Recording& recording, const TrainOptions& options) {
+  double sum = 0, sum_mean = 0, sum_nearest = 0;
+  for (std::size_t fold = 0; fold < options.folds; ++fold) {
+    const auto [train, test] = nn::splitFold(recording.hands, options.folds, fold);
+    double seconds = 0;
+    const auto fitted = fitWithBar(train, options.fit,
+                                   fmt::format("fold {} of {}", fold + 1, options.folds), seconds);
+    if (!fitted) return fail(fitted.error());
+    const double accuracy = nn::score(fitted->network, test).accuracy();
+    const nn::Neighbours beside = nn::neighbours(train, test);
+    say("fold {}: {:.2f} % of {} hands right (nearest mean {:.2f} %, nearest neighbour "
+        "{:.2f} %), {:.2f} s\n",
+        fold + 1, 100 * accuracy, test.size(), 100 * beside.mean, 100 * beside.nearest, seconds);
+    sum += accuracy;
+    sum_mean += beside.mean;
+    sum_nearest += beside.nearest;
+  }
+  const double k = static_cast<double>(options.folds) / 100;
+  say("{} folds: {:.2f} % right (nearest mean {:.2f} %, nearest neighbour {:.2f} %)\n",
+      options.folds, sum / k, sum_mean / k, sum_nearest / k);
+  return kExitDone;
+}
+
+int report(const TrainOptions& options, const nn::Fitted& fitted, double seconds) {
+  if (!options.curve.empty()) {
+    const auto written = writeFile(options.curve, curveSvg(fitted.curve, options.output));
+    if (!written) return fail(written.error());
+  }
+  say("{}", curveText(fitted.curve));
+  say("{}: {} postures from {} hands{} in {:.2f} s; {:.2f} % of the training hands right, "
+      "{:.2f} % of the validation hands\n",
+      options.output, fitted.network.postures.size(), fitted.trained.samples,
+      fitted.trained.synthetic ? " (synthetic)" : "", seconds, 100 * fitted.training_accuracy,
+      100 * fitted.validation_accuracy);
+  return kExitDone;
+}
+
+int train(TrainOptions options) {
+  const auto recording = trainingHands(options);
+  if (!recording) return fail(recording.error());
+  options.fit.phi = nn::phiNamed(options.phi).value_or(nn::Phi::kSigmoid);
+  options.fit.unit = recording->unit;
+  if (options.folds > 0) return crossValidate(*recording, options);
+  double seconds = 0;
+  auto fitted = fitWithBar(recording->hands, options.fit, "training", seconds);
+  if (!fitted) return fail(fitted.error());
+  fitted->trained.synthetic = recording->synthetic;
+  const auto saved =
+      nn::saveNetwork(options.output, {fitted->network, fitted->trained, fitted->memory});
+  if (!saved) return fail(saved.error());
+  return report(options, *fitted, seconds);
+}
+
+}  // namespace
+
+void addPostureTrain(Command posture, Run& run) {
+  const auto options = std::make_shared<TrainOptions>();
+  Command command = posture.subcommand(
+      "train",
+      "Train a network on labelled hands; without DATA, on the synthetic people that the shipped "
+      "network was trained on.\nExample: merlin posture train hands.csv -o postures.json --curve "
+      "curve.svg");
+  command.option("data", options->data, "Labelled hands, CSV").typeName("DATA.csv");
+  const Argument output =
+      command.option("-o", options->output, "File of the network").typeName("FILE.json");
+  command.option("--curve", options->curve, "Write the learning curve as a chart")
+      .typeName("FILE.svg");
+  command.option("--seed", options->fit.seed, "Seed of all random numbers").showDefault();
+  command
+      .option("--phi", options->phi,
+              "Activation function of the nodes (signum cannot be trained: its slope is 0)")
+      .oneOf({"sigmoid", "atan"})
+      .showDefault();
+  command
+      .option("--starts", options->fit.starts,
+              "Number of random initial codes and weights that are tried")
+      .range(1, 1000)
+      .showDefault();
+  command
+      .option("--passes", options->fit.passes,
+              "Maximum number of passes over the hands, from the best start")
+      .range(1, 1000000)
+      .showDefault();
+  command
+      .option(
+          "--folds", options->folds,
+          "Cross-validate instead: divide the hands into k parts; for each, train on the others "
+          "and test on it")
+      .range(2, 100);
+  addUnits(command, options->units);
+  command.callback([options, output, &run] {
+    if (options->folds == 0 && !output.isGiven()) lacks("-o or --folds");
+    run = [options] { return train(*options); };
+  });
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,33 @@
+// merlin status: prints the state of the daemon once.
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "daemon/cli/command.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
+#include "daemon/cli/wall/status_text.h"
+
+namespace merlin::cli {
+
+void addStatus(Command app, Run& run) {
+  struct Options {
+    std::string instance = "merlin";
+    bool json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  Command command = app.subcommand(
+      "status", "Show the state of the wall and of the devices.\nExample: merlin status --json");
+  addInstance(command, options->instance);
+  command.flag("--json", options->json, "Print JSON, for programs");
+  command.callback([options, &run] {
+    run = [options] {
+      const auto status = askStatus(options->instance);
+      if (!status) return fail(status.error());
+      say("{}", options->json ? status->dump(2) + "\n" : statusTable(*status));
+      return kExitDone;
+    };
+  });
+}
+
+}  // namespace merlin::cli

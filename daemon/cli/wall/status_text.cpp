@@ -1,0 +1,186 @@
+#include "daemon/cli/wall/status_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "daemon/cli/roles.h"
+#include "daemon/status/client.h"
+
+namespace merlin::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr Duration kPatience = std::chrono::seconds(5);
+
+// The part of a device's line after its health.
+std::string deviceDetail(const Json& d) {
+  std::string reason = d.value("reason", "");
+  if (d.value("health", "") != "ok") return reason;
+  return fmt::format("{:5.1f} Hz  {}{}", d.value("rate_hz", 0.0), d.value("identity", ""),
+                     reason.empty() ? "" : "; " + reason);
+}
+
+std::string pictureWord(const Json& s) {
+  if (s.value("moving", false)) return s.value("grabbed", false) ? "grabbed" : "moving";
+  return s.value("full_detail", false) ? "still, full detail" : "still, refining";
+}
+
+// How the wall differs from its configuration: degradations under load, and triangles set by hand.
+// Empty if it does not.
+std::string givenWay(const Json& s) {
+  std::string text;
+  if (s.value("rate_divisor", 1) > 1)
+    text += fmt::format("; rate reduced to {:.3g} Hz", s.value("rate_now", 0.0));
+  if (s.value("scale_divisor", 1) > 1) text += "; tiles drawn at half size";
+  if (s.value("operator_coarser", false)) text += "; operator's view coarser";
+  if (s.value("held_triangles", 0) > 0)
+    text += fmt::format("; {} triangles set by hand", s.value("held_triangles", 0));
+  return text;
+}
+
+std::string paceLines(const Json& s) {
+  std::string text =
+      fmt::format("model    {:.1f} ms + {:.3f} us x triangles^{:.2f}; next frame {} triangles{}\n",
+                  s.value("cost_fixed_ms", 0.0), s.value("cost_coefficient_us", 0.0),
+                  s.value("cost_exponent", 0.0), s.value("budget", 0), givenWay(s));
+  text += fmt::format(
+      "steps    the last load change settled in {} frames; detail oscillates by {:.1f} %; first "
+      "refinement {:.2f} s after standstill, full detail after {:.2f} s\n",
+      s.value("settle_frames", 0), 100 * s.value("oscillation", 0.0),
+      s.value("still_to_first_s", 0.0), s.value("still_to_full_s", 0.0));
+  return text + histogramChart(s.value("work_histogram", std::vector<std::uint32_t>{}));
+}
+
+std::string outputLines(const Json& s) {
+  std::string text;
+  if (!s.contains("outputs")) return text;
+  for (const auto& [name, output] : s["outputs"].items()) {
+    const bool failed = output.value("health", "") == "failed";
+    text += fmt::format(
+        "output   {:14} {:8} {}\n", name, output.value("health", ""),
+        failed ? output.value("reason", "")
+               : fmt::format("{:.1f} Hz shown, {:.2f} % late", output.value("shown_hz", 0.0),
+                             output.value("late_percent", 0.0)));
+  }
+  return text;
+}
+
+}  // namespace
+
+// Prints two histogram buckets (1/8 of the period) per line, from the first to the last non-empty
+// one.
+std::string histogramChart(const std::vector<std::uint32_t>& buckets) {
+  constexpr double kWidth = 40;
+  std::vector<std::uint64_t> eighths((buckets.size() + 1) / 2);
+  for (std::size_t i = 0; i < buckets.size(); ++i) eighths[i / 2] += buckets[i];
+  const auto used = [](std::uint64_t n) { return n > 0; };
+  const auto first = std::find_if(eighths.begin(), eighths.end(), used);
+  if (first == eighths.end()) return {};
+  const auto last = std::find_if(eighths.rbegin(), eighths.rend(), used).base();
+  const auto most = static_cast<double>(*std::max_element(first, last));
+  const auto all = static_cast<double>(std::accumulate(first, last, std::uint64_t{0}));
+  std::string text = "frames by work, as a share of the period\n";
+  for (auto e = first; e != last; ++e) {
+    const auto percent = 12.5 * static_cast<double>(e - eighths.begin());
+    const auto n = static_cast<double>(*e);
+    const bool open = e + 1 == eighths.end();
+    text += fmt::format("  {:5.1f} - {:>5} %  {:<40} {:5.1f} %\n", percent,
+                        open ? "more" : fmt::format("{:.1f}", percent + 12.5),
+                        std::string(static_cast<std::size_t>(std::ceil(kWidth * n / most)), '#'),
+                        100 * n / all);
+  }
+  return text;
+}
+
+void mergeStatus(Json& both, const std::string& document) {
+  auto json = Json::parse(document, nullptr, false);
+  if (!json.is_object()) return;
+  const std::string role = json.value("role", "");
+  Json& common = both["roles"][role];
+  for (const char* key : {"pid", "uptime_s"}) {
+    if (json.contains(key)) common[key] = json[key];
+    json.erase(key);
+  }
+  json.erase("role");
+  both.update(json, true);  // merges recursively: both roles have "servers"
+}
+
+Result<Json> askStatus(const std::string& instance) {
+  const auto roles = findRoles(instance);
+  if (!roles) return roles.error();
+  Json both = Json::object();
+  for (const FoundRole& role : *roles) {
+    const auto answer = status::ask(role.endpoints.command, "status", kPatience);
+    if (!answer) return answer.error();
+    mergeStatus(both, *answer);
+  }
+  return both;
+}
+
+namespace {
+
+// A line for each server that has failed or has refused a connection.
+std::string serverLines(const Json& s) {
+  std::string text;
+  if (!s.contains("servers")) return text;
+  for (const auto& [name, server] : s["servers"].items()) {
+    const std::string reason = server.value("reason", ""), last = server.value("last", "");
+    if (!reason.empty())
+      text += fmt::format("{:8} failed   {}\n", name, reason);
+    else if (!last.empty())
+      text += fmt::format("{:8} ok       {} connected; last refused: {}\n", name,
+                          server.value("connections", 0), last);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string statusTable(const Json& s) {
+  std::string text;
+  if (s.contains("rate_asked")) {
+    text += fmt::format("wall     {:.1f} of {:.0f} Hz, {} triangles, {} (ball mode: {})\n",
+                        s.value("rate_held", 0.0), s.value("rate_asked", 0.0),
+                        s.value("triangles", 0), pictureWord(s), s.value("mode", ""));
+    text += fmt::format(
+        "frames   {} drawn; {:.2f} % of those due while moving were late (last minute {:.2f} %), "
+        "at "
+        "most {} in a row\n",
+        s.value("frames", 0), s.value("late_percent", 0.0), s.value("late_percent_1min", 0.0),
+        s.value("longest_late", 0));
+    text += fmt::format(
+        "work     {:.1f} ms per frame (median of the last second), {:.0f} % of the period, head "
+        "room {:.0f} %\n",
+        s.value("work_median_ms", 0.0), 100 * s.value("utilisation", 0.0),
+        100 * s.value("head_room", 0.0));
+    text += paceLines(s) + outputLines(s);
+  }
+  if (!s.contains("devices")) return text + serverLines(s);
+  const std::string posture = s.value("posture", "");
+  text += fmt::format("posture  {}\n", posture.empty() ? "-" : posture);
+  for (const auto& [name, device] : s["devices"].items()) {
+    text += fmt::format("{:8} {:8} {}\n", name, device.value("health", ""), deviceDetail(device));
+  }
+  return text + serverLines(s);
+}
+
+std::string statusLine(const Json& s) {
+  std::string line;
+  if (s.contains("rate_asked")) {
+    line = fmt::format("{:4.1f} of {:.0f} Hz  {:7} triangles  {:5.2f} % late  {:18}",
+                       s.value("rate_held", 0.0), s.value("rate_asked", 0.0),
+                       s.value("triangles", 0), s.value("late_percent", 0.0), pictureWord(s));
+  }
+  if (!s.contains("devices")) return line;
+  const std::string posture = s.value("posture", "");
+  line += fmt::format("  posture {:8}", posture.empty() ? "-" : posture);
+  for (const auto& [name, device] : s["devices"].items())
+    line += fmt::format("  {} {}", name, device.value("health", ""));
+  return line;
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,106 @@
+// merlin trace: writes what the time of the wall's frames was spent on, for a trace viewer.
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/files.h"
+#include "daemon/cli/command.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
+#include "daemon/cli/wall/trace_json.h"
+#include "daemon/shm/segment.h"
+
+namespace merlin::cli {
+namespace {
+
+struct TraceOptions {
+  std::string instance = "merlin";
+  std::string output;
+  double seconds = 5;
+};
+
+// The frames of the last `wanted`: those in shared memory and, if they cover less, the following
+// ones.
+Result<std::vector<shm::FrameTrace>> collect(const shm::WallSegment& wall, Duration wanted) {
+  std::vector<shm::FrameTrace> frames;
+  const std::uint64_t have = wall.trace.count();
+  std::uint64_t next = have > shm::kHistory - 1 ? have - (shm::kHistory - 1) : 0;
+  const SystemClock clock;
+  const auto covered = [&] {
+    return frames.empty() ? Duration{} : Duration(frames.back().end_ns - frames.front().begin_ns);
+  };
+  for (Timestamp heard = clock.now(); next < have || covered() < wanted;) {
+    if (next == wall.trace.count()) {
+      if (clock.now() - heard > std::chrono::seconds(2))
+        return Error{Errc::kTimeout, "the wall has drawn nothing for 2 s"};
+      wall.trace.wait(next, {0, 100'000'000});
+      continue;
+    }
+    if (const auto frame = wall.trace.at(next)) frames.push_back(*frame);
+    ++next;
+    heard = clock.now();
+  }
+  const std::int64_t from = frames.back().end_ns - wanted.count();
+  std::erase_if(frames, [from](const shm::FrameTrace& f) { return f.begin_ns < from; });
+  return frames;
+}
+
+template <typename T>
+void addSamples(const shm::Channel<T>& channel, const char* device,
+                std::span<const shm::FrameTrace> frames, std::vector<SampleInstant>& out) {
+  const std::uint64_t count = channel.count();
+  for (std::uint64_t n = count > shm::kHistory - 1 ? count - (shm::kHistory - 1) : 0; n < count;
+       ++n) {
+    const auto sample = channel.at(n);
+    if (sample && sample->received_ns >= frames.front().begin_ns &&
+        sample->received_ns <= frames.back().end_ns)
+      out.push_back({device, sample->received_ns});
+  }
+}
+
+int trace(const TraceOptions& options) {
+  const auto wall =
+      shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(options.instance, "wall"));
+  if (!wall) {
+    return fail({Errc::kIo, fmt::format("no merlind shows a wall as \"{}\": {}", options.instance,
+                                        wall.error().what)});
+  }
+  const auto frames = collect(**wall, fromSeconds(options.seconds));
+  if (!frames) return fail(frames.error());
+  std::vector<SampleInstant> samples;
+  const auto devices =
+      shm::SegmentReader<shm::DevicesSegment>::open(shm::segmentName(options.instance, "devices"));
+  if (devices && !frames->empty()) {
+    addSamples((*devices)->glove, "glove", *frames, samples);
+    addSamples((*devices)->tracker[0], "tracker", *frames, samples);
+    addSamples((*devices)->ball, "ball", *frames, samples);
+  }
+  const std::string json = traceJson(*frames, samples);
+  if (const auto written = writeFile(options.output, json); !written) return fail(written.error());
+  say("{}: {} frames, {} samples; open it in ui.perfetto.dev or chrome://tracing\n", options.output,
+      frames->size(), samples.size());
+  return kExitDone;
+}
+
+}  // namespace
+
+void addTrace(Command app, Run& run) {
+  const auto options = std::make_shared<TraceOptions>();
+  Command command =
+      app.subcommand("trace",
+                     "Write the time that each step of the last frames took, for a trace viewer.\n"
+                     "Example: merlin trace -o trace.json --seconds 5");
+  addInstance(command, options->instance);
+  command.option("-o", options->output, "The trace file").required().typeName("FILE.json");
+  command
+      .option("--seconds", options->seconds,
+              "Duration of the trace; if fewer frames are stored, waits for more")
+      .range(0.1, 600.0)
+      .showDefault();
+  command.callback([options, &run] { run = [options] { return trace(*options); }; });
+}
+
+}  // namespace merlin::cli
