@@ -151,6 +151,7 @@ const Folders kImpure = {"fstream",
 // folder below one of these needs no line.
 const std::map<std::string, Folders> kPrivateTo = {
     {"render/mesh/io", {"render/image", "render/mesh"}},
+    {"render/reduce", {"render/lod", "render/mesh", "render/reduce/quadric"}},
 };
 
 // The folder above, if `folder` is private to it; otherwise empty.
@@ -169,7 +170,8 @@ const Folders* rulesOf(const std::string& folder) {
 bool mayInclude(const std::string& from, const std::string& to, const std::string& header) {
   if (to == from || to == "daemon/base") return true;
   const std::string owner = ownerOf(to);
-  if (!owner.empty()) return from == owner;
+  if (!owner.empty())
+    return from == owner || (ownerOf(from) == owner && kPrivateTo.at(owner).count(to) > 0);
   if (to == ownerOf(from)) return true;
   const Folders& allowed = *rulesOf(from);
   return allowed.count(to) > 0 || allowed.count(header) > 0;
@@ -193,7 +195,7 @@ void checkInclude(const fs::path& root, const std::string& from, const std::stri
   }
   EXPECT_TRUE(from == "render/mesh/io/openmesh" || !header.starts_with("OpenMesh/")) << where;
   EXPECT_TRUE(from == "render/inventor" || !header.starts_with("Inventor/")) << where << ": Coin";
-  EXPECT_FALSE(kPure.count(from) && kImpure.count(header)) << where;
+  EXPECT_FALSE((kPure.count(from) || kPure.count(ownerOf(from))) && kImpure.count(header)) << where;
   if (!fs::exists(root / header)) return;  // the standard library or a third party
   const std::string to = folderOf(header);
   EXPECT_TRUE(mayInclude(from, to, header)) << where;

@@ -8,8 +8,8 @@
 #include "render/compare/compare.h"
 #include "render/lod/dendrogram.h"
 #include "render/mesh/non_manifold.h"
-#include "render/reduce/block_cutter.h"
 #include "render/reduce/memory.h"
+#include "render/reduce/out_of_core/block_cutter.h"
 #include "render/reduce/reduce.h"
 #include "tests/support/meshes.h"
 

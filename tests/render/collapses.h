@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/reduce/pattern_reducer.h"
+#include "render/reduce/pattern/pattern_reducer.h"
 #include "tests/support/meshes.h"
 
 namespace merlin::test {

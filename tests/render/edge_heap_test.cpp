@@ -1,4 +1,4 @@
-#include "render/reduce/edge_heap.h"
+#include "render/reduce/pattern/edge_heap.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,5 +1,5 @@
 // One vertex' edges: costs and places against sums over planes made plainly, in double.
-#include "render/reduce/quadric_evaluate.h"
+#include "render/reduce/quadric/quadric_evaluate.h"
 
 #include <cmath>
 

@@ -1,12 +1,12 @@
 // What QuadricReducer's parts have of their own: a queue, and room for stars.
-#include "render/reduce/quadric_mesh.h"
+#include "render/reduce/quadric/quadric_mesh.h"
 
 #include <new>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "render/reduce/bucket_queue.h"
+#include "render/reduce/quadric/bucket_queue.h"
 
 namespace merlin::render {
 namespace {

@@ -1,5 +1,5 @@
 // Which collapses may be: slow and wide processors against one another and against a plain look.
-#include "render/reduce/quadric_rules.h"
+#include "render/reduce/quadric/quadric_rules.h"
 
 #include <cmath>
 #include <set>

@@ -1,5 +1,5 @@
 // Witnesses: their distances against a plain search in double, and that they stay where they are.
-#include "render/reduce/quadric_witness.h"
+#include "render/reduce/quadric/quadric_witness.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "render/reduce/working_mesh.h"
+#include "render/reduce/pattern/working_mesh.h"
 
 #include <set>
 #include <utility>

@@ -1,7 +1,7 @@
 // A surface as `quadric` holds it, with what measures one vertex.
 #pragma once
 
-#include "render/reduce/quadric_evaluate.h"
+#include "render/reduce/quadric/quadric_evaluate.h"
 
 namespace merlin::test {
 

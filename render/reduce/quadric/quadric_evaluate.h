@@ -17,8 +17,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/reduce/number_table.h"
-#include "render/reduce/quadric_mesh.h"
+#include "render/reduce/quadric/number_table.h"
+#include "render/reduce/quadric/quadric_mesh.h"
 
 namespace merlin::render {
 

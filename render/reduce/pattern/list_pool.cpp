@@ -1,4 +1,4 @@
-#include "render/reduce/list_pool.h"
+#include "render/reduce/pattern/list_pool.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "render/reduce/pattern_reducer.h"
+#include "render/reduce/pattern/pattern_reducer.h"
 
 #include <algorithm>
 #include <cmath>

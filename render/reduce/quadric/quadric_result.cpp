@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "daemon/base/blocks.h"
-#include "render/reduce/quadric_reducer.h"
+#include "render/reduce/quadric/quadric_reducer.h"
 
 namespace merlin::render {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "render/reduce/lanes.h"
-#include "render/reduce/quadric_evaluate.h"
+#include "render/reduce/quadric/lanes.h"
+#include "render/reduce/quadric/quadric_evaluate.h"
 
 namespace merlin::render {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "render/reduce/quadric_reducer.h"
+#include "render/reduce/quadric/quadric_reducer.h"
 
 namespace merlin::render {
 

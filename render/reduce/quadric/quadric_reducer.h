@@ -13,10 +13,10 @@
 #include <limits>
 #include <vector>
 
-#include "render/reduce/bucket_queue.h"
-#include "render/reduce/quadric_evaluate.h"
-#include "render/reduce/quadric_rules.h"
-#include "render/reduce/quadric_witness.h"
+#include "render/reduce/quadric/bucket_queue.h"
+#include "render/reduce/quadric/quadric_evaluate.h"
+#include "render/reduce/quadric/quadric_rules.h"
+#include "render/reduce/quadric/quadric_witness.h"
 #include "render/reduce/reduce.h"
 
 namespace merlin::render {

@@ -1,6 +1,6 @@
 // The cost `quadric`: weighted features become channels of the quadrics; the others are carried
 // along and mixed by where the new vertex lies between the two old ones.
-#include "render/reduce/quadric.h"
+#include "render/reduce/quadric/quadric.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "render/mesh/mesh.h"
-#include "render/reduce/list_pool.h"
+#include "render/reduce/pattern/list_pool.h"
 
 namespace merlin::render {
 

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "render/mesh/places.h"
-#include "render/reduce/block_cutter.h"
 #include "render/reduce/memory.h"
-#include "render/reduce/quadric.h"
+#include "render/reduce/out_of_core/block_cutter.h"
+#include "render/reduce/quadric/quadric.h"
 
 namespace merlin::render {
 namespace {

@@ -1,6 +1,6 @@
-#include "render/reduce/quadric_witness.h"
+#include "render/reduce/quadric/quadric_witness.h"
 
-#include "render/reduce/lanes.h"
+#include "render/reduce/quadric/lanes.h"
 
 namespace merlin::render {
 namespace {

@@ -1,10 +1,10 @@
-#include "render/reduce/block_cutter.h"
+#include "render/reduce/out_of_core/block_cutter.h"
 
 #include <algorithm>
 #include <limits>
 #include <unordered_map>
 
-#include "render/reduce/quadric_mesh.h"
+#include "render/reduce/quadric/quadric_mesh.h"
 
 namespace merlin::render {
 namespace {

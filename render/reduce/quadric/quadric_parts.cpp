@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "daemon/base/blocks.h"
-#include "render/reduce/quadric_reducer.h"
+#include "render/reduce/quadric/quadric_reducer.h"
 
 namespace merlin::render {
 namespace {

@@ -1,11 +1,11 @@
-#include "render/reduce/quadric_evaluate.h"
+#include "render/reduce/quadric/quadric_evaluate.h"
 
 #include <algorithm>
 #include <array>
 #include <numeric>
 
-#include "render/reduce/lanes.h"
-#include "render/reduce/quadric_star.h"
+#include "render/reduce/quadric/lanes.h"
+#include "render/reduce/quadric/quadric_star.h"
 
 namespace merlin::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/reduce/quadric_reducer.h"
+#include "render/reduce/quadric/quadric_reducer.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "render/mesh/mesh.h"
-#include "render/reduce/edge_heap.h"
+#include "render/reduce/pattern/edge_heap.h"
+#include "render/reduce/pattern/working_mesh.h"
 #include "render/reduce/pattern_space.h"
 #include "render/reduce/reduce.h"
-#include "render/reduce/working_mesh.h"
 
 namespace merlin::render {
 

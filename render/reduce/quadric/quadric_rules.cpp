@@ -1,10 +1,10 @@
-#include "render/reduce/quadric_rules.h"
+#include "render/reduce/quadric/quadric_rules.h"
 
 #include <algorithm>
 #include <cmath>
 #include <span>
 
-#include "render/reduce/lanes.h"
+#include "render/reduce/quadric/lanes.h"
 
 namespace merlin::render {
 namespace {

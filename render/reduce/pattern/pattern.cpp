@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "render/reduce/costs.h"
-#include "render/reduce/pattern_reducer.h"
+#include "render/reduce/pattern/pattern_reducer.h"
 
 namespace merlin::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/reduce/quadric_mesh.h"
+#include "render/reduce/quadric/quadric_mesh.h"
 
 #include <algorithm>
 #include <cmath>

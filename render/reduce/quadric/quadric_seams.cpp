@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "render/reduce/quadric_reducer.h"
+#include "render/reduce/quadric/quadric_reducer.h"
 
 namespace merlin::render {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "render/reduce/quadric_evaluate.h"
+#include "render/reduce/quadric/quadric_evaluate.h"
 
 namespace merlin::render {
 
