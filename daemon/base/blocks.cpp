@@ -11,9 +11,9 @@
 
 namespace merlin {
 
-bool forBlocks(unsigned threads, std::size_t blocks, const std::function<void(std::size_t)>& work,
+bool forBlocks(Threads threads, std::size_t blocks, const std::function<void(std::size_t)>& work,
                const std::function<bool(std::size_t)>& goOn) {
-  assert(threads > 0);
+  assert(threads.count > 0);
   if (blocks == 0) return true;
   std::atomic<std::size_t> next{0}, done{0};
   std::atomic<bool> cancelled{false};
@@ -39,9 +39,10 @@ bool forBlocks(unsigned threads, std::size_t blocks, const std::function<void(st
   };
   {
     std::optional<ThreadTeam> own;
-    ThreadTeam* const idle = ThreadTeam::idle();
-    const std::size_t wanted = std::min<std::size_t>(threads, blocks);
-    const ThreadTeam::Turn turn = (idle ? *idle : own.emplace()).start(wanted - 1, others);
+    const bool theirs = threads.team && threads.team->idle();
+    const std::size_t wanted = std::min<std::size_t>(threads.count, blocks);
+    const ThreadTeam::Turn turn =
+        (theirs ? *threads.team : own.emplace()).start(wanted - 1, others);
     while (doOne()) {
       if (goOn && !goOn(done)) cancelled = true;
     }

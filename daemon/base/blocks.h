@@ -7,17 +7,30 @@
 
 namespace merlin {
 
-// Calls work(0) .. work(blocks - 1), each once, on `threads` threads including the caller's. The
+class ThreadTeam;
+
+// How many threads a parallel loop uses, the caller's included, and the team that they come from; a
+// team serves many short loops, without one each loop starts threads of its own.
+struct Threads {
+  Threads(unsigned n) : count(n) {}  // NOLINT(google-explicit-constructor): a number is enough
+  Threads(unsigned n, ThreadTeam& from) : count(n), team(&from) {}
+
+  unsigned count;
+  ThreadTeam* team = nullptr;
+};
+
+// Calls work(0) .. work(blocks - 1), each once, on that many threads. The
 // blocks must not write to the same memory; the result then does not depend on the number of
 // threads. `goOn` is called on the caller's thread with the number of finished blocks; after it
 // returns false no further block begins. Returns whether all blocks were done. An exception of
-// `work` is rethrown here, after all threads have finished. REQUIRES: threads > 0.
-bool forBlocks(unsigned threads, std::size_t blocks, const std::function<void(std::size_t)>& work,
+// `work` is rethrown here, after all threads have finished. `work` may have such loops itself:
+// while the team works, they start threads of their own. REQUIRES: threads.count > 0.
+bool forBlocks(Threads threads, std::size_t blocks, const std::function<void(std::size_t)>& work,
                const std::function<bool(std::size_t)>& goOn = {});
 
 // Calls work(i) for each i of [0, count), in blocks of 16384, with forBlocks().
 template <typename Work>
-void forEach(unsigned threads, std::size_t count, const Work& work) {
+void forEach(Threads threads, std::size_t count, const Work& work) {
   constexpr std::size_t kBlock = 1 << 14;
   forBlocks(threads, (count + kBlock - 1) / kBlock, [&](std::size_t block) {
     const std::size_t end = std::min(count, (block + 1) * kBlock);

@@ -2,14 +2,11 @@
 
 #include <chrono>
 #include <system_error>
-#include <utility>
 
 namespace merlin {
 namespace {
 
 constexpr std::chrono::microseconds kAwake{200};
-
-thread_local ThreadTeam* latest = nullptr;
 
 // Waits until the value differs from `old` and returns it; spins for kAwake, then sleeps.
 int awaitOther(const std::atomic<int>& value, int old) noexcept {
@@ -27,16 +24,11 @@ int awaitOther(const std::atomic<int>& value, int old) noexcept {
 
 }  // namespace
 
-ThreadTeam::ThreadTeam() noexcept : outer_(std::exchange(latest, this)) {}
-
 ThreadTeam::~ThreadTeam() {
-  latest = outer_;
   job_ = nullptr;
   ++turn_;
   turn_.notify_all();
 }
-
-ThreadTeam* ThreadTeam::idle() noexcept { return latest && !latest->job_ ? latest : nullptr; }
 
 ThreadTeam::Turn ThreadTeam::start(std::size_t members, const std::function<void()>& job) {
   try {

@@ -10,18 +10,18 @@
 
 namespace merlin {
 
-// Belongs to the thread that constructs it; forBlocks() on that thread uses it until it is
-// destroyed. Its threads are started when first needed, with that thread's affinity and priority.
-// When idle they spin for 0.2 ms, then sleep.
+// For one thread at a time, which passes it to forBlocks() (blocks.h). Its threads are started when
+// first needed, with the affinity and priority of the thread that needs them. When idle they spin
+// for 0.2 ms, then sleep.
 class ThreadTeam {
  public:
-  ThreadTeam() noexcept;
+  ThreadTeam() = default;
   ~ThreadTeam();
   ThreadTeam(const ThreadTeam&) = delete;
   ThreadTeam& operator=(const ThreadTeam&) = delete;
 
-  // The calling thread's most recent team; null if there is none or it is working.
-  static ThreadTeam* idle() noexcept;
+  // Whether it has no job. To be asked by its user, or by the job itself.
+  bool idle() const noexcept { return !job_; }
 
   // One job of the team; the destructor waits until all threads have finished it.
   class Turn {
@@ -36,15 +36,13 @@ class ThreadTeam {
   };
 
   // Lets `members` threads call job() once each; fewer if the system's thread limit is reached.
-  // `job` must not throw and must outlive the turn. REQUIRES: the team is idle and belongs to the
-  // calling thread.
+  // `job` must not throw and must outlive the turn. REQUIRES: the team is idle.
   [[nodiscard]] Turn start(std::size_t members, const std::function<void()>& job);
 
  private:
   void finish() noexcept;
   void work(std::size_t member, int turn) noexcept;
 
-  ThreadTeam* const outer_;
   const std::function<void()>* job_ = nullptr;  // null in a new turn: the threads end
   std::size_t wanted_ = 0;
   std::atomic<int> turn_{0}, busy_{0};

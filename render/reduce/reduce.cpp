@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "daemon/base/thread_team.h"
 #include "render/reduce/costs.h"
 #include "render/reduce/memory.h"
 
@@ -66,7 +65,6 @@ Result<Reduction> reduce(const Mesh& mesh, const ReduceSettings& settings,
   assert(mesh.find("normal") && mesh.find("normal")->dimension == 3);
   if (const auto checked = check(settings); !checked) return checked.error();
   if (const auto fits = blocksFor(sizeOf(mesh), settings); !fits) return fits.error();
-  ThreadTeam team;
   return findCost(settings.cost)->reduce(mesh, settings, progress);
 }
 

@@ -70,7 +70,7 @@ class BlockCutter::Piece {
   std::unordered_map<std::uint32_t, std::uint32_t> guests_;  // third corners, few
 };
 
-BlockCutter::BlockCutter(const Mesh& mesh, const std::vector<bool>& locked, unsigned threads)
+BlockCutter::BlockCutter(const Mesh& mesh, const std::vector<bool>& locked, Threads threads)
     : mesh_(mesh), locked_(locked), place_(mesh.vertexCount()) {
   const std::vector<std::uint32_t> curve = alongCurve(mesh, threads);
   for (std::uint32_t i = 0; i < curve.size(); ++i) place_[curve[i]] = i;

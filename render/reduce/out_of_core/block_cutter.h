@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "daemon/base/blocks.h"
 #include "render/mesh/mesh.h"
 
 namespace merlin::render {
@@ -25,7 +26,7 @@ struct Pieces {
 class BlockCutter {
  public:
   // locked: one a vertex of the mesh, or empty.
-  BlockCutter(const Mesh& mesh, const std::vector<bool>& locked, unsigned threads);
+  BlockCutter(const Mesh& mesh, const std::vector<bool>& locked, Threads threads);
 
   // In one pass over the mesh. A piece has the triangles with two or three corners in it: those of
   // two so that it makes no edge that is there already on the other side. What has a neighbour

@@ -132,7 +132,8 @@ Weights quadricWeights(const Mesh& mesh) {
   return weights;
 }
 
-Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings) {
+Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings,
+                                ThreadTeam& team) {
   QuadricPlan plan;
   plan.weights = weightsFor(mesh, settings);
   const auto space = PatternSpace::make(mesh, plan.weights);
@@ -153,7 +154,7 @@ Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings
   limits.preserve_topology = settings.preserve_topology;
   limits.preserve_components = settings.preserve_components;
   limits.fast = settings.fast;
-  limits.threads = threadsOr(settings.threads);
+  limits.threads = Threads(threadsOr(settings.threads), team);
   return plan;
 }
 
@@ -195,7 +196,8 @@ Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vecto
 
 Result<Reduction> reduceByQuadric(const Mesh& mesh, const ReduceSettings& settings,
                                   const Progress& progress) {
-  const auto plan = planQuadric(mesh, settings);
+  ThreadTeam team;
+  const auto plan = planQuadric(mesh, settings, team);
   if (!plan) return plan.error();
   const auto blocks = blocksFor(sizeOf(mesh), settings);
   if (!blocks) return blocks.error();

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "daemon/base/thread_team.h"
 #include "render/reduce/quadric/quadric_reducer.h"
 
 namespace merlin::render {
@@ -24,8 +25,8 @@ struct QuadricPlan {
   QuadricReducer::Limits limits;
 };
 
-// Errors: of weights and criteria, as reduce().
-Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings);
+// Errors: of weights and criteria, as reduce(). `team`: its threads do the work; outlives the plan.
+Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings, ThreadTeam& team);
 
 // Reduces `mesh`, which has the features that the plan was made with. locked: one a vertex, or
 // empty; seams' vertices are. places: samePlace(), where seams are to shrink. The log lacks its

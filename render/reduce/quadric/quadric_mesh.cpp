@@ -20,7 +20,7 @@ constexpr unsigned kMostScans = 8;         // of all triangles, for the stars
 
 // Calls work(v) for each of n vertices; what it writes must be v's own.
 template <typename Work>
-void forEachVertex(std::size_t n, unsigned threads, const Work& work) {
+void forEachVertex(std::size_t n, Threads threads, const Work& work) {
   forEach(threads, n, [&](std::size_t v) { work(static_cast<std::uint32_t>(v)); });
 }
 
@@ -130,7 +130,7 @@ void StarRoom::join(StarRoom&& other) {
 
 // Along a Morton curve of 1,024 steps an axis; of 4,096 where the mesh has so many vertices that
 // too many would share a step, and the number of a vertex still fits beside it.
-std::vector<std::uint32_t> alongCurve(const Mesh& mesh, unsigned threads) {
+std::vector<std::uint32_t> alongCurve(const Mesh& mesh, Threads threads) {
   const Box box = boundingBox(mesh.positions);
   float extent = 0;
   for (std::size_t k = 0; k < 3; ++k) extent = std::max(extent, box.high[k] - box.low[k]);
@@ -150,7 +150,7 @@ std::vector<std::uint32_t> alongCurve(const Mesh& mesh, unsigned threads) {
   return curve;
 }
 
-QuadricMesh::QuadricMesh(const Mesh& mesh, unsigned threads)
+QuadricMesh::QuadricMesh(const Mesh& mesh, Threads threads)
     : input_(alongCurve(mesh, threads)), scale_(scaleOf(mesh)) {
   const Box box = boundingBox(mesh.positions);
   for (std::size_t k = 0; k < 3; ++k) centre_[k] = (box.low[k] + box.high[k]) / 2;
@@ -179,9 +179,9 @@ std::array<float, 3> QuadricMesh::toModel(const float* position) const noexcept 
 
 // Each thread takes the corners of its own vertices.
 void QuadricMesh::fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& numbers,
-                            unsigned threads) {
+                            Threads threads) {
   const auto forEachCorner = [&](const auto& work) {
-    const std::size_t ranges = std::min(threads, kMostScans);
+    const std::size_t ranges = std::min(threads.count, kMostScans);
     forBlocks(threads, ranges, [&](std::size_t range) {
       const auto first = static_cast<std::uint32_t>(vertexCount() * range / ranges);
       const auto last = static_cast<std::uint32_t>(vertexCount() * (range + 1) / ranges);

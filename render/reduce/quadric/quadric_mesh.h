@@ -20,6 +20,7 @@
 #include <span>
 #include <vector>
 
+#include "daemon/base/blocks.h"
 #include "daemon/base/huge_array.h"
 #include "render/mesh/mesh.h"
 
@@ -167,12 +168,12 @@ class StarRoom {
 
 // The mesh's vertices in the order of a space-filling curve; the same for any number of threads.
 // O(n): a radix sort. 16 bytes a vertex besides.
-std::vector<std::uint32_t> alongCurve(const Mesh& mesh, unsigned threads);
+std::vector<std::uint32_t> alongCurve(const Mesh& mesh, Threads threads);
 
 class QuadricMesh {
  public:
   // REQUIRES: validate(mesh), tidy(mesh). O(n).
-  explicit QuadricMesh(const Mesh& mesh, unsigned threads = 1);
+  explicit QuadricMesh(const Mesh& mesh, Threads threads = 1);
 
   std::uint32_t vertexCount() const noexcept { return static_cast<std::uint32_t>(input_.size()); }
   QuadricVertex& operator[](std::uint32_t v) const noexcept { return vertices_[v]; }
@@ -193,7 +194,7 @@ class QuadricMesh {
   void tidyHub(std::uint32_t hub) noexcept;
 
  private:
-  void fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& numbers, unsigned threads);
+  void fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& numbers, Threads threads);
   void orderStar(QuadricVertex& v);
 
   std::vector<std::uint32_t> input_;

@@ -282,7 +282,7 @@ void QuadricReducer::reduceStage(std::size_t keep, const Progress& progress) {
 }
 
 const char* QuadricReducer::run(const Limits& limits, const Progress& progress) {
-  threads_ = std::max(1U, limits.threads);
+  threads_ = limits.threads;
   max_error_ = limits.error * mesh_.scale();
   fast_ = limits.fast;
   keep_components_ = limits.preserve_topology || limits.preserve_components;

@@ -38,7 +38,7 @@ Corner* appendStar(Corner* to, std::span<const Corner> star, std::uint32_t other
 
 }  // namespace
 
-QuadricReducer::QuadricReducer(const Mesh& mesh, std::size_t channels, unsigned threads)
+QuadricReducer::QuadricReducer(const Mesh& mesh, std::size_t channels, Threads threads)
     : mesh_(mesh, threads),
       input_positions_(mesh.positions.data()),
       channels_(mesh.vertexCount(), channels),

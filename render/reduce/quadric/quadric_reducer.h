@@ -13,6 +13,7 @@
 #include <limits>
 #include <vector>
 
+#include "daemon/base/blocks.h"
 #include "render/reduce/quadric/bucket_queue.h"
 #include "render/reduce/quadric/quadric_evaluate.h"
 #include "render/reduce/quadric/quadric_rules.h"
@@ -26,7 +27,7 @@ class QuadricReducer {
   using Progress = std::function<bool(const ReduceProgress&)>;
 
   // `channels`: how many values a vertex has that cost. The mesh must outlive this.
-  QuadricReducer(const Mesh& mesh, std::size_t channels, unsigned threads);
+  QuadricReducer(const Mesh& mesh, std::size_t channels, Threads threads);
 
   // Values of a channel, of the mesh's vertices `stride` floats apart. `scale`: how many model
   // units a difference of 1 weighs.
@@ -48,7 +49,7 @@ class QuadricReducer {
     bool preserve_topology = false, preserve_components = false;
     bool by_all_rules = false;  // stop where these allow no more, instead of dropping one
     bool fast = false;          // what has become dearer goes as well; no witnesses
-    unsigned threads = 1;
+    Threads threads = 1;
   };
   // Returns why it stopped, in reduce()'s words.
   const char* run(const Limits& limits, const Progress& progress);
@@ -166,7 +167,7 @@ class QuadricReducer {
   QuadricStage stage_ = QuadricStage::kAll;
   std::uint32_t most_corners_ = kMostCorners;  // of what takes part
   bool hubs_ = false;                          // there are some
-  unsigned threads_ = 1;
+  Threads threads_ = 1;
   bool cancelled_ = false;
 };
 
