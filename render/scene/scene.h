@@ -27,7 +27,8 @@ enum class BallMode { kObject, kFly };  // the ball moves the model; the viewer
 
 // Where the hand's ray ends, metres.
 struct Pointed {
-  Eigen::Vector3f at_eye_m, at_model_m;  // in eye coordinates, in the model's
+  Eigen::Vector3f at_eye_m = Eigen::Vector3f::Zero();    // in eye coordinates
+  Eigen::Vector3f at_model_m = Eigen::Vector3f::Zero();  // in the model's coordinates
   bool on_model = false;                 // on its bounding sphere, else on the wall
 };
 
