@@ -21,8 +21,8 @@ struct Forest {
   }
 };
 
-// Of each of `count` corners; `from` and `out` may be the same. Eight at a time where the processor
-// can (AVX2), the same result.
+// Follows each of `count` corners to its surviving ancestor; `from` and `out` may be the same
+// array. Uses eight lanes where the processor can (AVX2), with the same result.
 using ChaseAll = void (*)(const Forest& forest, std::uint32_t alive, const std::uint32_t* from,
                           std::size_t count, std::uint32_t* out);
 ChaseAll chaser(std::size_t nodes);  // the fastest for this processor and so many nodes

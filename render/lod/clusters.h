@@ -53,7 +53,7 @@ class Clusters {
   std::span<const std::uint16_t> neighbours(std::size_t cluster) const noexcept {
     return neighbours_[cluster];
   }
-  // Of a node that dies at or after finestLevel() and before coarsestLevel().
+  // Cluster of a node that dies at or after finestLevel() and before coarsestLevel().
   std::uint16_t clusterOf(std::uint32_t node) const noexcept { return cluster_of_[node]; }
   std::size_t finestLevel() const noexcept { return rungs_.front().level; }
   std::size_t coarsestLevel() const noexcept { return coarsest_; }

@@ -26,8 +26,8 @@ constexpr std::size_t kVerticesOfACluster = 700, kLeastUsual = 512, kMostUsual =
 // Pieces that all nodes or triangles are done in: what comes out does not depend on them.
 constexpr std::size_t kPieces = 16;
 
-// Of the finest rung, so that all rungs fit: 12 bytes for each of theirs, a rank and a node's
-// cluster for each of the finest.
+// Number of triangles of the finest rung such that all rungs fit: 12 bytes for each triangle of
+// every rung, and a rank and a node's cluster for each of the finest.
 std::size_t trianglesThatFit(std::size_t memory) {
   constexpr std::size_t kOfRungs = 12 * 3414 / 1000, kOfLargeRungs = 12 * 2, kOfFinest = 4 + 2;
   constexpr std::size_t kLeastLarge = (kOfRungs + kOfFinest) * kLargeRung;
@@ -74,7 +74,7 @@ class Boxes {
 
 }  // namespace
 
-// What the constructor works with, once.
+// The state of the constructor's work, used once.
 struct Clusters::Builder {
   Clusters& c;
   const Dendrogram& d;
@@ -238,7 +238,7 @@ std::vector<std::uint16_t> Clusters::clusterOfEach() const {
   return of;
 }
 
-// Of each cluster's nodes and of its leaf triangles' corners.
+// Bounding boxes of each cluster's nodes and of its leaf triangles' corners.
 Boxes Clusters::Builder::boxesOfNodes() const {
   const auto positions = d.arrays().positions;
   const auto leaves = d.arrays().triangles;
@@ -290,7 +290,7 @@ void Clusters::Builder::measure() {
   });
 }
 
-// Of the finest triangles: their mean normal, and how far they turn from it.
+// Computes the mean normal of the cluster's finest triangles and their largest angle from it.
 void Clusters::Builder::measureCone(std::size_t cluster) {
   const auto positions = d.arrays().positions;
   std::vector<std::array<float, 3>> normals;

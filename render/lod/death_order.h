@@ -22,7 +22,7 @@ class DeathOrder {
   std::size_t nodeCount() const noexcept { return numbers_.size(); }
   std::size_t collapses() const noexcept { return log_.children.size(); }
 
-  // Of a node of the log its number in the dendrogram, and back.
+  // Converts a node of the log to its number in the dendrogram, and back.
   std::uint32_t numberOf(std::size_t node) const noexcept { return numbers_[node]; }
   std::uint32_t nodeOf(std::size_t number) const noexcept {
     if (number < roots_.size()) return roots_[number];

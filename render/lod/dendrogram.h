@@ -60,7 +60,7 @@ class Dendrogram {
   const Arrays& arrays() const noexcept { return a_; }
   const FeatureView* find(std::string_view name) const noexcept;  // nullptr if there is none
 
-  // Of a node that dies: the collapse that merges it, and the node that this makes.
+  // For a node that dies: the collapse that merges it, and the node that this collapse makes.
   std::size_t collapseOf(std::uint32_t node) const noexcept { return (nodeCount() - 1 - node) / 2; }
   std::uint32_t parentOf(std::uint32_t node) const noexcept { return a_.parents[collapseOf(node)]; }
 

@@ -12,7 +12,7 @@ namespace {
 constexpr double kStepsAnOctave = 64;
 // An even cut is as good where the finest wanted is less than this times the coarsest.
 constexpr float kMuchTheSame = 1.15F;
-// What is seen edge-on is still an outline.
+// Least cosine that is used: a surface seen edge-on still has an outline.
 constexpr float kLeastFacing = 0.1F;
 constexpr int kBisections = 12;
 constexpr float kLeastOfNeighbour = 0.4F;

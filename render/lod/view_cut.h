@@ -23,7 +23,7 @@
 
 namespace merlin::render {
 
-// What a tile looks through.
+// The view of one tile.
 struct TileView {
   Eigen::Matrix4f clip_from_model;  // OpenGL's clip space; perspective
   int width_px = 0;
@@ -43,7 +43,7 @@ class ViewCut {
 
   std::span<const std::uint32_t> levels() const noexcept { return levels_; }
 
-  // Of the last tiles given to look(): whether `tile` may see any of the cluster.
+  // Whether `tile`, one of those last given to look(), may see any part of the cluster.
   bool sees(std::size_t tile, std::size_t cluster) const noexcept {
     return seen_[tile * clusters_.size() + cluster];
   }

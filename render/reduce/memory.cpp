@@ -11,13 +11,14 @@ namespace {
 // as much for its star, and what stars that grow leave unused.
 constexpr double kQuadrics = 84;
 constexpr double kPattern = 165;
-// What blocks leave, as a share of the mesh, is at most so much above what they are asked for.
+// Upper bound of what reduction in blocks leaves, relative to the number that the blocks were asked
+// for.
 constexpr double kOver = 1.25;
 constexpr std::size_t kMostBlocks = 64;
 
 double asDouble(std::size_t n) { return static_cast<double>(n); }
 
-// Of a mesh of its own, normals and features included, a triangle.
+// Memory of a mesh with its normals and features, per triangle.
 double meshBytes(const MeshSize& size) {
   return asDouble(size.bytes()) / asDouble(std::max<std::size_t>(size.triangles, 1));
 }
@@ -34,7 +35,7 @@ double logBytes(const MeshSize& size) {
   return asDouble(size.vertices) * (24 + 4 * asDouble(size.values));
 }
 
-// What of the mesh blocks leave to the whole.
+// Share of the mesh that the blocks leave to the reduction of the whole.
 double shareLeft(const MeshSize& size, const ReduceSettings& settings) {
   const double target = std::max(
       asDouble(settings.min_triangles) / asDouble(std::max<std::size_t>(size.triangles, 1)),

@@ -1,4 +1,4 @@
-// What a reduction takes of memory, as far as can be said before.
+// Estimates of the memory that a reduction takes, before it runs.
 //
 // Estimates from measurements (README.md), a little above them, since a limit is a promise: those
 // of `./dev bench size` are within a tenth.
@@ -23,7 +23,7 @@ ReductionNeed needOf(const MeshSize& size, const ReduceSettings& settings);
 // where not even blocks fit, with the need and the limit.
 Result<std::size_t> blocksFor(const MeshSize& size, const ReduceSettings& settings);
 
-// What share of its triangles a block keeps, where `target` of all are asked for.
+// Share of its triangles that a block keeps if `target` of all are asked for.
 double shareOfBlocks(double target);
 
 }  // namespace merlin::render

@@ -32,8 +32,8 @@ struct Preset {
 const std::vector<Preset>& presets();
 Weights presetWeights(const Preset& preset, const Mesh& mesh);
 
-// What MERLIN takes where nobody says otherwise. Against 1998's, normals weigh a tenth and
-// curvature nothing: on scans the RMS error is lowest for a normal's weight of 0.03 to 0.1
+// Weights that MERLIN uses if none are given. Compared with those of 1998, normals weigh a tenth
+// and curvature nothing: on scans the RMS error is lowest for a normal's weight of 0.03 to 0.1
 // (README.md).
 Weights defaultWeights(const Mesh& mesh);
 

@@ -49,7 +49,7 @@ class MrmReader {
   MrmReader(std::string path, std::span<const std::byte> bytes, std::shared_ptr<const void> owner)
       : path_(std::move(path)), bytes_(bytes), owner_(std::move(owner)) {}
 
-  // Of a file that is `file_size` long, of which the reader has the header alone.
+  // Checks the header of a file that is `file_size` bytes long; nothing else of the file is needed.
   Result<Ok> checkHeader(std::uint64_t file_size) { return readHeader(file_size); }
 
   Result<Dendrogram> read() {

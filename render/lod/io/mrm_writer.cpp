@@ -36,13 +36,13 @@ struct Section {
   std::size_t bytes() const { return entry.rows * rowBytes(); }
 };
 
-// What there is room for, in whole characters.
+// The longest prefix that fits into the field, in whole characters.
 std::string_view shortName(std::string_view name) {
   constexpr std::size_t kRoom = sizeof SectionEntry::name - 1;
   return name.size() > kRoom ? wholeCharacters(name.substr(0, kRoom)) : name;
 }
 
-// What a file is made of, wherever it comes from.
+// The parts of a model file, independent of where they come from.
 struct Model {
   std::size_t nodes = 0, collapses = 0, triangles = 0;
   std::vector<Section> sections;
@@ -119,7 +119,7 @@ Rows corners(const Mesh& mesh, const DeathOrder& order) {
   };
 }
 
-// What it is given must outlive the model.
+// The arguments must outlive the returned model.
 Model modelOf(const Mesh& mesh, const CollapseLog& log, const DeathOrder& order,
               const std::vector<float>& error) {
   const std::size_t vertices = mesh.vertexCount();

@@ -20,7 +20,7 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kSamples = 32;
 constexpr std::size_t kSampleSize = 20'000;  // vertices
 
-// What came of one block.
+// Result of one block.
 struct Part {
   std::vector<std::uint32_t> vertices;  // of the whole mesh
   CollapseLog log;

@@ -10,7 +10,7 @@ namespace merlin::render {
 namespace {
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
-// What a refused edge's length is multiplied by (P8 says "lengthen", not how much).
+// Factor by which the length of a refused edge grows (4.3 says "lengthen", but not how much).
 constexpr float kLengthening = 4;
 constexpr float kShortest = 1e-6F;
 

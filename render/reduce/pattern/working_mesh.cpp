@@ -62,7 +62,7 @@ WorkingMesh::WorkingMesh(const Mesh& mesh)
   for (std::uint32_t v = 0; v < mark_.size(); ++v) countTriangles(v);
 }
 
-// Of each edge of a.
+// Counts the triangles at each edge of a.
 void WorkingMesh::countTriangles(std::uint32_t a) {
   for (const std::uint32_t e : spokes_[a]) count_[otherEnd(e, a)] = 0;
   for (const std::uint32_t t : around_[a]) {

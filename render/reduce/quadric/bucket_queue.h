@@ -109,7 +109,7 @@ class BucketQueue {
     return word * 64 + static_cast<std::size_t>(std::countr_zero(bits));
   }
 
-  // What comes after a vertex of ahead_bucket_.
+  // Finds the vertex that follows one of ahead_bucket_.
   template <typename Next>
   std::uint32_t after(std::uint32_t vertex, const Next& next) {
     const std::uint32_t follows = vertex == kNone ? kNone : next(vertex);

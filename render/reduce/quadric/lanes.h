@@ -1,9 +1,9 @@
 // Eight numbers at a time. Private to render/reduce.
 //
-// What uses these is one portable text that is compiled once for any processor and once for a
-// newer one's wider registers: the same operations in the same order, none of them fused, so the
-// same bits. Functions are all inlined into the one that is made for a processor, so the calling
-// convention that GCC warns about (-Wpsabi) is never used.
+// Code that uses these is one portable source, compiled once for any processor and once for the
+// wider registers of newer ones. Both do the same operations in the same order, none of them fused,
+// so the results have the same bits. All functions are inlined into the one that is compiled for a
+// processor, so the calling convention that GCC warns about (-Wpsabi) is never used.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,8 @@
 
 namespace merlin::render {
 
-// Of one text, compiled twice, what this processor runs: `wide` is MERLIN_WIDE.
+// Chooses, of two compilations of one source, the one that this processor can run; `wide` is
+// MERLIN_WIDE.
 template <typename Function>
 Function forThisProcessor(Function wide, Function portable) {
 #if defined(__x86_64__)
@@ -57,7 +58,7 @@ MERLIN_INLINE std::int32_t sum(const Mask& v) {
   return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
 }
 
-// Of each of eight its sum, added in the order of sum().
+// The sum of each of eight vectors, added in the order of sum().
 MERLIN_INLINE Lanes sums(const Lanes (&v)[8]) {
   Lanes half[4];  // {v0 + v4, v1 + v5, v2 + v6, v3 + v7} of two
   for (int k = 0; k < 4; ++k) {
@@ -127,7 +128,7 @@ MERLIN_INLINE Mask upTo(std::uint32_t count, const Mask& v) {
              : __builtin_shufflevector(v, v, 0, 0, 0, 0, 0, 0, 0, 0);
 }
 
-// Of eight pairs of numbers the first ones, or the second ones; the first pair's from `count` on.
+// The first (or the second) numbers of eight pairs; pairs from `count` on repeat the first pair.
 MERLIN_INLINE Mask firsts(const std::uint32_t* pairs, std::uint32_t count) {
   return upTo(count,
               __builtin_shufflevector(load(pairs), load(pairs + 8), 0, 2, 4, 6, 8, 10, 12, 14));

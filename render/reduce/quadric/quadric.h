@@ -1,4 +1,4 @@
-// What reduceByQuadric() is made of, for a mesh as a whole and for blocks of it. Private to
+// The parts of reduceByQuadric(), for a mesh as a whole and for blocks of it. Private to
 // render/reduce.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace merlin::render {
 
-// What is decided for the whole mesh, so that its blocks are measured alike.
+// Decisions that are made once for the whole mesh, so that all of its blocks are measured alike.
 struct QuadricPlan {
   // Feature f of the mesh as channels first .. first + dimension - 1.
   struct ChannelFeature {

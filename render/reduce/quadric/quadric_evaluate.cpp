@@ -21,7 +21,7 @@ struct Solver {
   const float* wc;  // and its channels' block
   EdgeCosts& out;
 
-  // Of x: sum area g of a channel; its value less w's.
+  // For the neighbour x: sum of area times gradient of a channel, and the channel's value less w's.
   struct Channel {
     Lanes bx, by, bz, delta;
   };
@@ -35,7 +35,7 @@ struct Solver {
     return c;
   }
 
-  // Of x: sum area.
+  // Sum of the areas at each neighbour x.
   MERLIN_INLINE Lanes areasOf(const std::uint32_t* x) const {
     const auto at = [&](int i) { return view.channels->block(x[i])[0]; };
     return Lanes{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};

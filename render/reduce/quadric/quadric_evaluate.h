@@ -1,4 +1,4 @@
-// What it costs to collapse each edge of a vertex, and where the new vertex would be. Private to
+// The cost of collapsing each edge of a vertex, and the position of the new vertex. Private to
 // render/reduce.
 //
 // For the edge (w, x) the quadric is A = H_w + H_x: the area-weighted squared distance to the
@@ -36,7 +36,7 @@ class QuadricChannels {
   std::size_t count() const noexcept { return count_; }
   std::size_t stride() const noexcept { return 1 + 4 * count_; }
   float* block(std::uint32_t v) const noexcept { return blocks_.data() + v * stride(); }
-  // Of a vertex that is soon read.
+  // Loads the record of a vertex that will soon be read into the cache.
   void prefetch(std::uint32_t v) const noexcept {
     constexpr std::size_t kCacheLine = 64 / sizeof(float);
     const float* const first = block(v);
@@ -57,7 +57,8 @@ struct QuadricView {
   const QuadricChannels* channels;
 };
 
-// Of one vertex. Arrays have a row a neighbour, and room for 8 more. Scratch: one a thread.
+// Costs of all edges of one vertex. Arrays have one row per neighbour and room for 8 more. Scratch
+// memory: one per thread.
 struct EdgeCosts {
   std::uint32_t count = 0;
   std::vector<std::uint32_t> neighbour;
@@ -90,7 +91,7 @@ struct EdgeCosts {
   void grow(std::size_t rows);
 };
 
-// What is to be done for a vertex w that has corners.
+// How much is computed for a vertex w that has triangles.
 enum class Evaluate {
   kQuadric,  // w's own quadric (and channels' sums) anew; EdgeCosts are scratch
   kEdges,    // what its edges cost, by its quadric and its neighbours' as they are

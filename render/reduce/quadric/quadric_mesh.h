@@ -120,10 +120,10 @@ inline std::uint32_t trianglesOf(const QuadricVertex& v) noexcept {
   return v.flags & kHub ? hubRecordOf(v).triangles : v.degree;
 }
 
-// Of a dead vertex: the one that it merged into, in the place of its star.
+// For a dead vertex: the vertex that it merged into, stored in the place of its star.
 inline std::uint32_t& mergedInto(QuadricVertex& dead) noexcept { return dead.star; }
 
-// What a collapse made, kept in the dead vertex' record over position and h.
+// The result of a collapse, stored in the dead vertex' record over its position and h.
 struct NodeRecord {
   std::uint32_t children[2];
   float position[3], error, normal[3];

@@ -28,8 +28,9 @@ std::size_t partsFor(std::size_t vertices) {
   return parts;
 }
 
-// Of `triangles`, how many are left when so many parts become half as many: borders, which wait,
-// are then a tenth of that or less; of small meshes, where it would hardly pay otherwise, a fourth.
+// Number of triangles at which `parts` parts become half as many: their borders, which wait, are
+// then a tenth of the triangles or less; a fourth for small meshes, where smaller steps would
+// hardly pay.
 std::size_t leftBy(std::size_t parts, std::size_t vertices, std::size_t triangles) {
   const double part = static_cast<double>(vertices) / static_cast<double>(parts);
   const double ratio = kReduction * std::sqrt(part / 200'000);
@@ -47,7 +48,7 @@ std::size_t stepsAtOnce(std::size_t left, std::size_t keep) {
 
 }  // namespace
 
-// What lives, in blocks at once; work(v, scratch) writes what is v's own.
+// Calls work(v, scratch), which writes only data of v, for each living vertex, in parallel blocks.
 void QuadricReducer::forEachLiving(
     const std::function<void(std::uint32_t, EdgeCosts&)>& work) const {
   constexpr std::size_t kBlock = 1 << 12;
@@ -208,7 +209,7 @@ void QuadricReducer::joinLogs(std::vector<Worker>& parts, HugeArray<std::uint32_
   }
 }
 
-// What another has been given back and what it counted; not its queue.
+// Takes over the counts of another worker and the vertices that it gave back, but not its queue.
 void QuadricReducer::Worker::takeOver(Worker&& other) {
   room.join(std::move(other.room));
   flips += other.flips;
@@ -257,8 +258,8 @@ void QuadricReducer::reduceWhole(std::size_t keep, const Progress& progress) {
   }
 }
 
-// Of the stars that most_corners_ leaves out, of hubs and of what collapses would have made, how
-// many triangles the smallest has.
+// Number of triangles of the smallest star that most_corners_ leaves out: of hubs, and of stars
+// that refused collapses would have made.
 std::uint32_t QuadricReducer::smallestLeftOut() const {
   std::uint32_t smallest = whole_.refused_star;
   for (std::uint32_t v = 0; hubs_ && v < mesh_.vertexCount(); ++v) {
@@ -299,7 +300,7 @@ const char* QuadricReducer::run(const Limits& limits, const Progress& progress) 
   for (const QuadricStage stage : stages) {
     if (triangles_ <= keep || cancelled_ || (stage != QuadricStage::kAll && limits.by_all_rules))
       break;
-    // What is left after an error's limit is not what rules are in the way of.
+    // Once the error limit is reached, fewer rules would not help.
     if (stage != QuadricStage::kAll && whole_.too_coarse) break;
     if (stage == QuadricStage::kNoLock && labels_.empty()) continue;
     if (!keepsTopology(stage) && limits.preserve_topology) break;

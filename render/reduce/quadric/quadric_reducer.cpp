@@ -144,7 +144,7 @@ bool QuadricReducer::guard(Worker& w, std::uint32_t v, std::uint32_t edge) {
   else if ((flags & kLocked) && keepsTopology(stage_))
     stayAtLocked(view(), v, w.costs, edge);
   if (w.costs.cost[edge] >= kNoEdge) return before < kNoEdge;
-  // What many triangles without an order have for a border says nothing of a shape.
+  // If many triangles without an order meet, their borders say nothing of a shape.
   const bool unordered = !keepsTopology(stage_) && a.degree + x.degree > 2 * kManyCorners;
   if ((flags & kOpen) && !unordered) deviation = borderDeviation(view(), v, w.costs, edge);
   if (!fast_) deviation = std::max(deviation, witnessDeviation(w, v, edge));
@@ -158,7 +158,7 @@ bool QuadricReducer::guard(Worker& w, std::uint32_t v, std::uint32_t edge) {
 void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
   const std::size_t bucket = w.queue.current();
   const bool last = bucket + 1 == BucketQueue::buckets();
-  // Of a star without order each try costs more than a cheaper place in the queue is worth.
+  // For a star without an order each try costs more than a cheaper place in the queue is worth.
   const bool large = !keepsTopology(stage_) && mesh_[v].degree > kManyCorners;
   const float ceiling = last || large ? kNoEdge : tolerance() * BucketQueue::floorOf(bucket + 1);
   evaluate(w, v);
@@ -178,7 +178,7 @@ void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
     }
     const std::uint32_t x = costs.neighbour[edge];
     __builtin_prefetch(mesh_.corners(mesh_[x].star));
-    // What a large star may not do it is not measured for.
+    // A collapse that a large star does not allow is not measured.
     const bool many = mesh_[v].degree + mesh_[x].degree > 2 * kManyCorners;
     if (many && !isAlongSeam(costs, v, edge) && costs.deviation[edge] < 0 &&
         !mayCollapse(w, costs, v, edge)) {

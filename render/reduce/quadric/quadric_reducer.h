@@ -36,11 +36,12 @@ class QuadricReducer {
   // One a vertex of the mesh; vertices of different labels merge only when nothing else is left.
   void setLabels(const float* values);
 
-  // Of the mesh's vertices: these stay where they are until nothing else is left.
+  // Keeps these vertices of the mesh where they are until nothing else is left.
   void lock(const std::vector<bool>& locked);
 
-  // Of seams, once they are locked. next: rings of the mesh's vertices in one place (samePlace());
-  // where there are two, edges along the seam may go, those of both sides in one.
+  // Lets seams shrink; to be called after they were locked. next: rings of the mesh's vertices that
+  // lie in one place (samePlace()); where a ring has two, edges along the seam may collapse, on
+  // both sides at once.
   void pair(const std::vector<std::uint32_t>& next);
 
   struct Limits {
@@ -54,15 +55,15 @@ class QuadricReducer {
   // Returns why it stopped, in reduce()'s words.
   const char* run(const Limits& limits, const Progress& progress);
 
-  // Of the nodes that collapses made, in order, as they were given to setChannel(): `stride` floats
-  // apart.
+  // Writes a channel's values at the nodes that collapses made, in their order, in the unit in
+  // which they were given to setChannel(), `stride` floats apart.
   void channelValues(std::size_t channel, float scale, float* values, std::size_t stride) const;
 
   // The log; of the features of `mesh` only "normal" is filled.
   Reduction finish(const Mesh& mesh);
 
  private:
-  // What one thread works on: a part, or the whole.
+  // The work of one thread: a part of the mesh, or the whole.
   struct Worker {
     BucketQueue queue;
     StarRoom room;
@@ -79,8 +80,8 @@ class QuadricReducer {
     std::uint32_t refused_star = ~0U;    // the least that was refused for its size
     std::vector<std::uint32_t> revived;  // hubs that have few triangles by now
     bool inside_only = false;            // of a part: only vertices whose ring is in it
-    // Of a part: its vertices on the curve, its triangles (about), collapses at the end of each
-    // step.
+    // Of a part: the range of its vertices on the curve, its number of triangles (about), and the
+    // number of collapses at the end of each step.
     std::uint32_t begin = 0, end = 0;
     std::size_t triangles = 0;
     std::vector<std::size_t> steps;
@@ -153,7 +154,7 @@ class QuadricReducer {
   std::vector<std::uint32_t> pinned_;  // by node: the locked vertex that it stands on; if any are
   std::vector<std::uint32_t> twins_;   // of a seam's vertex the other one in its place; or empty
   bool keep_components_ = false, fast_ = false;
-  // Of the channels, as they were given and weighted: no value leaves them.
+  // Ranges of the channels, as given and as weighted; no value leaves them.
   std::vector<Range> given_, ranges_;
   EvaluateEdges evaluate_;
   JudgeEdge judge_;

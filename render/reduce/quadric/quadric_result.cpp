@@ -1,4 +1,4 @@
-// What QuadricReducer has done, as a log.
+// The result of a QuadricReducer as a log.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -38,7 +38,7 @@ NodeRecord QuadricReducer::recordOf(std::uint32_t dead) const {
   return r;
 }
 
-// Of collapse k. REQUIRES: next_ says of each dead vertex which collapse it was.
+// Copies collapse k into the log. REQUIRES: next_ maps each dead vertex to its collapse.
 void QuadricReducer::copyTo(CollapseLog& log, std::vector<float>* normals, std::size_t k) const {
   const std::uint32_t vertices = mesh_.vertexCount();
   const auto node = [&](std::uint32_t n) {

@@ -44,7 +44,7 @@ MERLIN_INLINE bool sidesKeepEnough(const QuadricView& view, const QuadricVertex&
     const QuadricVertex& o = view.vertices[side];
     return trianglesOf(o) >= ((o.flags & kOpen) ? 2U : 4U);
   };
-  // Of a closed fan, corners stand in the order of the edges.
+  // In a closed fan the corners stand in the order of the edges.
   if (!(a.flags & kOpen)) return keeps(star[edge].c) && keeps(star[(edge ? edge : a.degree) - 1].b);
   for (std::uint32_t k = 0; k < a.degree; ++k) {
     if (isIn(star[k], x) && !keeps(star[k].b == x ? star[k].c : star[k].b)) return false;

@@ -41,8 +41,9 @@ JudgeEdge portableEdgeJudge();
 // cost at their best place). kNoEdge where both ends are locked.
 void stayAtLocked(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, std::uint32_t edge);
 
-// Of an edge along a seam whose vertices lie on either side, w's and `twin`'s: both new vertices go
-// to one end of the edge, where the two together cost less; that is what w's edge then costs.
+// Prices an edge along a seam, whose vertices exist on both sides, w's and `twin`'s: both new
+// vertices go to the end of the edge where the two together cost less, and that sum becomes the
+// cost of w's edge.
 void goAlongSeam(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, std::uint32_t edge,
                  std::uint32_t twin, EdgeCosts& twin_costs, std::uint32_t twin_edge);
 
@@ -57,7 +58,7 @@ inline float costAt(const float* h, const float (&r)[3]) {
          r[1] * (h[3] * r[1] + 2 * (h[4] * r[2])) + h[5] * r[2] * r[2];
 }
 
-// What an edge costs at least whose deviation (squared) is this.
+// Least cost of an edge with this squared deviation.
 inline float deviationCost(float deviation) { return 100 * deviation * deviation; }
 
 }  // namespace merlin::render

@@ -57,7 +57,7 @@ void QuadricReducer::stayOnSeam(Worker& w, std::uint32_t v, std::uint32_t edge) 
     goAlongSeam(view(), v, w.costs, edge, twins_[v], w.twin, other);
 }
 
-// Of the vertex' other side, as it is.
+// Adds the normal of the vertex' other side, unchanged.
 void QuadricReducer::addNormalOf(std::uint32_t twin, float* normal) const {
   const QuadricVertex& t = mesh_[twin];
   if (!lives(t) || (t.flags & kHub)) return;

@@ -1,4 +1,4 @@
-// What a vertex has of its own, of its star: ring, quadric, normal, channels' sums. Private to
+// Data of one vertex and its star: ring, quadric, normal, sums of channels. Private to
 // quadric_evaluate.cpp, which compiles it twice (lanes.h).
 #pragma once
 
@@ -11,8 +11,8 @@
 namespace merlin::render {
 
 inline constexpr float kTiny = 1e-30F;
-// Of a sharp vertex the mean of its faces' normals is shorter. A cone's is the sine of the angle
-// between its axis and its side.
+// A vertex is sharp if the mean of its faces' normals is shorter than this. For a cone the mean is
+// as long as the sine of the angle between its axis and its side.
 inline constexpr float kSharpMean = 0.6F;
 
 // Eight neighbours, one a lane: from w, and their `quadrics`.
@@ -80,7 +80,7 @@ inline void findNeighbours(const QuadricView& view, const QuadricVertex& w, Edge
   }
 }
 
-// Of a closed fan they are the corners' first vertices, in order.
+// The neighbours of a vertex with a closed fan: the first vertices of its corners, in order.
 inline void fanNeighbours(const QuadricView& view, const QuadricVertex& w, EdgeCosts& out) {
   out.count = w.degree;
   for (std::uint32_t i = 0; i < w.degree; ++i) {
@@ -111,14 +111,14 @@ struct EightTriangles {
   Mask b, c;
 };
 
-// Of a closed fan of up to eight, whose neighbours these are: those beyond the last are the first
-// again, so that the fan closes.
+// The triangles of a closed fan of up to eight with these neighbours; neighbours beyond the last
+// repeat the first one, so that the fan closes.
 MERLIN_INLINE EightTriangles fanTriangles(const Lanes& x, const Lanes& y, const Lanes& z,
                                           const Mask& neighbours) {
   return {x, y, z, next(x), next(y), next(z), neighbours, next(neighbours)};
 }
 
-// Of a star's corners from `first` on, once findRing() has been there.
+// Eight triangles of a star from corner `first` on. REQUIRES: findRing() was called.
 MERLIN_INLINE EightTriangles starTriangles(const QuadricVertex& w, const EdgeCosts& out,
                                            std::uint32_t first) {
   const float *x = out.rx.data(), *y = out.ry.data(), *z = out.rz.data();
@@ -169,7 +169,7 @@ struct Planes {
   }
 };
 
-// Of eight vertices the values of a channel.
+// The values of a channel at eight vertices.
 MERLIN_INLINE Lanes valuesOf(const QuadricChannels& channels, const Mask& vertices, std::size_t k) {
   const auto at = [&](int i) { return channels.value(static_cast<std::uint32_t>(vertices[i]), k); };
   return Lanes{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
@@ -265,7 +265,8 @@ MERLIN_INLINE void setSharp(QuadricVertex& w, const float* n) {
   if (upright < kSharpMean * kSharpMean * faces * faces) w.flags |= kSharp;
 }
 
-// Of any star, once findRing() has been there. `block`: w's, if there are channels.
+// Sums over any star. REQUIRES: findRing() was called. `block`: w's block of channels, if there are
+// channels.
 template <bool channels>
 MERLIN_INLINE void setOwn(const QuadricView& view, QuadricVertex& w, EdgeCosts& out, float* block) {
   if (channels) clearSums(*view.channels, block);
@@ -280,7 +281,8 @@ MERLIN_INLINE void setOwn(const QuadricView& view, QuadricVertex& w, EdgeCosts& 
   }
 }
 
-// Of a closed fan of up to eight, whose neighbours are the corners' first vertices, in order.
+// Sums over a closed fan of up to eight triangles, whose neighbours are the first vertices of its
+// corners, in order.
 template <bool channels>
 MERLIN_INLINE void setOwnOfFan(const QuadricView& view, QuadricVertex& w, const Lanes& x,
                                const Lanes& y, const Lanes& z, EdgeCosts& out, float* block) {

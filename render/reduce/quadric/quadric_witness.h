@@ -12,13 +12,13 @@
 
 namespace merlin::render {
 
-// Of the witnesses of an edge's two ends.
+// The witness of an edge: the farther one of its two ends' witnesses.
 struct FartherWitness {
   float distance2;    // from the new vertex' star, squared
   std::uint32_t end;  // whose it is: w's (0) or the neighbour's (1)
 };
 
-// Of w and its neighbour number `edge` of `costs`. Pure.
+// Finds the farther witness of w and its neighbour number `edge` of `costs`. Pure.
 using FindFarther = FartherWitness (*)(const QuadricView& view, std::uint32_t w,
                                        const EdgeCosts& costs, std::uint32_t edge);
 
