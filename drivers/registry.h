@@ -16,7 +16,7 @@ namespace merlin {
 
 enum class SampleKind { kGlove, kTracker, kBall };
 
-// What any driver may be told; each takes its own.
+// Settings of all drivers; each driver uses its own.
 struct DriverSettings {
   CybergloveSettings cyberglove;
   FastrakSettings fastrak;

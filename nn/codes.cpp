@@ -22,7 +22,7 @@ std::vector<std::uint32_t> inUseFirst(const std::vector<std::uint32_t>& pool,
 
 int bits(std::uint32_t a, std::uint32_t b) { return std::popcount(a ^ b); }
 
-// What is gained when i and j exchange their codes; j may be a code that is free.
+// Gain if i and j exchange their codes; j may be a code that is free.
 double gain(const Likeness& likeness, const std::vector<std::uint32_t>& code, std::size_t i,
             std::size_t j) {
   const std::size_t postures = likeness.size();

@@ -17,7 +17,7 @@ struct LabelledHand {
 };
 using DataSet = std::vector<LabelledHand>;
 
-// What the trainer takes: a hand as the network sees it, and the code to answer with.
+// Training example: a hand as the network sees it, and the code that it should answer.
 struct Example {
   Input x{};
   std::uint32_t code = 0;

@@ -1,7 +1,7 @@
 // Training that generalises: from labelled hands to a posture network, with every choice made from
 // the hands. Pure: one seed and one set of hands give one network, byte for byte, on every machine.
 //
-// What is done, in order, and on which data each choice was made: README.md, "Training".
+// Steps, in order, and the data that each choice is based on: README.md, "Training".
 #pragma once
 
 #include <cstdint>

@@ -9,7 +9,7 @@
 
 namespace merlin::nn {
 
-// What is held. No name: none.
+// The posture that is held; none if `any` is false.
 struct Held {
   std::uint32_t code = 0;
   bool any = false;

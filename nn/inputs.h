@@ -7,7 +7,7 @@
 
 namespace merlin::nn {
 
-// What a glove measures, in slot order: joint angles [rad], or its sensors' own counts. A network
+// Measurements of a glove in slot order: joint angles [rad], or its sensors' raw counts. A network
 // is trained on one of the two and recalls the same.
 enum class InputUnit { kRadians, kRaw };
 using Angles = std::array<float, kInputs>;

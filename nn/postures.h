@@ -61,8 +61,8 @@ class Recogniser {
  public:
   explicit Recogniser(const PostureNetwork& network);
 
-  // What the hand shows. A value that is not finite is never a posture, whatever the table says:
-  // code 0, activations NaN, no name. Allocation-free; about 0.1 us.
+  // Recognises the posture of a hand. A value that is not finite is never a posture, whatever the
+  // table says: code 0, activations NaN, no name. Allocation-free; about 0.1 us.
   Recognition operator()(const Angles& value) const noexcept;
 
   std::string_view name(std::uint32_t code) const noexcept { return postures_.name(code); }

@@ -1,4 +1,4 @@
-// What the configuration says of when a posture counts.
+// Settings of the minimum time and margin of a posture.
 #pragma once
 
 namespace merlin::nn {

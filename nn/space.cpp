@@ -13,8 +13,8 @@ using Eigen::VectorXd;
 
 constexpr double kReach = 3.0;            // of a range, standard deviations
 constexpr double kLeastDeviation = 1e-6;  // of a slot that is measured, share of its size
-// Of the mean variance, added to each: a direction in which no hand has strayed yet may be one in
-// which the next one does.
+// Share of the mean variance that is added to each variance: a direction in which no hand has
+// strayed yet may be one in which the next one does.
 constexpr double kShrinkage = 0.1;
 
 VectorXd wide(const Input& x) {

@@ -14,8 +14,8 @@ namespace merlin::nn {
 
 using Slots = std::array<bool, kInputs>;
 
-// Of a set of hands, in the network's scaled inputs: enough to make hands like them. A network's
-// file keeps it, so that adapting can rehearse what the network knows.
+// Statistics of a set of hands in the network's scaled inputs, sufficient to generate similar
+// hands. A network's file keeps them, so that adapting can rehearse what the network knows.
 struct Memory {
   std::vector<std::string> postures;
   std::vector<Input> mean;  // of each posture

@@ -38,7 +38,7 @@ std::string readAll(int fd) {
   }
 }
 
-// What the child sends: a byte that tells a result from an error's code, then its text.
+// Sends a byte that tells a result from an error's code, then the text.
 [[noreturn]] void runChild(const std::function<Result<std::string>()>& work, int to,
                            std::chrono::seconds limit) {
   const auto seconds = static_cast<rlim_t>(limit.count());

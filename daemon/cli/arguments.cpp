@@ -74,7 +74,7 @@ struct Plain<std::vector<T>> {
   using type = T;
 };
 
-// What is wrong with a value that CLI11 would accept: -1 for an unsigned type (it would wrap to the
+// The fault of a value that CLI11 would accept: -1 for an unsigned type (it would wrap to the
 // largest value), "nan" and "inf" for a floating-point type.
 template <typename T>
 std::string faultOf(const std::string& value) {

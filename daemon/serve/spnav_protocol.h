@@ -21,7 +21,7 @@
 
 namespace merlin::serve {
 
-// What a client may ask about the ball.
+// Properties of the ball that a client may ask for.
 struct SpnavDevice {
   std::string name = "MERLIN ball";
   std::string path;

@@ -168,7 +168,7 @@ struct FrameTrace {
 };
 static_assert(sizeof(TraceStep) == 12 && sizeof(FrameTrace) == 48 + 32 * 12);
 
-// What people do at the wall: pointing, snapshots, contents. Written once per period.
+// Interaction of people with the wall: pointing, snapshots, contents. Written once per period.
 struct WallInteraction {
   enum Pointing : std::uint32_t { kNone = 0, kAtWall = 1, kAtModel = 2 };
 

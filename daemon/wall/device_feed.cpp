@@ -50,7 +50,7 @@ void DeviceFeed::readPosture(const shm::DevicesSegment& devices, Timestamp now, 
   if (held) std::copy(std::begin(held->name), std::end(held->name), input.posture.begin());
 }
 
-// What a device holds counts only while it works: a process that ended cannot let go of it.
+// Held actions count only while their device works: a process that has ended cannot release them.
 void DeviceFeed::readActions(const shm::DevicesSegment& devices, Timestamp now, WallInput& input) {
   const auto glove = fresh(devices.glove, devices.health[shm::kGlove], now);
   const bool glove_works = glove && now - fromNanoseconds(glove->received_ns) <= stale_after_;

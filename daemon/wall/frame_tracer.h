@@ -13,7 +13,7 @@ namespace merlin::wall {
 class FrameTracer {
  public:
   void begin(Timestamp at, Timestamp deadline, bool moving);
-  // What took from `from` to `to`. More than there is room for are dropped.
+  // Adds a step that took from `from` to `to`; steps that exceed the room are dropped.
   void add(shm::StepKind kind, Timestamp from, Timestamp to, std::uint16_t tile = 0);
   void add(std::span<const render::FrameStep> steps);
   void end(Timestamp at, std::uint32_t triangles);

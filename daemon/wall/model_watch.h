@@ -24,8 +24,9 @@ class ReplacedFile {
  public:
   explicit ReplacedFile(FileStamp shown) : shown_(shown), seen_(shown) {}
 
-  // What is found now; nothing where there is no file. True where a file is to be read: another
-  // one than the last for which it was true, and unchanged for kStable.
+  // Takes the stamp of the file that is there now, or nothing if there is none. Returns true if a
+  // file is to be read: it differs from the last one for which this returned true, and has been
+  // unchanged for kStable.
   bool look(const std::optional<FileStamp>& found, Timestamp now);
 
   static constexpr Duration kStable = std::chrono::seconds(1);
@@ -63,7 +64,7 @@ class ModelWatch {
   // One that is ready, if any. Never waits for the thread's work.
   std::optional<ReadyModel> take();
   void say(std::string sentence);
-  // What has happened since the last call, a sentence each.
+  // Events since the last call, one sentence each.
   std::vector<std::string> takeEvents();
 
  private:

@@ -24,7 +24,7 @@ class ShownModels final : public ContentSource {
                                                    const Eigen::Isometry3f& T_eye_model,
                                                    const Clock& clock);
 
-  // What ModelWatch does on its thread with a file that was replaced.
+  // Work that ModelWatch does on its own thread with a file that was replaced.
   static ModelWatch::Make maker(const WallSettings& settings);
 
   std::vector<ShownContent> contents() const;

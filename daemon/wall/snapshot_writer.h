@@ -22,8 +22,8 @@ class SnapshotWriter {
   SnapshotWriter(const SnapshotWriter&) = delete;
   SnapshotWriter& operator=(const SnapshotWriter&) = delete;
 
-  // Asks for the newest frame; returns at once. Asked again before it is written, it is one file.
-  // What became of it is logged.
+  // Asks for the newest frame; returns at once. If it is asked for again before it is written, one
+  // file is written. The result is logged.
   void take();
 
   // Writes the newest frame now; returns its path. Errors: captureFrame()'s, writePng()'s and

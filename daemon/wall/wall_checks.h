@@ -1,5 +1,4 @@
-// What the configuration says of the wall, held against the files that it names: the loader reads
-// no other file.
+// Checks of the wall's settings against the files that they name; the loader reads no other file.
 #pragma once
 
 #include <string>

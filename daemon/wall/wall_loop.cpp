@@ -16,8 +16,8 @@ constexpr Duration kPresentMargin = std::chrono::milliseconds(3);
 // Work of the first finer picture of a still scene: it is out within two periods.
 constexpr Duration kFirstRefinement = std::chrono::milliseconds(40);
 constexpr std::size_t kNextRefinement = 8;  // times as many triangles
-// Of a period, for the first frame after a standstill: cores that slept, and caches that hold
-// another picture, are slow at first.
+// Share of a period that is used for the first frame after a standstill: cores that slept, and
+// caches that hold another picture, are slow at first.
 constexpr double kResumingShare = 0.75;
 // A level that is this near to the budget stays: what moves does not pop.
 constexpr double kSameLevel = 0.04;
@@ -143,7 +143,7 @@ void WallLoop::showContent(std::size_t content) {
   expectHome();
 }
 
-// What the new one costs is not known: the governor learns it as it does on any other view.
+// The cost of the new content is not known: the governor learns it as it does for any other view.
 void WallLoop::replaceContents() {
   if (!p_.replacements) return;
   const auto fresh = p_.replacements->take(view_.moving, view_.T_eye_model);
@@ -242,7 +242,7 @@ std::int64_t WallLoop::countDeadlines(std::int64_t k, Timestamp finished) {
 void WallLoop::finishMoving(const render::DrawTimes& times, Duration present, bool met) {
   const std::size_t cost = detail().costOf(step_);
   const bool least = cost <= p_.governor.least() || step_ + 1 == detail().steps();
-  // What the frame would have cost with every view as fine as the wall.
+  // The cost that the frame would have had with every view as fine as the wall.
   const Duration fixed = times.fixed + present;
   if (!resuming_ || !met) p_.governor.observe({cost, fixed, fixed + times.drawing, !met});
   climb(!met, least && !p_.governor.held());
@@ -283,7 +283,7 @@ std::int64_t WallLoop::stillPeriod(std::int64_t k) {
     tracer_.add(steps);
     if (whole) showRefined();
   }
-  // What stands is right: the deadline is met, unless refining ran over it.
+  // The picture that stands is right: the deadline is met, unless refining ran over it.
   const std::int64_t reached = p_.frame_clock.frameAt(p_.clock.now());
   for (std::int64_t passed = k; passed < std::max(k + 1, reached); ++passed)
     stats_.deadline(deadline(passed), false, true);

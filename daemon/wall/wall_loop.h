@@ -151,7 +151,7 @@ class WallLoop {
   bool resuming_ = false;          // the next frame is the first after a standstill
   Timestamp still_since_{};
   std::uint64_t frames_ = 0;
-  // What the start view of a content costs: drawing so many units of detail took so long; 0: not
+  // Cost of a content's start view: drawing `cost` units of detail took drawing_s seconds; 0: not
   // known.
   struct Home {
     std::size_t cost = 0;

@@ -1,4 +1,4 @@
-// What the loop tells of itself in shared memory.
+// The part of the loop that publishes its statistics in shared memory.
 #include <algorithm>
 #include <iterator>
 

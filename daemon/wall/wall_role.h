@@ -44,7 +44,7 @@ class WallRole {
   void hold(std::optional<std::size_t> triangles);
   void setRate(std::optional<double> rate_hz);
 
-  // What became of models whose files were replaced, since the last call. Thread-safe.
+  // Events of models whose files were replaced, since the last call. Thread-safe.
   std::vector<std::string> modelEvents() { return model_watch_.takeEvents(); }
 
   void beat(Timestamp now) const { segment_.beat(now); }

@@ -47,7 +47,7 @@ Result<std::string> exchange(Dialogue& dialogue, bool text, std::string_view com
   return reply;
 }
 
-// What follows "?x" in the answer, `count` bytes.
+// Sends "?x" and returns the `count` bytes that follow it in the answer.
 Result<std::string> ask(Dialogue& dialogue, bool text, char letter, std::size_t count) {
   const std::string query{'?', letter};
   const auto reply = exchange(dialogue, text, query, 2 + count, query);

@@ -15,7 +15,7 @@ namespace merlin::cyberglove {
 
 std::span<const GuidedStep> guidedPoses();
 
-// What was seen of each sensor while a pose was held, and over all poses.
+// Statistics of each sensor while a pose is held, and over all poses.
 class GuidedCalibration {
  public:
   void begin(std::size_t pose);  // what comes from now on belongs to it; again: anew

@@ -34,7 +34,7 @@ SlotList slotsOf(std::uint32_t mask) noexcept;
 std::string encodeMask(std::uint32_t mask);
 std::uint32_t decodeMask(const char* bytes) noexcept;
 
-// What a record holds.
+// Contents of a record.
 struct Layout {
   std::size_t values = 22;  // 1..24
   bool timestamp = false;   // `D`

@@ -1,4 +1,4 @@
-// What the configuration says of a CyberGlove.
+// Settings of a CyberGlove.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace merlin {
 
-// What fills slot 7, the index finger's own abduction, which no known glove measures.
+// Value of slot 7, the index finger's own abduction, which no known glove measures.
 enum class Slot7Rule {
   kZero,     // 0
   kNeutral,  // what its offset and gain make of the middle of the raw range, 128

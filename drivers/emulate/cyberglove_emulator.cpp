@@ -47,7 +47,7 @@ std::size_t lengthOf(char letter) {
   }
 }
 
-// What a program may set; all of it is lost by a restart.
+// State that a program may set; a restart resets all of it.
 struct State {
   std::uint32_t mask = cyberglove::kMask22;
   std::uint8_t values = 22;

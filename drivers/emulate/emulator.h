@@ -23,7 +23,8 @@ class Emulator {
   // Bytes from the program, that arrived at `now`.
   virtual void receive(std::span<const std::byte> bytes, Timestamp now) = 0;
 
-  // What the device sends until `now`, appended to `out`. Call it again no later than nextDue().
+  // Appends to `out` the bytes that the device sends until `now`. To be called again no later than
+  // nextDue().
   virtual void advance(Timestamp now, std::string& out) = 0;
 
   // When it has something to send by itself.

@@ -55,7 +55,7 @@ constexpr std::size_t kParameterCount = std::size(kParameters);
 constexpr std::size_t kAlignment = 1;
 static_assert(kParameters[kAlignment].letter == 'A');
 
-// What a program may set; ^K saves it, ^Y restores what was saved, W what the factory set.
+// State that a program may set; ^K saves it, ^Y restores the saved state, W the factory's.
 struct State {
   bool binary = false, centimetres = false, compensation = false, continuous = false;
   fastrak::Stations active{};

@@ -33,8 +33,8 @@ constexpr Phase kTurning[] = {{1000.0, "open", kSpin, 0, true}};
 constexpr Phase kStill[] = {{1000.0, "open", kRest, 0, false}};
 constexpr Phase kGrabbing[] = {{1.0, "open", kRest, 0, true}, {4.0, "fist", kRest, 0, true}};
 
-// What merlin calibrate tracker asks for: an origin, a point on x (the transmitter's y), one near y
-// (its -x), straight ahead (turned by 40 degrees).
+// The places that merlin calibrate tracker asks for: an origin, a point on x (the transmitter's y),
+// one near y (its -x), straight ahead (turned by 40 degrees).
 constexpr HandPlace kOrigin{}, kOnX{{0.60F, 0.45F, -0.15F}}, kOnY{{0.30F, 0.10F, -0.15F}},
     kAhead{{0.45F, 0.20F, -0.15F}, 40 * std::numbers::pi / 180};
 constexpr Phase kAlignment[] = {{5, "open", kRest, 0, false, kOrigin},
@@ -42,8 +42,8 @@ constexpr Phase kAlignment[] = {{5, "open", kRest, 0, false, kOrigin},
                                 {5, "open", kRest, 0, false, kOnY},
                                 {5, "open", kRest, 0, false, kAhead}};
 
-// What merlin calibrate ball asks for, of a ball that stands turned by a quarter and never rests
-// quite.
+// The pushes that merlin calibrate ball asks for, from a ball that is mounted turned by a quarter
+// and never quite rests.
 constexpr Phase kPushes[] = {
     {5, "open", {0.0015F, 0, 0, 0, -0.005F, 0}, 0, false},
     {5, "open", {0.1F, -0.8F, 0.05F, 0, 0, 0.2F}, 0, false},

@@ -13,7 +13,7 @@
 
 namespace merlin::emulate {
 
-// What the three devices would measure at one moment.
+// Measurements of all three devices at one moment.
 struct Motion {
   std::array<float, kGloveSlots> glove_rad{};  // joint angles in slot order, flexion positive
   std::array<float, 3> position_m{};           // of the hand, transmitter frame
@@ -28,7 +28,7 @@ struct HandPlace {
   double turn_rad = 0;                                    // about its z
 };
 
-// What the person does during one phase; between phases, hands move over in kTransition.
+// Behaviour of the person during one phase; between phases, hands move over within kTransition.
 struct Phase {
   double seconds;             // how long
   const char* shape;          // of the hand: a name of drivers/hand/shapes

@@ -40,8 +40,8 @@ std::array<float, 4> ofBoresight(const std::array<float, 4>& q, const std::array
           -q[0] * a[3] - q[1] * a[2] + q[2] * a[1] + q[3] * a[0]};
 }
 
-// Of a coordinate on the line: the reach of a receiver, from the furthest origin that is set, and a
-// stylus's tip.
+// Largest coordinate that can occur on the line: the reach of a receiver from the farthest origin
+// that is set, and a stylus's tip.
 float furthestOf(const FastrakSettings& settings) {
   float origin_cm = 0, tip_cm = 0;
   for (const auto& a : settings.alignment_cm)
@@ -207,7 +207,8 @@ void FastrakDevice::publish(const Record& record) noexcept {
   sink_.publish(sample);
 }
 
-// Of the first station that has an error, so that it does not flicker where another is well.
+// Notes the error of the first station that has one, so that the text does not flicker if another
+// station works.
 void FastrakDevice::noteErrors() noexcept {
   complaint_[0] = '\0';
   for (const TrackerSample& sample : sample_) {

@@ -13,7 +13,7 @@
 
 namespace merlin::fastrak {
 
-// What samples of one station are given in; as FastrakSettings has it of each.
+// Frame in which samples of one station are given; as in FastrakSettings.
 struct StationFrame {
   std::array<float, 9> alignment_cm = FastrakSettings::kAligned;
   std::array<float, 4> boresight_wxyz = FastrakSettings::kAhead;
@@ -48,9 +48,9 @@ class GuidedAlignment {
   // of), kMalformed (it moved; too near to the origin; the three places nearly on one line).
   Result<HeldPose> end();
 
-  // Of the steps that ended well. Without the places the alignment stays the present one; without
-  // the boresight what counted as straight ahead still does, in the new frame.
-  // REQUIRES: all three places, or none of them.
+  // Solves from the steps that ended well. Without the places, the present alignment stays; without
+  // the boresight, the present straight ahead stays, expressed in the new frame. REQUIRES: all
+  // three places, or none of them.
   StationFrame solve() const;
 
  private:

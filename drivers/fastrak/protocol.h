@@ -34,7 +34,7 @@ struct Record {
   std::int64_t received_ns = 0;  // what feed() was told with the record's first byte
 };
 
-// What a record holds, and how.
+// Contents and format of a record.
 struct Layout {
   enum class Numbers { kBinary, kText, kShort };
   Numbers numbers = Numbers::kBinary;
@@ -124,7 +124,7 @@ std::string encode(const Stations& stations, int asked_station);
 std::array<float, 3> anglesOf(const std::array<float, 4>& orientation_wxyz) noexcept;
 std::array<float, 4> quaternionOf(const std::array<float, 3>& angles_deg) noexcept;
 
-// What a letter of the built-in test means; "" for one that is not listed. Source: MAN12, p. 76.
+// Meaning of a letter of the built-in test; "" for one that is not listed. Source: MAN12, p. 76.
 std::string_view meaningOf(char error) noexcept;
 
 }  // namespace merlin::fastrak

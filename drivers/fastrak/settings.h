@@ -1,4 +1,4 @@
-// What the configuration says of a Fastrak.
+// Settings of a Fastrak.
 #pragma once
 
 #include <array>
@@ -10,7 +10,8 @@ struct FastrakSettings {
   // receiver is; {0, 0, 0} lets the unit follow it. Stations in use: what the unit reports as
   // active.
   std::array<std::array<float, 3>, 4> hemisphere = {{{1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 0, 0}}};
-  // What the unit sends on the line, else inches; samples are in metres either way.
+  // Whether the unit sends centimetres on the line, otherwise inches; samples are in metres either
+  // way.
   bool centimetres = true;
   // How numbers are sent: IEEE floats, decimals, or 14-bit numbers (half the bytes, 0.4 mm and 0.02
   // degrees apart; boxes of before 2012).

@@ -1,4 +1,4 @@
-// What the configuration says of the panel: which line is what, and how long things take.
+// Settings of the control panel: the purpose of each line, and times.
 #pragma once
 
 #include <string>

@@ -125,7 +125,7 @@ void Hand::follow(const TrackerSample& tracker, float dt_s) {
 
 Pose poseAt(const HandSample& hand, Timestamp when) {
   const auto ahead_s = static_cast<float>(toSeconds(when - fromNanoseconds(hand.received_ns)));
-  // What smoothing left behind is made up for as well.
+  // The delay of the smoothing is compensated as well.
   const float t = std::clamp(ahead_s + hand.delay_s, -kFurthest_s, kFurthest_s);
   Pose pose{};
   Vector turn{};

@@ -12,7 +12,7 @@
 
 namespace merlin::hand {
 
-// Of slot 0 to 22: "thumb_roll", "thumb_mcp", ... "wrist_yaw".
+// Names of slots 0 to 22: "thumb_roll", "thumb_mcp", ... "wrist_yaw".
 extern const std::array<std::string_view, kGloveSlots> kJointNames;
 // The slot of that name, or nothing.
 std::optional<std::size_t> jointNamed(std::string_view name);

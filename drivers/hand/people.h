@@ -46,9 +46,9 @@ class Person {
   // The same, as it comes out this time.
   Angles take(const Shape& shape, Random& random) const;
 
-  // What the glove says when an average person's joints would be these, after calibration: this
-  // person's bends, tremor, the joints' limits, cross-talk, the glove's fit, noise, whole counts.
-  // Slot 7 is 0: no glove measures it.
+  // Output of the glove when an average person's joints would be at these angles, after
+  // calibration: this person's bends, tremor, the joints' limits, cross-talk, the glove's fit,
+  // noise, whole counts. Slot 7 is 0: no glove measures it.
   Angles sense(const Angles& joints, Random& random) const;
 
  private:

@@ -1,4 +1,4 @@
-// What the configuration says of the hand.
+// Settings of the hand.
 #pragma once
 
 namespace merlin {

@@ -1,4 +1,4 @@
-// What a USB adapter adds to a serial line's delay, and how to make it less.
+// Reduces the delay that a USB adapter adds to a serial line.
 #pragma once
 
 #include <string>

@@ -18,7 +18,8 @@ namespace merlin::io {
 namespace {
 
 constexpr int kConnectTime_ms = 1000;
-// Of what comes and is not read yet: a line that is read at a pace of its own is soon over it.
+// Size of the buffer for received bytes that are not read yet; a line that is read at a limited
+// rate soon exceeds it.
 constexpr int kReceiveBuffer = 64 << 10;
 
 void setOption(int fd, int level, int option, int value) {

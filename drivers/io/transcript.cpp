@@ -121,7 +121,7 @@ class Reader {
     return Ok{};
   }
 
-  // Of the header, which is whole by the first chunk; looked up once.
+  // Baud rate of the header, which is complete by the first chunk; looked up once.
   int baud() {
     if (baud_ == 0) baud_ = transcript_.baud();
     return baud_;

@@ -31,7 +31,7 @@ struct Transcript {
   std::vector<std::pair<std::string, std::string>> header;  // key and value, in the file's order
   std::vector<TranscriptChunk> chunks;
 
-  // Of the header; empty where it has no such key.
+  // Value of a key of the header; empty if the header has no such key.
   std::string_view operator[](std::string_view key) const;
   int baud() const;  // of "serial"; 9600 where it says nothing
 };

@@ -18,8 +18,8 @@ namespace merlin {
 struct DeviceLoopSettings {
   std::string port;  // as a person wrote it, for the health
   int baud = 0;      // of the line, for the hint where what comes makes no sense; 0: no hint
-  // What the line is read at, at most; 0: as fast as it sends. Bytes beyond wait in the system's
-  // buffers, which block the sender, or drop what it sends.
+  // Maximum rate at which the line is read; 0: as fast as it sends. Further bytes wait in the
+  // system's buffers, which block the sender or drop what it sends.
   double max_bytes_s = 0;
   // Told, on the loop's thread, when the line begins or ceases to send more than that; no time of
   // others is for such a line.
@@ -51,7 +51,7 @@ class DeviceLoop {
 
   std::unique_ptr<ByteStream> paced(std::unique_ptr<ByteStream> stream);
   void paceChanged();
-  // What the health says: of the line where it sends too much, then `reason`.
+  // Text of the health: of the line if it sends too much, then `reason`.
   std::string withPace(const std::string& reason);
   std::string hintFor(const Error& end) const;
   void enter(HealthState state, std::string_view reason) noexcept;

@@ -35,7 +35,7 @@ class ReadPace {
   std::size_t allowed(Timestamp now);
   // How long a read waits then: a few bytes at once cost less than each alone.
   static constexpr Duration kPause = std::chrono::milliseconds(10);
-  // Of bytes that were read.
+  // Subtracts bytes that were read from the allowance.
   void charge(std::size_t bytes, Timestamp now) noexcept;
 
  private:

@@ -14,7 +14,7 @@
 
 namespace merlin {
 
-// What a device's parser met; only ever grows, over all its connections.
+// Counts of a device's parser, over all its connections; they only grow.
 struct DeviceCounters {
   std::uint64_t samples = 0;
   std::uint64_t bad_bytes = 0;

@@ -1,4 +1,4 @@
-// What a person is asked to do at one step of a guided calibration.
+// One step of a guided calibration: the text for the person.
 #pragma once
 
 namespace merlin {

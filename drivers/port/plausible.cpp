@@ -7,9 +7,10 @@
 namespace merlin {
 namespace {
 
-// Of a joint: far beyond what a calibration makes of a raw byte (6 rad as shipped).
+// Largest angle of a joint: far beyond what a calibration makes of a raw byte (6 rad as shipped).
 constexpr float kWidest_rad = 1000;
-// Of a hand: what smoothing makes of a jump from one end of the range to the other in a record.
+// Largest speed of a hand: that of a jump, after smoothing, from one end of the range to the other
+// within one record.
 constexpr float kFastest = 100'000;
 constexpr std::uint32_t kButtons = 12, kGloveFlags = 7;
 

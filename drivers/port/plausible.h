@@ -7,12 +7,12 @@
 
 namespace merlin {
 
-// Of a Fastrak's receiver from its transmitter: 3.05 m (10 ft), with the long-range transmitter
-// 4.57 m (15 ft), and a margin. Sources: MAN12 of
-// drivers/fastrak for the former, the vendor's data sheet of the Long Ranger for the latter.
+// Reach of a Fastrak's receiver from its transmitter: 3.05 m (10 ft), with the long-range
+// transmitter 4.57 m (15 ft), and a margin. Sources: MAN12 of drivers/fastrak for the former, the
+// vendor's data sheet of the Long Ranger for the latter.
 inline constexpr float kTrackerReach_m = 5;
-// Of any coordinate of a tracker's sample: the reach, and the furthest origin that a configuration
-// can set (10 m along each axis), with the stylus's tip (1 m along each).
+// Largest coordinate of a tracker's sample: the reach, plus the farthest origin that a
+// configuration can set (10 m along each axis), plus the stylus's tip (1 m along each).
 inline constexpr float kFurthest_m = 25;
 
 // False of a number that is NaN, infinite or out of its range, of a quaternion whose norm is not

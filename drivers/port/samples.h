@@ -1,4 +1,4 @@
-// What devices measure: the vocabulary that drivers write and the rest of MERLIN reads.
+// Samples: the measurements that drivers write and the rest of MERLIN reads.
 //
 // Each struct is fixed-width, SI, pointer-free and trivially copyable, because it is mapped as it
 // stands by client processes. Its size is asserted; changing one bumps shm::kVersion.
@@ -42,8 +42,8 @@ struct TrackerSample {
 };
 static_assert(sizeof(TrackerSample) == 48 && offsetof(TrackerSample, position_m) == 16);
 
-// What the tracker's samples are given in, for who wants them in the transmitter's frame; of each
-// station, as FastrakSettings has it.
+// Frames in which the tracker's samples are given, for each station, as in FastrakSettings; for
+// programs that want them in the transmitter's frame.
 struct TrackerFrames {
   float alignment_cm[kStations][9];  // a point of the origin, one on the x axis, one on the y axis
   float boresight_wxyz[kStations][4];  // counts as straight ahead, in that frame

@@ -69,7 +69,7 @@ enum class Model { k2003, k3003, k4000, k1003 };
 Model modelOf(std::string_view firmware_version) noexcept;
 const char* nameOf(Model model) noexcept;
 
-// What an 'E' packet of a 4000 complains of, the first of its errors. Source: FLX.
+// Meaning of the first error in an 'E' packet of a 4000. Source: FLX.
 const char* meaningOf(std::string_view error_packet) noexcept;
 
 // Bit i = button i + 1. 1003, 2003: eight buttons and pick as the ninth. 3003: left, right, rezero.

@@ -1,4 +1,4 @@
-// What the configuration says of a Spaceball.
+// Settings of a Spaceball.
 #pragma once
 
 #include <array>

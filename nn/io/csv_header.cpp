@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kLabelNames[] = {"posture", "label",  "class", "gesture", "sign",
                                        "letter",  "target", "name",  "pose",    "y"};
-// What else a recording may have: it is left out.
+// Other columns that a recording may have; they are left out.
 constexpr const char* kOtherNames[] = {"",          "index",   "id",     "time",
                                        "timestamp", "t",       "person", "subject",
                                        "user",      "session", "take",   "sample"};

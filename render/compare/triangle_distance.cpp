@@ -9,7 +9,7 @@ namespace {
 // Height over length, squared: below it rounding may put a point on the wrong side of an edge.
 constexpr double kSliver = 1e-10;
 
-// Of the edge from corner i to corner j.
+// Nearest point on the edge from corner i to corner j.
 NearestPoint nearestOnEdge(const Vector& p, const std::array<Vector, 3>& corners, std::size_t i,
                            std::size_t j) noexcept {
   const Vector edge = corners[j] - corners[i];

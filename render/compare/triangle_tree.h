@@ -32,13 +32,13 @@ class TriangleTree {
   std::uint32_t triangleAt(std::uint32_t place) const noexcept { return order_[place]; }
   std::array<Vector, 3> cornersAt(std::uint32_t place) const noexcept;
 
-  // Of one triangle.
+  // Nearest point on one triangle.
   NearestPoint nearestAt(std::uint32_t place, const Vector& p) const noexcept {
     return nearestOnTriangle(p, cornersAt(place));
   }
 
-  // Of the whole surface. `hint`: a place that may be near (the last answer); it changes which of
-  // several equally near triangles is named, and how long that takes, and nothing else.
+  // Nearest point on the whole surface. `hint`: a place that may be near (the last answer); it only
+  // changes which of several equally near triangles is named, and how long the search takes.
   Nearest nearest(const Vector& p, std::uint32_t hint = kNone) const noexcept;
 
  private:

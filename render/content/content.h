@@ -24,7 +24,7 @@ class DetailAxis {
   virtual ~DetailAxis() = default;
 
   virtual std::size_t steps() const noexcept = 0;  // at least 1
-  // Of a step, in units; falls from step 0 on. REQUIRES: step < steps().
+  // Cost of a step, in units; falls from step 0 on. REQUIRES: step < steps().
   virtual std::size_t costOf(std::size_t step) const noexcept = 0;
   // The finest step that costs at most `budget`; the coarsest where none does.
   virtual std::size_t stepWithin(std::size_t budget) const noexcept = 0;

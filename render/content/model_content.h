@@ -37,7 +37,8 @@ struct TriangleRun {
   std::size_t first = 0, count = 0;
 };
 
-// What all views of a frame draw of a model. One for all contexts, which only read it.
+// Parts of a model that are drawn in all views of a frame. One for all contexts, which only read
+// it.
 struct ModelDrawList {
   bool full = false;                           // the full resolution's triangles, else `cut`
   std::span<const std::uint32_t> cut{};        // node numbers, 3 a triangle
@@ -75,7 +76,7 @@ class ModelContent final : public Content {
   Clusters clusters_;
   ViewCut view_cut_;
   std::vector<std::uint32_t> full_ends_;  // where clusters end in the full resolution, triangles
-  // What the renderers upload once; until they have done so.
+  // Data that the renderers upload once; kept until they have done so.
   struct Upload {
     std::vector<std::uint32_t> full;  // the full resolution, node numbers, 3 a triangle
     ImageFile texture;

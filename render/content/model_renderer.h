@@ -24,7 +24,7 @@
 
 namespace merlin::render {
 
-// What one tile sees.
+// Camera of one tile.
 struct Camera {
   Eigen::Matrix4f clip_from_model;  // y up, OpenGL's clip space; y is turned over when drawn
   Eigen::Matrix3f eye_from_model;   // rotation only, for the light
@@ -96,7 +96,7 @@ class ModelRenderer {
   std::unique_ptr<Texture> texture_;
   GLuint program_ = 0, nodes_ = 0;
   Wires wires_;
-  // Of begin().
+  // Style given to begin().
   RenderStyle style_;
   Eigen::Matrix4f clip_ = Eigen::Matrix4f::Identity();
   GLuint cut_array_ = 0, cut_indices_ = 0, full_array_ = 0, full_indices_ = 0;

@@ -1,4 +1,4 @@
-// What the configuration says of how contents are drawn.
+// Settings of how contents are drawn.
 #pragma once
 
 #include <array>

@@ -46,7 +46,7 @@ Rgb colourOfLabel(float label) {
   return colour;
 }
 
-// Of the leaves, which are the nodes that the file's own triangles have.
+// Finds the range of the values at the leaves, the nodes of the file's own triangles.
 void findRange(const Dendrogram& model, std::span<const float> values, ShownColours& shown) {
   std::vector<float> leaves;
   std::vector<bool> seen(model.nodeCount());

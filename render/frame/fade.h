@@ -10,7 +10,7 @@ namespace merlin::render {
 // Thread-bound.
 class Fade {
  public:
-  // What is shown now.
+  // Keeps the picture that is shown now.
   void keep(std::span<const std::uint8_t> shown) { shown_.assign(shown.begin(), shown.end()); }
 
   // From what is shown to another picture, in so many frames. REQUIRES: frames >= 1.

@@ -46,7 +46,7 @@ class FramePainter {
   // Whether any tile of the wall may show any of the content.
   virtual bool sees(const Eigen::Isometry3f& T_eye_content) const = 0;
 
-  // Of the last draw() or refine(), in order.
+  // Steps of the last draw() or refine(), in order.
   virtual std::span<const FrameStep> steps() const noexcept = 0;
 
   // The canvas: RGBA, rows from top to bottom, of the plan's size. Overlays drawn on it are to be

@@ -1,4 +1,4 @@
-// What the configuration says of how frames are drawn.
+// Settings of how frames are drawn.
 #pragma once
 
 #include "render/content/settings.h"

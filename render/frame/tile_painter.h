@@ -36,7 +36,7 @@ class TilePainter {
   // left.
   Duration sliceTime() const noexcept { return slice_time_; }
 
-  // Of begin() and draw(), until they are cleared.
+  // Steps of begin() and draw(), until they are cleared.
   std::span<const FrameStep> steps() const noexcept { return steps_; }
   void clearSteps() noexcept { steps_.clear(); }
 

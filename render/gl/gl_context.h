@@ -25,7 +25,7 @@ class GlContext {
   std::string renderer_;
 };
 
-// Of EGL: where the context is. Mesa's software renderers draw one after the other on one display.
+// Where an EGL context is. Mesa's software renderers draw one after the other on one display.
 enum class EglDisplay { kSurfaceless, kDevice };
 
 // Errors: kUnsupported, saying what is missing (no library, no such context, a missing function).

@@ -1,4 +1,4 @@
-// What the configuration says of OpenGL.
+// Settings of OpenGL.
 #pragma once
 
 namespace merlin::render {

@@ -6,7 +6,7 @@
 namespace merlin::render {
 namespace {
 
-// Of each 2 x 2 pixels the mean; a last row or column that is alone counts twice.
+// Mean of each 2 x 2 pixels; a last row or column without a partner counts twice.
 std::vector<std::uint8_t> halved(const TextureImage& image) {
   const int width = std::max(1, image.width / 2), height = std::max(1, image.height / 2);
   std::vector<std::uint8_t> half;

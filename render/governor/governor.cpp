@@ -13,7 +13,7 @@ namespace {
 constexpr double kExponent = 0.65, kLeastExponent = 0.4, kMostExponent = 1.1;
 constexpr double kLeastRoom = 0.10, kMostRoom = 0.30, kRoomGain = 0.017;
 constexpr double kFixedGain = 0.15;
-// Of the noise of frames that were drawn for measuring, as the head room to begin with: twelve
+// Initial head room, in units of the noise of the frames that were drawn for measuring: twelve
 // frames see less than the hundredth frame will.
 constexpr double kRoomForNoise = 3;
 // The trend of ln c and its slope (an alpha-beta filter), and how far one frame may pull.
@@ -225,7 +225,7 @@ void Governor::setRate(double rate_hz) noexcept {
   if (per_ > 0) startOver();
 }
 
-// What the model says fits, at once: nothing that was seen speaks against it.
+// Uses what the model allows at once: nothing that was measured contradicts it.
 void Governor::startOver() noexcept {
   late_in_a_row_ = 0;
   before_.reset();

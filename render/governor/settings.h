@@ -1,4 +1,4 @@
-// What the configuration says of the frame rate.
+// Settings of the frame rate.
 #pragma once
 
 #include <cstddef>

@@ -71,7 +71,8 @@ Result<ImageFile> readAny(std::string_view bytes, bool head) {
   return Error{Errc::kUnsupported, "is neither PNG nor JPEG"};
 }
 
-// Of n pixels in a row, the two that a place 0..1 lies between, and how far towards the second.
+// The two of n pixels in a row that a place 0..1 lies between, and how far it is towards the
+// second.
 struct Between {
   int low, high;
   float share;

@@ -16,7 +16,7 @@ struct ImageFile {
   std::vector<std::uint8_t> pixels;  // RGB, rows from top to bottom
   std::vector<std::uint8_t> file{};  // of readImage(): its bytes
 
-  // Of the place (u, v), v upwards, as texture coordinates have it: mixed of the four nearest
+  // Colour at (u, v), v upwards, as in texture coordinates: interpolated from the four nearest
   // pixels, 0..1 each. The picture repeats, unless `clamped`. REQUIRES: u, v finite, not empty.
   std::array<float, 3> at(float u, float v, bool clamped) const noexcept;
 };
@@ -28,8 +28,8 @@ Result<ImageFile> readImage(const std::string& path);
 // Bytes that readImage() takes for its pixels, by the file's head. The same errors.
 Result<std::size_t> imageBytes(const std::string& path);
 
-// Of a file's bytes. The same errors, without a name. Hostile bytes are refused or read as well as
-// the libraries can.
+// Decodes a file's bytes. The same errors, without a name. Hostile bytes are refused or read as
+// well as the libraries can.
 Result<ImageFile> decodeImage(std::span<const std::uint8_t> bytes);
 
 }  // namespace merlin::render

@@ -28,7 +28,7 @@ const FeatureView* featureOf(const Dendrogram& model, const ModelField& field) {
   return found && found->dimension == field.dimension ? found : nullptr;
 }
 
-// What a program without the module reads the fields by.
+// Writes the declaration by which a program without the module reads the fields.
 void printDeclaration(TextSink& out, const Dendrogram& model) {
   out.print(
       "    fields [ SFInt32 minimumResolution, SFInt32 maximumResolution, SFInt32 "

@@ -38,7 +38,7 @@ SbVec3f facing(const SoMFVec3f& vertex, const int* corners) {
   return normal;
 }
 
-// What the model has no values of stays as it was.
+// An attribute for which the model has no values stays unchanged.
 void setCorner(const SoVertexProperty& attributes, int node, SoPrimitiveVertex& corner,
                SoPointDetail& point) {
   corner.setPoint(attributes.vertex[node]);
@@ -185,7 +185,7 @@ void SoMRFaceSet::applyFrameTime() {
   if (const auto next = frameDrawn(now_s)) currentResolution = *next;
 }
 
-// What a viewer once said is not for the next one.
+// The state of one viewer does not apply to the next.
 SbBool SoMRFaceSet::readInstance(SoInput* in, unsigned short flags) {
   reading_ = true;
   const SbBool read = SoShape::readInstance(in, flags);

@@ -48,7 +48,8 @@ class __attribute__((visibility("default"))) SoMRFaceSet : public SoShape {
   // believed, for `interacting` too. Changing it draws nothing. Neither is taken from a file.
   SoSFTime frameTime;
 
-  // Of all nodes of the dendrogram, numbered by their death; the last three may be empty.
+  // Attributes of all nodes of the dendrogram, numbered by their death; the last three may be
+  // empty.
   SoMFVec3f vertex, normal;
   SoMFColor diffuseColor;
   SoMFVec2f texCoord;

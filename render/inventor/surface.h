@@ -46,7 +46,7 @@ class Surface {
   // another; the coarsest where none is that small. Valid for as long as the surface.
   SoIndexedFaceSet& at(Copy copy, std::size_t budget);
 
-  // Of that: O(log levels), cuts nothing.
+  // Number of triangles of that cut: O(log levels), cuts nothing.
   std::size_t trianglesFor(std::size_t budget) const noexcept;
 
   SoVertexProperty& attributes() const noexcept { return *attributes_; }  // of all nodes

@@ -7,8 +7,8 @@
 
 namespace merlin::render {
 
-// Of each vertex whether an edge of it is of one triangle only. O(n log n); 24 bytes a triangle
-// while it runs.
+// For each vertex: whether one of its edges belongs to one triangle only. O(n log n); 24 bytes per
+// triangle while it runs.
 std::vector<bool> borderVertices(const Mesh& mesh);
 
 }  // namespace merlin::render

@@ -42,7 +42,7 @@ struct Mesh {
   Feature* find(std::string_view name) noexcept;
 };
 
-// What tidy() took away.
+// Counts of what tidy() removed.
 struct TidyReport {
   std::size_t degenerate = 0;  // triangles with a vertex twice
   std::size_t duplicate = 0;   // triangles of the same three vertices as one before
@@ -59,10 +59,10 @@ Result<Ok> validate(const Mesh& mesh);
 // then vertices that no triangle uses. Order is kept. O(n log n). REQUIRES: validate(mesh).ok().
 TidyReport tidy(Mesh& mesh);
 
-// Of all vertices; zero for a mesh without any.
+// Bounding box of all vertices; zero for a mesh without any.
 Box boundingBox(std::span<const float> positions) noexcept;
 
-// Of two vectors of three.
+// Dot product of two vectors of three.
 inline float dot(const float* a, const float* b) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

@@ -1,4 +1,4 @@
-// What is no manifold is split until it is one.
+// Splits a mesh that is not manifold until it is.
 #pragma once
 
 #include <cstddef>

@@ -23,7 +23,7 @@ bool areUnit(const std::vector<float>& normals) {
   return true;
 }
 
-// Of each vertex' faces the sum of their unit normals.
+// For each vertex the sum of its faces' unit normals.
 std::vector<float> normalSums(const Mesh& mesh) {
   std::vector<float> normals(mesh.positions.size(), 0.0F);
   const float* p = mesh.positions.data();

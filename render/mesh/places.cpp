@@ -8,7 +8,8 @@
 namespace merlin::render {
 namespace {
 
-// Of all bits of the three; what compares equal has the same: -0 + 0 is 0.
+// Hash of all bits of the three numbers; numbers that compare equal have the same hash: -0 + 0 is
+// 0.
 std::size_t hashOf(const float* p) {
   std::uint64_t h = 0;
   for (int k = 0; k < 3; ++k) {

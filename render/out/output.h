@@ -19,7 +19,7 @@ struct FrameInfo {
   bool full_detail = false;
 };
 
-// What is sent to an output.
+// Picture that is sent to an output.
 struct Signal {
   int width = 0, height = 0;               // [px]
   std::span<const std::uint8_t> pixels{};  // RGBA, rows from top to bottom, no padding

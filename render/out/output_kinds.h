@@ -11,7 +11,7 @@
 
 namespace merlin::render {
 
-// What outputs are made of beside their settings.
+// Parts that outputs are made of, beside their settings.
 struct OutputParts {
   const TilePlan& plan;
   std::string frame_name;        // of the frame in shared memory, as "/merlin-framebuffer"

@@ -1,4 +1,4 @@
-// What the configuration says of outputs.
+// Settings of outputs.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ struct OutputSettings {
   std::string shownName() const { return name.empty() ? nameOf(kind) : name; }
 };
 
-// What shared memory has room to report on.
+// Number of outputs that shared memory has room to report on.
 inline constexpr std::size_t kMostOutputs = 8;
 
 // Everything that no wall can have: none or more than kMostOutputs, two of one name, a name of more

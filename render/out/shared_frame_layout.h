@@ -59,7 +59,7 @@ struct Header {
 };
 static_assert(offsetof(Header, buffers) == 72 && sizeof(Header) == 72 + 96 + 1280);
 
-// What lies before the pixels.
+// The part of the segment before the pixels.
 struct Front {
   Header header;
   shm::Field fields[kMostFields];

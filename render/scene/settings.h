@@ -25,7 +25,7 @@ struct SceneSettings {
   // person), and how far the wall is: what a pointing hand hits depends on both.
   std::array<double, 3> tracker_origin_m = {0, 0, 0};
   double wall_distance_m = 2.0;
-  // What the tracker's own noise may look like; less is no motion.
+  // Motion and rotation that count as noise of the tracker.
   double hand_noise_m = 0.003;
   double hand_noise_deg = 0.6;
   double still_after_s = 0.15;  // without input until the scene counts as still

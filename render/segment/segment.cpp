@@ -69,7 +69,7 @@ class Clusters {
     return sum;
   }
 
-  // What their union adds to the sum of squares.
+  // Increase of the sum of squares by their union.
   double cost(std::uint32_t a, std::uint32_t b) const {
     const double n = size_[a], m = size_[b];
     return n * m / (n + m) * distance2(a, b);

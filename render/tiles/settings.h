@@ -1,4 +1,4 @@
-// What the configuration says of the wall's geometry.
+// Settings of the wall's geometry.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace merlin::render {
 
-// What the shared-memory framebuffer has room for.
+// Number of tiles that the shared-memory frame buffer has room for.
 inline constexpr std::size_t kMostTiles = 32;
 
 enum class TileKind {

@@ -24,7 +24,7 @@ void layOutWall(TilePlan& plan, const TilesSettings& s) {
   plan.wall_height = order.empty() ? 0 : s.tile_height;
 }
 
-// Of the six planes of a frustum in clip coordinates, one that all eight corners are beyond.
+// Whether all eight corners lie beyond one of the six planes of a frustum in clip coordinates.
 bool isBeyondOne(const Eigen::Matrix4f& clip_from_box) noexcept {
   int beyond[6] = {};
   for (unsigned corner = 0; corner < 8; ++corner) {

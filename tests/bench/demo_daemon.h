@@ -35,7 +35,7 @@ class DemoDaemon {
   // That it has not ended since; to be called when the measurement is over.
   void expectRunning();
 
-  // What its wall has published last. Not where `role` is "devices".
+  // Statistics that its wall has published last. Not if `role` is "devices".
   shm::WallStats wall();
   const shm::DevicesSegment& devices() const { return **devices_; }
 

@@ -60,7 +60,7 @@ Measured ratioOf(const Measured& over, const Measured& under, std::string_view w
 // A measured value in another unit.
 Measured scaled(const Measured& measured, double factor);
 
-// What was measured so far, held back until all of it was. Thread-bound.
+// The measurements so far, held back until all are done. Thread-bound.
 class Report {
  public:
   explicit Report(std::string bench) : bench_(std::move(bench)) {}

@@ -166,7 +166,7 @@ struct Count {
   std::uint64_t bytes = 0, sent = 0, recovered = 0, from_noise = 0;
 };
 
-// What recovered more than was sent whole is chance: random bytes that make a packet.
+// Packets beyond those that were sent whole are chance: random bytes that form a packet.
 void fuzz(const Target& target, double most, std::uint64_t seed, Report& report) {
   note(fmt::format("{} ...", target.name));
   Random random(seed);

@@ -64,7 +64,7 @@ struct Scenario {
   enum Kind { kSteady, kSteps, kRamp, kRecorded } kind;
 };
 
-// Of the real renderer, with its own noise and hiccups; how it was made stands in the file.
+// A trace of the real renderer, with its own noise and hiccups; the file says how it was made.
 Trace recordedTrace(const std::string& path) {
   constexpr const char* kWayOut = "--trace names tests/data/governor_demo.txt";
   std::ifstream in(path);
@@ -117,7 +117,7 @@ Figures figuresOf(const RunLaw& run, const Scenario& scenario, std::size_t seeds
   return f;
 }
 
-// What is asked of MERLIN; the others' rows show where they stand.
+// Requirements for MERLIN; the other laws' rows show where they stand.
 class Verdicts {
  public:
   const char* of(bool met) {

@@ -171,7 +171,7 @@ class Maker {
     }
   }
 
-  // What validate() has to find.
+  // Inserts a fault that validate() has to find.
   void spoil() {
     const auto any = [&](std::vector<float>& values, float x) {
       if (!values.empty()) values[random_.below(values.size())] = x;

@@ -103,7 +103,7 @@ Rows benchLine(const Setting& s, Line line, bool loaded) {
 
 const char* verdict(bool good) { return good ? "yes" : "NO"; }
 
-// What was promised of a reader of MERLIN's.
+// Compares the measurements with what MERLIN's readers promise.
 void judge(Reader kind, const Rows& pair_idle, const Rows& pty_idle, const Rows& pair_loaded,
            Report& report) {
   const std::string name = kReaderNames[kind];

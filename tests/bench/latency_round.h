@@ -19,7 +19,7 @@ struct RoundSize {
   double rate_hz = 250;
 };
 
-// What the processes of a round share; one for all rounds.
+// Memory that the processes of a round share; one for all rounds.
 struct Times;
 Times& makeTimes();
 

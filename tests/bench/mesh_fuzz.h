@@ -16,7 +16,7 @@ struct MeshFuzz {
   bool run(std::uint64_t seed);
 };
 
-// What faults and refusals have in common, without names and figures.
+// The common part of faults and refusals, without names and figures.
 std::string kindOf(const std::string& what);
 
 }  // namespace merlin::bench

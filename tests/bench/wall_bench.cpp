@@ -123,7 +123,7 @@ BareRun runBare(const Options& options, const test::TempDir& dir, const std::str
   return run;
 }
 
-// Of all rounds of one script.
+// Results of all rounds of one script.
 struct Rounds {
   std::vector<double> wall, bare;
   std::uint64_t wall_deadlines = 0, bare_deadlines = 0;
@@ -188,7 +188,7 @@ void benchLate(const Options& options, const test::TempDir& dir, Report& report)
   }
 }
 
-// Of a channel's samples, of a device that is not the one that was killed.
+// Intervals between the samples of a device that is not the one that was killed.
 struct Intervals {
   Measured median_ms;
   std::uint64_t missing;
@@ -245,7 +245,7 @@ Measured secondsUntilBack(const shm::DevicesSegment& devices, const Victim& vict
   return Measured::of(toSeconds(clock.now() - answered), 1, "reconnections");
 }
 
-// Of glove and tracker since the last look, without the device that is killed.
+// Samples of glove and tracker since the last look, without the device that is killed.
 class Others {
  public:
   Others(const shm::DevicesSegment& devices, shm::DeviceIndex victim)

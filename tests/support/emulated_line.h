@@ -77,7 +77,7 @@ class EmulatedLine {
     wake();
   }
   Fault fault() const { return fault_; }
-  // Of the driver, since it opened the line.
+  // Number of writes by the driver since it opened the line.
   int writes() const { return writes_; }
 
  private:

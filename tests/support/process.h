@@ -60,7 +60,7 @@ class Process {
     EXPECT_EQ(::write(input_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   }
 
-  // What it has written so far.
+  // Its output so far.
   std::string output() const {
     std::string text;
     char buffer[4096];

@@ -1,4 +1,4 @@
-// What benchmarks say of many measurements.
+// Statistics that benchmarks report of many measurements.
 #pragma once
 
 #include <algorithm>

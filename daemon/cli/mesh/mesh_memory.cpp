@@ -25,8 +25,8 @@ std::string sizeText(std::size_t bytes) {
   return mib < 1000 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.1f} GiB", mib / 1024);
 }
 
-// What the limit of the address space (ulimit -v) leaves, less an eighth for addresses that the
-// allocator and threads reserve but do not use.
+// Free part of the address space within its limit (ulimit -v), less an eighth for addresses that
+// the allocator and threads reserve but do not use.
 std::size_t freeAddresses() {
   rlimit limit{};
   std::size_t pages = 0;

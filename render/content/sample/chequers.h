@@ -31,7 +31,7 @@ class Chequers final : public Content {
   void choose(std::size_t step, std::span<const ContentView> views) override;
   Result<std::unique_ptr<ContentRenderer>> attach(const GlApi& gl) const override;
 
-  // What the renderers draw.
+  // The squares that the renderers draw.
   struct Chosen {
     std::vector<std::array<float, 3>> corners;  // x, y, brightness; six of each square
     std::vector<Eigen::Matrix4f> views;         // clip from metres, by number of the tile

@@ -13,8 +13,8 @@ std::string folderOf(const std::string& path);
 // of there, and may name anything: what would leave the folder is looked for in it.
 std::string pathBeside(const std::string& folder, std::string_view name);
 
-// What the names of files beside `path` begin with: its own, where bytes that a file that names
-// them might take for the end of a name are "=20". Of two names they are two.
+// Prefix of the names of files beside `path`: its own name, in which bytes that a file that names
+// them might take for the end of a name become "=20". Different names stay different.
 std::string plainName(const std::string& path);
 
 }  // namespace merlin::render

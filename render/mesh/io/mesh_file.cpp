@@ -68,7 +68,7 @@ struct BesideFile {
   std::string path, content;
 };
 
-// What the mesh's file will name: the picture, and the material that has it.
+// The files that the mesh's file will name: the picture, and the material that has it.
 std::vector<BesideFile> filesBeside(const MeshWriter& writer, const Mesh& mesh,
                                     const std::string& path) {
   if (!isTextured(mesh) || writer.picture != PicturePlace::kBeside) return {};

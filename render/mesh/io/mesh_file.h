@@ -55,7 +55,7 @@ std::string readableEndings();
 // no triangles), kUnsupported (an ending or a variant that is not read).
 Result<LoadedMesh> readMesh(const std::string& path);
 
-// What a file could not carry.
+// Report of what a file could not hold.
 struct WrittenMesh {
   std::string format;                 // the ending, in small letters
   std::vector<std::string> left_out;  // features, by name; the texture's picture

@@ -23,7 +23,7 @@ inline std::string_view takeWord(std::string_view& text) {
   return word;
 }
 
-// What is left of a line, without blanks around it: a name may hold some.
+// The rest of a line without blanks around it; a name may contain some.
 inline std::string_view trimmed(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r"), text.size()));
   return text.substr(0, text.find_last_not_of(" \t\r") + 1);

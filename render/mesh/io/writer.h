@@ -38,7 +38,7 @@ bool isTextured(const Mesh& mesh);
 // "NAME.png" or "NAME.jpg": the picture of a textured mesh in a file of its own.
 std::string pictureName(const Mesh& mesh, const std::string& name);
 
-// Of a picture that a mesh may hold, which is one of two formats.
+// Whether a picture is a PNG; otherwise it is a JPEG.
 bool isPng(const std::vector<std::uint8_t>& picture);
 
 // The feature if it is there in that dimension, else nullptr.

@@ -59,8 +59,8 @@ void adapt(const Feature& f, float* row) {
 // Chunks and views begin at multiples of 4.
 std::size_t padded(std::size_t bytes) { return (bytes + 3) / 4 * 4; }
 
-// What stands in the buffer, in order: positions, features, corners, 4 bytes a number; the picture,
-// and up to a multiple of 4.
+// Size of the buffer, which holds in this order: positions, features, corners, with 4 bytes per
+// number; the picture, padded to a multiple of 4.
 std::uint64_t bytesIn(const Mesh& mesh) {
   std::uint64_t numbers = mesh.positions.size() + mesh.triangles.size();
   for (const Feature& f : mesh.features) numbers += carries(mesh, f) ? f.values.size() : 0;

@@ -84,7 +84,7 @@ class Library {
       for (bool first = true; words > 0; --words, first = false) {
         std::string_view next = after;
         const std::string_view word = takeWord(next);
-        // Of three numbers the last two may be left out.
+        // The last two of three numbers may be missing.
         if (!first && wordsOf(option) == 3 && !readNumber(word, number)) break;
         if (option == "-clamp") material.clamped = word == "on";
         after = next;

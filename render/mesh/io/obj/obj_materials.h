@@ -1,4 +1,4 @@
-// What an OBJ file's materials say of colour: a picture, or one colour. Private to render/mesh/io.
+// Colours of an OBJ file's materials: a picture, or one colour. Private to render/mesh/io.
 #pragma once
 
 #include <array>

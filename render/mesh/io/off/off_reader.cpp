@@ -14,7 +14,7 @@ Error malformed(std::size_t line, const std::string& what) {
   return {Errc::kMalformed, fmt::format("line {}: {}", line, what)};
 }
 
-// What the first word says that each vertex has behind its coordinates.
+// The values behind each vertex' coordinates, as the first word of the file tells.
 struct Form {
   bool normal = false, colour = false, texcoord = false;
 };

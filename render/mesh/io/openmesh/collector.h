@@ -62,7 +62,7 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   void set_texcoord(VertexHandle v, const OpenMesh::Vec2f& t) override { set(texcoord_, v, t, 1); }
   void set_texcoord(VertexHandle v, const OpenMesh::Vec3f& t) override { set(texcoord_, v, t, 1); }
 
-  // What a surface of vertices has no place for.
+  // Properties for which a surface of vertices has no place.
   void add_face_texcoords(FaceHandle, VertexHandle, const std::vector<OpenMesh::Vec2f>&) override {}
   void add_face_texcoords(FaceHandle, VertexHandle, const std::vector<OpenMesh::Vec3f>&) override {}
   void set_face_texindex(FaceHandle, int) override {}

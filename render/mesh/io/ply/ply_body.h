@@ -25,7 +25,7 @@ class Body {
 
   std::size_t left() const noexcept { return static_cast<std::size_t>(end_ - at_); }
 
-  // What stands where next() stopped, for a message; empty at the end of the file.
+  // The text at which next() stopped, for a message; empty at the end of the file.
   std::string_view rest() const noexcept;
 
  private:
