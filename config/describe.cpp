@@ -160,6 +160,20 @@ void describeTiles(render::TilesSettings& t, SettingsVisitor& v) {
         v.number("turns", tile.turns, {-8, 8},
                  "Rotation of the tile's view about the vertical axis, in units of one tile's "
                  "field of view; +1 is one tile to the left.");
+        v.integer("width", tile.width, {0, 8192}, "Width of this tile in pixels; 0: tile_width.");
+        v.integer("height", tile.height, {0, 8192},
+                  "Height of this tile in pixels; 0: tile_height.");
+        v.numbers("direction_deg", tile.direction_deg, {-180, 180},
+                  "Direction of the tile's view in addition to turns, in degrees: yaw to the left, "
+                  "then pitch upwards, then roll counter-clockwise as the viewer sees it.");
+        v.numbers("frustum_deg", tile.frustum_deg, {-89.5, 89.5},
+                  "Angles of the left, right, lower and upper edge of the tile from its direction, "
+                  "in degrees; left and lower ones are negative. All 0: symmetric, with "
+                  "field_of_view_deg. Views of different tiles may overlap.");
+        v.numbers("screen_m", tile.screen_m, {-1000, 1000},
+                  "Lower left, lower right and upper left corner of the tile's screen as seen from "
+                  "the eye (x right, y up, z towards the person), in metres. Direction and frustum "
+                  "follow from them. All 0: none.");
       });
 }
 

@@ -1,36 +1,109 @@
 #include "render/tiles/settings.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 namespace merlin::render {
 namespace {
 
+int widthOf(const TileSettings& t, const TilesSettings& s) {
+  return t.width > 0 ? t.width : s.tile_width;
+}
+int heightOf(const TileSettings& t, const TilesSettings& s) {
+  return t.height > 0 ? t.height : s.tile_height;
+}
+
 bool overlap(const TileSettings& a, const TileSettings& b, const TilesSettings& s) {
-  return std::abs(a.x - b.x) < s.tile_width && std::abs(a.y - b.y) < s.tile_height;
+  return a.x < b.x + widthOf(b, s) && b.x < a.x + widthOf(a, s) && a.y < b.y + heightOf(b, s) &&
+         b.y < a.y + heightOf(a, s);
+}
+
+bool looksByTurnsAlone(const TileSettings& t) {
+  return t.kind == TileKind::kWall && !t.hasDirection() && !t.hasFrustum() && !t.hasScreen();
 }
 
 std::optional<std::string> faultOfPair(const TileSettings& a, const TileSettings& b,
                                        const TilesSettings& s) {
   if (a.name == b.name) return fmt::format("two tiles are named \"{}\"", a.name);
   if (overlap(a, b, s)) return fmt::format("tiles {} and {} overlap in the frame", a.name, b.name);
-  const bool both = a.kind == TileKind::kWall && b.kind == TileKind::kWall;
+  const bool both = looksByTurnsAlone(a) && looksByTurnsAlone(b);
   if (!both || std::abs(a.turns - b.turns) >= 1e-6) return std::nullopt;
   return fmt::format("tiles {} and {} both look {} tile widths to the left", a.name, b.name,
                      a.turns);
 }
 
+template <std::size_t N>
+bool allFinite(const std::array<double, N>& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+std::optional<std::string> faultOfFrustum(const TileSettings& t) {
+  constexpr double kWidest_deg = 89.5;
+  const auto& [left, right, lower, upper] = t.frustum_deg;
+  const bool within =
+      allFinite(t.frustum_deg) && std::all_of(t.frustum_deg.begin(), t.frustum_deg.end(),
+                                              [](double a) { return std::abs(a) <= kWidest_deg; });
+  if (within && left < right && lower < upper) return std::nullopt;
+  return fmt::format(
+      "tile {}: frustum_deg {}, {}, {}, {}: left must be less than right, lower less "
+      "than upper, and each of -{} to {}",
+      t.name, left, right, lower, upper, kWidest_deg, kWidest_deg);
+}
+
+// Within a hundredth of a rectangle, which the eye sees from the front.
+std::optional<std::string> faultOfScreen(const TileSettings& t) {
+  if (!allFinite(t.screen_m))
+    return fmt::format("tile {}: screen_m has something that is not a number", t.name);
+  const auto corner = [&](std::size_t k) {
+    return Eigen::Vector3d(t.screen_m[3 * k], t.screen_m[3 * k + 1], t.screen_m[3 * k + 2]);
+  };
+  const Eigen::Vector3d across = corner(1) - corner(0), up = corner(2) - corner(0);
+  const double size = across.norm() * up.norm();
+  if (!(size > 1e-6) || std::abs(across.dot(up)) > 0.01 * size) {
+    return fmt::format(
+        "tile {}: screen_m: the lower left, lower right and upper left corner are not "
+        "three corners of a rectangle",
+        t.name);
+  }
+  if (!(-corner(0).dot(across.cross(up)) / size > 1e-3)) {
+    return fmt::format(
+        "tile {}: screen_m: the eye does not see its front (are the corners in the "
+        "order lower left, lower right, upper left?)",
+        t.name);
+  }
+  return std::nullopt;
+}
+
 std::optional<std::string> faultOfTile(const TileSettings& t, const TilesSettings& s) {
-  if (t.x < 0 || t.y < 0 || t.x > s.frame_width - s.tile_width ||
-      t.y > s.frame_height - s.tile_height) {
+  if (t.x < 0 || t.y < 0 || t.x > s.frame_width - widthOf(t, s) ||
+      t.y > s.frame_height - heightOf(t, s)) {
     return fmt::format("tile {} at {}, {} does not lie in the frame of {} x {}", t.name, t.x, t.y,
                        s.frame_width, s.frame_height);
   }
   if (!std::isfinite(t.turns)) return fmt::format("tile {}: turns are {}", t.name, t.turns);
-  return std::nullopt;
+  if (t.width < 0 || t.height < 0)
+    return fmt::format("tile {} of {} x {} pixels has no picture", t.name, t.width, t.height);
+  const bool own = t.hasDirection() || t.hasFrustum() || t.hasScreen();
+  if (own && t.kind == TileKind::kOperator) {
+    return fmt::format(
+        "tile {} is the operator's, which sees the whole model: direction_deg, "
+        "frustum_deg and screen_m are for tiles of kind wall",
+        t.name);
+  }
+  if (t.hasScreen() && (t.hasDirection() || t.hasFrustum())) {
+    return fmt::format(
+        "tile {} has screen_m, from which its direction and frustum follow: leave "
+        "out direction_deg and frustum_deg",
+        t.name);
+  }
+  if (!allFinite(t.direction_deg))
+    return fmt::format("tile {}: direction_deg has something that is not a number", t.name);
+  if (t.hasFrustum()) return faultOfFrustum(t);
+  return t.hasScreen() ? faultOfScreen(t) : std::nullopt;
 }
 
 SettingFaults faultsOfFigures(const TilesSettings& s) {

@@ -1,8 +1,10 @@
 // TilePlan: which part of the frame buffer shows what, through which frustum. Pure.
 //
-// Wall tiles look from one point, each turned about the vertical axis by a whole field of view from
-// its neighbour, so that the frusta touch and do not overlap: three make one wide picture
-// ([GOURLEY98] 2.4). The operator's tile sees the whole model from further back.
+// Wall tiles look from one point. By default each is turned about the vertical axis by a whole
+// field of view from its neighbour, so that the frusta touch and do not overlap: three make one
+// wide picture ([GOURLEY98] 2.4). Others have a direction and a frustum of their own, which may be
+// off-axis and may overlap those of others, or a screen whose corners are measured from the eye.
+// The operator's tile sees the whole model from further back.
 //
 // Axes: x right, y up, the eye looks along -z. Angles to the left are positive.
 #pragma once
@@ -23,7 +25,7 @@ struct Tile {
   int x = 0, y = 0, width = 0, height = 0;  // in the frame buffer, from its upper left corner [px]
   int wall_x = -1;                          // in the wall's picture [px]; -1 for no wall tile
   Eigen::Matrix4f projection;               // view to clip coordinates, OpenGL's, y up
-  Eigen::Matrix4f view;                     // eye to view coordinates: the tile's turn
+  Eigen::Matrix4f view;                     // eye to view coordinates: the tile's direction
 };
 
 struct TilePlan {
@@ -37,6 +39,10 @@ Result<TilePlan> planTiles(const TilesSettings& settings);
 
 // Frustum of a field of view (horizontal, radians) and an aspect (width / height).
 Eigen::Matrix4f perspective(float field_of_view_rad, float aspect, float near_m, float far_m);
+
+// Frustum between the tangents of four angles from its direction, left and lower ones negative.
+Eigen::Matrix4f offAxis(float left, float right, float lower, float upper, float near_m,
+                        float far_m);
 
 // The operator's view of a sphere (centre and radius in eye coordinates, metres): from the front,
 // far enough away that all of it is seen in a tile with this projection.

@@ -2,6 +2,7 @@
 // view.
 #include "render/tiles/tile_plan.h"
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -249,6 +250,118 @@ TEST(TilePlan, TheOperatorsTileHasNoTurn) {
   settings.tiles[3].turns = 3;
   EXPECT_TRUE(planned(settings).tiles[3].view.isIdentity(0));
   EXPECT_EQ(planned(settings).tiles[3].projection, planned(settings).tiles[0].projection);
+}
+
+TEST(TilePlan, TilesMayHaveSizesOfTheirOwn) {
+  TilesSettings s;
+  s.frame_width = 1640;
+  s.tiles = {{"big", TileKind::kWall, 0, 0, 0}, {"tall", TileKind::kWall, 1000, 0, -1}};
+  s.tiles[0].width = 1000;
+  s.tiles[0].height = 500;
+  s.tiles[1].height = 960;
+  const TilePlan plan = planned(s);
+  EXPECT_EQ(plan.tiles[0].width, 1000);
+  EXPECT_EQ(plan.tiles[0].height, 500);
+  EXPECT_EQ(plan.tiles[1].width, 640);
+  EXPECT_EQ(plan.tiles[1].height, 960);
+  EXPECT_EQ(plan.wall_width, 1640);
+  EXPECT_EQ(plan.wall_height, 960);
+  EXPECT_EQ(plan.tiles[1].wall_x, 1000);
+  EXPECT_NEAR(plan.tiles[0].projection(1, 1) / plan.tiles[0].projection(0, 0), 2, 1e-6)
+      << "square pixels";
+  s.tiles[0].width = 1001;
+  EXPECT_FALSE(planTiles(s)) << "now they overlap in the frame";
+}
+
+TEST(TilePlan, ADirectionTurnsTheViewAfterItsTurns) {
+  TilesSettings s;
+  s.tiles = {{"up", TileKind::kWall, 0, 0, 1}};
+  s.tiles[0].direction_deg = {5, 10, 90};
+  const Tile tile = planned(s).tiles[0];
+  // 45 degrees to the left (40 by a turn, 5 by yaw), 10 upwards: the middle of the tile.
+  const Vector3f middle = drawnAt(tile, pointAt(45, 3 * std::tan(10 * kRadian), 3));
+  EXPECT_NEAR(middle.x(), 0, 1e-5);
+  EXPECT_NEAR(middle.y(), 0, 1e-5);
+  const Vector3f above = drawnAt(tile, pointAt(45, 3 * std::tan(12 * kRadian), 3));
+  EXPECT_GT(above.x(), 0.05F) << "rolled counter-clockwise: what is above lies to the right";
+  EXPECT_NEAR(above.y(), 0, 1e-5);
+}
+
+TEST(TilePlan, AnOffAxisFrustumHasItsEdgesAtItsAngles) {
+  TilesSettings s;
+  s.tiles = {{"side", TileKind::kWall, 0, 0, 0}};
+  s.tiles[0].frustum_deg = {-10, 35, -20, 5};
+  const Tile tile = planned(s).tiles[0];
+  EXPECT_NEAR(drawnAt(tile, pointAt(10, 0, 3)).x(), -1, 1e-5);
+  EXPECT_NEAR(drawnAt(tile, pointAt(-35, 0, 3)).x(), 1, 1e-5);
+  EXPECT_NEAR(drawnAt(tile, pointAt(0, 3 * std::tan(5 * kRadian), 3)).y(), 1, 1e-5);
+  EXPECT_NEAR(drawnAt(tile, pointAt(0, -3 * std::tan(20 * kRadian), 3)).y(), -1, 1e-5);
+}
+
+// A hinged wall: two screens of 1.6 x 1.2 m that meet at an angle of 120 degrees; the eye is off
+// the middle. A point is drawn where the line from the eye to it goes through the screen.
+TEST(TilePlan, AScreenIsLookedThroughAtItsCorners) {
+  const Vector3f lower_left(-1.4F, -0.7F, -1.1F), hinge(0.0F, -0.7F, -1.9F),
+      lower_right(1.4F, -0.7F, -1.1F), up(0, 1.2F, 0);
+  TilesSettings s;
+  s.tiles = {{"right", TileKind::kWall, 0, 0, 0}, {"left", TileKind::kWall, 640, 0, 0}};
+  const auto screen = [&](const Vector3f& a, const Vector3f& b) {
+    const Vector3f c = a + up;
+    return std::array<double, 9>{a.x(), a.y(), a.z(), b.x(), b.y(), b.z(), c.x(), c.y(), c.z()};
+  };
+  s.tiles[0].screen_m = screen(hinge, lower_right);
+  s.tiles[1].screen_m = screen(lower_left, hinge);
+  const TilePlan plan = planned(s);
+  const Tile &right = plan.tiles[0], &left = plan.tiles[1];
+  EXPECT_EQ(left.wall_x, 0) << "ordered by where they are";
+  EXPECT_EQ(right.wall_x, 640);
+  for (const float far : {1.0F, 7.0F}) {  // corners, and points behind them
+    const Vector3f at[] = {drawnAt(left, far * lower_left), drawnAt(left, far * (hinge + up)),
+                           drawnAt(right, far * hinge), drawnAt(right, far * (lower_right + up))};
+    const float expected[][2] = {{-1, -1}, {1, 1}, {-1, -1}, {1, 1}};
+    for (int k = 0; k < 4; ++k) {
+      EXPECT_NEAR(at[k].x(), expected[k][0], 1e-4) << k;
+      EXPECT_NEAR(at[k].y(), expected[k][1], 1e-4) << k;
+    }
+  }
+  const Vector3f middle = (hinge + lower_right + up) / 2;
+  EXPECT_NEAR(drawnAt(right, 3 * middle).x(), 0, 1e-4);
+}
+
+TEST(TilePlan, FrustaThatAreNoneAreRefused) {
+  const auto why = [](const std::function<void(TileSettings&)>& change) {
+    TilesSettings s;
+    change(s.tiles[0]);
+    const auto plan = planTiles(s);
+    return plan ? "" : plan.error().what;
+  };
+  EXPECT_EQ(why([](auto& t) { t.direction_deg = {0, 1, 0}; }), "");
+  EXPECT_NE(why([](auto& t) {
+              t.frustum_deg = {10, -10, -5, 5};
+            }).find("left must be less"),
+            std::string::npos);
+  EXPECT_NE(why([](auto& t) {
+              t.frustum_deg = {-90, 90, -5, 5};
+            }).find("-89.5 to 89.5"),
+            std::string::npos);
+  EXPECT_NE(why([](auto& t) {
+              t.screen_m = {-1, -1, -2, 1, -1, -2, 0, 1, -2};
+            }).find("not three corners of a rectangle"),
+            std::string::npos);
+  EXPECT_NE(why([](auto& t) {
+              t.screen_m = {1, -1, -2, -1, -1, -2, 1, 1, -2};
+            }).find("does not see its front"),
+            std::string::npos);
+  EXPECT_NE(why([](auto& t) {
+              t.screen_m = {-1, -1, -2, 1, -1, -2, -1, 1, -2};
+              t.direction_deg = {1, 0, 0};
+            }).find("leave out direction_deg"),
+            std::string::npos);
+  EXPECT_NE(why([](auto& t) {
+              t.kind = TileKind::kOperator;
+              t.frustum_deg = {-10, 10, -5, 5};
+            }).find("is the operator's"),
+            std::string::npos);
 }
 
 }  // namespace
