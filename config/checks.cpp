@@ -89,7 +89,7 @@ void checkBindings(const Settings& s, LoadedSettings& loaded) {
 }
 
 void checkOutputs(const WallSettings& wall, LoadedSettings& loaded) {
-  addFaults(render::validate(wall.outputs), "/wall/outputs", loaded);
+  addFaults(render::validate(wall.outputs, wall.tiles), "/wall/outputs", loaded);
   const bool shared = std::any_of(wall.outputs.begin(), wall.outputs.end(), [](const auto& o) {
     return o.kind == render::OutputKind::kSharedMemory;
   });

@@ -376,6 +376,23 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
         v.path("path", o.path, "Name of the PNG file, for kind png.");
         v.number("interval_s", o.interval_s, {1, 86400},
                  "Minimum time between two writes of the file, in seconds, for kind png.");
+        v.listOf<render::PlacedTile>(
+            "tiles", o.tiles, "Tiles that this output shows, and where. Empty: the whole frame.",
+            [&](render::PlacedTile& p) {
+              v.text("tile", p.tile, "Name of the tile, as in /wall/tiles/tiles.");
+              v.integer("x", p.x, {0, 32768},
+                        "Column of the tile's upper left corner on the output, in pixels.");
+              v.integer("y", p.y, {0, 32768},
+                        "Row of the tile's upper left corner on the output, in pixels, counted "
+                        "from the top.");
+              v.oneOf(
+                  "mirror", p.mirror, render::kMirrorNames,
+                  "Whether the tile is mirrored, for rear projection: horizontal exchanges left "
+                  "and right, vertical exchanges top and bottom.");
+              v.oneOf("turn_deg", p.turn, render::kTurnNames,
+                      "Clockwise rotation of the tile after mirroring, in degrees, for a projector "
+                      "or display that is mounted on its side or upside down.");
+            });
       });
 }
 

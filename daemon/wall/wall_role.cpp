@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "daemon/shm/fields.h"
+#include "render/frame/tile_arrangement.h"
 #include "render/out/output_kinds.h"
 
 namespace merlin::wall {
@@ -68,6 +69,17 @@ WallRole::WallRole(const Settings& settings, std::vector<Model> models, render::
       clock_(clock),
       model_watch_(filesOf(models_), ShownModels::maker(settings_.wall), watch_, clock_) {}
 
+// By the number of each output; null where it is sent the frame itself.
+std::vector<std::unique_ptr<render::Correction>> WallRole::corrections() const {
+  std::vector<std::unique_ptr<render::Correction>> all;
+  for (const render::OutputSettings& output : settings_.wall.outputs) {
+    all.push_back(output.tiles.empty()
+                      ? nullptr
+                      : std::make_unique<render::TileArrangement>(plan_, output.tiles));
+  }
+  return all;
+}
+
 WallRole::~WallRole() { thread_.stop(); }
 
 std::future<Result<std::string>> WallRole::start() {
@@ -90,7 +102,7 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
                   fromSeconds(settings_.devices.stale_after_s),
                   fromSeconds(1 / settings_.wall.governor.rate_hz));
   render::PointerMarker marker(plan_);
-  render::Delivery delivery(plan_, outputs_, {&marker});
+  render::Delivery delivery(plan_, outputs_, {&marker}, corrections());
   render::TimerFrameClock frame_clock(clock_);
   WallLoop loop({models.contents(), scene_, governor_, feed, delivery, segment_->stats, clock_,
                  frame_clock, &segment_->trace, &marker, &segment_->interaction, &segment_->outputs,

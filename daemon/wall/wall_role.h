@@ -57,6 +57,7 @@ class WallRole {
            render::Scene scene, shm::SegmentWriter<shm::WallSegment> segment, ThreadWatch& watch,
            Clock& clock);
   Result<Ok> makeOutputs(std::uint64_t generation);
+  std::vector<std::unique_ptr<render::Correction>> corrections() const;
   void run(const std::stop_token& stop, Progress& progress);
 
   Settings settings_;

@@ -135,7 +135,7 @@ TEST_F(OutputSetTest, OverlaysComeBeforeEachOutputsOwnCorrectionAndAreTakenOutAg
 }
 
 std::string faultOf(const std::vector<OutputSettings>& outputs) {
-  const SettingFaults faults = validate(outputs);
+  const SettingFaults faults = validate(outputs, {});
   return faults.empty() ? "" : faults[0].pointer + " " + faults[0].what;
 }
 
