@@ -3,6 +3,7 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
+#include "tests/support/picture_files.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -78,7 +79,7 @@ TEST_F(Wall, AFistPointsAndItsEndTakesASnapshot) {
   EXPECT_TRUE(m.process().saysEventually("snapshot: " + folder + "/" + m.instance() + "-"))
       << m.process().output();
   const auto first = std::filesystem::directory_iterator(folder)->path();
-  EXPECT_EQ(readText(first).substr(1, 3), "PNG");
+  expectPicture(first, 100, 1280, 960);
   EXPECT_TRUE(m.status().contains("pointer"));
   EXPECT_GE(m.status()["snapshots"], 1);
 }
@@ -151,8 +152,8 @@ TEST_F(Wall, SnapshotsAreTheFrameAndTheWall) {
   EXPECT_NE(run({kMerlin, "snapshot", "--wall", "-o", wall, "--instance", m.instance()})
                 .output.find("1920 x 480"),
             std::string::npos);
-  EXPECT_EQ(readText(frame).substr(1, 3), "PNG");
-  EXPECT_EQ(readText(wall).substr(1, 3), "PNG");
+  expectPicture(frame, 100, 1280, 960);
+  expectPicture(wall, 100, 1920, 480);
 }
 
 TEST_F(Wall, SharedMemoryIsReadByItsDumpAndByPython) {
