@@ -25,6 +25,22 @@ int connectTo(const std::string& path) {
   return -1;
 }
 
+// Whether one of the next hundred events is a twist about the vertical axis alone; false if none
+// comes for ten seconds.
+bool seesATwist(int client) {
+  timeval limit{10, 0};
+  ::setsockopt(client, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+  for (int i = 0; i < 100; ++i) {
+    Event event{};
+    if (::recv(client, event.data(), sizeof event, MSG_WAITALL) != ssize_t{sizeof event})
+      return false;
+    if (event[0] == 0 && std::abs(event[5]) > 100 && event[1] == 0 && event[2] == 0 &&
+        event[3] == 0)
+      return true;
+  }
+  return false;
+}
+
 TEST(Spacenavd, SeesTheEmulatedBallTwistedAboutItsVerticalAxis) {
   if (run({"which", "spacenavd"}).status != 0) GTEST_SKIP() << "spacenavd is not installed";
   const TempDir dir;
@@ -34,27 +50,25 @@ TEST(Spacenavd, SeesTheEmulatedBallTwistedAboutItsVerticalAxis) {
   writeText(dir / "spnavrc", "serial = " + dir / "ball" + "\n");
   // Debian's spacenavd binds run/spnav.sock in the folder that it is in, / as a service.
   std::filesystem::create_directory(dir / "run");
-  Process spacenavd({"sh", "-c", "cd " + dir.path() + " && exec spacenavd -d -v -c spnavrc"});
-  int client = -1;
-  ASSERT_TRUE(eventually([&] {
-    return spacenavd.ended() || (client = connectTo(dir / "run/spnav.sock")) >= 0;
-  })) << spacenavd.output();
-  ASSERT_FALSE(spacenavd.ended()) << spacenavd.output();
-
-  Event event{};
+  const std::string start =
+      "cd " + dir.path() + " && rm -f run/spnav.sock && exec spacenavd -d -v -c spnavrc";
+  // spacenavd gives a ball up for good that does not answer in time, as on a busy machine: like a
+  // service manager, the test then starts it again.
   bool twisted = false;
-  for (int i = 0; i < 100 && !twisted; ++i) {
-    timeval limit{20, 0};
-    ::setsockopt(client, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-    ASSERT_EQ(::recv(client, event.data(), sizeof event, MSG_WAITALL),
-              static_cast<ssize_t>(sizeof event))
-        << spacenavd.output();
-    twisted = event[0] == 0 && std::abs(event[5]) > 100 && event[1] == 0 && event[2] == 0 &&
-              event[3] == 0;
+  std::string output;
+  for (int attempt = 0; attempt < 6 && !twisted; ++attempt) {
+    Process spacenavd({"sh", "-c", start});
+    int client = -1;
+    ASSERT_TRUE(eventually([&] {
+      return spacenavd.ended() || (client = connectTo(dir / "run/spnav.sock")) >= 0;
+    })) << spacenavd.output();
+    ASSERT_FALSE(spacenavd.ended()) << spacenavd.output();
+    twisted = seesATwist(client);
+    ::close(client);
+    spacenavd.kill(SIGTERM);
+    output = spacenavd.output();
   }
-  EXPECT_TRUE(twisted) << spacenavd.output();
-  ::close(client);
-  spacenavd.kill(SIGTERM);
+  EXPECT_TRUE(twisted) << output;
 }
 
 }  // namespace
