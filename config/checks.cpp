@@ -20,7 +20,7 @@ void addFaults(const SettingFaults& faults, const std::string& group, LoadedSett
     const std::string at = group + other;
     const std::string before =
         other.empty() ? "" : fmt::format("conflicts with {} (line {}): ", at, loaded.lineOf(at));
-    loaded.wrong(group + pointer, prefix + before + what);
+    loaded.wrong(group + pointer, fmt::format("{}{}{}", prefix, before, what));
   }
 }
 

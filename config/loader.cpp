@@ -35,6 +35,7 @@ class Loader final : public SettingsVisitor {
   // Reports the unknown keys of the file's root. To be called after describe(); not the destructor,
   // which must not throw.
   void finish() { leave(); }
+  ~Loader() override = default;
   Loader(const Loader&) = delete;
   Loader& operator=(const Loader&) = delete;
 

@@ -12,6 +12,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Whether it is an object with a text under that key that is not empty.
+bool hasText(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return object.is_object() && found != object.end() && found->is_string() &&
+         !found->get_ref<const std::string&>().empty();
+}
+
 // The newest frame as a file was a group of its own before there was a list of outputs.
 Result<bool> movePng(Json& root) {
   const auto wall = root.find("wall");
@@ -22,9 +29,7 @@ Result<bool> movePng(Json& root) {
   }
   const Json png = (*wall)["png"];
   wall->erase("png");
-  const bool writes =
-      png.is_object() && !png.value("path", Json("")).empty() && png.value("path", Json("")) != "";
-  if (!writes) return true;
+  if (!hasText(png, "path")) return true;
   Json output = {{"kind", "png"}};
   output.update(png);
   (*wall)["outputs"] = Json::array({Json{{"kind", "shared_memory"}}, std::move(output)});
@@ -59,7 +64,7 @@ Error bothForms(const char* was, const char* now) {
 
 bool hasPanel(const Json& devices) {
   const auto gpio = devices.find("gpio");
-  return gpio != devices.end() && gpio->is_object() && gpio->value("chip", Json("")) != "";
+  return gpio != devices.end() && hasText(*gpio, "chip");
 }
 
 // Bindings of the wall's scene became bindings of the devices; the panel's button is one of them.

@@ -79,18 +79,10 @@ Daemon::Daemon(Configuration configuration, const DaemonOptions& options, Clock&
       models_(std::move(configuration.models)),
       options_(options),
       clock_(clock),
-      servers_(std::in_place, options.devices ? "devices" : "wall", threads_, clock),
-      watchdog_(watchdogInterval()) {}
+      watchdog_(watchdogInterval()),
+      servers_(std::in_place, options.devices ? "devices" : "wall", threads_, clock) {}
 
-// Stops callers before callees: the servers call devices_ and wall_, and wall_ calls snapshots_.
-Daemon::~Daemon() {
-  limitStop();
-  servers_.reset();
-  link_.reset();
-  devices_.reset();
-  wall_.reset();
-  snapshots_.reset();
-}
+Daemon::~Daemon() { limitStop(); }
 
 shm::Endpoints Daemon::endpoints(const std::string& role) const {
   const std::string at = fmt::format("ipc://{}/{}-{}", run_directory_, settings_.instance, role);

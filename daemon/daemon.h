@@ -66,6 +66,7 @@ class Daemon {
   void pingWatchdog(Timestamp now);
   std::string summary(Timestamp now) const;
 
+  // Members are destroyed from the last to the first: callers before those whom they call.
   Settings settings_;
   std::vector<wall::Model> models_;  // moved to the wall
   DaemonOptions options_;
@@ -74,18 +75,18 @@ class Daemon {
   std::string run_directory_;
   status::Services services_;
   status::EndedThreads ended_threads_{threads_, services_};
-  std::unique_ptr<EmulatorChildren> emulators_;
-  std::unique_ptr<devices::DevicesRole> devices_;
-  // The segment for another machine's devices, if /wall/input names one.
-  std::optional<shm::SegmentWriter<shm::DevicesSegment>> mirror_;
-  std::unique_ptr<status::SampleLink> link_;
-  std::unique_ptr<wall::WallRole> wall_;
-  std::unique_ptr<wall::SnapshotWriter> snapshots_;
-  std::optional<RoleCommands> commands_;
-  actions::ActionReader device_actions_;
-  std::optional<Servers> servers_;
   status::Watchdog watchdog_;
   Timestamp summarised_{}, mended_{};
+  std::unique_ptr<EmulatorChildren> emulators_;
+  // The segment for another machine's devices, if /wall/input names one.
+  std::optional<shm::SegmentWriter<shm::DevicesSegment>> mirror_;
+  actions::ActionReader device_actions_;
+  std::optional<RoleCommands> commands_;
+  std::unique_ptr<wall::SnapshotWriter> snapshots_;  // the wall asks it for files
+  std::unique_ptr<wall::WallRole> wall_;
+  std::unique_ptr<devices::DevicesRole> devices_;
+  std::unique_ptr<status::SampleLink> link_;  // writes into mirror_
+  std::optional<Servers> servers_;            // their clients' commands call all of these
 };
 
 }  // namespace merlin

@@ -29,7 +29,7 @@ bool writeAll(int fd, std::string_view bytes) {
 
 std::string readAll(int fd) {
   std::string all;
-  std::array<char, 65536> block;
+  std::array<char, 65536> block{};
   for (;;) {
     const ssize_t n = ::read(fd, block.data(), block.size());
     if (n < 0 && errno == EINTR) continue;

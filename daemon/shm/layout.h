@@ -74,6 +74,7 @@ struct ActionState {
 };
 static_assert(sizeof(ActionState) == 192);
 
+// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding): offsets are a contract
 struct DevicesSegment {
   Header header;
   alignas(64) SeqSlot<DeviceHealth> health[kDevices];  // writer: each device's thread

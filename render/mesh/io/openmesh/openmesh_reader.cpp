@@ -84,7 +84,7 @@ template <typename T>
 void append(std::string& to, const std::vector<T>& values) {
   const std::uint64_t size = values.size();
   to.append(reinterpret_cast<const char*>(&size), sizeof size);
-  to.append(reinterpret_cast<const char*>(values.data()), size * sizeof(T));
+  if (size > 0) to.append(reinterpret_cast<const char*>(values.data()), size * sizeof(T));
 }
 
 template <typename T>
@@ -92,7 +92,7 @@ void takeFrom(std::string_view& from, std::vector<T>& values) {
   std::uint64_t size = 0;
   std::memcpy(&size, from.data(), sizeof size);
   values.resize(size);
-  std::memcpy(values.data(), from.data() + sizeof size, size * sizeof(T));
+  if (size > 0) std::memcpy(values.data(), from.data() + sizeof size, size * sizeof(T));
   from.remove_prefix(sizeof size + size * sizeof(T));
 }
 
