@@ -30,11 +30,11 @@ struct HandPlace {
 
 // Behaviour of the person during one phase; between phases, hands move over within kTransition.
 struct Phase {
-  double seconds;             // how long
-  const char* shape;          // of the hand: a name of drivers/hand/shapes
-  std::array<float, 6> ball;  // held push and twist
-  std::uint32_t buttons;      // held
-  bool wave;                  // the hand moves about; else it is still
+  double seconds = 0;           // how long
+  const char* shape = "";       // of the hand: a name of drivers/hand/shapes
+  std::array<float, 6> ball{};  // held push and twist
+  std::uint32_t buttons = 0;    // held
+  bool wave = false;            // the hand moves about; else it is still
   HandPlace place = {};
 };
 

@@ -28,6 +28,8 @@ class FrameRenderer final : public FramePainter {
                                                      std::shared_ptr<const DrawContexts> contexts,
                                                      const Clock& clock);
   ~FrameRenderer() override;
+  FrameRenderer(const FrameRenderer&) = delete;
+  FrameRenderer& operator=(const FrameRenderer&) = delete;
 
   // Draws every state that a frame uses once, so that no shader is compiled in a frame.
   void warmUp(const Eigen::Isometry3f& T_eye_content);
