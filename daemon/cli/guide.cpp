@@ -26,6 +26,9 @@ bool enterPressed() {
 // terminal.
 class LiveLine {
  public:
+  LiveLine() = default;
+  LiveLine(const LiveLine&) = delete;
+  LiveLine& operator=(const LiveLine&) = delete;
   ~LiveLine() {
     if (drawn_ != Timestamp{}) printError("\r\033[K");
   }

@@ -11,8 +11,8 @@
 namespace merlin::hand {
 
 struct Shot {
-  const char* shape;   // that is shown; nullptr on the way from one to another
-  Angles angle_rad{};  // as the glove says it
+  const char* shape = nullptr;  // that is shown; nullptr on the way from one to another
+  Angles angle_rad{};           // as the glove says it
 };
 
 struct RecordingSettings {

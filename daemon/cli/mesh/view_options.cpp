@@ -22,7 +22,7 @@ void View::addTo(Command command) {
 }
 
 render::ModelView View::asAsked() const {
-  render::ModelView view = *this;
+  render::ModelView view = static_cast<const render::ModelView&>(*this);
   view.backend = backend_name_ == "osmesa" ? render::GlBackend::kOsmesa : render::GlBackend::kEgl;
   return view;
 }
