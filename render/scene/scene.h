@@ -29,7 +29,7 @@ enum class BallMode { kObject, kFly };  // the ball moves the model; the viewer
 struct Pointed {
   Eigen::Vector3f at_eye_m = Eigen::Vector3f::Zero();    // in eye coordinates
   Eigen::Vector3f at_model_m = Eigen::Vector3f::Zero();  // in the model's coordinates
-  bool on_model = false;                 // on its bounding sphere, else on the wall
+  bool on_model = false;                                 // on its bounding sphere, else on the wall
 };
 
 struct SceneView {

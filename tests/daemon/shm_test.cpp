@@ -142,7 +142,8 @@ TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
                   "gpio.wait_s's ring 8",
                   "gpio.health.rate_hz 4",
                   "posture_state.seen 48",
-                  "tracker.boresight_wxyz 40", "actions.panel.recent 40"}));
+                  "tracker.boresight_wxyz 40",
+                  "actions.panel.recent 40"}));
 }
 
 TEST(Fields, CoverEveryByteOfTheWallsSegmentButPadding) {

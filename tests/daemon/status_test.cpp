@@ -91,8 +91,7 @@ TEST_F(DocumentsTest, TheWallSaysWhatOutsideChecksRelyOn) {
 
 TEST_F(DocumentsTest, TheWallSaysWhereAHandPoints) {
   EXPECT_TRUE(json::parse(wallStatus(*wall_, kNow))["pointer"].is_null());
-  wall_->interaction.publish(
-      {0, shm::WallInteraction::kAtModel, {960, 240}, {0, 0.25F, 1}, 3, 0});
+  wall_->interaction.publish({0, shm::WallInteraction::kAtModel, {960, 240}, {0, 0.25F, 1}, 3, 0});
   const json s = json::parse(wallStatus(*wall_, kNow));
   EXPECT_EQ(s["pointer"].dump(), R"({"at":"model","at_model_m":[0.0,0.25,1.0],"pixel":[960,240]})");
   EXPECT_EQ(s["snapshots"], 3);
@@ -368,8 +367,9 @@ TEST_F(ServerTest, AFrameThatIsDeclaredTooLongIsClosedBeforeItComes) {
     sendRaw(fd, kGreeting + std::string("\6\0\0\0\0\x80\0\0\0", 9));
     EXPECT_TRUE(isClosed(fd)) << endpoint;
   }
-  EXPECT_NE(server_->reports()[1].last.find("a frame of 2147483648 bytes; at most 1024 are allowed"),
-            std::string::npos)
+  EXPECT_NE(
+      server_->reports()[1].last.find("a frame of 2147483648 bytes; at most 1024 are allowed"),
+      std::string::npos)
       << server_->reports()[1].last;
 }
 
