@@ -68,16 +68,16 @@ class Scene {
   Eigen::Isometry3f handPose(const TrackerSample& sample) const;
 
   SceneSettings settings_;
-  Eigen::Matrix3f R_wall_tracker_;
   Eigen::Isometry3f T_wall_model_, T_wall_eye_;
-  BallMode mode_ = BallMode::kObject;
   // While grabbed: where hand and model were when it began, and where the hand last counted.
   std::optional<Eigen::Isometry3f> grab_hand_, grab_model_;
-  std::optional<Eigen::Vector3f> fly_hand_;  // while flying: where the hand was when it began
   Eigen::Isometry3f last_hand_ = Eigen::Isometry3f::Identity();
   SceneView view_;
-  bool jumped_ = false;  // since the last update
   Timestamp last_update_{}, last_motion_{};
+  Eigen::Matrix3f R_wall_tracker_;
+  std::optional<Eigen::Vector3f> fly_hand_;  // while flying: where the hand was when it began
+  BallMode mode_ = BallMode::kObject;
+  bool jumped_ = false;  // since the last update
 };
 
 }  // namespace merlin::render
