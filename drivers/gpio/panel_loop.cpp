@@ -77,7 +77,7 @@ Error PanelLoop::serve(const std::stop_token& stop, const std::function<void()>&
 
 Result<Ok> PanelLoop::apply(GpioLines& lines) {
   Outputs wanted;
-  GpioSample sample;
+  GpioSample sample{};
   {
     const std::lock_guard lock(mutex_);
     wanted = panel_.outputs(clock_.now());

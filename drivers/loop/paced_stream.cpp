@@ -48,6 +48,7 @@ void ReadPace::setAbove(bool above) {
   if (std::exchange(above_, above) != above) changed_();
 }
 
+// NOLINTNEXTLINE(*-member-init): ahead_ is filled by read()
 PacedStream::PacedStream(std::unique_ptr<ByteStream> inner, ReadPace& pace, Clock& clock)
     : inner_(std::move(inner)), pace_(pace), clock_(clock) {}
 
