@@ -1,6 +1,5 @@
-// JSON read strictly: what a file may not hold is an error that says where it stands.
-//
-// Every error reads "FILE: POINTER: found X; allowed: Y", with an RFC 6901 pointer.
+// JsonView: reads a JSON document whose form is known. The first value that is wrong is an error
+// that says where it is: "FILE: POINTER: found X; allowed: Y", with an RFC 6901 pointer.
 #pragma once
 
 #include <cstdint>
@@ -10,23 +9,19 @@
 #include <string_view>
 #include <utility>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "daemon/base/result.h"
+#include "daemon/json/json_tree.h"
 
-namespace merlin::nn {
+namespace merlin {
 
-// Looks at the text alone. Errors, all kMalformed: no JSON (line and column come along), a number
-// that overflows, a key that comes twice, more than 8 levels. What passes is safe to parse.
-Result<Ok> checkJson(std::string_view text, const std::string& file);
-
-// One value of a parsed document, and where it stands.
+// One value of a document, and where it is.
 //
 // The first thing that is wrong is kept in `error`, which all views of a document share; reading
-// goes on with zeros and empty views, so that a reader looks at the error once, at its end.
+// goes on with zeros and empty views, so that a reader checks the error once, at its end.
 class JsonView {
  public:
-  JsonView(const nlohmann::json* value, std::string pointer, const std::string& file,
+  // All of these outlive the view. `value`: nullptr for an empty view.
+  JsonView(const JsonNode* value, std::string pointer, const std::string& file,
            std::optional<Error>& error)
       : value_(value), pointer_(std::move(pointer)), file_(file), error_(error) {}
 
@@ -39,6 +34,8 @@ class JsonView {
   JsonView at(const char* key) const;
   // Empty if there is no such element: expectArray() has said so.
   JsonView at(std::size_t index) const;
+  bool has(const char* key) const;
+  bool isText() const noexcept { return value_ && value_->kind == JsonNode::Kind::kString; }
 
   // The value, if it is of that kind and within these limits; else wrong, and zero.
   double number(double low, double high);
@@ -50,10 +47,10 @@ class JsonView {
   void wrong(std::string_view allowed, std::string_view found = {}, Errc code = Errc::kMalformed);
 
  private:
-  const nlohmann::json* value_;  // nullptr where there is none
+  const JsonNode* value_;
   std::string pointer_;
   const std::string& file_;
   std::optional<Error>& error_;
 };
 
-}  // namespace merlin::nn
+}  // namespace merlin

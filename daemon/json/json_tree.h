@@ -3,6 +3,8 @@
 // tree is built here from its SAX events.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,8 +13,9 @@
 
 namespace merlin {
 
-// Maximum size of a configuration.
+// What a text may have. A configuration, and every other file that is read this way, stays below.
 inline constexpr std::size_t kMostJsonBytes = 1 << 20;
+inline constexpr std::size_t kMostJsonLevels = 32;
 
 struct JsonNode {
   enum class Kind { kNull, kBool, kNumber, kString, kArray, kObject };
@@ -23,9 +26,10 @@ struct JsonNode {
   int line = 0;
   bool boolean = false;
   double number = 0;
-  std::string text;             // value of a string
-  std::vector<JsonNode> items;  // elements of an array
-  std::vector<Member> members;  // members of an object, in the file's order
+  std::optional<std::uint64_t> count{};  // a number that is an integer from 0 on, exactly
+  std::string text;                      // value of a string
+  std::vector<JsonNode> items;           // elements of an array
+  std::vector<Member> members;           // members of an object, in the file's order
 };
 
 struct JsonNode::Member {

@@ -1,4 +1,4 @@
-#include "config/json_tree.h"
+#include "daemon/json/json_tree.h"
 
 #include <iterator>
 #include <string>
@@ -10,8 +10,6 @@
 
 namespace merlin {
 namespace {
-
-constexpr std::size_t kMostLevels = 32;
 
 // Iterator that counts the lines up to the parser's position. The count rises when the first
 // character of a line is passed, not at the newline, because the parser reads one character beyond
@@ -60,7 +58,9 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
     return number(static_cast<double>(value));
   }
   bool number_unsigned(number_unsigned_t value) override {
-    return number(static_cast<double>(value));
+    if (!number(static_cast<double>(value))) return false;
+    last_->count = value;
+    return true;
   }
   bool number_float(number_float_t value, const string_t&) override { return number(value); }
   bool string(string_t& value) override {
@@ -86,7 +86,8 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
     // "[json.exception.parse_error.101] parse error at line 3, column 5: ...": keep the part after
     // the position.
     const std::string what = e.what();
-    const auto from = what.find(": ", what.find("column"));
+    const auto column = what.find("column");
+    const auto from = column == std::string::npos ? what.find("] ") : what.find(": ", column);
     return fail(from == std::string::npos ? what : what.substr(from + 2));
   }
 
@@ -116,8 +117,8 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
   bool open(JsonNode::Kind kind) {
-    if (open_.size() == kMostLevels)
-      return fail(fmt::format("more than {} levels deep", kMostLevels));
+    if (open_.size() == kMostJsonLevels)
+      return fail(fmt::format("more than {} levels deep", kMostJsonLevels));
     if (!place(kind)) return false;
     open_.push_back(last_);
     keys_.emplace_back();
