@@ -3,44 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include <Eigen/Geometry>
 
-namespace merlin::render {
+#include "render/tiles/wall_layout.h"
+
+namespace merlin::render::tiles {
 namespace {
 
 constexpr double kRadian = std::numbers::pi / 180;
 
-// How far to the left the middle of a tile is, in radians. A whole circle of tiles stays in order,
-// since `turns` may exceed half of it.
-double leftwards(const Tile& tile, const TileSettings& settings, double field_of_view) {
-  if (!settings.hasScreen())
-    return settings.turns * field_of_view + settings.direction_deg[0] * kRadian;
-  const Eigen::Vector3f middle(tile.projection(0, 2) / tile.projection(0, 0),
-                               tile.projection(1, 2) / tile.projection(1, 1), -1);
-  const Eigen::Vector3f seen = tile.view.topLeftCorner<3, 3>().transpose() * middle;
-  return std::atan2(-seen.x(), -seen.z());
-}
-
-// Lays out wall tiles side by side, the leftmost first.
-void layOutWall(TilePlan& plan, const TilesSettings& s) {
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t i = 0; i < plan.tiles.size(); ++i) {
-    if (plan.tiles[i].kind == TileKind::kWall)
-      order.emplace_back(leftwards(plan.tiles[i], s.tiles[i], s.field_of_view_deg * kRadian), i);
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  for (const auto& [left, i] : order) {
-    plan.tiles[i].wall_x = plan.wall_width;
-    plan.wall_width += plan.tiles[i].width;
-    plan.wall_height = std::max(plan.wall_height, plan.tiles[i].height);
-  }
-}
-
-// Rotates by yaw, pitch and roll, in this order, as TileSettings::direction_deg says: the inverse,
-// which takes eye to view coordinates.
+// View matrix (eye to view coordinates) of TileSettings::direction_deg: the inverse of the rotation
+// by yaw, pitch and roll, in this order.
 Eigen::Matrix4f directionView(const std::array<double, 3>& degrees) {
   const auto radian = [&](std::size_t i) { return static_cast<float>(degrees[i] * kRadian); };
   const Eigen::Matrix3f turn = (Eigen::AngleAxisf(radian(0), Eigen::Vector3f::UnitY()) *
@@ -52,11 +26,14 @@ Eigen::Matrix4f directionView(const std::array<double, 3>& degrees) {
   return view;
 }
 
-// The frustum through a screen: the view along its normal, its edges by their distances from that
-// line (R. Kooima, "Generalized Perspective Projection", 2008).
-void lookThrough(const std::array<double, 9>& screen, float near_m, float far_m, Tile& tile) {
+// Sets the camera that sees exactly the tile's screen from `eye`: its view direction is the
+// screen's normal, and the frustum's edges are the screen's edges (R. Kooima, "Generalized
+// Perspective Projection", 2008).
+void lookThroughScreen(const Eigen::Vector3d& eye, double nearest_m, double farthest_m,
+                       Tile& tile) {
+  const auto near_m = static_cast<float>(nearest_m), far_m = static_cast<float>(farthest_m);
   const auto corner = [&](std::size_t k) {
-    return Eigen::Vector3d(screen[3 * k], screen[3 * k + 1], screen[3 * k + 2]);
+    return Eigen::Vector3d(Eigen::Vector3d(&tile.screen_m[3 * k]) - eye);
   };
   const Eigen::Vector3d across = (corner(1) - corner(0)).normalized();
   const Eigen::Vector3d towards = across.cross(corner(2) - corner(0)).normalized();
@@ -71,6 +48,37 @@ void lookThrough(const std::array<double, 9>& screen, float near_m, float far_m,
   tile.view.block<1, 3>(0, 0) = across.cast<float>().transpose();
   tile.view.block<1, 3>(1, 0) = up.cast<float>().transpose();
   tile.view.block<1, 3>(2, 0) = towards.cast<float>().transpose();
+  if (!eye.isZero(0))
+    tile.view.block<3, 1>(0, 3) = -tile.view.topLeftCorner<3, 3>() * eye.cast<float>();
+}
+
+// Whether an eye sees the front of a screen, less than 179 degrees wide and high.
+bool seesFront(const std::array<double, 9>& screen, const Eigen::Vector3d& eye) {
+  constexpr double kWidest = 179 * kRadian;
+  const Eigen::Vector3d corner = Eigen::Vector3d(&screen[0]) - eye;
+  const Eigen::Vector3d across = Eigen::Vector3d(&screen[3]) - eye - corner;
+  const Eigen::Vector3d up = Eigen::Vector3d(&screen[6]) - eye - corner;
+  const double distance = -corner.dot(across.cross(up).normalized());
+  const auto isWithin = [&](const Eigen::Vector3d& edge) {
+    const double low = corner.dot(edge.normalized());
+    return std::atan2(low + edge.norm(), distance) - std::atan2(low, distance) < kWidest;
+  };
+  return distance > 1e-3 && isWithin(across) && isWithin(up);
+}
+
+void lookThrough(const FreeCamera& camera, const TilesSettings& s, Tile& tile) {
+  const Eigen::Vector3d eye(camera.eye_m.data()), at(camera.look_at_m.data());
+  const Eigen::Vector3d back = (eye - at).normalized();
+  const Eigen::Vector3d right = Eigen::Vector3d(camera.up.data()).cross(back).normalized();
+  Eigen::Matrix4d view = Eigen::Matrix4d::Identity();
+  view.block<1, 3>(0, 0) = right.transpose();
+  view.block<1, 3>(1, 0) = back.cross(right).transpose();
+  view.block<1, 3>(2, 0) = back.transpose();
+  view.block<3, 1>(0, 3) = -view.topLeftCorner<3, 3>() * eye;
+  tile.view = view.cast<float>();
+  tile.projection = perspective(static_cast<float>(camera.field_of_view_deg * kRadian),
+                                static_cast<float>(tile.width) / static_cast<float>(tile.height),
+                                static_cast<float>(s.near_m), static_cast<float>(s.far_m));
 }
 
 Tile tileOf(const TileSettings& t, const TilesSettings& s) {
@@ -83,10 +91,19 @@ Tile tileOf(const TileSettings& t, const TilesSettings& s) {
             t.width > 0 ? t.width : s.tile_width,
             t.height > 0 ? t.height : s.tile_height,
             -1,
+            -1,
             {},
-            {}};
+            {},
+            t.view,
+            t.eye,
+            t.screen_m};
+  if (t.view == TileCamera::kFree) {
+    lookThrough(t.camera, s, tile);
+    return tile;
+  }
   if (t.hasScreen()) {
-    lookThrough(t.screen_m, near_m, far_m, tile);
+    const Viewer straight{Eigen::Vector3d::Zero(), Eigen::Vector3d(s.eyes_m.data())};
+    lookThroughScreen(straight.placeOf(t.eye), s.near_m, s.far_m, tile);
     return tile;
   }
   tile.view = yawView(static_cast<float>(t.kind == TileKind::kWall ? t.turns * fov : 0));
@@ -104,14 +121,14 @@ Tile tileOf(const TileSettings& t, const TilesSettings& s) {
   return tile;
 }
 
-// Whether all eight corners lie beyond one of the six planes of a frustum in clip coordinates.
+// Whether all eight corners lie outside the same one of the six planes of the clip volume.
 bool isBeyondOne(const Eigen::Matrix4f& clip_from_box) noexcept {
   int beyond[6] = {};
   for (unsigned corner = 0; corner < 8; ++corner) {
     const auto side = [&](unsigned axis) { return (corner >> axis & 1) != 0 ? 1.0F : -1.0F; };
     const Eigen::Vector4f p = clip_from_box * Eigen::Vector4f(side(0), side(1), side(2), 1);
     for (int axis = 0; axis < 3; ++axis) {
-      beyond[2 * axis] += p[axis] <= p[3] ? 0 : 1;  // a NaN is beyond
+      beyond[2 * axis] += p[axis] <= p[3] ? 0 : 1;  // NaN counts as outside
       beyond[2 * axis + 1] += p[axis] >= -p[3] ? 0 : 1;
     }
   }
@@ -146,7 +163,7 @@ Eigen::Matrix4f offAxis(float left, float right, float lower, float upper, float
 
 Eigen::Matrix4f operatorView(const Eigen::Matrix4f& projection, const Eigen::Vector3f& centre,
                              float radius) {
-  // The narrower of the two half angles decides: sin of atan(1 / m).
+  // The narrower of the two half angles a, with tan a = 1 / m, decides: distance = radius / sin a.
   const float steepest = std::max(projection(0, 0), projection(1, 1));
   const float distance = radius * std::sqrt(1 + steepest * steepest);
   Eigen::Matrix4f m = Eigen::Matrix4f::Identity();
@@ -154,14 +171,52 @@ Eigen::Matrix4f operatorView(const Eigen::Matrix4f& projection, const Eigen::Vec
   return m;
 }
 
+Look parallelLook(TileCamera camera, float aspect, const Eigen::Vector3f& centre, float radius) {
+  // Of the picture in eye coordinates: right and up; what is left is towards the camera.
+  Eigen::Vector3f right = Eigen::Vector3f::UnitX(), up = Eigen::Vector3f::UnitY();
+  if (camera == TileCamera::kTop) up = -Eigen::Vector3f::UnitZ();
+  if (camera == TileCamera::kSide) right = -Eigen::Vector3f::UnitZ();
+  Look look{Eigen::Matrix4f::Identity(), Eigen::Matrix4f::Identity()};
+  look.view.block<1, 3>(0, 0) = right.transpose();
+  look.view.block<1, 3>(1, 0) = up.transpose();
+  look.view.block<1, 3>(2, 0) = right.cross(up).transpose();
+  look.view.block<3, 1>(0, 3) = -look.view.topLeftCorner<3, 3>() * centre;
+  look.projection(0, 0) = std::min(1.0F, 1 / aspect) / radius;
+  look.projection(1, 1) = std::min(1.0F, aspect) / radius;
+  // A little more depth than the sphere has, so that nothing of it is clipped.
+  look.projection(2, 2) = -1 / (1.05F * radius);
+  return look;
+}
+
+Look lookOf(const Tile& tile, const Eigen::Vector3f& centre, float radius) {
+  if (tile.kind == TileKind::kOperator)
+    return {tile.projection, operatorView(tile.projection, centre, radius)};
+  if (!tile.isFitted()) return {tile.projection, tile.view};
+  return parallelLook(tile.camera, static_cast<float>(tile.width) / static_cast<float>(tile.height),
+                      centre, radius);
+}
+
+bool placeViewer(TilePlan& plan, const Viewer& viewer) {
+  const auto isPlaced = [](const Tile& t) {
+    return t.followsWall() && t.screen_m != std::array<double, 9>{};
+  };
+  for (const Tile& t : plan.tiles) {
+    if (isPlaced(t) && !seesFront(t.screen_m, viewer.placeOf(t.eye))) return false;
+  }
+  for (Tile& t : plan.tiles) {
+    if (isPlaced(t)) lookThroughScreen(viewer.placeOf(t.eye), plan.near_m, plan.far_m, t);
+  }
+  return true;
+}
+
 bool seesBox(const TilePlan& plan, const Eigen::Matrix4f& T_eye_box) noexcept {
   return std::any_of(plan.tiles.begin(), plan.tiles.end(), [&](const Tile& t) {
-    return t.kind == TileKind::kWall && !isBeyondOne(t.projection * t.view * T_eye_box);
+    return !t.isFitted() && !isBeyondOne(t.projection * t.view * T_eye_box);
   });
 }
 
 Eigen::Matrix4f yawView(float yaw_rad) {
-  // The inverse of turning the eye by +yaw about y.
+  // The inverse of rotating the eye by +yaw about y.
   const float c = std::cos(yaw_rad), s = std::sin(yaw_rad);
   Eigen::Matrix4f m = Eigen::Matrix4f::Identity();
   m(0, 0) = c;
@@ -174,10 +229,10 @@ Eigen::Matrix4f yawView(float yaw_rad) {
 Result<TilePlan> planTiles(const TilesSettings& s) {
   if (const SettingFaults faults = validate(s); !faults.empty())
     return Error{Errc::kInvalidArgument, faults.front().what};
-  TilePlan plan{s.frame_width, s.frame_height, 0, 0, {}};
+  TilePlan plan{s.frame_width, s.frame_height, 0, 0, {}, s.near_m, s.far_m};
   for (const TileSettings& t : s.tiles) plan.tiles.push_back(tileOf(t, s));
   layOutWall(plan, s);
   return plan;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::tiles

@@ -1,0 +1,22 @@
+// Common walls by name, as panels and displays. Pure.
+//
+//   flat       a row of panels in one plane; the viewer's distance is the row's width
+//   three_160  three panels, hinged at 160 degrees; the viewer is equally far from all
+//   three_120  three panels, hinged at 120 degrees; the viewer is equally far from all
+//   six        two rows of three panels in one plane; the viewer's distance is their width
+//   hexagon    six panels, hinged at 120 degrees, closed around the viewer in the middle
+#pragma once
+
+#include "render/room/settings.h"
+
+namespace merlin::render::room {
+
+// Returns the room with explicit panels and displays: the panels of its preset, and one display per
+// panel if the room has no displays; if the displays overlap, one panel is the whole screen. Half
+// of a preset's height is above the room's origin and half below.
+RoomSettings withPanels(const RoomSettings& room);
+
+// Number of the preset's panels; 0 for RoomPreset::kNone.
+std::size_t panelCount(const RoomPresetSettings& preset);
+
+}  // namespace merlin::render::room

@@ -1,0 +1,72 @@
+// Settings of stereo, and of the tracker station that says where the viewer's head is.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "daemon/base/setting_fault.h"
+#include "render/out/settings.h"
+#include "render/tiles/settings.h"
+
+namespace merlin::render::stereo {
+
+// How the pictures of the two eyes reach them. In the order of kStereoModeNames.
+enum class StereoMode {
+  kOff,         // both eyes see the same picture
+  kSideBySide,  // the left half of the signal is the left eye's
+  kTopBottom,   // the upper half of the signal is the left eye's
+  kAnaglyph,    // one picture in red and cyan
+  kTwoOutputs,  // an output, that is a projector, for each eye
+};
+inline constexpr const char* kStereoModeNames[] = {"off", "side_by_side", "top_bottom", "anaglyph",
+                                                   "two_outputs"};
+inline constexpr const char* nameOf(StereoMode mode) {
+  return kStereoModeNames[static_cast<int>(mode)];
+}
+
+// Of each eye's picture in kSideBySide and kTopBottom. In the order of kEyeSizeNames.
+enum class EyeSize {
+  kHalf,  // half of the tile's width or height: both together are as large as the tile
+  kFull,  // as large as the tile: both together are twice as wide or high
+};
+inline constexpr const char* kEyeSizeNames[] = {"half", "full"};
+
+// Where the tracker stands in the room, and how far a head at rest seems to move.
+struct HeadSettings {
+  int station = 0;  // of the tracker, on the viewer's head; 0: none
+  // Place of the eyes in the room where the tracker says 0, 0, 0: that of its transmitter, less the
+  // way from the eyes to the receiver on the head [m].
+  std::array<double, 3> origin_m{};
+  // The room's x (right), y (up), z (towards the person) as axes of the tracker (1 x, 2 y, 3 z,
+  // negative to turn it round).
+  std::array<int, 3> axes = {-2, -3, 1};
+  double scale = 1;  // metres of the room for a metre of the tracker
+  // What the head has to move or turn from rest until that counts as motion.
+  double dead_band_m = 0.005, dead_band_deg = 2;
+};
+
+struct StereoSettings {
+  StereoMode mode = StereoMode::kOff;
+  EyeSize size = EyeSize::kHalf;
+  double eye_separation_m = 0.063;
+  double screen_distance_m = 0;  // of tiles whose screen is not known; 0: the wall's
+  // From the left to the right eye of a viewer who is not tracked, of any length (x right, y up, z
+  // towards the person). All 0: along the tile in the middle of the wall.
+  std::array<double, 3> eyes_direction{};
+  HeadSettings head;
+
+  bool isOn() const { return mode != StereoMode::kOff; }
+};
+
+// Finds stereo that no wall can show: eyes further apart than their screen is away, an eye that
+// does not see a screen from the front, a tile that cannot be halved or whose name has no room for
+// the eye's, an output that shows a tile in a way that the mode has not, two_outputs without two
+// outputs; eyes without a line; axes of the tracker that are not a right-handed permutation,
+// figures that are not numbers. Pointers are relative to /wall: "/stereo/mode",
+// "/outputs/0/tiles/1". What else is wrong with the resulting tiles and outputs, their own
+// validate() finds. Pure. tiles             those of the wall without stereo, without faults
+// wall_distance_m   of the screens of tiles that have none, unless `stereo` says more
+SettingFaults validate(const StereoSettings& stereo, const tiles::TilesSettings& tiles,
+                       const std::vector<out::OutputSettings>& outputs, double wall_distance_m);
+
+}  // namespace merlin::render::stereo
