@@ -1,0 +1,33 @@
+// OutputCorrection: turns a picture into the signal that makes one output's screen show it as
+// intended.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "daemon/base/blocks.h"
+#include "render/correct/correct_pixels.h"
+#include "render/correct/correction_map.h"
+#include "render/frame/correction.h"
+
+namespace merlin::render::correct {
+
+// Thread-bound to the wall's thread; uses the threads of that thread's team.
+class OutputCorrection final : public frame::Correction {
+ public:
+  // Memory: 16 bytes per pixel.
+  OutputCorrection(CorrectionMap map, Threads threads);
+
+  // One pass over the output. REQUIRES: the picture has the map's source size.
+  out::Signal apply(const out::Signal& picture) override;
+
+  const CorrectionMap& map() const noexcept { return map_; }
+
+ private:
+  CorrectionMap map_;
+  Threads threads_;
+  CorrectRows correct_ = rowCorrector();
+  std::vector<std::uint8_t> pixels_;
+};
+
+}  // namespace merlin::render::correct

@@ -1,0 +1,56 @@
+// Area: a rectangle of a canvas, to draw points, lines, rings and text in. Pure.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace merlin::render::testcard {
+
+struct Colour {
+  std::uint8_t red = 0, green = 0, blue = 0;
+};
+
+inline constexpr Colour kBlack{0, 0, 0}, kWhite{255, 255, 255};
+constexpr Colour grey(int value) {
+  const auto v = static_cast<std::uint8_t>(value);
+  return {v, v, v};
+}
+
+// Everything is clipped to the area. Coordinates are pixels from its upper left corner.
+class Area {
+ public:
+  // `canvas`: RGBA, `canvas_width` pixels a row, which has the rectangle.
+  Area(std::span<std::uint8_t> canvas, int canvas_width, int x, int y, int width, int height)
+      : canvas_(canvas),
+        canvas_width_(canvas_width),
+        x_(x),
+        y_(y),
+        width_(width),
+        height_(height) {}
+
+  int width() const noexcept { return width_; }
+  int height() const noexcept { return height_; }
+
+  void set(int x, int y, Colour colour);
+  void fill(int x, int y, int width, int height, Colour colour);
+  void fillAll(Colour colour) { fill(0, 0, width_, height_, colour); }
+  // The border of a rectangle, a pixel wide, inside it.
+  void frame(int x, int y, int width, int height, Colour colour);
+  void line(int x0, int y0, int x1, int y1, Colour colour);
+  // A circle around a point between pixels: (1, 1) is where the first four meet. `outer` is its
+  // outer radius; `thick` its width.
+  void ring(double x, double y, double outer, double thick, Colour colour);
+  // Text of `scale` pixels for each of the font's, 8 * scale high; (x, y) is its upper left corner.
+  void text(int x, int y, int scale, std::string_view text, Colour colour);
+  // The same around a point, on a black box.
+  void label(int x, int y, int scale, std::string_view text, Colour colour);
+
+ private:
+  std::span<std::uint8_t> canvas_;
+  int canvas_width_, x_, y_, width_, height_;
+};
+
+int textWidth(std::string_view text, int scale);
+
+}  // namespace merlin::render::testcard

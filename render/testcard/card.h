@@ -1,0 +1,45 @@
+// Test cards: what a wall shows while somebody sets up its projectors and displays. Pure.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace merlin::render::testcard {
+
+// In the order of kCardNames.
+enum class Card { kGrid, kEdges, kRamps, kNames, kFocus };
+inline constexpr const char* kCardNames[] = {"grid", "edges", "ramps", "names", "focus"};
+inline constexpr std::size_t kCards = 5;
+std::optional<Card> cardNamed(std::string_view name);
+
+// A tile, with what a card says of it.
+struct CardTile {
+  std::string name;
+  int x = 0, y = 0, width = 0, height = 0;  // in the canvas [px]
+  std::vector<std::string> lines{};         // further lines of the card names
+  // Strips at its borders that a neighbour shows as well [px].
+  int left = 0, right = 0, top = 0, bottom = 0;
+};
+
+// A corner of a tile that is marked: 2 * row + column.
+struct MarkedCorner {
+  std::size_t tile = 0, corner = 0;
+};
+
+// Draws a card into each tile of a canvas (RGBA, `canvas_width` pixels a row), which has them.
+//   grid   lines at equal distances, the border, diagonals, circles: for geometry
+//   edges  the tile's outermost pixels, its corners (red, green, blue, yellow: upper left, upper
+//          right, lower left, lower right), strips of overlap with their inner edges
+//   ramps  grey, red, green, blue, from 0 to 255; 17 steps of grey; steps near black and white
+//   names  tile, output, size, panel
+//   focus  checkers and lines of single pixels, Siemens stars, small text
+// `mark`: a corner that is being moved, on the cards grid and edges. Costs some milliseconds per
+// million pixels.
+void drawCard(Card card, std::span<const CardTile> tiles, std::optional<MarkedCorner> mark,
+              std::span<std::uint8_t> canvas, int canvas_width);
+
+}  // namespace merlin::render::testcard

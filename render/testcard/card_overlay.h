@@ -1,0 +1,46 @@
+// CardOverlay: a test card over everything that the wall shows.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "render/frame/overlay.h"
+#include "render/testcard/card.h"
+
+namespace merlin::render::testcard {
+
+// show() is for any thread; the rest for the wall's.
+class CardOverlay final : public frame::Overlay {
+ public:
+  // `width` x `height`: of the canvas [px].
+  CardOverlay(int width, int height, std::vector<CardTile> tiles);
+
+  // Shows a card from the next frame on, or none. Draws it here, and needs two pictures of the
+  // canvas's size as long as it is shown.
+  void show(std::optional<Card> card, std::optional<MarkedCorner> mark = std::nullopt);
+
+  bool hasChanged() const override { return waiting_; }
+  // Costs a copy of the tiles, and erase() another; nothing while no card is shown. Never waits.
+  void draw(std::span<std::uint8_t> canvas) override;
+  void erase(std::span<std::uint8_t> canvas) override;
+
+ private:
+  // A card as it is drawn, and what was there before; of the canvas's size.
+  struct Pictures {
+    std::vector<std::uint8_t> card, covered;
+  };
+  void copyTiles(std::span<const std::uint8_t> from, std::span<std::uint8_t> to) const;
+
+  int width_, height_;
+  std::vector<CardTile> tiles_;
+  std::mutex mutex_;  // of next_ and retired_
+  std::unique_ptr<Pictures> next_, retired_;
+  std::atomic<bool> waiting_{false};
+  std::unique_ptr<Pictures> shown_;
+};
+
+}  // namespace merlin::render::testcard
