@@ -1,43 +1,53 @@
-// Port: when a frame has to be there. A timer here; a display's vertical blank, or a time that
-// several machines agreed on, are others.
+// Port (an interface): when frames are due. Here: a timer, and a clock that follows a display's
+// vertical blanks; others could follow a time base that several machines share.
 //
-// Frame k, counted from 0, begins at begin(k) and has to be with its outputs by deadline(k), which
-// is when the next one begins. Late is what this clock says was late: nobody else compares times.
+// Frame k, counted from 0, begins at begin(k) and must have reached its outputs by deadline(k),
+// which is when the next frame begins. This clock alone defines the deadlines by which frames count
+// as late.
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <stop_token>
+#include <utility>
 
 #include "daemon/base/clock.h"
 
-namespace merlin::render {
+namespace merlin::render::out {
 
 // Thread-bound to the wall's thread.
 class FrameClock {
  public:
   virtual ~FrameClock() = default;
 
-  // Frames of `period` from now on: frame 0 begins at `from`, or as soon after it as this clock
-  // can. REQUIRES: period > 0.
+  // Starts a sequence of frames with this period: frame 0 begins at `from`, or as soon after it as
+  // this clock can. REQUIRES: period > 0.
   virtual void start(Timestamp from, Duration period) = 0;
 
   virtual Duration period() const noexcept = 0;
 
-  // Predicted, for a k that is still to come.
+  // When frame k begins; a prediction if k is still to come.
   virtual Timestamp begin(std::int64_t k) const noexcept = 0;
   Timestamp deadline(std::int64_t k) const noexcept { return begin(k + 1); }
 
-  // The newest frame whose begin has come at `now`; -1 before frame 0.
+  // The number of the frame that is current at `now`; -1 before frame 0.
   virtual std::int64_t frameAt(Timestamp now) const noexcept = 0;
 
-  // Waits until frame k begins. False within 50 ms of a stop that is asked for.
+  // Waits until frame k begins. Returns false within 50 ms after a stop was requested.
   virtual bool waitFor(std::int64_t k, const std::stop_token& stop) noexcept = 0;
 
-  // An output says when frame k was shown, so that predictions follow what it really does.
+  // Reports when frame k was shown, so that the clock can correct its predictions.
   virtual void shown(std::int64_t k, Timestamp when) noexcept = 0;
 };
 
-// Frames by the machine's clock alone.
+// A display's vertical blanks: one at `last`, and one every `period` [> 0] before and after it.
+struct Vblank {
+  Timestamp last{};
+  Duration period{};
+};
+
+// Frames timed by a Clock alone.
 class TimerFrameClock final : public FrameClock {
  public:
   // `clock` outlives this.
@@ -55,7 +65,7 @@ class TimerFrameClock final : public FrameClock {
   bool waitFor(std::int64_t k, const std::stop_token& stop) noexcept override {
     return clock_.sleepUntil(begin(k), stop);
   }
-  // Nothing that is shown moves a timer.
+  // A timer does not adapt to when frames were shown.
   void shown(std::int64_t /*k*/, Timestamp /*when*/) noexcept override {}
 
  private:
@@ -64,4 +74,34 @@ class TimerFrameClock final : public FrameClock {
   Duration period_ = std::chrono::seconds(1);
 };
 
-}  // namespace merlin::render
+// Frames that begin with a display's vertical blanks, every one or every n-th of them, while the
+// period asked for is within 3 % of n of the display's; otherwise, and while the display tells none
+// (for ten seconds or more), frames timed by a Clock. It changes from one to the other by at most a
+// sixteenth of a period a frame.
+class VblankFrameClock final : public FrameClock {
+ public:
+  using Source = std::function<std::optional<Vblank>()>;
+  // `clock` outlives this. `source` is called once a frame.
+  VblankFrameClock(Clock& clock, Source source) : clock_(clock), source_(std::move(source)) {}
+
+  void start(Timestamp from, Duration period) override;
+  Duration period() const noexcept override { return period_; }
+  Timestamp begin(std::int64_t k) const noexcept override {
+    return base_ + (k - base_k_) * period_;
+  }
+  std::int64_t frameAt(Timestamp now) const noexcept override;
+  bool waitFor(std::int64_t k, const std::stop_token& stop) noexcept override;
+  // The display itself says when frames are shown.
+  void shown(std::int64_t /*k*/, Timestamp /*when*/) noexcept override {}
+
+ private:
+  void follow(std::int64_t k);
+
+  Clock& clock_;
+  Source source_;
+  Duration asked_ = std::chrono::seconds(1), period_ = asked_;
+  std::int64_t base_k_ = 0;  // this frame begins at base_
+  Timestamp base_{};
+};
+
+}  // namespace merlin::render::out

@@ -1,5 +1,5 @@
-// Port: where a finished frame goes. Shared memory and PNG files are the kinds here; a new kind is
-// a class and a row in output_kinds.cpp.
+// Port (an interface): a destination of finished frames. A new kind is a class and a row in
+// output_kinds.cpp.
 #pragma once
 
 #include <cstdint>
@@ -9,36 +9,54 @@
 
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
+#include "render/out/frame_clock.h"
 
-namespace merlin::render {
+namespace merlin::render::out {
 
 struct FrameInfo {
   std::uint64_t sequence = 0;  // +1 a frame
   Timestamp finished{};        // when its last pixel was drawn
-  std::uint32_t cost = 0;      // of its detail, in the content's unit: a model's triangles
+  std::uint32_t cost = 0;      // of the detail drawn, in the content's unit, e.g. triangles
   bool full_detail = false;
 };
 
-// Picture that is sent to an output.
+// The picture that an output is sent.
 struct Signal {
   int width = 0, height = 0;               // [px]
   std::span<const std::uint8_t> pixels{};  // RGBA, rows from top to bottom, no padding
 };
 
-// Thread-bound to the wall's thread, but for mend().
+// Thread-bound to the wall's thread, except mend(), wantsFrame() and vblank().
 class Output {
  public:
   virtual ~Output() = default;
 
-  // Takes the frame; copies what it keeps. Bounded: never waits for a reader, an encoder or a disk;
-  // an output that is slow has a thread of its own. Returns when the frame was or will be shown;
-  // nothing where it was left out, since the output has a pace of its own. Errors: why the frame,
-  // or one that was taken before it, is not shown; the next frame is tried again.
+  // False if present() will certainly skip this frame; it then need not be corrected, and present()
+  // gets a signal without pixels.
+  virtual bool mayTake(const FrameInfo&) const { return true; }
+
+  // Takes the frame and copies what it keeps. Takes bounded time: it never waits for a reader, an
+  // encoder or a disk; a slow output has its own thread. Returns when the frame was or will be
+  // shown; nothing if it was skipped because the output has its own rate. Errors: why this frame,
+  // or one taken before it, is not shown; the next frame is tried again.
   virtual Result<std::optional<Timestamp>> present(const Signal& signal, const FrameInfo& info) = 0;
 
-  // Once a second, from any thread: makes again what others have removed. Returns what it did, for
-  // the log; empty for nothing. Errors: what cannot be made again.
+  // Called once a period, also while nothing moves and no frame is presented: for an output that
+  // learns on its own that its display is gone or back. Returns why it shows nothing, empty while
+  // it works; nullopt: what the last present() returned still holds.
+  virtual std::optional<std::string> faultNow() const { return std::nullopt; }
+
+  // True if a frame is to be presented although the picture has not changed, since the output has
+  // lost its picture. Thread-safe.
+  virtual bool wantsFrame() const { return false; }
+
+  // The last vertical blank of the output's display; nothing if it has none. Thread-safe.
+  virtual std::optional<Vblank> vblank() const { return std::nullopt; }
+
+  // Called once a second, from any thread: restores what other processes have removed, e.g. a
+  // shared-memory object. Returns a description of what it did, for the log; empty if nothing.
+  // Errors: what cannot be restored.
   virtual Result<std::string> mend() { return std::string(); }
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::out

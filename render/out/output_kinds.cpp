@@ -4,8 +4,10 @@
 
 #include "render/out/png_output.h"
 #include "render/out/shared_frame.h"
+#include "render/out/window/window_process.h"
+#include "render/out/window_output.h"
 
-namespace merlin::render {
+namespace merlin::render::out {
 namespace {
 
 using Made = Result<std::unique_ptr<Output>>;
@@ -21,15 +23,34 @@ Made makePng(const OutputSettings& settings, const OutputParts& parts) {
       std::make_unique<PngOutput>(settings.path, settings.interval_s, parts.watch));
 }
 
+Made makeWindow(const OutputSettings& settings, const OutputParts& parts) {
+  auto program = windowProgram();
+  if (!program) return program.error();
+  return std::unique_ptr<Output>(std::make_unique<WindowOutput>(
+      settings.window, parts.window, *std::move(program), parts.watch, parts.clock));
+}
+
+Made makeKms(const OutputSettings& settings, const OutputParts& parts) {
+  const PictureSize size = *pictureSize(settings, parts.tiles);
+  return parts.cards.makeOutput(settings.kms, size.width, size.height);
+}
+
 // In the order of OutputKind.
-constexpr Made (*kMakers[])(const OutputSettings&, const OutputParts&) = {makeSharedMemory,
-                                                                          makePng};
+constexpr Made (*kMakers[])(const OutputSettings&, const OutputParts&) = {makeSharedMemory, makePng,
+                                                                          makeWindow, makeKms};
 static_assert(std::size(kMakers) == std::size(kOutputKindNames));
 
 }  // namespace
+
+Result<Ok> checkIsThere(OutputKind kind) {
+  if (kind != OutputKind::kWindow) return Ok{};
+  const auto program = windowProgram();
+  if (!program) return program.error();
+  return Ok{};
+}
 
 Made makeOutput(const OutputSettings& settings, const OutputParts& parts) {
   return kMakers[static_cast<std::size_t>(settings.kind)](settings, parts);
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::out

@@ -1,27 +1,36 @@
-// The table of output kinds.
+// Creates outputs from their settings, by the table of output kinds.
 #pragma once
 
 #include <memory>
 #include <string>
 
 #include "daemon/base/watched_thread.h"
+#include "render/out/kms_output.h"
 #include "render/out/output.h"
 #include "render/out/settings.h"
+#include "render/out/window/window_link.h"
 #include "render/tiles/tile_plan.h"
 
-namespace merlin::render {
+namespace merlin::render::out {
 
-// Parts that outputs are made of, beside their settings.
+// What outputs need besides their settings.
 struct OutputParts {
-  const TilePlan& plan;
-  std::string frame_name;        // of the frame in shared memory, as "/merlin-framebuffer"
+  const tiles::TilePlan& plan;
+  std::string frame_name;        // of the shared-memory object, e.g. "/merlin-framebuffer"
   std::uint64_t generation = 0;  // new at each start of the daemon
-  ThreadWatch& watch;            // of the outputs' own threads; outlives them, as `clock` does
+  ThreadWatch& watch;            // for the outputs' own threads; `watch` and `clock` outlive them
   const Clock& clock;
+  const tiles::TilesSettings& tiles;
+  kms::Cards& cards;    // for outputs of kind kms
+  WindowActs window{};  // for outputs of kind window
 };
 
-// Errors: why an output of that kind cannot be made, as its class says.
+// Whether this installation has what outputs of this kind need. Errors: kUnsupported: what is
+// missing, and how to get it.
+Result<Ok> checkIsThere(OutputKind kind);
+
+// Errors: those of the make() of the output's class.
 Result<std::unique_ptr<Output>> makeOutput(const OutputSettings& settings,
                                            const OutputParts& parts);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::out

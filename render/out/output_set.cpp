@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace merlin::render {
+namespace merlin::render::out {
 namespace {
 
 constexpr Duration kSecond = std::chrono::seconds(1);
@@ -29,21 +29,36 @@ void OutputSet::present(std::size_t i, const Signal& signal, const FrameInfo& in
   while (**shown - entry.shown.front() > kSecond) entry.shown.pop_front();
 }
 
+std::string OutputSet::faultNow(std::size_t i) const {
+  const Entry& entry = entries_[i];
+  return entry.named.output->faultNow().value_or(entry.state.fault);
+}
+
 double OutputSet::shownHz(std::size_t i, Timestamp now) const {
   const auto& shown = entries_[i].shown;
   return static_cast<double>(std::count_if(
       shown.begin(), shown.end(), [&](Timestamp at) { return at > now - kSecond && at <= now; }));
 }
 
+std::optional<Vblank> OutputSet::vblank() const {
+  for (const Entry& entry : entries_) {
+    if (const auto vblank = entry.named.output->vblank()) return vblank;
+  }
+  return std::nullopt;
+}
+
 Result<std::string> OutputSet::mend() {
   std::string happened;
+  std::optional<Errc> failed;
   for (Entry& entry : entries_) {
-    auto mended = entry.named.output->mend();
-    if (!mended) return mended;
-    if (!happened.empty() && !mended->empty()) happened += "; ";
-    happened += *mended;
+    const auto mended = entry.named.output->mend();
+    if (!mended && !failed) failed = mended.error().code;
+    const std::string& what = mended ? *mended : mended.error().what;
+    if (!happened.empty() && !what.empty()) happened += "; ";
+    happened += what;
   }
+  if (failed) return Error{*failed, happened};
   return happened;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::out

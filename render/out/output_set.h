@@ -1,5 +1,5 @@
-// OutputSet: all outputs of a wall. One that fails takes nothing with it, and how each fares is
-// known.
+// OutputSet: all outputs of a wall. A failing output does not affect the others, and the state of
+// each is recorded.
 #pragma once
 
 #include <deque>
@@ -11,25 +11,25 @@
 
 #include "render/out/output.h"
 
-namespace merlin::render {
+namespace merlin::render::out {
 
 struct NamedOutput {
   std::string name, kind;
   std::unique_ptr<Output> output;
 };
 
-// How an output fares.
+// State of an output.
 struct OutputState {
   std::uint64_t frames = 0;  // shown since the start
-  std::uint64_t due = 0;     // frames with a deadline that it took, since the start
-  std::uint64_t late = 0;    // of these, shown after their deadline
-  std::string fault{};       // why the last frame is not shown; empty: all is well
+  std::uint64_t due = 0;     // shown frames that had a deadline, since the start
+  std::uint64_t late = 0;    // those of `due` that were shown after their deadline
+  std::string fault{};       // why the last frame is not shown; empty: no error
   double lateShare() const {
     return due > 0 ? static_cast<double>(late) / static_cast<double>(due) : 0;
   }
 };
 
-// Thread-bound to the wall's thread, but for mend().
+// Thread-bound to the wall's thread, except mend() and vblank().
 class OutputSet {
  public:
   explicit OutputSet(std::vector<NamedOutput> outputs);
@@ -38,14 +38,27 @@ class OutputSet {
   const std::string& name(std::size_t i) const { return entries_[i].named.name; }
   const std::string& kind(std::size_t i) const { return entries_[i].named.kind; }
   const OutputState& state(std::size_t i) const { return entries_[i].state; }
-  // Frames that were shown in the second before `now`.
+  // Why output i shows nothing; empty while it works: Output::faultNow(), or else the error of its
+  // last present().
+  std::string faultNow(std::size_t i) const;
+  // Number of frames shown in the second before `now`.
   double shownHz(std::size_t i, Timestamp now) const;
 
-  // Hands a frame to output i. `deadline`: when it was due; none where nothing moves.
+  bool mayTake(std::size_t i, const FrameInfo& info) const {
+    return entries_[i].named.output->mayTake(info);
+  }
+
+  bool wantsFrame(std::size_t i) const { return entries_[i].named.output->wantsFrame(); }
+
+  // The last vertical blank of the first output that has one; nothing if none has. Thread-safe.
+  std::optional<Vblank> vblank() const;
+
+  // Passes a frame to output i. `deadline`: when it is due; none while nothing moves.
   void present(std::size_t i, const Signal& signal, const FrameInfo& info,
                std::optional<Timestamp> deadline);
 
-  // Output::mend() of each, as one sentence; the first error where there is one.
+  // Calls Output::mend() of each output, also if one of them fails. Returns their messages joined
+  // by "; ". Errors: the code of the first one, with all messages.
   Result<std::string> mend();
 
  private:
@@ -53,9 +66,9 @@ class OutputSet {
     explicit Entry(NamedOutput output) : named(std::move(output)) {}
     NamedOutput named;
     OutputState state;
-    std::deque<Timestamp> shown;  // of the last second
+    std::deque<Timestamp> shown;  // times of the frames of the last second
   };
   std::vector<Entry> entries_;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::out

@@ -4,7 +4,7 @@
 
 #include "render/image/png_writer.h"
 
-namespace merlin::render {
+namespace merlin::render::out {
 namespace {
 
 constexpr auto kStep = std::chrono::milliseconds(500);
@@ -12,7 +12,11 @@ constexpr auto kStep = std::chrono::milliseconds(500);
 }  // namespace
 
 PngOutput::PngOutput(std::string path, double interval_s, ThreadWatch& watch)
+    : PngOutput(std::move(path), interval_s, watch, image::writePng) {}
+
+PngOutput::PngOutput(std::string path, double interval_s, ThreadWatch& watch, Write write)
     : path_(std::move(path)),
+      write_(std::move(write)),
       interval_s_(interval_s),
       thread_(watch, "PNG output", [this](const std::stop_token& stop, Progress& progress) {
         encodeLoop(stop, progress);
@@ -20,9 +24,13 @@ PngOutput::PngOutput(std::string path, double interval_s, ThreadWatch& watch)
 
 PngOutput::~PngOutput() { thread_.stop(); }
 
+bool PngOutput::mayTake(const FrameInfo& info) const {
+  return last_ == Timestamp{} || info.finished - last_ >= fromSeconds(interval_s_);
+}
+
 Result<std::optional<Timestamp>> PngOutput::present(const Signal& signal, const FrameInfo& info) {
-  const bool due = last_ == Timestamp{} || info.finished - last_ >= fromSeconds(interval_s_);
-  const std::lock_guard lock(mutex_);  // that nobody holds while a file is written
+  const bool due = mayTake(info);
+  const std::lock_guard lock(mutex_);  // never held while a file is written
   std::optional<Timestamp> shown;
   if (due && waiting_.empty()) {
     last_ = info.finished;
@@ -50,11 +58,11 @@ void PngOutput::encodeLoop(const std::stop_token& stop, Progress& progress) {
       width = width_;
       height = height_;
     }
-    const Progress::Pause pause(progress);  // a disk may take its time
-    const auto written = writePng(path_, width, height, pixels);
+    const Progress::Pause pause(progress);  // writing to disk may take long
+    const auto written = write_(path_, width, height, pixels);
     const std::lock_guard lock(mutex_);
     fault_ = written ? std::nullopt : std::optional(written.error());
   }
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::out

@@ -1,7 +1,6 @@
 #include "render/out/shared_frame.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cstring>
 #include <new>
@@ -9,7 +8,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-namespace merlin::render {
+namespace merlin::render::out {
 namespace {
 
 using framebuffer::Buffer;
@@ -19,6 +18,7 @@ using framebuffer::TileRectangle;
 
 constexpr std::size_t kPixelAlignment = 4096;
 constexpr int kCaptureTries = 10;
+constexpr std::uint32_t kLargestWall = framebuffer::kMostTiles * tiles::kLargestFrame_px;
 
 std::size_t headerRoom() {
   return (sizeof(Front) + kPixelAlignment - 1) / kPixelAlignment * kPixelAlignment;
@@ -28,15 +28,16 @@ std::size_t bufferOffset(std::size_t buffer, std::size_t frame_bytes) {
   return headerRoom() + buffer * frame_bytes;
 }
 
-TileRectangle rectangleOf(const Tile& tile) {
+TileRectangle rectangleOf(const tiles::Tile& tile) {
   TileRectangle r{};
   std::copy_n(tile.name.begin(), std::min(tile.name.size(), sizeof r.name - 1), r.name);
-  r.kind = tile.kind == TileKind::kOperator ? 1 : 0;
+  r.kind = tile.kind == tiles::TileKind::kOperator ? 1 : 0;
   r.x = tile.x;
   r.y = tile.y;
   r.width = tile.width;
   r.height = tile.height;
   r.wall_x = tile.wall_x;
+  r.wall_y = tile.wall_y;
   return r;
 }
 
@@ -65,9 +66,11 @@ void addBuffersAndTiles(shm::FieldTable& t) {
   tiles<std::int32_t>(t, "width", offsetof(TileRectangle, width), "px");
   tiles<std::int32_t>(t, "height", offsetof(TileRectangle, height), "px");
   tiles<std::int32_t>(t, "wall_x", offsetof(TileRectangle, wall_x), "px");
+  tiles<std::int32_t>(t, "wall_y", offsetof(TileRectangle, wall_y), "px");
 }
 
-// A buffer's pixels are whole if its buffer.sequence is not 0 and the same before and after.
+// For readers: a copy of a buffer's pixels is consistent if its buffer.sequence was not 0 and was
+// the same before and after copying.
 std::vector<shm::Field> framebufferFields() {
   shm::FieldTable t;
   t.bare("frame", 0);
@@ -91,7 +94,8 @@ std::vector<shm::Field> framebufferFields() {
   return t.take();
 }
 
-void fillHeader(Header& h, const TilePlan& plan, std::size_t size, std::uint64_t generation) {
+void fillHeader(Header& h, const tiles::TilePlan& plan, std::size_t size,
+                std::uint64_t generation) {
   const auto frame_bytes = static_cast<std::uint64_t>(plan.frame_width) *
                            static_cast<std::uint64_t>(plan.frame_height) * 4;
   h.size = size;
@@ -115,10 +119,16 @@ Error broken(const std::string& name, const std::string& what) {
   return {Errc::kMalformed, fmt::format("shared memory {}: {}", name, what)};
 }
 
-// Everything that a copy relies on; the writer may be any program.
+bool isInWall(const TileRectangle& t, const Header& h) {
+  if (t.wall_x == -1 && t.wall_y == -1) return true;
+  return t.wall_x >= 0 && t.wall_y >= 0 && std::int64_t{t.wall_x} + t.width <= h.wall_width &&
+         std::int64_t{t.wall_y} + t.height <= h.wall_height;
+}
+
+// Checks every header field that copying relies on, since the writer may be any program.
 Result<Ok> check(const Header& h, std::size_t size, const std::string& name) {
   if (size < sizeof(Header) || h.magic != framebuffer::kMagic)
-    return broken(name, "is not a frame of MERLIN");
+    return broken(name, "is not a MERLIN framebuffer");
   if (h.version != framebuffer::kVersion) {
     return Error{Errc::kUnsupported,
                  fmt::format("shared memory {}: is version {}, this program reads {}", name,
@@ -126,18 +136,20 @@ Result<Ok> check(const Header& h, std::size_t size, const std::string& name) {
   }
   const std::uint64_t bytes = std::uint64_t{h.stride} * h.height;
   bool good = h.format == framebuffer::kFormatRgba8 && h.stride == h.width * 4 &&
-              h.width <= 32768 && h.height <= 32768 && h.tile_count <= framebuffer::kMostTiles;
+              h.width <= 32768 && h.height <= 32768 && h.wall_width <= kLargestWall &&
+              h.wall_height <= kLargestWall && h.tile_count <= framebuffer::kMostTiles;
   for (const Buffer& b : h.buffers) good = good && b.offset <= size && bytes <= size - b.offset;
   for (std::size_t i = 0; good && i < h.tile_count; ++i) {
     const TileRectangle& t = h.tiles[i];
     good = t.x >= 0 && t.y >= 0 && t.width >= 0 && t.height >= 0 &&
            std::int64_t{t.x} + t.width <= h.width && std::int64_t{t.y} + t.height <= h.height &&
-           t.wall_x >= -1 && (t.wall_x < 0 || std::int64_t{t.wall_x} + t.width <= h.wall_width);
+           isInWall(t, h);
   }
   return good ? Result<Ok>(Ok{}) : Result<Ok>(broken(name, "its header is damaged"));
 }
 
-// True where the copy is whole. `checked` does not change; `base` may at any time.
+// True if the copy is consistent. `checked` is a private, checked copy of the header; the memory at
+// `base` may change at any time.
 bool copyNewest(const Header& checked, const std::byte* base, CapturedFrame& frame) {
   const auto& h = *reinterpret_cast<const Header*>(base);
   const std::size_t newest = h.newest.load(std::memory_order_acquire) % framebuffer::kBuffers;
@@ -153,7 +165,7 @@ bool copyNewest(const Header& checked, const std::byte* base, CapturedFrame& fra
 }  // namespace
 
 Result<std::unique_ptr<SharedFrameOutput>> SharedFrameOutput::make(const std::string& name,
-                                                                   const TilePlan& plan,
+                                                                   const tiles::TilePlan& plan,
                                                                    std::uint64_t generation,
                                                                    const Clock& clock) {
   if (plan.tiles.size() > framebuffer::kMostTiles) {
@@ -197,16 +209,30 @@ Result<std::string> SharedFrameOutput::mend() {
   return memory_.mend();
 }
 
-Result<CapturedFrame> captureFrame(const std::string& name, SharedMemory::From from) {
-  const auto memory = SharedMemory::open(name, from);
+SharedFrameReader::SharedFrameReader(std::string name, SharedMemory memory)
+    : name_(std::move(name)), memory_(std::move(memory)) {
+  std::copy_n(memory_.data(), header_.size(), header_.begin());
+}
+
+Result<SharedFrameReader> SharedFrameReader::open(const std::string& name,
+                                                  SharedMemory::From from) {
+  auto memory = SharedMemory::open(name, from);
   if (!memory) return memory.error();
-  if (memory->size() < sizeof(Header)) return broken(name, "is not a frame of MERLIN");
-  // A copy: what was checked stays as it was.
-  alignas(Header) std::array<std::byte, sizeof(Header)> copy;
-  std::copy_n(memory->data(), sizeof(Header), copy.begin());
-  const auto& h = *reinterpret_cast<const Header*>(copy.data());
-  if (const auto checked = check(h, memory->size(), name); !checked) return checked.error();
-  CapturedFrame frame;
+  if (memory->size() < sizeof(Header)) return broken(name, "is not a MERLIN framebuffer");
+  SharedFrameReader reader(name, *std::move(memory));
+  const auto good = check(reader.checked(), reader.memory_.size(), name);
+  if (!good) return good.error();
+  return reader;
+}
+
+std::uint64_t SharedFrameReader::newest() const noexcept {
+  const auto& h = *reinterpret_cast<const Header*>(memory_.data());
+  const std::size_t newest = h.newest.load(std::memory_order_acquire) % framebuffer::kBuffers;
+  return h.buffers[newest].sequence.load(std::memory_order_acquire);
+}
+
+Result<Ok> SharedFrameReader::copy(CapturedFrame& frame) const {
+  const Header& h = checked();
   frame.width = static_cast<int>(h.width);
   frame.height = static_cast<int>(h.height);
   frame.wall_width = static_cast<int>(h.wall_width);
@@ -214,9 +240,19 @@ Result<CapturedFrame> captureFrame(const std::string& name, SharedMemory::From f
   frame.tiles.assign(h.tiles, h.tiles + h.tile_count);
   frame.pixels.resize(std::size_t{h.stride} * h.height);
   for (int i = 0; i < kCaptureTries; ++i) {
-    if (copyNewest(h, memory->data(), frame)) return frame;
+    if (copyNewest(h, memory_.data(), frame)) return Ok{};
   }
-  return Error{Errc::kTimeout, fmt::format("shared memory {}: no whole frame in it yet", name)};
+  return Error{Errc::kTimeout,
+               fmt::format("shared memory {}: no complete frame could be read", name_)};
+}
+
+Result<CapturedFrame> captureFrame(const std::string& name, SharedMemory::From from) {
+  const auto reader = SharedFrameReader::open(name, from);
+  if (!reader) return reader.error();
+  CapturedFrame frame;
+  const auto copied = reader->copy(frame);
+  if (!copied) return copied.error();
+  return frame;
 }
 
 CapturedFrame wallPicture(const CapturedFrame& frame) {
@@ -224,20 +260,20 @@ CapturedFrame wallPicture(const CapturedFrame& frame) {
   wall.width = wall.wall_width = frame.wall_width;
   wall.height = wall.wall_height = frame.wall_height;
   wall.info = frame.info;
-  wall.pixels.assign(
-      std::size_t{4} * static_cast<std::size_t>(wall.width) * static_cast<std::size_t>(wall.height),
-      0);
+  const auto pixels = static_cast<std::size_t>(wall.width) * static_cast<std::size_t>(wall.height);
+  if (pixels > kMostWallPixels) return wall;
+  wall.pixels.assign(4 * pixels, 0);
   for (const TileRectangle& t : frame.tiles) {
     if (t.wall_x < 0) continue;  // an operator's view
-    for (int row = 0; row < std::min(t.height, wall.height); ++row) {
+    for (int row = 0; row < t.height; ++row) {
       const auto from =
           static_cast<std::ptrdiff_t>(4) * (std::ptrdiff_t{t.y + row} * frame.width + t.x);
       const auto to =
-          static_cast<std::ptrdiff_t>(4) * (std::ptrdiff_t{row} * wall.width + t.wall_x);
+          static_cast<std::ptrdiff_t>(4) * (std::ptrdiff_t{t.wall_y + row} * wall.width + t.wall_x);
       std::copy_n(frame.pixels.begin() + from, 4 * t.width, wall.pixels.begin() + to);
     }
   }
   return wall;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::out

@@ -1,6 +1,8 @@
-// The shared-memory framebuffer: its writer in the daemon, the reader that `merlin snapshot` uses.
+// The shared-memory framebuffer: its writer, in the daemon, and its reader, which `merlin snapshot`
+// uses.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -11,22 +13,23 @@
 #include "render/out/shared_frame_layout.h"
 #include "render/tiles/tile_plan.h"
 
-namespace merlin::render {
+namespace merlin::render::out {
 
 class SharedFrameOutput final : public Output {
  public:
-  // `name` as "/merlin-framebuffer". `clock` outlives this. Errors: kBusy (a living daemon writes
-  // it), kIo.
-  // Nothing is believed of what lies in it later: its owner's programs may write there.
+  // `name`: e.g. "/merlin-framebuffer". `clock` outlives this. Errors: kUnsupported (more tiles
+  // than the framebuffer can describe), kBusy (a running daemon owns it), kIo.
+  // The writer does not rely on the segment's content afterwards, since other programs of the same
+  // user may write to it.
   static Result<std::unique_ptr<SharedFrameOutput>> make(const std::string& name,
-                                                         const TilePlan& plan,
+                                                         const tiles::TilePlan& plan,
                                                          std::uint64_t generation,
                                                          const Clock& clock);
 
-  // REQUIRES: a signal of the plan's frame.
+  // REQUIRES: the signal has the size of the plan's frame.
   Result<std::optional<Timestamp>> present(const Signal& signal, const FrameInfo& info) override;
 
-  // SharedMemory::mend(). A frame waits for it.
+  // Calls SharedMemory::mend(); present() waits until it returns.
   Result<std::string> mend() override;
 
  private:
@@ -34,14 +37,14 @@ class SharedFrameOutput final : public Output {
       : memory_(std::move(memory)), frame_bytes_(frame_bytes), clock_(clock) {}
   framebuffer::Header& header() { return *reinterpret_cast<framebuffer::Header*>(memory_.data()); }
 
-  std::mutex mutex_;  // between present() and mend()
+  std::mutex mutex_;  // makes present() and mend() mutually exclusive
   SharedMemory memory_;
   std::size_t frame_bytes_;
   const Clock& clock_;
   std::uint32_t next_ = 0;
 };
 
-// A copy of the newest frame, with what is needed to cut it up.
+// A copy of the newest frame, with what is needed to cut it into tiles.
 struct CapturedFrame {
   int width = 0, height = 0, wall_width = 0, wall_height = 0;
   std::vector<framebuffer::TileRectangle> tiles;
@@ -49,13 +52,43 @@ struct CapturedFrame {
   FrameInfo info;
 };
 
-// `from`: whose frame a daemon believes. Errors: kNotFound (no daemon has it), kIo, kMalformed (not
-// one of ours, or cut short), kUnsupported (another version), kTimeout (overtaken by the writer
-// each time).
+// Maps a framebuffer for a program that copies many of its frames. Thread-bound.
+class SharedFrameReader {
+ public:
+  // `from`: whose shared memory is accepted. Errors: kNotFound (no daemon has created it), kIo,
+  // kMalformed (not a MERLIN framebuffer, or truncated), kUnsupported (another version).
+  static Result<SharedFrameReader> open(const std::string& name,
+                                        SharedMemory::From from = SharedMemory::From::kAnyone);
+
+  // That of the daemon that created it, which is in the header of the daemon's other segments.
+  std::uint64_t generation() const noexcept { return checked().generation; }
+  // Number of the newest frame; 0: there is none, or it is just being replaced.
+  std::uint64_t newest() const noexcept;
+  // Copies the newest frame into `frame` and reuses its memory. Errors: kTimeout (no frame yet, or
+  // the writer overwrote the buffer during every attempt).
+  Result<Ok> copy(CapturedFrame& frame) const;
+
+ private:
+  SharedFrameReader(std::string name, SharedMemory memory);
+  const framebuffer::Header& checked() const noexcept {
+    return *reinterpret_cast<const framebuffer::Header*>(header_.data());
+  }
+
+  std::string name_;
+  SharedMemory memory_;
+  // A copy of the header, made before it was checked: other programs may change the original.
+  alignas(framebuffer::Header) std::array<std::byte, sizeof(framebuffer::Header)> header_;
+};
+
+// Copies the newest frame. `from`: whose shared memory is accepted. Errors: kNotFound (no daemon
+// has created it), kIo, kMalformed (not a MERLIN framebuffer, or truncated), kUnsupported (another
+// version), kTimeout (no frame yet, or the writer overwrote the buffer during every attempt).
 Result<CapturedFrame> captureFrame(const std::string& name,
                                    SharedMemory::From from = SharedMemory::From::kAnyone);
 
-// The wall's picture: the wall tiles side by side. Empty pixels if there is no wall tile.
+// The wall's picture: the wall tiles in rows and columns; pixels without a tile are 0. Its pixels
+// are empty if there is no wall tile, and if it would have more than kMostWallPixels.
+inline constexpr std::size_t kMostWallPixels = std::size_t{1} << 28;
 CapturedFrame wallPicture(const CapturedFrame& frame);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::out

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-namespace merlin::render {
+namespace merlin::render::out {
 
 std::uint64_t checksumOf(std::span<const std::uint8_t> bytes) noexcept {
   std::uint64_t sum = 0xcbf29ce484222325U;
@@ -12,8 +12,7 @@ std::uint64_t checksumOf(std::span<const std::uint8_t> bytes) noexcept {
   return sum;
 }
 
-// A real output that writes files does so on a thread of its own (png_output): a disk may take
-// long.
+// A real output writes files on its own thread (see png_output), since a disk may be slow.
 Result<std::optional<Timestamp>> ChecksumOutput::present(const Signal& signal,
                                                          const FrameInfo& info) {
   std::ofstream file(path_, std::ios::app);
@@ -23,4 +22,4 @@ Result<std::optional<Timestamp>> ChecksumOutput::present(const Signal& signal,
   return std::optional(clock_.now());
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::out

@@ -1,0 +1,117 @@
+// Port (an interface): a graphics card's displays, as the kernel's mode setting (KMS) offers them.
+// Implemented by drm_card and, in tests, by a fake.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/result.h"
+
+namespace merlin::render::out::kms {
+
+using Id = std::uint32_t;  // the kernel's number of an object; 0: none
+
+struct Mode {
+  int width = 0, height = 0;  // [px]
+  double refresh_hz = 0;
+  bool preferred = false;   // by the display
+  bool interlaced = false;  // never chosen unless named
+  int index = 0;            // in the kernel's list of the connector's modes
+
+  bool sameTiming(const Mode& o) const {
+    return width == o.width && height == o.height && refresh_hz == o.refresh_hz &&
+           interlaced == o.interlaced;
+  }
+};
+
+struct Connector {
+  Id id = 0;
+  std::string name;        // "HDMI-A-1"
+  bool connected = false;  // a display is plugged in
+  bool link_bad = false;   // the display has lost the signal until its mode is set again
+  std::vector<Mode> modes{};
+  std::uint32_t crtcs = 0;  // bit i: CardContents::crtcs[i] can drive it
+};
+
+// A CRTC scans out a plane's buffer to a connector.
+struct CardContents {
+  std::vector<Connector> connectors;
+  std::vector<Id> crtcs;
+  std::vector<Id> primary_planes;  // of the same CRTC in `crtcs`; 0: none takes XRGB
+};
+
+// A buffer that a CRTC can scan out: bytes B, G, R, unused; rows from top to bottom.
+class Buffer {
+ public:
+  virtual ~Buffer() = default;
+  virtual Id id() const = 0;
+  virtual std::span<std::uint8_t> bytes() = 0;
+  virtual std::size_t pitch() const = 0;  // [bytes] from one row to the next
+};
+
+// One display's share of a commit.
+struct Lit {
+  Id connector = 0, crtc = 0, plane = 0, buffer = 0;
+  Mode mode{};
+  bool sets_mode = false;  // otherwise only the buffer is changed
+};
+
+enum class Committed {
+  kDone,
+  kBusy,       // an earlier flip is not finished: to be tried again
+  kNotMaster,  // another program has the displays
+  kRefused,    // the card cannot do this
+  kGone,       // the card is not there any more
+};
+
+struct CommitResult {
+  Committed outcome = Committed::kDone;
+  std::string why{};  // of kRefused and kGone
+};
+
+// A buffer is on a display since `when`.
+struct Flip {
+  Id crtc = 0;
+  Timestamp when{};
+};
+
+// Thread-bound, except wake() and the destruction of buffers, which may outlive the card.
+class Card {
+ public:
+  virtual ~Card() = default;  // restores what the displays showed before open(), if it is master
+
+  virtual const std::string& path() const = 0;
+
+  // `probe`: asks the displays for their modes again, which may take 0.1 s each.
+  // Errors: kIo: the card is not there any more.
+  virtual Result<CardContents> look(bool probe) = 0;
+
+  // A black buffer. Errors: kIo.
+  virtual Result<std::shared_ptr<Buffer>> makeBuffer(int width, int height) = 0;
+
+  // Only one program at a time, the DRM master, may change what a card shows. Returns whether this
+  // one is or has become it.
+  virtual bool becomeMaster() = 0;
+  virtual bool isMaster() const = 0;
+  // Programs that have the card open besides this one, "Xorg (812)"; empty if none is seen.
+  virtual std::vector<std::string> others() const = 0;
+
+  // Changes all these displays in one atomic commit and does not wait; a Flip follows for each.
+  // `test_only`: nothing is changed, only looked whether the card can do it.
+  virtual CommitResult commit(std::span<const Lit> lit, bool test_only) = 0;
+
+  // Waits for flips until one arrives, `longest` is over or wake() is called.
+  virtual std::vector<Flip> wait(Duration longest) = 0;
+  virtual void wake() = 0;  // thread-safe
+
+  // True if this CRTC counts vertical blanks, so that the times of its flips are those of its
+  // display. A virtual machine's card often flips at once.
+  virtual bool hasVblank(Id crtc) const = 0;
+};
+
+}  // namespace merlin::render::out::kms

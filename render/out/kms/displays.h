@@ -1,0 +1,132 @@
+// Displays: the displays of one card that the wall uses: finds them, lights them, and commits each
+// frame for all of them at once.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "daemon/base/clock.h"
+#include "render/out/kms/buffer_turns.h"
+#include "render/out/kms/card.h"
+#include "render/out/kms/settings.h"
+
+namespace merlin::render::out::kms {
+
+// The wall's thread calls present(), one thread step(), both for the object's whole life; the rest
+// is thread-safe. Nothing that can go wrong ends it: a card, connector or mode that is not there, a
+// display that is unplugged, another program that has the displays. Each is the error of present()
+// of those that it concerns, and is looked at again once a second.
+class Displays {
+ public:
+  using OpenCard = std::function<Result<std::unique_ptr<Card>>()>;
+
+  // `clock` outlives this.
+  Displays(OpenCard open, const Clock& clock);
+  ~Displays();
+  Displays(const Displays&) = delete;
+  Displays& operator=(const Displays&) = delete;
+
+  // Adds an output and returns its number. To be called before the first present() and step().
+  std::size_t add(const KmsSettings& settings, int picture_width, int picture_height);
+  std::size_t size() const { return screens_.size(); }
+
+  // Writes the picture (RGBA, rows from top to bottom without padding) of frame `sequence` into a
+  // buffer of output i. A frame is committed when the last output has its picture of it. Never
+  // waits for a display. Cost: one pass over the pixels. Returns when the picture was handed over;
+  // nothing if it replaced one that was not committed yet, or if the card was not looked at yet.
+  // Errors: why the output shows no picture.
+  Result<std::optional<Timestamp>> present(std::size_t i, std::span<const std::uint8_t> rgba,
+                                           std::uint64_t sequence);
+
+  // True if output i could show a picture and has none.
+  bool wantsFrame(std::size_t i) const { return screens_[i].wants_frame; }
+
+  // Why output i shows no picture; empty: it shows one, or the card was not looked at yet.
+  std::string fault(std::size_t i) const;
+
+  // The last vertical blank of the first display that counts them, and the time between two.
+  struct Blanks {
+    Timestamp last{};
+    Duration period{};
+  };
+  std::optional<Blanks> blanks() const;
+
+  // Looks for changes if a second has passed, commits the frame that is due, and waits for at most
+  // `longest` for something to do.
+  void step(Duration longest);
+  void wake();
+
+ private:
+  // What an output is shown on.
+  struct Place {
+    Id connector = 0, crtc = 0, plane = 0;
+    Mode mode{};
+    std::string name{};  // of the connector
+    std::array<std::shared_ptr<Buffer>, BufferTurns::kCount> buffers{};
+    BufferTurns turns{};
+  };
+  struct Screen {
+    KmsSettings settings{};
+    int width = 0, height = 0;  // of the picture [px]
+    // Shared with present(), which may still write when a display gets another mode.
+    std::shared_ptr<Place> place{};
+    bool lit = false;                     // takes part in commits
+    bool sets_mode = false;               // in the next commit
+    std::string fault{};                  // why no picture is shown; empty: one is
+    std::optional<Timestamp> retry_at{};  // after the card refused it
+    std::atomic<bool> wants_frame{false};
+  };
+  // A screen's share of a commit.
+  struct Share {
+    Screen* screen;
+    Lit lit;
+  };
+
+  bool openCard();
+  void closeCard(const std::string& why);
+  void look(Timestamp now);
+  bool holdMaster();
+  bool hasNewDisplay(const CardContents& contents);
+  void arrange(const CardContents& contents, Timestamp now);
+  Result<Ok> place(Screen& screen, const CardContents& contents, const Connector& connector,
+                   std::optional<std::size_t> crtc);
+  static void lightAgain(Screen& screen);
+  static void darken(Screen& screen, const std::string& fault);
+  void darkenAll(const std::string& fault);
+  void commit(Timestamp now);
+  std::vector<Share> dueShares();
+  void settle(std::vector<Share>& shares, const CommitResult& result, Timestamp now);
+  void refuse(std::vector<Share>& shares, const std::string& why, Timestamp now);
+  void take(const std::vector<Flip>& flips);
+  void checkOverdue(Timestamp now);
+  std::string takenMessage() const;
+
+  const OpenCard open_;
+  const Clock& clock_;
+  mutable std::mutex mutex_;  // guards all below except the atomics; not held during slow calls
+  std::condition_variable idle_;
+  std::unique_ptr<Card> card_;  // replaced by step() with the mutex held, used by it without
+  std::deque<Screen> screens_;  // a deque, since a Screen cannot be moved
+  bool looked_ = false;         // at a card, or for one, at least once
+  bool master_ = false;
+  bool whole_ = false;  // every output has its picture of the frame `sequence_`
+  bool busy_ = false;   // the last commit is to be tried again
+  std::uint64_t sequence_ = 0;
+  // These two are used by step() alone.
+  std::set<Id> connected_;  // connectors with a display at the last look
+  Timestamp next_look_{};
+  Timestamp committed_{};
+  std::atomic<std::int64_t> vblank_ns_{0}, period_ns_{0};  // 0: none
+};
+
+}  // namespace merlin::render::out::kms

@@ -1,0 +1,67 @@
+#include "render/out/kms/drm_buffer.h"
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <drm_fourcc.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <xf86drmMode.h>
+
+#include "render/out/kms/drm_objects.h"
+
+namespace merlin::render::out::kms {
+namespace {
+
+class DumbBuffer final : public Buffer {
+ public:
+  explicit DumbBuffer(DrmFile file) : file_(std::move(file)) {}
+  ~DumbBuffer() override {
+    if (!bytes_.empty()) ::munmap(bytes_.data(), bytes_.size());
+    if (id_ != 0) drmModeRmFB(file_->get(), id_);
+    if (handle_ != 0) drmModeDestroyDumbBuffer(file_->get(), handle_);
+  }
+  DumbBuffer(const DumbBuffer&) = delete;
+  DumbBuffer& operator=(const DumbBuffer&) = delete;
+
+  Id id() const override { return id_; }
+  std::span<std::uint8_t> bytes() override { return bytes_; }
+  std::size_t pitch() const override { return pitch_; }
+
+  // False with errno if the card has no memory for it.
+  bool create(std::uint32_t width, std::uint32_t height) {
+    const int fd = file_->get();
+    std::uint64_t size = 0, offset = 0;
+    if (drmModeCreateDumbBuffer(fd, width, height, 32, 0, &handle_, &pitch_, &size) != 0)
+      return false;
+    const std::uint32_t handles[4] = {handle_}, pitches[4] = {pitch_}, offsets[4] = {};
+    if (drmModeAddFB2(fd, width, height, DRM_FORMAT_XRGB8888, handles, pitches, offsets, &id_, 0))
+      return false;
+    if (drmModeMapDumbBuffer(fd, handle_, &offset) != 0) return false;
+    void* const at =
+        ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, static_cast<off_t>(offset));
+    if (at == MAP_FAILED) return false;
+    bytes_ = {static_cast<std::uint8_t*>(at), static_cast<std::size_t>(size)};
+    std::memset(at, 0, size);
+    return true;
+  }
+
+ private:
+  DrmFile file_;
+  std::uint32_t handle_ = 0, pitch_ = 0;
+  Id id_ = 0;
+  std::span<std::uint8_t> bytes_;
+};
+
+}  // namespace
+
+Result<std::shared_ptr<Buffer>> makeDumbBuffer(const DrmFile& file, int width, int height) {
+  auto buffer = std::make_shared<DumbBuffer>(file);
+  if (!buffer->create(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)))
+    return Error{Errc::kIo, fmt::format("no memory for a picture of {}x{} pixels: {}", width,
+                                        height, errnoText(errno))};
+  return std::shared_ptr<Buffer>(std::move(buffer));
+}
+
+}  // namespace merlin::render::out::kms

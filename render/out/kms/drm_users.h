@@ -1,0 +1,17 @@
+// Who has a card open.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace merlin::render::out::kms {
+
+// Programs besides this one that have the file open, "Xorg (812)"; only those that this process may
+// see, which are all only for root.
+std::vector<std::string> programsWith(const std::string& path);
+
+// Gives up being DRM master on this process's other descriptors of the card. Mesa's software
+// renderer opens the card too, and is master if it was the first; it does not need to be.
+void dropMasterElsewhere(const std::string& path, int fd);
+
+}  // namespace merlin::render::out::kms

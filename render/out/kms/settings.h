@@ -1,0 +1,32 @@
+// Settings of an output of kind kms.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "daemon/base/setting_fault.h"
+
+namespace merlin::render::out::kms {
+
+struct KmsSettings {
+  std::string card{};       // its device file; empty: the first card that has connectors
+  std::string connector{};  // its name, "HDMI-A-1"; empty: the first one with a display
+  std::string mode{};       // "1920x1080" or "1920x1080@60"; empty: see chooseMode()
+
+  bool operator==(const KmsSettings&) const = default;
+};
+
+// What a mode's name asks for.
+struct WantedMode {
+  int width = 0, height = 0;  // [px]
+  double refresh_hz = 0;      // 0: any
+};
+// Nothing if `name` is not WIDTHxHEIGHT or WIDTHxHEIGHT@HZ.
+std::optional<WantedMode> parseMode(const std::string& name);
+
+// Checks for: a card that is not the path of a device file, a mode's name that parseMode() cannot
+// read, a connector's name with characters that no connector has. Whether they exist is known when
+// the wall runs. Pure.
+SettingFaults validate(const KmsSettings& settings);
+
+}  // namespace merlin::render::out::kms

@@ -1,0 +1,69 @@
+#include "render/out/kms_output.h"
+
+#include <utility>
+
+#include "render/out/kms/drm_card.h"
+
+namespace merlin::render::out::kms {
+namespace {
+
+// The longest time without a sign of life from the thread.
+constexpr Duration kStep = std::chrono::milliseconds(500);
+
+class KmsOutput final : public Output {
+ public:
+  KmsOutput(std::shared_ptr<CardWorker> worker, std::size_t number)
+      : worker_(std::move(worker)), number_(number) {}
+
+  Result<std::optional<Timestamp>> present(const Signal& signal, const FrameInfo& info) override {
+    worker_->start();
+    return worker_->displays().present(number_, signal.pixels, info.sequence);
+  }
+  std::optional<std::string> faultNow() const override {
+    return worker_->displays().fault(number_);
+  }
+  bool wantsFrame() const override { return worker_->displays().wantsFrame(number_); }
+  std::optional<Vblank> vblank() const override {
+    const auto blanks = worker_->displays().blanks();
+    if (!blanks) return std::nullopt;
+    return Vblank{blanks->last, blanks->period};
+  }
+
+ private:
+  std::shared_ptr<CardWorker> worker_;
+  std::size_t number_;
+};
+
+}  // namespace
+
+CardWorker::CardWorker(std::string path, ThreadWatch& watch, const Clock& clock)
+    : path_(std::move(path)),
+      watch_(watch),
+      displays_([path = path_] { return openDrmCard(path); }, clock) {}
+
+CardWorker::~CardWorker() { thread_.stop(); }
+
+void CardWorker::start() {
+  if (std::exchange(started_, true)) return;
+  const std::string name = path_.empty() ? "displays" : "displays of " + path_;
+  thread_ = WatchedThread(watch_, name, [this](const std::stop_token& stop, Progress& progress) {
+    const std::stop_callback wake(stop, [this] { displays_.wake(); });
+    while (!stop.stop_requested()) {
+      const Progress::Pause pause(progress);  // a display's modes take their time
+      displays_.step(kStep);
+    }
+  });
+}
+
+std::unique_ptr<Output> Cards::makeOutput(const KmsSettings& settings, int picture_width,
+                                          int picture_height) {
+  auto worker = workers_[settings.card].lock();
+  if (!worker) {
+    worker = std::make_shared<CardWorker>(settings.card, watch_, clock_);
+    workers_[settings.card] = worker;
+  }
+  const std::size_t number = worker->displays().add(settings, picture_width, picture_height);
+  return std::make_unique<KmsOutput>(std::move(worker), number);
+}
+
+}  // namespace merlin::render::out::kms

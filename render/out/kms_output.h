@@ -1,0 +1,52 @@
+// Outputs of kind kms: the displays of graphics cards, driven without a desktop.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "daemon/base/watched_thread.h"
+#include "render/out/kms/displays.h"
+#include "render/out/kms/settings.h"
+#include "render/out/output.h"
+
+namespace merlin::render::out::kms {
+
+// A card with the thread that commits its frames and looks after its displays.
+class CardWorker {
+ public:
+  // `watch` and `clock` outlive this.
+  CardWorker(std::string path, ThreadWatch& watch, const Clock& clock);
+  ~CardWorker();
+  CardWorker(const CardWorker&) = delete;
+  CardWorker& operator=(const CardWorker&) = delete;
+
+  Displays& displays() { return displays_; }
+  // Starts the thread, once: with the first frame, when every output has been added.
+  void start();
+
+ private:
+  std::string path_;
+  ThreadWatch& watch_;
+  Displays displays_;
+  bool started_ = false;
+  WatchedThread thread_;
+};
+
+// The cards of a wall, so that outputs on one card share it. Thread-bound.
+class Cards {
+ public:
+  Cards(ThreadWatch& watch, const Clock& clock) : watch_(watch), clock_(clock) {}
+
+  // Never fails: what is not there may come. Its health says what is missing.
+  std::unique_ptr<Output> makeOutput(const KmsSettings& settings, int picture_width,
+                                     int picture_height);
+
+ private:
+  ThreadWatch& watch_;
+  const Clock& clock_;
+  // Shared by the outputs of the card; the last one that is removed gives the card back.
+  std::map<std::string, std::weak_ptr<CardWorker>> workers_;  // by path
+};
+
+}  // namespace merlin::render::out::kms

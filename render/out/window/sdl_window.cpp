@@ -1,0 +1,188 @@
+#include "render/out/window/sdl_window.h"
+
+#include <cstdlib>
+
+#include <SDL.h>
+#include <fmt/format.h>
+
+namespace merlin::render::out {
+namespace {
+
+Error sdlError(const char* what) {
+  return {Errc::kIo, fmt::format("{}: {}", what, SDL_GetError())};
+}
+
+// The environment's display, as a person would look for it.
+std::string displayName() {
+  for (const char* name : {"WAYLAND_DISPLAY", "DISPLAY"}) {
+    const char* const value = std::getenv(name);
+    if (value && *value) return fmt::format("{} is {}", name, value);
+  }
+  return "neither DISPLAY nor WAYLAND_DISPLAY is set for merlind";
+}
+
+void setHints() {
+  // Others of SDL's drivers would take a console's display, or show nothing.
+  SDL_SetHint(SDL_HINT_VIDEODRIVER, "x11,wayland");
+  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
+  SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");  // llvmpipe would take the wall's processors
+  SDL_SetHint(SDL_HINT_VIDEO_MINIMIZE_ON_FOCUS_LOSS, "0");
+  SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
+  SDL_SetHint(SDL_HINT_APP_NAME, "MERLIN");
+}
+
+std::uint32_t flagsOf(const WindowForm& form) {
+  if (form.fullscreen) return SDL_WINDOW_FULLSCREEN_DESKTOP;
+  std::uint32_t flags = SDL_WINDOW_RESIZABLE;
+  if (!form.border) flags |= SDL_WINDOW_BORDERLESS;
+  return flags;
+}
+
+// Where the window is when it is not fullscreen.
+SDL_Rect normalPlaceOf(const WindowForm& form, const SDL_Rect& monitor) {
+  const auto middle =
+      static_cast<int>(SDL_WINDOWPOS_CENTERED_DISPLAY(static_cast<std::uint32_t>(form.monitor)));
+  return {form.x >= 0 ? monitor.x + form.x : middle, form.y >= 0 ? monitor.y + form.y : middle,
+          form.width > 0 ? form.width : form.picture_width,
+          form.height > 0 ? form.height : form.picture_height};
+}
+
+// A display without a window manager leaves a window where it was put, also if it is to cover the
+// monitor.
+SDL_Rect placeOf(const WindowForm& form, const SDL_Rect& monitor) {
+  return form.fullscreen ? monitor : normalPlaceOf(form, monitor);
+}
+
+// Picture without alpha: the window's pixels are opaque.
+SDL_Surface* wrap(std::span<const std::uint8_t> pixels, const WindowForm& form) {
+  SDL_Surface* const surface = SDL_CreateRGBSurfaceWithFormatFrom(
+      const_cast<std::uint8_t*>(pixels.data()), form.picture_width, form.picture_height, 32,
+      4 * form.picture_width, SDL_PIXELFORMAT_RGBA32);
+  if (surface) SDL_SetSurfaceBlendMode(surface, SDL_BLENDMODE_NONE);
+  return surface;
+}
+
+}  // namespace
+
+void SdlWindow::Freed::operator()(SDL_Window* window) const { SDL_DestroyWindow(window); }
+void SdlWindow::Freed::operator()(SDL_Surface* surface) const { SDL_FreeSurface(surface); }
+
+Result<std::unique_ptr<SdlWindow>> SdlWindow::open(const WindowForm& form) {
+  setHints();
+  if (SDL_Init(SDL_INIT_VIDEO) != 0) {
+    return Error{Errc::kIo,
+                 fmt::format("no display can be reached ({}): {}", displayName(), SDL_GetError())};
+  }
+  const int monitors = SDL_GetNumVideoDisplays();
+  SDL_Rect monitor;
+  if (SDL_GetDisplayBounds(form.monitor, &monitor) != 0) {
+    return Error{Errc::kIo,
+                 fmt::format("there is no monitor {}: the display has {}, counted from 0",
+                             form.monitor, monitors)};
+  }
+  const SDL_Rect at = placeOf(form, monitor);
+  SDL_Window* const window = SDL_CreateWindow(std::string(textOf(form.title)).c_str(), at.x, at.y,
+                                              at.w, at.h, flagsOf(form));
+  if (!window) return sdlError("the window cannot be opened");
+  form.fullscreen ? SDL_DisableScreenSaver() : SDL_EnableScreenSaver();
+  if (form.fullscreen && !form.input) SDL_ShowCursor(SDL_DISABLE);
+  return std::unique_ptr<SdlWindow>(new SdlWindow(form, window));
+}
+
+SdlWindow::~SdlWindow() {
+  picture_.reset();
+  window_.reset();
+  SDL_Quit();
+}
+
+Result<Ok> SdlWindow::show(std::span<const std::uint8_t> pixels) {
+  SDL_Surface* const screen = SDL_GetWindowSurface(window_.get());
+  if (!screen) return sdlError("the window has no pixels");
+  const std::unique_ptr<SDL_Surface, Freed> from(wrap(pixels, form_));
+  if (!picture_ || picture_->format->format != screen->format->format) {
+    picture_.reset(SDL_CreateRGBSurfaceWithFormat(0, form_.picture_width, form_.picture_height, 32,
+                                                  screen->format->format));
+  }
+  if (!from || !picture_ || SDL_BlitSurface(from.get(), nullptr, picture_.get(), nullptr) != 0)
+    return sdlError("the picture cannot be converted");
+  return draw();
+}
+
+Result<Ok> SdlWindow::draw() {
+  SDL_Surface* const screen = SDL_GetWindowSurface(window_.get());
+  if (!screen) return sdlError("the window has no pixels");
+  if (!picture_) return Ok{};
+  const PixelRectangle at = fit({picture_->w, picture_->h}, {screen->w, screen->h}, form_.fit != 0);
+  const bool covers = at.width >= screen->w && at.height >= screen->h;
+  const bool resized = drawn_.width != screen->w || drawn_.height != screen->h;
+  if (!covers && resized) SDL_FillRect(screen, nullptr, SDL_MapRGB(screen->format, 0, 0, 0));
+  drawn_ = {screen->w, screen->h};
+  SDL_Rect to{at.x, at.y, at.width, at.height};
+  const bool same_size = at.width == picture_->w && at.height == picture_->h;
+  const int drawn = same_size ? SDL_BlitSurface(picture_.get(), nullptr, screen, &to)
+                              : SDL_SoftStretchLinear(picture_.get(), nullptr, screen, &to);
+  if (drawn != 0 || SDL_UpdateWindowSurface(window_.get()) != 0)
+    return sdlError("the picture cannot be shown");
+  return Ok{};
+}
+
+bool SdlWindow::handleEvents() {
+  SDL_Event event;
+  while (SDL_PollEvent(&event) != 0) {
+    if (!handle(event)) return false;
+  }
+  return true;
+}
+
+bool SdlWindow::handle(const SDL_Event& event) {
+  if (event.type == SDL_QUIT) return false;
+  if (event.type == SDL_WINDOWEVENT) {
+    const auto what = event.window.event;
+    if (what == SDL_WINDOWEVENT_CLOSE) return false;
+    // The next frame tells if there is a fault.
+    if (what == SDL_WINDOWEVENT_EXPOSED || what == SDL_WINDOWEVENT_SIZE_CHANGED)
+      static_cast<void>(draw().ok());
+  }
+  if (form_.input) act(event);
+  return true;
+}
+
+void SdlWindow::act(const SDL_Event& event) {
+  int width = 0, height = 0;
+  SDL_GetWindowSize(window_.get(), &width, &height);
+  if (event.type == SDL_MOUSEMOTION && event.motion.state != 0) {
+    const bool turns =
+        event.motion.state == SDL_BUTTON_LMASK && (SDL_GetModState() & KMOD_SHIFT) == 0;
+    commands_.drag(turns ? WindowCommands::Drag::kTurn : WindowCommands::Drag::kShift,
+                   event.motion.xrel, event.motion.yrel, height);
+  }
+  if (event.type == SDL_MOUSEWHEEL) {
+    const double notches = static_cast<double>(event.wheel.preciseY);
+    commands_.wheel(event.wheel.direction == SDL_MOUSEWHEEL_FLIPPED ? -notches : notches);
+  }
+  if (event.type == SDL_KEYDOWN) press(event.key);
+}
+
+void SdlWindow::press(const SDL_KeyboardEvent& event) {
+  const int with = event.keysym.mod;
+  if ((with & (KMOD_ALT | KMOD_GUI)) != 0) return;  // the desktop's
+  const bool repeats = event.repeat != 0;
+  if (event.keysym.sym == SDLK_F11) {
+    if (!repeats) toggleFullscreen();
+    return;
+  }
+  commands_.press({SDL_GetKeyName(event.keysym.sym), (with & KMOD_SHIFT) != 0,
+                   (with & KMOD_CTRL) != 0, repeats});
+}
+
+void SdlWindow::toggleFullscreen() {
+  form_.fullscreen = form_.fullscreen ? 0 : 1;
+  SDL_SetWindowFullscreen(window_.get(), form_.fullscreen ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0);
+  SDL_Rect monitor;
+  if (SDL_GetDisplayBounds(form_.monitor, &monitor) != 0) return;
+  const SDL_Rect at = placeOf(form_, monitor);
+  SDL_SetWindowSize(window_.get(), at.w, at.h);
+  SDL_SetWindowPosition(window_.get(), at.x, at.y);
+}
+
+}  // namespace merlin::render::out

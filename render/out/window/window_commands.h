@@ -1,0 +1,45 @@
+// WindowCommands: what a person does in a window with mouse and keys, as commands of
+// daemon/base/commands.h. Pure.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace merlin::render::out {
+
+// A key that is pressed. `name`: as SDL_GetKeyName() gives it, "Left" or "H".
+struct PressedKey {
+  std::string_view name;
+  bool shift = false, ctrl = false;
+  bool repeats = false;  // it is held: the keyboard repeats it
+};
+
+// Thread-bound.
+class WindowCommands {
+ public:
+  // The pointer moves with a button held, to the right and down [px]. A drag along the whole height
+  // of the window turns what the ball moves by half a turn, or shifts it by 1.5 of its radii.
+  enum class Drag { kTurn, kShift };
+  void drag(Drag what, double right_px, double down_px, int window_height);
+  // Notches of the wheel; away from the person brings the content nearer.
+  void wheel(double notches);
+  // README.md lists the keys. A held key repeats motions only.
+  void press(const PressedKey& key);
+
+  // The commands since the last call, "NAME ARGUMENT", in the order of the keys; motions come last
+  // and are one command.
+  std::vector<std::string> take();
+
+ private:
+  // As the command `move` takes them: radii of the content, and degrees.
+  struct Motion {
+    double right = 0, up = 0, nearer = 0, about_x_deg = 0, about_y_deg = 0;
+  };
+  bool moves(const PressedKey& key);
+
+  Motion motion_;
+  std::vector<std::string> commands_;
+};
+
+}  // namespace merlin::render::out

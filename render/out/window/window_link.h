@@ -1,0 +1,96 @@
+// WindowLink: hands pictures to a window on a desktop, which a program of its own shows.
+//
+// The window belongs to the program merlin-window, because the libraries of a desktop end their
+// process when the X server goes away, handle signals and may wait without limit. A thread here
+// starts the program, and starts it again every kRetry while there is no display.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/unique_fd.h"
+#include "daemon/base/watched_thread.h"
+#include "render/out/window/picture_slots.h"
+#include "render/out/window/settings.h"
+#include "render/out/window/window_process.h"
+
+namespace merlin::render::out {
+
+// What merlind does for the person at a window. Called on the threads of the outputs.
+struct WindowActs {
+  // Executes a command of daemon/base/commands.h. Errors: why not.
+  std::function<Result<std::string>(const std::string& name, const std::string& argument)> command =
+      [](const std::string&, const std::string&) -> Result<std::string> { return std::string(); };
+  // Stops merlind. `why`: a sentence for the log.
+  std::function<void(const std::string& why)> stop = [](const std::string&) {};
+};
+
+// show(), fault() and isClosed() are thread-safe, except that one thread calls show().
+class WindowLink {
+ public:
+  static constexpr Duration kRetry = std::chrono::seconds(1);
+  // A window that has not taken a frame for kSlow is unhealthy; after kStuck its program is killed
+  // and started again.
+  static constexpr Duration kSlow = std::chrono::seconds(2);
+  static constexpr Duration kStuck = std::chrono::seconds(10);
+
+  // `program`: path of merlin-window. `watch` and `clock` outlive this object.
+  WindowLink(WindowSettings settings, WindowActs acts, std::string program, ThreadWatch& watch,
+             const Clock& clock);
+  ~WindowLink();
+  WindowLink(const WindowLink&) = delete;
+  WindowLink& operator=(const WindowLink&) = delete;
+
+  // Copies a picture, RGBA, rows from top to bottom, of the same size each time; takes bounded
+  // time. Returns whether a window will show it: false if none is open yet, or if it takes the
+  // place of a picture that the window has not fetched. Errors: kClosed (see isClosed()); kIo
+  // (fault(), or no memory for the pictures).
+  Result<bool> show(int width, int height, std::span<const std::uint8_t> pixels);
+
+  // Why there is no window, or why it shows nothing; empty: no fault is known.
+  std::string fault() const;
+  // A person closed the window; it stays closed.
+  bool isClosed() const;
+
+ private:
+  WindowForm form() const;
+  void work(const std::stop_token& stop, Progress& progress);
+  void start(Timestamp now);
+  void await();
+  void takeEvents();
+  void take(const WindowEvent& event);
+  void execute(std::string_view command) const;
+  void sendNewest();
+  void checkIsAlive(Timestamp now);
+  void fail(const std::string& why);
+  void wake() const;
+
+  WindowSettings settings_;
+  WindowActs acts_;
+  std::string program_path_;
+  const Clock& clock_;
+  UniqueFd wake_;  // an eventfd that ends await()
+
+  mutable std::mutex mutex_;           // never held while pixels are copied or the system is called
+  std::optional<PictureSlots> slots_;  // from the first frame on; slots are written without mutex_
+  std::uint32_t newest_ = 0;           // slot of the newest frame
+  std::uint32_t in_flight_ = 0;        // slot of the frame that the program was sent last
+  std::uint64_t frames_ = 0, sent_ = 0;  // number of the newest frame, and of that one
+  bool opened_ = false;                  // there is a window
+  bool closed_ = false;                  // a person closed it
+  std::string fault_;                    // empty: none is known
+
+  // Used by the thread only.
+  std::unique_ptr<WindowProcess> process_;
+  Timestamp next_start_{};
+  std::optional<Timestamp> owed_since_;  // since when an answer of the program is awaited
+  WatchedThread thread_;
+};
+
+}  // namespace merlin::render::out
