@@ -4,13 +4,13 @@
 
 #include "render/compare/compare.h"
 
-namespace merlin::render {
+namespace merlin::render::compare {
 
-Result<Within> coarsestWithin(const Dendrogram& model, double percent,
+Result<Within> coarsestWithin(const lod::Dendrogram& model, double percent,
                               const std::function<void(double, std::size_t)>& progress) {
   constexpr double kNearEnough = 1.02;
   std::size_t compared_so_far = 0;
-  const Mesh finest = extract(model, 0);
+  const mesh::Mesh finest = lod::extract(model, 0);
   const CompareSettings settings{.samples = 1, .width_percent = percent / 20};
   Within best;
   auto too_few = static_cast<double>(model.trianglesAt(model.levels() - 1)) / kNearEnough;
@@ -19,7 +19,7 @@ Result<Within> coarsestWithin(const Dendrogram& model, double percent,
   while (enough > kNearEnough * too_few) {
     const double triangles = std::sqrt(too_few * enough);
     const std::size_t level = model.levelFor(static_cast<std::size_t>(triangles));
-    const auto compared = compare(finest, extract(model, level), settings, [&](const auto&) {
+    const auto compared = compare(finest, lod::extract(model, level), settings, [&](const auto&) {
       progress(1 - std::log(enough / too_few) / span, compared_so_far);
       return true;
     });
@@ -37,4 +37,4 @@ Result<Within> coarsestWithin(const Dendrogram& model, double percent,
   return best;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::compare

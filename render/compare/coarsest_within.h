@@ -1,4 +1,5 @@
-// The coarsest resolution of a model that certainly stays within a distance of the finest one.
+// Finds the coarsest resolution of a model that is certain to be within a distance of the finest
+// one.
 #pragma once
 
 #include <cstddef>
@@ -7,19 +8,20 @@
 #include "daemon/base/result.h"
 #include "render/lod/dendrogram.h"
 
-namespace merlin::render {
+namespace merlin::render::compare {
 
 struct Within {
   std::size_t level = 0;
   double at_most = 0;  // upper bound of the level's distance from the finest one, model units
-  double percent = 0;  // the same in percent of the diagonal of the finest level's box
+  double percent = 0;  // at_most in percent of the diagonal of the finest level's bounding box
 };
 
-// Bisects the logarithm of the number of triangles down to 2 %: a level whose distance is at most
-// `percent` of the diagonal, and nearly the coarsest such. `progress`: share of the work, and how
-// many levels have been compared; called on this thread. Errors: compare()'s. Cost: about ten
-// comparisons. REQUIRES: percent > 0, more than one level.
-Result<Within> coarsestWithin(const Dendrogram& model, double percent,
+// Finds a level whose distance is at most `percent` of the diagonal and whose number of triangles
+// is nearly the lowest such one: bisects the logarithm of that number until the interval is 2 %
+// wide. `progress`: called on this thread with the share of the work (0..1) and the number of
+// levels compared. Errors: those of compare(). Cost: about ten comparisons. REQUIRES: percent > 0,
+// more than one level.
+Result<Within> coarsestWithin(const lod::Dendrogram& model, double percent,
                               const std::function<void(double, std::size_t)>& progress);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::compare

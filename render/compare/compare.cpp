@@ -9,7 +9,7 @@
 
 #include "render/compare/sampled.h"
 
-namespace merlin::render {
+namespace merlin::render::compare {
 namespace {
 
 constexpr double kSampledShare = 0.6;  // of the progress of one direction
@@ -19,11 +19,12 @@ Error invalid(std::string what) { return {Errc::kInvalidArgument, std::move(what
 Result<Ok> check(const CompareSettings& settings) {
   if (settings.samples == 0) return invalid("samples 0: at least 1 is needed");
   if (!(settings.width_percent > 0) || std::isinf(settings.width_percent))
-    return invalid(fmt::format("width {} % is not more than 0", settings.width_percent));
+    return invalid(
+        fmt::format("width {} % is not a finite number above 0", settings.width_percent));
   return Ok{};
 }
 
-Result<Ok> check(const char* name, const Mesh& mesh) {
+Result<Ok> check(const char* name, const mesh::Mesh& mesh) {
   if (const auto valid = validate(mesh); !valid)
     return Error{valid.error().code, fmt::format("{}: {}", name, valid.error().what)};
   if (mesh.triangleCount() == 0) return invalid(fmt::format("{}: has no triangles", name));
@@ -32,35 +33,37 @@ Result<Ok> check(const char* name, const Mesh& mesh) {
   return Ok{};
 }
 
-bool areAlike(const Feature* a, const Feature* b) { return a && b && a->dimension == b->dimension; }
-
-std::string sizeOf(const Feature* feature) {
-  return feature ? fmt::format("has {} a vertex", feature->dimension) : "has none";
+bool areAlike(const mesh::Feature* a, const mesh::Feature* b) {
+  return a && b && a->dimension == b->dimension;
 }
 
-// The names to compare; normals are compared as angles, whether asked for or not.
-Result<std::vector<std::string>> featuresOf(const Mesh& a, const Mesh& b,
+std::string sizeOf(const mesh::Feature* feature) {
+  return feature ? fmt::format("has dimension {}", feature->dimension) : "lacks it";
+}
+
+// Returns the features to compare, without "normal", which is always compared, as angles.
+Result<std::vector<std::string>> featuresOf(const mesh::Mesh& a, const mesh::Mesh& b,
                                             const std::vector<std::string>& wanted) {
   std::vector<std::string> names;
   for (const std::string& name : wanted) {
-    const Feature *of_a = a.find(name), *of_b = b.find(name);
+    const mesh::Feature *of_a = a.find(name), *of_b = b.find(name);
     if (!areAlike(of_a, of_b))
       return invalid(fmt::format("feature {}: the first mesh {}, the second {}", name, sizeOf(of_a),
                                  sizeOf(of_b)));
     if (name != "normal") names.push_back(name);
   }
   if (!wanted.empty()) return names;
-  for (const Feature& f : a.features) {
+  for (const mesh::Feature& f : a.features) {
     if (f.name != "normal" && areAlike(&f, b.find(f.name))) names.push_back(f.name);
   }
   return names;
 }
 
-// Both trees, at the same time where there are threads.
-std::array<std::unique_ptr<const TriangleTree>, 2> treesOf(const Mesh& a, const Mesh& b,
+// Builds both trees, in parallel if there are threads.
+std::array<std::unique_ptr<const TriangleTree>, 2> treesOf(const mesh::Mesh& a, const mesh::Mesh& b,
                                                            unsigned threads) {
   std::array<std::unique_ptr<const TriangleTree>, 2> trees;
-  const std::array<const Mesh*, 2> meshes = {&a, &b};
+  const std::array<const mesh::Mesh*, 2> meshes = {&a, &b};
   forBlocks(
       threads, 2,
       [&](std::size_t i) { trees[i] = std::make_unique<const TriangleTree>(*meshes[i]); },
@@ -102,7 +105,8 @@ Deviation Comparison::symmetric() const {
   return d;
 }
 
-Result<Comparison> compare(const Mesh& a, const Mesh& b, const CompareSettings& settings,
+Result<Comparison> compare(const mesh::Mesh& a, const mesh::Mesh& b,
+                           const CompareSettings& settings,
                            const std::function<bool(const CompareProgress&)>& progress) {
   if (const auto fine = check(settings); !fine) return fine.error();
   if (const auto fine = check("the first mesh", a); !fine) return fine.error();
@@ -112,7 +116,7 @@ Result<Comparison> compare(const Mesh& a, const Mesh& b, const CompareSettings& 
   const unsigned threads = threadsOr(settings.threads);
 
   Comparison comparison;
-  comparison.diagonal = boundingBox(a.positions).diagonal();
+  comparison.diagonal = mesh::boundingBox(a.positions).diagonal();
   const auto trees = treesOf(a, b, threads);
   const Surface first{a, *trees[0]}, second{b, *trees[1]};
   const Sampling sampling{settings.samples, settings.seed, *features, threads};
@@ -133,4 +137,4 @@ Result<Comparison> compare(const Mesh& a, const Mesh& b, const CompareSettings& 
   return comparison;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::compare

@@ -1,7 +1,8 @@
-// Comparison: how far two surfaces are from one another, and how much their features differ there.
+// Comparison: how far two surfaces are apart, and how much their features differ there.
 //
-// The measure of [METRO98]: each point of one surface against the nearest point of the other, in
-// both directions. Means are sampled, the maximum is certain: an interval that holds it.
+// The measure of [METRO98]: the distance of each point of one surface from the nearest point of the
+// other, in both directions. Means are estimated from samples; the maximum is given as an interval
+// that is certain to contain it.
 #pragma once
 
 #include <cstdint>
@@ -14,56 +15,58 @@
 #include "render/compare/farthest.h"
 #include "render/mesh/mesh.h"
 
-namespace merlin::render {
+namespace merlin::render::compare {
 
 struct CompareSettings {
-  std::size_t samples = 500'000;  // of each direction, for the means; at least 1
-  std::uint64_t seed = 1;         // of the samples
-  double width_percent = 0.01;    // of the maximum's interval, of the diagonal of a's box; > 0
-  std::size_t max_evaluations = 50'000'000;  // points tested for it, each direction
+  std::size_t samples = 500'000;  // per direction, for the means; at least 1
+  std::uint64_t seed = 1;         // of the random positions of the samples
+  // Width of the maximum's interval, in percent of the diagonal of a's bounding box; > 0.
+  double width_percent = 0.01;
+  std::size_t max_evaluations = 50'000'000;  // limit of points tested for it, per direction
   std::vector<std::string> features{};       // which to compare; empty: all that both have
-  unsigned threads = 0;                      // 0: as many as the machine has; any gives one answer
+  unsigned threads = 0;                      // 0: one per hardware thread; the result is the same
 };
 
 struct FeatureError {
   std::string name;
-  double rms = 0;  // of a component: sqrt(mean |difference|^2 / dimension), in the feature's unit
+  double rms = 0;  // per component: sqrt(mean |difference|^2 / dimension), in the feature's unit
 };
 
-// From the points of one surface to the other one.
+// Distances and differences from the points of one surface to the other surface.
 struct Deviation {
   double rms = 0, mean = 0;  // distance, model units, over the area
   Interval max;              // largest distance, model units
-  // Angles, 0 to 180 degrees; none where nothing could be compared.
+  // RMS angles, 0 to 180 degrees; nullopt if nothing could be compared.
   std::optional<double> facet_rms_deg;   // between the triangles' own normals
   std::optional<double> normal_rms_deg;  // between the interpolated features "normal"
   std::vector<FeatureError> features;    // without "normal"
 };
 
 struct Comparison {
-  double diagonal = 0;  // of a's box, model units
+  double diagonal = 0;  // of a's bounding box, model units
   Deviation forward;    // from a to b
   Deviation backward;   // from b to a
 
-  // The larger one of both directions, figure by figure; evaluations are added.
+  // Returns, for each value, the larger one of both directions; the evaluations are added.
   Deviation symmetric() const;
 };
 
 struct CompareProgress {
-  double share = 0;        // 0..1; how far the search for the maximum is, is a guess
+  double share = 0;        // 0..1; estimated while the maximum is searched
   std::size_t points = 0;  // tested so far
 };
 
 // Compares b with the original a.
 //
 // progress  called on the caller's thread a few hundred times; false cancels.
-// errors    kInvalidArgument: a mesh without triangles or area, a feature that one of them lacks or
-//           has of another dimension, a setting out of range; kMalformed: of validate();
-//           kClosed: cancelled.
-// cost      O((n + samples) log n) time and, for the maximum, what the surfaces make of it; about
-//           130 bytes a triangle.
-// thread    reentrant; uses `threads` threads. Same input and seed, same bits.
-Result<Comparison> compare(const Mesh& a, const Mesh& b, const CompareSettings& settings = {},
+// errors    kInvalidArgument: a mesh without triangles or area, a feature that one mesh lacks or
+//           has with another dimension, a setting out of range; those of validate(); kClosed:
+//           cancelled.
+// cost      O((n + samples) log n) time, and for the maximum a search whose time depends on the
+//           surfaces (see max_evaluations); about 130 bytes a triangle.
+// thread    reentrant; uses `threads` threads. The same input and seed give the same bits.
+Result<Comparison> compare(const mesh::Mesh& a, const mesh::Mesh& b,
+                           const CompareSettings& settings = {},
                            const std::function<bool(const CompareProgress&)>& progress = {});
 
-}  // namespace merlin::render
+}  // namespace merlin::render::compare

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace merlin::render {
+namespace merlin::render::compare {
 namespace {
 
 constexpr std::size_t kBlock = 2048;     // triangles or vertices of the first pass
@@ -16,14 +16,14 @@ constexpr double kFirstPassShare = 0.5;  // of the progress
 // A triangle of the first surface, or a part of one.
 struct Part {
   std::array<Vector, 3> corners;
-  std::array<std::uint32_t, 3> nearest{};          // place of the nearest triangle to each
-  std::uint32_t bounded_by = TriangleTree::kNone;  // place of the triangle that `upper` is of
-  double upper = std::numeric_limits<double>::infinity();  // no point of it is farther away
+  std::array<std::uint32_t, 3> nearest{};          // by corner: place of the nearest triangle
+  std::uint32_t bounded_by = TriangleTree::kNone;  // place of the triangle that gave `upper`
+  double upper = std::numeric_limits<double>::infinity();  // upper bound of its points' distances
 };
 
 bool isLess(const Part& a, const Part& b) { return a.upper < b.upper; }
 
-// Finds the bound of `part`: the least over the triangles known to be near.
+// Computes the upper bound of `part`: the lowest one over the triangles known to be near.
 void bound(const TriangleTree& to, Part& part) {
   const std::array<std::uint32_t, 4> candidates = {part.nearest[0], part.nearest[1],
                                                    part.nearest[2], part.bounded_by};
@@ -46,7 +46,7 @@ void bound(const TriangleTree& to, Part& part) {
 // Both halves of a part, cut at the middle of its longest edge.
 struct Halves {
   std::array<Part, 2> parts;
-  double distance = 0;  // of that middle
+  double distance = 0;  // of the point where it was cut
 };
 
 Halves halve(const TriangleTree& to, const Part& part) {
@@ -95,10 +95,10 @@ class FarthestSearch {
   const Search& search_;
   const GoOn& goOn_;
 
-  std::vector<std::uint32_t> nearest_;  // of each vertex that a triangle uses
+  std::vector<std::uint32_t> nearest_;  // by vertex that a triangle uses: its nearest place
   std::vector<Part> parts_;             // heap, the largest bound first
   double low_ = 0;
-  double dropped_ = 0;  // largest bound of the parts that did not matter
+  double dropped_ = 0;  // largest upper bound of the dropped parts
   double first_gap_ = 0;
   std::size_t evaluations_ = 0;
 };
@@ -112,7 +112,7 @@ bool FarthestSearch::inBlocks(std::size_t count, double from,
   });
 }
 
-// In the order of the tree's leaves, so that one answer is a good hint for the next.
+// In the order of the tree's leaves, so that each result is a good hint for the next search.
 bool FarthestSearch::testVertices() {
   nearest_.assign(from_.mesh.vertexCount(), TriangleTree::kNone);
   std::vector<std::uint32_t> order;
@@ -179,7 +179,7 @@ void FarthestSearch::keep(const Part& part) {
   }
 }
 
-// Halves the parts with the largest bounds. A round is the same for any number of threads.
+// Halves the parts with the largest upper bounds. A round does not depend on the number of threads.
 bool FarthestSearch::refineRound() {
   const double share = shareDone();
   std::vector<Part> round;
@@ -212,7 +212,7 @@ bool FarthestSearch::refine() {
   return true;
 }
 
-// The gap shrinks by a factor a round, as a rule: so its logarithm tells how far the search is.
+// The gap usually shrinks by the same factor in each round, so its logarithm measures the progress.
 double FarthestSearch::shareDone() const {
   const double gap = interval().high - low_;
   if (!(gap > search_.width) || !(first_gap_ > search_.width)) return 1;
@@ -231,4 +231,4 @@ std::optional<Interval> farthest(const Surface& from, const Surface& to, const S
   return farthest_search.interval();
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::compare

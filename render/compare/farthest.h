@@ -1,18 +1,19 @@
-// The point of one surface that is farthest from another: an interval that certainly holds its
-// distance (the one-sided Hausdorff distance).
+// Finds the largest distance of a point of one surface from another surface (the one-sided
+// Hausdorff distance), as an interval that is certain to contain it.
 //
-// Branch and bound. Below: the largest distance of any point tested. Above: the distance to a
-// convex set is convex, so over a part T of a triangle the distance to any one triangle t is
-// largest at a corner of T; the distance to the whole surface is no more than that. Parts whose
-// bound does not matter are dropped, the one with the largest is halved. After [GUTHE05], with
-// halves at the longest edge and bounds from triangles known to be near.
+// Branch and bound. Lower bound: the largest distance of any point tested. Upper bound: the
+// distance to a convex set is a convex function, so over a part T of a triangle the distance to any
+// one triangle t is largest at a corner of T; the distance to the whole surface is no more than
+// that. A part whose upper bound is close enough to the lower bound is dropped; the part with the
+// largest upper bound is halved. After [GUTHE05], but parts are halved at the longest edge, and
+// bounds are from triangles known to be near.
 #pragma once
 
 #include <optional>
 
 #include "render/compare/sampled.h"
 
-namespace merlin::render {
+namespace merlin::render::compare {
 
 struct Interval {
   double low = 0, high = 0;     // model units; certain but for rounding (1e-12 of the distance)
@@ -20,15 +21,15 @@ struct Interval {
 };
 
 struct Search {
-  double width = 0;                 // wanted of the interval, model units
-  std::size_t max_evaluations = 0;  // then the interval is returned as wide as it is
+  double width = 0;                 // wanted width of the interval, model units
+  std::size_t max_evaluations = 0;  // after these, the interval may be wider
   unsigned threads = 1;
 };
 
-// Tests each vertex of `from` first, whatever the budget; then in rounds that do not depend on the
-// number of threads. 120 bytes a part that is kept.
-// goOn     as of sampledError(); the search's own share is guessed from the interval's width.
+// Tests each vertex of `from` first, even beyond max_evaluations; then halves parts in rounds that
+// do not depend on the number of threads. Memory: 120 bytes per part that is kept.
+// goOn     as for sampledError(); the share is estimated from the interval's width.
 std::optional<Interval> farthest(const Surface& from, const Surface& to, const Search& search,
                                  const GoOn& goOn);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::compare

@@ -6,18 +6,18 @@
 
 #include "daemon/base/random.h"
 
-namespace merlin::render {
+namespace merlin::render::compare {
 namespace {
 
-constexpr std::size_t kBlock = 4096;  // samples; sums are made a block, then over the blocks
+constexpr std::size_t kBlock = 4096;  // samples that are summed before the blocks' sums are added
 
-// A point of a mesh, as features are looked up.
+// A point of a mesh, as needed to interpolate features there.
 struct SurfacePoint {
   const std::uint32_t* corners;  // vertices of its triangle
   std::array<double, 3> barycentric;
 };
 
-double valueAt(const Feature& feature, const SurfacePoint& at, std::size_t component) {
+double valueAt(const mesh::Feature& feature, const SurfacePoint& at, std::size_t component) {
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t row = at.corners[k] * feature.dimension;
@@ -26,11 +26,11 @@ double valueAt(const Feature& feature, const SurfacePoint& at, std::size_t compo
   return sum;
 }
 
-Vector vectorOf(const Feature& feature, const SurfacePoint& at) {
+Vector vectorOf(const mesh::Feature& feature, const SurfacePoint& at) {
   return {valueAt(feature, at, 0), valueAt(feature, at, 1), valueAt(feature, at, 2)};
 }
 
-// Twice its length is the triangle's area.
+// Returns a normal whose length is twice the triangle's area.
 Vector facetNormal(const std::array<Vector, 3>& corners) {
   return cross(corners[1] - corners[0], corners[2] - corners[0]);
 }
@@ -50,7 +50,7 @@ struct Mean {
   double value() const { return count > 0 ? sum / static_cast<double>(count) : 0; }
 };
 
-// Squared angle; directions without length have none.
+// Adds the square of the angle between a and b, unless one of them has length 0.
 void addAngle(const Vector& a, const Vector& b, Mean& mean_deg2) {
   if (squared(a) == 0 || squared(b) == 0) return;
   const double angle_deg =
@@ -72,8 +72,8 @@ struct Sums {
 };
 
 struct Pair {
-  const Feature* from = nullptr;
-  const Feature* to = nullptr;
+  const mesh::Feature* from = nullptr;
+  const mesh::Feature* to = nullptr;
 };
 
 class Sampler {
@@ -89,14 +89,14 @@ class Sampler {
     for (const std::string& name : sampling.features)
       features_.push_back({from.mesh.find(name), to.mesh.find(name)});
     normals_ = {from.mesh.find("normal"), to.mesh.find("normal")};
-    for (const Feature* normal : {normals_.from, normals_.to}) {
+    for (const mesh::Feature* normal : {normals_.from, normals_.to}) {
       if (!normal || normal->dimension != 3) normals_ = {};
     }
   }
 
   Sums none() const { return {{}, {}, {}, {}, std::vector<Mean>(features_.size())}; }
 
-  // Samples kBlock * block and those after it; `sums` begins as none().
+  // Adds samples kBlock * block to kBlock * (block + 1) - 1 to `sums`, which was none() before.
   void addBlock(std::size_t block, Sums& sums) const {
     // A generator of its own for each block; next() keeps neighbouring seeds apart.
     Random random(Random(sampling_.seed + block).next());
@@ -120,8 +120,8 @@ class Sampler {
     return static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(after - 1, 0));
   }
 
-  // The point at (u, v) of the unit square, folded evenly over the triangle. Returns the nearest
-  // place.
+  // Adds the sample at (u, v) of the unit square, which is mapped to the triangle with uniform
+  // density. Returns the place of the nearest triangle.
   std::uint32_t addSample(std::uint32_t place, double u, double v, std::uint32_t hint,
                           Sums& sums) const {
     const double root = std::sqrt(u);
@@ -156,7 +156,7 @@ class Sampler {
   const Surface& from_;
   const Surface& to_;
   const Sampling& sampling_;
-  std::vector<double> area_;  // of all triangles before a place
+  std::vector<double> area_;  // by place: area of all triangles before it
   std::vector<Pair> features_;
   Pair normals_;
 };
@@ -191,11 +191,11 @@ std::optional<SampledError> sampledError(const Surface& from, const Surface& to,
       });
   if (!all) return std::nullopt;
   Sums total = sampler.none();
-  for (const Sums& s : sums) total.add(s);  // in this order, whoever made them
+  for (const Sums& s : sums) total.add(s);  // fixed order: same bits for any number of threads
   return errorOf(total);
 }
 
-double area(const Mesh& mesh) noexcept {
+double area(const mesh::Mesh& mesh) noexcept {
   double twice = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
     std::array<Vector, 3> corners;
@@ -206,4 +206,4 @@ double area(const Mesh& mesh) noexcept {
   return twice / 2;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::compare

@@ -1,4 +1,4 @@
-// Mean differences of two surfaces, over points spread evenly over the first.
+// Mean differences between two surfaces, over sample points spread evenly over the first one.
 #pragma once
 
 #include <cstdint>
@@ -10,41 +10,41 @@
 #include "render/compare/triangle_tree.h"
 #include "render/mesh/mesh.h"
 
-namespace merlin::render {
+namespace merlin::render::compare {
 
-// Told on the caller's thread which share of a piece of work is done, 0..1, and how many points it
-// has tested; says whether to go on.
+// Progress callback on the caller's thread: the share of a piece of work that is done, 0..1, and
+// the number of points tested. Returns whether to go on.
 using GoOn = std::function<bool(double share, std::size_t points)>;
 
-// A mesh with its tree; both are borrowed.
+// A mesh and its tree; both must outlive it.
 struct Surface {
-  const Mesh& mesh;
+  const mesh::Mesh& mesh;
   const TriangleTree& tree;
 };
 
 struct Sampling {
   std::size_t samples = 0;
   std::uint64_t seed = 0;
-  std::vector<std::string> features;  // both meshes have them, of one dimension
+  std::vector<std::string> features;  // both meshes must have them, with equal dimensions
   unsigned threads = 1;
 };
 
 struct SampledError {
   double rms = 0, mean = 0;              // distance, model units
-  std::optional<double> facet_rms_deg;   // none where no sample met facets with an area
-  std::optional<double> normal_rms_deg;  // none where the meshes have no "normal" of 3
-  std::vector<double> features;          // RMS of a component, in the feature's unit
+  std::optional<double> facet_rms_deg;   // nullopt if no sample met facets with an area
+  std::optional<double> normal_rms_deg;  // nullopt unless both meshes have normals
+  std::vector<double> features;          // RMS per component, in the feature's unit
 };
 
-// For each sample the nearest point of `to`; what differs between the two points.
+// Averages, over samples of `from`, the differences from the nearest point of `to`.
 //
 // Samples are stratified by area: the surface is laid out in the order of the tree's leaves and
 // cut into `samples` strips of equal area, with one random point each. O(samples x log n).
-// goOn     false ends the work; then nothing is returned.
+// goOn     if it returns false, the work ends and the result is nullopt.
 // REQUIRES samples > 0, area(from) > 0.
 std::optional<SampledError> sampledError(const Surface& from, const Surface& to,
                                          const Sampling& sampling, const GoOn& goOn);
 
-double area(const Mesh& mesh) noexcept;
+double area(const mesh::Mesh& mesh) noexcept;
 
-}  // namespace merlin::render
+}  // namespace merlin::render::compare

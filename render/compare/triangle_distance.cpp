@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <limits>
 
-namespace merlin::render {
+namespace merlin::render::compare {
 namespace {
 
-// Height over length, squared: below it rounding may put a point on the wrong side of an edge.
+// A triangle whose (height / longest edge)^2 is below this is a sliver: rounding may put a point on
+// the wrong side of one of its edges.
 constexpr double kSliver = 1e-10;
 
 // Nearest point on the edge from corner i to corner j.
@@ -47,4 +48,4 @@ NearestPoint nearestOnTriangle(const Vector& p, const std::array<Vector, 3>& cor
   return best;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::compare

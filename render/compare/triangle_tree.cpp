@@ -5,12 +5,13 @@
 #include <limits>
 #include <numeric>
 
-namespace merlin::render {
+namespace merlin::render::compare {
 namespace {
 
 constexpr std::uint32_t kLeaf = 4;  // triangles
 constexpr std::size_t kBins = 16;
-// From this depth on halves are equal, so that no mesh makes a tree deeper than kDeepest.
+// From this depth on triangles are split into equal halves, so that no tree is deeper than
+// kDeepest.
 constexpr int kUneven = 60;
 constexpr std::size_t kDeepest = kUneven + 32;
 
@@ -25,7 +26,7 @@ struct Bounds {
     }
   }
   float centre(std::size_t axis) const noexcept { return low[axis] / 2 + high[axis] / 2; }
-  // Half its surface; 0 where it is empty.
+  // Half the surface area; 0 if the box is empty.
   double area() const noexcept {
     if (low[0] > high[0]) return 0;
     const double x = double{high[0]} - low[0], y = double{high[1]} - low[1],
@@ -40,7 +41,7 @@ struct Reference {
 };
 using References = std::vector<Reference>;
 
-Bounds boundsOf(const Mesh& mesh, std::size_t triangle) {
+Bounds boundsOf(const mesh::Mesh& mesh, std::size_t triangle) {
   Bounds bounds;
   for (std::size_t corner = 0; corner < 3; ++corner) {
     const float* p = &mesh.positions[3 * std::size_t{mesh.triangles[3 * triangle + corner]}];
@@ -55,9 +56,9 @@ struct Bin {
 };
 using Bins = std::array<Bin, kBins>;
 
-// Where to cut a list of bins: before the one that this returns. 0 where one holds all.
+// Returns the bin before which to cut for the lowest cost; 0 if one bin holds all.
 std::size_t cheapestCut(const Bins& bins) {
-  std::array<double, kBins> above{};  // cost of all from a bin on
+  std::array<double, kBins> above{};  // cost of the triangles from each bin on
   Bin sum;
   for (std::size_t i = kBins; i-- > 1;) {
     sum.bounds.add(bins[i].bounds);
@@ -99,7 +100,8 @@ std::array<double, 2> boxDistances(const Node& node, const Vector& p) noexcept {
 
 class TriangleTree::Builder {
  public:
-  Builder(const Mesh& mesh, TriangleTree& tree) : nodes_(tree.nodes_), all_(mesh.triangleCount()) {
+  Builder(const mesh::Mesh& mesh, TriangleTree& tree)
+      : nodes_(tree.nodes_), all_(mesh.triangleCount()) {
     for (std::size_t t = 0; t < all_.size(); ++t)
       all_[t] = {boundsOf(mesh, t), static_cast<std::uint32_t>(t)};
     nodes_.reserve(all_.size() / 2 + 1);
@@ -110,7 +112,7 @@ class TriangleTree::Builder {
   const References& references() const noexcept { return all_; }
 
  private:
-  // A node over [first, last); returns its number.
+  // Builds a node over [first, last); returns its number.
   std::uint32_t build(std::uint32_t first, std::uint32_t last, int depth) {
     const auto number = static_cast<std::uint32_t>(nodes_.size());
     nodes_.emplace_back();
@@ -136,7 +138,7 @@ class TriangleTree::Builder {
     }
   }
 
-  // Sorts [first, last) into two parts, neither of them empty; returns where the second begins.
+  // Divides [first, last) into two parts that are not empty; returns where the second begins.
   std::uint32_t split(std::uint32_t first, std::uint32_t last, int depth) {
     Bounds centres;
     for (std::uint32_t i = first; i < last; ++i) {
@@ -160,7 +162,7 @@ class TriangleTree::Builder {
     return half;
   }
 
-  // Returns `first` where no cut leaves something on both sides.
+  // Divides at the cheapest cut. Returns `first` if no cut leaves triangles on both sides.
   std::uint32_t splitByArea(std::uint32_t first, std::uint32_t last, std::size_t axis, double low,
                             double extent) {
     const auto binOf = [&](const Reference& r) {
@@ -186,7 +188,7 @@ class TriangleTree::Builder {
   References all_;
 };
 
-TriangleTree::TriangleTree(const Mesh& mesh) {
+TriangleTree::TriangleTree(const mesh::Mesh& mesh) {
   assert(mesh.triangleCount() > 0);
   const Builder builder(mesh, *this);
   order_.reserve(mesh.triangleCount());
@@ -238,7 +240,7 @@ TriangleTree::Nearest TriangleTree::nearest(const Vector& p, std::uint32_t hint)
     for (const int side : {nearer, 1 - nearer}) {
       if (!isInner(side) && isNear(side)) nearestOfLeaf(node, side, p, best);
     }
-    for (const int side : {1 - nearer, nearer}) {  // the nearer one is looked at next
+    for (const int side : {1 - nearer, nearer}) {  // the nearer one is pushed last: visited next
       if (isInner(side) && isNear(side))
         stack[pending++] = {node.child[side], distances[static_cast<std::size_t>(side)]};
     }
@@ -246,4 +248,4 @@ TriangleTree::Nearest TriangleTree::nearest(const Vector& p, std::uint32_t hint)
   return best;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::compare

@@ -1,9 +1,10 @@
-// TriangleTree: a box tree over a mesh's triangles that finds the point of the surface nearest to
-// any point.
+// TriangleTree: a bounding volume hierarchy over the triangles of a mesh; finds the point of the
+// surface that is nearest to a given point.
 //
-// Binary, binned surface area heuristic, at most 4 triangles a leaf; a node holds both children's
-// boxes in one cache line. Triangles are kept in the order of the leaves: a triangle's place in
-// that order is how the tree speaks of it, and neighbours there are neighbours in space.
+// Binary, axis-aligned boxes, binned surface area heuristic, at most 4 triangles per leaf; a node
+// holds both children's boxes in one cache line. Triangles are stored in the order of the leaves,
+// so that neighbours in that order are close in space. A triangle's `place` is its index in that
+// order.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +13,9 @@
 #include "render/compare/triangle_distance.h"
 #include "render/mesh/mesh.h"
 
-namespace merlin::render {
+namespace merlin::render::compare {
 
-// Reentrant once made.
+// Reentrant after construction.
 class TriangleTree {
  public:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
@@ -25,8 +26,8 @@ class TriangleTree {
   };
 
   // O(n log n) time, about 110 bytes a triangle; keeps no reference to the mesh.
-  // REQUIRES: validate(mesh).ok(), at least one triangle. Those without area are legal.
-  explicit TriangleTree(const Mesh& mesh);
+  // REQUIRES: validate(mesh).ok(), at least one triangle. Triangles without area are allowed.
+  explicit TriangleTree(const mesh::Mesh& mesh);
 
   std::size_t size() const noexcept { return order_.size(); }
   std::uint32_t triangleAt(std::uint32_t place) const noexcept { return order_[place]; }
@@ -37,14 +38,15 @@ class TriangleTree {
     return nearestOnTriangle(p, cornersAt(place));
   }
 
-  // Nearest point on the whole surface. `hint`: a place that may be near (the last answer); it only
-  // changes which of several equally near triangles is named, and how long the search takes.
+  // Finds the nearest point on the whole surface. `hint`: a place that may be near, such as the
+  // last result; it affects only the search time, and which of several equally near triangles is
+  // returned.
   Nearest nearest(const Vector& p, std::uint32_t hint = kNone) const noexcept;
 
  private:
   struct Node {
     float low[3][2], high[3][2];  // axis, child
-    std::uint32_t child[2];       // a node; where count is not 0 the first place of a leaf
+    std::uint32_t child[2];       // a node; if count is not 0, the first place of a leaf
     std::uint32_t count[2];
   };
   static_assert(sizeof(Node) == 64);
@@ -58,4 +60,4 @@ class TriangleTree {
   std::vector<float> corners_;        // places x 9
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::compare

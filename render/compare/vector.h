@@ -1,7 +1,7 @@
-// Vector: three doubles and what geometry does with them.
+// Vector: a 3D vector of doubles and its operations.
 #pragma once
 
-namespace merlin::render {
+namespace merlin::render::compare {
 
 struct Vector {
   double x = 0, y = 0, z = 0;
@@ -26,4 +26,4 @@ inline Vector cross(const Vector& a, const Vector& b) noexcept {
 }
 inline Vector vectorAt(const float* p) noexcept { return {p[0], p[1], p[2]}; }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::compare

@@ -1,4 +1,5 @@
-// Port: what the wall shows. A model is the first kind; pictures and panoramas are others.
+// Port (an interface): a content, i.e. something that the wall shows, such as a model. Images and
+// panoramas are other possible kinds.
 //
 // A content is drawn at a step of its own detail axis. Step 0 is full detail and the last step is
 // the coarsest. Each step has a cost, in the content's own unit (a model: triangles), that the
@@ -13,10 +14,13 @@
 #include <Eigen/Geometry>
 
 #include "daemon/base/result.h"
+#include "render/content/navigation.h"
 
-namespace merlin::render {
-
+namespace merlin::render::gl {
 struct GlApi;
+}
+
+namespace merlin::render::content {
 
 // How finely a content can be drawn, and at what cost.
 class DetailAxis {
@@ -28,57 +32,53 @@ class DetailAxis {
   virtual std::size_t costOf(std::size_t step) const noexcept = 0;
   // The finest step that costs at most `budget`; the coarsest where none does.
   virtual std::size_t stepWithin(std::size_t budget) const noexcept = 0;
-  // Below this cost nothing is shown that helps a person.
+  // The lowest cost at which the content is still recognisable.
   virtual std::size_t leastUseful() const noexcept = 0;
   virtual std::string_view unit() const noexcept = 0;  // in the plural: "triangles"
 
   std::size_t fullCost() const noexcept { return costOf(0); }
 };
 
-// How a person moves in a content.
-enum class Navigation {
-  kObject,    // turned and carried about, or walked around: a model
-  kPlane,     // moved in its plane, and zoomed: a picture
-  kPanorama,  // looked around in from its middle, and zoomed
-};
-
 struct ContentBounds {
-  float radius_m = 1;             // of its bounding sphere about the origin
-  Eigen::Matrix4f T_content_box;  // takes the cube -1..1 to its box, in its coordinates
+  float radius_m = 1;             // radius of its bounding sphere about the origin
+  Eigen::Matrix4f T_content_box;  // maps the cube -1..1 to its bounding box, in content coordinates
 };
 
 // One tile's view of the content.
 struct ContentView {
-  std::size_t tile = 0;              // number in the tile plan
+  std::size_t tile = 0;              // the tile's number in the tile plan
   Eigen::Matrix4f clip_from_metres;  // content coordinates in metres to OpenGL's clip space, y up
   Eigen::Matrix3f eye_from_content;  // rotation only: the light stands at the eye
   int width_px = 0;
-  float weight = 1;  // of an error in this view, beside the others'
+  float weight = 1;  // square root of the weight of squared errors in this view
 };
 
-// How far one view of a frame has been drawn. What the numbers count is the content's business.
+// How far one view of a frame has been drawn. The content defines what the numbers count; both are
+// 0 at first.
 struct DrawProgress {
   std::size_t part = 0, done = 0;
 };
 
-// A content's half in one OpenGL context. Thread-bound to the context, which outlives it.
+// The part of a content that draws it in one OpenGL context. Thread-bound to the context, which
+// must outlive it.
 class ContentRenderer {
  public:
   virtual ~ContentRenderer() = default;
 
   // Once a frame, before its views are drawn: uploads what Content::choose() chose.
-  // REQUIRES: nothing of the frame before is still being drawn.
+  // REQUIRES: drawing of the previous frame has finished.
   virtual void beginFrame() = 0;
 
-  // Clears the bound render target's upper left width x height pixels and sets up a tile's view,
-  // one of those that choose() was given. y points downwards in the target.
+  // Clears the upper left width x height pixels of the bound render target and sets up the view of
+  // a tile, which must be one of those passed to choose(). y points downwards in the target.
   virtual void beginView(std::size_t tile, int width, int height) = 0;
 
-  // Draws the next slice of that view, a few milliseconds of work. True when the view is whole.
+  // Draws the next slice of that view, a few milliseconds of work. Returns true when the view is
+  // complete.
   virtual bool drawSlice(std::size_t tile, DrawProgress& progress) = 0;
 };
 
-// Thread-bound to the wall's thread, but for attach().
+// Thread-bound to the wall's thread, except attach().
 class Content {
  public:
   virtual ~Content() = default;
@@ -87,16 +87,17 @@ class Content {
   virtual ContentBounds bounds() const noexcept = 0;
   virtual Navigation navigation() const noexcept = 0;
 
-  // Chooses what a frame shows at `step` of these views. It stays so, and the renderers may read it
-  // on their threads, until the next call. REQUIRES: step < detail().steps().
+  // Chooses what the next frame draws at `step` for these views. The choice does not change until
+  // the next call, so renderers may read it on their threads. REQUIRES: step < detail().steps().
   virtual void choose(std::size_t step, std::span<const ContentView> views) = 0;
 
-  // On a context's thread, at the same time as on others': its half there. The content outlives it.
-  // Errors: kUnsupported (a shader, or not enough memory on the GPU), with what GL said.
-  virtual Result<std::unique_ptr<ContentRenderer>> attach(const GlApi& gl) const = 0;
+  // Creates the renderer for one context. Called on that context's thread, possibly at the same
+  // time as on others. The content must outlive it. Errors: kUnsupported (a shader does not
+  // compile, or not enough GPU memory), with OpenGL's message.
+  virtual Result<std::unique_ptr<ContentRenderer>> attach(const gl::GlApi& gl) const = 0;
 
-  // After every attach(): what was kept for it alone may go.
+  // Called after the last attach(): data that was kept only for attach() may be freed.
   virtual void attached() noexcept {}
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::content

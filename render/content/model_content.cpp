@@ -5,16 +5,17 @@
 #include "render/content/model_renderer.h"
 #include "render/content/shown_colours.h"
 
-namespace merlin::render {
+namespace merlin::render::content {
 namespace {
 
-// Triangles of a slice: 1 to 5 ms on llvmpipe. Larger slices are no faster: the renderer's bins
-// then exceed the L2 cache.
+// Triangles per slice; a slice takes 1 to 5 ms on llvmpipe. Larger slices are not more efficient,
+// since the bins of llvmpipe then exceed the L2 cache.
 constexpr std::size_t kSlice = 10'000;
 
-// The model's box centred at the origin, its half diagonal `radius_m` long.
-Eigen::Matrix4f scaling(const Dendrogram& model, float radius_m) {
-  const Box box = boundingBox(model.arrays().positions);
+// The transform that centres the model's bounding box at the origin and scales half its diagonal to
+// `radius_m`.
+Eigen::Matrix4f scaling(const lod::Dendrogram& model, float radius_m) {
+  const mesh::Box box = mesh::boundingBox(model.arrays().positions);
   const float half = box.diagonal() / 2;
   const float scale = half > 0 ? radius_m / half : 1;
   Eigen::Matrix4f m = Eigen::Matrix4f::Identity() * scale;
@@ -26,8 +27,8 @@ Eigen::Matrix4f scaling(const Dendrogram& model, float radius_m) {
   return m;
 }
 
-Eigen::Matrix4f boxOf(const Dendrogram& model, const Eigen::Matrix4f& metres_from_model) {
-  const Box box = boundingBox(model.arrays().positions);
+Eigen::Matrix4f boxOf(const lod::Dendrogram& model, const Eigen::Matrix4f& metres_from_model) {
+  const mesh::Box box = mesh::boundingBox(model.arrays().positions);
   Eigen::Matrix4f m = Eigen::Matrix4f::Identity();
   for (int k = 0; k < 3; ++k) {
     const auto i = static_cast<std::size_t>(k);
@@ -37,15 +38,15 @@ Eigen::Matrix4f boxOf(const Dendrogram& model, const Eigen::Matrix4f& metres_fro
 }
 
 // An empty image where the model has no texture.
-Result<ImageFile> textureOf(const Dendrogram& model) {
+Result<image::ImageFile> textureOf(const lod::Dendrogram& model) {
   const auto bytes = model.arrays().texture;
-  if (bytes.empty()) return ImageFile{};
-  auto image = decodeImage(bytes);
-  if (!image) return Error{image.error().code, "its texture: " + image.error().what};
+  if (bytes.empty()) return image::ImageFile{};
+  auto image = image::decodeImage(bytes);
+  if (!image) return Error{image.error().code, "the model's texture: " + image.error().what};
   return image;
 }
 
-// Draws what the content chose, in one context.
+// Draws the content's current choice in one context.
 class ModelContentRenderer final : public ContentRenderer {
  public:
   ModelContentRenderer(std::unique_ptr<ModelRenderer> renderer, const ModelDrawList& list,
@@ -89,7 +90,8 @@ class ModelContentRenderer final : public ContentRenderer {
 
 }  // namespace
 
-ModelContent::ModelContent(const Dendrogram& model, const ModelSettings& settings, float radius_m)
+ModelContent::ModelContent(const lod::Dendrogram& model, const ModelSettings& settings,
+                           float radius_m)
     : model_(model),
       detail_(model),
       settings_(settings),
@@ -101,7 +103,7 @@ ModelContent::ModelContent(const Dendrogram& model, const ModelSettings& setting
       cut_ends_(clusters_.size() + 1),
       even_levels_(clusters_.size()) {}
 
-Result<std::unique_ptr<ModelContent>> ModelContent::make(const Dendrogram& model,
+Result<std::unique_ptr<ModelContent>> ModelContent::make(const lod::Dendrogram& model,
                                                          const ModelSettings& settings,
                                                          double radius_m) {
   std::unique_ptr<ModelContent> content(
@@ -114,9 +116,9 @@ Result<std::unique_ptr<ModelContent>> ModelContent::make(const Dendrogram& model
   return content;
 }
 
-Result<std::unique_ptr<ContentRenderer>> ModelContent::attach(const GlApi& gl) const {
-  const ImageFile& image = upload_->texture;
-  const TextureImage texture{image.width, image.height, image.pixels};
+Result<std::unique_ptr<ContentRenderer>> ModelContent::attach(const gl::GlApi& gl) const {
+  const image::ImageFile& image = upload_->texture;
+  const gl::TextureImage texture{image.width, image.height, image.pixels};
   auto renderer = ModelRenderer::make(gl, model_, upload_->full, settings_.show,
                                       image.pixels.empty() ? nullptr : &texture);
   if (!renderer) return renderer.error();
@@ -152,16 +154,16 @@ std::size_t ModelContent::cutTo(std::size_t level, bool uneven) {
   const std::size_t budget = model_.trianglesAt(level);
   if (cut_.size() < 3 * budget) cut_.resize(3 * budget);
   if (uneven)
-    morphsAt(model_, clusters_, view_cut_.levels(), settings_.geomorph, morphs_);
+    lod::morphsAt(model_, clusters_, view_cut_.levels(), settings_.geomorph, morphs_);
   else
-    morphsAt(model_, level, settings_.geomorph, morphs_);
+    lod::morphsAt(model_, level, settings_.geomorph, morphs_);
   if (clustered_ && !uneven)
     std::fill(even_levels_.begin(), even_levels_.end(), static_cast<std::uint32_t>(level));
   const auto levels = uneven ? view_cut_.levels() : std::span<const std::uint32_t>(even_levels_);
   return clustered_ ? clusters_.cut(levels, cut_, cut_ends_) : clusters_.cutEvenly(level, cut_);
 }
 
-// Neighbouring clusters that the view sees become one run.
+// Collects the triangles of clusters that the view may see; adjacent ones are merged into one run.
 void ModelContent::chooseRuns(std::size_t view, std::vector<TriangleRun>& runs) const {
   runs.clear();
   if (!list_.full && !clustered_) {
@@ -183,4 +185,4 @@ void ModelContent::chooseRuns(std::size_t view, std::vector<TriangleRun>& runs) 
   }
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::content

@@ -11,14 +11,14 @@
 
 #include "render/gl/shader.h"
 
-namespace merlin::render {
+namespace merlin::render::content {
 
-// A node as the vertex shader reads it.
+// The vertex attributes of a node.
 struct ModelRenderer::Vertex {
   float position[3];
   std::int8_t normal[4];  // unit normal x 127
-  // Red, green, blue; of a textured model where in its picture, two numbers of 16 bits, of the
-  // range that its coordinates have.
+  // Red, green, blue; for a textured model instead u and v, two 16-bit numbers scaled to the range
+  // of the model's texture coordinates.
   std::uint8_t attribute[4];
 };
 
@@ -29,7 +29,7 @@ constexpr GLuint kPosition = 0, kNormal = 1, kAttribute = 2;
 constexpr const char* kTextured = "#version 330 core\n#define TEXTURED\n";
 constexpr const char* kPlain = "#version 330 core\n";
 
-// One light at the eye, a little from above, and enough of everywhere to see the rest.
+// One light near the eye, slightly from above, plus ambient light and weak light from behind.
 constexpr const char* kVertexShader = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -70,10 +70,11 @@ void main() { pixel = vec4(shade, 1.0); }
 #endif
 )";
 
-// To the nearest; without a call of the C library, of which a large model needs tens of millions.
+// Rounds to the nearest integer without a call of the C library, since a large model needs tens of
+// millions of these.
 std::int8_t quantise(float component) {
   const float v = component >= -1 ? std::min(127 * component, 127.0F)
-                                  : (component < -1 ? -127.0F : 0.0F);  // 0 of what is no number
+                                  : (component < -1 ? -127.0F : 0.0F);  // 0 for NaN
   return static_cast<std::int8_t>(static_cast<int>(double{v} + 127.5) - 127);
 }
 
@@ -83,22 +84,23 @@ using Place = std::array<std::uint16_t, 2>;
 
 }  // namespace
 
-ModelRenderer::ModelRenderer(const GlApi& gl, const Dendrogram& model)
+ModelRenderer::ModelRenderer(const gl::GlApi& gl, const lod::Dendrogram& model)
     : gl_(gl), model_(model), wires_(gl) {}
 
-Result<std::unique_ptr<ModelRenderer>> ModelRenderer::make(const GlApi& gl, const Dendrogram& model,
+Result<std::unique_ptr<ModelRenderer>> ModelRenderer::make(const gl::GlApi& gl,
+                                                           const lod::Dendrogram& model,
                                                            std::span<const std::uint32_t> full,
                                                            const ShownFeature& show,
-                                                           const TextureImage* texture) {
+                                                           const gl::TextureImage* texture) {
   static_assert(sizeof(Vertex) == 20);
   if (model.nodeCount() > std::numeric_limits<std::int32_t>::max() / sizeof(Vertex) * 8) {
     return Error{Errc::kUnsupported,
-                 fmt::format("{} nodes are more than one buffer holds", model.nodeCount())};
+                 fmt::format("{} nodes do not fit into one buffer of OpenGL", model.nodeCount())};
   }
   std::unique_ptr<ModelRenderer> r(new ModelRenderer(gl, model));
-  if (const FeatureView* normal = model.find("normal"); normal && normal->dimension == 3)
+  if (const lod::FeatureView* normal = model.find("normal"); normal && normal->dimension == 3)
     r->normal_ = normal;
-  const FeatureView* texcoord = model.find("texcoord");
+  const lod::FeatureView* texcoord = model.find("texcoord");
   if (texture && show.feature.empty() && texcoord && texcoord->dimension == 2) {
     r->useTexture(*texcoord, *texture);
   } else {
@@ -115,9 +117,11 @@ Result<std::unique_ptr<ModelRenderer>> ModelRenderer::make(const GlApi& gl, cons
   r->full_triangles_ = full.size() / 3;
   gl.BindVertexArray(0);
   if (const GLenum error = gl.GetError(); error != GL_NO_ERROR) {
-    return Error{Errc::kUnsupported,
-                 fmt::format("{} nodes and {} triangles do not fit: GL error 0x{:04X}",
-                             model.nodeCount(), model.triangleCount(), error)};
+    return Error{
+        Errc::kUnsupported,
+        fmt::format(
+            "the GPU does not have enough memory for {} nodes and {} triangles: GL error 0x{:04X}",
+            model.nodeCount(), model.triangleCount(), error)};
   }
   return r;
 }
@@ -128,8 +132,8 @@ ModelRenderer::~ModelRenderer() {
   for (GLuint buffer : {nodes_, cut_indices_, full_indices_}) gl_.DeleteBuffers(1, &buffer);
 }
 
-void ModelRenderer::useTexture(const FeatureView& texcoord, const TextureImage& image) {
-  texture_ = std::make_unique<Texture>(gl_, image);
+void ModelRenderer::useTexture(const lod::FeatureView& texcoord, const gl::TextureImage& image) {
+  texture_ = std::make_unique<gl::Texture>(gl_, image);
   texcoord_ = &texcoord;
   for (std::size_t k = 0; k < 2; ++k) {
     float low = texcoord.values[k], high = low;
@@ -145,7 +149,7 @@ void ModelRenderer::useTexture(const FeatureView& texcoord, const TextureImage& 
 Result<Ok> ModelRenderer::buildProgram() {
   const std::string begin = texture_ ? kTextured : kPlain;
   const auto program =
-      linkProgram(gl_, (begin + kVertexShader).c_str(), (begin + kFragmentShader).c_str());
+      gl::linkProgram(gl_, (begin + kVertexShader).c_str(), (begin + kFragmentShader).c_str());
   if (!program) return program.error();
   program_ = *program;
   clip_location_ = gl_.GetUniformLocation(program_, "clip_from_model");
@@ -176,7 +180,8 @@ ModelRenderer::Vertex ModelRenderer::vertexOf(std::uint32_t node) const {
   return v;
 }
 
-// Where a node is that has gone all but `share` of its way to its parent.
+// The vertex at the fraction `share` of the way from its parent to its own position: 0 at the
+// parent, 1 at its own.
 ModelRenderer::Vertex ModelRenderer::between(const Vertex& parent, const Vertex& own,
                                              float share) const {
   Vertex v{};
@@ -200,22 +205,24 @@ ModelRenderer::Vertex ModelRenderer::between(const Vertex& parent, const Vertex&
   return v;
 }
 
-// As it stands now. REQUIRES: the node has one; morphs_ and morphed_ go up to `node`.
+// The parent's current, possibly displaced vertex. REQUIRES: the node has a parent, and the
+// parent's vertex is in morphed_ if it is displaced.
 ModelRenderer::Vertex ModelRenderer::parentOf(std::uint32_t node) const {
   const std::uint32_t parent = model_.parentOf(node);
   const auto end = morphs_.begin() + static_cast<std::ptrdiff_t>(morphed_.size());
   const auto found =
       std::lower_bound(morphs_.begin(), end, parent,
-                       [](const Morph& morph, std::uint32_t n) { return morph.node < n; });
+                       [](const lod::Morph& morph, std::uint32_t n) { return morph.node < n; });
   if (found == end || found->node != parent) return vertexOf(parent);
   return morphed_[static_cast<std::size_t>(found - morphs_.begin())];
 }
 
-// Mapped as it is: parts of it, here and there, change, and nobody reads it meanwhile.
-void ModelRenderer::morph(std::span<const Morph> morphs) {
+// The buffer is mapped unsynchronised and its old contents are kept: only scattered vertices
+// change, and the GPU does not read them meanwhile.
+void ModelRenderer::morph(std::span<const lod::Morph> morphs) {
   if (morphs_.empty() && morphs.empty()) return;
   std::uint32_t first = ~std::uint32_t{0}, last = 0;
-  for (const std::span<const Morph> list : {std::span<const Morph>(morphs_), morphs}) {
+  for (const std::span<const lod::Morph> list : {std::span<const lod::Morph>(morphs_), morphs}) {
     if (list.empty()) continue;
     first = std::min(first, list.front().node);
     last = std::max(last, list.back().node);
@@ -226,17 +233,18 @@ void ModelRenderer::morph(std::span<const Morph> morphs) {
                          static_cast<GLsizeiptr>((last - first + 1) * sizeof(Vertex)),
                          GL_MAP_WRITE_BIT | GL_MAP_UNSYNCHRONIZED_BIT));
   if (!at) return;
-  for (const Morph& morph : morphs_) at[morph.node - first] = vertexOf(morph.node);
+  for (const lod::Morph& morph : morphs_) at[morph.node - first] = vertexOf(morph.node);
   morphs_.assign(morphs.begin(), morphs.end());
   morphed_.clear();
-  for (const Morph& morph : morphs_) {
+  for (const lod::Morph& morph : morphs_) {
     morphed_.push_back(between(parentOf(morph.node), vertexOf(morph.node), morph.own));
     at[morph.node - first] = morphed_.back();
   }
   gl_.UnmapBuffer(GL_ARRAY_BUFFER);
 }
 
-// Written where they stay. Where there is no memory for them, GL's error says so.
+// Writes the vertices directly into the mapped buffer. If there is not enough memory, make() finds
+// the GL error.
 void ModelRenderer::uploadNodes() {
   const auto nodes = static_cast<std::uint32_t>(model_.nodeCount());
   const auto bytes = static_cast<GLsizeiptr>(nodes * sizeof(Vertex));
@@ -284,7 +292,8 @@ void ModelRenderer::begin(int width, int height, const Camera& camera, const Ren
     gl_.Disable(GL_CULL_FACE);
   else
     gl_.Enable(GL_CULL_FACE);
-  // The picture's first row is its upper one, so y is turned over, and with it every triangle.
+  // The first row of the image is the upper one, so y is negated, which also reverses the winding
+  // order of triangles.
   clip_ = camera.clip_from_model;
   clip_.row(1) *= -1;
   style_ = style;
@@ -314,4 +323,4 @@ void ModelRenderer::draw(Source source, std::size_t first, std::size_t count) {
     triangles();
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::content

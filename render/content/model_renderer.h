@@ -1,8 +1,9 @@
-// ModelRenderer: a dendrogram's nodes on the GPU, and its triangles drawn at any level, whole or in
-// slices.
+// ModelRenderer: uploads the nodes of a dendrogram to the GPU and draws its triangles at any level,
+// at once or in slices.
 //
-// Lit per vertex by a light at the eye, which modulates the model's texture, its colours, or a
-// feature that is shown. OpenGL 3.3 core. Thread-bound to its context, which outlives it.
+// Lighting is per vertex, from a light close to the eye; it modulates the model's texture, its
+// colours or the feature shown as colours. OpenGL 3.3 core. Thread-bound to its context, which must
+// outlive it.
 #pragma once
 
 #include <array>
@@ -22,64 +23,65 @@
 #include "render/lod/dendrogram.h"
 #include "render/lod/geomorph.h"
 
-namespace merlin::render {
+namespace merlin::render::content {
 
 // Camera of one tile.
 struct Camera {
-  Eigen::Matrix4f clip_from_model;  // y up, OpenGL's clip space; y is turned over when drawn
+  Eigen::Matrix4f clip_from_model;  // OpenGL's clip space, y up; y is negated when drawn
   Eigen::Matrix3f eye_from_model;   // rotation only, for the light
 };
 
 class ModelRenderer {
  public:
-  // Uploads the nodes (20 bytes each) and the full resolution's indices, in the order in which they
-  // are to be drawn, which it does not keep; borrows the model. `show`: what is seen as colours.
-  // `texture`: the picture that the model's "texcoord" is of, seen where nothing else is shown and
-  // the model has such a feature of dimension 2.
-  // Errors: kUnsupported (a shader that does not compile, with the log; no memory on the GPU),
-  // those of coloursOf().
-  static Result<std::unique_ptr<ModelRenderer>> make(const GlApi& gl, const Dendrogram& model,
+  // Uploads the nodes (20 bytes each) and `full`, the indices of the full resolution in drawing
+  // order, which may be freed afterwards. The model must outlive the renderer. `show`: the feature
+  // shown as colours. `texture`: used if no feature is named and the model has a feature "texcoord"
+  // of dimension 2; its coordinates refer to this image. Errors: kUnsupported (a shader does not
+  // compile, with the log; not enough GPU memory), those of coloursOf().
+  static Result<std::unique_ptr<ModelRenderer>> make(const gl::GlApi& gl,
+                                                     const lod::Dendrogram& model,
                                                      std::span<const std::uint32_t> full,
                                                      const ShownFeature& show = {},
-                                                     const TextureImage* texture = nullptr);
+                                                     const gl::TextureImage* texture = nullptr);
 
   ~ModelRenderer();
   ModelRenderer(const ModelRenderer&) = delete;
   ModelRenderer& operator=(const ModelRenderer&) = delete;
 
-  // Node numbers, 3 a triangle, for kCut. Replaces the last ones.
+  // Uploads the triangles of kCut: node numbers, 3 per triangle. Replaces the previous cut.
   void uploadCut(std::span<const std::uint32_t> indices);
 
-  // Where nodes stand from now on; all others, at their own place. By rising number, as morphsAt()
-  // gives them. O(what was and what is on its way). REQUIRES: nothing drawn is still under way
-  // (finish(), or read back).
-  void morph(std::span<const Morph> morphs);
+  // Displaces these nodes, in ascending order of their numbers as morphsAt() returns them; all
+  // other nodes return to their own positions. O(nodes displaced before and now). REQUIRES: all
+  // drawing has finished (after finish() or a read-back).
+  void morph(std::span<const lod::Morph> morphs);
 
   enum class Source { kCut, kFull };
   std::size_t triangles(Source source) const noexcept {
     return source == Source::kCut ? cut_triangles_ : full_triangles_;
   }
 
-  // Clears the bound frame buffer's picture of width x height and sets up state and camera.
+  // Clears the bound render target (width x height pixels) and sets up the OpenGL state and the
+  // camera.
   void begin(int width, int height, const Camera& camera, const RenderStyle& style);
 
-  // Draws triangles first .. first + count - 1, after begin(). May be called in slices: a flush
-  // between slices bounds how long one takes.
+  // Draws triangles first .. first + count - 1; to be called after begin(). May be called several
+  // times, for slices; a flush() between slices bounds the time of each.
   void draw(Source source, std::size_t first, std::size_t count);
 
-  void flush() { gl_.Flush(); }    // lets what was drawn begin
-  void finish() { gl_.Finish(); }  // waits until it is done
+  void flush() { gl_.Flush(); }    // starts the execution of the commands so far
+  void finish() { gl_.Finish(); }  // waits until all of them are executed
 
  private:
   struct Vertex;
 
-  // A range of texture coordinates, by axis.
+  // The range of texture coordinates: u, v.
   struct Range {
     float low[2] = {0, 0}, size[2] = {1, 1};
   };
 
-  ModelRenderer(const GlApi& gl, const Dendrogram& model);
-  void useTexture(const FeatureView& texcoord, const TextureImage& image);
+  ModelRenderer(const gl::GlApi& gl, const lod::Dendrogram& model);
+  void useTexture(const lod::FeatureView& texcoord, const gl::TextureImage& image);
   Result<Ok> buildProgram();
   Vertex vertexOf(std::uint32_t node) const;
   Vertex parentOf(std::uint32_t node) const;
@@ -87,24 +89,24 @@ class ModelRenderer {
   void uploadNodes();
   void makeArray(GLuint* array, GLuint* indices);
 
-  const GlApi& gl_;
-  const Dendrogram& model_;
-  const FeatureView* normal_ = nullptr;
+  const gl::GlApi& gl_;
+  const lod::Dendrogram& model_;
+  const lod::FeatureView* normal_ = nullptr;
   ShownColours colours_;
-  const FeatureView* texcoord_ = nullptr;  // with texture_
+  const lod::FeatureView* texcoord_ = nullptr;  // set if texture_ is
   Range texcoords_;
-  std::unique_ptr<Texture> texture_;
+  std::unique_ptr<gl::Texture> texture_;
   GLuint program_ = 0, nodes_ = 0;
   Wires wires_;
-  // Style given to begin().
+  // The style passed to begin().
   RenderStyle style_;
   Eigen::Matrix4f clip_ = Eigen::Matrix4f::Identity();
   GLuint cut_array_ = 0, cut_indices_ = 0, full_array_ = 0, full_indices_ = 0;
   GLint clip_location_ = -1, eye_location_ = -1, colour_location_ = -1, range_location_ = -1;
-  // That stand elsewhere now, and where.
-  std::vector<Morph> morphs_;
+  // Nodes that are displaced now, and their displaced vertices.
+  std::vector<lod::Morph> morphs_;
   std::vector<Vertex> morphed_;
   std::size_t cut_triangles_ = 0, full_triangles_ = 0;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::content

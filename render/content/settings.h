@@ -4,29 +4,29 @@
 #include <array>
 #include <string>
 
-namespace merlin::render {
+namespace merlin::render::content {
 
 struct RenderStyle {
-  std::array<float, 3> colour{0.75F, 0.75F, 0.72F};  // of a model without vertex colours, 0..1
+  std::array<float, 3> colour{0.75F, 0.75F, 0.72F};  // RGB of a model without vertex colours, 0..1
   std::array<float, 3> background{0.06F, 0.07F, 0.09F};
-  float brightness = 1;          // multiplies colours before they are clipped; for dark scans
-  bool draw_back_faces = false;  // lit as fronts; costs 1.6 to 1.9 times the time
+  float brightness = 1;          // factor of all colours, before clipping; for dark scans
+  bool draw_back_faces = false;  // draws them too, with weak light; takes 1.6 to 1.9 times as long
   bool wireframe = false;
 };
 
-// Which of a model's features its colours show.
+// The feature of a model that its colours show.
 struct ShownFeature {
   std::string feature{};         // empty: the model's own colours
-  std::array<float, 2> range{};  // feature values at the two ends of the colour scale; equal: the
-                                 // model's own range
+  std::array<float, 2> range{};  // feature values at the two ends of the colour scale; if equal:
+                                 // 1st and 99th percentile of the model
 };
 
 // How a model is drawn.
 struct ModelSettings {
   ShownFeature show{};
-  bool view_dependent = true;  // triangles where the tiles look; else as many everywhere
-  double geomorph = 0.125;     // share of a cut's triangles that are on their way to the next
+  bool view_dependent = true;  // finer where tiles show the model closer; else uniform detail
+  double geomorph = 0.125;     // share of the triangles that morph to the next coarser level
   RenderStyle style{};
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::content

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace merlin::render {
+namespace merlin::render::content {
 namespace {
 
 using Rgb = std::array<float, 3>;  // 0..1
@@ -17,8 +17,8 @@ std::uint8_t quantise(float value) {
 
 float finite(float value) { return std::isfinite(value) ? value : 0; }
 
-// Matplotlib's viridis (CC0) at five places: as even to the eye as to the measure, and without red
-// beside green. 0..1.
+// The colour map viridis of Matplotlib (CC0), interpolated linearly between five of its colours:
+// perceptually uniform, and readable with red-green colour blindness. `share`: 0..1.
 Rgb scale(float share) {
   constexpr Rgb kStops[] = {{0.267F, 0.005F, 0.329F},
                             {0.230F, 0.322F, 0.546F},
@@ -34,7 +34,7 @@ Rgb scale(float share) {
   return colour;
 }
 
-// Colours that differ as much as they can: hues a golden angle apart.
+// Hues of successive labels are a golden angle apart, so that nearby labels differ clearly.
 Rgb colourOfLabel(float label) {
   const double turns = 0.61803398875 * std::fabs(std::round(static_cast<double>(label))) + 0.05;
   const auto hue = static_cast<float>(6 * std::fmod(turns, 1.0));
@@ -46,8 +46,9 @@ Rgb colourOfLabel(float label) {
   return colour;
 }
 
-// Finds the range of the values at the leaves, the nodes of the file's own triangles.
-void findRange(const Dendrogram& model, std::span<const float> values, ShownColours& shown) {
+// Sets the range to the 1st and 99th percentile of the values at the leaves, i.e. the vertices of
+// the full resolution.
+void findRange(const lod::Dendrogram& model, std::span<const float> values, ShownColours& shown) {
   std::vector<float> leaves;
   std::vector<bool> seen(model.nodeCount());
   for (const std::uint32_t node : model.arrays().triangles) {
@@ -66,18 +67,18 @@ void findRange(const Dendrogram& model, std::span<const float> values, ShownColo
   shown.high = percentile(99);
 }
 
-Error noSuchFeature(const Dendrogram& model, std::string_view feature) {
+Error noSuchFeature(const lod::Dendrogram& model, std::string_view feature) {
   std::vector<std::string> names;
-  for (const FeatureView& f : model.arrays().features) {
+  for (const lod::FeatureView& f : model.arrays().features) {
     if (f.dimension == 1 || f.dimension == 3) names.push_back(f.name);
   }
   return {Errc::kInvalidArgument,
-          fmt::format("no feature \"{}\" to show; {}", feature,
-                      names.empty() ? "the model has none"
-                                    : fmt::format("there are {}", fmt::join(names, ", ")))};
+          fmt::format("the model has no feature \"{}\" that can be shown; {}", feature,
+                      names.empty() ? "it has none of dimension 1 or 3"
+                                    : fmt::format("it has {}", fmt::join(names, ", ")))};
 }
 
-Rgb colourOf(const FeatureView& feature, std::size_t node, const ShownColours& shown) {
+Rgb colourOf(const lod::FeatureView& feature, std::size_t node, const ShownColours& shown) {
   const float* v = &feature.values[node * feature.dimension];
   if (feature.dimension == 3) {
     const Rgb rgb{finite(v[0]), finite(v[1]), finite(v[2])};
@@ -92,16 +93,16 @@ Rgb colourOf(const FeatureView& feature, std::size_t node, const ShownColours& s
 
 }  // namespace
 
-Result<Ok> checkShown(const Dendrogram& model, const ShownFeature& show) {
+Result<Ok> checkShown(const lod::Dendrogram& model, const ShownFeature& show) {
   if (show.feature.empty()) return Ok{};
-  const FeatureView* f = model.find(show.feature);
+  const lod::FeatureView* f = model.find(show.feature);
   if (!f || (f->dimension != 1 && f->dimension != 3)) return noSuchFeature(model, show.feature);
   return Ok{};
 }
 
-Result<ShownColours> coloursOf(const Dendrogram& model, const ShownFeature& show) {
+Result<ShownColours> coloursOf(const lod::Dendrogram& model, const ShownFeature& show) {
   const std::string& feature = show.feature;
-  const FeatureView* f = model.find(feature.empty() ? std::string_view("colour") : feature);
+  const lod::FeatureView* f = model.find(feature.empty() ? std::string_view("colour") : feature);
   const bool usable = f && (f->dimension == 3 || (f->dimension == 1 && !feature.empty()));
   ShownColours shown;
   if (!usable && feature.empty()) return shown;
@@ -118,4 +119,4 @@ Result<ShownColours> coloursOf(const Dendrogram& model, const ShownFeature& show
   return shown;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::content

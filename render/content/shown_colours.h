@@ -1,4 +1,4 @@
-// ShownColours: a model's feature as colours of its nodes, for people who look.
+// ShownColours: shows a feature of a model as colours of its nodes (pseudo-colours).
 #pragma once
 
 #include <array>
@@ -9,22 +9,24 @@
 #include "render/content/settings.h"
 #include "render/lod/dendrogram.h"
 
-namespace merlin::render {
+namespace merlin::render::content {
 
 struct ShownColours {
-  std::vector<std::array<std::uint8_t, 3>> rgb;  // of each node; empty: the model has no colours
-  float low = 0, high = 0;                       // of one value: where the scale begins and ends
+  std::vector<std::array<std::uint8_t, 3>> rgb;  // by node; empty: the model has no colours
+  float low = 0, high = 0;  // for a feature of dimension 1: the ends of the colour scale
 };
 
-// Whether coloursOf() can show it. Same errors.
-Result<Ok> checkShown(const Dendrogram& model, const ShownFeature& show);
+// Checks whether coloursOf() can show the feature; errors as there.
+Result<Ok> checkShown(const lod::Dendrogram& model, const ShownFeature& show);
 
 // By the feature's kind:
-//   dimension 3  red, green, blue, each 0..1; of "normal" -1..1
-//   dimension 1  dark blue, green, yellow (viridis) over the range that is told, or from the 1st to
-//                the 99th percentile of the finest vertices; "label": hues a golden angle apart
-// No feature: "colour", where there is one of dimension 3. O(nodes). Reentrant.
-// Errors: kInvalidArgument: no such feature, with those that there are; another dimension.
-Result<ShownColours> coloursOf(const Dendrogram& model, const ShownFeature& show);
+//   dimension 3  red, green, blue, each 0..1; for "normal" -1..1
+//   dimension 1  a scale of dark blue, green, yellow (viridis) over show.range, or, if its ends are
+//                equal, from the 1st to the 99th percentile of the vertices at full resolution; for
+//                "label": a hue for each label, successive ones a golden angle apart
+// If show.feature is empty: the feature "colour", if it has dimension 3, else no colours.
+// O(nodes). Reentrant. Errors: kInvalidArgument (no such feature, or not of dimension 1 or 3; the
+// message lists those that can be shown).
+Result<ShownColours> coloursOf(const lod::Dendrogram& model, const ShownFeature& show);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::content

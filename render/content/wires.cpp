@@ -2,7 +2,7 @@
 
 #include "render/gl/shader.h"
 
-namespace merlin::render {
+namespace merlin::render::content {
 namespace {
 
 constexpr const char* kVertexShader = R"(#version 330 core
@@ -20,7 +20,7 @@ void main() { pixel = vec4(colour, 1.0); }
 }  // namespace
 
 Result<Ok> Wires::build() {
-  const auto program = linkProgram(gl_, kVertexShader, kFragmentShader);
+  const auto program = gl::linkProgram(gl_, kVertexShader, kFragmentShader);
   if (!program) return program.error();
   program_ = *program;
   clip_location_ = gl_.GetUniformLocation(program_, "clip_from_model");
@@ -37,7 +37,7 @@ void Wires::draw(const Eigen::Matrix4f& clip_from_model, const RenderStyle& styl
   gl_.UseProgram(program_);
   gl_.UniformMatrix4fv(clip_location_, 1, GL_FALSE, clip_from_model.data());
   setColour(style.background);
-  // A little behind where they are, so that their own edges are seen.
+  // Faces are drawn slightly farther away, so that they do not hide their own edges.
   gl_.Enable(GL_POLYGON_OFFSET_FILL);
   gl_.PolygonOffset(1, 1);
   triangles();
@@ -50,4 +50,4 @@ void Wires::draw(const Eigen::Matrix4f& clip_from_model, const RenderStyle& styl
   gl_.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::content

@@ -1,4 +1,4 @@
-// Wires: triangles as their edges, in one colour, behind one another as faces would be.
+// Wires: draws triangles as wireframe in one colour, with hidden edges removed.
 #pragma once
 
 #include <array>
@@ -10,30 +10,31 @@
 #include "render/content/settings.h"
 #include "render/gl/gl_api.h"
 
-namespace merlin::render {
+namespace merlin::render::content {
 
-// Thread-bound to its context, which outlives it.
+// Thread-bound to its context, which must outlive it.
 class Wires {
  public:
-  explicit Wires(const GlApi& gl) : gl_(gl) {}
+  explicit Wires(const gl::GlApi& gl) : gl_(gl) {}
   ~Wires() { gl_.DeleteProgram(program_); }
   Wires(const Wires&) = delete;
   Wires& operator=(const Wires&) = delete;
 
-  // Errors: kUnsupported, with the compiler's log.
+  // Compiles the shaders; call once, before draw(). Errors: kUnsupported, with the compiler's log.
   Result<Ok> build();
 
-  // Calls `triangles` twice, which draws with the vertices' positions at location 0: as faces of
-  // the background's colour, then as edges of the model's.
+  // Calls `triangles` twice: to draw faces in the background colour, which hide what is behind
+  // them, then to draw edges in the model's colour. `triangles` issues the draw call; vertex
+  // positions are attribute 0.
   void draw(const Eigen::Matrix4f& clip_from_model, const RenderStyle& style,
             const std::function<void()>& triangles) const;
 
  private:
   void setColour(const std::array<float, 3>& rgb) const;
 
-  const GlApi& gl_;
+  const gl::GlApi& gl_;
   GLuint program_ = 0;
   GLint clip_location_ = -1, colour_location_ = -1;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::content

@@ -1,18 +1,22 @@
-// Port: the stage between the canvas and what an output is sent: warp, blend, colour.
+// Port (an interface): turns the canvas into the signal of one output: warp, blend and colour
+// correction.
 #pragma once
 
 #include "render/out/output.h"
 
-namespace merlin::render {
+namespace merlin::render::frame {
 
-// One output's. Thread-bound to the wall's thread.
+// One object per output. Thread-bound to the wall's thread.
 class Correction {
  public:
   virtual ~Correction() = default;
 
-  // The signal that looks as the canvas was meant to, on that output's screen. Its pixels stay
-  // valid until the next call.
-  virtual Signal apply(const Signal& canvas) = 0;
+  // Returns the signal that makes the output's screen look like the canvas. Its pixels stay valid
+  // until the next call.
+  virtual out::Signal apply(const out::Signal& canvas) = 0;
+
+  // Whether apply() would make another signal of the same canvas than it did last.
+  virtual bool hasChanged() const { return false; }
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

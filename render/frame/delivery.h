@@ -1,5 +1,5 @@
-// Delivery: the last stages of a frame: overlays on the canvas, each output's correction, and the
-// outputs.
+// Delivery: the last stages of a frame: draws overlays on the canvas, applies each output's
+// correction and hands the signals to the outputs.
 #pragma once
 
 #include <memory>
@@ -10,34 +10,43 @@
 #include "daemon/base/clock.h"
 #include "render/frame/correction.h"
 #include "render/frame/overlay.h"
+#include "render/frame/signal_watcher.h"
 #include "render/out/output_set.h"
 #include "render/tiles/tile_plan.h"
 
-namespace merlin::render {
+namespace merlin::render::frame {
 
 // Thread-bound to the wall's thread.
 class Delivery {
  public:
-  // All of these are borrowed. Overlays are drawn in this order. `corrections`: of each output, by
-  // its number; none, or fewer, where the signal is the canvas itself, which costs nothing.
-  Delivery(const TilePlan& plan, OutputSet& outputs, std::vector<Overlay*> overlays = {},
-           std::vector<std::unique_ptr<Correction>> corrections = {});
+  // Borrows `plan`, `outputs` and the overlays, which are drawn in this order. `corrections`: one
+  // per output, in the outputs' order. An output whose correction is null or missing is sent the
+  // canvas itself, without a copy. `watcher`: sees the signals that it asks for; may be null.
+  Delivery(const tiles::TilePlan& plan, out::OutputSet& outputs,
+           std::vector<Overlay*> overlays = {},
+           std::vector<std::unique_ptr<Correction>> corrections = {},
+           frame::SignalWatcher* watcher = nullptr);
 
-  // `canvas`: RGBA of the plan's frame, which is as it was when this returns. `deadline`: when the
-  // frame is due; none where nothing moves.
-  void show(std::span<std::uint8_t> canvas, const FrameInfo& info,
+  // Presents a frame to all outputs. `canvas`: RGBA of the plan's frame; overlays are erased again
+  // before this returns. `deadline`: when the frame is due; none while nothing moves.
+  void show(std::span<std::uint8_t> canvas, const out::FrameInfo& info,
             std::optional<Timestamp> deadline);
 
-  // Whether the same canvas would be shown differently now.
-  bool overlaysHaveChanged() const;
+  // True if show() at `now` would send an output another signal than it did last, to an output that
+  // takes a frame then, or if an output wants one (Output::wantsFrame()) or `watcher` wants to see
+  // a signal.
+  bool hasChanged(Timestamp now) const;
 
-  const OutputSet& outputs() const noexcept { return outputs_; }
+  const out::OutputSet& outputs() const noexcept { return outputs_; }
 
  private:
-  const TilePlan& plan_;
-  OutputSet& outputs_;
+  bool isWatched(std::size_t i) const { return watcher_ && watcher_->wants(i); }
+
+  const tiles::TilePlan& plan_;
+  out::OutputSet& outputs_;
   std::vector<Overlay*> overlays_;
   std::vector<std::unique_ptr<Correction>> corrections_;
+  frame::SignalWatcher* watcher_;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

@@ -1,4 +1,4 @@
-// DrawContexts: the OpenGL contexts that share a frame's tiles.
+// DrawContexts: the OpenGL contexts that draw a frame's tiles.
 #pragma once
 
 #include <memory>
@@ -9,18 +9,19 @@
 #include "render/gl/gl_context.h"
 #include "render/gl/settings.h"
 
-namespace merlin::render {
+namespace merlin::render::frame {
 
-// The context of the thread that made it and, where there is one, a second one on a thread of its
-// own. Thread-bound; shared by the renderers of all contents, of which the last one ends it.
+// A context on the thread that called make() and, optionally, a second one on its own thread (null
+// without). Thread-bound; shared by the renderers of all contents: the last one destroys it.
 struct DrawContexts {
-  std::unique_ptr<GlContext> own;
+  std::unique_ptr<gl::GlContext> own;
   std::unique_ptr<DrawThread> other;
 
-  // Current on this thread. Errors: kUnsupported (no GL of that kind, or not enough contexts).
-  static Result<std::shared_ptr<DrawContexts>> make(const GlSettings& settings);
+  // Creates the contexts; `own` is current on the calling thread. Errors: kUnsupported (no OpenGL
+  // of that kind, or not as many contexts as set).
+  static Result<std::shared_ptr<DrawContexts>> make(const gl::GlSettings& settings);
 
   std::string renderer() const;  // for a person
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

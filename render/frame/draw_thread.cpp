@@ -2,14 +2,14 @@
 
 #include <cassert>
 
-namespace merlin::render {
+namespace merlin::render::frame {
 
 Result<std::unique_ptr<DrawThread>> DrawThread::make() {
   std::unique_ptr<DrawThread> made(new DrawThread());
   made->thread_ = std::jthread([&thread = *made] { thread.loop(); });
   Result<Ok> ready = Ok{};
   made->run([&] {
-    auto context = makeGlContext(GlBackend::kEgl, EglDisplay::kDevice);
+    auto context = gl::makeGlContext(gl::GlBackend::kEgl, gl::EglDisplay::kDevice);
     if (context)
       made->context_ = *std::move(context);
     else
@@ -52,4 +52,4 @@ void DrawThread::loop() {
   }
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

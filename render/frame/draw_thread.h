@@ -1,4 +1,5 @@
-// DrawThread: a second thread with an OpenGL context of its own, that does what it is told.
+// DrawThread: a second thread with its own OpenGL context, which runs the work that its owner hands
+// it.
 #pragma once
 
 #include <condition_variable>
@@ -10,23 +11,24 @@
 #include "daemon/base/result.h"
 #include "render/gl/gl_context.h"
 
-namespace merlin::render {
+namespace merlin::render::frame {
 
-// One owner, on one thread. What is told to it runs with its context current.
+// Owned and called by one thread. The work runs with this thread's context current.
 class DrawThread {
  public:
-  // On another display than the first context: Mesa's software renderers draw one after the other
-  // on one. Errors: makeGlContext()'s.
+  // Creates the context on another EGL display than the first one: contexts of Mesa's software
+  // renderers on one display draw one after another. Errors: those of makeGlContext().
   static Result<std::unique_ptr<DrawThread>> make();
   ~DrawThread();
   DrawThread(const DrawThread&) = delete;
   DrawThread& operator=(const DrawThread&) = delete;
 
-  const GlContext& context() const noexcept { return *context_; }
+  const gl::GlContext& context() const noexcept { return *context_; }
 
-  // Begins `work`, which must not throw and outlive wait(). REQUIRES: nothing is under way.
+  // Starts `work`, which must not throw and must stay valid until wait() returns. REQUIRES: no work
+  // is in progress.
   void start(const std::function<void()>& work);
-  // Until it is done. What it wrote is seen afterwards.
+  // Blocks until the work is done. Its writes are visible to the caller afterwards.
   void wait();
   void run(const std::function<void()>& work) {
     start(work);
@@ -39,10 +41,10 @@ class DrawThread {
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  const std::function<void()>* work_ = nullptr;  // under way; guarded, as `ends_`
+  const std::function<void()>* work_ = nullptr;  // in progress; guarded, like `ends_`
   bool ends_ = false;
-  std::unique_ptr<GlContext> context_;  // made and destroyed on the thread
+  std::unique_ptr<gl::GlContext> context_;  // created and destroyed on `thread_`
   std::jthread thread_;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

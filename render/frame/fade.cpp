@@ -3,7 +3,7 @@
 #include <cassert>
 #include <utility>
 
-namespace merlin::render {
+namespace merlin::render::frame {
 
 std::span<std::uint8_t> Fade::next(std::span<const std::uint8_t> target) {
   assert(isOn());
@@ -13,7 +13,7 @@ std::span<std::uint8_t> Fade::next(std::span<const std::uint8_t> target) {
     left_ = 0;
     return shown_;
   }
-  // In 16 bits, so that a processor does many at a time.
+  // 16-bit arithmetic lets one vector instruction process many colour values.
   const auto share = static_cast<std::int16_t>(256 / left);
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     const auto way = static_cast<std::int16_t>(target[i] - shown_[i]);
@@ -23,4 +23,4 @@ std::span<std::uint8_t> Fade::next(std::span<const std::uint8_t> target) {
   return shown_;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

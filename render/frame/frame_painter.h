@@ -1,4 +1,5 @@
-// Port: who draws a content's frames. Implemented by FrameRenderer (OpenGL) and by a fake in tests.
+// Port (an interface): draws a content's frames. Implemented by FrameRenderer (OpenGL) and by a
+// fake in tests.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +10,14 @@
 #include "daemon/base/clock.h"
 #include "render/frame/frame_step.h"
 
-namespace merlin::render {
+namespace merlin::render::frame {
 
 struct DrawTimes {
-  Duration drawing{};     // choosing, uploading, drawing; where the operator's view was coarser, an
-                          // estimate of what it would have been
+  // Time to choose detail, upload and draw. If the operator's view was coarser (`gave_way`), it
+  // includes an estimate of that view's time at the full step.
+  Duration drawing{};
   Duration fixed{};       // clearing and read-back
-  bool gave_way = false;  // the operator's view was coarser, for want of time
+  bool gave_way = false;  // the operator's view was drawn coarser, for lack of time
 };
 
 // Thread-bound to the wall's thread.
@@ -25,33 +27,34 @@ class FramePainter {
 
   struct Request {
     Eigen::Isometry3f T_eye_content;
-    std::size_t step = 0;  // of the content's detail axis
+    std::size_t step = 0;  // on the content's detail axis; 0 is the finest
     Timestamp until = Timestamp::max();
     double cost_exponent = 1;  // drawing time grows with a step's cost to this power
   };
-  // Draws the whole frame, if possible by `until`. The wall's tiles come first; the operator's view
-  // gets coarser where they take longer than they used to.
+  // Draws the whole frame, if possible before `until`. The wall's tiles are drawn first; the
+  // operator's view is drawn coarser if the remaining time is too short for it.
   virtual DrawTimes draw(const Request& request) = 0;
 
-  // A still frame in slices: beginRefining() once, then refine() until it returns true: the frame
-  // is whole and pixels() shows it. refine() draws until about `until`, at least one slice if there
-  // is time for one; a slice takes a few milliseconds. draw() in between abandons it.
+  // Draws a frame of a still scene in slices of a few milliseconds: call beginRefining() once, then
+  // refine() until it returns true; then the frame is complete and pixels() shows it. refine()
+  // draws until about `until`: at least one slice, unless the time is too short for one. A draw()
+  // in between abandons the refined frame.
   virtual void beginRefining(const Eigen::Isometry3f& T_eye_content, std::size_t step) = 0;
   virtual bool refine(Timestamp until) = 0;
 
-  // From now on draw() draws tiles at 1/divisor of their size each way, and upscales them. What is
-  // refined has full size. 1 at first. REQUIRES: divisor >= 1.
+  // From now on draw() draws tiles at 1/divisor of their width and height and upscales them.
+  // Refined frames keep full size. The divisor is 1 initially. REQUIRES: divisor >= 1.
   virtual void setSizeDivisor(int divisor) = 0;
 
-  // Whether any tile of the wall may show any of the content.
+  // Whether any tile of the wall may show any part of the content.
   virtual bool sees(const Eigen::Isometry3f& T_eye_content) const = 0;
 
   // Steps of the last draw() or refine(), in order.
   virtual std::span<const FrameStep> steps() const noexcept = 0;
 
-  // The canvas: RGBA, rows from top to bottom, of the plan's size. Overlays drawn on it are to be
-  // taken out again.
+  // The canvas: RGBA, rows from top to bottom, of the size of the plan's frame. Whoever draws
+  // overlays on it must erase them again.
   virtual std::span<std::uint8_t> pixels() noexcept = 0;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

@@ -4,25 +4,25 @@
 #include <cmath>
 #include <utility>
 
-namespace merlin::render {
+namespace merlin::render::frame {
 namespace {
 
-// The step that is drawn once before the first frame: so many times the least useful cost.
+// warmUp() draws the finest step whose cost is at most this many times leastUseful().
 constexpr std::size_t kWarmUp = 32;
-// Weight of errors in the operator's view: it shows where things are, the wall what they look like.
+// Weight of errors in the operator's view: it shows positions, while the wall shows details.
 constexpr float kOperatorWeight = 0.1F;
 
 }  // namespace
 
 Result<std::unique_ptr<FrameRenderer>> FrameRenderer::make(
-    std::unique_ptr<Content> content, const TilePlan& plan,
+    std::unique_ptr<content::Content> content, const tiles::TilePlan& plan,
     std::shared_ptr<const DrawContexts> contexts, const Clock& clock) {
   std::unique_ptr<FrameRenderer> made(
       new FrameRenderer(std::move(content), plan, std::move(contexts), clock));
-  const auto painterIn = [&](const GlContext& context) {
+  const auto painterIn = [&](const gl::GlContext& context) {
     return TilePainter::make(context.gl(), *made->content_, plan, clock);
   };
-  // At once, each on its thread.
+  // Both painters are created at the same time, each on the thread of its context.
   DrawThread* const other = made->contexts_->other.get();
   Result<std::unique_ptr<TilePainter>> others = std::unique_ptr<TilePainter>();
   const std::function<void()> makeOthers = [&] { others = painterIn(other->context()); };
@@ -37,7 +37,7 @@ Result<std::unique_ptr<FrameRenderer>> FrameRenderer::make(
   return made;
 }
 
-FrameRenderer::FrameRenderer(std::unique_ptr<Content> content, const TilePlan& plan,
+FrameRenderer::FrameRenderer(std::unique_ptr<content::Content> content, const tiles::TilePlan& plan,
                              std::shared_ptr<const DrawContexts> contexts, const Clock& clock)
     : content_(std::move(content)),
       plan_(plan),
@@ -53,25 +53,27 @@ FrameRenderer::FrameRenderer(std::unique_ptr<Content> content, const TilePlan& p
   wall_first_.insert(wall_first_.end(), operators_.begin(), operators_.end());
 }
 
-// Each context's part goes on the thread of that context.
+// A TilePainter must be destroyed on the thread of its context.
 FrameRenderer::~FrameRenderer() {
   if (other_) contexts_->other->run([this] { other_.reset(); });
 }
 
-ContentView FrameRenderer::viewOf(std::size_t tile, const Eigen::Isometry3f& T_eye_content) const {
-  const Tile& t = plan_.tiles[tile];
-  const Eigen::Matrix4f view =
-      isOperators(tile)
-          ? operatorView(t.projection, T_eye_content.translation(), content_->bounds().radius_m)
-          : t.view;
-  // The light comes from the eye, not from the tile, so that a surface is as bright on either side
-  // of a seam.
-  return {tile, t.projection * view * T_eye_content.matrix(), T_eye_content.linear(), t.width,
+content::ContentView FrameRenderer::viewOf(std::size_t tile,
+                                           const Eigen::Isometry3f& T_eye_content) const {
+  const tiles::Tile& t = plan_.tiles[tile];
+  const tiles::Look look =
+      tiles::lookOf(t, T_eye_content.translation(), content_->bounds().radius_m);
+  // The light is at the eye for every tile that follows the wall, so that a surface is equally
+  // bright on both sides of a seam. A camera of its own has its light at the camera.
+  Eigen::Matrix3f eye_from_content = T_eye_content.linear();
+  if (t.camera != tiles::TileCamera::kWall)
+    eye_from_content = look.view.topLeftCorner<3, 3>() * eye_from_content;
+  return {tile, look.projection * look.view * T_eye_content.matrix(), eye_from_content, t.width,
           isOperators(tile) ? kOperatorWeight : 1};
 }
 
 bool FrameRenderer::sees(const Eigen::Isometry3f& T_eye_content) const {
-  return seesBox(plan_, T_eye_content.matrix() * content_->bounds().T_content_box);
+  return tiles::seesBox(plan_, T_eye_content.matrix() * content_->bounds().T_content_box);
 }
 
 void FrameRenderer::choose(const Eigen::Isometry3f& T_eye_content, std::size_t step,
@@ -97,7 +99,8 @@ void FrameRenderer::takeSteps() {
   }
 }
 
-// By the last frame's times: a thread that takes the longest tile last keeps the other waiting.
+// Sorts by the last frame's times: if a thread took the slowest tile last, the other thread would
+// wait for it. The operator's tiles stay last.
 void FrameRenderer::sortLongestFirst() {
   std::vector<Duration> took(all_.size());
   for (const FrameStep& step : steps_) {
@@ -131,7 +134,7 @@ DrawTimes FrameRenderer::draw(const Request& asked) {
     times.drawing = wall + std::chrono::duration_cast<Duration>(wall * operator_share_);
   else
     learnOperatorShare(wall, drawn.operators);
-  // Two threads' times add up to more than the frame took.
+  // The times of two threads add up to more than the elapsed time, so they are scaled down to it.
   const double sum = toSeconds(wall + drawn.operators + times.fixed);
   const double share = other_ && sum > 0 ? std::min(1.0, toSeconds(elapsed) / sum) : 1;
   times.drawing = chosen + fromSeconds(share * toSeconds(times.drawing));
@@ -146,7 +149,7 @@ DrawTimes FrameRenderer::draw(const Request& asked) {
   return times;
 }
 
-// The wall's tiles first.
+// Draws the wall's tiles first, then the operator's.
 FrameRenderer::TileTimes FrameRenderer::drawTiles(const Request& request) {
   queue_.begin(wall_first_);
   TileTimes each[2];
@@ -169,7 +172,7 @@ void FrameRenderer::drawFrom(TilePainter& painter, const Request& request, TileT
     const Duration before = drawn.times.drawing;
     const bool operators = isOperators(tile);
     if (operators && operators_.size() < all_.size()) {
-      // As if each of the wall's tiles took what those of this thread took.
+      // Extrapolates the time of all wall tiles from those that this thread has drawn.
       const Duration wall = before * static_cast<std::int64_t>(all_.size() - operators_.size()) /
                             static_cast<std::int64_t>(std::max<std::size_t>(drawn.wall_tiles, 1));
       if (operatorStep(request, wall, request.until - clock_.now()) != request.step) {
@@ -185,7 +188,7 @@ void FrameRenderer::drawFrom(TilePainter& painter, const Request& request, TileT
   }
 }
 
-// Coarser, in what time is left.
+// Draws the operator's views at a coarser step, in the time that is left.
 void FrameRenderer::drawOperators(const Eigen::Isometry3f& T_eye_content, std::size_t step,
                                   DrawTimes& times) {
   choose(T_eye_content, step, operators_);
@@ -195,13 +198,13 @@ void FrameRenderer::drawOperators(const Eigen::Isometry3f& T_eye_content, std::s
   times.fixed += theirs.fixed;
 }
 
-// The step at which the operator's views are drawn in the time that is left: at the wall's own step
-// they cost operator_share_ of what the wall's tiles cost in this frame.
+// Returns the step at which the operator's views can be drawn within `left`. At the wall's step
+// they would take operator_share_ times the wall tiles' time in this frame.
 std::size_t FrameRenderer::operatorStep(const Request& request, Duration wall,
                                         Duration left) const {
   const double share = toSeconds(left) / std::max(operator_share_ * toSeconds(wall), 1e-9);
   if (share >= 1) return request.step;
-  const DetailAxis& detail = content_->detail();
+  const content::DetailAxis& detail = content_->detail();
   const double cost = std::pow(std::max(share, 0.0), 1 / request.cost_exponent) *
                       static_cast<double>(detail.costOf(request.step));
   return std::max(request.step, detail.stepWithin(std::max(static_cast<std::size_t>(cost),
@@ -215,9 +218,9 @@ void FrameRenderer::learnOperatorShare(Duration wall, Duration operators) {
 }
 
 void FrameRenderer::warmUp(const Eigen::Isometry3f& T_eye_content) {
-  const DetailAxis& detail = content_->detail();
+  const content::DetailAxis& detail = content_->detail();
   const std::size_t step = detail.stepWithin(kWarmUp * detail.leastUseful());
-  for (const bool by_other : {false, true}) {  // each draws all of it
+  for (const bool by_other : {false, true}) {  // each painter draws all tiles
     if (by_other && !other_) break;
     choose(T_eye_content, step, all_);
     const std::function<void()> work = [&] {
@@ -243,7 +246,7 @@ void FrameRenderer::beginRefining(const Eigen::Isometry3f& T_eye_content, std::s
   refining_begins_ = true;
 }
 
-// The steps of beginning to refine count for the first slice.
+// The steps_ that beginRefining() recorded are kept with those of the first slice.
 bool FrameRenderer::refine(Timestamp until) {
   if (!refining_begins_) steps_.clear();
   const Timestamp first = clock_.now();
@@ -259,4 +262,4 @@ bool FrameRenderer::refine(Timestamp until) {
   return whole;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

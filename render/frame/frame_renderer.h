@@ -1,5 +1,5 @@
-// FrameRenderer: a content's frames, drawn tile by tile: at once at some detail, or finer in
-// slices; by one OpenGL context, or by two on threads of their own, with the same pixels.
+// FrameRenderer: draws a content's frames tile by tile: whole frames at a given detail, or finer
+// ones in slices. It uses one OpenGL context, or two on separate threads; the pixels are the same.
 #pragma once
 
 #include <functional>
@@ -17,21 +17,22 @@
 #include "render/frame/tile_painter.h"
 #include "render/tiles/tile_plan.h"
 
-namespace merlin::render {
+namespace merlin::render::frame {
 
-// Thread-bound to the thread of the contexts' own one.
+// Thread-bound to the thread of `contexts->own`.
 class FrameRenderer final : public FramePainter {
  public:
-  // Attaches the content to the contexts. `plan` and `clock` outlive this. Errors: TilePainter's.
-  static Result<std::unique_ptr<FrameRenderer>> make(std::unique_ptr<Content> content,
-                                                     const TilePlan& plan,
+  // Attaches the content to the contexts. `plan` and `clock` must outlive this. Errors: those of
+  // TilePainter::make().
+  static Result<std::unique_ptr<FrameRenderer>> make(std::unique_ptr<content::Content> content,
+                                                     const tiles::TilePlan& plan,
                                                      std::shared_ptr<const DrawContexts> contexts,
                                                      const Clock& clock);
   ~FrameRenderer() override;
   FrameRenderer(const FrameRenderer&) = delete;
   FrameRenderer& operator=(const FrameRenderer&) = delete;
 
-  // Draws every state that a frame uses once, so that no shader is compiled in a frame.
+  // Draws once in each way that frames are drawn, so that no shader is compiled during a frame.
   void warmUp(const Eigen::Isometry3f& T_eye_content);
 
   DrawTimes draw(const Request& request) override;
@@ -42,24 +43,26 @@ class FrameRenderer final : public FramePainter {
   std::span<const FrameStep> steps() const noexcept override { return steps_; }
   std::span<std::uint8_t> pixels() noexcept override { return pixels_; }
 
-  const Content& content() const noexcept { return *content_; }
+  const content::Content& content() const noexcept { return *content_; }
   const std::shared_ptr<const DrawContexts>& contexts() const noexcept { return contexts_; }
 
  private:
-  FrameRenderer(std::unique_ptr<Content> content, const TilePlan& plan,
+  FrameRenderer(std::unique_ptr<content::Content> content, const tiles::TilePlan& plan,
                 std::shared_ptr<const DrawContexts> contexts, const Clock& clock);
-  ContentView viewOf(std::size_t tile, const Eigen::Isometry3f& T_eye_content) const;
-  bool isOperators(std::size_t tile) const { return plan_.tiles[tile].kind == TileKind::kOperator; }
-  // Some of a frame's tiles, drawn. Times are of all threads together.
+  content::ContentView viewOf(std::size_t tile, const Eigen::Isometry3f& T_eye_content) const;
+  bool isOperators(std::size_t tile) const {
+    return plan_.tiles[tile].kind == tiles::TileKind::kOperator;
+  }
+  // What drawing some of a frame's tiles took; times are sums over all threads.
   struct TileTimes {
     DrawTimes times;
-    Duration operators{};  // of times.drawing: the operator's views
+    Duration operators{};  // part of times.drawing: the operator's views
     std::size_t wall_tiles = 0;
-    bool gave_way = false;  // an operator's view was left out, for want of time
+    bool gave_way = false;  // an operator's view was skipped, for lack of time
   };
   void choose(const Eigen::Isometry3f& T_eye_content, std::size_t step,
               std::span<const std::size_t> tiles);
-  // work(painter, i) for each context's painter, number i, on its thread.
+  // Calls work(painter, i) for the painter of each context i, on that context's thread.
   void onEach(const std::function<void(TilePainter&, std::size_t)>& work);
   TileTimes drawTiles(const Request& request);
   void drawFrom(TilePainter& painter, const Request& request, TileTimes& drawn);
@@ -70,21 +73,22 @@ class FrameRenderer final : public FramePainter {
   std::size_t operatorStep(const Request& request, Duration wall, Duration left) const;
   void learnOperatorShare(Duration wall, Duration operators);
 
-  std::unique_ptr<Content> content_;
-  const TilePlan& plan_;
+  std::unique_ptr<content::Content> content_;
+  const tiles::TilePlan& plan_;
   const Clock& clock_;
   std::shared_ptr<const DrawContexts> contexts_;
-  std::unique_ptr<TilePainter> painter_, other_;  // other_: of the other thread; may be none
-  std::vector<std::size_t> all_, operators_;      // numbers of tiles
-  std::vector<std::size_t> wall_first_;           // all of them, in the order of drawing
+  std::unique_ptr<TilePainter> painter_, other_;  // other_: on the other thread; may be null
+  std::vector<std::size_t> all_, operators_;      // indices of tiles
+  std::vector<std::size_t> wall_first_;           // indices of all tiles, in the order of drawing
   TileQueue queue_;
-  std::vector<ContentView> views_;
+  std::vector<content::ContentView> views_;
   std::vector<FrameStep> steps_;                       // of the last draw() or refine()
-  std::vector<std::uint8_t> pixels_, refined_pixels_;  // shown; refined, until that is whole
+  std::vector<std::uint8_t> pixels_, refined_pixels_;  // shown; being refined
   int size_divisor_ = 1;
-  // The operator's views' drawing time as a share of the wall tiles', at the same step; smoothed.
+  // Ratio of the operator's views' drawing time to the wall tiles', at the same step; low-pass
+  // filtered.
   double operator_share_ = 0.3;
-  bool refining_begins_ = false;  // what is refined was not uploaded yet
+  bool refining_begins_ = false;  // beginRefining() was called and nothing was uploaded yet
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

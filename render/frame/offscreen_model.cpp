@@ -5,7 +5,7 @@
 
 #include "render/content/model_content.h"
 
-namespace merlin::render {
+namespace merlin::render::frame {
 
 Eigen::Isometry3f ModelView::T_eye_model() const {
   constexpr float kRadian = std::numbers::pi_v<float> / 180;
@@ -15,22 +15,22 @@ Eigen::Isometry3f ModelView::T_eye_model() const {
   return view;
 }
 
-Result<OffscreenModel> OffscreenModel::make(const Dendrogram& model, const ModelView& view,
+Result<OffscreenModel> OffscreenModel::make(const lod::Dendrogram& model, const ModelView& view,
                                             const Clock& clock) {
-  TilesSettings tiles;
+  tiles::TilesSettings tiles;
   tiles.tile_width = tiles.frame_width = view.width;
   tiles.tile_height = tiles.frame_height = view.height;
-  tiles.tiles = {{"model", TileKind::kOperator, 0, 0, 0}};
-  auto plan = planTiles(tiles);
+  tiles.tiles = {{"model", tiles::TileKind::kOperator, 0, 0, 0}};
+  auto plan = tiles::planTiles(tiles);
   if (!plan) return plan.error();
   OffscreenModel made(view);
-  made.plan_ = std::make_unique<const TilePlan>(*std::move(plan));
-  ModelSettings settings = view.model;
+  made.plan_ = std::make_unique<const tiles::TilePlan>(*std::move(plan));
+  content::ModelSettings settings = view.model;
   settings.view_dependent = false;
   settings.geomorph = 0;
   auto contexts = DrawContexts::make({view.backend, 1, 0});
   if (!contexts) return contexts.error();
-  auto content = ModelContent::make(model, settings, 1.0);
+  auto content = content::ModelContent::make(model, settings, 1.0);
   if (!content) return content.error();
   auto renderer =
       FrameRenderer::make(*std::move(content), *made.plan_, *std::move(contexts), clock);
@@ -39,10 +39,10 @@ Result<OffscreenModel> OffscreenModel::make(const Dendrogram& model, const Model
   return made;
 }
 
-Image OffscreenModel::draw(std::size_t level) {
+image::Image OffscreenModel::draw(std::size_t level) {
   renderer_->draw({.T_eye_content = view_.T_eye_model(), .step = level});
   const auto pixels = renderer_->pixels();
   return {view_.width, view_.height, {pixels.begin(), pixels.end()}};
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

@@ -1,4 +1,4 @@
-// OffscreenModel: images of a model at any level, without a wall or a window.
+// OffscreenModel: renders images of a model at any level, without a wall or a window.
 #pragma once
 
 #include <memory>
@@ -13,36 +13,37 @@
 #include "render/image/image.h"
 #include "render/lod/dendrogram.h"
 
-namespace merlin::render {
+namespace merlin::render::frame {
 
-// From where the model is seen, and how it is drawn.
+// The direction from which the model is seen, and how it is drawn.
 struct ModelView {
   int width = 640, height = 480;  // of the image [px]
-  double yaw_deg = 30;            // the model is turned about the vertical axis,
-  double pitch_deg = 0;           // and before that about the horizontal one
-  GlBackend backend = GlBackend::kEgl;
-  ModelSettings model{};
+  double yaw_deg = 30;            // rotation of the model about the vertical axis,
+  double pitch_deg = 0;           // rotation about the horizontal axis, before the yaw
+  gl::GlBackend backend = gl::GlBackend::kEgl;
+  content::ModelSettings model{};
 
   Eigen::Isometry3f T_eye_model() const;
 };
 
-// Thread-bound; one at a time, since each has an OpenGL context of its own.
+// Thread-bound. Only one may exist at a time, since each has its own OpenGL context.
 class OffscreenModel {
  public:
-  // Model and clock are borrowed. The model's bounding sphere fills the image; it is drawn at a
-  // level as it is: neither view-dependent nor on its way to another level. Errors: kUnsupported
-  // (no OpenGL of that kind), ModelContent::make()'s. REQUIRES: prepareSoftwareGl() was called.
-  static Result<OffscreenModel> make(const Dendrogram& model, const ModelView& view,
+  // Borrows `model` and `clock`. The model's bounding sphere fills the image. Levels are drawn as
+  // they are: not view-dependent, and without geomorphing to another level. Errors: kUnsupported
+  // (no OpenGL of that kind), those of ModelContent::make(). REQUIRES: prepareSoftwareGl() was
+  // called.
+  static Result<OffscreenModel> make(const lod::Dendrogram& model, const ModelView& view,
                                      const Clock& clock);
 
-  Image draw(std::size_t level);
+  image::Image draw(std::size_t level);
 
  private:
   explicit OffscreenModel(const ModelView& view) : view_(view) {}
 
   ModelView view_;
-  std::unique_ptr<const TilePlan> plan_;  // the renderer keeps its address
+  std::unique_ptr<const tiles::TilePlan> plan_;  // the renderer keeps its address
   std::unique_ptr<FrameRenderer> renderer_;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

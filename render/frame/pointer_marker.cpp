@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-namespace merlin::render {
+namespace merlin::render::frame {
 namespace {
 
-// Seen from across a hall, on a bright model as on a dark background.
+// Visible from across a hall, both on a bright model and on a dark background.
 constexpr int kRadius_px = 9, kRim_px = 3;
 constexpr std::uint8_t kDisc[3] = {255, 120, 0}, kRim[3] = {20, 20, 20};
 
-// In the tile's own pixels, from its upper left corner; also beyond its edges.
-std::optional<Eigen::Vector2i> pixelIn(const Tile& tile, const Eigen::Vector3f& at_eye_m) {
+// The point's pixel, counted from the tile's upper left corner; it may lie beyond the tile's edges.
+std::optional<Eigen::Vector2i> pixelIn(const tiles::Tile& tile, const Eigen::Vector3f& at_eye_m) {
   const Eigen::Vector4f clip = tile.projection * tile.view * at_eye_m.homogeneous();
-  if (clip.w() <= 0) return std::nullopt;  // behind
+  if (clip.w() <= 0) return std::nullopt;  // behind the eye
   const Eigen::Vector2f ndc = clip.head<2>() / clip.w();
   if (ndc.cwiseAbs().maxCoeff() > 2) return std::nullopt;
   return Eigen::Vector2i(
@@ -21,20 +21,20 @@ std::optional<Eigen::Vector2i> pixelIn(const Tile& tile, const Eigen::Vector3f& 
       static_cast<int>(std::floor((1 - ndc.y()) / 2 * static_cast<float>(tile.height))));
 }
 
-bool within(const Tile& tile, const Eigen::Vector2i& p) {
+bool within(const tiles::Tile& tile, const Eigen::Vector2i& p) {
   return p.x() >= 0 && p.y() >= 0 && p.x() < tile.width && p.y() < tile.height;
 }
 
 }  // namespace
 
-PointerMarker::PointerMarker(const TilePlan& plan) : plan_(plan) {
+PointerMarker::PointerMarker(const tiles::TilePlan& plan) : plan_(plan) {
   constexpr std::size_t kSide = 2 * kRadius_px + 1;
   covered_.reserve(plan.tiles.size() * kSide * kSide);
 }
 
 std::optional<Eigen::Vector2i> PointerMarker::pixelOf(const Eigen::Vector3f& at_eye_m) const {
-  for (const Tile& tile : plan_.tiles) {
-    if (tile.kind != TileKind::kWall) continue;
+  for (const tiles::Tile& tile : plan_.tiles) {
+    if (!tile.followsWall()) continue;
     const auto p = pixelIn(tile, at_eye_m);
     if (p && within(tile, *p)) return Eigen::Vector2i(tile.x, tile.y) + *p;
   }
@@ -44,12 +44,12 @@ std::optional<Eigen::Vector2i> PointerMarker::pixelOf(const Eigen::Vector3f& at_
 void PointerMarker::draw(std::span<std::uint8_t> canvas) {
   drawn_ = at_eye_m_ ? pixelOf(*at_eye_m_) : std::nullopt;
   if (!drawn_) return;
-  for (const Tile& tile : plan_.tiles) {
-    if (tile.kind == TileKind::kWall) drawIn(tile, *at_eye_m_, canvas);
+  for (const tiles::Tile& tile : plan_.tiles) {
+    if (!tile.isFitted()) drawIn(tile, *at_eye_m_, canvas);
   }
 }
 
-void PointerMarker::drawIn(const Tile& tile, const Eigen::Vector3f& at_eye_m,
+void PointerMarker::drawIn(const tiles::Tile& tile, const Eigen::Vector3f& at_eye_m,
                            std::span<std::uint8_t> pixels) {
   const auto middle = pixelIn(tile, at_eye_m);
   if (!middle) return;
@@ -77,4 +77,4 @@ bool PointerMarker::hasChanged() const {
   return (at_eye_m_ ? pixelOf(*at_eye_m_) : std::nullopt) != drawn_;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

@@ -1,15 +1,15 @@
-// Settings of how frames are drawn.
+// Settings of drawing frames.
 #pragma once
 
 #include "render/content/settings.h"
 #include "render/gl/settings.h"
 
-namespace merlin::render {
+namespace merlin::render::frame {
 
 struct RenderSettings {
-  GlSettings gl{};
-  ModelSettings model{};
-  int fade_frames = 3;  // in which a finer frame of what is still replaces a coarser one
+  gl::GlSettings gl{};
+  content::ModelSettings model{};
+  int fade_frames = 3;  // duration of the fade to a finer frame of a still scene
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <utility>
 
-namespace merlin::render {
+namespace merlin::render::frame {
 namespace {
 
 struct Size {
   int width, height;
 };
 
-// Repeats each pixel of `from` `times` x `times` times. Where `to` is no multiple, the last row and
-// column fill what is left.
+// Upscales by repeating each pixel of `from` times x times times. If the target's size is not a
+// multiple of `times`, the last row and column fill the remainder.
 void upscale(std::span<const std::uint8_t> from, Size size, int times, std::uint8_t* to,
              Size upscaled, int stride_px) {
   for (int y = 0; y < upscaled.height; ++y) {
@@ -26,15 +26,17 @@ void upscale(std::span<const std::uint8_t> from, Size size, int times, std::uint
 
 }  // namespace
 
-Result<std::unique_ptr<TilePainter>> TilePainter::make(const GlApi& gl, const Content& content,
-                                                       const TilePlan& plan, const Clock& clock) {
+Result<std::unique_ptr<TilePainter>> TilePainter::make(const gl::GlApi& gl,
+                                                       const content::Content& content,
+                                                       const tiles::TilePlan& plan,
+                                                       const Clock& clock) {
   std::unique_ptr<TilePainter> painter(new TilePainter(gl, plan, clock));
   auto renderer = content.attach(gl);
   if (!renderer) return renderer.error();
   painter->renderer_ = *std::move(renderer);
   painter->targets_.reserve(plan.tiles.size());
-  for (const Tile& tile : plan.tiles) {
-    auto target = RenderTarget::make(gl, tile.width, tile.height);
+  for (const tiles::Tile& tile : plan.tiles) {
+    auto target = gl::RenderTarget::make(gl, tile.width, tile.height);
     if (!target) return target.error();
     painter->targets_.push_back(*std::move(target));
   }
@@ -55,13 +57,13 @@ Timestamp TilePainter::stepDone(FrameStep::Kind kind, std::size_t tile, Timestam
 }
 
 void TilePainter::beginTile(std::size_t tile, int divisor) {
-  const Tile& t = plan_.tiles[tile];
+  const tiles::Tile& t = plan_.tiles[tile];
   targets_[tile].bind();
   renderer_->beginView(tile, t.width / divisor, t.height / divisor);
 }
 
 void TilePainter::readTile(std::size_t tile, int divisor, std::span<std::uint8_t> canvas) {
-  const Tile& t = plan_.tiles[tile];
+  const tiles::Tile& t = plan_.tiles[tile];
   const auto at =
       static_cast<std::size_t>(4) * static_cast<std::size_t>(t.y * plan_.frame_width + t.x);
   if (divisor == 1) return targets_[tile].read(canvas.data() + at, plan_.frame_width);
@@ -78,7 +80,7 @@ void TilePainter::draw(std::size_t tile, int divisor, std::span<std::uint8_t> ca
   const Timestamp began = clock_.now();
   beginTile(tile, divisor);
   const Timestamp cleared = clock_.now();
-  DrawProgress progress;
+  content::DrawProgress progress;
   for (bool whole = false; !whole;) {
     whole = renderer_->drawSlice(tile, progress);
     gl_.Flush();
@@ -110,8 +112,8 @@ void TilePainter::refine(TileQueue& queue, std::span<std::uint8_t> canvas, Times
     const Timestamp then = std::exchange(now, clock_.now());
     slice_time_ = std::max<Duration>(now - then, slice_time_ * 9 / 10);
   }
-  // Where slices take longer than a period has, the figure fades until one is tried again.
+  // If the time was too short even for one slice, the estimate decays until a slice is tried again.
   if (idle) slice_time_ = slice_time_ * 9 / 10;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

@@ -1,5 +1,5 @@
-// TilePainter: one OpenGL context's part in drawing a frame: render targets for all tiles and the
-// content's renderer there. It draws those tiles that no other context has taken.
+// TilePainter: draws tiles with one OpenGL context: it has render targets for all tiles and the
+// content's renderer in that context. Several painters share a frame's tiles by a queue.
 #pragma once
 
 #include <memory>
@@ -14,49 +14,50 @@
 #include "render/gl/render_target.h"
 #include "render/tiles/tile_plan.h"
 
-namespace merlin::render {
+namespace merlin::render::frame {
 
-// Thread-bound to its context, which outlives it, as content, plan and clock do.
+// Thread-bound to its context. The context, content, plan and clock must outlive it.
 class TilePainter {
  public:
-  // Errors: kUnsupported, kInvalidArgument, as Content::attach() and RenderTarget say.
-  static Result<std::unique_ptr<TilePainter>> make(const GlApi& gl, const Content& content,
-                                                   const TilePlan& plan, const Clock& clock);
+  // Errors: kUnsupported, kInvalidArgument: those of Content::attach() and RenderTarget::make().
+  static Result<std::unique_ptr<TilePainter>> make(const gl::GlApi& gl,
+                                                   const content::Content& content,
+                                                   const tiles::TilePlan& plan, const Clock& clock);
 
-  // Once a frame, after the content has chosen what it shows. Abandons what was being refined.
+  // Called once per frame, after the content has chosen its detail. Abandons a refined tile.
   void begin();
 
-  // Draws the tile at 1/divisor of its size and copies it, upscaled, to its place in `canvas`.
-  // Adds to `times`.
+  // Draws the tile at 1/divisor of its width and height and copies it, upscaled, to its position in
+  // `canvas`. Adds its times to `times`.
   void draw(std::size_t tile, int divisor, std::span<std::uint8_t> canvas, DrawTimes& times);
 
-  // Draws slices of the queue's tiles until about `until`, and goes on where it was the last time.
+  // Draws slices of the queue's tiles until about `until`; continues where the last call stopped.
   void refine(TileQueue& queue, std::span<std::uint8_t> canvas, Timestamp until);
-  // The worst time of the recent slices. refine() draws nothing when less than 1.5 times this is
-  // left.
+  // Peak of the slice times, decaying by 10 % per slice. refine() draws nothing when less than 1.5
+  // times this is left.
   Duration sliceTime() const noexcept { return slice_time_; }
 
-  // Steps of begin() and draw(), until they are cleared.
+  // Steps recorded by begin() and draw() since the last clearSteps().
   std::span<const FrameStep> steps() const noexcept { return steps_; }
   void clearSteps() noexcept { steps_.clear(); }
 
  private:
-  TilePainter(const GlApi& gl, const TilePlan& plan, const Clock& clock)
+  TilePainter(const gl::GlApi& gl, const tiles::TilePlan& plan, const Clock& clock)
       : gl_(gl), plan_(plan), clock_(clock) {}
   void beginTile(std::size_t tile, int divisor);
   void readTile(std::size_t tile, int divisor, std::span<std::uint8_t> canvas);
   Timestamp stepDone(FrameStep::Kind kind, std::size_t tile, Timestamp began);  // returns now
 
-  const GlApi& gl_;
-  const TilePlan& plan_;
+  const gl::GlApi& gl_;
+  const tiles::TilePlan& plan_;
   const Clock& clock_;
-  std::unique_ptr<ContentRenderer> renderer_;
-  std::vector<RenderTarget> targets_;  // by tile
-  std::vector<std::uint8_t> small_;    // a tile before it is upscaled
+  std::unique_ptr<content::ContentRenderer> renderer_;
+  std::vector<gl::RenderTarget> targets_;  // by tile
+  std::vector<std::uint8_t> small_;        // a tile before it is upscaled
   std::vector<FrameStep> steps_;
   std::size_t refined_tile_ = TileQueue::kNone;
-  DrawProgress refined_;
+  content::DrawProgress refined_;
   Duration slice_time_ = std::chrono::milliseconds(4);
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

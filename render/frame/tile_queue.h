@@ -1,4 +1,4 @@
-// TileQueue: tiles that are handed out one after another to several threads.
+// TileQueue: hands out tiles one after another to several threads.
 #pragma once
 
 #include <atomic>
@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-namespace merlin::render {
+namespace merlin::render::frame {
 
-// take() and done() are thread-safe; begin() while nobody calls them.
+// take() and done() are thread-safe; begin() may only be called while no thread uses the queue.
 class TileQueue {
  public:
-  // Numbers of tiles in the plan, in the order in which they are taken.
+  // Indices of tiles in the plan, in the order in which take() returns them.
   void begin(std::span<const std::size_t> tiles) {
     tiles_.assign(tiles.begin(), tiles.end());
     next_ = done_ = 0;
@@ -29,4 +29,4 @@ class TileQueue {
   std::atomic<std::size_t> next_{0}, done_{0};
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::frame

@@ -1,7 +1,7 @@
 // The OpenGL entry points that MERLIN calls, resolved at run time from the context that made them.
 //
-// libOSMesa exports every GL entry point itself, so two libraries with the same names live in one
-// process; nothing here links either, and each context carries its own table. OpenGL 3.3 core.
+// libOSMesa exports the same GL symbols as the library that EGL uses, and a process may load both.
+// So MERLIN links neither, and each context has its own table of functions. OpenGL 3.3 core.
 #pragma once
 
 #include <string>
@@ -10,9 +10,9 @@
 
 #include "daemon/base/result.h"
 
-namespace merlin::render {
+namespace merlin::render::gl {
 
-// X(type, name): name without "gl".
+// X(type, name): `name` is the function's name without the prefix "gl".
 #define MERLIN_GL_FUNCTIONS(X)                                 \
   X(PFNGLATTACHSHADERPROC, AttachShader)                       \
   X(PFNGLBINDBUFFERPROC, BindBuffer)                           \
@@ -86,4 +86,4 @@ struct GlApi {
 #undef MERLIN_GL_MEMBER
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::gl

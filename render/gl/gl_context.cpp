@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
-namespace merlin::render {
+namespace merlin::render::gl {
 namespace {
 
 using AnyFunction = void (*)();
@@ -29,13 +29,13 @@ Result<GlApi> loadApi(Resolve resolve) {
   MERLIN_GL_FUNCTIONS(MERLIN_GL_LOAD)
 #undef MERLIN_GL_LOAD
   if (missing.empty()) return api;
-  return Error{Errc::kUnsupported, fmt::format("OpenGL has no {} here", missing)};
+  return Error{Errc::kUnsupported, fmt::format("this OpenGL lacks the function {}", missing)};
 }
 
 Error eglError(const char* step) {
   return {Errc::kUnsupported,
           fmt::format("EGL: {}: error 0x{:04X}; packages libegl1, libegl-mesa0 and "
-                      "libgl1-mesa-dri bring a software renderer",
+                      "libgl1-mesa-dri provide a software renderer",
                       step, eglGetError())};
 }
 
@@ -51,13 +51,13 @@ class EglContext final : public GlContext {
     if (display_ == EGL_NO_DISPLAY) return;
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     if (context_ != EGL_NO_CONTEXT) eglDestroyContext(display_, context_);
-    // No eglTerminate: the display is the process's, and another context may be on it.
+    // No eglTerminate: the whole process shares the display, and another context may use it.
   }
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;
 
  private:
-  // The software renderer's, if there is one, else the first.
+  // The EGL device of the software renderer, if there is one, else the first device.
   static EGLDeviceEXT device() {
     const auto query =
         reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
@@ -82,9 +82,9 @@ class EglContext final : public GlContext {
     } else {
       display_ = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
     }
-    if (display_ == EGL_NO_DISPLAY) return eglError("no windowless display");
+    if (display_ == EGL_NO_DISPLAY) return eglError("no display without a window system");
     if (!eglInitialize(display_, nullptr, nullptr)) return eglError("initialisation");
-    if (!eglBindAPI(EGL_OPENGL_API)) return eglError("no OpenGL");
+    if (!eglBindAPI(EGL_OPENGL_API)) return eglError("no desktop OpenGL");
     const EGLint kAttributes[] = {EGL_CONTEXT_MAJOR_VERSION,
                                   3,
                                   EGL_CONTEXT_MINOR_VERSION,
@@ -108,8 +108,8 @@ class EglContext final : public GlContext {
   EGLContext context_ = EGL_NO_CONTEXT;
 };
 
-// libOSMesa, opened with RTLD_LOCAL so that its GL names stay apart from EGL's. Never closed: Mesa
-// does not survive it.
+// libOSMesa, loaded with RTLD_LOCAL so that its GL symbols do not conflict with those of EGL. It is
+// never unloaded, since Mesa crashes if it is.
 class OsmesaLibrary {
  public:
   static Result<OsmesaLibrary> open() {
@@ -117,7 +117,7 @@ class OsmesaLibrary {
     library.handle_ = ::dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
     if (!library.handle_) {
       return Error{Errc::kUnsupported,
-                   fmt::format("OSMesa: {}; package libosmesa6 has it", ::dlerror())};
+                   fmt::format("OSMesa: {}; package libosmesa6 provides it", ::dlerror())};
     }
     return library;
   }
@@ -152,7 +152,8 @@ class OsmesaContext final : public GlContext {
         library_.function<decltype(&OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs");
     const auto makeCurrent = library_.function<decltype(&OSMesaMakeCurrent)>("OSMesaMakeCurrent");
     const auto resolve = library_.function<decltype(&OSMesaGetProcAddress)>("OSMesaGetProcAddress");
-    if (!make || !makeCurrent || !resolve) return Error{Errc::kUnsupported, "OSMesa: too old"};
+    if (!make || !makeCurrent || !resolve)
+      return Error{Errc::kUnsupported, "OSMesa: the library is too old"};
     const int kAttributes[] = {OSMESA_FORMAT,
                                OSMESA_RGBA,
                                OSMESA_PROFILE,
@@ -163,7 +164,8 @@ class OsmesaContext final : public GlContext {
                                3,
                                0};
     context_ = make(kAttributes, nullptr);
-    // OSMesa wants a buffer of its own; everything is drawn into frame buffer objects instead.
+    // OSMesa requires a buffer to make a context current. It has one pixel and is not used:
+    // everything is drawn into frame buffer objects.
     if (!context_ || !makeCurrent(context_, unused_.data(), GL_UNSIGNED_BYTE, 1, 1)) {
       return Error{Errc::kUnsupported, "OSMesa: no OpenGL 3.3 core context"};
     }
@@ -190,10 +192,10 @@ Result<std::unique_ptr<GlContext>> makeGlContext(GlBackend backend, EglDisplay d
 void prepareSoftwareGl(int raster_threads) {
   // NOLINTNEXTLINE(concurrency-mt-unsafe): before any thread starts, says the contract
   ::setenv("LP_NUM_THREADS", std::to_string(raster_threads).c_str(), 0);
-  // llvmpipe frees and takes 64 kB blocks each frame; glibc would hand them back to the kernel and
-  // fault them in again, which costs up to a third of a frame.
+  // llvmpipe allocates and frees blocks of 64 kB in each frame. By default glibc would return them
+  // to the kernel, and the page faults of the next frame would cost up to a third of its time.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 30);
   ::mallopt(M_TRIM_THRESHOLD, 2'000'000'000);
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::gl

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace merlin::render {
+namespace merlin::render::gl {
 
 Result<RenderTarget> RenderTarget::make(const GlApi& gl, int width, int height) {
   RenderTarget f(gl, width, height);
@@ -21,8 +21,10 @@ Result<RenderTarget> RenderTarget::make(const GlApi& gl, int width, int height) 
   gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, f.depth_);
   const GLenum status = gl.CheckFramebufferStatus(GL_FRAMEBUFFER);
   if (status == GL_FRAMEBUFFER_COMPLETE) return f;
-  return Error{Errc::kUnsupported, fmt::format("no frame buffer of {} x {}: GL status 0x{:04X}",
-                                               width, height, status)};
+  return Error{
+      Errc::kUnsupported,
+      fmt::format("OpenGL cannot create a render target of {} x {} pixels: status 0x{:04X}", width,
+                  height, status)};
 }
 
 RenderTarget::RenderTarget(RenderTarget&& other) noexcept
@@ -49,4 +51,4 @@ void RenderTarget::read(std::uint8_t* pixels, int stride_px, int width, int heig
   gl_->ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::gl

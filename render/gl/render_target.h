@@ -1,4 +1,5 @@
-// RenderTarget: an off-screen picture, RGBA bytes and depth, and how its pixels come out.
+// RenderTarget: an off-screen image (8-bit RGBA, and depth) to draw into, and the read-back of its
+// pixels.
 #pragma once
 
 #include <cstdint>
@@ -6,12 +7,12 @@
 #include "daemon/base/result.h"
 #include "render/gl/gl_api.h"
 
-namespace merlin::render {
+namespace merlin::render::gl {
 
-// Thread-bound to its context, which outlives it.
+// Thread-bound to its context, which must outlive it.
 class RenderTarget {
  public:
-  // Errors: kUnsupported (the context cannot make one of this size).
+  // Sizes in pixels. Errors: kUnsupported (the context cannot create a target of this size).
   static Result<RenderTarget> make(const GlApi& gl, int width, int height);
 
   RenderTarget(RenderTarget&& other) noexcept;
@@ -25,10 +26,12 @@ class RenderTarget {
 
   void bind() const;
 
-  // Copies the picture to `pixels`, RGBA, rows from top to bottom (MERLIN draws with y downwards,
-  // so no row is turned), the next row `stride_px` pixels on. Waits until all is drawn.
+  // Copies the image to `pixels` as RGBA, rows from top to bottom (MERLIN draws with y pointing
+  // downwards, so rows need no reversal); rows begin `stride_px` pixels apart. Waits until drawing
+  // has finished.
   void read(std::uint8_t* pixels, int stride_px) const { read(pixels, stride_px, width_, height_); }
-  // The same of its upper left corner. REQUIRES: no larger than the picture.
+  // Copies only the upper left width x height pixels. REQUIRES: they lie within the image, and
+  // stride_px >= width.
   void read(std::uint8_t* pixels, int stride_px, int width, int height) const;
 
  private:
@@ -39,4 +42,4 @@ class RenderTarget {
   GLuint frame_ = 0, colour_ = 0, depth_ = 0;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::gl

@@ -1,15 +1,16 @@
 // Settings of OpenGL.
 #pragma once
 
-namespace merlin::render {
+namespace merlin::render::gl {
 
 enum class GlBackend { kEgl, kOsmesa };
 
 struct GlSettings {
   GlBackend backend = GlBackend::kEgl;
-  int contexts = 0;        // that share the tiles, each on a thread of its own; 0: two where a
-                           // software renderer and a second core make that worth it
-  int raster_threads = 0;  // of Mesa's software renderer; 0: the wall's own thread does all
+  // Number of contexts that share the tiles, each on its own thread; 0: two for Mesa's software
+  // renderer on more than one core, else one.
+  int contexts = 0;
+  int raster_threads = 0;  // of Mesa's software renderer; 0: it rasterises on the calling thread
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::gl

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace merlin::render {
+namespace merlin::render::gl {
 namespace {
 
 constexpr GLsizei kLogSize = 2048;
@@ -36,7 +36,7 @@ Result<GLuint> linkProgram(const GlApi& gl, const char* vertex_source,
   const GLuint program = gl.CreateProgram();
   for (const GLuint shader : {*vertex, *fragment}) {
     gl.AttachShader(program, shader);
-    gl.DeleteShader(shader);  // kept by the program
+    gl.DeleteShader(shader);  // deleted together with the program
   }
   gl.LinkProgram(program);
   GLint good = 0;
@@ -50,4 +50,4 @@ Result<GLuint> linkProgram(const GlApi& gl, const char* vertex_source,
   return Error{Errc::kUnsupported, "a program does not link: " + log};
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::gl

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <vector>
 
-namespace merlin::render {
+namespace merlin::render::gl {
 namespace {
 
-// Mean of each 2 x 2 pixels; a last row or column without a partner counts twice.
+// Halves the size: each pixel is the mean of 2 x 2 pixels. An odd last row or column is dropped,
+// unless it is the only one.
 std::vector<std::uint8_t> halved(const TextureImage& image) {
   const int width = std::max(1, image.width / 2), height = std::max(1, image.height / 2);
   std::vector<std::uint8_t> half;
@@ -46,7 +47,8 @@ Texture::Texture(const GlApi& gl, const TextureImage& image) : gl_(gl) {
   gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, fits.width, fits.height, 0, GL_RGB, GL_UNSIGNED_BYTE,
                 fits.rgb.data());
   gl.GenerateMipmap(GL_TEXTURE_2D);
-  // Trilinear costs a software renderer a seventh more and is hardly seen.
+  // Trilinear filtering costs a software renderer a seventh more time, for a difference that is
+  // hardly visible.
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
 }
@@ -55,4 +57,4 @@ Texture::~Texture() { gl_.DeleteTextures(1, &name_); }
 
 void Texture::bind() const { gl_.BindTexture(GL_TEXTURE_2D, name_); }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::gl

@@ -1,4 +1,5 @@
-// Texture: a registered picture on the GPU ([GOURLEY98] figure A.2).
+// Texture: an image on the GPU that is mapped onto a model by texture coordinates ([GOURLEY98]
+// figure A.2).
 #pragma once
 
 #include <cstdint>
@@ -6,7 +7,7 @@
 
 #include "render/gl/gl_api.h"
 
-namespace merlin::render {
+namespace merlin::render::gl {
 
 // RGB, rows from top to bottom.
 struct TextureImage {
@@ -14,21 +15,22 @@ struct TextureImage {
   std::span<const std::uint8_t> rgb;
 };
 
-// Repeats on all sides, mipmapped; halved until the context takes it. Thread-bound to its context,
-// which outlives it.
+// Repeats in both directions and has mipmaps. An image that exceeds the context's maximum texture
+// size is halved until it fits. Thread-bound to its context, which must outlive it.
 class Texture {
  public:
-  // REQUIRES: width, height > 0, rgb of that size. O(pixels). What goes wrong GetError() says.
+  // REQUIRES: width, height > 0, and 3 * width * height bytes of rgb. O(pixels). On failure
+  // gl.GetError() returns the error.
   Texture(const GlApi& gl, const TextureImage& image);
   ~Texture();
   Texture(const Texture&) = delete;
   Texture& operator=(const Texture&) = delete;
 
-  void bind() const;  // to unit 0
+  void bind() const;  // to texture unit 0
 
  private:
   const GlApi& gl_;
   GLuint name_ = 0;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::gl

@@ -5,32 +5,36 @@
 #include <cmath>
 #include <vector>
 
-namespace merlin::render {
+namespace merlin::render::governor {
 namespace {
 
-// Measured on llvmpipe, four views of 640 x 480 (README.md), until it is calibrated; a wrong
-// exponent costs speed of settling, not safety.
+// Exponent p until calibration, and its limits; measured on llvmpipe with four views of 640 x 480
+// (README.md). With a wrong exponent the budget settles more slowly, but no more frames are late.
 constexpr double kExponent = 0.65, kLeastExponent = 0.4, kMostExponent = 1.1;
 constexpr double kLeastRoom = 0.10, kMostRoom = 0.30, kRoomGain = 0.017;
 constexpr double kFixedGain = 0.15;
-// Initial head room, in units of the noise of the frames that were drawn for measuring: twelve
-// frames see less than the hundredth frame will.
+// Initial head room, as a multiple of the noise of the calibration frames: a dozen frames do not
+// show how late the worst of a hundred is.
 constexpr double kRoomForNoise = 3;
-// The trend of ln c and its slope (an alpha-beta filter), and how far one frame may pull.
+// Gains of the alpha-beta filter for the trend of ln c and its slope; limits of the correction by
+// one frame and of the slope.
 constexpr double kTrendGain = 0.25, kSlopeGain = 0.05, kMostPull = 0.10, kMostSlope = 0.05;
-// c is moved slowly while the trend is no further from it than its noise.
+// While the trend lies within kDearer above and kCheaper below ln c, c follows it slowly: with
+// kSlowUp upwards, kSlow downwards.
 constexpr double kSlow = 0.05, kSlowUp = 0.15, kDearer = 0.05, kCheaper = 0.10;
-// The median of how far frames are off the trend follows them by such steps; from kQuiet on it
-// widens what counts as noise, and quickens the head room.
+// The estimated median deviation from the trend changes by the factor kNoiseStep a frame. Above
+// kQuiet, it widens the range of slow following and speeds up the head room, up to kMostUnrest
+// times.
 constexpr double kNoiseStep = 1.02, kQuiet = 0.03, kMostUnrest = 3;
-// A load that rises is met ahead of time, by so many frames of its slope.
+// A rising load is extrapolated by the slope of this many frames.
 constexpr double kAhead = 3;
-// One frame alone says less of c than the worst of two: that much is left for its noise.
+// When a single late frame sets c: the factor for its noise, and the most that c may grow.
 constexpr double kOneFrame = 1.06, kMostJump = 6;
-// And where the next frame costs no more than this over what it did before, it was a hiccup.
+// If c of the next frame is below this multiple of c before the late frame, that one was an
+// outlier.
 constexpr double kHiccup = 1.5;
 constexpr double kDeadBand = 0.05, kGrowth = 1.08;
-// A frame of less than this share of the usual triangles says something of p, and nothing of c.
+// A frame with fewer triangles than this share of the usual number is used to learn p, but not c.
 constexpr double kOtherSize = 0.7;
 constexpr double kExponentGain = 0.1, kMostExponentPull = 0.3;
 
@@ -48,7 +52,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// H. Theil, P. Sen: the median of the slopes of all pairs, which a few hiccups cannot pull.
+// Theil-Sen estimator: the median of the slopes of all pairs, which is robust against outliers.
 std::optional<double> slopeOf(std::span<const FrameCost> frames) {
   std::vector<double> slopes;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -89,8 +93,8 @@ void Governor::observe(const FrameCost& cost) noexcept {
   choose();
 }
 
-// Noise is what head room is for. The second late frame in a row is a dearer load, which the model
-// learns.
+// The head room covers noise only: from the second late frame in a row on, the load has become more
+// expensive, which the cost model learns.
 void Governor::learnHeadRoom(bool late) noexcept {
   if (late_in_a_row_ >= 2) return;
   const double q = settings_.late_share;
@@ -99,7 +103,7 @@ void Governor::learnHeadRoom(bool late) noexcept {
   head_room_ = std::clamp(head_room_, kLeastRoom, kMostRoom);
 }
 
-// By the median of three, so that one hiccup while reading back is not seen.
+// Uses the median of the last three frames, so that a single outlier in read-back has no effect.
 void Governor::learnFixed(double fixed) noexcept {
   fixed_seen_[seen_ % fixed_seen_.size()] = fixed;
   std::array<double, 3> sorted = fixed_seen_;
@@ -134,8 +138,8 @@ void Governor::takeBack() noexcept {
   jumpTo(before_->per);
 }
 
-// A frame that is smaller than the ones before it, because less than a period was left, shows how
-// cost depends on size under the same load.
+// A frame with fewer triangles than those before it, because less than a period was left, shows how
+// the cost depends on the number of triangles under the same load.
 void Governor::learnFrom(double size, double now) noexcept {
   const bool smaller = size < kOtherSize * usual_ && !was_smaller_;
   was_smaller_ = smaller;
@@ -158,11 +162,12 @@ void Governor::jumpTo(double per) noexcept {
   slope_ = 0;
 }
 
-// 1 on a machine of its own; more where others' work makes the same frame cost now this, now that.
+// 1 on an otherwise idle machine; more if the load of other processes varies the cost of the same
+// frame.
 double Governor::unrest() const noexcept { return std::min(noise_ / kQuiet, kMostUnrest); }
 
-// The trend follows a load that rises for seconds without lagging behind it, but is noisy; c keeps
-// still as long as the trend is within that noise.
+// The trend follows a load that rises for seconds without lag, but is noisy. So c follows slowly as
+// long as the trend is within its noise.
 void Governor::follow(double now) noexcept {
   const double expected = trend_ + slope_;
   const double pull = std::clamp(now - expected, -kMostPull, kMostPull);
@@ -170,7 +175,7 @@ void Governor::follow(double now) noexcept {
   noise_ = std::clamp(noise_, kQuiet, kMostPull);
   trend_ = expected + kTrendGain * pull;
   slope_ = std::clamp(slope_ + kSlopeGain * pull, -kMostSlope, kMostSlope);
-  // A cheaper load is taken at its word only: the trend swings through below it.
+  // While the cost falls, c is not set below that of this frame, since the trend undershoots.
   const double ahead = std::max(trend_, slope_ > 0 ? trend_ + kAhead * slope_ : now);
   const double off = trend_ + slope_ - log0(per_);
   if (off > kDearer * unrest() || off < -kCheaper * unrest())
@@ -179,7 +184,8 @@ void Governor::follow(double now) noexcept {
     per_ *= std::exp((off > 0 ? kSlowUp : kSlow) * off);
 }
 
-// `off`: how much dearer a frame was than the model says; what that says of the usual size stays.
+// `size`: ln of the frame's triangles over the usual number; `off`: ln of its c over the model's.
+// The cost predicted for the usual number of triangles does not change.
 void Governor::learnExponent(double size, double off) noexcept {
   const double pull = std::clamp(off / size, -kMostExponentPull, kMostExponentPull);
   const double next = std::clamp(exponent_ + kExponentGain * pull, kLeastExponent, kMostExponent);
@@ -199,7 +205,7 @@ void Governor::calibrate(std::span<const FrameCost> frames) {
     sizes.push_back(sizeOf(f));
   }
   fixed_ = median(std::move(fixed));
-  // The large ones are nearer to what will be drawn.
+  // c is fitted to the larger frames, since their sizes are closer to those that will be drawn.
   usual_ = median(sizes);
   for (const FrameCost& f : frames) {
     if (sizeOf(f) >= usual_) per.push_back(drawingOf(f) / std::pow(sizeOf(f), exponent_));
@@ -225,7 +231,8 @@ void Governor::setRate(double rate_hz) noexcept {
   if (per_ > 0) startOver();
 }
 
-// Uses what the model allows at once: nothing that was measured contradicts it.
+// Sets the budget to what the model allows without gradual growth, since no late frame contradicts
+// the model.
 void Governor::startOver() noexcept {
   late_in_a_row_ = 0;
   before_.reset();
@@ -237,7 +244,7 @@ double Governor::clamped(double triangles) const noexcept {
                     static_cast<double>(settings_.max_triangles));
 }
 
-// The model's inverse.
+// The inverse of the cost model: triangles whose predicted time is `seconds`.
 double Governor::fitting(double seconds) const noexcept {
   return std::pow(std::max(seconds - fixed_, 0.0) / per_, 1 / exponent_);
 }
@@ -246,7 +253,7 @@ double Governor::trianglesIn(double seconds) const noexcept {
   return fitting(seconds * (1 - head_room_));
 }
 
-std::size_t Governor::trianglesWithin(Duration work) const noexcept {
+std::size_t Governor::costWithin(Duration work) const noexcept {
   return per_ == 0 ? budget() : static_cast<std::size_t>(clamped(fitting(toSeconds(work))));
 }
 
@@ -274,4 +281,4 @@ double Governor::predict(std::size_t triangles) const noexcept {
   return fixed_ + per_ * std::pow(static_cast<double>(triangles), exponent_);
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::governor

@@ -1,17 +1,19 @@
-// Governor: frame times in, triangles for the next frame out, so that the rate asked is held.
+// Governor: from the measured times of frames, computes the triangle budget of the next frame such
+// that the requested frame rate is held.
 //
-// [GOURLEY98] 5.4, figure 5.36 divides last second's triangles a second by the rate. That
-// law takes cost for linear, reacts after a second and aims at the deadline itself, so it is late
-// in a sixth of its frames. Here the cost of a frame is modelled as
+// [GOURLEY98] 5.4, figure 5.36 divides the triangles drawn in the last second by the frame rate.
+// That control law assumes a linear cost, reacts after a second and leaves no margin before the
+// deadline, so a sixth of its frames are late. Here the cost of a frame is modelled as
 //
-//   work = a + c T^p       a: clearing, read-back, presenting; measured. T: triangles.
+//   work = a + c T^p       a: time to clear, read back and present, measured; T: triangles
 //
-// and T is chosen so that the work fills the period but for a head room m, which follows the share
-// of late frames: late, m += g (1 - q); in time, m -= g q, so that in the long run a share q is
-// late. One late frame may be a hiccup and changes nothing; two in a row act at once, on the worst
-// figure seen, and never by growth; one that missed two deadlines acts alone, and is taken back if
-// the next frame shows that it was a hiccup. Growth is gentle and waits for a gain worth it.
-// README.md has figures and sources.
+// T is chosen such that the work fills the period except for a margin, the head room m (a share of
+// the period). m is learnt: a late frame adds g (1 - q) to m, a frame in time subtracts g q, so
+// that in the long run a share q of the frames is late. A single late frame may be an outlier and
+// does not change the cost model. Two in a row change it at once, to the higher of its own cost and
+// that of the frame, and the budget can only fall. A frame that missed two deadlines acts alone;
+// its effect is undone if the next frame shows that it was an outlier. The budget grows slowly, and
+// only if the gain exceeds a dead band. README.md has figures and sources.
 #pragma once
 
 #include <array>
@@ -22,15 +24,16 @@
 #include "daemon/base/clock.h"
 #include "render/governor/settings.h"
 
-namespace merlin::render {
+namespace merlin::render::governor {
 
 // One frame that was drawn while something moved.
 struct FrameCost {
-  std::size_t triangles = 0;  // that were asked for
-  Duration fixed{};           // of `work`: what does not depend on the triangles
-  Duration work{};            // from the frame's begin to its last pixel, as if nothing had given
-                              // way; > 0. More than the period counts as late in a row
-  bool late = false;          // its last pixel came after its deadline
+  std::size_t triangles = 0;  // requested
+  Duration fixed{};           // part of `work` that does not depend on the triangles
+  // Time (> 0) from the frame's begin to its last pixel, as if no view had been drawn coarser to
+  // save time. If longer than the period, the frame counts as one of the late frames in a row.
+  Duration work{};
+  bool late = false;  // the last pixel was finished after the deadline
 };
 
 // Pure; thread-bound. Cost of a call: under a microsecond.
@@ -40,35 +43,40 @@ class Governor {
   // 0 < late_share < 1.
   explicit Governor(const GovernorSettings& settings) noexcept;
 
-  // Triangles for the next moving frame, all tiles together counting the model once.
+  // Triangle budget of the next frame while something moves: triangles of the model, each counted
+  // once however many tiles show it.
   std::size_t budget() const noexcept;
 
-  // The same for a frame that has less than a period left, after one that ran over: what the model
-  // says fits; 0 where not even the least does.
+  // The budget of a frame that has only `available` left until its deadline, since the one before
+  // it ran over: the number that the cost model expects to fit; 0 if not even min_triangles fit.
   std::size_t budgetFor(Duration available) const noexcept;
 
-  // Triangles whose frame takes `work`, by the model alone: without head room, and however many
-  // were drawn last; the budget before anything was measured.
-  std::size_t trianglesWithin(Duration work) const noexcept;
+  // Triangles of a frame that takes `work` according to the cost model, without head room and
+  // independent of the last budget, within min_triangles and max_triangles. Returns budget() before
+  // the first measurement.
+  std::size_t costWithin(Duration work) const noexcept;
 
   // REQUIRES: cost.work > 0, 0 <= cost.fixed <= cost.work.
   void observe(const FrameCost& cost) noexcept;
 
-  // Frames drawn for measuring, before the first that counts: fits a, c and, where the triangles
-  // differ by a factor of two or more, p; head room for their noise; the budget is what then fits.
-  // Frames as observe() wants them; none at all changes nothing.
+  // Fits the model to frames that were drawn only to measure their cost: a, c and, if triangle
+  // counts differ by a factor of two or more, p. Sets the head room from the noise of these frames,
+  // and the budget to what then fits. Requirements as for observe(). Without frames nothing
+  // changes.
   void calibrate(std::span<const FrameCost> frames);
 
-  // Feed-forward: from the next frame on, triangles cost `ratio` times what they did (a cut to
-  // other content, or to another view). REQUIRES: ratio > 0, finite.
+  // Feed-forward: from the next frame on, the same triangles take `ratio` times as long (since
+  // another content or another view is shown). REQUIRES: ratio > 0, finite.
   void expect(double ratio) noexcept;
 
-  // By hand: so many triangles, within the least and the most, whatever the time; nothing gives it
-  // back to the law. The law goes on learning.
+  // Fixes the budget to this number of triangles, clamped to min_triangles and max_triangles,
+  // whatever the frame time, until the next call; nullopt returns to the computed budget. The model
+  // continues to learn meanwhile.
   void hold(std::optional<std::size_t> triangles) noexcept { held_ = triangles; }
   bool held() const noexcept { return held_.has_value(); }
 
-  // Another rate; the model stays, the budget is what fits the new period. REQUIRES: rate_hz > 0.
+  // Changes the frame rate. The model is kept, and the budget becomes what fits the new period.
+  // REQUIRES: rate_hz > 0.
   void setRate(double rate_hz) noexcept;
 
   // The time that the model expects `triangles` to take, in seconds.
@@ -108,15 +116,15 @@ class Governor {
   double head_room_;
   double exponent_;
   double fixed_ = 0;
-  double per_ = 0;                      // c; follows `trend_`, but not its noise
-  double noise_ = 0;                    // median distance of ln c from its trend
-  double trend_ = 0, slope_ = 0;        // ln c, and by how much it grows a frame
-  std::array<double, 3> fixed_seen_{};  // of the last frames
+  double per_ = 0;                // c; follows exp(trend_), but not its noise
+  double noise_ = 0;              // estimated median distance of a frame's ln c from the trend
+  double trend_ = 0, slope_ = 0;  // filtered ln c, and its growth per frame
+  std::array<double, 3> fixed_seen_{};  // a of the last three frames [s]
   std::size_t seen_ = 0;
-  double usual_ = 1;  // triangles of the last frames, but for one that was smaller
+  double usual_ = 1;  // triangles of the last frame that was not much smaller than those before it
   bool was_smaller_ = false;
   int late_in_a_row_ = 0;
-  std::optional<Model> before_;  // a single frame that was acted on
+  std::optional<Model> before_;  // the model before a single late frame changed it
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::governor

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace merlin::render {
+namespace merlin::render::governor {
 
 SettingFaults validate(const GovernorSettings& g) {
   if (g.min_triangles <= g.first_triangles && g.first_triangles <= g.max_triangles) return {};
@@ -12,4 +12,4 @@ SettingFaults validate(const GovernorSettings& g) {
                        g.min_triangles, g.first_triangles, g.max_triangles)}};
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::governor

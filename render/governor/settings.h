@@ -1,21 +1,22 @@
-// Settings of the frame rate.
+// Settings of the governor, which holds the frame rate.
 #pragma once
 
 #include <cstddef>
 
 #include "daemon/base/setting_fault.h"
 
-namespace merlin::render {
+namespace merlin::render::governor {
 
 struct GovernorSettings {
-  double rate_hz = 30;                    // frames a second while anything moves
-  std::size_t min_triangles = 500;        // never fewer, however late
-  std::size_t max_triangles = 4'000'000;  // never more while moving
-  std::size_t first_triangles = 10'000;   // before anything was measured
-  double late_share = 0.01;               // of frames, that the head room is learnt for
+  double rate_hz = 30;                    // frames per second while anything moves
+  std::size_t min_triangles = 500;        // lower limit of the budget, even if frames are late
+  std::size_t max_triangles = 4'000'000;  // upper limit of the budget while anything moves
+  std::size_t first_triangles = 10'000;   // budget before the first measurement
+  double late_share = 0.01;               // share of late frames that the head room is adjusted to
 };
 
-// Finds numbers of triangles that are not in ascending order. Pointer: "".
+// Reports min_triangles, first_triangles and max_triangles that are not in ascending order, with
+// the JSON pointer "".
 SettingFaults validate(const GovernorSettings& governor);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::governor

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <utility>
 
-namespace merlin::render {
+namespace merlin::render::image {
 
 void Image::append(const Image& right) {
   if (pixels.empty()) height = right.height;
@@ -22,4 +22,4 @@ void Image::append(const Image& right) {
   width += right.width;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::image

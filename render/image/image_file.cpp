@@ -11,16 +11,16 @@
 
 #include "daemon/base/files.h"
 
-namespace merlin::render {
+namespace merlin::render::image {
 namespace {
 
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 28;
 
-// With room for pixels, or, where the head is all that is asked for, without.
+// An image of this size; with `head`, only the header is wanted, and no memory for pixels is taken.
 Result<ImageFile> sized(std::uint64_t width, std::uint64_t height, bool head) {
   if (width == 0 || height == 0 || width > kMostPixels / height) {
     return Error{Errc::kUnsupported,
-                 fmt::format("{} x {} pixels; 1 to 2^28 are read", width, height)};
+                 fmt::format("{} x {} pixels; 1 to 2^28 pixels are supported", width, height)};
   }
   ImageFile picture{static_cast<int>(width), static_cast<int>(height), {}, {}};
   if (!head) picture.pixels.resize(3 * width * height);
@@ -42,7 +42,7 @@ Result<ImageFile> readPng(std::string_view bytes, bool head) {
     png_image_free(&image);
     return picture;
   }
-  const png_color black{0, 0, 0};  // behind what is transparent
+  const png_color black{0, 0, 0};  // background of transparent pixels
   if (!png_image_finish_read(&image, &black, picture->pixels.data(), 0, nullptr)) return broken();
   return picture;
 }
@@ -58,7 +58,7 @@ Result<ImageFile> readJpeg(std::string_view bytes, bool head) {
     return broken();
   auto picture = sized(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), head);
   if (!picture || head) return picture;
-  // The slow transform: the same bytes whatever the processor's lanes.
+  // The accurate, slow DCT: the same bytes on every processor, whatever its SIMD instructions.
   if (tjDecompress2(jpeg.get(), data, bytes.size(), picture->pixels.data(), width, 0, height,
                     TJPF_RGB, TJFLAG_ACCURATEDCT) != 0)
     return broken();
@@ -71,8 +71,8 @@ Result<ImageFile> readAny(std::string_view bytes, bool head) {
   return Error{Errc::kUnsupported, "is neither PNG nor JPEG"};
 }
 
-// The two of n pixels in a row that a place 0..1 lies between, and how far it is towards the
-// second.
+// The two of n pixels in a row whose centres are nearest to texture coordinate `place`, and its
+// position between them: 0 at the first, 1 at the second.
 struct Between {
   int low, high;
   float share;
@@ -131,4 +131,4 @@ Result<ImageFile> readImage(const std::string& path) {
   return picture;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::image

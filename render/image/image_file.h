@@ -1,4 +1,4 @@
-// Pictures that belong to a mesh: PNG by libpng, JPEG by TurboJPEG.
+// Image files, such as the textures of meshes: PNG by libpng, JPEG by TurboJPEG.
 #pragma once
 
 #include <array>
@@ -9,27 +9,29 @@
 
 #include "daemon/base/result.h"
 
-namespace merlin::render {
+namespace merlin::render::image {
 
 struct ImageFile {
   int width = 0, height = 0;         // [px]
   std::vector<std::uint8_t> pixels;  // RGB, rows from top to bottom
-  std::vector<std::uint8_t> file{};  // of readImage(): its bytes
+  std::vector<std::uint8_t> file{};  // the encoded file; only readImage() sets it
 
-  // Colour at (u, v), v upwards, as in texture coordinates: interpolated from the four nearest
-  // pixels, 0..1 each. The picture repeats, unless `clamped`. REQUIRES: u, v finite, not empty.
+  // Colour at texture coordinates (u, v), v upwards: interpolated between the four nearest pixels,
+  // each component 0..1. The image repeats, unless `clamped`. REQUIRES: u and v are finite, the
+  // image is not empty.
   std::array<float, 3> at(float u, float v, bool clamped) const noexcept;
 };
 
-// By the file's first bytes, whatever its name. Errors, with the file's name: kNotFound, kIo,
-// kMalformed, kUnsupported (neither PNG nor JPEG, or more than 2^28 pixels).
+// Reads a PNG or JPEG file; its first bytes decide which, not its name. Errors, with the file's
+// name: kNotFound, kIo, kMalformed, kUnsupported (neither PNG nor JPEG, or more than 2^28 pixels).
 Result<ImageFile> readImage(const std::string& path);
 
-// Bytes that readImage() takes for its pixels, by the file's head. The same errors.
+// Memory that readImage() needs for the pixels [bytes], read from the header of the file alone.
+// Same errors.
 Result<std::size_t> imageBytes(const std::string& path);
 
-// Decodes a file's bytes. The same errors, without a name. Hostile bytes are refused or read as
-// well as the libraries can.
+// Decodes an image file that is in memory. Same errors, without a file name. Damaged or hostile
+// bytes are rejected, or decoded as far as the libraries can.
 Result<ImageFile> decodeImage(std::span<const std::uint8_t> bytes);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::image

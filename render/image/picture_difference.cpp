@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace merlin::render {
+namespace merlin::render::image {
 namespace {
 
-constexpr double kChanged = 0.15;  // threshold, share of a channel's range
+constexpr double kChanged = 0.15;  // threshold, as a fraction of a channel's range
 
 }  // namespace
 
@@ -34,4 +34,4 @@ PictureDifference differenceOf(const Image& a, const Image& b,
   return difference;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::image

@@ -1,22 +1,23 @@
-// PictureDifference: which pixels of two pictures differ visibly.
+// PictureDifference: the pixels in which two images differ visibly.
 #pragma once
 
 #include <array>
 
 #include "render/image/image.h"
 
-namespace merlin::render {
+namespace merlin::render::image {
 
-// Difference of two pictures of equal size. A pixel counts as changed if a channel differs by more
+// Difference of two images of equal size. A pixel counts as changed if a channel differs by more
 // than 15 % of its range ([GOURLEY98] figures 5.30 to 5.35).
 struct PictureDifference {
   Image image;  // changed pixels white, the others black; alpha 0
-  // Changed pixels as a share of those that are not `background` in at least one picture.
+  // Changed pixels as a percentage of the pixels that differ from `background` in at least one
+  // image.
   double changed_percent = 0;
 };
 
-// `background`: red, green, blue, each 0..1. REQUIRES: pictures of one size.
+// `background`: red, green, blue, each 0..1. REQUIRES: `a` and `b` have the same size.
 PictureDifference differenceOf(const Image& a, const Image& b,
                                const std::array<float, 3>& background);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::image

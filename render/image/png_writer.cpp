@@ -8,12 +8,12 @@
 
 #include "daemon/base/files.h"
 
-namespace merlin::render {
+namespace merlin::render::image {
 namespace {
 
 constexpr int kCompression = 6;
 
-// libpng calls these with the WriteBytes that it was given.
+// Callbacks of libpng; the I/O pointer that it passes is a WriteBytes.
 void writeChunk(png_structp png, png_bytep data, png_size_t size) {
   const auto& write = *static_cast<const WriteBytes*>(png_get_io_ptr(png));
   if (!write(std::as_bytes(std::span(data, size)))) png_error(png, "the file takes no more");
@@ -50,11 +50,11 @@ Result<Ok> writePng(const std::string& path, int width, int height,
          std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   std::vector<std::uint8_t*> rows;
   for (int y = 0; y < height; ++y) {
-    // libpng takes rows that it does not write to as mutable.
+    // libpng declares rows as mutable that it does not write to.
     rows.push_back(const_cast<std::uint8_t*>(pixels.data()) + std::ptrdiff_t{4} * y * width);
   }
   return writeFile(
       path, [&](const WriteBytes& write) { return encode(&write, width, height, rows.data()); });
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::image

@@ -1,4 +1,5 @@
-// PNG: a picture to a file. libpng. About 100 ms for a frame: never on the wall's thread.
+// Writes an image to a PNG file, with libpng. Takes about 100 ms for a frame: never on the wall's
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +8,11 @@
 
 #include "daemon/base/result.h"
 
-namespace merlin::render {
+namespace merlin::render::image {
 
 // `pixels`: RGBA, rows from top to bottom, 4 * width * height bytes; alpha is not written. The file
-// appears whole or not at all. The same pixels give the same bytes. Errors: writeFile()'s.
+// appears whole or not at all. The same pixels give the same bytes. Errors: as writeFile().
 Result<Ok> writePng(const std::string& path, int width, int height,
                     std::span<const std::uint8_t> pixels);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::image

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace merlin::render {
+namespace merlin::render::inventor {
 
 void FrameRateLaw::start(double now_s) noexcept {
   started_ = std::isfinite(now_s);
@@ -32,4 +32,4 @@ std::optional<std::int32_t> FrameRateLaw::frameDrawn(double now_s, std::size_t t
   return static_cast<std::int32_t>(std::min(per_frame, kMost));
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::inventor

@@ -1,27 +1,29 @@
-// The control loop of 1998: the triangles a frame that hold a rate. Pure: time is passed in.
+// The frame rate control of [GOURLEY98]: the number of triangles per frame that holds a desired
+// rate. Pure: time is passed in.
 //
-// Figure 5.36 of [GOURLEY98] 5.4: frames counted over a second x triangles drawn = triangles a
-// second; that / desired rate = triangles a frame; a new resolution unless within tolerance.
+// Figure 5.36 of [GOURLEY98] 5.4: the triangles of all frames drawn in one second, divided by the
+// desired rate, are the new triangles per frame; the resolution changes unless that is within
+// tolerance.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 
-namespace merlin::render {
+namespace merlin::render::inventor {
 
 class FrameRateLaw {
  public:
   static constexpr double kWindow_s = 1.0;
-  static constexpr double kTolerance = 0.1;  // of the triangles drawn
+  static constexpr double kTolerance = 0.1;  // relative to the triangles of the last frame
 
-  // A frame of `triangles` was drawn, at `now_s` of any clock that goes forward. Returns the
-  // triangles a frame, 0 .. 2^31 - 1, with which `desired_hz` > 0 would be held, once a window is
-  // over and where they are out of tolerance; else nothing. A time that is not finite, or not later
-  // than the one before, begins a new window.
+  // To be called for each frame: it has drawn `triangles` triangles at `now_s` of any clock that
+  // never goes back. At the end of a window, returns the triangles per frame, 0 .. 2^31 - 1, that
+  // would hold `desired_hz` > 0, if they are out of tolerance; else nothing. A time that is not
+  // finite, or not later than the one before, begins a new window.
   std::optional<std::int32_t> frameDrawn(double now_s, std::size_t triangles, double desired_hz);
 
-  // Nothing is drawn any more: the next frame begins a new window.
+  // Drawing pauses: the next frame begins a new window.
   void rest() noexcept { started_ = false; }
 
  private:
@@ -33,4 +35,4 @@ class FrameRateLaw {
   double triangles_ = 0;  // drawn since start_s_
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::inventor

@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kAll = std::numeric_limits<int>::max();
 
-constexpr double kSettle_s = 0.25;  // from the end of the last frame of a motion to stillness
+constexpr double kSettle_s = 0.25;  // after the last frame of a motion, until it counts as ended
 
 SbMatrix viewOf(SoState* state) {
   SbMatrix view = SoModelMatrixElement::get(state);
@@ -88,7 +88,7 @@ SoMRFaceSet::~SoMRFaceSet() = default;
 
 void SoMRFaceSet::notify(SoNotList* list) {
   const SoField* field = list->getLastField();
-  if (field == &frameTime) return applyFrameTime();  // a redraw would make the next frame of it
+  if (field == &frameTime) return applyFrameTime();  // no notification: a redraw would set it again
   if (field == &interacting) law_.rest();
   const SoField* const kOfNoModel[] = {&minimumResolution, &maximumResolution, &currentResolution,
                                        &desiredFrameRate,  &interacting,       &alternateRep};
@@ -97,7 +97,7 @@ void SoMRFaceSet::notify(SoNotList* list) {
   SoShape::notify(list);
 }
 
-merlin::render::Surface* SoMRFaceSet::surface() {
+merlin::render::inventor::Surface* SoMRFaceSet::surface() {
   if (!changed_) return surface_.get();
   changed_ = false;
   auto made = Surface::make(
@@ -109,7 +109,7 @@ merlin::render::Surface* SoMRFaceSet::surface() {
   surface_.reset();
   SoDebugError::post("SoMRFaceSet",
                      "node \"%s\": %s; nothing is drawn. \"merlin mesh export MODEL.mrm "
-                     "--multiresolution -o OUT.iv\" writes a whole one",
+                     "--multiresolution -o OUT.iv\" writes a valid file",
                      getName().getString(), made.error().what.c_str());
   return nullptr;
 }
@@ -140,7 +140,7 @@ void SoMRFaceSet::GLRender(SoGLRenderAction* action) {
   if (!surface()) return;
   const bool first_pass = action->getCurPass() == 0 && !action->isRenderingDelayedPaths();
   if (automatic()) {
-    // A parent's cache would draw the old resolution, and hide frames from the law.
+    // A parent's render cache would draw the old resolution and hide frames from law_.
     SoCacheElement::invalidate(action->getState());
   }
   if (automatic() && first_pass && !viewer_counts_) {
@@ -151,8 +151,8 @@ void SoMRFaceSet::GLRender(SoGLRenderAction* action) {
   shown()->GLRender(action);
 }
 
-// A frame seen from elsewhere than the one before is one of a motion. However long it takes to
-// draw, the motion lasts until it is drawn.
+// A frame with other matrices than the one before belongs to a motion. The alarm that ends the
+// motion is stopped until the frame is drawn, however long that takes.
 void SoMRFaceSet::watchMatrices(SoGLRenderAction* action) {
   const SbMatrix view = viewOf(action->getState());
   const bool moved = last_view_ && view != *last_view_;
@@ -162,7 +162,7 @@ void SoMRFaceSet::watchMatrices(SoGLRenderAction* action) {
   still_alarm_.unschedule();
 }
 
-// The resolution to go on with, where it is another.
+// Counts a frame; returns the new currentResolution if it has to change.
 std::optional<int> SoMRFaceSet::frameDrawn(double now_s) {
   Surface* const ready = automatic() && moving() ? surface() : nullptr;
   if (!ready) {
@@ -185,7 +185,7 @@ void SoMRFaceSet::applyFrameTime() {
   if (const auto next = frameDrawn(now_s)) currentResolution = *next;
 }
 
-// The state of one viewer does not apply to the next.
+// Resets the two fields that a viewer sets: a file may hold the state of another viewer.
 SbBool SoMRFaceSet::readInstance(SoInput* in, unsigned short flags) {
   reading_ = true;
   const SbBool read = SoShape::readInstance(in, flags);

@@ -1,8 +1,8 @@
-// SoMRFaceSet: the multiresolution face set of 1998 as an Open Inventor node ([GOURLEY98] 4.2.2,
-// 5.4). A module of its own, which Coin loads where a file or a program names the class.
+// SoMRFaceSet: the multiresolution face set of [GOURLEY98] (4.2.2, 5.4) as an Open Inventor node. A
+// separate module, which Coin loads when a file or a program names the class.
 //
-// Thread-bound, as all of Open Inventor. In the global namespace: Coin calls it by its mangled
-// name.
+// Thread-bound, as all of Open Inventor. In the global namespace, because Coin finds initClass() by
+// its mangled name.
 #pragma once
 
 #include <memory>
@@ -27,7 +27,8 @@
 #include "render/inventor/frame_rate_law.h"
 #include "render/inventor/surface.h"
 
-// Fields that describe no surface give one SoDebugError, and nothing is drawn until they change.
+// If the fields do not describe a valid surface, the node posts one SoDebugError and draws nothing
+// until they change.
 class __attribute__((visibility("default"))) SoMRFaceSet : public SoShape {
   SO_NODE_HEADER(SoMRFaceSet);
 
@@ -37,23 +38,27 @@ class __attribute__((visibility("default"))) SoMRFaceSet : public SoShape {
   SoMRFaceSet(const SoMRFaceSet&) = delete;
   SoMRFaceSet& operator=(const SoMRFaceSet&) = delete;
 
-  // In triangles. Current is kept within the other two, and they within what the model has.
+  // In triangles. The resolution drawn is currentResolution, limited to the range of the other two
+  // and to what the model has.
   SoSFInt32 minimumResolution, maximumResolution, currentResolution;
-  // Hz. 0: currentResolution is drawn, and set by hand. Else it is what holds this rate, set by the
-  // node and drawn while anything moves; maximumResolution is drawn while all is still.
+  // [Hz] 0: currentResolution is drawn, which the user sets. Otherwise, while anything moves, the
+  // node sets currentResolution such that this rate is held and draws it; while nothing moves it
+  // draws maximumResolution.
   SoSFFloat desiredFrameRate;
-  // A viewer may say when it moves; else the node takes it from the matrices it is drawn with.
+  // A viewer may set this while it moves; otherwise the node detects motion by changes of the
+  // matrices that it is drawn with.
   SoSFBool interacting;
-  // A viewer may say when it has drawn a frame, by any clock; while this is not 0 it alone is
-  // believed, for `interacting` too. Changing it draws nothing. Neither is taken from a file.
+  // A viewer may set this after each frame, to the time of any clock. While it is not 0, the node
+  // ignores its own times of frames and its own detection of motion. Setting it causes no redraw.
+  // Values of `interacting` and `frameTime` in a file are ignored.
   SoSFTime frameTime;
 
-  // Attributes of all nodes of the dendrogram, numbered by their death; the last three may be
-  // empty.
+  // Attributes of all nodes of the dendrogram, in its order of nodes; the last three may be empty.
   SoMFVec3f vertex, normal;
   SoMFColor diffuseColor;
   SoMFVec2f texCoord;
-  // render/lod/dendrogram.h: triangles, parents, alive; levelErrors may be empty.
+  // The arrays triangles, parents, alive and error of render/lod/dendrogram.h; levelErrors may be
+  // empty.
   SoMFInt32 faces, parents, aliveCounts;
   SoMFFloat levelErrors;
 
@@ -70,13 +75,13 @@ class __attribute__((visibility("default"))) SoMRFaceSet : public SoShape {
   SbBool readInstance(SoInput* in, unsigned short flags) override;
 
  private:
-  using Surface = merlin::render::Surface;
+  using Surface = merlin::render::inventor::Surface;
 
   void addModelFields();
-  Surface* surface();  // made of the fields where they have changed; nullptr where they are broken
+  Surface* surface();  // rebuilt if the fields have changed; nullptr if they are invalid
   bool automatic() const;
   bool moving() const;
-  int budget() const;  // triangles, at most
+  int budget() const;  // limit of triangles for the next frame
   SoIndexedFaceSet* shown();
 
   void watchMatrices(SoGLRenderAction* action);
@@ -86,13 +91,13 @@ class __attribute__((visibility("default"))) SoMRFaceSet : public SoShape {
   static void becomeStill(void* self, SoSensor* sensor);
 
   std::unique_ptr<Surface> surface_;
-  bool changed_ = true;         // the model's fields, since surface_ was made
-  bool viewer_counts_ = false;  // frameTime is set
-  bool reading_ = false;        // from a file
+  bool changed_ = true;         // fields of the model have changed since surface_ was made
+  bool viewer_counts_ = false;  // frameTime is not 0
+  bool reading_ = false;        // readInstance() is running
 
-  merlin::render::FrameRateLaw law_;
+  merlin::render::inventor::FrameRateLaw law_;
   std::optional<int> next_resolution_;
-  SoOneShotSensor after_frame_;  // fields are not changed while they are drawn
+  SoOneShotSensor after_frame_;  // changes fields after the traversal, not during it
 
   std::optional<SbMatrix> last_view_;
   bool matrices_move_ = false;

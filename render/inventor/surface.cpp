@@ -10,19 +10,19 @@
 
 #include <fmt/format.h>
 
-namespace merlin::render {
+namespace merlin::render::inventor {
 namespace {
 
-// With an end mark a triangle, an index list of them still has an int's size.
+// With one end mark per triangle, the size of the index list still fits into an int.
 constexpr int kMostCorners = std::numeric_limits<int>::max() / 4 * 3;
 
-// The dendrogram's part of the fields, as a Dendrogram views it.
+// The fields that belong to the dendrogram, in the form that a Dendrogram views.
 struct Tree {
   std::vector<std::uint32_t> faces, parents, alive;
   std::vector<float> error;
 };
 
-// Negative numbers become too large ones, which no check lets through.
+// Negative numbers become very large ones, which Dendrogram::make() rejects.
 std::vector<std::uint32_t> unsignedOf(const SoMFInt32& field) {
   const std::int32_t* values = field.getValues(0);
   return {values, values + field.getNum()};
@@ -33,7 +33,8 @@ std::shared_ptr<const Tree> treeOf(const Surface::Fields& fields) {
   tree->faces = unsignedOf(fields.faces);
   tree->parents = unsignedOf(fields.parents);
   tree->alive = unsignedOf(fields.aliveCounts);
-  // Nothing is drawn by the errors, and Coin rounds a text's numbers so that they might fall.
+  // Errors stay 0: drawing does not use them, and Coin rounds numbers in text files, so that they
+  // might fall, which Dendrogram::make() would reject.
   tree->error.resize(tree->alive.size());
   return tree;
 }
@@ -44,7 +45,7 @@ std::span<const float> numbersOf(const SoMFVec3f& field) {
   return {field.getValues(0)->getValue(), 3 * count};
 }
 
-// One value for each of `wanted` things, or none.
+// Checks that the field has `wanted` values, one for each of `things`, or none.
 Result<Ok> checkCount(const char* name, const SoMField& field, int wanted, const char* things) {
   if (field.getNum() == 0 || field.getNum() == wanted) return Ok{};
   return Error{Errc::kMalformed,
@@ -66,7 +67,7 @@ Result<Ok> checkCounts(const Surface::Fields& fields) {
                     "levels (aliveCounts)");
 }
 
-// 0 for what is no number: a cast of that is undefined.
+// A colour component as a byte; 0 for NaN, since casting NaN is undefined.
 std::uint32_t byteOf(float part) {
   if (!(part > 0)) return 0;
   return part < 1 ? static_cast<std::uint32_t>(std::lround(part * 255)) : 255;
@@ -122,15 +123,15 @@ Result<Ok> Surface::check(const Fields& fields) {
   }
   if (const auto counts = checkCounts(fields); !counts) return counts.error();
   const auto tree = treeOf(fields);
-  Dendrogram::Arrays arrays;
+  lod::Dendrogram::Arrays arrays;
   arrays.positions = numbersOf(attributes_->vertex);
   arrays.triangles = tree->faces;
   arrays.parents = tree->parents;
   arrays.alive = tree->alive;
   arrays.error = tree->error;
-  auto made = Dendrogram::make(std::move(arrays), tree);
+  auto made = lod::Dendrogram::make(std::move(arrays), tree);
   if (!made) return made.error();
-  dendrogram_ = std::make_unique<const Dendrogram>(*std::move(made));
+  dendrogram_ = std::make_unique<const lod::Dendrogram>(*std::move(made));
   for (int i = 0; i < nodes; ++i) box_.extendBy(attributes_->vertex[i]);
   return Ok{};
 }
@@ -161,4 +162,4 @@ void Surface::cut(Cut& copy, std::size_t level) const {
   copy.made = true;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::inventor

@@ -1,4 +1,4 @@
-// Surface: what the fields of an SoMRFaceSet describe, checked, and two resolutions cut from it.
+// Surface: the model that the fields of an SoMRFaceSet describe, checked, and two cuts of it.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@
 #include "daemon/base/result.h"
 #include "render/lod/dendrogram.h"
 
-namespace merlin::render {
+namespace merlin::render::inventor {
 
-// Keeps copies of the fields: whatever becomes of them afterwards, a cut stays safe. Thread-bound.
+// Keeps copies of the fields, so that cuts stay safe whatever happens to the fields. Thread-bound.
 class Surface {
  public:
   struct Fields {
@@ -33,20 +33,20 @@ class Surface {
     const SoMFFloat& levelErrors;
   };
 
-  // Two are kept, so that one is swapped for the other at once ([GOURLEY98] 5.4).
+  // Two cuts are kept, so that a change between motion and rest is immediate ([GOURLEY98] 5.4).
   enum Copy { kStill, kMoving };
 
-  // Checks all that a cut relies on, O(fields). Errors: kMalformed.
+  // Checks everything that a cut relies on, in O(fields). Errors: kMalformed.
   static Result<std::unique_ptr<Surface>> make(const Fields& fields);
   ~Surface();
   Surface(const Surface&) = delete;
   Surface& operator=(const Surface&) = delete;
 
-  // The copy at the finest resolution with at most `budget` triangles, cut now where it had
-  // another; the coarsest where none is that small. Valid for as long as the surface.
+  // The face set of `copy` at the finest resolution with at most `budget` triangles, or at the
+  // coarsest if none has so few; cut again only if its level differs. Valid as long as this object.
   SoIndexedFaceSet& at(Copy copy, std::size_t budget);
 
-  // Number of triangles of that cut: O(log levels), cuts nothing.
+  // Number of triangles that at() would give, without cutting. O(log levels).
   std::size_t trianglesFor(std::size_t budget) const noexcept;
 
   SoVertexProperty& attributes() const noexcept { return *attributes_; }  // of all nodes
@@ -65,8 +65,8 @@ class Surface {
 
   SoVertexProperty* attributes_;
   std::array<Cut, 2> copies_;
-  std::unique_ptr<const Dendrogram> dendrogram_;
+  std::unique_ptr<const lod::Dendrogram> dendrogram_;
   SbBox3f box_;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::inventor

@@ -1,4 +1,4 @@
-// Builds a Dendrogram of a reduction: all rows in the order of their death.
+// Builds the Dendrogram of a reduction: gathers all rows in the order of their death, latest first.
 #include <algorithm>
 #include <cassert>
 #include <memory>
@@ -7,7 +7,7 @@
 #include "render/lod/death_order.h"
 #include "render/lod/dendrogram.h"
 
-namespace merlin::render {
+namespace merlin::render::lod {
 namespace {
 
 struct Storage {
@@ -31,7 +31,7 @@ std::vector<float> gather(const std::vector<float>& leaves, const std::vector<fl
 
 }  // namespace
 
-Dendrogram buildDendrogram(const Mesh& mesh, const CollapseLog& log) {
+Dendrogram buildDendrogram(const mesh::Mesh& mesh, const CollapseLog& log) {
   const DeathOrder order(mesh, log, threadsOr(0));
   const std::size_t collapses = log.children.size(), vertices = mesh.vertexCount();
   auto s = std::make_shared<Storage>();
@@ -51,7 +51,7 @@ Dendrogram buildDendrogram(const Mesh& mesh, const CollapseLog& log) {
                        s->alive,     s->error, log.about,  {}};
   s->features.reserve(mesh.features.size());
   for (std::size_t f = 0; f < mesh.features.size(); ++f) {
-    const Feature& feature = mesh.features[f];
+    const mesh::Feature& feature = mesh.features[f];
     s->features.push_back(gather(feature.values, log.features[f], feature.dimension, order));
     a.features.push_back({feature.name, feature.dimension, s->features.back()});
   }
@@ -69,4 +69,4 @@ std::vector<float> risingError(const CollapseLog& log) {
   return error;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::lod

@@ -4,7 +4,7 @@
 #include <immintrin.h>
 #endif
 
-namespace merlin::render {
+namespace merlin::render::lod {
 namespace {
 
 void chasePortable(const Forest& forest, std::uint32_t alive, const std::uint32_t* from,
@@ -13,8 +13,9 @@ void chasePortable(const Forest& forest, std::uint32_t alive, const std::uint32_
 }
 
 #if defined(__x86_64__)
-// How far corners go differs from one to the next, and a branch guesses wrong: eight go together
-// until none is left. REQUIRES: node numbers below 2^31.
+// The number of steps to an alive ancestor varies, so that branches of a loop over single corners
+// are mispredicted. Here eight corners go up together until all are alive. REQUIRES: node numbers
+// below 2^31.
 __attribute__((target("avx2"))) void chaseAvx2(const Forest& forest, std::uint32_t alive,
                                                const std::uint32_t* from, std::size_t count,
                                                std::uint32_t* out) {
@@ -47,4 +48,4 @@ ChaseAll chaser(std::size_t nodes) {
   return chasePortable;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::lod

@@ -1,4 +1,4 @@
-// Clusters: made once, for a model; clusters.cpp cuts.
+// Builds Clusters, once for each model; clusters.cpp cuts them.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,24 +10,25 @@
 #include "render/lod/clusters.h"
 #include "render/mesh/morton.h"
 
-namespace merlin::render {
+namespace merlin::render::lod {
 namespace {
 
 constexpr std::uint16_t kNoCluster = std::numeric_limits<std::uint16_t>::max();
-// In triangles, from one rung to the next: up to what a machine draws, and of those that only large
-// budgets begin at.
+// Ratio of triangle counts between successive detail steps: sqrt(2) up to 300,000 triangles, 2
+// above.
 constexpr double kRungStep = 1.41421356, kLargeRungStep = 2;
 constexpr std::size_t kLargeRung = 300'000;
 constexpr unsigned kCurveBits = 10;
-// Cuts of fewer triangles a cluster are made without clusters.
+// Cuts of fewer triangles per cluster than this do without clusters.
 constexpr std::size_t kFewPerCluster = 64;
-// Where nobody says how many clusters.
+// Automatic number of clusters: vertices per cluster, least and largest number.
 constexpr std::size_t kVerticesOfACluster = 700, kLeastUsual = 512, kMostUsual = 2048;
-// Pieces that all nodes or triangles are done in: what comes out does not depend on them.
+// Number of pieces in which threads process all nodes or triangles; the result does not depend on
+// it.
 constexpr std::size_t kPieces = 16;
 
-// Number of triangles of the finest rung such that all rungs fit: 12 bytes for each triangle of
-// every rung, and a rank and a node's cluster for each of the finest.
+// Triangles of the finest step such that all steps fit into `memory`: 12 bytes per triangle of each
+// step, plus 6 (rank and cluster) per triangle of the finest.
 std::size_t trianglesThatFit(std::size_t memory) {
   constexpr std::size_t kOfRungs = 12 * 3414 / 1000, kOfLargeRungs = 12 * 2, kOfFinest = 4 + 2;
   constexpr std::size_t kLeastLarge = (kOfRungs + kOfFinest) * kLargeRung;
@@ -35,7 +36,7 @@ std::size_t trianglesThatFit(std::size_t memory) {
   return kLargeRung + (memory - kLeastLarge) / (kOfLargeRungs + kOfFinest);
 }
 
-// [first, last) of `size` things.
+// Index range [first, last) of a piece.
 struct Piece {
   std::size_t first, last;
 };
@@ -44,14 +45,14 @@ Piece pieceOf(std::size_t size, std::size_t piece) {
   return {size * piece / kPieces, size * (piece + 1) / kPieces};
 }
 
-// By cluster, what they reach.
+// Bounding boxes, one for each cluster.
 class Boxes {
  public:
   explicit Boxes(std::size_t clusters)
-      : boxes_(clusters, Box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}}) {}
+      : boxes_(clusters, mesh::Box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}}) {}
 
   void grow(std::size_t cluster, const float* position) {
-    Box& box = boxes_[cluster];
+    mesh::Box& box = boxes_[cluster];
     for (std::size_t k = 0; k < 3; ++k) {
       box.low[k] = std::min(box.low[k], position[k]);
       box.high[k] = std::max(box.high[k], position[k]);
@@ -65,22 +66,22 @@ class Boxes {
     }
   }
   bool isEmpty(std::size_t cluster) const { return boxes_[cluster].low[0] == kFar; }
-  const Box& operator[](std::size_t cluster) const { return boxes_[cluster]; }
+  const mesh::Box& operator[](std::size_t cluster) const { return boxes_[cluster]; }
 
  private:
   static constexpr float kFar = std::numeric_limits<float>::infinity();
-  std::vector<Box> boxes_;
+  std::vector<mesh::Box> boxes_;
 };
 
 }  // namespace
 
-// The state of the constructor's work, used once.
+// Working state of the constructor.
 struct Clusters::Builder {
   Clusters& c;
   const Dendrogram& d;
   std::size_t finest;
 
-  // L0, and the finest level for whose rungs there is memory.
+  // Chooses L0 (coarsest_), and as `finest` the finest level for whose steps there is memory.
   void chooseLevels(const ClusterSettings& settings);
   void numberClusters();
   void sortFinest();
@@ -104,28 +105,29 @@ void Clusters::Builder::chooseLevels(const ClusterSettings& settings) {
   finest = std::min(d.levelFor(trianglesThatFit(settings.memory - plain)), c.coarsest_);
 }
 
-// Every node goes to the cluster of its parent; those alive at L0 are roots. Clusters are numbered
-// along a curve. Roots in one place are the two sides of a seam: they share a cluster, so that both
-// are always at the same level and nothing gapes between them.
+// The nodes alive at L0 are the roots of clusters; every other node belongs to the cluster of its
+// parent. Clusters are numbered along a Morton curve. Roots at the same position are the two sides
+// of a seam: they share a cluster, so that both always have the same level and no gap opens between
+// them.
 void Clusters::Builder::numberClusters() {
   const auto alive = c.aliveBelow(c.coarsest_);
   c.cluster_of_.assign(c.aliveBelow(finest), kNoCluster);
   std::vector<std::uint32_t> roots;
-  std::vector<bool> made(alive, false);  // by a later collapse: not there yet at L0
+  std::vector<bool> made(alive, false);  // by a later collapse: does not exist yet at L0
   for (std::size_t k = c.coarsest_; k < c.forest_.parents.size(); ++k)
     made[c.forest_.parents[k]] = true;
   for (std::uint32_t n = 0; n < alive; ++n) {
     if (!made[n]) roots.push_back(n);
   }
   const auto positions = d.arrays().positions;
-  const Box box = boundingBox(positions);
+  const mesh::Box box = mesh::boundingBox(positions);
   std::array<float, 3> extent{};
   for (std::size_t k = 0; k < 3; ++k) {
     extent[k] = box.high[k] - box.low[k];
     if (!(extent[k] > 0)) extent[k] = 1;
   }
   const auto key = [&](std::uint32_t n) {
-    return mortonKey(&positions[3 * std::size_t{n}], box.low, extent, kCurveBits);
+    return mesh::mortonKey(&positions[3 * std::size_t{n}], box.low, extent, kCurveBits);
   };
   const auto place = [&](std::uint32_t n) {
     const float* p = &positions[3 * std::size_t{n}];
@@ -133,7 +135,7 @@ void Clusters::Builder::numberClusters() {
   };
   std::stable_sort(roots.begin(), roots.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
-  // Where a mesh has more parts than there may be clusters, neighbours share one.
+  // If a mesh has more parts than there may be clusters, neighbouring roots share one.
   const std::size_t share = roots.size() / (kNoCluster - 1) + 1;
   std::size_t places = 0;
   for (std::size_t i = 0; i < roots.size(); ++i) {
@@ -145,7 +147,7 @@ void Clusters::Builder::numberClusters() {
   c.bounds_.resize(roots.empty() ? 0 : places / share + 1);
 }
 
-// Which group each triangle of the finest level belongs to.
+// The group (DetailStep) of each triangle that is alive at the finest level.
 std::vector<std::uint32_t> Clusters::Builder::groupTriangles(
     std::span<const std::uint32_t> corners) const {
   std::vector<std::uint32_t> group(corners.size() / 3, static_cast<std::uint32_t>(2 * c.size()));
@@ -165,71 +167,71 @@ void Clusters::Builder::sortFinest() {
   std::vector<std::uint32_t> corners(3 * d.trianglesAt(finest));
   d.cut(finest, corners);
   const std::vector<std::uint32_t> group = groupTriangles(corners);
-  Rung rung{finest, std::vector<std::uint32_t>(2 * c.size() + 2, 0), {}};
-  for (const std::uint32_t g : group) ++rung.begins[g + 1];
-  std::partial_sum(rung.begins.begin(), rung.begins.end(), rung.begins.begin());
+  DetailStep step{finest, std::vector<std::uint32_t>(2 * c.size() + 2, 0), {}};
+  for (const std::uint32_t g : group) ++step.begins[g + 1];
+  std::partial_sum(step.begins.begin(), step.begins.end(), step.begins.begin());
   c.ranks_.resize(group.size());
-  rung.corners.resize(corners.size());
-  std::vector<std::uint32_t> at(rung.begins.begin(), rung.begins.end() - 1);
+  step.corners.resize(corners.size());
+  std::vector<std::uint32_t> at(step.begins.begin(), step.begins.end() - 1);
   for (std::size_t rank = 0; rank < group.size(); ++rank) {
     const std::uint32_t i = at[group[rank]]++;
     c.ranks_[i] = static_cast<std::uint32_t>(rank);
-    std::copy_n(&corners[3 * rank], 3, &rung.corners[3 * std::size_t{i}]);
+    std::copy_n(&corners[3 * rank], 3, &step.corners[3 * std::size_t{i}]);
   }
-  c.rungs_.push_back(std::move(rung));
+  c.steps_.push_back(std::move(step));
 }
 
-// Each from the one before.
+// Makes each coarser step from the one before.
 void Clusters::Builder::addRungs() {
   auto triangles = static_cast<double>(d.trianglesAt(finest));
   for (;;) {
     triangles /= triangles > kLargeRung ? kLargeRungStep : kRungStep;
     if (triangles <= static_cast<double>(d.trianglesAt(c.coarsest_))) return;
     const std::size_t level = d.levelFor(static_cast<std::size_t>(triangles));
-    const Rung& finer = c.rungs_.back();
+    const DetailStep& finer = c.steps_.back();
     if (level <= finer.level || level >= c.coarsest_) continue;
-    Rung rung{level, {0}, {}};
-    rung.corners.resize(3 * std::size_t{c.alive_[level]});
-    std::uint32_t* at = rung.corners.data();
+    DetailStep step{level, {0}, {}};
+    step.corners.resize(3 * std::size_t{c.alive_[level]});
+    std::uint32_t* at = step.corners.data();
     for (std::size_t g = 0; g + 1 < finer.begins.size(); ++g) {
       const std::size_t begin = finer.begins[g], n = c.prefix(finer, g, c.alive_[level]);
       at = c.chaseTo(level, &finer.corners[3 * begin], 3 * n, at);
-      rung.begins.push_back(static_cast<std::uint32_t>(rung.begins.back() + n));
+      step.begins.push_back(static_cast<std::uint32_t>(step.begins.back() + n));
     }
-    c.rungs_.push_back(std::move(rung));
+    c.steps_.push_back(std::move(step));
   }
 }
 
-// For cuts of so few triangles that clusters would cost more than they bring.
+// Makes steps for cuts of so few triangles that clusters would cost more than they save.
 void Clusters::Builder::addPlainRungs() {
   auto triangles = static_cast<double>(std::min(kFewPerCluster * c.size(), d.trianglesAt(finest)));
   for (; triangles >= 1; triangles /= kRungStep) {
     const std::size_t level = d.levelFor(static_cast<std::size_t>(triangles));
     if (!c.plain_.empty() && level <= c.plain_.back().level) continue;
-    Rung rung{level, {}, std::vector<std::uint32_t>(3 * d.trianglesAt(level))};
+    DetailStep step{level, {}, std::vector<std::uint32_t>(3 * d.trianglesAt(level))};
     if (c.plain_.empty())
-      d.cut(level, rung.corners);
+      d.cut(level, step.corners);
     else
-      c.chaseTo(level, c.plain_.back().corners.data(), rung.corners.size(), rung.corners.data());
-    c.plain_.push_back(std::move(rung));
+      c.chaseTo(level, c.plain_.back().corners.data(), step.corners.size(), step.corners.data());
+    c.plain_.push_back(std::move(step));
   }
 }
 
 void Clusters::Builder::findNeighbours() {
   c.neighbours_.resize(c.size());
-  const Rung& finest_rung = c.rungs_.front();
+  const DetailStep& finest_step = c.steps_.front();
   for (std::size_t i = 0; i < c.size(); ++i) {
     auto& list = c.neighbours_[i];
-    for (std::size_t t = 3 * std::size_t{finest_rung.begins[2 * i + 1]};
-         t < 3 * std::size_t{finest_rung.begins[2 * i + 2]}; ++t)
-      list.push_back(c.cluster_of_[finest_rung.corners[t]]);
+    for (std::size_t t = 3 * std::size_t{finest_step.begins[2 * i + 1]};
+         t < 3 * std::size_t{finest_step.begins[2 * i + 2]}; ++t)
+      list.push_back(c.cluster_of_[finest_step.corners[t]]);
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
     list.shrink_to_fit();
   }
 }
 
-// Down to the leaves, finer than the finest level too.
+// Continues cluster_of_ down to the leaves, which are finer than the finest level.
 std::vector<std::uint16_t> Clusters::clusterOfEach() const {
   std::vector<std::uint16_t> of = cluster_of_;
   of.resize(forest_.nodes);
@@ -251,7 +253,6 @@ Boxes Clusters::Builder::boxesOfNodes() const {
     for (std::size_t n = nodes.first; n < nodes.last; ++n) {
       if (of[n] != kNoCluster) own.grow(of[n], at(static_cast<std::uint32_t>(n)));
     }
-    if (finest == 0) return;
     const Piece triangles = pieceOf(leaves.size() / 3, piece);
     for (std::size_t t = triangles.first; t < triangles.last; ++t) {
       const std::uint16_t cluster = of[leaves[3 * t]];
@@ -264,17 +265,18 @@ Boxes Clusters::Builder::boxesOfNodes() const {
   return std::move(boxes[0]);
 }
 
-// Spheres round all that a cluster's triangles can be made of, and cones round the finest normals.
+// Computes spheres around all nodes that a cluster's triangles can have at any level, and cones
+// around the normals at the finest level.
 void Clusters::Builder::measure() {
   const auto positions = d.arrays().positions;
   Boxes boxes = boxesOfNodes();
-  // Corners in other clusters, and what they may be chased up to.
+  // Corners in other clusters, and all ancestors that may replace them.
   const auto coarse = c.aliveBelow(c.coarsest_);
   forBlocks(threadsOr(0), c.size(), [&](std::size_t i) {
-    const Rung& rung = c.rungs_.front();
-    for (std::size_t t = 3 * std::size_t{rung.begins[2 * i + 1]};
-         t < 3 * std::size_t{rung.begins[2 * i + 2]}; ++t) {
-      std::uint32_t node = rung.corners[t];
+    const DetailStep& step = c.steps_.front();
+    for (std::size_t t = 3 * std::size_t{step.begins[2 * i + 1]};
+         t < 3 * std::size_t{step.begins[2 * i + 2]}; ++t) {
+      std::uint32_t node = step.corners[t];
       if (c.cluster_of_[node] == i) continue;
       boxes.grow(i, &positions[3 * std::size_t{node}]);
       while (node >= coarse) {
@@ -294,12 +296,12 @@ void Clusters::Builder::measure() {
 void Clusters::Builder::measureCone(std::size_t cluster) {
   const auto positions = d.arrays().positions;
   std::vector<std::array<float, 3>> normals;
-  const Rung& rung = c.rungs_.front();
-  for (std::size_t t = rung.begins[2 * cluster]; t < rung.begins[2 * cluster + 2]; ++t) {
+  const DetailStep& step = c.steps_.front();
+  for (std::size_t t = step.begins[2 * cluster]; t < step.begins[2 * cluster + 2]; ++t) {
     const auto at = [&](std::size_t k) {
-      return &positions[3 * std::size_t{rung.corners[3 * t + k]}];
+      return &positions[3 * std::size_t{step.corners[3 * t + k]}];
     };
-    normals.push_back(faceNormal(at(0), at(1), at(2)));
+    normals.push_back(mesh::faceNormal(at(0), at(1), at(2)));
   }
   ClusterBounds& b = c.bounds_[cluster];
   std::array<float, 3> sum{};
@@ -331,12 +333,13 @@ Clusters::Clusters(const Dendrogram& dendrogram, const ClusterSettings& settings
   builder.measure();
 }
 
-// Stable, as if by one thread.
+// A parallel counting sort by cluster; stable, so the result is the same as with one thread.
 void Clusters::everything(std::vector<std::uint32_t>& corners,
                           std::vector<std::uint32_t>& ends) const {
   const auto leaves = dendrogram_.arrays().triangles;
   const std::vector<std::uint16_t> of = clusterOfEach();
-  std::vector<std::uint32_t> at(kPieces * size(), 0);  // by piece, where a cluster's next goes
+  // By piece and cluster: where the next triangle goes.
+  std::vector<std::uint32_t> at(kPieces * size(), 0);
   forBlocks(threadsOr(0), kPieces, [&](std::size_t piece) {
     const Piece triangles = pieceOf(leaves.size() / 3, piece);
     for (std::size_t t = triangles.first; t < triangles.last; ++t)
@@ -360,4 +363,4 @@ void Clusters::everything(std::vector<std::uint32_t>& corners,
   });
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::lod

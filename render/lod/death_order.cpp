@@ -6,14 +6,14 @@
 
 #include "daemon/base/blocks.h"
 
-namespace merlin::render {
+namespace merlin::render::lod {
 namespace {
 
 constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
 
-// The forest as it was made: of each two nodes that merge the first one's place goes on, the
-// second one's ends. A place is a vertex of the mesh, so that what is near in space is near in
-// memory; chased by the nodes' numbers, each step would be to somewhere else.
+// The collapses in terms of places, which are vertices of the mesh: when two nodes merge, the new
+// node takes the place of the first, and the place of the second ends there. Places that are near
+// in space are near in memory; with the numbers of nodes, each step would go to a distant address.
 struct Places {
   struct End {
     std::uint32_t collapse = kNever, into = 0;
@@ -22,7 +22,7 @@ struct Places {
 
   Places(std::size_t vertices, const CollapseLog& log) : ends(vertices) {
     for (std::size_t v = 0; v < vertices; ++v) ends[v] = {};
-    HugeArray<std::uint32_t> place_of(log.children.size());  // of the nodes that collapses make
+    HugeArray<std::uint32_t> place_of(log.children.size());  // [k]: of the node of collapse k
     for (std::size_t k = 0; k < log.children.size(); ++k) {
       const auto place = [&](std::uint32_t n) { return n < vertices ? n : place_of[n - vertices]; };
       const std::uint32_t on = place(log.children[k][0]), over = place(log.children[k][1]);
@@ -32,8 +32,8 @@ struct Places {
     }
   }
 
-  // The level from which on the triangle is gone: when two of its corners are in one place. 0 is
-  // impossible.
+  // The first level at which the triangle is gone, because two of its corners share a place; never
+  // 0. kNever if no collapse removes the triangle.
   std::uint32_t deathOf(const std::uint32_t* corners) const {
     std::uint32_t c[] = {corners[0], corners[1], corners[2]};
     std::uint32_t at[] = {ends[c[0]].collapse, ends[c[1]].collapse, ends[c[2]].collapse};
@@ -50,7 +50,7 @@ struct Places {
 
 }  // namespace
 
-DeathOrder::DeathOrder(const Mesh& mesh, const CollapseLog& log, unsigned threads)
+DeathOrder::DeathOrder(const mesh::Mesh& mesh, const CollapseLog& log, unsigned threads)
     : log_(log), alive_(log.children.size() + 2) {
   {
     HugeArray<std::uint32_t> deaths(mesh.triangleCount());
@@ -61,7 +61,7 @@ DeathOrder::DeathOrder(const Mesh& mesh, const CollapseLog& log, unsigned thread
   numberNodes();
 }
 
-// Roots keep their order, then come the children of the last collapse, ...
+// Numbers the roots in their order, then the children of the last collapse, ... of the first one.
 void DeathOrder::numberNodes() {
   const std::size_t nodes = numbers_.size();
   for (std::size_t n = 0; n < nodes; ++n) numbers_[n] = kNever;
@@ -79,7 +79,8 @@ void DeathOrder::numberNodes() {
   }
 }
 
-void DeathOrder::findDeaths(const Mesh& mesh, unsigned threads, HugeArray<std::uint32_t>& deaths) {
+void DeathOrder::findDeaths(const mesh::Mesh& mesh, unsigned threads,
+                            HugeArray<std::uint32_t>& deaths) {
   const std::size_t count = mesh.triangleCount();
   const Places places(mesh.vertexCount(), log_);
   const auto levels = static_cast<std::uint32_t>(collapses() + 1);
@@ -88,9 +89,9 @@ void DeathOrder::findDeaths(const Mesh& mesh, unsigned threads, HugeArray<std::u
   });
 }
 
-// By death, last first, then as in the mesh: counted, then dealt out. alive_[d], d the death, is
-// first how many die later, so where those that die then begin; and when all are dealt out, where
-// they end, which is how many were left one level before.
+// Counting sort by death, latest first; equal deaths keep the order of the mesh. alive_[d], d the
+// death, is first the number of triangles that die later, where those of death d begin. After the
+// sort it is where they end, which is the number of triangles left one level before.
 void DeathOrder::sortTriangles(const HugeArray<std::uint32_t>& deaths) {
   for (std::size_t t = 0; t < deaths.size(); ++t) ++alive_[deaths[t]];
   std::uint32_t later = 0;
@@ -104,4 +105,4 @@ void DeathOrder::sortTriangles(const HugeArray<std::uint32_t>& deaths) {
     triangles_[alive_[deaths[t]]++] = static_cast<std::uint32_t>(t);
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::lod

@@ -1,5 +1,6 @@
-// DeathOrder: where the nodes and the triangles of a reduction stand in its dendrogram, without a
-// copy of either. Who writes a model that is too large for a copy gathers by it, row for row.
+// DeathOrder: the numbers that the nodes and triangles of a reduction have in its dendrogram, which
+// sorts both by the collapse that removes them (their death). It copies neither, so that a model
+// too large to be copied in memory can be written row by row.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +11,14 @@
 #include "render/lod/collapse_log.h"
 #include "render/mesh/mesh.h"
 
-namespace merlin::render {
+namespace merlin::render::lod {
 
 // Keeps a reference to the log, which must outlive it. O(n), on `threads` threads with the same
-// result; 4 bytes a node, a triangle and a level, 4 more a triangle and 8 a vertex while it is
-// made. REQUIRES: as buildDendrogram(); threads > 0.
+// result. Memory: 4 bytes per node, triangle and level; 4 more per triangle and 8 per vertex during
+// construction. REQUIRES: as buildDendrogram(); threads > 0.
 class DeathOrder {
  public:
-  DeathOrder(const Mesh& mesh, const CollapseLog& log, unsigned threads);
+  DeathOrder(const mesh::Mesh& mesh, const CollapseLog& log, unsigned threads);
 
   std::size_t nodeCount() const noexcept { return numbers_.size(); }
   std::size_t collapses() const noexcept { return log_.children.size(); }
@@ -30,7 +31,7 @@ class DeathOrder {
     return log_.children[from_end / 2][from_end % 2];
   }
 
-  // The mesh's triangle that is number `i` of the dendrogram.
+  // Index in the mesh of triangle `i` of the dendrogram.
   std::uint32_t triangleOf(std::size_t i) const noexcept { return triangles_[i]; }
 
   // Triangles left after `level` collapses.
@@ -38,16 +39,17 @@ class DeathOrder {
 
  private:
   void numberNodes();
-  void findDeaths(const Mesh& mesh, unsigned threads, HugeArray<std::uint32_t>& deaths);
+  void findDeaths(const mesh::Mesh& mesh, unsigned threads, HugeArray<std::uint32_t>& deaths);
   void sortTriangles(const HugeArray<std::uint32_t>& deaths);
 
   const CollapseLog& log_;
   HugeArray<std::uint32_t> numbers_, triangles_;
-  HugeArray<std::uint32_t> alive_;  // of the level before
+  HugeArray<std::uint32_t> alive_;  // entry L + 1: triangles left at level L
   std::vector<std::uint32_t> roots_;
 };
 
-// The error of each level: the largest up to it. log.error.size() + 1.
+// Error of each level: the largest error of the collapses before it, so it never falls. Returns
+// log.error.size() + 1 values.
 std::vector<float> risingError(const CollapseLog& log);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::lod

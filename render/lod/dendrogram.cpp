@@ -10,7 +10,7 @@
 
 #include "render/lod/chase.h"
 
-namespace merlin::render {
+namespace merlin::render::lod {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -19,11 +19,11 @@ Error broken(std::string what) { return {Errc::kMalformed, std::move(what)}; }
 
 Result<Ok> checkSizes(const Dendrogram::Arrays& a) {
   const std::size_t nodes = a.positions.size() / 3, collapses = a.parents.size();
-  if (a.positions.size() % 3 != 0 || nodes >= kNone) return broken("positions are no triples");
+  if (a.positions.size() % 3 != 0 || nodes >= kNone) return broken("positions are not triples");
   if (2 * collapses >= nodes && collapses > 0) {
     return broken(fmt::format("{} collapses need more than {} nodes", collapses, nodes));
   }
-  if (a.triangles.size() % 3 != 0) return broken("triangles are no triples");
+  if (a.triangles.size() % 3 != 0) return broken("triangles are not triples of nodes");
   if (a.alive.size() != collapses + 1 || a.error.size() != collapses + 1) {
     return broken(fmt::format("{} collapses need {} levels, there are {} counts and {} errors",
                               collapses, collapses + 1, a.alive.size(), a.error.size()));
@@ -50,9 +50,11 @@ Result<Ok> checkTree(const Dendrogram::Arrays& a) {
   }
   for (std::size_t i = 0; i < a.triangles.size(); ++i) {
     const std::uint32_t node = a.triangles[i];
-    if (node >= nodes) return broken(fmt::format("triangle {}: node {} of {}", i / 3, node, nodes));
+    if (node >= nodes)
+      return broken(
+          fmt::format("triangle {}: there is no node {}, the model has {}", i / 3, node, nodes));
     if (!made[node]) continue;
-    return broken(fmt::format("triangle {}: node {} is no vertex of the mesh", i / 3, node));
+    return broken(fmt::format("triangle {}: node {} is not a vertex of the mesh", i / 3, node));
   }
   return Ok{};
 }
@@ -61,10 +63,11 @@ Result<Ok> checkValues(const Dendrogram::Arrays& a) {
   std::size_t most = a.triangles.size() / 3;
   for (std::size_t k = 0; k < a.alive.size(); ++k) {
     if (a.alive[k] > most)
-      return broken(fmt::format("level {}: {} triangles of {}", k, a.alive[k], most));
+      return broken(
+          fmt::format("level {}: {} triangles, at most {} are possible", k, a.alive[k], most));
     most = a.alive[k];
     if (!std::isfinite(a.error[k]) || (k > 0 && a.error[k] < a.error[k - 1])) {
-      return broken(fmt::format("level {}: the error does not rise", k));
+      return broken(fmt::format("level {}: the error falls or is not finite", k));
     }
   }
   const auto finite = [](float v) { return std::isfinite(v); };
@@ -112,8 +115,8 @@ std::size_t Dendrogram::cut(std::size_t level, std::span<std::uint32_t> out) con
   return corners / 3;
 }
 
-Mesh extract(const Dendrogram& dendrogram, std::size_t level) {
-  Mesh mesh;
+mesh::Mesh extract(const Dendrogram& dendrogram, std::size_t level) {
+  mesh::Mesh mesh;
   mesh.triangles.resize(3 * dendrogram.trianglesAt(level));
   dendrogram.cut(level, mesh.triangles);
   std::vector<std::uint32_t> place(dendrogram.nodeCount(), kNone);
@@ -142,4 +145,4 @@ Mesh extract(const Dendrogram& dendrogram, std::size_t level) {
   return mesh;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::lod

@@ -1,17 +1,21 @@
-// Dendrogram: the merge tree of a reduction, from which any triangle count is cut at once.
+// Dendrogram: the merge tree of a reduction, from which a mesh of any triangle count is extracted
+// ("cut") directly.
 //
 // A reduction of a mesh with V vertices by C collapses has N = V + C nodes: each vertex, and the
-// new vertex of each collapse (so optimal positions are kept). Nodes are numbered by when they die,
-// last first: roots, then the two that collapse C-1 merges, ... the two that collapse 0 merges. So
+// new vertex of each collapse (so optimal positions are kept). A node is alive until a collapse
+// merges it with another node (its death). Nodes are numbered by death, latest first: the roots,
+// which are never merged, then the two nodes that collapse C-1 merges, ... the two that collapse 0
+// merges. So
 //
 //   collapse k merges the nodes N - 2k - 1 and N - 2k - 2, and their parent has a smaller number;
 //   at level L (collapses 0..L-1 done) a node is dead if its number is >= N - 2L.
 //
-// Triangles are the mesh's own, with leaf corners, sorted by the collapse that removes them, last
-// first: those alive at a level are a prefix. A cut takes that prefix and chases each corner up its
-// parents to the first node that is alive. No state from the last frame, any order, exact to one
-// collapse. The idea: H. Hoppe, "Progressive Meshes", 1996, told as a sorted merge tree
-// (../../README.md says what was measured); the dendrogram is [GOURLEY98] 4.2.2.
+// Triangles are those of the mesh, with leaf nodes as corners, sorted by the collapse that removes
+// them, latest first: the triangles alive at a level are a prefix. A cut takes that prefix and
+// replaces each corner by its nearest ancestor that is alive. It needs no state of other cuts,
+// allows levels in any order, and is exact to one collapse. The idea: H. Hoppe, "Progressive
+// Meshes", 1996, here as a sorted merge tree (../../README.md has measurements); the dendrogram is
+// [GOURLEY98] 4.2.2.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +28,7 @@
 #include "render/lod/collapse_log.h"
 #include "render/mesh/mesh.h"
 
-namespace merlin::render {
+namespace merlin::render::lod {
 
 struct FeatureView {
   std::string name;
@@ -39,18 +43,17 @@ class Dendrogram {
   struct Arrays {
     std::span<const float> positions;  // nodes x 3, model units
     std::vector<FeatureView> features;
-    std::span<const std::uint32_t> parents;    // collapses: the node that collapse k makes
-    std::span<const std::uint32_t> triangles;  // triangles x 3, leaf nodes, sorted as above
-    std::span<const std::uint32_t> alive;      // levels: triangles left at level 0..C
-    std::span<const float> error;  // levels: estimate at level 0..C, model units, rising
+    std::span<const std::uint32_t> parents;    // collapses; [k]: the node that collapse k makes
+    std::span<const std::uint32_t> triangles;  // triangles x 3: leaf nodes, sorted as above
+    std::span<const std::uint32_t> alive;      // levels; [L]: triangles left at level L, 0..C
+    std::span<const float> error;              // levels; [L]: estimate, model units; never falls
     std::string about;
-    std::span<const std::uint8_t> texture{};  // the picture of "texcoord", a PNG or JPEG file, not
-                                              // looked into; or none
+    std::span<const std::uint8_t> texture{};  // a PNG or JPEG file, not checked; or empty
   };
 
-  // Checks everything that a cut relies on, so that no file can lead it astray: sizes that agree,
-  // corners that are leaves, each inner node made once, chains that end, counts that fall. O(file).
-  // Errors: kMalformed.
+  // Checks everything that a cut relies on, so that no file can make it read out of bounds or run
+  // for ever: sizes agree, corners are leaves, each inner node is made once, every path of parents
+  // ends, triangle counts never rise. O(file). Errors: kMalformed.
   static Result<Dendrogram> make(Arrays arrays, std::shared_ptr<const void> owner);
 
   std::size_t nodeCount() const noexcept { return a_.positions.size() / 3; }
@@ -67,15 +70,15 @@ class Dendrogram {
   std::size_t trianglesAt(std::size_t level) const noexcept { return a_.alive[level]; }
   float errorAt(std::size_t level) const noexcept { return a_.error[level]; }
 
-  // The finest level with at most `budget` triangles; the coarsest where none is that small.
-  // O(log levels).
+  // The finest level with at most `budget` triangles; the coarsest level if none has so few. O(log
+  // levels).
   std::size_t levelFor(std::size_t budget) const noexcept;
 
   // The coarsest level whose error estimate is at most `error`, model units. O(log levels).
   std::size_t levelForError(float error) const noexcept;
 
-  // Writes the triangles of `level`, 3 * trianglesAt(level) node numbers, to `out`; returns how
-  // many triangles. REQUIRES: level < levels(), out large enough. Allocates nothing.
+  // Writes the triangles of `level` to `out`, as 3 * trianglesAt(level) node numbers; returns the
+  // number of triangles. REQUIRES: level < levels(), `out` is large enough. Allocates nothing.
   std::size_t cut(std::size_t level, std::span<std::uint32_t> out) const noexcept;
 
  private:
@@ -86,12 +89,12 @@ class Dendrogram {
   std::shared_ptr<const void> owner_;
 };
 
-// Sorts nodes and triangles of a reduction as above. `mesh` is the mesh before it.
-// O(n log n) time, about 2 x the result's memory. Reentrant; same input, same bytes.
-// REQUIRES: the log is of this mesh, and no node is merged twice.
-Dendrogram buildDendrogram(const Mesh& mesh, const CollapseLog& log);
+// Builds the dendrogram of a reduction; `mesh` is the mesh before the reduction. O(n log n) time,
+// about 2 x the memory of the result. Reentrant; same input, same bytes. REQUIRES: `log` belongs to
+// `mesh`, and no node is merged twice.
+Dendrogram buildDendrogram(const mesh::Mesh& mesh, const CollapseLog& log);
 
 // The surface at `level` as a mesh of its own, with the features of its nodes.
-Mesh extract(const Dendrogram& dendrogram, std::size_t level);
+mesh::Mesh extract(const Dendrogram& dendrogram, std::size_t level);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::lod

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-namespace merlin::render {
+namespace merlin::render::lod {
 namespace {
 
-// Collapses that are under way.
+// The collapses whose nodes are displaced: [begin, end).
 struct Window {
   std::size_t begin = 0, end = 0;
 
@@ -24,7 +24,7 @@ struct NodeRange {
   std::uint32_t begin, end;
 };
 
-// That the window's collapses merge.
+// The nodes that the window's collapses merge.
 NodeRange nodesOf(const Dendrogram& dendrogram, const Window& window) {
   const std::size_t nodes = dendrogram.nodeCount();
   return {static_cast<std::uint32_t>(nodes - 2 * window.end),
@@ -67,4 +67,4 @@ void morphsAt(const Dendrogram& dendrogram, const Clusters& clusters,
   }
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::lod

@@ -1,14 +1,15 @@
-// Geomorphs: vertices that merge next are already on their way to where they will, so that nothing
-// pops when they do ([GOURLEY98] 6.1).
+// Geomorphs: vertices that merge soon move gradually towards the position of the merged vertex, so
+// that a change of level is not visible as a jump ("popping") ([GOURLEY98] 6.1).
 //
-// At level L, of the collapses L .. E-1 that come next, the two nodes that collapse k merges stand
+// At level L the next collapses are L .. E-1, where E is the level with a given share of the
+// triangles less. A node that collapse k of these merges is drawn at
 //
 //   (k - L + 1) / (E - L + 1)
 //
-// of the way from their parent's place to their own, E being the level with a given share of the
-// triangles less. So what is seen is a function of the level alone, and changes little with it: no
-// state, no clock, and levels may jump. (H. Hoppe, "Progressive Meshes", 1996, section 3.3: there
-// between two meshes, by time.) What stands elsewhere is what costs least to lose.
+// of the way from its parent's position to its own. The positions thus depend on the level alone,
+// and change little with it: no state, no clock, and the level may jump. (H. Hoppe, "Progressive
+// Meshes", 1996, section 3.3, instead interpolates between two meshes over time.) The displaced
+// vertices are those that cost least to remove.
 #pragma once
 
 #include <cstddef>
@@ -19,22 +20,23 @@
 #include "render/lod/clusters.h"
 #include "render/lod/dendrogram.h"
 
-namespace merlin::render {
+namespace merlin::render::lod {
 
 struct Morph {
   std::uint32_t node = 0;
-  float own = 1;  // 0: at its parent's place; 1: at its own
+  float own = 1;  // weight: 0 at its parent's position, 1 at its own
 };
 
-// The nodes that are on their way at `level`, by rising number: a parent comes before its children,
-// and where it is itself on its way, it is there that they go. `share`: of the triangles, 0 to 1;
-// 0: none are. REQUIRES: level < levels(). O(log levels + what is returned).
+// Sets `morphs` to the nodes displaced at `level`, by ascending number: a parent comes before its
+// children, and children of a displaced parent move towards its displaced position. `share`:
+// fraction of the triangles, 0 to 1; 0: no node is displaced. REQUIRES: level < levels(). O(log
+// levels + size of the result).
 void morphsAt(const Dendrogram& dendrogram, std::size_t level, double share,
               std::vector<Morph>& morphs);
 
-// The same where each cluster has a level of its own, as Clusters::cut() wants them. O(nodes that
-// are alive at the finest of them and not at the coarsest).
+// The same with one level for each cluster, as Clusters::cut() takes them. O(collapses from the
+// finest of these levels to the last one that displaces a node).
 void morphsAt(const Dendrogram& dendrogram, const Clusters& clusters,
               std::span<const std::uint32_t> levels, double share, std::vector<Morph>& morphs);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::lod

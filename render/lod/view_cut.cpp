@@ -6,25 +6,28 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-namespace merlin::render {
+namespace merlin::render::lod {
 namespace {
 
 constexpr double kStepsAnOctave = 64;
-// An even cut is as good where the finest wanted is less than this times the coarsest.
+// One level for all clusters is as good if the finest wanted detail is at most this times the
+// coarsest.
 constexpr float kMuchTheSame = 1.15F;
-// Least cosine that is used: a surface seen edge-on still has an outline.
+// Lower limit of the cosine g: a surface seen edge-on still shows its silhouette.
 constexpr float kLeastFacing = 0.1F;
 constexpr int kBisections = 12;
 constexpr float kLeastOfNeighbour = 0.4F;
 constexpr int kGradings = 3;
-// With less a cluster is a handful of triangles, most of them its border's.
+// Least budget, in triangles of the coarsest level: with less, a cluster is a handful of triangles,
+// most of them at its border.
 constexpr std::size_t kTimesTheCoarsest = 4;
 
-// A tile's view, taken apart once.
+// Planes, eye and scale of the view of a tile.
 struct Viewer {
+  bool parallel;                      // the eye is infinitely far away
   Eigen::Matrix<float, 5, 4> planes;  // left, right, bottom, top, near; unit normals inwards
-  Eigen::Vector4f depth;              // row of w
-  Eigen::Vector3f eye;                // model units
+  Eigen::Vector4f depth;              // the row of the matrix that gives w
+  Eigen::Vector3f eye;                // model units; of a parallel projection, where to look
   float near_w, pixels_per_unit;      // at w = 1
   float depth_per_unit;
 
@@ -36,6 +39,14 @@ struct Viewer {
       planes.row(k) = m.row(3) + sign * m.row(k / 2);
       planes.row(k) /= std::max(planes.row(k).head<3>().norm(), 1e-30F);
     }
+    pixels_per_unit =
+        tile.weight * static_cast<float>(tile.width_px) / 2 * m.row(0).head<3>().norm();
+    parallel = depth.head<3>().isZero(0);
+    if (parallel) {
+      eye = m.row(2).head<3>().normalized();
+      near_w = depth_per_unit = 0;
+      return;
+    }
     Eigen::Matrix3f axes;
     axes << m.row(0).head<3>(), m.row(1).head<3>(), m.row(3).head<3>();
     eye = axes.inverse() * -Eigen::Vector3f(m(0, 3), m(1, 3), m(3, 3));
@@ -43,27 +54,29 @@ struct Viewer {
     // z = a w + b, so z = -w at the near plane.
     const float a = m.row(2).head<3>().dot(m.row(3).head<3>()) / (depth_per_unit * depth_per_unit);
     near_w = std::max((a * m(3, 3) - m(2, 3)) / (1 + a), 1e-6F);
-    pixels_per_unit =
-        tile.weight * static_cast<float>(tile.width_px) / 2 * m.row(0).head<3>().norm();
   }
 
   bool sees(const Eigen::Vector3f& centre, float radius) const {
     return ((planes * centre.homogeneous()).array() >= -radius).all();
   }
 
-  // The cosine at which the cluster's most facing triangle is seen, at most; 0: all face away.
+  // Upper limit of the cosine at which a triangle of the cluster is seen; 0 if all of them face
+  // away.
   float facing(const ClusterBounds& b, const Eigen::Vector3f& centre) const {
-    const Eigen::Vector3f to = centre - eye;
+    if (b.cone_cos <= 0) return 1;
+    const Eigen::Vector3f to = parallel ? eye : Eigen::Vector3f(centre - eye);
     const float distance = to.norm();
-    if (distance <= b.radius || b.cone_cos <= 0) return 1;
+    if (!parallel && distance <= b.radius) return 1;
     const float towards = -to.dot(Eigen::Vector3f(b.axis.data())) / distance;
-    const float angle = std::acos(std::clamp(towards, -1.0F, 1.0F)) - std::acos(b.cone_cos) -
-                        std::asin(b.radius / distance);
+    const float spread = parallel ? 0 : std::asin(b.radius / distance);
+    const float angle =
+        std::acos(std::clamp(towards, -1.0F, 1.0F)) - std::acos(b.cone_cos) - spread;
     if (angle <= 0) return 1;
     return angle >= static_cast<float>(M_PI_2) ? 0 : std::max(std::cos(angle), kLeastFacing);
   }
 
-  // Where the cluster's nearer half lies; of one that the eye is in, a quarter of its radius away.
+  // Pixels per model unit at half the radius in front of the cluster's centre, but no nearer to the
+  // eye than a quarter of the radius; in a parallel projection, the same everywhere.
   float pixelsAUnit(const Eigen::Vector3f& centre, float radius) const {
     const float r = radius * depth_per_unit;
     const float w = std::max(depth.dot(centre.homogeneous()) - r / 2, r / 4);
@@ -105,7 +118,8 @@ void ViewCut::look(std::span<const TileView> tiles) {
   }
 }
 
-// So often that what is far from all that is seen is as coarse as can be.
+// Raises wanted_ of the neighbours of clusters that are seen. Few passes, so that clusters far from
+// all that is seen stay as coarse as possible.
 void ViewCut::grade() {
   for (int pass = 0; pass < kGradings; ++pass) {
     for (std::size_t c = 0; c < clusters_.size(); ++c) {
@@ -140,7 +154,7 @@ bool ViewCut::choose(std::span<const TileView> tiles, std::size_t budget) {
   const auto [least, most] = std::minmax_element(wanted_.begin(), wanted_.end());
   if (*most <= 0 || *most <= kMuchTheSame * *least) return false;
   grade();
-  // All as fine as the finest one there is, or as the budget allows.
+  // The largest useful kappa: all visible clusters at full detail, if the budget allows it.
   double high = 2 * static_cast<double>(dendrogram_.triangleCount()) / *most;
   for (const float w : wanted_) {
     if (w > 0) high = std::max(high, 2 * static_cast<double>(dendrogram_.triangleCount()) / w);
@@ -155,4 +169,4 @@ bool ViewCut::choose(std::span<const TileView> tiles, std::size_t budget) {
   return true;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::lod

@@ -1,16 +1,20 @@
-// ViewCut: which level each cluster is cut at, so that one budget over all tiles of the wall is
-// spent where they look ([GOURLEY98] 5.4, 6.1).
+// ViewCut: chooses the level of each cluster such that one triangle budget for all tiles of the
+// wall gives the least visible error ([GOURLEY98] 5.4, 6.1).
 //
-// What one sees of a coarse surface is its shading: normals that are off by about T^-1/2 where the
-// whole is cut to T triangles. A cluster of n triangles of which p pixels show one model unit has
-// n p^2 g pixels, g the cosine at which it is seen. The squared error over all pixels is least, for
-// a sum of triangles, where
+// The visible error of a coarse surface is its shading: if the whole model is cut to T triangles,
+// normals are off by about T^-1/2. A cluster of n triangles, seen at p pixels per model unit and at
+// an angle of cosine g, covers pixels in proportion to n p^2 g. The sum of squared errors over all
+// pixels is least, for a given sum of triangles, if
 //
 //   T_c = kappa p_c g_c^(1/2)
 //
-// T_c is the count that the whole model would have at the cluster's level. What no tile sees wants
-// nothing, but a neighbour has at least two fifths of a cluster's T: triangles between fine and
-// very coarse fold over. kappa follows from the budget by bisection. Pure.
+// T_c is the triangle count that the whole model would have at the level of cluster c. A cluster
+// that no tile sees needs no triangles, but gets at least two fifths of the T of its neighbours:
+// triangles between fine and very coarse clusters fold over. kappa follows from the budget by
+// bisection. Pure.
+//
+// Views may have different eyes, and parallel projections none: p and g are computed for each view
+// on its own, and what wants the most detail of a cluster decides. One cut is shown in all views.
 #pragma once
 
 #include <cstdint>
@@ -21,34 +25,37 @@
 
 #include "render/lod/clusters.h"
 
-namespace merlin::render {
+namespace merlin::render::lod {
 
 // The view of one tile.
 struct TileView {
-  Eigen::Matrix4f clip_from_model;  // OpenGL's clip space; perspective
+  Eigen::Matrix4f clip_from_model;  // OpenGL's clip space; a perspective or parallel projection
   int width_px = 0;
-  float weight = 1;  // of its pixels' errors, as a root
+  float weight = 1;  // square root of the weight of its pixels' squared errors
 };
 
-// Thread-bound: keeps its tables and the last answer.
+// Thread-bound: keeps its tables and its last result.
 class ViewCut {
  public:
-  // Borrows both. `back_faces`: they are drawn, so what faces away counts as well.
+  // Keeps references to both. `back_faces`: back faces are drawn, so clusters that face away count
+  // as visible.
   ViewCut(const Dendrogram& dendrogram, const Clusters& clusters, bool back_faces);
 
-  // Levels for these tiles, of at most `budget` triangles together where the coarsest are no more.
-  // False where an even cut is as good: all is seen at much the same scale, or the budget is beyond
-  // what clusters can do; levels() then stay as they were. Under a millisecond.
+  // Chooses levels() for these tiles, with at most `budget` triangles in total if the coarsest
+  // levels have no more. False if one level for all clusters is as good: all clusters are seen at
+  // nearly the same scale, none is seen, or the budget is too small for clusters; levels() are then
+  // unchanged. Takes less than a millisecond.
   bool choose(std::span<const TileView> tiles, std::size_t budget);
 
   std::span<const std::uint32_t> levels() const noexcept { return levels_; }
 
-  // Whether `tile`, one of those last given to look(), may see any part of the cluster.
+  // Whether `tile`, an index into the tiles of the last look() or choose(), may see a part of the
+  // cluster.
   bool sees(std::size_t tile, std::size_t cluster) const noexcept {
     return seen_[tile * clusters_.size() + cluster];
   }
 
-  // Only finds out what is seen. O(tiles x clusters).
+  // Updates what sees() returns, but not levels(). O(tiles x clusters).
   void look(std::span<const TileView> tiles);
 
  private:
@@ -59,10 +66,10 @@ class ViewCut {
   const Dendrogram& dendrogram_;
   const Clusters& clusters_;
   bool back_faces_;
-  std::vector<std::uint32_t> level_table_;  // by log2 of triangles, 64 steps an octave
+  std::vector<std::uint32_t> level_table_;  // level by log2 of triangles, in steps of 1/64
   std::vector<float> wanted_;               // by cluster: p g^(1/2); 0: not seen
   std::vector<std::uint8_t> seen_;          // tiles x clusters
   std::vector<std::uint32_t> levels_;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::lod

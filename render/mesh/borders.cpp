@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
 std::vector<bool> borderVertices(const Mesh& mesh) {
   std::vector<std::uint64_t> edges;
@@ -23,4 +23,4 @@ std::vector<bool> borderVertices(const Mesh& mesh) {
   return border;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -1,14 +1,14 @@
-// Where a surface ends.
+// Finds the border vertices of a mesh.
 #pragma once
 
 #include <vector>
 
 #include "render/mesh/mesh.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
-// For each vertex: whether one of its edges belongs to one triangle only. O(n log n); 24 bytes per
-// triangle while it runs.
+// Returns for each vertex whether it lies on a border, i.e. one of its edges belongs to only one
+// triangle. O(n log n); needs 24 bytes per triangle while it runs.
 std::vector<bool> borderVertices(const Mesh& mesh);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
 constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kMost = std::size_t{1} << 31;
-constexpr float kFarthest = 1e18F;  // the square of a distance is still a float
+constexpr float kFarthest = 1e18F;  // largest coordinate: squared distances are finite floats
 
 bool repeats(const std::uint32_t* t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
@@ -29,13 +29,14 @@ std::size_t dropDegenerate(Mesh& mesh) {
   return dropped;
 }
 
-// The triangle from its smallest vertex on, in its own order.
+// The corners of the triangle, rotated so that the smallest index is first; same orientation.
 std::array<std::uint32_t, 3> turned(const std::uint32_t* t) {
   const auto k = static_cast<std::size_t>(std::min_element(t, t + 3) - t);
   return {t[k], t[(k + 1) % 3], t[(k + 2) % 3]};
 }
 
-// Marks what is to go by making it degenerate. `same` are triangles with the same smallest vertex.
+// Makes duplicates degenerate, so that they are dropped. `same`: triangles with the same smallest
+// vertex.
 void markDuplicates(Mesh& mesh, std::span<std::uint32_t> same, TidyReport& report) {
   const auto key = [&](std::uint32_t t) {
     const auto [a, b, c] = turned(&mesh.triangles[3 * std::size_t{t}]);
@@ -76,7 +77,8 @@ void dropDuplicates(Mesh& mesh, TidyReport& report) {
   if (report.duplicate + report.opposite > 0) dropDegenerate(mesh);
 }
 
-// Moves the rows of `values` to their new places; new places never lie behind old ones.
+// Moves each row of `values` to index `place[row]`, which is never above its old index; rows whose
+// place is kUnused are dropped.
 void compactRows(std::vector<float>& values, std::size_t dimension,
                  const std::vector<std::uint32_t>& place, std::size_t rows) {
   for (std::size_t v = 0; v < place.size(); ++v) {
@@ -135,22 +137,24 @@ Feature* Mesh::find(std::string_view name) noexcept {
 Result<Ok> validate(const Mesh& mesh) {
   const std::size_t n = mesh.vertexCount();
   if (n >= kMost || mesh.triangleCount() >= kMost) {
-    return Error{Errc::kUnsupported, fmt::format("{} vertices and {} triangles; 2^31 is the most",
-                                                 n, mesh.triangleCount())};
+    return Error{Errc::kUnsupported,
+                 fmt::format("{} vertices and {} triangles; each must be below 2^31", n,
+                             mesh.triangleCount())};
   }
   if (mesh.positions.size() % 3 != 0 || mesh.triangles.size() % 3 != 0) {
-    return Error{Errc::kMalformed, fmt::format("{} coordinates, {} corners: no triples",
+    return Error{Errc::kMalformed, fmt::format("{} coordinates, {} corners: not multiples of 3",
                                                mesh.positions.size(), mesh.triangles.size())};
   }
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     if (std::abs(mesh.positions[i]) <= kFarthest) continue;
-    return Error{Errc::kMalformed, fmt::format("vertex {}: coordinate {} is {}; {} is the farthest",
+    return Error{Errc::kMalformed, fmt::format("vertex {}: coordinate {} is {}; the limit is +-{}",
                                                i / 3, "xyz"[i % 3], mesh.positions[i], kFarthest)};
   }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if (mesh.triangles[i] < n) continue;
-    return Error{Errc::kMalformed, fmt::format("triangle {}: vertex {} of {} (0 to {} exist)",
-                                               i / 3, mesh.triangles[i], n, n == 0 ? 0 : n - 1)};
+    return Error{Errc::kMalformed,
+                 fmt::format("triangle {}: there is no vertex {}, the mesh has {} (0 to {})", i / 3,
+                             mesh.triangles[i], n, n == 0 ? 0 : n - 1)};
   }
   for (const Feature& f : mesh.features) {
     if (const auto valid = validate(f, n); !valid) return valid;
@@ -178,4 +182,4 @@ Box boundingBox(std::span<const float> positions) noexcept {
   return box;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -1,15 +1,15 @@
-// MeshSize: how large a mesh is, where the mesh itself does not matter or is not there yet.
+// MeshSize: the counts that determine the memory of a mesh, also of one that is not loaded yet.
 #pragma once
 
 #include <cstddef>
 
 #include "render/mesh/mesh.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
 struct MeshSize {
   std::size_t vertices = 0, triangles = 0;
-  std::size_t values = 0;  // floats of a vertex' features
+  std::size_t values = 0;  // feature values (floats) per vertex
 
   std::size_t bytes() const noexcept { return vertices * (12 + 4 * values) + triangles * 12; }
 };
@@ -20,4 +20,4 @@ inline MeshSize sizeOf(const Mesh& mesh) noexcept {
   return size;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

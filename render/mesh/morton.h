@@ -1,5 +1,5 @@
-// The place of a point on a Morton curve (Z-order) through a box: what is near on it is near in
-// space. G. M. Morton, "A computer oriented geodetic data base ...", IBM, 1966.
+// Morton (Z-order) key of a point in a box: points with nearby keys are close in space. G. M.
+// Morton, "A computer oriented geodetic data base ...", IBM, 1966.
 #pragma once
 
 #include <algorithm>
@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
-// 21 bits, spread so that two others fit between each two of them.
+// Spreads the low 21 bits of `v` so that two zero bits lie between each two of them.
 inline std::uint64_t spreadBits(std::uint64_t v) {
   v = (v | v << 32) & 0x001F00000000FFFF;
   v = (v | v << 16) & 0x001F0000FF0000FF;
@@ -18,8 +18,8 @@ inline std::uint64_t spreadBits(std::uint64_t v) {
   return (v | v << 2) & 0x1249249249249249;
 }
 
-// The box begins at `low` and is `extent` long, each > 0; 2^bits steps an axis, so 3 x bits in all.
-// Points outside count as on its side. REQUIRES: bits <= 21.
+// The key of 3 x `bits` bits: 2^bits steps along each axis of the box [low, low + extent]. Points
+// outside are clamped to the box. REQUIRES: extent > 0 on each axis, bits <= 21.
 inline std::uint64_t mortonKey(const float* point, const std::array<float, 3>& low,
                                const std::array<float, 3>& extent, unsigned bits) {
   const auto steps = static_cast<float>((1U << bits) - 1);
@@ -31,4 +31,4 @@ inline std::uint64_t mortonKey(const float* point, const std::array<float, 3>& l
   return key;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -7,12 +7,12 @@
 #include <tuple>
 #include <vector>
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kMostPairs = 64;  // that are compared at one edge; beyond, by their order
-constexpr int kMostRounds = 3;          // then every edge in question is cut
+constexpr std::size_t kMostPairs = 64;  // compared at one edge; more are paired in mesh order
+constexpr int kMostRounds = 3;          // then all non-manifold edges are cut
 
 // Half-edge h = 3 t + k runs from corner k of triangle t to the next one.
 std::uint32_t nextOf(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
@@ -46,11 +46,12 @@ class Splitter {
   std::uint32_t from(std::uint32_t h) const { return mesh_.triangles[h]; }
   std::uint32_t to(std::uint32_t h) const { return mesh_.triangles[nextOf(h)]; }
 
-  // Half-edges by their smaller end, then by the larger: those of an edge side by side.
+  // Sorts half-edges by their smaller vertex index, then by the larger one, so that those of one
+  // edge are adjacent; then pairs those of each edge.
   void pairAll() {
     const std::size_t n = mesh_.vertexCount();
     std::vector<std::uint32_t> begin(n + 1, 0);
-    std::vector<std::uint64_t> list(twins_.size());  // the larger end, then the half-edge
+    std::vector<std::uint64_t> list(twins_.size());  // larger vertex << 32 | half-edge
     const auto count = static_cast<std::uint32_t>(list.size());
     for (std::uint32_t h = 0; h < count; ++h) ++begin[std::min(from(h), to(h)) + 1];
     for (std::size_t v = 0; v < n; ++v) begin[v + 1] += begin[v];
@@ -61,7 +62,7 @@ class Splitter {
     std::vector<std::uint32_t> edge;
     std::uint32_t first = 0;
     for (std::size_t v = 0; v < n; ++v) {
-      const std::uint32_t end = begin[v];  // where the next one's began
+      const std::uint32_t end = begin[v];  // advanced to the begin of v + 1
       std::sort(list.begin() + first, list.begin() + end);
       while (first < end) {
         const std::uint64_t larger = list[first] >> 32;
@@ -115,13 +116,14 @@ class Splitter {
     }
   }
 
-  // Corners that hang together around their vertex get one number: the vertex' own for the first
-  // such fan, fresh ones for the others. Corner h is where half-edge h starts.
+  // Gives all corners of a fan (triangles connected around a vertex) the same vertex index: the
+  // vertex' own for its first fan, a new one for each other fan. Corner h is where half-edge h
+  // starts.
   void numberFans() {
     std::fill(fans_.begin(), fans_.end(), kNone);
     sources_.clear();
     split_ = 0;
-    std::vector<std::uint8_t> fans_of(mesh_.vertexCount(), 0);  // 0, 1, more
+    std::vector<std::uint8_t> fans_of(mesh_.vertexCount(), 0);  // found so far: 0, 1, 2 (or more)
     for (std::uint32_t corner = 0; corner < fans_.size(); ++corner) {
       if (fans_[corner] != kNone) continue;
       const std::uint32_t v = from(corner);
@@ -140,12 +142,12 @@ class Splitter {
 
   void numberFan(std::uint32_t corner, std::uint32_t number) {
     fans_[corner] = number;
-    for (std::uint32_t c = corner;;) {  // over the edge that comes in
+    for (std::uint32_t c = corner;;) {  // across the incoming edge
       c = twins_[previousOf(c)];
       if (c == kNone || fans_[c] != kNone) break;
       fans_[c] = number;
     }
-    for (std::uint32_t c = corner;;) {  // over the edge that goes out
+    for (std::uint32_t c = corner;;) {  // across the outgoing edge
       if (twins_[c] == kNone) break;
       c = nextOf(twins_[c]);
       if (fans_[c] != kNone) break;
@@ -153,8 +155,9 @@ class Splitter {
     }
   }
 
-  // A fan may come by the same edge twice. Such edges are cut altogether: then a fan has no more
-  // than its two ends there, which run opposite ways. False where all is well.
+  // A fan may contain the same non-manifold edge twice. Such edges are cut completely (if `every`,
+  // all non-manifold edges): then a fan meets the edge only with its two ends, which have opposite
+  // directions. Returns false if every edge is manifold.
   bool cutWhatIsLeft(bool every) {
     bool again = false;
     for (Edge& edge : singular_) {
@@ -175,7 +178,7 @@ class Splitter {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;
     for (const std::uint32_t h : edge.half_edges) ends.emplace_back(fans_[h], fans_[nextOf(h)]);
     std::sort(ends.begin(), ends.end());
-    return std::adjacent_find(ends.begin(), ends.end()) == ends.end();  // each way once
+    return std::adjacent_find(ends.begin(), ends.end()) == ends.end();  // each direction once
   }
 
   void apply() {
@@ -206,4 +209,4 @@ SplitReport splitNonManifold(Mesh& mesh) {
   return Splitter(mesh).run();
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -1,4 +1,4 @@
-// Normals of faces and vertices, of which mesh.h tells.
+// Normals of faces and vertices, declared in mesh.h.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -6,10 +6,10 @@
 #include "render/mesh/mesh.h"
 #include "render/mesh/places.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
-constexpr std::size_t kMostSides = 8;  // where more vertices lie in one place it is no seam
+constexpr std::size_t kMostSides = 8;  // more coincident vertices are not treated as a seam
 
 void normalise(float* v) noexcept {
   const float length = std::sqrt(dot(v, v));
@@ -38,8 +38,8 @@ std::vector<float> normalSums(const Mesh& mesh) {
   return normals;
 }
 
-// Where a few vertices lie in one place, those that face one another's way, or a third's that does,
-// get the sum of theirs.
+// Replaces the normal sums of coincident vertices by the sum over their group: vertices are in one
+// group if areOneSurface() holds for them, directly or through others.
 void joinSides(const std::vector<std::uint32_t>& sides, std::vector<float>& sums) {
   const auto of = [&](std::size_t side) { return &sums[3 * std::size_t{sides[side]}]; };
   std::array<std::size_t, kMostSides> group{};
@@ -59,7 +59,7 @@ void joinSides(const std::vector<std::uint32_t>& sides, std::vector<float>& sums
   };
   for (std::size_t i = 0; i < sides.size(); ++i) {
     addThose(i, [&](std::size_t o) { return group[o] == group[i]; });
-    // Blades about an axis are a group as well, whose sum is nothing.
+    // Blades around an axis form a group too, but their normals cancel.
     if (dot(joined[i].data(), of(i)) < 0.5F * dot(of(i), of(i)))
       addThose(i, [&](std::size_t o) { return o == i || areOneSurface(of(i), of(o)); });
   }
@@ -71,7 +71,7 @@ void joinSeams(const Mesh& mesh, std::vector<float>& sums) {
   std::vector<std::uint32_t> sides;
   for (std::uint32_t v = 0; v < next.size(); ++v) {
     sides.assign(1, v);
-    bool first = true;  // of its place
+    bool first = true;  // v has the smallest index at its position
     for (std::uint32_t o = next[v]; o != v && first && sides.size() <= kMostSides; o = next[o]) {
       first = o > v;
       sides.push_back(o);
@@ -84,7 +84,7 @@ void normaliseAll(std::vector<float>& normals) {
   for (std::size_t i = 0; i < normals.size(); i += 3) normalise(&normals[i]);
 }
 
-// As vertexNormals(), and as if seams were none.
+// As vertexNormals(), but as if the two sides of a seam were one vertex.
 std::vector<float> normalsAcrossSeams(const Mesh& mesh) {
   std::vector<float> normals = normalSums(mesh);
   joinSeams(mesh, normals);
@@ -95,7 +95,7 @@ std::vector<float> normalsAcrossSeams(const Mesh& mesh) {
 }  // namespace
 
 std::array<float, 3> faceNormal(const float* a, const float* b, const float* c) noexcept {
-  // In double: for a sliver in float the cross product is noise.
+  // In double: in float, the cross product of a sliver triangle is mostly rounding error.
   const double u[] = {double{b[0]} - a[0], double{b[1]} - a[1], double{b[2]} - a[2]};
   const double v[] = {double{c[0]} - a[0], double{c[1]} - a[1], double{c[2]} - a[2]};
   const double n[] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
@@ -127,4 +127,4 @@ void ensureNormals(Mesh& mesh) {
     mesh.features.push_back(std::move(normal));
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -5,11 +5,10 @@
 #include <cstddef>
 #include <numeric>
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
-// Hash of all bits of the three numbers; numbers that compare equal have the same hash: -0 + 0 is
-// 0.
+// Hash of the bits of three numbers. Numbers that compare equal have the same hash: -0 + 0 is 0.
 std::size_t hashOf(const float* p) {
   std::uint64_t h = 0;
   for (int k = 0; k < 3; ++k) {
@@ -41,14 +40,15 @@ std::vector<std::uint32_t> samePlaceBySorting(std::span<const float> positions) 
   return next;
 }
 
-// A table of places with open addressing: of each its last vertex so far, whose next is the first.
+// Uses a hash table with open addressing; its entries are positions, each with the last vertex
+// found there so far, whose next vertex is the first one.
 std::vector<std::uint32_t> samePlace(std::span<const float> positions) {
   constexpr std::uint32_t kEmpty = ~std::uint32_t{0};
   const std::size_t n = positions.size() / 3;
   std::vector<std::uint32_t> next(n), last(std::bit_ceil(2 * n + 1), kEmpty);
   std::iota(next.begin(), next.end(), 0U);
   const auto at = [&](std::uint32_t v) { return positions.data() + 3 * std::size_t{v}; };
-  // Places that were chosen to meet in the table.
+  // More probes than this mean positions that were crafted to collide.
   std::size_t steps_left = 16 * n + 1024;
   for (std::uint32_t v = 0; v < n; ++v) {
     std::size_t k = hashOf(at(v)) & (last.size() - 1);
@@ -65,4 +65,4 @@ std::vector<std::uint32_t> samePlace(std::span<const float> positions) {
   return next;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

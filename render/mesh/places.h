@@ -1,20 +1,21 @@
-// Which vertices lie in one place: the two sides of a seam, what splitNonManifold() has split, and
-// soups whose triangles share nothing.
+// Finds coincident vertices: the two sides of a texture seam, the copies that splitNonManifold()
+// makes, and triangle soups whose triangles share no vertices.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
-// A ring through the vertices of each place, in the order of their numbers: of v the next one; v
-// itself where it is alone. Places are equal where all coordinates are (so -0 is 0).
-// positions  vertices x 3, none of them NaN. O(n) as a rule, by a hash table; O(n log n) where
-//            places were chosen to meet there. Reentrant.
+// Links coincident vertices into rings: entry v is the next vertex by index at the position of v,
+// after the last one the first, or v itself if no other vertex is there. Positions are equal if all
+// coordinates are (so -0 equals 0).
+//   positions  vertices x 3, none of them NaN
+// Expected O(n), by a hash table; O(n log n) if positions were crafted to collide. Reentrant.
 std::vector<std::uint32_t> samePlace(std::span<const float> positions);
 
-// The same, always O(n log n).
+// Same result as samePlace(), always in O(n log n).
 std::vector<std::uint32_t> samePlaceBySorting(std::span<const float> positions);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

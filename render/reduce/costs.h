@@ -1,24 +1,26 @@
-// The costs that reduce() knows, one file each. Private to render/reduce.
+// The cost functions of reduce(), one folder each. Private to render/reduce.
 #pragma once
 
 #include "render/reduce/reduce.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
-// 1998's: the length of the edge in pattern space. pattern.cpp
-Result<Reduction> reduceByPattern(const Mesh& mesh, const ReduceSettings& settings,
+// The cost `pattern`, the method of [GOURLEY98]: the length of the edge in pattern space. Defined
+// in pattern/pattern.cpp.
+Result<Reduction> reduceByPattern(const mesh::Mesh& mesh, const ReduceSettings& settings,
                                   const Progress& progress);
 
-// Quadrics in the space of position and all weighted features. quadric.cpp
-Result<Reduction> reduceByQuadric(const Mesh& mesh, const ReduceSettings& settings,
+// The cost `quadric`: quadrics over position and all weighted features. Defined in
+// quadric/quadric.cpp.
+Result<Reduction> reduceByQuadric(const mesh::Mesh& mesh, const ReduceSettings& settings,
                                   const Progress& progress);
-Weights quadricWeights(const Mesh& mesh);
+Weights quadricWeights(const mesh::Mesh& mesh);
 
-// The settings' weights, or those of the cost.
-Weights weightsFor(const Mesh& mesh, const ReduceSettings& settings);
+// Returns the weights of the settings, or the cost's default weights if those are empty.
+Weights weightsFor(const mesh::Mesh& mesh, const ReduceSettings& settings);
 
-// "key=value" lines for the model's file.
+// Returns "key=value" lines that describe the reduction, for CollapseLog::about.
 std::string aboutText(const ReduceSettings& settings, const Weights& weights,
                       const ReduceReport& report);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

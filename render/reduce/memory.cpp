@@ -4,48 +4,49 @@
 
 #include <fmt/format.h>
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
-// Bytes a triangle while its quadrics are in memory, beside what channels take: 64 a vertex, about
-// as much for its star, and what stars that grow leave unused.
+// Bytes per triangle for the records and stars of the quadric cost, without channels: 64 per vertex
+// for its record, about as much for its star, and the unused room that growing stars leave.
 constexpr double kQuadrics = 84;
-constexpr double kPattern = 165;
-// Upper bound of what reduction in blocks leaves, relative to the number that the blocks were asked
-// for.
+constexpr double kPattern = 165;  // bytes per triangle, pattern cost
+// Safety factor: the blocks may keep up to 25 % more triangles than requested.
 constexpr double kOver = 1.25;
 constexpr std::size_t kMostBlocks = 64;
 
 double asDouble(std::size_t n) { return static_cast<double>(n); }
 
-// Memory of a mesh with its normals and features, per triangle.
-double meshBytes(const MeshSize& size) {
+// Bytes per triangle of a mesh with its features.
+double meshBytes(const mesh::MeshSize& size) {
   return asDouble(size.bytes()) / asDouble(std::max<std::size_t>(size.triangles, 1));
 }
 
-double quadricBytes(const MeshSize& size) {
+double quadricBytes(const mesh::MeshSize& size) {
   const double vertices =
       asDouble(size.vertices) / asDouble(std::max<std::size_t>(size.triangles, 1));
-  // All features but the normal may be channels of four floats a value.
+  // Every feature value except the normal's three may become a channel, which takes four floats per
+  // vertex; a vertex with channels takes one more.
   const double channels = size.values > 3 ? 4 * (1 + 4 * asDouble(size.values - 3)) : 0;
   return kQuadrics + vertices * channels;
 }
 
-double logBytes(const MeshSize& size) {
+double logBytes(const mesh::MeshSize& size) {
   return asDouble(size.vertices) * (24 + 4 * asDouble(size.values));
 }
 
-// Share of the mesh that the blocks leave to the reduction of the whole.
-double shareLeft(const MeshSize& size, const ReduceSettings& settings) {
+// Upper bound of the share of the triangles that the blocks leave for the final reduction.
+double shareLeft(const mesh::MeshSize& size, const ReduceSettings& settings) {
   const double target = std::max(
       asDouble(settings.min_triangles) / asDouble(std::max<std::size_t>(size.triangles, 1)),
       settings.min_percent / 100);
   return shareOfBlocks(target) * kOver;
 }
 
-// At the worst moment: while a block is reduced, while their logs are joined, while what is left
-// is.
-std::size_t needInBlocks(const MeshSize& size, const ReduceSettings& settings, double blocks) {
+// Returns the peak memory in bytes: the maximum of cutting the mesh, reducing a block, joining the
+// blocks' logs, and the final reduction of what the blocks leave.
+std::size_t needInBlocks(const mesh::MeshSize& size, const ReduceSettings& settings,
+                         double blocks) {
   const double v = asDouble(size.vertices), t = asDouble(size.triangles), log = logBytes(size);
   const double each = quadricBytes(size) + meshBytes(size);
   const double left = shareLeft(size, settings);
@@ -61,7 +62,7 @@ double shareOfBlocks(double target) {
   return std::max(1.0 / 6, std::min(3 * target, (1 + target) / 2));
 }
 
-ReductionNeed needOf(const MeshSize& size, const ReduceSettings& settings) {
+ReductionNeed needOf(const mesh::MeshSize& size, const ReduceSettings& settings) {
   if (settings.cost != "quadric") {
     const auto need = static_cast<std::size_t>(kPattern * asDouble(size.triangles));
     return {need, need};
@@ -74,7 +75,7 @@ ReductionNeed needOf(const MeshSize& size, const ReduceSettings& settings) {
   return need;
 }
 
-Result<std::size_t> blocksFor(const MeshSize& size, const ReduceSettings& settings) {
+Result<std::size_t> blocksFor(const mesh::MeshSize& size, const ReduceSettings& settings) {
   const ReductionNeed need = needOf(size, settings);
   if (settings.memory == 0 || need.whole <= settings.memory) return std::size_t{1};
   std::size_t blocks = 2;
@@ -82,9 +83,9 @@ Result<std::size_t> blocksFor(const MeshSize& size, const ReduceSettings& settin
     ++blocks;
   if (need.least <= settings.memory) return blocks;
   return Error{Errc::kInvalidArgument,
-               fmt::format("the reduction of {} triangles takes {} bytes beside the mesh, {} where "
-                           "it is cut into blocks; the limit leaves {}",
+               fmt::format("the reduction of {} triangles takes {} bytes in addition to the mesh, "
+                           "at least {} if the mesh is cut into blocks; the limit leaves {}",
                            size.triangles, need.whole, need.least, settings.memory)};
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

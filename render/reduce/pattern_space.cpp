@@ -5,11 +5,12 @@
 
 #include <fmt/format.h>
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
-// The largest extent of any of a feature's values over the mesh; 1 where all are equal.
-float extentOf(const Feature& f) {
+// Returns the largest extent (maximum - minimum over the mesh) of a feature's components; 1 if all
+// components are constant.
+float extentOf(const mesh::Feature& f) {
   float extent = 0;
   for (std::size_t k = 0; k < f.dimension; ++k) {
     float low = f.values[k], high = f.values[k];
@@ -22,23 +23,24 @@ float extentOf(const Feature& f) {
   return extent > 0 && std::isfinite(extent) ? extent : 1;
 }
 
-std::string namesOf(const Mesh& mesh) {
+std::string namesOf(const mesh::Mesh& mesh) {
   std::string names = "geometry, normal, curvature, boundary";
-  for (const Feature& f : mesh.features) {
+  for (const mesh::Feature& f : mesh.features) {
     if (f.name != "normal") names += ", " + f.name;
   }
   return names;
 }
 
-// How many values a feature has and what normalises them; 0 values where the mesh has none such.
-PatternFeature measure(const Mesh& mesh, const std::string& name) {
+// Returns the dimension of a feature and its normalisation as `scale`; dimension 0 if the mesh does
+// not have it.
+PatternFeature measure(const mesh::Mesh& mesh, const std::string& name) {
   if (name == "geometry") {
-    const float diagonal = boundingBox(mesh.positions).diagonal();
+    const float diagonal = mesh::boundingBox(mesh.positions).diagonal();
     return {name, 3, 0, diagonal > 0 ? 1 / diagonal : 1};
   }
   if (name == "normal") return {name, 3, 0, 1};
   if (name == "curvature" || name == "boundary") return {name, 1, 0, 1};
-  const Feature* f = mesh.find(name);
+  const mesh::Feature* f = mesh.find(name);
   if (!f || f->values.empty()) return {name, 0, 0, 1};
   return {name, f->dimension, 0, name == "colour" ? 1 : 1 / extentOf(*f)};
 }
@@ -56,7 +58,7 @@ const std::vector<Preset>& presets() {
   return all;
 }
 
-Weights presetWeights(const Preset& preset, const Mesh& mesh) {
+Weights presetWeights(const Preset& preset, const mesh::Mesh& mesh) {
   Weights weights{{"geometry", preset.geometry},
                   {"normal", preset.normal},
                   {"boundary", preset.boundary},
@@ -65,14 +67,14 @@ Weights presetWeights(const Preset& preset, const Mesh& mesh) {
   return weights;
 }
 
-Weights defaultWeights(const Mesh& mesh) {
+Weights defaultWeights(const mesh::Mesh& mesh) {
   Weights weights{{"geometry", 1.0F}, {"normal", 0.05F}, {"boundary", 0.5F}};
   if (mesh.find("colour")) weights["colour"] = 0.03F;
   if (mesh.find("label")) weights["label"] = 1000;  // [GOURLEY98] 5.2.2: "a very high weight"
   return weights;
 }
 
-Result<PatternSpace> PatternSpace::make(const Mesh& mesh, const Weights& weights) {
+Result<PatternSpace> PatternSpace::make(const mesh::Mesh& mesh, const Weights& weights) {
   PatternSpace space;
   for (const auto& [name, weight] : weights) {
     if (!(weight >= 0) || !(weight <= kMostWeight)) {
@@ -112,4 +114,4 @@ float curvature(std::span<const float> face_normals, const float* normal) noexce
   return static_cast<float>(std::sqrt(sum / (static_cast<double>(face_normals.size()) / 3)));
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -8,13 +8,14 @@
 #include "render/reduce/costs.h"
 #include "render/reduce/memory.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
 constexpr std::array kCosts = {
-    Cost{"quadric", "distance to the surface and its features; the lowest error", quadricWeights,
+    Cost{"quadric", "distance from the surface and its features; lowest error", quadricWeights,
          reduceByQuadric},
-    Cost{"pattern", "length in pattern space, as in 1998", defaultWeights, reduceByPattern},
+    Cost{"pattern", "length of the edge in pattern space, as in Gourley's dissertation of 1998",
+         defaultWeights, reduceByPattern},
 };
 
 Result<Ok> check(const ReduceSettings& s) {
@@ -22,12 +23,14 @@ Result<Ok> check(const ReduceSettings& s) {
     std::string known;
     for (const Cost& cost : kCosts)
       known += fmt::format("{}{}", known.empty() ? "" : ", ", cost.name);
-    return Error{Errc::kInvalidArgument, fmt::format("cost {}: is none of {}", s.cost, known)};
+    return Error{Errc::kInvalidArgument, fmt::format("cost {}: is not one of {}", s.cost, known)};
   }
   if (s.fast && s.cost != "quadric")
-    return Error{Errc::kInvalidArgument, fmt::format("cost {}: only quadric is fast", s.cost)};
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("cost {}: only the cost quadric has a fast mode", s.cost)};
   if (!(s.min_percent >= 0 && s.min_percent <= 100)) {
-    return Error{Errc::kInvalidArgument, fmt::format("percent {} is not 0 to 100", s.min_percent)};
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("percent {} is not from 0 to 100", s.min_percent)};
   }
   if (!(s.max_error_percent >= 0)) {
     return Error{Errc::kInvalidArgument,
@@ -47,7 +50,7 @@ const Cost* findCost(std::string_view name) {
   return nullptr;
 }
 
-Weights weightsFor(const Mesh& mesh, const ReduceSettings& settings) {
+Weights weightsFor(const mesh::Mesh& mesh, const ReduceSettings& settings) {
   return settings.weights.empty() ? findCost(settings.cost)->weights(mesh) : settings.weights;
 }
 
@@ -60,12 +63,12 @@ std::string aboutText(const ReduceSettings& settings, const Weights& weights,
   return text;
 }
 
-Result<Reduction> reduce(const Mesh& mesh, const ReduceSettings& settings,
+Result<Reduction> reduce(const mesh::Mesh& mesh, const ReduceSettings& settings,
                          const Progress& progress) {
   assert(mesh.find("normal") && mesh.find("normal")->dimension == 3);
   if (const auto checked = check(settings); !checked) return checked.error();
-  if (const auto fits = blocksFor(sizeOf(mesh), settings); !fits) return fits.error();
+  if (const auto fits = blocksFor(mesh::sizeOf(mesh), settings); !fits) return fits.error();
   return findCost(settings.cost)->reduce(mesh, settings, progress);
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -1,8 +1,10 @@
-// Reduction: a mesh to the log of its collapses, of which the dendrogram is built.
+// Reduction: simplifies a mesh by edge collapses and returns the log of the collapses, from which
+// buildDendrogram() makes a multiresolution model.
 //
-// Edges are collapsed one after another, cheapest first. What an edge costs is chosen by name; all
-// costs see the modalities of the mesh as one space, with one weight each ([GOURLEY98] chapter 4,
-// POLYMUR). What is ours in it and what the source leaves open: README.md.
+// Edges are collapsed one after another, the cheapest first. The cost function is chosen by name.
+// All cost functions treat position and features of a vertex as one vector, in which each feature
+// has a weight ([GOURLEY98] chapter 4, POLYMUR). The README.md of each cost's folder lists where we
+// differ from the source.
 #pragma once
 
 #include <cstddef>
@@ -17,30 +19,33 @@
 #include "render/mesh/mesh.h"
 #include "render/reduce/pattern_space.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
 struct ReduceSettings {
-  std::string cost = "quadric";  // of costs()
-  Weights weights{};             // empty: the cost's own
-  bool preserve_topology =
-      false;  // refuse collapses that join or pinch off parts ([GOURLEY98] 6.1)
-  // Keep of every component a triangle as long as anything else can go; without it what is smaller
-  // than the error goes as well.
+  std::string cost = "quadric";  // name of a row of costs()
+  Weights weights{};             // empty: the default weights of the cost
+  // Refuse collapses that join or separate parts of the surface ([GOURLEY98] 6.1).
+  bool preserve_topology = false;
+  // Keep at least one triangle of every connected component as long as any other triangle can be
+  // removed. If false, components smaller than the error are removed as well.
   bool preserve_components = false;
-  std::vector<bool> locked{};  // quadric: of the mesh's vertices, those that stay where they are as
-                               // long as anything else can go, and then all of seams; empty: none
-  bool fast = false;           // quadric: a tenth to a third less time, about 6 % more error
-  unsigned threads = 0;        // 0: as many as the machine has; the result is the same
-  // Bytes that it may take beside the mesh, log included; 0: all it wants. Where that is less than
-  // it would take, `quadric` works in blocks, of which the result depends (memory.h).
+  // Only quadric. One entry per vertex of the mesh: true keeps the vertex where it is as long as
+  // any other collapse is allowed. If not empty, vertices on seams are kept as well. Empty: none.
+  std::vector<bool> locked{};
+  bool fast = false;     // only quadric: 10 to 33 % less time, about 6 % larger RMS error
+  unsigned threads = 0;  // 0: one per hardware thread; the result does not depend on it
+  // Memory limit in bytes, without the mesh but with the log; 0: no limit. If it is too low for the
+  // mesh as a whole, `quadric` reduces it in blocks (memory.h); the result then depends on the
+  // limit.
   std::size_t memory = 0;
 
-  // When to stop, whichever comes first: as soon as no more triangles are left than these,
-  // and before the error would be larger. As they stand: when nothing legal is left.
+  // Stop criteria; the first one that is met ends the reduction: the number of triangles falls to
+  // one of the two minima, or going on would exceed the maximum error. With the defaults the
+  // reduction ends when no legal collapse is left.
   std::size_t min_triangles = 0;
-  double min_percent = 0;  // of the mesh's triangles left, 0..100
-  double max_error_percent = std::numeric_limits<double>::infinity();  // the cost's estimate, of
-                                                                       // the diagonal of the box
+  double min_percent = 0;  // triangles left, in percent of the mesh's, 0..100
+  // Limit of the cost's error estimate, in percent of the diagonal of the bounding box.
+  double max_error_percent = std::numeric_limits<double>::infinity();
 };
 
 struct ReduceProgress {
@@ -50,51 +55,54 @@ struct ReduceProgress {
 
 struct ReduceReport {
   std::size_t collapses = 0;
-  std::size_t flips_refused = 0;     // the same edge counts each time
-  std::size_t topology_refused = 0;  // by preserve_topology, or since nothing would be left
-  std::size_t triangles = 0;         // left
-  std::size_t by_all_rules = 0;      // triangles left when the first rule gave way, or at the end
-  std::size_t blocks = 1;            // that it was cut into for want of memory
-  // Triangles at the ends of edges and beside them that steps looked at: the work, on any machine.
-  // No more than some hundred times the mesh's, whatever that is.
+  // Refused collapses; an edge counts each time. Flips: a face would turn over. Topology: mostly
+  // the link condition, also labels, components and large stars.
+  std::size_t flips_refused = 0;
+  std::size_t topology_refused = 0;
+  std::size_t triangles = 0;     // left
+  std::size_t by_all_rules = 0;  // triangles left when the first rule was dropped, or at the end
+  std::size_t blocks = 1;        // that the mesh was cut into to save memory; 1: none
+  // Measure of the work that does not depend on the machine: number of triangles in all stars that
+  // were looked at. At most a few hundred times the mesh's triangles, whatever its shape.
   std::size_t visited = 0;
-  float error = 0;           // estimate of the last level, model units
+  float error = 0;           // largest error estimate of all collapses, model units
   const char* stopped = "";  // why: "nothing left to collapse", "triangles", "percent",
                              // "error", "cancelled"
 };
 
 struct Reduction {
-  CollapseLog log;  // features as in the mesh that reduce() was given, after ensureNormals()
+  lod::CollapseLog log;  // has the features of the mesh that reduce() was given, in their order
   ReduceReport report;
 };
 
 using Progress = std::function<bool(const ReduceProgress&)>;
 
-// One way to say what an edge costs. A row of the table in reduce.cpp.
+// A cost function for edge collapses: one row of the table in reduce.cpp.
 struct Cost {
   const char* name;
-  const char* help;                 // one line, for a person
-  Weights (*weights)(const Mesh&);  // where nobody says otherwise
-  Result<Reduction> (*reduce)(const Mesh&, const ReduceSettings&, const Progress&);
+  const char* help;                       // one line, for a person
+  Weights (*weights)(const mesh::Mesh&);  // default weights
+  Result<Reduction> (*reduce)(const mesh::Mesh&, const ReduceSettings&, const Progress&);
 };
 
 std::span<const Cost> costs();
 const Cost* findCost(std::string_view name);  // nullptr if there is none
 
-// Reduces `mesh`; a last triangle always stays. The log's features follow mesh.features, of which
-// "normal" is recomputed at each new vertex; a mesh without normals must get them first
-// (ensureNormals).
+// Reduces `mesh`; at least one triangle always stays. The log has the features of the mesh, of
+// which "normal" is recomputed at each new vertex. A mesh without normals must get them from
+// ensureNormals() first.
 //
 // mesh      n vertices, m triangles; borders, components, non-manifold edges allowed.
-// progress  called every few thousand collapses; false cancels (what was done is returned).
+// progress  called regularly on the caller's thread; false cancels, and the collapses done so far
+//           are returned.
 // errors    kInvalidArgument: no such cost, a weight or a stop criterion out of range, too little
 //           memory.
-// order     one input, one log, whatever the number of threads.
-// cost      pattern: O(m log m) time, about 110 bytes an edge with three features beside the mesh;
-//           quadric: O(m), README.md.
+// order     the same input gives the same log, whatever the number of threads.
+// cost      pattern: O(m log m) time; with three features about 110 bytes an edge in addition to
+//           the mesh. quadric: O(m) time; figures in quadric/README.md.
 // thread    reentrant.
 // REQUIRES  validate(mesh), tidy(mesh), and a feature "normal" of dimension 3.
-Result<Reduction> reduce(const Mesh& mesh, const ReduceSettings& settings,
+Result<Reduction> reduce(const mesh::Mesh& mesh, const ReduceSettings& settings,
                          const Progress& progress = {});
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

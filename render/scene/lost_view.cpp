@@ -1,6 +1,6 @@
 #include "render/scene/lost_view.h"
 
-namespace merlin::render {
+namespace merlin::render::scene {
 
 bool LostView::update(bool seen, bool moving, Timestamp now) noexcept {
   if (seen) seen_at_ = now;
@@ -10,4 +10,4 @@ bool LostView::update(bool seen, bool moving, Timestamp now) noexcept {
   return true;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::scene

@@ -1,27 +1,30 @@
-// LostView: whether a content that nobody sees, and nobody moves, should return to the start. Pure.
+// LostView: decides when the start view returns, because no tile has shown the content for some
+// time and nobody moves it. Pure.
 #pragma once
 
 #include <optional>
 
 #include "daemon/base/clock.h"
 
-namespace merlin::render {
+namespace merlin::render::scene {
 
 // Thread-bound.
 class LostView {
  public:
-  // 0: never.
+  // `return_after_s`: time without the content in any tile; 0: the view never returns.
   explicit LostView(double return_after_s) : return_after_(fromSeconds(return_after_s)) {}
 
-  // Once a frame: whether any of the content was `seen` in a tile of the wall, whether anything is
-  // `moving`. True once, where nothing has been seen for return_after_s and nothing moves: the
-  // start view is due. Not again before something was seen, since a start view that shows nothing
-  // would otherwise return for ever. `now` never falls.
+  // To be called once a frame. `seen`: a tile of the wall shows a part of the content; `moving`:
+  // something moves. Returns true once if nothing was seen for return_after_s and nothing moves:
+  // the start view should be shown. It returns true again only after something was seen, since a
+  // start view that shows nothing would otherwise be restored repeatedly. REQUIRES: `now` never
+  // decreases.
   bool update(bool seen, bool moving, Timestamp now) noexcept;
 
  private:
   Duration return_after_;
-  std::optional<Timestamp> seen_at_;  // last; nothing where it was not since the last return
+  // Time of the last sighting; nullopt if there was none since the last return.
+  std::optional<Timestamp> seen_at_;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::scene

@@ -6,23 +6,17 @@
 
 #include <fmt/format.h>
 
-namespace merlin::render {
+namespace merlin::render::scene {
 namespace {
 
 constexpr float kRadian = std::numbers::pi_v<float> / 180;
-// A frame that took longer moves the model no further than this would.
+// Time step of ball and flight at most, also after a frame that took longer.
 constexpr float kLongestStep_s = 0.1F;
 constexpr float kMostShear = 1e-4F;
 
-Eigen::Isometry3f isometry(const Eigen::Quaternionf& q, const Eigen::Vector3f& p) {
-  Eigen::Isometry3f t = Eigen::Isometry3f::Identity();
-  t.linear() = q.normalized().toRotationMatrix();
-  t.translation() = p;
-  return t;
-}
-
-// A float tells places 1 mm apart within kWorld_m, and what is further is not seen. Each turn adds
-// its rounding to a rotation: years of it would shear the model. False where there is no way back.
+// Limits the translation to kWorld_m, within which a float resolves 1 mm; nothing farther away is
+// visible. Makes the rotation orthonormal again, since rounding errors of many rotations would
+// shear the model. Returns false if the pose is not finite.
 bool bounded(Eigen::Isometry3f& pose) {
   if (!pose.matrix().allFinite()) return false;
   const float away = pose.translation().stableNorm();
@@ -38,11 +32,21 @@ std::optional<Eigen::Matrix3f> axisMap(const std::array<int, 3>& axes) {
   Eigen::Matrix3f m = Eigen::Matrix3f::Zero();
   for (int row = 0; row < 3; ++row) {
     const int axis = axes[static_cast<std::size_t>(row)];
-    if (axis == 0 || axis < -3 || axis > 3) return std::nullopt;  // abs(the least int) is none
+    if (axis == 0 || axis < -3 || axis > 3) return std::nullopt;  // else abs() may overflow
     m(row, std::abs(axis) - 1) = axis > 0 ? 1.0F : -1.0F;
   }
   if (std::abs(m.determinant() - 1) > 1e-6F) return std::nullopt;
   return m;
+}
+
+std::unique_ptr<const Navigator> makeNavigator(content::Navigation navigation,
+                                               const SceneSettings& settings) {
+  switch (navigation) {
+    case content::Navigation::kPlane: return std::make_unique<PlaneNavigator>(settings);
+    case content::Navigation::kPanorama: return std::make_unique<PanoramaNavigator>(settings);
+    case content::Navigation::kObject: break;
+  }
+  return std::make_unique<ObjectNavigator>(settings);
 }
 
 Eigen::Vector3f vector(const std::array<double, 3>& a) {
@@ -50,9 +54,9 @@ Eigen::Vector3f vector(const std::array<double, 3>& a) {
 }
 
 struct Ray {
-  Eigen::Vector3f from, direction;  // the latter of length 1
+  Eigen::Vector3f from, direction;  // `direction` has length 1
 
-  // Where it enters a sphere that it does not begin in.
+  // The point at which the ray enters a sphere; nullopt if it misses the sphere or begins inside.
   std::optional<Eigen::Vector3f> enters(const Eigen::Vector3f& centre, float radius) const {
     const Eigen::Vector3f to = centre - from;
     const float along = to.dot(direction);
@@ -61,7 +65,8 @@ struct Ray {
     return from + (along - std::sqrt(inside)) * direction;
   }
 
-  // Where it leaves a sphere about the eye; from outside, what it would see far away.
+  // The point at which the ray leaves a sphere about the eye. If the ray begins outside: the
+  // sphere's point in the ray's direction, as seen from the eye.
   Eigen::Vector3f leaves(float radius) const {
     const float along = -from.dot(direction);
     const float inside = radius * radius - (from + along * direction).squaredNorm();
@@ -79,23 +84,24 @@ Result<Scene> Scene::make(const SceneSettings& settings) {
 }
 
 Scene::Scene(const SceneSettings& settings)
-    : settings_(settings), R_wall_tracker_(*axisMap(settings.tracker_axes)) {
+    : settings_(settings),
+      navigator_(makeNavigator(navigation_, settings)),
+      R_wall_tracker_(*axisMap(settings.tracker_axes)) {
+  reset();
+}
+
+void Scene::setNavigation(content::Navigation navigation) {
+  if (std::exchange(navigation_, navigation) == navigation) return;
+  navigator_ = makeNavigator(navigation, settings_);
   reset();
 }
 
 void Scene::reset() {
-  const auto yaw = static_cast<float>(settings_.model_yaw_deg) * kRadian;
-  const auto pitch = static_cast<float>(settings_.model_pitch_deg) * kRadian;
-  const Eigen::Quaternionf turned = Eigen::AngleAxisf(yaw, Eigen::Vector3f::UnitY()) *
-                                    Eigen::AngleAxisf(pitch, Eigen::Vector3f::UnitX());
-  const Eigen::Vector3f place(0, 0, -static_cast<float>(settings_.model_distance_m));
-  T_wall_model_ = isometry(turned, place);
-  T_wall_eye_.setIdentity();
+  poses_ = navigator_->start();
   grab_hand_.reset();
-  grab_model_.reset();
   fly_hand_.reset();
   jumped_ = true;
-  view_ = {T_wall_model_, mode_, false, true, std::nullopt};
+  view_ = {poses_.T_wall_content, mode_, false, true, std::nullopt};
 }
 
 void Scene::nextMode() { mode_ = mode_ == BallMode::kObject ? BallMode::kFly : BallMode::kObject; }
@@ -109,11 +115,12 @@ SceneView Scene::update(const SceneInput& input, Timestamp now) {
   if (input.next_mode % 2 == 1) nextMode();
   const float step_s = std::clamp(seconds, 0.0F, kLongestStep_s);
   const bool pushed = moveByBall(input, step_s);
+  const bool stepped = moveByStep(input);
   const bool carried = moveByHand(input, input.grab);
   const bool flown = flyByHand(input, input.fly && !input.grab, step_s);
   bound();
-  if (std::exchange(jumped_, false) || pushed || carried || flown) last_motion_ = now;
-  view_.T_eye_model = T_wall_eye_.inverse() * T_wall_model_;
+  if (std::exchange(jumped_, false) || pushed || stepped || carried || flown) last_motion_ = now;
+  view_.T_eye_model = poses_.T_wall_eye.inverse() * poses_.T_wall_content;
   view_.mode = mode_;
   view_.grabbed = grab_hand_.has_value();
   view_.moving = now - last_motion_ < fromSeconds(settings_.still_after_s);
@@ -122,11 +129,10 @@ SceneView Scene::update(const SceneInput& input, Timestamp now) {
 }
 
 void Scene::bound() {
-  if (!bounded(T_wall_model_) || !bounded(T_wall_eye_)) reset();
+  if (!bounded(poses_.T_wall_content) || !bounded(poses_.T_wall_eye)) reset();
 }
 
-// Turns are about the model's own centre, along the viewer's axes; a flying viewer turns about the
-// eye. Returns whether the ball is pushed at all.
+// Returns whether the ball is pushed or twisted at all.
 bool Scene::moveByBall(const SceneInput& input, float seconds) {
   if (!input.ball) return false;
   const Eigen::Vector3f push(input.ball->translation[0], input.ball->translation[1],
@@ -134,25 +140,22 @@ bool Scene::moveByBall(const SceneInput& input, float seconds) {
   const Eigen::Vector3f twist(input.ball->rotation[0], input.ball->rotation[1],
                               input.ball->rotation[2]);
   if (push.isZero(0) && twist.isZero(0)) return false;
-  const Eigen::Vector3f step = push.cwiseProduct(vector(settings_.ball_speed_m_s)) * seconds;
+  const Eigen::Vector3f way = push.cwiseProduct(vector(settings_.ball_speed_m_s)) * seconds;
   const Eigen::Vector3f turn =
       twist.cwiseProduct(vector(settings_.ball_turn_deg_s)) * kRadian * seconds;
-  const float angle = turn.norm();
-  const Eigen::AngleAxisf rotation(
-      angle, angle > 0 ? Eigen::Vector3f(turn / angle) : Eigen::Vector3f::UnitX());
-  if (mode_ == BallMode::kFly) {
-    T_wall_eye_ = T_wall_eye_ * isometry(Eigen::Quaternionf(rotation), step);
-    return true;
-  }
-  const Eigen::Matrix3f R_wall_eye = T_wall_eye_.linear();
-  T_wall_model_.linear() =
-      R_wall_eye * rotation.toRotationMatrix() * R_wall_eye.transpose() * T_wall_model_.linear();
-  T_wall_model_.translation() += R_wall_eye * step;
+  navigator_->push(poses_, {way, turn}, mode_);
   return true;
 }
 
-// The model turns with the hand about its own centre and moves hand_gain times as far. Within the
-// tracker's noise nothing moves; from rest, the noise has to be doubled.
+// Returns whether a step is requested.
+bool Scene::moveByStep(const SceneInput& input) {
+  if (input.step.way_m.isZero(0) && input.step.turn_rad.isZero(0)) return false;
+  navigator_->push(poses_, input.step, mode_);
+  return true;
+}
+
+// Returns whether the hand's motion exceeds the tracker's noise (at rest: twice the noise). At
+// rest, smaller motions do not move the content; while the scene moves, it follows them too.
 bool Scene::moveByHand(const SceneInput& input, bool grab) {
   if (!grab || !input.hand) {
     grab_hand_.reset();
@@ -161,7 +164,7 @@ bool Scene::moveByHand(const SceneInput& input, bool grab) {
   const Eigen::Isometry3f hand = handPose(*input.hand);
   if (!grab_hand_) {
     grab_hand_ = last_hand_ = hand;
-    grab_model_ = T_wall_model_;
+    grabbed_ = poses_;
     return true;
   }
   const float gate = view_.moving ? 1.0F : 2.0F;
@@ -172,16 +175,12 @@ bool Scene::moveByHand(const SceneInput& input, bool grab) {
                      turn > gate * static_cast<float>(settings_.hand_noise_deg) * kRadian;
   if (moved) last_hand_ = hand;
   if (!moved && !view_.moving) return false;
-  const Eigen::Matrix3f R = hand.linear() * grab_hand_->linear().transpose();
-  const Eigen::Matrix3f R_wall_eye = T_wall_eye_.linear();
-  T_wall_model_.linear() = R_wall_eye * R * R_wall_eye.transpose() * grab_model_->linear();
-  T_wall_model_.translation() =
-      grab_model_->translation() + R_wall_eye * (hand.translation() - grab_hand_->translation()) *
-                                       static_cast<float>(settings_.hand_gain);
+  navigator_->carry(poses_, grabbed_, *grab_hand_, hand);
   return moved;
 }
 
-// Rate control: the further the hand from where it began, the faster; within its noise, none.
+// Rate control: the viewer's speed is proportional to the hand's distance from where it began;
+// within twice the tracker's noise the viewer does not move.
 bool Scene::flyByHand(const SceneInput& input, bool fly, float seconds) {
   if (!fly || !input.hand) {
     fly_hand_.reset();
@@ -191,11 +190,11 @@ bool Scene::flyByHand(const SceneInput& input, bool fly, float seconds) {
   if (!fly_hand_) fly_hand_ = hand;
   const Eigen::Vector3f way = hand - *fly_hand_;
   if (way.norm() <= 2 * static_cast<float>(settings_.hand_noise_m)) return false;
-  T_wall_eye_.translate(way * static_cast<float>(settings_.fly_gain) * seconds);
+  navigator_->fly(poses_, way * static_cast<float>(settings_.fly_gain) * seconds);
   return true;
 }
 
-// Aligned as the transmitter is, the hand points straight into the wall: -z.
+// A hand in the same orientation as the transmitter points straight into the wall, along -z.
 std::optional<Pointed> Scene::pointByHand(const SceneInput& input) const {
   if (!input.hand) return std::nullopt;
   const Eigen::Isometry3f hand = handPose(*input.hand);
@@ -219,4 +218,4 @@ Eigen::Isometry3f Scene::handPose(const TrackerSample& s) const {
   return hand;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::scene

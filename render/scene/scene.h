@@ -1,9 +1,11 @@
-// Scene: what the devices say becomes where the model and the viewer are. Pure: no clock, no GL.
+// Scene: computes the poses of the content and the viewer from the devices' input. Pure: no clock,
+// no GL.
 //
 // Wall frame: the eye at the origin, x right, y up, -z into the wall, metres. T_a_b takes
 // b-coordinates to a-coordinates.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include <Eigen/Geometry>
@@ -11,33 +13,34 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
 #include "drivers/port/samples.h"
+#include "render/scene/navigator.h"
 #include "render/scene/settings.h"
 
-namespace merlin::render {
+namespace merlin::render::scene {
 
-// Input of one frame. A device that is absent, or has not worked for a while, is left out.
+// Input of one frame. A device that is absent, or has failed for some time, has no sample.
 struct SceneInput {
   std::optional<BallSample> ball;
   std::optional<TrackerSample> hand;
-  bool grab = false, fly = false, point_at = false;  // actions that are held
-  std::uint32_t reset_view = 0, next_mode = 0;       // times that they were asked for
+  bool grab = false, fly = false, point_at = false;  // held actions
+  std::uint32_t reset_view = 0, next_mode = 0;  // how often each was requested since the last frame
+  Push step;  // requested by the command move since the last frame: applied at once
 };
 
-enum class BallMode { kObject, kFly };  // the ball moves the model; the viewer
-
-// Where the hand's ray ends, metres.
+// The point at which the hand points, in metres.
 struct Pointed {
   Eigen::Vector3f at_eye_m = Eigen::Vector3f::Zero();    // in eye coordinates
   Eigen::Vector3f at_model_m = Eigen::Vector3f::Zero();  // in the model's coordinates
-  bool on_model = false;                                 // on its bounding sphere, else on the wall
+  bool on_model = false;  // on the model's bounding sphere; else on a sphere about the eye, as far
+                          // away as the wall
 };
 
 struct SceneView {
-  Eigen::Isometry3f T_eye_model;  // model in metres, its bounding sphere's centre at its origin
+  Eigen::Isometry3f T_eye_model;  // model in metres; origin: centre of its bounding sphere
   BallMode mode = BallMode::kObject;
   bool grabbed = false;
-  bool moving = false;             // an input is above its noise, or was within still_after_s
-  std::optional<Pointed> pointed;  // while a hand points; that is no motion
+  bool moving = false;  // an input exceeds its noise, or did so within the last still_after_s
+  std::optional<Pointed> pointed;  // while a hand points; pointing does not count as motion
 };
 
 class Scene {
@@ -45,22 +48,27 @@ class Scene {
   // Errors: kInvalidArgument (an axis map that is not a right-handed permutation).
   static Result<Scene> make(const SceneSettings& settings);
 
-  // Once a frame. `now` never falls. Cost: microseconds. Whatever `input` holds, both of the poses
-  // behind the view stay rotations of norm 1 within kWorld_m of where they started from, or the
-  // start view returns.
+  // To be called once a frame. REQUIRES: `now` never decreases. Cost: microseconds. Whatever
+  // `input` contains, the poses of content and viewer stay rigid (orthonormal rotations) and within
+  // kWorld_m of the wall frame's origin; if a pose is not finite, the start view returns.
   SceneView update(const SceneInput& input, Timestamp now);
 
-  // Where it would be drawn without any further input.
+  // The view of the last update() or reset().
   const SceneView& view() const noexcept { return view_; }
 
   static constexpr float kWorld_m = 10'000;
 
-  void reset();  // model and viewer back to the start; counts as motion
+  void reset();  // returns model and viewer to their initial poses; counts as motion
   void nextMode();
+
+  // Sets how the content is moved from now on; initially kObject. If the kind of navigation
+  // changes, the view becomes the start view of the new kind, which counts as motion.
+  void setNavigation(content::Navigation navigation);
 
  private:
   explicit Scene(const SceneSettings& settings);
   bool moveByBall(const SceneInput& input, float seconds);
+  bool moveByStep(const SceneInput& input);
   bool moveByHand(const SceneInput& input, bool grab);
   bool flyByHand(const SceneInput& input, bool fly, float seconds);
   std::optional<Pointed> pointByHand(const SceneInput& input) const;
@@ -68,16 +76,20 @@ class Scene {
   Eigen::Isometry3f handPose(const TrackerSample& sample) const;
 
   SceneSettings settings_;
-  Eigen::Isometry3f T_wall_model_, T_wall_eye_;
-  // While grabbed: where hand and model were when it began, and where the hand last counted.
-  std::optional<Eigen::Isometry3f> grab_hand_, grab_model_;
+  content::Navigation navigation_ = content::Navigation::kObject;
+  std::unique_ptr<const Navigator> navigator_;
+  Poses poses_;
+  // While the content is grabbed: the poses of hand, content and viewer at the beginning, and the
+  // hand's pose at its last motion beyond noise.
+  std::optional<Eigen::Isometry3f> grab_hand_;
+  Poses grabbed_;
   Eigen::Isometry3f last_hand_ = Eigen::Isometry3f::Identity();
   SceneView view_;
   Timestamp last_update_{}, last_motion_{};
   Eigen::Matrix3f R_wall_tracker_;
-  std::optional<Eigen::Vector3f> fly_hand_;  // while flying: where the hand was when it began
+  std::optional<Eigen::Vector3f> fly_hand_;  // while flying: the hand's position at the beginning
   BallMode mode_ = BallMode::kObject;
-  bool jumped_ = false;  // since the last update
+  bool jumped_ = false;  // the view was reset since the last update()
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::scene

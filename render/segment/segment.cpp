@@ -11,18 +11,18 @@
 
 #include "render/mesh/places.h"
 
-namespace merlin::render {
+namespace merlin::render::segment {
 namespace {
 
-// The normals of each vertex' faces are needed side by side.
-std::vector<float> curvatures(const Mesh& mesh) {
+// Returns the curvature at each vertex; curvature() takes the normals of its faces as one array.
+std::vector<float> curvatures(const mesh::Mesh& mesh) {
   const std::vector<float>& normals = mesh.find("normal")->values;
   std::vector<std::vector<float>> faces(mesh.vertexCount());
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
     const auto at = [&](std::size_t k) {
       return &mesh.positions[3 * std::size_t{mesh.triangles[i + k]}];
     };
-    const auto normal = faceNormal(at(0), at(1), at(2));
+    const auto normal = mesh::faceNormal(at(0), at(1), at(2));
     for (std::size_t k = 0; k < 3; ++k) {
       auto& f = faces[mesh.triangles[i + k]];
       f.insert(f.end(), normal.begin(), normal.end());
@@ -31,14 +31,14 @@ std::vector<float> curvatures(const Mesh& mesh) {
   std::vector<float> values;
   values.reserve(faces.size());
   for (std::size_t v = 0; v < faces.size(); ++v)
-    values.push_back(curvature(faces[v], &normals[3 * v]));
+    values.push_back(reduce::curvature(faces[v], &normals[3 * v]));
   return values;
 }
 
-std::vector<double> patternsOf(const Mesh& mesh, const PatternSpace& space) {
+std::vector<double> patternsOf(const mesh::Mesh& mesh, const reduce::PatternSpace& space) {
   const std::size_t d = space.dimension();
   std::vector<double> patterns(mesh.vertexCount() * d);
-  for (const PatternFeature& f : space.features()) {
+  for (const reduce::PatternFeature& f : space.features()) {
     const std::vector<float> values = f.name == "geometry"    ? mesh.positions
                                       : f.name == "curvature" ? curvatures(mesh)
                                                               : mesh.find(f.name)->values;
@@ -69,13 +69,13 @@ class Clusters {
     return sum;
   }
 
-  // Increase of the sum of squares by their union.
+  // Increase of the sum of squared distances from the means if the two clusters are merged.
   double cost(std::uint32_t a, std::uint32_t b) const {
     const double n = size_[a], m = size_[b];
     return n * m / (n + m) * distance2(a, b);
   }
 
-  // The smaller number stays.
+  // Merges two clusters; the result has the smaller number.
   void merge(std::uint32_t a, std::uint32_t b) {
     if (b < a) std::swap(a, b);
     squares_ += cost(a, b);
@@ -112,7 +112,7 @@ class Clusters {
 using Pair = std::tuple<double, std::uint32_t, std::uint32_t>;  // cost, two vertices
 using Queue = std::priority_queue<Pair, std::vector<Pair>, std::greater<>>;
 
-Queue neighbours(const Mesh& mesh, const Clusters& clusters) {
+Queue neighbours(const mesh::Mesh& mesh, const Clusters& clusters) {
   std::vector<Pair> pairs;
   pairs.reserve(mesh.triangles.size() / 2 + mesh.vertexCount());
   const auto add = [&](std::uint32_t a, std::uint32_t b) {
@@ -120,20 +120,20 @@ Queue neighbours(const Mesh& mesh, const Clusters& clusters) {
   };
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
     const std::uint32_t* t = &mesh.triangles[i];
-    for (std::size_t k = 0; k < 3; ++k) {  // at a border an edge comes by one way only
+    for (std::size_t k = 0; k < 3; ++k) {  // a border edge occurs in one direction only
       add(t[k], t[(k + 1) % 3]);
       add(t[(k + 1) % 3], t[k]);
     }
   }
-  const auto next = samePlace(mesh.positions);
+  const auto next = mesh::samePlace(mesh.positions);
   for (std::uint32_t v = 0; v < next.size(); ++v) add(v, next[v]);
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return Queue({}, std::move(pairs));
 }
 
-// Down to `keep` clusters, or to none that are neighbours.
-std::size_t mergeNeighbours(const Mesh& mesh, Clusters& clusters, std::size_t keep) {
+// Merges neighbours until `keep` clusters are left, or none that are neighbours. Returns how many.
+std::size_t mergeNeighbours(const mesh::Mesh& mesh, Clusters& clusters, std::size_t keep) {
   Queue queue = neighbours(mesh, clusters);
   std::size_t left = mesh.vertexCount();
   while (left > keep && !queue.empty()) {
@@ -142,7 +142,7 @@ std::size_t mergeNeighbours(const Mesh& mesh, Clusters& clusters, std::size_t ke
     const std::uint32_t a = clusters.of(v), b = clusters.of(w);
     if (a == b) continue;
     if (const double now = clusters.cost(a, b); now > cost) {
-      queue.emplace(now, v, w);  // they have grown since
+      queue.emplace(now, v, w);  // the clusters have grown since
       continue;
     }
     clusters.merge(a, b);
@@ -151,7 +151,7 @@ std::size_t mergeNeighbours(const Mesh& mesh, Clusters& clusters, std::size_t ke
   return left;
 }
 
-// Components that are too many join the nearest of the largest.
+// Merges each cluster but the `keep` largest with the nearest of those.
 void joinTheRest(Clusters& clusters, std::size_t keep) {
   const std::vector<std::uint32_t> all = clusters.bySize();
   for (std::size_t i = keep; i < all.size(); ++i) {
@@ -183,25 +183,25 @@ Segmentation labelled(Clusters& clusters, std::size_t vertices) {
 
 }  // namespace
 
-Weights segmentWeights(const Mesh& mesh) {
-  Weights weights{{"normal", 1.0F}};
+reduce::Weights segmentWeights(const mesh::Mesh& mesh) {
+  reduce::Weights weights{{"normal", 1.0F}};
   if (mesh.find("colour")) weights["colour"] = 1.0F;
   return weights;
 }
 
-Result<Segmentation> segment(const Mesh& mesh, const SegmentSettings& settings) {
+Result<Segmentation> segment(const mesh::Mesh& mesh, const SegmentSettings& settings) {
   assert(mesh.find("normal") && mesh.find("normal")->dimension == 3 && mesh.vertexCount() > 0);
   if (settings.segments == 0)
     return Error{Errc::kInvalidArgument, "0 segments: at least one is needed"};
-  const auto space =
-      PatternSpace::make(mesh, settings.weights.empty() ? segmentWeights(mesh) : settings.weights);
+  const auto space = reduce::PatternSpace::make(
+      mesh, settings.weights.empty() ? segmentWeights(mesh) : settings.weights);
   if (!space) return space.error();
   if (space->find("boundary"))
-    return Error{Errc::kInvalidArgument, "weight boundary: segments have no use for it"};
+    return Error{Errc::kInvalidArgument, "weight boundary: segmentation does not use this weight"};
   Clusters clusters(patternsOf(mesh, *space), space->dimension(), mesh.vertexCount());
   if (mergeNeighbours(mesh, clusters, settings.segments) > settings.segments)
     joinTheRest(clusters, settings.segments);
   return labelled(clusters, mesh.vertexCount());
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::segment

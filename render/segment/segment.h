@@ -1,5 +1,5 @@
-// Segmentation: the vertices of a mesh clustered in pattern space, connected over the surface.
-// [GOURLEY98] section 6.1; how, and why so: README.md.
+// Segmentation: clusters the vertices of a mesh in pattern space; each segment is connected on the
+// surface. [GOURLEY98] section 6.1; README.md describes the method and the reasons for it.
 #pragma once
 
 #include <cstddef>
@@ -10,28 +10,29 @@
 #include "render/mesh/mesh.h"
 #include "render/reduce/pattern_space.h"
 
-namespace merlin::render {
+namespace merlin::render::segment {
 
 struct SegmentSettings {
   std::size_t segments = 8;
-  Weights weights{};  // empty: segmentWeights()
+  reduce::Weights weights{};  // empty: segmentWeights()
 };
 
 struct Segmentation {
-  std::vector<std::uint32_t> labels;  // of each vertex: 0 is the largest segment
-  std::vector<std::size_t> sizes;     // vertices of each segment, falling
+  std::vector<std::uint32_t> labels;  // by vertex: its segment; 0 is the largest
+  std::vector<std::size_t> sizes;     // number of vertices of each segment, in descending order
   double error = 0;  // RMS distance of the pattern vectors from the mean of their segment
 };
 
-// Normals 1, and colours 1 where the mesh has them.
-Weights segmentWeights(const Mesh& mesh);
+// Default weights: normal 1, and colour 1 if the mesh has it.
+reduce::Weights segmentWeights(const mesh::Mesh& mesh);
 
-// Segments of `mesh`: as many as asked for, fewer where it has fewer vertices. Vertices in one
-// place (samePlace()) are neighbours. Where the mesh has more components than segments are asked
-// for, the largest stay, and each other one joins that whose mean is nearest. Errors:
-// kInvalidArgument: no segments; a weight that PatternSpace refuses, or of "boundary". O(n log n)
-// time, 32 bytes an edge and 8 a pattern's dimension and vertex besides. Reentrant; same input,
-// same labels. REQUIRES: validate(mesh), a vertex or more, and a feature "normal" of dimension 3.
-Result<Segmentation> segment(const Mesh& mesh, const SegmentSettings& settings);
+// Divides `mesh` into settings.segments segments, fewer if it has fewer vertices. Coincident
+// vertices (samePlace()) are neighbours. If the mesh has more connected components than that, the
+// largest are kept and each of the others joins the one with the nearest mean. Errors:
+// kInvalidArgument (0 segments; a weight that PatternSpace refuses; a weight of "boundary"). Time:
+// O(n log n); memory: 32 bytes per edge, and 8 per vertex and dimension of the pattern. Reentrant;
+// the same input gives the same labels. REQUIRES: validate(mesh), at least one vertex, and a
+// feature "normal" of dimension 3.
+Result<Segmentation> segment(const mesh::Mesh& mesh, const SegmentSettings& settings);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::segment

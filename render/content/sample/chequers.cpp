@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace merlin::render {
+namespace merlin::render::content {
 
 std::size_t ChequersDetail::stepWithin(std::size_t budget) const noexcept {
   std::size_t step = 0;
@@ -35,4 +35,4 @@ void Chequers::choose(std::size_t step, std::span<const ContentView> views) {
   }
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::content

@@ -1,5 +1,6 @@
-// A sample of a content, compiled and tested, to be copied: a chequered plane. It has detail steps,
-// a cost, a renderer that draws in slices, and nothing of a model. The wall does not show it.
+// A sample content to be copied for a new kind of content: a chequered plane. It is compiled and
+// tested, but the wall does not show it. It has detail steps with costs and a renderer that draws
+// in slices, without the complexity of a model.
 #pragma once
 
 #include <array>
@@ -8,9 +9,9 @@
 
 #include "render/content/content.h"
 
-namespace merlin::render {
+namespace merlin::render::content {
 
-// Step s has (64 >> s) squares each way; the coarsest has two.
+// Step s has (64 >> s) squares in each direction; the coarsest has two.
 class ChequersDetail final : public DetailAxis {
  public:
   std::size_t steps() const noexcept override { return 6; }
@@ -22,19 +23,20 @@ class ChequersDetail final : public DetailAxis {
   static std::size_t side(std::size_t step) noexcept { return std::size_t{64} >> step; }
 };
 
-// Two metres wide and high, upright, its middle at the origin.
+// An upright square, two metres wide and high, with its centre at the origin.
 class Chequers final : public Content {
  public:
   const DetailAxis& detail() const noexcept override { return detail_; }
   ContentBounds bounds() const noexcept override;
   Navigation navigation() const noexcept override { return Navigation::kPlane; }
   void choose(std::size_t step, std::span<const ContentView> views) override;
-  Result<std::unique_ptr<ContentRenderer>> attach(const GlApi& gl) const override;
+  Result<std::unique_ptr<ContentRenderer>> attach(const gl::GlApi& gl) const override;
 
   // The squares that the renderers draw.
   struct Chosen {
-    std::vector<std::array<float, 3>> corners;  // x, y, brightness; six of each square
-    std::vector<Eigen::Matrix4f> views;         // clip from metres, by number of the tile
+    // x [m], y [m], brightness 0..1; six for each square.
+    std::vector<std::array<float, 3>> corners;
+    std::vector<Eigen::Matrix4f> views;  // clip_from_metres of each view, by tile number
   };
 
  private:
@@ -42,4 +44,4 @@ class Chequers final : public Content {
   Chosen chosen_;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::content

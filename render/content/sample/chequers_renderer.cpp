@@ -1,4 +1,4 @@
-// The chequered plane's half in an OpenGL context.
+// The renderer of the chequered plane in one OpenGL context.
 #include <algorithm>
 #include <memory>
 
@@ -6,10 +6,10 @@
 #include "render/gl/gl_api.h"
 #include "render/gl/shader.h"
 
-namespace merlin::render {
+namespace merlin::render::content {
 namespace {
 
-constexpr std::size_t kSlice = 1024;  // squares of a slice
+constexpr std::size_t kSlice = 1024;  // squares per slice
 
 constexpr const char* kVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 corner;
@@ -28,7 +28,7 @@ void main() { pixel = vec4(vec3(brightness), 1.0); }
 
 class ChequersRenderer final : public ContentRenderer {
  public:
-  ChequersRenderer(const GlApi& gl, const Chequers::Chosen& chosen, GLuint program)
+  ChequersRenderer(const gl::GlApi& gl, const Chequers::Chosen& chosen, GLuint program)
       : gl_(gl), chosen_(chosen), program_(program) {
     clip_location_ = gl_.GetUniformLocation(program_, "clip_from_metres");
     gl_.GenVertexArrays(1, &array_);
@@ -63,7 +63,7 @@ class ChequersRenderer final : public ContentRenderer {
     gl_.Disable(GL_CULL_FACE);
     gl_.Enable(GL_DEPTH_TEST);
     Eigen::Matrix4f clip = chosen_.views[tile];
-    clip.row(1) *= -1;  // a canvas has its upper row first
+    clip.row(1) *= -1;  // the first row of a canvas is the upper one
     gl_.UseProgram(program_);
     gl_.UniformMatrix4fv(clip_location_, 1, GL_FALSE, clip.data());
   }
@@ -84,7 +84,7 @@ class ChequersRenderer final : public ContentRenderer {
     return static_cast<GLsizeiptr>(values.size() * sizeof(T));
   }
 
-  const GlApi& gl_;
+  const gl::GlApi& gl_;
   const Chequers::Chosen& chosen_;
   GLuint program_, array_ = 0, corners_ = 0, indices_ = 0;
   GLint clip_location_ = -1;
@@ -92,11 +92,11 @@ class ChequersRenderer final : public ContentRenderer {
 
 }  // namespace
 
-Result<std::unique_ptr<ContentRenderer>> Chequers::attach(const GlApi& gl) const {
-  const auto program = linkProgram(gl, kVertexShader, kFragmentShader);
+Result<std::unique_ptr<ContentRenderer>> Chequers::attach(const gl::GlApi& gl) const {
+  const auto program = gl::linkProgram(gl, kVertexShader, kFragmentShader);
   if (!program) return program.error();
   return std::unique_ptr<ContentRenderer>(
       std::make_unique<ChequersRenderer>(gl, chosen_, *program));
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::content

@@ -13,12 +13,13 @@
 #include "daemon/base/text.h"
 #include "render/lod/io/mrm_layout.h"
 
-namespace merlin::render {
+namespace merlin::render::lod {
 namespace {
 
 using namespace mrm;
 
-static_assert(std::endian::native == std::endian::little, "an .mrm file is mapped as it stands");
+static_assert(std::endian::native == std::endian::little,
+              "an .mrm file is mapped without conversion");
 
 constexpr std::uint32_t kMostSections = 1024;
 
@@ -28,7 +29,7 @@ Error broken(const std::string& path, const std::string& what) {
   return {Errc::kMalformed, path + ": " + what};
 }
 
-// nullptr for a kind that is not known.
+// Name of a section kind; nullptr if the kind is not known.
 const char* nameOf(std::uint32_t kind) {
   switch (static_cast<Kind>(kind)) {
     case Kind::kPositions: return "positions";
@@ -45,7 +46,7 @@ const char* nameOf(std::uint32_t kind) {
 
 class MrmReader {
  public:
-  // `owner` keeps the bytes.
+  // `owner` keeps `bytes` alive.
   MrmReader(std::string path, std::span<const std::byte> bytes, std::shared_ptr<const void> owner)
       : path_(std::move(path)), bytes_(bytes), owner_(std::move(owner)) {}
 
@@ -74,7 +75,7 @@ class MrmReader {
     if (size() < sizeof header_) return broken(path_, "is too short for an .mrm file");
     std::memcpy(&header_, data(), sizeof header_);
     if (std::memcmp(header_.magic, kMagic, sizeof kMagic) != 0) {
-      return broken(path_, "is no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)");
+      return broken(path_, "is not an .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)");
     }
     if (header_.version != kVersion) {
       return Error{Errc::kUnsupported,
@@ -101,7 +102,7 @@ class MrmReader {
   }
 
   Result<Ok> readSection(const SectionEntry& e) {
-    if (nameOf(e.kind) == nullptr) {  // nobody here knows how large its values are
+    if (nameOf(e.kind) == nullptr) {  // the size of its values is not known
       if (e.kind >= kFirstOptional) return Ok{};
       return Error{Errc::kUnsupported,
                    fmt::format("{}: section kind {} is not known", path_, e.kind)};
@@ -116,7 +117,7 @@ class MrmReader {
       return broken(path_, fmt::format("section {} is damaged", nameOf(e.kind)));
     }
     if (e.kind == static_cast<std::uint32_t>(Kind::kFeature) && !isText(nameIn(e)))
-      return broken(path_, "a feature's name is no text (UTF-8)");
+      return broken(path_, "a feature's name is not valid UTF-8");
     place(e, at);
     return Ok{};
   }
@@ -179,8 +180,8 @@ Result<Dendrogram> readMrm(const std::string& path) {
   return readFrom(path, MappedFile::open(path));
 }
 
-// The header by itself first: a large file of another kind is not read to its end for nothing. What
-// counts is the second look, at the whole copy.
+// Checks the header alone first, so that a large file of another format is not read completely. The
+// check of the whole copy afterwards is the one that counts.
 Result<Dendrogram> readMrmCopy(const std::string& path, FileStamp* stamp) {
   const auto head = FileCopy::read(path, sizeof(FileHeader));
   if (!head) return head.error();
@@ -191,4 +192,4 @@ Result<Dendrogram> readMrmCopy(const std::string& path, FileStamp* stamp) {
   return readFrom(path, std::move(file));
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::lod

@@ -1,4 +1,5 @@
-// .mrm, the multiresolution model file, version 1: written whole, read by mmap. Format: FORMAT.md.
+// .mrm: the multiresolution model file, version 1; written atomically, read by mmap. Format:
+// FORMAT.md.
 #pragma once
 
 #include <string>
@@ -7,32 +8,33 @@
 #include "daemon/base/result.h"
 #include "render/lod/dendrogram.h"
 
-namespace merlin::render {
+namespace merlin::render::lod {
 
 // Maps and checks the file: checksums, sizes, and all that Dendrogram::make() checks. O(file), at
 // memory speed. Errors, with the file's name and the section: kNotFound, kIo, kMalformed (damaged,
-// cut short), kUnsupported (a later version).
+// truncated), kUnsupported (another version, an unknown section).
 Result<Dendrogram> readMrm(const std::string& path);
 
-// The same, but read into memory of our own before it is checked: for who lives long, since another
-// program may write over the file at any time, or cut it short (a mapping would change under the
-// checks, or end the program with SIGBUS). Takes the file's size of memory. `stamp`, where given:
-// of the file that was read. Errors: also kIo where it changed while it was read, or does not fit
-// into memory.
+// As readMrm(), but copies the file into memory before it is checked. For long-lived processes:
+// another program may overwrite or truncate the file at any time, and a mapping would then change
+// after the checks, or end the process with SIGBUS. Needs memory of the size of the file. `stamp`,
+// if not null, receives the stamp of the file that was read. Errors: also kIo if the file changed
+// while it was read, or does not fit into memory.
 Result<Dendrogram> readMrmCopy(const std::string& path, FileStamp* stamp = nullptr);
 
-// Whether its features can be told from one another in a model, which keeps of each name as many
-// characters as 31 bytes hold; to be asked before long work. Errors: kUnsupported, without the
-// file's name.
-Result<Ok> checkNames(const Mesh& mesh);
+// Checks that the names of features stay different in an .mrm file, which keeps the whole
+// characters within the first 31 bytes of each; call it before long work. Errors: kUnsupported,
+// without the file's name.
+Result<Ok> checkNames(const mesh::Mesh& mesh);
 
 // Writes atomically; the same dendrogram gives the same bytes. Errors: kNotFound (no such folder),
 // kIo.
 Result<Ok> writeMrm(const std::string& path, const Dendrogram& dendrogram);
 
-// The same bytes as of buildDendrogram(mesh, log), without making it: beside mesh and log it takes
-// no more than DeathOrder does. Same errors; `threads`: 0 for all, the file is the same.
-Result<Ok> writeMrm(const std::string& path, const Mesh& mesh, const CollapseLog& log,
+// Writes the same bytes as writeMrm(path, buildDendrogram(mesh, log)), without building the
+// dendrogram: apart from mesh and log it needs little more memory than DeathOrder. Same errors.
+// `threads`: 0 for all cores; the file does not depend on it.
+Result<Ok> writeMrm(const std::string& path, const mesh::Mesh& mesh, const CollapseLog& log,
                     unsigned threads = 0);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::lod

@@ -1,11 +1,11 @@
-// The bytes of an .mrm file, version 1. A contract: FORMAT.md says it in words, and
-// tests/render/mrm_file_test.cpp holds an old file. Little-endian, as every machine that MERLIN
+// Binary layout of an .mrm file, version 1. A contract: FORMAT.md describes it in words, and
+// tests/render/mrm_file_test.cpp reads an old file. Little-endian, as every machine that MERLIN
 // runs on; asserted in mrm_file.cpp.
 #pragma once
 
 #include <cstdint>
 
-namespace merlin::render::mrm {
+namespace merlin::render::lod::mrm {
 
 inline constexpr char kMagic[8] = {'M', 'R', 'L', 'N', '.', 'm', 'r', 'm'};
 inline constexpr std::uint32_t kVersion = 1;
@@ -19,13 +19,13 @@ enum class Kind : std::uint32_t {
   kAlive = 5,      // u32, a level
   kError = 6,      // f32, a level
   kAbout = 7,      // u8: "key=value" lines of UTF-8 text
-  // Optional: a reader skips kinds from here on that it does not know; below, an unknown kind is an
-  // error.
+  // Kinds from 1000 (kFirstOptional) on are optional: a reader skips those it does not know. An
+  // unknown kind below is an error.
   kTexture = 1000,  // u8: a PNG or JPEG file
 };
 inline constexpr std::uint32_t kFirstOptional = 1000;
 
-// Bytes of a value.
+// Size of one value of a section [bytes].
 constexpr std::uint32_t unitOf(std::uint32_t kind) {
   return kind == static_cast<std::uint32_t>(Kind::kAbout) ||
                  kind == static_cast<std::uint32_t>(Kind::kTexture)
@@ -41,7 +41,7 @@ struct FileHeader {
   std::uint64_t nodes;
   std::uint64_t collapses;
   std::uint64_t triangles;
-  float box_low[3], box_high[3];  // of all nodes, for a reader that wants no more
+  float box_low[3], box_high[3];  // box of all nodes, for readers of the header alone
   std::uint64_t table_checksum;   // XXH3-64 of the section table
   std::uint64_t header_checksum;  // XXH3-64 of this header up to here
 };
@@ -49,7 +49,7 @@ static_assert(sizeof(FileHeader) == 88);
 
 struct SectionEntry {
   std::uint32_t kind;
-  std::uint32_t dimension;  // values a row
+  std::uint32_t dimension;  // values per row
   std::uint64_t offset;     // from the file's start
   std::uint64_t rows;
   std::uint64_t checksum;  // XXH3-64 of the section's bytes
@@ -57,4 +57,4 @@ struct SectionEntry {
 };
 static_assert(sizeof(SectionEntry) == 64);
 
-}  // namespace merlin::render::mrm
+}  // namespace merlin::render::lod::mrm

@@ -18,14 +18,14 @@
 #include "render/lod/io/mrm_file.h"
 #include "render/lod/io/mrm_layout.h"
 
-namespace merlin::render {
+namespace merlin::render::lod {
 namespace {
 
 using namespace mrm;
 
 constexpr std::size_t kPiece = 1 << 16;  // rows that a thread gathers at a time
 
-// Puts the rows [first, end) of a section to `to`, from where the first one goes. Reentrant.
+// Writes the rows [first, end) of a section to memory that begins at `to`. Reentrant.
 using Rows = std::function<void(std::size_t first, std::size_t end, std::byte* to)>;
 
 struct Section {
@@ -36,13 +36,13 @@ struct Section {
   std::size_t bytes() const { return entry.rows * rowBytes(); }
 };
 
-// The longest prefix that fits into the field, in whole characters.
+// The longest prefix of whole characters that fits into the name field.
 std::string_view shortName(std::string_view name) {
   constexpr std::size_t kRoom = sizeof SectionEntry::name - 1;
   return name.size() > kRoom ? wholeCharacters(name.substr(0, kRoom)) : name;
 }
 
-// The parts of a model file, independent of where they come from.
+// The sections of a model file, whatever data they come from.
 struct Model {
   std::size_t nodes = 0, collapses = 0, triangles = 0;
   std::vector<Section> sections;
@@ -57,7 +57,7 @@ struct Model {
     sections.push_back(std::move(s));
   }
 
-  // Rows that are in memory as they are in the file.
+  // A section whose rows are already in memory in the layout of the file.
   template <typename T>
   void add(Kind kind, std::span<const T> values, std::size_t dimension,
            std::string_view name = "") {
@@ -84,7 +84,7 @@ Model modelOf(const Dendrogram& d) {
   return model;
 }
 
-// One value a row.
+// Rows of one value each, `value_of(row)`.
 template <typename T, typename ValueOf>
 Rows each(ValueOf value_of) {
   return [value_of](std::size_t first, std::size_t end, std::byte* to) {
@@ -108,7 +108,7 @@ Rows gathered(const std::vector<float>& leaves, const std::vector<float>& inner,
 }
 
 // The triangles' corners, in the order of the dendrogram.
-Rows corners(const Mesh& mesh, const DeathOrder& order) {
+Rows corners(const mesh::Mesh& mesh, const DeathOrder& order) {
   return [&](std::size_t first, std::size_t end, std::byte* to) {
     for (std::size_t i = first; i < end; ++i, to += 3 * sizeof(std::uint32_t)) {
       const std::uint32_t* t = &mesh.triangles[3 * std::size_t{order.triangleOf(i)}];
@@ -120,7 +120,7 @@ Rows corners(const Mesh& mesh, const DeathOrder& order) {
 }
 
 // The arguments must outlive the returned model.
-Model modelOf(const Mesh& mesh, const CollapseLog& log, const DeathOrder& order,
+Model modelOf(const mesh::Mesh& mesh, const CollapseLog& log, const DeathOrder& order,
               const std::vector<float>& error) {
   const std::size_t vertices = mesh.vertexCount();
   Model model{order.nodeCount(), log.children.size(), mesh.triangleCount(), {}};
@@ -135,7 +135,7 @@ Model modelOf(const Mesh& mesh, const CollapseLog& log, const DeathOrder& order,
   model.add(Kind::kPositions, order.nodeCount(), 3, "",
             gathered(mesh.positions, log.positions, 3, order));
   for (std::size_t f = 0; f < mesh.features.size(); ++f) {
-    const Feature& feature = mesh.features[f];
+    const mesh::Feature& feature = mesh.features[f];
     model.add(Kind::kFeature, order.nodeCount(), feature.dimension, feature.name,
               gathered(feature.values, log.features[f], feature.dimension, order));
   }
@@ -209,7 +209,7 @@ class MrmWriter {
     }
   }
 
-  // Header and table, once all sections are written.
+  // Header and section table, built after all sections are written.
   std::span<const std::byte> head() {
     FileHeader h{};
     std::memcpy(h.magic, kMagic, sizeof kMagic);
@@ -242,14 +242,15 @@ class MrmWriter {
 
 }  // namespace
 
-Result<Ok> checkNames(const Mesh& mesh) {
+Result<Ok> checkNames(const mesh::Mesh& mesh) {
   std::set<std::string_view> names;
-  for (const Feature& f : mesh.features) {
+  for (const mesh::Feature& f : mesh.features) {
     if (!names.insert(shortName(f.name)).second) {
-      return Error{Errc::kUnsupported,
-                   fmt::format("two features are \"{}\" in a model, which has 31 bytes for a name; "
-                               "rename \"{}\"",
-                               shortName(f.name), f.name)};
+      return Error{
+          Errc::kUnsupported,
+          fmt::format("two features would both be called \"{}\" in an .mrm file, which has 31 "
+                      "bytes for a name; rename \"{}\"",
+                      shortName(f.name), f.name)};
     }
   }
   return Ok{};
@@ -259,7 +260,7 @@ Result<Ok> writeMrm(const std::string& path, const Dendrogram& dendrogram) {
   return MrmWriter(modelOf(dendrogram), 1).write(path);
 }
 
-Result<Ok> writeMrm(const std::string& path, const Mesh& mesh, const CollapseLog& log,
+Result<Ok> writeMrm(const std::string& path, const mesh::Mesh& mesh, const CollapseLog& log,
                     unsigned threads) {
   threads = threadsOr(threads);
   const DeathOrder order(mesh, log, threads);
@@ -267,4 +268,4 @@ Result<Ok> writeMrm(const std::string& path, const Mesh& mesh, const CollapseLog
   return MrmWriter(modelOf(mesh, log, order, error), threads).write(path);
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::lod

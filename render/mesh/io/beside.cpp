@@ -7,7 +7,7 @@
 
 #include "daemon/base/text.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
 std::string folderOf(const std::string& path) { return path.substr(0, path.rfind('/') + 1); }
 
@@ -33,4 +33,4 @@ std::string plainName(const std::string& path) {
   return name;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

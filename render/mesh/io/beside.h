@@ -1,20 +1,23 @@
-// Files that lie beside a mesh's and that it names: materials, pictures.
+// Paths and names of companion files: files that a mesh file refers to and that lie in its folder
+// or below (materials, texture images).
 #pragma once
 
 #include <string>
 #include <string_view>
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
-// With its slash; empty where there is none.
+// The folder part of `path`, with its trailing slash; empty if `path` has no slash.
 std::string folderOf(const std::string& path);
 
-// Where `name` is, as a mesh in `folder` has it. A model that was sent from elsewhere names paths
-// of there, and may name anything: what would leave the folder is looked for in it.
+// Path of the companion file that a mesh file in `folder` calls `name`. Names may come from another
+// machine or be hostile: if `name` is absolute or could leave the folder ("..", ":"), only its last
+// component is used.
 std::string pathBeside(const std::string& folder, std::string_view name);
 
-// Prefix of the names of files beside `path`: its own name, in which bytes that a file that names
-// them might take for the end of a name become "=20". Different names stay different.
+// Name prefix of the companion files of `path`: its file name, in which each byte that could end a
+// name in the file that refers to it (a blank, a quote, ...) becomes "=" and two hexadecimal
+// digits, e.g. "=20". Different names stay different.
 std::string plainName(const std::string& path);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -1,22 +1,23 @@
-// A mesh as Open Inventor text, for a file of its own or a part of another.
+// Writes a mesh as Open Inventor text: for a file of its own or as a part of a larger one.
 #pragma once
 
 #include "render/mesh/io/text_sink.h"
 #include "render/mesh/mesh.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
-// The file's first line.
+// The first lines of an Open Inventor file.
 inline constexpr std::string_view kInventorHeader = "#Inventor V2.1 ascii\n\n# written by MERLIN\n";
 
-// Lit from both sides, since scans have borders.
+// Makes viewers light both sides of each face: scans have borders, so back faces can be seen.
 inline constexpr std::string_view kInventorHints =
     "  ShapeHints {\n    vertexOrdering COUNTERCLOCKWISE\n"
     "    shapeType UNKNOWN_SHAPE_TYPE\n    faceType CONVEX\n  }\n";
 
-// "Separator { ... }" with an IndexedFaceSet: "normal", "colour" and "texcoord" where they are
-// there in their usual dimensions; of a picture in a file beside it its name, instead of colours,
-// which it would be multiplied with.
+// Writes "Separator { ... }" with an IndexedFaceSet and the features "normal", "colour" and
+// "texcoord" that the mesh has in their usual dimensions. `picture`: file name of the texture
+// image, or empty. A textured mesh is written without colours, since viewers multiply the texture
+// by them.
 void printSeparator(TextSink& out, const Mesh& mesh, const std::string& picture = "");
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -14,10 +14,10 @@
 #include "render/mesh/io/reader.h"
 #include "render/mesh/io/writer.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
-// "ply" of "a/b.PLY"; empty where the name has no ending.
+// The ending in lower case, "ply" for "a/b.PLY"; empty if the name has none.
 std::string ending(const std::string& path) {
   const auto dot = path.find_last_of("./");
   if (dot == std::string::npos || path[dot] != '.') return {};
@@ -68,7 +68,7 @@ struct BesideFile {
   std::string path, content;
 };
 
-// The files that the mesh's file will name: the picture, and the material that has it.
+// The companion files that the mesh file refers to: the texture image and the material file.
 std::vector<BesideFile> filesBeside(const MeshWriter& writer, const Mesh& mesh,
                                     const std::string& path) {
   if (!isTextured(mesh) || writer.picture != PicturePlace::kBeside) return {};
@@ -79,17 +79,19 @@ std::vector<BesideFile> filesBeside(const MeshWriter& writer, const Mesh& mesh,
   return files;
 }
 
-// Nobody has asked for them by name: what is there stays. Errors: kInvalidArgument (another one).
+// Whether the companion file exists already, with the same content. Its name was not given by the
+// user, so a file with different content is not overwritten. Errors: kInvalidArgument (different
+// content).
 Result<bool> isThere(const BesideFile& file) {
   std::error_code absent;
   if (!std::filesystem::exists(std::filesystem::symlink_status(file.path, absent))) return false;
   const auto there = MappedFile::open(file.path);
   if (there && there->text() == file.content) return true;
   return Error{Errc::kInvalidArgument,
-               file.path + ": is there and is another; remove it or name another output"};
+               file.path + ": exists with different content; remove it or name another output"};
 }
 
-// Files that go again unless they are kept.
+// Writes files, and removes them in its destructor unless keep() was called.
 class Made {
  public:
   Made() = default;
@@ -155,7 +157,7 @@ Result<LoadedMesh> readMeshAs(const MeshReader& reader, const std::string& path)
   if (!file) return file.error();
   auto loaded = reader.read(file->text(), folderOf(path));
   if (!loaded) return inFile(path, loaded.error());
-  *file = MappedFile();  // as large as the mesh
+  *file = MappedFile();  // unmap it: it is as large as the mesh
   if (const auto valid = validate(loaded->mesh); !valid) return inFile(path, valid.error());
   const TidyReport tidied = tidy(loaded->mesh);
   const std::size_t in_file = loaded->tidied.degenerate;
@@ -210,8 +212,8 @@ Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh) {
     if (!writer.carries(mesh, f)) written.left_out.push_back(f.name);
   }
   if (!mesh.texture.empty() && (writer.picture == PicturePlace::kNone || !isTextured(mesh)))
-    written.left_out.emplace_back("the texture's picture");
+    written.left_out.emplace_back("the texture image");
   return written;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -1,5 +1,5 @@
-// How mesh files are read: one row of the table in mesh_file.cpp for each format. Private to
-// render/mesh/io.
+// MeshReader: reads one mesh file format; a row of the table of readers in mesh_file.cpp. Private
+// to render/mesh/io.
 #pragma once
 
 #include <optional>
@@ -11,23 +11,24 @@
 #include "render/mesh/io/mesh_file.h"
 #include "render/mesh/mesh.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
 struct MeshReader {
-  const char* ending;  // in small letters, without the dot
-  const char* help;    // what is read of it, for a person
-  // Reads a whole file. `folder`: the file's, with a slash at its end, where files that it names
-  // lie. The mesh need not be valid or tidy. Errors: kMalformed, kUnsupported, without the name.
+  const char* ending;  // in lower case, without the dot
+  const char* help;    // what is read, for the user
+  // Parses a whole file. `folder`: the file's folder with a trailing slash, in which companion
+  // files are looked for. The mesh need not be valid or tidy. Errors: kMalformed, kUnsupported,
+  // without the file's name.
   Result<LoadedMesh> (*read)(std::string_view content, const std::string& folder);
-  // Size of the mesh by the file's header, to be told before it is read; nothing if the format does
-  // not say. The counts are the file's claim, not checked. May be null.
+  // Mesh size that the file's header declares (not checked), so that it is known before the file is
+  // read; nothing if the header has no counts. May be null.
   std::optional<MeshFileSize> (*size)(std::string_view content,
                                       const std::string& folder) = nullptr;
 };
 
 extern const MeshReader kPlyReader, kObjReader, kOffReader, kOmReader, kStlReader;
 
-// readMesh() with one reader, whatever the file's ending.
+// As readMesh(), but with `reader`, whatever the file's ending.
 Result<LoadedMesh> readMeshAs(const MeshReader& reader, const std::string& path);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -1,13 +1,14 @@
-// Lines and words of a text, for OBJ and its material files. Private to render/mesh/io.
+// Splits text into lines and words, for text-based mesh formats. Private to render/mesh/io.
 #pragma once
 
 #include <algorithm>
 #include <charconv>
 #include <string_view>
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
-// Without its end; `text` is shortened by it. A comment ("# ...") is cut off.
+// Removes the first line from `text`; returns it without its line feed and its comment, which
+// begins with "#".
 inline std::string_view takeLine(std::string_view& text) {
   const std::size_t end = std::min(text.find('\n'), text.size());
   const std::string_view line = text.substr(0, end);
@@ -15,7 +16,7 @@ inline std::string_view takeLine(std::string_view& text) {
   return line.substr(0, line.find('#'));
 }
 
-// The first word of `text`, which is shortened by it; empty at its end.
+// Removes the first word from `text` and returns it; empty if there is none.
 inline std::string_view takeWord(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r"), text.size()));
   const std::string_view word = text.substr(0, text.find_first_of(" \t\r"));
@@ -23,13 +24,13 @@ inline std::string_view takeWord(std::string_view& text) {
   return word;
 }
 
-// The rest of a line without blanks around it; a name may contain some.
+// `text` without leading and trailing blanks. Blanks inside stay: file names may contain them.
 inline std::string_view trimmed(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r"), text.size()));
   return text.substr(0, text.find_last_not_of(" \t\r") + 1);
 }
 
-// Whether the whole word is a number.
+// Parses `word`; false unless the whole word is a number.
 template <typename T>
 bool readNumber(std::string_view word, T& value) {
   if (word.starts_with('+')) word.remove_prefix(1);
@@ -38,4 +39,4 @@ bool readNumber(std::string_view word, T& value) {
   return error == std::errc() && rest == end && !word.empty();
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

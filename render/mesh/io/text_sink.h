@@ -1,4 +1,4 @@
-// Formatted text in blocks, for files that are written as text.
+// TextSink: buffered, formatted output for text files.
 #pragma once
 
 #include <iterator>
@@ -11,9 +11,9 @@
 
 #include "daemon/base/files.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
-// Formatted text in blocks; remembers a refusal.
+// Formats text and writes it in blocks; after a failed write it writes nothing more.
 class TextSink {
  public:
   explicit TextSink(const WriteBytes& write) : write_(write) {}
@@ -24,7 +24,7 @@ class TextSink {
     if (text_.size() > kBlock) flush();
   }
 
-  // Rows of `width` numbers between `before` and `after`, each parted by a space.
+  // Prints rows of `width` numbers, separated by spaces, each row between `before` and `after`.
   void printRows(std::span<const float> values, std::size_t width, std::string_view before,
                  std::string_view after) {
     for (std::size_t i = 0; i < values.size(); i += width) {
@@ -34,7 +34,7 @@ class TextSink {
     }
   }
 
-  // Whether all was taken.
+  // Writes what is left; returns whether every write succeeded.
   bool finish() {
     flush();
     return taken_;
@@ -53,4 +53,4 @@ class TextSink {
   bool taken_ = true;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -1,5 +1,5 @@
-// How mesh files are written: one file a format, one row of the table in mesh_file.cpp. Private to
-// render/mesh/io.
+// MeshWriter: writes one mesh file format; a row of the table of writers in mesh_file.cpp. Private
+// to render/mesh/io.
 #pragma once
 
 #include <string>
@@ -9,39 +9,41 @@
 #include "daemon/base/files.h"
 #include "render/mesh/mesh.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
-// Where a format has the texture's picture.
+// Where a format stores the texture image: nowhere, inside the mesh file, or in a companion file.
 enum class PicturePlace { kNone, kInside, kBeside };
 
 struct MeshWriter {
   const char* ending;
-  bool (*carries)(const Mesh&, const Feature&);  // whether the format has a place for it
-  // False where the file takes no more. `name`: what the names of files beside it begin with.
+  bool (*carries)(const Mesh&, const Feature&);  // whether the format can hold the feature
+  // Returns false if a write failed. `name`: name prefix of the companion files (plainName()).
   bool (*write)(const Mesh&, const std::string& name, const WriteBytes&);
   PicturePlace picture = PicturePlace::kNone;
-  // Whether the mesh fits into the format; the error is without the file's name. May be null.
+  // Checks that the mesh fits into the format; the error does not contain the file's name. May be
+  // null.
   Result<Ok> (*fits)(const Mesh&) = nullptr;
-  // NAME.mtl beside it, where there is a picture. May be null.
+  // Content of the companion file NAME.mtl of a textured mesh. May be null.
   std::string (*material)(const Mesh&, const std::string& name) = nullptr;
 };
 
 extern const MeshWriter kPlyWriter, kObjWriter, kGlbWriter, kGltfWriter, kStlWriter,
     kInventorWriter;
 
-// "normal", "colour" and "texcoord" in their usual dimensions: what formats have names for.
+// Whether `f` is "normal", "colour" or "texcoord" in its usual dimension: formats have names for
+// these.
 bool isUsual(const Feature& f);
 
-// Whether the mesh has a picture and says where it lies.
+// Whether the mesh has a texture image and texture coordinates.
 bool isTextured(const Mesh& mesh);
 
-// "NAME.png" or "NAME.jpg": the picture of a textured mesh in a file of its own.
+// "NAME.png" or "NAME.jpg": file name of a textured mesh's image, if it is a companion file.
 std::string pictureName(const Mesh& mesh, const std::string& name);
 
-// Whether a picture is a PNG; otherwise it is a JPEG.
+// Whether an image file, which must not be empty, is a PNG; otherwise it is a JPEG.
 bool isPng(const std::vector<std::uint8_t>& picture);
 
-// The feature if it is there in that dimension, else nullptr.
+// The feature of this name and dimension; nullptr if there is none.
 const Feature* findOf(const Mesh& mesh, std::string_view name, std::size_t dimension);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -6,14 +6,14 @@
 
 #include "render/reduce/quadric/quadric_mesh.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
-// One piece while triangles come in.
+// A piece under construction.
 class BlockCutter::Piece {
  public:
   Piece(std::size_t begin, std::size_t size)
@@ -25,12 +25,12 @@ class BlockCutter::Piece {
     for (int k = 0; k < 3; ++k) block.mesh.triangles.push_back(numberOf(triangle[k], places[k]));
   }
 
-  // Something outside hangs on it.
+  // Marks the vertex as one with a neighbour outside the piece.
   void touch(std::uint32_t place) {
     if (has(place)) border_[place - begin_] = true;
   }
 
-  Block finish(const Mesh& mesh, const std::vector<bool>& locked,
+  Block finish(const mesh::Mesh& mesh, const std::vector<bool>& locked,
                const std::vector<std::uint32_t>& place) {
     numbers_ = {};
     guests_ = {};
@@ -39,7 +39,7 @@ class BlockCutter::Piece {
       block.locked.push_back(at >= border_.size() || border_[at] || (!locked.empty() && locked[v]));
     }
     block.mesh.positions = rowsOf(mesh.positions, 3);
-    for (const Feature& f : mesh.features)
+    for (const mesh::Feature& f : mesh.features)
       block.mesh.features.push_back({f.name, f.dimension, rowsOf(f.values, f.dimension)});
     return std::move(block);
   }
@@ -65,12 +65,12 @@ class BlockCutter::Piece {
 
   Block block;
   std::size_t begin_;
-  std::vector<std::uint32_t> numbers_;  // by place
+  std::vector<std::uint32_t> numbers_;  // by place: number in the block
   std::vector<bool> border_;
-  std::unordered_map<std::uint32_t, std::uint32_t> guests_;  // third corners, few
+  std::unordered_map<std::uint32_t, std::uint32_t> guests_;  // numbers of third corners; few
 };
 
-BlockCutter::BlockCutter(const Mesh& mesh, const std::vector<bool>& locked, Threads threads)
+BlockCutter::BlockCutter(const mesh::Mesh& mesh, const std::vector<bool>& locked, Threads threads)
     : mesh_(mesh), locked_(locked), place_(mesh.vertexCount()) {
   const std::vector<std::uint32_t> curve = alongCurve(mesh, threads);
   for (std::uint32_t i = 0; i < curve.size(); ++i) place_[curve[i]] = i;
@@ -104,4 +104,4 @@ std::vector<Block> BlockCutter::cut(const Pieces& p) const {
   return blocks;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -8,37 +8,39 @@
 #include "daemon/base/blocks.h"
 #include "render/mesh/mesh.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
-// A piece of a mesh as a mesh of its own, with the same features.
+// A piece of a mesh, as a mesh of its own with the same features.
 struct Block {
-  Mesh mesh;
-  std::vector<std::uint32_t> vertices;  // of the whole mesh
-  std::vector<bool> locked;             // those, of vertices that something outside hangs on
+  mesh::Mesh mesh;
+  std::vector<std::uint32_t> vertices;  // by vertex: its index in the whole mesh
+  std::vector<bool> locked;             // by vertex: whether it has to stay where it is
 };
 
-// Which pieces, by places along the curve: [k stride, k stride + size) for k = first .. last.
+// Pieces as ranges of vertices along the curve: [k stride, k stride + size) for k = first .. last.
 struct Pieces {
   std::size_t stride, size, first, last;
 };
 
-// 8 bytes a vertex; 20 while it is made. The mesh and `locked` must outlive it. Reentrant.
+// Memory: 4 bytes per vertex, 20 during construction. The mesh and `locked` must outlive it.
+// Reentrant.
 class BlockCutter {
  public:
-  // locked: one a vertex of the mesh, or empty.
-  BlockCutter(const Mesh& mesh, const std::vector<bool>& locked, Threads threads);
+  // locked: one entry per vertex of the mesh, or empty.
+  BlockCutter(const mesh::Mesh& mesh, const std::vector<bool>& locked, Threads threads);
 
-  // In one pass over the mesh. A piece has the triangles with two or three corners in it: those of
-  // two so that it makes no edge that is there already on the other side. What has a neighbour
-  // outside is locked, and so are the third corners.
+  // Cuts out all pieces in one pass over the triangles. A triangle belongs to the piece that
+  // contains two or three of its vertices; with only those of three, an edge made inside a piece
+  // could exist outside already. Locks the vertices that `locked` names, those with a neighbour
+  // outside the piece, and third vertices of triangles, which are outside.
   std::vector<Block> cut(const Pieces& pieces) const;
 
  private:
   class Piece;
 
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   const std::vector<bool>& locked_;
-  std::vector<std::uint32_t> place_;  // along the curve
+  std::vector<std::uint32_t> place_;  // by vertex: its index along the curve
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

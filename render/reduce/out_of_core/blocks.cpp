@@ -1,5 +1,5 @@
-// A mesh in blocks: pieces of the space-filling curve, reduced one after another up to the same
-// error where nothing on their borders moves, then what they leave as one mesh.
+// Reduces a mesh in blocks: pieces of the space-filling curve, one after another up to the same
+// error, with locked borders; then what the blocks leave as one mesh.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "render/reduce/out_of_core/block_cutter.h"
 #include "render/reduce/quadric/quadric.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -22,13 +22,13 @@ constexpr std::size_t kSampleSize = 20'000;  // vertices
 
 // Result of one block.
 struct Part {
-  std::vector<std::uint32_t> vertices;  // of the whole mesh
-  CollapseLog log;
+  std::vector<std::uint32_t> vertices;  // by vertex: its index in the whole mesh
+  lod::CollapseLog log;
 };
 
 class InBlocks {
  public:
-  InBlocks(const Mesh& mesh, const QuadricPlan& plan, const std::vector<bool>& locked,
+  InBlocks(const mesh::Mesh& mesh, const QuadricPlan& plan, const std::vector<bool>& locked,
            std::size_t blocks, const Progress& progress)
       : mesh_(mesh), plan_(plan), locked_(locked), blocks_(blocks), progress_(progress) {
     const double all = static_cast<double>(mesh.triangleCount());
@@ -74,14 +74,15 @@ class InBlocks {
     return parts;
   }
 
-  // A block of nothing but planes is not worn down to its borders.
+  // Returns how many triangles a block keeps at least, so that a flat block, where collapses cost
+  // nothing, is not reduced to its borders.
   std::size_t leastOf(const Block& block) const {
     return static_cast<std::size_t>(std::max(share_ / 2, target_) *
                                     static_cast<double>(block.mesh.triangleCount()));
   }
 
-  // The error up to which all blocks together keep about their share: all are to be equally coarse,
-  // so it is that of samples along the whole curve.
+  // Returns the error limit with which all blocks together keep about the share `share_`, so that
+  // all become equally coarse. Estimated from samples along the whole curve.
   float errorForAll(const BlockCutter& cutter) const {
     const std::size_t n = mesh_.vertexCount(), stride = (n + kSamples - 1) / kSamples;
     std::vector<float> errors;
@@ -123,9 +124,10 @@ class InBlocks {
     all.triangles -= removed;
   }
 
-  // --- their logs as one -------------------------------------------------------------------------
+  // --- joining the logs --------------------------------------------------------------------------
 
-  // In the order of the largest error so far, so that all blocks are equally coarse at each level.
+  // Joins the logs, sorted by the largest error so far in each block, so that all blocks are
+  // equally coarse at each level.
   void join(std::vector<Part>& parts) {
     using Head = std::tuple<float, std::size_t, std::size_t>;  // error, part, collapse of it
     std::priority_queue<Head, std::vector<Head>, std::greater<>> heads;
@@ -144,17 +146,17 @@ class InBlocks {
   }
 
   void reserve() {
-    CollapseLog& log = result_.log;
+    lod::CollapseLog& log = result_.log;
     log.children.reserve(vertices());
     log.positions.reserve(3 * std::size_t{vertices()});
     log.error.reserve(vertices());
-    for (const Feature& f : mesh_.features)
+    for (const mesh::Feature& f : mesh_.features)
       log.features.emplace_back().reserve(f.dimension * vertices());
   }
 
-  // Collapse k of a part; `nodes`: what its earlier ones made.
+  // Appends collapse k of a part to the log. nodes: the nodes of the part's earlier collapses.
   void append(const Part& part, std::size_t k, std::vector<std::uint32_t>& nodes) {
-    CollapseLog& log = result_.log;
+    lod::CollapseLog& log = result_.log;
     const auto own = static_cast<std::uint32_t>(part.vertices.size());
     const auto node = [&](std::uint32_t n) { return n < own ? part.vertices[n] : nodes[n - own]; };
     const auto [a, b] = part.log.children[k];
@@ -172,24 +174,25 @@ class InBlocks {
     to.insert(to.end(), first, first + static_cast<std::ptrdiff_t>(dimension));
   }
 
-  // --- what they leave ---------------------------------------------------------------------------
+  // --- the final reduction -----------------------------------------------------------------------
 
   void reduceRest() {
     const std::size_t first = result_.log.children.size();
-    Part rest;  // its vertices are nodes
+    Part rest;  // `vertices` are nodes here
     Reduction r;
     {
       std::vector<bool> locked;
-      const Mesh mesh = restOf(rest.vertices, locked);
+      const mesh::Mesh mesh = restOf(rest.vertices, locked);
       Progress progress;
       if (progress_) {
         progress = [&](const ReduceProgress& p) {
           return progress_({first + p.collapses, p.triangles});
         };
       }
-      // In the blocks no seam shrinks, since what hangs on others is locked too.
+      // Seams were locked in the blocks, where vertices at borders are locked too; here they may
+      // shrink.
       std::vector<std::uint32_t> places;
-      if (!locked.empty() && plan_.seams_shrink) places = samePlace(mesh.positions);
+      if (!locked.empty() && plan_.seams_shrink) places = mesh::samePlace(mesh.positions);
       r = runQuadric(mesh, plan_, locked, progress, std::move(places));
     }
     rest.log = std::move(r.log);
@@ -201,12 +204,12 @@ class InBlocks {
     result_.report.stopped = r.report.stopped;
   }
 
-  // The surface after all blocks. nodes: those that are its vertices. locked: where a locked vertex
-  // of the mesh has gone into it.
-  Mesh restOf(std::vector<std::uint32_t>& nodes, std::vector<bool>& locked) const {
-    const CollapseLog& log = result_.log;
+  // Returns the mesh that the blocks leave. nodes: by vertex, its node. locked: by vertex, whether
+  // a locked vertex of the mesh has merged into it.
+  mesh::Mesh restOf(std::vector<std::uint32_t>& nodes, std::vector<bool>& locked) const {
+    const lod::CollapseLog& log = result_.log;
     const std::size_t n = vertices(), all = n + log.children.size();
-    // First the node that each goes into, then the vertex of the rest that it has become.
+    // By node: first the node that it merges into, then the vertex of `rest` that it has become.
     std::vector<std::uint32_t> into(all, kNone);
     for (std::size_t k = 0; k < log.children.size(); ++k) {
       for (const std::uint32_t child : log.children[k])
@@ -226,7 +229,7 @@ class InBlocks {
         if (locked_[v]) locked[into[v]] = true;
       }
     }
-    Mesh rest;
+    mesh::Mesh rest;
     for (std::size_t i = 0; i < mesh_.triangles.size(); i += 3) {
       const std::uint32_t* t = &mesh_.triangles[i];
       const std::uint32_t c[] = {into[t[0]], into[t[1]], into[t[2]]};
@@ -235,7 +238,7 @@ class InBlocks {
     }
     rest.positions = rowsOf(nodes, mesh_.positions, log.positions, 3);
     for (std::size_t f = 0; f < mesh_.features.size(); ++f) {
-      const Feature& feature = mesh_.features[f];
+      const mesh::Feature& feature = mesh_.features[f];
       rest.features.push_back({feature.name, feature.dimension,
                                rowsOf(nodes, feature.values, log.features[f], feature.dimension)});
     }
@@ -254,21 +257,22 @@ class InBlocks {
     return rows;
   }
 
-  const Mesh& mesh_;
+  const mesh::Mesh& mesh_;
   const QuadricPlan& plan_;
   const std::vector<bool>& locked_;
   std::size_t blocks_;
   const Progress& progress_;
-  double target_, share_;  // of the triangles: that are asked for, that blocks leave
+  double target_, share_;  // shares of the triangles: requested; left by the blocks
   Reduction result_;
   bool cancelled_ = false;
 };
 
 }  // namespace
 
-Reduction reduceInBlocks(const Mesh& mesh, const QuadricPlan& plan, const std::vector<bool>& locked,
-                         std::size_t blocks, const Progress& progress) {
+Reduction reduceInBlocks(const mesh::Mesh& mesh, const QuadricPlan& plan,
+                         const std::vector<bool>& locked, std::size_t blocks,
+                         const Progress& progress) {
   return InBlocks(mesh, plan, locked, blocks, progress).run();
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
 EdgeHeap::EdgeHeap(std::vector<float> lengths)
     : lengths_(std::move(lengths)), heap_(lengths_.size()), place_(lengths_.size()) {
@@ -59,4 +59,4 @@ void EdgeHeap::remove(std::uint32_t edge) {
   down(place_[last]);
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -1,13 +1,14 @@
-// EdgeHeap: edges by length, shortest first, updated in place ([GOURLEY98] 4.2.2).
+// EdgeHeap: a priority queue of edges by length, shortest first, in which lengths can be updated
+// ([GOURLEY98] 4.2.2).
 //
-// A binary heap with the place of each edge in it. Ties go to the smaller edge number, so one input
-// gives one order on every machine. Thread-bound.
+// A binary heap that knows the place of each edge in it. Ties go to the smaller edge number, so
+// that one input gives one order on every machine. Thread-bound.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
 class EdgeHeap {
  public:
@@ -20,7 +21,7 @@ class EdgeHeap {
   bool contains(std::uint32_t edge) const noexcept { return place_[edge] != kGone; }
 
   void update(std::uint32_t edge, float length);  // O(log n). REQUIRES: contains(edge)
-  void remove(std::uint32_t edge);                // O(log n); nothing where it is not in
+  void remove(std::uint32_t edge);                // O(log n); no effect if not contained
 
  private:
   static constexpr std::uint32_t kGone = ~std::uint32_t{0};
@@ -36,4 +37,4 @@ class EdgeHeap {
   std::vector<std::uint32_t> heap_, place_;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
 ListPool::ListPool(std::span<const std::uint32_t> counts) : at_(counts.size()) {
   std::uint64_t offset = 0;
@@ -53,4 +53,4 @@ void ListPool::pack() {
   holes_ = 0;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -1,12 +1,13 @@
-// ListPool: one short list of numbers a vertex, all in one array. Lists that grow move to its end;
-// when half of the array is holes it is packed. Thread-bound.
+// ListPool: one short list of numbers per vertex, all in one array. A list that outgrows its room
+// moves to the end of the array; when more than half of the array is unused, it is compacted.
+// Thread-bound.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
 class ListPool {
  public:
@@ -17,10 +18,10 @@ class ListPool {
     return {pool_.data() + at_[list].offset, at_[list].size};
   }
 
-  // Amortised O(1) a number. Invalidates every span that operator[] gave out.
+  // Replaces a list. Amortised O(1) per number. Invalidates every span that operator[] gave out.
   void assign(std::size_t list, std::span<const std::uint32_t> numbers);
   void append(std::size_t list, std::uint32_t number);  // REQUIRES: room from the constructor
-  void remove(std::size_t list, std::uint32_t number);  // the first one equal; keeps the order
+  void remove(std::size_t list, std::uint32_t number);  // first occurrence; keeps the order
 
  private:
   struct At {
@@ -34,4 +35,4 @@ class ListPool {
   std::uint64_t holes_ = 0;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

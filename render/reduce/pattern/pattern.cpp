@@ -1,15 +1,15 @@
-// The cost `pattern`: the loop around PatternReducer, until a stop criterion holds.
+// The cost `pattern`: calls PatternReducer until a stop criterion is met.
 #include <algorithm>
 
 #include "render/reduce/costs.h"
 #include "render/reduce/pattern/pattern_reducer.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
 constexpr std::size_t kProgressInterval = 4096;
 
-// Why so many triangles are few enough; null where they are not.
+// Returns the stop criterion that `left` triangles meet; null if they meet none.
 const char* reasonToStop(std::size_t left, const ReduceSettings& s, std::size_t triangles_before) {
   if (left <= s.min_triangles) return "triangles";
   if (static_cast<double>(left) <= s.min_percent / 100 * static_cast<double>(triangles_before)) {
@@ -20,7 +20,7 @@ const char* reasonToStop(std::size_t left, const ReduceSettings& s, std::size_t 
 
 }  // namespace
 
-Result<Reduction> reduceByPattern(const Mesh& mesh, const ReduceSettings& settings,
+Result<Reduction> reduceByPattern(const mesh::Mesh& mesh, const ReduceSettings& settings,
                                   const Progress& progress) {
   const Weights weights = weightsFor(mesh, settings);
   const auto space = PatternSpace::make(mesh, weights);
@@ -29,7 +29,7 @@ Result<Reduction> reduceByPattern(const Mesh& mesh, const ReduceSettings& settin
   PatternReducer reducer(mesh, *space, settings.preserve_topology, settings.preserve_components);
   bool components_stay = settings.preserve_components && !settings.preserve_topology;
   const double max_error =
-      settings.max_error_percent / 100 * boundingBox(mesh.positions).diagonal();
+      settings.max_error_percent / 100 * mesh::boundingBox(mesh.positions).diagonal();
   const char* stopped = nullptr;
   std::size_t by_all_rules = 0;
   while (!stopped) {
@@ -59,4 +59,4 @@ Result<Reduction> reduceByPattern(const Mesh& mesh, const ReduceSettings& settin
   return result;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
@@ -16,8 +16,8 @@ constexpr float kShortest = 1e-6F;
 
 }  // namespace
 
-PatternReducer::PatternReducer(const Mesh& mesh, const PatternSpace& space, bool preserve_topology,
-                               bool preserve_components)
+PatternReducer::PatternReducer(const mesh::Mesh& mesh, const PatternSpace& space,
+                               bool preserve_topology, bool preserve_components)
     : surface_(mesh),
       space_(space),
       preserve_topology_(preserve_topology),
@@ -74,7 +74,8 @@ PatternReducer::Step PatternReducer::collapseShortest(double max_error) {
   return Step::kNothingLeft;
 }
 
-// A last triangle stays, of all or of each component.
+// False if the collapse would remove the mesh's last triangle, or, where these are preserved, the
+// last triangle of a component or change the topology.
 bool PatternReducer::mayGo(const Plan& p, std::uint32_t edge) {
   const std::size_t shared = surface_.trianglesAt(edge);
   if (shared == surface_.liveTriangles()) return false;
@@ -83,8 +84,8 @@ bool PatternReducer::mayGo(const Plan& p, std::uint32_t edge) {
   return !preserve_topology_ || surface_.linkCondition(edge);
 }
 
-// Whether neither the ends nor what would come of them have more triangles than may be now. What a
-// collapse takes is as long as these are many.
+// True if neither the two ends nor the merged vertex have more than most_triangles_ triangles. A
+// collapse takes time in proportion to these numbers.
 bool PatternReducer::isSmallEnough(std::uint32_t edge) {
   const auto [a, b] = surface_.ends(edge);
   const std::size_t of_a = surface_.triangleCount(a), of_b = surface_.triangleCount(b);
@@ -115,7 +116,8 @@ void PatternReducer::measureAll() {
   }
 }
 
-// [GOURLEY98] 4.3: both on the boundary, to the sharper corner; one, to it; none, to the middle.
+// Position of the new vertex, [GOURLEY98] 4.3: if both ends are on the boundary, the sharper
+// corner; if one is, that end; if none is, the midpoint.
 PatternReducer::Plan PatternReducer::plan(std::uint32_t edge) const {
   const auto [a, b] = surface_.ends(edge);
   Plan p{a, b, 0.5F, {}};
@@ -131,7 +133,8 @@ PatternReducer::Plan PatternReducer::plan(std::uint32_t edge) const {
   return p;
 }
 
-// How far the border turns at v, 0 (straight) to pi; more than that where it is not two edges.
+// Angle by which the border turns at v [rad]: 0 (straight) to pi; 4 if v has not exactly two border
+// edges.
 float PatternReducer::sharpness(std::uint32_t v) const {
   Vec3 direction[2];
   std::size_t found = 0;
@@ -145,12 +148,12 @@ float PatternReducer::sharpness(std::uint32_t v) const {
   if (found != 2) return 4;
   const float* d = direction[0].data();
   const float* e = direction[1].data();
-  const float lengths = std::sqrt(dot(d, d) * dot(e, e));
+  const float lengths = std::sqrt(mesh::dot(d, d) * mesh::dot(e, e));
   if (!(lengths > 0)) return 0;
-  return std::numbers::pi_v<float> - std::acos(std::clamp(dot(d, e) / lengths, -1.0F, 1.0F));
+  return std::numbers::pi_v<float> - std::acos(std::clamp(mesh::dot(d, e) / lengths, -1.0F, 1.0F));
 }
 
-// [GOURLEY98] 4.3: whether a face of the new star would turn over, or lose its area. Fills
+// [GOURLEY98] 4.3: returns whether a face of the new star would turn over or lose its area. Fills
 // new_normals_.
 bool PatternReducer::flips(const Plan& p) {
   new_normals_.clear();
@@ -165,10 +168,11 @@ bool PatternReducer::flips(const Plan& p) {
         before[k] = position(corner);
         after[k] = corner == v ? moved : before[k];
       }
-      const Vec3 was = faceNormal(before[0], before[1], before[2]);
-      const Vec3 is = faceNormal(after[0], after[1], after[2]);
-      if (dot(was.data(), was.data()) > 0 && !(dot(was.data(), is.data()) > 0)) return true;
-      const bool has_area = dot(is.data(), is.data()) > 0;
+      const Vec3 was = mesh::faceNormal(before[0], before[1], before[2]);
+      const Vec3 is = mesh::faceNormal(after[0], after[1], after[2]);
+      if (mesh::dot(was.data(), was.data()) > 0 && !(mesh::dot(was.data(), is.data()) > 0))
+        return true;
+      const bool has_area = mesh::dot(is.data(), is.data()) > 0;
       if (has_area) new_normals_.insert(new_normals_.end(), is.begin(), is.end());
     }
   }
@@ -182,16 +186,17 @@ std::array<float, 2> PatternReducer::planeDistances(const Plan& p) const {
   for (std::size_t side = 0; side < 2; ++side) {
     const float* old = position(side == 0 ? p.a : p.b);
     const float d[] = {p.position[0] - old[0], p.position[1] - old[1], p.position[2] - old[2]};
-    float least = std::sqrt(dot(d, d));
+    float least = std::sqrt(mesh::dot(d, d));
     for (std::size_t i = 0; i < new_normals_.size(); i += 3) {
-      least = std::min(least, std::abs(dot(d, &new_normals_[i])));
+      least = std::min(least, std::abs(mesh::dot(d, &new_normals_[i])));
     }
     nearest[side] = least;
   }
   return nearest;
 }
 
-// Equation 4.10: what each end had gathered and gathers now; the new vertex has the worse.
+// Equation 4.10: adds the distance of each end to its accumulated error; the new vertex gets the
+// larger sum.
 float PatternReducer::errorAfter(const Plan& p) const {
   const auto [a, b] = planeDistances(p);
   return std::max(error_[p.a] + a, error_[p.b] + b);
@@ -208,7 +213,7 @@ void PatternReducer::apply(const Plan& p, std::uint32_t edge, float error) {
   for (const std::uint32_t e : surface_.edgesOf(p.a)) heap_.update(e, lengthOf(e));
 }
 
-// The new vertex' features: mixed as its position is; the normal from the new faces.
+// Sets the new vertex' features: interpolated as its position is, the normal from the new faces.
 void PatternReducer::mixFeatures(const Plan& p) {
   for (std::size_t f = 0; f < features_.size(); ++f) {
     float* a = &features_[f].values[p.a * features_[f].dimension];
@@ -218,13 +223,13 @@ void PatternReducer::mixFeatures(const Plan& p) {
   }
   Vec3 sum{};
   for (std::size_t i = 0; i < new_normals_.size(); ++i) sum[i % 3] += new_normals_[i];
-  const float length = std::sqrt(dot(sum.data(), sum.data()));
-  if (!(length > 0)) return;  // no face left: keep the mixed one
+  const float length = std::sqrt(mesh::dot(sum.data(), sum.data()));
+  if (!(length > 0)) return;  // no face left: keep the interpolated one
   for (std::size_t k = 0; k < 3; ++k) features_[normal_].values[3 * p.a + k] = sum[k] / length;
 }
 
 void PatternReducer::recordNode(const Plan& p, float error) {
-  CollapseLog& log = result_.log;
+  lod::CollapseLog& log = result_.log;
   const auto node = static_cast<std::uint32_t>(error_.size() + log.children.size());
   log.children.push_back({node_[p.a], node_[p.b]});
   log.positions.insert(log.positions.end(), p.position.begin(), p.position.end());
@@ -252,12 +257,12 @@ void PatternReducer::makePattern(std::uint32_t v) {
       new_normals_.clear();
       for (const std::uint32_t t : surface_.trianglesOf(v)) {
         const auto& c = surface_.corners(t);
-        const Vec3 n = faceNormal(position(c[0]), position(c[1]), position(c[2]));
+        const Vec3 n = mesh::faceNormal(position(c[0]), position(c[1]), position(c[2]));
         new_normals_.insert(new_normals_.end(), n.begin(), n.end());
       }
       own = curvature(new_normals_, normal);
     } else {
-      const auto named = [&](const Feature& feature) { return feature.name == f.name; };
+      const auto named = [&](const mesh::Feature& feature) { return feature.name == f.name; };
       const auto feature = std::find_if(features_.begin(), features_.end(), named);
       values = &feature->values[v * f.dimension];
     }
@@ -277,9 +282,10 @@ float PatternReducer::lengthOf(std::uint32_t edge) const noexcept {
   return static_cast<float>(std::sqrt(sum));
 }
 
-// So that other edges come first; after enough refusals it is never again the shortest.
+// Makes a refused edge longer, so that other edges come first; after enough refusals its length is
+// infinite and it is not tried again.
 void PatternReducer::lengthen(std::uint32_t edge) {
   heap_.update(edge, std::max(heap_.length(edge), kShortest) * kLengthening);
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

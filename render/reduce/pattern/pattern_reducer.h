@@ -1,7 +1,6 @@
-// PatternReducer: the loop of POLYMUR, one collapse at a time. Private to render/reduce.
+// PatternReducer: the algorithm POLYMUR, one collapse at a time. Private to render/reduce.
 //
-// [GOURLEY98] 4.3, figure 4.6. Row numbers are those of the project's specification of 1998's
-// system (README.md). Thread-bound.
+// [GOURLEY98] 4.3, figure 4.6. Thread-bound.
 #pragma once
 
 #include <array>
@@ -15,38 +14,39 @@
 #include "render/reduce/pattern_space.h"
 #include "render/reduce/reduce.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
 class PatternReducer {
  public:
-  PatternReducer(const Mesh& mesh, const PatternSpace& space, bool preserve_topology,
+  PatternReducer(const mesh::Mesh& mesh, const PatternSpace& space, bool preserve_topology,
                  bool preserve_components = false);
 
   enum class Step { kDone, kNothingLeft, kTooCoarse };
 
-  // Collapses the shortest edge that may be, unless its error is more than `max_error`.
+  // Collapses the shortest edge that the rules allow, unless its error would be more than
+  // `max_error` (model units).
   Step collapseShortest(double max_error = std::numeric_limits<double>::infinity());
 
-  // From here on vertices may have more triangles than before. Measures all edges again. False, and
-  // nothing done, where no edge had to wait for that.
+  // Raises the limit of triangles per vertex and recomputes the lengths of all edges. Returns
+  // false, and does nothing, if that limit has refused no edge.
   bool allowLargerStars();
 
-  // From here on components may vanish. Measures all edges again.
+  // Lets components vanish from now on; recomputes the lengths of all edges.
   void releaseComponents();
 
   std::size_t collapses() const noexcept { return result_.log.children.size(); }
   std::size_t triangles() const noexcept { return surface_.liveTriangles(); }
 
-  // Leaves the reducer empty. `stopped` and `about` are the caller's to fill.
+  // Returns the result and leaves the reducer empty. The caller must fill `stopped` and `about`.
   Reduction finish() &&;
 
  private:
   using Vec3 = std::array<float, 3>;
 
-  // A collapse that is being considered: b goes, a stays and moves.
+  // A candidate collapse: vertex b is removed, vertex a moves to `position`.
   struct Plan {
     std::uint32_t a = 0, b = 0;
-    float towards_b = 0;  // 0: a's place, 1: b's, 0.5: the middle
+    float towards_b = 0;  // 0: at a, 1: at b, 0.5: midpoint
     Vec3 position{};
   };
 
@@ -69,19 +69,19 @@ class PatternReducer {
   WorkingMesh surface_;
   const PatternSpace& space_;
   bool preserve_topology_, preserve_components_;
-  // That a vertex may have: more than on a surface of any use. The least that waits for more.
+  // Limit of triangles per vertex, above what useful surfaces have; the smallest number refused.
   static constexpr std::size_t kNoneLeftOut = std::numeric_limits<std::size_t>::max();
   std::size_t most_triangles_ = 128, smallest_left_out_ = kNoneLeftOut;
-  std::vector<float> positions_;        // by vertex, as they move
-  std::vector<Feature> features_;       // by vertex, as they change
-  std::size_t normal_ = 0;              // index of "normal" in features_
-  std::vector<float> patterns_;         // by vertex: weighted pattern vectors
-  std::vector<std::uint8_t> boundary_;  // by vertex
-  std::vector<float> error_;            // by vertex: accumulated, equation 4.10
-  std::vector<std::uint32_t> node_;     // by vertex: its node in the log
+  std::vector<float> positions_;         // by vertex, present values
+  std::vector<mesh::Feature> features_;  // by vertex, present values
+  std::size_t normal_ = 0;               // index of "normal" in features_
+  std::vector<float> patterns_;          // by vertex: weighted pattern vectors
+  std::vector<std::uint8_t> boundary_;   // by vertex
+  std::vector<float> error_;             // by vertex: accumulated, equation 4.10
+  std::vector<std::uint32_t> node_;      // by vertex: its node in the log
   EdgeHeap heap_;
-  std::vector<float> new_normals_;  // scratch: of the plan's new faces, 3 each
+  std::vector<float> new_normals_;  // scratch: normals of the plan's new faces, 3 floats each
   Reduction result_;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <iterator>
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
-constexpr std::uint32_t kGone = ~std::uint32_t{0};  // the first of what is gone
-// From longer lists nothing is taken out at once.
+constexpr std::uint32_t kGone = ~std::uint32_t{0};  // first vertex of removed triangles and edges
+// Removed entries stay in longer lists until tidy().
 constexpr std::size_t kLongList = 64;
 
-std::vector<WorkingMesh::Corners> cornersOf(const Mesh& mesh) {
+std::vector<WorkingMesh::Corners> cornersOf(const mesh::Mesh& mesh) {
   std::vector<WorkingMesh::Corners> corners(mesh.triangleCount());
   for (std::size_t t = 0; t < corners.size(); ++t) {
     std::copy_n(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, corners[t].begin());
@@ -48,7 +48,7 @@ ListPool listsOf(std::size_t vertices, const std::vector<std::array<std::uint32_
 
 }  // namespace
 
-WorkingMesh::WorkingMesh(const Mesh& mesh)
+WorkingMesh::WorkingMesh(const mesh::Mesh& mesh)
     : corners_(cornersOf(mesh)),
       ends_(uniqueEdges(corners_)),
       around_(listsOf(mesh.vertexCount(), corners_)),
@@ -118,7 +118,7 @@ bool WorkingMesh::linkCondition(std::uint32_t edge) noexcept {
   return shared == 1 || !(isBoundary(a) && isBoundary(b));
 }
 
-// As on a tetrahedron: a face at a and a face at b would come to lie on one another.
+// True if a face at a and a face at b would coincide after the collapse, as on a tetrahedron.
 bool WorkingMesh::linksShareAnEdge(std::uint32_t a, std::uint32_t b) const noexcept {
   const auto has = [&](std::uint32_t t, std::uint32_t v) { return v == a || contains(t, v); };
   for (const std::uint32_t t : around_[a]) {
@@ -187,7 +187,7 @@ void WorkingMesh::mergeEdges(std::uint32_t a, std::uint32_t b) {
   spokes_.assign(b, {});
   spokes_.assign(a, scratch_);
   countTriangles(a);
-  // An edge whose only triangle has gone is no edge any more.
+  // An edge whose only triangle was removed is removed as well.
   std::erase_if(scratch_, [&](std::uint32_t e) {
     if (shared_[e] > 0) return false;
     gone_.push_back(e);
@@ -198,4 +198,4 @@ void WorkingMesh::mergeEdges(std::uint32_t a, std::uint32_t b) {
   for (const std::uint32_t e : gone_) ends_[e][0] = kGone;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

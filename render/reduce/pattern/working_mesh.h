@@ -1,6 +1,5 @@
-// WorkingMesh: a mesh that is being reduced: which triangles and edges each vertex has, and how
-// they change when one edge is collapsed. Connectivity only. Thread-bound; private to
-// render/reduce.
+// WorkingMesh: the connectivity of a mesh while it is reduced: the triangles and edges of each
+// vertex, updated by each collapse. Thread-bound; private to render/reduce.
 #pragma once
 
 #include <array>
@@ -11,17 +10,17 @@
 #include "render/mesh/mesh.h"
 #include "render/reduce/pattern/list_pool.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
 class WorkingMesh {
  public:
-  explicit WorkingMesh(const Mesh& mesh);
+  explicit WorkingMesh(const mesh::Mesh& mesh);
 
   using Corners = std::array<std::uint32_t, 3>;
   using Ends = std::array<std::uint32_t, 2>;
 
   std::size_t liveTriangles() const noexcept { return live_; }
-  std::size_t edgeCount() const noexcept { return ends_.size(); }  // as it was at the start
+  std::size_t edgeCount() const noexcept { return ends_.size(); }  // of the input mesh
   Ends ends(std::uint32_t edge) const noexcept { return ends_[edge]; }
   std::uint32_t otherEnd(std::uint32_t edge, std::uint32_t v) const noexcept {
     return ends_[edge][0] == v ? ends_[edge][1] : ends_[edge][0];
@@ -35,25 +34,26 @@ class WorkingMesh {
     return c[0] == v || c[1] == v || c[2] == v;
   }
 
-  // How many triangles v has. What trianglesOf() and edgesOf() say of a vertex of many holds what
-  // is gone as well, until tidy(): to take one out of a long list would take long.
+  // Returns the number of triangles of v. For a vertex with many triangles, trianglesOf() and
+  // edgesOf() still contain removed ones until tidy(), since removing from a long list is slow.
   std::size_t triangleCount(std::uint32_t v) const noexcept {
     return around_[v].size() - stale_triangles_[v];
   }
-  // Drops what is gone from v's lists; what is left keeps its order. O(1) where nothing is.
+  // Drops removed triangles and edges from v's lists; the others keep their order. O(1) if there
+  // are none.
   void tidy(std::uint32_t v);
 
-  // How many triangles have it; 1 is a boundary edge, 2 an inner one, more not manifold.
+  // Number of triangles at an edge: 1 at a boundary, 2 inside, more if non-manifold.
   std::size_t trianglesAt(std::uint32_t edge) const noexcept { return shared_[edge]; }
   bool isBoundary(std::uint32_t v) const noexcept;  // has a boundary edge
 
-  // True where collapsing a-b keeps the topology: the link condition, T. K. Dey et al., "Topology
-  // preserving edge contraction", 1999, with borders. REQUIRES: both ends are tidy.
+  // True if collapsing the edge keeps the topology: the link condition, T. K. Dey et al., "Topology
+  // preserving edge contraction", 1999, with borders. REQUIRES: tidy() was called for both ends.
   bool linkCondition(std::uint32_t edge) noexcept;
 
-  // Merges b into a: triangles with both are gone, edges that became one are merged; returns
-  // the edges that are no more, the collapsed one among them. Valid until the next call. REQUIRES:
-  // a and b are tidy.
+  // Merges b into a: removes triangles with both, and merges edges that become one. Returns the
+  // removed edges, the collapsed one among them; valid until the next call. REQUIRES: tidy() was
+  // called for a and b.
   std::span<const std::uint32_t> collapse(std::uint32_t a, std::uint32_t b);
 
  private:
@@ -67,8 +67,9 @@ class WorkingMesh {
   std::vector<Corners> corners_;
   std::vector<Ends> ends_;
   ListPool around_, spokes_;
-  std::vector<std::uint32_t> shared_;                         // by edge
-  std::vector<std::uint32_t> stale_triangles_, stale_edges_;  // by vertex: gone, but in its list
+  std::vector<std::uint32_t> shared_;  // by edge: number of its triangles
+  // By vertex: number of removed entries that are still in its list.
+  std::vector<std::uint32_t> stale_triangles_, stale_edges_;
   std::vector<std::uint32_t> mark_;   // scratch, by vertex: stamp_ where seen
   std::vector<std::uint32_t> count_;  // scratch, by vertex
   std::uint32_t stamp_ = 0;
@@ -76,4 +77,4 @@ class WorkingMesh {
   std::size_t live_ = 0;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

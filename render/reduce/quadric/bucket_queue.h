@@ -1,8 +1,10 @@
-// BucketQueue: vertices by the cost of their best edge, roughly sorted. Private to render/reduce.
+// BucketQueue: a priority queue of vertices by the cost of their cheapest edge, approximately
+// sorted. Private to render/reduce.
 //
-// A bucket holds the costs of one binary exponent and the same upper bits of the mantissa (1.6 %
-// apart). Lists run through one number a vertex; nothing is ever moved or taken out: what a
-// collapse made stale is measured again when it comes up. O(1) for each operation.
+// A bucket holds costs with equal binary exponents and equal upper six bits of the mantissa;
+// buckets are at most 1.6 % apart. Each bucket is a linked list, with one link per vertex. Entries
+// never move to another bucket: a cost that a collapse has made stale is recomputed after pop().
+// O(1) for each operation.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +13,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
 // `Next` is a callable: std::uint32_t& (std::uint32_t vertex), the vertex' link.
 class BucketQueue {
@@ -20,7 +22,7 @@ class BucketQueue {
 
   BucketQueue() : first_(kBuckets, kNone), filled_(kBuckets / 64, 0) {}
 
-  // Least cost that does not belong to a later bucket.
+  // The lower end of the costs in a bucket.
   static float floorOf(std::size_t bucket) {
     return std::bit_cast<float>(static_cast<std::uint32_t>(bucket + kLowest) << kDropped);
   }
@@ -30,7 +32,7 @@ class BucketQueue {
   }
   static constexpr std::size_t buckets() { return kBuckets; }
 
-  // REQUIRES: cost > 0, vertex is in no bucket.
+  // Inserts the vertex into the bucket of its cost. REQUIRES: cost > 0, vertex is in no bucket.
   template <typename Next>
   void push(std::uint32_t vertex, float cost, const Next& next) {
     const std::size_t k = bucketOf(cost);
@@ -40,7 +42,8 @@ class BucketQueue {
     current_ = std::min(current_, k);
   }
 
-  // From the first bucket that is not empty, if it is before `limit`; else kNone.
+  // Removes and returns a vertex of the first bucket that is not empty, if that bucket is before
+  // `limit`; else returns kNone.
   template <typename Next>
   std::uint32_t pop(std::size_t limit, const Next& next) {
     const std::size_t k = filledFrom(current_);
@@ -53,7 +56,7 @@ class BucketQueue {
     return vertex;
   }
 
-  // Takes over what `other` holds: O(that).
+  // Moves all vertices of `other` into this queue; O(vertices in `other`).
   template <typename Next>
   void join(BucketQueue&& other, const Next& next) {
     for (std::size_t k = other.filledFrom(0); k < kBuckets; k = other.filledFrom(k + 1)) {
@@ -67,13 +70,13 @@ class BucketQueue {
     other = BucketQueue();
   }
 
-  // The bucket that the last pop() looked at; a lower one after a push() there.
+  // The bucket that the last pop() looked at, or a lower one that push() has used since.
   std::size_t current() const noexcept { return current_; }
 
   static constexpr std::size_t kAhead = 5;
 
-  // Those that pop() would return next, then kNone. What push() has put between them since the last
-  // call may be missing.
+  // The vertices that pop() would return next, then kNone; for prefetching. Vertices that push()
+  // has put among them since the last call may be missing.
   template <typename Next>
   const std::array<std::uint32_t, kAhead>& peek(const Next& next) {
     const std::size_t bucket = filledFrom(current_);
@@ -92,12 +95,13 @@ class BucketQueue {
   }
 
  private:
-  static constexpr int kDropped = 17;  // 23 bits of mantissa, 6 count
-  // Costs from 2^-80 to 2^80, in squared mean edges times area.
+  static constexpr int kDropped = 17;  // lower bits of the mantissa that do not count: 17 of 23
+  // Buckets cover costs from 2^-80 to 2^80 (area times squared distance, unit of length: mean edge
+  // length).
   static constexpr std::int64_t kLowest = std::int64_t{127 - 80} << (23 - kDropped);
   static constexpr std::size_t kBuckets = std::size_t{160} << (23 - kDropped);
 
-  // The first that is not empty, from k on; kBuckets: none.
+  // Returns the first bucket from k on that is not empty; kBuckets if there is none.
   std::size_t filledFrom(std::size_t k) const {
     std::size_t word = k / 64;
     if (word >= filled_.size()) return kBuckets;
@@ -109,7 +113,7 @@ class BucketQueue {
     return word * 64 + static_cast<std::size_t>(std::countr_zero(bits));
   }
 
-  // Finds the vertex that follows one of ahead_bucket_.
+  // Returns the vertex after `vertex`, which is in ahead_bucket_; updates ahead_bucket_.
   template <typename Next>
   std::uint32_t after(std::uint32_t vertex, const Next& next) {
     const std::uint32_t follows = vertex == kNone ? kNone : next(vertex);
@@ -122,7 +126,7 @@ class BucketQueue {
   std::vector<std::uint64_t> filled_;
   std::size_t current_ = kBuckets - 1;
   std::array<std::uint32_t, kAhead> ahead_ = {kNone, kNone, kNone, kNone, kNone};
-  std::size_t ahead_bucket_ = kBuckets;  // the last one's
+  std::size_t ahead_bucket_ = kBuckets;  // bucket of the last vertex in ahead_
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -1,9 +1,10 @@
-// Eight numbers at a time. Private to render/reduce.
+// Operations on eight numbers at a time (SIMD). Private to render/reduce.
 //
-// Code that uses these is one portable source, compiled once for any processor and once for the
-// wider registers of newer ones. Both do the same operations in the same order, none of them fused,
-// so the results have the same bits. All functions are inlined into the one that is compiled for a
-// processor, so the calling convention that GCC warns about (-Wpsabi) is never used.
+// Code that uses these operations is one portable source, compiled once for any processor and once
+// for the wider registers of newer ones (AVX2). Both versions do the same operations in the same
+// order, without fused multiply-add, so the results have the same bits. All functions are inlined
+// into the one that is compiled for a processor, so the calling convention that GCC warns about
+// (-Wpsabi) is never used.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +13,15 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 #define MERLIN_INLINE [[gnu::always_inline]] inline
 #if defined(__x86_64__)
-#define MERLIN_WIDE [[gnu::target("avx2")]]  // of the text that is for wider registers
+#define MERLIN_WIDE [[gnu::target("avx2")]]  // for the functions compiled for wider registers
 #else
 #define MERLIN_WIDE
 #endif
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
-// Chooses, of two compilations of one source, the one that this processor can run; `wide` is
-// MERLIN_WIDE.
+// Returns `wide`, which was compiled with MERLIN_WIDE, if this processor can run it, else
+// `portable`. Both are compiled from the same source.
 template <typename Function>
 Function forThisProcessor(Function wide, Function portable) {
 #if defined(__x86_64__)
@@ -30,7 +31,7 @@ Function forThisProcessor(Function wide, Function portable) {
 }
 
 using Lanes = float __attribute__((vector_size(32)));
-using Mask = std::int32_t __attribute__((vector_size(32)));  // of numbers, too
+using Mask = std::int32_t __attribute__((vector_size(32)));  // also for vertex numbers
 using Quad = float __attribute__((vector_size(16)));
 
 inline constexpr Mask kLane = {0, 1, 2, 3, 4, 5, 6, 7};
@@ -58,7 +59,7 @@ MERLIN_INLINE std::int32_t sum(const Mask& v) {
   return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
 }
 
-// The sum of each of eight vectors, added in the order of sum().
+// Returns the sums of eight vectors, each added in the order of sum().
 MERLIN_INLINE Lanes sums(const Lanes (&v)[8]) {
   Lanes half[4];  // {v0 + v4, v1 + v5, v2 + v6, v3 + v7} of two
   for (int k = 0; k < 4; ++k) {
@@ -74,7 +75,7 @@ MERLIN_INLINE Lanes sums(const Lanes (&v)[8]) {
          __builtin_shufflevector(quarter[0], quarter[1], 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-// In every lane the least of all.
+// Returns the minimum of all lanes, in every lane.
 template <typename T>
 MERLIN_INLINE T least(const T& of) {
   T v = of;
@@ -95,8 +96,9 @@ MERLIN_INLINE bool any(const Mask& m) {
   return (wide[0] | wide[1]) != 0;
 }
 
-// Four floats from each of eight places, or `floats` and no more, as four lanes of eight. at(k):
-// where the k-th are; no array, which GCC would write down.
+// Loads `floats` (3 or 4) floats from each of eight addresses and transposes them: a gets the first
+// float of each, b the second, and so on. at(k) returns address k; an array of addresses would be
+// written to memory by GCC.
 template <std::size_t floats = 4, typename At>
 MERLIN_INLINE void gather(const At& at, Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
   Quad q[8] = {};
@@ -115,13 +117,13 @@ MERLIN_INLINE void gather(const At& at, Lanes& a, Lanes& b, Lanes& c, Lanes& d) 
   d = __builtin_shufflevector(t1, t3, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-// The next of each; after the eighth the first.
+// Rotates the lanes: each gets the value of the next lane, the eighth that of the first.
 template <typename T>
 MERLIN_INLINE T next(const T& v) {
   return __builtin_shufflevector(v, v, 1, 2, 3, 4, 5, 6, 7, 0);
 }
 
-// The first of all from `count` on.
+// Replaces all lanes from `count` on by the first lane.
 MERLIN_INLINE Mask upTo(std::uint32_t count, const Mask& v) {
   return kLane < static_cast<std::int32_t>(count)
              ? v
@@ -138,4 +140,4 @@ MERLIN_INLINE Mask seconds(const std::uint32_t* pairs, std::uint32_t count) {
               __builtin_shufflevector(load(pairs), load(pairs + 8), 1, 3, 5, 7, 9, 11, 13, 15));
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

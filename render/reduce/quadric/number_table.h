@@ -1,4 +1,4 @@
-// NumberTable: which of a few numbers has come before. Private to render/reduce.
+// NumberTable: a small hash table from numbers to numbers. Private to render/reduce.
 #pragma once
 
 #include <algorithm>
@@ -7,13 +7,12 @@
 #include <cstdint>
 #include <vector>
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
-// Numbers with a value each, by open addressing. O(1) an operation as a rule. Scratch: one a
-// thread.
+// Open addressing; expected O(1) per operation. Scratch memory: one per thread.
 class NumberTable {
  public:
-  // Forgets all. Then there is room for so many numbers. Amortised O(1).
+  // Removes all keys and makes room for `numbers` keys. Amortised O(1).
   void reset(std::size_t numbers) {
     const std::size_t size = std::bit_ceil(2 * numbers + 1);
     if (entries_.size() < size) {
@@ -26,7 +25,7 @@ class NumberTable {
     }
   }
 
-  // The number's value; 0 where it is new.
+  // The value of the key `number`, which is added with the value 0 if it is new.
   std::uint32_t& operator[](std::uint32_t number) {
     const std::size_t mask = entries_.size() - 1;
     std::size_t k = (std::uint64_t{number} * 0x9E3779B97F4A7C15U >> 32) & mask;
@@ -44,4 +43,4 @@ class NumberTable {
   std::uint32_t now_ = 0;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -1,5 +1,5 @@
-// The cost `quadric`: weighted features become channels of the quadrics; the others are carried
-// along and mixed by where the new vertex lies between the two old ones.
+// The cost `quadric`: weighted features become channels of the quadrics. Other features do not
+// influence the cost; their values at a new vertex are interpolated between the two old vertices.
 #include "render/reduce/quadric/quadric.h"
 
 #include <algorithm>
@@ -11,17 +11,18 @@
 #include "render/reduce/costs.h"
 #include "render/reduce/memory.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
 using ChannelFeature = QuadricPlan::ChannelFeature;
 
-// Weight of the step between locked labels: with 0.005 two thirds of the error at their edge
-// vanish; with 0.05 nearly all of it, but the surface gets worse.
+// Weight of the label channel, which keeps the boundary between two labels in place. 0.005 removes
+// two thirds of the error at that boundary; 0.05 removes nearly all of it, but the surface gets
+// worse.
 constexpr float kLabelWeight = 0.005F;
 
-std::vector<ChannelFeature> channelsOf(const Mesh& mesh, const PatternSpace& space) {
-  // As in pattern space, geometry counts by the diagonal of the box.
+std::vector<ChannelFeature> channelsOf(const mesh::Mesh& mesh, const PatternSpace& space) {
+  // The ratio to the geometry's scale (weight / diagonal of the bounding box) is in model units.
   const PatternFeature* geometry = space.find("geometry");
   std::vector<ChannelFeature> channels;
   std::size_t first = 0;
@@ -34,14 +35,14 @@ std::vector<ChannelFeature> channelsOf(const Mesh& mesh, const PatternSpace& spa
   return channels;
 }
 
-std::size_t countOf(const Mesh& mesh, const std::vector<ChannelFeature>& channels) {
+std::size_t countOf(const mesh::Mesh& mesh, const std::vector<ChannelFeature>& channels) {
   std::size_t count = 0;
   for (const ChannelFeature& c : channels) count += mesh.features[c.feature].dimension;
   return count;
 }
 
-// Labels are names: as heights of equal weight, far from one another for most pairs, so that where
-// they meet there is a step whose edge stays.
+// Maps labels, which are only names, to numbers in [0, 1) that are far apart for most pairs. The
+// channel thus has a step where two labels meet, and moving the step costs.
 std::vector<float> heightsOf(const std::vector<float>& labels) {
   constexpr double kGoldenRatio = 0.6180339887498949;
   std::vector<float> heights(labels.size());
@@ -52,7 +53,8 @@ std::vector<float> heightsOf(const std::vector<float>& labels) {
   return heights;
 }
 
-// Where the node lies between its children: 0 at the first, 1 at the second.
+// Returns where the node lies between its children a and b, projected onto their edge: 0 at a, 1 at
+// b.
 float between(const float* node, const float* a, const float* b) {
   double ab = 0, an = 0;
   for (int k = 0; k < 3; ++k) {
@@ -62,8 +64,10 @@ float between(const float* node, const float* a, const float* b) {
   return ab > 0 ? static_cast<float>(std::clamp(an / ab, 0.0, 1.0)) : 0.5F;
 }
 
-// Values at the nodes of a feature that does not cost: mixed, or of the nearer child for labels.
-std::vector<float> carryAlong(const Mesh& mesh, const Feature& feature, const CollapseLog& log) {
+// Returns the values at the nodes of a feature that does not influence the cost: interpolated
+// between the children; for labels those of the nearer child.
+std::vector<float> carryAlong(const mesh::Mesh& mesh, const mesh::Feature& feature,
+                              const lod::CollapseLog& log) {
   const std::size_t d = feature.dimension, vertices = mesh.vertexCount();
   std::vector<float> values(log.children.size() * d);
   const auto at = [&](const std::vector<float>& leaves, const std::vector<float>& inner,
@@ -92,19 +96,22 @@ Result<Ok> checkWeights(const Weights& weights, const PatternSpace& space) {
     const auto w = weights.find(name);
     if (w != weights.end() && w->second > 0) {
       return Error{Errc::kInvalidArgument,
-                   std::string("weight ") + name + ": only the cost pattern has it"};
+                   std::string("weight ") + name + ": only the cost pattern uses this weight"};
     }
   }
   if (normal != weights.end() && normal->second > 0) {
-    return Error{Errc::kInvalidArgument,
-                 "weight normal: normals follow from the surface; only the cost pattern has it"};
+    return Error{
+        Errc::kInvalidArgument,
+        "weight normal: normals are computed from the surface; only the cost pattern uses this "
+        "weight"};
   }
   if (!space.find("geometry"))
-    return Error{Errc::kInvalidArgument, "weight geometry: has to be more than 0"};
+    return Error{Errc::kInvalidArgument, "weight geometry: must be more than 0"};
   return Ok{};
 }
 
-// Those of the settings, and both sides of a seam, so that it does not gape; empty: none.
+// Returns the vertices to lock: those of settings.locked, and all coincident vertices, so that
+// seams do not open; empty if there are none. next: samePlace().
 std::vector<bool> lockedVertices(const ReduceSettings& settings,
                                  const std::vector<std::uint32_t>& next) {
   std::vector<bool> locked = settings.locked;
@@ -118,21 +125,22 @@ std::vector<bool> lockedVertices(const ReduceSettings& settings,
 
 }  // namespace
 
-Weights quadricWeights(const Mesh& mesh) {
+Weights quadricWeights(const mesh::Mesh& mesh) {
   Weights weights{{"geometry", 1.0F}};
-  for (const Feature& f : mesh.features) {
-    // The last two: names that mean something else to the cost pattern.
+  for (const mesh::Feature& f : mesh.features) {
+    // The names curvature and boundary mean computed values in pattern space.
     if (f.name == "normal" || f.name == "label" || f.name == "curvature" || f.name == "boundary")
       continue;
-    // Chosen from 0.001, 0.003 and 0.005: with 0.003 pictures of two coloured scans change least
-    // (pixels that change by more than 15 %), and the surface is a few percent further off than
-    // without colours. Textures weigh more, because a texture slides before it fades.
+    // 0.003 was chosen from 0.001, 0.003 and 0.005: with it, renderings of two coloured scans
+    // change least (number of pixels that change by more than 15 %), and the surface's error is a
+    // few percent larger than without colours. Texture coordinates weigh more, because a shifted
+    // texture is visible before a faded one.
     weights[f.name] = f.name == "texcoord" ? 0.05F : 0.003F;
   }
   return weights;
 }
 
-Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings,
+Result<QuadricPlan> planQuadric(const mesh::Mesh& mesh, const ReduceSettings& settings,
                                 ThreadTeam& team) {
   QuadricPlan plan;
   plan.weights = weightsFor(mesh, settings);
@@ -140,17 +148,18 @@ Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings
   if (!space) return space.error();
   if (const auto checked = checkWeights(plan.weights, *space); !checked) return checked.error();
   plan.channels = channelsOf(mesh, *space);
-  // [GOURLEY98] 5.2.2: as good as a colour of very high weight, unless somebody weighs it, be it by
-  // 0.
+  // Unless labels have an explicit weight (even 0), they are locked, which acts like the very high
+  // weight of [GOURLEY98] 5.2.2.
   plan.labels_lock = mesh.find("label") && !plan.weights.contains("label");
   plan.label_scale = kLabelWeight / space->find("geometry")->scale;
-  plan.seams_shrink = settings.locked.empty();  // what has to stay is no seam's for sure
+  // If the caller locks vertices, we cannot tell whether both sides of a seam may move.
+  plan.seams_shrink = settings.locked.empty();
   plan.by_percent = static_cast<std::size_t>(settings.min_percent / 100 *
                                              static_cast<double>(mesh.triangleCount()));
   QuadricReducer::Limits& limits = plan.limits;
   limits.triangles = std::max(settings.min_triangles, plan.by_percent);
-  limits.error =
-      static_cast<float>(settings.max_error_percent / 100 * boundingBox(mesh.positions).diagonal());
+  limits.error = static_cast<float>(settings.max_error_percent / 100 *
+                                    mesh::boundingBox(mesh.positions).diagonal());
   limits.preserve_topology = settings.preserve_topology;
   limits.preserve_components = settings.preserve_components;
   limits.fast = settings.fast;
@@ -158,12 +167,13 @@ Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings
   return plan;
 }
 
-Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vector<bool>& locked,
-                     const Progress& progress, std::vector<std::uint32_t> places) {
+Reduction runQuadric(const mesh::Mesh& mesh, const QuadricPlan& plan,
+                     const std::vector<bool>& locked, const Progress& progress,
+                     std::vector<std::uint32_t> places) {
   const std::size_t channels = countOf(mesh, plan.channels);
   QuadricReducer reducer(mesh, channels + (plan.labels_lock ? 1 : 0), plan.limits.threads);
   for (const ChannelFeature& c : plan.channels) {
-    const Feature& f = mesh.features[c.feature];
+    const mesh::Feature& f = mesh.features[c.feature];
     for (std::size_t k = 0; k < f.dimension; ++k)
       reducer.setChannel(c.first + k, f.values.data() + k, f.dimension, c.scale);
   }
@@ -180,8 +190,8 @@ Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vecto
   Reduction result = reducer.finish(mesh);
   result.report.stopped = stopped;
   for (const ChannelFeature& c : plan.channels) {
-    const Feature& f = mesh.features[c.feature];
-    if (f.name == "label") continue;  // is never mixed
+    const mesh::Feature& f = mesh.features[c.feature];
+    if (f.name == "label") continue;  // not interpolated: carryAlong()
     std::vector<float>& values = result.log.features[c.feature];
     values.resize(result.log.children.size() * f.dimension);
     for (std::size_t k = 0; k < f.dimension; ++k)
@@ -194,14 +204,14 @@ Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vecto
   return result;
 }
 
-Result<Reduction> reduceByQuadric(const Mesh& mesh, const ReduceSettings& settings,
+Result<Reduction> reduceByQuadric(const mesh::Mesh& mesh, const ReduceSettings& settings,
                                   const Progress& progress) {
   ThreadTeam team;
   const auto plan = planQuadric(mesh, settings, team);
   if (!plan) return plan.error();
-  const auto blocks = blocksFor(sizeOf(mesh), settings);
+  const auto blocks = blocksFor(mesh::sizeOf(mesh), settings);
   if (!blocks) return blocks.error();
-  std::vector<std::uint32_t> places = samePlace(mesh.positions);
+  std::vector<std::uint32_t> places = mesh::samePlace(mesh.positions);
   const std::vector<bool> locked = lockedVertices(settings, places);
   if (locked.empty() || !plan->seams_shrink || *blocks > 1) places = {};
   Reduction result = *blocks == 1 ? runQuadric(mesh, *plan, locked, progress, std::move(places))
@@ -212,4 +222,4 @@ Result<Reduction> reduceByQuadric(const Mesh& mesh, const ReduceSettings& settin
   return result;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

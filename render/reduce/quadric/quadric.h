@@ -1,4 +1,4 @@
-// The parts of reduceByQuadric(), for a mesh as a whole and for blocks of it. Private to
+// The steps of reduceByQuadric(), used for a whole mesh and for blocks of one. Private to
 // render/reduce.
 #pragma once
 
@@ -7,36 +7,42 @@
 #include "daemon/base/thread_team.h"
 #include "render/reduce/quadric/quadric_reducer.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
-// Decisions that are made once for the whole mesh, so that all of its blocks are measured alike.
+// Parameters that are computed once for the whole mesh, so that all of its blocks use the same.
 struct QuadricPlan {
-  // Feature f of the mesh as channels first .. first + dimension - 1.
+  // A feature that contributes to the cost: mesh.features[feature], whose values are the channels
+  // first .. first + dimension - 1.
   struct ChannelFeature {
     std::size_t feature, first;
-    float scale;  // model units a difference of 1 weighs
+    float scale;  // a difference of 1 costs like a distance of `scale` model units
   };
   Weights weights;
   std::vector<ChannelFeature> channels;
-  bool labels_lock = false;
-  float label_scale = 0;       // of the step between locked labels: model units
-  bool seams_shrink = false;   // both sides at once; else their vertices stay
-  std::size_t by_percent = 0;  // triangles that settings.min_percent leaves
+  bool labels_lock = false;    // vertices of different labels merge last
+  float label_scale = 0;       // as ChannelFeature::scale, for the channel of locked labels
+  bool seams_shrink = false;   // edges on both sides collapse together; if false, seams are locked
+  std::size_t by_percent = 0;  // number of triangles for settings.min_percent
   QuadricReducer::Limits limits;
 };
 
-// Errors: of weights and criteria, as reduce(). `team`: its threads do the work; outlives the plan.
-Result<QuadricPlan> planQuadric(const Mesh& mesh, const ReduceSettings& settings, ThreadTeam& team);
+// Computes the plan. Errors: kInvalidArgument for weights, as reduce(). `team` provides the threads
+// and must outlive the plan.
+Result<QuadricPlan> planQuadric(const mesh::Mesh& mesh, const ReduceSettings& settings,
+                                ThreadTeam& team);
 
-// Reduces `mesh`, which has the features that the plan was made with. locked: one a vertex, or
-// empty; seams' vertices are. places: samePlace(), where seams are to shrink. The log lacks its
-// `about`.
-Reduction runQuadric(const Mesh& mesh, const QuadricPlan& plan, const std::vector<bool>& locked,
-                     const Progress& progress, std::vector<std::uint32_t> places = {});
+// Reduces `mesh`, which must have the features of the mesh that the plan was made for. locked: one
+// entry per vertex, or empty; must include the vertices on seams. places: samePlace() of the mesh
+// if seams may shrink, else empty. Leaves CollapseLog::about empty.
+Reduction runQuadric(const mesh::Mesh& mesh, const QuadricPlan& plan,
+                     const std::vector<bool>& locked, const Progress& progress,
+                     std::vector<std::uint32_t> places = {});
 
-// The same in so many blocks, more than one: blocks.cpp. Of their quadrics those of one block are
-// in memory, then those of what all have left.
-Reduction reduceInBlocks(const Mesh& mesh, const QuadricPlan& plan, const std::vector<bool>& locked,
-                         std::size_t blocks, const Progress& progress);
+// As runQuadric(), but reduces `blocks` (more than one) blocks one after another, then what they
+// leave as one mesh. Only the quadrics of one block are in memory at a time. Defined in
+// out_of_core/blocks.cpp.
+Reduction reduceInBlocks(const mesh::Mesh& mesh, const QuadricPlan& plan,
+                         const std::vector<bool>& locked, std::size_t blocks,
+                         const Progress& progress);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -7,25 +7,25 @@
 #include "render/reduce/quadric/lanes.h"
 #include "render/reduce/quadric/quadric_star.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
 constexpr float kLeastCost = 1e-22F;
-constexpr float kPull = 1e-5F;  // to the middle of the edge, in the quadric's trace
+constexpr float kPull = 1e-5F;  // pull to the edge's midpoint, as a share of the quadric's trace
 
-// Eight edges at a time. `channels`: whether there are any.
+// Computes the costs of eight edges of w at a time. `channels`: whether there are channels.
 template <bool channels>
 struct Solver {
   const QuadricView& view;
   const float* wh;  // w's quadric
-  const float* wc;  // and its channels' block
+  const float* wc;  // w's channel block
   EdgeCosts& out;
 
-  // For the neighbour x: sum of area times gradient of a channel, and the channel's value less w's.
+  // One channel at the neighbours x: sum of area times gradient, and the value minus w's.
   struct Channel {
     Lanes bx, by, bz, delta;
   };
-  static constexpr std::size_t kKept = 8;  // channels that are read once for both passes
+  static constexpr std::size_t kKept = 8;  // channels that are kept between the two passes
 
   MERLIN_INLINE Channel channelOf(const std::uint32_t* x, std::size_t k) const {
     Channel c;
@@ -35,13 +35,14 @@ struct Solver {
     return c;
   }
 
-  // Sum of the areas at each neighbour x.
+  // Sum of the areas of the triangles at each neighbour x.
   MERLIN_INLINE Lanes areasOf(const std::uint32_t* x) const {
     const auto at = [&](int i) { return view.channels->block(x[i])[0]; };
     return Lanes{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
   }
 
-  // REQUIRES: room for 8 rows from `first`; count rows count. Returns their costs.
+  // Solves rows first .. first + 7 and returns their costs; those from first + count on are
+  // kNoEdge. REQUIRES: room for 8 rows from `first`.
   MERLIN_INLINE Lanes solve(const Neighbours<true>& at, std::uint32_t first,
                             std::uint32_t count) const {
     const std::uint32_t* x = &out.neighbour[first];
@@ -61,7 +62,8 @@ struct Solver {
     const std::size_t n = channels ? view.channels->count() : 0;
     const Lanes area = channels ? areasOf(x) : all(0.0F);
     const Lanes s = channels ? 1.0F / (area + wc[0] + kTiny) : all(0.0F);
-    // The sums that A and the right side get once the channels' best values are put in.
+    // Eliminates the values of the channels: adds the terms of their optimum to A and to the
+    // right-hand side.
     for (std::size_t k = 0; k < n; ++k) {
       const Channel c = channelOf(x, k);
       if (k < kKept) kept[k] = c;
@@ -78,14 +80,14 @@ struct Solver {
       r1 += g * b1 - c.delta * c.by;
       r2 += g * b2 - c.delta * c.bz;
     }
-    // A v = r by Cholesky's method without roots.
+    // Solves A v = r by Cholesky factorisation without square roots (L D L').
     const Lanes i0 = 1.0F / A0, l1 = A1 * i0, l2 = A2 * i0;
     const Lanes d1 = A3 - l1 * A1, t = A4 - l1 * A2;
     const Lanes i1 = 1.0F / d1, l3 = t * i1;
     const Lanes d2 = A5 - l2 * A2 - l3 * t;
     const Lanes y1 = r1 - l1 * r0, y2 = r2 - l2 * r0 - l3 * y1;
     const Lanes z = y2 / d2, y = y1 * i1 - l3 * z, v = r0 * i0 - l1 * y - l2 * z;
-    // The cost as a sum of squares: no difference of large numbers.
+    // Computes the cost as a sum of squares, to avoid cancellation.
     const Lanes e0 = v - X, e1 = y - Y, e2 = z - Z;
     Lanes f = v * (wh[0] * v + 2.0F * (wh[1] * y + wh[2] * z)) +
               y * (wh[3] * y + 2.0F * (wh[4] * z)) + z * z * wh[5] +
@@ -112,7 +114,7 @@ struct Solver {
   }
 };
 
-// The first of the cheapest, where `rows` are ascending in each lane.
+// Returns the lowest row number among the cheapest lanes. rows: the row of each lane's cost.
 MERLIN_INLINE std::uint32_t rowOfLeast(const Lanes& costs, const Mask& rows) {
   const Mask cheapest = costs == least(costs) ? rows : all(~0U >> 1);
   return static_cast<std::uint32_t>(least(cheapest)[0]);
@@ -123,7 +125,7 @@ MERLIN_INLINE float* blockOf(const QuadricView& view, std::uint32_t vertex) {
   return channels ? view.channels->block(vertex) : nullptr;
 }
 
-// A closed fan of up to eight.
+// Evaluates a vertex with a closed fan of up to eight triangles.
 template <bool channels, Evaluate what>
 MERLIN_INLINE void evaluateFan(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
   QuadricVertex& w = view.vertices[vertex];
@@ -163,7 +165,7 @@ MERLIN_INLINE void evaluateStar(const QuadricView& view, std::uint32_t vertex, E
 
 MERLIN_INLINE bool isFan(const QuadricVertex& w) { return !(w.flags & kOpen) && w.degree <= 8; }
 
-// All but what evaluate() is quick at.
+// Handles the cases for which evaluate() has no fast path.
 template <Evaluate what>
 MERLIN_INLINE void evaluateRare(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out) {
   const bool fan = isFan(view.vertices[vertex]);
@@ -175,7 +177,8 @@ MERLIN_INLINE void evaluateRare(const QuadricView& view, std::uint32_t vertex, E
     evaluateStar<true, what>(view, vertex, out);
 }
 
-// Most vertices are fans; what they need shares its registers with nothing else.
+// Most vertices are closed fans of up to eight triangles without channels. This fast path is
+// compiled apart from the other cases (`rare`), so that it has all registers.
 template <Evaluate what>
 MERLIN_INLINE void evaluate(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out,
                             EvaluateEdges rare) {
@@ -208,7 +211,7 @@ MERLIN_WIDE void evaluateWide(const QuadricView& view, std::uint32_t vertex, Edg
   evaluate<what>(view, vertex, out, rareWide<what>);
 }
 
-// By Evaluate.
+// Indexed by Evaluate.
 using Evaluators = std::array<EvaluateEdges, 3>;
 constexpr Evaluators kPortable = {evaluatePortable<Evaluate::kQuadric>,
                                   evaluatePortable<Evaluate::kEdges>,
@@ -249,4 +252,4 @@ EvaluateEdges edgeEvaluator(Evaluate what) {
   return forThisProcessor(&kWide, &kPortable)->at(static_cast<std::size_t>(what));
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -4,13 +4,15 @@
 // For the edge (w, x) the quadric is A = H_w + H_x: the area-weighted squared distance to the
 // planes of both stars as they are now (memoryless: P. Lindstrom and G. Turk, "Fast and memory
 // efficient polygonal simplification", 1998; area instead of area squared, as H. Hoppe, "New
-// quadric metric for simplifying meshes with appearance attributes", 1999). The new vertex is the
-// least of it, with a tiny pull to the middle of the edge where A leaves it free.
+// quadric metric for simplifying meshes with appearance attributes", 1999). The new vertex is at
+// the minimum of A, with a tiny pull to the midpoint of the edge for the directions that A does not
+// determine.
 //
-// Channels (Hoppe 1999, 4.1): a channel s is linear on each triangle, s(p) = g p + d. Its error is
-// area times (g p + d - s)^2, its sums are kept relative to the vertex: a = sum area,
-// b = sum area g, and G = sum area g g', which is added to H. For an edge the best s of each
-// channel is a linear function of p and goes into A (Schur complement), so that it stays 3 x 3.
+// Channels (Hoppe 1999, 4.1): a channel s is linear on each triangle, s(p) = g p + d. The error of
+// a value s at p is area times (g p + d - s)^2. A vertex keeps the sums relative to its position:
+// a = sum area, b = sum area g, and G = sum area g g', which is added to H. For an edge the best s
+// of each channel is a linear function of p; eliminating it (Schur complement) leaves a 3 x 3
+// system.
 #pragma once
 
 #include <cstddef>
@@ -20,13 +22,15 @@
 #include "render/reduce/quadric/number_table.h"
 #include "render/reduce/quadric/quadric_mesh.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
-inline constexpr float kNoEdge = 1e30F;  // the cost of what must not be
-// Stars of so many corners are searched by comparing each with each; larger ones by a table.
+inline constexpr float kNoEdge = 1e30F;  // the cost of a forbidden collapse
+// Stars of at most this many corners are searched by comparing all pairs; larger ones with a hash
+// table.
 inline constexpr std::uint32_t kPairwise = 16;
 
-// Values that cost, by vertex: one block {a, (b x, y, z, s) a channel} each. In mean edges.
+// Feature values that contribute to the cost. One block per vertex: a, then (b x, y, z, s) for each
+// channel. Unit of length: mean edge length.
 class QuadricChannels {
  public:
   QuadricChannels() = default;
@@ -57,58 +61,59 @@ struct QuadricView {
   const QuadricChannels* channels;
 };
 
-// Costs of all edges of one vertex. Arrays have one row per neighbour and room for 8 more. Scratch
-// memory: one per thread.
+// Costs of all edges of one vertex w. Arrays have one row per neighbour and room for 8 more.
+// Scratch memory: one per thread.
 struct EdgeCosts {
   std::uint32_t count = 0;
   std::vector<std::uint32_t> neighbour;
-  std::vector<std::uint32_t> shared;   // triangles that have both
-  std::vector<std::uint32_t> b, c;     // of the star's corners: indices into `neighbour`
+  std::vector<std::uint32_t> shared;   // number of triangles with w and the neighbour
+  std::vector<std::uint32_t> b, c;     // by corner of w's star: indices into `neighbour`
   std::vector<float> cost;             // kNoEdge at most
-  std::vector<float> x, y, z;          // the new vertex, from w
-  std::vector<float> rx, ry, rz;       // the neighbour, from w
-  std::vector<float> deviation;        // squared; the reducer's, as the next, -1 at first
-  std::vector<std::uint32_t> witness;  // whose is the farther: w's (0) or the neighbour's (1)
+  std::vector<float> x, y, z;          // the new vertex, relative to w
+  std::vector<float> rx, ry, rz;       // the neighbour, relative to w
+  std::vector<float> deviation;        // squared; -1 until the reducer sets it and `witness`
+  std::vector<std::uint32_t> witness;  // FartherWitness::end: w (0) or the neighbour (1)
   NumberTable numbers;                 // scratch, for stars of more than kPairwise corners
   float normal[3] = {};                // sum of the star's unit normals
-  std::uint32_t cheapest = 0;          // the first row of the least cost
+  std::uint32_t cheapest = 0;          // the first row with the lowest cost
 
   void makeRoom(std::size_t corners) {
     const std::size_t rows = 2 * corners + 16;
     if (neighbour.size() < rows) grow(rows);
   }
-  // Whether w is where the new vertex of `edge` goes.
+  // True if the new vertex of `edge` is at the position of w.
   bool staysAt(std::uint32_t edge) const noexcept {
     return x[edge] == 0 && y[edge] == 0 && z[edge] == 0;
   }
   float least() const noexcept { return cost[cheapest]; }
-  // Sets `cheapest` anew.
+  // Recomputes `cheapest` from `cost`.
   void findCheapest() noexcept;
-  // Only so many edges, the cheapest, stay candidates; the others cost kNoEdge. O(count).
+  // Keeps the `edges` cheapest edges as candidates and sets the cost of all others to kNoEdge.
+  // O(count).
   void keepCheapest(std::size_t edges);
 
  private:
   void grow(std::size_t rows);
 };
 
-// How much is computed for a vertex w that has triangles.
+// What to compute for a vertex w, which must have triangles.
 enum class Evaluate {
-  kQuadric,  // w's own quadric (and channels' sums) anew; EdgeCosts are scratch
-  kEdges,    // what its edges cost, by its quadric and its neighbours' as they are
+  kQuadric,  // the quadric and the channel sums of w; EdgeCosts is only scratch memory
+  kEdges,    // the costs of w's edges, from the quadrics that w and its neighbours have
   kBoth,
 };
 
-// kQuadric reads of others what none writes, kEdges writes EdgeCosts alone: of many vertices each
-// may be done at once.
+// With kQuadric or kEdges alone, many vertices may be evaluated in parallel: kQuadric reads only
+// such data of other vertices as it does not write, and kEdges writes only EdgeCosts.
 using EvaluateEdges = void (*)(const QuadricView&, std::uint32_t w, EdgeCosts&);
 
-// The fastest for this processor. All give the same bits.
+// Returns the fastest implementation for this processor. All give the same bits.
 EvaluateEdges edgeEvaluator(Evaluate what = Evaluate::kBoth);
 
-// For tests: that of any processor.
+// For tests: the implementation that runs on any processor.
 EvaluateEdges portableEdgeEvaluator(Evaluate what = Evaluate::kBoth);
 
-// Weight of a border's plane, in the planes of its triangles.
+// Weight of a border edge's quadric, relative to those of the planes of triangles.
 inline constexpr float kBorderWeight = 4;
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -8,23 +8,23 @@
 #include "daemon/base/blocks.h"
 #include "render/mesh/morton.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
 std::uint32_t linesFor(std::uint32_t corners) {
   return std::max(1U, (corners + kLine - 1) / kLine);
 }
 
-constexpr std::uint32_t kClaim = 1 << 13;  // corners
-constexpr unsigned kMostScans = 8;         // of all triangles, for the stars
+constexpr std::uint32_t kClaim = 1 << 13;  // corners claimed at a time
+constexpr unsigned kMostScans = 8;         // threads that each scan all triangles in fillStars()
 
-// Calls work(v) for each of n vertices; what it writes must be v's own.
+// Calls work(v) for each of n vertices, in parallel; work(v) may write only data of v.
 template <typename Work>
 void forEachVertex(std::size_t n, Threads threads, const Work& work) {
   forEach(threads, n, [&](std::size_t v) { work(static_cast<std::uint32_t>(v)); });
 }
 
-// By the upper 3 x bits; stable.
+// Sorts by the upper 3 x `bits` bits; stable.
 void radixSort(HugeArray<std::uint64_t>& keys, unsigned bits) {
   HugeArray<std::uint64_t> other(keys.size());
   const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
@@ -37,8 +37,8 @@ void radixSort(HugeArray<std::uint64_t>& keys, unsigned bits) {
   }
 }
 
-// One over the mean length of (some of) the edges.
-float scaleOf(const Mesh& mesh) {
+// Returns 1 / mean edge length, from a sample of the edges.
+float scaleOf(const mesh::Mesh& mesh) {
   const std::size_t step = std::max<std::size_t>(1, mesh.triangleCount() / 4096);
   double sum = 0, count = 0;
   for (std::size_t t = 0; t < mesh.triangleCount(); t += step) {
@@ -48,15 +48,16 @@ float scaleOf(const Mesh& mesh) {
     ++count;
   }
   const double scale = count / sum;
-  // Where all is in one place, or too far for floats, the box decides.
+  // If the edges have no length, or too little for floats, uses the bounding box.
   if (sum > 0 && scale < 1e30) return static_cast<float>(scale);
-  const float diagonal = boundingBox(mesh.positions).diagonal();
+  const float diagonal = mesh::boundingBox(mesh.positions).diagonal();
   return diagonal > 0 ? 1 / diagonal : 1;
 }
 
-// Whether a vertex is the first of two corners: no manifold.
+// True if a vertex is the first one (b) of two corners, so that the star is non-manifold.
 bool comesTwice(std::span<const Corner> star) {
-  // Where no two fall on the same of 64 bits, none do; else each is compared with each.
+  // Fast test: if all b hash to different bits of 64, none occurs twice. Otherwise compares all
+  // pairs.
   std::uint64_t seen = 0;
   bool twice = false;
   for (const Corner& c : star) {
@@ -83,8 +84,8 @@ std::optional<std::uint32_t> FreshLines::claim(std::uint32_t corners) {
   return begin;
 }
 
-// In pieces of 64 KiB, so that threads seldom meet; by what is needed where that is more, or is all
-// there is.
+// Claims 64 KiB at a time, so that threads seldom contend; more if `corners` is more, and only
+// `corners` if no more is left.
 bool StarRoom::claimFresh(std::uint32_t corners) {
   if (end_ - next_ >= corners) return true;
   std::uint32_t size = std::max(kClaim, corners);
@@ -104,7 +105,7 @@ std::uint32_t StarRoom::take(std::uint32_t corners, std::uint32_t& capacity) {
     next_ += capacity;
     return next_ - capacity;
   }
-  // A larger place only where nothing fresh is left.
+  // Reuses returned room: of the right size, or larger if no fresh lines are left.
   for (std::size_t k = lines; k < free_.size(); ++k) {
     if (free_[k].empty()) continue;
     const std::uint32_t star = free_[k].back();
@@ -128,10 +129,10 @@ void StarRoom::join(StarRoom&& other) {
   other.free_.clear();
 }
 
-// Along a Morton curve of 1,024 steps an axis; of 4,096 where the mesh has so many vertices that
-// too many would share a step, and the number of a vertex still fits beside it.
-std::vector<std::uint32_t> alongCurve(const Mesh& mesh, Threads threads) {
-  const Box box = boundingBox(mesh.positions);
+// Uses a Morton curve with 1,024 cells per axis; with 4,096 for meshes of more than 4 million
+// vertices, where too many would share a cell, if the vertex number still fits into the key.
+std::vector<std::uint32_t> alongCurve(const mesh::Mesh& mesh, Threads threads) {
+  const mesh::Box box = mesh::boundingBox(mesh.positions);
   float extent = 0;
   for (std::size_t k = 0; k < 3; ++k) extent = std::max(extent, box.high[k] - box.low[k]);
   if (!(extent > 0)) extent = 1;
@@ -140,7 +141,7 @@ std::vector<std::uint32_t> alongCurve(const Mesh& mesh, Threads threads) {
   HugeArray<std::uint64_t> keys(n);
   forEachVertex(n, threads, [&](std::uint32_t v) {
     const float* point = &mesh.positions[3 * std::size_t{v}];
-    const std::uint64_t key = mortonKey(point, box.low, {extent, extent, extent}, bits);
+    const std::uint64_t key = mesh::mortonKey(point, box.low, {extent, extent, extent}, bits);
     keys[v] = key << (64 - 3 * bits) | v;
   });
   radixSort(keys, bits);
@@ -150,9 +151,9 @@ std::vector<std::uint32_t> alongCurve(const Mesh& mesh, Threads threads) {
   return curve;
 }
 
-QuadricMesh::QuadricMesh(const Mesh& mesh, Threads threads)
+QuadricMesh::QuadricMesh(const mesh::Mesh& mesh, Threads threads)
     : input_(alongCurve(mesh, threads)), scale_(scaleOf(mesh)) {
-  const Box box = boundingBox(mesh.positions);
+  const mesh::Box box = mesh::boundingBox(mesh.positions);
   for (std::size_t k = 0; k < 3; ++k) centre_[k] = (box.low[k] + box.high[k]) / 2;
   const std::size_t n = input_.size();
   HugeArray<std::uint32_t> numbers(n);
@@ -177,8 +178,8 @@ std::array<float, 3> QuadricMesh::toModel(const float* position) const noexcept 
           position[2] / scale_ + centre_[2]};
 }
 
-// Each thread takes the corners of its own vertices.
-void QuadricMesh::fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& numbers,
+// Each thread scans all triangles and stores the corners of its range of vertices.
+void QuadricMesh::fillStars(const mesh::Mesh& mesh, const HugeArray<std::uint32_t>& numbers,
                             Threads threads) {
   const auto forEachCorner = [&](const auto& work) {
     const std::size_t ranges = std::min(threads.count, kMostScans);
@@ -194,7 +195,8 @@ void QuadricMesh::fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& nu
       }
     });
   };
-  // How many corners each has, then where its next one goes: beside the records, to stay in caches.
+  // By vertex: first the number of its corners, then the index of its next corner. Not in the
+  // records, to stay in caches.
   HugeArray<std::uint32_t> places(vertexCount());
   forEachCorner([&](std::uint32_t v, std::uint32_t, std::uint32_t) { ++places[v]; });
   std::uint64_t total = 0;
@@ -205,8 +207,8 @@ void QuadricMesh::fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& nu
     x.capacity = linesFor(x.degree) * kLine;
     total += x.capacity;
   }
-  // Stars that grow need lines of another size than those that others leave. Room that is never
-  // touched is no memory.
+  // Reserves much more than needed now, since growing stars need larger room than other stars
+  // return. Pages that are never touched use no memory.
   const std::uint64_t room = std::min<std::uint64_t>(5 * total + (1U << 16), 0xFFFFFFF0U);
   if (total >= room) throw std::bad_alloc();
   stars_ = HugeArray<Corner>(room);
@@ -233,7 +235,7 @@ void QuadricMesh::tidyHub(std::uint32_t hub) noexcept {
   vertices_[hub].degree = static_cast<std::uint32_t>(to - star);
 }
 
-// Puts the corners in the order of the fan; kOpen where they are none that closes.
+// Sorts the corners into the order of the fan; sets kOpen if they do not form one closed fan.
 void QuadricMesh::orderStar(QuadricVertex& v) {
   Corner* s = stars_.data() + v.star;
   const std::uint32_t n = v.degree;
@@ -250,4 +252,4 @@ void QuadricMesh::orderStar(QuadricVertex& v) {
   if (!closed || comesTwice({s, n})) v.flags |= kOpen;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

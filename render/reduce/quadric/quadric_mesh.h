@@ -1,10 +1,11 @@
-// QuadricMesh: the surface while `quadric` reduces it: one record a vertex, one star a vertex.
+// QuadricMesh: the mesh while the cost `quadric` reduces it: one record and one star per vertex.
 // Private to render/reduce.
 //
-// A vertex' star is the list of its triangles, each as the two other corners in the triangle's own
-// order. In a closed fan they follow one another (a's second is b's first); at borders and where
-// the surface is no manifold they may stand in any order. Stars live in lines of 8 corners, 64
-// bytes. Vertices are numbered along a space-filling curve, so that what is near is near in memory.
+// The star of a vertex is the list of its triangles, each stored as its other two vertices, a
+// Corner (b, c), in the triangle's order. In a closed fan each corner's c is the next corner's b;
+// at borders and non-manifold vertices the order is arbitrary. Stars are stored in lines of 8
+// corners, 64 bytes. Vertices are numbered along a space-filling curve, so that neighbours are
+// close in memory.
 #pragma once
 
 #include <algorithm>
@@ -24,18 +25,18 @@
 #include "daemon/base/huge_array.h"
 #include "render/mesh/mesh.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
 struct Corner {
   std::uint32_t b, c;  // the triangle (vertex, b, c)
 };
 
-inline constexpr std::uint32_t kLine = 8;  // corners
+inline constexpr std::uint32_t kLine = 8;  // corners per line
 
 // Upper triangle of a symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz.
 using Symmetric3 = std::array<float, 6>;
 
-// A vector in seven bytes, to 1/8,000 of its length.
+// A 3D vector in seven bytes, with a precision of 1/8,000 of its length.
 class ShortVector {
  public:
   std::array<float, 3> get() const noexcept {
@@ -48,7 +49,7 @@ class ShortVector {
     const float most = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
     const int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(most) >> 23) - 127;
     exponent_ = static_cast<std::int8_t>(std::clamp(exponent, -100, 100) - 13);
-    const float per_unit = powerOfTwo(-exponent_), end = 1 << 14;  // in range in any case
+    const float per_unit = powerOfTwo(-exponent_), end = 1 << 14;  // limit for rounding errors
     std::int16_t units[3];
     for (std::size_t k = 0; k < 3; ++k)
       units[k] = static_cast<std::int16_t>(std::clamp(per_unit * v[k], -end, end));
@@ -64,42 +65,42 @@ class ShortVector {
 };
 
 struct alignas(64) QuadricVertex {
-  // In mean edges, from the box' centre. The quadric: sum of A n n' over the star's triangles, A
-  // twice the area, n the unit normal: all planes pass through the vertex, so that there is no
-  // linear part. The fourth position and h[0] are loaded as one.
+  // Position: unit mean edge length, origin the centre of the bounding box. Quadric h: the sum of
+  // A n n' over the star's triangles, A twice the area, n the unit normal. All planes pass through
+  // the vertex, so that there is no linear part. position and h[0] are loaded as four floats.
   float position[3];
   float h[6];
   std::uint32_t star;      // index of its first corner
-  std::uint32_t degree;    // corners
-  std::uint32_t capacity;  // corners that its lines hold
-  std::uint32_t node;      // of the log
-  float deviation;         // squared distance that what it stands for may be off by now
+  std::uint32_t degree;    // number of corners in its star
+  std::uint32_t capacity;  // number of corners that its lines hold
+  std::uint32_t node;      // number of its node in the log
+  float deviation;         // squared distance by which the vertices that it replaces may be off
   std::uint8_t flags;
-  ShortVector witness;  // where it is (quadric_witness.h), from here
+  ShortVector witness;  // position of the witness (quadric_witness.h), relative to the vertex
 };
 static_assert(sizeof(QuadricVertex) == 64);
 
 enum : std::uint8_t {
-  kOpen = 1,     // its star is no closed fan: a border, or no manifold
+  kOpen = 1,     // its star is not one closed fan: at a border or non-manifold
   kDead = 2,     // merged into another; its record then holds a NodeRecord
   kIdle = 4,     // no legal edge; back in the queue when its neighbourhood changes
   kInside = 8,   // its whole ring is in its part
   kLocked = 32,  // stays where it is
-  kSharp = 16,   // a thin tip or a knife's edge: its faces' normals cancel
-  kHub = 64,     // has so many triangles that it takes no part for now: hub()
+  kSharp = 16,   // a thin tip or a sharp ridge: the normals of its faces nearly cancel
+  kHub = 64,     // has too many triangles to take part for now: HubRecord
 };
 
-// Whether it is part of the surface. (One that has lost its triangles is left, and belongs to
-// none.)
+// True if the vertex is part of the surface. (A vertex that has lost all of its triangles is not
+// dead, but no triangle uses it.)
 inline bool lives(const QuadricVertex& v) noexcept { return !(v.flags & kDead) && v.degree > 0; }
 
-// A hub is a vertex of so many triangles that each step beside it would take long. While it is one
-// its record holds no quadric, so that no edge to it costs less than kNoEdge, and collapses beside
-// it do not write into its star: names of dead vertices there stand for those that they merged
-// into (mergedInto()), and a corner whose two names have become one is no triangle any more. How
-// many triangles it still has is counted.
+// A hub is a vertex with so many triangles that each collapse next to it would take long. Its
+// record holds a HubRecord instead of a quadric, and the NaN there gives every edge to it the cost
+// kNoEdge. Collapses next to a hub do not write into its star: a dead vertex there stands for the
+// vertex that it merged into (mergedInto()), and a corner whose two vertices have become one is no
+// longer a triangle. Only the number of its triangles is kept up to date.
 struct HubRecord {
-  float no_number;  // in the place of h[0]
+  float no_number;  // NaN, in place of h[0]
   std::uint32_t triangles;
 };
 
@@ -115,7 +116,7 @@ inline void setHub(QuadricVertex& v, std::uint32_t triangles) noexcept {
   v.flags |= kHub;
 }
 
-// How many triangles v has.
+// Returns the number of triangles of v.
 inline std::uint32_t trianglesOf(const QuadricVertex& v) noexcept {
   return v.flags & kHub ? hubRecordOf(v).triangles : v.degree;
 }
@@ -130,14 +131,15 @@ struct NodeRecord {
 };
 static_assert(sizeof(NodeRecord) == sizeof(QuadricVertex::position) + sizeof(QuadricVertex::h));
 
-// Lines of corners that no star has had yet, for all threads.
+// Hands out lines of corners that no star has used yet. Thread-safe; one for all threads.
 class FreshLines {
  public:
   void reset(std::uint32_t begin, std::uint32_t end) {
     next_ = begin;
     end_ = end;
   }
-  // So many more that follow one another; where they begin, or nothing where too few are left.
+  // Takes `corners` consecutive corners; returns the index of the first one, or nothing if too few
+  // are left.
   std::optional<std::uint32_t> claim(std::uint32_t corners);
 
  private:
@@ -145,35 +147,36 @@ class FreshLines {
   std::uint32_t end_ = 0;
 };
 
-// Lines of corners, handed out and taken back by size. One a thread.
+// Allocates room for stars in lines of corners and reuses returned room by size. One per thread.
 class StarRoom {
  public:
   StarRoom() = default;
   explicit StarRoom(FreshLines& fresh) : fresh_(&fresh) {}
 
-  // Throws std::bad_alloc where there is no room. `capacity` becomes the room there is.
+  // Returns the index of the first corner of a room for `corners` corners or more, and sets
+  // `capacity` to its size. Throws std::bad_alloc if there is no room.
   std::uint32_t take(std::uint32_t corners, std::uint32_t& capacity);
   void give(std::uint32_t star, std::uint32_t capacity);
 
-  // Takes over what another has been given back.
+  // Takes over the room that was returned to `other`.
   void join(StarRoom&& other);
 
  private:
   bool claimFresh(std::uint32_t corners);
 
   FreshLines* fresh_ = nullptr;
-  std::uint32_t next_ = 0, end_ = 0;              // of the lines claimed last
-  std::vector<std::vector<std::uint32_t>> free_;  // by lines
+  std::uint32_t next_ = 0, end_ = 0;              // the unused part of the lines claimed last
+  std::vector<std::vector<std::uint32_t>> free_;  // returned room, by number of lines
 };
 
-// The mesh's vertices in the order of a space-filling curve; the same for any number of threads.
-// O(n): a radix sort. 16 bytes a vertex besides.
-std::vector<std::uint32_t> alongCurve(const Mesh& mesh, Threads threads);
+// Returns the mesh's vertices in the order of a space-filling curve, the same for any number of
+// threads. O(n) time (radix sort), 16 bytes per vertex of temporary memory.
+std::vector<std::uint32_t> alongCurve(const mesh::Mesh& mesh, Threads threads);
 
 class QuadricMesh {
  public:
   // REQUIRES: validate(mesh), tidy(mesh). O(n).
-  explicit QuadricMesh(const Mesh& mesh, Threads threads = 1);
+  explicit QuadricMesh(const mesh::Mesh& mesh, Threads threads = 1);
 
   std::uint32_t vertexCount() const noexcept { return static_cast<std::uint32_t>(input_.size()); }
   QuadricVertex& operator[](std::uint32_t v) const noexcept { return vertices_[v]; }
@@ -181,20 +184,21 @@ class QuadricMesh {
     return {stars_.data() + v.star, v.degree};
   }
   Corner* corners(std::uint32_t star) const noexcept { return stars_.data() + star; }
-  // The mesh's vertex of that number.
+  // The index of vertex v in the input mesh.
   std::uint32_t inputOf(std::uint32_t v) const noexcept { return input_[v]; }
 
-  float scale() const noexcept { return scale_; }  // mean edges in a model unit
+  float scale() const noexcept { return scale_; }  // 1 / mean edge length, in model units
   std::array<float, 3> toWorking(const float* model) const noexcept;
   std::array<float, 3> toModel(const float* position) const noexcept;
   StarRoom freeRoom() noexcept { return StarRoom(fresh_); }
   void dropStars() { stars_ = {}; }
-  // A hub's star as it is by now: names of living vertices, no corner that is no triangle.
-  // Amortised O(corners). Of other stars that are tidied at once no name may be the same.
+  // Updates the star of a hub: replaces dead vertices by those that they merged into, and removes
+  // corners that are no longer triangles. Amortised O(corners). Not thread-safe for hubs whose
+  // stars contain the same dead vertex.
   void tidyHub(std::uint32_t hub) noexcept;
 
  private:
-  void fillStars(const Mesh& mesh, const HugeArray<std::uint32_t>& numbers, Threads threads);
+  void fillStars(const mesh::Mesh& mesh, const HugeArray<std::uint32_t>& numbers, Threads threads);
   void orderStar(QuadricVertex& v);
 
   std::vector<std::uint32_t> input_;
@@ -205,4 +209,4 @@ class QuadricMesh {
   std::array<float, 3> centre_{};
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

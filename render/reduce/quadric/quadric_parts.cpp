@@ -1,4 +1,4 @@
-// QuadricReducer in parts and as a whole: who works on what, and until when.
+// QuadricReducer: which thread works on which part of the mesh, and until when.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -7,20 +7,21 @@
 #include "daemon/base/blocks.h"
 #include "render/reduce/quadric/quadric_reducer.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
-// A step of all parts, in buckets of cost: a factor of 1.4.
+// Step of all parts, in buckets of cost: a factor of about 1.4.
 constexpr std::size_t kStep = 32;
 constexpr std::size_t kProgressInterval = 1 << 16;  // triangles
-constexpr double kStepTakes = 1.25;  // a step leaves a share of one by this, as a rule
+constexpr double kStepTakes = 1.25;  // typical factor by which a step reduces the triangles
 constexpr std::size_t kMostSteps = 16;
 constexpr std::size_t kMostParts = 32;
 constexpr std::size_t kLeastPart = 30'000;  // vertices
-constexpr double kReduction = 6;            // by parts of 200,000 vertices
+// Factor by which parts of 200,000 vertices are reduced before they are joined.
+constexpr double kReduction = 6;
 
-// How many parts a mesh is in at first: a power of two. Few, since borders wait; enough for some
-// cores.
+// Returns the number of parts at first, a power of two: few, since triangles at borders have to
+// wait; but enough for several cores.
 std::size_t partsFor(std::size_t vertices) {
   if (vertices < 20'000) return 1;
   std::size_t parts = 2;
@@ -28,9 +29,9 @@ std::size_t partsFor(std::size_t vertices) {
   return parts;
 }
 
-// Number of triangles at which `parts` parts become half as many: their borders, which wait, are
-// then a tenth of the triangles or less; a fourth for small meshes, where smaller steps would
-// hardly pay.
+// Returns the number of triangles at which `parts` parts are joined in pairs. Their borders, which
+// have to wait, are then at most a tenth of the triangles; a fourth in small meshes, where joining
+// earlier would hardly pay.
 std::size_t leftBy(std::size_t parts, std::size_t vertices, std::size_t triangles) {
   const double part = static_cast<double>(vertices) / static_cast<double>(parts);
   const double ratio = kReduction * std::sqrt(part / 200'000);
@@ -38,8 +39,8 @@ std::size_t leftBy(std::size_t parts, std::size_t vertices, std::size_t triangle
                                   std::max(ratio, parts == 2 ? kReduction : 1.0));
 }
 
-// How many steps parts may take before they wait for one another, with `left` triangles of which
-// `keep` are to stay: as many as are surely needed.
+// Returns how many steps the parts may take before they wait for one another: as many as are surely
+// needed to get from `left` to `keep` triangles.
 std::size_t stepsAtOnce(std::size_t left, std::size_t keep) {
   const double ratio = static_cast<double>(left) / static_cast<double>(keep);
   const double steps = std::log(std::max(1.0, ratio)) / std::log(kStepTakes);
@@ -62,7 +63,8 @@ void QuadricReducer::forEachLiving(
   });
 }
 
-// One by one: the stars of several may name the same dead vertices.
+// Makes all hubs normal vertices. Not in parallel, since the stars of several hubs may contain the
+// same dead vertices.
 void QuadricReducer::releaseHubs() {
   for (std::uint32_t v = 0; hubs_ && v < mesh_.vertexCount(); ++v) {
     if (!(mesh_[v].flags & kHub)) continue;
@@ -71,8 +73,8 @@ void QuadricReducer::releaseHubs() {
   }
 }
 
-// All quadrics anew, but of what has too many triangles to take part: what an edge costs takes
-// those of both ends.
+// Recomputes the quadrics of all living vertices. Those with too many triangles become hubs without
+// a quadric; since the cost of an edge needs the quadrics of both ends, they do not take part.
 void QuadricReducer::setQuadrics() {
   releaseHubs();
   std::atomic<bool> hubs = false;
@@ -89,7 +91,7 @@ void QuadricReducer::setQuadrics() {
   hubs_ = hubs;
 }
 
-// Equal pieces of the curve.
+// Cuts the curve into `count` parts of equal numbers of vertices.
 std::vector<QuadricReducer::Worker> QuadricReducer::makeParts(std::size_t count) {
   std::vector<Worker> parts(count);
   const std::size_t n = mesh_.vertexCount();
@@ -115,7 +117,7 @@ bool QuadricReducer::isInside(const Worker& w, std::uint32_t v) const {
                      [&](const Corner& c) { return is_here(c.b) && is_here(c.c); });
 }
 
-// Into the queue comes what is not there yet and may go now.
+// Queues the vertices of a part that are not in the queue yet and whose ring is inside the part.
 void QuadricReducer::startPart(Worker& w, EvaluateEdges measure) {
   for (std::uint32_t v = w.end; v-- > w.begin;) {
     QuadricVertex& x = mesh_[v];
@@ -131,7 +133,8 @@ void QuadricReducer::startPart(Worker& w, EvaluateEdges measure) {
   }
 }
 
-// Until no more than `keep` triangles are left, or a few parts can't do more.
+// Reduces and joins parts until at most `keep` triangles are left or the last two parts have
+// reached their limit.
 void QuadricReducer::reduceParts(std::size_t keep, const Progress& progress) {
   const std::size_t n = mesh_.vertexCount(), triangles = triangles_;
   std::vector<Worker> parts = makeParts(partsFor(n));
@@ -149,15 +152,15 @@ void QuadricReducer::reduceParts(std::size_t keep, const Progress& progress) {
               [&](std::size_t p) { joinPart(parts[2 * p], std::move(parts[2 * p + 1])); });
     for (std::size_t p = 0; 2 * p < parts.size(); ++p) std::swap(parts[p], parts[2 * p]);
     parts.resize(parts.size() / 2);
-    measure = evaluate_;  // what was at a border has an old quadric
+    measure = evaluate_;  // also quadrics: those at former borders are stale
   }
   log_ = std::move(joined);
   whole_.room = mesh_.freeRoom();
   for (Worker& w : parts) whole_.takeOver(std::move(w));
 }
 
-// Each part up to the same cost, step by step, until no more than `keep` triangles are left.
-// limit: the bucket that they have come to.
+// Reduces all parts to the same cost, step by step, until at most `keep` triangles are left. limit:
+// the bucket that the parts have reached (in and out).
 void QuadricReducer::reduceInSteps(std::vector<Worker>& parts, std::size_t keep, std::size_t& limit,
                                    const Progress& progress) {
   std::size_t first = BucketQueue::buckets(), before = triangles_;
@@ -166,7 +169,7 @@ void QuadricReducer::reduceInSteps(std::vector<Worker>& parts, std::size_t keep,
     before += w.removed;
   }
   limit = std::max(limit, first);
-  // A part of nothing but planes is not worn down to its borders.
+  // Keeps a flat part, where collapses cost nothing, from being reduced to its borders.
   const double most = 1 - 0.5 * static_cast<double>(keep) / static_cast<double>(before);
   while (triangles_ > keep && limit < BucketQueue::buckets() && !cancelled_) {
     const std::size_t steps = stepsAtOnce(triangles_, keep);
@@ -188,8 +191,8 @@ void QuadricReducer::reduceInSteps(std::vector<Worker>& parts, std::size_t keep,
   }
 }
 
-// The parts' logs behind what is joined already: of each step a slice of every part in turn, so
-// that all parts are equally coarse at every level.
+// Appends the parts' logs to `joined`: for each step, slices of all parts in turn, so that all
+// parts are equally coarse at every level.
 void QuadricReducer::joinLogs(std::vector<Worker>& parts, HugeArray<std::uint32_t>& joined) {
   constexpr std::size_t kSlices = 64;
   for (std::size_t step = 0; step < parts[0].steps.size(); ++step) {
@@ -209,7 +212,7 @@ void QuadricReducer::joinLogs(std::vector<Worker>& parts, HugeArray<std::uint32_
   }
 }
 
-// Takes over the counts of another worker and the vertices that it gave back, but not its queue.
+// Takes over the counts of another worker and the room that it returned, but not its queue.
 void QuadricReducer::Worker::takeOver(Worker&& other) {
   room.join(std::move(other.room));
   flips += other.flips;
@@ -218,7 +221,7 @@ void QuadricReducer::Worker::takeOver(Worker&& other) {
   too_coarse |= other.too_coarse;
 }
 
-// The next part on the curve becomes a piece of w.
+// Joins the next part on the curve to w.
 void QuadricReducer::joinPart(Worker& w, Worker&& other) {
   w.end = other.end;
   w.queue.join(std::move(other.queue), nextOf());
@@ -227,10 +230,10 @@ void QuadricReducer::joinPart(Worker& w, Worker&& other) {
   w.takeOver(std::move(other));
 }
 
-// Every vertex that lives, in one queue.
+// Puts all living vertices into one queue.
 void QuadricReducer::requeue() {
   setQuadrics();
-  // Costs first, where the queue's links will be.
+  // Stores the costs in next_, in parallel, before it takes the links of the queue.
   const EvaluateEdges edges = edgeEvaluator(Evaluate::kEdges);
   forEachLiving([&](std::uint32_t v, EdgeCosts& costs) {
     const bool hub = mesh_[v].flags & kHub;
@@ -245,7 +248,7 @@ void QuadricReducer::requeue() {
   }
 }
 
-// Until no more than `keep` triangles are left or the stage allows no more.
+// Reduces the whole mesh until at most `keep` triangles are left or the stage allows no more.
 void QuadricReducer::reduceWhole(std::size_t keep, const Progress& progress) {
   requeue();
   while (triangles_ > keep && !cancelled_) {
@@ -258,8 +261,8 @@ void QuadricReducer::reduceWhole(std::size_t keep, const Progress& progress) {
   }
 }
 
-// Number of triangles of the smallest star that most_corners_ leaves out: of hubs, and of stars
-// that refused collapses would have made.
+// Returns the number of triangles of the smallest star above most_corners_: of a hub, or of a star
+// that a refused collapse would have made.
 std::uint32_t QuadricReducer::smallestLeftOut() const {
   std::uint32_t smallest = whole_.refused_star;
   for (std::uint32_t v = 0; hubs_ && v < mesh_.vertexCount(); ++v) {
@@ -268,8 +271,8 @@ std::uint32_t QuadricReducer::smallestLeftOut() const {
   return smallest;
 }
 
-// With small stars first, where a step takes as long as on any surface; with larger ones only what
-// is left then, which is less the larger they are.
+// Reduces with small stars first, where a collapse is fast, then raises the limit for what is left.
+// The higher the limit, the fewer triangles are left.
 void QuadricReducer::reduceStage(std::size_t keep, const Progress& progress) {
   constexpr std::uint32_t kGrowth = 4, kNoneLeftOut = std::numeric_limits<std::uint32_t>::max();
   most_corners_ = keepsTopology(stage_) ? kMostCorners : kMostUnordered;
@@ -288,7 +291,7 @@ const char* QuadricReducer::run(const Limits& limits, const Progress& progress) 
   fast_ = limits.fast;
   keep_components_ = limits.preserve_topology || limits.preserve_components;
   const std::size_t keep = std::max<std::size_t>(limits.triangles, 1);
-  // Parts leave enough for the whole to be even.
+  // Parts stop at three times the target, so that the final reduction of the whole makes it even.
   if (partsFor(mesh_.vertexCount()) > 1 && 3 * keep < triangles_)
     reduceParts(3 * keep, progress);
   else
@@ -313,4 +316,4 @@ const char* QuadricReducer::run(const Limits& limits, const Progress& progress) 
   return whole_.too_coarse ? "error" : "nothing left to collapse";
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

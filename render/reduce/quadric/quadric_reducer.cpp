@@ -6,18 +6,18 @@
 
 #include "daemon/base/blocks.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
-// So many edges a vertex of more than kMostCorners corners tries: the cheapest.
+// Number of edges, the cheapest ones, that a vertex with a large star tries (leaveOut()).
 constexpr std::size_t kMostCandidates = 8;
 
 using TwoCorners = std::uint32_t __attribute__((vector_size(16)));
 
 float trace(const float* h) { return h[0] + h[3] + h[5]; }
 
-// The corners without `other`, from the edge to it on, so that two fans become one. Returns their
-// end. REQUIRES: room for all.
+// Appends the corners of `star` without `other`, starting at the edge to `other`, so that two fans
+// become one. Returns the end. REQUIRES: room for all corners.
 Corner* appendStar(Corner* to, std::span<const Corner> star, std::uint32_t other) {
   std::size_t first = 0;
   while (first < star.size() && star[first].b != other) ++first;
@@ -38,7 +38,7 @@ Corner* appendStar(Corner* to, std::span<const Corner> star, std::uint32_t other
 
 }  // namespace
 
-QuadricReducer::QuadricReducer(const Mesh& mesh, std::size_t channels, Threads threads)
+QuadricReducer::QuadricReducer(const mesh::Mesh& mesh, std::size_t channels, Threads threads)
     : mesh_(mesh, threads),
       input_positions_(mesh.positions.data()),
       channels_(mesh.vertexCount(), channels),
@@ -87,9 +87,10 @@ void QuadricReducer::enqueue(Worker& w, std::uint32_t v, float cost) {
     w.queue.push(v, cost, nextOf());
 }
 
-// Most of the time goes into waiting for memory: what the next five vertices need is asked for in
-// stages, record, star, ring, with two vertices' time for each: a dead one's is short. Always
-// inlined: GCC takes a call that only prefetches for one without effect and drops it.
+// Most of the time is spent waiting for memory. So the data of the next five vertices are
+// prefetched in stages: record, star, ring; each stage is two vertices ahead of the next, since a
+// dead vertex takes little time. Always inlined: GCC would drop a call that only prefetches as
+// having no effect.
 [[gnu::always_inline]] inline void QuadricReducer::prefetch(Worker& w) const {
   const std::array<std::uint32_t, BucketQueue::kAhead>& next = w.queue.peek(nextOf());
   if (next[0] == BucketQueue::kNone) return;
@@ -114,8 +115,9 @@ void QuadricReducer::reduceTo(Worker& w, std::size_t removed, std::size_t bucket
   }
 }
 
-// Squared, of the farther of the edge's two witnesses. By the planes of each end's star, which do
-// not see what a thin tip loses, where that would not raise the cost.
+// Returns the squared distance of the farther of the edge's two witnesses from the surface. If an
+// estimate from the planes of each end's star would not raise the cost, returns that estimate; not
+// for sharp vertices, where planes miss what a thin tip loses.
 float QuadricReducer::witnessDeviation(Worker& w, std::uint32_t v, std::uint32_t edge) const {
   const QuadricVertex &a = mesh_[v], &x = mesh_[w.costs.neighbour[edge]];
   const EdgeCosts& c = w.costs;
@@ -130,7 +132,8 @@ float QuadricReducer::witnessDeviation(Worker& w, std::uint32_t v, std::uint32_t
   return farther.distance2;
 }
 
-// Raises the edge's cost where area does not say what is lost, once. Returns whether it did.
+// Raises the edge's cost, once, where the quadric underestimates the loss: at borders, seams,
+// locked vertices, distant witnesses and vanishing components. Returns whether the cost has risen.
 bool QuadricReducer::guard(Worker& w, std::uint32_t v, std::uint32_t edge) {
   float& deviation = w.costs.deviation[edge];
   if (deviation >= 0) return false;
@@ -144,7 +147,7 @@ bool QuadricReducer::guard(Worker& w, std::uint32_t v, std::uint32_t edge) {
   else if ((flags & kLocked) && keepsTopology(stage_))
     stayAtLocked(view(), v, w.costs, edge);
   if (w.costs.cost[edge] >= kNoEdge) return before < kNoEdge;
-  // If many triangles without an order meet, their borders say nothing of a shape.
+  // The borders of a large unordered star do not describe a shape.
   const bool unordered = !keepsTopology(stage_) && a.degree + x.degree > 2 * kManyCorners;
   if ((flags & kOpen) && !unordered) deviation = borderDeviation(view(), v, w.costs, edge);
   if (!fast_) deviation = std::max(deviation, witnessDeviation(w, v, edge));
@@ -158,7 +161,7 @@ bool QuadricReducer::guard(Worker& w, std::uint32_t v, std::uint32_t edge) {
 void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
   const std::size_t bucket = w.queue.current();
   const bool last = bucket + 1 == BucketQueue::buckets();
-  // For a star without an order each try costs more than a cheaper place in the queue is worth.
+  // Evaluating a large unordered star again costs more than a better order of collapses gains.
   const bool large = !keepsTopology(stage_) && mesh_[v].degree > kManyCorners;
   const float ceiling = last || large ? kNoEdge : tolerance() * BucketQueue::floorOf(bucket + 1);
   evaluate(w, v);
@@ -178,7 +181,7 @@ void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
     }
     const std::uint32_t x = costs.neighbour[edge];
     __builtin_prefetch(mesh_.corners(mesh_[x].star));
-    // A collapse that a large star does not allow is not measured.
+    // For large stars the rules are checked first, since measuring takes longer.
     const bool many = mesh_[v].degree + mesh_[x].degree > 2 * kManyCorners;
     if (many && !isAlongSeam(costs, v, edge) && costs.deviation[edge] < 0 &&
         !mayCollapse(w, costs, v, edge)) {
@@ -197,8 +200,8 @@ void QuadricReducer::tryVertex(Worker& w, std::uint32_t v) {
   }
 }
 
-// Each edge that is tried looks at both of its stars. So that n corners do not take n^2, a large
-// star tries a few of its edges, and no other tries an edge to a larger one.
+// Trying an edge looks at both of its stars. To avoid O(n^2) for n corners, a large star tries only
+// a few of its edges, and no vertex tries an edge to a larger vertex above the limit.
 void QuadricReducer::leaveOut(std::uint32_t v, EdgeCosts& costs) const {
   for (std::uint32_t i = 0; most_corners_ > kMostCorners && i < costs.count; ++i) {
     const std::uint32_t there = mesh_[costs.neighbour[i]].degree;
@@ -212,7 +215,7 @@ void QuadricReducer::leaveOut(std::uint32_t v, EdgeCosts& costs) const {
 bool QuadricReducer::mayCollapse(Worker& w, const EdgeCosts& costs, std::uint32_t v,
                                  std::uint32_t edge) {
   if (w.inside_only && !(mesh_[costs.neighbour[edge]].flags & kInside)) return false;
-  // The last triangle stays. (A part keeps some by the first stage's rules.)
+  // At least one triangle stays. (A part needs no check: the rules of the first stage keep some.)
   if (!w.inside_only && costs.shared[edge] >= triangles_ - w.removed) return false;
   const bool locked = stage_ == QuadricStage::kAll && !labels_.empty() &&
                       labels_[v] != labels_[costs.neighbour[edge]];
@@ -237,7 +240,7 @@ bool QuadricReducer::mayCollapse(Worker& w, const EdgeCosts& costs, std::uint32_
   return false;
 }
 
-// The root of the mean square distance to the planes of both stars, in mean edges.
+// Root mean square distance to the planes of both stars; unit: mean edge length.
 float QuadricReducer::errorOf(const EdgeCosts& costs, std::uint32_t v, std::uint32_t edge) const {
   const float area = trace(mesh_[v].h) + trace(mesh_[costs.neighbour[edge]].h);
   return area > 0 ? std::sqrt(costs.cost[edge] / area) : 0;
@@ -284,7 +287,7 @@ void QuadricReducer::collapse(Worker& w, std::uint32_t v, std::uint32_t edge) {
   if (!w.revived.empty()) reviveHubs(w, cost);
 }
 
-// Counts, of a hub.
+// If o is a hub, decrements its number of triangles; a hub that has become small will be revived.
 void QuadricReducer::loseTriangle(Worker& w, std::uint32_t o) {
   QuadricVertex& hub = mesh_[o];
   if (!(hub.flags & kHub)) return;
@@ -294,7 +297,7 @@ void QuadricReducer::loseTriangle(Worker& w, std::uint32_t o) {
     w.revived.push_back(o);
 }
 
-// Those that have few triangles by now take part again.
+// Lets hubs that have become small take part again.
 void QuadricReducer::reviveHubs(Worker& w, float cost) {
   const EvaluateEdges set = edgeEvaluator(Evaluate::kQuadric);
   for (const std::uint32_t hub : w.revived) {
@@ -316,7 +319,7 @@ void QuadricReducer::mergeStars(Worker& w, std::uint32_t v, std::uint32_t x) {
   std::uint32_t before = open ? v : sb.back().b;
   for (const Corner& c : sb) {
     if (hubs_ && (c.b == v || c.c == v)) loseTriangle(w, c.b == v ? c.c : c.b);
-    // In a closed fan two lie beside the edge, before and after v.
+    // In a closed fan two vertices are adjacent to both ends: those before and after v.
     if (c.b != v) renameInRing(w, c.b, v, x, open || before == v || c.c == v);
     if (open && c.c != v) renameInRing(w, c.c, v, x, true);
     before = c.b;
@@ -339,7 +342,8 @@ void QuadricReducer::mergeStars(Worker& w, std::uint32_t v, std::uint32_t x) {
   b.degree = 0;
 }
 
-// In the star of o, a neighbour of x, x becomes v; beside the edge triangles with both ends go.
+// Replaces x by v in the star of o, a neighbour of x. If o is adjacent to both ends (`beside`),
+// also removes the triangles that contained both.
 void QuadricReducer::renameInRing(Worker& w, std::uint32_t o, std::uint32_t v, std::uint32_t x,
                                   bool beside) {
   QuadricVertex& ring = mesh_[o];
@@ -349,7 +353,7 @@ void QuadricReducer::renameInRing(Worker& w, std::uint32_t o, std::uint32_t v, s
   }
   w.visited += ring.degree;
   Corner* star = mesh_.corners(ring.star);
-  // By lines: what stands in one after the last corner has no meaning.
+  // Processes whole lines; entries after the last corner have no meaning.
   for (std::uint32_t line = 0; line < ring.degree; line += kLine) {
     for (std::uint32_t i = line; i < line + kLine; i += 2) {
       TwoCorners corners;
@@ -370,11 +374,12 @@ void QuadricReducer::renameInRing(Worker& w, std::uint32_t o, std::uint32_t v, s
   ring.degree = static_cast<std::uint32_t>(to - star);
 }
 
-// The neighbours that had no legal edge may have one now.
+// Puts neighbours that had no legal edge back into the queue, as they may have one now.
 void QuadricReducer::wakeRing(Worker& w, std::uint32_t v, float cost) {
   const auto wake = [&](std::uint32_t o) {
     if ((mesh_[o].flags & (kIdle | kHub)) != kIdle) return;
-    // A large one would look at all its corners each time that one changes.
+    // A large star is not requeued at each change, since it would look at all its corners each
+    // time.
     const std::uint32_t rarely = mesh_[o].degree / kMostCorners;
     if (rarely > 0 && w.collapses % rarely != 0) return;
     mesh_[o].flags &= static_cast<std::uint8_t>(~kIdle);
@@ -386,7 +391,8 @@ void QuadricReducer::wakeRing(Worker& w, std::uint32_t v, float cost) {
   }
 }
 
-// The channels' values that are best for the new vertex; they stay with x as the node's.
+// Sets the channels' values to the best ones for the new vertex. The dead vertex x keeps a copy, as
+// the values of the node.
 void QuadricReducer::mixChannels(std::uint32_t v, std::uint32_t x, const EdgeCosts& costs,
                                  std::uint32_t edge) {
   float *of_v = channels_.block(v), *of_x = channels_.block(x);
@@ -406,4 +412,4 @@ void QuadricReducer::mixChannels(std::uint32_t v, std::uint32_t x, const EdgeCos
   }
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

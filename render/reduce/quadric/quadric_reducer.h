@@ -1,11 +1,11 @@
-// QuadricReducer: collapses by the quadrics of quadric_evaluate, on several threads. Private to
+// QuadricReducer: collapses edges by the costs of quadric_evaluate, on several threads. Private to
 // render/reduce.
 //
-// The vertices come in parts along the space-filling curve. First each part is reduced for itself,
-// step by step up to the same cost, where no collapse reaches across its borders. Two by two they
-// become one, so that borders are never much of what is left; with a sixth of the triangles left
-// all is one. Parts follow from the mesh alone, so the result does not depend on the number of
-// threads.
+// The vertices are divided into parts along a space-filling curve. At first each part is reduced by
+// itself, step by step up to a common cost; no collapse reaches across its borders. Then parts are
+// joined in pairs, so that borders never make up much of the mesh; when a sixth of the triangles is
+// left, the mesh is reduced as a whole. The parts depend on the mesh alone, so the result does not
+// depend on the number of threads.
 #pragma once
 
 #include <cstdint>
@@ -20,67 +20,70 @@
 #include "render/reduce/quadric/quadric_witness.h"
 #include "render/reduce/reduce.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
 class QuadricReducer {
  public:
   using Progress = std::function<bool(const ReduceProgress&)>;
 
-  // `channels`: how many values a vertex has that cost. The mesh must outlive this.
-  QuadricReducer(const Mesh& mesh, std::size_t channels, Threads threads);
+  // `channels`: number of feature values per vertex that contribute to the cost. The mesh must
+  // outlive the reducer.
+  QuadricReducer(const mesh::Mesh& mesh, std::size_t channels, Threads threads);
 
-  // Values of a channel, of the mesh's vertices `stride` floats apart. `scale`: how many model
-  // units a difference of 1 weighs.
+  // Sets a channel: values[v * stride] is its value at vertex v of the mesh. A difference of 1
+  // costs like a distance of `scale` model units.
   void setChannel(std::size_t channel, const float* values, std::size_t stride, float scale);
 
-  // One a vertex of the mesh; vertices of different labels merge only when nothing else is left.
+  // values: one label per vertex of the mesh. Vertices with different labels merge only when no
+  // other collapse is allowed.
   void setLabels(const float* values);
 
-  // Keeps these vertices of the mesh where they are until nothing else is left.
+  // Keeps each vertex v of the mesh with locked[v] where it is as long as any other collapse is
+  // allowed.
   void lock(const std::vector<bool>& locked);
 
-  // Lets seams shrink; to be called after they were locked. next: rings of the mesh's vertices that
-  // lie in one place (samePlace()); where a ring has two, edges along the seam may collapse, on
-  // both sides at once.
+  // Lets seams shrink; to be called after lock() has locked their vertices. next: rings of
+  // coincident vertices of the mesh (samePlace()). Where a ring has two vertices, an edge along the
+  // seam may collapse together with the coincident edge on the other side.
   void pair(const std::vector<std::uint32_t>& next);
 
   struct Limits {
-    std::size_t triangles = 0;                             // stop when no more are left; 0: none
-    float error = std::numeric_limits<float>::infinity();  // no collapse is worse; model units
+    std::size_t triangles = 0;  // stop when no more than these are left; 0: no limit
+    float error = std::numeric_limits<float>::infinity();  // maximum of a collapse, model units
     bool preserve_topology = false, preserve_components = false;
-    bool by_all_rules = false;  // stop where these allow no more, instead of dropping one
-    bool fast = false;          // what has become dearer goes as well; no witnesses
+    bool by_all_rules = false;  // stop when the rules allow no more, instead of dropping one
+    bool fast = false;          // accept costs that have risen up to 4 times; no witnesses
     Threads threads = 1;
   };
-  // Returns why it stopped, in reduce()'s words.
+  // Returns why it stopped: a value of ReduceReport::stopped.
   const char* run(const Limits& limits, const Progress& progress);
 
-  // Writes a channel's values at the nodes that collapses made, in their order, in the unit in
-  // which they were given to setChannel(), `stride` floats apart.
+  // Writes a channel's value at the node of collapse k to values[k * stride], in the unit in which
+  // setChannel() was given them. `scale`: as in setChannel().
   void channelValues(std::size_t channel, float scale, float* values, std::size_t stride) const;
 
-  // The log; of the features of `mesh` only "normal" is filled.
-  Reduction finish(const Mesh& mesh);
+  // Returns the log; of its features only "normal" is filled.
+  Reduction finish(const mesh::Mesh& mesh);
 
  private:
-  // The work of one thread: a part of the mesh, or the whole.
+  // A unit of work for one thread: a part of the mesh, or the whole mesh.
   struct Worker {
     BucketQueue queue;
     StarRoom room;
     EdgeCosts costs;
-    EdgeCosts twin;                // of a seam's other side
+    EdgeCosts twin;                // of the coincident vertex across a seam
     EdgeCosts hub;                 // scratch
     std::vector<Corner> merged;    // scratch
     std::uint32_t* log = nullptr;  // dead vertices, in order
     std::size_t collapses = 0;
     std::size_t removed = 0;  // triangles
     std::size_t flips = 0, links = 0;
-    std::size_t visited = 0;             // triangles of stars
-    bool too_coarse = false;             // an edge's error was beyond the limit
-    std::uint32_t refused_star = ~0U;    // the least that was refused for its size
-    std::vector<std::uint32_t> revived;  // hubs that have few triangles by now
-    bool inside_only = false;            // of a part: only vertices whose ring is in it
-    // Of a part: the range of its vertices on the curve, its number of triangles (about), and the
+    std::size_t visited = 0;             // triangles in the stars looked at
+    bool too_coarse = false;             // an edge was refused because of the error limit
+    std::uint32_t refused_star = ~0U;    // triangles of the smallest star refused for its size
+    std::vector<std::uint32_t> revived;  // hubs that now have few triangles
+    bool inside_only = false;            // for a part: only vertices whose ring is inside it
+    // For a part: the range of its vertices on the curve, its number of triangles (about), and the
     // number of collapses at the end of each step.
     std::uint32_t begin = 0, end = 0;
     std::size_t triangles = 0;
@@ -97,7 +100,7 @@ class QuadricReducer {
   }
   QuadricView view() const { return {&mesh_[0], mesh_.corners(0), &channels_}; }
   void evaluate(Worker& w, std::uint32_t v) { evaluate_(view(), v, w.costs); }
-  // A popped edge may cost so much more than its bucket and is still taken.
+  // An edge is collapsed if its cost is below the upper end of its bucket times this factor.
   float tolerance() const { return fast_ ? 4.0F : 1.25F; }
   void enqueue(Worker& w, std::uint32_t v, float cost);
   void prefetch(Worker& w) const;
@@ -139,37 +142,42 @@ class QuadricReducer {
   void reduceStage(std::size_t keep, const Progress& progress);
 
   NodeRecord recordOf(std::uint32_t dead) const;
-  void copyTo(CollapseLog& log, std::vector<float>* normals, std::size_t k) const;
-  void pin(CollapseLog& log);
+  void copyTo(lod::CollapseLog& log, std::vector<float>* normals, std::size_t k) const;
+  void pin(lod::CollapseLog& log);
   static constexpr std::uint32_t kNowhere = ~std::uint32_t{0};
-  // More than a surface of any use has; a step beside more would take too long.
+  // Maximum number of triangles in a star while the topology is kept. Useful surfaces stay below
+  // it; a collapse next to a larger star would take too long.
   static constexpr std::uint32_t kMostCorners = 128;
-  // Once topology may change, where stars have no order.
+  // The same once the topology may change and stars are unordered: kMostUnordered at first. Of a
+  // star above kManyCorners only a few edges are tried.
   static constexpr std::uint32_t kManyCorners = 16, kMostUnordered = 32;
 
   QuadricMesh mesh_;
-  const float* input_positions_;  // the mesh's, which outlives this
+  const float* input_positions_;  // of the mesh, which outlives the reducer
   QuadricChannels channels_;
-  std::vector<float> labels_;          // empty where there are none
-  std::vector<std::uint32_t> pinned_;  // by node: the locked vertex that it stands on; if any are
-  std::vector<std::uint32_t> twins_;   // of a seam's vertex the other one in its place; or empty
+  std::vector<float> labels_;  // by vertex; empty if there are none
+  // By node: the locked vertex at whose position it is, or kNowhere; empty if none is locked.
+  std::vector<std::uint32_t> pinned_;
+  // By vertex: the coincident vertex across a seam, or kNowhere; empty if seams do not shrink.
+  std::vector<std::uint32_t> twins_;
   bool keep_components_ = false, fast_ = false;
-  // Ranges of the channels, as given and as weighted; no value leaves them.
+  // Ranges of the channels' values, before and after weighting; values at new vertices stay in
+  // them.
   std::vector<Range> given_, ranges_;
   EvaluateEdges evaluate_;
   JudgeEdge judge_;
   FindFarther farther_;
   HugeArray<std::uint32_t> log_;
-  HugeArray<std::uint32_t> next_;  // in a vertex' bucket; beside the records, so that it stays near
+  HugeArray<std::uint32_t> next_;  // links of the queue's lists; not in the records, to stay cached
   Worker whole_;
-  std::size_t triangles_;                                     // left
-  std::size_t by_all_rules_ = 0;                              // left when the first rule gave way
-  float max_error_ = std::numeric_limits<float>::infinity();  // in mean edges
+  std::size_t triangles_;         // left
+  std::size_t by_all_rules_ = 0;  // left when the first rule was dropped
+  float max_error_ = std::numeric_limits<float>::infinity();  // unit: mean edge length
   QuadricStage stage_ = QuadricStage::kAll;
-  std::uint32_t most_corners_ = kMostCorners;  // of what takes part
-  bool hubs_ = false;                          // there are some
+  std::uint32_t most_corners_ = kMostCorners;  // of the stars that take part
+  bool hubs_ = false;                          // some vertex is a hub
   Threads threads_ = 1;
   bool cancelled_ = false;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -1,4 +1,4 @@
-// The result of a QuadricReducer as a log.
+// Converts the result of a QuadricReducer to a CollapseLog.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -6,17 +6,18 @@
 #include "daemon/base/blocks.h"
 #include "render/reduce/quadric/quadric_reducer.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
-// As far as validate() lets a mesh reach.
+// The largest coordinate that validate() allows.
 constexpr float kFarthest = 1e18F;
-constexpr std::size_t kAhead = 16;  // records asked for
+constexpr std::size_t kAhead = 16;  // records prefetched
 
 }  // namespace
 
-// A node that stands where a locked vertex was is there to the last bit, so that seams fit.
-void QuadricReducer::pin(CollapseLog& log) {
+// Gives each node at the position of a locked vertex exactly the coordinates of the input, so that
+// seams match bit by bit.
+void QuadricReducer::pin(lod::CollapseLog& log) {
   for (std::size_t k = 0; k < log.children.size(); ++k) {
     for (const std::uint32_t child : log.children[k]) {
       const std::uint32_t v = pinned_[child];
@@ -39,7 +40,8 @@ NodeRecord QuadricReducer::recordOf(std::uint32_t dead) const {
 }
 
 // Copies collapse k into the log. REQUIRES: next_ maps each dead vertex to its collapse.
-void QuadricReducer::copyTo(CollapseLog& log, std::vector<float>* normals, std::size_t k) const {
+void QuadricReducer::copyTo(lod::CollapseLog& log, std::vector<float>* normals,
+                            std::size_t k) const {
   const std::uint32_t vertices = mesh_.vertexCount();
   const auto node = [&](std::uint32_t n) {
     return n < vertices ? mesh_.inputOf(n) : vertices + next_[n - vertices];
@@ -50,19 +52,19 @@ void QuadricReducer::copyTo(CollapseLog& log, std::vector<float>* normals, std::
   auto p = mesh_.toModel(r.position);
   for (float& x : p) x = std::clamp(x, -kFarthest, kFarthest);
   std::copy_n(p.begin(), 3, &log.positions[3 * k]);
-  log.error[k] = std::min(r.error / mesh_.scale(), kFarthest);  // of next to no area it has no end
+  log.error[k] = std::min(r.error / mesh_.scale(), kFarthest);  // may be infinite: tiny area
   const float* const n = r.normal;
   const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   for (std::size_t i = 0; normals && i < 3; ++i)
     (*normals)[3 * k + i] = length > 0 ? n[i] / length : 0;
 }
 
-Reduction QuadricReducer::finish(const Mesh& mesh) {
+Reduction QuadricReducer::finish(const mesh::Mesh& mesh) {
   mesh_.dropStars();
   const std::size_t collapses = whole_.collapses;
   for (std::size_t k = 0; k < collapses; ++k) next_[log_[k]] = static_cast<std::uint32_t>(k);
   Reduction result;
-  CollapseLog& log = result.log;
+  lod::CollapseLog& log = result.log;
   log.children.resize(collapses);
   log.positions.resize(3 * collapses);
   log.error.resize(collapses);
@@ -85,8 +87,8 @@ Reduction QuadricReducer::finish(const Mesh& mesh) {
   return result;
 }
 
-// Where a feature is so large or so small that its weight makes it no number, what comes back is
-// none either; then it is the least there was.
+// If a feature is so large or so small that weighting makes its values NaN, the lowest input value
+// is written.
 void QuadricReducer::channelValues(std::size_t channel, float scale, float* values,
                                    std::size_t stride) const {
   const Range given = given_[channel];
@@ -96,4 +98,4 @@ void QuadricReducer::channelValues(std::size_t channel, float scale, float* valu
   });
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -6,21 +6,22 @@
 
 #include "render/reduce/quadric/lanes.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
-// A star that grows beyond this is a fan of slivers.
+// A collapse must not make a larger star than this: it would be a fan of slivers.
 constexpr std::uint32_t kMostDegree = 24;
-// Least cosine between a face's normals before and after.
+// Minimum cosine of the angle between a face's normals before and after a collapse.
 constexpr float kLeastCosine = 0.2F;
 
 bool isIn(const Corner& corner, std::uint32_t v) { return corner.b == v || corner.c == v; }
 
-// Link condition: the ends have no neighbour in common but those of the triangles they share.
+// Link condition: the ends have no common neighbours except those of the triangles they share.
 MERLIN_INLINE bool linkHolds(const QuadricView& view, const QuadricVertex& a,
                              const QuadricVertex& x, const EdgeCosts& costs, std::uint32_t edge) {
   const std::uint32_t shared = costs.shared[edge];
-  if (shared == 2 && (a.flags & x.flags & kOpen)) return false;  // would pinch the border
+  if (shared == 2 && (a.flags & x.flags & kOpen))
+    return false;  // would pinch the surface between two borders
   const Corner* star = view.corners + x.star;
   const bool open = x.flags & kOpen;
   Mask common = {};
@@ -36,7 +37,8 @@ MERLIN_INLINE bool linkHolds(const QuadricView& view, const QuadricVertex& a,
   return sum(common) == static_cast<std::int32_t>(shared);
 }
 
-// Those beside the edge lose a triangle, and must keep enough to be a surface.
+// True if each vertex opposite the edge, which loses a triangle, keeps enough to be part of a
+// surface.
 MERLIN_INLINE bool sidesKeepEnough(const QuadricView& view, const QuadricVertex& a, std::uint32_t x,
                                    std::uint32_t edge) {
   const Corner* star = view.corners + a.star;
@@ -44,7 +46,7 @@ MERLIN_INLINE bool sidesKeepEnough(const QuadricView& view, const QuadricVertex&
     const QuadricVertex& o = view.vertices[side];
     return trianglesOf(o) >= ((o.flags & kOpen) ? 2U : 4U);
   };
-  // In a closed fan the corners stand in the order of the edges.
+  // In a closed fan corner k belongs to edge k.
   if (!(a.flags & kOpen)) return keeps(star[edge].c) && keeps(star[(edge ? edge : a.degree) - 1].b);
   for (std::uint32_t k = 0; k < a.degree; ++k) {
     if (isIn(star[k], x) && !keeps(star[k].b == x ? star[k].c : star[k].b)) return false;
@@ -52,7 +54,7 @@ MERLIN_INLINE bool sidesKeepEnough(const QuadricView& view, const QuadricVertex&
   return true;
 }
 
-// As turns(), of a closed fan of up to eight.
+// anyTurns() for a closed fan of up to eight triangles, all at once.
 MERLIN_INLINE bool fanTurns(const QuadricView& view, const QuadricVertex& v, const float* origin,
                             const float* from, const float* to, std::uint32_t other) {
   const Mask ring = firsts(&view.corners[v.star].b, v.degree);
@@ -74,7 +76,8 @@ MERLIN_INLINE bool fanTurns(const QuadricView& view, const QuadricVertex& v, con
   return any(stays & ~fine);
 }
 
-// Whether a face of v's star turns by too much when v goes to `to` (from `origin`, as `from` is).
+// True if a face of v's star, without those that contain `other`, turns too far when v moves from
+// `from` to `to` (both relative to `origin`).
 bool anyTurns(const QuadricView& view, const QuadricVertex& v, const float* origin,
               const float* from, const float* to, std::uint32_t other) {
   const Corner* star = view.corners + v.star;
@@ -117,7 +120,7 @@ float segmentDistance2(const float* p, const float* a, const float* b) {
   return sum;
 }
 
-// As borderNeighbours(), of a large star: O(corners).
+// borderNeighbours() for a large star: O(corners).
 std::size_t borderOfMany(const QuadricView& view, const QuadricVertex& v, std::uint32_t other,
                          std::uint32_t* found, std::size_t room, NumberTable& numbers) {
   constexpr std::uint32_t kIsB = 1, kIsC = 2;
@@ -135,7 +138,8 @@ std::size_t borderOfMany(const QuadricView& view, const QuadricVertex& v, std::u
   return n;
 }
 
-// The neighbours that v's border goes to, without `other`. At most `room`.
+// Finds the neighbours of v along border edges, without `other`: at most `room`. Returns their
+// number.
 std::size_t borderNeighbours(const QuadricView& view, const QuadricVertex& v, std::uint32_t other,
                              std::uint32_t* found, std::size_t room, NumberTable& numbers) {
   if (v.degree > kPairwise) return borderOfMany(view, v, other, found, room, numbers);
@@ -153,7 +157,8 @@ std::size_t borderNeighbours(const QuadricView& view, const QuadricVertex& v, st
   return n;
 }
 
-// Whether v is a corner of a closed tetrahedron or of less.
+// True if v has at most the star of a corner of a tetrahedron: a closed fan of three triangles, or
+// one triangle.
 bool isLast(const QuadricVertex& v) {
   const std::uint32_t triangles = trianglesOf(v);
   return triangles <= 3 && !((v.flags & kOpen) && triangles > 1);
@@ -167,7 +172,7 @@ MERLIN_INLINE Verdict judge(const QuadricView& view, std::uint32_t w, const Edge
   const std::uint32_t shared = costs.shared[edge];
   const float to[] = {costs.x[edge], costs.y[edge], costs.z[edge]};
   const float here[] = {0, 0, 0}, there[] = {costs.rx[edge], costs.ry[edge], costs.rz[edge]};
-  // First, while the star of x is on its way: a has been looked at.
+  // Checks the star of a first, since it is in the cache while that of x is being loaded.
   const bool flips = stage != QuadricStage::kNoFlips && turns(view, a, a.position, here, to, x);
   for (std::uint32_t k = 0; k < v.degree; ++k)
     __builtin_prefetch(&view.vertices[view.corners[v.star + k].b]);
@@ -179,7 +184,7 @@ MERLIN_INLINE Verdict judge(const QuadricView& view, std::uint32_t w, const Edge
       return Verdict::kLink;
   }
   if (stage == QuadricStage::kNoFlips) return Verdict::kLegal;
-  // A collapse will write there.
+  // Prefetches the stars that a collapse will write to.
   for (std::uint32_t k = 0; k < v.degree; ++k) {
     const QuadricVertex& ring = view.vertices[view.corners[v.star + k].b];
     __builtin_prefetch(view.corners + ring.star, 1);
@@ -283,4 +288,4 @@ float borderDeviation(const QuadricView& view, std::uint32_t w, EdgeCosts& costs
   return deviation;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

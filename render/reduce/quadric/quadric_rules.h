@@ -1,64 +1,67 @@
-// Which collapses may be, and what more a border costs. Private to render/reduce.
+// Rules that decide which collapses are allowed, and the additional costs of borders, seams and
+// locked vertices. Private to render/reduce.
 #pragma once
 
 #include <cstdint>
 
 #include "render/reduce/quadric/quadric_evaluate.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
-// Rules fall one after another once nothing is left that they allow.
+// Stages of a reduction. Each stage drops a rule when the stage before allows no more collapses.
 enum class QuadricStage : std::uint8_t {
   kAll,      // topology stays (link condition), labels do not mix, no face flips
-  kNoLock,   // labels may mix, what is locked stays
-  kNoLink,   // parts may join or pinch off, holes close, components vanish
+  kNoLock,   // labels may mix; locked vertices still stay
+  kNoLink,   // parts may join or separate, holes close, components vanish, locked vertices move
   kNoFlips,  // faces may flip
 };
 
-// While locks, links and seams hold: nothing may go that the mesh's topology needs.
+// True while locked vertices, the link condition and seams are respected.
 inline bool keepsTopology(QuadricStage stage) noexcept { return stage <= QuadricStage::kNoLock; }
 
 enum class Verdict : std::uint8_t { kLegal, kLink, kFlip };
 
-// Whether a collapse leaves no surface of a component, or only a tetrahedron folded flat.
+// True if the collapse removes the last triangles of a component, or leaves a tetrahedron folded
+// flat.
 bool vanishes(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs, std::uint32_t edge);
 
-// Squared length of the longest edge at w's neighbour and at w itself: how far what vanishes
-// reaches.
+// Squared length of w's longest edge: the size of a component that vanishes by a collapse of w.
 float reachOf(const EdgeCosts& costs);
 
-// Whether w may collapse with its neighbour number `edge` of `costs`. Pure.
+// Judges whether w may collapse with its neighbour in row `edge` of `costs`. Pure.
 using JudgeEdge = Verdict (*)(const QuadricView& view, std::uint32_t w, const EdgeCosts& costs,
                               std::uint32_t edge, QuadricStage stage);
 
-// The fastest for this processor. All give the same verdicts.
+// Returns the fastest implementation for this processor. All give the same verdicts.
 JudgeEdge edgeJudge();
 
-// For tests: that of any processor.
+// For tests: the implementation that runs on any processor.
 JudgeEdge portableEdgeJudge();
 
-// Puts the new vertex where the locked end is, and says what that costs (of the channels what they
-// cost at their best place). kNoEdge where both ends are locked.
+// Moves the new vertex of an edge to its locked end. The cost becomes the quadric error of
+// geometry alone (without the feature channels) of the end that moves, but at least the cost at the
+// optimal position. If both ends are locked the cost is kNoEdge: the edge is not collapsed.
 void stayAtLocked(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, std::uint32_t edge);
 
-// Prices an edge along a seam, whose vertices exist on both sides, w's and `twin`'s: both new
-// vertices go to the end of the edge where the two together cost less, and that sum becomes the
-// cost of w's edge.
+// Computes the cost of an edge along a seam together with the coincident edge at `twin`, the vertex
+// across the seam. Both new vertices go to that end of the edge where the sum of the two quadric
+// errors is smaller; the cost of each edge becomes at least that sum.
 void goAlongSeam(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, std::uint32_t edge,
                  std::uint32_t twin, EdgeCosts& twin_costs, std::uint32_t twin_edge);
 
-// Squared distance of the two ends that lie on a border, and of what they stand for, to the border
-// as it would be. A border loses little area where a flap is worn off; so it is watched by length.
+// Returns the squared distance from the ends that lie on a border to the border after the collapse,
+// plus the deviation that these ends already have. Quadrics alone do not protect a border: a narrow
+// flap has little area, so removing it costs little.
 float borderDeviation(const QuadricView& view, std::uint32_t w, EdgeCosts& costs,
                       std::uint32_t edge);
 
-// r' H r: area times squared distance to the planes of a quadric.
+// Returns r' H r: the area-weighted squared distance from r to the planes of the quadric.
 inline float costAt(const float* h, const float (&r)[3]) {
   return r[0] * (h[0] * r[0] + 2 * (h[1] * r[1] + h[2] * r[2])) +
          r[1] * (h[3] * r[1] + 2 * (h[4] * r[2])) + h[5] * r[2] * r[2];
 }
 
-// Least cost of an edge with this squared deviation.
+// Minimum cost of an edge with this squared deviation.
 inline float deviationCost(float deviation) { return 100 * deviation * deviation; }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -1,11 +1,11 @@
-// QuadricReducer along seams: where two vertices lie in one place, because a feature differs on
-// either side, the edges of both sides go together, so that nothing gapes.
+// QuadricReducer along seams. At a seam two vertices coincide, because a feature differs on either
+// side. Edges on both sides collapse together, so that the seam does not open.
 #include <algorithm>
 #include <cstring>
 
 #include "render/reduce/quadric/quadric_reducer.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
 std::uint32_t rowOf(const EdgeCosts& costs, std::uint32_t neighbour) {
@@ -32,8 +32,9 @@ bool QuadricReducer::isAlongSeam(const EdgeCosts& costs, std::uint32_t v,
          twins_[v] != kNowhere && twins_[costs.neighbour[edge]] != kNowhere;
 }
 
-// Which edge of v's twin, whose edges are in w.twin afterwards, is the other side of v's. kNowhere
-// where there is none, or both sides are so close that one collapse changes what the other is.
+// Evaluates the edges of v's twin into w.twin and returns the row of the one that coincides with
+// `edge` of v. kNowhere if there is none, or if the two sides are so close that one collapse would
+// change the other side's edge.
 std::uint32_t QuadricReducer::findTwin(Worker& w, std::uint32_t v, std::uint32_t edge) {
   const std::uint32_t x = w.costs.neighbour[edge], tv = twins_[v], tx = twins_[x];
   const std::uint8_t inside = mesh_[tv].flags & mesh_[tx].flags & kInside;
@@ -43,7 +44,7 @@ std::uint32_t QuadricReducer::findTwin(Worker& w, std::uint32_t v, std::uint32_t
   evaluate_(view(), tv, w.twin);
   const std::uint32_t row = rowOf(w.twin, tx);
   if (row == w.twin.count || w.twin.shared[row] != 1) return kNowhere;
-  for (std::uint32_t i = 0; i < w.costs.count; ++i) {  // not even a neighbour in common
+  for (std::uint32_t i = 0; i < w.costs.count; ++i) {  // the sides must have no common neighbour
     if (rowOf(w.twin, w.costs.neighbour[i]) < w.twin.count) return kNowhere;
   }
   return row;
@@ -57,29 +58,30 @@ void QuadricReducer::stayOnSeam(Worker& w, std::uint32_t v, std::uint32_t edge) 
     goAlongSeam(view(), v, w.costs, edge, twins_[v], w.twin, other);
 }
 
-// Adds the normal of the vertex' other side, unchanged.
+// Adds the normal of the twin's present star to `normal`, if both sides are one surface.
 void QuadricReducer::addNormalOf(std::uint32_t twin, float* normal) const {
   const QuadricVertex& t = mesh_[twin];
   if (!lives(t) || (t.flags & kHub)) return;
   float other[3] = {};
   for (const Corner& c : mesh_.star(t)) {
-    const auto face = faceNormal(t.position, mesh_[c.b].position, mesh_[c.c].position);
+    const auto face = mesh::faceNormal(t.position, mesh_[c.b].position, mesh_[c.c].position);
     for (std::size_t k = 0; k < 3; ++k) other[k] += face[k];
   }
-  const bool one = areOneSurface(normal, other);
+  const bool one = mesh::areOneSurface(normal, other);
   for (std::size_t k = 0; one && k < 3; ++k) normal[k] += other[k];
 }
 
-// From the node of one side to that of the other, if they are one surface.
+// Copies the normal of the node of `from` to that of `to`, if both sides are one surface.
 void QuadricReducer::shareNormal(std::uint32_t from, std::uint32_t to) {
   const NodeRecord good = recordOf(from);
   NodeRecord record = recordOf(to);
-  if (!areOneSurface(record.normal, good.normal)) return;
+  if (!mesh::areOneSurface(record.normal, good.normal)) return;
   std::copy_n(good.normal, 3, record.normal);
   std::memcpy(static_cast<void*>(mesh_[to].position), &record, sizeof record);
 }
 
-// Both sides, if both may; returns whether they did. REQUIRES: guard() has seen the edge.
+// Collapses the edge on both sides of the seam if both collapses are allowed; returns whether it
+// did. REQUIRES: guard() was called for the edge.
 bool QuadricReducer::collapseSeam(Worker& w, std::uint32_t v, std::uint32_t edge) {
   const std::uint32_t tv = twins_[v], other = findTwin(w, v, edge);
   if (other == kNowhere || (!w.inside_only && triangles_ - w.removed <= 2)) return false;
@@ -88,14 +90,14 @@ bool QuadricReducer::collapseSeam(Worker& w, std::uint32_t v, std::uint32_t edge
   w.twin.z[other] = w.costs.z[edge];
   w.twin.cost[other] = w.costs.cost[edge];
   w.twin.deviation[other] = w.costs.deviation[edge];
-  w.twin.witness[other] = w.costs.staysAt(edge);  // of the end that moves
+  w.twin.witness[other] = w.costs.staysAt(edge);  // that of the end that moves
   if (!mayCollapse(w, w.costs, v, edge) || !mayCollapse(w, w.twin, tv, other)) return false;
   const std::uint32_t x = w.costs.neighbour[edge], tx = w.twin.neighbour[other];
   collapse(w, v, edge);
   if (mesh_[v].degree > 0) enqueue(w, v, w.costs.least());
   std::swap(w.costs, w.twin);
   collapse(w, tv, other);
-  shareNormal(tx, x);                                       // measured when both had moved
+  shareNormal(tx, x);                                       // computed after both sides had moved
   if ((mesh_[tv].flags & kIdle) && mesh_[tv].degree > 0) {  // else it is in the queue
     mesh_[tv].flags &= static_cast<std::uint8_t>(~kIdle);
     enqueue(w, tv, w.costs.least());
@@ -103,4 +105,4 @@ bool QuadricReducer::collapseSeam(Worker& w, std::uint32_t v, std::uint32_t edge
   return true;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

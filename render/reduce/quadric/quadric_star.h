@@ -1,4 +1,4 @@
-// Data of one vertex and its star: ring, quadric, normal, sums of channels. Private to
+// Computes the data of one vertex from its star: ring, quadric, normal, channel sums. Private to
 // quadric_evaluate.cpp, which compiles it twice (lanes.h).
 #pragma once
 
@@ -8,14 +8,15 @@
 #include "render/reduce/quadric/lanes.h"
 #include "render/reduce/quadric/quadric_evaluate.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 
 inline constexpr float kTiny = 1e-30F;
-// A vertex is sharp if the mean of its faces' normals is shorter than this. For a cone the mean is
-// as long as the sine of the angle between its axis and its side.
+// A vertex is sharp if the mean of its faces' unit normals is shorter than this. For a cone the
+// length of the mean is the sine of the angle between its axis and its side.
 inline constexpr float kSharpMean = 0.6F;
 
-// Eight neighbours, one a lane: from w, and their `quadrics`.
+// Eight neighbours, one per lane: positions relative to w, and the quadrics h if `quadrics` is
+// true.
 template <bool quadrics>
 struct Neighbours {
   Lanes x, y, z, h[6];
@@ -35,12 +36,12 @@ struct Neighbours {
   }
 };
 
-// As findNeighbours(), of a large star: O(corners).
+// findNeighbours() for a large star: O(corners).
 inline void findManyNeighbours(const QuadricView& view, const QuadricVertex& w, EdgeCosts& out) {
   out.count = 0;
   out.numbers.reset(2 * std::size_t{w.degree});
   const auto indexOf = [&](std::uint32_t v) {
-    std::uint32_t& after = out.numbers[v];  // the index and one more
+    std::uint32_t& after = out.numbers[v];  // index + 1; 0: new
     if (after == 0) {
       out.neighbour[out.count] = v;
       out.shared[out.count] = 0;
@@ -55,7 +56,8 @@ inline void findManyNeighbours(const QuadricView& view, const QuadricVertex& w, 
   }
 }
 
-// Neighbours of any star, each once, with how many triangles it shares.
+// Finds the neighbours of a vertex with any star, each once, and the number of triangles that each
+// shares with it.
 inline void findNeighbours(const QuadricView& view, const QuadricVertex& w, EdgeCosts& out) {
   if (w.degree > kPairwise) {
     findManyNeighbours(view, w, out);
@@ -80,7 +82,7 @@ inline void findNeighbours(const QuadricView& view, const QuadricVertex& w, Edge
   }
 }
 
-// The neighbours of a vertex with a closed fan: the first vertices of its corners, in order.
+// Finds the neighbours of a vertex with a closed fan: the first vertices of its corners, in order.
 inline void fanNeighbours(const QuadricView& view, const QuadricVertex& w, EdgeCosts& out) {
   out.count = w.degree;
   for (std::uint32_t i = 0; i < w.degree; ++i) {
@@ -94,7 +96,8 @@ MERLIN_INLINE void findRing(const QuadricView& view, const QuadricVertex& w, Edg
     findNeighbours(view, w, out);
   else
     fanNeighbours(view, w, out);
-  // Beyond the last the first again; a closed fan's last row of eight looks one further.
+  // Pads the rows with the first neighbour: rows are processed eight at a time, and a closed fan
+  // also reads the row after the last eight.
   store(&out.neighbour[out.count], all(out.neighbour[0]));
   store(&out.neighbour[out.count + 8], all(out.neighbour[0]));
   for (std::uint32_t first = 0; first < out.count + 8; first += 8) {
@@ -105,7 +108,8 @@ MERLIN_INLINE void findRing(const QuadricView& view, const QuadricVertex& w, Edg
   }
 }
 
-// Up to eight triangles (0, u, v), v of vertex c and u of vertex b; beyond the last without area.
+// Up to eight triangles (w, b, c): u and v are the positions of b and c relative to w. Unused lanes
+// hold triangles of zero area.
 struct EightTriangles {
   Lanes ux, uy, uz, vx, vy, vz;
   Mask b, c;
@@ -118,7 +122,7 @@ MERLIN_INLINE EightTriangles fanTriangles(const Lanes& x, const Lanes& y, const 
   return {x, y, z, next(x), next(y), next(z), neighbours, next(neighbours)};
 }
 
-// Eight triangles of a star from corner `first` on. REQUIRES: findRing() was called.
+// Returns eight triangles of a star from corner `first` on. REQUIRES: findRing() was called.
 MERLIN_INLINE EightTriangles starTriangles(const QuadricVertex& w, const EdgeCosts& out,
                                            std::uint32_t first) {
   const float *x = out.rx.data(), *y = out.ry.data(), *z = out.rz.data();
@@ -146,10 +150,10 @@ MERLIN_INLINE EightTriangles starTriangles(const QuadricVertex& w, const EdgeCos
           load(v[1]), load(v[2]), load(of_b), load(of_c)};
 }
 
-// The quadrics and the unit normals of eight triangles; nothing where they have no area.
+// The quadrics and the unit normals of eight triangles; zero for triangles of zero area.
 struct Planes {
   Lanes h[6], normal[3];
-  Lanes area, inverse;  // twice it, and one over that
+  Lanes area, inverse;  // twice the area, and its reciprocal
 
   MERLIN_INLINE explicit Planes(const EightTriangles& t) {
     const Lanes x = t.uy * t.vz - t.uz * t.vy, y = t.uz * t.vx - t.ux * t.vz,
@@ -175,14 +179,16 @@ MERLIN_INLINE Lanes valuesOf(const QuadricChannels& channels, const Mask& vertic
   return Lanes{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
 }
 
-// Adds what the channels' gradients are: to the triangles' quadrics, and to the sums of w's block.
-// fan: of fanTriangles().
+// Adds the terms that the gradients of the channels contribute: to the quadrics of the triangles,
+// and to the channel sums in `block`, which is that of w. `fan`: the triangles are from
+// fanTriangles(), so that the c of a triangle is the b of the next one.
 template <bool fan>
 MERLIN_INLINE void addGradients(const QuadricChannels& channels, const EightTriangles& t,
                                 Planes& planes, float* block) {
   const Lanes(&n)[3] = planes.normal;
   const Lanes &area = planes.area, &inverse = planes.inverse;
-  // Rows of the gradient: s (v x n) + t (n x u), n a unit long, over the area.
+  // Gradient of a channel: (s (v x n) + t (n x u)) / area. s and t are its values at b and c minus
+  // that at w, n is the unit normal, and area is twice the triangle's.
   const Lanes px = (t.vy * n[2] - t.vz * n[1]) * inverse,
               py = (t.vz * n[0] - t.vx * n[2]) * inverse,
               pz = (t.vx * n[1] - t.vy * n[0]) * inverse;
@@ -209,8 +215,8 @@ MERLIN_INLINE void addGradients(const QuadricChannels& channels, const EightTria
 
 // Sums over a star's triangles.
 struct Sums {
-  Lanes most = {};  // h, the normal's x and y
-  float z = 0;      // the normal's
+  Lanes most = {};  // h, then x and y of the normal
+  float z = 0;      // of the normal
 
   Sums() = default;
   MERLIN_INLINE explicit Sums(const Planes& p)
@@ -221,7 +227,7 @@ struct Sums {
     most += other.most;
     z += other.z;
   }
-  // By pieces that registers hold: the quadric is read again at once.
+  // Stores in pieces of the size of a register, since the quadric is read again at once.
   MERLIN_INLINE void store(QuadricVertex& w, EdgeCosts& out) const {
     const auto first = __builtin_shufflevector(most, most, 0, 1, 2, 3);
     const auto then = __builtin_shufflevector(most, most, 4, 5);
@@ -233,7 +239,7 @@ struct Sums {
   }
 };
 
-// `block`: w's, if there are channels.
+// `block`: the channel block of w; not used unless `channels`.
 template <bool channels, bool fan>
 MERLIN_INLINE Sums sumsOf(const QuadricView& view, const EightTriangles& triangles, float* block) {
   Planes planes(triangles);
@@ -246,7 +252,8 @@ MERLIN_INLINE void clearSums(const QuadricChannels& channels, float* block) {
   for (std::size_t k = 0; k < channels.count(); ++k) std::fill_n(block + 1 + 4 * k, 3, 0.0F);
 }
 
-// The plane through the border's edge e that is as upright as can be: |e|^2 I - e e'.
+// Adds |e|^2 I - e e' for a border edge e = (x, y, z): the squared distance to the line of the
+// edge, weighted by |e|^2 and kBorderWeight.
 MERLIN_INLINE void addBorder(float h[6], float x, float y, float z) {
   const float l = x * x + y * y + z * z;
   h[0] += kBorderWeight * (l - x * x);
@@ -257,7 +264,7 @@ MERLIN_INLINE void addBorder(float h[6], float x, float y, float z) {
   h[5] += kBorderWeight * (l - z * z);
 }
 
-// Whether w is a thin tip or a knife's edge.
+// Sets kSharp if w is a thin tip or a sharp ridge. n: sum of the unit normals of its faces.
 MERLIN_INLINE void setSharp(QuadricVertex& w, const float* n) {
   const float upright = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
   const auto faces = static_cast<float>(w.degree);
@@ -265,8 +272,8 @@ MERLIN_INLINE void setSharp(QuadricVertex& w, const float* n) {
   if (upright < kSharpMean * kSharpMean * faces * faces) w.flags |= kSharp;
 }
 
-// Sums over any star. REQUIRES: findRing() was called. `block`: w's block of channels, if there are
-// channels.
+// Sets the quadric, kSharp and channel sums of w, and out.normal, for any star. REQUIRES:
+// findRing() was called. `block`: the channel block of w; not used unless `channels`.
 template <bool channels>
 MERLIN_INLINE void setOwn(const QuadricView& view, QuadricVertex& w, EdgeCosts& out, float* block) {
   if (channels) clearSums(*view.channels, block);
@@ -281,8 +288,8 @@ MERLIN_INLINE void setOwn(const QuadricView& view, QuadricVertex& w, EdgeCosts& 
   }
 }
 
-// Sums over a closed fan of up to eight triangles, whose neighbours are the first vertices of its
-// corners, in order.
+// As setOwn(), for a closed fan of up to eight triangles. out.neighbour holds the first vertices of
+// its corners in order, and x, y, z their positions relative to w.
 template <bool channels>
 MERLIN_INLINE void setOwnOfFan(const QuadricView& view, QuadricVertex& w, const Lanes& x,
                                const Lanes& y, const Lanes& z, EdgeCosts& out, float* block) {
@@ -292,4 +299,4 @@ MERLIN_INLINE void setOwnOfFan(const QuadricView& view, QuadricVertex& w, const 
   setSharp(w, out.normal);
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

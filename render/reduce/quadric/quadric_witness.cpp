@@ -2,7 +2,7 @@
 
 #include "render/reduce/quadric/lanes.h"
 
-namespace merlin::render {
+namespace merlin::render::reduce {
 namespace {
 
 constexpr float kTiny = 1e-30F;
@@ -19,7 +19,8 @@ MERLIN_INLINE Lanes dot(const Lanes (&a)[3], const Point& p) {
   return a[0] * p.x + a[1] * p.y + a[2] * p.z;
 }
 
-// Squared distance of a point p to the segment from the origin to a, by their products.
+// Squared distance from a point p to the segment from the origin to a, from the dot products of p
+// and a.
 MERLIN_INLINE Lanes segmentDistance2(const Lanes& pp, const Lanes& pa, const Lanes& aa,
                                      const Lanes& inverse_aa) {
   Lanes t = pa * inverse_aa;
@@ -32,7 +33,8 @@ MERLIN_INLINE Lanes segmentDistance2(const Lanes& pp, const Lanes& pa, const Lan
 struct Triangles {
   Lanes b[3], c[3];
 
-  // Squared distances of two points, where they are less than `nearest`, of the triangles `there`.
+  // Reduces `nearest` to the squared distances from two points to those triangles whose lanes are
+  // set in `there`, where these are smaller.
   MERLIN_INLINE void approach(const Point (&points)[2], const Mask& there,
                               Lanes (&nearest)[2]) const {
     const Lanes n[3] = {b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2],
@@ -58,7 +60,7 @@ struct Triangles {
   }
 };
 
-// Where vertices are, from `to`.
+// Positions of eight vertices, relative to `to`.
 MERLIN_INLINE void cornersFrom(const QuadricView& view, const Mask& vertices, const float* to,
                                Lanes (&corners)[3]) {
   std::uint32_t numbers[8];
@@ -69,7 +71,8 @@ MERLIN_INLINE void cornersFrom(const QuadricView& view, const Mask& vertices, co
   for (int k = 0; k < 3; ++k) corners[k] -= to[k];
 }
 
-// As Triangles::approach(), of those that v's star has once `other` and v are at `to`.
+// Triangles::approach() for the triangles that v's star keeps once v and `other` have merged at
+// `to`.
 MERLIN_INLINE void approachStar(const QuadricView& view, const QuadricVertex& v,
                                 std::uint32_t other, const float* to, const Point (&points)[2],
                                 Lanes (&nearest)[2]) {
@@ -77,7 +80,7 @@ MERLIN_INLINE void approachStar(const QuadricView& view, const QuadricVertex& v,
     const std::uint32_t* const corners = &view.corners[v.star + first].b;
     const std::uint32_t count = v.degree - first;
     const Mask b = firsts(corners, count);
-    Mask c = next(b);  // of a closed fan
+    Mask c = next(b);  // right for a closed fan
     Triangles t;
     cornersFrom(view, b, to, t.b);
     if (!(v.flags & kOpen) && v.degree <= kLine) {
@@ -133,4 +136,4 @@ FindFarther portableFartherWitness() { return fartherPortable; }
 
 FindFarther fartherWitness() { return forThisProcessor(fartherWide, fartherPortable); }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::reduce

@@ -1,11 +1,10 @@
-// glTF 2.0: .glb (a JSON chunk, a binary chunk) and .gltf (the same bytes in base64 inside the
-// JSON, so that it stays one file). Source: Khronos, "glTF 2.0 Specification", 2021, sections 3.6,
-// 3.7.2 and 4.4.
+// Writes glTF 2.0: .glb (a JSON chunk, a binary chunk) and .gltf (the same bytes in base64 inside
+// the JSON, so that it is a single file). Source: Khronos, "glTF 2.0 Specification", 2021, sections
+// 3.6, 3.7.2 and 4.4.
 //
-// The format says that colours are linear, that normals have unit length, and that texture
-// coordinates start at the top left: each is turned into that. Features without a name in glTF are
-// application-specific attributes, "_heat"; so are colours beside a texture's picture, which glTF
-// would multiply.
+// The format requires linear colours, unit normals, and texture coordinates from the top left; the
+// values are converted. Features without a name in glTF become application-specific attributes
+// ("_heat"); so do the colours of a textured mesh, since glTF would multiply the texture by them.
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +14,7 @@
 #include "daemon/base/bytes.h"
 #include "render/mesh/io/writer.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -36,13 +35,13 @@ std::string attributeOf(const Feature& f, bool textured) {
   return f.name == "normal" ? "NORMAL" : f.name == "colour" ? "COLOR_0" : "TEXCOORD_0";
 }
 
-// Equation of IEC 61966-2-1.
+// sRGB to linear, equation of IEC 61966-2-1.
 float linearOf(float srgb) {
   const float c = std::clamp(srgb, 0.0F, 1.0F);
   return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F);
 }
 
-// Turns the row of a usual feature into what glTF wants.
+// Converts one row of a usual feature to glTF's conventions.
 void adapt(const Feature& f, float* row) {
   if (!isUsual(f)) return;
   if (f.name == "colour") {
@@ -51,7 +50,7 @@ void adapt(const Feature& f, float* row) {
     row[1] = 1 - row[1];
   } else {
     const float length = std::hypot(row[0], row[1], row[2]);
-    const float none[] = {0, 0, 1};  // where normals cancel, any is as wrong
+    const float none[] = {0, 0, 1};  // an arbitrary direction for a zero normal
     for (int k = 0; k < 3; ++k) row[k] = length > 0 ? row[k] / length : none[k];
   }
 }
@@ -87,7 +86,7 @@ class Document {
     bytes_ = bytesIn(mesh);
   }
 
-  // `uri` is empty where the buffer is the file's binary chunk.
+  // `uri` of the buffer; empty if the buffer is the binary chunk of a .glb file.
   std::string text(const std::string& uri) const {
     Json buffer = {{"byteLength", bytes_}};
     if (!uri.empty()) buffer["uri"] = uri;
@@ -180,8 +179,9 @@ std::uint64_t glbSize(const Mesh& mesh) {
 Result<Ok> fitsGlb(const Mesh& mesh) {
   const std::uint64_t size = glbSize(mesh);
   if (size <= 0xFFFFFFFF) return Ok{};
-  return Error{Errc::kUnsupported,
-               fmt::format("{} bytes, and a .glb has 4 GiB at most; write .gltf or .ply", size)};
+  return Error{
+      Errc::kUnsupported,
+      fmt::format("{} bytes, but a .glb file has at most 4 GiB; write .gltf or .ply", size)};
 }
 
 bool writeGlb(const Mesh& mesh, const std::string&, const WriteBytes& bytes) {
@@ -196,7 +196,7 @@ bool writeGlb(const Mesh& mesh, const std::string&, const WriteBytes& bytes) {
   return bytes(std::as_bytes(std::span(head))) && writeBuffer(mesh, bytes);
 }
 
-// Bytes in any portions to base64 (RFC 4648).
+// Encodes bytes, passed in portions of any size, as base64 (RFC 4648).
 class Base64 {
  public:
   explicit Base64(const WriteBytes& bytes) : bytes_(bytes) {}
@@ -240,7 +240,7 @@ class Base64 {
 
 bool writeGltf(const Mesh& mesh, const std::string&, const WriteBytes& bytes) {
   const std::string json = Document(mesh).text(kPayload);
-  // With its quotes: no name can hold that, since quotes in names are escaped.
+  // Searched for with its quotes, which no feature name can contain: quotes in names are escaped.
   const std::string uri = fmt::format("\"uri\":\"{}", kPayload);
   const std::size_t cut = json.find(uri) + uri.size();
   const auto put = [&](std::string_view text) { return bytes(std::as_bytes(std::span(text))); };
@@ -255,4 +255,4 @@ bool writeGltf(const Mesh& mesh, const std::string&, const WriteBytes& bytes) {
 const MeshWriter kGlbWriter{"glb", carries, writeGlb, PicturePlace::kInside, fitsGlb};
 const MeshWriter kGltfWriter{"gltf", carries, writeGltf, PicturePlace::kInside};
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

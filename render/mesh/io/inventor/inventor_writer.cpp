@@ -1,10 +1,10 @@
-// Open Inventor 2.1, ascii. Normals, colours and texture coordinates are bound per indexed vertex;
-// without index lists of their own they follow coordIndex. J. Wernecke, "The Inventor Mentor",
-// 1994.
+// Writes Open Inventor 2.1 ASCII. Normals, colours and texture coordinates are bound per indexed
+// vertex; they have no index lists of their own, so coordIndex applies. J. Wernecke, "The Inventor
+// Mentor", 1994.
 #include "render/mesh/io/inventor_text.h"
 #include "render/mesh/io/writer.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
 // "Node { field [ a b c, ... ] }"
@@ -56,4 +56,4 @@ void printSeparator(TextSink& out, const Mesh& mesh, const std::string& picture)
 
 const MeshWriter kInventorWriter{"iv", carries, write, PicturePlace::kBeside};
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -10,25 +10,27 @@
 #include "daemon/base/text.h"
 #include "render/mesh/io/text_lines.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
-// "7/2/1" as far as it concerns a mesh: from 0 on; what is not there is kNoTexcoord.
+// A face corner such as "7/2/1", as indices from 0. A missing texture coordinate is kNoTexcoord;
+// the normal is ignored.
 struct ObjCorner {
   std::uint32_t vertex = 0, texcoord = kNoTexcoord;
 };
 
-// From 1 on, or negative: from the last back. Far indices stay far, for validate() to find.
+// The index from 0 for a number in the file: 1 is the first element, -1 the last one so far. An
+// invalid number becomes an index out of range, which checkCorners() refuses.
 std::uint32_t indexOf(int number, std::size_t count) {
   const std::int64_t index =
       number > 0 ? std::int64_t{number} - 1 : static_cast<std::int64_t>(count) + number;
   return number == 0 || index < 0 ? 0xFFFFFFFF : static_cast<std::uint32_t>(index);
 }
 
-// The farthest of what corners name.
+// The largest index that corners refer to, of vertices or of texture coordinates.
 struct Farthest {
   std::uint32_t index = 0;
-  int number = 0;  // as it stands there
+  int number = 0;  // as written in the file
   std::size_t line = 0;
 
   void take(std::uint32_t i, int as, std::size_t at) {
@@ -36,8 +38,9 @@ struct Farthest {
   }
   Result<Ok> check(const char* what, std::size_t count) const {
     if (line == 0 || index < count) return Ok{};
-    return Error{Errc::kMalformed, fmt::format("line {}: a corner names {} {}, there are {}", line,
-                                               what, number, count)};
+    return Error{Errc::kMalformed,
+                 fmt::format("line {}: a corner refers to {} {}, but there are {}", line, what,
+                             number, count)};
   }
 };
 
@@ -48,7 +51,7 @@ class ObjParser {
   explicit ObjParser(std::string_view content) : left_(content) {}
 
   Result<ObjSurface> parse() {
-    // Before gigabytes are read that are no text.
+    // Refuses binary files, which may be large, before they are parsed.
     const std::size_t zero = left_.substr(0, kFirstBlock).find('\0');
     if (zero != std::string_view::npos)
       return Error{Errc::kMalformed, fmt::format("byte {} is 0: an OBJ file is text", zero)};
@@ -64,7 +67,8 @@ class ObjParser {
   }
 
  private:
-  // By a "\\" at its end, which of a name that it stands at without a blank is a part.
+  // Whether the line goes on in the next one, i.e. ends with a backslash. In lines that hold a
+  // name, a backslash without a blank before it belongs to the name.
   static bool goesOn(std::string_view line) {
     if (!line.ends_with('\\')) return false;
     line.remove_suffix(1);
@@ -90,7 +94,8 @@ class ObjParser {
   }
 
   Error bad(std::string_view word, const char* what) const {
-    return {Errc::kMalformed, fmt::format("line {}: \"{}\" is no {}", line_, excerpt(word), what)};
+    return {Errc::kMalformed,
+            fmt::format("line {}: \"{}\" is not a {}", line_, excerpt(word), what)};
   }
 
   Result<Ok> take(std::string_view keyword, std::string_view line) {
@@ -102,7 +107,7 @@ class ObjParser {
     return Ok{};
   }
 
-  // As many numbers as stand in the line, at most eight of them.
+  // Reads all numbers of the line and stores the first eight of them; returns how many it stored.
   Result<std::size_t> takeNumbers(std::string_view line, std::array<float, 8>& numbers) const {
     std::size_t count = 0;
     for (std::string_view word = takeWord(line); !word.empty(); word = takeWord(line)) {
@@ -119,8 +124,9 @@ class ObjParser {
     const auto count = takeNumbers(line, n);
     if (!count) return count.error();
     if (*count < 3) {
-      return Error{Errc::kMalformed,
-                   fmt::format("line {}: a vertex has 3 coordinates, here are {}", line_, *count)};
+      return Error{
+          Errc::kMalformed,
+          fmt::format("line {}: a vertex needs 3 coordinates, this one has {}", line_, *count)};
     }
     Mesh& mesh = surface_.mesh;
     mesh.positions.insert(mesh.positions.end(), n.begin(), n.begin() + 3);
@@ -151,8 +157,9 @@ class ObjParser {
       last = corner;
     }
     if (count >= 3) return Ok{};
-    return Error{Errc::kMalformed,
-                 fmt::format("line {}: a face has 3 corners or more, here are {}", line_, count)};
+    return Error{
+        Errc::kMalformed,
+        fmt::format("line {}: a face needs 3 corners or more, this one has {}", line_, count)};
   }
 
   // "7", "7/1", "7//2", "-1/1/2".
@@ -188,7 +195,7 @@ class ObjParser {
     return at->second;
   }
 
-  // Vertices and coordinates may stand behind the faces that use them.
+  // Called at the end: vertices and texture coordinates may follow the faces that use them.
   Result<Ok> checkCorners() const {
     const auto vertices = vertices_.check("vertex", surface_.mesh.vertexCount());
     return vertices ? texcoords_.check("texture coordinate", surface_.texcoords.size() / 2)
@@ -205,7 +212,7 @@ class ObjParser {
   }
 
   std::string_view left_;
-  std::string joined_;  // lines that go on
+  std::string joined_;  // a line that continues on others
   std::size_t line_ = 0;
   ObjSurface surface_;
   std::vector<float> colours_;
@@ -219,4 +226,4 @@ class ObjParser {
 
 Result<ObjSurface> parseObj(std::string_view content) { return ObjParser(content).parse(); }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -13,10 +13,10 @@
 #include "render/mesh/io/beside.h"
 #include "render/mesh/io/text_lines.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
-// How many words follow an option of a map; -1: it is none.
+// Number of words after an option of map_Kd; -1 if `option` is not one.
 int wordsOf(std::string_view option) {
   constexpr std::pair<std::string_view, int> kOptions[] = {
       {"-clamp", 1}, {"-blendu", 1}, {"-blendv", 1}, {"-cc", 1}, {"-bm", 1},      {"-boost", 1},
@@ -41,7 +41,7 @@ class Library {
       notes_.push_back(file.error().what + "; its materials are left out");
       return;
     }
-    ObjMaterial* material = nullptr;  // null: one that no face has
+    ObjMaterial* material = nullptr;  // null: a material that no face uses
     for (std::string_view text = file->text(); !text.empty();) {
       std::string_view line = takeLine(text);
       const std::string_view keyword = takeWord(line);
@@ -76,10 +76,9 @@ class Library {
       std::string_view after = rest;
       const std::string_view option = takeWord(after);
       int words = wordsOf(option);
-      if (words < 0) break;  // a file's name may begin so
+      if (words < 0) break;  // a file name that begins with '-'
       if (option == "-s" || option == "-o")
-        notes_.push_back(
-            fmt::format("map_Kd {}: the option {} is not followed", excerpt(line), option));
+        notes_.push_back(fmt::format("map_Kd {}: the option {} is ignored", excerpt(line), option));
       float number = 0;
       for (bool first = true; words > 0; --words, first = false) {
         std::string_view next = after;
@@ -94,23 +93,23 @@ class Library {
     material.picture = pictureOf(pathBeside(folder_, rest));
   }
 
-  std::shared_ptr<const ImageFile> pictureOf(const std::string& path) {
+  std::shared_ptr<const image::ImageFile> pictureOf(const std::string& path) {
     const auto known = pictures_.find(path);
     if (known != pictures_.end()) return known->second;
-    std::shared_ptr<const ImageFile> picture;
-    if (auto read = readImage(path))
-      picture = std::make_shared<const ImageFile>(*std::move(read));
+    std::shared_ptr<const image::ImageFile> picture;
+    if (auto read = image::readImage(path))
+      picture = std::make_shared<const image::ImageFile>(*std::move(read));
     else
       notes_.push_back(read.error().what + "; its colours are left out");
     pictures_[path] = picture;
     return picture;
   }
 
-  std::map<std::string, std::size_t, std::less<>> numbers_;  // of the materials
+  std::map<std::string, std::size_t, std::less<>> numbers_;  // by name
   std::string folder_;
   std::vector<std::string>& notes_;
   std::vector<ObjMaterial> materials_;
-  std::map<std::string, std::shared_ptr<const ImageFile>> pictures_;
+  std::map<std::string, std::shared_ptr<const image::ImageFile>> pictures_;
 };
 
 }  // namespace
@@ -125,8 +124,8 @@ std::vector<ObjMaterial> readMaterials(const std::vector<std::string>& names,
     if (named.insert(name).second && named.size() <= kMost) library.read(name);
   }
   if (named.size() > kMost)
-    notes.push_back(fmt::format("of material libraries the first {} are read", kMost));
+    notes.push_back(fmt::format("only the first {} material libraries are read", kMost));
   return library.take();
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -1,4 +1,4 @@
-// Colours of an OBJ file's materials: a picture, or one colour. Private to render/mesh/io.
+// Materials of an OBJ file: a texture image or one diffuse colour. Private to render/mesh/io.
 #pragma once
 
 #include <array>
@@ -10,21 +10,23 @@
 
 #include "render/image/image_file.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
 struct ObjMaterial {
-  std::shared_ptr<const ImageFile> picture;     // map_Kd; shared by materials that name one file
-  bool clamped = false;                         // the picture does not repeat
+  std::shared_ptr<const image::ImageFile>
+      picture;           // map_Kd; shared by materials that name the same file
+  bool clamped = false;  // the texture does not repeat
   std::optional<std::array<float, 3>> diffuse;  // Kd
 
   auto operator<=>(const ObjMaterial&) const = default;
 };
 
-// The materials of these names, from the libraries that an OBJ file in `folder` ("" or with a
-// slash at its end) names. Only files in that folder or below are opened: of another path its last
-// part. What could not be had is not there, and a line in `notes` says why.
+// Reads the materials called `names` from the material files `libraries` of an OBJ file in `folder`
+// ("" or with a trailing slash); returns one entry for each name. Only files in that folder or
+// below are opened: of any other path the last component is used. Files that cannot be read are
+// skipped, and a line in `notes` says why.
 std::vector<ObjMaterial> readMaterials(const std::vector<std::string>& names,
                                        const std::vector<std::string>& libraries,
                                        const std::string& folder, std::vector<std::string>& notes);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -1,11 +1,11 @@
-// OBJ files with the pictures of their materials, as a row of the table of readers.
+// Reads OBJ files and the texture images of their materials: a row of the table of readers.
 #include <algorithm>
 #include <utility>
 
 #include "render/mesh/io/obj/obj_texture.h"
 #include "render/mesh/io/reader.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
 Result<LoadedMesh> read(std::string_view content, const std::string& folder) {
@@ -22,7 +22,7 @@ Result<LoadedMesh> read(std::string_view content, const std::string& folder) {
       std::ranges::any_of(materials, [](const ObjMaterial& m) { return m.picture != nullptr; });
   if (pictures && loaded.mesh.texture.empty())
     loaded.notes.emplace_back(
-        "not one picture that repeats, everywhere: seen as colours of the vertices");
+        "several textures, a clamped one, or faces without one: baked into vertex colours");
   return loaded;
 }
 
@@ -30,8 +30,8 @@ Result<LoadedMesh> read(std::string_view content, const std::string& folder) {
 
 const MeshReader kObjReader = {
     "obj",
-    "colours; texture coordinates, and the pictures (PNG, JPEG) that its "
-    "materials name",
+    "colours; texture coordinates, and the texture images (PNG, JPEG) of its "
+    "materials",
     read};
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -6,17 +6,18 @@
 #include <map>
 #include <utility>
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
-// A vertex as corners see it.
+// A combination of vertex, texture coordinate and material that corners have in common.
 struct Wedge {
   std::uint32_t vertex, texcoord, material;
   bool operator==(const Wedge&) const = default;
 };
 
-// The first wedge of each vertex has the vertex' number, the others stand behind all of them. Those
-// of one vertex are a chain, which is short as a rule; what is behind its end stands in a table.
+// Numbers the wedges: the first wedge of each vertex has the index of the vertex, the others are
+// appended behind all vertices. The wedges of a vertex form a linked list of at most kLongest
+// entries; further wedges are found through a map.
 class Wedges {
  public:
   explicit Wedges(std::size_t vertices)
@@ -56,7 +57,7 @@ class Wedges {
   std::map<std::array<std::uint32_t, 3>, std::uint32_t> others_;
 };
 
-// `triangles` then holds wedges.
+// Returns the wedges; `triangles` receives the wedge of each corner.
 std::vector<Wedge> wedgesOf(const ObjSurface& surface, std::vector<std::uint32_t>& triangles) {
   Wedges wedges(surface.mesh.vertexCount());
   triangles.resize(surface.mesh.triangles.size());
@@ -67,7 +68,7 @@ std::vector<Wedge> wedgesOf(const ObjSurface& surface, std::vector<std::uint32_t
   return wedges.take();
 }
 
-// Materials that look the same are one: no seam runs between them.
+// Merges materials with the same content, so that no seam runs between them.
 void mergeMaterials(ObjSurface& surface, const std::vector<ObjMaterial>& materials) {
   std::vector<std::uint32_t> same(materials.size());
   std::map<ObjMaterial, std::uint32_t> first;
@@ -76,11 +77,12 @@ void mergeMaterials(ObjSurface& surface, const std::vector<ObjMaterial>& materia
   for (std::uint32_t& m : surface.triangle_material) m = same[m];
 }
 
-// That of every corner, if there is one, and if it repeats as a texture does.
-const ImageFile* onlyPicture(const ObjSurface& surface, const std::vector<ObjMaterial>& materials) {
+// The texture image, if all corners use the same one and it repeats; else nullptr.
+const image::ImageFile* onlyPicture(const ObjSurface& surface,
+                                    const std::vector<ObjMaterial>& materials) {
   const auto& used = surface.triangle_material;
   if (used.empty() || std::ranges::count(surface.corner_texcoord, kNoTexcoord) > 0) return nullptr;
-  const ImageFile* picture = materials[used[0]].picture.get();
+  const image::ImageFile* picture = materials[used[0]].picture.get();
   const bool everywhere = std::ranges::all_of(used, [&](std::uint32_t m) {
     return materials[m].picture.get() == picture && !materials[m].clamped;
   });
@@ -142,8 +144,9 @@ Mesh textured(ObjSurface surface, const std::vector<ObjMaterial>& materials) {
   }
   if (dresser.hasColours()) mesh.features.push_back(std::move(colour));
   if (!surface.texcoords.empty()) mesh.features.push_back(std::move(texcoord));
-  if (const ImageFile* picture = onlyPicture(surface, materials)) mesh.texture = picture->file;
+  if (const image::ImageFile* picture = onlyPicture(surface, materials))
+    mesh.texture = picture->file;
   return mesh;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

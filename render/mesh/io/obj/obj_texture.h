@@ -1,18 +1,18 @@
-// Texture coordinates and colours of an OBJ file's corners as features of vertices. Private to
-// render/mesh/io.
+// Converts texture coordinates and materials of an OBJ file's face corners to vertex features.
+// Private to render/mesh/io.
 #pragma once
 
 #include "render/mesh/io/obj/obj.h"
 #include "render/mesh/io/obj/obj_materials.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
-// One vertex for each texture coordinate and material that a vertex of the file has at its corners:
-// at a seam several in one place, bit by bit (samePlace() finds them). The mesh gets "texcoord" and
-// "colour" where the file has them: of a corner the picture's colour, else the vertex' own, else
-// the material's, else white. Where one picture that repeats is at every corner, it is the mesh's
-// texture as well.
-// REQUIRES: every index in range, `materials` are the surface's.
+// Splits each vertex of the file into one vertex for each combination of texture coordinate and
+// material at its corners; the vertices at a seam have bit-identical positions (samePlace() finds
+// them). The mesh gets "texcoord" and "colour" where the file has them; a vertex' colour comes from
+// the texture image, else from the vertex in the file, else from the material, else it is white. If
+// all corners use the same repeating texture image, it also becomes the mesh's texture.
+// REQUIRES: every index is in range, `materials` belong to `surface`.
 Mesh textured(ObjSurface surface, const std::vector<ObjMaterial>& materials);
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

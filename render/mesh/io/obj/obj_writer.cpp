@@ -1,8 +1,9 @@
-// Wavefront OBJ. Colours stand behind the position, as MeshLab, Blender and OpenMesh read them.
+// Writes Wavefront OBJ. Colours follow the position in each v line, as MeshLab, Blender and
+// OpenMesh read them.
 #include "render/mesh/io/text_sink.h"
 #include "render/mesh/io/writer.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
 bool carries(const Mesh&, const Feature& f) { return isUsual(f); }
@@ -51,4 +52,4 @@ bool write(const Mesh& mesh, const std::string& name, const WriteBytes& bytes) {
 
 const MeshWriter kObjWriter{"obj", carries, write, PicturePlace::kBeside, nullptr, material};
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -1,4 +1,4 @@
-// OFF files in plain letters, as a row of the table of readers.
+// Reads ASCII OFF files: a row of the table of readers.
 #include <algorithm>
 #include <optional>
 
@@ -7,14 +7,14 @@
 #include "render/mesh/io/reader.h"
 #include "render/mesh/io/text_lines.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
 Error malformed(std::size_t line, const std::string& what) {
   return {Errc::kMalformed, fmt::format("line {}: {}", line, what)};
 }
 
-// The values behind each vertex' coordinates, as the first word of the file tells.
+// Which values follow the coordinates of each vertex; the first word of the file declares them.
 struct Form {
   bool normal = false, colour = false, texcoord = false;
 };
@@ -37,21 +37,22 @@ class OffFile {
  public:
   explicit OffFile(std::string_view content) : rest_(content), bytes_(content.size()) {}
 
-  // The first word and the numbers of vertices and faces.
+  // Parses the first word of the file and the numbers of vertices and faces.
   Result<Ok> header() {
     std::string_view line = nextLine();
     const std::string_view keyword = takeWord(line);
     const auto form = formOf(keyword);
     if (!form)
-      return malformed(line_, "does not begin with OFF, COFF, NOFF, STOFF or a union of these");
+      return malformed(line_,
+                       "does not begin with OFF, COFF, NOFF, STOFF or a combination of these");
     form_ = *form;
     if (trimmed(line) == "BINARY")
-      return Error{Errc::kUnsupported, "is a binary OFF file; only plain letters are read"};
+      return Error{Errc::kUnsupported, "is a binary OFF file; only ASCII is supported"};
     if (trimmed(line).empty()) line = nextLine();
     if (!readNumber(takeWord(line), vertices_) || !readNumber(takeWord(line), faces_))
-      return malformed(line_, "has no numbers of vertices and faces");
+      return malformed(line_, "lacks the numbers of vertices and faces");
     if (vertices_ > bytes_ || faces_ > bytes_)
-      return malformed(line_, fmt::format("promises {} vertices and {} faces in {} bytes",
+      return malformed(line_, fmt::format("declares {} vertices and {} faces in a file of {} bytes",
                                           vertices_, faces_, bytes_));
     return Ok{};
   }
@@ -77,7 +78,7 @@ class OffFile {
   }
 
  private:
-  // The next line that holds anything; empty at the end.
+  // The next line that is neither blank nor a comment; empty at the end of the file.
   std::string_view nextLine() {
     while (!rest_.empty()) {
       const std::string_view line = trimmed(takeLine(rest_));
@@ -96,7 +97,8 @@ class OffFile {
     return true;
   }
 
-  // Three or four numbers, whole ones up to 255 or fractions up to 1: as the first vertex has them.
+  // Reads a colour of three or four numbers: integers 0 to 255, or fractions 0 to 1. The first
+  // vertex decides which of these the file has.
   bool takeColour(std::string_view& line) {
     if (colour_.values.empty()) {
       std::string_view ahead = line;
@@ -116,28 +118,31 @@ class OffFile {
 
   Result<Ok> addVertex(std::string_view line, std::size_t i) {
     if (line.empty())
-      return malformed(line_, fmt::format("ends after {} of {} vertices", i, vertices_));
+      return malformed(line_, fmt::format("the file ends after {} of {} vertices", i, vertices_));
     const bool whole =
         take(line, 3, mesh_.positions) && (!form_.normal || take(line, 3, normal_.values)) &&
         (!form_.colour || takeColour(line)) && (!form_.texcoord || take(line, 2, texcoord_.values));
-    if (!whole) return malformed(line_, fmt::format("vertex {} lacks a number", i));
+    if (!whole)
+      return malformed(line_, fmt::format("vertex {}: a number is missing or malformed", i));
     return Ok{};
   }
 
-  // A polygon becomes a fan; what follows the corners is the face's colour, which has no place.
+  // Adds a polygon as a triangle fan. Numbers after the corners are the face's colour, which is
+  // ignored.
   Result<Ok> addFace(std::string_view line, std::size_t i) {
-    if (line.empty()) return malformed(line_, fmt::format("ends after {} of {} faces", i, faces_));
+    if (line.empty())
+      return malformed(line_, fmt::format("the file ends after {} of {} faces", i, faces_));
     std::size_t corners = 0;
     if (!readNumber(takeWord(line), corners))
-      return malformed(line_, fmt::format("face {} has no number of corners", i));
+      return malformed(line_, fmt::format("face {}: the number of corners is missing", i));
     std::uint32_t first = 0, before = 0;
     for (std::size_t k = 0; k < corners; ++k) {
       std::uint32_t v = 0;
       if (!readNumber(takeWord(line), v))
         return malformed(line_, fmt::format("face {} has {} of {} corners", i, k, corners));
       if (v >= vertices_)
-        return malformed(line_,
-                         fmt::format("face {} names vertex {}, and there are {}", i, v, vertices_));
+        return malformed(
+            line_, fmt::format("face {} refers to vertex {}, but there are {}", i, v, vertices_));
       if (k == 0) first = v;
       if (k >= 2) mesh_.triangles.insert(mesh_.triangles.end(), {first, before, v});
       before = v;
@@ -173,8 +178,8 @@ std::optional<MeshFileSize> size(std::string_view content, const std::string&) {
 }  // namespace
 
 const MeshReader kOffReader = {"off",
-                               "plain letters: normals, colours and texture coordinates; polygons "
-                               "become fans",
+                               "ASCII: normals, colours and texture coordinates; polygons "
+                               "become triangle fans",
                                read, size};
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -5,17 +5,17 @@
 
 #include <fmt/format.h>
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
 std::uint32_t Collector::checked(VertexHandle v) const {
   if (!v.is_valid() || static_cast<std::size_t>(v.idx()) >= vertices())
-    throw BrokenFile(fmt::format("names vertex {}, and there are {}", v.idx(), vertices()));
+    throw BrokenFile(fmt::format("refers to vertex {}, but there are {}", v.idx(), vertices()));
   return static_cast<std::uint32_t>(v.idx());
 }
 
 std::uint32_t Collector::checked(HalfedgeHandle h) const {
   if (!h.is_valid() || static_cast<std::size_t>(h.idx()) >= to_.size())
-    throw BrokenFile(fmt::format("names half-edge {}, and there are {}", h.idx(), to_.size()));
+    throw BrokenFile(fmt::format("refers to half-edge {}, but there are {}", h.idx(), to_.size()));
   return static_cast<std::uint32_t>(h.idx());
 }
 
@@ -55,8 +55,8 @@ void Collector::set_next(HalfedgeHandle h, HalfedgeHandle next) {
   if (next.is_valid()) next_[checked(h)] = checked(next);  // a border may have none
 }
 
-// The loop of half-edges of each face. A half-edge is of one face, so that all loops together are
-// no longer than all half-edges.
+// Follows the loop of half-edges of each face and adds its corners. A half-edge belongs to one
+// face, so all loops together are no longer than the number of half-edges.
 void Collector::addLoops() {
   std::vector<bool> used(to_.size());
   for (std::size_t f = 0; f < face_halfedge_.size(); ++f) {
@@ -64,12 +64,12 @@ void Collector::addLoops() {
     std::uint32_t h = face_halfedge_[f];
     do {
       if (used[h])
-        throw BrokenFile(fmt::format("has a face (number {}) whose edges do not close", f));
+        throw BrokenFile(fmt::format("has a face (number {}) whose edges do not form a loop", f));
       used[h] = true;
       corners_.push_back(to_[h]);
       h = next_[h];
       if (h == kNone)
-        throw BrokenFile(fmt::format("has a face (number {}) whose edges do not close", f));
+        throw BrokenFile(fmt::format("has a face (number {}) whose edges do not form a loop", f));
     } while (h != face_halfedge_[f]);
   }
   face_halfedge_.clear();
@@ -94,4 +94,4 @@ Mesh Collector::take() {
   return mesh;
 }
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -1,8 +1,8 @@
-// Collector: takes what OpenMesh's readers find in a file, as it stands there. Private to
-// render/mesh/io.
+// Collector: an OpenMesh importer that stores vertices and faces exactly as a file has them.
+// Private to render/mesh/io.
 //
-// OpenMesh's own meshes drop what their half-edges cannot hold (a third face at an edge) without a
-// word. A collector keeps every face, and refuses what points outside of the mesh.
+// OpenMesh's own meshes silently drop faces that half-edges cannot represent (a third face at an
+// edge). A Collector keeps every face, and rejects indices that are out of range.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@
 
 #include "render/mesh/mesh.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
-// Thrown through OpenMesh, and caught in openmesh_reader.cpp.
+// Thrown while OpenMesh's reader calls a Collector, and caught in openmesh_reader.cpp.
 class BrokenFile : public std::runtime_error {
   using runtime_error::runtime_error;
 };
@@ -31,10 +31,12 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   using FaceHandle = OpenMesh::FaceHandle;
   using Status = OpenMesh::Attributes::StatusInfo;
 
-  // `most`: of vertices, of faces and of corners, as many as the file can hold.
+  // `most`: limit on the number of vertices, faces, corners and half-edges each: as many as the
+  // file can hold.
   explicit Collector(std::size_t most) : most_(most) {}
 
-  // Faces as fans of triangles. Throws BrokenFile where half-edges do not close.
+  // Returns the collected mesh, with polygons as triangle fans. Throws BrokenFile if the half-edges
+  // of a face do not form a loop.
   Mesh take();
   std::size_t vertices() const noexcept { return positions_.size() / 3; }
   std::size_t faces() const noexcept { return face_begin_.size() + face_halfedge_.size(); }
@@ -44,7 +46,7 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   void set_point(VertexHandle v, const OpenMesh::Vec3f& p) override;
   FaceHandle add_face(const VHandles& corners) override;
 
-  // Half-edges, as an OM file has them: 2 e and 2 e + 1 are the two of edge e.
+  // Half-edges, numbered as in an OM file: edge e has the half-edges 2 e and 2 e + 1.
   HalfedgeHandle add_edge(VertexHandle from, VertexHandle to) override;
   FaceHandle add_face(HalfedgeHandle h) override;
   void set_next(HalfedgeHandle h, HalfedgeHandle next) override;
@@ -62,7 +64,7 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   void set_texcoord(VertexHandle v, const OpenMesh::Vec2f& t) override { set(texcoord_, v, t, 1); }
   void set_texcoord(VertexHandle v, const OpenMesh::Vec3f& t) override { set(texcoord_, v, t, 1); }
 
-  // Properties for which a surface of vertices has no place.
+  // Ignored: status flags, and properties of faces, edges and half-edges.
   void add_face_texcoords(FaceHandle, VertexHandle, const std::vector<OpenMesh::Vec2f>&) override {}
   void add_face_texcoords(FaceHandle, VertexHandle, const std::vector<OpenMesh::Vec3f>&) override {}
   void set_face_texindex(FaceHandle, int) override {}
@@ -85,7 +87,7 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   void set_color(FaceHandle, const OpenMesh::Vec4f&) override {}
   void add_texture_information(int, std::string) override {}
 
-  // Where OM files' own properties are looked for: none is there, so that they are skipped.
+  // OpenMesh looks up an OM file's custom properties here; this mesh has none, so they are skipped.
   OpenMesh::BaseKernel* kernel() override { return &empty_; }
   std::size_t n_vertices() const override { return vertices(); }
   std::size_t n_faces() const override { return faces(); }
@@ -94,9 +96,8 @@ class Collector final : public OpenMesh::IO::BaseImporter {
  private:
   std::uint32_t checked(VertexHandle v) const;
   std::uint32_t checked(HalfedgeHandle h) const;
-  void count(std::size_t& of) const;
   void addLoops();
-  // Values of a feature are as many as its last vertex needs; take() fills the rest with zeros.
+  // Values of a feature, up to the last vertex that was set; take() appends zeros for the others.
   struct Values {
     std::size_t dimension;
     std::vector<float> values;
@@ -120,4 +121,4 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   OpenMesh::PolyMesh_ArrayKernelT<> empty_;
 };
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -1,5 +1,5 @@
-// OM and STL files through OpenMesh's readers, each a row of the table of readers. What they
-// find goes to a Collector, and is compared with what the file's header promises.
+// Reads OM and STL files with OpenMesh's readers: two rows of the table of readers. A Collector
+// stores what they find; its counts are then compared with those in the file's header.
 #include <algorithm>
 #include <cstring>
 #include <istream>
@@ -13,16 +13,16 @@
 #include "render/mesh/io/openmesh/collector.h"
 #include "render/mesh/io/reader.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
 using OpenMesh::IO::Options;
 
-// A file in memory, which OpenMesh may also seek in.
+// A seekable stream over a file in memory.
 class Buffer final : public std::streambuf {
  public:
   explicit Buffer(std::string_view content) {
-    char* const begin = const_cast<char*>(content.data());  // is only read
+    char* const begin = const_cast<char*>(content.data());  // never written to
     setg(begin, begin, begin + content.size());
   }
 
@@ -47,8 +47,8 @@ struct Counts {
 
 Error malformed(const std::string& what) { return {Errc::kMalformed, what}; }
 
-// Reads with OpenMesh. The stream throws at its end, which ends loops over counts that the file
-// does not hold; whether all is there, the counts say and not the reader.
+// Reads with OpenMesh. The stream throws at its end, which stops loops whose count exceeds the
+// file. Whether the file was complete is decided by the counts, not by the reader's result.
 Result<Mesh> collect(OpenMesh::IO::BaseReader& reader, std::string_view content,
                      const Counts& promised, Options options) {
   Collector collector(content.size() + 1);
@@ -64,7 +64,7 @@ Result<Mesh> collect(OpenMesh::IO::BaseReader& reader, std::string_view content,
     } catch (const std::ios_base::failure&) {  // the counts tell whether something is missing
     }
     if (collector.vertices() < promised.vertices || collector.faces() != promised.faces) {
-      return malformed(fmt::format("promises {} vertices and {} faces, and {} and {} were read",
+      return malformed(fmt::format("declares {} vertices and {} faces, but {} and {} were read",
                                    promised.vertices, promised.faces, collector.vertices(),
                                    collector.faces()));
     }
@@ -79,7 +79,7 @@ Result<Mesh> collect(OpenMesh::IO::BaseReader& reader, std::string_view content,
 constexpr std::pair<const char*, std::size_t> kFeatures[] = {
     {"normal", 3}, {"colour", 3}, {"texcoord", 2}};
 
-// Arrays behind one another, each with its length before it: positions, triangles, features.
+// Packs a mesh as positions, triangles and features; each array follows its length.
 template <typename T>
 void append(std::string& to, const std::vector<T>& values) {
   const std::uint64_t size = values.size();
@@ -119,10 +119,10 @@ Mesh unpacked(std::string_view bytes) {
   return mesh;
 }
 
-// In a process of its own: assertions of Debian's OpenMesh end the program at a damaged file.
+// Reads in a child process: assertions of Debian's OpenMesh end the program at a damaged file.
 Result<LoadedMesh> readBy(OpenMesh::IO::BaseReader& reader, std::string_view content,
                           const Counts& promised, const Options& options) {
-  constexpr std::size_t kBytesPerSecond = 100'000;  // of CPU time; a hundredth of what it takes
+  constexpr std::size_t kBytesPerSecond = 100'000;  // of CPU time; OpenMesh is 100 times as fast
   const std::chrono::seconds limit(10 + content.size() / kBytesPerSecond);
   const auto bytes = inChild(
       [&]() -> Result<std::string> {
@@ -130,14 +130,15 @@ Result<LoadedMesh> readBy(OpenMesh::IO::BaseReader& reader, std::string_view con
         if (!mesh) return mesh.error();
         return packed(*mesh);
       },
-      "is damaged: OpenMesh's reader broke off at it", limit);
+      "is damaged: OpenMesh's reader failed on it", limit);
   if (!bytes) return bytes.error();
   LoadedMesh loaded;
   loaded.mesh = unpacked(*bytes);
   return loaded;
 }
 
-// More of anything than bytes is a lie, and is found before memory is taken for it.
+// False if the header declares more vertices or faces than the file has bytes; checked before any
+// memory is allocated.
 bool possible(const Counts& counts, std::string_view content) {
   return counts.vertices <= content.size() && counts.faces <= content.size();
 }
@@ -149,7 +150,7 @@ std::uint32_t littleEndian(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-// "OM", the kind of mesh, the version, then the numbers of vertices, faces and edges.
+// Size of: "OM", the kind of mesh, the version, then the numbers of vertices, faces and edges.
 constexpr std::size_t kOmHeader = 16;
 
 Result<Counts> omCounts(std::string_view content) {
@@ -162,8 +163,8 @@ Result<LoadedMesh> readOm(std::string_view content, const std::string&) {
   const auto counts = omCounts(content);
   if (!counts) return counts.error();
   if (!possible(*counts, content))
-    return malformed(fmt::format("promises {} vertices and {} faces in {} bytes", counts->vertices,
-                                 counts->faces, content.size()));
+    return malformed(fmt::format("declares {} vertices and {} faces in a file of {} bytes",
+                                 counts->vertices, counts->faces, content.size()));
   return readBy(OpenMesh::IO::OMReader(), content, *counts, Options(Options::Binary));
 }
 
@@ -175,8 +176,8 @@ std::optional<MeshFileSize> omSize(std::string_view content, const std::string&)
 
 constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;
 
-// A binary file's size follows from its count; plain letters begin with "solid", and so do some
-// binary files.
+// The size of a binary file follows from its count of triangles. ASCII files begin with "solid",
+// but so do some binary files.
 bool isBinaryStl(std::string_view content) {
   return content.size() >= kStlHeader &&
          content.size() == kStlHeader + kStlTriangle * littleEndian(content, 80);
@@ -189,15 +190,15 @@ std::size_t countOf(std::string_view text, std::string_view word) {
   return n;
 }
 
-// Corners in one place, which each triangle has for itself, become one vertex.
+// OpenMesh merges corners at the same position, which STL repeats in each triangle.
 Result<LoadedMesh> readStl(std::string_view content, const std::string&) {
   if (isBinaryStl(content))
     return readBy(OpenMesh::IO::STLReader(), content, {0, littleEndian(content, 80)},
                   Options(Options::Binary));
   if (!content.starts_with("solid"))
     return malformed(
-        "is neither an STL in plain letters (it does not begin with solid) nor a whole "
-        "binary one (its size does not follow from its number of triangles)");
+        "is neither an ASCII STL (it does not begin with solid) nor a complete binary one "
+        "(its size does not match its number of triangles)");
   const std::string text = std::string(content) + "\n";
   return readBy(OpenMesh::IO::STLReader(), text, {0, countOf(content, "endfacet")}, Options());
 }
@@ -213,8 +214,8 @@ std::optional<MeshFileSize> stlSize(std::string_view content, const std::string&
 const MeshReader kOmReader = {"om", "OpenMesh's own format: normals, colours, texture coordinates",
                               readOm, omSize};
 const MeshReader kStlReader = {"stl",
-                               "ascii and binary: triangles, whose corners in one place "
+                               "ASCII and binary: triangles; corners at the same position "
                                "become one vertex",
                                readStl, stlSize};
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

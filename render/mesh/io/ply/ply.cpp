@@ -13,16 +13,16 @@
 #include "render/mesh/io/ply/ply_features.h"
 #include "render/mesh/io/ply/ply_header.h"
 
-namespace merlin::render::ply {
+namespace merlin::render::mesh::ply {
 namespace {
 
-// Where one vertex property goes: a column of a table of floats.
+// Where the values of one vertex property go: a column in a table of floats.
 struct Column {
   std::vector<float>* values = nullptr;  // null: skipped
   std::size_t stride = 1;
   std::size_t offset = 0;
   float scale = 1;
-  bool whole = false;  // of an integer type
+  bool whole = false;  // the property has an integer type
 
   bool isOf(const Column& o) const { return values == o.values && offset == o.offset; }
 };
@@ -41,7 +41,7 @@ bool isKnownFeature(std::string_view name) {
                      [&](const Known& k) { return name == k.feature; });
 }
 
-// Integer colours are shares of their type's range.
+// The factor that turns integer colours into fractions of the range of their type; else 1.
 float scaleOf(const Known* known, Scalar type) {
   if (!known || std::string_view(known->feature) != "colour") return 1;
   if (type == Scalar::kUint8) return 1.0F / 255;
@@ -51,8 +51,8 @@ float scaleOf(const Known* known, Scalar type) {
 
 constexpr std::size_t kNotNumbered = std::numeric_limits<std::size_t>::max();
 
-// "heat" and 2 of "heat_2"; kNotNumbered of any other name, and of numbers that the writer would
-// not write.
+// Splits "heat_2" into "heat" and 2. The number is kNotNumbered for any other name, also if our
+// writer would format it differently ("heat_02").
 std::pair<std::string_view, std::size_t> numbered(std::string_view name) {
   const std::size_t bar = name.rfind('_');
   if (bar == std::string_view::npos || bar == 0) return {name, kNotNumbered};
@@ -64,8 +64,7 @@ std::pair<std::string_view, std::size_t> numbered(std::string_view name) {
   return whole ? std::pair(name.substr(0, bar), number) : std::pair(name, kNotNumbered);
 }
 
-// Scalars "flow_0", "flow_1", ... that follow one another are one feature "flow", as it was
-// written.
+// Joins successive scalars "flow_0", "flow_1", ... to the feature "flow" that our writer split.
 std::vector<Feature> grouped(std::vector<Feature> features, std::size_t vertices) {
   std::vector<Feature> groups;
   for (std::size_t first = 0, end = 0; first < features.size(); first = end) {
@@ -113,23 +112,25 @@ class Reader {
  private:
   Mesh& mesh() { return loaded_.mesh; }
 
-  // A file cannot hold more elements than it has room for; said before anything is allocated.
+  // Refuses a count of elements for which the rest of the file is too short, before any memory is
+  // allocated.
   Result<Ok> checkRoom(const Element& e) const {
     const std::size_t least = std::max<std::size_t>(e.leastBytes(header_.form), 1);
     const std::size_t room = (body_.left() + 1) / least;
     if (e.count <= room) return Ok{};
     return Error{
         Errc::kMalformed,
-        fmt::format("cut short: the header promises {} x {}, the file ends after {} at most",
+        fmt::format("cut short: the header declares {} x {}, the file ends after {} at most",
                     e.count, e.name, room)};
   }
 
   Error brokenAt(const Element& e, std::uint64_t row, const Property& p) const {
     const std::string_view rest = header_.form == Form::kAscii ? body_.rest() : "";
-    return {Errc::kMalformed, rest.empty() ? fmt::format("cut short in {} {} of {}, property {}",
-                                                         e.name, row, e.count, p.name)
-                                           : fmt::format("{} {}, property {}: \"{}\" is no number",
-                                                         e.name, row, p.name, excerpt(rest))};
+    return {Errc::kMalformed,
+            rest.empty()
+                ? fmt::format("cut short in {} {} of {}, property {}", e.name, row, e.count, p.name)
+                : fmt::format("{} {}, property {}: \"{}\" is not a number", e.name, row, p.name,
+                              excerpt(rest))};
   }
 
   Result<Ok> skip(const Element& e) {
@@ -162,15 +163,15 @@ class Reader {
     if (length >= 0 && length < 4294967296.0 && length == std::floor(length)) {
       return static_cast<std::uint64_t>(length);
     }
-    return Error{Errc::kMalformed, fmt::format("{} {}, property {}: {} is no length of a list",
+    return Error{Errc::kMalformed, fmt::format("{} {}, property {}: {} is not the length of a list",
                                                e.name, row, p.name, length)};
   }
 
   Result<std::vector<Column>> planColumns(const Element& e) {
     constexpr std::string_view kAxes = "xyz";
-    unsigned axes = 0;  // a bit each
+    unsigned axes = 0;  // those found, one bit each
     mesh().positions.assign(e.count * 3, 0);
-    mesh().features.reserve(e.properties.size());  // columns point into it
+    mesh().features.reserve(e.properties.size());  // columns point into it: no reallocation
     std::vector<Column> columns;
     for (const Property& p : e.properties) {
       Column c;
@@ -184,7 +185,7 @@ class Reader {
       }
       const auto same = [&](const Column& o) { return c.values && o.isOf(c); };
       if (std::any_of(columns.begin(), columns.end(), same)) {
-        leaveOut(p.name, " (there is one before it)");
+        leaveOut(p.name, " (a second property for the same value)");
         c = {};
       }
       c.whole = isInteger(p.type);
@@ -196,8 +197,8 @@ class Reader {
 
   Column featureColumn(const Property& p, std::uint64_t count) {
     const Known* known = knownAs(p.name);
-    if (!known && isKnownFeature(p.name)) {  // a scalar "colour" has no room for a green
-      leaveOut(p.name, " (has to be several properties)");
+    if (!known && isKnownFeature(p.name)) {  // a scalar "colour" cannot hold three components
+      leaveOut(p.name, " (is expected as several properties)");
       return {};
     }
     const std::string name = known ? known->feature : p.name;
@@ -241,7 +242,7 @@ class Reader {
     std::vector<bool> corners;
     for (const Property& p : e.properties) {
       corners.push_back(isCorners(p));
-      if (!corners.back()) leaveOut(p.name, " (of faces)");
+      if (!corners.back()) leaveOut(p.name, " (a face property)");
     }
     for (std::uint64_t row = 0; row < e.count; ++row) {
       for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -271,7 +272,7 @@ class Reader {
       if (!body_.next(p.type, value)) return brokenAt(e, row, p);
       if (!(value >= 0 && value < 2147483648.0) || value != std::floor(value)) {
         return Error{Errc::kMalformed,
-                     fmt::format("face {}: corner {} is {}, no vertex", row, i, value)};
+                     fmt::format("face {}: corner {} is {}, not a vertex index", row, i, value)};
       }
       const auto v = static_cast<std::uint32_t>(value);
       if (i == 0) first = v;
@@ -292,13 +293,14 @@ class Reader {
   void noteLosses() {
     if (left_out_count_ > 0) loaded_.notes.push_back("left out: " + left_out_ + left_out_more_);
     if (rounded_ > 0)
-      loaded_.notes.push_back(fmt::format("{} whole numbers beyond 2^24 are rounded", rounded_));
+      loaded_.notes.push_back(
+          fmt::format("{} integers beyond 2^24 were rounded to floats", rounded_));
   }
 
   Header header_;
   Body body_;
   LoadedMesh loaded_;
-  std::string left_out_, left_out_more_;  // properties and elements
+  std::string left_out_, left_out_more_;  // names of properties and elements
   std::size_t left_out_count_ = 0, rounded_ = 0;
 };
 
@@ -311,4 +313,4 @@ Result<LoadedMesh> parse(std::string_view bytes, std::vector<std::string>* pictu
   return Reader(bytes, std::move(*header)).read();
 }
 
-}  // namespace merlin::render::ply
+}  // namespace merlin::render::mesh::ply

@@ -1,6 +1,6 @@
-// PLY, read by hand: the one reader that keeps any vertex property, does not split or
-// drop anything silently, and says where a file is broken. See README.md for why not a library.
-// Format: G. Turk, "The PLY Polygon File Format", 1994.
+// PLY parser, written by hand: it keeps any scalar vertex property, never splits or drops data
+// silently, and reports where a file is damaged. README.md says why no library is used. Format: G.
+// Turk, "The PLY Polygon File Format", 1994.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 #include "daemon/base/result.h"
 #include "render/mesh/io/mesh_file.h"
 
-namespace merlin::render::ply {
+namespace merlin::render::mesh::ply {
 
-// `bytes` is a whole file. Faces of more than three corners become fans. The mesh is neither
-// validated nor tidied. Errors: kMalformed, kUnsupported, without the file's name.
-// pictures  gets the names of files that its comments "TextureFile" have
+// `bytes` is a whole file. Faces with more than three corners become triangle fans. The mesh is
+// neither validated nor tidied. Errors: kMalformed, kUnsupported, without the file's name.
+// pictures  receives the file names in the comments "TextureFile"
 Result<LoadedMesh> parse(std::string_view bytes, std::vector<std::string>* pictures = nullptr);
 
-}  // namespace merlin::render::ply
+}  // namespace merlin::render::mesh::ply

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cstring>
 
-namespace merlin::render::ply {
+namespace merlin::render::mesh::ply {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
@@ -16,7 +16,7 @@ bool isSpace(char c) noexcept { return c == ' ' || c == '\n' || c == '\r' || c =
 // The unsigned integer of 1, 2, 4 or 8 bytes at `p`.
 std::uint64_t load(const char* p, std::size_t size, bool big) noexcept {
   std::uint64_t v = 0;
-  switch (size) {  // each a plain load
+  switch (size) {  // with a constant size, memcpy is one load instruction
     case 1: std::memcpy(&v, p, 1); break;
     case 2: std::memcpy(&v, p, 2); break;
     case 4: std::memcpy(&v, p, 4); break;
@@ -77,4 +77,4 @@ std::string_view Body::rest() const noexcept {
   return rest.substr(0, std::min<std::size_t>(rest.find_first_of(" \r\n\t"), 16));
 }
 
-}  // namespace merlin::render::ply
+}  // namespace merlin::render::mesh::ply

@@ -1,4 +1,4 @@
-// The body of a PLY file as a stream of numbers, whatever its form.
+// Reads the body of a PLY file, ASCII or binary, as a stream of numbers.
 #pragma once
 
 #include <cstdint>
@@ -6,21 +6,22 @@
 
 #include "render/mesh/io/ply/ply_header.h"
 
-namespace merlin::render::ply {
+namespace merlin::render::mesh::ply {
 
 class Body {
  public:
   Body(std::string_view bytes, Form form)
       : at_(bytes.data()), end_(at_ + bytes.size()), form_(form) {}
 
-  // The next number of the file; false at its end, or where an ascii word is no number
-  // that a double has.
+  // Reads the next number. False at the end of the file, or if an ASCII word is not a number in the
+  // range of double.
   bool next(Scalar type, double& value) noexcept {
     return form_ == Form::kAscii ? nextWord(value) : nextBinary(type, value);
   }
 
-  // The next list of a binary file where it has three corners, a length in a byte and indices in
-  // four: nearly every file is of those. Else false, and the list is read by next().
+  // Fast path for nearly every file: reads the next list if the file is little-endian binary and
+  // the list is three 4-byte vertex indices after a 1-byte length. Otherwise reads nothing and
+  // returns false; then next() reads the list.
   bool nextTriangle(const Property& list, std::uint32_t* corners) noexcept;
 
   std::size_t left() const noexcept { return static_cast<std::size_t>(end_ - at_); }
@@ -37,4 +38,4 @@ class Body {
   Form form_;
 };
 
-}  // namespace merlin::render::ply
+}  // namespace merlin::render::mesh::ply

@@ -1,11 +1,13 @@
-// The vertex properties of PLY files that make up a feature of MERLIN's. Private to render/mesh/io.
+// Names of the PLY vertex properties that form the features "normal", "colour" and "texcoord".
+// Private to render/mesh/io.
 #pragma once
 
 #include <cstddef>
 
-namespace merlin::render::ply {
+namespace merlin::render::mesh::ply {
 
-// Properties that belong together under one feature's name; the first of each place is written.
+// Maps a property to component `offset` of a feature. Several properties may map to the same
+// component; the writer uses the first of them.
 struct Known {
   const char* property;
   const char* feature;
@@ -34,4 +36,4 @@ inline constexpr Known kKnown[] = {
     {"diffuse_blue", "colour", 3, 2},
 };
 
-}  // namespace merlin::render::ply
+}  // namespace merlin::render::mesh::ply

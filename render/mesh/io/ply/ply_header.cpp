@@ -11,7 +11,7 @@
 #include "render/mesh/io/ply/ply_features.h"
 #include "render/mesh/io/text_lines.h"
 
-namespace merlin::render::ply {
+namespace merlin::render::mesh::ply {
 namespace {
 
 constexpr std::size_t kLongestHeader = 64 * 1024;
@@ -87,14 +87,14 @@ class HeaderParser {
 
   Result<Ok> keyword(const Words& words) {
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return Ok{};
-    // Messages say the names of elements and properties.
+    // Names are limited, since messages quote them.
     if (words.back().size() > kLongestName || (words.size() > 1 && words[1].size() > kLongestName))
-      return bad(header_.lines, fmt::format("a name of more than {} bytes", kLongestName));
+      return bad(header_.lines, fmt::format("a name is longer than {} bytes", kLongestName));
     if (words[0] == "format") return format(words);
     if (words[0] == "element") return element(words);
     if (words[0] == "property") return property(words);
     return bad(header_.lines,
-               fmt::format("\"{}\" is no keyword of a PLY header", excerpt(words[0])));
+               fmt::format("\"{}\" is not a keyword of a PLY header", excerpt(words[0])));
   }
 
   Result<Ok> format(const Words& words) {
@@ -137,11 +137,11 @@ class HeaderParser {
                  "a property is \"property TYPE NAME\" or \"property list TYPE TYPE NAME\"");
     }
     if (p.list && (*count == Scalar::kFloat32 || *count == Scalar::kFloat64)) {
-      return bad(header_.lines, "the length of a list is an integer");
+      return bad(header_.lines, "the length of a list must be an integer");
     }
     p.type = *type;
     p.count_type = *count;
-    if (!isText(words.back())) return bad(header_.lines, "the property's name is no text (UTF-8)");
+    if (!isText(words.back())) return bad(header_.lines, "the property's name is not valid UTF-8");
     p.name = words.back();
     header_.elements.back().properties.push_back(std::move(p));
     return Ok{};
@@ -182,4 +182,4 @@ bool hasTexcoord(const Header& header) {
 
 Result<Header> parseHeader(std::string_view bytes) { return HeaderParser(bytes).parse(); }
 
-}  // namespace merlin::render::ply
+}  // namespace merlin::render::mesh::ply

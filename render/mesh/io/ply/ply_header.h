@@ -1,4 +1,4 @@
-// The header of a PLY file, parsed: which elements follow, of which properties, in which form.
+// Parses the header of a PLY file: its form, its elements and their properties.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 #include "daemon/base/result.h"
 
-namespace merlin::render::ply {
+namespace merlin::render::mesh::ply {
 
 enum class Form { kAscii, kLittleEndian, kBigEndian };
 enum class Scalar : std::uint8_t {
@@ -28,7 +28,7 @@ struct Property {
   std::string name;
   Scalar type = Scalar::kFloat32;
   bool list = false;
-  Scalar count_type = Scalar::kUint8;  // of a list's length
+  Scalar count_type = Scalar::kUint8;  // type of a list's length
 };
 
 struct Element {
@@ -36,22 +36,22 @@ struct Element {
   std::uint64_t count = 0;
   std::vector<Property> properties;
 
-  // The fewest bytes that one of it takes; bounds what a file of a given size can hold.
+  // Least size of one such element [bytes]; limits the count that a file of a given size can hold.
   std::size_t leastBytes(Form form) const noexcept;
 };
 
 struct Header {
   Form form = Form::kAscii;
   std::vector<Element> elements;
-  std::vector<std::string> pictures;  // of comments "TextureFile", MeshLab's; each once
-  std::size_t size = 0;               // bytes, where the body starts
-  std::size_t lines = 0;              // where an ascii body starts, for messages
+  std::vector<std::string> pictures;  // in MeshLab's comments "TextureFile"; each once
+  std::size_t size = 0;               // [bytes]; the body starts there
+  std::size_t lines = 0;              // lines of the header, for messages
 };
 
-// Whether its vertices have texture coordinates, or one of the two.
+// Whether any vertex property is a texture coordinate (u or v).
 bool hasTexcoord(const Header& header);
 
-// Errors: kMalformed, kUnsupported; each names the header's line.
+// Errors: kMalformed, kUnsupported; each with the line number in the header.
 Result<Header> parseHeader(std::string_view bytes);
 
-}  // namespace merlin::render::ply
+}  // namespace merlin::render::mesh::ply

@@ -1,4 +1,4 @@
-// PLY files and the picture that one names, as a row of the table of readers.
+// Reads PLY files and the texture image that a file names: a row of the table of readers.
 #include <fmt/format.h>
 
 #include "render/image/image_file.h"
@@ -8,27 +8,28 @@
 #include "render/mesh/io/reader.h"
 #include "render/mesh/io/writer.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
-// If there are several pictures, a PLY tells at most for faces which one is meant.
+// Several texture images are left out: at most the faces of a PLY tell which one they use.
 Result<LoadedMesh> read(std::string_view content, const std::string& folder) {
   std::vector<std::string> pictures;
   auto loaded = ply::parse(content, &pictures);
   if (!loaded || pictures.empty() || !findOf(loaded->mesh, "texcoord", 2)) return loaded;
   if (pictures.size() > 1) {
-    loaded->notes.push_back(fmt::format("left out: {} pictures of textures", pictures.size()));
+    loaded->notes.push_back(fmt::format("left out: {} texture images", pictures.size()));
     return loaded;
   }
   if (pictures[0].find('\0') != std::string::npos) {
-    loaded->notes.push_back(pictures[0] + ": is no name; the texture's picture is left out");
+    loaded->notes.push_back(pictures[0] +
+                            ": is not a valid file name; the texture image is left out");
     return loaded;
   }
-  auto texture = readImage(pathBeside(folder, pictures[0]));
+  auto texture = image::readImage(pathBeside(folder, pictures[0]));
   if (texture)
     loaded->mesh.texture = std::move(texture->file);
   else
-    loaded->notes.push_back(texture.error().what + "; the texture's picture is left out");
+    loaded->notes.push_back(texture.error().what + "; the texture image is left out");
   return loaded;
 }
 
@@ -58,8 +59,8 @@ std::optional<MeshFileSize> size(std::string_view content, const std::string& fo
 }  // namespace
 
 const MeshReader kPlyReader = {"ply",
-                               "ascii and binary; every scalar vertex property becomes a feature; "
-                               "the picture that a comment TextureFile names",
+                               "ASCII and binary; every scalar vertex property becomes a feature; "
+                               "the texture image that a comment TextureFile names",
                                read, size};
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

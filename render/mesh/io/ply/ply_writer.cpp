@@ -8,11 +8,11 @@
 #include "render/mesh/io/ply/ply_features.h"
 #include "render/mesh/io/writer.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace ply {
 namespace {
 
-// The PLY properties that a feature is written as.
+// Names of the PLY properties that a feature is written as, one for each dimension.
 std::vector<std::string> propertiesOf(const Feature& f) {
   std::vector<std::string> names(f.dimension);
   for (const Known& k : kKnown) {
@@ -28,7 +28,7 @@ std::vector<std::string> propertiesOf(const Feature& f) {
 
 enum class Form { kFloat, kByte, kInteger };
 
-// Colours are bytes; labels are integers unless somebody made them something else.
+// Colours are written as bytes, labels as integers if all their values are whole numbers.
 Form formOf(const Feature& f) {
   if (f.name == "colour" && f.dimension == 3) return Form::kByte;
   const auto whole = [](float x) { return x == std::floor(x) && std::abs(x) < 2147483648.0F; };
@@ -48,7 +48,7 @@ void append(std::string& row, float value, Form form) {
   }
 }
 
-// The picture stands in a comment, as MeshLab has it.
+// The texture image is named in a comment, as MeshLab does it.
 std::string headerFor(const Mesh& mesh, const std::string& name, const std::vector<Form>& forms) {
   constexpr const char* kTypes[] = {"float", "uchar", "int"};
   std::string text = fmt::format(
@@ -95,4 +95,4 @@ bool write(const Mesh& mesh, const std::string& name, const WriteBytes& bytes) {
 
 const MeshWriter kPlyWriter{"ply", ply::carries, ply::write, PicturePlace::kBeside};
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
 
-// Nine numbers and nothing else.
+// Adds the triangle of a line, which must have exactly nine numbers.
 Result<Ok> addTriangle(std::string_view line, std::size_t number, Mesh& mesh) {
   for (int k = 0; k < 9; ++k) {
     line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
@@ -42,4 +42,4 @@ Result<LoadedMesh> read(std::string_view content, const std::string&) {
 
 const MeshReader kRawTrianglesReader = {"raw", "nine coordinates of a triangle on each line", read};
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

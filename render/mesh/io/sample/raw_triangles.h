@@ -1,11 +1,11 @@
-// A sample reader: text files in which each line holds the nine coordinates of a triangle ("RAW
-// triangles"). It shows what a format takes; the product's table does not have it.
+// An example of a reader, for text files in which each line holds the nine coordinates of a
+// triangle ("RAW triangles"). It shows what a new format needs; it is not in the table of readers.
 #pragma once
 
 #include "render/mesh/io/reader.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 
 extern const MeshReader kRawTrianglesReader;
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

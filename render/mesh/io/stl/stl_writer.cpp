@@ -1,15 +1,16 @@
-// Binary STL: a header of 80 bytes, the count, then 50 bytes a triangle: the face's normal, three
-// corners, two bytes that nobody agrees on. Vertices are not shared, and nothing else has a place.
+// Writes binary STL: a header of 80 bytes, the count, then 50 bytes per triangle: the face's
+// normal, three corners, two bytes without a standard meaning. Vertices are not shared; the format
+// holds nothing else.
 #include "daemon/base/bytes.h"
 #include "render/mesh/io/writer.h"
 
-namespace merlin::render {
+namespace merlin::render::mesh {
 namespace {
 
 bool carriesNothing(const Mesh&, const Feature&) { return false; }
 
 bool write(const Mesh& mesh, const std::string&, const WriteBytes& bytes) {
-  std::string row = "written by MERLIN";  // must not begin with "solid", as ascii files do
+  std::string row = "written by MERLIN";  // must not begin with "solid", as ASCII files do
   row.resize(80, ' ');
   appendLe32(row, static_cast<std::uint32_t>(mesh.triangleCount()));
   if (!bytes(std::as_bytes(std::span(row)))) return false;
@@ -32,4 +33,4 @@ bool write(const Mesh& mesh, const std::string&, const WriteBytes& bytes) {
 
 const MeshWriter kStlWriter{"stl", carriesNothing, write};
 
-}  // namespace merlin::render
+}  // namespace merlin::render::mesh

@@ -1,0 +1,12 @@
+// How a person moves a content, or moves within it.
+#pragma once
+
+namespace merlin::render::content {
+
+enum class Navigation {
+  kObject,    // a model: it is turned and moved, or the viewer moves around it
+  kPlane,     // an image: it is moved in its plane and zoomed
+  kPanorama,  // a panorama: the viewer looks around from its centre, and zooms
+};
+
+}  // namespace merlin::render::content

@@ -1,0 +1,32 @@
+// CorrectionChain: applies several corrections in turn, each to the signal of the one before.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "render/frame/correction.h"
+
+namespace merlin::render::frame {
+
+// Thread-bound to the wall's thread.
+class CorrectionChain final : public Correction {
+ public:
+  explicit CorrectionChain(std::vector<std::unique_ptr<Correction>> links)
+      : links_(std::move(links)) {}
+
+  out::Signal apply(const out::Signal& canvas) override {
+    out::Signal signal = canvas;
+    for (const auto& link : links_) signal = link->apply(signal);
+    return signal;
+  }
+  bool hasChanged() const override {
+    return std::ranges::any_of(links_, [](const auto& link) { return link->hasChanged(); });
+  }
+
+ private:
+  std::vector<std::unique_ptr<Correction>> links_;
+};
+
+}  // namespace merlin::render::frame

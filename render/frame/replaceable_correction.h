@@ -1,0 +1,52 @@
+// ReplaceableCorrection: an output's correction that another one takes the place of while the wall
+// runs. Until there is one, and again after nullptr, the signal is the canvas itself.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "render/frame/correction.h"
+
+namespace merlin::render::frame {
+
+// apply() and hasChanged() are for the wall's thread; replace() for one other thread at a time.
+class ReplaceableCorrection final : public Correction {
+ public:
+  explicit ReplaceableCorrection(std::unique_ptr<Correction> first = nullptr)
+      : current_(std::move(first)) {}
+
+  // apply() uses `next` from its next call on. What it replaces is destroyed here or by the next
+  // replace(), never on the wall's thread. Returns at once.
+  void replace(std::unique_ptr<Correction> next) {
+    std::unique_ptr<Correction> old, skipped;
+    const std::lock_guard lock(mutex_);
+    old = std::move(retired_);
+    skipped = std::exchange(next_, std::move(next));
+    waiting_ = true;
+  }
+
+  bool hasChanged() const override { return waiting_ || (current_ && current_->hasChanged()); }
+
+  // Without a correction this costs nothing. Never waits: where replace() is at work the next
+  // frame has the new one.
+  out::Signal apply(const out::Signal& canvas) override {
+    if (waiting_) take();
+    return current_ ? current_->apply(canvas) : canvas;
+  }
+
+ private:
+  void take() {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!lock || !waiting_) return;
+    retired_ = std::exchange(current_, std::move(next_));
+    waiting_ = false;
+  }
+
+  std::mutex mutex_;  // of next_ and retired_
+  std::unique_ptr<Correction> current_, next_, retired_;
+  std::atomic<bool> waiting_{false};
+};
+
+}  // namespace merlin::render::frame
