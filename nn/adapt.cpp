@@ -10,12 +10,12 @@ namespace {
 
 constexpr std::size_t kPasses = 120;
 constexpr float kRate = 0.004F;
-constexpr float kNoise = 0.5F;           // standard deviations, of the new hands
-constexpr std::size_t kRehearsed = 100;  // hands of each posture, drawn from the memory
+constexpr float kNoise = 0.5F;           // standard deviations; added to the new hands
+constexpr std::size_t kRehearsed = 100;  // hands of each posture, drawn from the statistics
 constexpr float kRehearsedNoise =
-    1.15F;  // standard deviations: others stray further than those that are remembered
-constexpr double kMostForgotten = 0.005;  // share of the memory's hands
-constexpr double kEnough = 0.999;         // of the new hands: no need to go further
+    1.15F;  // standard deviations: other people differ more than those in the statistics
+constexpr double kMostForgotten = 0.005;  // share of the hands drawn from the statistics
+constexpr double kEnough = 0.999;         // share of the new hands recognised; more is not needed
 constexpr double kShares[] = {0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1};
 
 Slots usedBy(const Weights& weights) {
@@ -26,8 +26,8 @@ Slots usedBy(const Weights& weights) {
   return used;
 }
 
-// Hands like those that the network was trained on, in the space of training.
-std::vector<Sample> rehearse(const Space& space, std::size_t each, Random& random) {
+// Draws hands like those that the network was trained on, in whitened coordinates.
+std::vector<Sample> rehearse(const WhitenedSpace& space, std::size_t each, Random& random) {
   std::vector<Sample> samples;
   for (std::size_t k = 0; k < space.means().size(); ++k) {
     for (std::size_t n = 0; n < each; ++n) {
@@ -63,45 +63,46 @@ Lanes<float> between(const Lanes<float>& from, const Lanes<float>& to, double sh
   return mixed;
 }
 
-Error unknown(const std::string& posture, const Memory& memory) {
+Error unknown(const std::string& posture, const PostureStatistics& statistics) {
   std::string names;
-  for (const std::string& name : memory.postures) names += names.empty() ? name : ", " + name;
+  for (const std::string& name : statistics.postures) names += names.empty() ? name : ", " + name;
   return {Errc::kInvalidArgument, "posture \"" + posture +
                                       "\" is none of the network's, which are " + names +
                                       "; a new posture needs training anew"};
 }
 
-Result<std::vector<Sample>> toSamples(std::span<const LabelledHand> hands, const Memory& memory,
-                                      const PostureNetwork& network, const Space& space) {
+Result<std::vector<Sample>> toSamples(std::span<const LabelledHand> hands,
+                                      const PostureStatistics& statistics,
+                                      const PostureNetwork& network, const WhitenedSpace& space) {
   std::vector<Sample> samples;
   for (const LabelledHand& hand : hands) {
-    const auto at = std::find(memory.postures.begin(), memory.postures.end(), hand.posture);
-    if (at == memory.postures.end()) return unknown(hand.posture, memory);
+    const auto at = std::find(statistics.postures.begin(), statistics.postures.end(), hand.posture);
+    if (at == statistics.postures.end()) return unknown(hand.posture, statistics);
     if (!std::all_of(hand.value.begin(), hand.value.end(),
                      [](float v) { return std::isfinite(v); }))
       return Error{Errc::kInvalidArgument, "a hand with a value that is not finite"};
     samples.push_back({space.toSpace(normalise(network.ranges, hand.value)),
-                       static_cast<std::uint32_t>(at - memory.postures.begin())});
+                       static_cast<std::uint32_t>(at - statistics.postures.begin())});
   }
   return samples;
 }
 
 }  // namespace
 
-Result<Adapted> adapt(const PostureNetwork& network, const Memory& memory,
+Result<Adapted> adapt(const PostureNetwork& network, const PostureStatistics& statistics,
                       std::span<const LabelledHand> hands, std::uint64_t seed) {
   if (hands.empty()) return Error{Errc::kInvalidArgument, "no hands to adapt to"};
-  const Space space(memory, usedBy(network.weights));
-  const auto samples = toSamples(hands, memory, network, space);
+  const WhitenedSpace space(statistics, usedBy(network.weights));
+  const auto samples = toSamples(hands, statistics, network, space);
   if (!samples) return samples.error();
   std::vector<std::uint32_t> codes;
-  for (const std::string& name : memory.postures)
+  for (const std::string& name : statistics.postures)
     codes.push_back(network.postures.code(name).value_or(0));
 
   Random random(seed);
   const auto known = rehearse(space, kRehearsed, random);
   std::vector<Sample> both = known;
-  for (std::size_t n = 0; n < known.size() / 2; ++n)  // two known hands for a new one
+  for (std::size_t n = 0; n < known.size() / 2; ++n)  // two drawn hands for each new one
     both.push_back((*samples)[random.below(samples->size())]);
   const Lanes<float> before = space.unfold(network.weights);
   Descending at;
@@ -114,14 +115,14 @@ Result<Adapted> adapt(const PostureNetwork& network, const Memory& memory,
 
   const auto held_out = rehearse(space, kRehearsed, random);
   Adapted done;
-  done.memory_before = shareRight(network.phi, before, held_out, codes);
+  done.drawn_before = shareRight(network.phi, before, held_out, codes);
   done.hands_before = shareRight(network.phi, before, *samples, codes);
   for (const double share : kShares) {
     const Lanes<float> weights = between(before, at.weights, share);
-    const double memory_after = shareRight(network.phi, weights, held_out, codes);
-    if (share > 0 && memory_after < done.memory_before - kMostForgotten) break;
+    const double drawn_after = shareRight(network.phi, weights, held_out, codes);
+    if (share > 0 && drawn_after < done.drawn_before - kMostForgotten) break;
     done.share = share;
-    done.memory_after = memory_after;
+    done.drawn_after = drawn_after;
     done.hands_after = shareRight(network.phi, weights, *samples, codes);
     done.network = network;
     if (share > 0) done.network.weights = space.fold(weights);

@@ -8,9 +8,9 @@
 namespace merlin::nn {
 namespace {
 
-constexpr double kLeastGain = 1e-9;  // what is less is rounding, and could go round for ever
+constexpr double kLeastGain = 1e-9;  // a smaller gain is rounding, and exchanges might never end
 
-// The pool with the first K in use by the postures, the rest free.
+// A permutation of the pool: the first K codes belong to the postures, the others are free.
 std::vector<std::uint32_t> inUseFirst(const std::vector<std::uint32_t>& pool,
                                       const std::vector<std::uint32_t>& codes) {
   std::vector<std::uint32_t> all = codes;
@@ -22,7 +22,7 @@ std::vector<std::uint32_t> inUseFirst(const std::vector<std::uint32_t>& pool,
 
 int bits(std::uint32_t a, std::uint32_t b) { return std::popcount(a ^ b); }
 
-// Gain if i and j exchange their codes; j may be a code that is free.
+// Returns the gain if i and j exchange their codes; j may be a free code.
 double gain(const Likeness& likeness, const std::vector<std::uint32_t>& code, std::size_t i,
             std::size_t j) {
   const std::size_t postures = likeness.size();
@@ -43,7 +43,7 @@ double cost(const Likeness& likeness, const std::vector<std::uint32_t>& code) {
   return sum;
 }
 
-// Exchanges the first `postures` of `code` with all others while `gain` finds something.
+// Exchanges each of the first `postures` codes with any other as long as that gains something.
 template <typename Gain>
 bool exchange(std::vector<std::uint32_t>& code, std::size_t postures, Gain gain) {
   bool any = false;
@@ -93,7 +93,7 @@ std::vector<std::uint32_t> assignCodes(const Likeness& likeness,
   return best;
 }
 
-// sum_k (o_k - bit)^2 but for what is the same for every code.
+// sum_k (o_k - bit)^2 without the terms that are the same for every code.
 bool exchangeCodes(const std::vector<std::array<double, kOutputs>>& mean,
                    const std::vector<std::uint32_t>& pool, std::vector<std::uint32_t>& codes) {
   const std::size_t postures = codes.size();

@@ -1,4 +1,4 @@
-// Data sets: hands with the posture that each shows, for training and for test.
+// Data sets for training and test: hands, each with the posture that it shows.
 #pragma once
 
 #include <cstdint>
@@ -17,28 +17,28 @@ struct LabelledHand {
 };
 using DataSet = std::vector<LabelledHand>;
 
-// Training example: a hand as the network sees it, and the code that it should answer.
+// A training example: a hand's scaled inputs and the code that the network should return.
 struct Example {
   Input x{};
   std::uint32_t code = 0;
 };
 
-// Errors: kInvalidArgument: a posture that the network's table does not name, an angle that is not
-// finite.
+// Errors: kInvalidArgument if the network's table lacks a posture or an angle is not finite.
 Result<std::vector<Example>> toExamples(std::span<const LabelledHand> hands,
                                         const PostureNetwork& network);
 
 struct Score {
   std::size_t total = 0;
   std::size_t right = 0;
-  std::size_t rejected = 0;  // no posture at all; total - right - rejected were taken for another
+  std::size_t rejected =
+      0;  // recognised as no posture; total - right - rejected were taken for another one
 
   double accuracy() const noexcept {
     return total == 0 ? 0.0 : static_cast<double>(right) / static_cast<double>(total);
   }
 };
 
-// Recognises every hand, and compares names.
+// Recognises every hand and compares the posture's name with its label.
 Score score(const PostureNetwork& network, std::span<const LabelledHand> hands);
 
 }  // namespace merlin::nn

@@ -9,13 +9,13 @@ namespace merlin::nn {
 namespace {
 
 constexpr std::size_t kBatch = 32;
-constexpr std::size_t kFewest = 640, kMost = 2048;  // samples of a pass
+constexpr std::size_t kFewest = 640, kMost = 2048;  // bounds on the samples of a pass
 constexpr std::size_t kNoisePool = 1 << 14;
 constexpr float kFirst = 0.9F, kSecond = 0.999F, kLittle = 1e-8F;
 constexpr float kDecay = 1e-4F;
 
-// Mean 0, deviation 1, nearly normal, by arithmetic alone: libm's log and cos differ in their last
-// bits between processors, and one seed gives one network.
+// Draws a nearly normal number with mean 0 and deviation 1. Uses arithmetic alone: the last bits of
+// libm's log and cos differ between processors, and one seed must give one network.
 float bell(Random& random) {
   double sum = -2;
   for (int i = 0; i < 4; ++i) sum += random.uniform();

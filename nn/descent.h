@@ -1,5 +1,5 @@
-// Gradient descent on the mean squared error, in the space of training: noisy hands, small batches,
-// steps of Adam's size. Pure, seeded.
+// Gradient descent with Adam on the mean squared error, in whitened coordinates (space.h), with
+// small batches of hands to which noise is added. Pure, seeded.
 #pragma once
 
 #include <span>
@@ -15,27 +15,26 @@ struct Sample {
   std::uint32_t posture = 0;  // index
 };
 
-// Where a descent stands. D. P. Kingma, J. Ba, "Adam", 2015; weight decay apart from the gradient:
+// The state of a descent. Adam: D. P. Kingma, J. Ba, 2015; weight decay apart from the gradient:
 // I. Loshchilov, F. Hutter, 2019.
 struct Descending {
   Lanes<float> weights, first, second;      // weights and the moments of their gradient
-  float first_power = 1, second_power = 1;  // what of the moments' start is left
+  float first_power = 1, second_power = 1;  // powers of Adam's decay rates, for its bias correction
 };
 
 class Descent {
  public:
-  // Both are borrowed: hands, and the mean of each posture.
+  // Borrows both: the hands, and the mean of each posture.
   Descent(Phi phi, std::span<const Sample> samples, std::span<const Input> means, Random random);
 
-  // One pass over the samples (of very many, a part; of few, several times over). Each hand is
-  // drawn a little towards the mean of its posture, and strays from there by `noise` in every
-  // component: the smoothed bootstrap, which keeps the spread about as it is.
-  // `shrink`: what is left of its own distance from the mean. Returns the mean squared error
-  // of [GOU] A.5.3 over what was shown.
+  // Makes one pass over the samples: a part of very many, several rounds over few. Each hand's
+  // distance from the mean of its posture is multiplied by `shrink`, then noise of standard
+  // deviation `noise` is added to every component. This is the smoothed bootstrap, which keeps the
+  // spread about as it is. Returns the mean squared error of [GOU] A.5.3 over these samples.
   double pass(Descending& at, std::span<const std::uint32_t> codes, float rate, float noise,
               float shrink);
 
-  // The outputs' mean by posture, without noise.
+  // Returns the mean outputs of each posture's hands, without noise.
   std::vector<std::array<double, kOutputs>> meanOutputs(const Lanes<float>& weights) const;
 
  private:
@@ -46,12 +45,12 @@ class Descent {
   std::span<const Sample> samples_;
   std::span<const Input> means_;
   Random random_;
-  std::vector<float> noise_;  // normal, to be read from anywhere
+  std::vector<float> noise_;  // normally distributed; each read starts at a random place
   std::vector<std::uint32_t> order_;
   std::size_t next_ = 0;
 };
 
-// The mean squared error of [GOU] A.5.3 without noise; 0 where there are no samples.
+// Returns the mean squared error of [GOU] A.5.3 without noise; 0 if there are no samples.
 double meanError(Phi phi, std::span<const Sample> samples, const Lanes<float>& weights,
                  std::span<const std::uint32_t> codes);
 

@@ -30,7 +30,7 @@ std::size_t nearestOf(const std::vector<Input>& points, const Input& x) {
   return best;
 }
 
-// Slots that never changed in training say nothing.
+// Ignores slots that never changed in training.
 std::vector<Input> scaled(std::span<const LabelledHand> hands, const InputRanges& ranges,
                           const Slots& used) {
   std::vector<Input> points;
@@ -125,7 +125,7 @@ std::vector<Overlap> overlapsOf(const std::string& posture, std::span<const Labe
   const InputRanges ranges = rangesOf(hands, kGloveRanges, used);
   std::vector<Input> x;
   for (const LabelledHand& hand : hands) x.push_back(normalise(ranges, hand.value));
-  const Space space(remember(x, index, names, used), used);
+  const WhitenedSpace space(statisticsOf(x, index, names, used), used);
   std::vector<Overlap> overlaps;
   for (std::size_t other = 0; other < names.size(); ++other) {
     if (other == own) continue;

@@ -15,17 +15,17 @@
 namespace merlin::nn {
 namespace {
 
-constexpr int kRestarts = 10;            // of each assignment of codes
-constexpr std::size_t kFirstRound = 20;  // passes of each start before the worse half goes
+constexpr int kRestarts = 10;            // random starts of each assignment of codes
+constexpr std::size_t kFirstRound = 20;  // passes of each start before the worse half is dropped
 constexpr float kRate = 0.02F, kLastRate = 1e-5F;
-// As much noise as the network can bear: it grows while the error with noise is below this, so that
-// the margins between postures are as wide as they can be, whatever the hands are like.
+// The noise grows while the error with noise is below this limit. So the network is trained with as
+// much noise as it tolerates, and the margins between postures are as wide as possible.
 constexpr double kBearableError = 0.005;
 constexpr float kNoiseStep = 1.05F, kFirstNoise = 0.7F, kLeastNoise = 0.35F, kMostNoise = 2.0F;
-constexpr std::size_t kLook = 4;         // passes between two looks at the validation hands
-constexpr std::size_t kPatience = 8;     // looks without a better error, then it ends
-constexpr std::size_t kLastPasses = 40;  // on all hands, those of the validation too
-constexpr float kLastRates = 0.1F;       // share of kRate
+constexpr std::size_t kLook = 4;         // passes between two evaluations of the validation hands
+constexpr std::size_t kPatience = 8;     // evaluations without a better error before training ends
+constexpr std::size_t kLastPasses = 40;  // final passes over all hands, those of the validation too
+constexpr float kLastRates = 0.1F;       // rate of the final passes, share of kRate
 
 struct Start {
   std::vector<std::uint32_t> pool, codes;
@@ -33,13 +33,13 @@ struct Start {
   double error = 0;
 };
 
-// Everything that one fit() works on.
+// The working data of one fit().
 class Fit {
  public:
-  Fit(const FitSettings& settings, const FitProgress& progress, const Space& space)
+  Fit(const FitSettings& settings, const FitProgress& progress, const WhitenedSpace& space)
       : settings_(settings), progress_(progress), space_(space), random_(settings.seed) {}
 
-  // Samples in the space of training; `kept[n]`: set aside for validation.
+  // Samples in whitened coordinates. `kept[n]`: sample n is set aside for validation.
   void take(std::vector<Sample> all, const std::vector<bool>& kept) {
     all_ = std::move(all);
     for (std::size_t n = 0; n < all_.size(); ++n) (kept[n] ? aside_ : train_).push_back(all_[n]);
@@ -59,7 +59,7 @@ class Fit {
   std::vector<CurvePoint> takeCurve() { return std::move(curve_); }
 
  private:
-  // Codes of even parity are taken wherever the network can bear them.
+  // Uses codes of even parity if the network can learn them.
   static double price(const Start& s) {
     const bool bearable = s.pool.size() < kCodes - 1 && s.error < kBearableError;
     return bearable ? s.error * 1e-3 : s.error;
@@ -97,7 +97,7 @@ class Fit {
                         kLeastNoise, kMostNoise);
   }
 
-  // Several starts; the worse ones go, round by round.
+  // Trains several starts and drops the worse half in each round.
   Start choose(Descent& descent) {
     const Likeness likeness = space_.likeness();
     std::vector<Start> starts(settings_.starts);
@@ -127,7 +127,7 @@ class Fit {
     }
   }
 
-  // With a falling rate; what was best on the hands set aside is kept.
+  // Trains with a falling rate and keeps the network that was best on the validation hands.
   void descend(Start& s, Descent& descent) {
     double least = std::numeric_limits<double>::infinity();
     Lanes<float> best = s.at.weights;
@@ -135,7 +135,7 @@ class Fit {
     const std::size_t settled = settings_.passes * 4 / 5;
     for (std::size_t i = 0; i < settings_.passes && !stopped_; ++i) {
       const double error = pass(s, descent, kRate * left(i, settings_.passes) + kLastRate);
-      // While the noise grows so do the margins, and the error without noise says nothing of them.
+      // The margins grow with the noise, and the error without noise does not show them.
       if (i < settled) {
         adapt(error);
         continue;
@@ -155,7 +155,7 @@ class Fit {
 
   const FitSettings& settings_;
   const FitProgress& progress_;
-  const Space& space_;
+  const WhitenedSpace& space_;
   Random random_;
   std::vector<Sample> all_, train_, aside_;
   std::vector<CurvePoint> curve_;
@@ -168,7 +168,8 @@ std::optional<Error> invalid(std::span<const LabelledHand> hands,
   const auto error = [](std::string what) {
     return Error{Errc::kInvalidArgument, std::move(what)};
   };
-  if (s.phi == Phi::kSignum) return error("signum has no slope to train by; sigmoid and atan have");
+  if (s.phi == Phi::kSignum)
+    return error("phi signum has no slope and cannot be trained; allowed: sigmoid, atan");
   if (s.starts < 1 || s.passes < 1) return error("starts and passes must be at least 1");
   if (!(s.validation_share >= 0 && s.validation_share <= 0.5))
     return error(fmt::format("validation share {}; allowed: 0 to 0.5", s.validation_share));
@@ -185,8 +186,8 @@ std::optional<Error> invalid(std::span<const LabelledHand> hands,
   return std::nullopt;
 }
 
-// The last hands of each posture: neighbours in a recording are alike, and would give away too
-// much.
+// Sets the last hands of each posture aside for validation. Hands chosen at random would have
+// nearly equal neighbours of the recording among the training hands.
 std::vector<bool> setAside(const std::vector<std::size_t>& posture, std::size_t postures,
                            double share) {
   std::vector<std::size_t> all(postures, 0), seen(postures, 0);
@@ -234,11 +235,13 @@ Result<Fitted> fit(std::span<const LabelledHand> hands, const FitSettings& setti
   done.network.unit = settings.unit;
   done.network.ranges = rangesOf(hands, kGloveRanges, used);
   if (std::count(used.begin(), used.end(), true) == 0)
-    return Error{Errc::kInvalidArgument, "no sensor ever changes: there is nothing to learn from"};
+    return Error{
+        Errc::kInvalidArgument,
+        "the values of all sensors are constant; record hands that show different postures"};
   std::vector<Input> x;
   for (const LabelledHand& hand : hands) x.push_back(normalise(done.network.ranges, hand.value));
-  done.memory = remember(x, posture, names, used);
-  const Space space(done.memory, used);
+  done.statistics = statisticsOf(x, posture, names, used);
+  const WhitenedSpace space(done.statistics, used);
   std::vector<Sample> samples;
   for (std::size_t n = 0; n < x.size(); ++n)
     samples.push_back({space.toSpace(x[n]), static_cast<std::uint32_t>(posture[n])});

@@ -1,4 +1,4 @@
-// Folds of a cross-validation.
+// Divides hands into the folds of a cross-validation.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,9 @@ struct Fold {
   DataSet train, test;
 };
 
-// Fold `fold` of `folds`: the test hands are the fold-th of equal parts of each posture's hands, in
-// the order given, and the training hands are all others. Linear. REQUIRES: fold < folds.
+// Returns the hands of one fold. Each posture's hands, in the order given, are divided into `folds`
+// equal parts: part `fold` is for test, the others are for training. Linear. REQUIRES: fold <
+// folds.
 Fold splitFold(std::span<const LabelledHand> hands, std::size_t folds, std::size_t fold);
 
 }  // namespace merlin::nn

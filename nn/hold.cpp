@@ -10,7 +10,7 @@ std::int64_t nanoseconds(double seconds) { return static_cast<std::int64_t>(seco
 const Held& PostureHold::update(const Recognition& seen, std::int64_t now_ns) noexcept {
   const bool same = held_.any && seen.code == held_.code;
   const double least = same ? settings_.least_margin / 2 : settings_.least_margin;
-  // A NaN margin is no margin.
+  // A NaN margin counts as too small.
   const bool sure = !seen.name.empty() && static_cast<double>(seen.margin) >= least;
   const std::uint32_t shown = sure ? seen.code : kNone;
   if (!running_ || shown != run_code_) {

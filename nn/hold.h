@@ -1,5 +1,5 @@
-// PostureHold: from what a hand shows, record by record, to postures that a person means: a posture
-// counts once it has lasted, and ends once it has been gone for a while. Pure, allocation-free.
+// PostureHold: filters the postures of single records. A posture begins once it has lasted for a
+// minimum time, and ends once it has been absent for a while. Pure, allocation-free.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace merlin::nn {
 
-// The posture that is held; none if `any` is false.
+// The held posture; there is none if `any` is false.
 struct Held {
   std::uint32_t code = 0;
   bool any = false;
-  std::int64_t since_ns = 0;  // of the first record of the run that made it count, or ended it
-  std::uint32_t entered = 0;  // postures that have begun to count so far
+  std::int64_t since_ns = 0;  // time of the first record of the run that began or ended it
+  std::uint32_t entered = 0;  // number of postures that have begun so far
 };
 
 // Thread-bound.
@@ -28,10 +28,10 @@ class PostureHold {
  private:
   HoldSettings settings_;
   Held held_;
-  bool running_ = false;  // a run of records that all show `run_code_`, or none for kNone
+  bool running_ = false;  // in a run of records that all show `run_code_` (kNone: no posture)
   std::uint32_t run_code_ = kNone;
   std::int64_t run_since_ns_ = 0;
-  std::int64_t gone_since_ns_ = 0;  // first record in a row that does not show what is held
+  std::int64_t gone_since_ns_ = 0;  // first record of a run without the held posture
   bool gone_ = false;
 
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};

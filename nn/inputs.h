@@ -1,4 +1,4 @@
-// The network's inputs: which joint each slot is, and how its angle becomes a number in [0, 1].
+// The network's inputs: the joint of each slot, and how its angle is scaled to [0, 1].
 #pragma once
 
 #include <array>
@@ -7,30 +7,29 @@
 
 namespace merlin::nn {
 
-// Measurements of a glove in slot order: joint angles [rad], or its sensors' raw counts. A network
-// is trained on one of the two and recalls the same.
+// A glove's measurements in slot order: joint angles [rad], or raw counts of its sensors. A network
+// is trained on one of the two and then takes the same unit.
 enum class InputUnit { kRadians, kRaw };
 using Angles = std::array<float, kInputs>;
 
-// No joint's angle is beyond the first: a file that says so holds degrees or raw counts.
+// No joint's angle exceeds kMostAngle_rad: a file with larger values holds degrees or raw counts.
 inline constexpr double kMostAngle_rad = 6.3, kMostRaw = 1e6;
 constexpr double mostValue(InputUnit unit) {
   return unit == InputUnit::kRaw ? kMostRaw : kMostAngle_rad;
 }
 
-// In the network's unit.
+// The range of a slot in the network's unit.
 struct InputRange {
-  float low = 0.0F;   // becomes 0
-  float high = 1.0F;  // becomes 1; above low
+  float low = 0.0F;   // scaled to 0
+  float high = 1.0F;  // scaled to 1; above low
 };
 using InputRanges = std::array<InputRange, kInputs>;
 
 extern const std::array<const char*, kInputs> kInputNames;  // "thumb-roll" ... "wrist-yaw"
 extern const InputRanges kGloveRanges;                      // sources: nn/README.md, "Inputs"
 
-// x_i = (value_i - low_i) / (high_i - low_i), held within [0, 1]: a joint bent past its range is as
-// if at its end, so that what reaches the network is never far from what it was trained on. A NaN
-// stays NaN. Allocation-free.
+// x_i = (value_i - low_i) / (high_i - low_i), clamped to [0, 1], so that the inputs are never far
+// from those of training, even if a joint is bent past its range. A NaN stays NaN. Allocation-free.
 Input normalise(const InputRanges& ranges, const Angles& value) noexcept;
 
 }  // namespace merlin::nn

@@ -1,5 +1,5 @@
-// The network's weights laid out for vector instructions: nodes side by side, padded with nodes
-// that are connected to nothing. One forward pass for recall and for training, one gradient. Pure.
+// The network's weights laid out for vector instructions: nodes side by side, padded with
+// unconnected nodes. One forward pass for recall and training, one gradient. Pure.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ inline constexpr std::size_t kOutputLanes = 8;
 
 template <typename Real>
 struct alignas(64) Lanes {
-  // Rows of kHiddenLanes, one an input, the biases last; then rows of kOutputLanes, one a hidden
-  // node, the biases last.
+  // One row of kHiddenLanes for each input, then a row of biases; then one row of kOutputLanes for
+  // each hidden node, then a row of biases.
   static constexpr std::size_t kOutputs0 = (kInputs + 1) * kHiddenLanes;
   std::array<Real, kOutputs0 + kHiddenLanes * kOutputLanes> all{};
 
@@ -39,12 +39,12 @@ struct LanePass {
   alignas(64) std::array<Real, kOutputLanes> output_sum, output;
 };
 
-// propagate() of network.h, node by node the same sums in the same order: the same bits.
+// The same as propagate() of network.h: each node's sum in the same order, hence the same bits.
 template <typename Real>
 void propagate(Phi phi, const Lanes<Real>& lanes, const Real* x, LanePass<Real>& pass) noexcept;
 
-// Adds one example's share of the gradient of sum_k (Y_k - T_k)^2 by back-propagation, as
-// backPropagate() of train.h but for its factor; returns that sum. REQUIRES: phi not signum.
+// Adds one example's share of the gradient of sum_k (Y_k - T_k)^2 by back-propagation and returns
+// that sum. backPropagate() of train.h has an additional factor. REQUIRES: phi not signum.
 template <typename Real>
 Real addGradient(Phi phi, const Lanes<Real>& lanes, const Real* x, std::uint32_t code,
                  Lanes<Real>& gradient) noexcept;

@@ -12,7 +12,7 @@ struct PhiName {
 constexpr PhiName kPhiNames[] = {
     {Phi::kSigmoid, "sigmoid"}, {Phi::kSignum, "signum"}, {Phi::kAtan, "atan"}};
 
-// One layer: sums, then values.
+// Computes one layer: its sums, then its values.
 template <typename Real, std::size_t In, std::size_t Out>
 void layer(Phi phi, const std::array<std::array<Real, In + 1>, Out>& weights,
            const std::array<Real, In>& x, std::array<Real, Out>& sums,

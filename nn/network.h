@@ -26,7 +26,7 @@ enum class Phi { kSigmoid, kSignum, kAtan };
 const char* nameOf(Phi phi) noexcept;                         // "sigmoid", "signum", "atan"
 std::optional<Phi> phiNamed(std::string_view name) noexcept;  // the inverse
 
-// Row-major weights; the last column of a row is its bias. 15 x 24 and 5 x 16: 440 numbers.
+// Weights, row-major; the last column of a row is the bias. 15 x 24 and 5 x 16: 440 numbers.
 // Real is float for recall, double for training.
 template <typename Real>
 struct BasicWeights {
@@ -35,28 +35,28 @@ struct BasicWeights {
 };
 using Weights = BasicWeights<float>;
 
-// Every sum (I_j of A.9) and every value (Y_j of A.10) of one forward pass.
+// All sums (I_j of A.9) and values (Y_j of A.10) of one forward pass.
 template <typename Real>
 struct Pass {
   std::array<Real, kHidden> hidden_sum, hidden;
   std::array<Real, kOutputs> output_sum, output;
 };
 
-// Forward pass. For each node, from the inputs to the hidden layer and from that to the outputs:
+// The forward pass, from the inputs to the hidden layer and from there to the outputs. A node has
 //
 //   I_j = sum_i W_ji X_i + bias_j   [GOU] A.9,    Y_j = Phi(I_j)   [GOU] A.10
 //
-// Pure and allocation-free: it runs in the glove's device thread. Inputs outside [0, 1] are used
-// as they are. A NaN among the inputs makes every output NaN, with each Phi. Sums run from i = 0
-// up, the bias last; of floats the same bits on every machine (phi.h).
+// Pure and allocation-free: it runs in the glove's device thread. Inputs outside [0, 1] are not
+// clamped. A NaN among the inputs makes every output NaN, for every Phi. Sums run upwards from
+// i = 0, the bias last; floats give the same bits on every machine (phi.h).
 template <typename Real>
 Pass<Real> propagate(Phi phi, const BasicWeights<Real>& weights,
                      const std::array<Real, kInputs>& x) noexcept;
 
-// The outputs of propagate() alone.
+// Returns only the outputs of propagate().
 Output forward(Phi phi, const Weights& weights, const Input& x) noexcept;
 
-// The five-bit code: bit i is set where output i is above 0.5 ([GOU] 2.3). A NaN sets no bit.
+// Returns the five-bit code: bit i is set if output i is above 0.5 ([GOU] 2.3), not if it is NaN.
 std::uint32_t threshold(const Output& output) noexcept;
 
 }  // namespace merlin::nn

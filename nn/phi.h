@@ -1,7 +1,7 @@
-// Phi and its slope, of doubles one by one, of floats a vector at a time.
+// Phi and its slope: for doubles one at a time, for floats a vector at a time.
 //
-// For float, e^t and atan are polynomials of our own (Cephes' coefficients, S. L. Moshier): a
-// vector at a time, within 2e-7 of Phi, and the same bits on every machine, which libm's are not.
+// For floats, e^t and atan are polynomials with Cephes' coefficients (S. L. Moshier). They take a
+// vector at a time, are within 2e-7 of Phi, and unlike libm give the same bits on every machine.
 #pragma once
 
 #include <algorithm>
@@ -16,14 +16,15 @@
 
 namespace merlin::nn {
 
-// `Bytes` at a time, 16 or 32: g++ 12 finds the vectors in these polynomials only in part. In place
-// and always inlined: a vector of 32 bytes is no argument where the processor may not have them.
+// Vectors of `Bytes` bytes, 16 or 32, written out since g++ 12 vectorises these polynomials only in
+// part. They work in place and are always inlined: a vector of 32 bytes cannot be passed between
+// functions that are compiled for different processors.
 template <int Bytes>
 struct Vectors {
   typedef float Floats __attribute__((vector_size(Bytes), may_alias));
   typedef std::uint32_t Words __attribute__((vector_size(Bytes), may_alias));
 
-  // t becomes e^t. |t| beyond 87 is taken for 87: past that, Phi is 0 or 1 in a float. A NaN stays.
+  // Replaces t by e^t. |t| is limited to 87, beyond which a float's Phi is 0 or 1. A NaN stays.
   [[gnu::always_inline]] static void toExp(Floats& t) noexcept {
     constexpr float kRound = 12582912.0F;  // 1.5 * 2^23: adding it leaves whole numbers
     const Floats least = Floats{} - 87.0F, most = Floats{} + 87.0F;
@@ -31,12 +32,12 @@ struct Vectors {
     held = held > most ? most : held;
     const Floats shifted = held * 1.44269504F + kRound, n = shifted - kRound;
     const Floats r = held - n * 0.693359375F + n * 2.12194440e-4F, r2 = r * r;
-    // In pairs (Estrin's way), not one within the other: fewer steps that wait for the last.
+    // Estrin's scheme instead of Horner's: shorter chains of dependent instructions.
     const Floats high = r * 1.9875691500e-4F + 1.3981999507e-3F;
     const Floats middle = r * 8.3334519073e-3F + 4.1665795894e-2F;
     const Floats low = r * 1.6666665459e-1F + 5.0000001201e-1F;
     const Floats power = (high * (r2 * r2) + (middle * r2 + low)) * r2 + r + 1.0F;
-    // 2^n: n stands in the low bits of `shifted`, so that a NaN needs no case.
+    // Multiply by 2^n; n is in the low bits of `shifted`, so that a NaN needs no special case.
     const Words bits = ((Words)shifted - 0x4B400000U + 127U) << 23;
     t = power * (Floats)bits;
   }
@@ -56,7 +57,7 @@ struct Vectors {
     t = t < zero ? -value : value;
   }
 
-  // t becomes Phi(t).
+  // Replaces t by Phi(t).
   template <Phi kPhi>
   [[gnu::always_inline]] static void toPhi(Floats& t) noexcept {
     const Floats zero{}, one = zero + 1.0F;
@@ -68,7 +69,8 @@ struct Vectors {
       toAtan(t);
       t = 0.5F + t * std::numbers::inv_pi_v<float>;
     } else {
-      t = t == t ? (t > zero ? one : zero) : t;  // a comparison alone would make a NaN a clean 0
+      t = t == t ? (t > zero ? one : zero)
+                 : t;  // keeps a NaN, which a comparison alone would turn into 0
     }
   }
 
@@ -106,7 +108,7 @@ inline double phiOf(Phi phi, double sum) noexcept {
   return sum;
 }
 
-// values = Phi(sums), of `N` nodes.
+// values = Phi(sums) for `N` nodes.
 template <typename Real, std::size_t N, int Bytes = 16>
 [[gnu::always_inline]] inline void activate(Phi phi, const Real* sums, Real* values) noexcept {
   if constexpr (std::is_same_v<Real, float>) {
@@ -121,7 +123,7 @@ template <typename Real, std::size_t N, int Bytes = 16>
   }
 }
 
-// Phi'(sum), where value = Phi(sum).
+// Returns Phi'(sum), given value = Phi(sum).
 template <typename Real>
 Real slopeOf(Phi phi, Real sum, Real value) noexcept {
   switch (phi) {

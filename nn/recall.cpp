@@ -12,13 +12,13 @@
 namespace merlin::nn {
 namespace {
 
-// A node's sum is that of its even inputs, which begins with the bias, and that of its odd ones:
-// neither waits for the other.
+// Adds up even inputs (with the bias) and odd inputs of a node separately, so that the two chains
+// of additions run in parallel.
 constexpr std::size_t kApart = 2;
 
 typedef double Pair __attribute__((vector_size(16), may_alias));
 
-// The biases stand below the rows.
+// The biases are in the row after the last input.
 template <std::size_t Rows, std::size_t Width>
 void sumRows(const double* w, const float* x, float* sums) noexcept {
   constexpr std::size_t kPairs = Width / 2;
@@ -46,7 +46,7 @@ void pass(Phi phi, const Lanes<double>& lanes, const float* x, LanePass<float>& 
 }
 
 #if defined(__x86_64__)
-// Four nodes at a time, and product and sum in one step.
+// Processes four nodes at a time with fused multiply-add.
 template <std::size_t Rows, std::size_t Width>
 [[gnu::target("avx2,fma"), gnu::always_inline]] inline void sumRowsWide(const double* w,
                                                                         const double* x,
@@ -74,7 +74,7 @@ template <std::size_t Rows, std::size_t Width>
   }
 }
 
-// Once for all nodes that a value goes to.
+// Converts the inputs to double once for all nodes.
 template <std::size_t N>
 [[gnu::target("avx2,fma"), gnu::always_inline]] inline void widen(const float* x,
                                                                   double* wide) noexcept {

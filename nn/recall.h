@@ -1,4 +1,4 @@
-// Recall: the forward pass as the glove's device thread runs it. Pure.
+// Recall: the fast forward pass for the glove's device thread. Pure.
 #pragma once
 
 #include "nn/lanes.h"
@@ -6,19 +6,20 @@
 
 namespace merlin::nn {
 
-// Immutable: thread-safe. 4 kB of weights, laid out for vector instructions.
+// Immutable, hence thread-safe. Holds 4 kB of weights, laid out for vector instructions.
 class Recall {
  public:
   Recall(Phi phi, const Weights& weights) noexcept;
 
-  // The outputs of propagate() of network.h, within 1e-6 of a pass in double. Allocation-free.
+  // Returns the outputs of propagate() of network.h, within 1e-6 of a pass in double.
+  // Allocation-free.
   //
-  // Sums are of doubles, Phi of floats. A product of two floats is exact in a double, so that
-  // multiplying and adding in one step gives the same bits as in two, and one hand gives the same
-  // outputs whatever vector instructions a processor has.
+  // Sums are computed in double, Phi in float. The product of two floats is exact in a double, so
+  // that a fused multiply-add gives the same bits as two instructions, and one hand gives the same
+  // outputs on every processor.
   Output operator()(const Input& x) const noexcept;
 
-  // With the instructions that every processor has: the same bits, in twice the time.
+  // The same bits with baseline instructions only, in twice the time; for tests.
   Output portably(const Input& x) const noexcept;
 
  private:

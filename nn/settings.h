@@ -4,9 +4,10 @@
 namespace merlin::nn {
 
 struct HoldSettings {
-  double hold_s = 0.15;        // that a posture lasts before it counts
-  double leave_s = 0.10;       // that it is gone before it ends
-  double least_margin = 0.30;  // of a record that counts for a posture; while one is held, half
+  double hold_s = 0.15;   // time that a posture has to last before it begins
+  double leave_s = 0.10;  // time that it has to be absent before it ends
+  double least_margin =
+      0.30;  // least margin of a record that counts; half of it while a posture is held
 };
 
 }  // namespace merlin::nn

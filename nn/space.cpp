@@ -11,10 +11,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kReach = 3.0;            // of a range, standard deviations
-constexpr double kLeastDeviation = 1e-6;  // of a slot that is measured, share of its size
-// Share of the mean variance that is added to each variance: a direction in which no hand has
-// strayed yet may be one in which the next one does.
+constexpr double kReach = 3.0;            // half width of a range, standard deviations
+constexpr double kLeastDeviation = 1e-6;  // least deviation of a measured slot, share of its size
+// Share of the mean variance that is added to each variance: the next hand may vary in a direction
+// in which no recorded hand has.
 constexpr double kShrinkage = 0.1;
 
 VectorXd wide(const Input& x) {
@@ -52,9 +52,9 @@ InputRanges rangesOf(std::span<const LabelledHand> hands, const InputRanges& fal
   return ranges;
 }
 
-Memory remember(std::span<const Input> hands, std::span<const std::size_t> posture,
-                std::vector<std::string> names, const Slots& used) {
-  Memory memory;
+PostureStatistics statisticsOf(std::span<const Input> hands, std::span<const std::size_t> posture,
+                               std::vector<std::string> names, const Slots& used) {
+  PostureStatistics statistics;
   std::vector<VectorXd> mean(names.size(), VectorXd::Zero(kSize));
   std::vector<double> count(names.size(), 0.0);
   for (std::size_t n = 0; n < hands.size(); ++n) {
@@ -74,28 +74,29 @@ Memory remember(std::span<const Input> hands, std::span<const std::size_t> postu
   const MatrixXd factor = within.llt().matrixL();
   for (std::size_t i = 0; i < kInputs; ++i) {
     for (std::size_t j = 0; j <= i; ++j)
-      memory.spread[i][j] =
+      statistics.spread[i][j] =
           static_cast<float>(factor(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
   }
-  for (const VectorXd& m : mean) memory.mean.push_back(narrow(m));
-  memory.postures = std::move(names);
-  return memory;
+  for (const VectorXd& m : mean) statistics.mean.push_back(narrow(m));
+  statistics.postures = std::move(names);
+  return statistics;
 }
 
-Space::Space(const Memory& memory, const Slots& used) : used_(used) {
+WhitenedSpace::WhitenedSpace(const PostureStatistics& statistics, const Slots& used) : used_(used) {
   MatrixXd factor = MatrixXd::Zero(kSize, kSize);
   for (std::size_t i = 0; i < kInputs; ++i) {
     for (std::size_t j = 0; j <= i; ++j)
       factor(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-          static_cast<double>(memory.spread[i][j]);
+          static_cast<double>(statistics.spread[i][j]);
   }
   VectorXd centre = VectorXd::Zero(kSize);
-  for (const Input& m : memory.mean) centre += wide(m) / static_cast<double>(memory.mean.size());
+  for (const Input& m : statistics.mean)
+    centre += wide(m) / static_cast<double>(statistics.mean.size());
   MatrixXd whiten = factor.triangularView<Eigen::Lower>().solve(MatrixXd::Identity(kSize, kSize));
   double squares = static_cast<double>(kInputs);
-  for (const Input& m : memory.mean)
+  for (const Input& m : statistics.mean)
     squares +=
-        (whiten * (wide(m) - centre)).squaredNorm() / static_cast<double>(memory.mean.size());
+        (whiten * (wide(m) - centre)).squaredNorm() / static_cast<double>(statistics.mean.size());
   const double scale = std::sqrt(squares / static_cast<double>(kInputs));
   whiten /= scale;
   sigma_ = static_cast<float>(1 / scale);
@@ -108,10 +109,10 @@ Space::Space(const Memory& memory, const Slots& used) : used_(used) {
       colour_[i][j] = used[i] && used[j] ? colour(row, column) : 0.0;
     }
   }
-  for (const Input& m : memory.mean) means_.push_back(toSpace(m));
+  for (const Input& m : statistics.mean) means_.push_back(toSpace(m));
 }
 
-Input Space::toSpace(const Input& x) const noexcept {
+Input WhitenedSpace::toSpace(const Input& x) const noexcept {
   Input u;
   for (std::size_t i = 0; i < kInputs; ++i) {
     double sum = 0;
@@ -122,8 +123,8 @@ Input Space::toSpace(const Input& x) const noexcept {
   return u;
 }
 
-std::vector<std::vector<double>> Space::likeness() const {
-  // Two postures that are the same for every sensor are very alike, and not infinitely.
+std::vector<std::vector<double>> WhitenedSpace::likeness() const {
+  // Limits the likeness of two postures that are the same for every sensor.
   constexpr double kNearest = 0.25;
   const std::size_t postures = means_.size();
   std::vector<std::vector<double>> like(postures, std::vector<double>(postures, 0.0));
@@ -136,7 +137,7 @@ std::vector<std::vector<double>> Space::likeness() const {
   return like;
 }
 
-Weights Space::fold(const Lanes<float>& in_space) const {
+Weights WhitenedSpace::fold(const Lanes<float>& in_space) const {
   Weights weights = fromLanes(in_space);
   for (auto& row : weights.hidden) {
     std::array<double, kInputs> folded{};
@@ -152,7 +153,7 @@ Weights Space::fold(const Lanes<float>& in_space) const {
   return weights;
 }
 
-Lanes<float> Space::unfold(const Weights& weights) const {
+Lanes<float> WhitenedSpace::unfold(const Weights& weights) const {
   Weights in_space = weights;
   for (auto& row : in_space.hidden) {
     std::array<double, kInputs> unfolded{};

@@ -1,5 +1,5 @@
-// Where training happens: what is remembered of each posture, and the coordinates in which the
-// hands of one posture stray equally far in every direction. Pure.
+// Statistics of the postures, and the whitened coordinates used in training, in which the hands of
+// a posture have the same variance in every direction. Pure.
 #pragma once
 
 #include <array>
@@ -15,38 +15,38 @@ namespace merlin::nn {
 using Slots = std::array<bool, kInputs>;
 
 // Statistics of a set of hands in the network's scaled inputs, sufficient to generate similar
-// hands. A network's file keeps them, so that adapting can rehearse what the network knows.
-struct Memory {
+// hands. A network's file keeps them, so that adapting can train on generated hands as well.
+struct PostureStatistics {
   std::vector<std::string> postures;
-  std::vector<Input> mean;  // of each posture
-  // Lower triangle L: the hands of one posture stray about its mean with the covariance L L^T,
-  // pooled over the postures, and a share of its mean on the diagonal.
+  std::vector<Input> mean;  // one for each posture
+  // Lower triangle L of the Cholesky factorisation of the hands' covariance L L^T about their
+  // posture's mean, pooled over the postures, with a share of the mean variance on the diagonal.
   std::array<std::array<float, kInputs>, kInputs> spread{};
 };
 
-// Each slot's mean +- 3 standard deviations over all hands. A slot that never changes keeps the
-// range of `fallback` and is false in `used`: no sensor measures it.
+// Returns each slot's mean +- 3 standard deviations over all hands. A slot that never changes has
+// no sensor: it keeps the range of `fallback` and is false in `used`.
 InputRanges rangesOf(std::span<const LabelledHand> hands, const InputRanges& fallback, Slots& used);
 
-// `posture[n]`: index into `names` of hand n.
-Memory remember(std::span<const Input> hands, std::span<const std::size_t> posture,
-                std::vector<std::string> names, const Slots& used);
+// `posture[n]`: hand n's index into `names`.
+PostureStatistics statisticsOf(std::span<const Input> hands, std::span<const std::size_t> posture,
+                               std::vector<std::string> names, const Slots& used);
 
-// u = T (x - centre), where T whitens the spread and scales so that a component's variance over all
-// postures is 1 on average.
-class Space {
+// u = T (x - centre). T whitens the spread and scales it so that the average variance of a
+// component over all postures is 1.
+class WhitenedSpace {
  public:
-  Space(const Memory& memory, const Slots& used);
+  WhitenedSpace(const PostureStatistics& statistics, const Slots& used);
 
   Input toSpace(const Input& x) const noexcept;
-  // Within a posture, of every component.
+  // Standard deviation of every component within a posture.
   float sigma() const noexcept { return sigma_; }
 
-  // Likeness of two postures: 1 / their squared distance in standard deviations.
+  // Returns the likeness of each two postures: 1 / squared distance in standard deviations.
   std::vector<std::vector<double>> likeness() const;
-  const std::vector<Input>& means() const noexcept { return means_; }  // of the postures, in u
+  const std::vector<Input>& means() const noexcept { return means_; }  // the postures' means in u
 
-  // Weights that take x, of weights that take u; and back. Unused slots get 0.
+  // Converts weights for inputs u into weights for inputs x, and back. Unused slots get 0.
   Weights fold(const Lanes<float>& in_space) const;
   Lanes<float> unfold(const Weights& weights) const;
 
@@ -54,7 +54,7 @@ class Space {
   using Matrix = std::array<std::array<double, kInputs>, kInputs>;
   Slots used_;
   std::array<double, kInputs> centre_{};
-  Matrix whiten_{}, colour_{};  // T, and its inverse
+  Matrix whiten_{}, colour_{};  // T and its inverse
   float sigma_ = 1;
   std::vector<Input> means_;
 };

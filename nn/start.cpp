@@ -12,15 +12,15 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t kNodes = kHidden / kOutputs;  // of each output
+constexpr std::size_t kNodes = kHidden / kOutputs;  // hidden nodes for each output
 constexpr double kHiddenJitter = 0.1, kOutputJitter = 0.15;
 constexpr double kOutputWeight = 3.0;
-constexpr float kEagerness = 1.5F;  // of boosting
+constexpr float kEagerness = 1.5F;  // exponent of boosting's weights
 
-// tanh(y / 2) = 2 sigmoid(y) - 1, by arithmetic that is the same on every machine.
+// tanh(y / 2) = 2 sigmoid(y) - 1, by arithmetic that gives the same bits on every machine.
 double soft(double y) { return static_cast<double>(2 / (1 + expOf(static_cast<float>(-y))) - 1); }
 
-// The means with a column of ones.
+// Returns the means with a column of ones.
 MatrixXd withOnes(std::span<const Input> means) {
   MatrixXd m(static_cast<Eigen::Index>(means.size()), static_cast<Eigen::Index>(kInputs + 1));
   for (std::size_t k = 0; k < means.size(); ++k) {
@@ -31,7 +31,7 @@ MatrixXd withOnes(std::span<const Input> means) {
   return m;
 }
 
-// The least squares hyperplane between targets of -1 and 1, scaled to the spread of a posture.
+// Returns the least squares hyperplane for targets -1 and 1, scaled to the spread of a posture.
 VectorXd plane(const MatrixXd& means, const VectorXd& target, const VectorXd& weight,
                double variance) {
   const MatrixXd weighted = weight.asDiagonal() * means;
@@ -39,7 +39,7 @@ VectorXd plane(const MatrixXd& means, const VectorXd& target, const VectorXd& we
   for (Eigen::Index i = 0; i + 1 < normal.rows(); ++i) normal(i, i) += weight.sum() * variance;
   VectorXd w = normal.ldlt().solve(weighted.transpose() * target);
   const double length = w.head(w.size() - 1).norm() * std::sqrt(variance);
-  // Where one posture outweighs all others there is no plane, only its side: left as it is.
+  // If one posture outweighs all others, there is no plane; the result is left unchanged.
   constexpr double kLeastLength = 1e-2;
   return length > kLeastLength ? VectorXd(w / length) : w;
 }

@@ -1,4 +1,4 @@
-// Weights to start from: hyperplanes that already tell the postures apart, a few for each output.
+// Initial weights: a few hyperplanes for each output that already separate the postures.
 #pragma once
 
 #include <span>
@@ -9,10 +9,10 @@
 
 namespace merlin::nn {
 
-// Three hidden nodes for each output, found one after the other by weighted least squares between
-// the postures' means (in the space of training; a posture that is still on the wrong side weighs
-// more: boosting, Freund and Schapire 1997); small random weights everywhere else.
-// `sigma`: how far a posture's hands stray.
+// Sets three hidden nodes for each output, one after the other, by weighted least squares between
+// the postures' means in whitened coordinates. A posture that is still on the wrong side gets more
+// weight (boosting, Freund and Schapire 1997). All other weights are small and random.
+// `sigma`: standard deviation of a posture's hands.
 Lanes<float> startingWeights(std::span<const Input> means, std::span<const std::uint32_t> codes,
                              float sigma, Random& random);
 

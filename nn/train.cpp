@@ -64,7 +64,8 @@ std::optional<Error> invalid(std::span<const Example> examples, const TrainSetti
       return error("an example with an input that is not finite");
     }
   }
-  if (s.phi == Phi::kSignum) return error("signum has no slope to train by; sigmoid and atan have");
+  if (s.phi == Phi::kSignum)
+    return error("phi signum has no slope and cannot be trained; allowed: sigmoid, atan");
   if (!(s.rate > 0) || !std::isfinite(s.rate)) return error(fmt::format("rate {} not > 0", s.rate));
   if (!(s.momentum >= 0 && s.momentum < 1)) {
     return error(fmt::format("momentum {} not in [0, 1)", s.momentum));
@@ -140,7 +141,8 @@ Result<Training> train(const TrainingWeights& start, std::span<const Example> ex
   }
   if (!narrow(weights, done.weights)) {
     return Error{Errc::kInvalidArgument,
-                 fmt::format("weights ran away after {} iterations: rate {} or start too large",
+                 fmt::format("the weights diverged after {} iterations: use a rate below {} or "
+                             "smaller initial weights",
                              done.report.iterations, settings.rate)};
   }
   done.report.accuracy = accuracyOf(settings.phi, done.weights, examples);

@@ -1,4 +1,4 @@
-// Training by back-propagation. Pure: the seed is an argument, and one seed gives one network.
+// Training by back-propagation. Pure; the seed is an argument, and one seed gives one network.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ using TrainingWeights = BasicWeights<double>;
 //   delta_k = 2/(5 n) (Y_k - T_k) Phi'(I_k)          dE/dW_kj = sum_examples delta_k Y_j
 //   delta_j = Phi'(I_j) sum_k delta_k W_kj           dE/dW_ji = sum_examples delta_j X_i
 //
-// T_k is bit k of the example's code; a bias is the weight of an input of 1.
+// T_k is bit k of the example's code. A bias is the weight of a constant input 1.
 // REQUIRES: examples not empty, phi not signum.
 struct Slope {
   double mse = 0.0;
@@ -28,8 +28,8 @@ struct Slope {
 };
 Slope backPropagate(Phi phi, const TrainingWeights& weights, std::span<const Example> examples);
 
-// Every weight and bias uniform within +-1/sqrt(weights of its row): sums small enough that no
-// node starts where Phi is flat.
+// Draws every weight and bias uniformly from +-1/sqrt(weights of its row), so that sums are small
+// and no node starts where Phi is flat.
 TrainingWeights initialWeights(std::uint64_t seed) noexcept;
 
 struct TrainSettings {
@@ -37,12 +37,12 @@ struct TrainSettings {
   double rate = 2.0;                  // step along -dE/dW, > 0
   double momentum = 0.9;              // share of the last step that goes into the next, [0, 1)
   std::size_t max_iterations = 2000;  // passes over the examples, >= 1
-  double mse_limit = 5e-4;            // good enough: stop below it, >= 0
+  double mse_limit = 5e-4;            // training stops below it, >= 0
 };
 
 struct TrainReport {
   std::size_t iterations = 0;
-  double mse = 0.0;       // of the weights that are returned
+  double mse = 0.0;       // mean squared error of the returned weights
   double accuracy = 0.0;  // share of examples with all five bits right
 };
 
@@ -51,15 +51,17 @@ struct Training {
   TrainReport report;
 };
 
-// Called before each step with the number of steps done and the error there; false stops.
+// Called before each step with the number of steps done and the present error. Returning false
+// stops the training.
 using Progress = std::function<bool(std::size_t iteration, double mse)>;
 
-// Gradient descent with momentum from `start` ([GOU] A.5.3), until the error is under its limit,
-// the iterations are used up, or `progress` says so; none of these is an error: look at the report.
+// Gradient descent with momentum from `start` ([GOU] A.5.3). It stops when the error is below its
+// limit, the iterations are used up, or `progress` returns false. None of these is an error: the
+// report says which it was.
 //
 // errors     kInvalidArgument: no examples, an input that is not finite, a code above 31, settings
-//            out of their ranges, signum (no slope); weights that ran out of what a float holds.
-// cost       about 1 us an example and iteration; one thread; allocates nothing in the loop.
+//            out of their ranges, signum (no slope), weights that diverged beyond a float.
+// cost       about 1 us for each example and iteration; one thread; allocates nothing in the loop.
 Result<Training> train(const TrainingWeights& start, std::span<const Example> examples,
                        const TrainSettings& settings, const Progress& progress = {});
 

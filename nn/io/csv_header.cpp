@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kLabelNames[] = {"posture", "label",  "class", "gesture", "sign",
                                        "letter",  "target", "name",  "pose",    "y"};
-// Other columns that a recording may have; they are left out.
+// Other columns that a recording may have; they are ignored.
 constexpr const char* kOtherNames[] = {"",          "index",   "id",     "time",
                                        "timestamp", "t",       "person", "subject",
                                        "user",      "session", "take",   "sample"};
@@ -24,7 +24,7 @@ bool has(const List& list, const Value& value) {
   return std::find(std::begin(list), std::end(list), value) != std::end(list);
 }
 
-// "s7", or a joint's name; kNone for any other.
+// Returns the slot of "s7" or of a joint's name; kNone for any other name.
 int slotNamed(const std::string& name) {
   const auto at = std::find(kInputNames.begin(), kInputNames.end(), name);
   if (at != kInputNames.end()) return static_cast<int>(at - kInputNames.begin());
@@ -35,7 +35,8 @@ int slotNamed(const std::string& name) {
   return whole && slot >= 0 && slot < static_cast<int>(kInputs) ? slot : kNone;
 }
 
-// The slots of a glove with that many sensors, in the order of its mask; empty for no such glove.
+// Returns the slots of a glove with that many sensors in the order of its mask; empty if there is
+// no such glove.
 std::vector<int> slotsOf(std::size_t sensors) {
   std::vector<int> slots;
   for (std::size_t i = 0; i < kInputs; ++i) {
@@ -95,7 +96,8 @@ std::optional<std::string> readHeader(const std::vector<std::string>& names, Csv
     sensors.push_back(c);
     named = named && header.slot[c] != kNone;
   }
-  // s0 to s21, or s1 to s22, are 22 sensors one after the other, not slots: those lack slot 7.
+  // s0 to s21 or s1 to s22 number the 22 sensors, not the slots: gloves with 22 sensors lack
+  // slot 7.
   for (const std::size_t c : sensors) {
     const auto slot = static_cast<std::size_t>(std::max(header.slot[c], 0));
     const bool counted = plain[c].size() > 1 && plain[c][0] == 's' && plain[c].size() < 4;

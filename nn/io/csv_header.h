@@ -1,4 +1,4 @@
-// The header of a recording: which column is the label, and which slot each of the others is.
+// Reads the header of a recording: the column of the label, and the slot of each other column.
 #pragma once
 
 #include <array>
@@ -13,17 +13,17 @@ namespace merlin::nn {
 
 struct CsvHeader {
   std::size_t label = 0;           // column
-  std::vector<int> slot;           // of each column, -1 for the label and for what is left out
-  std::vector<std::string> notes;  // what was guessed
+  std::vector<int> slot;           // one for each column; -1 for the label and for ignored columns
+  std::vector<std::string> notes;  // assumptions that were made
 };
 
-// Columns by name: the label is "posture", "label", "class" or another of kLabelNames, or has one
-// of these in its name; sensors are "s0".."s22" or the names of kInputNames. Where the sensors'
-// names say nothing, their number and order do: 18, 22 or 23, as the glove's mask has them. Returns
-// what is wrong with it, else nothing.
+// Finds columns by their names. The label is "posture", "label", "class" or another of kLabelNames,
+// or has one of these in its name; sensors are "s0".."s22" or the names of kInputNames. If the
+// sensors have other names, their number (18, 22 or 23) and order decide, as in the glove's mask.
+// Returns what is wrong with the header; nothing if it is valid.
 std::optional<std::string> readHeader(const std::vector<std::string>& names, CsvHeader& header);
 
-// Lower case, without quotes and blanks at the ends; inner blanks and '_' become '-'.
+// Returns a name in lower case, without quotes and outer blanks; inner blanks and '_' become '-'.
 std::string plainName(std::string_view text);
 
 }  // namespace merlin::nn

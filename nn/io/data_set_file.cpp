@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kLargestFile = std::size_t{1} << 26;  // bytes: about 300,000 hands
 constexpr std::size_t kMostQuoted = 40;                     // characters of a field in an error
-constexpr std::size_t kDip[] = {6, 10, 14, 18};             // each PIP is the slot before
+constexpr std::size_t kDip[] = {6, 10, 14, 18};             // the slot before each is the PIP
 constexpr std::string_view kSyntheticLine = "# synthetic hands: nobody was measured";
 
 std::string quote(std::string_view text) {
@@ -37,7 +37,7 @@ std::vector<std::string> split(std::string_view text, char separator) {
   }
 }
 
-// Lines that end with LF, CR LF or CR; the last may have no end.
+// Splits a text into lines that end with LF, CR LF or CR; the last may lack its end.
 class Lines {
  public:
   explicit Lines(std::string_view text) : rest_(text) {}
@@ -61,14 +61,15 @@ class Lines {
   bool ended_ = true;
 };
 
-// A label as people write it, made a posture's name; empty if that cannot be.
+// Converts a label as people write it into a posture's name; empty if that is impossible.
 std::string postureName(std::string_view text) {
   std::string name(text);
   const auto outer = [](char c) { return c == '"' || c == '\'' || c == ' ' || c == '\t'; };
   while (!name.empty() && outer(name.front())) name.erase(0, 1);
   while (!name.empty() && outer(name.back())) name.pop_back();
   std::replace(name.begin(), name.end(), ' ', '-');
-  if (name.ends_with(".0")) name.resize(name.size() - 2);  // a class that was kept as a float
+  if (name.ends_with(".0"))
+    name.resize(name.size() - 2);  // a class number that was saved as a float
   return isPostureName(name) ? name : std::string();
 }
 
@@ -96,7 +97,7 @@ class Parser {
     if (recording_.hands.empty()) return wrong("no hands", "at least one line after the header");
     if (!lines_.ended())
       recording_.notes.push_back(
-          "the last line has no end: if the file was cut, its last number may be wrong");
+          "the last line has no line end: if the file was truncated, its last number may be wrong");
     return finish();
   }
 
@@ -164,10 +165,11 @@ class Parser {
     return std::nullopt;
   }
 
-  // Slots without a sensor are filled as the glove's driver fills them.
+  // Fills slots without a sensor as the glove's driver does.
   Recording finish() {
     recording_.unit = unit_.value_or(far_ ? InputUnit::kRaw : InputUnit::kRadians);
-    if (!unit_ && far_) recording_.notes.push_back("numbers beyond +-6.3: taken for raw counts");
+    if (!unit_ && far_)
+      recording_.notes.push_back("numbers are beyond +-6.3 and are assumed to be raw counts");
     for (LabelledHand& hand : recording_.hands) {
       for (const std::size_t dip : kDip) {
         const float pip = hand.value[dip - 1];
@@ -184,7 +186,7 @@ class Parser {
   char separator_ = ',';
   std::vector<std::string> names_;
   CsvHeader header_;
-  std::map<std::string, std::string> labels_;  // posture to how the file writes it
+  std::map<std::string, std::string> labels_;  // posture to its spelling in the file
   bool far_ = false;
   Recording recording_;
 };

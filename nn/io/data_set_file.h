@@ -1,4 +1,4 @@
-// Data sets as CSV: a header, then one hand a line. The format: nn/io/README.md.
+// Data sets as CSV: a header, then one hand in each line. nn/io/README.md describes the format.
 #pragma once
 
 #include <optional>
@@ -16,25 +16,26 @@ namespace merlin::nn {
 struct Recording {
   DataSet hands;
   InputUnit unit = InputUnit::kRadians;
-  Slots measured{};  // which slots the file has; others are filled, as the glove's driver does
-  bool synthetic = false;          // the file says so of itself
-  std::vector<std::string> notes;  // for the person who reads it: what was guessed
+  Slots measured{};  // slots that the file has; the others are filled as the glove's driver does
+  bool synthetic = false;          // the file says that its hands are generated
+  std::vector<std::string> notes;  // assumptions that were made, for the user
 };
 
-// Reads a file whole or not at all. `unit`: what its numbers are; absent: radians, unless one is
-// beyond +-6.3. Every error names the file and the line, says what was found and what is allowed.
+// Reads a whole file or nothing. `unit` is the unit of its numbers; if absent, radians are assumed
+// unless a number is beyond +-6.3. Every error names the file and the line, what was found and what
+// is allowed.
 // Errors: kNotFound, kIo, kMalformed.
 Result<Recording> loadRecording(const std::string& path, std::optional<InputUnit> unit = {});
 
-// The same of a text; `file` is its name in errors.
+// The same for a text; `file` is its name in errors.
 Result<Recording> parseRecording(std::string_view text, const std::string& file,
                                  std::optional<InputUnit> unit = {});
 
-// The inverse, exact: what is read back equals what was written. All 23 slots, or those measured.
+// The exact inverse: reading the text back gives equal values. Writes the measured slots only.
 std::string formatRecording(const Recording& recording);
 
-// Replaces `path` by a whole file or leaves it as it was. Errors: kIo; kInvalidArgument: what
-// loadRecording() would refuse.
+// Replaces `path` by a whole file or leaves it unchanged. Errors: kIo; kInvalidArgument if
+// loadRecording() would refuse the result.
 Result<Ok> saveRecording(const std::string& path, const Recording& recording);
 
 }  // namespace merlin::nn

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/files.h"
-#include "nn/io/strict_json.h"
+#include "daemon/json/json_view.h"
 
 namespace merlin::nn {
 namespace {
@@ -17,9 +17,8 @@ using nlohmann::json;
 
 constexpr std::uint64_t kVersion = 2;
 constexpr std::uint64_t kMostVersions = 1000;
-constexpr std::size_t kLargestFile = 1 << 20;  // bytes; a network has about 25 kB
-constexpr double kMostWeight = 1e6;            // far beyond where any Phi is flat
-constexpr double kLeastSpread = 1e-6;          // of a hand, share of a range
+constexpr double kMostWeight = 1e6;    // Phi is flat far below this
+constexpr double kLeastSpread = 1e-6;  // least spread of hands, share of a range
 constexpr std::size_t kLongestHow = 200;
 constexpr auto kMostCount = std::numeric_limits<std::uint64_t>::max();
 
@@ -42,7 +41,7 @@ InputUnit readUnit(JsonView view) {
   return unit == "raw" ? InputUnit::kRaw : InputUnit::kRadians;
 }
 
-// Slot and name say the same thing twice, so that a file made for another order is found out.
+// Checks that slot and name agree, which finds files that were made for another order.
 void readInputs(JsonView inputs, InputUnit unit, InputRanges& ranges) {
   const double most = mostValue(unit);
   inputs.expectArray(kInputs, kInputs);
@@ -86,24 +85,25 @@ void readPostures(JsonView list, PostureTable& postures) {
   }
 }
 
-// Rows are in the order of the postures' codes, as the file's own list is.
-std::optional<Memory> readMemory(JsonView view, const PostureTable& postures) {
+// Rows are in the order of the postures' codes, as in the file's list of postures.
+std::optional<PostureStatistics> readStatistics(JsonView view, const PostureTable& postures) {
   view.allowKeys({"mean", "spread"});
-  Memory memory;
+  PostureStatistics statistics;
   for (std::uint32_t code = 0; code < kCodes; ++code) {
-    if (const auto name = postures.name(code); !name.empty()) memory.postures.emplace_back(name);
+    if (const auto name = postures.name(code); !name.empty())
+      statistics.postures.emplace_back(name);
   }
   JsonView mean = view.at("mean"), spread = view.at("spread");
   const bool any = mean.expectArray(0, kCodes) > 0;
-  memory.mean.resize(any ? memory.postures.size() : 0);
+  statistics.mean.resize(any ? statistics.postures.size() : 0);
   if (!any) {
     spread.expectArray(0, 0);
     return std::nullopt;
   }
-  readRows(mean, memory.mean);
-  readRows(spread, memory.spread);
+  readRows(mean, statistics.mean);
+  readRows(spread, statistics.spread);
   for (std::size_t i = 0; i < kInputs; ++i) spread.at(i).at(i).number(kLeastSpread, kMostWeight);
-  return memory;
+  return statistics;
 }
 
 Provenance readProvenance(JsonView view) {
@@ -120,8 +120,9 @@ Provenance readProvenance(JsonView view) {
 NetworkFile readDocument(JsonView root) {
   NetworkFile file;
   JsonView version = root.at("version");
-  if (version.count(0, kMostVersions) != kVersion) {  // first: of another version all may differ
-    version.wrong(fmt::format("{}, the version that this MERLIN reads", kVersion), {},
+  if (version.count(0, kMostVersions) !=
+      kVersion) {  // checked first, since anything may differ in another version
+    version.wrong(fmt::format("{}, the version that this release of MERLIN reads", kVersion), {},
                   Errc::kUnsupported);
   }
   root.allowKeys({"version", "sizes", "phi", "unit", "inputs", "hidden", "output", "postures",
@@ -133,12 +134,12 @@ NetworkFile readDocument(JsonView root) {
   readRows(root.at("hidden"), file.network.weights.hidden);
   readRows(root.at("output"), file.network.weights.output);
   readPostures(root.at("postures"), file.network.postures);
-  file.memory = readMemory(root.at("memory"), file.network.postures);
+  file.statistics = readStatistics(root.at("memory"), file.network.postures);
   file.trained = readProvenance(root.at("trained"));
   return file;
 }
 
-// fmt's shortest form that reads back as the same float; `+ 0` turns -0, which JSON has not, to 0.
+// fmt's shortest form that reads back as the same float; `+ 0` turns -0 into 0.
 std::string number(float v) { return fmt::format("{}", v + 0.0F); }
 
 template <typename Rows>
@@ -173,46 +174,43 @@ std::string formatPostures(const PostureTable& postures) {
   return out;
 }
 
-std::string formatMemory(const std::optional<Memory>& memory, const PostureTable& postures) {
-  if (!memory) return R"("mean": [], "spread": [])";
+std::string formatStatistics(const std::optional<PostureStatistics>& statistics,
+                             const PostureTable& postures) {
+  if (!statistics) return R"("mean": [], "spread": [])";
   std::vector<Input> mean;
   for (std::uint32_t code = 0; code < kCodes; ++code) {
     const auto name = postures.name(code);
-    const auto at = std::find(memory->postures.begin(), memory->postures.end(), name);
-    if (!name.empty() && at != memory->postures.end())
-      mean.push_back(memory->mean[static_cast<std::size_t>(at - memory->postures.begin())]);
+    const auto at = std::find(statistics->postures.begin(), statistics->postures.end(), name);
+    if (!name.empty() && at != statistics->postures.end())
+      mean.push_back(statistics->mean[static_cast<std::size_t>(at - statistics->postures.begin())]);
   }
   return fmt::format("\n  \"mean\": [\n{}\n  ],\n  \"spread\": [\n{}\n  ]", formatRows(mean),
-                     formatRows(memory->spread));
+                     formatRows(statistics->spread));
 }
 
 }  // namespace
 
 Result<NetworkFile> parseNetwork(std::string_view text, const std::string& file) {
   try {
-    if (text.size() > kLargestFile) {
-      return Error{Errc::kMalformed, fmt::format("{}: (root): found {} bytes; allowed: {}", file,
-                                                 text.size(), kLargestFile)};
-    }
-    if (const auto checked = checkJson(text, file); !checked) return checked.error();
-    const json document = json::parse(text);
+    const auto document = parseJson(text);
+    if (!document) return Error{document.error().code, file + ": " + document.error().what};
     std::optional<Error> error;
-    NetworkFile read = readDocument(JsonView(&document, "", file, error));
+    NetworkFile read = readDocument(JsonView(&*document, "", file, error));
     if (error) return *std::move(error);
     return read;
-  } catch (const std::exception& ex) {  // nlohmann's, or no memory
+  } catch (const std::exception& ex) {  // no memory
     return Error{Errc::kMalformed, file + ": " + ex.what()};
   }
 }
 
 Result<NetworkFile> loadNetwork(const std::string& path) {
-  const auto file = FileCopy::read(path, kLargestFile + 1);
+  const auto file = FileCopy::read(path, kMostJsonBytes + 1);
   if (!file) return file.error();
   return parseNetwork(file->text(), path);
 }
 
 std::string formatNetwork(const NetworkFile& file) {
-  constexpr auto kReplace = json::error_handler_t::replace;  // `how` may hold anything
+  constexpr auto kReplace = json::error_handler_t::replace;  // `how` may contain invalid UTF-8
   const PostureNetwork& network = file.network;
   const Provenance& trained = file.trained;
   return fmt::format(
@@ -230,7 +228,7 @@ std::string formatNetwork(const NetworkFile& file) {
       kVersion, kInputs, kHidden, kOutputs, nameOf(network.phi),
       network.unit == InputUnit::kRaw ? "raw" : "rad", formatInputs(network.ranges),
       formatRows(network.weights.hidden), formatRows(network.weights.output),
-      formatPostures(network.postures), formatMemory(file.memory, network.postures),
+      formatPostures(network.postures), formatStatistics(file.statistics, network.postures),
       json(trained.how).dump(-1, ' ', false, kReplace), trained.seed, trained.samples, trained.mse,
       trained.synthetic);
 }

@@ -1,4 +1,4 @@
-// The posture network's file: JSON, version 2; version 1 is read too. The format: nn/io/README.md.
+// The posture network's file: JSON, version 2; reads version 1 too. nn/io/README.md describes it.
 #pragma once
 
 #include <optional>
@@ -14,23 +14,23 @@ namespace merlin::nn {
 struct NetworkFile {
   PostureNetwork network;
   Provenance trained;
-  std::optional<Memory> memory;  // what adapting rehearses; absent in version 1
+  std::optional<PostureStatistics> statistics;  // statistics for adapting; absent in version 1
 };
 
-// Reads a file whole or not at all. Every error names the file and says where the fault stands
-// (a JSON pointer), what was found there and what is allowed; the first fault is the one told.
-// Errors: kNotFound, kIo, kMalformed, kUnsupported (a version that is neither).
+// Reads a whole file or nothing. The error is the first fault: it names the file, the place (a JSON
+// pointer), what was found there and what is allowed.
+// Errors: kNotFound, kIo, kMalformed, kUnsupported (any other version).
 Result<NetworkFile> loadNetwork(const std::string& path);
 
-// The same of a text; `file` is its name in errors.
+// The same for a text; `file` is its name in errors.
 Result<NetworkFile> parseNetwork(std::string_view text, const std::string& file);
 
-// The inverse, exact: what is read back equals what was written, number for number (-0 becomes 0).
+// The exact inverse: reading the text back gives equal numbers (-0 becomes 0).
 // Always version 2.
 std::string formatNetwork(const NetworkFile& file);
 
-// Replaces `path` by a whole file or leaves it as it was. Errors: kIo; kInvalidArgument: what
-// loadNetwork() would refuse, a weight that is not finite among it.
+// Replaces `path` by a whole file or leaves it unchanged. Errors: kIo; kInvalidArgument if
+// loadNetwork() would refuse the result, such as a weight that is not finite.
 Result<Ok> saveNetwork(const std::string& path, const NetworkFile& file);
 
 }  // namespace merlin::nn
