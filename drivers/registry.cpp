@@ -10,8 +10,8 @@ namespace {
 
 using Made = std::unique_ptr<Device>;
 
-// Every driver merlind knows. A new one is one row here and one folder beside this file. A table,
-// not self-registration: a linker drops what nobody names from a static library.
+// All drivers of merlind. A new driver needs one row here and one folder beside this file. This is
+// a table, not self-registration, because a linker drops unreferenced objects of a static library.
 constexpr DriverEntry kDrivers[] = {
     {"cyberglove", SampleKind::kGlove, "CyberGlove with its interface unit, 18 or 22 sensors",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> Made {
@@ -25,7 +25,7 @@ constexpr DriverEntry kDrivers[] = {
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> Made {
        return spaceball::makeDevice(s.spaceball, c, k);
      }},
-    {"sample", SampleKind::kBall, "the driver to copy: a ball that sends lines of text",
+    {"sample", SampleKind::kBall, "template for new drivers: a ball that sends lines of text",
      [](const DriverSettings&, const Clock& c, SampleSink& k) -> Made {
        return sample::makeDevice(c, k);
      }},

@@ -32,7 +32,7 @@ struct DriverEntry {
 
 std::span<const DriverEntry> drivers();
 
-// nullptr if there is none of that name and kind.
+// nullptr if there is no driver of that name and kind.
 const DriverEntry* findDriver(SampleKind kind, std::string_view name);
 
 }  // namespace merlin

@@ -1,4 +1,4 @@
-// Raw values of a CyberGlove to joint angles in slot order, and back. Pure.
+// Converts raw values of a CyberGlove to joint angles in slot order, and back. Pure.
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@
 
 namespace merlin::cyberglove {
 
-// Fills `angle_rad`, `raw`, `sensors` and `flags` of `sample`; leaves the rest. A slot that `slots`
-// lacks has raw 0 and an angle that is filled in: a DIP joint from its PIP joint [VTI], slot 7 by
-// the rule of the settings, any other with 0. Slot 23 is reserved and ignored.
+// Fills `angle_rad`, `raw`, `sensors` and `flags` of `sample`; leaves its other fields. A slot that
+// is not in `slots` gets raw 0 and a computed angle: a DIP joint from its PIP joint [VTI], slot 7
+// by the rule of the settings, any other 0. Slot 23 is reserved and ignored.
 void calibrate(const Record& record, const SlotList& slots, const CybergloveSettings& settings,
                GloveSample& sample) noexcept;
 
 // The inverse, for the emulator: the raw value of each slot at these angles, rounded and clamped to
-// 1..255. A slot of gain 0 has its offset.
+// 1..255. A slot with gain 0 gets its offset.
 std::array<std::uint8_t, kSlots> rawOf(std::span<const float, kGloveSlots> angle_rad,
                                        const CybergloveSettings& settings) noexcept;
 

@@ -19,7 +19,7 @@ struct Line {
   std::string_view text;
 };
 
-// Lines with something in them.
+// The lines that are not blank.
 std::vector<Line> linesOf(std::string_view text) {
   std::vector<Line> lines;
   for (int number = 1; !text.empty(); ++number) {
@@ -30,7 +30,7 @@ std::vector<Line> linesOf(std::string_view text) {
   return lines;
 }
 
-// All numbers of a line that is made of numbers and `separators`; nothing if it is not.
+// All numbers of a line; nothing if it contains anything but finite numbers and `separators`.
 std::optional<std::vector<float>> numbersOf(std::string_view text, std::string_view separators) {
   std::vector<float> numbers;
   for (;;) {
@@ -51,11 +51,11 @@ Error wrong(const std::string& where, const std::string& what) {
   return {Errc::kMalformed, fmt::format("{} {}", where, what)};
 }
 
-// The line through two points.
+// Sets offset and gain of a slot by the straight line through two points.
 Result<Ok> fit(ImportedCalibration& c, std::size_t slot, const GloveSpan& span,
                const std::string& where) {
   if (span.raw_a == span.raw_b)
-    return wrong(where, fmt::format("has both its points at the raw value {}", span.raw_a));
+    return wrong(where, fmt::format("has two points with the same raw value, {}", span.raw_a));
   c.given[slot] = true;
   c.gain[slot] = span.gain();
   c.offset[slot] = span.gain() == 0 ? span.raw_a : span.offset();
@@ -68,7 +68,7 @@ Result<ImportedCalibration> readVendor(const std::vector<Line>& lines) {
   for (const Line& line : lines) {
     if (line.text.find("E_O_CAL") != std::string_view::npos) break;
     const auto numbers = numbersOf(line.text, kBlanks);
-    if (!numbers || numbers->size() != 4) continue;  // a comment, or FINGER n:
+    if (!numbers || numbers->size() != 4) continue;  // a comment, or "FINGER n:"
     if (slot < 23) {
       c.given[slot] = true;
       c.offset[slot] = (*numbers)[1];
@@ -83,7 +83,7 @@ Result<ImportedCalibration> readVendor(const std::vector<Line>& lines) {
   return c;
 }
 
-// Its line i belongs to value kValue[i] of a record of 22 sensors.
+// Line i of the file belongs to value kValue[i] of a 22-sensor glove's record.
 Result<ImportedCalibration> readAsr(const std::vector<Line>& lines) {
   constexpr std::size_t kValue[] = {21, 20, 3, 0,  1,  2,  4,  10, 5,  6,  7,
                                     19, 8,  9, 11, 14, 12, 13, 15, 18, 16, 17};
@@ -95,12 +95,12 @@ Result<ImportedCalibration> readAsr(const std::vector<Line>& lines) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const std::string where = fmt::format("line {}", lines[i].number);
     const auto n = numbersOf(lines[i].text, " \t\r:");
-    if (!n || n->size() != 4) return wrong(where, "is no \"angle:raw angle:raw\"");
+    if (!n || n->size() != 4) return wrong(where, "does not have the form \"angle:raw angle:raw\"");
     const std::size_t slot = kValue[i] < 7 ? kValue[i] : kValue[i] + 1;
     const bool palm_or_wrist = slot >= 20 || slot == 15 || slot == 19;
     const float sign = palm_or_wrist ? 1.0F : -1.0F;
     const GloveSpan span{(*n)[1], sign * (*n)[0], (*n)[3], sign * (*n)[2]};
-    if (slot == 20 && span.rad_a == span.rad_b) continue;  // the palm arch has no angle there
+    if (slot == 20 && span.rad_a == span.rad_b) continue;  // the file has no palm-arch angle
     if (auto done = fit(c, slot, span, where); !done) return done.error();
   }
   return c;
@@ -120,8 +120,8 @@ std::optional<std::size_t> shadowSlot(std::string_view name) {
   return std::nullopt;
 }
 
-// Every number between here and the next joint's name, in pairs of raw (0..1) and degrees; the line
-// through the outermost two.
+// Each joint's name is followed by pairs of a raw value (0..1) and an angle in degrees. Uses the
+// straight line through the first and the last pair.
 Result<ImportedCalibration> readShadow(std::string_view text, const char* format) {
   ImportedCalibration c{.format = format};
   for (std::size_t at = text.find("\"G_"); at != std::string_view::npos;) {
@@ -131,7 +131,7 @@ Result<ImportedCalibration> readShadow(std::string_view text, const char* format
     part.remove_prefix(std::min(name.size() + 1, part.size()));
     at = next;
     const auto slot = shadowSlot(name);
-    if (!slot) return wrong(name, "is no joint of a CyberGlove");
+    if (!slot) return wrong(name, "is not a joint of a CyberGlove");
     std::string plain;
     for (const char ch : part) {
       const bool number = (ch >= '0' && ch <= '9') || ch == '.' || ch == '-';
@@ -139,7 +139,7 @@ Result<ImportedCalibration> readShadow(std::string_view text, const char* format
     }
     const auto n = numbersOf(plain, " ");
     if (!n || n->size() < 4 || n->size() % 2 != 0)
-      return wrong(name, "has not two points or more, each a raw value and degrees");
+      return wrong(name, "needs two points or more, each a raw value and an angle in degrees");
     const auto raw = [&](std::size_t i) { return 1 + 254 * (*n)[i]; };
     const std::size_t last = n->size() - 2;
     const GloveSpan span{raw(0), kDegree * (*n)[1], raw(last), kDegree * (*n)[last + 1]};
@@ -149,7 +149,7 @@ Result<ImportedCalibration> readShadow(std::string_view text, const char* format
 }
 
 Result<ImportedCalibration> readVess(const std::vector<Line>& lines) {
-  // Degrees over the whole of a sensor's range, by slot.
+  // Angle between the minimum and the maximum of each slot's sensor [degrees].
   constexpr float kRange[] = {90, 45,  70, 30, 90, 100, 70, 30, 90, 100, 70, 30,
                               90, 100, 70, 30, 90, 100, 70, 45, 45, 90,  45};
   ImportedCalibration c{.format = "VESS"};
@@ -159,7 +159,7 @@ Result<ImportedCalibration> readVess(const std::vector<Line>& lines) {
   for (std::size_t slot = 0; slot < lines.size(); ++slot) {
     const std::string where = fmt::format("line {}", lines[slot].number);
     const auto n = numbersOf(lines[slot].text, kBlanks);
-    if (!n || n->size() != 3) return wrong(where, "is no \"idle min max\"");
+    if (!n || n->size() != 3) return wrong(where, "does not have the form \"idle min max\"");
     const float idle = (*n)[0], low = (*n)[1], high = (*n)[2];
     if (low >= high) {
       return wrong(where, fmt::format("has a minimum of {} and a maximum of {}: are they swapped?",
@@ -183,8 +183,8 @@ Result<ImportedCalibration> importCalibration(std::string_view text) {
   if (!lines.empty() && numbersOf(lines[0].text, kBlanks)) return readVess(lines);
   return Error{
       Errc::kMalformed,
-      "is no calibration that is known: the vendor's .cal, asr_cyberglove's, Shadow's XML or "
-      "YAML, VESS's"};
+      "is not in a known calibration format; known are the vendor's .cal, asr_cyberglove's, "
+      "Shadow's XML and YAML, and VESS's"};
 }
 
 }  // namespace merlin::cyberglove

@@ -18,19 +18,20 @@ constexpr Duration kReplyTime = milliseconds(300);
 constexpr Duration kLongestSilence = milliseconds(500);
 constexpr std::size_t kLongestText = 512;
 
-constexpr double kStampClock = 115200;  // Hz, of the time stamps
-constexpr double kMostLost = 1000;      // more is a unit that started anew
+constexpr double kStampClock = 115200;  // clock of the time stamps [Hz]
+constexpr double kMostLost = 1000;      // records; a larger gap means that the unit was restarted
 
 constexpr std::string_view kStop = "\x03";
 constexpr const char* kUnplugged = "glove not plugged in";
-constexpr const char* kTooFast = "more records asked for than the glove can measure";
+constexpr const char* kTooFast = "the requested record rate is higher than the glove can measure";
 
 Error noAnswer(std::string_view reply, std::string_view to) {
-  return {Errc::kMalformed, fmt::format("\"{}\" in answer to {}", quoteBytes(reply), to)};
+  return {Errc::kMalformed, fmt::format("unexpected answer \"{}\" to {}", quoteBytes(reply), to)};
 }
 
-// The answer to `command`, `count` bytes and NUL of the binary dialogue whichever is spoken;
-// without the NUL; it starts with `begin`, which names the step in errors.
+// Sends a binary command, in the dialogue that is in use, and returns the answer in binary form
+// without its NUL. The answer must have `count` bytes and start with `begin`, which also names the
+// step in errors.
 Result<std::string> exchange(Dialogue& dialogue, bool text, std::string_view command,
                              std::size_t count, std::string_view begin) {
   const std::string bytes = text ? asText(command) + '\r' : std::string(command);
@@ -47,7 +48,7 @@ Result<std::string> exchange(Dialogue& dialogue, bool text, std::string_view com
   return reply;
 }
 
-// Sends "?x" and returns the `count` bytes that follow it in the answer.
+// Sends the query '?' + `letter` and returns the `count` bytes that follow it in the answer.
 Result<std::string> ask(Dialogue& dialogue, bool text, char letter, std::size_t count) {
   const std::string query{'?', letter};
   const auto reply = exchange(dialogue, text, query, 2 + count, query);
@@ -55,7 +56,8 @@ Result<std::string> ask(Dialogue& dialogue, bool text, char letter, std::size_t 
   return reply->substr(2);
 }
 
-// The answer is the letter. Old firmware adds a byte, an error has one more: drained.
+// Sends a command and expects its letter as the answer. Further bytes are drained: old firmware
+// adds one, and an error reply has one more.
 Result<Ok> set(Dialogue& dialogue, bool text, std::string_view command) {
   const std::string_view letter = command.substr(0, 1);
   const auto reply = exchange(dialogue, text, command, 1, letter);
@@ -96,7 +98,8 @@ Result<Ok> CybergloveDevice::identify(Dialogue& dialogue) {
   const auto info = dialogue.readUntil('\0', kLongestText, kReplyTime, "?i");
   if (!info) return info.error();
   if (info->find("CyberGlove") == std::string::npos) {
-    return Error{Errc::kMalformed, fmt::format("no CyberGlove: it says \"{}\"", quoteBytes(*info))};
+    return Error{Errc::kMalformed, fmt::format("not a CyberGlove: it identifies itself as \"{}\"",
+                                               quoteBytes(*info))};
   }
   const auto state = ask(dialogue, text_, 'G', 1);
   if (!state) return state.error();
@@ -110,7 +113,7 @@ Result<Ok> CybergloveDevice::identify(Dialogue& dialogue) {
   const auto count = static_cast<std::uint8_t>((*sensors)[0]);
   if (count != slots_.count || count == 0) {
     return Error{Errc::kMalformed,
-                 fmt::format("a glove of {} sensors with a mask of {} (0x{:06X}){}{}", count,
+                 fmt::format("the glove reports {} sensors and a mask of {} (0x{:06X}){}{}", count,
                              slots_.count, mask_, *complaint_ ? ": " : "", complaint_)};
   }
   return Ok{};
@@ -166,7 +169,8 @@ void CybergloveDevice::handle(const Packet& packet, Timestamp first_byte) noexce
   sink_.publish(sample_);
 }
 
-// By the unit's own time between two records; half a period of jitter is none.
+// Number of records that were lost before this one, by the unit's time stamps. Jitter of less than
+// half a period does not count.
 std::uint32_t CybergloveDevice::lostBefore(const Record& record) noexcept {
   if (!settings_.time_stamps) return 0;
   const std::uint32_t ticks = record.timestamp - last_stamp_;

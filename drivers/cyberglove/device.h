@@ -1,4 +1,4 @@
-// A CyberGlove's dialogue: stop, identify, set up, stream.
+// Driver of a CyberGlove: stops its stream, identifies it, sets it up and streams.
 #pragma once
 
 #include <memory>
@@ -13,9 +13,10 @@
 
 namespace merlin::cyberglove {
 
-// open() takes about 0.3 s, and 1 s where the interface unit streams on or is silent. poll() fails
-// with kTimeout when no record came for 0.5 s, or for 5 periods of a rate below 10 Hz. A glove that
-// is not plugged in is a complaint and no error, as long as its unit streams.
+// open() takes about 0.3 s, or 1 s if the interface unit does not stop streaming or does not
+// answer. poll() fails with kTimeout after 0.5 s without a record, or 5 periods if the rate is
+// below 10 Hz. A glove that is not plugged in is a complaint, not an error, as long as the
+// interface unit streams.
 class CybergloveDevice final : public Device {
  public:
   CybergloveDevice(const CybergloveSettings& settings, const Clock& clock, SampleSink& sink);
@@ -32,14 +33,14 @@ class CybergloveDevice final : public Device {
   void handle(const Packet& packet, Timestamp first_byte) noexcept;
 
   CybergloveSettings settings_;
-  bool text_;  // the ASCII dialogue is spoken
+  bool text_;  // uses the ASCII dialogue
   const Clock& clock_;
   SampleSink& sink_;
   Parser parser_;
-  std::uint32_t mask_ = 0;  // of the sensors that the glove has
+  std::uint32_t mask_ = 0;  // slots for which the glove has a sensor
   SlotList slots_;
   GloveSample sample_{};
-  std::uint32_t last_stamp_ = 0;  // of the last record; 0 before the first
+  std::uint32_t last_stamp_ = 0;  // time stamp of the last record; 0 before the first
   std::uint64_t samples_ = 0;
   Timestamp packet_start_{};
   Timestamp last_record_{};

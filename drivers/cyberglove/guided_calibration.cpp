@@ -13,14 +13,14 @@ constexpr GuidedStep kPoses[] = {
     {"fist", "a tight fist, thumb outside"},
     {"spread", "fingers and thumb spread as far as they go, hand flat"},
     {"thumb", "thumb across the palm, bent, to the root of the little finger"},
-    {"cup", "little finger's ball towards the thumb's, as if to hold water"},
+    {"cup", "palm cupped as if to hold water, base of the little finger towards base of the thumb"},
     {"wrist up", "hand bent back as far as it goes"},
     {"wrist aside", "hand bent towards the thumb as far as it goes"},
 };
 enum Pose : std::size_t { kFlat, kFist, kSpread, kThumb, kCup, kUp, kAside };
 
-// Each sensor is at 0 rad in "flat", and at this angle in another pose. The angles are those of an
-// adult hand, as the shipped calibration's spans have them.
+// The pose, besides "flat", by which a sensor is calibrated, and its angle there; in "flat" it is
+// 0 rad. The angles are those of an adult hand, as in the default calibration.
 struct Target {
   Pose pose;
   float angle_rad;

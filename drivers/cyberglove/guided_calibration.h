@@ -1,4 +1,5 @@
-// A person's own calibration of a glove, from a few poses that are held one after the other. Pure.
+// Calibrates a glove for one person, from a few poses that the person holds one after the other.
+// Pure.
 #pragma once
 
 #include <array>
@@ -18,16 +19,17 @@ std::span<const GuidedStep> guidedPoses();
 // Statistics of each sensor while a pose is held, and over all poses.
 class GuidedCalibration {
  public:
-  void begin(std::size_t pose);  // what comes from now on belongs to it; again: anew
+  void begin(std::size_t pose);  // starts or restarts a pose; later samples belong to it
   void add(const GloveSample& sample);
 
-  // Records of the pose under way; smallest and largest raw value of a slot so far, 0 for none.
+  // Number of records of the current pose; smallest and largest raw value of a slot in all poses so
+  // far, 0 if there is none.
   int count() const noexcept { return poses_[pose_].count; }
   std::uint8_t low(std::size_t slot) const noexcept { return low_[slot]; }
   std::uint8_t high(std::size_t slot) const noexcept { return high_[slot]; }
 
-  // Offsets and gains. Slots that the glove has no sensor for keep those of `settings`.
-  // Errors: kMalformed, with every sensor that moved by too little, and poses without records.
+  // Returns `settings` with new offsets and gains; slots without a sensor keep theirs. Errors:
+  // kMalformed, naming a pose without records, or every sensor that moved too little.
   Result<CybergloveSettings> solve(const CybergloveSettings& settings) const;
 
  private:

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kStampLength = 5;
 constexpr double kRateClock = 115200;  // Hz; `T` divides it
 
-// Bytes before the errors: the letter, the values and what is switched on.
+// Length of a record before its error letters: the letter, the values and the optional fields.
 std::size_t bodyLength(const Layout& layout) noexcept {
   return 1 + layout.values + (layout.timestamp ? kStampLength : 0) + (layout.status ? 1 : 0);
 }
@@ -59,7 +59,7 @@ std::optional<Packet> Parser::finish() noexcept {
   std::optional<Packet> packet;
   if (length_ <= kLongest) packet = read();
   if (!packet) {
-    bad_packets_ += length_ > 0 ? 1 : 0;  // a NUL alone is a byte too many, not a packet
+    bad_packets_ += length_ > 0 ? 1 : 0;  // a NUL alone is a surplus byte, not a packet
     bad_bytes_ += length_ + 1;
   }
   length_ = 0;
@@ -123,7 +123,7 @@ std::string encode(const Record& record, const Layout& layout) {
   return out;
 }
 
-// rate = 115200 / (w1 * w2); the second word is needed below 1.76 Hz alone.
+// rate = 115200 / (w1 * w2); the second word is only needed below 1.76 Hz.
 std::string encodeRate(double rate_hz) {
   assert(rate_hz >= 1 && rate_hz <= kRateClock);
   const double second = rate_hz < kRateClock / 65535 ? 2 : 1;

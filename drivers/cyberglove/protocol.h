@@ -1,11 +1,12 @@
 // CyberGlove wire format: bytes to records and back; the ASCII dialogue is text.h. No I/O, no
 // clock.
 //
-// A record is a letter, one byte a sensor, what was switched on, and NUL:
+// A record is a letter, one byte per sensor, optional fields that can be switched on, and NUL:
 //   'G' or 'S'  v1 .. vN: u8 [raw, 1..255]  [time stamp: 5 bytes]  [status: u8, bit 7 set]
 //   ['e' 's' or 'e' 'g', both may come]  00
 // 'G' answers a single request, 'S' belongs to a stream. An error reply is 'e' code 00. No byte
-// inside is 0, so a NUL always ends a packet. 'e' is also a legal value: errors are told by place.
+// inside is 0, so a NUL always ends a packet. 'e' is also a legal value, so errors are recognised
+// by their position.
 //
 // Sources: README.md beside this file.
 #pragma once
@@ -19,7 +20,7 @@
 
 namespace merlin::cyberglove {
 
-// Slots of the interface unit: bits of its sensor masks. Values are sent in their order.
+// Slots of the interface unit: the bits of its sensor masks. Values are sent in the order of slots.
 inline constexpr std::size_t kSlots = 24;
 inline constexpr std::uint32_t kMask18 = 0x7BBB3F;
 inline constexpr std::uint32_t kMask22 = 0x7FFF7F;
@@ -37,18 +38,18 @@ std::uint32_t decodeMask(const char* bytes) noexcept;
 // Contents of a record.
 struct Layout {
   std::size_t values = 22;  // 1..24
-  bool timestamp = false;   // `D`
-  bool status = true;       // `U`
-  bool text = false;        // of the ASCII dialogue
+  bool timestamp = false;   // switched on by `D`
+  bool status = true;       // switched on by `U`
+  bool text = false;        // in the form of the ASCII dialogue
 };
 
 struct Record {
   enum Status : std::uint8_t { kPlugged = 1, kWristSwitch = 2, kLight = 4, kAlways = 0x80 };
 
   std::array<std::uint8_t, kSlots> values{};  // in wire order; 0 beyond the layout's count
-  std::uint32_t timestamp = 0;                // [1/115200 s]; 0 where the layout has none
-  std::uint8_t status = kAlways | kPlugged;   // as it stands where the layout has none
-  bool single = false;                        // answers `G`
+  std::uint32_t timestamp = 0;                // [1/115200 s]; 0 if the layout has none
+  std::uint8_t status = kAlways | kPlugged;   // this default if the layout has none
+  bool single = false;                        // answer to `G`
   bool too_fast = false;                      // "es": sampled faster than the glove can
   bool unplugged = false;                     // "eg": no glove on the interface unit
 };
@@ -62,7 +63,8 @@ using Packet = std::variant<Record, Refusal>;
 
 class Parser {
  public:
-  // Forgets what is under way, not the counts. REQUIRES: 1 <= layout.values <= 24.
+  // Sets the layout and discards an incomplete packet; keeps the counters.
+  // REQUIRES: 1 <= layout.values <= 24.
   void expect(const Layout& layout) noexcept;
 
   // Takes one byte; returns a packet when `byte` completes one. Never blocks, never allocates.
@@ -81,7 +83,7 @@ class Parser {
   std::optional<Packet> finish() noexcept;
   std::optional<Packet> read() const noexcept;
 
-  static constexpr std::size_t kLongest = 1 + 4 * kSlots + 11 + 4 + 6 + 2;  // of text
+  static constexpr std::size_t kLongest = 1 + 4 * kSlots + 11 + 4 + 6 + 2;  // of a text record
   Layout layout_;
   std::array<std::uint8_t, kLongest> bytes_{};  // without the NUL
   std::size_t length_ = 0;
@@ -89,16 +91,16 @@ class Parser {
   std::uint64_t bad_bytes_ = 0;
 };
 
-// A time stamp on the wire: a flag byte, then the count, lowest byte first, in which a 0 is sent as
-// 1 and its bit in the flag byte is set.
+// A time stamp on the wire: a flag byte, then the four bytes of the count, lowest first. A byte of
+// 0 is sent as 1, and its bit in the flag byte is set.
 using Stamp = std::array<std::uint8_t, 5>;
 Stamp stuffTimestamp(std::uint32_t count) noexcept;
 std::uint32_t unstuffTimestamp(const std::uint8_t* stamp) noexcept;
 
-// The inverse of the parser, for the emulator. A value of 0 is sent as 1.
+// Inverse of the parser, for the emulator. A value of 0 is sent as 1.
 std::string encode(const Record& record, const Layout& layout);
 
-// `T`: the command that asks for `rate_hz` records a second. REQUIRES: 1 <= rate_hz <= 115200.
+// The command `T`, which requests `rate_hz` records per second. REQUIRES: 1 <= rate_hz <= 115200.
 std::string encodeRate(double rate_hz);
 
 }  // namespace merlin::cyberglove

@@ -8,15 +8,16 @@
 
 namespace merlin {
 
-// Value of slot 7, the index finger's own abduction, which no known glove measures.
+// Value of slot 7, the abduction of the index finger, which no known glove measures.
 enum class Slot7Rule {
   kZero,     // 0
-  kNeutral,  // what its offset and gain make of the middle of the raw range, 128
+  kNeutral,  // angle for the middle of the raw range, 128, by the slot's offset and gain
   kDerived,  // mean of the abductions on either side of the index finger, slots 3 and 11
   kSwitch,   // 1 while the wrist switch is on, else 0
 };
 
-// A sensor's line, by two of its points: at raw value `raw_a` the joint is at `rad_a`.
+// Linear calibration of a sensor by two points: at raw value `raw_a` the joint is at `rad_a` [rad],
+// at `raw_b` at `rad_b`.
 struct GloveSpan {
   float raw_a, rad_a, raw_b, rad_b;
 
@@ -24,7 +25,7 @@ struct GloveSpan {
   constexpr float offset() const { return raw_a - rad_a / gain(); }
 };
 
-// In slot order; which file they come from, and how: README.md, "Calibration".
+// The default calibration, in slot order. Source: README.md, "Calibration".
 inline constexpr std::array<GloveSpan, 23> kDefaultGloveSpans = {{
     {74, 0.0F, 98, 0.4F},     // 0 thumb roll
     {111, 0.0F, 182, 0.9F},   // 1 thumb MCP
@@ -33,7 +34,7 @@ inline constexpr std::array<GloveSpan, 23> kDefaultGloveSpans = {{
     {117, 0.0F, 185, 1.5F},   // 4 index MCP
     {69, 0.0F, 198, 1.7F},    // 5 index PIP
     {66, 0.0F, 107, 1.3F},    // 6 index DIP
-    {1, -0.2F, 255, 0.2F},    // 7 index abduction: not in the file
+    {1, -0.2F, 255, 0.2F},    // 7 index abduction: assumed
     {93, 0.0F, 161, 1.5F},    // 8 middle MCP
     {62, 0.0F, 199, 1.7F},    // 9 middle PIP
     {93, 0.0F, 129, 1.3F},    // 10 middle DIP
@@ -46,7 +47,7 @@ inline constexpr std::array<GloveSpan, 23> kDefaultGloveSpans = {{
     {46, 0.0F, 209, 1.7F},    // 17 pinky PIP
     {91, 0.0F, 135, 1.3F},    // 18 pinky DIP
     {55, -0.2F, 139, 0.5F},   // 19 pinky-ring abduction
-    {60, 0.0F, 144, 0.5F},    // 20 palm arch: the angles are ours
+    {60, 0.0F, 144, 0.5F},    // 20 palm arch: angles assumed
     {73, 0.9F, 181, -0.7F},   // 21 wrist pitch
     {46, 0.3F, 164, -0.5F},   // 22 wrist yaw
 }};
@@ -65,13 +66,13 @@ struct CybergloveSettings {
     return all;
   }();
   Slot7Rule slot7 = Slot7Rule::kZero;
-  double rate_hz = 100;  // records a second that are asked for, 1..150
+  double rate_hz = 100;  // requested records per second, 1..150
   enum class Dialogue { kBinary, kText };
   Dialogue dialogue = Dialogue::kBinary;
-  bool filter = true;  // the interface unit's own low-pass filter
+  bool filter = true;  // the low-pass filter of the interface unit
   enum class Light { kSwitch, kOff, kOn };
-  Light light = Light::kSwitch;  // of the wrist: as its switch, or as it is told
-  bool time_stamps = false;      // the unit's own: records that the line lost are then counted
+  Light light = Light::kSwitch;  // wrist light: shows the wrist switch, or is always off or on
+  bool time_stamps = false;      // requests time stamps, by which lost records are counted
 };
 
 // Finds a rate that the line cannot carry. Pointer: "/rate_hz".

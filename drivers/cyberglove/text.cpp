@@ -10,14 +10,14 @@ namespace {
 
 using namespace std::string_literals;
 
-constexpr std::string_view kSameInBoth = "iv?";  // of the queries
+constexpr std::string_view kSameInBoth = "iv?";  // letters of queries
 
 bool isUpper(char c) noexcept { return c >= 'A' && c <= 'Z'; }
 bool isLower(char c) noexcept { return c >= 'a' && c <= 'z'; }
 char lower(char c) noexcept { return isUpper(c) ? static_cast<char>(c - 'A' + 'a') : c; }
 char upper(char c) noexcept { return isLower(c) ? static_cast<char>(c - 'a' + 'A') : c; }
 
-// The next word between blanks, cut off from `rest`.
+// Removes the next word, which ends at a blank, from `rest` and returns it.
 std::string_view word(std::string_view& rest) noexcept {
   rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
   const std::string_view found = rest.substr(0, rest.find(' '));
@@ -38,7 +38,7 @@ std::string_view withoutLineEnd(std::string_view text) noexcept {
   return text;
 }
 
-// Letters before the numbers: "?x" or "x".
+// Number of characters before the numbers: 2 for "?x", 1 for "x".
 std::size_t head(std::string_view binary) noexcept { return binary.starts_with('?') ? 2 : 1; }
 
 bool staysAsItIs(std::string_view binary) noexcept {
@@ -47,7 +47,7 @@ bool staysAsItIs(std::string_view binary) noexcept {
           kSameInBoth.find(binary[1]) != std::string_view::npos);
 }
 
-// One number of a record, of what is left of it.
+// Removes the next number from the rest of a record; false if it is not a number of at most `most`.
 bool take(std::string_view& rest, std::uint32_t most, std::uint32_t& value) noexcept {
   const auto found = number(word(rest), most);
   value = found.value_or(0);

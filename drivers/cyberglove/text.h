@@ -4,8 +4,8 @@
 //   "n 22" CR   sets; "?n" CR asks; "n" CR LF NUL and "?n 22" CR LF NUL answer
 //   's' or 'g' v1 .. vN [time stamp] [status] ["es"] ["eg"] CR LF NUL is a record
 //
-// Commands and the record's values are FREEVR's and VISTA's; answers, and the optional parts of a
-// record, are inferred from the binary ones (README.md).
+// Commands and the values of a record are taken from FREEVR and VISTA; answers, and the optional
+// fields of a record, are inferred from the binary dialogue (README.md).
 #pragma once
 
 #include <optional>
@@ -16,16 +16,16 @@
 
 namespace merlin::cyberglove {
 
-// A binary command or answer as text, and back; both without what ends them. Numbers are bytes, of
-// `T` two 16-bit words. Control characters, and what is text in both dialogues ("?i", "?v", "??"),
-// stay as they are. nullopt: not a letter and numbers in range.
+// Convert a binary command or answer to text, and back; both without terminators. Numbers are
+// bytes; `T` has two 16-bit words. Control characters, and queries that are text in both dialogues
+// ("?i", "?v", "??"), are unchanged. nullopt: not a letter followed by numbers in range.
 std::string asText(std::string_view binary);
 std::optional<std::string> ofText(std::string_view text);
 
-// True where `command`, so far, belongs to the ASCII dialogue, and so ends with CR.
+// Whether `command`, which may be incomplete, belongs to the ASCII dialogue and thus ends with CR.
 bool isText(std::string_view command) noexcept;
 
-// `text` is a packet without its NUL. Allocates nothing.
+// Parses a packet without its NUL. Allocates nothing.
 std::optional<Packet> readText(std::string_view text, const Layout& layout) noexcept;
 std::string encodeText(const Record& record, const Layout& layout);
 

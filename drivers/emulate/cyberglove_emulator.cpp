@@ -24,7 +24,7 @@ constexpr Duration kRestartTime = milliseconds(1750);
 constexpr Duration kShortestPeriod = std::chrono::nanoseconds(1'000'000'000 / 150);
 constexpr Duration kNever = std::chrono::hours(24 * 365);
 constexpr float kSensorCutoff_hz = 30;
-constexpr double kTick = 1.0 / 115200;  // s, of the rate and of the time stamps
+constexpr double kTick = 1.0 / 115200;  // unit of the period and of the time stamps [s]
 
 constexpr char kStop = 0x03, kReinitialise = 0x09, kRestart = 0x12;
 constexpr std::string_view kSwitches = "DFJLQUWY";  // commands of one byte, 0 or 1
@@ -34,7 +34,7 @@ constexpr const char* kInfo =
     "synthetic data, no glove";
 constexpr const char* kSummary = "B D F G J L M N P Q S T U W Y ^C ^I ^R ?";
 
-// Bytes of a command, its letter included.
+// Length of a command, including its letter [bytes].
 std::size_t lengthOf(char letter) {
   switch (letter) {
     case 'T': return 5;
@@ -72,7 +72,7 @@ class CybergloveEmulator final : public Emulator {
 
   void receive(std::span<const std::byte> bytes, Timestamp now) override {
     for (const std::byte b : bytes) {
-      if (restarting_ && now < ready_at_) return;  // deaf while it starts
+      if (restarting_ && now < ready_at_) return;  // ignores its input while it starts
       hear(static_cast<char>(b), now);
     }
   }
@@ -111,7 +111,7 @@ class CybergloveEmulator final : public Emulator {
   // A command of the ASCII dialogue ends with CR; after a binary one a CR has no meaning.
   void hear(char c, Timestamp now) {
     if (command_.empty() && (c == '\r' || c == '\n')) return;
-    // A client that died in the middle of a line leaves it to the next one.
+    // The line may be incomplete because the previous client stopped.
     if (text_ && (c == kStop || c == kRestart)) command_.clear();
     command_.push_back(c);
     text_ = cyberglove::isText(command_);
@@ -132,7 +132,7 @@ class CybergloveEmulator final : public Emulator {
       refuse('n');
   }
 
-  // A reply without its end, in the dialogue of what was asked.
+  // Sends a reply (`binary`: without terminator) in the dialogue of the command.
   void reply(const std::string& binary) {
     pending_ += text_ ? cyberglove::asText(binary) + "\r\n\0"s : binary + '\0';
   }
@@ -172,7 +172,7 @@ class CybergloveEmulator final : public Emulator {
         state_.w1 = loadBe16(data);
         state_.w2 = loadBe16(data + 2);
         break;
-      case 'B': state_.baud_divisor = *data; break;  // the line has the speed that it has
+      case 'B': state_.baud_divisor = *data; break;  // the speed of the line does not change
       case 'P': setFlags(data); break;
       default:
         if (kSwitches.find(command[0]) == std::string_view::npos) return refuse('?');
@@ -186,7 +186,7 @@ class CybergloveEmulator final : public Emulator {
 
   std::uint8_t enabled() const { return static_cast<std::uint8_t>(std::popcount(state_.mask)); }
 
-  // All switches at once, as `P` has them; `?P` is the inverse.
+  // Sets all switches from the argument of `P`; `?P` is the inverse.
   void setFlags(const std::uint8_t* flags) {
     state_['W'] = flags[0] & Record::kWristSwitch;
     state_['L'] = flags[0] & Record::kLight;
@@ -238,7 +238,7 @@ class CybergloveEmulator final : public Emulator {
     reply(std::string{'?', letter} + value);
   }
 
-  // As asked for, 0 where it runs freely.
+  // The requested period; 0: as fast as possible.
   Duration askedPeriod() const { return fromSeconds(kTick * state_.w1 * state_.w2); }
   Duration period() const { return std::max(askedPeriod(), kShortestPeriod); }
 
@@ -259,7 +259,7 @@ class CybergloveEmulator final : public Emulator {
     return cyberglove::encode(record, {state_.values, state_['D'], state_['U'], text});
   }
 
-  // The analogue low-pass of each sensor, first order.
+  // Simulates the analogue first-order low-pass of each sensor.
   void smooth(const std::array<float, kGloveSlots>& angle_rad, Timestamp now) {
     const bool first = smoothed_at_ == Timestamp{};
     const auto dt = static_cast<float>(toSeconds(now - smoothed_at_));
@@ -284,7 +284,7 @@ class CybergloveEmulator final : public Emulator {
   Timestamp smoothed_at_{};
   bool restarting_ = false;
   bool streaming_ = false, streams_text_ = false;
-  bool text_ = false;  // the command under way is of the ASCII dialogue
+  bool text_ = false;  // the current command belongs to the ASCII dialogue
   Timestamp ready_at_{};
   Timestamp due_{};
 };

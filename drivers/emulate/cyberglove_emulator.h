@@ -1,4 +1,4 @@
-// A CyberGlove with its interface unit as a program sees it. Source: drivers/cyberglove/README.md.
+// Emulates a CyberGlove with its interface unit. Source: drivers/cyberglove/README.md.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 
 namespace merlin::emulate {
 
-// Models: "22", "18" sensors.
+// Models: "22" or "18" sensors.
 std::unique_ptr<Emulator> makeCyberglove(const EmulatorSettings& settings,
                                          const MotionScript& script, Timestamp start);
 

@@ -1,7 +1,7 @@
-// Emulator: a device's inverse. Bytes that a program sends go in, bytes that the device would send
-// come out, on whatever clock the caller has. Pure: no I/O, no clock.
+// Emulator: simulates a device. It takes the bytes that a program sends to the device, and returns
+// the bytes that the device would send. Pure: no I/O; the time is passed in.
 //
-// Served on a pty by daemon/cli/emulate, driven directly by tests. Thread-bound.
+// Served on a pty by daemon/cli/line/emulate.cpp, called directly by tests. Thread-bound.
 #pragma once
 
 #include <cstddef>
@@ -27,19 +27,19 @@ class Emulator {
   // nextDue().
   virtual void advance(Timestamp now, std::string& out) = 0;
 
-  // When it has something to send by itself.
+  // When the device will next send something without being asked.
   virtual Timestamp nextDue() const = 0;
 };
 
 struct EmulatorSettings {
-  int baud = 38400;          // the line's speed: records that do not fit are dropped, as by the box
-  std::string model = {};    // of the device, empty for its default; see the table
-  std::uint64_t person = 0;  // who wears the glove: drivers/hand/people
+  int baud = 38400;          // of the line; records that exceed it are dropped, as by the device
+  std::string model = {};    // of EmulatorEntry::models; empty: the default
+  std::uint64_t person = 0;  // seed of the Person who wears the glove (drivers/hand/people.h)
   std::uint64_t seed = 1;    // of noise and garbage
-  int garbage_every = 0;     // records between two bursts of garbage; 0 for none
+  int garbage_every = 0;     // records between two bursts of random bytes; 0: no bursts
 };
 
-// One row a device that can be emulated.
+// A device that can be emulated.
 struct EmulatorEntry {
   const char* name;    // as in drivers/registry
   int baud;            // default

@@ -30,7 +30,7 @@ constexpr char kSave = 0x0B, kReinitialise = 0x19, kSuspend = 0x13, kResume = 0x
 // Codes of command errors, MAN12.
 constexpr int kMissing = -1, kNotNumeric = -2, kOutOfRange = -3, kUnknown = -99;
 
-// Settings that are kept and read back, and change nothing of what is measured.
+// Settings that can be set and read back. Only the alignment, A, changes the records.
 struct Parameter {
   char letter;
   bool of_station;
@@ -76,8 +76,8 @@ Quaternion product(const Quaternion& a, const Quaternion& b) {
           a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
 }
 
-// Into the frame of an origin, a point on its x axis and one on its y axis, `a`; as it is where
-// that is the transmitter's own.
+// Transforms a record into the frame that `a` gives by its origin, a point on its x axis and one on
+// its y axis. No change if `a` is the default.
 void align(const std::array<float, 9>& a, fastrak::Record& record) {
   if (a == kParameters[kAlignment].initial) return;
   using Eigen::Vector3f;
@@ -97,7 +97,7 @@ void align(const std::array<float, 9>& a, fastrak::Record& record) {
 
 using Fields = std::vector<std::optional<float>>;  // empty where a field is omitted
 
-// The comma-separated numbers of a command; nothing if one is no number.
+// The comma-separated numbers of a command; nothing if one is not a number.
 std::optional<Fields> split(std::string_view text) {
   Fields fields;
   for (;;) {
@@ -128,7 +128,7 @@ class FastrakEmulator final : public Emulator {
 
   void receive(std::span<const std::byte> bytes, Timestamp now) override {
     for (const std::byte b : bytes) {
-      if (now < ready_at_) return;  // deaf while it starts
+      if (now < ready_at_) return;  // ignores its input while it starts
       const char c = static_cast<char>(b);
       if (obeyControl(c, now) || c == '\n') continue;
       if (c == '\r') {
@@ -147,10 +147,10 @@ class FastrakEmulator final : public Emulator {
     }
     if (!streaming() || now < due_) return;
     if (now - due_ > kLongestDelay) due_ = now;
-    // By each cycle's own time: a process that wakes late must not make the line busy for longer.
+    // Uses the time of each cycle, so that late calls do not make the line busy for longer.
     for (; due_ <= now; due_ += kCycle) {
       nextStation();
-      if (wire_.free(due_)) wire_.record(record(station_, due_), due_, out);  // else it is dropped
+      if (wire_.free(due_)) wire_.record(record(station_, due_), due_, out);  // else dropped
     }
   }
 
@@ -173,7 +173,7 @@ class FastrakEmulator final : public Emulator {
     return state_.continuous && !suspended_ && state_.active != fastrak::Stations{};
   }
 
-  // Obeyed anywhere, even within a line: ^Y is how a program gets out of one.
+  // Control characters act at once, even within a line, so that a program can abort a line by ^Y.
   bool obeyControl(char c, Timestamp now) {
     switch (c) {
       case kReinitialise:
@@ -228,9 +228,9 @@ class FastrakEmulator final : public Emulator {
     const char letter = line_[0];
     const std::string_view rest = std::string_view(line_).substr(1);
     switch (letter) {
-      case 'Y':  // leftovers of other trackers that VRPN sends
+      case 'Y':  // commands of other trackers, sent by VRPN
       case 't':
-      case 'o':  // the line has the speed that it has
+      case 'o':  // the speed of the line does not change
       case 'T': return;
       case 'X': return configure(rest);
       default: break;
@@ -246,7 +246,7 @@ class FastrakEmulator final : public Emulator {
     refuse(kUnknown);
   }
 
-  // "2 E" and so on: the spacing between its parts is not known.
+  // An error reply. Its spacing in a real unit is not known.
   void refuse(int code) {
     pending_ += fmt::format("2 E*ERROR*{}*ERROR* EC {} *PS 0 *FL 0 *ST 0\r\n", line_, code);
   }
@@ -259,7 +259,7 @@ class FastrakEmulator final : public Emulator {
     }
   }
 
-  // The station that a command names, or nothing after a refusal.
+  // Index of the station that a command names; nothing if there is none, after an error reply.
   std::optional<std::size_t> stationOf(const Fields& fields) {
     const float s = fields[0].value_or(1);
     if (s == 1 || s == 2 || s == 3 || s == 4) return static_cast<std::size_t>(s) - 1;
@@ -278,7 +278,8 @@ class FastrakEmulator final : public Emulator {
     }
   }
 
-  // R resets the alignment; B takes the present orientation as straight ahead, b no longer does.
+  // R resets the alignment, B sets the boresight to the present orientation, b resets the
+  // boresight.
   void setFrame(char letter, const Fields& fields) {
     const auto station = stationOf(fields);
     if (!station) return;
@@ -306,7 +307,7 @@ class FastrakEmulator final : public Emulator {
     state_.list[*station] = list;
   }
 
-  // Omitted fields keep their value; with none given it is read back.
+  // Omitted fields keep their values; a command without values is answered with the present ones.
   void setParameter(std::size_t index, const Fields& fields) {
     const Parameter& parameter = kParameters[index];
     const auto station = parameter.of_station ? stationOf(fields) : 0;
@@ -357,7 +358,7 @@ class FastrakEmulator final : public Emulator {
     return record;
   }
 
-  // Turned by a little about each of its own axes.
+  // `q`, rotated by a small random angle about each of its axes.
   std::array<float, 4> shaken(const std::array<float, 4>& q) {
     std::array<float, 3> h{};  // half angles, small
     for (float& half : h) half = static_cast<float>(kAngleNoise_rad / 2 * noise_.normal());
@@ -377,11 +378,11 @@ class FastrakEmulator final : public Emulator {
   Random noise_;
   State state_;
   State saved_;
-  std::array<std::array<float, 4>, kStations> measured_{};  // before boresight, newest
+  std::array<std::array<float, 4>, kStations> measured_{};  // newest, before boresight
   std::string line_;
   std::string pending_;
   bool suspended_ = false;
-  std::size_t station_ = kStations - 1;  // measured last
+  std::size_t station_ = kStations - 1;  // station measured last
   Timestamp ready_at_{};
   Timestamp due_{};
 };

@@ -1,4 +1,4 @@
-// A Fastrak as a program sees it. Source: drivers/fastrak/README.md.
+// Emulates a Fastrak. Source: drivers/fastrak/README.md.
 #pragma once
 
 #include <memory>

@@ -10,7 +10,8 @@
 namespace merlin::emulate {
 namespace {
 
-// s, from one hand shape or push to the next; a shorter phase is all transition.
+// Time of the transition from one hand shape or push to the next [s]; a phase that is shorter
+// consists of a transition only.
 constexpr double kTransition = 0.35;
 
 using Ball = std::array<float, 6>;
@@ -33,8 +34,8 @@ constexpr Phase kTurning[] = {{1000.0, "open", kSpin, 0, true}};
 constexpr Phase kStill[] = {{1000.0, "open", kRest, 0, false}};
 constexpr Phase kGrabbing[] = {{1.0, "open", kRest, 0, true}, {4.0, "fist", kRest, 0, true}};
 
-// The places that merlin calibrate tracker asks for: an origin, a point on x (the transmitter's y),
-// one near y (its -x), straight ahead (turned by 40 degrees).
+// The places that merlin calibrate tracker requests: an origin, a point on the x axis (along the
+// transmitter's y), one near the y axis (along its -x), straight ahead (turned by 40 degrees).
 constexpr HandPlace kOrigin{}, kOnX{{0.60F, 0.45F, -0.15F}}, kOnY{{0.30F, 0.10F, -0.15F}},
     kAhead{{0.45F, 0.20F, -0.15F}, 40 * std::numbers::pi / 180};
 constexpr Phase kAlignment[] = {{5, "open", kRest, 0, false, kOrigin},
@@ -42,8 +43,8 @@ constexpr Phase kAlignment[] = {{5, "open", kRest, 0, false, kOrigin},
                                 {5, "open", kRest, 0, false, kOnY},
                                 {5, "open", kRest, 0, false, kAhead}};
 
-// The pushes that merlin calibrate ball asks for, from a ball that is mounted turned by a quarter
-// and never quite rests.
+// The pushes that merlin calibrate ball requests, of a ball that is mounted rotated by 90 degrees
+// and whose counts at rest are not 0.
 constexpr Phase kPushes[] = {
     {5, "open", {0.0015F, 0, 0, 0, -0.005F, 0}, 0, false},
     {5, "open", {0.1F, -0.8F, 0.05F, 0, 0, 0.2F}, 0, false},
@@ -65,7 +66,7 @@ constexpr MotionScript kScripts[] = {
 
 float mix(float a, float b, double share) { return a + (b - a) * static_cast<float>(share); }
 
-// 0..1 with level ends.
+// Smoothstep: 0..1, with slope 0 at both ends.
 double smooth(double x) {
   x = std::clamp(x, 0.0, 1.0);
   return x * x * (3 - 2 * x);
@@ -79,7 +80,8 @@ HandPlace mix(const HandPlace& a, const HandPlace& b, double share) {
   return place;
 }
 
-// Where the hand is, relative to the transmitter; wanders about it where the phase says so.
+// Sets the pose of the hand in the transmitter's frame: `place`, plus a slow sway, of which
+// `amplitude` is the share (0: none).
 void placeHand(Motion& motion, const HandPlace& place, double seconds, double amplitude) {
   const double w = 2 * std::numbers::pi * seconds;
   const auto& p = place.position_m;

@@ -18,23 +18,24 @@ struct Motion {
   std::array<float, kGloveSlots> glove_rad{};  // joint angles in slot order, flexion positive
   std::array<float, 3> position_m{};           // of the hand, transmitter frame
   std::array<float, 4> orientation_wxyz{1, 0, 0, 0};
-  std::array<float, 6> ball{};     // shares of full scale, device's own axes
+  std::array<float, 6> ball{};     // shares of full scale, in the device's axes
   std::uint32_t ball_buttons = 0;  // bit i = button i + 1
 };
 
 // Where the hand is in a phase.
 struct HandPlace {
   std::array<float, 3> position_m{0.60F, 0.05F, -0.15F};  // transmitter frame
-  double turn_rad = 0;                                    // about its z
+  double turn_rad = 0;                                    // rotation about its z axis
 };
 
-// Behaviour of the person during one phase; between phases, hands move over within kTransition.
+// Behaviour of the person during one phase. At its beginning there is a transition from the phase
+// before, of the time kTransition.
 struct Phase {
-  double seconds = 0;           // how long
+  double seconds = 0;           // duration
   const char* shape = "";       // of the hand: a name of drivers/hand/shapes
-  std::array<float, 6> ball{};  // held push and twist
-  std::uint32_t buttons = 0;    // held
-  bool wave = false;            // the hand moves about; else it is still
+  std::array<float, 6> ball{};  // push and twist of the ball, as in Motion
+  std::uint32_t buttons = 0;    // pressed buttons of the ball, as in Motion
+  bool wave = false;            // whether the hand moves about its place; otherwise it is still
   HandPlace place = {};
 };
 
@@ -42,10 +43,10 @@ struct MotionScript {
   const char* name;
   const char* help;
   std::span<const Phase> phases;  // repeated for ever
-  // The number of the phase that lasts, where the caller says which; null: they follow by time.
+  // If not null, the caller chooses the phase: *held is its number. Null: phases follow by time.
   const std::size_t* held = nullptr;
 
-  // At `t` since the start of the script. Tracker noise is the emulator's, not the script's.
+  // The motion at time `t` after the start of the script, without noise; the emulators add noise.
   Motion at(Duration t) const;
 };
 

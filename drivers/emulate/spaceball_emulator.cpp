@@ -42,7 +42,7 @@ class SpaceballEmulator final : public Emulator {
         wire_(settings.baud, settings.garbage_every, settings.seed) {}
 
   void receive(std::span<const std::byte> bytes, Timestamp now) override {
-    if (now < banner_at_ && resetting_) return;  // deaf while it starts
+    if (now < banner_at_ && resetting_) return;  // ignores its input while it starts
     for (const std::byte b : bytes) {
       const char c = static_cast<char>(b);
       if (c == '\n') continue;
@@ -119,12 +119,12 @@ class SpaceballEmulator final : public Emulator {
   void ballOn(Timestamp now) {
     pending_ += model_ == spaceball::Model::k4000 ? "M\r" : "MSSV\r";
     on_ = true;
-    at_rest_ = false;  // so that the first packet, a null one, is sent
+    at_rest_ = false;  // so that a first packet is sent, even at rest
     due_ = now;
     last_packet_ = now;
   }
 
-  // "Pmmnn": maximum and minimum period in ms, two six-bit characters each; the minimum counts.
+  // "Pmmnn": maximum and minimum period in ms, two six-bit characters each; uses the minimum.
   void setPeriod(const std::string& command) {
     if (command.size() >= 5) {
       const int ms = (command[3] & 0x3F) << 6 | (command[4] & 0x3F);
@@ -157,7 +157,8 @@ class SpaceballEmulator final : public Emulator {
     return d;
   }
 
-  // Keys as they change; displacements while it is pushed, one zero when it is let go, then none.
+  // Sends the keys when they change, and displacements while the ball is pushed. When it is
+  // released, one displacement of zeros follows, then none.
   void sample(Timestamp now, std::string& out) {
     if (!wire_.free(now)) return;
     due_ = now + period_;

@@ -1,5 +1,4 @@
-// A Spaceball 1003, 2003, 3003 or 4000 FLX as a program sees it. Source:
-// drivers/spaceball/README.md.
+// Emulates a Spaceball 1003, 2003, 3003 or 4000 FLX. Source: drivers/spaceball/README.md.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// Wire: how long bytes take on a serial line, so that an emulator sends no more than its line
-// holds.
+// Wire: computes how long bytes take on a serial line, so that an emulator does not send faster
+// than its baud rate allows.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +11,14 @@
 
 namespace merlin::emulate {
 
-// A process that wakes late sends what its device would have sent meanwhile, as far back as this: a
-// serial port's buffer holds it.
+// A process that wakes late sends the records that its device would have sent meanwhile, but at
+// most those of this time, which the buffer of a serial port can hold.
 inline constexpr Duration kLongestDelay = std::chrono::seconds(1);
 
 class Wire {
  public:
-  // 8N1: ten bits a byte. `garbage_every` records apart a burst of 1..12 random bytes is sent.
+  // 8N1: ten bits per byte. Before every `garbage_every`-th record a burst of 1..12 random bytes is
+  // sent; 0: never.
   Wire(int baud, int garbage_every, std::uint64_t seed)
       : byte_time_(std::chrono::nanoseconds(10'000'000'000 / baud)),
         garbage_every_(garbage_every),
@@ -26,7 +27,7 @@ class Wire {
   bool free(Timestamp now) const noexcept { return now >= busy_until_; }
   Timestamp freeAt() const noexcept { return busy_until_; }
 
-  // A reply to a command: never dropped, sent after what is under way.
+  // A reply to a command: never dropped, sent after the bytes that are under way.
   void reply(std::string_view bytes, Timestamp now, std::string& out) {
     occupy(bytes.size(), now);
     out += bytes;

@@ -14,16 +14,16 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr Duration kPollTime = milliseconds(250);
-constexpr Duration kQuiet = milliseconds(200);  // a record is over by then, at any speed
+constexpr Duration kQuiet = milliseconds(200);  // without a byte: no record is under way
 constexpr Duration kReplyTime = milliseconds(400);
 constexpr Duration kMostDrain = seconds(1);
-constexpr Duration kPatience = milliseconds(1200);  // of an open(): the box is asked again for this
-constexpr Duration kStartTime = seconds(10);        // of a box that was reinitialised
-constexpr Duration kSettleTime = milliseconds(50);  // VRPN's pause after each output list
-// Longer than five periods of the slowest stream, 30 records a second at 9600 baud.
+constexpr Duration kPatience = milliseconds(1200);  // time for which open() repeats its query
+constexpr Duration kStartTime = seconds(10);        // the same, after a reinitialisation
+constexpr Duration kSettleTime = milliseconds(50);  // after each output list, as in VRPN
+// Longer than five periods of a slow stream, 30 records per second at 9600 baud.
 constexpr Duration kLongestSilence = milliseconds(500);
 
-constexpr int kFailuresBeforeRestart = 4;  // of open(), in a row
+constexpr int kFailuresBeforeRestart = 4;  // consecutive failures of open()
 
 constexpr std::string_view kReinitialise = "\x19";
 constexpr std::string_view kStop = "c";
@@ -40,8 +40,8 @@ std::array<float, 4> ofBoresight(const std::array<float, 4>& q, const std::array
           -q[0] * a[3] - q[1] * a[2] + q[2] * a[1] + q[3] * a[0]};
 }
 
-// Largest coordinate that can occur on the line: the reach of a receiver from the farthest origin
-// that is set, and a stylus's tip.
+// Largest coordinate that a record can have, in its unit: the reach of a receiver, plus the
+// distance of the farthest configured origin from the transmitter, plus the length of a stylus.
 float furthestOf(const FastrakSettings& settings) {
   float origin_cm = 0, tip_cm = 0;
   for (const auto& a : settings.alignment_cm)
@@ -52,7 +52,7 @@ float furthestOf(const FastrakSettings& settings) {
   return settings.centimetres ? cm : cm * kMetresPerCentimetre / kMetresPerInch;
 }
 
-// The line works, and what is on it did not answer, or not as a Fastrak does.
+// Whether the line works, but the unit did not answer, or not as a Fastrak does.
 bool isOfTheBox(const Error& error) noexcept {
   return error.code == Errc::kTimeout || error.code == Errc::kMalformed;
 }
@@ -80,7 +80,7 @@ Result<std::string> FastrakDevice::open(ByteStream& stream) {
 }
 
 Result<std::string> FastrakDevice::talk(Dialogue& dialogue) {
-  // Rarely: a box that has only been out of reach for a while would be deaf for ten seconds more.
+  // Not every time: a unit that was only disconnected would ignore its input for another 10 s.
   const bool restart = failures_ > 0 && failures_ % kFailuresBeforeRestart == 0;
   const Timestamp deadline = clock_.now() + (restart ? kStartTime : kPatience);
   if (restart) {
@@ -111,7 +111,7 @@ Result<Status> FastrakDevice::identify(Dialogue& dialogue) {
   if (!reply) return reply.error();
   const auto status = parseStatus(*reply);
   if (status) return *status;
-  return Error{Errc::kMalformed, fmt::format("\"{}\" in answer to S", quoteBytes(*reply))};
+  return Error{Errc::kMalformed, fmt::format("unexpected answer \"{}\" to S", quoteBytes(*reply))};
 }
 
 Result<Stations> FastrakDevice::askStations(Dialogue& dialogue) {
@@ -120,17 +120,18 @@ Result<Stations> FastrakDevice::askStations(Dialogue& dialogue) {
   if (!reply) return reply.error();
   const auto stations = parseStations(*reply);
   if (!stations) {
-    return Error{Errc::kMalformed, fmt::format("\"{}\" in answer to l1", quoteBytes(*reply))};
+    return Error{Errc::kMalformed,
+                 fmt::format("unexpected answer \"{}\" to l1", quoteBytes(*reply))};
   }
   if (*stations == Stations{}) {
-    failures_ = kFailuresBeforeRestart - 1;  // it looks for receivers when it starts
+    failures_ = kFailuresBeforeRestart - 1;  // restart it: it detects receivers when it starts
     return Error{Errc::kMalformed, "no station is active: is a receiver plugged in?"};
   }
   return *stations;
 }
 
-// Nothing here is answered; a command error is drained, and then shows in what streams. Alignment
-// is incremental on the box: it is reset first.
+// The unit does not answer these commands; error replies are drained, so a wrong command shows only
+// in the records. Alignment commands accumulate in the unit, so the alignment is reset first.
 Result<Ok> FastrakDevice::setUp(Dialogue& dialogue, const Stations& stations) {
   if (auto sent = dialogue.send(settings_.centimetres ? "u" : "U"); !sent) return sent;
   for (std::size_t i = 0; i < kStations; ++i) {
@@ -153,7 +154,7 @@ std::string FastrakDevice::stationSetUp(std::size_t i) const {
   const int station = static_cast<int>(i) + 1;
   const auto& h = settings_.hemisphere[i];
   std::string commands = fmt::format("H{},{:.4g},{:.4g},{:.4g}\r", station, h[0], h[1], h[2]);
-  commands += fmt::format("R{}\r", station);  // of whoever set it last
+  commands += fmt::format("R{}\r", station);  // resets the alignment
   if (settings_.alignment_cm[i] != FastrakSettings::kAligned) {
     const float unit = settings_.centimetres ? 1.0F : 1 / 2.54F;
     commands += fmt::format("A{}", station);

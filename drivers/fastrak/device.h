@@ -1,4 +1,4 @@
-// A Fastrak's dialogue: stop, status, stations, set up, stream.
+// Driver of a Fastrak: stops its stream, reads its status and stations, sets it up and streams.
 #pragma once
 
 #include <memory>
@@ -12,10 +12,10 @@
 
 namespace merlin::fastrak {
 
-// open() takes about 0.5 s, at most 2 s. Every fourth failure of the box's in a row makes the next
-// open() reinitialise it first, which takes up to 12 s: a box is deaf for up to 10 s while it
-// starts. poll() fails with kTimeout
-// when no record came for 0.5 s. Publishes one sample a record, each station with its own counter.
+// open() takes about 0.5 s, at most 2 s. After every fourth failure of open() in a row the next one
+// reinitialises the unit first and takes up to 12 s, because the unit ignores its input for up to
+// 10 s while it starts. poll() fails with kTimeout after 0.5 s without a record. Publishes one
+// sample per record; each station has its own counter.
 class FastrakDevice final : public Device {
  public:
   FastrakDevice(const FastrakSettings& settings, const Clock& clock, SampleSink& sink);
@@ -42,7 +42,7 @@ class FastrakDevice final : public Device {
   std::array<TrackerSample, kStations> sample_{};  // the newest of each station
   std::uint64_t samples_ = 0;
   Timestamp last_record_{};
-  int failures_ = 0;  // of open(), in a row: it did not answer, or not as it should
+  int failures_ = 0;  // consecutive calls of open() in which the unit did not answer correctly
   char complaint_[80] = "";
 };
 

@@ -17,7 +17,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 constexpr GuidedStep kSteps[] = {
-    {"origin", "hold the station still where the new origin shall be"},
+    {"origin", "hold the station still at the place of the new origin"},
     {"x axis", "hold it still at a point on the new x axis, 10 cm from the origin or more"},
     {"y axis", "hold it still at a point on the new y axis, 10 cm from the origin or more"},
     {"straight ahead", "hold it still as it is worn when it points straight ahead"},
@@ -32,7 +32,7 @@ constexpr double kMostSpread_rad = 3 * kDegree;
 constexpr double kLeastDistance_m = 0.1;
 constexpr double kLeastAngle_rad = 30 * kDegree;
 
-// Where that frame's origin is, and how it is turned, in the transmitter's.
+// Origin and orientation of an aligned frame, in the transmitter's frame.
 struct Alignment {
   explicit Alignment(const std::array<float, 9>& cm)
       : origin_m(place(cm, 0)), turn(axes(origin_m, place(cm, 3), place(cm, 6))) {}
@@ -40,7 +40,7 @@ struct Alignment {
   static Vector3d place(const std::array<float, 9>& cm, std::size_t at) {
     return Vector3d(cm[at], cm[at + 1], cm[at + 2]) / 100;
   }
-  // x through its point; y towards its own, square to x.
+  // The x axis goes through `on_x`; the y axis is perpendicular to it, on the side of `on_y`.
   static Quaterniond axes(const Vector3d& origin, const Vector3d& on_x, const Vector3d& on_y) {
     Eigen::Matrix3d m;
     m.col(0) = (on_x - origin).normalized();
@@ -70,7 +70,7 @@ HeldPose meanOf(std::span<const TrackerSample> samples) {
   for (const TrackerSample& s : samples) {
     place += position(s) / static_cast<double>(samples.size());
     const Quaterniond q = quaternion(s.orientation_wxyz);
-    turn += q.dot(first) < 0 ? Eigen::Vector4d(-q.coeffs()) : q.coeffs();  // q and -q are the same
+    turn += q.dot(first) < 0 ? Eigen::Vector4d(-q.coeffs()) : q.coeffs();  // same rotation
   }
   const Quaterniond mean(turn.normalized());
   HeldPose held;
@@ -140,7 +140,7 @@ Result<HeldPose> GuidedAlignment::end() {
   return held;
 }
 
-// Whether the place makes a frame with those before it.
+// Checks that the place, with the earlier ones, determines a frame.
 Result<Ok> GuidedAlignment::checkPlace(const HeldPose& held) const {
   if (step_ != kOnX && step_ != kOnY) return Ok{};
   const Vector3d arm = position(held) - position(*held_[kOrigin]);
@@ -168,7 +168,7 @@ StationFrame GuidedAlignment::solve() const {
   if (held_[kOnY]) {
     for (std::size_t i = 0; i < 9; ++i) {
       const double cm = 100 * held_[i / 3]->position_m[i % 3];
-      solved.alignment_cm[i] = static_cast<float>(std::round(100 * cm) / 100);  // as they are sent
+      solved.alignment_cm[i] = static_cast<float>(std::round(100 * cm) / 100);  // as sent
     }
   }
   if (!held_[kAhead] && present_.boresight_wxyz == FastrakSettings::kAhead) return solved;

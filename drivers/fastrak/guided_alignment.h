@@ -1,4 +1,4 @@
-// Alignment and boresight of a station, from where it is held, one place after the other. Pure.
+// Determines alignment and boresight of a station from places at which a person holds it. Pure.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ struct StationFrame {
   std::array<float, 4> boresight_wxyz = FastrakSettings::kAhead;
 };
 
-// Where a station was while it was held, in the transmitter's frame: the mean of the samples, and
-// how far the one furthest from it was.
+// Pose of a station while it was held, in the transmitter's frame: the mean of its samples, and the
+// largest deviation of a sample from the mean.
 struct HeldPose {
   int samples = 0;
   std::array<double, 3> position_m{};
@@ -28,29 +28,30 @@ struct HeldPose {
   double spread_m = 0, spread_rad = 0;
 };
 
-// Steps of a guided alignment, in this order: the first three are the alignment's, the last is the
-// boresight's.
+// Steps of a guided alignment, in this order: the first three determine the alignment, the last the
+// boresight.
 enum AlignmentStep : std::size_t { kOrigin, kOnX, kOnY, kAhead };
 std::span<const GuidedStep> alignmentSteps();
 
-// The sample as it were without alignment and boresight: in the transmitter's frame.
+// Undoes alignment and boresight: returns the sample in the transmitter's frame.
 TrackerSample inTransmitterFrame(const TrackerSample& sample, const StationFrame& frame) noexcept;
 
 class GuidedAlignment {
  public:
-  // `present`: what the samples to come are given in.
+  // `present`: the frame of the samples that add() will get.
   explicit GuidedAlignment(const StationFrame& present) : present_(present) {}
 
-  void begin(std::size_t step);  // what comes from now on belongs to it; again: anew
+  void begin(std::size_t step);  // starts or restarts a step; later samples belong to it
   void add(const TrackerSample& sample);
 
-  // The step under way. Errors: kTimeout (fewer than three samples that the unit had no complaint
-  // of), kMalformed (it moved; too near to the origin; the three places nearly on one line).
+  // Ends the current step. Errors: kTimeout (fewer than three samples without an error of the
+  // unit), kMalformed (the station moved; it is too near to the origin; the three places are nearly
+  // on one line).
   Result<HeldPose> end();
 
-  // Solves from the steps that ended well. Without the places, the present alignment stays; without
-  // the boresight, the present straight ahead stays, expressed in the new frame. REQUIRES: all
-  // three places, or none of them.
+  // The frame by the steps that ended without an error. Without the places, the present alignment
+  // is kept; without the last step, the orientation that counts as straight ahead is kept,
+  // expressed in the new frame. REQUIRES: all three places, or none of them.
   StationFrame solve() const;
 
  private:
@@ -58,8 +59,8 @@ class GuidedAlignment {
 
   StationFrame present_;
   std::size_t step_ = 0;
-  std::vector<TrackerSample> samples_;  // of the step under way, in the transmitter's frame
-  char error_ = ' ';                    // that the unit had last, in this step
+  std::vector<TrackerSample> samples_;  // of the current step, in the transmitter's frame
+  char error_ = ' ';                    // last error of the unit in the current step
   std::array<std::optional<HeldPose>, 4> held_;
 };
 

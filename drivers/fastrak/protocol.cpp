@@ -26,7 +26,7 @@ std::string_view trimmed(std::string_view text) noexcept {
   return text.substr(first, text.find_last_not_of(' ') + 1 - first);
 }
 
-// The whole of `text` but blanks at its ends, as a number.
+// Parses all of `text`, except blanks at its ends, as a number.
 std::optional<int> number(std::string_view text, int base) noexcept {
   text = trimmed(text);
   int value = 0;
@@ -37,7 +37,7 @@ std::optional<int> number(std::string_view text, int base) noexcept {
 
 bool isStation(char c) noexcept { return c >= '1' && c <= '4'; }
 
-constexpr float kHalfScale = 8192;  // of the 14-bit form: 300 cm, 180 degrees, 1
+constexpr float kHalfScale = 8192;  // counts of a 14-bit number for 300 cm, 180 degrees, 1
 constexpr std::uint8_t kPhase = 0x80;
 
 void appendNumbers(std::string& out, std::span<const float> values, bool binary, int decimals) {
@@ -52,7 +52,7 @@ void appendNumbers(std::string& out, std::span<const float> values, bool binary,
 
 float shortRange(bool centimetres) noexcept { return centimetres ? 300 : 118.110F; }
 
-// Sign or blank first, fixed width, no separators.
+// Parses a decimal number of kTextWidth characters that begins with a sign or a blank.
 bool readDecimal(const std::uint8_t* at, float& value) noexcept {
   const char* first = reinterpret_cast<const char*>(at);
   const char* const end = first + kTextWidth;
@@ -61,13 +61,13 @@ bool readDecimal(const std::uint8_t* at, float& value) noexcept {
   return parsed.ec == std::errc{} && parsed.ptr == end;
 }
 
-// Fourteen bits in two's complement, seven a byte, lower ones first.
+// Reads a 14-bit number in two's complement: seven bits per byte, the lower ones first.
 float load14(const std::uint8_t* at) noexcept {
   const int bits = (at[0] & 0x7F) | (at[1] & 0x7F) << 7;
   return static_cast<float>(bits >= 8192 ? bits - 16384 : bits);
 }
 
-// 14 bits, seven a byte, lower ones first.
+// Appends 14-bit numbers: seven bits per byte, the lower ones first. `full`: full scale.
 void append14(std::string& out, std::span<const float> values, float full) {
   for (const float v : values) {
     const float counts = std::clamp(v / full * kHalfScale, -kHalfScale, kHalfScale - 1);
@@ -77,7 +77,7 @@ void append14(std::string& out, std::span<const float> values, float full) {
   }
 }
 
-// Column `i` of the rotation: where the receiver's own axis points.
+// Column `i` of the rotation matrix: the direction of the receiver's axis i.
 std::array<float, 3> axisOf(const std::array<float, 4>& q, int i) noexcept {
   const auto [w, x, y, z] = q;
   if (i == 0) return {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
@@ -139,7 +139,7 @@ std::optional<Record> Parser::feed(std::byte byte, std::int64_t received_ns) noe
   return take();
 }
 
-// Whether what has come so far can be a record. True of an empty window.
+// Whether the window contains a record or can be the beginning of one; true if it is empty.
 bool Parser::plausible() const noexcept {
   if (length_ > 0 && window_[0] != '0') return false;
   if (length_ > 1 && !isStation(static_cast<char>(window_[1]))) return false;
@@ -173,7 +173,7 @@ bool Parser::readNumbers(Record& record) const noexcept {
         at += 2;
       }
     }
-    if (i < 3 && !(std::abs(v[i]) <= layout_.furthest)) return false;  // a NaN as well
+    if (i < 3 && !(std::abs(v[i]) <= layout_.furthest)) return false;  // also rejects NaN
   }
   if (layout_.stylus) {
     if (at[0] != ' ' || (at[1] != '0' && at[1] != '1')) return false;
@@ -183,11 +183,11 @@ bool Parser::readNumbers(Record& record) const noexcept {
   if (layout_.angles) {
     record.orientation_wxyz = quaternionOf({v[3], v[4], v[5]});
     return std::abs(v[3]) <= kWidest_deg && std::abs(v[4]) <= kWidest_deg &&
-           std::abs(v[5]) <= kWidest_deg;  // false of a NaN
+           std::abs(v[5]) <= kWidest_deg;  // false if NaN
   }
   std::copy_n(v.begin() + 3, 4, record.orientation_wxyz.begin());
   const float square = v[3] * v[3] + v[4] * v[4] + v[5] * v[5] + v[6] * v[6];
-  return square >= 0.98F * 0.98F && square <= 1.02F * 1.02F;  // false of a NaN
+  return square >= 0.98F * 0.98F && square <= 1.02F * 1.02F;  // false if NaN
 }
 
 void Parser::drop() noexcept {
@@ -264,7 +264,7 @@ std::string encode(const Record& record, std::span<const int> items, const Form&
     appendItem(out, item, record, form);
     if (item < 18 || marked) continue;
     out[at] = static_cast<char>(static_cast<std::uint8_t>(out[at]) | kPhase);
-    marked = true;  // only the first 16-bit byte of a record has the bit
+    marked = true;  // only the first byte of a record's 14-bit numbers
   }
   return out;
 }
@@ -302,14 +302,14 @@ std::array<float, 4> quaternionOf(const std::array<float, 3>& angles_deg) noexce
 }
 
 std::string_view meaningOf(char error) noexcept {
-  if (error >= 'a' && error <= 'c') return "a driver of the transmitter";
-  if (error >= 'd' && error <= 'f') return "a gain of the receiver";
+  if (error >= 'a' && error <= 'c') return "a transmitter driver";
+  if (error >= 'd' && error <= 'f') return "a receiver gain";
   switch (error) {
     case 'g': return "a coil";
-    case 'j': return "too near: saturated";
-    case 'k': return "too far or unplugged: low signal";
+    case 'j': return "receiver too near: saturated";
+    case 'k': return "receiver too far or unplugged: low signal";
     case 'l': return "a receiver without a signal";
-    case 'm': return "checksum of its memory";
+    case 'm': return "memory checksum";
     case 's': return "unit vector reset";
     case 't':
     case 'u': return "compensation";

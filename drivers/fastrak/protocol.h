@@ -1,10 +1,10 @@
 // Polhemus Fastrak wire format: bytes to records and back. No I/O, no clock.
 //
-// A data record with the output list 2,11,0 in binary, 32 bytes, neither length nor terminator:
+// A data record with the output list 2,11,0 in binary has 32 bytes and no length or terminator:
 //   '0'  station '1'..'4'  error ' ' or letter  x y z  q0 q1 q2 q3: 7 x f32le  ' '
-// Other forms (Layout): az el rl in place of the quaternion; decimals; 14-bit numbers, two bytes of
-// seven bits each, of which the first of a record has bit 7 set; a stylus switch, ' ' and '0' or
-// '1'. A reply is '2', the station, the command's letter, its data, CR LF.
+// Other forms (Layout): azimuth, elevation and roll instead of the quaternion; decimal text; 14-bit
+// numbers, two bytes of seven bits each (the first such byte of a record has bit 7 set); a stylus
+// switch, ' ' and '0' or '1'. A reply is '2', the station, the command's letter, its data, CR LF.
 //
 // Sources: README.md beside this file.
 #pragma once
@@ -26,42 +26,42 @@ inline constexpr std::size_t kStatusLength = 55;
 inline constexpr std::size_t kStationsLength = 9;
 
 struct Record {
-  int station = 1;                  // 1..4
-  char error = ' ';                 // ' ' or a letter of the built-in test
-  std::array<float, 3> position{};  // in the unit's own length: inches, or centimetres after `u`
-  std::array<float, 4> orientation_wxyz{1, 0, 0, 0};  // as on the wire: of norm 0.98..1.02
-  bool stylus = false;                                // its button is pressed
-  std::int64_t received_ns = 0;  // what feed() was told with the record's first byte
+  int station = 1;                                    // 1..4
+  char error = ' ';                                   // ' ' or a letter of the built-in test
+  std::array<float, 3> position{};                    // [inches], or [cm] after the command `u`
+  std::array<float, 4> orientation_wxyz{1, 0, 0, 0};  // as received: norm 0.98..1.02
+  bool stylus = false;                                // the stylus's button is pressed
+  std::int64_t received_ns = 0;  // passed to feed() with the record's first byte
 };
 
 // Contents and format of a record.
 struct Layout {
   enum class Numbers { kBinary, kText, kShort };
   Numbers numbers = Numbers::kBinary;
-  bool angles = false;                  // az el rl in place of the quaternion
-  bool stylus = false;                  // item 16
-  bool centimetres = true;              // the unit that 14-bit positions are scaled by
-  float furthest = 500;                 // of a coordinate; more is damage [the unit's own length]
+  bool angles = false;                  // azimuth, elevation, roll instead of the quaternion
+  bool stylus = false;                  // with item 16, the stylus switch
+  bool centimetres = true;              // positions in cm, otherwise in inches
+  float furthest = 500;                 // largest valid coordinate [cm or inches]
   std::size_t length() const noexcept;  // of a record [bytes]
   std::string items() const;            // of the output list: "2,11,0"
 };
 
-// A window slides over the stream. What stands in it is a record if the fixed bytes are right, the
-// coordinates are within the layout's `furthest`, angles within 180 degrees, and the quaternion is
-// a rotation; after a failure the next record's '0' must follow as well. If not, one byte is
-// dropped and the rest tried again.
+// A window slides over the stream. Its content is a record if the fixed bytes are right, the
+// coordinates are within the layout's `furthest`, angles within 180 degrees, and the norm of the
+// quaternion is 0.98 to 1.02; out of synchronisation, the '0' of the next record must follow as
+// well. Otherwise one byte is dropped and the content is checked again.
 class Parser {
  public:
-  // Forgets what is under way, not the counts; the next byte is taken for the first of a record.
+  // Empties the window, keeps the counters; the next byte is expected to be a record's first.
   void reset() noexcept;
-  void expect(const Layout& layout) noexcept;  // and reset()
+  void expect(const Layout& layout) noexcept;  // sets the layout, then calls reset()
 
   // Takes one byte, which arrived at `received_ns`; returns a record when `byte` completes one.
-  // Never blocks, never allocates. (Arrival is passed in, because the window may have to look for a
-  // record's first byte among bytes that came earlier.)
+  // Never blocks, never allocates. The parser stores the time of each byte, because a record's
+  // first byte may be found among bytes that arrived earlier.
   std::optional<Record> feed(std::byte byte, std::int64_t received_ns) noexcept;
 
-  // Times that the records' beat was lost since construction, and bytes dropped to find it again.
+  // Since construction: how often synchronisation was lost, and bytes dropped to regain it.
   std::uint64_t badPackets() const noexcept { return bad_packets_; }
   std::uint64_t badBytes() const noexcept { return bad_bytes_; }
 
@@ -69,7 +69,7 @@ class Parser {
   static constexpr std::size_t kLongest = 56;
 
   bool plausible() const noexcept;
-  bool readNumbers(Record& record) const noexcept;  // false where they cannot be
+  bool readNumbers(Record& record) const noexcept;  // false if one is not plausible
   void drop() noexcept;
   Record take() noexcept;
   void shift(std::size_t count) noexcept;
@@ -79,7 +79,7 @@ class Parser {
   std::array<std::uint8_t, kLongest + 1> window_{};
   std::array<std::int64_t, kLongest + 1> received_ns_{};  // of each byte in the window
   std::size_t length_ = 0;
-  bool locked_ = true;  // the window starts where a good record ended
+  bool locked_ = true;  // in synchronisation: the window starts where a record ended
   std::uint64_t bad_packets_ = 0;
   std::uint64_t bad_bytes_ = 0;
 };
@@ -90,32 +90,33 @@ struct Status {
   bool centimetres = false;
   bool compensation = false;
   bool continuous = false;
-  int test_error = 0;             // of the built-in test, 0 for none
+  int test_error = 0;             // of the built-in test; 0: none
   std::string firmware = "3.00";  // at most 6 characters
   std::string configuration;      // at most 32 characters
 };
 // Nothing unless `reply` is a status record, 55 bytes with its CR LF.
 std::optional<Status> parseStatus(std::string_view reply);
 
-// The answer to `l`: element i is true where station i + 1 is active. Nothing unless it is one,
-// 9 bytes with its CR LF.
+// The answer to `l`: element i tells whether station i + 1 is active. Nothing unless `reply` is
+// such an answer, 9 bytes with its CR LF.
 using Stations = std::array<bool, kStations>;
 std::optional<Stations> parseStations(std::string_view reply) noexcept;
 
-// The inverse, for the emulator, in more forms than the driver asks for. Items of an output list: 0
-// blank, 1 CR LF, 2 position, 4 azimuth, elevation and roll, 5 to 7 direction cosines of the axes,
-// 11 quaternion, 16 stylus switch, 18, 19 and 20: 2, 4 and 11 as 16-bit numbers.
+// Inverse of the parser, for the emulator; has more forms than the driver requests. Items of an
+// output list: 0 blank, 1 CR LF, 2 position, 4 azimuth, elevation and roll, 5 to 7 direction
+// cosines of the axes, 11 quaternion, 16 stylus switch; 18, 19 and 20: 2, 4 and 11 as 14-bit
+// numbers.
 bool isItem(int item) noexcept;
 
-inline constexpr std::array<int, 3> kDefaultList = {2, 4, 1};  // of a box that was told nothing
+inline constexpr std::array<int, 3> kDefaultList = {2, 4, 1};  // default of the unit
 inline constexpr std::array<int, 3> kDriverList = {2, 11, 0};
 
 struct Form {
   bool binary = true;
-  bool centimetres = true;  // of record.position; it scales item 18
+  bool centimetres = true;  // unit of record.position, otherwise inches; scales item 18
 };
 
-// REQUIRES: isItem() of each.
+// REQUIRES: isItem() is true of each item.
 std::string encode(const Record& record, std::span<const int> items, const Form& form);
 std::string encode(const Status& status);
 std::string encode(const Stations& stations, int asked_station);

@@ -6,27 +6,27 @@
 namespace merlin {
 
 struct FastrakSettings {
-  // For each station a vector, in the transmitter's frame, into the half of space where its
-  // receiver is; {0, 0, 0} lets the unit follow it. Stations in use: what the unit reports as
-  // active.
+  // For each station a vector, in the transmitter's frame, that points into the hemisphere in which
+  // its receiver is; {0, 0, 0}: the unit tracks the hemisphere. Stations in use are those that the
+  // unit reports as active.
   std::array<std::array<float, 3>, 4> hemisphere = {{{1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 0, 0}}};
   // Whether the unit sends centimetres on the line, otherwise inches; samples are in metres either
   // way.
   bool centimetres = true;
-  // How numbers are sent: IEEE floats, decimals, or 14-bit numbers (half the bytes, 0.4 mm and 0.02
-  // degrees apart; boxes of before 2012).
+  // How numbers are sent: IEEE floats, decimal text, or 14-bit numbers (half the bytes; resolution
+  // 0.4 mm and 0.02 degrees; only units made before 2012).
   enum class Numbers { kBinary, kText, kShort };
   Numbers numbers = Numbers::kBinary;
-  bool angles = false;  // azimuth, elevation, roll in place of the quaternion
-  bool stylus = false;  // a stylus on station 1: its button comes with the records
+  bool angles = false;  // azimuth, elevation, roll instead of the quaternion
+  bool stylus = false;  // station 1 is a stylus: its records include the button
   std::array<float, 3> stylus_tip_cm = {0, 0, 0};
-  // For each station a point of the new origin, one on its x axis, one on its y axis, in the
-  // transmitter's frame [cm]; as the unit's own at the start: (0 0 0) (200 0 0) (0 200 0).
+  // For each station three points in the transmitter's frame [cm]: the new origin, one on the new x
+  // axis, one on the new y axis. Default of the unit: (0 0 0) (200 0 0) (0 200 0).
   std::array<std::array<float, 9>, 4> alignment_cm = {kAligned, kAligned, kAligned, kAligned};
   // For each station the orientation that counts as straight ahead.
   std::array<std::array<float, 4>, 4> boresight_wxyz = {kAhead, kAhead, kAhead, kAhead};
-  // The unit's own filters of positions and angles: sensitivity, low, high, factor; low and high
-  // equal to 1: off.
+  // The unit's low-pass filters of positions and angles: sensitivity, low, high, factor. If low and
+  // high are 1, the filter is off.
   std::array<float, 4> position_filter = {0.2F, 0.2F, 0.8F, 0.95F};
   std::array<float, 4> angle_filter = {0.2F, 0.2F, 0.8F, 0.95F};
 

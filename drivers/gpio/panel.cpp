@@ -19,8 +19,8 @@ bool blinks(GpioSample::Lamp lamp) {
 
 }  // namespace
 
-// Whether the projectors were on a moment ago is not known: they are off, and their interlock runs
-// from now.
+// The earlier state of the projectors is unknown: assumes that they are off; the interlock time
+// starts now.
 Panel::Panel(const GpioSettings& settings, Timestamp now)
     : settings_(settings), switched_(now), phase_until_(now), changed_(now), raw_since_(now) {}
 
@@ -47,14 +47,15 @@ Result<Ok> Panel::obey(std::string_view command, Timestamp now) {
                fmt::format("\"{}\" is not a command of the panel", command)};
 }
 
-// A lamp that is switched on while it cools bursts; switching to and fro wears relays out.
+// A projector lamp that is switched on while it cools down can burst; frequent switching wears out
+// the relays.
 Result<Ok> Panel::switchPower(bool on, Timestamp now) {
   step(raw_, now);
   const bool is_on = power_ == GpioSample::kWarming || power_ == GpioSample::kOn;
   if (is_on == on) return Ok{};
   if (const Duration wait = powerWait(now); wait > Duration::zero()) {
     return Error{Errc::kBusy,
-                 fmt::format("the projectors {}: not before {:.0f} s",
+                 fmt::format("the projectors {}: wait {:.0f} s",
                              power_ == GpioSample::kCooling ? "cool down" : "were just switched",
                              toSeconds(wait))};
   }

@@ -1,6 +1,6 @@
-// Panel: what the lines of the wall's control panel do over time: projectors' power with its times,
-// A/B video switch, status lamp, debounced button. Pure: told the time and the button, it says what
-// the lines should be.
+// Panel: state machine of the wall's control panel: projectors' power with warm-up, cool-down and
+// interlock, A/B video switch, status lamp, debounced button. Pure: time and button are passed in;
+// it returns the levels of the output lines.
 #pragma once
 
 #include <string_view>
@@ -23,18 +23,18 @@ class Panel {
   Panel(const GpioSettings& settings, Timestamp now);
 
   // "projector_on", "projector_off", "video_a", "video_b", "lamp_off", "lamp_slow", "lamp_fast",
-  // "lamp_on". Errors: kInvalidArgument (no such command), kBusy (a projector that cools down or
-  // was switched a moment ago), with the seconds to wait.
+  // "lamp_on". Errors: kInvalidArgument (no such command), kBusy (the projectors cool down or were
+  // just switched), with the seconds to wait.
   Result<Ok> obey(std::string_view command, Timestamp now);
 
-  // Time passes, the button reads `pressed`; true where that makes a press (once, after it has been
-  // down for the debounce time).
+  // Advances the state to `now`; the button's line reads `pressed`. Returns true once for each
+  // press, when the button has been down for the debounce time.
   bool step(bool pressed, Timestamp now);
 
   Outputs outputs(Timestamp now) const;
   GpioSample sample(Timestamp now) const;
 
-  // When something changes by itself; Timestamp::max() for never.
+  // When the state will next change by itself; Timestamp::max(): never.
   Timestamp nextDue(Timestamp now) const;
 
  private:

@@ -1,5 +1,5 @@
-// PanelLoop: keeps the panel's chip open and its lines as the panel wants them; the body of the
-// GPIO thread.
+// PanelLoop: keeps the GPIO chip open and writes the Panel's outputs to its lines; run() is the
+// body of the GPIO thread.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@
 
 namespace merlin::gpio {
 
-// Where the panel's state goes.
+// Receives the panel's state.
 using GpioSink = std::function<void(const GpioSample&)>;
 
 class PanelLoop {
@@ -23,12 +23,13 @@ class PanelLoop {
   PanelLoop(const GpioSettings& settings, GpioOpener open, GpioSink sink, HealthSink& health,
             Clock& clock, std::function<void()> on_press);
 
-  // Until `stop`, then everything off but the projectors: they keep what they have. `alive` is
-  // called several times a second.
+  // Runs until `stop`. Then it closes the chip, which releases the lines; it does not write them.
+  // `alive` is called several times a second.
   void run(
       const std::stop_token& stop, const std::function<void()>& alive = [] {});
 
-  // As Panel::obey, from any thread; is seen by the lines within 50 ms. kIo while the chip is lost.
+  // Like Panel::obey(); thread-safe. The lines follow within 50 ms. Errors also: kIo (the chip is
+  // not open).
   Result<Ok> obey(const std::string& command);
 
  private:
@@ -42,7 +43,7 @@ class PanelLoop {
   HealthSink& health_sink_;
   Clock& clock_;
   std::function<void()> on_press_;
-  std::mutex mutex_;  // of panel_ and lost_; no device thread takes it
+  std::mutex mutex_;  // guards panel_ and lost_; no device thread takes it
   Panel panel_;
   std::string lost_ = "the panel's chip is not open yet";
   DeviceHealth health_{};

@@ -11,7 +11,8 @@ SettingFaults validate(const GpioSettings& g) {
   std::set<int> seen;
   for (const int line : {g.projector_line, g.video_line, g.lamp_line, g.button_line}) {
     if (line >= 0 && !seen.insert(line).second)
-      faults.push_back({"", fmt::format("has line {} twice; each has one purpose", line)});
+      faults.push_back(
+          {"", fmt::format("uses line {} twice; each line has only one purpose", line)});
   }
   return faults;
 }

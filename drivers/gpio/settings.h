@@ -14,9 +14,9 @@ struct GpioSettings {
   int video_line = -1;      // low: A, high: B
   int lamp_line = -1;       // high: lit
   int button_line = -1;     // high while pressed
-  double warm_up_s = 30;    // after which projectors show a picture
-  double cool_down_s = 90;  // after switching off, in which they must not be switched on
-  double interlock_s = 5;   // between any two switchings, at least
+  double warm_up_s = 30;    // time from switching projectors on until they show an image
+  double cool_down_s = 90;  // time after switching off for which they must not be switched on
+  double interlock_s = 5;   // minimum time between any two switchings
   double debounce_s = 0.02;
 };
 

@@ -7,9 +7,9 @@
 namespace merlin::hand {
 namespace {
 
-constexpr float kLongestGap_s = 0.2F;  // between records: the hand is then taken up anew
-constexpr float kSpeedCutoff_hz = 4;   // of the speeds themselves
-constexpr float kReach_m = 0.3F;       // of a hand's turn: 1 rad/s counts as 0.3 m/s
+constexpr float kLongestGap_s = 0.2F;  // between records; after it the filter restarts
+constexpr float kSpeedCutoff_hz = 4;   // of the low-pass on the velocities
+constexpr float kReach_m = 0.3F;       // for the speed, 1 rad/s counts as 0.3 m/s
 constexpr std::int64_t kOldestGlove_ns = 500'000'000;
 constexpr float kFurthest_s = 0.1F;
 
@@ -25,7 +25,7 @@ Quaternion product(const Quaternion& a, const Quaternion& b) {
 
 Quaternion load(const float (&q)[4]) { return {q[0], q[1], q[2], q[3]}; }
 
-// The turn from `from` to `to`, as a vector about the frame's axes [rad], the short way round.
+// Rotation vector from `from` to `to` in the frame's axes [rad], the short way round.
 Vector turnBetween(const Quaternion& from, const Quaternion& to) {
   Quaternion d = product(to, {from[0], -from[1], -from[2], -from[3]});
   if (d[0] < 0) {
@@ -50,7 +50,7 @@ Quaternion turned(const Quaternion& q, const Vector& turn) {
 
 float norm(const float (&v)[3]) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
-// The share of the way that a first-order low-pass goes in dt.
+// Share of the remaining difference that a first-order low-pass covers in dt.
 float share(float cutoff_hz, float dt_s) {
   return 1 - std::exp(-2 * std::numbers::pi_v<float> * cutoff_hz * dt_s);
 }
@@ -99,8 +99,8 @@ void Hand::start(const TrackerSample& tracker) {
   hand_.delay_s = 0;
 }
 
-// Speeds are those of the smoothed pose towards the measured one: at a steady speed v the smoothed
-// pose trails by v * delay, and the step that it makes is v * dt.
+// The velocities are those of the smoothed pose: at a constant velocity v the smoothed pose lags by
+// v * delay, and moves by v * dt in each step.
 void Hand::follow(const TrackerSample& tracker, float dt_s) {
   const Quaternion before = load(hand_.orientation_wxyz);
   const Vector turn = turnBetween(before, load(tracker.orientation_wxyz));

@@ -1,5 +1,5 @@
-// Hand: a glove and a tracker as one thing: joints by name, and a pose that is smooth and can be
-// had for another moment. Pure.
+// Hand: combines a glove and a tracker: joints by name, and a smoothed pose that can be
+// extrapolated to another moment. Pure.
 #pragma once
 
 #include <array>
@@ -17,16 +17,17 @@ extern const std::array<std::string_view, kGloveSlots> kJointNames;
 // The slot of that name, or nothing.
 std::optional<std::size_t> jointNamed(std::string_view name);
 
-// Smooths with a low-pass whose cut-off rises with the hand's speed, so that a hand at rest does
-// not tremble and a quick one is not late: G. Casiez et al., "1 Euro Filter: A Simple Speed-based
-// Low-pass Filter for Noisy Input in Interactive Systems", CHI 2012. The delay that it adds is that
-// of a first-order low-pass, 1 / (2 pi cut-off), and stands in every sample. Thread-bound.
+// Smooths with a low-pass filter whose cut-off rises with the hand's speed, so that a hand at rest
+// does not tremble and a fast one has little delay: G. Casiez et al., "1 Euro Filter: A Simple
+// Speed-based Low-pass Filter for Noisy Input in Interactive Systems", CHI 2012. It delays the pose
+// by 1 / (2 pi cut-off), like any first-order low-pass; each sample contains the delay.
+// Thread-bound.
 class Hand {
  public:
   explicit Hand(const HandSettings& settings) : settings_(settings) {}
 
-  // A record of the hand's station, with the newest of the glove, if there is one that is not older
-  // than half a second.
+  // Processes a record of the hand's station. `glove`: the glove's newest record; it is used if it
+  // is less than half a second old.
   HandSample update(const TrackerSample& tracker, const std::optional<GloveSample>& glove);
 
  private:
@@ -43,8 +44,8 @@ struct Pose {
   std::array<float, 4> orientation_wxyz;
 };
 
-// Where the hand will be, or was, at `when`, if it goes on as it does; no further than 0.1 s from
-// the sample, since hands do not go on for long.
+// Pose of the hand at `when`, extrapolated with its present velocity; compensates the delay of the
+// smoothing. At most 0.1 s from the sample, because a hand does not keep its velocity for long.
 Pose poseAt(const HandSample& hand, Timestamp when);
 
 }  // namespace merlin::hand

@@ -8,21 +8,22 @@ namespace merlin::hand {
 namespace {
 
 constexpr std::size_t kIndexAbduction = 7, kPalm = 20, kWristPitch = 21, kSlotsOfAFinger = 4;
-constexpr double kFingerShare = 0.7;  // of a habit's variance that a whole finger has in common
+constexpr double kFingerShare = 0.7;  // share of the variance that a finger's joints have in common
 
 float span(std::size_t slot) { return kJointSpans[slot].high_rad - kJointSpans[slot].low_rad; }
 
 bool isWrist(std::size_t slot) { return slot >= kWristPitch; }
 
-// FNV-1a, so that a habit hangs on the posture's name and on nothing else.
+// FNV-1a hash: a habit depends on the posture's name, not on its place in a list.
 std::uint64_t hash(std::string_view text) {
   std::uint64_t h = 0xCBF29CE484222325;
   for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001B3;
   return h;
 }
 
-// Adds to each joint what it does alone and what its finger does as one, shares of their spans.
-// Flexions of a finger go together; abductions, slots 3, 7, 11, ..., go their own way.
+// Adds a normally distributed deviation to each joint but the wrist's: `sigma` times the joint's
+// range. The flexions of a finger are correlated; the abductions (slots 3, 7, 11, ...) and the palm
+// arch are independent.
 void stray(Angles& joints, double sigma, Random& random) {
   double finger = 0;
   for (std::size_t slot = 0; slot <= kPalm; ++slot) {

@@ -1,8 +1,8 @@
-// Synthetic people: how different hands hold the same shapes, and what a glove makes of it. Pure,
-// seeded.
+// Synthetic people: simulates how different hands hold the same shapes, and how a glove measures
+// them. Pure, seeded.
 //
-// Not measured on anybody: README.md says how the spreads were set. Used for training, for tests
-// and by the emulator.
+// Not measured on real people: README.md explains how the deviations were chosen. Used for
+// training, for tests and by the emulator.
 #pragma once
 
 #include <array>
@@ -15,40 +15,40 @@ namespace merlin::hand {
 
 using Angles = std::array<float, kGloveSlots>;  // joint angles in slot order [rad]
 
-// Standard deviations. "Share" is of the joint's span, kJointSpans.
+// Standard deviations. "Share" means: relative to the joint's range of angles, kJointSpans.
 struct PeopleSettings {
-  double size = 0.04;          // of the factor by which all joints of a person bend more or less
-  double joint = 0.03;         // of the same for a single joint
-  double fit = 0.025;          // of a sensor's zero: how the glove sits, share
+  double size = 0.04;          // of a factor on the bends of all joints of a person
+  double joint = 0.03;         // of a factor on the bends of a single joint of a person
+  double fit = 0.025;          // of a sensor's zero, by the fit of the glove, share
   double habit = 0.045;        // of a joint in one posture of one person, share
-  double take = 0.02;          // of a joint each time that the posture is taken again, share
-  double wrist = 0.15;         // of the wrist each time, share: no posture hangs on it
+  double take = 0.02;          // of a joint each time that the person takes the posture, share
+  double wrist = 0.15;         // of the wrist each time, share; no posture depends on the wrist
   double tremor = 0.006;       // of a joint from sample to sample, share
-  double cross_talk = 0.04;    // of what a sensor picks up of each neighbour's bend
-  double sensor_counts = 0.6;  // of a sensor's own noise, raw counts
+  double cross_talk = 0.04;    // of the part of each neighbour's bend that a sensor measures
+  double sensor_counts = 0.6;  // of a sensor's noise [raw counts]
 };
 
 struct JointSpan {
-  float low_rad, high_rad;  // what a hand can do
-  float rad_per_count;      // of the 8-bit sensor, as in the shipped calibration
+  float low_rad, high_rad;  // range of angles of the joint
+  float rad_per_count;      // of the 8-bit sensor, as in the default calibration
 };
 extern const std::array<JointSpan, kGloveSlots> kJointSpans;
 
-// One person. A seed of 0 is the average one, who has no habits and whose glove sits well; any
-// other seed is a person of their own, always the same one. Reentrant.
+// One person. Seed 0 is the average person, without habits and with a glove that fits exactly; each
+// other seed is a different person, always the same one for the same seed. Reentrant.
 class Person {
  public:
   explicit Person(std::uint64_t seed, const PeopleSettings& settings = {});
 
-  // How this person holds `shape`; habits hang on its name.
+  // Joint angles with which this person habitually holds `shape`; the habit depends on its name.
   Angles pose(const Shape& shape) const;
 
-  // The same, as it comes out this time.
+  // The same, with the random variation of one time.
   Angles take(const Shape& shape, Random& random) const;
 
-  // Output of the glove when an average person's joints would be at these angles, after
-  // calibration: this person's bends, tremor, the joints' limits, cross-talk, the glove's fit,
-  // noise, whole counts. Slot 7 is 0: no glove measures it.
+  // Calibrated output of the glove when this person makes a gesture in which the average person's
+  // joints have these angles. Applies the person's factors, tremor, the joints' limits, cross-talk,
+  // the glove's fit, noise and quantisation. Slot 7 is 0, because no glove measures it.
   Angles sense(const Angles& joints, Random& random) const;
 
  private:

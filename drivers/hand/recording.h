@@ -1,5 +1,5 @@
-// Recordings of synthetic people: who holds which shape how often, and a hand that goes from one
-// shape to the next. Pure, seeded.
+// Recordings of synthetic people: several people who hold each shape several times, or one hand
+// that goes from shape to shape. Pure, seeded.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,28 @@
 namespace merlin::hand {
 
 struct Shot {
-  const char* shape = nullptr;  // that is shown; nullptr on the way from one to another
-  Angles angle_rad{};           // as the glove says it
+  const char* shape = nullptr;  // that is held; nullptr in the transition between two
+  Angles angle_rad{};           // as the glove measures them
 };
 
 struct RecordingSettings {
-  std::uint64_t first_person = 1;  // seeds of Person: no two recordings share one by accident
+  std::uint64_t first_person = 1;  // seed of the first Person; the others have the next ones
   std::size_t people = 10;
-  std::size_t takes = 1;     // of each shape by each person
-  std::size_t per_take = 5;  // samples
+  std::size_t takes = 1;     // number of times that each person takes each shape
+  std::size_t per_take = 5;  // number of samples
   PeopleSettings spread{};
 };
 
-// All takes of the first shape first, person by person.
+// All samples, ordered by shape, then by person, then by take.
 std::vector<Shot> record(std::span<const Shape> shapes, const RecordingSettings& settings,
                          std::uint64_t seed);
 
-// How far a hand has come on its way from one shape to another, 0..1 with level ends, of a slot:
-// fingers start one after the other, the thumb first. `share`: of the time that the way takes.
+// Progress of a slot in the transition from one shape to another, 0..1, with slope 0 at both ends.
+// The fingers start one after the other, the thumb first. `share`: elapsed share of the
+// transition's time.
 double wayDone(std::size_t slot, double share);
 
-// One person who holds each shape for `hold` samples and takes `way` samples to the next.
+// One person, who holds each shape for `hold` samples; a transition takes `way` samples.
 std::vector<Shot> goThrough(std::span<const Shape> shapes, const Person& person, std::size_t hold,
                             std::size_t way, std::uint64_t seed);
 

@@ -4,9 +4,9 @@
 namespace merlin {
 
 struct HandSettings {
-  int station = 1;  // of the tracker, that the hand wears
-  // Smoothing of the pose, against the tracker's noise: the cut-off of a hand at rest, and how much
-  // it rises with speed [Hz for a m/s]; a cut-off of 0 smooths nothing.
+  int station = 1;  // the tracker's station that is on the hand
+  // Low-pass filter of the pose, against the tracker's noise: cut-off frequency for a hand at rest
+  // (0: no filter), and its increase with speed [Hz per m/s].
   double cutoff_hz = 3;
   double cutoff_per_m_s = 25;
 };

@@ -13,9 +13,9 @@ constexpr Finger kHooked{0.15F, 1.55F, 1.05F};
 constexpr Finger kHalf{0.75F, 0.90F, 0.50F};
 constexpr Finger kRelaxed{0.30F, 0.40F, 0.25F};
 constexpr Finger kCupped{0.55F, 0.75F, 0.45F};
-constexpr Finger kToThumb{0.95F, 0.85F, 0.45F};  // its tip on the thumb's
+constexpr Finger kToThumb{0.95F, 0.85F, 0.45F};  // its tip touches the thumb's tip
 constexpr Finger kClawed{0.10F, 1.00F, 0.75F};
-constexpr Finger kFolded{1.35F, 0.10F, 0.05F};  // at the knuckle alone
+constexpr Finger kFolded{1.35F, 0.10F, 0.05F};  // bent at the MCP only
 constexpr Finger kCurled{0.60F, 1.35F, 0.90F};
 
 struct Thumb {
@@ -82,7 +82,7 @@ constexpr Shape kShapes[] = {
 
 }  // namespace
 
-// The first eight are what the shipped network knows.
+// The first eight are the postures of the shipped network.
 std::span<const Shape> shapes() { return std::span(kShapes).first(8); }
 std::span<const Shape> allShapes() { return kShapes; }
 

@@ -1,8 +1,7 @@
 // Hand shapes: the joint angles of the postures that MERLIN ships, in CyberGlove slot order.
 //
-// Synthetic: drawn up from what the joints can do within the spans of the shipped calibration, not
-// measured on a hand. The emulator bends its glove by them, and the shipped network is trained on
-// them.
+// Synthetic: chosen within the joints' ranges of the default calibration, not measured on a hand.
+// The emulated glove shows these shapes, and the shipped network is trained on them.
 #pragma once
 
 #include <array>
@@ -19,7 +18,7 @@ struct Shape {
 };
 
 std::span<const Shape> shapes();                // the eight of the shipped network
-std::span<const Shape> allShapes();             // these, and others that a hand can hold: 31
+std::span<const Shape> allShapes();             // these and others, 31 in all
 const Shape* findShape(std::string_view name);  // nullptr if there is none
 
 }  // namespace merlin::hand

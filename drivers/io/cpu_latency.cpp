@@ -14,12 +14,12 @@ Result<UniqueFd> limitCpuLatency(int microseconds, const std::string& device) {
   const std::int32_t limit = microseconds;
   if (fd.valid() && ::write(fd.get(), &limit, sizeof limit) == sizeof limit) return fd;
   const int error = errno;
-  const char* hint = error == EACCES ? " (it is root's, as a rule; systemd/README.md has the rule "
-                                       "that gives it to a group)"
-                     : error == ENOENT ? " (a kernel with CONFIG_CPU_IDLE has it)"
+  const char* hint = error == EACCES   ? " (usually only root may write it; systemd/README.md has "
+                                         "a udev rule that lets a group do so)"
+                     : error == ENOENT ? " (the kernel needs CONFIG_CPU_IDLE)"
                                        : "";
   return Error{error == ENOENT ? Errc::kNotFound : Errc::kIo,
-               fmt::format("{}: {}: idle cores wake as the system has it{}", device,
+               fmt::format("{}: {}: the wake-up latency of idle cores is not limited{}", device,
                            std::strerror(error), hint)};
 }
 

@@ -1,4 +1,5 @@
-// How long idle cores may take to wake, which is most of what a byte waits for on a quiet machine.
+// Limits the wake-up latency of idle processor cores, which is most of a byte's delay on a machine
+// with little load.
 #pragma once
 
 #include <string>
@@ -8,11 +9,11 @@
 
 namespace merlin::io {
 
-// From now on and until the descriptor is closed, by its process's end too, no idle core sleeps so
-// deeply that it takes longer than `microseconds` to wake; 0: none sleeps at all. For the whole
-// machine; the strictest of all that ask counts (the kernel's CPU latency quality of service). It
-// costs power. Errors: kNotFound, kIo, each with the way out. `device` is the default but
-// in tests. REQUIRES: microseconds >= 0.
+// Until the returned descriptor is closed (also by the end of the process), no idle core enters a
+// sleep state from which it needs longer than `microseconds` to wake; 0: no core sleeps at all.
+// This applies to the whole machine; the strictest limit of all programs counts (the kernel's CPU
+// latency quality of service). It costs power. Errors: kNotFound, kIo; the messages say what to do.
+// Only tests set `device`. REQUIRES: microseconds >= 0.
 Result<UniqueFd> limitCpuLatency(int microseconds,
                                  const std::string& device = "/dev/cpu_dma_latency");
 

@@ -1,4 +1,4 @@
-// Adapter: a ByteStream over a file descriptor, shared by ptys and serial lines.
+// FdStream: a ByteStream over a file descriptor, for serial lines, ptys and TCP connections.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@ namespace merlin::io {
 
 class FdStream final : public ByteStream {
  public:
-  // `fd` is open and non-blocking; `close` runs once, at destruction, and closes it.
+  // `fd` must be open and non-blocking; `close` is called once, at destruction, and must close it.
   FdStream(int fd, std::function<void()> close);
   ~FdStream() override;
   FdStream(const FdStream&) = delete;
@@ -27,7 +27,7 @@ class FdStream final : public ByteStream {
 
   int fd_;
   std::function<void()> close_;
-  UniqueFd wake_;  // an eventfd that interrupt() signals and nobody clears
+  UniqueFd wake_;  // eventfd that interrupt() signals; it is never cleared
 };
 
 }  // namespace merlin::io

@@ -18,8 +18,7 @@ Error chipError(const std::string& chip, const std::string& what) {
                     : error == EBUSY                   ? Errc::kBusy
                     : error == EINVAL                  ? Errc::kInvalidArgument
                                                        : Errc::kIo;
-  const char* hint =
-      error == EACCES ? " (its group is gpio, as a rule: usermod -aG gpio USER)" : "";
+  const char* hint = error == EACCES ? " (its group is usually gpio: usermod -aG gpio USER)" : "";
   return {code, fmt::format("{}: {}: {}{}", chip, what, std::strerror(error), hint)};
 }
 

@@ -1,4 +1,4 @@
-// The panel's lines on a GPIO chip, through libgpiod (version 1 of its interface, Debian 12's).
+// Opens the panel's lines on a GPIO chip by libgpiod (version 1 of its API, as in Debian 12).
 #pragma once
 
 #include <memory>
@@ -10,9 +10,9 @@
 
 namespace merlin::io {
 
-// `chip`: "gpiochip0" or "/dev/gpiochip0". Line numbers of -1 are left out. Outputs start low; the
-// input has both edges. Errors: kNotFound (no such chip), kBusy (another program holds a line),
-// kIo (a missing permission names the group), kInvalidArgument (no such line).
+// `chip`: "gpiochip0" or "/dev/gpiochip0". Line numbers of -1 are skipped. Outputs start low; the
+// input reports both edges. Errors: kNotFound (no such chip), kBusy (another program holds a line),
+// kIo (without permission, the message names the group), kInvalidArgument (no such line).
 Result<std::unique_ptr<GpioLines>> openGpioChip(const std::string& chip,
                                                 const std::vector<int>& outputs, int input);
 

@@ -24,8 +24,9 @@ std::string adapterWarning(const std::string& path, const std::string& sysfs) {
   const fs::path timer = fs::path(sysfs) / "class/tty" / real.filename() / "device/latency_timer";
   int milliseconds = 0;
   if (!(std::ifstream(timer) >> milliseconds) || milliseconds <= 1) return {};
-  return fmt::format("{}: its USB adapter holds bytes back for up to {} ms; for 1 ms: echo 1 > {}",
-                     path, milliseconds, timer.string());
+  return fmt::format(
+      "{}: its USB adapter delays bytes by up to {} ms; to limit this to 1 ms: echo 1 > {}", path,
+      milliseconds, timer.string());
 }
 
 }  // namespace merlin::io

@@ -5,14 +5,14 @@
 
 namespace merlin::io {
 
-// Asks the driver of an open serial line to hand bytes on at once (ASYNC_LOW_LATENCY, which sets an
-// FTDI adapter's latency timer to 1 ms; it is lost when the adapter is plugged in anew). Lines that
-// do not know it are left as they are.
+// Asks the driver of an open serial line to deliver bytes at once (ASYNC_LOW_LATENCY, which sets an
+// FTDI adapter's latency timer to 1 ms; plugging the adapter in again resets the timer). Does
+// nothing if the driver does not support it.
 void askForLowLatency(int fd);
 
-// A sentence where the adapter of `path` ("/dev/ttyUSB0", or a link to it) holds bytes back for
-// longer than 1 ms, with the way out; empty where it does not, or does not say. `sysfs` is "/sys"
-// but in tests.
+// Returns a warning, with a command that helps, if the USB adapter of `path` ("/dev/ttyUSB0", or a
+// link to it) delays bytes by more than 1 ms; empty if it does not, or if its delay is unknown.
+// Only tests set `sysfs`.
 std::string adapterWarning(const std::string& path, const std::string& sysfs = "/sys");
 
 }  // namespace merlin::io

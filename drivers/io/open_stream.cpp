@@ -20,7 +20,7 @@
 namespace merlin::io {
 namespace {
 
-// ", whose group is dialout: add this user to it" where that is the cure; else empty.
+// " (its group is dialout: usermod -aG dialout USER)" if errno is EACCES; otherwise empty.
 std::string groupHint(const std::string& path) {
   struct stat status {};
   if (errno != EACCES || ::stat(path.c_str(), &status) != 0) return {};
@@ -87,7 +87,8 @@ Result<std::unique_ptr<ByteStream>> openSerial(const std::string& path, int baud
   if (::access(path.c_str(), R_OK | W_OK) != 0) return openError(path, errno);
   sp_port* found = nullptr;
   if (sp_get_port_by_name(path.c_str(), &found) != SP_OK) {
-    return Error{Errc::kIo, path + ": is no serial port (a pseudo-terminal is pty:" + path + ")"};
+    return Error{Errc::kIo,
+                 path + ": is not a serial port (a pseudo-terminal is pty:" + path + ")"};
   }
   const PortHandle port(found, [](sp_port* p) { sp_free_port(p); });
   if (sp_open(found, SP_MODE_READ_WRITE) != SP_OK) return serialError(path, "open");
@@ -110,7 +111,7 @@ Result<std::unique_ptr<ByteStream>> openSerial(const std::string& path, int baud
   return std::unique_ptr<ByteStream>(std::make_unique<FdStream>(fd, close));
 }
 
-// A transcript that runs on the system's clock, which it brings along.
+// A ReplayStream that owns its SystemClock.
 class TimedReplay final : public ByteStream {
  public:
   explicit TimedReplay(Transcript transcript) : stream_(std::move(transcript), clock_) {}

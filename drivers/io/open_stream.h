@@ -10,11 +10,12 @@
 
 namespace merlin::io {
 
-// Opens the line. A serial line or a pty: 8 data bits, no parity, 1 stop bit, no flow control, raw;
-// what was buffered before is dropped; low latency where the adapter knows it. Nobody else can open
-// it meanwhile through MERLIN (an flock; TIOCEXCL does not stop root). A transcript runs at its own
-// pace and ends. Errors: kNotFound, kBusy, kIo (a missing permission names the group to join); of
-// openTcp and readTranscript.
+// Opens the line. A serial line or a pty: 8 data bits, no parity, 1 stop bit, no flow control, raw
+// mode; bytes that were buffered before are dropped; low latency if a serial adapter supports it.
+// While it is open, no other process of MERLIN can open it (by flock, because TIOCEXCL does not
+// stop root). A transcript is replayed with the timing of its recording, then ends. Errors:
+// kNotFound, kBusy, kIo (without permission, the message names the group to join); those of
+// openTcp() and readTranscript().
 Result<std::unique_ptr<ByteStream>> openPort(const PortAddress& address, int baud);
 
 }  // namespace merlin::io

@@ -19,11 +19,11 @@ std::string readLink(const std::string& link) {
   return n < 0 ? std::string() : std::string(target, static_cast<std::size_t>(n));
 }
 
-// Replaces by rename, so that nobody sees a moment without the link.
+// Replaces an existing link by rename(), so that the path is never without a link.
 Result<Ok> makeLink(const std::string& target, const std::string& link) {
   struct stat status {};
   if (::lstat(link.c_str(), &status) == 0 && !S_ISLNK(status.st_mode)) {
-    return Error{Errc::kIo, link + ": is in the way, and not a symbolic link"};
+    return Error{Errc::kIo, link + ": exists and is not a symbolic link"};
   }
   const std::string fresh = fmt::format("{}.{}", link, ::getpid());
   ::unlink(fresh.c_str());
@@ -40,7 +40,8 @@ Result<PtyMaster> PtyMaster::open(const std::string& link) {
   char name[128] = "";
   if (!master.valid() || ::grantpt(master.get()) != 0 || ::unlockpt(master.get()) != 0 ||
       ::ptsname_r(master.get(), name, sizeof name) != 0) {
-    return Error{Errc::kIo, fmt::format("no pseudo-terminal: {}", std::strerror(errno))};
+    return Error{Errc::kIo,
+                 fmt::format("cannot create a pseudo-terminal: {}", std::strerror(errno))};
   }
   UniqueFd slave(::open(name, O_RDWR | O_NOCTTY | O_CLOEXEC));
   termios line{};

@@ -1,4 +1,4 @@
-// The other side of a `pty:` port: what an emulator serves on. Linux pseudo-terminals.
+// The master side of a Linux pseudo-terminal, on which an emulator serves a `pty:` port.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@ namespace merlin::io {
 // One pseudo-terminal in raw mode, and a symbolic link to its slave. Thread-bound.
 class PtyMaster {
  public:
-  // `link` is made, or replaced at once if it is a symbolic link; anything else there is an error.
-  // An empty `link` makes none. Errors: kIo.
+  // Creates the symbolic link `link`; an existing one is replaced atomically, any other file there
+  // is an error. If `link` is empty, none is created. Errors: kIo.
   static Result<PtyMaster> open(const std::string& link);
 
   PtyMaster(PtyMaster&& other) noexcept;
@@ -24,7 +24,7 @@ class PtyMaster {
   int fd() const noexcept { return master_.get(); }  // non-blocking
   const std::string& slavePath() const noexcept { return slave_path_; }
 
-  // The speed that the program at the other side has set [baud]; 0 if it is none that we know.
+  // Speed that the program on the slave side has set [baud]; 0 if it is not a supported one.
   int baud() const noexcept;
 
  private:
@@ -35,7 +35,7 @@ class PtyMaster {
         link_(std::move(link)) {}
 
   UniqueFd master_;
-  UniqueFd slave_;  // kept open, so that the master sees no hang-up while nobody else is there
+  UniqueFd slave_;  // kept open, so that the master sees no hang-up while no program has it open
   std::string slave_path_;
   std::string link_;
 };

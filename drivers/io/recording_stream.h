@@ -1,4 +1,4 @@
-// RecordingStream: any ByteStream, with somebody who listens.
+// RecordingStream: a ByteStream that also passes all bytes of another one to a ByteTap.
 #pragma once
 
 #include <memory>
@@ -8,10 +8,10 @@
 
 namespace merlin::io {
 
-// Thread-bound but for interrupt(), as the stream inside.
+// Thread-bound, except interrupt(), like the inner stream.
 class RecordingStream final : public ByteStream {
  public:
-  // `tap` outlives this.
+  // `tap` and `clock` must outlive this.
   RecordingStream(std::unique_ptr<ByteStream> inner, ByteTap& tap, const Clock& clock)
       : inner_(std::move(inner)), tap_(tap), clock_(clock) {
     tap_.opened(clock_.now());

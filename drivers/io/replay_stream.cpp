@@ -16,8 +16,8 @@ Player::Player(Transcript transcript, Timestamp start)
   skipHost(start);
 }
 
-// A chunk of the host's is done when the host has said as many bytes; from then on the transcript's
-// time runs on from there.
+// A chunk of the host is complete when the host has sent as many bytes; the transcript's time then
+// continues from the time of that chunk.
 void Player::hostSaid(std::size_t bytes, Timestamp now) {
   while (bytes > 0 && !ended() && transcript_.chunks[next_].to_device) {
     const std::size_t taken = std::min(bytes, host_owes_);
@@ -30,7 +30,7 @@ void Player::hostSaid(std::size_t bytes, Timestamp now) {
   }
 }
 
-// Where the host's turn begins, says how much it owes.
+// If the next chunk is the host's, sets host_owes_; skips empty chunks of the host.
 void Player::skipHost(Timestamp now) {
   while (!ended() && transcript_.chunks[next_].to_device) {
     host_owes_ = transcript_.chunks[next_].bytes.size();
@@ -45,7 +45,7 @@ void Player::advance(Timestamp now, std::string& out) {
     const TranscriptChunk& chunk = transcript_.chunks[next_];
     if (chunk.to_device) {
       if (now < base_ + chunk.at + kHostPatience) return;
-      base_ = now - chunk.at;  // it will not come
+      base_ = now - chunk.at;  // the host will not send it
       ++next_;
     } else {
       if (now < base_ + chunk.at) return;

@@ -1,4 +1,4 @@
-// ReplayStream: a transcript as the line that it was recorded from.
+// ReplayStream: replays a transcript as if it were the line from which it was recorded.
 #pragma once
 
 #include <stop_token>
@@ -8,19 +8,20 @@
 
 namespace merlin::io {
 
-// The order and the pace of a transcript: what comes when, and after which of the host's bytes.
-// Bytes that followed the host's come as long after the host's bytes now as they did then; a host
-// that says less than it did then is waited for two seconds, and then no more. Pure but for the
-// times that it is told. Thread-bound.
+// Order and timing of a replay: when each byte of the device is due, and after which bytes of the
+// host. Device bytes that followed host bytes in the recording follow them with the same delay. If
+// the host sends fewer bytes than in the recording, the player waits two seconds for them, then
+// continues. Pure: the time is passed in. Thread-bound.
 class Player {
  public:
   Player(Transcript transcript, Timestamp start);
 
+  // The host has sent this number of bytes.
   void hostSaid(std::size_t bytes, Timestamp now);
 
-  // Appends what the device sent until `now`.
+  // Appends the device's bytes that are due at `now`.
   void advance(Timestamp now, std::string& out);
-  // When more comes, if the host says nothing; Timestamp::max() once all has come.
+  // When the next bytes are due if the host sends nothing; Timestamp::max() after the end.
   Timestamp nextDue() const;
   bool ended() const { return next_ == transcript_.chunks.size(); }
 
@@ -28,12 +29,12 @@ class Player {
   void skipHost(Timestamp now);
 
   Transcript transcript_;
-  std::size_t next_ = 0;       // chunk
-  Timestamp base_;             // when the transcript's time 0 would have been
-  std::size_t host_owes_ = 0;  // bytes of the chunk `next_` that the host has not said yet
+  std::size_t next_ = 0;       // index of the next chunk
+  Timestamp base_;             // the moment that corresponds to the transcript's time 0
+  std::size_t host_owes_ = 0;  // bytes of chunk `next_` that the host has not sent yet
 };
 
-// `clock` outlives this. Ends with kClosed after the last byte.
+// `clock` must outlive this. After the last byte, read() returns kClosed.
 class ReplayStream final : public ByteStream {
  public:
   ReplayStream(Transcript transcript, Clock& clock)

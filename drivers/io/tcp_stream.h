@@ -9,9 +9,10 @@
 
 namespace merlin::io {
 
-// Connects within a second, without delay of small packets; a server that vanishes without a word
-// is noticed within about five seconds (a device's own watchdog is sooner). The line's speed is the
-// server's matter. Errors: kNotFound (no such host), kTimeout, kIo.
+// Connects within a second for each address of the host. Small packets are not delayed. A server
+// that vanishes without closing the connection is noticed within about five seconds (a driver's
+// time-out is shorter). The line's speed is set at the server. Errors: kNotFound (no such host),
+// kTimeout, kIo.
 Result<std::unique_ptr<ByteStream>> openTcp(const std::string& host, const std::string& service);
 
 }  // namespace merlin::io

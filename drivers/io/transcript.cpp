@@ -83,7 +83,7 @@ class Reader {
     if (line.starts_with('@')) {
       line.remove_prefix(1);
       const auto at = readTime(takeWord(line));
-      if (!at) return wrong("has no time after its @, in seconds");
+      if (!at) return wrong("has no valid time, in seconds, after its @");
       if (!transcript_.chunks.empty() && *at < transcript_.chunks.back().at)
         return wrong("has a time before that of the line above");
       chunk.at = *at;
@@ -121,7 +121,7 @@ class Reader {
     return Ok{};
   }
 
-  // Baud rate of the header, which is complete by the first chunk; looked up once.
+  // Baud rate of the header, which is complete when the first chunk is read; cached.
   int baud() {
     if (baud_ == 0) baud_ = transcript_.baud();
     return baud_;
@@ -154,7 +154,7 @@ Result<Transcript> parseTranscript(std::string_view text) { return Reader().read
 
 std::string formatTranscript(const Transcript& transcript) {
   std::string text;
-  // A header line is one line, whatever a device has said of itself.
+  // oneLine(), because a device's identity may contain line breaks.
   for (const auto& [key, value] : transcript.header)
     text += fmt::format("# {}: {}\n", oneLine(key), oneLine(value));
   for (const TranscriptChunk& chunk : transcript.chunks) {
@@ -172,8 +172,8 @@ Result<Transcript> readTranscript(const std::string& path) {
     return Error{Errc::kMalformed, fmt::format("{}: is too long for a transcript", path)};
   auto transcript = parseTranscript(file->text());
   if (!transcript) {
-    return Error{transcript.error().code,
-                 fmt::format("{}: {}; it is no whole transcript", path, transcript.error().what)};
+    return Error{transcript.error().code, fmt::format("{}: {}; it is not a complete transcript",
+                                                      path, transcript.error().what)};
   }
   return transcript;
 }

@@ -1,14 +1,15 @@
-// Transcripts: what went over a device's line, as a text file that people can read, write and
-// compare; recorded, dumped by the flight recorder or written by hand.
+// Transcripts: the bytes that a device and its host exchanged, as a text file that people can read,
+// write and compare; recorded, dumped by the flight recorder or written by hand.
 //
 //   # device: Spaceball 2003, firmware unknown      # synthetic: yes (merlin emulate, seed 7)
 //   # serial: 9600 8N1 xonxoff                      # driver: spaceball
 //   @0.300000 to 0d405245534554 0d                  <- host to device; comments start like this
 //   @0.350000 4400100001ffff0100000000000000 0d     <- device to host
-//   4400100001ffff0100000000000000 0d               <- no time: when the line is free again
+//   4400100001ffff0100000000000000 0d               <- no time: directly after the last chunk
 //   # end
 //
-// Times are seconds since the start. The line "# end" says that nothing was cut off.
+// Bytes are hexadecimal, times are seconds since the start. The line "# end" shows that the file is
+// complete.
 #pragma once
 
 #include <string>
@@ -22,7 +23,7 @@
 namespace merlin::io {
 
 struct TranscriptChunk {
-  Duration at{};           // since the start; never less than the chunk's before
+  Duration at{};           // since the start; not before the previous chunk
   bool to_device = false;  // written by the host
   std::string bytes;
 };
@@ -33,14 +34,15 @@ struct Transcript {
 
   // Value of a key of the header; empty if the header has no such key.
   std::string_view operator[](std::string_view key) const;
-  int baud() const;  // of "serial"; 9600 where it says nothing
+  int baud() const;  // from the key "serial"; 9600 if it has no number
 };
 
-// Errors: kMalformed, naming the line: no hex, half a byte, a time that runs backwards, no "# end".
+// Errors: kMalformed, naming the line: not hexadecimal, half a byte, a time before that of the
+// previous chunk, no "# end".
 Result<Transcript> parseTranscript(std::string_view text);
 std::string formatTranscript(const Transcript& transcript);
 
-// Errors: kNotFound, kIo, and of parseTranscript with the file's name.
+// Errors: kNotFound, kIo, and those of parseTranscript() with the file's name.
 Result<Transcript> readTranscript(const std::string& path);
 
 }  // namespace merlin::io

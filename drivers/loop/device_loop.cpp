@@ -55,7 +55,7 @@ std::unique_ptr<ByteStream> DeviceLoop::paced(std::unique_ptr<ByteStream> stream
   return std::make_unique<PacedStream>(std::move(stream), *pace_, clock_);
 }
 
-// In the midst of a read: of the dialogue or of the stream.
+// Called during a read, in the set-up dialogue or while the device streams.
 void DeviceLoop::paceChanged() {
   settings_.on_pace(pace_->above());
   if (health_.state == HealthState::kOpening) enter(health_.state, withPace({}));
@@ -63,17 +63,18 @@ void DeviceLoop::paceChanged() {
 
 std::string DeviceLoop::withPace(const std::string& reason) {
   if (!pace_) return reason;
-  (void)pace_->allowed(clock_.now());  // what is past is not said
+  (void)pace_->allowed(clock_.now());  // updates above()
   if (!pace_->above()) return reason;
   return pace_->sentence() + (reason.empty() ? "" : "; " + reason);
 }
 
-// Bytes that make no sense are, as a rule, another device's, or another speed's.
+// Malformed bytes usually come from another device, or from a line at another baud rate.
 std::string DeviceLoop::hintFor(const Error& end) const {
   const bool has_speed =
       settings_.port.starts_with("serial:") || settings_.port.starts_with("pty:");
   if (end.code != Errc::kMalformed || settings_.baud == 0 || !has_speed) return {};
-  return " (another device, or another speed than " + std::to_string(settings_.baud) + " baud?)";
+  return " (is it another device, or is its speed not " + std::to_string(settings_.baud) +
+         " baud?)";
 }
 
 Error DeviceLoop::serve(const std::stop_token& stop) {

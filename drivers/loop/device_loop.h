@@ -1,4 +1,4 @@
-// DeviceLoop: keeps one device alive and publishing, whatever happens to its line.
+// DeviceLoop: opens one device, polls it, and opens it again whenever the device or its line fails.
 #pragma once
 
 #include <functional>
@@ -16,31 +16,33 @@
 namespace merlin {
 
 struct DeviceLoopSettings {
-  std::string port;  // as a person wrote it, for the health
-  int baud = 0;      // of the line, for the hint where what comes makes no sense; 0: no hint
-  // Maximum rate at which the line is read; 0: as fast as it sends. Further bytes wait in the
-  // system's buffers, which block the sender or drop what it sends.
+  std::string port;  // as in the configuration, for the health record
+  int baud = 0;      // of the line, for a hint in the message about malformed bytes; 0: no hint
+  // Maximum rate at which the line is read; 0: no limit. Further bytes wait in the system's
+  // buffers; when these are full, the sender blocks or bytes are lost.
   double max_bytes_s = 0;
-  // Told, on the loop's thread, when the line begins or ceases to send more than that; no time of
-  // others is for such a line.
+  // Called on the loop's thread when the line begins (`above` true) or ceases to send more than
+  // max_bytes_s, so that the caller can lower the thread's priority meanwhile.
   std::function<void(bool above)> on_pace = [](bool) {};
-  Duration first_retry = std::chrono::milliseconds(100);  // doubled after each failure,
-  // Up to this; reset by success. Short, since an attempt costs next to nothing, and a device that
-  // is back should be heard within a second, its dialogue included.
+  // Delay before the next attempt to open the device. It is doubled after each failure, up to
+  // longest_retry, and reset after a connection that streamed.
+  Duration first_retry = std::chrono::milliseconds(100);
+  // Short, because an attempt costs little, and a device that is connected again should stream
+  // within a second, including its set-up.
   Duration longest_retry = std::chrono::milliseconds(250);
 };
 
-// Over ports and a Clock only; owns no thread: run() is the body of one. Thread-bound but for the
-// stop token, which may be triggered from anywhere.
+// Uses interfaces and a Clock only. Owns no thread: run() is the body of a thread. Thread-bound,
+// except that any thread may request the stop.
 class DeviceLoop {
  public:
   DeviceLoop(DeviceLoopSettings settings, StreamOpener open_stream, std::unique_ptr<Device> device,
              HealthSink& health, Clock& clock);
 
-  // Opens, talks, polls, backs off and starts again, until `stop`; returns within about 50 ms of
-  // it. Blocks no other device: it shares nothing with them.
-  // `alive` is called several times a second while it waits to try again; while a port is open, its
-  // stream sees the progress.
+  // Opens and polls the device until `stop`, with a delay after each failure; returns within about
+  // 50 ms after the stop request. Shares nothing with other devices, so it cannot block them.
+  // `alive` is called before each attempt; while a port is open, the opener's stream has to count
+  // the progress.
   void run(
       const std::stop_token& stop, const std::function<void()>& alive = [] {});
 
@@ -51,11 +53,11 @@ class DeviceLoop {
 
   std::unique_ptr<ByteStream> paced(std::unique_ptr<ByteStream> stream);
   void paceChanged();
-  // Text of the health: of the line if it sends too much, then `reason`.
+  // Text for the health record: that the line sends too much, if it does, then `reason`.
   std::string withPace(const std::string& reason);
   std::string hintFor(const Error& end) const;
   void enter(HealthState state, std::string_view reason) noexcept;
-  void report() noexcept;  // publishes health_, with counters and rate, at most every 100 ms
+  void report() noexcept;  // publishes health_ with counters and rate, at most every 100 ms
   void measureRate(Timestamp now) noexcept;
 
   DeviceLoopSettings settings_;
@@ -63,10 +65,10 @@ class DeviceLoop {
   std::unique_ptr<Device> device_;
   HealthSink& sink_;
   Clock& clock_;
-  std::optional<ReadPace> pace_;  // where the line has one
+  std::optional<ReadPace> pace_;  // empty: the line has no rate limit
   DeviceHealth health_{};
-  bool opened_ = false;    // this connection came as far as an open port
-  bool streamed_ = false;  // and as far as a sample
+  bool opened_ = false;    // the port was opened for this connection
+  bool streamed_ = false;  // a sample arrived over this connection
   Timestamp rate_since_{};
   std::uint64_t rate_samples_ = 0;
   Timestamp reported_{};

@@ -13,7 +13,7 @@ constexpr double kBurst_s = 0.25;
 
 std::string sentenceOf(double bytes_s) {
   const bool kilo = bytes_s >= 1000, mega = bytes_s >= 1e6;
-  return fmt::format("sends more than {:.3g} {}B/s: read at that pace",
+  return fmt::format("sends more than {:.3g} {}B/s, the limit at which it is read",
                      bytes_s / (mega   ? 1e6
                                 : kilo ? 1e3
                                        : 1),

@@ -1,5 +1,4 @@
-// PacedStream: a line that is read no faster than so many bytes a second, whatever comes on it.
-// Over a ByteStream and a Clock only.
+// PacedStream: limits the rate at which a line is read. Uses a ByteStream and a Clock only.
 #pragma once
 
 #include <array>
@@ -16,24 +15,25 @@
 
 namespace merlin {
 
-// How fast a line may be read, over all its connections: a line that is cut and opened again has no
-// more than one that stays. Thread-bound; allocates nothing after its making.
+// The rate limit of a line, over all its connections: closing and opening the line again does not
+// raise it. Thread-bound; allocates nothing after construction.
 class ReadPace {
  public:
-  // Up to a quarter of a second's bytes may come at once, 4 KiB (a pty's buffer) at least and
-  // 64 KiB at most. `changed` is called when the line begins or ceases to send more than that.
+  // `bytes_s`: the limit [bytes/s]. A burst may have the bytes of a quarter of a second, but at
+  // least 4 KiB (a pty's buffer) and at most 64 KiB. `changed` is called when above() changes.
   // REQUIRES: bytes_s > 0.
   ReadPace(double bytes_s, std::function<void()> changed);
 
-  // Whether more comes than is read: since the bytes of a connection had to wait, and until half of
-  // what may come at once was saved up again.
+  // Whether the line sends more than the limit: true from when bytes had to wait, until half of the
+  // burst is available again.
   bool above() const noexcept { return above_; }
-  // "sends more than 15.4 kB/s: read at that pace".
+  // "sends more than 15.4 kB/s, the limit at which it is read".
   const std::string& sentence() const noexcept { return sentence_; }
 
-  // How many bytes may be read at `now`; where it is none, the line is above its pace.
+  // Number of bytes that may be read at `now`; updates above().
   std::size_t allowed(Timestamp now);
-  // How long a read waits then: a few bytes at once cost less than each alone.
+  // Time for which a read waits if none may be read: several bytes at once cost less than each
+  // alone.
   static constexpr Duration kPause = std::chrono::milliseconds(10);
   // Subtracts bytes that were read from the allowance.
   void charge(std::size_t bytes, Timestamp now) noexcept;
@@ -41,8 +41,9 @@ class ReadPace {
  private:
   void setAbove(bool above);
 
-  // While it waits: until a pause's bytes are there. Else each byte would be read as it is allowed,
-  // and a system call takes as long as that.
+  // Capacity of a burst; number of bytes (those of kPause) that must be available before a line
+  // that waits is read again. Without the latter each byte would be read by a system call of its
+  // own.
   double burst_, step_;
   bool waits_ = false;
   TokenBucket bucket_;
@@ -51,11 +52,11 @@ class ReadPace {
   bool above_ = false;
 };
 
-// Reads ahead, a KiB at most, so that a dialogue that takes single bytes costs a system call for
-// many. What was read ahead is lost with the stream. Thread-bound but for interrupt().
+// Reads ahead, at most 1 KiB, so that a dialogue that takes single bytes needs few system calls.
+// Bytes that were read ahead are lost with the stream. Thread-bound, except interrupt().
 class PacedStream final : public ByteStream {
  public:
-  // `pace` and `clock` outlive this.
+  // `pace` and `clock` must outlive this.
   PacedStream(std::unique_ptr<ByteStream> inner, ReadPace& pace, Clock& clock);
 
   Result<std::size_t> read(std::span<std::byte> buffer, Duration timeout) override;
@@ -70,7 +71,7 @@ class PacedStream final : public ByteStream {
   Clock& clock_;
   std::stop_source interrupted_;
   std::array<std::byte, 1024> ahead_;  // NOLINT(*-member-init): filled by read
-  std::size_t next_ = 0, end_ = 0;     // of ahead_: what is not handed out yet
+  std::size_t next_ = 0, end_ = 0;     // range of ahead_ that is not returned yet
 };
 
 }  // namespace merlin

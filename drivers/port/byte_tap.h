@@ -1,5 +1,5 @@
-// Port: who listens to the bytes of a line. Implemented by the recorder of `merlin record` and by
-// the daemon's flight recorder.
+// ByteTap: interface of a listener to the bytes of a line. Implemented by the recorder of
+// `merlin record` and by the daemon's flight recorder.
 #pragma once
 
 #include <cstddef>
@@ -9,14 +9,14 @@
 
 namespace merlin {
 
-// Called from the line's own thread: an implementation that serves the daemon takes no lock and
+// Called on the thread that uses the line; an implementation in the daemon takes no lock and
 // allocates nothing.
 class ByteTap {
  public:
   virtual ~ByteTap() = default;
   virtual void opened(Timestamp at) noexcept = 0;
-  virtual void heard(Timestamp at, std::span<const std::byte> bytes) noexcept = 0;  // of the device
-  virtual void said(Timestamp at, std::span<const std::byte> bytes) noexcept = 0;   // to the device
+  virtual void heard(Timestamp at, std::span<const std::byte> bytes) noexcept = 0;  // from it
+  virtual void said(Timestamp at, std::span<const std::byte> bytes) noexcept = 0;   // to it
 };
 
 }  // namespace merlin

@@ -1,7 +1,7 @@
-// Port: one device's dialogue. Implemented by drivers/<device>/device.
+// Device: the interface of a device driver. Implemented by drivers/<device>/device.
 //
-// Thread-bound. drivers/loop owns the order: open(stream), then poll(stream) until it fails, then
-// open() again on a fresh stream. No call blocks longer than its contract says, and none after
+// Thread-bound. drivers/loop calls open(stream), then poll(stream) until that fails, then open()
+// again with a new stream. No call blocks longer than its contract says, and none blocks after
 // stream.interrupt().
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace merlin {
 
-// Counts of a device's parser, over all its connections; they only grow.
+// Counters of a device's parser since its construction, over all connections.
 struct DeviceCounters {
   std::uint64_t samples = 0;
   std::uint64_t bad_bytes = 0;
@@ -25,19 +25,19 @@ class Device {
  public:
   virtual ~Device() = default;
 
-  // Resets, identifies and sets up the device, and starts its stream; returns what it said it is.
-  // Errors: kTimeout (no or too short an answer), kMalformed (an answer of something else), and
-  // the stream's. May allocate.
+  // Resets, identifies and sets up the device, and starts its stream; returns the device's identity
+  // for a person ("CyberGlove, 22 sensors"). Errors: kTimeout (no answer or an incomplete one),
+  // kMalformed (the answer is not one of this device), and those of the stream. May allocate.
   virtual Result<std::string> open(ByteStream& stream) = 0;
 
-  // Reads what comes within about 250 ms and publishes every whole sample in it.
-  // Errors: kTimeout (silent for longer than this device ever is), and the stream's.
+  // Reads the bytes that arrive within about 250 ms and publishes every complete sample in them.
+  // Errors: kTimeout (silent for longer than a working device ever is), and those of the stream.
   // Takes no lock and allocates nothing, unless it fails.
   virtual Result<Ok> poll(ByteStream& stream) = 0;
 
   virtual DeviceCounters counters() const noexcept = 0;
 
-  // A sentence where the device streams and yet is not well ("glove not plugged in"); else empty.
+  // Describes a fault of a device that nevertheless streams ("glove not plugged in"); empty: none.
   virtual const char* complaint() const noexcept = 0;
 };
 

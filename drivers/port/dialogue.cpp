@@ -8,7 +8,7 @@ namespace merlin {
 namespace {
 
 constexpr Duration kWriteTimeout = std::chrono::seconds(1);
-constexpr Duration kGap = std::chrono::milliseconds(100);  // within an answer that is under way
+constexpr Duration kGap = std::chrono::milliseconds(100);  // longest gap within an answer
 
 Error timedOut(std::string_view step, Duration timeout, std::string_view got) {
   return {Errc::kTimeout, fmt::format("no answer to {} within {:.1f} s{}", step, toSeconds(timeout),

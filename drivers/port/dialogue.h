@@ -1,7 +1,7 @@
-// Dialogue: the small steps that every device's set-up is made of, over a ByteStream.
+// Dialogue: sends commands over a ByteStream and reads the answers, for the set-up of a device.
 //
-// Thread-bound, borrowed by a Device for the length of one open(). Each step has its own limit, so
-// that a dead line costs a bounded time; errors name the step.
+// Thread-bound; made by a Device for one set-up. Each step has its own time limit, so that a dead
+// line costs a bounded time; error messages name the step.
 #pragma once
 
 #include <string>
@@ -19,16 +19,19 @@ class Dialogue {
 
   Result<Ok> send(std::string_view bytes);
 
-  // Exactly `count` bytes, the first within `timeout`, the others within it too or as long as they
-  // come in a row (no gap of 100 ms), so that a slow line is given its time and a dead one is not.
-  // `step` names what is waited for, in errors: kTimeout says how many bytes came, and the first.
+  // Reads exactly `count` bytes. The first must arrive within `timeout`; each later one within
+  // `timeout` as well, or within 100 ms of the byte before it, so that a slow line gets the time
+  // that it needs. `step` names the expected answer in messages; that of kTimeout quotes the bytes
+  // that arrived.
   Result<std::string> readExactly(std::size_t count, Duration timeout, std::string_view step);
 
-  // Bytes up to and without `end`, at most `limit` of them; in time as above.
+  // Reads until `end`; returns the bytes before it, at most `limit`. Time limits as above. Errors
+  // also: kMalformed (more than `limit` bytes).
   Result<std::string> readUntil(char end, std::size_t limit, Duration timeout,
                                 std::string_view step);
 
-  // Throws input away until none has come for `quiet`, for `most` at most; returns how many bytes.
+  // Discards input until none has arrived for `quiet`, for at most `most`; returns the number of
+  // discarded bytes.
   Result<std::size_t> drain(Duration quiet, Duration most);
 
  private:
@@ -39,7 +42,7 @@ class Dialogue {
   const Clock& clock_;
 };
 
-// Bytes as a person reads them in an error: printable ones as they are, others as \xNN; cut at 24.
+// The first 24 bytes for a message: printable ASCII unchanged, other bytes as \xNN, "..." if cut.
 std::string quoteBytes(std::string_view bytes);
 
 }  // namespace merlin

@@ -1,5 +1,5 @@
-// Port: the lines of a GPIO chip. Implemented by drivers/io/gpio_chip (libgpiod) and by a fake in
-// tests.
+// GpioLines: interface to the lines of a GPIO chip. Implemented by drivers/io/gpio_chip (libgpiod)
+// and by a fake in tests.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@ class GpioLines {
  public:
   virtual ~GpioLines() = default;
 
-  // Errors: kIo (the chip is gone).
+  // Errors: kIo (the chip does not respond any more).
   virtual Result<Ok> write(int line, bool high) = 0;
   virtual Result<bool> read(int line) = 0;
 

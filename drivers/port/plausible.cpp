@@ -7,14 +7,14 @@
 namespace merlin {
 namespace {
 
-// Largest angle of a joint: far beyond what a calibration makes of a raw byte (6 rad as shipped).
+// Largest accepted joint angle: far above what the default calibration can give (6 rad).
 constexpr float kWidest_rad = 1000;
-// Largest speed of a hand: that of a jump, after smoothing, from one end of the range to the other
-// within one record.
+// Largest accepted speed of a hand [m/s, rad/s]: the smoothed speed after a jump across the whole
+// range within one record.
 constexpr float kFastest = 100'000;
 constexpr std::uint32_t kButtons = 12, kGloveFlags = 7;
 
-// False of a NaN.
+// Whether all values are within -limit..limit; false if one is NaN.
 bool within(std::span<const float> values, float limit) noexcept {
   return std::all_of(values.begin(), values.end(), [&](float v) { return std::abs(v) <= limit; });
 }

@@ -1,6 +1,6 @@
-// Whether a sample is one that its device can have measured. Pure; for samples that come from
-// another machine or program. A driver's protocol checks its own records by the same limits or
-// narrower ones.
+// Checks whether a device can have measured the values of a sample. Pure; for samples that come
+// from another machine or program. A driver's protocol checks the records that it reads against the
+// same limits or narrower ones.
 #pragma once
 
 #include "drivers/port/samples.h"
@@ -15,8 +15,8 @@ inline constexpr float kTrackerReach_m = 5;
 // configuration can set (10 m along each axis), plus the stylus's tip (1 m along each).
 inline constexpr float kFurthest_m = 25;
 
-// False of a number that is NaN, infinite or out of its range, of a quaternion whose norm is not
-// 0.98..1.02, and of a code that is none. Counters and times may be anything.
+// Return false if a number is NaN, infinite or out of its range, if the norm of a quaternion is not
+// 0.98..1.02, or if a code, letter or text is not valid. Counters and times are not checked.
 bool plausible(const GloveSample& sample) noexcept;
 bool plausible(const TrackerSample& sample) noexcept;
 bool plausible(const BallSample& sample) noexcept;

@@ -1,4 +1,4 @@
-// PortAddress: where a device's line is: `serial:/dev/...`, `pty:PATH` (an emulator or another
+// PortAddress: address of a device's line: `serial:/dev/...`, `pty:PATH` (an emulator or another
 // program's pseudo-terminal), `tcp://HOST:PORT` (a raw serial server) or `replay:FILE` (a
 // transcript).
 #pragma once
@@ -19,7 +19,7 @@ struct PortAddress {
   std::string path;     // path of the device or file; for kTcp the host
   std::string service;  // for kTcp only: the port's number
 
-  // Whether the line has a speed that we set.
+  // Whether MERLIN sets the baud rate of the line.
   bool hasSpeed() const noexcept { return kind == PortKind::kSerial || kind == PortKind::kPty; }
 };
 

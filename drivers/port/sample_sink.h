@@ -1,7 +1,8 @@
-// Port: where samples go. Implemented by daemon/shm (ShmSink) and by fakes in tests.
+// SampleSink: interface of a receiver of samples. Implemented by daemon/shm (ShmSink), by sinks
+// that process samples and pass them on (daemon/devices, daemon/actions), and by fakes in tests.
 //
-// Called from device threads: an implementation takes no lock and allocates nothing. One thread a
-// device; two devices never write the same kind of sample.
+// Called from device threads: an implementation takes no lock and allocates nothing. Each device
+// has one thread; two devices never publish the same kind of sample.
 #pragma once
 
 #include "drivers/port/samples.h"
@@ -17,7 +18,7 @@ class SampleSink {
   virtual void publish(const BallSample& sample) noexcept = 0;
 };
 
-// Where a device's health goes; one for each device.
+// Receives the health of one device.
 class HealthSink {
  public:
   virtual ~HealthSink() = default;

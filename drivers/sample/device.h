@@ -1,4 +1,4 @@
-// The sample device's dialogue: "HELLO\n" is answered by its name, then it streams.
+// Driver of the sample device, which answers "HELLO\n" with its name and then streams.
 #pragma once
 
 #include <memory>

@@ -1,8 +1,8 @@
-// The sample device's wire format: a ball that sends lines of text. Made up, so that a new driver
-// has something small to be copied from.
+// The sample device's wire format: a ball that sends lines of text. The device is fictitious; its
+// driver is a small template for new drivers.
 //
-//   six numbers -1000..1000 (x y z a b c, thousandths of full scale) and a button mask, blank
-//   separated, ended by LF: "0 0 500 0 0 -20 1\n"
+//   six numbers -1000..1000 (x y z a b c, thousandths of full scale) and a button mask, separated
+//   by blanks, ended by LF: "0 0 500 0 0 -20 1\n"
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct Record {
 class Parser {
  public:
   // Takes one byte; returns a record when `byte` completes one. Never blocks, never allocates.
-  // A line that cannot be read is dropped whole and counted; the next LF resynchronises.
+  // A malformed line is dropped whole and counted; the next LF resynchronises.
   std::optional<Record> feed(std::byte byte) noexcept;
 
   std::uint64_t badPackets() const noexcept { return bad_packets_; }
@@ -36,7 +36,7 @@ class Parser {
   std::uint64_t bad_packets_ = 0, bad_bytes_ = 0;
 };
 
-// The inverse.
+// Inverse of the parser.
 std::string encode(const Record& record);
 
 }  // namespace merlin::sample

@@ -17,8 +17,8 @@ constexpr Duration kPollTime = milliseconds(250);
 constexpr Duration kSilenceBeforePing = seconds(2);
 constexpr Duration kPingTime = seconds(1);
 constexpr Duration kConfirmTime = milliseconds(400);
-constexpr int kMostSetUps = 5;                         // in a row without a confirmation
-constexpr Duration kQuestionTime = milliseconds(500);  // between questions during a reset
+constexpr int kMostSetUps = 5;                         // without a confirmation
+constexpr Duration kQuestionTime = milliseconds(500);  // between queries in open()
 constexpr Duration kLongestWait = milliseconds(3500);  // a reset takes about 2 s
 constexpr Duration kBannerTime = seconds(10);
 
@@ -52,15 +52,15 @@ Result<std::string> SpaceballDevice::open(ByteStream& stream) {
   if (const auto done = setUp(stream); !done) return done.error();
   last_heard_ = clock_.now();
   const std::uint32_t counter = sample_.counter;
-  sample_ = {};  // whatever was pushed before the line was lost is pushed no more
+  sample_ = {};  // buttons and pushes of an earlier connection are over
   sample_.counter = counter;
   fresh_ = true;
   return fmt::format("{}, firmware {}", nameOf(model_), *firmware);
 }
 
-// Returns the firmware's number. Banner lines: "@1 Spaceball alive and well after a ... reset." and
-// "@2 Firmware version N created on ...". A ball that was deaf to @RESET (frozen, on a line that
-// was just mended) may be awake all the same, even streaming: it is asked now and then.
+// Returns the firmware's version. Banner lines: "@1 Spaceball alive and well after a ... reset."
+// and "@2 Firmware version N created on ...". A ball that missed @RESET (it was frozen, or its line
+// was interrupted) may nevertheless work, or even stream, so its version is queried every 0.5 s.
 Result<std::string> SpaceballDevice::awaitBanner(ByteStream& stream) {
   Dialogue dialogue(stream, clock_);
   const Timestamp start = clock_.now();
@@ -81,8 +81,7 @@ Result<std::string> SpaceballDevice::awaitBanner(ByteStream& stream) {
     const std::string version(firmwareVersion(*line));
     if (!version.empty()) return version;
   }
-  return Error{Errc::kMalformed,
-               "bytes came for 10 s after @RESET, and no Spaceball banner in them"};
+  return Error{Errc::kMalformed, "bytes arrived for 10 s after @RESET, but no Spaceball banner"};
 }
 
 Result<Ok> SpaceballDevice::setUp(ByteStream& stream) {
@@ -114,12 +113,12 @@ Result<Ok> SpaceballDevice::poll(ByteStream& stream) {
     pinged_ = false;
     if (auto done = handle(*packet, packet_start_, stream); !done) return done;
   }
-  return keepAlive(stream);  // bytes that are no packets count as silence
+  return keepAlive(stream);  // bytes that form no packet count as silence
 }
 
-// A set-up that was lost on the line would leave a ball that answers, and never moves: `M` is
-// echoed, and a ball that sends displacements is on. At rest the ball says nothing: after a while
-// ask for the keys, which it always answers.
+// If the line loses the set-up, the ball answers queries but never sends displacements. So the
+// set-up is sent again until the ball confirms it, by the echo of `M` or by a displacement. A ball
+// at rest is silent, so after a while the keys are queried, which it always answers.
 Result<Ok> SpaceballDevice::keepAlive(ByteStream& stream) {
   const Timestamp now = clock_.now();
   if (!confirmed_ && now - set_up_at_ >= kConfirmTime) {
@@ -131,7 +130,7 @@ Result<Ok> SpaceballDevice::keepAlive(ByteStream& stream) {
   if (silence < kSilenceBeforePing) return Ok{};
   if (pinged_ && silence >= kSilenceBeforePing + kPingTime) {
     return Error{Errc::kTimeout,
-                 fmt::format("silent for {:.1f} s, a ping too", toSeconds(silence))};
+                 fmt::format("silent for {:.1f} s, and no answer to a ping", toSeconds(silence))};
   }
   if (pinged_) return Ok{};
   pinged_ = true;
@@ -155,7 +154,7 @@ Result<Ok> SpaceballDevice::handle(const Packet& packet, Timestamp first_byte, B
   } else if (std::get<Text>(packet).line.starts_with('E')) {
     complaint_ = meaningOf(std::get<Text>(packet).line);
   } else if (std::get<Text>(packet).line.starts_with("@1")) {
-    return setUp(stream);  // it reset by itself (power, watchdog): all it was told is gone
+    return setUp(stream);  // it reset by itself (power, watchdog) and lost its set-up
   }
   return Ok{};
 }

@@ -1,4 +1,5 @@
-// A Spaceball's dialogue: reset, banner, set-up, stream; redone after every unsolicited reset.
+// Driver of a Spaceball: resets it, awaits its banner, sets it up and streams; sets it up again
+// whenever the ball resets by itself.
 #pragma once
 
 #include <memory>
@@ -11,9 +12,9 @@
 
 namespace merlin::spaceball {
 
-// open() takes up to 10 s: the ball is silent for about 2 s after a reset. A ball that is already
-// awake and does not reset is asked for its model instead. poll() fails with kTimeout when a ball
-// that has been silent for 2 s (which rest looks like) does not answer a ping within 1 s.
+// open() takes up to 10 s: the ball is silent for about 2 s after a reset. A ball that works but
+// does not react to the reset command is asked for its model instead. A ball at rest is silent;
+// poll() fails with kTimeout if a ball that was silent for 2 s does not answer a ping within 1 s.
 class SpaceballDevice final : public Device {
  public:
   SpaceballDevice(const SpaceballSettings& settings, const Clock& clock, SampleSink& sink);
@@ -41,9 +42,9 @@ class SpaceballDevice final : public Device {
   Timestamp last_heard_{};
   bool pinged_ = false;
   bool fresh_ = true;       // nothing published since open()
-  bool confirmed_ = false;  // it has said that it is on
+  bool confirmed_ = false;  // the ball confirmed that it is on
   const char* complaint_ = "";
-  int set_ups_ = 0;  // sent since it last did
+  int set_ups_ = 0;  // repeated set-ups since the last confirmation
   Timestamp set_up_at_{};
 };
 

@@ -20,18 +20,18 @@ constexpr GuidedStep kSteps[] = {
 };
 constexpr std::size_t kRest = 0;
 
-// A twist's counts are a fifth of a push's, as full scales have them (README.md, "Quirks").
+// Ratio of a push's counts to a twist's, as in the default full scales (README.md, "Quirks").
 constexpr int kPushOfTwist = 5;
 constexpr int kLeastPush = 400, kLeastTwist = 80;  // counts
-constexpr int kMostNext_percent = 60;           // of the strongest, along another axis of its kind
-constexpr int kMargin = 4;                      // counts, of the dead zone
-constexpr int kMostNoise = (99 - kMargin) / 2;  // so that the dead zone is in its range
+constexpr int kMostNext_percent = 60;           // next axis of the kind, relative to the strongest
+constexpr int kMargin = 4;                      // counts, added to the dead zone
+constexpr int kMostNoise = (99 - kMargin) / 2;  // keeps the dead zone within 0..99
 
 constexpr bool isPush(std::size_t step) { return step <= 3; }
 constexpr bool isPushAxis(int axis) { return std::abs(axis) <= 3; }
 constexpr int deadZone(int noise) { return 2 * noise + kMargin; }
 
-// In counts of a push.
+// Counts of a push, or counts of a twist scaled to those of a push.
 int strength(int axis, int counts) { return counts * (isPushAxis(axis) ? 1 : kPushOfTwist); }
 
 }  // namespace
@@ -58,11 +58,11 @@ Result<AxisAnswer> GuidedAxes::end() {
   const auto counts = [&](int axis) {
     return std::abs(strongest_[static_cast<std::size_t>(axis - 1)]);
   };
-  const auto asked = [&](int axis) {  // at rest all are alike
+  const auto asked = [&](int axis) {  // at rest, unscaled
     return step_ == kRest ? counts(axis) : strength(axis, counts(axis));
   };
   std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return asked(a) > asked(b); });
-  // A push off the ball's middle twists it a little: only its like is compared.
+  // A push beside the ball's centre also twists it a little, so only axes of one kind are compared.
   const int next = *std::find_if(axes.begin() + 1, axes.end(),
                                  [&](int axis) { return isPushAxis(axis) == isPushAxis(axes[0]); });
   const int sign = strongest_[static_cast<std::size_t>(axes[0] - 1)] < 0 ? -1 : 1;

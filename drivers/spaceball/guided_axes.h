@@ -1,4 +1,5 @@
-// A ball's axis map and sensitivities, from pushes and twists that a person is asked for. Pure.
+// Determines a ball's axis map, dead zone and full scales from pushes and twists that a person
+// makes on request. Pure.
 #pragma once
 
 #include <array>
@@ -14,36 +15,36 @@ namespace merlin::spaceball {
 // First rest, then a push along x, y, z and a twist about each.
 std::span<const GuidedStep> axesSteps();
 
-// Which of the ball's axes answered the most: 1..6 (X Y Z A B C), negative where it was turned
-// round, and by how many raw counts; the same of the next one of its kind.
+// The ball's axis with the largest response: 1..6 (X Y Z A B C), negative if it is reversed, and
+// its raw counts; and the axis of the same kind (push or twist) with the next largest.
 struct AxisAnswer {
   int axis = 0, counts = 0;
   int next_axis = 0, next_counts = 0;
 };
 char nameOfAxis(int axis) noexcept;  // 'X' for 1 and -1
 
-// Takes raw counts alone: neither axis map, dead zone nor full scale of the present settings are in
-// them.
+// Uses raw counts only, which do not depend on axis map, dead zone and full scale of the present
+// settings.
 class GuidedAxes {
  public:
-  void begin(std::size_t step);  // what comes from now on belongs to it; again: anew
+  void begin(std::size_t step);  // starts or restarts a step; later samples belong to it
   void add(const BallSample& sample);
 
-  // The step under way. A ball that is silent is at rest. Errors, all kMalformed: touched while at
-  // rest; pushed too little; two axes answer alike; twisted in place of pushed, or the other way
-  // round; an axis that has answered an earlier step.
+  // Ends the current step. A ball that sends nothing is at rest. Errors, all kMalformed: the ball
+  // was touched in the step "rest"; it was pushed too little; two axes respond alike; it was
+  // twisted instead of pushed, or vice versa; the axis already responded in an earlier step.
   Result<AxisAnswer> end();
 
-  // Dead zone: twice what was seen at rest and four counts. Full scale: nine tenths of the weakest
-  // of the three, so that each can be reached. Else as `settings`.
-  // REQUIRES: each step has ended well.
+  // Returns `settings` with a new axis map, dead zone (four counts plus twice the largest count at
+  // rest) and full scales (nine tenths of the weakest of three axes, so that each axis can reach
+  // full scale). REQUIRES: each step has ended without an error.
   SpaceballSettings solve(const SpaceballSettings& settings) const;
 
  private:
   Result<Ok> check(const AxisAnswer& answer) const;
 
   std::size_t step_ = 0;
-  std::array<int, 6> strongest_{};  // of the step under way, raw counts with their sign
+  std::array<int, 6> strongest_{};  // in the current step, signed raw counts
   std::array<AxisAnswer, 7> answers_{};
 };
 

@@ -15,7 +15,7 @@ constexpr std::uint8_t kXoff = 0x13;
 constexpr std::size_t kDisplacementLength = 15;  // 'D' + period + 6 axes
 constexpr std::size_t kKeysLength = 3;
 
-// Letters that start a reply or the banner; anything else at a packet's start is damage.
+// Letters that start a reply or the banner; any other letter at a packet's start means damage.
 constexpr std::string_view kReplies = "@CEFMNPZHQBSYA?-\"%cR";
 
 // The byte that `^c` stands for, or nothing if the device never sends `^c`.
@@ -120,15 +120,15 @@ Model modelOf(std::string_view firmware_version) noexcept {
 
 const char* meaningOf(std::string_view packet) noexcept {
   constexpr const char* kErrors[] = {"reports a fault of its sensor chip",
-                                     "reports that its memory has a wrong checksum",
+                                     "reports a wrong checksum of its memory",
                                      "reports that its sensor chip does not answer",
-                                     "could not send in time",
-                                     "was told more than it could keep",
-                                     "could not read what it was told",
+                                     "reports that it could not send in time",
+                                     "reports an overflow of its receive buffer",
+                                     "reports a receive error",
                                      "",
-                                     "was told something too long",
-                                     "ignored what it was told",
-                                     "was told something that it does not know"};
+                                     "reports a command that is too long",
+                                     "reports that it ignored a command",
+                                     "reports an unknown command"};
   if (packet.size() < 3) return "reports an error";
   const unsigned bits =
       (static_cast<unsigned>(packet[2]) & 0x3F) | (static_cast<unsigned>(packet[1]) & 0x07) << 7;

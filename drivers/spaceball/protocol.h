@@ -2,11 +2,11 @@
 // clock.
 //
 // A packet is a letter, its data, and CR. The device escapes 0x0D, 0x11, 0x13 and '^' inside it as
-// ^M ^Q ^S ^^, so a CR always ends a packet; a bare XON or XOFF is flow control and no data.
+// ^M ^Q ^S ^^, so a CR always ends a packet; a bare XON or XOFF is flow control, not data.
 //   'D' period:u16be [1/16 ms]  X Y Z A B C: 6 x i16be [raw counts]       displacement, 15 bytes
 //   'K' b1 b2                                                             keys, all models
 //   '.' b1 b2                                                             keys, 4000 FLX
-//   other letters: replies to commands and the banner, handed on as text
+//   other letters: replies to commands and the banner, returned as text
 //
 // Sources: README.md beside this file.
 #pragma once
@@ -32,7 +32,7 @@ struct Keys {
 };
 
 struct Text {
-  std::string_view line;  // letter and all, without CR; valid until the next feed()
+  std::string_view line;  // with the letter, without CR; valid until the next feed()
 };
 
 using Packet = std::variant<Displacement, Keys, Text>;
@@ -40,7 +40,7 @@ using Packet = std::variant<Displacement, Keys, Text>;
 class Parser {
  public:
   // Takes one byte; returns a packet when `byte` completes one. Never blocks, never allocates.
-  // A packet that cannot be read is dropped whole and counted; the next CR resynchronises.
+  // A malformed packet is dropped whole and counted; the next CR resynchronises.
   std::optional<Packet> feed(std::byte byte) noexcept;
 
   // Packets dropped since construction (wrong length, unknown escape or letter), and their bytes.
@@ -58,14 +58,14 @@ class Parser {
   std::array<std::uint8_t, kLongest> payload_{};
   std::size_t length_ = 0;
   bool escaped_ = false;
-  bool bad_ = false;  // seen something unreadable since the last CR
+  bool bad_ = false;  // invalid escape sequence since the last CR
   std::uint64_t bad_packets_ = 0;
   std::uint64_t bad_bytes_ = 0;
 };
 
 enum class Model { k2003, k3003, k4000, k1003 };
 
-// By the firmware's number; 2003 where it is none of the known ones (as spacenavd does).
+// The model with this firmware version; 2003 if the version is unknown (as in spacenavd).
 Model modelOf(std::string_view firmware_version) noexcept;
 const char* nameOf(Model model) noexcept;
 
@@ -76,7 +76,7 @@ const char* meaningOf(std::string_view error_packet) noexcept;
 // 4000: twelve.
 std::uint32_t buttonsOf(const Keys& keys, Model model) noexcept;
 
-// The inverse, for the emulator: what a device of that model sends.
+// Inverse of the parser, for the emulator: the bytes that a device of that model sends.
 std::string encode(const Displacement& displacement);
 std::string encodeKeys(std::uint32_t buttons, Model model);
 
