@@ -1,6 +1,8 @@
 #include "daemon/wall/device_feed.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "daemon/base/commands.h"
 #include "drivers/hand/hand.h"
@@ -8,7 +10,8 @@
 namespace merlin::wall {
 namespace {
 
-// A pushed ball sends at least this often; a push that is older is a lost "let go".
+// A ball that is pushed sends samples at least this often. If the last sample is an older push, the
+// sample of its release was lost, and the push is ignored.
 constexpr Duration kPushLasts = std::chrono::milliseconds(500);
 
 bool pushed(const BallSample& b) {
@@ -17,7 +20,8 @@ bool pushed(const BallSample& b) {
          std::any_of(std::begin(b.rotation), std::end(b.rotation), moves);
 }
 
-// The smoothed hand of the same record, if the devices' side wears that station as its hand.
+// Replaces the hand's pose by the one predicted for the time `seen`, if shared memory has a
+// smoothed hand that was computed from the same tracker sample.
 void foresee(const shm::DevicesSegment& devices, Timestamp seen, TrackerSample& hand) {
   const auto h = devices.hand.newest();
   if (!h || h->received_ns != hand.received_ns) return;
@@ -42,6 +46,14 @@ std::optional<T> DeviceFeed::fresh(const shm::Channel<T>& channel,
   return sample;
 }
 
+std::optional<TrackerSample> DeviceFeed::station(const shm::DevicesSegment& devices, int number,
+                                                 Timestamp now) {
+  const auto index = static_cast<std::size_t>(number - 1);
+  const auto sample = fresh(devices.tracker[index], devices.health[shm::kTracker], now);
+  if (!sample || now - fromNanoseconds(sample->received_ns) > stale_after_) return std::nullopt;
+  return sample;
+}
+
 void DeviceFeed::readPosture(const shm::DevicesSegment& devices, Timestamp now, WallInput& input) {
   const auto shown = fresh(devices.posture, devices.health[shm::kGlove], now);
   if (!shown || now - fromNanoseconds(shown->received_ns) > stale_after_) return;
@@ -51,7 +63,8 @@ void DeviceFeed::readPosture(const shm::DevicesSegment& devices, Timestamp now, 
 }
 
 // Held actions count only while their device works: a process that has ended cannot release them.
-void DeviceFeed::readActions(const shm::DevicesSegment& devices, Timestamp now, WallInput& input) {
+// Returns whether the ball moves a corner.
+bool DeviceFeed::readActions(const shm::DevicesSegment& devices, Timestamp now, WallInput& input) {
   const auto glove = fresh(devices.glove, devices.health[shm::kGlove], now);
   const bool glove_works = glove && now - fromNanoseconds(glove->received_ns) <= stale_after_;
   const actions::Actions actions = actions_.read(
@@ -66,10 +79,34 @@ void DeviceFeed::readActions(const shm::DevicesSegment& devices, Timestamp now, 
   input.scene.next_mode = begun(actionIndex("next_mode"));
   input.next_content = begun(actionIndex("next_content"));
   input.snapshot = begun(actionIndex("snapshot"));
+  constexpr std::array kAlign = {actionIndex("align_output_next"), actionIndex("align_corner_next"),
+                                 actionIndex("align_left"),        actionIndex("align_right"),
+                                 actionIndex("align_up"),          actionIndex("align_down"),
+                                 actionIndex("align_undo"),        actionIndex("align_redo"),
+                                 actionIndex("next_testcard")};
+  static_assert(kAlign.size() == kAlignActionCount);
+  for (std::size_t i = 0; i < kAlign.size(); ++i) input.align.begun[i] = begun(kAlign[i]);
+  return held(actionIndex("align_push"));
+}
+
+// A full push moves the selected corner by kFullPush_px_s; the speed grows with the cube of the
+// push, so that fractions of a pixel can be set. Meanwhile the ball does not move the scene.
+void DeviceFeed::moveCorner(Duration since_last, bool held, WallInput& input) const {
+  auto& ball = input.scene.ball;
+  if (!held || !ball) return;
+  constexpr double kFullPush_px_s = 60;
+  const double seconds = std::min(toSeconds(since_last), 0.1);  // limited after a long frame
+  const auto moved = [&](float push) {
+    return kFullPush_px_s * seconds * static_cast<double>(push * push * push);
+  };
+  input.align.push = {moved(ball->translation[0]), -moved(ball->translation[1])};
+  std::fill(std::begin(ball->translation), std::end(ball->translation), 0.0F);
+  std::fill(std::begin(ball->rotation), std::end(ball->rotation), 0.0F);
 }
 
 WallInput DeviceFeed::read(Timestamp now) {
   WallInput input;
+  const Duration since_last = now - std::exchange(last_read_, now).value_or(now);
   age_.reset();
   const shm::DevicesSegment* d = devices_.get(now);
   if (!d) return input;
@@ -80,12 +117,12 @@ WallInput DeviceFeed::read(Timestamp now) {
     std::fill(std::begin(ball->rotation), std::end(ball->rotation), 0.0F);
   }
   auto& hand = input.scene.hand;
-  const auto station = static_cast<std::size_t>(hand_station_ - 1);
-  hand = fresh(d->tracker[station], d->health[shm::kTracker], now);
-  if (hand && now - fromNanoseconds(hand->received_ns) > stale_after_) hand.reset();
+  hand = station(*d, hand_station_, now);
+  if (head_station_ > 0) input.head = station(*d, head_station_, now);
   if (hand && ahead_ > Duration::zero()) foresee(*d, now + ahead_, *hand);
   readPosture(*d, now, input);
-  readActions(*d, now, input);
+  const bool align = readActions(*d, now, input);
+  moveCorner(since_last, align, input);
   return input;
 }
 

@@ -1,5 +1,5 @@
-// DeviceFeed: the input of the wall from the devices' segment, which this process or another one
-// writes.
+// DeviceFeed: reads the wall's input from the shared-memory segment of the devices, which this
+// process or another one writes.
 #pragma once
 
 #include "daemon/actions/action_reader.h"
@@ -9,14 +9,17 @@
 
 namespace merlin::wall {
 
-// Thread-bound. Never waits: the newest is read, what is not well is left out.
+// Thread-bound. Never waits: reads the newest samples and omits devices that do not work.
 class DeviceFeed final : public InputFeed {
  public:
-  // `ahead`: from a frame's begin until it is seen; the hand's pose is predicted to then.
+  // `ahead`: time from a frame's begin until it is visible; the hand's pose is predicted for that
+  // time. `stale_after`: age at which samples of tracker and glove count as missing.
+  // `head_station`: the tracker station on the viewer's head; 0: none.
   DeviceFeed(std::string segment_name, int hand_station, Duration stale_after,
-             Duration ahead = Duration::zero())
+             Duration ahead = Duration::zero(), int head_station = 0)
       : devices_(std::move(segment_name)),
         hand_station_(hand_station),
+        head_station_(head_station),
         stale_after_(stale_after),
         ahead_(ahead) {}
 
@@ -27,14 +30,18 @@ class DeviceFeed final : public InputFeed {
   template <typename T>
   std::optional<T> fresh(const shm::Channel<T>& channel, const shm::SeqSlot<DeviceHealth>& health,
                          Timestamp now);
+  std::optional<TrackerSample> station(const shm::DevicesSegment& devices, int number,
+                                       Timestamp now);
   void readPosture(const shm::DevicesSegment& devices, Timestamp now, WallInput& input);
-  void readActions(const shm::DevicesSegment& devices, Timestamp now, WallInput& input);
+  void moveCorner(Duration since_last, bool held, WallInput& input) const;
+  bool readActions(const shm::DevicesSegment& devices, Timestamp now, WallInput& input);
 
   shm::SegmentFollower<shm::DevicesSegment> devices_;
-  int hand_station_;
+  int hand_station_, head_station_;
   Duration stale_after_;
   Duration ahead_;
   std::optional<Duration> age_;
+  std::optional<Timestamp> last_read_;
   actions::ActionReader actions_;
 };
 

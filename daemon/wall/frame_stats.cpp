@@ -22,29 +22,29 @@ void FrameStats::deadline(Timestamp at, bool moving, bool met) {
   settle(met);
 }
 
-// `unsettled_` counts from the first late deadline; a single one is a hiccup, not a step.
+// `unsettled_` counts deadlines from the first late one; a single late deadline is an outlier.
 void FrameStats::settle(bool met) {
   met_run_ = met ? met_run_ + 1 : 0;
   if (met_run_ < 5) {
     ++unsettled_;
   } else if (unsettled_ > 0) {
-    const std::uint32_t until = unsettled_ - 4;  // the first four that were met
+    const std::uint32_t until = unsettled_ - 4;  // without the first four of the five that were met
     if (until >= 2) settle_ = until;
     unsettled_ = 0;
   }
 }
 
-void FrameStats::frame(Timestamp finished, Duration work, Duration period, std::size_t triangles) {
+void FrameStats::frame(Timestamp finished, Duration work, Duration period, std::size_t cost) {
   const double share = toSeconds(work) / toSeconds(period);
   second_.push_back({finished, toSeconds(work), share});
   const auto bucket = static_cast<std::size_t>(std::min(16 * share, kBuckets - 1.0));
   ++histogram_[bucket];
-  triangles_[frames_++ % triangles_.size()] = static_cast<double>(triangles);
+  costs_[frames_++ % costs_.size()] = static_cast<double>(cost);
 }
 
 double FrameStats::oscillation() const {
-  if (frames_ < triangles_.size()) return 0;
-  std::array<double, 100> sorted = triangles_;
+  if (frames_ < costs_.size()) return 0;
+  std::array<double, 100> sorted = costs_;
   std::sort(sorted.begin(), sorted.end());
   const double mean = std::accumulate(sorted.begin(), sorted.end(), 0.0) / 100;
   return mean > 0 ? (sorted[94] - sorted[5]) / mean : 0;
@@ -56,7 +56,8 @@ void FrameStats::advance(Timestamp now) {
 }
 
 double FrameStats::heldRate(Timestamp now, double asked_hz) const {
-  // A share of the rate asked, not a count: a window of a second holds one deadline more or less.
+  // Computed as a share of the requested rate, since the number of deadlines in a window of one
+  // second varies by one.
   double met = 0, all = 0;
   for (auto d = minute_.rbegin(); d != minute_.rend() && now - d->at < kSecond; ++d) {
     met += d->met;

@@ -1,4 +1,5 @@
-// FrameStats: what the last second and minute of frames were like. Pure.
+// FrameStats: statistics of deadlines and frames over the last second, the last minute and since
+// the start. Pure.
 #pragma once
 
 #include <array>
@@ -9,37 +10,40 @@
 
 namespace merlin::wall {
 
-// Bounded: a minute of deadlines. Thread-bound.
+// Thread-bound. Memory is bounded by a minute of deadlines.
 class FrameStats {
  public:
-  // A deadline has passed. `moving`: something moved, so a frame was due; else the picture that
-  // stood was right. `met`: the frame that was due came in time (true where none was due).
+  // Records a deadline that has passed. `moving`: something moved, so a new frame was due;
+  // otherwise the frame shown was still valid. `met`: the frame came in time, or none was due.
   void deadline(Timestamp at, bool moving, bool met);
 
-  // A frame was drawn while something moved, of so many triangles.
-  void frame(Timestamp finished, Duration work, Duration period, std::size_t triangles);
+  // Records a frame that was drawn while something moved, with detail of this cost.
+  void frame(Timestamp finished, Duration work, Duration period, std::size_t cost);
 
-  // Once an update: forgets what is older than a minute.
+  // To be called once a period: forgets deadlines older than a minute and frames older than a
+  // second.
   void advance(Timestamp now);
 
-  double heldRate(Timestamp now, double asked_hz) const;  // deadlines met over the last second, 1/s
-  double lateShare(Timestamp now, Duration over) const;   // of deadlines while it moved; 0 if none
-  double medianWorkSeconds() const;                       // of the last second's frames; 0 if none
-  double utilisation() const;                             // mean of work / period, the same frames
-  std::uint64_t deadlines() const noexcept {
-    return deadlines_;
-  }  // while it moved, since the start
+  // Share of the last second's deadlines that were met, times asked_hz [Hz].
+  double heldRate(Timestamp now, double asked_hz) const;
+  // Share of late deadlines, of those while something moved; 0 if there were none.
+  double lateShare(Timestamp now, Duration over) const;
+  double medianWorkSeconds() const;  // of the frames of the last second; 0 if there were none
+  double utilisation() const;        // mean of work / period of the same frames
+  // Deadlines while something moved, since the start: all, the late ones, and the longest run of
+  // late ones.
+  std::uint64_t deadlines() const noexcept { return deadlines_; }
   std::uint64_t late() const noexcept { return late_; }
   std::uint32_t longestLate() const noexcept { return longest_late_; }
 
-  // Deadlines from the first of two or more late ones in a row to the first of five that were met:
-  // of the last time that it happened; 0 before the first.
+  // Length of the last disturbance in deadlines: from the first late one until five in a row were
+  // met, without these five. A single late deadline does not count; 0 before the first disturbance.
   std::uint32_t settleFrames() const noexcept { return settle_; }
 
-  // (p95 - p5) / mean of the last 100 frames' triangles; 0 before there are as many.
+  // (95th - 5th percentile) / mean of the costs of the last 100 frames; 0 before there are 100.
   double oscillation() const;
 
-  // Frames by work / period, buckets of 1/16; the last holds all that is longer.
+  // Histogram of work / period in buckets of 1/16; the last bucket holds all larger values.
   static constexpr std::size_t kBuckets = 32;
   const std::array<std::uint32_t, kBuckets>& histogram() const noexcept { return histogram_; }
 
@@ -59,7 +63,7 @@ class FrameStats {
   void settle(bool met);
   std::uint32_t unsettled_ = 0, met_run_ = 5, settle_ = 0;
   std::array<std::uint32_t, kBuckets> histogram_{};
-  std::array<double, 100> triangles_{};
+  std::array<double, 100> costs_{};
   std::size_t frames_ = 0;
 };
 

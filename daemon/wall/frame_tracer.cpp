@@ -7,14 +7,14 @@
 namespace merlin::wall {
 namespace {
 
-// A frame of more than four seconds has its later steps at its end.
+// Times within a frame are 32-bit nanoseconds; those above 4.29 s are clamped.
 std::uint32_t clampedNs(Duration d) {
   constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(d.count(), 0, kMost));
 }
 
-shm::StepKind inSharedMemory(render::FrameStep::Kind kind) {
-  using Kind = render::FrameStep::Kind;
+shm::StepKind inSharedMemory(render::frame::FrameStep::Kind kind) {
+  using Kind = render::frame::FrameStep::Kind;
   switch (kind) {
     case Kind::kChoose: return shm::StepKind::kCut;
     case Kind::kUpload: return shm::StepKind::kUpload;
@@ -41,14 +41,15 @@ void FrameTracer::add(shm::StepKind kind, Timestamp from, Timestamp to, std::uin
   frame_.steps[frame_.count++] = {clampedNs(from - begin), clampedNs(to - from), kind, tile};
 }
 
-void FrameTracer::add(std::span<const render::FrameStep> steps) {
-  for (const render::FrameStep& s : steps) add(inSharedMemory(s.kind), s.begin, s.end, s.tile);
+void FrameTracer::add(std::span<const render::frame::FrameStep> steps) {
+  for (const render::frame::FrameStep& s : steps)
+    add(inSharedMemory(s.kind), s.begin, s.end, s.tile);
 }
 
-void FrameTracer::end(Timestamp at, std::uint32_t triangles) {
+void FrameTracer::end(Timestamp at, std::uint32_t cost) {
   frame_.end_ns = toNanoseconds(at);
   frame_.late = frame_.moving && frame_.end_ns > frame_.deadline_ns ? 1 : 0;
-  frame_.triangles = triangles;
+  frame_.cost = cost;
 }
 
 }  // namespace merlin::wall

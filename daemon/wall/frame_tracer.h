@@ -1,4 +1,5 @@
-// FrameTracer: gathers one frame's steps, for shared memory. Pure.
+// FrameTracer: collects the timed steps of one frame, in the form in which shared memory stores
+// them. Pure.
 #pragma once
 
 #include <span>
@@ -9,14 +10,16 @@
 
 namespace merlin::wall {
 
-// Thread-bound. begin() a frame, add() its steps, end() it and publish frame().
+// Thread-bound. Call begin(), add() for each step and end(); then frame() can be published.
 class FrameTracer {
  public:
   void begin(Timestamp at, Timestamp deadline, bool moving);
-  // Adds a step that took from `from` to `to`; steps that exceed the room are dropped.
+  // Adds a step that lasted from `from` to `to`; steps beyond the capacity of FrameTrace are
+  // dropped.
   void add(shm::StepKind kind, Timestamp from, Timestamp to, std::uint16_t tile = 0);
-  void add(std::span<const render::FrameStep> steps);
-  void end(Timestamp at, std::uint32_t triangles);
+  void add(std::span<const render::frame::FrameStep> steps);
+  // `cost`: of the detail of the frame shown.
+  void end(Timestamp at, std::uint32_t cost);
   const shm::FrameTrace& frame() const noexcept { return frame_; }
 
  private:

@@ -1,20 +1,25 @@
-// Port: the devices' input to the wall. Implemented by DeviceFeed and by a fake in tests.
+// Port (an interface): reads the devices' input to the wall. Implemented by DeviceFeed and by a
+// fake in tests.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "daemon/base/clock.h"
+#include "daemon/wall/aligner.h"
 #include "render/scene/scene.h"
 
 namespace merlin::wall {
 
 // Input of one frame.
 struct WallInput {
-  render::SceneInput scene;
-  // Times that these were asked for since the last read.
+  render::scene::SceneInput scene;
+  std::optional<TrackerSample> head;  // sample of the tracker station on the viewer's head
+  // How often each was requested since the last read.
   std::uint32_t next_content = 0, snapshot = 0;
-  std::array<char, 20> posture{};  // name of the current posture, NUL-ended; empty: none
+  AlignInput align;
+  std::array<char, 20> posture{};  // name of the current posture, NUL-terminated; empty: none
 };
 
 // Thread-bound to the wall's thread.

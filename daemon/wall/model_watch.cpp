@@ -15,7 +15,7 @@ constexpr int kLooksUntilGone = 3;
 }  // namespace
 
 bool ReplacedFile::look(const std::optional<FileStamp>& found, Timestamp now) {
-  if (!found) return false;  // between two names, or gone: what is shown stays
+  if (!found) return false;  // being renamed, or removed: the model shown stays
   if (*found != seen_) {
     seen_ = *found;
     since_ = now;
@@ -46,10 +46,10 @@ void ModelWatch::run(const std::stop_token& stop, Progress& progress) {
   }
 }
 
-// A file that cannot be read is looked at again when it changes.
+// A file that cannot be shown is tried again only after it has changed.
 void ModelWatch::lookAt(std::size_t place, Progress& progress) {
   const std::string& path = files_[place].path;
-  const Progress::Pause pause(progress);  // a file server may take its time, and a large model
+  const Progress::Pause pause(progress);  // a file server may be slow, and a model large
   const auto found = fileStamp(path);
   tellWhetherThere(place, found.has_value());
   if (!replaced_[place].look(found, clock_.now())) return;
@@ -67,20 +67,21 @@ void ModelWatch::lookAt(std::size_t place, Progress& progress) {
     return;
   }
   const std::lock_guard lock(mutex_);
-  // One that was overtaken before the wall took it: its picture has no part on the wall's thread.
+  // A model that is outdated before the wall took it is freed here, not on the wall's thread.
   std::erase_if(ready_, [&](const ReadyModel& r) { return r.place == place; });
   ready_.push_back(*std::move(ready));
 }
 
-// Once a look: between two names a file may be gone for a moment.
+// To be called once per check. Reports a missing file only after kLooksUntilGone checks, since a
+// file that is being replaced may be missing for a moment.
 void ModelWatch::tellWhetherThere(std::size_t place, bool there) {
   const bool was_gone = gone_[place] >= kLooksUntilGone;
   gone_[place] = there ? 0 : std::min(gone_[place] + 1, kLooksUntilGone);
   const bool is_gone = gone_[place] >= kLooksUntilGone;
   if (is_gone == was_gone) return;
   const std::string& path = files_[place].path;
-  say(is_gone ? fmt::format("the model's file {} is gone, or no regular file any more; what was "
-                            "read of it is shown, and a restart would fail",
+  say(is_gone ? fmt::format("the model's file {} is gone or is no longer a regular file; the model "
+                            "read from it is still shown, and a restart would fail",
                             path)
               : fmt::format("the model's file {} is there again", path));
 }

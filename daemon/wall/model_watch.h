@@ -1,5 +1,5 @@
-// ModelWatch: notices that the file of a shown model was replaced, and makes the new one ready on a
-// thread of its own; the wall takes it between two frames.
+// ModelWatch: notices that the file of a shown model was replaced, and reads and prepares the new
+// model on its own thread; the wall takes the model between two frames.
 #pragma once
 
 #include <condition_variable>
@@ -18,8 +18,8 @@
 
 namespace merlin::wall {
 
-// When a file that has changed is whole: it has stayed the same for a second, since a copy by `cp`
-// is written for as long as it takes. Thread-bound.
+// Decides when a changed file is complete: when it has been unchanged for a second, since `cp`
+// writes the file gradually under its final name. Thread-bound.
 class ReplacedFile {
  public:
   explicit ReplacedFile(FileStamp shown) : shown_(shown), seen_(shown) {}
@@ -32,7 +32,7 @@ class ReplacedFile {
   static constexpr Duration kStable = std::chrono::seconds(1);
 
  private:
-  FileStamp shown_;  // or refused
+  FileStamp shown_;  // stamp of the file that is shown, or that was tried and refused
   FileStamp seen_;
   Timestamp since_{};
 };
@@ -41,30 +41,32 @@ class ReplacedFile {
 struct ReadyModel {
   std::size_t place = 0;
   std::string path;
-  std::unique_ptr<const render::Dendrogram> model;  // the content borrows it
-  std::unique_ptr<render::Content> content;
+  std::unique_ptr<const render::lod::Dendrogram> model;  // the content borrows it
+  std::unique_ptr<render::content::Content> content;
 };
 
-// take() and say() are for the wall's thread, takeEvents() is for any.
+// take() is for the wall's thread; say() and takeEvents() are thread-safe.
 class ModelWatch {
  public:
   struct Watched {
     std::string path;
     FileStamp shown;
   };
-  // Errors: why the file cannot be shown. Called on the thread of its own.
+  // Reads and prepares a model; called on the watch's own thread. Errors: why the file cannot be
+  // shown.
   using Make = std::function<Result<ReadyModel>(std::size_t place, const std::string& path)>;
 
-  // The files by place. `watch` and `clock` outlive this.
+  // `files`: by place, i.e. the content's index. `watch` and `clock` must outlive this object.
   ModelWatch(std::vector<Watched> files, Make make, ThreadWatch& watch, const Clock& clock);
   ~ModelWatch() { thread_.stop(); }
   ModelWatch(const ModelWatch&) = delete;
   ModelWatch& operator=(const ModelWatch&) = delete;
 
-  // One that is ready, if any. Never waits for the thread's work.
+  // Returns a model that is ready, if there is one. Never waits for the watch's thread.
   std::optional<ReadyModel> take();
+  // Adds an event.
   void say(std::string sentence);
-  // Events since the last call, one sentence each.
+  // Returns the events since the last call, one sentence each.
   std::vector<std::string> takeEvents();
 
  private:
@@ -74,10 +76,10 @@ class ModelWatch {
 
   std::vector<Watched> files_;
   std::vector<ReplacedFile> replaced_;
-  std::vector<int> gone_;  // looks in a row that found no file, by place
+  std::vector<int> gone_;  // number of checks in a row that found no file, by place
   Make make_;
   const Clock& clock_;
-  std::mutex mutex_;  // of the next two
+  std::mutex mutex_;  // protects the next two members
   std::vector<ReadyModel> ready_;
   std::vector<std::string> events_;
   WatchedThread thread_;

@@ -9,10 +9,10 @@ namespace {
 
 Result<ReadyModel> prepare(std::size_t place, Model model, const WallSettings& settings) {
   ReadyModel ready{place, std::move(model.path),
-                   std::make_unique<const render::Dendrogram>(std::move(model.dendrogram)),
+                   std::make_unique<const render::lod::Dendrogram>(std::move(model.dendrogram)),
                    nullptr};
-  auto content = render::ModelContent::make(*ready.model, settings.render.model,
-                                            settings.scene.model_radius_m);
+  auto content = render::content::ModelContent::make(*ready.model, settings.render.model,
+                                                     settings.scene.model_radius_m);
   if (!content) return Error{content.error().code, ready.path + ": " + content.error().what};
   ready.content = *std::move(content);
   return ready;
@@ -21,10 +21,10 @@ Result<ReadyModel> prepare(std::size_t place, Model model, const WallSettings& s
 }  // namespace
 
 Result<std::unique_ptr<ShownModels>> ShownModels::make(
-    std::vector<Model> models, const render::TilePlan& plan, const WallSettings& settings,
+    std::vector<Model> models, const render::tiles::TilePlan& plan, const WallSettings& settings,
     ModelWatch& watch, const Eigen::Isometry3f& T_eye_model, const Clock& clock) {
   std::unique_ptr<ShownModels> shown(new ShownModels(watch, plan, clock));
-  auto contexts = render::DrawContexts::make(settings.render.gl);
+  auto contexts = render::frame::DrawContexts::make(settings.render.gl);
   if (!contexts) return contexts.error();
   shown->contexts_ = *std::move(contexts);
   for (Model& model : models) {
@@ -39,7 +39,8 @@ Result<std::unique_ptr<ShownModels>> ShownModels::make(
 
 Result<ShownModels::Shown> ShownModels::attach(ReadyModel ready,
                                                const Eigen::Isometry3f& T_eye_model) const {
-  auto renderer = render::FrameRenderer::make(std::move(ready.content), plan_, contexts_, clock_);
+  auto renderer =
+      render::frame::FrameRenderer::make(std::move(ready.content), plan_, contexts_, clock_);
   if (!renderer) return Error{renderer.error().code, ready.path + ": " + renderer.error().what};
   (*renderer)->warmUp(T_eye_model);
   return Shown{std::move(ready.model), *std::move(renderer)};
@@ -79,7 +80,8 @@ std::optional<ContentSource::Replacement> ShownModels::take(bool moving,
     return std::nullopt;
   }
   watch_.say(fmt::format("model {} was replaced and is shown", path));
-  shown_[place].renderer = std::move(attached->renderer);  // the old one goes before its model
+  // The old renderer is destroyed before the model that it borrows.
+  shown_[place].renderer = std::move(attached->renderer);
   shown_[place].model = std::move(attached->model);
   return Replacement{place, contentAt(place)};
 }

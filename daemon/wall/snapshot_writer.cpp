@@ -29,12 +29,12 @@ void SnapshotWriter::take() {
 }
 
 Result<std::string> SnapshotWriter::write() const {
-  const auto frame = render::captureFrame(framebuffer_, SharedMemory::From::kOwnUserOrRoot);
+  const auto frame = render::out::captureFrame(framebuffer_, SharedMemory::From::kOwnUserOrRoot);
   if (!frame) return frame.error();
   const std::time_t now = std::time(nullptr);
   auto path = files_.next(now);
   if (!path) return path;
-  const auto written = render::writePng(*path, frame->width, frame->height, frame->pixels);
+  const auto written = render::image::writePng(*path, frame->width, frame->height, frame->pixels);
   if (!written) return written.error();
   files_.removeOldest(now);
   return path;
@@ -51,7 +51,7 @@ void SnapshotWriter::loop(const std::stop_token& stop, Progress& progress) {
       if (!asked) continue;
       asked_ = false;
     }
-    const Progress::Pause pause(progress);  // a disk may take its time
+    const Progress::Pause pause(progress);  // a disk may be slow
     const auto path = write();
     if (path)
       logInfo("snapshot: {}", *path);

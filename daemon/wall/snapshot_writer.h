@@ -1,5 +1,5 @@
-// SnapshotWriter: frames as PNG files in a folder, when somebody asks by hand; on a thread of its
-// own, with what `merlin snapshot` does.
+// SnapshotWriter: saves frames as PNG files in a folder when a person requests it by a bound input.
+// Works on its own thread and, like `merlin snapshot`, reads the frame from shared memory.
 #pragma once
 
 #include <condition_variable>
@@ -15,15 +15,15 @@ namespace merlin::wall {
 // Thread-safe.
 class SnapshotWriter {
  public:
-  // `framebuffer`: as "/merlin-framebuffer". `files` says where the pictures go, and how many stay.
-  // `watch` outlives this.
+  // `framebuffer`: name of the segment with the frame, such as "/merlin-framebuffer". `files`:
+  // where images are saved, and how many are kept. `watch` must outlive this object.
   SnapshotWriter(std::string framebuffer, DatedFiles files, ThreadWatch& watch);
-  ~SnapshotWriter();  // what was asked for is still written
+  ~SnapshotWriter();  // a requested frame is still written
   SnapshotWriter(const SnapshotWriter&) = delete;
   SnapshotWriter& operator=(const SnapshotWriter&) = delete;
 
-  // Asks for the newest frame; returns at once. If it is asked for again before it is written, one
-  // file is written. The result is logged.
+  // Requests that the newest frame is written; returns at once. Requests that arrive before it is
+  // written are merged into one file. The result is logged.
   void take();
 
   // Writes the newest frame now; returns its path. Errors: captureFrame()'s, writePng()'s and

@@ -1,4 +1,5 @@
-// Checks of the wall's settings against the files that they name; the loader reads no other file.
+// Checks of the wall's settings against the files that they name. The loader of the configuration
+// itself does not open these files.
 #pragma once
 
 #include <string>
@@ -13,19 +14,27 @@ namespace merlin::wall {
 
 // A model that can be shown, and the file that it was read from.
 struct Model {
-  render::Dendrogram dendrogram;
+  render::lod::Dendrogram dendrogram;
   std::string path;
   FileStamp stamp;
 };
-// Errors: readMrmCopy()'s; kInvalidArgument, one without the feature that `show` names. O(file).
-Result<Model> readModel(const std::string& path, const render::ShownFeature& show);
+// Reads a model. Errors: those of readMrmCopy(); kInvalidArgument (the model lacks the feature that
+// `show` names). O(size of the file).
+Result<Model> readModel(const std::string& path, const render::content::ShownFeature& show);
 
-// The models, in the order in which they are shown: /wall/model, then /wall/contents. Adds
-// findings: one that is not named or cannot be read, one without the feature that /wall/render/show
-// names. The models are meaningful where it added none. O(files).
+// Reads the models in the order in which they are shown: /wall/model, then /wall/contents. Adds a
+// finding for each model that is not named, cannot be read, or lacks the feature that
+// /wall/render/show names. The result is complete only if no finding was added. O(size of the
+// files).
 std::vector<Model> readModels(LoadedSettings& loaded);
 
-// Adds findings: a picture's file or a folder of snapshots that cannot be written.
+// Adds a finding for each image file or snapshot folder that cannot be written, for each MPCDI file
+// of a correction that cannot be read or lacks the output's region, and for each output of a kind
+// that this installation lacks.
 void checkOutputs(LoadedSettings& loaded);
+
+// Adds a finding with the JSON pointer `at` if `path`, which the daemon writes, is a file that it
+// also reads and would thus overwrite.
+void checkReplacesNothing(LoadedSettings& loaded, const std::string& path, const std::string& at);
 
 }  // namespace merlin::wall

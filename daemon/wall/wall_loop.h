@@ -1,170 +1,133 @@
-// WallLoop: the wall's frames. design: one frame is input, scene, governor, cut, draw, present.
+// WallLoop: draws the wall's frames. The stages of a frame are input, scene, governor, choice of
+// detail, drawing, delivery.
 //
-// A frame is late when its last pixel reaches the sinks after its deadline, as the FrameClock says.
-// While anything moves, each period brings a frame of as much detail as the
-// governor allows; while nothing does, the periods are spent on drawing finer pictures and then
-// full detail in slices, so that the frame that begins after motion resumes begins on time. Where
-// not even the fewest triangles come in time, tiles are drawn at half their size, and then the rate
-// is halved (render/governor/ladder.h).
+// A frame is late if its last pixel reaches the outputs after its deadline, which the FrameClock
+// sets. While anything moves, each period has one frame, with as much detail as the governor
+// allows. While nothing moves, finer frames and then full detail are drawn in slices, so that the
+// first frame after motion resumes can begin on time.
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <functional>
-#include <memory>
+#include <mutex>
 #include <optional>
-#include <string>
+#include <span>
 #include <vector>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/shm/layout.h"
+#include "daemon/wall/content_turns.h"
 #include "daemon/wall/frame_stats.h"
 #include "daemon/wall/frame_tracer.h"
 #include "daemon/wall/input_feed.h"
-#include "render/content/content.h"
+#include "daemon/wall/pace.h"
+#include "daemon/wall/still_frame.h"
+#include "daemon/wall/viewer_place.h"
+#include "daemon/wall/wall_publisher.h"
 #include "render/frame/delivery.h"
-#include "render/frame/fade.h"
 #include "render/frame/frame_painter.h"
 #include "render/frame/pointer_marker.h"
 #include "render/governor/governor.h"
-#include "render/governor/ladder.h"
 #include "render/out/frame_clock.h"
 #include "render/scene/lost_view.h"
 #include "render/scene/scene.h"
 
 namespace merlin::wall {
 
-// A content as the loop sees it: how finely it can be drawn, and who draws it.
-struct ShownContent {
-  const render::DetailAxis* detail;
-  render::FramePainter* painter;
-};
-
-// Port: contents that take the places of others while the wall runs. Implemented by ShownModels.
-class ContentSource {
- public:
-  virtual ~ContentSource() = default;
-  struct Replacement {
-    std::size_t place;
-    ShownContent content;
-  };
-  // Asked between frames. What stood in that place is not used again. `T_eye_model`: the view that
-  // it will be seen from. May take long where nothing moves.
-  virtual std::optional<Replacement> take(bool moving, const Eigen::Isometry3f& T_eye_model) = 0;
-};
-
 struct WallParts {
-  std::vector<ShownContent> contents;  // one at least; the first one is shown first
-  render::Scene& scene;
-  render::Governor& governor;
+  std::vector<ShownContent> contents;  // at least one; the first one is shown first
+  render::scene::Scene& scene;
+  render::governor::Governor& governor;
   InputFeed& feed;
-  render::Delivery& delivery;  // where frames go
-  shm::SeqSlot<shm::WallStats>& stats;
+  render::frame::Delivery& delivery;  // where frames go
+  WallSlots slots;                    // where statistics are published
   Clock& clock;
-  render::FrameClock& frame_clock;                 // when a frame has to be there
-  shm::Channel<shm::FrameTrace>* trace = nullptr;  // where steps are told; may be none
-  render::PointerMarker* marker = nullptr;         // who marks where the hand points; the same
-  shm::SeqSlot<shm::WallInteraction>* interaction = nullptr;  // where that is told
-  shm::SeqSlot<shm::WallOutputs>* outputs = nullptr;  // where it is told how the outputs fare
-  int fade_frames = 1;                                // in which a finer picture replaces a coarser
-  double return_after_s = 0;                          // of a view that shows nothing; 0: never
-  Progress* progress = nullptr;                       // stepped once a period; may be none
-  ContentSource* replacements = nullptr;              // the same
-  std::function<void()> on_snapshot = [] {};  // a person asks for the newest frame as a file
+  render::out::FrameClock& frame_clock;            // sets the deadlines of frames
+  render::frame::PointerMarker* marker = nullptr;  // marks where the hand points; may be null
+  int fade_frames = 1;                        // number of frames in which a finer frame is faded in
+  double return_after_s = 0;                  // see SceneSettings; 0: never
+  Progress* progress = nullptr;               // stepped once a period; may be null
+  ContentSource* replacements = nullptr;      // replaces contents while the wall runs; may be null
+  ViewerPlace* viewer = nullptr;              // set if the viewer's head is tracked, else null
+  std::function<void()> on_snapshot = [] {};  // called when a bound input requests a snapshot
+  // Called when a bound input requests an alignment action.
+  std::function<void(const AlignInput&)> on_align = [](const AlignInput&) {};
+  std::size_t first_content = 0;  // index of the content that is shown first
 };
 
-// Thread-bound but for request(), hold() and setRate().
+// Thread-bound, except request(), move(), hold() and setRate().
 class WallLoop {
  public:
   explicit WallLoop(WallParts parts);
 
-  // Draws a dozen frames of different sizes of the first content, a second at most, and tells the
-  // governor what they cost; a few of each other one. Nothing is presented. Before run(), or not at
-  // all.
+  // Draws frames of each content's initial view, for about a second, to calibrate the governor;
+  // they are not shown. Optional; to be called before run().
   void calibrate();
 
-  // Until `stop`. `first_frame` is called once, after the first frame reached every sink.
+  // Draws frames until `stop`. `first_frame` is called once, after the first frame reached every
+  // output.
   void run(const std::stop_token& stop, const std::function<void()>& first_frame);
 
-  // From another thread: done before the next frame.
+  // Thread-safe: executed before the next frame.
   enum Request : std::uint32_t { kResetView = 1, kNextMode = 2, kNextContent = 4 };
   void request(Request what) noexcept { requests_.fetch_or(what); }
 
-  // From another thread, before the next frame: so many triangles while it moves, or as the
-  // governor says; this rate, REQUIRES: > 0, or the configured one.
-  void hold(std::optional<std::size_t> triangles) noexcept;
-  void setRate(std::optional<double> rate_hz) noexcept;
+  // Thread-safe: moves what the ball moves, in the next frame; several of a frame add up.
+  void move(const render::scene::Push& step);
+
+  // Thread-safe; applied before the next frame: see Pace.
+  void hold(std::optional<std::size_t> cost) noexcept { pace_.hold(cost); }
+  void setRate(std::optional<double> rate_hz) noexcept { pace_.setRate(rate_hz); }
 
  private:
   Timestamp deadline(std::int64_t k) const { return p_.frame_clock.deadline(k); }
+  const render::content::DetailAxis& detail() const noexcept { return turns_.detail(); }
+  render::frame::FramePainter& painter() const noexcept { return turns_.painter(); }
+
   // Each returns the number of the next frame.
   std::int64_t movingFrame(std::int64_t k, Timestamp began);
   std::int64_t stillPeriod(std::int64_t k);
-  // Reads the devices, moves the scene.
-  void look(std::int64_t k, Timestamp began);
-  render::DrawTimes draw(std::size_t step, Timestamp until);
-  std::size_t chooseStep(Duration available);  // detail().steps() where there is no time for any
+
+  void applyRequests();
+  render::scene::Push takeStep();
+  // Reads the devices and moves the scene.
+  void readInput(std::int64_t k, Timestamp began);
+  // Returns detail().steps() if there is no time for any frame.
+  std::size_t chooseStep(std::int64_t k, Timestamp began);
+  std::size_t stepFor(Duration available);
   std::int64_t countDeadlines(std::int64_t k, Timestamp finished);
-  void finishMoving(const render::DrawTimes& times, Duration present, bool met);
-  void climb(bool late, bool least);
-  bool higherFits() const;
-  int scale() const noexcept { return ladder_.rung() > 0 ? 2 : 1; }
-  int rateDivisor() const noexcept { return 1 << std::max(ladder_.rung() - 1, 0); }
-  void beginRefining();
-  void showRefined();
-  void fadeOn();
-  void obeyRequests();
-  bool applyRate();
+  void finishMoving(const render::frame::DrawTimes& times, Duration present, bool met);
+  void refine(std::int64_t k);
+  void showFading();
   void present(std::span<std::uint8_t> canvas, bool full_detail,
                std::optional<Timestamp> deadline = std::nullopt);
-  void publishTrace(Timestamp now);
-  void publishInteraction(Timestamp now);
-  void publishOutputs(Timestamp now);
-  std::optional<Eigen::Vector3f> pointedAt() const;
-  void publishStats(Timestamp now);
-  void paceStats(Timestamp now);
-  const render::DetailAxis& detail() const noexcept { return *p_.contents[content_].detail; }
-  render::FramePainter& painter() const noexcept { return *p_.contents[content_].painter; }
-  void measureHome();
-  void expectHome();
-  void returnHome();
-  void nextContent(std::uint32_t times);
-  void showContent(std::size_t content);
+  void returnToInitialView();
+  void showContent();
   void replaceContents();
+  std::optional<Eigen::Vector3f> pointedAt() const;
+  void publish();
 
   WallParts p_;
-  double asked_hz_, configured_hz_;
-  Duration period_;
+  ContentTurns turns_;
+  Pace pace_;
+  StillFrame still_;
+  WallPublisher publisher_;
   FrameStats stats_;
   FrameTracer tracer_;
-  render::SceneView view_;
-  render::LostView lost_;
-  // The first rung of the wall's halves the picture's size, each further one the rate.
-  render::Ladder ladder_{3}, operator_ladder_{1};
-  std::size_t step_ = 0;
-  std::optional<std::size_t> moving_step_;  // of the last moving frame that had a whole period
-  bool refining_ = false, full_detail_ = false;
-  std::size_t refined_step_ = 0;
-  render::Fade fade_;              // to what was refined last
-  bool first_refinement_ = false;  // the next one is, since the standstill
-  bool resuming_ = false;          // the next frame is the first after a standstill
-  Timestamp still_since_{};
+  render::scene::SceneView view_;
+  render::scene::LostView lost_;
+  std::size_t step_ = 0;  // detail step of the last frame
+  // Detail step of the last moving frame that had a whole period.
+  std::optional<std::size_t> moving_step_;
+  bool full_detail_ = false;
+  bool resuming_ = false;  // the next frame is the first after a standstill
   std::uint64_t frames_ = 0;
-  // Cost of a content's start view: drawing `cost` units of detail took drawing_s seconds; 0: not
-  // known.
-  struct Home {
-    std::size_t cost = 0;
-    double drawing_s = 0;
-  };
-  std::vector<Home> homes_;          // by content
-  std::size_t content_ = 0;          // that is shown
-  std::uint32_t next_contents_ = 0;  // times that another content was asked for, since the start
-  std::uint32_t snapshots_ = 0;      // likewise snapshots
-  shm::WallStats out_{};
-  std::atomic<std::int64_t> hold_{-1};  // triangles; -1: as the governor says
-  std::atomic<double> rate_hz_{0};      // 0: as configured
+  std::uint32_t snapshots_ = 0;  // requested by bound inputs, since the start
+  shm::WallStats counted_{};     // only the fields that the loop itself counts
   std::atomic<std::uint32_t> requests_{0};
+  std::mutex step_mutex_;
+  render::scene::Push step_asked_;  // by move() since the last frame; guarded by step_mutex_
 };
 
 }  // namespace merlin::wall

@@ -1,78 +1,124 @@
-// WallRole: a configuration's wall: model, scene, governor, GL, outputs, on a thread of its own.
+// WallRole: the wall that a configuration describes: models, scene, governor, OpenGL and outputs,
+// run on its own thread.
 #pragma once
 
 #include <future>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "config/settings.h"
 #include "daemon/base/clock.h"
+#include "daemon/base/thread_team.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/shm/segment.h"
+#include "daemon/state/state_keeper.h"
+#include "daemon/wall/aligner.h"
 #include "daemon/wall/device_feed.h"
 #include "daemon/wall/shown_models.h"
+#include "daemon/wall/signal_taps.h"
 #include "daemon/wall/wall_checks.h"
 #include "daemon/wall/wall_loop.h"
+#include "render/frame/correction.h"
+#include "render/out/kms_output.h"
+#include "render/out/output_kinds.h"
 #include "render/out/output_set.h"
+#include "render/testcard/card_overlay.h"
 
 namespace merlin::wall {
 
 class WallRole {
  public:
-  // Makes the segments; nothing runs yet. `models`: readModels()'s, at least one. Errors: what is
-  // wrong with the wall's settings; kBusy (a living daemon has the segments), kIo.
+  // Creates the shared-memory segments; the wall's thread does not run yet. `models`: from
+  // readModels(), at least one. `keeper`: the state that people change at run time; it, `watch` and
+  // `clock` must outlive this object. Errors: kBusy (a running daemon owns the segments), kIo, and
+  // errors in the wall's settings.
   static Result<std::unique_ptr<WallRole>> make(const Settings& settings, std::vector<Model> models,
                                                 std::uint64_t generation,
-                                                const shm::Endpoints& endpoints, ThreadWatch& watch,
+                                                const shm::Endpoints& endpoints,
+                                                state::StateKeeper& keeper, ThreadWatch& watch,
                                                 Clock& clock);
   ~WallRole();  // stops and joins the wall's thread
   WallRole(const WallRole&) = delete;
   WallRole& operator=(const WallRole&) = delete;
 
-  // Starts the wall's thread. The future holds, once: after the first frame what draws ("EGL,
-  // llvmpipe ..."), or why there will be none.
-  // `watch` outlives this.
+  // Starts the wall's thread. The future is set once: after the first frame to the name of the
+  // OpenGL renderer ("EGL, llvmpipe ..."), or to the error if drawing cannot start.
   std::future<Result<std::string>> start();
 
-  // Sets what is done, on the wall's thread, when an input is bound to a snapshot. Before start().
+  // Sets the function called on the wall's thread when a bound input requests a snapshot. To be
+  // called before start().
   void onSnapshot(std::function<void()> act) { on_snapshot_ = std::move(act); }
 
-  // From any thread, once the first frame is out.
-  void request(WallLoop::Request what);
-  void hold(std::optional<std::size_t> triangles);
-  void setRate(std::optional<double> rate_hz);
+  // Sets what outputs of kind window do for the person at them, on their own threads. To be called
+  // before start().
+  void onWindow(render::out::WindowActs acts) { window_ = std::move(acts); }
 
-  // Events of models whose files were replaced, since the last call. Thread-safe.
+  // Thread-safe; these four are ignored before the wall's loop runs.
+  void request(WallLoop::Request what);
+  // Moves what the ball moves by `way_radii` times the model's radius and turns it by `turn_deg`.
+  void move(const Eigen::Vector3f& way_radii, const Eigen::Vector3f& turn_deg);
+  void hold(std::optional<std::size_t> cost);
+  void setRate(std::optional<double> rate_hz);
+  Aligner& aligner() { return *aligner_; }
+  SignalTaps& signals() { return *signals_; }
+
+  // To be called ten times a second: saves in the state which content is shown, and removes shared
+  // memory of signals that nobody requests any more.
+  void tend(Timestamp now);
+
+  // Returns the events of the viewer's tracked head since the last call. Thread-safe.
+  std::vector<std::string> viewerEvents();
+
+  // Returns the events of replaced model files since the last call. Thread-safe.
   std::vector<std::string> modelEvents() { return model_watch_.takeEvents(); }
 
   void beat(Timestamp now) const { segment_.beat(now); }
-  // Once a second, from beat()'s thread: both objects in shared memory, by SharedMemory::mend().
+  // To be called once a second on the thread that calls beat(): restores the wall's segment and the
+  // outputs' shared memory by SharedMemory::mend().
   Result<std::string> mend();
   const shm::WallSegment& segment() const { return *segment_; }
 
  private:
-  WallRole(const Settings& settings, std::vector<Model> models, render::TilePlan plan,
-           render::Scene scene, shm::SegmentWriter<shm::WallSegment> segment, ThreadWatch& watch,
-           Clock& clock);
+  WallRole(const Settings& settings, std::vector<Model> models, render::tiles::TilePlan plan,
+           render::scene::Scene scene, shm::SegmentWriter<shm::WallSegment> segment,
+           state::StateKeeper& keeper, ThreadWatch& watch, Clock& clock);
   Result<Ok> makeOutputs(std::uint64_t generation);
-  std::vector<std::unique_ptr<render::Correction>> corrections() const;
+  Result<Ok> makeCorrections();
+  void makeSignals(std::uint64_t generation);
+  const std::string& pathOf(std::size_t content) const;
+  std::size_t firstContent();
   void run(const std::stop_token& stop, Progress& progress);
+  std::optional<ViewerPlace> makeViewerPlace();
 
-  Settings settings_;
+  Settings settings_;  // `wall` is drawnWall() of the configured one
   std::vector<Model> models_;
-  render::TilePlan plan_;
-  render::Scene scene_;
-  render::Governor governor_;
+  render::tiles::TilePlan plan_;
+  render::scene::Scene scene_;
+  render::governor::Governor governor_;
   shm::SegmentWriter<shm::WallSegment> segment_;
+  state::StateKeeper& keeper_;
   ThreadWatch& watch_;
   Clock& clock_;
-  render::OutputSet outputs_{{}};
+  render::out::kms::Cards graphics_cards_;  // their displays, shared by the outputs on them
+  render::out::OutputSet outputs_{{}};
+  ThreadTeam team_;  // threads for the corrections; used on the wall's thread
+  // By output number; null if the output is sent the frame itself.
+  std::vector<std::unique_ptr<render::frame::Correction>> corrections_;
+  std::unique_ptr<SignalTaps> signals_;
+  std::optional<std::uint32_t> kept_content_;  // content that the state was last updated for
+  render::testcard::CardOverlay cards_;
+  std::optional<render::frame::Delivery> delivery_;  // owns the corrections while the wall runs
+  std::unique_ptr<Aligner> aligner_;  // replaces corrections; the wall's thread calls ask()
   std::function<void()> on_snapshot_ = [] {};
+  render::out::WindowActs window_;
+  std::mutex viewer_events_mutex_;
+  std::vector<std::string> viewer_events_;
   std::promise<Result<std::string>> ready_;
   std::atomic<WallLoop*> loop_{nullptr};
-  ModelWatch model_watch_;  // before the wall's thread, which takes from it
+  ModelWatch model_watch_;  // declared before thread_, which uses it
   WatchedThread thread_;
 };
 

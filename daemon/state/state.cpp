@@ -1,0 +1,178 @@
+#include "daemon/state/state.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/json/json_view.h"
+
+namespace merlin::state {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kLongestName = 64, kLongestPath = 4096;
+constexpr std::size_t kMostOutputs = 64;
+constexpr int kLargest = 1 << 20;  // of sizes and numbers of points
+constexpr double kLeastRate = 1, kMostRate = 240;
+constexpr const char* kVersionKey = "merlin_state";
+
+Json textOf(const Offset& o) { return Json::array({o.x, o.y}); }
+
+// A corner by its name, a point of the mesh as its column and row.
+Json textOf(const Place& place) {
+  if (place.of == Place::Of::kPin) return nameOf(place);
+  return Json::array({place.column, place.row});
+}
+
+Json textOf(const OutputAlignment& output) {
+  Json moved = Json::array();
+  for (const auto& [place, offset] : output.moved)
+    moved.push_back({{"place", textOf(place)}, {"by", textOf(offset)}});
+  const OutputForm& form = output.form;
+  return {{"output", form.output},
+          {"size", {form.width, form.height}},
+          {"mesh", {form.mesh_columns, form.mesh_rows}},
+          {"moved", std::move(moved)}};
+}
+
+Json textOf(const Step& step) {
+  Json changes = Json::array();
+  for (const Change& c : step.changes) {
+    changes.push_back(
+        {{"place", textOf(c.place)}, {"before", textOf(c.before)}, {"after", textOf(c.after)}});
+  }
+  return {{"output", step.output}, {"changes", std::move(changes)}};
+}
+
+std::string lineOf(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+// A pair of numbers within these limits.
+std::pair<double, double> pairOf(JsonView view, double low, double high) {
+  if (view.expectArray(2, 2) != 2) return {};
+  const double first = view.at(std::size_t{0}).number(low, high);
+  return {first, view.at(std::size_t{1}).number(low, high)};
+}
+
+std::pair<int, int> countsOf(JsonView view) {
+  if (view.expectArray(2, 2) != 2) return {};
+  const auto first = static_cast<int>(view.at(std::size_t{0}).count(0, kLargest));
+  return {first, static_cast<int>(view.at(std::size_t{1}).count(0, kLargest))};
+}
+
+Offset offsetOf(const JsonView& view) {
+  const auto [x, y] = pairOf(view, -kMostSum, kMostSum);
+  return {x, y};
+}
+
+Place placeOf(JsonView view, const OutputForm& form) {
+  if (!view.isText()) {
+    const auto [column, row] = countsOf(view);
+    if (column >= form.mesh_columns || row >= form.mesh_rows) view.wrong("a point of the mesh");
+    return {Place::Of::kMesh, column, row};
+  }
+  const auto corner = cornerNamed(view.text(kLongestName));
+  if (!corner) view.wrong("the name of a corner");
+  return corner.value_or(Place{});
+}
+
+OutputAlignment outputOf(JsonView view) {
+  view.allowKeys({"output", "size", "mesh", "moved"});
+  OutputAlignment output;
+  output.form.output = view.at("output").text(kLongestName);
+  std::tie(output.form.width, output.form.height) = countsOf(view.at("size"));
+  std::tie(output.form.mesh_columns, output.form.mesh_rows) = countsOf(view.at("mesh"));
+  JsonView moved = view.at("moved");
+  const std::size_t count = moved.expectArray(0, kMostMoved);
+  for (std::size_t i = 0; i < count; ++i) {
+    JsonView one = moved.at(i);
+    one.allowKeys({"place", "by"});
+    output.moved[placeOf(one.at("place"), output.form)] = offsetOf(one.at("by"));
+  }
+  return output;
+}
+
+Step stepOf(JsonView view, const Alignment& alignment) {
+  view.allowKeys({"output", "changes"});
+  Step step{view.at("output").text(kLongestName), {}};
+  const OutputAlignment* const of = alignment.find(step.output);
+  if (!of) view.at("output").wrong("one of the outputs above");
+  JsonView changes = view.at("changes");
+  const std::size_t count = changes.expectArray(1, kMostChanges);
+  for (std::size_t i = 0; of && i < count; ++i) {
+    JsonView one = changes.at(i);
+    one.allowKeys({"place", "before", "after"});
+    step.changes.push_back({placeOf(one.at("place"), of->form), offsetOf(one.at("before")),
+                            offsetOf(one.at("after"))});
+  }
+  return step;
+}
+
+Alignment alignmentOf(JsonView view) {
+  view.allowKeys({"outputs", "steps", "done"});
+  Alignment alignment;
+  JsonView outputs = view.at("outputs");
+  const std::size_t count = outputs.expectArray(0, kMostOutputs);
+  for (std::size_t i = 0; i < count; ++i) {
+    auto output = outputOf(outputs.at(i));
+    if (alignment.find(output.form.output)) outputs.at(i).wrong("each output once");
+    alignment.outputs.push_back(std::move(output));
+  }
+  JsonView steps = view.at("steps");
+  const std::size_t steps_count = steps.expectArray(0, kMostSteps);
+  for (std::size_t i = 0; i < steps_count; ++i)
+    alignment.steps.push_back(stepOf(steps.at(i), alignment));
+  alignment.done = view.at("done").count(0, alignment.steps.size());
+  return alignment;
+}
+
+State stateOf(JsonView root) {
+  State state;
+  const std::uint64_t version = root.at(kVersionKey).count(1, 1'000'000);
+  if (version > kStateVersion) {
+    root.at(kVersionKey)
+        .wrong(fmt::format("{}, the version that this merlind reads; a newer merlind wrote the "
+                           "file",
+                           kStateVersion),
+               {}, Errc::kUnsupported);
+    return state;
+  }
+  root.allowKeys({kVersionKey, "rate_hz", "content", "alignment"});
+  if (root.has("rate_hz")) state.rate_hz = root.at("rate_hz").number(kLeastRate, kMostRate);
+  if (root.has("content")) state.content = root.at("content").text(kLongestPath);
+  state.alignment = alignmentOf(root.at("alignment"));
+  return state;
+}
+
+}  // namespace
+
+// A line for each output and step: short enough for the limits of what is read again.
+std::string stateText(const State& state) {
+  std::string text = fmt::format("{{\"{}\": {},\n", kVersionKey, kStateVersion);
+  if (state.rate_hz) text += fmt::format("\"rate_hz\": {},\n", lineOf(*state.rate_hz));
+  if (!state.content.empty()) text += fmt::format("\"content\": {},\n", lineOf(state.content));
+  std::vector<std::string> outputs, steps;
+  for (const auto& output : state.alignment.outputs) outputs.push_back(lineOf(textOf(output)));
+  for (const auto& step : state.alignment.steps) steps.push_back(lineOf(textOf(step)));
+  text +=
+      fmt::format("\"alignment\": {{\"outputs\": [\n{}],\n\"steps\": [\n{}],\n\"done\": {}}}}}\n",
+                  fmt::join(outputs, ",\n"), fmt::join(steps, ",\n"), state.alignment.done);
+  return text;
+}
+
+Result<State> parseState(std::string_view text, const std::string& file) {
+  const auto tree = parseJson(text);
+  if (!tree) return Error{Errc::kMalformed, fmt::format("{}: {}", file, tree.error().what)};
+  std::optional<Error> error;
+  State state = stateOf(JsonView(&*tree, "", file, error));
+  if (error) return *std::move(error);
+  return state;
+}
+
+}  // namespace merlin::state

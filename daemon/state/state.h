@@ -1,0 +1,32 @@
+// State: what people have changed while the daemon runs, and what is there again after a restart.
+// The configuration stays as it is; this is kept in a file of the daemon's own. Pure.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "daemon/base/result.h"
+#include "daemon/state/alignment.h"
+
+namespace merlin::state {
+
+// Version of the file's form. A program reads files of its own version only.
+inline constexpr std::uint64_t kStateVersion = 1;
+
+struct State {
+  Alignment alignment;
+  std::optional<double> rate_hz;  // set by hand; none: the configured one
+  std::string content;            // the model that is shown, its path; empty: the first one
+};
+
+// The file's text: JSON, the version first.
+std::string stateText(const State& state);
+
+// Strict: an unknown key, a figure out of range, a step of an output that is not there are errors,
+// since such a file is not one that was written whole. `file`: its name, for messages. Errors:
+// kUnsupported (of a newer version), kMalformed (everything else).
+Result<State> parseState(std::string_view text, const std::string& file);
+
+}  // namespace merlin::state

@@ -1,0 +1,100 @@
+#include "daemon/state/state_folder.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string_view>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "daemon/base/files.h"
+#include "daemon/base/unique_fd.h"
+#include "daemon/json/json_tree.h"
+
+namespace merlin::state {
+namespace {
+
+Error failed(const std::string& path, int error) {
+  return {Errc::kIo, fmt::format("{}: {}", path, std::strerror(error))};
+}
+
+// One byte more than a state may have, so that a longer file is seen to be too long.
+Result<std::string> textOf(const std::string& path) {
+  const auto copy = FileCopy::read(path, kMostJsonBytes + 1);
+  if (!copy) return copy.error();
+  return std::string(copy->text());
+}
+
+std::string folderOf(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
+// After a rename: the folder's entries are on the disk when this returns.
+Result<Ok> syncFolder(const std::string& folder) {
+  const UniqueFd fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (fd.valid() && ::fsync(fd.get()) == 0) return Ok{};
+  return failed(folder, errno);
+}
+
+Result<Ok> rename(const std::string& from, const std::string& to) {
+  if (std::rename(from.c_str(), to.c_str()) == 0) return Ok{};
+  return failed(to, errno);
+}
+
+// Makes the file of the name `from` known as `to` as well, in place of what had that name.
+Result<Ok> linkAs(const std::string& from, const std::string& to, const std::string& meanwhile) {
+  ::unlink(meanwhile.c_str());
+  if (::link(from.c_str(), meanwhile.c_str()) != 0) {
+    if (errno == ENOENT) return Ok{};  // the first one has no previous one
+    return failed(to, errno);
+  }
+  return rename(meanwhile, to);
+}
+
+// The first folder of a list such as systemd sets.
+std::string firstOf(std::string_view list) { return std::string(list.substr(0, list.find(':'))); }
+
+std::string usualFolder() {
+  // NOLINTBEGIN(concurrency-mt-unsafe): read once, at the start
+  if (const char* given = std::getenv("STATE_DIRECTORY"); given && *given) return firstOf(given);
+  if (::geteuid() == 0) return "/var/lib/merlin";
+  if (const char* own = std::getenv("XDG_STATE_HOME"); own && *own == '/')
+    return fmt::format("{}/merlin", own);
+  if (const char* home = std::getenv("HOME"); home && *home == '/')
+    return fmt::format("{}/.local/state/merlin", home);
+  // NOLINTEND(concurrency-mt-unsafe)
+  return {};
+}
+
+}  // namespace
+
+Result<std::string> StateFolder::read() { return textOf(path_); }
+
+Result<std::string> StateFolder::readPrevious() { return textOf(path_ + ".previous"); }
+
+// The new one is whole under a name of its own before the old one gets its second name.
+Result<Ok> StateFolder::write(const std::string& text) {
+  const std::string folder = folderOf(path_), next = path_ + ".next";
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return Error{Errc::kIo, fmt::format("{}: {}", folder, error.message())};
+  if (auto written = writeFile(next, text); !written) return written;
+  if (auto kept = linkAs(path_, path_ + ".previous", path_ + ".keep"); !kept) return kept;
+  if (auto replaced = rename(next, path_); !replaced) return replaced;
+  return syncFolder(folder);
+}
+
+Result<Ok> StateFolder::putAside() { return rename(path_, path_ + ".damaged"); }
+
+std::string stateFile(const std::string& wanted, const std::string& instance) {
+  if (!wanted.empty()) return wanted;
+  const std::string folder = usualFolder();
+  return folder.empty() ? folder : fmt::format("{}/{}.state.json", folder, instance);
+}
+
+}  // namespace merlin::state

@@ -1,0 +1,33 @@
+// StateFolder: the state in a file, with the one before it and a damaged one beside it; and where
+// that file is.
+#pragma once
+
+#include <string>
+
+#include "daemon/state/state_files.h"
+
+namespace merlin::state {
+
+// FILE, FILE.previous, FILE.damaged; while it is being written also FILE.next and FILE.keep.
+class StateFolder final : public StateFiles {
+ public:
+  explicit StateFolder(std::string path) : path_(std::move(path)) {}
+
+  Result<std::string> read() override;
+  Result<std::string> readPrevious() override;
+  // Makes the folder if it is missing.
+  Result<Ok> write(const std::string& text) override;
+  Result<Ok> putAside() override;
+  const std::string& name() const override { return path_; }
+
+ private:
+  std::string path_;
+};
+
+// The file that is used: `wanted`, or, if that is empty, INSTANCE.state.json in the folder that
+// systemd sets (StateDirectory=), else in /var/lib/merlin for root, else in $XDG_STATE_HOME/merlin
+// or ~/.local/state/merlin. Empty if there is no such folder, since this user has no home. Reads
+// the environment: to be called before any thread starts.
+std::string stateFile(const std::string& wanted, const std::string& instance);
+
+}  // namespace merlin::state

@@ -1,0 +1,77 @@
+#include "daemon/wall/content_turns.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace merlin::wall {
+
+ContentTurns::ContentTurns(std::vector<ShownContent> contents, render::governor::Governor& governor)
+    : contents_(std::move(contents)), governor_(governor), initial_(contents_.size()) {}
+
+render::frame::DrawTimes ContentTurns::draw(std::size_t step,
+                                            const Eigen::Isometry3f& T_eye_content) const {
+  return painter().draw({T_eye_content, step, Timestamp::max(), governor_.exponent()});
+}
+
+void ContentTurns::calibrate(const Eigen::Isometry3f& T_eye_content) {
+  std::vector<render::governor::FrameCost> costs;
+  const auto fits = [&] { return costs.empty() || costs.back().work <= governor_.period(); };
+  index_ = 0;
+  std::size_t last = detail().steps();
+  for (std::size_t cost = detail().leastUseful() * 10 / 3; fits(); cost *= 4) {
+    const std::size_t step = detail().stepWithin(cost);
+    if (std::exchange(last, step) == step) break;
+    for (int i = 0; i < 3 && fits(); ++i) {
+      const render::frame::DrawTimes t = draw(step, T_eye_content);
+      costs.push_back({detail().costOf(step), t.fixed, t.fixed + t.drawing, false});
+    }
+    if (step == 0) break;
+  }
+  governor_.calibrate(costs);
+  const std::size_t cost = governor_.budget();
+  initial_[0] = {cost, governor_.predict(cost) - governor_.fixedSeconds()};
+  for (index_ = 1; index_ < contents_.size(); ++index_) measureInitialView(T_eye_content);
+  index_ = 0;
+}
+
+// Draws at a cost close to that of the first content's initial view. The fastest of three draws
+// counts, since the first one fills caches.
+void ContentTurns::measureInitialView(const Eigen::Isometry3f& T_eye_content) {
+  const std::size_t step = detail().stepWithin(initial_[0].cost);
+  InitialView& view = initial_[index_];
+  view.cost = detail().costOf(step);
+  for (int i = 0; i < 3; ++i) {
+    const double s = toSeconds(draw(step, T_eye_content).drawing);
+    view.drawing_s = i == 0 ? s : std::min(view.drawing_s, s);
+  }
+}
+
+void ContentTurns::expectInitialView() const {
+  if (size_divisor_ > 1) return;
+  const InitialView& view = initial_[index_];
+  const double now_s = governor_.predict(view.cost) - governor_.fixedSeconds();
+  if (view.drawing_s > 0 && now_s > 0) governor_.expect(view.drawing_s / now_s);
+}
+
+bool ContentTurns::showRequested() {
+  const std::size_t asked = requests_ % contents_.size();
+  if (std::exchange(index_, asked) == asked) return false;
+  expectInitialView();
+  return true;
+}
+
+// The cost of the new content's initial view is not known; the governor learns it while the content
+// is shown.
+bool ContentTurns::replace(const ContentSource::Replacement& fresh) {
+  contents_[fresh.place] = fresh.content;
+  fresh.content.painter->setSizeDivisor(size_divisor_);
+  initial_[fresh.place].drawing_s = 0;
+  return fresh.place == index_;
+}
+
+void ContentTurns::setSizeDivisor(int divisor) {
+  size_divisor_ = divisor;
+  for (const ShownContent& content : contents_) content.painter->setSizeDivisor(divisor);
+}
+
+}  // namespace merlin::wall

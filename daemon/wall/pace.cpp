@@ -1,0 +1,51 @@
+#include "daemon/wall/pace.h"
+
+namespace merlin::wall {
+
+Pace::Pace(render::governor::Governor& governor)
+    : governor_(governor),
+      configured_hz_(1 / toSeconds(governor.period())),
+      asked_hz_(configured_hz_),
+      period_(governor.period()) {}
+
+void Pace::hold(std::optional<std::size_t> cost) noexcept {
+  held_cost_.store(cost ? static_cast<std::int64_t>(*cost) : -1);
+}
+
+void Pace::setRate(std::optional<double> rate_hz) noexcept {
+  set_rate_hz_.store(rate_hz.value_or(0));
+}
+
+bool Pace::update() {
+  const std::int64_t held = held_cost_.load();
+  governor_.hold(held < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(held)));
+  const double set_hz = set_rate_hz_.load();
+  asked_hz_ = set_hz > 0 ? set_hz : configured_hz_;
+  const double now_hz = asked_hz_ / rateDivisor();
+  if (period_ == fromSeconds(1 / now_hz)) return false;
+  governor_.setRate(now_hz);
+  period_ = governor_.period();
+  return true;
+}
+
+bool Pace::observe(bool late, bool coarsest) {
+  const int was = sizeDivisor();
+  if (!ladder_.observe(late, coarsest, betterFits())) return false;
+  ++changes_;
+  if (sizeDivisor() < was) governor_.expect(was * was);  // the highest possible ratio of costs
+  return sizeDivisor() != was;
+}
+
+void Pace::observeOperator(bool coarser) {
+  if (operator_ladder_.observe(coarser, true, true)) ++changes_;
+}
+
+// At full size a frame costs at most four times as much; at twice the rate its period is half as
+// long.
+bool Pace::betterFits() const {
+  const double needed_s = governor_.predict(governor_.least());
+  const double times = ladder_.step() > 1 ? 2 : 4;
+  return times * needed_s < toSeconds(period_) * (1 - governor_.headRoom());
+}
+
+}  // namespace merlin::wall

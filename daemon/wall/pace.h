@@ -1,0 +1,66 @@
+// Pace: decides the frame rate, and the size of the tiles, while something moves.
+//
+// A person may fix the rate and the detail. If not even frames of the coarsest detail meet their
+// deadlines, tiles are drawn at half their width and height; after that the rate is halved, at most
+// twice (render/governor/degradation_ladder.h).
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+
+#include "daemon/base/clock.h"
+#include "render/governor/degradation_ladder.h"
+#include "render/governor/governor.h"
+
+namespace merlin::wall {
+
+// Thread-bound, except hold() and setRate().
+class Pace {
+ public:
+  // `governor` must outlive this object.
+  explicit Pace(render::governor::Governor& governor);
+
+  // May be called on any thread; applied by the next update(). hold() fixes the cost of the detail
+  // while something moves, nullopt: the governor chooses it. setRate() sets the frame rate,
+  // nullopt: the configured one. REQUIRES: rate_hz > 0.
+  void hold(std::optional<std::size_t> cost) noexcept;
+  void setRate(std::optional<double> rate_hz) noexcept;
+
+  // To be called before each frame: applies hold() and setRate(). Returns true if the period has
+  // changed.
+  bool update();
+
+  // To be called after each deadline that passed while something moved. `coarsest`: its frame had
+  // the coarsest detail, or there was no time to draw one. Returns true if the size of the tiles
+  // has changed.
+  bool observe(bool late, bool coarsest);
+  // To be called after each moving frame. `coarser`: the operator's view was drawn coarser to save
+  // time.
+  void observeOperator(bool coarser);
+
+  Duration period() const noexcept { return period_; }
+  double askedHz() const noexcept { return asked_hz_; }
+  int sizeDivisor() const noexcept { return ladder_.step() > 0 ? 2 : 1; }
+  int rateDivisor() const noexcept { return 1 << std::max(ladder_.step() - 1, 0); }
+  bool operatorIsCoarser() const noexcept { return operator_ladder_.step() > 0; }
+  // Changes of the tiles' size, the rate and the operator's view, since the start.
+  std::uint32_t changes() const noexcept { return changes_; }
+
+ private:
+  bool betterFits() const;
+
+  render::governor::Governor& governor_;
+  const double configured_hz_;
+  double asked_hz_;
+  Duration period_;
+  // The first step halves the size of the tiles, each further one halves the rate.
+  render::governor::DegradationLadder ladder_{3};
+  render::governor::DegradationLadder operator_ladder_{1};
+  std::uint32_t changes_ = 0;
+  std::atomic<std::int64_t> held_cost_{-1};  // -1: the governor chooses
+  std::atomic<double> set_rate_hz_{0};       // 0: the configured rate
+};
+
+}  // namespace merlin::wall
