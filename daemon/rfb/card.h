@@ -1,0 +1,14 @@
+// The picture that VNC clients see while there is no wall: what is missing, in plain words. Pure.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace merlin::rfb {
+
+// Fills `canvas` (RGBA, `width` x `height` pixels) with grey and writes `text`, one line for each
+// of its lines, in its middle; a line that is too long is broken between words.
+void drawCard(std::string_view text, std::span<std::uint8_t> canvas, int width, int height);
+
+}  // namespace merlin::rfb

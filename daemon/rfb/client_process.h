@@ -1,0 +1,32 @@
+// What the process of one client does: it shows the picture, and sends the client's input as
+// commands. Each client has a process of its own, since libvncserver waits for a client that does
+// not read and since nothing that a client sends may reach another one.
+#pragma once
+
+#include "daemon/base/clock.h"
+#include "daemon/rfb/settings.h"
+
+namespace merlin::rfb {
+
+// A byte in the pipe to the parent process.
+enum class Report : char {
+  kEstablished = 'e',  // the handshake is complete
+  kActive = 'a'        // the client waits for the next picture, or sent something; once a second
+};
+
+// Exit status of the process.
+inline constexpr int kClientLeft = 0, kWrongPassword = 10;
+
+// How long the handshake may take: with a password, a person types it meanwhile. Afterwards, how
+// long one message may take. Then SIGALRM ends the process.
+constexpr unsigned handshakeLimit_s(const RfbSettings& settings) {
+  return settings.password.empty() ? 10 : 60;
+}
+inline constexpr unsigned kMessageLimit_s = 120;
+
+// Serves the client on the socket `client` until it leaves, and closes the socket; `report`: the
+// pipe to the parent. Returns the exit status. Sets limits of this process, so it
+// may be called in a process of its own only.
+int serveClient(const RfbSettings& settings, int client, int report);
+
+}  // namespace merlin::rfb

@@ -1,0 +1,46 @@
+// InputMap: what pointer and keys of a VNC client mean for the wall, as commands of
+// daemon/base/commands.h. Pure.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <set>
+#include <string>
+
+namespace merlin::rfb {
+
+struct Request {
+  std::string command, argument = {};
+  bool operator==(const Request&) const = default;
+};
+
+// A drag turns what the ball moves, a drag with Shift or the middle button moves it, the wheel
+// moves it nearer or farther. README.md lists the keys. Thread-bound.
+class InputMap {
+ public:
+  // The pointer in a picture of `height` pixels. `buttons`: as in RFB, bit 0 left, 1 middle, 2
+  // right, 3 wheel up, 4 wheel down.
+  void pointer(unsigned buttons, int x, int y, int height);
+  // A key is pressed or released; `keysym`: an X11 keysym, as in RFB.
+  void key(std::uint32_t keysym, bool pressed);
+
+  // The next request for the wall, nothing if there is none. Motion since the last call is one
+  // request, so that nothing piles up while the wall is slow to answer. At most 8 others wait; more
+  // are dropped.
+  std::optional<Request> take();
+
+ private:
+  struct Step {
+    double way[3] = {}, turn_deg[3] = {};
+  };
+  bool pressesArrow(std::uint32_t keysym);
+
+  Step step_;
+  std::deque<std::string> commands_;
+  std::set<std::uint32_t> held_;  // keys that are pressed; bounded
+  unsigned buttons_ = 0;
+  int x_ = 0, y_ = 0;
+};
+
+}  // namespace merlin::rfb

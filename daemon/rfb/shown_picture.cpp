@@ -1,0 +1,107 @@
+#include "daemon/rfb/shown_picture.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "daemon/rfb/card.h"
+
+namespace merlin::rfb {
+namespace {
+
+// Without a new frame for this time the framebuffer is opened again: it may have been removed and
+// created again under the same name, which its old mapping does not show.
+constexpr Duration kReopen = std::chrono::seconds(1);
+// Size of a card before the first frame [px].
+constexpr int kCardWidth = 640, kCardHeight = 480;
+
+}  // namespace
+
+ShownPicture::ShownPicture(std::string instance, View view, SharedMemory::From from)
+    : instance_(std::move(instance)),
+      view_(std::move(view)),
+      from_(from),
+      wall_(shm::segmentName(instance_, "wall"), from) {
+  resize(kCardWidth, kCardHeight);
+}
+
+ShownPicture::Change ShownPicture::update(Timestamp now) {
+  const auto fresh = readFrame(now);
+  if (!fresh) return showCard(fresh.error().what);
+  return *fresh ? showFrame() : Change{};
+}
+
+// Whether frame_ is a newer frame than the one shown. Errors: a sentence for the card.
+Result<bool> ShownPicture::readFrame(Timestamp now) {
+  const shm::WallSegment* const wall = wall_.get(now);
+  command_endpoint_.clear();
+  if (!wall) {
+    reader_.reset();
+    return whyNoWall();
+  }
+  const char* const endpoint = wall->header.command_endpoint;
+  command_endpoint_.assign(endpoint, ::strnlen(endpoint, sizeof wall->header.command_endpoint));
+  const auto opened = openReader(now, wall->header.generation);
+  if (!opened) return opened.error();
+  const std::uint64_t newest = reader_->newest();
+  if (newest == sequence_ || newest == 0) return false;
+  if (!reader_->copy(frame_)) return false;  // overwritten each time: the next one may be luckier
+  sequence_ = frame_.info.sequence;
+  opened_ = now;
+  return true;
+}
+
+Error ShownPicture::whyNoWall() const {
+  const auto opened =
+      shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(instance_, "wall"), from_);
+  if (!opened && opened.error().code == Errc::kIo) return opened.error();  // no permission
+  return {Errc::kNotFound,
+          fmt::format("No merlind shows a wall as \"{}\".\nThe picture returns when it runs.",
+                      instance_)};
+}
+
+Result<Ok> ShownPicture::openReader(Timestamp now, std::uint64_t generation) {
+  if (reader_ && reader_->generation() == generation && now - opened_ < kReopen) return Ok{};
+  auto opened =
+      render::out::SharedFrameReader::open(shm::segmentName(instance_, "framebuffer"), from_);
+  const bool stale = opened && opened->generation() != generation;
+  if (!opened || stale) {
+    reader_.reset();
+    return Error{Errc::kNotFound,
+                 fmt::format("The merlind \"{}\" puts no frames into shared memory\n{}", instance_,
+                             stale ? "What is there is of an earlier one." : opened.error().what)};
+  }
+  // The first frames of a restarted merlind have the numbers of earlier ones.
+  if (!reader_ || reader_->generation() != generation) sequence_ = 0;
+  reader_.emplace(*std::move(opened));
+  opened_ = now;
+  return Ok{};
+}
+
+bool ShownPicture::resize(int width, int height) {
+  if (width == width_ && height == height_) return false;
+  width_ = width;
+  height_ = height;
+  pixels_.assign(
+      std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
+  return true;
+}
+
+ShownPicture::Change ShownPicture::showFrame() {
+  const auto layout = layoutOf(frame_, view_);
+  if (!layout) return showCard(layout.error().what);
+  card_.clear();
+  Change change;
+  change.resized = resize(layout->width, layout->height);
+  change.changed = copyChanged(frame_, *layout, pixels_);
+  return change;
+}
+
+ShownPicture::Change ShownPicture::showCard(const std::string& text) {
+  if (std::exchange(card_, text) == text) return {};
+  drawCard(text, pixels_, width_, height_);
+  return {false, {{0, 0, width_, height_}}};
+}
+
+}  // namespace merlin::rfb
