@@ -26,9 +26,10 @@ void take(const Result<T>& result, const char* pointer, LoadedSettings& loaded) 
   if (!result) loaded.wrong(pointer, kCannot + result.error().what);
 }
 
-// Checks the limit of open files: libzmq ends the process if it gets no descriptor.
+// Checks the limit on open files, because libzmq aborts the process when it runs out of file
+// descriptors.
 void checkDescriptors(LoadedSettings& loaded) {
-  constexpr rlim_t kLeast = 256;  // the servers have 216 places for connections
+  constexpr rlim_t kLeast = 256;  // the servers accept up to 216 connections
   rlimit limit{};
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_max >= kLeast) return;
   loaded.add({false, 0, "",
@@ -54,7 +55,8 @@ void checkRunDirectory(LoadedSettings& loaded) {
   take(checkFolder(path), "/run_directory", loaded);
 }
 
-// The server replaces an existing socket of this name, but no other file.
+// Checks the name of the socket for libspnav. The server replaces an existing socket of this name,
+// but no other kind of file.
 void checkSpnavSocket(LoadedSettings& loaded) {
   constexpr const char* kPointer = "/serve/spnav_socket";
   const std::string& path = loaded.settings.serve.spnav_socket;
@@ -66,14 +68,29 @@ void checkSpnavSocket(LoadedSettings& loaded) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) == 0 && !S_ISSOCK(status.st_mode)) {
     return loaded.wrong(kPointer, fmt::format("{}{}: is not a socket and is not replaced; "
-                                              "choose another name, or remove it",
+                                              "choose another name, or remove the file",
                                               kCannot, path));
   }
   const std::string folder = std::filesystem::path(path).parent_path().string();
   take(checkWritableFolder(folder.empty() ? "." : folder), kPointer, loaded);
 }
 
-// Checks that a socket can be bound to the address: '*' or an IPv4 address.
+// Checks that the state file can be written and that it is none of the files that are read.
+void checkStateFile(const std::string& configuration, LoadedSettings& loaded) {
+  constexpr const char* kPointer = "/state_file";
+  const std::string& path = loaded.settings.state_file;
+  if (path.empty()) return;
+  std::error_code error;
+  if (std::filesystem::equivalent(configuration, path, error))
+    return loaded.wrong(kPointer, "names the configuration itself, which merlind never writes");
+  wall::checkReplacesNothing(loaded, path, kPointer);
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  if (const auto usable = checkFolder(folder.empty() ? "." : folder); !usable)
+    return take(usable, kPointer, loaded);
+  if (std::filesystem::exists(path, error)) take(checkWritable(path), kPointer, loaded);
+}
+
+// Checks that the host of the address is '*' or an IPv4 address, to which a socket can be bound.
 void checkBindable(const std::string& endpoint, LoadedSettings& loaded) {
   constexpr std::string_view kTcp = "tcp://";
   if (!endpoint.starts_with(kTcp)) return;  // already reported by the loader
@@ -98,9 +115,10 @@ void checkInput(const DaemonOptions& options, LoadedSettings& loaded) {
   const InputSettings& input = loaded.settings.wall.input;
   if (input.endpoint.empty()) return;
   if (options.devices) {
-    loaded.wrong("/wall/input/endpoint",
-                 "names another machine's devices, but this process reads its own: run it with "
-                 "--role wall");
+    loaded.wrong(
+        "/wall/input/endpoint",
+        "names another machine's devices, but this process reads devices itself: run it with "
+        "--role wall");
   }
   if (!input.keys.empty()) take(status::readKeyPair(input.keys), "/wall/input/keys", loaded);
 }
@@ -123,6 +141,7 @@ Configuration readConfiguration(const std::string& file, const DaemonOptions& op
   if (options.devices || mirrors) checkSpnavSocket(loaded);
   if (options.wall) {
     checkInput(options, loaded);
+    checkStateFile(file, loaded);
     wall::checkOutputs(loaded);
     read.models = wall::readModels(loaded);
   }

@@ -1,5 +1,5 @@
-// Configuration: the configuration file and the files that it names, read and checked.
-// `--check-config` and the start use the same check, so that they always agree.
+// Configuration: reads and checks the configuration file and the files that it names. merlind uses
+// the same checks for `--check-config` and when it starts, so that both always agree.
 #pragma once
 
 #include <string>
@@ -11,19 +11,19 @@
 namespace merlin {
 
 struct DaemonOptions {
-  bool devices = true, wall = true;  // roles
+  bool devices = true, wall = true;  // the roles of this process
   bool emulate = false;
 };
 
 struct Configuration {
   LoadedSettings loaded;            // the settings, with all findings
-  std::vector<wall::Model> models;  // for the role wall; meaningful unless the verdict is kInvalid
+  std::vector<wall::Model> models;  // for the role wall; not to be used if the verdict is kInvalid
 };
 
-// Reads the file, and all other files that a start with these roles would read; files that only
-// other roles need are not checked. Changes nothing on disk. Never fails: faults are findings.
-// Things that may change while merlind runs (a missing device, a port in use) are not faults.
-// O(models).
+// Reads the file and all other files that merlind reads when it starts with these roles; files that
+// only other roles need are not checked. Changes nothing on disk. Never fails: faults are findings.
+// Conditions that may change while merlind runs (a missing device, a port in use) are not faults.
+// Cost: linear in the size of the models' files.
 Configuration readConfiguration(const std::string& file, const DaemonOptions& options);
 
 }  // namespace merlin

@@ -13,6 +13,7 @@
 #include "daemon/serve/spnav_server.h"
 #include "daemon/serve/vrpn_server.h"
 #include "daemon/shm/fields.h"
+#include "daemon/state/state_folder.h"
 #include "daemon/status/documents.h"
 #include "daemon/status/health_events.h"
 #include "daemon/status/run_directory.h"
@@ -56,7 +57,7 @@ void limitStop() {
   ::alarm(kSeconds);
 }
 
-// Adds the setting's pointer to an error.
+// Puts the JSON pointer of a setting before an error's text.
 Error errorAt(const char* pointer, const Error& error) {
   return {error.code, fmt::format("{}: {}", pointer, error.what)};
 }
@@ -89,13 +90,14 @@ shm::Endpoints Daemon::endpoints(const std::string& role) const {
   return {at + ".status", at + ".command"};
 }
 
-// Creates the segments before the sockets: holding their locks means that no other daemon of this
-// name runs, so that we may replace the sockets' files. Emulators come before any thread, because
-// they are forked.
+// Creates the shared-memory segments before the sockets: whoever holds the segments' locks knows
+// that no other daemon of this name runs, and may replace the sockets' files. Starts the emulators
+// before any thread, because they are forked.
 Result<Ok> Daemon::makeRoles() {
   const std::uint64_t generation = shm::newGeneration();
   for (const char* role : {"devices", "wall"}) {
-    // To be checked before the emulators start, which would replace another daemon's lines.
+    // Checked before the emulators start, because they would replace the links to another daemon's
+    // pseudo-terminals.
     const std::string name = shm::segmentName(settings_.instance, role);
     if ((role[0] == 'd' ? options_.devices : options_.wall) && SharedMemory::owned(name)) {
       return Error{
@@ -121,8 +123,9 @@ Result<Ok> Daemon::makeRoles() {
     if (auto mirrored = mirrorDevices(generation); !mirrored) return mirrored;
   }
   if (options_.wall) {
+    makeKeeper();
     auto role = wall::WallRole::make(settings_, std::move(models_), generation, endpoints("wall"),
-                                     threads_, clock_);
+                                     *keeper_, threads_, clock_);
     if (!role) return role.error();
     wall_ = *std::move(role);
   }
@@ -130,8 +133,8 @@ Result<Ok> Daemon::makeRoles() {
   return Ok{};
 }
 
-// Makes a devices' segment on this machine that is filled with the samples of another one; the wall
-// reads it like a local one.
+// Creates a shared-memory segment for devices on this machine and fills it with the samples of
+// another machine; the wall reads it like the segment of local devices.
 Result<Ok> Daemon::mirrorDevices(std::uint64_t generation) {
   const InputSettings& input = settings_.wall.input;
   auto segment = shm::SegmentWriter<shm::DevicesSegment>::make(
@@ -150,6 +153,12 @@ Result<Ok> Daemon::mirrorDevices(std::uint64_t generation) {
   if (!link) return link.error();
   link_ = *std::move(link);
   return Ok{};
+}
+
+void Daemon::makeKeeper() {
+  const std::string file = state::stateFile(settings_.state_file, settings_.instance);
+  keeper_ = std::make_unique<state::StateKeeper>(
+      file.empty() ? nullptr : std::make_unique<state::StateFolder>(file), threads_);
 }
 
 void Daemon::serveOthers(const shm::DevicesSegment& segment) {
@@ -190,16 +199,29 @@ void Daemon::makeSnapshots() {
         threads_);
     wall_->onSnapshot([this] { snapshots_->take(); });
   }
-  commands_.emplace(RoleCommands::Parts{devices_.get(), wall_.get(), snapshots_.get()});
+  commands_.emplace(
+      RoleCommands::Parts{devices_.get(), wall_.get(), snapshots_.get(), keeper_.get()});
 }
 
-// Executes the actions of the devices' role and of the panel; each wall executes its own.
+// A person at a window gives commands, as clients of the sockets do.
+void Daemon::serveWindows() {
+  wall_->onWindow({[this](const std::string& name, const std::string& argument) {
+                     return commands_->run(name, argument);
+                   },
+                   [this](const std::string& why) {
+                     logInfo("{}", why);
+                     closed_ = true;
+                   }});
+}
+
+// Executes the actions that the role devices and the panel are responsible for. Actions for walls
+// are executed by the walls.
 void Daemon::executeActions() {
   for (const std::size_t action : device_actions_.read(devices_->segment()).in_order) {
     const CommandInfo* const command = findCommand(kActions[action]);
     if (command->role == CommandOf::kWall) continue;
     const auto done = commands_->run(command->name);
-    if (!done) logWarning("an input is bound to {}", done.error().what);
+    if (!done) logWarning("an input's action failed: {}", done.error().what);
   }
 }
 
@@ -218,6 +240,7 @@ Result<Ok> Daemon::run() {
     }
     if (auto served = serveWall(); !served) return served;
     if (mirror_) serveOthers(**mirror_);
+    serveWindows();
     if (auto shown = awaitFirstFrame(wall_->start()); !shown) return shown;
   }
   ::sd_notify(0, "READY=1");
@@ -241,23 +264,26 @@ Result<Ok> Daemon::awaitFirstFrame(std::future<Result<std::string>> ready) {
   const auto first = ready.get();
   if (!first) return first.error();
   logInfo("the first frame is shown, drawn by {}; {} levels of detail", *first,
-          wall_->segment().stats.read()->levels);
+          wall_->segment().stats.read()->detail_steps);
   return Ok{};
 }
 
-// Waits for a signal; true for SIGTERM and SIGINT. SIGCHLD is handled in housekeeping().
+// Waits up to `wait` for a signal; true for SIGTERM and SIGINT, and once a window was closed whose
+// on_close is "stop". An ended emulator (SIGCHLD) is
+// reported by housekeeping().
 bool Daemon::stopAsked(Duration wait) {
   const sigset_t set = takenSignals();
   const timespec limit{0, wait.count()};
   const int signal = ::sigtimedwait(&set, nullptr, &limit);
-  if (signal == SIGHUP) logInfo("SIGHUP is ignored: a changed configuration is read by a restart");
-  return signal == SIGTERM || signal == SIGINT;
+  if (signal == SIGHUP)
+    logInfo("SIGHUP is ignored: restart merlind to read a changed configuration");
+  return signal == SIGTERM || signal == SIGINT || closed_;
 }
 
 void Daemon::housekeeping() {
   const Timestamp now = clock_.now();
   if (devices_) devices_->beat(now);
-  if (wall_) wall_->beat(now);
+  if (wall_) tendWall(now);
   if (mirror_) mirror_->beat(now);
   if (devices_) executeActions();
   servers_->tend(now);
@@ -276,6 +302,15 @@ void Daemon::housekeeping() {
     ::sd_notify(0, ("STATUS=" + summary(now)).c_str());
   }
   pingWatchdog(now);
+}
+
+void Daemon::tendWall(Timestamp now) {
+  wall_->beat(now);
+  wall_->tend(now);
+  if (const std::string fault = keeper_->fault(); fault.empty())
+    services_.ok("state");
+  else
+    services_.failed("state", fault);
 }
 
 // Restores shared memory that was removed by an administrator, or by logind when its user logs out.
@@ -299,8 +334,8 @@ std::string Daemon::summary(Timestamp now) const {
   std::string text;
   if (wall_) {
     const auto s = wall_->segment().stats.read().value_or(shm::WallStats{});
-    text = fmt::format("{:.1f} of {:.0f} Hz, {} triangles, {:.1f} % late", s.rate_held_hz,
-                       s.rate_asked_hz, s.triangles, 100 * s.late_share_1min);
+    text = fmt::format("{:.1f} of {:.0f} Hz, {} {}, {:.1f} % late", s.rate_held_hz, s.rate_asked_hz,
+                       s.cost, std::string_view(s.cost_unit), 100 * s.late_share_1min);
   }
   for (std::size_t i = 0; devices_ && i < shm::kDevices; ++i) {
     const auto health = devices_->segment().health[i].read();
@@ -365,7 +400,8 @@ Result<Ok> Daemon::serveDevices() {
   return serveStatus("devices", CommandOf::kDevices, std::move(s));
 }
 
-// Takes the events of the services; the first role's server that asks publishes them.
+// Logs the services' events and adds them to `documents`. Each event is delivered once, to the role
+// whose server asks first.
 void Daemon::tellServices(std::vector<std::string>& documents) {
   for (const std::string& sentence : services_.takeEvents()) {
     logWarning("{}", sentence);
@@ -373,8 +409,8 @@ void Daemon::tellServices(std::vector<std::string>& documents) {
   }
 }
 
-// Events of the wall's role: of the wall, its models and servers, and of another machine's devices
-// if the wall uses them.
+// Returns the function that collects the events of the role wall: those of the wall, its models and
+// its servers, and, if the wall uses another machine's devices, those of the devices.
 std::function<std::vector<std::string>()> Daemon::wallEvents() {
   // Shared because a std::function must be copyable.
   auto events = std::make_shared<status::WallEvents>(wall_->segment());
@@ -388,7 +424,9 @@ std::function<std::vector<std::string>()> Daemon::wallEvents() {
       }
     };
     tell("wall", events->take());
+    tell("wall", wall_->viewerEvents());
     tell("model", wall_->modelEvents());
+    tell("state", keeper_->takeNotices());
     if (health) tell("device", health->take(clock_.now()));
     tell("server", servers_->events("wall"));
     tellServices(documents);

@@ -1,6 +1,7 @@
-// Daemon: the composition root of merlind: makes its roles and runs the main loop.
+// Daemon: the composition root of merlind: creates its roles and servers, and runs the main loop.
 #pragma once
 
+#include <atomic>
 #include <csignal>
 #include <functional>
 #include <memory>
@@ -18,6 +19,7 @@
 #include "daemon/emulator_children.h"
 #include "daemon/role_commands.h"
 #include "daemon/servers.h"
+#include "daemon/state/state_keeper.h"
 #include "daemon/status/ended_threads.h"
 #include "daemon/status/sample_link.h"
 #include "daemon/status/services.h"
@@ -29,35 +31,40 @@ namespace merlin {
 
 class Daemon {
  public:
-  // Makes all parts. Only the emulators and the link to another machine run afterwards.
-  // REQUIRES: the configuration's verdict is not kInvalid; SIGTERM, SIGINT, SIGHUP and SIGCHLD are
-  // blocked; no thread has been started. Errors: those of its parts.
+  // Creates all parts. Afterwards only the emulators and the link to another machine are running;
+  // run() starts the rest. REQUIRES: the configuration's verdict is not kInvalid; SIGTERM, SIGINT,
+  // SIGHUP and SIGCHLD are blocked; no thread has been started. Errors: those of the parts.
   static Result<std::unique_ptr<Daemon>> make(Configuration configuration,
                                               const DaemonOptions& options, Clock& clock);
   ~Daemon();
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
-  // Runs until a signal; notifies systemd of the first frame and of progress. Errors: the first
-  // frame could not be drawn; a thread has ended unexpectedly.
+  // Runs until SIGTERM or SIGINT; notifies systemd when the first frame is shown, and of progress.
+  // Errors: those of starting the servers; the first frame could not be drawn; kClosed (stopped
+  // before the first frame); a thread has ended unexpectedly.
   Result<Ok> run();
 
  private:
   Daemon(Configuration configuration, const DaemonOptions& options, Clock& clock);
   Result<Ok> makeRoles();
-  // REQUIRES: the first of `settings`' publications is the status.
+  // Starts a role's sockets for status and commands. `commands`: the role whose commands they
+  // accept. REQUIRES: settings.publications[0] is the status.
   Result<Ok> serveStatus(const std::string& role, CommandOf commands,
                          status::StatusServerSettings settings);
   Result<Ok> serveDevices();
   Result<Ok> serveWall();
   std::function<std::vector<std::string>()> wallEvents();
   Result<Ok> mirrorDevices(std::uint64_t generation);
-  // Starts the servers for other programs and keeps them running.
+  // Starts the servers for other programs (libspnav, VRPN), which are restarted if they fail.
   void serveOthers(const shm::DevicesSegment& segment);
   Result<status::CurveServer> network() const;
   void tellServices(std::vector<std::string>& documents);
   void makeSnapshots();
+  void makeKeeper();
+  void tendWall(Timestamp now);
   void executeActions();
+  void serveWindows();
   shm::Endpoints endpoints(const std::string& role) const;
   Result<Ok> awaitFirstFrame(std::future<Result<std::string>> ready);
   bool stopAsked(Duration wait);  // waits for a signal
@@ -66,27 +73,30 @@ class Daemon {
   void pingWatchdog(Timestamp now);
   std::string summary(Timestamp now) const;
 
-  // Members are destroyed from the last to the first: callers before those whom they call.
+  // Members are destroyed from the last to the first: an object that calls others is declared after
+  // them, so that it is destroyed first.
   Settings settings_;
-  std::vector<wall::Model> models_;  // moved to the wall
+  std::vector<wall::Model> models_;  // moved into wall_ when that is created
   DaemonOptions options_;
   Clock& clock_;
-  ThreadWatch threads_;  // before all members that have threads
+  ThreadWatch threads_;  // declared before all members that have threads
   std::string run_directory_;
   status::Services services_;
   status::EndedThreads ended_threads_{threads_, services_};
   status::Watchdog watchdog_;
   Timestamp summarised_{}, mended_{};
+  std::atomic<bool> closed_{false};  // a person closed a window whose on_close is "stop"
   std::unique_ptr<EmulatorChildren> emulators_;
-  // The segment for another machine's devices, if /wall/input names one.
+  // Shared memory with the samples of another machine's devices, if /wall/input names a machine.
   std::optional<shm::SegmentWriter<shm::DevicesSegment>> mirror_;
   actions::ActionReader device_actions_;
+  std::unique_ptr<state::StateKeeper> keeper_;  // of a process with a wall; used by wall_
   std::optional<RoleCommands> commands_;
-  std::unique_ptr<wall::SnapshotWriter> snapshots_;  // the wall asks it for files
+  std::unique_ptr<wall::SnapshotWriter> snapshots_;  // called by wall_
   std::unique_ptr<wall::WallRole> wall_;
   std::unique_ptr<devices::DevicesRole> devices_;
   std::unique_ptr<status::SampleLink> link_;  // writes into mirror_
-  std::optional<Servers> servers_;            // their clients' commands call all of these
+  std::optional<Servers> servers_;            // clients' commands call all members above
 };
 
 }  // namespace merlin

@@ -16,7 +16,7 @@
 namespace merlin {
 namespace {
 
-// The path of `merlin`, which is in the same folder as this program.
+// The path of the program merlin, which is in the same folder as this program. Errors: kIo.
 Result<std::string> merlinProgram() {
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -44,7 +44,7 @@ pid_t spawn(const std::vector<std::string>& arguments) {
   ::_exit(127);
 }
 
-// Sets the device's port to a pseudo-terminal and returns the path of its link.
+// Sets the device's port to pty:PATH, unless it has this form already, and returns PATH.
 std::string placeLine(LineSettings& line, const std::string& instance,
                       const std::string& run_directory) {
   constexpr std::string_view kPty = "pty:";

@@ -22,12 +22,12 @@ class EmulatorChildren {
   EmulatorChildren& operator=(const EmulatorChildren&) = delete;
   ~EmulatorChildren();  // ends the processes
 
-  // Starts a process for each device and sets the devices' ports in `settings` to their
-  // pseudo-terminals: a port pty:PATH stays, any other becomes a path in the run directory.
+  // Starts a process for each device and sets each device's port in `settings` to the link to its
+  // pseudo-terminal: a port pty:PATH is kept, any other is replaced by a path in the run directory.
   // REQUIRES: no thread has been started. Errors: kIo.
   static Result<EmulatorChildren> start(Settings& settings, const std::string& run_directory);
 
-  // Names of the devices whose process has ended since the last call.
+  // Names of the devices whose emulator process has ended since the last call.
   std::vector<std::string> takeEnded();
 
  private:

@@ -74,15 +74,15 @@ void blockSignals() {
   ::sigemptyset(&set);
   for (const int s : {SIGTERM, SIGINT, SIGHUP, SIGCHLD}) ::sigaddset(&set, s);
   ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  // Ignored: they have no meaning for merlind. SIGXFSZ: exceeding a file-size limit is then an
-  // error of write().
+  // Signals that have no meaning for merlind are ignored. With SIGXFSZ ignored, write() returns an
+  // error when a file-size limit is exceeded.
   for (const int s : {SIGPIPE, SIGXFSZ, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU,
                       SIGIO, SIGPWR, SIGSTKFLT, SIGTSTP, SIGTTIN, SIGTTOU})
     ::signal(s, SIG_IGN);
   for (int s = SIGRTMIN; s <= SIGRTMAX; ++s) ::signal(s, SIG_IGN);
 }
 
-// Raises the limit of open files so that all connections that the servers allow are possible.
+// Raises the limit on open files, so that the servers can accept all connections that they allow.
 void raiseDescriptorLimit() {
   constexpr rlim_t kEnough = 8192;
   rlimit limit{};
@@ -92,11 +92,11 @@ void raiseDescriptorLimit() {
 }
 
 int runDaemon(const Options& options) {
-  blockSignals();  // first: reading a large model takes a while
+  blockSignals();  // first, because reading a large model takes long and a signal may arrive
   Configuration configuration = checkedConfiguration(options.config, options);
   if (configuration.loaded.verdict() == LoadedSettings::Verdict::kInvalid) return kExitBadInput;
   raiseDescriptorLimit();
-  render::prepareSoftwareGl(configuration.loaded.settings.wall.render.gl.raster_threads);
+  render::gl::prepareSoftwareGl(configuration.loaded.settings.wall.render.gl.raster_threads);
   SystemClock clock;
   const auto daemon = Daemon::make(std::move(configuration), daemonOptions(options), clock);
   if (!daemon) {
@@ -114,16 +114,18 @@ int main(int argc, char** argv) {
   CLI::App app(
       "MERLIN's daemon: reads the devices and draws the wall.\n\nExample: merlind --config "
       "config/demo.json --emulate");
-  // An empty name, from an unset shell variable, must not start the daemon instead of a check.
+  // Refuses an empty file name, for example from an unset shell variable: such a --check-config
+  // must never start the daemon instead of checking a file.
   const CLI::Validator named(
       [](const std::string& file) { return std::string(file.empty() ? "names no file" : ""); }, "");
   app.add_option("--config", options.config, "The configuration file, JSON")
       ->check(named)
       ->capture_default_str();
   const CLI::Option* check =
-      app.add_option("--check-config", options.check,
-                     "Only check FILE and the files that it names, for this --role. Exit status: 0 "
-                     "valid, 1 valid after adjustments, 2 invalid or not checked completely")
+      app.add_option(
+             "--check-config", options.check,
+             "Only check FILE and the files that it names, as needed for this --role. Exit "
+             "status: 0 valid, 1 valid after adjustments, 2 invalid or not checked completely")
           ->check(named)
           ->type_name("FILE");
   app.add_option("--role", options.role,

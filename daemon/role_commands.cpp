@@ -1,6 +1,10 @@
 #include "daemon/role_commands.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
+#include <iterator>
 #include <optional>
 
 #include <fmt/format.h>
@@ -47,10 +51,59 @@ Answer triangles(const Parts& p, const std::string& argument) {
   return done();
 }
 
+// Six numbers: see the list of commands. The limits keep one command from losing the model.
+Answer move(const Parts& p, std::string_view argument) {
+  constexpr float kMostRadii = 10, kMostDegrees = 360;
+  std::array<float, 6> step{};
+  const char* at = argument.data();
+  const char* const end = at + argument.size();
+  bool good = true;
+  for (std::size_t i = 0; good && i < step.size(); ++i) {
+    while (at != end && *at == ' ') ++at;
+    const auto [rest, error] = std::from_chars(at, end, step[i]);
+    good = error == std::errc() && std::abs(step[i]) <= (i < 3 ? kMostRadii : kMostDegrees);
+    at = rest;
+  }
+  if (!good || at != end) {
+    return Error{
+        Errc::kInvalidArgument,
+        fmt::format("\"{}\" is not six numbers X Y Z RX RY RZ: radii from -{} to {}, degrees "
+                    "from -{} to {}",
+                    argument.substr(0, 64), kMostRadii, kMostRadii, kMostDegrees, kMostDegrees)};
+  }
+  p.wall->move({step[0], step[1], step[2]}, {step[3], step[4], step[5]});
+  return done();
+}
+
 Answer rate(const Parts& p, const std::string& argument) {
   const auto number = numberOrAuto(argument, {1, 240});
   if (!number) return number.error();
   p.wall->setRate(*number);
+  p.keeper->change([&](state::State& s) { s.rate_hz = *number; });
+  return done();
+}
+
+// Number of the last frame that is known: one after it shows what was asked for before.
+std::uint64_t framesOf(const Parts& p) {
+  const auto stats = p.wall->segment().stats.read();
+  return stats ? stats->frames : 0;
+}
+
+// The segment into which the signal of the output will be copied, and the number of the last frame
+// that is not it.
+Answer signal(const Parts& p, const std::string& output) {
+  const auto segment = p.wall->signals().ask(output);
+  if (!segment) return segment.error();
+  return fmt::format("{{\"shared_memory\": \"{}\", \"after\": {}}}", *segment, framesOf(p));
+}
+
+// A bound input's action, asked for by a client.
+Answer alignAction(const Parts& p, std::string_view name) {
+  wall::AlignInput input;
+  const auto action = std::ranges::find(wall::kAlignActions, name);
+  if (action == std::end(wall::kAlignActions)) return lacks("does not know the command");
+  input.begun[static_cast<std::size_t>(action - std::begin(wall::kAlignActions))] = 1;
+  p.wall->aligner().ask(input);
   return done();
 }
 
@@ -71,10 +124,17 @@ Answer ofWall(const Parts& p, std::string_view name, const std::string& argument
   if (name == "reset_view") return request(p, wall::WallLoop::kResetView);
   if (name == "next_mode") return request(p, wall::WallLoop::kNextMode);
   if (name == "next_content") return request(p, wall::WallLoop::kNextContent);
+  if (name == "move") return move(p, argument);
   if (name == "snapshot") return snapshot(p);
   if (name == "triangles") return triangles(p, argument);
   if (name == "rate") return rate(p, argument);
-  return lacks("does not know the command");
+  if (name == "align") return p.wall->aligner().run(argument);
+  if (name == "testcard") {
+    const auto shown = p.wall->aligner().showCard(argument);
+    return shown ? fmt::format("{{\"after\": {}}}", framesOf(p)) : Answer(shown.error());
+  }
+  if (name == "signal") return signal(p, argument);
+  return alignAction(p, name);
 }
 
 Answer ofDevices(const Parts& p, const CommandInfo& command) {
@@ -91,7 +151,7 @@ Answer ofDevices(const Parts& p, const CommandInfo& command) {
 Result<std::string> RoleCommands::run(std::string_view name, const std::string& argument) const {
   const CommandInfo* const command = findCommand(name);
   if (!command)
-    return Error{Errc::kInvalidArgument, fmt::format("there is no command \"{}\"", name)};
+    return Error{Errc::kInvalidArgument, fmt::format("\"{}\" is not a known command", name)};
   auto answer = command->role == CommandOf::kWall ? ofWall(parts_, name, argument)
                                                   : ofDevices(parts_, *command);
   if (answer) return answer;

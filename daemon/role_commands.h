@@ -7,6 +7,7 @@
 
 #include "daemon/base/commands.h"
 #include "daemon/devices/devices_role.h"
+#include "daemon/state/state_keeper.h"
 #include "daemon/status/server.h"
 #include "daemon/wall/snapshot_writer.h"
 #include "daemon/wall/wall_role.h"
@@ -16,16 +17,18 @@ namespace merlin {
 // Thread-safe, because its parts are.
 class RoleCommands {
  public:
-  // The parts that exist in this process; they must outlive this.
+  // The parts of this process that execute commands; null: this process lacks the part. They must
+  // outlive this object.
   struct Parts {
     devices::DevicesRole* devices = nullptr;
     wall::WallRole* wall = nullptr;
     wall::SnapshotWriter* snapshots = nullptr;
+    state::StateKeeper* keeper = nullptr;  // of a process with a wall
   };
   explicit RoleCommands(const Parts& parts) : parts_(parts) {}
 
   // Executes a command and returns the answer as JSON. Errors: kInvalidArgument (unknown command,
-  // invalid argument, or this process lacks a part that it needs); those of the part.
+  // invalid argument, or this process lacks the part that executes the command); those of the part.
   Result<std::string> run(std::string_view name, const std::string& argument = {}) const;
 
   // The commands that a role's socket accepts, except `status`.

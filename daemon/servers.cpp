@@ -11,8 +11,8 @@ constexpr Duration kTellSentAway = std::chrono::seconds(5);
 
 }  // namespace
 
-// Destroys the servers in `kept` before the roles, because the samples' relay uses a role's server;
-// without the lock, because their threads may wait for it.
+// Destroys the servers of kept_ before the roles, because the relay for samples uses a role's
+// server. Does not hold the lock meanwhile, because the servers' threads may be waiting for it.
 Servers::~Servers() {
   decltype(kept_) kept;
   decltype(roles_) roles;

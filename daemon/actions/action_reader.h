@@ -13,10 +13,11 @@ namespace merlin::actions {
 
 // State of all actions, indexed like kActions (daemon/base/commands.h).
 struct Actions {
-  std::array<std::uint32_t, shm::kMostActions> begun{};  // times since the last read()
+  // How often each action has begun since the last read().
+  std::array<std::uint32_t, shm::kMostActions> begun{};
   std::array<bool, shm::kMostActions> held{};
-  // The actions that have begun, of each device in their order; if more than a dozen of one device
-  // have, the last ones.
+  // The actions that have begun, device by device, in the order in which they began; at most the
+  // last twelve of each device.
   std::vector<std::size_t> in_order;
 };
 

@@ -1,5 +1,5 @@
-// ActionSink: passes a device's samples and health on, and tells an ActionWriter of them first.
-// Runs on the device's thread.
+// ActionSink: gives a device's samples and health to an ActionWriter, and passes them on. Runs on
+// the device's thread.
 #pragma once
 
 #include <algorithm>

@@ -15,7 +15,7 @@ namespace merlin::actions {
 class ActionWriter {
  public:
   // Uses the bindings whose input belongs to `source`; others, and invalid ones, are ignored.
-  // `generation`: the daemon's, which tells readers that counts begin again.
+  // `generation`: of the daemon; a new one tells readers that the counters began again at 0.
   ActionWriter(const std::vector<Binding>& bindings, shm::ActionSource source,
                std::uint64_t generation, shm::SeqSlot<shm::ActionState>& slot);
 

@@ -17,11 +17,11 @@ struct Input {
   std::uint32_t button = 0;  // kBallButton: its bit in BallSample::buttons
   std::string posture;       // kPosture: its name
 
-  // The device that it belongs to.
+  // The device to which the input belongs.
   shm::ActionSource source() const;
 };
 
-// Parses the name of an input (kInputForms); nothing if there is no such input.
+// Parses the name of an input (kInputForms); nothing if the name is not valid.
 std::optional<Input> parseInput(std::string_view name);
 
 }  // namespace merlin::actions

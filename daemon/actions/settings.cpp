@@ -37,9 +37,9 @@ void checkOne(const Binding& b, const std::string& at, SettingFaults& faults) {
         {at + "/input", fmt::format("is \"{}\"; allowed are {}", b.input, kInputForms)});
   const bool held = isHeldAction(b.action);
   if (b.when != When::kByAction && (b.when == When::kHold) != held)
-    faults.push_back(
-        {at + "/on", fmt::format("does not go with {}; allowed is {}", b.action,
-                                 held ? "hold: it lasts" : "enter or leave: it happens once")});
+    faults.push_back({at + "/on", fmt::format("cannot be used with {}; allowed is {}", b.action,
+                                              held ? "hold, because it lasts"
+                                                   : "enter or leave, because it happens once")});
   const bool panel = input && input->kind == actions::Input::Kind::kPanelButton;
   if (panel && (held || atLeave(b)))
     faults.push_back({at, fmt::format("binds panel.button to {}; the panel's button only triggers "
@@ -49,7 +49,8 @@ void checkOne(const Binding& b, const std::string& at, SettingFaults& faults) {
 
 }  // namespace
 
-// For each moment of an input, at most one binding of each action is remembered, hence linear.
+// Linear in the number of bindings: for each moment of an input at most one binding of each action
+// is kept.
 SettingFaults validate(const std::vector<Binding>& bindings) {
   SettingFaults faults;
   std::map<std::pair<std::string, bool>, std::vector<std::size_t>> before;

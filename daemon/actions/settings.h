@@ -28,9 +28,9 @@ inline std::vector<Binding> defaultBindings() {
           {"panel.button", "next_mode"}};
 }
 
-// Finds bindings of unknown inputs, actions that do not go with `when`, and two actions of one
-// input at one moment that exclude each other or are the same. Pointers: "/INDEX/input" ... Cost:
-// linear.
+// Finds unknown inputs, actions that cannot be combined with their `when`, and pairs of actions
+// that one input would trigger at the same moment although they exclude each other or are the same.
+// Pointers: "/INDEX/input" ... Cost: linear.
 SettingFaults validate(const std::vector<Binding>& bindings);
 
 }  // namespace merlin

@@ -9,8 +9,8 @@ namespace merlin {
 
 class ThreadTeam;
 
-// How many threads a parallel loop uses, the caller's included, and the team that they come from; a
-// team serves many short loops, without one each loop starts threads of its own.
+// Number of threads of a parallel loop, including the caller's, and the team that provides them. A
+// team suits many short loops; without a team each loop starts threads of its own.
 struct Threads {
   Threads(unsigned n) : count(n) {}  // NOLINT(google-explicit-constructor): a number is enough
   Threads(unsigned n, ThreadTeam& from) : count(n), team(&from) {}
@@ -19,12 +19,12 @@ struct Threads {
   ThreadTeam* team = nullptr;
 };
 
-// Calls work(0) .. work(blocks - 1), each once, on that many threads. The
-// blocks must not write to the same memory; the result then does not depend on the number of
-// threads. `goOn` is called on the caller's thread with the number of finished blocks; after it
-// returns false no further block begins. Returns whether all blocks were done. An exception of
-// `work` is rethrown here, after all threads have finished. `work` may have such loops itself:
-// while the team works, they start threads of their own. REQUIRES: threads.count > 0.
+// Calls work(0) .. work(blocks - 1), each once, on `threads.count` threads. The blocks must not
+// write to the same memory; the result then does not depend on the number of threads. `goOn` is
+// called on the caller's thread with the number of finished blocks; after it returns false no
+// further block begins. Returns whether all blocks were done. An exception of `work` is rethrown
+// here, after all threads have finished. `work` may call forBlocks() itself: while the team is
+// busy, such an inner loop starts threads of its own. REQUIRES: threads.count > 0.
 bool forBlocks(Threads threads, std::size_t blocks, const std::function<void(std::size_t)>& work,
                const std::function<bool(std::size_t)>& goOn = {});
 

@@ -1,5 +1,5 @@
-// Reads and writes numbers in a given byte order, byte by byte: works on every machine and without
-// alignment. `p` points to as many bytes as the type has.
+// Reads and writes numbers in a given byte order, byte by byte: works on machines of any byte order
+// and at any alignment. `p` points to as many bytes as the type has.
 #pragma once
 
 #include <bit>

@@ -38,7 +38,8 @@ std::string readAll(int fd) {
   }
 }
 
-// Sends a byte that tells a result from an error's code, then the text.
+// Calls `work` and sends one byte (0: success; otherwise 1 + the error code), then the result or
+// the error's message.
 [[noreturn]] void runChild(const std::function<Result<std::string>()>& work, int to,
                            std::chrono::seconds limit) {
   const auto seconds = static_cast<rlim_t>(limit.count());

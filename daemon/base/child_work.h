@@ -1,5 +1,4 @@
-// Work in a process of its own, for libraries that end the program at input that they do not
-// expect.
+// Runs a function in a child process, for libraries that abort the process on malformed input.
 #pragma once
 
 #include <chrono>
@@ -10,10 +9,10 @@
 
 namespace merlin {
 
-// Forks, runs `work` in the child and returns the bytes that it hands over. What the child prints
-// is discarded. Errors: those of `work`; kMalformed with `ended` if the child is ended by a signal
-// (an assertion, a bad access) or takes more CPU time than `limit`; kIo. Thread-safe; `work` must
-// not take a lock that another thread of this process may hold.
+// Forks, calls `work` in the child and returns the bytes that `work` returned. The child's output
+// is discarded. Errors: those of `work`; kMalformed with the text `ended` if a signal ends the
+// child (an assertion, a bad access) or it takes more CPU time than `limit`; kIo. Thread-safe;
+// `work` must not take a lock that another thread of this process may hold.
 Result<std::string> inChild(const std::function<Result<std::string>()>& work,
                             const std::string& ended, std::chrono::seconds limit);
 

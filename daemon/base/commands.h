@@ -14,8 +14,8 @@ namespace merlin {
 // The role of merlind that executes a command; the role devices executes the panel's.
 enum class CommandOf { kEachRole, kDevices, kPanel, kWall };
 
-// Whether inputs may be bound to a command. kOnce: it is executed when the input begins (or ends).
-// kHeld: it lasts while the input is held; it cannot be sent to a socket.
+// Whether inputs may be bound to a command. kOnce: the command is executed when the input begins
+// (or ends). kHeld: the command lasts while the input is held; it cannot be sent to a socket.
 enum class Bindable { kNo, kOnce, kHeld };
 
 struct CommandInfo {
@@ -37,6 +37,11 @@ inline constexpr CommandInfo kCommands[] = {
      Bindable::kOnce, true},
     {"next_content", CommandOf::kWall, "", "Show the next model of the configuration.",
      Bindable::kOnce, true},
+    {"move", CommandOf::kWall, "X Y Z RX RY RZ",
+     "Move what the ball moves, at once: X Y Z times the model's radius to the right, up and "
+     "towards "
+     "the viewer, and RX RY RZ degrees about these axes.",
+     Bindable::kNo, false},
     {"snapshot", CommandOf::kWall, "",
      "Write the newest frame into the folder that /wall/snapshots names.", Bindable::kOnce, false},
     {"triangles", CommandOf::kWall, "N|auto",
@@ -46,6 +51,33 @@ inline constexpr CommandInfo kCommands[] = {
     {"rate", CommandOf::kWall, "HZ|auto",
      "Set the frame rate, 1 to 240 per second; auto returns to the configured rate.", Bindable::kNo,
      false},
+    {"align", CommandOf::kWall, "REQUEST",
+     "Move the corners of an output's picture; the request list shows them.", Bindable::kNo, false},
+    {"testcard", CommandOf::kWall, "NAME|off",
+     "Show a test card instead of the picture: grid, edges, ramps, names, focus; off ends it.",
+     Bindable::kNo, false},
+    {"next_testcard", CommandOf::kWall, "", "Show the next test card, and none after the last.",
+     Bindable::kOnce, false},
+    {"signal", CommandOf::kWall, "OUTPUT",
+     "Put the next signal of an output into shared memory, as `merlin snapshot --output` reads it.",
+     Bindable::kNo, false},
+    {"align_output_next", CommandOf::kWall, "",
+     "Choose the next output for align_left, align_right, align_up and align_down.",
+     Bindable::kOnce, false},
+    {"align_corner_next", CommandOf::kWall, "", "Choose the next corner of that output.",
+     Bindable::kOnce, false},
+    {"align_left", CommandOf::kWall, "", "Move the chosen corner left by one pixel.",
+     Bindable::kOnce, false},
+    {"align_right", CommandOf::kWall, "", "Move the chosen corner right by one pixel.",
+     Bindable::kOnce, false},
+    {"align_up", CommandOf::kWall, "", "Move the chosen corner up by one pixel.", Bindable::kOnce,
+     false},
+    {"align_down", CommandOf::kWall, "", "Move the chosen corner down by one pixel.",
+     Bindable::kOnce, false},
+    {"align_undo", CommandOf::kWall, "", "Undo the last step of the alignment.", Bindable::kOnce,
+     false},
+    {"align_redo", CommandOf::kWall, "", "Redo the step of the alignment that was undone last.",
+     Bindable::kOnce, false},
     {"projector_on", CommandOf::kPanel, "", "Switch the projectors on.", Bindable::kOnce, true},
     {"projector_off", CommandOf::kPanel, "", "Switch the projectors off.", Bindable::kOnce, true},
     {"video_a", CommandOf::kPanel, "", "Show input A on the projectors.", Bindable::kOnce, true},
@@ -60,6 +92,9 @@ inline constexpr CommandInfo kCommands[] = {
      Bindable::kHeld, false},
     {"point_at", CommandOf::kWall, "", "A mark shows where the hand points.", Bindable::kHeld,
      false},
+    {"align_push", CommandOf::kWall, "",
+     "Pushing the ball moves the chosen corner of the chosen output instead of the model.",
+     Bindable::kHeld, false},
 };
 
 // The command of that name; null if there is none.
@@ -82,7 +117,8 @@ inline constexpr auto kActions = [] {
   return names;
 }();
 
-// Index of an action in kActions. REQUIRES: it is one; otherwise it does not compile.
+// Index of an action in kActions. REQUIRES: `name` is an action; otherwise the call does not
+// compile.
 consteval std::size_t actionIndex(std::string_view name) {
   for (std::size_t i = 0; i < kActions.size(); ++i) {
     if (name == kActions[i]) return i;

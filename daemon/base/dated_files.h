@@ -25,8 +25,9 @@ class DatedFiles {
   Result<std::string> next(std::time_t now) const;
 
   // To be called once the new file is complete: removes the oldest regular files with names of
-  // exactly this form until `most` are left. A file later than `now` was named by a wrong clock and
-  // counts as oldest. Files that cannot be removed stay. O(files in the folder).
+  // exactly this form until `most` are left. A file whose name has a later time than `now` was
+  // named by a wrong clock and counts as the oldest. Files that cannot be removed stay. O(files in
+  // the folder).
   void removeOldest(std::time_t now) const;
 
  private:

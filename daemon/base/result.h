@@ -1,7 +1,7 @@
 // Result<T>: a value, or an error that says why there is none.
 //
 // Every call that can fail at run time (a port, a file, a peer) returns a Result. A violated
-// precondition is a bug and an assert(). No exception crosses a component's border; third-party
+// precondition is a bug and an assert(). No exception crosses a component's boundary; third-party
 // exceptions are caught in the adapter that calls the third party.
 //
 // C++20 has no std::expected; with C++23 this class becomes an alias of it.

@@ -1,4 +1,4 @@
-// SettingFault: a fault in a group of settings, with its place in the group.
+// SettingFault: an invalid value in a group of settings, with its place in the group.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 namespace merlin {
 
 struct SettingFault {
-  std::string pointer;     // below the group, "/tiles/2"; empty: the group itself
+  std::string pointer;     // JSON pointer relative to the group, "/tiles/2"; empty: the group
   std::string what;        // what is wrong, with the figures
   std::string other = {};  // another setting of the group that it conflicts with; empty: none
 };

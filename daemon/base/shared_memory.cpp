@@ -105,6 +105,13 @@ Result<UniqueFd> makeObject(const std::string& name, std::size_t size) {
   return shmError(name, fmt::format("{} bytes", size).c_str(), error);
 }
 
+bool accepts(SharedMemory::From from, const struct stat& status) {
+  if (from == SharedMemory::From::kAnyone) return true;
+  if (status.st_uid == ::geteuid() || status.st_uid == 0) return true;
+  // group_member() of glibc: the effective or a supplementary group of this process
+  return from == SharedMemory::From::kOwnGroup && ::group_member(status.st_gid) != 0;
+}
+
 Error notReadable(const std::string& name) {
   struct stat status {};
   group entry{};
@@ -177,7 +184,7 @@ Result<SharedMemory> SharedMemory::open(const std::string& name, From from) {
   struct stat status {};
   if (!fd.valid() && errno == EACCES) return notReadable(name);
   if (!fd.valid() || ::fstat(fd.get(), &status) != 0) return shmError(name, "open", errno);
-  if (from == From::kOwnUserOrRoot && status.st_uid != ::geteuid() && status.st_uid != 0) {
+  if (!accepts(from, status)) {
     return Error{Errc::kIo, fmt::format("shared memory {}: belongs to user {} and is not accepted",
                                         name, userName(status.st_uid))};
   }

@@ -21,11 +21,13 @@ class SharedMemory {
 
   // Whose objects a reader accepts. A daemon that acts on what it reads must only accept those of
   // its own user or root, because anybody may create an object under a free name.
-  enum class From { kAnyone, kOwnUserOrRoot };
+  // kOwnGroup: also those that belong to a group of this process, since only a member of the group
+  // can have created such an object; for a daemon that runs as a user of its own.
+  enum class From { kAnyone, kOwnUserOrRoot, kOwnGroup };
 
-  // Maps another process' object read-only. Errors: kNotFound, kIo (no permission, with the group
-  // to join; or another user's), kMalformed (empty). The object's owner and root, who may write it,
-  // can also truncate it, which ends readers with SIGBUS.
+  // Maps another process' object read-only. Errors: kNotFound, kIo (no permission: the message
+  // names the group to join; or `from` does not accept its owner), kMalformed (empty). The object's
+  // owner and root, who may write it, can also truncate it, which ends readers with SIGBUS.
   static Result<SharedMemory> open(const std::string& name, From from = From::kAnyone);
 
   // To be called by the owner once a second, from one thread: if the object or its lock was removed

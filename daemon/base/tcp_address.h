@@ -1,4 +1,5 @@
-// TcpAddress: "tcp://HOST:PORT", as settings name raw serial servers and other daemons.
+// TcpAddress: an address "tcp://HOST:PORT", by which settings name raw serial servers and other
+// daemons.
 #pragma once
 
 #include <optional>

@@ -10,9 +10,9 @@
 
 namespace merlin {
 
-// For one thread at a time, which passes it to forBlocks() (blocks.h). Its threads are started when
-// first needed, with the affinity and priority of the thread that needs them. When idle they spin
-// for 0.2 ms, then sleep.
+// Used by one thread at a time, which passes the team to forBlocks() (blocks.h). The team's threads
+// are started when first needed, with the affinity and priority of the thread that needs them. When
+// idle they spin for 0.2 ms, then sleep.
 class ThreadTeam {
  public:
   ThreadTeam() = default;
@@ -20,7 +20,7 @@ class ThreadTeam {
   ThreadTeam(const ThreadTeam&) = delete;
   ThreadTeam& operator=(const ThreadTeam&) = delete;
 
-  // Whether it has no job. To be asked by its user, or by the job itself.
+  // Whether the team has no job. May be called by the thread that uses the team, or by the job.
   bool idle() const noexcept { return !job_; }
 
   // One job of the team; the destructor waits until all threads have finished it.
@@ -43,7 +43,7 @@ class ThreadTeam {
   void finish() noexcept;
   void work(std::size_t member, int turn) noexcept;
 
-  const std::function<void()>* job_ = nullptr;  // null in a new turn: the threads end
+  const std::function<void()>* job_ = nullptr;  // null when a turn begins: threads end
   std::size_t wanted_ = 0;
   std::atomic<int> turn_{0}, busy_{0};
   std::vector<std::jthread> members_;

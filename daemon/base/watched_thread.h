@@ -61,7 +61,7 @@ struct ThreadState {
   std::string reason;   // why it ended
 };
 
-// The threads of one process. Thread-safe. It outlives its threads.
+// The threads of one process. Thread-safe. Must outlive its threads.
 class ThreadWatch {
  public:
   // The threads that run, or ended without having been asked to, in the order of their start.

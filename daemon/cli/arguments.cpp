@@ -74,8 +74,9 @@ struct Plain<std::vector<T>> {
   using type = T;
 };
 
-// The fault of a value that CLI11 would accept: -1 for an unsigned type (it would wrap to the
-// largest value), "nan" and "inf" for a floating-point type.
+// Returns the fault of a value that CLI11 accepts and we do not: a negative number for an unsigned
+// type (it would wrap around to a large one), "nan" and "inf" for a floating-point type. Empty:
+// none.
 template <typename T>
 std::string faultOf(const std::string& value) {
   if (std::is_unsigned_v<T> && value.starts_with('-')) return value + " is less than 0";

@@ -1,5 +1,5 @@
-// Command-line options: a small wrapper around CLI11. Its header adds ten seconds to each file that
-// includes it, so only arguments.cpp does.
+// Command-line options: a small wrapper around CLI11. The header of CLI11 adds ten seconds to the
+// compilation of each file that includes it, so only arguments.cpp includes it.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,17 @@ class Option;
 
 namespace merlin::cli {
 
-// A handle of an option, a flag or a positional argument; valid as long as its command.
+// Handle of an option, a flag or a positional argument; valid as long as the CLI::App. The setters
+// return the same handle, for chaining.
 class Argument {
  public:
   explicit Argument(CLI::Option* option) : option_(option) {}
 
   Argument required();
   Argument typeName(const std::string& name);  // placeholder for the value in the help
-  Argument expected(int values);               // number of values, exactly
-  Argument separated(char by);                 // several values in one word, separated by `by`
-  Argument showDefault();                      // the help shows the variable's current value
+  Argument expected(int values);               // exact number of values
+  Argument separated(char by);                 // several values in one argument, separated by `by`
+  Argument showDefault();  // the help shows the variable's present value as the default
 
   Argument range(int low, int high);
   Argument range(double low, double high);
@@ -33,8 +34,8 @@ class Argument {
   Argument seconds();  // a duration: 0.1 to 10 million
   Argument baud();     // a standard speed of serial lines
   Argument oneOf(std::vector<std::string> values);
-  Argument size();  // bytes with a suffix, 900M or 16G; powers of 1000
-  // `fault` returns what is wrong with a value, or an empty string.
+  Argument size();  // number of bytes, also with a suffix: 900M, 16G (powers of 1000)
+  // Adds a check of each value: `fault` returns a message, or an empty string for a valid value.
   Argument check(std::function<std::string(const std::string&)> fault);
 
   bool isGiven() const;  // after parsing
@@ -44,13 +45,13 @@ class Argument {
   CLI::Option* option_;
 };
 
-// A handle of a command, a subcommand or a group of options; valid as long as the CLI::App.
+// Handle of a command, a subcommand or a group of options; valid as long as the CLI::App.
 class Command {
  public:
   explicit Command(CLI::App& app) : app_(&app) {}
 
   Command subcommand(const std::string& name, const std::string& help);
-  void requireSubcommand();  // exactly one
+  void requireSubcommand();  // exactly one subcommand must be given
   Command group(const std::string& name, const std::string& help);
   void atMostOne();  // at most one of the group's options may be given
 
@@ -58,19 +59,20 @@ class Command {
   // std::uint64_t, float, double, std::string, and std::optional and std::vector of some of them.
   template <typename T>
   Argument option(const std::string& names, T& value, const std::string& help = "");
-  // With names "!--name", giving the flag sets `value` to false.
+  // The flag sets `value` to true; if `names` starts with "!", as in "!--name", to false.
   Argument flag(const std::string& names, bool& value, const std::string& help = "");
 
-  // Called after parsing if this command was chosen.
+  // `chosen` is called after parsing if this command was given.
   void callback(const std::function<void()>& chosen);
 
-  void exclude(const Argument& other);  // neither this command nor its options with `other`
+  void exclude(const Argument& other);  // this command or group cannot be combined with `other`
 
  private:
   CLI::App* app_;
 };
 
-// To be called by a callback if the command line lacks `what`: throws the parser's error.
+// Reports that the command line lacks the option `what`, by throwing CLI::RequiredError. To be
+// called by a callback only, whose caller handles it.
 [[noreturn]] void lacks(const std::string& what);
 
 }  // namespace merlin::cli

@@ -22,7 +22,8 @@ Result<Ok> checkEnding(const std::string& path, const char* what, const char* en
 }
 
 void addInstance(Command app, std::string& instance) {
-  app.option("--instance", instance, "The daemon's name, \"instance\" in its configuration")
+  app.option("--instance", instance,
+             "Name of the daemon: the setting instance of its configuration")
       .showDefault();
 }
 

@@ -1,4 +1,4 @@
-// The subcommands of `merlin`: functions that add them to the command line, and shared helpers.
+// The subcommands of the program merlin: a function for each adds it to the command line; helpers.
 #pragma once
 
 #include <functional>
@@ -9,10 +9,11 @@
 
 namespace merlin::cli {
 
-// Set by the subcommand that was chosen, called after parsing; returns the exit status.
+// What the given subcommand does; returns the exit status. The subcommand's callback sets it during
+// parsing, and main() calls it after parsing.
 using Run = std::function<int()>;
 
-// Each is defined in a file of its own.
+// Each function adds one subcommand; `run`: set if that subcommand was given.
 void addCalibrate(Command app, Run& run);
 void addCommandsByName(Command app, Run& run);
 void addConfig(Command app, Run& run);
@@ -30,14 +31,14 @@ void addTrace(Command app, Run& run);
 void addWall(Command app, Run& run);
 void addWatch(Command app, Run& run);
 
-// Prints "merlin: WHAT" to stderr; returns the error's exit status.
+// Prints "merlin: " and the error's text to stderr; returns the error's exit status.
 int fail(const Error& error);
 
-// Checks that the name of an output file ends in `ending`. `what`: the kind of file, for the
-// message "shot.jpg: the name of a picture must end in .png". Errors: kInvalidArgument.
+// Checks that the name of an output file ends in `ending`. `what`: kind of the file, for messages
+// such as "shot.jpg: the name of a picture must end in .png". Errors: kInvalidArgument.
 Result<Ok> checkEnding(const std::string& path, const char* what, const char* ending);
 
-// Adds the option --instance, which every subcommand that speaks to a daemon has.
+// Adds the option --instance, which selects the daemon that a subcommand communicates with.
 void addInstance(Command app, std::string& instance);
 
 }  // namespace merlin::cli

@@ -1,14 +1,14 @@
-// merlin config: what a person does with a configuration file. Today: migrate.
+// merlin config: commands for configuration files. The only one is migrate.
 #include <memory>
 
 #include <fmt/format.h>
 
-#include "config/json_tree.h"
 #include "config/migrate.h"
 #include "daemon/base/files.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
+#include "daemon/json/json_tree.h"
 
 namespace merlin::cli {
 namespace {
@@ -24,17 +24,17 @@ int migrateFile(const MigrateOptions& options) {
   if (!migrated)
     return fail({Errc::kInvalidArgument, options.input + ": " + migrated.error().what});
   for (const std::string& change : migrated->changes) say("{}: {}\n", options.input, change);
-  if (migrated->changes.empty()) say("{}: is in the form of this version\n", options.input);
+  if (migrated->changes.empty()) say("{}: has the form of this version already\n", options.input);
   const bool in_place = options.output.empty();
   if (in_place && migrated->changes.empty()) return kExitDone;
   if (in_place) {
     const std::string kept = options.input + ".old";
     if (fileStamp(kept)) {
       return fail({Errc::kInvalidArgument,
-                   kept + ": is there already; remove it, or write elsewhere with -o"});
+                   kept + ": exists already; remove it, or choose another output file with -o"});
     }
     if (const auto written = writeFile(kept, file->text()); !written) return fail(written.error());
-    say("{}: the file as it was\n", kept);
+    say("{}: copy of the original file\n", kept);
   }
   const auto written = writeFile(in_place ? options.input : options.output, migrated->text);
   return written ? int{kExitDone} : fail(written.error());
@@ -48,10 +48,11 @@ void addConfig(Command app, Run& run) {
   const auto options = std::make_shared<MigrateOptions>();
   Command command = config.subcommand(
       "migrate",
-      "Rewrites a configuration of an earlier version in the form of this version. The file as it "
-      "was stays beside it as FILE.old.\nExample: merlin config migrate /etc/merlin/merlin.json");
-  command.option("file", options->input, "The configuration").required().typeName("FILE");
-  command.option("-o", options->output, "Write there, and leave FILE as it is").typeName("FILE");
+      "Rewrite a configuration of an earlier version in the form of this version. The original "
+      "file is kept as FILE.old.\nExample: merlin config migrate /etc/merlin/merlin.json");
+  command.option("file", options->input, "The configuration file").required().typeName("FILE");
+  command.option("-o", options->output, "Write the result into this file, and leave FILE unchanged")
+      .typeName("FILE");
   command.callback([options, &run] { run = [options] { return migrateFile(*options); }; });
 }
 

@@ -31,17 +31,18 @@ inline int exitStatus(const Error& error) {
   return kExitFailed;
 }
 
-// Runs `main` and returns its status. After an uncaught exception (usually bad_alloc) it prints one
-// line to stderr and returns `failed`; also if stdout could not be written.
+// Runs `main` and returns its exit status. After an uncaught exception (usually bad_alloc), and if
+// stdout could not be written, prints one line to stderr and returns `failed`, or in the latter
+// case the status of `main` if that is greater.
 template <typename Main>
 int guarded(const char* program, Main main, int failed = kExitFailed) noexcept {
   try {
     const int status = main();
-    // Output may still be buffered: a full disk is only noticed here.
+    // Output may still be buffered, so that only this flush notices a full disk.
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
     std::fprintf(stderr, "%s: the output could not be written: %s\n", program,
                  std::strerror(errno));
-    return std::max(status, failed);  // a worse status of main() is kept
+    return std::max(status, failed);
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "%s: ended: out of memory (or above a limit such as ulimit -v)\n",
                  program);

@@ -13,7 +13,7 @@
 namespace merlin::cli {
 namespace {
 
-constexpr int kMostTries = 5;  // per step, so that a run without a person ends too
+constexpr int kMostTries = 5;  // per step, so that the program ends even if nobody takes part
 constexpr Duration kRedraw = std::chrono::milliseconds(100);
 
 bool enterPressed() {
@@ -22,8 +22,8 @@ bool enterPressed() {
   return ::poll(&item, 1, 0) > 0 && ::read(STDIN_FILENO, line, sizeof line) >= 0;
 }
 
-// Shows Guided::now() on one line of the terminal, redrawn in place; nothing if stderr is not a
-// terminal.
+// Shows Guided::now() on one line of the terminal, redrawn in place; shows nothing if stderr is not
+// a terminal.
 class LiveLine {
  public:
   LiveLine() = default;
@@ -45,7 +45,7 @@ class LiveLine {
   Timestamp drawn_{};
 };
 
-// Listens until `until()` is true.
+// Calls guided.listen() until `until()` is true.
 template <typename Until>
 Result<Ok> listenUntil(Guided& guided, const Clock& clock, bool measuring, Until until) {
   LiveLine live;
@@ -56,8 +56,8 @@ Result<Ok> listenUntil(Guided& guided, const Clock& clock, bool measuring, Until
   return Ok{};
 }
 
-// Tries a step once and returns the result of end(). `broken`: set to an error that ends the
-// calibration.
+// Tries a step once and returns the result of end(). `broken` is set to the error of listen(), if
+// any, which ends the calibration.
 Result<std::string> tryStep(std::size_t step, const GuideTiming& timing, Guided& guided,
                             Result<Ok>& broken) {
   const SystemClock clock;
@@ -75,11 +75,12 @@ Result<std::string> tryStep(std::size_t step, const GuideTiming& timing, Guided&
 }  // namespace
 
 void addGuideTiming(Command app, GuideTiming& timing) {
-  app.option("--hold", timing.hold_s, "How long each step is measured, in seconds")
+  app.option("--hold", timing.hold_s, "Duration of the measurement of each step, in seconds")
       .range(0.1, 60.0)
       .showDefault();
   app.option("--pause", timing.pause_s,
-             "Time to get ready for a step, in seconds, instead of pressing Enter")
+             "Start the measurement of a step after this time, in seconds, instead of waiting for "
+             "Enter")
       .range(0.1, 600.0);
 }
 

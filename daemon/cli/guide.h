@@ -1,4 +1,4 @@
-// A guided calibration: a person is told what to do, step by step, while a device is measured.
+// Guided calibration: instructs a person step by step while a device is measured.
 #pragma once
 
 #include <span>
@@ -10,37 +10,37 @@
 
 namespace merlin::cli {
 
-// Interface of one calibration: reads the device's samples and evaluates each step.
+// Interface of one device's calibration: reads the device's samples and evaluates each step.
 class Guided {
  public:
   virtual ~Guided() = default;
 
-  // Waits up to a quarter of a second for samples; they are used only if `measuring`. An error ends
-  // the calibration.
+  // Waits up to a quarter of a second for samples; uses them for the step only if `measuring` is
+  // true. An error ends the calibration.
   virtual Result<Ok> listen(bool measuring) = 0;
 
-  // Begins to measure this step; discards what was measured of it before.
+  // Begins to measure this step; discards earlier measurements of the step.
   virtual void begin(std::size_t step) = 0;
 
-  // Ends the step and returns the result as a text for the person; after an error the step is
-  // repeated.
+  // Ends the step and returns its result as a text for the person. An error means that the
+  // measurement cannot be used; the step is then repeated.
   virtual Result<std::string> end() = 0;
 
-  // The device's current values, one line for a terminal; empty: nothing is shown.
+  // The device's current values as one line for a terminal; empty: nothing is shown.
   virtual std::string now() const { return {}; }
 };
 
 struct GuideTiming {
-  double hold_s = 1;
-  double pause_s = 0;  // time to get ready for a step; 0: the person presses Enter
+  double hold_s = 1;   // duration of the measurement of a step
+  double pause_s = 0;  // time to get ready for a step; 0: waits until the person presses Enter
 };
 
 // Adds the options --hold and --pause, which every guided calibration has.
 void addGuideTiming(Command app, GuideTiming& timing);
 
 // Goes through the steps in order: prints the instruction, waits for Enter or for the pause,
-// measures, and repeats the step if end() refused it. Errors: those of listen(); that of end() for
-// a step that was refused five times.
+// measures, and repeats the step if end() returned an error. Errors: those of listen(); that of
+// end() if it fails five times for one step.
 Result<Ok> guide(std::span<const GuidedStep> steps, const GuideTiming& timing, Guided& guided);
 
 }  // namespace merlin::cli

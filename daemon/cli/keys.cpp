@@ -1,4 +1,4 @@
-// merlin keys: makes a key pair for a daemon that communicates over a network.
+// merlin keys: creates a key pair for a daemon that sends or receives samples over a network.
 #include <memory>
 
 #include <fmt/format.h>
@@ -14,10 +14,11 @@ namespace {
 
 int makeKeys(const std::string& path) {
   struct stat status {};
-  // lstat(), so that an unreadable file or a dangling link counts as existing too.
+  // By lstat(), so that a file that cannot be read or a dangling link counts as existing too.
   if (::lstat(path.c_str(), &status) == 0) {
-    return fail({Errc::kInvalidArgument, path + ": exists already; a new key pair would lock out "
-                                                "everyone who knows the old public key"});
+    return fail({Errc::kInvalidArgument, path +
+                                             ": exists already; with a new key pair, machines that "
+                                             "know the old public key could not connect"});
   }
   const auto keys = status::makeKeyPair();
   if (!keys) return fail(keys.error());
@@ -33,9 +34,10 @@ void addKeys(Command app, Run& run) {
   const auto path = std::make_shared<std::string>();
   Command command = app.subcommand(
       "keys",
-      "Make a key pair for samples over a network. The file stays on this machine; the public key, "
-      "which is printed, goes to the other side.\nExample: merlin keys -o /etc/merlin/wall.keys");
-  command.option("-o,--output", *path, "Name of the key file; only its owner can read it")
+      "Create a key pair for encrypted samples over a network. The key file stays on this machine; "
+      "the public key, which is printed, is for the other machine.\n"
+      "Example: merlin keys -o /etc/merlin/wall.keys");
+  command.option("-o,--output", *path, "Name of the key file, which only its owner can read")
       .required();
   command.callback([path, &run] { run = [path] { return makeKeys(*path); }; });
 }

@@ -1,4 +1,5 @@
-// LiveSamples: reads one device's samples from the shared memory of a running merlind, each once.
+// LiveSamples: reads one device's samples from the shared memory of a running merlind; each sample
+// is delivered once.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +21,8 @@ class LiveSamples {
   using Segment = shm::DevicesSegment;
   using Pick = std::function<const shm::Channel<Sample>&(const Segment&)>;
 
-  // Errors: kNotFound (no merlind runs as `instance`), kClosed (it has ended), SegmentReader's.
+  // `pick` returns the device's channel in the segment. Errors: kNotFound (there is no shared
+  // memory of `instance`), kClosed (its merlind has ended), those of SegmentReader::open().
   static Result<LiveSamples> open(const std::string& instance, shm::DeviceIndex device, Pick pick) {
     auto segment = shm::SegmentReader<Segment>::open(shm::segmentName(instance, "devices"));
     if (!segment && segment.error().code == Errc::kNotFound)
@@ -34,8 +36,8 @@ class LiveSamples {
     return samples;
   }
 
-  // Calls `take` for each sample since the last call; waits up to 0.1 s for one. If more than 128
-  // have arrived, only the last 128. Errors: kClosed (the daemon has ended).
+  // Calls `take` for each sample that has arrived since the last call, but at most for the newest
+  // 128; waits up to 0.1 s if there is none. Errors: kClosed (merlind has ended).
   template <typename Take>
   Result<Ok> listen(Take take) {
     if (auto alive = checkAlive(); !alive) return alive;
@@ -72,7 +74,8 @@ class LiveSamples {
     return Error{Errc::kClosed, "merlind has ended; nothing was changed"};
   }
 
-  // read() fails if writes kept interfering; the last known health is kept then.
+  // Stores the device's health. read() fails if each attempt coincided with a write; the last known
+  // health is kept then.
   void keepHealth() {
     if (const auto health = segment_->health[device_].read()) health_ = *health;
   }
@@ -81,8 +84,8 @@ class LiveSamples {
   shm::SegmentReader<Segment> segment_;
   shm::DeviceIndex device_;
   Pick pick_;
-  std::optional<DeviceHealth> health_;  // the last known
-  std::uint64_t next_;
+  std::optional<DeviceHealth> health_;  // the last known; none: not known yet
+  std::uint64_t next_;                  // index of the next sample to deliver
 };
 
 }  // namespace merlin::cli

@@ -1,4 +1,5 @@
-// Output of the commands for people and for programs; safe for any bytes from files and arguments.
+// Output of the subcommands, for people and for programs; safe for any bytes that come from files
+// and arguments.
 #pragma once
 
 #include <cstdio>
@@ -22,7 +23,7 @@ void say(fmt::format_string<Args...> format, Args&&... args) {
 // Prints "merlin: note: TEXT" to stderr.
 inline void printNote(std::string_view text) { printError("merlin: note: {}\n", printable(text)); }
 
-// The JSON on one line; bytes that are not valid UTF-8 are replaced.
+// The JSON as one line of text; bytes that are not valid UTF-8 are replaced.
 template <typename Json>
 std::string jsonText(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);

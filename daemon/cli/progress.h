@@ -7,15 +7,16 @@
 
 namespace merlin::cli {
 
-// On a terminal, one line that is redrawn ten times a second; otherwise a line for each tenth of
-// the work. Writes to stderr. Thread-bound.
+// On a terminal, redraws one line up to ten times a second; otherwise prints a line after each
+// tenth of the work. Writes to stderr. Thread-bound.
 class ProgressBar {
  public:
   ProgressBar(std::string title, std::string unit, const Clock& clock);
 
-  // `share`: part of the work that is done, 0..1; `count`: number of `unit` so far, for the rate.
+  // `share`: part of the work that is done, 0..1. `count`: items done so far, for the rate; `unit`
+  // of the constructor is their name in the plural, such as "points".
   void update(double share, std::size_t count);
-  void finish(std::size_t count);
+  void finish(std::size_t count);  // the work is done: `count` items
 
  private:
   void draw(double share, std::size_t count);

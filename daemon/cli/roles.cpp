@@ -7,7 +7,7 @@
 namespace merlin::cli {
 namespace {
 
-// The role if it runs. `denied`: set if its segment exists but may not be read.
+// Returns the role if it runs. `denied` is set if its shared memory exists but cannot be read.
 template <typename Segment>
 std::optional<FoundRole> find(const std::string& instance, const char* role,
                               std::optional<Error>& denied) {
@@ -15,7 +15,8 @@ std::optional<FoundRole> find(const std::string& instance, const char* role,
   if (!segment && segment.error().code == Errc::kIo) denied = segment.error();
   if (!segment || !segment->alive(SystemClock().now())) return std::nullopt;
   const shm::Header& h = (*segment)->header;
-  // A mirror of another machine's devices: no process here takes their commands.
+  // Without an endpoint the segment is a copy of another machine's devices, and no process on this
+  // machine executes their commands.
   if (h.command_endpoint[0] == '\0') return std::nullopt;
   return FoundRole{role, {h.status_endpoint, h.command_endpoint}};
 }
@@ -29,8 +30,8 @@ Result<std::vector<FoundRole>> findRoles(const std::string& instance) {
   if (auto role = find<shm::DevicesSegment>(instance, "devices", denied)) roles.push_back(*role);
   if (!roles.empty()) return roles;
   if (denied) return *denied;
-  return Error{Errc::kIo, fmt::format("no merlind runs as \"{0}\" (no shared memory /{0}-wall or "
-                                      "/{0}-devices of a running one)",
+  return Error{Errc::kIo, fmt::format("no merlind runs as \"{0}\" (there is no shared memory "
+                                      "/{0}-wall or /{0}-devices of a running merlind)",
                                       instance)};
 }
 

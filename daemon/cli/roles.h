@@ -1,4 +1,5 @@
-// Finds the running roles of a daemon, for subcommands that read their state or send commands.
+// Finds the running roles of a daemon (devices, wall), for subcommands that read the roles' state
+// or send commands to them.
 #pragma once
 
 #include <optional>
@@ -15,16 +16,17 @@ struct FoundRole {
   shm::Endpoints endpoints;
 };
 
-// The running roles of this instance. Errors: kIo, with what was looked for, if there is none.
+// The running roles of this instance. Errors: kIo if no role runs, or if its shared memory may not
+// be read.
 Result<std::vector<FoundRole>> findRoles(const std::string& instance);
 
-// A command of daemon/base/commands.h, its argument, and how long to wait for the answer.
+// A request to a role: a command of daemon/base/commands.h and its argument.
 struct Asked {
   std::string command, argument = {};
-  Duration patience = std::chrono::seconds(2);
+  Duration patience = std::chrono::seconds(2);  // maximum time to wait for the answer
 };
 
-// Sends a command to the role and returns its answer, JSON. Errors: those of findRoles() and
+// Sends a command to the role and returns the answer as JSON. Errors: those of findRoles() and
 // status::ask(); kIo if this daemon does not run the role.
 Result<std::string> askRole(const std::string& instance, const std::string& role,
                             const Asked& asked);

@@ -9,7 +9,7 @@ namespace merlin::cli {
 
 struct ChartAxis {
   double low = 1, high = 10;  // low < high; both > 0 if the axis is logarithmic
-  bool logarithmic = true;    // a grid line at each power of ten; linear: at the two ends only
+  bool logarithmic = true;    // grid lines at powers of ten; otherwise at the two ends only
 };
 
 struct ChartLine {
@@ -21,8 +21,8 @@ struct ChartLine {
 // Escapes a text for SVG.
 std::string svgText(const std::string& text);
 
-// The chart as SVG. `below`: the text below it. Points outside the axes are clamped to their ends.
-// Titles and names are not escaped: use svgText().
+// The chart as SVG. `below`: text below the chart. Points outside the range of an axis are drawn at
+// its end. The title and names are not escaped: use svgText().
 std::string svgChart(const std::string& title, const std::string& below, const ChartAxis& x,
                      const ChartAxis& y, const std::vector<ChartLine>& lines);
 

@@ -92,7 +92,7 @@ class WatchedStream final : public ByteStream {
 // once.
 class Opener {
  public:
-  // `progress`: set to the opening thread's once it runs.
+  // `progress`: refers to a pointer that is set when the opening thread starts.
   Opener(PortAddress address, int baud, ByteTap& tap, Progress* const& progress, const Clock& clock)
       : address_(std::move(address)), baud_(baud), tap_(tap), progress_(progress), clock_(clock) {}
 
@@ -186,8 +186,8 @@ Result<Ok> DevicesRole::add(const LineSettings& line, SampleKind kind, shm::Devi
   return Ok{};
 }
 
-// Makes what a device's samples and health pass through on their way into shared memory. Each part
-// publishes before it passes a sample on.
+// Builds the chain of sinks through which a device's samples and health reach shared memory. Each
+// sink publishes its own result before it passes a sample on.
 Result<DevicesRole::Sinks> DevicesRole::sinksFor(SampleKind kind, HealthSink& health,
                                                  const DevicesSettings& settings) {
   if (kind == SampleKind::kTracker) {

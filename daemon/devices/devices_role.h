@@ -73,7 +73,7 @@ class DevicesRole {
   std::vector<std::unique_ptr<shm::ShmHealthSink>> health_;
   std::vector<std::unique_ptr<actions::ActionSink>> action_sinks_;
   std::uint64_t generation_;
-  // A device's loop; `progress` is its thread's, once that runs.
+  // A device's loop; `progress` is set when its thread starts.
   struct Line {
     std::string name;
     Progress* progress = nullptr;

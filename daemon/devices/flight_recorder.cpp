@@ -60,7 +60,7 @@ Result<std::string> FlightRecorder::write(const Entry& entry, std::string_view w
   transcript.header = {{"device", health.identity[0] ? health.identity : "not known"},
                        {"driver", entry.driver},
                        {"serial", fmt::format("{} 8N1", entry.baud)},
-                       {"synthetic", "not known: from the line"},
+                       {"synthetic", "not known: recorded from the line"},
                        {"by", "merlind's flight recorder"},
                        {"date", fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(now))},
                        {"notes", fmt::format("{}; {:.1f} s after the beginning are missing", why,

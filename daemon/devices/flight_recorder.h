@@ -20,8 +20,8 @@ class FlightRecorder {
   FlightRecorder(const shm::DevicesSegment& segment, std::string folder, std::string instance)
       : segment_(segment), folder_(std::move(folder)), instance_(std::move(instance)) {}
 
-  // Adds a ring for a device and returns it; it lives as long as this. `driver` and `baud` go into
-  // the headers of its dumps.
+  // Adds a ring for a device and returns it; the ring lives as long as the recorder. `driver` and
+  // `baud` go into the headers of its dumps.
   FlightRing& add(shm::DeviceIndex device, std::string driver, int baud);
 
   // Dumps each device that has stopped working since the last call; returns a sentence for each.

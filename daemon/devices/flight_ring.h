@@ -26,8 +26,8 @@ class FlightRing final : public ByteTap {
   void said(Timestamp at, std::span<const std::byte> bytes) noexcept override;
 
   // The contents as the chunks of a transcript: the beginning of the connection, then the newest
-  // bytes of the same connection; in one piece if nothing between has been overwritten yet.
-  // `left_out`: set to the time between the two that is no longer stored.
+  // bytes of the same connection; without a gap if no bytes between them were overwritten.
+  // `left_out`: set to the length of the gap, whose bytes are no longer stored.
   std::vector<io::TranscriptChunk> take(Duration* left_out) const;
 
  private:

@@ -26,7 +26,7 @@ Held heldBy(const Peer& peer, std::span<const Occupant> all) {
   return held;
 }
 
-// Order in which connections are closed for a newcomer: the largest first.
+// Order in which connections are closed for a new one: the largest rank first.
 auto rank(const Occupant& o, std::span<const Occupant> all, Timestamp now) {
   const Held held = heldBy(o.peer, all);
   return std::tuple(!o.established, held.group, held.own, now - o.active);

@@ -72,7 +72,7 @@ bool ConnectionServer::add(UniqueFd fd, const Peer& peer, const MakeSession& mak
     return false;
   }
   if (decision.kind == Decision::Kind::kReplace) {
-    end(*clients_[decision.victim], End::kReplaced, "its place was needed for a newcomer");
+    end(*clients_[decision.victim], End::kReplaced, "its place was needed for a new connection");
     removeEnded();
   }
   auto session = make(peer);
@@ -102,7 +102,7 @@ void ConnectionServer::accept(Listener& listener) {
       return;
     }
     const Peer peer = peerOf(fd.get());
-    const int yes = 1;  // output is complete messages: do not delay them
+    const int yes = 1;  // output consists of complete messages: do not delay
     if (peer.user < 0) ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
     add(std::move(fd), peer, listener.make);
   }

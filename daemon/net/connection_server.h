@@ -77,7 +77,7 @@ struct ServerReport {
   std::size_t connections = 0;  // now
   std::uint64_t accepted = 0;   // since the start, as all below
   std::uint64_t refused = 0;    // there was no place
-  std::uint64_t replaced = 0;   // closed because a newcomer needed the place
+  std::uint64_t replaced = 0;   // closed because a new connection needed the place
   std::uint64_t silent = 0;     // closed: did not complete the handshake in time
   std::uint64_t broken = 0;     // closed: violated the protocol
   std::uint64_t slow = 0;       // closed: did not read
@@ -147,7 +147,8 @@ class ConnectionServer {
   std::vector<Listener> listeners_;
   std::vector<std::unique_ptr<Client>> clients_;
   TokenBucket accepts_;
-  Timestamp accept_from_{};  // accept none before this: no descriptor was left, or the rate limit
+  // Nothing is accepted before this time: descriptors ran out, or the rate limit was reached.
+  Timestamp accept_from_{};
   mutable std::mutex mutex_;
   ServerReport report_;  // guarded by mutex_
 };

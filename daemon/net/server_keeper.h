@@ -1,5 +1,5 @@
-// ServerKeeper: keeps a configured server running. If it cannot start, or ends, it is started again
-// every few seconds; the rest of the daemon continues.
+// ServerKeeper: keeps a configured server running. If the server cannot start, or ends, the keeper
+// tries to start it again every few seconds; the rest of the daemon continues.
 #pragma once
 
 #include <functional>

@@ -12,7 +12,7 @@
 
 namespace merlin::serve {
 
-// Has a thread of its own. Cost: a second wake-up per sample, about 20 us.
+// Has its own thread. Cost: a second wake-up per sample, about 20 us.
 class SampleWaker {
  public:
   // `words`: wake words of shm::Channel. They and `watch` must outlive this.

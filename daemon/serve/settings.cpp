@@ -16,8 +16,9 @@ SettingFaults validate(const ServeSettings& s) {
                                   s.samples_endpoint)});
   }
   if (s.samples_keys.empty() || s.samples_clients.empty()) {
-    faults.push_back({"/samples_endpoint",
-                      "needs samples_keys (merlin keys -o FILE) and samples_clients beside it"});
+    faults.push_back(
+        {"/samples_endpoint",
+         "also needs samples_keys (merlin keys -o FILE creates it) and samples_clients"});
   }
   return faults;
 }

@@ -61,7 +61,7 @@ SpnavDevice spnavDevice(std::string_view identity, std::string_view port) {
     const char* model;
     int type, buttons;
   };
-  // Buttons are numbered as in drivers/spaceball: the 2003's ninth is pick, the 3003's third
+  // Buttons are numbered as in drivers/spaceball: button 9 of a 2003 is pick, button 3 of a 3003 is
   // rezero.
   constexpr Known kKnown[] = {
       {"1003", 0x100, 9}, {"2003", 0x100, 9}, {"3003", 0x101, 3}, {"4000", 0x102, 12}};
@@ -151,7 +151,7 @@ bool SpnavClient::configuration(std::uint32_t number, Words& words) const {
     case kGetSwapYZ:
     case kGetLed:
     case kGetGrab: return true;
-    case kGetRepeat: words[1] = -1; return true;  // never
+    case kGetRepeat: words[1] = -1; return true;  // no key repeat
     default: return false;
   }
 }

@@ -1,5 +1,5 @@
-// The protocol of the space-mouse socket, the server's state for one client: bytes to requests,
-// samples to events. No I/O, no clock.
+// The protocol of the space-mouse socket, with the server's state for one client: converts bytes to
+// requests and samples to events. No I/O, no clock.
 //
 // To the client: messages of 32 bytes, i32[8] in the machine's byte order. Events: 0 motion x y z
 // rx ry rz ms; 1 press, 2 release: the button; 3 device: 0 added or 1 removed, id, type; 5 raw

@@ -19,10 +19,10 @@ namespace merlin::serve {
 namespace {
 
 constexpr Duration kRound = std::chrono::milliseconds(50);
-constexpr double kDatagrams = 20;  // answered per second, and at once
+constexpr double kDatagrams = 20;  // answered per second, and in a burst
 constexpr std::int32_t kButtons = 12;
 
-// Our numbers of senders and types; a client gets the name of each before anything else.
+// The server's numbers for senders and types; each client first gets their names.
 enum Sender : std::int32_t { kControl, kHand, kTracker, kBall };
 constexpr const char* kSenders[] = {"VRPN Control", "Hand0", "Tracker0", "Ball0"};
 enum Type : std::int32_t { kPing, kPong, kPose, kChannels, kButtonChange, kButtonStates };
@@ -75,7 +75,7 @@ class PortClaim {
   int port_;
 };
 
-// One client: its own numbers of names, and what was sent to it.
+// One client: the numbers that it gave to senders and types, and the state of what was sent to it.
 class VrpnSession final : public net::Session {
  public:
   VrpnSession(const shm::DevicesSegment& segment, const Clock& clock,
@@ -112,7 +112,7 @@ Result<net::Session::Taken> VrpnSession::receive(std::string_view input, std::si
   if (!greeted_) {
     if (input.size() < kVrpnCookieLength) return taken;
     if (!vrpnCookieFits(input.substr(0, kVrpnCookieLength)))
-      return Error{Errc::kMalformed, "its cookie is not that of VRPN 7"};
+      return Error{Errc::kMalformed, "its cookie does not match VRPN 7"};
     greeted_ = true;
     taken.bytes = kVrpnCookieLength;
   }

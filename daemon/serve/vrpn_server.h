@@ -24,8 +24,8 @@ class VrpnSession;
 
 // Devices: Hand0 (tracker, sensor 0, smoothed; analog, 23 joint angles in radians), Tracker0
 // (tracker, sensors 0 to 3), Ball0 (analog, 6 shares of full scale; buttons). Positions are in
-// metres, in the transmitter's frame. Data are sent over TCP; clients connect by TCP or ask by UDP.
-// Owns its threads; reads the segment as any client does.
+// metres, in the frame of each station. Data are sent over TCP; a client connects by TCP, or asks
+// by UDP to be connected to. Owns its threads; reads the segment as any client does.
 class VrpnServer final : public net::Server {
  public:
   // `port` 0 takes any free one. Errors: those of listenTcp(). `segment`, `watch` and `clock` must

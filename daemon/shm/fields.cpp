@@ -154,9 +154,9 @@ void addWall(FieldTable& t) {
   MERLIN_FIELD(t, WallStats, frames, "");
   MERLIN_FIELD(t, WallStats, deadlines, "");
   MERLIN_FIELD(t, WallStats, late, "");
-  MERLIN_FIELD(t, WallStats, triangles, "");
-  MERLIN_FIELD(t, WallStats, level, "");
-  MERLIN_FIELD(t, WallStats, levels, "");
+  MERLIN_FIELD(t, WallStats, cost, "");
+  MERLIN_FIELD(t, WallStats, detail_step, "");
+  MERLIN_FIELD(t, WallStats, detail_steps, "");
   MERLIN_FIELD(t, WallStats, moving, "");
   MERLIN_FIELD(t, WallStats, full_detail, "");
   MERLIN_FIELD(t, WallStats, longest_late, "");
@@ -188,13 +188,15 @@ void addPace(FieldTable& t) {
   MERLIN_FIELD(t, WallStats, operator_coarser, "");
   MERLIN_FIELD(t, WallStats, ladder_steps, "");
   MERLIN_FIELD(t, WallStats, budget, "");
-  MERLIN_FIELD(t, WallStats, held_triangles, "");
+  MERLIN_FIELD(t, WallStats, held_cost, "");
   MERLIN_FIELD(t, WallStats, cost_exponent, "");
   MERLIN_FIELD(t, WallStats, oscillation, "");
   MERLIN_FIELD(t, WallStats, settle_frames, "");
   MERLIN_FIELD(t, WallStats, still_to_first_s, "s");
   MERLIN_FIELD(t, WallStats, work_histogram, "1/16 period");
   MERLIN_FIELD(t, WallStats, returned, "");
+  MERLIN_FIELD(t, WallStats, full_cost, "");
+  MERLIN_FIELD(t, WallStats, cost_unit, "");
 }
 
 void addTrace(FieldTable& t) {
@@ -203,7 +205,7 @@ void addTrace(FieldTable& t) {
   MERLIN_FIELD(t, FrameTrace, end_ns, "ns");
   MERLIN_FIELD(t, FrameTrace, deadline_ns, "ns");
   MERLIN_FIELD(t, FrameTrace, period, "");
-  MERLIN_FIELD(t, FrameTrace, triangles, "");
+  MERLIN_FIELD(t, FrameTrace, cost, "");
   MERLIN_FIELD(t, FrameTrace, moving, "");
   MERLIN_FIELD(t, FrameTrace, late, "");
   t.add<std::uint32_t>("steps", offsetof(FrameTrace, count), "");  // NAME.count is the channel's

@@ -23,7 +23,7 @@
 namespace merlin::shm {
 
 inline constexpr std::uint32_t kMagic = 0x4E4C524D;  // "MRLN" in memory
-inline constexpr std::uint32_t kVersion = 3;
+inline constexpr std::uint32_t kVersion = 4;
 inline constexpr std::size_t kMostFields = 512;
 
 // A reader only needs to know the first 40 bytes beforehand: they have the offset of the table of
@@ -97,9 +97,9 @@ struct WallStats {
   std::uint64_t frames;        // frames drawn and presented since the start
   std::uint64_t deadlines;     // deadlines passed while something moved, since the start
   std::uint64_t late;          // deadlines of these that were missed
-  std::uint32_t triangles;     // triangles of the model in the last frame
-  std::uint32_t level;         // level of the dendrogram: number of collapses applied
-  std::uint32_t levels;        // number of levels of the dendrogram
+  std::uint32_t cost;          // cost of the last frame's detail, in cost_unit
+  std::uint32_t detail_step;   // step of the content's detail: 0 is full detail
+  std::uint32_t detail_steps;  // number of these steps
   std::uint32_t moving;        // 1 while something moves
   std::uint32_t full_detail;   // 1 while the model is shown at full detail
   std::uint32_t longest_late;  // longest sequence of late frames since the start
@@ -110,7 +110,7 @@ struct WallStats {
   float work_median_ms;  // median of the last second's frames
   float utilisation;     // work / period of the last second's moving frames
   float head_room;       // time reserve of the governor, share of the period
-  float cost_fixed_ms;   // its cost model: work = fixed + coefficient * triangles^cost_exponent
+  float cost_fixed_ms;   // its cost model: work = fixed + coefficient * cost^cost_exponent
   float cost_coefficient_us;
   float input_age_ms;              // age of the newest sample when the last frame began
   float still_to_full_s;           // last time from standstill to full detail
@@ -121,28 +121,29 @@ struct WallStats {
   char posture[20];                // current posture; empty: none
   std::uint32_t scale_divisor;     // 2 while moving tiles are drawn at half size, otherwise 1
   float rate_now_hz;               // desired rate divided by rate_divisor
-  std::uint32_t rate_divisor;      // 1; 2 or 4 while even the fewest triangles take too long
+  std::uint32_t rate_divisor;      // 1; 2 or 4 while even the coarsest detail takes too long
   std::uint32_t operator_coarser;  // 1 while the operator's view is coarser to save time
   std::uint32_t ladder_steps;      // changes of these degradations, up and down, since the start
-  std::uint32_t budget;            // triangles for the next moving frame
-  std::uint32_t held_triangles;    // triangles set by hand; 0: the governor chooses them
+  std::uint32_t budget;            // cost that the next moving frame may have
+  std::uint32_t held_cost;         // cost set by hand; 0: the governor chooses it
   float cost_exponent;             // exponent of the cost model
-  float oscillation;               // (p95 - p5) / mean of the last 100 moving frames' triangles
+  float oscillation;               // (p95 - p5) / mean of the last 100 moving frames' costs
   std::uint32_t settle_frames;     // last settling: late frames until five in a row were in time
   float still_to_first_s;          // last time from standstill to the first finer picture
   std::uint32_t work_histogram[32];  // moving frames by work / period since the start, in buckets
                                      // of 1/16; the last one has all longer ones
-  std::uint32_t returned;  // times that the initial view returned by itself, since the start
-  std::uint32_t reserved;
+  std::uint32_t returned;   // times that the initial view returned by itself, since the start
+  std::uint32_t full_cost;  // cost of full detail
+  char cost_unit[16];       // unit of costs, of the content that is shown: "triangles"
 };
-static_assert(sizeof(WallStats) == 336 && offsetof(WallStats, triangles) == 32);
+static_assert(sizeof(WallStats) == 352 && offsetof(WallStats, cost) == 32);
 static_assert(offsetof(WallStats, rate_now_hz) == 160 && offsetof(WallStats, scale_divisor) == 156);
 
 // Steps of a frame; stepName() of daemon/cli/wall/trace_json.has their names.
 enum class StepKind : std::uint16_t {
   kInput = 0,     // reads the slots of all devices
   kScene = 1,     // applies the input to camera, objects, content
-  kGovernor = 2,  // chooses the number of triangles for this frame
+  kGovernor = 2,  // chooses the detail of this frame
   kCut = 3,       // computes the cut of the dendrogram
   kUpload = 4,    // uploads the cut
   kDraw = 5,      // clears and draws one tile
@@ -162,7 +163,7 @@ struct TraceStep {
 struct FrameTrace {
   std::int64_t begin_ns, end_ns, deadline_ns;  // CLOCK_MONOTONIC
   std::uint64_t period;                        // number of the period since the start
-  std::uint32_t triangles;
+  std::uint32_t cost;                          // of its detail, in WallStats::cost_unit
   std::uint32_t moving, late;
   std::uint32_t count;  // number of steps; may exceed 32, of which the first are stored
   TraceStep steps[32];

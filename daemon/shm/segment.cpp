@@ -107,7 +107,7 @@ const Segment* SegmentFollower<Segment>::get(Timestamp now) {
   reader_.reset();
   if (now - tried_ < kRetry) return nullptr;
   tried_ = now;
-  auto opened = SegmentReader<Segment>::open(name_, SharedMemory::From::kOwnUserOrRoot);
+  auto opened = SegmentReader<Segment>::open(name_, from_);
   if (!opened || !opened->alive(now)) return nullptr;
   reader_.emplace(*std::move(opened));
   return &**reader_;

@@ -83,17 +83,20 @@ class SegmentReader {
 };
 
 // A SegmentReader for a daemon, which may outlive the segment's owner: opens the segment when one
-// of its own user or root exists, and again after its owner was restarted. Thread-bound.
+// exists, and again after its owner was restarted. `from`: whose segments it accepts. Thread-bound.
 template <typename Segment>
 class SegmentFollower {
  public:
-  explicit SegmentFollower(std::string name) : name_(std::move(name)) {}
+  explicit SegmentFollower(std::string name,
+                           SharedMemory::From from = SharedMemory::From::kOwnUserOrRoot)
+      : name_(std::move(name)), from_(from) {}
 
   // The segment, or null while no running daemon has one. Tries to open it at most twice a second.
   const Segment* get(Timestamp now);
 
  private:
   std::string name_;
+  SharedMemory::From from_;
   std::optional<SegmentReader<Segment>> reader_;
   Timestamp tried_{};
 };

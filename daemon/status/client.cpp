@@ -13,6 +13,21 @@ int milliseconds(Duration d) { return static_cast<int>(d / std::chrono::millisec
 
 constexpr Duration kAttempt = std::chrono::seconds(1);
 
+std::string requestText(const std::string& command, const std::string& argument) {
+  nlohmann::json wanted = {{"command", command}};
+  if (!argument.empty()) wanted["argument"] = argument;
+  return wanted.dump();
+}
+
+Result<std::string> resultOf(const std::string& command_endpoint, std::string_view answer) {
+  const auto json = nlohmann::json::parse(answer, nullptr, false);
+  if (json.is_object() && json.value("ok", false) && json.contains("result"))
+    return json["result"].dump();
+  const std::string why =
+      json.is_object() ? json.value("error", "no reason") : "the answer is not JSON";
+  return Error{Errc::kInvalidArgument, fmt::format("{}: {}", command_endpoint, why)};
+}
+
 Result<std::string> askOnce(const std::string& command_endpoint, const std::string& command,
                             Duration timeout, const std::string& argument) {
   try {
@@ -22,19 +37,12 @@ Result<std::string> askOnce(const std::string& command_endpoint, const std::stri
     socket.set(zmq::sockopt::rcvtimeo, milliseconds(timeout));
     socket.set(zmq::sockopt::sndtimeo, milliseconds(timeout));
     socket.connect(command_endpoint);
-    nlohmann::json wanted = {{"command", command}};
-    if (!argument.empty()) wanted["argument"] = argument;
-    const std::string request = wanted.dump();
+    const std::string request = requestText(command, argument);
     zmq::message_t answer;
     if (!socket.send(zmq::buffer(request)) || !socket.recv(answer)) {
       return Error{Errc::kTimeout, "no answer"};
     }
-    const auto json = nlohmann::json::parse(answer.to_string_view(), nullptr, false);
-    if (json.is_object() && json.value("ok", false) && json.contains("result"))
-      return json["result"].dump();
-    const std::string why =
-        json.is_object() ? json.value("error", "no reason") : "the answer is not JSON";
-    return Error{Errc::kInvalidArgument, fmt::format("{}: {}", command_endpoint, why)};
+    return resultOf(command_endpoint, answer.to_string_view());
   } catch (const std::exception& e) {
     return Error{Errc::kIo, fmt::format("{}: {}", command_endpoint, e.what())};
   }
@@ -52,6 +60,59 @@ Result<std::string> ask(const std::string& command_endpoint, const std::string& 
     if (attempt < attempts) continue;
     return Error{Errc::kTimeout, fmt::format("{}: no answer within {:.1f} s", command_endpoint,
                                              toSeconds(timeout))};
+  }
+}
+
+struct CommandSender::Connection {
+  zmq::context_t context{1};
+  std::optional<zmq::socket_t> socket;
+  std::string endpoint;           // that the socket is connected to
+  std::optional<Timestamp> sent;  // set while an answer is outstanding
+};
+
+CommandSender::CommandSender() : connection_(std::make_unique<Connection>()) {}
+CommandSender::~CommandSender() = default;
+
+bool CommandSender::isReady() const noexcept { return !connection_->sent; }
+
+Result<Ok> CommandSender::send(const std::string& command_endpoint, const std::string& command,
+                               const std::string& argument, Timestamp now) {
+  Connection& c = *connection_;
+  try {
+    if (!c.socket || c.endpoint != command_endpoint) {
+      c.socket.emplace(c.context, zmq::socket_type::req);
+      c.socket->set(zmq::sockopt::linger, 0);
+      c.socket->connect(command_endpoint);
+      c.endpoint = command_endpoint;
+    }
+    if (c.socket->send(zmq::buffer(requestText(command, argument)), zmq::send_flags::dontwait))
+      c.sent = now;
+    return Ok{};
+  } catch (const std::exception& e) {
+    c.socket.reset();
+    return Error{Errc::kIo, fmt::format("{}: {}", command_endpoint, e.what())};
+  }
+}
+
+std::optional<Result<std::string>> CommandSender::answer(Timestamp now) {
+  Connection& c = *connection_;
+  if (!c.sent) return std::nullopt;
+  try {
+    zmq::message_t answer;
+    if (c.socket->recv(answer, zmq::recv_flags::dontwait)) {
+      c.sent.reset();
+      return resultOf(c.endpoint, answer.to_string_view());
+    }
+    if (now - *c.sent < kPatience) return std::nullopt;
+    // The protocol allows no further request without an answer: begin with a new socket.
+    c.sent.reset();
+    c.socket.reset();
+    return Error{Errc::kTimeout,
+                 fmt::format("{}: no answer within {:.1f} s", c.endpoint, toSeconds(kPatience))};
+  } catch (const std::exception& e) {
+    c.sent.reset();
+    c.socket.reset();
+    return Error{Errc::kIo, fmt::format("{}: {}", c.endpoint, e.what())};
   }
 }
 

@@ -207,6 +207,13 @@ Json outputsJson(const shm::WallSegment& segment) {
   return json;
 }
 
+constexpr std::string_view kTriangles = "triangles";
+
+Json detailJson(const shm::WallStats& s) {
+  return {{"step", s.detail_step},    {"steps", s.detail_steps},  {"cost", s.cost},
+          {"full_cost", s.full_cost}, {"held_cost", s.held_cost}, {"unit", text(s.cost_unit)}};
+}
+
 // The actions that have begun at least once; "held": names of those that are held.
 Json actionsJson(const shm::ActionState& state) {
   Json begun = Json::object(), held = Json::array();
@@ -238,9 +245,7 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                {"late_percent_1min", round3(100 * s.late_share_1min)},
                {"longest_late", s.longest_late},
                {"frames", s.frames},
-               {"triangles", s.triangles},
-               {"level", s.level},
-               {"levels", s.levels},
+               {"detail", detailJson(s)},
                {"moving", s.moving != 0},
                {"full_detail", s.full_detail != 0},
                {"mode", text(s.mode)},
@@ -261,7 +266,6 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                {"operator_coarser", s.operator_coarser != 0},
                {"ladder_steps", s.ladder_steps},
                {"budget", s.budget},
-               {"held_triangles", s.held_triangles},
                {"oscillation", round3(s.oscillation)},
                {"settle_frames", s.settle_frames},
                {"still_to_first_s", round3(s.still_to_first_s)},
@@ -273,6 +277,8 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                {"stale_s", ageSeconds(s.updated_ns, now)},
                {"outputs", outputsJson(segment)},
                {"servers", serversJson(servers)}};
+  // Of a model, under the name that people look for.
+  if (text(s.cost_unit) == kTriangles) json["triangles"] = s.cost;
   if (remote) {
     json["posture"] = postureName(*remote);
     json["devices"] = devicesJson(*remote, now);
@@ -351,7 +357,7 @@ std::string wallMetrics(const shm::WallSegment& segment) {
                {"deadlines_total", s.deadlines},
                {"late_total", s.late},
                {"longest_late", s.longest_late},
-               {"triangles", s.triangles},
+               {"detail_cost", s.cost},
                {"rate_held_hz", round3(s.rate_held_hz)},
                {"work_ms", round3(s.work_ms)},
                {"utilisation", round3(s.utilisation)},
@@ -360,7 +366,7 @@ std::string wallMetrics(const shm::WallSegment& segment) {
                {"late_share_1min", round3(s.late_share_1min)},
                {"settle_frames", s.settle_frames},
                {"oscillation", round3(s.oscillation)},
-               {"level", s.level},
+               {"detail_step", s.detail_step},
                {"budget", s.budget},
                {"rate_now_hz", round3(s.rate_now_hz)},
                {"rate_divisor", s.rate_divisor},
@@ -372,6 +378,7 @@ std::string wallMetrics(const shm::WallSegment& segment) {
                {"cost_coefficient_us", round3(s.cost_coefficient_us)},
                {"cost_exponent", round3(s.cost_exponent)}};
   // work_sixteenths_N: frames whose work took between (N - 1)/16 and N/16 of the period.
+  if (text(s.cost_unit) == kTriangles) json["triangles"] = s.cost;
   for (std::size_t i = 0; i < std::size(s.work_histogram); ++i)
     json["work_sixteenths_" + std::to_string(i + 1) + "_total"] = s.work_histogram[i];
   return dump(json);

@@ -20,22 +20,23 @@ std::vector<std::string> WallEvents::take() {
                          : "the operator's view is as fine as the wall again");
   }
   if (const auto was = std::exchange(scale_, s->scale_divisor); was != scale_) {
-    events.push_back(scale_ > 1 ? "tiles at half size while moving: even the fewest triangles take "
+    events.push_back(scale_ > 1 ? "tiles at half size while moving: even the coarsest detail takes "
                                   "too long"
-                                : "tiles at full size again: the fewest triangles fit");
+                                : "tiles at full size again: the coarsest detail fits");
   }
   if (const auto was = std::exchange(divisor_, s->rate_divisor); was != divisor_) {
     events.push_back(
         was < divisor_
-            ? fmt::format("rate reduced to {:.3g} of {:.3g} Hz: even the fewest triangles "
-                          "take too long",
+            ? fmt::format("rate reduced to {:.3g} of {:.3g} Hz: even the coarsest detail "
+                          "takes too long",
                           s->rate_now_hz, s->rate_asked_hz)
-            : fmt::format("rate raised to {:.3g} of {:.3g} Hz: the fewest triangles fit",
+            : fmt::format("rate raised to {:.3g} of {:.3g} Hz: the coarsest detail fits",
                           s->rate_now_hz, s->rate_asked_hz));
   }
-  if (const auto was = std::exchange(held_, s->held_triangles); was != held_) {
-    events.push_back(held_ != 0 ? fmt::format("{} triangles while moving, set by hand", held_)
-                                : "number of triangles chosen by the governor again");
+  if (const auto was = std::exchange(held_, s->held_cost); was != held_) {
+    events.push_back(held_ != 0 ? fmt::format("{} {} while moving, set by hand", held_,
+                                              std::string_view(s->cost_unit))
+                                : "detail chosen by the governor again");
   }
   if (const auto was = std::exchange(asked_hz_, s->rate_asked_hz); was != asked_hz_ && was != 0)
     events.push_back(fmt::format("the desired rate is {:.3g} Hz now", asked_hz_));

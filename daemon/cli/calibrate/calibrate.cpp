@@ -69,11 +69,12 @@ void addCalibrateImport(Command calibrate, Run& run) {
   const auto input = std::make_shared<std::string>(), output = std::make_shared<std::string>();
   Command command = calibrate.subcommand(
       "import",
-      "Import a glove's calibration from a file of another program: the vendor's .cal, "
-      "asr_cyberglove's, Shadow's XML or YAML, VESS's.\nExample: merlin calibrate import right.cal "
+      "Import a glove's calibration from a file of another program: the vendor's software (.cal), "
+      "asr_cyberglove, Shadow (XML or YAML) or VESS.\nExample: merlin calibrate import right.cal "
       "-o merlin.json");
   command.option("file", *input, "The calibration file").required();
-  command.option("-o,--output", *output, "The configuration to write it into").required();
+  command.option("-o,--output", *output, "The configuration file to write the calibration into")
+      .required();
   command.callback(
       [input, output, &run] { run = [input, output] { return importGlove(*input, *output); }; });
 }

@@ -1,4 +1,4 @@
-// Helpers of the `merlin calibrate` subcommands: they write settings into a configuration file.
+// The subcommands of `merlin calibrate`, and helpers that write settings into a configuration file.
 #pragma once
 
 #include <string>
@@ -11,19 +11,19 @@
 
 namespace merlin::cli {
 
-// Reads the configuration `path`, or an empty one if the file does not exist; adds /devices/DEVICE
-// if it is missing. Errors: kMalformed (the file, /devices or /devices/DEVICE is not a JSON
-// object), kIo.
+// Reads the configuration file `path`; returns an empty configuration if the file does not exist.
+// Adds the object /devices/DEVICE to the result if it is missing. Errors: kMalformed (the file,
+// /devices or /devices/DEVICE is not a JSON object), kIo.
 Result<nlohmann::ordered_json> readConfiguration(const std::string& path,
                                                  const std::string& device);
 
-// Sets the members of `values` in /devices/DEVICE of the configuration `path` and keeps all other
-// settings and their order; creates the file if it does not exist. Errors: those of
-// readConfiguration(); the old file is unchanged after any failure.
+// Copies the members of `values` into /devices/DEVICE of the configuration file `path` and keeps
+// all other settings and their order; creates the file if it does not exist. Errors: those of
+// readConfiguration() and writeFile(); after an error the old file is unchanged.
 Result<Ok> saveDeviceSettings(const std::string& path, const std::string& device,
                               const nlohmann::ordered_json& values);
 
-// The numbers as a JSON list, rounded to seven digits.
+// The numbers as a JSON list, rounded to seven significant digits.
 template <typename T>
 nlohmann::ordered_json numbers(const T& values) {
   auto list = nlohmann::ordered_json::array();

@@ -1,4 +1,5 @@
-// merlin calibrate ball: sets axis map and sensitivities, from options or from pushes and twists.
+// merlin calibrate ball: sets the ball's axis map and sensitivities, from options or from pushes
+// and twists of a person.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -20,7 +21,7 @@ namespace {
 
 struct BallOptions {
   std::string output, instance = "merlin";
-  int translation = 0, rotation = 0, dead_zone = -1;  // if given on the command line
+  int translation = 0, rotation = 0, dead_zone = -1;  // these values: not given as options
   std::vector<int> axis_map;
   GuideTiming timing;
 
@@ -49,7 +50,7 @@ int tell(const BallOptions& o) {
   return kExitDone;
 }
 
-// Measures the ball by its raw counts in shared memory.
+// Measures the ball by the raw counts that merlind writes into shared memory.
 class GuidedBall final : public Guided {
  public:
   explicit GuidedBall(LiveSamples<BallSample> samples) : samples_(std::move(samples)) {}
@@ -69,13 +70,14 @@ class GuidedBall final : public Guided {
       return Error{Errc::kTimeout, "the ball does not answer: " + complaint};
     const auto answer = axes_.end();
     if (!answer) return answer.error();
-    if (step_ == 0) return fmt::format("at most {} counts", answer->counts);
-    return fmt::format("{}{} with {} counts, then {} with {}", answer->axis < 0 ? '-' : '+',
+    if (step_ == 0) return fmt::format("at rest at most {} counts", answer->counts);
+    return fmt::format("{}{} with {} counts, next {} with {} counts", answer->axis < 0 ? '-' : '+',
                        spaceball::nameOfAxis(answer->axis), answer->counts,
                        spaceball::nameOfAxis(answer->next_axis), answer->next_counts);
   }
   std::string now() const override {
-    const BallSample sample = newest_.value_or(BallSample{});  // a silent ball is at rest
+    const BallSample sample =
+        newest_.value_or(BallSample{});  // a ball that sends nothing is at rest
     std::string line;
     for (int axis = 1; axis <= 6; ++axis)
       line += fmt::format("{} {:6}  ", spaceball::nameOfAxis(axis), sample.raw[axis - 1]);
@@ -116,26 +118,33 @@ int guideBall(const BallOptions& o) {
 
 void addCalibrateBall(Command calibrate, Run& run) {
   const auto o = std::make_shared<BallOptions>();
-  Command command = calibrate.subcommand(
-      "ball",
-      "Set the ball's axis map and sensitivities: guides you through pushes and twists, which a "
-      "running merlind measures, or writes the given values.\nExample: merlin calibrate ball -o "
-      "merlin.json\nExample: merlin calibrate ball --axis-map 1 2 -3 4 5 -6 "
-      "--full-scale-translation 6000 -o merlin.json");
+  Command command =
+      calibrate.subcommand("ball",
+                           "Set the ball's axis map and sensitivities: either tells you which "
+                           "pushes and twists to make, "
+                           "while a running merlind measures them, or writes the given "
+                           "values.\nExample: merlin calibrate ball -o "
+                           "merlin.json\nExample: merlin calibrate ball --axis-map 1 2 -3 4 5 -6 "
+                           "--full-scale-translation 6000 -o merlin.json");
   addGuideTiming(command, o->timing);
   addInstance(command, o->instance);
-  command.option("--full-scale-translation", o->translation, "Raw counts of a full push")
-      .range(100, 32767);
-  command.option("--full-scale-rotation", o->rotation, "Raw counts of a full twist")
-      .range(100, 32767);
-  command.option("--dead-zone", o->dead_zone, "Raw counts that are treated as rest").range(0, 99);
   command
-      .option(
-          "--axis-map", o->axis_map,
-          "Device axis (1 to 6, negative: reversed) for x, y, z and the rotations about x, y, z")
+      .option("--full-scale-translation", o->translation,
+              "Raw count of a translation axis at a full push")
+      .range(100, 32767);
+  command
+      .option("--full-scale-rotation", o->rotation, "Raw count of a rotation axis at a full twist")
+      .range(100, 32767);
+  command.option("--dead-zone", o->dead_zone, "Largest raw count that is treated as rest")
+      .range(0, 99);
+  command
+      .option("--axis-map", o->axis_map,
+              "Device axis for each of x, y, z and the rotations about x, y, z: 1 to 3 are the "
+              "device's "
+              "X, Y, Z, and 4 to 6 its rotations A, B, C; a negative number reverses the axis")
       .expected(6)
       .range(-6, 6);
-  command.option("-o,--output", o->output, "The configuration to write into").required();
+  command.option("-o,--output", o->output, "The configuration file to write into").required();
   command.callback([o, &run] { run = [o] { return o->told() ? tell(*o) : guideBall(*o); }; });
 }
 

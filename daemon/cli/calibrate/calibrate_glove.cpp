@@ -1,4 +1,5 @@
-// merlin calibrate glove: guides a person through a few poses and computes offsets and gains.
+// merlin calibrate glove: guides a person through a few poses of the hand and computes the offset
+// and gain of each sensor.
 #include <memory>
 
 #include <fmt/format.h>
@@ -53,7 +54,8 @@ class GuidedGlove final : public Guided, private SampleSink {
   bool measuring_ = false;
 };
 
-// One line per sensor: a bar from 1 to 255 that marks the range of raw values seen so far.
+// One line per sensor: a bar for the raw values 0 to 255, in which the range measured so far is
+// marked.
 std::string GuidedGlove::spans() const {
   constexpr int kWidth = 51;
   const auto column = [](int raw) { return static_cast<std::size_t>(raw * (kWidth - 1) / 255); };
@@ -97,13 +99,13 @@ void addCalibrateGlove(Command calibrate, Run& run) {
   const auto o = std::make_shared<GloveOptions>();
   Command command =
       calibrate.subcommand("glove",
-                           "Calibrate the glove: guides you through a few poses and "
-                           "shows each sensor's range.\nExample: merlin calibrate glove "
+                           "Calibrate the glove: tells you a few poses to hold and computes "
+                           "each sensor's offset and gain.\nExample: merlin calibrate glove "
                            "serial:/dev/serial/by-id/usb-GLOVE -o merlin.json");
   command.option("port", o->port, "Port of the glove: serial:/dev/..., pty:PATH or tcp://HOST:PORT")
       .required();
-  command.option("-o,--output", o->output, "The configuration to write into").required();
-  command.option("--baud", o->baud, "Speed of the line").baud().showDefault();
+  command.option("-o,--output", o->output, "The configuration file to write into").required();
+  command.option("--baud", o->baud, "Speed of the line in bits per second").baud().showDefault();
   addGuideTiming(command, o->timing);
   command.callback([o, &run] { run = [o] { return calibrateGlove(*o); }; });
 }

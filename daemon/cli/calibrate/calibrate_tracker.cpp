@@ -1,5 +1,5 @@
-// merlin calibrate tracker: sets a station's alignment and boresight, from options or by holding
-// the station at the places.
+// merlin calibrate tracker: sets a station's alignment and boresight, from options or from
+// measurements while a person holds the station at given places.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -29,7 +29,7 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 struct TrackerOptions {
   std::string output, instance = "merlin";
   int station = 1;
-  std::vector<double> alignment, boresight, hemisphere;  // if given on the command line
+  std::vector<double> alignment, boresight, hemisphere;  // empty: not given as options
   std::vector<std::string> steps = {"alignment", "boresight"};
   GuideTiming timing;
 
@@ -64,7 +64,7 @@ int tell(const TrackerOptions& o) {
   return kExitDone;
 }
 
-// Measures a station by its samples in shared memory.
+// Measures a station by the samples that merlind writes into shared memory.
 class GuidedStation final : public Guided {
  public:
   GuidedStation(LiveSamples<TrackerSample> samples, const StationFrame& present, std::size_t first)
@@ -85,8 +85,8 @@ class GuidedStation final : public Guided {
     if (!held) return held.error();
     const auto& p = held->position_m;
     return fmt::format(
-        "{} samples about {:.2f} {:.2f} {:.2f} cm, all within {:.2f} cm and {:.2f} "
-        "degrees",
+        "{} samples, mean position {:.2f} {:.2f} {:.2f} cm, all within {:.2f} cm and {:.2f} "
+        "degrees of the mean",
         held->samples, 100 * p[0], 100 * p[1], 100 * p[2], 100 * held->spread_m,
         kDegrees * held->spread_rad);
   }
@@ -112,8 +112,8 @@ class GuidedStation final : public Guided {
   std::optional<TrackerSample> newest_;
 };
 
-// The frame in which the running merlind reports this station's samples. Errors: kTimeout (not yet
-// published).
+// Returns the frame in which the running merlind reports this station's samples. Errors: kTimeout
+// (merlind has not published it yet).
 Result<StationFrame> presentFrame(const shm::DevicesSegment& segment, int station) {
   const auto frames = segment.tracker_frames.read();
   if (!frames) return Error{Errc::kTimeout, "merlind is still starting: try again"};
@@ -124,7 +124,8 @@ Result<StationFrame> presentFrame(const shm::DevicesSegment& segment, int statio
   return frame;
 }
 
-// Whether the setting `key` of the file, or its default, equals that of the running merlind.
+// Whether the value of `key` in the file equals `running`, the running merlind's value. `tracker`:
+// the file's object /devices/tracker; if it lacks `key`, `standard` is compared.
 template <std::size_t N>
 bool agrees(const Json& tracker, const std::string& key, const std::array<float, N>& running,
             const std::array<float, N>& standard) {
@@ -139,8 +140,9 @@ bool agrees(const Json& tracker, const std::string& key, const std::array<float,
   return true;
 }
 
-// A setting that is not measured anew is kept, so it must be the same in the file and in the
-// daemon.
+// Checks that a setting which --steps does not measure has the same value in the file and in the
+// running merlind, because it is derived from merlind's value and saved too. Errors:
+// kInvalidArgument, those of readConfiguration().
 Result<Ok> checkKept(const TrackerOptions& o, const StationFrame& present) {
   const auto config = readConfiguration(o.output, "tracker");
   if (!config) return config.error();
@@ -157,8 +159,9 @@ Result<Ok> checkKept(const TrackerOptions& o, const StationFrame& present) {
   if (other.empty()) return Ok{};
   return Error{
       Errc::kInvalidArgument,
-      fmt::format("{}: its /devices/tracker/{} differs from that of the running merlind, and "
-                  "--steps keeps it: restart merlind with this file, or do both steps",
+      fmt::format("{}: its /devices/tracker/{} differs from that of the running merlind, but "
+                  "--steps does not measure it again: restart merlind with this file, or measure "
+                  "both",
                   o.output, other)};
 }
 
@@ -195,9 +198,9 @@ void addCalibrateTracker(Command calibrate, Run& run) {
   const auto o = std::make_shared<TrackerOptions>();
   Command command = calibrate.subcommand(
       "tracker",
-      "Set the alignment and boresight of a station: guides you through places to hold it at, "
-      "which "
-      "a running merlind measures, or writes the given values.\nExample: merlin calibrate tracker "
+      "Set the alignment and boresight of a station: either tells you at which places to hold the "
+      "station, while a running merlind measures them, or writes the given values.\nExample: "
+      "merlin calibrate tracker "
       "--station 1 "
       "-o merlin.json\nExample: merlin calibrate tracker --station 1 --boresight 0.7071 0 0 0.7071 "
       "-o merlin.json");
@@ -209,21 +212,25 @@ void addCalibrateTracker(Command calibrate, Run& run) {
   addGuideTiming(command, o->timing);
   addInstance(command, o->instance);
   command
-      .option("--alignment", o->alignment,
-              "New origin, a point on the new x axis and a point on the new y axis, in centimetres")
+      .option(
+          "--alignment", o->alignment,
+          "New origin, a point on the new x axis and a point on the new y axis, each as x y z in "
+          "the transmitter's frame, in centimetres")
       .expected(9)
       .range(-1000.0, 1000.0);
   command
-      .option("--boresight", o->boresight,
-              "Orientation that counts as straight ahead: a quaternion w x y z, as merlin shm dump "
-              "shows it")
+      .option(
+          "--boresight", o->boresight,
+          "Orientation of the receiver that counts as straight ahead: a unit quaternion w x y z, "
+          "as merlin shm dump shows it")
       .expected(4)
       .range(-1.0, 1.0);
   command
-      .option("--hemisphere", o->hemisphere, "Vector into the half of space where the receiver is")
+      .option("--hemisphere", o->hemisphere,
+              "Vector in the transmitter's frame into the half-space in which the receiver is")
       .expected(3)
       .range(-1.0, 1.0);
-  command.option("-o,--output", o->output, "The configuration to write into").required();
+  command.option("-o,--output", o->output, "The configuration file to write into").required();
   command.callback([o, &run] { run = [o] { return o->told() ? tell(*o) : guideTracker(*o); }; });
 }
 

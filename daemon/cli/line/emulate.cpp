@@ -1,4 +1,4 @@
-// merlin emulate: emulates a device on a pseudo-terminal, for a wall without hardware.
+// merlin emulate: emulates a device on a pseudo-terminal, to run a wall without hardware.
 #include <cerrno>
 #include <memory>
 
@@ -27,11 +27,12 @@ struct EmulateOptions {
   bool step = false;
 };
 
-// Descriptors that end the emulation or start the script's next phase.
+// Input of the person who runs the emulator: one descriptor ends the emulation, the other starts
+// the script's next phase.
 struct Commands {
   int stop_fd, step_fd;  // poll() ignores a descriptor of -1
   std::size_t phases;    // number of phases of the script
-  std::size_t& phase;    // current phase, not reduced modulo `phases`
+  std::size_t& phase;    // current phase, counted from 0; counts on when the script repeats
 };
 
 // Reads standard input: each line starts the next phase.
@@ -47,7 +48,8 @@ void goOn(Commands& commands) {
   }
 }
 
-// Serves until a signal. Bytes that the other side does not read are lost, as on a serial line.
+// Runs the emulator until a signal. Bytes that the other side does not read are lost, as on a
+// serial line.
 int serve(const io::PtyMaster& line, emulate::Emulator& device, const Clock& clock,
           Commands commands) {
   std::byte received[256];
@@ -106,7 +108,7 @@ int emulateDevice(const EmulateOptions& options) {
 void addEmulate(Command app, Run& run) {
   const auto options = std::make_shared<EmulateOptions>();
   std::vector<std::string> devices, scripts;
-  std::string help = "Emulate a device on a pseudo-terminal, with its own protocol.\nDevices:";
+  std::string help = "Emulate a device, with its serial protocol, on a pseudo-terminal.\nDevices:";
   for (const auto& e : emulate::emulators()) {
     devices.emplace_back(e.name);
     help += fmt::format("\n  {:11} {} (models {})", e.name, e.help, e.models);
@@ -119,23 +121,30 @@ void addEmulate(Command app, Run& run) {
   Command command =
       app.subcommand("emulate", help + "\nExample: merlin emulate spaceball --link /tmp/ball");
   command.option("device", options->device, "Device to emulate").required().oneOf(devices);
-  command.option("--link", options->link, "Path of a symbolic link to make to the pseudo-terminal");
+  command.option("--link", options->link,
+                 "Path of a symbolic link to create, which points to the pseudo-terminal");
   command.option("--script", options->script, "What the emulated person does")
       .oneOf(scripts)
       .showDefault();
   command.flag("--step", options->step,
                "Each phase of the script lasts until Enter is pressed, instead of its set time");
-  command.option("--model", options->model, "Model of the device");
-  command.option("--baud", options->baud, "Speed of the line").baud();
+  command.option("--model", options->model,
+                 "Model of the device, from the list above; the default is the first");
+  command
+      .option("--baud", options->baud,
+              "Speed of the line in bits per second; the default depends on the device")
+      .baud();
   command
       .option("--garbage-every", options->garbage_every,
-              "Number of records between two bursts of random bytes; 0: no bursts")
+              "Number of records between two bursts of random bytes on the line; 0: no bursts")
       .range(0, 1'000'000'000)
       .showDefault();
-  command.option("--seed", options->seed, "Seed of noise and random bytes").showDefault();
+  command.option("--seed", options->seed, "Seed of the random numbers for noise and bursts")
+      .showDefault();
   command
       .option("--epoch-ns", options->epoch_ns,
-              "Start time of the script (CLOCK_MONOTONIC), so that several devices play in step")
+              "Start time of the script in nanoseconds of CLOCK_MONOTONIC, to synchronise several "
+              "emulators; the default is now")
       .positive();
   command.callback([options, &run] { run = [options] { return emulateDevice(*options); }; });
 }

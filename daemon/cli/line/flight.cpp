@@ -25,9 +25,10 @@ void addFlight(Command app, Run& run) {
   const auto instance = std::make_shared<std::string>("merlin");
   Command command = app.subcommand(
       "flight",
-      "Write the last minutes of every device's bytes to files, a transcript for each device. The "
-      "daemon also does so by itself after a fault.\nExample: merlin flight, then: merlin replay "
-      "FILE --link /tmp/device");
+      "Make the daemon write the bytes of the last minutes of every device's line to files, one "
+      "transcript per device. The daemon also does so automatically after a fault.\nExample: "
+      "merlin "
+      "flight, then: merlin replay FILE --link /tmp/device");
   addInstance(command, *instance);
   command.callback([instance, &run] { run = [instance] { return flight(*instance); }; });
 }

@@ -1,4 +1,4 @@
-// merlin record, merlin replay: record the bytes on a device's line into a file, and replay them.
+// merlin record: records the bytes on a device's line into a file. merlin replay: replays the file.
 #include <csignal>
 #include <ctime>
 #include <memory>
@@ -28,7 +28,7 @@ struct RecordOptions {
   double seconds = 0;
 };
 
-// Stores all bytes with their times.
+// Stores all bytes that are read and written, with their times.
 class Recording final : public ByteTap {
  public:
   explicit Recording(Timestamp start) : start_(start) {}
@@ -64,8 +64,9 @@ const DriverEntry* driverNamed(const std::string& name) {
   return nullptr;
 }
 
-// Reads the line until `end`, a signal or the end of the line, which is printed. With a device its
-// driver sets it up and polls it; without one it only reads. Returns the device's identity.
+// Reads the line until `end`, until a signal (on `stop_fd`), or until the line fails, which is
+// printed. If `device` is not null, its driver sets the device up and polls it. Returns the
+// device's identity. Errors: those of Device::open().
 Result<std::string> listen(ByteStream& line, Device* device, Timestamp end, int stop_fd) {
   const SystemClock clock;
   std::string identity = "not known";
@@ -113,7 +114,7 @@ int record(const RecordOptions& options) {
   const auto identity = listen(stream, device.get(), end, stop.get());
   recording.transcript.header = {
       {"device", identity ? *identity : "no device answered: " + identity.error().what},
-      {"driver", driver ? driver->name : "none, only listened"},
+      {"driver", driver ? driver->name : "none, the line was only read"},
       {"serial", fmt::format("{} 8N1", baud)},
       {"synthetic", "not known: from " + options.port},
       {"by", "merlin record"},
@@ -131,7 +132,8 @@ struct ReplayOptions {
   bool loop = false;
 };
 
-// Serves the transcript until its end or a signal.
+// Plays the transcript once on the line. Returns false if a signal (on `stop_fd`) or an error ended
+// the replay early.
 bool serveOnce(const io::PtyMaster& line, const io::Transcript& transcript, const Clock& clock,
                int stop_fd) {
   io::Player player(transcript, clock.now());
@@ -178,22 +180,30 @@ void addRecord(Command app, Run& run) {
   std::vector<std::string> names;
   for (const DriverEntry& entry : drivers()) names.emplace_back(entry.name);
   Command command = app.subcommand("record",
-                                   "Record the bytes on a device's line as a transcript.\nA daemon "
-                                   "that has opened the line keeps "
-                                   "a record of its own: merlin flight\nExample: merlin record "
+                                   "Record the bytes on a device's line as a transcript.\nIf a "
+                                   "daemon has opened the line, use merlin flight "
+                                   "instead.\nExample: merlin record "
                                    "pty:/tmp/ball --device spaceball -o "
                                    "ball.bytes");
   command
       .option("port", options->port,
               "Port of the device: serial:/dev/..., pty:PATH or tcp://HOST:PORT")
       .required();
-  command.option("-o,--output", options->output, "File for the transcript (text)").required();
+  command.option("-o,--output", options->output, "File to write the transcript into (text)")
+      .required();
   command
       .option("--device", options->device,
-              "Driver that sets up and polls the device; without it, only listens")
+              "Driver that sets up and polls the device; without a driver, the line is only read")
       .oneOf(names);
-  command.option("--baud", options->baud, "Speed of the line").baud();
-  command.option("--seconds", options->seconds, "Duration; without it until interrupted").seconds();
+  command
+      .option(
+          "--baud", options->baud,
+          "Speed of the line in bits per second; the default is 9600 for a ball, otherwise 38400")
+      .baud();
+  command
+      .option("--seconds", options->seconds,
+              "Duration in seconds; the default is until interrupted")
+      .seconds();
   command.callback([options, &run] { run = [options] { return record(*options); }; });
 }
 
@@ -201,11 +211,13 @@ void addReplay(Command app, Run& run) {
   const auto options = std::make_shared<ReplayOptions>();
   Command command = app.subcommand(
       "replay",
-      "Replay a transcript on a pseudo-terminal with its original timing. Where the host had sent "
-      "bytes, waits until the host sends as many.\nExample: merlin replay ball.bytes --link "
+      "Replay a transcript on a pseudo-terminal with its original timing. Where the transcript has "
+      "bytes that the host sent, waits up to two seconds until the host has sent as "
+      "many.\nExample: merlin replay ball.bytes --link "
       "/tmp/ball");
-  command.option("file", options->file, "The transcript").required();
-  command.option("--link", options->link, "Path of a symbolic link to make to the pseudo-terminal");
+  command.option("file", options->file, "The transcript file").required();
+  command.option("--link", options->link,
+                 "Path of a symbolic link to create, which points to the pseudo-terminal");
   command.flag("--loop", options->loop, "Repeat until interrupted");
   command.callback([options, &run] { run = [options] { return replay(*options); }; });
 }

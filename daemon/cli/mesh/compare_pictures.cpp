@@ -16,24 +16,26 @@
 namespace merlin::cli {
 namespace {
 
-constexpr float kBand = 0.25F;  // band's width, share of the way from the edge to the centroid
+constexpr float kBand = 0.25F;  // width of a band, as a share of the distance from edge to centroid
 const Eigen::Vector3f kInside{0.1F, 0.1F, 0.12F};  // colour between the bands
 
-// Adds the corners of the other mesh's bounding box as vertices of no triangle: a model is scaled
-// by the box of its vertices, so both meshes then have the same scale.
-render::Mesh framed(render::Mesh mesh, const render::Mesh& other) {
-  render::ensureNormals(mesh);
-  const render::Box box = render::boundingBox(other.positions);
+// Adds two opposite corners of the other mesh's bounding box as vertices without a triangle. A
+// model is scaled by the bounding box of its vertices, so both meshes are then drawn at the same
+// scale.
+render::mesh::Mesh framed(render::mesh::Mesh mesh, const render::mesh::Mesh& other) {
+  render::mesh::ensureNormals(mesh);
+  const render::mesh::Box box = render::mesh::boundingBox(other.positions);
   for (const auto& corner : {box.low, box.high}) {
     mesh.positions.insert(mesh.positions.end(), corner.begin(), corner.end());
-    for (render::Feature& f : mesh.features) f.values.insert(f.values.end(), f.dimension, 0.0F);
+    for (render::mesh::Feature& f : mesh.features)
+      f.values.insert(f.values.end(), f.dimension, 0.0F);
   }
   return mesh;
 }
 
-Result<render::Image> drawn(const render::Dendrogram& model, const View& view) {
+Result<render::image::Image> drawn(const render::lod::Dendrogram& model, const View& view) {
   const SystemClock clock;
-  auto painter = render::OffscreenModel::make(model, view.asAsked(), clock);
+  auto painter = render::frame::OffscreenModel::make(model, view.asAsked(), clock);
   if (!painter) return painter.error();
   return painter->draw(0);
 }
@@ -45,12 +47,12 @@ Result<Ok> makeFolder(const std::string& folder) {
   return checkWritable(folder + "/a.png");
 }
 
-Result<Ok> write(const std::string& folder, const char* name, const render::Image& image) {
-  return render::writePng(fmt::format("{}/{}.png", folder, name), image.width, image.height,
-                          image.pixels);
+Result<Ok> write(const std::string& folder, const char* name, const render::image::Image& image) {
+  return render::image::writePng(fmt::format("{}/{}.png", folder, name), image.width, image.height,
+                                 image.pixels);
 }
 
-// Colour scale from red (0) over yellow, green and cyan to blue (1).
+// Colour scale from red (0) through yellow, green and cyan to blue (1).
 Eigen::Vector3f rainbow(float share) {
   const float at = 4 * std::clamp(share, 0.0F, 1.0F);
   const auto ramp = [at](float middle) {
@@ -61,7 +63,7 @@ Eigen::Vector3f rainbow(float share) {
 
 using Corners = std::array<Eigen::Vector3f, 3>;
 
-Corners cornersOf(const render::Mesh& mesh, std::size_t triangle) {
+Corners cornersOf(const render::mesh::Mesh& mesh, std::size_t triangle) {
   Corners corners;
   for (std::size_t k = 0; k < 3; ++k)
     corners[k] = Eigen::Map<const Eigen::Vector3f>(
@@ -74,7 +76,7 @@ float lengthOf(const Corners& corners, std::size_t edge) {
 }
 
 // The lengths of all edges, sorted; an edge that two triangles share counts twice.
-std::vector<float> lengthsOf(const render::Mesh& mesh) {
+std::vector<float> lengthsOf(const render::mesh::Mesh& mesh) {
   std::vector<float> lengths;
   lengths.reserve(mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
@@ -85,14 +87,15 @@ std::vector<float> lengthsOf(const render::Mesh& mesh) {
   return lengths;
 }
 
-// Rank of a length, 0..1: the middle rank of all equal lengths, so that they get one colour.
+// Rank of a length among the sorted `lengths`, 0..1; equal lengths have one rank, that of their
+// middle, and so one colour.
 float rankOf(const std::vector<float>& lengths, float length) {
   const auto [first, last] = std::equal_range(lengths.begin(), lengths.end(), length);
   const auto sum = static_cast<float>((first - lengths.begin()) + (last - lengths.begin()));
   return sum / (2 * static_cast<float>(lengths.size()));
 }
 
-// Collects polygons, each of one colour, as a mesh.
+// Collects polygons, each with its own colour, into a mesh; all vertices have the same normal.
 class Polygons {
  public:
   explicit Polygons(const Eigen::Vector3f& normal) : normal_(normal) {}
@@ -107,7 +110,7 @@ class Polygons {
     for (std::uint32_t k = 2; k < corners.size(); ++k)
       triangles_.insert(triangles_.end(), {first, first + k - 1, first + k});
   }
-  render::Mesh mesh() && {
+  render::mesh::Mesh mesh() && {
     return {std::move(positions_),
             {{"normal", 3, std::move(normals_)}, {"colour", 3, std::move(colours_)}},
             std::move(triangles_)};
@@ -121,9 +124,9 @@ class Polygons {
 
 }  // namespace
 
-render::Mesh edgeBands(const render::Mesh& mesh, const View& view) {
+render::mesh::Mesh edgeBands(const render::mesh::Mesh& mesh, const View& view) {
   const std::vector<float> lengths = lengthsOf(mesh);
-  // Direction of the renderer's light: surfaces with this normal show their full colour.
+  // Direction to the renderer's light: surfaces with this normal are drawn in their full colour.
   const Eigen::Vector3f light = Eigen::Vector3f(0.15F, 0.35F, 1).normalized();
   Polygons polygons(view.T_eye_model().linear().transpose() * light);
   for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
@@ -141,13 +144,13 @@ render::Mesh edgeBands(const render::Mesh& mesh, const View& view) {
   return std::move(polygons).mesh();
 }
 
-Result<double> writePictures(const std::string& folder, const render::Mesh& a,
-                             const render::Mesh& b, const View& view) {
+Result<double> writePictures(const std::string& folder, const render::mesh::Mesh& a,
+                             const render::mesh::Mesh& b, const View& view) {
   if (const auto made = makeFolder(folder); !made) return made.error();
-  const render::Dendrogram first = asModel(framed(a, b)), second = asModel(framed(b, a));
+  const render::lod::Dendrogram first = asModel(framed(a, b)), second = asModel(framed(b, a));
   View same = view;
-  if (!view.model.show.feature.empty()) {  // equal values have equal colours in both
-    const auto shown = render::coloursOf(first, view.model.show);
+  if (!view.model.show.feature.empty()) {  // the same colour scale for both models
+    const auto shown = render::content::coloursOf(first, view.model.show);
     if (!shown) return shown.error();
     same.model.show.range = {shown->low, shown->high};
   }
@@ -155,7 +158,7 @@ Result<double> writePictures(const std::string& folder, const render::Mesh& a,
   wire.model.style.wireframe = true;
   plain.model.style.brightness = 1;
   plain.model.show = {};
-  std::vector<render::Image> images;
+  std::vector<render::image::Image> images;
   for (const auto& [model, how] :
        {std::pair{&first, &same}, {&second, &same}, {&first, &wire}, {&second, &wire}}) {
     auto image = drawn(*model, *how);
@@ -164,9 +167,9 @@ Result<double> writePictures(const std::string& folder, const render::Mesh& a,
   }
   auto edges = drawn(asModel(framed(edgeBands(b, view), a)), plain);
   if (!edges) return edges.error();
-  render::Image beside = images[0];
+  render::image::Image beside = images[0];
   beside.append(images[1]);
-  auto difference = render::differenceOf(images[0], images[1], view.model.style.background);
+  auto difference = render::image::differenceOf(images[0], images[1], view.model.style.background);
   images.insert(images.end(), {beside, difference.image, *edges});
   constexpr const char* kNames[] = {"a", "b", "a_wire", "b_wire", "beside", "difference", "edges"};
   for (std::size_t i = 0; i < images.size(); ++i) {

@@ -1,4 +1,4 @@
-// merlin mesh compare: measures the distance of two surfaces.
+// merlin mesh compare: measures the distance between two surfaces.
 #include <memory>
 
 #include <fmt/format.h>
@@ -20,19 +20,19 @@ using Json = nlohmann::ordered_json;
 struct CompareOptions {
   std::string original, other;
   LevelChoice choice;  // resolution of `other`
-  render::CompareSettings settings;
+  render::compare::CompareSettings settings;
   std::string pictures;  // folder for pictures; empty: none
   View view;
   bool json = false;
 };
 
 struct Answer {
-  render::Comparison comparison;
+  render::compare::Comparison comparison;
   double seconds = 0;
   std::optional<double> changed_percent;  // changed pixels, if pictures were drawn
 };
 
-// One figure of a Deviation: a row of the table and a key of the JSON.
+// One quantity of a Deviation: its name in the table, and its key in JSON output.
 struct Figure {
   const char* name;
   const char* key;
@@ -40,14 +40,14 @@ struct Figure {
   bool is_length = false;  // in model units; also shown in percent of the diagonal
 };
 
-std::optional<double> colourError(const render::Deviation& d) {
+std::optional<double> colourError(const render::compare::Deviation& d) {
   for (const auto& f : d.features) {
     if (f.name == "colour") return 255 * f.rms;
   }
   return std::nullopt;
 }
 
-std::vector<Figure> figuresOf(const render::Deviation& d) {
+std::vector<Figure> figuresOf(const render::compare::Deviation& d) {
   return {{"RMS", "rms", d.rms, true},
           {"mean", "mean", d.mean, true},
           {"max, at least", "max_low", d.max.low, true},
@@ -57,10 +57,10 @@ std::vector<Figure> figuresOf(const render::Deviation& d) {
           {"vertex normals RMS, degrees", "vertex_normal_rms_deg", d.normal_rms_deg}};
 }
 
-// The figure as JSON; null if there is none.
+// The value as JSON; null if there is none.
 Json valueOf(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
-Json jsonOf(const render::Deviation& d, double diagonal) {
+Json jsonOf(const render::compare::Deviation& d, double diagonal) {
   Json json;
   for (const Figure& f : figuresOf(d)) {
     json[f.key] = valueOf(f.value);
@@ -73,7 +73,7 @@ Json jsonOf(const render::Deviation& d, double diagonal) {
 }
 
 void printJson(const CompareOptions& options, const Answer& answer) {
-  const render::Comparison& c = answer.comparison;
+  const render::compare::Comparison& c = answer.comparison;
   Json json = {{"original", options.original}, {"other", options.other}, {"diagonal", c.diagonal}};
   json.update(jsonOf(c.symmetric(), c.diagonal));
   json["forward"] = jsonOf(c.forward, c.diagonal);
@@ -88,11 +88,11 @@ std::string cell(const std::optional<double>& value) {
 }
 
 void printTable(const CompareOptions& options, const Answer& answer) {
-  const render::Comparison& c = answer.comparison;
+  const render::compare::Comparison& c = answer.comparison;
   say("{} (A) and {} (B): diagonal of A {:.6g}, {:.1f} s\n", options.original, options.other,
       c.diagonal, answer.seconds);
   say("{:30}{:>12}{:>12}{:>12}{:>16}\n", "", "A to B", "B to A", "larger", "% of diagonal");
-  const render::Deviation symmetric = c.symmetric();
+  const render::compare::Deviation symmetric = c.symmetric();
   const auto forward = figuresOf(c.forward), backward = figuresOf(c.backward);
   const auto larger = figuresOf(symmetric);
   for (std::size_t i = 0; i < larger.size(); ++i) {
@@ -107,29 +107,31 @@ void printTable(const CompareOptions& options, const Answer& answer) {
         c.forward.features[i].rms, c.backward.features[i].rms, symmetric.features[i].rms);
   }
   if (answer.changed_percent) {
-    say("pixels changed by more than 15 %: {:.3g} % of the model's ({}/difference.png)\n",
+    say("pixels that differ by more than 15 %: {:.3g} % of the model's pixels "
+        "({}/difference.png)\n",
         *answer.changed_percent, options.pictures);
   }
 }
 
-Result<render::Mesh> openMesh(const std::string& path, const LevelChoice& choice) {
+Result<render::mesh::Mesh> openMesh(const std::string& path, const LevelChoice& choice) {
   const auto model = openModel(path);
   if (!model) return model.error();
   const auto level = choice.levelOf(*model, path);
   if (!level) return level.error();
-  return render::extract(*model, *level);
+  return render::lod::extract(*model, *level);
 }
 
-Result<render::Comparison> compared(const CompareOptions& options, const render::Mesh& original,
-                                    const render::Mesh& other, const Clock& clock) {
+Result<render::compare::Comparison> compared(const CompareOptions& options,
+                                             const render::mesh::Mesh& original,
+                                             const render::mesh::Mesh& other, const Clock& clock) {
   ProgressBar bar("comparing", "points", clock);
   std::size_t points = 0;
-  auto comparison =
-      render::compare(original, other, options.settings, [&](const render::CompareProgress& p) {
-        points = p.points;
-        bar.update(p.share, p.points);
-        return true;
-      });
+  auto comparison = render::compare::compare(original, other, options.settings,
+                                             [&](const render::compare::CompareProgress& p) {
+                                               points = p.points;
+                                               bar.update(p.share, p.points);
+                                               return true;
+                                             });
   if (!comparison) {
     return Error{comparison.error().code, fmt::format("{}, {}: {}", options.original, options.other,
                                                       comparison.error().what)};
@@ -144,8 +146,8 @@ int compareMeshes(const CompareOptions& options) {
   const auto other = openMesh(options.other, options.choice);
   if (!other) return fail(other.error());
   Answer answer;
-  if (!options.pictures.empty()) {  // first, because a failure to draw shows quickly
-    render::prepareSoftwareGl(0);
+  if (!options.pictures.empty()) {  // before the comparison, because a failure shows sooner
+    render::gl::prepareSoftwareGl(0);
     const auto changed = writePictures(options.pictures, *original, *other, options.view);
     if (!changed) return fail(changed.error());
     answer.changed_percent = *changed;
@@ -166,38 +168,42 @@ void addMeshCompare(Command mesh, Run& run) {
   const auto options = std::make_shared<CompareOptions>();
   Command command =
       mesh.subcommand("compare",
-                      "Measure the distance of two surfaces: RMS, mean, and an interval that is "
-                      "certain to hold the "
+                      "Measure the distance between two surfaces: RMS, mean, and a certified "
+                      "interval that contains the "
                       "maximum.\nExample: merlin mesh compare scan.ply scan.mrm --percent 5");
-  command.option("a", options->original, "The original surface: .mrm, " + render::readableEndings())
+  command
+      .option("a", options->original,
+              "The original surface: .mrm, " + render::mesh::readableEndings())
       .required()
       .typeName("A");
   command
       .option("b", options->other,
-              "The surface to compare with it: .mrm, " + render::readableEndings())
+              "The surface to compare with it: .mrm, " + render::mesh::readableEndings())
       .required()
       .typeName("B");
   options->choice.addTo(command);
   command
       .option("--samples", options->settings.samples,
-              "Number of points sampled on each surface, for all figures but the maximum")
+              "Number of points sampled on each surface, for all results except the maximum")
       .range(std::size_t{1}, std::size_t{1'000'000'000})
       .showDefault();
   command.option("--seed", options->settings.seed, "Seed of the sampling").showDefault();
   command
       .option("--width", options->settings.width_percent,
-              "Width of the interval that holds the maximum, in percent of the diagonal of A's "
+              "Width of the interval that contains the maximum, in percent of the diagonal of A's "
               "bounding box")
       .positive()
       .showDefault();
   command.option("--feature", options->settings.features,
-                 "Features to compare; the default is all that both surfaces have");
+                 "Features to compare; the default is every feature that both surfaces have");
   command.option("--threads", options->settings.threads,
-                 "Number of threads; 0: all cores. The figures do not depend on it");
+                 "Number of threads; 0: all cores. The results do not depend on this number");
   command
-      .option("--pictures", options->pictures,
-              "Write pictures into this folder: a, b, a_wire, b_wire, beside (a and b), difference "
-              "(pixels changed by more than 15 %), edges (of B, from red, the shortest, to blue)")
+      .option(
+          "--pictures", options->pictures,
+          "Write PNG files into this folder: a and b; a_wire and b_wire (wireframes); beside (a "
+          "and b side by side); difference (pixels that differ by more than 15 %); edges (edges "
+          "of B coloured by length, from red for the shortest to blue)")
       .typeName("DIR");
   options->view.addTo(command);
   command.flag("--json", options->json, "Print JSON, for programs");

@@ -1,4 +1,4 @@
-// merlin mesh curve: error against number of triangles, both estimated and certified.
+// merlin mesh curve: tabulates the estimated and the measured error over the number of triangles.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -19,14 +19,14 @@ namespace {
 struct CurveOptions {
   std::string model, csv, svg;
   std::size_t steps_an_octave = 1;
-  render::CompareSettings settings{.samples = 100'000};
+  render::compare::CompareSettings settings{.samples = 100'000};
 };
 
-// One resolution compared with the finest; lengths in model units.
+// Comparison of one resolution with the finest; lengths in model units.
 struct Row {
   std::size_t level, triangles;
   double estimate;
-  render::Deviation error;
+  render::compare::Deviation error;
 };
 
 struct Curve {
@@ -34,8 +34,10 @@ struct Curve {
   std::vector<Row> rows;  // finest first
 };
 
-// Levels from half of the triangles down, in equal steps of the logarithm, then the coarsest.
-std::vector<std::size_t> levelsOf(const render::Dendrogram& model, std::size_t steps_an_octave) {
+// Selects levels: from half of the finest level's triangles down, `steps_an_octave` per halving of
+// the number of triangles, and the coarsest level.
+std::vector<std::size_t> levelsOf(const render::lod::Dendrogram& model,
+                                  std::size_t steps_an_octave) {
   std::vector<std::size_t> levels;
   const auto all = static_cast<double>(model.triangleCount());
   const auto least = static_cast<double>(model.trianglesAt(model.levels() - 1));
@@ -50,16 +52,16 @@ std::vector<std::size_t> levelsOf(const render::Dendrogram& model, std::size_t s
   return levels;
 }
 
-Result<Curve> measure(const render::Dendrogram& model, const CurveOptions& options) {
+Result<Curve> measure(const render::lod::Dendrogram& model, const CurveOptions& options) {
   const SystemClock clock;
   ProgressBar bar("comparing", "resolutions", clock);
   const std::vector<std::size_t> levels = levelsOf(model, options.steps_an_octave);
-  const render::Mesh original = render::extract(model, 0);
+  const render::mesh::Mesh original = render::lod::extract(model, 0);
   Curve curve;
   for (const std::size_t level : levels) {
     const auto done = static_cast<double>(curve.rows.size());
-    const auto compared = render::compare(
-        original, render::extract(model, level), options.settings, [&](const auto& p) {
+    const auto compared = render::compare::compare(
+        original, render::lod::extract(model, level), options.settings, [&](const auto& p) {
           bar.update((done + p.share) / static_cast<double>(levels.size()), curve.rows.size());
           return true;
         });
@@ -88,7 +90,8 @@ std::string csvOf(const Curve& curve) {
   return out;
 }
 
-// The curve as SVG; both axes are logarithmic, errors in percent of the diagonal.
+// The curve as an SVG chart: number of triangles (x) and errors in percent of the diagonal (y),
+// both on logarithmic axes.
 std::string svgOf(const Curve& curve, const std::string& title) {
   ChartLine estimate{"estimate", "#7f7f7f", {}}, rms{"RMS", "#1f77b4", {}},
       most{"maximum, at most", "#d62728", {}};
@@ -107,7 +110,7 @@ std::string svgOf(const Curve& curve, const std::string& title) {
   }
   const auto first = static_cast<double>(curve.rows.back().triangles);
   const auto last = static_cast<double>(curve.rows.front().triangles);
-  return svgChart(svgText(title), "error, % of the diagonal, by triangles",
+  return svgChart(svgText(title), "error in % of the diagonal over number of triangles",
                   {first, std::max(last, first + 1)}, {std::min(low, high / 10), high},
                   {estimate, rms, most});
 }
@@ -152,7 +155,9 @@ void addMeshCurve(Command mesh, Run& run) {
       "and maximum distance from its finest resolution (the maximum as a certified "
       "interval).\nExample: merlin mesh curve scan.mrm --csv scan.csv --svg scan.svg");
   command.option("model", options->model, "The model").required().typeName("MODEL.mrm");
-  command.option("--csv", options->csv, "Write a table, in model units and in % of the diagonal")
+  command
+      .option("--csv", options->csv,
+              "Write a table of errors in model units and in % of the diagonal")
       .typeName("FILE");
   command.option("--svg", options->svg, "Write a chart with logarithmic axes").typeName("FILE");
   command
@@ -168,11 +173,12 @@ void addMeshCurve(Command mesh, Run& run) {
   command.option("--seed", options->settings.seed, "Seed of the sampling").showDefault();
   command
       .option("--width", options->settings.width_percent,
-              "Width of the interval that holds the maximum, in percent of the diagonal")
+              "Width of the interval that contains the maximum, in percent of the diagonal of the "
+              "bounding box")
       .positive()
       .showDefault();
   command.option("--threads", options->settings.threads,
-                 "Number of threads; 0: all cores. The figures do not depend on it");
+                 "Number of threads; 0: all cores. The results do not depend on this number");
   command.callback([options, &run] { run = [options] { return curveOfModel(*options); }; });
 }
 

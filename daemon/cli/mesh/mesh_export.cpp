@@ -19,20 +19,21 @@ namespace {
 struct ExportOptions {
   std::string model, output;
   LevelChoice choice;
-  std::optional<double> within;  // maximum distance, percent of the diagonal
+  std::optional<double> within;  // maximum distance from the finest resolution [% of the diagonal]
   bool multiresolution = false;
 };
 
-Result<std::size_t> levelOf(const ExportOptions& options, const render::Dendrogram& model) {
+Result<std::size_t> levelOf(const ExportOptions& options, const render::lod::Dendrogram& model) {
   if (!options.within) return options.choice.levelOf(model, options.model);
   if (model.levels() == 1) return hasOneResolution(options.model);
-  const render::Mesh coarsest = render::extract(model, model.levels() - 1);
-  if (const auto free = render::checkBeside(options.output, coarsest); !free) return free.error();
+  const render::mesh::Mesh coarsest = render::lod::extract(model, model.levels() - 1);
+  if (const auto free = render::mesh::checkBeside(options.output, coarsest); !free)
+    return free.error();
   const SystemClock clock;
   ProgressBar bar("comparing", "resolutions", clock);
   std::size_t compared = 0;
   const auto found =
-      render::coarsestWithin(model, *options.within, [&](double share, std::size_t n) {
+      render::compare::coarsestWithin(model, *options.within, [&](double share, std::size_t n) {
         bar.update(share, n);
         compared = n;
       });
@@ -45,14 +46,15 @@ Result<std::size_t> levelOf(const ExportOptions& options, const render::Dendrogr
 
 int exportAll(const ExportOptions& options) {
   if (!options.output.ends_with(".iv")) {
-    return fail({Errc::kInvalidArgument,
-                 options.output + ": --multiresolution is written as .iv (Open Inventor)"});
+    return fail(
+        {Errc::kInvalidArgument,
+         options.output + ": --multiresolution can only be written as .iv (Open Inventor)"});
   }
   if (const auto writable = checkOutputs(options.model, {options.output}); !writable)
     return fail(writable.error());
   const auto model = openModel(options.model);
   if (!model) return fail(model.error());
-  const auto left_out = render::writeMultiresolution(options.output, *model);
+  const auto left_out = render::inventor::writeMultiresolution(options.output, *model);
   if (!left_out) return fail(left_out.error());
   say("{}: {} to {} triangles, {} levels\n", options.output,
       model->trianglesAt(model->levels() - 1), model->triangleCount(), model->levels());
@@ -61,7 +63,7 @@ int exportAll(const ExportOptions& options) {
 }
 
 int exportMesh(const ExportOptions& options) {
-  if (const auto known = render::checkMeshEnding(options.output); !known)
+  if (const auto known = render::mesh::checkMeshEnding(options.output); !known)
     return fail(known.error());
   if (const auto writable = checkOutputs(options.model, {options.output}); !writable)
     return fail(writable.error());
@@ -69,8 +71,8 @@ int exportMesh(const ExportOptions& options) {
   if (!model) return fail(model.error());
   const auto level = levelOf(options, *model);
   if (!level) return fail(level.error());
-  const render::Mesh mesh = render::extract(*model, *level);
-  const auto written = render::writeMesh(options.output, mesh);
+  const render::mesh::Mesh mesh = render::lod::extract(*model, *level);
+  const auto written = render::mesh::writeMesh(options.output, mesh);
   if (!written) return fail(written.error());
   say("{}: {} triangles, {} vertices, error estimate {:.4g}\n", options.output,
       mesh.triangleCount(), mesh.vertexCount(), model->errorAt(*level));
@@ -88,23 +90,24 @@ void addMeshExport(Command mesh, Run& run) {
       "up to 4 dimensions), .obj and .iv (Open Inventor; normals, colours, texture coordinates), "
       ".stl (triangles only). A texture is stored inside .glb and .gltf, and in a file of its own "
       "beside .ply, .obj and .iv.\nExample: merlin mesh export scan.mrm --percent 5 -o "
-      "scan5.ply\nTo write all resolutions for an Open Inventor viewer that finds SoMRFaceSet.so: "
-      "--multiresolution -o scan.iv");
+      "scan5.ply\nExample with all resolutions, for an Open Inventor viewer that can load "
+      "SoMRFaceSet.so: merlin mesh export scan.mrm --multiresolution -o scan.iv");
   command.option("model", options->model, "The model, or a mesh").required().typeName("MODEL.mrm");
   command.option("-o", options->output, "The mesh: .ply, .obj, .glb, .gltf, .stl or .iv")
       .required()
       .typeName("OUT");
   const Argument all = command.flag(
       "--multiresolution", options->multiresolution,
-      "Write all resolutions as an SoMRFaceSet (.iv only); viewers without its module show 10,000 "
-      "triangles");
+      "Write all resolutions as a node SoMRFaceSet (.iv only); viewers that cannot load the module "
+      "of this node show 10,000 triangles");
   Command resolution = options->choice.addTo(command);
   resolution
       .option(
           "--within", options->within,
-          "Maximum distance from the finest resolution, certified, in percent of the diagonal of "
-          "the bounding box; the coarsest resolution found within it is taken, after about ten "
-          "comparisons")
+          "Maximum certified distance from the finest resolution, in percent of the diagonal of "
+          "the "
+          "bounding box; selects the coarsest resolution found within this distance, after about "
+          "ten comparisons")
       .range(1e-6, 100.0);
   resolution.exclude(all);
   command.callback([options, &run] {

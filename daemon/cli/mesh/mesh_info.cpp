@@ -16,9 +16,9 @@ struct InfoOptions {
   bool json = false;
 };
 
-// A model; if it was read from a mesh, with the repairs.
+// A model and, if it was read from a mesh file, the repairs that were necessary.
 struct Opened {
-  std::optional<render::Dendrogram> model;
+  std::optional<render::lod::Dendrogram> model;
   std::vector<Repair> repairs;
   std::string mended;
 };
@@ -41,9 +41,9 @@ Result<Opened> open(const std::string& path) {
 
 void printJson(const std::string& file, const Opened& opened) {
   using Json = nlohmann::ordered_json;
-  const render::Dendrogram& model = *opened.model;
+  const render::lod::Dendrogram& model = *opened.model;
   const auto& a = model.arrays();
-  const render::Box box = boxOf(model);
+  const render::mesh::Box box = boxOf(model);
   Json features = Json::array();
   for (const auto& f : a.features)
     features.push_back({{"name", f.name}, {"dimension", f.dimension}});
@@ -62,9 +62,9 @@ void printJson(const std::string& file, const Opened& opened) {
 }
 
 void printText(const std::string& file, const Opened& opened) {
-  const render::Dendrogram& model = *opened.model;
+  const render::lod::Dendrogram& model = *opened.model;
   const auto& a = model.arrays();
-  const render::Box box = boxOf(model);
+  const render::mesh::Box box = boxOf(model);
   say("{}: {} triangles, {} vertices\n", file, model.triangleCount(), model.vertexCount());
   if (model.levels() > 1) {
     say("  levels    {}, down to {} triangles (error estimate {:.3g})\n", model.levels(),
@@ -98,7 +98,9 @@ void addMeshInfo(Command mesh, Run& run) {
       "info",
       "Show the contents of a mesh or a model, and the "
       "repairs that reading a mesh needed.\nExample: merlin mesh info scan.mrm --json");
-  command.option("file", options->file, "Model (.mrm) or mesh (" + render::readableEndings() + ")")
+  command
+      .option("file", options->file,
+              "Model (.mrm) or mesh (" + render::mesh::readableEndings() + ")")
       .required()
       .typeName("FILE");
   command.flag("--json", options->json, "Print JSON, for programs");

@@ -16,17 +16,17 @@
 namespace merlin::cli {
 namespace {
 
-// The program itself and its file buffers.
+// Memory of the program itself and of its file buffers [bytes].
 constexpr std::size_t kProgram = std::size_t{32} << 20;
 
-// Such as "7.5 GiB".
+// A number of bytes as a text for a person, "7.5 GiB".
 std::string sizeText(std::size_t bytes) {
   const double mib = static_cast<double>(bytes) / (1 << 20);
   return mib < 1000 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.1f} GiB", mib / 1024);
 }
 
-// Free part of the address space within its limit (ulimit -v), less an eighth for addresses that
-// the allocator and threads reserve but do not use.
+// The bytes of address space that the limit (ulimit -v) still allows, less an eighth for addresses
+// that the allocator and threads reserve but do not use. A very large number without a limit.
 std::size_t freeAddresses() {
   rlimit limit{};
   std::size_t pages = 0;
@@ -37,9 +37,10 @@ std::size_t freeAddresses() {
   return limit.rlim_cur > taken ? (limit.rlim_cur - taken) / 8 * 7 : 0;
 }
 
-// Peak need of all steps but the reduction: reading (the file, and the mesh without normals),
-// splitting (half-edges and fans), writing (the collapse log and the order of its rows).
-std::size_t needOfOthers(const render::MeshSize& m, std::size_t file_size) {
+// Peak memory, in bytes, of all steps except the reduction. These are: reading (the file, and the
+// mesh without normals), splitting non-manifold edges and vertices (half-edges and fans of
+// triangles), and writing (the collapse log and the order of its rows).
+std::size_t needOfOthers(const render::mesh::MeshSize& m, std::size_t file_size) {
   const std::size_t read = m.bytes() - 12 * m.vertices;
   const std::size_t split = read + 36 * m.triangles + 5 * m.vertices;
   const std::size_t write =
@@ -65,36 +66,37 @@ std::size_t peakMemory() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
-Result<std::size_t> roomForReduction(const render::MeshSize& mesh, std::size_t file_size,
-                                     const render::ReduceSettings& settings, std::size_t limit) {
+Result<std::size_t> roomForReduction(const render::mesh::MeshSize& mesh, std::size_t file_size,
+                                     const render::reduce::ReduceSettings& settings,
+                                     std::size_t limit) {
   const std::size_t beside = mesh.bytes() + kProgram;
   const std::size_t need =
       std::max(needOfOthers(mesh, file_size), beside + needOf(mesh, settings).least);
   if (need <= limit) return limit - beside;
   return Error{Errc::kInvalidArgument,
                fmt::format("reducing {} vertices and {} triangles takes {}, even in blocks; the "
-                           "limit (--memory, else what is free) is {}",
+                           "limit (--memory, by default the free memory) is {}",
                            mesh.vertices, mesh.triangles, sizeText(need), sizeText(limit))};
 }
 
-Result<Ok> roomForPicture(const std::string& picture, const render::MeshSize& mesh,
+Result<Ok> roomForPicture(const std::string& picture, const render::mesh::MeshSize& mesh,
                           std::size_t limit) {
-  const auto pixels = render::imageBytes(picture);
+  const auto pixels = render::image::imageBytes(picture);
   const std::size_t need = mesh.bytes() + kProgram + (pixels ? *pixels : 0);
   if (!pixels || need <= limit) return Ok{};
   return Error{
       Errc::kInvalidArgument,
-      fmt::format("{}: reading it beside its mesh takes {}; the limit (--memory, else what is "
-                  "free) is {}",
+      fmt::format("{}: decoding this texture while the mesh is in memory takes {}; the limit "
+                  "(--memory, by default the free memory) is {}",
                   picture, sizeText(need), sizeText(limit))};
 }
 
-Result<Ok> checkRoom(const std::string& path, const render::ReduceSettings& settings,
+Result<Ok> checkRoom(const std::string& path, const render::reduce::ReduceSettings& settings,
                      std::size_t limit) {
-  auto found = render::meshFileSize(path);
-  if (!found) return Ok{};  // the reader reports what is wrong
-  render::MeshSize& size = found->mesh;
-  size.values += 3;  // normals are added
+  auto found = render::mesh::meshFileSize(path);
+  if (!found) return Ok{};  // loadMesh() reports the fault
+  render::mesh::MeshSize& size = found->mesh;
+  size.values += 3;  // loadMesh() adds normals
   if (!found->picture.empty()) {
     if (const auto fits = roomForPicture(found->picture, size, limit); !fits) return fits;
   }

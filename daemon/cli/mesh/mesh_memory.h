@@ -1,4 +1,5 @@
-// Memory of `merlin mesh reduce`: what is available, what it needs, and what it used.
+// Memory of `merlin mesh reduce`: how much is available, how much the command needs, how much it
+// used.
 #pragma once
 
 #include <cstddef>
@@ -10,29 +11,32 @@
 
 namespace merlin::cli {
 
-// Available memory in bytes: the machine's free memory less a sixteenth, or what the limit of this
-// process' address space leaves less an eighth, whichever is smaller. A very large number if
-// neither is known.
+// Available memory in bytes: the smaller of 15/16 of the machine's free memory and 7/8 of the
+// address space that this process may still use (ulimit -v). A very large number if neither is
+// known.
 std::size_t freeMemory();
 
 // Peak resident memory of this process so far in bytes, mapped files included.
 std::size_t peakMemory();
 
-// Bytes that the reduction of a mesh of that size may use beside the mesh, so that all steps of the
-// command (reading a file of `file_size` bytes, repairs, reduction, writing) stay within `limit`
-// bytes. Errors: kInvalidArgument, with need and limit, if not even a reduction in blocks fits.
-Result<std::size_t> roomForReduction(const render::MeshSize& mesh, std::size_t file_size,
-                                     const render::ReduceSettings& settings, std::size_t limit);
+// Returns how many bytes the reduction of a mesh of this size may use in addition to the mesh, so
+// that the command stays within `limit` bytes. Checks also that all other steps (reading a file of
+// `file_size` bytes, repairs, writing) stay within it. Errors: kInvalidArgument, with the required
+// memory and the limit, if even a reduction in blocks does not fit.
+Result<std::size_t> roomForReduction(const render::mesh::MeshSize& mesh, std::size_t file_size,
+                                     const render::reduce::ReduceSettings& settings,
+                                     std::size_t limit);
 
-// Checks that the texture's picture can be decoded while the mesh is in memory. Errors:
-// kInvalidArgument; none if the picture cannot be read, because reading it will report that.
-Result<Ok> roomForPicture(const std::string& picture, const render::MeshSize& mesh,
+// Checks that the texture file `picture` can be decoded within `limit` bytes while the mesh is in
+// memory. Errors: kInvalidArgument. A file that cannot be read is not an error here; the step that
+// reads it reports that.
+Result<Ok> roomForPicture(const std::string& picture, const render::mesh::MeshSize& mesh,
                           std::size_t limit);
 
-// The check of roomForReduction() before the mesh is read, from the sizes in the file's header.
-// Errors: kInvalidArgument, with the file's name; none if the header does not say them or
-// cannot be read; reading the mesh will report that.
-Result<Ok> checkRoom(const std::string& path, const render::ReduceSettings& settings,
+// Makes the checks of roomForReduction() and roomForPicture() before the mesh is read, with the
+// sizes in the file's header. Errors: kInvalidArgument, with the file's name. A header that cannot
+// be read or contains no sizes is not an error here; reading the mesh reports faults.
+Result<Ok> checkRoom(const std::string& path, const render::reduce::ReduceSettings& settings,
                      std::size_t limit);
 
 }  // namespace merlin::cli

@@ -14,35 +14,35 @@
 
 namespace merlin::cli {
 
-Result<render::Dendrogram> openModel(const std::string& path) {
-  if (path.ends_with(".mrm")) return render::readMrm(path);
+Result<render::lod::Dendrogram> openModel(const std::string& path) {
+  if (path.ends_with(".mrm")) return render::lod::readMrm(path);
   const auto loaded = loadMesh(path);
   if (!loaded) return loaded.error();
   return asModel(loaded->mesh);
 }
 
-Result<render::LoadedMesh> loadMesh(const std::string& path) {
-  auto loaded = render::readMesh(path);
+Result<render::mesh::LoadedMesh> loadMesh(const std::string& path) {
+  auto loaded = render::mesh::readMesh(path);
   if (!loaded) return loaded;
   for (const std::string& note : loaded->notes) printNote(note);
-  render::ensureNormals(loaded->mesh);
+  render::mesh::ensureNormals(loaded->mesh);
   return loaded;
 }
 
-std::vector<Repair> repairsOf(const render::LoadedMesh& loaded) {
-  const render::TidyReport& t = loaded.tidied;
-  const render::SplitReport& s = loaded.split;
-  return {{"degenerate_dropped", "degenerate triangles (a vertex twice) dropped", t.degenerate},
+std::vector<Repair> repairsOf(const render::mesh::LoadedMesh& loaded) {
+  const render::mesh::TidyReport& t = loaded.tidied;
+  const render::mesh::SplitReport& s = loaded.split;
+  return {{"degenerate_dropped", "degenerate triangles (same vertex twice) dropped", t.degenerate},
           {"duplicates_dropped", "duplicate triangles dropped", t.duplicate},
-          {"opposites_dropped", "triangles with the vertices of another, but reversed, dropped",
-           t.opposite},
+          {"opposites_dropped",
+           "triangles with the same vertices as another in reverse order dropped", t.opposite},
           {"unused_dropped", "unused vertices dropped", t.unused},
           {"non_manifold_edges", "non-manifold edges split", s.edges},
           {"non_manifold_vertices", "non-manifold vertices split", s.vertices},
           {"vertices_added", "vertices added by splitting", s.added}};
 }
 
-std::string mendedText(const render::LoadedMesh& loaded) {
+std::string mendedText(const render::mesh::LoadedMesh& loaded) {
   std::string text;
   for (const Repair& r : repairsOf(loaded)) {
     if (r.count > 0)
@@ -51,17 +51,17 @@ std::string mendedText(const render::LoadedMesh& loaded) {
   return text;
 }
 
-render::Dendrogram asModel(const render::Mesh& mesh) {
-  render::CollapseLog nothing;
+render::lod::Dendrogram asModel(const render::mesh::Mesh& mesh) {
+  render::lod::CollapseLog nothing;
   nothing.features.resize(mesh.features.size());
-  return render::buildDendrogram(mesh, nothing);
+  return render::lod::buildDendrogram(mesh, nothing);
 }
 
-render::Box boxOf(const render::Dendrogram& model) {
+render::mesh::Box boxOf(const render::lod::Dendrogram& model) {
   const auto& a = model.arrays();
-  if (a.triangles.empty()) return render::boundingBox(a.positions);
+  if (a.triangles.empty()) return render::mesh::boundingBox(a.positions);
   const auto at = [&](std::uint32_t corner) { return a.positions.subspan(3 * corner, 3); };
-  render::Box box = render::boundingBox(at(a.triangles[0]));
+  render::mesh::Box box = render::mesh::boundingBox(at(a.triangles[0]));
   for (const std::uint32_t corner : a.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       box.low[k] = std::min(box.low[k], at(corner)[k]);
@@ -81,10 +81,10 @@ Error hasOneResolution(const std::string& path) {
   return {Errc::kInvalidArgument, path + ": has one resolution only" + advice};
 }
 
-void printWritten(const render::WrittenMesh& written) {
+void printWritten(const render::mesh::WrittenMesh& written) {
   if (!written.beside.empty()) say("  companion files: {}\n", fmt::join(written.beside, " and "));
   if (!written.left_out.empty())
-    say("  the format .{} cannot hold {}: left out\n", written.format,
+    say("  features left out, because the format .{} cannot store them: {}\n", written.format,
         fmt::join(written.left_out, ", "));
 }
 
@@ -97,7 +97,7 @@ Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::str
   return checkWritable(outputs);
 }
 
-Result<Ok> setWeight(const std::string& text, render::Weights& weights) {
+Result<Ok> setWeight(const std::string& text, render::reduce::Weights& weights) {
   const auto equals = text.find('=');
   char* end = nullptr;
   const char* number = text.c_str() + (equals == std::string::npos ? text.size() : equals + 1);
@@ -115,10 +115,9 @@ Command LevelChoice::addTo(Command command) {
       .range(0.0, 100.0);
   group.option("--triangles", triangles, "Maximum number of triangles");
   group
-      .option(
-          "--error", error_percent,
-          "Maximum error estimate, in percent of the diagonal of the bounding box; the coarsest "
-          "resolution within it is taken")
+      .option("--error", error_percent,
+              "Maximum error estimate, in percent of the diagonal of the bounding box; selects the "
+              "coarsest resolution whose estimate is not larger")
       .nonNegative();
   group.option("--error-units", error_units, "Maximum error estimate, in the model's units")
       .nonNegative();
@@ -126,7 +125,7 @@ Command LevelChoice::addTo(Command command) {
   return group;
 }
 
-std::size_t LevelChoice::coarsestAllowed(const render::Dendrogram& model) const {
+std::size_t LevelChoice::coarsestAllowed(const render::lod::Dendrogram& model) const {
   if (triangles) return model.levelFor(*triangles);
   if (percent)
     return model.levelFor(static_cast<std::size_t>(
@@ -138,7 +137,7 @@ std::size_t LevelChoice::coarsestAllowed(const render::Dendrogram& model) const 
   return 0;
 }
 
-Result<std::size_t> LevelChoice::levelOf(const render::Dendrogram& model,
+Result<std::size_t> LevelChoice::levelOf(const render::lod::Dendrogram& model,
                                          const std::string& path) const {
   const std::size_t level = coarsestAllowed(model);
   const double asked =

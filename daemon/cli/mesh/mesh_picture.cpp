@@ -1,4 +1,4 @@
-// merlin mesh picture: draws models, each at one or several resolutions, side by side.
+// merlin mesh picture: draws models, each at one or several resolutions, side by side in one image.
 #include <memory>
 
 #include <fmt/format.h>
@@ -20,11 +20,11 @@ struct PictureOptions {
 };
 
 Result<Ok> appendModel(const PictureOptions& options, const std::string& path,
-                       render::Image& strip) {
+                       render::image::Image& strip) {
   const auto model = openModel(path);
   if (!model) return model.error();
   const SystemClock clock;
-  auto painter = render::OffscreenModel::make(*model, options.view.asAsked(), clock);
+  auto painter = render::frame::OffscreenModel::make(*model, options.view.asAsked(), clock);
   if (!painter) return painter.error();
   for (const double percent : options.percents) {
     const std::size_t level = model->levelFor(
@@ -42,12 +42,13 @@ int picture(const PictureOptions& options) {
   }
   if (const auto named = checkEnding(options.output, "picture", ".png"); !named)
     return fail(named.error());
-  render::prepareSoftwareGl(0);
-  render::Image strip;
+  render::gl::prepareSoftwareGl(0);
+  render::image::Image strip;
   for (const std::string& model : options.models) {
     if (const auto done = appendModel(options, model, strip); !done) return fail(done.error());
   }
-  const auto written = render::writePng(options.output, strip.width, strip.height, strip.pixels);
+  const auto written =
+      render::image::writePng(options.output, strip.width, strip.height, strip.pixels);
   if (!written) return fail(written.error());
   say("{}: {} x {}\n", options.output, strip.width, strip.height);
   return kExitDone;
@@ -63,18 +64,18 @@ void addMeshPicture(Command mesh, Run& run) {
                                     "mesh picture scan.mrm --percent 100 5 -o both.png");
   command
       .option("models", options->models,
-              "Models (.mrm) or meshes (" + render::readableEndings() + ")")
+              "Models (.mrm) or meshes (" + render::mesh::readableEndings() + ")")
       .required()
       .typeName("MODEL");
   command.option("-o", options->output, "The PNG file").required().typeName("FILE.png");
   command
       .option("--percent", options->percents,
-              "Resolutions, in percent of the finest's triangles; one picture each")
+              "Resolutions to draw, in percent of the triangles of the finest; one image for each")
       .range(0.0, 100.0);
-  command.option("--width", options->view.width, "Width of one picture in pixels")
+  command.option("--width", options->view.width, "Width of one image in pixels")
       .range(16, 8192)
       .showDefault();
-  command.option("--height", options->view.height, "Height of one picture in pixels")
+  command.option("--height", options->view.height, "Height of one image in pixels")
       .range(16, 8192)
       .showDefault();
   options->view.addTo(command);

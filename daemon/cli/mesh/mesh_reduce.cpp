@@ -1,4 +1,4 @@
-// merlin mesh reduce: makes a multiresolution model from a mesh.
+// merlin mesh reduce: creates a multiresolution model from a mesh.
 #include <memory>
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ namespace {
 struct ReduceOptions {
   std::string input, output, texture, preset = "default";
   std::vector<std::string> weights;
-  render::ReduceSettings settings;
+  render::reduce::ReduceSettings settings;
   std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
   bool lock_borders = false;
   bool json = false;
@@ -34,10 +34,11 @@ struct Took {
   std::size_t limit = 0;         // memory limit [bytes]
 };
 
-Result<render::Weights> weightsOf(const ReduceOptions& options, const render::Mesh& mesh) {
-  render::Weights weights = render::findCost(options.settings.cost)->weights(mesh);
-  for (const render::Preset& preset : render::presets()) {
-    if (preset.name == options.preset) weights = render::presetWeights(preset, mesh);
+Result<render::reduce::Weights> weightsOf(const ReduceOptions& options,
+                                          const render::mesh::Mesh& mesh) {
+  render::reduce::Weights weights = render::reduce::findCost(options.settings.cost)->weights(mesh);
+  for (const render::reduce::Preset& preset : render::reduce::presets()) {
+    if (preset.name == options.preset) weights = render::reduce::presetWeights(preset, mesh);
   }
   for (const std::string& text : options.weights) {
     if (const auto set = setWeight(text, weights); !set) return set.error();
@@ -47,9 +48,9 @@ Result<render::Weights> weightsOf(const ReduceOptions& options, const render::Me
 
 double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
 
-void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
-            const render::ReduceReport& r, const Took& took) {
-  const float diagonal = render::boundingBox(loaded.mesh.positions).diagonal();
+void report(const ReduceOptions& options, const render::mesh::LoadedMesh& loaded,
+            const render::reduce::ReduceReport& r, const Took& took) {
+  const float diagonal = render::mesh::boundingBox(loaded.mesh.positions).diagonal();
   const double percent = diagonal > 0 ? 100.0 * static_cast<double>(r.error / diagonal) : 0;
   const double rate = took.reducing > 0 ? static_cast<double>(r.collapses) / took.reducing : 0;
   if (options.json) {
@@ -78,7 +79,8 @@ void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
   say("{}: {} triangles down to {} in {} collapses ({})\n", options.output,
       loaded.mesh.triangleCount(), r.triangles, r.collapses, r.stopped);
   if (r.by_all_rules > r.triangles) {
-    say("  all constraints were kept down to {} triangles\n", r.by_all_rules);
+    say("  all constraints were satisfied down to {} triangles, and not all of them below\n",
+        r.by_all_rules);
   }
   say("  {:.2f} s, {:.0f} collapses per second; {:.2f} s with reading and writing\n", took.reducing,
       rate, took.all);
@@ -90,13 +92,13 @@ void report(const ReduceOptions& options, const render::LoadedMesh& loaded,
   if (const std::string mended = mendedText(loaded); !mended.empty()) say("  {}\n", mended);
 }
 
-Result<render::Reduction> reduceLoaded(const ReduceOptions& options, const render::Mesh& mesh,
-                                       Took& took) {
-  render::ReduceSettings settings = options.settings;
+Result<render::reduce::Reduction> reduceLoaded(const ReduceOptions& options,
+                                               const render::mesh::Mesh& mesh, Took& took) {
+  render::reduce::ReduceSettings settings = options.settings;
   auto weights = weightsOf(options, mesh);
   if (!weights) return weights.error();
   settings.weights = *std::move(weights);
-  if (options.lock_borders) settings.locked = render::borderVertices(mesh);
+  if (options.lock_borders) settings.locked = render::mesh::borderVertices(mesh);
   const auto room = roomForReduction(sizeOf(mesh), 0, settings, took.limit);
   if (!room) return Error{room.error().code, options.input + ": " + room.error().what};
   settings.memory = *room;
@@ -105,10 +107,11 @@ Result<render::Reduction> reduceLoaded(const ReduceOptions& options, const rende
   ProgressBar bar("reducing", "collapses", clock);
   const Timestamp began = clock.now();
   const auto all = static_cast<double>(mesh.triangleCount());
-  auto reduction = render::reduce(mesh, settings, [&](const render::ReduceProgress& p) {
-    bar.update(1 - static_cast<double>(p.triangles) / all, p.collapses);
-    return true;
-  });
+  auto reduction =
+      render::reduce::reduce(mesh, settings, [&](const render::reduce::ReduceProgress& p) {
+        bar.update(1 - static_cast<double>(p.triangles) / all, p.collapses);
+        return true;
+      });
   if (!reduction) return reduction;
   took.reducing = toSeconds(clock.now() - began);
   bar.finish(reduction->report.collapses);
@@ -116,16 +119,17 @@ Result<render::Reduction> reduceLoaded(const ReduceOptions& options, const rende
 }
 
 // Adds the texture that --texture names to the mesh.
-Result<Ok> addTexture(const ReduceOptions& options, render::Mesh& mesh, std::size_t limit) {
+Result<Ok> addTexture(const ReduceOptions& options, render::mesh::Mesh& mesh, std::size_t limit) {
   if (options.texture.empty()) return Ok{};
-  const render::Feature* texcoord = mesh.find("texcoord");
+  const render::mesh::Feature* texcoord = mesh.find("texcoord");
   if (!texcoord || texcoord->dimension != 2) {
-    return Error{
-        Errc::kInvalidArgument,
-        options.input + ": has no texture coordinates (a PLY's s and t or u and v, an OBJ's vt)"};
+    return Error{Errc::kInvalidArgument,
+                 options.input +
+                     ": has no texture coordinates (s and t or u and v in a PLY file, vt in an "
+                     "OBJ file)"};
   }
   if (const auto fits = roomForPicture(options.texture, sizeOf(mesh), limit); !fits) return fits;
-  auto picture = render::readImage(options.texture);
+  auto picture = render::image::readImage(options.texture);
   if (!picture) return picture.error();
   mesh.texture = std::move(picture->file);
   return Ok{};
@@ -135,12 +139,13 @@ Result<Ok> checkOptions(const ReduceOptions& options) {
   const bool pattern = options.settings.cost == "pattern";
   if (const auto named = checkEnding(options.output, "model", ".mrm"); !named) return named;
   if (options.preset != "default" && !pattern)
-    return Error{Errc::kInvalidArgument, "--preset " + options.preset + ": add --cost pattern"};
+    return Error{Errc::kInvalidArgument, "--preset " + options.preset + ": needs --cost pattern"};
   if (options.settings.fast && pattern)
-    return Error{Errc::kInvalidArgument, "--fast: only with --cost quadric"};
+    return Error{Errc::kInvalidArgument, "--fast: needs --cost quadric"};
   if (options.lock_borders && pattern)
-    return Error{Errc::kInvalidArgument,
-                 "--lock-borders: only with --cost quadric; for pattern: --weight boundary=W"};
+    return Error{
+        Errc::kInvalidArgument,
+        "--lock-borders: needs --cost quadric; with --cost pattern use --weight boundary=W"};
   return checkOutputs(options.input, {options.output});
 }
 
@@ -156,12 +161,12 @@ int reduceMesh(const ReduceOptions& options) {
   if (!loaded) return fail(loaded.error());
   if (const auto done = addTexture(options, loaded->mesh, took.limit); !done)
     return fail(done.error());
-  if (const auto named = render::checkNames(loaded->mesh); !named)
+  if (const auto named = render::lod::checkNames(loaded->mesh); !named)
     return fail({named.error().code, options.input + ": " + named.error().what});
   const auto reduction = reduceLoaded(options, loaded->mesh, took);
   if (!reduction) return fail(reduction.error());
   const auto written =
-      render::writeMrm(options.output, loaded->mesh, reduction->log, options.settings.threads);
+      render::lod::writeMrm(options.output, loaded->mesh, reduction->log, options.settings.threads);
   if (!written) return fail(written.error());
   took.all = toSeconds(clock.now() - began);
   report(options, *loaded, reduction->report, took);
@@ -173,47 +178,51 @@ int reduceMesh(const ReduceOptions& options) {
 void addMeshReduce(Command mesh, Run& run) {
   const auto options = std::make_shared<ReduceOptions>();
   Command command = mesh.subcommand(
-      "reduce", "A mesh (" + render::readableEndings() +
-                    ") to a multiresolution model (.mrm): every resolution from all of it down "
-                    "to next to nothing.\nExample: merlin mesh reduce scan.ply -o scan.mrm "
-                    "--weight colour=0.02");
+      "reduce",
+      "Reduce a mesh (" + render::mesh::readableEndings() +
+          ") to a multiresolution model (.mrm), which contains every resolution from the "
+          "full mesh down to a few triangles.\nExample: merlin mesh reduce scan.ply -o scan.mrm "
+          "--weight colour=0.02");
   command.option("input", options->input, "The mesh").required().typeName("IN");
   command.option("-o", options->output, "The model").required().typeName("OUT.mrm");
   std::vector<std::string> names;
-  std::string help = "What an edge costs";
-  for (const render::Cost& cost : render::costs()) {
+  std::string help = "Cost function of an edge collapse";
+  for (const render::reduce::Cost& cost : render::reduce::costs()) {
     names.emplace_back(cost.name);
     help += fmt::format("; {}: {}", cost.name, cost.help);
   }
   command.option("--cost", options->settings.cost, help).oneOf(names).showDefault();
   std::vector<std::string> presets = {"default"};
-  for (const render::Preset& preset : render::presets()) presets.emplace_back(preset.name);
+  for (const render::reduce::Preset& preset : render::reduce::presets())
+    presets.emplace_back(preset.name);
   command
       .option("--preset", options->preset,
-              "Initial weights: those of the cost, or weights that the dissertation of 1998 used "
-              "with pattern")
+              "Initial weights of the features: default (those of the selected --cost), or, with "
+              "--cost pattern only, weights that Gourley's dissertation of 1998 used for its data")
       .oneOf(presets)
       .showDefault();
   command
       .option("--weight", options->weights,
-              "Weight of a feature: geometry, colour or any other feature of the mesh; for pattern "
-              "also normal, curvature and boundary. 0 ignores the feature. Regions of different "
-              "labels stay separate unless label has a weight")
+              "Weight of a feature: geometry, colour or any other feature of the mesh; with --cost "
+              "pattern also normal, curvature and boundary. 0 ignores the feature. Regions with "
+              "different values of the feature label stay separate unless label has a weight")
       .typeName("FEATURE=W");
   command
       .option("--texture", options->texture,
-              "Texture, which is stored in the model; the default is the one that the mesh's "
-              "material names")
+              "Texture image, which is stored in the model; the default is the image that the "
+              "mesh's material names")
       .typeName("FILE.png|.jpg");
   command.flag("--preserve-topology", options->settings.preserve_topology,
-               "Refuse collapses that connect or separate parts of the surface");
+               "Refuse edge collapses that connect or separate parts of the surface");
   command.flag(
       "--preserve-components", options->settings.preserve_components,
-      "Keep at least one triangle of every connected part as long as others can be removed");
-  command.flag("--lock-borders", options->lock_borders,
-               "Keep border vertices at their place as long as others can be removed");
+      "Keep at least one triangle of every connected component as long as other triangles can be "
+      "removed");
+  command.flag(
+      "--lock-borders", options->lock_borders,
+      "Keep vertices on the border of the mesh unchanged as long as others can be removed");
   command.flag("--fast", options->settings.fast,
-               "Take a tenth to a third less time, at about 6 % more error");
+               "Reduce the computing time by a tenth to a third; the error is about 6 % larger");
   command.option("--triangles", options->settings.min_triangles, "Stop at this number of triangles")
       .showDefault();
   command
@@ -227,12 +236,14 @@ void addMeshReduce(Command mesh, Run& run) {
       .nonNegative();
   command
       .option("--threads", options->settings.threads,
-              "Maximum number of threads; 0: all cores. The model does not depend on it")
+              "Maximum number of threads; 0: all cores. The model does not depend on this number")
       .showDefault();
   command
-      .option("--memory", options->memory,
-              "Maximum memory of the whole command, such as 900M or 16G; the default is what is "
-              "free. If it is short, the mesh is reduced in blocks, and the model differs slightly")
+      .option(
+          "--memory", options->memory,
+          "Maximum memory of the whole command, such as 900M or 16G; the default is the free "
+          "memory. If it does not suffice, the mesh is reduced in blocks, and the model differs "
+          "slightly")
       .size()
       .typeName("SIZE");
   command.flag("--json", options->json, "Print the report as JSON, for programs");

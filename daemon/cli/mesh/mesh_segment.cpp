@@ -1,5 +1,5 @@
-// merlin mesh segment: clusters the vertices of a mesh in pattern space; the clusters' numbers
-// become the feature "label".
+// merlin mesh segment: divides a mesh into segments by clustering its vertices in pattern space;
+// the number of each vertex's segment becomes its feature "label".
 #include <memory>
 
 #include <fmt/format.h>
@@ -20,32 +20,32 @@ namespace {
 struct SegmentOptions {
   std::string input, output, picture;
   std::vector<std::string> weights;
-  render::SegmentSettings settings;
+  render::segment::SegmentSettings settings;
   View view;
   bool json = false;
 };
 
-void setFeature(render::Mesh& mesh, render::Feature feature) {
-  if (render::Feature* old = mesh.find(feature.name))
+void setFeature(render::mesh::Mesh& mesh, render::mesh::Feature feature) {
+  if (render::mesh::Feature* old = mesh.find(feature.name))
     *old = std::move(feature);
   else
     mesh.features.push_back(std::move(feature));
 }
 
-Result<Ok> draw(const SegmentOptions& options, const render::Mesh& mesh) {
-  render::prepareSoftwareGl(0);
-  const render::Dendrogram model = asModel(mesh);
+Result<Ok> draw(const SegmentOptions& options, const render::mesh::Mesh& mesh) {
+  render::gl::prepareSoftwareGl(0);
+  const render::lod::Dendrogram model = asModel(mesh);
   const SystemClock clock;
   View view = options.view;
   if (view.model.show.feature.empty()) view.model.show.feature = "label";
-  auto painter = render::OffscreenModel::make(model, view.asAsked(), clock);
+  auto painter = render::frame::OffscreenModel::make(model, view.asAsked(), clock);
   if (!painter) return painter.error();
-  const render::Image image = painter->draw(0);
-  return render::writePng(options.picture, image.width, image.height, image.pixels);
+  const render::image::Image image = painter->draw(0);
+  return render::image::writePng(options.picture, image.width, image.height, image.pixels);
 }
 
-void report(const SegmentOptions& options, const render::Segmentation& s, double seconds,
-            const render::WrittenMesh& written) {
+void report(const SegmentOptions& options, const render::segment::Segmentation& s, double seconds,
+            const render::mesh::WrittenMesh& written) {
   if (options.json) {
     const nlohmann::ordered_json json = {
         {"output", options.output}, {"segments", s.sizes.size()},
@@ -66,7 +66,7 @@ void report(const SegmentOptions& options, const render::Segmentation& s, double
 }
 
 int segmentMesh(const SegmentOptions& options) {
-  if (const auto known = render::checkMeshEnding(options.output); !known)
+  if (const auto known = render::mesh::checkMeshEnding(options.output); !known)
     return fail(known.error());
   if (const auto writable = checkOutputs(options.input, {options.output, options.picture});
       !writable)
@@ -77,19 +77,20 @@ int segmentMesh(const SegmentOptions& options) {
   }
   auto loaded = loadMesh(options.input);
   if (!loaded) return fail(loaded.error());
-  render::Mesh& mesh = loaded->mesh;
-  render::SegmentSettings settings = options.settings;
+  render::mesh::Mesh& mesh = loaded->mesh;
+  render::segment::SegmentSettings settings = options.settings;
   for (const std::string& text : options.weights) {
     if (const auto set = setWeight(text, settings.weights); !set) return fail(set.error());
   }
-  if (const auto free = render::checkBeside(options.output, mesh); !free) return fail(free.error());
+  if (const auto free = render::mesh::checkBeside(options.output, mesh); !free)
+    return fail(free.error());
   const SystemClock clock;
   const Timestamp began = clock.now();
-  const auto segmentation = render::segment(mesh, settings);
+  const auto segmentation = render::segment::segment(mesh, settings);
   if (!segmentation) return fail(segmentation.error());
   const double seconds = toSeconds(clock.now() - began);
   setFeature(mesh, {"label", 1, {segmentation->labels.begin(), segmentation->labels.end()}});
-  const auto written = render::writeMesh(options.output, mesh);
+  const auto written = render::mesh::writeMesh(options.output, mesh);
   if (!written) return fail(written.error());
   if (!options.picture.empty()) {
     if (const auto drawn = draw(options, mesh); !drawn) return fail(drawn.error());
@@ -102,12 +103,13 @@ int segmentMesh(const SegmentOptions& options) {
 
 void addMeshSegment(Command mesh, Run& run) {
   const auto options = std::make_shared<SegmentOptions>();
-  Command command = mesh.subcommand(
-      "segment",
-      "Divide a mesh into connected segments of similar vertices. Their numbers become the feature "
-      "label; 0 is the largest segment.\nExample: merlin mesh segment scan.ply -o parts.ply "
-      "--segments 12 --weight normal=1 --weight colour=2");
-  command.option("input", options->input, "The mesh: " + render::readableEndings())
+  Command command = mesh.subcommand("segment",
+                                    "Divide a mesh into connected segments of similar vertices. "
+                                    "The number of its segment becomes "
+                                    "the feature label of each vertex; 0 is the largest "
+                                    "segment.\nExample: merlin mesh segment scan.ply -o parts.ply "
+                                    "--segments 12 --weight normal=1 --weight colour=2");
+  command.option("input", options->input, "The mesh: " + render::mesh::readableEndings())
       .required()
       .typeName("IN");
   command.option("-o", options->output, "The mesh with labels: .ply, .glb or .gltf")
@@ -116,7 +118,7 @@ void addMeshSegment(Command mesh, Run& run) {
       .check([](const std::string& path) {
         const bool carries =
             path.ends_with(".ply") || path.ends_with(".glb") || path.ends_with(".gltf");
-        return carries ? "" : path + ": only .ply, .glb and .gltf can hold labels";
+        return carries ? "" : path + ": only .ply, .glb and .gltf files can store labels";
       });
   command.option("--segments", options->settings.segments, "Number of segments")
       .required()
@@ -126,7 +128,9 @@ void addMeshSegment(Command mesh, Run& run) {
               "Weight of a feature: geometry, normal, curvature, or any other feature of the mesh; "
               "the default is normal=1, and colour=1 if the mesh has colours")
       .typeName("FEATURE=W");
-  command.option("--picture", options->picture, "Draw the segments, each in a colour of its own")
+  command
+      .option("--picture", options->picture,
+              "Write an image of the segments, each in its own colour")
       .typeName("FILE.png");
   options->view.addTo(command);
   command.flag("--json", options->json, "Print the report as JSON, for programs");

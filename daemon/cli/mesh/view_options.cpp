@@ -3,27 +3,30 @@
 namespace merlin::cli {
 
 void View::addTo(Command command) {
-  command.option("--yaw", yaw_deg, "Turn about the vertical axis, degrees").showDefault();
+  command.option("--yaw", yaw_deg, "Rotation about the vertical axis, in degrees").showDefault();
   command
-      .option("--pitch", pitch_deg,
-              "Turn about the horizontal axis before it, degrees; -90 for a model whose up is z")
+      .option(
+          "--pitch", pitch_deg,
+          "Rotation about the horizontal axis, in degrees, applied before the yaw; -90 for a model "
+          "whose z axis points up")
       .showDefault();
   command
       .option("--show", model.show.feature,
-              "A feature as colours, one value on a scale from dark blue to yellow; without: the "
-              "model's own")
+              "Name of the feature that the colours show (a feature with one value on a scale from "
+              "dark blue to yellow); the default is the model's own colours")
       .typeName("NAME");
-  command.option("--brightness", model.style.brightness, "Multiplies colours")
+  command.option("--brightness", model.style.brightness, "Factor that multiplies the colours")
       .range(0.1, 10.0)
       .showDefault();
-  command.option("--backend", backend_name_, "Which windowless OpenGL draws")
+  command.option("--backend", backend_name_, "OpenGL implementation that draws without a window")
       .oneOf({"egl", "osmesa"})
       .showDefault();
 }
 
-render::ModelView View::asAsked() const {
-  render::ModelView view = static_cast<const render::ModelView&>(*this);
-  view.backend = backend_name_ == "osmesa" ? render::GlBackend::kOsmesa : render::GlBackend::kEgl;
+render::frame::ModelView View::asAsked() const {
+  render::frame::ModelView view = static_cast<const render::frame::ModelView&>(*this);
+  view.backend =
+      backend_name_ == "osmesa" ? render::gl::GlBackend::kOsmesa : render::gl::GlBackend::kEgl;
   return view;
 }
 

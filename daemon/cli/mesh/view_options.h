@@ -1,4 +1,4 @@
-// View: the options with which subcommands of `merlin mesh` say how a model is seen.
+// View: command-line options of `merlin mesh` that set viewpoint and rendering style of a model.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace merlin::cli {
 
-struct View : render::ModelView {
+struct View : render::frame::ModelView {
   void addTo(Command command);  // --yaw, --pitch, --show, --brightness, --backend
 
-  // With the backend that --backend names.
-  render::ModelView asAsked() const;
+  // The view that the options describe, including the backend.
+  render::frame::ModelView asAsked() const;
 
  private:
   std::string backend_name_ = "egl";

@@ -50,7 +50,8 @@ std::string curveText(std::span<const nn::CurvePoint> curve) {
 std::string curveSvg(std::span<const nn::CurvePoint> curve, const std::string& title) {
   const auto passes = static_cast<double>(std::max<std::size_t>(curve.size(), 2));
   return svgChart(
-      svgText(title), "mean squared error, by pass", {1, passes, false}, {kLeast, kMost},
+      svgText(title), "mean squared error over number of the pass", {1, passes, false},
+      {kLeast, kMost},
       {line(curve, "training, with noise", "#1f77b4", [](const auto& p) { return p.training; }),
        line(curve, "validation", "#d62728", [](const auto& p) { return p.validation; })});
 }

@@ -1,4 +1,4 @@
-// A learning curve as text for a terminal and as an SVG picture.
+// The learning curve of a training, as text for a terminal and as an SVG chart.
 #pragma once
 
 #include <span>
@@ -8,11 +8,11 @@
 
 namespace merlin::cli {
 
-// About ten lines: pass, training and validation error, noise, and a bar of the training error on a
-// logarithmic scale.
+// A table of about ten lines: number of the pass, training and validation error (mean squared),
+// noise, and a bar for the training error on a logarithmic scale.
 std::string curveText(std::span<const nn::CurvePoint> curve);
 
-// Training and validation error over the passes, on a logarithmic scale.
+// An SVG chart of the training and validation error over the passes, on a logarithmic error axis.
 std::string curveSvg(std::span<const nn::CurvePoint> curve, const std::string& title);
 
 }  // namespace merlin::cli

@@ -14,8 +14,8 @@ namespace {
 
 constexpr float kMostCount = 255;  // largest raw count
 
-// Converts raw counts to angles with the shipped calibration; slots without a sensor stay as they
-// are.
+// Converts raw counts to angles with the shipped calibration; sensor slots that were not measured
+// are not changed. `path`: for messages. Errors: kInvalidArgument (a value is not a raw count).
 Result<nn::Recording> toRadians(nn::Recording recording, const std::string& path) {
   const CybergloveSettings calibration;
   for (nn::LabelledHand& hand : recording.hands) {
@@ -24,9 +24,11 @@ Result<nn::Recording> toRadians(nn::Recording recording, const std::string& path
       if (hand.value[i] < 0 || hand.value[i] > kMostCount)
         return Error{
             Errc::kInvalidArgument,
-            fmt::format("{}: {} is {}, which is not a raw count of a glove (0 to {}), and the "
-                        "network takes angles; train a network on such data",
-                        path, nn::kInputNames[i], hand.value[i], kMostCount)};
+            fmt::format(
+                "{}: {} is {}, which is not a raw count of a glove (0 to {}), so it cannot be "
+                "converted to the angles that the network takes; train a network on such "
+                "data",
+                path, nn::kInputNames[i], hand.value[i], kMostCount)};
       hand.value[i] = (hand.value[i] - calibration.offset[i]) * calibration.gain[i];
     }
   }
@@ -46,8 +48,8 @@ std::optional<nn::InputUnit> unitNamed(const std::string& name) {
 void addUnits(Command command, std::string& units) {
   command
       .option("--units", units,
-              "Unit of the recording: rad, raw (counts, degrees or any other unit of the sensors), "
-              "or auto (raw if any number is beyond 6.3)")
+              "Unit of the recording: rad (radians), raw (counts, degrees or any other unit of the "
+              "sensors), or auto (raw if the absolute value of any number is above 6.3)")
       .oneOf({"auto", "rad", "raw"})
       .showDefault();
 }
@@ -64,8 +66,8 @@ Result<nn::Recording> readFor(const nn::PostureNetwork& network, const std::stri
   const bool raw = network.unit == nn::InputUnit::kRaw;
   if (raw && unit == nn::InputUnit::kRadians)
     return Error{Errc::kInvalidArgument,
-                 fmt::format("{}: has angles, and the network takes raw counts; give --units raw "
-                             "if the numbers are of the kind that it was trained on",
+                 fmt::format("{}: has angles, but the network takes raw counts; give --units raw "
+                             "if the numbers have the unit that the network was trained with",
                              path)};
   auto recording = readRecording(path, raw ? nn::InputUnit::kRaw : unit);
   if (!recording || recording->unit == network.unit) return recording;

@@ -1,5 +1,5 @@
-// merlin posture adapt: adapts a network to a new person. merlin posture synthesize: makes hands of
-// synthetic people for tests.
+// merlin posture adapt: adapts a posture network to a new person. merlin posture synthesize:
+// creates labelled hands of synthetic people for tests.
 #include <memory>
 
 #include <fmt/format.h>
@@ -21,15 +21,15 @@ struct AdaptOptions {
 int adapt(const AdaptOptions& options) {
   auto file = nn::loadNetwork(options.network);
   if (!file) return fail(file.error());
-  if (!file->memory)
+  if (!file->statistics)
     return fail({Errc::kInvalidArgument,
-                 options.network + ": has no /memory, the statistics of its training, which "
-                                   "adapting needs: train the network anew"});
+                 options.network + ": has no /memory, the statistics of its training data, "
+                                   "which are needed to adapt it: train the network again"});
   const auto recording = readFor(file->network, options.data, unitNamed(options.units));
   if (!recording) return fail(recording.error());
   const SystemClock clock;
   const Timestamp began = clock.now();
-  auto adapted = nn::adapt(file->network, *file->memory, recording->hands, options.seed);
+  auto adapted = nn::adapt(file->network, *file->statistics, recording->hands, options.seed);
   if (!adapted) return fail(adapted.error());
   const double seconds = toSeconds(clock.now() - began);
   nn::NetworkFile out = *file;
@@ -39,9 +39,9 @@ int adapt(const AdaptOptions& options) {
           .substr(0, 200);
   if (const auto saved = nn::saveNetwork(options.output, out); !saved) return fail(saved.error());
   say("{}: adapted to {} hands in {:.2f} s: {:.2f} % of them right (before: {:.2f} %); of hands "
-      "like those of its training {:.2f} % right (before: {:.2f} %)\n",
+      "like those of the training data {:.2f} % right (before: {:.2f} %)\n",
       options.output, recording->hands.size(), seconds, 100 * adapted->hands_after,
-      100 * adapted->hands_before, 100 * adapted->memory_after, 100 * adapted->memory_before);
+      100 * adapted->hands_before, 100 * adapted->drawn_after, 100 * adapted->drawn_before);
   return kExitDone;
 }
 
@@ -65,8 +65,9 @@ void addPostureAdapt(Command posture, Run& run) {
   const auto options = std::make_shared<AdaptOptions>();
   Command command = posture.subcommand(
       "adapt",
-      "Adapt a network to a new person, who held each posture for two seconds, without losing the "
-      "people it was trained on.\nExample: merlin posture adapt postures.json anna.csv -o "
+      "Adapt a network to a new person, from a recording in which the person held each posture for "
+      "two seconds; the network still recognises the people it was trained on.\nExample: merlin "
+      "posture adapt postures.json anna.csv -o "
       "anna.json");
   command.option("net", options->network, "File of the network").required().typeName("NET.json");
   command.option("hands", options->data, "The person's labelled hands, CSV")
@@ -83,7 +84,7 @@ void addPostureAdapt(Command posture, Run& run) {
 void addPostureSynthesize(Command posture, Run& run) {
   const auto options = std::make_shared<SynthesizeOptions>();
   Command command = posture.subcommand("synthesize",
-                                       "Make labelled hands of synthetic people, for tests; "
+                                       "Create labelled hands of synthetic people, for tests; "
                                        "no real person was measured.\nExample: merlin posture "
                                        "synthesize -o hands.csv --people 10 --first 1001");
   command.option("-o", options->output, "The CSV file").required().typeName("FILE.csv");
@@ -91,13 +92,15 @@ void addPostureSynthesize(Command posture, Run& run) {
   const auto count = [&](const char* name, std::size_t& value, const char* help, std::size_t most) {
     command.option(name, value, help).range(std::size_t{1}, most).showDefault();
   };
-  count("--first", people.first,
-        "Number of the first person; each number stands for another person", 1 << 30);
+  count("--first", people.first, "Number of the first person; each number is a different person",
+        1 << 30);
   count("--people", people.people, "Number of people", 1000);
   count("--takes", people.takes, "Number of times that each person takes each posture", 1000);
-  count("--per-take", people.per_take, "Number of samples of each take", 10000);
-  count("--postures", people.postures, "Number of postures, the first of the 31 known ones", 31);
-  command.option("--seed", people.seed, "Seed of takes and noise").showDefault();
+  count("--per-take", people.per_take, "Number of samples in each take", 10000);
+  count("--postures", people.postures,
+        "Number of postures: the first ones of the 31 known postures are used", 31);
+  command.option("--seed", people.seed, "Seed of the random numbers for takes and noise")
+      .showDefault();
   command.callback([options, &run] { run = [options] { return synthesizeFile(*options); }; });
 }
 

@@ -38,7 +38,8 @@ nn::LabelledHand handOf(const GloveSample& sample, const std::string& label, nn:
   return hand;
 }
 
-// Draws a bar for each sensor over its raw range; `again`: over the bars drawn before.
+// Draws a bar for each sensor that shows its value within the raw range, 0 to 255. `again`: redraws
+// over the bars of the last call.
 void drawBars(const GloveSample& sample, bool again) {
   std::string out;
   std::size_t lines = 0;
@@ -52,7 +53,8 @@ void drawBars(const GloveSample& sample, bool again) {
   printError("{}{}", again ? fmt::format("\033[{}A", lines) : "", out);
 }
 
-// Records the glove for options.seconds. Errors: kNotFound (no daemon), kTimeout (no samples).
+// Records the glove for options.seconds, counted from the first sample. Errors: those of
+// SegmentReader::open() (kNotFound: no daemon), kTimeout (no sample for 3 s).
 Result<nn::Recording> collect(const CollectOptions& options) {
   const auto segment =
       shm::SegmentReader<shm::DevicesSegment>::open(shm::segmentName(options.instance, "devices"));
@@ -90,15 +92,16 @@ Result<nn::Recording> collect(const CollectOptions& options) {
   return recording;
 }
 
-// Puts the hands that `path` already has before those of `recording`; both must have the same
-// sensors.
+// If the file `path` exists, puts its hands before those of `recording`. Errors: those of
+// nn::loadRecording(); kInvalidArgument (the hands in the file have other sensors).
 Result<Ok> addTo(nn::Recording& recording, const std::string& path) {
   if (!std::filesystem::exists(path)) return Ok{};
   auto before = nn::loadRecording(path, recording.unit);
   if (!before) return before.error();
   if (before->measured != recording.measured)
-    return Error{Errc::kInvalidArgument,
-                 path + ": was collected with another glove (other sensors); give another -o"};
+    return Error{
+        Errc::kInvalidArgument,
+        path + ": was recorded with a glove that has other sensors; choose another file with -o"};
   before->hands.insert(before->hands.end(), recording.hands.begin(), recording.hands.end());
   recording = *std::move(before);
   return Ok{};
@@ -120,8 +123,8 @@ int run(const CollectOptions& options) {
       recording->hands.size());
   for (const nn::Overlap& o : nn::overlapsOf(options.label, recording->hands))
     printError(
-        "warning: \"{}\" and \"{}\" are hard to tell apart: {:.1f} standard deviations apart, {} "
-        "hands nearer to the other posture\n",
+        "warning: \"{}\" and \"{}\" are hard to tell apart: their means are {:.1f} standard "
+        "deviations apart, and {} hands are nearer to the mean of the other posture\n",
         o.first, o.second, o.deviations, o.mixed_up);
   return kExitDone;
 }

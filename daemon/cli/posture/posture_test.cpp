@@ -1,4 +1,4 @@
-// merlin posture test: a network's accuracy on labelled hands, its confusions and margins.
+// merlin posture test: prints a network's accuracy on labelled hands, its confusions and margins.
 #include "daemon/cli/posture/posture.h"
 
 #include <memory>
@@ -13,7 +13,8 @@
 namespace merlin::cli {
 namespace {
 
-// Number of the first person that was not used for training.
+// Number of the first synthetic person for tests; the shipped network was not trained on any person
+// from this number on.
 constexpr std::size_t kUnseen = 1001;
 constexpr std::size_t kShown = 10;  // maximum number of confusions in the table
 
@@ -108,10 +109,12 @@ void addPostureTest(Command posture, Run& run) {
   command.option("hands,--data", options->data, "Labelled hands, CSV").typeName("DATA.csv");
   command
       .option("--beside", options->beside,
-              "The training hands, CSV: also reports the accuracy of nearest mean and nearest "
-              "neighbour, for comparison")
+              "The training hands, CSV: also print, for comparison, the accuracy of the "
+              "nearest-mean and nearest-neighbour classifiers on them")
       .typeName("TRAIN.csv");
-  command.option("--margin", options->margin, "Margin below which a hand counts as unsure")
+  command
+      .option("--margin", options->margin,
+              "Margin, 0 to 1, below which the recognition of a hand counts as unsure")
       .range(0.0, 1.0)
       .showDefault();
   addUnits(command, options->units);

@@ -1,4 +1,5 @@
-// merlin posture train: trains a network on labelled hands, or cross-validates such a training.
+// merlin posture train: trains a posture network on labelled hands, or cross-validates the
+// training.
 #include <memory>
 
 #include <fmt/format.h>
@@ -23,7 +24,8 @@ struct TrainOptions {
   bool json = false;
 };
 
-// The hands to train on; without --data the synthetic people of the shipped network.
+// The hands to train on; without a file, those of the synthetic people that the shipped network was
+// trained on.
 Result<nn::Recording> trainingHands(const TrainOptions& options) {
   if (!options.data.empty()) return readRecording(options.data, unitNamed(options.units));
   return synthesize({.people = 20, .takes = 2, .postures = 8});
@@ -93,7 +95,7 @@ int train(TrainOptions options) {
   if (!fitted) return fail(fitted.error());
   fitted->trained.synthetic = recording->synthetic;
   const auto saved =
-      nn::saveNetwork(options.output, {fitted->network, fitted->trained, fitted->memory});
+      nn::saveNetwork(options.output, {fitted->network, fitted->trained, fitted->statistics});
   if (!saved) return fail(saved.error());
   return report(options, *fitted, seconds);
 }
@@ -110,29 +112,28 @@ void addPostureTrain(Command posture, Run& run) {
   command.option("data", options->data, "Labelled hands, CSV").typeName("DATA.csv");
   const Argument output =
       command.option("-o", options->output, "File of the network").typeName("FILE.json");
-  command.option("--curve", options->curve, "Write the learning curve as a chart")
+  command.option("--curve", options->curve, "Write the learning curve as an SVG chart")
       .typeName("FILE.svg");
   command.option("--seed", options->fit.seed, "Seed of all random numbers").showDefault();
-  command
-      .option("--phi", options->phi,
-              "Activation function of the nodes (signum cannot be trained: its slope is 0)")
+  command.option("--phi", options->phi, "Activation function of the network's nodes")
       .oneOf({"sigmoid", "atan"})
       .showDefault();
   command
       .option("--starts", options->fit.starts,
-              "Number of random initial codes and weights that are tried")
+              "Number of random starts that are tried; each chooses the postures' codes and the "
+              "initial weights")
       .range(1, 1000)
       .showDefault();
   command
       .option("--passes", options->fit.passes,
-              "Maximum number of passes over the hands, from the best start")
+              "Maximum number of passes over the hands when training goes on from the best start")
       .range(1, 1000000)
       .showDefault();
   command
-      .option(
-          "--folds", options->folds,
-          "Cross-validate instead: divide the hands into k parts; for each, train on the others "
-          "and test on it")
+      .option("--folds", options->folds,
+              "Cross-validate instead of writing a network: divide the hands into this number of "
+              "parts; "
+              "for each part, train on the others and test on it")
       .range(2, 100);
   addUnits(command, options->units);
   command.callback([options, output, &run] {

@@ -1,4 +1,4 @@
-// merlin shm dump: prints every field of the shared memory, using the field table in it.
+// merlin shm dump: prints every field of the shared memory, which contains a table of its fields.
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
@@ -37,7 +37,8 @@ Json number(const std::byte* at) {
   }
 }
 
-// Size in bytes of one value of the field's type; "20s" is a text of 20 bytes. 0: unknown type.
+// Size in bytes of one value of the field's type, a format character of Python's struct module;
+// "20s" is a text of 20 bytes. 0: unknown type.
 std::size_t sizeOf(const shm::Field& f) {
   const std::string_view type(f.type, strnlen(f.type, sizeof f.type));
   if (type.ends_with('s')) return static_cast<std::size_t>(std::atoi(f.type));
@@ -74,7 +75,7 @@ Json decodeOne(const shm::Field& f, const std::byte* at) {
   }
 }
 
-// `values` are those between the field's first byte and its last.
+// Converts the field's values to JSON. `values` points to the field's first byte.
 Json decode(const shm::Field& f, const std::byte* values) {
   if (f.count == 1) return decodeOne(f, values);
   Json list = Json::array();
@@ -83,8 +84,8 @@ Json decode(const shm::Field& f, const std::byte* values) {
   return list;
 }
 
-// A consistent copy of the field's value; null if it was never written, or if every attempt met a
-// write.
+// Returns a consistent copy of the field's value; null if the value was never written, if each
+// attempt to read it coincided with a write, or if the table's entry is invalid.
 Json readField(const SharedMemory& memory, const shm::Field& f) {
   const std::size_t one = sizeOf(f);
   if (one == 0 || f.count == 0 || f.step < one) return nullptr;
@@ -164,13 +165,13 @@ int dumpRepeatedly(const DumpOptions& options) {
 
 void addShm(Command app, Run& run) {
   const auto options = std::make_shared<DumpOptions>();
-  Command shm = app.subcommand("shm", "The shared memory that other programs read.");
+  Command shm = app.subcommand("shm", "Shared memory of merlind, which other programs can read.");
   shm.requireSubcommand();
   Command command = shm.subcommand(
       "dump", "Print every field: name, value, unit.\nExample: merlin shm dump --json");
   addInstance(command, options->instance);
-  command.flag("--json", options->json, "Print one JSON object");
-  command.option("--follow", options->follow_s, "Repeat with this interval in seconds").seconds();
+  command.flag("--json", options->json, "Print one JSON object, for programs");
+  command.option("--follow", options->follow_s, "Repeat, with this interval in seconds").seconds();
   command.callback([options, &run] { run = [options] { return dumpRepeatedly(*options); }; });
 }
 

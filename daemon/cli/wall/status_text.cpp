@@ -16,7 +16,14 @@ using Json = nlohmann::ordered_json;
 
 constexpr Duration kPatience = std::chrono::seconds(5);
 
-// The part of a device's line after its health.
+// Unit in which the detail of a frame is counted, "triangles".
+std::string costUnit(const Json& s) { return s.value("detail", Json::object()).value("unit", ""); }
+
+std::uint64_t detailCost(const Json& s) {
+  return s.value("detail", Json::object()).value("cost", std::uint64_t{0});
+}
+
+// The part of a device's line that follows its health.
 std::string deviceDetail(const Json& d) {
   std::string reason = d.value("reason", "");
   if (d.value("health", "") != "ok") return reason;
@@ -29,27 +36,28 @@ std::string pictureWord(const Json& s) {
   return s.value("full_detail", false) ? "still, full detail" : "still, refining";
 }
 
-// How the wall differs from its configuration: degradations under load, and triangles set by hand.
-// Empty if it does not.
+// How the wall's present state differs from its configuration: degradations under load, and a
+// number of triangles set by hand. Empty if there is no difference.
 std::string givenWay(const Json& s) {
   std::string text;
   if (s.value("rate_divisor", 1) > 1)
     text += fmt::format("; rate reduced to {:.3g} Hz", s.value("rate_now", 0.0));
   if (s.value("scale_divisor", 1) > 1) text += "; tiles drawn at half size";
   if (s.value("operator_coarser", false)) text += "; operator's view coarser";
-  if (s.value("held_triangles", 0) > 0)
-    text += fmt::format("; {} triangles set by hand", s.value("held_triangles", 0));
+  const int held = s.value("detail", Json::object()).value("held_cost", 0);
+  if (held > 0) text += fmt::format("; {} {} set by hand", held, costUnit(s));
   return text;
 }
 
 std::string paceLines(const Json& s) {
   std::string text =
-      fmt::format("model    {:.1f} ms + {:.3f} us x triangles^{:.2f}; next frame {} triangles{}\n",
-                  s.value("cost_fixed_ms", 0.0), s.value("cost_coefficient_us", 0.0),
-                  s.value("cost_exponent", 0.0), s.value("budget", 0), givenWay(s));
+      fmt::format("cost     {:.1f} ms + {:.3f} us x {}^{:.2f}; next frame {} {}{}\n",
+                  s.value("cost_fixed_ms", 0.0), s.value("cost_coefficient_us", 0.0), costUnit(s),
+                  s.value("cost_exponent", 0.0), s.value("budget", 0), costUnit(s), givenWay(s));
   text += fmt::format(
-      "steps    the last load change settled in {} frames; detail oscillates by {:.1f} %; first "
-      "refinement {:.2f} s after standstill, full detail after {:.2f} s\n",
+      "steps    frame rate settled {} frames after the last load change; detail oscillates by "
+      "{:.1f} "
+      "%; first refinement {:.2f} s after standstill, full detail after {:.2f} s\n",
       s.value("settle_frames", 0), 100 * s.value("oscillation", 0.0),
       s.value("still_to_first_s", 0.0), s.value("still_to_full_s", 0.0));
   return text + histogramChart(s.value("work_histogram", std::vector<std::uint32_t>{}));
@@ -71,8 +79,7 @@ std::string outputLines(const Json& s) {
 
 }  // namespace
 
-// Prints two histogram buckets (1/8 of the period) per line, from the first to the last non-empty
-// one.
+// Combines two buckets per line; omits the empty lines before the first and after the last frame.
 std::string histogramChart(const std::vector<std::uint32_t>& buckets) {
   constexpr double kWidth = 40;
   std::vector<std::uint64_t> eighths((buckets.size() + 1) / 2);
@@ -143,9 +150,9 @@ std::string serverLines(const Json& s) {
 std::string statusTable(const Json& s) {
   std::string text;
   if (s.contains("rate_asked")) {
-    text += fmt::format("wall     {:.1f} of {:.0f} Hz, {} triangles, {} (ball mode: {})\n",
-                        s.value("rate_held", 0.0), s.value("rate_asked", 0.0),
-                        s.value("triangles", 0), pictureWord(s), s.value("mode", ""));
+    text += fmt::format("wall     {:.1f} of {:.0f} Hz, {} {}, {} (ball mode: {})\n",
+                        s.value("rate_held", 0.0), s.value("rate_asked", 0.0), detailCost(s),
+                        costUnit(s), pictureWord(s), s.value("mode", ""));
     text += fmt::format(
         "frames   {} drawn; {:.2f} % of those due while moving were late (last minute {:.2f} %), "
         "at "
@@ -171,9 +178,9 @@ std::string statusTable(const Json& s) {
 std::string statusLine(const Json& s) {
   std::string line;
   if (s.contains("rate_asked")) {
-    line = fmt::format("{:4.1f} of {:.0f} Hz  {:7} triangles  {:5.2f} % late  {:18}",
-                       s.value("rate_held", 0.0), s.value("rate_asked", 0.0),
-                       s.value("triangles", 0), s.value("late_percent", 0.0), pictureWord(s));
+    line = fmt::format("{:4.1f} of {:.0f} Hz  {:7} {}  {:5.2f} % late  {:18}",
+                       s.value("rate_held", 0.0), s.value("rate_asked", 0.0), detailCost(s),
+                       costUnit(s), s.value("late_percent", 0.0), pictureWord(s));
   }
   if (!s.contains("devices")) return line;
   const std::string posture = s.value("posture", "");

@@ -1,4 +1,4 @@
-// A daemon's status: the JSON of both roles in one object, and as text for a person.
+// A daemon's status: merges the JSON of both roles into one object, and formats it for a person.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,21 @@
 
 namespace merlin::cli {
 
-// Asks both roles and merges their documents into one object; keys that both have (pid, uptime_s)
-// go into "roles". Errors: kIo (no daemon), kTimeout (it does not answer).
+// Asks each running role for its status and merges the documents into one object. The keys pid and
+// uptime_s, which both roles have, are moved to "roles"/ROLE. Errors: kIo (no daemon runs),
+// kTimeout (a role does not answer).
 Result<nlohmann::ordered_json> askStatus(const std::string& instance);
 
-// Merges one role's document (topic "status") into the object of both roles.
+// Merges one role's status document into `both`, the object of both roles. A document that is not a
+// JSON object is ignored.
 void mergeStatus(nlohmann::ordered_json& both, const std::string& document);
 
 // The status as a table of several lines.
 std::string statusTable(const nlohmann::ordered_json& status);
 
-// A bar chart of frames by work / period. `buckets`: counts for each 1/16 of the period; one line
-// for each 1/8. Empty if there were no frames.
+// A histogram of the frames by their work as a share of the period, as a bar chart. `buckets`:
+// number of frames for each 1/16 of the period; the chart has one line for each 1/8. Empty if there
+// were no frames.
 std::string histogramChart(const std::vector<std::uint32_t>& buckets);
 
 // The status as one line: desired and actual rate, triangles, late frames, posture, devices.

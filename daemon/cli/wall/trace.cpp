@@ -1,4 +1,4 @@
-// merlin trace: writes what the time of the wall's frames was spent on, for a trace viewer.
+// merlin trace: writes the duration of each step of the wall's frames, for a trace viewer.
 #include <algorithm>
 #include <memory>
 #include <vector>
@@ -22,8 +22,8 @@ struct TraceOptions {
   double seconds = 5;
 };
 
-// The frames of the last `wanted`: those in shared memory and, if they cover less, the following
-// ones.
+// Returns the traces of frames that cover the time `wanted`: those in shared memory and, if these
+// cover less, the following ones. Errors: kTimeout (no frame for 2 s).
 Result<std::vector<shm::FrameTrace>> collect(const shm::WallSegment& wall, Duration wanted) {
   std::vector<shm::FrameTrace> frames;
   const std::uint64_t have = wall.trace.count();
@@ -97,7 +97,7 @@ void addTrace(Command app, Run& run) {
   command.option("-o", options->output, "The trace file").required().typeName("FILE.json");
   command
       .option("--seconds", options->seconds,
-              "Duration of the trace; if fewer frames are stored, waits for more")
+              "Duration of the trace in seconds; if the stored frames cover less, waits for more")
       .range(0.1, 600.0)
       .showDefault();
   command.callback([options, &run] { run = [options] { return trace(*options); }; });

@@ -45,13 +45,13 @@ void addFrame(const shm::FrameTrace& f, std::int64_t from_ns, Json& events) {
   frame["dur"] = microseconds(f.end_ns - f.begin_ns);
   frame["cat"] = "frame";
   frame["args"] = {{"period", f.period},
-                   {"triangles", f.triangles},
+                   {"cost", f.cost},
                    {"late", f.late != 0},
                    {"deadline_us", microseconds(f.deadline_ns - from_ns)}};
   events.push_back(std::move(frame));
   const std::size_t count = std::min<std::size_t>(f.count, std::size(f.steps));
-  // An upload that begins before the previous step ended is the second thread's; so are the tile
-  // steps after it.
+  // An upload that begins before the previous step of the first thread ends belongs to the second
+  // thread; so do the steps of tiles after that upload.
   std::int64_t ended = 0;
   bool other = false;
   for (std::size_t i = 0; i < count; ++i) {
@@ -68,8 +68,8 @@ void addFrame(const shm::FrameTrace& f, std::int64_t from_ns, Json& events) {
     late["s"] = "t";
     events.push_back(std::move(late));
   }
-  Json counter = event("triangles", "C", at, kWallTrack);
-  counter["args"] = {{"triangles", f.triangles}};
+  Json counter = event("detail", "C", at, kWallTrack);
+  counter["args"] = {{"cost", f.cost}};
   events.push_back(std::move(counter));
 }
 

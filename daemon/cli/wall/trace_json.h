@@ -1,4 +1,4 @@
-// Frame traces as trace-event JSON, which Perfetto and chrome://tracing show.
+// Converts frame traces to JSON in the trace-event format of Perfetto and chrome://tracing.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,10 @@ struct SampleInstant {
   std::int64_t at_ns;
 };
 
-// Trace events, one per line of the array: each frame on the wall's track with its steps inside, a
-// mark at the deadline of each late frame, the triangles as a counter, and the samples on a track
-// for each device. Times count from the begin of the first frame.
+// Returns the trace events as JSON: each frame on the track of the wall with its steps inside, an
+// instant event at the deadline of each late frame, each frame's cost (such as its number of
+// triangles) as a counter, and the samples on one track per device. Times are relative to the
+// beginning of the first frame.
 std::string traceJson(std::span<const shm::FrameTrace> frames,
                       std::span<const SampleInstant> samples);
 

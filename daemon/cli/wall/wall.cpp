@@ -1,24 +1,30 @@
-// merlin wall: sets triangles and rate by hand.
+// merlin wall: sets the number of triangles and the frame rate by hand, and moves the model.
 #include <memory>
 
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
 #include "daemon/cli/roles.h"
+#include "daemon/cli/wall/align.h"
+#include "daemon/cli/wall/mpcdi.h"
+#include "daemon/cli/wall/wall_plan.h"
 
 namespace merlin::cli {
 namespace {
 
 struct WallOptions {
   std::string instance = "merlin";
-  std::string triangles, rate;
+  std::string triangles, rate, move;
 };
 
 int wall(const WallOptions& options) {
-  if (options.triangles.empty() && options.rate.empty())
-    return fail({Errc::kInvalidArgument, "wall: nothing to set; give --triangles or --rate"});
+  if (options.triangles.empty() && options.rate.empty() && options.move.empty()) {
+    return fail(
+        {Errc::kInvalidArgument, "wall: nothing to do; give --triangles, --rate or --move"});
+  }
   for (const auto& [name, value] :
-       {std::pair{"triangles", options.triangles}, std::pair{"rate", options.rate}}) {
+       {std::pair{"triangles", options.triangles}, std::pair{"rate", options.rate},
+        std::pair{"move", options.move}}) {
     if (value.empty()) continue;
     const auto done = askRole(options.instance, "wall", {name, value});
     if (!done) return fail(done.error());
@@ -31,18 +37,35 @@ int wall(const WallOptions& options) {
 
 void addWall(Command app, Run& run) {
   const auto options = std::make_shared<WallOptions>();
-  Command command =
-      app.subcommand("wall",
-                     "Set triangles and rate by hand; auto returns the control to the governor.\n"
-                     "Example: merlin wall --triangles 20000 --rate 20");
+  Command command = app.subcommand(
+      "wall",
+      "Set the number of triangles per frame and the frame rate by hand; with auto "
+      "merlind controls the triangles again, or uses the configured rate. plan: "
+      "the wall from above; mpcdi: the corrections of outputs, as files; align: moves the "
+      "corners of outputs while the wall runs; testcard: a grid, ramps and the like instead of the "
+      "picture.\n"
+      "Example: merlin wall --triangles 20000 --rate 20");
   addInstance(command, options->instance);
   command
       .option("--triangles", options->triangles,
-              "Number of triangles while anything moves, or auto")
+              "Number of triangles per frame while anything moves, or auto")
       .typeName("N|auto");
   command.option("--rate", options->rate, "Frames per second, or auto for the configured rate")
       .typeName("HZ|auto");
-  command.callback([options, &run] { run = [options] { return wall(*options); }; });
+  command
+      .option("--move", options->move,
+              "Move what the ball moves, at once: X Y Z times the model's radius to the right, up "
+              "and towards the viewer, and RX RY RZ degrees about these axes, as one argument, "
+              "--move=\"0 0 0 0 30 0\"")
+      .typeName("\"X Y Z RX RY RZ\"");
+  addAlign(command, run);
+  addPlan(command, run);
+  addTestcard(command, run);
+  addMpcdi(command, run);
+  // A subcommand's callback comes first, and this one then as well.
+  command.callback([options, &run] {
+    if (!run) run = [options] { return wall(*options); };
+  });
 }
 
 }  // namespace merlin::cli

@@ -20,7 +20,8 @@ struct WatchOptions {
   bool json = false;
 };
 
-// Each role publishes a document every second; a line is printed once all roles have sent one.
+// Each role publishes its status every second. Prints a line after every N documents, where N is
+// the number of roles.
 int watch(const WatchOptions& options) {
   const auto roles = findRoles(options.instance);
   if (!roles) return fail(roles.error());
@@ -54,7 +55,7 @@ void addWatch(Command app, Run& run) {
                      "Print one line per second: actual and desired rate, triangles, late frames, "
                      "posture, devices.\nExample: merlin watch --for 20");
   addInstance(command, options->instance);
-  command.option("--for", options->seconds, "Duration in seconds; without it until interrupted")
+  command.option("--for", options->seconds, "Duration in seconds; the default is until interrupted")
       .seconds();
   command.flag("--json", options->json, "Print one JSON document per line");
   command.callback([options, &run] { run = [options] { return watch(*options); }; });

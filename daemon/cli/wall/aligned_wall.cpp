@@ -1,0 +1,99 @@
+#include "daemon/cli/wall/aligned_wall.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/clock.h"
+#include "daemon/cli/roles.h"
+
+namespace merlin::cli {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr Duration kLook = std::chrono::milliseconds(20);
+constexpr Duration kPatience = std::chrono::seconds(10);
+
+state::Offset offsetOf(const Json& json) { return {json.at(0).get<double>(), json.at(1)}; }
+
+AlignedPicture pictureOf(const Json& json) {
+  AlignedPicture picture{
+      json.at("name"),         json.at("width"), json.at("height"), json.at("pending"), {},
+      json.at("points").size()};
+  for (std::size_t i = 0; i < picture.corners.size(); ++i) {
+    const Json& corner = json.at("corners").at(state::kCornerNames[i]);
+    picture.corners[i] = {offsetOf(corner.at("configured")), offsetOf(corner.at("moved"))};
+  }
+  return picture;
+}
+
+}  // namespace
+
+const AlignedPicture* AlignAnswer::find(const std::string& output) const {
+  const auto found = std::ranges::find(outputs, output, &AlignedPicture::name);
+  return found == outputs.end() ? nullptr : &*found;
+}
+
+Result<AlignAnswer> readAlignAnswer(const std::string& text) {
+  try {
+    const Json json = Json::parse(text);
+    AlignAnswer answer{{}, json.at("undo"), json.at("redo"), json.at("done"), text};
+    for (const Json& output : json.at("outputs")) answer.outputs.push_back(pictureOf(output));
+    return answer;
+  } catch (const Json::exception& e) {
+    return Error{Errc::kMalformed, fmt::format("merlind's answer cannot be read: {}", e.what())};
+  }
+}
+
+Result<AlignAnswer> AlignedWall::ask(const state::AlignRequest& request) const {
+  const auto answer = askRole(instance_, "wall", {"align", state::textOf(request)});
+  if (!answer) return answer.error();
+  return readAlignAnswer(*answer);
+}
+
+Result<AlignAnswer> AlignedWall::askAndWait(const state::AlignRequest& request) const {
+  SystemClock clock;
+  const Timestamp until = clock.now() + kPatience;
+  const auto first = ask(request);
+  for (auto answer = first;; answer = ask(state::ListRequest{})) {
+    if (!answer) return answer;
+    if (std::ranges::none_of(answer->outputs, &AlignedPicture::pending)) {
+      answer->done = first->done;
+      return answer;
+    }
+    if (clock.now() > until) {
+      return Error{Errc::kTimeout,
+                   fmt::format("the alignment is changed and saved, but merlind does "
+                               "not show it after {:.0f} s",
+                               toSeconds(kPatience))};
+    }
+    clock.sleepUntil(clock.now() + kLook, {});
+  }
+}
+
+std::vector<std::string> alignmentLines(const AlignAnswer& answer) {
+  std::vector<std::string> lines;
+  for (const AlignedPicture& output : answer.outputs) {
+    lines.push_back(fmt::format("{} ({} x {})", output.name, output.width, output.height));
+    for (std::size_t i = 0; i < output.corners.size(); ++i) {
+      const auto& [configured, moved] = output.corners[i];
+      std::string line = fmt::format("  {:<13} {:+g} {:+g}", state::kCornerNames[i],
+                                     configured.x + moved.x, configured.y + moved.y);
+      if (moved != state::Offset{}) {
+        line += fmt::format("  (configured {:+g} {:+g}, moved {:+g} {:+g})", configured.x,
+                            configured.y, moved.x, moved.y);
+      }
+      lines.push_back(std::move(line));
+    }
+    if (output.moved_points > 0)
+      lines.push_back(fmt::format("  {} points of its mesh are moved", output.moved_points));
+  }
+  lines.push_back(
+      fmt::format("steps that can be undone: {}, redone: {}", answer.undo, answer.redo));
+  return lines;
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,54 @@
+// AlignedWall: the alignment of a running wall, by way of its socket.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "daemon/base/result.h"
+#include "daemon/state/align_request.h"
+
+namespace merlin::cli {
+
+// What the command `align` answers, read.
+struct AlignedCorner {
+  state::Offset configured, moved;  // [px]
+};
+struct AlignedPicture {
+  std::string name;
+  int width = 0, height = 0;
+  bool pending = false;
+  std::array<AlignedCorner, 4> corners;  // in the order of state::kCornerNames
+  std::size_t moved_points = 0;          // of its mesh
+};
+struct AlignAnswer {
+  std::vector<AlignedPicture> outputs;
+  std::size_t undo = 0, redo = 0;  // steps
+  std::string done;                // what an undo or redo did
+  std::string text;                // the JSON
+
+  const AlignedPicture* find(const std::string& output) const;
+};
+
+// Thread-bound.
+class AlignedWall {
+ public:
+  explicit AlignedWall(std::string instance) : instance_(std::move(instance)) {}
+
+  // Errors: those of askRole(); kMalformed: not an answer of this version.
+  Result<AlignAnswer> ask(const state::AlignRequest& request) const;
+
+  // The same, and waits until all outputs show what was changed, 10 s at most. Errors: kTimeout.
+  Result<AlignAnswer> askAndWait(const state::AlignRequest& request) const;
+
+ private:
+  std::string instance_;
+};
+
+// Reads the answer. Errors: kMalformed.
+Result<AlignAnswer> readAlignAnswer(const std::string& text);
+
+// A line for each output and corner, for people.
+std::vector<std::string> alignmentLines(const AlignAnswer& answer);
+
+}  // namespace merlin::cli

@@ -1,0 +1,91 @@
+#include "daemon/cli/wall/raw_terminal.h"
+
+#include <csignal>
+#include <cstdio>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "daemon/base/text.h"
+#include "daemon/cli/stop_signals.h"
+
+namespace merlin::cli {
+namespace {
+
+constexpr std::string_view kEnter = "\033[?1049h\033[?25l";  // another screen, no cursor
+constexpr std::string_view kLeave = "\033[?25h\033[?1049l";
+
+// Signals that end the process at once; those of stopSignals() arrive as a descriptor.
+constexpr int kFatal[] = {SIGQUIT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPIPE};
+
+// What a signal handler needs to put the terminal back: it has no other way to know.
+termios before{};                        // NOLINT
+volatile std::sig_atomic_t changed = 0;  // NOLINT
+
+// Async-signal-safe.
+void putBack() {
+  if (changed == 0) return;
+  changed = 0;
+  ::tcsetattr(STDIN_FILENO, TCSANOW, &before);
+  const auto written = ::write(STDOUT_FILENO, kLeave.data(), kLeave.size());
+  static_cast<void>(written);  // a terminal that is gone needs nothing
+}
+
+void onFatal(int signal) {
+  putBack();
+  ::signal(signal, SIG_DFL);
+  ::raise(signal);
+}
+
+void write(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+Result<Ok> RawTerminal::check() {
+  if (::isatty(STDIN_FILENO) == 1 && ::isatty(STDOUT_FILENO) == 1) return Ok{};
+  return Error{Errc::kUnsupported, "standard input and output are no terminal"};
+}
+
+RawTerminal::RawTerminal() : signals_(stopSignals()) {
+  ::tcgetattr(STDIN_FILENO, &before);
+  changed = 1;
+  for (const int s : kFatal) ::signal(s, onFatal);
+  termios raw = before;
+  raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);  // ISIG stays: Ctrl-C ends the program
+  raw.c_cc[VMIN] = 1;
+  raw.c_cc[VTIME] = 0;
+  raw.c_cc[VSUSP] = _POSIX_VDISABLE;
+  raw.c_cc[VQUIT] = _POSIX_VDISABLE;
+  ::tcsetattr(STDIN_FILENO, TCSANOW, &raw);
+  write(kEnter);
+}
+
+RawTerminal::~RawTerminal() {
+  std::fflush(stdout);
+  putBack();
+  for (const int s : kFatal) ::signal(s, SIG_DFL);
+}
+
+std::optional<std::string> RawTerminal::read(int timeout_ms) {
+  pollfd items[] = {{STDIN_FILENO, POLLIN, 0}, {signals_.get(), POLLIN, 0}};
+  if (::poll(items, 2, timeout_ms) <= 0) return std::string();
+  if (items[1].revents != 0) return std::nullopt;
+  char bytes[256];
+  const ssize_t n = ::read(STDIN_FILENO, bytes, sizeof bytes);
+  if (n <= 0) return std::nullopt;
+  return std::string(bytes, static_cast<std::size_t>(n));
+}
+
+void RawTerminal::show(const std::vector<std::string>& lines) {
+  std::string text = "\033[H";
+  for (const std::string& line : lines) text += fmt::format("{}\033[K\r\n", oneLine(line));
+  write(text + "\033[J");
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,70 @@
+// merlin wall testcard: a test card instead of the wall's picture.
+#include <memory>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/clock.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
+#include "daemon/cli/roles.h"
+#include "daemon/cli/wall/align.h"
+#include "daemon/shm/segment.h"
+#include "render/testcard/card.h"
+
+namespace merlin::cli {
+namespace {
+
+struct CardOptions {
+  std::string instance = "merlin";
+  std::string card;
+};
+
+constexpr Duration kLook = std::chrono::milliseconds(5);
+constexpr Duration kPatience = std::chrono::seconds(2);
+
+// Returns when the wall has shown another frame, so that whoever looks next sees the card.
+void awaitFrameAfter(const std::string& instance, std::uint64_t frame) {
+  const auto segment =
+      shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(instance, "wall"));
+  SystemClock clock;
+  for (const Timestamp until = clock.now() + kPatience; segment && clock.now() < until;) {
+    const auto stats = (*segment)->stats.read();
+    if (stats && stats->frames > frame) return;
+    clock.sleepUntil(clock.now() + kLook, {});
+  }
+}
+
+int testcard(const CardOptions& options) {
+  if (options.card == "list") {
+    for (const char* const name : render::testcard::kCardNames) fmt::print("{}\n", name);
+    return kExitDone;
+  }
+  const auto asked = askRole(options.instance, "wall", {"testcard", options.card});
+  if (!asked) return fail(asked.error());
+  const auto answer = nlohmann::json::parse(*asked, nullptr, false);
+  awaitFrameAfter(options.instance, answer.value("after", std::uint64_t{0}));
+  return kExitDone;
+}
+
+}  // namespace
+
+void addTestcard(Command wall, Run& run) {
+  const auto options = std::make_shared<CardOptions>();
+  Command command = wall.subcommand(
+      "testcard",
+      "Show a test card on all tiles, corrected as the picture is. grid: geometry; edges: the "
+      "outermost pixels, corners and strips of overlap; ramps: grey, red, green, blue; names: "
+      "which "
+      "output is which, and what is up; focus: single pixels and Siemens stars; off: the picture "
+      "again; list: print the names of all cards. A restart ends it too.\n"
+      "Example: merlin wall testcard grid");
+  addInstance(command, options->instance);
+  command.option("card", options->card, "Name of the card, off or list")
+      .required()
+      .typeName(fmt::format("{}|off|list", fmt::join(render::testcard::kCardNames, "|")));
+  command.callback([options, &run] { run = [options] { return testcard(*options); }; });
+}
+
+}  // namespace merlin::cli
