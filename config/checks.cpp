@@ -9,11 +9,14 @@
 
 #include "daemon/base/commands.h"
 #include "daemon/base/tcp_address.h"
+#include "render/room/room_tiles.h"
+#include "render/stereo/eye_tiles.h"
 
 namespace merlin {
 namespace {
 
-// `prefix`: what makes a sentence of the faults' texts where they are not predicates.
+// Adds the faults as findings. `group`: JSON pointer to which the faults' pointers are relative.
+// `prefix`: precedes texts of faults that are not predicates, "cannot be used: ".
 void addFaults(const SettingFaults& faults, const std::string& group, LoadedSettings& loaded,
                const std::string& prefix = {}) {
   for (const auto& [pointer, what, other] : faults) {
@@ -43,12 +46,12 @@ void checkPortsDiffer(const DevicesSettings& d, LoadedSettings& loaded) {
     const auto [first, fresh] = taken.emplace(line->port, device);
     if (fresh) continue;
     loaded.wrong(fmt::format("/devices/{}/port", device),
-                 fmt::format("is \"{}\", which is the {}'s port; each device has its own",
+                 fmt::format("is \"{}\", which is the {}'s port; each device needs its own",
                              line->port, first->second));
   }
 }
 
-// The wall's input from another machine is encrypted too, so that it needs keys.
+// The samples from another machine are encrypted, so the wall's input from it needs keys.
 void checkInput(const InputSettings& in, LoadedSettings& loaded) {
   if (in.endpoint.empty()) return;
   if (!parseTcpAddress(in.endpoint)) {
@@ -64,8 +67,8 @@ void checkInput(const InputSettings& in, LoadedSettings& loaded) {
   }
 }
 
-// Finds bindings whose action could never have an effect. Walls on other machines, which
-// /serve/samples_endpoint serves, may have what this one lacks.
+// Finds bindings whose action could never have an effect. Walls on other machines, which receive
+// actions through /serve/samples_endpoint, may have the folder or the models that this wall lacks.
 void checkBindings(const Settings& s, LoadedSettings& loaded) {
   addFaults(validate(s.devices.bindings), "/devices/bindings", loaded);
   const bool other_walls = !s.serve.samples_endpoint.empty();
@@ -88,10 +91,48 @@ void checkBindings(const Settings& s, LoadedSettings& loaded) {
   }
 }
 
-void checkOutputs(const WallSettings& wall, LoadedSettings& loaded) {
-  addFaults(render::validate(wall.outputs, wall.tiles), "/wall/outputs", loaded);
+// Checks stereo, and the outputs with the tiles of both eyes.
+void checkStereo(const WallSettings& wall, LoadedSettings& loaded) {
+  const double distance_m = wall.scene.wall_distance_m;
+  const SettingFaults faults =
+      render::stereo::validate(wall.stereo, wall.tiles, wall.outputs, distance_m);
+  addFaults(faults, "/wall", loaded);
+  if (!faults.empty()) return;
+  const auto eyes = render::stereo::eyeTiles(wall.stereo, wall.tiles, wall.outputs, distance_m);
+  addFaults(validate(eyes.tiles), "/wall/stereo", loaded, "cannot be used: ");
+  SettingFaults of_outputs = validate(eyes.outputs, eyes.tiles);
+  for (SettingFault& fault : of_outputs)
+    fault.pointer = render::stereo::pointerInSettings(eyes, fault.pointer);
+  addFaults(of_outputs, "/wall/outputs", loaded);
+}
+
+void checkHead(const Settings& s, LoadedSettings& loaded) {
+  const int station = s.wall.stereo.head.station;
+  if (station == 0 || station != s.devices.hand.station) return;
+  loaded.wrong("/wall/stereo/head/station",
+               fmt::format("is {}, the station that is worn on the hand (/devices/hand/station); "
+                           "the head needs its own",
+                           station));
+}
+
+// Makes the tiles of a wall that is described as a room. A wall whose room is at fault has no tiles
+// that others could be checked with.
+void checkTiles(LoadedSettings& loaded) {
+  WallSettings& wall = loaded.settings.wall;
+  if (wall.room.isGiven()) {
+    const SettingFaults faults = validate(wall.room, wall.tiles);
+    addFaults(faults, "/wall/room", loaded, "cannot be used: ");
+    if (!faults.empty()) return;
+    wall.tiles = *render::room::roomTiles(wall.room, wall.tiles);
+  }
+  const SettingFaults faults = validate(wall.tiles);
+  addFaults(faults, "/wall/tiles", loaded, "cannot be used: ");
+  if (faults.empty()) checkStereo(wall, loaded);
+}
+
+void checkSnapshots(const WallSettings& wall, LoadedSettings& loaded) {
   const bool shared = std::any_of(wall.outputs.begin(), wall.outputs.end(), [](const auto& o) {
-    return o.kind == render::OutputKind::kSharedMemory;
+    return o.kind == render::out::OutputKind::kSharedMemory;
   });
   if (!wall.snapshots.empty() && !shared) {
     loaded.wrong("/wall/snapshots",
@@ -115,10 +156,11 @@ void checkTogether(LoadedSettings& loaded) {
   addFaults(validate(d.gpio), "/devices/gpio", loaded);
   addFaults(validate(s.serve), "/serve", loaded);
   checkInput(s.wall.input, loaded);
-  addFaults(render::validate(s.wall.tiles), "/wall/tiles", loaded, "cannot be used: ");
-  addFaults(render::validate(s.wall.scene), "/wall/scene", loaded, "cannot be used: ");
-  addFaults(render::validate(s.wall.governor), "/wall/rate", loaded);
-  checkOutputs(s.wall, loaded);
+  checkTiles(loaded);
+  checkHead(s, loaded);
+  addFaults(validate(s.wall.scene), "/wall/scene", loaded, "cannot be used: ");
+  addFaults(validate(s.wall.governor), "/wall/rate", loaded);
+  checkSnapshots(s.wall, loaded);
   checkBindings(s, loaded);
 }
 

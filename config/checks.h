@@ -1,11 +1,12 @@
-// Checks of settings beyond range and type, above all of values that must fit one another.
+// Checks of settings beyond range and type, in particular of values that depend on each other.
 #pragma once
 
 #include "config/loader.h"
 
 namespace merlin {
 
-// Adds a finding to `loaded` for each fault.
+// Adds a finding to `loaded` for each fault. Replaces the settings of the tiles by those of the
+// room, if one is given.
 void checkTogether(LoadedSettings& loaded);
 
 }  // namespace merlin

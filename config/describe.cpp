@@ -2,6 +2,8 @@
 // `merlind --print-config` are generated from it.
 #include <fmt/format.h>
 
+#include "config/describe_room.h"
+#include "config/describe_stereo.h"
 #include "config/settings.h"
 #include "config/visitor.h"
 #include "daemon/base/commands.h"
@@ -34,33 +36,37 @@ void describeLine(LineSettings& line, std::span<const char* const> drivers, Sett
             {static_cast<double>(lineSpeeds().front()), static_cast<double>(lineSpeeds().back())},
             kBaud.c_str());
   v.integer("max_bytes_s", line.max_bytes_s, {0, 100'000'000},
-            "Maximum number of bytes per second that are read from the line. A line that sends "
-            "more is read at this rate and without real-time priority, and its health reports it. "
-            "0: four times what the baud rate carries, or 1000000 for tcp:// and replay:.");
+            "Maximum number of bytes per second that are read from the device. A device that sends "
+            "more is read at this rate and without real-time priority, and its health says so. "
+            "0: four times the number that the baud rate allows, or 1000000 for a port tcp:// or "
+            "replay:.");
 }
 
 void describeGlove(DevicesSettings& d, SettingsVisitor& v) {
   describeLine(d.glove_line, kGloves, v);
-  v.numbers("offset", d.glove.offset, {-10000, 10000},
-            "Raw sensor value at an angle of 0 rad, for each slot 0 to 22.");
+  v.numbers(
+      "offset", d.glove.offset, {-10000, 10000},
+      "Raw sensor value at a joint angle of 0 rad, for each of the 23 sensor slots, 0 to 22.");
   v.numbers("gain", d.glove.gain, {-1, 1},
-            "Angle in radians for one raw count, for each slot 0 to 22; negative for a sensor that "
-            "is mounted the other way round.");
+            "Change of the joint angle per raw count, in radians, for each of the 23 sensor slots, "
+            "0 to 22; negative for a sensor that is mounted the other way round.");
   v.oneOf("slot7", d.glove.slot7, kSlot7Rules,
-          "Value of slot 7, which no known glove measures. zero: 0; neutral: the middle of the raw "
-          "range; derived: the mean of slots 3 and 11, its neighbours; switch: the wrist switch (1 "
-          "on, 0 off).");
-  v.number("rate_hz", d.glove.rate_hz, {1, 150}, "Records per second that the glove is asked for.");
+          "Value of sensor slot 7, the abduction of the index finger, which no known glove "
+          "measures. zero: 0; neutral: the angle at the middle of the raw range; derived: the mean "
+          "of slots 3 and 11, the abductions beside it; switch: the wrist switch (1 on, 0 off).");
+  v.number("rate_hz", d.glove.rate_hz, {1, 150},
+           "Records per second that merlind requests from the glove.");
   v.oneOf("dialogue", d.glove.dialogue, kDialogues,
-          "Format of the glove's records and commands: binary, or decimal text, which takes four "
-          "times as long on the line.");
+          "Format of the glove's records and commands: binary, or text (decimal numbers), which "
+          "takes four times as long to transmit.");
   v.oneOf("light", d.glove.light, kWristLights,
-          "Light on the glove's wrist. switch: it shows the state of the wrist switch; off or on: "
-          "it stays so.");
+          "Light on the glove's wrist. switch: the light shows the state of the wrist switch; off "
+          "or on: the light is always off or always on.");
   v.flag("time_stamps", d.glove.time_stamps,
-         "Whether the interface unit adds a time stamp to each record, so that the sample counter "
-         "can also count records that were lost.");
-  v.flag("filter", d.glove.filter, "Whether the interface unit's own low-pass filter is on.");
+         "Whether the glove's interface unit adds a time stamp to each record. Time stamps show "
+         "which records were lost on the line, so that the sample counter can include them.");
+  v.flag("filter", d.glove.filter,
+         "Whether the low-pass filter in the glove's interface unit is on.");
 }
 
 void describeTrackerForm(FastrakSettings& t, SettingsVisitor& v) {
@@ -70,27 +76,38 @@ void describeTrackerForm(FastrakSettings& t, SettingsVisitor& v) {
                                          "boresight4_wxyz"};
   for (std::size_t i = 0; i < 4; ++i) {
     v.numbers(kAlignments[i], t.alignment_cm[i], {-1000, 1000},
-              "Reference frame of this station, in the transmitter's frame: the new origin, a "
-              "point on the new x axis and a point on the new y axis, in centimetres.");
+              "Alignment of the station whose number is in the key: the frame in which its "
+              "positions are reported, as three points x, y, z in the transmitter's frame, in "
+              "centimetres: the new origin, a point on the new x axis, a point on the new y axis.");
     v.numbers(kBoresights[i], t.boresight_wxyz[i], {-1, 1},
-              "Boresight of this station: the orientation that counts as straight ahead, a "
-              "quaternion w, x, y, z.");
+              "Boresight of the station whose number is in the key: the orientation of its "
+              "receiver that counts as straight ahead, as a unit quaternion w, x, y, z in the "
+              "frame that the station's alignment sets.");
   }
   v.numbers("position_filter", t.position_filter, {0, 1},
-            "The tracker's own filter of positions: sensitivity, low limit, high limit, factor. "
-            "Low and high equal to 1 turn it off.");
+            "Adaptive low-pass filter for positions inside the tracker, as four numbers: "
+            "sensitivity of the filter to motion; smallest filter coefficient, used at rest (the "
+            "smaller, the smoother); largest filter coefficient, used in fast motion; factor that "
+            "limits how fast the coefficient falls when a motion ends. If the second and third "
+            "number are both 1, the filter is off.");
   v.numbers("angle_filter", t.angle_filter, {0, 1},
-            "The tracker's own filter of orientations: sensitivity, low limit, high limit, factor. "
-            "Low and high equal to 1 turn it off.");
+            "Adaptive low-pass filter for orientations inside the tracker, as four numbers: "
+            "sensitivity of the filter to motion; smallest filter coefficient, used at rest (the "
+            "smaller, the smoother); largest filter coefficient, used in fast motion; factor that "
+            "limits how fast the coefficient falls when a motion ends. If the second and third "
+            "number are both 1, the filter is off.");
   v.oneOf("numbers", t.numbers, kTrackerNumbers,
-          "Format of numbers on the line: binary floats, decimal text, or 14-bit integers (short; "
-          "units made before 2012).");
+          "Format of numbers on the serial line: binary (floating-point numbers), text (decimal "
+          "numbers) or short (14-bit integers, which only units made before 2012 support).");
   v.flag("angles", t.angles,
-         "Whether the tracker sends azimuth, elevation and roll instead of a quaternion.");
+         "Whether the tracker sends orientations as azimuth, elevation and roll instead of "
+         "quaternions. Samples contain quaternions either way.");
   v.flag("stylus", t.stylus,
-         "Whether station 1 is a stylus; if so, each record has the state of its button.");
+         "Whether station 1 is a stylus; if so, each of its records contains the state of the "
+         "stylus button.");
   v.numbers("stylus_tip_cm", t.stylus_tip_cm, {-100, 100},
-            "Position of the stylus' tip relative to its coil: x, y, z in centimetres.");
+            "Position of the stylus tip relative to the receiver coil in the stylus: x, y, z in "
+            "centimetres.");
 }
 
 void describeTracker(DevicesSettings& d, SettingsVisitor& v) {
@@ -99,55 +116,75 @@ void describeTracker(DevicesSettings& d, SettingsVisitor& v) {
   for (std::size_t i = 0; i < d.tracker.hemisphere.size(); ++i) {
     v.numbers(
         kKeys[i], d.tracker.hemisphere[i], {-1, 1},
-        "Hemisphere of this station: a vector in the transmitter's frame that points into the half "
-        "of space where the receiver is. 0, 0, 0: the tracker follows the receiver.");
+        "Hemisphere of operation of one station (hemisphere2: station 2): a vector in the "
+        "transmitter's frame that points into the half-space in which the receiver is. 0, 0, 0: "
+        "the tracker notices by itself when the receiver changes to the other half-space.");
   }
   describeTrackerForm(d.tracker, v);
   v.flag("centimetres", d.tracker.centimetres,
-         "Unit of positions on the line: true for centimetres, false for inches. Samples are in "
-         "metres either way.");
+         "Unit of positions on the serial line: true for centimetres, false for inches. Samples "
+         "are in metres either way.");
 }
 
 void describeBall(DevicesSettings& d, SettingsVisitor& v) {
   describeLine(d.ball_line, kBalls, v);
   v.integer("full_scale_translation", d.ball.full_scale_translation, {100, 32767},
-            "Raw counts of a full push.");
+            "Raw count of a translation axis at a full push of the ball.");
   v.integer("full_scale_rotation", d.ball.full_scale_rotation, {100, 32767},
-            "Raw counts of a full twist.");
+            "Raw count of a rotation axis at a full twist of the ball.");
   v.integer("null_region", d.ball.null_region, {0, 63},
-            "Size of the ball's own null region: pushes below it count as none.");
+            "Size of the null region inside the ball, in the ball's own units: it reports weaker "
+            "pushes and twists as zero.");
   v.flag("cubic", d.ball.cubic,
-         "Whether the ball itself amplifies hard pushes more than gentle ones (a cubic response "
-         "instead of a linear one).");
+         "Whether the response of the ball itself is cubic instead of linear, which amplifies hard "
+         "pushes more than gentle ones.");
   v.flag("rezero", d.ball.rezero,
-         "Whether the ball takes its present state as its rest position when it is opened. Nobody "
-         "may touch it at that moment.");
+         "Whether the ball takes its present state as its rest position when merlind opens it. "
+         "Nobody may touch the ball at that moment.");
   v.text("beep", d.ball.beep,
          "Tune that the ball beeps when it is ready: a lower-case letter is a tone, an upper-case "
-         "letter a pause. Empty: no tune.");
+         "letter a pause; letters nearer to a are shorter. Empty: no tune.");
   v.integer("dead_zone", d.ball.dead_zone, {0, 99},
-            "Raw counts of an axis, in either direction, that are treated as rest.");
+            "Largest raw count of an axis, positive or negative, that is treated as rest.");
   v.numbers("axis_map", d.ball.axis_map, {-6, 6},
-            "Device axis (1 to 6) for each of x, y, z and the rotations about x, y, z; a negative "
-            "number reverses the axis.");
+            "Device axis for each of x, y, z and the rotations about x, y, z: 1 to 3 are the "
+            "device's X, Y, Z, and 4 to 6 its rotations A, B, C; a negative number reverses the "
+            "axis.");
 }
 
-void describeTiles(render::TilesSettings& t, SettingsVisitor& v) {
-  v.integer("tile_width", t.tile_width, {16, 8192}, "Width of each tile in pixels.");
-  v.integer("tile_height", t.tile_height, {16, 8192}, "Height of each tile in pixels.");
-  v.integer("frame_width", t.frame_width, {16, 16384},
-            "Width of the frame, which contains all tiles, in pixels.");
-  v.integer("frame_height", t.frame_height, {16, 16384},
-            "Height of the frame, which contains all tiles, in pixels.");
+// What a room computes, if there is one.
+void describeFrame(render::tiles::TilesSettings& t, SettingsVisitor& v) {
+  constexpr Range kFrame{16, render::tiles::kLargestFrame_px};
+  v.integer("frame_width", t.frame_width, kFrame,
+            "Width of the frame, which contains all tiles, in pixels. Not with /wall/room.");
+  v.integer("frame_height", t.frame_height, kFrame,
+            "Height of the frame, which contains all tiles, in pixels. Not with /wall/room.");
   v.number("field_of_view_deg", t.field_of_view_deg, {1, 179},
-           "Horizontal field of view of one tile, in degrees.");
+           "Horizontal field of view of one tile, in degrees. Not with /wall/room.");
+}
+
+void describeTiles(render::tiles::TilesSettings& t, bool from_room, SettingsVisitor& v) {
+  v.integer("tile_width", t.tile_width, {16, 8192},
+            "Width in pixels of each tile that does not set its own.");
+  v.integer("tile_height", t.tile_height, {16, 8192},
+            "Height in pixels of each tile that does not set its own.");
+  if (!from_room) describeFrame(t, v);
   v.number("near_m", t.near_m, {0.001, 1000},
            "Distance of the near clipping plane in metres: nothing nearer is drawn.");
   v.number("far_m", t.far_m, {0.01, 1e6},
            "Distance of the far clipping plane in metres: nothing farther is drawn.");
-  v.listOf<render::TileSettings>(
-      "tiles", t.tiles, "Position of each tile in the frame, and what it shows.",
-      [&](render::TileSettings& tile) {
+  if (from_room) {
+    for (const char* const key : {"frame_width", "frame_height", "field_of_view_deg", "tiles"}) {
+      v.excluded(key,
+                 "is given together with /wall/room, from which it is computed: leave out one of "
+                 "the two");
+    }
+    return;
+  }
+  v.listOf<render::tiles::TileSettings>(
+      "tiles", t.tiles,
+      "Position of each tile in the frame, and what it shows. Not with /wall/room.",
+      [&](render::tiles::TileSettings& tile) {
         v.text("name", tile.name, "Name of the tile.");
         v.oneOf("kind", tile.kind, kTileKinds,
                 "What the tile shows. wall: its part of the wall's view; operator: the operator's "
@@ -160,24 +197,27 @@ void describeTiles(render::TilesSettings& t, SettingsVisitor& v) {
         v.number("turns", tile.turns, {-8, 8},
                  "Rotation of the tile's view about the vertical axis, in units of one tile's "
                  "field of view; +1 is one tile to the left.");
-        v.integer("width", tile.width, {0, 8192}, "Width of this tile in pixels; 0: tile_width.");
+        v.integer("width", tile.width, {0, 8192},
+                  "Width of this tile in pixels; 0: the width /wall/tiles/tile_width.");
         v.integer("height", tile.height, {0, 8192},
-                  "Height of this tile in pixels; 0: tile_height.");
+                  "Height of this tile in pixels; 0: the height /wall/tiles/tile_height.");
         v.numbers("direction_deg", tile.direction_deg, {-180, 180},
                   "Direction of the tile's view in addition to turns, in degrees: yaw to the left, "
                   "then pitch upwards, then roll counter-clockwise as the viewer sees it.");
         v.numbers("frustum_deg", tile.frustum_deg, {-89.5, 89.5},
                   "Angles of the left, right, lower and upper edge of the tile from its direction, "
-                  "in degrees; left and lower ones are negative. All 0: symmetric, with "
-                  "field_of_view_deg. Views of different tiles may overlap.");
+                  "in degrees; left and lower ones are negative. All 0: a symmetric frustum with "
+                  "the field of view /wall/tiles/field_of_view_deg. Views of different tiles may "
+                  "overlap.");
         v.numbers("screen_m", tile.screen_m, {-1000, 1000},
-                  "Lower left, lower right and upper left corner of the tile's screen as seen from "
-                  "the eye (x right, y up, z towards the person), in metres. Direction and frustum "
-                  "follow from them. All 0: none.");
+                  "Lower left, lower right and upper left corner of the tile's screen relative to "
+                  "the eye (x right, y up, z towards the person), in metres. The tile's direction "
+                  "and frustum are computed from these corners. All 0: no screen is given.");
+        describeView(tile.view, tile.camera, v);
       });
 }
 
-void describeScene(render::SceneSettings& s, SettingsVisitor& v) {
+void describeScene(render::scene::SceneSettings& s, SettingsVisitor& v) {
   v.number("model_radius_m", s.model_radius_m, {0.001, 1000},
            "Radius of the bounding sphere that the model is scaled to, in metres.");
   v.number("model_distance_m", s.model_distance_m, {0, 1000},
@@ -189,71 +229,81 @@ void describeScene(render::SceneSettings& s, SettingsVisitor& v) {
            "Initial rotation of the model about the horizontal axis, in degrees, applied before "
            "the yaw; -90 for a model whose z axis points up.");
   v.numbers("ball_speed_m_s", s.ball_speed_m_s, {-100, 100},
-            "Speed of the motion along x, y, z at a full push of the ball, in metres per second.");
+            "Speed of the model or viewer along x, y, z at a full push of the ball, in metres per "
+            "second.");
   v.numbers(
       "ball_turn_deg_s", s.ball_turn_deg_s, {-3600, 3600},
-      "Speed of the rotation about x, y, z at a full twist of the ball, in degrees per second.");
+      "Angular speed of the model or viewer about x, y, z at a full twist of the ball, in degrees "
+      "per second.");
   v.numbers("tracker_axes", s.tracker_axes, {-3, 3},
             "Axes of the tracker that correspond to the wall's x (right), y (up) and z (towards "
             "the person): 1 is x, 2 is y, 3 is z; a negative number reverses the axis.");
   v.number(
       "hand_gain", s.hand_gain, {0.01, 1000},
-      "Motion of the model in metres for one metre of motion of the hand, while the hand grabs.");
+      "Motion of the model in metres for one metre of motion of the hand, while the action grab is "
+      "held.");
   v.number("fly_gain", s.fly_gain, {0.01, 1000},
-           "Speed of the viewer in metres per second for one metre of motion of the hand, while "
-           "the hand flies.");
+           "Speed of the viewer in metres per second for one metre between the hand and the place "
+           "where the hand was when the action fly began.");
   v.numbers("tracker_origin_m", s.tracker_origin_m, {-100, 100},
             "Position of the tracker's transmitter relative to the eye, used for pointing: x "
             "right, y up, z towards the person, in metres.");
   v.number(
       "wall_distance_m", s.wall_distance_m, {0.1, 100},
       "Distance from the eye to the wall, used when the hand points past the model, in metres.");
-  v.number("hand_noise_m", s.hand_noise_m, {0, 1},
-           "Motion of the hand that is treated as noise of the tracker, in metres.");
-  v.number("hand_noise_deg", s.hand_noise_deg, {0, 180},
-           "Rotation of the hand that is treated as noise of the tracker, in degrees.");
+  v.number(
+      "hand_noise_m", s.hand_noise_m, {0, 1},
+      "Motion of the hand below this distance is treated as noise of the tracker, in metres; a "
+      "motion from rest must exceed twice this distance.");
+  v.number(
+      "hand_noise_deg", s.hand_noise_deg, {0, 180},
+      "Rotation of the hand below this angle is treated as noise of the tracker, in degrees; a "
+      "rotation from rest must exceed twice this angle.");
   v.number("still_after_s", s.still_after_s, {0.01, 10},
            "Time without input after which the scene counts as still, in seconds.");
   v.number("return_after_s", s.return_after_s, {0, 86400},
-           "Time for which no tile of the wall has shown any part of the content, after which the "
-           "initial view returns as soon as nobody moves it, in seconds; 0: never.");
+           "Time in seconds after which the initial view returns if no tile of kind wall shows any "
+           "part of the model; the view does not return while something moves. 0: never.");
 }
 
-void describeRender(render::RenderSettings& r, SettingsVisitor& v) {
+void describeRender(render::frame::RenderSettings& r, SettingsVisitor& v) {
   v.oneOf("backend", r.gl.backend, kBackends,
           "OpenGL implementation that draws without a window: egl (uses a GPU where there is one) "
           "or osmesa (software).");
   v.integer("contexts", r.gl.contexts, {0, 2},
-            "Number of OpenGL contexts that share the tiles, each on a thread of its own; 2 needs "
-            "EGL. 0: two for a software renderer on two cores or more, otherwise one.");
+            "Number of OpenGL contexts that divide the tiles among them, each in its own thread; 2 "
+            "needs EGL. 0: two for a software renderer on two cores or more, otherwise one.");
   v.integer("raster_threads", r.gl.raster_threads, {0, 16},
             "Number of rasterizer threads of Mesa's software renderer; 0: the drawing thread "
             "itself rasterizes.");
   v.text("show", r.model.show.feature,
-         "Feature of the model that is shown as colours on a scale (thermal, confidence ...). "
-         "Empty: the model's own colours. Every content must have this feature.");
+         "Name of the vertex feature that the model's colours show (thermal, confidence ...); a "
+         "feature with one value per vertex is shown on a colour scale. Every model must have this "
+         "feature. Empty: the model's own colours.");
   v.numbers("show_range", r.model.show.range, {-1e9, 1e9},
-            "First and last value of the colour scale of show. Two equal numbers: the range of the "
-            "model's values.");
-  v.flag("view_dependent", r.model.view_dependent,
-         "Whether triangles are spent where the tiles look, and more densely near the eye. "
-         "Otherwise the whole model has a uniform resolution.");
+            "Values of the feature named by show at the first and last colour of the scale. Two "
+            "equal numbers: from the 1st to the 99th percentile of the model's values.");
+  v.flag(
+      "view_dependent", r.model.view_dependent,
+      "Whether the resolution depends on the view: most triangles are in the parts of the model "
+      "that the tiles show, and more densely near the eye. Otherwise the resolution is uniform.");
   v.number("geomorph", r.model.geomorph, {0, 0.5},
-           "Share of the triangles whose vertices move gradually to where they will merge "
-           "(geomorphs), so that changes of detail do not pop. 0: vertices jump.");
+           "Share of the triangles whose vertices move gradually to the position where they will "
+           "merge (geomorphs), so that a change of detail is not visible as a jump. 0: vertices "
+           "jump.");
   v.integer("fade_frames", r.fade_frames, {1, 30},
-            "Number of frames over which a finer image of a still scene replaces a coarser one; 1: "
-            "at once.");
+            "Number of frames over which a finer image of a still scene is faded in over the "
+            "coarser one; 1: the finer image is shown at once.");
   v.numbers(
       "colour", r.model.style.colour, {0, 1},
       "Colour of a model that has no colours of its own: red, green, blue, each from 0 to 1.");
   v.numbers("background", r.model.style.background, {0, 1},
             "Background colour: red, green, blue, each from 0 to 1.");
   v.number("brightness", r.model.style.brightness, {0.1, 10},
-           "Factor on the model's colours; above 1 for dark scans.");
+           "Factor that multiplies the model's colours; above 1 for dark scans.");
   v.flag("draw_back_faces", r.model.style.draw_back_faces,
-         "Whether back faces are drawn, for open scans that are seen from behind. Drawing then "
-         "takes 1.6 to 1.9 times as long.");
+         "Whether back faces are drawn too, for open scans that are seen from behind. Drawing "
+         "then takes 1.6 to 1.9 times as long.");
   v.flag("wireframe", r.model.style.wireframe, "Whether edges are drawn instead of faces.");
 }
 
@@ -261,13 +311,17 @@ void describeGpio(GpioSettings& g, SettingsVisitor& v) {
   v.text("chip", g.chip,
          "GPIO chip of the control panel: gpiochip0 or /dev/gpiochip0. Empty: there is no panel.");
   v.integer("projector_line", g.projector_line, {-1, 1023},
-            "GPIO line that is high while the projectors have power; -1: none.");
+            "Number of the GPIO line that merlind sets high to power the projectors; -1: no such "
+            "line.");
   v.integer("video_line", g.video_line, {-1, 1023},
-            "GPIO line of the video switch, low for input A and high for input B; -1: none.");
+            "Number of the GPIO line that controls the video switch, low for input A and high for "
+            "input B; -1: no such line.");
   v.integer("lamp_line", g.lamp_line, {-1, 1023},
-            "GPIO line that is high while the status lamp is lit; -1: none.");
+            "Number of the GPIO line that merlind sets high to light the status lamp; -1: no such "
+            "line.");
   v.integer("button_line", g.button_line, {-1, 1023},
-            "GPIO line that is high while the button is pressed; -1: none.");
+            "Number of the GPIO line that is high while the panel's button is pressed; -1: no such "
+            "line.");
   v.number(
       "warm_up_s", g.warm_up_s, {0, 3600},
       "Time that the projectors need after switching on before they show an image, in seconds.");
@@ -280,7 +334,7 @@ void describeGpio(GpioSettings& g, SettingsVisitor& v) {
            "Minimum time that the button must be pressed before it takes effect, in seconds.");
 }
 
-// "What the input does. While it is held: grab (The tracked ...), ... Once: reset_view (...), ..."
+// Description of the setting action: lists all actions with the help text of each.
 std::string actionsHelp() {
   std::string held, once;
   for (const CommandInfo& c : kCommands) {
@@ -288,7 +342,10 @@ std::string actionsHelp() {
     std::string& list = c.bindable == Bindable::kHeld ? held : once;
     list += fmt::format("{}{}: {}", list.empty() ? "" : " ", c.name, c.help);
   }
-  return fmt::format("What the input does. As long as it is held: {} Once: {}", held, once);
+  return fmt::format(
+      "Action of the input. Actions that last as long as the input is held: {} Actions that happen "
+      "once: {}",
+      held, once);
 }
 
 void describeBindings(DevicesSettings& d, SettingsVisitor& v) {
@@ -296,46 +353,167 @@ void describeBindings(DevicesSettings& d, SettingsVisitor& v) {
   static const std::string kAction = actionsHelp();
   v.listOf<Binding>(
       "bindings", d.bindings,
-      "What each input does. A wall executes the actions that are for walls, also on another "
-      "machine; the machine that has the panel executes those of the panel.",
+      "Inputs (buttons, postures, switches) and the action of each. Every merlind that draws a "
+      "wall executes the actions for walls, also on another machine; the merlind that has the "
+      "control panel executes the actions for the panel.",
       [&](Binding& b) {
         v.text("input", b.input, kInput.c_str());
         v.choiceOf("action", b.action, kActions, kAction.c_str());
         v.oneOf("on", b.when, kWhen,
-                "When the action happens: hold (as long as the input is held), enter or leave "
-                "(once, when the input begins or ends). by_action: hold or enter, as the action "
-                "requires.");
+                "When the action happens: hold (as long as the button is pressed or the posture is "
+                "held), enter (once, when that begins) or leave (once, when that ends). by_action: "
+                "hold for actions that last, enter for the others.");
       });
   v.number("stale_after_s", d.stale_after_s, {0.1, 10},
-           "Time after which the input of a device that has stopped working is released, in "
-           "seconds.");
+           "Time after which the buttons and postures of a device that has stopped working count "
+           "as released, in seconds.");
 }
 
 void describeServe(ServeSettings& s, SettingsVisitor& v) {
   v.path("spnav_socket", s.spnav_socket,
-         "Socket on which programs built on libspnav get the Spaceball, usually /run/spnav.sock. "
-         "Empty: no such server.");
+         "Unix socket from which programs that use libspnav receive the Spaceball's data, usually "
+         "/run/spnav.sock. Empty: no such server.");
   v.integer("vrpn_port", s.vrpn_port, {0, 65535},
-            "Port on which VRPN clients on this machine get hand, tracker and ball, usually 3883; "
-            "0: no such server.");
+            "Port from which VRPN clients on this machine receive the data of hand, tracker and "
+            "ball, usually 3883; 0: no such server.");
   v.text("samples_endpoint", s.samples_endpoint,
-         "Address on which walls on other machines get samples, encrypted, such as tcp://*:7401. "
-         "Empty: no such server.");
+         "Address from which walls on other machines receive the devices' samples, encrypted, such "
+         "as tcp://*:7401. Empty: no such server.");
   v.path("samples_keys", s.samples_keys,
-         "File with this machine's key pair, written by merlin keys -o FILE.");
+         "File with this machine's key pair, written by `merlin keys -o FILE`.");
   v.path("samples_clients", s.samples_clients,
          "File with the public keys of the machines that may receive samples, one per line.");
 }
 
-void describeWall(WallSettings& w, SettingsVisitor& v) {
-  v.group("input", "Devices of another machine, which replace this machine's.", [&] {
-    v.text("endpoint", w.input.endpoint,
-           "Address of the merlind that reads the devices, tcp://HOST:PORT. Empty: this machine's "
-           "shared memory.");
-    v.text("server_key", w.input.server_key, "Public key of the merlind at endpoint.");
-    v.path("keys", w.input.keys,
-           "File with this machine's key pair, written by merlin keys -o FILE.");
+void describeMesh(render::correct::MeshSettings& m, SettingsVisitor& v) {
+  v.integer("columns", m.columns, {0, render::correct::kMostMeshSide},
+            "Number of points in a row of the grid, at least 2; 0: no mesh.");
+  v.integer("rows", m.rows, {0, render::correct::kMostMeshSide},
+            "Number of rows of points, at least 2; 0: no mesh.");
+  v.oneOf("interpolation", m.interpolation, render::correct::kMeshInterpolationNames,
+          "How the picture is interpolated between the points: bicubic (smoothly, for curved "
+          "screens) or bilinear (in each cell on its own, for screens with creases).");
+  v.listOf<render::correct::MeshPoint>(
+      "points", m.points,
+      "Where each point of the grid lands on the output: row by row from the top, columns * rows "
+      "points. The grid's points have equal distances in the picture as it is meant, and the "
+      "outermost ones lie on its border.",
+      [&](render::correct::MeshPoint& p) {
+        const Range range{render::correct::kLeastMeshPlace, render::correct::kMostMeshPlace};
+        v.number("x", p.x, range, "From the left border, as a share of the output's width.");
+        v.number("y", p.y, range, "From the top border, as a share of the output's height.");
+      });
+}
+
+void describeCorrection(render::correct::CorrectionSettings& c, SettingsVisitor& v) {
+  v.numbers("corners", c.corners,
+            {-render::correct::kMostCornerOffset, render::correct::kMostCornerOffset},
+            "Corner pin: how far the picture's upper left, upper right, lower left and lower right "
+            "corner are moved from the output's corners, in pixels, x to the right and y down "
+            "each. It is applied after mesh or mpcdi.");
+  v.group("mesh", "Warp by a grid of points, each of which is moved on its own.",
+          [&] { describeMesh(c.mesh, v); });
+  v.path("mpcdi", c.mpcdi,
+         "MPCDI file (profile 2d) with a measured warp and blend, in place of mesh, the ramps of "
+         "blend and black. Empty: none.");
+  v.text("mpcdi_region", c.mpcdi_region,
+         "Region of the MPCDI file that belongs to this output. Empty: the file's only one.");
+  v.group(
+      "blend",
+      "Strips of the picture that a neighbour shows as well: there the light falls "
+      "towards the border, so that both together are as bright as the picture.",
+      [&] {
+        const Range pixels{0, render::correct::kMostCornerOffset};
+        v.number(
+            "left", c.blend.left, pixels,
+            "Width of the strip at the left border in pixels of the picture before the warp; 0: "
+            "none.");
+        v.number("right", c.blend.right, pixels,
+                 "Width of the strip at the right border, likewise.");
+        v.number("top", c.blend.top, pixels, "Height of the strip at the top border, likewise.");
+        v.number("bottom", c.blend.bottom, pixels,
+                 "Height of the strip at the bottom border, likewise.");
+        v.number(
+            "gamma", c.blend.gamma, {render::correct::kLeastGamma, render::correct::kMostGamma},
+            "Gamma of the projector or display: light = signal ^ gamma. Blend, colour and black "
+            "level are computed in light.");
+      });
+  v.group("colour", "Correction of colours, in light.", [&] {
+    const Range range{-render::correct::kMostColour, render::correct::kMostColour};
+    v.numbers("matrix", c.colour.matrix, range,
+              "Matrix that the light is multiplied by: three rows for red, green and blue of the "
+              "output, of three numbers for red, green and blue of the picture.");
+    v.numbers("gain", c.colour.gain, {0, render::correct::kMostColour},
+              "Factor on the light of red, green and blue, after the matrix.");
+    v.numbers("gamma", c.colour.gamma,
+              {render::correct::kLeastChannelGamma, render::correct::kMostChannelGamma},
+              "Gamma of the output's red, green and blue, as factors on blend.gamma. Above 1 the "
+              "middle tones of the channel become brighter.");
   });
+  v.group("black", "Black level.", [&] {
+    v.numbers("level", c.black.level, {0, render::correct::kMostBlack},
+              "Light of red, green and blue that is added outside the strips of blend, as a share "
+              "of full light, so that black is as bright there as in the overlap, where a "
+              "neighbour's black adds to it.");
+  });
+}
+
+void describeWindow(render::out::WindowSettings& w, SettingsVisitor& v) {
+  v.text("title", w.title, "Title of the window.");
+  v.integer("monitor", w.monitor, {0, 15},
+            "Number of the monitor on which the window opens, counted from 0 by the desktop.");
+  v.integer(
+      "x", w.x, {-1, 32767},
+      "Column of the window's upper left corner on the monitor, in pixels; -1: in the middle.");
+  v.integer(
+      "y", w.y, {-1, 32767},
+      "Row of the window's upper left corner on the monitor, in pixels, counted from the top; "
+      "-1: in the middle.");
+  v.integer("width", w.width, {0, 16384},
+            "Width of the window when it opens, in pixels; 0: that of the output's picture.");
+  v.integer("height", w.height, {0, 16384},
+            "Height of the window when it opens, in pixels; 0: that of the output's picture.");
+  v.flag("fullscreen", w.fullscreen,
+         "Whether the window covers its monitor when it opens. The key F11 changes it.");
+  v.flag("border", w.border, "Whether the desktop draws a frame and a title around the window.");
+  v.oneOf("scale", w.scale, render::out::kWindowScaleNames,
+          "How the picture is shown in a window of another size. fit: scaled to the largest size "
+          "that fits, with black bars; none: at its own size, in the middle of the window.");
+  v.oneOf(
+      "on_close", w.on_close, render::out::kOnCloseNames,
+      "What happens when a person closes the window. health: only this output stops, its health "
+      "says so, and the window is back when merlind is restarted; stop: merlind ends.");
+  v.flag("input", w.input,
+         "Whether mouse and keys in the window act on the wall; render/out/window/README.md lists "
+         "what they do.");
+}
+
+void describeKms(render::out::kms::KmsSettings& k, SettingsVisitor& v) {
+  v.text("card", k.card,
+         "Device file of the graphics card, for example /dev/dri/card0. Empty: the first card that "
+         "has connectors. All displays of a card change in one frame.");
+  v.text("connector", k.connector,
+         "Name of the connector that the display is plugged in at, as in /sys/class/drm, for "
+         "example HDMI-A-1. Empty: the first connector that has a display; only for a single "
+         "output on its card.");
+  v.text("mode", k.mode,
+         "Mode of the display, WIDTHxHEIGHT or WIDTHxHEIGHT@HZ, for example 1920x1080@60. Empty: "
+         "the mode with the size of the picture if the display has one, otherwise the mode that "
+         "the display prefers. A smaller picture is shown in the middle, surrounded by black.");
+}
+
+void describeWall(WallSettings& w, SettingsVisitor& v) {
+  v.group(
+      "input", "Another machine whose devices this wall uses instead of this machine's devices.",
+      [&] {
+        v.text(
+            "endpoint", w.input.endpoint,
+            "Address of the merlind that reads the devices, tcp://HOST:PORT. Empty: the wall uses "
+            "the devices of this machine.");
+        v.text("server_key", w.input.server_key, "Public key of the merlind at endpoint.");
+        v.path("keys", w.input.keys,
+               "File with this machine's key pair, written by `merlin keys -o FILE`.");
+      });
   v.path("model", w.model, "Multiresolution model that is shown first, an .mrm file.");
   v.listOf<ContentSettings>("contents", w.contents,
                             "Further models, which the command next_content shows in turn.",
@@ -343,7 +521,9 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
                               v.path("model", c.model, "Multiresolution model, an .mrm file.");
                             });
   v.group(
-      "rate", "The frame rate, and the limits within which triangles are given up for it.", [&] {
+      "rate",
+      "The frame rate, and limits of the number of triangles, which is adapted to keep the rate.",
+      [&] {
         v.number("rate_hz", w.governor.rate_hz, {1, 240},
                  "Frames per second while anything moves.");
         v.integer(
@@ -352,47 +532,69 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
         v.integer("max_triangles", w.governor.max_triangles, {4, 1e9},
                   "Maximum number of triangles per frame while anything moves.");
         v.integer("first_triangles", w.governor.first_triangles, {4, 1e9},
-                  "Number of triangles per frame before any frame time has been measured.");
+                  "Number of triangles per frame until the first frame time has been measured.");
         v.number("late_share", w.governor.late_share, {0.0001, 0.5},
-                 "Share of frames that may be late in the long run; the governor adapts its time "
-                 "reserve to it.");
+                 "Share of frames that may be late in the long run; the time that is kept in "
+                 "reserve in each frame is adapted to it.");
       });
-  v.group("tiles", "The geometry of the wall.", [&] { describeTiles(w.tiles, v); });
-  v.group("scene", "Initial position of the model, and what a person's input does.",
+  v.group("room",
+          "The wall as it is built, from which its tiles are computed: panels, the displays or "
+          "projectors on them, and the viewer's place. Axes of the room: x right, y up, z towards "
+          "the person who looks at the wall; its origin is any point. `merlin wall plan` draws it.",
+          [&] { describeRoom(w.room, v); });
+  v.group("tiles", "The geometry of the wall.",
+          [&] { describeTiles(w.tiles, w.room.isGiven(), v); });
+  v.group("stereo", "Pictures for the viewer's two eyes, and tracking of the viewer's head.",
+          [&] { describeStereo(w.stereo, w.room.isGiven(), v); });
+  v.group("scene", "Initial view of the model, and how a person's input moves it.",
           [&] { describeScene(w.scene, v); });
   v.group("render", "How the model is drawn.", [&] { describeRender(w.render, v); });
   v.path("snapshots", w.snapshots,
          "Folder for the frames that the action snapshot writes. Empty: snapshots are off.");
   v.integer("snapshots_kept", w.snapshots_kept, {1, 1e6},
             "Number of snapshots kept in the folder; the oldest are removed.");
-  v.listOf<render::OutputSettings>(
+  v.listOf<render::out::OutputSettings>(
       "outputs", w.outputs,
       "Outputs that receive every frame. If one fails, the others are not affected.",
-      [&](render::OutputSettings& o) {
-        v.oneOf("kind", o.kind, render::kOutputKindNames,
-                "Kind of the output: shared_memory, for merlin snapshot and other programs on this "
-                "machine (at most one), or png, a PNG file that always holds a recent frame.");
-        v.text("name", o.name, "Name of the output in status and events. Empty: its kind.");
-        v.path("path", o.path, "Name of the PNG file, for kind png.");
+      [&](render::out::OutputSettings& o) {
+        v.oneOf("kind", o.kind, render::out::kOutputKindNames,
+                "Kind of the output: shared_memory, for the command `merlin snapshot` and other "
+                "programs on this machine (at most one output of this kind); png, a PNG file that "
+                "always holds a recent frame; window, a window on a desktop; or kms, a display of "
+                "a graphics card, without a desktop.");
+        v.text("name", o.name,
+               "Name of the output in the status and in events. Empty: the name of its kind.");
+        v.path("path", o.path, "Name of the PNG file of an output of kind png.");
         v.number("interval_s", o.interval_s, {1, 86400},
-                 "Minimum time between two writes of the file, in seconds, for kind png.");
-        v.listOf<render::PlacedTile>(
-            "tiles", o.tiles, "Tiles that this output shows, and where. Empty: the whole frame.",
-            [&](render::PlacedTile& p) {
-              v.text("tile", p.tile, "Name of the tile, as in /wall/tiles/tiles.");
+                 "Minimum time between two writes of the PNG file of an output of kind png, in "
+                 "seconds.");
+        v.group("window", "The window of an output of kind window.",
+                [&] { describeWindow(o.window, v); });
+        v.group("kms", "The display of an output of kind kms.", [&] { describeKms(o.kms, v); });
+        v.listOf<render::out::PlacedTile>(
+            "tiles", o.tiles,
+            "Tiles that this output shows, and their positions. Empty: the whole frame.",
+            [&](render::out::PlacedTile& p) {
+              v.text("tile", p.tile,
+                     "Name of the tile, as in /wall/tiles/tiles, or of the display in "
+                     "/wall/room.");
               v.integer("x", p.x, {0, 32768},
                         "Column of the tile's upper left corner on the output, in pixels.");
               v.integer("y", p.y, {0, 32768},
                         "Row of the tile's upper left corner on the output, in pixels, counted "
                         "from the top.");
               v.oneOf(
-                  "mirror", p.mirror, render::kMirrorNames,
+                  "mirror", p.mirror, render::out::kMirrorNames,
                   "Whether the tile is mirrored, for rear projection: horizontal exchanges left "
                   "and right, vertical exchanges top and bottom.");
-              v.oneOf("turn_deg", p.turn, render::kTurnNames,
+              v.oneOf("turn_deg", p.turn, render::out::kTurnNames,
                       "Clockwise rotation of the tile after mirroring, in degrees, for a projector "
                       "or display that is mounted on its side or upside down.");
             });
+        v.group("correction",
+                "What is done to the picture so that it looks as meant on this output's screen: "
+                "warp, blend, colour, black level. Not for kind shared_memory.",
+                [&] { describeCorrection(o.correction, v); });
       });
 }
 
@@ -402,9 +604,16 @@ void describe(Settings& s, SettingsVisitor& v) {
   v.text("instance", s.instance,
          "Name of this daemon. It is part of the names of shared memory and sockets and so "
          "distinguishes several daemons on one machine.");
-  v.path("run_directory", s.run_directory,
-         "Folder for sockets and for the emulators' pseudo-terminals. Empty: /run/merlin for root, "
-         "the user's own run directory for others.");
+  v.path(
+      "run_directory", s.run_directory,
+      "Folder for sockets and for the emulators' pseudo-terminals. Empty: the folder that "
+      "systemd sets, otherwise /run/merlin for root, and for other users $XDG_RUNTIME_DIR/merlin "
+      "or /tmp/merlin-UID.");
+  v.path("state_file", s.state_file,
+         "File in which merlind keeps what people change while it runs (the alignment of outputs, "
+         "the frame rate, the content that is shown), so that it is there after a restart. Empty: "
+         "INSTANCE.state.json in the folder that systemd sets, otherwise in /var/lib/merlin for "
+         "root, and for other users in $XDG_STATE_HOME/merlin or ~/.local/state/merlin.");
   v.group("devices", "The devices that are read.", [&] {
     v.group("glove", "A CyberGlove.", [&] { describeGlove(s.devices, v); });
     v.group("tracker", "A Polhemus Fastrak.", [&] { describeTracker(s.devices, v); });
@@ -412,35 +621,44 @@ void describe(Settings& s, SettingsVisitor& v) {
     v.group("hand", "The hand, which combines glove and tracker.", [&] {
       v.integer(
           "station", s.devices.hand.station, {1, 4},
-          "Tracker station that is worn on the hand, 1 to 4; it moves the model while the "
-          "hand grabs. A wall that gets its devices from another machine uses its own value.");
+          "Tracker station that is worn on the hand, 1 to 4; it moves the model while the action "
+          "grab is held. A wall that uses the devices of another machine needs this setting in its "
+          "own configuration.");
       v.number("cutoff_hz", s.devices.hand.cutoff_hz, {0, 100},
-               "Cut-off frequency, in Hz, of the low-pass filter on the pose of a hand at rest. It "
-               "adds a delay of 1 / (2 pi cut-off). 0: no filter.");
+               "Cut-off frequency f, in Hz, of the low-pass filter for the hand's pose while the "
+               "hand is at rest. The filter adds a delay of 1 / (2 pi f) seconds. 0: no filter.");
       v.number(
           "cutoff_per_m_s", s.devices.hand.cutoff_per_m_s, {0, 1000},
-          "Increase of the cut-off frequency with the hand's speed, in Hz per metre per second.");
+          "Increase of the cut-off frequency of the filter for the hand's pose with the hand's "
+          "speed, in Hz per metre per second.");
     });
     v.group("gpio", "The wall's control panel on a GPIO chip.",
             [&] { describeGpio(s.devices.gpio, v); });
     v.path("postures", s.devices.postures,
-           "File of the posture network, JSON. Empty: no posture is recognised.");
+           "File of the neural network that recognises postures, in JSON. Empty: no posture is "
+           "recognised.");
     v.number("posture_hold_s", s.devices.posture_hold.hold_s, {0, 10},
              "Minimum time that a posture must be held before it counts as begun, in seconds.");
     v.number("posture_leave_s", s.devices.posture_hold.leave_s, {0, 10},
              "Minimum time that a posture must be absent before it counts as ended, in seconds.");
     v.number("posture_margin", s.devices.posture_hold.least_margin, {0, 1},
-             "Minimum margin (0 to 1) of the network's decision for a posture to be recognised; "
-             "half of it suffices to keep the current posture.");
+             "Minimum margin for a posture to be recognised, from 0 to 1: the margin says how sure "
+             "the posture network is. Half of it suffices to keep the current posture.");
     describeBindings(s.devices, v);
     v.integer("cpu_latency_us", s.devices.cpu_latency_us, {-1, 10000},
               "Maximum time that idle CPU cores may take to wake up, for the whole machine, in "
               "microseconds. 0 keeps them from sleeping, which costs power; -1 leaves the system's "
               "setting.");
-    v.choiceOf("script", s.devices.script, kScripts,
-               "What the emulated person does when merlind runs with --emulate.");
+    v.choiceOf(
+        "script", s.devices.script, kScripts,
+        "What the emulated person does when merlind runs with --emulate. visit: turns the "
+        "model, rests, grabs it, lets go; turning: always twists the ball; still: does "
+        "nothing; grabbing: makes a fist and opens it in turn while the hand moves; "
+        "alignment: makes the movements that `merlin calibrate tracker` asks for; pushes: those "
+        "that `merlin calibrate ball` asks for.");
   });
-  v.group("wall", "What the wall shows, and how.", [&] { describeWall(s.wall, v); });
+  v.group("wall", "What the wall shows, how it is drawn, and which outputs receive the frames.",
+          [&] { describeWall(s.wall, v); });
   v.group("serve", "Servers for other programs and machines.", [&] { describeServe(s.serve, v); });
 }
 

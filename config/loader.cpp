@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 
 #include "config/checks.h"
-#include "config/json_tree.h"
 #include "config/migrate.h"
 #include "config/visitor.h"
 #include "daemon/base/files.h"
 #include "daemon/base/nearest.h"
 #include "daemon/base/text.h"
+#include "daemon/json/json_tree.h"
 
 namespace merlin {
 namespace {
@@ -25,15 +25,15 @@ std::string escapePointer(std::string_view key) {
   return out;
 }
 
-// Takes the settings from a JSON tree; a key that it does not take is reported as unknown.
+// Reads the settings from a JSON tree and reports keys that no setting has as unknown.
 class Loader final : public SettingsVisitor {
  public:
   Loader(const JsonNode& root, std::string folder, LoadedSettings& loaded)
       : folder_(std::move(folder)), loaded_(loaded) {
     enter(&root, "");
   }
-  // Reports the unknown keys of the file's root. To be called after describe(); not the destructor,
-  // which must not throw.
+  // Reports the unknown keys of the file's root. To be called after describe(). Not done by the
+  // destructor, because that must not throw.
   void finish() { leave(); }
   ~Loader() override = default;
   Loader(const Loader&) = delete;
@@ -57,7 +57,7 @@ class Loader final : public SettingsVisitor {
     if (const JsonNode* node = take(key, JsonNode::Kind::kString, "a string")) value = node->text;
   }
   void path(const char* key, std::string& value, const char*) override {
-    const JsonNode* node = take(key, JsonNode::Kind::kString, "a file's name");
+    const JsonNode* node = take(key, JsonNode::Kind::kString, "a file name");
     if (!node) return;
     value = node->text.empty()
                 ? ""
@@ -107,6 +107,15 @@ class Loader final : public SettingsVisitor {
     }
   }
 
+  void excluded(const char* key, const char* what) override {
+    Level& level = levels_.back();
+    level.known.emplace_back(key);
+    if (!level.object) return;
+    for (const auto& member : level.object->members) {
+      if (member.key == key) loaded_.add({false, member.line, pointer(key), what});
+    }
+  }
+
   const std::map<std::string, int>& lines() const { return lines_; }
 
  private:
@@ -124,7 +133,7 @@ class Loader final : public SettingsVisitor {
     levels_.push_back({object, pointer, {}});
   }
 
-  // Leaves the object and reports those of its keys that were not asked for.
+  // Leaves the object and reports its keys that describe() did not mention.
   void leave() {
     const Level& level = levels_.back();
     static const std::vector<JsonNode::Member> kNone;
@@ -142,8 +151,8 @@ class Loader final : public SettingsVisitor {
                      const std::vector<std::string>& known) const {
     if (const MovedSetting* moved = findMoved(pointer)) {
       return fmt::format(
-          "is the form of an earlier version; {}; merlin config migrate FILE "
-          "rewrites the file",
+          "is a setting of an earlier version; {}; the command merlin config migrate FILE rewrites "
+          "the file",
           moved->now);
     }
     return "is not a known setting; " + suggestion(key, known);
@@ -157,7 +166,8 @@ class Loader final : public SettingsVisitor {
                         : fmt::format("did you mean \"{}\"?", near);
   }
 
-  // The value of `key`; null if it is not there, or with a finding if it is of another kind.
+  // Returns the value of `key`; null if the key is missing, or, after adding a finding, if the
+  // value is of another kind or contains NUL.
   const JsonNode* take(const char* key, JsonNode::Kind kind, std::string_view allowed) {
     Level& level = levels_.back();
     level.known.emplace_back(key);
@@ -168,7 +178,7 @@ class Loader final : public SettingsVisitor {
       const bool whole = member.value.text.find('\0') == std::string::npos;
       if (member.value.kind == kind && whole) return &member.value;
       if (!whole)
-        allowed = "a text without the character NUL, at which the system would cut it off";
+        allowed = "a text without the character NUL, where the operating system would truncate it";
       wrong(member.value, key, allowed);
       return nullptr;
     }

@@ -1,5 +1,5 @@
-// Reading a configuration file: every finding at once, each with the line, the JSON pointer, what
-// was found and what is allowed.
+// Reads a configuration file and reports all findings at once, each with the line, the JSON
+// pointer, what was found and what is allowed.
 #pragma once
 
 #include <map>
@@ -13,16 +13,16 @@
 namespace merlin {
 
 struct Finding {
-  bool adjusted = false;  // a number was clamped into its range; else the file is invalid
+  bool adjusted = false;  // a number was clamped into its range; false: the file is invalid
   int line = 0;
   std::string pointer;  // RFC 6901, "/wall/rate/rate_hz"
-  std::string what;
+  std::string what;     // rest of the sentence, "is 900; allowed is 1 to 240"
 };
 
 struct LoadedSettings {
   enum class Verdict { kValid, kAdjusted, kInvalid };
 
-  // Further findings are only counted: a file of 1 MiB can have hundreds of thousands.
+  // Findings beyond this number are only counted: a file of 1 MiB can have hundreds of thousands.
   static constexpr std::size_t kMostFindings = 200;
 
   Settings settings;                 // meaningful unless the verdict is kInvalid
@@ -31,10 +31,10 @@ struct LoadedSettings {
   std::map<std::string, int> lines;  // line of each setting that the file has, by pointer
 
   Verdict verdict() const;
-  // Line of a setting; if the file does not have it, the line of the nearest enclosing group that
-  // it has; 0 if there is none.
+  // Line of a setting; if the file does not have the setting, the line of the innermost enclosing
+  // group that the file has; 0 if there is no such group.
   int lineOf(const std::string& pointer) const;
-  // Adds a finding. Cost: constant, however many there are already.
+  // Adds a finding. Cost: constant.
   void add(Finding finding);
   // Adds a finding that makes the file invalid.
   void wrong(const std::string& pointer, std::string what);

@@ -5,21 +5,21 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "config/json_tree.h"
+#include "daemon/json/json_tree.h"
 
 namespace merlin {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Whether it is an object with a text under that key that is not empty.
+// Whether `object` is a JSON object whose member `key` is a string that is not empty.
 bool hasText(const Json& object, const char* key) {
   const auto found = object.find(key);
   return object.is_object() && found != object.end() && found->is_string() &&
          !found->get_ref<const std::string&>().empty();
 }
 
-// The newest frame as a file was a group of its own before there was a list of outputs.
+// Earlier versions had the group /wall/png; it becomes an output of kind png in /wall/outputs.
 Result<bool> movePng(Json& root) {
   const auto wall = root.find("wall");
   if (wall == root.end() || !wall->is_object() || !wall->contains("png")) return false;
@@ -36,7 +36,8 @@ Result<bool> movePng(Json& root) {
   return true;
 }
 
-// The group, made where the file lacks it. Errors: kInvalidArgument (it is not an object).
+// Returns the group `key` of `parent`; adds an empty group if it is missing. `pointer`: the group's
+// JSON pointer, for the error. Errors: kInvalidArgument (it is not an object).
 Result<Json*> groupOf(Json& parent, const char* key, const char* pointer) {
   if (!parent.contains(key)) parent[key] = Json::object();
   Json& group = parent[key];
@@ -45,7 +46,8 @@ Result<Json*> groupOf(Json& parent, const char* key, const char* pointer) {
   return &group;
 }
 
-// Takes /wall/scene/KEY out of the file; null where there is none.
+// Removes /wall/scene/KEY, and the scene if it is empty then, and returns the value; null if there
+// is none.
 Json takeOfScene(Json& root, const char* key) {
   const auto wall = root.find("wall");
   if (wall == root.end() || !wall->is_object() || !wall->contains("scene")) return nullptr;
@@ -59,7 +61,7 @@ Json takeOfScene(Json& root, const char* key) {
 
 Error bothForms(const char* was, const char* now) {
   return {Errc::kInvalidArgument,
-          fmt::format("has both {} and {}: keep the latter by hand", was, now)};
+          fmt::format("has both {} and {}: delete the former by hand", was, now)};
 }
 
 bool hasPanel(const Json& devices) {
@@ -67,7 +69,8 @@ bool hasPanel(const Json& devices) {
   return gpio != devices.end() && hasText(*gpio, "chip");
 }
 
-// Bindings of the wall's scene became bindings of the devices; the panel's button is one of them.
+// /wall/scene/bindings became /devices/bindings. The panel's button needed no binding in earlier
+// versions, where its default action was next_mode; it gets this binding now.
 Result<bool> moveBindings(Json& root) {
   Json bindings = takeOfScene(root, "bindings");
   if (bindings.is_null()) return false;
@@ -91,7 +94,7 @@ Result<bool> moveButton(Json& root) {
   const Json command = gpio["button_command"];
   gpio.erase("button_command");
   Json& bindings = (*devices)["bindings"];
-  if (bindings.is_null()) {  // those that were in force
+  if (bindings.is_null()) {  // the default bindings of that version
     bindings = Json::array({{{"input", "posture.fist"}, {"action", "grab"}},
                             {{"input", "ball.button.1"}, {"action", "reset_view"}},
                             {{"input", "ball.button.2"}, {"action", "next_mode"}}});
@@ -124,7 +127,8 @@ Result<bool> moveStaleAfter(Json& root) {
   return true;
 }
 
-// Both times had to pass: the longer one was in force.
+// Earlier versions waited for /wall/scene/posture_hold_s and /devices/posture_hold_s, that is, for
+// the longer of them: this time becomes /devices/posture_hold_s.
 Result<bool> movePostureHold(Json& root) {
   const Json hold = takeOfScene(root, "posture_hold_s");
   if (hold.is_null()) return false;
@@ -132,30 +136,28 @@ Result<bool> movePostureHold(Json& root) {
   if (!devices) return devices.error();
   constexpr double kDefault_s = 0.15;
   const Json own = (*devices)->value("posture_hold_s", Json(kDefault_s));
-  if (hold.is_number() && own.is_number() && hold.get<double>() > own.get<double>())
+  // What is not a number stays, so that the check of the file reports it.
+  if (!hold.is_number() || (own.is_number() && hold.get<double>() > own.get<double>()))
     (**devices)["posture_hold_s"] = hold;
   return true;
 }
 
 struct Step {
   MovedSetting moved;
-  Result<bool> (*rewrite)(Json& root);  // whether it changed anything
+  Result<bool> (*rewrite)(Json& root);  // returns whether it changed `root`
 };
 
-// In the order in which versions made them.
+// In the order in which the versions made these changes.
 constexpr Step kSteps[] = {
-    {{"/wall/png",
-      "an entry {\"kind\": \"png\", \"path\": ...} of /wall/outputs stands in its place"},
+    {{"/wall/png", "an entry {\"kind\": \"png\", \"path\": ...} of /wall/outputs replaces it"},
      movePng},
-    {{"/wall/scene/bindings", "/devices/bindings stands in its place"}, moveBindings},
+    {{"/wall/scene/bindings", "/devices/bindings replaces it"}, moveBindings},
     {{"/devices/gpio/button_command",
-      "an entry {\"input\": \"panel.button\", \"action\": ...} of /devices/bindings stands in its "
-      "place"},
+      "an entry {\"input\": \"panel.button\", \"action\": ...} of /devices/bindings replaces it"},
      moveButton},
-    {{"/wall/scene/hand_station", "/devices/hand/station stands in its place"}, moveStation},
-    {{"/wall/scene/stale_after_s", "/devices/stale_after_s stands in its place"}, moveStaleAfter},
-    {{"/wall/scene/posture_hold_s", "/devices/posture_hold_s, in force before, stands alone"},
-     movePostureHold},
+    {{"/wall/scene/hand_station", "/devices/hand/station replaces it"}, moveStation},
+    {{"/wall/scene/stale_after_s", "/devices/stale_after_s replaces it"}, moveStaleAfter},
+    {{"/wall/scene/posture_hold_s", "/devices/posture_hold_s replaces it"}, movePostureHold},
 };
 
 }  // namespace
@@ -168,7 +170,7 @@ const MovedSetting* findMoved(std::string_view pointer) {
 }
 
 Result<Migration> migrate(std::string_view json) {
-  if (const auto tree = parseJson(json); !tree) return tree.error();  // stricter than what follows
+  if (const auto tree = parseJson(json); !tree) return tree.error();  // stricter than Json::parse()
   Json root = Json::parse(json, nullptr, false);
   if (!root.is_object()) return Error{Errc::kMalformed, "line 1: is not a JSON object"};
   Migration migration;

@@ -1,4 +1,4 @@
-// Migrations: a configuration of an earlier version becomes one of this version.
+// Migration: converts a configuration file of an earlier version to the form of this version.
 #pragma once
 
 #include <string>
@@ -11,21 +11,22 @@ namespace merlin {
 
 // A setting that an earlier version had elsewhere, or in another form.
 struct MovedSetting {
-  const char* pointer;  // where it was, as a JSON pointer
-  const char* now;      // what stands in its place, as part of a sentence
+  const char* pointer;  // JSON pointer of the setting in the earlier version
+  const char* now;      // its replacement in this version, as a clause for messages
 };
 
-// Null where no earlier version had it. Reentrant.
+// Returns the entry of the setting that an earlier version had at this JSON pointer and that this
+// version has elsewhere or in another form; null if there is no such setting. Reentrant.
 const MovedSetting* findMoved(std::string_view pointer);
 
 struct Migration {
   std::string text;                  // the file in the form of this version
-  std::vector<std::string> changes;  // a sentence each; empty: it was in this form already
+  std::vector<std::string> changes;  // one sentence per change; empty: the file needed none
 };
 
-// Rewrites what earlier versions had in another form, and keeps all else as it is, in its order.
-// Errors: kMalformed (not a JSON object; with the line), kInvalidArgument (it has both forms of a
-// setting).
+// Rewrites the settings that earlier versions had elsewhere or in another form; all other settings
+// and their order are kept. Errors: kMalformed (not a JSON object; with the line), kInvalidArgument
+// (the file has a setting in its old and its new form, or a group is not an object).
 Result<Migration> migrate(std::string_view json);
 
 }  // namespace merlin

@@ -16,7 +16,9 @@
 #include "render/frame/settings.h"
 #include "render/governor/settings.h"
 #include "render/out/settings.h"
+#include "render/room/settings.h"
 #include "render/scene/settings.h"
+#include "render/stereo/settings.h"
 #include "render/tiles/settings.h"
 
 namespace merlin {
@@ -33,7 +35,9 @@ struct DevicesSettings {
   std::string postures;  // file of the posture network; empty: no posture is recognised
   nn::HoldSettings posture_hold;
   std::vector<Binding> bindings = defaultBindings();
-  double stale_after_s = 0.5;  // of a device that does not work: then its input is released
+  // Time after which the buttons and postures of a device that has stopped working count as
+  // released.
+  double stale_after_s = 0.5;
   // Maximum wake-up latency of idle cores, for the whole machine [us]; -1: the system's setting.
   int cpu_latency_us = -1;
   std::string script = "visit";  // what the emulated person does, with --emulate
@@ -55,12 +59,14 @@ struct WallSettings {
   InputSettings input;
   std::string model;                      // an .mrm file, shown first
   std::vector<ContentSettings> contents;  // further models, shown in turn by next_content
-  render::GovernorSettings governor;
-  render::TilesSettings tiles;
-  render::SceneSettings scene;
-  render::RenderSettings render;
-  std::vector<render::OutputSettings> outputs = {{}};
-  std::string snapshots;  // folder for the files of the action snapshot; empty: snapshots are off
+  render::governor::GovernorSettings governor;
+  render::room::RoomSettings room;     // instead of tiles by hand
+  render::tiles::TilesSettings tiles;  // loadSettings() makes them from the room if that is given
+  render::stereo::StereoSettings stereo;
+  render::scene::SceneSettings scene;
+  render::frame::RenderSettings render;
+  std::vector<render::out::OutputSettings> outputs = {{}};
+  std::string snapshots;  // folder for the frames that the action snapshot writes; empty: off
   int snapshots_kept = 1000;
 };
 
@@ -70,6 +76,8 @@ struct Settings {
   // Folder for sockets and the emulators' pseudo-terminals; empty: /run/merlin for root, the user's
   // own run directory for others.
   std::string run_directory;
+  // File of what people change at run time; empty: one in systemd's or the user's folder for state.
+  std::string state_file;
   DevicesSettings devices;
   WallSettings wall;
   ServeSettings serve;

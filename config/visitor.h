@@ -1,5 +1,6 @@
-// SettingsVisitor: describe() calls it once for every setting. Reading a file, writing the schema
-// and printing the settings in effect are three visitors of one description, so they always agree.
+// SettingsVisitor: describe() calls one of its functions for every setting. Three visitors use this
+// description, so that they always agree: they read a file, write the schema, and print the
+// settings in effect.
 #pragma once
 
 #include <array>
@@ -19,7 +20,8 @@ class SettingsVisitor {
  public:
   virtual ~SettingsVisitor() = default;
 
-  // `help`: one sentence, with the unit.
+  // `help`: what the setting means, in full sentences, with the unit. `value`: the present value,
+  // which the visitor may change.
   virtual void number(const char* key, double& value, Range range, const char* help) = 0;
   virtual void integer(const char* key, int& value, Range range, const char* help) = 0;
   virtual void flag(const char* key, bool& value, const char* help) = 0;
@@ -38,7 +40,11 @@ class SettingsVisitor {
                     const std::function<void(std::size_t)>& resize,
                     const std::function<void(std::size_t)>& member) = 0;
 
-  // Overloads for other types of number and for enumerations.
+  // A key that a file must not have, since another setting determines its value. `what`: the rest
+  // of the sentence that begins with the key.
+  virtual void excluded(const char* key, const char* what) = 0;
+
+  // Overloads for other number types and for enumerations.
   void number(const char* key, float& value, Range range, const char* help) {
     double wide = static_cast<double>(value);
     number(key, wide, range, help);
@@ -83,7 +89,7 @@ class SettingsVisitor {
 
 struct Settings;
 
-// Calls `visitor` for every setting of `settings`, in the order in which files are written.
+// Calls `visitor` for every setting of `settings`, always in the same order: that of written files.
 void describe(Settings& settings, SettingsVisitor& visitor);
 
 }  // namespace merlin

@@ -10,13 +10,15 @@
 namespace merlin {
 namespace {
 
-using Json = nlohmann::ordered_json;  // in the order of the description
+using Json = nlohmann::ordered_json;  // keeps the order of describe()
 
-// The shortest number that gives the same float: a value that was stored in a float is written as
-// 0.1, not as 0.10000000149.
+// A value that was stored in a float is written as the shortest number that gives the same float:
+// 0.1, not 0.10000000149. Any other one keeps all its digits.
 Json plain(double value) {
   if (value == std::floor(value) && std::abs(value) < 1e15) return static_cast<std::int64_t>(value);
-  return std::stod(fmt::format("{}", static_cast<float>(value)));
+  const auto narrow = static_cast<float>(value);
+  if (static_cast<double>(narrow) != value) return value;
+  return std::stod(fmt::format("{}", narrow));
 }
 
 class TextWriter final : public SettingsVisitor {
@@ -49,6 +51,8 @@ class TextWriter final : public SettingsVisitor {
       within(list.back(), [&] { member(i); });
     }
   }
+
+  void excluded(const char*, const char*) override {}
 
   Json root = Json::object();
 
@@ -109,7 +113,8 @@ class SchemaWriter final : public SettingsVisitor {
     within(object, members);
     put(key, std::move(object));
   }
-  // Describes an item that has no value but its defaults, whatever the default list holds.
+  // Describes one item with the default values of its type; the list's own default is not
+  // described.
   void list(const char* key, std::size_t, const char* help,
             const std::function<void(std::size_t)>& resize,
             const std::function<void(std::size_t)>& member) override {
@@ -119,6 +124,8 @@ class SchemaWriter final : public SettingsVisitor {
     within(item, [&] { member(0); });
     put(key, {{"type", "array"}, {"items", std::move(item)}, {"description", help}});
   }
+
+  void excluded(const char*, const char*) override {}
 
   static Json object_(const char* help) {
     return {{"type", "object"},

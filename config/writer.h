@@ -1,4 +1,4 @@
-// Writing settings: the JSON Schema of a configuration, and a configuration with every value in it.
+// Writes the JSON Schema of configurations, and a configuration that contains every setting.
 #pragma once
 
 #include <string>
