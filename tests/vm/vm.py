@@ -1,0 +1,227 @@
+"""A virtual machine for tests: Debian's kernel, four displays of a virtio GPU, the host's files.
+
+Vm starts QEMU without KVM (the emulator is slower, but the same everywhere), and offers
+  run(command)      a command in the machine's shell; its output, once it has ended
+  wait_for(regex)   the next line of the machine's console that matches; merlind's log goes there
+  screendump(head)  what display `head`, counted from 0, shows
+Nothing here sleeps: each call waits for bytes, up to a deadline, and then fails with what it saw.
+"""
+import glob
+import json
+import os
+import re
+import selectors
+import shutil
+import socket
+import subprocess
+import time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+HEADS = 4
+DEADLINE_S = 120  # for anything: a loaded machine emulates slowly
+MODULES = ("virtio_pci", "virtio_console", "virtio-gpu", "9pnet_virtio", "9p")
+
+
+class Missing(Exception):
+    """What a virtual machine needs cannot be had here."""
+
+
+def kernel(cache):
+    """(kernel, folder of modules) of Debian's stock kernel, unpacked from its package into `cache`."""
+    if not glob.glob(f"{cache}/boot/vmlinuz-*"):
+        depends = subprocess.run(["apt-cache", "depends", "linux-image-amd64"], capture_output=True, text=True)
+        named = re.search(r"Depends: (linux-image-\S+)", depends.stdout)
+        if not named:
+            raise Missing("apt knows no package linux-image-amd64; is `apt-get update` needed?")
+        os.makedirs(cache, exist_ok=True)
+        fetched = subprocess.run(["apt-get", "-q", "-o", "APT::Sandbox::User=root", "download", named[1]],
+                                 cwd=cache, capture_output=True, text=True)
+        if fetched.returncode:
+            raise Missing(f"the package {named[1]} was not fetched: {fetched.stderr.strip()}")
+        package = glob.glob(f"{cache}/linux-image-*.deb")[0]
+        subprocess.run(["dpkg-deb", "-x", package, cache], check=True)
+        os.unlink(package)
+    return glob.glob(f"{cache}/boot/vmlinuz-*")[0], glob.glob(f"{cache}/lib/modules/*")[0]
+
+
+def module_files(folder):
+    """Files of MODULES and of what they need, in the order in which they are loaded."""
+    files = {os.path.basename(path)[:-3].replace("-", "_"): path
+             for path in glob.glob(f"{folder}/**/*.ko", recursive=True)}
+    order = []
+
+    def add(name):
+        path = files.get(name.replace("-", "_"))
+        if path is None:
+            return  # built into the kernel
+        if path in order:
+            return
+        with open(path, "rb") as file:
+            needs = re.search(rb"\0depends=([^\0]*)\0", file.read())
+        for needed in needs[1].decode().split(",") if needs and needs[1] else ():
+            add(needed)
+        order.append(path)
+
+    for name in MODULES:
+        add(name)
+    return order
+
+
+def initrd(path, modules):
+    """Writes the machine's first files: busybox, modules, init (a cpio archive, format newc)."""
+    def entry(name, mode, data=b""):
+        name = name.encode() + b"\0"
+        fields = (entry.count, mode, 0, 0, 1, 0, len(data), 0, 0, 0, 0, len(name), 0)
+        entry.count += 1
+        head = b"070701" + b"".join(b"%08X" % f for f in fields) + name
+        return head + b"\0" * (-len(head) % 4) + data + b"\0" * (-len(data) % 4)
+
+    entry.count = 1
+    busybox = next((p for p in ("/bin/busybox", "/usr/bin/busybox") if os.path.exists(p)), None)
+    if busybox is None:
+        raise Missing("busybox is not there (package busybox-static)")
+    def content(source):
+        with open(source, "rb") as file:
+            return file.read()
+
+    archive = b"".join(entry(d, 0o040755) for d in ("bin", "dev", "host", "modules"))
+    names = []
+    for module in modules:
+        names.append(os.path.basename(module)[:-3])
+        archive += entry("modules/" + os.path.basename(module), 0o100644, content(module))
+    archive += entry("modules/order", 0o100644, "\n".join(names).encode())
+    archive += entry("bin/busybox", 0o100755, content(busybox))
+    archive += entry("init", 0o100755, content(f"{HERE}/guest/init"))
+    archive += entry("TRAILER!!!", 0)
+    with open(path, "wb") as file:
+        file.write(archive)
+
+
+class Line:
+    """A stream socket whose bytes are read up to what somebody waits for."""
+
+    def __init__(self, path, ended):
+        self.socket = socket.socket(socket.AF_UNIX)
+        self.ended, self.seen, self.at = ended, b"", 0
+        self.log = open(path + ".log", "wb")
+        until = time.monotonic() + DEADLINE_S
+        while True:  # QEMU makes the socket a moment after its start
+            try:
+                self.socket.connect(path)
+                break
+            except OSError:
+                if time.monotonic() > until or ended():
+                    raise
+                time.sleep(0.02)
+        self.selector = selectors.DefaultSelector()
+        self.selector.register(self.socket, selectors.EVENT_READ)
+
+    def close(self):
+        self.selector.close()
+        self.socket.close()
+        self.log.close()
+
+    def send(self, text):
+        self.socket.sendall(text.encode())
+
+    def wait_for(self, regex, deadline_s=DEADLINE_S):
+        """The next match after the last one; AssertionError with what came instead."""
+        pattern, until = re.compile(regex.encode(), re.MULTILINE), time.monotonic() + deadline_s
+        while True:
+            found = pattern.search(self.seen, self.at)
+            if found:
+                self.at = found.end()
+                return found
+            left = until - time.monotonic()
+            data = self.socket.recv(65536) if left > 0 and self.selector.select(left) else b""
+            if not data:
+                raise AssertionError(f"no {regex!r} within {deadline_s} s"
+                                     f"{' (QEMU has ended)' if self.ended() else ''}; what came:\n"
+                                     + self.seen[self.at:].decode(errors="replace")[-4000:])
+            self.seen += data
+            self.log.write(data)
+            self.log.flush()
+
+
+    def wait_for_all(self, regexes, deadline_s=DEADLINE_S):
+        """The matches of several regular expressions, in whatever order they come."""
+        begin, found, end = self.at, [], self.at
+        for regex in regexes:
+            self.at = begin
+            found.append(self.wait_for(regex, deadline_s))
+            end = max(end, self.at)
+        self.at = end
+        return found
+
+
+class Vm:
+    def __init__(self, folder, mode, memory_mb=1536):
+        """`folder`: for the machine's files; FOLDER/shared is its /mnt. `mode`: "640x480"."""
+        self.folder, self.shared = folder, os.path.join(folder, "shared")
+        shutil.rmtree(folder, ignore_errors=True)
+        os.makedirs(self.shared)
+        if shutil.which("qemu-system-x86_64") is None:
+            raise Missing("QEMU is not there (package qemu-system-x86)")
+        vmlinuz, modules = kernel(os.path.join(os.path.dirname(folder), "kernel"))
+        initrd(f"{folder}/initrd", module_files(modules))
+        video = " ".join(f"video=Virtual-{i + 1}:{mode}@60e" for i in range(HEADS))
+        self.log = open(f"{folder}/qemu.log", "wb")
+        self.qemu = subprocess.Popen(
+            ["qemu-system-x86_64", "-machine", "q35,accel=tcg", "-cpu", "max", "-smp", "2", "-m", str(memory_mb),
+             "-nodefaults", "-vga", "none", "-display", "none", "-no-reboot",
+             "-device", f"virtio-gpu-pci,id=gpu,max_outputs={HEADS}",
+             "-kernel", vmlinuz, "-initrd", f"{folder}/initrd",
+             "-append", f"console=ttyS0 quiet panic=-1 vt.global_cursor_default=0 consoleblank=0 {video}",
+             "-chardev", f"socket,id=console,path={folder}/console,server=on,wait=on", "-serial", "chardev:console",
+             "-device", "virtio-serial-pci",
+             "-chardev", f"socket,id=shell,path={folder}/shell,server=on,wait=off",
+             "-device", "virtserialport,chardev=shell,name=merlin.shell",
+             "-virtfs", "local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap",
+             "-virtfs", f"local,path={self.shared},mount_tag=out,security_model=none",
+             "-qmp", f"unix:{folder}/qmp,server=on,wait=off"],
+            stdin=subprocess.DEVNULL, stdout=self.log, stderr=subprocess.STDOUT)
+        ended = lambda: self.qemu.poll() is not None
+        self.console = Line(f"{folder}/console", ended)
+        self.shell, self.monitor = Line(f"{folder}/shell", ended), Line(f"{folder}/qmp", ended)
+        self.monitor.send('{"execute": "qmp_capabilities"}')
+        self.monitor.wait_for(r'"return"')
+        self.console.wait_for("init: ready")
+        self.commands = 0
+
+    def wait_for(self, regex, deadline_s=DEADLINE_S):
+        return self.console.wait_for(regex, deadline_s)[0].decode(errors="replace")
+
+    def wait_for_all(self, *regexes):
+        return [found[0].decode(errors="replace") for found in self.console.wait_for_all(regexes)]
+
+    def run(self, command, succeeds=True):
+        """Output of the command, with its errors. AssertionError if it fails and `succeeds`."""
+        self.commands += 1
+        mark = f"@{self.commands}@"
+        begin = len(self.shell.seen)
+        self.shell.send(f"{{ {command}\n}} </dev/null; echo \"{mark}$?\"\n")
+        found = self.shell.wait_for(re.escape(mark) + r"(\d+)\r?\n")
+        output = self.shell.seen[begin:found.start()].decode(errors="replace")
+        if succeeds and int(found[1]):
+            raise AssertionError(f"{command!r} ended with {int(found[1])}:\n{output}")
+        return output
+
+    def screendump(self, head):
+        """(width, height, RGB bytes) of what a display shows."""
+        path = f"{self.folder}/head{head}.ppm"
+        self.monitor.send(json.dumps({"execute": "screendump",
+                                      "arguments": {"filename": path, "device": "gpu", "head": head}}))
+        answer = self.monitor.wait_for(r'"(return|error)".*')
+        if answer[1] == b"error":
+            raise AssertionError(answer[0].decode())
+        with open(path, "rb") as file:
+            data = file.read()
+        header = re.match(rb"P6\s(\d+) (\d+)\s255\s", data)
+        return int(header[1]), int(header[2]), data[header.end():]
+
+    def close(self):
+        self.qemu.kill()
+        self.qemu.wait()
+        for line in (self.console, self.shell, self.monitor):
+            line.close()
+        self.log.close()
