@@ -1,6 +1,6 @@
 // ./dev bench cut: any number of triangles of a large model: how long a cut takes beside a memcpy
 // of what it returns, what it needs in memory, when the first picture of a cold file stands, and
-// what a budget spent where the tiles look is worth, in pixels.
+// what a budget spent where the tiles look is worth, in pixels, also with views of their own.
 //
 // The model: --hgt FILE, an elevation tile of 1201 x 1201 big-endian heights (SRTM 3), as it is
 // (2.9 million triangles) or mirrored 2 x 2 (11.5 million; synthetic in that), reduced once and
@@ -28,9 +28,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using Steady = std::chrono::steady_clock;
-using render::Clusters;
-using render::Dendrogram;
-using render::Mesh;
+using render::lod::Clusters;
+using render::lod::Dendrogram;
+using render::mesh::Mesh;
 
 constexpr std::size_t kSide = 1201;
 
@@ -86,7 +86,7 @@ Mesh heightField(const std::vector<float>& heights, std::size_t times) {
       mesh.triangles.insert(mesh.triangles.end(), {a, c, b, b, c, d});
     }
   }
-  render::ensureNormals(mesh);
+  render::mesh::ensureNormals(mesh);
   return mesh;
 }
 
@@ -101,8 +101,8 @@ void makeModel(const std::vector<float>& heights, std::size_t times, const std::
   if (fs::exists(path)) return;
   note(fmt::format("making {} ...", path));
   const Mesh mesh = heightField(heights, times);
-  const auto reduced = expect(render::reduce(mesh, {}), path);
-  expect(render::writeMrm(path, render::buildDendrogram(mesh, reduced.log)), path);
+  const auto reduced = expect(render::reduce::reduce(mesh, {}), path);
+  expect(render::lod::writeMrm(path, render::lod::buildDendrogram(mesh, reduced.log)), path);
 }
 
 // --- cuts ----------------------------------------------------------------------------------------
@@ -154,8 +154,8 @@ void timeCuts(const Dendrogram& model, const std::string& name, Report& report) 
 // --- pictures ------------------------------------------------------------------------------------
 
 // Three tiles that touch and the operator's, 640 x 480 each.
-render::TilePlan plan() {
-  auto made = render::planTiles({});
+render::tiles::TilePlan plan() {
+  auto made = render::tiles::planTiles({});
   return *std::move(made);
 }
 
@@ -168,10 +168,10 @@ Eigen::Isometry3f closeUp() {
   return view;
 }
 
-std::unique_ptr<render::FrameRenderer> rendererOf(const Dendrogram& model, bool view_dependent,
-                                                  const Clock& clock) {
-  static const render::TilePlan kPlan = plan();
-  render::RenderSettings settings;
+std::unique_ptr<render::frame::FrameRenderer> rendererOf(const Dendrogram& model,
+                                                         bool view_dependent, const Clock& clock) {
+  static const render::tiles::TilePlan kPlan = plan();
+  render::frame::RenderSettings settings;
   settings.model.view_dependent = view_dependent;
   auto made = test::rendererOf(model, kPlan, settings, 1.5, clock);
   if (!made) didNotRun("the renderer", made.error().what, "see EGL");
@@ -179,11 +179,11 @@ std::unique_ptr<render::FrameRenderer> rendererOf(const Dendrogram& model, bool 
 }
 
 // The root of the mean square difference, 0..255, over the wall's tiles.
-double difference(render::FrameRenderer& renderer, const std::vector<std::uint8_t>& full) {
+double difference(render::frame::FrameRenderer& renderer, const std::vector<std::uint8_t>& full) {
   double sum = 0, count = 0;
-  const render::TilePlan p = plan();
-  for (const render::Tile& t : p.tiles) {
-    if (t.kind != render::TileKind::kWall) continue;
+  const render::tiles::TilePlan p = plan();
+  for (const render::tiles::Tile& t : p.tiles) {
+    if (t.kind != render::tiles::TileKind::kWall) continue;
     for (int y = t.y; y < t.y + t.height; ++y) {
       for (int x = 4 * t.x; x < 4 * (t.x + t.width); ++x) {
         const auto i = static_cast<std::size_t>(4 * y * p.frame_width + x);
@@ -196,9 +196,9 @@ double difference(render::FrameRenderer& renderer, const std::vector<std::uint8_
   return std::sqrt(sum / count);
 }
 
-void save(render::FrameRenderer& renderer, const std::string& path) {
-  const render::TilePlan p = plan();
-  expect(render::writePng(path, p.frame_width, p.frame_height, renderer.pixels()), path);
+void save(render::frame::FrameRenderer& renderer, const std::string& path) {
+  const render::tiles::TilePlan p = plan();
+  expect(render::image::writePng(path, p.frame_width, p.frame_height, renderer.pixels()), path);
 }
 
 void comparePictures(const Dendrogram& model, const std::string& prefix, const std::string& name,
@@ -232,6 +232,84 @@ void comparePictures(const Dendrogram& model, const std::string& prefix, const s
   report.text("  pictures: {0}-full.png, {0}-even.png, {0}-view.png\n", prefix);
 }
 
+// Views of their own beside the wall's three tiles: one cut for all, which each view asks for as
+// much as it would alone, against a cut of the same size for the wall and for each of the views.
+struct ViewGroup {
+  const char* name;
+  std::vector<render::tiles::TileCamera> cameras;
+};
+
+render::tiles::TilePlan planOf(const std::vector<render::tiles::TileCamera>& cameras) {
+  render::tiles::TilesSettings s;
+  s.frame_width = 640 * static_cast<int>(cameras.size());
+  s.frame_height = 480;
+  s.tiles.clear();
+  double turns = 1;
+  for (const render::tiles::TileCamera camera : cameras) {
+    const auto n = static_cast<int>(s.tiles.size());
+    s.tiles.push_back({fmt::format("{}", n), render::tiles::TileKind::kWall, 640 * n, 0, 0});
+    s.tiles.back().view = camera;
+    if (camera == render::tiles::TileCamera::kWall) s.tiles.back().turns = turns--;
+  }
+  return expect(render::tiles::planTiles(s), "the plan");
+}
+
+struct DrawnViews {
+  std::vector<double> error;  // by tile: root of the mean square difference to full detail
+  double drawing_ms = 0;
+};
+
+DrawnViews drawViews(const Dendrogram& model, const std::vector<render::tiles::TileCamera>& cameras,
+                     std::size_t step) {
+  const SystemClock clock;
+  const render::tiles::TilePlan plan = planOf(cameras);
+  const auto renderer = expect(test::rendererOf(model, plan, {}, 1.5, clock), "the renderer");
+  renderer->draw({.T_eye_content = closeUp(), .step = 0});
+  const std::vector<std::uint8_t> full(renderer->pixels().begin(), renderer->pixels().end());
+  std::vector<double> times;
+  for (int i = 0; i < 7; ++i)
+    times.push_back(1000 *
+                    toSeconds(renderer->draw({.T_eye_content = closeUp(), .step = step}).drawing));
+  DrawnViews drawn{{}, medianOf(times, "frames").value()};
+  std::vector<double> squares(cameras.size());
+  for (std::size_t i = 0; i < full.size(); ++i) {
+    const double d = static_cast<double>(renderer->pixels()[i]) - full[i];
+    squares[i / 4 / 640 % cameras.size()] += i % 4 == 3 ? 0 : d * d;
+  }
+  for (const double sum : squares) drawn.error.push_back(std::sqrt(sum / (3.0 * 640 * 480)));
+  return drawn;
+}
+
+void compareViews(const Dendrogram& model, const std::string& name, Report& report) {
+  using Camera = render::tiles::TileCamera;
+  const ViewGroup groups[] = {{"wall", {Camera::kWall, Camera::kWall, Camera::kWall}},
+                              {"top", {Camera::kTop}},
+                              {"side", {Camera::kSide}},
+                              {"front", {Camera::kFront}}};
+  std::vector<Camera> all;
+  for (const ViewGroup& group : groups)
+    all.insert(all.end(), group.cameras.begin(), group.cameras.end());
+  const std::size_t step = model.levelFor(60'000);
+  const DrawnViews together = drawViews(model, all, step);
+  double alone_ms = 0;
+  std::size_t tile = 0;
+  report.text("  views of their own beside the wall, {} triangles: pixel error of 255\n",
+              model.trianglesAt(step));
+  for (const ViewGroup& group : groups) {
+    const DrawnViews alone = drawViews(model, group.cameras, step);
+    alone_ms += alone.drawing_ms;
+    for (const double error : alone.error) {
+      report.text("    {:<6} {:6.2f} with one cut for all, {:6.2f} with its own\n", group.name,
+                  together.error[tile++], error);
+    }
+  }
+  const Measured ratio = ratioOf(Measured::of(together.drawing_ms, 7, "frames"),
+                                 Measured::of(alone_ms, 7, "frames"), "frames");
+  report.text("    drawn in {:.1f} ms with one cut for all, {:.1f} ms with a cut for each\n",
+              together.drawing_ms, alone_ms);
+  report.figure(name + ".views_one_cut_by_each", ratio, "1");
+}
+
 // From a file that no cache holds to the first picture in memory.
 void firstPicture(const std::string& path, const std::string& name, Report& report) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -240,7 +318,7 @@ void firstPicture(const std::string& path, const std::string& name, Report& repo
   ::close(fd);
   SystemClock clock;
   const auto then = Steady::now();
-  const auto model = expect(render::readMrm(path), "the model");
+  const auto model = expect(render::lod::readMrm(path), "the model");
   const double opened = msSince(then);
   const auto renderer = rendererOf(model, true, clock);
   const double made = msSince(then);
@@ -262,7 +340,7 @@ constexpr const char* kTile = "../shared/data/dem/N44W072.hgt";
 
 bool run(const Options& options, Report& report) {
   fs::create_directories(options.out);
-  render::prepareSoftwareGl(0);
+  render::gl::prepareSoftwareGl(0);
   const std::string tile = options.hgt.empty() ? kTile : options.hgt;
   auto heights = readHeights(tile);
   const bool real = !heights.empty();
@@ -279,11 +357,12 @@ bool run(const Options& options, Report& report) {
     const std::string prefix = fmt::format("{}/{}", options.out, name), path = prefix + ".mrm";
     makeModel(heights, times, path);
     firstPicture(path, name, report);
-    const auto model = expect(render::readMrm(path), "the model");
+    const auto model = expect(render::lod::readMrm(path), "the model");
     report.text("{}: {} triangles\n", path, model.triangleCount());
     note(name + ": cuts");
     timeCuts(model, name, report);
     comparePictures(model, prefix, name, report);
+    compareViews(model, name, report);
   }
   return true;
 }

@@ -27,7 +27,7 @@ nlohmann::json demoConfig(const DemoOptions& options, const std::string& instanc
   return config;
 }
 
-// The last lines: a message that ends a program stands there.
+// The end of a program's output, where the message of a failure is.
 std::string endOf(const std::string& output) {
   constexpr std::size_t kMost = 400;
   const std::size_t end = output.find_last_not_of('\n');
@@ -36,7 +36,7 @@ std::string endOf(const std::string& output) {
   return "it said: " + output.substr(begin, end + 1 - begin);
 }
 
-// Opens a segment that is there as soon as merlind is ready. Returns why not, or nothing.
+// Opens a segment, which exists once merlind is ready. Returns the error, or an empty text.
 template <typename Segment>
 std::string open(std::optional<shm::SegmentReader<Segment>>& reader, const std::string& instance,
                  const char* role) {
@@ -51,7 +51,8 @@ std::string open(std::optional<shm::SegmentReader<Segment>>& reader, const std::
 DemoDaemon::DemoDaemon(const DemoOptions& options, const test::TempDir& dir,
                        const std::string& role, const Change& change)
     : subject_(options.bin + "/merlind --role " + role) {
-  static int started = 0;  // one that has just ended may still have its name
+  // A new name for each start, since a process that ends may still hold its name.
+  static int started = 0;
   instance_ = test::privateName(fmt::format("bench{}", ++started));
   if (::access((options.bin + "/merlind").c_str(), X_OK) != 0) fail("there is no such program");
   auto config = demoConfig(options, instance_, dir);

@@ -1,4 +1,5 @@
-// The demo's merlind as a benchmark's subject: it runs and delivers, or the benchmark ends.
+// The demo's merlind as the subject of a benchmark; if it does not run and deliver, the benchmark
+// ends.
 #pragma once
 
 #include <functional>
@@ -19,27 +20,27 @@ struct DemoOptions {
   std::string config;  // the demo's configuration
 };
 
-// Thread-bound. Every function throws DidNotRun where merlind is not what it is asked for.
+// Thread-bound. Every function throws DidNotRun if merlind does not run or deliver as expected.
 class DemoDaemon {
  public:
   using Change = std::function<void(nlohmann::json& config)>;
 
-  // Starts merlind on the configuration with a name and a folder of its own, as `change` has it,
-  // on emulated devices, waits until it is ready, and opens its segments. `role`: "all" or
-  // "devices".
+  // Starts merlind on emulated devices, waits until it is ready, and opens its segments. The
+  // configuration is the demo's with a name and a folder of its own, after `change`. `role`: "all"
+  // or "devices".
   DemoDaemon(const DemoOptions& options, const test::TempDir& dir, const std::string& role,
              const Change& change);
 
   pid_t pid() const { return process_->pid(); }
 
-  // That it has not ended since; to be called when the measurement is over.
+  // Throws if merlind has ended; to be called after the measurement.
   void expectRunning();
 
-  // Statistics that its wall has published last. Not if `role` is "devices".
+  // The statistics that its wall has published last. Not for the role "devices".
   shm::WallStats wall();
   const shm::DevicesSegment& devices() const { return **devices_; }
 
-  // Ends it, and waits for its end.
+  // Kills it and waits for its end.
   void stop() { process_->kill(SIGTERM); }
 
  private:

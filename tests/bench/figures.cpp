@@ -85,8 +85,8 @@ void note(std::string_view what) {
 }
 
 int runBench(const std::string& bench, bool json, const std::function<bool(Report&)>& measure) {
-  // Also what was not foreseen (a configuration that is no JSON, a folder that cannot be made)
-  // leaves no figure.
+  // Unexpected exceptions too (an invalid configuration, a folder that cannot be made) must leave
+  // no figure.
   try {
     Report report(bench);
     const bool kept = measure(report);

@@ -1,10 +1,10 @@
-// What every benchmark prints, for people and for programs (--json), and the rule that one whose
-// subject did not run fails and prints no figure.
+// Output of every benchmark, for people and for programs (--json), and the rule that a benchmark
+// whose subject did not run fails and prints no figure.
 //
-// A figure is made of measurements, of which there has to be at least one: Measured has no other
-// way to be made. Where there is none, where a subject does not start or ends early, DidNotRun ends
-// the benchmark. So nothing goes to standard output before everything was measured; what a long
-// benchmark is doing goes to standard error (note).
+// A figure is made from at least one measurement: Measured cannot be made otherwise. Where there is
+// none, where a subject does not start or ends early, DidNotRun ends the benchmark. So nothing is
+// printed on standard output before everything has been measured; progress of a long benchmark goes
+// to standard error (note).
 #pragma once
 
 #include <cstdint>
@@ -20,18 +20,18 @@
 
 namespace merlin::bench {
 
-// The message that the benchmark ends with.
+// Ends the benchmark with this message.
 struct DidNotRun : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Throws DidNotRun with "subject: found; way_out": which subject (a program, a file) does not run
-// or is not there, what was found instead, and the way out.
+// Throws DidNotRun with "subject: found; way_out": the program or file that does not run or does
+// not exist, what was found instead, and what the user can do.
 [[noreturn]] void didNotRun(std::string_view subject, std::string_view found,
                             std::string_view way_out);
 
-// A finite number that was made of `count` measurements, at least one. The functions below throw
-// DidNotRun where there is none; `what` names what was measured: "frames of the wall".
+// A finite number made from `count` measurements, at least one. The functions below throw DidNotRun
+// if there are none; `what` names the things measured, such as "frames of the wall".
 class Measured {
  public:
   static Measured of(double value, std::uint64_t count, std::string_view what);
@@ -46,39 +46,39 @@ class Measured {
   std::uint64_t count_;
 };
 
-// part / whole, of `whole` things that were counted.
+// part / whole, where `whole` is the number of things counted.
 Measured shareOf(std::uint64_t part, std::uint64_t whole, std::string_view what);
 
-// The value that `share` of the others are no larger than.
+// The quantile at `share`, 0..1.
 Measured quantileOf(const std::vector<double>& values, double share, std::string_view what);
 Measured medianOf(const std::vector<double>& values, std::string_view what);
 Measured meanOf(const std::vector<double>& values, std::string_view what);
 
-// Throws DidNotRun also where `under` is zero: then what the ratio is of did not run.
+// Throws DidNotRun also if `under` is zero, since then its subject did not run.
 Measured ratioOf(const Measured& over, const Measured& under, std::string_view what);
 
-// A measured value in another unit.
+// The value multiplied by `factor`, for another unit; the count stays.
 Measured scaled(const Measured& measured, double factor);
 
-// The measurements so far, held back until all are done. Thread-bound.
+// The results so far, held back until everything has been measured. Thread-bound.
 class Report {
  public:
   explicit Report(std::string bench) : bench_(std::move(bench)) {}
 
-  // For people: a part of the table.
+  // Appends to the text for people.
   template <typename... T>
   void text(fmt::format_string<T...> format, T&&... arguments) {
     text_ += fmt::format(format, std::forward<T>(arguments)...);
   }
 
-  // For programs. A name is there once; `unit` is a unit's symbol ("ms", "Hz"), "1" for a pure
-  // number.
+  // A figure for programs. Each name occurs once; `unit` is a unit's symbol ("ms", "Hz"), or "1"
+  // for a pure number.
   void figure(const std::string& name, const Measured& measured, const std::string& unit);
-  // A figure that is no number (a hash), made of `count` measurements.
+  // A figure that is not a number (a hash), made from `count` measurements.
   void figure(const std::string& name, const std::string& value, std::uint64_t count);
 
-  // Prints the text, or one JSON object {bench, machine, figures}. Throws DidNotRun where there is
-  // no figure, and where standard output cannot be written.
+  // Prints the text, or one JSON object {bench, machine, figures}. Throws DidNotRun if there is no
+  // figure, or if standard output cannot be written.
   void print(bool json) const;
 
  private:
@@ -86,12 +86,12 @@ class Report {
   nlohmann::ordered_json figures_ = nlohmann::ordered_json::object();
 };
 
-// Says at once, on standard error, what a benchmark is doing: no figures.
+// Reports progress on standard error at once; figures do not belong here.
 void note(std::string_view what);
 
-// The whole of a benchmark's main() after its options were read. `measure` says whether what
-// was measured is what is promised. Returns the exit status: 0; 1 where it is not, and, with a
-// message and without a figure, where a subject did not run.
+// A benchmark's main() after its options were read. `measure` returns whether the figures are
+// within their limits. Returns the exit status: 0; 1 if they are not, or, with a message and
+// without a figure, if a subject did not run.
 int runBench(const std::string& bench, bool json, const std::function<bool(Report&)>& measure);
 
 }  // namespace merlin::bench

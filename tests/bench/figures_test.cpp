@@ -1,4 +1,4 @@
-// The rule of every benchmark: whose subject did not run prints no figure and fails.
+// The rule for every benchmark: if its subject did not run, it prints no figure and fails.
 #include "tests/bench/figures.h"
 
 #include <cmath>
@@ -66,7 +66,7 @@ TEST(Figures, TextIsForPeopleAndOneObjectForPrograms) {
 TEST(Figures, WhoseSubjectDidNotRunPrintsNoFigureAndFails) {
   for (const bool json : {false, true}) {
     const Said s = said(json, [](Report& report) {
-      measureTwo(report);  // what ran before
+      measureTwo(report);  // this part did run
       didNotRun("merlind", "it ended", "build it");
       return true;
     });

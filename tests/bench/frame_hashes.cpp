@@ -35,8 +35,8 @@ Isometry3f pose(int i) {
 
 class Script {
  public:
-  Script(const render::Dendrogram& model, const std::string& name,
-         const render::RenderSettings& settings, Report& report)
+  Script(const render::lod::Dendrogram& model, const std::string& name,
+         const render::frame::RenderSettings& settings, Report& report)
       : model_(model), name_(name), settings_(settings), report_(report) {}
 
   void run() {
@@ -52,7 +52,8 @@ class Script {
 
  private:
   std::string context() const {
-    return fmt::format("{} {}", settings_.gl.backend == render::GlBackend::kEgl ? "egl" : "osmesa",
+    return fmt::format("{} {}",
+                       settings_.gl.backend == render::gl::GlBackend::kEgl ? "egl" : "osmesa",
                        settings_.gl.contexts);
   }
   // A picture of one colour is none of the model.
@@ -86,7 +87,7 @@ class Script {
     }
   }
   void pointed() {
-    render::PointerMarker marker(plan_);
+    render::frame::PointerMarker marker(plan_);
     marker.pointAt(Eigen::Vector3f(0.2F, 0.1F, -2.0F));
     marker.draw(renderer_->pixels());
     print("pointer", hash(renderer_->pixels()));
@@ -94,23 +95,23 @@ class Script {
     print("pointer gone", hash(renderer_->pixels()));
   }
 
-  const render::Dendrogram& model_;
+  const render::lod::Dendrogram& model_;
   std::string name_;
-  render::RenderSettings settings_;
+  render::frame::RenderSettings settings_;
   Report& report_;
   SystemClock clock_;
-  render::TilePlan plan_ = *render::planTiles({});
-  std::unique_ptr<render::FrameRenderer> renderer_;
+  render::tiles::TilePlan plan_ = *render::tiles::planTiles({});
+  std::unique_ptr<render::frame::FrameRenderer> renderer_;
 };
 
 bool run(const std::vector<std::string>& paths, Report& report) {
   for (const std::string& path : paths) {
-    const auto model = render::readMrm(path);
+    const auto model = render::lod::readMrm(path);
     if (!model) didNotRun("the model", model.error().what, "'./dev bench frames' makes the demo's");
     const std::string name = path.substr(path.rfind('/') + 1);
     for (const auto& [backend, contexts] :
-         {std::pair{render::GlBackend::kEgl, 1}, std::pair{render::GlBackend::kEgl, 2},
-          std::pair{render::GlBackend::kOsmesa, 1}}) {
+         {std::pair{render::gl::GlBackend::kEgl, 1}, std::pair{render::gl::GlBackend::kEgl, 2},
+          std::pair{render::gl::GlBackend::kOsmesa, 1}}) {
       Script(*model, name, {.gl = {backend, contexts, 0}, .model = {}}, report).run();
     }
   }

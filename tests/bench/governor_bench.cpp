@@ -45,7 +45,7 @@ struct Contestant {
 
 std::vector<Contestant> contestants() {
   std::vector<Contestant> all = {{"MERLIN", [](const Plant& plant) {
-                                    render::Governor governor({});
+                                    render::governor::Governor governor({});
                                     return runOnGrid(governor, plant);
                                   }}};
   for (const NamedLaw& law : otherLaws()) {

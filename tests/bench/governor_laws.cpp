@@ -11,9 +11,9 @@ namespace {
 
 using test::kPeriod_s;
 
-// C. S. Gourley 1998, figure 5.36: frames counted over a second times the triangles drawn are the
-// triangles a second; these over the rate asked are the next resolution, unless it is within
-// tolerance (which the text does not give: 5 per cent).
+// [GOURLEY98] figure 5.36: the triangles drawn within a second give the triangles/s; divided by the
+// desired rate they give the next resolution, unless the change is within a tolerance (5 per cent
+// here; the text gives none).
 class Law1998 final : public Law {
  public:
   void observe(double work_s) override {
@@ -29,8 +29,8 @@ class Law1998 final : public Law {
   double second_ = 0, drawn_ = 0;
 };
 
-// Equalizer, eq/server/equalizers/dfrEqualizer.cpp: each axis of the picture is scaled by the
-// root of rate held / rate asked, damped by a half. Here triangles stand for the pixels.
+// Equalizer, eq/server/equalizers/dfrEqualizer.cpp: each axis of the image is scaled by the square
+// root of actual / desired rate, damped by a half. Here triangles stand for pixels.
 class Equalizer final : public Law {
  public:
   void observe(double work_s) override {
@@ -40,8 +40,8 @@ class Equalizer final : public Law {
 };
 
 // Unreal Engine's dynamic resolution, as its console variables document it: 10 per cent of head
-// room, a weighted history of 16 frames, 8 frames between changes, changes of more than 2 per
-// cent, two frames over the budget in a row act at once.
+// room, a weighted history of 16 frames, 8 frames between changes, only changes of more than 2 per
+// cent; two frames over budget in a row act at once.
 class Unreal final : public Law {
  public:
   void observe(double work_s) override {
@@ -73,8 +73,8 @@ class Unreal final : public Law {
   int since_ = 99, over_ = 0;
 };
 
-// ParaView: a decimated copy while it moves, of a size that somebody set: here what fits four
-// fifths of the period of this machine unloaded.
+// ParaView: while the model moves, it shows a decimated copy of a fixed size that a user chose:
+// here the size that fits 4/5 of the period of this machine without load.
 class TwoLevels final : public Law {
  public:
   TwoLevels() { set(4e6 * std::pow((0.8 * kPeriod_s - 0.004) / 0.232, 1 / 0.62)); }

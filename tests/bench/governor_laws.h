@@ -1,5 +1,6 @@
-// How other systems hold a rate, for comparison: their published laws, re-written here; the
-// vendors' own code may do better. Each takes a frame's work and says what the next may have.
+// How other systems hold a frame rate, for comparison: their published control laws, written anew;
+// the vendors' own code may do better. Each law observes a frame's time and returns the number of
+// triangles for the next one.
 #pragma once
 
 #include <functional>
@@ -17,7 +18,7 @@ class Law {
   double triangles() const noexcept { return triangles_; }
 
  protected:
-  // Within what MERLIN's governor is also held to.
+  // Clamps to the range that MERLIN's governor also has.
   void set(double triangles);
   double triangles_ = 10'000;
 };
@@ -27,7 +28,7 @@ struct NamedLaw {
   std::function<std::unique_ptr<Law>()> make;
 };
 
-// MERLIN's own of 1998, Equalizer's DFR, Unreal's dynamic resolution, ParaView's two levels.
+// MERLIN's law of 1998, Equalizer's DFR, Unreal's dynamic resolution, ParaView's two levels.
 std::vector<NamedLaw> otherLaws();
 
 }  // namespace merlin::bench

@@ -24,11 +24,11 @@ struct Options {
 
 // All that a reduction does with a mesh that was read, seconds.
 double secondsOf(const test::HostileShape& shape, std::size_t triangles) {
-  render::Mesh mesh = shape.make(triangles);
+  render::mesh::Mesh mesh = shape.make(triangles);
   const auto began = std::chrono::steady_clock::now();
   splitNonManifold(mesh);
   ensureNormals(mesh);
-  const auto reduced = render::reduce(mesh, {});
+  const auto reduced = render::reduce::reduce(mesh, {});
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
   if (!reduced) didNotRun(shape.name, reduced.error().what, "see hostile_shapes_test");
   if (reduced->report.collapses == 0)

@@ -8,8 +8,8 @@
 namespace merlin::bench {
 namespace {
 
-using render::Feature;
-using render::Mesh;
+using render::mesh::Feature;
+using render::mesh::Mesh;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -38,8 +38,8 @@ class Maker {
 
  private:
   bool chance(std::uint64_t of) { return random_.below(of) == 0; }
-  // Below `n` as a rule, some five times that: most faults show in small meshes, and they are
-  // quick.
+  // Usually below `n`, sometimes up to five times that: most faults show in small meshes, which are
+  // quick to test.
   std::uint64_t size(std::uint64_t n) { return random_.below(chance(16) ? 5 * n : n); }
   std::uint32_t anyVertex() {
     return static_cast<std::uint32_t>(
@@ -74,7 +74,7 @@ class Maker {
     }
   }
 
-  // Many triangles around one vertex or one edge.
+  // Adds many triangles around one vertex or one edge.
   void fan() {
     const auto n = static_cast<std::uint32_t>(1 + size(8));
     addVertices(n + 2);
@@ -82,7 +82,7 @@ class Maker {
     for (std::uint32_t i = 0; i < n; ++i) addTriangle(0, edge ? 1 : 2 + (i + 1) % n, 2 + i);
   }
 
-  // A closed ring of quads, a Moebius strip at times.
+  // Adds a closed ring of quads, sometimes twisted to a Moebius strip.
   void tube() {
     const auto n = static_cast<std::uint32_t>(3 + size(3));
     const std::uint32_t twist = chance(3);
@@ -106,7 +106,7 @@ class Maker {
     for (std::uint32_t& v : mesh_.triangles) v = v == from ? to : v;
   }
 
-  // Vertices in one place or in a line, slivers, the huge, the tiny, the flat.
+  // Makes vertices coincident or collinear, or scales the mesh to extreme or flat shapes.
   void place() {
     if (mesh_.positions.empty()) return;
     auto& p = mesh_.positions;
@@ -201,6 +201,6 @@ class Maker {
 
 }  // namespace
 
-render::Mesh hostileMesh(std::uint64_t seed) { return Maker(seed).make(); }
+render::mesh::Mesh hostileMesh(std::uint64_t seed) { return Maker(seed).make(); }
 
 }  // namespace merlin::bench

@@ -1,4 +1,4 @@
-// Small meshes as nobody wants them, made of a seed: what the fuzz of the mesh part feeds.
+// Small degenerate or invalid meshes, generated from a seed; the input of the mesh fuzzer.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace merlin::bench {
 
-// The mesh of this seed; the same on every machine. Some are refused by validate(), by intent.
-render::Mesh hostileMesh(std::uint64_t seed);
+// The mesh for this seed, the same on every machine. Some meshes are invalid on purpose.
+render::mesh::Mesh hostileMesh(std::uint64_t seed);
 
 }  // namespace merlin::bench

@@ -26,7 +26,7 @@ void atHighestRates(nlohmann::json& config) {
   config["devices"]["script"] = "turning";
 }
 
-// The fewest samples of any of the three devices.
+// The smallest number of samples among the three devices.
 std::uint64_t fewestSamples(const shm::DevicesSegment& devices) {
   return std::min({devices.glove.count(), devices.tracker[0].count(), devices.ball.count()});
 }

@@ -1,5 +1,5 @@
-// The part of ./dev bench latency that a real merlind runs in: what its devices cost, and the terms
-// of the latency of a whole wall.
+// The part of ./dev bench latency that uses a real merlind: the CPU time of its devices, and the
+// terms of a whole wall's latency.
 #pragma once
 
 #include "tests/bench/demo_daemon.h"
@@ -7,11 +7,11 @@
 
 namespace merlin::bench {
 
-// All three devices at the highest rate that they have. Takes 13 s.
+// Measures the CPU time of all three devices at their highest rates. Takes 13 s.
 void benchCpu(const DemoOptions& options, const test::TempDir& dir, Report& report);
 
-// L = wire + parse and publish + age at pick-up + wait for the frame + draw and present. Takes 10
-// s.
+// Measures L = wire + parse and publish + age at pick-up + wait for the frame + draw and present.
+// Takes 10 s.
 void benchEquation(const DemoOptions& options, const test::TempDir& dir, Report& report);
 
 }  // namespace merlin::bench

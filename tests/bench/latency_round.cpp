@@ -32,7 +32,7 @@
 
 namespace merlin::bench {
 
-// Between the processes of one round; written once each, by sample number.
+// Shared between the processes of a round; indexed by sample number, each entry written once.
 struct Times {
   static constexpr std::size_t kMost = 1 << 16;
   std::atomic<std::uint32_t> received;
@@ -65,7 +65,7 @@ bool askForRealTime() {
   return ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &priority) == 0;
 }
 
-// A client as any other: maps the segment, sleeps on the glove's word, notes when it has a sample.
+// A client like any other: maps the segment, waits for the glove's next sample, notes the time.
 void runClient(const std::string& name, Times& times) {
   askForRealTime();
   const auto reader = shm::SegmentReader<Segment>::open(name);
@@ -85,7 +85,7 @@ void runClient(const std::string& name, Times& times) {
   }
 }
 
-// A line that is asked, not waited for: with a pause of a millisecond, or with none.
+// A line that is polled instead of waited for, every millisecond or without a pause.
 class AskedStream final : public ByteStream {
  public:
   AskedStream(int fd, bool sleeps) : fd_(fd), sleeps_(sleeps) {}
@@ -112,7 +112,7 @@ class AskedStream final : public ByteStream {
   std::atomic<bool> stop_{false};
 };
 
-// Both ends of a line, the device's and the reader's, non-blocking.
+// Both ends of a line, the device's and the reader's; both are non-blocking.
 struct Ends {
   UniqueFd device, reader;
   std::optional<io::PtyMaster> pty;
@@ -142,7 +142,7 @@ std::string record(std::uint32_t n) {
   return cyberglove::encode(r, {.values = 22, .timestamp = false, .status = true});
 }
 
-// Reads, publishes and wakes, and does nothing else: what any blocking reader needs at least.
+// Reads, publishes and wakes the client, and nothing else: the minimum work of any blocking reader.
 void bareLoop(int fd, Segment& segment, const std::atomic<bool>& stop) {
   std::byte buffer[256];
   GloveSample sample{};
@@ -160,7 +160,7 @@ void bareLoop(int fd, Segment& segment, const std::atomic<bool>& stop) {
   }
 }
 
-// Answers the driver's dialogue until `done`.
+// Lets the emulator answer the driver's dialogue until `done`.
 void serveDialogue(int fd, emulate::Emulator& emulator, const std::function<bool()>& done) {
   const SystemClock clock;
   std::byte received[64];
@@ -176,7 +176,8 @@ void serveDialogue(int fd, emulate::Emulator& emulator, const std::function<bool
   }
 }
 
-// The reader's thread: opens as the driver does, says so, reads until it is stopped.
+// The reader's thread: opens the line as the driver does, sets `streaming`, reads until it is
+// stopped.
 struct ReaderThread {
   std::atomic<bool> streaming{false}, stop{false}, ended{false}, real_time{false};
   std::atomic<double> cpu_s{0};
@@ -188,7 +189,8 @@ struct ReaderThread {
 
  private:
   void read(Reader kind, int fd, Segment& segment) {
-    real_time = kind != kSpinning && askForRealTime();  // a spinning one would stop the machine
+    // A spinning thread with real-time priority would block the machine.
+    real_time = kind != kSpinning && askForRealTime();
     shm::ShmSink sink(segment);
     const SystemClock clock;
     std::unique_ptr<ByteStream> stream;
@@ -211,7 +213,8 @@ struct ReaderThread {
   }
 };
 
-// Sends `samples` records at irregular intervals about the rate, so that no loop can fall in step.
+// Sends `samples` records at irregular intervals around the rate, so that no loop can synchronise
+// to it.
 void sendRecords(int fd, int samples, double rate_hz, std::uint32_t first, Times& times) {
   const SystemClock clock;
   Timestamp due = clock.now();
@@ -226,11 +229,12 @@ void sendRecords(int fd, int samples, double rate_hz, std::uint32_t first, Times
   }
 }
 
-// How long each record took from the line to the client.
+// Latency of each record from the line to the client, in microseconds.
 std::vector<double> latencies(const Times& times, std::uint32_t first, std::uint32_t last) {
   std::vector<double> all_us;
   for (std::uint32_t n = first; n < last; ++n) {
-    // One that the client slept over was replaced by the next: it waited for as long.
+    // The client may miss a record while it sleeps; the record's latency is then that of the next
+    // one seen.
     std::uint32_t m = n;
     while (m < last && times.received_ns[m] == 0) ++m;
     if (m < last)
@@ -239,7 +243,7 @@ std::vector<double> latencies(const Times& times, std::uint32_t first, std::uint
   return all_us;
 }
 
-// A client of the segment, in a process of its own, that has opened it.
+// A client process that has opened the segment.
 class Client {
  public:
   Client(const std::string& name, Times& times) : times_(times) {
@@ -288,7 +292,7 @@ Round runRound(const RoundSize& size, Reader kind, Line line, Times& times) {
   const auto first = static_cast<std::uint32_t>((**segment).glove.count()) + 1;
   const Timestamp start = clock.now();
   std::thread sender([&] {
-    askForRealTime();  // it stands for the hardware
+    askForRealTime();  // it stands for the hardware, so nothing may delay it
     sendRecords(ends.deviceFd(), size.samples, size.rate_hz, first, times);
   });
   sender.join();

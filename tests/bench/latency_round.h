@@ -1,4 +1,4 @@
-// One round of ./dev bench latency: one reader of one line, and a client of its shared memory.
+// One round of ./dev bench latency: one reader on one line, and one client of its shared memory.
 #pragma once
 
 #include <functional>
@@ -15,25 +15,25 @@ enum Line { kSocketPair, kPty };
 inline constexpr const char* kLineNames[] = {"socket pair", "pty"};
 
 struct RoundSize {
-  int samples = 1000;  // 60,000 at most
+  int samples = 1000;  // at most 60,000
   double rate_hz = 250;
 };
 
-// Memory that the processes of a round share; one for all rounds.
+// Memory shared by the processes of a round; reused for all rounds.
 struct Times;
 Times& makeTimes();
 
 struct Round {
-  std::vector<double> latency_us;  // of each record that the client has seen or slept over
-  double cpu_share = 0;            // of the reader's thread
-  bool real_time = false;          // whether that thread was allowed to be
+  std::vector<double> latency_us;  // for each record that the client saw or missed
+  double cpu_share = 0;            // CPU time of the reader's thread / wall time
+  bool real_time = false;          // whether that thread got real-time priority
 };
 
-// Throws DidNotRun where line, segment, client or reader does not run to the end. kAwake only where
-// io::limitCpuLatency(0) is allowed.
+// Throws DidNotRun if the line, the segment, the client or the reader does not run to the end.
+// kAwake is allowed only if io::limitCpuLatency(0) succeeds.
 Round runRound(const RoundSize& size, Reader kind, Line line, Times& times);
 
-// A process that does `body` and dies with this one.
+// Starts a process that runs `body` and dies with this one.
 pid_t child(const std::function<void()>& body);
 
 }  // namespace merlin::bench

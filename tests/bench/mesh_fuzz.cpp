@@ -15,17 +15,17 @@
 namespace merlin::bench {
 namespace {
 
-using render::Dendrogram;
-using render::Mesh;
+using render::lod::Dendrogram;
+using render::mesh::Mesh;
 
-// Empty, or what is wrong.
+// The message about an invalid mesh; empty if the mesh is valid.
 std::string faultOf(const Mesh& mesh) {
   const auto valid = validate(mesh);
   return valid ? "" : valid.error().what;
 }
 
 std::string faultOfSplit(Mesh mesh) {
-  if (render::splitNonManifold(mesh).added > 0) return "a split mesh can be split again";
+  if (render::mesh::splitNonManifold(mesh).added > 0) return "a split mesh can be split again";
   return "";
 }
 
@@ -53,11 +53,11 @@ std::string faultOfLevels(const Dendrogram& model, const Mesh& mesh, Random& ran
         return "a cut has a triangle with a node twice";
     }
   }
-  return faultOf(render::extract(model, random.below(model.levels())));
+  return faultOf(render::lod::extract(model, random.below(model.levels())));
 }
 
-render::ReduceSettings settingsFor(const Mesh& mesh, const char* cost, Random& random) {
-  render::ReduceSettings settings;
+render::reduce::ReduceSettings settingsFor(const Mesh& mesh, const char* cost, Random& random) {
+  render::reduce::ReduceSettings settings;
   settings.cost = cost;
   settings.threads = 1;
   settings.preserve_topology = random.below(4) == 0;
@@ -75,13 +75,13 @@ render::ReduceSettings settingsFor(const Mesh& mesh, const char* cost, Random& r
 
 std::string faultOfReduction(const Mesh& mesh, const char* cost, Random& random, MeshFuzz& fuzz) {
   const auto settings = settingsFor(mesh, cost, random);
-  const auto reduction = render::reduce(mesh, settings);
+  const auto reduction = render::reduce::reduce(mesh, settings);
   if (!reduction) {
     ++fuzz.counts[fmt::format("refused by {}: {}", cost, reduction.error().what)];
     return "";
   }
   ++fuzz.counts[fmt::format("reduced by {}", cost)];
-  const Dendrogram model = render::buildDendrogram(mesh, reduction->log);
+  const Dendrogram model = render::lod::buildDendrogram(mesh, reduction->log);
   auto checked = Dendrogram::make(model.arrays(), nullptr);
   if (!checked) return checked.error().what;
   if (model.trianglesAt(model.levels() - 1) != reduction->report.triangles)
@@ -96,7 +96,7 @@ std::string fuzzOne(std::uint64_t seed, MeshFuzz& fuzz) {
     ++counts["refused: " + kindOf(refusal)];
     return "";
   }
-  const render::TidyReport tidied = render::tidy(mesh);
+  const render::mesh::TidyReport tidied = render::mesh::tidy(mesh);
   counts["mended: triangles with a vertex twice"] += tidied.degenerate;
   counts["mended: triangles that were there twice"] += tidied.duplicate;
   counts["mended: triangles on the back of another"] += tidied.opposite;
@@ -105,14 +105,15 @@ std::string fuzzOne(std::uint64_t seed, MeshFuzz& fuzz) {
     ++counts["refused: no triangles"];
     return "";
   }
-  const render::SplitReport split = render::splitNonManifold(mesh);
+  const render::mesh::SplitReport split = render::mesh::splitNonManifold(mesh);
   counts["mended: non-manifold edges"] += split.edges;
   counts["mended: non-manifold vertices"] += split.vertices;
   if (const std::string fault = faultOf(mesh); !fault.empty()) return "after mending: " + fault;
   if (const std::string fault = faultOfSplit(mesh); !fault.empty()) return fault;
-  render::ensureNormals(mesh);
+  render::mesh::ensureNormals(mesh);
   Random random(seed);
-  const render::Cost& cost = render::costs()[random.below(render::costs().size())];
+  const render::reduce::Cost& cost =
+      render::reduce::costs()[random.below(render::reduce::costs().size())];
   const std::string fault = faultOfReduction(mesh, cost.name, random, fuzz);
   return fault.empty() ? "" : fmt::format("{}: {}", cost.name, fault);
 }
@@ -121,15 +122,15 @@ std::string fuzzOne(std::uint64_t seed, MeshFuzz& fuzz) {
 
 std::string kindOf(const std::string& what) {
   constexpr std::pair<const char*, const char*> kKinds[] = {
-      {"no triples", "half a vertex or triangle"},
-      {"is the farthest", "a coordinate that is no place"},
-      {"exist)", "an index out of range"},
+      {"not multiples of 3", "half a vertex or triangle"},
+      {"the limit is", "a coordinate that is no place"},
+      {"there is no vertex", "an index out of range"},
       {"values for", "a feature of another size"},
       {" has ", "a feature that is no number"}};
   for (const auto& [words, kind] : kKinds) {
     if (what.find(words) == std::string::npos) continue;
     const std::size_t colon = what.starts_with("feature") ? 0 : what.find(": ");
-    const bool cost = render::findCost(what.substr(0, colon)) != nullptr;
+    const bool cost = render::reduce::findCost(what.substr(0, colon)) != nullptr;
     return cost ? what.substr(0, colon + 2) + kind : kind;
   }
   return what;

@@ -1,4 +1,4 @@
-// One hostile mesh through everything that a mesh goes through, and what came of many.
+// Runs a hostile mesh through all steps of mesh processing, and counts the outcomes.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,16 @@
 namespace merlin::bench {
 
 struct MeshFuzz {
-  std::map<std::string, std::uint64_t> counts;  // of each refusal and repair, by name
-  std::string fault;                            // of the last mesh; empty: none
+  // Number of each kind of refusal and repair, by name.
+  std::map<std::string, std::uint64_t> counts;
+  std::string fault;  // of the last mesh; empty if there was none
 
-  // validate, tidy, splitNonManifold, reduce with each cost, the dendrogram, cuts. False at a
-  // fault.
+  // Runs validate, tidy, splitNonManifold, reduce with each cost, the dendrogram and cuts. False if
+  // there was a fault.
   bool run(std::uint64_t seed);
 };
 
-// The common part of faults and refusals, without names and figures.
+// The part of a message that all faults or refusals of its kind share, without names and figures.
 std::string kindOf(const std::string& what);
 
 }  // namespace merlin::bench

@@ -1,4 +1,4 @@
-// How long a call of some hundred nanoseconds takes.
+// Times calls that take some hundred nanoseconds.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace merlin::bench {
 
-// Nanoseconds of one call of f(n), the least of many rounds: one that nothing else broke into.
+// Nanoseconds of one call of f(n): the minimum of many rounds, so that interruptions do not count.
 template <typename F>
 Measured nanoseconds(F f) {
   constexpr int kCalls = 2000, kRounds = 500;

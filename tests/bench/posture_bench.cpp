@@ -1,7 +1,8 @@
-// ./dev bench posture: training beside the simplest classifiers on people never seen, adapting to
-// one more, postures that flicker or do not, and recall. Beside FANN: fann_bench.cpp.
+// ./dev bench posture: training compared with the simplest classifiers on unseen people, adapting
+// to one more person, flicker of the reported postures, and recall. Compared with FANN:
+// fann_bench.cpp.
 //
-// All hands are synthetic. Absolute times differ from machine to machine; ratios are of one run.
+// All hands are synthetic. Absolute times differ between machines; ratios are within one run.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -32,7 +33,7 @@ DataSet people(std::size_t first, std::size_t count, std::size_t per_take, std::
   return nn::test::people(hand::allShapes(), first, count, per_take, seed);
 }
 
-// The value of a training that came to its end; else the benchmark ends.
+// The value of a training that succeeded; otherwise ends the benchmark.
 template <typename T>
 const T& expect(const Result<T>& result, const char* subject) {
   if (!result) didNotRun(subject, result.error().what, "see nn/README.md");
@@ -52,8 +53,8 @@ void recall(const nn::PostureNetwork& network, const DataSet& hands, Report& rep
   report.figure("recall", ns, "ns");
 }
 
-// The 1998 way, as plain as it can be: running numbers as codes, ranges of the glove, descent down
-// the gradient of everything.
+// The method of 1998 in its simplest form: consecutive numbers as codes, the glove's fixed ranges,
+// gradient descent over all examples.
 Measured plainAccuracy(const DataSet& train, const DataSet& test) {
   nn::PostureNetwork network;
   std::vector<std::size_t> posture;
@@ -104,7 +105,7 @@ void adapting(const nn::Fitted& fitted, Report& report) {
   for (const std::size_t person : {9001U, 9002U, 9003U}) {
     const DataSet own = people(person, 1, 200, 1), later = people(person, 1, 50, 2);
     const double began = cpuSeconds();
-    const auto result = nn::adapt(fitted.network, fitted.memory, own, 1);
+    const auto result = nn::adapt(fitted.network, fitted.statistics, own, 1);
     const double took = cpuSeconds() - began;
     const nn::PostureNetwork& adapted = expect(result, "the adapting").network;
     const Measured before = accuracyOf(fitted.network, later), after = accuracyOf(adapted, later);
@@ -120,13 +121,13 @@ struct Flicker {
   std::size_t reported = 0, missed = 0, invented = 0, repeated = 0;
 };
 
-// The names that were reported, beside those that were meant, in their order. What comes out of its
-// turn was never meant there, unless only the next one was missed.
+// Compares the reported names with the intended ones, in order. A name out of order counts as
+// wrong, unless only the next intended one was missed.
 Flicker countOf(const std::vector<std::string>& reported, std::span<const hand::Shape> meant) {
   Flicker f;
   f.reported = reported.size();
   std::vector<bool> seen(meant.size());
-  std::size_t now = 0;  // the last one that was reported rightly
+  std::size_t now = 0;  // index of the last posture that was reported correctly
   for (const std::string& name : reported) {
     const auto at = std::find_if(meant.begin(), meant.end(),
                                  [&](const hand::Shape& s) { return s.name == name; });
@@ -145,7 +146,7 @@ Flicker countOf(const std::vector<std::string>& reported, std::span<const hand::
 }
 
 struct Reported {
-  std::vector<std::string> held, plain;  // with hold and hysteresis, and without
+  std::vector<std::string> held, plain;  // with hold time and hysteresis, and without
 };
 
 Reported reportedBy(const nn::PostureNetwork& network, std::span<const hand::Shot> shots) {
@@ -181,7 +182,7 @@ void flicker(const nn::Fitted& fitted, Report& report) {
       "person");
   for (const std::size_t person : {9001U, 9002U, 9003U}) {
     const auto shots = hand::goThrough(ten, hand::Person(person), 100, 35, 1);
-    const auto result = nn::adapt(fitted.network, fitted.memory, people(person, 1, 200, 1), 1);
+    const auto result = nn::adapt(fitted.network, fitted.statistics, people(person, 1, 200, 1), 1);
     const Reported unseen = reportedBy(fitted.network, shots),
                    known = reportedBy(expect(result, "the adapting").network, shots);
     printFlicker(person, "never seen, held", countOf(unseen.held, ten), report);

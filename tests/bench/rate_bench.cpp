@@ -31,15 +31,15 @@ struct Row1998 {
 };
 constexpr Row1998 kRows1998[] = {{16'000, 4}, {30'000, 2}, {63'000, 1.25}, {102'000, 0.7}};
 
-render::Mesh twice(const render::Mesh& mesh) {
-  const render::Box box = render::boundingBox(mesh.positions);
+render::mesh::Mesh twice(const render::mesh::Mesh& mesh) {
+  const render::mesh::Box box = render::mesh::boundingBox(mesh.positions);
   const float step = 1.1F * (box.high[0] - box.low[0]);
-  render::Mesh both = mesh;
+  render::mesh::Mesh both = mesh;
   const auto vertices = static_cast<std::uint32_t>(mesh.vertexCount());
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
     both.positions.push_back(mesh.positions[i] + (i % 3 == 0 ? step : 0));
   for (const std::uint32_t v : mesh.triangles) both.triangles.push_back(v + vertices);
-  for (render::Feature& f : both.features) {
+  for (render::mesh::Feature& f : both.features) {
     const std::vector<float> values = f.values;
     f.values.insert(f.values.end(), values.begin(), values.end());
   }
@@ -47,7 +47,7 @@ render::Mesh twice(const render::Mesh& mesh) {
 }
 
 // Round its long axis; a chequered picture with noise.
-Result<Ok> dress(render::Mesh& mesh) {
+Result<Ok> dress(render::mesh::Mesh& mesh) {
   constexpr int kSide = 1024;
   std::vector<std::uint8_t> rgba;
   std::uint32_t noise = 1;
@@ -58,13 +58,13 @@ Result<Ok> dress(render::Mesh& mesh) {
     rgba.insert(rgba.end(), {grey, grey, static_cast<std::uint8_t>(grey / 2), 255});
   }
   const std::string path = std::filesystem::temp_directory_path() / "merlin_rates.png";
-  if (auto written = render::writePng(path, kSide, kSide, rgba); !written) return written;
-  auto picture = render::readImage(path);
+  if (auto written = render::image::writePng(path, kSide, kSide, rgba); !written) return written;
+  auto picture = render::image::readImage(path);
   std::filesystem::remove(path);
   if (!picture) return picture.error();
   mesh.texture = std::move(picture->file);
-  const render::Box box = render::boundingBox(mesh.positions);
-  render::Feature texcoord{"texcoord", 2, {}};
+  const render::mesh::Box box = render::mesh::boundingBox(mesh.positions);
+  render::mesh::Feature texcoord{"texcoord", 2, {}};
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     const float* p = &mesh.positions[3 * v];
     const float y = p[1] - (box.low[1] + box.high[1]) / 2,
@@ -91,13 +91,13 @@ struct Times {
 };
 
 // Drawing are the steps that draw and read back: cut, upload and all between are not.
-Times timeOf(render::FrameRenderer& renderer, const Eigen::Isometry3f& T_eye_model,
+Times timeOf(render::frame::FrameRenderer& renderer, const Eigen::Isometry3f& T_eye_model,
              std::size_t level, const Clock& clock) {
   const Timestamp began = clock.now();
   renderer.draw({.T_eye_content = T_eye_model, .step = level});
   Times times{toSeconds(clock.now() - began), 0};
-  for (const render::FrameStep& step : renderer.steps()) {
-    using Kind = render::FrameStep::Kind;
+  for (const render::frame::FrameStep& step : renderer.steps()) {
+    using Kind = render::frame::FrameStep::Kind;
     if (step.kind == Kind::kDraw || step.kind == Kind::kReadBack)
       times.drawing_s += toSeconds(step.end - step.begin);
   }
@@ -127,8 +127,8 @@ class Rate {
 };
 
 // In turns, pose by pose.
-void bench(const render::Dendrogram& model, render::FrameRenderer& one, render::FrameRenderer& two,
-           Report& report) {
+void bench(const render::lod::Dendrogram& model, render::frame::FrameRenderer& one,
+           render::frame::FrameRenderer& two, Report& report) {
   const SystemClock clock;
   report.text(
       "triangles   1998, Hz   one context, Hz   times   triangles/s   drawing's share   two, Hz   "
@@ -136,7 +136,8 @@ void bench(const render::Dendrogram& model, render::FrameRenderer& one, render::
   for (const Row1998& row : kRows1998) {
     const std::size_t level = model.levelFor(row.triangles), drawn = model.trianglesAt(level);
     Rate by_one, by_two;
-    for (render::FrameRenderer* renderer : {&one, &two}) timeOf(*renderer, pose(0), level, clock);
+    for (render::frame::FrameRenderer* renderer : {&one, &two})
+      timeOf(*renderer, pose(0), level, clock);
     for (int k = 0; k < kPoses; ++k) {
       by_one.add(timeOf(one, pose(k), level, clock));
       by_two.add(timeOf(two, pose(k), level, clock));
@@ -166,24 +167,24 @@ T expect(Result<T> result, const char* subject) {
   return *std::move(result);
 }
 
-render::Dendrogram makeModel(const Options& options) {
-  render::Mesh mesh = twice(expect(render::readMesh(options.scan), "the scan").mesh);
+render::lod::Dendrogram makeModel(const Options& options) {
+  render::mesh::Mesh mesh = twice(expect(render::mesh::readMesh(options.scan), "the scan").mesh);
   if (options.textured) expect(dress(mesh), "the texture");
-  render::ensureNormals(mesh);
-  const auto reduced = expect(render::reduce(mesh, {}), "the reduction");
-  return render::buildDendrogram(mesh, reduced.log);
+  render::mesh::ensureNormals(mesh);
+  const auto reduced = expect(render::reduce::reduce(mesh, {}), "the reduction");
+  return render::lod::buildDendrogram(mesh, reduced.log);
 }
 
 bool run(const Options& options, Report& report) {
-  render::prepareSoftwareGl(options.raster_threads);
-  const render::Dendrogram model = makeModel(options);
+  render::gl::prepareSoftwareGl(options.raster_threads);
+  const render::lod::Dendrogram model = makeModel(options);
   // Not fewer: else the rate would be of another model.
   if (model.triangleCount() < kRows1998[std::size(kRows1998) - 1].triangles) {
     didNotRun("the scan",
               fmt::format("twice {} has {} triangles", options.scan, model.triangleCount()),
               "it takes 51,000 in the scan");
   }
-  const auto plan = render::planTiles({});
+  const auto plan = render::tiles::planTiles({});
   const SystemClock clock;
   const auto renderer = [&](int contexts) {
     return expect(test::rendererOf(model, *plan, {.gl = {.contexts = contexts}, .model = {}},

@@ -22,8 +22,8 @@ constexpr float kWave = 0.1F;  // of the height
 
 class Tiling {
  public:
-  Tiling(const render::Mesh& tile, std::size_t triangles)
-      : tile_(tile), box_(render::boundingBox(tile.positions)), triangles_(triangles) {
+  Tiling(const render::mesh::Mesh& tile, std::size_t triangles)
+      : tile_(tile), box_(render::mesh::boundingBox(tile.positions)), triangles_(triangles) {
     const std::size_t tiles = (triangles + tile.triangleCount() - 1) / tile.triangleCount();
     across_ = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(tiles))));
     whole_ = triangles / tile.triangleCount();
@@ -108,14 +108,14 @@ class Tiling {
   float step(std::size_t k) const { return (1 + kGap) * (box_.high[k] - box_.low[k]); }
 
   static constexpr std::size_t kFace = 13;  // bytes
-  const render::Mesh& tile_;
-  render::Box box_;
+  const render::mesh::Mesh& tile_;
+  render::mesh::Box box_;
   std::size_t triangles_, across_ = 1, whole_ = 0;
   std::vector<std::uint32_t> used_, place_, last_;  // of the tile that is cut
 };
 
 int run(const std::string& scan, double triangles, const std::string& output) {
-  const auto loaded = render::readMesh(scan);
+  const auto loaded = render::mesh::readMesh(scan);
   if (!loaded) {
     fmt::print(stderr, "tile_scan: {}\n", loaded.error().what);
     return 1;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "config/drawn_wall.h"
 #include "config/loader.h"
 #include "config/writer.h"
 #include "tests/support/temp_dir.h"
@@ -52,7 +53,7 @@ TEST(Config, ReadsEveryKindOfSetting) {
   ASSERT_EQ(s.devices.bindings.size(), 2u) << "a list replaces the default one";
   EXPECT_EQ(s.devices.bindings[1].action, "next_mode");
   ASSERT_EQ(s.wall.tiles.tiles.size(), 1u);
-  EXPECT_EQ(s.wall.tiles.tiles[0].kind, render::TileKind::kOperator);
+  EXPECT_EQ(s.wall.tiles.tiles[0].kind, render::tiles::TileKind::kOperator);
 }
 
 std::string bindingsAre(const std::string& list) {
@@ -117,7 +118,7 @@ TEST(Config, BindingsThatNameNothingAreFound) {
                 .find("allowed are ball.button.1 to ball.button.12"),
             std::string::npos);
   EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "grab", "on": "leave"})")
-                .find("/devices/bindings/0/on does not go with grab; allowed is hold"),
+                .find("/devices/bindings/0/on cannot be used with grab; allowed is hold"),
             std::string::npos);
   EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "dance"})").find("fly"),
             std::string::npos)
@@ -155,7 +156,7 @@ TEST(Config, ANumberBeyondItsRangeIsClampedAndThatAloneIsAdjusted) {
 
 struct Bad {
   const char* json;
-  const char* what;  // a part of the finding
+  const char* what;  // a part of the finding's text
 };
 
 class BadConfig : public testing::TestWithParam<Bad> {};
@@ -197,7 +198,7 @@ INSTANTIATE_TEST_SUITE_P(
             "they must be in ascending order"},
         Bad{"{\"a~b/c\": 1}",
             "f.json:1: /a~0b~1c is not a known setting; known here are instance, run_directory, "
-            "devices, wall"},
+            "state_file, devices, wall"},
         Bad{"{\"wall\": {\"rate\": {\"rate_hz\": 1e999}}}", "f.json:1: "}));
 
 TEST(Config, EveryTruncationOfAFileIsInvalidAndNoCrash) {
@@ -227,7 +228,7 @@ TEST(Config, DeepNestingIsRefused) {
             std::string::npos);
 }
 
-// What is shown and kept is bounded, and the verdict holds for all of it.
+// The number of findings kept is limited; the verdict takes all of them into account.
 TEST(Config, ManyFindingsAreCounted) {
   std::string keys;
   for (int i = 0; i < 50'000; ++i) keys += fmt::format("\"key{}\": 1,\n", i);
@@ -256,6 +257,15 @@ TEST(Config, AMissingFileIsOneFinding) {
             "/no/such/file.json: No such file or directory");
 }
 
+TEST(Config, WritingKeepsEveryDigit) {
+  Settings settings;
+  settings.wall.scene.model_distance_m = 1.23456789012345;
+  settings.wall.scene.hand_noise_m = 0.1F;  // 0.10000000149 if printed as a double
+  const std::string text = settingsText(settings);
+  EXPECT_NE(text.find("\"model_distance_m\": 1.23456789012345"), std::string::npos);
+  EXPECT_NE(text.find("\"hand_noise_m\": 0.1,"), std::string::npos);
+}
+
 TEST(Config, WritingAndReadingGivesTheSame) {
   Settings settings;
   settings.wall.scene.hand_gain = 2.5;
@@ -268,8 +278,58 @@ TEST(Config, WritingAndReadingGivesTheSame) {
   EXPECT_EQ(loaded.settings.devices.glove.gain, settings.devices.glove.gain);
 }
 
-// The schema, the shipped configurations and the program say the same.
-// A list that is empty by default is described like any other.
+std::string wallIs(const std::string& members) {
+  return all(loadSettings("{\"wall\": {" + members + "}}", ""));
+}
+
+TEST(Config, ARoomReplacesTheTiles) {
+  const auto loaded = loadSettings(R"({"wall": {
+    "room": {"preset": {"name": "three_120", "width": 800, "height": 600}, "eye_m": [0.1, 0, 0]},
+    "tiles": {"near_m": 0.1},
+    "outputs": [{"kind": "png", "path": "a.png", "tiles": [{"tile": "right"}]}]}})",
+                                   "/");
+  ASSERT_EQ(loaded.verdict(), Verdict::kValid) << all(loaded);
+  const render::tiles::TilesSettings& tiles = loaded.settings.wall.tiles;
+  ASSERT_EQ(tiles.tiles.size(), 4u);
+  EXPECT_EQ(tiles.tiles[2].name, "right");
+  EXPECT_EQ(tiles.tiles[2].width, 800);
+  EXPECT_EQ(tiles.near_m, 0.1);
+  EXPECT_EQ(tiles.frame_width, 1600);
+  EXPECT_EQ(tiles.frame_height, 1200);
+  const std::string text = settingsText(loaded.settings);
+  const auto again = loadSettings(text, "/");
+  ASSERT_EQ(again.verdict(), Verdict::kValid) << all(again);
+  EXPECT_EQ(settingsText(again.settings), text) << "what is printed can be read";
+  EXPECT_EQ(again.settings.wall.tiles.tiles[2].screen_m, tiles.tiles[2].screen_m);
+}
+
+TEST(Config, ARoomAndTilesByHandExcludeEachOther) {
+  const std::string room = R"("room": {"preset": {"name": "flat"}})";
+  EXPECT_EQ(wallIs(room), "");
+  EXPECT_EQ(wallIs(room + R"(, "tiles": {"tile_width": 320})"), "");
+  EXPECT_EQ(wallIs("\n" + room + ",\n" + R"("tiles": {"frame_width": 1280,
+                   "tiles": [{"name": "a"}]})"),
+            "f.json:3: /wall/tiles/frame_width is given together with /wall/room, from which it is "
+            "computed: leave out one of the two\n"
+            "f.json:4: /wall/tiles/tiles is given together with /wall/room, from which it is "
+            "computed: leave out one of the two\n");
+}
+
+TEST(Config, WhatIsWrongWithARoomIsSaidOnce) {
+  EXPECT_EQ(wallIs("\n\"room\": {\"panels\": [\n"
+                   R"({"name": "a", "width_m": 2, "height_m": 1, "lower_left_m": [-1, 0, 1]}]},
+                   "outputs": [{"kind": "png", "path": "a.png", "tiles": [{"tile": "a"}]}])"),
+            "f.json:3: /wall/room/panels/0 cannot be used: panel a does not face the viewer: the "
+            "eye is 1.000 m behind it; check eye_m, yaw_deg and the hinges\n");
+  EXPECT_EQ(wallIs(R"("room": {"eye_m": [0, 1, 0]})"),
+            "f.json:1: /wall/room cannot be used: the room has no panels: list them in /panels, or "
+            "choose a preset in /preset/name (flat, three_160, three_120, six, hexagon)\n");
+  EXPECT_EQ(wallIs(R"("room": {"preset": {"name": "cave"}})"),
+            "f.json:1: /wall/room/preset/name is the string \"cave\"; allowed is one of none, "
+            "flat, three_160, three_120, six, hexagon\n");
+}
+
+// The schema describes the items also of a list that is empty by default.
 TEST(Config, TheSchemaDescribesTheItemsOfEveryList) {
   const std::string schema = settingsSchema();
   const std::size_t contents = schema.find("\"contents\"");
@@ -295,7 +355,96 @@ TEST(Config, EveryShippedConfigurationIsValid) {
     const auto loaded = loadSettingsFile(entry.path());
     EXPECT_EQ(loaded.verdict(), Verdict::kValid) << name << "\n" << all(loaded);
   }
-  EXPECT_GE(files, 2);
+  EXPECT_GE(files, 3);
+}
+
+// Three projectors on a hinged screen. The measured figures are rounded, so they are symmetric only
+// within that.
+TEST(Config, TheShippedRoomIsThreePanelsAroundTheViewer) {
+  const auto loaded = loadSettingsFile(MERLIN_SOURCE_DIR "/config/wall-three-160.json");
+  ASSERT_EQ(loaded.verdict(), Verdict::kValid) << all(loaded);
+  const auto& tiles = loaded.settings.wall.tiles.tiles;
+  ASSERT_EQ(tiles.size(), 4u);
+  const auto& left = tiles[0].screen_m;
+  const auto& right = tiles[2].screen_m;
+  EXPECT_NEAR(left[0], -right[3], 0.004) << "symmetric";
+  EXPECT_NEAR(left[2], right[5], 0.004);
+  EXPECT_NEAR(left[3], tiles[1].screen_m[0], 1e-12) << "hinged";
+}
+
+TEST(Config, TheShippedStereoWallHasTwoPicturesOnEachProjector) {
+  const auto loaded = loadSettingsFile(MERLIN_SOURCE_DIR "/config/wall-stereo.json");
+  ASSERT_EQ(loaded.verdict(), Verdict::kValid) << all(loaded);
+  EXPECT_EQ(loaded.settings.wall.tiles.tiles.size(), 4u) << "what is set";
+  const WallSettings drawn = drawnWall(loaded.settings.wall);
+  EXPECT_EQ(drawn.tiles.tiles.size(), 7u) << "what is drawn";
+  ASSERT_EQ(drawn.outputs[2].tiles.size(), 2u);
+  EXPECT_EQ(drawn.outputs[2].tiles[0].tile, "centre.L");
+  EXPECT_EQ(drawn.outputs[2].tiles[1].tile, "centre.R");
+  const std::string text = settingsText(loaded.settings);
+  const auto again = loadSettings(text, "/");
+  ASSERT_EQ(again.verdict(), Verdict::kValid) << all(again);
+  EXPECT_EQ(settingsText(again.settings), text) << "what is printed can be read";
+}
+
+TEST(Config, TheShippedWallWithoutADesktopHasFourDisplays) {
+  const auto loaded = loadSettingsFile(MERLIN_SOURCE_DIR "/config/wall-kms-four.json");
+  ASSERT_EQ(loaded.verdict(), Verdict::kValid) << all(loaded);
+  const auto& outputs = loaded.settings.wall.outputs;
+  ASSERT_EQ(outputs.size(), 5u);
+  EXPECT_EQ(outputs[3].kind, render::out::OutputKind::kKms);
+  EXPECT_EQ(outputs[3].kms.connector, "DP-1");
+  EXPECT_EQ(outputs[3].kms.mode, "1024x768@60");
+  EXPECT_EQ(outputs[3].tiles[0].tile, "right");
+}
+
+TEST(Config, ViewsOfTilesAndDisplaysAreChecked) {
+  EXPECT_EQ(wallIs(R"("tiles": {"tiles": [{"name": "a", "view": "side"},
+                     {"name": "b", "x": 640, "view": "free",
+                      "camera": {"eye_m": [0, 3, -2], "up": [0, 0, -1]}}]})"),
+            "");
+  EXPECT_EQ(wallIs("\n"
+                   R"("tiles": {"tiles": [{"name": "a", "turns": 1, "view": "top"}]})"),
+            "f.json:2: /wall/tiles/tiles/0 cannot be used: tile a has view top, a camera of its "
+            "own: leave "
+            "out turns, direction_deg, frustum_deg and screen_m, or let it follow the wall\n");
+  const std::string panel = R"("room": {"panels": [{"name": "p", "width_m": 2, "height_m": 1,
+                                        "lower_left_m": [-1, -0.5, -2]}], "displays": [)";
+  EXPECT_EQ(wallIs(panel + R"({"name": "d", "view": "top"}]})"), "");
+  EXPECT_EQ(
+      wallIs(panel + R"({"name": "d", "view": "free", "camera": {"look_at_m": [0, 0, 0]}}]})"),
+      "f.json:2: /wall/room/displays/0 cannot be used: tile d: camera: eye_m and look_at_m are the "
+      "same place; the camera looks from the first to the second\n");
+}
+
+TEST(Config, StereoIsCheckedWithTheRestOfTheWall) {
+  const std::string room = R"("room": {"preset": {"name": "flat"}})";
+  EXPECT_EQ(wallIs(room + R"(, "stereo": {"mode": "anaglyph"})"), "");
+  EXPECT_EQ(
+      wallIs(room + ",\n"
+                    R"("stereo": {"mode": "anaglyph", "screen_distance_m": 2})"),
+      "f.json:2: /wall/stereo/screen_distance_m is given together with /wall/room, which says how "
+      "far away each screen is: leave out one of the two\n");
+  EXPECT_EQ(wallIs("\n"
+                   R"("stereo": {"mode": "two_outputs"})"),
+            "f.json:2: /wall/stereo/mode is two_outputs, and tile left has no output for each eye: "
+            "let one "
+            "output show left.L and another one left.R (/wall/outputs/N/tiles)\n");
+  EXPECT_EQ(wallIs("\n"
+                   R"("stereo": {"head": {"station": 1}})"),
+            "f.json:2: /wall/stereo/head/station is 1, the station that is worn on the hand "
+            "(/devices/hand/station); the head needs its own\n");
+}
+
+// The pair of "left" is two placed tiles; the finding is at the one of the file.
+TEST(Config, AFaultOfAnOutputInStereoIsWhereTheFileHasIt) {
+  EXPECT_EQ(
+      wallIs(R"("stereo": {"mode": "side_by_side"}, "outputs": [
+    {"kind": "png", "path": "a.png", "tiles": [
+      {"tile": "left"},
+      {"tile": "nobody", "x": 700}]}])"),
+      "f.json:4: /wall/outputs/0/tiles/1/tile is \"nobody\"; the wall's tiles are left.L, left.R, "
+      "centre.L, centre.R, right.L, right.R, operator\n");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Configurations of earlier versions in the form of this one.
+// Converts configurations of earlier versions to the current form.
 #include "config/migrate.h"
 
 #include <gtest/gtest.h>
@@ -64,6 +64,14 @@ TEST(Migrate, BindingsGoToTheDevicesWithThePanelsButton) {
   EXPECT_EQ(d.posture_hold.hold_s, 0.4) << "the longer of both times was in force";
 }
 
+TEST(Migrate, AHoldThatIsNoNumberIsLeftForTheCheck) {
+  const auto migrated = migrate(R"({"wall": {"scene": {"posture_hold_s": "long"}}})");
+  ASSERT_TRUE(migrated) << migrated.error().what;
+  const auto loaded = loadSettings(migrated->text, "");
+  ASSERT_EQ(loaded.findings.size(), 1u);
+  EXPECT_NE(loaded.findings[0].what.find("\"long\""), std::string::npos);
+}
+
 TEST(Migrate, TheButtonsCommandBecomesABinding) {
   const auto migrated =
       migrate(R"({"devices": {"gpio": {"chip": "gpiochip0", "button_command": "projector_on"}}})");
@@ -78,7 +86,7 @@ TEST(Migrate, TheButtonsCommandBecomesABinding) {
       migrate(R"({"wall": {"scene": {"bindings": []}}, "devices": {"bindings": []}})");
   ASSERT_FALSE(both);
   EXPECT_EQ(both.error().what,
-            "has both /wall/scene/bindings and /devices/bindings: keep the latter by hand");
+            "has both /wall/scene/bindings and /devices/bindings: delete the former by hand");
 }
 
 TEST(Migrate, WhatIsOfThisVersionStaysByteByByte) {
@@ -101,8 +109,8 @@ TEST(Migrate, TheLoaderNamesTheNewForm) {
   ASSERT_EQ(loaded.findings.size(), 1u);
   EXPECT_EQ(loaded.findings[0].pointer, "/wall/png");
   EXPECT_EQ(loaded.findings[0].what,
-            "is the form of an earlier version; an entry {\"kind\": \"png\", \"path\": ...} of "
-            "/wall/outputs stands in its place; merlin config migrate FILE rewrites the file");
+            "is a setting of an earlier version; an entry {\"kind\": \"png\", \"path\": ...} of "
+            "/wall/outputs replaces it; the command merlin config migrate FILE rewrites the file");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Bindings: inputs of the devices become actions in shared memory, and readers see each once.
+// Bindings turn inputs of the devices into actions in shared memory; each reader sees each action
+// once.
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -56,7 +57,7 @@ TEST_F(ActionsTest, AnActionBeginsOnceAPress) {
     EXPECT_EQ(read().begun[kNextMode], 0u) << press;
   }
   w.update(ball(2 | 4));
-  w.update(ball(2 | 8));  // others come and go while it is held
+  w.update(ball(2 | 8));  // other buttons change while button 2 is held
   w.update(ball(4));
   EXPECT_EQ(read().begun[kNextMode], 1u);
   EXPECT_EQ(state(shm::kBallActions).begun[kNextMode], 4u);
@@ -74,7 +75,7 @@ TEST_F(ActionsTest, OnLeaveAnActionBeginsWhenTheInputEnds) {
   EXPECT_EQ(read().in_order, std::vector<std::size_t>{kLampOff});
 }
 
-// Both between two looks: the list says which came last.
+// Both actions begin between two reads; the reader gets them in the order in which they began.
 TEST_F(ActionsTest, TheirOrderIsKept) {
   ActionWriter w =
       writer({{"ball.button.1", "lamp_on"}, {"ball.button.1", "lamp_off", When::kLeave}},
@@ -111,7 +112,7 @@ TEST_F(ActionsTest, EveryInputDoesWhatItIsBoundTo) {
   ActionWriter ball_writer = writer(bindings, shm::kBallActions);
   ActionWriter panel = writer(bindings, shm::kPanelActions);
   (void)read();
-  ball_writer.update(ball(0x7FF));  // the eleven others
+  ball_writer.update(ball(0x7FF));  // buttons 1 to 11, which are not bound
   EXPECT_TRUE(read().in_order.empty());
   ball_writer.update(ball(1U << 11));
   EXPECT_EQ(read().in_order, std::vector<std::size_t>{kNextMode});

@@ -1,4 +1,4 @@
-// The bottom layer: files, words, clocks.
+// daemon/base: files, text, clocks.
 #include <atomic>
 #include <csignal>
 #include <filesystem>
@@ -25,7 +25,8 @@ TEST(Text, IsUtf8WithoutControls) {
   for (const char* text : {"", "heat", "\xc2\xb5", "\xe2\x84\x83", "\xf0\x9f\xa6\x96",
                            "\xed\x9f\xbf", "\xf4\x8f\xbf\xbf"})
     EXPECT_TRUE(isText(text)) << text;
-  // Controls, cut short, overlong, a surrogate, beyond the last, no beginning.
+  // Control characters, then invalid UTF-8: truncated and overlong sequences, a surrogate, a code
+  // point above U+10FFFF, a lone continuation byte.
   for (const char* none : {"\n", "\x1b", "\x7f", "\xc2\x9b", "\xc3", "\xe2\x84", "\xe2\x84x",
                            "\xc1\xbf", "\xe0\x9f\xbf", "\xf0\x8f\xbf\xbf", "\xed\xa0\x80",
                            "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\x80"})
@@ -59,7 +60,7 @@ TEST(FileCopy, IsTheFilesBytesAndStaysThemWhateverBecomesOfTheFile) {
   const auto copy = FileCopy::read(dir / "f");
   ASSERT_TRUE(copy);
   EXPECT_EQ(copy->stamp(), fileStamp(dir / "f"));
-  test::writeText(dir / "f", std::string(10'000, 'b'));  // in place
+  test::writeText(dir / "f", std::string(10'000, 'b'));  // overwritten in place
   EXPECT_NE(copy->stamp(), fileStamp(dir / "f"));
   ASSERT_EQ(::truncate((dir / "f").c_str(), 0), 0);
   EXPECT_EQ(copy->text(), std::string(10'000, 'a'));
@@ -76,7 +77,8 @@ TEST(FileCopy, WhatCannotBeReadIsAnError) {
   EXPECT_EQ(FileCopy::read(dir / "pipe").error().code, Errc::kMalformed) << "and does not wait";
   EXPECT_FALSE(fileStamp(dir / "pipe"));
   test::writeText(dir / "vast", "");
-  ASSERT_EQ(::truncate((dir / "vast").c_str(), off_t{1} << 42), 0);  // no bytes on the disk
+  // A sparse file: 4 TiB without blocks on the disk.
+  ASSERT_EQ(::truncate((dir / "vast").c_str(), off_t{1} << 42), 0);
   const auto vast = FileCopy::read(dir / "vast");
   ASSERT_FALSE(vast);
   EXPECT_EQ(vast.error().code, Errc::kIo);
@@ -122,7 +124,7 @@ TEST(WriteFile, AFileAppearsWholeOrTheOldOneStays) {
       << "no temporary file is left";
 }
 
-// A full disk, as far as a process can make one for itself: no file longer than 1 kB.
+// Simulates a full disk by a limit of 1 kB on the size of a file.
 TEST(WriteFile, OnAFullDiskTheOldOneStays) {
   const test::TempDir dir;
   ASSERT_TRUE(writeFile(dir / "f", "old"));

@@ -1,4 +1,4 @@
-// The pictures of `merlin mesh compare`, where no OpenGL is needed.
+// The images of `merlin mesh compare`: the parts that need no OpenGL.
 #include "daemon/cli/mesh/compare_pictures.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::array<float, 3> kBlack{0, 0, 0};
 
 TEST(Image, AppendsToTheRight) {
-  render::Image strip;
+  render::image::Image strip;
   strip.append({1, 2, {1, 1, 1, 1, 2, 2, 2, 2}});
   strip.append({2, 2, {3, 3, 3, 3, 4, 4, 4, 4, 5, 5, 5, 5, 6, 6, 6, 6}});
   EXPECT_EQ(strip.width, 3);
@@ -23,23 +23,26 @@ TEST(Image, AppendsToTheRight) {
             (Bytes{1, 1, 1, 1, 3, 3, 3, 3, 4, 4, 4, 4, 2, 2, 2, 2, 5, 5, 5, 5, 6, 6, 6, 6}));
 }
 
-// 15 % of 255 are 38.25. The last pixel is empty in both.
+// A channel counts as changed if it differs by more than 38.25 (15 % of 255). The last pixel is
+// background in both images.
 TEST(PictureDifference, CountsPixelsOfWhichAChannelHasChangedByMoreThan15Percent) {
-  const render::Image a{
+  const render::image::Image a{
       5, 1, {100, 100, 100, 9, 100, 100, 100, 9, 0, 0, 0, 9, 50, 50, 50, 9, 0, 0, 1, 9}};
-  const render::Image b{
+  const render::image::Image b{
       5, 1, {100, 138, 62, 8, 100, 100, 139, 9, 39, 0, 0, 9, 50, 50, 50, 9, 0, 1, 0, 9}};
-  const render::PictureDifference d = render::differenceOf(a, b, kBlack);
+  const render::image::PictureDifference d = render::image::differenceOf(a, b, kBlack);
   EXPECT_EQ(d.image.pixels,
             (Bytes{0, 0, 0, 0, 255, 255, 255, 0, 255, 255, 255, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(d.changed_percent, 50) << "2 of the 4 that show something";
-  EXPECT_EQ(
-      render::differenceOf({1, 1, {0, 0, 0, 0}}, {1, 1, {0, 0, 0, 0}}, kBlack).changed_percent, 0);
+  EXPECT_EQ(render::image::differenceOf({1, 1, {0, 0, 0, 0}}, {1, 1, {0, 0, 0, 0}}, kBlack)
+                .changed_percent,
+            0);
 }
 
 TEST(EdgeBands, AreRedWhereAnEdgeIsShortAndBlueWhereItIsLong) {
-  const render::Mesh triangle{{0, 0, 0, 3, 0, 0, 0, 4, 0}, {}, {0, 1, 2}};  // 3, 5, 4 long
-  const render::Mesh bands = edgeBands(triangle, View{});
+  // Sides of length 3, 5 and 4.
+  const render::mesh::Mesh triangle{{0, 0, 0, 3, 0, 0, 0, 4, 0}, {}, {0, 1, 2}};
+  const render::mesh::Mesh bands = edgeBands(triangle, View{});
   ASSERT_EQ(bands.vertexCount(), 3 * 4 + 3u);
   ASSERT_EQ(bands.triangleCount(), 3 * 2 + 1u);
   const std::vector<float>& colours = bands.find("colour")->values;
@@ -49,8 +52,8 @@ TEST(EdgeBands, AreRedWhereAnEdgeIsShortAndBlueWhereItIsLong) {
   EXPECT_GT(colourOf(1)[2], 0.9F) << "the longest is blue";
   EXPECT_EQ(colourOf(1)[0], 0);
   EXPECT_EQ(colourOf(2)[1], 1) << "the middle one is green";
-  EXPECT_TRUE(render::validate(bands));
-  // As large as the triangle, without overlaps: bands and inside together cover it once.
+  EXPECT_TRUE(validate(bands));
+  // Bands and interior cover the triangle once without overlap, so their areas add up to its area.
   double area = 0;
   for (std::size_t i = 0; i < bands.triangles.size(); i += 3) {
     const auto at = [&](std::size_t k) {
@@ -62,7 +65,7 @@ TEST(EdgeBands, AreRedWhereAnEdgeIsShortAndBlueWhereItIsLong) {
 }
 
 TEST(EdgeBands, GiveEqualEdgesOneColour) {
-  const render::Mesh bands = edgeBands(test::sphere(0), View{});
+  const render::mesh::Mesh bands = edgeBands(test::sphere(0), View{});
   const std::vector<float>& colours = bands.find("colour")->values;
   for (std::size_t t = 0; t < 8; ++t) {
     for (std::size_t v = 0; v < 12; ++v)

@@ -50,7 +50,8 @@ class DeviceFeedTest : public testing::Test {
   DeviceFeed feed_{name_, 2, kStaleAfter};
 };
 
-// A hand of 1 m/s, 3 ms ago, seen at the next frame's end, 33 ms from now.
+// A hand that moves at 1 m/s, measured 3 ms ago, predicted to the end of the next frame, 33 ms
+// ahead.
 TEST_F(DeviceFeedTest, PredictsTheHandToTheDisplayTime) {
   DeviceFeed feed(name_, 2, kStaleAfter, milliseconds(33));
   TrackerSample measured{};
@@ -68,7 +69,7 @@ TEST_F(DeviceFeedTest, PredictsTheHandToTheDisplayTime) {
   segment_->beat(now_);
   EXPECT_NEAR(feed.read(now_).scene.hand->position_m[0], 0.49 + 0.003 + 0.033 + 0.010, 1e-5);
   EXPECT_EQ(read().scene.hand->position_m[0], 0.5F) << "not asked to look ahead";
-  measured.received_ns += 1000;  // another station's record, or a newer one: no hand was made of it
+  measured.received_ns += 1000;  // a newer tracker record, for which there is no HandSample yet
   (*segment_)->tracker[1].publish(measured);
   EXPECT_EQ(feed.read(now_).scene.hand->position_m[0], 0.5F);
 }
@@ -84,6 +85,20 @@ TEST_F(DeviceFeedTest, GivesTheNewestOfWhatThereIs) {
   EXPECT_TRUE(input.scene.hand) << "station 2";
   EXPECT_EQ(input.posture[0], 0);
   EXPECT_EQ(feed_.age(), Duration::zero()) << "of the ball, the newest";
+}
+
+TEST_F(DeviceFeedTest, GivesTheHeadsStationWhereOneIsNamedAndItIsFresh) {
+  DeviceFeed feed(name_, 2, kStaleAfter, Duration::zero(), 3);
+  TrackerSample head{};
+  head.received_ns = toNanoseconds(now_ - milliseconds(3));
+  head.position_m[0] = 0.7F;
+  (*segment_)->tracker[2].publish(head);
+  segment_->beat(now_);
+  ASSERT_TRUE(feed.read(now_).head);
+  EXPECT_EQ(feed.read(now_).head->position_m[0], 0.7F);
+  EXPECT_FALSE(feed.read(now_).scene.hand) << "station 2 is silent";
+  EXPECT_FALSE(read().head) << "no station is named";
+  EXPECT_FALSE(feed.read(now_ + milliseconds(600)).head) << "stale";
 }
 
 TEST_F(DeviceFeedTest, ADeviceThatIsNotWellForAWhileIsLeftOut) {
@@ -153,8 +168,47 @@ TEST_F(DeviceFeedTest, GivesTheActionsOfDevicesThatWork) {
 TEST_F(DeviceFeedTest, WithoutADaemonThereIsNothing) {
   push();
   EXPECT_TRUE(read().scene.ball);
-  now_ += seconds(2);  // no heartbeat
+  now_ += seconds(2);  // two seconds without a heartbeat
   EXPECT_FALSE(feed_.read(now_).scene.ball);
+}
+
+TEST_F(DeviceFeedTest, ThePushOfTheBallIsTheCornersWhileThatIsHeld) {
+  push();
+  WallInput input = read();
+  EXPECT_EQ(input.align.push, state::Offset{});
+  EXPECT_EQ(input.scene.ball->translation[0], 1);
+  shm::ActionState held{};
+  held.held[actionIndex("align_push")] = 1;
+  (*segment_)->actions[shm::kBallActions].publish(held);
+  now_ += milliseconds(50);
+  input = read();
+  EXPECT_NEAR(input.align.push.x, 3, 1e-9) << "60 pixels a second, for 50 ms";
+  EXPECT_EQ(input.align.push.y, 0);
+  EXPECT_EQ(input.scene.ball->translation[0], 0) << "the model stays";
+  now_ += milliseconds(300);
+  (*segment_)->ball.publish([&] {
+    BallSample ball{};
+    ball.received_ns = toNanoseconds(now_);
+    ball.translation[1] = 0.5F;
+    return ball;
+  }());
+  input = read();
+  EXPECT_NEAR(input.align.push.y, -60 * 0.1 * 0.125, 1e-9) << "up, gently, and no jump";
+}
+
+TEST_F(DeviceFeedTest, AlignActionsArriveInTheirOrder) {
+  read();
+  shm::ActionState begun{};
+  for (std::size_t i = 0; i < kAlignActionCount; ++i) {
+    const auto* const action = std::ranges::find(kActions, std::string_view(kAlignActions[i]));
+    begun.begun[action - kActions.begin()] = static_cast<std::uint32_t>(i + 1);
+  }
+  shm::ActionState none{};
+  (*segment_)->actions[shm::kBallActions].publish(none);
+  read();
+  (*segment_)->actions[shm::kBallActions].publish(begun);
+  const WallInput input = read();
+  for (std::size_t i = 0; i < kAlignActionCount; ++i) EXPECT_EQ(input.align.begun[i], i + 1);
 }
 
 }  // namespace

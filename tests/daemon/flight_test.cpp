@@ -1,4 +1,4 @@
-// The flight recorder: the last bytes of a device, and the beginning of its connection.
+// The flight recorder keeps the last bytes of a device and the beginning of its connection.
 #include <filesystem>
 #include <thread>
 
@@ -35,7 +35,7 @@ TEST(FlightRing, KeepsWhatWentBothWaysWithItsTimes) {
   ring.said(clock.now(), asBytes("S"));
   clock.advance(milliseconds(10));
   ring.heard(clock.now(), asBytes("one"));
-  ring.heard(clock.now(), asBytes("two"));  // at once: the same piece
+  ring.heard(clock.now(), asBytes("two"));  // at the same time, so it is appended to the same chunk
   clock.advance(milliseconds(10));
   ring.heard(clock.now(), asBytes(std::string(100, 'x')));
   Duration left_out{};
@@ -65,7 +65,7 @@ TEST(FlightRing, KeepsFourMinutesOfATrackerAndTheDialogueBeforeIt) {
   ring.said(clock.now(), asBytes("hello"));
   const Timestamp start = clock.now();
   std::string record(32, 'r');
-  for (int i = 0; i < 120 * 600; ++i) {  // ten minutes
+  for (int i = 0; i < 120 * 600; ++i) {  // ten minutes at 120 Hz
     clock.advance(std::chrono::nanoseconds(8'333'333));
     ring.heard(clock.now(), asBytes(record));
   }
@@ -89,8 +89,9 @@ TEST(FlightRing, MayBeTakenWhileItIsWritten) {
       ++written;
     }
   });
-  // Records of 32 equal bytes, each value followed by the next one: in what is taken, only the
-  // first and the last record, and those beside the one gap that overwriting may leave, may be cut.
+  // Records are 32 equal bytes, and the value grows by one from record to record. In a snapshot
+  // only four records may be incomplete: the first, the last, and those on either side of the one
+  // gap that overwriting may leave.
   for (int looks = 0; looks < 50 || written < 100'000; ++looks) {
     Duration left_out{};
     std::string all;
@@ -110,7 +111,7 @@ TEST(FlightRing, MayBeTakenWhileItIsWritten) {
   }
 }
 
-// A dump of an emulated glove, replayed through the driver, gives the samples that the daemon saw.
+// A dump of an emulated glove, replayed through the driver, gives the samples that the daemon got.
 TEST(FlightRecorder, WhatItDumpsReplays) {
   const test::TempDir dir;
   const auto segment = std::make_unique<shm::DevicesSegment>();

@@ -22,8 +22,9 @@ TEST(FrameStats, TheRateHeldIsTheShareOfDeadlinesMetInTheLastSecond) {
 
 TEST(FrameStats, LateSharesCountWhatMovedAndNothingElse) {
   FrameStats stats;
-  for (int k = 1; k <= 40; ++k) stats.deadline(at(k), true, k > 4);     // the first four are late
-  for (int k = 41; k <= 4000; ++k) stats.deadline(at(k), false, true);  // 99 s of standstill
+  // The first four deadlines are missed.
+  for (int k = 1; k <= 40; ++k) stats.deadline(at(k), true, k > 4);
+  for (int k = 41; k <= 4000; ++k) stats.deadline(at(k), false, true);  // 99 s without motion
   EXPECT_EQ(stats.deadlines(), 40u);
   EXPECT_EQ(stats.late(), 4u);
   EXPECT_EQ(stats.longestLate(), 4u);
@@ -41,15 +42,16 @@ TEST(FrameStats, TheLongestRunOfLateFramesIsOfOneRun) {
 
 TEST(FrameStats, WorkIsTheMedianAndTheMeanShareOfTheLastSecond) {
   FrameStats stats;
-  stats.frame(at(0), milliseconds(1000), kPeriod, 1000);  // long ago
+  stats.frame(at(0), milliseconds(1000), kPeriod, 1000);  // more than a second before the others
   for (int k = 100; k < 105; ++k)
     stats.frame(at(k), milliseconds(k == 104 ? 45 : 20), kPeriod, 1000);
   stats.advance(at(105));
   EXPECT_DOUBLE_EQ(stats.medianWorkSeconds(), 0.020);
-  EXPECT_DOUBLE_EQ(stats.utilisation(), 1.0);  // (4 x 0.8 + 1.8) / 5
+  // (4 x 0.8 + 1.8) / 5: 20 ms and 45 ms, in periods of 25 ms.
+  EXPECT_DOUBLE_EQ(stats.utilisation(), 1.0);
 }
 
-// Two late, one in time, one late, then five in time: four until it has settled.
+// Two late frames, one in time, one late, then five in time: the step settled after four frames.
 TEST(FrameStats, AStepHasSettledWhenFiveInARowAreInTime) {
   FrameStats stats;
   int k = 0;
@@ -76,7 +78,8 @@ TEST(FrameStats, TheHistogramCountsWorkInSixteenthsOfThePeriod) {
   EXPECT_EQ(h[31], 3u) << "and all that is longer";
 }
 
-// 90 frames of 1,000 triangles and 10 of 2,000: the fifth from below and from above.
+// Of 100 frames 90 have 1,000 triangles and 10 have 2,000; the 5th and 95th percentiles are 1,000
+// and 2,000.
 TEST(FrameStats, OscillationIsTheSpreadOfTheLastHundredFrames) {
   FrameStats stats;
   for (int i = 0; i < 99; ++i) stats.frame(at(1), milliseconds(20), kPeriod, 500);

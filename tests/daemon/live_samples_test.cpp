@@ -24,7 +24,8 @@ TEST(LiveSamples, KnowsAStateThatIsBeingWrittenFromBefore) {
   health.state = HealthState::kOk;
   slot.publish(health);
   EXPECT_EQ(samples->complaint(), "");
-  const std::uint64_t odd = 3;  // a writer that has lost its processor in the middle
+  // An odd sequence number: the writer was preempted in the middle of a write.
+  const std::uint64_t odd = 3;
   std::memcpy(static_cast<void*>(&slot), &odd, sizeof odd);
   ASSERT_FALSE(slot.read());
   EXPECT_EQ(samples->complaint(), "");

@@ -1,4 +1,4 @@
-// Files of models that are replaced while the wall runs: when they are read.
+// When the wall reads a model file that is replaced while it runs.
 #include "daemon/wall/model_watch.h"
 
 #include <utility>

@@ -1,4 +1,5 @@
-// The bounds of a server's connections: places, time, bytes and turns; by a protocol of lines.
+// The limits of a server's connections: places, time, bytes and turns, tested with a protocol of
+// lines.
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -105,7 +106,8 @@ TEST_F(Admission, AUserWithManyBusyProcessesGivesAPlaceToAnother) {
 
 // ---- the server
 
-// A protocol of lines, each answered by itself; "bad" breaks it. Established by the first line.
+// A line protocol that answers each line. The line "bad" is a protocol error. The first line
+// establishes the connection.
 class Lines final : public Session {
  public:
   Result<Taken> receive(std::string_view input, std::size_t most, std::string& output) override {
@@ -128,7 +130,7 @@ class Lines final : public Session {
 
 class Server : public testing::Test {
  protected:
-  // The client's end of a new connection.
+  // Connects to the server; returns the client's end.
   UniqueFd connect(const Peer& peer, bool* admitted = nullptr) {
     int ends[2];
     EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends), 0);
@@ -141,7 +143,7 @@ class Server : public testing::Test {
     ASSERT_EQ(::send(fd.get(), text.data(), text.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(text.size()));
   }
-  // What has come; "(closed)" at its end where the server closed it.
+  // The bytes received so far, followed by "(closed)" if the server closed the connection.
   static std::string received(const UniqueFd& fd) {
     std::string all;
     char bytes[4096];
@@ -263,7 +265,7 @@ TEST_F(Server, SeesThatAClientHasGone) {
   EXPECT_EQ(server_.report().sentAway(), 0U);
 }
 
-// A relay whose far side is a socket of the test.
+// A session that forwards its input to a socket of the test.
 class Relay final : public Session {
  public:
   explicit Relay(int far) : far_(far) {}
@@ -303,7 +305,7 @@ TEST_F(Server, ARelayPassesBothWaysAndEndsWithItsFarSide) {
   EXPECT_EQ(received(client), "(closed)");
 }
 
-// ---- sockets that listen
+// ---- listening sockets
 
 class Listening : public testing::Test {
  protected:

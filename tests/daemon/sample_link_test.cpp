@@ -1,5 +1,5 @@
-// Another machine's devices: the document of one end into the shared memory of the other, over a
-// real, encrypted socket.
+// The devices of another machine: one end's samples document reaches the other end's shared memory
+// over a real, encrypted socket.
 #include "daemon/status/sample_link.h"
 
 #include <gtest/gtest.h>
@@ -157,7 +157,7 @@ TEST(Keys, AreWrittenForTheirOwnerAloneAndReadBack) {
   EXPECT_EQ(readKeyPair(dir / "clients").error().code, Errc::kMalformed);
 }
 
-// A devices' daemon with a network socket.
+// A devices daemon with a network socket for samples.
 struct Devices {
   Devices(const test::TempDir& dir, int port, const KeyPair& keys, std::vector<std::string> clients)
       : segment(filled(toNanoseconds(clock.now()), 1)) {
@@ -184,7 +184,7 @@ struct Devices {
   ThreadWatch threads;
   std::unique_ptr<shm::DevicesSegment> segment;
   std::unique_ptr<StatusServer> server;
-  std::unique_ptr<net::Server> samples;  // stands on `server`
+  std::unique_ptr<net::Server> samples;  // uses `server`, so it is destroyed first
 };
 
 HealthState ballOf(const shm::DevicesSegment& segment) {
@@ -237,7 +237,7 @@ TEST(SampleLink, AStrangersKeyHearsNothing) {
   EXPECT_EQ(theirs->ball.count(), 0u);
 }
 
-// The natural order of an installation: our key is listed after we first asked.
+// As in a usual installation, the daemon lists our key only after our first attempt.
 TEST(SampleLink, AKeyThatIsListedLaterIsHeardAfterTheOthersRestart) {
   const test::TempDir dir;
   const int port = 20000 + (::getpid() + 3571) % 20000;
@@ -250,7 +250,7 @@ TEST(SampleLink, AKeyThatIsListedLaterIsHeardAfterTheOthersRestart) {
   auto devices = std::make_unique<Devices>(dir, port, server, std::vector{other.public_key});
   const auto link = SampleLink::start(settings, *here, threads, clock);
   ASSERT_TRUE(link) << link.error().what;
-  // Refused at least once, as the peer's doorman says.
+  // The daemon accepts the TCP connection and then refuses our key, at least once.
   ASSERT_TRUE(test::eventually([&] { return devices->samples->report().accepted > 0; }));
   devices->stop();
   devices = std::make_unique<Devices>(dir, port, server, std::vector{ours.public_key});

@@ -12,7 +12,7 @@
 namespace merlin::shm {
 namespace {
 
-// Large, so that a write takes long enough for a reader to land inside it.
+// Large, so that a write takes long enough for a read to overlap it.
 using Block = std::array<std::uint64_t, 512>;
 
 Block filled(std::uint64_t n) {
@@ -35,7 +35,7 @@ TEST(SeqSlot, IsEmptyUntilTheFirstPublish) {
 TEST(SeqSlot, AReaderNeverSeesAMixOfTwoValues) {
   SeqSlot<Block> slot;
   std::atomic<int> reads{0};
-  // Writes three times, then waits for a read: most meet a write, and none for ever.
+  // Writes three times, then waits for a read: most reads overlap a write, and none waits for ever.
   std::jthread writer([&](const std::stop_token& stop) {
     for (std::uint64_t n = 1; !stop.stop_requested(); ++n) {
       const int before = reads;
@@ -49,7 +49,7 @@ TEST(SeqSlot, AReaderNeverSeesAMixOfTwoValues) {
     const auto b = slot.read();
     if (!b) continue;
     ASSERT_TRUE(uniform(*b));
-    ASSERT_GE(b->front(), last);  // time does not run backwards
+    ASSERT_GE(b->front(), last);  // values never go back
     last = b->front();
     ++reads;
   }
@@ -57,13 +57,13 @@ TEST(SeqSlot, AReaderNeverSeesAMixOfTwoValues) {
 
 TEST(SeqSlot, AWriterThatDiedInTheMiddleIsNothingAndNoWait) {
   struct Torn {
-    std::uint64_t sequence = 7;  // odd: being written, for ever
+    std::uint64_t sequence = 7;  // an odd number: a write that never ends
     std::uint64_t payload = 1;
   } torn;
   EXPECT_FALSE(reinterpret_cast<const SeqSlot<std::uint64_t>&>(torn).read());
 }
 
-// SharedMemory::mend() copies a segment while others write to it.
+// SharedMemory::mend() copies a segment while others write to it, so a copy may be torn.
 TEST(SeqSlot, ACopyThatWasTakenDuringAWriteIsWholeWithTheNextOne) {
   struct Torn {
     std::uint64_t sequence = 7, payload = 1;
@@ -82,7 +82,7 @@ TEST(Channel, KeepsTheLast256AndSaysWhichAreGone) {
   EXPECT_EQ(channel->newest(), 1299u);
   EXPECT_EQ(channel->at(299), 1299u);
   EXPECT_EQ(channel->at(45), 1045u);
-  EXPECT_FALSE(channel->at(44));  // overwritten by number 300
+  EXPECT_FALSE(channel->at(44));  // overwritten by value number 300
   EXPECT_FALSE(channel->at(300));
 }
 
@@ -94,7 +94,7 @@ TEST(Channel, WakesAWaiterAtOnce) {
     woken = true;
   });
   channel.publish(1);
-  waiter.join();  // hangs for a minute a time if nobody wakes it
+  waiter.join();  // would take a minute for each wait if publish() did not wake the waiter
   EXPECT_TRUE(woken);
 }
 

@@ -1,4 +1,4 @@
-// A server that the wall can do without: kept running, and never the end of the process.
+// A server is optional for the wall: it is restarted after a failure, which never ends the process.
 #include "daemon/net/server_keeper.h"
 
 #include <atomic>
@@ -13,7 +13,7 @@
 namespace merlin::net {
 namespace {
 
-// Serves until it is told to fail.
+// A server that runs until the test sets `fails`.
 class Failing final : public Server {
  public:
   Failing(ThreadWatch& threads, std::atomic<bool>& fails)

@@ -1,5 +1,5 @@
-// Readers that know nothing of MERLIN but the table of fields: the C one and the Python one that
-// are shipped, as programs of their own, against a live writer.
+// Readers that know only the table of fields: the C and the Python reader that are shipped, run as
+// programs against a live writer.
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -68,7 +68,7 @@ TEST_F(Writer, ThePythonReaderSaysTheSame) {
   EXPECT_NE(out.output.find("glove.count [1]"), std::string::npos);
 }
 
-// Publishes balls whose rotation about x is their number, until it is destroyed.
+// Until destroyed, publishes ball samples whose rotation about x equals their counter.
 struct Turning {
   explicit Turning(DevicesSegment& segment)
       : thread([&segment](const std::stop_token& stop) {

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include <fcntl.h>
+#include <grp.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -21,9 +22,9 @@ using test::privateName;
 
 const Endpoints kEndpoints{"ipc:///run/merlin/a.status", "ipc:///run/merlin/a.command"};
 
-// The contract with other programs: these figures never change under version 2.
-TEST(Layout, OffsetsOfVersion3) {
-  EXPECT_EQ(kVersion, 3u);
+// The contract with other programs: these offsets never change within version 4.
+TEST(Layout, OffsetsOfVersion4) {
+  EXPECT_EQ(kVersion, 4u);
   EXPECT_EQ(offsetof(Header, generation), 16u);
   EXPECT_EQ(offsetof(Header, field_offset), 24u);
   EXPECT_EQ(offsetof(Header, field_count), 28u);
@@ -74,7 +75,7 @@ TEST(Fields, DescribeEachValueOnceAndInsideTheSegment) {
   }
 }
 
-// Which bytes of a segment the table describes: values, their slots' sequences, and rings.
+// Marks the bytes of a segment that the table describes: values, their slots' sequences, and rings.
 std::vector<bool> described(const std::vector<Field>& fields, std::size_t size) {
   std::vector<bool> bytes(size);
   const auto mark = [&](std::size_t from, std::size_t count) {
@@ -88,7 +89,8 @@ std::vector<bool> described(const std::vector<Field>& fields, std::size_t size) 
   return bytes;
 }
 
-// Runs of bytes before the table that no field describes, each named by the field before it.
+// The runs of bytes before the table that no field describes, each as the name of the field before
+// it and its length.
 std::vector<std::string> undescribed(const std::vector<Field>& fields, std::size_t size) {
   const std::vector<bool> bytes = described(fields, size);
   std::map<std::size_t, std::string> ends;
@@ -109,8 +111,8 @@ std::vector<std::string> undescribed(const std::vector<Field>& fields, std::size
 
 using Runs = std::vector<std::string>;
 
-// A member that is added to layout.h or samples.h and forgotten in fields.cpp changes these lists.
-// What stands here is `reserved` members and padding to 8 or 64 bytes.
+// A member that is added to layout.h or samples.h but not to fields.cpp changes these lists. They
+// contain only `reserved` members and padding to 8 or 64 bytes.
 TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
   EXPECT_EQ(undescribed(devicesFields(), offsetof(DevicesSegment, fields)),
             (Runs{"segment.command_endpoint 40",
@@ -148,12 +150,12 @@ TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
 
 TEST(Fields, CoverEveryByteOfTheWallsSegmentButPadding) {
   EXPECT_EQ(undescribed(wallFields(), offsetof(WallSegment, fields)),
-            (Runs{"segment.command_endpoint 40", "wall.returned 44", "trace.wake 4",
+            (Runs{"segment.command_endpoint 40", "wall.cost_unit 24", "trace.wake 4",
                   "trace.step.tile's ring 56", "interaction.content 16", "outputs.count 4",
                   "outputs.fault 48"}));
 }
 
-// As a reader does that knows the table alone: sample 258 from its place in the ring.
+// Reads sample 258 at its position in the ring, as a reader that knows only the table does.
 TEST(Fields, SayWhereASampleLiesInItsRing) {
   auto segment = std::make_unique<DevicesSegment>();
   BallSample ball{};
@@ -224,7 +226,7 @@ TEST(Segment, ASecondWriterIsRefusedAndTheFirstUndisturbed) {
   EXPECT_EQ((*SegmentReader<DevicesSegment>::open(name))->header.generation, 1u);
 }
 
-// kill -9 leaves the name behind; the next start takes it over.
+// kill -9 leaves the shared memory object behind; the next start takes it over.
 TEST(Segment, OfADeadWriterIsReplaced) {
   const std::string name = segmentName(privateName("dead"), "wall");
   const SystemClock clock;
@@ -246,14 +248,15 @@ TEST(Segment, OfADeadWriterIsReplaced) {
   EXPECT_EQ((*SegmentReader<WallSegment>::open(name))->header.generation, 2u);
 }
 
-// A reader may take a read lock on what it may read; no lock of a reader's is the owner's.
+// A reader can hold a read lock on an object that it may read. Such a lock must not count as the
+// owner's.
 TEST(SharedMemory, AReadersLockDoesNotForbidTheRestart) {
   const std::string name = "/" + privateName("locked");
   { ASSERT_TRUE(SharedMemory::create(name, 4096)); }
   const pid_t child = ::fork();
   if (child == 0) {
     auto left = SharedMemory::create(name, 4096);
-    ::_exit(left.ok() ? 0 : 1);  // as killed: the object stays
+    ::_exit(left.ok() ? 0 : 1);  // like a killed process: the object stays
   }
   ::waitpid(child, nullptr, 0);
   const UniqueFd reader(::shm_open(name.c_str(), O_RDONLY, 0));
@@ -274,7 +277,7 @@ TEST(SharedMemory, TwoLivingOwnersCannotShareAName) {
   EXPECT_TRUE(SharedMemory::owned(name));
 }
 
-// An administrator removes it, or logind as its user logs out.
+// Somebody else removed the object: an administrator, or logind when its user logs out.
 TEST(SharedMemory, WhatWasRemovedIsMadeAgainWithTheSameBytes) {
   const std::string name = "/" + privateName("mended");
   auto memory = SharedMemory::create(name, 10'000);
@@ -311,7 +314,7 @@ TEST(SharedMemory, ANameThatAnotherTookMeanwhileStaysTheOthers) {
     second = SharedMemory::create(name, 4096);
     ASSERT_TRUE(second);
     EXPECT_EQ(first->mend().error().code, Errc::kBusy);
-    first->data()[0] = std::byte{1};  // still the first's own
+    first->data()[0] = std::byte{1};  // still belongs to `first`
   }
   EXPECT_TRUE(SharedMemory::open(name)) << "the first's end removed the second's";
   EXPECT_EQ(second->data()[0], std::byte{0});
@@ -344,7 +347,7 @@ TEST(SharedMemory, AStrangersLockKeepsNobodyOut) {
   ::waitpid(child, nullptr, 0);
 }
 
-// Anybody may make an object of a name that nobody has.
+// Any user may create an object whose name is not in use yet.
 TEST(SharedMemory, AStrangersObjectIsNotTakenAndGoesForRoot) {
   if (::geteuid() != 0) GTEST_SKIP() << "takes root, to act as another user";
   const std::string name = "/" + privateName("stranger");
@@ -368,11 +371,41 @@ TEST(SharedMemory, AStrangersObjectIsNotTakenAndGoesForRoot) {
   EXPECT_TRUE(SharedMemory::open(name, SharedMemory::From::kOwnUserOrRoot));
 }
 
+TEST(SharedMemory, OfAnotherUserInOneOfOurGroupsIsAcceptedWhereThatIsWanted) {
+  if (::geteuid() != 0) GTEST_SKIP() << "takes root, to act as other users";
+  const std::string name = "/" + privateName("group");
+  const auto made = SharedMemory::create(name, 4096);
+  ASSERT_TRUE(made) << made.error().what;
+  constexpr uid_t kOwner = 65533, kReader = 65534;
+  ASSERT_EQ(::chown(("/dev/shm" + name).c_str(), kOwner, kOwner), 0);
+  // 'a': accepted, 'r': refused, of a reader who is in the owner's group, or is not
+  const auto seenBy = [&](gid_t group) {
+    int out[2];
+    EXPECT_EQ(::pipe(out), 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+      if (::setgroups(1, &group) != 0 || ::setgid(kReader) != 0 || ::setuid(kReader) != 0)
+        ::_exit(1);
+      const char answer = SharedMemory::open(name, SharedMemory::From::kOwnGroup) ? 'a' : 'r';
+      ::_exit(::write(out[1], &answer, 1) == 1 ? 0 : 1);
+    }
+    char answer = 0;
+    EXPECT_EQ(::read(out[0], &answer, 1), 1);
+    ::waitpid(child, nullptr, 0);
+    ::close(out[0]);
+    ::close(out[1]);
+    return answer;
+  };
+  EXPECT_EQ(seenBy(kOwner), 'a');
+  EXPECT_EQ(seenBy(kReader), 'r');
+}
+
 TEST(Segment, OfAnotherVersionOrMakerIsRefused) {
   const std::string name = segmentName(privateName("other"), "wall");
   auto memory = SharedMemory::create(name, sizeof(WallSegment));
   ASSERT_TRUE(memory);
-  EXPECT_EQ(SegmentReader<WallSegment>::open(name).error().code, Errc::kMalformed);  // zeros
+  // All bytes are zero.
+  EXPECT_EQ(SegmentReader<WallSegment>::open(name).error().code, Errc::kMalformed);
   auto& header = *reinterpret_cast<Header*>(memory->data());
   fillHeader(header, sizeof(WallSegment), 1, Timestamp{}, kEndpoints);
   EXPECT_TRUE(SegmentReader<WallSegment>::open(name));
@@ -383,10 +416,10 @@ TEST(Segment, OfAnotherVersionOrMakerIsRefused) {
   header.field_size = sizeof(Field);
   header.field_offset = sizeof(WallSegment) - 3 * sizeof(Field);
   EXPECT_TRUE(SegmentReader<WallSegment>::open(name));
-  ++header.field_offset;  // the last entry ends one byte after the segment
+  ++header.field_offset;  // the table would end one byte after the segment
   EXPECT_EQ(SegmentReader<WallSegment>::open(name).error().code, Errc::kMalformed);
   header.field_offset = 0;
-  header.field_size = 100;  // shorter than what we read
+  header.field_size = 100;  // shorter than an entry of this version
   EXPECT_EQ(SegmentReader<WallSegment>::open(name).error().code, Errc::kMalformed);
   header.field_count = 0;
   header.size = 100;
@@ -406,7 +439,7 @@ TEST(Segment, HeartbeatBringsTheOffsetToTheTimeOfDay) {
     EXPECT_LT(std::chrono::abs(stamp - utc), std::chrono::seconds(1));
   };
   expectNow();
-  header.realtime_offset_ns = 0;  // as if the system's clock had been set since
+  header.realtime_offset_ns = 0;  // as if the system's clock had been set after the start
   writer->beat(SystemClock().now());
   expectNow();
 }
@@ -425,7 +458,7 @@ TEST(SegmentFollower, OpensAgainAfterTheDaemonWasStartedAnew) {
     ASSERT_NE(follower.get(now), nullptr);
     EXPECT_EQ(follower.get(now)->header.generation, 1u);
   }
-  now += std::chrono::seconds(2);  // its heart has stopped
+  now += std::chrono::seconds(2);  // no heartbeat for too long
   EXPECT_EQ(follower.get(now), nullptr);
   const auto second = SegmentWriter<WallSegment>::make(name, wallFields(), 2, now, kEndpoints);
   ASSERT_TRUE(second);

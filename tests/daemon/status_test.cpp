@@ -1,7 +1,9 @@
 #include <atomic>
+#include <cstring>
 #include <filesystem>
 #include <thread>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/socket.h>
@@ -80,13 +82,15 @@ TEST_F(DocumentsTest, TheWallSaysWhatOutsideChecksRelyOn) {
   stats.rate_asked_hz = 30;
   stats.rate_held_hz = 29.5F;
   stats.late_share = 0.015F;
-  stats.triangles = 12345;
+  stats.cost = 12345;
+  std::strcpy(stats.cost_unit, "triangles");
   wall_->stats.publish(stats);
   const json s = json::parse(wallStatus(*wall_, kNow));
   EXPECT_EQ(s["rate_asked"], 30);
   EXPECT_EQ(s["rate_held"], 29.5);
   EXPECT_EQ(s["late_percent"], 1.5);
   EXPECT_EQ(s["triangles"], 12345);
+  EXPECT_EQ(s["detail"]["cost"], 12345);
 }
 
 TEST_F(DocumentsTest, TheWallSaysWhereAHandPoints) {
@@ -103,7 +107,7 @@ TEST_F(DocumentsTest, TheWallSaysHowItKeepsItsRate) {
   shm::WallStats stats{};
   stats.cost_exponent = 0.7F;
   stats.rate_divisor = 2;
-  stats.held_triangles = 9;
+  stats.held_cost = 9;
   stats.settle_frames = 3;
   stats.oscillation = 0.05F;
   stats.work_histogram[31] = 4;
@@ -111,7 +115,7 @@ TEST_F(DocumentsTest, TheWallSaysHowItKeepsItsRate) {
   const json s = json::parse(wallStatus(*wall_, kNow));
   EXPECT_EQ(s["cost_exponent"], 0.7);
   EXPECT_EQ(s["rate_divisor"], 2);
-  EXPECT_EQ(s["held_triangles"], 9);
+  EXPECT_EQ(s["detail"]["held_cost"], 9);
   EXPECT_EQ(s["settle_frames"], 3);
   EXPECT_EQ(s["oscillation"], 0.05);
   EXPECT_EQ(s["operator_coarser"], false);
@@ -135,7 +139,8 @@ TEST_F(DocumentsTest, SamplesAreTheNewestOfEachThatThereIs) {
   EXPECT_FALSE(s.contains("glove"));
 }
 
-// The same words as in shared memory: the glove is what the glove measured, the hand is both.
+// The same names as in shared memory: "glove" is the glove's own measurement, "hand" combines glove
+// and tracker.
 TEST_F(DocumentsTest, TheGloveIsCalledGloveAndTheHandHand) {
   GloveSample glove{};
   glove.sensors = 22;
@@ -185,15 +190,15 @@ TEST_F(DocumentsTest, EventsAreToldOnce) {
   std::snprintf(lost.reason, sizeof lost.reason, "the other end hung up");
   devices_->health[shm::kBall].publish(lost);
   EXPECT_EQ(events.take(kNow), (std::vector<std::string>{"ball: absent (the other end hung up)"}));
-  lost.state = HealthState::kOpening;  // tried again: no news
+  lost.state = HealthState::kOpening;  // trying to open it again is no event
   devices_->health[shm::kBall].publish(lost);
   EXPECT_TRUE(events.take(kNow).empty());
 }
 
-// Real sockets, in a folder of the test's own.
+// Uses real sockets in a temporary folder.
 class ServerTest : public testing::Test {
  protected:
-  // As the programs do, before a thread starts.
+  // As in the programs, before the first thread starts.
   static void SetUpTestSuite() { initLog(LogLevel::kWarning); }
 
   void SetUp() override {
@@ -244,6 +249,39 @@ TEST_F(ServerTest, AnswersCommands) {
   EXPECT_NE(failed.error().what.find("it is broken"), std::string::npos);
 }
 
+// The answer to the sender's last command, once it is there.
+Result<std::string> answerOf(CommandSender& sender, const Clock& clock) {
+  std::optional<Result<std::string>> answer;
+  EXPECT_TRUE(test::eventually([&] { return (answer = sender.answer(clock.now())).has_value(); }));
+  return answer.value_or(Error{Errc::kTimeout, "none"});
+}
+
+TEST_F(ServerTest, ASenderSendsOneCommandAfterAnotherAndNeverWaits) {
+  CommandSender sender;
+  for (const char* argument : {"auto", "7"}) {
+    ASSERT_TRUE(sender.isReady());
+    ASSERT_TRUE(sender.send(command_, "echo", argument, clock_.now()));
+    EXPECT_FALSE(sender.isReady());
+    EXPECT_EQ(*answerOf(sender, clock_), fmt::format("\"{}\"", argument));
+  }
+  ASSERT_TRUE(sender.send(command_, "fail", "", clock_.now()));
+  EXPECT_NE(answerOf(sender, clock_).error().what.find("it is broken"), std::string::npos);
+  EXPECT_FALSE(sender.answer(clock_.now()));
+}
+
+TEST_F(ServerTest, ASenderGivesUpOnAServerThatIsNotThereAndFindsTheNextOne) {
+  CommandSender sender;
+  const Timestamp sent = clock_.now();
+  ASSERT_TRUE(sender.send("ipc://" + dir_ / "nobody", "echo", "1", sent));
+  EXPECT_FALSE(sender.answer(sent));
+  const auto given_up = sender.answer(sent + CommandSender::kPatience);
+  ASSERT_TRUE(given_up);
+  EXPECT_EQ(given_up->error().code, Errc::kTimeout);
+  ASSERT_TRUE(sender.isReady());
+  ASSERT_TRUE(sender.send(command_, "echo", "2", clock_.now()));
+  EXPECT_EQ(*answerOf(sender, clock_), "\"2\"");
+}
+
 TEST_F(ServerTest, ACommandThatWantsAnArgumentIsGivenIt) {
   EXPECT_EQ(*ask(command_, "echo", seconds(10), "auto"), R"("auto")");
   for (const char* request : {R"({"command": "echo"})", R"({"command": "echo", "argument": 5})"}) {
@@ -270,7 +308,8 @@ TEST_F(ServerTest, DeepNestingAndLongRequestsDoNotHurt) {
   zmq::socket_t socket(context, zmq::socket_type::req);
   socket.set(zmq::sockopt::linger, 0);
   socket.connect(command_);
-  socket.send(zmq::buffer(std::string(1 << 20, 'x')));  // is dropped with its connection
+  // Too large: dropped together with its connection.
+  socket.send(zmq::buffer(std::string(1 << 20, 'x')));
   EXPECT_EQ(*ask(command_, "status", seconds(10)), R"({"n":1})");
 }
 
@@ -295,9 +334,9 @@ TEST_F(ServerTest, SocketsAreForUserAndGroupOnly) {
   }
 }
 
-// ---- what strangers send
+// ---- hostile clients
 
-// A connection of no library's.
+// A plain socket connection, without a library.
 UniqueFd rawConnection(const std::string& endpoint) {
   UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_un address{};
@@ -314,7 +353,7 @@ void sendRaw(const UniqueFd& fd, const std::string& bytes) {
   (void)::send(fd.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
-// Whether the other side closes it, whatever it says before.
+// Whether the server closes the connection; anything it sends before is ignored.
 bool isClosed(const UniqueFd& fd) {
   char bytes[4096];
   for (;;) {
@@ -462,7 +501,7 @@ TEST(Watchdog, KnowsThreadsThatPauseEndStopAndStart) {
   EXPECT_FALSE(watchdog.ping(kNow + seconds(6), {a, {3, "c", 5, false, true, "gone"}}));
 }
 
-// A daemon whose places strangers hold closes connections, and requests are lost with them.
+// When strangers hold all places, a daemon closes connections, and the requests on them are lost.
 TEST(Client, AsksForTheStatusAgainAndForNothingElse) {
   const test::TempDir dir;
   const std::string endpoint = "ipc://" + dir.path() + "/c";
@@ -475,7 +514,7 @@ TEST(Client, AsksForTheStatusAgainAndForNothingElse) {
     while (!stop.stop_requested()) {
       zmq::message_t from, empty, request;
       if (!router.recv(from) || !router.recv(empty) || !router.recv(request)) continue;
-      if (++heard != 2) continue;  // the first one is lost
+      if (++heard != 2) continue;  // answers the second request only
       router.send(from, zmq::send_flags::sndmore);
       router.send(empty, zmq::send_flags::sndmore);
       router.send(zmq::str_buffer(R"({"ok": true, "result": 5})"), zmq::send_flags::none);
@@ -501,7 +540,7 @@ TEST(RunDirectory, IsMadeAndRefusedWhereItIsNotOurs) {
   std::filesystem::create_directory(dir / "open");
   ASSERT_EQ(::chmod((dir / "open").c_str(), 0777), 0);
   EXPECT_FALSE(runDirectory(dir / "open")) << "everybody may write to it";
-  if (::geteuid() != 0) return;  // only root can give a folder away
+  if (::geteuid() != 0) return;  // only root can change a folder's owner
   for (const char* given : {"given", "tmp/given"}) {
     std::filesystem::create_directories(dir / given);
     ASSERT_EQ(::chown((dir / given).c_str(), 65534, 65534), 0);

@@ -1,4 +1,4 @@
-// Blocks of work on several threads, with a team that stays and without.
+// Parallel loops over blocks, with a persistent team of threads and without one.
 #include "daemon/base/thread_team.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 const auto goOn = [](std::size_t) { return true; };
 
-// With a team and without.
+// Each test runs with a team and without one.
 class ForBlocks : public testing::TestWithParam<bool> {
  protected:
   Threads threads(unsigned n) { return GetParam() ? Threads(n, team_) : Threads(n); }
@@ -61,8 +61,8 @@ TEST_P(ForBlocks, MayHaveBlocksOfTheirOwn) {
 
 thread_local int turns_of_this = 0;
 
-// Turns in which each thread waits for the others, so that all have a part in each; how many the
-// thread that had the fewest has had.
+// Runs loops in which every thread waits for all others, so each handles one block of each loop.
+// Returns the smallest number of blocks that a thread of the last loop has handled in all loops.
 int fewestTurns(Threads threads, int turns) {
   std::vector<int> of(threads.count);
   turns_of_this = 0;

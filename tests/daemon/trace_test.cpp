@@ -1,4 +1,4 @@
-// merlin trace: JSON that a trace viewer opens, and the steps of design's "one frame" in it.
+// merlin trace writes JSON for a trace viewer, with the steps that the design names for one frame.
 #include <map>
 #include <set>
 
@@ -14,14 +14,14 @@ namespace {
 using nlohmann::json;
 using shm::StepKind;
 
-// Two frames of 33 ms: the first late by 2 ms, the second still.
+// Two frames with a period of 33 ms: the first is 2 ms late, the second shows a still picture.
 std::vector<shm::FrameTrace> frames() {
   shm::FrameTrace late{};
   late.begin_ns = 5'000'000'000;
   late.end_ns = 5'035'000'000;
   late.deadline_ns = 5'033'000'000;
   late.period = 7;
-  late.triangles = 1234;
+  late.cost = 1234;
   late.moving = late.late = 1;
   std::uint32_t at = 0;
   for (const StepKind kind :
@@ -47,7 +47,7 @@ TEST(Trace, HasEachStepOfAFrameInsideOfIt) {
   const json frame = by_name.at("frame");
   EXPECT_EQ(frame["ts"], 0.0);
   EXPECT_EQ(frame["dur"], 35'000.0);
-  EXPECT_EQ(frame["args"]["triangles"], 1234);
+  EXPECT_EQ(frame["args"]["cost"], 1234);
   for (const char* step : {"input", "scene", "governor", "cut", "upload", "draw tile 3",
                            "read-back tile 3", "present"}) {
     ASSERT_TRUE(by_name.count(step)) << step;
@@ -100,7 +100,7 @@ TEST(Trace, OfNothingIsADocumentAllTheSame) {
   EXPECT_TRUE(json::parse(traceJson({}, {}))["traceEvents"].is_array());
 }
 
-// A segment that says more steps than there is room for, or a kind that nobody knows.
+// A segment with a step count beyond the array, or with an unknown kind of step.
 TEST(Trace, BelievesNoCount) {
   auto hostile = frames();
   hostile[0].count = 4'000'000'000;

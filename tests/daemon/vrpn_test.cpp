@@ -1,4 +1,4 @@
-// VRPN by the bytes that its sources give, and our server over real sockets.
+// The VRPN protocol byte by byte, after VRPN's sources, and MERLIN's server over real sockets.
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -95,7 +95,7 @@ TEST(VrpnProtocol, EveryPrefixWaitsAndEveryBadLengthIsSaid) {
   for (std::size_t n = 0; n < 12; ++n) (void)readVrpnName(whole.substr(24, n));
 }
 
-// A client as VRPN's own begins: cookie, descriptions, a ping.
+// A client that starts as VRPN's own does: with a cookie, descriptions and a ping.
 struct Client {
   explicit Client(int fd_) : fd(fd_) {
     timeval limit{10, 0};
@@ -118,7 +118,7 @@ struct Client {
     const std::string bytes = encodeVrpn(m);
     EXPECT_GT(::send(fd.get(), bytes.data(), bytes.size(), 0), 0);
   }
-  // The next message of a type of that name, by what the server described.
+  // The next message whose type has this name in the server's descriptions.
   std::optional<VrpnMessage> next(const std::string& type) {
     for (VrpnFront front; !front.broken;) {
       if (!cookie_seen && input.size() >= 24) {
@@ -245,7 +245,8 @@ TEST(VrpnServer, AClientHearsOfAButtonThatIsHeldAlready) {
   EXPECT_EQ(hex(states->payload.substr(0, 16)), "0000000C000000010000000000000001");
 }
 
-// Each of its messages is well-formed; it is read at its pace, and others are served meanwhile.
+// Each message of the flood is well-formed. The server reads it at a limited pace and serves other
+// clients meanwhile.
 TEST(VrpnServer, AFloodOfOneClientNeitherGrowsNorKeepsAnyoneWaiting) {
   const SystemClock clock;
   ThreadWatch threads;
@@ -265,7 +266,7 @@ TEST(VrpnServer, AFloodOfOneClientNeitherGrowsNorKeepsAnyoneWaiting) {
   EXPECT_LT(taken, std::size_t{16} << 20) << "what sockets hold, not more";
   Client other(::dup(connectedTo(**server).get()));
   checkSamples(other, *segment);
-  server->reset();  // ends at once, or the test does not
+  server->reset();  // must return at once, else the test hangs
 }
 
 TEST(VrpnServer, SilentClientsGiveTheirPlacesUp) {
@@ -281,7 +282,8 @@ TEST(VrpnServer, SilentClientsGiveTheirPlacesUp) {
   checkSamples(client, *segment);
 }
 
-// A datagram costs its sender nothing: what it asks for must not cost others their places.
+// UDP datagrams can be sent without effort: the connections that they ask for must not take other
+// clients' places.
 TEST(VrpnServer, DatagramsThatAskForSilentConnectionsKeepNobodyOut) {
   const SystemClock clock;
   ThreadWatch threads;
@@ -290,7 +292,7 @@ TEST(VrpnServer, DatagramsThatAskForSilentConnectionsKeepNobodyOut) {
   ASSERT_TRUE(server) << server.error().what;
   const UniqueFd udp(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const sockaddr_in there = loopback((*server)->port());
-  std::vector<UniqueFd> listeners;  // the kernel accepts for them, and nobody speaks
+  std::vector<UniqueFd> listeners;  // the kernel accepts the connections, and nobody speaks on them
   for (int i = 0; i < 20; ++i) {
     listeners.push_back(*net::listenTcp("127.0.0.1", 0));
     const std::string ask = "127.0.0.1 " + std::to_string(net::portOf(listeners.back().get()));
@@ -335,7 +337,7 @@ TEST(VrpnServer, OnePortIsConnectedToOnceHoweverOftenItIsAskedFor) {
   const UniqueFd udp(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const sockaddr_in there = loopback((*server)->port());
   const std::string ask = "127.0.0.1 " + std::to_string(net::portOf(listener->get()));
-  // Until the first has been closed for its silence: the port was asked for all that time.
+  // Asks for the same port until the server has closed the first connection because it was silent.
   EXPECT_TRUE(test::eventually([&] {
     ::sendto(udp.get(), ask.c_str(), ask.size() + 1, 0, reinterpret_cast<const sockaddr*>(&there),
              sizeof there);

@@ -36,6 +36,16 @@ TEST_F(WallContentsTest, TheNextOneIsInTimeFromItsFirstFrame) {
   EXPECT_NEAR(triangles(dear_, calibrating) / cheap, 0.25, 0.05) << "fed forward";
 }
 
+TEST_F(WallContentsTest, TheOneThatWasShownLastIsShownFirst) {
+  first_content_ = 1;
+  run(1, [&](Timestamp) {
+    if (feed_.begins.size() < 2) return;
+    EXPECT_EQ(interaction().content, 1u);
+  });
+  EXPECT_EQ(interaction().content, 1u);
+  EXPECT_EQ(stats().late, 0u) << "its cost is fed forward";
+}
+
 TEST_F(WallContentsTest, AStillWallShowsTheNextOneWhole) {
   feed_.pushed = false;
   run(6, [&](Timestamp now) {

@@ -1,6 +1,7 @@
 // What the wall gave way, as sentences.
 #include "daemon/status/wall_events.h"
 
+#include <cstring>
 #include <memory>
 
 #include <gtest/gtest.h>
@@ -33,27 +34,28 @@ TEST_F(WallEventsTest, TellEachStepDownAndUpOnce) {
   EXPECT_EQ(after(stats_), Sentences{"the operator's view is coarser: there is too little time"});
   EXPECT_EQ(after(stats_), Sentences{});
   stats_.scale_divisor = 2;
-  EXPECT_EQ(after(stats_), Sentences{"tiles at half size while moving: even the fewest triangles "
-                                     "take too long"});
+  EXPECT_EQ(after(stats_), Sentences{"tiles at half size while moving: even the coarsest detail "
+                                     "takes too long"});
   stats_.rate_divisor = 2;
   stats_.rate_now_hz = 15;
   EXPECT_EQ(after(stats_),
-            Sentences{"rate reduced to 15 of 30 Hz: even the fewest triangles take too long"});
+            Sentences{"rate reduced to 15 of 30 Hz: even the coarsest detail takes too long"});
   stats_.rate_divisor = 1;
   stats_.rate_now_hz = 30;
   stats_.operator_coarser = 0;
   EXPECT_EQ(after(stats_), (Sentences{"the operator's view is as fine as the wall again",
-                                      "rate raised to 30 of 30 Hz: the fewest triangles fit"}));
+                                      "rate raised to 30 of 30 Hz: the coarsest detail fits"}));
 }
 
 TEST_F(WallEventsTest, TellWhatIsSetByHand) {
   after(stats_);
-  stats_.held_triangles = 5000;
+  stats_.held_cost = 5000;
+  std::strcpy(stats_.cost_unit, "triangles");
   stats_.rate_asked_hz = 20;
   EXPECT_EQ(after(stats_), (Sentences{"5000 triangles while moving, set by hand",
                                       "the desired rate is 20 Hz now"}));
-  stats_.held_triangles = 0;
-  EXPECT_EQ(after(stats_), Sentences{"number of triangles chosen by the governor again"});
+  stats_.held_cost = 0;
+  EXPECT_EQ(after(stats_), Sentences{"detail chosen by the governor again"});
 }
 
 }  // namespace

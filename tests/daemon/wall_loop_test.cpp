@@ -101,6 +101,23 @@ TEST_F(WallLoopTest, ARequestIsDoneBeforeTheNextFrame) {
   EXPECT_GE(progress.count(), 5u);
 }
 
+TEST_F(WallLoopTest, StepsOfOneFrameAddUpAndAreDoneOnce) {
+  feed_.pushed = false;
+  WallParts all = parts();
+  WallLoop loop(all);
+  const Eigen::Vector3f start = all.scene.view().T_eye_model.translation();
+  feed_.on_begin = [&](Timestamp) {
+    if (feed_.begins.size() == 3) {
+      loop.move({{0.25F, 0, 0}, Eigen::Vector3f::Zero()});
+      loop.move({{0.25F, 0.5F, 0}, Eigen::Vector3f::Zero()});
+    }
+    if (feed_.begins.size() == 6) stop_.request_stop();
+  };
+  loop.run(stop_.get_token(), [] {});
+  const Eigen::Vector3f way = all.scene.view().T_eye_model.translation() - start;
+  EXPECT_TRUE(way.isApprox(Eigen::Vector3f(0.5F, 0.5F, 0))) << way.transpose();
+}
+
 TEST_F(WallLoopTest, StopsAtOnce) {
   stop_.request_stop();
   WallLoop loop(parts());

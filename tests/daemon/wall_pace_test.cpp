@@ -60,7 +60,7 @@ TEST_F(WallPaceTest, TheSizeGivesWayFirstAndComesBack) {
   EXPECT_EQ(stats().ladder_steps, 2u);
 }
 
-// The fewest triangles take 31 ms of 33: with a quarter less time they do not fit, and are drawn.
+// The coarsest detail takes 31 ms of 33: with a quarter less time they do not fit, and are drawn.
 TEST_F(WallPaceTest, MotionThatResumesNearTheLeastIsDrawn) {
   std::size_t resumed = 0, drawn = 0;
   run(8, [&](Timestamp) {
@@ -114,7 +114,7 @@ TEST_F(WallPaceTest, TrianglesAndRateAreSetByHandUntilTheyAreGivenBack) {
       if (held == 0) {
         held = frames_.frames.back().cost;
         rate = static_cast<double>(stats().rate_held_hz);
-        EXPECT_EQ(stats().held_triangles, 1000u);
+        EXPECT_EQ(stats().held_cost, 1000u);
         EXPECT_FLOAT_EQ(stats().rate_asked_hz, 20);
       }
       loop_->hold(std::nullopt);
@@ -123,7 +123,7 @@ TEST_F(WallPaceTest, TrianglesAndRateAreSetByHandUntilTheyAreGivenBack) {
   });
   EXPECT_NEAR(held, 1000, 2);
   EXPECT_NEAR(rate, 20, 0.01);
-  EXPECT_EQ(stats().held_triangles, 0u);
+  EXPECT_EQ(stats().held_cost, 0u);
   EXPECT_FLOAT_EQ(stats().rate_asked_hz, 30);
   EXPECT_GT(frames_.frames.back().cost, 2300u);
 }

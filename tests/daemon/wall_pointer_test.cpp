@@ -9,9 +9,9 @@ namespace {
 class WallPointerTest : public FakeWall {
  protected:
   WallPointerTest() {
-    render::SceneSettings settings;
+    render::scene::SceneSettings settings;
     settings.tracker_axes = {1, 2, 3};
-    scene_ = *render::Scene::make(settings);
+    scene_ = *render::scene::Scene::make(settings);
     painter_.pixels_.assign(4 * 1280 * 960, 90);
     marker_ = &made_;
     feed_.pushed = false;
@@ -20,7 +20,7 @@ class WallPointerTest : public FakeWall {
   }
   Duration since() const { return clock_.now() - feed_.begins.front(); }
 
-  render::PointerMarker made_{plan_};
+  render::frame::PointerMarker made_{plan_};
 };
 
 TEST_F(WallPointerTest, EveryPlaceOfTheMarkIsShownWhileThePictureStands) {

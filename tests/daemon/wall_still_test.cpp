@@ -2,6 +2,7 @@
 // standstill, and motion in time whenever it comes.
 #include <gtest/gtest.h>
 
+#include "render/frame/replaceable_correction.h"
 #include "tests/support/fake_wall.h"
 
 namespace merlin::wall {
@@ -120,6 +121,44 @@ TEST_F(FadingTest, MotionEndsItAtOnce) {
   ASSERT_TRUE(faded);
   EXPECT_EQ(frames_.firsts.back(), FakePainter::kMoving);
   EXPECT_EQ(std::ranges::count_if(frames_.firsts, [](int byte) { return byte > 0; }), 1);
+}
+
+using WallStillTest = FakeWall;
+
+// Sends one pixel of this value.
+struct OneValue final : render::frame::Correction {
+  explicit OneValue(std::uint8_t value) : pixel{value, value, value, 255} {}
+  render::out::Signal apply(const render::out::Signal&) override { return {1, 1, pixel}; }
+  std::uint8_t pixel[4];
+};
+
+TEST_F(WallStillTest, ACorrectionThatIsReplacedIsShownInTheNextPeriodAndOnce) {
+  feed_.pushed = false;
+  auto made = std::make_unique<render::frame::ReplaceableCorrection>(std::make_unique<OneValue>(7));
+  render::frame::ReplaceableCorrection& correction = *made;
+  corrections_.push_back(std::move(made));
+  std::size_t before = 0;
+  run(6, [&](Timestamp) {
+    if (feed_.begins.size() == 150) {
+      before = frames_.frames.size();
+      EXPECT_EQ(frames_.firsts.back(), 7);
+      correction.replace(std::make_unique<OneValue>(8));
+    }
+    if (feed_.begins.size() != 151) return;
+    EXPECT_EQ(frames_.firsts.back(), 8);
+  });
+  EXPECT_EQ(frames_.frames.size(), before + 1);
+  EXPECT_TRUE(stats().full_detail) << "of the picture that stands";
+}
+
+TEST_F(WallStillTest, WhatBoundInputsMoveIsPassedOn) {
+  std::vector<AlignInput> asked;
+  on_align_ = [&](const AlignInput& input) { asked.push_back(input); };
+  run(1, [&](Timestamp) {
+    if (feed_.begins.size() == 10) feed_.actions.align.begun[3] = 2;
+  });
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].begun[3], 2u);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a client may send to a ZeroMQ socket, followed by its framing alone.
+// What a client may send to a ZeroMQ socket, decided from the framing (ZMTP) alone.
 #include "daemon/status/zmtp_guard.h"
 
 #include <gtest/gtest.h>
@@ -23,13 +23,13 @@ const std::string kPing = frame(4, std::string("\4PING\0\x10", 7));
 
 class Guard : public testing::Test {
  protected:
-  // Why it is refused; empty: it is not.
+  // The reason why `input` is refused; empty if it is accepted.
   static std::string refusal(const ZmtpLimits& limits, const std::string& input) {
     ZmtpGuard guard(limits);
     const auto followed = guard.follow(input, kAll);
     return followed ? "" : followed.error().what;
   }
-  // The same, of so many equal frames after a greeting.
+  // The same for a greeting followed by `count` copies of the frame `one`.
   static std::string ofMany(const std::string& mechanism, const std::string& one, int count) {
     std::string input = greeting(mechanism);
     for (int i = 0; i < count; ++i) input += one;

@@ -1,4 +1,4 @@
-// A glove's calibration: other programs' files, and a person's own from a few poses.
+// Glove calibration: imported from other programs' files, or computed from a few poses of a person.
 #include "drivers/cyberglove/calibration_files.h"
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace merlin::cyberglove {
 namespace {
 
-// The file that the shipped calibration comes from (asr_cyberglove, BSD-3: see
+// The file from which the shipped calibration was made (asr_cyberglove, BSD-3: see
 // drivers/cyberglove/CALIBRATION-LICENSE.txt).
 const std::string kAsr =
     "0.300000:46.000000 -0.500000:164.000000\n0.900000:73.000000 -0.700000:181.000000\n"
@@ -32,7 +32,8 @@ TEST(Import, AsrsFileIsTheShippedCalibration) {
   EXPECT_STREQ(c->format, "asr_cyberglove");
   const CybergloveSettings shipped;
   for (std::size_t slot = 0; slot < 23; ++slot) {
-    EXPECT_EQ(c->given[slot], slot != 7 && slot != 20) << slot;  // no sensor; no angle
+    // Slot 7 has no sensor, slot 20 no angles in the file.
+    EXPECT_EQ(c->given[slot], slot != 7 && slot != 20) << slot;
     if (!c->given[slot]) continue;
     EXPECT_NEAR(c->gain[slot], shipped.gain[slot], 1e-6F) << slot;
     EXPECT_NEAR(c->offset[slot], shipped.offset[slot], 1e-3F) << slot;
@@ -56,7 +57,7 @@ TEST(Import, TheVendorsFileHasTwentyFourSlots) {
 }
 
 TEST(Import, ShadowsTablesAreDegreesOverAShareOfTheRange) {
-  // the fact sheet's example: raw 110 is 0 degrees, raw 167 is 90
+  // The fact sheet's example: raw 110 means 0 degrees, raw 167 means 90.
   for (const std::string text :
        {R"(["G_IndexMPJ", [[0.42913,0.0],[0.5,10.0],[0.65354,90.0]]])",
         R"(<Joint name="G_IndexMPJ"><calib raw_value="0.42913" calibrated_value="0.0"/>
@@ -68,9 +69,9 @@ TEST(Import, ShadowsTablesAreDegreesOverAShareOfTheRange) {
     EXPECT_NEAR((167 - c->offset[4]) * c->gain[4], 1.5708F, 0.001F);
   }
   EXPECT_EQ(importCalibration(R"(["G_Nose", [[0.1,0],[0.2,9]]])").error().what,
-            "G_Nose is no joint of a CyberGlove");
+            "G_Nose is not a joint of a CyberGlove");
   EXPECT_EQ(importCalibration(R"(["G_IndexMPJ", [[0.1,0]]])").error().what,
-            "G_IndexMPJ has not two points or more, each a raw value and degrees");
+            "G_IndexMPJ needs two points or more, each a raw value and an angle in degrees");
 }
 
 std::string vess(const std::string& fourth) {
@@ -82,7 +83,8 @@ std::string vess(const std::string& fourth) {
 TEST(Import, VessHasARangeForEachSensor) {
   const auto c = importCalibration(vess("60 40 200\n"));
   ASSERT_TRUE(c) << c.error().what;
-  EXPECT_NEAR((220 - c->offset[4]) * c->gain[4], 1.5708F, 1e-4F);  // MPJ: 90 degrees over 160
+  // MCP joint: 90 degrees over 160 raw counts.
+  EXPECT_NEAR((220 - c->offset[4]) * c->gain[4], 1.5708F, 1e-4F);
 }
 
 TEST(Import, AFlippedRangeIsNamed) {
@@ -90,7 +92,8 @@ TEST(Import, AFlippedRangeIsNamed) {
             "line 4 has a minimum of 200 and a maximum of 40: are they swapped?");
   std::string flat = kAsr;
   flat.replace(flat.find("98.0"), 4, "74.0");
-  EXPECT_EQ(importCalibration(flat).error().what, "line 4 has both its points at the raw value 74");
+  EXPECT_EQ(importCalibration(flat).error().what,
+            "line 4 has two points with the same raw value, 74");
 }
 
 TEST(Import, WhatIsNoCalibrationIsSaid) {
@@ -100,7 +103,7 @@ TEST(Import, WhatIsNoCalibrationIsSaid) {
     EXPECT_FALSE(importCalibration(kAsr.substr(0, n))) << n;
 }
 
-// What a glove of these settings shows at these angles.
+// The sample that a glove with these settings gives for these joint angles.
 GloveSample at(const std::array<float, 23>& angles, const CybergloveSettings& settings) {
   GloveSample s{};
   const auto raw = rawOf(angles, settings);
@@ -112,7 +115,7 @@ TEST(Guided, FindsTheGloveOfAnotherHand) {
   CybergloveSettings truth;
   for (std::size_t i = 0; i < 23; ++i) {
     truth.offset[i] = 60 + static_cast<float>(i);
-    truth.gain[i] = i % 5 == 2 ? -0.012F : 0.014F;  // some sensors are turned round
+    truth.gain[i] = i % 5 == 2 ? -0.012F : 0.014F;  // some sensors count in the other direction
     if (truth.gain[i] < 0) truth.offset[i] += 120;
   }
   GuidedCalibration guided;

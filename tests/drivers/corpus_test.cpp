@@ -1,11 +1,11 @@
-// The corpus: every transcript of tests/transcripts through its driver, against what stands beside
-// it: one JSON line a sample, then what was dropped and how it ended.
+// The corpus: replays every transcript of tests/transcripts through its driver and compares the
+// result with the .expect file beside it: one JSON line for each sample, then the counts of dropped
+// data and how the replay ended.
 //
-//   corpus_test --rebuild      writes every .expect anew, for review as a diff
-//   corpus_test --synthesise   writes the synthetic transcripts that are there anew, by the
-//   emulators
+// corpus_test --rebuild: rewrites every .expect file, for review as a diff
+// corpus_test --synthesise: rewrites the synthetic transcripts that exist, by the emulators
 //
-// All other combinations of models, settings and damage are generated as the test runs.
+// All other combinations of models, settings and damage are generated while the test runs.
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 const fs::path kFolder = fs::path(MERLIN_SOURCE_DIR) / "tests/transcripts";
 
-// "slot7=derived rate=50" of the header: what the configuration says beside the defaults.
+// Parses the header's settings, such as "slot7=derived rate=50", which differ from the defaults.
 DriverSettings settingsOf(std::string_view text) {
   DriverSettings s;
   std::istringstream words{std::string(text)};
@@ -55,7 +55,7 @@ std::string list(const T& values, const char* form) {
   return "[" + text + "]";
 }
 
-// One JSON line a sample. Metres to 0.1 mm, radians to 1 mrad, shares to 0.001.
+// Writes one JSON line for each sample: metres to 0.1 mm, radians to 1 mrad, axes to 0.001.
 class Lines final : public SampleSink {
  public:
   void publish(const GloveSample& s) noexcept override {
@@ -186,7 +186,7 @@ struct Case {
 constexpr const char* kFaults[] = {"none",    "garbage", "flip",    "drop",  "double",
                                    "silence", "zeros",   "another", "burst", "half"};
 
-// Damages what was streamed after the dialogue.
+// Damages the streamed records that follow the dialogue.
 void damage(std::vector<io::TranscriptChunk>& chunks, const Case& c, Random& random) {
   std::size_t first = 0;
   for (std::size_t i = 0; i < chunks.size(); ++i) first = chunks[i].to_device ? i + 1 : first;
@@ -243,7 +243,7 @@ struct NamedCase {
   Case what;
 };
 
-// Every model with every setting and every kind of damage.
+// Every model combined with every setting and every kind of damage.
 std::vector<NamedCase> allCases() {
   struct Family {
     const char* driver;
@@ -267,7 +267,8 @@ std::vector<NamedCase> allCases() {
   for (const Family& f : families) {
     for (const char* model : f.models) {
       for (std::size_t s = 0; s < f.settings.size(); ++s) {
-        if (f.settings[s] == nullptr) continue;  // another family's
+        // Only continues the numbering of the driver's first family.
+        if (f.settings[s] == nullptr) continue;
         for (const char* fault : kFaults) {
           const char* script = f.scripts[seed % f.scripts.size()];
           cases.push_back({fmt::format("{}/{}-{}-{}", f.driver, model, s, fault),
@@ -294,8 +295,8 @@ int synthesise() {
 
 class Generated : public testing::TestWithParam<NamedCase> {};
 
-// Whatever is damaged, the driver comes to the recording's end, names the device, and loses no more
-// than the records around the damage.
+// Whatever is damaged, the driver reads to the end of the recording, identifies the device, and
+// loses no records but those around the damage.
 TEST_P(Generated, LosesOnlyWhatIsDamaged) {
   Case whole = GetParam().what;
   whole.fault = "none";

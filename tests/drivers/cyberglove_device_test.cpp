@@ -25,7 +25,7 @@ struct Glove : test::DeviceBench {
   std::unique_ptr<Device> device;
 };
 
-// A record of 22 sensors at raw 100, as the driver asks for it.
+// A record of 22 sensors at raw 100, with the other fields of `like`.
 std::string record(const Record& like) {
   Record r = like;
   r.values.fill(100);
@@ -83,7 +83,7 @@ TEST(CybergloveDevice, MeasuresWhatTheScriptDoes) {
   for (const GloveSample& sample : glove.sink.glove) {
     const auto motion = glove.script.at(fromNanoseconds(sample.received_ns) - glove.start);
     for (std::size_t slot = 0; slot < kGloveSlots; ++slot) {
-      // Half a count of rounding, 5 sigma of the sensor's noise and of a tremor.
+      // Rounding by half a count, plus 5 sigma of the sensor's noise and of a tremor.
       const double slack = slot == 7 ? 0 : 3.5 * std::abs(settings.gain[slot]) + 0.06;
       ASSERT_NEAR(sample.angle_rad[slot], motion.glove_rad[slot], slack) << "slot " << slot;
     }
@@ -138,7 +138,8 @@ TEST(CybergloveDevice, ComplainsOfAGloveThatIsNotPluggedIn) {
       {record({.unplugged = true}), "glove not plugged in"},
       {record({}), ""},
       {record({.status = 0x80}), "glove not plugged in"},
-      {record({.too_fast = true}), "more records asked for than the glove can measure"},
+      {record({.too_fast = true}),
+       "the requested record rate is higher than the glove can measure"},
       {record({}), ""},
       {"eg\0"s, "glove not plugged in"},
   };
@@ -176,7 +177,7 @@ TEST(CybergloveDevice, SaysWhatAnsweredInstead) {
   EXPECT_LT(glove.clock.now() - glove.start, seconds(1));
 }
 
-// Answers each query by a table, as no emulator of ours would.
+// An emulator that answers each query from a table, also with answers that no real glove gives.
 struct Liar final : emulate::Emulator {
   void receive(std::span<const std::byte> bytes, Timestamp) override {
     const std::string query(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -198,13 +199,13 @@ TEST(CybergloveDevice, RefusesAnswersThatMakeNoGlove) {
     std::vector<std::pair<std::string, std::string>> answers;
     const char* what;
   } kCases[] = {
-      {{{"?i", "Spaceball\0"s}}, "no CyberGlove: it says \"Spaceball\""},
-      {{info, {"?G", "?X\3\0"s}}, "\"?X\\x03\\x00\" in answer to ?G"},
+      {{{"?i", "Spaceball\0"s}}, "not a CyberGlove: it identifies itself as \"Spaceball\""},
+      {{info, {"?G", "?X\3\0"s}}, "unexpected answer \"?X\\x03\\x00\" to ?G"},
       {{info, state, {"?S", "?S\x12\0"s}, mask},
-       "a glove of 18 sensors with a mask of 22 (0x7FFF7F)"},
+       "the glove reports 18 sensors and a mask of 22 (0x7FFF7F)"},
       {{info, {"?G", "?G\1\0"s}, {"?S", "?S\0\0"s}, {"?K", "?K\0\0\0\0"s}},
-       "a glove of 0 sensors with a mask of 0 (0x000000): glove not plugged in"},
-      {{info, state, sensors, mask, {"M\x7F\xFF\x7F", "en\0"s}}, "\"en\" in answer to M"},
+       "the glove reports 0 sensors and a mask of 0 (0x000000): glove not plugged in"},
+      {{info, state, sensors, mask, {"M\x7F\xFF\x7F", "en\0"s}}, "unexpected answer \"en\" to M"},
   };
   for (const auto& [answers, what] : kCases) {
     Glove glove;
@@ -218,7 +219,7 @@ TEST(CybergloveDevice, RefusesAnswersThatMakeNoGlove) {
   }
 }
 
-// The vendor's firmware of 1993 ends the answer to a set with one NUL more.
+// The vendor's firmware of 1993 ends the answer to a set command with an extra NUL.
 struct ThirdByte final : emulate::Emulator {
   explicit ThirdByte(emulate::Emulator& box) : box_(box) {}
   void receive(std::span<const std::byte> bytes, Timestamp now) override {
@@ -249,7 +250,8 @@ TEST(CybergloveDevice, StreamsOnPastGarbageAndCountsIt) {
   Glove glove({.garbage_every = 5});
   ASSERT_TRUE(glove.device->open(glove.stream));
   ASSERT_TRUE(glove.pollFor(*glove.device, seconds(10)));
-  EXPECT_GE(glove.sink.glove.size(), 780u);  // a burst costs the record that it touches
+  // Each burst of garbage destroys the record that it hits.
+  EXPECT_GE(glove.sink.glove.size(), 780u);
   EXPECT_LT(glove.sink.glove.size(), 850u);
   EXPECT_GT(glove.device->counters().bad_packets, 150u);
   EXPECT_GT(glove.device->counters().bad_bytes, 150u * 25);
@@ -260,9 +262,9 @@ TEST(CybergloveDevice, OpensAgainAndCountsOn) {
   ASSERT_TRUE(glove.device->open(glove.stream));
   ASSERT_TRUE(glove.pollFor(*glove.device, seconds(1)));
   const auto first = glove.sink.glove.size();
-  glove.stream.feed(record({}).substr(0, 20));  // cut off
+  glove.stream.feed(record({}).substr(0, 20));  // a record that is cut off
   ASSERT_TRUE(glove.device->poll(glove.stream));
-  ASSERT_TRUE(glove.device->open(glove.stream));  // it streams meanwhile
+  ASSERT_TRUE(glove.device->open(glove.stream));  // the device keeps streaming meanwhile
   ASSERT_TRUE(glove.pollFor(*glove.device, seconds(1)));
   EXPECT_NEAR(static_cast<double>(glove.sink.glove.size() - first), 100, 1);
   EXPECT_EQ(glove.sink.glove.back().counter, glove.sink.glove.size());

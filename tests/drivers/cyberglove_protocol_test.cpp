@@ -24,7 +24,7 @@ struct Seen {
   std::vector<char> refusals;
 };
 
-// Feeds `bytes`; returns the packets that came out, in order.
+// Feeds `bytes` to the parser and returns the packets that it found, in order.
 Seen parse(Parser& parser, std::string_view bytes) {
   Seen seen;
   for (const char c : bytes) {
@@ -46,14 +46,14 @@ std::vector<int> values(const Record& record, std::size_t count) {
   return {record.values.begin(), record.values.begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
-// Fact sheet, example 1: 18 sensors; the first value is an 'e'.
+// Fact sheet, example 1: 18 sensors; the first value is the byte 'e', which could begin an error.
 const std::string kExample1 =
     "\x47\x65\x78\x57\x8F\x82\x5C\x7D\x58\xA0\x77\x5F\x98\x7B\x5A\x95\x6E\x85\x62\x00"s;
 // Fact sheet, example 2: 22 sensors, time stamp, status.
 const std::string kExample2 =
     "\x53\x65\x78\x57\x8F\x82\x5C\x46\x7D\x58\x42\xA0\x77\x5F\x47\x98\x7B\x5A\x44\x95\x6E\x85\x62"
     "\x88\x03\x02\x01\x01\x83\x00"s;
-// The same as the driver asks for it: status, no time stamp.
+// The same with the fields that the driver asks for: status, no time stamp.
 const std::string kGood =
     "\x53\x65\x78\x57\x8F\x82\x5C\x46\x7D\x58\x42\xA0\x77\x5F\x47\x98\x7B\x5A\x44\x95\x6E\x85\x62"
     "\x83\x00"s;
@@ -94,7 +94,7 @@ TEST(CybergloveParser, DropsWhatIsNoRecordAndCountsIt) {
   const std::string bad[] = {
       body.substr(0, 23) + "\x03\0"s,  // a status byte without bit 7
       body + "ex\0"s,                  // an unknown error
-      body + "e\0"s,                   // half an error
+      body + "e\0"s,                   // an incomplete error
       body + "esegeg\0"s,              // longer than any record
       "X" + body.substr(1) + "\0"s,
   };
@@ -114,7 +114,7 @@ TEST(CybergloveParser, FindsRecordsAmongGarbageAndCountsEveryByteOfIt) {
   parser.expect(kDriver22);
   const auto seen = parse(parser, "mid-record\0"s + kGood + "\0"s + kGood + "xyz\0"s + kGood);
   EXPECT_EQ(seen.records.size(), 3u);
-  EXPECT_EQ(parser.badPackets(), 2u);  // a NUL alone is none
+  EXPECT_EQ(parser.badPackets(), 2u);  // a lone NUL does not count as a packet
   EXPECT_EQ(parser.badBytes(), 11u + 1 + 4);
 }
 
@@ -175,7 +175,7 @@ TEST(CybergloveRate, IsADivisorOf115200) {  // fact sheet, section 4.2 and examp
   EXPECT_EQ(encodeRate(1), "T\xE1\x00\x00\x02"s);
 }
 
-// One packet of each kind.
+// One packet of each kind; the damage is applied to it.
 class CybergloveDamage : public testing::TestWithParam<test::NamedPacket> {};
 
 TEST_P(CybergloveDamage, EveryPrefixCostsAtMostItself) {
@@ -245,7 +245,7 @@ TEST(CybergloveCalibration, ASpanIsTwoPointsOfIt) {  // fact sheet, example 5
   EXPECT_FLOAT_EQ((167 - kSpan.offset()) * kSpan.gain(), kRightAngle);
 }
 
-// The file of the defaults, and where its lines belong: README.md of the driver.
+// The defaults are the published file. Which line belongs to which slot: README.md of the driver.
 TEST(CybergloveCalibration, TheDefaultsAreThePublishedFile) {
   constexpr GloveSpan kFile[22] = {
       {46, 0.3F, 164, -0.5F}, {73, 0.9F, 181, -0.7F},  {216, -0.5F, 79, -0.2F},
@@ -263,7 +263,7 @@ TEST(CybergloveCalibration, TheDefaultsAreThePublishedFile) {
   for (std::size_t line = 0; line < 22; ++line) {
     const std::size_t slot = slots.slot[kValue[line]];
     const bool kept = slot == 15 || slot == 19 || slot >= 21;  // abductions, wrist
-    if (slot == 20) continue;                                  // has no angles in the file
+    if (slot == 20) continue;                                  // the file has no angles for it
     for (const auto& [raw, rad] : {std::pair{kFile[line].raw_a, kFile[line].rad_a},
                                    std::pair{kFile[line].raw_b, kFile[line].rad_b}}) {
       EXPECT_NEAR((raw - settings.offset[slot]) * settings.gain[slot], kept ? rad : -rad, 1e-5)
@@ -335,7 +335,8 @@ TEST(CybergloveCalibration, FillsSlot7ByItsRuleUnlessItIsMeasured) {
   EXPECT_FLOAT_EQ(slot7(Slot7Rule::kNeutral, kMask22), 0.28F);
   EXPECT_FLOAT_EQ(slot7(Slot7Rule::kDerived, kMask22), 0.3F);
   EXPECT_FLOAT_EQ(slot7(Slot7Rule::kSwitch, kMask22), 1);
-  EXPECT_FLOAT_EQ(slot7(Slot7Rule::kSwitch, 0x7FFFFF), 0);  // a 23rd sensor, raw 100
+  // Measured by a 23rd sensor, at raw count 100.
+  EXPECT_FLOAT_EQ(slot7(Slot7Rule::kSwitch, 0x7FFFFF), 0);
   record.status = 0x81;
   EXPECT_FLOAT_EQ(slot7(Slot7Rule::kSwitch, kMask22), 0);
 }

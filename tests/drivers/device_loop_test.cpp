@@ -15,11 +15,11 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// A glove's loop whose port opens, or not, as the test says.
+// A DeviceLoop for a glove whose port opens or fails to open, as the test decides.
 struct Loop : test::DeviceBench {
   Loop() : DeviceBench("cyberglove", {}, "visit") {}
 
-  // Runs until the stop that one of the hooks below asks for.
+  // Runs the loop until one of the hooks below requests a stop.
   void run() {
     DeviceLoop loop(
         {.port = "pty:/tmp/glove"}, [this] { return open(); },
@@ -36,7 +36,7 @@ struct Loop : test::DeviceBench {
     return std::unique_ptr<ByteStream>(std::move(fresh));
   }
 
-  // Milliseconds between one attempt to open the port and the next.
+  // Milliseconds between successive attempts to open the port.
   std::vector<long> pauses() const {
     std::vector<long> all;
     for (std::size_t i = 1; i < opened_at.size(); ++i) {
@@ -46,7 +46,7 @@ struct Loop : test::DeviceBench {
     return all;
   }
 
-  // The states of health in a row, each once.
+  // The sequence of health states, without repetitions.
   std::vector<HealthState> states() const {
     std::vector<HealthState> all;
     for (const DeviceHealth& h : health.all) {
@@ -55,7 +55,7 @@ struct Loop : test::DeviceBench {
     return all;
   }
 
-  // Calls `then` with each report of health.
+  // Calls `then` with each health report.
   struct Reports final : HealthSink {
     void publish(const DeviceHealth& h) noexcept override {
       all.push_back(h);
@@ -70,7 +70,7 @@ struct Loop : test::DeviceBench {
   bool plugged = true;
   std::stop_source stop;
   std::vector<Timestamp> opened_at;
-  test::FakeStream* line = nullptr;  // the newest; the loop owns it
+  test::FakeStream* line = nullptr;  // the newest one; the loop owns it
 };
 
 TEST(DeviceLoop, AnAbsentPortIsTriedEverMoreRarely) {
@@ -81,12 +81,13 @@ TEST(DeviceLoop, AnAbsentPortIsTriedEverMoreRarely) {
   };
   loop.run();
   EXPECT_EQ(loop.pauses(), (std::vector<long>{100, 200, 250, 250, 250, 250, 250}));
-  const DeviceHealth& h = loop.health.all[loop.health.all.size() - 2];  // the last says "stopped"
+  // The last report says "stopped".
+  const DeviceHealth& h = loop.health.all[loop.health.all.size() - 2];
   EXPECT_EQ(h.state, HealthState::kAbsent);
   EXPECT_STREQ(h.reason, "/tmp/glove: no such file");
   EXPECT_STREQ(h.port, "pty:/tmp/glove");
   EXPECT_EQ(h.reconnects, 0u);
-  EXPECT_EQ(h.since_ns, toNanoseconds(loop.start));  // absent all the time
+  EXPECT_EQ(h.since_ns, toNanoseconds(loop.start));  // absent since the start
 }
 
 TEST(DeviceLoop, ADeviceThatStreamsIsWellAndHasARate) {
@@ -113,7 +114,7 @@ TEST(DeviceLoop, ALostDeviceIsReopenedAndCounted) {
     if (h.samples >= 800) {
       loop.stop.request_stop();
     } else if (h.samples >= lost_at && h.state == HealthState::kOk) {
-      loop.line->close();  // unplugged at our end
+      loop.line->close();  // unplugged at the computer's end
       lost_at += 200;
     }
   };
@@ -126,7 +127,7 @@ TEST(DeviceLoop, ALostDeviceIsReopenedAndCounted) {
   EXPECT_EQ(states[4], HealthState::kOpening);
   EXPECT_EQ(states[5], HealthState::kOk);
   for (const DeviceHealth& h : loop.health.all) {
-    const bool unmeasured = h.rate_hz == 0;  // as it is after each gap
+    const bool unmeasured = h.rate_hz == 0;  // no rate yet, as after each gap
     EXPECT_TRUE(unmeasured || h.state == HealthState::kOk);
     EXPECT_TRUE(unmeasured || std::abs(h.rate_hz - 100) < 2) << h.rate_hz;
   }
@@ -136,8 +137,8 @@ TEST(DeviceLoop, ASilentDeviceHasFailedAndItsRetryStartsAgainAtTheFirst) {
   Loop loop;
   loop.absent = true;
   loop.before_opening = [&](std::size_t n) {
-    if (n == 4) loop.absent = false;   // after 550 ms
-    if (n == 5) loop.plugged = false;  // it streamed, then fell silent
+    if (n == 4) loop.absent = false;   // after 550 ms of failed attempts
+    if (n == 5) loop.plugged = false;  // it has streamed and then fallen silent
     if (n == 7) loop.stop.request_stop();
   };
   loop.health.then = [&](const DeviceHealth& h) {
@@ -209,7 +210,7 @@ TEST(DeviceLoop, StopsWithinOnePollWhateverItDoes) {
   }
 }
 
-// Only a line that has a speed can have the wrong one.
+// The advice to check the speed appears only for lines that have a speed.
 TEST(DeviceLoop, AsksForTheSpeedOfLinesThatHaveOne) {
   const auto reason = [](const std::string& port) {
     Loop loop;
@@ -229,7 +230,7 @@ TEST(DeviceLoop, AsksForTheSpeedOfLinesThatHaveOne) {
     return std::string();
   };
   EXPECT_EQ(reason("serial:/dev/ttyS0"),
-            "line 2 makes no sense (another device, or another speed than 9600 baud?)");
+            "line 2 makes no sense (is it another device, or is its speed not 9600 baud?)");
   EXPECT_EQ(reason("replay:glove.bytes"), "line 2 makes no sense");
   EXPECT_EQ(reason("tcp://server:4001"), "line 2 makes no sense");
 }

@@ -19,14 +19,14 @@ using namespace std::string_literals;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// A program at the other end of an emulator's line.
+// The program at the other end of an emulator's line.
 struct Box {
   explicit Box(const char* device, const EmulatorSettings& settings = {},
                const char* script_name = "visit")
       : emulator(
             findEmulator(device)->make(settings, *findMotionScript(script_name), clock.now())) {}
 
-  // Types `bytes`; returns what came back at once.
+  // Sends `bytes`; returns what the emulator answers without a delay.
   std::string ask(std::string_view bytes) {
     emulator->receive(std::as_bytes(std::span(bytes)), clock.now());
     std::string out;
@@ -34,7 +34,7 @@ struct Box {
     return out;
   }
 
-  // Everything that is sent during `time`.
+  // Everything that the emulator sends during `time`.
   std::string listen(Duration time) {
     std::string out;
     for (const Timestamp end = clock.now() + time;;) {
@@ -61,7 +61,7 @@ TEST(Emulators, AreFoundByName) {
 TEST(Emulators, OneSeedGivesOneStream) {
   const auto stream = [](const char* device, std::uint64_t seed, int garbage_every) {
     Box box(device, {.seed = seed, .garbage_every = garbage_every});
-    box.ask("SfC\rMSSV\r");  // starts whichever it is
+    box.ask("SfC\rMSSV\r");  // starts streaming, whichever device it is
     return box.listen(seconds(5));
   };
   for (const EmulatorEntry& entry : emulators()) {
@@ -77,7 +77,7 @@ TEST(Wire, HoldsWhatItsBaudRateLetsThrough) {
   std::string out;
   wire.record("0123456789", start, out);
   EXPECT_FALSE(wire.free(start + milliseconds(10)));
-  EXPECT_TRUE(wire.free(start + milliseconds(11)));  // 100 bits at 9600 a second
+  EXPECT_TRUE(wire.free(start + milliseconds(11)));  // 100 bits at 9600 bit/s take 10.4 ms
   wire.reply("01234", start, out);
   EXPECT_FALSE(wire.free(start + milliseconds(15)));
   EXPECT_EQ(out, "012345678901234");
@@ -86,7 +86,8 @@ TEST(Wire, HoldsWhatItsBaudRateLetsThrough) {
 TEST(MotionScript, NeverLeavesItsPhases) {
   for (const MotionScript& script : motionScripts()) {
     Motion last = script.at(Duration::zero());
-    for (int i = 1; i < 20'000; ++i) {  // 200 s in steps of 10 ms, across every wrap
+    // 200 s in steps of 10 ms, across every repetition of the script
+    for (int i = 1; i < 20'000; ++i) {
       const Motion now = script.at(milliseconds(10 * i));
       for (std::size_t s = 0; s < kGloveSlots; ++s) {
         ASSERT_NEAR(now.glove_rad[s], last.glove_rad[s], 0.12) << script.name << " " << i;
@@ -106,11 +107,12 @@ TEST(MotionScript, HoldsThePhaseThatTheCallerSays) {
   script.held = &phase;
   EXPECT_FLOAT_EQ(script.at(seconds(7)).position_m[1], 0.05F);
   EXPECT_FLOAT_EQ(script.at(seconds(700)).position_m[1], 0.05F);
-  phase = 5;  // of four: the second
+  phase = 5;  // there are four phases, so phase 5 is the second one
   EXPECT_FLOAT_EQ(script.at(seconds(700)).position_m[1], 0.45F);
   EXPECT_FLOAT_EQ(script.at(Duration::zero()).position_m[1], 0.45F) << "at once";
   phase = 3;
-  EXPECT_NEAR(script.at(seconds(1)).orientation_wxyz[3], 0.34202F, 1e-5F);  // half of 40 degrees
+  // Sine of half of 40 degrees.
+  EXPECT_NEAR(script.at(seconds(1)).orientation_wxyz[3], 0.34202F, 1e-5F);
 }
 
 TEST(CybergloveEmulator, AnswersQueries) {  // fact sheet, section 4.5 and example 4
@@ -149,7 +151,8 @@ TEST(CybergloveEmulator, ObeysSetsAndRefusesTheRest) {  // fact sheet, sections 
   EXPECT_EQ(box.ask("?P"), "?P\x87\xE4\x01\0"s);
   EXPECT_EQ(box.ask("?D?U?W?L?Q?F?J"), "?D\1\0?U\1\0?W\1\0?L\1\0?Q\1\0?F\0\0?J\0\0"s);
   EXPECT_EQ(box.ask("M\xFF\x00\x00"s), "M\0"s);
-  EXPECT_EQ(box.ask("?M?N"), "?M\x7F\0\0\0?N\7\0"s);  // ANDed with what there is
+  // The mask is combined by AND with the sensors that exist.
+  EXPECT_EQ(box.ask("?M?N"), "?M\x7F\0\0\0?N\7\0"s);
   EXPECT_EQ(box.ask("N\x08"), "en\0"s);
   EXPECT_EQ(box.ask("N\x03"), "N\0"s);
   EXPECT_EQ(box.ask("G").size(), 1 + 3 + 5 + 1 + 1u);
@@ -165,10 +168,10 @@ TEST(CybergloveEmulator, StopsAndStartsAgain) {  // fact sheet, section 4.1
   EXPECT_EQ(box.listen(seconds(1)), "");
   EXPECT_EQ(box.ask("\x09"), "\x09\r\n\0"s);
   box.ask("\x12");
-  EXPECT_EQ(box.ask("?U"), "");  // deaf
+  EXPECT_EQ(box.ask("?U"), "");  // does not answer while it resets
   EXPECT_EQ(box.listen(milliseconds(1749)), "");
   EXPECT_EQ(box.listen(milliseconds(2)), "\x12\r\n\0"s);
-  EXPECT_EQ(box.ask("?U"), "?U\0\0"s);  // forgotten
+  EXPECT_EQ(box.ask("?U"), "?U\0\0"s);  // the command sent during the reset was discarded
 }
 
 TEST(CybergloveEmulator, NeverSendsAZeroInARecord) {
@@ -187,7 +190,7 @@ TEST(CybergloveEmulator, SaysThatItCannotSampleFaster) {
   box.ask("T\x01\x00\x00\x01"s);  // 450 Hz
   box.ask("S");
   const std::string stream = box.listen(seconds(1));
-  EXPECT_NEAR(static_cast<double>(stream.size()) / 26, 150, 2);  // 24 and "es"
+  EXPECT_NEAR(static_cast<double>(stream.size()) / 26, 150, 2);  // 24 bytes and "es" in each record
   EXPECT_TRUE(stream.ends_with("es\0"s));
 }
 
@@ -215,7 +218,7 @@ TEST(FastrakEmulator, AnswersWhatIsAskedForAndKeepsWhatIsOmitted) {  // section 
   Box box("fastrak", {.model = "2"});
   EXPECT_EQ(box.ask("l1\r"), "21l1100\r\n");
   EXPECT_EQ(box.ask("l2,0\rl\r"), "21l1000\r\n");
-  EXPECT_EQ(box.ask("l3,1\rl3\r"), "23l1000\r\n");  // there is no receiver 3
+  EXPECT_EQ(box.ask("l3,1\rl3\r"), "23l1000\r\n");  // there is no receiver 3, so it stays off
   EXPECT_EQ(box.ask("O1\r"), "21O 2 4 1\r\n");
   EXPECT_EQ(box.ask("O1,2,11,0\rO1\r"), "21O 211 0\r\n");
   EXPECT_EQ(box.ask("H1\r"), "21H   1.00   0.00   0.00\r\n");
@@ -260,11 +263,13 @@ TEST(FastrakEmulator, IsDeafWhileItStartsAndRemembersWhatWasSaved) {
   EXPECT_EQ(box.listen(milliseconds(999)), "");
   EXPECT_EQ(box.ask("S"), "");
   box.listen(milliseconds(2));
-  EXPECT_EQ(box.ask("S").substr(3, 3), "3F2");  // saved: centimetres, not yet binary
+  // Saved values are back: centimetres, and ASCII again.
+  EXPECT_EQ(box.ask("S").substr(3, 3), "3F2");
   EXPECT_EQ(box.ask("WS").substr(3, 3), "3F0");
 }
 
-TEST(FastrakEmulator, SpeaksWithVrpn) {  // section 7: two receivers, four stations told
+// Section 7: two receivers, although four stations are asked for.
+TEST(FastrakEmulator, SpeaksWithVrpn) {
   Box box("fastrak", {.model = "2"});
   EXPECT_EQ(box.ask("c"), "");
   EXPECT_EQ(box.ask("S").size(), 55u);
@@ -294,7 +299,8 @@ TEST(FastrakEmulator, SpeaksWithVrui) {  // section 7
 
 TEST(FastrakEmulator, DropsWhatItsLineCannotHold) {  // section 6
   Box box("fastrak");
-  box.ask("C");  // 47 bytes at 38400: 81.7 a second would fit, every second of 120 is sent
+  // 81.7 records of 47 bytes fit into a second at 38400 baud; every second one of 120 is sent
+  box.ask("C");
   EXPECT_NEAR(static_cast<double>(box.listen(seconds(10)).size()) / 47, 600, 2);
   EXPECT_EQ(box.ask("\x13"), "");
   EXPECT_EQ(box.listen(seconds(1)), "");
@@ -313,8 +319,9 @@ TEST(FastrakEmulator, HasTheNoiseOfTheSpecification) {  // 0.03 inch and 0.15 de
     const auto r = parser.feed(static_cast<std::byte>(c), 0);
     if (!r) continue;
     ++n;
-    position += std::pow(r->position[0] - 60, 2);      // cm
-    angle += std::pow(2 * r->orientation_wxyz[1], 2);  // about x, radians
+    position += std::pow(r->position[0] - 60, 2);  // 60 cm is the true position
+    // Rotation about x in radians, from the quaternion.
+    angle += std::pow(2 * r->orientation_wxyz[1], 2);
   }
   ASSERT_GT(n, 3500);
   EXPECT_NEAR(std::sqrt(position / n), 0.076, 0.004);
@@ -338,7 +345,7 @@ TEST(SpaceballEmulator, AnswersCommands) {  // fact sheet, section 4
   EXPECT_EQ(box.ask("BcCc\r"), "");
   EXPECT_EQ(box.ask("w\r"), "?w\r");
   EXPECT_EQ(box.ask("\n \r"), "");
-  // Once on, a ball at rest sends one displacement of zero: example 1 but for its period.
+  // Once on, a ball at rest sends one displacement of zero: example 1, except for its period.
   EXPECT_EQ(box.ask("MSSV\r"), "MSSV\r");
   const std::string rest = box.listen(seconds(5));
   EXPECT_EQ(rest[0], 'D');

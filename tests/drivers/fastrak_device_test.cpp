@@ -90,7 +90,8 @@ TEST(FastrakDevice, MeasuresTheHandInMetresInEitherUnit) {
       const auto motion = tracker.script.at(fromNanoseconds(s.received_ns) - tracker.start);
       for (std::size_t i = 0; i < 3; ++i) {
         const float aside = i == 1 && s.station == 2 ? 0.2F : 0.0F;
-        ASSERT_NEAR(s.position_m[i], motion.position_m[i] + aside, 0.004);  // 5 sigma
+        // 5 sigma of the tracker's noise
+        ASSERT_NEAR(s.position_m[i], motion.position_m[i] + aside, 0.004);
       }
       float dot = 0, square = 0;
       for (std::size_t i = 0; i < 4; ++i) {
@@ -131,7 +132,8 @@ TEST(FastrakDevice, MeasuresTheSameInEveryForm) {
 
 TEST(FastrakDevice, AlignsItsFrameAndLooksStraightAhead) {
   FastrakSettings settings;
-  settings.alignment_cm[0] = {50, 0, 0, 50, 100, 0, -50, 0, 0};  // x is the old y, y the old -x
+  // The new x axis is the old y, the new y the old -x.
+  settings.alignment_cm[0] = {50, 0, 0, 50, 100, 0, -50, 0, 0};
   settings.boresight_wxyz[1] = {0.6F, 0, 0, 0.8F};
   for (const bool centimetres : {true, false}) {
     settings.centimetres = centimetres;
@@ -210,7 +212,8 @@ TEST(FastrakDevice, IsLostWhenItsBoxStartsAgainAndComesBack) {
   ASSERT_TRUE(tracker.pollFor(*tracker.device, seconds(1)));
   tracker.type("\x19");
   EXPECT_LE(tracker.timeToFail(*tracker.device, seconds(5)), milliseconds(500));
-  ASSERT_TRUE(tracker.device->open(tracker.stream));  // it is deaf for one second, and asked on
+  // The box is silent for one second; open() keeps asking.
+  ASSERT_TRUE(tracker.device->open(tracker.stream));
   EXPECT_TRUE(tracker.pollFor(*tracker.device, seconds(1)));
 }
 
@@ -225,7 +228,7 @@ TEST(FastrakDevice, AsksASilentBoxTwiceAndSaysSo) {
   EXPECT_EQ(tracker.stream.written(), "cScS");
 }
 
-// A box that was only out of reach would be deaf for ten seconds more.
+// The driver resets a box only after four failed attempts: a reset makes it silent for ten seconds.
 TEST(FastrakDevice, ReinitialisesABoxThatDidNotAnswerFourTimes) {
   Tracker tracker;
   tracker.stream.mute();
@@ -238,7 +241,8 @@ TEST(FastrakDevice, ReinitialisesABoxThatDidNotAnswerFourTimes) {
   EXPECT_EQ(tracker.stream.written().find('\x19'), 16u);
   EXPECT_TRUE(tracker.pollFor(*tracker.device, seconds(1)));
 
-  ASSERT_TRUE(tracker.device->open(tracker.stream));  // it answered: no need to reset it again
+  // The box answered before, so it is not reset again.
+  ASSERT_TRUE(tracker.device->open(tracker.stream));
   EXPECT_EQ(tracker.stream.written().rfind('\x19'), 16u);
 }
 
@@ -255,7 +259,7 @@ TEST(FastrakDevice, AsksForTenSecondsWhileABoxStarts) {
   EXPECT_TRUE(
       written.starts_with("\x19"
                           "cScS"));
-  EXPECT_EQ(written.size(), 1 + 2 * 17u);  // every 0.6 s
+  EXPECT_EQ(written.size(), 1 + 2 * 17u);  // one every 0.6 s
 }
 
 TEST(FastrakDevice, SaysThatNoReceiverIsPluggedIn) {
@@ -264,7 +268,8 @@ TEST(FastrakDevice, SaysThatNoReceiverIsPluggedIn) {
   const auto identity = tracker.device->open(tracker.stream);
   ASSERT_FALSE(identity);
   EXPECT_EQ(identity.error().what, "no station is active: is a receiver plugged in?");
-  EXPECT_TRUE(tracker.device->open(tracker.stream));  // ^Y looks for receivers again
+  // After the reset (^Y) the box looks for receivers again.
+  EXPECT_TRUE(tracker.device->open(tracker.stream));
 }
 
 TEST(FastrakDevice, SaysWhatAnsweredInstead) {
@@ -282,7 +287,7 @@ TEST(FastrakDevice, SaysWhatAnsweredInstead) {
   const auto identity = tracker.device->open(tracker.stream);
   ASSERT_FALSE(identity);
   EXPECT_EQ(identity.error().code, Errc::kMalformed);
-  EXPECT_EQ(identity.error().what, "\"" + std::string(24, 'x') + "...\" in answer to S");
+  EXPECT_EQ(identity.error().what, "unexpected answer \"" + std::string(24, 'x') + "...\" to S");
 }
 
 TEST(FastrakDevice, ComplainsOfTheFirstStationWithAnError) {
@@ -294,10 +299,10 @@ TEST(FastrakDevice, ComplainsOfTheFirstStationWithAnError) {
     char error;
     const char* complaint;
   } kCases[] = {{1, ' ', ""},
-                {2, 'k', "station 2 reports error k (too far or unplugged: low signal)"},
-                {1, ' ', "station 2 reports error k (too far or unplugged: low signal)"},
-                {1, 'a', "station 1 reports error a (a driver of the transmitter)"},
-                {2, ' ', "station 1 reports error a (a driver of the transmitter)"},
+                {2, 'k', "station 2 reports error k (receiver too far or unplugged: low signal)"},
+                {1, ' ', "station 2 reports error k (receiver too far or unplugged: low signal)"},
+                {1, 'a', "station 1 reports error a (a transmitter driver)"},
+                {2, ' ', "station 1 reports error a (a transmitter driver)"},
                 {1, ' ', ""}};
   for (const auto& [station, error, complaint] : kCases) {
     tracker.stream.feed(record(station, error));
@@ -311,7 +316,8 @@ TEST(FastrakDevice, StreamsOnPastGarbageAndCountsIt) {
   Tracker tracker({.baud = 115200, .garbage_every = 10});
   ASSERT_TRUE(tracker.device->open(tracker.stream));
   ASSERT_TRUE(tracker.pollFor(*tracker.device, seconds(10)));
-  EXPECT_GE(tracker.sink.tracker.size(), 1195u);  // a burst costs its own bytes alone
+  // A burst of garbage does not destroy the records around it.
+  EXPECT_GE(tracker.sink.tracker.size(), 1195u);
   EXPECT_EQ(tracker.device->counters().bad_packets, 120u);
   EXPECT_GT(tracker.device->counters().bad_bytes, 120u * 5);
   EXPECT_LT(tracker.device->counters().bad_bytes, 120u * 8);
@@ -322,9 +328,9 @@ TEST(FastrakDevice, OpensAgainAndCountsOn) {
   ASSERT_TRUE(tracker.device->open(tracker.stream));
   ASSERT_TRUE(tracker.pollFor(*tracker.device, seconds(1)));
   const auto first = tracker.sink.tracker.size();
-  tracker.stream.feed(record(1, ' ').substr(0, 20));  // cut off
+  tracker.stream.feed(record(1, ' ').substr(0, 20));  // a record that is cut off
   ASSERT_TRUE(tracker.device->poll(tracker.stream));
-  ASSERT_TRUE(tracker.device->open(tracker.stream));  // it streams meanwhile
+  ASSERT_TRUE(tracker.device->open(tracker.stream));  // the box keeps streaming meanwhile
   ASSERT_TRUE(tracker.pollFor(*tracker.device, seconds(1)));
   EXPECT_NEAR(static_cast<double>(tracker.sink.tracker.size() - first), 120, 1);
   EXPECT_EQ(tracker.sink.tracker.back().counter, tracker.sink.tracker.size());

@@ -15,7 +15,7 @@ namespace {
 
 using namespace std::string_literals;
 
-// Feeds `bytes`, each 1 ns after the one before; returns the records that came out, in order.
+// Feeds `bytes`, each 1 ns after the previous one; returns the records that the parser found.
 std::vector<Record> parse(Parser& parser, std::string_view bytes) {
   std::vector<Record> records;
   std::int64_t ns = 0;
@@ -40,7 +40,7 @@ void expectGood(const Record& r) {
   EXPECT_NEAR(r.orientation_wxyz[3], 0.70711, 1e-5);
 }
 
-// kGood with another quaternion.
+// kGood with another orientation.
 std::string withQuaternion(const std::array<float, 4>& q) {
   std::string bytes = kGood.substr(0, 15);
   for (const float v : q) appendLeFloat(bytes, v);
@@ -102,7 +102,7 @@ TEST(FastrakParser, RefusesPositionsThatAreNoNumbers) {
 
 TEST(FastrakParser, FindsRecordsAmongGarbageAndCountsEveryByteOfIt) {
   Parser parser;
-  // VRPN recovers from the same eight bytes: fact sheet, section 7.
+  // VRPN resynchronises after the same eight bytes: fact sheet, section 7.
   const std::string garbage = "\x30\x31\x07\x6A\x75\x6E\x6B\x30"s;
   const auto records = parse(parser, garbage + kGood + kGood + "2 E*ERROR*" + kGood + kGood);
   ASSERT_EQ(records.size(), 4u);
@@ -114,9 +114,11 @@ TEST(FastrakParser, FindsRecordsAmongGarbageAndCountsEveryByteOfIt) {
 TEST(FastrakParser, OutOfStepItWaitsForTheNextRecordsFirstByte) {
   Parser parser;
   EXPECT_TRUE(parse(parser, "x" + kGood).empty());
-  EXPECT_EQ(parse(parser, "0").size(), 1u);               // one byte later
-  EXPECT_EQ(parse(parser, kGood.substr(1)).size(), 1u);   // in step: at once
-  EXPECT_TRUE(parse(parser, "x" + kGood + "x").empty());  // another byte after it: no record
+  // The record is accepted once the next record's first byte comes.
+  EXPECT_EQ(parse(parser, "0").size(), 1u);
+  EXPECT_EQ(parse(parser, kGood.substr(1)).size(), 1u);  // in step, it is accepted at once
+  // The following byte does not begin a record: rejected.
+  EXPECT_TRUE(parse(parser, "x" + kGood + "x").empty());
   parser.reset();
   EXPECT_EQ(parse(parser, kGood).size(), 1u);
 }
@@ -139,7 +141,7 @@ TEST(FastrakParser, EncodingIsTheInverse) {
   }
 }
 
-// One packet of each kind that can stand in a stream.
+// One packet of each kind that can occur in a stream.
 class FastrakDamage : public testing::TestWithParam<test::NamedPacket> {};
 
 TEST_P(FastrakDamage, EveryPrefixCostsItselfAlone) {
@@ -274,7 +276,7 @@ TEST(FastrakStatus, FlagsComeBack) {  // 3F1 binary, 3F2 centimetres, 3F8 contin
   }
 }
 
-// kGood with other coordinates.
+// kGood with another position.
 std::string withPosition(const std::array<float, 3>& position) {
   std::string bytes = kGood.substr(0, 3);
   for (const float v : position) appendLeFloat(bytes, v);
@@ -321,7 +323,7 @@ TEST(FastrakStatus, RefusesWhatIsNone) {
   }
   std::string blank = kStatus;
   blank[8] = ' ';
-  EXPECT_EQ(parseStatus(blank)->test_error, 0);  // an older unit
+  EXPECT_EQ(parseStatus(blank)->test_error, 0);  // as from an older unit
 }
 
 TEST(FastrakStations, ReadsAndWritesTheExample) {  // fact sheet, section 2

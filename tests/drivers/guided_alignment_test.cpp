@@ -1,5 +1,5 @@
-// A station's alignment and boresight from where it is held, on samples that are given in any
-// frame.
+// Computes a station's alignment and boresight from the places where a person holds it; the samples
+// may be given in any frame.
 #include "drivers/fastrak/guided_alignment.h"
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 using Place = std::array<float, 3>;
 using Pose = std::array<float, 4>;
 
-// Of a unit without alignment and boresight.
+// A sample of a unit without alignment and boresight: position in cm, orientation as a quaternion.
 TrackerSample at(const Place& cm, const Pose& wxyz = {1, 0, 0, 0}) {
   TrackerSample s{};
   for (std::size_t i = 0; i < 3; ++i) s.position_m[i] = cm[i] / 100;
@@ -21,8 +21,9 @@ TrackerSample at(const Place& cm, const Pose& wxyz = {1, 0, 0, 0}) {
   return s;
 }
 
-// The same place and pose, as samples of these stations show them: x is the old y, y the old -x,
-// z the old z, from 50 cm in front of the transmitter; a turn by 90 degrees about z is ahead.
+// A frame in which new x is old y, new y is old -x and new z is old z. Its origin is 50 cm in front
+// of the transmitter; its boresight is a rotation of 90 degrees about z. turned() gives the sample
+// of a place and pose in that frame.
 constexpr StationFrame kTurned{{50, 0, 0, 50, 100, 0, -50, 0, 0}, {0.70710678F, 0, 0, 0.70710678F}};
 TrackerSample turned(const Place& cm, const Pose& wxyz = {1, 0, 0, 0}) {
   TrackerSample s = at({cm[1], 50 - cm[0], cm[2]});
@@ -40,7 +41,7 @@ Result<HeldPose> hold(GuidedAlignment& guided, std::size_t step, const TrackerSa
 }
 
 constexpr Place kO = {60, 5, -15}, kX = {60, 45, -15}, kY = {30, 10, -15}, kA = {45, 20, -15};
-constexpr Pose k40 = {0.93969262F, 0, 0, 0.34202014F};  // degrees about z
+constexpr Pose k40 = {0.93969262F, 0, 0, 0.34202014F};  // 40 degrees about z
 
 void expectNear(const StationFrame& f, const std::array<float, 9>& cm, const Pose& wxyz) {
   for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(f.alignment_cm[i], cm[i], 0.011) << i;
@@ -53,7 +54,7 @@ TEST(GuidedAlignment, PlacesMakeTheFrameAndThePoseIsAheadInIt) {
   ASSERT_TRUE(hold(guided, kOnX, at(kX)));
   ASSERT_TRUE(hold(guided, kOnY, at(kY)));
   ASSERT_TRUE(hold(guided, kAhead, at(kA, k40)));
-  // the new x is the old y: of 40 degrees -50 are left
+  // The new x axis is the old y, so that of 40 degrees -50 degrees remain.
   const Pose left = {0.90630779F, 0, 0, -0.42261826F};
   expectNear(guided.solve(), {60, 5, -15, 60, 45, -15, 30, 10, -15}, left);
 }
@@ -96,7 +97,7 @@ TEST(GuidedAlignment, SaysHowFarTheFurthestSampleWas) {
   GuidedAlignment guided({});
   guided.begin(kOrigin);
   guided.add(at({60, 5, -15}));
-  guided.add(at({60.6F, 5, -15}, {-1, 0, 0, 0}));  // the same orientation
+  guided.add(at({60.6F, 5, -15}, {-1, 0, 0, 0}));  // the negated quaternion is the same orientation
   guided.add(at({59.4F, 5, -15}));
   const auto held = guided.end();
   ASSERT_TRUE(held) << held.error().what;

@@ -1,4 +1,4 @@
-// A ball's axis map and sensitivities from the pushes and twists that it was given.
+// Computes a ball's axis map and sensitivities from the pushes and twists of a guided calibration.
 #include "drivers/spaceball/guided_axes.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ Result<AxisAnswer> answer(GuidedAxes& guided, std::size_t step, std::initializer
   for (const Raw& raw : all) {
     BallSample sample{};
     std::copy(raw.begin(), raw.end(), sample.raw);
-    sample.translation[0] = 1;  // what the present settings make of it is nothing to us
+    sample.translation[0] = 1;  // derived from the present settings; only the raw counts matter
     guided.add(sample);
   }
   return guided.end();
@@ -39,9 +39,9 @@ TEST(GuidedAxes, FindsABallThatStandsTurnedByAQuarter) {
   before.null_region = 7;
   const SpaceballSettings solved = guided.solve(before);
   EXPECT_EQ(solved.axis_map, (std::array{-2, 1, -3, -5, 4, -6}));
-  EXPECT_EQ(solved.dead_zone, 28);                 // 2 * 12 + 4
-  EXPECT_EQ(solved.full_scale_translation, 5040);  // 0.9 of the weakest, 5600
-  EXPECT_EQ(solved.full_scale_rotation, 1080);     // of 1200
+  EXPECT_EQ(solved.dead_zone, 28);                 // 2 * 12 + 4, with 12 the largest count at rest
+  EXPECT_EQ(solved.full_scale_translation, 5040);  // 0.9 of the weakest push, 5600
+  EXPECT_EQ(solved.full_scale_rotation, 1080);     // 0.9 of the weakest twist, 1200
   EXPECT_EQ(solved.null_region, 7);
 }
 

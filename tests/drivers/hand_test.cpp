@@ -1,4 +1,5 @@
-// The hand: joints by name, a smooth pose, and the pose at another time, on synthetic motion.
+// The hand on synthetic motion: named joints, the smoothed pose, and its prediction to another
+// time.
 #include "drivers/hand/hand.h"
 
 #include <cmath>
@@ -45,7 +46,8 @@ TEST(Hand, TakesTheGlovesAnglesWhileTheyAreFresh) {
   EXPECT_EQ(hand.update(at(0.7, 0, 0), std::nullopt).flags, 0u);
 }
 
-// The tracker's noise, 0.76 mm RMS, at rest: a third of it is left, at a delay that is told.
+// At rest, the filter leaves less than a third of the tracker's noise (0.76 mm RMS); the sample
+// states the filter's delay.
 TEST(Hand, AtRestTremblesAThirdAsMuch) {
   Hand hand({});
   Random random(1);
@@ -59,7 +61,7 @@ TEST(Hand, AtRestTremblesAThirdAsMuch) {
     ++n;
   }
   EXPECT_LT(std::sqrt(square / n), 0.00076 / 3);
-  EXPECT_LT(delay / n, 0.053);  // 1 / (2 pi 3 Hz)
+  EXPECT_LT(delay / n, 0.053);  // the delay of a low-pass filter of 3 Hz: 1 / (2 pi 3 Hz)
   EXPECT_GT(delay / n, 0.020);
 }
 
@@ -85,8 +87,8 @@ TEST(Hand, WithoutSmoothingIsTheTracker) {
   }
 }
 
-// A hand that goes to and fro by 0.2 m at 0.5 Hz and turns, seen 30 ms later: what it shows without
-// and with prediction.
+// A hand that moves by +-0.2 m at 0.5 Hz and turns, shown 30 ms after it was measured: the error
+// with prediction is less than half of that without.
 TEST(Hand, PredictionToTheDisplayTimeIsWorthIt) {
   Hand hand({});
   Random random(3);

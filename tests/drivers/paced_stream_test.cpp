@@ -1,5 +1,5 @@
-// A line that sends more than it should is read at its pace, and says so; one that does not never
-// notices.
+// A line that sends more than its device may is read at a limited pace, and this is reported. A
+// line within the limit is not affected.
 #include "drivers/loop/paced_stream.h"
 
 #include <string>
@@ -17,7 +17,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// Sends one byte over and over, as fast as it is read, which takes 1 us a read; or nothing.
+// Sends the same byte without end, as fast as it is read (a read takes 1 us), or sends nothing.
 class FloodStream final : public ByteStream {
  public:
   FloodStream(test::FakeClock& clock, char byte) : clock_(clock), byte_(byte) {}
@@ -49,7 +49,7 @@ class FloodStream final : public ByteStream {
 
 class PacedStreamTest : public testing::Test {
  protected:
-  // Reads for so long, `size` bytes at once; returns how many came.
+  // Reads for `time`, `size` bytes at once; returns the number of bytes read.
   std::size_t readFor(Duration time, std::size_t size) {
     std::vector<std::byte> buffer(size);
     std::size_t bytes = 0;
@@ -62,7 +62,7 @@ class PacedStreamTest : public testing::Test {
   test::FakeClock clock_;
   int changes_ = 0;
   ReadPace pace_{15'360, [this] { ++changes_; }};
-  FloodStream* line_ = new FloodStream(clock_, '\n');  // stream_ owns it
+  FloodStream* line_ = new FloodStream(clock_, '\n');  // owned by stream_
   PacedStream stream_{std::unique_ptr<ByteStream>(line_), pace_, clock_};
 };
 
@@ -71,10 +71,10 @@ TEST_F(PacedStreamTest, ReadsAFloodAtItsPaceInFewReads) {
   EXPECT_LE(line_->reads, 10 * 100u + 10);
   EXPECT_TRUE(pace_.above());
   EXPECT_EQ(changes_, 1);
-  EXPECT_EQ(pace_.sentence(), "sends more than 15.4 kB/s: read at that pace");
+  EXPECT_EQ(pace_.sentence(), "sends more than 15.4 kB/s, the limit at which it is read");
 }
 
-// Where a system call takes as long as a byte, none is made for each.
+// Where a read takes as long as a byte on the line, the stream must not read each byte separately.
 TEST_F(PacedStreamTest, ReadsAFastFloodInFewReadsToo) {
   ReadPace fast(1e6, [] {});
   auto line = std::make_unique<FloodStream>(clock_, 'x');
@@ -119,7 +119,7 @@ TEST_F(PacedStreamTest, IsInterruptedWithBytesThatWereReadAhead) {
   EXPECT_EQ(got.error().code, Errc::kClosed);
 }
 
-// A device's loop on a line that floods, over its minute.
+// Runs a device's loop for a minute on a line that floods.
 struct Flooded {
   struct Reports final : HealthSink {
     void publish(const DeviceHealth& h) noexcept override {
@@ -176,7 +176,7 @@ TEST(FloodedLine, OfAnyDeviceCostsItsPaceInEveryStepOfItsDialogueAndSaysSo) {
   const std::pair<SampleKind, const char*> kDevices[] = {{SampleKind::kGlove, "cyberglove"},
                                                          {SampleKind::kTracker, "fastrak"},
                                                          {SampleKind::kBall, "spaceball"}};
-  int floods = 0;  // a dialogue may end with the first bytes: that is none
+  int floods = 0;  // a dialogue may end after the first bytes, which is not a flood
   for (const auto& [kind, name] : kDevices) {
     for (const char byte : {'\n', '\r', '\0', 'S', '0'}) {
       Flooded line;
@@ -220,7 +220,7 @@ TEST(FloodedLine, ADeviceAtTheSpeedOfItsLineIsNeverOne) {
   }
 }
 
-// As where the machine was asleep for a second: what a pty keeps of it is 4 KiB.
+// As after the machine was suspended for a second: the pty has kept 4 KiB, which are no flood.
 TEST(FloodedLine, WhatCameWhileTheMachineWasAsleepIsNone) {
   test::FakeClock clock;
   bool above = false;

@@ -1,4 +1,5 @@
-// The wall's control panel: times of the projectors, lamp, button, and a chip that comes and goes.
+// The wall's control panel: the projectors' delays, lamp and button, and a GPIO chip that comes and
+// goes.
 #include "drivers/gpio/panel.h"
 
 #include <map>
@@ -53,7 +54,7 @@ TEST(Panel, ProjectorsWarmUpAndCoolDown) {
   const auto refused = b.panel.obey("projector_on", b.clock.now());
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Errc::kBusy);
-  EXPECT_EQ(refused.error().what, "the projectors cool down: not before 30 s");
+  EXPECT_EQ(refused.error().what, "the projectors cool down: wait 30 s");
   b.pass(seconds(30));
   EXPECT_EQ(b.power(), GpioSample::kOff);
   EXPECT_TRUE(b.panel.obey("projector_on", b.clock.now()));
@@ -63,7 +64,7 @@ TEST(Panel, SwitchesNoFasterThanTheInterlock) {
   Bench b;
   const auto early = b.panel.obey("projector_on", b.clock.now());
   ASSERT_FALSE(early) << "whether they were on a moment ago is not known";
-  EXPECT_EQ(early.error().what, "the projectors were just switched: not before 5 s");
+  EXPECT_EQ(early.error().what, "the projectors were just switched: wait 5 s");
   b.pass(seconds(5));
   ASSERT_TRUE(b.panel.obey("projector_on", b.clock.now()));
   ASSERT_TRUE(b.panel.obey("projector_on", b.clock.now())) << "they are on: nothing to do";
@@ -88,7 +89,7 @@ TEST(Panel, TheLampBlinksSlowlyAndFast) {
   };
   EXPECT_EQ(lit("lamp_off", milliseconds(10), 1000), 0);
   EXPECT_FALSE(b.panel.outputs(b.clock.now()).lamp);
-  EXPECT_EQ(lit("lamp_slow", milliseconds(10), 1000), 10);  // in ten seconds
+  EXPECT_EQ(lit("lamp_slow", milliseconds(10), 1000), 10);  // ten seconds
   EXPECT_EQ(lit("lamp_fast", milliseconds(5), 2000), 80);
   lit("lamp_on", milliseconds(10), 1);
   EXPECT_TRUE(b.panel.outputs(b.clock.now()).lamp);
@@ -126,7 +127,7 @@ TEST(Panel, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(b.panel.obey("explode", b.clock.now()).error().code, Errc::kInvalidArgument);
 }
 
-// A chip that a test can pull out.
+// A GPIO chip that a test can unplug.
 struct FakeChip {
   bool there = true;
   bool button = false;

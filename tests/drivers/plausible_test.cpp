@@ -26,7 +26,7 @@ HandSample hand() {
   return s;
 }
 
-// Refused with any of kNever in any of its numbers.
+// Expects that `good` is plausible, and is not with any of kNever in any element of `numbers`.
 template <typename Sample, std::size_t N>
 void expectBounded(const Sample& good, float (Sample::*numbers)[N]) {
   ASSERT_TRUE(plausible(good));

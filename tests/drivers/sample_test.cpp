@@ -1,4 +1,4 @@
-// The driver to copy: its protocol, its dialogue.
+// The driver to copy for a new device: its protocol and its dialogue.
 #include <gtest/gtest.h>
 
 #include "drivers/sample/device.h"
@@ -80,7 +80,7 @@ TEST(SampleDevice, FailsAfterASecondOfSilence) {
   ASSERT_TRUE(device.open(stream));
   int polls = 0;
   while (device.poll(stream)) ++polls;
-  EXPECT_EQ(polls, 3);  // of a quarter second each
+  EXPECT_EQ(polls, 3);  // each waited 0.25 s
 }
 
 }  // namespace

@@ -63,8 +63,8 @@ TEST(SpaceballDevice, StreamsTwentyTimesASecondWhilePushed) {
   const BallSample& last = ball.sink.ball.back();
   EXPECT_NEAR(last.period_us, 50'000, 100);
   EXPECT_EQ(last.counter, ball.sink.ball.size());
-  EXPECT_EQ(last.raw[4], 960);                        // 0.6 of 1600
-  EXPECT_NEAR(last.rotation[1], 944 / 1584.0, 1e-6);  // less the dead zone
+  EXPECT_EQ(last.raw[4], 960);                        // 0.6 of the full deflection, 1600
+  EXPECT_NEAR(last.rotation[1], 944 / 1584.0, 1e-6);  // after subtracting the dead zone
   EXPECT_EQ(ball.device->counters().bad_bytes, 0u);
 }
 
@@ -73,15 +73,15 @@ TEST(SpaceballDevice, IsSilentAtRestAndYetWell) {
   ASSERT_TRUE(ball.device->open(ball.stream));
   ASSERT_TRUE(ball.pollFor(*ball.device, seconds(1)));
   const auto at_rest = ball.sink.ball.size();
-  EXPECT_LE(at_rest, 2u);  // its keys, and a displacement of zero
+  EXPECT_LE(at_rest, 2u);  // its buttons, and a displacement of zero
   ASSERT_TRUE(ball.pollFor(*ball.device, seconds(60)));
   EXPECT_EQ(ball.sink.ball.size(), at_rest);
   const std::string& written = ball.stream.written();
-  EXPECT_TRUE(written.ends_with("\rk\rk\rk\rk\rk\r"));  // pings, which it answers
+  EXPECT_TRUE(written.ends_with("\rk\rk\rk\rk\rk\r"));  // pings, which the ball answers
 }
 
 TEST(SpaceballDevice, ReportsKeysAndTheEndOfAPush) {
-  Ball ball("visit");  // pushed at first; button 1 for 0.3 s after 15 s
+  Ball ball("visit");  // pushed at the start; button 1 is pressed for 0.3 s after 15 s
   ASSERT_TRUE(ball.device->open(ball.stream));
   ASSERT_TRUE(ball.pollFor(*ball.device, seconds(18)));
   bool down = false, up_again = false, pushed = false, let_go = false;
@@ -125,7 +125,7 @@ TEST(SpaceballDevice, IsSetUpAgainAfterAResetOfItsOwn) {
   ASSERT_TRUE(ball.device->open(ball.stream));
   ASSERT_TRUE(ball.pollFor(*ball.device, seconds(1)));
   const auto before = ball.stream.written().size();
-  ball.type("@RESET\r");  // as a watchdog would
+  ball.type("@RESET\r");  // as after a reset by its watchdog
   ASSERT_TRUE(ball.pollFor(*ball.device, seconds(1)));
   EXPECT_EQ(ball.stream.written().substr(before), "CB\rNT\rFT?\rFR?\rP@r@r\rMSSV\rZ\rk\r");
   const auto samples = ball.sink.ball.size();
@@ -133,7 +133,7 @@ TEST(SpaceballDevice, IsSetUpAgainAfterAResetOfItsOwn) {
   EXPECT_NEAR(static_cast<double>(ball.sink.ball.size() - samples), 20, 1);
 }
 
-// A ball that is awake, and ignores @RESET.
+// A ball that is running and ignores @RESET.
 struct Awake final : emulate::Emulator {
   explicit Awake(emulate::Emulator& ball) : ball_(ball) {}
   void receive(std::span<const std::byte> bytes, Timestamp now) override {
@@ -172,7 +172,8 @@ TEST(SpaceballDevice, StreamsOnPastGarbageAndCountsIt) {
   Ball ball("turning", "2003", 5);
   ASSERT_TRUE(ball.device->open(ball.stream));
   ASSERT_TRUE(ball.pollFor(*ball.device, seconds(20)));
-  EXPECT_GT(ball.sink.ball.size(), 300u);  // of 400; a burst costs the packet behind it
+  // Of 400: a burst of garbage destroys the packet after it.
+  EXPECT_GT(ball.sink.ball.size(), 300u);
   EXPECT_GT(ball.device->counters().bad_packets, 50u);
   EXPECT_GT(ball.device->counters().bad_bytes, 50u * 16);
 }

@@ -18,7 +18,7 @@ struct Seen {
   std::vector<std::string> texts;
 };
 
-// Feeds `bytes`; returns the packets that came out, in order.
+// Feeds `bytes` to the parser and returns the packets that it found, in order.
 Seen parse(Parser& parser, std::string_view bytes) {
   Seen seen;
   for (const char c : bytes) {
@@ -31,7 +31,7 @@ Seen parse(Parser& parser, std::string_view bytes) {
   return seen;
 }
 
-// period 800 (50 ms), X = 256, Y = -512, Z = 1000, A = -1, B = 39, C = -10: fact sheet, example 2
+// Fact sheet, example 2: period 800 (50 ms), X = 256, Y = -512, Z = 1000, A = -1, B = 39, C = -10.
 const std::string kGood = "D\x03\x20\x01\x00\xFE\x00\x03\xE8\xFF\xFF\x00\x27\xFF\xF6\r"s;
 
 TEST(SpaceballParser, ReadsADisplacement) {
@@ -65,9 +65,10 @@ TEST(SpaceballKeys, OfEachModel) {  // fact sheet, example 4 and section 6
   Parser parser;
   const auto seen = parse(parser, "K\x58\x44\r.\x70\xC0\rK\x60\x50\r"s);
   EXPECT_EQ(seen.keys.size(), 3u);
-  EXPECT_EQ(buttonsOf(seen.keys[0], Model::k2003), 1u << 2 | 1u << 7 | 1u << 8);  // 3, 8, pick
-  EXPECT_EQ(buttonsOf({true, 0x70, 0xC0}, Model::k4000), 1u << 6 | 1u << 11);     // 7, 12
-  EXPECT_EQ(buttonsOf({false, 0x60, 0x50}, Model::k3003), 1u | 1u << 2);          // left, rezero
+  // Buttons 3, 8 and pick.
+  EXPECT_EQ(buttonsOf(seen.keys[0], Model::k2003), 1u << 2 | 1u << 7 | 1u << 8);
+  EXPECT_EQ(buttonsOf({true, 0x70, 0xC0}, Model::k4000), 1u << 6 | 1u << 11);  // buttons 7 and 12
+  EXPECT_EQ(buttonsOf({false, 0x60, 0x50}, Model::k3003), 1u | 1u << 2);  // left button and rezero
 }
 
 TEST(SpaceballKeys, EncodingIsTheInverseForEveryCombination) {
@@ -97,10 +98,10 @@ TEST(SpaceballDisplacement, EncodingIsTheInverse) {
   }
 }
 
-// One packet of each kind.
+// One packet of each kind; the damage is applied to it.
 class SpaceballDamage : public testing::TestWithParam<test::NamedPacket> {};
 
-// Whatever comes first, the packet after the next CR is read: no state leaks.
+// Whatever came before, the packet after the next CR is read: no parser state persists.
 TEST_P(SpaceballDamage, EveryPrefixCostsAtMostItself) {
   for (std::size_t n = 0; n < GetParam().bytes.size(); ++n) {
     Parser parser;

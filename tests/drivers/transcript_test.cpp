@@ -1,4 +1,4 @@
-// Streams but for ptys: transcripts and their player, the recorder, tcp://, adapters that delay.
+// Streams other than ptys: transcripts and their replay, the recorder, tcp://, adapters that delay.
 #include "drivers/io/transcript.h"
 
 #include <filesystem>
@@ -44,7 +44,7 @@ TEST(Transcript, IsReadAsItIsWritten) {
   EXPECT_EQ(t->chunks[0].bytes, "\r@");
   EXPECT_EQ(t->chunks[1].bytes.size(), 16u);
   EXPECT_EQ(t->chunks[1].at, milliseconds(250));
-  // 16 bytes of ten bits at 9600 baud after it
+  // The 16 bytes before it take ten bits each at 9600 baud.
   EXPECT_EQ(t->chunks[2].at, milliseconds(250) + std::chrono::nanoseconds(16'666'666));
 }
 
@@ -75,7 +75,7 @@ TEST(Transcript, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(parseTranscript("@2 44\n@1 44\n# end\n").error().what,
             "line 2 has a time before that of the line above");
   EXPECT_EQ(parseTranscript("@nan 44\n# end\n").error().what,
-            "line 1 has no time after its @, in seconds");
+            "line 1 has no valid time, in seconds, after its @");
   EXPECT_EQ(parseTranscript("# end\n44\n").error().what, "line 2 comes after \"# end\"");
 }
 
@@ -162,7 +162,7 @@ TEST(Ports, AreNamedInFourWays) {
     EXPECT_FALSE(parsePort(bad)) << bad;
 }
 
-// A raw serial server on this machine.
+// A TCP server on this machine that passes on raw serial bytes.
 struct Server {
   Server() : fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
     sockaddr_in address{};
@@ -215,12 +215,13 @@ TEST(AdapterWarning, NamesTheDelayAndTheWayOut) {
   test::writeText(timer, "16\n");
   EXPECT_EQ(
       adapterWarning(dir / "by-id", dir.path()),
-      dir / "by-id: its USB adapter holds bytes back for up to 16 ms; for 1 ms: echo 1 > " + timer);
+      dir / "by-id: its USB adapter delays bytes by up to 16 ms; to limit this to 1 ms: echo 1 > " +
+          timer);
   test::writeText(timer, "1\n");
   EXPECT_EQ(adapterWarning(dir / "by-id", dir.path()), "");
 }
 
-// As the kernel wants it: a number of 32 bits, for as long as the device is open.
+// The kernel's interface: a 32-bit number, in force as long as the device file is open.
 TEST(CpuLatency, WritesTheLimitAndSaysWhereItCannot) {
   const test::TempDir dir;
   const std::string device = dir / "cpu_dma_latency";
@@ -235,7 +236,7 @@ TEST(CpuLatency, WritesTheLimitAndSaysWhereItCannot) {
   EXPECT_EQ(test::readText(device), std::string("\x14\0\0\0", 4));
 }
 
-// A device may say anything of itself.
+// A device's name may contain any bytes.
 TEST(Transcript, AHeaderStaysOneLineWhateverIsInIt) {
   Transcript transcript;
   transcript.header = {{"device", "Fastrak\n4400 no comment\x1b[2J"}};

@@ -16,7 +16,8 @@ std::string wrongWith(const std::string& text) {
   return read ? "" : read.error().what;
 }
 
-// A header of 22 names, and a line of 22 numbers that are their columns.
+// A CSV text: a header with 22 sensor names, and one row whose values are the column numbers plus
+// 0.5.
 std::string twentyTwo(const std::string& end, const std::string& label = "fist") {
   std::string header = "Label", line = label;
   for (int i = 0; i < 22; ++i) {

@@ -1,4 +1,4 @@
-// What the tests of nn/io share: a folder for their files.
+// FilesTest: a temporary folder for the tests of nn/io.
 #pragma once
 
 #include <cstdlib>
@@ -17,7 +17,7 @@ inline std::string contentOf(const std::string& path) {
   return content.str();
 }
 
-// A folder of its own, gone at the end.
+// Each test has a folder of its own, removed at its end.
 class FilesTest : public testing::Test {
  protected:
   void SetUp() override {

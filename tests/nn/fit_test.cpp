@@ -26,7 +26,7 @@ TrainingWeights someWeights(std::uint64_t seed) {
 
 class LaneGradient : public testing::TestWithParam<Phi> {};
 
-// The gradient that training uses is a template: what holds for double holds for float.
+// The gradient used in training is a template, so this test for double covers float as well.
 TEST_P(LaneGradient, AgreesWithFiniteDifferences) {
   Lanes<double> lanes = toLanes(someWeights(3));
   Random random(4);
@@ -94,7 +94,7 @@ TEST(Codes, OfPosturesThatLookAlikeDifferInOneBit) {
   EXPECT_LE(bits, 18) << "16 is the least";
 }
 
-// Neither these people nor this seed played a part in choosing how networks are trained.
+// Neither these synthetic people nor this seed were used in choosing the training method.
 TEST(Fit, NamesUnseenPeopleBetterThanTheNearestNeighbour) {
   const DataSet train = test::people(hand::allShapes(), 1, 10, 5, 1);
   const DataSet unseen = test::people(hand::allShapes(), 7001, 10, 5, 2);
@@ -105,8 +105,8 @@ TEST(Fit, NamesUnseenPeopleBetterThanTheNearestNeighbour) {
   EXPECT_GT(accuracy, neighbours(train, unseen).nearest);
   const auto again = fit(train, {});
   EXPECT_EQ(fitted->network.weights.hidden, again->network.weights.hidden) << "one seed";
-  EXPECT_EQ(formatNetwork({fitted->network, fitted->trained, fitted->memory}),
-            formatNetwork({again->network, again->trained, again->memory}));
+  EXPECT_EQ(formatNetwork({fitted->network, fitted->trained, fitted->statistics}),
+            formatNetwork({again->network, again->trained, again->statistics}));
 }
 
 TEST(Fit, LearnsWithTheAtanToo) {
@@ -122,9 +122,10 @@ TEST(Fit, RefusesWhatItCannotLearn) {
     return fitted ? std::string() : fitted.error().what;
   };
   EXPECT_EQ(why({}), "0 postures; allowed: 2 to 32, one for each code of five bits");
-  EXPECT_EQ(why({{"a", {}}, {"b", {}}}), "no sensor ever changes: there is nothing to learn from");
+  EXPECT_EQ(why({{"a", {}}, {"b", {}}}),
+            "the values of all sensors are constant; record hands that show different postures");
   EXPECT_EQ(why({{"a", {}}, {"b", {}}}, {.phi = Phi::kSignum}),
-            "signum has no slope to train by; sigmoid and atan have");
+            "phi signum has no slope and cannot be trained; allowed: sigmoid, atan");
   DataSet bad = {{"a", {}}, {"b", {}}};
   bad[1].value[2] = std::nanf("");
   EXPECT_EQ(why(bad), "hand 1: the value of thumb-ip is nan; allowed: a finite number");
@@ -159,14 +160,14 @@ TEST(Adapt, LearnsAPersonAndForgetsNobody) {
   const DataSet others = test::people(hand::allShapes(), 5001, 10, 5, 7);
   const DataSet own = test::people(hand::allShapes(), 9003, 1, 200, 1);
   const DataSet later = test::people(hand::allShapes(), 9003, 1, 50, 2);
-  const auto adapted = adapt(fitted->network, fitted->memory, own, 1);
+  const auto adapted = adapt(fitted->network, fitted->statistics, own, 1);
   ASSERT_TRUE(adapted);
   EXPECT_GT(score(adapted->network, later).accuracy(), score(fitted->network, later).accuracy());
   EXPECT_GE(score(adapted->network, later).accuracy(), 0.99);
   EXPECT_GE(score(adapted->network, others).accuracy(),
             score(fitted->network, others).accuracy() - 0.01);
-  EXPECT_GE(adapted->memory_after, adapted->memory_before - 0.005);
-  const auto refused = adapt(fitted->network, fitted->memory, DataSet{{"wink", {}}}, 1);
+  EXPECT_GE(adapted->drawn_after, adapted->drawn_before - 0.005);
+  const auto refused = adapt(fitted->network, fitted->statistics, DataSet{{"wink", {}}}, 1);
   ASSERT_FALSE(refused);
   EXPECT_TRUE(refused.error().what.starts_with("posture \"wink\" is none of the network's"));
 }

@@ -29,7 +29,7 @@ BasicWeights<Real> randomWeights(std::uint64_t seed, double most) {
   return weights;
 }
 
-// Hidden node 0 sees 2 x_2 - 1, the others nothing; output 3 sees 4 h_0 - 2 h_1 + 0.25.
+// Hidden node 0 computes 2 x_2 - 1, the others 0; output 3 computes 4 h_0 - 2 h_1 + 0.25.
 Weights handWeights() {
   Weights weights;
   weights.hidden[0][2] = 2;
@@ -40,7 +40,7 @@ Weights handWeights() {
   return weights;
 }
 
-// By hand, for x_2 = 0.75: I = 2 * 0.75 - 1 = 0.5 in hidden node 0, and 0 in the others.
+// Worked by hand for x_2 = 0.75: hidden node 0 gets I = 2 * 0.75 - 1 = 0.5, the others get 0.
 TEST(Network, IsEquationsA9AndA10WithTheSigmoid) {
   Input x{};
   x[2] = 0.75F;
@@ -69,12 +69,12 @@ TEST(Network, SignumIsOneAboveZeroOnly) {
   x[2] = 0.75F;
   const auto pass = propagate(Phi::kSignum, handWeights(), x);
   EXPECT_EQ(pass.hidden[0], 1.0F);
-  EXPECT_EQ(pass.hidden[1], 0.0F);  // of a sum of 0
+  EXPECT_EQ(pass.hidden[1], 0.0F);  // the sum is 0
   EXPECT_EQ(pass.output_sum[3], 4.25F);
   EXPECT_EQ(pass.output, (Output{0, 0, 0, 1, 0}));
 }
 
-// Written after the equations, not after the code: one sum a node, in long double.
+// A reference written from the equations, not from the code: each node sums in long double.
 Output reference(const BasicWeights<double>& w, const Input& x) {
   Output out{};
   for (std::size_t k = 0; k < kOutputs; ++k) {
@@ -145,9 +145,9 @@ TEST(Threshold, SetsBitIWhereOutputIIsAboveOneHalf) {
 
 TEST(Inputs, AreScaledFromTheirRangeAndHeldInIt) {
   Angles angles{};
-  angles[4] = 0.75F;   // index MCP, 0..1.5
-  angles[3] = 0.2F;    // thumb abduction, 0.2..0.5
-  angles[21] = -0.3F;  // wrist pitch, -0.7..0.9
+  angles[4] = 0.75F;   // index MCP, range 0..1.5 rad
+  angles[3] = 0.2F;    // thumb abduction, range 0.2..0.5 rad
+  angles[21] = -0.3F;  // wrist pitch, range -0.7..0.9 rad
   angles[22] = 9.0F;
   angles[5] = -1.0F;
   angles[6] = kNaN;

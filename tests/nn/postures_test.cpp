@@ -61,12 +61,13 @@ TEST(Codes, AreWrittenWithOutputZeroLast) {
 }
 
 Recognition recognise(const PostureNetwork& network, const Angles& value) {
-  static std::vector<std::unique_ptr<Recogniser>> kept;  // names live as long
+  // Results refer to its names, so it has to outlive them.
+  static std::vector<std::unique_ptr<Recogniser>> kept;
   return (*kept.emplace_back(std::make_unique<Recogniser>(network)))(value);
 }
 
 TEST(Recognise, SaysCodeActivationsAndName) {
-  PostureNetwork network;  // weights 0: only the biases of outputs 1 and 4 speak
+  PostureNetwork network;  // all weights are 0; only the biases of outputs 1 and 4 are set below
   network.weights.output[1][kHidden] = 3;
   network.weights.output[4][kHidden] = 0.1F;
   network.weights.output[0][kHidden] = -0.1F;
@@ -81,12 +82,13 @@ TEST(Recognise, SaysCodeActivationsAndName) {
 TEST(Recognise, ScalesByTheNetworksOwnRanges) {
   PostureNetwork network;
   network.weights.hidden[0][4] = 100;
-  network.weights.hidden[0][kInputs] = -50;  // index MCP beyond the middle of its range
+  // On if the index MCP angle is above the middle of its range.
+  network.weights.hidden[0][kInputs] = -50;
   network.weights.output[0][0] = 100;
   network.weights.output[0][kHidden] = -50;
   Angles angles{};
   angles[4] = 0.8F;
-  EXPECT_EQ(recognise(network, angles).code, 1U);  // 0..1.5
+  EXPECT_EQ(recognise(network, angles).code, 1U);  // 0.8 is above the middle of the range 0..1.5
   network.ranges[4].high = 2.0F;
   EXPECT_EQ(recognise(network, angles).code, 0U);
 }
@@ -98,7 +100,7 @@ TEST(Recognise, KnowsEveryShippedShape) {
 }
 
 TEST(Recognise, AnAngleThatIsNotFiniteIsNeverAPosture) {
-  PostureNetwork network;  // weights 0: every hand is code 0
+  PostureNetwork network;  // all weights are 0: every hand gives code 0
   ASSERT_TRUE(network.postures.add(0, "rest"));
   ASSERT_EQ(recognise(network, {}).name, "rest");
   for (std::size_t i = 0; i < kInputs; ++i) {

@@ -14,7 +14,8 @@ namespace {
 
 constexpr Phi kPhis[] = {Phi::kSigmoid, Phi::kSignum, Phi::kAtan};
 
-// Of trained sizes: a trained network's weights are 90 and 17 at most.
+// Random weights as large as trained ones, whose magnitudes are at most 90 (hidden) and 17
+// (output).
 Weights randomWeights(std::uint64_t seed) {
   Weights weights;
   Random random(seed);
@@ -71,7 +72,7 @@ void expectSameBits(Phi phi, const Weights& weights, const Input& x) {
   EXPECT_EQ(std::memcmp(fast.data(), portable.data(), sizeof fast), 0) << nameOf(phi);
 }
 
-// On a processor without AVX2 the two are one.
+// Without AVX2 both versions are the same, and the test compares nothing.
 TEST(Recall, GivesTheSameBitsWithEveryProcessorsInstructions) {
   Random random(7);
   constexpr float kOdd[] = {
@@ -83,7 +84,7 @@ TEST(Recall, GivesTheSameBitsWithEveryProcessorsInstructions) {
   }
 }
 
-// Next to 2^52 a double has whole numbers alone: what each sum comes to depends on its order.
+// Near 2^52 a double represents whole numbers only, so the result of a sum depends on the order.
 TEST(Recall, AddsInTheSameOrderWithEveryProcessorsInstructions) {
   constexpr float kLarge = 0x1p52F;
   Random random(8);

@@ -1,4 +1,4 @@
-// What the tests of nn share: the shipped network's file, and synthetic people.
+// Shared by the tests of nn: the shipped network's file, and synthetic people.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace merlin::nn::test {
 
 inline const std::string kShippedPath = MERLIN_SOURCE_DIR "/config/postures.json";
 
-// The network of config/postures.json; the default one, which names nothing, if it does not load.
+// The network of config/postures.json, or an empty network (no postures) if that does not load.
 inline PostureNetwork shippedNetwork() {
   const auto file = loadNetwork(kShippedPath);
   return file ? file->network : PostureNetwork{};

@@ -19,7 +19,7 @@ std::vector<Example> randomExamples(std::size_t count, std::uint64_t seed) {
   return examples;
 }
 
-// Output 2 is to be the exclusive or of inputs 4 and 20; the others are to be 0.
+// Training examples: output 2 is the exclusive or of inputs 4 and 20, the other outputs are 0.
 std::vector<Example> exclusiveOr() {
   std::vector<Example> examples(4);
   for (std::uint32_t i = 0; i < 4; ++i) {
@@ -30,7 +30,7 @@ std::vector<Example> exclusiveOr() {
   return examples;
 }
 
-// Calls f(weight) for each of the 440 weights, in one order for every set.
+// Calls f(weight) for each of the 440 weights, always in the same order.
 template <typename W, typename F>
 void forEach(W& weights, F f) {
   for (auto& row : weights.hidden) {
@@ -48,10 +48,10 @@ std::vector<double> flat(const W& weights) {
   return all;
 }
 
-TEST(BackPropagate, TheErrorIsTheMeanOfTheSquares) {  // of weights 0 every output is 1/2
+TEST(BackPropagate, TheErrorIsTheMeanOfTheSquares) {  // with all weights 0, every output is 1/2
   const auto examples = randomExamples(7, 1);
   EXPECT_DOUBLE_EQ(backPropagate(Phi::kSigmoid, {}, examples).mse, 0.25);
-  TrainingWeights sure;  // output 0 is 1, the others 1/2
+  TrainingWeights sure;  // output 0 is 1, the others are 1/2
   sure.output[0][kHidden] = 100;
   const std::vector<Example> two = {{{}, 0b00001}, {{}, 0b00000}};
   EXPECT_NEAR(backPropagate(Phi::kSigmoid, sure, two).mse, (0 + 1 + 8 * 0.25) / 10, 1e-12);
@@ -63,7 +63,8 @@ TEST_P(Gradient, AgreesWithFiniteDifferences) {
   const auto examples = randomExamples(5, 2);
   constexpr double kStep = 1e-5;
   TrainingWeights weights = initialWeights(3);
-  forEach(weights, [](double& w) { w *= 4; });  // away from where every Phi is a line
+  // Out of the range in which every activation function is nearly linear.
+  forEach(weights, [](double& w) { w *= 4; });
   const auto gradient = flat(backPropagate(GetParam(), weights, examples).gradient);
   std::size_t n = 0;
   double largest = 0;
@@ -80,7 +81,7 @@ TEST_P(Gradient, AgreesWithFiniteDifferences) {
     ++n;
   });
   EXPECT_EQ(n, 440u);
-  EXPECT_GT(largest, 1e-3);  // there was something to agree on
+  EXPECT_GT(largest, 1e-3);  // the gradient is not just zero
 }
 
 INSTANTIATE_TEST_SUITE_P(Phis, Gradient, testing::Values(Phi::kSigmoid, Phi::kAtan),
@@ -188,7 +189,7 @@ TEST(Train, RefusesWhatItCannotTrain) {
   const auto good = exclusiveOr();
   EXPECT_EQ(trainError({}, {}), "no examples to train on");
   EXPECT_EQ(trainError(good, {.phi = Phi::kSignum}),
-            "signum has no slope to train by; sigmoid and atan have");
+            "phi signum has no slope and cannot be trained; allowed: sigmoid, atan");
   EXPECT_EQ(trainError(good, {.rate = 0}), "rate 0 not > 0");
   EXPECT_EQ(trainError(good, {.momentum = 1}), "momentum 1 not in [0, 1)");
   EXPECT_EQ(trainError(good, {.max_iterations = 0}), "max_iterations 0, not >= 1");
@@ -200,7 +201,8 @@ TEST(Train, RefusesWhatItCannotTrain) {
   bad[3].x[22] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(trainError(bad, {}), "an example with an input that is not finite");
   EXPECT_EQ(trainError(good, {.rate = 1e300, .max_iterations = 3}),
-            "weights ran away after 3 iterations: rate 1e+300 or start too large");
+            "the weights diverged after 3 iterations: use a rate below 1e+300 or smaller initial "
+            "weights");
 }
 
 }  // namespace

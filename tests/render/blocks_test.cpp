@@ -1,4 +1,5 @@
-// Reduction in blocks, for want of memory: as good as of the whole, one log, nothing torn.
+// Reduction in blocks, for meshes that do not fit into memory: nearly as good as in one piece, one
+// collapse log, no cracks.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -16,55 +17,56 @@
 namespace merlin::render {
 namespace {
 
-// Flat on one side, hilly on the other.
-Mesh hills(std::uint32_t size) {
-  Mesh mesh = test::noisyGrid(size, size, 0.05, 3);
+// A mesh that is flat on one side and hilly on the other.
+mesh::Mesh hills(std::uint32_t size) {
+  mesh::Mesh mesh = test::noisyGrid(size, size, 0.05, 3);
   const auto extent = static_cast<float>(size);
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     float* p = &mesh.positions[3 * v];
     const float s = p[0] / extent;
     p[2] = s * s * (p[2] + 8 * std::sin(p[0] / 9) * std::cos(p[1] / 7));
   }
-  ensureNormals(mesh);
+  mesh::ensureNormals(mesh);
   return mesh;
 }
 
-Reduction reduced(const Mesh& mesh, const ReduceSettings& settings) {
-  auto result = reduce(mesh, settings);
+reduce::Reduction reduced(const mesh::Mesh& mesh, const reduce::ReduceSettings& settings) {
+  auto result = reduce::reduce(mesh, settings);
   EXPECT_TRUE(result) << result.error().what;
   return *std::move(result);
 }
 
-// Settings that leave three quarters of what the whole takes.
-ReduceSettings tight(const Mesh& mesh, ReduceSettings settings = {}) {
-  settings.memory = needOf(sizeOf(mesh), settings).whole / 4 * 3;
+// Settings with three quarters of the memory that a reduction in one piece takes.
+reduce::ReduceSettings tight(const mesh::Mesh& mesh, reduce::ReduceSettings settings = {}) {
+  settings.memory = reduce::needOf(mesh::sizeOf(mesh), settings).whole / 4 * 3;
   return settings;
 }
 
 TEST(Blocks, AreUsedOnlyWhereMemoryIsShort) {
-  const Mesh mesh = hills(60);
-  const std::size_t whole = needOf(sizeOf(mesh), {}).whole;
+  const mesh::Mesh mesh = hills(60);
+  const std::size_t whole = reduce::needOf(mesh::sizeOf(mesh), {}).whole;
   EXPECT_EQ(reduced(mesh, {}).report.blocks, 1u);
   EXPECT_EQ(reduced(mesh, {.memory = whole}).report.blocks, 1u);
   EXPECT_GT(reduced(mesh, {.memory = whole - 1}).report.blocks, 1u);
 }
 
 TEST(Blocks, AreRefusedWhereNotEvenTheyFit) {
-  const Mesh mesh = hills(60);
-  const auto refused = reduce(mesh, {.memory = 100'000});
+  const mesh::Mesh mesh = hills(60);
+  const auto refused = reduce::reduce(mesh, {.memory = 100'000});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Errc::kInvalidArgument);
   EXPECT_NE(refused.error().what.find("the limit leaves 100000"), std::string::npos);
-  const ReductionNeed need = needOf(sizeOf(mesh), {});
-  EXPECT_TRUE(reduce(mesh, {.memory = need.least}));
-  EXPECT_FALSE(reduce(mesh, {.memory = need.least - 1}));
-  EXPECT_FALSE(reduce(mesh, {.cost = "pattern", .memory = need.least}));  // has no blocks
+  const reduce::ReductionNeed need = reduce::needOf(mesh::sizeOf(mesh), {});
+  EXPECT_TRUE(reduce::reduce(mesh, {.memory = need.least}));
+  EXPECT_FALSE(reduce::reduce(mesh, {.memory = need.least - 1}));
+  // This cost cannot work in blocks.
+  EXPECT_FALSE(reduce::reduce(mesh, {.cost = "pattern", .memory = need.least}));
 }
 
 TEST(Blocks, TheSameBytesForAnyNumberOfThreads) {
-  const Mesh mesh = hills(250);
-  const Reduction one = reduced(mesh, tight(mesh, {.threads = 1}));
-  const Reduction three = reduced(mesh, tight(mesh, {.threads = 3}));
+  const mesh::Mesh mesh = hills(250);
+  const reduce::Reduction one = reduced(mesh, tight(mesh, {.threads = 1}));
+  const reduce::Reduction three = reduced(mesh, tight(mesh, {.threads = 3}));
   EXPECT_EQ(one.log.children, three.log.children);
   EXPECT_EQ(one.log.positions, three.log.positions);
   EXPECT_EQ(one.log.features, three.log.features);
@@ -72,32 +74,33 @@ TEST(Blocks, TheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Blocks, EveryLevelIsAManifold) {
-  const Mesh mesh = hills(120);
-  const Reduction r = reduced(mesh, tight(mesh));
+  const mesh::Mesh mesh = hills(120);
+  const reduce::Reduction r = reduced(mesh, tight(mesh));
   EXPECT_LE(r.report.triangles, 2u);
-  const Dendrogram d = buildDendrogram(mesh, r.log);
-  ASSERT_TRUE(Dendrogram::make(d.arrays(), nullptr));
+  const lod::Dendrogram d = lod::buildDendrogram(mesh, r.log);
+  ASSERT_TRUE(lod::Dendrogram::make(d.arrays(), nullptr));
   EXPECT_EQ(d.trianglesAt(d.levels() - 1), r.report.triangles);
   for (const std::size_t percent : {90U, 50U, 30U, 20U, 15U, 10U, 5U, 1U}) {
-    Mesh coarse = extract(d, d.levelFor(mesh.triangleCount() * percent / 100));
+    mesh::Mesh coarse = lod::extract(d, d.levelFor(mesh.triangleCount() * percent / 100));
     const std::size_t before = coarse.triangleCount();
-    tidy(coarse);
+    mesh::tidy(coarse);
     EXPECT_EQ(coarse.triangleCount(), before) << percent << " %";
-    const SplitReport split = splitNonManifold(coarse);
+    const mesh::SplitReport split = mesh::splitNonManifold(coarse);
     EXPECT_EQ(split.edges + split.vertices, 0u) << percent << " %";
   }
 }
 
-// Borders stay as fine as they were for a while: in so small a mesh an eighth of what is kept.
+// Block borders are reduced late. In a mesh as small as this one they are an eighth of the vertices
+// kept, hence the tolerance.
 TEST(Blocks, AreAsGoodAsTheWhole) {
-  const Mesh mesh = hills(250);
-  const Reduction whole = reduced(mesh, {}), blocks = reduced(mesh, tight(mesh));
-  CompareSettings settings;
+  const mesh::Mesh mesh = hills(250);
+  const reduce::Reduction whole = reduced(mesh, {}), blocks = reduced(mesh, tight(mesh));
+  compare::CompareSettings settings;
   settings.samples = 5'000;
   settings.max_evaluations = 1;
-  const auto rms = [&](const Reduction& r, std::size_t keep) {
-    const Dendrogram d = buildDendrogram(mesh, r.log);
-    return compare(mesh, extract(d, d.levelFor(keep)), settings)->symmetric().rms;
+  const auto rms = [&](const reduce::Reduction& r, std::size_t keep) {
+    const lod::Dendrogram d = lod::buildDendrogram(mesh, r.log);
+    return compare::compare(mesh, lod::extract(d, d.levelFor(keep)), settings)->symmetric().rms;
   };
   for (const std::size_t percent : {20U, 5U}) {
     const std::size_t keep = mesh.triangleCount() * percent / 100;
@@ -106,17 +109,17 @@ TEST(Blocks, AreAsGoodAsTheWhole) {
 }
 
 TEST(Blocks, StopWhereTheyAreTold) {
-  const Mesh mesh = hills(120);
-  const Reduction by_count = reduced(mesh, tight(mesh, {.min_triangles = 3000}));
+  const mesh::Mesh mesh = hills(120);
+  const reduce::Reduction by_count = reduced(mesh, tight(mesh, {.min_triangles = 3000}));
   EXPECT_GT(by_count.report.blocks, 1u);
   EXPECT_STREQ(by_count.report.stopped, "triangles");
   EXPECT_LE(by_count.report.triangles, 3000u);
   EXPECT_GE(by_count.report.triangles, 2999u);
-  const Reduction by_error = reduced(mesh, tight(mesh, {.max_error_percent = 0.01}));
+  const reduce::Reduction by_error = reduced(mesh, tight(mesh, {.max_error_percent = 0.01}));
   EXPECT_STREQ(by_error.report.stopped, "error");
-  EXPECT_LE(by_error.report.error, 0.0001F * boundingBox(mesh.positions).diagonal());
+  EXPECT_LE(by_error.report.error, 0.0001F * mesh::boundingBox(mesh.positions).diagonal());
   std::size_t calls = 0;
-  const auto cancelled = reduce(mesh, tight(mesh), [&](const ReduceProgress& p) {
+  const auto cancelled = reduce::reduce(mesh, tight(mesh), [&](const reduce::ReduceProgress& p) {
     EXPECT_LE(p.triangles, mesh.triangleCount());
     return ++calls < 2;
   });
@@ -124,17 +127,17 @@ TEST(Blocks, StopWhereTheyAreTold) {
   EXPECT_STREQ(cancelled->report.stopped, "cancelled");
 }
 
-// A block's border is a vertex wide, and moves no more than where it is fixed.
+// A vertex on a border between blocks may move in at most one of the blocks that contain it.
 TEST(BlockCutter, LocksWhatHasANeighbourOutside) {
-  const Mesh mesh = hills(40);
+  const mesh::Mesh mesh = hills(40);
   const std::vector<bool> none;
-  const BlockCutter cutter(mesh, none, 2);
+  const reduce::BlockCutter cutter(mesh, none, 2);
   const std::size_t half = (mesh.vertexCount() + 1) / 2;
-  std::vector<Block> blocks = cutter.cut({half, half, 0, 1});
+  std::vector<reduce::Block> blocks = cutter.cut({half, half, 0, 1});
   ASSERT_EQ(blocks.size(), 2u);
   std::vector<int> free(mesh.vertexCount());
   std::size_t triangles = 0;
-  for (const Block& b : blocks) {
+  for (const reduce::Block& b : blocks) {
     triangles += b.mesh.triangleCount();
     EXPECT_TRUE(validate(b.mesh));
     std::vector<std::size_t> whole(mesh.vertexCount()), here(mesh.vertexCount());
@@ -146,7 +149,7 @@ TEST(BlockCutter, LocksWhatHasANeighbourOutside) {
       EXPECT_EQ(here[b.vertices[i]], whole[b.vertices[i]]);
     }
   }
-  EXPECT_EQ(triangles, mesh.triangleCount());  // each has two corners in one half
+  EXPECT_EQ(triangles, mesh.triangleCount());  // each triangle is in exactly one block
   EXPECT_LE(*std::max_element(free.begin(), free.end()), 1);
   EXPECT_GT(std::count(free.begin(), free.end(), 1), 1500);
 }

@@ -1,4 +1,4 @@
-// Clusters: every cut against the dendrogram's own chase, even or uneven.
+// Clusters: each cut, uniform or not, is compared with the one derived from the dendrogram alone.
 #include "render/lod/clusters.h"
 
 #include <algorithm>
@@ -20,14 +20,14 @@ namespace {
 using Triangle = std::array<std::uint32_t, 3>;
 using Indices = std::vector<std::uint32_t>;
 
-Dendrogram dendrogramOf(Mesh mesh) {
-  ensureNormals(mesh);
-  auto reduction = reduce(mesh, {.threads = 1});
+lod::Dendrogram dendrogramOf(mesh::Mesh mesh) {
+  mesh::ensureNormals(mesh);
+  auto reduction = reduce::reduce(mesh, {.threads = 1});
   EXPECT_TRUE(reduction);
-  return buildDendrogram(mesh, reduction->log);
+  return lod::buildDendrogram(mesh, reduction->log);
 }
 
-// Of indices, the smallest corner first, sorted.
+// Sorts triangles; within each, the smallest index comes first and the orientation is kept.
 std::vector<Triangle> sorted(std::span<const std::uint32_t> indices) {
   std::vector<Triangle> triangles;
   for (std::size_t i = 0; i < indices.size(); i += 3) {
@@ -39,19 +39,19 @@ std::vector<Triangle> sorted(std::span<const std::uint32_t> indices) {
   return triangles;
 }
 
-Indices evenCut(const Clusters& clusters, const Dendrogram& d, std::size_t level) {
+Indices evenCut(const lod::Clusters& clusters, const lod::Dendrogram& d, std::size_t level) {
   Indices out(3 * d.triangleCount());
   out.resize(3 * clusters.cutEvenly(level, out));
   return out;
 }
 
-Indices unevenCut(const Clusters& clusters, const Dendrogram& d, const Indices& levels) {
+Indices unevenCut(const lod::Clusters& clusters, const lod::Dendrogram& d, const Indices& levels) {
   Indices out(3 * d.triangleCount()), ends(clusters.size() + 1);
   out.resize(3 * clusters.cut(levels, out, ends));
   return out;
 }
 
-Indices randomLevels(const Clusters& clusters, unsigned seed) {
+Indices randomLevels(const lod::Clusters& clusters, unsigned seed) {
   std::mt19937 random(seed);
   Indices levels(clusters.size());
   for (auto& l : levels) {
@@ -62,9 +62,9 @@ Indices randomLevels(const Clusters& clusters, unsigned seed) {
 }
 
 TEST(Clusters, AnEvenCutIsTheDendrograms) {
-  const Dendrogram d = dendrogramOf(test::sphere(5));
+  const lod::Dendrogram d = dendrogramOf(test::sphere(5));
   for (const std::size_t memory : {std::size_t{40} << 20, std::size_t{300'000}}) {
-    const Clusters clusters(d, {.clusters = 40, .memory = memory});
+    const lod::Clusters clusters(d, {.clusters = 40, .memory = memory});
     Indices expected(3 * d.triangleCount());
     for (std::size_t level = 0; level < d.levels(); level += 97) {
       const std::size_t n = d.cut(level, expected);
@@ -75,17 +75,18 @@ TEST(Clusters, AnEvenCutIsTheDendrograms) {
 }
 
 TEST(Clusters, LittleMemoryMeansACoarserFinestLevel) {
-  const Dendrogram d = dendrogramOf(test::sphere(5));
-  const Clusters all(d, {.clusters = 40}), few(d, {.clusters = 40, .memory = 300'000});
+  const lod::Dendrogram d = dendrogramOf(test::sphere(5));
+  const lod::Clusters all(d, {.clusters = 40}), few(d, {.clusters = 40, .memory = 300'000});
   EXPECT_EQ(all.finestLevel(), 0u);
   EXPECT_GT(few.finestLevel(), 0u);
   EXPECT_LT(few.memoryBytes(), 330'000u);
 }
 
-// Above 300,000 triangles rungs are further apart; those of a million fit in 41 MB.
+// Above 300,000 triangles the precomputed steps are further apart: a million triangles fit into 41
+// MB.
 TEST(Clusters, LargeCutsAreTheDendrogramsToo) {
-  const Dendrogram d = dendrogramOf(test::noisyGrid(410, 410, 0.4, 3));
-  const Clusters clusters(d, {});
+  const lod::Dendrogram d = dendrogramOf(test::noisyGrid(410, 410, 0.4, 3));
+  const lod::Clusters clusters(d, {});
   ASSERT_GT(d.triangleCount(), 330'000u);
   EXPECT_EQ(clusters.finestLevel(), 0u);
   EXPECT_LT(clusters.memoryBytes(), 41'000'000u);
@@ -98,8 +99,8 @@ TEST(Clusters, LargeCutsAreTheDendrogramsToo) {
 }
 
 TEST(Clusters, EverythingIsEachLeafTriangleByCluster) {
-  const Dendrogram d = dendrogramOf(test::noisyGrid(40, 40, 0.4, 3));
-  const Clusters clusters(d, {.clusters = 30, .memory = 100'000});
+  const lod::Dendrogram d = dendrogramOf(test::noisyGrid(40, 40, 0.4, 3));
+  const lod::Clusters clusters(d, {.clusters = 30, .memory = 100'000});
   ASSERT_GT(clusters.finestLevel(), 0u);
   Indices corners, ends;
   clusters.everything(corners, ends);
@@ -115,18 +116,19 @@ TEST(Clusters, EverythingIsEachLeafTriangleByCluster) {
   }
 }
 
-// The levels of all clusters at random: what comes out is each triangle of the mesh, its corners
-// chased to their own clusters' levels, if they are three.
+// With random levels for all clusters: the cut consists of the mesh's triangles whose corners, each
+// replaced by its ancestor alive at the level of its cluster, are still three different nodes.
 TEST(Clusters, AnUnevenCutIsWhatChasingEveryCornerGives) {
-  const Dendrogram d = dendrogramOf(test::noisyGrid(40, 40, 0.4, 3));
-  const Clusters clusters(d, {.clusters = 30});
+  const lod::Dendrogram d = dendrogramOf(test::noisyGrid(40, 40, 0.4, 3));
+  const lod::Clusters clusters(d, {.clusters = 30});
   ASSERT_EQ(clusters.finestLevel(), 0u);
   const auto nodes = static_cast<std::uint32_t>(d.nodeCount());
   const auto coarse = nodes - static_cast<std::uint32_t>(2 * clusters.coarsestLevel());
   const auto parent = [&](std::uint32_t n) { return d.arrays().parents[(nodes - 1 - n) / 2]; };
   for (unsigned seed = 0; seed < 20; ++seed) {
     const Indices levels = randomLevels(clusters, seed);
-    // Which cluster a leaf is in shows by its root: learn it from cuts with one cluster fine.
+    // A leaf belongs to the cluster of its root; find that cluster by cuts that refine a single
+    // cluster.
     static std::map<std::uint32_t, std::size_t> cluster_of_root;
     if (cluster_of_root.empty()) {
       for (std::size_t c = 0; c < clusters.size(); ++c) {
@@ -147,7 +149,7 @@ TEST(Clusters, AnUnevenCutIsWhatChasingEveryCornerGives) {
         std::uint32_t root = leaf;
         while (root >= coarse) root = parent(root);
         t[k] = leaf;
-        if (!cluster_of_root.count(root)) continue;  // a root that is a leaf
+        if (!cluster_of_root.count(root)) continue;  // the root is a leaf itself
         while (t[k] >= nodes - 2 * levels[cluster_of_root[root]]) t[k] = parent(t[k]);
       }
       if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
@@ -157,11 +159,11 @@ TEST(Clusters, AnUnevenCutIsWhatChasingEveryCornerGives) {
   }
 }
 
-// Of a closed surface every edge is there as often one way as the other, whatever the levels.
+// In a closed surface each edge occurs equally often in both directions, whatever the levels.
 TEST(Clusters, NeighboursOfAnyLevelsLeaveNoCrack) {
-  const Dendrogram d = dendrogramOf(test::sphere(5));
+  const lod::Dendrogram d = dendrogramOf(test::sphere(5));
   for (const std::size_t memory : {std::size_t{40} << 20, std::size_t{300'000}}) {
-    const Clusters clusters(d, {.clusters = 60, .memory = memory});
+    const lod::Clusters clusters(d, {.clusters = 60, .memory = memory});
     for (unsigned seed = 0; seed < 20; ++seed) {
       std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
       const Indices cut = unevenCut(clusters, d, randomLevels(clusters, seed));
@@ -175,8 +177,8 @@ TEST(Clusters, NeighboursOfAnyLevelsLeaveNoCrack) {
 }
 
 TEST(Clusters, CountsAndEndsSayWhatACutHolds) {
-  const Dendrogram d = dendrogramOf(test::sphere(5));
-  const Clusters clusters(d, {.clusters = 50});
+  const lod::Dendrogram d = dendrogramOf(test::sphere(5));
+  const lod::Clusters clusters(d, {.clusters = 50});
   const Indices levels = randomLevels(clusters, 7);
   Indices out(3 * d.triangleCount()), ends(clusters.size() + 1);
   const std::size_t n = clusters.cut(levels, out, ends);
@@ -189,8 +191,8 @@ TEST(Clusters, CountsAndEndsSayWhatACutHolds) {
 }
 
 TEST(Clusters, BoundsHoldWhatIsCut) {
-  const Dendrogram d = dendrogramOf(test::sphere(5));
-  const Clusters clusters(d, {.clusters = 50});
+  const lod::Dendrogram d = dendrogramOf(test::sphere(5));
+  const lod::Clusters clusters(d, {.clusters = 50});
   const auto positions = d.arrays().positions;
   for (unsigned seed = 0; seed < 10; ++seed) {
     const Indices levels = randomLevels(clusters, seed);
@@ -198,37 +200,59 @@ TEST(Clusters, BoundsHoldWhatIsCut) {
     clusters.cut(levels, out, ends);
     std::size_t i = 0;
     for (std::size_t c = 0; c < clusters.size(); ++c) {
-      const ClusterBounds& b = clusters.bounds(c);
+      const lod::ClusterBounds& b = clusters.bounds(c);
       for (; i < 3 * std::size_t{ends[c]}; ++i) {
         const float* p = &positions[3 * std::size_t{out[i]}];
         EXPECT_LE(std::hypot(p[0] - b.centre[0], p[1] - b.centre[1], p[2] - b.centre[2]),
                   b.radius * 1.0001F);
       }
-      // The sphere's normals look away from its middle.
+      // The sphere's normals point away from its centre.
       EXPECT_GT(b.axis[0] * b.centre[0] + b.axis[1] * b.centre[1] + b.axis[2] * b.centre[2], 0);
       EXPECT_GT(b.cone_cos, 0.3F);
     }
   }
 }
 
+// A frame at full detail draws the clusters of everything() and leaves out those whose sphere no
+// tile sees. So each sphere must contain its triangles, also one with corners in three clusters.
+TEST(Clusters, BoundsHoldEverything) {
+  const lod::Dendrogram d = dendrogramOf(test::noisyGrid(40, 40, 0.4, 3));
+  const auto positions = d.arrays().positions;
+  for (const std::size_t memory : {std::size_t{100'000}, lod::ClusterSettings{}.memory}) {
+    const lod::Clusters clusters(d, {.clusters = 30, .memory = memory});
+    Indices corners, ends;
+    clusters.everything(corners, ends);
+    std::size_t i = 0;
+    for (std::size_t c = 0; c < clusters.size(); ++c) {
+      const lod::ClusterBounds& b = clusters.bounds(c);
+      for (; i < 3 * std::size_t{ends[c]}; ++i) {
+        const float* p = &positions[3 * std::size_t{corners[i]}];
+        ASSERT_LE(std::hypot(p[0] - b.centre[0], p[1] - b.centre[1], p[2] - b.centre[2]),
+                  b.radius * 1.0001F)
+            << "finest level " << clusters.finestLevel();
+      }
+    }
+  }
+}
+
 TEST(Clusters, EightAtATimeIsAsOneAtATime) {
-  const Dendrogram d = dendrogramOf(test::sphere(4));
-  const Forest forest{d.arrays().parents, static_cast<std::uint32_t>(d.nodeCount())};
+  const lod::Dendrogram d = dendrogramOf(test::sphere(4));
+  const lod::Forest forest{d.arrays().parents, static_cast<std::uint32_t>(d.nodeCount())};
   const auto leaves = d.arrays().triangles;
   Indices one(leaves.size()), eight(leaves.size());
   for (std::uint32_t alive = forest.nodes; alive > 20; alive -= 14) {
     for (const std::size_t n : {leaves.size(), std::size_t{13}, std::size_t{0}}) {
-      portableChaser()(forest, alive, leaves.data(), n, one.data());
-      chaser(forest.nodes)(forest, alive, leaves.data(), n, eight.data());
+      lod::portableChaser()(forest, alive, leaves.data(), n, one.data());
+      lod::chaser(forest.nodes)(forest, alive, leaves.data(), n, eight.data());
       ASSERT_EQ(one, eight) << alive;
     }
   }
 }
 
 TEST(Clusters, TheSmallestModelsAreCutToo) {
-  for (const Mesh& mesh : {test::cube(), test::grid(1, 1), test::grid(2, 2)}) {
-    const Dendrogram d = dendrogramOf(mesh);
-    const Clusters clusters(d, {});
+  for (const mesh::Mesh& mesh : {test::cube(), test::grid(1, 1), test::grid(2, 2)}) {
+    const lod::Dendrogram d = dendrogramOf(mesh);
+    const lod::Clusters clusters(d, {});
     Indices expected(3 * d.triangleCount());
     for (std::size_t level = 0; level < d.levels(); ++level) {
       const std::size_t n = d.cut(level, expected);
@@ -237,17 +261,17 @@ TEST(Clusters, TheSmallestModelsAreCutToo) {
   }
 }
 
-// So at any levels of the clusters nothing gapes between them.
+// Otherwise a crack could open along the seam where its sides had different levels.
 TEST(Clusters, BothSidesOfASeamAreInOne) {
-  const Dendrogram d = dendrogramOf(test::tube(60, 40, true));
-  const Clusters clusters(d, {.clusters = 100});
+  const lod::Dendrogram d = dendrogramOf(test::tube(60, 40, true));
+  const lod::Clusters clusters(d, {.clusters = 100});
   ASSERT_GT(clusters.size(), 40U);
-  const std::vector<std::uint32_t> next = samePlace(d.arrays().positions);
+  const std::vector<std::uint32_t> next = mesh::samePlace(d.arrays().positions);
   std::size_t pairs = 0;
   for (std::uint32_t n = 0; n < next.size(); ++n) {
     const std::size_t one = clusters.clusterOf(n), other = clusters.clusterOf(next[n]);
     if (next[n] == n || one >= clusters.size() || other >= clusters.size()) continue;
-    ++pairs;  // that are no coarser than clusters are
+    ++pairs;  // both nodes are fine enough to belong to a cluster
     EXPECT_EQ(one, other);
   }
   EXPECT_GE(pairs, 2U * 41);

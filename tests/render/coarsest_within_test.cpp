@@ -1,4 +1,5 @@
-// The coarsest resolution within a distance: the promise holds, and it is nearly the coarsest.
+// The coarsest resolution within a given distance: it keeps the distance, and it is nearly the
+// coarsest that does.
 #include "render/compare/coarsest_within.h"
 
 #include <gtest/gtest.h>
@@ -11,25 +12,27 @@ namespace merlin::render {
 namespace {
 
 TEST(CoarsestWithin, KeepsItsPromiseAndIsNearlyTheCoarsest) {
-  Mesh mesh = test::sphere(4);
-  ensureNormals(mesh);
-  const Dendrogram model = buildDendrogram(mesh, reduce(mesh, {})->log);
+  mesh::Mesh mesh = test::sphere(4);
+  mesh::ensureNormals(mesh);
+  const lod::Dendrogram model = lod::buildDendrogram(mesh, reduce::reduce(mesh, {})->log);
   double last_share = 0;
   std::size_t compared = 0;
   for (const double percent : {5.0, 1.0}) {
     last_share = 0;
-    const auto found = coarsestWithin(model, percent, [&](double share, std::size_t levels) {
-      EXPECT_GE(share, last_share);
-      last_share = share;
-      compared = levels;
-    });
+    const auto found =
+        compare::coarsestWithin(model, percent, [&](double share, std::size_t levels) {
+          EXPECT_GE(share, last_share);
+          last_share = share;
+          compared = levels;
+        });
     ASSERT_TRUE(found) << found.error().what;
     EXPECT_EQ(last_share, 1);
     EXPECT_GT(compared, 3u);
     EXPECT_LE(found->percent, percent);
-    const Mesh finest = extract(model, 0);
+    const mesh::Mesh finest = lod::extract(model, 0);
     const auto distance = [&](std::size_t level) {
-      const auto c = compare(finest, extract(model, level), {.samples = 1, .width_percent = 0.01});
+      const auto c = compare::compare(finest, lod::extract(model, level),
+                                      {.samples = 1, .width_percent = 0.01});
       return 100 * c->symmetric().max.low / c->diagonal;
     };
     EXPECT_LE(distance(found->level), percent);

@@ -1,4 +1,5 @@
-// Dendrogram::make refuses arrays that would lead a cut astray, one by one, and says which.
+// Dendrogram::make refuses arrays with which a cut would read out of bounds or go wrong, and says
+// which array it is.
 #include <functional>
 #include <limits>
 #include <memory>
@@ -16,7 +17,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Five vertices 0, 3, 4, 5, 6 and two triangles. Collapse 0 merges 6 and 5 into 2, collapse 1
-// merges 4 and 3 into 1; 0 never dies.
+// merges 4 and 3 into 1; vertex 0 is never merged.
 struct Arrays {
   std::vector<float> positions = std::vector<float>(21, 1.0F);
   std::vector<float> heat = std::vector<float>(14, 1.0F);  // dimension 2
@@ -26,8 +27,8 @@ struct Arrays {
   std::vector<std::uint32_t> alive = {2, 1, 1};
   std::vector<float> error = {0, 0.5F, 0.5F};
 
-  Result<Dendrogram> make() const {
-    return Dendrogram::make(
+  Result<lod::Dendrogram> make() const {
+    return lod::Dendrogram::make(
         {positions, {{"heat", heat_dimension, heat}}, parents, triangles, alive, error, ""},
         nullptr);
   }
@@ -61,8 +62,9 @@ TEST_P(BrokenArrays, AreRefused) {
 }
 
 const Fault kSizes[] = {
-    {"HalfAPosition", [](Arrays& a) { a.positions.pop_back(); }, "positions are no triples"},
-    {"HalfATriangle", [](Arrays& a) { a.triangles.pop_back(); }, "triangles are no triples"},
+    {"HalfAPosition", [](Arrays& a) { a.positions.pop_back(); }, "positions are not triples"},
+    {"HalfATriangle", [](Arrays& a) { a.triangles.pop_back(); },
+     "triangles are not triples of nodes"},
     {"FewerNodesThanMerges",
      [](Arrays& a) {
        a.positions.resize(12);
@@ -97,12 +99,16 @@ const Fault kValues[] = {
     {"AParentThatDiedBefore", [](Arrays& a) { a.parents[1] = 5; }, "collapse 1: parent 5"},
     {"ALastParentThatIsItsChild", [](Arrays& a) { a.parents[1] = 3; }, "collapse 1: parent 3"},
     {"ANodeMadeTwice", [](Arrays& a) { a.parents[1] = 2; }, "collapse 1: node 2 is made twice"},
-    {"ACornerBeyondTheNodes", [](Arrays& a) { a.triangles[5] = 7; }, "triangle 1: node 7 of 7"},
+    {"ACornerBeyondTheNodes", [](Arrays& a) { a.triangles[5] = 7; },
+     "triangle 1: there is no node 7, the model has 7"},
     {"ACornerThatIsNoLeaf", [](Arrays& a) { a.triangles[4] = 2; },
-     "triangle 1: node 2 is no vertex of the mesh"},
-    {"ACountBeyondTheTriangles", [](Arrays& a) { a.alive[0] = 3; }, "level 0: 3 triangles of 2"},
-    {"ACountThatRises", [](Arrays& a) { a.alive[2] = 2; }, "level 2: 2 triangles of 1"},
-    {"AnErrorThatFalls", [](Arrays& a) { a.error[2] = 0.4F; }, "level 2: the error does not rise"},
+     "triangle 1: node 2 is not a vertex of the mesh"},
+    {"ACountBeyondTheTriangles", [](Arrays& a) { a.alive[0] = 3; },
+     "level 0: 3 triangles, at most 2 are possible"},
+    {"ACountThatRises", [](Arrays& a) { a.alive[2] = 2; },
+     "level 2: 2 triangles, at most 1 are possible"},
+    {"AnErrorThatFalls", [](Arrays& a) { a.error[2] = 0.4F; },
+     "level 2: the error falls or is not finite"},
     {"AnErrorThatIsNoNumber", [](Arrays& a) { a.error[2] = kNan; }, "level 2: the error"},
     {"AFirstErrorThatIsNoNumber", [](Arrays& a) { a.error[0] = kNan; }, "level 0: the error"},
     {"AnErrorWithoutEnd", [](Arrays& a) { a.error[2] = kInfinity; }, "level 2: the error"},

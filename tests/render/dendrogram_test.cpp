@@ -1,5 +1,5 @@
-// Every level of a dendrogram against an oracle: the collapses done one after another on plain
-// triangles.
+// Every level of a dendrogram is compared with an oracle that performs the collapses one by one on
+// plain triangles.
 #include "render/lod/dendrogram.h"
 
 #include <algorithm>
@@ -21,11 +21,12 @@ namespace {
 
 using Node = std::uint32_t;
 using Triangle = std::array<Node, 3>;
-using Triangles = std::multiset<Triangle>;  // of the log's node numbers, the smallest first
+// Of node numbers in the log; each triangle begins with its smallest.
+using Triangles = std::multiset<Triangle>;
 
 struct Reduced {
-  Mesh mesh;
-  CollapseLog log;
+  mesh::Mesh mesh;
+  lod::CollapseLog log;
 };
 
 Triangle turned(Node a, Node b, Node c) {
@@ -34,8 +35,9 @@ Triangle turned(Node a, Node b, Node c) {
   return t;
 }
 
-// Adds the feature "id": each node knows its number in the log, wherever a dendrogram puts it.
-Reduced withIds(Mesh mesh, CollapseLog log) {
+// Adds the feature "id": each node's number in the log, which survives the dendrogram's
+// renumbering.
+Reduced withIds(mesh::Mesh mesh, lod::CollapseLog log) {
   std::vector<float> vertices(mesh.vertexCount()), made(log.children.size());
   std::iota(vertices.begin(), vertices.end(), 0.0F);
   std::iota(made.begin(), made.end(), static_cast<float>(vertices.size()));
@@ -44,19 +46,19 @@ Reduced withIds(Mesh mesh, CollapseLog log) {
   return {std::move(mesh), std::move(log)};
 }
 
-Reduced reduced(Mesh mesh) {
-  ensureNormals(mesh);
-  auto r = reduce(mesh, {});
+Reduced reduced(mesh::Mesh mesh) {
+  mesh::ensureNormals(mesh);
+  auto r = reduce::reduce(mesh, {});
   EXPECT_TRUE(r);
   return withIds(std::move(mesh), std::move(r->log));
 }
 
-// Merges nodes that need not be neighbours: a dendrogram does not care.
-Reduced mergedAtRandom(Mesh mesh, std::uint64_t seed) {
+// Merges arbitrary nodes; the dendrogram does not require that they are neighbours.
+Reduced mergedAtRandom(mesh::Mesh mesh, std::uint64_t seed) {
   Random random(seed);
   std::vector<Node> alive(mesh.vertexCount());
   std::iota(alive.begin(), alive.end(), 0U);
-  CollapseLog log;
+  lod::CollapseLog log;
   const auto take = [&] {
     const auto at = alive.begin() + static_cast<std::ptrdiff_t>(random.below(alive.size()));
     const Node node = *at;
@@ -73,10 +75,10 @@ Reduced mergedAtRandom(Mesh mesh, std::uint64_t seed) {
   return withIds(std::move(mesh), std::move(log));
 }
 
-// The oracle.
+// The oracle: a plain list of triangles.
 class PlainMesh {
  public:
-  explicit PlainMesh(const Mesh& mesh) : corners_(mesh.triangles) {}
+  explicit PlainMesh(const mesh::Mesh& mesh) : corners_(mesh.triangles) {}
 
   void collapse(std::array<Node, 2> children, Node made) {
     std::vector<Node> left;
@@ -101,11 +103,11 @@ class PlainMesh {
   std::vector<Node> corners_;
 };
 
-Node idOf(const Dendrogram& d, std::size_t node) {
+Node idOf(const lod::Dendrogram& d, std::size_t node) {
   return static_cast<Node>(d.find("id")->values[node]);
 }
 
-Triangles cutOf(const Dendrogram& d, std::size_t level) {
+Triangles cutOf(const lod::Dendrogram& d, std::size_t level) {
   std::vector<Node> corners(3 * d.trianglesAt(level));
   EXPECT_EQ(d.cut(level, corners), d.trianglesAt(level));
   Triangles all;
@@ -116,7 +118,7 @@ Triangles cutOf(const Dendrogram& d, std::size_t level) {
 }
 
 void expectEachLevelIsTheOracles(const Reduced& r) {
-  const Dendrogram d = buildDendrogram(r.mesh, r.log);
+  const lod::Dendrogram d = lod::buildDendrogram(r.mesh, r.log);
   ASSERT_EQ(d.levels(), r.log.children.size() + 1);
   PlainMesh plain(r.mesh);
   for (std::size_t level = 0;; ++level) {
@@ -126,10 +128,10 @@ void expectEachLevelIsTheOracles(const Reduced& r) {
   }
 }
 
-Mesh hills() { return test::noisyGrid(12, 9, 0.3, 1); }
+mesh::Mesh hills() { return test::noisyGrid(12, 9, 0.3, 1); }
 
-// Closed, with a border, and closed again.
-Mesh components() {
+// A closed component, one with a border, and another closed one.
+mesh::Mesh components() {
   return test::together(test::together(test::sphere(2), test::moved(hills(), 3, 0, 0)),
                         test::moved(test::cube(), -5, 0, 0));
 }
@@ -148,7 +150,7 @@ TEST(Dendrogram, EveryLevelIsRightWhateverIsMerged) {
 }
 
 TEST(Dendrogram, OfAMeshThatWasNotReducedHasOneLevel) {
-  const Dendrogram d = buildDendrogram(test::cube(), {});
+  const lod::Dendrogram d = lod::buildDendrogram(test::cube(), {});
   EXPECT_EQ(d.levels(), 1u);
   EXPECT_EQ(d.nodeCount(), 8u);
   EXPECT_EQ(d.trianglesAt(0), 12u);
@@ -159,7 +161,7 @@ TEST(Dendrogram, OfAMeshThatWasNotReducedHasOneLevel) {
 
 TEST(Dendrogram, NumbersNodesByTheirDeathLastFirst) {
   const Reduced r = reduced(components());
-  const Dendrogram d = buildDendrogram(r.mesh, r.log);
+  const lod::Dendrogram d = lod::buildDendrogram(r.mesh, r.log);
   const std::size_t n = d.nodeCount(), vertices = r.mesh.vertexCount();
   ASSERT_EQ(n, vertices + r.log.children.size());
   EXPECT_EQ(d.vertexCount(), vertices);
@@ -172,7 +174,7 @@ TEST(Dendrogram, NumbersNodesByTheirDeathLastFirst) {
 
 TEST(Dendrogram, EachNodeKeepsItsPositionAndFeatures) {
   const Reduced r = reduced(hills());
-  const Dendrogram d = buildDendrogram(r.mesh, r.log);
+  const lod::Dendrogram d = lod::buildDendrogram(r.mesh, r.log);
   const std::size_t vertices = r.mesh.vertexCount();
   for (std::size_t node = 0; node < d.nodeCount(); ++node) {
     const std::size_t id = idOf(d, node);
@@ -189,12 +191,12 @@ TEST(Dendrogram, EachNodeKeepsItsPositionAndFeatures) {
 }
 
 TEST(Dendrogram, TheErrorOfALevelIsTheLargestUpToIt) {
-  CollapseLog log;
+  lod::CollapseLog log;
   log.children = {{0, 1}, {2, 3}, {4, 5}};
   log.positions.resize(9);
   log.error = {1, 0.5F, 2};
   log.about = "cost=test\n";
-  const Dendrogram d = buildDendrogram(test::cube(), log);
+  const lod::Dendrogram d = lod::buildDendrogram(test::cube(), log);
   const std::vector<float> error(d.arrays().error.begin(), d.arrays().error.end());
   EXPECT_EQ(error, (std::vector<float>{0, 1, 1, 2}));
   EXPECT_EQ(d.errorAt(3), 2);
@@ -203,12 +205,12 @@ TEST(Dendrogram, TheErrorOfALevelIsTheLargestUpToIt) {
 
 TEST(Dendrogram, ExtractsALevelAsAMeshOfItsOwn) {
   const Reduced r = reduced(components());
-  const Dendrogram d = buildDendrogram(r.mesh, r.log);
+  const lod::Dendrogram d = lod::buildDendrogram(r.mesh, r.log);
   for (std::size_t level = 0; level < d.levels(); ++level) {
-    const Mesh mesh = extract(d, level);
+    const mesh::Mesh mesh = lod::extract(d, level);
     ASSERT_TRUE(validate(mesh));
-    Mesh tidied = mesh;
-    const TidyReport report = tidy(tidied);
+    mesh::Mesh tidied = mesh;
+    const mesh::TidyReport report = mesh::tidy(tidied);
     ASSERT_EQ(report.degenerate + report.unused, 0u) << level;
     ASSERT_EQ(mesh.features.size(), 2u);
     ASSERT_EQ(mesh.find("normal")->values.size(), 3 * mesh.vertexCount());
@@ -232,7 +234,7 @@ TEST(Dendrogram, ExtractsALevelAsAMeshOfItsOwn) {
 
 TEST(Dendrogram, ABudgetGetsTheFinestLevelThatFits) {
   const Reduced r = reduced(test::sphere(3));
-  const Dendrogram d = buildDendrogram(r.mesh, r.log);
+  const lod::Dendrogram d = lod::buildDendrogram(r.mesh, r.log);
   ASSERT_GT(d.trianglesAt(d.levels() - 1), 0u);
   for (std::size_t budget = 0; budget <= d.triangleCount() + 2; ++budget) {
     std::size_t level = 0;
@@ -243,7 +245,7 @@ TEST(Dendrogram, ABudgetGetsTheFinestLevelThatFits) {
 
 TEST(Dendrogram, AnErrorGetsTheCoarsestLevelWithinIt) {
   const Reduced r = mergedAtRandom(test::sphere(2), 3);
-  const Dendrogram d = buildDendrogram(r.mesh, r.log);
+  const lod::Dendrogram d = lod::buildDendrogram(r.mesh, r.log);
   std::vector<float> asked = {-1, 0, std::numeric_limits<float>::infinity()};
   for (const float e : d.arrays().error) {
     asked.insert(asked.end(), {e, std::nextafter(e, -1.0F), std::nextafter(e, 9.0F)});
@@ -257,10 +259,10 @@ TEST(Dendrogram, AnErrorGetsTheCoarsestLevelWithinIt) {
 
 TEST(Dendrogram, ACutAllocatesNothingAndWritesNoFurther) {
   const Reduced r = reduced(test::sphere(3));
-  const Dendrogram d = buildDendrogram(r.mesh, r.log);
+  const lod::Dendrogram d = lod::buildDendrogram(r.mesh, r.log);
   constexpr Node kUntouched = 0xDEADBEEF;
   std::vector<Node> corners(3 * d.triangleCount(), kUntouched);
-  for (std::size_t level = d.levels(); level-- > 0;) {  // coarse to fine
+  for (std::size_t level = d.levels(); level-- > 0;) {  // from coarse to fine
     const long before = test::allocations;
     const std::size_t triangles = d.cut(level, corners);
     const std::size_t again = d.levelFor(triangles) + d.levelForError(d.errorAt(level));
@@ -275,9 +277,9 @@ TEST(Dendrogram, KeepsItsMemoryAliveThroughEachCopy) {
   static constexpr std::uint32_t kAlive[] = {0};
   static constexpr float kError[] = {0};
   {
-    auto first = Dendrogram::make({*owner, {}, {}, {}, kAlive, kError, ""}, owner);
+    auto first = lod::Dendrogram::make({*owner, {}, {}, {}, kAlive, kError, ""}, owner);
     ASSERT_TRUE(first) << first.error().what;
-    const auto copy = std::make_unique<const Dendrogram>(*first);
+    const auto copy = std::make_unique<const lod::Dendrogram>(*first);
     EXPECT_EQ(owner.use_count(), 3);
   }
   EXPECT_EQ(owner.use_count(), 1);

@@ -15,8 +15,8 @@ namespace {
 
 using Edges = std::vector<std::uint32_t>;
 
-// Takes the top until nothing is left.
-Edges drained(EdgeHeap& heap) {
+// Removes the top until the heap is empty; returns the order.
+Edges drained(reduce::EdgeHeap& heap) {
   Edges order;
   while (!heap.empty()) {
     order.push_back(heap.top());
@@ -25,22 +25,22 @@ Edges drained(EdgeHeap& heap) {
   return order;
 }
 
-TEST(EdgeHeap, OfNoEdgesIsEmpty) { EXPECT_TRUE(EdgeHeap({}).empty()); }
+TEST(EdgeHeap, OfNoEdgesIsEmpty) { EXPECT_TRUE(reduce::EdgeHeap({}).empty()); }
 
 TEST(EdgeHeap, GivesTheShortestFirst) {
-  EdgeHeap heap({3, 1, 2, 0.5F});
+  reduce::EdgeHeap heap({3, 1, 2, 0.5F});
   EXPECT_EQ(drained(heap), (Edges{3, 1, 2, 0}));
 }
 
 TEST(EdgeHeap, GivesTheSmallerNumberFirstOfTwoThatAreAlike) {
-  EdgeHeap heap(std::vector<float>(100, 7));
+  reduce::EdgeHeap heap(std::vector<float>(100, 7));
   Edges order(100);
   std::iota(order.begin(), order.end(), 0U);
   EXPECT_EQ(drained(heap), order);
 }
 
 TEST(EdgeHeap, KeepsAnEdgesLengthAndItsOrderWhenItChanges) {
-  EdgeHeap heap({3, 1, 2});
+  reduce::EdgeHeap heap({3, 1, 2});
   heap.update(1, 9);
   EXPECT_EQ(heap.top(), 2u);
   EXPECT_EQ(heap.length(1), 9);
@@ -51,7 +51,7 @@ TEST(EdgeHeap, KeepsAnEdgesLengthAndItsOrderWhenItChanges) {
 }
 
 TEST(EdgeHeap, RemovesAnEdgeOnce) {
-  EdgeHeap heap({3, 1, 2});
+  reduce::EdgeHeap heap({3, 1, 2});
   heap.remove(1);
   EXPECT_FALSE(heap.contains(1));
   heap.remove(1);
@@ -62,17 +62,17 @@ TEST(EdgeHeap, AgreesWithSortForEverySize) {
   Random random(1);
   for (std::size_t size = 1; size < 200; ++size) {
     std::vector<float> lengths(size);
-    for (float& l : lengths) l = static_cast<float>(random.below(size));  // ties are common
+    for (float& l : lengths) l = static_cast<float>(random.below(size));  // with many ties
     Edges sorted(size);
     std::iota(sorted.begin(), sorted.end(), 0U);
     std::stable_sort(sorted.begin(), sorted.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return lengths[a] < lengths[b]; });
-    EdgeHeap heap(lengths);
+    reduce::EdgeHeap heap(lengths);
     ASSERT_EQ(drained(heap), sorted) << size;
   }
 }
 
-// The model: a map from edge to length that is searched from end to end.
+// The reference: a map from edge to length, searched linearly.
 std::uint32_t shortest(const std::map<std::uint32_t, float>& model) {
   const auto shorter = [](const auto& a, const auto& b) { return a.second < b.second; };
   return std::min_element(model.begin(), model.end(), shorter)->first;
@@ -86,7 +86,7 @@ TEST(EdgeHeap, AgreesWithANaiveModelThroughUpdatesAndRemovals) {
     for (std::uint32_t e = 0; e < 100; ++e) {
       model[e] = lengths[e] = static_cast<float>(random.below(50));
     }
-    EdgeHeap heap(lengths);
+    reduce::EdgeHeap heap(lengths);
     while (!model.empty()) {
       ASSERT_EQ(heap.top(), shortest(model));
       const auto edge = static_cast<std::uint32_t>(random.below(100));

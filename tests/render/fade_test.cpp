@@ -1,4 +1,4 @@
-// Fade: steps that a person sees, and a last frame that is the picture itself.
+// Fade: equal steps from one image to the next; the last frame is exactly the new image.
 #include "render/frame/fade.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ Bytes taken(std::span<const std::uint8_t> pixels) { return {pixels.begin(), pixe
 
 TEST(Fade, GoesInEqualStepsAndEndsWithThePictureItself) {
   const Bytes from = {0, 255, 90, 10}, to = {90, 0, 90, 11};
-  Fade fade;
+  frame::Fade fade;
   fade.keep(from);
   fade.begin(3);
   EXPECT_EQ(taken(fade.next(to)), (Bytes{29, 171, 90, 10}));
@@ -23,7 +23,7 @@ TEST(Fade, GoesInEqualStepsAndEndsWithThePictureItself) {
 }
 
 TEST(Fade, TurnsOnItsWayToAnotherPicture) {
-  Fade fade;
+  frame::Fade fade;
   fade.keep(Bytes{0});
   fade.begin(2);
   EXPECT_EQ(taken(fade.next(Bytes{200})), Bytes{100});
@@ -33,7 +33,7 @@ TEST(Fade, TurnsOnItsWayToAnotherPicture) {
 }
 
 TEST(Fade, OfOneFrameOrOfAnotherSizeIsThereAtOnce) {
-  Fade fade;
+  frame::Fade fade;
   fade.keep(Bytes{0});
   fade.begin(1);
   EXPECT_EQ(taken(fade.next(Bytes{200})), Bytes{200});

@@ -1,4 +1,4 @@
-// The law of 1998, by hand-computed figures, on times that are passed in.
+// The frame rate law of [GOURLEY98] against figures computed by hand, with given times.
 #include "render/inventor/frame_rate_law.h"
 
 #include <cmath>
@@ -11,9 +11,9 @@ namespace {
 
 using Answer = std::optional<std::int32_t>;
 
-// `frames` intervals of 1 / hz from `start_s`, the first frame included; the last answer.
-Answer draw(FrameRateLaw& law, double start_s, double hz, int frames, std::size_t triangles,
-            double desired_hz) {
+// Reports `frames` + 1 frames at `hz`, the first one at `start_s`; returns the last answer.
+Answer draw(inventor::FrameRateLaw& law, double start_s, double hz, int frames,
+            std::size_t triangles, double desired_hz) {
   Answer answer;
   for (int i = 0; i <= frames; ++i)
     answer = law.frameDrawn(start_s + i / hz, triangles, desired_hz);
@@ -21,13 +21,14 @@ Answer draw(FrameRateLaw& law, double start_s, double hz, int frames, std::size_
 }
 
 TEST(FrameRateLaw, IsTrianglesASecondOverTheRate) {
-  FrameRateLaw law;
-  // [GOURLEY98] figure 5.37's model at 8 Hz: 306,144 triangles a second, at 60 Hz 5,102 a frame.
+  inventor::FrameRateLaw law;
+  // The model of [GOURLEY98] figure 5.37 at 8 Hz: 306,144 triangles/s, which are 5,102 a frame at
+  // 60 Hz.
   EXPECT_EQ(draw(law, 100, 8, 8, 38268, 60), 5102);
 }
 
 TEST(FrameRateLaw, AnswersOnceASecond) {
-  FrameRateLaw law;
+  inventor::FrameRateLaw law;
   for (int i = 0; i < 8; ++i) EXPECT_EQ(law.frameDrawn(i / 8.0, 1000, 16), std::nullopt) << i;
   EXPECT_EQ(law.frameDrawn(1, 1000, 16), 500);
   for (int i = 9; i < 16; ++i) EXPECT_EQ(law.frameDrawn(i / 8.0, 1000, 16), std::nullopt) << i;
@@ -35,20 +36,20 @@ TEST(FrameRateLaw, AnswersOnceASecond) {
 }
 
 TEST(FrameRateLaw, AFrameLongerThanTheWindowIsAWindow) {
-  FrameRateLaw law;
-  EXPECT_EQ(draw(law, 0, 0.25, 1, 1000, 10), 25);  // 250 a second
+  inventor::FrameRateLaw law;
+  EXPECT_EQ(draw(law, 0, 0.25, 1, 1000, 10), 25);  // 250 triangles a second
 }
 
 TEST(FrameRateLaw, WithinToleranceItLeavesTheResolution) {
-  FrameRateLaw law;
-  EXPECT_EQ(draw(law, 0, 64, 64, 1000, 60), std::nullopt);   // 1066 a frame
-  EXPECT_EQ(draw(law, 10, 64, 64, 1000, 70), std::nullopt);  // 914
+  inventor::FrameRateLaw law;
+  EXPECT_EQ(draw(law, 0, 64, 64, 1000, 60), std::nullopt);  // 1066 triangles a frame would be right
+  EXPECT_EQ(draw(law, 10, 64, 64, 1000, 70), std::nullopt);  // 914 would be right
   EXPECT_EQ(draw(law, 20, 64, 64, 1000, 50), 1280);
   EXPECT_EQ(draw(law, 30, 64, 64, 1000, 80), 800);
 }
 
 TEST(FrameRateLaw, APauseIsCountedUnlessItWasARest) {
-  FrameRateLaw law;
+  inventor::FrameRateLaw law;
   law.frameDrawn(0, 1000, 16);
   EXPECT_EQ(law.frameDrawn(100, 1000, 16), 0);  // 10 triangles a second
   law.rest();
@@ -56,7 +57,7 @@ TEST(FrameRateLaw, APauseIsCountedUnlessItWasARest) {
 }
 
 TEST(FrameRateLaw, TimesThatGoBackOrAreNoneBeginAnew) {
-  FrameRateLaw law;
+  inventor::FrameRateLaw law;
   law.frameDrawn(50, 1000, 10);
   EXPECT_EQ(draw(law, 3, 8, 8, 1000, 16), 500);
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
@@ -68,7 +69,7 @@ TEST(FrameRateLaw, TimesThatGoBackOrAreNoneBeginAnew) {
 }
 
 TEST(FrameRateLaw, StaysWithinWhatAFieldHolds) {
-  FrameRateLaw law;
+  inventor::FrameRateLaw law;
   EXPECT_EQ(draw(law, 0, 8, 8, 1'000'000'000, 1e-30), 2147483647);
   EXPECT_EQ(draw(law, 10, 8, 8, 1000, 1e30), 0);
   EXPECT_EQ(draw(law, 20, 8, 8, 0, 10), std::nullopt);

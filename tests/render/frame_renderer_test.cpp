@@ -1,4 +1,4 @@
-// The wall's picture, drawn by Mesa: tiles that continue one another, whatever else is drawn.
+// The wall's frame, drawn by Mesa: tiles continue each other, whatever was drawn before.
 #include "render/frame/frame_renderer.h"
 
 #include <map>
@@ -19,29 +19,29 @@ using test::Image;
 
 constexpr int kTileWidth = 160, kTileHeight = 120;
 
-const render::Dendrogram& model() {
-  static const render::Dendrogram made = [] {
-    render::Mesh mesh = test::noisyGrid(60, 20, 0.3, 5);
-    render::ensureNormals(mesh);
-    return render::buildDendrogram(mesh, render::reduce(mesh, {})->log);
+const render::lod::Dendrogram& model() {
+  static const render::lod::Dendrogram made = [] {
+    render::mesh::Mesh mesh = test::noisyGrid(60, 20, 0.3, 5);
+    render::mesh::ensureNormals(mesh);
+    return render::lod::buildDendrogram(mesh, render::reduce::reduce(mesh, {})->log);
   }();
   return made;
 }
 
-// Right in front of the eye and so wide that all three tiles are full of it.
+// A model so close to the eye and so wide that it fills all three tiles.
 Eigen::Isometry3f inFront() {
   Eigen::Isometry3f T_eye_model(Eigen::Translation3f(0.1F, 0.05F, -1.2F));
   T_eye_model.rotate(Eigen::AngleAxisf(0.2F, Eigen::Vector3f::UnitY()));
   return T_eye_model;
 }
 
-TilesSettings fourTiles() {
-  TilesSettings s;
+tiles::TilesSettings fourTiles() {
+  tiles::TilesSettings s;
   s.tile_width = kTileWidth;
   s.tile_height = kTileHeight;
   s.frame_width = 2 * kTileWidth;
   s.frame_height = 2 * kTileHeight;
-  for (render::TileSettings& t : s.tiles) {
+  for (render::tiles::TileSettings& t : s.tiles) {
     t.x /= 4;
     t.y /= 4;
   }
@@ -49,14 +49,14 @@ TilesSettings fourTiles() {
 }
 
 struct Wall {
-  explicit Wall(const TilesSettings& settings, GlBackend backend = GlBackend::kEgl,
-                int contexts = 0)
-      : plan(*render::planTiles(settings)),
-        renderer(*test::rendererOf(model(), plan, {.gl = {backend, contexts, 0}, .model = {}}, 2.0,
+  explicit Wall(const tiles::TilesSettings& settings, gl::GlBackend backend = gl::GlBackend::kEgl,
+                int contexts = 0, const lod::Dendrogram& shown = model())
+      : plan(*render::tiles::planTiles(settings)),
+        renderer(*test::rendererOf(shown, plan, {.gl = {backend, contexts, 0}, .model = {}}, 2.0,
                                    clock)) {}
 
   Image tile(std::size_t index) const {
-    const render::Tile& t = plan.tiles[index];
+    const render::tiles::Tile& t = plan.tiles[index];
     Image image{t.width, t.height, {}};
     for (int y = t.y; y < t.y + t.height; ++y) {
       const auto from = renderer->pixels().begin() + 4 * (y * plan.frame_width + t.x);
@@ -67,24 +67,25 @@ struct Wall {
   void draw(std::size_t level = 0) { renderer->draw({.T_eye_content = inFront(), .step = level}); }
 
   SystemClock clock;
-  render::TilePlan plan;
-  std::unique_ptr<FrameRenderer> renderer;
+  render::tiles::TilePlan plan;
+  std::unique_ptr<frame::FrameRenderer> renderer;
 };
 
 TEST(FrameRenderer, MiddleTileAloneIsTheSamePixels) {
   Wall wall(fourTiles());
   wall.draw();
-  TilesSettings alone = fourTiles();
+  tiles::TilesSettings alone = fourTiles();
   alone.frame_width = kTileWidth;
   alone.frame_height = kTileHeight;
-  alone.tiles = {{"centre", TileKind::kWall, 0, 0, 0}};
+  alone.tiles = {{"centre", tiles::TileKind::kWall, 0, 0, 0}};
   Wall one(alone);
   one.draw();
   EXPECT_EQ(one.tile(0).pixels, wall.tile(1).pixels);
   EXPECT_NE(wall.tile(0).pixels, wall.tile(1).pixels);
 }
 
-// At half its size a tile is the same picture in blocks of 2 x 2; what is refined is whole.
+// At half size, a tile shows the same image in blocks of 2 x 2 pixels; refined detail is at full
+// size.
 TEST(FrameRenderer, HalfTheSizeIsEnlargedAndGoesWhenItIsRefined) {
   Wall wall(fourTiles());
   wall.draw();
@@ -107,7 +108,7 @@ TEST(FrameRenderer, HalfTheSizeIsEnlargedAndGoesWhenItIsRefined) {
   EXPECT_EQ(wall.tile(1).pixels, full.pixels);
 }
 
-// Vertices that were on their way stand at their own places again.
+// At full detail, vertices that were interpolated are back at their own positions.
 TEST(FrameRenderer, FullDetailIsWithoutGeomorphs) {
   Wall wall(fourTiles());
   wall.draw();
@@ -121,9 +122,9 @@ TEST(FrameRenderer, FullDetailIsWithoutGeomorphs) {
   EXPECT_EQ(wall.tile(1).pixels, moving.pixels) << "a function of the level alone";
 }
 
-// Whoever draws which tile.
+// The result does not depend on which context draws which tile.
 TEST(FrameRenderer, TwoContextsDrawThePixelsOfOne) {
-  Wall one(fourTiles(), GlBackend::kEgl, 1), two(fourTiles(), GlBackend::kEgl, 2);
+  Wall one(fourTiles(), gl::GlBackend::kEgl, 1), two(fourTiles(), gl::GlBackend::kEgl, 2);
   EXPECT_EQ(two.renderer->contexts()->renderer(),
             one.renderer->contexts()->renderer() + ", two contexts");
   const auto same = [&] {
@@ -143,20 +144,22 @@ TEST(FrameRenderer, TwoContextsDrawThePixelsOfOne) {
 }
 
 TEST(FrameRenderer, OsmesaHasOneContextForAProcess) {
-  const auto plan = *render::planTiles(fourTiles());
+  const auto plan = *render::tiles::planTiles(fourTiles());
   const SystemClock clock;
-  const auto two =
-      test::rendererOf(model(), plan, {.gl = {GlBackend::kOsmesa, 2, 0}, .model = {}}, 2.0, clock);
+  const auto two = test::rendererOf(
+      model(), plan, {.gl = {gl::GlBackend::kOsmesa, 2, 0}, .model = {}}, 2.0, clock);
   ASSERT_FALSE(two);
-  EXPECT_EQ(two.error().what,
-            "render.contexts: OSMesa has one for a process; set it to 1, or render.backend to egl");
+  EXPECT_EQ(
+      two.error().what,
+      "render.contexts: OSMesa has only one context in a process; set it to 1, or render.backend "
+      "to egl");
 }
 
-// As a wall of several models has them: what one draws leaves nothing behind for the other.
+// As in a wall of several models: drawing one leaves no GL state that affects the other.
 TEST(FrameRenderer, TwoInOneContextDrawWhatEachDrawsAlone) {
   Wall alone(fourTiles()), first(fourTiles());
   const SystemClock clock;
-  RenderSettings dark;
+  frame::RenderSettings dark;
   dark.model.style.brightness = 0.5F;
   const auto second =
       *test::rendererOf(model(), first.plan, dark, 2.0, clock, first.renderer->contexts());
@@ -169,7 +172,7 @@ TEST(FrameRenderer, TwoInOneContextDrawWhatEachDrawsAlone) {
   EXPECT_TRUE(std::ranges::equal(first.renderer->pixels(), alone.renderer->pixels()));
 }
 
-// How much two columns that touch differ, on average, 0..255.
+// Mean difference, 0..255, between two adjacent columns of pixels.
 double step(const Image& left, int x, const Image& right, int y) {
   double sum = 0;
   for (int row = 0; row < left.height; ++row)
@@ -185,23 +188,23 @@ TEST(FrameRenderer, TilesContinueOneAnotherAtTheSeams) {
   const double inside = (step(left, last - 1, left, last) + step(centre, 0, centre, 1) +
                          step(centre, last - 1, centre, last) + step(right, 0, right, 1)) /
                         4;
-  ASSERT_GT(inside, 0.5);  // there is something to see
+  ASSERT_GT(inside, 0.5);  // the columns at the seam are not uniform
   EXPECT_LT(step(left, last, centre, 0), 2 * inside);
   EXPECT_LT(step(centre, last, right, 0), 2 * inside);
-  EXPECT_GT(step(right, last, left, 0), 3 * inside);  // what two edges that do not touch look like
+  EXPECT_GT(step(right, last, left, 0), 3 * inside);  // for comparison: two edges that do not touch
 }
 
-// One wide view of both tiles' field, halfway between them, has what each has at the seam.
+// A single view centred between two tiles shows at its middle what each tile shows at the seam.
 TEST(FrameRenderer, SeamIsWhereOneWideViewHasIt) {
   Wall wall(fourTiles());
   wall.draw();
-  TilesSettings between = fourTiles();
+  tiles::TilesSettings between = fourTiles();
   between.frame_width = kTileWidth;
   between.frame_height = kTileHeight;
-  between.tiles = {{"half left", TileKind::kWall, 0, 0, 0.5}};
+  between.tiles = {{"half left", tiles::TileKind::kWall, 0, 0, 0.5}};
   Wall one(between);
   one.draw();
-  // The seam is the middle of this view: its ray is the same, its pixels are a little smaller.
+  // At the middle of this view the ray is that of the seam; its pixels are a little smaller.
   const Image left = wall.tile(0), centre = wall.tile(1), half = one.tile(0);
   const auto far = [](const Image& a, int x, int y, const Image& b) {
     return test::difference(a.at(x, y), b.at(kTileWidth / 2, kTileHeight / 2));
@@ -239,28 +242,28 @@ TEST(FrameRenderer, RefiningToALevelEndsInThatLevelsPicture) {
 }
 
 TEST(FrameRenderer, SaysWhatItsTimeWentTo) {
-  Wall wall(fourTiles(), GlBackend::kEgl, 1);
+  Wall wall(fourTiles(), gl::GlBackend::kEgl, 1);
   wall.draw(model().levelFor(200));
-  std::vector<FrameStep::Kind> kinds;
+  std::vector<frame::FrameStep::Kind> kinds;
   Timestamp last{};
-  for (const FrameStep& step : wall.renderer->steps()) {
+  for (const frame::FrameStep& step : wall.renderer->steps()) {
     kinds.push_back(step.kind);
     EXPECT_GE(step.begin, last);
     EXPECT_GE(step.end, step.begin);
     last = step.end;
   }
-  using enum FrameStep::Kind;
+  using enum frame::FrameStep::Kind;
   EXPECT_EQ(kinds, (std::vector{kChoose, kUpload, kDraw, kReadBack, kDraw, kReadBack, kDraw,
                                 kReadBack, kDraw, kReadBack}));
 }
 
-// One thread's steps after the other's; each tile is drawn by one of them.
+// The steps of both threads are listed one thread after the other; one thread draws each tile.
 TEST(FrameRenderer, SaysWhatTheTimeOfBothThreadsWentTo) {
-  Wall wall(fourTiles(), GlBackend::kEgl, 2);
+  Wall wall(fourTiles(), gl::GlBackend::kEgl, 2);
   wall.draw(model().levelFor(200));
-  std::map<FrameStep::Kind, std::multiset<int>> tiles;
-  for (const FrameStep& step : wall.renderer->steps()) tiles[step.kind].insert(step.tile);
-  using enum FrameStep::Kind;
+  std::map<frame::FrameStep::Kind, std::multiset<int>> tiles;
+  for (const frame::FrameStep& step : wall.renderer->steps()) tiles[step.kind].insert(step.tile);
+  using enum frame::FrameStep::Kind;
   EXPECT_EQ(tiles[kChoose].size(), 1U);
   EXPECT_EQ(tiles[kUpload].size(), 2U);
   EXPECT_EQ(tiles[kDraw], (std::multiset{0, 1, 2, 3}));
@@ -287,7 +290,7 @@ TEST(FrameRenderer, OperatorsViewGivesWayBeforeTheFrameIsLate) {
   Wall wall(fourTiles());
   wall.draw();
   const Image left = wall.tile(0), operators = wall.tile(3);
-  const DrawTimes times = wall.renderer->draw({inFront(), 0, wall.clock.now()});
+  const frame::DrawTimes times = wall.renderer->draw({inFront(), 0, wall.clock.now()});
   EXPECT_TRUE(times.gave_way);
   EXPECT_EQ(wall.tile(0).pixels, left.pixels);
   EXPECT_NE(wall.tile(3).pixels, operators.pixels);
@@ -301,11 +304,78 @@ TEST(FrameRenderer, OsmesaDrawsTheSameWall) {
     egl = wall.tile(1);
   }
   {
-    Wall wall(fourTiles(), GlBackend::kOsmesa);
+    Wall wall(fourTiles(), gl::GlBackend::kOsmesa);
     wall.draw();
     osmesa = wall.tile(1);
   }
   EXPECT_LE(1000 * test::differing(egl, osmesa, 2), kTileWidth * kTileHeight);
+}
+
+// One tile with a view of its own.
+tiles::TilesSettings ownView(tiles::TileCamera view) {
+  tiles::TilesSettings s;
+  s.frame_width = s.tile_width = kTileWidth;
+  s.frame_height = s.tile_height = kTileHeight;
+  s.tiles = {{"own", tiles::TileKind::kWall, 0, 0, 0}};
+  s.tiles[0].view = view;
+  return s;
+}
+
+// A ball that looks different from every side.
+const lod::Dendrogram& lopsided() {
+  static const lod::Dendrogram made = [] {
+    mesh::Mesh mesh = test::sphere(4);
+    for (std::size_t i = 0; i < mesh.positions.size(); i += 3) {
+      float* const p = &mesh.positions[i];
+      const float bump = p[0] > 0.4F && p[1] > 0 ? 1.6F : 1;
+      p[0] *= bump;
+      p[1] *= 0.7F * bump;
+      p[2] *= p[2] > 0 ? 0.4F : 0.9F;
+    }
+    mesh::ensureNormals(mesh);
+    return lod::buildDendrogram(mesh, reduce::reduce(mesh, {})->log);
+  }();
+  return made;
+}
+
+// From the right it looks as from the front after a quarter turn, wherever it is.
+TEST(OwnViews, AreThoseOfTheSameContentFromAnotherSide) {
+  const struct {
+    tiles::TileCamera camera;
+    Eigen::Vector3f axis;
+    float turn;
+  } sides[] = {{tiles::TileCamera::kTop, Eigen::Vector3f::UnitX(), 1.5707963F},
+               {tiles::TileCamera::kSide, Eigen::Vector3f::UnitY(), -1.5707963F}};
+  for (const auto& side : sides) {
+    Wall own(ownView(side.camera), gl::GlBackend::kEgl, 0, lopsided());
+    Wall front(ownView(tiles::TileCamera::kFront), gl::GlBackend::kEgl, 0, lopsided());
+    Eigen::Isometry3f T_eye_model = inFront();
+    T_eye_model.rotate(Eigen::AngleAxisf(0.7F, Eigen::Vector3f(1, 2, 3).normalized()));
+    own.renderer->draw({.T_eye_content = T_eye_model, .step = 0});
+    Eigen::Isometry3f turned = T_eye_model;
+    turned.linear() =
+        Eigen::AngleAxisf(side.turn, side.axis).toRotationMatrix() * T_eye_model.linear();
+    turned.translation() += Eigen::Vector3f(5, -3, 1);
+    front.renderer->draw({.T_eye_content = turned, .step = 0});
+    const Image from_side = own.tile(0), from_front = front.tile(0);
+    EXPECT_GT(from_side.covered(from_side.at(0, 0)), kTileWidth * kTileHeight / 20);
+    EXPECT_LT(test::differing(from_side, from_front, 8), kTileWidth * kTileHeight / 500);
+    front.renderer->draw({.T_eye_content = T_eye_model, .step = 0});
+    EXPECT_GT(test::differing(from_side, front.tile(0), 8), kTileWidth * kTileHeight / 50);
+  }
+}
+
+// The content is drawn as coarsely as asked for in every view, the wall's own pixels stay.
+TEST(OwnViews, DoNotChangeTheWallsPicture) {
+  tiles::TilesSettings with = fourTiles();
+  with.tiles[0].turns = 0;
+  with.tiles[0].view = tiles::TileCamera::kTop;
+  Wall wall(fourTiles()), other(with);
+  wall.draw();
+  other.draw();
+  for (const std::size_t tile : {1u, 2u, 3u})
+    EXPECT_EQ(other.tile(tile).pixels, wall.tile(tile).pixels);
+  EXPECT_NE(other.tile(0).pixels, wall.tile(0).pixels);
 }
 
 }  // namespace

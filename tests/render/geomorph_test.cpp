@@ -1,4 +1,4 @@
-// Geomorphs: what stands where at a level, and that nothing pops from one level to the next.
+// Geomorphs: where vertices are at a level, and that no vertex jumps from one level to the next.
 #include "render/lod/geomorph.h"
 
 #include <algorithm>
@@ -15,20 +15,20 @@ namespace {
 
 using Place = std::array<float, 3>;
 
-const Dendrogram& hills() {
-  static const Dendrogram made = [] {
-    Mesh mesh = test::noisyGrid(40, 40, 0.5, 3);
-    ensureNormals(mesh);
-    return buildDendrogram(mesh, reduce(mesh, {.threads = 1})->log);
+const lod::Dendrogram& hills() {
+  static const lod::Dendrogram made = [] {
+    mesh::Mesh mesh = test::noisyGrid(40, 40, 0.5, 3);
+    mesh::ensureNormals(mesh);
+    return lod::buildDendrogram(mesh, reduce::reduce(mesh, {.threads = 1})->log);
   }();
   return made;
 }
 
-// Where each node stands, those on their way included.
+// The position of each node, interpolated for those that a geomorph moves.
 class Places {
  public:
-  explicit Places(const std::vector<Morph>& morphs) {
-    for (const Morph& m : morphs) {
+  explicit Places(const std::vector<lod::Morph>& morphs) {
+    for (const lod::Morph& m : morphs) {
       const Place own = at(m.node), parent = at(hills().parentOf(m.node));
       Place& place = moved_[m.node];
       for (std::size_t k = 0; k < 3; ++k) place[k] = parent[k] + m.own * (own[k] - parent[k]);
@@ -44,13 +44,13 @@ class Places {
   std::map<std::uint32_t, Place> moved_;
 };
 
-// Of all vertices of the mesh, how far the node that stands for it is at one level from where it is
-// at the next; squared, the sum.
+// The sum, over the corners of all triangles of the mesh, of the squared distance between the node
+// that represents the corner at one level and at the next.
 double jump(std::size_t level, double share) {
-  std::vector<Morph> morphs;
-  morphsAt(hills(), level, share, morphs);
+  std::vector<lod::Morph> morphs;
+  lod::morphsAt(hills(), level, share, morphs);
   const Places before(morphs);
-  morphsAt(hills(), level + 1, share, morphs);
+  lod::morphsAt(hills(), level + 1, share, morphs);
   const Places after(morphs);
   double sum = 0;
   for (const std::uint32_t corner : hills().arrays().triangles) {
@@ -67,8 +67,8 @@ double jump(std::size_t level, double share) {
 
 TEST(Geomorph, OfTheNodesThatDieNextThoseThatDieFirstHaveGoneFurthest) {
   const std::size_t level = hills().levelFor(1000), end = hills().levelFor(900);
-  std::vector<Morph> morphs;
-  morphsAt(hills(), level, 0.1, morphs);
+  std::vector<lod::Morph> morphs;
+  lod::morphsAt(hills(), level, 0.1, morphs);
   ASSERT_EQ(morphs.size(), 2 * (end - level));
   EXPECT_EQ(morphs.back().node, hills().nodeCount() - 2 * level - 1);
   EXPECT_EQ(morphs.front().node, hills().nodeCount() - 2 * end);
@@ -76,8 +76,9 @@ TEST(Geomorph, OfTheNodesThatDieNextThoseThatDieFirstHaveGoneFurthest) {
   EXPECT_FLOAT_EQ(morphs.back().own, 1 / steps);
   EXPECT_FLOAT_EQ(morphs[morphs.size() - 2].own, 1 / steps) << "both that one collapse merges";
   EXPECT_FLOAT_EQ(morphs.front().own, 1 - 1 / steps);
-  EXPECT_TRUE(std::is_sorted(morphs.begin(), morphs.end(),
-                             [](const Morph& a, const Morph& b) { return a.node < b.node; }));
+  EXPECT_TRUE(
+      std::is_sorted(morphs.begin(), morphs.end(),
+                     [](const lod::Morph& a, const lod::Morph& b) { return a.node < b.node; }));
 }
 
 TEST(Geomorph, FromOneLevelToTheNextNothingJumps) {
@@ -91,12 +92,12 @@ TEST(Geomorph, FromOneLevelToTheNextNothingJumps) {
 }
 
 TEST(Geomorph, ClustersAtOneLevelAreWhatTheWholeIsThere) {
-  const Clusters clusters(hills(), {.clusters = 12});
+  const lod::Clusters clusters(hills(), {.clusters = 12});
   const std::size_t level = (clusters.finestLevel() + clusters.coarsestLevel()) / 2;
   const std::vector<std::uint32_t> levels(clusters.size(), static_cast<std::uint32_t>(level));
-  std::vector<Morph> whole, each;
-  morphsAt(hills(), level, 0.1, whole);
-  morphsAt(hills(), clusters, levels, 0.1, each);
+  std::vector<lod::Morph> whole, each;
+  lod::morphsAt(hills(), level, 0.1, whole);
+  lod::morphsAt(hills(), clusters, levels, 0.1, each);
   ASSERT_GT(whole.size(), 10U);
   ASSERT_EQ(each.size(), whole.size());
   for (std::size_t i = 0; i < each.size(); ++i) {
@@ -106,7 +107,7 @@ TEST(Geomorph, ClustersAtOneLevelAreWhatTheWholeIsThere) {
 }
 
 TEST(Geomorph, EachClusterHasItsOwnWindow) {
-  const Clusters clusters(hills(), {.clusters = 12});
+  const lod::Clusters clusters(hills(), {.clusters = 12});
   ASSERT_GT(clusters.size(), 4U);
   std::vector<std::uint32_t> levels(clusters.size());
   const std::size_t range = clusters.coarsestLevel() - clusters.finestLevel();
@@ -114,26 +115,26 @@ TEST(Geomorph, EachClusterHasItsOwnWindow) {
     levels[c] =
         static_cast<std::uint32_t>(clusters.finestLevel() + range * c / (levels.size() - 1));
   }
-  std::vector<Morph> morphs;
-  morphsAt(hills(), clusters, levels, 0.2, morphs);
+  std::vector<lod::Morph> morphs;
+  lod::morphsAt(hills(), clusters, levels, 0.2, morphs);
   std::vector<std::size_t> of(clusters.size());
-  for (const Morph& m : morphs) {
+  for (const lod::Morph& m : morphs) {
     const std::size_t c = clusters.clusterOf(m.node);
     const std::size_t collapse = (hills().nodeCount() - 1 - m.node) / 2;
     EXPECT_GE(collapse, levels[c]) << "alive at its cluster's level";
     EXPECT_LT(collapse, clusters.coarsestLevel());
     ++of[c];
   }
-  // One that is rough may have nothing on its way just now.
+  // A rough cluster may have no node that moves at its level.
   EXPECT_GT(std::count_if(of.begin(), of.end(), [](std::size_t n) { return n > 0; }), 6);
   EXPECT_EQ(of.back(), 0U) << "nothing of it merges any more";
 }
 
 TEST(Geomorph, WithoutAShareOrAtTheEndNothingIsOnItsWay) {
-  std::vector<Morph> morphs(3);
-  morphsAt(hills(), 10, 0, morphs);
+  std::vector<lod::Morph> morphs(3);
+  lod::morphsAt(hills(), 10, 0, morphs);
   EXPECT_TRUE(morphs.empty());
-  morphsAt(hills(), hills().levels() - 1, 0.5, morphs);
+  lod::morphsAt(hills(), hills().levels() - 1, 0.5, morphs);
   EXPECT_TRUE(morphs.empty());
 }
 

@@ -1,4 +1,4 @@
-// Drawn by Mesa's software renderer, through EGL without a surface and through OSMesa.
+// Tests that draw with Mesa's software renderer, through surfaceless EGL and through OSMesa.
 #include <gtest/gtest.h>
 
 #include "render/content/model_renderer.h"
@@ -13,52 +13,53 @@ namespace {
 
 using test::Image;
 using test::Rgba;
-using Source = ModelRenderer::Source;
+using Source = content::ModelRenderer::Source;
 
-const Rgba kBackground{15, 18, 23, 255};  // of RenderStyle, x 255, rounded
+const Rgba kBackground{15, 18, 23, 255};  // RenderStyle's background x 255, rounded
 
-// A bumpy ball whose colours are its normals'.
-Mesh ball() {
-  Mesh mesh = test::sphere(5);
+// A bumpy ball whose colours are derived from its normals.
+mesh::Mesh ball() {
+  mesh::Mesh mesh = test::sphere(5);
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     float* p = &mesh.positions[3 * v];
     const float bump = 0.6F + 0.03F * std::sin(9 * p[0]) * std::cos(7 * p[1]);
     for (int k = 0; k < 3; ++k) p[k] *= bump;
   }
-  ensureNormals(mesh);
-  Feature colour{"colour", 3, {}};
+  mesh::ensureNormals(mesh);
+  mesh::Feature colour{"colour", 3, {}};
   for (const float x : mesh.features[0].values) colour.values.push_back(0.5F + 0.5F * x);
   mesh.features.push_back(std::move(colour));
   return mesh;
 }
 
-Dendrogram wholeModel(Mesh mesh) {
-  ensureNormals(mesh);
-  return buildDendrogram(mesh, reduce(mesh, {})->log);
+lod::Dendrogram wholeModel(mesh::Mesh mesh) {
+  mesh::ensureNormals(mesh);
+  return lod::buildDendrogram(mesh, reduce::reduce(mesh, {})->log);
 }
 
-// With its normals as they are.
-Dendrogram unreduced(const Mesh& mesh) {
-  CollapseLog none;
+// A dendrogram without collapses; the mesh's normals are kept.
+lod::Dendrogram unreduced(const mesh::Mesh& mesh) {
+  lod::CollapseLog none;
   none.features.resize(mesh.features.size());
-  return buildDendrogram(mesh, none);
+  return lod::buildDendrogram(mesh, none);
 }
 
-// A picture of a model as seen along -z, x and y -1..1 from edge to edge.
+// Draws a model seen along -z; x and y range from -1 to 1 across the image.
 class Studio {
  public:
-  explicit Studio(GlBackend backend, const Dendrogram& model, int width = 160, int height = 120,
-                  const ShownFeature& show = {}, const TextureImage* texture = nullptr)
-      : context_(*makeGlContext(backend)),
-        frame_(*RenderTarget::make(context_->gl(), width, height)),
-        renderer_(
-            *ModelRenderer::make(context_->gl(), model, model.arrays().triangles, show, texture)) {}
+  explicit Studio(gl::GlBackend backend, const lod::Dendrogram& model, int width = 160,
+                  int height = 120, const content::ShownFeature& show = {},
+                  const gl::TextureImage* texture = nullptr)
+      : context_(*gl::makeGlContext(backend)),
+        frame_(*gl::RenderTarget::make(context_->gl(), width, height)),
+        renderer_(*content::ModelRenderer::make(context_->gl(), model, model.arrays().triangles,
+                                                show, texture)) {}
 
-  ModelRenderer& renderer() { return *renderer_; }
+  content::ModelRenderer& renderer() { return *renderer_; }
 
-  void begin(const RenderStyle& look = {}) {
-    Camera camera{Eigen::Matrix4f::Identity(), Eigen::Matrix3f::Identity()};
-    camera.clip_from_model(2, 2) = -1;  // nearer is smaller in depth
+  void begin(const content::RenderStyle& look = {}) {
+    content::Camera camera{Eigen::Matrix4f::Identity(), Eigen::Matrix3f::Identity()};
+    camera.clip_from_model(2, 2) = -1;  // larger z is nearer
     frame_.bind();
     renderer_->begin(frame_.width(), frame_.height(), camera, look);
   }
@@ -68,35 +69,35 @@ class Studio {
     frame_.read(image.pixels.data(), image.width);
     return image;
   }
-  Image picture(const RenderStyle& look = {}) {
+  Image picture(const content::RenderStyle& look = {}) {
     begin(look);
     renderer_->draw(Source::kFull, 0, renderer_->triangles(Source::kFull));
     return finished();
   }
-  const RenderTarget& frame() const { return frame_; }
+  const gl::RenderTarget& frame() const { return frame_; }
 
  private:
-  std::unique_ptr<GlContext> context_;
-  RenderTarget frame_;
-  std::unique_ptr<ModelRenderer> renderer_;
+  std::unique_ptr<gl::GlContext> context_;
+  gl::RenderTarget frame_;
+  std::unique_ptr<content::ModelRenderer> renderer_;
 };
 
-// One triangle that faces the viewer, in the upper right quarter of the picture.
-Mesh upperRight() { return {{0.2F, 0.2F, 0, 0.9F, 0.2F, 0, 0.2F, 0.9F, 0}, {}, {0, 1, 2}}; }
+// A triangle that faces the viewer, in the upper right quarter of the image.
+mesh::Mesh upperRight() { return {{0.2F, 0.2F, 0, 0.9F, 0.2F, 0, 0.2F, 0.9F, 0}, {}, {0, 1, 2}}; }
 
-// The first level from `level` on that ends with a merge in front.
-std::size_t mergesInFront(const Dendrogram& model, std::size_t level) {
+// The first level from `level` on whose last merge is on the front side.
+std::size_t mergesInFront(const lod::Dendrogram& model, std::size_t level) {
   const auto z = [&](std::size_t node) { return model.arrays().positions[3 * node + 2]; };
   while (z(model.nodeCount() - 2 * level - 1) < 0.3F) ++level;
   return level;
 }
 
-// With the two that merge next at their parent's place it looks as if they had merged; without, as
-// it was.
+// With the next two merging nodes morphed to their parent's position, the image is as if they had
+// merged; without, it is as before.
 TEST(Gl, AMorphedNodeStandsWhereItIsTold) {
-  const Dendrogram model = wholeModel(ball());
-  Studio studio(GlBackend::kEgl, model);
-  ModelRenderer& renderer = studio.renderer();
+  const lod::Dendrogram model = wholeModel(ball());
+  Studio studio(gl::GlBackend::kEgl, model);
+  content::ModelRenderer& renderer = studio.renderer();
   const std::size_t level = mergesInFront(model, model.levelFor(200));
   std::vector<std::uint32_t> cut(3 * model.trianglesAt(level));
   const auto drawn = [&] {
@@ -108,7 +109,7 @@ TEST(Gl, AMorphedNodeStandsWhereItIsTold) {
   renderer.uploadCut(cut);
   const Image before = drawn();
   const auto last = static_cast<std::uint32_t>(model.nodeCount() - 2 * level);
-  const std::vector<Morph> merged = {{last - 2, 0}, {last - 1, 0}};
+  const std::vector<lod::Morph> merged = {{last - 2, 0}, {last - 1, 0}};
   renderer.morph(merged);
   const Image on_its_way = drawn();
   renderer.morph({});
@@ -121,25 +122,25 @@ TEST(Gl, AMorphedNodeStandsWhereItIsTold) {
 }
 
 TEST(Gl, BothBackendsDrawTheSamePicture) {
-  const Dendrogram model = wholeModel(ball());
+  const lod::Dendrogram model = wholeModel(ball());
   Image egl, osmesa;
   {
-    Studio studio(GlBackend::kEgl, model);
+    Studio studio(gl::GlBackend::kEgl, model);
     egl = studio.picture();
   }
   {
-    Studio studio(GlBackend::kOsmesa, model);
+    Studio studio(gl::GlBackend::kOsmesa, model);
     osmesa = studio.picture();
   }
   ASSERT_GT(egl.covered(kBackground), 5000);
-  // The threshold of render/gl/README.md: at most 1 pixel in 1,000 off by more than 2 of 255.
+  // The threshold of render/gl/README.md: at most 1 pixel in 1,000 differs by more than 2 of 255.
   EXPECT_LE(1000 * differing(egl, osmesa, 2), egl.width * egl.height);
 }
 
-class GlOf : public ::testing::TestWithParam<GlBackend> {};
+class GlOf : public ::testing::TestWithParam<gl::GlBackend> {};
 
 TEST_P(GlOf, FirstRowIsTheUpperOne) {
-  const Dendrogram model = wholeModel(upperRight());
+  const lod::Dendrogram model = wholeModel(upperRight());
   const Image image = Studio(GetParam(), model).picture();
   EXPECT_NE(image.at(100, 40), kBackground);
   EXPECT_EQ(image.at(100, 80), kBackground);
@@ -148,7 +149,7 @@ TEST_P(GlOf, FirstRowIsTheUpperOne) {
 }
 
 TEST_P(GlOf, SlicesAndCutsAreTheSameBytesAsOneDraw) {
-  const Dendrogram model = wholeModel(ball());
+  const lod::Dendrogram model = wholeModel(ball());
   Studio studio(GetParam(), model);
   const Image whole = studio.picture();
   studio.begin();
@@ -169,7 +170,7 @@ TEST_P(GlOf, SlicesAndCutsAreTheSameBytesAsOneDraw) {
 }
 
 TEST_P(GlOf, AnyLevelIsDrawnAndLooksLikeTheModel) {
-  const Dendrogram model = wholeModel(ball());
+  const lod::Dendrogram model = wholeModel(ball());
   Studio studio(GetParam(), model);
   const Image whole = studio.picture();
   std::vector<std::uint32_t> indices(3 * model.triangleCount());
@@ -185,19 +186,19 @@ TEST_P(GlOf, AnyLevelIsDrawnAndLooksLikeTheModel) {
 }
 
 TEST_P(GlOf, BacksAreDrawnOnlyWhereAskedForAndLitAsFronts) {
-  Mesh back = upperRight();
+  mesh::Mesh back = upperRight();
   std::swap(back.triangles[1], back.triangles[2]);
-  Mesh front = upperRight();
-  ensureNormals(front);
+  mesh::Mesh front = upperRight();
+  mesh::ensureNormals(front);
   back.features = front.features;
-  const Dendrogram model = unreduced(back);
+  const lod::Dendrogram model = unreduced(back);
   Studio studio(GetParam(), model);
   EXPECT_EQ(studio.picture().covered(kBackground), 0);
   EXPECT_GT(studio.picture({.draw_back_faces = true}).covered(kBackground), 1000);
 }
 
 TEST_P(GlOf, LookIsLookedAt) {
-  const Dendrogram model = wholeModel(upperRight());
+  const lod::Dendrogram model = wholeModel(upperRight());
   Studio studio(GetParam(), model);
   const Rgba plain = studio.picture().at(100, 40);
   const Rgba red = studio.picture({.colour = {0.5F, 0, 0}}).at(100, 40);
@@ -207,21 +208,21 @@ TEST_P(GlOf, LookIsLookedAt) {
   EXPECT_NEAR(bright.red, 1.5 * red.red, 2);
   EXPECT_EQ(studio.picture({.background = {1, 0, 1}}).at(0, 0), (Rgba{255, 0, 255, 255}));
   const Image wires = studio.picture({.wireframe = true});
-  EXPECT_EQ(wires.at(100, 40), kBackground);  // inside
+  EXPECT_EQ(wires.at(100, 40), kBackground);  // inside a triangle
   EXPECT_GT(wires.covered(kBackground), 50);
-  EXPECT_EQ(studio.picture().at(100, 40), plain);  // and nothing stays
+  EXPECT_EQ(studio.picture().at(100, 40), plain);  // no wireframe state is left
 }
 
 TEST_P(GlOf, NearerHidesFarther) {
-  Mesh near = upperRight(), far = upperRight();
-  const auto paint = [](Mesh& mesh, float z, float green) {
+  mesh::Mesh near = upperRight(), far = upperRight();
+  const auto paint = [](mesh::Mesh& mesh, float z, float green) {
     for (std::size_t i = 2; i < 9; i += 3) mesh.positions[i] = z;
-    ensureNormals(mesh);
+    mesh::ensureNormals(mesh);
     mesh.features.push_back({"colour", 3, {1, green, 0, 1, green, 0, 1, green, 0}});
   };
   paint(near, 0.5F, 0);
   paint(far, -0.5F, 1);
-  Mesh both = test::together(near, far);
+  mesh::Mesh both = test::together(near, far);
   both.features = near.features;
   for (std::size_t f = 0; f < 2; ++f) {
     auto& values = both.features[f].values;
@@ -230,7 +231,7 @@ TEST_P(GlOf, NearerHidesFarther) {
   for (const bool near_last : {false, true}) {
     if (near_last)
       std::rotate(both.triangles.begin(), both.triangles.begin() + 3, both.triangles.end());
-    const Dendrogram model = unreduced(both);
+    const lod::Dendrogram model = unreduced(both);
     const Rgba seen = Studio(GetParam(), model).picture().at(100, 40);
     EXPECT_GT(seen.red, 100);
     EXPECT_EQ(seen.green, 0) << near_last;
@@ -238,19 +239,19 @@ TEST_P(GlOf, NearerHidesFarther) {
 }
 
 TEST_P(GlOf, WiresAreSeenWhateverTheModelsColoursAndHiddenByFaces) {
-  const Mesh near = upperRight();
-  Mesh far = near;
+  const mesh::Mesh near = upperRight();
+  mesh::Mesh far = near;
   for (std::size_t i = 0; i < 9; ++i)
     far.positions[i] = i % 3 == 2 ? -0.5F : 0.5F * near.positions[i] + 0.15F;
-  Mesh both = test::together(far, near);
+  mesh::Mesh both = test::together(far, near);
   both.features = {{"colour", 3, std::vector<float>(18, 0.0F)}};
-  ensureNormals(both);
-  const Dendrogram alone = wholeModel(near), model = unreduced(both);
-  const RenderStyle wires{.wireframe = true};
+  mesh::ensureNormals(both);
+  const lod::Dendrogram alone = wholeModel(near), model = unreduced(both);
+  const content::RenderStyle wires{.wireframe = true};
   const Image expected = Studio(GetParam(), alone).picture(wires);
   EXPECT_EQ(Studio(GetParam(), model).picture(wires).pixels, expected.pixels);
   const Image dim = Studio(GetParam(), alone).picture({.brightness = 0.5F, .wireframe = true});
-  // Alpha is 255 everywhere.
+  // Alpha is 255 in all pixels, so it is excluded.
   const auto brightest = [](const Image& image) {
     return *std::max_element(image.pixels.begin(), image.pixels.end(),
                              [](auto a, auto b) { return a % 255 < b % 255; });
@@ -260,7 +261,7 @@ TEST_P(GlOf, WiresAreSeenWhateverTheModelsColoursAndHiddenByFaces) {
 }
 
 TEST_P(GlOf, ReadKeepsToItsColumns) {
-  const Dendrogram model = wholeModel(upperRight());
+  const lod::Dendrogram model = wholeModel(upperRight());
   Studio studio(GetParam(), model, 32, 16);
   studio.picture();
   constexpr int kStride = 40;
@@ -274,17 +275,17 @@ TEST_P(GlOf, ReadKeepsToItsColumns) {
 }
 
 TEST_P(GlOf, TooLargeAFrameBufferIsRefused) {
-  const auto context = makeGlContext(GetParam());
+  const auto context = gl::makeGlContext(GetParam());
   ASSERT_TRUE(context) << context.error().what;
-  const auto frame = RenderTarget::make((*context)->gl(), 1 << 20, 16);
+  const auto frame = gl::RenderTarget::make((*context)->gl(), 1 << 20, 16);
   ASSERT_FALSE(frame);
   EXPECT_EQ(frame.error().code, Errc::kUnsupported);
   EXPECT_NE(frame.error().what.find("1048576 x 16"), std::string::npos) << frame.error().what;
 }
 
-// A square that fills the picture; u goes from -1 to 3, v from 0 to 1.
-Mesh square() {
-  Mesh mesh;
+// A square that fills the image; u ranges from -1 to 3, v from 0 to 1.
+mesh::Mesh square() {
+  mesh::Mesh mesh;
   mesh.positions = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
   mesh.triangles = {0, 1, 2, 0, 2, 3};
   mesh.features = {{"normal", 3, {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}},
@@ -293,7 +294,7 @@ Mesh square() {
   return mesh;
 }
 
-// 64 x 64: green above, on the left half blue below it, on the right half white.
+// A texture of 64 x 64 pixels: upper half green, lower left blue, lower right white.
 std::vector<std::uint8_t> threeColours() {
   std::vector<std::uint8_t> rgb;
   for (int i = 0; i < 64 * 64; ++i) {
@@ -307,50 +308,51 @@ std::vector<std::uint8_t> threeColours() {
 
 TEST_P(GlOf, ATextureIsModulatedWithTheLightAndRepeats) {
   const auto rgb = threeColours();
-  const TextureImage texture{64, 64, rgb};
-  const Dendrogram model = unreduced(square());
+  const gl::TextureImage texture{64, 64, rgb};
+  const lod::Dendrogram model = unreduced(square());
   Studio studio(GetParam(), model, 160, 120, {}, &texture);
   const Image image = studio.picture();
-  // Its light is 1.048 at a normal towards the eye; of the five pictures from left to right this is
-  // the second.
+  // The light at a normal towards the eye is 1.048. The texture repeats four times from left to
+  // right.
   for (const int picture : {0, 1, 2, 3}) {
     EXPECT_LE(test::difference(image.at(40 * picture + 10, 20), {0, 105, 0, 255}), 1) << picture;
     EXPECT_LE(test::difference(image.at(40 * picture + 10, 100), {0, 0, 105, 255}), 1) << picture;
     EXPECT_LE(test::difference(image.at(40 * picture + 30, 100), {210, 210, 210, 255}), 1);
   }
-  RenderStyle dark;
+  content::RenderStyle dark;
   dark.brightness = 0.5F;
   EXPECT_LE(test::difference(studio.picture(dark).at(10, 20), {0, 52, 0, 255}), 1);
 }
 
 TEST_P(GlOf, AFeatureThatIsShownIsShownInsteadOfTheTexture) {
   const auto rgb = threeColours();
-  const TextureImage texture{64, 64, rgb};
-  const Dendrogram model = unreduced(square());
+  const gl::TextureImage texture{64, 64, rgb};
+  const lod::Dendrogram model = unreduced(square());
   Studio shown(GetParam(), model, 160, 120, {.feature = "colour"}, &texture);
   EXPECT_EQ(shown.picture().at(10, 20), (Rgba{255, 0, 0, 255}));
   Studio plain(GetParam(), model);
   EXPECT_EQ(plain.picture().at(10, 20), (Rgba{255, 0, 0, 255})) << "no picture, so its colours";
 }
 
-// Corners 0 and 1 become one half way between; on their way there so does what is seen there.
+// Corners 0 and 1 merge into a vertex midway between them; half-way there, their texture
+// coordinates are interpolated too.
 TEST_P(GlOf, TextureCoordinatesAreOnTheirWayToo) {
   const auto rgb = threeColours();
-  const TextureImage texture{64, 64, rgb};
-  const Mesh mesh = square();
-  CollapseLog log;
+  const gl::TextureImage texture{64, 64, rgb};
+  const mesh::Mesh mesh = square();
+  lod::CollapseLog log;
   log.children = {{0, 3}};
   log.positions = {-1, 0, 0};
   log.features = {{0, 0, 1}, {-1, 0.5F}, {1, 0, 0}};
   log.error = {0.1F};
-  const Dendrogram model = buildDendrogram(mesh, log);
+  const lod::Dendrogram model = lod::buildDendrogram(mesh, log);
   Studio studio(GetParam(), model, 160, 120, {}, &texture);
   const Image before = studio.picture();
   const auto last = static_cast<std::uint32_t>(model.nodeCount());
-  const std::vector<Morph> half = {{last - 2, 0.5F}, {last - 1, 0.5F}};
+  const std::vector<lod::Morph> half = {{last - 2, 0.5F}, {last - 1, 0.5F}};
   studio.renderer().morph(half);
   const Image image = studio.picture();
-  // v of the left side now goes from 0.25 to 0.75, on half of its height.
+  // On the left side v now ranges from 0.25 to 0.75, over half of the height.
   EXPECT_EQ(image.at(1, 10), kBackground);
   EXPECT_LE(test::difference(image.at(2, 50), {0, 105, 0, 255}), 1);
   EXPECT_LE(test::difference(image.at(2, 75), {0, 0, 105, 255}), 1);
@@ -358,9 +360,10 @@ TEST_P(GlOf, TextureCoordinatesAreOnTheirWayToo) {
   EXPECT_EQ(studio.picture().pixels, before.pixels);
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, GlOf, ::testing::Values(GlBackend::kEgl, GlBackend::kOsmesa),
+INSTANTIATE_TEST_SUITE_P(Backends, GlOf,
+                         ::testing::Values(gl::GlBackend::kEgl, gl::GlBackend::kOsmesa),
                          [](const auto& backend) {
-                           return backend.param == GlBackend::kEgl ? "Egl" : "Osmesa";
+                           return backend.param == gl::GlBackend::kEgl ? "Egl" : "Osmesa";
                          });
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The governor and a fake renderer, closed to a loop: what it settles at, and how many frames are
+// The governor in a closed loop with a fake renderer: where it settles, and how many frames are
 // late on the way.
 #include <cmath>
 #include <functional>
@@ -12,23 +12,23 @@
 namespace merlin::render {
 namespace {
 
-// A frame takes a + c T^p; the triangles' share is c_noise times that, log-normal.
+// A frame of T triangles takes a + c T^p; log-normal noise multiplies the part c T^p.
 struct FakeRenderer {
-  double fixed_s, full_s;  // full_s: of 100,000 triangles, without the fixed part
+  double fixed_s, full_s;  // full_s: time of 100,000 triangles without the fixed part
   double exponent;
   double noise = 0;  // standard deviation of the logarithm
 
   double drawing(std::size_t triangles) const {
     return full_s * std::pow(static_cast<double>(triangles) / 1e5, exponent);
   }
-  FrameCost draw(std::size_t triangles, Duration period, Random& random) const {
+  governor::FrameCost draw(std::size_t triangles, Duration period, Random& random) const {
     const double work = fixed_s + drawing(triangles) * std::exp(noise * random.normal());
     return {triangles, fromSeconds(fixed_s), fromSeconds(work), fromSeconds(work) > period};
   }
 };
 
 struct Loop {
-  Governor governor{GovernorSettings{}};
+  governor::Governor governor{governor::GovernorSettings{}};
   Random random{1};
   std::size_t frames = 0, late = 0;
   double work_s = 0;
@@ -38,9 +38,9 @@ struct Loop {
     work_s = 0;
     for (int i = 0; i < count; ++i) step(renderer);
   }
-  // Whether it was late.
+  // Draws one frame; returns whether it was late.
   bool step(const FakeRenderer& renderer) {
-    const FrameCost cost = renderer.draw(governor.budget(), governor.period(), random);
+    const governor::FrameCost cost = renderer.draw(governor.budget(), governor.period(), random);
     governor.observe(cost);
     ++frames;
     late += cost.late ? 1U : 0U;
@@ -48,14 +48,14 @@ struct Loop {
     return cost.late;
   }
   double lateShare() const { return static_cast<double>(late) / static_cast<double>(frames); }
-  double utilisation() const {  // of the period
+  double utilisation() const {  // share of the period
     return work_s / static_cast<double>(frames) / toSeconds(governor.period());
   }
 };
 
 class CostModels : public testing::TestWithParam<FakeRenderer> {};
 
-// 90 per cent of the period, and 3 per cent either way that are not worth a change.
+// The target is 90 per cent of the period; a change of less than 3 per cent is not worth making.
 TEST_P(CostModels, SettlesAtTheRateLessTheHeadRoom) {
   Loop loop;
   loop.run(GetParam(), 150);
@@ -66,7 +66,8 @@ TEST_P(CostModels, SettlesAtTheRateLessTheHeadRoom) {
   EXPECT_LT(loop.utilisation(), 0.94);
 }
 
-// A little more head room with noise: at most one frame in 50 is late, and a third is not wasted.
+// With noise the head room grows a little: at most one frame in 50 is late, and less than a third
+// of the period is unused.
 TEST_P(CostModels, HoldsTheRateWithNoise) {
   FakeRenderer renderer = GetParam();
   renderer.noise = 0.06;
@@ -109,18 +110,18 @@ std::string nameOf(const testing::TestParamInfo<FakeRenderer>& info) {
          whole(100 * info.param.exponent);
 }
 
-// p from fill-bound to geometry-bound; from twenty thousand triangles to a hundred thousand.
+// Exponents p from fill-bound to geometry-bound; models of 20,000 to 100,000 triangles.
 const FakeRenderer kModels[] = {{0.000, 0.030, 0.50}, {0.004, 0.020, 0.62}, {0.004, 0.100, 0.65},
                                 {0.010, 0.050, 0.75}, {0.002, 0.040, 0.88}, {0.001, 0.030, 1.00},
                                 {0.012, 0.100, 1.00}};
 INSTANTIATE_TEST_SUITE_P(Models, CostModels, testing::ValuesIn(kModels), nameOf);
 
-// With this noise the head room that a share needs lies between its bounds, so that it can be
-// learnt: the share late over 20,000 frames is the one asked for, to a fifth.
+// With this noise, the head room for each share of late frames lies within its bounds, so the
+// governor can learn it: over 20,000 frames the share late is within a fifth of the requested one.
 TEST(GovernorLateShare, IsTheOneAskedFor) {
   for (const double share : {0.005, 0.01, 0.02, 0.05}) {
     const FakeRenderer renderer{0.002, 0.050, 0.7, 0.10};
-    Loop loop{Governor({.late_share = share})};
+    Loop loop{governor::Governor({.late_share = share})};
     loop.run(renderer, 2000);
     loop.run(renderer, 20'000);
     EXPECT_NEAR(loop.lateShare(), share, 0.2 * share);
@@ -138,7 +139,8 @@ TEST(GovernorLateShare, NoiseTakesHeadRoomAndQuietGivesItBack) {
   EXPECT_EQ(loop.late, 0u);
 }
 
-// A machine changes its speed by 1.35 for seconds at a time: a few frames at each change are late.
+// A machine whose speed changes by a factor of 1.35 for seconds at a time: only a few frames are
+// late at each change.
 TEST(GovernorLoop, LivesWithAMachineThatChangesItsSpeed) {
   const FakeRenderer fast{0.004, 0.060, 0.62, 0.03};
   FakeRenderer slow = fast;
@@ -151,7 +153,7 @@ TEST(GovernorLoop, LivesWithAMachineThatChangesItsSpeed) {
     late += loop.late;
     EXPECT_GT(loop.utilisation(), 0.65);
   }
-  EXPECT_LE(late, 40u);  // of 1,800: two a change
+  EXPECT_LE(late, 40u);  // of 1,800 frames: two for each change
 }
 
 }  // namespace

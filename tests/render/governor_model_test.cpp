@@ -1,5 +1,5 @@
-// What the governor is told rather than sees: calibration, feed-forward, by hand, another rate; and
-// its exponent.
+// Inputs of the governor other than frames: calibration, feed-forward, budgets set by a person,
+// another rate; and its exponent.
 #include <cmath>
 #include <vector>
 
@@ -16,10 +16,11 @@ using governed::kSettings;
 using governed::settled;
 using std::chrono::milliseconds;
 
-// 5,000 triangles in what is left of a period, at 0.8 and not at 0.65: 0.5^0.15 = 0.9013 cheaper,
-// which is 0.15 of exponent. A tenth of it is learnt; the usual size costs what it did.
+// Half the triangles, drawn in the rest of a period, follow the exponent 0.8, not 0.65: they are
+// 0.5^0.15 = 0.9013 times as expensive. A tenth of the difference in the exponent is learnt; the
+// prediction for the usual size stays.
 TEST(GovernorExponent, IsLearntFromAFrameThatHadLessTime) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   EXPECT_DOUBLE_EQ(governor.exponent(), 0.65);
   const double usual = governor.predict(10'000);
   const double drawing = 0.032 * std::pow(0.5, 0.8);
@@ -29,16 +30,16 @@ TEST(GovernorExponent, IsLearntFromAFrameThatHadLessTime) {
   EXPECT_EQ(governor.budget(), 10'000u);
 }
 
-// A model of fewer triangles than would fit: all of its frames are smaller than the budget.
+// A model with fewer triangles than would fit, so all of its frames are below the budget.
 TEST(GovernorExponent, IsNotLearntFromFramesThatAreAllSmall) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   for (int i = 0; i < 50; ++i) governor.observe(frame(1'000, milliseconds(4), milliseconds(10)));
   EXPECT_NEAR(governor.exponent(), 0.65, 0.03);
   EXPECT_NEAR(governor.predict(1'000), 0.010, 2e-4);
 }
 
-std::vector<FrameCost> sweep(double fixed_s, double c, double p) {
-  std::vector<FrameCost> frames;
+std::vector<governor::FrameCost> sweep(double fixed_s, double c, double p) {
+  std::vector<governor::FrameCost> frames;
   for (const std::size_t t : {1'000U, 4'000U, 16'000U, 64'000U}) {
     for (int i = 0; i < 3; ++i) {
       const double work = fixed_s + c * std::pow(static_cast<double>(t), p);
@@ -51,35 +52,37 @@ std::vector<FrameCost> sweep(double fixed_s, double c, double p) {
 // One in three of these frames has a hiccup of 20 ms.
 TEST(GovernorCalibration, FindsTheModelInSpiteOfHiccups) {
   for (const double p : {0.5, 0.62, 0.8, 1.0}) {
-    Governor governor(kSettings);
+    governor::Governor governor(kSettings);
     const double c = 0.030 / std::pow(30'000, p);
     governor.calibrate(sweep(0.005, c, p));
     EXPECT_NEAR(governor.exponent(), p, 0.05) << p;
     EXPECT_DOUBLE_EQ(governor.fixedSeconds(), 0.005);
-    // 40 ms x 0.9 less 5 ms are 31 of 30 ms: within a tenth of 30,000 x (31 / 30)^(1 / p).
+    // 40 ms x 0.9 - 5 ms = 31 ms are available, and 30,000 triangles take 30 ms: the budget is
+    // within a tenth of 30,000 x (31 / 30)^(1 / p).
     EXPECT_NEAR(budgetOf(governor) / (30'000 * std::pow(31.0 / 30, 1 / p)), 1, 0.1) << p;
   }
 }
 
 TEST(GovernorCalibration, WithFramesOfOneSizeLeavesTheExponent) {
-  Governor governor(kSettings);
-  governor.calibrate(std::vector<FrameCost>(3, frame(10'000, milliseconds(4), milliseconds(36))));
+  governor::Governor governor(kSettings);
+  governor.calibrate(
+      std::vector<governor::FrameCost>(3, frame(10'000, milliseconds(4), milliseconds(36))));
   EXPECT_DOUBLE_EQ(governor.exponent(), 0.65);
   EXPECT_NEAR(budgetOf(governor), 10'000, 2);
-  Governor none(kSettings);
+  governor::Governor none(kSettings);
   none.calibrate({});
   EXPECT_EQ(none.budget(), 10'000u);
   EXPECT_EQ(none.coefficient(), 0);
 }
 
-// 32 ms of drawing, of three frames in five 8 per cent more or less: 3 x 0.08 of head room, and not
-// more than there may be.
+// Drawing takes 32 ms, in three frames of five 8 per cent more or less: the head room becomes 3 x
+// 0.08, within its bounds.
 TEST(GovernorCalibration, LeavesRoomForTheNoiseThatItSaw) {
   const auto noisy = [](double noise) {
-    std::vector<FrameCost> frames;
+    std::vector<governor::FrameCost> frames;
     for (const double off : {0.0, -noise, noise, noise, 0.0})
       frames.push_back(frame(10'000, milliseconds(4), fromSeconds(0.004 + 0.032 * std::exp(off))));
-    Governor governor(kSettings);
+    governor::Governor governor(kSettings);
     governor.calibrate(frames);
     return governor.headRoom();
   };
@@ -88,20 +91,21 @@ TEST(GovernorCalibration, LeavesRoomForTheNoiseThatItSaw) {
   EXPECT_DOUBLE_EQ(noisy(0.50), 0.30);
 }
 
-// Twice as dear: 32 / 64 to the power of 1 / 0.65 is 0.34429; and at once, both ways.
+// A view twice as expensive: (32 / 64)^(1 / 0.65) = 0.34429. The governor reacts at once in both
+// directions.
 TEST(GovernorExpect, FeedsForwardAtOnce) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   governor.expect(2);
   EXPECT_NEAR(budgetOf(governor), 3443, 2);
   governor.expect(0.5);
   EXPECT_NEAR(budgetOf(governor), 10'000, 2);
-  Governor fresh(kSettings);
+  governor::Governor fresh(kSettings);
   fresh.expect(3);
   EXPECT_EQ(fresh.budget(), 10'000u) << "nothing was measured yet";
 }
 
 TEST(GovernorHold, IsByHandUntilItIsGivenBack) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   governor.hold(2'000);
   EXPECT_TRUE(governor.held());
   EXPECT_EQ(governor.budget(), 2'000u);
@@ -115,9 +119,9 @@ TEST(GovernorHold, IsByHandUntilItIsGivenBack) {
   EXPECT_LT(governor.budget(), 1'000u) << "it has gone on learning";
 }
 
-// 80 ms x 0.9 less 4 ms are 68 of 32 ms: to the power of 1 / 0.65, 3.1888.
+// (80 ms x 0.9 - 4 ms) / 32 ms = 68 / 32; to the power of 1 / 0.65 this is 3.1888.
 TEST(GovernorRate, AnotherPeriodIsFilledAtOnce) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   governor.setRate(12.5);
   EXPECT_EQ(governor.period(), milliseconds(80));
   EXPECT_NEAR(budgetOf(governor), 31'888, 5);

@@ -1,5 +1,5 @@
-// What MERLIN promises of its rate; ./dev bench governor prints it beside others'
-// laws.
+// The limits that MERLIN states for its frame rate; ./dev bench governor prints the figures beside
+// those of other control laws.
 #include <gtest/gtest.h>
 
 #include "tests/support/governor_plant.h"
@@ -8,11 +8,11 @@ namespace merlin::test {
 namespace {
 
 Outcome run(const Trace& trace, double hiccups, std::uint64_t seed = 4) {
-  render::Governor governor({});
+  render::governor::Governor governor({});
   return runOnGrid(governor, {trace, seed, hiccups});
 }
 
-// Of twenty seeds: how many hiccups a minute has is chance.
+// The mean over twenty seeds, since the number of hiccups in a minute is random.
 double mean(double (*figure)(const Outcome&), const Trace& trace, double hiccups) {
   double sum = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) sum += figure(run(trace, hiccups, seed));
@@ -65,10 +65,11 @@ TEST(GovernorPromise, MostOfThePeriodIsUsed) {
   EXPECT_GE(mean(utilisation, rampTrace(), 0.01), 0.80);
 }
 
-// The exponent may be wrong by a third either way: that costs speed, not safety.
+// An initial exponent that is wrong by a third either way costs utilisation, but causes no late
+// frames.
 TEST(GovernorPromise, HoldsWithAnotherExponentThanItStartsWith) {
   for (const double p : {0.45, 1.0}) {
-    render::Governor governor({});
+    render::governor::Governor governor({});
     const Outcome o = runOnGrid(governor, {stepTrace(2), 4, 0.01, p});
     EXPECT_LE(lateShare(o), 0.02) << p;
     EXPECT_GE(utilisation(o), 0.78) << p;

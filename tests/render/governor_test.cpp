@@ -1,4 +1,4 @@
-// The governor's laws, one by one, on frames whose cost is said literally.
+// The governor's rules one by one, on frames whose cost is given literally.
 #include "render/governor/governor.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
 TEST(Governor, StartsWithWhatItIsTold) {
-  const Governor governor(kSettings);
+  const governor::Governor governor(kSettings);
   EXPECT_EQ(governor.budget(), 10'000u);
   EXPECT_EQ(governor.budgetFor(milliseconds(1)), 10'000u) << "nothing was measured yet";
   EXPECT_EQ(governor.budgetFor(Duration::zero()), 10'000u);
@@ -30,9 +30,10 @@ TEST(Governor, StartsWithWhatItIsTold) {
   EXPECT_EQ(governor.coefficient(), 0);
 }
 
-// 4 ms + c T^0.65, c from one frame: twice the triangles take 2^0.65 = 1.5692 times as long.
+// The model is 4 ms + c T^0.65 with c from one frame: twice the triangles take 2^0.65 = 1.5692
+// times as long.
 TEST(Governor, PredictsByTheModel) {
-  Governor governor(kSettings);
+  governor::Governor governor(kSettings);
   governor.observe(frame(10'000, milliseconds(4), milliseconds(14)));
   EXPECT_DOUBLE_EQ(governor.fixedSeconds(), 0.004);
   EXPECT_NEAR(governor.predict(10'000), 0.014, 1e-12);
@@ -40,35 +41,35 @@ TEST(Governor, PredictsByTheModel) {
   EXPECT_NEAR(governor.predict(0), 0.004, 1e-12);
 }
 
-// Head room 0.1 + 0.01683 since it was late; (40 ms x 0.88317 - 4 ms) / 60 ms = 0.52211, and to the
-// power of 1 / 0.65: 0.36795.
+// The late frame raises the head room to 0.1 + 0.01683. (40 ms x 0.88317 - 4 ms) / 60 ms = 0.52211;
+// to the power of 1 / 0.65 this is 0.36795.
 TEST(Governor, ShrinksAtOnceToWhatTheModelSaysFits) {
-  Governor governor(kSettings);
+  governor::Governor governor(kSettings);
   governor.observe(frame(10'000, milliseconds(4), milliseconds(64)));
   EXPECT_NEAR(budgetOf(governor), 3680, 2);
 }
 
 TEST(Governor, GrowsByEightPercentAFrameAtMost) {
-  Governor governor(kSettings);
+  governor::Governor governor(kSettings);
   for (int i = 1; i <= 20; ++i) {
     governor.observe(frame(10'000, milliseconds(0), milliseconds(1)));
     EXPECT_NEAR(budgetOf(governor), 10'000 * std::pow(1.08, i), 1) << i;
   }
 }
 
-// 36 ms would be right; within 5 per cent of the triangles nothing changes.
+// 36 ms is the target; a gain of less than 5 per cent of the triangles is not worth a change.
 TEST(Governor, WaitsForAGainWorthIt) {
   EXPECT_EQ(settled().budget(), 10'000u);
-  Governor near(kSettings);
+  governor::Governor near(kSettings);
   near.observe(frame(10'000, milliseconds(0), milliseconds(35)));  // 4.4 per cent more would fit
   EXPECT_EQ(near.budget(), 10'000u);
-  Governor further(kSettings);
-  further.observe(frame(10'000, milliseconds(0), milliseconds(34)));  // 9.2
+  governor::Governor further(kSettings);
+  further.observe(frame(10'000, milliseconds(0), milliseconds(34)));  // 9.2 per cent more would fit
   EXPECT_EQ(further.budget(), 10'800u);
 }
 
 TEST(Governor, OneHiccupChangesNothing) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   const double before = governor.coefficient();
   governor.observe(frame(10'000, milliseconds(4), milliseconds(79)));
   EXPECT_DOUBLE_EQ(governor.coefficient(), before);
@@ -81,7 +82,7 @@ TEST(Governor, OneHiccupChangesNothing) {
 }
 
 TEST(Governor, AHiccupNowAndThenChangesNothingEither) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   const double before = governor.coefficient();
   for (int i = 0; i < 200; ++i) {
     const int work = i % 20 == 0 ? 79 : 36;
@@ -91,22 +92,22 @@ TEST(Governor, AHiccupNowAndThenChangesNothingEither) {
   EXPECT_EQ(governor.budget(), 10'000u);
 }
 
-// 4 + 96 ms is three times 32: a frame that misses two deadlines is taken for the load itself, with
-// 6 per cent more for its noise. (40 ms x 0.8901 - 4 ms) / (1.06 x 96 ms) = 0.31058, and to the
-// power of 1 / 0.65: 0.16561.
+// 96 ms of drawing are three times the usual 32 ms. A frame that misses two deadlines is taken as a
+// change of the load, plus 6 per cent for its noise. (40 ms x 0.8901 - 4 ms) / (1.06 x 96 ms) =
+// 0.31058; to the power of 1 / 0.65 this is 0.16561.
 TEST(Governor, AFrameThatMissesTwoDeadlinesActsAlone) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   const double before = governor.coefficient();
   governor.observe(frame(10'000, milliseconds(4), milliseconds(100)));
   EXPECT_NEAR(governor.coefficient() / before, 3 * 1.06, 1e-9);
   EXPECT_NEAR(budgetOf(governor), 1632, 2);
-  governor.observe(frame(1632, milliseconds(4), milliseconds(35)));  // as the model says
+  governor.observe(frame(1632, milliseconds(4), milliseconds(35)));  // as the model predicts
   EXPECT_NEAR(governor.coefficient() / before, 3 * 1.06, 0.1);
   EXPECT_LT(governor.budget(), 2000u);
 }
 
 TEST(Governor, ALongHiccupIsTakenBackByTheNextFrame) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   const double before = governor.coefficient();
   governor.observe(frame(10'000, milliseconds(4), milliseconds(400)));
   EXPECT_NEAR(governor.coefficient() / before, 6, 1e-9) << "at most";
@@ -118,9 +119,10 @@ TEST(Governor, ALongHiccupIsTakenBackByTheNextFrame) {
   EXPECT_EQ(governor.budget(), 10'000u);
 }
 
-// 4 + 64 ms, twice: at the worst figure seen, 32 / 64 of the room, less the head room learnt.
+// Two late frames in a row: the budget follows the lower of the two costs seen (56 / 32) at once,
+// less the head room learnt.
 TEST(Governor, TwoLateInARowActAtOnceOnTheWorstSeen) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   const double before = governor.coefficient();
   governor.observe(frame(10'000, milliseconds(4), milliseconds(68)));
   governor.observe(frame(10'000, milliseconds(4), milliseconds(60)));
@@ -132,36 +134,38 @@ TEST(Governor, TwoLateInARowActAtOnceOnTheWorstSeen) {
 }
 
 TEST(Governor, TheFirstLateFrameTeachesNothing) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   governor.observe(frame(10'000, milliseconds(4), milliseconds(39)));
   const double before = governor.coefficient();
   governor.observe(frame(10'000, milliseconds(4), milliseconds(70)));
   EXPECT_DOUBLE_EQ(governor.coefficient(), before);
 }
 
-// 31.5 ms of 32 would let 2.4 per cent more in, which is not worth it; with the head room that a
-// late frame teaches 0.8 per cent fewer fit: (40 ms x 0.88317 - 4 ms) / 31.5 ms = 0.99450.
+// At 31.5 ms of 32 ms, 2.4 per cent more triangles would fit, which is not worth a change. With the
+// head room after a late frame, 0.8 per cent fewer fit: (40 ms x 0.88317 - 4 ms) / 31.5 ms =
+// 0.99450.
 TEST(Governor, TwoLateInARowDoNotWaitForALossWorthIt) {
   const Duration work = std::chrono::microseconds(35'500);
-  Governor governor = settled();
+  governor::Governor governor = settled();
   for (int i = 0; i < 200; ++i) governor.observe(frame(10'000, milliseconds(4), work));
   EXPECT_EQ(governor.budget(), 10'000u);
   for (int i = 0; i < 2; ++i) governor.observe({10'000, milliseconds(4), work, true});
   EXPECT_NEAR(budgetOf(governor), 9916, 3);
 }
 
-// Something else made them late: room there is, but the next frame is not the one to take it.
+// Something else made the frames late. There is room, but a frame after two late ones must not use
+// it.
 TEST(Governor, TwoLateInARowNeverGrow) {
-  Governor governor(kSettings);
+  governor::Governor governor(kSettings);
   for (int i = 0; i < 10; ++i) governor.observe({10'000, {}, milliseconds(1), true});
   EXPECT_EQ(governor.budget(), 10'800u) << "by the first of them";
   governor.observe({10'000, {}, milliseconds(1), false});
   EXPECT_EQ(governor.budget(), 11'664u);
 }
 
-// The median of three, 0.15 of the way a frame: one read-back that took long is not seen.
+// The median of three values, smoothed by 0.15 a frame: a single slow read-back has no effect.
 TEST(Governor, SmoothsTheFixedPart) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   governor.observe(frame(10'000, milliseconds(8), milliseconds(36)));
   EXPECT_NEAR(governor.fixedSeconds(), 0.0040, 1e-12);
   governor.observe(frame(10'000, milliseconds(8), milliseconds(36)));
@@ -169,15 +173,15 @@ TEST(Governor, SmoothsTheFixedPart) {
 }
 
 TEST(Governor, TwoThatBeganLateCountAlthoughTheirWorkFits) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   const double before = governor.coefficient();
   for (int i = 0; i < 2; ++i) governor.observe({10'000, milliseconds(4), milliseconds(39), true});
   EXPECT_NEAR(governor.coefficient() / before, 35.0 / 32.0, 1e-9);
 }
 
-// Work beyond the period counts although the frame gave way and came in time.
+// Work beyond the period counts as late even if the frame was shortened and came in time.
 TEST(Governor, TwoThatRanOverInARowCountAsLate) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   const double before = governor.coefficient();
   for (int i = 0; i < 2; ++i) {
     governor.observe({10'000, milliseconds(4), milliseconds(68), false});
@@ -186,9 +190,9 @@ TEST(Governor, TwoThatRanOverInARowCountAsLate) {
   EXPECT_NEAR(governor.headRoom(), 0.10, 1e-12) << "and the share of late frames is not touched";
 }
 
-// 3 per cent of noise either way, and a picture that does not pop.
+// With 3 per cent of noise the budget stays the same, so the image does not change visibly.
 TEST(Governor, KeepsStillWithinTheNoise) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   const double before = governor.coefficient();
   Random random(7);
   for (int i = 0; i < 1000; ++i) {
@@ -199,9 +203,9 @@ TEST(Governor, KeepsStillWithinTheNoise) {
   EXPECT_NEAR(governor.coefficient() / before, 31.5 / 32, 0.01);
 }
 
-// 2 per cent dearer each frame for a second: the model is never 9 per cent off.
+// Each frame costs 2 per cent more for a second: the model is never off by 9 per cent.
 TEST(Governor, FollowsALoadThatRisesWithoutLagging) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   const double before = governor.coefficient();
   for (int i = 1; i <= 30; ++i) {
     const double load = std::pow(1.02, i);
@@ -213,7 +217,7 @@ TEST(Governor, FollowsALoadThatRisesWithoutLagging) {
 }
 
 TEST(Governor, TakesACheaperLoadAtItsWordAndNoFurther) {
-  Governor governor = settled();
+  governor::Governor governor = settled();
   const double before = governor.coefficient();
   for (int i = 0; i < 60; ++i) {
     const double drawing = 0.008 * std::pow(budgetOf(governor) / 1e4, 0.65);
@@ -224,7 +228,7 @@ TEST(Governor, TakesACheaperLoadAtItsWordAndNoFurther) {
 }
 
 TEST(Governor, HeadRoomFollowsTheShareOfFramesThatAreLateAlone) {
-  Governor governor(kSettings);
+  governor::Governor governor(kSettings);
   EXPECT_DOUBLE_EQ(governor.headRoom(), 0.10);
   governor.observe({1000, {}, milliseconds(50), true});
   EXPECT_NEAR(governor.headRoom(), 0.10 + 0.017 * 0.99, 1e-12);
@@ -242,7 +246,7 @@ TEST(Governor, HeadRoomFollowsTheShareOfFramesThatAreLateAlone) {
 }
 
 TEST(Governor, KeepsTheLeastAndTheMost) {
-  Governor governor(kSettings);
+  governor::Governor governor(kSettings);
   for (int i = 0; i < 100; ++i) governor.observe(frame(100, milliseconds(39), hours(1)));
   EXPECT_EQ(governor.budget(), 100u);
   for (int i = 0; i < 2000; ++i) governor.observe(frame(100, {}, nanoseconds(1)));
@@ -250,20 +254,22 @@ TEST(Governor, KeepsTheLeastAndTheMost) {
 }
 
 TEST(GovernorBudgetFor, IsTheBudgetForAWholePeriod) {
-  const Governor governor = settled();
+  const governor::Governor governor = settled();
   EXPECT_EQ(governor.budgetFor(milliseconds(40)), governor.budget());
   EXPECT_EQ(governor.budgetFor(milliseconds(60)), governor.budget());
-  EXPECT_EQ(governor.budgetFor(nanoseconds(39'600'000)), governor.budget());  // a late start
+  // The frame started a little late.
+  EXPECT_EQ(governor.budgetFor(nanoseconds(39'600'000)), governor.budget());
 }
 
-// (20 ms x 0.9 - 4 ms) / 32 ms = 0.4375, to the power of 1 / 0.65: 0.28041.
+// (20 ms x 0.9 - 4 ms) / 32 ms = 0.4375; to the power of 1 / 0.65 this is 0.28041.
 TEST(GovernorBudgetFor, IsWhatTheModelSaysFits) {
   EXPECT_NEAR(static_cast<double>(settled().budgetFor(milliseconds(20))), 2804, 1);
 }
 
 TEST(GovernorBudgetFor, IsNoneWhereNotEvenTheLeastFits) {
-  const Governor governor = settled();
-  EXPECT_EQ(governor.budgetFor(milliseconds(5)), 0u);  // 0.5 ms for 100 triangles of 1.6
+  const governor::Governor governor = settled();
+  // 0.5 ms are left, and 100 triangles take 1.6 ms.
+  EXPECT_EQ(governor.budgetFor(milliseconds(5)), 0u);
   EXPECT_EQ(governor.budgetFor(milliseconds(4)), 0u);
   EXPECT_EQ(governor.budgetFor(Duration::zero()), 0u);
   EXPECT_EQ(governor.budgetFor(-milliseconds(100)), 0u);
@@ -276,14 +282,14 @@ TEST(GovernorBudgetFor, IsNoneWhereNotEvenTheLeastFits) {
   }
 }
 
-// Whatever frames cost, by all that a Duration can say.
+// Frame costs from the whole range of Duration.
 TEST(Governor, StaysFiniteWhateverIsObserved) {
   const Duration times[] = {nanoseconds(1), nanoseconds(1000), milliseconds(40), hours(1),
                             hours(24 * 365 * 200)};
   const std::size_t counts[] = {0, 1, 10'000, std::numeric_limits<std::size_t>::max()};
   Random random(1);
   for (int run = 0; run < 200; ++run) {
-    Governor governor(kSettings);
+    governor::Governor governor(kSettings);
     for (int i = 0; i < 50; ++i) {
       const Duration work = times[random.below(5)];
       const Duration fixed = random.below(2) == 0 ? Duration::zero() : work;
@@ -300,10 +306,10 @@ TEST(Governor, StaysFiniteWhateverIsObserved) {
 }
 
 TEST(GovernorDeathTest, RefusesSettingsThatMakeNoSense) {
-  EXPECT_DEBUG_DEATH(Governor({.rate_hz = 0}), "rate_hz");
-  EXPECT_DEBUG_DEATH(Governor({.min_triangles = 0}), "min_triangles");
-  EXPECT_DEBUG_DEATH(Governor({.max_triangles = 9'000}), "max_triangles");
-  EXPECT_DEBUG_DEATH(Governor({.late_share = 0}), "late_share");
+  EXPECT_DEBUG_DEATH(governor::Governor({.rate_hz = 0}), "rate_hz");
+  EXPECT_DEBUG_DEATH(governor::Governor({.min_triangles = 0}), "min_triangles");
+  EXPECT_DEBUG_DEATH(governor::Governor({.max_triangles = 9'000}), "max_triangles");
+  EXPECT_DEBUG_DEATH(governor::Governor({.late_share = 0}), "late_share");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Shapes of many triangles at one vertex take no more work a triangle than others do.
+// A mesh with very many triangles at one vertex takes hardly more work for each triangle than
+// others.
 #include "tests/support/hostile_shapes.h"
 
 #include <cmath>
@@ -17,16 +18,16 @@ namespace {
 
 struct Way {
   const char* name;
-  ReduceSettings settings;
+  reduce::ReduceSettings settings;
 };
 
-// Elements that a reduction looked at, for each triangle.
+// Number of elements that a reduction visits, for each triangle.
 double workOf(const test::HostileShape& shape, Way way) {
-  Mesh mesh = shape.make(24'000);
-  splitNonManifold(mesh);
-  ensureNormals(mesh);
+  mesh::Mesh mesh = shape.make(24'000);
+  mesh::splitNonManifold(mesh);
+  mesh::ensureNormals(mesh);
   way.settings.threads = 1;
-  const auto r = reduce(mesh, way.settings);
+  const auto r = reduce::reduce(mesh, way.settings);
   if (!r) ADD_FAILURE() << way.name << ": " << r.error().what;
   if (!r) return 0;
   EXPECT_GT(r->report.collapses, 0u) << way.name;
@@ -48,7 +49,7 @@ std::vector<Way> waysFor(const test::HostileShape& shape) {
   return ways;
 }
 
-// A step that looks at all triangles of one vertex each time takes thousands.
+// A step that visits all triangles of a vertex each time would visit thousands for each triangle.
 class HostileShape : public testing::TestWithParam<test::HostileShape> {};
 
 TEST_P(HostileShape, TakesTenTimesTheWorkOfARegularMeshAtMost) {

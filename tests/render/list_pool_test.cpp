@@ -13,13 +13,13 @@ namespace {
 
 using Numbers = std::vector<std::uint32_t>;
 
-Numbers at(const ListPool& pool, std::size_t list) {
+Numbers at(const reduce::ListPool& pool, std::size_t list) {
   return {pool[list].begin(), pool[list].end()};
 }
 
 TEST(ListPool, StartsWithEmptyListsThatHaveRoom) {
   const Numbers room{2, 0, 1};
-  ListPool pool(room);
+  reduce::ListPool pool(room);
   for (std::size_t list = 0; list < 3; ++list) EXPECT_TRUE(pool[list].empty());
   pool.append(0, 7);
   pool.append(2, 9);
@@ -31,12 +31,12 @@ TEST(ListPool, StartsWithEmptyListsThatHaveRoom) {
 
 TEST(ListPool, RemovesTheFirstOneEqualAndKeepsTheOrder) {
   const Numbers room{4, 1};
-  ListPool pool(room);
+  reduce::ListPool pool(room);
   for (const std::uint32_t n : {5U, 6U, 5U, 7U}) pool.append(0, n);
   pool.append(1, 1);
   pool.remove(0, 5);
   EXPECT_EQ(at(pool, 0), (Numbers{6, 5, 7}));
-  pool.remove(0, 4);  // is not in it
+  pool.remove(0, 4);  // the list does not contain 4
   EXPECT_EQ(at(pool, 0), (Numbers{6, 5, 7}));
   pool.remove(0, 7);
   pool.remove(0, 6);
@@ -48,22 +48,23 @@ TEST(ListPool, RemovesTheFirstOneEqualAndKeepsTheOrder) {
 
 TEST(ListPool, AssignsShorterAndLongerListsWithoutTouchingOthers) {
   const Numbers room{2, 2};
-  ListPool pool(room);
+  reduce::ListPool pool(room);
   pool.append(1, 100);
   pool.assign(0, Numbers{1, 2, 3, 4, 5});
   EXPECT_EQ(at(pool, 0), (Numbers{1, 2, 3, 4, 5}));
   pool.assign(0, Numbers{6});
   EXPECT_EQ(at(pool, 0), (Numbers{6}));
-  pool.assign(0, Numbers{1, 2, 3, 4, 5});  // fits where five have been
+  pool.assign(0, Numbers{1, 2, 3, 4, 5});  // fits into the space of the five that were there
   EXPECT_EQ(at(pool, 0), (Numbers{1, 2, 3, 4, 5}));
   pool.assign(0, {});
   EXPECT_EQ(at(pool, 0), (Numbers{}));
   EXPECT_EQ(at(pool, 1), (Numbers{100}));
 }
 
-// One list that grows by one a time has lain in 2000 places: 8 MB of numbers, were none taken back.
+// A list that grows by one element at a time is moved up to 2000 times: 8 MB if no space were
+// reclaimed.
 TEST(ListPool, TakesBackThePlacesThatListsHaveLeft) {
-  ListPool pool(Numbers{0});
+  reduce::ListPool pool(Numbers{0});
   Numbers numbers;
   test::largest_allocation = 0;
   for (std::uint32_t n = 0; n < 2000; ++n) {
@@ -74,11 +75,11 @@ TEST(ListPool, TakesBackThePlacesThatListsHaveLeft) {
   EXPECT_LE(test::largest_allocation, 6 * 2000 * sizeof(std::uint32_t));
 }
 
-// Lists that grow and shrink at random, as in a reduction, through many packings.
+// Lists that grow and shrink at random, as in a reduction, and are compacted many times.
 TEST(ListPool, AgreesWithAVectorOfVectors) {
   Random random(1);
   const Numbers room(20, 3);
-  ListPool pool(room);
+  reduce::ListPool pool(room);
   std::vector<Numbers> model(20);
   for (std::uint32_t step = 0; step < 20'000; ++step) {
     const std::size_t list = random.below(20);

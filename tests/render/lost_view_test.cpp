@@ -7,12 +7,12 @@ namespace {
 
 class LostViewTest : public testing::Test {
  protected:
-  // After so many seconds more.
+  // Updates the detector after `s` more seconds.
   bool after(double s, bool seen, bool moving = false) {
     now_ += fromSeconds(s);
     return lost_.update(seen, moving, now_);
   }
-  LostView lost_{60};
+  scene::LostView lost_{60};
   Timestamp now_{std::chrono::hours(1)};
 };
 
@@ -43,7 +43,7 @@ TEST_F(LostViewTest, BeginsAgainWithEachSight) {
 TEST_F(LostViewTest, OfAStartViewThatShowsNothingNeverReturns) { EXPECT_FALSE(after(1000, false)); }
 
 TEST_F(LostViewTest, OffNeverReturns) {
-  lost_ = LostView(0);
+  lost_ = scene::LostView(0);
   EXPECT_FALSE(after(0, true));
   EXPECT_FALSE(after(1e6, false));
 }

@@ -18,10 +18,10 @@ using test::writeText;
 using Floats = std::vector<float>;
 using Limits = std::numeric_limits<float>;
 
-// The square, with numbers that lose nothing but in binary, and every feature that has a form of
-// its own. Colours are bytes in the file: 0, 1, 254 and 255 of 255.
-Mesh richSquare() {
-  Mesh mesh = test::grid(1, 1);
+// A square with floats that only a binary format keeps exactly, and with every feature that the
+// format stores in a special way. Colours are bytes in the file: 0, 1, 254 and 255 of 255.
+mesh::Mesh richSquare() {
+  mesh::Mesh mesh = test::grid(1, 1);
   mesh.positions = {0.1F,  -0.0F, 1e-40F, 1e18F, Limits::min(), -1.0F / 3,
                     1e-7F, 2.0F,  3.0F,   4.0F,  5.0F,          6.0F};
   mesh.features = {{"normal", 3, Floats(12, 0.57735027F)},
@@ -36,9 +36,9 @@ Mesh richSquare() {
 
 TEST(WriteMesh, IsReadBackBitByBit) {
   const TempDir dir;
-  const Mesh mesh = richSquare();
-  ASSERT_TRUE(writeMesh(dir / "a.ply", mesh));
-  const auto loaded = readMesh(dir / "a.ply");
+  const mesh::Mesh mesh = richSquare();
+  ASSERT_TRUE(mesh::writeMesh(dir / "a.ply", mesh));
+  const auto loaded = mesh::readMesh(dir / "a.ply");
   ASSERT_TRUE(loaded) << loaded.error().what;
   EXPECT_EQ(loaded->mesh.positions, mesh.positions);
   EXPECT_TRUE(std::signbit(loaded->mesh.positions[1]));
@@ -54,17 +54,17 @@ TEST(WriteMesh, IsReadBackBitByBit) {
 
 TEST(WriteMesh, GivesTheSameBytesForWhatItRead) {
   const TempDir dir;
-  ASSERT_TRUE(writeMesh(dir / "a.ply", richSquare()));
-  ASSERT_TRUE(writeMesh(dir / "b.ply", readMesh(dir / "a.ply")->mesh));
+  ASSERT_TRUE(mesh::writeMesh(dir / "a.ply", richSquare()));
+  ASSERT_TRUE(mesh::writeMesh(dir / "b.ply", mesh::readMesh(dir / "a.ply")->mesh));
   EXPECT_EQ(readText(dir / "a.ply"), readText(dir / "b.ply"));
 }
 
 TEST(WriteMesh, HoldsColoursWithinTheirRange) {
   const TempDir dir;
-  Mesh mesh = test::grid(1, 1);
+  mesh::Mesh mesh = test::grid(1, 1);
   mesh.features = {{"colour", 3, {-1, 0.5F, 7, 0, 0.001F, 0.999F, 0, 0, 0, 1, 1, 1}}};
-  ASSERT_TRUE(writeMesh(dir / "a.ply", mesh));
-  const auto loaded = readMesh(dir / "a.ply");
+  ASSERT_TRUE(mesh::writeMesh(dir / "a.ply", mesh));
+  const auto loaded = mesh::readMesh(dir / "a.ply");
   ASSERT_TRUE(loaded) << loaded.error().what;
   const Floats& colour = loaded->mesh.find("colour")->values;
   const int bytes[] = {0, 128, 255, 0, 0, 255, 0, 0, 0, 255, 255, 255};
@@ -75,12 +75,12 @@ TEST(WriteMesh, HoldsColoursWithinTheirRange) {
 
 TEST(WriteMesh, NumbersTheColumnsOfAWideFeature) {
   const TempDir dir;
-  Mesh mesh = test::grid(1, 1);
+  mesh::Mesh mesh = test::grid(1, 1);
   mesh.features = {{"flow", 2, {0, 1, 10, 11, 20, 21, 30, 31}}, {"heat", 1, {1, 2, 3, 4}}};
-  ASSERT_TRUE(writeMesh(dir / "a.ply", mesh));
+  ASSERT_TRUE(mesh::writeMesh(dir / "a.ply", mesh));
   EXPECT_NE(readText(dir / "a.ply").find("property float flow_0\nproperty float flow_1\n"),
             std::string::npos);
-  const auto loaded = readMesh(dir / "a.ply");
+  const auto loaded = mesh::readMesh(dir / "a.ply");
   ASSERT_TRUE(loaded) << loaded.error().what;
   ASSERT_EQ(loaded->mesh.features.size(), 2u);
   EXPECT_EQ(loaded->mesh.find("flow")->dimension, 2u);
@@ -103,9 +103,9 @@ TEST(ReadMesh, GroupsNumberedPropertiesThatFollowOneAnother) {
                                  "element face 1\nproperty list uchar int vertex_indices\n"
                                  "end_header\n0 0 0" +
                                  rest + "\n1 0 0" + rest + "\n0 1 0" + rest + "\n3 0 1 2\n");
-    const auto loaded = readMesh(dir / "a.ply");
+    const auto loaded = mesh::readMesh(dir / "a.ply");
     std::string names;
-    for (const Feature& f : loaded->mesh.features)
+    for (const mesh::Feature& f : loaded->mesh.features)
       names += (names.empty() ? "" : " ") + f.name + ":" + std::to_string(f.dimension);
     return names;
   };
@@ -123,10 +123,10 @@ TEST(ReadMesh, GroupsNumberedPropertiesThatFollowOneAnother) {
 
 TEST(WriteMesh, IsDoneWholeOrNotAtAll) {
   const TempDir dir;
-  const auto refused = writeMesh(dir / "none/a.ply", test::cube());
+  const auto refused = mesh::writeMesh(dir / "none/a.ply", test::cube());
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().what.find(dir / "none/a.ply"), std::string::npos);
-  const auto other = writeMesh(dir / "a.off", test::cube());
+  const auto other = mesh::writeMesh(dir / "a.off", test::cube());
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().code, Errc::kUnsupported);
   EXPECT_EQ(other.error().what,
@@ -137,11 +137,11 @@ TEST(WriteMesh, IsDoneWholeOrNotAtAll) {
 TEST(ReadMesh, GoesByTheEndingInSmallOrLargeLetters) {
   const TempDir dir;
   writeText(dir / "a.PLY", test::squareFile(test::Form::kBig));
-  ASSERT_TRUE(readMesh(dir / "a.PLY"));
+  ASSERT_TRUE(mesh::readMesh(dir / "a.PLY"));
   writeText(dir / "a.Obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  ASSERT_TRUE(readMesh(dir / "a.Obj"));
+  ASSERT_TRUE(mesh::readMesh(dir / "a.Obj"));
   for (const char* name : {"a.glb", "ply", "a.ply.gz", "x.ply/a"}) {
-    const auto refused = readMesh(dir / name);
+    const auto refused = mesh::readMesh(dir / name);
     ASSERT_FALSE(refused) << name;
     EXPECT_EQ(refused.error().code, Errc::kUnsupported) << name;
     EXPECT_EQ(refused.error().what,
@@ -153,7 +153,7 @@ TEST(ReadMesh, TidiesWhatItRead) {
   const TempDir dir;
   const std::string file = test::squareFile(test::Form::kAscii);
   writeText(dir / "a.ply", test::replaced(file, "4 0 1 3 2", "3 1 1 0"));
-  const auto loaded = readMesh(dir / "a.ply");
+  const auto loaded = mesh::readMesh(dir / "a.ply");
   ASSERT_TRUE(loaded) << loaded.error().what;
   EXPECT_EQ(loaded->mesh.triangles, (std::vector<std::uint32_t>{0, 1, 2}));
   EXPECT_EQ(loaded->mesh.vertexCount(), 3u);
@@ -166,7 +166,7 @@ TEST(ReadMesh, SaysWhichFileIsBrokenAndHow) {
   const std::string file = test::squareFile(test::Form::kAscii);
   const auto fault = [&](const std::string& name, const std::string& text) {
     writeText(dir / name, text);
-    const auto loaded = readMesh(dir / name);
+    const auto loaded = mesh::readMesh(dir / name);
     EXPECT_FALSE(loaded);
     EXPECT_EQ(loaded.error().code, Errc::kMalformed);
     return loaded.error().what.substr(dir.path().size() + 1);
@@ -175,7 +175,7 @@ TEST(ReadMesh, SaysWhichFileIsBrokenAndHow) {
   EXPECT_EQ(fault("a.ply", test::replaced(file, "face 2", "face 9")),
             "a.ply: cut short in face 2 of 9, property vertex_indices");
   EXPECT_EQ(fault("b.ply", test::replaced(file, "3 0 1 3", "3 0 1 9")),
-            "b.ply: triangle 2: vertex 9 of 4 (0 to 3 exist)");
+            "b.ply: triangle 2: there is no vertex 9, the mesh has 4 (0 to 3)");
   EXPECT_EQ(fault("c.ply", test::replaced(file, "vertex_indices", "corners")),
             "c.ply: has no triangles");
   EXPECT_EQ(fault("empty.obj", ""), "empty.obj: has no triangles");
@@ -183,10 +183,10 @@ TEST(ReadMesh, SaysWhichFileIsBrokenAndHow) {
 
 TEST(ReadMesh, OfNoFileIsAnError) {
   const TempDir dir;
-  EXPECT_EQ(readMesh(dir / "none.ply").error().code, Errc::kNotFound);
-  EXPECT_EQ(readMesh(dir / "none.obj").error().code, Errc::kNotFound);
+  EXPECT_EQ(mesh::readMesh(dir / "none.ply").error().code, Errc::kNotFound);
+  EXPECT_EQ(mesh::readMesh(dir / "none.obj").error().code, Errc::kNotFound);
   std::filesystem::create_directory(dir / "folder.ply");
-  EXPECT_EQ(readMesh(dir / "folder.ply").error().code, Errc::kMalformed);
+  EXPECT_EQ(mesh::readMesh(dir / "folder.ply").error().code, Errc::kMalformed);
 }
 
 }  // namespace

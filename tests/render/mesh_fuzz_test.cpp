@@ -1,4 +1,4 @@
-// Ten thousand of the meshes of ./dev bench fuzz-meshes, in every run of the tests.
+// The first ten thousand meshes of ./dev bench fuzz-meshes, reduced in every run of the tests.
 #include "tests/bench/mesh_fuzz.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ TEST(MeshFuzz, FindsNoFaultInTenThousandHostileMeshes) {
     EXPECT_GT(fuzz.counts[name], 20u) << name;
 }
 
-// What ten million found: an edge of next to no area, whose error was no number.
+// A fault that ten million meshes found: an edge with almost no area, whose error was NaN.
 TEST(MeshFuzz, FindsNoFaultWhereItOnceDid) {
   for (const std::uint64_t seed : {2'857'298u, 8'100'370u}) {
     MeshFuzz fuzz;

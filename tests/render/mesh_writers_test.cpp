@@ -1,4 +1,4 @@
-// What readers that are not ours find in the files that writeMesh() writes.
+// What third-party readers find in the files that writeMesh() writes.
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -24,9 +24,9 @@ using Floats = std::vector<float>;
 using Names = std::vector<std::string>;
 using Json = nlohmann::json;
 
-// A square with everything; its normals are those of four directions, its colours exact in bytes.
-Mesh richSquare() {
-  Mesh mesh = test::grid(1, 1);
+// A square with all features: axis-parallel or zero normals, colours that a byte holds exactly.
+mesh::Mesh richSquare() {
+  mesh::Mesh mesh = test::grid(1, 1);
   mesh.positions[2] = -1.0F / 3;
   mesh.features = {{"normal", 3, {0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, 0}},
                    {"colour", 3, {0, 0.2F, 0.4F, 0.6F, 0.8F, 1, 1, 0, 0, 0, 1, 0}},
@@ -37,9 +37,9 @@ Mesh richSquare() {
   return mesh;
 }
 
-// What the file at `path` could not carry.
-Names written(const std::string& path, const Mesh& mesh) {
-  const auto result = writeMesh(path, mesh);
+// What could not be stored in the file at `path`.
+Names written(const std::string& path, const mesh::Mesh& mesh) {
+  const auto result = mesh::writeMesh(path, mesh);
   EXPECT_TRUE(result) << result.error().what;
   return result ? result->left_out : Names{"nothing was written"};
 }
@@ -62,7 +62,7 @@ Judge::VertexHandle vertex(std::size_t v) { return Judge::VertexHandle(static_ca
 
 TEST(ObjWriter, IsReadByOpenMeshWithNormalsColoursAndTextureCoordinates) {
   const TempDir dir;
-  const Mesh mesh = richSquare();
+  const mesh::Mesh mesh = richSquare();
   EXPECT_EQ(written(dir / "a.obj", mesh), (Names{"heat", "spectrum", "label"}));
   using O = OpenMesh::IO::Options;
   O options(O::VertexNormal | O::VertexColor | O::VertexTexCoord | O::ColorFloat);
@@ -82,7 +82,7 @@ TEST(ObjWriter, IsReadByOpenMeshWithNormalsColoursAndTextureCoordinates) {
 
 TEST(ObjWriter, NumbersOnlyWhatIsThere) {
   const TempDir dir;
-  Mesh mesh = test::grid(1, 1);
+  mesh::Mesh mesh = test::grid(1, 1);
   const auto firstFace = [&] {
     EXPECT_EQ(written(dir / "a.obj", mesh), Names{});
     const std::string text = readText(dir / "a.obj");
@@ -107,13 +107,13 @@ TEST(StlWriter, IsReadByOpenMeshWithTheFacesNormals) {
   EXPECT_EQ(cube.n_faces(), 12u);
   const std::string bytes = readText(dir / "cube.stl");
   const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data()) + 84;
-  const float expected[] = {0, 0, -1, -1, -1, -1, -1, 1, -1, 1, 1, -1};  // face 0 2 3
+  const float expected[] = {0, 0, -1, -1, -1, -1, -1, 1, -1, 1, 1, -1};  // the face 0 2 3
   for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(loadLeFloat(first + 4 * i), expected[i]) << i;
 }
 
 TEST(InventorWriter, HoldsEachNodeWithItsRows) {
   const TempDir dir;
-  Mesh mesh = richSquare();
+  mesh::Mesh mesh = richSquare();
   EXPECT_EQ(written(dir / "a.iv", mesh), (Names{"heat", "spectrum", "label"}));
   const std::string text = readText(dir / "a.iv");
   EXPECT_TRUE(text.starts_with("#Inventor V2.1 ascii\n"));
@@ -134,12 +134,12 @@ TEST(InventorWriter, HoldsEachNodeWithItsRows) {
     EXPECT_EQ(readText(dir / "b.iv").find(node), std::string::npos) << node;
 }
 
-// A glTF file taken apart by the specification's rules.
+// A glTF file, decoded as the specification says.
 struct Gltf {
   Json json;
   std::string buffer;
 
-  // The numbers of an accessor, as the specification has them found. Floats and unsigned ints.
+  // The values of an accessor, located as the specification says; floats and unsigned ints.
   template <typename T>
   std::vector<T> numbers(std::size_t accessor) const {
     const Json& a = json["accessors"][accessor];
@@ -180,7 +180,7 @@ Gltf readGlb(const std::string& path) {
   return {Json::parse(bytes.substr(20, json)), bytes.substr(28 + json)};
 }
 
-// By table, so that the encoder is not judged by itself.
+// An independent decoder, so that the encoder is not tested with itself.
 std::string fromBase64(const std::string& text) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string bytes;
@@ -195,7 +195,7 @@ std::string fromBase64(const std::string& text) {
 
 TEST(GltfWriter, FollowsTheSpecification) {
   const TempDir dir;
-  const Mesh mesh = richSquare();
+  const mesh::Mesh mesh = richSquare();
   EXPECT_EQ(written(dir / "a.glb", mesh), Names{"spectrum"}) << "5 dimensions";
   const Gltf gltf = readGlb(dir / "a.glb");
   EXPECT_EQ(gltf.json["asset"]["version"], "2.0");
@@ -225,13 +225,14 @@ TEST(GltfWriter, TurnsFeaturesIntoWhatTheFormatWants) {
   EXPECT_EQ(gltf.attribute("_heat"), (Floats{20, 21.5F, -3, 1e30F}));
   EXPECT_EQ(gltf.attribute("_label"), (Floats{0, 1, 2, 70000}));
   const Floats colour = gltf.attribute("COLOR_0");
-  const float linear[] = {0, 0.0331048F, 0.1328683F, 0.3185468F, 0.6038273F, 1};  // of n / 5
+  // The linear values of n / 5 in sRGB.
+  const float linear[] = {0, 0.0331048F, 0.1328683F, 0.3185468F, 0.6038273F, 1};
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(colour[i], linear[i], 1e-6) << i;
 }
 
 TEST(GltfWriter, TakesTheTexturesPictureAlong) {
   const TempDir dir;
-  Mesh mesh = richSquare();
+  mesh::Mesh mesh = richSquare();
   mesh.texture = {0x89, 'P', 'N', 'G', 7};
   EXPECT_EQ(written(dir / "a.glb", mesh), Names{"spectrum"});
   const Gltf gltf = readGlb(dir / "a.glb");
@@ -251,13 +252,14 @@ TEST(GltfWriter, TakesTheTexturesPictureAlong) {
   mesh.texture[0] = 0xFF;
   written(dir / "a.gltf", mesh);
   EXPECT_EQ(Json::parse(readText(dir / "a.gltf"))["images"][0]["mimeType"], "image/jpeg");
-  EXPECT_EQ(written(dir / "a.stl", mesh).back(), "the texture's picture");
+  EXPECT_EQ(written(dir / "a.stl", mesh).back(), "the texture image");
 }
 
 TEST(GltfWriter, WritesTheSameBytesIntoOneJsonFile) {
   const TempDir dir;
-  for (const std::uint32_t columns : {1U, 2U, 3U}) {  // buffers of every length modulo 3
-    const Mesh mesh = test::noisyGrid(columns, 1, 0.1, 7);
+  // So that buffers of every length modulo 3 occur.
+  for (const std::uint32_t columns : {1U, 2U, 3U}) {
+    const mesh::Mesh mesh = test::noisyGrid(columns, 1, 0.1, 7);
     written(dir / "a.glb", mesh);
     written(dir / "a.gltf", mesh);
     const Gltf glb = readGlb(dir / "a.glb");
@@ -274,7 +276,7 @@ TEST(GltfWriter, WritesTheSameBytesIntoOneJsonFile) {
 
 TEST(GltfWriter, KeepsAFeatureWhateverItsName) {
   const TempDir dir;
-  Mesh mesh = test::grid(1, 1);
+  mesh::Mesh mesh = test::grid(1, 1);
   mesh.features = {{"data:application/octet-stream;base64,\"\xFF", 1, {1, 2, 3, 4}}};
   written(dir / "a.gltf", mesh);
   const Json json = Json::parse(readText(dir / "a.gltf"));
@@ -284,11 +286,11 @@ TEST(GltfWriter, KeepsAFeatureWhateverItsName) {
 
 TEST(PlyWriter, KeepsLabelsAsIntegers) {
   const TempDir dir;
-  const Mesh mesh = richSquare();
+  const mesh::Mesh mesh = richSquare();
   EXPECT_EQ(written(dir / "a.ply", mesh), Names{});
   EXPECT_NE(readText(dir / "a.ply").find("property int label\n"), std::string::npos);
-  EXPECT_EQ(readMesh(dir / "a.ply")->mesh.find("label")->values, (Floats{0, 1, 2, 70000}));
-  Mesh shares = mesh;
+  EXPECT_EQ(mesh::readMesh(dir / "a.ply")->mesh.find("label")->values, (Floats{0, 1, 2, 70000}));
+  mesh::Mesh shares = mesh;
   shares.find("label")->values[1] = 0.5F;
   written(dir / "b.ply", shares);
   EXPECT_NE(readText(dir / "b.ply").find("property float label\n"), std::string::npos);
@@ -297,32 +299,33 @@ TEST(PlyWriter, KeepsLabelsAsIntegers) {
 TEST(WriteMesh, RefusesAnEmptyMeshAndAnUnknownEnding) {
   const TempDir dir;
   for (const char* name : {"a.ply", "a.obj", "a.glb", "a.gltf", "a.stl", "a.iv"}) {
-    const auto refused = writeMesh(dir / name, Mesh{});
+    const auto refused = mesh::writeMesh(dir / name, mesh::Mesh{});
     ASSERT_FALSE(refused) << name;
     EXPECT_EQ(refused.error().code, Errc::kUnsupported);
     EXPECT_EQ(refused.error().what, dir / name + ": the mesh has no triangles; nothing is written");
   }
-  EXPECT_EQ(checkMeshEnding("a.off").error().what,
+  EXPECT_EQ(mesh::checkMeshEnding("a.off").error().what,
             "a.off: meshes are written as .ply, .obj, .glb, .gltf, .stl and .iv");
-  EXPECT_TRUE(checkMeshEnding("a/b.STL"));
+  EXPECT_TRUE(mesh::checkMeshEnding("a/b.STL"));
   EXPECT_TRUE(std::filesystem::is_empty(dir.path()));
 }
 
-// Without coordinates a picture says nothing; a picture beside it that cannot be is no success.
+// Without texture coordinates the image is left out; if the image file cannot be written,
+// writeMesh() fails.
 TEST(WriteMesh, HasAPictureOnlyWhereItLiesSomewhere) {
   const TempDir dir;
-  Mesh mesh = test::cube();
+  mesh::Mesh mesh = test::cube();
   mesh.texture = {0x89, 'P', 'N', 'G', 7};
-  EXPECT_EQ(written(dir / "a.obj", mesh), Names{"the texture's picture"});
+  EXPECT_EQ(written(dir / "a.obj", mesh), Names{"the texture image"});
   mesh.features.push_back({"texcoord", 2, Floats(2 * mesh.vertexCount())});
   std::filesystem::create_directory(dir / "b.obj.mtl");
-  EXPECT_FALSE(writeMesh(dir / "b.obj", mesh));
+  EXPECT_FALSE(mesh::writeMesh(dir / "b.obj", mesh));
   EXPECT_FALSE(std::filesystem::exists(dir / "b.obj"));
 }
 
 TEST(WriteMesh, SaysSoWhereTheFolderIsGone) {
   for (const char* ending : {"ply", "obj", "glb", "gltf", "stl", "iv"}) {
-    const auto refused = writeMesh(std::string("/nowhere/at/all.") + ending, test::cube());
+    const auto refused = mesh::writeMesh(std::string("/nowhere/at/all.") + ending, test::cube());
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::kNotFound);
   }

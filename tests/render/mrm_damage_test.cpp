@@ -1,5 +1,5 @@
-// .mrm files that are cut short, damaged, of a later version, or made to harm: refused, with the
-// file's name and the section's.
+// .mrm files that are truncated, damaged, of a later version, or malicious are refused; the message
+// names the file and the section.
 #include <functional>
 
 #include <fcntl.h>
@@ -11,16 +11,16 @@
 namespace merlin::render {
 namespace {
 
-using mrm::Kind;
+using lod::mrm::Kind;
 using test::MrmBytes;
 
 class MrmDamage : public testing::Test {
  protected:
-  Result<Dendrogram> read(const std::string& bytes) const {
+  Result<lod::Dendrogram> read(const std::string& bytes) const {
     test::writeText(path_, bytes);
-    return readMrm(path_);
+    return lod::readMrm(path_);
   }
-  // The fault of these bytes, without the file's name, which it has to begin with.
+  // The message about these bytes, without the file's name, with which it must begin.
   std::string faultOf(const std::string& bytes, Errc code = Errc::kMalformed) const {
     const auto result = read(bytes);
     if (result) return "none";
@@ -29,7 +29,7 @@ class MrmDamage : public testing::Test {
     EXPECT_TRUE(what.starts_with(path_ + ": ")) << what;
     return what.substr(std::min(what.size(), path_.size() + 2));
   }
-  // With one entry of the table changed, and all checksums right again.
+  // The same, after `change` to one entry of the table, with valid checksums.
   std::string faultWith(Kind kind, const std::function<void(MrmBytes::Entry&)>& change,
                         Errc code = Errc::kMalformed) const {
     MrmBytes file = golden_;
@@ -62,7 +62,7 @@ TEST_F(MrmDamage, EveryPrefixIsRefused) {
   for (std::size_t size = 0; size < golden_.bytes.size(); ++size) {
     const std::string fault = faultOf(golden_.bytes.substr(0, size));
     ASSERT_NE(fault, "none") << size;
-    if (size < sizeof(mrm::FileHeader)) {
+    if (size < sizeof(lod::mrm::FileHeader)) {
       ASSERT_EQ(fault, "is too short for an .mrm file") << size;
     } else {
       ASSERT_EQ(fault, "has " + std::to_string(size) +
@@ -72,7 +72,7 @@ TEST_F(MrmDamage, EveryPrefixIsRefused) {
   EXPECT_NE(faultOf(golden_.bytes + '\0'), "none");
 }
 
-// Each bit turned round, and the whole byte, in place.
+// Inverts each single bit and each whole byte of the file.
 TEST_F(MrmDamage, EveryDamagedByteIsFoundUnlessItBelongsToNothing) {
   test::writeText(path_, golden_.bytes);
   const int file = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
@@ -83,7 +83,7 @@ TEST_F(MrmDamage, EveryDamagedByteIsFoundUnlessItBelongsToNothing) {
     for (const int flip : {1, 2, 4, 8, 16, 32, 64, 128, 255}) {
       const auto damaged = static_cast<char>(golden_.bytes[i] ^ flip);
       ASSERT_EQ(::pwrite(file, &damaged, 1, static_cast<off_t>(i)), 1);
-      const auto result = readMrm(path_);
+      const auto result = lod::readMrm(path_);
       ASSERT_EQ(result.ok(), is_padding) << "byte " << i << ", bits " << flip;
       if (result) test::expectSame(*result, test::goldenCube());
       ASSERT_TRUE(result || result.error().what.starts_with(path_ + ": ")) << i;
@@ -116,10 +116,10 @@ TEST_F(MrmDamage, SaysWhatIsDamaged) {
 
 TEST_F(MrmDamage, AnotherKindOfFileIsToldFromADamagedOne) {
   const std::string ply = "ply\nformat ascii 1.0\n" + std::string(200, ' ');
-  EXPECT_EQ(faultOf(ply), "is no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)");
+  EXPECT_EQ(faultOf(ply), "is not an .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)");
 }
 
-// Whatever else has changed in it: a later version may have another header.
+// The version is checked first, since a later version may have a different header.
 TEST_F(MrmDamage, AnotherVersionIsNotSupported) {
   for (const unsigned version : {0U, 2U, 0xFFFFFFFFU}) {
     const std::string fault =
@@ -134,7 +134,7 @@ TEST_F(MrmDamage, AnotherVersionIsNotSupported) {
   }
 }
 
-// The golden file's last feature becomes a section of a kind that is not known.
+// Turns the golden file's last feature into a section of an unknown kind.
 TEST_F(MrmDamage, AnUnknownSectionIsSkippedFrom1000OnAndRefusedBelow) {
   for (const unsigned kind : {0U, 8U, 999U}) {
     const auto change = [&](MrmBytes::Entry& e) { e.kind = kind; };
@@ -164,14 +164,14 @@ TEST_F(MrmDamage, AFeaturesNameIsText) {
     return file.seal().bytes;
   };
   for (const char* name : {"he\x1b[31mat", "he\xff", "\xc2\x9bheat"})
-    EXPECT_EQ(faultOf(named(name)), "a feature's name is no text (UTF-8)");
-  // As once it was written: cut in the middle of a character.
+    EXPECT_EQ(faultOf(named(name)), "a feature's name is not valid UTF-8");
+  // As an earlier program wrote it: cut in the middle of a UTF-8 character.
   const auto cut = read(named(std::string(30, 'x') + '\xc2'));
   ASSERT_TRUE(cut) << cut.error().what;
   EXPECT_EQ(cut->arrays().features[0].name, std::string(30, 'x'));
 }
 
-// The golden file's last feature, 168 bytes a corner of the cube, becomes a texture.
+// Turns the golden file's last feature, 168 bytes, into a texture.
 TEST_F(MrmDamage, ATextureIsCheckedAsAllElseIs) {
   MrmBytes file = golden_;
   MrmBytes::Entry entry = file.entry(6);
@@ -186,7 +186,7 @@ TEST_F(MrmDamage, ATextureIsCheckedAsAllElseIs) {
   EXPECT_EQ(faultOf(file.bytes), "section texture is damaged");
 }
 
-// What a value of a kind that is not known takes, only a later reader knows: here 1 or 8 bytes.
+// The size of a value of an unknown kind is known to later readers only: here 1 or 8 bytes.
 TEST_F(MrmDamage, AnUnknownSectionMayHoldValuesOfAnySize) {
   for (const std::uint32_t dimension : {168U, 21U}) {
     MrmBytes file = golden_;
@@ -223,12 +223,12 @@ TEST_F(MrmDamage, AFileHas1024SectionsAtMost) {
 
 TEST_F(MrmDamage, ASectionOutsideTheFileIsRefused) {
   const std::vector<std::function<void(MrmBytes::Entry&)>> changes = {
-      [](auto& e) { e.offset += 4; },                        // not where sections may begin
-      [](auto& e) { e.offset = 1408; },                      // a step beyond the end
-      [](auto& e) { e.offset = ~std::uint64_t{0} - 63; },    // so that a sum overflows
-      [](auto& e) { e.rows = 1'000'000; },                   //
-      [](auto& e) { e.rows = (1344 - e.offset) / 4 + 20; },  // just too many
-      [](auto& e) { e.rows = std::uint64_t{1} << 62; },      // times 4 is 0
+      [](auto& e) { e.offset += 4; },                      // misaligned for a section
+      [](auto& e) { e.offset = 1408; },                    // the next aligned offset beyond the end
+      [](auto& e) { e.offset = ~std::uint64_t{0} - 63; },  // so that offset + size overflows
+      [](auto& e) { e.rows = 1'000'000; },                 //
+      [](auto& e) { e.rows = (1344 - e.offset) / 4 + 20; },  // slightly too many
+      [](auto& e) { e.rows = std::uint64_t{1} << 62; },      // times 4 overflows to 0
       [](auto& e) { e.rows = ~std::uint64_t{0}; },           //
       [](auto& e) { e.dimension = 0; },                      //
       [](auto& e) { e.dimension = 0xFFFFFFFF; },             //
@@ -263,7 +263,7 @@ TEST_F(MrmDamage, AHeaderThatLiesIsRefused) {
   }
 }
 
-// Checksums are right, and a cut would go astray: Dendrogram::make() has a look as well.
+// The checksums are valid, but a cut would fail: Dendrogram::make() has to refuse the arrays.
 TEST_F(MrmDamage, SoundBytesWithoutSenseAreRefused) {
   const auto faultOfPut = [&](Kind kind, std::size_t index, auto value) {
     MrmBytes file = golden_;
@@ -271,9 +271,10 @@ TEST_F(MrmDamage, SoundBytesWithoutSenseAreRefused) {
     return faultOf(file.seal().bytes);
   };
   EXPECT_EQ(faultOfPut(Kind::kParents, 0, 13U), "collapse 0: parent 13 is not above its children");
-  EXPECT_EQ(faultOfPut(Kind::kTriangles, 35, 14U), "triangle 11: node 14 of 14");
-  EXPECT_EQ(faultOfPut(Kind::kAlive, 6, 5U), "level 6: 5 triangles of 2");
-  EXPECT_EQ(faultOfPut(Kind::kError, 6, 0.5F), "level 6: the error does not rise");
+  EXPECT_EQ(faultOfPut(Kind::kTriangles, 35, 14U),
+            "triangle 11: there is no node 14, the model has 14");
+  EXPECT_EQ(faultOfPut(Kind::kAlive, 6, 5U), "level 6: 5 triangles, at most 2 are possible");
+  EXPECT_EQ(faultOfPut(Kind::kError, 6, 0.5F), "level 6: the error falls or is not finite");
   EXPECT_EQ(faultOfPut(Kind::kPositions, 0, std::nanf("")), "a position is not finite");
 }
 

@@ -1,4 +1,4 @@
-// .mrm: what is written is read, an old file too, and by a program in another language.
+// .mrm files can be read back, also old ones, and by a program in another language.
 #include "render/lod/io/mrm_file.h"
 
 #include <filesystem>
@@ -17,42 +17,42 @@ namespace {
 using test::MrmBytes;
 using test::readText;
 
-// Reads what it wrote, writes that again, and returns the bytes.
-std::string expectRoundTrip(const Dendrogram& d) {
+// Reads back what was written, writes that again, and returns the bytes.
+std::string expectRoundTrip(const lod::Dendrogram& d) {
   const test::TempDir dir;
-  EXPECT_TRUE(writeMrm(dir / "first.mrm", d));
-  const auto read = readMrm(dir / "first.mrm");
+  EXPECT_TRUE(lod::writeMrm(dir / "first.mrm", d));
+  const auto read = lod::readMrm(dir / "first.mrm");
   EXPECT_TRUE(read) << read.error().what;
   if (!read) return "";
   test::expectSame(*read, d);
-  EXPECT_TRUE(writeMrm(dir / "second.mrm", *read));
+  EXPECT_TRUE(lod::writeMrm(dir / "second.mrm", *read));
   EXPECT_EQ(readText(dir / "first.mrm"), readText(dir / "second.mrm"));
   return readText(dir / "first.mrm");
 }
 
-Mesh sphere() {
-  Mesh mesh = test::sphere(3);
+mesh::Mesh sphere() {
+  mesh::Mesh mesh = test::sphere(3);
   mesh.features.push_back({"heat", 1, std::vector<float>(mesh.vertexCount(), 0.25F)});
   mesh.features.push_back({"colour", 3, std::vector<float>(mesh.positions.size(), 0.5F)});
-  mesh.texture = {0x89, 'P', 'N', 'G', 7};  // nobody looks into it here
-  ensureNormals(mesh);
+  mesh.texture = {0x89, 'P', 'N', 'G', 7};  // not decoded here
+  mesh::ensureNormals(mesh);
   return mesh;
 }
 
-Dendrogram reducedSphere() {
-  const Mesh mesh = sphere();
-  return buildDendrogram(mesh, reduce(mesh, {})->log);
+lod::Dendrogram reducedSphere() {
+  const mesh::Mesh mesh = sphere();
+  return lod::buildDendrogram(mesh, reduce::reduce(mesh, {})->log);
 }
 
 TEST(MrmFile, IsTheSameWrittenInPiecesStraightFromTheReduction) {
   const test::TempDir dir;
-  const Mesh mesh = sphere();
+  const mesh::Mesh mesh = sphere();
   for (const std::size_t stop : {std::size_t{0}, std::size_t{300}}) {  // one root, and many
-    const Reduction r = *reduce(mesh, {.min_triangles = stop});
-    ASSERT_TRUE(writeMrm(dir / "whole.mrm", buildDendrogram(mesh, r.log)));
-    ASSERT_TRUE(readMrm(dir / "whole.mrm"));
+    const reduce::Reduction r = *reduce::reduce(mesh, {.min_triangles = stop});
+    ASSERT_TRUE(lod::writeMrm(dir / "whole.mrm", lod::buildDendrogram(mesh, r.log)));
+    ASSERT_TRUE(lod::readMrm(dir / "whole.mrm"));
     for (const unsigned threads : {1U, 3U}) {
-      ASSERT_TRUE(writeMrm(dir / "pieces.mrm", mesh, r.log, threads));
+      ASSERT_TRUE(lod::writeMrm(dir / "pieces.mrm", mesh, r.log, threads));
       EXPECT_EQ(readText(dir / "pieces.mrm"), readText(dir / "whole.mrm"));
     }
   }
@@ -65,40 +65,40 @@ TEST(MrmFile, ARoundTripGivesTheSameBytes) {
 
 TEST(MrmFile, KeepsATextureAsItIsAndGivesItToWhatIsExtracted) {
   const test::TempDir dir;
-  ASSERT_TRUE(writeMrm(dir / "a.mrm", reducedSphere()));
-  const auto read = readMrm(dir / "a.mrm");
+  ASSERT_TRUE(lod::writeMrm(dir / "a.mrm", reducedSphere()));
+  const auto read = lod::readMrm(dir / "a.mrm");
   ASSERT_TRUE(read);
-  EXPECT_EQ(extract(*read, 100).texture, sphere().texture);
+  EXPECT_EQ(lod::extract(*read, 100).texture, sphere().texture);
 }
 
 TEST(MrmFile, HoldsAMeshThatWasNotReducedAndHasNoFeatures) {
-  const std::string bytes = expectRoundTrip(buildDendrogram(test::cube(), {}));
+  const std::string bytes = expectRoundTrip(lod::buildDendrogram(test::cube(), {}));
   EXPECT_EQ(MrmBytes(bytes).header().sections, 6u);
   EXPECT_EQ(MrmBytes(bytes).header().collapses, 0u);
 }
 
 TEST(MrmFile, KeepsWhatHasRoomOfAFeaturesName) {
   const std::string x30(30, 'x'), micro = "\xc2\xb5";
-  Mesh mesh = test::cube();
+  mesh::Mesh mesh = test::cube();
   for (const std::string& name : {x30 + "yz", x30 + micro})
     mesh.features.push_back({name, 1, std::vector<float>(8)});
-  EXPECT_TRUE(checkNames(mesh));
+  EXPECT_TRUE(lod::checkNames(mesh));
   const test::TempDir dir;
-  ASSERT_TRUE(writeMrm(dir / "x.mrm", buildDendrogram(mesh, {{}, {}, {{}, {}}, {}, ""})));
-  const auto read = readMrm(dir / "x.mrm");
+  ASSERT_TRUE(lod::writeMrm(dir / "x.mrm", lod::buildDendrogram(mesh, {{}, {}, {{}, {}}, {}, ""})));
+  const auto read = lod::readMrm(dir / "x.mrm");
   ASSERT_TRUE(read);
   EXPECT_EQ(read->arrays().features[0].name, x30 + "y");
   EXPECT_EQ(read->arrays().features[1].name, x30) << "whole characters";
   EXPECT_EQ(readText(dir / "x.mrm").find(x30 + '\xc2'), std::string::npos) << "for any reader";
   mesh.features.push_back({x30 + "ya", 1, std::vector<float>(8)});
-  EXPECT_EQ(checkNames(mesh).error().what,
-            "two features are \"" + x30 +
-                "y\" in a model, which has 31 bytes for a name; rename \"" + x30 + "ya\"");
+  EXPECT_EQ(lod::checkNames(mesh).error().what,
+            "two features would both be called \"" + x30 +
+                "y\" in an .mrm file, which has 31 bytes for a name; rename \"" + x30 + "ya\"");
 }
 
 TEST(MrmFile, SaysInItsHeaderWhatIsInIt) {
   const MrmBytes file(readText(test::kGoldenCube));
-  const mrm::FileHeader h = file.header();
+  const lod::mrm::FileHeader h = file.header();
   EXPECT_EQ(h.version, 1u);
   EXPECT_EQ(h.sections, 7u);
   EXPECT_EQ(h.file_size, 1384u);
@@ -115,11 +115,11 @@ TEST(MrmFile, SaysInItsHeaderWhatIsInIt) {
   EXPECT_EQ(offsets.size(), 7u);
 }
 
-// tests/data/golden/cube.mrm was written by the writeMrm() of version 1 from goldenCube(), whose
-// numbers all stand in mrm_files.h, in November 2026. Files like it are out there: it has to be
-// readable for ever. Where this test fails, mend the reader; never write the file anew.
+// writeMrm() of version 1 wrote tests/data/golden/cube.mrm from goldenCube(), whose numbers are all
+// in mrm_files.h, in November 2026. Files like it are in use and must stay readable for ever. If
+// this test fails, repair the reader; never rewrite the file.
 TEST(GoldenMrm, IsReadAsItWasWritten) {
-  const auto golden = readMrm(test::kGoldenCube);
+  const auto golden = lod::readMrm(test::kGoldenCube);
   ASSERT_TRUE(golden) << golden.error().what;
   test::expectSame(*golden, test::goldenCube());
   const std::vector<std::uint32_t> alive = {12, 10, 8, 6, 4, 2, 0};
@@ -133,7 +133,7 @@ TEST(GoldenMrm, IsWhatIsWrittenToday) {
   EXPECT_EQ(expectRoundTrip(test::goldenCube()), readText(test::kGoldenCube));
 }
 
-// Of one level as mrm_reader.py prints it: nodes and corners, as flat lists.
+// One level as mrm_reader.py prints it: positions and corners as flat lists.
 struct Obj {
   std::vector<float> positions;
   std::vector<std::uint32_t> corners;
@@ -149,7 +149,7 @@ Obj parse(const std::string& text) {
       if (kind == "f") lines >> obj.corners.emplace_back();
     }
   }
-  for (std::uint32_t& corner : obj.corners) --corner;  // an OBJ counts from 1
+  for (std::uint32_t& corner : obj.corners) --corner;  // OBJ indices begin with 1
   return obj;
 }
 
@@ -159,7 +159,7 @@ test::Outcome python(const std::string& file, const std::string& level) {
 }
 
 void expectPythonCutsAsWeDo(const std::string& path, std::size_t step) {
-  const auto d = readMrm(path);
+  const auto d = lod::readMrm(path);
   ASSERT_TRUE(d);
   for (std::size_t level = 0; level < d->levels(); level += step) {
     const test::Outcome printed = python(path, std::to_string(level));
@@ -179,7 +179,7 @@ TEST(MrmReaderPy, CutsEveryLevelOfTheGoldenFileAsWeDo) {
 
 TEST(MrmReaderPy, CutsALargerFileAsWeDo) {
   const test::TempDir dir;
-  ASSERT_TRUE(writeMrm(dir / "sphere.mrm", reducedSphere()));
+  ASSERT_TRUE(lod::writeMrm(dir / "sphere.mrm", reducedSphere()));
   expectPythonCutsAsWeDo(dir / "sphere.mrm", 50);
 }
 
@@ -207,36 +207,37 @@ TEST(MrmReaderPy, FitsAPageAndRefusesWhatItCannotRead) {
 
 TEST(MrmFile, IsNotFoundWhereThereIsNone) {
   const test::TempDir dir;
-  const auto read = readMrm(dir / "none.mrm");
+  const auto read = lod::readMrm(dir / "none.mrm");
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().code, Errc::kNotFound);
   EXPECT_NE(read.error().what.find(dir / "none.mrm"), std::string::npos);
-  EXPECT_FALSE(readMrm(dir.path()));  // a folder
+  EXPECT_FALSE(lod::readMrm(dir.path()));  // a folder
 }
 
-// What is shown for months must not change, or end the program, with the file.
+// A model that is shown for months must not change, or crash the program, when its file does.
 TEST(MrmFile, ACopyStaysAsItIsWhateverBecomesOfTheFile) {
   const test::TempDir dir;
-  const Dendrogram model = reducedSphere();
-  ASSERT_TRUE(writeMrm(dir / "x.mrm", model));
-  const auto copy = readMrmCopy(dir / "x.mrm");
+  const lod::Dendrogram model = reducedSphere();
+  ASSERT_TRUE(lod::writeMrm(dir / "x.mrm", model));
+  const auto copy = lod::readMrmCopy(dir / "x.mrm");
   ASSERT_TRUE(copy) << copy.error().what;
   const std::string before = test::readText(dir / "x.mrm");
   test::writeText(dir / "x.mrm", std::string(before.size(), '\xff'));
   ASSERT_EQ(::truncate((dir / "x.mrm").c_str(), 0), 0);
-  ASSERT_TRUE(writeMrm(dir / "again.mrm", *copy));
+  ASSERT_TRUE(lod::writeMrm(dir / "again.mrm", *copy));
   EXPECT_EQ(test::readText(dir / "again.mrm"), before);
 }
 
 TEST(MrmFile, IsWrittenWholeOrNotAtAll) {
   const test::TempDir dir;
-  const auto written = writeMrm(dir / "no/such/folder.mrm", test::goldenCube());
+  const auto written = lod::writeMrm(dir / "no/such/folder.mrm", test::goldenCube());
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, Errc::kNotFound);
-  ASSERT_TRUE(writeMrm(dir / "cube.mrm", test::goldenCube()));
-  const auto before = readMrm(dir / "cube.mrm");
+  ASSERT_TRUE(lod::writeMrm(dir / "cube.mrm", test::goldenCube()));
+  const auto before = lod::readMrm(dir / "cube.mrm");
   ASSERT_TRUE(before);
-  ASSERT_TRUE(writeMrm(dir / "cube.mrm", reducedSphere()));  // in its place, while it is read
+  ASSERT_TRUE(
+      lod::writeMrm(dir / "cube.mrm", reducedSphere()));  // replaces the file while it is mapped
   test::expectSame(*before, test::goldenCube());
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1) << "no litter";
 }

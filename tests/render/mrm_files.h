@@ -1,5 +1,5 @@
-// What the tests of .mrm share: a model whose every number stands here, and a file's bytes, to be
-// damaged and sealed again.
+// Shared by the tests of .mrm: a model whose numbers are all given here, and access to a file's
+// bytes, to damage them and to correct the checksums.
 #pragma once
 
 #include <cmath>
@@ -18,17 +18,17 @@
 
 namespace merlin::test {
 
-using render::CollapseLog;
-using render::Dendrogram;
+using render::lod::CollapseLog;
+using render::lod::Dendrogram;
 
 inline const std::string kGoldenCube =
     std::string(MERLIN_SOURCE_DIR) + "/tests/data/golden/cube.mrm";
 
-// The cube, its normals along its diagonals, folded up along x, then y. By hand, so that no other
-// code than buildDendrogram() and writeMrm() has a say in the golden file.
+// The cube with normals along its diagonals, collapsed along x, then y. Written by hand, so that
+// only buildDendrogram() and writeMrm() affect the golden file.
 inline Dendrogram goldenCube() {
   Mesh mesh = cube();
-  render::Feature normal{"normal", 3, mesh.positions};
+  render::mesh::Feature normal{"normal", 3, mesh.positions};
   for (float& x : normal.values) x *= 0.57735026F;
   mesh.features.push_back(std::move(normal));
   constexpr float kHalf = 0.70710677F;
@@ -42,11 +42,11 @@ inline Dendrogram goldenCube() {
   return buildDendrogram(mesh, log);
 }
 
-// The bytes of an .mrm file, and its parts by name.
+// The bytes of an .mrm file, with access to its parts.
 class MrmBytes {
  public:
-  using Header = render::mrm::FileHeader;
-  using Entry = render::mrm::SectionEntry;
+  using Header = render::lod::mrm::FileHeader;
+  using Entry = render::lod::mrm::SectionEntry;
 
   explicit MrmBytes(std::string file) : bytes(std::move(file)) {}
 
@@ -57,8 +57,8 @@ class MrmBytes {
   Entry entry(std::size_t i) const { return at<Entry>(entryAt(i)); }
   void set(std::size_t i, const Entry& entry) { put(entryAt(i), entry); }
 
-  // Its place in the table.
-  std::size_t find(render::mrm::Kind kind) const {
+  // The index of the first section of `kind` in the table.
+  std::size_t find(render::lod::mrm::Kind kind) const {
     for (std::size_t i = 0; i < header().sections; ++i) {
       if (entry(i).kind == static_cast<std::uint32_t>(kind)) return i;
     }
@@ -66,16 +66,16 @@ class MrmBytes {
     return 0;
   }
   static std::size_t sizeOf(const Entry& e) {
-    return e.rows * e.dimension * render::mrm::unitOf(e.kind);
+    return e.rows * e.dimension * render::lod::mrm::unitOf(e.kind);
   }
 
-  // Puts a number into a section.
+  // Overwrites a number in a section.
   template <typename T>
-  void put(render::mrm::Kind kind, std::size_t index, T value) {
+  void put(render::lod::mrm::Kind kind, std::size_t index, T value) {
     put(entry(find(kind)).offset + index * sizeof value, value);
   }
 
-  // Makes all checksums right again; those of sections that lie in the file.
+  // Recomputes all checksums; of sections, only where they lie within the file.
   MrmBytes& seal() {
     for (std::size_t i = 0; i < header().sections && entryAt(i + 1) <= bytes.size(); ++i) {
       Entry e = entry(i);
@@ -85,7 +85,7 @@ class MrmBytes {
     }
     return sealTable();
   }
-  // Those of table and header alone.
+  // Recomputes the checksums of table and header only.
   MrmBytes& sealTable() {
     Header h = header();
     const std::size_t table = std::min(h.sections * sizeof(Entry), bytes.size() - sizeof h);
@@ -95,7 +95,7 @@ class MrmBytes {
     return *this;
   }
 
-  // Whether a byte belongs to nothing: between sections, so that they begin where they should.
+  // Whether a byte is padding between sections, which aligns them.
   bool isPadding(std::size_t at) const {
     if (at < entryAt(header().sections)) return false;
     for (std::size_t i = 0; i < header().sections; ++i) {
@@ -107,7 +107,7 @@ class MrmBytes {
   std::string bytes;
 
  private:
-  using Kind = render::mrm::Kind;
+  using Kind = render::lod::mrm::Kind;
 
   template <typename T>
   T at(std::size_t offset) const {

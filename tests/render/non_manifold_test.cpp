@@ -15,9 +15,9 @@ namespace {
 using Indices = std::vector<std::uint32_t>;
 using Floats = std::vector<float>;
 
-// Vertices on a helix: no three in a line, no two in one place.
-Mesh meshOf(std::uint32_t vertices, Indices triangles) {
-  Mesh mesh;
+// A mesh with its vertices on a helix: no three are collinear, no two coincide.
+mesh::Mesh meshOf(std::uint32_t vertices, Indices triangles) {
+  mesh::Mesh mesh;
   for (std::uint32_t v = 0; v < vertices; ++v) {
     const auto x = static_cast<float>(v);
     mesh.positions.insert(mesh.positions.end(), {std::cos(x), std::sin(x), 0.1F * x});
@@ -26,14 +26,14 @@ Mesh meshOf(std::uint32_t vertices, Indices triangles) {
   return mesh;
 }
 
-std::string textOf(const SplitReport& r) {
+std::string textOf(const mesh::SplitReport& r) {
   return std::to_string(r.edges) + " edges, " + std::to_string(r.vertices) + " vertices, " +
          std::to_string(r.added) + " added";
 }
 
-// By definition, and slowly: edges with at most two triangles that run opposite ways; of each
-// vertex the triangles hang together over edges at it.
-bool isManifold(const Mesh& mesh) {
+// Checks the definition directly: an edge has at most two triangles, in opposite directions, and
+// the triangles around a vertex are connected over edges at that vertex.
+bool isManifold(const mesh::Mesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> ways;
   std::vector<std::vector<std::size_t>> stars(mesh.vertexCount());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -65,34 +65,34 @@ bool isManifold(const Mesh& mesh) {
 }
 
 TEST(SplitNonManifold, LeavesAManifoldAsItIs) {
-  for (const Mesh& mesh : {test::cube(), test::grid(5, 4), test::sphere(2),
-                           test::together(test::cube(), test::grid(1, 1)), Mesh{}}) {
-    Mesh split = mesh;
-    EXPECT_EQ(textOf(splitNonManifold(split)), "0 edges, 0 vertices, 0 added");
+  for (const mesh::Mesh& mesh : {test::cube(), test::grid(5, 4), test::sphere(2),
+                                 test::together(test::cube(), test::grid(1, 1)), mesh::Mesh{}}) {
+    mesh::Mesh split = mesh;
+    EXPECT_EQ(textOf(mesh::splitNonManifold(split)), "0 edges, 0 vertices, 0 added");
     EXPECT_EQ(split.triangles, mesh.triangles);
     EXPECT_EQ(split.positions, mesh.positions);
   }
 }
 
 TEST(SplitNonManifold, TakesABowTieApart) {
-  Mesh mesh = meshOf(5, {0, 1, 2, 0, 3, 4});
+  mesh::Mesh mesh = meshOf(5, {0, 1, 2, 0, 3, 4});
   mesh.features = {{"heat", 1, {7, 1, 2, 3, 4}}, {"flow", 2, {8, 9, 0, 0, 0, 0, 0, 0, 0, 0}}};
-  EXPECT_EQ(textOf(splitNonManifold(mesh)), "0 edges, 1 vertices, 1 added");
+  EXPECT_EQ(textOf(mesh::splitNonManifold(mesh)), "0 edges, 1 vertices, 1 added");
   EXPECT_EQ(mesh.triangles, (Indices{0, 1, 2, 5, 3, 4}));
-  EXPECT_EQ(samePlace(mesh.positions), (Indices{5, 1, 2, 3, 4, 0}));
+  EXPECT_EQ(mesh::samePlace(mesh.positions), (Indices{5, 1, 2, 3, 4, 0}));
   EXPECT_EQ(mesh.features[0].values, (Floats{7, 1, 2, 3, 4, 7}));
   EXPECT_EQ((Floats{mesh.features[1].values.end() - 2, mesh.features[1].values.end()}),
             (Floats{8, 9}));
 }
 
-// A sheet of two triangles at the edge 0 1, and a fin that stands on it.
+// Two triangles share the edge 0 1, and a third one (a fin) stands on it.
 TEST(SplitNonManifold, TakesAFinFromASheet) {
   for (const bool fin_first : {false, true}) {
-    Mesh mesh;
+    mesh::Mesh mesh;
     mesh.positions = {0, 0, 0, 1, 0, 0, 0.5F, 1, 0, 0.5F, -1, 0, 0.5F, 0.1F, 1};
     mesh.triangles = {0, 1, 2, 1, 0, 3, 0, 1, 4};
     if (fin_first) mesh.triangles = {0, 1, 4, 0, 1, 2, 1, 0, 3};
-    EXPECT_EQ(textOf(splitNonManifold(mesh)), "1 edges, 2 vertices, 2 added");
+    EXPECT_EQ(textOf(mesh::splitNonManifold(mesh)), "1 edges, 2 vertices, 2 added");
     const Indices sheet_first{0, 1, 2, 1, 0, 3, 5, 6, 4}, sheet_last{0, 1, 4, 5, 6, 2, 6, 5, 3};
     EXPECT_EQ(mesh.triangles, fin_first ? sheet_last : sheet_first)
         << "the flat ones stay together";
@@ -100,26 +100,26 @@ TEST(SplitNonManifold, TakesAFinFromASheet) {
   }
 }
 
-// A wall along the middle of a floor: the floor stays whole.
+// A wall stands on the middle line of a floor; the floor must stay in one piece.
 TEST(SplitNonManifold, KeepsAFloorWholeUnderAWall) {
-  Mesh mesh = test::grid(6, 2);
+  mesh::Mesh mesh = test::grid(6, 2);
   const std::size_t floor = mesh.triangles.size();
   for (std::uint32_t x = 0; x < 6; ++x) {
     const std::uint32_t a = 7 + x, b = a + 1, top = static_cast<std::uint32_t>(mesh.vertexCount());
     mesh.positions.insert(mesh.positions.end(), {static_cast<float>(x) + 0.5F, 1, 1});
     mesh.triangles.insert(mesh.triangles.end(), {a, b, top});
   }
-  const Mesh before = mesh;
-  EXPECT_EQ(splitNonManifold(mesh).edges, 6u);
+  const mesh::Mesh before = mesh;
+  EXPECT_EQ(mesh::splitNonManifold(mesh).edges, 6u);
   EXPECT_TRUE(isManifold(mesh));
   EXPECT_TRUE(std::equal(mesh.triangles.begin(),
                          mesh.triangles.begin() + static_cast<std::ptrdiff_t>(floor),
                          before.triangles.begin()));
 }
 
-// A Moebius strip of 5 quads: no choice of directions closes it.
+// A Moebius strip of 5 quads, which no choice of orientations makes consistent.
 TEST(SplitNonManifold, CutsAMoebiusStripOnce) {
-  Mesh mesh;
+  mesh::Mesh mesh;
   for (std::uint32_t i = 0; i < 5; ++i) {
     const float a = 2 * 3.14159265F * static_cast<float>(i) / 5;
     for (const float side : {-0.3F, 0.3F}) {
@@ -131,27 +131,27 @@ TEST(SplitNonManifold, CutsAMoebiusStripOnce) {
     const std::uint32_t r = i == 4 ? 1 : p + 2, s = i == 4 ? 0 : p + 3;
     mesh.triangles.insert(mesh.triangles.end(), {p, r, q, q, r, s});
   }
-  EXPECT_EQ(textOf(splitNonManifold(mesh)), "1 edges, 2 vertices, 2 added");
+  EXPECT_EQ(textOf(mesh::splitNonManifold(mesh)), "1 edges, 2 vertices, 2 added");
   EXPECT_TRUE(isManifold(mesh));
 }
 
 TEST(SplitNonManifold, CutsBetweenNeighboursThatFaceOppositeWays) {
-  Mesh mesh = test::grid(1, 1);
+  mesh::Mesh mesh = test::grid(1, 1);
   std::swap(mesh.triangles[4], mesh.triangles[5]);
-  EXPECT_EQ(textOf(splitNonManifold(mesh)), "1 edges, 2 vertices, 2 added");
+  EXPECT_EQ(textOf(mesh::splitNonManifold(mesh)), "1 edges, 2 vertices, 2 added");
   EXPECT_EQ(mesh.triangles, (Indices{0, 1, 3, 4, 2, 5}));
 }
 
 TEST(SplitNonManifold, TakesTwoCubesThatTouchAtAnEdgeOrACornerApart) {
-  Mesh edge = test::together(test::cube(), test::moved(test::cube(), 2, 2, 0));
+  mesh::Mesh edge = test::together(test::cube(), test::moved(test::cube(), 2, 2, 0));
   for (std::uint32_t& v : edge.triangles) v = v == 8 ? 3 : v == 12 ? 7 : v;
-  tidy(edge);
-  EXPECT_EQ(textOf(splitNonManifold(edge)), "1 edges, 2 vertices, 2 added");
+  mesh::tidy(edge);
+  EXPECT_EQ(textOf(mesh::splitNonManifold(edge)), "1 edges, 2 vertices, 2 added");
   EXPECT_TRUE(isManifold(edge));
-  Mesh corner = test::together(test::cube(), test::moved(test::cube(), 2, 2, 2));
+  mesh::Mesh corner = test::together(test::cube(), test::moved(test::cube(), 2, 2, 2));
   for (std::uint32_t& v : corner.triangles) v = v == 8 ? 7 : v;
-  tidy(corner);
-  EXPECT_EQ(textOf(splitNonManifold(corner)), "0 edges, 1 vertices, 1 added");
+  mesh::tidy(corner);
+  EXPECT_EQ(textOf(mesh::splitNonManifold(corner)), "0 edges, 1 vertices, 1 added");
   EXPECT_TRUE(isManifold(corner));
 }
 
@@ -160,14 +160,14 @@ TEST(SplitNonManifold, MakesAnySoupAManifoldAndMovesNothing) {
   std::size_t singular = 0;
   for (int round = 0; round < 20000; ++round) {
     const auto vertices = static_cast<std::uint32_t>(3 + random.below(8));
-    Mesh mesh = meshOf(vertices, {});
+    mesh::Mesh mesh = meshOf(vertices, {});
     for (std::uint64_t t = 1 + random.below(20); t > 0; --t) {
       for (int k = 0; k < 3; ++k)
         mesh.triangles.push_back(static_cast<std::uint32_t>(random.below(vertices)));
     }
-    tidy(mesh);
-    const Mesh before = mesh;
-    const SplitReport report = splitNonManifold(mesh);
+    mesh::tidy(mesh);
+    const mesh::Mesh before = mesh;
+    const mesh::SplitReport report = mesh::splitNonManifold(mesh);
     singular += report.edges > 0;
     ASSERT_TRUE(isManifold(mesh)) << round;
     ASSERT_EQ(report.added == 0, isManifold(before)) << round;
@@ -178,24 +178,24 @@ TEST(SplitNonManifold, MakesAnySoupAManifoldAndMovesNothing) {
                   before.positions[3 * before.triangles[i] + k]);
       }
     }
-    EXPECT_EQ(splitNonManifold(mesh).added, 0u) << "once is enough";
+    EXPECT_EQ(mesh::splitNonManifold(mesh).added, 0u) << "once is enough";
   }
   EXPECT_GT(singular, 10000u);
 }
 
 TEST(SplitNonManifold, IsQuickWhereAThousandTrianglesMeetAtOneEdge) {
   const std::uint32_t n = 20000;
-  Mesh mesh = meshOf(n + 2, {});
+  mesh::Mesh mesh = meshOf(n + 2, {});
   for (std::uint32_t t = 0; t < n; ++t)
     mesh.triangles.insert(mesh.triangles.end(), {t % 2, 1 - t % 2, t + 2});
-  EXPECT_EQ(textOf(splitNonManifold(mesh)), "1 edges, 2 vertices, 19998 added");
+  EXPECT_EQ(textOf(mesh::splitNonManifold(mesh)), "1 edges, 2 vertices, 19998 added");
   EXPECT_EQ(mesh.triangles[5], 3u);
 }
 
 TEST(Tidy, DropsTrianglesThatAreThereAlready) {
-  Mesh mesh = test::grid(1, 1);
+  mesh::Mesh mesh = test::grid(1, 1);
   mesh.triangles = {0, 1, 3, 3, 0, 1, 0, 3, 2, 1, 0, 3, 1, 3, 0, 2, 3, 0};
-  const TidyReport report = tidy(mesh);
+  const mesh::TidyReport report = mesh::tidy(mesh);
   EXPECT_EQ(report.duplicate, 2u);
   EXPECT_EQ(report.opposite, 2u);
   EXPECT_EQ(report.degenerate, 0u);
@@ -205,7 +205,7 @@ TEST(Tidy, DropsTrianglesThatAreThereAlready) {
 TEST(Tidy, KeepsTheFirstOfEachOfManyDuplicates) {
   Random random(5);
   for (int round = 0; round < 500; ++round) {
-    Mesh mesh = meshOf(6, {});
+    mesh::Mesh mesh = meshOf(6, {});
     for (std::uint64_t t = random.below(30); t > 0; --t) {
       for (int k = 0; k < 3; ++k)
         mesh.triangles.push_back(static_cast<std::uint32_t>(random.below(6)));
@@ -218,11 +218,12 @@ TEST(Tidy, KeepsTheFirstOfEachOfManyDuplicates) {
       if (corners.size() == 3 && seen.insert(corners).second)
         expected.insert(expected.end(), v, v + 3);
     }
-    mesh.triangles.insert(mesh.triangles.end(), {0, 1, 2, 3, 4, 5});  // all vertices used
+    // So that all vertices are used.
+    mesh.triangles.insert(mesh.triangles.end(), {0, 1, 2, 3, 4, 5});
     for (const std::set<std::uint32_t>& last : {std::set{0U, 1U, 2U}, std::set{3U, 4U, 5U}}) {
       if (seen.insert(last).second) expected.insert(expected.end(), last.begin(), last.end());
     }
-    tidy(mesh);
+    mesh::tidy(mesh);
     ASSERT_EQ(mesh.triangles, expected);
   }
 }

@@ -17,19 +17,19 @@ using Indices = std::vector<std::uint32_t>;
 
 class ObjFile : public testing::Test {
  protected:
-  Result<LoadedMesh> read(const std::string& text) {
+  Result<mesh::LoadedMesh> read(const std::string& text) {
     test::writeText(path_, text);
-    return readMesh(path_);
+    return mesh::readMesh(path_);
   }
-  // Four corners of a square, then `faces`.
-  Result<LoadedMesh> readFaces(const std::string& faces) {
+  // Reads a file with the four corners of a square, then `faces`.
+  Result<mesh::LoadedMesh> readFaces(const std::string& faces) {
     return read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n" + faces);
   }
   Indices trianglesOf(const std::string& faces) {
     const auto loaded = readFaces(faces);
     return loaded ? loaded->mesh.triangles : Indices{};
   }
-  // What is wrong with the file, without its name.
+  // The error message for `text`, without the file's name.
   std::string faultOf(const std::string& text) {
     const auto loaded = read(text);
     return loaded ? "none" : loaded.error().what.substr(path_.size() + 2);
@@ -72,7 +72,7 @@ TEST_F(ObjFile, MayHoldWhatMerlinHasNoUseFor) {
 
 TEST_F(ObjFile, GoesOnInTheNextLineBehindABackslash) {
   EXPECT_EQ(trianglesOf("f 1 \\\n2 \\ \r\n  4\nf 1 4 3"), (Indices{0, 1, 3, 0, 3, 2}));
-  EXPECT_EQ(faultOfFaces("f 1 2\\\n x\n"), "line 6: \"x\" is no corner of a face");
+  EXPECT_EQ(faultOfFaces("f 1 2\\\n x\n"), "line 6: \"x\" is not a corner of a face");
   EXPECT_EQ(trianglesOf("f 1 2 3 \\"), (Indices{0, 1, 2}));
   EXPECT_EQ(trianglesOf("g C:\\parts\\\nf 1 2 3\n"), (Indices{0, 1, 2})) << "a name";
   EXPECT_EQ(trianglesOf("g a \\\nf b\nf\\\n1 2 3\n"), (Indices{0, 1, 2})) << "a name that goes on";
@@ -89,16 +89,17 @@ TEST_F(ObjFile, HasColoursWhereEveryVertexHasOne) {
 }
 
 TEST_F(ObjFile, IsRefusedWhereALineIsNotWhole) {
-  for (const auto& [vertex, fault] : {std::pair{"v 1 0", "has 3 coordinates, here are 2"},
-                                      std::pair{"v", "has 3 coordinates, here are 0"},
-                                      std::pair{"v\r", "has 3 coordinates, here are 0"}}) {
+  for (const auto& [vertex, fault] : {std::pair{"v 1 0", "needs 3 coordinates, this one has 2"},
+                                      std::pair{"v", "needs 3 coordinates, this one has 0"},
+                                      std::pair{"v\r", "needs 3 coordinates, this one has 0"}}) {
     EXPECT_EQ(faultOf(std::string("v 0 0 0\n") + vertex + "\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
               std::string("line 2: a vertex ") + fault);
   }
-  EXPECT_EQ(faultOf("v 0 0 nan\n"), "vertex 0: coordinate z is nan; 1e+18 is the farthest");
-  EXPECT_EQ(faultOf("v 0 0 1e99\n"), "vertex 0: coordinate z is inf; 1e+18 is the farthest");
-  EXPECT_EQ(faultOfFaces("f 1 2 4\nf 1 2\n"), "line 6: a face has 3 corners or more, here are 2");
-  EXPECT_EQ(faultOfFaces("f\n"), "line 5: a face has 3 corners or more, here are 0");
+  EXPECT_EQ(faultOf("v 0 0 nan\n"), "vertex 0: coordinate z is nan; the limit is +-1e+18");
+  EXPECT_EQ(faultOf("v 0 0 1e99\n"), "vertex 0: coordinate z is inf; the limit is +-1e+18");
+  EXPECT_EQ(faultOfFaces("f 1 2 4\nf 1 2\n"),
+            "line 6: a face needs 3 corners or more, this one has 2");
+  EXPECT_EQ(faultOfFaces("f\n"), "line 5: a face needs 3 corners or more, this one has 0");
   EXPECT_EQ(faultOf("vt\n"), "line 1: a texture coordinate has no numbers");
 }
 
@@ -110,20 +111,21 @@ TEST_F(ObjFile, CountsATriangleWithAVertexTwice) {
 }
 
 TEST_F(ObjFile, NamesTheLineOfAWordThatIsNoNumber) {
-  EXPECT_EQ(faultOf("\n# x\nv 0 one 0\n"), "line 3: \"one\" is no number");
-  EXPECT_EQ(faultOf("v 1.0.0 0 0\n"), "line 1: \"1.0.0\" is no number");
+  EXPECT_EQ(faultOf("\n# x\nv 0 one 0\n"), "line 3: \"one\" is not a number");
+  EXPECT_EQ(faultOf("v 1.0.0 0 0\n"), "line 1: \"1.0.0\" is not a number");
   for (const char* corner :
        {"x", "1.5", "//1", "/1", "/", "x/1", "99999999999", "1e2", "\xFF", "1/x", "1/1.5"}) {
     EXPECT_EQ(faultOfFaces("f 1 2 3\nf 1 2 " + std::string(corner) + "\n"),
-              "line 6: \"" + std::string(corner) + "\" is no corner of a face");
+              "line 6: \"" + std::string(corner) + "\" is not a corner of a face");
   }
 }
 
-// A line may be as long as the file; nobody reads a message of that length.
+// A line may be as long as the file, so messages quote only its beginning.
 TEST_F(ObjFile, IsQuotedInShort) {
   const std::string word(1 << 20, 'x'), quoted(64, 'x');
-  EXPECT_EQ(faultOf("v 1 2 " + word), "line 1: \"" + quoted + "...\" is no number");
-  EXPECT_EQ(faultOfFaces("f 1 2 " + word), "line 5: \"" + quoted + "...\" is no corner of a face");
+  EXPECT_EQ(faultOf("v 1 2 " + word), "line 1: \"" + quoted + "...\" is not a number");
+  EXPECT_EQ(faultOfFaces("f 1 2 " + word),
+            "line 5: \"" + quoted + "...\" is not a corner of a face");
 }
 
 TEST_F(ObjFile, IsRefusedAtOnceWhereItIsNoText) {
@@ -132,9 +134,10 @@ TEST_F(ObjFile, IsRefusedAtOnceWhereItIsNoText) {
 }
 
 TEST_F(ObjFile, IsRefusedWhereAFacePointsNowhere) {
-  EXPECT_EQ(faultOfFaces("f 1 2 4\nf 1 2 5\n"), "line 6: a corner names vertex 5, there are 4");
-  EXPECT_EQ(faultOfFaces("f 0 2 3\n"), "line 5: a corner names vertex 0, there are 4");
-  EXPECT_EQ(faultOfFaces("f 1 2 -5\n"), "line 5: a corner names vertex -5, there are 4");
+  EXPECT_EQ(faultOfFaces("f 1 2 4\nf 1 2 5\n"),
+            "line 6: a corner refers to vertex 5, but there are 4");
+  EXPECT_EQ(faultOfFaces("f 0 2 3\n"), "line 5: a corner refers to vertex 0, but there are 4");
+  EXPECT_EQ(faultOfFaces("f 1 2 -5\n"), "line 5: a corner refers to vertex -5, but there are 4");
 }
 
 TEST_F(ObjFile, WithoutFacesOrOfSomethingElseIsNoMesh) {
@@ -143,7 +146,7 @@ TEST_F(ObjFile, WithoutFacesOrOfSomethingElseIsNoMesh) {
   EXPECT_EQ(faultOf(std::string(1000, '\0')), "byte 0 is 0: an OBJ file is text");
 }
 
-// What one wrong byte, or an early end, leaves is a sound mesh or an error.
+// A file with one wrong byte or an early end gives a valid mesh or an error.
 TEST_F(ObjFile, SurvivesDamage) {
   const std::string text =
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2//1 -1\nf 1 2 3\n";
@@ -161,7 +164,7 @@ TEST_F(ObjFile, SurvivesDamage) {
   EXPECT_GT(refused, 2 * text.size());
 }
 
-std::string objOf(const Mesh& mesh) {
+std::string objOf(const mesh::Mesh& mesh) {
   std::string text;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     text +=
@@ -174,7 +177,7 @@ std::string objOf(const Mesh& mesh) {
   return text;
 }
 
-// OpenMesh's half-edge mesh as an oracle: on a manifold it loses nothing.
+// OpenMesh's half-edge mesh as an oracle; on a manifold mesh it is lossless.
 TEST_F(ObjFile, AgreesWithAHalfEdgeMesh) {
   const auto loaded = read(objOf(test::sphere(2)));
   ASSERT_TRUE(loaded) << loaded.error().what;

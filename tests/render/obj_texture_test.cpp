@@ -1,4 +1,4 @@
-// OBJ with texture coordinates, materials and pictures; pictures made here by libpng and TurboJPEG.
+// OBJ files with texture coordinates, materials and images, which libpng and TurboJPEG write here.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -23,7 +23,7 @@ using Indices = std::vector<std::uint32_t>;
 using Names = std::vector<std::string>;
 using Colour = std::array<float, 3>;
 
-// Red and green above blue and white.
+// 2 x 2 pixels: red and green above blue and white.
 const std::vector<std::uint8_t> kFour = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255};
 
 void writePngFile(const std::string& path, int width, int height,
@@ -51,19 +51,19 @@ std::string jpegOf(int width, int height, const std::vector<std::uint8_t>& rgb) 
 
 // A square of two triangles: 0 1 3 and 0 3 2.
 constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
-// The middles of the four pixels, from the lower left.
+// The centres of the four pixels, from the lower left.
 constexpr const char* kMiddles = "vt 0.25 0.25\nvt 0.75 0.25\nvt 0.25 0.75\nvt 0.75 0.75\n";
 
 class TexturedObj : public testing::Test {
  protected:
-  LoadedMesh read(const std::string& text) {
+  mesh::LoadedMesh read(const std::string& text) {
     test::writeText(dir_ / "a.obj", text);
-    auto loaded = readMesh(dir_ / "a.obj");
+    auto loaded = mesh::readMesh(dir_ / "a.obj");
     EXPECT_TRUE(loaded) << loaded.error().what;
-    return loaded ? *std::move(loaded) : LoadedMesh{};
+    return loaded ? *std::move(loaded) : mesh::LoadedMesh{};
   }
-  // The notes without the folder's name.
-  Names notesOf(const LoadedMesh& loaded) const {
+  // The notes without the folder's path.
+  Names notesOf(const mesh::LoadedMesh& loaded) const {
     Names notes;
     for (const std::string& note : loaded.notes) {
       EXPECT_TRUE(note.starts_with(dir_.path() + "/")) << note;
@@ -90,7 +90,8 @@ TEST_F(TexturedObj, TakesColoursFromThePicture) {
       << "blue below on the left, white, red, green";
 }
 
-// Two columns of squares; the seam goes from the middle of the lower border to the middle of all.
+// Two columns of squares; the seam runs from the middle of the lower border to the centre vertex,
+// where it ends.
 TEST_F(TexturedObj, CutsVerticesAtASeamAndNowhereElse) {
   const auto loaded = read("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 1 2 0\n" +
                            std::string(kMiddles) +
@@ -99,16 +100,17 @@ TEST_F(TexturedObj, CutsVerticesAtASeamAndNowhereElse) {
   EXPECT_EQ(loaded.mesh.triangles, (Indices{0, 1, 4, 0, 4, 3, 3, 4, 6, 7, 2, 5, 7, 5, 4, 4, 5, 6}))
       << "vertex 1 alone is cut";
   ASSERT_EQ(loaded.mesh.vertexCount(), 8u);
-  EXPECT_EQ(samePlace(loaded.mesh.positions), (Indices{0, 7, 2, 3, 4, 5, 6, 1}));
+  EXPECT_EQ(mesh::samePlace(loaded.mesh.positions), (Indices{0, 7, 2, 3, 4, 5, 6, 1}));
   EXPECT_EQ(loaded.mesh.find("colour"), nullptr);
   EXPECT_EQ(loaded.tidied.unused + loaded.split.added, 0u);
 }
 
-// The seam goes from border to border: what hangs together at one corner only is no fan.
+// The seam runs from border to border: at its ends, triangles that share only a corner are
+// separated.
 TEST_F(TexturedObj, CutsTheEndsOfASeamThatLeaveOneFanNoMore) {
   const auto loaded = read(std::string(kSquare) + kMiddles + "f 1/1 2/2 4/4\nf 1/1 4/3 3/3\n");
   EXPECT_EQ(loaded.mesh.triangles, (Indices{0, 1, 3, 5, 4, 2}));
-  EXPECT_EQ(samePlace(loaded.mesh.positions), (Indices{5, 1, 2, 4, 3, 0}));
+  EXPECT_EQ(mesh::samePlace(loaded.mesh.positions), (Indices{5, 1, 2, 4, 3, 0}));
   EXPECT_EQ(loaded.split.vertices, 1u);
 }
 
@@ -127,13 +129,13 @@ TEST_F(TexturedObj, GivesEachMaterialItsOwn) {
   EXPECT_EQ((Floats{colour.begin(), colour.begin() + 3}), (Floats{0.5F, 0.25F, 0}));
   EXPECT_EQ((Floats{colour.end() - 3, colour.end()}), (Floats{0, 1, 0}));
   ASSERT_EQ(loaded.notes.size(), 2u);
-  EXPECT_NE(loaded.notes[0].find("the option -o is not followed"), std::string::npos);
+  EXPECT_NE(loaded.notes[0].find("the option -o is ignored"), std::string::npos);
   EXPECT_EQ(loaded.notes[1],
-            "not one picture that repeats, everywhere: seen as colours of the vertices");
+            "several textures, a clamped one, or faces without one: baked into vertex colours");
   EXPECT_TRUE(loaded.mesh.texture.empty());
 }
 
-// The file itself, so that nothing is lost.
+// The image file is kept byte for byte, so nothing is lost.
 TEST_F(TexturedObj, HasThePictureThatIsEverywhereForATexture) {
   writePngFile(dir_ / "four.png", 2, 2, kFour);
   const std::string file = test::readText(dir_ / "four.png");
@@ -150,12 +152,12 @@ TEST_F(TexturedObj, HasThePictureThatIsEverywhereForATexture) {
   EXPECT_EQ(textureOf("newmtl a\nmap_Kd -clamp on four.png\n", "usemtl a\nf 1/1 2/2 4/4\n"), "");
 }
 
-// A folder of its own, so that what lies beside the first is not found beside the second.
+// Each output has a folder of its own, so that no reader finds another one's image.
 TEST_F(TexturedObj, GoesWithItsPictureIntoOtherFiles) {
   writePngFile(dir_ / "four.png", 2, 2, kFour);
   test::writeText(dir_ / "a.mtl", "newmtl a\nmap_Kd four.png\n");
-  const LoadedMesh loaded = read(std::string("mtllib a.mtl\nusemtl a\n") + kSquare + kMiddles +
-                                 "f 1/1 2/2 4/4\nf 1/1 4/4 3/3\n");
+  const mesh::LoadedMesh loaded = read(std::string("mtllib a.mtl\nusemtl a\n") + kSquare +
+                                       kMiddles + "f 1/1 2/2 4/4\nf 1/1 4/4 3/3\n");
   const std::string picture = test::readText(dir_ / "four.png");
   const std::pair<const char*, Names> files[] = {
       {"it's b=_1.obj", {"it=27s=20b=3D_1.obj.png", "it=27s=20b=3D_1.obj.mtl"}},
@@ -164,7 +166,7 @@ TEST_F(TexturedObj, GoesWithItsPictureIntoOtherFiles) {
       {"b\".iv", {"b=22.iv.png"}}};
   for (const auto& [name, beside] : files) {
     const test::TempDir other;
-    const auto written = writeMesh(other / name, loaded.mesh);
+    const auto written = mesh::writeMesh(other / name, loaded.mesh);
     ASSERT_TRUE(written) << written.error().what;
     Names expected;
     for (const std::string& file : beside) expected.push_back(other / file);
@@ -177,7 +179,7 @@ TEST_F(TexturedObj, GoesWithItsPictureIntoOtherFiles) {
       continue;
     }
     EXPECT_EQ(written->left_out, Names{});
-    const auto again = readMesh(other / name);
+    const auto again = mesh::readMesh(other / name);
     ASSERT_TRUE(again) << again.error().what;
     EXPECT_EQ(again->notes, Names{});
     EXPECT_EQ(again->mesh.texture, loaded.mesh.texture);
@@ -185,7 +187,7 @@ TEST_F(TexturedObj, GoesWithItsPictureIntoOtherFiles) {
   }
 }
 
-// A PLY of a triangle with texture coordinates, and these lines in its header.
+// A PLY triangle with texture coordinates, and `comments` in its header.
 std::string texturedPly(const std::string& comments) {
   return "ply\nformat ascii 1.0\n" + comments +
          "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "
@@ -200,7 +202,7 @@ TEST_F(TexturedObj, MayBeAPlyThatNamesItsPicture) {
   test::writeText(dir_ / "broken.png", "no picture");
   const auto readPly = [&](const std::string& comments, const std::string& text = "") {
     test::writeText(dir_ / "a.ply", text.empty() ? texturedPly(comments) : text);
-    auto loaded = readMesh(dir_ / "a.ply");
+    auto loaded = mesh::readMesh(dir_ / "a.ply");
     EXPECT_TRUE(loaded) << loaded.error().what;
     return *std::move(loaded);
   };
@@ -208,57 +210,58 @@ TEST_F(TexturedObj, MayBeAPlyThatNamesItsPicture) {
   for (const std::string& comments :
        {four, "comment  TextureFile\tfour pixels.png  \r\n"s, four + four,
         "comment TextureFile\n" + four, "comment TextureFile ../x/four pixels.png\n"s}) {
-    const LoadedMesh loaded = readPly(comments);
+    const mesh::LoadedMesh loaded = readPly(comments);
     EXPECT_EQ(loaded.notes, Names{}) << comments;
     EXPECT_EQ(std::string(loaded.mesh.texture.begin(), loaded.mesh.texture.end()),
               test::readText(dir_ / "four pixels.png"))
         << comments;
   }
   const std::pair<std::string, std::string> faults[] = {
-      {four + "comment TextureFile other.png\n", "left out: 2 pictures of textures"},
+      {four + "comment TextureFile other.png\n", "left out: 2 texture images"},
       {"comment TextureFile none.png\n",
-       dir_ / "none.png: No such file or directory; the texture's picture is left out"},
+       dir_ / "none.png: No such file or directory; the texture image is left out"},
       {"comment TextureFile broken.png\n",
-       dir_ / "broken.png: is neither PNG nor JPEG; the texture's picture is left out"},
+       dir_ / "broken.png: is neither PNG nor JPEG; the texture image is left out"},
       {"comment TextureFile a\0.png\n"s,
-       "a\0.png: is no name; the texture's picture is left out"s}};
+       "a\0.png: is not a valid file name; the texture image is left out"s}};
   for (const auto& [comments, note] : faults) {
-    const LoadedMesh loaded = readPly(comments);
+    const mesh::LoadedMesh loaded = readPly(comments);
     EXPECT_EQ(loaded.notes, Names{note});
     EXPECT_TRUE(loaded.mesh.texture.empty());
   }
   EXPECT_TRUE(readPly("comment texture four pixels.png\n").mesh.texture.empty());
 }
 
-// Nobody has asked for them by name.
+// Image and material files are written without being named by the user, so they must not replace
+// others.
 TEST_F(TexturedObj, WritesOverNothingBesideItsFile) {
   writePngFile(dir_ / "four.png", 2, 2, kFour);
   test::writeText(dir_ / "a.mtl", "newmtl a\nmap_Kd four.png\n");
-  LoadedMesh loaded = read(std::string("mtllib a.mtl\nusemtl a\n") + kSquare + kMiddles +
-                           "f 1/1 2/2 4/4\nf 1/1 4/4 3/3\n");
-  ASSERT_TRUE(writeMesh(dir_ / "b.obj", loaded.mesh));
-  ASSERT_TRUE(writeMesh(dir_ / "b.obj", loaded.mesh)) << "the same again";
+  mesh::LoadedMesh loaded = read(std::string("mtllib a.mtl\nusemtl a\n") + kSquare + kMiddles +
+                                 "f 1/1 2/2 4/4\nf 1/1 4/4 3/3\n");
+  ASSERT_TRUE(mesh::writeMesh(dir_ / "b.obj", loaded.mesh));
+  ASSERT_TRUE(mesh::writeMesh(dir_ / "b.obj", loaded.mesh)) << "the same again";
   test::writeText(dir_ / "c.obj.mtl", "mine");
-  const auto refused = writeMesh(dir_ / "c.obj", loaded.mesh);
+  const auto refused = mesh::writeMesh(dir_ / "c.obj", loaded.mesh);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().what,
-            dir_ / "c.obj.mtl: is there and is another; remove it or name another output");
+            dir_ / "c.obj.mtl: exists with different content; remove it or name another output");
   EXPECT_EQ(test::readText(dir_ / "c.obj.mtl"), "mine");
   for (const char* name : {"c.obj", "c.obj.png"})
     EXPECT_FALSE(std::filesystem::exists(dir_ / name)) << name;
   ::mkdir((dir_ / "d.obj").c_str(), 0700);
-  EXPECT_FALSE(writeMesh(dir_ / "d.obj", loaded.mesh));
+  EXPECT_FALSE(mesh::writeMesh(dir_ / "d.obj", loaded.mesh));
   EXPECT_FALSE(std::filesystem::exists(dir_ / "d.obj.png")) << "goes when the mesh cannot be";
 }
 
-// More than a chain's length of corners at one vertex, each with a texture coordinate of its own.
+// One vertex whose faces use 100 different texture coordinates.
 TEST_F(TexturedObj, HasAnyNumberOfCoordinatesAtOneVertex) {
   std::string text = kSquare, faces;
   for (int i = 1; i <= 100; ++i) {
     text += fmt::format("vt {} 0\n", 0.01 * i);
     faces += fmt::format("f 1/{0} 2/1 3/1\nf 1/{0} 3/1 4/1\n", i);
   }
-  const LoadedMesh loaded = read(text + faces);
+  const mesh::LoadedMesh loaded = read(text + faces);
   EXPECT_EQ(loaded.mesh.triangleCount(), 200u);
   EXPECT_EQ(loaded.mesh.vertexCount(), 100u + 3u + loaded.split.added);
 }
@@ -285,14 +288,14 @@ TEST_F(TexturedObj, OpensNothingOutsideItsFolder) {
   test::writeText(dir_ / "model/a.obj", "mtllib ../a.mtl\nmtllib C:\\theirs\\b.mtl\n" +
                                             std::string(kSquare) + kMiddles +
                                             "usemtl a\nf 1/1 2/2 4/4\nusemtl b\nf 1/1 4/4 3/3\n");
-  const auto loaded = readMesh(dir_ / "model/a.obj");
+  const auto loaded = mesh::readMesh(dir_ / "model/a.obj");
   ASSERT_TRUE(loaded);
   ASSERT_EQ(loaded->notes.size(), 2u);
   EXPECT_TRUE(loaded->notes[0].starts_with(dir_ / "model/a.mtl:")) << loaded->notes[0];
   EXPECT_TRUE(loaded->notes[1].starts_with(dir_ / "model/four.png:")) << loaded->notes[1];
 }
 
-// A pipe that nobody writes to: whoever waited for it would wait for ever.
+// A pipe without a writer: the reader must not block on it.
 TEST_F(TexturedObj, WaitsForNoPipe) {
   ASSERT_EQ(::mkfifo((dir_ / "x.mtl").c_str(), 0600), 0);
   const auto loaded = read(std::string("mtllib x.mtl\nusemtl red\n") + kSquare + "f 1 2 3\n");
@@ -311,14 +314,14 @@ TEST_F(TexturedObj, KeepsItsOwnColoursWhereNoPictureIs) {
 
 TEST_F(TexturedObj, NamesTheLineOfACornerWithoutItsCoordinate) {
   test::writeText(dir_ / "a.obj", std::string(kSquare) + "vt 0 0\nf 1/1 2/1 3/1\nf 1/2 2/1 3/1\n");
-  EXPECT_EQ(readMesh(dir_ / "a.obj").error().what,
-            dir_ / "a.obj: line 7: a corner names texture coordinate 2, there are 1");
-  read(std::string(kSquare) + "f 1/1 2/1 3/1\nvt 0 0\n");  // behind its use
+  EXPECT_EQ(mesh::readMesh(dir_ / "a.obj").error().what,
+            dir_ / "a.obj: line 7: a corner refers to texture coordinate 2, but there are 1");
+  read(std::string(kSquare) + "f 1/1 2/1 3/1\nvt 0 0\n");  // defined after its use
   read(std::string(kSquare) + "vt 0 0\nvt 1 1\nf 1/-1 2/-2 3/-1\n");
 }
 
 TEST(ImageFile, IsMixedOfTheNearestPixels) {
-  const ImageFile four{2, 2, kFour};
+  const image::ImageFile four{2, 2, kFour};
   EXPECT_EQ(four.at(0.25F, 0.75F, false), (Colour{1, 0, 0}));
   EXPECT_EQ(four.at(0.5F, 0.75F, false), (Colour{0.5F, 0.5F, 0}));
   EXPECT_EQ(four.at(0.5F, 0.5F, false), (Colour{0.5F, 0.5F, 0.5F}));
@@ -332,7 +335,7 @@ TEST(ImageFile, IsMixedOfTheNearestPixels) {
 TEST(ImageFile, MayBeAJpegOfAnyName) {
   const test::TempDir dir;
   test::writeText(dir / "a.png", jpegOf(2, 1, {250, 10, 10, 250, 10, 10}));
-  const auto picture = readImage(dir / "a.png");
+  const auto picture = image::readImage(dir / "a.png");
   ASSERT_TRUE(picture) << picture.error().what;
   EXPECT_EQ(picture->width, 2);
   EXPECT_EQ(picture->height, 1);
@@ -350,7 +353,7 @@ TEST(ImageFile, SaysWhatIsBroken) {
     std::size_t refused = 0;
     for (std::size_t n = 0; n < file.size(); ++n) {
       test::writeText(dir / "b", file.substr(0, n));
-      const auto picture = readImage(dir / "b");
+      const auto picture = image::readImage(dir / "b");
       refused += !picture;
       EXPECT_TRUE(picture || picture.error().what.starts_with(dir / "b: ")) << n;
     }
@@ -359,7 +362,7 @@ TEST(ImageFile, SaysWhatIsBroken) {
   std::string huge = png;
   huge.replace(16, 8, std::string("\x7F\xFF\xFF\xFF\x7F\xFF\xFF\xFF", 8));
   test::writeText(dir / "b", huge);
-  EXPECT_FALSE(readImage(dir / "b"));
+  EXPECT_FALSE(image::readImage(dir / "b"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// OFF, OM and STL files: what OpenMesh reads of them, and what it must not get away with.
+// OFF, OM and STL files, read by OpenMesh: what is accepted and what is refused.
 #include <array>
 #include <string>
 
@@ -20,30 +20,31 @@ constexpr const char* kTetrahedron =
 
 class OpenMeshReader : public testing::Test {
  protected:
-  Result<LoadedMesh> read(const std::string& name, const std::string& content) {
+  Result<mesh::LoadedMesh> read(const std::string& name, const std::string& content) {
     test::writeText(dir_ / name, content);
-    return readMesh(dir_ / name);
+    return mesh::readMesh(dir_ / name);
   }
   std::string error(const std::string& name, const std::string& content) {
     const auto read_mesh = read(name, content);
     return read_mesh ? "" : read_mesh.error().what.substr((dir_ / name).size());
   }
-  // The tetrahedron in another format, written by OpenMesh itself.
+  // The tetrahedron in another format, as OpenMesh writes it.
   std::string tetrahedronAs(const std::string& ending, OpenMesh::IO::Options options = {}) {
     std::string plain = kTetrahedron;
-    plain.erase(4, 12);  // the comment, which OpenMesh alone does not read
+    plain.erase(4, 12);  // removes the comment, which OpenMesh itself does not read
     test::writeText(dir_ / "t.off", plain);
     OpenMesh::PolyMesh_ArrayKernelT<> mesh;
     EXPECT_TRUE(OpenMesh::IO::read_mesh(mesh, dir_ / "t.off"));
     EXPECT_TRUE(OpenMesh::IO::write_mesh(mesh, dir_ / "t2." + ending, options));
     return test::readText(dir_ / "t2." + ending);
   }
-  static void expectTetrahedron(const Result<LoadedMesh>& loaded, const std::string& what) {
+  static void expectTetrahedron(const Result<mesh::LoadedMesh>& loaded, const std::string& what) {
     ASSERT_TRUE(loaded) << what << ": " << loaded.error().what;
     EXPECT_EQ(loaded->mesh.vertexCount(), 4u) << what;
     EXPECT_EQ(loaded->mesh.triangleCount(), 4u) << what;
     EXPECT_EQ(loaded->split.edges + loaded->split.vertices, 0u) << what << ": closed";
-    EXPECT_EQ(boundingBox(loaded->mesh.positions).high, (std::array<float, 3>{1, 1, 1})) << what;
+    EXPECT_EQ(mesh::boundingBox(loaded->mesh.positions).high, (std::array<float, 3>{1, 1, 1}))
+        << what;
   }
 
   TempDir dir_;
@@ -61,7 +62,7 @@ TEST_F(OpenMeshReader, ReadsEachFormatInEachForm) {
 TEST_F(OpenMeshReader, KeepsWhatHalfEdgesCannotHold) {
   const std::string book =
       "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n0 -1 0\n0 0 1\n"
-      "3 0 1 2\n3 1 0 3\n3 0 1 4\n";  // three pages at one edge
+      "3 0 1 2\n3 1 0 3\n3 0 1 4\n";  // three triangles at one edge
   const auto loaded = read("book.off", book);
   ASSERT_TRUE(loaded) << loaded.error().what;
   EXPECT_EQ(loaded->mesh.triangleCount(), 3u);
@@ -77,7 +78,7 @@ TEST_F(OpenMeshReader, PolygonsBecomeFansAndColoursFeatures) {
                            "1 1 0 0 0 255 255\n0 1 0 51 51 51 255\n4 0 1 2 3\n");
   ASSERT_TRUE(square) << square.error().what;
   EXPECT_EQ(square->mesh.triangles, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
-  const Feature* const colour = square->mesh.find("colour");
+  const mesh::Feature* const colour = square->mesh.find("colour");
   ASSERT_TRUE(colour);
   EXPECT_EQ(colour->values[0], 1);
   EXPECT_NEAR(colour->values[9], 0.2, 1e-6);
@@ -85,34 +86,35 @@ TEST_F(OpenMeshReader, PolygonsBecomeFansAndColoursFeatures) {
 
 TEST_F(OpenMeshReader, SaysWhatIsWrong) {
   EXPECT_EQ(error("a.off", "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n"),
-            ": line 7: ends after 1 of 4 faces");
+            ": line 7: the file ends after 1 of 4 faces");
   EXPECT_EQ(error("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
-            ": line 6: face 0 names vertex 3, and there are 3");
+            ": line 6: face 0 refers to vertex 3, but there are 3");
   EXPECT_EQ(error("a.off", "OFF\n4000000000 4000000000 0\n"),
-            ": line 2: promises 4000000000 vertices and 4000000000 faces in 28 bytes");
-  EXPECT_EQ(error("a.off", "OFF BINARY\n"), ": is a binary OFF file; only plain letters are read");
+            ": line 2: declares 4000000000 vertices and 4000000000 faces in a file of 28 bytes");
+  EXPECT_EQ(error("a.off", "OFF BINARY\n"), ": is a binary OFF file; only ASCII is supported");
   EXPECT_EQ(error("a.off", "OFF 3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n"),
-            ": line 3: vertex 1 lacks a number");
+            ": line 3: vertex 1: a number is missing or malformed");
   EXPECT_NE(error("a.off", "ply\n").find("does not begin with OFF"), std::string::npos);
-  EXPECT_NE(error("a.stl", "hello").find("is neither an STL in plain letters"), std::string::npos);
+  EXPECT_NE(error("a.stl", "hello").find("is neither an ASCII STL"), std::string::npos);
   EXPECT_NE(error("a.om", "OM").find("does not begin with the header"), std::string::npos);
 }
 
 TEST_F(OpenMeshReader, TellsTheSizeBeforeItReads) {
   test::writeText(dir_ / "t.off", kTetrahedron);
-  const auto off = meshFileSize(dir_ / "t.off");
+  const auto off = mesh::meshFileSize(dir_ / "t.off");
   ASSERT_TRUE(off);
   EXPECT_EQ(off->mesh.vertices, 4u);
   EXPECT_EQ(off->mesh.triangles, 4u);
   test::writeText(dir_ / "b.stl", tetrahedronAs("stl", OpenMesh::IO::Options::Binary));
-  EXPECT_EQ(meshFileSize(dir_ / "b.stl")->mesh.triangles, 4u);
+  EXPECT_EQ(mesh::meshFileSize(dir_ / "b.stl")->mesh.triangles, 4u);
   test::writeText(dir_ / "c.om", tetrahedronAs("om", OpenMesh::IO::Options::Binary));
-  EXPECT_EQ(meshFileSize(dir_ / "c.om")->mesh.vertices, 4u);
+  EXPECT_EQ(mesh::meshFileSize(dir_ / "c.om")->mesh.vertices, 4u);
   test::writeText(dir_ / "lie.off", "OFF\n4000000000 4000000000 0\n");
-  EXPECT_FALSE(meshFileSize(dir_ / "lie.off"));
+  EXPECT_FALSE(mesh::meshFileSize(dir_ / "lie.off"));
 }
 
-// Whatever is cut or damaged: a mesh or one error, and never more than the file's bytes can hold.
+// Truncated or damaged files give a mesh or one error, and a mesh no larger than the file's bytes
+// allow.
 TEST_F(OpenMeshReader, EveryPrefixAndEveryDamagedByteEndsWell) {
   using OpenMesh::IO::Options;
   const std::pair<std::string, std::string> files[] = {

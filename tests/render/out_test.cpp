@@ -1,8 +1,9 @@
-// Where frames go: the shared framebuffer as another process reads it, PNG files as libpng reads
-// them.
+// Outputs: the shared framebuffer as another process reads it, PNG files as libpng reads them.
 #include <csignal>
 #include <cstring>
 #include <thread>
+#include <tuple>
+#include <utility>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -26,28 +27,28 @@ namespace {
 using test::Image;
 using Pixels = std::vector<std::uint8_t>;
 
-TilePlan smallPlan() {
-  TilesSettings s;
+tiles::TilePlan smallPlan() {
+  tiles::TilesSettings s;
   s.tile_width = 64;
   s.tile_height = 48;
   s.frame_width = 128;
   s.frame_height = 96;
-  for (TileSettings& t : s.tiles) {
+  for (tiles::TileSettings& t : s.tiles) {
     t.x /= 10;
     t.y /= 10;
   }
-  return *planTiles(s);
+  return *tiles::planTiles(s);
 }
 
 constexpr std::size_t kFrameBytes = 4 * 128 * 96;
 const SystemClock kClock;
 
-// Of smallPlan()'s frame.
-void present(Output& output, const Pixels& pixels, const FrameInfo& info) {
+// Presents a frame of the size of smallPlan().
+void present(out::Output& output, const Pixels& pixels, const out::FrameInfo& info) {
   EXPECT_TRUE(output.present({128, 96, pixels}, info));
 }
 
-// All bytes of frame n are n, but for the first of each row: the row's number.
+// In frame n every byte is n, except the first one of each row, which is the row's number.
 Pixels frameOf(std::uint64_t n) {
   Pixels pixels(kFrameBytes, static_cast<std::uint8_t>(n));
   for (std::size_t y = 0; y < 96; ++y) pixels[y * 4 * 128] = static_cast<std::uint8_t>(y);
@@ -76,13 +77,13 @@ Image readPng(const std::string& path) {
 std::string name(const std::string& what) { return "/" + test::privateName(what); }
 
 TEST(Framebuffer, GivesTheNewestFrameWithWhatIsKnownOfIt) {
-  const auto sink = SharedFrameOutput::make(name("fb"), smallPlan(), 1, kClock);
+  const auto sink = out::SharedFrameOutput::make(name("fb"), smallPlan(), 1, kClock);
   ASSERT_TRUE(sink) << sink.error().what;
-  EXPECT_EQ(captureFrame(name("fb")).error().code, Errc::kTimeout);  // nothing in it yet
+  EXPECT_EQ(out::captureFrame(name("fb")).error().code, Errc::kTimeout);  // no frame yet
   for (std::uint64_t n = 1; n <= 8; ++n) {
     present(**sink, frameOf(n),
             {n, fromNanoseconds(1000), static_cast<std::uint32_t>(10 * n), n == 7});
-    const auto frame = captureFrame(name("fb"));
+    const auto frame = out::captureFrame(name("fb"));
     ASSERT_TRUE(frame) << frame.error().what;
     EXPECT_EQ(frame->pixels, frameOf(n));
     EXPECT_EQ(frame->info.sequence, n);
@@ -93,25 +94,50 @@ TEST(Framebuffer, GivesTheNewestFrameWithWhatIsKnownOfIt) {
 }
 
 TEST(Framebuffer, WallIsItsTilesSideBySideWithoutTheOperators) {
-  const auto sink = SharedFrameOutput::make(name("wall"), smallPlan(), 1, kClock);
+  const auto sink = out::SharedFrameOutput::make(name("wall"), smallPlan(), 1, kClock);
   const Pixels pixels = noise(kFrameBytes, 3);
   present(**sink, pixels, {1, {}, 1, true});
   const Image frame{128, 96, pixels};
-  const CapturedFrame captured = wallPicture(*captureFrame(name("wall")));
+  const out::CapturedFrame captured = out::wallPicture(*out::captureFrame(name("wall")));
   const Image wall{captured.width, captured.height, captured.pixels};
   ASSERT_EQ(wall.width, 3 * 64);
   ASSERT_EQ(wall.height, 48);
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x < 64; ++x) {
-      ASSERT_EQ(wall.at(x, y), frame.at(x, y));            // left: upper left
-      ASSERT_EQ(wall.at(64 + x, y), frame.at(64 + x, y));  // centre: upper right
+      ASSERT_EQ(wall.at(x, y), frame.at(x, y));            // left tile: upper left of the frame
+      ASSERT_EQ(wall.at(64 + x, y), frame.at(64 + x, y));  // centre tile: upper right of the frame
       ASSERT_EQ(wall.at(128 + x, y), frame.at(x, 48 + y));
     }
   }
 }
 
+TEST(Framebuffer, WallHasRowsAndColumns) {
+  tiles::TilePlan plan = smallPlan();
+  const std::pair<int, int> places[] = {{0, 48}, {64, 0}, {64, 48}, {-1, -1}};
+  for (std::size_t i = 0; i < 4; ++i)
+    std::tie(plan.tiles[i].wall_x, plan.tiles[i].wall_y) = places[i];
+  plan.wall_width = 128;
+  plan.wall_height = 96;
+  const auto sink = out::SharedFrameOutput::make(name("rows"), plan, 1, kClock);
+  const Pixels pixels = noise(kFrameBytes, 3);
+  present(**sink, pixels, {1, {}, 1, true});
+  const Image frame{128, 96, pixels};
+  const out::CapturedFrame captured = out::wallPicture(*out::captureFrame(name("rows")));
+  const Image wall{captured.width, captured.height, captured.pixels};
+  ASSERT_EQ(wall.width, 128);
+  ASSERT_EQ(wall.height, 96);
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      ASSERT_EQ(wall.at(x, y), test::Rgba{}) << "no tile";
+      ASSERT_EQ(wall.at(x, 48 + y), frame.at(x, y));
+      ASSERT_EQ(wall.at(64 + x, y), frame.at(64 + x, y));
+      ASSERT_EQ(wall.at(64 + x, 48 + y), frame.at(x, 48 + y));
+    }
+  }
+}
+
 TEST(Framebuffer, ReaderNeverSeesTwoFramesInOne) {
-  const auto sink = SharedFrameOutput::make(name("torn"), smallPlan(), 1, kClock);
+  const auto sink = out::SharedFrameOutput::make(name("torn"), smallPlan(), 1, kClock);
   present(**sink, frameOf(1), {1, {}, 1, false});
   std::jthread writer([&](const std::stop_token& stop) {
     for (std::uint64_t n = 2; !stop.stop_requested(); ++n)
@@ -119,8 +145,8 @@ TEST(Framebuffer, ReaderNeverSeesTwoFramesInOne) {
   });
   int seen = 0;
   for (int i = 0; i < 20000 && seen < 300; ++i) {
-    const auto frame = captureFrame(name("torn"));
-    if (!frame) continue;  // overtaken
+    const auto frame = out::captureFrame(name("torn"));
+    if (!frame) continue;  // the writer overtook the reader
     ++seen;
     ASSERT_EQ(frame->pixels, frameOf(frame->info.sequence));
   }
@@ -129,42 +155,42 @@ TEST(Framebuffer, ReaderNeverSeesTwoFramesInOne) {
 
 TEST(Framebuffer, IsGoneWithItsWriterAndThereCanBeOnlyOne) {
   {
-    const auto sink = SharedFrameOutput::make(name("one"), smallPlan(), 1, kClock);
-    const auto second = SharedFrameOutput::make(name("one"), smallPlan(), 2, kClock);
+    const auto sink = out::SharedFrameOutput::make(name("one"), smallPlan(), 1, kClock);
+    const auto second = out::SharedFrameOutput::make(name("one"), smallPlan(), 2, kClock);
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().code, Errc::kBusy);
   }
-  EXPECT_EQ(captureFrame(name("one")).error().code, Errc::kNotFound);
+  EXPECT_EQ(out::captureFrame(name("one")).error().code, Errc::kNotFound);
 }
 
-// A framebuffer as a hostile program might leave it: `damage` is done to a good header.
+// A framebuffer as a malicious program might leave it: a valid header, changed by `damage`.
 template <typename Damage>
 Error captureDamaged(Damage damage) {
   const std::string at = name("bad");
   const std::size_t size = 4096 + 3 * kFrameBytes;
   auto memory = SharedMemory::create(at, size);
-  auto& h = *new (memory->data()) framebuffer::Header{};
-  h.magic = framebuffer::kMagic;
-  h.version = framebuffer::kVersion;
+  auto& h = *new (memory->data()) out::framebuffer::Header{};
+  h.magic = out::framebuffer::kMagic;
+  h.version = out::framebuffer::kVersion;
   h.size = size;
   h.width = h.wall_width = 128;
   h.height = h.wall_height = 96;
   h.stride = 4 * 128;
-  h.format = framebuffer::kFormatRgba8;
+  h.format = out::framebuffer::kFormatRgba8;
   h.tile_count = 1;
-  h.tiles[0] = {"a", 0, 0, 0, 128, 96, 0};
+  h.tiles[0] = {"a", 0, 0, 0, 128, 96, 0, 0};
   for (std::size_t i = 0; i < 3; ++i) {
     h.buffers[i].offset = 4096 + i * kFrameBytes;
     h.buffers[i].sequence = 1;
   }
   damage(h);
-  const auto frame = captureFrame(at);
+  const auto frame = out::captureFrame(at);
   return frame ? Error{Errc::kIo, "none"} : frame.error();
 }
 
-// The reader that knows the table alone, and nothing of this segment.
+// The Python reader knows the table of fields only, and nothing of this segment.
 TEST(Framebuffer, DescribesItself) {
-  const auto sink = SharedFrameOutput::make(name("table"), smallPlan(), 1, kClock);
+  const auto sink = out::SharedFrameOutput::make(name("table"), smallPlan(), 1, kClock);
   ASSERT_TRUE(sink);
   present(**sink, frameOf(7), {7, {}, 5, true});
   const auto out = test::run({"python3", "-B", MERLIN_SOURCE_DIR "/daemon/shm/read_merlin.py",
@@ -178,13 +204,13 @@ TEST(Framebuffer, DescribesItself) {
       << out.output;
 }
 
-// A program of the same user writes over the segment.
+// Another program of the same user overwrites the segment.
 TEST(Framebuffer, RubbishOverTheHeaderDoesNotLeadTheWriterAstray) {
-  const auto sink = SharedFrameOutput::make(name("rubbish"), smallPlan(), 1, kClock);
+  const auto sink = out::SharedFrameOutput::make(name("rubbish"), smallPlan(), 1, kClock);
   ASSERT_TRUE(sink);
   const UniqueFd other(::shm_open(name("rubbish").c_str(), O_RDWR | O_CLOEXEC, 0));
   ASSERT_TRUE(other.valid());
-  const std::vector<char> rubbish(sizeof(framebuffer::Header), '\xa5');
+  const std::vector<char> rubbish(sizeof(out::framebuffer::Header), '\xa5');
   ASSERT_EQ(::pwrite(other.get(), rubbish.data(), rubbish.size(), 0),
             static_cast<ssize_t>(rubbish.size()));
   for (std::uint64_t n = 1; n <= 3; ++n) present(**sink, frameOf(n), {n, {}, 1, false});
@@ -196,12 +222,12 @@ TEST(Framebuffer, RubbishOverTheHeaderDoesNotLeadTheWriterAstray) {
 }
 
 TEST(Framebuffer, DamagedHeadersAreRefused) {
-  using Header = framebuffer::Header;
+  using Header = out::framebuffer::Header;
   EXPECT_EQ(captureDamaged([](Header&) {}).what, "none");
   EXPECT_EQ(captureDamaged([](Header& h) { h.magic = 1; }).code, Errc::kMalformed);
   const Error version = captureDamaged([](Header& h) { h.version = 9; });
   EXPECT_EQ(version.code, Errc::kUnsupported);
-  EXPECT_NE(version.what.find("is version 9, this program reads 2"), std::string::npos);
+  EXPECT_NE(version.what.find("is version 9, this program reads 3"), std::string::npos);
   const std::vector<void (*)(Header&)> damages = {
       [](Header& h) { h.format = 2; },
       [](Header& h) { h.stride = 4; },
@@ -217,6 +243,12 @@ TEST(Framebuffer, DamagedHeadersAreRefused) {
       [](Header& h) { h.tiles[0].x = -1; },
       [](Header& h) { h.tiles[0].height = -5; },
       [](Header& h) { h.tiles[0].wall_x = 1; },
+      [](Header& h) { h.tiles[0].wall_y = 1; },
+      [](Header& h) { h.tiles[0].wall_x = -1; },
+      [](Header& h) { h.tiles[0].wall_y = -1; },
+      [](Header& h) { h.tiles[0].wall_x = h.tiles[0].wall_y = -2; },
+      [](Header& h) { h.wall_width = 0x80000000; },
+      [](Header& h) { h.wall_height = 0x80000000; },
       [](Header& h) { h.tiles[0].x = 0x7fffffff; },
   };
   for (std::size_t i = 0; i < damages.size(); ++i)
@@ -226,8 +258,8 @@ TEST(Framebuffer, DamagedHeadersAreRefused) {
 TEST(Png, KeepsEachPixelAndIsTheSameBytesEachTime) {
   const test::TempDir folder;
   const Pixels pixels = noise(std::size_t{4} * 37 * 21, 1);
-  ASSERT_TRUE(writePng(folder / "a.png", 37, 21, pixels));
-  ASSERT_TRUE(writePng(folder / "b.png", 37, 21, pixels));
+  ASSERT_TRUE(image::writePng(folder / "a.png", 37, 21, pixels));
+  ASSERT_TRUE(image::writePng(folder / "b.png", 37, 21, pixels));
   const Image image = readPng(folder / "a.png");
   EXPECT_EQ(image.width, 37);
   EXPECT_EQ(image.height, 21);
@@ -236,13 +268,13 @@ TEST(Png, KeepsEachPixelAndIsTheSameBytesEachTime) {
 }
 
 TEST(Png, NamesTheFileThatCannotBeWritten) {
-  const auto written = writePng("/nowhere/at/all.png", 1, 1, Pixels(4));
+  const auto written = image::writePng("/nowhere/at/all.png", 1, 1, Pixels(4));
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, Errc::kNotFound);
   EXPECT_NE(written.error().what.find("/nowhere/at/all.png"), std::string::npos);
 }
 
-// A full disk, as far as a process can make one for itself: no file longer than 2 kB.
+// Simulates a full disk by a limit of 2 kB on the size of a file.
 TEST(Png, FullDiskLeavesNothingHalfWritten) {
   const test::TempDir folder;
   ASSERT_NE(::signal(SIGXFSZ, SIG_IGN), SIG_ERR);
@@ -250,33 +282,34 @@ TEST(Png, FullDiskLeavesNothingHalfWritten) {
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
   const rlimit little{2000, before.rlim_max};
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &little), 0);
-  const auto written = writePng(folder / "a.png", 64, 64, noise(std::size_t{4} * 64 * 64, 2));
+  const auto written =
+      image::writePng(folder / "a.png", 64, 64, noise(std::size_t{4} * 64 * 64, 2));
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, Errc::kIo);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-// What a sink took is in the file when it is gone.
+// Destroying the output waits until the last accepted frame is written.
 TEST(PngOutput, WritesNoMoreOftenThanAsked) {
   const test::TempDir folder;
   const std::string path = folder / "frame.png";
   ThreadWatch watch;
-  const auto present = [](PngOutput& output, std::uint8_t n, int seconds) {
+  const auto present = [](out::PngOutput& output, std::uint8_t n, int seconds) {
     const Pixels pixels(std::size_t{4} * 16 * 16, n);
     return output.present({16, 16, pixels}, {n, Timestamp{std::chrono::seconds(seconds)}, 1, true});
   };
   const auto red = [&] { return readPng(path).at(0, 0).red; };
   {
-    PngOutput output(path, 60, watch);
+    out::PngOutput output(path, 60, watch);
     EXPECT_EQ(*present(output, 1, 1000), Timestamp{std::chrono::seconds(1000)});
     ASSERT_TRUE(test::eventually([&] { return std::filesystem::exists(path); }));
     EXPECT_EQ(*present(output, 2, 1059), std::nullopt) << "left out";
   }
   EXPECT_EQ(red(), 1);
-  PngOutput output(path, 60, watch);
+  out::PngOutput output(path, 60, watch);
   ASSERT_TRUE(present(output, 3, 1000));
-  // One that finds the encoder at work is left out; so the time goes on until one is taken.
+  // A frame is skipped while the encoder works, so present later frames until one is accepted.
   int seconds = 1060;
   EXPECT_TRUE(test::eventually([&] { return present(output, 4, seconds += 60) && red() == 4; }));
 }
@@ -285,7 +318,7 @@ TEST(PngOutput, SaysWhatWentWrongUntilAFileIsWrittenAgain) {
   const test::TempDir folder;
   const std::string path = folder / "made/frame.png";
   ThreadWatch watch;
-  PngOutput output(path, 0, watch);
+  out::PngOutput output(path, 0, watch);
   const Pixels pixels(std::size_t{4} * 16 * 16);
   std::uint64_t n = 0;
   const auto present = [&] {

@@ -1,9 +1,10 @@
-// The outputs of a wall together, and the stages before them, with fakes for single outputs.
+// A wall's outputs together with the stages before them; single outputs are fakes.
 #include "render/out/output_set.h"
 
 #include <gtest/gtest.h>
 
 #include "render/frame/delivery.h"
+#include "render/frame/replaceable_correction.h"
 #include "render/out/settings.h"
 
 namespace merlin::render {
@@ -11,34 +12,44 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Shows each frame `delay` after it was finished, or fails.
-struct FakeOutput final : Output {
-  Result<std::optional<Timestamp>> present(const Signal& signal, const FrameInfo& info) override {
+// Shows each frame `delay` after it was finished, fails, or leaves the frame out.
+struct FakeOutput final : out::Output {
+  Result<std::optional<Timestamp>> present(const out::Signal& signal,
+                                           const out::FrameInfo& info) override {
     seen.assign(signal.pixels.begin(), signal.pixels.end());
     if (!fault.empty()) return Error{Errc::kIo, fault};
     if (leaves_out) return std::optional<Timestamp>();
     return std::optional(info.finished + delay);
   }
+  bool mayTake(const out::FrameInfo&) const override { return !leaves_out; }
   Result<std::string> mend() override {
+    ++times_mended;
     if (!fault.empty()) return Error{Errc::kIo, fault};
     return mended;
   }
+  bool wantsFrame() const override { return wants_frame; }
+  std::optional<out::Vblank> vblank() const override { return last_blank; }
+  bool wants_frame = false;
+  std::optional<out::Vblank> last_blank;
   Duration delay{};
   bool leaves_out = false;
+  std::optional<std::string> faultNow() const override { return fault_now; }
   std::string fault, mended;
+  std::optional<std::string> fault_now;
+  int times_mended = 0;
   std::vector<std::uint8_t> seen;
 };
 
 class OutputSetTest : public testing::Test {
  protected:
   OutputSetTest() {
-    std::vector<NamedOutput> outputs;
+    std::vector<out::NamedOutput> outputs;
     for (const char* name : {"first", "second"}) {
       auto output = std::make_unique<FakeOutput>();
       fakes_.push_back(output.get());
       outputs.push_back({name, "fake", std::move(output)});
     }
-    set_ = std::make_unique<OutputSet>(std::move(outputs));
+    set_ = std::make_unique<out::OutputSet>(std::move(outputs));
   }
   void present(Timestamp finished, std::optional<Timestamp> deadline) {
     for (std::size_t i = 0; i < set_->size(); ++i)
@@ -47,7 +58,7 @@ class OutputSetTest : public testing::Test {
 
   std::vector<std::uint8_t> pixels_ = {1, 2, 3, 4};
   std::vector<FakeOutput*> fakes_;
-  std::unique_ptr<OutputSet> set_;
+  std::unique_ptr<out::OutputSet> set_;
 };
 
 TEST_F(OutputSetTest, EachIsLateByItsOwnTimes) {
@@ -87,17 +98,35 @@ TEST_F(OutputSetTest, OneThatFailsTakesNothingWithItAndItsFaultEnds) {
   EXPECT_EQ(set_->state(0).frames, 1u);
 }
 
+TEST_F(OutputSetTest, WhatAnOutputLearnsOnItsOwnReplacesWhatItsLastFrameToldOfIt) {
+  fakes_[0]->fault = "the disk is full";
+  present(Timestamp{milliseconds(1)}, std::nullopt);
+  EXPECT_EQ(set_->faultNow(0), "the disk is full");
+  EXPECT_EQ(set_->faultNow(1), "");
+  fakes_[0]->fault_now = "";
+  fakes_[1]->fault_now = "unplugged";
+  EXPECT_EQ(set_->faultNow(0), "");
+  EXPECT_EQ(set_->faultNow(1), "unplugged");
+}
+
 TEST_F(OutputSetTest, MendingAsksEach) {
   EXPECT_EQ(*set_->mend(), "");
   fakes_[0]->mended = "a";
   fakes_[1]->mended = "b";
   EXPECT_EQ(*set_->mend(), "a; b");
-  fakes_[0]->fault = "gone";
-  EXPECT_EQ(set_->mend().error().what, "gone");
 }
 
-// Draws its number into the first byte.
-struct FakeOverlay final : Overlay {
+TEST_F(OutputSetTest, OneThatCannotBeMendedDoesNotKeepTheOthersFromBeingMended) {
+  fakes_[0]->fault = "gone";
+  fakes_[1]->mended = "b";
+  EXPECT_EQ(set_->mend().error().what, "gone; b");
+  EXPECT_EQ(fakes_[1]->times_mended, 1);
+  fakes_[1]->fault = "gone as well";
+  EXPECT_EQ(set_->mend().error().what, "gone; gone as well");
+}
+
+// Draws its number into the first byte of the canvas.
+struct FakeOverlay final : frame::Overlay {
   explicit FakeOverlay(std::uint8_t number) : number_(number) {}
   bool hasChanged() const override { return changed; }
   void draw(std::span<std::uint8_t> canvas) override { was_ = std::exchange(canvas[0], number_); }
@@ -108,51 +137,180 @@ struct FakeOverlay final : Overlay {
   std::uint8_t number_, was_ = 0;
 };
 
-struct Inverted final : Correction {
-  Signal apply(const Signal& canvas) override {
+struct Inverted final : frame::Correction {
+  out::Signal apply(const out::Signal& canvas) override {
+    ++applied;
     pixels.assign(canvas.pixels.begin(), canvas.pixels.end());
     for (std::uint8_t& p : pixels) p = static_cast<std::uint8_t>(255 - p);
     return {canvas.width, canvas.height, pixels};
   }
   std::vector<std::uint8_t> pixels;
+  int applied = 0;
 };
 
-// The first output has a correction, the second is sent the canvas itself.
+// The first output has a correction; the second gets the canvas as it is.
 TEST_F(OutputSetTest, OverlaysComeBeforeEachOutputsOwnCorrectionAndAreTakenOutAgain) {
   FakeOverlay below(70), above(80);
-  std::vector<std::unique_ptr<Correction>> corrections;
+  std::vector<std::unique_ptr<frame::Correction>> corrections;
   corrections.push_back(std::make_unique<Inverted>());
-  TilePlan plan;
+  tiles::TilePlan plan;
   plan.frame_width = plan.frame_height = 1;
-  Delivery delivery(plan, *set_, {&below, &above}, std::move(corrections));
+  frame::Delivery delivery(plan, *set_, {&below, &above}, std::move(corrections));
   delivery.show(pixels_, {}, std::nullopt);
   EXPECT_EQ(fakes_[0]->seen, (std::vector<std::uint8_t>{175, 253, 252, 251}));
   EXPECT_EQ(fakes_[1]->seen, (std::vector<std::uint8_t>{80, 2, 3, 4}));
   EXPECT_EQ(pixels_, (std::vector<std::uint8_t>{1, 2, 3, 4}));
-  EXPECT_FALSE(delivery.overlaysHaveChanged());
+  EXPECT_FALSE(delivery.hasChanged({}));
   above.changed = true;
-  EXPECT_TRUE(delivery.overlaysHaveChanged());
+  EXPECT_TRUE(delivery.hasChanged({}));
 }
 
-std::string faultOf(const std::vector<OutputSettings>& outputs) {
+TEST_F(OutputSetTest, AFrameThatAnOutputLeavesOutIsNotCorrectedForIt) {
+  auto correction = std::make_unique<Inverted>();
+  const Inverted& inverted = *correction;
+  std::vector<std::unique_ptr<frame::Correction>> corrections;
+  corrections.push_back(std::move(correction));
+  tiles::TilePlan plan;
+  plan.frame_width = plan.frame_height = 1;
+  frame::Delivery delivery(plan, *set_, {}, std::move(corrections));
+  fakes_[0]->leaves_out = true;
+  delivery.show(pixels_, {}, std::nullopt);
+  EXPECT_EQ(inverted.applied, 0);
+  fakes_[0]->leaves_out = false;
+  delivery.show(pixels_, {}, std::nullopt);
+  EXPECT_EQ(inverted.applied, 1);
+}
+
+TEST_F(OutputSetTest, AnOutputThatWantsAFrameGetsItWhileNothingMoves) {
+  const tiles::TilePlan plan;
+  const frame::Delivery delivery(plan, *set_);
+  EXPECT_FALSE(delivery.hasChanged({}));
+  fakes_[1]->wants_frame = true;
+  EXPECT_TRUE(delivery.hasChanged({}));
+}
+
+TEST_F(OutputSetTest, TheFirstDisplayThatTellsItsBlanksLeads) {
+  EXPECT_FALSE(set_->vblank());
+  fakes_[1]->last_blank = out::Vblank{Timestamp(milliseconds(3)), milliseconds(16)};
+  EXPECT_EQ(set_->vblank()->last, Timestamp(milliseconds(3)));
+  fakes_[0]->last_blank = out::Vblank{Timestamp(milliseconds(4)), milliseconds(20)};
+  EXPECT_EQ(set_->vblank()->period, milliseconds(20));
+}
+
+struct Delivered : OutputSetTest {
+  // The first output's correction is this one.
+  void deliverWith(std::unique_ptr<frame::Correction> correction,
+                   frame::SignalWatcher* watcher = nullptr) {
+    std::vector<std::unique_ptr<frame::Correction>> corrections;
+    corrections.push_back(std::move(correction));
+    plan_.frame_width = plan_.frame_height = 1;
+    delivery_ = std::make_unique<frame::Delivery>(plan_, *set_, std::vector<frame::Overlay*>{},
+                                                  std::move(corrections), watcher);
+  }
+  std::vector<std::uint8_t> shown() {
+    delivery_->show(pixels_, {}, std::nullopt);
+    return fakes_[0]->seen;
+  }
+
+  tiles::TilePlan plan_;
+  std::unique_ptr<frame::Delivery> delivery_;
+  const std::vector<std::uint8_t> meant_ = {1, 2, 3, 4}, inverted_ = {254, 253, 252, 251};
+};
+
+TEST_F(Delivered, AnotherCorrectionTakesItsPlaceFromTheNextFrameOn) {
+  auto made = std::make_unique<frame::ReplaceableCorrection>();
+  frame::ReplaceableCorrection& replaceable = *made;
+  deliverWith(std::move(made));
+  EXPECT_EQ(shown(), meant_);
+  EXPECT_FALSE(delivery_->hasChanged({}));
+  replaceable.replace(std::make_unique<Inverted>());
+  EXPECT_TRUE(delivery_->hasChanged({})) << "a still wall has to show it";
+  EXPECT_EQ(shown(), inverted_);
+  EXPECT_FALSE(delivery_->hasChanged({}));
+  replaceable.replace(nullptr);
+  EXPECT_EQ(shown(), meant_);
+}
+
+// Counts how many there are, and says where one is destroyed.
+struct Counted final : frame::Correction {
+  explicit Counted(int& alive) : alive_(alive) { ++alive_; }
+  ~Counted() override { --alive_; }
+  out::Signal apply(const out::Signal& canvas) override { return canvas; }
+  int& alive_;
+};
+
+TEST(ReplaceableCorrection, TheOldOneIsDestroyedByTheOneWhoReplacesIt) {
+  int alive = 0;
+  {
+    frame::ReplaceableCorrection replaceable(std::make_unique<Counted>(alive));
+    replaceable.replace(std::make_unique<Counted>(alive));
+    replaceable.replace(std::make_unique<Counted>(alive));
+    EXPECT_EQ(alive, 2) << "one was never used";
+    replaceable.apply({});
+    EXPECT_EQ(alive, 2) << "not on the wall's thread";
+    replaceable.replace(std::make_unique<Counted>(alive));
+    EXPECT_EQ(alive, 2);
+  }
+  EXPECT_EQ(alive, 0);
+}
+
+TEST_F(Delivered, AChangeForAnOutputThatTakesNoFrameNowCanWait) {
+  auto made = std::make_unique<frame::ReplaceableCorrection>();
+  frame::ReplaceableCorrection& replaceable = *made;
+  deliverWith(std::move(made));
+  replaceable.replace(std::make_unique<Inverted>());
+  fakes_[0]->leaves_out = true;
+  EXPECT_FALSE(delivery_->hasChanged({}));
+  fakes_[0]->leaves_out = false;
+  EXPECT_TRUE(delivery_->hasChanged({}));
+}
+
+struct FakeWatcher final : frame::SignalWatcher {
+  bool wants(std::size_t i) const override { return i == wanted; }
+  void see(std::size_t, const out::Signal& signal, const out::FrameInfo&) override {
+    seen.assign(signal.pixels.begin(), signal.pixels.end());
+    wanted = 99;
+  }
+  std::size_t wanted = 99;
+  std::vector<std::uint8_t> seen;
+};
+
+TEST_F(Delivered, ASignalThatSomebodyWantsIsMadeAlsoWhereTheOutputTakesNone) {
+  FakeWatcher watcher;
+  deliverWith(std::make_unique<Inverted>(), &watcher);
+  fakes_[0]->leaves_out = true;
+  EXPECT_FALSE(delivery_->hasChanged({}));
+  watcher.wanted = 0;
+  EXPECT_TRUE(delivery_->hasChanged({})) << "a still wall has to make it";
+  shown();
+  EXPECT_EQ(watcher.seen, inverted_);
+  EXPECT_FALSE(delivery_->hasChanged({}));
+  watcher.wanted = 1;
+  EXPECT_TRUE(delivery_->hasChanged({}));
+  shown();
+  EXPECT_EQ(watcher.seen, meant_) << "that output has no correction";
+}
+
+std::string faultOf(const std::vector<out::OutputSettings>& outputs) {
   const SettingFaults faults = validate(outputs, {});
   return faults.empty() ? "" : faults[0].pointer + " " + faults[0].what;
 }
 
 TEST(OutputSettings, AreCheckedTogether) {
-  const OutputSettings shared, png{OutputKind::kPng, "", "a.png", 60};
+  const out::OutputSettings shared, png{out::OutputKind::kPng, "", "a.png", 60};
   EXPECT_EQ(faultOf({shared, png}), "");
   EXPECT_EQ(faultOf({}), " is an empty list; a wall has at least one output");
-  EXPECT_EQ(faultOf(std::vector<OutputSettings>(9, png)), " has 9 outputs; a wall has at most 8");
+  EXPECT_EQ(faultOf(std::vector<out::OutputSettings>(9, png)),
+            " has 9 outputs; a wall has at most 8");
   EXPECT_EQ(faultOf({png, png}), "/1 is the second output named \"png\"; give it a \"name\"");
-  EXPECT_EQ(faultOf({png, {OutputKind::kPng, "b", "b.png", 60}}), "");
-  EXPECT_EQ(faultOf({shared, {OutputKind::kSharedMemory, "b", "", 60}}),
+  EXPECT_EQ(faultOf({png, {out::OutputKind::kPng, "b", "b.png", 60}}), "");
+  EXPECT_EQ(faultOf({shared, {out::OutputKind::kSharedMemory, "b", "", 60}}),
             "/1 is the second output of kind shared_memory; a wall has at most one");
-  EXPECT_EQ(faultOf({{OutputKind::kPng, "", "", 60}}),
+  EXPECT_EQ(faultOf({{out::OutputKind::kPng, "", "", 60}}),
             "/0 has no path; an output of kind png needs the name of its file");
-  EXPECT_EQ(faultOf({{OutputKind::kSharedMemory, "", "a.png", 60}}),
+  EXPECT_EQ(faultOf({{out::OutputKind::kSharedMemory, "", "a.png", 60}}),
             "/0/path is not a setting of kind shared_memory");
-  EXPECT_EQ(faultOf({{OutputKind::kSharedMemory, std::string(24, 'n'), "", 60}}),
+  EXPECT_EQ(faultOf({{out::OutputKind::kSharedMemory, std::string(24, 'n'), "", 60}}),
             "/0/name has 24 characters; at most 23 are allowed");
 }
 

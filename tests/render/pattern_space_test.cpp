@@ -14,31 +14,31 @@ namespace {
 
 using Floats = std::vector<float>;
 
-// 3 x 4 units, so that the diagonal of its box is 5.
-Mesh richGrid() {
-  Mesh mesh = test::grid(3, 4);
+// A grid of 3 x 4 units, so that the diagonal of its bounding box is 5.
+mesh::Mesh richGrid() {
+  mesh::Mesh mesh = test::grid(3, 4);
   const std::size_t n = mesh.vertexCount();
-  mesh.features = {{"normal", 3, vertexNormals(mesh)},
+  mesh.features = {{"normal", 3, mesh::vertexNormals(mesh)},
                    {"colour", 3, Floats(3 * n, 0.5F)},
                    {"heat", 1, Floats(n, 300)},
                    {"flow", 2, Floats(2 * n, 0)},
                    {"label", 1, Floats(n, 7)}};
-  mesh.features[1].values[0] = 0;  // extent 0.5; colours are not normalised
+  mesh.features[1].values[0] = 0;  // range 0.5; colours are not normalised
   mesh.features[2].values[3] = 280;
-  mesh.features[2].values[9] = 330;  // extent 50
-  mesh.features[3].values[4] = 4;    // extents 4 and 1: the larger counts for both
+  mesh.features[2].values[9] = 330;  // range 50
+  mesh.features[3].values[4] = 4;    // ranges 4 and 1: the larger one counts for both components
   mesh.features[3].values[7] = -1;
   return mesh;
 }
 
 float scaleOf(const char* name, float weight) {
-  const auto space = PatternSpace::make(richGrid(), {{name, weight}});
+  const auto space = reduce::PatternSpace::make(richGrid(), {{name, weight}});
   EXPECT_TRUE(space);
   return space ? space->find(name)->scale : 0;
 }
 
-std::string faultOf(const Weights& weights) {
-  const auto space = PatternSpace::make(richGrid(), weights);
+std::string faultOf(const reduce::Weights& weights) {
+  const auto space = reduce::PatternSpace::make(richGrid(), weights);
   if (space) return "none";
   EXPECT_EQ(space.error().code, Errc::kInvalidArgument);
   return space.error().what;
@@ -46,16 +46,16 @@ std::string faultOf(const Weights& weights) {
 
 TEST(Curvature, IsTheSpreadOfTheFaceNormals) {  // equation 4.2
   const float up[] = {0, 0, 1};
-  EXPECT_FLOAT_EQ(curvature(Floats{0, 0, 1, 0, 0, 1}, up), 0);
+  EXPECT_FLOAT_EQ(reduce::curvature(Floats{0, 0, 1, 0, 0, 1}, up), 0);
   // Each |F - N|^2 is 2, so their mean is 2.
-  EXPECT_FLOAT_EQ(curvature(Floats{1, 0, 0, 0, 1, 0, -1, 0, 0}, up), 1.41421356F);
-  // 0, 0, 2 and 4 over four faces: the root of 1.5.
-  EXPECT_FLOAT_EQ(curvature(Floats{0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, -1}, up), 1.22474487F);
+  EXPECT_FLOAT_EQ(reduce::curvature(Floats{1, 0, 0, 0, 1, 0, -1, 0, 0}, up), 1.41421356F);
+  // Squared distances 0, 0, 2 and 4 over four faces: the root of 1.5.
+  EXPECT_FLOAT_EQ(reduce::curvature(Floats{0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, -1}, up), 1.22474487F);
 }
 
 TEST(Curvature, IsZeroWithoutFaces) {
   const float up[] = {0, 0, 1};
-  EXPECT_EQ(curvature({}, up), 0);
+  EXPECT_EQ(reduce::curvature({}, up), 0);
 }
 
 TEST(PatternSpace, DividesGeometryByTheDiagonalOfTheBox) {
@@ -71,25 +71,25 @@ TEST(PatternSpace, TakesNormalsCurvatureBoundaryAndColourAsTheyAre) {
 TEST(PatternSpace, DividesAnyOtherFeatureByItsLargestExtent) {
   EXPECT_FLOAT_EQ(scaleOf("heat", 2), 2.0F / 50);
   EXPECT_FLOAT_EQ(scaleOf("flow", 2), 2.0F / 4);
-  EXPECT_FLOAT_EQ(scaleOf("label", 2), 2);  // is the same everywhere
+  EXPECT_FLOAT_EQ(scaleOf("label", 2), 2);  // has the same value everywhere
 }
 
 TEST(PatternSpace, LaysItsFeaturesSideBySide) {
-  const auto space = PatternSpace::make(richGrid(), {{"boundary", 1},
-                                                     {"colour", 0},
-                                                     {"curvature", 1},
-                                                     {"flow", 1},
-                                                     {"geometry", 1},
-                                                     {"heat", 1},
-                                                     {"normal", 1}});
+  const auto space = reduce::PatternSpace::make(richGrid(), {{"boundary", 1},
+                                                             {"colour", 0},
+                                                             {"curvature", 1},
+                                                             {"flow", 1},
+                                                             {"geometry", 1},
+                                                             {"heat", 1},
+                                                             {"normal", 1}});
   ASSERT_TRUE(space);
   EXPECT_EQ(space->dimension(), 11u);
   std::string table;
-  for (const PatternFeature& f : space->features()) {
+  for (const reduce::PatternFeature& f : space->features()) {
     table += f.name + " " + std::to_string(f.offset) + "+" + std::to_string(f.dimension) + ", ";
   }
   EXPECT_EQ(table, "boundary 0+1, curvature 1+1, flow 2+2, geometry 4+3, heat 7+1, normal 8+3, ");
-  EXPECT_EQ(space->find("colour"), nullptr);  // weighs nothing
+  EXPECT_EQ(space->find("colour"), nullptr);  // has no weight
   EXPECT_EQ(space->find("label"), nullptr);
 }
 
@@ -110,29 +110,29 @@ TEST(PatternSpace, NamesTheWeightThatIsNone) {
 }
 
 TEST(Weights, OfNineteenNinetyEight) {  // figure 5.2
-  const Weights expected{
+  const reduce::Weights expected{
       {"geometry", 1.0F}, {"normal", 0.5F}, {"boundary", 2.0F}, {"curvature", 1.5F}};
-  EXPECT_EQ(presetWeights(presets()[0], test::cube()), expected);
-  Weights coloured = expected;
+  EXPECT_EQ(reduce::presetWeights(reduce::presets()[0], test::cube()), expected);
+  reduce::Weights coloured = expected;
   coloured["colour"] = 1;
-  EXPECT_EQ(presetWeights(presets()[0], richGrid()), coloured);
-  const auto segmented =
-      std::ranges::find(presets(), std::string_view("perceptron-segmented1998"), &Preset::name);
-  ASSERT_NE(segmented, presets().end());
-  EXPECT_EQ(presetWeights(*segmented, richGrid()), (Weights{{"geometry", 50.0F},
-                                                            {"normal", 1.0F},
-                                                            {"label", 10.0F},
-                                                            {"boundary", 15.0F},
-                                                            {"curvature", 1.0F}}));
+  EXPECT_EQ(reduce::presetWeights(reduce::presets()[0], richGrid()), coloured);
+  const auto segmented = std::ranges::find(
+      reduce::presets(), std::string_view("perceptron-segmented1998"), &reduce::Preset::name);
+  ASSERT_NE(segmented, reduce::presets().end());
+  EXPECT_EQ(reduce::presetWeights(*segmented, richGrid()), (reduce::Weights{{"geometry", 50.0F},
+                                                                            {"normal", 1.0F},
+                                                                            {"label", 10.0F},
+                                                                            {"boundary", 15.0F},
+                                                                            {"curvature", 1.0F}}));
 }
 
 TEST(Weights, WhereNobodySaysOtherwise) {
-  const Weights expected{{"geometry", 1.0F}, {"normal", 0.05F}, {"boundary", 0.5F}};
-  EXPECT_EQ(defaultWeights(test::cube()), expected);
-  Weights coloured = expected;
+  const reduce::Weights expected{{"geometry", 1.0F}, {"normal", 0.05F}, {"boundary", 0.5F}};
+  EXPECT_EQ(reduce::defaultWeights(test::cube()), expected);
+  reduce::Weights coloured = expected;
   coloured["colour"] = 0.03F;
   coloured["label"] = 1000;
-  EXPECT_EQ(defaultWeights(richGrid()), coloured);
+  EXPECT_EQ(reduce::defaultWeights(richGrid()), coloured);
 }
 
 }  // namespace

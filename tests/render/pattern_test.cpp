@@ -1,4 +1,4 @@
-// One collapse after another, each by hand. A feature "order" says which edge is the shortest.
+// Single collapses, computed by hand. The feature "order" determines which edge is the shortest.
 #include <gtest/gtest.h>
 
 #include "tests/render/collapses.h"
@@ -13,27 +13,28 @@ using namespace test;  // collapses.h
 //  4---5---6---7
 //  | / | / | / |
 //  0---1---2---3
-Mesh strip() { return test::grid(3, 2); }
+mesh::Mesh strip() { return test::grid(3, 2); }
 
-// All far from one another in "order" but 5 and 6, which lie 1 apart, and 4, 2 from their middle.
-Mesh orderedStrip() {
-  Mesh mesh = strip();
+// Neighbours differ much in "order", except 5 and 6, which differ by 1, and 4, which is 2 from
+// their mean.
+mesh::Mesh orderedStrip() {
+  mesh::Mesh mesh = strip();
   addFeature(mesh, "order", {100, 200, 300, 400, 2.5F, 0, 1, 500, 600, 700, 800, 900});
   return mesh;
 }
 
 TEST(Placement, OfTwoInnerVerticesIsTheMiddle) {
-  Mesh mesh = orderedStrip();
+  mesh::Mesh mesh = orderedStrip();
   moveTo(mesh, 6, 2, 1, 0.5F);
-  const Reduction r = collapseInOrder(mesh, 1);
+  const reduce::Reduction r = collapseInOrder(mesh, 1);
   EXPECT_EQ(r.log.children[0], (Children{5, 6}));
   EXPECT_EQ(position(r, 0), (Floats{1.5F, 1, 0.25F}));
 }
 
 TEST(Placement, OfOneOnTheBorderIsThatOne) {
-  Mesh mesh = strip();
+  mesh::Mesh mesh = strip();
   addFeature(mesh, "order", {100, 200, 300, 400, 1, 0, 50, 500, 600, 700, 800, 900});
-  Reduction r = collapseInOrder(mesh, 1);
+  reduce::Reduction r = collapseInOrder(mesh, 1);
   EXPECT_EQ(r.log.children[0], (Children{4, 5}));
   EXPECT_EQ(position(r, 0), (Floats{0, 1, 0}));
   mesh.find("order")->values = {100, 200, 300, 400, 50, 0, 500, 600, 700, 800, 1, 900};
@@ -42,34 +43,35 @@ TEST(Placement, OfOneOnTheBorderIsThatOne) {
   EXPECT_EQ(position(r, 0), (Floats{2, 2, 0}));
 }
 
-// 0 turns by a right angle, 1 by none; 3 by a right angle, 2 by none.
+// The border turns by a right angle at 0, not at 1; by a right angle at 3, not at 2.
 TEST(Placement, OfTwoOnTheBorderIsTheSharperCorner) {
-  Mesh mesh = strip();
+  mesh::Mesh mesh = strip();
   addFeature(mesh, "order", {0, 1, 300, 400, 100, 50, 150, 500, 600, 700, 800, 900});
   EXPECT_EQ(position(collapseInOrder(mesh, 1), 0), (Floats{0, 0, 0}));
   mesh.find("order")->values = {300, 400, 1, 0, 100, 50, 150, 500, 600, 700, 800, 900};
   EXPECT_EQ(position(collapseInOrder(mesh, 1), 0), (Floats{3, 0, 0}));
 }
 
-// The border turns by 45 degrees at 1; at 2 by what 3 makes of it.
+// The border turns by 45 degrees at 1, and at 2 by an angle that depends on 3.
 TEST(Placement, ComparesTheTurnsOfTheBorder) {
-  Mesh mesh = strip();
+  mesh::Mesh mesh = strip();
   moveTo(mesh, 2, 2, -1, 0);
   addFeature(mesh, "order", {300, 0, 1, 400, 100, 50, 150, 500, 600, 700, 800, 900});
-  moveTo(mesh, 3, 4, -1.2F, 0);  // turns by 39 degrees at 2
+  moveTo(mesh, 3, 4, -1.2F, 0);  // the border turns by 39 degrees at 2
   EXPECT_EQ(position(collapseInOrder(mesh, 1), 0), (Floats{1, 0, 0}));
-  moveTo(mesh, 3, 4, -0.5F, 0);  // by 59
+  moveTo(mesh, 3, 4, -0.5F, 0);  // by 59 degrees
   EXPECT_EQ(position(collapseInOrder(mesh, 1), 0), (Floats{2, -1, 0}));
 }
 
-// 2 is where two pieces touch: however little the border of each turns there, it stays. 1 is sharp.
+// Two pieces touch at vertex 2: it stays, however little the border of each piece turns there.
+// Vertex 1 is a sharp corner.
 //
 //  0-------1
 //    `-2-'
 //     / |
 //    3--4
 TEST(Placement, KeepsTheVertexWhereTwoPiecesTouch) {
-  Mesh mesh;
+  mesh::Mesh mesh;
   mesh.positions = {-1, 0.1F, 0, 1, 0.1F, 0, 0, 0, 0, -1, -1, 0, 0, -1, 0};
   mesh.triangles = {1, 0, 2, 2, 3, 4};
   addFeature(mesh, "order", {100, 1, 0, 200, 300});
@@ -77,23 +79,23 @@ TEST(Placement, KeepsTheVertexWhereTwoPiecesTouch) {
 }
 
 TEST(Placement, MixesFeaturesAsThePositionAndTakesTheNormalOfTheNewFaces) {
-  Mesh mesh = orderedStrip();
+  mesh::Mesh mesh = orderedStrip();
   addFeature(mesh, "heat", {0, 0, 0, 0, 7, 1, 2, 0, 0, 0, 0, 0});
-  mesh.find("normal")->values.assign(36, 0.57735027F);  // as a scanner might say
-  const Reduction r = collapseInOrder(mesh, 2);
+  mesh.find("normal")->values.assign(36, 0.57735027F);  // not the surface's own normals
+  const reduce::Reduction r = collapseInOrder(mesh, 2);
   EXPECT_EQ(r.log.children[1], (Children{4, 12}));
-  EXPECT_EQ(r.log.features[1], (Floats{0.5F, 2.5F}));  // order: the middle; then 4's own
+  EXPECT_EQ(r.log.features[1], (Floats{0.5F, 2.5F}));  // the mean; then 4's own value
   EXPECT_EQ(r.log.features[2], (Floats{1.5F, 7}));
   EXPECT_EQ(r.log.features[0], (Floats{0, 0, 1, 0, 0, 1}));  // normal
 }
 
-// L(5, 6) = |(3, 4)| = 5. Against it stands 1-2, whose difference is in "p" alone.
+// L(5, 6) = |(3, 4)| = 5. It competes with edge 1-2, whose ends differ in "p" alone.
 float firstOfStrip(float p2, float unit_of_p) {
-  Mesh mesh = strip();
+  mesh::Mesh mesh = strip();
   addFeature(mesh, "order", {300, 200, 200, 400, 100, 0, 0, 500, 600, 700, 800, 900});
   addFeature(mesh, "p", {0, 0, p2, 0, 0, 0, 3, 0, 0, 0, 0, 0});
   addFeature(mesh, "q", {0, 0, 0, 0, 0, 0, 4, 0, 0, 0, 0, 0});
-  const Reduction r = collapse(
+  const reduce::Reduction r = collapse(
       mesh, {weightOf(mesh, "order"), weightOf(mesh, "p", unit_of_p), weightOf(mesh, "q")}, 1);
   return static_cast<float>(r.log.children[0][0]);
 }
@@ -101,22 +103,22 @@ float firstOfStrip(float p2, float unit_of_p) {
 TEST(EdgeLength, IsTheDistanceOfTheWeightedVectors) {  // [GOURLEY98] equation 4.3
   EXPECT_EQ(firstOfStrip(4.99F, 1), 1);
   EXPECT_EQ(firstOfStrip(5.01F, 1), 5);
-  // At half the weight: L(5, 6) = |(1.5, 4)| = 4.272, and 1-2 counts half.
+  // At half the weight L(5, 6) = |(1.5, 4)| = 4.272, and the difference of 1-2 counts half.
   EXPECT_EQ(firstOfStrip(2 * 4.27F, 0.5F), 1);
   EXPECT_EQ(firstOfStrip(2 * 4.28F, 0.5F), 5);
 }
 
-// 4-5 was 2.5 long, 2-3 is 2.2; from 4 to the middle of 5 and 6 it is 2.
+// Edge 4-5 had length 2.5, 2-3 has 2.2; from 4 to the merged vertex of 5 and 6 the length is 2.
 TEST(EdgeLength, IsMeasuredAgainAtTheNewVertex) {
-  Mesh mesh = orderedStrip();
+  mesh::Mesh mesh = orderedStrip();
   mesh.find("order")->values[3] = mesh.find("order")->values[2] + 2.2F;
-  const Reduction r = collapseInOrder(mesh, 3);
+  const reduce::Reduction r = collapseInOrder(mesh, 3);
   EXPECT_EQ(r.log.children[1], (Children{4, 12}));
   EXPECT_EQ(r.log.children[2], (Children{2, 3}));
 }
 
 TEST(EdgeLength, HoldsABorderVertexAwayFromAnInnerOne) {
-  Mesh mesh = strip();
+  mesh::Mesh mesh = strip();
   addFeature(mesh, "order", {100, 200, 300, 400, 0.5F, 0, -1, 500, 600, 700, 800, 900});
   const auto order = weightOf(mesh, "order");
   EXPECT_EQ(collapse(mesh, {order}, 1).log.children[0], (Children{4, 5}));
@@ -125,7 +127,7 @@ TEST(EdgeLength, HoldsABorderVertexAwayFromAnInnerOne) {
 }
 
 TEST(EdgeLength, HoldsABendAwayFromAPlain) {
-  Mesh mesh = strip();
+  mesh::Mesh mesh = strip();
   moveTo(mesh, 4, 0, 1, 0.5F);  // bent at 0, 4, 5, 8, 9; flat at 6
   addFeature(mesh, "order", {100, 200, 300, 400, 500, 0, 1, 2.5F, 600, 700, 800, 900});
   const auto order = weightOf(mesh, "order");

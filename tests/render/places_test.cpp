@@ -11,13 +11,13 @@ using Floats = std::vector<float>;
 using Indices = std::vector<std::uint32_t>;
 
 TEST(SamePlace, IsARingThroughTheVerticesOfAPlace) {
-  EXPECT_EQ(samePlace(Floats{1, 2, 3, 0, 0, 0, 1, 2, 3, 1, 2, 4, 1, 2, 3, -0.0F, 0, 0}),
+  EXPECT_EQ(mesh::samePlace(Floats{1, 2, 3, 0, 0, 0, 1, 2, 3, 1, 2, 4, 1, 2, 3, -0.0F, 0, 0}),
             (Indices{2, 5, 4, 3, 0, 1}));
 }
 
 TEST(SamePlace, LeavesThoseAloneThatAre) {
-  EXPECT_EQ(samePlace({}), Indices{});
-  const auto alone = samePlace(test::grid(20, 20).positions);
+  EXPECT_EQ(mesh::samePlace({}), Indices{});
+  const auto alone = mesh::samePlace(test::grid(20, 20).positions);
   for (std::uint32_t v = 0; v < alone.size(); ++v) EXPECT_EQ(alone[v], v);
 }
 
@@ -26,9 +26,9 @@ TEST(SamePlace, AgreesWithComparingEachWithEach) {
   for (int round = 0; round < 200; ++round) {
     Floats positions(3 * random.below(20));
     for (float& x : positions) x = static_cast<float>(random.below(2));
-    const Indices next = samePlace(positions);
+    const Indices next = mesh::samePlace(positions);
     ASSERT_EQ(next.size(), positions.size() / 3);
-    EXPECT_EQ(samePlaceBySorting(positions), next);
+    EXPECT_EQ(mesh::samePlaceBySorting(positions), next);
     for (std::size_t v = 0; v < next.size(); ++v) {
       const auto same = [&](std::size_t w) {
         return std::equal(&positions[3 * v], &positions[3 * v] + 3, &positions[3 * w]);

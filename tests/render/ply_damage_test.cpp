@@ -17,7 +17,7 @@ INSTANTIATE_TEST_SUITE_P(Each, PlyDamage, testing::ValuesIn(kForms),
 TEST_P(PlyDamage, EveryTruncationIsAnError) {
   const std::string file = squareFile(GetParam());
   const std::size_t body = file.find("end_header\n") + 11;
-  // Without its last line feed an ascii file is whole: the last number is "3".
+  // Without its final line feed an ASCII file is still complete: the last number is "3".
   const std::size_t whole = file.size() - (GetParam() == Form::kAscii ? 1 : 0);
   for (std::size_t n = 0; n < whole; ++n) {
     const auto loaded = read(file.substr(0, n));
@@ -29,8 +29,8 @@ TEST_P(PlyDamage, EveryTruncationIsAnError) {
   EXPECT_TRUE(read(file.substr(0, whole)));
 }
 
-// What one wrong byte leaves readable is still a mesh that validate() takes, no larger than the
-// file; the rest is refused with a reason.
+// With one wrong byte, a file is either refused with a reason or loaded as a valid mesh that is no
+// larger than the file.
 TEST_P(PlyDamage, OneWrongByteNeverLoadsHalf) {
   const std::string file = squareFile(GetParam());
   std::size_t refused = 0;
@@ -49,7 +49,7 @@ TEST_P(PlyDamage, OneWrongByteNeverLoadsHalf) {
   EXPECT_GT(refused, 100 * file.size());
 }
 
-// The file above in ascii, with a piece replaced, and what is said of it.
+// The ASCII file above with `from` replaced by `to`, and the resulting error.
 struct Fault {
   const char* name;
   const char* from;
@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"other version", "ascii 1.0", "ascii 1.1", kFormat},
         Fault{"other form", "ascii 1.0", "ebcdic 1.0", kFormat},
         Fault{"unknown keyword", "element vertex", "elements vertex",
-              "line 4: \"elements\" is no keyword of a PLY header"},
+              "line 4: \"elements\" is not a keyword of a PLY header"},
         Fault{"no count", "vertex 4", "vertex", kElement},
         Fault{"negative count", "vertex 4", "vertex -4", kElement},
         Fault{"fractional count", "vertex 4", "vertex 4.5", kElement},
@@ -93,9 +93,9 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"too many words", "float x", "float x y", kProperty},
         Fault{"list of lists", "float x", "list uchar list x", kProperty},
         Fault{"fractional length", "list uchar", "list float",
-              "line 13: the length of a list is an integer"},
+              "line 13: the length of a list must be an integer"},
         Fault{"no end", "end_header", "end_heaven",
-              "line 14: \"end_heaven\" is no keyword of a PLY header"},
+              "line 14: \"end_heaven\" is not a keyword of a PLY header"},
         Fault{"missing x", "float x", "float q", "the vertices lack x, y or z"},
         Fault{"x as a list", "float x", "list uchar float x", "the vertices lack x, y or z"},
         Fault{"x twice", "float z", "float x", "the vertices lack x, y or z"},
@@ -103,42 +103,47 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Body, PlyFaults,
-    testing::Values(
-        Fault{"a word", "0.000000 1.000000 0.5", "0.000000 one 0.5",
-              "vertex 2, property y: \"one\" is no number"},
-        Fault{"two numbers in one", "0.000000 1.000000 0.5", "0.000000 1.0.0 0.5",
-              "vertex 2, property y: \"1.0.0\" is no number"},
-        Fault{"hexadecimal", "0.000000 1.000000 0.5", "0.000000 0x1 0.5",
-              "vertex 2, property y: \"0x1\" is no number"},
-        Fault{"beyond a double", "0.000000 1.000000 0.5", "0.000000 1e999 0.5",
-              "vertex 2, property y: \"1e999\" is no number"},
-        Fault{"beyond a float", "0.000000 1.000000 0.5", "0.000000 1e99 0.5",
-              "vertex 2: coordinate y is inf; 1e+18 is the farthest"},
-        Fault{"not a number", "0.000000 1.000000 0.5", "0.000000 nan 0.5",
-              "vertex 2: coordinate y is nan; 1e+18 is the farthest"},
-        Fault{"infinite", "0.000000 1.000000 0.5", "-inf 1.000000 0.5",
-              "vertex 2: coordinate x is -inf; 1e+18 is the farthest"},
-        Fault{"feature not a number", "-0.500000", "nan", "feature heat: vertex 2 has nan"},
-        Fault{"one row too few", "vertex 4", "vertex 5",
-              "cut short in face 1 of 2, property vertex_indices"},
-        Fault{"one face too many", "face 2", "face 3",
-              "cut short in face 2 of 3, property vertex_indices"},
-        Fault{"corner beyond", "3 0 1 3", "3 0 1 4", "triangle 2: vertex 4 of 4 (0 to 3 exist)"},
-        Fault{"negative corner", "3 0 1 3", "3 0 -1 3", "face 1: corner 1 is -1, no vertex"},
-        Fault{"fractional corner", "3 0 1 3", "3 0.5 1 3", "face 1: corner 0 is 0.5, no vertex"},
-        Fault{"corner beyond 31 bits", "3 0 1 3", "3 0 1 2147483648",
-              "face 1: corner 2 is 2147483648, no vertex"},
-        Fault{"corner not a number", "3 0 1 3", "3 0 nan 3", "face 1: corner 1 is nan, no vertex"},
-        Fault{"endless list", "3 0 1 3", "4000000000 0 1 3",
-              "cut short in face 1 of 2, property vertex_indices"},
-        Fault{"negative length", "3 0 1 3", "-3 0 1 3",
-              "face 1, property vertex_indices: -3 is no length of a list"},
-        Fault{"fractional length", "3 0 1 3", "2.5 0 1 3",
-              "face 1, property vertex_indices: 2.5 is no length of a list"},
-        Fault{"length not a number", "3 0 1 3", "nan 0 1 3",
-              "face 1, property vertex_indices: nan is no length of a list"}));
+    testing::Values(Fault{"a word", "0.000000 1.000000 0.5", "0.000000 one 0.5",
+                          "vertex 2, property y: \"one\" is not a number"},
+                    Fault{"two numbers in one", "0.000000 1.000000 0.5", "0.000000 1.0.0 0.5",
+                          "vertex 2, property y: \"1.0.0\" is not a number"},
+                    Fault{"hexadecimal", "0.000000 1.000000 0.5", "0.000000 0x1 0.5",
+                          "vertex 2, property y: \"0x1\" is not a number"},
+                    Fault{"beyond a double", "0.000000 1.000000 0.5", "0.000000 1e999 0.5",
+                          "vertex 2, property y: \"1e999\" is not a number"},
+                    Fault{"beyond a float", "0.000000 1.000000 0.5", "0.000000 1e99 0.5",
+                          "vertex 2: coordinate y is inf; the limit is +-1e+18"},
+                    Fault{"not a number", "0.000000 1.000000 0.5", "0.000000 nan 0.5",
+                          "vertex 2: coordinate y is nan; the limit is +-1e+18"},
+                    Fault{"infinite", "0.000000 1.000000 0.5", "-inf 1.000000 0.5",
+                          "vertex 2: coordinate x is -inf; the limit is +-1e+18"},
+                    Fault{"feature not a number", "-0.500000", "nan",
+                          "feature heat: vertex 2 has nan"},
+                    Fault{"one row too few", "vertex 4", "vertex 5",
+                          "cut short in face 1 of 2, property vertex_indices"},
+                    Fault{"one face too many", "face 2", "face 3",
+                          "cut short in face 2 of 3, property vertex_indices"},
+                    Fault{"corner beyond", "3 0 1 3", "3 0 1 4",
+                          "triangle 2: there is no vertex 4, the mesh has 4 (0 to 3)"},
+                    Fault{"negative corner", "3 0 1 3", "3 0 -1 3",
+                          "face 1: corner 1 is -1, not a vertex index"},
+                    Fault{"fractional corner", "3 0 1 3", "3 0.5 1 3",
+                          "face 1: corner 0 is 0.5, not a vertex index"},
+                    Fault{"corner beyond 31 bits", "3 0 1 3", "3 0 1 2147483648",
+                          "face 1: corner 2 is 2147483648, not a vertex index"},
+                    Fault{"corner not a number", "3 0 1 3", "3 0 nan 3",
+                          "face 1: corner 1 is nan, not a vertex index"},
+                    Fault{"endless list", "3 0 1 3", "4000000000 0 1 3",
+                          "cut short in face 1 of 2, property vertex_indices"},
+                    Fault{"negative length", "3 0 1 3", "-3 0 1 3",
+                          "face 1, property vertex_indices: -3 is not the length of a list"},
+                    Fault{"fractional length", "3 0 1 3", "2.5 0 1 3",
+                          "face 1, property vertex_indices: 2.5 is not the length of a list"},
+                    Fault{"length not a number", "3 0 1 3", "nan 0 1 3",
+                          "face 1, property vertex_indices: nan is not the length of a list"}));
 
-// Nothing is allocated for what the file cannot hold: these would take 48 GB and more.
+// The reader must not allocate for more elements than the file can hold: these would take 48 GB or
+// more.
 TEST(PlyCounts, BeyondTheFilesSizeAreRefusedFirst) {
   for (const Form form : kForms) {
     for (const char* count : {"4000000000", "18446744073709551615", "6148914691236517206"}) {
@@ -148,7 +153,7 @@ TEST(PlyCounts, BeyondTheFilesSizeAreRefusedFirst) {
         const auto loaded = read(replaced(file, mine, element + " "s + count));
         ASSERT_FALSE(loaded) << element << " " << count;
         EXPECT_EQ(loaded.error().code, Errc::kMalformed);
-        EXPECT_TRUE(loaded.error().what.starts_with("cut short: the header promises "s + count +
+        EXPECT_TRUE(loaded.error().what.starts_with("cut short: the header declares "s + count +
                                                     " x " + element + ", the file ends after "))
             << loaded.error().what;
       }

@@ -1,4 +1,4 @@
-// What the tests of PLY share: small files of all three forms, made number by number.
+// Shared by the tests of PLY: small files in all three forms, built number by number.
 #pragma once
 
 #include <array>
@@ -12,15 +12,15 @@
 namespace merlin::test {
 
 using namespace std::string_literals;
-// What readMesh() does with a file of these bytes, but for tidying.
-inline Result<render::LoadedMesh> read(const std::string& bytes) {
-  auto loaded = render::ply::parse(bytes);
+// Reads these bytes as readMesh() does, without tidying the mesh.
+inline Result<render::mesh::LoadedMesh> read(const std::string& bytes) {
+  auto loaded = render::mesh::ply::parse(bytes);
   if (!loaded) return loaded;
   if (const auto valid = validate(loaded->mesh); !valid) return valid.error();
   return loaded;
 }
 
-// Every occurrence.
+// Replaces every occurrence of `from`.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
@@ -38,7 +38,7 @@ inline const char* nameOf(Form form) {
   return kNames[static_cast<std::size_t>(form)];
 }
 
-// A body, number by number.
+// Builds a body in the given form, number by number.
 class Body {
  public:
   explicit Body(Form form) : form_(form) {}
@@ -70,7 +70,7 @@ inline std::string header(Form form, const std::string& properties) {
          "end_header\n";
 }
 
-// A square of a quad and a triangle, with everything that MERLIN knows of in it.
+// A square of a quad and a triangle, with every property that MERLIN knows.
 inline std::string squareFile(Form form) {
   Body body(form);
   for (int v = 0; v < 4; ++v) {

@@ -18,7 +18,7 @@ using Floats = std::vector<float>;
 using Indices = std::vector<std::uint32_t>;
 using Notes = std::vector<std::string>;
 
-void expectSquare(const Mesh& mesh) {
+void expectSquare(const mesh::Mesh& mesh) {
   EXPECT_EQ(mesh.positions, (Floats{0, 0, 0.5F, 1, 0, 0.5F, 0, 1, 0.5F, 1, 1, 0.5F}));
   EXPECT_EQ(mesh.triangles, (Indices{0, 1, 3, 0, 3, 2, 0, 1, 3}));
   ASSERT_EQ(mesh.features.size(), 2u);
@@ -53,7 +53,7 @@ TEST_P(PlyForms, MayHaveCarriageReturnsInTheirHeader) {
   expectSquare(loaded->mesh);
 }
 
-// One property of each type, by both of its names, at the end of its range.
+// A property of each type, by both of the type's names, with the last value of its range.
 TEST_P(PlyForms, HaveEightTypesOfTwoNames) {
   const auto last = [&](const std::string& type, auto value) {
     Body body(GetParam());
@@ -79,7 +79,8 @@ TEST_P(PlyForms, HaveEightTypesOfTwoNames) {
 
 TEST_P(PlyForms, MayCarryWhatNobodyKnows) {
   Body body(GetParam());
-  body.put(std::uint8_t{2}).put(7.0).put(8.0).put(std::int16_t{-1}).line();  // a camera
+  // An element "camera", which the reader skips.
+  body.put(std::uint8_t{2}).put(7.0).put(8.0).put(std::int16_t{-1}).line();
   for (int v = 0; v < 3; ++v) {
     body.put(std::uint8_t{1}).put(v).put(v == 1 ? 1.0F : 0.0F).put(v == 2 ? 1.0F : 0.0F).put(0.0F);
     body.line();
@@ -100,7 +101,8 @@ TEST_P(PlyForms, MayCarryWhatNobodyKnows) {
   EXPECT_EQ(loaded->mesh.positions, (Floats{0, 0, 0, 1, 0, 0, 0, 1, 0}));
   EXPECT_EQ(loaded->mesh.triangles, (Indices{0, 1, 2}));
   EXPECT_TRUE(loaded->mesh.features.empty());
-  EXPECT_EQ(loaded->notes, Notes{"left out: camera, nothing, bones (a list), flags (of faces)"});
+  EXPECT_EQ(loaded->notes,
+            Notes{"left out: camera, nothing, bones (a list), flags (a face property)"});
 }
 
 const std::string kAscii = squareFile(Form::kAscii);
@@ -140,11 +142,11 @@ TEST(PlyRead, PutsKnownPropertiesUnderOneName) {
       "property ushort r\nproperty uchar alpha\nend_header\n"
       "0 0 0 2 3 1 0.25 0.75 65535 13107 0 128\n");
   ASSERT_TRUE(loaded) << loaded.error().what;
-  const Mesh& mesh = loaded->mesh;
+  const mesh::Mesh& mesh = loaded->mesh;
   ASSERT_EQ(mesh.features.size(), 4u);
   EXPECT_EQ(mesh.find("normal")->values, (Floats{1, 2, 3}));
   EXPECT_EQ(mesh.find("texcoord")->values, (Floats{0.25F, 0.75F}));
-  EXPECT_EQ(mesh.find("alpha")->values, (Floats{128}));  // data as any other
+  EXPECT_EQ(mesh.find("alpha")->values, (Floats{128}));  // an unknown name: kept as a feature
   ASSERT_EQ(mesh.find("colour")->values.size(), 3u);
   EXPECT_EQ(mesh.find("colour")->values[0], 0.0F);
   EXPECT_FLOAT_EQ(mesh.find("colour")->values[1], 0.2F);
@@ -162,7 +164,7 @@ TEST(PlyRead, TakesColoursInFloatAsTheyAre) {
 TEST(PlyRead, TakesTheFirstOfTwoThatAreOne) {
   const auto loaded = read(replaced(kAscii, "property double heat", "property float red"));
   ASSERT_TRUE(loaded) << loaded.error().what;
-  EXPECT_EQ(loaded->notes, Notes{"left out: red (there is one before it)"});
+  EXPECT_EQ(loaded->notes, Notes{"left out: red (a second property for the same value)"});
   EXPECT_EQ(loaded->mesh.find("colour")->values, read(kAscii)->mesh.find("colour")->values);
 }
 
@@ -185,30 +187,30 @@ TEST(PlyRead, CountsWholeNumbersThatAFloatHasNot) {
       "property float z\nproperty int label\nend_header\n0 0 0 16777216\n0 0 0 16777217\n"
       "0 0 0 -33554433\n");
   ASSERT_TRUE(loaded) << loaded.error().what;
-  EXPECT_EQ(loaded->notes, Notes{"2 whole numbers beyond 2^24 are rounded"});
+  EXPECT_EQ(loaded->notes, Notes{"2 integers beyond 2^24 were rounded to floats"});
 }
 
-// What a terminal would follow, or JSON could not hold.
+// Names with bytes that would control a terminal or that JSON cannot hold.
 TEST(PlyRead, RefusesNamesThatAreNoText) {
   for (const char* name : {"he\x1b[31mat", "he\xff", "he\x7f", "\xc2\x9bheat", "\xc3"}) {
     const auto refused = read(replaced(kAscii, "property double heat", "property double "s + name));
     ASSERT_FALSE(refused);
-    EXPECT_TRUE(refused.error().what.ends_with(": the property's name is no text (UTF-8)"));
+    EXPECT_TRUE(refused.error().what.ends_with(": the property's name is not valid UTF-8"));
   }
   EXPECT_TRUE(read(replaced(kAscii, "double heat", "double \xce\xb8-\xe2\x84\x83")));
 }
 
-// A scalar that is called "colour" is not a colour's red; nor may its neighbours be written beside
-// it.
+// A scalar property called "colour" must not be taken for a colour's red, nor be written as one.
 TEST(PlyRead, LeavesOutAScalarThatBearsTheNameOfAKnownFeature) {
   for (const char* name : {"colour", "normal", "texcoord"}) {
     const auto loaded =
         read(replaced(replaced(kAscii, "property double heat", "property uchar blue"),
                       "property uchar red", "property uchar "s + name));
     ASSERT_TRUE(loaded) << loaded.error().what;
-    EXPECT_EQ(loaded->notes,
-              Notes{"left out: "s + name +
-                    " (has to be several properties), blue (there is one before it)"});
+    EXPECT_EQ(
+        loaded->notes,
+        Notes{"left out: "s + name +
+              " (is expected as several properties), blue (a second property for the same value)"});
     ASSERT_EQ(loaded->mesh.features.size(), 1u);
     EXPECT_EQ(loaded->mesh.features[0].name, "colour");
     EXPECT_EQ(loaded->mesh.features[0].dimension, 3u);

@@ -17,7 +17,7 @@ class PointerMarkerTest : public testing::Test {
     return 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(plan_.frame_width) +
                 static_cast<std::size_t>(x));
   }
-  // A pixel that nothing was drawn on is grey.
+  // Whether something was drawn on the pixel; an untouched one is grey (90).
   bool marked(int x, int y) const { return pixels_[at(x, y)] != 90; }
   std::size_t markedPixels() const {
     std::size_t n = 0;
@@ -34,12 +34,12 @@ class PointerMarkerTest : public testing::Test {
     return marker_.hasChanged();
   }
 
-  TilePlan plan_ = *planTiles({});  // 640 x 480, 40 degrees each
+  tiles::TilePlan plan_ = *tiles::planTiles({});  // 640 x 480 pixels, 40 degrees each
   std::vector<std::uint8_t> pixels_ = std::vector<std::uint8_t>(4 * 1280 * 960, 90);
-  PointerMarker marker_{plan_};
+  frame::PointerMarker marker_{plan_};
 };
 
-// The centre tile is the frame's upper right one.
+// The centre tile is the upper right quadrant of the frame.
 TEST_F(PointerMarkerTest, StraightAheadIsTheMiddleOfTheCentreTile) {
   EXPECT_EQ(marker_.pixelOf({0, 0, -2}), Vector2i(960, 240));
   draw(Vector3f(0, 0, -2));
@@ -51,7 +51,8 @@ TEST_F(PointerMarkerTest, StraightAheadIsTheMiddleOfTheCentreTile) {
   EXPECT_EQ(pixels_[at(960, 240) + 3], 90) << "alpha stays";
 }
 
-// 20 degrees to the left is the seam of the left tile (upper left in the frame) and the centre's.
+// 20 degrees to the left is the seam between the left tile (upper left in the frame) and the centre
+// tile.
 TEST_F(PointerMarkerTest, ADiscOverASeamIsInBothTiles) {
   const float seam = 20 * std::numbers::pi_v<float> / 180 - 0.001F;
   draw(Vector3f(-std::sin(seam), 0, -std::cos(seam)));

@@ -1,4 +1,4 @@
-// One vertex' edges: costs and places against sums over planes made plainly, in double.
+// The edges of one vertex: costs and positions against plain sums over planes in double precision.
 #include "render/reduce/quadric/quadric_evaluate.h"
 
 #include <cmath>
@@ -16,35 +16,37 @@ namespace {
 using Vec = Eigen::Vector3d;
 
 struct Bench : test::QuadricBench {
-  explicit Bench(const Mesh& m, std::size_t channels = 0) : QuadricBench(m, channels), mesh(m) {}
+  explicit Bench(const mesh::Mesh& m, std::size_t channels = 0)
+      : QuadricBench(m, channels), mesh(m) {}
 
   Vec at(std::uint32_t v) const {
     return Eigen::Map<const Eigen::Vector3f>(surface[v].position).cast<double>();
   }
 
-  // Twice the area times squared distance to the planes of v's star, and to its borders' planes.
+  // Sum of twice the area times the squared distance, over the planes of v's triangles and of its
+  // border edges.
   double distanceTo(std::uint32_t v, const Vec& p) const {
     double sum = 0;
-    for (const Corner& c : surface.star(surface[v])) {
+    for (const reduce::Corner& c : surface.star(surface[v])) {
       const Vec n = (at(c.b) - at(v)).cross(at(c.c) - at(v));
       sum += n.norm() * std::pow(n.normalized().dot(p - at(v)), 2);
     }
     return sum;
   }
 
-  Mesh mesh;
+  mesh::Mesh mesh;
 };
 
 TEST(QuadricEvaluate, CostIsTheDistanceToThePlanesOfBothStars) {
   Bench bench(test::noisyGrid(9, 9, 0.3, 1));
-  bench.evaluateAll(edgeEvaluator());
+  bench.evaluateAll(reduce::edgeEvaluator());
   std::size_t looked = 0;
   for (std::uint32_t v = 0; v < bench.surface.vertexCount(); ++v) {
-    if (bench.surface[v].flags & kOpen) continue;
-    edgeEvaluator()(bench.view(), v, bench.costs);
+    if (bench.surface[v].flags & reduce::kOpen) continue;
+    reduce::edgeEvaluator()(bench.view(), v, bench.costs);
     for (std::uint32_t e = 0; e < bench.costs.count; ++e) {
       const std::uint32_t x = bench.costs.neighbour[e];
-      if (bench.surface[x].flags & kOpen) continue;
+      if (bench.surface[x].flags & reduce::kOpen) continue;
       const Vec to = bench.at(v) + Vec(bench.costs.x[e], bench.costs.y[e], bench.costs.z[e]);
       const double plain = bench.distanceTo(v, to) + bench.distanceTo(x, to);
       EXPECT_NEAR(bench.costs.cost[e], plain, 1e-3 * plain + 1e-5);
@@ -56,13 +58,13 @@ TEST(QuadricEvaluate, CostIsTheDistanceToThePlanesOfBothStars) {
 
 TEST(QuadricEvaluate, PlaceIsTheLeastOfTheCost) {
   Bench bench(test::noisyGrid(9, 9, 0.3, 2));
-  bench.evaluateAll(edgeEvaluator());
+  bench.evaluateAll(reduce::edgeEvaluator());
   for (std::uint32_t v = 0; v < bench.surface.vertexCount(); ++v) {
-    if (bench.surface[v].flags & kOpen) continue;
-    edgeEvaluator()(bench.view(), v, bench.costs);
+    if (bench.surface[v].flags & reduce::kOpen) continue;
+    reduce::edgeEvaluator()(bench.view(), v, bench.costs);
     for (std::uint32_t e = 0; e < bench.costs.count; ++e) {
       const std::uint32_t x = bench.costs.neighbour[e];
-      if (bench.surface[x].flags & kOpen) continue;
+      if (bench.surface[x].flags & reduce::kOpen) continue;
       const Vec to = bench.at(v) + Vec(bench.costs.x[e], bench.costs.y[e], bench.costs.z[e]);
       const double here = bench.distanceTo(v, to) + bench.distanceTo(x, to);
       for (const Vec& step : {Vec(0.02, 0, 0), Vec(0, 0.02, 0), Vec(0, 0, 0.02)}) {
@@ -77,11 +79,11 @@ TEST(QuadricEvaluate, PlaceIsTheLeastOfTheCost) {
 
 TEST(QuadricEvaluate, InAPlaneTheMiddleIsTaken) {
   Bench bench(test::grid(6, 6));
-  bench.evaluateAll(edgeEvaluator());
+  bench.evaluateAll(reduce::edgeEvaluator());
   for (std::uint32_t v = 0; v < bench.surface.vertexCount(); ++v) {
-    edgeEvaluator()(bench.view(), v, bench.costs);
+    reduce::edgeEvaluator()(bench.view(), v, bench.costs);
     for (std::uint32_t e = 0; e < bench.costs.count; ++e) {
-      if ((bench.surface[v].flags | bench.surface[bench.costs.neighbour[e]].flags) & kOpen)
+      if ((bench.surface[v].flags | bench.surface[bench.costs.neighbour[e]].flags) & reduce::kOpen)
         continue;
       EXPECT_NEAR(bench.costs.x[e], bench.costs.rx[e] / 2, 1e-4);
       EXPECT_NEAR(bench.costs.y[e], bench.costs.ry[e] / 2, 1e-4);
@@ -90,7 +92,8 @@ TEST(QuadricEvaluate, InAPlaneTheMiddleIsTaken) {
   }
 }
 
-// Slow and wide processors have to agree on every bit: a model reduced on one is the same on all.
+// The scalar and the SIMD version must agree in every bit, so that a model is reduced alike on all
+// machines.
 TEST(QuadricEvaluate, EveryProcessorGivesTheSameBits) {
   for (const std::size_t channels : {0u, 3u, 9u}) {
     Bench a(test::noisyGrid(30, 30, 0.4, 3), channels), b(a.mesh, channels);
@@ -99,11 +102,11 @@ TEST(QuadricEvaluate, EveryProcessorGivesTheSameBits) {
       for (std::size_t k = 0; k < channels; ++k)
         a.values.value(v, k) = b.values.value(v, k) = static_cast<float>(random.normal());
     }
-    a.evaluateAll(edgeEvaluator());
-    b.evaluateAll(portableEdgeEvaluator());
+    a.evaluateAll(reduce::edgeEvaluator());
+    b.evaluateAll(reduce::portableEdgeEvaluator());
     for (std::uint32_t v = 0; v < a.surface.vertexCount(); ++v) {
-      edgeEvaluator()(a.view(), v, a.costs);
-      portableEdgeEvaluator()(b.view(), v, b.costs);
+      reduce::edgeEvaluator()(a.view(), v, a.costs);
+      reduce::portableEdgeEvaluator()(b.view(), v, b.costs);
       ASSERT_EQ(a.costs.count, b.costs.count);
       for (std::uint32_t e = 0; e < a.costs.count; ++e) {
         ASSERT_EQ(a.costs.cost[e], b.costs.cost[e]);
@@ -116,20 +119,20 @@ TEST(QuadricEvaluate, EveryProcessorGivesTheSameBits) {
 }
 
 TEST(QuadricEvaluate, QuadricsFirstThenEdgesIsTheSame) {
-  const Mesh grid = test::noisyGrid(30, 30, 0.4, 3);
+  const mesh::Mesh grid = test::noisyGrid(30, 30, 0.4, 3);
   for (const std::size_t channels : {0u, 2u}) {
-    for (const auto evaluator : {edgeEvaluator, portableEdgeEvaluator}) {
+    for (const auto evaluator : {reduce::edgeEvaluator, reduce::portableEdgeEvaluator}) {
       Bench both(grid, channels), apart(grid, channels);
       Random random(1);
       for (std::uint32_t v = 0; v < both.surface.vertexCount(); ++v) {
         for (std::size_t k = 0; k < channels; ++k)
           both.values.value(v, k) = apart.values.value(v, k) = static_cast<float>(random.normal());
       }
-      both.evaluateAll(evaluator(Evaluate::kBoth));
-      apart.evaluateAll(evaluator(Evaluate::kQuadric));
+      both.evaluateAll(evaluator(reduce::Evaluate::kBoth));
+      apart.evaluateAll(evaluator(reduce::Evaluate::kQuadric));
       for (std::uint32_t v = 0; v < both.surface.vertexCount(); ++v) {
-        evaluator(Evaluate::kBoth)(both.view(), v, both.costs);
-        evaluator(Evaluate::kEdges)(apart.view(), v, apart.costs);
+        evaluator(reduce::Evaluate::kBoth)(both.view(), v, both.costs);
+        evaluator(reduce::Evaluate::kEdges)(apart.view(), v, apart.costs);
         ASSERT_EQ(apart.costs.count, both.costs.count);
         ASSERT_EQ(apart.costs.cheapest, both.costs.cheapest);
         for (std::uint32_t e = 0; e < both.costs.count; ++e) {
@@ -141,10 +144,11 @@ TEST(QuadricEvaluate, QuadricsFirstThenEdgesIsTheSame) {
   }
 }
 
-// Area times (g p + d - s)^2 of a channel that is linear on each triangle, summed over v's star.
+// Sum over v's triangles of area times (g p + d - s)^2, for a channel that is linear on each
+// triangle.
 double channelError(const Bench& bench, std::uint32_t v, std::size_t k, const Vec& p, double s) {
   double sum = 0;
-  for (const Corner& c : bench.surface.star(bench.surface[v])) {
+  for (const reduce::Corner& c : bench.surface.star(bench.surface[v])) {
     const Vec u = bench.at(c.b) - bench.at(v), w = bench.at(c.c) - bench.at(v), n = u.cross(w);
     Eigen::Matrix3d rows;
     rows << u.transpose(), w.transpose(), n.transpose();
@@ -163,17 +167,17 @@ void expectChannelsCostWhatTheirBestValueLeaves(std::size_t channels) {
     for (std::size_t k = 0; k < channels; ++k)
       bench.values.value(v, k) = static_cast<float>(random.normal());
   }
-  bench.evaluateAll(edgeEvaluator());
+  bench.evaluateAll(reduce::edgeEvaluator());
   for (std::uint32_t v = 0; v < bench.surface.vertexCount(); ++v) {
-    if (bench.surface[v].flags & kOpen) continue;
-    edgeEvaluator()(bench.view(), v, bench.costs);
+    if (bench.surface[v].flags & reduce::kOpen) continue;
+    reduce::edgeEvaluator()(bench.view(), v, bench.costs);
     for (std::uint32_t e = 0; e < bench.costs.count; ++e) {
       const std::uint32_t x = bench.costs.neighbour[e];
-      if (bench.surface[x].flags & kOpen) continue;
+      if (bench.surface[x].flags & reduce::kOpen) continue;
       const Vec to = bench.at(v) + Vec(bench.costs.x[e], bench.costs.y[e], bench.costs.z[e]);
       double plain = bench.distanceTo(v, to) + bench.distanceTo(x, to);
       for (std::size_t k = 0; k < channels; ++k) {
-        // A parabola in s: its least from three of its values.
+        // A parabola in s; its minimum follows from three values.
         const auto f = [&](double s) {
           return channelError(bench, v, k, to, s) + channelError(bench, x, k, to, s);
         };
@@ -187,7 +191,8 @@ void expectChannelsCostWhatTheirBestValueLeaves(std::size_t channels) {
 
 TEST(QuadricEvaluate, ChannelsCostWhatTheirBestValueLeaves) {
   expectChannelsCostWhatTheirBestValueLeaves(2);
-  expectChannelsCostWhatTheirBestValueLeaves(9);  // more than are kept between two passes
+  // More channels than the evaluation keeps between its two passes.
+  expectChannelsCostWhatTheirBestValueLeaves(9);
 }
 
 }  // namespace

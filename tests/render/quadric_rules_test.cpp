@@ -1,4 +1,5 @@
-// Which collapses may be: slow and wide processors against one another and against a plain look.
+// Which collapses are legal: the scalar and the SIMD version against each other and against a
+// direct check.
 #include "render/reduce/quadric/quadric_rules.h"
 
 #include <cmath>
@@ -15,26 +16,27 @@ namespace merlin::render {
 namespace {
 
 struct Bench : test::QuadricBench {
-  explicit Bench(const Mesh& mesh) : QuadricBench(mesh) { evaluateAll(); }
+  explicit Bench(const mesh::Mesh& mesh) : QuadricBench(mesh) { evaluateAll(); }
   std::set<std::uint32_t> ringOf(std::uint32_t v) const {
     std::set<std::uint32_t> ring;
-    for (const Corner& c : surface.star(surface[v])) ring.insert({c.b, c.c});
+    for (const reduce::Corner& c : surface.star(surface[v])) ring.insert({c.b, c.c});
     return ring;
   }
 };
 
-// So rough that a good part of all collapses would turn a face.
-Mesh roughSurface(std::uint32_t seed) { return test::noisyGrid(40, 40, 2.0, seed); }
+// A surface so rough that a good part of all collapses would flip a face.
+mesh::Mesh roughSurface(std::uint32_t seed) { return test::noisyGrid(40, 40, 2.0, seed); }
 
 TEST(QuadricRules, EveryProcessorGivesTheSameVerdict) {
   Bench bench(roughSurface(1));
   std::size_t verdicts[3] = {};
   for (std::uint32_t v = 0; v < bench.surface.vertexCount(); ++v) {
-    edgeEvaluator()(bench.view(), v, bench.costs);
+    reduce::edgeEvaluator()(bench.view(), v, bench.costs);
     for (std::uint32_t e = 0; e < bench.costs.count; ++e) {
-      for (const auto stage : {QuadricStage::kAll, QuadricStage::kNoLink, QuadricStage::kNoFlips}) {
-        const Verdict wide = edgeJudge()(bench.view(), v, bench.costs, e, stage);
-        ASSERT_EQ(wide, portableEdgeJudge()(bench.view(), v, bench.costs, e, stage));
+      for (const auto stage : {reduce::QuadricStage::kAll, reduce::QuadricStage::kNoLink,
+                               reduce::QuadricStage::kNoFlips}) {
+        const reduce::Verdict wide = reduce::edgeJudge()(bench.view(), v, bench.costs, e, stage);
+        ASSERT_EQ(wide, reduce::portableEdgeJudge()(bench.view(), v, bench.costs, e, stage));
         ++verdicts[static_cast<std::size_t>(wide)];
       }
     }
@@ -42,26 +44,27 @@ TEST(QuadricRules, EveryProcessorGivesTheSameVerdict) {
   for (const std::size_t n : verdicts) EXPECT_GT(n, 0u);
 }
 
-// A star that is no fan in lanes is looked at face by face: the same answer.
+// A star that cannot be treated as a fan in SIMD lanes is checked face by face, with the same
+// result.
 TEST(QuadricRules, LanesSeeTheFlipsThatFacesDo) {
   Bench bench(roughSurface(2));
   std::size_t flips = 0, legal = 0;
   for (std::uint32_t v = 0; v < bench.surface.vertexCount(); ++v) {
-    if (bench.surface[v].flags & kOpen) continue;
-    edgeEvaluator()(bench.view(), v, bench.costs);
+    if (bench.surface[v].flags & reduce::kOpen) continue;
+    reduce::edgeEvaluator()(bench.view(), v, bench.costs);
     for (std::uint32_t e = 0; e < bench.costs.count; ++e) {
-      QuadricVertex &a = bench.surface[v], &x = bench.surface[bench.costs.neighbour[e]];
+      reduce::QuadricVertex &a = bench.surface[v], &x = bench.surface[bench.costs.neighbour[e]];
       const auto flags = std::pair{a.flags, x.flags};
       const auto judge = [&] {
-        return edgeJudge()(bench.view(), v, bench.costs, e, QuadricStage::kNoLink);
+        return reduce::edgeJudge()(bench.view(), v, bench.costs, e, reduce::QuadricStage::kNoLink);
       };
-      const Verdict in_lanes = judge();
-      a.flags |= kOpen;
-      x.flags |= kOpen;
-      const Verdict by_faces = judge();
+      const reduce::Verdict in_lanes = judge();
+      a.flags |= reduce::kOpen;
+      x.flags |= reduce::kOpen;
+      const reduce::Verdict by_faces = judge();
       std::tie(a.flags, x.flags) = flags;
       ASSERT_EQ(in_lanes, by_faces);
-      ++(in_lanes == Verdict::kFlip ? flips : legal);
+      ++(in_lanes == reduce::Verdict::kFlip ? flips : legal);
     }
   }
   EXPECT_GT(flips, 100u);
@@ -69,8 +72,8 @@ TEST(QuadricRules, LanesSeeTheFlipsThatFacesDo) {
 }
 
 TEST(QuadricRules, TheEndsShareNoNeighbourBesideTheirTriangles) {
-  // A tube of three around: each ring is a triangle without a face.
-  Mesh tube;
+  // A tube with three vertices around: each ring is a triangle of edges without a face.
+  mesh::Mesh tube;
   for (std::uint32_t k = 0; k < 30; ++k) {
     const double angle = 2.0943951 * (k % 3);
     tube.positions.insert(tube.positions.end(),
@@ -84,16 +87,17 @@ TEST(QuadricRules, TheEndsShareNoNeighbourBesideTheirTriangles) {
   Bench bench(tube);
   std::size_t refused = 0;
   for (std::uint32_t v = 0; v < 30; ++v) {
-    edgeEvaluator()(bench.view(), v, bench.costs);
+    reduce::edgeEvaluator()(bench.view(), v, bench.costs);
     for (std::uint32_t e = 0; e < bench.costs.count; ++e) {
       const std::uint32_t x = bench.costs.neighbour[e];
-      if ((bench.surface[v].flags | bench.surface[x].flags) & kOpen) continue;
+      if ((bench.surface[v].flags | bench.surface[x].flags) & reduce::kOpen) continue;
       const auto of_v = bench.ringOf(v), of_x = bench.ringOf(x);
       std::size_t common = 0;
       for (const std::uint32_t o : of_v) common += of_x.count(o);
-      const Verdict verdict = edgeJudge()(bench.view(), v, bench.costs, e, QuadricStage::kAll);
-      EXPECT_EQ(verdict == Verdict::kLink, common != 2);
-      refused += verdict == Verdict::kLink;
+      const reduce::Verdict verdict =
+          reduce::edgeJudge()(bench.view(), v, bench.costs, e, reduce::QuadricStage::kAll);
+      EXPECT_EQ(verdict == reduce::Verdict::kLink, common != 2);
+      refused += verdict == reduce::Verdict::kLink;
     }
   }
   EXPECT_EQ(refused, 8u * 3 * 2);

@@ -1,4 +1,4 @@
-// Seams under `quadric`: they shrink with the surface, both sides at once, at every level.
+// Seams under the cost `quadric`: both sides are reduced together, so no crack opens at any level.
 #include <cmath>
 #include <map>
 #include <set>
@@ -15,28 +15,31 @@
 namespace merlin::render {
 namespace {
 
-constexpr std::uint32_t kAround = 200, kHigh = 120;  // enough vertices for two parts
+// Enough vertices for two parts.
+constexpr std::uint32_t kAround = 200, kHigh = 120;
 
-Mesh tube(bool cut) {
-  Mesh mesh = test::tube(kAround, kHigh, cut);
-  ensureNormals(mesh);
+mesh::Mesh tube(bool cut) {
+  mesh::Mesh mesh = test::tube(kAround, kHigh, cut);
+  mesh::ensureNormals(mesh);
   return mesh;
 }
 
 struct Levels {
-  explicit Levels(const Mesh& mesh, const ReduceSettings& settings = {})
-      : made(buildDendrogram(mesh, reduce(mesh, settings)->log)), all(mesh.triangleCount()) {}
-  Mesh at(double share) const {
-    return extract(made, made.levelFor(static_cast<std::size_t>(share * static_cast<double>(all))));
+  explicit Levels(const mesh::Mesh& mesh, const reduce::ReduceSettings& settings = {})
+      : made(lod::buildDendrogram(mesh, reduce::reduce(mesh, settings)->log)),
+        all(mesh.triangleCount()) {}
+  mesh::Mesh at(double share) const {
+    return lod::extract(made,
+                        made.levelFor(static_cast<std::size_t>(share * static_cast<double>(all))));
   }
-  Dendrogram made;
+  lod::Dendrogram made;
   std::size_t all;
 };
 
 using Place = std::array<float, 3>;
 
-// Of the vertices on borders, those of the tube's two ends left out: how many lie in each place.
-std::map<Place, int> seamOf(const Mesh& mesh) {
+// The border vertices, without those of the tube's two ends: how many coincide at each position.
+std::map<Place, int> seamOf(const mesh::Mesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -70,8 +73,8 @@ TEST(QuadricSeams, ShrinkAndNeverGape) {
   EXPECT_LT(before, kHigh / 3);
 }
 
-// The least cosine between the normals of vertices in one place; -1 where no two are.
-float leastCosine(const Mesh& mesh) {
+// The smallest cosine between the normals of coincident vertices; -1 if no vertices coincide.
+float leastCosine(const mesh::Mesh& mesh) {
   std::map<Place, const float*> first;
   float least = 1;
   bool any = false;
@@ -93,27 +96,27 @@ TEST(QuadricSeams, AreNotSeenInTheLight) {
 }
 
 TEST(QuadricSeams, CostLittle) {
-  const Mesh whole = tube(false), cut = tube(true);
-  CompareSettings settings;
+  const mesh::Mesh whole = tube(false), cut = tube(true);
+  compare::CompareSettings settings;
   settings.samples = 20'000;
-  const auto of_whole = compare(whole, Levels(whole).at(0.01), settings);
-  const auto of_cut = compare(whole, Levels(cut).at(0.01), settings);
+  const auto of_whole = compare::compare(whole, Levels(whole).at(0.01), settings);
+  const auto of_cut = compare::compare(whole, Levels(cut).at(0.01), settings);
   ASSERT_TRUE(of_whole && of_cut);
   EXPECT_LT(of_cut->symmetric().rms, 1.25 * of_whole->symmetric().rms);
 }
 
 TEST(QuadricSeams, AreTheSameForAnyNumberOfThreads) {
-  const Mesh mesh = tube(true);
-  const auto one = reduce(mesh, {.threads = 1}), two = reduce(mesh, {.threads = 2});
+  const mesh::Mesh mesh = tube(true);
+  const auto one = reduce::reduce(mesh, {.threads = 1}), two = reduce::reduce(mesh, {.threads = 2});
   ASSERT_TRUE(one && two);
   EXPECT_EQ(one->log.children, two->log.children);
   EXPECT_EQ(one->log.positions, two->log.positions);
   EXPECT_EQ(one->log.features, two->log.features);
 }
 
-// Whoever locks vertices himself may mean a seam's.
+// With user-locked vertices, both sides of a seam may be meant, so seams stay fixed.
 TEST(QuadricSeams, StayWhereVerticesAreLocked) {
-  const Mesh mesh = tube(true);
+  const mesh::Mesh mesh = tube(true);
   std::vector<bool> locked(mesh.vertexCount());
   locked[0] = true;
   const std::map<Place, int> seam = seamOf(Levels(mesh, {.locked = locked}).at(0.05));

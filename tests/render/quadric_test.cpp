@@ -1,4 +1,5 @@
-// The cost `quadric` as a whole: what it keeps, when it stops, that threads change nothing.
+// The cost `quadric` as a whole: what it preserves, when it stops, and that threads do not change
+// the result.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -13,23 +14,23 @@
 namespace merlin::render {
 namespace {
 
-Mesh withNormals(Mesh mesh) {
-  ensureNormals(mesh);
+mesh::Mesh withNormals(mesh::Mesh mesh) {
+  mesh::ensureNormals(mesh);
   return mesh;
 }
 
-Reduction reduced(const Mesh& mesh, const ReduceSettings& settings = {}) {
-  auto result = reduce(mesh, settings);
+reduce::Reduction reduced(const mesh::Mesh& mesh, const reduce::ReduceSettings& settings = {}) {
+  auto result = reduce::reduce(mesh, settings);
   EXPECT_TRUE(result) << result.error().what;
   return *std::move(result);
 }
 
-Mesh levelOf(const Mesh& mesh, const Reduction& r, std::size_t triangles) {
-  const Dendrogram d = buildDendrogram(mesh, r.log);
-  return extract(d, d.levelFor(triangles));
+mesh::Mesh levelOf(const mesh::Mesh& mesh, const reduce::Reduction& r, std::size_t triangles) {
+  const lod::Dendrogram d = lod::buildDendrogram(mesh, r.log);
+  return lod::extract(d, d.levelFor(triangles));
 }
 
-double areaOf(const Mesh& mesh) {
+double areaOf(const mesh::Mesh& mesh) {
   double area = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
     double p[3][3];
@@ -50,18 +51,18 @@ double areaOf(const Mesh& mesh) {
 }
 
 TEST(Quadric, APlateBecomesTwoTrianglesAndKeepsItsCorners) {
-  const Mesh mesh = withNormals(test::grid(12, 9));
-  const Mesh least = levelOf(mesh, reduced(mesh), 2);
+  const mesh::Mesh mesh = withNormals(test::grid(12, 9));
+  const mesh::Mesh least = levelOf(mesh, reduced(mesh), 2);
   ASSERT_EQ(least.triangleCount(), 2u);
   EXPECT_NEAR(areaOf(least), 12 * 9, 0.5);
-  const Box box = boundingBox(least.positions);
+  const mesh::Box box = mesh::boundingBox(least.positions);
   EXPECT_NEAR(box.low[0], 0, 0.05);
   EXPECT_NEAR(box.high[0], 12, 0.05);
   EXPECT_NEAR(box.high[1], 9, 0.05);
 }
 
-Mesh bumpyBall() {
-  Mesh ball = test::sphere(5);
+mesh::Mesh bumpyBall() {
+  mesh::Mesh ball = test::sphere(5);
   for (std::size_t v = 0; v < ball.vertexCount(); ++v) {
     float* p = &ball.positions[3 * v];
     const float bump = 1 + 0.05F * std::sin(6 * p[0]) * std::cos(5 * p[1]) * std::sin(7 * p[2]);
@@ -70,17 +71,18 @@ Mesh bumpyBall() {
   return withNormals(ball);
 }
 
-// Of a twentieth of the triangles.
-Deviation errorOf(const Mesh& mesh, const Reduction& r) {
-  CompareSettings settings;
+// The error at a twentieth of the triangles.
+compare::Deviation errorOf(const mesh::Mesh& mesh, const reduce::Reduction& r) {
+  compare::CompareSettings settings;
   settings.samples = 20'000;
-  const auto compared = compare(mesh, levelOf(mesh, r, mesh.triangleCount() / 20), settings);
+  const auto compared =
+      compare::compare(mesh, levelOf(mesh, r, mesh.triangleCount() / 20), settings);
   EXPECT_TRUE(compared);
   return compared->symmetric();
 }
 
 TEST(Quadric, ErrorIsFarBelowThePatterns) {
-  const Mesh ball = bumpyBall();
+  const mesh::Mesh ball = bumpyBall();
   const auto quadric = errorOf(ball, reduced(ball));
   const auto pattern = errorOf(ball, reduced(ball, {.cost = "pattern"}));
   EXPECT_LT(quadric.rms, pattern.rms / 2);
@@ -88,21 +90,22 @@ TEST(Quadric, ErrorIsFarBelowThePatterns) {
 }
 
 TEST(Quadric, FastIsNearlyAsGood) {
-  const Mesh ball = bumpyBall();
-  const Reduction fine = reduced(ball), fast = reduced(ball, {.fast = true});
+  const mesh::Mesh ball = bumpyBall();
+  const reduce::Reduction fine = reduced(ball), fast = reduced(ball, {.fast = true});
   EXPECT_NE(fine.log.children, fast.log.children);
   EXPECT_LT(errorOf(ball, fast).rms, 1.15 * errorOf(ball, fine).rms);
   EXPECT_NE(fast.log.about.find("fast=true"), std::string::npos);
 }
 
-// Enough vertices for two parts.
-Mesh wide() { return withNormals(test::noisyGrid(170, 170, 0.2, 7)); }
+// A mesh with enough vertices for two parts.
+mesh::Mesh wide() { return withNormals(test::noisyGrid(170, 170, 0.2, 7)); }
 
 TEST(Quadric, IsTheSameBytesForAnyNumberOfThreads) {
-  const Mesh mesh = withNormals(test::noisyGrid(350, 350, 0.2, 7));  // four parts, that become two
-  const Reduction one = reduced(mesh, {.threads = 1});
+  const mesh::Mesh mesh =
+      withNormals(test::noisyGrid(350, 350, 0.2, 7));  // four parts, which become two
+  const reduce::Reduction one = reduced(mesh, {.threads = 1});
   for (const unsigned threads : {2u, 3u}) {
-    const Reduction more = reduced(mesh, {.threads = threads});
+    const reduce::Reduction more = reduced(mesh, {.threads = threads});
     EXPECT_EQ(more.log.children, one.log.children);
     EXPECT_EQ(more.log.positions, one.log.positions);
     EXPECT_EQ(more.log.features, one.log.features);
@@ -111,10 +114,10 @@ TEST(Quadric, IsTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Quadric, LockedVerticesStay) {
-  const Mesh mesh = withNormals(test::noisyGrid(20, 20, 0.3, 5));
+  const mesh::Mesh mesh = withNormals(test::noisyGrid(20, 20, 0.3, 5));
   std::vector<bool> locked(mesh.vertexCount());
   for (std::size_t v = 0; v < locked.size(); v += 40) locked[v] = true;
-  const Mesh coarse = levelOf(mesh, reduced(mesh, {.locked = locked}), 60);
+  const mesh::Mesh coarse = levelOf(mesh, reduced(mesh, {.locked = locked}), 60);
   std::set<std::array<float, 3>> places;
   for (std::size_t v = 0; v < coarse.vertexCount(); ++v) {
     const float* p = &coarse.positions[3 * v];
@@ -132,23 +135,23 @@ TEST(Quadric, LockedVerticesStay) {
   }
 }
 
-// A needle on hills: no area to speak of, but height.
+// A needle on hills has almost no area, but it is high.
 TEST(Quadric, AThinTipStays) {
-  Mesh mesh = test::grid(100, 100);
+  mesh::Mesh mesh = test::grid(100, 100);
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     const float x = mesh.positions[3 * v] - 50, y = mesh.positions[3 * v + 1] - 50;
     mesh.positions[3 * v + 2] =
         std::max(0.0F, 40 * (1 - std::hypot(x, y) / 1.5F)) + 2 * std::sin(x) * std::sin(0.7F * y);
   }
   mesh = withNormals(mesh);
-  const Box box = boundingBox(levelOf(mesh, reduced(mesh), 200).positions);
-  EXPECT_GT(box.high[2], 39.5F);  // without a guard 26 and less
+  const mesh::Box box = mesh::boundingBox(levelOf(mesh, reduced(mesh), 200).positions);
+  EXPECT_GT(box.high[2], 39.5F);  // without the guard, 26 or less
 }
 
 TEST(Quadric, SeamsOfItsPartsAreNotSeen) {
-  const Mesh mesh = wide();
-  const Mesh coarse = levelOf(mesh, reduced(mesh), mesh.triangleCount() / 50);
-  // Where seams lie triangles would be as small as they were: count those in 10 x 10 fields.
+  const mesh::Mesh mesh = wide();
+  const mesh::Mesh coarse = levelOf(mesh, reduced(mesh), mesh.triangleCount() / 50);
+  // Along seams between parts triangles might stay small, so count the vertices in 10 x 10 fields.
   std::vector<int> fields(100);
   for (std::size_t v = 0; v < coarse.vertexCount(); ++v) {
     const auto cell = [&](std::size_t k) {
@@ -160,20 +163,20 @@ TEST(Quadric, SeamsOfItsPartsAreNotSeen) {
   EXPECT_LT(*std::max_element(fields.begin(), fields.end()), 3 * mean);
 }
 
-// A sphere and 20 specks of a hundredth of its size.
-Mesh specks() {
-  Mesh mesh = test::sphere(4);
+// A sphere, and 20 cubes of a hundredth of its size.
+mesh::Mesh specks() {
+  mesh::Mesh mesh = test::sphere(4);
   for (int i = 0; i < 20; ++i) {
-    Mesh speck = test::cube();
+    mesh::Mesh speck = test::cube();
     for (float& x : speck.positions) x *= 0.01F;
     mesh = test::together(mesh, test::moved(speck, 2 + 0.1F * static_cast<float>(i), 0, 0));
   }
   return withNormals(mesh);
 }
 
-// Of specks().
-std::size_t specksLeft(const Mesh& mesh, const Reduction& r) {
-  const Mesh coarse = levelOf(mesh, r, 120);
+// Number of the small cubes of specks() that are left at 120 triangles.
+std::size_t specksLeft(const mesh::Mesh& mesh, const reduce::Reduction& r) {
+  const mesh::Mesh coarse = levelOf(mesh, r, 120);
   std::set<int> alive;
   for (std::size_t v = 0; v < coarse.vertexCount(); ++v) {
     if (coarse.positions[3 * v] > 1.5F)
@@ -183,25 +186,25 @@ std::size_t specksLeft(const Mesh& mesh, const Reduction& r) {
 }
 
 TEST(Quadric, ComponentsStayUntilNothingElseIsLeft) {
-  const Mesh mesh = specks();
-  const Reduction r = reduced(mesh, {.preserve_components = true});
+  const mesh::Mesh mesh = specks();
+  const reduce::Reduction r = reduced(mesh, {.preserve_components = true});
   EXPECT_EQ(specksLeft(mesh, r), 20u);
-  EXPECT_LE(r.report.triangles, 2u);  // but for the last ones all may go
+  EXPECT_LE(r.report.triangles, 2u);  // once nothing else is left, components go too
 }
 
 TEST(Quadric, WhatIsSmallerThanTheErrorVanishes) {
-  const Mesh mesh = specks();
+  const mesh::Mesh mesh = specks();
   EXPECT_EQ(specksLeft(mesh, reduced(mesh)), 0u);
 }
 
 TEST(Quadric, LabelsLock) {
-  Mesh mesh = withNormals(test::noisyGrid(20, 20, 0.3, 5));
-  Feature label{"label", 1, {}};
+  mesh::Mesh mesh = withNormals(test::noisyGrid(20, 20, 0.3, 5));
+  mesh::Feature label{"label", 1, {}};
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v)
     label.values.push_back(static_cast<float>(v * 7919 % 13 < 2));  // scattered
   mesh.features.push_back(label);
-  const Reduction r = reduced(mesh);
-  // As long as anything else can go, no node has children of both labels.
+  const reduce::Reduction r = reduced(mesh);
+  // As long as other collapses are possible, no collapse merges nodes with different labels.
   const auto labelOf = [&](std::uint32_t n) {
     return n < mesh.vertexCount() ? label.values[n] : r.log.features[1][n - mesh.vertexCount()];
   };
@@ -211,101 +214,105 @@ TEST(Quadric, LabelsLock) {
     ++k;
   EXPECT_GT(k, mesh.vertexCount() / 2);
   EXPECT_LT(k, r.log.children.size());
-  EXPECT_EQ(r.report.by_all_rules, buildDendrogram(mesh, r.log).trianglesAt(k));
+  EXPECT_EQ(r.report.by_all_rules, lod::buildDendrogram(mesh, r.log).trianglesAt(k));
 }
 
 TEST(Quadric, TopologyIsKeptWhereAsked) {
-  const Mesh two =
+  const mesh::Mesh two =
       withNormals(test::together(test::sphere(3), test::moved(test::sphere(3), 3, 0, 0)));
-  const Reduction r = reduced(two, {.preserve_topology = true});
+  const reduce::Reduction r = reduced(two, {.preserve_topology = true});
   EXPECT_EQ(r.report.triangles, 8u);  // two tetrahedra
   EXPECT_STREQ(r.report.stopped, "nothing left to collapse");
 }
 
 TEST(Quadric, StopsWhereItIsTold) {
-  const Mesh mesh = withNormals(test::noisyGrid(20, 20, 0.1, 1));
-  const Reduction by_count = reduced(mesh, {.min_triangles = 300});
+  const mesh::Mesh mesh = withNormals(test::noisyGrid(20, 20, 0.1, 1));
+  const reduce::Reduction by_count = reduced(mesh, {.min_triangles = 300});
   EXPECT_STREQ(by_count.report.stopped, "triangles");
   EXPECT_LE(by_count.report.triangles, 300u);
   EXPECT_GE(by_count.report.triangles, 299u);
   EXPECT_EQ(by_count.report.by_all_rules, by_count.report.triangles);
-  const Reduction by_percent = reduced(mesh, {.min_percent = 10});
+  const reduce::Reduction by_percent = reduced(mesh, {.min_percent = 10});
   EXPECT_STREQ(by_percent.report.stopped, "percent");
   EXPECT_LE(by_percent.report.triangles, 80u);
-  const Reduction by_error = reduced(mesh, {.max_error_percent = 0.1});
+  const reduce::Reduction by_error = reduced(mesh, {.max_error_percent = 0.1});
   EXPECT_STREQ(by_error.report.stopped, "error");
-  EXPECT_LE(by_error.report.error, 0.001F * boundingBox(mesh.positions).diagonal());
+  EXPECT_LE(by_error.report.error, 0.001F * mesh::boundingBox(mesh.positions).diagonal());
   EXPECT_GT(by_error.report.collapses, 20u);
   EXPECT_STREQ(reduced(mesh, {.min_triangles = 10'000}).report.stopped, "triangles");
   EXPECT_EQ(reduced(mesh, {.min_triangles = 10'000}).report.collapses, 0u);
 }
 
 TEST(Quadric, IsCancelledByItsProgress) {
-  const Mesh mesh = wide();
+  const mesh::Mesh mesh = wide();
   int calls = 0;
-  const auto r = reduce(mesh, {}, [&](const ReduceProgress& p) {
+  const auto r = reduce::reduce(mesh, {}, [&](const reduce::ReduceProgress& p) {
     EXPECT_LE(p.triangles, mesh.triangleCount());
     return ++calls < 3;
   });
   ASSERT_TRUE(r);
   EXPECT_STREQ(r->report.stopped, "cancelled");
   EXPECT_EQ(calls, 3);
-  EXPECT_EQ(buildDendrogram(mesh, r->log).trianglesAt(r->report.collapses), r->report.triangles);
+  EXPECT_EQ(lod::buildDendrogram(mesh, r->log).trianglesAt(r->report.collapses),
+            r->report.triangles);
 }
 
-// What is no manifold, has duplicates, is folded flat: reduced to the end, and counted right.
+// Meshes that are non-manifold, have duplicate faces or are folded flat are reduced to the end,
+// with correct triangle counts.
 TEST(Quadric, TakesAnySurface) {
-  const Mesh fins{{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1}, {}, {0, 1, 2, 1, 0, 3, 0, 1, 4}};
-  Mesh twice = test::cube();
+  const mesh::Mesh fins{
+      {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1}, {}, {0, 1, 2, 1, 0, 3, 0, 1, 4}};
+  mesh::Mesh twice = test::cube();
   twice.triangles.insert(twice.triangles.end(), twice.triangles.begin(), twice.triangles.end());
-  Mesh folded = test::grid(6, 6);
+  mesh::Mesh folded = test::grid(6, 6);
   for (float& x : folded.positions) x = std::floor(x / 2);
-  Mesh point = test::grid(4, 4);
+  mesh::Mesh point = test::grid(4, 4);
   for (float& x : point.positions) x = 1;
-  Mesh fan;
+  mesh::Mesh fan;
   fan.positions = {0, 0, 0};
   for (std::uint32_t i = 0; i < 3000; ++i) {
     const float a = static_cast<float>(i) * 0.00209F;
     fan.positions.insert(fan.positions.end(), {std::cos(a), std::sin(a), 0});
     fan.triangles.insert(fan.triangles.end(), {0, i + 1, (i + 1) % 3000 + 1});
   }
-  const Mesh one{{0, 0, 0, 1, 0, 0, 0, 1, 0}, {}, {0, 1, 2}};
-  for (const Mesh& mesh : {fins, twice, folded, point, fan, one}) {
-    const Mesh ready = withNormals(mesh);
-    const Reduction r = reduced(ready);
-    const Dendrogram d = buildDendrogram(ready, r.log);
+  const mesh::Mesh one{{0, 0, 0, 1, 0, 0, 0, 1, 0}, {}, {0, 1, 2}};
+  for (const mesh::Mesh& mesh : {fins, twice, folded, point, fan, one}) {
+    const mesh::Mesh ready = withNormals(mesh);
+    const reduce::Reduction r = reduced(ready);
+    const lod::Dendrogram d = lod::buildDendrogram(ready, r.log);
     EXPECT_EQ(d.trianglesAt(d.levels() - 1), r.report.triangles);
     EXPECT_GE(r.report.triangles, 1u);
-    EXPECT_LE(r.report.triangles, 4u);  // duplicates go together
+    EXPECT_LE(r.report.triangles, 4u);  // duplicate faces are collapsed together
     for (const float x : r.log.positions) ASSERT_TRUE(std::isfinite(x));
   }
 }
 
 TEST(Quadric, TakesTheFarthestAndTheSmallestCoordinates) {
   for (const float scale : {1e18F / 20, 1e-30F}) {
-    Mesh mesh = test::together(test::noisyGrid(8, 8, 0.5, 3), test::moved(test::cube(), 15, 0, 0));
+    mesh::Mesh mesh =
+        test::together(test::noisyGrid(8, 8, 0.5, 3), test::moved(test::cube(), 15, 0, 0));
     for (float& x : mesh.positions) x *= scale;
     mesh = withNormals(mesh);
-    const Reduction r = reduced(mesh);
+    const reduce::Reduction r = reduced(mesh);
     EXPECT_GT(r.report.collapses, 70u);
     for (const float x : r.log.positions) ASSERT_TRUE(std::isfinite(x));
-    buildDendrogram(mesh, r.log);
+    lod::buildDendrogram(mesh, r.log);
   }
 }
 
-// A plane in which one feature steps from 0 to 1 at x = 10.
-Mesh step(const std::string& name) {
-  Mesh mesh = withNormals(test::grid(20, 20));
-  Feature f{name, 1, {}};
+// A plane in which the feature `name` jumps from 0 to 1 at x = 10.
+mesh::Mesh step(const std::string& name) {
+  mesh::Mesh mesh = withNormals(test::grid(20, 20));
+  mesh::Feature f{name, 1, {}};
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v)
     f.values.push_back(v % 21 < 10 ? 0.0F : 1.0F);
   mesh.features.push_back(std::move(f));
   return mesh;
 }
 
-// The mean error of feature 1 at the vertices that are left.
-double stepError(const Mesh& coarse) {
-  const Feature& f = coarse.features[1];
+// The mean error of feature 1 over the remaining vertices.
+double stepError(const mesh::Mesh& coarse) {
+  const mesh::Feature& f = coarse.features[1];
   double sum = 0;
   for (std::size_t v = 0; v < coarse.vertexCount(); ++v) {
     const float x = coarse.positions[3 * v];
@@ -316,10 +323,10 @@ double stepError(const Mesh& coarse) {
 }
 
 TEST(Quadric, AnyModalityWithAWeightIsKept) {
-  const Mesh mesh = step("thermal");
-  const Mesh kept =
+  const mesh::Mesh mesh = step("thermal");
+  const mesh::Mesh kept =
       levelOf(mesh, reduced(mesh, {.weights = {{"geometry", 1}, {"thermal", 1}}}), 60);
-  const Mesh lost = levelOf(mesh, reduced(mesh, {.weights = {{"geometry", 1}}}), 60);
+  const mesh::Mesh lost = levelOf(mesh, reduced(mesh, {.weights = {{"geometry", 1}}}), 60);
   EXPECT_LT(stepError(kept), 0.01);
   EXPECT_GT(stepError(lost), 5 * stepError(kept));
   for (const float x : kept.features[1].values) {
@@ -329,25 +336,26 @@ TEST(Quadric, AnyModalityWithAWeightIsKept) {
 }
 
 TEST(Quadric, LabelsAreNeverMixed) {
-  const Mesh mesh = step("label");
-  const Reduction r = reduced(mesh);
+  const mesh::Mesh mesh = step("label");
+  const reduce::Reduction r = reduced(mesh);
   for (const float x : r.log.features[1]) EXPECT_TRUE(x == 0 || x == 1) << x;
 }
 
-// Hills with a label on each side of a wave.
+// Hills with two labels, whose border is a wave.
 TEST(Quadric, LockedLabelsKeepTheEdgeBetweenThem) {
   constexpr std::uint32_t kSide = 40;
-  Mesh mesh = withNormals(test::grid(kSide, kSide));
+  mesh::Mesh mesh = withNormals(test::grid(kSide, kSide));
   const auto beyond = [](float x, float y) { return x - 20 - 3 * std::sin(0.3F * y); };
-  Feature label{"label", 1, {}};
+  mesh::Feature label{"label", 1, {}};
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     float* p = &mesh.positions[3 * v];
     p[2] = std::sin(0.3F * p[0]) * std::cos(0.2F * p[1]);
     label.values.push_back(beyond(p[0], p[1]) < 0 ? 0.0F : 1.0F);
   }
   mesh.features.push_back(label);
-  const Mesh coarse = levelOf(mesh, reduced(mesh), 160);
-  double off = 0, ends = 0;  // of edges between labels, by x from the wave
+  const mesh::Mesh coarse = levelOf(mesh, reduced(mesh), 160);
+  // Distance from the wave in x, summed over the ends of edges between labels; their number.
+  double off = 0, ends = 0;
   for (std::size_t i = 0; i < coarse.triangles.size(); ++i) {
     const std::uint32_t a = coarse.triangles[i];
     const std::uint32_t b = coarse.triangles[i % 3 == 2 ? i - 2 : i + 1];
@@ -359,15 +367,15 @@ TEST(Quadric, LockedLabelsKeepTheEdgeBetweenThem) {
 }
 
 TEST(Quadric, WeightsOfThePatternAreRefused) {
-  const Mesh mesh = withNormals(test::grid(3, 3));
+  const mesh::Mesh mesh = withNormals(test::grid(3, 3));
   for (const char* name : {"normal", "curvature", "boundary"}) {
-    const auto r = reduce(mesh, {.weights = {{"geometry", 1}, {name, 1}}});
+    const auto r = reduce::reduce(mesh, {.weights = {{"geometry", 1}, {name, 1}}});
     ASSERT_FALSE(r) << name;
-    EXPECT_NE(r.error().what.find("only the cost pattern has it"), std::string::npos);
+    EXPECT_NE(r.error().what.find("only the cost pattern uses this weight"), std::string::npos);
   }
-  EXPECT_FALSE(reduce(mesh, {.weights = {{"geometry", 0}}}));
-  EXPECT_EQ(reduce(mesh, {.cost = "cubic"}).error().what,
-            "cost cubic: is none of quadric, pattern");
+  EXPECT_FALSE(reduce::reduce(mesh, {.weights = {{"geometry", 0}}}));
+  EXPECT_EQ(reduce::reduce(mesh, {.cost = "cubic"}).error().what,
+            "cost cubic: is not one of quadric, pattern");
 }
 
 }  // namespace

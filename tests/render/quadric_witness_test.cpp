@@ -1,4 +1,5 @@
-// Witnesses: their distances against a plain search in double, and that they stay where they are.
+// Witnesses: their distances against a plain search in double precision, and that they keep their
+// positions.
 #include "render/reduce/quadric/quadric_witness.h"
 
 #include <cmath>
@@ -14,7 +15,8 @@
 namespace merlin::render {
 namespace {
 
-// Rough, with a border, stars of more than eight corners and witnesses that are not at home.
+// A rough mesh with a border, with vertices of more than eight triangles, and with witnesses away
+// from their vertices.
 struct Bench : test::QuadricBench {
   explicit Bench(std::uint32_t seed) : QuadricBench(test::noisyGrid(30, 30, 1.0, seed)) {
     Random random(seed);
@@ -24,20 +26,22 @@ struct Bench : test::QuadricBench {
     evaluateAll();
   }
 
-  Vector at(std::uint32_t v) const {
+  compare::Vector at(std::uint32_t v) const {
     const float* p = surface[v].position;
     return {p[0], p[1], p[2]};
   }
-  // Of v's witness, from what is left of both stars once edge (v, x) is gone to `to`.
+  // Squared distance of the witness of `of` to what remains of both stars when edge (v, x) is
+  // collapsed to `to`.
   double plainDistance2(std::uint32_t of, std::uint32_t v, std::uint32_t x,
-                        const Vector& to) const {
+                        const compare::Vector& to) const {
     const std::array<float, 3> from = surface[of].witness.get();
-    const Vector witness = at(of) + Vector{from[0], from[1], from[2]};
+    const compare::Vector witness = at(of) + compare::Vector{from[0], from[1], from[2]};
     double nearest = squared(witness - to);
     for (const std::uint32_t end : {v, x}) {
-      for (const Corner& c : surface.star(surface[end])) {
+      for (const reduce::Corner& c : surface.star(surface[end])) {
         if (c.b == v || c.b == x || c.c == v || c.c == x) continue;
-        nearest = std::min(nearest, nearestOnTriangle(witness, {to, at(c.b), at(c.c)}).distance2);
+        nearest = std::min(nearest,
+                           compare::nearestOnTriangle(witness, {to, at(c.b), at(c.c)}).distance2);
       }
     }
     return nearest;
@@ -48,14 +52,14 @@ TEST(QuadricWitness, TheFartherOfTwoIsFoundWithItsDistance) {
   Bench bench(1);
   std::size_t of_neighbour = 0, edges = 0;
   for (std::uint32_t v = 0; v < bench.surface.vertexCount(); ++v) {
-    edgeEvaluator()(bench.view(), v, bench.costs);
+    reduce::edgeEvaluator()(bench.view(), v, bench.costs);
     for (std::uint32_t e = 0; e < bench.costs.count; ++e, ++edges) {
-      const EdgeCosts& costs = bench.costs;
+      const reduce::EdgeCosts& costs = bench.costs;
       const std::uint32_t x = costs.neighbour[e];
-      const Vector to = bench.at(v) + Vector{costs.x[e], costs.y[e], costs.z[e]};
+      const compare::Vector to = bench.at(v) + compare::Vector{costs.x[e], costs.y[e], costs.z[e]};
       const double of_v = bench.plainDistance2(v, v, x, to);
       const double of_x = bench.plainDistance2(x, v, x, to);
-      const FartherWitness found = fartherWitness()(bench.view(), v, costs, e);
+      const reduce::FartherWitness found = reduce::fartherWitness()(bench.view(), v, costs, e);
       ASSERT_NEAR(found.distance2, std::max(of_v, of_x), 1e-4 * (1 + squared(to - bench.at(v))));
       const bool either = std::fabs(of_v - of_x) <= 1e-3;
       ASSERT_TRUE(either || found.end == (of_x > of_v ? 1u : 0u));
@@ -69,10 +73,11 @@ TEST(QuadricWitness, TheFartherOfTwoIsFoundWithItsDistance) {
 TEST(QuadricWitness, EveryProcessorFindsTheSame) {
   Bench bench(2);
   for (std::uint32_t v = 0; v < bench.surface.vertexCount(); ++v) {
-    edgeEvaluator()(bench.view(), v, bench.costs);
+    reduce::edgeEvaluator()(bench.view(), v, bench.costs);
     for (std::uint32_t e = 0; e < bench.costs.count; ++e) {
-      const FartherWitness wide = fartherWitness()(bench.view(), v, bench.costs, e);
-      const FartherWitness portable = portableFartherWitness()(bench.view(), v, bench.costs, e);
+      const reduce::FartherWitness wide = reduce::fartherWitness()(bench.view(), v, bench.costs, e);
+      const reduce::FartherWitness portable =
+          reduce::portableFartherWitness()(bench.view(), v, bench.costs, e);
       ASSERT_EQ(wide.distance2, portable.distance2);
       ASSERT_EQ(wide.end, portable.end);
     }
@@ -81,16 +86,16 @@ TEST(QuadricWitness, EveryProcessorFindsTheSame) {
 
 TEST(QuadricWitness, StaysWhereItIsWhenItsVertexMoves) {
   Random random(3);
-  QuadricVertex a{}, b{};
+  reduce::QuadricVertex a{}, b{};
   b.position[0] = 3;
   b.witness.set({0.5F, -1.25F, 2});
   const float first[] = {2, 0.125F, -1};
-  keepWitness(a, b, first);
+  reduce::keepWitness(a, b, first);
   std::copy_n(first, 3, a.position);
   for (int move = 0; move < 30; ++move) {
     float to[3];
     for (float& x : to) x = static_cast<float>(4 * random.uniform());
-    keepWitness(a, a, to);
+    reduce::keepWitness(a, a, to);
     std::copy_n(to, 3, a.position);
   }
   const std::array<float, 3> from = a.witness.get();
@@ -100,7 +105,7 @@ TEST(QuadricWitness, StaysWhereItIsWhenItsVertexMoves) {
 }
 
 TEST(ShortVector, KeepsAnyLengthToItsPrecision) {
-  ShortVector v;
+  reduce::ShortVector v;
   for (const float scale : {1e-25F, 1e-3F, 1.0F, 1.999F, 2.0F, 12345.0F, 1e25F}) {
     const std::array<float, 3> given = {scale, -scale / 3, scale / 1000};
     v.set(given);
@@ -109,7 +114,7 @@ TEST(ShortVector, KeepsAnyLengthToItsPrecision) {
   v.set({0, 0, 0});
   EXPECT_EQ(v.get(), (std::array<float, 3>{0, 0, 0}));
   const float huge = std::numeric_limits<float>::max();
-  v.set({huge, -huge, 0});  // farther than it can say
+  v.set({huge, -huge, 0});  // beyond the range that the format can hold
   EXPECT_TRUE(std::isfinite(v.get()[0]));
 }
 

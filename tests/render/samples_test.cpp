@@ -1,4 +1,4 @@
-// The samples of a content, of an output and of a reader do what their ports ask for.
+// The sample content, the sample output and the sample reader fulfil the contracts of their ports.
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -13,13 +13,13 @@
 namespace merlin::render {
 namespace {
 
-// One tile of 64 x 64 pixels, into which the plane of 2 x 2 m just fits.
-TilePlan onePlane() {
-  TilesSettings s;
+// One tile of 64 x 64 pixels, which a plane of 2 x 2 m fills exactly.
+tiles::TilePlan onePlane() {
+  tiles::TilesSettings s;
   s.tile_width = s.tile_height = s.frame_width = s.frame_height = 64;
   s.field_of_view_deg = 90;
-  s.tiles = {{"all", TileKind::kWall, 0, 0, 0}};
-  return *planTiles(s);
+  s.tiles = {{"all", tiles::TileKind::kWall, 0, 0, 0}};
+  return *tiles::planTiles(s);
 }
 
 class ChequersTest : public testing::Test {
@@ -29,15 +29,15 @@ class ChequersTest : public testing::Test {
   }
 
   SystemClock clock_;
-  TilePlan plan_ = onePlane();
+  tiles::TilePlan plan_ = onePlane();
   Eigen::Isometry3f T_eye_content_{Eigen::Translation3f(0, 0, -1)};
-  std::unique_ptr<FrameRenderer> renderer_ =
-      *FrameRenderer::make(std::make_unique<Chequers>(), plan_, *DrawContexts::make({}), clock_);
+  std::unique_ptr<frame::FrameRenderer> renderer_ = *frame::FrameRenderer::make(
+      std::make_unique<content::Chequers>(), plan_, *frame::DrawContexts::make({}), clock_);
 };
 
-// 8 x 8 squares of 8 pixels, then 2 x 2 of 32.
+// 8 x 8 squares of 8 pixels at step 3, then 2 x 2 squares of 32 pixels at step 5.
 TEST_F(ChequersTest, IsDrawnAtAnyStep) {
-  const DetailAxis& detail = renderer_->content().detail();
+  const content::DetailAxis& detail = renderer_->content().detail();
   EXPECT_EQ(detail.stepWithin(64), 3u);
   renderer_->draw({.T_eye_content = T_eye_content_, .step = 3});
   EXPECT_EQ(at(3, 3), at(11, 11));
@@ -64,12 +64,12 @@ TEST(ChecksumOutput, WritesALineAFrameAndSaysWhatFails) {
   const test::TempDir folder;
   test::FakeClock clock;
   const std::vector<std::uint8_t> pixels = {'a'};
-  ChecksumOutput output(folder / "sums", clock);
+  out::ChecksumOutput output(folder / "sums", clock);
   const auto shown = output.present({1, 1, pixels}, {.sequence = 7});
   ASSERT_TRUE(shown);
   EXPECT_EQ(*shown, clock.now());
   EXPECT_EQ(test::readText(folder / "sums"), "7 af63dc4c8601ec8c\n");
-  ChecksumOutput nowhere(folder / "none/sums", clock);
+  out::ChecksumOutput nowhere(folder / "none/sums", clock);
   const auto failed = nowhere.present({1, 1, pixels}, {});
   ASSERT_FALSE(failed);
   EXPECT_EQ(failed.error().code, Errc::kIo);
@@ -78,14 +78,14 @@ TEST(ChecksumOutput, WritesALineAFrameAndSaysWhatFails) {
 TEST(RawTriangles, IsReadLikeAnyOtherFormat) {
   const test::TempDir dir;
   test::writeText(dir / "a.raw", "0 0 0 1 0 0 0 1 0\n\n0 0 1\t1 0 1 0 1 1\r\n");
-  const auto loaded = readMeshAs(kRawTrianglesReader, dir / "a.raw");
+  const auto loaded = mesh::readMeshAs(mesh::kRawTrianglesReader, dir / "a.raw");
   ASSERT_TRUE(loaded) << loaded.error().what;
   EXPECT_EQ(loaded->mesh.triangleCount(), 2u);
   EXPECT_EQ(loaded->mesh.positions[17], 1);
   test::writeText(dir / "b.raw", "0 0 0 1 0 0 0 1 0\n1 2 3\n");
-  EXPECT_EQ(readMeshAs(kRawTrianglesReader, dir / "b.raw").error().what,
+  EXPECT_EQ(mesh::readMeshAs(mesh::kRawTrianglesReader, dir / "b.raw").error().what,
             dir / "b.raw" + ": line 2: has 3 of 9 numbers");
-  EXPECT_EQ(readMesh(dir / "a.raw").error().code, Errc::kUnsupported) << "not in the table";
+  EXPECT_EQ(mesh::readMesh(dir / "a.raw").error().code, Errc::kUnsupported) << "not in the table";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The tracked hand: it grabs, carries and lets go, and its noise is no motion.
+// The tracked hand grabs, carries and releases the model; noise of the tracker is no motion.
 #include <gtest/gtest.h>
 
 #include "daemon/base/random.h"
@@ -15,14 +15,14 @@ using test::ScenePlay;
 using test::turnedBy;
 
 const Vector3f kX = Vector3f::UnitX(), kY = Vector3f::UnitY(), kZ = Vector3f::UnitZ();
-const Vector3f kStart(0, 0, -2);      // of the model, as shipped
-const Vector3f kHand(0.4F, 0.1F, 0);  // somewhere, in the tracker's frame
+const Vector3f kStart(0, 0, -2);      // the model's default position
+const Vector3f kHand(0.4F, 0.1F, 0);  // an arbitrary position in the tracker's frame
 
-// The tracker's axes are the wall's; the model follows three times as far.
-SceneSettings plain() { return {.tracker_axes = {1, 2, 3}, .hand_gain = 3}; }
+// The tracker's axes are those of the wall; the model moves three times as far as the hand.
+scene::SceneSettings plain() { return {.tracker_axes = {1, 2, 3}, .hand_gain = 3}; }
 
-// A fist, which has just grabbed.
-ScenePlay grabbed(const SceneSettings& settings = plain(),
+// A scene in which the hand has just grabbed the model.
+ScenePlay grabbed(const scene::SceneSettings& settings = plain(),
                   const Matrix3f& hand_turn = Matrix3f::Identity()) {
   ScenePlay play(settings);
   play.rest();
@@ -54,8 +54,9 @@ TEST(SceneHand, HowLongAFrameTakesDoesNotMatter) {
 }
 
 TEST(SceneHand, TurnsTheModelAsItTurnsAboutTheModelsCentre) {
-  const Matrix3f before = turnedBy(70, {1, 2, 3});  // however the hand was held at first
-  SceneSettings settings = plain();
+  // The orientation of the hand when it grabs is arbitrary.
+  const Matrix3f before = turnedBy(70, {1, 2, 3});
+  scene::SceneSettings settings = plain();
   settings.model_yaw_deg = 30;
   ScenePlay play = grabbed(settings, before);
   expectAt(play, kStart, turnedBy(30, kY));
@@ -67,7 +68,7 @@ TEST(SceneHand, TurnsTheModelAsItTurnsAboutTheModelsCentre) {
   expectAt(play, kStart + 0.3F * kY, turnedBy(-90, {1, 1, 0}) * turnedBy(30, kY));
 }
 
-// As shipped: the wall's x is the tracker's -y, its y is -z, its z is x.
+// The default mapping: the wall's x is the tracker's -y, its y is -z, its z is x.
 TEST(SceneHand, ItsAxesAreMapped) {
   const struct { Vector3f tracker, wall; } axes[] = {{-kY, kX}, {-kZ, kY}, {kX, kZ}};
   for (const auto& axis : axes) {
@@ -82,7 +83,7 @@ TEST(SceneHand, CarriesAlongTheAxesOfAViewerWhoHasTurned) {
   ScenePlay play(plain());
   play.scene.nextMode();
   play.push(Vector3f::Zero(), kY);
-  for (int i = 0; i < 10; ++i) play.update(100);  // 90 degrees to the left
+  for (int i = 0; i < 10; ++i) play.update(100);  // a turn of 90 degrees to the left
   play.push(Vector3f::Zero());
   play.input.grab = true;
   play.holdHand(kHand);
@@ -93,7 +94,8 @@ TEST(SceneHand, CarriesAlongTheAxesOfAViewerWhoHasTurned) {
   expectAt(play, {2.3F, 0, 0}, turnedBy(30, kX) * turnedBy(-90, kY));
 }
 
-// Each lets go; the model stays, and at the next grab it does not jump to where the hand is now.
+// Each of the two releases the model. It stays there, and does not jump to the hand at the next
+// grab.
 TEST(SceneHand, WithoutTheActionOrTheTrackerItLetsGo) {
   for (const int gone : {0, 1}) {
     ScenePlay play = grabbed();
@@ -136,7 +138,7 @@ TEST(SceneHand, MotionEndsThoughTheFistStays) {
   EXPECT_TRUE(play.scene.view().grabbed);
 }
 
-// 3 mm and 0.6 degrees are noise; from rest, twice that.
+// The thresholds of noise are 3 mm and 0.6 degrees; from rest they are twice as large.
 TEST(SceneHand, LeavesRestBeyondTwiceItsNoise) {
   const struct {
     Vector3f by;
@@ -160,23 +162,24 @@ TEST(SceneHand, OnceMovingItsNoiseIsTheBound) {
     const Vector3f by = (moves ? 0.0031F : 0.0029F) * kX;
     play.holdHand(kHand + by);
     EXPECT_TRUE(play.update(5).moving);
-    expectAt(play, kStart + 3 * by);  // followed either way, as long as it moves
+    // While the scene moves, the model follows the hand in both cases.
+    expectAt(play, kStart + 3 * by);
     EXPECT_EQ(play.update(100).moving, moves) << "the last motion was the hand's, or the grab";
   }
 }
 
-// However slowly: what counts is the way since it last counted.
+// However slow the drift is, the distance since the last motion is what counts.
 TEST(SceneHand, ASlowDriftIsFollowedInTheEnd) {
   ScenePlay play = grabbed();
   play.rest();
   int moved = 0;
   for (int i = 1; i <= 100; ++i) {
     play.holdHand(kHand + 0.001F * static_cast<float>(i) * kX);
-    play.update(200);  // so that it comes to rest in between
+    play.update(200);  // long enough to come to rest
     moved += play.scene.view().moving ? 1 : 0;
   }
   EXPECT_GE(moved, 12);
-  EXPECT_LE(moved, 17);  // each 6 mm or a little more
+  EXPECT_LE(moved, 17);  // one motion for each 6 mm or slightly more
   EXPECT_GT(play.position().x(), 0.27F);
 }
 

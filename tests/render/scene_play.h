@@ -1,4 +1,4 @@
-// ScenePlay: a scene, the devices' inputs and a clock, played by a test.
+// ScenePlay: a scene with inputs and a clock that the test controls.
 #pragma once
 
 #include <algorithm>
@@ -15,9 +15,9 @@
 namespace merlin::test {
 
 using Eigen::Vector3f;
-using render::SceneInput;
-using render::SceneSettings;
-using render::SceneView;
+using render::scene::SceneInput;
+using render::scene::SceneSettings;
+using render::scene::SceneView;
 
 inline constexpr float kRadian = std::numbers::pi_v<float> / 180;
 
@@ -27,7 +27,8 @@ inline Eigen::Matrix3f turnedBy(float degrees, const Vector3f& axis) {
 
 class ScenePlay {
  public:
-  explicit ScenePlay(const SceneSettings& settings = {}) : scene(*render::Scene::make(settings)) {
+  explicit ScenePlay(const SceneSettings& settings = {})
+      : scene(*render::scene::Scene::make(settings)) {
     update(0);
   }
 
@@ -35,9 +36,10 @@ class ScenePlay {
     now_ += std::chrono::milliseconds(after_ms);
     scene.update(input, now_);
     input.reset_view = input.next_mode = 0;
+    input.step = {};
     return scene.view();
   }
-  // Until nothing moves.
+  // Updates until nothing moves.
   void rest() {
     for (int i = 0; i < 20; ++i) update(50);
     EXPECT_FALSE(scene.view().moving);
@@ -51,7 +53,7 @@ class ScenePlay {
     }
   }
 
-  // Of the tracker's own frame.
+  // Sets the hand's pose in the tracker's frame; the position is in metres.
   void holdHand(const Vector3f& position,
                 const Eigen::Matrix3f& turn = Eigen::Matrix3f::Identity()) {
     const Eigen::Quaternionf q(turn);
@@ -63,7 +65,7 @@ class ScenePlay {
   Vector3f position() const { return scene.view().T_eye_model.translation(); }
   Eigen::Matrix3f turn() const { return scene.view().T_eye_model.linear(); }
 
-  render::Scene scene;
+  render::scene::Scene scene;
   SceneInput input;
 
  private:

@@ -4,8 +4,8 @@
 namespace merlin::test {
 namespace {
 
-// The tracker's axes are the wall's, its transmitter stands 0.5 m below the eye; the model is a
-// sphere of 0.5 m, 2 m away, and the wall is 3 m away.
+// The tracker's axes are those of the wall, and its transmitter is 0.5 m below the eye. The model
+// is a sphere of radius 0.5 m at 2 m distance; the wall is 3 m away.
 SceneSettings pointing() {
   SceneSettings s;
   s.model_radius_m = 0.5;
@@ -29,7 +29,7 @@ void expectPoint(const Vector3f& got, const Vector3f& want) {
   EXPECT_LT((got - want).norm(), 1e-4F) << got.transpose() << ", not " << want.transpose();
 }
 
-// From the eye's height: the ray is the eye's axis, and enters the sphere 1.5 m away.
+// Seen from eye height, the ray is the viewing axis, which enters the sphere 1.5 m away.
 TEST(ScenePointing, TheRayEntersTheModelsSphere) {
   const ScenePlay play = pointingFrom({0, 0.5F, 0});
   const auto& pointed = play.scene.view().pointed;
@@ -59,7 +59,7 @@ TEST(ScenePointing, PastTheModelItHitsTheWall) {
   expectPoint(pointed->at_eye_m, {0.6F, 0, -std::sqrt(9 - 0.36F)});
 }
 
-// A turn to the left by 90 degrees points to the left, away from the model.
+// After a turn of 90 degrees to the left the hand points to the left, away from the model.
 TEST(ScenePointing, FollowsTheHandsTurn) {
   const ScenePlay play = pointingFrom({0, 0.5F, 0}, turnedBy(90, Vector3f::UnitY()));
   ASSERT_TRUE(play.scene.view().pointed);

@@ -1,4 +1,4 @@
-// The ball, the bindings and what counts as motion.
+// The ball, the bindings, and what counts as motion.
 #include "render/scene/scene.h"
 
 #include <limits>
@@ -17,13 +17,13 @@ using test::ScenePlay;
 using test::turnedBy;
 
 const Vector3f kX = Vector3f::UnitX(), kY = Vector3f::UnitY(), kZ = Vector3f::UnitZ();
-const Vector3f kStart(0, 0, -2);  // as shipped
+const Vector3f kStart(0, 0, -2);  // the default position
 
 TEST(Scene, StartsWhereTheSettingsSay) {
   expectAt(ScenePlay(), kStart);
   ScenePlay play({.model_distance_m = 5, .model_yaw_deg = 90, .model_pitch_deg = 30});
   expectAt(play, {0, 0, -5}, turnedBy(90, kY) * turnedBy(30, kX));
-  const Scene unused = *Scene::make({.model_distance_m = 5});
+  const scene::Scene unused = *scene::Scene::make({.model_distance_m = 5});
   EXPECT_EQ(unused.view().T_eye_model.translation(), Vector3f(0, 0, -5));
   EXPECT_TRUE(unused.view().moving);
 }
@@ -38,7 +38,7 @@ TEST(SceneBall, MovesTheModelBySpeedTimesTimeOnEachAxis) {
 }
 
 TEST(SceneBall, TurnsTheModelAboutItsOwnCentreAndTheViewersAxes) {
-  const SceneSettings settings = {.ball_turn_deg_s = {100, 200, 300}};
+  const scene::SceneSettings settings = {.ball_turn_deg_s = {100, 200, 300}};
   const Vector3f axes[] = {kX, kY, kZ};
   for (int k = 0; k < 3; ++k) {
     ScenePlay play(settings);
@@ -50,8 +50,29 @@ TEST(SceneBall, TurnsTheModelAboutItsOwnCentreAndTheViewersAxes) {
   play.push(Vector3f::Zero(), kX);
   for (int i = 0; i < 9; ++i) play.update(100);  // 90 degrees
   play.push(Vector3f::Zero(), kY);
-  for (int i = 0; i < 3; ++i) play.update(100);  // 60, about the viewer's y, not the model's
+  // 60 degrees about the viewer's y axis, not the model's.
+  for (int i = 0; i < 3; ++i) play.update(100);
   expectAt(play, kStart, turnedBy(60, kY) * turnedBy(90, kX));
+}
+
+TEST(SceneStep, IsAppliedOnceWhateverTheFrameTakes) {
+  for (const int frame_ms : {1, 500}) {
+    ScenePlay play({.ball_speed_m_s = {9, 9, 9}, .ball_turn_deg_s = {9, 9, 9}});
+    play.rest();
+    play.input.step = {{0.5F, -0.25F, 1}, Vector3f(0, 30 * test::kRadian, 0)};
+    EXPECT_TRUE(play.update(frame_ms).moving);
+    expectAt(play, kStart + Vector3f(0.5F, -0.25F, 1), turnedBy(30, kY));
+    play.update(frame_ms);
+    expectAt(play, kStart + Vector3f(0.5F, -0.25F, 1), turnedBy(30, kY));
+  }
+}
+
+TEST(SceneStep, MovesTheViewerInModeFly) {
+  ScenePlay play;
+  play.input.next_mode = 1;
+  play.input.step = {{0, 0, -0.5F}, Vector3f::Zero()};
+  play.update(10);
+  expectAt(play, kStart + Vector3f(0, 0, 0.5F));
 }
 
 TEST(SceneBall, TurnsAboutTheAxisOfTheWholeTwist) {
@@ -78,15 +99,15 @@ TEST(SceneBall, AFrameThatTookLongMovesAsOneOfATenthOfASecond) {
 TEST(SceneFly, TheBallMovesTheViewer) {
   ScenePlay play;
   play.scene.nextMode();
-  play.push(-kZ);  // away from the person
-  EXPECT_EQ(play.update(100).mode, BallMode::kFly);
+  play.push(-kZ);  // away from the viewer
+  EXPECT_EQ(play.update(100).mode, scene::BallMode::kFly);
   expectAt(play, {0, 0, -1.9F});
   play.push(kX);
   play.update(100);
   expectAt(play, {-0.1F, 0, -1.9F});
 }
 
-// After 90 degrees to the left the model is on the right, and ahead is where left was.
+// After a turn of 90 degrees to the left the model is on the right, and "ahead" is the former left.
 TEST(SceneFly, TheViewerTurnsAboutTheEyeAndFliesAhead) {
   ScenePlay play;
   play.scene.nextMode();
@@ -96,7 +117,7 @@ TEST(SceneFly, TheViewerTurnsAboutTheEyeAndFliesAhead) {
   play.push(-kZ);
   play.update(100);
   expectAt(play, {2, 0, 0.1F}, turnedBy(-90, kY));
-  play.scene.nextMode();  // the model again, and along the viewer's axes still
+  play.scene.nextMode();  // back to moving the model, still along the viewer's axes
   play.push(kX);
   play.update(100);
   expectAt(play, {2.1F, 0, 0.1F}, turnedBy(-90, kY));
@@ -114,30 +135,30 @@ TEST(SceneReset, BringsModelAndViewerBackAndKeepsTheMode) {
   play.push(Vector3f::Zero());
   play.rest();
   play.input.reset_view = 1;
-  const SceneView view = play.update(20);
+  const scene::SceneView view = play.update(20);
   expectAt(play, kStart);
   EXPECT_TRUE(view.moving);
-  EXPECT_EQ(view.mode, BallMode::kFly);
+  EXPECT_EQ(view.mode, scene::BallMode::kFly);
   EXPECT_FALSE(play.update(150).moving);
   play.scene.reset();
   EXPECT_TRUE(play.scene.view().moving);
-  EXPECT_EQ(play.scene.view().mode, BallMode::kFly);
+  EXPECT_EQ(play.scene.view().mode, scene::BallMode::kFly);
   EXPECT_TRUE(play.update(200).moving) << "by command, at 5 Hz";
 }
 
 TEST(SceneActions, AreDoneAsOftenAsTheyWereAskedFor) {
   ScenePlay play;
   play.input.next_mode = 1;
-  EXPECT_EQ(play.update(20).mode, BallMode::kFly);
-  EXPECT_EQ(play.update(20).mode, BallMode::kFly) << "once";
+  EXPECT_EQ(play.update(20).mode, scene::BallMode::kFly);
+  EXPECT_EQ(play.update(20).mode, scene::BallMode::kFly) << "once";
   play.input.next_mode = 2;
-  EXPECT_EQ(play.update(20).mode, BallMode::kFly) << "there and back";
+  EXPECT_EQ(play.update(20).mode, scene::BallMode::kFly) << "there and back";
   play.input.next_mode = 3;
-  EXPECT_EQ(play.update(20).mode, BallMode::kObject);
+  EXPECT_EQ(play.update(20).mode, scene::BallMode::kObject);
 }
 
 TEST(SceneActions, FlyMovesTheViewerAsFastAsTheHandIsAway) {
-  SceneSettings settings;
+  scene::SceneSettings settings;
   settings.tracker_axes = {1, 2, 3};
   settings.fly_gain = 4;
   ScenePlay play(settings);
@@ -182,29 +203,31 @@ TEST(SceneSettings, AnAxisMapThatIsNoTurnIsRefused) {
                                          {kLeast, 2, 3},
                                          {1, 2, -3},
                                          {2, 1, 3},
-                                         {-1, -2, -3}}) {  // the last three: a mirror
-    const auto scene = Scene::make({.tracker_axes = axes});
+                                         {-1, -2, -3}}) {  // the last one is a reflection
+    const auto scene = scene::Scene::make({.tracker_axes = axes});
     ASSERT_FALSE(scene) << axes[0];
     EXPECT_EQ(scene.error().code, Errc::kInvalidArgument);
     EXPECT_TRUE(scene.error().what.starts_with("tracker_axes " + std::to_string(axes[0]) + ", "));
   }
   int turns = 0;
   for (int code = 0; code < 343; ++code) {
-    turns += Scene::make({.tracker_axes = {code % 7 - 3, code / 7 % 7 - 3, code / 49 - 3}}) ? 1 : 0;
+    turns += scene::Scene::make({.tracker_axes = {code % 7 - 3, code / 7 % 7 - 3, code / 49 - 3}})
+                 ? 1
+                 : 0;
   }
   EXPECT_EQ(turns, 24) << "as many as a cube has";
 }
 
 TEST(SceneBounds, NothingThatIsPushedForEverLeavesTheWorld) {
-  SceneSettings settings;
+  scene::SceneSettings settings;
   settings.ball_speed_m_s = {100, 100, 100};
   ScenePlay play(settings);
   play.push({1, 1, -1}, {1, 1, 1});
   for (int i = 0; i < 3000; ++i) play.update(100);
-  EXPECT_NEAR(play.position().norm(), render::Scene::kWorld_m, 1);
+  EXPECT_NEAR(play.position().norm(), render::scene::Scene::kWorld_m, 1);
   play.scene.nextMode();
   for (int i = 0; i < 3000; ++i) play.update(100);
-  EXPECT_LE(play.position().norm(), 2.001F * render::Scene::kWorld_m);
+  EXPECT_LE(play.position().norm(), 2.001F * render::scene::Scene::kWorld_m);
   play.scene.reset();
   play.push({0, 0, 0});
   play.update(100);
@@ -220,7 +243,7 @@ TEST(SceneBounds, ARotationStaysOne) {
 
 TEST(SceneBounds, WhateverAHandSaysTheViewIsOneThatCanBeDrawn) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  SceneSettings settings;
+  scene::SceneSettings settings;
   for (const float bad : {nan, std::numeric_limits<float>::infinity(), 1e30F, 3e38F, 1e-40F}) {
     for (const bool grab : {true, false}) {
       ScenePlay play(settings);
@@ -233,7 +256,7 @@ TEST(SceneBounds, WhateverAHandSaysTheViewIsOneThatCanBeDrawn) {
       play.update(33);
       play.update(33);
       EXPECT_TRUE(play.scene.view().T_eye_model.matrix().allFinite()) << bad;
-      EXPECT_LE(play.position().norm(), 2.001F * render::Scene::kWorld_m) << bad;
+      EXPECT_LE(play.position().norm(), 2.001F * render::scene::Scene::kWorld_m) << bad;
       play.holdHand({1, 0, 0});
       play.update(33);
       play.scene.reset();

@@ -14,22 +14,22 @@ using Floats = std::vector<float>;
 using Labels = std::vector<std::uint32_t>;
 using Sizes = std::vector<std::size_t>;
 
-Segmentation segmented(Mesh mesh, const SegmentSettings& settings) {
-  ensureNormals(mesh);
-  const auto result = segment(mesh, settings);
+segment::Segmentation segmented(mesh::Mesh mesh, const segment::SegmentSettings& settings) {
+  mesh::ensureNormals(mesh);
+  const auto result = segment::segment(mesh, settings);
   EXPECT_TRUE(result) << result.error().what;
-  return result ? *result : Segmentation{};
+  return result ? *result : segment::Segmentation{};
 }
 
-// A cube of n x n x n cells, its sides' vertices shared; `side` is 0..5, or 6 where sides meet.
-Mesh fineCube(std::uint32_t n, std::vector<int>& side) {
-  Mesh mesh = test::grid(n, n);
+// A cube of n x n x n cells whose sides share vertices; `side` is 0..5, or 6 on edges and corners.
+mesh::Mesh fineCube(std::uint32_t n, std::vector<int>& side) {
+  mesh::Mesh mesh = test::grid(n, n);
   const std::size_t vertices = mesh.vertexCount(), corners = mesh.triangles.size();
   const auto size = static_cast<float>(n);
   mesh.positions.clear();
   std::vector<std::uint32_t> triangles;
   std::map<std::array<float, 3>, std::uint32_t> places;
-  const Mesh flat = test::grid(n, n);
+  const mesh::Mesh flat = test::grid(n, n);
   for (int s = 0; s < 6; ++s) {
     const auto axis = static_cast<std::size_t>(s % 3);
     std::vector<std::uint32_t> number;
@@ -46,7 +46,7 @@ Mesh fineCube(std::uint32_t n, std::vector<int>& side) {
       number.push_back(at->second);
     }
     for (std::size_t i = 0; i < corners; i += 3) {
-      const std::size_t last = s < 3 ? 2 : 1;  // facing outside
+      const std::size_t last = s < 3 ? 2 : 1;  // so that the side faces outwards
       for (const std::size_t k : {std::size_t{0}, 3 - last, last})
         triangles.push_back(number[flat.triangles[i + k]]);
     }
@@ -57,8 +57,8 @@ Mesh fineCube(std::uint32_t n, std::vector<int>& side) {
 
 TEST(Segment, FindsTheSixSidesOfACubeByTheirNormals) {
   std::vector<int> side;
-  const Mesh cube = fineCube(12, side);
-  const Segmentation s = segmented(cube, {.segments = 6});
+  const mesh::Mesh cube = fineCube(12, side);
+  const segment::Segmentation s = segmented(cube, {.segments = 6});
   std::set<std::pair<int, std::uint32_t>> pairs;
   for (std::size_t v = 0; v < side.size(); ++v) {
     if (side[v] < 6) pairs.emplace(side[v], s.labels[v]);
@@ -70,10 +70,10 @@ TEST(Segment, FindsTheSixSidesOfACubeByTheirNormals) {
   for (const std::size_t size : s.sizes) EXPECT_GE(size, 121u);
 }
 
-// Stripes of red and green; flat, so that nothing but the colour tells them apart.
-Mesh stripes() {
-  Mesh mesh = test::grid(11, 5);
-  Feature colour{"colour", 3, {}};
+// A flat mesh with red and green stripes, so that only the colour distinguishes them.
+mesh::Mesh stripes() {
+  mesh::Mesh mesh = test::grid(11, 5);
+  mesh::Feature colour{"colour", 3, {}};
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     const bool red = v % 12 < 4 || v % 12 >= 8;
     colour.values.insert(colour.values.end(), {red ? 1.0F : 0.0F, red ? 0.0F : 1.0F, 0});
@@ -83,49 +83,50 @@ Mesh stripes() {
 }
 
 TEST(Segment, TellsColoursApartAndStaysConnected) {
-  const Segmentation three = segmented(stripes(), {.segments = 3});
+  const segment::Segmentation three = segmented(stripes(), {.segments = 3});
   EXPECT_EQ(three.sizes, (Sizes{24, 24, 24}));
   EXPECT_EQ(three.error, 0);
   for (std::size_t v = 0; v < 72; ++v) EXPECT_EQ(three.labels[v], v % 12 / 4) << v;
-  const Segmentation two = segmented(stripes(), {.segments = 2});
+  const segment::Segmentation two = segmented(stripes(), {.segments = 2});
   EXPECT_EQ(two.sizes, (Sizes{48, 24})) << "the red stripes do not touch: one joins the green";
 }
 
 TEST(Segment, GoesByTheWeights) {
-  Mesh mesh = stripes();
+  mesh::Mesh mesh = stripes();
   mesh.features.push_back({"heat", 1, Floats(72, 20)});
-  for (std::size_t v = 36; v < 72; ++v) mesh.features[1].values[v] = 90;  // the upper rows
-  const Segmentation heat = segmented(mesh, {2, {{"heat", 1}}});
+  // The upper rows are warmer.
+  for (std::size_t v = 36; v < 72; ++v) mesh.features[1].values[v] = 90;
+  const segment::Segmentation heat = segmented(mesh, {2, {{"heat", 1}}});
   EXPECT_EQ(heat.sizes, (Sizes{36, 36}));
   for (std::size_t v = 0; v < 72; ++v) EXPECT_EQ(heat.labels[v], v / 36) << v;
-  const Segmentation geometry = segmented(mesh, {2, {{"geometry", 1}}});
+  const segment::Segmentation geometry = segmented(mesh, {2, {{"geometry", 1}}});
   EXPECT_EQ(geometry.sizes[0] + geometry.sizes[1], 72u);
   EXPECT_LT(geometry.error, 0.25);
 }
 
 TEST(Segment, FindsAnEdgeByItsCurvature) {
   std::vector<int> side;
-  const Mesh cube = fineCube(8, side);
-  const Segmentation s = segmented(cube, {7, {{"curvature", 1}}});
+  const mesh::Mesh cube = fineCube(8, side);
+  const segment::Segmentation s = segmented(cube, {7, {{"curvature", 1}}});
   for (std::size_t v = 0; v < side.size(); ++v)
     EXPECT_EQ(s.sizes[s.labels[v]], side[v] < 6 ? 49u : 92u) << "a side's inside, or all edges";
 }
 
 TEST(Segment, JoinsComponentsThatAreTooMany) {
-  Mesh mesh;
+  mesh::Mesh mesh;
   for (int i = 0; i < 5; ++i)
     mesh =
         test::together(mesh, test::moved(test::grid(i < 2 ? 3 : 1, 1), 0, 0, i < 3 ? 0.0F : 9.0F));
-  const Segmentation s = segmented(mesh, {2, {{"geometry", 1}}});
+  const segment::Segmentation s = segmented(mesh, {2, {{"geometry", 1}}});
   EXPECT_EQ(s.sizes.size(), 2u);
   EXPECT_EQ(s.sizes[0] + s.sizes[1], 28u);
 }
 
-// The two sides of a seam are one surface.
+// Coincident vertices on both sides of a seam belong to one surface.
 TEST(Segment, CrossesSeams) {
-  const Mesh mesh = test::together(test::grid(2, 1), test::moved(test::grid(2, 1), 2, 0, 0));
+  const mesh::Mesh mesh = test::together(test::grid(2, 1), test::moved(test::grid(2, 1), 2, 0, 0));
   EXPECT_EQ(segmented(mesh, {.segments = 1}).sizes, (Sizes{12}));
-  const Segmentation s = segmented(mesh, {2, {{"geometry", 1}}});
+  const segment::Segmentation s = segmented(mesh, {2, {{"geometry", 1}}});
   EXPECT_EQ(s.labels[2], s.labels[6]) << "what is in one place is merged first";
   EXPECT_EQ(s.labels[5], s.labels[9]);
 }
@@ -136,12 +137,13 @@ TEST(Segment, MayBeAskedForAsManyAsThereAreVerticesOrMore) {
 }
 
 TEST(Segment, RefusesWhatItCannotDo) {
-  Mesh mesh = test::grid(1, 1);
-  ensureNormals(mesh);
-  EXPECT_EQ(segment(mesh, {.segments = 0}).error().what, "0 segments: at least one is needed");
-  EXPECT_EQ(segment(mesh, {2, {{"boundary", 1}}}).error().what,
-            "weight boundary: segments have no use for it");
-  EXPECT_EQ(segment(mesh, {2, {{"heat", 1}}}).error().code, Errc::kInvalidArgument);
+  mesh::Mesh mesh = test::grid(1, 1);
+  mesh::ensureNormals(mesh);
+  EXPECT_EQ(segment::segment(mesh, {.segments = 0}).error().what,
+            "0 segments: at least one is needed");
+  EXPECT_EQ(segment::segment(mesh, {2, {{"boundary", 1}}}).error().what,
+            "weight boundary: segmentation does not use this weight");
+  EXPECT_EQ(segment::segment(mesh, {2, {{"heat", 1}}}).error().code, Errc::kInvalidArgument);
 }
 
 }  // namespace

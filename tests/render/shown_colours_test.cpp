@@ -1,4 +1,4 @@
-// Which colours show a feature.
+// The colours that show a feature.
 #include "render/content/shown_colours.h"
 
 #include <cmath>
@@ -13,19 +13,21 @@ namespace {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
-// A fan of five vertices, not reduced: nodes are numbered by their death, so values tell them.
-Dendrogram fan(std::vector<Feature> features) {
-  Mesh mesh;
+// A fan of five vertices without collapses. The dendrogram renumbers its nodes, so a node is found
+// by its value.
+lod::Dendrogram fan(std::vector<mesh::Feature> features) {
+  mesh::Mesh mesh;
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0};
   mesh.triangles = {0, 1, 2, 0, 2, 3, 0, 3, 4};
   mesh.features = std::move(features);
-  CollapseLog nothing;
+  lod::CollapseLog nothing;
   nothing.features.resize(mesh.features.size());
-  return buildDendrogram(mesh, nothing);
+  return lod::buildDendrogram(mesh, nothing);
 }
 
-Rgb colourAt(const Dendrogram& model, const ShownColours& shown, const char* feature, float value) {
-  const FeatureView* f = model.find(feature);
+Rgb colourAt(const lod::Dendrogram& model, const content::ShownColours& shown, const char* feature,
+             float value) {
+  const lod::FeatureView* f = model.find(feature);
   for (std::size_t n = 0; n < model.nodeCount(); ++n) {
     if (f->values[n * f->dimension] == value) return shown.rgb[n];
   }
@@ -33,8 +35,8 @@ Rgb colourAt(const Dendrogram& model, const ShownColours& shown, const char* fea
 }
 
 TEST(ShownColours, OneValueIsOnAScaleOverWhatThereIs) {
-  const Dendrogram model = fan({{"thermal", 1, {20, 30, 40, 50, 60}}});
-  const auto shown = coloursOf(model, {.feature = "thermal"});
+  const lod::Dendrogram model = fan({{"thermal", 1, {20, 30, 40, 50, 60}}});
+  const auto shown = content::coloursOf(model, {.feature = "thermal"});
   ASSERT_TRUE(shown);
   EXPECT_EQ(shown->low, 20);
   EXPECT_EQ(shown->high, 50) << "the 99th percentile of five is the fourth";
@@ -44,50 +46,54 @@ TEST(ShownColours, OneValueIsOnAScaleOverWhatThereIs) {
 }
 
 TEST(ShownColours, TheScaleIsAsItIsTold) {
-  const Dendrogram model = fan({{"thermal", 1, {20, 30, 40, 50, -3e38F}}});
-  const auto shown = coloursOf(model, {.feature = "thermal", .range = {30, 50}});
+  const lod::Dendrogram model = fan({{"thermal", 1, {20, 30, 40, 50, -3e38F}}});
+  const auto shown = content::coloursOf(model, {.feature = "thermal", .range = {30, 50}});
   EXPECT_EQ(colourAt(model, *shown, "thermal", 30), (Rgb{68, 1, 84}));
   EXPECT_EQ(colourAt(model, *shown, "thermal", 40), (Rgb{33, 145, 141}));
   EXPECT_EQ(colourAt(model, *shown, "thermal", -3e38F), (Rgb{68, 1, 84}));
 }
 
 TEST(ShownColours, ThreeAreRedGreenBlue) {
-  const Dendrogram model = fan({{"colour", 3, {1, 0.5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -3, 2, NAN}},
-                                {"normal", 3, {-1, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}}});
+  const lod::Dendrogram model =
+      fan({{"colour", 3, {1, 0.5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -3, 2, NAN}},
+           {"normal", 3, {-1, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}}});
   for (const char* name : {"", "colour"}) {
-    const auto shown = coloursOf(model, {.feature = name});
+    const auto shown = content::coloursOf(model, {.feature = name});
     EXPECT_EQ(colourAt(model, *shown, "colour", 1), (Rgb{255, 128, 0}));
     EXPECT_EQ(colourAt(model, *shown, "colour", -3), (Rgb{0, 255, 0}));
   }
-  EXPECT_EQ(colourAt(model, *coloursOf(model, {.feature = "normal"}), "normal", -1),
+  EXPECT_EQ(colourAt(model, *content::coloursOf(model, {.feature = "normal"}), "normal", -1),
             (Rgb{0, 128, 255}));
 }
 
 TEST(ShownColours, LabelsDiffer) {
-  const Dendrogram model = fan({{"label", 1, {0, 1, 2, 10'000'001, 10'000'002}}});
-  const auto shown = coloursOf(model, {.feature = "label"});
+  const lod::Dendrogram model = fan({{"label", 1, {0, 1, 2, 10'000'001, 10'000'002}}});
+  const auto shown = content::coloursOf(model, {.feature = "label"});
   std::set<Rgb> colours(shown->rgb.begin(), shown->rgb.end());
   EXPECT_EQ(colours.size(), 5u);
 }
 
 TEST(ShownColours, WithoutColoursThereAreNone) {
-  EXPECT_TRUE(coloursOf(fan({{"thermal", 1, {1, 2, 3, 4, 5}}}), {.feature = ""})->rgb.empty());
+  EXPECT_TRUE(
+      content::coloursOf(fan({{"thermal", 1, {1, 2, 3, 4, 5}}}), {.feature = ""})->rgb.empty());
 }
 
 TEST(ShownColours, OneValueEverywhereIsTheMiddle) {
-  const Dendrogram model = fan({{"thermal", 1, {7, 7, 7, 7, 7}}});
-  EXPECT_EQ(coloursOf(model, {.feature = "thermal"})->rgb[0], (Rgb{33, 145, 141}));
+  const lod::Dendrogram model = fan({{"thermal", 1, {7, 7, 7, 7, 7}}});
+  EXPECT_EQ(content::coloursOf(model, {.feature = "thermal"})->rgb[0], (Rgb{33, 145, 141}));
 }
 
 TEST(ShownColours, WhatIsNotThereIsNamed) {
-  const Dendrogram model =
+  const lod::Dendrogram model =
       fan({{"thermal", 1, {1, 2, 3, 4, 5}}, {"texcoord", 2, {0, 0, 1, 0, 0, 1, 1, 1, 0, 0}}});
   for (const char* name : {"termal", "texcoord"}) {
-    EXPECT_EQ(coloursOf(model, {.feature = name}).error().what,
-              std::string("no feature \"") + name + "\" to show; there are thermal");
+    EXPECT_EQ(
+        content::coloursOf(model, {.feature = name}).error().what,
+        std::string("the model has no feature \"") + name + "\" that can be shown; it has thermal");
   }
-  EXPECT_EQ(coloursOf(fan({}), {.feature = "thermal"}).error().what,
-            "no feature \"thermal\" to show; the model has none");
+  EXPECT_EQ(
+      content::coloursOf(fan({}), {.feature = "thermal"}).error().what,
+      "the model has no feature \"thermal\" that can be shown; it has none of dimension 1 or 3");
 }
 
 }  // namespace

@@ -11,13 +11,14 @@
 namespace merlin::render {
 namespace {
 
-using Corners = std::array<Vector, 3>;
+using Corners = std::array<compare::Vector, 3>;
 
-constexpr Corners kRight = {Vector{0, 0, 0}, Vector{4, 0, 0}, Vector{0, 3, 0}};
+constexpr Corners kRight = {compare::Vector{0, 0, 0}, compare::Vector{4, 0, 0},
+                            compare::Vector{0, 3, 0}};
 
-void expectNearest(const Corners& corners, const Vector& p, double distance,
+void expectNearest(const Corners& corners, const compare::Vector& p, double distance,
                    const std::array<double, 3>& barycentric) {
-  const NearestPoint nearest = nearestOnTriangle(p, corners);
+  const compare::NearestPoint nearest = compare::nearestOnTriangle(p, corners);
   EXPECT_NEAR(std::sqrt(nearest.distance2), distance, 1e-15);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(nearest.barycentric[k], barycentric[k], 1e-15);
 }
@@ -34,33 +35,37 @@ TEST(NearestOnTriangle, IsBelowAPointInsideOnAnEdgeOrAtACornerOtherwise) {
 }
 
 TEST(NearestOnTriangle, OfOneWithoutAreaIsThatOfItsLongestEdge) {
-  const Corners line = {Vector{1, 1, 0}, Vector{0, 0, 0}, Vector{2, 2, 0}};
-  EXPECT_NEAR(nearestOnTriangle({3, 3, 1}, line).distance2, 3, 1e-14);
-  EXPECT_NEAR(nearestOnTriangle({0, 1, 0}, line).distance2, 0.5, 1e-14);
-  EXPECT_NEAR(nearestOnTriangle({-1, 0, 0}, line).distance2, 1, 1e-14);
-  const Corners point = {Vector{1, 2, 3}, Vector{1, 2, 3}, Vector{1, 2, 3}};
-  EXPECT_EQ(nearestOnTriangle({1, 2, 5}, point).distance2, 4);
+  const Corners line = {compare::Vector{1, 1, 0}, compare::Vector{0, 0, 0},
+                        compare::Vector{2, 2, 0}};
+  EXPECT_NEAR(compare::nearestOnTriangle({3, 3, 1}, line).distance2, 3, 1e-14);
+  EXPECT_NEAR(compare::nearestOnTriangle({0, 1, 0}, line).distance2, 0.5, 1e-14);
+  EXPECT_NEAR(compare::nearestOnTriangle({-1, 0, 0}, line).distance2, 1, 1e-14);
+  const Corners point = {compare::Vector{1, 2, 3}, compare::Vector{1, 2, 3},
+                         compare::Vector{1, 2, 3}};
+  EXPECT_EQ(compare::nearestOnTriangle({1, 2, 5}, point).distance2, 4);
 }
 
 TEST(NearestOnTriangle, HoldsForTheFarthestAndTheSmallestCoordinates) {
   for (const double s : {1e18, 1e-30}) {
-    const Corners corners = {Vector{0, 0, 0}, Vector{4 * s, 0, 0}, Vector{0, 3 * s, 0}};
-    const NearestPoint nearest = nearestOnTriangle({s, s, 2 * s}, corners);
+    const Corners corners = {compare::Vector{0, 0, 0}, compare::Vector{4 * s, 0, 0},
+                             compare::Vector{0, 3 * s, 0}};
+    const compare::NearestPoint nearest = compare::nearestOnTriangle({s, s, 2 * s}, corners);
     EXPECT_NEAR(std::sqrt(nearest.distance2) / s, 2, 1e-14);
     EXPECT_NEAR(nearest.barycentric[2], 1. / 3, 1e-14);
   }
 }
 
-// The same by another way: the least over a dense net of the triangle is never less.
+// An independent check: no point of a dense set on the triangle is nearer.
 TEST(NearestOnTriangle, IsNoFartherThanAnyPointOfIt) {
   Random random(1);
   for (int trial = 0; trial < 300; ++trial) {
     const double flat = trial % 3 == 0 ? 1e-7 : 1;
     Corners corners;
-    for (Vector& c : corners) c = {random.normal(), flat * random.normal(), flat * random.normal()};
-    const Vector p = {2 * random.normal(), random.normal(), random.normal()};
-    const NearestPoint nearest = nearestOnTriangle(p, corners);
-    Vector at;
+    for (compare::Vector& c : corners)
+      c = {random.normal(), flat * random.normal(), flat * random.normal()};
+    const compare::Vector p = {2 * random.normal(), random.normal(), random.normal()};
+    const compare::NearestPoint nearest = compare::nearestOnTriangle(p, corners);
+    compare::Vector at;
     for (std::size_t k = 0; k < 3; ++k) at = at + nearest.barycentric[k] * corners[k];
     EXPECT_NEAR(std::sqrt(squared(p - at)), std::sqrt(nearest.distance2), 1e-9);
     double least = std::numeric_limits<double>::infinity();
@@ -77,10 +82,10 @@ TEST(NearestOnTriangle, IsNoFartherThanAnyPointOfIt) {
   }
 }
 
-// Triangles anywhere: small ones, large ones, on a lattice so that many share points, are equal,
-// or have no area.
-Mesh soup(std::size_t triangles, std::uint64_t seed) {
-  Mesh mesh;
+// Random triangles, small and large. A third have integer corners, so that many share points or are
+// equal; one in eleven has no area.
+mesh::Mesh soup(std::size_t triangles, std::uint64_t seed) {
+  mesh::Mesh mesh;
   Random random(seed);
   for (std::size_t t = 0; t < triangles; ++t) {
     const double x = random.uniform(-5, 5), y = random.uniform(-5, 5), z = random.uniform(-5, 5);
@@ -96,7 +101,7 @@ Mesh soup(std::size_t triangles, std::uint64_t seed) {
   return mesh;
 }
 
-double bruteForce2(const TriangleTree& tree, const Vector& p) {
+double bruteForce2(const compare::TriangleTree& tree, const compare::Vector& p) {
   double least2 = std::numeric_limits<double>::infinity();
   for (std::uint32_t place = 0; place < tree.size(); ++place)
     least2 = std::min(least2, tree.nearestAt(place, p).distance2);
@@ -105,15 +110,16 @@ double bruteForce2(const TriangleTree& tree, const Vector& p) {
 
 TEST(TriangleTree, FindsWhatTryingEachTriangleFinds) {
   for (const std::size_t triangles : {1u, 2u, 4u, 5u, 9u, 100u, 2000u}) {
-    const TriangleTree tree(soup(triangles, triangles));
+    const compare::TriangleTree tree(soup(triangles, triangles));
     Random random(7);
-    std::uint32_t hint = TriangleTree::kNone;
+    std::uint32_t hint = compare::TriangleTree::kNone;
     for (int i = 0; i < 200; ++i) {
-      const Vector p = {random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9)};
-      const TriangleTree::Nearest nearest = tree.nearest(p);
+      const compare::Vector p = {random.uniform(-9, 9), random.uniform(-9, 9),
+                                 random.uniform(-9, 9)};
+      const compare::TriangleTree::Nearest nearest = tree.nearest(p);
       EXPECT_EQ(nearest.point.distance2, bruteForce2(tree, p));
       EXPECT_EQ(tree.nearestAt(nearest.place, p).distance2, nearest.point.distance2);
-      const TriangleTree::Nearest hinted = tree.nearest(p, hint);
+      const compare::TriangleTree::Nearest hinted = tree.nearest(p, hint);
       EXPECT_EQ(hinted.point.distance2, nearest.point.distance2);
       hint = hinted.place;
     }
@@ -121,8 +127,8 @@ TEST(TriangleTree, FindsWhatTryingEachTriangleFinds) {
 }
 
 TEST(TriangleTree, HasEachTriangleOnce) {
-  const Mesh mesh = soup(777, 3);
-  const TriangleTree tree(mesh);
+  const mesh::Mesh mesh = soup(777, 3);
+  const compare::TriangleTree tree(mesh);
   std::vector<std::uint32_t> triangles, all(777);
   for (std::uint32_t place = 0; place < tree.size(); ++place) {
     triangles.push_back(tree.triangleAt(place));
@@ -135,17 +141,17 @@ TEST(TriangleTree, HasEachTriangleOnce) {
   EXPECT_EQ(triangles, all);
 }
 
-// Each next one ten times as far away, and thousands in one place: cuts by area alone would peel
-// off one triangle after the other.
+// Triangles whose distances grow exponentially, and thousands at one position: splits by area alone
+// would separate one triangle at a time.
 TEST(TriangleTree, StaysShallowWhereTrianglesAreSpreadUnevenly) {
-  Mesh mesh;
+  mesh::Mesh mesh;
   for (int t = 0; t < 20000; ++t) {
     const auto x = t < 74 ? static_cast<float>(std::pow(3.0, t - 36)) : 1.0F;
     const auto first = static_cast<std::uint32_t>(mesh.vertexCount());
     mesh.positions.insert(mesh.positions.end(), {x, 0, 0, x, 1, 0, x, 0, 1});
     mesh.triangles.insert(mesh.triangles.end(), {first, first + 1, first + 2});
   }
-  const TriangleTree tree(mesh);
+  const compare::TriangleTree tree(mesh);
   for (const double x : {0.0, 1e-10, 0.5, 1.0, 1e3, 1e12, 3e17})
     EXPECT_EQ(tree.nearest({x, 0.2, 0.2}).point.distance2, bruteForce2(tree, {x, 0.2, 0.2}));
 }

@@ -14,8 +14,8 @@ namespace {
 using Vertices = std::set<std::uint32_t>;
 using Pairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
-Mesh meshOf(std::size_t vertices, std::vector<std::uint32_t> triangles) {
-  Mesh mesh;
+mesh::Mesh meshOf(std::size_t vertices, std::vector<std::uint32_t> triangles) {
+  mesh::Mesh mesh;
   mesh.positions.resize(3 * vertices);
   mesh.triangles = std::move(triangles);
   return mesh;
@@ -26,21 +26,21 @@ Mesh meshOf(std::size_t vertices, std::vector<std::uint32_t> triangles) {
 //   6---0---1---7
 //    \ / \ / \ /
 //     8---3---9
-Mesh leaf() {
+mesh::Mesh leaf() {
   return meshOf(10, {6, 0, 4, 4, 0, 2, 0, 1, 2, 2, 1, 5, 1, 7, 5,
                      6, 8, 0, 8, 3, 0, 0, 3, 1, 3, 9, 1, 1, 9, 7});
 }
 
-Mesh tetrahedron() { return meshOf(4, {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2}); }
+mesh::Mesh tetrahedron() { return meshOf(4, {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2}); }
 
-Vertices neighbours(const WorkingMesh& mesh, std::uint32_t v) {
+Vertices neighbours(const reduce::WorkingMesh& mesh, std::uint32_t v) {
   Vertices all;
   for (const std::uint32_t e : mesh.edgesOf(v)) all.insert(mesh.otherEnd(e, v));
   return all;
 }
 
-// The ends of edges, as they stand now; of `before` for those that are gone.
-Pairs endsOf(const WorkingMesh& before, std::span<const std::uint32_t> edges) {
+// The current ends of edges; for removed edges, their ends in `before`.
+Pairs endsOf(const reduce::WorkingMesh& before, std::span<const std::uint32_t> edges) {
   Pairs ends;
   for (const std::uint32_t e : edges) ends.insert({before.ends(e)[0], before.ends(e)[1]});
   return ends;
@@ -48,49 +48,49 @@ Pairs endsOf(const WorkingMesh& before, std::span<const std::uint32_t> edges) {
 
 constexpr std::uint32_t kNoEdge = ~std::uint32_t{0};
 
-std::uint32_t edgeOf(const WorkingMesh& mesh, std::uint32_t a, std::uint32_t b) {
+std::uint32_t edgeOf(const reduce::WorkingMesh& mesh, std::uint32_t a, std::uint32_t b) {
   for (const std::uint32_t e : mesh.edgesOf(a)) {
     if (mesh.otherEnd(e, a) == b) return e;
   }
   return kNoEdge;
 }
 
-std::size_t trianglesAt(const WorkingMesh& mesh, std::uint32_t a, std::uint32_t b) {
+std::size_t trianglesAt(const reduce::WorkingMesh& mesh, std::uint32_t a, std::uint32_t b) {
   const std::uint32_t edge = edgeOf(mesh, a, b);
   return edge == kNoEdge ? 0 : mesh.trianglesAt(edge);
 }
 
 TEST(WorkingMesh, KnowsEveryEdgeOnce) {
-  const WorkingMesh mesh(leaf());
+  const reduce::WorkingMesh mesh(leaf());
   EXPECT_EQ(mesh.liveTriangles(), 10u);
   EXPECT_EQ(mesh.edgeCount(), 19u);
-  EXPECT_EQ(mesh.ends(0), (WorkingMesh::Ends{0, 1}));  // sorted by their ends
-  EXPECT_EQ(mesh.ends(1), (WorkingMesh::Ends{0, 2}));
-  EXPECT_EQ(mesh.ends(18), (WorkingMesh::Ends{7, 9}));
+  EXPECT_EQ(mesh.ends(0), (reduce::WorkingMesh::Ends{0, 1}));  // sorted by their ends
+  EXPECT_EQ(mesh.ends(1), (reduce::WorkingMesh::Ends{0, 2}));
+  EXPECT_EQ(mesh.ends(18), (reduce::WorkingMesh::Ends{7, 9}));
   EXPECT_EQ(neighbours(mesh, 0), (Vertices{1, 2, 3, 4, 6, 8}));
   EXPECT_EQ(mesh.trianglesOf(0).size(), 6u);
   EXPECT_EQ(neighbours(mesh, 6), (Vertices{0, 4, 8}));
 }
 
 TEST(WorkingMesh, TellsBoundaryFromInner) {
-  const WorkingMesh mesh(leaf());
+  const reduce::WorkingMesh mesh(leaf());
   EXPECT_EQ(trianglesAt(mesh, 0, 1), 2u);
   EXPECT_EQ(trianglesAt(mesh, 4, 6), 1u);
   EXPECT_EQ(trianglesAt(mesh, 4, 5), 0u);
   for (std::uint32_t v = 0; v < 10; ++v) EXPECT_EQ(mesh.isBoundary(v), v > 1) << v;
 }
 
-// Two tetrahedra on one edge: four triangles meet there, and none ends there.
+// Two tetrahedra share an edge: four triangles meet there, and none of the vertices is on a border.
 TEST(WorkingMesh, TakesAnEdgeOfManyTrianglesForNoBorder) {
-  const WorkingMesh mesh(meshOf(6, {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2,  //
-                                    0, 1, 4, 0, 4, 5, 0, 5, 1, 1, 5, 4}));
+  const reduce::WorkingMesh mesh(meshOf(6, {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2,  //
+                                            0, 1, 4, 0, 4, 5, 0, 5, 1, 1, 5, 4}));
   EXPECT_EQ(trianglesAt(mesh, 0, 1), 4u);
   for (std::uint32_t v = 0; v < 6; ++v) EXPECT_FALSE(mesh.isBoundary(v)) << v;
 }
 
 TEST(WorkingMesh, AnInnerCollapseRemovesTwoFacesAndMergesTwoPairsOfEdges) {
-  const WorkingMesh before(leaf());
-  WorkingMesh mesh = before;
+  const reduce::WorkingMesh before(leaf());
+  reduce::WorkingMesh mesh = before;
   EXPECT_EQ(endsOf(before, mesh.collapse(0, 1)), (Pairs{{0, 1}, {1, 2}, {1, 3}}));
   EXPECT_EQ(mesh.liveTriangles(), 8u);
   EXPECT_EQ(mesh.trianglesOf(0).size(), 8u);
@@ -102,13 +102,13 @@ TEST(WorkingMesh, AnInnerCollapseRemovesTwoFacesAndMergesTwoPairsOfEdges) {
   EXPECT_EQ(mesh.edgesOf(2).size(), 3u);
   EXPECT_EQ(mesh.trianglesOf(2).size(), 2u);
   EXPECT_EQ(trianglesAt(mesh, 0, 2), 2u);
-  EXPECT_EQ(mesh.corners(4), (WorkingMesh::Corners{0, 7, 5}));  // was 1 7 5
+  EXPECT_EQ(mesh.corners(4), (reduce::WorkingMesh::Corners{0, 7, 5}));  // was 1 7 5
   EXPECT_FALSE(mesh.isBoundary(0));
 }
 
 TEST(WorkingMesh, ABoundaryCollapseRemovesOneFaceAndMergesOnePair) {
-  const WorkingMesh before(leaf());
-  WorkingMesh mesh = before;
+  const reduce::WorkingMesh before(leaf());
+  reduce::WorkingMesh mesh = before;
   EXPECT_EQ(endsOf(before, mesh.collapse(6, 4)), (Pairs{{4, 6}, {0, 4}}));
   EXPECT_EQ(mesh.liveTriangles(), 9u);
   EXPECT_EQ(neighbours(mesh, 6), (Vertices{0, 2, 8}));
@@ -116,10 +116,10 @@ TEST(WorkingMesh, ABoundaryCollapseRemovesOneFaceAndMergesOnePair) {
   EXPECT_TRUE(mesh.isBoundary(6));
 }
 
-// 0 1 2 and 2 3 4 touch at 2. Without its triangle the edge 0-2 is none.
+// 0 1 2 and 2 3 4 touch at 2. When triangle 0 1 2 is removed, its edge 0-2 is removed too.
 TEST(WorkingMesh, AnEdgeGoesWithItsOnlyTriangle) {
-  const WorkingMesh before(meshOf(5, {0, 1, 2, 2, 3, 4}));
-  WorkingMesh mesh = before;
+  const reduce::WorkingMesh before(meshOf(5, {0, 1, 2, 2, 3, 4}));
+  reduce::WorkingMesh mesh = before;
   EXPECT_EQ(endsOf(before, mesh.collapse(0, 1)), (Pairs{{0, 1}, {0, 2}, {1, 2}}));
   EXPECT_EQ(mesh.liveTriangles(), 1u);
   EXPECT_EQ(neighbours(mesh, 2), (Vertices{3, 4}));
@@ -127,22 +127,22 @@ TEST(WorkingMesh, AnEdgeGoesWithItsOnlyTriangle) {
 }
 
 TEST(WorkingMesh, ThreeTrianglesAtAnEdgeGoTogether) {
-  const WorkingMesh before(meshOf(5, {0, 1, 2, 1, 0, 3, 0, 1, 4}));
-  WorkingMesh mesh = before;
+  const reduce::WorkingMesh before(meshOf(5, {0, 1, 2, 1, 0, 3, 0, 1, 4}));
+  reduce::WorkingMesh mesh = before;
   EXPECT_EQ(trianglesAt(mesh, 0, 1), 3u);
   EXPECT_EQ(mesh.collapse(0, 1).size(), 7u);  // all of its edges
   EXPECT_EQ(mesh.liveTriangles(), 0u);
 }
 
 TEST(WorkingMesh, TwoTrianglesMayBecomeOneAndBothStay) {
-  WorkingMesh mesh(tetrahedron());
+  reduce::WorkingMesh mesh(tetrahedron());
   mesh.collapse(0, 1);
   EXPECT_EQ(mesh.liveTriangles(), 2u);
   EXPECT_EQ(trianglesAt(mesh, 2, 3), 2u);
 }
 
-bool mayCollapse(const Mesh& mesh, std::uint32_t a, std::uint32_t b) {
-  WorkingMesh working(mesh);
+bool mayCollapse(const mesh::Mesh& mesh, std::uint32_t a, std::uint32_t b) {
+  reduce::WorkingMesh working(mesh);
   const bool may = working.linkCondition(edgeOf(working, a, b));
   return may;
 }
@@ -155,16 +155,16 @@ TEST(LinkCondition, HoldsInsideAndAlongTheBorder) {
 }
 
 TEST(LinkCondition, FailsWhereTwoBordersWouldMeet) {
-  EXPECT_FALSE(mayCollapse(test::grid(2, 1), 1, 4));  // across a band
-  EXPECT_TRUE(mayCollapse(test::grid(2, 1), 0, 1));   // along it
-  EXPECT_TRUE(mayCollapse(test::grid(1, 1), 0, 1));   // one triangle is left
+  EXPECT_FALSE(mayCollapse(test::grid(2, 1), 1, 4));  // across the strip
+  EXPECT_TRUE(mayCollapse(test::grid(2, 1), 0, 1));   // along the strip's border
+  EXPECT_TRUE(mayCollapse(test::grid(1, 1), 0, 1));   // leaves one triangle
 }
 
 TEST(LinkCondition, FailsWhereNothingWouldBeLeft) {
   EXPECT_FALSE(mayCollapse(meshOf(3, {0, 1, 2}), 0, 1));
 }
 
-TEST(LinkCondition, FailsOnATetrahedron) {  // two faces would lie on one another
+TEST(LinkCondition, FailsOnATetrahedron) {  // two faces would coincide
   for (std::uint32_t a = 0; a < 4; ++a) {
     for (std::uint32_t b = 0; b < a; ++b) EXPECT_FALSE(mayCollapse(tetrahedron(), a, b));
   }
@@ -174,7 +174,7 @@ TEST(LinkCondition, FailsOnATetrahedron) {  // two faces would lie on one anothe
 //     / \           a tube of three sides without its ends: 0 1 2 below, 3 4 5 above.
 //    4---5          Its waist cannot be closed.
 TEST(LinkCondition, FailsAtAWaist) {
-  const Mesh tube = meshOf(6, {0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4, 2, 0, 3, 2, 3, 5});
+  const mesh::Mesh tube = meshOf(6, {0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4, 2, 0, 3, 2, 3, 5});
   EXPECT_FALSE(mayCollapse(tube, 0, 1));
   EXPECT_FALSE(mayCollapse(tube, 3, 4));
 }
@@ -190,7 +190,7 @@ TEST(WorkingMesh, LongListsHoldWhatIsGoneUntilTheyAreTidied) {
   std::vector<std::uint32_t> triangles;
   for (std::uint32_t i = 0; i < kRim; ++i)
     triangles.insert(triangles.end(), {0, 1 + i, 1 + (i + 1) % kRim});
-  WorkingMesh mesh(meshOf(kRim + 1, triangles));
+  reduce::WorkingMesh mesh(meshOf(kRim + 1, triangles));
   for (std::uint32_t i = 2; i <= 101; ++i) (void)mesh.collapse(1, i);
   EXPECT_EQ(mesh.triangleCount(0), 100u);
   EXPECT_EQ(mesh.trianglesOf(0).size(), 200u);

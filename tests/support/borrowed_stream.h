@@ -1,4 +1,5 @@
-// A stream that somebody else owns, where an owner is wanted.
+// BorrowedStream: forwards every call to a stream owned by the test, where the code under test
+// wants a stream of its own.
 #pragma once
 
 #include "drivers/port/byte_stream.h"

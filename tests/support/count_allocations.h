@@ -1,5 +1,5 @@
-// Counts what operator new is asked for, and keeps the largest. Replaces it: include it in one
-// source of a program.
+// Replaces the global operator new with one that counts its calls and keeps the largest size
+// requested. Include it in exactly one source file of a program.
 #pragma once
 
 #include <atomic>
@@ -11,7 +11,7 @@ inline std::atomic<long> allocations{0};
 inline std::atomic<std::size_t> largest_allocation{0};
 }  // namespace merlin::test
 
-// Not inlined: g++ 12 would find fault with a new and a delete of which it sees only one.
+// Not inlined: g++ 12 warns of a mismatched new and delete where it inlines only one of the two.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++merlin::test::allocations;
   if (size > merlin::test::largest_allocation) merlin::test::largest_allocation = size;
@@ -19,7 +19,7 @@ inline std::atomic<std::size_t> largest_allocation{0};
   throw std::bad_alloc();
 }
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++merlin::test::allocations;  // std::stable_sort asks so
+  ++merlin::test::allocations;  // std::stable_sort calls this overload
   if (size > merlin::test::largest_allocation) merlin::test::largest_allocation = size;
   return std::malloc(size == 0 ? 1 : size);
 }

@@ -1,5 +1,5 @@
-// DeviceBench: an emulator by name, on a FakeStream, with a sink: all that a Device needs but
-// itself.
+// DeviceBench: what a Device under test needs: an emulator (chosen by name) on a FakeStream, a
+// FakeClock and a sample sink.
 #pragma once
 
 #include <cassert>
@@ -32,7 +32,7 @@ struct DeviceBench {
     return Ok{};
   }
 
-  // How long the device lets silence pass before it fails; `most` if it never does.
+  // Duration of silence after which the device fails; `most` if it does not fail within `most`.
   Duration timeToFail(Device& device, Duration most) {
     const Timestamp from = clock.now();
     return pollFor(device, most) ? most : clock.now() - from;

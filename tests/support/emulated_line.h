@@ -1,5 +1,5 @@
-// EmulatedLine: an emulated device on a thread of its own, at the other end of a socket pair, and
-// what can go wrong with a line: pulled, babbling, frozen. Real time, real descriptors.
+// EmulatedLine: an emulated device that runs in a thread of its own at one end of a socket pair.
+// The test can make the line fail: pulled, babbling or frozen. Uses real time and real descriptors.
 #pragma once
 
 #include <atomic>
@@ -23,9 +23,9 @@ namespace merlin::test {
 
 enum class Fault {
   kNone,
-  kPulled,    // the port is gone: what is open ends, what is opened fails
-  kBabbling,  // random bytes at 115200 baud, deaf
-  kFrozen,    // silent and deaf
+  kPulled,    // the port is gone: open connections end, open() fails
+  kBabbling,  // the device sends random bytes at 115200 baud and ignores its input
+  kFrozen,    // the device sends nothing and ignores its input
 };
 
 class EmulatedLine {
@@ -43,7 +43,7 @@ class EmulatedLine {
   EmulatedLine(const EmulatedLine&) = delete;
   EmulatedLine& operator=(const EmulatedLine&) = delete;
 
-  // Another connection; kNotFound while pulled.
+  // Opens a new connection, which replaces the previous one; kNotFound while pulled.
   Result<std::unique_ptr<ByteStream>> open() {
     int ends[2];
     writes_ = 0;
@@ -59,8 +59,8 @@ class EmulatedLine {
     return std::unique_ptr<ByteStream>(std::make_unique<Counting>(*this, std::move(inner)));
   }
 
-  // `fault` begins with the driver's write number `writes` of its next connection, which is forced
-  // by a short cut; the write itself is still received.
+  // Closes the connection, so that the driver reconnects. `fault` begins once the driver has
+  // written `writes` times on the new connection; the device still receives that last write.
   void failInDialogue(Fault fault, int writes) {
     armed_fault_ = fault;
     armed_writes_ = writes;
@@ -77,11 +77,11 @@ class EmulatedLine {
     wake();
   }
   Fault fault() const { return fault_; }
-  // Number of writes by the driver since it opened the line.
+  // Number of writes by the driver since it last opened the line.
   int writes() const { return writes_; }
 
  private:
-  // The driver's side: counts its writes.
+  // The driver's end of the connection; counts the driver's writes.
   class Counting final : public ByteStream {
    public:
     Counting(EmulatedLine& line, std::unique_ptr<ByteStream> inner)
@@ -132,7 +132,8 @@ class EmulatedLine {
     }
   }
 
-  // One look at the line; ends where open(), cut() or the destructor woke it.
+  // One step of the device: sends what is due, waits for input, and passes it to the emulator.
+  // Returns early when open(), cut() or the destructor wakes the thread.
   void round(int fd) {
     std::string out;
     Timestamp next = clock_.now() + std::chrono::milliseconds(5);
@@ -157,7 +158,7 @@ class EmulatedLine {
     if (fd < 0 || !fds[1].revents) return;
     std::byte received[256];
     const ssize_t n = ::read(fd, received, sizeof received);
-    hung_up_ = n == 0;  // by the driver: nothing more comes until it opens again
+    hung_up_ = n == 0;  // the driver closed its end: nothing to read until it opens again
     if (n > 0 && fault_ == Fault::kNone)
       emulator_->receive(std::span(received, static_cast<std::size_t>(n)), clock_.now());
   }
@@ -169,7 +170,8 @@ class EmulatedLine {
   UniqueFd wake_;
   std::mutex mutex_;
   UniqueFd device_end_;
-  std::uint64_t generation_ = 0;  // of the thread's; grows when it has to look again
+  // Used by the thread alone; incremented when it has to fetch device_end_ again.
+  std::uint64_t generation_ = 0;
   bool hung_up_ = false;
   std::atomic<Fault> fault_{Fault::kNone}, armed_fault_{Fault::kNone};
   std::atomic<int> armed_writes_{-1}, writes_{0};

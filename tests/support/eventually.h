@@ -1,5 +1,5 @@
-// eventually(): for tests with real processes and threads. Looks again until it is so, or the
-// deadline has passed: the test fails by the fact, not by how long a machine takes.
+// eventually(): for tests with real processes and threads. Polls a condition until it is true or
+// the deadline has passed, so that a test does not depend on the machine's speed.
 #pragma once
 
 #include <chrono>

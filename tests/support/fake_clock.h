@@ -1,4 +1,4 @@
-// FakeClock: time that moves when it is told to, or when somebody sleeps on it. Thread-bound.
+// FakeClock: a clock that moves only by advance() or sleepUntil(). Thread-bound.
 #pragma once
 
 #include "daemon/base/clock.h"
@@ -9,7 +9,8 @@ class FakeClock final : public Clock {
  public:
   Timestamp now() const noexcept override { return now_; }
 
-  // Sleeping takes no time of ours: the clock is simply later. A stop wakes before it moves.
+  // Does not block: it sets the clock to `when`. After a stop request it returns false and leaves
+  // the clock as it is.
   bool sleepUntil(Timestamp when, const std::stop_token& stop) noexcept override {
     if (stop.stop_requested()) return false;
     if (when > now_) now_ = when;

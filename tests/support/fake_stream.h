@@ -1,7 +1,7 @@
-// FakeStream: a ByteStream whose other end is an emulator, or a script, on a FakeClock.
+// FakeStream: a ByteStream on a FakeClock. Its other end is an emulator or bytes given by feed().
 //
-// Time passes in read(): it moves the clock to the moment when the next byte comes, or by the whole
-// time-out. No thread, no sleep.
+// read() advances the clock to the moment when the next byte comes, or by the whole time-out. It
+// starts no thread and does not block.
 #pragma once
 
 #include <algorithm>
@@ -16,15 +16,16 @@ namespace merlin::test {
 
 class FakeStream final : public ByteStream {
  public:
-  // `emulator` may be null: then only what feed() was given comes.
+  // `emulator` may be null: then read() returns only the bytes given to feed().
   FakeStream(FakeClock& clock, emulate::Emulator* emulator) : clock_(clock), emulator_(emulator) {}
 
   void feed(std::string_view bytes) { input_ += bytes; }
   void close() { closed_ = true; }
-  void mute() { emulator_ = nullptr; }  // unplugged at the device: silence from now on
+  // like a cable unplugged at the device: nothing is received from now on
+  void mute() { emulator_ = nullptr; }
   void plug(emulate::Emulator* emulator) { emulator_ = emulator; }
 
-  // Everything that was written by the driver.
+  // All bytes that the driver has written.
   const std::string& written() const { return written_; }
 
   Result<std::size_t> read(std::span<std::byte> buffer, Duration timeout) override {

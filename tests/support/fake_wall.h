@@ -18,7 +18,7 @@
 
 namespace merlin::wall {
 
-using render::Dendrogram;
+using render::lod::Dendrogram;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
@@ -27,7 +27,7 @@ inline const Duration kPeriod = fromSeconds(1.0 / 30);
 // A wavy sheet of 5,000 triangles, reduced to the end.
 inline const Dendrogram& model() {
   static const Dendrogram made = [] {
-    render::Mesh mesh;
+    render::mesh::Mesh mesh;
     constexpr std::uint32_t kSide = 51;
     for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
       const auto x = static_cast<float>(i % kSide), y = static_cast<float>(i / kSide);
@@ -36,20 +36,20 @@ inline const Dendrogram& model() {
       mesh.triangles.insert(mesh.triangles.end(),
                             {i, i + 1, i + kSide, i + 1, i + kSide + 1, i + kSide});
     }
-    render::ensureNormals(mesh);
-    return render::buildDendrogram(mesh, render::reduce(mesh, {})->log);
+    render::mesh::ensureNormals(mesh);
+    return render::lod::buildDendrogram(mesh, render::reduce::reduce(mesh, {})->log);
   }();
   return made;
 }
 
 // 4 ms a frame and `per_triangle` each; full detail costs `slices` of 3 ms, any other step as many
 // as it takes.
-class FakePainter final : public render::FramePainter {
+class FakePainter final : public render::frame::FramePainter {
  public:
   FakePainter(test::FakeClock& clock, Duration per_triangle, int slices)
       : clock_(clock), per_triangle_(per_triangle), slices_(slices) {}
 
-  render::DrawTimes draw(const Request& request) override {
+  render::frame::DrawTimes draw(const Request& request) override {
     const Duration fixed = milliseconds(4) / (divisor * divisor);
     const Duration drawing = costOf(request.step) * slow;
     const Timestamp began = clock_.now();
@@ -59,7 +59,7 @@ class FakePainter final : public render::FramePainter {
     clock_.advance(fixed);
     drawn.push_back(clock_.now());
     steps_drawn.push_back(request.step);
-    using Kind = render::FrameStep::Kind;
+    using Kind = render::frame::FrameStep::Kind;
     steps_ = {{Kind::kChoose, 0, began, began},
               {Kind::kDraw, 0, began, read},
               {Kind::kReadBack, 0, read, clock_.now()}};
@@ -69,7 +69,7 @@ class FakePainter final : public render::FramePainter {
   bool sees(const Eigen::Isometry3f& T_eye_model) const override {
     return T_eye_model.translation().norm() < furthest_seen_m;
   }
-  std::span<const render::FrameStep> steps() const noexcept override { return steps_; }
+  std::span<const render::frame::FrameStep> steps() const noexcept override { return steps_; }
   void beginRefining(const Eigen::Isometry3f&, std::size_t step) override {
     left_ = step == 0 ? slices_ : static_cast<int>(costOf(step) / milliseconds(3)) + 1;
   }
@@ -103,7 +103,7 @@ class FakePainter final : public render::FramePainter {
   test::FakeClock& clock_;
   Duration per_triangle_;
   int slices_, left_ = 0;
-  std::vector<render::FrameStep> steps_;
+  std::vector<render::frame::FrameStep> steps_;
 };
 
 // Pushes the ball while `pushed`; asks the loop to stop after `until`.
@@ -114,6 +114,7 @@ class FakeFeed final : public InputFeed {
     if (on_begin) on_begin(now);
     WallInput input = actions;
     actions.next_content = actions.snapshot = 0;
+    actions.align = {};
     input.scene.ball.emplace();
     input.scene.ball->rotation[1] = pushed ? 0.5F : 0.0F;
     input.scene.hand = hand;
@@ -129,16 +130,16 @@ class FakeFeed final : public InputFeed {
 };
 
 struct RecordedFrames {
-  std::vector<render::FrameInfo> frames;
+  std::vector<render::out::FrameInfo> frames;
   std::vector<std::uint8_t> firsts;  // of each frame, its first byte
 };
 
-class RecordingOutput final : public render::Output {
+class RecordingOutput final : public render::out::Output {
  public:
   RecordingOutput(RecordedFrames& recorded, const Clock& clock)
       : recorded_(recorded), clock_(clock) {}
-  Result<std::optional<Timestamp>> present(const render::Signal& signal,
-                                           const render::FrameInfo& info) override {
+  Result<std::optional<Timestamp>> present(const render::out::Signal& signal,
+                                           const render::out::FrameInfo& info) override {
     recorded_.frames.push_back(info);
     recorded_.firsts.push_back(signal.pixels.empty() ? std::uint8_t{0} : signal.pixels[0]);
     return std::optional(clock_.now());
@@ -152,7 +153,7 @@ class RecordingOutput final : public render::Output {
 class FakeWall : public testing::Test {
  protected:
   explicit FakeWall(Duration per_triangle = microseconds(10), int slices = 40,
-                    const render::GovernorSettings& settings = {})
+                    const render::governor::GovernorSettings& settings = {})
       : painter_(clock_, per_triangle, slices), governor_(settings) {}
 
   // Runs for `seconds` of virtual time.
@@ -168,52 +169,58 @@ class FakeWall : public testing::Test {
     loop.run(stop_.get_token(), [&] { ++first_frames_; });
   }
   WallParts parts() {
-    delivery_ = std::make_unique<render::Delivery>(
+    delivery_ = std::make_unique<render::frame::Delivery>(
         plan_, outputs_,
-        marker_ ? std::vector<render::Overlay*>{marker_} : std::vector<render::Overlay*>{});
+        marker_ ? std::vector<render::frame::Overlay*>{marker_}
+                : std::vector<render::frame::Overlay*>{},
+        std::move(corrections_));
     return {.contents = contents_,
             .scene = scene_,
             .governor = governor_,
             .feed = feed_,
             .delivery = *delivery_,
-            .stats = *stats_,
+            .slots = {*stats_, trace_.get(), interaction_.get(), output_stats_.get()},
             .clock = clock_,
             .frame_clock = frame_clock_,
-            .trace = trace_.get(),
             .marker = marker_,
-            .interaction = interaction_.get(),
-            .outputs = output_stats_.get(),
             .fade_frames = fade_frames_,
             .return_after_s = return_after_s_,
             .replacements = replacements_,
-            .on_snapshot = on_snapshot_};
+            .viewer = viewer_,
+            .on_snapshot = on_snapshot_,
+            .on_align = on_align_,
+            .first_content = first_content_};
   }
   shm::WallStats stats() const { return *stats_->read(); }
-  render::OutputSet recordingOutputs() {
-    std::vector<render::NamedOutput> outputs;
+  render::out::OutputSet recordingOutputs() {
+    std::vector<render::out::NamedOutput> outputs;
     outputs.push_back({"recorder", "fake", std::make_unique<RecordingOutput>(frames_, clock_)});
-    return render::OutputSet(std::move(outputs));
+    return render::out::OutputSet(std::move(outputs));
   }
 
   test::FakeClock clock_;
-  render::TimerFrameClock frame_clock_{clock_};
+  render::out::TimerFrameClock frame_clock_{clock_};
   FakePainter painter_;
-  render::ModelDetail detail_{model()};
+  render::content::ModelDetail detail_{model()};
   std::vector<ShownContent> contents_ = {{&detail_, &painter_}};
-  render::Scene scene_ = *render::Scene::make({});
-  render::Governor governor_;
+  render::scene::Scene scene_ = *render::scene::Scene::make({});
+  render::governor::Governor governor_;
   FakeFeed feed_;
   RecordedFrames frames_;
-  render::TilePlan plan_ = *render::planTiles({});
-  render::OutputSet outputs_ = recordingOutputs();
-  std::unique_ptr<render::Delivery> delivery_;
+  render::tiles::TilePlan plan_ = *render::tiles::planTiles({});
+  render::out::OutputSet outputs_ = recordingOutputs();
+  std::unique_ptr<render::frame::Delivery> delivery_;
   std::unique_ptr<shm::SeqSlot<shm::WallStats>> stats_ =
       std::make_unique<shm::SeqSlot<shm::WallStats>>();
   std::unique_ptr<shm::Channel<shm::FrameTrace>> trace_ =
       std::make_unique<shm::Channel<shm::FrameTrace>>();
-  render::PointerMarker* marker_ = nullptr;
+  render::frame::PointerMarker* marker_ = nullptr;
+  std::vector<std::unique_ptr<render::frame::Correction>> corrections_;
   ContentSource* replacements_ = nullptr;
+  ViewerPlace* viewer_ = nullptr;
   std::function<void()> on_snapshot_ = [] {};
+  std::function<void(const AlignInput&)> on_align_ = [](const AlignInput&) {};
+  std::size_t first_content_ = 0;
   std::unique_ptr<shm::SeqSlot<shm::WallInteraction>> interaction_ =
       std::make_unique<shm::SeqSlot<shm::WallInteraction>>();
   std::unique_ptr<shm::SeqSlot<shm::WallOutputs>> output_stats_ =

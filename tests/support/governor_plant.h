@@ -1,9 +1,11 @@
-// A renderer that is a formula, for the governor's tests and benchmark: what a frame costs under a
-// load that changes as a trace says, on a virtual clock; and the figures that MERLIN promises.
+// A simulated renderer for the governor's tests and benchmark: a formula gives the time that a
+// frame takes under a load that varies as a trace says, on a virtual clock. Also computes the
+// figures for which MERLIN states limits (late frames, settling time, oscillation).
 //
-// A frame takes (a + f c T^p) e^noise, a and the factor f from the trace; c and p of four views of
-// 640 x 480 on llvmpipe (4,000,000 triangles: 236 ms), noise of 3 per cent. Hiccups: one frame in a
-// hundred takes 5 to 20 ms more. The same seed gives the same frame the same noise under any law.
+// A frame of T triangles takes (a + f c T^p) e^noise seconds. The trace gives a and the factor f; c
+// and p were fitted to four views of 640 x 480 pixels on llvmpipe (4,000,000 triangles: 236 ms);
+// the noise has a standard deviation of 3 per cent. A hiccup adds 5 to 20 ms to a frame (its share:
+// Plant::hiccups). For one seed, a frame's noise is the same under every control law.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +23,8 @@ namespace merlin::test {
 
 inline constexpr double kPeriod_s = 1.0 / 30;
 inline constexpr std::size_t kFrames = 1200, kStep = 300, kRelease = 600;
-inline constexpr std::size_t kFirstSecond = 30;  // not counted: nobody's law knows the machine yet
+// Not counted: no control law knows the machine's speed yet.
+inline constexpr std::size_t kFirstSecond = 30;
 
 struct Load {
   double fixed_s = 0.004, factor = 1;
@@ -29,14 +32,14 @@ struct Load {
 using Trace = std::vector<Load>;
 
 inline Trace steadyTrace() { return Trace(kFrames); }
-// From frame kStep to frame kRelease: the triangles cost `ratio` times as much, or the fixed part
-// is `fixed_s`.
+// From frame kStep to frame kRelease a triangle costs `ratio` times as much, and the fixed part of
+// a frame is `fixed_s`.
 inline Trace stepTrace(double ratio, double fixed_s = 0.004) {
   Trace trace(kFrames);
   std::fill(trace.begin() + kStep, trace.begin() + kRelease, Load{fixed_s, ratio});
   return trace;
 }
-// Up to twice as much and back, every four seconds.
+// The cost of a triangle rises to twice its value and falls back, with a period of four seconds.
 inline Trace rampTrace() {
   Trace trace(kFrames);
   for (std::size_t i = 0; i < kFrames; ++i) {
@@ -49,11 +52,11 @@ inline Trace rampTrace() {
 struct Plant {
   Trace trace;
   std::uint64_t seed = 1;
-  double hiccups = 0;  // share of frames
+  double hiccups = 0;  // share of the frames that have a hiccup, 0..1
   double exponent = 0.62;
   double noise = 0.03;
 
-  render::FrameCost draw(std::size_t frame, std::size_t triangles) const {
+  render::governor::FrameCost draw(std::size_t frame, std::size_t triangles) const {
     Random random(seed * 1'000'003 + frame);
     const Load& load = trace[std::min(frame, trace.size() - 1)];
     const double scale = std::exp(noise * random.normal());
@@ -64,7 +67,7 @@ struct Plant {
   }
 };
 
-// One entry a deadline.
+// One entry for each deadline.
 struct Outcome {
   std::vector<double> triangles, work_s;
   std::vector<bool> late;
@@ -76,9 +79,10 @@ struct Outcome {
   }
 };
 
-// The wall's clock (daemon/wall/wall_loop.h): frames begin on a grid; one that runs over misses
-// every deadline that passes, and the next one begins at once with what is left of its period.
-inline Outcome runOnGrid(render::Governor& governor, const Plant& plant) {
+// Paces frames as the wall does (daemon/wall/wall_loop.h): frames begin on a grid of periods. A
+// frame that overruns misses every deadline that passes meanwhile; the next frame begins at once
+// and has only the rest of its period.
+inline Outcome runOnGrid(render::governor::Governor& governor, const Plant& plant) {
   Outcome out;
   double finished = 0;
   for (std::size_t k = 0; k < plant.trace.size();) {
@@ -89,7 +93,7 @@ inline Outcome runOnGrid(render::Governor& governor, const Plant& plant) {
       ++k;
       continue;
     }
-    render::FrameCost cost = plant.draw(k, fits);
+    render::governor::FrameCost cost = plant.draw(k, fits);
     finished = begin + toSeconds(cost.work);
     cost.late = finished > tick + kPeriod_s;
     governor.observe(cost);
@@ -103,7 +107,8 @@ inline Outcome runOnGrid(render::Governor& governor, const Plant& plant) {
   return out;
 }
 
-// Frames that are each judged alone, late when their own work is longer than the period: kinder.
+// Judges each frame alone: it is late when its own work exceeds the period. Milder than the grid,
+// where an overrun shortens the next frame.
 inline Outcome runAlone(const std::function<double()>& triangles,
                         const std::function<void(double work_s)>& observe, const Plant& plant) {
   Outcome out;
@@ -137,7 +142,8 @@ inline double utilisation(const Outcome& o) {
   return sum / static_cast<double>(o.work_s.size() - kFirstSecond);
 }
 
-// Frames from `from` until five in a row are as `good` says; all that there are if never.
+// Number of frames from `from` to the first of five consecutive frames for which `good` holds; end
+// - from if there are none.
 inline std::size_t framesUntil(std::size_t from, std::size_t end,
                                const std::function<bool(std::size_t)>& good) {
   std::size_t in_a_row = 0;
@@ -152,7 +158,7 @@ inline std::size_t framesToSettle(const Outcome& o) {
   return framesUntil(kStep, kRelease, [&](std::size_t i) { return !o.late[i]; });
 }
 
-// Until 90 per cent of the triangles that there were before the step are back.
+// Frames after the load's end until 90 per cent of the triangles before the step are drawn again.
 inline std::size_t framesToRecover(const Outcome& o) {
   const auto* t = o.triangles.data();
   const double before = std::accumulate(t + kStep - 100, t + kStep, 0.0) / 100;
@@ -160,7 +166,7 @@ inline std::size_t framesToRecover(const Outcome& o) {
                      [&](std::size_t i) { return o.triangles[i] >= 0.9 * before; });
 }
 
-// p95 - p5 of the triangles over their mean, the mean of windows of 100 frames.
+// (p95 - p5) / mean of the triangle counts in windows of 100 frames; the mean over the windows.
 inline double oscillation(const Outcome& o) {
   double sum = 0;
   std::size_t windows = 0;

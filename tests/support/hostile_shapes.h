@@ -1,4 +1,5 @@
-// Meshes of any size that have many triangles where others have few, and a regular one beside them.
+// Meshes of any size that are hard to reduce, such as vertices or edges shared by very many
+// triangles, and a regular grid for comparison.
 #pragma once
 
 #include <cmath>
@@ -12,12 +13,12 @@
 
 namespace merlin::test {
 
-inline void addPoint(render::Mesh& mesh, double x, double y, double z) {
+inline void addPoint(render::mesh::Mesh& mesh, double x, double y, double z) {
   for (const double c : {x, y, z}) mesh.positions.push_back(static_cast<float>(c));
 }
 
-// `count` points on a circle of the radii given, in turns.
-inline void addRim(render::Mesh& mesh, std::size_t count, double x, double radius,
+// Adds `count` points around (x, 0, 0) in the plane z = 0, alternating between two radii.
+inline void addRim(render::mesh::Mesh& mesh, std::size_t count, double x, double radius,
                    double other_radius) {
   for (std::size_t i = 0; i < count; ++i) {
     const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
@@ -26,8 +27,9 @@ inline void addRim(render::Mesh& mesh, std::size_t count, double x, double radiu
   }
 }
 
-// From `hub` to the rim that begins at `first`; turned: seen from below.
-inline void addFan(render::Mesh& mesh, std::size_t hub, std::size_t first, std::size_t count,
+// Adds a triangle fan from vertex `hub` to the rim of `count` vertices that begins at `first`;
+// `turned` reverses the triangles' winding.
+inline void addFan(render::mesh::Mesh& mesh, std::size_t hub, std::size_t first, std::size_t count,
                    bool turned = false) {
   const auto h = static_cast<std::uint32_t>(hub);
   for (std::size_t i = 0; i < count; ++i) {
@@ -37,25 +39,25 @@ inline void addFan(render::Mesh& mesh, std::size_t hub, std::size_t first, std::
   }
 }
 
-inline render::Mesh regular(std::size_t triangles) {
+inline render::mesh::Mesh regular(std::size_t triangles) {
   const auto side = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(triangles) / 2));
   return noisyGrid(side, side, 0.1, 1);
 }
 
-inline render::Mesh coneOf(std::size_t triangles, double height) {
-  render::Mesh mesh;
+inline render::mesh::Mesh coneOf(std::size_t triangles, double height) {
+  render::mesh::Mesh mesh;
   addPoint(mesh, 0, 0, height);
   addRim(mesh, triangles, 0, 1, 1);
   addFan(mesh, 0, 1, triangles);
   return mesh;
 }
 
-inline render::Mesh flatFan(std::size_t triangles) { return coneOf(triangles, 0); }
-inline render::Mesh cone(std::size_t triangles) { return coneOf(triangles, 1); }
+inline render::mesh::Mesh flatFan(std::size_t triangles) { return coneOf(triangles, 0); }
+inline render::mesh::Mesh cone(std::size_t triangles) { return coneOf(triangles, 1); }
 
-// Two vertices that have all triangles between them.
-inline render::Mesh bipyramid(std::size_t triangles) {
-  render::Mesh mesh;
+// Two vertices, each shared by half of the triangles.
+inline render::mesh::Mesh bipyramid(std::size_t triangles) {
+  render::mesh::Mesh mesh;
   addPoint(mesh, 0, 0, 1);
   addPoint(mesh, 0, 0, -1);
   addRim(mesh, triangles / 2, 0, 1, 1);
@@ -64,9 +66,9 @@ inline render::Mesh bipyramid(std::size_t triangles) {
   return mesh;
 }
 
-// All triangles on one edge.
-inline render::Mesh book(std::size_t triangles) {
-  render::Mesh mesh;
+// All triangles share one edge.
+inline render::mesh::Mesh book(std::size_t triangles) {
+  render::mesh::Mesh mesh;
   addPoint(mesh, 0, 0, -1);
   addPoint(mesh, 0, 0, 1);
   addRim(mesh, triangles, 0, 1, 1);
@@ -75,10 +77,10 @@ inline render::Mesh book(std::size_t triangles) {
   return mesh;
 }
 
-// Flat stars of 2,000 triangles each, which fold over where their middle moves.
-inline render::Mesh stars(std::size_t triangles) {
+// Flat stars of 2,000 triangles each; their triangles fold over when the centre moves.
+inline render::mesh::Mesh stars(std::size_t triangles) {
   constexpr std::size_t kEach = 2000;
-  render::Mesh mesh;
+  render::mesh::Mesh mesh;
   for (std::size_t k = 0; k < triangles / kEach; ++k) {
     const std::size_t hub = mesh.vertexCount();
     addPoint(mesh, 3 * static_cast<double>(k), 0, 0);
@@ -88,12 +90,12 @@ inline render::Mesh stars(std::size_t triangles) {
   return mesh;
 }
 
-// Triangles of any three of 300 vertices.
-inline render::Mesh soup(std::size_t triangles) {
+// Random triangles between 300 vertices.
+inline render::mesh::Mesh soup(std::size_t triangles) {
   constexpr std::uint32_t kVertices = 300;
   std::mt19937 random(1);
   const auto number = [&] { return static_cast<std::uint32_t>(random() % kVertices); };
-  render::Mesh mesh;
+  render::mesh::Mesh mesh;
   for (std::uint32_t v = 0; v < kVertices; ++v)
     addPoint(mesh, number() / 300.0, number() / 300.0, number() / 300.0);
   while (mesh.triangleCount() < triangles) {
@@ -103,9 +105,9 @@ inline render::Mesh soup(std::size_t triangles) {
   return mesh;
 }
 
-// A strip of triangles a million times as long as they are wide.
-inline render::Mesh slivers(std::size_t triangles) {
-  render::Mesh mesh;
+// A strip of triangles that are a million times longer than wide.
+inline render::mesh::Mesh slivers(std::size_t triangles) {
+  render::mesh::Mesh mesh;
   for (std::size_t i = 0; i <= triangles / 2; ++i) {
     addPoint(mesh, 1e-3 * static_cast<double>(i), 0, 0);
     addPoint(mesh, 1e-3 * static_cast<double>(i), 1000, 0);
@@ -117,16 +119,16 @@ inline render::Mesh slivers(std::size_t triangles) {
   return mesh;
 }
 
-// A grid whose vertices lie 64 in one place.
-inline render::Mesh coincident(std::size_t triangles) {
-  render::Mesh mesh = regular(triangles);
+// A grid in which 64 vertices each share one position.
+inline render::mesh::Mesh coincident(std::size_t triangles) {
+  render::mesh::Mesh mesh = regular(triangles);
   for (float& x : mesh.positions) x = std::floor(x / 8);
   return mesh;
 }
 
 struct HostileShape {
   const char* name;
-  render::Mesh (*make)(std::size_t triangles);  // about so many
+  render::mesh::Mesh (*make)(std::size_t triangles);  // the count is approximate
 };
 
 inline std::vector<HostileShape> hostileShapes() {

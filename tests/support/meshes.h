@@ -1,4 +1,4 @@
-// Meshes made in code, for the tests of render.
+// Procedural meshes for the tests of render.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +15,10 @@
 
 namespace merlin::test {
 
-using render::Mesh;
+using render::mesh::Mesh;
 
-// columns x rows cells in the plane z = 0, a unit wide, two triangles each that face +z. Vertex
-// (x, y) has the number y * (columns + 1) + x.
+// A grid of columns x rows unit cells in the plane z = 0, two triangles a cell, facing +z. Vertex
+// (x, y) has the index y * (columns + 1) + x.
 inline Mesh grid(std::uint32_t columns, std::uint32_t rows) {
   Mesh mesh;
   for (std::uint32_t y = 0; y <= rows; ++y) {
@@ -36,7 +36,7 @@ inline Mesh grid(std::uint32_t columns, std::uint32_t rows) {
   return mesh;
 }
 
-// The same with hills: z is normal noise of standard deviation `height`.
+// The same grid, with normally distributed z of standard deviation `height`.
 inline Mesh noisyGrid(std::uint32_t columns, std::uint32_t rows, double height,
                       std::uint64_t seed) {
   Mesh mesh = grid(columns, rows);
@@ -47,7 +47,8 @@ inline Mesh noisyGrid(std::uint32_t columns, std::uint32_t rows, double height,
   return mesh;
 }
 
-// 8 vertices at +-1, 12 triangles. Vertex number: bit 0 is x > 0, bit 1 y > 0, bit 2 z > 0.
+// A cube of 8 vertices at +-1 and 12 triangles. Bits of a vertex index: 0 is x > 0, 1 is y > 0, 2
+// is z > 0.
 inline Mesh cube() {
   Mesh mesh;
   for (int v = 0; v < 8; ++v) {
@@ -58,7 +59,7 @@ inline Mesh cube() {
   return mesh;
 }
 
-// Cuts each triangle into four; new vertices lie on the unit sphere.
+// Splits each triangle into four; the new vertices lie on the unit sphere.
 inline Mesh subdivided(Mesh mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
   const auto middle = [&](std::uint32_t a, std::uint32_t b) {
@@ -81,7 +82,7 @@ inline Mesh subdivided(Mesh mesh) {
   return mesh;
 }
 
-// A unit sphere: an octahedron, cut `times` times. 8 * 4^times triangles, closed and manifold.
+// A unit sphere: an octahedron, subdivided `times` times. 8 * 4^times triangles, closed, manifold.
 inline Mesh sphere(int times) {
   Mesh mesh;
   mesh.positions = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
@@ -90,12 +91,13 @@ inline Mesh sphere(int times) {
   return mesh;
 }
 
-// A wavy tube from a rolled-up sheet. Cut: where the sheet's sides meet two vertices lie in each
-// place, since the texture's coordinate is 0 on one side and 1 on the other.
+// A wavy tube, rolled up from a sheet. With `cut`, the vertices along the seam are doubled, since
+// the texture coordinate there is 0 on one side and 1 on the other; else it has no texture
+// coordinates.
 inline Mesh tube(std::uint32_t around, std::uint32_t high, bool cut) {
   Mesh mesh;
   const std::uint32_t columns = around + (cut ? 1 : 0);
-  render::Feature texcoord{"texcoord", 2, {}};
+  render::mesh::Feature texcoord{"texcoord", 2, {}};
   for (std::uint32_t row = 0; row <= high; ++row) {
     for (std::uint32_t c = 0; c < columns; ++c) {
       const double angle = 2 * std::numbers::pi * (c % around) / around, h = 0.05 * row;
@@ -121,7 +123,7 @@ inline Mesh tube(std::uint32_t around, std::uint32_t high, bool cut) {
   return mesh;
 }
 
-// Both in one mesh, as two components; features are left out.
+// Both meshes in one, as two components, without features.
 inline Mesh together(Mesh a, const Mesh& b) {
   const auto first = static_cast<std::uint32_t>(a.vertexCount());
   a.features.clear();

@@ -1,4 +1,4 @@
-// A model's frame renderer in one call.
+// Makes a frame renderer for one model in a single call.
 #pragma once
 
 #include <memory>
@@ -10,20 +10,20 @@
 
 namespace merlin::test {
 
-// `contexts`: another renderer's, to be drawn in as well; none: some of its own. Model, plan and
-// clock are borrowed.
-inline Result<std::unique_ptr<render::FrameRenderer>> rendererOf(
-    const render::Dendrogram& model, const render::TilePlan& plan,
-    const render::RenderSettings& settings, double radius_m, const Clock& clock,
-    std::shared_ptr<const render::DrawContexts> contexts = nullptr) {
+// `contexts` may be shared with another renderer; if null, new ones are made. `model`, `plan` and
+// `clock` must outlive the renderer.
+inline Result<std::unique_ptr<render::frame::FrameRenderer>> rendererOf(
+    const render::lod::Dendrogram& model, const render::tiles::TilePlan& plan,
+    const render::frame::RenderSettings& settings, double radius_m, const Clock& clock,
+    std::shared_ptr<const render::frame::DrawContexts> contexts = nullptr) {
   if (!contexts) {
-    auto made = render::DrawContexts::make(settings.gl);
+    auto made = render::frame::DrawContexts::make(settings.gl);
     if (!made) return made.error();
     contexts = *std::move(made);
   }
-  auto content = render::ModelContent::make(model, settings.model, radius_m);
+  auto content = render::content::ModelContent::make(model, settings.model, radius_m);
   if (!content) return content.error();
-  return render::FrameRenderer::make(*std::move(content), plan, std::move(contexts), clock);
+  return render::frame::FrameRenderer::make(*std::move(content), plan, std::move(contexts), clock);
 }
 
 }  // namespace merlin::test

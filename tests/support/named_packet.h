@@ -1,4 +1,4 @@
-// NamedPacket: a parameter of the damage tests, listed by ctest under its name and not its bytes.
+// NamedPacket: a parameter of the damage tests; ctest lists it by its name instead of its bytes.
 #pragma once
 
 #include <ostream>

@@ -1,11 +1,11 @@
-// Linked into every test that does not say THREADS in tests/CMakeLists.txt: the thread sanitizer
-// does not run these, so they must not start a thread, in their own code or in what they test.
+// Linked into every test that is not marked THREADS in tests/CMakeLists.txt. The thread sanitizer
+// does not run such tests, so neither they nor the code they test may start a thread.
 #include <cstdio>
 #include <cstdlib>
 
 #include <pthread.h>
 
-// The executable's own symbol is found before the C library's.
+// The linker finds this definition in the executable before the C library's.
 extern "C" int pthread_create(
     pthread_t*, const pthread_attr_t*, void* (*)(void*),
     void*) {  // NOLINT(readability-inconsistent-declaration-parameter-name)

@@ -1,4 +1,4 @@
-// Looking at picture files that programs have written.
+// Checks of image files that programs have written.
 #pragma once
 
 #include <cstring>
@@ -11,11 +11,11 @@
 
 namespace merlin::test {
 
-// Expects a picture that can be read and shows something: `least` different colours or more; of
-// that size unless it is 0.
+// Expects an image file that can be read and has at least `least` distinct colours; it must be
+// width x height pixels where `width` is not 0.
 inline void expectPicture(const std::string& path, std::size_t least, int width = 0,
                           int height = 0) {
-  const auto image = render::readImage(path);
+  const auto image = render::image::readImage(path);
   ASSERT_TRUE(image) << image.error().what;
   if (width > 0) {
     EXPECT_EQ(image->width, width) << path;
@@ -27,7 +27,7 @@ inline void expectPicture(const std::string& path, std::size_t least, int width 
     std::memcpy(&colour, &image->pixels[i], 3);
     colours.insert(colour);
   }
-  EXPECT_GE(colours.size(), least) << path << " shows next to nothing";
+  EXPECT_GE(colours.size(), least) << path << " shows too few colours";
 }
 
 }  // namespace merlin::test

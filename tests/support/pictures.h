@@ -1,4 +1,4 @@
-// Looking at RGBA pictures, rows from top to bottom.
+// RGBA images, rows from top to bottom, and how they differ.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ struct Rgba {
   friend bool operator==(const Rgba&, const Rgba&) = default;
 };
 
-// The largest difference of a channel of two pixels, 0..255.
+// The largest absolute difference of red, green or blue, 0..255; alpha is ignored.
 inline int difference(const Rgba& a, const Rgba& b) {
   return std::max(
       {std::abs(a.red - b.red), std::abs(a.green - b.green), std::abs(a.blue - b.blue)});
@@ -27,7 +27,7 @@ struct Image {
     const std::uint8_t* p = pixels.data() + 4 * (static_cast<std::ptrdiff_t>(y) * width + x);
     return {p[0], p[1], p[2], p[3]};
   }
-  // Pixels that differ from `background`.
+  // Number of pixels that differ from `background`.
   int covered(const Rgba& background) const {
     int count = 0;
     for (int y = 0; y < height; ++y) {
@@ -37,7 +37,7 @@ struct Image {
   }
 };
 
-// How many pixels of two images of one size differ by more than `tolerance`.
+// Number of pixels that differ by more than `tolerance` between two images of the same size.
 inline int differing(const Image& a, const Image& b, int tolerance) {
   int count = 0;
   for (int y = 0; y < a.height; ++y) {

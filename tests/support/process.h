@@ -1,4 +1,4 @@
-// Process: a real program, started by a test; its output, its end.
+// Process: a real program, started by a test, with access to its output and exit status.
 #pragma once
 
 #include <map>
@@ -17,8 +17,8 @@
 
 namespace merlin::test {
 
-// Standard output and standard error go into one file; see output(). Standard input is what type()
-// says.
+// Standard output and standard error go into one file, which output() reads. type() writes to
+// standard input.
 class Process {
  public:
   explicit Process(std::vector<std::string> arguments,
@@ -55,7 +55,7 @@ class Process {
 
   pid_t pid() const { return pid_; }
 
-  // Into its standard input.
+  // Writes `text` to its standard input.
   void type(const std::string& text) const {
     EXPECT_EQ(::write(input_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   }
@@ -84,7 +84,8 @@ class Process {
     return true;
   }
 
-  // Waits for its end; its exit status, 128 + signal, or -1 if it does not end.
+  // Waits up to 300 s for the process to end. Returns its exit status, 128 + the signal's number,
+  // or -1 if it does not end.
   int wait() {
     return eventually([&] { return ended(); }, std::chrono::seconds(300)) ? *status_ : -1;
   }
@@ -100,7 +101,7 @@ class Process {
   std::optional<int> status_;
 };
 
-// Runs a program to its end.
+// Runs a program to its end; see Process::wait() for `status`.
 struct Outcome {
   int status;
   std::string output;

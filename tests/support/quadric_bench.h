@@ -1,4 +1,4 @@
-// A surface as `quadric` holds it, with what measures one vertex.
+// A mesh in the representation of render/reduce/quadric, with channel values and edge costs.
 #pragma once
 
 #include "render/reduce/quadric/quadric_evaluate.h"
@@ -6,17 +6,17 @@
 namespace merlin::test {
 
 struct QuadricBench {
-  explicit QuadricBench(const render::Mesh& mesh, std::size_t channels = 0)
+  explicit QuadricBench(const render::mesh::Mesh& mesh, std::size_t channels = 0)
       : surface(mesh), values(mesh.vertexCount(), channels) {}
 
-  render::QuadricView view() const { return {&surface[0], surface.corners(0), &values}; }
-  void evaluateAll(render::EvaluateEdges evaluate = render::edgeEvaluator()) {
+  render::reduce::QuadricView view() const { return {&surface[0], surface.corners(0), &values}; }
+  void evaluateAll(render::reduce::EvaluateEdges evaluate = render::reduce::edgeEvaluator()) {
     for (std::uint32_t v = 0; v < surface.vertexCount(); ++v) evaluate(view(), v, costs);
   }
 
-  render::QuadricMesh surface;
-  render::QuadricChannels values;
-  render::EdgeCosts costs;
+  render::reduce::QuadricMesh surface;
+  render::reduce::QuadricChannels values;
+  render::reduce::EdgeCosts costs;
 };
 
 }  // namespace merlin::test

@@ -1,4 +1,4 @@
-// RecordingSink: keeps every sample and every state of health that it is given.
+// RecordingSink and RecordingHealth: keep every sample and every health report published to them.
 #pragma once
 
 #include <vector>

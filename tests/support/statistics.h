@@ -1,4 +1,4 @@
-// Statistics that benchmarks report of many measurements.
+// Statistics over many measurements, for the benchmarks.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 namespace merlin::test {
 
-// The value that `share` of the others are no larger than; 0 of none.
+// The quantile at `share` (0..1), without interpolation; 0 if `values` is empty.
 inline double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
   const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));

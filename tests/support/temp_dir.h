@@ -1,4 +1,4 @@
-// TempDir: a folder of one test's own, gone with it.
+// TempDir: a temporary folder for one test, removed with the object.
 #pragma once
 
 #include <cstdlib>
@@ -20,7 +20,7 @@ class TempDir {
     path_ = name;
   }
   ~TempDir() {
-    // A process that is just ending takes its own files away at the same time.
+    // A process that is ending may delete its own files at the same time: try again.
     std::error_code error;
     do std::filesystem::remove_all(path_, error);
     while (error == std::errc::no_such_file_or_directory);
@@ -45,7 +45,7 @@ inline std::string readText(const std::string& path) {
   return text.str();
 }
 
-// A name for shared memory that no other test, and no daemon, has.
+// A shared memory name that no other test and no daemon uses.
 inline std::string privateName(const std::string& what) {
   return "merlin-test-" + std::to_string(::getpid()) + "-" + what;
 }

@@ -1,7 +1,7 @@
-// under_unit UNIT... -- PROGRAM ARGUMENT...: runs a program with what these unit files forbid,
-// without systemd: address families, system calls, new privileges, the umask; as the user nobody
-// where root starts it. Later files add to earlier ones, as drop-ins do. What else a unit has is
-// not looked at.
+// under_unit UNIT... -- PROGRAM ARGUMENT...: runs a program, without systemd, under some
+// restrictions of these systemd unit files: address families, system calls, no new privileges,
+// umask. If started by root, it runs the program as the user nobody. Later files add to earlier
+// ones, as systemd's drop-ins do. All other settings of the units are ignored.
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
@@ -45,7 +45,7 @@ std::string outputOf(const char* command) {
   return text;
 }
 
-// All values of a key, over all files.
+// All values of `key`, from all files.
 Words valuesOf(const Words& units, const std::string& key) {
   Words values;
   for (const std::string& unit : units) {
@@ -66,11 +66,12 @@ std::uint32_t familyOf(const std::string& name) {
                                                                  {"AF_INET6", AF_INET6},
                                                                  {"AF_NETLINK", AF_NETLINK}};
   const auto found = kFamilies.find(name);
-  if (found == kFamilies.end()) fail(name + ": is no family that this program knows");
+  if (found == kFamilies.end()) fail(name + ": is not an address family known to under_unit");
   return found->second;
 }
 
-// Names of calls, by systemd's own tables; empty where systemd is not installed.
+// Names of the system calls in `sets`, by systemd's own tables; empty where systemd is not
+// installed.
 std::set<std::string> callsOf(const Words& sets) {
   std::map<std::string, Words> table;
   std::istringstream lines(outputOf("systemd-analyze syscall-filter 2>/dev/null"));
@@ -120,7 +121,7 @@ constexpr std::uint16_t kLoad = BPF_LD | BPF_W | BPF_ABS;
 constexpr std::uint16_t kEqual = BPF_JMP | BPF_JEQ | BPF_K;
 constexpr std::uint16_t kReturn = BPF_RET | BPF_K;
 
-// As systemd's RestrictAddressFamilies=: a socket of another family fails with EAFNOSUPPORT.
+// Like systemd's RestrictAddressFamilies=: socket() with another family fails with EAFNOSUPPORT.
 void restrictFamilies(const Words& names) {
   if (names.empty()) return;
   std::vector<sock_filter> code = {
@@ -134,7 +135,7 @@ void restrictFamilies(const Words& names) {
   install(code);
 }
 
-// As SystemCallFilter=: any other call ends the process.
+// Like systemd's SystemCallFilter=: any other system call kills the process.
 void restrictCalls(const Words& sets) {
   const auto numbers = numbersOf(callsOf(sets));
   if (numbers.size() < 100) {
@@ -150,7 +151,7 @@ void restrictCalls(const Words& sets) {
   install(code);
 }
 
-// LeakSanitizer looks into the ended program with ptrace, which a unit forbids: both would hang.
+// LeakSanitizer inspects the ending program with ptrace, which a unit forbids; both would hang.
 void doWithoutLeakSanitizer() {
   const char* const options = std::getenv("ASAN_OPTIONS");
   ::setenv("ASAN_OPTIONS", (std::string(options ? options : "") + ":detect_leaks=0").c_str(), 1);
@@ -172,7 +173,7 @@ int main(int argc, char** argv) {
       (::setgroups(0, nullptr) != 0 || ::setgid(kNobody) != 0 || ::setuid(kNobody) != 0)) {
     fail("cannot become nobody");
   }
-  // It outlives nobody: a change of user has cleared what the parent asked for.
+  // The kernel clears the parent-death signal at a change of user, so it is set again here.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) fail("no PR_SET_NO_NEW_PRIVS");
   doWithoutLeakSanitizer();

@@ -1,4 +1,4 @@
-// What a person can do wrong: one clear message each, the right exit status, nothing left behind.
+// User errors: each gives one clear message and the right exit status, and leaves nothing behind.
 #include <gtest/gtest.h>
 
 #include "tests/system/merlind.h"
@@ -31,7 +31,7 @@ TEST_F(BadInput, AModelThatIsNone) {
   writeText(dir_ / "model.mrm", std::string(500, 'x'));
   Merlind m(dir_, dir_ / "model.mrm", "none", {.emulate = false});
   EXPECT_EQ(m.process().wait(), 2);
-  EXPECT_NE(m.process().output().find("is no .mrm file (make one with: merlin mesh reduce"),
+  EXPECT_NE(m.process().output().find("is not an .mrm file (make one with: merlin mesh reduce"),
             std::string::npos)
       << m.process().output();
   EXPECT_TRUE(m.leftInSharedMemory().empty());
@@ -41,7 +41,7 @@ TEST_F(BadInput, ATruncatedScan) {
   const std::string whole = readText(kSource + "/config/models/ankylosaurus.ply");
   writeText(dir_ / "cut.ply", whole.substr(0, whole.size() / 2));
   expectOutcome(run({kMerlin, "mesh", "reduce", dir_ / "cut.ply", "-o", dir_ / "out.mrm"}), 2,
-                {"cut.ply: cut short: the header promises 34820 x vertex, the file ends after "
+                {"cut.ply: cut short: the header declares 34820 x vertex, the file ends after "
                  "33645 at most"});
   EXPECT_FALSE(std::filesystem::exists(dir_ / "out.mrm"));
 }
@@ -51,7 +51,7 @@ TEST_F(BadInput, ALimitOfTheAddressSpaceCountsAsWhatIsFree) {
   const std::string reduce = fmt::format("{} mesh reduce {}/config/models/ankylosaurus.ply -o {}",
                                          kMerlin, kSource, dir_ / "out.mrm");
   expectOutcome(run({"/bin/bash", "-c", "ulimit -v 50000; " + reduce}), 2,
-                {"even in blocks; the limit (--memory, else what is free) is"});
+                {"even in blocks; the limit (--memory, by default the free memory) is"});
 }
 #endif
 
@@ -150,7 +150,7 @@ TEST_F(BadInput, BindingsToPosturesThatTheNetworkDoesNotKnow) {
     "postures": "none.json"}})");
   expectOutcome(run({kMerlind, "--check-config", dir_ / "n.json"}), 2,
                 {"n.json:2: /devices/postures cannot be used: ", "none.json: No such file"});
-  // A process that draws the wall alone reads no postures.
+  // A process that only draws the wall does not load the posture network.
   const Outcome wall = run({kMerlind, "--check-config", dir_ / "n.json", "--role", "wall"});
   EXPECT_EQ(wall.output.find("/devices/postures"), std::string::npos) << wall.output;
 }
@@ -171,7 +171,7 @@ TEST_F(BadInput, KeysNeverReplaceWhatIsThere) {
   EXPECT_FALSE(std::filesystem::exists(dir_ / "nowhere"));
 }
 
-// A writer that is killed leaves nothing; what an older one left goes with the next.
+// A killed writer leaves no temporary file; one that an earlier writer left is removed by the next.
 TEST_F(BadInput, AWriterThatIsKilledLeavesNothing) {
   writeText(dir_ / "x.mrm.999999999.tmp", "left by one that is no more");
   Process writer({kMerlin, "mesh", "reduce", kSource + "/config/models/ankylosaurus.ply", "-o",
@@ -237,7 +237,7 @@ TEST_F(BadInput, MeshesThatCannotBeCompared) {
   expectOutcome(run({kMerlin, "mesh", "compare", scan, scan, "--width", "0"}), 2, {"--width"});
   expectOutcome(run({kMerlin, "mesh", "compare", scan, scan, "--samples", "0"}), 2, {"--samples"});
   expectOutcome(run({kMerlin, "mesh", "compare", scan, scan, "--feature", "heat"}), 2,
-                {"feature heat: the first mesh has none, the second has none"});
+                {"feature heat: the first mesh lacks it, the second lacks it"});
   expectOutcome(run({kMerlin, "mesh", "compare", scan, scan, "--pictures", line + "/pictures"}), 1,
                 {"line.obj/pictures: Not a directory"});
 }

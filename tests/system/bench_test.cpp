@@ -1,5 +1,5 @@
-// Every benchmark with its subject missing, or ending early: it fails, names the subject, and
-// prints no figure. The mechanism: tests/bench/figures_test.cpp.
+// Every benchmark whose subject is missing or ends early must fail, name the subject and print no
+// figure. How benchmarks do so is tested in tests/bench/figures_test.cpp.
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ struct Said {
 
 class Bench : public testing::Test {
  protected:
-  // Runs the command with its two outputs apart. Words are quoted.
+  // Runs the command, its words quoted, and captures standard output and standard error separately.
   Said said(const std::vector<std::string>& command) const {
     std::string line;
     for (const std::string& word : command) line += fmt::format("'{}' ", word);
@@ -33,7 +33,8 @@ class Bench : public testing::Test {
     return {status, readText(dir_ / "out"), readText(dir_ / "err")};
   }
 
-  // It failed by a message of that benchmark's, which has these words, and printed nothing else.
+  // Expects that `bench` failed with its own message, which contains `words`, and printed no
+  // figures.
   void expectNoFigures(const Said& s, const std::string& bench,
                        const std::vector<std::string>& words) const {
     EXPECT_EQ(s.status, 1) << bench;
@@ -42,7 +43,7 @@ class Bench : public testing::Test {
     for (const std::string& word : words)
       EXPECT_NE(s.message.find(word), std::string::npos) << word << " in: " << s.message;
   }
-  // So does the command, for people and for programs.
+  // The same for a command, run as it is and with --json.
   void expectNoFigures(std::vector<std::string> command, const std::string& bench,
                        const std::vector<std::string>& words) const {
     expectNoFigures(said(command), bench, words);
@@ -50,7 +51,7 @@ class Bench : public testing::Test {
     expectNoFigures(said(command), bench, words);
   }
 
-  // A program of that name that does `script`.
+  // Makes a program `name` that runs the shell script `script`; returns its folder.
   std::string fake(const std::string& name, const std::string& script) const {
     const std::string folder = dir_ / "fake", path = folder + "/" + name;
     std::filesystem::create_directories(folder);
@@ -59,7 +60,7 @@ class Bench : public testing::Test {
     return folder;
   }
 
-  // The demo's configuration on a model that lies here, or does not.
+  // The path of a copy of the demo's configuration that uses `model`, which need not exist.
   std::string demoOn(const std::string& model) const {
     auto config = nlohmann::json::parse(readText(kDemo));
     config["wall"]["model"] = model;
@@ -89,7 +90,8 @@ TEST_F(Bench, WallWhoseMerlindEndsOrPublishesNothingHasNoFigures) {
   }
 }
 
-// Killed in the middle of the measurement, which takes half a minute: its segments are still there.
+// merlind is killed in the middle of the 30 s measurement, so its shared memory segments are still
+// there.
 TEST_F(Bench, WallWhoseMerlindDiesWhileItIsMeasuredHasNoFigures) {
   const std::string log = dir_ / "log";
   const std::string bin =
@@ -110,6 +112,14 @@ TEST_F(Bench, WallThatNeverMovesHasNoFigures) {
   const Said s = said({kBin + "/wall_bench", "--bin", bin, "--config", demoOn(makeModel(dir_, 5)),
                        "--seconds", "1", "--rounds", "1"});
   expectNoFigures(s, "wall", {"the wall"});
+}
+
+// Without an X server there is no window; an output that shows nothing has no cost.
+TEST_F(Bench, OutputsWithoutAnXServerHaveNoFigures) {
+  const std::string bench = kBin + "/outputs_bench";
+  if (::access(bench.c_str(), X_OK) != 0) GTEST_SKIP() << "built without SDL2";
+  expectNoFigures({"env", "PATH=/nonexistent", bench, "--seconds", "1", "--rounds", "1"}, "outputs",
+                  {"Xvfb", "there is no such program"});
 }
 
 TEST_F(Bench, LatencyWithoutMerlindHasNoFigures) {
@@ -180,7 +190,7 @@ TEST_F(Bench, AttackWithoutMerlindOrFloodHasNoFigures) {
                   {"merlind", "it ended", "no wall"});
 }
 
-// Whether the figures are within their limits is a matter of the machine.
+// Checks that there are figures; whether they keep their limits depends on the machine.
 TEST_F(Bench, AnAttackThatReachesTheWallHasFigures) {
   const Said s = said({"python3", "-B", kBench + "/attack/attack.py", "--bin", kBin, "--source",
                        kSource, "--rounds", "1", "--seconds", "2", "pty-newlines", "--json"});
@@ -197,7 +207,7 @@ TEST_F(Bench, ReductionWithoutMerlinHasNoFigures) {
         dir_ / "reduction", "--quick"};
   };
   expectNoFigures(reduction("/nonexistent"), "reduction", {"/nonexistent/bench/bench_merlin"});
-  // Programs that are there and reduce nothing.
+  // Programs that exist but fail.
   const std::string bin = dir_ / "idle";
   for (const char* name : {"/bench/bench_merlin", "/bin/merlin"}) {
     std::filesystem::create_directories(std::filesystem::path(bin + name).parent_path());

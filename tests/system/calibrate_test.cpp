@@ -1,5 +1,5 @@
-// merlin calibrate tracker and ball, guided: a person at an emulated tracker and ball, a real
-// merlind between them.
+// merlin calibrate tracker and ball, the guided calibrations: a merlind reads an emulated device,
+// whose emulated person does each step when told.
 #include <gtest/gtest.h>
 
 #include "tests/system/merlind.h"
@@ -9,7 +9,8 @@ namespace {
 
 using nlohmann::json;
 
-// An emulated device whose person does the next thing when told, and a merlind that reads it.
+// An emulated device that goes to the next phase of its motion script when told, and a merlind that
+// reads it.
 class Bench {
  public:
   Bench(const char* device, const char* role, const char* script)
@@ -19,7 +20,7 @@ class Bench {
     EXPECT_TRUE(device_.saysEventually(std::string(device) + " on")) << device_.output();
   }
 
-  // With what `configuration` says under /devices/ROLE.
+  // Starts a merlind with `configuration` merged into /devices/ROLE.
   Merlind& start(json configuration = json::object()) {
     merlind_.reset();
     configuration["port"] = "pty:" + dir_ / "line";
@@ -59,7 +60,7 @@ class Bench {
   int starts_ = 0;
 };
 
-// Waits until the station's samples are within 1 cm of there.
+// Waits until the station's samples are within 1 cm of `cm` on each axis.
 void isAt(Merlind& merlind, const std::array<float, 3>& cm) {
   EXPECT_TRUE(eventually([&] {
     const auto sample = merlind.devices()->tracker[0].newest();
@@ -81,7 +82,7 @@ void expectNear(const json& list, const std::vector<double>& expected, double to
 constexpr std::size_t kSteps = 4;
 using Places = std::array<std::array<float, 3>, kSteps>;  // cm
 
-// A person who waits for each step's words, goes there, and presses Enter.
+// Runs the calibration: waits for each step's prompt, moves the station there, and presses Enter.
 void walkThrough(Bench& bench, const Places& places) {
   Process calibrate(bench.calibrate({"--station", "1"}));
   const char* const names[kSteps] = {
@@ -110,12 +111,13 @@ TEST(CalibrateTracker, GoesThroughPlacesAndAPose) {
   EXPECT_EQ(json::parse(readText(bench.file()))["instance"], "kept");
   EXPECT_EQ(run({kMerlind, "--check-config", bench.file(), "--role", "devices"}).status, 0);
 
-  // With it in force the pose is straight ahead, and the same walk finds the same.
+  // With the saved calibration in force the pose is straight ahead; calibrating again with the same
+  // positions gives the same result.
   const auto& merlind = bench.start(bench.saved());
   isAt(bench.merlind(), {15, 15, 0});
   const auto ahead = bench.merlind().devices()->tracker[0].newest();
   EXPECT_GT(std::abs(ahead->orientation_wxyz[0]), 0.999F);
-  bench.next();  // to the first place again
+  bench.next();  // back to the first position
   isAt(bench.merlind(), {0, 0, 0});
   writeText(bench.file(), readText(merlind.config()));
   walkThrough(bench, {{{0, 0, 0}, {40, 0, 0}, {5, 30, 0}, {15, 15, 0}}});
@@ -123,7 +125,8 @@ TEST(CalibrateTracker, GoesThroughPlacesAndAPose) {
   expectNear(bench.saved()["boresight1_wxyz"], kBoresight, 0.01);
 }
 
-// A station that never goes anywhere: a script is told so, and the file stays.
+// The station does not move. Run without a terminal, the command must fail and leave the file as it
+// is.
 TEST(CalibrateTracker, RefusesPlacesThatMakeNoFrameAndLeavesTheFile) {
   Bench bench("fastrak", "tracker", "alignment");
   bench.start();
@@ -176,10 +179,10 @@ TEST(CalibrateTracker, EndsWithoutADaemonAndOnCtrlC) {
   EXPECT_EQ(readText(bench.file()), "{}");
 }
 
-// A person who waits for each step's words, moves the ball, and presses Enter.
+// Runs the calibration: waits for each step's prompt, moves the ball, and presses Enter.
 void moveThrough(Bench& bench) {
   Process calibrate(bench.calibrate());
-  // what the ball's counts are then, of the axis that is moved
+  // For each step: the axis that is moved and its raw count.
   const std::pair<const char*, std::pair<int, int>> steps[] = {
       {"\nrest: ", {0, 12}},           {"\nright: ", {1, -6400}}, {"\nup: ", {0, 5600}},
       {"\ntowards you: ", {2, -7200}}, {"\ntilt: ", {4, -1280}},  {"\nturn: ", {3, 1200}},
@@ -198,7 +201,7 @@ void moveThrough(Bench& bench) {
 
 TEST(CalibrateBall, GoesThroughPushesAndTwists) {
   Bench bench("spaceball", "ball", "pushes");
-  // what is in force is not in the raw counts
+  // The calibration uses raw counts, to which the configured axis map and dead zone do not apply.
   bench.start({{"axis_map", {3, 2, 1, 6, 5, 4}}, {"dead_zone", 99}});
   writeText(bench.file(), "{\"devices\": {\"ball\": {\"cubic\": false}}}");
   moveThrough(bench);
@@ -210,7 +213,8 @@ TEST(CalibrateBall, GoesThroughPushesAndTwists) {
   EXPECT_EQ(saved["cubic"], false);
   EXPECT_EQ(run({kMerlind, "--check-config", bench.file(), "--role", "devices"}).status, 0);
 
-  // With it in force, the last twist is a full one about the axis towards the person.
+  // With the saved calibration in force, the last twist is at full scale about the axis towards the
+  // person.
   bench.start(saved);
   ASSERT_TRUE(eventually([&] {
     const auto sample = bench.merlind().devices()->ball.newest();

@@ -1,4 +1,4 @@
-// One check: what merlind refuses to start with, --check-config refuses with the same words.
+// Whatever merlind refuses to start with, --check-config refuses with the same messages.
 #include <string>
 #include <utility>
 
@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-// Lines of `output` that name a place in the file.
+// The lines of `output` that name a place in `file`.
 std::string findingsOf(const std::string& output, const std::string& file) {
   std::string found;
   std::istringstream lines(output);
@@ -24,7 +24,7 @@ std::string findingsOf(const std::string& output, const std::string& file) {
 
 class CheckConfig : public testing::Test {
  protected:
-  // A configuration that starts, with `patch` merged into it.
+  // Writes a configuration with which merlind starts, with `patch` merged into it.
   std::string file(const json& patch) {
     json config = {{"instance", privateName("check")},
                    {"run_directory", dir_.path()},
@@ -64,11 +64,11 @@ TEST_F(CheckConfig, RefusesWallsThatCannotBeDrawn) {
                 "tile far at 9000, 0 does not lie in the frame of 1280 x 960");
   expectRefused(tiles({{"tiles", json::array()}}), "/wall/tiles/tiles",
                 "a wall has at least one tile");
-  expectRefused(tiles({{"near_m", 5}, {"far_m", 1}}), "/wall/tiles", "0 < near < far");
+  expectRefused(tiles({{"near_m", 5}, {"far_m", 1}}), "/wall/tiles", "0 < near_m < far_m");
   expectRefused({{"wall", {{"scene", {{"tracker_axes", {1, 2, -3}}}}}}}, "/wall/scene/tracker_axes",
                 "right-handed");
   expectRefused({{"wall", {{"render", {{"show", "heat"}}}}}}, "/wall/render/show",
-                "no feature \"heat\" to show");
+                "no feature \"heat\" that can be shown");
 }
 
 TEST_F(CheckConfig, RefusesModelsThatCannotBeRead) {
@@ -77,7 +77,8 @@ TEST_F(CheckConfig, RefusesModelsThatCannotBeRead) {
   expectRefused(model("none.mrm"), "/wall/model", "none.mrm: No such file");
   expectRefused(model("."), "/wall/model", "is not a regular file");
   ASSERT_EQ(::mkfifo((dir_ / "pipe").c_str(), 0600), 0);
-  expectRefused(model("pipe"), "/wall/model", "is not a regular file");  // and nobody waits for it
+  // Must not block on opening the pipe.
+  expectRefused(model("pipe"), "/wall/model", "is not a regular file");
   expectRefused({{"wall", {{"contents", json::array({{{"model", "c.json"}}})}}}},
                 "/wall/contents/0/model", "c.json: is ");
 }
@@ -94,7 +95,7 @@ TEST_F(CheckConfig, RefusesFilesThatCannotBeWritten) {
   expectRefused(pngOutput("none/wall.png"), "/wall/outputs/0/path",
                 "none/wall.png: No such file or directory");
   expectRefused(pngOutput("."), "/wall/outputs/0/path", "Is a directory");
-  expectRefused(pngOutput(model_), "/wall/outputs/0/path", "it would be replaced");
+  expectRefused(pngOutput(model_), "/wall/outputs/0/path", "it would be overwritten");
   expectRefused(pngOutput("file"), "/wall/outputs/0/path", "is not a PNG file");
   expectRefused(pngOutput(std::string("x\0y.png", 7)), "/wall/outputs/0/path",
                 "without the character NUL");
@@ -146,7 +147,7 @@ TEST_F(CheckConfig, LooksAtWhatTheRoleNeeds) {
   EXPECT_EQ(run({kMerlind, "--check-config", replay, "--role", "wall"}).status, 0);
 }
 
-// A network that lacks a posture of the default bindings; the file itself binds none.
+// The network lacks a posture of the default bindings, and the file has no bindings of its own.
 TEST_F(CheckConfig, ADefaultBindingIsNobodysMistake) {
   std::string network = readText(kSource + "/config/postures.json");
   for (std::size_t at = 0; (at = network.find("\"fist\"", at)) != std::string::npos;)
@@ -170,7 +171,7 @@ TEST_F(CheckConfig, AnEmptyNameIsBadUsageAndStartsNothing) {
   }
 }
 
-// Out of memory, as any check that does not come to its end, is not "adjusted".
+// A check that runs out of memory, or ends early in another way, must not report "adjusted".
 TEST_F(CheckConfig, ACheckThatDoesNotEndIsNotValid) {
   std::string bindings;
   for (int i = 0; i < 340'000; ++i) bindings += i == 0 ? "{}" : ",{}";

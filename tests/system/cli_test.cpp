@@ -1,4 +1,5 @@
-// What `merlin` prints where all is well, for those who script it; of meshes: mesh_cli_test.
+// The output of `merlin` commands that succeed, on which scripts rely. Mesh commands:
+// mesh_cli_test.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

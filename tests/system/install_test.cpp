@@ -1,5 +1,5 @@
-// What `cmake --install` leaves is a service: the installed programs, configuration and unit, run
-// under what the unit forbids, without systemd.
+// Runs the programs, configuration and unit that `cmake --install` installs, under the unit's
+// restrictions but without systemd.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr unsigned kNobody = 65534;  // who under_unit makes of root
+constexpr unsigned kNobody = 65534;  // the user to which under_unit changes from root
 
 int freePort() {
   const UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
@@ -34,14 +34,18 @@ int freePort() {
   return ntohs(address.sin_port);
 }
 
-bool connects(int port) {
-  const UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+// Not valid if nobody listens.
+UniqueFd connected(int port) {
+  UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   address.sin_port = htons(static_cast<std::uint16_t>(port));
-  return ::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  if (::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    fd.reset();
+  return fd;
 }
+bool connects(int port) { return connected(port).valid(); }
 
 class Install : public testing::Test {
  protected:
@@ -51,12 +55,12 @@ class Install : public testing::Test {
     ASSERT_EQ(done.status, 0) << done.output;
   }
 
-  Outcome install() {
+  Outcome install(const std::string& component = "merlin") {
     return run({"env", "DESTDIR=" + root_, "cmake", "--install", MERLIN_BINARY_DIR, "--prefix",
-                "/usr", "--component", "merlin"});
+                "/usr", "--component", component});
   }
 
-  // A service's own folder, that its user can write.
+  // A run directory to which the service's user may write.
   std::string runDirectory() {
     const std::string path = dir_ / "run";
     fs::create_directories(path);
@@ -66,7 +70,8 @@ class Install : public testing::Test {
     return path;
   }
 
-  // The installed configuration, with a model, this test's names, and `patch`.
+  // The installed configuration with a model, names private to this test, and `patch` merged into
+  // it.
   std::string configuration(const json& patch) {
     const std::string model = makeModel(dir_, 5);
     json config = json::parse(readText(root_ + "/etc/merlin/merlin.json"));
@@ -81,9 +86,10 @@ class Install : public testing::Test {
   }
 
   std::vector<std::string> underUnit(std::vector<std::string> program,
-                                     const std::vector<std::string>& drop_ins = {}) {
+                                     const std::vector<std::string>& drop_ins = {},
+                                     const std::string& unit = "merlind.service") {
     std::vector<std::string> arguments = {MERLIN_BIN_DIR "/under_unit",
-                                          root_ + "/usr/lib/systemd/system/merlind.service"};
+                                          root_ + "/usr/lib/systemd/system/" + unit};
     for (const std::string& name : drop_ins)
       arguments.push_back(root_ + "/usr/share/merlin/merlind.service.d/" + name);
     arguments.emplace_back("--");
@@ -114,7 +120,7 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
         "/etc/merlin/merlin.json", "/etc/merlin/postures.json", "/etc/merlin/merlin.schema.json"}) {
     EXPECT_TRUE(fs::is_regular_file(root_ + path)) << path;
   }
-  // The unit starts what was installed, with what was installed.
+  // The unit starts the installed daemon with the installed configuration.
   const std::string unit = readText(root_ + "/usr/lib/systemd/system/merlind.service");
   EXPECT_NE(unit.find("ExecStart=/usr/bin/merlind --config /etc/merlin/merlin.json"),
             std::string::npos);
@@ -123,7 +129,7 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
   EXPECT_EQ(readText(root_ + "/etc/merlin/merlin.json"), "{\"instance\": \"mine\"}");
 }
 
-// Of the shipped configuration nothing is wrong but what only the lab can give: its model.
+// The only finding in the shipped configuration is the model, which each site has to supply.
 TEST_F(Install, TheInstalledConfigurationLacksAModelOnly) {
   const Outcome checked = run({merlind_, "--check-config", root_ + "/etc/merlin/merlin.json"});
   EXPECT_NE(checked.output.find("/wall/model cannot be used: /var/lib/merlin/model.mrm"),
@@ -147,12 +153,30 @@ TEST_F(Install, TheInstalledDaemonRunsUnderItsUnit) {
   EXPECT_EQ(merlind.kill(SIGTERM), 0) << merlind.output();
 }
 
+TEST_F(Install, TheInstalledMerlinRfbRunsUnderItsUnit) {
+  if (!fs::exists(MERLIN_BIN_DIR "/merlin-rfb")) GTEST_SKIP() << "merlin-rfb is not built";
+  EXPECT_FALSE(fs::exists(root_ + "/usr/bin/merlin-rfb")) << "it is a component of its own";
+  ASSERT_EQ(install("merlin-rfb").status, 0);
+  EXPECT_TRUE(fs::is_regular_file(root_ + "/usr/lib/sysusers.d/merlin-rfb.conf"));
+  Process rfb(
+      underUnit({root_ + "/usr/bin/merlin-rfb", "--instance", instance_, "--listen", "127.0.0.1:0"},
+                {}, "merlin-rfb.service"));
+  ASSERT_TRUE(rfb.saysEventually("clients at most")) << rfb.output();
+  const std::string said = rfb.output(), before = "at 127.0.0.1:";
+  const int port = std::stoi(said.substr(said.find(before) + before.size()));
+  const UniqueFd client = connected(port);
+  char version[13] = {};
+  EXPECT_EQ(::recv(client.get(), version, 12, MSG_WAITALL), 12) << rfb.output();
+  EXPECT_STREQ(version, "RFB 003.008\n");
+  EXPECT_EQ(rfb.kill(SIGTERM), 0) << rfb.output();
+}
+
 class InstalledServers : public Install {
  protected:
   void SetUp() override {
     Install::SetUp();
     ASSERT_EQ(run({kMerlin, "keys", "-o", dir_ / "keys"}).status, 0);
-    // The daemon's user owns them; nobody else may read them.
+    // The keys belong to the daemon's user and are readable by nobody else.
     if (::geteuid() == 0) {
       ASSERT_EQ(::chown((dir_ / "keys").c_str(), kNobody, kNobody), 0);
     }

@@ -1,4 +1,4 @@
-// A model that merlin wrote, opened by a program that knows Coin and nothing of MERLIN's.
+// A model exported by merlin, opened in a program that uses Coin and has no MERLIN headers.
 #pragma once
 
 #include <cmath>
@@ -27,10 +27,10 @@
 namespace merlin::test {
 
 inline const std::string kMerlin = std::string(MERLIN_BIN_DIR) + "/merlin";
-inline constexpr int kSide = 20;  // cells
+inline constexpr int kSide = 20;  // cells along each side
 inline constexpr int kTriangles = 2 * kSide * kSide;
 
-// Hills over a square, red to green, as a PLY file.
+// A hilly square surface, coloured from red to green, as a PLY file.
 inline std::string hills() {
   std::string text =
       "ply\nformat ascii 1.0\nelement vertex " + std::to_string((kSide + 1) * (kSide + 1)) +
@@ -58,7 +58,7 @@ inline std::string hills() {
   return text;
 }
 
-// What Coin complained of, since it was last asked.
+// Coin's error messages since the last clear().
 inline std::vector<std::string> complaints;
 inline void complain(const SoError* error, void*) {
   complaints.push_back(error->getDebugString().getString());
@@ -101,7 +101,7 @@ class Inventor : public testing::Test {
     return SoDB::readAll(&in);
   }
 
-  // By the name alone: that is all that this program knows.
+  // Finds the node by its type name alone, since this program does not know the class.
   static SoNode* find(SoNode* root) {
     SoSearchAction search;
     search.setType(SoType::fromName("SoMRFaceSet"));
@@ -125,14 +125,15 @@ class Inventor : public testing::Test {
     action.apply(root_);
     return action.getBoundingBox();
   }
-  // What is met from above at (x, y); the caller's until the next.
+  // The point hit by a vertical ray from above at (x, y), or null; valid until the next call.
   const SoPickedPoint* pick(float x, float y) {
     pick_.setRay({x, y, 10}, {0, 0, -1});
     pick_.apply(root_);
     return pick_.getPickedPoint();
   }
 
-  // A frame at `hz` after the last one, as a viewer says it.
+  // Reports a frame to the node through the field frameTime, 1 / `hz` seconds after the last one,
+  // as a viewer does.
   void frame(double hz) {
     time_s_ += 1 / hz;
     static_cast<SoSFTime*>(field("frameTime"))->setValue(time_s_);

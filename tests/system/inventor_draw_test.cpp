@@ -1,5 +1,5 @@
-// The same program with a context of EGL, which needs no screen: what is drawn, and how the node
-// finds out by itself that it moves.
+// The program of inventor.h with an EGL context, which needs no screen: what the node draws, and
+// how it detects by itself that the view moves.
 #include <cstdint>
 #include <vector>
 
@@ -18,7 +18,7 @@
 namespace merlin::test {
 namespace {
 
-constexpr int kPixels = 128;  // a side
+constexpr int kPixels = 128;  // width and height of the image
 
 class InventorDrawn : public Inventor {
  protected:
@@ -38,7 +38,7 @@ class InventorDrawn : public Inventor {
     Inventor::TearDown();
   }
 
-  // OpenGL with its old functions, as Coin wants it.
+  // Makes an OpenGL context in the compatibility profile, which Coin needs.
   void openContext() {
     const EGLDisplay display =
         eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
@@ -76,10 +76,12 @@ class InventorDrawn : public Inventor {
   }
   static int lit(const std::vector<std::uint8_t>& rgba) {
     int count = 0;
-    for (std::size_t i = 0; i < rgba.size(); i += 4) count += rgba[i + 1] > 20;  // green
+    // The green channel.
+    for (std::size_t i = 0; i < rgba.size(); i += 4) count += rgba[i + 1] > 20;
     return count;
   }
-  // A frame from a little elsewhere, and what the viewer's event loop does between two.
+  // Draws a frame from a slightly different camera position, then does what the viewer's event loop
+  // does between frames.
   void move() {
     camera_->position.setValue(camera_->position.getValue() + SbVec3f(0.001F, 0, 0));
     draw();
@@ -109,14 +111,14 @@ TEST_F(InventorDrawn, EachResolutionIsDrawnInColour) {
 
 TEST_F(InventorDrawn, ABrokenModelLeavesThePictureEmpty) {
   EXPECT_GT(lit(picture()), 0);
-  complaints.clear();  // Coin looks for GLX first
+  complaints.clear();  // without a screen, Coin complains once that it finds no GLX
   whole("faces").set1Value(0, 1 << 30);
   EXPECT_EQ(lit(picture()), 0);
   EXPECT_EQ(complaints.size(), 1u);
 }
 
 TEST_F(InventorDrawn, ItFindsItsRateByItselfWhileTheViewMovesAndIsWholeAfterwards) {
-  set("desiredFrameRate", "1e9");  // no machine holds it
+  set("desiredFrameRate", "1e9");  // more than any machine can reach
   draw();
   move();
   EXPECT_EQ(current(), kTriangles);
@@ -129,16 +131,16 @@ TEST_F(InventorDrawn, ItFindsItsRateByItselfWhileTheViewMovesAndIsWholeAfterward
   SoNodeSensor sensor([](void* times, SoSensor*) { ++*static_cast<int*>(times); }, &redraws);
   sensor.attach(scene_);
   EXPECT_TRUE(eventually([&] {
-    draw();  // the same view: no motion
+    draw();  // the same view, hence no motion
     turnEventLoop();
     return count() == kTriangles;
   }));
-  EXPECT_EQ(redraws, 1);  // asked for, by the node
+  EXPECT_EQ(redraws, 1);  // requested by the node itself
   move();
-  EXPECT_EQ(count(), current());  // at once
+  EXPECT_EQ(count(), current());  // without a delay
 }
 
-// Longer than the law's second.
+// Runs `step` for 1.2 s, which is longer than the rate control waits (1 s).
 template <typename Step>
 void forAWhile(Step step) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(1200);

@@ -1,4 +1,4 @@
-// Any Coin program and the installed module: fields, files, picking, broken models, the rate.
+// The installed module in any Coin program: fields, files, picking, broken models, the frame rate.
 #include "tests/system/inventor.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ TEST_F(Inventor, CoinLoadsTheNodeByItsName) {
   EXPECT_EQ(maximum, "800");
   EXPECT_LT(std::atoi(minimum.getString()), 50);
   const int nodes = static_cast<SoMFVec3f*>(field("vertex"))->getNum();
-  EXPECT_GT(nodes, 441);  // of the mesh, and one a collapse
+  EXPECT_GT(nodes, 441);  // the mesh's vertices, and one node for each edge collapse
   EXPECT_EQ(nodes, 441 + whole("parents").getNum());
   EXPECT_EQ(static_cast<SoMFVec3f*>(field("normal"))->getNum(), nodes);
   EXPECT_EQ(static_cast<SoMFColor*>(field("diffuseColor"))->getNum(), nodes);
@@ -50,7 +50,7 @@ TEST_F(Inventor, ResolutionIsKeptWithinMinimumAndMaximum) {
   EXPECT_NEAR(count(), 99, 1.5);
   ask(100'000);
   EXPECT_NEAR(count(), 599, 1.5);
-  set("minimumResolution", "900");  // above the maximum, which holds
+  set("minimumResolution", "900");  // above the maximum, which takes precedence
   EXPECT_NEAR(count(), 599, 1.5);
   set("maximumResolution", "-5");
   EXPECT_LT(count(), 50);
@@ -85,7 +85,7 @@ TEST_F(Inventor, WrittenAndReadAgainItIsTheSame) {
     }
     for (const char* name : {"vertex", "normal", "diffuseColor", "levelErrors"}) {
       const bool same = field(name)->isSame(*other->getField(name));
-      EXPECT_TRUE(same || !binary) << name;  // Coin's texts have six digits
+      EXPECT_TRUE(same || !binary) << name;  // Coin's text format keeps six digits
     }
     again->unref();
   }
@@ -147,8 +147,8 @@ void see(void* data, SoCallbackAction* action, const SoPrimitiveVertex* a,
          const SoPrimitiveVertex* b, const SoPrimitiveVertex* c) {
   auto& seen = *static_cast<Seen*>(data);
   ++seen.triangles;
-  seen.area +=
-      (b->getPoint() - a->getPoint()).cross(c->getPoint() - a->getPoint())[2] / 2;  // from above
+  // The area of the triangle's projection onto the plane z = 0.
+  seen.area += (b->getPoint() - a->getPoint()).cross(c->getPoint() - a->getPoint())[2] / 2;
   EXPECT_EQ(a->getNormal(), seen.normals[a->getMaterialIndex()]);
   SbColor ambient, diffuse, specular, emission;
   float shininess, transparency;
@@ -180,8 +180,8 @@ TEST_F(Inventor, BrokenFieldsGiveOneErrorAndDrawNothingUntilTheyAreMended) {
       {"parents", [](SoField& f) { static_cast<SoMFInt32&>(f).set1Value(3, -1); },
        "collapse 3: parent"},
       {"faces", [](SoField& f) { static_cast<SoMFInt32&>(f).set1Value(7, 1 << 30); },
-       "triangle 2: node 1073741824"},
-      {"faces", [](SoField& f) { static_cast<SoMFInt32&>(f).deleteValues(100); }, "no triples"},
+       "triangle 2: there is no node 1073741824"},
+      {"faces", [](SoField& f) { static_cast<SoMFInt32&>(f).deleteValues(100); }, "not triples"},
       {"faces", [](SoField& f) { static_cast<SoMFInt32&>(f).setNum(0); }, "no triangle"},
       {"aliveCounts", [](SoField& f) { static_cast<SoMFInt32&>(f).set1Value(9, 801); }, "level 9"},
       {"levelErrors", [](SoField& f) { static_cast<SoMFFloat&>(f).deleteValues(4); },
@@ -235,11 +235,12 @@ TEST_F(Inventor, WhileItMovesTheRateIsHeldAndStillItIsWhole) {
   set("desiredFrameRate", "60");
   set("interacting", "TRUE");
   EXPECT_EQ(count(), kTriangles);
-  for (int i = 0; i <= 10; ++i) frame(10);  // 8,000 triangles a second
+  // 10 frames of 800 triangles each second: 8,000 triangles a second
+  for (int i = 0; i <= 10; ++i) frame(10);
   EXPECT_EQ(current(), 133);
   EXPECT_NEAR(count(), 132, 1.5);
   set("interacting", "FALSE");
-  EXPECT_EQ(count(), kTriangles);  // at once
+  EXPECT_EQ(count(), kTriangles);  // without a delay
   set("interacting", "TRUE");
   EXPECT_NEAR(count(), 132, 1.5);
 }

@@ -1,6 +1,6 @@
-// Nobody waits for anybody: three devices run; each in turn, in each state of its dialogue, is
-// pulled, babbles or freezes, and comes back. What the other two lose by it is asked, and printed
-// beside a control window just before, when all were well.
+// Devices are isolated from each other. Three devices run; each in turn is pulled, babbles or
+// freezes, in each state of its dialogue, and recovers. The test checks what the other two devices
+// lose meanwhile, and prints it beside a control window just before, in which all three worked.
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -23,7 +23,7 @@ namespace {
 using std::chrono::milliseconds;
 
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-constexpr bool kTimed = false;  // a sanitizer's build shows order, not time
+constexpr bool kTimed = false;  // a sanitizer's build is too slow to check times
 #else
 constexpr bool kTimed = true;
 #endif
@@ -32,7 +32,8 @@ constexpr const char* kNames[] = {"cyberglove", "fastrak", "spaceball"};
 constexpr const char* kFaultNames[] = {"", "pulled", "babbling", "frozen"};
 constexpr SampleKind kKinds[] = {SampleKind::kGlove, SampleKind::kTracker, SampleKind::kBall};
 
-// After a freeze a ball may have lost its reset: it starts anew, in the emulator's 0.3 s, then.
+// Extra recovery time in seconds: during a freeze the ball may have missed its reset command, so it
+// is reset again, which takes 0.3 s in the emulator.
 constexpr double kBallReset[] = {0, 0, 0.3};
 
 struct Arrival {
@@ -40,7 +41,7 @@ struct Arrival {
   std::uint32_t counter;
 };
 
-// Keeps when each sample came; one thread writes, the test reads what is complete.
+// The times of all samples of a device. One thread adds; the test reads only complete entries.
 class Arrivals {
  public:
   void add(std::int64_t ns, std::uint32_t counter) noexcept {
@@ -59,7 +60,7 @@ class Arrivals {
   std::atomic<std::size_t> count_{0};
 };
 
-// Three devices, each with its loop and its thread.
+// Three devices, each with a DeviceLoop and a thread of its own.
 class Bench : public SampleSink {
  public:
   Bench() {
@@ -79,7 +80,7 @@ class Bench : public SampleSink {
   void publish(const TrackerSample& s) noexcept override { arrivals_[1].add(now(), s.counter); }
   void publish(const BallSample& s) noexcept override { arrivals_[2].add(now(), s.counter); }
 
-  // The device's health is ok and a sample has come since.
+  // Waits until the device's health is ok and another sample has arrived; false if that fails.
   bool well(std::size_t i) {
     const bool ok = eventually([&] { return state(i) == HealthState::kOk; });
     const std::size_t before = arrivals_[i].count();
@@ -105,7 +106,7 @@ class Bench : public SampleSink {
   std::vector<std::jthread> threads_;
 };
 
-// Intervals of one device over some windows, and what they say.
+// Sample intervals of one device over several windows, with their quantiles and the samples lost.
 class Windows {
  public:
   void add(std::span<const Arrival> window) {
@@ -143,8 +144,8 @@ void addWindow(const Bench& bench, const Marks& from, std::array<Windows, 3>& to
     to[i].add(bench.arrivals(i).between(from.at[i], bench.arrivals(i).count()));
 }
 
-// A control window, then the fault in dialogue state `state` (number of writes; -1: streaming) and
-// the way back.
+// Measures a control window; then lets `victim` fail in dialogue state `state` (number of writes;
+// -1: while streaming) and recover.
 void provoke(Bench& bench, std::size_t victim, Fault fault, int state, Comparison& result) {
   const Duration kFault = milliseconds(250);
   Marks from = mark(bench);

@@ -1,4 +1,5 @@
-// A real merlind on emulated devices, with a name and a folder of the test's own.
+// Merlind: a real merlind process on emulated devices, with an instance name and a folder of its
+// own.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +20,7 @@ inline const std::string kMerlin = MERLIN_BIN_DIR "/merlin";
 inline const std::string kMerlind = MERLIN_BIN_DIR "/merlind";
 inline const std::string kSource = MERLIN_SOURCE_DIR;
 
-// The demo's model, reduced to a part of itself so that a sanitizer's build can draw it.
+// The demo's model, reduced to `percent` of its triangles so that a sanitizer's build can draw it.
 inline std::string makeModel(const TempDir& dir, int percent = 20) {
   const std::string small = dir / "small.ply", model = dir / "model.mrm";
   EXPECT_EQ(run({kMerlin, "mesh", "reduce", kSource + "/config/models/ankylosaurus.ply", "-o",
@@ -36,10 +37,10 @@ inline std::string makeModel(const TempDir& dir, int percent = 20) {
 
 struct MerlindOptions {
   std::string script = "visit", role = "all";
-  double rate_hz = 10;  // a sanitizer's build cannot do 30
+  double rate_hz = 10;  // 30 Hz is too fast for a sanitizer's build
   bool emulate = true;
   std::map<std::string, std::string> environment = {};
-  nlohmann::json also = nlohmann::json::object();  // of the configuration, merged into the rest
+  nlohmann::json also = nlohmann::json::object();  // merged into the configuration
 };
 
 class Merlind {
@@ -50,6 +51,7 @@ class Merlind {
     nlohmann::json config = {
         {"instance", instance_},
         {"run_directory", dir.path()},
+        {"state_file", dir / (name + ".state.json")},
         {"devices", {{"postures", kSource + "/config/postures.json"}, {"script", options.script}}},
         {"wall", {{"model", model}, {"rate", {{"rate_hz", options.rate_hz}}}}}};
     config.merge_patch(options.also);
@@ -90,19 +92,21 @@ class Merlind {
     return nlohmann::json::parse(asked.output, nullptr, false);
   }
 
-  // Process numbers of its children whose command line has this word.
+  // Ids of its child processes whose command line contains `word`.
   std::vector<pid_t> children(const std::string& word) const {
     std::vector<pid_t> found;
-    const std::string pid = std::to_string(process_->pid());
-    std::istringstream pids(readText("/proc/" + pid + "/task/" + pid + "/children"));
-    for (pid_t child = 0; pids >> child;) {
-      if (readText(fmt::format("/proc/{}/cmdline", child)).find(word) != std::string::npos)
-        found.push_back(child);
+    for (const auto& thread :
+         std::filesystem::directory_iterator(fmt::format("/proc/{}/task", process_->pid()))) {
+      std::istringstream pids(readText(thread.path() / "children"));
+      for (pid_t child = 0; pids >> child;) {
+        if (readText(fmt::format("/proc/{}/cmdline", child)).find(word) != std::string::npos)
+          found.push_back(child);
+      }
     }
     return found;
   }
 
-  // What of it lies in /dev/shm.
+  // Paths of this instance's objects in /dev/shm.
   std::vector<std::string> leftInSharedMemory() const {
     std::vector<std::string> left;
     for (const auto& entry : std::filesystem::directory_iterator("/dev/shm")) {

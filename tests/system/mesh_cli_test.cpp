@@ -1,4 +1,4 @@
-// `merlin mesh` where all is well, with formats, repairs and labels: what it prints and leaves.
+// `merlin mesh` commands that succeed, with formats, repairs and labels: their output and files.
 #include <algorithm>
 #include <sstream>
 
@@ -71,7 +71,7 @@ TEST_F(MeshCli, PicturesModelsSideBySide) {
   EXPECT_NE(picture.output.find("p.png: 128 x 48"), std::string::npos) << picture.output;
 }
 
-// A square of two triangles `height` above the ground, as ASCII PLY.
+// A square of two triangles in the plane z = `height`, as ASCII PLY.
 std::string squarePly(double height) {
   return fmt::format(
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
@@ -81,7 +81,7 @@ std::string squarePly(double height) {
       height);
 }
 
-// The JSON that ends what a command printed, after its progress.
+// The JSON at the end of a command's output, after its progress messages.
 nlohmann::json jsonOf(const Outcome& outcome) {
   EXPECT_EQ(outcome.status, 0) << outcome.output;
   return nlohmann::json::parse(outcome.output.substr(outcome.output.find("{\"")));
@@ -144,7 +144,7 @@ TEST_F(MeshCli, ExportKeepsWithinADistanceForCertain) {
   }
 }
 
-// A row of the curve is what compare says of that resolution.
+// A row of the curve equals what `compare` prints for that resolution.
 TEST_F(MeshCli, CurveSaysWhatCompareSays) {
   const std::string model = dir_ / "a.mrm", csv = dir_ / "a.csv", svg = dir_ / "a<b.svg";
   ASSERT_EQ(run({kMerlin, "mesh", "reduce", scan_, "-o", model}).status, 0);
@@ -191,7 +191,7 @@ TEST_F(MeshCli, CompareDrawsPictures) {
   EXPECT_LT(hundredth, 100);
   for (const char* name : {"a", "b", "beside", "edges"})
     expectPicture(dir_ / fmt::format("new/pictures/{}.png", name), 50);
-  for (const char* name : {"a_wire", "b_wire", "difference"})  // of two colours
+  for (const char* name : {"a_wire", "b_wire", "difference"})  // images of only two colours
     expectPicture(dir_ / fmt::format("new/pictures/{}.png", name), 2);
 }
 
@@ -203,14 +203,14 @@ TEST_F(MeshCli, ExportsToEveryFormatAndSaysWhatIsLeftOut) {
         run({kMerlin, "mesh", "export", dir_ / "a.mrm", "--triangles", "1000", "-o", out});
     ASSERT_EQ(done.status, 0) << done.output;
     EXPECT_NE(done.output.find("1000 triangles"), std::string::npos) << done.output;
-    const bool says = done.output.find("cannot hold colour, normal") != std::string::npos;
+    const bool says = done.output.find("cannot store them: colour, normal") != std::string::npos;
     EXPECT_EQ(says, out.ends_with("stl")) << done.output;
     EXPECT_GT(readText(out).size(), 20000u) << ending;
   }
   EXPECT_EQ(infoOf(dir_ / "a.obj")["triangles"], 1000);
 }
 
-// What would lose something, or be taken and not meant.
+// Arguments that would lose data, or that a user cannot have meant.
 TEST_F(MeshCli, RefusesWhatWouldNotDoWhatItSays) {
   const std::string copy = dir_ / "scan.ply", model = dir_ / "a.mrm";
   std::filesystem::copy_file(scan_, copy);
@@ -237,12 +237,12 @@ TEST_F(MeshCli, RefusesWhatWouldNotDoWhatItSays) {
   refused({"reduce", copy, "-o", model, "--triangles", "-5"}, "-5 is less than 0");
   refused({"export", copy, "-o", dir_ / "b.ply", "--error", "nan"}, "nan is not a finite number");
   refused({"reduce", copy, "-o", model, "--weight", "colour=1e18"}, "is not from 0 to 1000000");
-  refused({"reduce", copy, "-o", model, "--preset", "mug1998"}, "add --cost pattern");
+  refused({"reduce", copy, "-o", model, "--preset", "mug1998"}, "needs --cost pattern");
   refused({"reduce", copy, "-o", model, "--cost", "pattern", "--lock-borders"}, "--lock-borders");
   EXPECT_FALSE(std::filesystem::exists(model));
 }
 
-// A sheet of 20 x 20 vertices, its left half labelled 1, bent upwards.
+// A curved sheet of 20 x 20 vertices whose left half has label 1.
 std::string labelledSheet() {
   std::string vertices, faces;
   for (int y = 0; y < 20; ++y) {
@@ -314,7 +314,8 @@ TEST_F(MeshCli, ExportOfAllResolutionsIsForOpenInventorAlone) {
   };
   const Outcome refused = exported("a.ply", {"--multiresolution"});
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.output.find("a.ply: --multiresolution is written as .iv"), std::string::npos)
+  EXPECT_NE(refused.output.find("a.ply: --multiresolution can only be written as .iv"),
+            std::string::npos)
       << refused.output;
   EXPECT_EQ(exported("a.iv", {"--multiresolution", "--percent", "5"}).status, 2);
   const Outcome done = exported("a.iv", {"--multiresolution"});
@@ -343,15 +344,15 @@ TEST_F(MeshCli, ReduceKeepsToAStatedMemoryOrRefusesBeforeAnyWork) {
   EXPECT_EQ(refused.status, 2);
   EXPECT_NE(refused.output.find("34820 vertices and 69636 triangles takes 3"), std::string::npos)
       << refused.output;
-  EXPECT_NE(refused.output.find("the limit (--memory, else what is free) is 33 MiB"),
+  EXPECT_NE(refused.output.find("the limit (--memory, by default the free memory) is 33 MiB"),
             std::string::npos)
       << refused.output;
   EXPECT_EQ(readText(dir_ / "a.mrm"), "");
   EXPECT_EQ(reduced("much").status, 2);
 }
 
-// A sheet of two triangles at an edge, a fin that stands on it, and of everything that is mended
-// one.
+// Two triangles that share an edge, a third one (a fin) on the same edge, and one case of each
+// defect that is repaired.
 constexpr const char* kFin =
     "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float "
     "z\n"
@@ -380,9 +381,9 @@ TEST_F(MeshCli, InfoAndReduceCountAndNameWhatTheyMended) {
        {run({kMerlin, "mesh", "info", dir_ / "fin.ply"}),
         run({kMerlin, "mesh", "reduce", dir_ / "fin.ply", "-o", dir_ / "b.mrm"})}) {
     EXPECT_NE(
-        text.output.find("repaired: 1 degenerate triangles (a vertex twice) dropped, 1 "
-                         "duplicate triangles dropped, 1 triangles with the vertices of "
-                         "another, but reversed, dropped, 1 unused vertices dropped, 1 "
+        text.output.find("repaired: 1 degenerate triangles (same vertex twice) dropped, 1 "
+                         "duplicate triangles dropped, 1 triangles with the same vertices as "
+                         "another in reverse order dropped, 1 unused vertices dropped, 1 "
                          "non-manifold edges split, 2 non-manifold vertices split, 2 vertices "
                          "added by splitting"),
         std::string::npos)

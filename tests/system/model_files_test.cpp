@@ -61,22 +61,22 @@ TEST_F(ModelFiles, WhateverHappensToThemTheWallDrawsOn) {
                     refused = "cannot be shown";
   m_ = std::make_unique<Merlind>(*dir_, live, "files", MerlindOptions{.script = "turning"});
   ASSERT_TRUE(m_->ready()) << m_->process().output();
-  const auto levels = m_->wall().levels;
+  const auto levels = m_->wall().detail_steps;
 
   expect(shown, [&] { overwrite(live, readText(part(5))); });  // cp smaller.mrm live.mrm
-  EXPECT_TRUE(eventually([&] { return m_->wall().levels < levels; })) << "it is the new one";
-  const auto smaller = m_->wall().levels;
+  EXPECT_TRUE(eventually([&] { return m_->wall().detail_steps < levels; })) << "it is the new one";
+  const auto smaller = m_->wall().detail_steps;
   expect(refused, [&] { std::filesystem::resize_file(live, 0); });
   expect(refused, [&] { overwrite(live, std::string(std::filesystem::file_size(part(5)), 'x')); });
   std::string half = readText(part(20));
   half.resize(half.size() / 2);
   expect(refused, [&] { overwrite(live, half); });
-  EXPECT_EQ(m_->wall().levels, smaller) << "the last good one stays";
+  EXPECT_EQ(m_->wall().detail_steps, smaller) << "the last good one stays";
   expect(shown, [&] {
     std::filesystem::copy_file(part(20), live + ".new");
     std::filesystem::rename(live + ".new", live);
   });
-  EXPECT_TRUE(eventually([&] { return m_->wall().levels > levels; }));
+  EXPECT_TRUE(eventually([&] { return m_->wall().detail_steps > levels; }));
   std::filesystem::remove(live);
   expectDrawing();
   EXPECT_EQ(said(shown), 2u);
@@ -92,10 +92,10 @@ TEST_F(ModelFiles, AStillWallShowsTheNewOneByItself) {
   m_ = std::make_unique<Merlind>(*dir_, live, "stillfiles", MerlindOptions{.script = "still"});
   ASSERT_TRUE(m_->ready()) << m_->process().output();
   ASSERT_TRUE(eventually([&] { return m_->wall().full_detail == 1; }));
-  const auto triangles = m_->wall().triangles;
+  const auto triangles = m_->wall().cost;
   overwrite(live, readText(part(10)));
   EXPECT_TRUE(eventually([&] {
-    return m_->wall().full_detail == 1 && m_->wall().triangles > triangles;
+    return m_->wall().full_detail == 1 && m_->wall().cost > triangles;
   })) << m_->process().output();
   EXPECT_EQ(m_->process().kill(SIGTERM), 0) << m_->process().output();
 }

@@ -1,4 +1,4 @@
-// What happens to a daemon that runs for months: signals, disks that come and go, odd names.
+// A daemon that runs for months: signals, disks that fill up and come back, unusual file names.
 #include <filesystem>
 #include <string>
 
@@ -29,14 +29,14 @@ TEST(Operation, SignalsThatAskForNothingEndNothing) {
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
 }
 
-// A pager that was stopped, or a log's reader that hangs.
+// Like a pager that was stopped, or a log reader that hangs.
 TEST(Operation, ALogThatNobodyReadsHoldsNothing) {
   const TempDir dir;
   const std::string fifo = dir / "log";
   ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
   const UniqueFd log(::open(fifo.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
   ASSERT_TRUE(log.valid());
-  while (::write(log.get(), "x", 1) == 1) continue;  // it is full to the last byte
+  while (::write(log.get(), "x", 1) == 1) continue;  // fills the pipe to the last byte
   const std::string instance = privateName("unread");
   writeText(dir / "c.json", json{{"instance", instance}, {"run_directory", dir.path()}}.dump());
   Process merlind({"/bin/sh", "-c",
@@ -44,7 +44,8 @@ TEST(Operation, ALogThatNobodyReadsHoldsNothing) {
                                kMerlind, dir.path(), fifo)});
   const auto status = [&] { return run({kMerlin, "status", "--json", "--instance", instance}); };
   ASSERT_TRUE(eventually([&] { return status().status == 0; }));
-  for (int i = 0; i < 3; ++i) ASSERT_EQ(::kill(merlind.pid(), SIGHUP), 0);  // a line each
+  // Each SIGHUP logs one line.
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(::kill(merlind.pid(), SIGHUP), 0);
   EXPECT_EQ(status().status, 0);
   char bytes[65536];
   while (::read(log.get(), bytes, sizeof bytes) > 0) continue;
@@ -58,7 +59,7 @@ TEST(Operation, ALogThatNobodyReadsHoldsNothing) {
   EXPECT_EQ(merlind.kill(SIGTERM), 0);
 }
 
-// Else the log would be written into the first object in shared memory.
+// Otherwise the log would go into the first shared memory object, which would get descriptor 2.
 TEST(Operation, ClosedStandardStreamsTakeNoPlaceOfAFile) {
   const TempDir dir;
   const std::string instance = privateName("closed");
@@ -99,7 +100,7 @@ TEST(Operation, APictureThatCannotBeWrittenIsSaidAndSoIsItsReturn) {
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
 }
 
-// As an administrator does by mistake, or logind as an ordinary user logs out.
+// As by an administrator's mistake, or by logind when an ordinary user logs out.
 TEST(Operation, WhatIsRemovedFromSharedMemoryIsMadeAgain) {
   const TempDir dir;
   Merlind m(dir, makeModel(dir, 2), "removed");
@@ -121,16 +122,25 @@ TEST(Operation, WhatIsRemovedFromSharedMemoryIsMadeAgain) {
   EXPECT_EQ(m.leftInSharedMemory().size(), 0u);
 }
 
-// The list of commands is what the daemon carries out, each by the role that it names.
+// One that the command takes.
+std::string argumentFor(const CommandInfo& command) {
+  if (command.name == "align") return "list";
+  if (command.name == "signal") return "shared_memory";
+  if (command.name == "testcard") return "off";
+  if (command.name == "move") return "0.1 -0.1 0 0 30 0";
+  return command.argument.empty() ? "" : "auto";
+}
+
+// The daemon carries out every command in kCommands, in the process of the role named there.
 TEST(Operation, EveryCommandOfTheListIsCarriedOut) {
   const TempDir dir;
   Merlind m(dir, makeModel(dir, 2), "commands",
             {.also = {{"wall", {{"snapshots", dir / "shots"}}}}});
   ASSERT_TRUE(m.ready()) << m.process().output();
   for (const CommandInfo& command : kCommands) {
-    if (command.bindable == Bindable::kHeld) continue;  // lasts as long as its input
+    if (command.bindable == Bindable::kHeld) continue;  // takes effect only while its input is held
     const bool by_wall = command.role == CommandOf::kWall;
-    const std::string argument = command.argument.empty() ? "" : "auto";
+    const std::string argument = argumentFor(command);
     const auto answer = status::ask(fmt::format("ipc://{}/{}-{}.command", dir.path(), m.instance(),
                                                 by_wall ? "wall" : "devices"),
                                     std::string(command.name), std::chrono::seconds(10), argument);

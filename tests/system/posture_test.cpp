@@ -1,5 +1,5 @@
-// merlin posture collect and merlin calibrate glove, as a person runs them: on an emulated glove's
-// line, and on a recording of one.
+// merlin posture collect and merlin calibrate glove, run as a person runs them, on an emulated
+// glove and on a recording of one.
 #include <gtest/gtest.h>
 
 #include "nn/io/data_set_file.h"
@@ -20,7 +20,7 @@ std::size_t handsOf(const nn::Recording& recording, const std::string& posture) 
                     [&](const nn::LabelledHand& h) { return h.posture == posture; }));
 }
 
-// Nobody moves: the emulated hand is open all the time, whatever it is said to be.
+// The emulated hand stays open throughout, whatever posture the command asks for.
 TEST(PostureCollect, TakesHandsOfALiveGloveAndWarnsOfTwoThatLookAlike) {
   const TempDir dir;
   Merlind merlind(dir, "", "collect", {.script = "still", .role = "devices"});
@@ -93,7 +93,7 @@ TEST(PostureCollect, SaysWhyThereAreNoHands) {
   EXPECT_FALSE(std::filesystem::exists(dir / "hands.csv"));
 }
 
-// A hand that stays open through all poses says nothing of its sensors' spans.
+// A hand that stays open in all poses does not show the range of its sensors.
 TEST(CalibrateGlove, NamesTheSensorsThatDidNotMoveAndLeavesTheFile) {
   const TempDir dir;
   Process glove({kMerlin, "emulate", "cyberglove", "--link", dir / "glove", "--script", "still"});

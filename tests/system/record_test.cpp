@@ -1,4 +1,4 @@
-// merlin record, replay, flight and calibrate, as a person runs them.
+// merlin record, replay, flight and calibrate, run as a person runs them.
 #include <gtest/gtest.h>
 
 #include "drivers/io/transcript.h"
@@ -40,7 +40,7 @@ TEST(Record, BadInputIsOneClearMessage) {
   EXPECT_EQ(half.status, 2);
   EXPECT_EQ(half.output,
             "merlin: " + dir / "half.bytes" +
-                ": ends after line 2 without \"# end\": it was cut off; it is no whole "
+                ": ends after line 2 without \"# end\": it was cut off; it is not a complete "
                 "transcript\n");
   const Outcome none = run({kMerlin, "record", "usb:1", "-o", dir / "x"});
   EXPECT_EQ(none.status, 2);

@@ -1,5 +1,5 @@
-// Two machines: a daemon with devices, and a wall that has none and is fed over tcp, encrypted.
-// Both on this machine, with real programs.
+// Two machines: one daemon reads the devices, and another draws a wall from its samples, sent
+// encrypted over TCP. Both real programs run on this machine.
 #include <gtest/gtest.h>
 
 #include "tests/system/merlind.h"
@@ -44,7 +44,7 @@ struct TwoMachines : testing::Test {
     return std::make_unique<Process>(std::vector<std::string>{
         kMerlind, "--config", dir / "devices.json", "--role", "devices", "--emulate"});
   }
-  // The wall's own merlin says how it is, and how the devices are that feed it.
+  // `merlin status` for the wall's instance also shows the devices of the other machine.
   void expectStatusOfTheOthersDevices() {
     const Outcome json = run({kMerlin, "status", "--json", "--instance", wall_name});
     ASSERT_EQ(json.status, 0) << json.output;
@@ -74,7 +74,7 @@ TEST_F(TwoMachines, TheWallMovesWithTheOtherMachinesBallAndOutlivesIt) {
     const auto health = (*mirror)->health[shm::kBall].read();
     return health ? health->state : HealthState::kAbsent;
   };
-  ASSERT_TRUE(eventually([&] { return !moving(); }));  // nobody is there
+  ASSERT_TRUE(eventually([&] { return !moving(); }));  // the other daemon does not run yet
   for (int times = 0; times < 2; ++times) {
     auto there = devices();
     ASSERT_TRUE(eventually([&] { return ball() == HealthState::kOk; })) << wall.output();

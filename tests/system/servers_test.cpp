@@ -1,5 +1,5 @@
-// Servers for other programs in a real merlind: what keeps one from starting does not keep the wall
-// from running, and no client of theirs takes its memory, or its end, away.
+// Servers for other programs in a real merlind: a server that cannot start does not stop the wall
+// from running; a client cannot exhaust merlind's memory or keep it from stopping.
 #include <chrono>
 #include <sstream>
 #include <thread>
@@ -36,7 +36,7 @@ UniqueFd connectTo(int port) {
   return fd;
 }
 
-// A port that the system has just given out and nobody uses.
+// A TCP port that is free: the system has just assigned it, and it was closed again.
 int freePort() {
   const auto probe = net::listenTcp("127.0.0.1", 0);
   return probe ? net::portOf(probe->get()) : 0;
@@ -65,7 +65,7 @@ TEST(Servers, OneWhosePortIsTakenIsToldAndServesOnceItIsFree) {
   const TempDir dir;
   auto taken = net::listenTcp("127.0.0.1", 0);
   ASSERT_TRUE(taken);
-  auto forgotten = net::listenLocal(dir / "spnav.sock", 0600);  // as of a spacenavd
+  auto forgotten = net::listenLocal(dir / "spnav.sock", 0600);  // like a spacenavd's
   ASSERT_TRUE(forgotten);
   Merlind merlind(dir, "", "servers",
                   devicesThatServe({{"vrpn_port", net::portOf(taken->get())},
@@ -82,7 +82,8 @@ TEST(Servers, OneWhosePortIsTakenIsToldAndServesOnceItIsFree) {
   EXPECT_EQ(merlind.process().kill(SIGTERM), 0);
 }
 
-// libspnav's own example, as Debian ships it: it gives its name, asks, and prints what it hears.
+// Debian's copy of libspnav's own example: it sends its name, asks for the protocol and the device,
+// and prints the events.
 TEST(Servers, TheExampleOfLibspnavSeesTheEmulatedBallTurn) {
   const std::string source = "/usr/share/doc/libspnav-dev/examples/simple/simple.c";
   if (!std::filesystem::exists(source)) GTEST_SKIP() << source << " is not installed";
@@ -98,7 +99,7 @@ TEST(Servers, TheExampleOfLibspnavSeesTheEmulatedBallTurn) {
   ASSERT_TRUE(simple.saysEventually("protocol version: 1")) << simple.output();
   ASSERT_TRUE(simple.saysEventually("Device: Spaceball")) << simple.output();
   ASSERT_TRUE(simple.saysEventually("motion event: t(")) << simple.output();
-  // The ball turns about one axis: from the first event on, not all is 0.
+  // The ball turns about one axis, so some event is not all zero.
   EXPECT_TRUE(eventually([&] {
     std::istringstream lines(simple.output());
     for (std::string line; std::getline(lines, line);) {
@@ -110,7 +111,8 @@ TEST(Servers, TheExampleOfLibspnavSeesTheEmulatedBallTurn) {
   })) << simple.output();
 }
 
-// A ZeroMQ client by hand whose handshake is through; invalid where it is not let in.
+// A ZeroMQ client on a plain socket that has completed the handshake; an invalid descriptor if the
+// server refuses it.
 UniqueFd zmqClient(const std::string& path) {
   UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_un address{};
@@ -134,7 +136,7 @@ UniqueFd zmqClient(const std::string& path) {
   return fd;
 }
 
-// A process of its own that holds 16 places and is never idle; for a minute at most.
+// A process that holds up to 16 connections and keeps them busy, for a minute at most.
 class BusyHolder {
  public:
   explicit BusyHolder(const std::string& path) {
@@ -197,7 +199,8 @@ TEST(Servers, AMessageThatDoesNotEndIsClosed) {
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
   const UniqueFd fd = zmqClient(dir / (merlind.instance() + "-devices.command"));
   ASSERT_TRUE(fd.valid());
-  // A part, more to come, and a heartbeat that asks for no time-out, so that libzmq closes nothing.
+  // Message parts that each announce another one, with heartbeats whose time-out of 0 keeps libzmq
+  // from closing the connection.
   for (int i = 0; i < 4; ++i) (void)::send(fd.get(), "\1\1x\4\7\4PING\0\0", 12, MSG_NOSIGNAL);
   char bytes[256];
   ssize_t n = 1;
@@ -205,7 +208,7 @@ TEST(Servers, AMessageThatDoesNotEndIsClosed) {
   EXPECT_TRUE(n == 0 || errno == ECONNRESET || errno == EPIPE) << "it is still open";
 }
 
-// Sends for three seconds what `bytes` holds, again and again; at most 40 MB.
+// Sends `bytes` again and again for three seconds, at most 40 MB. Returns the number of bytes sent.
 std::size_t flood(const UniqueFd& fd, const std::string& bytes) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(3);
   timeval limit{0, 50'000};
@@ -239,7 +242,7 @@ TEST(Servers, AVrpnClientThatFloodsTakesNoMemoryAndMerlindStopsAtOnce) {
   const std::size_t sent = flood(client, bytes);
   const long after = residentKb(merlind.process().pid());
 #if !defined(__SANITIZE_THREAD__) && \
-    !defined(__SANITIZE_ADDRESS__)  // they keep memory of their own
+    !defined(__SANITIZE_ADDRESS__)  // a sanitizer's own memory would be counted too
   EXPECT_LT(after - before, 8192) << sent << " bytes were sent";
 #endif
   const auto asked = std::chrono::steady_clock::now();

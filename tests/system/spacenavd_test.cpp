@@ -1,5 +1,5 @@
-// Our Spaceball against a program that knows real ones: spacenavd reads the emulator, and says what
-// it saw on its own socket. Skipped where spacenavd is not installed.
+// The emulated Spaceball, read by spacenavd, a program that supports the real device; the events
+// come from spacenavd's own socket. Skipped where spacenavd is not installed.
 #include <array>
 #include <filesystem>
 
@@ -13,7 +13,8 @@
 namespace merlin::test {
 namespace {
 
-using Event = std::array<std::int32_t, 8>;  // protocol of version 0: what, six axes or a button, ms
+// Version 0 of the protocol: type, six axes or a button, time in ms.
+using Event = std::array<std::int32_t, 8>;
 
 int connectTo(const std::string& path) {
   const int fd = ::socket(AF_UNIX, SOCK_STREAM, 0);
@@ -25,8 +26,8 @@ int connectTo(const std::string& path) {
   return -1;
 }
 
-// Whether one of the next hundred events is a twist about the vertical axis alone; false if none
-// comes for ten seconds.
+// True if one of the next hundred events is a twist about the vertical axis without a translation;
+// false also if no event comes for ten seconds.
 bool seesATwist(int client) {
   timeval limit{10, 0};
   ::setsockopt(client, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
@@ -48,12 +49,12 @@ TEST(Spacenavd, SeesTheEmulatedBallTwistedAboutItsVerticalAxis) {
                     "--script", "turning"});
   ASSERT_TRUE(emulator.saysEventually("spaceball on")) << emulator.output();
   writeText(dir / "spnavrc", "serial = " + dir / "ball" + "\n");
-  // Debian's spacenavd binds run/spnav.sock in the folder that it is in, / as a service.
+  // Debian's spacenavd binds run/spnav.sock relative to its working directory (/ as a service).
   std::filesystem::create_directory(dir / "run");
   const std::string start =
       "cd " + dir.path() + " && rm -f run/spnav.sock && exec spacenavd -d -v -c spnavrc";
-  // spacenavd gives a ball up for good that does not answer in time, as on a busy machine: like a
-  // service manager, the test then starts it again.
+  // spacenavd gives up on a ball that does not answer in time, as happens on a busy machine. The
+  // test then starts it again, as a service manager would.
   bool twisted = false;
   std::string output;
   for (int attempt = 0; attempt < 6 && !twisted; ++attempt) {

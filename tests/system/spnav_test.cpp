@@ -1,4 +1,4 @@
-// Our space-mouse socket against Debian's libspnav, the real one; and its protocol by the byte.
+// The space-mouse socket of MERLIN, tested with Debian's libspnav and, byte by byte, its protocol.
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -67,13 +67,13 @@ TEST(SpnavProtocol, VersionOneIsEchoedAndAnswersRequests) {
   std::string out;
   for (std::size_t n = 0; n < axes.size(); ++n)
     EXPECT_EQ(client.receive(axes.substr(0, n), 100, out).bytes, 0U) << "not whole";
-  // a request that is not served is answered -1; setting a name is not answered
+  // A request that is not supported is answered with -1; setting a name is not answered.
   EXPECT_EQ(feed(client, bytesOf("0030AA7F") + std::string(28, '\0')),
             bytesOf("0030AA7F") + std::string(24, '\0') + bytesOf("FFFFFFFF"));
   EXPECT_EQ(feed(client, bytesOf("0010AA7F") + std::string(28, 'x')), "");
 }
 
-// libspnav 1.0 sends the client's name without the upper half of the word.
+// libspnav 1.0 sends the client's name with the upper 16 bits of the request word missing.
 TEST(SpnavProtocol, ANameWithoutItsTagIsANameAndNoSensitivity) {
   SpnavClient client({});
   feed(client, bytesOf("0155AA7F"));
@@ -94,7 +94,8 @@ TEST(SpnavProtocol, RawEventsAreToldToWhoAsksForThem) {
                      bytesOf("06000000 01000000 01000000") + std::string(20, '\0'));
 }
 
-// Questions of libspnav's spnav_config.h: what holds of a ball that is configured in MERLIN.
+// The queries of libspnav's spnav_config.h are answered with the values that hold for a ball
+// configured in MERLIN.
 TEST(SpnavProtocol, QuestionsAboutTheConfigurationAreAnsweredAndRequestsToChangeItRefused) {
   SpnavClient client(spnavDevice("Spaceball 2003, firmware 2.43", "serial:/dev/ttyS0"));
   feed(client, bytesOf("0155AA7F"));
@@ -109,13 +110,14 @@ TEST(SpnavProtocol, QuestionsAboutTheConfigurationAreAnsweredAndRequestsToChange
   const std::string done = "00000000", failed = "FFFFFFFF";
   EXPECT_EQ(ask("0130AA7F"), answer("0130AA7F 0000803F", done));                    // sensitivity 1
   EXPECT_EQ(ask("0930AA7F 05000000"), answer("0930AA7F 05000000 05000000", done));  // axis 5
-  EXPECT_EQ(ask("0930AA7F 06000000").substr(28), bytesOf(failed));  // there is no axis 6
+  EXPECT_EQ(ask("0930AA7F 06000000").substr(28), bytesOf(failed));  // there are axes 0..5 only
   EXPECT_EQ(ask("0B30AA7F 08000000"), answer("0B30AA7F 08000000 08000000", done));  // button 8
   EXPECT_EQ(ask("0B30AA7F 09000000").substr(28), bytesOf(failed));
-  EXPECT_EQ(ask("1130AA7F"), answer("1130AA7F", done));           // axes are not swapped
-  EXPECT_EQ(ask("1930AA7F"), answer("1930AA7F FFFFFFFF", done));  // nothing is repeated
+  EXPECT_EQ(ask("1130AA7F"), answer("1130AA7F", done));  // the Y and Z axes are not swapped
+  EXPECT_EQ(ask("1930AA7F"), answer("1930AA7F FFFFFFFF", done));  // there is no repeat interval
   EXPECT_EQ(ask("1730AA7F").substr(4, 10), "/dev/ttyS0");
-  EXPECT_EQ(ask("1030AA7F 01000000").substr(28), bytesOf(failed));  // to swap them is refused
+  // A request to swap them is refused.
+  EXPECT_EQ(ask("1030AA7F 01000000").substr(28), bytesOf(failed));
   EXPECT_EQ(ask("1630AA7F"), "") << "a text is not answered";
 }
 
@@ -147,7 +149,7 @@ TEST(SpnavProtocol, ARestIsToldOnceAndASlowClientLosesNoButton) {
   client.sample(pushed({}), true, out);
   EXPECT_EQ(out, "");
   client.sample(pushed({1, 0, 0, 0, 0, 0}, 1), false, out);
-  EXPECT_EQ(out.size(), 32u);  // the press
+  EXPECT_EQ(out.size(), 32u);  // the button event
   client.sample(pushed({1, 0, 0, 0, 0, 0}, 1), true, out);
   client.sample(pushed({}, 1), true, out);
   client.sample(pushed({}, 1), true, out);
@@ -186,7 +188,7 @@ struct Served : testing::Test {
   std::unique_ptr<SpnavServer> server;
 };
 
-// Moves the ball a hundred times a second, as fast as one can.
+// Publishes a ball sample with another x every 10 ms.
 class MovingBall {
  public:
   explicit MovingBall(shm::DevicesSegment& segment)
@@ -221,7 +223,7 @@ TEST_F(Served, AHundredHandshakesAndQuestionsAreRightWhileTheBallMoves) {
   EXPECT_EQ(right, 100);
 }
 
-// Our own end of a connection to the server's socket.
+// A plain connection to the server's socket.
 UniqueFd connectedTo(const std::string& path) {
   UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM, 0));
   sockaddr_un address{};
@@ -266,11 +268,11 @@ TEST_F(Served, AProgramThatAsksAllTheTimeSeesTheBallAllTheSame) {
   }));
 }
 
-// The last motion says that the ball is let go: a program that reads late hears it too.
+// The last motion event says that the ball is at rest; it must reach a client that reads late.
 TEST_F(Served, AClientThatReadsLateHearsThatTheBallRests) {
   const UniqueFd fd = connectedTo(path);
   ASSERT_TRUE(test::eventually([&] { return server->report().connections == 1; }));
-  // Until the socket is full, and motions are left out.
+  // Publish until the socket is full and the server omits motion events.
   int queued = 0, before = -1, same = 0;
   ASSERT_TRUE(test::eventually([&] {
     for (int i = 0; i < 16; ++i) segment->ball.publish(pushed({1, 2, 3, 4, 5, 6}));
@@ -280,7 +282,8 @@ TEST_F(Served, AClientThatReadsLateHearsThatTheBallRests) {
     return same == 50;
   }));
   segment->ball.publish(pushed({}));
-  const UniqueFd other = connectedTo(path);  // two of its rounds say that the sample was seen
+  // After two of its echoes, the server has seen the sample.
+  const UniqueFd other = connectedTo(path);
   for (int i = 0; i < 2; ++i) {
     const std::string question = bytesOf("0055AA7F");
     std::int32_t echo = 0;
@@ -293,7 +296,7 @@ TEST_F(Served, AClientThatReadsLateHearsThatTheBallRests) {
   EXPECT_TRUE(rests()) << event[0];
 }
 
-// As programs of before 2021 do: they connect and read.
+// Like programs from before 2021, which connect and read without sending anything.
 TEST_F(Served, AClientOfVersionZeroIsToldWithoutAWord) {
   const UniqueFd fd = connectedTo(path);
   const MovingBall moving(*segment);
@@ -302,7 +305,7 @@ TEST_F(Served, AClientOfVersionZeroIsToldWithoutAWord) {
   EXPECT_GT(event[1], 0);
 }
 
-// A process of its own that holds connections and says nothing, until this is destroyed.
+// A process that holds connections and sends nothing, until this object is destroyed.
 class SilentProcess {
  public:
   SilentProcess(const std::string& path, int connections) : pid_(::fork()) {
@@ -332,7 +335,7 @@ TEST_F(Served, SilentClientsDoNotKeepOthersOut) {
   const SilentProcess a(path, 20), b(path, 20), c(path, 20);
   ASSERT_TRUE(test::eventually(
       [&] { return server->report().connections == 32 && server->report().refused > 0; }));
-  // A place is given up a second after it was last used.
+  // A connection may be replaced one second after it was last used.
   ASSERT_TRUE(test::eventually([&] {
     const UniqueFd newcomer = connectedTo(path);
     return test::eventually([&] { return server->report().replaced > 0; }, std::chrono::seconds(1));
@@ -399,7 +402,7 @@ TEST_F(Served, ASecondServerIsRefusedAndADeadOnesSocketIsReplaced) {
   EXPECT_EQ(second.error().code, Errc::kBusy);
   server.reset();
   EXPECT_NE(::access(path.c_str(), F_OK), 0) << "gone with its server";
-  // What a killed one leaves behind answers nobody.
+  // The socket that a killed server leaves behind accepts no connections.
   { const UniqueFd dead = *net::listenLocal(path, 0600); }
   EXPECT_TRUE(SpnavServer::start(path, *segment, threads, clock));
 }

@@ -1,5 +1,5 @@
-// The shipped example of a ZeroMQ client, read_status.py, as a program of its own against a real
-// daemon on emulated devices.
+// Runs read_status.py, the shipped example of a ZeroMQ client, as a process against a real daemon
+// on emulated devices.
 #include <gtest/gtest.h>
 
 #include "tests/system/merlind.h"
@@ -8,7 +8,7 @@ namespace merlin::test {
 namespace {
 
 const std::string kReader = kSource + "/daemon/status/read_status.py";
-const std::string kPython = "/usr/bin/python3";  // for which Debian packages python3-zmq
+const std::string kPython = "/usr/bin/python3";  // the Python for which Debian packages python3-zmq
 
 TEST(StatusReader, FollowsATopicAndSendsCommands) {
   if (run({kPython, "-c", "import zmq"}).status != 0) GTEST_SKIP() << "no python3-zmq";

@@ -1,4 +1,5 @@
-// The wall survives what a device says: a place that a hand was carried to out of sight.
+// The wall survives damaged input: a model file overwritten while shown, and a model that a wrong
+// tracker record moved out of sight.
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -10,7 +11,7 @@
 namespace merlin::test {
 namespace {
 
-// An emulated device on a pty, served by the test itself: whoever waits pumps.
+// An emulated device on a pty without a thread: whoever waits for a condition calls pump().
 class Line {
  public:
   Line(const char* device, int baud, const emulate::MotionScript& script, const std::string& link)
@@ -43,7 +44,7 @@ constexpr emulate::Phase kPhases[] = {
     {1, "flat", {}, 0, false, kFar},   // kLetGo
 };
 
-// The wall shows a copy of its own: whatever becomes of the file, it draws on.
+// The wall shows its own copy of the model, so it keeps drawing whatever happens to the file.
 TEST(Survival, AModelThatIsOverwrittenWhileItIsShown) {
   const TempDir dir;
   const std::string model = makeModel(dir);

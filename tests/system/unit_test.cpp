@@ -1,4 +1,4 @@
-// The unit file, as systemd itself judges it.
+// The unit files, checked by systemd's own tools.
 #include <gtest/gtest.h>
 
 #include "tests/support/process.h"
@@ -7,39 +7,53 @@
 namespace merlin::test {
 namespace {
 
-const std::string kUnit = MERLIN_SOURCE_DIR "/systemd/merlind.service";
+const std::string kUnits = MERLIN_SOURCE_DIR "/systemd/";
 
 bool installed(const char* program) { return run({"which", program}).status == 0; }
 
-// Paths of a machine where MERLIN is installed, put where this build is.
-std::string localCopy(const TempDir& dir) {
-  std::string unit = readText(kUnit);
-  const std::string from = "/usr/bin/merlind", to = MERLIN_BIN_DIR "/merlind";
-  for (std::size_t at = 0; (at = unit.find(from, at)) != std::string::npos; at += to.size())
-    unit.replace(at, from.size(), to);
-  writeText(dir / "merlind.service", unit);
-  return dir / "merlind.service";
-}
+class Unit : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    if (!installed("systemd-analyze")) GTEST_SKIP() << "systemd is not installed";
+  }
+  // A copy of the unit in which the path of the installed program is replaced by this build's
+  // merlind, which is always there.
+  std::string localCopy() const {
+    const std::string name = GetParam();
+    std::string unit = readText(kUnits + name);
+    const std::string from = "/usr/bin/" + name.substr(0, name.find('.'));
+    const std::string to = MERLIN_BIN_DIR "/merlind";
+    EXPECT_NE(unit.find(from), std::string::npos);
+    for (std::size_t at = 0; (at = unit.find(from, at)) != std::string::npos; at += to.size())
+      unit.replace(at, from.size(), to);
+    writeText(dir_ / name, unit);
+    return dir_ / name;
+  }
 
-TEST(Unit, SystemdFindsNoFault) {
-  if (!installed("systemd-analyze")) GTEST_SKIP() << "systemd is not installed";
-  const TempDir dir;
-  const Outcome verified = run({"systemd-analyze", "verify", "--man=no", localCopy(dir)});
+  TempDir dir_;
+};
+
+TEST_P(Unit, SystemdFindsNoFault) {
+  const Outcome verified = run({"systemd-analyze", "verify", "--man=no", localCopy()});
   EXPECT_EQ(verified.status, 0) << verified.output;
-  EXPECT_EQ(verified.output.find("merlind.service:"), std::string::npos) << verified.output;
+  EXPECT_EQ(verified.output.find(std::string(GetParam()) + ":"), std::string::npos)
+      << verified.output;
 }
 
-TEST(Unit, IsExposedLittle) {
-  if (!installed("systemd-analyze")) GTEST_SKIP() << "systemd is not installed";
-  const TempDir dir;
+TEST_P(Unit, IsExposedLittle) {
   const Outcome judged =
-      run({"systemd-analyze", "security", "--offline=true", "--threshold=20", localCopy(dir)});
+      run({"systemd-analyze", "security", "--offline=true", "--threshold=20", localCopy()});
   EXPECT_EQ(judged.status, 0) << judged.output.substr(
       judged.output.size() > 300 ? judged.output.size() - 300 : 0);
 }
 
-TEST(Unit, SaysWhatTheDaemonReliesOn) {
-  const std::string unit = readText(kUnit);
+INSTANTIATE_TEST_SUITE_P(Units, Unit, testing::Values("merlind.service", "merlin-rfb.service"),
+                         [](const auto& unit) {
+                           return unit.index == 0 ? "merlind" : "merlin_rfb";
+                         });
+
+TEST(DaemonsUnit, SaysWhatTheDaemonReliesOn) {
+  const std::string unit = readText(kUnits + "merlind.service");
   for (const char* line :
        {"Type=notify", "WatchdogSec=", "RuntimeDirectory=merlin", "Restart=always"}) {
     EXPECT_NE(unit.find(line), std::string::npos) << line;

@@ -48,8 +48,8 @@ TEST_F(Wall, ShowsFullDetailWhenNobodyIsThere) {
   Merlind m(*dir_, model_, "still", {.script = "still"});
   ASSERT_TRUE(m.ready()) << m.process().output();
   EXPECT_TRUE(eventually([&] { return m.wall().full_detail == 1; }));
-  EXPECT_EQ(m.wall().triangles, m.status()["triangles"]);
-  EXPECT_EQ(m.wall().level, 0u);
+  EXPECT_EQ(m.wall().cost, m.status()["triangles"]);
+  EXPECT_EQ(m.wall().detail_step, 0u);
 }
 
 TEST_F(Wall, AFistWithTheTrackerGrabs) {

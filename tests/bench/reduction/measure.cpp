@@ -10,7 +10,7 @@
 namespace merlin::bench {
 namespace {
 
-// A line "KEY:   1234 kB" of the kernel's account of this process.
+// The value of a line "KEY:   1234 kB" in /proc/self/status, in bytes.
 std::size_t statusBytes(const std::string& key) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -19,7 +19,8 @@ std::size_t statusBytes(const std::string& key) {
   return 0;
 }
 
-// getrusage()'s peak covers the loading of the file too; the kernel's own mark can be set back.
+// Resets the kernel's peak of this process; getrusage()'s peak would include the loading of the
+// file.
 void forgetPeak() { std::ofstream("/proc/self/clear_refs") << 5; }
 
 double cpuSeconds() {

@@ -1,5 +1,5 @@
-// What every program of the reduction benchmark measures in the same way: wall and CPU seconds of
-// one piece of work, and how far memory rises above what was there when it began.
+// Measurements that all programs of the reduction benchmark share: wall and CPU seconds of a piece
+// of work, and the growth of memory during that work.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,11 @@ namespace merlin::bench {
 struct Cost {
   double wall_s = 0;
   double cpu_s = 0;              // user and system, all threads of this process
-  std::size_t memory_bytes = 0;  // highest resident size during the work, less that before it
+  std::size_t memory_bytes = 0;  // peak resident size during the work, minus the size before it
 };
 
-// Runs `work` once. Pages that the process has freed are given back first, so that memory left over
-// from loading cannot hide what the work needs.
+// Runs `work` once. First returns freed pages to the system, so that memory left from loading
+// cannot hide what the work needs.
 Cost measure(const std::function<void()>& work);
 
 // Members of a JSON object, without the braces: "seconds": .., "cpu_seconds": .., "memory_bytes":

@@ -3,10 +3,11 @@
 //   bench_merlin prepare IN OUT.ply                    the mesh that all programs get
 //   bench_merlin COST THREADS WEIGHTS IN.ply OUT TRIANGLES...
 //
-// The second reduces to the bottom, since the hierarchy is the product, and writes OUT.mrm and one
-// OUT.N.ply for each number of triangles. COST may be "fast": quadric, made so. WEIGHTS is
-// "default" or NAME=W,NAME=W over the defaults. Each step is measured for itself: normals, reduce
-// (which records every collapse), dendrogram, write.
+// The second form reduces as far as possible, since the whole hierarchy is MERLIN's product, and
+// writes OUT.mrm and, for each number of triangles N, OUT.N.ply. COST may be "fast": the cost
+// quadric with ReduceSettings::fast. WEIGHTS is "default" or NAME=W,NAME=W, which override the
+// defaults. Each step is measured separately: normals, reduce (which records every collapse),
+// dendrogram, write.
 #include <cstdlib>
 #include <optional>
 
@@ -23,15 +24,15 @@
 namespace merlin::bench {
 namespace {
 
-using render::Mesh;
+using render::mesh::Mesh;
 
 int fail(const std::string& what) {
   fmt::print(stderr, "{}\n", what);
   return 1;
 }
 
-render::Weights weightsOf(const Mesh& mesh, const std::string& cost, std::string text) {
-  render::Weights weights = render::findCost(cost)->weights(mesh);
+render::reduce::Weights weightsOf(const Mesh& mesh, const std::string& cost, std::string text) {
+  render::reduce::Weights weights = render::reduce::findCost(cost)->weights(mesh);
   if (text == "default") return weights;
   for (std::size_t end; !text.empty(); text.erase(0, end == text.npos ? end : end + 1)) {
     end = text.find(',');
@@ -42,13 +43,13 @@ render::Weights weightsOf(const Mesh& mesh, const std::string& cost, std::string
   return weights;
 }
 
-// OUT.N.ply for each N; the JSON list of what is in them.
-Result<std::string> writeLevels(const render::Dendrogram& model, const std::string& out,
+// Writes OUT.N.ply for each budget N; returns a JSON list that describes the files.
+Result<std::string> writeLevels(const render::lod::Dendrogram& model, const std::string& out,
                                 const std::vector<std::size_t>& budgets) {
   std::vector<std::string> levels;
   for (const std::size_t budget : budgets) {
-    const Mesh mesh = render::extract(model, model.levelFor(budget));
-    const auto written = render::writeMesh(fmt::format("{}.{}.ply", out, budget), mesh);
+    const Mesh mesh = render::lod::extract(model, model.levelFor(budget));
+    const auto written = render::mesh::writeMesh(fmt::format("{}.{}.ply", out, budget), mesh);
     if (!written) return written.error();
     levels.push_back(fmt::format("\"{}\": {}", budget, mesh.triangleCount()));
   }
@@ -58,25 +59,25 @@ Result<std::string> writeLevels(const render::Dendrogram& model, const std::stri
 int reduce(char** argv, const std::vector<std::size_t>& budgets) {
   const bool fast = std::string_view(argv[1]) == "fast";
   const std::string cost = fast ? "quadric" : argv[1], out = argv[5];
-  if (!render::findCost(cost)) return fail(cost + ": no such cost");
-  auto loaded = render::readMesh(argv[4]);
+  if (!render::reduce::findCost(cost)) return fail(cost + ": no such cost");
+  auto loaded = render::mesh::readMesh(argv[4]);
   if (!loaded) return fail(loaded.error().what);
   const Mesh& mesh = loaded->mesh;
-  const Cost normals = measure([&] { render::ensureNormals(loaded->mesh); });
+  const Cost normals = measure([&] { render::mesh::ensureNormals(loaded->mesh); });
 
-  render::ReduceSettings settings;
+  render::reduce::ReduceSettings settings;
   settings.cost = cost;
   settings.fast = fast;
   settings.threads = static_cast<unsigned>(std::strtoul(argv[2], nullptr, 10));
   settings.weights = weightsOf(mesh, cost, argv[3]);
-  Result<render::Reduction> reduction = Error{Errc::kClosed, "not begun"};
-  const Cost reduced = measure([&] { reduction = render::reduce(mesh, settings); });
+  Result<render::reduce::Reduction> reduction = Error{Errc::kClosed, "not begun"};
+  const Cost reduced = measure([&] { reduction = render::reduce::reduce(mesh, settings); });
   if (!reduction) return fail(reduction.error().what);
 
-  std::optional<render::Dendrogram> model;
-  const Cost built = measure([&] { model = render::buildDendrogram(mesh, reduction->log); });
+  std::optional<render::lod::Dendrogram> model;
+  const Cost built = measure([&] { model = render::lod::buildDendrogram(mesh, reduction->log); });
   Result<Ok> written = Ok{};
-  const Cost wrote = measure([&] { written = render::writeMrm(out + ".mrm", *model); });
+  const Cost wrote = measure([&] { written = render::lod::writeMrm(out + ".mrm", *model); });
   if (!written) return fail(written.error().what);
   const auto levels = writeLevels(*model, out, budgets);
   if (!levels) return fail(levels.error().what);

@@ -22,7 +22,7 @@ int skip(const std::string& why) {
 }
 
 int run(char** argv, const char* version, MakePeer make) {
-  auto loaded = render::readMesh(argv[2]);
+  auto loaded = render::mesh::readMesh(argv[2]);
   if (!loaded) return fail(loaded.error().what);
   const std::size_t vertices = loaded->mesh.vertexCount();
   const std::size_t triangles = std::stoul(argv[3]);
@@ -32,10 +32,10 @@ int run(char** argv, const char* version, MakePeer make) {
 
   const Cost cost = measure([&] { (*peer)->reduce(triangles); });
 
-  render::Mesh left = (*peer)->result();
-  render::tidy(left);
+  render::mesh::Mesh left = (*peer)->result();
+  render::mesh::tidy(left);
   if (left.triangleCount() == 0) return skip("left no triangle");
-  if (const auto written = render::writeMesh(argv[4], left); !written) {
+  if (const auto written = render::mesh::writeMesh(argv[4], left); !written) {
     return fail(written.error().what);
   }
   fmt::print("{{\"version\": \"{}\", {}, \"triangles\": {}, \"collapses\": {}}}\n", version,
@@ -49,7 +49,7 @@ int runPeer(int argc, char** argv, const char* version, MakePeer make) {
   if (argc != 5) return fail(fmt::format("usage: {} VARIANT IN.ply TRIANGLES OUT.ply", argv[0]));
   try {
     return run(argv, version, make);
-  } catch (const std::exception& error) {  // a peer's own, of whatever kind
+  } catch (const std::exception& error) {  // any exception that a peer throws
     return skip(fmt::format("threw: {}", error.what()));
   }
 }

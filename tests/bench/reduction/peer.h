@@ -1,8 +1,8 @@
-// One peer, one process: PROGRAM VARIANT IN.ply TRIANGLES OUT.ply reads the mesh, reduces it to at
-// most so many triangles, writes what is left and prints one line of JSON.
+// A peer program in the reduction benchmark: PROGRAM VARIANT IN.ply TRIANGLES OUT.ply reads the
+// mesh, reduces it to at most TRIANGLES triangles, writes the result and prints one line of JSON.
 //
-// Only reduce() is measured. The peer's own structure is built before that and counts as the loaded
-// mesh: neither its building nor its size is held against a peer.
+// Only reduce() is measured. The peer's own data structure is built before and counts as the loaded
+// mesh, so neither its time nor its size counts against the peer.
 #pragma once
 
 #include <memory>
@@ -16,15 +16,16 @@ class Peer {
  public:
   virtual ~Peer() = default;
   virtual void reduce(std::size_t triangles) = 0;
-  virtual render::Mesh result() = 0;  // with a feature "colour" where the peer carries it along
+  virtual render::mesh::Mesh result() = 0;  // with a feature "colour" if the peer preserves it
 };
 
-// Takes a mesh with a feature "colour" or none. Errors: kInvalidArgument where there is no such
-// variant, kUnsupported where the peer cannot take this mesh, with the reason.
-using MakePeer = Result<std::unique_ptr<Peer>> (*)(render::Mesh mesh, const std::string& variant);
+// Takes a mesh with or without a feature "colour". Errors: kInvalidArgument if the variant is
+// unknown, kUnsupported, with the reason, if the peer cannot process this mesh.
+using MakePeer = Result<std::unique_ptr<Peer>> (*)(render::mesh::Mesh mesh,
+                                                   const std::string& variant);
 
-// The whole main(). `version` is printed as the peer's name for a person. Exit status 0 also where
-// the peer cannot take the mesh: the line then says {"skipped": "why"}.
+// The whole main(). `version` is the peer's name as printed. The exit status is 0 also if the peer
+// cannot process the mesh; the line is then {"skipped": "why"}.
 int runPeer(int argc, char** argv, const char* version, MakePeer make);
 
 }  // namespace merlin::bench

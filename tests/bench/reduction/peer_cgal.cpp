@@ -1,5 +1,5 @@
-// CGAL: edge collapse by Lindstrom and Turk's cost (its default) and by Garland and Heckbert's, as
-// in CGAL's own examples. Takes manifolds only; colours are not carried along.
+// CGAL: edge collapse with the cost of Lindstrom and Turk (its default) and that of Garland and
+// Heckbert, as in CGAL's own examples. Supports manifold meshes only, without colours.
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
@@ -17,7 +17,7 @@ namespace pmp = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Simple_cartesian<double>;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 
-// CGAL's own predicates count edges; all programs here stop at the same number of triangles.
+// CGAL's own stop predicates count edges; all programs here stop at the same number of triangles.
 struct StopAtTriangles {
   std::size_t triangles;
   template <typename Cost, typename Profile>
@@ -45,9 +45,9 @@ class CgalPeer : public Peer {
                        CGAL::parameters::get_cost(policies.get_cost()).get_placement(placement));
   }
 
-  render::Mesh result() override {
+  render::mesh::Mesh result() override {
     surface_.collect_garbage();
-    render::Mesh mesh;
+    render::mesh::Mesh mesh;
     for (const auto v : surface_.vertices()) {
       const auto& p = surface_.point(v);
       for (int k = 0; k < 3; ++k) mesh.positions.push_back(static_cast<float>(p[k]));
@@ -65,7 +65,7 @@ class CgalPeer : public Peer {
   bool lindstrom_turk_;
 };
 
-Result<std::unique_ptr<Peer>> make(render::Mesh mesh, const std::string& variant) {
+Result<std::unique_ptr<Peer>> make(render::mesh::Mesh mesh, const std::string& variant) {
   if (variant != "lt" && variant != "gh") {
     return Error{Errc::kInvalidArgument, variant + ": is not lt or gh"};
   }

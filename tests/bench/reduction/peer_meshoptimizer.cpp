@@ -1,5 +1,5 @@
-// meshoptimizer: plain simplify, which keeps a subset of the vertices; from version 1 also the
-// attribute mode that moves them and fits their colours again.
+// meshoptimizer: plain simplify, which keeps a subset of the vertices; from version 1 on also the
+// attribute mode, which moves vertices and fits their colours anew.
 #include <limits>
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 namespace merlin::bench {
 namespace {
 
-using render::Mesh;
+using render::mesh::Mesh;
 
 constexpr float kNoErrorLimit = std::numeric_limits<float>::max();
 
@@ -40,7 +40,7 @@ class WithColour : public Peer {
   explicit WithColour(Mesh mesh) : mesh_(std::move(mesh)) {}
 
   void reduce(std::size_t triangles) override {
-    const float weights[] = {0.5F, 0.5F, 0.5F};  // the best of those tried on range images
+    const float weights[] = {0.5F, 0.5F, 0.5F};  // the best weights of those tried on range images
     auto& colours = mesh_.find("colour")->values;
     mesh_.triangles.resize(meshopt_simplifyWithUpdate(
         mesh_.triangles.data(), mesh_.triangles.size(), mesh_.positions.data(), mesh_.vertexCount(),

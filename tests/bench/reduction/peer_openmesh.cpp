@@ -1,5 +1,5 @@
-// OpenMesh: its decimater with the quadric module alone; collapses half-edges, so that a subset of
-// the vertices stays, each with its colour.
+// OpenMesh: its decimater with the quadric module only. It collapses half-edges, so the result is a
+// subset of the vertices with their colours.
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/System/config.h>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
@@ -17,7 +17,7 @@ using Quadric = OpenMesh::Decimater::ModQuadricT<Surface>;
 
 class OpenMeshPeer : public Peer {
  public:
-  explicit OpenMeshPeer(render::Mesh mesh) : mesh_(std::move(mesh)) {
+  explicit OpenMeshPeer(render::mesh::Mesh mesh) : mesh_(std::move(mesh)) {
     surface_.request_vertex_status();
     surface_.request_edge_status();
     surface_.request_face_status();
@@ -45,7 +45,7 @@ class OpenMeshPeer : public Peer {
     decimater.decimate_to_faces(0, triangles);
   }
 
-  render::Mesh result() override {
+  render::mesh::Mesh result() override {
     for (const auto face : surface_.faces()) {
       if (surface_.status(face).deleted()) continue;
       for (const auto corner : face.vertices()) {
@@ -56,12 +56,12 @@ class OpenMeshPeer : public Peer {
   }
 
  private:
-  render::Mesh mesh_;  // without triangles while it is reduced
+  render::mesh::Mesh mesh_;  // its triangles are in surface_ during the reduction
   Surface surface_;
   std::size_t taken_ = 0;
 };
 
-Result<std::unique_ptr<Peer>> make(render::Mesh mesh, const std::string&) {
+Result<std::unique_ptr<Peer>> make(render::mesh::Mesh mesh, const std::string&) {
   const std::size_t triangles = mesh.triangleCount();
   auto peer = std::make_unique<OpenMeshPeer>(std::move(mesh));
   if (peer->taken() != triangles) {

@@ -1,4 +1,4 @@
-// VTK: vtkQuadricDecimation by position, and with its attribute error metric over colours.
+// VTK: vtkQuadricDecimation by position, and with its attribute error metric for colours.
 #include <array>
 #include <cstdlib>
 #include <string_view>
@@ -21,15 +21,15 @@ namespace {
 template <typename T>
 using Pointer = vtkSmartPointer<T>;
 
-// VTK's attribute quadrics take a matrix for singular where a triangle is small in absolute units,
-// and weigh attributes against those units: so the mesh is brought to one size, and back.
+// VTK's attribute quadrics treat small triangles as singular, by an absolute threshold, and weigh
+// attributes in absolute units. So the mesh is scaled to a fixed size, and back afterwards.
 constexpr double kDiagonal = 1000;
 
-double scaleOf(const render::Mesh& mesh) {
-  return kDiagonal / double{render::boundingBox(mesh.positions).diagonal()};
+double scaleOf(const render::mesh::Mesh& mesh) {
+  return kDiagonal / double{render::mesh::boundingBox(mesh.positions).diagonal()};
 }
 
-Pointer<vtkPolyData> polyData(const render::Mesh& mesh, bool with_colours) {
+Pointer<vtkPolyData> polyData(const render::mesh::Mesh& mesh, bool with_colours) {
   const auto points = Pointer<vtkPoints>::New();
   const double scale = scaleOf(mesh);
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
@@ -57,7 +57,7 @@ Pointer<vtkPolyData> polyData(const render::Mesh& mesh, bool with_colours) {
 
 class VtkPeer : public Peer {
  public:
-  VtkPeer(const render::Mesh& mesh, double colour_weight)
+  VtkPeer(const render::mesh::Mesh& mesh, double colour_weight)
       : input_(polyData(mesh, colour_weight > 0)),
         triangles_(mesh.triangleCount()),
         scale_(scaleOf(mesh)) {
@@ -79,9 +79,9 @@ class VtkPeer : public Peer {
     decimation_->Update();
   }
 
-  render::Mesh result() override {
+  render::mesh::Mesh result() override {
     vtkPolyData* output = decimation_->GetOutput();
-    render::Mesh mesh;
+    render::mesh::Mesh mesh;
     for (vtkIdType v = 0; v < output->GetNumberOfPoints(); ++v) {
       const double* p = output->GetPoint(v);
       for (int k = 0; k < 3; ++k) mesh.positions.push_back(static_cast<float>(p[k] / scale_));
@@ -92,7 +92,7 @@ class VtkPeer : public Peer {
       for (int k = 0; k < 3; ++k) mesh.triangles.push_back(static_cast<std::uint32_t>(corners[k]));
     }
     if (vtkDataArray* scalars = output->GetPointData()->GetScalars()) {
-      render::Feature colour{"colour", 3, {}};
+      render::mesh::Feature colour{"colour", 3, {}};
       for (vtkIdType v = 0; v < scalars->GetNumberOfTuples(); ++v) {
         for (int k = 0; k < 3; ++k) {
           colour.values.push_back(static_cast<float>(scalars->GetComponent(v, k)));
@@ -110,9 +110,10 @@ class VtkPeer : public Peer {
   double scale_;
 };
 
-constexpr std::string_view kColour = "colour=";  // and the weight, as a share of the diagonal
+// Followed by the weight, as a share of the diagonal.
+constexpr std::string_view kColour = "colour=";
 
-Result<std::unique_ptr<Peer>> make(render::Mesh mesh, const std::string& variant) {
+Result<std::unique_ptr<Peer>> make(render::mesh::Mesh mesh, const std::string& variant) {
   if (variant == "plain") return std::unique_ptr<Peer>(new VtkPeer(mesh, 0));
   if (variant.rfind(kColour, 0) != 0) {
     return Error{Errc::kInvalidArgument, variant + ": is not plain or colour=WEIGHT"};

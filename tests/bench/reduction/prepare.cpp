@@ -11,7 +11,7 @@
 namespace merlin::bench {
 namespace {
 
-using render::Mesh;
+using render::mesh::Mesh;
 
 class Groups {
  public:
@@ -34,7 +34,7 @@ class Groups {
   std::vector<std::size_t> parent_;
 };
 
-// An edge as one triangle has it: from one of its corners to the next.
+// A half-edge: an edge as a side of one triangle.
 struct Side {
   std::uint32_t low, high;  // its vertices
   std::size_t from, to;     // its corners: 3 * triangle + 0..2
@@ -56,7 +56,7 @@ std::vector<Side> sortedSides(const Mesh& mesh) {
   return sides;
 }
 
-// Calls f(first, last) for the sides of each edge.
+// Calls f(first, last) with the half-edges of each edge.
 template <typename F>
 void forEachEdge(const std::vector<Side>& sides, F f) {
   for (auto first = sides.begin(); first != sides.end();) {
@@ -79,26 +79,27 @@ std::size_t contractZeroEdges(Mesh& mesh) {
     }
   }
   for (std::uint32_t& v : mesh.triangles) v = static_cast<std::uint32_t>(same.of(v));
-  render::tidy(mesh);
+  render::mesh::tidy(mesh);
   return contracted;
 }
 
 std::size_t splitManifold(Mesh& mesh) {
-  Groups fans(mesh.triangles.size());  // of corners
+  Groups fans(mesh.triangles.size());  // sets of corners, each identified by its smallest corner
   forEachEdge(sortedSides(mesh), [&](auto first, auto last) {
     if (last - first != 2) return;
     const Side &a = first[0], &b = first[1];
-    if (mesh.triangles[a.from] != mesh.triangles[b.to]) return;  // both run the same way
+    // Both triangles use the same direction.
+    if (mesh.triangles[a.from] != mesh.triangles[b.to]) return;
     fans.join(a.from, b.to);
     fans.join(a.to, b.from);
   });
   constexpr auto kNobody = static_cast<std::size_t>(-1);
   std::vector<std::size_t> owner(mesh.vertexCount(), kNobody);
-  std::vector<std::uint32_t> vertex(mesh.triangles.size());  // of the fan that this corner begins
+  std::vector<std::uint32_t> vertex(mesh.triangles.size());  // indexed by a fan's first corner
   const std::size_t before = mesh.vertexCount();
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const std::uint32_t v = mesh.triangles[i];
-    const std::size_t fan = fans.of(i);  // the first of its corners
+    const std::size_t fan = fans.of(i);  // identified by its first corner
     if (fan == i && owner[v] == kNobody) {
       owner[v] = fan;
       vertex[fan] = v;
@@ -133,13 +134,13 @@ Kind kindOf(const Mesh& mesh) {
 }
 
 Result<std::string> prepare(const std::string& in, const std::string& out) {
-  auto loaded = render::readMesh(in);
+  auto loaded = render::mesh::readMesh(in);
   if (!loaded) return loaded.error();
   Mesh& mesh = loaded->mesh;
-  std::erase_if(mesh.features, [](const render::Feature& f) { return f.name != "colour"; });
+  std::erase_if(mesh.features, [](const render::mesh::Feature& f) { return f.name != "colour"; });
   const std::size_t contracted = contractZeroEdges(mesh);
   const std::size_t split = splitManifold(mesh);
-  if (const auto written = render::writeMesh(out, mesh); !written) return written.error();
+  if (const auto written = render::mesh::writeMesh(out, mesh); !written) return written.error();
   const Kind kind = kindOf(mesh);
   return fmt::format(R"({{"triangles": {}, "vertices": {}, "edges": {}, "border_edges": {}, )"
                      R"("non_manifold_edges": {}, "components": {}, "contracted_edges": {}, )"

@@ -1,4 +1,4 @@
-// The one mesh that all programs of the reduction benchmark get.
+// Prepares the mesh that all programs of the reduction benchmark get.
 #pragma once
 
 #include <cstddef>
@@ -12,19 +12,20 @@ struct Kind {
   std::size_t edges = 0, borders = 0, non_manifold = 0, components = 0;
 };
 
-// Makes one vertex of two at one place that an edge joins, and drops the triangles between them:
-// VTK takes such a triangle's quadric for singular, and stops. Returns how many vertices went.
-std::size_t contractZeroEdges(render::Mesh& mesh);
+// Merges coincident vertices that an edge joins and removes the triangles between them: VTK treats
+// the quadric of such a triangle as singular and stops. Returns the number of vertices removed.
+std::size_t contractZeroEdges(render::mesh::Mesh& mesh);
 
-// Gives a vertex whose triangles hang together in several fans one copy for each of them; triangles
-// are neighbours over an edge that has two, which run opposite ways. Some peers take manifolds
-// only, and range images touch themselves in single points. Returns how many vertices were added.
-std::size_t splitManifold(render::Mesh& mesh);
+// Splits a vertex whose triangles form several fans into one vertex for each fan; triangles are
+// connected over an edge that has exactly two triangles with opposite directions. Some peers
+// support manifold meshes only, and range images touch themselves at single points. Returns the
+// number of vertices added.
+std::size_t splitManifold(render::mesh::Mesh& mesh);
 
-Kind kindOf(const render::Mesh& mesh);
+Kind kindOf(const render::mesh::Mesh& mesh);
 
-// Reads `in`, leaves colour as the only feature, contracts, splits, writes `out`, returns a line of
-// JSON.
+// Reads `in`, keeps colour as the only feature, calls contractZeroEdges() and splitManifold(),
+// writes `out`, and returns a line of JSON.
 Result<std::string> prepare(const std::string& in, const std::string& out);
 
 }  // namespace merlin::bench

@@ -1,47 +1,49 @@
-// What gives way where not even the fewest triangles come in time.
-#include "render/governor/ladder.h"
+// What the wall gives up when even the coarsest detail is late.
+#include "render/governor/degradation_ladder.h"
 
 #include <gtest/gtest.h>
 
 namespace merlin::render {
 namespace {
 
-// Whether any of `count` such frames changed the rung.
-bool observe(Ladder& ladder, int count, bool late, bool least = true, bool fits = true) {
+// Observes `count` frames alike; returns whether any of them changed the step.
+bool observe(governor::DegradationLadder& ladder, int count, bool late, bool least = true,
+             bool fits = true) {
   bool changed = false;
   for (int i = 0; i < count; ++i) changed |= ladder.observe(late, least, fits);
   return changed;
 }
 
-TEST(Ladder, TenLateFramesInARowLeadARungDown) {
-  Ladder ladder(2);
+TEST(DegradationLadder, TenLateFramesInARowLeadAStepDown) {
+  governor::DegradationLadder ladder(2);
   EXPECT_FALSE(observe(ladder, 9, true));
-  EXPECT_EQ(ladder.rung(), 0);
+  EXPECT_EQ(ladder.step(), 0);
   EXPECT_TRUE(observe(ladder, 1, true));
-  EXPECT_EQ(ladder.rung(), 1);
+  EXPECT_EQ(ladder.step(), 1);
   EXPECT_TRUE(observe(ladder, 10, true));
-  EXPECT_EQ(ladder.rung(), 2);
-  EXPECT_FALSE(observe(ladder, 100, true)) << "the last rung";
+  EXPECT_EQ(ladder.step(), 2);
+  EXPECT_FALSE(observe(ladder, 100, true)) << "the last step";
 }
 
-TEST(Ladder, NineLateInSixtyDoNot) {
-  Ladder ladder(2);
+TEST(DegradationLadder, NineLateInSixtyDoNot) {
+  governor::DegradationLadder ladder(2);
   for (int i = 0; i < 20; ++i) {
     EXPECT_FALSE(observe(ladder, 9, true));
     EXPECT_FALSE(observe(ladder, 51, false));
   }
 }
 
-// How many frames, every `period`-th of which is late, lead a rung down; 0 where `most` do not.
+// Number of frames until the ladder steps down when every `period`-th frame is late; 0 if `most`
+// frames do not suffice.
 int framesToStepDown(int period, int most) {
-  Ladder ladder(1);
+  governor::DegradationLadder ladder(1);
   for (int i = 1; i <= most; ++i) {
     if (ladder.observe(i % period == 0, true, true)) return i;
   }
   return 0;
 }
 
-TEST(Ladder, TheShareOfLateFramesDecidesHowSoonItGoesDown) {
+TEST(DegradationLadder, TheShareOfLateFramesDecidesHowSoonItGoesDown) {
   EXPECT_EQ(framesToStepDown(2, 100'000), 24);
   EXPECT_EQ(framesToStepDown(3, 100'000), 45);
   EXPECT_EQ(framesToStepDown(4, 100'000), 80);
@@ -50,24 +52,24 @@ TEST(Ladder, TheShareOfLateFramesDecidesHowSoonItGoesDown) {
   EXPECT_EQ(framesToStepDown(100, 100'000), 0) << "hiccups";
 }
 
-TEST(Ladder, LateFramesWithMoreThanTheFewestTakeNoEvidenceAway) {
-  Ladder ladder(1);
+TEST(DegradationLadder, LateFramesWithMoreThanTheFewestTakeNoEvidenceAway) {
+  governor::DegradationLadder ladder(1);
   EXPECT_FALSE(observe(ladder, 9, true));
   EXPECT_FALSE(observe(ladder, 100, true, false));
   EXPECT_TRUE(observe(ladder, 1, true));
 }
 
-TEST(Ladder, FramesWithMoreThanTheFewestAreTheGovernorsBusiness) {
-  Ladder ladder(2);
+TEST(DegradationLadder, FramesWithMoreThanTheFewestAreTheGovernorsBusiness) {
+  governor::DegradationLadder ladder(2);
   EXPECT_FALSE(observe(ladder, 100, true, false));
 }
 
-TEST(Ladder, ThreeHundredInTimeBringItBackIfItFitsThere) {
-  Ladder ladder(2);
+TEST(DegradationLadder, ThreeHundredInTimeBringItBackIfItFitsThere) {
+  governor::DegradationLadder ladder(2);
   observe(ladder, 10, true);
   EXPECT_FALSE(observe(ladder, 1000, false, true, false)) << "it would not fit";
   EXPECT_TRUE(observe(ladder, 1, false));
-  EXPECT_EQ(ladder.rung(), 0);
+  EXPECT_EQ(ladder.step(), 0);
   observe(ladder, 10, true);
   EXPECT_FALSE(observe(ladder, 299, false));
   EXPECT_FALSE(observe(ladder, 1, true)) << "one late frame starts the count again";
@@ -75,11 +77,11 @@ TEST(Ladder, ThreeHundredInTimeBringItBackIfItFitsThere) {
   EXPECT_TRUE(observe(ladder, 1, false));
 }
 
-TEST(Ladder, HasAsManyRungsAsItIsGiven) {
-  Ladder ladder(1);
+TEST(DegradationLadder, HasAsManyStepsAsItIsGiven) {
+  governor::DegradationLadder ladder(1);
   EXPECT_TRUE(observe(ladder, 10, true));
   EXPECT_FALSE(observe(ladder, 50, true));
-  EXPECT_EQ(ladder.rung(), 1);
+  EXPECT_EQ(ladder.step(), 1);
 }
 
 }  // namespace

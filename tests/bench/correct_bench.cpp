@@ -1,0 +1,121 @@
+// ./dev bench correct: what an output's correction costs a frame, beside a memcpy of as many bytes:
+// each part of it alone and all together, on all processors and on one.
+//
+// The picture is noise of 1280 x 960 pixels, as large as the demo's frame. Nothing but the loop
+// runs, so that the tables come from memory as they do in a wall, where a frame lies between two
+// passes.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "daemon/base/thread_team.h"
+#include "render/correct/output_correction.h"
+#include "tests/bench/figures.h"
+
+namespace merlin::bench {
+namespace {
+
+using Steady = std::chrono::steady_clock;
+using render::correct::CorrectionSettings;
+
+constexpr int kWidth = 1280, kHeight = 960;
+
+double msSince(Steady::time_point then) {
+  return std::chrono::duration<double, std::milli>(Steady::now() - then).count();
+}
+
+// Settings by name, each with one part more to compute.
+std::vector<std::pair<std::string, CorrectionSettings>> cases() {
+  CorrectionSettings pin, mesh, blend, all;
+  pin.corners = {24, 12, -31, 7, 9, -20, -14, -33};
+  mesh = pin;
+  mesh.mesh.columns = 9;
+  mesh.mesh.rows = 7;
+  for (int j = 0; j < 7; ++j) {
+    for (int i = 0; i < 9; ++i)
+      mesh.mesh.points.push_back(
+          {i / 8.0 + 0.01 * std::sin(j), j / 6.0 + 0.02 * std::sin(i * 0.4)});
+  }
+  blend = mesh;
+  blend.blend = {128, 128, 0, 0, 2.2};
+  all = blend;
+  all.black.level.fill(0.01);
+  all.colour.matrix = {0.95, 0.05, 0, 0.02, 0.98, 0, 0, 0.04, 0.96};
+  all.colour.gamma = {1.05, 1, 0.97};
+  return {{"pin", pin}, {"mesh_pin", mesh}, {"mesh_pin_blend", blend}, {"all", all}};
+}
+
+bool measure(int frames, Report& report) {
+  std::mt19937 random(1);
+  std::vector<std::uint8_t> picture(std::size_t{4} * kWidth * kHeight), copy(picture.size());
+  for (std::uint8_t& p : picture) p = static_cast<std::uint8_t>(random());
+  const unsigned processors = threadsOr(0);
+  ThreadTeam team;
+  std::vector<std::pair<std::string, render::correct::OutputCorrection>> subjects;
+  std::vector<double> maps;
+  for (const auto& [name, settings] : cases()) {
+    if (!validate(settings, kWidth, kHeight).empty())
+      didNotRun(name, "its settings are not valid", "mend the benchmark");
+    const auto began = Steady::now();
+    const auto map = render::correct::makeCorrectionMap(settings, kWidth, kHeight, nullptr,
+                                                        Threads(processors, team));
+    if (!settings.mesh.isOff()) maps.push_back(msSince(began));
+    subjects.emplace_back(name, render::correct::OutputCorrection(map, Threads(processors, team)));
+    if (processors > 1)
+      subjects.emplace_back(name + "_one", render::correct::OutputCorrection(map, 1));
+  }
+  // All in turn, so that whatever else the machine does falls on all alike.
+  std::vector<double> copies;
+  std::vector<std::vector<double>> passes(subjects.size());
+  for (int frame = 0; frame < frames; ++frame) {
+    auto began = Steady::now();
+    std::memcpy(copy.data(), picture.data(), picture.size());
+    asm volatile("" : : "r"(copy.data()) : "memory");
+    copies.push_back(msSince(began));
+    for (std::size_t i = 0; i < subjects.size(); ++i) {
+      began = Steady::now();
+      const auto signal = subjects[i].second.apply({kWidth, kHeight, picture});
+      asm volatile("" : : "r"(signal.pixels.data()) : "memory");
+      passes[i].push_back(msSince(began));
+    }
+  }
+  const Measured memcpy_ms = medianOf(copies, "copies of the frame");
+  report.text("correction of {} x {} pixels, medians of {} frames, {} processors\n", kWidth,
+              kHeight, frames, processors);
+  report.text("  {:<20} {:7.2f} ms\n", "memcpy", memcpy_ms.value());
+  report.figure("memcpy_ms", memcpy_ms, "ms");
+  const Measured map_ms = medianOf(maps, "maps of meshes");
+  report.text("  {:<20} {:7.2f} ms, once\n", "map of a mesh", map_ms.value());
+  report.figure("map_ms", map_ms, "ms");
+  for (std::size_t i = 0; i < subjects.size(); ++i) {
+    const std::string& name = subjects[i].first;
+    const Measured ms = medianOf(passes[i], "passes of " + name);
+    const Measured ratio = ratioOf(ms, memcpy_ms, name + " beside memcpy");
+    report.text("  {:<20} {:7.2f} ms, {:.1f} memcpys\n", name, ms.value(), ratio.value());
+    report.figure(name + "_ms", ms, "ms");
+    report.figure(name + "_per_memcpy", ratio, "1");
+  }
+  return true;
+}
+
+}  // namespace
+}  // namespace merlin::bench
+
+int main(int argc, char** argv) {
+  CLI::App app("What an output's correction costs a frame");
+  int frames = 200;
+  bool json = false;
+  app.add_option("--frames", frames, "Frames of each")->check(CLI::Range(1, 100'000));
+  app.add_flag("--json", json, "One JSON object");
+  CLI11_PARSE(app, argc, argv);
+  return merlin::bench::runBench("correct", json, [&](merlin::bench::Report& report) {
+    return merlin::bench::measure(frames, report);
+  });
+}

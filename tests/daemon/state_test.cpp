@@ -1,0 +1,397 @@
+// The daemon's state: steps and offsets, the file's text, and what happens to files that are
+// damaged, newer, or cannot be written.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "daemon/state/state_folder.h"
+#include "daemon/state/state_keeper.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::state {
+namespace {
+
+const OutputForm kLeft{"left", 640, 480, 3, 3}, kRight{"right", 800, 600, 0, 0};
+const Place kTopLeft = *cornerNamed("top_left"), kBottomRight = *cornerNamed("bottom_right");
+constexpr Place kPoint{Place::Of::kMesh, 2, 1};
+
+TEST(Alignment, CornersHaveTheOrderOfACorrection) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(cornerAt(i).corner(), i);
+    EXPECT_EQ(nameOf(cornerAt(i)), kCornerNames[i]);
+    EXPECT_EQ(cornerNamed(kCornerNames[i]), cornerAt(i));
+  }
+  EXPECT_EQ(kBottomRight, (Place{Place::Of::kPin, 1, 1}));
+  EXPECT_FALSE(cornerNamed("upper_left"));
+  EXPECT_EQ(nameOf(kPoint), "point 2 1");
+}
+
+TEST(Alignment, MovesAddUpWithoutDrift) {
+  Alignment a;
+  for (int i = 0; i < 10; ++i) a.move(kLeft, kTopLeft, {0.1, -0.3});
+  EXPECT_EQ(a.offset("left", kTopLeft), (Offset{1, -3}));
+  EXPECT_EQ(a.offset("left", kBottomRight), Offset{});
+  EXPECT_EQ(a.offset("right", kTopLeft), Offset{});
+  for (int i = 0; i < 10; ++i) a.move(kLeft, kTopLeft, {-0.1, 0.3});
+  EXPECT_EQ(a.moved(), 0u);
+  EXPECT_EQ(a.steps.size(), 20u);
+}
+
+TEST(Alignment, UndoAndRedoGoThroughTheSteps) {
+  Alignment a;
+  a.move(kLeft, kTopLeft, {1, 2});
+  a.move(kRight, kBottomRight, {3, 4});
+  a.move(kLeft, kPoint, {0, 5});
+  EXPECT_EQ(a.undo()->output, "left");
+  EXPECT_EQ(a.offset("left", kPoint), Offset{});
+  EXPECT_EQ(a.undo()->output, "right");
+  EXPECT_EQ(a.offset("right", kBottomRight), Offset{});
+  EXPECT_EQ(a.offset("left", kTopLeft), (Offset{1, 2}));
+  EXPECT_TRUE(a.redo());
+  EXPECT_EQ(a.offset("right", kBottomRight), (Offset{3, 4}));
+  a.move(kLeft, kTopLeft, {1, 1});
+  EXPECT_FALSE(a.redo()) << "a new step takes the place of those that were undone";
+  EXPECT_EQ(a.steps.size(), 3u);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(a.undo());
+  EXPECT_FALSE(a.undo());
+  EXPECT_EQ(a.moved(), 0u);
+}
+
+TEST(Alignment, AResetIsOneStep) {
+  Alignment a;
+  EXPECT_FALSE(a.reset("left"));
+  a.move(kLeft, kTopLeft, {1, 2});
+  a.move(kLeft, kPoint, {3, 4});
+  EXPECT_TRUE(a.reset("left"));
+  EXPECT_EQ(a.moved(), 0u);
+  EXPECT_FALSE(a.reset("left"));
+  a.undo();
+  EXPECT_EQ(a.offset("left", kTopLeft), (Offset{1, 2}));
+  EXPECT_EQ(a.offset("left", kPoint), (Offset{3, 4}));
+}
+
+TEST(Alignment, APushOfTheBallIsOneStep) {
+  Alignment a;
+  a.moveOn(kLeft, kTopLeft, {1, 0});
+  a.moveOn(kLeft, kTopLeft, {1, 0});
+  EXPECT_EQ(a.steps.size(), 1u);
+  EXPECT_EQ(a.offset("left", kTopLeft), (Offset{2, 0}));
+  a.moveOn(kLeft, kBottomRight, {1, 0});
+  EXPECT_EQ(a.steps.size(), 2u);
+  a.undo();
+  a.moveOn(kLeft, kTopLeft, {1, 0});
+  EXPECT_EQ(a.steps.size(), 2u) << "not a part of a step before one that was undone";
+  a.undo();
+  EXPECT_EQ(a.offset("left", kTopLeft), (Offset{2, 0}));
+}
+
+TEST(Alignment, TheOldestStepsAreForgotten) {
+  Alignment a;
+  for (int i = 0; i < 130; ++i) a.move(kLeft, kTopLeft, {1, 0});
+  EXPECT_EQ(a.steps.size(), kMostSteps);
+  while (a.undo()) {
+  }
+  EXPECT_EQ(a.offset("left", kTopLeft), (Offset{30, 0}));
+}
+
+TEST(Alignment, AnOutputIsForgottenWithItsSteps) {
+  Alignment a;
+  a.move(kLeft, kTopLeft, {1, 2});
+  a.move(kRight, kBottomRight, {3, 4});
+  a.move(kLeft, kTopLeft, {1, 2});
+  a.undo();
+  a.forget("left");
+  EXPECT_EQ(a.steps.size(), 1u);
+  EXPECT_EQ(a.done, 1u);
+  EXPECT_EQ(a.undo()->output, "right");
+}
+
+State someState() {
+  State state;
+  state.rate_hz = 25;
+  state.content = "/models/b \"x\".mrm";
+  state.alignment.move(kLeft, kTopLeft, {1.5, -2.001});
+  state.alignment.move(kLeft, kPoint, {3, 4});
+  state.alignment.move(kRight, kBottomRight, {-7, 0});
+  state.alignment.undo();
+  return state;
+}
+
+TEST(StateText, IsReadBackAsItWas) {
+  const State written = someState();
+  const auto read = parseState(stateText(written), "f");
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(stateText(*read), stateText(written));
+  EXPECT_EQ(read->rate_hz, 25);
+  EXPECT_EQ(read->content, written.content);
+  EXPECT_EQ(read->alignment.offset("left", kTopLeft), (Offset{1.5, -2.001}));
+  EXPECT_EQ(read->alignment.offset("left", kPoint), (Offset{3, 4}));
+  EXPECT_EQ(read->alignment.find("left")->form, kLeft);
+  EXPECT_EQ(read->alignment.done, 2u);
+  Alignment again = read->alignment;
+  EXPECT_EQ(again.redo()->output, "right");
+  EXPECT_EQ(again.offset("right", kBottomRight), (Offset{-7, 0}));
+}
+
+TEST(StateText, OfNothingIsReadBack) {
+  const auto read = parseState(stateText({}), "f");
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_FALSE(read->rate_hz);
+  EXPECT_EQ(read->alignment.steps.size(), 0u);
+}
+
+// A file that was cut or of which one byte is another is an error, or a state within its limits.
+TEST(StateText, EveryCutAndEveryDamagedByteIsSeenOrHarmless) {
+  const std::string text = stateText(someState());
+  for (std::size_t size = 0; size + 1 < text.size(); ++size)  // the last byte is the line's end
+    EXPECT_FALSE(parseState(text.substr(0, size), "f")) << size;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    for (const char c : {'\0', ' ', '9', '-', '"', '}', '\xff'}) {
+      std::string damaged = text;
+      damaged[i] = c;
+      const auto read = parseState(damaged, "f");
+      if (!read) continue;
+      EXPECT_TRUE(parseState(stateText(*read), "f")) << i << ": " << c;
+    }
+  }
+}
+
+TEST(StateText, OfTheLargestStateIsReadBack) {
+  const OutputForm form{"a", 8192, 8192, 64, 64};
+  State state;
+  for (int step = 0; step < 2; ++step) {
+    for (int i = 0; i < static_cast<int>(kMostMoved); ++i)
+      state.alignment.move(form, {Place::Of::kMesh, i % 64, i / 64}, {-16000.123, 16000.123});
+    state.alignment.reset("a");
+    state.alignment.undo();
+  }
+  EXPECT_EQ(state.alignment.moved(), kMostMoved);
+  EXPECT_EQ(state.alignment.steps.back().changes.size(), kMostChanges);
+  const auto read = parseState(stateText(state), "f");
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(stateText(*read), stateText(state));
+}
+
+std::string errorOf(const std::string& text) {
+  const auto read = parseState(text, "f");
+  return read ? "none" : read.error().what;
+}
+
+TEST(StateText, WrongFiguresAreNamedWithTheirPlace) {
+  const auto with = [](const std::string& alignment) {
+    return R"({"merlin_state": 1, "alignment": )" + alignment + "}";
+  };
+  EXPECT_NE(errorOf("[]").find("f: /merlin_state"), std::string::npos) << errorOf("[]");
+  EXPECT_NE(errorOf(R"({"merlin_state": 1, "rate_hz": 1e9})").find("/rate_hz: found"),
+            std::string::npos);
+  EXPECT_NE(errorOf(with(R"({"outputs": [], "steps": [], "done": 1})")).find("/alignment/done"),
+            std::string::npos);
+  EXPECT_NE(
+      errorOf(with(R"({"outputs": [], "steps": [{"output": "a", "changes": []}], "done": 0})"))
+          .find("allowed: one of the outputs above"),
+      std::string::npos);
+  EXPECT_NE(errorOf(with(R"({"outputs": [{"output": "a", "size": [9, 9], "mesh": [2, 2], "moved":
+                            [{"place": [2, 0], "by": [1, 1]}]}], "steps": [], "done": 0})"))
+                .find("allowed: a point of the mesh"),
+            std::string::npos);
+  const auto newer = parseState(R"({"merlin_state": 2, "anything": [1]})", "f");
+  ASSERT_FALSE(newer);
+  EXPECT_EQ(newer.error().code, Errc::kUnsupported);
+}
+
+// Files in memory, whose disk can be full.
+class FakeFiles final : public StateFiles {
+ public:
+  struct Disk {
+    std::optional<std::string> last, previous, damaged;
+    std::optional<Error> fault, unreadable;
+    int writes = 0;
+  };
+  explicit FakeFiles(Disk& disk) : d_(disk) {}
+  Result<std::string> read() override {
+    if (d_.unreadable) return *d_.unreadable;
+    return of(d_.last);
+  }
+  Result<std::string> readPrevious() override { return of(d_.previous); }
+  Result<Ok> write(const std::string& text) override {
+    ++d_.writes;
+    if (d_.fault) return *d_.fault;
+    d_.previous = d_.last;
+    d_.last = text;
+    return Ok{};
+  }
+  Result<Ok> putAside() override {
+    d_.damaged = std::exchange(d_.last, std::nullopt);
+    return Ok{};
+  }
+  const std::string& name() const override { return name_; }
+
+ private:
+  static Result<std::string> of(const std::optional<std::string>& file) {
+    if (!file) return Error{Errc::kNotFound, "FILE: there is none"};
+    return *file;
+  }
+  Disk& d_;
+  std::string name_ = "FILE";
+};
+
+class StateKeeping : public testing::Test {
+ protected:
+  // Runs a daemon's life: reads the state, makes a change if there is one, ends.
+  std::unique_ptr<StateKeeper> keeper() {
+    return std::make_unique<StateKeeper>(std::make_unique<FakeFiles>(disk_), watch_);
+  }
+  static void setRate(StateKeeper& keeper, double rate_hz) {
+    keeper.change([&](State& state) { state.rate_hz = rate_hz; });
+    keeper.settle();
+  }
+  std::optional<double> rateOf(const std::optional<std::string>& file) {
+    const auto read = file ? parseState(*file, "f") : Result<State>(State{});
+    return read ? read->rate_hz : std::nullopt;
+  }
+
+  FakeFiles::Disk disk_;
+  ThreadWatch watch_;
+};
+
+TEST_F(StateKeeping, AChangeIsSavedAtOnceAndIsThereAgain) {
+  {
+    const auto first = keeper();
+    EXPECT_EQ(disk_.writes, 0) << "what nobody changed is not written";
+    setRate(*first, 20);
+    EXPECT_EQ(rateOf(disk_.last), 20);
+    setRate(*first, 21);
+    EXPECT_EQ(rateOf(disk_.last), 21);
+    EXPECT_EQ(rateOf(disk_.previous), 20);
+    EXPECT_EQ(first->fault(), "");
+  }
+  const auto second = keeper();
+  EXPECT_EQ(second->state().rate_hz, 21);
+  EXPECT_TRUE(second->takeNotices().empty());
+}
+
+TEST_F(StateKeeping, OfADamagedFileThePreviousOneIsUsedAndKept) {
+  {
+    const auto first = keeper();
+    setRate(*first, 20);
+    setRate(*first, 21);
+  }
+  disk_.last->resize(disk_.last->size() / 2);
+  const auto second = keeper();
+  EXPECT_EQ(second->state().rate_hz, 20);
+  const auto notices = second->takeNotices();
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_NE(notices[0].find("FILE: line"), std::string::npos) << notices[0];
+  EXPECT_NE(notices[0].find("the previous state is used; the damaged file is FILE.damaged now"),
+            std::string::npos)
+      << notices[0];
+  EXPECT_TRUE(disk_.damaged);
+  setRate(*second, 22);
+  EXPECT_EQ(rateOf(disk_.last), 22);
+}
+
+TEST_F(StateKeeping, WhereBothAreDamagedTheConfigurationHolds) {
+  disk_.last = "{";
+  disk_.previous = "";
+  const auto only = keeper();
+  EXPECT_FALSE(only->state().rate_hz);
+  EXPECT_NE(only->takeNotices().at(0).find("there is no previous one: the configuration holds"),
+            std::string::npos);
+  setRate(*only, 22);
+  EXPECT_EQ(rateOf(disk_.last), 22);
+}
+
+TEST_F(StateKeeping, ANewerStateIsNeitherReadNorReplaced) {
+  const std::string newer = R"({"merlin_state": 2})";
+  disk_.last = newer;
+  disk_.previous = stateText(someState());
+  const auto only = keeper();
+  EXPECT_FALSE(only->state().rate_hz);
+  EXPECT_NE(only->fault().find("a newer merlind wrote the file; the file is left alone"),
+            std::string::npos)
+      << only->fault();
+  setRate(*only, 22);
+  EXPECT_EQ(only->state().rate_hz, 22) << "until the daemon ends";
+  EXPECT_EQ(disk_.last, newer);
+  EXPECT_EQ(disk_.writes, 0);
+}
+
+TEST_F(StateKeeping, AFileThatCannotBeReadIsLeftAlone) {
+  disk_.unreadable = Error{Errc::kIo, "FILE: Permission denied"};
+  const auto only = keeper();
+  EXPECT_TRUE(only->fault().starts_with("FILE: Permission denied; the file is left alone"));
+  setRate(*only, 22);
+  EXPECT_EQ(disk_.writes, 0);
+}
+
+TEST_F(StateKeeping, AFullDiskIsSaidAndTheChangeIsNotLost) {
+  {
+    const auto only = keeper();
+    setRate(*only, 20);
+    disk_.fault = Error{Errc::kIo, "FILE: No space left on device"};
+    setRate(*only, 21);
+    EXPECT_EQ(only->fault(), "FILE: No space left on device; it is tried again every 5 s");
+    EXPECT_EQ(only->state().rate_hz, 21);
+    EXPECT_EQ(rateOf(disk_.last), 20);
+    disk_.fault.reset();
+  }
+  EXPECT_EQ(rateOf(disk_.last), 21) << "tried again as the daemon ends";
+}
+
+TEST_F(StateKeeping, WithoutAFolderNothingIsSavedAndThatIsSaid) {
+  StateKeeper only(nullptr, watch_);
+  setRate(only, 20);
+  EXPECT_EQ(only.state().rate_hz, 20);
+  EXPECT_NE(only.fault().find("/state_file"), std::string::npos);
+}
+
+TEST(StateFolder, KeepsTheLastTwoAndPutsADamagedOneAside) {
+  const test::TempDir dir;
+  const std::string path = dir / "a/b/state.json";
+  StateFolder folder(path);
+  EXPECT_EQ(folder.read().error().code, Errc::kNotFound);
+  ASSERT_TRUE(folder.write("1"));
+  EXPECT_EQ(folder.readPrevious().error().code, Errc::kNotFound);
+  ASSERT_TRUE(folder.write("2"));
+  ASSERT_TRUE(folder.write("3"));
+  EXPECT_EQ(*folder.read(), "3");
+  EXPECT_EQ(*folder.readPrevious(), "2");
+  struct stat last {
+  }, previous{};
+  EXPECT_EQ(::stat(path.c_str(), &last), 0);
+  EXPECT_EQ(::stat((path + ".previous").c_str(), &previous), 0);
+  EXPECT_NE(last.st_ino, previous.st_ino) << "damage of one is not damage of the other";
+  ASSERT_TRUE(folder.putAside());
+  EXPECT_EQ(folder.read().error().code, Errc::kNotFound);
+  EXPECT_EQ(*folder.readPrevious(), "2");
+  EXPECT_EQ(test::readText(path + ".damaged"), "3");
+}
+
+TEST(StateFolder, SaysWhereItCannotWriteAndKeepsWhatIsThere) {
+  const test::TempDir dir;
+  test::writeText(dir / "file", "x");
+  StateFolder folder(dir / "file/state.json");
+  const auto written = folder.write("1");
+  ASSERT_FALSE(written);
+  EXPECT_NE(written.error().what.find(dir / "file"), std::string::npos);
+  StateFolder good(dir / "state.json");
+  ASSERT_TRUE(good.write("1"));
+  ASSERT_EQ(::mkdir((dir / "state.json.next").c_str(), 0700), 0);
+  EXPECT_FALSE(good.write("2"));
+  EXPECT_EQ(*good.read(), "1");
+}
+
+TEST(StateFolder, IsTheUsersUnlessOneIsNamed) {
+  EXPECT_EQ(stateFile("/x/y.json", "wall"), "/x/y.json");
+  ::setenv("STATE_DIRECTORY", "/var/lib/merlin:/other", 1);
+  EXPECT_EQ(stateFile("", "wall"), "/var/lib/merlin/wall.state.json");
+  ::unsetenv("STATE_DIRECTORY");
+  if (::geteuid() == 0) return;
+  ::setenv("XDG_STATE_HOME", "/home/x/state", 1);
+  EXPECT_EQ(stateFile("", "wall"), "/home/x/state/merlin/wall.state.json");
+  ::unsetenv("XDG_STATE_HOME");
+  ::setenv("HOME", "/home/x", 1);
+  EXPECT_EQ(stateFile("", "wall"), "/home/x/.local/state/merlin/wall.state.json");
+}
+
+}  // namespace
+}  // namespace merlin::state

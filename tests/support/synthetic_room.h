@@ -1,0 +1,113 @@
+// A synthetic room: projectors with known pose, lens, gamma, colour and black level throw signals
+// onto plane panels, and a camera with known pose photographs them. All data are computed, none are
+// measured.
+//
+// Coordinates as in render/room: x to the right, y up, z towards the viewer [m].
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+namespace merlin::test {
+
+using Light = Eigen::Array3d;  // red, green, blue; 1 is the full brightness of a perfect projector
+
+// A rectangle in the room, seen from its front.
+struct Panel {
+  Eigen::Vector3d upper_left, right, down;  // `right` and `down` are unit vectors
+  double width = 0, height = 0;             // [m]
+
+  Eigen::Vector3d at(double x, double y) const { return upper_left + x * right + y * down; }
+};
+
+// A pinhole with radial distortion, for projectors and cameras alike. Pixels from the upper left.
+struct Lens {
+  Eigen::Vector3d place;
+  Eigen::Matrix3d R_lens_room;   // the lens looks along +z, x to the right, y down
+  double focal = 1;              // [px]
+  Eigen::Vector2d centre{0, 0};  // [px]; lens shift moves it away from the raster's centre
+  double distortion = 0;         // factor of r^2, with r in focal lengths
+
+  Eigen::Vector2d normalised(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d p = R_lens_room * (point - place);
+    const Eigen::Vector2d n = p.head<2>() / p.z();
+    return n * (1 + distortion * n.squaredNorm());
+  }
+  Eigen::Vector2d pixelOf(const Eigen::Vector3d& point) const {
+    return focal * normalised(point) + centre;
+  }
+  // Direction of the ray through a pixel. REQUIRES: no distortion.
+  Eigen::Vector3d rayOf(const Eigen::Vector2d& pixel) const {
+    const Eigen::Vector2d n = (pixel - centre) / focal;
+    return R_lens_room.transpose() * Eigen::Vector3d(n.x(), n.y(), 1);
+  }
+};
+
+// Looks from `place` at `target`, turned by `roll_deg` about the line of sight.
+Lens lensAt(const Eigen::Vector3d& place, const Eigen::Vector3d& target, double roll_deg);
+
+// A projector and the part of a panel on which its picture belongs.
+struct Projector {
+  Lens lens;
+  int width = 0, height = 0;  // [px]
+  Panel panel;
+  std::array<double, 4> part{};        // left, top, width, height on the panel [m]
+  Light gamma{2.2, 2.2, 2.2};          // light = signal ^ gamma
+  Light full{1, 1, 1};                 // light of a white signal
+  double black = 0;                    // light of a black signal, share of `full`
+  std::vector<std::uint8_t> signal{};  // RGB, width * height pixels
+
+  // The place in the room of a point of the uncorrected picture [px].
+  Eigen::Vector3d placeOf(double x, double y) const {
+    return panel.at(part[0] + part[2] * x / width, part[1] + part[3] * y / height);
+  }
+  Eigen::Vector2d pixelSize() const { return {part[2] / width, part[3] / height}; }  // [m]
+
+  // Sets focal length and lens shift so that the raster covers its part of the panel, with `margin`
+  // pixels to spare.
+  void zoom(double margin);
+
+  // The place in the room on which a point of the raster falls [px].
+  Eigen::Vector3d target(const Eigen::Vector2d& pixel) const;
+
+  Light lightOf(int x, int y) const;
+  // Light on a point of its panel: its pixels are lit evenly and a little out of focus.
+  Light lightAt(const Eigen::Vector3d& point) const;
+};
+
+// A photograph with a linear sensor.
+class Photograph {
+ public:
+  // Only projectors whose entry in `lit` is true throw light, as with a shutter before the others.
+  Photograph(const Lens& camera, int width, int height, const std::vector<Panel>& panels,
+             const std::vector<Projector>& projectors, const std::vector<bool>& lit);
+
+  // Light at a point of the room, between four pixels.
+  Light at(const Eigen::Vector3d& point) const;
+
+  // The photograph as a screen shows it (RGBA, gamma 2.2).
+  std::vector<std::uint8_t> pixels() const;
+
+ private:
+  const Light& pixel_(int x, int y) const {
+    return pixels_[static_cast<std::size_t>(y * width_ + x)];
+  }
+  Light seen(const Eigen::Vector2d& pixel, const std::vector<Panel>& panels,
+             const std::vector<Projector>& projectors, const std::vector<bool>& lit) const;
+
+  Lens camera_;
+  int width_, height_;
+  std::vector<Light> pixels_;
+};
+
+// Finds a bright line that crosses the segment from `place` - reach to `place` + reach. Returns its
+// offset along the segment, as a share of `reach`; nothing if there is no line.
+std::optional<double> findLine(const Photograph& photograph, const Eigen::Vector3d& place,
+                               const Eigen::Vector3d& reach);
+
+}  // namespace merlin::test

@@ -1,0 +1,359 @@
+// Alignment by script, in the real daemon: the signal of an output moves by the right pixels, also
+// after undo, redo, a restart and a kill; and what the daemon keeps of it.
+#include <filesystem>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <pty.h>
+#include <sys/wait.h>
+#include <termios.h>
+
+#include "render/image/image_file.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kWidth = 320, kHeight = 240;
+
+class Align : public testing::Test {
+ protected:
+  Align() { start(); }
+
+  // A wall that shows its background alone, also after a restart.
+  void start() {
+    wall_.reset();
+    const json tile = json::array({{{"tile", "left"}}});
+    const json outputs = json::array({{{"kind", "shared_memory"}},
+                                      {{"kind", "png"},
+                                       {"name", "left"},
+                                       {"path", dir_ / "left.png"},
+                                       {"interval_s", 86400},
+                                       {"tiles", tile}}});
+    MerlindOptions options;
+    options.script = "still";
+    options.also = {{"wall",
+                     {{"scene", {{"model_distance_m", 1000}}},
+                      {"render", {{"background", {1, 1, 1}}}},
+                      {"tiles",
+                       {{"tile_width", kWidth},
+                        {"tile_height", kHeight},
+                        {"frame_width", 2 * kWidth},
+                        {"frame_height", kHeight},
+                        {"tiles", json::array({{{"name", "left"}, {"turns", 1}},
+                                               {{"name", "right"}, {"x", kWidth}}})}}},
+                      {"contents", json::array({{{"model", other_}}})},
+                      {"outputs", outputs}}}};
+    options.also.merge_patch(also_);
+    wall_ = std::make_unique<Merlind>(dir_, model_, "align", options);
+    ASSERT_TRUE(wall_->ready()) << wall_->process().output();
+  }
+  Outcome merlin(std::vector<std::string> words) const {
+    words.insert(words.begin(), kMerlin);
+    words.insert(words.end(), {"--instance", wall_->instance()});
+    return run(words);
+  }
+  Outcome align(std::vector<std::string> words) const {
+    words.insert(words.begin(), {"wall", "align"});
+    return merlin(words);
+  }
+  Outcome moveCorner(const std::string& corner, const std::string& x, const std::string& y) const {
+    return align({"--output", "left", "--corner", corner, "--by", x, y});
+  }
+
+  // The output's signal now. Its background is white, and what it does not show is black.
+  render::image::ImageFile signal(const std::string& output = "left") const {
+    const std::string file = dir_ / "signal.png";
+    const Outcome taken = merlin({"snapshot", "--output", output, "-o", file});
+    EXPECT_EQ(taken.status, 0) << taken.output;
+    auto read = render::image::readImage(file);
+    EXPECT_TRUE(read);
+    return read ? *std::move(read) : render::image::ImageFile{};
+  }
+  // A move is answered before the correction is built anew and swapped in: a test waits for it.
+  // Columns at the left of a row, and rows at the top of a column, of which less than half shows
+  // the picture.
+  int blackLeft(int row) const {
+    const render::image::ImageFile picture = signal();
+    int x = 0;
+    while (x < kWidth && at(picture, x, row) < 128) ++x;
+    return x;
+  }
+  int blackTop(int column) const {
+    const render::image::ImageFile picture = signal();
+    int y = 0;
+    while (y < kHeight && at(picture, column, y) < 128) ++y;
+    return y;
+  }
+  static int at(const render::image::ImageFile& p, int x, int y) {
+    return p.pixels.at(static_cast<std::size_t>(3 * (y * kWidth + x)));
+  }
+  std::string stateFile() const { return dir_ / "align.state.json"; }
+
+  TempDir dir_;
+  std::string model_ = makeModel(dir_, 2), other_ = dir_ / "full.mrm";
+  json also_ = json::object();
+  std::unique_ptr<Merlind> wall_;
+};
+
+TEST_F(Align, MovesTheSignalByTheRightPixelsUndoneRedoneAndAfterARestart) {
+  EXPECT_EQ(blackLeft(0), 0);
+  const Outcome moved = moveCorner("top_left", "20", "0");
+  EXPECT_EQ(moved.status, 0) << moved.output;
+  EXPECT_NE(moved.output.find("top_left      +20 +0  (configured +0 +0, moved +20 +0)"),
+            std::string::npos)
+      << moved.output;
+  EXPECT_TRUE(eventually([&] { return blackLeft(0) == 20; }));
+  EXPECT_EQ(blackLeft(kHeight - 1), 0);
+  EXPECT_EQ(moveCorner("top_left", "-10", "12").status, 0);
+  EXPECT_TRUE(eventually([&] { return blackTop(12) == 12; }))
+      << "the upper edge rises from (10, 12) to (320, 0)";
+  EXPECT_EQ(align({"--undo"}).status, 0);
+  EXPECT_TRUE(eventually([&] { return blackLeft(0) == 20; }));
+  wall_->process().kill(SIGTERM);
+  start();
+  EXPECT_TRUE(eventually([&] { return blackLeft(0) == 20; }));
+  EXPECT_EQ(align({"--redo"}).status, 0);
+  EXPECT_TRUE(eventually([&] { return blackTop(12) == 12; }));
+  EXPECT_EQ(align({"--undo"}).status, 0);
+  EXPECT_EQ(align({"--undo"}).status, 0);
+  EXPECT_TRUE(eventually([&] { return blackLeft(0) == 0; }));
+  EXPECT_EQ(align({"--redo"}).status, 0);
+  EXPECT_EQ(align({"--output", "left", "--reset"}).status, 0);
+  EXPECT_TRUE(eventually([&] { return blackLeft(0) == 0; }));
+}
+
+TEST_F(Align, TheConfiguredCorrectionIsTheBase) {
+  wall_->process().kill(SIGTERM);
+  also_ = {{"wall", {{"outputs", json::array()}}}};
+  also_["wall"]["outputs"] =
+      json::array({{{"kind", "shared_memory"}},
+                   {{"kind", "png"},
+                    {"name", "left"},
+                    {"path", dir_ / "left.png"},
+                    {"interval_s", 86400},
+                    {"tiles", json::array({{{"tile", "left"}}})},
+                    {"correction", {{"corners", {10, 0, 0, 0, 10, 0, 0, 0}}}}}});
+  start();
+  EXPECT_TRUE(eventually([&] { return blackLeft(100) == 10; }));
+  EXPECT_EQ(moveCorner("top_left", "5", "0").status, 0);
+  EXPECT_EQ(moveCorner("bottom_left", "5", "0").status, 0);
+  EXPECT_TRUE(eventually([&] { return blackLeft(100) == 15; }));
+}
+
+TEST_F(Align, WhatCannotBeIsRefusedWithAMessageAndChangesNothing) {
+  const auto refused = [&](const std::vector<std::string>& words, const std::string& what) {
+    const Outcome outcome = align(words);
+    EXPECT_EQ(outcome.status, 2) << outcome.output;
+    EXPECT_NE(outcome.output.find(what), std::string::npos) << outcome.output;
+  };
+  refused({"--output", "left", "--corner", "top_left", "--by", "300", "230"}, "convex picture");
+  refused({"--output", "top", "--corner", "top_left", "--by", "1", "1"},
+          "there is no output \"top\"; those that can be aligned are left");
+  refused({"--output", "shared_memory", "--corner", "top_left", "--by", "1", "1"},
+          "holds the frame without correction");
+  refused({"--output", "left", "--corner", "upper_left", "--by", "1", "1"}, "top_left");
+  refused({"--output", "left", "--by", "1", "1"}, "--by needs --corner NAME or --point");
+  refused({"--corner", "top_left", "--by", "1", "1"}, "--by needs --output NAME");
+  refused({"--output", "left", "--corner", "top_left", "--by", "nan", "1"}, "--by");
+  refused({"--undo"}, "there is nothing to undo");
+  refused({"--undo", "--redo"}, "at most 1 options");
+  EXPECT_EQ(blackLeft(0), 0);
+  EXPECT_FALSE(std::filesystem::exists(stateFile()));
+  EXPECT_EQ(merlin({"snapshot", "--output", "top", "-o", dir_ / "x.png"}).status, 2);
+}
+
+TEST_F(Align, RateAndContentAreThereAfterARestart) {
+  EXPECT_EQ(merlin({"wall", "--rate", "12"}).status, 0);
+  EXPECT_EQ(merlin({"next_content"}).status, 0);
+  EXPECT_TRUE(
+      eventually([&] { return readText(stateFile()).find("full.mrm") != std::string::npos; }));
+  wall_->process().kill(SIGTERM);
+  start();
+  EXPECT_EQ(wall_->wall().rate_asked_hz, 12);
+  const auto segment =
+      shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(wall_->instance(), "wall"));
+  ASSERT_TRUE(segment);
+  EXPECT_TRUE(eventually([&] {
+    const auto shown = (*segment)->interaction.read();
+    return shown && shown->content == 1;
+  }));
+  EXPECT_EQ(merlin({"wall", "--rate", "auto"}).status, 0);
+  EXPECT_TRUE(
+      eventually([&] { return readText(stateFile()).find("rate_hz") == std::string::npos; }));
+}
+
+// The file is written with every step; the process is killed in the middle of that.
+TEST_F(Align, AKillAmongManyWritesLeavesAStateThatIsRead) {
+  for (int round = 0; round < 5; ++round) {
+    const std::string script = fmt::format(
+        "i=0; while {} wall align --instance {} --output left --corner top_left --by 0.01 0 "
+        ">/dev/null 2>&1; do i=$((i+1)); done; echo $i",
+        kMerlin, wall_->instance());
+    Process moves({"/bin/sh", "-c", script});
+    const std::string before = readText(stateFile());
+    EXPECT_TRUE(eventually([&] { return readText(stateFile()) != before; }));
+    wall_->process().kill(SIGKILL);
+    EXPECT_EQ(moves.wait(), 0);
+    start();
+    EXPECT_EQ(wall_->process().output().find("damaged"), std::string::npos);
+    const json left = json::parse(align({"--json"}).output)["outputs"][0];
+    const double moved = left["corners"]["top_left"]["moved"][0];
+    EXPECT_GE(moved, 0.01 * (round + 1) - 1e-9);
+  }
+}
+
+TEST_F(Align, ADamagedStateIsSaidAndThePreviousOneUsed) {
+  moveCorner("top_left", "20", "0");
+  moveCorner("top_left", "20", "0");
+  EXPECT_TRUE(eventually([&] { return blackLeft(0) == 40; }));
+  wall_->process().kill(SIGTERM);
+  std::filesystem::resize_file(stateFile(), std::filesystem::file_size(stateFile()) / 2);
+  start();
+  EXPECT_TRUE(eventually([&] { return blackLeft(0) == 20; }));
+  EXPECT_TRUE(wall_->process().saysEventually("the state file is damaged: " + stateFile()))
+      << wall_->process().output();
+  EXPECT_TRUE(std::filesystem::exists(stateFile() + ".damaged"));
+}
+
+TEST_F(Align, ANewerStateIsLeftAloneAndStatusSaysSo) {
+  wall_->process().kill(SIGTERM);
+  const std::string newer = R"({"merlin_state": 2, "more": []})";
+  writeText(stateFile(), newer);
+  start();
+  EXPECT_EQ(moveCorner("top_left", "20", "0").status, 0);
+  EXPECT_TRUE(eventually([&] { return blackLeft(0) == 20; }));
+  EXPECT_EQ(readText(stateFile()), newer);
+  EXPECT_TRUE(
+      eventually([&] { return wall_->status()["services"]["state"]["health"] == "failed"; }));
+  const std::string reason = wall_->status()["services"]["state"]["reason"];
+  EXPECT_NE(reason.find("a newer merlind wrote the file"), std::string::npos) << reason;
+}
+
+TEST_F(Align, AFileThatIsReadCannotBeTheStateFile) {
+  for (const std::string& file : {model_, wall_->config()}) {
+    json config = json::parse(readText(wall_->config()));
+    config["state_file"] = file;
+    writeText(dir_ / "bad.json", config.dump());
+    if (file == wall_->config()) {
+      config["state_file"] = dir_ / "bad.json";
+      writeText(dir_ / "bad.json", config.dump());
+    }
+    const Outcome checked = run({kMerlind, "--check-config", dir_ / "bad.json"});
+    EXPECT_EQ(checked.status, 2) << checked.output;
+    EXPECT_NE(checked.output.find("/state_file names "), std::string::npos) << checked.output;
+  }
+}
+
+TEST_F(Align, ATestCardIsShownAndCorrected) {
+  EXPECT_EQ(merlin({"wall", "testcard", "grid"}).status, 0);
+  const render::image::ImageFile card = signal();
+  EXPECT_EQ(at(card, 10, 2), 0);
+  EXPECT_EQ(at(card, 10, 0), 255);
+  moveCorner("top_left", "20", "0");
+  moveCorner("bottom_left", "20", "0");
+  EXPECT_TRUE(eventually([&] {
+    const render::image::ImageFile corrected = signal();
+    return at(corrected, 10, 0) == 0 && at(corrected, 20, 100) > 200;
+  })) << "the grid's border has moved";
+  EXPECT_EQ(merlin({"wall", "testcard", "off"}).status, 0);
+  EXPECT_EQ(at(signal(), 100, 2), 255);
+  const Outcome wrong = merlin({"wall", "testcard", "gird"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.output.find("there are grid, edges, ramps, names, focus, and off"),
+            std::string::npos)
+      << wrong.output;
+}
+
+// A program on a terminal of its own.
+class Terminal {
+ public:
+  explicit Terminal(std::vector<std::string> words) {
+    const winsize size{24, 80, 0, 0};
+    pid_ = ::forkpty(&master_, nullptr, nullptr, &size);
+    if (pid_ != 0) return;
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    ::execv(argv[0], argv.data());
+    ::_exit(127);
+  }
+  ~Terminal() {
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+    ::close(master_);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  void type(const std::string& keys) const {
+    EXPECT_EQ(::write(master_, keys.data(), keys.size()), static_cast<ssize_t>(keys.size()));
+  }
+  // Whether this is shown by and by, after all that was shown before.
+  bool shows(const std::string& text) {
+    return eventually([&] {
+      pollfd item{master_, POLLIN, 0};
+      char bytes[4096];
+      while (::poll(&item, 1, 0) > 0) {
+        const ssize_t n = ::read(master_, bytes, sizeof bytes);
+        if (n <= 0) break;
+        output_.append(bytes, static_cast<std::size_t>(n));
+      }
+      const std::size_t found = output_.find(text);
+      if (found == std::string::npos) return false;
+      output_.erase(0, found + text.size());
+      return true;
+    });
+  }
+  // Whether keys are echoed and lines edited, as for a shell.
+  bool isUsual() const {
+    termios now{};
+    ::tcgetattr(master_, &now);
+    return (now.c_lflag & (ICANON | ECHO)) == (ICANON | ECHO);
+  }
+  pid_t pid() const { return pid_; }
+
+ private:
+  int master_ = -1;
+  pid_t pid_ = -1;
+  std::string output_;
+};
+
+TEST_F(Align, KeysInATerminalMoveTheCornerAndTheTerminalIsAsBefore) {
+  const std::vector<std::string> words = {kMerlin, "wall", "align", "--instance",
+                                          wall_->instance()};
+  {
+    Terminal terminal(words);
+    EXPECT_TRUE(terminal.shows("Output left (1 of 1), 320 x 240 pixels"));
+    EXPECT_FALSE(terminal.isUsual());
+    terminal.type("LL\x1b[C");
+    EXPECT_TRUE(terminal.shows("moved     +21.0      +0.0"));
+    EXPECT_TRUE(eventually([&] { return blackLeft(0) == 21; }));
+    terminal.type("3LLl");
+    EXPECT_TRUE(terminal.shows("> 3 bottom_left       +21.0"));
+    EXPECT_TRUE(eventually([&] { return blackLeft(200) == 21; }));
+    terminal.type("t");
+    EXPECT_TRUE(terminal.shows("test card on"));
+    terminal.type("u");
+    EXPECT_TRUE(terminal.shows("left bottom_left by -1, 0"));
+    terminal.type("2" + std::string(40, 'H'));
+    EXPECT_TRUE(terminal.shows("stays where it is"));
+    terminal.type("q");
+    EXPECT_TRUE(eventually([&] { return terminal.isUsual(); }));
+    EXPECT_TRUE(eventually([&] { return at(signal(), 60, 205) == 255; })) << "without the card";
+  }
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGABRT, SIGSEGV}) {
+    Terminal terminal(words);
+    EXPECT_TRUE(terminal.shows("Output left"));
+    ::kill(terminal.pid(), signal);
+    EXPECT_TRUE(terminal.shows("\033[?1049l")) << signal;
+    EXPECT_TRUE(terminal.isUsual()) << signal;
+  }
+}
+
+}  // namespace
+}  // namespace merlin::test

@@ -1,0 +1,119 @@
+// Correction of an output, from the configuration to the image file: given in the configuration
+// itself and by an MPCDI file.
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "render/image/image_file.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+using nlohmann::json;
+
+class Correction : public testing::Test {
+ protected:
+  // Writes the configuration of a wall that shows only its background; its output "left" has this
+  // correction.
+  std::string file(const std::string& name, const json& correction) {
+    const json png = {{"kind", "png"},
+                      {"name", "left"},
+                      {"path", dir_ / (name + ".png")},
+                      {"tiles", json::array({{{"tile", "left"}}})},
+                      {"correction", correction}};
+    const json config = {{"instance", privateName("correct")},
+                         {"run_directory", dir_.path()},
+                         {"wall",
+                          {{"model", model_},
+                           {"scene", {{"model_distance_m", 1000}}},
+                           {"render", {{"background", {0.2, 0.4, 0.6}}}},
+                           {"outputs", json::array({{{"kind", "shared_memory"}}, png})}}}};
+    writeText(dir_ / (name + ".json"), config.dump(1));
+    return dir_ / (name + ".json");
+  }
+
+  // The image that merlind wrote to the output "left".
+  render::image::ImageFile shown(const std::string& name, const json& correction) {
+    const std::string config = file(name, correction), picture = dir_ / (name + ".png");
+    run({"/bin/sh", "-c",
+         fmt::format("{} --config {} & pid=$!; for i in $(seq 300); do [ -e {} ] && break; sleep "
+                     "0.1; done; kill $pid; wait $pid",
+                     kMerlind, config, picture)});
+    auto read = render::image::readImage(picture);
+    EXPECT_TRUE(read) << read.error().what;
+    return read ? *std::move(read)
+                : render::image::ImageFile{640, 480, std::vector<std::uint8_t>(921600)};
+  }
+
+  TempDir dir_;
+  std::string model_ = makeModel(dir_, 2);
+  const std::string mpcdi_ = dir_ / "wall.mpcdi";
+};
+
+const json kCorrection = {{"corners", {40, 20, -30, 0, 5, -12, -8, -40}},
+                          {"blend", {{"right", 96}, {"gamma", 2.4}}},
+                          {"black", {{"level", {0.02, 0.02, 0.02}}}}};
+
+TEST_F(Correction, AnExportedCorrectionShowsTheSamePicture) {
+  const std::string config = file("by_hand", kCorrection);
+  const Outcome exported = run({kMerlin, "wall", "mpcdi", "export", mpcdi_, "-c", config});
+  EXPECT_EQ(exported.status, 0) << exported.output;
+  const std::string settings = dir_ / "correction.json";
+  const Outcome imported = run({kMerlin, "wall", "mpcdi", "import", mpcdi_, "-o", settings});
+  EXPECT_EQ(imported.status, 0) << imported.output;
+  const json correction = json::parse(readText(settings))["left"]["correction"];
+  EXPECT_EQ(correction["mpcdi"], mpcdi_);
+
+  const auto by_hand = shown("by_hand", kCorrection), by_file = shown("by_file", correction);
+  ASSERT_EQ(by_hand.pixels.size(), by_file.pixels.size());
+  for (std::size_t i = 0; i < by_hand.pixels.size(); ++i)
+    ASSERT_NEAR(by_hand.pixels[i], by_file.pixels[i], 1) << i / 3 % 640 << " " << i / 3 / 640;
+  const auto at = [&](int x, int y) {
+    return by_hand.pixels[static_cast<std::size_t>(3 * (640 * y + x) + 2)];
+  };
+  EXPECT_EQ(at(10, 10), 0) << "beyond the corner";
+  EXPECT_NEAR(at(300, 200), 156, 1) << "0.6 ^ 2.4 * 0.98 + 0.02 of the light";
+  EXPECT_LT(at(600, 200), 100) << "in the ramp";
+}
+
+TEST_F(Correction, WhatCannotBeUsedIsRefusedWithItsPlace) {
+  const auto finding = [&](const json& correction) {
+    const Outcome checked = run({kMerlind, "--check-config", file("bad", correction)});
+    EXPECT_EQ(checked.status, 2) << checked.output;
+    return checked.output;
+  };
+  writeText(mpcdi_, "PK\x03\x04 but no more");
+  EXPECT_NE(finding({{"mpcdi", mpcdi_}})
+                .find("/wall/outputs/1/correction/mpcdi cannot be used: " + mpcdi_ +
+                      ": is not a complete zip archive"),
+            std::string::npos);
+  EXPECT_NE(finding({{"corners", {900, 900, 0, 0, 0, 0, 0, 0}}})
+                .find("/wall/outputs/1/correction/corners do not form a convex picture"),
+            std::string::npos);
+  EXPECT_NE(finding({{"mesh", {{"columns", 3}, {"rows", 3}}}})
+                .find("/wall/outputs/1/correction/mesh/points has 0 points"),
+            std::string::npos);
+}
+
+TEST_F(Correction, BadWordsAndFilesOfTheCommandAreSaid) {
+  const auto refused = [&](std::vector<std::string> words, const std::string& what) {
+    words.insert(words.begin(), {kMerlin, "wall", "mpcdi"});
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.status, 2) << outcome.output;
+    EXPECT_NE(outcome.output.find(what), std::string::npos) << outcome.output;
+  };
+  const std::string none = file("none", json::object());
+  refused({"export", mpcdi_, "-c", none}, "no output has a correction");
+  refused({"export", mpcdi_, "-c", none, "--output", "right"}, "there are shared_memory, left");
+  refused({"export", dir_ / "a.zip", "-c", none}, "must end in .mpcdi");
+  refused({"import", none}, "is not a complete zip archive");
+  EXPECT_EQ(
+      run({kMerlin, "wall", "mpcdi", "export", mpcdi_, "-c", none, "--output", "left"}).status, 0);
+  refused({"import", mpcdi_, "--region", "x"}, "has no region \"x\"; its regions are left");
+}
+
+}  // namespace
+}  // namespace merlin::test
