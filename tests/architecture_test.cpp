@@ -105,6 +105,7 @@ const std::map<std::string, Folders> kMayInclude = {
     // Pure except for the threads among which it divides the rows; of render/frame it knows the
     // port only.
     {"render/correct", {"render/frame/correction.h", "render/out/output.h"}},
+    {"render/correct/gpu", {"render/correct", "render/gl"}},
     {"render/correct/io", {"render/correct", "render/image"}},
     {"render/out/sample", {"render/out"}},
     {"render/testcard", {"render/frame", "render/out/settings.h", "render/tiles"}},

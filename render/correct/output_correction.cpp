@@ -11,21 +11,24 @@ constexpr int kRows = 16;  // per block: more blocks than threads, each tens of 
 
 }  // namespace
 
-OutputCorrection::OutputCorrection(CorrectionMap map, Threads threads)
-    : map_(std::move(map)),
+OutputCorrection::OutputCorrection(CorrectionMap map, Threads threads, CorrectionPass* pass)
+    : map_(std::make_shared<const CorrectionMap>(std::move(map))),
       threads_(threads),
-      pixels_(std::size_t{4} * static_cast<std::size_t>(map_.width) *
-              static_cast<std::size_t>(map_.height)) {}
+      pass_(pass),
+      pixels_(std::size_t{4} * static_cast<std::size_t>(map_->width) *
+              static_cast<std::size_t>(map_->height)) {}
 
 out::Signal OutputCorrection::apply(const out::Signal& picture) {
-  assert(picture.width == map_.source_width && picture.height == map_.source_height);
-  forBlocks(threads_, static_cast<std::size_t>((map_.height + kRows - 1) / kRows),
+  const CorrectionMap& map = *map_;
+  assert(picture.width == map.source_width && picture.height == map.source_height);
+  if (pass_ && pass_->run(map_, picture.pixels, pixels_)) return {map.width, map.height, pixels_};
+  forBlocks(threads_, static_cast<std::size_t>((map.height + kRows - 1) / kRows),
             [&](std::size_t block) {
               const int first = static_cast<int>(block) * kRows;
-              correct_(map_, picture.pixels.data(), pixels_.data(), first,
-                       std::min(first + kRows, map_.height));
+              correct_(map, picture.pixels.data(), pixels_.data(), first,
+                       std::min(first + kRows, map.height));
             });
-  return {map_.width, map_.height, pixels_};
+  return {map.width, map.height, pixels_};
 }
 
 }  // namespace merlin::render::correct

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "daemon/base/blocks.h"
 #include "render/correct/correct_pixels.h"
 #include "render/correct/correction_map.h"
+#include "render/correct/correction_pass.h"
 #include "render/frame/correction.h"
 
 namespace merlin::render::correct {
@@ -15,17 +17,19 @@ namespace merlin::render::correct {
 // Thread-bound to the wall's thread; uses the threads of that thread's team.
 class OutputCorrection final : public frame::Correction {
  public:
-  // Memory: 16 bytes per pixel.
-  OutputCorrection(CorrectionMap map, Threads threads);
+  // Memory: 16 bytes per pixel. `pass` computes the signals that it can, and the CPU the others;
+  // it must outlive this; null: the CPU computes all.
+  OutputCorrection(CorrectionMap map, Threads threads, CorrectionPass* pass = nullptr);
 
   // One pass over the output. REQUIRES: the picture has the map's source size.
   out::Signal apply(const out::Signal& picture) override;
 
-  const CorrectionMap& map() const noexcept { return map_; }
+  const CorrectionMap& map() const noexcept { return *map_; }
 
  private:
-  CorrectionMap map_;
+  std::shared_ptr<const CorrectionMap> map_;  // `pass_` looks whether it is still used
   Threads threads_;
+  CorrectionPass* pass_;
   CorrectRows correct_ = rowCorrector();
   std::vector<std::uint8_t> pixels_;
 };

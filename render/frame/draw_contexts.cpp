@@ -3,21 +3,27 @@
 #include <thread>
 
 namespace merlin::render::frame {
+namespace {
+
+// llvmpipe draws vertices in the calling thread, so a second context pays on a second core; a GPU
+// would only change from one to the other.
+bool takesTwo(const gl::GlSettings& settings, bool software) {
+  if (settings.contexts > 0) return settings.contexts > 1;
+  return software && std::thread::hardware_concurrency() > 1;
+}
+
+}  // namespace
 
 Result<std::shared_ptr<DrawContexts>> DrawContexts::make(const gl::GlSettings& settings) {
   auto contexts = std::make_shared<DrawContexts>();
-  auto own = gl::makeGlContext(settings.backend);
+  auto own = gl::makeGlContext(settings.backend, settings.gpu);
   if (!own) return own.error();
   contexts->own = *std::move(own);
-  if (settings.contexts == 1) return contexts;
-  const bool software = contexts->own->renderer().find("llvmpipe") != std::string::npos;
-  const bool pays = software && std::thread::hardware_concurrency() > 1;
-  if (settings.contexts == 0 && !pays) return contexts;
-  auto other = settings.backend == gl::GlBackend::kEgl
-                   ? DrawThread::make()
-                   : Error{Errc::kUnsupported,
-                           "render.contexts: OSMesa has only one context in a process; "
-                           "set it to 1, or render.backend to egl"};
+  const bool software = contexts->own->info().software;
+  contexts->asynchronous = settings.read_back == gl::ReadBackMode::kAsynchronous ||
+                           (settings.read_back == gl::ReadBackMode::kAuto && !software);
+  if (!takesTwo(settings, software)) return contexts;
+  auto other = DrawThread::make(*contexts->own);
   if (other)
     contexts->other = *std::move(other);
   else if (settings.contexts > 1)

@@ -16,9 +16,10 @@ namespace merlin::render::frame {
 struct DrawContexts {
   std::unique_ptr<gl::GlContext> own;
   std::unique_ptr<DrawThread> other;
+  bool asynchronous = false;  // how pixels are read back (gl::ReadBackMode)
 
-  // Creates the contexts; `own` is current on the calling thread. Errors: kUnsupported (no OpenGL
-  // of that kind, or not as many contexts as set).
+  // Creates the contexts; `own` is current on the calling thread. Errors: those of makeGlContext();
+  // kUnsupported (not as many contexts as set).
   static Result<std::shared_ptr<DrawContexts>> make(const gl::GlSettings& settings);
 
   std::string renderer() const;  // for a person

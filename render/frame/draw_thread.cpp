@@ -4,12 +4,12 @@
 
 namespace merlin::render::frame {
 
-Result<std::unique_ptr<DrawThread>> DrawThread::make() {
+Result<std::unique_ptr<DrawThread>> DrawThread::make(const gl::GlContext& first) {
   std::unique_ptr<DrawThread> made(new DrawThread());
   made->thread_ = std::jthread([&thread = *made] { thread.loop(); });
   Result<Ok> ready = Ok{};
   made->run([&] {
-    auto context = gl::makeGlContext(gl::GlBackend::kEgl, gl::EglDisplay::kDevice);
+    auto context = first.makeFurther();
     if (context)
       made->context_ = *std::move(context);
     else

@@ -16,9 +16,8 @@ namespace merlin::render::frame {
 // Owned and called by one thread. The work runs with this thread's context current.
 class DrawThread {
  public:
-  // Creates the context on another EGL display than the first one: contexts of Mesa's software
-  // renderers on one display draw one after another. Errors: those of makeGlContext().
-  static Result<std::unique_ptr<DrawThread>> make();
+  // Its context is first.makeFurther(), whose errors it returns.
+  static Result<std::unique_ptr<DrawThread>> make(const gl::GlContext& first);
   ~DrawThread();
   DrawThread(const DrawThread&) = delete;
   DrawThread& operator=(const DrawThread&) = delete;

@@ -20,7 +20,7 @@ Result<std::unique_ptr<FrameRenderer>> FrameRenderer::make(
   std::unique_ptr<FrameRenderer> made(
       new FrameRenderer(std::move(content), plan, std::move(contexts), clock));
   const auto painterIn = [&](const gl::GlContext& context) {
-    return TilePainter::make(context.gl(), *made->content_, plan, clock);
+    return TilePainter::make(context, *made->content_, plan, clock, made->contexts_->asynchronous);
   };
   // Both painters are created at the same time, each on the thread of its context.
   DrawThread* const other = made->contexts_->other.get();
@@ -158,6 +158,7 @@ FrameRenderer::TileTimes FrameRenderer::drawTiles(const Request& request) {
     painter.begin();
     each[i].times.drawing += clock_.now() - began;
     drawFrom(painter, request, each[i]);
+    painter.finish(pixels_, each[i].times);
   });
   TileTimes all = each[0];
   all.times.drawing += each[1].times.drawing;
@@ -169,9 +170,11 @@ FrameRenderer::TileTimes FrameRenderer::drawTiles(const Request& request) {
 
 void FrameRenderer::drawFrom(TilePainter& painter, const Request& request, TileTimes& drawn) {
   for (std::size_t tile; (tile = queue_.take()) != TileQueue::kNone;) {
-    const Duration before = drawn.times.drawing;
     const bool operators = isOperators(tile);
-    if (operators && operators_.size() < all_.size()) {
+    const bool may_give_way = operators && operators_.size() < all_.size();
+    if (may_give_way) painter.awaitDrawn(drawn.times);
+    const Duration before = drawn.times.drawing;
+    if (may_give_way) {
       // Extrapolates the time of all wall tiles from those that this thread has drawn.
       const Duration wall = before * static_cast<std::int64_t>(all_.size() - operators_.size()) /
                             static_cast<std::int64_t>(std::max<std::size_t>(drawn.wall_tiles, 1));
@@ -181,6 +184,7 @@ void FrameRenderer::drawFrom(TilePainter& painter, const Request& request, TileT
       }
     }
     painter.draw(tile, size_divisor_, pixels_, drawn.times);
+    if (may_give_way) painter.awaitDrawn(drawn.times);
     if (operators)
       drawn.operators += drawn.times.drawing - before;
     else
@@ -195,6 +199,7 @@ void FrameRenderer::drawOperators(const Eigen::Isometry3f& T_eye_content, std::s
   painter_->begin();
   DrawTimes theirs;
   for (const std::size_t tile : operators_) painter_->draw(tile, size_divisor_, pixels_, theirs);
+  painter_->finish(pixels_, theirs);
   times.fixed += theirs.fixed;
 }
 
@@ -228,6 +233,7 @@ void FrameRenderer::warmUp(const Eigen::Isometry3f& T_eye_content) {
       DrawTimes times;
       painter.begin();
       for (const std::size_t tile : all_) painter.draw(tile, size_divisor_, pixels_, times);
+      painter.finish(pixels_, times);
     };
     if (by_other)
       contexts_->other->run(work);

@@ -6,10 +6,16 @@
 
 namespace merlin::render::frame {
 
+// Where outputs' corrections are computed. In the order of kCorrectionPlaceNames.
+enum class CorrectionPlace { kAuto, kCpu, kGpu };  // kAuto: where the picture is drawn
+inline constexpr const char* kCorrectionPlaceNames[] = {"auto", "cpu", "gpu"};
+
 struct RenderSettings {
   gl::GlSettings gl{};
   content::ModelSettings model{};
-  int fade_frames = 3;  // duration of the fade to a finer frame of a still scene
+  CorrectionPlace correction = CorrectionPlace::kAuto;
+  int picture_memory_mb = 256;  // of pictures' tiles, in memory and in textures
+  int fade_frames = 3;          // duration of the fade to a finer frame of a still scene
 };
 
 }  // namespace merlin::render::frame

@@ -26,11 +26,12 @@ void upscale(std::span<const std::uint8_t> from, Size size, int times, std::uint
 
 }  // namespace
 
-Result<std::unique_ptr<TilePainter>> TilePainter::make(const gl::GlApi& gl,
+Result<std::unique_ptr<TilePainter>> TilePainter::make(const gl::GlContext& context,
                                                        const content::Content& content,
                                                        const tiles::TilePlan& plan,
-                                                       const Clock& clock) {
-  std::unique_ptr<TilePainter> painter(new TilePainter(gl, plan, clock));
+                                                       const Clock& clock, bool asynchronous) {
+  const gl::GlApi& gl = context.gl();
+  std::unique_ptr<TilePainter> painter(new TilePainter(context, plan, clock));
   auto renderer = content.attach(gl);
   if (!renderer) return renderer.error();
   painter->renderer_ = *std::move(renderer);
@@ -39,6 +40,9 @@ Result<std::unique_ptr<TilePainter>> TilePainter::make(const gl::GlApi& gl,
     auto target = gl::RenderTarget::make(gl, tile.width, tile.height);
     if (!target) return target.error();
     painter->targets_.push_back(*std::move(target));
+    if (!asynchronous) continue;
+    painter->read_backs_.emplace_back(gl);
+    painter->timers_.emplace_back(gl);
   }
   return painter;
 }
@@ -46,6 +50,7 @@ Result<std::unique_ptr<TilePainter>> TilePainter::make(const gl::GlApi& gl,
 void TilePainter::begin() {
   const Timestamp began = clock_.now();
   refined_tile_ = TileQueue::kNone;
+  unread_.clear();
   renderer_->beginFrame();
   stepDone(FrameStep::Kind::kUpload, 0, began);
 }
@@ -66,13 +71,43 @@ void TilePainter::readTile(std::size_t tile, int divisor, std::span<std::uint8_t
   const tiles::Tile& t = plan_.tiles[tile];
   const auto at =
       static_cast<std::size_t>(4) * static_cast<std::size_t>(t.y * plan_.frame_width + t.x);
-  if (divisor == 1) return targets_[tile].read(canvas.data() + at, plan_.frame_width);
   const int width = t.width / divisor, height = t.height / divisor;
-  small_.resize(std::size_t{4} * static_cast<std::size_t>(width) *
-                static_cast<std::size_t>(height));
-  targets_[tile].read(small_.data(), width, width, height);
-  upscale(small_, {width, height}, divisor, canvas.data() + at, {t.width, t.height},
-          plan_.frame_width);
+  std::uint8_t* to = canvas.data() + at;
+  int stride_px = plan_.frame_width;
+  if (divisor > 1) {
+    small_.resize(std::size_t{4} * static_cast<std::size_t>(width) *
+                  static_cast<std::size_t>(height));
+    to = small_.data();
+    stride_px = width;
+  }
+  if (isAsynchronous())
+    read_backs_[tile].finish(to, stride_px);
+  else
+    targets_[tile].read(to, stride_px, width, height);
+  if (divisor > 1) {
+    upscale(small_, {width, height}, divisor, canvas.data() + at, {t.width, t.height},
+            plan_.frame_width);
+  }
+}
+
+void TilePainter::startReading(std::size_t tile, int divisor) {
+  const tiles::Tile& t = plan_.tiles[tile];
+  read_backs_[tile].start(targets_[tile], t.width / divisor, t.height / divisor);
+  gl_.Flush();
+}
+
+// llvmpipe draws a slice when it is flushed, faster than a whole tile at once.
+void TilePainter::drawTile(std::size_t tile) {
+  content::DrawProgress progress;
+  if (isAsynchronous()) timers_[tile].begin();
+  for (bool whole = false; !whole;) {
+    whole = renderer_->drawSlice(tile, progress);
+    if (software_) gl_.Flush();
+  }
+  if (isAsynchronous())
+    timers_[tile].end();
+  else if (!software_)
+    gl_.Finish();  // so that the time to draw is not that to read back
 }
 
 void TilePainter::draw(std::size_t tile, int divisor, std::span<std::uint8_t> canvas,
@@ -80,16 +115,45 @@ void TilePainter::draw(std::size_t tile, int divisor, std::span<std::uint8_t> ca
   const Timestamp began = clock_.now();
   beginTile(tile, divisor);
   const Timestamp cleared = clock_.now();
-  content::DrawProgress progress;
-  for (bool whole = false; !whole;) {
-    whole = renderer_->drawSlice(tile, progress);
-    gl_.Flush();
-  }
+  drawTile(tile);
   const Timestamp drawn = stepDone(FrameStep::Kind::kDraw, tile, began);
-  readTile(tile, divisor, canvas);
+  if (isAsynchronous()) {
+    startReading(tile, divisor);
+    unread_.push_back({tile, divisor, drawn - cleared});
+  } else {
+    readTile(tile, divisor, canvas);
+  }
   const Timestamp read = stepDone(FrameStep::Kind::kReadBack, tile, drawn);
   times.drawing += drawn - cleared;
   times.fixed += (cleared - began) + (read - drawn);
+}
+
+void TilePainter::awaitDrawn(DrawTimes& times) {
+  if (unread_.empty()) return;
+  const Timestamp began = clock_.now();
+  for (Unread& unread : unread_) {
+    if (!std::exchange(unread.awaited, true)) timers_[unread.tile].elapsed();
+  }
+  times.drawing += clock_.now() - began;
+}
+
+// The tiles' pixels are copied while the GPU draws the tiles after them, so the time is divided by
+// what the GPU says that it took to draw.
+void TilePainter::finish(std::span<std::uint8_t> canvas, DrawTimes& times) {
+  if (unread_.empty()) return;
+  const Timestamp began = clock_.now();
+  Duration drawing{};
+  for (const Unread& unread : unread_) {
+    const Timestamp from = clock_.now();
+    readTile(unread.tile, unread.divisor, canvas);
+    stepDone(FrameStep::Kind::kReadBack, unread.tile, from);
+    if (!unread.awaited) drawing += timers_[unread.tile].elapsed() - unread.given;
+  }
+  unread_.clear();
+  const Duration elapsed = clock_.now() - began;
+  drawing = std::clamp(drawing, Duration::zero(), elapsed);
+  times.drawing += drawing;
+  times.fixed += elapsed - drawing;
 }
 
 void TilePainter::refine(TileQueue& queue, std::span<std::uint8_t> canvas, Timestamp until) {
@@ -105,6 +169,7 @@ void TilePainter::refine(TileQueue& queue, std::span<std::uint8_t> canvas, Times
     const bool whole = renderer_->drawSlice(refined_tile_, refined_);
     gl_.Finish();
     if (whole) {
+      if (isAsynchronous()) startReading(refined_tile_, 1);
       readTile(refined_tile_, 1, canvas);
       refined_tile_ = TileQueue::kNone;
       queue.done();

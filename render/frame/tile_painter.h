@@ -11,6 +11,9 @@
 #include "render/content/content.h"
 #include "render/frame/frame_painter.h"
 #include "render/frame/tile_queue.h"
+#include "render/gl/draw_timer.h"
+#include "render/gl/gl_context.h"
+#include "render/gl/read_back.h"
 #include "render/gl/render_target.h"
 #include "render/tiles/tile_plan.h"
 
@@ -19,17 +22,26 @@ namespace merlin::render::frame {
 // Thread-bound to its context. The context, content, plan and clock must outlive it.
 class TilePainter {
  public:
+  // `asynchronous`: pixels are read back through pixel buffers, while other tiles are drawn.
   // Errors: kUnsupported, kInvalidArgument: those of Content::attach() and RenderTarget::make().
-  static Result<std::unique_ptr<TilePainter>> make(const gl::GlApi& gl,
+  static Result<std::unique_ptr<TilePainter>> make(const gl::GlContext& context,
                                                    const content::Content& content,
-                                                   const tiles::TilePlan& plan, const Clock& clock);
+                                                   const tiles::TilePlan& plan, const Clock& clock,
+                                                   bool asynchronous);
 
   // Called once per frame, after the content has chosen its detail. Abandons a refined tile.
   void begin();
 
   // Draws the tile at 1/divisor of its width and height and copies it, upscaled, to its position in
-  // `canvas`. Adds its times to `times`.
+  // `canvas`; asynchronously, finish() does the latter. Adds its times to `times`.
   void draw(std::size_t tile, int divisor, std::span<std::uint8_t> canvas, DrawTimes& times);
+
+  // Waits until the tiles drawn so far are drawn on the GPU, and adds the time to `times`. Does
+  // nothing unless asynchronous.
+  void awaitDrawn(DrawTimes& times);
+  // Waits for the pixels of all tiles drawn since the last finish() and copies them to their
+  // positions in `canvas`. Does nothing unless asynchronous.
+  void finish(std::span<std::uint8_t> canvas, DrawTimes& times);
 
   // Draws slices of the queue's tiles until about `until`; continues where the last call stopped.
   void refine(TileQueue& queue, std::span<std::uint8_t> canvas, Timestamp until);
@@ -42,18 +54,33 @@ class TilePainter {
   void clearSteps() noexcept { steps_.clear(); }
 
  private:
-  TilePainter(const gl::GlApi& gl, const tiles::TilePlan& plan, const Clock& clock)
-      : gl_(gl), plan_(plan), clock_(clock) {}
+  // A tile that is drawn, or will be on the GPU, and is not in the canvas yet.
+  struct Unread {
+    std::size_t tile;
+    int divisor;
+    Duration given{};      // time to give it to the GPU
+    bool awaited = false;  // drawn, and counted as that
+  };
+
+  TilePainter(const gl::GlContext& context, const tiles::TilePlan& plan, const Clock& clock)
+      : gl_(context.gl()), software_(context.info().software), plan_(plan), clock_(clock) {}
+  bool isAsynchronous() const { return !read_backs_.empty(); }
   void beginTile(std::size_t tile, int divisor);
+  void drawTile(std::size_t tile);
+  void startReading(std::size_t tile, int divisor);
   void readTile(std::size_t tile, int divisor, std::span<std::uint8_t> canvas);
   Timestamp stepDone(FrameStep::Kind kind, std::size_t tile, Timestamp began);  // returns now
 
   const gl::GlApi& gl_;
+  const bool software_;
   const tiles::TilePlan& plan_;
   const Clock& clock_;
   std::unique_ptr<content::ContentRenderer> renderer_;
   std::vector<gl::RenderTarget> targets_;  // by tile
-  std::vector<std::uint8_t> small_;        // a tile before it is upscaled
+  std::vector<gl::ReadBack> read_backs_;   // by tile; empty unless asynchronous, as the timers
+  std::vector<gl::DrawTimer> timers_;
+  std::vector<Unread> unread_;
+  std::vector<std::uint8_t> small_;  // a tile before it is upscaled
   std::vector<FrameStep> steps_;
   std::size_t refined_tile_ = TileQueue::kNone;
   content::DrawProgress refined_;

@@ -1,7 +1,8 @@
 // GlContext: an OpenGL 3.3 core context without a window, current on the thread that created it.
 //
-// The default is surfaceless EGL. The alternative is OSMesa, which Mesa dropped in 25.1, so it may
-// be absent. Both draw only into frame buffer objects. Thread-bound.
+// The default is EGL, on a GPU or with Mesa's software renderer. The alternative is OSMesa, which
+// Mesa dropped in 25.1, so it may be absent. Both draw only into frame buffer objects.
+// Thread-bound.
 #pragma once
 
 #include <memory>
@@ -9,6 +10,7 @@
 
 #include "daemon/base/result.h"
 #include "render/gl/gl_api.h"
+#include "render/gl/renderer_info.h"
 #include "render/gl/settings.h"
 
 namespace merlin::render::gl {
@@ -18,26 +20,35 @@ class GlContext {
   virtual ~GlContext() = default;
 
   const GlApi& gl() const noexcept { return api_; }
-  // "EGL" or "OSMesa", and GL_RENDERER; for a person.
-  const std::string& renderer() const noexcept { return renderer_; }
+  const RendererInfo& info() const noexcept { return info_; }
+  // "EGL, llvmpipe (LLVM 15.0.6, 256 bits)"; for a person.
+  std::string renderer() const { return info_.library + ", " + info_.name; }
+
+  // Creates another context by the same renderer, current on the calling thread, which must be
+  // another one than this context's. Mesa's software renderers of one EGL display draw one after
+  // the other, so theirs gets a display of its own where there is one. Errors: kUnsupported.
+  virtual Result<std::unique_ptr<GlContext>> makeFurther() const = 0;
 
  protected:
   GlApi api_;
-  std::string renderer_;
+  RendererInfo info_;
 };
 
-// The EGL display on which a context is created. Mesa's software renderers of one display draw one
-// after the other, so two contexts that draw in parallel need two displays.
-enum class EglDisplay { kSurfaceless, kDevice };
-
-// Errors: kUnsupported, with what is missing (the library, the context or an OpenGL function).
-// `display` is ignored for OSMesa.
+// `gpu`: as GlSettings::gpu; kAnyGpu takes the first GPU on which a context can be created, else
+// the software renderer. Errors: kUnsupported, with what is missing (the library, the context or an
+// OpenGL function); kInvalidArgument (`gpu` is none of this machine's, or OSMesa was asked for
+// one).
 Result<std::unique_ptr<GlContext>> makeGlContext(GlBackend backend,
-                                                 EglDisplay display = EglDisplay::kSurfaceless);
+                                                 const std::string& gpu = kAnyGpu);
+
+// Whether makeGlContext() would find this GPU. Cheap for kAnyGpu and kNoGpu; otherwise that of
+// listGpus(). Errors: those of makeGlContext() that are kInvalidArgument.
+Result<Ok> checkGpu(GlBackend backend, const std::string& gpu);
 
 // Prepares the process for Mesa's software renderer: sets the number of its raster threads (0: it
 // rasterises on the calling thread), and makes the heap keep memory that one frame frees for the
-// next frame. Call once, before the first context is created and before any thread starts.
-void prepareSoftwareGl(int raster_threads);
+// next frame. `only`: Mesa's drivers of GPUs are not to be used. Call once, before the first
+// context is created and before any thread starts.
+void prepareSoftwareGl(int raster_threads, bool only = false);
 
 }  // namespace merlin::render::gl

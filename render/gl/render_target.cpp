@@ -7,18 +7,20 @@
 
 namespace merlin::render::gl {
 
-Result<RenderTarget> RenderTarget::make(const GlApi& gl, int width, int height) {
+Result<RenderTarget> RenderTarget::make(const GlApi& gl, int width, int height, Depth depth) {
   RenderTarget f(gl, width, height);
   gl.GenFramebuffers(1, &f.frame_);
   gl.GenRenderbuffers(1, &f.colour_);
-  gl.GenRenderbuffers(1, &f.depth_);
   gl.BindRenderbuffer(GL_RENDERBUFFER, f.colour_);
   gl.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
-  gl.BindRenderbuffer(GL_RENDERBUFFER, f.depth_);
-  gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
   f.bind();
   gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, f.colour_);
-  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, f.depth_);
+  if (depth == Depth::k24Bits) {
+    gl.GenRenderbuffers(1, &f.depth_);
+    gl.BindRenderbuffer(GL_RENDERBUFFER, f.depth_);
+    gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
+    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, f.depth_);
+  }
   const GLenum status = gl.CheckFramebufferStatus(GL_FRAMEBUFFER);
   if (status == GL_FRAMEBUFFER_COMPLETE) return f;
   return Error{

@@ -9,11 +9,14 @@
 
 namespace merlin::render::gl {
 
+enum class Depth { kNone, k24Bits };
+
 // Thread-bound to its context, which must outlive it.
 class RenderTarget {
  public:
   // Sizes in pixels. Errors: kUnsupported (the context cannot create a target of this size).
-  static Result<RenderTarget> make(const GlApi& gl, int width, int height);
+  static Result<RenderTarget> make(const GlApi& gl, int width, int height,
+                                   Depth depth = Depth::k24Bits);
 
   RenderTarget(RenderTarget&& other) noexcept;
   RenderTarget& operator=(RenderTarget&&) = delete;

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -13,53 +12,17 @@
 #include "render/correct/output_correction.h"
 #include "render/frame/correction_chain.h"
 #include "render/frame/tile_arrangement.h"
+#include "tests/support/corrections.h"
 
 namespace merlin::render {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 200;
-
-std::vector<std::uint8_t> noise(int width, int height) {
-  std::mt19937 random(1);
-  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(4 * width * height));
-  for (std::uint8_t& p : pixels) p = static_cast<std::uint8_t>(random());
-  return pixels;
-}
-
-std::vector<std::uint8_t> grey(int width, int height, std::uint8_t level) {
-  return std::vector<std::uint8_t>(static_cast<std::size_t>(4 * width * height), level);
-}
-
-// A mesh with a barrel distortion, and a keystone.
-correct::CorrectionSettings bent(correct::MeshInterpolation between, int columns = 5,
-                                 int rows = 4) {
-  correct::CorrectionSettings s;
-  s.corners = {12, 7, -20, 3, 5, -9, -2, -30};
-  s.mesh.columns = columns;
-  s.mesh.rows = rows;
-  s.mesh.interpolation = between;
-  for (int j = 0; j < rows; ++j) {
-    for (int i = 0; i < columns; ++i) {
-      const double u = static_cast<double>(i) / (columns - 1);
-      const double v = static_cast<double>(j) / (rows - 1);
-      s.mesh.points.push_back({u + 0.05 * std::sin(6 * v), v + 0.04 * std::sin(3 * u)});
-    }
-  }
-  EXPECT_TRUE(validate(s, kWidth, kHeight).empty());
-  return s;
-}
-
-// All corrections at once.
-correct::CorrectionSettings everything() {
-  correct::CorrectionSettings s = bent(correct::MeshInterpolation::kBicubic);
-  s.blend = {60, 40, 0, 30, 2.3};
-  s.colour.matrix = {0.9, 0.1, 0, 0.05, 1, -0.05, 0, 0.1, 0.85};
-  s.colour.gain = {1, 0.9, 1.2};
-  s.colour.gamma = {1.1, 1, 0.9};
-  s.black.level = {0.02, 0.015, 0.03};
-  EXPECT_TRUE(validate(s, kWidth, kHeight).empty());
-  return s;
-}
+using test::bent;
+using test::everything;
+using test::grey;
+using test::kHeight;
+using test::kWidth;
+using test::noise;
 
 std::vector<std::uint8_t> corrected(const correct::CorrectionSettings& s,
                                     const std::vector<std::uint8_t>& picture) {

@@ -51,9 +51,11 @@ tiles::TilesSettings fourTiles() {
 struct Wall {
   explicit Wall(const tiles::TilesSettings& settings, gl::GlBackend backend = gl::GlBackend::kEgl,
                 int contexts = 0, const lod::Dendrogram& shown = model())
+      : Wall(settings, {.backend = backend, .contexts = contexts}, shown) {}
+  Wall(const tiles::TilesSettings& settings, const gl::GlSettings& gl,
+       const lod::Dendrogram& shown = model())
       : plan(*render::tiles::planTiles(settings)),
-        renderer(*test::rendererOf(shown, plan, {.gl = {backend, contexts, 0}, .model = {}}, 2.0,
-                                   clock)) {}
+        renderer(*test::rendererOf(shown, plan, {.gl = gl, .model = {}}, 2.0, clock)) {}
 
   Image tile(std::size_t index) const {
     const render::tiles::Tile& t = plan.tiles[index];
@@ -141,6 +143,75 @@ TEST(FrameRenderer, TwoContextsDrawThePixelsOfOne) {
   EXPECT_TRUE(same());
   one.draw();
   EXPECT_TRUE(same()) << "full detail, drawn at once by one";
+}
+
+// Whole frames of any size, and a refined one. Only one wall at a time has its context current.
+std::vector<std::vector<std::uint8_t>> framesOf(const gl::GlSettings& settings) {
+  Wall wall(fourTiles(), settings);
+  EXPECT_EQ(wall.renderer->contexts()->asynchronous,
+            settings.read_back == gl::ReadBackMode::kAsynchronous);
+  std::vector<std::vector<std::uint8_t>> frames;
+  const auto keep = [&] {
+    const auto pixels = wall.renderer->pixels();
+    frames.emplace_back(pixels.begin(), pixels.end());
+  };
+  for (const int divisor : {1, 2, 1}) {
+    wall.renderer->setSizeDivisor(divisor);
+    wall.draw(model().levelFor(500 + 100 * frames.size()));
+    keep();
+  }
+  wall.renderer->beginRefining(inFront(), 0);
+  while (!wall.renderer->refine(wall.clock.now() + std::chrono::milliseconds(20))) continue;
+  keep();
+  return frames;
+}
+
+TEST(FrameRenderer, PixelsThatAreReadBackAsynchronouslyAreTheSame) {
+  using Mode = gl::ReadBackMode;
+  for (const auto& [backend, contexts] :
+       {std::pair{gl::GlBackend::kEgl, 1}, std::pair{gl::GlBackend::kEgl, 2},
+        std::pair{gl::GlBackend::kOsmesa, 1}}) {
+    const auto direct = framesOf({.backend = backend, .contexts = 1, .read_back = Mode::kDirect});
+    const auto later =
+        framesOf({.backend = backend, .contexts = contexts, .read_back = Mode::kAsynchronous});
+    EXPECT_EQ(direct, later) << contexts;
+    EXPECT_NE(direct[0], direct[2]) << "several frames, not one";
+  }
+}
+
+TEST(FrameRenderer, ASoftwareRendererIsReadBackDirectlyUnlessSet) {
+  const auto contexts = frame::DrawContexts::make({.gpu = gl::kNoGpu});
+  ASSERT_TRUE(contexts) << contexts.error().what;
+  EXPECT_TRUE((*contexts)->own->info().software);
+  EXPECT_FALSE((*contexts)->asynchronous);
+}
+
+// A clock that every look at it takes a millisecond on.
+class TickingClock final : public Clock {
+ public:
+  Timestamp now() const noexcept override { return now_ += std::chrono::milliseconds(1); }
+  bool sleepUntil(Timestamp, const std::stop_token&) noexcept override { return true; }
+
+ private:
+  mutable Timestamp now_{};
+};
+
+// Giving a frame to the GPU, waiting for it and copying its pixels: nothing of it is forgotten.
+TEST(FrameRenderer, AsynchronousFramesCountTheirWholeTime) {
+  const auto timesWith = [](gl::ReadBackMode mode) {
+    const TickingClock clock;
+    const auto plan = *render::tiles::planTiles(fourTiles());
+    const auto renderer = *test::rendererOf(
+        model(), plan, {.gl = {.contexts = 1, .read_back = mode}, .model = {}}, 2.0, clock);
+    renderer->draw({.T_eye_content = inFront(), .step = 0});
+    return renderer->draw({.T_eye_content = inFront(), .step = 0});
+  };
+  const frame::DrawTimes direct = timesWith(gl::ReadBackMode::kDirect);
+  const frame::DrawTimes later = timesWith(gl::ReadBackMode::kAsynchronous);
+  // It looks at the clock twice more for each of the four tiles.
+  EXPECT_GT(later.drawing + later.fixed,
+            direct.drawing + direct.fixed + std::chrono::milliseconds(7));
+  EXPECT_GE(later.drawing, direct.drawing);
 }
 
 TEST(FrameRenderer, OsmesaHasOneContextForAProcess) {

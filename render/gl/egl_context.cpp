@@ -1,0 +1,143 @@
+#include "render/gl/egl_context.h"
+
+#include <cstring>
+#include <filesystem>
+#include <iterator>
+#include <utility>
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <fmt/format.h>
+
+#include "render/gl/load_api.h"
+
+namespace merlin::render::gl {
+namespace {
+
+#ifndef EGL_DRM_RENDER_NODE_FILE_EXT
+constexpr EGLint EGL_DRM_RENDER_NODE_FILE_EXT = 0x3377;
+#endif
+
+Error eglError(const char* step) {
+  return {Errc::kUnsupported,
+          fmt::format("EGL: {}: error 0x{:04X}; packages libegl1, libegl-mesa0 and "
+                      "libgl1-mesa-dri provide a software renderer",
+                      step, eglGetError())};
+}
+
+// The PCI address of the device with this DRM node; empty if it has none.
+std::string pciOf(const std::string& node) {
+  namespace fs = std::filesystem;
+  if (node.empty()) return {};
+  std::error_code error;
+  const fs::path link = fs::path("/sys/class/drm") / fs::path(node).filename() / "device";
+  const std::string name = fs::canonical(link, error).filename().string();
+  const bool is_pci = name.size() == 12 && name[4] == ':' && name[7] == ':' && name[10] == '.';
+  return !error && is_pci ? name : std::string();
+}
+
+class EglContext final : public GlContext {
+ public:
+  // `device`: whose display it is; null for the display of no device.
+  static Result<std::unique_ptr<GlContext>> make(EGLDisplay display, const EglDevice* device) {
+    auto context = std::make_unique<EglContext>();
+    if (const auto made = context->create(display); !made) return made.error();
+    if (device) {
+      context->info_.node = device->node;
+      context->info_.pci = device->pci;
+      context->info_.software |= device->software;
+    }
+    context->on_device_ = device != nullptr;
+    return std::unique_ptr<GlContext>(std::move(context));
+  }
+  EglContext() = default;
+  ~EglContext() override {
+    if (display_ == EGL_NO_DISPLAY) return;
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (context_ != EGL_NO_CONTEXT) eglDestroyContext(display_, context_);
+    // No eglTerminate: the whole process shares the display, and another context may use it.
+  }
+  EglContext(const EglContext&) = delete;
+  EglContext& operator=(const EglContext&) = delete;
+
+  Result<std::unique_ptr<GlContext>> makeFurther() const override {
+    if (info_.software && !on_device_) {
+      for (const EglDevice& device : eglDevices()) {
+        if (device.software) return makeEglContext(device);
+      }
+    }
+    auto further = make(display_, nullptr);
+    if (further) static_cast<EglContext&>(**further).info_ = info_;
+    return further;
+  }
+
+ private:
+  Result<Ok> create(EGLDisplay display) {
+    display_ = display;
+    if (display_ == EGL_NO_DISPLAY) return eglError("no display without a window system");
+    if (!eglInitialize(display_, nullptr, nullptr)) return eglError("initialisation");
+    if (!eglBindAPI(EGL_OPENGL_API)) return eglError("no desktop OpenGL");
+    const EGLint kAttributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                  3,
+                                  EGL_CONTEXT_MINOR_VERSION,
+                                  3,
+                                  EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                  EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                  EGL_NONE};
+    context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kAttributes);
+    if (context_ == EGL_NO_CONTEXT) return eglError("no OpenGL 3.3 core context");
+    if (!eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
+      return eglError("no context without a surface");
+    }
+    auto api = loadApi([](const char* name) { return eglGetProcAddress(name); });
+    if (!api) return api.error();
+    api_ = *api;
+    info_ = rendererOf(api_, "EGL");
+    return Ok{};
+  }
+
+  EGLDisplay display_ = EGL_NO_DISPLAY;
+  EGLContext context_ = EGL_NO_CONTEXT;
+  bool on_device_ = false;  // the display is a device's
+};
+
+EglDevice deviceOf(EGLDeviceEXT handle, PFNEGLQUERYDEVICESTRINGEXTPROC text) {
+  const char* const extensions = text(handle, EGL_EXTENSIONS);
+  const auto has = [&](const char* name) { return extensions && std::strstr(extensions, name); };
+  const auto string = [&](const char* extension, EGLint name) {
+    const char* const value = has(extension) ? text(handle, name) : nullptr;
+    return std::string(value ? value : "");
+  };
+  EglDevice device{.handle = handle, .software = has("EGL_MESA_device_software")};
+  device.card = string("EGL_EXT_device_drm", EGL_DRM_DEVICE_FILE_EXT);
+  device.node = string("EGL_EXT_device_drm_render_node", EGL_DRM_RENDER_NODE_FILE_EXT);
+  device.pci = pciOf(device.node.empty() ? device.card : device.node);
+  return device;
+}
+
+}  // namespace
+
+std::vector<EglDevice> eglDevices() {
+  const auto query =
+      reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
+  const auto text = reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(
+      eglGetProcAddress("eglQueryDeviceStringEXT"));
+  EGLDeviceEXT handles[16];
+  EGLint count = 0;
+  std::vector<EglDevice> devices;
+  if (!query || !text || !query(std::size(handles), handles, &count)) return devices;
+  for (EGLint i = 0; i < count; ++i) devices.push_back(deviceOf(handles[i], text));
+  return devices;
+}
+
+Result<std::unique_ptr<GlContext>> makeEglContext(const EglDevice& device) {
+  return EglContext::make(eglGetPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, device.handle, nullptr),
+                          &device);
+}
+
+Result<std::unique_ptr<GlContext>> makeSurfacelessContext() {
+  return EglContext::make(
+      eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr), nullptr);
+}
+
+}  // namespace merlin::render::gl

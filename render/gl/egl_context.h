@@ -1,0 +1,28 @@
+// Contexts of EGL, and the devices that it lists. Private to render/gl.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/base/result.h"
+#include "render/gl/gl_context.h"
+
+namespace merlin::render::gl {
+
+struct EglDevice {
+  void* handle = nullptr;  // EGLDeviceEXT
+  bool software = false;   // Mesa's software renderer
+  std::string node{};      // DRM render node, or the card's node; empty if unknown
+  std::string card{};      // DRM node of the card's displays; empty if unknown
+  std::string pci{};       // PCI address; empty if unknown
+};
+// In EGL's order; empty if EGL cannot list devices.
+std::vector<EglDevice> eglDevices();
+
+// These create a context that is current on the calling thread. Errors: kUnsupported.
+Result<std::unique_ptr<GlContext>> makeEglContext(const EglDevice& device);
+// On the display that belongs to no device: on it Mesa chooses a GPU, or its software renderer.
+Result<std::unique_ptr<GlContext>> makeSurfacelessContext();
+
+}  // namespace merlin::render::gl

@@ -1,0 +1,39 @@
+// ReadBack: copies a render target's pixels into memory without waiting for the GPU at once:
+// start() while further work is given to the GPU, finish() when the pixels are needed.
+#pragma once
+
+#include <cstdint>
+
+#include "render/gl/gl_api.h"
+#include "render/gl/render_target.h"
+
+namespace merlin::render::gl {
+
+// A pixel buffer on the GPU, and a fence. Thread-bound to its context, which must outlive it.
+class ReadBack {
+ public:
+  explicit ReadBack(const GlApi& gl) : gl_(&gl) {}
+  ReadBack(ReadBack&& other) noexcept;
+  ReadBack& operator=(ReadBack&&) = delete;
+  ReadBack(const ReadBack&) = delete;
+  ReadBack& operator=(const ReadBack&) = delete;
+  ~ReadBack();
+
+  // Begins to copy the upper left width x height pixels of `target`, as they are after all drawing
+  // so far. What start() began before and was not finished is dropped. REQUIRES: they lie within
+  // the target.
+  void start(const RenderTarget& target, int width, int height);
+
+  // Waits until the copy is complete and writes it to `pixels` as RenderTarget::read() does.
+  // REQUIRES: start() was called since the last finish().
+  void finish(std::uint8_t* pixels, int stride_px);
+
+ private:
+  const GlApi* gl_;
+  GLuint buffer_ = 0;
+  GLsync fence_ = nullptr;
+  int width_ = 0, height_ = 0;
+  std::int64_t capacity_ = 0;  // of the buffer [bytes]
+};
+
+}  // namespace merlin::render::gl

@@ -1,0 +1,121 @@
+// On a machine with a GPU: it draws and corrects what the software renderer and the CPU do. On
+// others these tests are skipped. One command: build/dev/bin/gpu_test
+#include <future>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "render/correct/gpu/shader_pass.h"
+#include "render/correct/output_correction.h"
+#include "render/reduce/reduce.h"
+#include "tests/support/corrections.h"
+#include "tests/support/meshes.h"
+#include "tests/support/model_frames.h"
+
+namespace merlin::render {
+namespace {
+
+class GpuTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto made = frame::DrawContexts::make({});
+    ASSERT_TRUE(made) << made.error().what;
+    if ((*made)->own->info().software) {
+      GTEST_SKIP() << "this machine has no GPU that EGL can use; " << (*made)->renderer()
+                   << " would be compared with itself";
+    }
+    contexts_ = *std::move(made);
+    fmt::print("GPU: {}, {}\n", contexts_->renderer(), contexts_->own->info().driver);
+  }
+
+  std::shared_ptr<const frame::DrawContexts> contexts_;
+};
+
+lod::Dendrogram coloured() {
+  mesh::Mesh mesh = test::noisyGrid(120, 60, 0.3, 5);
+  mesh::ensureNormals(mesh);
+  mesh::Feature colour{"colour", 3, {}};
+  for (const float x : mesh.features[0].values) colour.values.push_back(0.5F + 0.5F * x);
+  mesh.features.push_back(std::move(colour));
+  return lod::buildDendrogram(mesh, reduce::reduce(mesh, {})->log);
+}
+
+Eigen::Isometry3f viewOf(int k) {
+  Eigen::Isometry3f T_eye_model(
+      Eigen::Translation3f(0.1F, 0.05F, -1.2F - 0.2F * static_cast<float>(k)));
+  T_eye_model.rotate(Eigen::AngleAxisf(0.3F * static_cast<float>(k), Eigen::Vector3f::UnitY()));
+  return T_eye_model;
+}
+
+// Counts the pixels of which a channel differs by more than `most` of 255.
+int pixelsBeyond(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b, int most) {
+  int count = 0;
+  for (std::size_t i = 0; i < a.size(); i += 4) {
+    bool beyond = false;
+    for (std::size_t c = 0; c < 3; ++c) beyond |= std::abs(int{a[i + c]} - int{b[i + c]}) > most;
+    count += beyond ? 1 : 0;
+  }
+  return count;
+}
+
+using Frame = std::vector<std::uint8_t>;
+
+// Four views, each at full detail and coarse, drawn in a thread that has this context alone.
+std::vector<Frame> framesOf(const lod::Dendrogram& model, const gl::GlSettings& settings) {
+  return std::async(std::launch::async,
+                    [&] {
+                      const auto plan = *tiles::planTiles({});
+                      const SystemClock clock;
+                      const auto renderer =
+                          *test::rendererOf(model, plan, {.gl = settings}, 2.0, clock);
+                      std::vector<Frame> frames;
+                      for (int k = 0; k < 4; ++k) {
+                        for (const std::size_t step : {std::size_t{0}, model.levelFor(2000)}) {
+                          renderer->draw({.T_eye_content = viewOf(k), .step = step});
+                          frames.emplace_back(renderer->pixels().begin(), renderer->pixels().end());
+                        }
+                      }
+                      return frames;
+                    })
+      .get();
+}
+
+TEST_F(GpuTest, DrawsTheSoftwareRenderersPictures) {
+  const lod::Dendrogram model = coloured();
+  const auto gpu = framesOf(model, {}), software = framesOf(model, {.gpu = gl::kNoGpu});
+  for (std::size_t i = 0; i < gpu.size(); ++i) {
+    const double pixels = static_cast<double>(gpu[i].size()) / 4;
+    const int beyond = pixelsBeyond(gpu[i], software[i], 2);
+    EXPECT_LE(beyond, 0.001 * pixels) << "frame " << i;
+    fmt::print("frame {}: {:.4f} % of the pixels differ by more than 2 of 255\n", i,
+               100 * beyond / pixels);
+  }
+}
+
+TEST_F(GpuTest, ReadsBackTheSamePixelsInBothWays) {
+  const lod::Dendrogram model = coloured();
+  EXPECT_TRUE(contexts_->asynchronous);
+  EXPECT_EQ(contexts_->other, nullptr) << "one context is enough for a GPU";
+  EXPECT_EQ(framesOf(model, {}), framesOf(model, {.read_back = gl::ReadBackMode::kDirect}));
+}
+
+TEST_F(GpuTest, CorrectsAsTheCpuDoesWithin1Of255) {
+  correct::ShaderPass pass;
+  ASSERT_TRUE(pass.begin(*contexts_->own));
+  const auto map =
+      correct::makeCorrectionMap(test::everything(), test::kWidth, test::kHeight, nullptr, 1);
+  const auto picture = test::noise(test::kWidth, test::kHeight);
+  std::vector<std::uint8_t> signal(picture.size());
+  ASSERT_TRUE(pass.run(std::make_shared<const correct::CorrectionMap>(map), picture, signal))
+      << pass.fault();
+  correct::OutputCorrection cpu(map, 1);
+  const auto expected = cpu.apply({test::kWidth, test::kHeight, picture});
+  EXPECT_EQ(pixelsBeyond(signal, expected.pixels, 1), 0);
+  pass.end();
+}
+
+}  // namespace
+}  // namespace merlin::render
