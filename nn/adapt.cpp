@@ -43,10 +43,10 @@ std::vector<Sample> rehearse(const WhitenedSpace& space, std::size_t each, Rando
   return samples;
 }
 
-double shareRight(Phi phi, const Lanes<float>& weights, std::span<const Sample> samples,
+double shareRight(Phi phi, const PackedWeights<float>& weights, std::span<const Sample> samples,
                   std::span<const std::uint32_t> codes) {
   std::size_t right = 0;
-  LanePass<float> pass;
+  PackedPass<float> pass;
   for (const Sample& s : samples) {
     propagate(phi, weights, s.u.data(), pass);
     Output output;
@@ -56,8 +56,9 @@ double shareRight(Phi phi, const Lanes<float>& weights, std::span<const Sample> 
   return static_cast<double>(right) / static_cast<double>(std::max<std::size_t>(samples.size(), 1));
 }
 
-Lanes<float> between(const Lanes<float>& from, const Lanes<float>& to, double share) {
-  Lanes<float> mixed = from;
+PackedWeights<float> between(const PackedWeights<float>& from, const PackedWeights<float>& to,
+                             double share) {
+  PackedWeights<float> mixed = from;
   for (std::size_t i = 0; i < mixed.all.size(); ++i)
     mixed.all[i] += static_cast<float>(share) * (to.all[i] - from.all[i]);
   return mixed;
@@ -104,7 +105,7 @@ Result<Adapted> adapt(const PostureNetwork& network, const PostureStatistics& st
   std::vector<Sample> both = known;
   for (std::size_t n = 0; n < known.size() / 2; ++n)  // two drawn hands for each new one
     both.push_back((*samples)[random.below(samples->size())]);
-  const Lanes<float> before = space.unfold(network.weights);
+  const PackedWeights<float> before = space.unfold(network.weights);
   Descending at;
   at.weights = before;
   Descent descent(network.phi, both, space.means(), Random(random.next()));
@@ -118,7 +119,7 @@ Result<Adapted> adapt(const PostureNetwork& network, const PostureStatistics& st
   done.drawn_before = shareRight(network.phi, before, held_out, codes);
   done.hands_before = shareRight(network.phi, before, *samples, codes);
   for (const double share : kShares) {
-    const Lanes<float> weights = between(before, at.weights, share);
+    const PackedWeights<float> weights = between(before, at.weights, share);
     const double drawn_after = shareRight(network.phi, weights, held_out, codes);
     if (share > 0 && drawn_after < done.drawn_before - kMostForgotten) break;
     done.share = share;

@@ -52,7 +52,7 @@ double Descent::pass(Descending& at, std::span<const std::uint32_t> codes, float
   const std::size_t all = std::clamp(samples_.size(), kFewest, kMost);
   double error = 0;
   for (std::size_t done = 0; done < all;) {
-    Lanes<float> gradient;
+    PackedWeights<float> gradient;
     const std::size_t size = std::min(kBatch, all - done);
     for (std::size_t n = 0; n < size; ++n) {
       if (next_ == order_.size()) {
@@ -72,7 +72,7 @@ double Descent::pass(Descending& at, std::span<const std::uint32_t> codes, float
   return error / static_cast<double>(all * kOutputs);
 }
 
-void Descent::step(Descending& at, const Lanes<float>& gradient, float rate) {
+void Descent::step(Descending& at, const PackedWeights<float>& gradient, float rate) {
   at.first_power *= kFirst;
   at.second_power *= kSecond;
   const float first = 1 / (1 - at.first_power), second = 1 / (1 - at.second_power);
@@ -85,10 +85,11 @@ void Descent::step(Descending& at, const Lanes<float>& gradient, float rate) {
   }
 }
 
-std::vector<std::array<double, kOutputs>> Descent::meanOutputs(const Lanes<float>& weights) const {
+std::vector<std::array<double, kOutputs>> Descent::meanOutputs(
+    const PackedWeights<float>& weights) const {
   std::vector<std::array<double, kOutputs>> mean(means_.size());
   std::vector<double> count(means_.size(), 0.0);
-  LanePass<float> pass;
+  PackedPass<float> pass;
   for (const Sample& sample : samples_) {
     propagate(phi_, weights, sample.u.data(), pass);
     for (std::size_t k = 0; k < kOutputs; ++k)
@@ -101,10 +102,10 @@ std::vector<std::array<double, kOutputs>> Descent::meanOutputs(const Lanes<float
   return mean;
 }
 
-double meanError(Phi phi, std::span<const Sample> samples, const Lanes<float>& weights,
+double meanError(Phi phi, std::span<const Sample> samples, const PackedWeights<float>& weights,
                  std::span<const std::uint32_t> codes) {
   double error = 0;
-  LanePass<float> pass;
+  PackedPass<float> pass;
   for (const Sample& sample : samples) {
     propagate(phi, weights, sample.u.data(), pass);
     for (std::size_t k = 0; k < kOutputs; ++k) {

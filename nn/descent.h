@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "daemon/base/random.h"
-#include "nn/lanes.h"
+#include "nn/packed_weights.h"
 
 namespace merlin::nn {
 
@@ -18,7 +18,7 @@ struct Sample {
 // The state of a descent. Adam: D. P. Kingma, J. Ba, 2015; weight decay apart from the gradient:
 // I. Loshchilov, F. Hutter, 2019.
 struct Descending {
-  Lanes<float> weights, first, second;      // weights and the moments of their gradient
+  PackedWeights<float> weights, first, second;  // weights and the moments of their gradient
   float first_power = 1, second_power = 1;  // powers of Adam's decay rates, for its bias correction
 };
 
@@ -35,10 +35,10 @@ class Descent {
               float shrink);
 
   // Returns the mean outputs of each posture's hands, without noise.
-  std::vector<std::array<double, kOutputs>> meanOutputs(const Lanes<float>& weights) const;
+  std::vector<std::array<double, kOutputs>> meanOutputs(const PackedWeights<float>& weights) const;
 
  private:
-  void step(Descending& at, const Lanes<float>& gradient, float rate);
+  void step(Descending& at, const PackedWeights<float>& gradient, float rate);
   Input stray(const Sample& sample, float noise, float shrink);
 
   Phi phi_;
@@ -51,7 +51,7 @@ class Descent {
 };
 
 // Returns the mean squared error of [GOU] A.5.3 without noise; 0 if there are no samples.
-double meanError(Phi phi, std::span<const Sample> samples, const Lanes<float>& weights,
+double meanError(Phi phi, std::span<const Sample> samples, const PackedWeights<float>& weights,
                  std::span<const std::uint32_t> codes);
 
 }  // namespace merlin::nn

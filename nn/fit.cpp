@@ -130,7 +130,7 @@ class Fit {
   // Trains with a falling rate and keeps the network that was best on the validation hands.
   void descend(Start& s, Descent& descent) {
     double least = std::numeric_limits<double>::infinity();
-    Lanes<float> best = s.at.weights;
+    PackedWeights<float> best = s.at.weights;
     std::size_t looks = 0;
     const std::size_t settled = settings_.passes * 4 / 5;
     for (std::size_t i = 0; i < settings_.passes && !stopped_; ++i) {

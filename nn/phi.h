@@ -12,20 +12,20 @@
 #include <numbers>
 #include <type_traits>
 
+#include "daemon/base/simd.h"
 #include "nn/network.h"
 
 namespace merlin::nn {
 
-// Vectors of `Bytes` bytes, 16 or 32, written out since g++ 12 vectorises these polynomials only in
-// part. They work in place and are always inlined: a vector of 32 bytes cannot be passed between
-// functions that are compiled for different processors.
-template <int Bytes>
-struct Vectors {
-  typedef float Floats __attribute__((vector_size(Bytes), may_alias));
-  typedef std::uint32_t Words __attribute__((vector_size(Bytes), may_alias));
+// Phi of vectors of `bytes` bytes, 16 or 32, in place; written out since g++ 12 vectorises these
+// polynomials only in part.
+template <std::size_t bytes>
+struct PhiVectors {
+  using Floats = simd::Vector<float, bytes>;
+  using Words = simd::Vector<std::uint32_t, bytes>;
 
   // Replaces t by e^t. |t| is limited to 87, beyond which a float's Phi is 0 or 1. A NaN stays.
-  [[gnu::always_inline]] static void toExp(Floats& t) noexcept {
+  MERLIN_INLINE static void toExp(Floats& t) noexcept {
     constexpr float kRound = 12582912.0F;  // 1.5 * 2^23: adding it leaves whole numbers
     const Floats least = Floats{} - 87.0F, most = Floats{} + 87.0F;
     Floats held = t < least ? least : t;
@@ -38,11 +38,11 @@ struct Vectors {
     const Floats low = r * 1.6666665459e-1F + 5.0000001201e-1F;
     const Floats power = (high * (r2 * r2) + (middle * r2 + low)) * r2 + r + 1.0F;
     // Multiply by 2^n; n is in the low bits of `shifted`, so that a NaN needs no special case.
-    const Words bits = ((Words)shifted - 0x4B400000U + 127U) << 23;
-    t = power * (Floats)bits;
+    const Words bits = (reinterpret_cast<Words>(shifted) - 0x4B400000U + 127U) << 23;
+    t = power * reinterpret_cast<Floats>(bits);
   }
 
-  [[gnu::always_inline]] static void toAtan(Floats& t) noexcept {
+  MERLIN_INLINE static void toAtan(Floats& t) noexcept {
     const Floats zero{}, one = zero + 1.0F;
     const Floats a = t < zero ? -t : t;
     const Floats far = zero + 2.414213562F, middle = zero + 0.414213562F;
@@ -59,7 +59,7 @@ struct Vectors {
 
   // Replaces t by Phi(t).
   template <Phi kPhi>
-  [[gnu::always_inline]] static void toPhi(Floats& t) noexcept {
+  MERLIN_INLINE static void toPhi(Floats& t) noexcept {
     const Floats zero{}, one = zero + 1.0F;
     if constexpr (kPhi == Phi::kSigmoid) {
       t = -t;
@@ -75,8 +75,8 @@ struct Vectors {
   }
 
   template <Phi kPhi, std::size_t N>
-  [[gnu::always_inline]] static void activate(const float* sums, float* values) noexcept {
-    constexpr std::size_t kAtOnce = Bytes / sizeof(float);
+  MERLIN_INLINE static void activate(const float* sums, float* values) noexcept {
+    constexpr std::size_t kAtOnce = bytes / sizeof(float);
     constexpr std::size_t kWhole = N / kAtOnce * kAtOnce, kRest = (N - kWhole) * sizeof(float);
     Floats some{};
 #pragma GCC unroll 4
@@ -94,8 +94,8 @@ struct Vectors {
 };
 
 inline float expOf(float t) noexcept {
-  Vectors<16>::Floats four = {t, t, t, t};
-  Vectors<16>::toExp(four);
+  PhiVectors<16>::Floats four = {t, t, t, t};
+  PhiVectors<16>::toExp(four);
   return four[0];
 }
 
@@ -109,10 +109,10 @@ inline double phiOf(Phi phi, double sum) noexcept {
 }
 
 // values = Phi(sums) for `N` nodes.
-template <typename Real, std::size_t N, int Bytes = 16>
-[[gnu::always_inline]] inline void activate(Phi phi, const Real* sums, Real* values) noexcept {
+template <typename Real, std::size_t N, std::size_t bytes = 16>
+MERLIN_INLINE void activate(Phi phi, const Real* sums, Real* values) noexcept {
   if constexpr (std::is_same_v<Real, float>) {
-    using V = Vectors<Bytes>;
+    using V = PhiVectors<bytes>;
     switch (phi) {
       case Phi::kSigmoid: return V::template activate<Phi::kSigmoid, N>(sums, values);
       case Phi::kSignum: return V::template activate<Phi::kSignum, N>(sums, values);

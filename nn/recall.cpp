@@ -1,12 +1,8 @@
 #include "nn/recall.h"
 
 #include <algorithm>
-#include <array>
 
-#if defined(__x86_64__)
-#include <immintrin.h>
-#endif
-
+#include "daemon/base/simd.h"
 #include "nn/phi.h"
 
 namespace merlin::nn {
@@ -16,94 +12,61 @@ namespace {
 // of additions run in parallel.
 constexpr std::size_t kApart = 2;
 
-typedef double Pair __attribute__((vector_size(16), may_alias));
+MERLIN_INLINE auto join(const simd::Vector<float, 8>& a, const simd::Vector<float, 8>& b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3);
+}
+MERLIN_INLINE auto join(const simd::Vector<float, 16>& a, const simd::Vector<float, 16>& b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
 
-// The biases are in the row after the last input.
-template <std::size_t Rows, std::size_t Width>
-void sumRows(const double* w, const float* x, float* sums) noexcept {
-  constexpr std::size_t kPairs = Width / 2;
-  const auto* bias = reinterpret_cast<const Pair*>(w + Rows * Width);
-  Pair all[kPairs];
-  for (std::size_t a = 0; a < kApart; ++a) {
-    Pair sum[kPairs] = {};
-    if (a == 0) std::copy_n(bias, kPairs, sum);
-    for (std::size_t i = a; i < Rows; i += kApart) {
-      const auto* row = reinterpret_cast<const Pair*>(w + i * Width);
+// Processes nodes in vectors of `bytes` bytes. The biases are in the row after the last input.
+template <std::size_t bytes, std::size_t rows, std::size_t width>
+MERLIN_INLINE void sumRows(const double* w, const float* x, float* sums) noexcept {
+  using Doubles = simd::Vector<double, bytes>;
+  using Singles = simd::Vector<float, bytes / 2>;
+  constexpr std::size_t kNodes = bytes / sizeof(double), kVectors = width / kNodes;
+  Doubles sum[kApart][kVectors] = {};
 #pragma GCC unroll 8
-      for (std::size_t v = 0; v < kPairs; ++v) sum[v] += row[v] * static_cast<double>(x[i]);
-    }
-    for (std::size_t v = 0; v < kPairs; ++v) all[v] = a == 0 ? sum[v] : all[v] + sum[v];
-  }
-  const auto* sum = reinterpret_cast<const double*>(all);
-  for (std::size_t j = 0; j < Width; ++j) sums[j] = static_cast<float>(sum[j]);
-}
-
-void pass(Phi phi, const Lanes<double>& lanes, const float* x, LanePass<float>& b) noexcept {
-  sumRows<kInputs, kHiddenLanes>(lanes.hidden(0), x, b.hidden_sum.data());
-  activate<float, kHiddenLanes>(phi, b.hidden_sum.data(), b.hidden.data());
-  sumRows<kHidden, kOutputLanes>(lanes.output(0), b.hidden.data(), b.output_sum.data());
-  activate<float, kOutputLanes>(phi, b.output_sum.data(), b.output.data());
-}
-
-#if defined(__x86_64__)
-// Processes four nodes at a time with fused multiply-add.
-template <std::size_t Rows, std::size_t Width>
-[[gnu::target("avx2,fma"), gnu::always_inline]] inline void sumRowsWide(const double* w,
-                                                                        const double* x,
-                                                                        float* sums) noexcept {
-  constexpr std::size_t kFours = Width / 4;
-  __m256d sum[kApart][kFours];
-#pragma GCC unroll 4
-  for (std::size_t v = 0; v < kFours; ++v) {
-    sum[0][v] = _mm256_load_pd(w + Rows * Width + 4 * v);
-    sum[1][v] = _mm256_setzero_pd();
-  }
+  for (std::size_t v = 0; v < kVectors; ++v)
+    sum[0][v] = simd::loadAs<Doubles>(w + rows * width + kNodes * v);
 #pragma GCC unroll 24
-  for (std::size_t i = 0; i < Rows; ++i) {
-#pragma GCC unroll 4
-    for (std::size_t v = 0; v < kFours; ++v) {
-      const __m256d row = _mm256_load_pd(w + i * Width + 4 * v);
-      sum[i % kApart][v] = _mm256_fmadd_pd(row, _mm256_broadcast_sd(x + i), sum[i % kApart][v]);
+  for (std::size_t i = 0; i < rows; ++i) {
+    Doubles(&to)[kVectors] = sum[i % kApart];
+#pragma GCC unroll 8
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      const auto row = simd::loadAs<Doubles>(w + i * width + kNodes * v);
+      to[v] = simd::addExact(to[v], row, static_cast<double>(x[i]));
     }
   }
-#pragma GCC unroll 2
-  for (std::size_t v = 0; v < kFours; v += 2) {
-    const __m128 low = _mm256_cvtpd_ps(sum[0][v] + sum[1][v]);
-    const __m128 high = _mm256_cvtpd_ps(sum[0][v + 1] + sum[1][v + 1]);
-    _mm256_store_ps(sums + 4 * v, _mm256_set_m128(high, low));
+#pragma GCC unroll 4
+  for (std::size_t v = 0; v < kVectors; v += 2) {
+    const Singles low = __builtin_convertvector(sum[0][v] + sum[1][v], Singles);
+    const Singles high = __builtin_convertvector(sum[0][v + 1] + sum[1][v + 1], Singles);
+    const auto both = join(low, high);
+    std::memcpy(sums + kNodes * v, &both, sizeof both);
   }
 }
 
-// Converts the inputs to double once for all nodes.
-template <std::size_t N>
-[[gnu::target("avx2,fma"), gnu::always_inline]] inline void widen(const float* x,
-                                                                  double* wide) noexcept {
-  constexpr std::size_t kWhole = N / 4 * 4;
-#pragma GCC unroll 6
-  for (std::size_t i = 0; i < kWhole; i += 4)
-    _mm256_store_pd(wide + i, _mm256_cvtps_pd(_mm_loadu_ps(x + i)));
-#pragma GCC unroll 3
-  for (std::size_t i = kWhole; i < N; ++i) wide[i] = static_cast<double>(x[i]);
+template <std::size_t bytes>
+MERLIN_INLINE void pass(Phi phi, const PackedWeights<double>& weights, const float* x,
+                        PackedPass<float>& b) noexcept {
+  sumRows<bytes, kInputs, kHiddenWidth>(weights.hidden(0), x, b.hidden_sum.data());
+  activate<float, kHiddenWidth, bytes>(phi, b.hidden_sum.data(), b.hidden.data());
+  sumRows<bytes, kHidden, kOutputWidth>(weights.output(0), b.hidden.data(), b.output_sum.data());
+  activate<float, kOutputWidth, bytes>(phi, b.output_sum.data(), b.output.data());
 }
 
-[[gnu::target("avx2,fma")]] void passWide(Phi phi, const Lanes<double>& lanes, const float* x,
-                                          LanePass<float>& b) noexcept {
-  alignas(32) std::array<double, kInputs + 1> wide;  // NOLINT: filled by widen
-  widen<kInputs>(x, wide.data());
-  sumRowsWide<kInputs, kHiddenLanes>(lanes.hidden(0), wide.data(), b.hidden_sum.data());
-  activate<float, kHiddenLanes, 32>(phi, b.hidden_sum.data(), b.hidden.data());
-  widen<kHiddenLanes>(b.hidden.data(), wide.data());
-  sumRowsWide<kHidden, kOutputLanes>(lanes.output(0), wide.data(), b.output_sum.data());
-  activate<float, kOutputLanes, 32>(phi, b.output_sum.data(), b.output.data());
+void passPlain(Phi phi, const PackedWeights<double>& weights, const float* x,
+               PackedPass<float>& b) noexcept {
+  pass<16>(phi, weights, x, b);
 }
 
-bool hasWide() noexcept { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
-#else
-bool hasWide() noexcept { return false; }
-void passWide(Phi, const Lanes<double>&, const float*, LanePass<float>&) noexcept {}
-#endif
+MERLIN_WIDE void passWide(Phi phi, const PackedWeights<double>& weights, const float* x,
+                          PackedPass<float>& b) noexcept {
+  pass<32>(phi, weights, x, b);
+}
 
-Output outputsOf(const LanePass<float>& b) noexcept {
+Output outputsOf(const PackedPass<float>& b) noexcept {
   Output output;  // NOLINT: filled next
   std::copy_n(b.output.begin(), kOutputs, output.begin());
   return output;
@@ -112,20 +75,19 @@ Output outputsOf(const LanePass<float>& b) noexcept {
 }  // namespace
 
 Recall::Recall(Phi phi, const Weights& weights) noexcept : phi_(phi) {
-  const Lanes<float> lanes = toLanes(weights);
-  std::copy(lanes.all.begin(), lanes.all.end(), lanes_.all.begin());
+  const PackedWeights<float> packed = pack(weights);
+  std::copy(packed.all.begin(), packed.all.end(), packed_.all.begin());
 }
 
 Output Recall::operator()(const Input& x) const noexcept {
-  if (!hasWide()) return portably(x);
-  LanePass<float> b;  // NOLINT: filled by passWide
-  passWide(phi_, lanes_, x.data(), b);
+  PackedPass<float> b;  // NOLINT: filled next
+  simd::pick(passWide, passPlain)(phi_, packed_, x.data(), b);
   return outputsOf(b);
 }
 
 Output Recall::portably(const Input& x) const noexcept {
-  LanePass<float> b;  // NOLINT: filled by pass
-  pass(phi_, lanes_, x.data(), b);
+  PackedPass<float> b;  // NOLINT: filled next
+  passPlain(phi_, packed_, x.data(), b);
   return outputsOf(b);
 }
 

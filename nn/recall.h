@@ -1,8 +1,8 @@
 // Recall: the fast forward pass for the glove's device thread. Pure.
 #pragma once
 
-#include "nn/lanes.h"
 #include "nn/network.h"
+#include "nn/packed_weights.h"
 
 namespace merlin::nn {
 
@@ -24,7 +24,7 @@ class Recall {
 
  private:
   Phi phi_;
-  Lanes<double> lanes_;
+  PackedWeights<double> packed_;
 };
 
 }  // namespace merlin::nn

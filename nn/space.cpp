@@ -137,8 +137,8 @@ std::vector<std::vector<double>> WhitenedSpace::likeness() const {
   return like;
 }
 
-Weights WhitenedSpace::fold(const Lanes<float>& in_space) const {
-  Weights weights = fromLanes(in_space);
+Weights WhitenedSpace::fold(const PackedWeights<float>& in_space) const {
+  Weights weights = unpack(in_space);
   for (auto& row : weights.hidden) {
     std::array<double, kInputs> folded{};
     double bias = static_cast<double>(row[kInputs]);
@@ -153,7 +153,7 @@ Weights WhitenedSpace::fold(const Lanes<float>& in_space) const {
   return weights;
 }
 
-Lanes<float> WhitenedSpace::unfold(const Weights& weights) const {
+PackedWeights<float> WhitenedSpace::unfold(const Weights& weights) const {
   Weights in_space = weights;
   for (auto& row : in_space.hidden) {
     std::array<double, kInputs> unfolded{};
@@ -166,7 +166,7 @@ Lanes<float> WhitenedSpace::unfold(const Weights& weights) const {
     for (std::size_t i = 0; i < kInputs; ++i) row[i] = static_cast<float>(unfolded[i]);
     row[kInputs] = static_cast<float>(bias);
   }
-  return toLanes(in_space);
+  return pack(in_space);
 }
 
 }  // namespace merlin::nn

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "nn/data_set.h"
-#include "nn/lanes.h"
+#include "nn/packed_weights.h"
 
 namespace merlin::nn {
 
@@ -47,8 +47,8 @@ class WhitenedSpace {
   const std::vector<Input>& means() const noexcept { return means_; }  // the postures' means in u
 
   // Converts weights for inputs u into weights for inputs x, and back. Unused slots get 0.
-  Weights fold(const Lanes<float>& in_space) const;
-  Lanes<float> unfold(const Weights& weights) const;
+  Weights fold(const PackedWeights<float>& in_space) const;
+  PackedWeights<float> unfold(const Weights& weights) const;
 
  private:
   using Matrix = std::array<std::array<double, kInputs>, kInputs>;

@@ -46,9 +46,10 @@ VectorXd plane(const MatrixXd& means, const VectorXd& target, const VectorXd& we
 
 }  // namespace
 
-Lanes<float> startingWeights(std::span<const Input> means, std::span<const std::uint32_t> codes,
-                             float sigma, Random& random) {
-  Lanes<float> lanes;
+PackedWeights<float> startingWeights(std::span<const Input> means,
+                                     std::span<const std::uint32_t> codes, float sigma,
+                                     Random& random) {
+  PackedWeights<float> packed;
   const MatrixXd points = withOnes(means);
   const double variance = static_cast<double>(sigma) * static_cast<double>(sigma);
   const auto postures = static_cast<Eigen::Index>(means.size());
@@ -67,16 +68,16 @@ Lanes<float> startingWeights(std::span<const Input> means, std::span<const std::
       }
       weight *= static_cast<double>(postures) / weight.sum();
       for (std::size_t i = 0; i <= kInputs; ++i)
-        lanes.hidden(i)[node] =
+        packed.hidden(i)[node] =
             static_cast<float>(w(static_cast<Eigen::Index>(i)) +
                                (i < kInputs ? kHiddenJitter * random.uniform(-0.2, 0.2) : 0.0));
       for (std::size_t k = 0; k < kOutputs; ++k)
-        lanes.output(node)[k] = static_cast<float>(kOutputJitter * random.uniform(-1, 1) +
-                                                   (k == b ? kOutputWeight : 0.0));
+        packed.output(node)[k] = static_cast<float>(kOutputJitter * random.uniform(-1, 1) +
+                                                    (k == b ? kOutputWeight : 0.0));
     }
-    lanes.output(kHidden)[b] = static_cast<float>(-kOutputWeight * kNodes / 2);
+    packed.output(kHidden)[b] = static_cast<float>(-kOutputWeight * kNodes / 2);
   }
-  return lanes;
+  return packed;
 }
 
 }  // namespace merlin::nn

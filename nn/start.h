@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "daemon/base/random.h"
-#include "nn/lanes.h"
+#include "nn/packed_weights.h"
 
 namespace merlin::nn {
 
@@ -13,7 +13,8 @@ namespace merlin::nn {
 // the postures' means in whitened coordinates. A posture that is still on the wrong side gets more
 // weight (boosting, Freund and Schapire 1997). All other weights are small and random.
 // `sigma`: standard deviation of a posture's hands.
-Lanes<float> startingWeights(std::span<const Input> means, std::span<const std::uint32_t> codes,
-                             float sigma, Random& random);
+PackedWeights<float> startingWeights(std::span<const Input> means,
+                                     std::span<const std::uint32_t> codes, float sigma,
+                                     Random& random);
 
 }  // namespace merlin::nn

@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <cstring>
 
-#include "render/correct/lanes.h"
+#include "daemon/base/simd.h"
+#include "render/correct/power.h"
 
 namespace merlin::render::correct {
 namespace {
 
-using namespace lanes;
+using namespace simd;
 
 struct Colour {
-  Reals channel[3];
+  Floats channel[3];
 };
 
 // Loads two neighbouring pixels at each of eight positions; returns the eight left and the eight
@@ -20,6 +21,7 @@ struct TwoPixels {
   Ints left, right;
 };
 MERLIN_INLINE TwoPixels pairsAt(const std::uint8_t* picture, const Ints& index) {
+  using Pairs = Vector<std::uint64_t, 32>;
   const auto at = [&](int k) {
     std::uint64_t two;
     std::memcpy(&two, picture + std::ptrdiff_t{4} * index[k], sizeof two);
@@ -38,18 +40,18 @@ MERLIN_INLINE Colour filtered(const CorrectionMap& map, const std::uint8_t* pict
   // The last column and row are only read as the second pixel of a pair, so nothing beyond is read.
   const Ints column = least(x >> 8, all(map.source_width - 2));
   const Ints row = least(y >> 8, all(map.source_height - 2));
-  const Reals fx = real(x - (column << 8)) * (1.0F / CorrectionMap::kOne);
-  const Reals fy = real(y - (row << 8)) * (1.0F / CorrectionMap::kOne);
+  const Floats fx = toFloats(x - (column << 8)) * (1.0F / CorrectionMap::kOne);
+  const Floats fy = toFloats(y - (row << 8)) * (1.0F / CorrectionMap::kOne);
   const Ints index = row * map.source_width + column;
   const TwoPixels upper = pairsAt(picture, index);
   const TwoPixels lower = pairsAt(picture + std::ptrdiff_t{4} * map.source_width, index);
   Colour colour{};
   for (int c = 0; c < 3; ++c) {
     const auto of = [&](const Ints& pixel) __attribute__((always_inline)) {
-      return real((pixel >> (8 * c)) & 255);
+      return toFloats((pixel >> (8 * c)) & 255);
     };
-    const Reals a = of(upper.left), b = of(lower.left);
-    const Reals top = a + fx * (of(upper.right) - a), bottom = b + fx * (of(lower.right) - b);
+    const Floats a = of(upper.left), b = of(lower.left);
+    const Floats top = a + fx * (of(upper.right) - a), bottom = b + fx * (of(lower.right) - b);
     colour.channel[c] = top + fy * (bottom - top);
   }
   return colour;
@@ -58,18 +60,18 @@ MERLIN_INLINE Colour filtered(const CorrectionMap& map, const std::uint8_t* pict
 // Steps 2 to 6 of the formula; values 0..255.
 MERLIN_INLINE Colour corrected(const CorrectionMap& map, const Colour& in, std::size_t entry) {
   const Light& l = map.light;
-  const Reals root = real(load(&map.gain[entry])) * (1.0F / CorrectionMap::kFullShare);
-  const Reals gain = root * root;
-  const Reals black = real(load(&map.black[entry])) * (1.0F / CorrectionMap::kFullShare);
-  const Reals headroom = greatest(black, all(l.least_headroom));
-  Reals light[3];
+  const Floats root = toFloats(load(&map.gain[entry])) * (1.0F / CorrectionMap::kFullShare);
+  const Floats gain = root * root;
+  const Floats black = toFloats(load(&map.black[entry])) * (1.0F / CorrectionMap::kFullShare);
+  const Floats headroom = greatest(black, all(l.least_headroom));
+  Floats light[3];
   for (int c = 0; c < 3; ++c) light[c] = power(in.channel[c] * (1.0F / 255), l.gamma);
   Colour out{};
   for (std::size_t c = 0; c < 3; ++c) {
     const float* m = &l.matrix[3 * c];
-    const Reals mixed = greatest(m[0] * light[0] + m[1] * light[1] + m[2] * light[2], all(0.0F));
-    const Reals lift = black * l.black[c];
-    const Reals sum =
+    const Floats mixed = greatest(m[0] * light[0] + m[1] * light[1] + m[2] * light[2], all(0.0F));
+    const Floats lift = black * l.black[c];
+    const Floats sum =
         least(mixed * l.gain[c], all(1.0F)) * gain * (1.0F - headroom * l.black[c]) + lift;
     out.channel[c] = power(least(sum, all(1.0F)), l.encode[c]) * 255.0F;
   }
@@ -78,7 +80,7 @@ MERLIN_INLINE Colour corrected(const CorrectionMap& map, const Colour& in, std::
 
 MERLIN_INLINE Ints packed(const Colour& colour) {
   Ints pixel = all(static_cast<std::int32_t>(0xFF000000U));
-  for (int c = 0; c < 3; ++c) pixel |= whole(colour.channel[c] + 0.5F) << (8 * c);
+  for (int c = 0; c < 3; ++c) pixel |= toInts(colour.channel[c] + 0.5F) << (8 * c);
   return pixel;
 }
 
@@ -120,11 +122,6 @@ MERLIN_WIDE void wideRows(const CorrectionMap& map, const std::uint8_t* picture,
 
 CorrectRows portableRowCorrector() { return portableRows; }
 
-CorrectRows rowCorrector() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return wideRows;
-#endif
-  return portableRows;
-}
+CorrectRows rowCorrector() { return pick(wideRows, portableRows); }
 
 }  // namespace merlin::render::correct

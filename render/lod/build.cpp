@@ -1,11 +1,12 @@
-// Builds the Dendrogram of a reduction: gathers all rows in the order of their death, latest first.
+// Builds the Dendrogram of a reduction: gathers all rows in the order of their removal, last one
+// first.
 #include <algorithm>
 #include <cassert>
 #include <memory>
 
 #include "daemon/base/blocks.h"
-#include "render/lod/death_order.h"
 #include "render/lod/dendrogram.h"
+#include "render/lod/removal_order.h"
 
 namespace merlin::render::lod {
 namespace {
@@ -19,7 +20,7 @@ struct Storage {
 };
 
 std::vector<float> gather(const std::vector<float>& leaves, const std::vector<float>& inner,
-                          std::size_t dimension, const DeathOrder& order) {
+                          std::size_t dimension, const RemovalOrder& order) {
   std::vector<float> rows(leaves.size() + inner.size());
   for (std::size_t n = 0; n < order.nodeCount(); ++n) {
     const std::size_t at = order.nodeOf(n) * dimension;
@@ -32,7 +33,7 @@ std::vector<float> gather(const std::vector<float>& leaves, const std::vector<fl
 }  // namespace
 
 Dendrogram buildDendrogram(const mesh::Mesh& mesh, const CollapseLog& log) {
-  const DeathOrder order(mesh, log, threadsOr(0));
+  const RemovalOrder order(mesh, log, threadsOr(0));
   const std::size_t collapses = log.children.size(), vertices = mesh.vertexCount();
   auto s = std::make_shared<Storage>();
   s->positions = gather(mesh.positions, log.positions, 3, order);

@@ -23,16 +23,17 @@ std::size_t Clusters::trianglesAt(std::size_t cluster, std::size_t level) const 
   return prefix(step, 2 * cluster, alive_[level]) + prefix(step, 2 * cluster + 1, alive_[level]);
 }
 
-std::uint32_t* Clusters::chaseTo(std::size_t level, const std::uint32_t* from, std::size_t corners,
-                                 std::uint32_t* out) const noexcept {
-  chase_all_(forest_, aliveBelow(level), from, corners, out);
+std::uint32_t* Clusters::replaceAt(std::size_t level, const std::uint32_t* from,
+                                   std::size_t corners, std::uint32_t* out) const noexcept {
+  find_alive_ancestors_(forest_, aliveBelow(level), from, corners, out);
   return out + corners;
 }
 
-std::uint32_t* Clusters::chaseEach(std::span<const std::uint32_t> levels, const std::uint32_t* from,
-                                   std::size_t corners, std::uint32_t* out) const noexcept {
+std::uint32_t* Clusters::replaceEach(std::span<const std::uint32_t> levels,
+                                     const std::uint32_t* from, std::size_t corners,
+                                     std::uint32_t* out) const noexcept {
   for (std::size_t i = 0; i < corners; ++i)
-    *out++ = forest_.chase(from[i], aliveBelow(levels[cluster_of_[from[i]]]));
+    *out++ = forest_.aliveAncestor(from[i], aliveBelow(levels[cluster_of_[from[i]]]));
   return out;
 }
 
@@ -44,20 +45,20 @@ std::size_t Clusters::cut(std::span<const std::uint32_t> levels, std::span<std::
     const std::size_t level = levels[i];
     assert(level >= finestLevel() && level <= coarsest_);
     const DetailStep& inner = steps_[stepFor(steps_, level)];
-    at = chaseTo(level, &inner.corners[3 * std::size_t{inner.begins[2 * i]}],
-                 3 * prefix(inner, 2 * i, alive_[level]), at);
+    at = replaceAt(level, &inner.corners[3 * std::size_t{inner.begins[2 * i]}],
+                   3 * prefix(inner, 2 * i, alive_[level]), at);
     // Corners may lie in clusters cut at finer levels: start from the step for the finest of them.
     std::size_t finest = level;
     for (const std::uint16_t n : neighbours_[i]) finest = std::min<std::size_t>(finest, levels[n]);
     const DetailStep& mixed = steps_[stepFor(steps_, finest)];
-    at = chaseEach(levels, &mixed.corners[3 * std::size_t{mixed.begins[2 * i + 1]}],
-                   3 * prefix(mixed, 2 * i + 1, alive_[level]), at);
+    at = replaceEach(levels, &mixed.corners[3 * std::size_t{mixed.begins[2 * i + 1]}],
+                     3 * prefix(mixed, 2 * i + 1, alive_[level]), at);
     ends[i] = static_cast<std::uint32_t>((at - out.data()) / 3);
   }
   const std::size_t finest = *std::min_element(levels.begin(), levels.end());
   const DetailStep& step = steps_[stepFor(steps_, finest)];
-  at = chaseEach(levels, &step.corners[3 * std::size_t{step.begins[2 * size()]}], 3 * alwaysThere(),
-                 at);
+  at = replaceEach(levels, &step.corners[3 * std::size_t{step.begins[2 * size()]}],
+                   3 * alwaysThere(), at);
   return ends[size()] = static_cast<std::uint32_t>((at - out.data()) / 3);
 }
 
@@ -66,14 +67,14 @@ std::size_t Clusters::cutEvenly(std::size_t level, std::span<std::uint32_t> out)
   if (level < finestLevel()) return dendrogram_.cut(level, out);
   if (level >= plain_.front().level) {
     const DetailStep& step = plain_[stepFor(plain_, level)];
-    chaseTo(level, step.corners.data(), 3 * triangles, out.data());
+    replaceAt(level, step.corners.data(), 3 * triangles, out.data());
     return triangles;
   }
   const DetailStep& step = steps_[stepFor(steps_, level)];
   std::uint32_t* at = out.data();
   for (std::size_t g = 0; g + 1 < step.begins.size(); ++g)
-    at = chaseTo(level, &step.corners[3 * std::size_t{step.begins[g]}],
-                 3 * prefix(step, g, alive_[level]), at);
+    at = replaceAt(level, &step.corners[3 * std::size_t{step.begins[g]}],
+                   3 * prefix(step, g, alive_[level]), at);
   return triangles;
 }
 

@@ -22,7 +22,7 @@
 #include <span>
 #include <vector>
 
-#include "render/lod/chase.h"
+#include "render/lod/alive_ancestors.h"
 #include "render/lod/dendrogram.h"
 
 namespace merlin::render::lod {
@@ -105,10 +105,10 @@ class Clusters {
   std::vector<std::uint16_t> clusterOfEach() const;  // entry n: cluster of node n
   // Write the alive ancestor of each corner to `out`, at `level`, or at the level of the cluster of
   // the corner; return the end of the output.
-  std::uint32_t* chaseTo(std::size_t level, const std::uint32_t* from, std::size_t corners,
-                         std::uint32_t* out) const noexcept;
-  std::uint32_t* chaseEach(std::span<const std::uint32_t> levels, const std::uint32_t* from,
-                           std::size_t corners, std::uint32_t* out) const noexcept;
+  std::uint32_t* replaceAt(std::size_t level, const std::uint32_t* from, std::size_t corners,
+                           std::uint32_t* out) const noexcept;
+  std::uint32_t* replaceEach(std::span<const std::uint32_t> levels, const std::uint32_t* from,
+                             std::size_t corners, std::uint32_t* out) const noexcept;
   // Nodes with a smaller number are alive at the level.
   std::uint32_t aliveBelow(std::size_t level) const noexcept {
     return forest_.nodes - static_cast<std::uint32_t>(2 * level);
@@ -116,8 +116,8 @@ class Clusters {
 
   const Dendrogram& dendrogram_;
   std::span<const std::uint32_t> alive_;
-  Forest forest_;
-  ChaseAll chase_all_;
+  CollapseForest forest_;
+  FindAliveAncestors find_alive_ancestors_;
   std::size_t coarsest_ = 0;
   std::vector<std::uint16_t> cluster_of_;  // by node; only nodes alive at the finest step's level
   std::vector<DetailStep> steps_;          // finest first

@@ -195,7 +195,7 @@ void Clusters::Builder::addRungs() {
     std::uint32_t* at = step.corners.data();
     for (std::size_t g = 0; g + 1 < finer.begins.size(); ++g) {
       const std::size_t begin = finer.begins[g], n = c.prefix(finer, g, c.alive_[level]);
-      at = c.chaseTo(level, &finer.corners[3 * begin], 3 * n, at);
+      at = c.replaceAt(level, &finer.corners[3 * begin], 3 * n, at);
       step.begins.push_back(static_cast<std::uint32_t>(step.begins.back() + n));
     }
     c.steps_.push_back(std::move(step));
@@ -212,7 +212,7 @@ void Clusters::Builder::addPlainRungs() {
     if (c.plain_.empty())
       d.cut(level, step.corners);
     else
-      c.chaseTo(level, c.plain_.back().corners.data(), step.corners.size(), step.corners.data());
+      c.replaceAt(level, c.plain_.back().corners.data(), step.corners.size(), step.corners.data());
     c.plain_.push_back(std::move(step));
   }
 }
@@ -322,7 +322,7 @@ Clusters::Clusters(const Dendrogram& dendrogram, const ClusterSettings& settings
     : dendrogram_(dendrogram),
       alive_(dendrogram.arrays().alive),
       forest_{dendrogram.arrays().parents, static_cast<std::uint32_t>(dendrogram.nodeCount())},
-      chase_all_(chaser(dendrogram.nodeCount())) {
+      find_alive_ancestors_(aliveAncestorFinder(dendrogram.nodeCount())) {
   Builder builder{*this, dendrogram, 0};
   builder.chooseLevels(settings);
   builder.numberClusters();

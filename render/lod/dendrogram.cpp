@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "render/lod/chase.h"
+#include "render/lod/alive_ancestors.h"
 
 namespace merlin::render::lod {
 namespace {
@@ -111,7 +111,7 @@ std::size_t Dendrogram::cut(std::size_t level, std::span<std::uint32_t> out) con
   assert(out.size() >= corners);
   const auto nodes = static_cast<std::uint32_t>(nodeCount());
   const auto alive = static_cast<std::uint32_t>(nodes - 2 * level);
-  chaser(nodes)({a_.parents, nodes}, alive, a_.triangles.data(), corners, out.data());
+  aliveAncestorFinder(nodes)({a_.parents, nodes}, alive, a_.triangles.data(), corners, out.data());
   return corners / 3;
 }
 

@@ -3,7 +3,7 @@
 //
 // A reduction of a mesh with V vertices by C collapses has N = V + C nodes: each vertex, and the
 // new vertex of each collapse (so optimal positions are kept). A node is alive until a collapse
-// merges it with another node (its death). Nodes are numbered by death, latest first: the roots,
+// merges it with another node. Nodes are numbered by that collapse, last one first: the roots,
 // which are never merged, then the two nodes that collapse C-1 merges, ... the two that collapse 0
 // merges. So
 //
@@ -63,7 +63,8 @@ class Dendrogram {
   const Arrays& arrays() const noexcept { return a_; }
   const FeatureView* find(std::string_view name) const noexcept;  // nullptr if there is none
 
-  // For a node that dies: the collapse that merges it, and the node that this collapse makes.
+  // For a node that is not a root: the collapse that merges it, and the node that this collapse
+  // makes.
   std::size_t collapseOf(std::uint32_t node) const noexcept { return (nodeCount() - 1 - node) / 2; }
   std::uint32_t parentOf(std::uint32_t node) const noexcept { return a_.parents[collapseOf(node)]; }
 

@@ -19,13 +19,11 @@ struct SplitReport {
 // behind all vertices, with the same features.
 //
 // At an edge with too many triangles, the pairs that continue each other most smoothly stay
-// connected, as far as the result is manifold; all others get a border there. samePlace() finds the
-// copies.
-// O(n log n) time, about 50 bytes of temporary memory per triangle; same input, same output.
-// Reentrant. REQUIRES: validate(mesh), no triangle with a vertex twice, fewer than 2^32 / 3
-// triangles.
-// Idea: A. Gueziec et al., "Cutting and Stitching: Converting Sets of Polygons to Manifold
-// Surfaces", 2001.
+// connected, as far as the result is manifold; all others get a border there. coincidentVertices()
+// finds the copies. O(n log n) time, about 50 bytes of temporary memory per triangle; same input,
+// same output. Reentrant. REQUIRES: validate(mesh), no triangle with a vertex twice, fewer than
+// 2^32 / 3 triangles. Idea: A. Gueziec et al., "Cutting and Stitching: Converting Sets of Polygons
+// to Manifold Surfaces", 2001.
 SplitReport splitNonManifold(Mesh& mesh);
 
 }  // namespace merlin::render::mesh

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "render/mesh/coincident.h"
 #include "render/mesh/mesh.h"
-#include "render/mesh/places.h"
 
 namespace merlin::render::mesh {
 namespace {
@@ -67,7 +67,7 @@ void joinSides(const std::vector<std::uint32_t>& sides, std::vector<float>& sums
 }
 
 void joinSeams(const Mesh& mesh, std::vector<float>& sums) {
-  const std::vector<std::uint32_t> next = samePlace(mesh.positions);
+  const std::vector<std::uint32_t> next = coincidentVertices(mesh.positions);
   std::vector<std::uint32_t> sides;
   for (std::uint32_t v = 0; v < next.size(); ++v) {
     sides.assign(1, v);

@@ -9,7 +9,7 @@
 #include <span>
 #include <tuple>
 
-#include "render/mesh/places.h"
+#include "render/mesh/coincident.h"
 
 namespace merlin::render::segment {
 namespace {
@@ -125,7 +125,7 @@ Queue neighbours(const mesh::Mesh& mesh, const Clusters& clusters) {
       add(t[(k + 1) % 3], t[k]);
     }
   }
-  const auto next = mesh::samePlace(mesh.positions);
+  const auto next = mesh::coincidentVertices(mesh.positions);
   for (std::uint32_t v = 0; v < next.size(); ++v) add(v, next[v]);
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());

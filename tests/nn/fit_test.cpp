@@ -28,29 +28,31 @@ class LaneGradient : public testing::TestWithParam<Phi> {};
 
 // The gradient used in training is a template, so this test for double covers float as well.
 TEST_P(LaneGradient, AgreesWithFiniteDifferences) {
-  Lanes<double> lanes = toLanes(someWeights(3));
+  PackedWeights<double> packed = pack(someWeights(3));
   Random random(4);
   std::array<double, kInputs> x;
   for (double& v : x) v = random.uniform(-2, 2);
   constexpr std::uint32_t kCode = 0b10110;
   constexpr double kStep = 1e-5;
-  Lanes<double> gradient, unused;
-  (void)addGradient(GetParam(), lanes, x.data(), kCode, gradient);
+  PackedWeights<double> gradient, unused;
+  (void)addGradient(GetParam(), packed, x.data(), kCode, gradient);
   double largest = 0;
-  for (std::size_t n = 0; n < lanes.all.size(); ++n) {
+  for (std::size_t n = 0; n < packed.all.size(); ++n) {
     const auto error = [&](double w) {
-      const double kept = std::exchange(lanes.all[n], w);
-      LanePass<double> pass;
-      propagate(GetParam(), lanes, x.data(), pass);
-      lanes.all[n] = kept;
+      const double kept = std::exchange(packed.all[n], w);
+      PackedPass<double> pass;
+      propagate(GetParam(), packed, x.data(), pass);
+      packed.all[n] = kept;
       double sum = 0;
       for (std::size_t k = 0; k < kOutputs; ++k)
         sum += std::pow(pass.output[k] - (kCode >> k & 1), 2);
       return sum;
     };
-    const double slope = (error(lanes.all[n] + kStep) - error(lanes.all[n] - kStep)) / (2 * kStep);
-    const bool hidden_pad = n < Lanes<double>::kOutputs0 && n % kHiddenLanes == kHidden;
-    const bool pad = hidden_pad || (n >= Lanes<double>::kOutputs0 && n % kOutputLanes >= kOutputs);
+    const double slope =
+        (error(packed.all[n] + kStep) - error(packed.all[n] - kStep)) / (2 * kStep);
+    const bool hidden_pad = n < PackedWeights<double>::kOutputs0 && n % kHiddenWidth == kHidden;
+    const bool pad =
+        hidden_pad || (n >= PackedWeights<double>::kOutputs0 && n % kOutputWidth >= kOutputs);
     ASSERT_NEAR(gradient.all[n], pad ? 0 : slope, 1e-6 * std::abs(slope) + 1e-9) << n;
     largest = std::max(largest, std::abs(slope));
   }
@@ -59,17 +61,17 @@ TEST_P(LaneGradient, AgreesWithFiniteDifferences) {
 INSTANTIATE_TEST_SUITE_P(Phis, LaneGradient, testing::Values(Phi::kSigmoid, Phi::kAtan),
                          [](const auto& phi) { return nameOf(phi.param); });
 
-TEST(Lanes, GiveTheSameBitsAsTheNetwork) {
+TEST(PackedWeights, GiveTheSameBitsAsTheNetwork) {
   for (const Phi phi : {Phi::kSigmoid, Phi::kAtan, Phi::kSignum}) {
     const PostureNetwork network = test::shippedNetwork();
-    const auto lanes = toLanes(network.weights);
-    EXPECT_EQ(fromLanes(lanes).hidden, network.weights.hidden);
+    const auto packed = pack(network.weights);
+    EXPECT_EQ(unpack(packed).hidden, network.weights.hidden);
     Random random(5);
     for (int n = 0; n < 1000; ++n) {
       Input x;
       for (float& v : x) v = static_cast<float>(random.uniform());
-      LanePass<float> pass;
-      propagate(phi, lanes, x.data(), pass);
+      PackedPass<float> pass;
+      propagate(phi, packed, x.data(), pass);
       const Output want = forward(phi, network.weights, x);
       for (std::size_t k = 0; k < kOutputs; ++k) ASSERT_EQ(pass.output[k], want[k]);
     }

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/mesh/places.h"
+#include "render/mesh/coincident.h"
 #include "render/reduce/reduce.h"
 #include "tests/support/meshes.h"
 
@@ -237,13 +237,13 @@ TEST(Clusters, BoundsHoldEverything) {
 
 TEST(Clusters, EightAtATimeIsAsOneAtATime) {
   const lod::Dendrogram d = dendrogramOf(test::sphere(4));
-  const lod::Forest forest{d.arrays().parents, static_cast<std::uint32_t>(d.nodeCount())};
+  const lod::CollapseForest forest{d.arrays().parents, static_cast<std::uint32_t>(d.nodeCount())};
   const auto leaves = d.arrays().triangles;
   Indices one(leaves.size()), eight(leaves.size());
   for (std::uint32_t alive = forest.nodes; alive > 20; alive -= 14) {
     for (const std::size_t n : {leaves.size(), std::size_t{13}, std::size_t{0}}) {
-      lod::portableChaser()(forest, alive, leaves.data(), n, one.data());
-      lod::chaser(forest.nodes)(forest, alive, leaves.data(), n, eight.data());
+      lod::portableAliveAncestorFinder()(forest, alive, leaves.data(), n, one.data());
+      lod::aliveAncestorFinder(forest.nodes)(forest, alive, leaves.data(), n, eight.data());
       ASSERT_EQ(one, eight) << alive;
     }
   }
@@ -266,7 +266,7 @@ TEST(Clusters, BothSidesOfASeamAreInOne) {
   const lod::Dendrogram d = dendrogramOf(test::tube(60, 40, true));
   const lod::Clusters clusters(d, {.clusters = 100});
   ASSERT_GT(clusters.size(), 40U);
-  const std::vector<std::uint32_t> next = mesh::samePlace(d.arrays().positions);
+  const std::vector<std::uint32_t> next = mesh::coincidentVertices(d.arrays().positions);
   std::size_t pairs = 0;
   for (std::uint32_t n = 0; n < next.size(); ++n) {
     const std::size_t one = clusters.clusterOf(n), other = clusters.clusterOf(next[n]);

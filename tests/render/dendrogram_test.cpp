@@ -159,7 +159,7 @@ TEST(Dendrogram, OfAMeshThatWasNotReducedHasOneLevel) {
   EXPECT_EQ(corners, test::cube().triangles);
 }
 
-TEST(Dendrogram, NumbersNodesByTheirDeathLastFirst) {
+TEST(Dendrogram, NumbersNodesByTheirRemovalLastFirst) {
   const Reduced r = reduced(components());
   const lod::Dendrogram d = lod::buildDendrogram(r.mesh, r.log);
   const std::size_t n = d.nodeCount(), vertices = r.mesh.vertexCount();

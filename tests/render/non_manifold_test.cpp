@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/mesh/places.h"
+#include "render/mesh/coincident.h"
 #include "tests/support/meshes.h"
 
 namespace merlin::render {
@@ -79,7 +79,7 @@ TEST(SplitNonManifold, TakesABowTieApart) {
   mesh.features = {{"heat", 1, {7, 1, 2, 3, 4}}, {"flow", 2, {8, 9, 0, 0, 0, 0, 0, 0, 0, 0}}};
   EXPECT_EQ(textOf(mesh::splitNonManifold(mesh)), "0 edges, 1 vertices, 1 added");
   EXPECT_EQ(mesh.triangles, (Indices{0, 1, 2, 5, 3, 4}));
-  EXPECT_EQ(mesh::samePlace(mesh.positions), (Indices{5, 1, 2, 3, 4, 0}));
+  EXPECT_EQ(mesh::coincidentVertices(mesh.positions), (Indices{5, 1, 2, 3, 4, 0}));
   EXPECT_EQ(mesh.features[0].values, (Floats{7, 1, 2, 3, 4, 7}));
   EXPECT_EQ((Floats{mesh.features[1].values.end() - 2, mesh.features[1].values.end()}),
             (Floats{8, 9}));

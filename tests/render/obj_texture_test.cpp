@@ -10,8 +10,8 @@
 #include <turbojpeg.h>
 
 #include "render/image/image_file.h"
+#include "render/mesh/coincident.h"
 #include "render/mesh/io/mesh_file.h"
-#include "render/mesh/places.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::render {
@@ -100,7 +100,7 @@ TEST_F(TexturedObj, CutsVerticesAtASeamAndNowhereElse) {
   EXPECT_EQ(loaded.mesh.triangles, (Indices{0, 1, 4, 0, 4, 3, 3, 4, 6, 7, 2, 5, 7, 5, 4, 4, 5, 6}))
       << "vertex 1 alone is cut";
   ASSERT_EQ(loaded.mesh.vertexCount(), 8u);
-  EXPECT_EQ(mesh::samePlace(loaded.mesh.positions), (Indices{0, 7, 2, 3, 4, 5, 6, 1}));
+  EXPECT_EQ(mesh::coincidentVertices(loaded.mesh.positions), (Indices{0, 7, 2, 3, 4, 5, 6, 1}));
   EXPECT_EQ(loaded.mesh.find("colour"), nullptr);
   EXPECT_EQ(loaded.tidied.unused + loaded.split.added, 0u);
 }
@@ -110,7 +110,7 @@ TEST_F(TexturedObj, CutsVerticesAtASeamAndNowhereElse) {
 TEST_F(TexturedObj, CutsTheEndsOfASeamThatLeaveOneFanNoMore) {
   const auto loaded = read(std::string(kSquare) + kMiddles + "f 1/1 2/2 4/4\nf 1/1 4/3 3/3\n");
   EXPECT_EQ(loaded.mesh.triangles, (Indices{0, 1, 3, 5, 4, 2}));
-  EXPECT_EQ(mesh::samePlace(loaded.mesh.positions), (Indices{5, 1, 2, 4, 3, 0}));
+  EXPECT_EQ(mesh::coincidentVertices(loaded.mesh.positions), (Indices{5, 1, 2, 4, 3, 0}));
   EXPECT_EQ(loaded.split.vertices, 1u);
 }
 

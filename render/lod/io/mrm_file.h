@@ -32,7 +32,7 @@ Result<Ok> checkNames(const mesh::Mesh& mesh);
 Result<Ok> writeMrm(const std::string& path, const Dendrogram& dendrogram);
 
 // Writes the same bytes as writeMrm(path, buildDendrogram(mesh, log)), without building the
-// dendrogram: apart from mesh and log it needs little more memory than DeathOrder. Same errors.
+// dendrogram: apart from mesh and log it needs little more memory than RemovalOrder. Same errors.
 // `threads`: 0 for all cores; the file does not depend on it.
 Result<Ok> writeMrm(const std::string& path, const mesh::Mesh& mesh, const CollapseLog& log,
                     unsigned threads = 0);

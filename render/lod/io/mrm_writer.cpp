@@ -14,9 +14,9 @@
 #include "daemon/base/blocks.h"
 #include "daemon/base/files.h"
 #include "daemon/base/text.h"
-#include "render/lod/death_order.h"
 #include "render/lod/io/mrm_file.h"
 #include "render/lod/io/mrm_layout.h"
+#include "render/lod/removal_order.h"
 
 namespace merlin::render::lod {
 namespace {
@@ -97,7 +97,7 @@ Rows each(ValueOf value_of) {
 
 // Values of the nodes, in the order of the dendrogram.
 Rows gathered(const std::vector<float>& leaves, const std::vector<float>& inner,
-              std::size_t dimension, const DeathOrder& order) {
+              std::size_t dimension, const RemovalOrder& order) {
   return [&leaves, &inner, dimension, &order](std::size_t first, std::size_t end, std::byte* to) {
     const std::size_t row = dimension * sizeof(float);
     for (std::size_t n = first; n < end; ++n, to += row) {
@@ -108,7 +108,7 @@ Rows gathered(const std::vector<float>& leaves, const std::vector<float>& inner,
 }
 
 // The triangles' corners, in the order of the dendrogram.
-Rows corners(const mesh::Mesh& mesh, const DeathOrder& order) {
+Rows corners(const mesh::Mesh& mesh, const RemovalOrder& order) {
   return [&](std::size_t first, std::size_t end, std::byte* to) {
     for (std::size_t i = first; i < end; ++i, to += 3 * sizeof(std::uint32_t)) {
       const std::uint32_t* t = &mesh.triangles[3 * std::size_t{order.triangleOf(i)}];
@@ -120,7 +120,7 @@ Rows corners(const mesh::Mesh& mesh, const DeathOrder& order) {
 }
 
 // The arguments must outlive the returned model.
-Model modelOf(const mesh::Mesh& mesh, const CollapseLog& log, const DeathOrder& order,
+Model modelOf(const mesh::Mesh& mesh, const CollapseLog& log, const RemovalOrder& order,
               const std::vector<float>& error) {
   const std::size_t vertices = mesh.vertexCount();
   Model model{order.nodeCount(), log.children.size(), mesh.triangleCount(), {}};
@@ -263,7 +263,7 @@ Result<Ok> writeMrm(const std::string& path, const Dendrogram& dendrogram) {
 Result<Ok> writeMrm(const std::string& path, const mesh::Mesh& mesh, const CollapseLog& log,
                     unsigned threads) {
   threads = threadsOr(threads);
-  const DeathOrder order(mesh, log, threads);
+  const RemovalOrder order(mesh, log, threads);
   const std::vector<float> error = risingError(log);
   return MrmWriter(modelOf(mesh, log, order, error), threads).write(path);
 }

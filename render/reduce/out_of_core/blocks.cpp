@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "render/mesh/places.h"
+#include "render/mesh/coincident.h"
 #include "render/reduce/memory.h"
 #include "render/reduce/out_of_core/block_cutter.h"
 #include "render/reduce/quadric/quadric.h"
@@ -191,9 +191,10 @@ class InBlocks {
       }
       // Seams were locked in the blocks, where vertices at borders are locked too; here they may
       // shrink.
-      std::vector<std::uint32_t> places;
-      if (!locked.empty() && plan_.seams_shrink) places = mesh::samePlace(mesh.positions);
-      r = runQuadric(mesh, plan_, locked, progress, std::move(places));
+      std::vector<std::uint32_t> coincident;
+      if (!locked.empty() && plan_.seams_shrink)
+        coincident = mesh::coincidentVertices(mesh.positions);
+      r = runQuadric(mesh, plan_, locked, progress, std::move(coincident));
     }
     rest.log = std::move(r.log);
     std::vector<std::uint32_t> nodes;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "daemon/base/blocks.h"
-#include "render/mesh/places.h"
+#include "render/mesh/coincident.h"
 #include "render/reduce/costs.h"
 #include "render/reduce/memory.h"
 
@@ -111,7 +111,7 @@ Result<Ok> checkWeights(const Weights& weights, const PatternSpace& space) {
 }
 
 // Returns the vertices to lock: those of settings.locked, and all coincident vertices, so that
-// seams do not open; empty if there are none. next: samePlace().
+// seams do not open; empty if there are none. next: coincidentVertices().
 std::vector<bool> lockedVertices(const ReduceSettings& settings,
                                  const std::vector<std::uint32_t>& next) {
   std::vector<bool> locked = settings.locked;
@@ -169,7 +169,7 @@ Result<QuadricPlan> planQuadric(const mesh::Mesh& mesh, const ReduceSettings& se
 
 Reduction runQuadric(const mesh::Mesh& mesh, const QuadricPlan& plan,
                      const std::vector<bool>& locked, const Progress& progress,
-                     std::vector<std::uint32_t> places) {
+                     std::vector<std::uint32_t> coincident) {
   const std::size_t channels = countOf(mesh, plan.channels);
   QuadricReducer reducer(mesh, channels + (plan.labels_lock ? 1 : 0), plan.limits.threads);
   for (const ChannelFeature& c : plan.channels) {
@@ -183,11 +183,11 @@ Reduction runQuadric(const mesh::Mesh& mesh, const QuadricPlan& plan,
     reducer.setChannel(channels, heightsOf(labels).data(), 1, plan.label_scale);
   }
   if (!locked.empty()) reducer.lock(locked);
-  if (!places.empty()) reducer.pair(places);
-  places = {};
+  if (!coincident.empty()) reducer.pair(coincident);
+  coincident = {};
   const char* stopped = reducer.run(plan.limits, progress);
 
-  Reduction result = reducer.finish(mesh);
+  Reduction result = reducer.finish();
   result.report.stopped = stopped;
   for (const ChannelFeature& c : plan.channels) {
     const mesh::Feature& f = mesh.features[c.feature];
@@ -211,10 +211,10 @@ Result<Reduction> reduceByQuadric(const mesh::Mesh& mesh, const ReduceSettings& 
   if (!plan) return plan.error();
   const auto blocks = blocksFor(mesh::sizeOf(mesh), settings);
   if (!blocks) return blocks.error();
-  std::vector<std::uint32_t> places = mesh::samePlace(mesh.positions);
-  const std::vector<bool> locked = lockedVertices(settings, places);
-  if (locked.empty() || !plan->seams_shrink || *blocks > 1) places = {};
-  Reduction result = *blocks == 1 ? runQuadric(mesh, *plan, locked, progress, std::move(places))
+  std::vector<std::uint32_t> coincident = mesh::coincidentVertices(mesh.positions);
+  const std::vector<bool> locked = lockedVertices(settings, coincident);
+  if (locked.empty() || !plan->seams_shrink || *blocks > 1) coincident = {};
+  Reduction result = *blocks == 1 ? runQuadric(mesh, *plan, locked, progress, std::move(coincident))
                                   : reduceInBlocks(mesh, *plan, locked, *blocks, progress);
   result.report.stopped = reasonOf(result.report.stopped, settings, plan->by_percent);
   result.report.blocks = *blocks;

@@ -32,11 +32,11 @@ Result<QuadricPlan> planQuadric(const mesh::Mesh& mesh, const ReduceSettings& se
                                 ThreadTeam& team);
 
 // Reduces `mesh`, which must have the features of the mesh that the plan was made for. locked: one
-// entry per vertex, or empty; must include the vertices on seams. places: samePlace() of the mesh
-// if seams may shrink, else empty. Leaves CollapseLog::about empty.
+// entry per vertex, or empty; must include the vertices on seams. coincident: coincidentVertices()
+// of the mesh if seams may shrink, else empty. Leaves CollapseLog::about empty.
 Reduction runQuadric(const mesh::Mesh& mesh, const QuadricPlan& plan,
                      const std::vector<bool>& locked, const Progress& progress,
-                     std::vector<std::uint32_t> places = {});
+                     std::vector<std::uint32_t> coincident = {});
 
 // As runQuadric(), but reduces `blocks` (more than one) blocks one after another, then what they
 // leave as one mesh. Only the quadrics of one block are in memory at a time. Defined in

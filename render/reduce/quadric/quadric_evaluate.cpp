@@ -4,8 +4,8 @@
 #include <array>
 #include <numeric>
 
-#include "render/reduce/quadric/lanes.h"
 #include "render/reduce/quadric/quadric_star.h"
+#include "render/reduce/quadric/star_lanes.h"
 
 namespace merlin::render::reduce {
 namespace {
@@ -23,53 +23,53 @@ struct Solver {
 
   // One channel at the neighbours x: sum of area times gradient, and the value minus w's.
   struct Channel {
-    Lanes bx, by, bz, delta;
+    Floats bx, by, bz, delta;
   };
   static constexpr std::size_t kKept = 8;  // channels that are kept between the two passes
 
   MERLIN_INLINE Channel channelOf(const std::uint32_t* x, std::size_t k) const {
     Channel c;
-    gather([&](int i) { return view.channels->block(x[i]) + 1 + 4 * k; }, c.bx, c.by, c.bz,
-           c.delta);
+    transpose([&](int i) { return view.channels->block(x[i]) + 1 + 4 * k; }, c.bx, c.by, c.bz,
+              c.delta);
     c.delta -= wc[4 + 4 * k];
     return c;
   }
 
   // Sum of the areas of the triangles at each neighbour x.
-  MERLIN_INLINE Lanes areasOf(const std::uint32_t* x) const {
+  MERLIN_INLINE Floats areasOf(const std::uint32_t* x) const {
     const auto at = [&](int i) { return view.channels->block(x[i])[0]; };
-    return Lanes{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
+    return Floats{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
   }
 
   // Solves rows first .. first + 7 and returns their costs; those from first + count on are
   // kNoEdge. REQUIRES: room for 8 rows from `first`.
-  MERLIN_INLINE Lanes solve(const Neighbours<true>& at, std::uint32_t first,
-                            std::uint32_t count) const {
+  MERLIN_INLINE Floats solve(const Neighbours<true>& at, std::uint32_t first,
+                             std::uint32_t count) const {
     const std::uint32_t* x = &out.neighbour[first];
-    const Lanes(&h)[6] = at.h;
-    const Lanes &X = at.x, &Y = at.y, &Z = at.z;
-    Lanes A0 = h[0] + wh[0], A1 = h[1] + wh[1], A2 = h[2] + wh[2], A3 = h[3] + wh[3],
-          A4 = h[4] + wh[4], A5 = h[5] + wh[5];
-    const Lanes pull = kPull * (A0 + A3 + A5) + kTiny;
+    const Floats(&h)[6] = at.h;
+    const Floats &X = at.x, &Y = at.y, &Z = at.z;
+    Floats A0 = h[0] + wh[0], A1 = h[1] + wh[1], A2 = h[2] + wh[2], A3 = h[3] + wh[3],
+           A4 = h[4] + wh[4], A5 = h[5] + wh[5];
+    const Floats pull = kPull * (A0 + A3 + A5) + kTiny;
     A0 += pull;
     A3 += pull;
     A5 += pull;
-    const Lanes half = pull * 0.5F;
-    Lanes r0 = h[0] * X + h[1] * Y + h[2] * Z + half * X;
-    Lanes r1 = h[1] * X + h[3] * Y + h[4] * Z + half * Y;
-    Lanes r2 = h[2] * X + h[4] * Y + h[5] * Z + half * Z;
+    const Floats half = pull * 0.5F;
+    Floats r0 = h[0] * X + h[1] * Y + h[2] * Z + half * X;
+    Floats r1 = h[1] * X + h[3] * Y + h[4] * Z + half * Y;
+    Floats r2 = h[2] * X + h[4] * Y + h[5] * Z + half * Z;
     Channel kept[channels ? kKept : 1];
     const std::size_t n = channels ? view.channels->count() : 0;
-    const Lanes area = channels ? areasOf(x) : all(0.0F);
-    const Lanes s = channels ? 1.0F / (area + wc[0] + kTiny) : all(0.0F);
+    const Floats area = channels ? areasOf(x) : all(0.0F);
+    const Floats s = channels ? 1.0F / (area + wc[0] + kTiny) : all(0.0F);
     // Eliminates the values of the channels: adds the terms of their optimum to A and to the
     // right-hand side.
     for (std::size_t k = 0; k < n; ++k) {
       const Channel c = channelOf(x, k);
       if (k < kKept) kept[k] = c;
       const float* wb = wc + 1 + 4 * k;
-      const Lanes b0 = c.bx + wb[0], b1 = c.by + wb[1], b2 = c.bz + wb[2];
-      const Lanes g = (area * c.delta - (c.bx * X + c.by * Y + c.bz * Z)) * s;
+      const Floats b0 = c.bx + wb[0], b1 = c.by + wb[1], b2 = c.bz + wb[2];
+      const Floats g = (area * c.delta - (c.bx * X + c.by * Y + c.bz * Z)) * s;
       A0 -= b0 * b0 * s;
       A1 -= b0 * b1 * s;
       A2 -= b0 * b2 * s;
@@ -81,25 +81,25 @@ struct Solver {
       r2 += g * b2 - c.delta * c.bz;
     }
     // Solves A v = r by Cholesky factorisation without square roots (L D L').
-    const Lanes i0 = 1.0F / A0, l1 = A1 * i0, l2 = A2 * i0;
-    const Lanes d1 = A3 - l1 * A1, t = A4 - l1 * A2;
-    const Lanes i1 = 1.0F / d1, l3 = t * i1;
-    const Lanes d2 = A5 - l2 * A2 - l3 * t;
-    const Lanes y1 = r1 - l1 * r0, y2 = r2 - l2 * r0 - l3 * y1;
-    const Lanes z = y2 / d2, y = y1 * i1 - l3 * z, v = r0 * i0 - l1 * y - l2 * z;
+    const Floats i0 = 1.0F / A0, l1 = A1 * i0, l2 = A2 * i0;
+    const Floats d1 = A3 - l1 * A1, t = A4 - l1 * A2;
+    const Floats i1 = 1.0F / d1, l3 = t * i1;
+    const Floats d2 = A5 - l2 * A2 - l3 * t;
+    const Floats y1 = r1 - l1 * r0, y2 = r2 - l2 * r0 - l3 * y1;
+    const Floats z = y2 / d2, y = y1 * i1 - l3 * z, v = r0 * i0 - l1 * y - l2 * z;
     // Computes the cost as a sum of squares, to avoid cancellation.
-    const Lanes e0 = v - X, e1 = y - Y, e2 = z - Z;
-    Lanes f = v * (wh[0] * v + 2.0F * (wh[1] * y + wh[2] * z)) +
-              y * (wh[3] * y + 2.0F * (wh[4] * z)) + z * z * wh[5] +
-              e0 * (h[0] * e0 + 2.0F * (h[1] * e1 + h[2] * e2)) +
-              e1 * (h[3] * e1 + 2.0F * (h[4] * e2)) + e2 * e2 * h[5];
+    const Floats e0 = v - X, e1 = y - Y, e2 = z - Z;
+    Floats f = v * (wh[0] * v + 2.0F * (wh[1] * y + wh[2] * z)) +
+               y * (wh[3] * y + 2.0F * (wh[4] * z)) + z * z * wh[5] +
+               e0 * (h[0] * e0 + 2.0F * (h[1] * e1 + h[2] * e2)) +
+               e1 * (h[3] * e1 + 2.0F * (h[4] * e2)) + e2 * e2 * h[5];
     for (std::size_t k = 0; k < n; ++k) {
       const Channel c = k < kKept ? kept[k] : channelOf(x, k);
       const float* wb = wc + 1 + 4 * k;
-      const Lanes ofw = wb[0] * v + wb[1] * y + wb[2] * z;
-      const Lanes ofx = c.bx * e0 + c.by * e1 + c.bz * e2;
-      const Lanes best = (ofw + ofx + area * c.delta) * s;
-      const Lanes left = c.delta - best;
+      const Floats ofw = wb[0] * v + wb[1] * y + wb[2] * z;
+      const Floats ofx = c.bx * e0 + c.by * e1 + c.bz * e2;
+      const Floats best = (ofw + ofx + area * c.delta) * s;
+      const Floats left = c.delta - best;
       f += best * (wc[0] * best - 2.0F * ofw) + left * (area * left + 2.0F * ofx);
     }
     f = f > kLeastCost ? f : (f == f ? all(kLeastCost) : all(kNoEdge));
@@ -115,9 +115,9 @@ struct Solver {
 };
 
 // Returns the lowest row number among the cheapest lanes. rows: the row of each lane's cost.
-MERLIN_INLINE std::uint32_t rowOfLeast(const Lanes& costs, const Mask& rows) {
-  const Mask cheapest = costs == least(costs) ? rows : all(~0U >> 1);
-  return static_cast<std::uint32_t>(least(cheapest)[0]);
+MERLIN_INLINE std::uint32_t rowOfLeast(const Floats& costs, const Ints& rows) {
+  const Ints cheapest = costs == simd::leastLane(costs) ? rows : all(~0U >> 1);
+  return static_cast<std::uint32_t>(simd::leastLane(cheapest)[0]);
 }
 
 template <bool channels>
@@ -152,11 +152,11 @@ MERLIN_INLINE void evaluateStar(const QuadricView& view, std::uint32_t vertex, E
   if (what != Evaluate::kEdges) setOwn<channels>(view, w, out, block);
   if (what == Evaluate::kQuadric) return;
   const Solver<channels> solver{view, w.h, block, out};
-  Lanes costs = all(2 * kNoEdge);
-  Mask rows = {};
+  Floats costs = all(2 * kNoEdge);
+  Ints rows = {};
   for (std::uint32_t i = 0; i < out.count; i += 8) {
     const Neighbours<true> at(view, w, &out.neighbour[i]);
-    const Lanes here = solver.solve(at, i, out.count - i);
+    const Floats here = solver.solve(at, i, out.count - i);
     rows = here < costs ? kLane + static_cast<std::int32_t>(i) : rows;
     costs = here < costs ? here : costs;
   }
@@ -249,7 +249,7 @@ EvaluateEdges portableEdgeEvaluator(Evaluate what) {
 }
 
 EvaluateEdges edgeEvaluator(Evaluate what) {
-  return forThisProcessor(&kWide, &kPortable)->at(static_cast<std::size_t>(what));
+  return simd::pick(&kWide, &kPortable)->at(static_cast<std::size_t>(what));
 }
 
 }  // namespace merlin::render::reduce

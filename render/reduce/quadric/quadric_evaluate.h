@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "render/reduce/quadric/number_table.h"
+#include "render/reduce/quadric/quadric_channels.h"
 #include "render/reduce/quadric/quadric_mesh.h"
 
 namespace merlin::render::reduce {
@@ -28,32 +29,6 @@ inline constexpr float kNoEdge = 1e30F;  // the cost of a forbidden collapse
 // Stars of at most this many corners are searched by comparing all pairs; larger ones with a hash
 // table.
 inline constexpr std::uint32_t kPairwise = 16;
-
-// Feature values that contribute to the cost. One block per vertex: a, then (b x, y, z, s) for each
-// channel. Unit of length: mean edge length.
-class QuadricChannels {
- public:
-  QuadricChannels() = default;
-  QuadricChannels(std::size_t vertices, std::size_t channels)
-      : count_(channels), blocks_(channels ? vertices * stride() : 0) {}
-
-  std::size_t count() const noexcept { return count_; }
-  std::size_t stride() const noexcept { return 1 + 4 * count_; }
-  float* block(std::uint32_t v) const noexcept { return blocks_.data() + v * stride(); }
-  // Loads the record of a vertex that will soon be read into the cache.
-  void prefetch(std::uint32_t v) const noexcept {
-    constexpr std::size_t kCacheLine = 64 / sizeof(float);
-    const float* const first = block(v);
-    for (const float* at = first; at < first + stride(); at += kCacheLine) __builtin_prefetch(at);
-  }
-  float& value(std::uint32_t v, std::size_t channel) const noexcept {
-    return block(v)[4 + 4 * channel];
-  }
-
- private:
-  std::size_t count_ = 0;
-  HugeArray<float> blocks_;
-};
 
 struct QuadricView {
   QuadricVertex* vertices;

@@ -131,6 +131,16 @@ struct NodeRecord {
 };
 static_assert(sizeof(NodeRecord) == sizeof(QuadricVertex::position) + sizeof(QuadricVertex::h));
 
+inline NodeRecord nodeRecordOf(const QuadricVertex& dead) noexcept {
+  NodeRecord record;
+  std::memcpy(&record, static_cast<const void*>(dead.position), sizeof record);
+  return record;
+}
+
+inline void setNodeRecord(QuadricVertex& dead, const NodeRecord& record) noexcept {
+  std::memcpy(static_cast<void*>(dead.position), &record, sizeof record);
+}
+
 // Hands out lines of corners that no star has used yet. Thread-safe; one for all threads.
 class FreshLines {
  public:

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include "render/reduce/quadric/lanes.h"
+#include "render/reduce/quadric/star_lanes.h"
 
 namespace merlin::render::reduce {
 namespace {
@@ -24,10 +24,10 @@ MERLIN_INLINE bool linkHolds(const QuadricView& view, const QuadricVertex& a,
     return false;  // would pinch the surface between two borders
   const Corner* star = view.corners + x.star;
   const bool open = x.flags & kOpen;
-  Mask common = {};
+  Ints common = {};
   for (std::uint32_t first = 0; first < costs.count; first += 8) {
-    const Mask ring = load(&costs.neighbour[first]);
-    Mask hit = {};
+    const Ints ring = load(&costs.neighbour[first]);
+    Ints hit = {};
     for (std::uint32_t k = 0; k < x.degree; ++k) {
       hit |= ring == all(star[k].b);
       if (open) hit |= ring == all(star[k].c);
@@ -57,23 +57,23 @@ MERLIN_INLINE bool sidesKeepEnough(const QuadricView& view, const QuadricVertex&
 // anyTurns() for a closed fan of up to eight triangles, all at once.
 MERLIN_INLINE bool fanTurns(const QuadricView& view, const QuadricVertex& v, const float* origin,
                             const float* from, const float* to, std::uint32_t other) {
-  const Mask ring = firsts(&view.corners[v.star].b, v.degree);
+  const Ints ring = firsts(&view.corners[v.star].b, v.degree);
   std::uint32_t numbers[8];
   store(numbers, ring);
-  Lanes p0, p1, p2, unused;
-  gather([&](int k) { return view.vertices[numbers[k]].position; }, p0, p1, p2, unused);
-  const Lanes u0 = p0 - origin[0], u1 = p1 - origin[1], u2 = p2 - origin[2];
-  const Lanes e0 = next(p0) - p0, e1 = next(p1) - p1, e2 = next(p2) - p2;
-  const Lanes a0 = u0 - from[0], a1 = u1 - from[1], a2 = u2 - from[2];
-  const Lanes b0 = u0 - to[0], b1 = u1 - to[1], b2 = u2 - to[2];
-  const Lanes n0 = a1 * e2 - a2 * e1, n1 = a2 * e0 - a0 * e2, n2 = a0 * e1 - a1 * e0;
-  const Lanes m0 = b1 * e2 - b2 * e1, m1 = b2 * e0 - b0 * e2, m2 = b0 * e1 - b1 * e0;
-  const Lanes nn = n0 * n0 + n1 * n1 + n2 * n2, mm = m0 * m0 + m1 * m1 + m2 * m2;
-  const Lanes d = n0 * m0 + n1 * m1 + n2 * m2, size = d < 0.0F ? -d : d;
-  const Mask fine = (d * size >= kLeastCosine * kLeastCosine * (nn * mm)) & ~((mm == 0) & (nn > 0));
-  const Mask stays = (ring != all(other)) & (next(ring) != all(other)) &
+  Floats p0, p1, p2, unused;
+  transpose([&](int k) { return view.vertices[numbers[k]].position; }, p0, p1, p2, unused);
+  const Floats u0 = p0 - origin[0], u1 = p1 - origin[1], u2 = p2 - origin[2];
+  const Floats e0 = next(p0) - p0, e1 = next(p1) - p1, e2 = next(p2) - p2;
+  const Floats a0 = u0 - from[0], a1 = u1 - from[1], a2 = u2 - from[2];
+  const Floats b0 = u0 - to[0], b1 = u1 - to[1], b2 = u2 - to[2];
+  const Floats n0 = a1 * e2 - a2 * e1, n1 = a2 * e0 - a0 * e2, n2 = a0 * e1 - a1 * e0;
+  const Floats m0 = b1 * e2 - b2 * e1, m1 = b2 * e0 - b0 * e2, m2 = b0 * e1 - b1 * e0;
+  const Floats nn = n0 * n0 + n1 * n1 + n2 * n2, mm = m0 * m0 + m1 * m1 + m2 * m2;
+  const Floats d = n0 * m0 + n1 * m1 + n2 * m2, size = d < 0.0F ? -d : d;
+  const Ints fine = (d * size >= kLeastCosine * kLeastCosine * (nn * mm)) & ~((mm == 0) & (nn > 0));
+  const Ints stays = (ring != all(other)) & (next(ring) != all(other)) &
                      (kLane < static_cast<std::int32_t>(v.degree));
-  return any(stays & ~fine);
+  return simd::any(stays & ~fine);
 }
 
 // True if a face of v's star, without those that contain `other`, turns too far when v moves from
@@ -227,7 +227,7 @@ float reachOf(const EdgeCosts& costs) {
 
 JudgeEdge portableEdgeJudge() { return judgePortable; }
 
-JudgeEdge edgeJudge() { return forThisProcessor(judgeWide, judgePortable); }
+JudgeEdge edgeJudge() { return simd::pick(judgeWide, judgePortable); }
 
 void stayAtLocked(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, std::uint32_t edge) {
   const QuadricVertex &a = view.vertices[w], &x = view.vertices[costs.neighbour[edge]];

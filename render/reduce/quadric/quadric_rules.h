@@ -2,6 +2,7 @@
 // locked vertices. Private to render/reduce.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "render/reduce/quadric/quadric_evaluate.h"
@@ -59,6 +60,15 @@ float borderDeviation(const QuadricView& view, std::uint32_t w, EdgeCosts& costs
 inline float costAt(const float* h, const float (&r)[3]) {
   return r[0] * (h[0] * r[0] + 2 * (h[1] * r[1] + h[2] * r[2])) +
          r[1] * (h[3] * r[1] + 2 * (h[4] * r[2])) + h[5] * r[2] * r[2];
+}
+
+inline float trace(const float* h) { return h[0] + h[3] + h[5]; }
+
+// Returns the root mean square distance to the planes of both ends' stars, for an edge of this
+// cost; unit: mean edge length.
+inline float errorOf(const QuadricVertex& a, const QuadricVertex& x, float cost) {
+  const float area = trace(a.h) + trace(x.h);
+  return area > 0 ? std::sqrt(cost / area) : 0;
 }
 
 // Minimum cost of an edge with this squared deviation.

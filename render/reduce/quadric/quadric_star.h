@@ -1,12 +1,12 @@
 // Computes the data of one vertex from its star: ring, quadric, normal, channel sums. Private to
-// quadric_evaluate.cpp, which compiles it twice (lanes.h).
+// quadric_evaluate.cpp, which compiles it twice (simd.h).
 #pragma once
 
 #include <algorithm>
 #include <cstring>
 
-#include "render/reduce/quadric/lanes.h"
 #include "render/reduce/quadric/quadric_evaluate.h"
+#include "render/reduce/quadric/star_lanes.h"
 
 namespace merlin::render::reduce {
 
@@ -19,16 +19,16 @@ inline constexpr float kSharpMean = 0.6F;
 // true.
 template <bool quadrics>
 struct Neighbours {
-  Lanes x, y, z, h[6];
+  Floats x, y, z, h[6];
 
   MERLIN_INLINE Neighbours(const QuadricView& view, const QuadricVertex& w,
                            const std::uint32_t* numbers) {
     const auto at = [&](int k) -> const QuadricVertex& { return view.vertices[numbers[k]]; };
-    gather<quadrics ? 4 : 3>([&](int k) { return at(k).position; }, x, y, z, h[0]);
+    transpose<quadrics ? 4 : 3>([&](int k) { return at(k).position; }, x, y, z, h[0]);
     if (quadrics) {
-      gather([&](int k) { return &at(k).h[1]; }, h[1], h[2], h[3], h[4]);
-      h[5] = Lanes{at(0).h[5], at(1).h[5], at(2).h[5], at(3).h[5],
-                   at(4).h[5], at(5).h[5], at(6).h[5], at(7).h[5]};
+      transpose([&](int k) { return &at(k).h[1]; }, h[1], h[2], h[3], h[4]);
+      h[5] = Floats{at(0).h[5], at(1).h[5], at(2).h[5], at(3).h[5],
+                    at(4).h[5], at(5).h[5], at(6).h[5], at(7).h[5]};
     }
     x -= w.position[0];
     y -= w.position[1];
@@ -111,14 +111,14 @@ MERLIN_INLINE void findRing(const QuadricView& view, const QuadricVertex& w, Edg
 // Up to eight triangles (w, b, c): u and v are the positions of b and c relative to w. Unused lanes
 // hold triangles of zero area.
 struct EightTriangles {
-  Lanes ux, uy, uz, vx, vy, vz;
-  Mask b, c;
+  Floats ux, uy, uz, vx, vy, vz;
+  Ints b, c;
 };
 
 // The triangles of a closed fan of up to eight with these neighbours; neighbours beyond the last
 // repeat the first one, so that the fan closes.
-MERLIN_INLINE EightTriangles fanTriangles(const Lanes& x, const Lanes& y, const Lanes& z,
-                                          const Mask& neighbours) {
+MERLIN_INLINE EightTriangles fanTriangles(const Floats& x, const Floats& y, const Floats& z,
+                                          const Ints& neighbours) {
   return {x, y, z, next(x), next(y), next(z), neighbours, next(neighbours)};
 }
 
@@ -152,13 +152,13 @@ MERLIN_INLINE EightTriangles starTriangles(const QuadricVertex& w, const EdgeCos
 
 // The quadrics and the unit normals of eight triangles; zero for triangles of zero area.
 struct Planes {
-  Lanes h[6], normal[3];
-  Lanes area, inverse;  // twice the area, and its reciprocal
+  Floats h[6], normal[3];
+  Floats area, inverse;  // twice the area, and its reciprocal
 
   MERLIN_INLINE explicit Planes(const EightTriangles& t) {
-    const Lanes x = t.uy * t.vz - t.uz * t.vy, y = t.uz * t.vx - t.ux * t.vz,
-                z = t.ux * t.vy - t.uy * t.vx;
-    const Lanes square = x * x + y * y + z * z + kTiny;
+    const Floats x = t.uy * t.vz - t.uz * t.vy, y = t.uz * t.vx - t.ux * t.vz,
+                 z = t.ux * t.vy - t.uy * t.vx;
+    const Floats square = x * x + y * y + z * z + kTiny;
     for (int k = 0; k < 8; ++k) area[k] = __builtin_sqrtf(square[k]);
     inverse = 1.0F / area;
     normal[0] = x * inverse;
@@ -174,9 +174,10 @@ struct Planes {
 };
 
 // The values of a channel at eight vertices.
-MERLIN_INLINE Lanes valuesOf(const QuadricChannels& channels, const Mask& vertices, std::size_t k) {
+MERLIN_INLINE Floats valuesOf(const QuadricChannels& channels, const Ints& vertices,
+                              std::size_t k) {
   const auto at = [&](int i) { return channels.value(static_cast<std::uint32_t>(vertices[i]), k); };
-  return Lanes{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
+  return Floats{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
 }
 
 // Adds the terms that the gradients of the channels contribute: to the quadrics of the triangles,
@@ -185,24 +186,24 @@ MERLIN_INLINE Lanes valuesOf(const QuadricChannels& channels, const Mask& vertic
 template <bool fan>
 MERLIN_INLINE void addGradients(const QuadricChannels& channels, const EightTriangles& t,
                                 Planes& planes, float* block) {
-  const Lanes(&n)[3] = planes.normal;
-  const Lanes &area = planes.area, &inverse = planes.inverse;
+  const Floats(&n)[3] = planes.normal;
+  const Floats &area = planes.area, &inverse = planes.inverse;
   // Gradient of a channel: (s (v x n) + t (n x u)) / area. s and t are its values at b and c minus
   // that at w, n is the unit normal, and area is twice the triangle's.
-  const Lanes px = (t.vy * n[2] - t.vz * n[1]) * inverse,
-              py = (t.vz * n[0] - t.vx * n[2]) * inverse,
-              pz = (t.vx * n[1] - t.vy * n[0]) * inverse;
-  const Lanes qx = (n[1] * t.uz - n[2] * t.uy) * inverse,
-              qy = (n[2] * t.ux - n[0] * t.uz) * inverse,
-              qz = (n[0] * t.uy - n[1] * t.ux) * inverse;
+  const Floats px = (t.vy * n[2] - t.vz * n[1]) * inverse,
+               py = (t.vz * n[0] - t.vx * n[2]) * inverse,
+               pz = (t.vx * n[1] - t.vy * n[0]) * inverse;
+  const Floats qx = (n[1] * t.uz - n[2] * t.uy) * inverse,
+               qy = (n[2] * t.ux - n[0] * t.uz) * inverse,
+               qz = (n[0] * t.uy - n[1] * t.ux) * inverse;
   block[0] += sum(area);
   for (std::size_t k = 0; k < channels.count(); ++k) {
     float* b = block + 1 + 4 * k;
-    const Lanes at_b = valuesOf(channels, t.b, k) - b[3];
-    const Lanes at_c = fan ? next(at_b) : valuesOf(channels, t.c, k) - b[3];
-    const Lanes gx = at_b * px + at_c * qx, gy = at_b * py + at_c * qy, gz = at_b * pz + at_c * qz;
-    const Lanes ax = area * gx, ay = area * gy, az = area * gz;
-    const Lanes none = all(0.0F), g = sums({ax, ay, az, none, none, none, none, none});
+    const Floats at_b = valuesOf(channels, t.b, k) - b[3];
+    const Floats at_c = fan ? next(at_b) : valuesOf(channels, t.c, k) - b[3];
+    const Floats gx = at_b * px + at_c * qx, gy = at_b * py + at_c * qy, gz = at_b * pz + at_c * qz;
+    const Floats ax = area * gx, ay = area * gy, az = area * gz;
+    const Floats none = all(0.0F), g = sums({ax, ay, az, none, none, none, none, none});
     for (int i = 0; i < 3; ++i) b[i] += g[i];
     planes.h[0] += ax * gx;
     planes.h[1] += ax * gy;
@@ -215,8 +216,8 @@ MERLIN_INLINE void addGradients(const QuadricChannels& channels, const EightTria
 
 // Sums over a star's triangles.
 struct Sums {
-  Lanes most = {};  // h, then x and y of the normal
-  float z = 0;      // of the normal
+  Floats most = {};  // h, then x and y of the normal
+  float z = 0;       // of the normal
 
   Sums() = default;
   MERLIN_INLINE explicit Sums(const Planes& p)
@@ -291,10 +292,10 @@ MERLIN_INLINE void setOwn(const QuadricView& view, QuadricVertex& w, EdgeCosts& 
 // As setOwn(), for a closed fan of up to eight triangles. out.neighbour holds the first vertices of
 // its corners in order, and x, y, z their positions relative to w.
 template <bool channels>
-MERLIN_INLINE void setOwnOfFan(const QuadricView& view, QuadricVertex& w, const Lanes& x,
-                               const Lanes& y, const Lanes& z, EdgeCosts& out, float* block) {
+MERLIN_INLINE void setOwnOfFan(const QuadricView& view, QuadricVertex& w, const Floats& x,
+                               const Floats& y, const Floats& z, EdgeCosts& out, float* block) {
   if (channels) clearSums(*view.channels, block);
-  const Mask neighbours = load(out.neighbour.data());
+  const Ints neighbours = load(out.neighbour.data());
   sumsOf<channels, true>(view, fanTriangles(x, y, z, neighbours), block).store(w, out);
   setSharp(w, out.normal);
 }

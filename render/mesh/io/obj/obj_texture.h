@@ -8,7 +8,7 @@
 namespace merlin::render::mesh {
 
 // Splits each vertex of the file into one vertex for each combination of texture coordinate and
-// material at its corners; the vertices at a seam have bit-identical positions (samePlace() finds
+// material at its corners; the vertices at a seam have bit-identical positions (coincidentVertices() finds
 // them). The mesh gets "texcoord" and "colour" where the file has them; a vertex' colour comes from
 // the texture image, else from the vertex in the file, else from the material, else it is white. If
 // all corners use the same repeating texture image, it also becomes the mesh's texture.

@@ -1,4 +1,4 @@
-#include "render/mesh/places.h"
+#include "render/mesh/coincident.h"
 
 #include <algorithm>
 #include <bit>
@@ -20,7 +20,7 @@ std::size_t hashOf(const float* p) {
 
 }  // namespace
 
-std::vector<std::uint32_t> samePlaceBySorting(std::span<const float> positions) {
+std::vector<std::uint32_t> coincidentVerticesBySorting(std::span<const float> positions) {
   const std::size_t n = positions.size() / 3;
   std::vector<std::uint32_t> next(n), order(n);
   std::iota(order.begin(), order.end(), 0U);
@@ -42,7 +42,7 @@ std::vector<std::uint32_t> samePlaceBySorting(std::span<const float> positions) 
 
 // Uses a hash table with open addressing; its entries are positions, each with the last vertex
 // found there so far, whose next vertex is the first one.
-std::vector<std::uint32_t> samePlace(std::span<const float> positions) {
+std::vector<std::uint32_t> coincidentVertices(std::span<const float> positions) {
   constexpr std::uint32_t kEmpty = ~std::uint32_t{0};
   const std::size_t n = positions.size() / 3;
   std::vector<std::uint32_t> next(n), last(std::bit_ceil(2 * n + 1), kEmpty);
@@ -54,7 +54,7 @@ std::vector<std::uint32_t> samePlace(std::span<const float> positions) {
     std::size_t k = hashOf(at(v)) & (last.size() - 1);
     while (last[k] != kEmpty && !std::equal(at(v), at(v) + 3, at(last[k]))) {
       k = (k + 1) & (last.size() - 1);
-      if (--steps_left == 0) return samePlaceBySorting(positions);
+      if (--steps_left == 0) return coincidentVerticesBySorting(positions);
     }
     if (last[k] != kEmpty) {
       next[v] = next[last[k]];

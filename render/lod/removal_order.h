@@ -1,6 +1,6 @@
-// DeathOrder: the numbers that the nodes and triangles of a reduction have in its dendrogram, which
-// sorts both by the collapse that removes them (their death). It copies neither, so that a model
-// too large to be copied in memory can be written row by row.
+// RemovalOrder: the numbers that the nodes and triangles of a reduction have in its dendrogram,
+// which sorts both by the collapse that removes them. It copies neither, so that a model too large
+// to be copied in memory can be written row by row.
 #pragma once
 
 #include <cstddef>
@@ -16,9 +16,9 @@ namespace merlin::render::lod {
 // Keeps a reference to the log, which must outlive it. O(n), on `threads` threads with the same
 // result. Memory: 4 bytes per node, triangle and level; 4 more per triangle and 8 per vertex during
 // construction. REQUIRES: as buildDendrogram(); threads > 0.
-class DeathOrder {
+class RemovalOrder {
  public:
-  DeathOrder(const mesh::Mesh& mesh, const CollapseLog& log, unsigned threads);
+  RemovalOrder(const mesh::Mesh& mesh, const CollapseLog& log, unsigned threads);
 
   std::size_t nodeCount() const noexcept { return numbers_.size(); }
   std::size_t collapses() const noexcept { return log_.children.size(); }
@@ -39,8 +39,8 @@ class DeathOrder {
 
  private:
   void numberNodes();
-  void findDeaths(const mesh::Mesh& mesh, unsigned threads, HugeArray<std::uint32_t>& deaths);
-  void sortTriangles(const HugeArray<std::uint32_t>& deaths);
+  void findRemovals(const mesh::Mesh& mesh, unsigned threads, HugeArray<std::uint32_t>& removals);
+  void sortTriangles(const HugeArray<std::uint32_t>& removals);
 
   const CollapseLog& log_;
   HugeArray<std::uint32_t> numbers_, triangles_;

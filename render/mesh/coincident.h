@@ -13,9 +13,9 @@ namespace merlin::render::mesh {
 // coordinates are (so -0 equals 0).
 //   positions  vertices x 3, none of them NaN
 // Expected O(n), by a hash table; O(n log n) if positions were crafted to collide. Reentrant.
-std::vector<std::uint32_t> samePlace(std::span<const float> positions);
+std::vector<std::uint32_t> coincidentVertices(std::span<const float> positions);
 
-// Same result as samePlace(), always in O(n log n).
-std::vector<std::uint32_t> samePlaceBySorting(std::span<const float> positions);
+// Same result as coincidentVertices(), always in O(n log n).
+std::vector<std::uint32_t> coincidentVerticesBySorting(std::span<const float> positions);
 
 }  // namespace merlin::render::mesh

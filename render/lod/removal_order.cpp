@@ -1,4 +1,4 @@
-#include "render/lod/death_order.h"
+#include "render/lod/removal_order.h"
 
 #include <algorithm>
 #include <cassert>
@@ -34,7 +34,7 @@ struct Places {
 
   // The first level at which the triangle is gone, because two of its corners share a place; never
   // 0. kNever if no collapse removes the triangle.
-  std::uint32_t deathOf(const std::uint32_t* corners) const {
+  std::uint32_t removalOf(const std::uint32_t* corners) const {
     std::uint32_t c[] = {corners[0], corners[1], corners[2]};
     std::uint32_t at[] = {ends[c[0]].collapse, ends[c[1]].collapse, ends[c[2]].collapse};
     for (;;) {
@@ -50,19 +50,19 @@ struct Places {
 
 }  // namespace
 
-DeathOrder::DeathOrder(const mesh::Mesh& mesh, const CollapseLog& log, unsigned threads)
+RemovalOrder::RemovalOrder(const mesh::Mesh& mesh, const CollapseLog& log, unsigned threads)
     : log_(log), alive_(log.children.size() + 2) {
   {
-    HugeArray<std::uint32_t> deaths(mesh.triangleCount());
-    findDeaths(mesh, threads, deaths);
-    sortTriangles(deaths);
+    HugeArray<std::uint32_t> removals(mesh.triangleCount());
+    findRemovals(mesh, threads, removals);
+    sortTriangles(removals);
   }
   numbers_ = HugeArray<std::uint32_t>(mesh.vertexCount() + log.children.size());
   numberNodes();
 }
 
 // Numbers the roots in their order, then the children of the last collapse, ... of the first one.
-void DeathOrder::numberNodes() {
+void RemovalOrder::numberNodes() {
   const std::size_t nodes = numbers_.size();
   for (std::size_t n = 0; n < nodes; ++n) numbers_[n] = kNever;
   for (std::size_t k = 0; k < collapses(); ++k) {
@@ -79,30 +79,30 @@ void DeathOrder::numberNodes() {
   }
 }
 
-void DeathOrder::findDeaths(const mesh::Mesh& mesh, unsigned threads,
-                            HugeArray<std::uint32_t>& deaths) {
+void RemovalOrder::findRemovals(const mesh::Mesh& mesh, unsigned threads,
+                                HugeArray<std::uint32_t>& removals) {
   const std::size_t count = mesh.triangleCount();
   const Places places(mesh.vertexCount(), log_);
   const auto levels = static_cast<std::uint32_t>(collapses() + 1);
   forEach(threads, count, [&](std::size_t t) {
-    deaths[t] = std::min(levels, places.deathOf(&mesh.triangles[3 * t]));  // levels: never
+    removals[t] = std::min(levels, places.removalOf(&mesh.triangles[3 * t]));  // levels: never
   });
 }
 
-// Counting sort by death, latest first; equal deaths keep the order of the mesh. alive_[d], d the
-// death, is first the number of triangles that die later, where those of death d begin. After the
-// sort it is where they end, which is the number of triangles left one level before.
-void DeathOrder::sortTriangles(const HugeArray<std::uint32_t>& deaths) {
-  for (std::size_t t = 0; t < deaths.size(); ++t) ++alive_[deaths[t]];
+// Counting sort by level of removal, last first; equal ones keep the order of the mesh. alive_[d]
+// is first the number of triangles that are removed after level d, where those of level d begin.
+// After the sort it is where they end, which is the number of triangles left one level before.
+void RemovalOrder::sortTriangles(const HugeArray<std::uint32_t>& removals) {
+  for (std::size_t t = 0; t < removals.size(); ++t) ++alive_[removals[t]];
   std::uint32_t later = 0;
   for (std::size_t d = alive_.size(); d-- > 0;) {
     const std::uint32_t here = alive_[d];
     alive_[d] = later;
     later += here;
   }
-  triangles_ = HugeArray<std::uint32_t>(deaths.size());
-  for (std::size_t t = 0; t < deaths.size(); ++t)
-    triangles_[alive_[deaths[t]]++] = static_cast<std::uint32_t>(t);
+  triangles_ = HugeArray<std::uint32_t>(removals.size());
+  for (std::size_t t = 0; t < removals.size(); ++t)
+    triangles_[alive_[removals[t]]++] = static_cast<std::uint32_t>(t);
 }
 
 }  // namespace merlin::render::lod

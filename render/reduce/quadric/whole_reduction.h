@@ -1,0 +1,32 @@
+// WholeReduction: reduces the mesh as a whole, under the rules of one stage. Private to
+// render/reduce.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "render/reduce/quadric/collapse_loop.h"
+#include "render/reduce/reduce.h"
+
+namespace merlin::render::reduce {
+
+class WholeReduction {
+ public:
+  // Keeps references, which must outlive it.
+  WholeReduction(ReductionState& state, CollapseLoop& loop) : s_(state), loop_(loop) {}
+
+  // Reduces until at most `keep` triangles are left or state.rules.stage allows no more: with small
+  // stars first, where a collapse is fast, then raises the limit for what is left. The higher the
+  // limit, the fewer triangles are left.
+  void run(std::size_t keep, const Progress& progress);
+
+ private:
+  void requeue();
+  void reduceTo(std::size_t keep, const Progress& progress);
+  std::uint32_t smallestLeftOut() const;
+
+  ReductionState& s_;
+  CollapseLoop& loop_;
+};
+
+}  // namespace merlin::render::reduce
