@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,7 +24,7 @@ void addFaults(const SettingFaults& faults, const std::string& group, LoadedSett
     const std::string at = group + other;
     const std::string before =
         other.empty() ? "" : fmt::format("conflicts with {} (line {}): ", at, loaded.lineOf(at));
-    loaded.wrong(group + pointer, fmt::format("{}{}{}", prefix, before, what));
+    loaded.addFinding(group + pointer, fmt::format("{}{}{}", prefix, before, what));
   }
 }
 
@@ -32,8 +33,9 @@ void checkName(const Settings& s, LoadedSettings& loaded) {
   for (const char c : s.instance)
     good = good && (std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_');
   if (!good)
-    loaded.wrong("/instance", fmt::format("is \"{}\"; allowed are 1 to 32 letters, digits, - and _",
-                                          s.instance));
+    loaded.addFinding(
+        "/instance",
+        fmt::format("is \"{}\"; allowed are 1 to 32 letters, digits, - and _", s.instance));
 }
 
 // Two drivers on one serial line would each read only a part of the device's bytes.
@@ -45,9 +47,9 @@ void checkPortsDiffer(const DevicesSettings& d, LoadedSettings& loaded) {
     if (line->port.empty() || line->port.starts_with("replay:")) continue;
     const auto [first, fresh] = taken.emplace(line->port, device);
     if (fresh) continue;
-    loaded.wrong(fmt::format("/devices/{}/port", device),
-                 fmt::format("is \"{}\", which is the {}'s port; each device needs its own",
-                             line->port, first->second));
+    loaded.addFinding(fmt::format("/devices/{}/port", device),
+                      fmt::format("is \"{}\", which is the {}'s port; each device needs its own",
+                                  line->port, first->second));
   }
 }
 
@@ -55,15 +57,17 @@ void checkPortsDiffer(const DevicesSettings& d, LoadedSettings& loaded) {
 void checkInput(const InputSettings& in, LoadedSettings& loaded) {
   if (in.endpoint.empty()) return;
   if (!parseTcpAddress(in.endpoint)) {
-    loaded.wrong("/wall/input/endpoint",
-                 fmt::format("is \"{}\"; allowed is tcp://HOST:PORT, PORT 1 to 65535, or \"\" for "
-                             "this machine's devices",
-                             in.endpoint));
+    loaded.addFinding(
+        "/wall/input/endpoint",
+        fmt::format("is \"{}\"; allowed is tcp://HOST:PORT, PORT 1 to 65535, or \"\" for "
+                    "this machine's devices",
+                    in.endpoint));
   }
   if (in.keys.empty() || in.server_key.size() != 40) {
-    loaded.wrong("/wall/input",
-                 "needs keys (merlin keys -o FILE) and server_key, the other machine's public key "
-                 "of 40 characters");
+    loaded.addFinding(
+        "/wall/input",
+        "needs keys (merlin keys -o FILE) and server_key, the other machine's public key "
+        "of 40 characters");
   }
 }
 
@@ -78,20 +82,23 @@ void checkBindings(const Settings& s, LoadedSettings& loaded) {
     const std::string at = fmt::format("/devices/bindings/{}/action", i);
     const CommandInfo* const command = findCommand(action);
     if (action == "snapshot" && s.wall.snapshots.empty() && !other_walls)
-      loaded.wrong(at, "is snapshot, which needs a folder: /wall/snapshots names none");
+      loaded.addFinding(at, "is snapshot, which needs a folder: /wall/snapshots names none");
     if (action == "next_content" && s.wall.contents.empty() && !other_walls)
-      loaded.wrong(at, "is next_content, and there is one model only: /wall/contents names none");
+      loaded.addFinding(
+          at, "is next_content, and there is one content only: /wall/contents names none");
     if (action.starts_with("lamp_") && !lamp)
-      loaded.wrong(at, fmt::format("is {}, which needs a lamp: /devices/gpio has no chip with a "
-                                   "lamp_line",
-                                   action));
+      loaded.addFinding(at,
+                        fmt::format("is {}, which needs a lamp: /devices/gpio has no chip with a "
+                                    "lamp_line",
+                                    action));
     else if (command && command->role == CommandOf::kPanel && s.devices.gpio.chip.empty())
-      loaded.wrong(
+      loaded.addFinding(
           at, fmt::format("is {}, which needs the panel: /devices/gpio names no chip", action));
   }
 }
 
-// Checks stereo, and the outputs with the tiles of both eyes.
+// Checks the stereo settings, then the tiles that they make for each eye, and the outputs against
+// those tiles.
 void checkStereo(const WallSettings& wall, LoadedSettings& loaded) {
   const double distance_m = wall.scene.wall_distance_m;
   const SettingFaults faults =
@@ -109,10 +116,11 @@ void checkStereo(const WallSettings& wall, LoadedSettings& loaded) {
 void checkHead(const Settings& s, LoadedSettings& loaded) {
   const int station = s.wall.stereo.head.station;
   if (station == 0 || station != s.devices.hand.station) return;
-  loaded.wrong("/wall/stereo/head/station",
-               fmt::format("is {}, the station that is worn on the hand (/devices/hand/station); "
-                           "the head needs its own",
-                           station));
+  loaded.addFinding(
+      "/wall/stereo/head/station",
+      fmt::format("is {}, the station that is worn on the hand (/devices/hand/station); "
+                  "the head needs its own",
+                  station));
 }
 
 // Makes the tiles of a wall that is described as a room. A wall whose room is at fault has no tiles
@@ -130,14 +138,31 @@ void checkTiles(LoadedSettings& loaded) {
   if (faults.empty()) checkStereo(wall, loaded);
 }
 
+// Each entry names one of its kinds of file, and `merlin show` finds it by its name.
+void checkContents(const WallSettings& wall, LoadedSettings& loaded) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < wall.contents.size(); ++i) {
+    const ContentSettings& c = wall.contents[i];
+    const std::string at = fmt::format("/wall/contents/{}", i);
+    int files = 0;
+    for (const std::string* file : {&c.model, &c.picture, &c.slides})
+      files += file->empty() ? 0 : 1;
+    if (files > 1)
+      loaded.addFinding(at, "names more than one file; give it one of model, picture and slides");
+    if (!c.name.empty() && !names.insert(c.name).second)
+      loaded.addFinding(at + "/name",
+                        fmt::format("is \"{}\", the name of another content", c.name));
+  }
+}
+
 void checkSnapshots(const WallSettings& wall, LoadedSettings& loaded) {
   const bool shared = std::any_of(wall.outputs.begin(), wall.outputs.end(), [](const auto& o) {
     return o.kind == render::out::OutputKind::kSharedMemory;
   });
   if (!wall.snapshots.empty() && !shared) {
-    loaded.wrong("/wall/snapshots",
-                 "needs an output of kind shared_memory, from which snapshots are taken; "
-                 "/wall/outputs has none");
+    loaded.addFinding("/wall/snapshots",
+                      "needs an output of kind shared_memory, from which snapshots are taken; "
+                      "/wall/outputs has none");
   }
 }
 
@@ -155,11 +180,13 @@ void checkTogether(LoadedSettings& loaded) {
   addFaults(validate(d.ball), "/devices/ball", loaded);
   addFaults(validate(d.gpio), "/devices/gpio", loaded);
   addFaults(validate(s.serve), "/serve", loaded);
+  addFaults(validate(s.page), "/page", loaded);
   checkInput(s.wall.input, loaded);
   checkTiles(loaded);
   checkHead(s, loaded);
   addFaults(validate(s.wall.scene), "/wall/scene", loaded, "cannot be used: ");
   addFaults(validate(s.wall.governor), "/wall/rate", loaded);
+  checkContents(s.wall, loaded);
   checkSnapshots(s.wall, loaded);
   checkBindings(s, loaded);
 }

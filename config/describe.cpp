@@ -2,6 +2,7 @@
 // `merlind --print-config` are generated from it.
 #include <fmt/format.h>
 
+#include "config/describe_page.h"
 #include "config/describe_room.h"
 #include "config/describe_stereo.h"
 #include "config/settings.h"
@@ -12,7 +13,6 @@ namespace merlin {
 namespace {
 
 constexpr const char* kSlot7Rules[] = {"zero", "neutral", "derived", "switch"};
-constexpr const char* kBackends[] = {"egl", "osmesa"};
 constexpr const char* kTileKinds[] = {"wall", "operator"};
 constexpr const char* kWhen[] = {"by_action", "enter", "hold", "leave"};
 constexpr const char* kScripts[] = {"visit", "turning", "still", "grabbing", "alignment", "pushes"};
@@ -116,9 +116,11 @@ void describeTracker(DevicesSettings& d, SettingsVisitor& v) {
   for (std::size_t i = 0; i < d.tracker.hemisphere.size(); ++i) {
     v.numbers(
         kKeys[i], d.tracker.hemisphere[i], {-1, 1},
-        "Hemisphere of operation of one station (hemisphere2: station 2): a vector in the "
-        "transmitter's frame that points into the half-space in which the receiver is. 0, 0, 0: "
-        "the tracker notices by itself when the receiver changes to the other half-space.");
+        fmt::format("Hemisphere of operation of station {}: a vector in the transmitter's frame "
+                    "that points into the half-space that contains the receiver. 0, 0, 0: the "
+                    "tracker detects when the receiver crosses into the other half-space.",
+                    i + 1)
+            .c_str());
   }
   describeTrackerForm(d.tracker, v);
   v.flag("centimetres", d.tracker.centimetres,
@@ -266,16 +268,32 @@ void describeScene(render::scene::SceneSettings& s, SettingsVisitor& v) {
            "part of the model; the view does not return while something moves. 0: never.");
 }
 
-void describeRender(render::frame::RenderSettings& r, SettingsVisitor& v) {
-  v.oneOf("backend", r.gl.backend, kBackends,
-          "OpenGL implementation that draws without a window: egl (uses a GPU where there is one) "
-          "or osmesa (software).");
+void describeRenderer(render::frame::RenderSettings& r, SettingsVisitor& v) {
+  v.oneOf("backend", r.gl.backend, render::gl::kGlBackendNames,
+          "OpenGL implementation that draws without a window: egl (with a GPU or in software) or "
+          "osmesa (software).");
+  v.text("gpu", r.gl.gpu,
+         "GPU that draws, with backend egl. auto: the first GPU that works, otherwise the software "
+         "renderer; none: the software renderer; otherwise the GPU with this number, DRM node, PCI "
+         "address or part of its name. `merlin wall gpus` lists them.");
   v.integer("contexts", r.gl.contexts, {0, 2},
             "Number of OpenGL contexts that divide the tiles among them, each in its own thread; 2 "
             "needs EGL. 0: two for a software renderer on two cores or more, otherwise one.");
+  v.oneOf("read_back", r.gl.read_back, render::gl::kReadBackNames,
+          "How a frame's pixels are read back. direct: each tile as soon as it is drawn; "
+          "asynchronous: into pixel buffers, while the tiles after it are drawn. auto: "
+          "asynchronous from a GPU, direct from a software renderer.");
+  v.oneOf("correction", r.correction, render::frame::kCorrectionPlaceNames,
+          "Where corrections of outputs are computed: on the cpu, or by a shader on the gpu (in "
+          "software, if that is what draws). auto: by a shader if a GPU draws, otherwise on the "
+          "CPU.");
   v.integer("raster_threads", r.gl.raster_threads, {0, 16},
             "Number of rasterizer threads of Mesa's software renderer; 0: the drawing thread "
             "itself rasterizes.");
+}
+
+void describeRender(render::frame::RenderSettings& r, SettingsVisitor& v) {
+  describeRenderer(r, v);
   v.text("show", r.model.show.feature,
          "Name of the vertex feature that the model's colours show (thermal, confidence ...); a "
          "feature with one value per vertex is shown on a colour scale. Every model must have this "
@@ -291,6 +309,10 @@ void describeRender(render::frame::RenderSettings& r, SettingsVisitor& v) {
            "Share of the triangles whose vertices move gradually to the position where they will "
            "merge (geomorphs), so that a change of detail is not visible as a jump. 0: vertices "
            "jump.");
+  v.integer(
+      "picture_memory_mb", r.picture_memory_mb, {64, 65'536},
+      "Memory for the parts of the shown picture, in megabytes: in memory and in the textures "
+      "of all drawing contexts.");
   v.integer("fade_frames", r.fade_frames, {1, 30},
             "Number of frames over which a finer image of a still scene is faded in over the "
             "coarser one; 1: the finer image is shown at once.");
@@ -395,9 +417,9 @@ void describeMesh(render::correct::MeshSettings& m, SettingsVisitor& v) {
           "screens) or bilinear (in each cell on its own, for screens with creases).");
   v.listOf<render::correct::MeshPoint>(
       "points", m.points,
-      "Where each point of the grid lands on the output: row by row from the top, columns * rows "
-      "points. The grid's points have equal distances in the picture as it is meant, and the "
-      "outermost ones lie on its border.",
+      "Positions on the output of the grid's columns * rows points, row by row from the top. "
+      "In the picture before the warp the points are evenly spaced, and the outermost ones lie on "
+      "its border.",
       [&](render::correct::MeshPoint& p) {
         const Range range{render::correct::kLeastMeshPlace, render::correct::kMostMeshPlace};
         v.number("x", p.x, range, "From the left border, as a share of the output's width.");
@@ -420,8 +442,8 @@ void describeCorrection(render::correct::CorrectionSettings& c, SettingsVisitor&
          "Region of the MPCDI file that belongs to this output. Empty: the file's only one.");
   v.group(
       "blend",
-      "Strips of the picture that a neighbour shows as well: there the light falls "
-      "towards the border, so that both together are as bright as the picture.",
+      "Edge blending: strips of the picture that a neighbour shows as well. There the light "
+      "falls towards the border, so that both together are as bright as the picture.",
       [&] {
         const Range pixels{0, render::correct::kMostCornerOffset};
         v.number(
@@ -429,16 +451,20 @@ void describeCorrection(render::correct::CorrectionSettings& c, SettingsVisitor&
             "Width of the strip at the left border in pixels of the picture before the warp; 0: "
             "none.");
         v.number("right", c.blend.right, pixels,
-                 "Width of the strip at the right border, likewise.");
-        v.number("top", c.blend.top, pixels, "Height of the strip at the top border, likewise.");
+                 "Width of the strip at the right border in pixels of the picture before the warp; "
+                 "0: none.");
+        v.number("top", c.blend.top, pixels,
+                 "Height of the strip at the top border in pixels of the picture before the warp; "
+                 "0: none.");
         v.number("bottom", c.blend.bottom, pixels,
-                 "Height of the strip at the bottom border, likewise.");
+                 "Height of the strip at the bottom border in pixels of the picture before the "
+                 "warp; 0: none.");
         v.number(
             "gamma", c.blend.gamma, {render::correct::kLeastGamma, render::correct::kMostGamma},
             "Gamma of the projector or display: light = signal ^ gamma. Blend, colour and black "
-            "level are computed in light.");
+            "level are computed in linear light.");
       });
-  v.group("colour", "Correction of colours, in light.", [&] {
+  v.group("colour", "Correction of colours, in linear light.", [&] {
     const Range range{-render::correct::kMostColour, render::correct::kMostColour};
     v.numbers("matrix", c.colour.matrix, range,
               "Matrix that the light is multiplied by: three rows for red, green and blue of the "
@@ -452,9 +478,9 @@ void describeCorrection(render::correct::CorrectionSettings& c, SettingsVisitor&
   });
   v.group("black", "Black level.", [&] {
     v.numbers("level", c.black.level, {0, render::correct::kMostBlack},
-              "Light of red, green and blue that is added outside the strips of blend, as a share "
-              "of full light, so that black is as bright there as in the overlap, where a "
-              "neighbour's black adds to it.");
+              "Linear light of red, green and blue that is added outside the blend strips, as a "
+              "share of full brightness. It raises black there to the level of the overlap, where "
+              "the black levels of the projectors add up.");
   });
 }
 
@@ -514,11 +540,26 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
         v.path("keys", w.input.keys,
                "File with this machine's key pair, written by `merlin keys -o FILE`.");
       });
-  v.path("model", w.model, "Multiresolution model that is shown first, an .mrm file.");
+  v.path("model", w.model,
+         "Multiresolution model that is shown first, an .mrm file; empty: the first of contents is "
+         "shown first.");
   v.listOf<ContentSettings>("contents", w.contents,
-                            "Further models, which the command next_content shows in turn.",
+                            "Further contents, which the command next_content shows in turn. "
+                            "Each names a model, a picture or a folder of slides.",
                             [&](ContentSettings& c) {
+                              v.text("name", c.name,
+                                     "Name of the content, for `merlin show`; empty: the name of "
+                                     "its file without the ending.");
                               v.path("model", c.model, "Multiresolution model, an .mrm file.");
+                              v.path("picture", c.picture,
+                                     "Picture or panorama, a pyramid (.tif) that `merlin image "
+                                     "import` makes.");
+                              v.path("slides", c.slides,
+                                     "Folder of pyramids (.tif), which next_content shows one "
+                                     "after another, in the order of their names.");
+                              v.oneOf("show_as", c.show_as, render::content::kShowAsNames,
+                                      "Kind of the picture or the slides. marked: a panorama if "
+                                      "it was imported with --panorama, otherwise a plane.");
                             });
   v.group(
       "rate",
@@ -660,6 +701,8 @@ void describe(Settings& s, SettingsVisitor& v) {
   v.group("wall", "What the wall shows, how it is drawn, and which outputs receive the frames.",
           [&] { describeWall(s.wall, v); });
   v.group("serve", "Servers for other programs and machines.", [&] { describeServe(s.serve, v); });
+  v.group("page", "The web page of the operator, which `merlind --role page` serves.",
+          [&] { describePage(s.page, v); });
 }
 
 }  // namespace merlin

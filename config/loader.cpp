@@ -11,9 +11,9 @@
 #include "config/checks.h"
 #include "config/migrate.h"
 #include "config/visitor.h"
+#include "daemon/base/did_you_mean.h"
 #include "daemon/base/files.h"
-#include "daemon/base/nearest.h"
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 #include "daemon/json/json_tree.h"
 
 namespace merlin {
@@ -46,7 +46,7 @@ class Loader final : public SettingsVisitor {
   void integer(const char* key, int& value, Range range, const char*) override {
     const JsonNode* node = take(key, JsonNode::Kind::kNumber, "a whole number");
     if (!node) return;
-    if (node->number != std::floor(node->number)) return wrong(*node, key, "a whole number");
+    if (node->number != std::floor(node->number)) return addWrongKind(*node, key, "a whole number");
     value = static_cast<int>(clamp(*node, key, range));
   }
   void flag(const char* key, bool& value, const char*) override {
@@ -70,18 +70,18 @@ class Loader final : public SettingsVisitor {
     if (!node) return;
     const auto found =
         std::find_if(names.begin(), names.end(), [&](const char* n) { return node->text == n; });
-    if (found == names.end()) return wrong(*node, key, allowed);
+    if (found == names.end()) return addWrongKind(*node, key, allowed);
     value = static_cast<int>(found - names.begin());
   }
   void numbers(const char* key, std::span<double> values, Range range, const char*) override {
     const std::string allowed = fmt::format("a list of {} numbers", values.size());
     const JsonNode* node = take(key, JsonNode::Kind::kArray, allowed);
     if (!node) return;
-    if (node->items.size() != values.size()) return wrong(*node, key, allowed);
+    if (node->items.size() != values.size()) return addWrongKind(*node, key, allowed);
     for (std::size_t i = 0; i < values.size(); ++i) {
       const std::string item = fmt::format("{}/{}", key, i);
       if (node->items[i].kind != JsonNode::Kind::kNumber)
-        wrong(node->items[i], item, "a number");
+        addWrongKind(node->items[i], item, "a number");
       else
         values[i] = clamp(node->items[i], item, range);
     }
@@ -100,7 +100,7 @@ class Loader final : public SettingsVisitor {
     for (std::size_t i = 0; i < node->items.size(); ++i) {
       lines_[pointer(fmt::format("{}/{}", key, i))] = node->items[i].line;
       const bool object = node->items[i].kind == JsonNode::Kind::kObject;
-      if (!object) wrong(node->items[i], fmt::format("{}/{}", key, i), "an object");
+      if (!object) addWrongKind(node->items[i], fmt::format("{}/{}", key, i), "an object");
       enter(object ? &node->items[i] : nullptr, pointer(fmt::format("{}/{}", key, i)));
       member(i);
       leave();
@@ -161,7 +161,7 @@ class Loader final : public SettingsVisitor {
   std::string suggestion(const std::string& key, const std::vector<std::string>& known) const {
     if (loaded_.left_out > 0) return {};  // this finding is only counted, not kept
     constexpr std::size_t kLongest = 64;  // the comparison is quadratic in the key's length
-    const std::string near = key.size() > kLongest ? "" : nearest(key, known);
+    const std::string near = key.size() > kLongest ? "" : nearestWord(key, known);
     return near.empty() ? fmt::format("known here are {}", fmt::join(known, ", "))
                         : fmt::format("did you mean \"{}\"?", near);
   }
@@ -179,13 +179,13 @@ class Loader final : public SettingsVisitor {
       if (member.value.kind == kind && whole) return &member.value;
       if (!whole)
         allowed = "a text without the character NUL, where the operating system would truncate it";
-      wrong(member.value, key, allowed);
+      addWrongKind(member.value, key, allowed);
       return nullptr;
     }
     return nullptr;
   }
 
-  void wrong(const JsonNode& node, std::string_view key, std::string_view allowed) {
+  void addWrongKind(const JsonNode& node, std::string_view key, std::string_view allowed) {
     loaded_.add({false, node.line, pointer(key),
                  fmt::format("is {}; allowed is {}", describe(node), allowed)});
   }
@@ -194,7 +194,7 @@ class Loader final : public SettingsVisitor {
     const double value = std::clamp(node.number, range.low, range.high);
     if (value == node.number) return value;
     if (std::isnan(node.number)) {
-      wrong(node, key, "a number");
+      addWrongKind(node, key, "a number");
       return range.low;
     }
     loaded_.add({true, node.line, pointer(key),
@@ -226,7 +226,7 @@ int LoadedSettings::lineOf(const std::string& pointer) const {
   return 0;
 }
 
-void LoadedSettings::wrong(const std::string& pointer, std::string what) {
+void LoadedSettings::addFinding(const std::string& pointer, std::string what) {
   add({false, lineOf(pointer), pointer, std::move(what)});
 }
 

@@ -37,8 +37,8 @@ struct LoadedSettings {
   // Adds a finding. Cost: constant.
   void add(Finding finding);
   // Adds a finding that makes the file invalid.
-  void wrong(const std::string& pointer, std::string what);
-  // Sorts the findings by line; to be called after the last add() or wrong().
+  void addFinding(const std::string& pointer, std::string what);
+  // Sorts the findings by line; to be called after the last add() or addFinding().
   void sortFindings();
 
  private:

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "daemon/actions/settings.h"
+#include "daemon/page/settings.h"
 #include "daemon/serve/settings.h"
 #include "drivers/cyberglove/settings.h"
 #include "drivers/fastrak/settings.h"
@@ -24,11 +25,11 @@
 namespace merlin {
 
 struct DevicesSettings {
-  LineSettings glove_line{"cyberglove", "", 38400};
+  LineSettings glove_line{"cyberglove", "", kCybergloveBaud};
   CybergloveSettings glove;
-  LineSettings tracker_line{"fastrak", "", 38400};
+  LineSettings tracker_line{"fastrak", "", kFastrakBaud};
   FastrakSettings tracker;
-  LineSettings ball_line{"spaceball", "", 9600};
+  LineSettings ball_line{"spaceball", "", kSpaceballBaud};
   SpaceballSettings ball;
   HandSettings hand;
   GpioSettings gpio;
@@ -51,14 +52,19 @@ struct InputSettings {
   std::string keys;        // file with this machine's key pair
 };
 
+// One of the three files is named.
 struct ContentSettings {
-  std::string model;  // an .mrm file
+  std::string name;     // empty: the file's name without its ending
+  std::string model;    // an .mrm file
+  std::string picture;  // a pyramid, as `merlin image import` makes it
+  std::string slides;   // a folder of pyramids
+  render::content::ShowAs show_as = render::content::ShowAs::kAsMarked;
 };
 
 struct WallSettings {
   InputSettings input;
-  std::string model;                      // an .mrm file, shown first
-  std::vector<ContentSettings> contents;  // further models, shown in turn by next_content
+  std::string model;                      // an .mrm file, shown first; empty: the first content is
+  std::vector<ContentSettings> contents;  // further contents, shown in turn by next_content
   render::governor::GovernorSettings governor;
   render::room::RoomSettings room;     // instead of tiles by hand
   render::tiles::TilesSettings tiles;  // loadSettings() makes them from the room if that is given
@@ -81,6 +87,7 @@ struct Settings {
   DevicesSettings devices;
   WallSettings wall;
   ServeSettings serve;
+  PageSettings page;
 };
 
 }  // namespace merlin

@@ -23,7 +23,7 @@ constexpr std::size_t kMostSocketName = sizeof sockaddr_un::sun_path - 1;
 
 template <typename T>
 void take(const Result<T>& result, const char* pointer, LoadedSettings& loaded) {
-  if (!result) loaded.wrong(pointer, kCannot + result.error().what);
+  if (!result) loaded.addFinding(pointer, kCannot + result.error().what);
 }
 
 // Checks the limit on open files, because libzmq aborts the process when it runs out of file
@@ -47,10 +47,11 @@ void checkRunDirectory(LoadedSettings& loaded) {
   const std::size_t longest = path.size() + 1 + loaded.settings.instance.size() +
                               std::string_view("-devices.status.samples.inner").size();
   if (longest > kMostSocketName) {
-    return loaded.wrong("/run_directory",
-                        fmt::format("is too long: the names of sockets in it would have {} bytes; "
-                                    "at most {} are allowed",
-                                    longest, kMostSocketName));
+    return loaded.addFinding(
+        "/run_directory",
+        fmt::format("is too long: the names of sockets in it would have {} bytes; "
+                    "at most {} are allowed",
+                    longest, kMostSocketName));
   }
   take(checkFolder(path), "/run_directory", loaded);
 }
@@ -62,14 +63,14 @@ void checkSpnavSocket(LoadedSettings& loaded) {
   const std::string& path = loaded.settings.serve.spnav_socket;
   if (path.empty()) return;
   if (path.size() > kMostSocketName) {
-    return loaded.wrong(kPointer, fmt::format("has {} bytes; a socket's name has at most {}",
-                                              path.size(), kMostSocketName));
+    return loaded.addFinding(kPointer, fmt::format("has {} bytes; a socket's name has at most {}",
+                                                   path.size(), kMostSocketName));
   }
   struct stat status {};
   if (::lstat(path.c_str(), &status) == 0 && !S_ISSOCK(status.st_mode)) {
-    return loaded.wrong(kPointer, fmt::format("{}{}: is not a socket and is not replaced; "
-                                              "choose another name, or remove the file",
-                                              kCannot, path));
+    return loaded.addFinding(kPointer, fmt::format("{}{}: is not a socket and is not replaced; "
+                                                   "choose another name, or remove the file",
+                                                   kCannot, path));
   }
   const std::string folder = std::filesystem::path(path).parent_path().string();
   take(checkWritableFolder(folder.empty() ? "." : folder), kPointer, loaded);
@@ -82,7 +83,8 @@ void checkStateFile(const std::string& configuration, LoadedSettings& loaded) {
   if (path.empty()) return;
   std::error_code error;
   if (std::filesystem::equivalent(configuration, path, error))
-    return loaded.wrong(kPointer, "names the configuration itself, which merlind never writes");
+    return loaded.addFinding(kPointer,
+                             "names the configuration itself, which merlind never writes");
   wall::checkReplacesNothing(loaded, path, kPointer);
   const std::string folder = std::filesystem::path(path).parent_path().string();
   if (const auto usable = checkFolder(folder.empty() ? "." : folder); !usable)
@@ -97,8 +99,9 @@ void checkBindable(const std::string& endpoint, LoadedSettings& loaded) {
   const std::string host = endpoint.substr(kTcp.size(), endpoint.rfind(':') - kTcp.size());
   in_addr address{};
   if (host == "*" || ::inet_pton(AF_INET, host.c_str(), &address) == 1) return;
-  loaded.wrong("/serve/samples_endpoint",
-               fmt::format("{}{} is neither * nor an IPv4 address of this machine", kCannot, host));
+  loaded.addFinding(
+      "/serve/samples_endpoint",
+      fmt::format("{}{} is neither * nor an IPv4 address of this machine", kCannot, host));
 }
 
 void checkSamples(LoadedSettings& loaded) {
@@ -115,12 +118,19 @@ void checkInput(const DaemonOptions& options, LoadedSettings& loaded) {
   const InputSettings& input = loaded.settings.wall.input;
   if (input.endpoint.empty()) return;
   if (options.devices) {
-    loaded.wrong(
+    loaded.addFinding(
         "/wall/input/endpoint",
         "names another machine's devices, but this process reads devices itself: run it with "
         "--role wall");
   }
   if (!input.keys.empty()) take(status::readKeyPair(input.keys), "/wall/input/keys", loaded);
+}
+
+void checkPage(LoadedSettings& loaded) {
+  const PageSettings& page = loaded.settings.page;
+  if (page.enabled || page.metrics) return;
+  loaded.addFinding("/page/enabled",
+                    "is false, and so is /page/metrics: the role page has nothing to serve");
 }
 
 }  // namespace
@@ -132,6 +142,7 @@ Configuration readConfiguration(const std::string& file, const DaemonOptions& op
   if (loaded.findings.size() == 1 && loaded.findings[0].pointer.empty()) return read;
   checkDescriptors(loaded);
   checkRunDirectory(loaded);
+  if (options.page) checkPage(loaded);
   if (options.devices) {
     devices::checkPostures(loaded);
     if (!options.emulate) devices::checkPorts(loaded);
@@ -142,8 +153,9 @@ Configuration readConfiguration(const std::string& file, const DaemonOptions& op
   if (options.wall) {
     checkInput(options, loaded);
     checkStateFile(file, loaded);
+    wall::checkRenderer(loaded);
     wall::checkOutputs(loaded);
-    read.models = wall::readModels(loaded);
+    read.contents = wall::readContents(loaded);
   }
   loaded.sortFindings();
   return read;

@@ -2,16 +2,16 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <sstream>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "daemon/base/did_you_mean.h"
 #include "daemon/base/log.h"
-#include "daemon/base/nearest.h"
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/parse_arguments.h"
 
 namespace merlin {
 namespace {
@@ -25,30 +25,23 @@ int main(int argc, char** argv) {
   cli::Run run;
   const cli::Command program(app);
   for (const auto add :
-       {cli::addStatus, cli::addWatch, cli::addSnapshot, cli::addWall, cli::addTrace, cli::addMesh,
-        cli::addPosture, cli::addEmulate, cli::addRecord, cli::addReplay, cli::addFlight,
-        cli::addCalibrate, cli::addConfig, cli::addKeys, cli::addShm, cli::addCommandsByName}) {
+       {cli::addStatus, cli::addWatch, cli::addSnapshot, cli::addWall, cli::addShow, cli::addTrace,
+        cli::addMesh, cli::addImage, cli::addPosture, cli::addEmulate, cli::addRecord,
+        cli::addReplay, cli::addFlight, cli::addCalibrate, cli::addConfig, cli::addKeys,
+        cli::addShm, cli::addCommandsByName}) {
     add(program, run);
   }
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
   if (argc > 1 && argv[1][0] != '-' &&
       std::find(names.begin(), names.end(), argv[1]) == names.end()) {
-    const std::string near = nearest(argv[1], names);
+    const std::string near = nearestWord(argv[1], names);
     printError("merlin: \"{}\" is not a known command; {}\n", printable(argv[1]),
                near.empty() ? fmt::format("commands are {}", fmt::join(names, ", "))
                             : fmt::format("did you mean \"{}\"?", near));
     return kExitBadInput;
   }
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    std::ostringstream help, why;
-    const int status = app.exit(e, help, why);
-    fmt::print("{}", help.str());
-    printError("{}", printable(why.str()));
-    return status == 0 ? kExitDone : kExitBadInput;
-  }
+  if (const auto status = parseArguments(app, argc, argv)) return *status;
   initLog(LogLevel::kWarning);
   return run();
 }
@@ -58,5 +51,5 @@ int main(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   merlin::openStandardStreams();
-  return merlin::guarded("merlin", [&] { return merlin::main(argc, argv); });
+  return merlin::runGuarded("merlin", [&] { return merlin::main(argc, argv); });
 }

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <sstream>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -12,10 +11,12 @@
 #include "config/loader.h"
 #include "config/writer.h"
 #include "daemon/base/log.h"
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/parse_arguments.h"
 #include "daemon/configuration.h"
 #include "daemon/daemon.h"
+#include "daemon/page_process.h"
 #include "render/gl/gl_context.h"
 
 namespace merlin {
@@ -36,7 +37,9 @@ void printFindings(const std::string& file, const LoadedSettings& loaded) {
 }
 
 DaemonOptions daemonOptions(const Options& options) {
-  return {options.role != "wall", options.role != "devices", options.emulate};
+  const bool all = options.role == "all";
+  return {all || options.role == "devices", all || options.role == "wall", options.emulate,
+          options.role == "page"};
 }
 
 Configuration checkedConfiguration(const std::string& file, const Options& options) {
@@ -91,22 +94,30 @@ void raiseDescriptorLimit() {
   ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+int exitStatusOf(const Result<Ok>& ran) {
+  if (ran) return kExitDone;
+  logError("{}", ran.error().what);
+  return ran.error().code == Errc::kClosed ? kExitDone : exitStatus(ran.error());
+}
+
 int runDaemon(const Options& options) {
   blockSignals();  // first, because reading a large model takes long and a signal may arrive
   Configuration configuration = checkedConfiguration(options.config, options);
   if (configuration.loaded.verdict() == LoadedSettings::Verdict::kInvalid) return kExitBadInput;
   raiseDescriptorLimit();
-  render::gl::prepareSoftwareGl(configuration.loaded.settings.wall.render.gl.raster_threads);
+  if (options.role == "page") {
+    SystemClock page_clock;
+    return exitStatusOf(runPage(configuration.loaded.settings, page_clock));
+  }
+  const render::gl::GlSettings& gl = configuration.loaded.settings.wall.render.gl;
+  render::gl::prepareSoftwareGl(gl.raster_threads, gl.gpu == render::gl::kNoGpu);
   SystemClock clock;
   const auto daemon = Daemon::make(std::move(configuration), daemonOptions(options), clock);
   if (!daemon) {
     logError("{}", daemon.error().what);
     return exitStatus(daemon.error());
   }
-  const auto ran = (*daemon)->run();
-  if (ran) return kExitDone;
-  logError("{}", ran.error().what);
-  return ran.error().code == Errc::kClosed ? kExitDone : exitStatus(ran.error());
+  return exitStatusOf((*daemon)->run());
 }
 
 int main(int argc, char** argv) {
@@ -129,8 +140,9 @@ int main(int argc, char** argv) {
           ->check(named)
           ->type_name("FILE");
   app.add_option("--role", options.role,
-                 "Role of this process: it reads the devices, draws the wall, or does both")
-      ->check(CLI::IsMember({"devices", "wall", "all"}))
+                 "Role of this process: it reads the devices, draws the wall, or does both; or it "
+                 "serves the operator's web page, beside a merlind that does")
+      ->check(CLI::IsMember({"devices", "wall", "all", "page"}))
       ->capture_default_str();
   app.add_flag("--emulate", options.emulate,
                "Start an emulator for each device, on a pseudo-terminal");
@@ -139,15 +151,7 @@ int main(int argc, char** argv) {
   app.add_flag("--print-schema", options.print_schema,
                "Print the JSON Schema of configuration files, and exit");
   app.set_version_flag("--version", MERLIN_VERSION);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    std::ostringstream help, why;
-    const int status = app.exit(e, help, why);
-    fmt::print("{}", help.str());
-    printError("{}", printable(why.str()));
-    return status == 0 ? kExitDone : kExitBadInput;
-  }
+  if (const auto status = parseArguments(app, argc, argv)) return *status;
   initLog(LogLevel::kInfo);
   if (options.print_schema) {
     fmt::print("{}", settingsSchema());
@@ -155,7 +159,7 @@ int main(int argc, char** argv) {
   }
   if (options.print_config) return printConfig(options);
   if (check->count() == 0) return runDaemon(options);
-  return guarded(
+  return runGuarded(
       "merlind", [&] { return checkConfig(options); }, kExitBadInput);
 }
 
@@ -164,5 +168,5 @@ int main(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   merlin::openStandardStreams();
-  return merlin::guarded("merlind", [&] { return merlin::main(argc, argv); });
+  return merlin::runGuarded("merlind", [&] { return merlin::main(argc, argv); });
 }

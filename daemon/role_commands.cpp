@@ -67,12 +67,18 @@ Answer move(const Parts& p, std::string_view argument) {
   if (!good || at != end) {
     return Error{
         Errc::kInvalidArgument,
-        fmt::format("\"{}\" is not six numbers X Y Z RX RY RZ: radii from -{} to {}, degrees "
-                    "from -{} to {}",
+        fmt::format("\"{}\" is not six numbers X Y Z RX RY RZ: X, Y and Z are from -{} to {} times "
+                    "the model's radius, RX, RY and RZ from -{} to {} degrees",
                     argument.substr(0, 64), kMostRadii, kMostRadii, kMostDegrees, kMostDegrees)};
   }
   p.wall->move({step[0], step[1], step[2]}, {step[3], step[4], step[5]});
   return done();
+}
+
+Answer show(const Parts& p, const std::string& what) {
+  const auto request = p.wall->show(what);
+  if (!request) return request.error();
+  return fmt::format("{{\"request\": {}}}", *request);
 }
 
 Answer rate(const Parts& p, const std::string& argument) {
@@ -124,6 +130,7 @@ Answer ofWall(const Parts& p, std::string_view name, const std::string& argument
   if (name == "reset_view") return request(p, wall::WallLoop::kResetView);
   if (name == "next_mode") return request(p, wall::WallLoop::kNextMode);
   if (name == "next_content") return request(p, wall::WallLoop::kNextContent);
+  if (name == "show") return show(p, argument);
   if (name == "move") return move(p, argument);
   if (name == "snapshot") return snapshot(p);
   if (name == "triangles") return triangles(p, argument);
@@ -142,8 +149,8 @@ Answer ofDevices(const Parts& p, const CommandInfo& command) {
   if (command.name == "flight") return flight(p);
   if (command.role != CommandOf::kPanel) return lacks("does not know the command");
   if (!p.devices->panel()) return lacks("has no panel: /devices/gpio names no chip");
-  const auto obeyed = p.devices->panel()->obey(std::string(command.name));
-  return obeyed ? done() : Answer(obeyed.error());
+  const auto executed = p.devices->panel()->execute(std::string(command.name));
+  return executed ? done() : Answer(executed.error());
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace merlin {
 namespace {
 
-constexpr Duration kTellSentAway = std::chrono::seconds(5);
+constexpr Duration kSentAwayPeriod = std::chrono::seconds(5);
 
 }  // namespace
 
@@ -73,10 +73,10 @@ std::vector<std::string> Servers::events(const std::string& role) {
   const Timestamp now = clock_.now();
   const std::lock_guard lock(mutex_);
   const auto found = roles_.find(role);
-  if (found != roles_.end() && now - found->second.told >= kTellSentAway) {
-    found->second.told = now;
+  if (found != roles_.end() && now - found->second.reported >= kSentAwayPeriod) {
+    found->second.reported = now;
     for (const net::ServerReport& report : found->second.server->reports()) {
-      auto sentence = net::sentAwaySentence(report, found->second.told_sent_away[report.name]);
+      auto sentence = net::sentAwaySentence(report, found->second.reported_sent_away[report.name]);
       if (!sentence.empty()) events.push_back(std::move(sentence));
     }
   }

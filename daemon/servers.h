@@ -45,8 +45,8 @@ class Servers {
   struct Role {
     std::unique_ptr<status::StatusServer> server;
     // Number of refused and closed connections that events have reported, by name of the relay.
-    std::map<std::string, std::uint64_t> told_sent_away;
-    Timestamp told{};
+    std::map<std::string, std::uint64_t> reported_sent_away;
+    Timestamp reported{};
   };
 
   std::string host_;

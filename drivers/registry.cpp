@@ -8,25 +8,26 @@
 namespace merlin {
 namespace {
 
-using Made = std::unique_ptr<Device>;
+using DevicePtr = std::unique_ptr<Device>;
 
 // All drivers of merlind. A new driver needs one row here and one folder beside this file. This is
 // a table, not self-registration, because a linker drops unreferenced objects of a static library.
 constexpr DriverEntry kDrivers[] = {
-    {"cyberglove", SampleKind::kGlove, "CyberGlove with its interface unit, 18 or 22 sensors",
-     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> Made {
+    {"cyberglove", SampleKind::kGlove, kCybergloveBaud,
+     "CyberGlove with its interface unit, 18 or 22 sensors",
+     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return cyberglove::makeDevice(s.cyberglove, c, k);
      }},
-    {"fastrak", SampleKind::kTracker, "Polhemus Fastrak, 1 to 4 receivers",
-     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> Made {
+    {"fastrak", SampleKind::kTracker, kFastrakBaud, "Polhemus Fastrak, 1 to 4 receivers",
+     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return fastrak::makeDevice(s.fastrak, c, k);
      }},
-    {"spaceball", SampleKind::kBall, "Spaceball 1003, 2003, 3003 or 4000 FLX",
-     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> Made {
+    {"spaceball", SampleKind::kBall, kSpaceballBaud, "Spaceball 1003, 2003, 3003 or 4000 FLX",
+     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return spaceball::makeDevice(s.spaceball, c, k);
      }},
-    {"sample", SampleKind::kBall, "template for new drivers: a ball that sends lines of text",
-     [](const DriverSettings&, const Clock& c, SampleSink& k) -> Made {
+    {"sample", SampleKind::kBall, 9600, "template for new drivers: a ball that sends lines of text",
+     [](const DriverSettings&, const Clock& c, SampleSink& k) -> DevicePtr {
        return sample::makeDevice(c, k);
      }},
 };

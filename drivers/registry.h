@@ -26,6 +26,7 @@ struct DriverSettings {
 struct DriverEntry {
   const char* name;
   SampleKind kind;
+  int baud;  // default speed of its line
   const char* help;
   std::unique_ptr<Device> (*make)(const DriverSettings&, const Clock&, SampleSink&);
 };

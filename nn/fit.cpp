@@ -22,7 +22,8 @@ constexpr float kRate = 0.02F, kLastRate = 1e-5F;
 // much noise as it tolerates, and the margins between postures are as wide as possible.
 constexpr double kBearableError = 0.005;
 constexpr float kNoiseStep = 1.05F, kFirstNoise = 0.7F, kLeastNoise = 0.35F, kMostNoise = 2.0F;
-constexpr std::size_t kLook = 4;         // passes between two evaluations of the validation hands
+constexpr std::size_t kEvaluationPeriod =
+    4;                                   // passes between two evaluations of the validation hands
 constexpr std::size_t kPatience = 8;     // evaluations without a better error before training ends
 constexpr std::size_t kLastPasses = 40;  // final passes over all hands, those of the validation too
 constexpr float kLastRates = 0.1F;       // rate of the final passes, share of kRate
@@ -84,7 +85,7 @@ class Fit {
     const float noise = noise_ * space_.sigma();
     const float shrink = 1 / std::sqrt(1 + noise_ * noise_);
     const double error = descent.pass(start.at, start.codes, rate, noise, shrink);
-    const bool look = curve_.size() % kLook == 0 && !aside_.empty();
+    const bool look = curve_.size() % kEvaluationPeriod == 0 && !aside_.empty();
     curve_.push_back({curve_.size() + 1, error, look ? asideError(start) : std::nan(""),
                       static_cast<double>(noise_)});
     const double share = static_cast<double>(curve_.size()) / static_cast<double>(planned());
@@ -140,7 +141,7 @@ class Fit {
         adapt(error);
         continue;
       }
-      if (i % kLook != 0 && i + 1 != settings_.passes) continue;
+      if (i % kEvaluationPeriod != 0 && i + 1 != settings_.passes) continue;
       const double now = aside_.empty() ? error : asideError(s);
       if (now < least) {
         least = now;

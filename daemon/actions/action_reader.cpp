@@ -5,11 +5,11 @@
 
 namespace merlin::actions {
 
-Actions ActionReader::read(const shm::DevicesSegment& devices,
+Actions ActionReader::read(const shm::DeviceSlots& devices,
                            const std::array<bool, shm::kActionSources>& held_by) {
   Actions actions;
   for (std::size_t source = 0; source < shm::kActionSources; ++source) {
-    const auto state = devices.actions[source].read();
+    const auto state = devices.actions[source]->read();
     if (!state) continue;
     auto& last = last_[source];
     const bool same = last && last->generation == state->generation;

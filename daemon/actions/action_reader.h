@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "daemon/shm/layout.h"
+#include "daemon/shm/device_slots.h"
 
 namespace merlin::actions {
 
@@ -26,7 +26,7 @@ class ActionReader {
  public:
   // Actions that began before the first read, or before the first one after a restart of the daemon
   // that counts them, are not reported. `held_by`: the sources whose held actions are reported.
-  Actions read(const shm::DevicesSegment& devices,
+  Actions read(const shm::DeviceSlots& devices,
                const std::array<bool, shm::kActionSources>& held_by = {true, true, true});
 
  private:

@@ -22,28 +22,28 @@ class ActionSink final : public SampleSink, public HealthSink {
     HealthSink& health;
     Duration stale_after;
   };
-  ActionSink(ActionWriter writer, const Parts& parts) : writer_(std::move(writer)), p_(parts) {}
+  ActionSink(ActionWriter writer, const Parts& parts) : writer_(std::move(writer)), parts_(parts) {}
 
   void publish(const GloveSample& sample) noexcept override {
-    const auto posture = p_.postures.read();
+    const auto posture = parts_.postures.read();
     writer_.update(sample, posture ? &*posture : nullptr);
-    p_.samples.publish(sample);
+    parts_.samples.publish(sample);
   }
-  void publish(const TrackerSample& sample) noexcept override { p_.samples.publish(sample); }
+  void publish(const TrackerSample& sample) noexcept override { parts_.samples.publish(sample); }
   void publish(const BallSample& sample) noexcept override {
     writer_.update(sample);
-    p_.samples.publish(sample);
+    parts_.samples.publish(sample);
   }
   void publish(const DeviceHealth& health) noexcept override {
-    p_.health.publish(health);
+    parts_.health.publish(health);
     const bool lost = health.state != HealthState::kOk &&
-                      health.updated_ns - health.since_ns >= p_.stale_after.count();
+                      health.updated_ns - health.since_ns >= parts_.stale_after.count();
     if (lost) writer_.release(health.updated_ns);
   }
 
  private:
   ActionWriter writer_;
-  Parts p_;
+  Parts parts_;
 };
 
 }  // namespace merlin::actions

@@ -15,36 +15,37 @@ ActionWriter::ActionWriter(const std::vector<Binding>& bindings, shm::ActionSour
     auto input = parseInput(binding.input);
     const auto action = std::find(kActions.begin(), kActions.end(), binding.action);
     if (!input || input->source() != source || action == kActions.end()) continue;
-    bound_.push_back({*std::move(input), static_cast<std::size_t>(action - kActions.begin()),
-                      isHeldAction(binding.action), binding.when == When::kLeave});
+    bindings_.push_back({*std::move(input), static_cast<std::size_t>(action - kActions.begin()),
+                         isHeldAction(binding.action), binding.when == When::kLeave});
   }
   state_.generation = generation;
   slot_.publish(state_);
 }
 
 // Returns whether the state changed.
-bool ActionWriter::step(Bound& bound, bool held) noexcept {
-  if (held == bound.was_held) return false;
-  bound.was_held = held;
-  if (!bound.lasts && held == bound.on_leave) return false;
-  if (bound.lasts && !held) return true;
-  ++state_.begun[bound.action];
+bool ActionWriter::step(ParsedBinding& binding, bool held) noexcept {
+  if (held == binding.was_held) return false;
+  binding.was_held = held;
+  if (!binding.lasts && held == binding.on_leave) return false;
+  if (binding.lasts && !held) return true;
+  ++state_.begun[binding.action];
   state_.recent[state_.sequence++ % std::size(state_.recent)] =
-      static_cast<std::uint8_t>(bound.action);
+      static_cast<std::uint8_t>(binding.action);
   return true;
 }
 
 void ActionWriter::updateHeld() noexcept {
   std::fill(std::begin(state_.held), std::end(state_.held), std::uint8_t{0});
-  for (const Bound& bound : bound_) {
-    if (bound.lasts && bound.was_held) state_.held[bound.action] = 1;
+  for (const ParsedBinding& binding : bindings_) {
+    if (binding.lasts && binding.was_held) state_.held[binding.action] = 1;
   }
 }
 
 template <typename IsHeld>
 void ActionWriter::apply(std::int64_t now_ns, const IsHeld& isHeld) noexcept {
   bool changed = false;
-  for (Bound& bound : bound_) changed = step(bound, isHeld(bound.input)) || changed;
+  for (ParsedBinding& binding : bindings_)
+    changed = step(binding, isHeld(binding.input)) || changed;
   if (!changed) return;
   updateHeld();
   state_.changed_ns = now_ns;

@@ -28,7 +28,7 @@ class ActionWriter {
   void release(std::int64_t now_ns) noexcept;
 
  private:
-  struct Bound {
+  struct ParsedBinding {
     Input input;
     std::size_t action;  // index into kActions
     bool lasts, on_leave;
@@ -36,10 +36,10 @@ class ActionWriter {
   };
   template <typename IsHeld>
   void apply(std::int64_t now_ns, const IsHeld& isHeld) noexcept;
-  bool step(Bound& bound, bool held) noexcept;
+  bool step(ParsedBinding& binding, bool held) noexcept;
   void updateHeld() noexcept;
 
-  std::vector<Bound> bound_;
+  std::vector<ParsedBinding> bindings_;
   shm::ActionState state_{};
   shm::SeqSlot<shm::ActionState>& slot_;
 };

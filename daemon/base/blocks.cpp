@@ -12,7 +12,7 @@
 namespace merlin {
 
 bool forBlocks(Threads threads, std::size_t blocks, const std::function<void(std::size_t)>& work,
-               const std::function<bool(std::size_t)>& goOn) {
+               const std::function<bool(std::size_t)>& keepGoing) {
   assert(threads.count > 0);
   if (blocks == 0) return true;
   std::atomic<std::size_t> next{0}, done{0};
@@ -44,7 +44,7 @@ bool forBlocks(Threads threads, std::size_t blocks, const std::function<void(std
     const ThreadTeam::Turn turn =
         (theirs ? *threads.team : own.emplace()).start(wanted - 1, others);
     while (doOne()) {
-      if (goOn && !goOn(done)) cancelled = true;
+      if (keepGoing && !keepGoing(done)) cancelled = true;
     }
   }
   if (exception) std::rethrow_exception(exception);

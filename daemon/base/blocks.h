@@ -20,13 +20,13 @@ struct Threads {
 };
 
 // Calls work(0) .. work(blocks - 1), each once, on `threads.count` threads. The blocks must not
-// write to the same memory; the result then does not depend on the number of threads. `goOn` is
-// called on the caller's thread with the number of finished blocks; after it returns false no
+// write to the same memory; the result then does not depend on the number of threads. `keepGoing`
+// is called on the caller's thread with the number of finished blocks; after it returns false no
 // further block begins. Returns whether all blocks were done. An exception of `work` is rethrown
 // here, after all threads have finished. `work` may call forBlocks() itself: while the team is
 // busy, such an inner loop starts threads of its own. REQUIRES: threads.count > 0.
 bool forBlocks(Threads threads, std::size_t blocks, const std::function<void(std::size_t)>& work,
-               const std::function<bool(std::size_t)>& goOn = {});
+               const std::function<bool(std::size_t)>& keepGoing = {});
 
 // Calls work(i) for each i of [0, count), in blocks of 16384, with forBlocks().
 template <typename Work>

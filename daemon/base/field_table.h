@@ -137,6 +137,20 @@ class FieldTable {
 #define MERLIN_FIELD(table, Struct, member, unit) \
   (table).add<decltype(Struct::member)>(#member, offsetof(Struct, member), unit)
 
+// Adds the first 40 bytes of a segment, which are the same in all segments: how to recognise it and
+// find its table. Header has these members. REQUIRES: the table's fields have no guard now.
+template <typename Header>
+void addTableHeader(FieldTable& t) {
+  MERLIN_FIELD(t, Header, magic, "");
+  MERLIN_FIELD(t, Header, version, "");
+  MERLIN_FIELD(t, Header, size, "B");
+  MERLIN_FIELD(t, Header, generation, "");
+  MERLIN_FIELD(t, Header, field_offset, "B");
+  MERLIN_FIELD(t, Header, field_count, "");
+  MERLIN_FIELD(t, Header, field_size, "B");
+  MERLIN_FIELD(t, Header, pid, "");
+}
+
 // Copies the fields to `place` in a segment and stores its offset, size and count in the header.
 // Header has field_offset, field_count and field_size. REQUIRES: `place` is after `header` in the
 // same segment and has room for all fields.

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <utility>
 
@@ -16,6 +15,7 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 
+#include "daemon/base/process_memory.h"
 #include "daemon/base/unique_fd.h"
 
 namespace merlin {
@@ -77,13 +77,8 @@ FileStamp stampOf(const struct stat& s) {
 
 // Whether `size` bytes leave a tenth of the available memory free; true if that is unknown.
 bool fitsIntoMemory(std::size_t size) {
-  std::ifstream info("/proc/meminfo");
-  std::string word;
-  std::uint64_t kib = 0;
-  while (info >> word) {
-    if (word == "MemAvailable:" && info >> kib) return size < kib * 1024 / 10 * 9;
-  }
-  return true;
+  const auto available = availableMemory();
+  return !available || size < *available / 10 * 9;
 }
 
 // Number of bytes read before the end of the file; -1 on an error.

@@ -11,7 +11,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 
 namespace merlin {
 namespace {

@@ -9,6 +9,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "drivers/port/port_address.h"
+
 namespace merlin::cli {
 
 Argument Argument::required() { return Argument(option_->required()); }
@@ -31,8 +33,8 @@ Argument Argument::seconds() {
   return Argument(option_->type_name("SECONDS")->check(CLI::Range(0.1, 1e7)));
 }
 Argument Argument::baud() {
-  return Argument(option_->check(
-      CLI::IsMember(std::vector<int>{1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200})));
+  return Argument(
+      option_->check(CLI::IsMember(std::vector<int>(lineSpeeds().begin(), lineSpeeds().end()))));
 }
 Argument Argument::oneOf(std::vector<std::string> values) {
   return Argument(option_->check(CLI::IsMember(std::move(values))));

@@ -23,8 +23,9 @@ int migrateFile(const MigrateOptions& options) {
   const auto migrated = migrate(file->text());
   if (!migrated)
     return fail({Errc::kInvalidArgument, options.input + ": " + migrated.error().what});
-  for (const std::string& change : migrated->changes) say("{}: {}\n", options.input, change);
-  if (migrated->changes.empty()) say("{}: has the form of this version already\n", options.input);
+  for (const std::string& change : migrated->changes) printOut("{}: {}\n", options.input, change);
+  if (migrated->changes.empty())
+    printOut("{}: has the form of this version already\n", options.input);
   const bool in_place = options.output.empty();
   if (in_place && migrated->changes.empty()) return kExitDone;
   if (in_place) {
@@ -34,7 +35,7 @@ int migrateFile(const MigrateOptions& options) {
                    kept + ": exists already; remove it, or choose another output file with -o"});
     }
     if (const auto written = writeFile(kept, file->text()); !written) return fail(written.error());
-    say("{}: copy of the original file\n", kept);
+    printOut("{}: copy of the original file\n", kept);
   }
   const auto written = writeFile(in_place ? options.input : options.output, migrated->text);
   return written ? int{kExitDone} : fail(written.error());

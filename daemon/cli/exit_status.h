@@ -35,7 +35,7 @@ inline int exitStatus(const Error& error) {
 // stdout could not be written, prints one line to stderr and returns `failed`, or in the latter
 // case the status of `main` if that is greater.
 template <typename Main>
-int guarded(const char* program, Main main, int failed = kExitFailed) noexcept {
+int runGuarded(const char* program, Main main, int failed = kExitFailed) noexcept {
   try {
     const int status = main();
     // Output may still be buffered, so that only this flush notices a full disk.

@@ -87,13 +87,13 @@ void addGuideTiming(Command app, GuideTiming& timing) {
 Result<Ok> guide(std::span<const GuidedStep> steps, const GuideTiming& timing, Guided& guided) {
   for (std::size_t step = 0; step < steps.size(); ++step) {
     for (int tries = 1;; ++tries) {
-      say("\n{}: {}{}\n", steps[step].name, steps[step].instruction,
-          timing.pause_s > 0 ? "" : "; then press Enter");
+      printOut("\n{}: {}{}\n", steps[step].name, steps[step].instruction,
+               timing.pause_s > 0 ? "" : "; then press Enter");
       std::fflush(stdout);
       Result<Ok> broken = Ok{};
       const auto measured = tryStep(step, timing, guided, broken);
       if (!broken) return broken;
-      say("  {}\n", measured ? *measured : "again: " + measured.error().what);
+      printOut("  {}\n", measured ? *measured : "again: " + measured.error().what);
       std::fflush(stdout);
       if (measured) break;
       if (tries == kMostTries) {

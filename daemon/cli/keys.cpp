@@ -24,7 +24,7 @@ int makeKeys(const std::string& path) {
   if (!keys) return fail(keys.error());
   if (const auto written = status::writeKeyPair(path, *keys); !written)
     return fail(written.error());
-  say("{}\n", keys->public_key);
+  printOut("{}\n", keys->public_key);
   return kExitDone;
 }
 

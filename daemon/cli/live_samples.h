@@ -3,9 +3,9 @@
 #pragma once
 
 #include <algorithm>
-#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,20 +18,23 @@ namespace merlin::cli {
 template <typename Sample>
 class LiveSamples {
  public:
-  using Segment = shm::DevicesSegment;
-  using Pick = std::function<const shm::Channel<Sample>&(const Segment&)>;
-
-  // `pick` returns the device's channel in the segment. Errors: kNotFound (there is no shared
-  // memory of `instance`), kClosed (its merlind has ended), those of SegmentReader::open().
-  static Result<LiveSamples> open(const std::string& instance, shm::DeviceIndex device, Pick pick) {
-    auto segment = shm::SegmentReader<Segment>::open(shm::segmentName(instance, "devices"));
-    if (!segment && segment.error().code == Errc::kNotFound)
+  // `slot`: name of the samples' slot in shared memory, "tracker1"; `device`: of the device whose
+  // health they depend on, "tracker". Errors: kNotFound (there is no shared memory of `instance`),
+  // kClosed (its merlind has ended), those of DevicesReader::open() and SlotTable::channel().
+  static Result<LiveSamples> open(const std::string& instance, const std::string& slot,
+                                  const std::string& device) {
+    auto reader = shm::DevicesReader::open(shm::segmentName(instance, "devices"));
+    if (!reader && reader.error().code == Errc::kNotFound)
       return Error{Errc::kNotFound,
                    fmt::format("no merlind with devices runs as \"{}\": start it first, or give "
                                "--instance",
                                instance)};
-    if (!segment) return segment.error();
-    LiveSamples samples(*std::move(segment), device, std::move(pick));
+    if (!reader) return reader.error();
+    const auto channel = reader->table().template channel<Sample>(slot);
+    if (!channel) return channel.error();
+    const auto health = reader->table().template slot<DeviceHealth>(device + ".health");
+    if (!health) return health.error();
+    LiveSamples samples(*std::move(reader), **channel, **health);
     if (const auto alive = samples.checkAlive(); !alive) return alive.error();
     return samples;
   }
@@ -41,13 +44,12 @@ class LiveSamples {
   template <typename Take>
   Result<Ok> listen(Take take) {
     if (auto alive = checkAlive(); !alive) return alive;
-    const auto& channel = pick_(*segment_);
-    channel.wait(next_, {0, 100'000'000});
+    channel_.wait(next_, {0, 100'000'000});
     keepHealth();
-    const std::uint64_t count = channel.count();
+    const std::uint64_t count = channel_.count();
     next_ = std::max(next_, count - std::min<std::uint64_t>(count, shm::kHistory / 2));
     for (; next_ < count; ++next_) {
-      if (const auto sample = channel.at(next_)) take(*sample);
+      if (const auto sample = channel_.at(next_)) take(*sample);
     }
     return Ok{};
   }
@@ -60,30 +62,31 @@ class LiveSamples {
     return health_->reason[0] ? health_->reason : "it is being opened";
   }
 
-  const Segment& segment() const { return *segment_; }
+  const shm::DeviceSlots& devices() const { return *reader_; }
 
  private:
-  LiveSamples(shm::SegmentReader<Segment> segment, shm::DeviceIndex device, Pick pick)
-      : segment_(std::move(segment)),
-        device_(device),
-        pick_(std::move(pick)),
-        next_(pick_(*segment_).count()) {}
+  LiveSamples(shm::DevicesReader reader, const shm::Channel<Sample>& channel,
+              const shm::SeqSlot<DeviceHealth>& health_slot)
+      : reader_(std::move(reader)),
+        channel_(channel),
+        health_slot_(health_slot),
+        next_(channel.count()) {}
 
   Result<Ok> checkAlive() const {
-    if (segment_.alive(clock_.now())) return Ok{};
+    if (reader_.alive(clock_.now())) return Ok{};
     return Error{Errc::kClosed, "merlind has ended; nothing was changed"};
   }
 
   // Stores the device's health. read() fails if each attempt coincided with a write; the last known
   // health is kept then.
   void keepHealth() {
-    if (const auto health = segment_->health[device_].read()) health_ = *health;
+    if (const auto health = health_slot_.read()) health_ = *health;
   }
 
   SystemClock clock_;
-  shm::SegmentReader<Segment> segment_;
-  shm::DeviceIndex device_;
-  Pick pick_;
+  shm::DevicesReader reader_;
+  const shm::Channel<Sample>& channel_;
+  const shm::SeqSlot<DeviceHealth>& health_slot_;
   std::optional<DeviceHealth> health_;  // the last known; none: not known yet
   std::uint64_t next_;                  // index of the next sample to deliver
 };

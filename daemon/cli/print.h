@@ -10,13 +10,13 @@
 #include <fmt/format.h>
 
 #include "daemon/base/log.h"
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 
 namespace merlin::cli {
 
 // Prints to stdout like fmt::print(), with control characters escaped (printable()).
 template <typename... Args>
-void say(fmt::format_string<Args...> format, Args&&... args) {
+void printOut(fmt::format_string<Args...> format, Args&&... args) {
   fmt::print("{}", printable(fmt::format(format, std::forward<Args>(args)...)));
 }
 

@@ -36,12 +36,13 @@ Result<std::vector<FoundRole>> findRoles(const std::string& instance) {
 }
 
 Result<std::string> askRole(const std::string& instance, const std::string& role,
-                            const Asked& asked) {
+                            const RoleRequest& request) {
   const auto roles = findRoles(instance);
   if (!roles) return roles.error();
   for (const FoundRole& found : *roles) {
     if (found.role == role)
-      return status::ask(found.endpoints.command, asked.command, asked.patience, asked.argument);
+      return status::ask(found.endpoints.command, request.command, request.patience,
+                         request.argument);
   }
   return Error{Errc::kIo, role == "wall"
                               ? fmt::format("no merlind shows a wall as \"{}\"", instance)

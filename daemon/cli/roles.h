@@ -21,7 +21,7 @@ struct FoundRole {
 Result<std::vector<FoundRole>> findRoles(const std::string& instance);
 
 // A request to a role: a command of daemon/base/commands.h and its argument.
-struct Asked {
+struct RoleRequest {
   std::string command, argument = {};
   Duration patience = std::chrono::seconds(2);  // maximum time to wait for the answer
 };
@@ -29,6 +29,6 @@ struct Asked {
 // Sends a command to the role and returns the answer as JSON. Errors: those of findRoles() and
 // status::ask(); kIo if this daemon does not run the role.
 Result<std::string> askRole(const std::string& instance, const std::string& role,
-                            const Asked& asked);
+                            const RoleRequest& request);
 
 }  // namespace merlin::cli

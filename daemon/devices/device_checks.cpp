@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/base/nearest.h"
+#include "daemon/base/did_you_mean.h"
 #include "drivers/io/open_stream.h"
 #include "drivers/io/transcript.h"
 #include "nn/io/network_file.h"
@@ -28,7 +28,7 @@ void checkPostures(LoadedSettings& loaded) {
   const std::string& path = loaded.settings.devices.postures;
   if (path.empty()) return;
   const auto file = nn::loadNetwork(path);
-  if (!file) return loaded.wrong("/devices/postures", "cannot be used: " + file.error().what);
+  if (!file) return loaded.addFinding("/devices/postures", "cannot be used: " + file.error().what);
   if (!loaded.lines.contains("/devices/bindings")) return;
   const std::vector<std::string> names = namesOf(file->network.postures);
   constexpr std::string_view kPosture = "posture.";
@@ -38,11 +38,12 @@ void checkPostures(LoadedSettings& loaded) {
     if (!input.starts_with(kPosture) || input.size() == kPosture.size()) continue;
     const std::string name = input.substr(kPosture.size());
     if (file->network.postures.code(name)) continue;
-    const std::string near = nearest(name, names);
-    loaded.wrong(fmt::format("/devices/bindings/{}/input", i),
-                 fmt::format("is \"{}\", which is not a posture of {}; {}it knows {}", input, path,
-                             near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near),
-                             fmt::join(names, ", ")));
+    const std::string near = nearestWord(name, names);
+    loaded.addFinding(
+        fmt::format("/devices/bindings/{}/input", i),
+        fmt::format("is \"{}\", which is not a posture of {}; {}it knows {}", input, path,
+                    near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near),
+                    fmt::join(names, ", ")));
   }
 }
 
@@ -55,10 +56,10 @@ void checkPorts(LoadedSettings& loaded) {
     const std::string at = fmt::format("/devices/{}/port", device);
     const auto address = parsePort(port);
     if (!address) {
-      loaded.wrong(at, "cannot be used: " + address.error().what);
+      loaded.addFinding(at, "cannot be used: " + address.error().what);
     } else if (address->kind == PortKind::kReplay) {
       const auto transcript = io::readTranscript(address->path);
-      if (!transcript) loaded.wrong(at, "cannot be used: " + transcript.error().what);
+      if (!transcript) loaded.addFinding(at, "cannot be used: " + transcript.error().what);
     }
   }
 }

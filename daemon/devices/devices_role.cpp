@@ -124,9 +124,10 @@ class Opener {
 
 }  // namespace
 
-DevicesRole::DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, const Settings& settings,
-                         std::uint64_t generation, ThreadWatch& watch, Clock& clock)
-    : segment_(std::move(segment)),
+DevicesRole::DevicesRole(Memory memory, const Settings& settings, std::uint64_t generation,
+                         ThreadWatch& watch, Clock& clock)
+    : segment_(std::move(memory.segment)),
+      slots_(std::move(memory.slots)),
       watch_(watch),
       clock_(clock),
       sink_(*segment_),
@@ -141,8 +142,10 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
       shm::segmentName(settings.instance, "devices"), shm::devicesFields(), generation, clock.now(),
       endpoints);
   if (!segment) return segment.error();
-  std::unique_ptr<DevicesRole> role(
-      new DevicesRole(*std::move(segment), settings, generation, watch, clock));
+  auto slots = shm::DeviceSlots::find(**segment);
+  if (!slots) return slots.error();
+  std::unique_ptr<DevicesRole> role(new DevicesRole({*std::move(segment), *std::move(slots)},
+                                                    settings, generation, watch, clock));
   role->addPanel(settings.devices);
   role->cpu_latency_us_ = settings.devices.cpu_latency_us;
   role->segment_->tracker_frames.publish(framesOf(settings.devices.tracker));

@@ -41,17 +41,22 @@ class DevicesRole {
   // it.
   void start();
 
-  void beat(Timestamp now) const { segment_.beat(now); }
+  void writeHeartbeat(Timestamp now) const { segment_.writeHeartbeat(now); }
   Result<std::string> mend() { return segment_.mend(); }  // SegmentWriter::mend()
-  const shm::DevicesSegment& segment() const { return *segment_; }
+  // The role's own slots, found as any reader finds them.
+  const shm::DeviceSlots& slots() const { return slots_; }
   // Null if no panel is configured. Thread-safe.
   gpio::PanelLoop* panel() { return panel_.get(); }
   // The flight recorder of all devices that have a port. For the status server's thread.
   FlightRecorder& flight() { return flight_; }
 
  private:
-  DevicesRole(shm::SegmentWriter<shm::DevicesSegment> segment, const Settings& settings,
-              std::uint64_t generation, ThreadWatch& watch, Clock& clock);
+  struct Memory {
+    shm::SegmentWriter<shm::DevicesSegment> segment;
+    shm::DeviceSlots slots;  // of segment
+  };
+  DevicesRole(Memory memory, const Settings& settings, std::uint64_t generation, ThreadWatch& watch,
+              Clock& clock);
   void addPanel(const DevicesSettings& settings);
   Result<Ok> add(const LineSettings& line, SampleKind kind, shm::DeviceIndex index,
                  const Settings& settings);
@@ -62,6 +67,7 @@ class DevicesRole {
   Result<Sinks> sinksFor(SampleKind kind, HealthSink& health, const DevicesSettings& settings);
 
   shm::SegmentWriter<shm::DevicesSegment> segment_;
+  shm::DeviceSlots slots_;
   ThreadWatch& watch_;
   Clock& clock_;
   shm::ShmSink sink_;

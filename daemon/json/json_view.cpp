@@ -48,19 +48,19 @@ const JsonNode* find(const JsonNode& object, std::string_view key) {
 
 }  // namespace
 
-void JsonView::wrong(std::string_view allowed, std::string_view found, Errc code) {
+void JsonView::addFault(std::string_view allowed, std::string_view found, Errc code) {
   if (error_ || !value_) return;
   error_ = errorAt(code, file_, pointer_, found.empty() ? quote(*value_) : found, allowed);
 }
 
 void JsonView::allowKeys(std::initializer_list<const char*> keys) {
   if (!value_) return;
-  if (value_->kind != JsonNode::Kind::kObject) return wrong("an object");
+  if (value_->kind != JsonNode::Kind::kObject) return addFault("an object");
   for (const auto& [key, line, value] : value_->members) {
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
     std::string list;
     for (const char* k : keys) list += list.empty() ? k : fmt::format(", {}", k);
-    return wrong(list, fmt::format("the key {}", quoteText(key)));
+    return addFault(list, fmt::format("the key {}", quoteText(key)));
   }
 }
 
@@ -69,8 +69,8 @@ std::size_t JsonView::expectArray(std::size_t least, std::size_t most) {
   const bool array = value_->kind == JsonNode::Kind::kArray;
   const std::size_t size = value_->items.size();
   if (array && size >= least && size <= most) return size;
-  wrong(least == most ? fmt::format("an array of {} elements", least)
-                      : fmt::format("an array of {} to {} elements", least, most));
+  addFault(least == most ? fmt::format("an array of {} elements", least)
+                         : fmt::format("an array of {} to {} elements", least, most));
   return 0;
 }
 
@@ -96,21 +96,22 @@ double JsonView::number(double low, double high) {
   if (!value_) return 0;
   const double v = value_->number;
   if (value_->kind == JsonNode::Kind::kNumber && v >= low && v <= high) return v;
-  wrong(fmt::format("a number from {} to {}", low, high));
+  addFault(fmt::format("a number from {} to {}", low, high));
   return 0;
 }
 
 std::uint64_t JsonView::count(std::uint64_t low, std::uint64_t high) {
   if (!value_) return 0;
   if (value_->count && *value_->count >= low && *value_->count <= high) return *value_->count;
-  wrong(low == high ? fmt::format("{}", low) : fmt::format("an integer from {} to {}", low, high));
+  addFault(low == high ? fmt::format("{}", low)
+                       : fmt::format("an integer from {} to {}", low, high));
   return 0;
 }
 
 bool JsonView::boolean() {
   if (!value_) return false;
   if (value_->kind == JsonNode::Kind::kBool) return value_->boolean;
-  wrong("true or false");
+  addFault("true or false");
   return false;
 }
 
@@ -118,7 +119,7 @@ std::string JsonView::text(std::size_t longest) {
   if (!value_) return {};
   if (value_->kind == JsonNode::Kind::kString && value_->text.size() <= longest)
     return value_->text;
-  wrong(fmt::format("a string of at most {} characters", longest));
+  addFault(fmt::format("a string of at most {} characters", longest));
   return {};
 }
 

@@ -44,7 +44,8 @@ class JsonView {
   std::string text(std::size_t longest);
 
   // Marks this value as wrong. `found` is this value itself where it is left out.
-  void wrong(std::string_view allowed, std::string_view found = {}, Errc code = Errc::kMalformed);
+  void addFault(std::string_view allowed, std::string_view found = {},
+                Errc code = Errc::kMalformed);
 
  private:
   const JsonNode* value_;

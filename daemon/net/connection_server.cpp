@@ -233,7 +233,7 @@ void ConnectionServer::write(Client& c, Timestamp now) {
   }
 }
 
-void ConnectionServer::tell(
+void ConnectionServer::sendToAll(
     const std::function<void(Session& session, std::string& output)>& append) {
   const Timestamp now = clock_.now();
   for (const auto& client : clients_) {

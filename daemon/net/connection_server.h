@@ -114,7 +114,7 @@ class ConnectionServer {
 
   // Calls `append` for every established client, to append output, and sends what can be sent at
   // once.
-  void tell(const std::function<void(Session& session, std::string& output)>& append);
+  void sendToAll(const std::function<void(Session& session, std::string& output)>& append);
 
   std::size_t connections() const noexcept { return clients_.size(); }
 

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "daemon/base/log.h"
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 #include "daemon/rfb/input_map.h"
 #include "daemon/rfb/rfb_screen.h"
 #include "daemon/rfb/shown_picture.h"

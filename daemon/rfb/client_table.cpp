@@ -57,7 +57,7 @@ void ClientTable::add(UniqueFd client, Timestamp now) {
   const net::Decision decision = net::decide(occupants, peer, places_, now);
   switch (decision.kind) {
     case net::Decision::Kind::kRefuse:
-      tellSentAway(peer, fmt::format("all {} places are taken (--clients)", places_.all), now);
+      logSentAway(peer, fmt::format("all {} places are taken (--clients)", places_.all), now);
       return;
     case net::Decision::Kind::kReplace:
       end(decision.victim, "closed: another client needed the place", now);
@@ -70,14 +70,14 @@ void ClientTable::add(UniqueFd client, Timestamp now) {
 void ClientTable::start(UniqueFd client, const net::Peer& peer, Timestamp now) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) {
-    tellSentAway(peer, std::strerror(errno), now);
+    logSentAway(peer, std::strerror(errno), now);
     return;
   }
   UniqueFd report(ends[0]), to_parent(ends[1]);
   const pid_t parent = ::getpid();
   const pid_t pid = ::fork();
   if (pid < 0) {
-    tellSentAway(peer, std::strerror(errno), now);
+    logSentAway(peer, std::strerror(errno), now);
     return;
   }
   if (pid == 0) {
@@ -86,7 +86,7 @@ void ClientTable::start(UniqueFd client, const net::Peer& peer, Timestamp now) {
     clients_.clear();                                 // closes the other clients' pipes
     report.reset();
     unblockSignals();
-    ::_exit(guarded("merlin-rfb", [&] { return serve_(client.get(), to_parent.get()); }));
+    ::_exit(runGuarded("merlin-rfb", [&] { return serve_(client.get(), to_parent.get()); }));
   }
   clients_.push_back({pid, std::move(report), {peer, now, now, false}});
 }
@@ -121,7 +121,7 @@ void ClientTable::end(std::size_t index, const std::string& reason, Timestamp no
   if (client.occupant.established)
     logInfo("{}: {}", net::peerName(client.occupant.peer), reason);
   else
-    tellSentAway(client.occupant.peer, reason, now);
+    logSentAway(client.occupant.peer, reason, now);
   clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
@@ -134,14 +134,14 @@ void ClientTable::remove(std::size_t index, Timestamp now) {
   if (client.occupant.established)
     logInfo("{}: {}", net::peerName(client.occupant.peer), how);
   else
-    tellSentAway(client.occupant.peer, how, now);
+    logSentAway(client.occupant.peer, how, now);
   clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
-void ClientTable::tellSentAway(const net::Peer& peer, const std::string& why, Timestamp now) {
+void ClientTable::logSentAway(const net::Peer& peer, const std::string& why, Timestamp now) {
   ++sent_away_;
-  if (now - told_ < kTellEvery) return;
-  told_ = now;
+  if (now - logged_ < kTellEvery) return;
+  logged_ = now;
   logWarning(
       "{}: {}{}", net::peerName(peer), why,
       sent_away_ > 1 ? fmt::format(" ({} connections since the last such line)", sent_away_) : "");

@@ -44,7 +44,7 @@ class ClientTable {
   void start(UniqueFd client, const net::Peer& peer, Timestamp now);
   void end(std::size_t index, const std::string& reason, Timestamp now);
   void remove(std::size_t index, Timestamp now);
-  void tellSentAway(const net::Peer& peer, const std::string& why, Timestamp now);
+  void logSentAway(const net::Peer& peer, const std::string& why, Timestamp now);
 
   net::Places places_;
   Serve serve_;
@@ -52,7 +52,7 @@ class ClientTable {
   // Connections that were refused or ended before their handshake was complete: of all since the
   // last line of the log, only one is named.
   std::size_t sent_away_ = 0;
-  Timestamp told_{};
+  Timestamp logged_{};
 };
 
 }  // namespace merlin::rfb

@@ -1,7 +1,6 @@
 // merlin-rfb: shows the wall to VNC clients. main(): reads the command line and runs the server.
 #include <algorithm>
 #include <csignal>
-#include <sstream>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -9,8 +8,9 @@
 #include <sys/resource.h>
 
 #include "daemon/base/log.h"
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/parse_arguments.h"
 #include "daemon/cli/stop_signals.h"
 #include "daemon/rfb/rfb_server.h"
 #include "daemon/rfb/shown_picture.h"
@@ -114,15 +114,7 @@ int main(int argc, char** argv) {
       "Example: merlin-rfb --tile left --allow-input, then vncviewer 127.0.0.1:0");
   addOptions(app, options);
   app.set_version_flag("--version", MERLIN_VERSION);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    std::ostringstream help, why;
-    const int status = app.exit(e, help, why);
-    fmt::print("{}", help.str());
-    printError("{}", printable(why.str()));
-    return status == 0 ? kExitDone : kExitBadInput;
-  }
+  if (const auto status = parseArguments(app, argc, argv)) return *status;
   return serve(options);
 }
 
@@ -131,5 +123,5 @@ int main(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   merlin::openStandardStreams();
-  return merlin::guarded("merlin-rfb", [&] { return merlin::main(argc, argv); });
+  return merlin::runGuarded("merlin-rfb", [&] { return merlin::main(argc, argv); });
 }

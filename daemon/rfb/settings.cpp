@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 #include "daemon/base/unique_fd.h"
 
 namespace merlin::rfb {

@@ -48,7 +48,7 @@ class ShownPicture {
   std::string instance_;
   View view_;
   SharedMemory::From from_;
-  shm::SegmentFollower<shm::WallSegment> wall_;
+  shm::SegmentFollower<shm::SegmentReader<shm::WallSegment>> wall_;
   std::optional<render::out::SharedFrameReader> reader_;
   Timestamp opened_{};          // when reader_ was opened, or last had a new frame
   std::uint64_t sequence_ = 0;  // number of the frame shown

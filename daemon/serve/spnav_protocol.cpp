@@ -57,15 +57,15 @@ SpnavDevice spnavDevice(std::string_view identity, std::string_view port) {
   if (const auto path = port.substr(std::min(port.size(), port.find(':') + 1));
       path.starts_with('/') && !path.starts_with("//"))
     device.path = path;
-  struct Known {
+  struct KnownModel {
     const char* model;
     int type, buttons;
   };
   // Buttons are numbered as in drivers/spaceball: button 9 of a 2003 is pick, button 3 of a 3003 is
   // rezero.
-  constexpr Known kKnown[] = {
+  constexpr KnownModel kModels[] = {
       {"1003", 0x100, 9}, {"2003", 0x100, 9}, {"3003", 0x101, 3}, {"4000", 0x102, 12}};
-  for (const Known& known : kKnown) {
+  for (const KnownModel& known : kModels) {
     if (device.name.find(known.model) == std::string::npos) continue;
     device.type = known.type;
     device.buttons = known.buttons;
@@ -176,7 +176,7 @@ void SpnavClient::sample(const BallSample& s, bool motion, std::string& out) {
     const bool down = s.buttons & bit;
     append(out, Words{down ? 1 : 2, static_cast<std::int32_t>(i), down ? 1 : 0});
   }
-  tellRaw(s, out);
+  sendRaw(s, out);
   buttons_ = s.buttons;
   const bool moves = std::any_of(std::begin(s.raw), std::end(s.raw), [](auto v) { return v != 0; });
   if (motion && (moves || moving_) && (mask_ & kMotion)) {
@@ -192,7 +192,7 @@ void SpnavClient::sample(const BallSample& s, bool motion, std::string& out) {
 }
 
 // Appends raw axis and raw button events for a client whose mask requests them.
-void SpnavClient::tellRaw(const BallSample& s, std::string& out) {
+void SpnavClient::sendRaw(const BallSample& s, std::string& out) {
   for (std::int32_t i = 0; i < 6 && (mask_ & kRawAxis); ++i) {
     const auto at = static_cast<std::size_t>(i);
     if (s.raw[at] != axes_[at]) append(out, Words{5, i, s.raw[at]});

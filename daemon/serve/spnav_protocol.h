@@ -59,7 +59,7 @@ class SpnavClient {
   using Words = std::array<std::int32_t, 8>;
   void request(Words words, std::string& out);
   bool configuration(std::uint32_t number, Words& words) const;
-  void tellRaw(const BallSample& sample, std::string& out);
+  void sendRaw(const BallSample& sample, std::string& out);
   void sendText(std::int32_t request, const std::string& text, std::string& out) const;
 
   SpnavDevice device_;

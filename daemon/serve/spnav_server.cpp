@@ -13,7 +13,7 @@ namespace merlin::serve {
 namespace {
 
 constexpr Duration kRound = std::chrono::milliseconds(20);
-constexpr Duration kLook = std::chrono::seconds(1);
+constexpr Duration kCheckPeriod = std::chrono::seconds(1);
 constexpr Duration kQuiet = std::chrono::milliseconds(60);
 constexpr Duration kLongestQuiet =
     std::chrono::milliseconds(500);  // for a client that keeps asking
@@ -54,7 +54,7 @@ class SpnavSession final : public net::Session {
     client_.sample(sample, !missed_, told);
   }
   // Appends what the client missed while it waited for an answer or did not read.
-  void tellMissed(const std::optional<BallSample>& newest, std::string& output) {
+  void sendMissed(const std::optional<BallSample>& newest, std::string& output) {
     if (waits()) return;
     waiting_since_.reset();
     output += std::exchange(held_, {});
@@ -96,23 +96,23 @@ std::string_view text(const char (&field)[N]) {
 }  // namespace
 
 Result<std::unique_ptr<SpnavServer>> SpnavServer::start(const std::string& path,
-                                                        const shm::DevicesSegment& segment,
+                                                        const shm::DeviceSlots& devices,
                                                         ThreadWatch& watch, const Clock& clock) {
   auto listener = net::listenLocal(path, kMode);
   if (!listener) return listener.error();
   return std::unique_ptr<SpnavServer>(
-      new SpnavServer(path, *std::move(listener), segment, watch, clock));
+      new SpnavServer(path, *std::move(listener), devices, watch, clock));
 }
 
-SpnavServer::SpnavServer(std::string path, UniqueFd listener, const shm::DevicesSegment& segment,
+SpnavServer::SpnavServer(std::string path, UniqueFd listener, const shm::DeviceSlots& devices,
                          ThreadWatch& watch, const Clock& clock)
     : path_(std::move(path)),
-      segment_(segment),
+      devices_(devices),
       clock_(clock),
       server_("space mouse", limits(), clock),
-      seen_(segment.ball.count()),
-      waker_({&segment.ball.wakeWord()}, watch, "samples for the space mouse") {
-  tellHealth();
+      seen_(devices.ball->count()),
+      waker_({&devices.ball->wakeWord()}, watch, "samples for the space mouse") {
+  updateHealth();
   listen(std::move(listener));
   thread_ = net::ServerThread(watch, "space mouse", [this] { round(); });
 }
@@ -127,8 +127,8 @@ void SpnavServer::listen(UniqueFd listener) {
 // Creates the socket again if its file was removed, as status/relay does; connections stay.
 void SpnavServer::listenAgainWhereGone() {
   const Timestamp now = clock_.now();
-  if (now - looked_ < kLook) return;
-  looked_ = now;
+  if (now - checked_ < kCheckPeriod) return;
+  checked_ = now;
   if (inodeOf(path_) == file_) return;
   auto listener = net::listenLocal(path_, kMode);
   if (!listener) return;  // another file is there, or the folder is missing: tried again later
@@ -147,39 +147,39 @@ void SpnavServer::round() {
   server_.round(kRound, wakers);
   waker_.clear();
   listenAgainWhereGone();
-  tellHealth();
-  tellSamples();
-  tellMissed();
+  updateHealth();
+  sendSamples();
+  sendMissed();
 }
 
-void SpnavServer::tellHealth() {
-  const auto health = segment_.health[shm::kBall].read();
+void SpnavServer::updateHealth() {
+  const auto health = devices_.ball_health->read();
   if (!health) return;  // not known yet, or being written: unchanged
   const bool there = health->state == HealthState::kOk;
   if (there == there_) return;
   there_ = there;
   if (there) device_ = spnavDevice(text(health->identity), text(health->port));
-  server_.tell([&](net::Session& session, std::string&) {
+  server_.sendToAll([&](net::Session& session, std::string&) {
     static_cast<SpnavSession&>(session).device(there, device_);
   });
 }
 
-void SpnavServer::tellSamples() {
-  const std::uint64_t count = segment_.ball.count();
+void SpnavServer::sendSamples() {
+  const std::uint64_t count = devices_.ball->count();
   if (count - seen_ > shm::kHistory / 2) seen_ = count - 1;
   for (; seen_ < count; ++seen_) {
-    const auto sample = segment_.ball.at(seen_);
+    const auto sample = devices_.ball->at(seen_);
     if (!sample) continue;
-    server_.tell([&](net::Session& session, std::string& output) {
+    server_.sendToAll([&](net::Session& session, std::string& output) {
       static_cast<SpnavSession&>(session).sample(*sample, output);
     });
   }
 }
 
-void SpnavServer::tellMissed() {
-  const auto newest = segment_.ball.newest();
-  server_.tell([&](net::Session& session, std::string& output) {
-    static_cast<SpnavSession&>(session).tellMissed(newest, output);
+void SpnavServer::sendMissed() {
+  const auto newest = devices_.ball->newest();
+  server_.sendToAll([&](net::Session& session, std::string& output) {
+    static_cast<SpnavSession&>(session).sendMissed(newest, output);
   });
 }
 

@@ -12,20 +12,21 @@
 #include "daemon/net/server_thread.h"
 #include "daemon/serve/sample_waker.h"
 #include "daemon/serve/spnav_protocol.h"
-#include "daemon/shm/layout.h"
+#include "daemon/shm/device_slots.h"
 
 namespace merlin::serve {
 
-// Owns its threads; reads the segment as any client does, so that a slow program delays nobody.
+// Owns its threads; reads shared memory as any client does, so that a slow program delays nobody.
 //
 // libspnav takes the first message after a request as its answer. So after it has connected or sent
 // a request, a client gets no events until it has sent nothing for 60 ms (at most 0.5 s if it keeps
 // asking); then it gets the button events of that time and the newest motion.
 class SpnavServer final : public net::Server {
  public:
-  // Errors: those of listenLocal(). `segment`, `watch` and `clock` must outlive the server.
+  // Errors: those of listenLocal(). The segment of `devices`, `watch` and `clock` must
+  // outlive the server.
   static Result<std::unique_ptr<SpnavServer>> start(const std::string& socket_path,
-                                                    const shm::DevicesSegment& segment,
+                                                    const shm::DeviceSlots& devices,
                                                     ThreadWatch& watch, const Clock& clock);
   ~SpnavServer() override;  // removes the socket
   SpnavServer(const SpnavServer&) = delete;
@@ -35,19 +36,19 @@ class SpnavServer final : public net::Server {
   std::string failure() const override { return thread_.failure(); }
 
  private:
-  SpnavServer(std::string path, UniqueFd listener, const shm::DevicesSegment& segment,
+  SpnavServer(std::string path, UniqueFd listener, const shm::DeviceSlots& devices,
               ThreadWatch& watch, const Clock& clock);
   void round();
   void listen(UniqueFd listener);
   void listenAgainWhereGone();
-  void tellSamples();
-  void tellMissed();
-  void tellHealth();
+  void sendSamples();
+  void sendMissed();
+  void updateHealth();
 
   std::string path_;
   std::uint64_t file_ = 0;  // inode of the socket's file
-  Timestamp looked_{};      // when the file was last checked
-  const shm::DevicesSegment& segment_;
+  Timestamp checked_{};     // when the file was last checked
+  shm::DeviceSlots devices_;
   const Clock& clock_;
   net::ConnectionServer server_;
   SpnavDevice device_;

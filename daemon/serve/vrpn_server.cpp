@@ -78,9 +78,9 @@ class PortClaim {
 // One client: the numbers that it gave to senders and types, and the state of what was sent to it.
 class VrpnSession final : public net::Session {
  public:
-  VrpnSession(const shm::DevicesSegment& segment, const Clock& clock,
+  VrpnSession(const shm::DeviceSlots& devices, const Clock& clock,
               std::unique_ptr<PortClaim> port = nullptr)
-      : segment_(segment), clock_(clock), port_(std::move(port)) {}
+      : devices_(devices), clock_(clock), port_(std::move(port)) {}
 
   Result<Taken> receive(std::string_view input, std::size_t most, std::string& output) override;
   bool established() const noexcept override { return greeted_; }
@@ -89,13 +89,13 @@ class VrpnSession final : public net::Session {
   // `at_ns`: CLOCK_MONOTONIC; clients expect the time of day.
   void send(std::int32_t sender, std::int32_t type, std::string payload, std::int64_t at_ns,
             std::string& output);
-  void tellButtons(const BallSample& sample, std::string& output);
+  void sendButtons(const BallSample& sample, std::string& output);
 
  private:
   void handle(const VrpnMessage& message, std::string& output);
   void describe(const VrpnMessage& message);
 
-  const shm::DevicesSegment& segment_;
+  const shm::DeviceSlots& devices_;
   const Clock& clock_;
   std::unique_ptr<PortClaim> port_;  // if we connected to the client
   bool greeted_ = false;             // its cookie has arrived
@@ -135,7 +135,7 @@ void VrpnSession::open(std::string& output) {
   for (std::int32_t i = 0; i < std::ssize(kTypes); ++i)
     send(i, kDescribeType, vrpnName(kTypes[i]), now_ns, output);
   // A button may already be pressed.
-  const auto ball = segment_.ball.newest();
+  const auto ball = devices_.ball->newest();
   buttons_ = ball ? ball->buttons : 0;
   send(kBall, kButtonStates, vrpnButtons(buttons_, kButtons), now_ns, output);
 }
@@ -179,7 +179,7 @@ void VrpnSession::describe(const VrpnMessage& m) {
     senders_[m.sender] = static_cast<std::int32_t>(known - std::begin(kSenders));
 }
 
-void VrpnSession::tellButtons(const BallSample& s, std::string& output) {
+void VrpnSession::sendButtons(const BallSample& s, std::string& output) {
   for (std::int32_t b = 0; b < kButtons; ++b) {
     if (((s.buttons ^ buttons_) >> b & 1) == 0) continue;
     send(kBall, kButtonChange, vrpnButton(b, s.buttons >> b & 1), s.received_ns, output);
@@ -187,37 +187,37 @@ void VrpnSession::tellButtons(const BallSample& s, std::string& output) {
   buttons_ = s.buttons;
 }
 
-Result<std::unique_ptr<VrpnServer>> VrpnServer::start(int port, const shm::DevicesSegment& segment,
+Result<std::unique_ptr<VrpnServer>> VrpnServer::start(int port, const shm::DeviceSlots& devices,
                                                       ThreadWatch& watch, const Clock& clock) {
   auto tcp = net::listenTcp("127.0.0.1", port);
   if (!tcp) return tcp.error();
   auto udp = listenUdp(net::portOf(tcp->get()));
   if (!udp) return udp.error();
   return std::unique_ptr<VrpnServer>(
-      new VrpnServer(*std::move(tcp), *std::move(udp), segment, watch, clock));
+      new VrpnServer(*std::move(tcp), *std::move(udp), devices, watch, clock));
 }
 
-VrpnServer::VrpnServer(UniqueFd tcp, UniqueFd udp, const shm::DevicesSegment& segment,
+VrpnServer::VrpnServer(UniqueFd tcp, UniqueFd udp, const shm::DeviceSlots& devices,
                        ThreadWatch& watch, const Clock& clock)
     : udp_(std::move(udp)),
       port_(net::portOf(tcp.get())),
-      segment_(segment),
+      devices_(devices),
       clock_(clock),
       server_("VRPN", limits(), clock),
       datagrams_(kDatagrams, kDatagrams),
-      seen_hand_(segment.hand.count()),
-      seen_ball_(segment.ball.count()),
+      seen_hand_(devices.hand->count()),
+      seen_ball_(devices.ball->count()),
       waker_(
           [&] {
-            std::vector<const std::atomic<std::uint32_t>*> words = {&segment.hand.wakeWord(),
-                                                                    &segment.ball.wakeWord()};
-            for (const auto& channel : segment.tracker) words.push_back(&channel.wakeWord());
+            std::vector<const std::atomic<std::uint32_t>*> words = {&devices.hand->wakeWord(),
+                                                                    &devices.ball->wakeWord()};
+            for (const auto* channel : devices.tracker) words.push_back(&channel->wakeWord());
             return words;
           }(),
           watch, "samples for VRPN") {
-  for (std::size_t i = 0; i < kStations; ++i) seen_tracker_[i] = segment.tracker[i].count();
+  for (std::size_t i = 0; i < kStations; ++i) seen_tracker_[i] = devices.tracker[i]->count();
   server_.listen(std::move(tcp), [this](const net::Peer&) {
-    return std::make_unique<VrpnSession>(segment_, clock_);
+    return std::make_unique<VrpnSession>(devices_, clock_);
   });
   thread_ = net::ServerThread(watch, "VRPN", [this] { round(); });
 }
@@ -229,7 +229,7 @@ void VrpnServer::round() {
   server_.round(kRound, wakers);
   waker_.clear();
   answerDatagrams();
-  tellSamples();
+  sendSamples();
 }
 
 // Connects to clients that ask by UDP; only on this machine, whatever host the datagram names, so
@@ -255,28 +255,28 @@ void VrpnServer::connectBack(int port) {
   net::Peer peer;
   peer.address = INADDR_LOOPBACK;
   server_.add(std::move(fd), peer, [this, port](const net::Peer&) {
-    return std::make_unique<VrpnSession>(segment_, clock_,
+    return std::make_unique<VrpnSession>(devices_, clock_,
                                          std::make_unique<PortClaim>(connected_back_, port));
   });
 }
 
 template <typename T>
 void VrpnServer::each(const shm::Channel<T>& channel, std::uint64_t& seen,
-                      const std::function<void(VrpnSession&, const T&, std::string&)>& tell) {
+                      const std::function<void(VrpnSession&, const T&, std::string&)>& send) {
   const std::uint64_t count = channel.count();
   if (count - seen > shm::kHistory / 2) seen = count - 1;
   for (; seen < count; ++seen) {
     const auto sample = channel.at(seen);
     if (!sample) continue;
-    server_.tell([&](net::Session& session, std::string& output) {
-      tell(static_cast<VrpnSession&>(session), *sample, output);
+    server_.sendToAll([&](net::Session& session, std::string& output) {
+      send(static_cast<VrpnSession&>(session), *sample, output);
     });
   }
 }
 
-void VrpnServer::tellSamples() {
+void VrpnServer::sendSamples() {
   each<HandSample>(
-      segment_.hand, seen_hand_, [](VrpnSession& client, const HandSample& s, std::string& out) {
+      *devices_.hand, seen_hand_, [](VrpnSession& client, const HandSample& s, std::string& out) {
         client.send(kHand, kPose, vrpnPose(0, s.position_m, s.orientation_wxyz), s.received_ns,
                     out);
         const std::vector<double> joints(std::begin(s.joint_rad), std::end(s.joint_rad));
@@ -284,19 +284,19 @@ void VrpnServer::tellSamples() {
       });
   for (std::size_t i = 0; i < kStations; ++i) {
     each<TrackerSample>(
-        segment_.tracker[i], seen_tracker_[i],
+        *devices_.tracker[i], seen_tracker_[i],
         [i](VrpnSession& client, const TrackerSample& s, std::string& out) {
           client.send(kTracker, kPose,
                       vrpnPose(static_cast<std::int32_t>(i), s.position_m, s.orientation_wxyz),
                       s.received_ns, out);
         });
   }
-  each<BallSample>(segment_.ball, seen_ball_,
+  each<BallSample>(*devices_.ball, seen_ball_,
                    [](VrpnSession& client, const BallSample& s, std::string& out) {
                      std::vector<double> axes(std::begin(s.translation), std::end(s.translation));
                      axes.insert(axes.end(), std::begin(s.rotation), std::end(s.rotation));
                      client.send(kBall, kChannels, vrpnChannels(axes), s.received_ns, out);
-                     client.tellButtons(s, out);
+                     client.sendButtons(s, out);
                    });
 }
 

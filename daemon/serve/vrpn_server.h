@@ -16,7 +16,7 @@
 #include "daemon/net/server_thread.h"
 #include "daemon/serve/sample_waker.h"
 #include "daemon/serve/vrpn_protocol.h"
-#include "daemon/shm/layout.h"
+#include "daemon/shm/device_slots.h"
 
 namespace merlin::serve {
 
@@ -25,12 +25,12 @@ class VrpnSession;
 // Devices: Hand0 (tracker, sensor 0, smoothed; analog, 23 joint angles in radians), Tracker0
 // (tracker, sensors 0 to 3), Ball0 (analog, 6 shares of full scale; buttons). Positions are in
 // metres, in the frame of each station. Data are sent over TCP; a client connects by TCP, or asks
-// by UDP to be connected to. Owns its threads; reads the segment as any client does.
+// by UDP to be connected to. Owns its threads; reads shared memory as any client does.
 class VrpnServer final : public net::Server {
  public:
-  // `port` 0 takes any free one. Errors: those of listenTcp(). `segment`, `watch` and `clock` must
+  // `port` 0 takes any free one. Errors: those of listenTcp(). `devices`, `watch` and `clock` must
   // outlive the server.
-  static Result<std::unique_ptr<VrpnServer>> start(int port, const shm::DevicesSegment& segment,
+  static Result<std::unique_ptr<VrpnServer>> start(int port, const shm::DeviceSlots& devices,
                                                    ThreadWatch& watch, const Clock& clock);
   ~VrpnServer() override;
   VrpnServer(const VrpnServer&) = delete;
@@ -41,19 +41,19 @@ class VrpnServer final : public net::Server {
   std::string failure() const override { return thread_.failure(); }
 
  private:
-  VrpnServer(UniqueFd tcp, UniqueFd udp, const shm::DevicesSegment& segment, ThreadWatch& watch,
+  VrpnServer(UniqueFd tcp, UniqueFd udp, const shm::DeviceSlots& devices, ThreadWatch& watch,
              const Clock& clock);
   void round();
   void answerDatagrams();
   void connectBack(int port);
-  void tellSamples();
+  void sendSamples();
   template <typename T>
   void each(const shm::Channel<T>& channel, std::uint64_t& seen,
-            const std::function<void(VrpnSession&, const T&, std::string&)>& tell);
+            const std::function<void(VrpnSession&, const T&, std::string&)>& send);
 
   UniqueFd udp_;
   int port_;
-  const shm::DevicesSegment& segment_;
+  shm::DeviceSlots devices_;
   const Clock& clock_;
   std::set<int> connected_back_;  // clients' ports that we are connected to; must outlive server_
   net::ConnectionServer server_;

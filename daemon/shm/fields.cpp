@@ -1,6 +1,7 @@
 #include "daemon/shm/fields.h"
 
 #include <string>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -11,14 +12,7 @@ namespace {
 
 void addHeader(FieldTable& t) {
   t.bare("segment", 0);
-  MERLIN_FIELD(t, Header, magic, "");
-  MERLIN_FIELD(t, Header, version, "");
-  MERLIN_FIELD(t, Header, size, "B");
-  MERLIN_FIELD(t, Header, generation, "");
-  MERLIN_FIELD(t, Header, field_offset, "B");
-  MERLIN_FIELD(t, Header, field_count, "");
-  MERLIN_FIELD(t, Header, field_size, "B");
-  MERLIN_FIELD(t, Header, pid, "");
+  addTableHeader<Header>(t);
   t.add<std::int64_t>("heartbeat_ns", offsetof(Header, heartbeat_ns), "ns");
   MERLIN_FIELD(t, Header, started_ns, "ns");
   t.add<std::int64_t>("realtime_offset_ns", offsetof(Header, realtime_offset_ns), "ns");
@@ -26,18 +20,18 @@ void addHeader(FieldTable& t) {
   MERLIN_FIELD(t, Header, command_endpoint, "");
 }
 
-// Adds what a reader needs to wait for samples: their count and the futex word. The fields added
-// afterwards are those of a sample; each has the offset of the ring of the last 256 samples.
+// Starts the fields of a channel: adds what a reader needs to wait for samples, which are their
+// count and the futex word. The fields added afterwards are those of a sample; each has the offset
+// of the ring of the last 256 samples.
 template <typename T>
-void channel(FieldTable& t, const std::string& name, std::size_t offset) {
+void startChannel(FieldTable& t, const std::string& name, std::size_t offset) {
   t.bare(name, offset);
   t.add<std::uint64_t>("count", Channel<T>::countOffset(), "");
   t.add<std::uint32_t>("wake", Channel<T>::wakeOffset(), "futex");
   t.slot(name, offset, offset + Channel<T>::ringOffset(), sizeof(SeqSlot<T>), kHistory);
 }
 
-void addHealth(FieldTable& t, const char* device, std::size_t offset) {
-  t.slot(fmt::format("{}.health", device), offset);
+void addMembers(FieldTable& t, std::type_identity<DeviceHealth>) {
   MERLIN_FIELD(t, DeviceHealth, since_ns, "ns");
   MERLIN_FIELD(t, DeviceHealth, updated_ns, "ns");
   MERLIN_FIELD(t, DeviceHealth, samples, "");
@@ -51,8 +45,7 @@ void addHealth(FieldTable& t, const char* device, std::size_t offset) {
   MERLIN_FIELD(t, DeviceHealth, reason, "");
 }
 
-void addGlove(FieldTable& t) {
-  channel<GloveSample>(t, "glove", offsetof(DevicesSegment, glove));
+void addMembers(FieldTable& t, std::type_identity<GloveSample>) {
   MERLIN_FIELD(t, GloveSample, received_ns, "ns");
   MERLIN_FIELD(t, GloveSample, counter, "");
   MERLIN_FIELD(t, GloveSample, flags, "bits");
@@ -61,15 +54,16 @@ void addGlove(FieldTable& t) {
   MERLIN_FIELD(t, GloveSample, raw, "");
 }
 
-void addPosture(FieldTable& t) {
-  channel<PostureSample>(t, "posture", offsetof(DevicesSegment, posture));
+void addMembers(FieldTable& t, std::type_identity<PostureSample>) {
   MERLIN_FIELD(t, PostureSample, received_ns, "ns");
   MERLIN_FIELD(t, PostureSample, since_ns, "ns");
   MERLIN_FIELD(t, PostureSample, counter, "");
   MERLIN_FIELD(t, PostureSample, code, "bits");
   MERLIN_FIELD(t, PostureSample, activation, "");
   MERLIN_FIELD(t, PostureSample, name, "");
-  t.slot("posture_state", offsetof(DevicesSegment, posture_state));
+}
+
+void addMembers(FieldTable& t, std::type_identity<PostureState>) {
   MERLIN_FIELD(t, PostureState, received_ns, "ns");
   MERLIN_FIELD(t, PostureState, since_ns, "ns");
   MERLIN_FIELD(t, PostureState, counter, "");
@@ -80,10 +74,7 @@ void addPosture(FieldTable& t) {
   MERLIN_FIELD(t, PostureState, seen, "");
 }
 
-void addTracker(FieldTable& t, std::size_t station) {
-  channel<TrackerSample>(
-      t, fmt::format("tracker{}", station + 1),
-      offsetof(DevicesSegment, tracker) + station * sizeof(Channel<TrackerSample>));
+void addMembers(FieldTable& t, std::type_identity<TrackerSample>) {
   MERLIN_FIELD(t, TrackerSample, received_ns, "ns");
   MERLIN_FIELD(t, TrackerSample, counter, "");
   MERLIN_FIELD(t, TrackerSample, station, "");
@@ -93,8 +84,12 @@ void addTracker(FieldTable& t, std::size_t station) {
   MERLIN_FIELD(t, TrackerSample, stylus, "");
 }
 
-void addBall(FieldTable& t) {
-  channel<BallSample>(t, "ball", offsetof(DevicesSegment, ball));
+void addMembers(FieldTable& t, std::type_identity<TrackerFrames>) {
+  MERLIN_FIELD(t, TrackerFrames, alignment_cm, "4 x 9 cm");
+  MERLIN_FIELD(t, TrackerFrames, boresight_wxyz, "4 x wxyz");
+}
+
+void addMembers(FieldTable& t, std::type_identity<BallSample>) {
   MERLIN_FIELD(t, BallSample, received_ns, "ns");
   MERLIN_FIELD(t, BallSample, counter, "");
   MERLIN_FIELD(t, BallSample, buttons, "bits");
@@ -104,8 +99,7 @@ void addBall(FieldTable& t) {
   MERLIN_FIELD(t, BallSample, period_us, "us");
 }
 
-void addHand(FieldTable& t) {
-  channel<HandSample>(t, "hand", offsetof(DevicesSegment, hand));
+void addMembers(FieldTable& t, std::type_identity<HandSample>) {
   MERLIN_FIELD(t, HandSample, received_ns, "ns");
   MERLIN_FIELD(t, HandSample, glove_ns, "ns");
   MERLIN_FIELD(t, HandSample, counter, "");
@@ -118,8 +112,7 @@ void addHand(FieldTable& t) {
   MERLIN_FIELD(t, HandSample, delay_s, "s");
 }
 
-void addPanel(FieldTable& t) {
-  channel<GpioSample>(t, "gpio", offsetof(DevicesSegment, gpio));
+void addMembers(FieldTable& t, std::type_identity<GpioSample>) {
   MERLIN_FIELD(t, GpioSample, changed_ns, "ns");
   MERLIN_FIELD(t, GpioSample, counter, "");
   MERLIN_FIELD(t, GpioSample, power, "Power");
@@ -131,8 +124,7 @@ void addPanel(FieldTable& t) {
 
 // Adds the state of each action by its name: "actions.ball.reset_view.begun", and ".held" if it
 // lasts as long as its input; and whole arrays, in the order of the named fields.
-void addActions(FieldTable& t, const char* device, std::size_t offset) {
-  t.slot(fmt::format("actions.{}", device), offset);
+void addMembers(FieldTable& t, std::type_identity<ActionState>) {
   MERLIN_FIELD(t, ActionState, changed_ns, "ns");
   MERLIN_FIELD(t, ActionState, generation, "");
   MERLIN_FIELD(t, ActionState, begun, "");
@@ -145,6 +137,18 @@ void addActions(FieldTable& t, const char* device, std::size_t offset) {
     if (isHeldAction(kActions[i]))
       t.add<std::uint8_t>(fmt::format("{}.held", kActions[i]), offsetof(ActionState, held) + i, "");
   }
+}
+
+template <typename T>
+void addSlot(FieldTable& t, const std::string& name, std::size_t offset) {
+  t.slot(name, offset);
+  addMembers(t, std::type_identity<T>());
+}
+
+template <typename T>
+void addChannel(FieldTable& t, const std::string& name, std::size_t offset) {
+  startChannel<T>(t, name, offset);
+  addMembers(t, std::type_identity<T>());
 }
 
 // Adds the first part of WallStats.
@@ -200,7 +204,7 @@ void addPace(FieldTable& t) {
 }
 
 void addTrace(FieldTable& t) {
-  channel<FrameTrace>(t, "trace", offsetof(WallSegment, trace));
+  startChannel<FrameTrace>(t, "trace", offsetof(WallSegment, trace));
   MERLIN_FIELD(t, FrameTrace, begin_ns, "ns");
   MERLIN_FIELD(t, FrameTrace, end_ns, "ns");
   MERLIN_FIELD(t, FrameTrace, deadline_ns, "ns");
@@ -247,29 +251,66 @@ void addOutputs(FieldTable& t) {
   each(&OutputStats::fault, "fault", offsetof(OutputStats, fault), "");
 }
 
+void addContent(FieldTable& t) {
+  t.slot("content", offsetof(WallSegment, content));
+  MERLIN_FIELD(t, WallContent, updated_ns, "ns");
+  MERLIN_FIELD(t, WallContent, name, "");
+  MERLIN_FIELD(t, WallContent, kind, "");
+  MERLIN_FIELD(t, WallContent, slide, "");
+  MERLIN_FIELD(t, WallContent, finished, "");
+  MERLIN_FIELD(t, WallContent, refused, "");
+}
+
 }  // namespace
+
+template <typename T>
+std::vector<Field> slotFields(const std::string& name, std::size_t offset) {
+  FieldTable t;
+  addSlot<T>(t, name, offset);
+  return t.take();
+}
+
+template <typename T>
+std::vector<Field> channelFields(const std::string& name, std::size_t offset) {
+  FieldTable t;
+  addChannel<T>(t, name, offset);
+  return t.take();
+}
+
+template std::vector<Field> slotFields<DeviceHealth>(const std::string&, std::size_t);
+template std::vector<Field> slotFields<PostureState>(const std::string&, std::size_t);
+template std::vector<Field> slotFields<TrackerFrames>(const std::string&, std::size_t);
+template std::vector<Field> slotFields<ActionState>(const std::string&, std::size_t);
+template std::vector<Field> channelFields<GloveSample>(const std::string&, std::size_t);
+template std::vector<Field> channelFields<PostureSample>(const std::string&, std::size_t);
+template std::vector<Field> channelFields<TrackerSample>(const std::string&, std::size_t);
+template std::vector<Field> channelFields<BallSample>(const std::string&, std::size_t);
+template std::vector<Field> channelFields<HandSample>(const std::string&, std::size_t);
+template std::vector<Field> channelFields<GpioSample>(const std::string&, std::size_t);
 
 std::vector<Field> devicesFields() {
   FieldTable t;
   addHeader(t);
-  constexpr const char* kNames[kDevices] = {"glove", "tracker", "ball"};
   for (std::size_t i = 0; i < kDevices; ++i) {
-    addHealth(t, kNames[i], offsetof(DevicesSegment, health) + i * sizeof(SeqSlot<DeviceHealth>));
+    addSlot<DeviceHealth>(t, fmt::format("{}.health", kDeviceNames[i]),
+                          offsetof(DevicesSegment, health) + i * sizeof(SeqSlot<DeviceHealth>));
   }
-  addGlove(t);
-  addPosture(t);
-  for (std::size_t station = 0; station < kStations; ++station) addTracker(t, station);
-  t.slot("tracker", offsetof(DevicesSegment, tracker_frames));
-  MERLIN_FIELD(t, TrackerFrames, alignment_cm, "4 x 9 cm");
-  MERLIN_FIELD(t, TrackerFrames, boresight_wxyz, "4 x wxyz");
-  addBall(t);
-  addHand(t);
-  addPanel(t);
-  addHealth(t, "gpio", offsetof(DevicesSegment, gpio_health));
-  constexpr const char* kSources[kActionSources] = {"glove", "ball", "panel"};
+  addChannel<GloveSample>(t, "glove", offsetof(DevicesSegment, glove));
+  addChannel<PostureSample>(t, "posture", offsetof(DevicesSegment, posture));
+  addSlot<PostureState>(t, "posture_state", offsetof(DevicesSegment, posture_state));
+  for (std::size_t i = 0; i < kStations; ++i) {
+    addChannel<TrackerSample>(
+        t, fmt::format("tracker{}", i + 1),
+        offsetof(DevicesSegment, tracker) + i * sizeof(Channel<TrackerSample>));
+  }
+  addSlot<TrackerFrames>(t, "tracker", offsetof(DevicesSegment, tracker_frames));
+  addChannel<BallSample>(t, "ball", offsetof(DevicesSegment, ball));
+  addChannel<HandSample>(t, "hand", offsetof(DevicesSegment, hand));
+  addChannel<GpioSample>(t, "gpio", offsetof(DevicesSegment, gpio));
+  addSlot<DeviceHealth>(t, "gpio.health", offsetof(DevicesSegment, gpio_health));
   for (std::size_t i = 0; i < kActionSources; ++i) {
-    addActions(t, kSources[i],
-               offsetof(DevicesSegment, actions) + i * sizeof(SeqSlot<ActionState>));
+    addSlot<ActionState>(t, fmt::format("actions.{}", kActionSourceNames[i]),
+                         offsetof(DevicesSegment, actions) + i * sizeof(SeqSlot<ActionState>));
   }
   return t.take();
 }
@@ -282,6 +323,7 @@ std::vector<Field> wallFields() {
   addTrace(t);
   addInteraction(t);
   addOutputs(t);
+  addContent(t);
   t.bare("segment", 0);
   MERLIN_FIELD(t, WallSegment, framebuffer, "");
   return t.take();

@@ -50,6 +50,7 @@ static_assert(offsetof(Header, status_endpoint) == 64 && sizeof(Header) == 280);
 
 // Index of a device in DevicesSegment::health.
 enum DeviceIndex : std::size_t { kGlove = 0, kTracker = 1, kBall = 2, kDevices = 3 };
+inline constexpr const char* kDeviceNames[kDevices] = {"glove", "tracker", "ball"};
 
 // Maximum number of actions (daemon/base/commands.h).
 inline constexpr std::size_t kMostActions = 32;
@@ -61,6 +62,7 @@ enum ActionSource : std::size_t {
   kPanelActions = 2,
   kActionSources = 3
 };
+inline constexpr const char* kActionSourceNames[kActionSources] = {"glove", "ball", "panel"};
 
 // Actions that the inputs of one device are bound to. Written when one begins or ends. Index of the
 // arrays: kActions of daemon/base/commands.h; other processes find an action by its field's name.
@@ -179,7 +181,8 @@ struct WallInteraction {
   std::int32_t pixel[2];    // pixel pointed at, from the frame's upper left corner; -1, -1: none
   float at_model_m[3];      // point of the bounding sphere pointed at, model coordinates [m]
   std::uint32_t snapshots;  // snapshots requested since the start
-  std::uint32_t content;    // content shown: 0 the model, 1 .. the configuration's contents
+  std::uint32_t content;    // content shown: 0 the model, 1 .. the configuration's contents, then a
+                            // file that is not in the configuration
 };
 static_assert(sizeof(WallInteraction) == 40 && offsetof(WallInteraction, snapshots) == 32);
 
@@ -202,6 +205,17 @@ struct WallOutputs {
   OutputStats outputs[8];
 };
 
+// The content that is shown, and what became of the last request for one. Written once a period.
+struct WallContent {
+  std::int64_t updated_ns;
+  char name[64];           // of the configuration, or of a file that is not in it
+  char kind[16];           // "model", "picture", "panorama"
+  char slide[64];          // of slides: the name of the one that is shown
+  std::uint32_t finished;  // number of the last request (`merlin show`) that was shown or refused
+  char refused[260];       // why that one cannot be shown; empty if it is shown
+};
+static_assert(sizeof(WallContent) == 416 && offsetof(WallContent, finished) == 152);
+
 struct WallSegment {
   Header header;
   alignas(64) SeqSlot<WallStats> stats;  // writer: the wall's thread
@@ -210,6 +224,7 @@ struct WallSegment {
   // Name of the frame buffer's segment, "/merlin-framebuffer"; empty until it exists.
   alignas(64) char framebuffer[64];
   alignas(64) SeqSlot<WallOutputs> outputs;  // writer: the wall's thread
+  alignas(64) SeqSlot<WallContent> content;  // writer: the wall's thread
   alignas(64) Field fields[kMostFields];     // writer: the daemon, as it starts
 };
 

@@ -13,32 +13,60 @@
 
 #include "daemon/shm/layout.h"
 
-using merlin::shm::DevicesSegment;
+using merlin::BallSample;
+using merlin::shm::Channel;
+using merlin::shm::Field;
+using merlin::shm::Header;
 
-// Maps the segment read-only; null if there is none that this program knows.
-static const DevicesSegment* map(const std::string& name) {
+// A mapped segment; null if there is none that this program knows.
+struct Segment {
+  const char* bytes = nullptr;
+  std::uint64_t size = 0;
+  const Header* header = nullptr;
+};
+
+static Segment map(const std::string& name) {
   const int fd = ::open(("/dev/shm/" + name).c_str(), O_RDONLY | O_CLOEXEC);
   struct stat status {};
-  if (fd < 0 || ::fstat(fd, &status) != 0) return nullptr;
-  const auto size = static_cast<std::size_t>(status.st_size);
-  void* memory = size < sizeof(DevicesSegment)
-                     ? MAP_FAILED
-                     : ::mmap(nullptr, size, PROT_READ, MAP_SHARED, fd, 0);
+  if (fd < 0 || ::fstat(fd, &status) != 0) return {};
+  const auto size = static_cast<std::uint64_t>(status.st_size);
+  void* memory =
+      size < sizeof(Header) ? MAP_FAILED : ::mmap(nullptr, size, PROT_READ, MAP_SHARED, fd, 0);
   ::close(fd);
-  if (memory == MAP_FAILED) return nullptr;
-  const auto* segment = static_cast<const DevicesSegment*>(memory);
-  const auto& header = segment->header;
-  const bool known = header.magic == merlin::shm::kMagic && header.version == merlin::shm::kVersion;
-  return known ? segment : nullptr;
+  if (memory == MAP_FAILED) return {};
+  const auto* header = static_cast<const Header*>(memory);
+  const bool known =
+      header->magic == merlin::shm::kMagic && header->version == merlin::shm::kVersion &&
+      header->field_size >= sizeof(Field) &&
+      header->field_offset + std::uint64_t{header->field_count} * header->field_size <= size;
+  return known ? Segment{static_cast<const char*>(memory), size, header} : Segment{};
+}
+
+// The channel whose samples the table of fields has under this name; null if there is none of this
+// size. Its place may differ from one release to the next.
+template <typename T>
+static const Channel<T>* find(const Segment& segment, const std::string& name) {
+  for (std::uint32_t i = 0; segment.header && i < segment.header->field_count; ++i) {
+    const auto* field = reinterpret_cast<const Field*>(
+        segment.bytes + segment.header->field_offset + std::size_t{i} * segment.header->field_size);
+    if (name + ".received_ns" != field->name) continue;
+    const bool fits = field->ring_stride == sizeof(merlin::shm::SeqSlot<T>) &&
+                      field->ring_slots == merlin::shm::kHistory &&
+                      field->slot % alignof(Channel<T>) == 0 &&
+                      field->slot + sizeof(Channel<T>) <= segment.size;
+    return fits ? reinterpret_cast<const Channel<T>*>(segment.bytes + field->slot) : nullptr;
+  }
+  return nullptr;
 }
 
 int main(int argc, char** argv) {
-  const DevicesSegment* segment = argc == 3 ? map(argv[1]) : nullptr;
-  if (segment == nullptr) {
+  const Segment segment = argc == 3 ? map(argv[1]) : Segment{};
+  const Channel<BallSample>* found = find<BallSample>(segment, "ball");
+  if (found == nullptr) {
     std::fprintf(stderr, "usage: read_merlin_cpp SEGMENT COUNT; SEGMENT as merlin-devices\n");
     return 2;
   }
-  const auto& ball = segment->ball;
+  const Channel<BallSample>& ball = *found;
   std::uint64_t next = ball.count();
   const std::uint64_t end = next + std::strtoull(argv[2], nullptr, 10);
   while (next < end) {
@@ -51,7 +79,7 @@ int main(int argc, char** argv) {
       const auto sample = ball.at(next);
       if (!sample) continue;  // more than 256 samples behind: it was overwritten
       const double utc_s =
-          1e-9 * static_cast<double>(sample->received_ns + segment->header.realtime_offset_ns);
+          1e-9 * static_cast<double>(sample->received_ns + segment.header->realtime_offset_ns);
       std::printf("ball %llu at %.3f: %g %g %g\n", static_cast<unsigned long long>(next), utc_s,
                   static_cast<double>(sample->rotation[0]),
                   static_cast<double>(sample->rotation[1]),

@@ -7,6 +7,7 @@
 #include <sys/random.h>
 #include <unistd.h>
 
+#include "daemon/base/log.h"
 #include "daemon/shm/fields.h"
 
 namespace merlin::shm {
@@ -17,13 +18,6 @@ void setText(char (&field)[N], const std::string& text) {
   const std::size_t n = std::min(text.size(), N - 1);
   std::copy_n(text.begin(), n, field);
   field[n] = '\0';
-}
-
-// Whether the table lies inside the segment and its entries are at least as long as Field.
-bool tableFits(const Header& h, std::size_t size) {
-  if (h.field_count == 0) return true;
-  const std::uint64_t end = h.field_offset + std::uint64_t{h.field_count} * h.field_size;
-  return h.field_size >= sizeof(Field) && end <= size;
 }
 
 }  // namespace
@@ -68,10 +62,12 @@ Result<Ok> checkHeader(const SharedMemory& memory, std::size_t least_size,
   }
   if (h.version != kVersion) {
     return Error{Errc::kUnsupported,
-                 fmt::format("shared memory {}: is version {}, this program reads {}", name,
-                             h.version, kVersion)};
+                 fmt::format("shared memory {}: is version {}, but this program reads version {}; "
+                             "use this program and merlind of the same release",
+                             name, h.version, kVersion)};
   }
-  if (memory.size() < least_size || h.size != memory.size() || !tableFits(h, memory.size())) {
+  if (memory.size() < least_size || h.size != memory.size() ||
+      !TablePlace{h.field_offset, h.field_count, h.field_size}.fits(memory.size())) {
     return Error{Errc::kMalformed, fmt::format("shared memory {}: its header is damaged", name)};
   }
   return Ok{};
@@ -100,15 +96,40 @@ Result<SegmentReader<Segment>> SegmentReader<Segment>::open(const std::string& n
   return SegmentReader(*std::move(memory));
 }
 
-template <typename Segment>
-const Segment* SegmentFollower<Segment>::get(Timestamp now) {
+bool isAlive(const Header& header, Timestamp now) {
+  constexpr Duration kGone = std::chrono::seconds(1);
+  return now - fromNanoseconds(header.heartbeat_ns.load(std::memory_order_relaxed)) < kGone;
+}
+
+Result<DevicesReader> DevicesReader::open(const std::string& name, SharedMemory::From from) {
+  auto memory = SharedMemory::open(name, from);
+  if (!memory) return memory.error();
+  if (const auto checked = checkHeader(*memory, sizeof(Header), name); !checked)
+    return checked.error();
+  auto table = SlotTable::read({memory->data(), memory->size()}, name);
+  if (!table) return table.error();
+  const auto& header = *reinterpret_cast<const Header*>(memory->data());
+  auto slots = DeviceSlots::find(*table, header);
+  if (!slots) return slots.error();
+  return DevicesReader(*std::move(memory), *std::move(table), *std::move(slots));
+}
+
+template <typename Reader>
+const typename Reader::View* SegmentFollower<Reader>::get(Timestamp now) {
   constexpr Duration kRetry = std::chrono::milliseconds(500);
   if (reader_ && reader_->alive(now)) return &**reader_;
   reader_.reset();
   if (now - tried_ < kRetry) return nullptr;
   tried_ = now;
-  auto opened = SegmentReader<Segment>::open(name_, from_);
-  if (!opened || !opened->alive(now)) return nullptr;
+  auto opened = Reader::open(name_, from_);
+  if (!opened) {
+    const bool absent = opened.error().code == Errc::kNotFound;
+    if (!absent && opened.error().what != logged_) logWarning("{}", opened.error().what);
+    logged_ = absent ? "" : opened.error().what;
+    return nullptr;
+  }
+  logged_.clear();
+  if (!opened->alive(now)) return nullptr;
   reader_.emplace(*std::move(opened));
   return &**reader_;
 }
@@ -117,7 +138,7 @@ template class SegmentWriter<DevicesSegment>;
 template class SegmentWriter<WallSegment>;
 template class SegmentReader<DevicesSegment>;
 template class SegmentReader<WallSegment>;
-template class SegmentFollower<DevicesSegment>;
-template class SegmentFollower<WallSegment>;
+template class SegmentFollower<DevicesReader>;
+template class SegmentFollower<SegmentReader<WallSegment>>;
 
 }  // namespace merlin::shm

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 
 namespace merlin::state {
 namespace {
@@ -44,7 +44,7 @@ class Words {
   std::string_view rest_;
 };
 
-Error wrong(std::string_view argument) {
+Error malformed(std::string_view argument) {
   return {Errc::kInvalidArgument,
           fmt::format("\"{}\" is no request; allowed are: {}; CORNER is {}; DX and DY are pixels "
                       "of the output, at most {} either way, x to the right and y down",
@@ -123,7 +123,7 @@ Json json(const ReportedOutput& output, const Alignment& alignment) {
 
 Result<AlignRequest> parseAlignRequest(std::string_view argument) {
   if (const auto request = requestOf(argument)) return *request;
-  return wrong(argument);
+  return malformed(argument);
 }
 
 std::string textOf(const AlignRequest& request) { return std::visit(TextOf{}, request); }

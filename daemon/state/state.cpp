@@ -74,11 +74,11 @@ Offset offsetOf(const JsonView& view) {
 Place placeOf(JsonView view, const OutputForm& form) {
   if (!view.isText()) {
     const auto [column, row] = countsOf(view);
-    if (column >= form.mesh_columns || row >= form.mesh_rows) view.wrong("a point of the mesh");
+    if (column >= form.mesh_columns || row >= form.mesh_rows) view.addFault("a point of the mesh");
     return {Place::Of::kMesh, column, row};
   }
   const auto corner = cornerNamed(view.text(kLongestName));
-  if (!corner) view.wrong("the name of a corner");
+  if (!corner) view.addFault("the name of a corner");
   return corner.value_or(Place{});
 }
 
@@ -102,7 +102,7 @@ Step stepOf(JsonView view, const Alignment& alignment) {
   view.allowKeys({"output", "changes"});
   Step step{view.at("output").text(kLongestName), {}};
   const OutputAlignment* const of = alignment.find(step.output);
-  if (!of) view.at("output").wrong("one of the outputs above");
+  if (!of) view.at("output").addFault("one of the outputs above");
   JsonView changes = view.at("changes");
   const std::size_t count = changes.expectArray(1, kMostChanges);
   for (std::size_t i = 0; of && i < count; ++i) {
@@ -121,7 +121,7 @@ Alignment alignmentOf(JsonView view) {
   const std::size_t count = outputs.expectArray(0, kMostOutputs);
   for (std::size_t i = 0; i < count; ++i) {
     auto output = outputOf(outputs.at(i));
-    if (alignment.find(output.form.output)) outputs.at(i).wrong("each output once");
+    if (alignment.find(output.form.output)) outputs.at(i).addFault("each output once");
     alignment.outputs.push_back(std::move(output));
   }
   JsonView steps = view.at("steps");
@@ -137,10 +137,10 @@ State stateOf(JsonView root) {
   const std::uint64_t version = root.at(kVersionKey).count(1, 1'000'000);
   if (version > kStateVersion) {
     root.at(kVersionKey)
-        .wrong(fmt::format("{}, the version that this merlind reads; a newer merlind wrote the "
-                           "file",
-                           kStateVersion),
-               {}, Errc::kUnsupported);
+        .addFault(fmt::format("{}, the version that this merlind reads; a newer merlind wrote the "
+                              "file",
+                              kStateVersion),
+                  {}, Errc::kUnsupported);
     return state;
   }
   root.allowKeys({kVersionKey, "rate_hz", "content", "alignment"});

@@ -61,18 +61,18 @@ Json integers(std::span<const T> values) {
 }
 
 // Short health of each device, for a client that only receives samples.
-Json briefHealth(const shm::DevicesSegment& segment) {
+Json briefHealth(const shm::DeviceSlots& devices) {
   Json all = Json::object();
-  for (std::size_t i = 0; i < shm::kDevices; ++i) {
-    const auto h = segment.health[i].read();
+  for (const auto& [device, slot] : devices.health) {
+    const auto h = slot->read();
     if (!h) continue;
-    all[kDeviceNames[i]] = {{"state", static_cast<std::uint32_t>(h->state)},
-                            {"since_ns", h->since_ns},
-                            {"identity", text(h->identity)},
-                            {"reason", text(h->reason)},
-                            {"samples", h->samples},
-                            {"reconnects", h->reconnects},
-                            {"rate_hz", round3(static_cast<double>(h->rate_hz))}};
+    all[device] = {{"state", static_cast<std::uint32_t>(h->state)},
+                   {"since_ns", h->since_ns},
+                   {"identity", text(h->identity)},
+                   {"reason", text(h->reason)},
+                   {"samples", h->samples},
+                   {"reconnects", h->reconnects},
+                   {"rate_hz", round3(static_cast<double>(h->rate_hz))}};
   }
   return all;
 }
@@ -113,9 +113,9 @@ Json deviceJson(const DeviceHealth& h, Timestamp now) {
 }
 
 // The current posture (after the minimum hold time), the one of the newest record, and its margin.
-Json postureJson(const shm::DevicesSegment& segment, Timestamp now) {
-  const auto held = segment.posture_state.read();
-  const auto shown = segment.posture.newest();
+Json postureJson(const shm::DeviceSlots& devices, Timestamp now) {
+  const auto held = devices.posture_state->read();
+  const auto shown = devices.posture->newest();
   if (!held || !shown) return nullptr;
   return {{"name", text(held->name)},
           {"code", held->code},
@@ -146,9 +146,9 @@ Json serversJson(const std::vector<net::ServerHealth>& servers) {
   return all;
 }
 
-std::string postureName(const shm::DevicesSegment& segment) {
-  if (const auto held = segment.posture_state.read()) return text(held->name);
-  const auto posture = segment.posture.newest();
+std::string postureName(const shm::DeviceSlots& devices) {
+  if (const auto held = devices.posture_state->read()) return text(held->name);
+  const auto posture = devices.posture->newest();
   return posture ? text(posture->name) : "";
 }
 
@@ -169,26 +169,25 @@ const char* healthName(const DeviceHealth& health, Timestamp now) {
 
 namespace {
 
-Json devicesJson(const shm::DevicesSegment& segment, Timestamp now) {
-  Json devices = Json::object();
-  for (std::size_t i = 0; i < shm::kDevices; ++i) {
-    if (const auto health = segment.health[i].read())
-      devices[kDeviceNames[i]] = deviceJson(*health, now);
+Json devicesJson(const shm::DeviceSlots& devices, Timestamp now) {
+  Json all = Json::object();
+  for (const auto& [device, slot] : devices.health) {
+    if (const auto health = slot->read()) all[device] = deviceJson(*health, now);
   }
-  return devices;
+  return all;
 }
 
 }  // namespace
 
-std::string devicesStatus(const shm::DevicesSegment& segment, Timestamp now,
+std::string devicesStatus(const shm::DeviceSlots& devices, Timestamp now,
                           const std::vector<net::ServerHealth>& servers) {
   return dump({{"role", "devices"},
-               {"pid", segment.header.pid},
-               {"time_utc", timeUtc(segment.header, now)},
-               {"uptime_s", ageSeconds(segment.header.started_ns, now)},
-               {"posture", postureName(segment)},
-               {"posture_detail", postureJson(segment, now)},
-               {"devices", devicesJson(segment, now)},
+               {"pid", devices.header->pid},
+               {"time_utc", timeUtc(*devices.header, now)},
+               {"uptime_s", ageSeconds(devices.header->started_ns, now)},
+               {"posture", postureName(devices)},
+               {"posture_detail", postureJson(devices, now)},
+               {"devices", devicesJson(devices, now)},
                {"servers", serversJson(servers)}});
 }
 
@@ -214,6 +213,17 @@ Json detailJson(const shm::WallStats& s) {
           {"full_cost", s.full_cost}, {"held_cost", s.held_cost}, {"unit", text(s.cost_unit)}};
 }
 
+// The content shown. `slide`: of slides. `refused`: why the last one that was asked for is not
+// shown.
+Json contentJson(const shm::WallSegment& segment, const shm::WallStats& stats,
+                 const shm::WallInteraction& interaction) {
+  const auto content = segment.content.read().value_or(shm::WallContent{});
+  return {{"index", interaction.content},    {"name", text(content.name)},
+          {"kind", text(content.kind)},      {"slide", text(content.slide)},
+          {"detail", detailJson(stats)},     {"request", content.finished},
+          {"refused", text(content.refused)}};
+}
+
 // The actions that have begun at least once; "held": names of those that are held.
 Json actionsJson(const shm::ActionState& state) {
   Json begun = Json::object(), held = Json::array();
@@ -227,11 +237,25 @@ Json actionsJson(const shm::ActionState& state) {
           {"held", std::move(held)}};
 }
 
+Json rendererJson(const RendererState& r) {
+  return {{"name", r.name},
+          {"vendor", r.vendor},
+          {"driver", r.driver},
+          {"library", r.library},
+          {"software", r.software},
+          {"node", r.node},
+          {"pci", r.pci},
+          {"contexts", r.contexts},
+          {"read_back", r.read_back},
+          {"correction", r.correction},
+          {"correction_fault", r.correction_fault}};
+}
+
 }  // namespace
 
 std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                        const std::vector<net::ServerHealth>& servers,
-                       const shm::DevicesSegment* remote) {
+                       const shm::DeviceSlots* remote, const RendererState* renderer) {
   const auto s = segment.stats.read().value_or(shm::WallStats{});
   const auto interaction = segment.interaction.read().value_or(shm::WallInteraction{});
   Json json = {{"role", "wall"},
@@ -251,7 +275,7 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                {"mode", text(s.mode)},
                {"grabbed", s.grabbed != 0},
                {"pointer", pointerJson(interaction)},
-               {"content", interaction.content},
+               {"content", contentJson(segment, s, interaction)},
                {"snapshots", interaction.snapshots},
                {"work_ms", round3(s.work_ms)},
                {"work_median_ms", round3(s.work_median_ms)},
@@ -279,6 +303,7 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                {"servers", serversJson(servers)}};
   // Of a model, under the name that people look for.
   if (text(s.cost_unit) == kTriangles) json["triangles"] = s.cost;
+  if (renderer) json["renderer"] = rendererJson(*renderer);
   if (remote) {
     json["posture"] = postureName(*remote);
     json["devices"] = devicesJson(*remote, now);
@@ -286,9 +311,9 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
   return dump(json);
 }
 
-std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {
-  Json json = {{"now_ns", toNanoseconds(now)}, {"time_utc", timeUtc(segment.header, now)}};
-  if (const auto p = segment.posture.newest()) {
+std::string newestSamples(const shm::DeviceSlots& devices, Timestamp now) {
+  Json json = {{"now_ns", toNanoseconds(now)}, {"time_utc", timeUtc(*devices.header, now)}};
+  if (const auto p = devices.posture->newest()) {
     json["posture"] = {{"received_ns", p->received_ns},
                        {"since_ns", p->since_ns},
                        {"counter", p->counter},
@@ -296,7 +321,7 @@ std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {
                        {"name", text(p->name)},
                        {"activation", list(std::span<const float>(p->activation))}};
   }
-  if (const auto g = segment.glove.newest()) {
+  if (const auto g = devices.glove->newest()) {
     json["glove"] = {{"received_ns", g->received_ns},
                      {"counter", g->counter},
                      {"flags", g->flags},
@@ -305,8 +330,8 @@ std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {
                      {"angle_rad", list(std::span<const float>(g->angle_rad))}};
   }
   Json stations = Json::array();
-  for (const auto& channel : segment.tracker) {
-    const auto t = channel.newest();
+  for (const auto* channel : devices.tracker) {
+    const auto t = channel->newest();
     if (!t) continue;
     stations.push_back({{"station", t->station},
                         {"received_ns", t->received_ns},
@@ -316,7 +341,7 @@ std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {
                         {"orientation_wxyz", list(std::span<const float>(t->orientation_wxyz))}});
   }
   if (!stations.empty()) json["tracker"] = std::move(stations);
-  if (const auto b = segment.ball.newest()) {
+  if (const auto b = devices.ball->newest()) {
     json["ball"] = {{"received_ns", b->received_ns},
                     {"counter", b->counter},
                     {"buttons", b->buttons},
@@ -325,21 +350,20 @@ std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now) {
                     {"translation", list(std::span<const float>(b->translation))},
                     {"rotation", list(std::span<const float>(b->rotation))}};
   }
-  if (const auto h = segment.hand.newest()) json["hand"] = handJson(*h);
+  if (const auto h = devices.hand->newest()) json["hand"] = handJson(*h);
   for (std::size_t i = 0; i < shm::kActionSources; ++i) {
-    if (const auto a = segment.actions[i].read())
-      json["actions"][kSourceNames[i]] = actionsJson(*a);
+    if (const auto a = devices.actions[i]->read())
+      json["actions"][shm::kActionSourceNames[i]] = actionsJson(*a);
   }
-  json["health"] = briefHealth(segment);
+  json["health"] = briefHealth(devices);
   return dump(json);
 }
 
-std::string devicesMetrics(const shm::DevicesSegment& segment) {
+std::string devicesMetrics(const shm::DeviceSlots& devices) {
   Json json = {{"role", "devices"}};
-  for (std::size_t i = 0; i < shm::kDevices; ++i) {
-    const auto h = segment.health[i].read();
+  for (const auto& [name, slot] : devices.health) {
+    const auto h = slot->read();
     if (!h) continue;
-    const std::string name = kDeviceNames[i];
     json[name + "_ok"] = h->state == HealthState::kOk ? 1 : 0;
     json[name + "_samples_total"] = h->samples;
     json[name + "_reconnects_total"] = h->reconnects;

@@ -7,22 +7,35 @@
 
 #include "daemon/base/clock.h"
 #include "daemon/net/server_keeper.h"
-#include "daemon/shm/layout.h"
+#include "daemon/shm/device_slots.h"
 
 namespace merlin::status {
 
 // Topic "status" of the role devices: health of the devices, and the posture. About 1 kB.
-std::string devicesStatus(const shm::DevicesSegment& segment, Timestamp now,
+std::string devicesStatus(const shm::DeviceSlots& devices, Timestamp now,
                           const std::vector<net::ServerHealth>& servers = {});
+// Who draws the wall.
+struct RendererState {
+  std::string name{}, vendor{}, driver{}, library{};  // as OpenGL tells them; "EGL" or "OSMesa"
+  std::string node{}, pci{};                          // of a GPU; empty if unknown
+  bool software = true;                               // drawn by the CPU
+  int contexts = 1;
+  const char* read_back = "direct";  // or "asynchronous"
+  const char* correction = "cpu";    // where outputs' corrections are computed, or "gpu"
+  std::string correction_fault{};    // why not there where they were to be; empty: no fault
+};
+
 // Topic "status" of the role wall. `remote`: another machine's devices, if the wall uses them.
+// `renderer`: null before it is known.
 std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                        const std::vector<net::ServerHealth>& servers = {},
-                       const shm::DevicesSegment* remote = nullptr);
+                       const shm::DeviceSlots* remote = nullptr,
+                       const RendererState* renderer = nullptr);
 // Topic "sample": the newest posture, glove, hand, tracker and ball, and the actions of their
 // inputs.
-std::string newestSamples(const shm::DevicesSegment& segment, Timestamp now);
+std::string newestSamples(const shm::DeviceSlots& devices, Timestamp now);
 // Topic "metrics" of either role: a flat list of counters and gauges for a metrics collector.
-std::string devicesMetrics(const shm::DevicesSegment& segment);
+std::string devicesMetrics(const shm::DeviceSlots& devices);
 std::string wallMetrics(const shm::WallSegment& segment);
 // Topic "event": one thing that happened. `kind` is a word, `what` a sentence.
 std::string event(std::string_view kind, std::string_view what, Timestamp now);
@@ -32,9 +45,5 @@ std::string textList(const std::vector<std::string>& texts);
 
 // "absent", "opening", "ok", "failed"; "stale" if an ok health was not updated for a second.
 const char* healthName(const DeviceHealth& health, Timestamp now);
-
-inline constexpr const char* kDeviceNames[] = {"glove", "tracker", "ball"};
-// Keys of the object "actions" of the topic "sample", by shm::ActionSource.
-inline constexpr const char* kSourceNames[] = {"glove", "ball", "panel"};
 
 }  // namespace merlin::status

@@ -11,15 +11,16 @@ namespace merlin::status {
 
 std::vector<std::string> HealthEvents::take(Timestamp now) {
   std::vector<std::string> events;
-  for (std::size_t i = 0; i < shm::kDevices; ++i) {
-    const auto health = segment_.health[i].read();
+  for (std::size_t i = 0; i < devices_.health.size(); ++i) {
+    const auto& [device, slot] = devices_.health[i];
+    const auto health = slot->read();
     // Opening is not an event: an absent device is opened again every second.
     if (!health || health->state == HealthState::kOpening) continue;
     const std::string_view state = healthName(*health, now);
     const std::string_view why = health->state == HealthState::kOk && health->reason[0] == '\0'
                                      ? health->identity
                                      : health->reason;
-    std::string sentence = fmt::format("{}: {} ({})", kDeviceNames[i], state, why);
+    std::string sentence = fmt::format("{}: {} ({})", device, state, why);
     if (sentence == last_[i]) continue;
     last_[i] = sentence;
     events.push_back(std::move(sentence));

@@ -1,27 +1,28 @@
 // HealthEvents: changes of the devices' health, as sentences.
 #pragma once
 
-#include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "daemon/base/clock.h"
-#include "daemon/shm/layout.h"
+#include "daemon/shm/device_slots.h"
 
 namespace merlin::status {
 
 // Thread-bound.
 class HealthEvents {
  public:
-  explicit HealthEvents(const shm::DevicesSegment& segment) : segment_(segment) {}
+  explicit HealthEvents(shm::DeviceSlots devices)
+      : devices_(std::move(devices)), last_(devices_.health.size()) {}
 
   // The changes since the last call: "glove: ok (CyberGlove, 22 sensors)", "tracker: absent
   // (/run/merlin/t: No such file)". A device that is retried with the same result is reported once.
   std::vector<std::string> take(Timestamp now);
 
  private:
-  const shm::DevicesSegment& segment_;
-  std::array<std::string, shm::kDevices> last_{};
+  shm::DeviceSlots devices_;
+  std::vector<std::string> last_;  // the last event of each device
 };
 
 }  // namespace merlin::status

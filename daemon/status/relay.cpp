@@ -19,7 +19,7 @@ namespace merlin::status {
 namespace {
 
 constexpr Duration kRound = std::chrono::milliseconds(200);
-constexpr Duration kLook = std::chrono::seconds(1);
+constexpr Duration kCheckPeriod = std::chrono::seconds(1);
 constexpr std::size_t kMostToFar = 16384;  // buffered for libzmq, which usually takes all at once
 constexpr unsigned kMode = 0660;           // the daemon's user and group
 constexpr std::string_view kIpc = "ipc://", kTcp = "tcp://";
@@ -168,8 +168,8 @@ void Relay::run(const std::stop_token& stop, Progress& progress) {
 // If the socket's file (or its folder) was removed, creates it again, so that clients can connect.
 void Relay::listenAgainWhereGone() {
   const Timestamp now = clock_.now();
-  if (path().empty() || now - looked_ < kLook) return;
-  looked_ = now;
+  if (path().empty() || now - checked_ < kCheckPeriod) return;
+  checked_ = now;
   if (inodeOf(path()) == file_) return;
   std::error_code error;
   std::filesystem::create_directories(std::filesystem::path(path()).parent_path(), error);

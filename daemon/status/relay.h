@@ -49,7 +49,7 @@ class Relay final : public net::Server {
   const Clock& clock_;
   net::ConnectionServer server_;
   std::uint64_t file_ = 0;  // inode of the public socket's file
-  Timestamp looked_{};      // when the file was last checked
+  Timestamp checked_{};     // when the file was last checked
   WatchedThread thread_;
 };
 

@@ -158,7 +158,7 @@ class Apply {
   // in the order of kActions.
   void actions(std::size_t source) {
     const Json* all = object("actions");
-    const auto found = all ? all->find(kSourceNames[source]) : Json::const_iterator();
+    const auto found = all ? all->find(shm::kActionSourceNames[source]) : Json::const_iterator();
     if (!all || found == all->end() || !found->is_object()) return;
     const auto last = segment_.actions[source].read();
     shm::ActionState s{};
@@ -179,7 +179,7 @@ class Apply {
   }
   void health(std::size_t device) {
     const Json* all = object("health");
-    const auto found = all ? all->find(kDeviceNames[device]) : Json::const_iterator();
+    const auto found = all ? all->find(shm::kDeviceNames[device]) : Json::const_iterator();
     if (!all || found == all->end() || !found->is_object()) return;
     const auto last = segment_.health[device].read();
     DeviceHealth h{};

@@ -23,7 +23,7 @@ constexpr int kMostRequestBytes = 4096;
 constexpr int kMostSaidBytes = 4096;  // of one frame from a subscriber
 constexpr int kMostQueued = 100;      // documents queued for a subscriber that does not read
 constexpr int kHandshake_ms = 2000;
-constexpr Duration kLook = std::chrono::seconds(1);
+constexpr Duration kCheckPeriod = std::chrono::seconds(1);
 constexpr Duration kSayAgain = std::chrono::seconds(10);
 
 // Restricts sockets that libzmq binds to the daemon's user.
@@ -215,8 +215,8 @@ void StatusServer::round() {
 // Binds the inner sockets again if their files were removed, as Relay does for the public ones.
 void StatusServer::bindAgainWhereGone() {
   const Timestamp now = clock_.now();
-  if (now - looked_ < kLook) return;
-  looked_ = now;
+  if (now - checked_ < kCheckPeriod) return;
+  checked_ = now;
   for (auto& [socket, path] : sockets_->bound) {
     if (isThere(path)) continue;
     std::error_code ignored;

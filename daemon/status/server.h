@@ -87,8 +87,8 @@ class StatusServer {
   const Clock& clock_;
   std::unique_ptr<Sockets> sockets_;
   std::vector<Timestamp> due_;
-  Timestamp looked_{};  // when the inner sockets' files were last checked
-  Timestamp said_{};    // when an error was last logged
+  Timestamp checked_{};  // when the inner sockets' files were last checked
+  Timestamp said_{};     // when an error was last logged
   std::vector<std::unique_ptr<Relay>> relays_;
   WatchedThread thread_;
 };

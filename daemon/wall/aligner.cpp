@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 
 namespace merlin::wall {
 namespace {
@@ -308,18 +308,19 @@ Result<Ok> Aligner::act(std::size_t action) {
 
 void Aligner::executeAsked(const AlignInput& input) {
   const std::lock_guard lock(mutex_);
-  const auto tell = [&](const Result<Ok>& done) {
+  const auto keepRefusal = [&](const Result<Ok>& done) {
     if (done || refusal_ == done.error().what) return;
     refusal_ = done.error().what;
     keeper_.addNotice(fmt::format("align: {}", refusal_));
   };
   for (std::size_t action = 0; action < kAlignActionCount; ++action) {
-    for (std::uint32_t i = 0; i < std::min(input.begun[action], 100U); ++i) tell(act(action));
+    for (std::uint32_t i = 0; i < std::min(input.begun[action], 100U); ++i)
+      keepRefusal(act(action));
   }
   if (input.push == state::Offset{} || entries_.empty()) return;
   const Timestamp now = SystemClock().now();
   const bool on = now - std::exchange(pushed_, now) < kSamePush;
-  tell(move({entries_[selected_].output.name, state::cornerAt(corner_), input.push}, on));
+  keepRefusal(move({entries_[selected_].output.name, state::cornerAt(corner_), input.push}, on));
 }
 
 // Builds the correction of each output with its newest settings; after several moves in a row, only

@@ -22,8 +22,8 @@ bool pushed(const BallSample& b) {
 
 // Replaces the hand's pose by the one predicted for the time `seen`, if shared memory has a
 // smoothed hand that was computed from the same tracker sample.
-void foresee(const shm::DevicesSegment& devices, Timestamp seen, TrackerSample& hand) {
-  const auto h = devices.hand.newest();
+void predictPose(const shm::DeviceSlots& devices, Timestamp seen, TrackerSample& hand) {
+  const auto h = devices.hand->newest();
   if (!h || h->received_ns != hand.received_ns) return;
   const hand::Pose pose = hand::poseAt(*h, seen);
   std::copy(pose.position_m.begin(), pose.position_m.end(), hand.position_m);
@@ -46,30 +46,29 @@ std::optional<T> DeviceFeed::fresh(const shm::Channel<T>& channel,
   return sample;
 }
 
-std::optional<TrackerSample> DeviceFeed::station(const shm::DevicesSegment& devices, int number,
+std::optional<TrackerSample> DeviceFeed::station(const shm::DeviceSlots& devices, int number,
                                                  Timestamp now) {
   const auto index = static_cast<std::size_t>(number - 1);
-  const auto sample = fresh(devices.tracker[index], devices.health[shm::kTracker], now);
+  const auto sample = fresh(*devices.tracker[index], *devices.tracker_health, now);
   if (!sample || now - fromNanoseconds(sample->received_ns) > stale_after_) return std::nullopt;
   return sample;
 }
 
-void DeviceFeed::readPosture(const shm::DevicesSegment& devices, Timestamp now, WallInput& input) {
-  const auto shown = fresh(devices.posture, devices.health[shm::kGlove], now);
+void DeviceFeed::readPosture(const shm::DeviceSlots& devices, Timestamp now, WallInput& input) {
+  const auto shown = fresh(*devices.posture, *devices.glove_health, now);
   if (!shown || now - fromNanoseconds(shown->received_ns) > stale_after_) return;
-  const auto held = devices.posture_state.read();
+  const auto held = devices.posture_state->read();
   static_assert(sizeof held->name == sizeof input.posture);
   if (held) std::copy(std::begin(held->name), std::end(held->name), input.posture.begin());
 }
 
 // Held actions count only while their device works: a process that has ended cannot release them.
 // Returns whether the ball moves a corner.
-bool DeviceFeed::readActions(const shm::DevicesSegment& devices, Timestamp now, WallInput& input) {
-  const auto glove = fresh(devices.glove, devices.health[shm::kGlove], now);
+bool DeviceFeed::readActions(const shm::DeviceSlots& devices, Timestamp now, WallInput& input) {
+  const auto glove = fresh(*devices.glove, *devices.glove_health, now);
   const bool glove_works = glove && now - fromNanoseconds(glove->received_ns) <= stale_after_;
   const actions::Actions actions = actions_.read(
-      devices,
-      {glove_works, fresh(devices.ball, devices.health[shm::kBall], now).has_value(), true});
+      devices, {glove_works, fresh(*devices.ball, *devices.ball_health, now).has_value(), true});
   const auto begun = [&](std::size_t action) { return actions.begun[action]; };
   const auto held = [&](std::size_t action) { return actions.held[action]; };
   input.scene.grab = held(actionIndex("grab"));
@@ -108,10 +107,10 @@ WallInput DeviceFeed::read(Timestamp now) {
   WallInput input;
   const Duration since_last = now - std::exchange(last_read_, now).value_or(now);
   age_.reset();
-  const shm::DevicesSegment* d = devices_.get(now);
+  const shm::DeviceSlots* d = devices_.get(now);
   if (!d) return input;
   auto& ball = input.scene.ball;
-  ball = fresh(d->ball, d->health[shm::kBall], now);
+  ball = fresh(*d->ball, *d->ball_health, now);
   if (ball && pushed(*ball) && now - fromNanoseconds(ball->received_ns) > kPushLasts) {
     std::fill(std::begin(ball->translation), std::end(ball->translation), 0.0F);
     std::fill(std::begin(ball->rotation), std::end(ball->rotation), 0.0F);
@@ -119,7 +118,7 @@ WallInput DeviceFeed::read(Timestamp now) {
   auto& hand = input.scene.hand;
   hand = station(*d, hand_station_, now);
   if (head_station_ > 0) input.head = station(*d, head_station_, now);
-  if (hand && ahead_ > Duration::zero()) foresee(*d, now + ahead_, *hand);
+  if (hand && ahead_ > Duration::zero()) predictPose(*d, now + ahead_, *hand);
   readPosture(*d, now, input);
   const bool align = readActions(*d, now, input);
   moveCorner(since_last, align, input);

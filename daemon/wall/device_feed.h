@@ -1,5 +1,5 @@
 // DeviceFeed: reads the wall's input from the shared-memory segment of the devices, which this
-// process or another one writes.
+// process or another one writes. The devices' slots are found by name when the segment is opened.
 #pragma once
 
 #include "daemon/actions/action_reader.h"
@@ -30,13 +30,12 @@ class DeviceFeed final : public InputFeed {
   template <typename T>
   std::optional<T> fresh(const shm::Channel<T>& channel, const shm::SeqSlot<DeviceHealth>& health,
                          Timestamp now);
-  std::optional<TrackerSample> station(const shm::DevicesSegment& devices, int number,
-                                       Timestamp now);
-  void readPosture(const shm::DevicesSegment& devices, Timestamp now, WallInput& input);
+  std::optional<TrackerSample> station(const shm::DeviceSlots& devices, int number, Timestamp now);
+  void readPosture(const shm::DeviceSlots& devices, Timestamp now, WallInput& input);
   void moveCorner(Duration since_last, bool held, WallInput& input) const;
-  bool readActions(const shm::DevicesSegment& devices, Timestamp now, WallInput& input);
+  bool readActions(const shm::DeviceSlots& devices, Timestamp now, WallInput& input);
 
-  shm::SegmentFollower<shm::DevicesSegment> devices_;
+  shm::SegmentFollower<shm::DevicesReader> devices_;
   int hand_station_, head_station_;
   Duration stale_after_;
   Duration ahead_;

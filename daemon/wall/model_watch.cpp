@@ -9,8 +9,8 @@
 namespace merlin::wall {
 namespace {
 
-constexpr std::chrono::seconds kLook{1};
-constexpr int kLooksUntilGone = 3;
+constexpr std::chrono::seconds kCheckPeriod{1};
+constexpr int kChecksUntilGone = 3;
 
 }  // namespace
 
@@ -30,28 +30,88 @@ ModelWatch::ModelWatch(std::vector<Watched> files, Make make, ThreadWatch& watch
     : files_(std::move(files)), make_(std::move(make)), clock_(clock) {
   for (const Watched& file : files_) replaced_.emplace_back(file.shown);
   gone_.resize(files_.size());
-  thread_ =
-      WatchedThread(watch, "models", [this](const std::stop_token& s, Progress& p) { run(s, p); });
+  thread_ = WatchedThread(watch, "contents",
+                          [this](const std::stop_token& s, Progress& p) { run(s, p); });
 }
 
 void ModelWatch::run(const std::stop_token& stop, Progress& progress) {
   giveWay();
-  std::mutex mutex;
-  std::condition_variable_any stopped;
-  std::unique_lock lock(mutex);
   while (!stop.stop_requested()) {
+    readAsked(progress);
+    followOffered();
     for (std::size_t place = 0; place < files_.size(); ++place) lookAt(place, progress);
     progress.step();
-    stopped.wait_for(lock, stop, kLook, [] { return false; });
+    std::unique_lock lock(mutex_);
+    asked_changed_.wait_for(lock, stop, kCheckPeriod, [this] { return !asked_.empty(); });
+  }
+}
+
+void ModelWatch::ask(Read read, std::uint32_t request) {
+  const std::lock_guard lock(mutex_);
+  asked_.push_back({std::move(read), request});
+  asked_changed_.notify_one();
+}
+
+void ModelWatch::offer(ReadyModel ready) {
+  const std::lock_guard lock(mutex_);
+  offered_.emplace_back(ready.place,
+                        Watched{ready.path, ready.stamp, ready.picture ? "picture" : "model"});
+  // A content that is outdated before the wall took it is not shown.
+  std::erase_if(ready_, [&](const ReadyModel& r) { return r.place == ready.place; });
+  ready_.push_back(std::move(ready));
+}
+
+void ModelWatch::readAsked(Progress& progress) {
+  for (;;) {
+    Asked asked;
+    {
+      const std::lock_guard lock(mutex_);
+      if (asked_.empty()) return;
+      asked = std::move(asked_.front());
+      asked_.erase(asked_.begin());
+    }
+    const Progress::Pause pause(progress);
+    Result<ReadyModel> ready = Error{Errc::kIo, "there is not enough memory"};
+    try {
+      ready = asked.read();
+    } catch (const std::exception& e) {
+      ready = Error{Errc::kIo, e.what()};
+    }
+    if (ready) {
+      offer(*std::move(ready));
+      continue;
+    }
+    report(fmt::format("what was asked for cannot be shown: {}", ready.error().what));
+    ReadyModel nothing;
+    nothing.place = ~std::size_t{0};  // not to be taken for an outdated content of a place
+    nothing.request = asked.request;
+    nothing.refused = ready.error().what;
+    const std::lock_guard lock(mutex_);
+    ready_.push_back(std::move(nothing));
+  }
+}
+
+// From now on the files of what was offered are looked at.
+void ModelWatch::followOffered() {
+  std::vector<std::pair<std::size_t, Watched>> offered;
+  {
+    const std::lock_guard lock(mutex_);
+    offered = std::exchange(offered_, {});
+  }
+  for (auto& [place, file] : offered) {
+    replaced_[place] = ReplacedFile(file.shown);
+    gone_[place] = 0;
+    files_[place] = std::move(file);
   }
 }
 
 // A file that cannot be shown is tried again only after it has changed.
 void ModelWatch::lookAt(std::size_t place, Progress& progress) {
   const std::string& path = files_[place].path;
+  if (path.empty()) return;
   const Progress::Pause pause(progress);  // a file server may be slow, and a model large
   const auto found = fileStamp(path);
-  tellWhetherThere(place, found.has_value());
+  noteWhetherThere(place, found.has_value());
   if (!replaced_[place].look(found, clock_.now())) return;
   Result<ReadyModel> ready = Error{Errc::kIo, path + ": not enough memory"};
   try {
@@ -60,30 +120,32 @@ void ModelWatch::lookAt(std::size_t place, Progress& progress) {
     ready = Error{Errc::kIo, fmt::format("{}: {}", path, e.what())};
   }
   if (!ready) {
-    say(
-        fmt::format("the model's file was replaced by one that cannot be shown ({}); the model "
+    report(
+        fmt::format("the {0}'s file was replaced by one that cannot be shown ({1}); the {0} "
                     "that was read before stays",
-                    ready.error().what));
+                    files_[place].what, ready.error().what));
     return;
   }
+  ready->was_replaced = true;
   const std::lock_guard lock(mutex_);
   // A model that is outdated before the wall took it is freed here, not on the wall's thread.
   std::erase_if(ready_, [&](const ReadyModel& r) { return r.place == place; });
   ready_.push_back(*std::move(ready));
 }
 
-// To be called once per check. Reports a missing file only after kLooksUntilGone checks, since a
+// To be called once per check. Reports a missing file only after kChecksUntilGone checks, since a
 // file that is being replaced may be missing for a moment.
-void ModelWatch::tellWhetherThere(std::size_t place, bool there) {
-  const bool was_gone = gone_[place] >= kLooksUntilGone;
-  gone_[place] = there ? 0 : std::min(gone_[place] + 1, kLooksUntilGone);
-  const bool is_gone = gone_[place] >= kLooksUntilGone;
+void ModelWatch::noteWhetherThere(std::size_t place, bool there) {
+  const bool was_gone = gone_[place] >= kChecksUntilGone;
+  gone_[place] = there ? 0 : std::min(gone_[place] + 1, kChecksUntilGone);
+  const bool is_gone = gone_[place] >= kChecksUntilGone;
   if (is_gone == was_gone) return;
   const std::string& path = files_[place].path;
-  say(is_gone ? fmt::format("the model's file {} is gone or is no longer a regular file; the model "
-                            "read from it is still shown, and a restart would fail",
-                            path)
-              : fmt::format("the model's file {} is there again", path));
+  const std::string& what = files_[place].what;
+  report(is_gone ? fmt::format("the {0}'s file {1} is gone or is no longer a regular file; the {0} "
+                               "read from it is still shown, and a restart would fail",
+                               what, path)
+                 : fmt::format("the {}'s file {} is there again", what, path));
 }
 
 std::optional<ReadyModel> ModelWatch::take() {
@@ -94,7 +156,7 @@ std::optional<ReadyModel> ModelWatch::take() {
   return first;
 }
 
-void ModelWatch::say(std::string sentence) {
+void ModelWatch::report(std::string sentence) {
   const std::lock_guard lock(mutex_);
   events_.push_back(std::move(sentence));
 }

@@ -1,5 +1,6 @@
-// ModelWatch: notices that the file of a shown model was replaced, and reads and prepares the new
-// model on its own thread; the wall takes the model between two frames.
+// ModelWatch: notices that the file of a shown content was replaced, and reads and prepares the new
+// content on its own thread; the wall takes it between two frames. It also reads what somebody asks
+// for: the next slide, or a file that is not in the configuration.
 #pragma once
 
 #include <condition_variable>
@@ -8,13 +9,14 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/files.h"
 #include "daemon/base/watched_thread.h"
-#include "daemon/wall/wall_checks.h"
 #include "render/content/model_content.h"
+#include "render/content/picture/picture.h"
 
 namespace merlin::wall {
 
@@ -37,24 +39,36 @@ class ReplacedFile {
   Timestamp since_{};
 };
 
-// A model and its content, ready to be attached to the wall's drawing contexts.
+// A content that is ready to be shown: a model with its content, to be attached to the wall's
+// drawing contexts, or a picture.
 struct ReadyModel {
   std::size_t place = 0;
   std::string path;
   std::unique_ptr<const render::lod::Dendrogram> model;  // the content borrows it
   std::unique_ptr<render::content::Content> content;
+  std::shared_ptr<const render::content::Picture> picture{};  // instead of these two
+  std::string name{};
+  FileStamp stamp{};
+  bool is_slide = false, is_last_slide = false;
+  bool asked_for = false;     // to be shown now, from its start view
+  bool was_replaced = false;  // its file was replaced by another one
+  std::uint32_t request = 0;  // of WallRole::show(); 0: none
+  std::string refused{};      // why there is nothing to show; the rest is empty then
 };
 
-// take() is for the wall's thread; say() and takeEvents() are thread-safe.
+// take() is for the wall's thread; ask(), offer(), report() and takeEvents() are thread-safe.
 class ModelWatch {
  public:
   struct Watched {
-    std::string path;
+    std::string path;  // empty: none yet
     FileStamp shown;
+    std::string what = "model";  // what the file holds, for messages
   };
-  // Reads and prepares a model; called on the watch's own thread. Errors: why the file cannot be
-  // shown.
+  // Reads and prepares the file of a place again; called on the watch's own thread. Errors: why the
+  // file cannot be shown.
   using Make = std::function<Result<ReadyModel>(std::size_t place, const std::string& path)>;
+  // The same for what was asked for.
+  using Read = std::function<Result<ReadyModel>()>;
 
   // `files`: by place, i.e. the content's index. `watch` and `clock` must outlive this object.
   ModelWatch(std::vector<Watched> files, Make make, ThreadWatch& watch, const Clock& clock);
@@ -62,26 +76,40 @@ class ModelWatch {
   ModelWatch(const ModelWatch&) = delete;
   ModelWatch& operator=(const ModelWatch&) = delete;
 
-  // Returns a model that is ready, if there is one. Never waits for the watch's thread.
+  // Returns a content that is ready, if there is one. Never waits for the watch's thread.
   std::optional<ReadyModel> take();
+  // Calls `read` on the watch's thread; what it returns is ready then. An error becomes an event,
+  // and ready with the number of the request.
+  void ask(Read read, std::uint32_t request = 0);
+  // Adds a content that is ready.
+  void offer(ReadyModel ready);
   // Adds an event.
-  void say(std::string sentence);
+  void report(std::string sentence);
   // Returns the events since the last call, one sentence each.
   std::vector<std::string> takeEvents();
 
  private:
   void run(const std::stop_token& stop, Progress& progress);
   void lookAt(std::size_t place, Progress& progress);
-  void tellWhetherThere(std::size_t place, bool there);
+  void readAsked(Progress& progress);
+  void followOffered();
+  void noteWhetherThere(std::size_t place, bool there);
 
   std::vector<Watched> files_;
   std::vector<ReplacedFile> replaced_;
   std::vector<int> gone_;  // number of checks in a row that found no file, by place
   Make make_;
   const Clock& clock_;
-  std::mutex mutex_;  // protects the next two members
+  struct Asked {
+    Read read;
+    std::uint32_t request = 0;
+  };
+  std::mutex mutex_;  // protects all up to thread_
+  std::condition_variable_any asked_changed_;
   std::vector<ReadyModel> ready_;
   std::vector<std::string> events_;
+  std::vector<Asked> asked_;
+  std::vector<std::pair<std::size_t, Watched>> offered_;  // files to look at from now on, by place
   WatchedThread thread_;
 };
 

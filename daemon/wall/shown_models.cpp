@@ -1,57 +1,164 @@
 #include "daemon/wall/shown_models.h"
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
 
 namespace merlin::wall {
-namespace {
 
-Result<ReadyModel> prepare(std::size_t place, Model model, const WallSettings& settings) {
-  ReadyModel ready{place, std::move(model.path),
-                   std::make_unique<const render::lod::Dendrogram>(std::move(model.dendrogram)),
-                   nullptr};
-  auto content = render::content::ModelContent::make(*ready.model, settings.render.model,
-                                                     settings.scene.model_radius_m);
-  if (!content) return Error{content.error().code, ready.path + ": " + content.error().what};
-  ready.content = *std::move(content);
+using render::content::Picture;
+using render::content::PictureKind;
+
+Result<ReadyModel> prepareContent(std::size_t place, WallContent content,
+                                  const WallSettings& settings) {
+  ReadyModel ready{place, std::move(content.file), nullptr, nullptr};
+  ready.name = content.entry.name;
+  ready.stamp = content.stamp;
+  ready.is_slide = content.entry.kind == ContentKind::kSlides;
+  ready.is_last_slide = content.is_last_slide;
+  if (!content.isModel()) {
+    ready.picture = std::get<1>(std::move(content.data));
+    return ready;
+  }
+  ready.model =
+      std::make_unique<const render::lod::Dendrogram>(std::get<0>(std::move(content.data)));
+  auto made = render::content::ModelContent::make(*ready.model, settings.render.model,
+                                                  settings.scene.model_radius_m);
+  if (!made) return Error{made.error().code, ready.path + ": " + made.error().what};
+  ready.content = *std::move(made);
   return ready;
 }
 
-}  // namespace
-
-Result<std::unique_ptr<ShownModels>> ShownModels::make(
-    std::vector<Model> models, const render::tiles::TilePlan& plan, const WallSettings& settings,
-    ModelWatch& watch, const Eigen::Isometry3f& T_eye_model, const Clock& clock) {
-  std::unique_ptr<ShownModels> shown(new ShownModels(watch, plan, clock));
-  auto contexts = render::frame::DrawContexts::make(settings.render.gl);
+Result<std::unique_ptr<ShownModels>> ShownModels::make(std::vector<WallContent> contents,
+                                                       const Parts& parts,
+                                                       const Eigen::Isometry3f& T_eye_model) {
+  std::unique_ptr<ShownModels> shown(new ShownModels(parts));
+  auto contexts = render::frame::DrawContexts::make(parts.settings.render.gl);
   if (!contexts) return contexts.error();
   shown->contexts_ = *std::move(contexts);
-  for (Model& model : models) {
-    auto ready = prepare(shown->shown_.size(), std::move(model), settings);
+  if (const auto made = shown->makeViewer(T_eye_model); !made) return made.error();
+  for (WallContent& content : contents) {
+    ContentEntry entry = content.entry;
+    auto ready = prepareContent(shown->shown_.size(), std::move(content), parts.settings);
     if (!ready) return ready.error();
-    auto attached = shown->attach(*std::move(ready), T_eye_model);
-    if (!attached) return attached.error();
-    shown->shown_.push_back(*std::move(attached));
+    const auto added = shown->add(*std::move(ready), std::move(entry), T_eye_model);
+    if (!added) return added.error();
   }
+  shown->shown_.emplace_back().picture = render::content::noPicture();
+  shown->prepare(0);
   return shown;
 }
 
-Result<ShownModels::Shown> ShownModels::attach(ReadyModel ready,
-                                               const Eigen::Isometry3f& T_eye_model) const {
+// Made before the first frame even where no picture is configured: then a picture that somebody
+// shows needs no shader to be compiled, and its first frame is in time.
+Result<Ok> ShownModels::makeViewer(const Eigen::Isometry3f& T_eye_model) {
+  std::size_t wall_px = 0;
+  for (const render::tiles::Tile& tile : parts_.plan.tiles)
+    wall_px += static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+  const render::content::PictureMemory memory{
+      static_cast<std::size_t>(parts_.settings.render.picture_memory_mb) << 20,
+      contexts_->other ? std::size_t{2} : std::size_t{1}};
+  auto content = std::make_unique<render::content::PictureContent>(
+      render::content::noPicture(), parts_.tiles, parts_.settings.scene.model_radius_m, wall_px,
+      memory);
+  content->setBackground(parts_.settings.render.model.style.background);
+  pictures_ = content.get();
   auto renderer =
-      render::frame::FrameRenderer::make(std::move(ready.content), plan_, contexts_, clock_);
-  if (!renderer) return Error{renderer.error().code, ready.path + ": " + renderer.error().what};
-  (*renderer)->warmUp(T_eye_model);
-  return Shown{std::move(ready.model), *std::move(renderer)};
+      render::frame::FrameRenderer::make(std::move(content), parts_.plan, contexts_, parts_.clock);
+  if (!renderer) return Error{renderer.error().code, "pictures: " + renderer.error().what};
+  viewer_ = *std::move(renderer);
+  viewer_->warmUp(T_eye_model);
+  return Ok{};
 }
 
-ModelWatch::Make ShownModels::maker(const WallSettings& settings) {
+Result<Ok> ShownModels::add(ReadyModel ready, ContentEntry entry,
+                            const Eigen::Isometry3f& T_eye_model) {
+  Shown shown{std::move(entry), nullptr, nullptr, ready.picture, ready.path, ready.is_last_slide};
+  if (!ready.picture) {
+    auto renderer = attach(ready, T_eye_model);
+    if (!renderer) return renderer.error();
+    shown.renderer = *std::move(renderer);
+    shown.model = std::move(ready.model);
+  }
+  shown_.push_back(std::move(shown));
+  return Ok{};
+}
+
+Result<std::unique_ptr<render::frame::FrameRenderer>> ShownModels::attach(
+    ReadyModel& ready, const Eigen::Isometry3f& T_eye_model) const {
+  auto renderer = render::frame::FrameRenderer::make(std::move(ready.content), parts_.plan,
+                                                     contexts_, parts_.clock);
+  if (!renderer) return Error{renderer.error().code, ready.path + ": " + renderer.error().what};
+  (*renderer)->warmUp(T_eye_model);
+  return renderer;
+}
+
+ModelWatch::Make ShownModels::maker(const std::vector<ContentEntry>& entries,
+                                    const WallSettings& settings) {
   return [&](std::size_t place, const std::string& path) -> Result<ReadyModel> {
-    auto model = readModel(path, settings.render.model.show);
-    if (!model) return model.error();
-    return prepare(place, *std::move(model), settings);
+    ContentEntry entry;
+    if (place < entries.size()) {
+      entry = entries[place];
+    } else {
+      const auto named = contentOfFile(path);
+      if (!named) return named.error();
+      entry = *named;
+    }
+    // The one slide that was replaced.
+    const bool slide = entry.kind == ContentKind::kSlides;
+    if (slide) entry.kind = ContentKind::kPicture;
+    entry.path = path;
+    std::vector<std::string> skipped;
+    auto read = readContent(entry, settings.render.model.show, "", skipped);
+    if (!read) return read.error();
+    auto ready = prepareContent(place, *std::move(read), settings);
+    if (ready) ready->is_slide = slide;
+    return ready;
   };
+}
+
+// The distance at which a pixel of the picture is as large as eight of the wall.
+float ShownModels::nearestOf(const Picture& picture) const {
+  constexpr double kMostSize = 8;
+  const render::image::PyramidLevel& finest = picture.file->levels().front();
+  const render::scene::SceneSettings& scene = parts_.settings.scene;
+  const double pixel_m =
+      2 * scene.model_radius_m /
+      std::hypot(static_cast<double>(finest.width), static_cast<double>(finest.height));
+  double focal_px = 1;
+  for (const render::tiles::Tile& tile : parts_.plan.tiles) {
+    if (tile.followsWall())
+      focal_px = std::max(focal_px, double{tile.projection(0, 0)} * tile.width / 2);
+  }
+  const double nearest = pixel_m * focal_px / kMostSize / scene.model_distance_m;
+  return std::clamp(static_cast<float>(nearest), 1e-6F, render::content::kNearestPlane);
+}
+
+ShownContent ShownModels::contentAt(std::size_t place) const {
+  const Shown& shown = shown_[place];
+  if (!shown.picture) {
+    const render::content::Content& content = shown.renderer->content();
+    return {&content.detail(),
+            shown.renderer.get(),
+            content.navigation(),
+            render::content::kNearestPlane,
+            shown.entry.name,
+            "model",
+            {}};
+  }
+  const bool panorama = shown.picture->kind == PictureKind::kPanorama;
+  const bool slides = shown.entry.kind == ContentKind::kSlides;
+  using render::content::Navigation;
+  return {&pictures_->detail(),
+          viewer_.get(),
+          panorama ? Navigation::kPanorama : Navigation::kPlane,
+          nearestOf(*shown.picture),
+          shown.entry.name,
+          panorama ? "panorama" : "picture",
+          slides ? std::filesystem::path(shown.file).stem().string() : std::string()};
 }
 
 std::vector<ShownContent> ShownModels::contents() const {
@@ -60,30 +167,98 @@ std::vector<ShownContent> ShownModels::contents() const {
   return contents;
 }
 
+// The picture of another place takes the place of the one that the viewer has; one that it has
+// keeps its tiles.
+void ShownModels::prepare(std::size_t place) {
+  const Shown& shown = shown_[place];
+  if (!shown.picture) return;
+  viewed_ = place;
+  if (&pictures_->picture() != shown.picture.get()) pictures_->show(shown.picture);
+}
+
+// After the last slide the next content follows, and the first slide is made ready for later.
+bool ShownModels::nextWithin(std::size_t place) {
+  const Shown& shown = shown_[place];
+  if (shown.entry.kind != ContentKind::kSlides) return false;
+  const bool more = !shown.is_last_slide || (place < listed() && listed() == 1);
+  ModelWatch& watch = parts_.watch;
+  const WallSettings& settings = parts_.settings;
+  watch.ask([&watch, &settings, place, more, entry = shown.entry,
+             after = shown.file]() -> Result<ReadyModel> {
+    std::vector<std::string> skipped;
+    auto read = readContent(entry, settings.render.model.show, after, skipped);
+    for (const std::string& why : skipped) watch.report(why);
+    if (!read) return read.error();
+    auto ready = prepareContent(place, *std::move(read), settings);
+    if (ready) ready->asked_for = more;
+    return ready;
+  });
+  return more;
+}
+
+void ShownModels::takePicture(ReadyModel& ready) {
+  Shown& shown = shown_[ready.place];
+  shown.renderer.reset();
+  shown.model.reset();
+  shown.picture = std::move(ready.picture);
+  if (viewed_ == ready.place) pictures_->show(shown.picture);
+}
+
+Result<Ok> ShownModels::takeModel(ReadyModel& ready, const Eigen::Isometry3f& T_eye_model) {
+  auto renderer = attach(ready, T_eye_model);
+  if (!renderer) {
+    parts_.watch.report(fmt::format("a model cannot be shown ({}); what was shown before stays",
+                                    renderer.error().what));
+    return renderer.error();
+  }
+  Shown& shown = shown_[ready.place];
+  shown.picture.reset();
+  // The old renderer is destroyed before the model that it borrows.
+  shown.renderer = *std::move(renderer);
+  shown.model = std::move(ready.model);
+  return Ok{};
+}
+
+ContentSource::Replacement ShownModels::refusal(std::uint32_t request, std::string why) {
+  return {0, {}, false, request, std::move(why)};
+}
+
+// The last place has a name only once something is shown there.
+void ShownModels::noteFile(const ReadyModel& ready, ContentKind kind) {
+  Shown& shown = shown_[ready.place];
+  shown.file = ready.path;
+  shown.is_last_slide = ready.is_last_slide;
+  if (ready.place < listed()) return;
+  shown.entry.name = ready.name;
+  shown.entry.kind = ready.is_slide ? ContentKind::kSlides : kind;
+  shown.entry.path =
+      ready.is_slide ? std::filesystem::path(ready.path).parent_path().string() : ready.path;
+}
+
 std::optional<ContentSource::Replacement> ShownModels::take(bool moving,
                                                             const Eigen::Isometry3f& T_eye_model) {
-  const Timestamp now = clock_.now();
+  const Timestamp now = parts_.clock.now();
   if (!waiting_) {
-    waiting_ = watch_.take();
+    waiting_ = parts_.watch.take();
     waits_since_ = now;
   }
-  if (!waiting_ || (moving && now - waits_since_ < kPatience)) return std::nullopt;
+  if (!waiting_) return std::nullopt;
+  const bool model = waiting_->content != nullptr;
+  if (model && moving && now - waits_since_ < kPatience) return std::nullopt;
   ReadyModel ready = *std::exchange(waiting_, std::nullopt);
-  const std::size_t place = ready.place;
-  const std::string path = ready.path;
-  auto attached = attach(std::move(ready), T_eye_model);
-  if (!attached) {
-    watch_.say(
-        fmt::format("the model's file was replaced by one that cannot be shown ({}); the "
-                    "model that was read before stays",
-                    attached.error().what));
-    return std::nullopt;
+  if (!ready.refused.empty()) return refusal(ready.request, ready.refused);
+  if (model) {
+    const auto taken = takeModel(ready, T_eye_model);
+    if (!taken) return refusal(ready.request, taken.error().what);
+  } else {
+    takePicture(ready);
   }
-  watch_.say(fmt::format("model {} was replaced and is shown", path));
-  // The old renderer is destroyed before the model that it borrows.
-  shown_[place].renderer = std::move(attached->renderer);
-  shown_[place].model = std::move(attached->model);
-  return Replacement{place, contentAt(place)};
+  noteFile(ready, model ? ContentKind::kModel : ContentKind::kPicture);
+  if (ready.was_replaced) {
+    parts_.watch.report(
+        fmt::format("{} {} was replaced and is shown", model ? "model" : "picture", ready.path));
+  }
+  return Replacement{ready.place, contentAt(ready.place), ready.asked_for, ready.request, {}};
 }
 
 }  // namespace merlin::wall

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 #include "daemon/shm/segment.h"
 
 namespace merlin::wall {

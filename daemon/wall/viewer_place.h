@@ -14,11 +14,11 @@ namespace merlin::wall {
 // Thread-bound to the wall's thread.
 class ViewerPlace {
  public:
-  // `plan`: the tile plan used for drawing; must outlive this object. `say` is called with a
+  // `plan`: the tile plan used for drawing; must outlive this object. `report` is called with a
   // sentence for a person when the tracker station `station` begins or ceases to deliver the head's
   // pose.
   ViewerPlace(render::stereo::Head head, int station, render::tiles::TilePlan& plan,
-              std::function<void(std::string)> say);
+              std::function<void(std::string)> report);
 
   // To be called once a frame, while nothing is drawn: updates the plan's frusta. Returns true
   // while the head moves.
@@ -29,12 +29,12 @@ class ViewerPlace {
   static constexpr Duration kPatience = std::chrono::seconds(3);
 
  private:
-  void tell(bool tracked, Timestamp now);
+  void reportTracking(bool tracked, Timestamp now);
 
   render::stereo::Head head_;
   int station_;
   render::tiles::TilePlan& plan_;
-  std::function<void(std::string)> say_;
+  std::function<void(std::string)> report_;
   std::optional<Timestamp> began_;
   std::optional<bool> tracked_;  // last reported state; nullopt before the first report
   bool is_placed_ = true;        // the frusta fit the head's current position

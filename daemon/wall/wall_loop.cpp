@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace merlin::wall {
@@ -23,33 +24,33 @@ constexpr double kSameCost = 0.04;
 }  // namespace
 
 WallLoop::WallLoop(WallParts parts)
-    : p_(std::move(parts)),
-      turns_(p_.contents, p_.governor),
-      pace_(p_.governor),
-      still_(p_.governor, p_.fade_frames),
-      publisher_(p_.slots),
-      view_(p_.scene.view()),
-      lost_(p_.return_after_s) {
-  p_.scene.setNavigation(turns_.navigation());
-  turns_.requestNext(static_cast<std::uint32_t>(p_.first_content));
+    : parts_(std::move(parts)),
+      turns_(parts_.contents, parts_.governor, parts_.replacements, parts_.listed),
+      pace_(parts_.governor),
+      still_(parts_.governor, parts_.fade_frames),
+      publisher_(parts_.slots),
+      view_(parts_.scene.view()),
+      lost_(parts_.return_after_s) {
+  useNavigation();
+  turns_.request(parts_.first_content);
 }
 
 void WallLoop::calibrate() { turns_.calibrate(view_.T_eye_model); }
 
 void WallLoop::run(const std::stop_token& stop, const std::function<void()>& first_frame) {
-  p_.frame_clock.start(p_.clock.now(), pace_.period());
+  parts_.frame_clock.start(parts_.clock.now(), pace_.period());
   bool first = true;
-  for (std::int64_t k = 0; p_.frame_clock.waitFor(k, stop);) {
-    const Timestamp began = p_.clock.now();
+  for (std::int64_t k = 0; parts_.frame_clock.waitFor(k, stop);) {
+    const Timestamp began = parts_.clock.now();
     applyRequests();
     if (pace_.update()) {
-      p_.frame_clock.start(p_.frame_clock.begin(k), pace_.period());
+      parts_.frame_clock.start(parts_.frame_clock.begin(k), pace_.period());
       k = 0;
     }
     readInput(k, began);
     k = view_.moving ? movingFrame(k, began) : stillPeriod(k);
     publish();
-    if (p_.progress) p_.progress->step();
+    if (parts_.progress) parts_.progress->step();
     if (std::exchange(first, false)) first_frame();
     replaceContents();
   }
@@ -58,11 +59,26 @@ void WallLoop::run(const std::stop_token& stop, const std::function<void()>& fir
 void WallLoop::applyRequests() {
   const std::uint32_t requests = requests_.exchange(0);
   if (requests & kResetView) returnToInitialView();
-  if (requests & kNextMode) p_.scene.nextMode();
+  if (requests & kNextMode) parts_.scene.nextMode();
   if (requests & kNextContent) {
     turns_.requestNext(1);
-    p_.scene.reset();
+    parts_.scene.reset();
   }
+  if (const std::int64_t place = place_asked_.exchange(-1); place >= 0) {
+    turns_.request(static_cast<std::size_t>(place));
+    parts_.scene.reset();
+  }
+}
+
+void WallLoop::useNavigation() {
+  parts_.scene.setNavigation(turns_.navigation(), turns_.nearest());
+}
+
+void WallLoop::finishRequest(std::uint32_t number, std::string refused) {
+  const std::lock_guard lock(step_mutex_);
+  done_.finished = number;
+  std::fill(std::begin(done_.refused), std::end(done_.refused), '\0');
+  refused.copy(done_.refused, sizeof done_.refused - 1);
 }
 
 void WallLoop::move(const render::scene::Push& step) {
@@ -77,7 +93,7 @@ render::scene::Push WallLoop::takeStep() {
 }
 
 void WallLoop::returnToInitialView() {
-  p_.scene.reset();
+  parts_.scene.reset();
   turns_.expectInitialView();
 }
 
@@ -89,33 +105,42 @@ void WallLoop::showContent() {
 }
 
 void WallLoop::replaceContents() {
-  if (!p_.replacements) return;
-  const auto fresh = p_.replacements->take(view_.moving, view_.T_eye_model);
-  if (!fresh || !turns_.replace(*fresh)) return;
+  if (!parts_.replacements) return;
+  const auto fresh = parts_.replacements->take(view_.moving, view_.T_eye_model);
+  if (!fresh) return;
+  if (!fresh->refused.empty()) return finishRequest(fresh->request, fresh->refused);
+  const bool shown = turns_.replace(*fresh);
+  if (fresh->asked_for) {
+    turns_.request(fresh->place);
+    parts_.scene.reset();
+  }
+  if (fresh->request > 0) finishRequest(fresh->request, {});
+  if (!shown) return;
+  useNavigation();
   showContent();
   still_.restart();
 }
 
 void WallLoop::readInput(std::int64_t k, Timestamp began) {
-  WallInput input = p_.feed.read(began);
+  WallInput input = parts_.feed.read(began);
   input.scene.step = takeStep();
-  const Timestamp read = p_.clock.now();
+  const Timestamp read = parts_.clock.now();
   const bool was_moving = view_.moving;
   // The next content is shown after the scene's update, from its initial view.
   turns_.requestNext(input.next_content);
-  if (input.next_content > 0) p_.scene.reset();
-  for (std::uint32_t i = 0; i < input.snapshot; ++i) p_.on_snapshot();
+  if (input.next_content > 0) parts_.scene.reset();
+  for (std::uint32_t i = 0; i < input.snapshot; ++i) parts_.on_snapshot();
   snapshots_ += input.snapshot;
-  if (!input.align.isNothing()) p_.on_align(input.align);
-  view_ = p_.scene.update(input.scene, began);
-  if (p_.marker) p_.marker->pointAt(pointedAt());
+  if (!input.align.isNothing()) parts_.on_align(input.align);
+  view_ = parts_.scene.update(input.scene, began);
+  if (parts_.marker) parts_.marker->pointAt(pointedAt());
   if (turns_.showRequested()) {
-    p_.scene.setNavigation(turns_.navigation());
-    view_ = p_.scene.view();
+    useNavigation();
+    view_ = parts_.scene.view();
     showContent();
   }
   // Updated between frames, so that all tiles of a frame have the same viewer position.
-  if (p_.viewer && p_.viewer->update(input.head, began)) view_.moving = true;
+  if (parts_.viewer && parts_.viewer->update(input.head, began)) view_.moving = true;
   if (lost_.update(painter().sees(view_.T_eye_model), view_.moving, began)) {
     ++counted_.returned;
     returnToInitialView();  // takes effect in the next period
@@ -125,7 +150,7 @@ void WallLoop::readInput(std::int64_t k, Timestamp began) {
   if (!was_moving && view_.moving) resuming_ = true;
   tracer_.begin(began, deadline(k), view_.moving);
   tracer_.add(StepKind::kInput, began, read);
-  tracer_.add(StepKind::kScene, read, p_.clock.now());
+  tracer_.add(StepKind::kScene, read, parts_.clock.now());
 }
 
 std::optional<Eigen::Vector3f> WallLoop::pointedAt() const {
@@ -144,10 +169,10 @@ std::size_t WallLoop::chooseStep(std::int64_t k, Timestamp began) {
 // After a frame that ran over, less than a period is left, so there is time for less detail, or for
 // no frame. With a whole period, the last step is kept if it is nearly right.
 std::size_t WallLoop::stepFor(Duration available) {
-  const std::size_t budget = p_.governor.budgetFor(available);
+  const std::size_t budget = parts_.governor.budgetFor(available);
   if (budget == 0) return detail().steps();
-  if (budget != p_.governor.budget()) return detail().stepWithin(budget);
-  if (moving_step_ && !p_.governor.held()) {
+  if (budget != parts_.governor.budget()) return detail().stepWithin(budget);
+  if (moving_step_ && !parts_.governor.held()) {
     const auto had = static_cast<double>(detail().costOf(*moving_step_));
     if (std::abs(had / static_cast<double>(budget) - 1) < kSameCost) return *moving_step_;
   }
@@ -156,9 +181,9 @@ std::size_t WallLoop::stepFor(Duration available) {
 }
 
 std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
-  const Timestamp choosing = p_.clock.now();
+  const Timestamp choosing = parts_.clock.now();
   const std::size_t step = chooseStep(k, began);
-  tracer_.add(StepKind::kGovernor, choosing, p_.clock.now());
+  tracer_.add(StepKind::kGovernor, choosing, parts_.clock.now());
   if (step == detail().steps()) {
     stats_.deadline(deadline(k), true, false);
     if (pace_.observe(true, true)) turns_.setSizeDivisor(pace_.sizeDivisor());
@@ -167,11 +192,12 @@ std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
   step_ = step;
   still_.stop();
   const render::frame::DrawTimes times = painter().draw(
-      {view_.T_eye_model, step_, deadline(k) - kPresentMargin, p_.governor.exponent()});
+      {view_.T_eye_model, step_, deadline(k) - kPresentMargin, parts_.governor.exponent()});
   tracer_.add(painter().steps());
-  const Timestamp drawn = p_.clock.now();
-  present(painter().pixels(), step_ == 0, deadline(k));
-  const Timestamp finished = p_.clock.now();
+  const Timestamp drawn = parts_.clock.now();
+  const bool whole = step_ == 0 && painter().pending() == render::content::Pending::kNothing;
+  present(painter().pixels(), whole, deadline(k));
+  const Timestamp finished = parts_.clock.now();
   tracer_.add(StepKind::kPresent, drawn, finished);
   const bool met = finished <= deadline(k);
   const std::int64_t next = countDeadlines(k, finished);
@@ -184,7 +210,7 @@ std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
 // Counts all deadlines that a frame has passed: its own, and later ones if it ran over them too.
 // Returns the number of the next frame.
 std::int64_t WallLoop::countDeadlines(std::int64_t k, Timestamp finished) {
-  const std::int64_t reached = p_.frame_clock.frameAt(finished);
+  const std::int64_t reached = parts_.frame_clock.frameAt(finished);
   stats_.deadline(deadline(k), true, finished <= deadline(k));
   for (std::int64_t missed = k + 1; missed < reached; ++missed)
     stats_.deadline(deadline(missed), true, false);
@@ -193,11 +219,11 @@ std::int64_t WallLoop::countDeadlines(std::int64_t k, Timestamp finished) {
 
 void WallLoop::finishMoving(const render::frame::DrawTimes& times, Duration present, bool met) {
   const std::size_t cost = detail().costOf(step_);
-  const bool coarsest = cost <= p_.governor.least() || step_ + 1 == detail().steps();
+  const bool coarsest = cost <= parts_.governor.least() || step_ + 1 == detail().steps();
   // times.drawing is that of a frame whose operator's view is as fine as the wall: see DrawTimes.
   const Duration fixed = times.fixed + present;
-  if (!resuming_ || !met) p_.governor.observe({cost, fixed, fixed + times.drawing, !met});
-  if (pace_.observe(!met, coarsest && !p_.governor.held()))
+  if (!resuming_ || !met) parts_.governor.observe({cost, fixed, fixed + times.drawing, !met});
+  if (pace_.observe(!met, coarsest && !parts_.governor.held()))
     turns_.setSizeDivisor(pace_.sizeDivisor());
   pace_.observeOperator(times.gave_way);
   if (!std::exchange(resuming_, false)) return;
@@ -208,22 +234,30 @@ void WallLoop::finishMoving(const render::frame::DrawTimes& times, Duration pres
 std::int64_t WallLoop::stillPeriod(std::int64_t k) {
   if (still_.isFading())
     showFading();
-  else if (p_.delivery.hasChanged(p_.clock.now()))
+  else if (parts_.delivery.hasChanged(parts_.clock.now()))
     present(painter().pixels(), full_detail_);
-  if (!full_detail_ && !(step_ == 0 && still_.isFading())) refine(k);
+  if (needsRefining()) refine(k);
   // The frame shown is still valid, so every deadline that has passed counts as met.
-  const std::int64_t reached = p_.frame_clock.frameAt(p_.clock.now());
+  const std::int64_t reached = parts_.frame_clock.frameAt(parts_.clock.now());
   for (std::int64_t passed = k; passed < std::max(k + 1, reached); ++passed)
     stats_.deadline(deadline(passed), false, true);
   return std::max(k + 1, reached);
 }
 
+// Where all that is left is still being loaded, there is nothing to draw until some of it has come.
+bool WallLoop::needsRefining() const {
+  if (full_detail_ || (step_ == 0 && still_.isFading())) return false;
+  const bool waits = step_ == 0 && !still_.isRefining() &&
+                     painter().pending() == render::content::Pending::kLoading;
+  return !waits;
+}
+
 void WallLoop::refine(std::int64_t k) {
-  const Timestamp from = p_.clock.now();
+  const Timestamp from = parts_.clock.now();
   const auto finer = still_.refine(turns_, view_.T_eye_model, step_, pace_.sizeDivisor(),
                                    deadline(k) - kRefineMargin);
   const auto steps = painter().steps();
-  if (steps.empty()) tracer_.add(StepKind::kRefine, from, p_.clock.now());
+  if (steps.empty()) tracer_.add(StepKind::kRefine, from, parts_.clock.now());
   tracer_.add(steps);
   if (!finer) return;
   step_ = *finer;
@@ -232,11 +266,12 @@ void WallLoop::refine(std::int64_t k) {
 
 // Full detail counts as shown when the last frame of the fade to it is shown.
 void WallLoop::showFading() {
-  const Timestamp drawn = p_.clock.now();
+  const Timestamp drawn = parts_.clock.now();
   const auto pixels = still_.nextFading(painter().pixels());
-  const bool full_detail = step_ == 0 && !still_.isFading();
+  const bool full_detail =
+      step_ == 0 && !still_.isFading() && painter().pending() == render::content::Pending::kNothing;
   present(pixels, full_detail);
-  const Timestamp now = p_.clock.now();
+  const Timestamp now = parts_.clock.now();
   tracer_.add(StepKind::kPresent, drawn, now);
   const StillFrame::Times times = still_.shown(now, full_detail);
   if (times.to_first_s) counted_.still_to_first_s = *times.to_first_s;
@@ -247,20 +282,25 @@ void WallLoop::present(std::span<std::uint8_t> canvas, bool full_detail,
                        std::optional<Timestamp> deadline) {
   full_detail_ = full_detail;
   const auto cost = static_cast<std::uint32_t>(detail().costOf(step_));
-  p_.delivery.show(canvas, {++frames_, p_.clock.now(), cost, full_detail}, deadline);
+  parts_.delivery.show(canvas, {++frames_, parts_.clock.now(), cost, full_detail}, deadline);
 }
 
 void WallLoop::publish() {
-  const Timestamp now = p_.clock.now();
+  const Timestamp now = parts_.clock.now();
   tracer_.end(now, static_cast<std::uint32_t>(detail().costOf(step_)));
   publisher_.trace(tracer_);
   stats_.advance(now);
   counted_.frames = frames_;
   counted_.full_detail = full_detail_;
-  counted_.input_age_ms = static_cast<float>(1000 * toSeconds(p_.feed.age()));
-  publisher_.stats(counted_, {turns_, pace_, p_.governor, stats_, view_, step_}, now);
-  publisher_.interaction(view_, p_.marker, snapshots_, turns_.index(), now);
-  publisher_.outputs(p_.delivery.outputs(), now);
+  counted_.input_age_ms = static_cast<float>(1000 * toSeconds(parts_.feed.age()));
+  publisher_.stats(counted_, {turns_, pace_, parts_.governor, stats_, view_, step_}, now);
+  publisher_.interaction(view_, parts_.marker, snapshots_, turns_.index() + parts_.first_number,
+                         now);
+  {
+    const std::lock_guard lock(step_mutex_);
+    publisher_.content(turns_.content(), done_, now);
+  }
+  publisher_.outputs(parts_.delivery.outputs(), now);
 }
 
 }  // namespace merlin::wall

@@ -12,6 +12,7 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "daemon/base/clock.h"
@@ -54,6 +55,9 @@ struct WallParts {
   // Called when a bound input requests an alignment action.
   std::function<void(const AlignInput&)> on_align = [](const AlignInput&) {};
   std::size_t first_content = 0;  // index of the content that is shown first
+  std::size_t listed = 0;         // contents that come by turns; 0: all
+  // Added to a content's index to get its number in shared memory.
+  std::uint32_t first_number = 0;
 };
 
 // Thread-bound, except request(), move(), hold() and setRate().
@@ -73,6 +77,12 @@ class WallLoop {
   enum Request : std::uint32_t { kResetView = 1, kNextMode = 2, kNextContent = 4 };
   void request(Request what) noexcept { requests_.fetch_or(what); }
 
+  // Thread-safe: shows the content of a place, before the next frame. Nothing happens if there is
+  // none.
+  void show(std::size_t place) noexcept { place_asked_.store(static_cast<std::int64_t>(place)); }
+  // Thread-safe: request `number` is done: shown, or refused for this reason.
+  void finishRequest(std::uint32_t number, std::string refused);
+
   // Thread-safe: moves what the ball moves, in the next frame; several of a frame add up.
   void move(const render::scene::Push& step);
 
@@ -81,7 +91,7 @@ class WallLoop {
   void setRate(std::optional<double> rate_hz) noexcept { pace_.setRate(rate_hz); }
 
  private:
-  Timestamp deadline(std::int64_t k) const { return p_.frame_clock.deadline(k); }
+  Timestamp deadline(std::int64_t k) const { return parts_.frame_clock.deadline(k); }
   const render::content::DetailAxis& detail() const noexcept { return turns_.detail(); }
   render::frame::FramePainter& painter() const noexcept { return turns_.painter(); }
 
@@ -104,11 +114,13 @@ class WallLoop {
                std::optional<Timestamp> deadline = std::nullopt);
   void returnToInitialView();
   void showContent();
+  void useNavigation();
+  bool needsRefining() const;
   void replaceContents();
   std::optional<Eigen::Vector3f> pointedAt() const;
   void publish();
 
-  WallParts p_;
+  WallParts parts_;
   ContentTurns turns_;
   Pace pace_;
   StillFrame still_;
@@ -126,8 +138,11 @@ class WallLoop {
   std::uint32_t snapshots_ = 0;  // requested by bound inputs, since the start
   shm::WallStats counted_{};     // only the fields that the loop itself counts
   std::atomic<std::uint32_t> requests_{0};
+  std::atomic<std::int64_t> place_asked_{-1};  // -1: none
   std::mutex step_mutex_;
-  render::scene::Push step_asked_;  // by move() since the last frame; guarded by step_mutex_
+  // Guarded by step_mutex_: by move() since the last frame; the last request that is done.
+  render::scene::Push step_asked_;
+  shm::WallContent done_{};
 };
 
 }  // namespace merlin::wall

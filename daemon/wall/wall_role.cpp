@@ -1,12 +1,17 @@
 #include "daemon/wall/wall_role.h"
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "config/drawn_wall.h"
+#include "daemon/base/log.h"
+#include "daemon/base/printable_text.h"
 #include "daemon/shm/fields.h"
 #include "render/correct/io/mpcdi.h"
 #include "render/correct/output_correction.h"
@@ -19,12 +24,20 @@
 namespace merlin::wall {
 namespace {
 
-// The models' files with their stamps at the time of reading, so that a file replaced since then is
-// noticed.
-std::vector<ModelWatch::Watched> filesOf(const std::vector<Model>& models) {
+// The contents' files with their stamps at the time of reading, so that a file replaced since then
+// is noticed. There is one more place, for a file that is not in the configuration.
+std::vector<ModelWatch::Watched> filesOf(const std::vector<WallContent>& contents) {
   std::vector<ModelWatch::Watched> files;
-  for (const Model& model : models) files.push_back({model.path, model.stamp});
+  for (const WallContent& content : contents)
+    files.push_back({content.file, content.stamp, content.isModel() ? "model" : "picture"});
+  files.push_back({});
   return files;
+}
+
+std::vector<ContentEntry> entriesOf(const std::vector<WallContent>& contents) {
+  std::vector<ContentEntry> entries;
+  for (const WallContent& content : contents) entries.push_back(content.entry);
+  return entries;
 }
 
 // Maps the names of a room's tiles to the names of their panels.
@@ -38,9 +51,10 @@ std::map<std::string, std::string> panelsOf(const WallSettings& wall) {
 }
 
 // Returns an output that can be aligned; its `make` builds corrections, which are applied on the
-// wall's thread by the threads of `team`. Errors: those of readMeasured().
+// wall's thread, by `pass` or by the threads of `team`. Errors: those of readMeasured().
 Result<AlignedOutput> alignedOutput(const render::out::OutputSettings& output,
-                                    const render::out::PictureSize& size, ThreadTeam& team) {
+                                    const render::out::PictureSize& size, ThreadTeam& team,
+                                    render::correct::CorrectionPass& pass) {
   const render::correct::CorrectionSettings& settings = output.correction;
   std::shared_ptr<render::correct::MeasuredCorrection> measured;  // used by `make` and its copies
   if (!settings.mpcdi.empty()) {
@@ -48,12 +62,13 @@ Result<AlignedOutput> alignedOutput(const render::out::OutputSettings& output,
     if (!read) return read.error();
     measured = std::make_shared<render::correct::MeasuredCorrection>(*std::move(read));
   }
-  const auto make = [size, measured, &team](const render::correct::CorrectionSettings& wanted) {
+  const auto make = [size, measured, &team,
+                     &pass](const render::correct::CorrectionSettings& wanted) {
     auto map = render::correct::makeCorrectionMap(wanted, size.width, size.height, measured.get(),
                                                   Threads(threadsOr(0)));
     return std::unique_ptr<render::frame::Correction>(
         std::make_unique<render::correct::OutputCorrection>(std::move(map),
-                                                            Threads(threadsOr(0), team)));
+                                                            Threads(threadsOr(0), team), &pass));
   };
   return AlignedOutput{output.shownName(), size.width, size.height, settings, make};
 }
@@ -61,7 +76,7 @@ Result<AlignedOutput> alignedOutput(const render::out::OutputSettings& output,
 }  // namespace
 
 Result<std::unique_ptr<WallRole>> WallRole::make(
-    const Settings& configured, std::vector<Model> models, std::uint64_t generation,
+    const Settings& configured, std::vector<WallContent> contents, std::uint64_t generation,
     const shm::Endpoints& endpoints, state::StateKeeper& keeper, ThreadWatch& watch, Clock& clock) {
   Settings settings = configured;
   settings.wall = drawnWall(configured.wall);
@@ -73,7 +88,7 @@ Result<std::unique_ptr<WallRole>> WallRole::make(
   if (!plan) return Error{plan.error().code, "/wall/tiles: " + plan.error().what};
   auto scene = render::scene::Scene::make(settings.wall.scene);
   if (!scene) return Error{scene.error().code, "/wall/scene: " + scene.error().what};
-  std::unique_ptr<WallRole> role(new WallRole(settings, std::move(models), *std::move(plan),
+  std::unique_ptr<WallRole> role(new WallRole(settings, std::move(contents), *std::move(plan),
                                               *std::move(scene), *std::move(segment), keeper, watch,
                                               clock));
   if (const auto made = role->makeOutputs(generation); !made) return made.error();
@@ -106,12 +121,13 @@ Result<Ok> WallRole::makeOutputs(std::uint64_t generation) {
   return Ok{};
 }
 
-WallRole::WallRole(const Settings& settings, std::vector<Model> models,
+WallRole::WallRole(const Settings& settings, std::vector<WallContent> contents,
                    render::tiles::TilePlan plan, render::scene::Scene scene,
                    shm::SegmentWriter<shm::WallSegment> segment, state::StateKeeper& keeper,
                    ThreadWatch& watch, Clock& clock)
     : settings_(settings),
-      models_(std::move(models)),
+      contents_(std::move(contents)),
+      entries_(entriesOf(contents_)),
       plan_(std::move(plan)),
       scene_(std::move(scene)),
       governor_(settings.wall.governor),
@@ -122,7 +138,9 @@ WallRole::WallRole(const Settings& settings, std::vector<Model> models,
       graphics_cards_(watch, clock),
       cards_(plan_.frame_width, plan_.frame_height,
              render::testcard::cardTiles(plan_, settings.wall.outputs, panelsOf(settings.wall))),
-      model_watch_(filesOf(models_), ShownModels::maker(settings_.wall), watch_, clock_) {}
+      model_watch_(filesOf(contents_), ShownModels::maker(entries_, settings_.wall), watch_,
+                   clock_),
+      tiles_(watch_) {}
 
 // Outputs of kind shared_memory receive the frame without correction; all others can be aligned.
 Result<Ok> WallRole::makeCorrections() {
@@ -135,8 +153,8 @@ Result<Ok> WallRole::makeCorrections() {
       corrections_.push_back(nullptr);
       continue;
     }
-    auto made =
-        alignedOutput(output, *render::out::pictureSize(output, settings_.wall.tiles), team_);
+    auto made = alignedOutput(output, *render::out::pictureSize(output, settings_.wall.tiles),
+                              team_, shader_pass_);
     if (!made)
       return Error{made.error().code,
                    fmt::format("/wall/outputs/{}/correction: {}", i, made.error().what)};
@@ -168,32 +186,34 @@ void WallRole::makeSignals(std::uint64_t generation) {
       std::make_unique<SignalTaps>(settings_.instance, std::move(outputs), generation, clock_);
 }
 
-const std::string& WallRole::pathOf(std::size_t content) const {
-  return content == 0 ? settings_.wall.model : settings_.wall.contents[content - 1].model;
+// In shared memory 0 is the model and 1 the first of the contents, whether there is a model or not.
+std::uint32_t WallRole::firstNumber() const noexcept {
+  return entries_.front().pointer == "/wall/model" ? 0 : 1;
 }
 
 // Returns the index of the content that was shown last, if the configuration still has it, else 0.
 std::size_t WallRole::firstContent() {
   const std::string path = keeper_.state().content;
   if (path.empty()) return 0;
-  for (std::size_t i = 0; i <= settings_.wall.contents.size(); ++i) {
-    if (pathOf(i) == path) return i;
-  }
-  keeper_.addNotice(
-      fmt::format("model {}, which was shown last, is not in the configuration any more: the first "
-                  "one is shown",
-                  path));
+  const auto found = std::ranges::find(entries_, path, &ContentEntry::path);
+  if (found != entries_.end()) return static_cast<std::size_t>(found - entries_.begin());
+  keeper_.addNotice(fmt::format(
+      "content {}, which was shown last, is not in the configuration any more: the first "
+      "one is shown",
+      path));
   return 0;
 }
 
 // The state stores an empty path for the first content, so that the configuration decides which
-// model it is.
+// one it is. A file that is not in the configuration is not stored.
 void WallRole::tend(Timestamp now) {
   signals_->tend(now);
   const auto shown = segment_->interaction.read();
   if (!shown || kept_content_ == shown->content) return;
   kept_content_ = shown->content;
-  const std::string path = shown->content == 0 ? std::string() : pathOf(shown->content);
+  const std::size_t index = shown->content - firstNumber();
+  if (index >= entries_.size()) return;
+  const std::string path = index == 0 ? std::string() : entries_[index].path;
   if (keeper_.state().content != path) keeper_.change([&](state::State& s) { s.content = path; });
 }
 
@@ -212,13 +232,15 @@ std::future<Result<std::string>> WallRole::start() {
 }
 
 void WallRole::run(const std::stop_token& stop, Progress& progress) {
-  auto made = ShownModels::make(std::move(models_), plan_, settings_.wall, model_watch_,
-                                scene_.view().T_eye_model, clock_);
+  auto made =
+      ShownModels::make(std::move(contents_), {plan_, settings_.wall, model_watch_, tiles_, clock_},
+                        scene_.view().T_eye_model);
   if (!made) {
     ready_.set_value(made.error());
     return;
   }
   ShownModels& models = **made;
+  beginCorrecting(models.contexts());
   DeviceFeed feed(shm::segmentName(settings_.instance, "devices"), settings_.devices.hand.station,
                   fromSeconds(settings_.devices.stale_after_s),
                   fromSeconds(1 / settings_.wall.governor.rate_hz),
@@ -228,17 +250,44 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
                     std::move(corrections_), signals_.get());
   std::optional<ViewerPlace> viewer = makeViewerPlace();
   render::out::VblankFrameClock frame_clock(clock_, [this] { return outputs_.vblank(); });
-  WallLoop loop(
-      {models.contents(), scene_, governor_, feed, *delivery_,
-       WallSlots{segment_->stats, &segment_->trace, &segment_->interaction, &segment_->outputs},
-       clock_, frame_clock, &marker, settings_.wall.render.fade_frames,
-       settings_.wall.scene.return_after_s, &progress, &models, viewer ? &*viewer : nullptr,
-       on_snapshot_, [this](const AlignInput& input) { aligner_->ask(input); }, firstContent()});
+  WallLoop loop({models.contents(), scene_, governor_, feed, *delivery_,
+                 WallSlots{segment_->stats, &segment_->trace, &segment_->interaction,
+                           &segment_->outputs, &segment_->content},
+                 clock_, frame_clock, &marker, settings_.wall.render.fade_frames,
+                 settings_.wall.scene.return_after_s, &progress, &models,
+                 viewer ? &*viewer : nullptr, on_snapshot_,
+                 [this](const AlignInput& input) { aligner_->ask(input); }, firstContent(),
+                 models.listed(), firstNumber()});
   loop.setRate(keeper_.state().rate_hz);
   loop.calibrate();
   loop_.store(&loop);
   loop.run(stop, [&] { ready_.set_value(models.contexts().renderer()); });
   loop_.store(nullptr);
+  shader_pass_.end();
+}
+
+// Decides where corrections are computed. What a shader cannot do, the CPU does.
+void WallRole::beginCorrecting(const render::frame::DrawContexts& contexts) {
+  using Place = render::frame::CorrectionPlace;
+  RendererReport report{contexts.own->info(), contexts.other ? 2 : 1, contexts.asynchronous};
+  const Place place = settings_.wall.render.correction;
+  if (place == Place::kGpu || (place == Place::kAuto && !report.info.software)) {
+    const auto begun = shader_pass_.begin(*contexts.own);
+    report.corrects = begun.ok();
+    if (!begun) {
+      report.correction_fault = begun.error().what;
+      logWarning("corrections are computed on the CPU: {}", begun.error().what);
+    }
+  }
+  const std::lock_guard lock(renderer_mutex_);
+  renderer_ = std::move(report);
+}
+
+std::optional<RendererReport> WallRole::renderer() const {
+  const std::lock_guard lock(renderer_mutex_);
+  std::optional<RendererReport> report = renderer_;
+  if (report && report->corrects) report->correction_fault = shader_pass_.fault();
+  return report;
 }
 
 // Returns nullopt if the head is not tracked.
@@ -269,6 +318,62 @@ Result<std::string> WallRole::mend() {
 
 void WallRole::request(WallLoop::Request what) {
   if (WallLoop* loop = loop_.load()) loop->request(what);
+}
+
+Result<std::uint32_t> WallRole::show(const std::string& what) {
+  WallLoop* const loop = loop_.load();
+  if (!loop) return Error{Errc::kBusy, "the wall has not shown its first frame yet"};
+  const std::uint32_t number = ++show_requests_;
+  const auto named = std::ranges::find(entries_, what, &ContentEntry::name);
+  if (named != entries_.end()) {
+    loop->show(static_cast<std::size_t>(named - entries_.begin()));
+    loop->finishRequest(number, {});
+    return number;
+  }
+  if (!what.starts_with("/") || !isText(what)) {
+    std::vector<std::string> names;
+    for (const ContentEntry& entry : entries_) names.push_back(entry.name);
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("\"{}\" is not the name of a content; contents are {}; a file needs "
+                             "its whole path",
+                             excerpt(what), fmt::join(names, ", "))};
+  }
+  const auto entry = contentOfFile(what);
+  if (!entry) return entry.error();
+  if (const auto shown = showFile(*entry, number); !shown) return shown.error();
+  return number;
+}
+
+// A model is read on the watch's thread, since that may take long.
+Result<Ok> WallRole::showFile(const ContentEntry& entry, std::uint32_t request) {
+  const auto read = [this, entry, request]() -> Result<ReadyModel> {
+    std::vector<std::string> skipped;
+    auto content = readContent(entry, settings_.wall.render.model.show, "", skipped);
+    for (const std::string& why : skipped) model_watch_.report(why);
+    if (!content) return content.error();
+    auto ready = prepareContent(entries_.size(), *std::move(content), settings_.wall);
+    if (!ready) return ready.error();
+    ready->asked_for = true;
+    ready->request = request;
+    return ready;
+  };
+  if (entry.kind == ContentKind::kModel) {
+    if (!fileStamp(entry.path))
+      return Error{Errc::kNotFound, entry.path + ": is not there, or may not be read by merlind"};
+    model_watch_.ask(read, request);
+    return Ok{};
+  }
+  auto ready = read();
+  if (!ready) return ready.error();
+  model_watch_.offer(*std::move(ready));
+  return Ok{};
+}
+
+std::vector<std::string> WallRole::contentEvents() {
+  std::vector<std::string> events = model_watch_.takeEvents();
+  std::vector<std::string> unreadable = tiles_.takeFaults();
+  std::ranges::move(unreadable, std::back_inserter(events));
+  return events;
 }
 
 void WallRole::move(const Eigen::Vector3f& way_radii, const Eigen::Vector3f& turn_deg) {

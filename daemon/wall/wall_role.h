@@ -21,6 +21,7 @@
 #include "daemon/wall/signal_taps.h"
 #include "daemon/wall/wall_checks.h"
 #include "daemon/wall/wall_loop.h"
+#include "render/correct/gpu/shader_pass.h"
 #include "render/frame/correction.h"
 #include "render/out/kms_output.h"
 #include "render/out/output_kinds.h"
@@ -29,13 +30,23 @@
 
 namespace merlin::wall {
 
+// Who draws the wall, for the status.
+struct RendererReport {
+  render::gl::RendererInfo info{};
+  int contexts = 1;
+  bool asynchronous = false;       // how pixels are read back
+  bool corrects = false;           // corrections are computed there, not on the CPU
+  std::string correction_fault{};  // why not, or not all of them, although set; empty: no fault
+};
+
 class WallRole {
  public:
-  // Creates the shared-memory segments; the wall's thread does not run yet. `models`: from
-  // readModels(), at least one. `keeper`: the state that people change at run time; it, `watch` and
-  // `clock` must outlive this object. Errors: kBusy (a running daemon owns the segments), kIo, and
-  // errors in the wall's settings.
-  static Result<std::unique_ptr<WallRole>> make(const Settings& settings, std::vector<Model> models,
+  // Creates the shared-memory segments; the wall's thread does not run yet. `contents`: from
+  // readContents(), at least one. `keeper`: the state that people change at run time; it, `watch`
+  // and `clock` must outlive this object. Errors: kBusy (a running daemon owns the segments), kIo,
+  // and errors in the wall's settings.
+  static Result<std::unique_ptr<WallRole>> make(const Settings& settings,
+                                                std::vector<WallContent> contents,
                                                 std::uint64_t generation,
                                                 const shm::Endpoints& endpoints,
                                                 state::StateKeeper& keeper, ThreadWatch& watch,
@@ -47,6 +58,9 @@ class WallRole {
   // Starts the wall's thread. The future is set once: after the first frame to the name of the
   // OpenGL renderer ("EGL, llvmpipe ..."), or to the error if drawing cannot start.
   std::future<Result<std::string>> start();
+
+  // Returns nothing before the renderer is chosen, on the wall's thread. Thread-safe.
+  std::optional<RendererReport> renderer() const;
 
   // Sets the function called on the wall's thread when a bound input requests a snapshot. To be
   // called before start().
@@ -72,29 +86,40 @@ class WallRole {
   // Returns the events of the viewer's tracked head since the last call. Thread-safe.
   std::vector<std::string> viewerEvents();
 
-  // Returns the events of replaced model files since the last call. Thread-safe.
-  std::vector<std::string> modelEvents() { return model_watch_.takeEvents(); }
+  // Shows the content of that name, or a file that is not in the configuration, by its whole path.
+  // Returns the number of the request: when it is done, shm::WallContent::finished is that number.
+  // Errors, for whoever asks: kInvalidArgument (no such name), those of readContent(); a model's
+  // file is read later, so that its errors come with `finished`. Reads a picture's coarsest level,
+  // a few milliseconds. Thread-safe.
+  Result<std::uint32_t> show(const std::string& what);
 
-  void beat(Timestamp now) const { segment_.beat(now); }
-  // To be called once a second on the thread that calls beat(): restores the wall's segment and the
-  // outputs' shared memory by SharedMemory::mend().
+  // Returns the events of replaced, unreadable and missing files since the last call. Thread-safe.
+  std::vector<std::string> contentEvents();
+
+  void writeHeartbeat(Timestamp now) const { segment_.writeHeartbeat(now); }
+  // To be called once a second on the thread that calls writeHeartbeat(): restores the wall's
+  // segment and the outputs' shared memory by SharedMemory::mend().
   Result<std::string> mend();
   const shm::WallSegment& segment() const { return *segment_; }
 
  private:
-  WallRole(const Settings& settings, std::vector<Model> models, render::tiles::TilePlan plan,
-           render::scene::Scene scene, shm::SegmentWriter<shm::WallSegment> segment,
-           state::StateKeeper& keeper, ThreadWatch& watch, Clock& clock);
+  WallRole(const Settings& settings, std::vector<WallContent> contents,
+           render::tiles::TilePlan plan, render::scene::Scene scene,
+           shm::SegmentWriter<shm::WallSegment> segment, state::StateKeeper& keeper,
+           ThreadWatch& watch, Clock& clock);
   Result<Ok> makeOutputs(std::uint64_t generation);
   Result<Ok> makeCorrections();
   void makeSignals(std::uint64_t generation);
-  const std::string& pathOf(std::size_t content) const;
+  std::uint32_t firstNumber() const noexcept;
+  Result<Ok> showFile(const ContentEntry& entry, std::uint32_t request);
   std::size_t firstContent();
   void run(const std::stop_token& stop, Progress& progress);
+  void beginCorrecting(const render::frame::DrawContexts& contexts);
   std::optional<ViewerPlace> makeViewerPlace();
 
   Settings settings_;  // `wall` is drawnWall() of the configured one
-  std::vector<Model> models_;
+  std::vector<WallContent> contents_;
+  const std::vector<ContentEntry> entries_;  // of contents_
   render::tiles::TilePlan plan_;
   render::scene::Scene scene_;
   render::governor::Governor governor_;
@@ -105,6 +130,9 @@ class WallRole {
   render::out::kms::Cards graphics_cards_;  // their displays, shared by the outputs on them
   render::out::OutputSet outputs_{{}};
   ThreadTeam team_;  // threads for the corrections; used on the wall's thread
+  render::correct::ShaderPass shader_pass_;  // of the corrections, where a GPU computes them
+  mutable std::mutex renderer_mutex_;
+  std::optional<RendererReport> renderer_;
   // By output number; null if the output is sent the frame itself.
   std::vector<std::unique_ptr<render::frame::Correction>> corrections_;
   std::unique_ptr<SignalTaps> signals_;
@@ -118,7 +146,10 @@ class WallRole {
   std::vector<std::string> viewer_events_;
   std::promise<Result<std::string>> ready_;
   std::atomic<WallLoop*> loop_{nullptr};
-  ModelWatch model_watch_;  // declared before thread_, which uses it
+  std::atomic<std::uint32_t> show_requests_{0};
+  // Declared before thread_, which uses both.
+  ModelWatch model_watch_;
+  render::content::TileLoader tiles_;
   WatchedThread thread_;
 };
 

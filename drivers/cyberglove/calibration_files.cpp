@@ -47,7 +47,7 @@ std::optional<std::vector<float>> numbersOf(std::string_view text, std::string_v
   }
 }
 
-Error wrong(const std::string& where, const std::string& what) {
+Error errorAt(const std::string& where, const std::string& what) {
   return {Errc::kMalformed, fmt::format("{} {}", where, what)};
 }
 
@@ -55,7 +55,7 @@ Error wrong(const std::string& where, const std::string& what) {
 Result<Ok> fit(ImportedCalibration& c, std::size_t slot, const GloveSpan& span,
                const std::string& where) {
   if (span.raw_a == span.raw_b)
-    return wrong(where, fmt::format("has two points with the same raw value, {}", span.raw_a));
+    return errorAt(where, fmt::format("has two points with the same raw value, {}", span.raw_a));
   c.given[slot] = true;
   c.gain[slot] = span.gain();
   c.offset[slot] = span.gain() == 0 ? span.raw_a : span.offset();
@@ -95,7 +95,8 @@ Result<ImportedCalibration> readAsr(const std::vector<Line>& lines) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const std::string where = fmt::format("line {}", lines[i].number);
     const auto n = numbersOf(lines[i].text, " \t\r:");
-    if (!n || n->size() != 4) return wrong(where, "does not have the form \"angle:raw angle:raw\"");
+    if (!n || n->size() != 4)
+      return errorAt(where, "does not have the form \"angle:raw angle:raw\"");
     const std::size_t slot = kValue[i] < 7 ? kValue[i] : kValue[i] + 1;
     const bool palm_or_wrist = slot >= 20 || slot == 15 || slot == 19;
     const float sign = palm_or_wrist ? 1.0F : -1.0F;
@@ -131,7 +132,7 @@ Result<ImportedCalibration> readShadow(std::string_view text, const char* format
     part.remove_prefix(std::min(name.size() + 1, part.size()));
     at = next;
     const auto slot = shadowSlot(name);
-    if (!slot) return wrong(name, "is not a joint of a CyberGlove");
+    if (!slot) return errorAt(name, "is not a joint of a CyberGlove");
     std::string plain;
     for (const char ch : part) {
       const bool number = (ch >= '0' && ch <= '9') || ch == '.' || ch == '-';
@@ -139,7 +140,7 @@ Result<ImportedCalibration> readShadow(std::string_view text, const char* format
     }
     const auto n = numbersOf(plain, " ");
     if (!n || n->size() < 4 || n->size() % 2 != 0)
-      return wrong(name, "needs two points or more, each a raw value and an angle in degrees");
+      return errorAt(name, "needs two points or more, each a raw value and an angle in degrees");
     const auto raw = [&](std::size_t i) { return 1 + 254 * (*n)[i]; };
     const std::size_t last = n->size() - 2;
     const GloveSpan span{raw(0), kDegree * (*n)[1], raw(last), kDegree * (*n)[last + 1]};
@@ -159,11 +160,12 @@ Result<ImportedCalibration> readVess(const std::vector<Line>& lines) {
   for (std::size_t slot = 0; slot < lines.size(); ++slot) {
     const std::string where = fmt::format("line {}", lines[slot].number);
     const auto n = numbersOf(lines[slot].text, kBlanks);
-    if (!n || n->size() != 3) return wrong(where, "does not have the form \"idle min max\"");
+    if (!n || n->size() != 3) return errorAt(where, "does not have the form \"idle min max\"");
     const float idle = (*n)[0], low = (*n)[1], high = (*n)[2];
     if (low >= high) {
-      return wrong(where, fmt::format("has a minimum of {} and a maximum of {}: are they swapped?",
-                                      low, high));
+      return errorAt(
+          where,
+          fmt::format("has a minimum of {} and a maximum of {}: are they swapped?", low, high));
     }
     c.given[slot] = true;
     c.offset[slot] = idle;

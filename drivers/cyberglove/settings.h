@@ -8,6 +8,8 @@
 
 namespace merlin {
 
+inline constexpr int kCybergloveBaud = 38400;  // speed of its line, as it is delivered
+
 // Value of slot 7, the abduction of the index finger, which no known glove measures.
 enum class Slot7Rule {
   kZero,     // 0

@@ -116,18 +116,18 @@ class CybergloveEmulator final : public Emulator {
     command_.push_back(c);
     text_ = cyberglove::isText(command_);
     if (text_ && c == '\r')
-      obeyText(now);
+      executeText(now);
     else if (!text_ && command_.size() >= lengthOf(command_[0]))
-      obey(command_, now);
+      execute(command_, now);
     else if (command_.size() < kLongestCommand)
       return;
     command_.clear();
   }
 
-  void obeyText(Timestamp now) {
+  void executeText(Timestamp now) {
     const auto command = cyberglove::ofText(command_);
     if (command && command->size() == lengthOf((*command)[0]))
-      obey(*command, now);
+      execute(*command, now);
     else
       refuse('n');
   }
@@ -137,7 +137,7 @@ class CybergloveEmulator final : public Emulator {
     pending_ += text_ ? cyberglove::asText(binary) + "\r\n\0"s : binary + '\0';
   }
 
-  void obey(const std::string& command, Timestamp now) {
+  void execute(const std::string& command, Timestamp now) {
     switch (command[0]) {
       case 'G': pending_ += record(true, text_, now); break;
       case 'S':

@@ -2,18 +2,21 @@
 
 #include <algorithm>
 
+#include "drivers/cyberglove/settings.h"
 #include "drivers/emulate/cyberglove_emulator.h"
 #include "drivers/emulate/fastrak_emulator.h"
 #include "drivers/emulate/spaceball_emulator.h"
+#include "drivers/fastrak/settings.h"
+#include "drivers/spaceball/settings.h"
 
 namespace merlin::emulate {
 namespace {
 
 constexpr EmulatorEntry kEmulators[] = {
-    {"cyberglove", 38400, "22|18", "CyberGlove with its interface unit", makeCyberglove},
-    {"fastrak", 38400, "1|2|3|4", "Polhemus Fastrak; the model is the number of receivers",
+    {"cyberglove", kCybergloveBaud, "22|18", "CyberGlove with its interface unit", makeCyberglove},
+    {"fastrak", kFastrakBaud, "1|2|3|4", "Polhemus Fastrak; the model is the number of receivers",
      makeFastrak},
-    {"spaceball", 9600, "2003|1003|3003|4000", "Spaceball", makeSpaceball},
+    {"spaceball", kSpaceballBaud, "2003|1003|3003|4000", "Spaceball", makeSpaceball},
 };
 
 }  // namespace

@@ -130,11 +130,11 @@ class FastrakEmulator final : public Emulator {
     for (const std::byte b : bytes) {
       if (now < ready_at_) return;  // ignores its input while it starts
       const char c = static_cast<char>(b);
-      if (obeyControl(c, now) || c == '\n') continue;
+      if (executeControl(c, now) || c == '\n') continue;
       if (c == '\r') {
-        if (!line_.empty()) obeyLine();
+        if (!line_.empty()) executeLine();
         line_.clear();
-      } else if (!line_.empty() || !obeyLetter(c, now)) {
+      } else if (!line_.empty() || !executeLetter(c, now)) {
         if (line_.size() < 254) line_.push_back(c);
       }
     }
@@ -174,7 +174,7 @@ class FastrakEmulator final : public Emulator {
   }
 
   // Control characters act at once, even within a line, so that a program can abort a line by ^Y.
-  bool obeyControl(char c, Timestamp now) {
+  bool executeControl(char c, Timestamp now) {
     switch (c) {
       case kReinitialise:
         due_ = ready_at_ = now + kStartTime;
@@ -191,7 +191,7 @@ class FastrakEmulator final : public Emulator {
   }
 
   // Letters that act without CR.
-  bool obeyLetter(char c, Timestamp now) {
+  bool executeLetter(char c, Timestamp now) {
     switch (c) {
       case 'P': sendOnce(now); break;
       case 'C':
@@ -224,7 +224,7 @@ class FastrakEmulator final : public Emulator {
                                         state_.continuous, 0, "3.00", state_.configuration});
   }
 
-  void obeyLine() {
+  void executeLine() {
     const char letter = line_[0];
     const std::string_view rest = std::string_view(line_).substr(1);
     switch (letter) {

@@ -50,7 +50,7 @@ class SpaceballEmulator final : public Emulator {
         if (command_.size() < 64) command_.push_back(c);
         continue;
       }
-      obey(command_, now);
+      execute(command_, now);
       command_.clear();
     }
   }
@@ -87,7 +87,7 @@ class SpaceballEmulator final : public Emulator {
     buttons_ = 0;
   }
 
-  void obey(const std::string& command, Timestamp now) {
+  void execute(const std::string& command, Timestamp now) {
     if (command.empty()) return;
     switch (command[0]) {
       case '@': reset(now); break;

@@ -5,6 +5,8 @@
 
 namespace merlin {
 
+inline constexpr int kFastrakBaud = 38400;  // speed of its line, as it is delivered
+
 struct FastrakSettings {
   // For each station a vector, in the transmitter's frame, that points into the hemisphere in which
   // its receiver is; {0, 0, 0}: the unit tracks the hemisphere. Stations in use are those that the

@@ -24,7 +24,7 @@ bool blinks(GpioSample::Lamp lamp) {
 Panel::Panel(const GpioSettings& settings, Timestamp now)
     : settings_(settings), switched_(now), phase_until_(now), changed_(now), raw_since_(now) {}
 
-Result<Ok> Panel::obey(std::string_view command, Timestamp now) {
+Result<Ok> Panel::execute(std::string_view command, Timestamp now) {
   constexpr std::pair<std::string_view, GpioSample::Lamp> kLamps[] = {
       {"lamp_off", GpioSample::kLampOff},
       {"lamp_slow", GpioSample::kLampSlow},

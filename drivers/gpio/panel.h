@@ -25,7 +25,7 @@ class Panel {
   // "projector_on", "projector_off", "video_a", "video_b", "lamp_off", "lamp_slow", "lamp_fast",
   // "lamp_on". Errors: kInvalidArgument (no such command), kBusy (the projectors cool down or were
   // just switched), with the seconds to wait.
-  Result<Ok> obey(std::string_view command, Timestamp now);
+  Result<Ok> execute(std::string_view command, Timestamp now);
 
   // Advances the state to `now`; the button's line reads `pressed`. Returns true once for each
   // press, when the button has been down for the debounce time.

@@ -96,10 +96,10 @@ Result<Ok> PanelLoop::apply(GpioLines& lines) {
   return Ok{};
 }
 
-Result<Ok> PanelLoop::obey(const std::string& command) {
+Result<Ok> PanelLoop::execute(const std::string& command) {
   const std::lock_guard lock(mutex_);
   if (!lost_.empty()) return Error{Errc::kIo, lost_};
-  return panel_.obey(command, clock_.now());
+  return panel_.execute(command, clock_.now());
 }
 
 void PanelLoop::report(HealthState state, const std::string& reason) {

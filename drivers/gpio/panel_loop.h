@@ -28,9 +28,9 @@ class PanelLoop {
   void run(
       const std::stop_token& stop, const std::function<void()>& alive = [] {});
 
-  // Like Panel::obey(); thread-safe. The lines follow within 50 ms. Errors also: kIo (the chip is
-  // not open).
-  Result<Ok> obey(const std::string& command);
+  // Like Panel::execute(); thread-safe. The lines follow within 50 ms. Errors also: kIo (the chip
+  // is not open).
+  Result<Ok> execute(const std::string& command);
 
  private:
   Error serve(const std::stop_token& stop, const std::function<void()>& alive);

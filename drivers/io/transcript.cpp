@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 
 namespace merlin::io {
 namespace {
@@ -45,7 +45,7 @@ class Reader {
       text.remove_prefix(std::min(whole.size() + 1, text.size()));
       const std::string_view line = trimmed(whole.substr(0, whole.find("<-")));
       if (line.empty()) continue;
-      if (ended_) return wrong("comes after \"# end\"");
+      if (ended_) return errorInLine("comes after \"# end\"");
       if (line.starts_with('#')) {
         readHeader(line);
       } else if (const auto done = readChunk(line); !done) {
@@ -60,7 +60,7 @@ class Reader {
   }
 
  private:
-  Error wrong(std::string_view what) const {
+  Error errorInLine(std::string_view what) const {
     return {Errc::kMalformed, fmt::format("line {} {}", line_, what)};
   }
 
@@ -83,9 +83,9 @@ class Reader {
     if (line.starts_with('@')) {
       line.remove_prefix(1);
       const auto at = readTime(takeWord(line));
-      if (!at) return wrong("has no valid time, in seconds, after its @");
+      if (!at) return errorInLine("has no valid time, in seconds, after its @");
       if (!transcript_.chunks.empty() && *at < transcript_.chunks.back().at)
-        return wrong("has a time before that of the line above");
+        return errorInLine("has a time before that of the line above");
       chunk.at = *at;
     }
     line = trimmed(line);
@@ -113,11 +113,11 @@ class Reader {
     for (const char c : text) {
       if (kBlanks.find(c) != std::string_view::npos) continue;
       const int value = nibble(c);
-      if (value < 0) return wrong(fmt::format("has \"{}\" where hex digits are expected", c));
+      if (value < 0) return errorInLine(fmt::format("has \"{}\" where hex digits are expected", c));
       if (high >= 0) bytes.push_back(static_cast<char>(high << 4 | value));
       high = high >= 0 ? -1 : value;
     }
-    if (high >= 0) return wrong("ends in the middle of a byte");
+    if (high >= 0) return errorInLine("ends in the middle of a byte");
     return Ok{};
   }
 

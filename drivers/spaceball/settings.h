@@ -8,6 +8,8 @@
 
 namespace merlin {
 
+inline constexpr int kSpaceballBaud = 9600;  // speed of its line, as it is delivered
+
 struct SpaceballSettings {
   // Raw counts of a full push, and of a full twist.
   int full_scale_translation = 8000;

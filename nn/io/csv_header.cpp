@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 namespace merlin::nn {
 namespace {
 

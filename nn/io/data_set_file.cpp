@@ -94,7 +94,8 @@ class Parser {
       if (line->empty()) continue;
       if (auto error = readHand(*line)) return *std::move(error);
     }
-    if (recording_.hands.empty()) return wrong("no hands", "at least one line after the header");
+    if (recording_.hands.empty())
+      return errorInLine("no hands", "at least one line after the header");
     if (!lines_.ended())
       recording_.notes.push_back(
           "the last line has no line end: if the file was truncated, its last number may be wrong");
@@ -102,7 +103,7 @@ class Parser {
   }
 
  private:
-  Error wrong(std::string_view found, std::string_view allowed) const {
+  Error errorInLine(std::string_view found, std::string_view allowed) const {
     return {Errc::kMalformed,
             fmt::format("{}:{}: found {}; allowed: {}", file_, lines_.number(), found, allowed)};
   }
@@ -122,13 +123,13 @@ class Parser {
     }
     names_ = split(text, separator_);
     if (const auto fault = readHeader(names_, header_))
-      return wrong(fault->substr(0, fault->find("; allowed: ")),
-                   fault->substr(fault->find("; allowed: ") + 11));
+      return errorInLine(fault->substr(0, fault->find("; allowed: ")),
+                         fault->substr(fault->find("; allowed: ") + 11));
     recording_.notes = header_.notes;
     for (std::size_t c = 0; c < names_.size(); ++c) {
       if (header_.slot[c] < 0) continue;
       bool& taken = recording_.measured[static_cast<std::size_t>(header_.slot[c])];
-      if (taken) return wrong("two columns " + quote(names_[c]), "one a sensor");
+      if (taken) return errorInLine("two columns " + quote(names_[c]), "one a sensor");
       taken = true;
     }
     return std::nullopt;
@@ -137,28 +138,29 @@ class Parser {
   std::optional<Error> readHand(std::string_view line) {
     const auto fields = split(line, separator_);
     if (fields.size() != names_.size())
-      return wrong(fmt::format("{} fields", fields.size()),
-                   fmt::format("{}, as many as the header has", names_.size()));
+      return errorInLine(fmt::format("{} fields", fields.size()),
+                         fmt::format("{}, as many as the header has", names_.size()));
     LabelledHand hand;
     const std::string& label = fields[header_.label];
     hand.posture = postureName(label);
     if (hand.posture.empty())
-      return wrong("posture " + quote(label),
-                   fmt::format("1 to {} letters, digits, - or _", kLongestName));
+      return errorInLine("posture " + quote(label),
+                         fmt::format("1 to {} letters, digits, - or _", kLongestName));
     const auto [known, fresh] = labels_.try_emplace(hand.posture, label);
     if (!fresh && known->second != label)
-      return wrong(fmt::format("the labels {} and {}, which are both {}", quote(known->second),
-                               quote(label), hand.posture),
-                   "one way to write a label");
+      return errorInLine(fmt::format("the labels {} and {}, which are both {}",
+                                     quote(known->second), quote(label), hand.posture),
+                         "one way to write a label");
     for (std::size_t c = 0; c < fields.size(); ++c) {
       if (header_.slot[c] < 0) continue;
       const auto value = parseValue(fields[c]);
-      if (!value) return wrong(fmt::format("{} {}", names_[c], quote(fields[c])), "a number");
+      if (!value) return errorInLine(fmt::format("{} {}", names_[c], quote(fields[c])), "a number");
       hand.value[static_cast<std::size_t>(header_.slot[c])] = *value;
       if (std::abs(*value) <= static_cast<float>(kMostAngle_rad)) continue;
       if (unit_ == InputUnit::kRadians)
-        return wrong(fmt::format("{} {}", names_[c], quote(fields[c])),
-                     fmt::format("an angle in radians, {} to {}", -kMostAngle_rad, kMostAngle_rad));
+        return errorInLine(
+            fmt::format("{} {}", names_[c], quote(fields[c])),
+            fmt::format("an angle in radians, {} to {}", -kMostAngle_rad, kMostAngle_rad));
       far_ = true;
     }
     recording_.hands.push_back(std::move(hand));

@@ -31,13 +31,13 @@ void readSizes(JsonView sizes) {
 
 Phi readPhi(JsonView view) {
   const auto phi = phiNamed(view.text(kLongestName));
-  if (!phi) view.wrong("\"sigmoid\", \"signum\" or \"atan\"");
+  if (!phi) view.addFault("\"sigmoid\", \"signum\" or \"atan\"");
   return phi.value_or(Phi::kSigmoid);
 }
 
 InputUnit readUnit(JsonView view) {
   const std::string unit = view.text(kLongestName);
-  if (unit != "rad" && unit != "raw") view.wrong("\"rad\" or \"raw\"");
+  if (unit != "rad" && unit != "raw") view.addFault("\"rad\" or \"raw\"");
   return unit == "raw" ? InputUnit::kRaw : InputUnit::kRadians;
 }
 
@@ -50,12 +50,13 @@ void readInputs(JsonView inputs, InputUnit unit, InputRanges& ranges) {
     input.allowKeys({"slot", "name", "low", "high"});
     input.at("slot").count(i, i);
     JsonView name = input.at("name");
-    if (name.text(kLongestHow) != kInputNames[i]) name.wrong(fmt::format("\"{}\"", kInputNames[i]));
+    if (name.text(kLongestHow) != kInputNames[i])
+      name.addFault(fmt::format("\"{}\"", kInputNames[i]));
     ranges[i].low = static_cast<float>(input.at("low").number(-most, most));
     JsonView high = input.at("high");
     ranges[i].high = static_cast<float>(high.number(-most, most));
     if (!(ranges[i].low < ranges[i].high)) {
-      high.wrong(fmt::format("more than low, {}", ranges[i].low));
+      high.addFault(fmt::format("more than low, {}", ranges[i].low));
     }
   }
 }
@@ -79,9 +80,9 @@ void readPostures(JsonView list, PostureTable& postures) {
     posture.allowKeys({"code", "name"});
     JsonView digits = posture.at("code");
     const auto code = parseCode(digits.text(kLongestHow));
-    if (!code) digits.wrong("five digits 0 or 1, output 4 first");
+    if (!code) digits.addFault("five digits 0 or 1, output 4 first");
     const auto added = postures.add(code.value_or(0), posture.at("name").text(kLongestHow));
-    if (!added) posture.wrong("one code a name, one name a code", added.error().what);
+    if (!added) posture.addFault("one code a name, one name a code", added.error().what);
   }
 }
 
@@ -122,8 +123,8 @@ NetworkFile readDocument(JsonView root) {
   JsonView version = root.at("version");
   if (version.count(0, kMostVersions) !=
       kVersion) {  // checked first, since anything may differ in another version
-    version.wrong(fmt::format("{}, the version that this release of MERLIN reads", kVersion), {},
-                  Errc::kUnsupported);
+    version.addFault(fmt::format("{}, the version that this release of MERLIN reads", kVersion), {},
+                     Errc::kUnsupported);
   }
   root.allowKeys({"version", "sizes", "phi", "unit", "inputs", "hidden", "output", "postures",
                   "memory", "trained"});

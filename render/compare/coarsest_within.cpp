@@ -6,13 +6,13 @@
 
 namespace merlin::render::compare {
 
-Result<Within> coarsestWithin(const lod::Dendrogram& model, double percent,
-                              const std::function<void(double, std::size_t)>& progress) {
+Result<LevelWithError> coarsestWithin(const lod::Dendrogram& model, double percent,
+                                      const std::function<void(double, std::size_t)>& progress) {
   constexpr double kNearEnough = 1.02;
   std::size_t compared_so_far = 0;
   const mesh::Mesh finest = lod::extract(model, 0);
   const CompareSettings settings{.samples = 1, .width_percent = percent / 20};
-  Within best;
+  LevelWithError best;
   auto too_few = static_cast<double>(model.trianglesAt(model.levels() - 1)) / kNearEnough;
   auto enough = static_cast<double>(model.triangleCount());
   const double span = std::log(enough / too_few);

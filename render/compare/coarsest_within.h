@@ -10,7 +10,7 @@
 
 namespace merlin::render::compare {
 
-struct Within {
+struct LevelWithError {
   std::size_t level = 0;
   double at_most = 0;  // upper bound of the level's distance from the finest one, model units
   double percent = 0;  // at_most in percent of the diagonal of the finest level's bounding box
@@ -21,7 +21,7 @@ struct Within {
 // wide. `progress`: called on this thread with the share of the work (0..1) and the number of
 // levels compared. Errors: those of compare(). Cost: about ten comparisons. REQUIRES: percent > 0,
 // more than one level.
-Result<Within> coarsestWithin(const lod::Dendrogram& model, double percent,
-                              const std::function<void(double, std::size_t)>& progress);
+Result<LevelWithError> coarsestWithin(const lod::Dendrogram& model, double percent,
+                                      const std::function<void(double, std::size_t)>& progress);
 
 }  // namespace merlin::render::compare

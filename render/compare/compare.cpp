@@ -72,13 +72,13 @@ std::array<std::unique_ptr<const TriangleTree>, 2> treesOf(const mesh::Mesh& a, 
 }
 
 std::optional<Deviation> deviation(const Surface& from, const Surface& to, const Sampling& sampling,
-                                   const Search& search, const GoOn& goOn) {
+                                   const Search& search, const KeepGoing& keepGoing) {
   const auto sampled = sampledError(from, to, sampling, [&](double share, std::size_t points) {
-    return goOn(kSampledShare * share, points);
+    return keepGoing(kSampledShare * share, points);
   });
   if (!sampled) return std::nullopt;
   const auto max = farthest(from, to, search, [&](double share, std::size_t points) {
-    return goOn(kSampledShare + (1 - kSampledShare) * share, sampling.samples + points);
+    return keepGoing(kSampledShare + (1 - kSampledShare) * share, sampling.samples + points);
   });
   if (!max) return std::nullopt;
   Deviation d{sampled->rms,           sampled->mean,           *max,
@@ -122,7 +122,7 @@ Result<Comparison> compare(const mesh::Mesh& a, const mesh::Mesh& b,
   const Sampling sampling{settings.samples, settings.seed, *features, threads};
   const Search search{settings.width_percent / 100 * comparison.diagonal, settings.max_evaluations,
                       threads};
-  const auto half = [&progress](double from, std::size_t before) -> GoOn {
+  const auto half = [&progress](double from, std::size_t before) -> KeepGoing {
     return [&progress, from, before](double share, std::size_t points) {
       return !progress || progress({from + share / 2, before + points});
     };

@@ -71,8 +71,9 @@ std::size_t blocksOf(std::size_t count, std::size_t size) { return (count + size
 
 class FarthestSearch {
  public:
-  FarthestSearch(const Surface& from, const Surface& to, const Search& search, const GoOn& goOn)
-      : from_(from), to_(to.tree), search_(search), goOn_(goOn) {}
+  FarthestSearch(const Surface& from, const Surface& to, const Search& search,
+                 const KeepGoing& keepGoing)
+      : from_(from), to_(to.tree), search_(search), keep_going_(keepGoing) {}
 
   bool testVertices();
   bool collectTriangles();
@@ -93,7 +94,7 @@ class FarthestSearch {
   const Surface& from_;
   const TriangleTree& to_;
   const Search& search_;
-  const GoOn& goOn_;
+  const KeepGoing& keep_going_;
 
   std::vector<std::uint32_t> nearest_;  // by vertex that a triangle uses: its nearest place
   std::vector<Part> parts_;             // heap, the largest bound first
@@ -108,7 +109,7 @@ bool FarthestSearch::inBlocks(std::size_t count, double from,
   const std::size_t blocks = blocksOf(count, kBlock);
   return forBlocks(search_.threads, blocks, work, [&](std::size_t done) {
     const double share = static_cast<double>(done) / static_cast<double>(blocks);
-    return goOn_(kFirstPassShare * (from + share / 2), std::min(done * kBlock, count));
+    return keep_going_(kFirstPassShare * (from + share / 2), std::min(done * kBlock, count));
   });
 }
 
@@ -195,7 +196,7 @@ bool FarthestSearch::refineRound() {
         const std::size_t last = std::min((block + 1) * kRoundBlock, round.size());
         for (std::size_t i = block * kRoundBlock; i < last; ++i) halves[i] = halve(to_, round[i]);
       },
-      [&](std::size_t) { return goOn_(share, evaluations_); });
+      [&](std::size_t) { return keep_going_(share, evaluations_); });
   evaluations_ += round.size();
   for (const Halves& h : halves) low_ = std::max(low_, h.distance);
   for (const Halves& h : halves) {
@@ -223,8 +224,8 @@ double FarthestSearch::shareDone() const {
 }  // namespace
 
 std::optional<Interval> farthest(const Surface& from, const Surface& to, const Search& search,
-                                 const GoOn& goOn) {
-  FarthestSearch farthest_search(from, to, search, goOn);
+                                 const KeepGoing& keepGoing) {
+  FarthestSearch farthest_search(from, to, search, keepGoing);
   if (!farthest_search.testVertices() || !farthest_search.collectTriangles() ||
       !farthest_search.refine())
     return std::nullopt;

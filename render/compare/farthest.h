@@ -28,8 +28,8 @@ struct Search {
 
 // Tests each vertex of `from` first, even beyond max_evaluations; then halves parts in rounds that
 // do not depend on the number of threads. Memory: 120 bytes per part that is kept.
-// goOn     as for sampledError(); the share is estimated from the interval's width.
+// keepGoing     as for sampledError(); the share is estimated from the interval's width.
 std::optional<Interval> farthest(const Surface& from, const Surface& to, const Search& search,
-                                 const GoOn& goOn);
+                                 const KeepGoing& keepGoing);
 
 }  // namespace merlin::render::compare

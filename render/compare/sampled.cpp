@@ -179,15 +179,15 @@ SampledError errorOf(const Sums& sums) {
 }  // namespace
 
 std::optional<SampledError> sampledError(const Surface& from, const Surface& to,
-                                         const Sampling& sampling, const GoOn& goOn) {
+                                         const Sampling& sampling, const KeepGoing& keepGoing) {
   const Sampler sampler(from, to, sampling);
   const std::size_t blocks = (sampling.samples + kBlock - 1) / kBlock;
   std::vector<Sums> sums(blocks, sampler.none());
   const bool all = forBlocks(
       sampling.threads, blocks, [&](std::size_t block) { sampler.addBlock(block, sums[block]); },
       [&](std::size_t done) {
-        return goOn(static_cast<double>(done) / static_cast<double>(blocks),
-                    std::min(done * kBlock, sampling.samples));
+        return keepGoing(static_cast<double>(done) / static_cast<double>(blocks),
+                         std::min(done * kBlock, sampling.samples));
       });
   if (!all) return std::nullopt;
   Sums total = sampler.none();

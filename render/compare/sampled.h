@@ -14,7 +14,7 @@ namespace merlin::render::compare {
 
 // Progress callback on the caller's thread: the share of a piece of work that is done, 0..1, and
 // the number of points tested. Returns whether to go on.
-using GoOn = std::function<bool(double share, std::size_t points)>;
+using KeepGoing = std::function<bool(double share, std::size_t points)>;
 
 // A mesh and its tree; both must outlive it.
 struct Surface {
@@ -40,10 +40,10 @@ struct SampledError {
 //
 // Samples are stratified by area: the surface is laid out in the order of the tree's leaves and
 // cut into `samples` strips of equal area, with one random point each. O(samples x log n).
-// goOn     if it returns false, the work ends and the result is nullopt.
+// keepGoing     if it returns false, the work ends and the result is nullopt.
 // REQUIRES samples > 0, area(from) > 0.
 std::optional<SampledError> sampledError(const Surface& from, const Surface& to,
-                                         const Sampling& sampling, const GoOn& goOn);
+                                         const Sampling& sampling, const KeepGoing& keepGoing);
 
 double area(const mesh::Mesh& mesh) noexcept;
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kMost = std::size_t{1} << 31;
-constexpr float kFarthest = 1e18F;  // largest coordinate: squared distances are finite floats
+constexpr float kMaxCoordinate = 1e18F;  // largest coordinate: squared distances are finite floats
 
 bool repeats(const std::uint32_t* t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
@@ -146,9 +146,10 @@ Result<Ok> validate(const Mesh& mesh) {
                                                mesh.positions.size(), mesh.triangles.size())};
   }
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    if (std::abs(mesh.positions[i]) <= kFarthest) continue;
-    return Error{Errc::kMalformed, fmt::format("vertex {}: coordinate {} is {}; the limit is +-{}",
-                                               i / 3, "xyz"[i % 3], mesh.positions[i], kFarthest)};
+    if (std::abs(mesh.positions[i]) <= kMaxCoordinate) continue;
+    return Error{Errc::kMalformed,
+                 fmt::format("vertex {}: coordinate {} is {}; the limit is +-{}", i / 3,
+                             "xyz"[i % 3], mesh.positions[i], kMaxCoordinate)};
   }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if (mesh.triangles[i] < n) continue;

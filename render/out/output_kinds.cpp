@@ -10,34 +10,34 @@
 namespace merlin::render::out {
 namespace {
 
-using Made = Result<std::unique_ptr<Output>>;
+using OutputOrError = Result<std::unique_ptr<Output>>;
 
-Made makeSharedMemory(const OutputSettings&, const OutputParts& parts) {
+OutputOrError makeSharedMemory(const OutputSettings&, const OutputParts& parts) {
   auto made = SharedFrameOutput::make(parts.frame_name, parts.plan, parts.generation, parts.clock);
   if (!made) return made.error();
   return std::unique_ptr<Output>(*std::move(made));
 }
 
-Made makePng(const OutputSettings& settings, const OutputParts& parts) {
+OutputOrError makePng(const OutputSettings& settings, const OutputParts& parts) {
   return std::unique_ptr<Output>(
       std::make_unique<PngOutput>(settings.path, settings.interval_s, parts.watch));
 }
 
-Made makeWindow(const OutputSettings& settings, const OutputParts& parts) {
+OutputOrError makeWindow(const OutputSettings& settings, const OutputParts& parts) {
   auto program = windowProgram();
   if (!program) return program.error();
   return std::unique_ptr<Output>(std::make_unique<WindowOutput>(
       settings.window, parts.window, *std::move(program), parts.watch, parts.clock));
 }
 
-Made makeKms(const OutputSettings& settings, const OutputParts& parts) {
+OutputOrError makeKms(const OutputSettings& settings, const OutputParts& parts) {
   const PictureSize size = *pictureSize(settings, parts.tiles);
   return parts.cards.makeOutput(settings.kms, size.width, size.height);
 }
 
 // In the order of OutputKind.
-constexpr Made (*kMakers[])(const OutputSettings&, const OutputParts&) = {makeSharedMemory, makePng,
-                                                                          makeWindow, makeKms};
+constexpr OutputOrError (*kMakers[])(const OutputSettings&, const OutputParts&) = {
+    makeSharedMemory, makePng, makeWindow, makeKms};
 static_assert(std::size(kMakers) == std::size(kOutputKindNames));
 
 }  // namespace
@@ -49,7 +49,7 @@ Result<Ok> checkIsThere(OutputKind kind) {
   return Ok{};
 }
 
-Made makeOutput(const OutputSettings& settings, const OutputParts& parts) {
+OutputOrError makeOutput(const OutputSettings& settings, const OutputParts& parts) {
   return kMakers[static_cast<std::size_t>(settings.kind)](settings, parts);
 }
 

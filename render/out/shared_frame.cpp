@@ -38,6 +38,7 @@ TileRectangle rectangleOf(const tiles::Tile& tile) {
   r.height = tile.height;
   r.wall_x = tile.wall_x;
   r.wall_y = tile.wall_y;
+  r.eye = tile.eye == tiles::Eye::kLeft ? 1 : tile.eye == tiles::Eye::kRight ? 2 : 0;
   return r;
 }
 
@@ -56,7 +57,7 @@ void addBuffersAndTiles(shm::FieldTable& t) {
   buffers<std::uint64_t>(t, "offset", offsetof(Buffer, offset), "B");
   buffers<std::uint64_t>(t, "sequence", offsetof(Buffer, sequence), "");
   buffers<std::int64_t>(t, "finished_ns", offsetof(Buffer, finished_ns), "ns");
-  buffers<std::uint32_t>(t, "triangles", offsetof(Buffer, triangles), "");
+  buffers<std::uint32_t>(t, "cost", offsetof(Buffer, cost), "");
   buffers<std::uint32_t>(t, "full_detail", offsetof(Buffer, full_detail), "");
   t.bare("tile", offsetof(Header, tiles));
   tiles<decltype(TileRectangle::name)>(t, "name", offsetof(TileRectangle, name), "");
@@ -67,6 +68,7 @@ void addBuffersAndTiles(shm::FieldTable& t) {
   tiles<std::int32_t>(t, "height", offsetof(TileRectangle, height), "px");
   tiles<std::int32_t>(t, "wall_x", offsetof(TileRectangle, wall_x), "px");
   tiles<std::int32_t>(t, "wall_y", offsetof(TileRectangle, wall_y), "px");
+  tiles<std::uint32_t>(t, "eye", offsetof(TileRectangle, eye), "0 both 1 left 2 right");
 }
 
 // For readers: a copy of a buffer's pixels is consistent if its buffer.sequence was not 0 and was
@@ -74,14 +76,7 @@ void addBuffersAndTiles(shm::FieldTable& t) {
 std::vector<shm::Field> framebufferFields() {
   shm::FieldTable t;
   t.bare("frame", 0);
-  MERLIN_FIELD(t, Header, magic, "");
-  MERLIN_FIELD(t, Header, version, "");
-  MERLIN_FIELD(t, Header, size, "B");
-  MERLIN_FIELD(t, Header, generation, "");
-  MERLIN_FIELD(t, Header, field_offset, "B");
-  MERLIN_FIELD(t, Header, field_count, "");
-  MERLIN_FIELD(t, Header, field_size, "B");
-  MERLIN_FIELD(t, Header, pid, "");
+  shm::addTableHeader<Header>(t);
   MERLIN_FIELD(t, Header, width, "px");
   MERLIN_FIELD(t, Header, height, "px");
   MERLIN_FIELD(t, Header, stride, "B");
@@ -131,8 +126,9 @@ Result<Ok> check(const Header& h, std::size_t size, const std::string& name) {
     return broken(name, "is not a MERLIN framebuffer");
   if (h.version != framebuffer::kVersion) {
     return Error{Errc::kUnsupported,
-                 fmt::format("shared memory {}: is version {}, this program reads {}", name,
-                             h.version, framebuffer::kVersion)};
+                 fmt::format("shared memory {}: is version {}, but this program reads version {}; "
+                             "use this program and merlind of the same release",
+                             name, h.version, framebuffer::kVersion)};
   }
   const std::uint64_t bytes = std::uint64_t{h.stride} * h.height;
   bool good = h.format == framebuffer::kFormatRgba8 && h.stride == h.width * 4 &&
@@ -157,7 +153,7 @@ bool copyNewest(const Header& checked, const std::byte* base, CapturedFrame& fra
   const std::uint64_t before = b.sequence.load(std::memory_order_acquire);
   if (before == 0) return false;
   std::memcpy(frame.pixels.data(), base + checked.buffers[newest].offset, frame.pixels.size());
-  frame.info = {before, fromNanoseconds(b.finished_ns), b.triangles, b.full_detail != 0};
+  frame.info = {before, fromNanoseconds(b.finished_ns), b.cost, b.full_detail != 0};
   std::atomic_thread_fence(std::memory_order_acquire);
   return b.sequence.load(std::memory_order_relaxed) == before;
 }
@@ -196,7 +192,7 @@ Result<std::optional<Timestamp>> SharedFrameOutput::present(const Signal& signal
   std::atomic_thread_fence(std::memory_order_release);  // before any pixel changes
   std::memcpy(memory_.data() + bufferOffset(next_, frame_bytes_), pixels.data(), pixels.size());
   b.finished_ns = toNanoseconds(info.finished);
-  b.triangles = info.cost;
+  b.cost = info.cost;
   b.full_detail = info.full_detail ? 1 : 0;
   b.sequence.store(info.sequence, std::memory_order_release);
   h.newest.store(next_, std::memory_order_release);

@@ -56,6 +56,17 @@ std::size_t needInBlocks(const mesh::MeshSize& size, const ReduceSettings& setti
   return static_cast<std::size_t>(std::max({20 * v, block, joined, whole}));
 }
 
+// Peak memory, in bytes, of all steps of a job except the reduction. These are: reading (the file,
+// and the mesh without normals), splitting non-manifold edges and vertices (half-edges and fans of
+// triangles), and writing (the collapse log and the order of its rows).
+std::size_t needOfOtherSteps(const mesh::MeshSize& m, std::size_t file_size) {
+  const std::size_t read = m.bytes() - 12 * m.vertices;
+  const std::size_t split = read + 36 * m.triangles + 5 * m.vertices;
+  const std::size_t write =
+      m.bytes() + m.vertices * (24 + 4 * m.values) + 12 * m.vertices + 6 * m.triangles;
+  return kProgramBytes + std::max({file_size + read, split, write});
+}
+
 }  // namespace
 
 double shareOfBlocks(double target) {
@@ -72,6 +83,15 @@ ReductionNeed needOf(const mesh::MeshSize& size, const ReduceSettings& settings)
   need.whole =
       static_cast<std::size_t>(std::max(quadricBytes(size) * asDouble(size.triangles), 20 * v));
   need.least = std::min(need.whole, needInBlocks(size, settings, kMostBlocks));
+  return need;
+}
+
+JobNeed needOfJob(const mesh::MeshSize& size, std::size_t file_size,
+                  const ReduceSettings& settings) {
+  JobNeed need;
+  need.besides = size.bytes() + kProgramBytes;
+  need.least =
+      std::max(needOfOtherSteps(size, file_size), need.besides + needOf(size, settings).least);
   return need;
 }
 

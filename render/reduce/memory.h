@@ -19,6 +19,19 @@ struct ReductionNeed {
 };
 ReductionNeed needOf(const mesh::MeshSize& size, const ReduceSettings& settings);
 
+// Memory of a whole job, which reads a mesh file, splits its non-manifold edges and vertices,
+// reduces the mesh and writes the model; in bytes, with the program itself.
+struct JobNeed {
+  std::size_t least = 0;    // peak of the job if the mesh is reduced in as many blocks as possible
+  std::size_t besides = 0;  // during the reduction, apart from what needOf() counts
+};
+// `file_size`: of the file that is read, in bytes; 0 if the mesh is in memory already.
+JobNeed needOfJob(const mesh::MeshSize& size, std::size_t file_size,
+                  const ReduceSettings& settings);
+
+// Memory of a program and of its file buffers, beside its data [bytes].
+inline constexpr std::size_t kProgramBytes = std::size_t{32} << 20;
+
 // Returns in how many blocks to reduce the mesh so that settings.memory suffices; 1: as a whole.
 // Errors: kInvalidArgument, if the memory does not even suffice for blocks (the message contains
 // the need and the limit).

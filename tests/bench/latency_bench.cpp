@@ -34,8 +34,8 @@ struct Row {
 };
 using Rows = std::map<Reader, Row>;
 
-void say(Report& report, const std::string& line, const std::string& load, Reader kind,
-         const Round& all, const Row& row) {
+void printRow(Report& report, const std::string& line, const std::string& load, Reader kind,
+              const Round& all, const Row& row) {
   report.text("{:11} {:6} {:13} {:5} {:9.1f} {:9.1f} {:10.1f} {:7.1f} %  {}\n", line, load,
               kReaderNames[kind], row.median.count(), row.median.value(), row.p99.value(),
               row.p999.value(), 100 * all.cpu_share, all.real_time ? "real-time" : "");
@@ -95,7 +95,7 @@ Rows benchLine(const Setting& s, Line line, bool loaded) {
         fmt::format("samples of {} on a {}", kReaderNames[kind], kLineNames[line]);
     const auto& v = round.latency_us;
     const Row row{quantileOf(v, 0.5, what), quantileOf(v, 0.99, what), quantileOf(v, 0.999, what)};
-    say(s.report, kLineNames[line], load, kind, round, row);
+    printRow(s.report, kLineNames[line], load, kind, round, row);
     rows.emplace(kind, row);
   }
   return rows;

@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -85,6 +86,7 @@ FixedWork workThatTakes(double work_s, double rate_hz) {
 struct WallRun {
   Measured late, work_s, held, utilisation;
   shm::WallStats end;
+  std::string renderer;
 };
 
 WallRun runWall(const Options& options, const test::TempDir& dir, const std::string& script) {
@@ -101,12 +103,16 @@ WallRun runWall(const Options& options, const test::TempDir& dir, const std::str
     use.push_back(static_cast<double>(s.utilisation));
   }
   const shm::WallStats end = daemon.wall();
+  const std::string renderer = daemon.renderer();
   daemon.stop();
   constexpr const char* kMoving = "seconds in which the wall moved";
   return {shareOf(end.late - from.late, end.deadlines - from.deadlines,
                   "deadlines of the wall, which did not move,"),
-          medianOf(work, kMoving), medianOf(held, "seconds of the wall"), medianOf(use, kMoving),
-          end};
+          medianOf(work, kMoving),
+          medianOf(held, "seconds of the wall"),
+          medianOf(use, kMoving),
+          end,
+          renderer};
 }
 
 // The bare loop has the same devices beside it: read by a merlind without a wall.
@@ -136,8 +142,8 @@ struct Rounds {
   }
 };
 
-void say(Report& report, const std::string& script, int round, const WallRun& wall,
-         const BareRun& bare) {
+void printRow(Report& report, const std::string& script, int round, const WallRun& wall,
+              const BareRun& bare) {
   const auto percent = [](double share) { return 100 * share; };
   report.text(
       "{:8} {:5} {:7.0f} {:6.1f} {:9.1f} {:5.0f} % {:6.2f} % | {:12.1f} {:6.2f} % | {:+.2f} %\n",
@@ -168,6 +174,7 @@ void benchLate(const Options& options, const test::TempDir& dir, Report& report)
   report.text(
       "script   round   asked   held   work ms   used    late | bare: work ms   late | "
       "difference\n");
+  bool named = false;
   for (const char* script : {"turning", "visit"}) {
     Rounds all;
     for (int round = 1; round <= options.rounds; ++round) {
@@ -176,7 +183,8 @@ void benchLate(const Options& options, const test::TempDir& dir, Report& report)
       const auto rate = static_cast<double>(wall.end.rate_asked_hz);
       const BareRun bare = runBare(options, dir, script, wall.work_s, rate);
       all.add(wall, bare);
-      say(report, script, round, wall, bare);
+      if (!std::exchange(named, true)) report.text("drawn by {}\n", wall.renderer);
+      printRow(report, script, round, wall, bare);
     }
     const auto wall = Measured::of(meanOf(all.wall, "rounds"), all.wall_deadlines, "deadlines");
     const auto bare = Measured::of(meanOf(all.bare, "rounds"), all.bare_deadlines, "deadlines");

@@ -118,7 +118,8 @@ TEST(Config, BindingsThatNameNothingAreFound) {
                 .find("allowed are ball.button.1 to ball.button.12"),
             std::string::npos);
   EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "grab", "on": "leave"})")
-                .find("/devices/bindings/0/on cannot be used with grab; allowed is hold"),
+                .find("/devices/bindings/0/on is leave, but grab lasts as long as its input is "
+                      "held: set hold"),
             std::string::npos);
   EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "dance"})").find("fly"),
             std::string::npos)
@@ -240,7 +241,7 @@ TEST(Config, ManyFindingsAreCounted) {
   for (std::size_t i = 0; i <= LoadedSettings::kMostFindings; ++i)
     adjusted.add({true, 1, "/a", "is adjusted"});
   EXPECT_EQ(adjusted.verdict(), Verdict::kAdjusted);
-  adjusted.wrong("/a", "is wrong");
+  adjusted.addFinding("/a", "is wrong");
   EXPECT_EQ(adjusted.verdict(), Verdict::kInvalid);
 }
 
@@ -407,7 +408,7 @@ TEST(Config, ViewsOfTilesAndDisplaysAreChecked) {
                    R"("tiles": {"tiles": [{"name": "a", "turns": 1, "view": "top"}]})"),
             "f.json:2: /wall/tiles/tiles/0 cannot be used: tile a has view top, a camera of its "
             "own: leave "
-            "out turns, direction_deg, frustum_deg and screen_m, or let it follow the wall\n");
+            "out turns, direction_deg, frustum_deg and screen_m, or set view to wall\n");
   const std::string panel = R"("room": {"panels": [{"name": "p", "width_m": 2, "height_m": 1,
                                         "lower_left_m": [-1, -0.5, -2]}], "displays": [)";
   EXPECT_EQ(wallIs(panel + R"({"name": "d", "view": "top"}]})"), "");

@@ -1,7 +1,6 @@
 // Bindings turn inputs of the devices into actions in shared memory; each reader sees each action
 // once.
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "daemon/actions/action_writer.h"
 #include "daemon/actions/settings.h"
 #include "daemon/base/commands.h"
+#include "tests/support/local_devices.h"
 #include "tests/support/recording_sink.h"
 
 namespace merlin::actions {
@@ -27,7 +27,7 @@ class ActionsTest : public testing::Test {
                       std::uint64_t generation = 1) {
     return {bindings, source, generation, segment_->actions[source]};
   }
-  Actions read() { return reader_.read(*segment_); }
+  Actions read() { return reader_.read(segment_.slots()); }
   shm::ActionState state(shm::ActionSource source) const {
     return *segment_->actions[source].read();
   }
@@ -43,7 +43,7 @@ class ActionsTest : public testing::Test {
     return p;
   }
 
-  std::unique_ptr<shm::DevicesSegment> segment_ = std::make_unique<shm::DevicesSegment>();
+  test::LocalDevices segment_;
   ActionReader reader_;
 };
 

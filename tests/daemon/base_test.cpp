@@ -12,10 +12,10 @@
 #include "daemon/base/child_work.h"
 #include "daemon/base/clock.h"
 #include "daemon/base/dated_files.h"
+#include "daemon/base/did_you_mean.h"
 #include "daemon/base/files.h"
-#include "daemon/base/nearest.h"
+#include "daemon/base/printable_text.h"
 #include "daemon/base/random.h"
-#include "daemon/base/text.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin {
@@ -47,11 +47,11 @@ TEST(Text, ShowsWhatATerminalWouldFollow) {
 
 TEST(Nearest, FindsTypingErrorsAndNothingFarAway) {
   const std::vector<std::string> known = {"port", "baud", "rate_hz", "model_radius_m"};
-  EXPECT_EQ(nearest("prot", known), "port");
-  EXPECT_EQ(nearest("rate_Hz", known), "rate_hz");
-  EXPECT_EQ(nearest("model_radius", known), "model_radius_m");
-  EXPECT_EQ(nearest("thermal", known), "");
-  EXPECT_EQ(nearest(std::string(100'000, 'x'), known), "");
+  EXPECT_EQ(nearestWord("prot", known), "port");
+  EXPECT_EQ(nearestWord("rate_Hz", known), "rate_hz");
+  EXPECT_EQ(nearestWord("model_radius", known), "model_radius_m");
+  EXPECT_EQ(nearestWord("thermal", known), "");
+  EXPECT_EQ(nearestWord(std::string(100'000, 'x'), known), "");
 }
 
 TEST(FileCopy, IsTheFilesBytesAndStaysThemWhateverBecomesOfTheFile) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/base/commands.h"
+#include "daemon/base/log.h"
 #include "daemon/shm/fields.h"
 #include "tests/support/temp_dir.h"
 
@@ -33,7 +34,7 @@ class DeviceFeedTest : public testing::Test {
     return h;
   }
   WallInput read() {
-    segment_->beat(now_);
+    segment_->writeHeartbeat(now_);
     return feed_.read(now_);
   }
   void push() {
@@ -66,7 +67,7 @@ TEST_F(DeviceFeedTest, PredictsTheHandToTheDisplayTime) {
   hand.velocity_m_s[0] = 1;
   hand.delay_s = 0.01F;
   (*segment_)->hand.publish(hand);
-  segment_->beat(now_);
+  segment_->writeHeartbeat(now_);
   EXPECT_NEAR(feed.read(now_).scene.hand->position_m[0], 0.49 + 0.003 + 0.033 + 0.010, 1e-5);
   EXPECT_EQ(read().scene.hand->position_m[0], 0.5F) << "not asked to look ahead";
   measured.received_ns += 1000;  // a newer tracker record, for which there is no HandSample yet
@@ -93,7 +94,7 @@ TEST_F(DeviceFeedTest, GivesTheHeadsStationWhereOneIsNamedAndItIsFresh) {
   head.received_ns = toNanoseconds(now_ - milliseconds(3));
   head.position_m[0] = 0.7F;
   (*segment_)->tracker[2].publish(head);
-  segment_->beat(now_);
+  segment_->writeHeartbeat(now_);
   ASSERT_TRUE(feed.read(now_).head);
   EXPECT_EQ(feed.read(now_).head->position_m[0], 0.7F);
   EXPECT_FALSE(feed.read(now_).scene.hand) << "station 2 is silent";
@@ -194,6 +195,24 @@ TEST_F(DeviceFeedTest, ThePushOfTheBallIsTheCornersWhileThatIsHeld) {
   }());
   input = read();
   EXPECT_NEAR(input.align.push.y, -60 * 0.1 * 0.125, 1e-9) << "up, gently, and no jump";
+}
+
+// As after an update of one of two processes: the reason is logged once, not at each attempt.
+TEST_F(DeviceFeedTest, ASegmentWhoseSlotsAreNotOursIsNoDeviceAndIsReportedOnce) {
+  initLog(LogLevel::kWarning);
+  push();
+  for (shm::Field& f : (*segment_)->fields) f.offset += 8;
+  testing::internal::CaptureStderr();
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    EXPECT_FALSE(read().scene.ball);
+    now_ += seconds(1);
+  }
+  const std::string logged = testing::internal::GetCapturedStderr();
+  EXPECT_NE(logged.find(name_ + ": its slot"), std::string::npos) << logged;
+  EXPECT_EQ(logged.find(name_), logged.rfind(name_)) << logged;
+  for (shm::Field& f : (*segment_)->fields) f.offset -= 8;
+  for (auto& slot : (*segment_)->health) slot.publish(health(HealthState::kOk));
+  EXPECT_TRUE(read().scene.ball);
 }
 
 TEST_F(DeviceFeedTest, AlignActionsArriveInTheirOrder) {

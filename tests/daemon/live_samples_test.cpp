@@ -15,8 +15,7 @@ TEST(LiveSamples, KnowsAStateThatIsBeingWrittenFromBefore) {
   const auto segment = shm::SegmentWriter<shm::DevicesSegment>::make(
       shm::segmentName(instance, "devices"), shm::devicesFields(), 1, SystemClock().now(), {});
   ASSERT_TRUE(segment);
-  auto samples = LiveSamples<BallSample>::open(
-      instance, shm::kBall, [](const shm::DevicesSegment& s) -> const auto& { return s.ball; });
+  auto samples = LiveSamples<BallSample>::open(instance, "ball", "ball");
   ASSERT_TRUE(samples);
   EXPECT_EQ(samples->complaint(), "its state is not known yet");
   auto& slot = (*segment)->health[shm::kBall];

@@ -174,7 +174,7 @@ TEST_F(Server, AnswersAndTellsEachClient) {
   send(a, "one\n");
   round();
   EXPECT_EQ(received(a), "one\n");
-  server_.tell([](Session&, std::string& output) { output += "news\n"; });
+  server_.sendToAll([](Session&, std::string& output) { output += "news\n"; });
   EXPECT_EQ(received(a), "news\n");
   EXPECT_EQ(received(b), "") << "not established yet";
 }
@@ -237,7 +237,7 @@ TEST_F(Server, WhoDoesNotReadIsClosed) {
   send(client, "hello\n");
   round();
   for (int i = 0; i < 100000 && server_.connections() > 0; ++i)
-    server_.tell([](Session&, std::string& output) { output += std::string(200, 'n'); });
+    server_.sendToAll([](Session&, std::string& output) { output += std::string(200, 'n'); });
   EXPECT_EQ(server_.report().slow, 1U);
 }
 

@@ -9,13 +9,14 @@
 #include "daemon/status/documents.h"
 #include "daemon/status/server.h"
 #include "tests/support/eventually.h"
+#include "tests/support/local_devices.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::status {
 namespace {
 
-std::unique_ptr<shm::DevicesSegment> filled(std::int64_t received_ns, std::uint32_t counter) {
-  auto segment = std::make_unique<shm::DevicesSegment>();
+test::LocalDevices filled(std::int64_t received_ns, std::uint32_t counter) {
+  test::LocalDevices segment;
   GloveSample glove{};
   glove.received_ns = received_ns;
   glove.counter = counter;
@@ -62,7 +63,7 @@ std::unique_ptr<shm::DevicesSegment> filled(std::int64_t received_ns, std::uint3
 TEST(ApplySamples, BringsEverythingOverAsOldAsItWas) {
   const auto there = filled(5'000'000'000, 7);
   const auto here = std::make_unique<shm::DevicesSegment>();
-  const std::string document = newestSamples(*there, fromNanoseconds(5'010'000'000));
+  const std::string document = newestSamples(there.slots(), fromNanoseconds(5'010'000'000));
   const Timestamp now = fromNanoseconds(99'000'000'000);
   ASSERT_TRUE(applySamples(document, "tcp://a:1", now, *here));
   const auto glove = here->glove.newest();
@@ -91,9 +92,9 @@ TEST(ApplySamples, TheSameSampleIsPublishedOnce) {
   const auto there = filled(1, 7);
   const auto here = std::make_unique<shm::DevicesSegment>();
   for (int i = 0; i < 3; ++i)
-    ASSERT_TRUE(applySamples(newestSamples(*there, fromNanoseconds(2)), "", {}, *here));
+    ASSERT_TRUE(applySamples(newestSamples(there.slots(), fromNanoseconds(2)), "", {}, *here));
   EXPECT_EQ(here->ball.count(), 1u);
-  ASSERT_TRUE(applySamples(newestSamples(*filled(3, 8), fromNanoseconds(4)), "", {}, *here));
+  ASSERT_TRUE(applySamples(newestSamples(filled(3, 8).slots(), fromNanoseconds(4)), "", {}, *here));
   EXPECT_EQ(here->ball.count(), 2u);
 }
 
@@ -108,7 +109,7 @@ TEST(ApplySamples, NonsenseIsRefusedAndHalfTruthsDoNoHarm) {
         R"({"now_ns":1,"health":{"ball":{"state":99,"reason":5}}})"}) {
     EXPECT_TRUE(applySamples(odd, "", {}, *here)) << odd;
   }
-  const std::string good = newestSamples(*filled(1, 1), {});
+  const std::string good = newestSamples(filled(1, 1).slots(), {});
   for (std::size_t n = 0; n < good.size(); n += 7)
     EXPECT_FALSE(applySamples(good.substr(0, n), "", {}, *here));
 }
@@ -124,7 +125,7 @@ TEST(ApplySamples, WhatNoDeviceCanMeasureIsNotTaken) {
   ball.rotation[2] = 3;
   there->ball.publish(ball);
   const auto here = std::make_unique<shm::DevicesSegment>();
-  ASSERT_TRUE(applySamples(newestSamples(*there, {}), "", {}, *here));
+  ASSERT_TRUE(applySamples(newestSamples(there.slots(), {}), "", {}, *here));
   EXPECT_EQ(here->tracker[1].count(), 0U);
   EXPECT_EQ(here->ball.count(), 0U);
   EXPECT_EQ(here->glove.count(), 1U) << "the others are";
@@ -166,7 +167,7 @@ struct Devices {
     s.command_endpoint = "ipc://" + dir / "command";
     s.network = {"tcp://127.0.0.1:" + std::to_string(port), keys, std::move(clients)};
     s.publications = {{"sample", std::chrono::milliseconds(10),
-                       [this] { return newestSamples(*segment, clock.now()); }}};
+                       [this] { return newestSamples(segment.slots(), clock.now()); }}};
     s.events = [] { return std::vector<std::string>(); };
     auto started = StatusServer::start(std::move(s), threads, clock);
     EXPECT_TRUE(started) << started.error().what;
@@ -182,7 +183,7 @@ struct Devices {
   }
   SystemClock clock;
   ThreadWatch threads;
-  std::unique_ptr<shm::DevicesSegment> segment;
+  test::LocalDevices segment;
   std::unique_ptr<StatusServer> server;
   std::unique_ptr<net::Server> samples;  // uses `server`, so it is destroyed first
 };

@@ -440,13 +440,13 @@ TEST(Segment, HeartbeatBringsTheOffsetToTheTimeOfDay) {
   };
   expectNow();
   header.realtime_offset_ns = 0;  // as if the system's clock had been set after the start
-  writer->beat(SystemClock().now());
+  writer->writeHeartbeat(SystemClock().now());
   expectNow();
 }
 
 TEST(SegmentFollower, OpensAgainAfterTheDaemonWasStartedAnew) {
   const std::string name = segmentName(privateName("follow"), "wall");
-  SegmentFollower<WallSegment> follower(name);
+  SegmentFollower<SegmentReader<WallSegment>> follower(name);
   Timestamp now = SystemClock().now();
   EXPECT_EQ(follower.get(now), nullptr);
   {
@@ -454,7 +454,7 @@ TEST(SegmentFollower, OpensAgainAfterTheDaemonWasStartedAnew) {
     ASSERT_TRUE(first);
     EXPECT_EQ(follower.get(now), nullptr) << "twice a second is enough";
     now += std::chrono::seconds(1);
-    first->beat(now);
+    first->writeHeartbeat(now);
     ASSERT_NE(follower.get(now), nullptr);
     EXPECT_EQ(follower.get(now)->header.generation, 1u);
   }
@@ -463,7 +463,7 @@ TEST(SegmentFollower, OpensAgainAfterTheDaemonWasStartedAnew) {
   const auto second = SegmentWriter<WallSegment>::make(name, wallFields(), 2, now, kEndpoints);
   ASSERT_TRUE(second);
   now += std::chrono::seconds(1);
-  second->beat(now);
+  second->writeHeartbeat(now);
   ASSERT_NE(follower.get(now), nullptr);
   EXPECT_EQ(follower.get(now)->header.generation, 2u);
 }

@@ -19,6 +19,7 @@
 #include "daemon/status/server.h"
 #include "daemon/status/watchdog.h"
 #include "tests/support/eventually.h"
+#include "tests/support/local_devices.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::status {
@@ -44,7 +45,7 @@ DeviceHealth healthy(const char* identity) {
 
 class DocumentsTest : public testing::Test {
  protected:
-  std::unique_ptr<shm::DevicesSegment> devices_ = std::make_unique<shm::DevicesSegment>();
+  test::LocalDevices devices_;
   std::unique_ptr<shm::WallSegment> wall_ = std::make_unique<shm::WallSegment>();
 };
 
@@ -56,7 +57,7 @@ TEST_F(DocumentsTest, DevicesSayHealthReasonAndPosture) {
   PostureSample posture{};
   std::snprintf(posture.name, sizeof posture.name, "fist");
   devices_->posture.publish(posture);
-  const json s = json::parse(devicesStatus(*devices_, kNow));
+  const json s = json::parse(devicesStatus(devices_.slots(), kNow));
   EXPECT_EQ(s["role"], "devices");
   EXPECT_EQ(s["posture"], "fist");
   EXPECT_EQ(s["devices"]["glove"]["health"], "ok");
@@ -74,7 +75,7 @@ TEST_F(DocumentsTest, AHealthThatNobodyWritesAnyMoreIsStale) {
 
 TEST_F(DocumentsTest, TextThatIsNoUtf8BecomesJsonAllTheSame) {
   devices_->health[shm::kGlove].publish(healthy("\xFF\xFE\"\\"));
-  EXPECT_TRUE(json::accept(devicesStatus(*devices_, kNow)));
+  EXPECT_TRUE(json::accept(devicesStatus(devices_.slots(), kNow)));
 }
 
 TEST_F(DocumentsTest, TheWallSaysWhatOutsideChecksRelyOn) {
@@ -91,6 +92,25 @@ TEST_F(DocumentsTest, TheWallSaysWhatOutsideChecksRelyOn) {
   EXPECT_EQ(s["late_percent"], 1.5);
   EXPECT_EQ(s["triangles"], 12345);
   EXPECT_EQ(s["detail"]["cost"], 12345);
+}
+
+TEST_F(DocumentsTest, TheWallSaysWhoDrawsIt) {
+  EXPECT_FALSE(json::parse(wallStatus(*wall_, kNow)).contains("renderer")) << "not known yet";
+  const RendererState gpu{.name = "Some GPU",
+                          .vendor = "Somebody",
+                          .driver = "4.6",
+                          .library = "EGL",
+                          .node = "/dev/dri/renderD128",
+                          .pci = "0000:01:00.0",
+                          .software = false,
+                          .read_back = "asynchronous",
+                          .correction = "gpu"};
+  const json s = json::parse(wallStatus(*wall_, kNow, {}, nullptr, &gpu));
+  EXPECT_EQ(s["renderer"].dump(),
+            R"({"contexts":1,"correction":"gpu","correction_fault":"","driver":"4.6",)"
+            R"("library":"EGL","name":"Some GPU","node":"/dev/dri/renderD128",)"
+            R"("pci":"0000:01:00.0","read_back":"asynchronous","software":false,)"
+            R"("vendor":"Somebody"})");
 }
 
 TEST_F(DocumentsTest, TheWallSaysWhereAHandPoints) {
@@ -124,7 +144,8 @@ TEST_F(DocumentsTest, TheWallSaysHowItKeepsItsRate) {
 }
 
 TEST_F(DocumentsTest, SamplesAreTheNewestOfEachThatThereIs) {
-  EXPECT_EQ(json::parse(newestSamples(*devices_, kNow)).size(), 3u) << "now_ns, time_utc, health";
+  EXPECT_EQ(json::parse(newestSamples(devices_.slots(), kNow)).size(), 3u)
+      << "now_ns, time_utc, health";
   TrackerSample tracker{};
   tracker.station = 2;
   tracker.position_m[1] = 0.5F;
@@ -132,7 +153,7 @@ TEST_F(DocumentsTest, SamplesAreTheNewestOfEachThatThereIs) {
   BallSample ball{};
   ball.counter = 3;
   devices_->ball.publish(ball);
-  const json s = json::parse(newestSamples(*devices_, kNow));
+  const json s = json::parse(newestSamples(devices_.slots(), kNow));
   EXPECT_EQ(s["tracker"][0]["station"], 2);
   EXPECT_EQ(s["tracker"][0]["position_m"], json({0, 0.5, 0}));
   EXPECT_EQ(s["ball"]["counter"], 3);
@@ -148,7 +169,7 @@ TEST_F(DocumentsTest, TheGloveIsCalledGloveAndTheHandHand) {
   HandSample hand{};
   hand.delay_s = 0.25F;
   devices_->hand.publish(hand);
-  const json s = json::parse(newestSamples(*devices_, kNow));
+  const json s = json::parse(newestSamples(devices_.slots(), kNow));
   EXPECT_EQ(s["glove"]["sensors"], 22);
   EXPECT_EQ(s["hand"]["delay_s"], 0.25);
   EXPECT_FALSE(s.contains("pose"));
@@ -158,8 +179,8 @@ TEST_F(DocumentsTest, EachSaysTheTimeOfDayBesideTheMonotonicOne) {
   devices_->header.realtime_offset_ns = 1'795'399'507'000'250'000;
   wall_->header.realtime_offset_ns = 1'795'399'507'000'250'000;
   const char* then = "2026-11-23T02:21:47.000250Z";  // kNow is 1000 s
-  EXPECT_EQ(json::parse(newestSamples(*devices_, kNow))["time_utc"], then);
-  EXPECT_EQ(json::parse(devicesStatus(*devices_, kNow))["time_utc"], then);
+  EXPECT_EQ(json::parse(newestSamples(devices_.slots(), kNow))["time_utc"], then);
+  EXPECT_EQ(json::parse(devicesStatus(devices_.slots(), kNow))["time_utc"], then);
   EXPECT_EQ(json::parse(wallStatus(*wall_, kNow))["time_utc"], then);
   const std::string today = json::parse(event("x", "y", SystemClock().now()))["time_utc"];
   EXPECT_EQ(today.size(), 27u);
@@ -168,7 +189,7 @@ TEST_F(DocumentsTest, EachSaysTheTimeOfDayBesideTheMonotonicOne) {
 
 TEST_F(DocumentsTest, MetricsAreFlatNumbers) {
   devices_->health[shm::kTracker].publish(healthy("x"));
-  const json m = json::parse(devicesMetrics(*devices_));
+  const json m = json::parse(devicesMetrics(devices_.slots()));
   EXPECT_EQ(m["tracker_ok"], 1);
   EXPECT_EQ(m["tracker_samples_total"], 1234);
   EXPECT_EQ(json::parse(wallMetrics(*wall_))["late_total"], 0);
@@ -181,7 +202,7 @@ TEST_F(DocumentsTest, MetricsAreFlatNumbers) {
 }
 
 TEST_F(DocumentsTest, EventsAreToldOnce) {
-  HealthEvents events(*devices_);
+  HealthEvents events(devices_.slots());
   EXPECT_TRUE(events.take(kNow).empty());
   devices_->health[shm::kBall].publish(healthy("Spaceball 2003"));
   EXPECT_EQ(events.take(kNow), (std::vector<std::string>{"ball: ok (Spaceball 2003)"}));
@@ -526,7 +547,7 @@ TEST(Client, AsksForTheStatusAgainAndForNothingElse) {
   EXPECT_EQ(heard, 2);
   EXPECT_EQ(ask(endpoint, "next_content", milliseconds(1500)).error().what,
             endpoint + ": no answer within 1.5 s");
-  EXPECT_EQ(heard, 3) << "it might have been obeyed already";
+  EXPECT_EQ(heard, 3) << "it might have been executed already";
 }
 
 TEST(RunDirectory, IsMadeAndRefusedWhereItIsNotOurs) {

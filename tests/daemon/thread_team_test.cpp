@@ -15,7 +15,7 @@
 namespace merlin {
 namespace {
 
-const auto goOn = [](std::size_t) { return true; };
+const auto keepGoing = [](std::size_t) { return true; };
 
 // Each test runs with a team and without one.
 class ForBlocks : public testing::TestWithParam<bool> {
@@ -32,12 +32,12 @@ TEST_P(ForBlocks, AreDoneOnceEachAndWhatTheyThrowComesOut) {
   for (const unsigned n : {1u, 5u, 2u}) {
     std::vector<int> calls(1000);
     EXPECT_TRUE(forBlocks(
-        threads(n), 1000, [&](std::size_t block) { ++calls[block]; }, goOn));
+        threads(n), 1000, [&](std::size_t block) { ++calls[block]; }, keepGoing));
     EXPECT_EQ(calls, std::vector<int>(1000, 1));
     const auto throwing = [](std::size_t block) {
       if (block == 500) throw std::runtime_error("500");
     };
-    EXPECT_THROW(forBlocks(threads(n), 1000, throwing, goOn), std::runtime_error);
+    EXPECT_THROW(forBlocks(threads(n), 1000, throwing, keepGoing), std::runtime_error);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "daemon/serve/vrpn_protocol.h"
 #include "daemon/serve/vrpn_server.h"
 #include "tests/support/eventually.h"
+#include "tests/support/local_devices.h"
 
 namespace merlin::serve {
 namespace {
@@ -190,8 +191,8 @@ void checkSamples(Client& client, shm::DevicesSegment& segment) {
 TEST(VrpnServer, ServesAClientThatConnects) {
   const SystemClock clock;
   ThreadWatch threads;
-  const auto segment = std::make_unique<shm::DevicesSegment>();
-  const auto server = VrpnServer::start(0, *segment, threads, clock);
+  const test::LocalDevices segment;
+  const auto server = VrpnServer::start(0, segment.slots(), threads, clock);
   ASSERT_TRUE(server) << server.error().what;
   const sockaddr_in address = loopback((*server)->port());
   UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
@@ -203,8 +204,8 @@ TEST(VrpnServer, ServesAClientThatConnects) {
 TEST(VrpnServer, ConnectsBackToAClientThatAsksByUdp) {
   const SystemClock clock;
   ThreadWatch threads;
-  const auto segment = std::make_unique<shm::DevicesSegment>();
-  const auto server = VrpnServer::start(0, *segment, threads, clock);
+  const test::LocalDevices segment;
+  const auto server = VrpnServer::start(0, segment.slots(), threads, clock);
   ASSERT_TRUE(server) << server.error().what;
   const UniqueFd listener(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in here = loopback(0);
@@ -233,11 +234,11 @@ UniqueFd connectedTo(const VrpnServer& server) {
 TEST(VrpnServer, AClientHearsOfAButtonThatIsHeldAlready) {
   const SystemClock clock;
   ThreadWatch threads;
-  const auto segment = std::make_unique<shm::DevicesSegment>();
+  const test::LocalDevices segment;
   BallSample ball{};
   ball.buttons = 5;
   segment->ball.publish(ball);
-  const auto server = VrpnServer::start(0, *segment, threads, clock);
+  const auto server = VrpnServer::start(0, segment.slots(), threads, clock);
   ASSERT_TRUE(server) << server.error().what;
   Client client(::dup(connectedTo(**server).get()));
   const auto states = client.next("vrpn_Button States");
@@ -250,8 +251,8 @@ TEST(VrpnServer, AClientHearsOfAButtonThatIsHeldAlready) {
 TEST(VrpnServer, AFloodOfOneClientNeitherGrowsNorKeepsAnyoneWaiting) {
   const SystemClock clock;
   ThreadWatch threads;
-  const auto segment = std::make_unique<shm::DevicesSegment>();
-  auto server = VrpnServer::start(0, *segment, threads, clock);
+  const test::LocalDevices segment;
+  auto server = VrpnServer::start(0, segment.slots(), threads, clock);
   ASSERT_TRUE(server) << server.error().what;
   const UniqueFd flood = connectedTo(**server);
   VrpnMessage empty;
@@ -272,8 +273,8 @@ TEST(VrpnServer, AFloodOfOneClientNeitherGrowsNorKeepsAnyoneWaiting) {
 TEST(VrpnServer, SilentClientsGiveTheirPlacesUp) {
   const SystemClock clock;
   ThreadWatch threads;
-  const auto segment = std::make_unique<shm::DevicesSegment>();
-  const auto server = VrpnServer::start(0, *segment, threads, clock);
+  const test::LocalDevices segment;
+  const auto server = VrpnServer::start(0, segment.slots(), threads, clock);
   ASSERT_TRUE(server) << server.error().what;
   std::vector<UniqueFd> silent;
   for (int i = 0; i < 16; ++i) silent.push_back(connectedTo(**server));
@@ -287,8 +288,8 @@ TEST(VrpnServer, SilentClientsGiveTheirPlacesUp) {
 TEST(VrpnServer, DatagramsThatAskForSilentConnectionsKeepNobodyOut) {
   const SystemClock clock;
   ThreadWatch threads;
-  const auto segment = std::make_unique<shm::DevicesSegment>();
-  const auto server = VrpnServer::start(0, *segment, threads, clock);
+  const test::LocalDevices segment;
+  const auto server = VrpnServer::start(0, segment.slots(), threads, clock);
   ASSERT_TRUE(server) << server.error().what;
   const UniqueFd udp(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const sockaddr_in there = loopback((*server)->port());
@@ -310,8 +311,8 @@ TEST(VrpnServer, DatagramsThatAskForSilentConnectionsKeepNobodyOut) {
 TEST(VrpnServer, IsNotItsOwnClient) {
   const SystemClock clock;
   ThreadWatch threads;
-  const auto segment = std::make_unique<shm::DevicesSegment>();
-  const auto server = VrpnServer::start(0, *segment, threads, clock);
+  const test::LocalDevices segment;
+  const auto server = VrpnServer::start(0, segment.slots(), threads, clock);
   ASSERT_TRUE(server) << server.error().what;
   const auto listener = net::listenTcp("127.0.0.1", 0);
   const UniqueFd udp(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
@@ -329,8 +330,8 @@ TEST(VrpnServer, IsNotItsOwnClient) {
 TEST(VrpnServer, OnePortIsConnectedToOnceHoweverOftenItIsAskedFor) {
   const SystemClock clock;
   ThreadWatch threads;
-  const auto segment = std::make_unique<shm::DevicesSegment>();
-  const auto server = VrpnServer::start(0, *segment, threads, clock);
+  const test::LocalDevices segment;
+  const auto server = VrpnServer::start(0, segment.slots(), threads, clock);
   ASSERT_TRUE(server) << server.error().what;
   const auto listener = net::listenTcp("127.0.0.1", 0);
   ASSERT_TRUE(listener);
@@ -349,10 +350,10 @@ TEST(VrpnServer, OnePortIsConnectedToOnceHoweverOftenItIsAskedFor) {
 TEST(VrpnServer, APortThatIsTakenIsRefused) {
   const SystemClock clock;
   ThreadWatch threads;
-  const auto segment = std::make_unique<shm::DevicesSegment>();
-  const auto first = VrpnServer::start(0, *segment, threads, clock);
+  const test::LocalDevices segment;
+  const auto first = VrpnServer::start(0, segment.slots(), threads, clock);
   ASSERT_TRUE(first);
-  const auto second = VrpnServer::start((*first)->port(), *segment, threads, clock);
+  const auto second = VrpnServer::start((*first)->port(), segment.slots(), threads, clock);
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, Errc::kBusy);
 }

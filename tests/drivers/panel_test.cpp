@@ -40,43 +40,43 @@ struct Bench {
 TEST(Panel, ProjectorsWarmUpAndCoolDown) {
   Bench b;
   b.pass(seconds(6));
-  ASSERT_TRUE(b.panel.obey("projector_on", b.clock.now()));
+  ASSERT_TRUE(b.panel.execute("projector_on", b.clock.now()));
   EXPECT_TRUE(b.panel.outputs(b.clock.now()).projector);
   EXPECT_EQ(b.power(), GpioSample::kWarming);
   b.pass(milliseconds(29'999));
   EXPECT_EQ(b.power(), GpioSample::kWarming);
   b.pass(milliseconds(1));
   EXPECT_EQ(b.power(), GpioSample::kOn);
-  ASSERT_TRUE(b.panel.obey("projector_off", b.clock.now()));
+  ASSERT_TRUE(b.panel.execute("projector_off", b.clock.now()));
   EXPECT_FALSE(b.panel.outputs(b.clock.now()).projector);
   EXPECT_EQ(b.power(), GpioSample::kCooling);
   b.pass(seconds(60));
-  const auto refused = b.panel.obey("projector_on", b.clock.now());
+  const auto refused = b.panel.execute("projector_on", b.clock.now());
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Errc::kBusy);
   EXPECT_EQ(refused.error().what, "the projectors cool down: wait 30 s");
   b.pass(seconds(30));
   EXPECT_EQ(b.power(), GpioSample::kOff);
-  EXPECT_TRUE(b.panel.obey("projector_on", b.clock.now()));
+  EXPECT_TRUE(b.panel.execute("projector_on", b.clock.now()));
 }
 
 TEST(Panel, SwitchesNoFasterThanTheInterlock) {
   Bench b;
-  const auto early = b.panel.obey("projector_on", b.clock.now());
+  const auto early = b.panel.execute("projector_on", b.clock.now());
   ASSERT_FALSE(early) << "whether they were on a moment ago is not known";
   EXPECT_EQ(early.error().what, "the projectors were just switched: wait 5 s");
   b.pass(seconds(5));
-  ASSERT_TRUE(b.panel.obey("projector_on", b.clock.now()));
-  ASSERT_TRUE(b.panel.obey("projector_on", b.clock.now())) << "they are on: nothing to do";
+  ASSERT_TRUE(b.panel.execute("projector_on", b.clock.now()));
+  ASSERT_TRUE(b.panel.execute("projector_on", b.clock.now())) << "they are on: nothing to do";
   b.pass(seconds(4));
-  EXPECT_FALSE(b.panel.obey("projector_off", b.clock.now()));
+  EXPECT_FALSE(b.panel.execute("projector_off", b.clock.now()));
   EXPECT_FLOAT_EQ(b.panel.sample(b.clock.now()).wait_s, 1);
 }
 
 TEST(Panel, TheLampBlinksSlowlyAndFast) {
   Bench b;
   const auto lit = [&](const char* command, Duration step, int steps) {
-    EXPECT_TRUE(b.panel.obey(command, b.clock.now()));
+    EXPECT_TRUE(b.panel.execute(command, b.clock.now()));
     int changes = 0;
     bool last = b.panel.outputs(b.clock.now()).lamp;
     for (int i = 0; i < steps; ++i) {
@@ -116,7 +116,7 @@ TEST(Panel, SaysWhenSomethingChangesByItself) {
   Bench b;
   EXPECT_EQ(b.panel.nextDue(b.clock.now()), Timestamp::max());
   b.pass(seconds(5));
-  ASSERT_TRUE(b.panel.obey("projector_on", b.clock.now()));
+  ASSERT_TRUE(b.panel.execute("projector_on", b.clock.now()));
   EXPECT_EQ(b.panel.nextDue(b.clock.now()) - b.clock.now(), seconds(30));
   b.pass(milliseconds(1), true);
   EXPECT_EQ(b.panel.nextDue(b.clock.now()) - b.clock.now(), milliseconds(20));
@@ -124,7 +124,7 @@ TEST(Panel, SaysWhenSomethingChangesByItself) {
 
 TEST(Panel, RefusesWhatItDoesNotKnow) {
   Bench b;
-  EXPECT_EQ(b.panel.obey("explode", b.clock.now()).error().code, Errc::kInvalidArgument);
+  EXPECT_EQ(b.panel.execute("explode", b.clock.now()).error().code, Errc::kInvalidArgument);
 }
 
 // A GPIO chip that a test can unplug.
@@ -168,7 +168,7 @@ TEST(PanelLoop, WritesLinesAndKeepsThemOverALostChip) {
     newest = sample;
     ++rounds;
     if (rounds == 200) {
-      EXPECT_TRUE(self->obey("video_b"));
+      EXPECT_TRUE(self->execute("video_b"));
     }
     if (rounds == 210) chip.there = false;
     chip.button = rounds > 230 && rounds < 240;
@@ -179,7 +179,7 @@ TEST(PanelLoop, WritesLinesAndKeepsThemOverALostChip) {
       [&]() -> Result<std::unique_ptr<GpioLines>> {
         ++chip.opened;
         if (chip.opened == 2) {
-          EXPECT_FALSE(self->obey("video_a")) << "the chip is gone";
+          EXPECT_FALSE(self->execute("video_a")) << "the chip is gone";
           chip.there = false;
           return Error{Errc::kNotFound, "gpiochip0: open: No such file or directory"};
         }

@@ -7,8 +7,8 @@
 
 #include "nn/adapt.h"
 #include "nn/codes.h"
+#include "nn/cross_validation.h"
 #include "nn/evaluate.h"
-#include "nn/folds.h"
 #include "nn/hold.h"
 #include "nn/train.h"
 #include "tests/nn/shipped.h"
@@ -229,6 +229,34 @@ TEST(Folds, EachHandIsTestedOnceAndEachPostureInEachFold) {
     for (const LabelledHand& hand : split.test) ++tested[static_cast<std::size_t>(hand.value[0])];
   }
   EXPECT_EQ(tested, std::vector<int>(10, 2));
+}
+
+TEST(Folds, AreScoredByANetworkOfTheOthersAndAveraged) {
+  DataSet hands;
+  for (int n = 0; n < 10; ++n) {
+    for (const char* name : {"fist", "open"}) {
+      LabelledHand hand;
+      hand.posture = name;
+      hand.value.fill(0.01F * static_cast<float>(n));
+      // In the second half the label says nothing of the hand: both are as open hands are.
+      hand.value[4] += n >= 5 || *name == 'o' ? 0.0F : 1.0F;
+      hands.push_back(hand);
+    }
+  }
+  FitSettings settings;
+  settings.starts = 2;
+  settings.passes = 40;
+  const auto first = scoreFold(hands, 2, 0, settings), second = scoreFold(hands, 2, 1, settings);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(second->hands, 10u);
+  EXPECT_EQ(second->neighbours.mean, 0.5) << "half of what cannot be told apart";
+  const std::vector<FoldScore> both = {*first, *second};
+  const FoldScore mean = meanOf(both);
+  EXPECT_EQ(mean.hands, 20u);
+  EXPECT_DOUBLE_EQ(mean.accuracy, (first->accuracy + second->accuracy) / 2);
+  EXPECT_DOUBLE_EQ(mean.neighbours.mean, (first->neighbours.mean + 0.5) / 2);
+  settings.phi = Phi::kSignum;
+  EXPECT_FALSE(scoreFold(hands, 2, 0, settings)) << "cannot be trained";
 }
 
 }  // namespace

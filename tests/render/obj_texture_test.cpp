@@ -170,7 +170,7 @@ TEST_F(TexturedObj, GoesWithItsPictureIntoOtherFiles) {
     ASSERT_TRUE(written) << written.error().what;
     Names expected;
     for (const std::string& file : beside) expected.push_back(other / file);
-    EXPECT_EQ(written->beside, expected);
+    EXPECT_EQ(written->companions, expected);
     EXPECT_EQ(test::readText(expected[0]), picture);
     if (written->format == "iv") {
       EXPECT_EQ(written->left_out, Names{"colour"}) << "which the picture is multiplied with";

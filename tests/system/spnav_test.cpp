@@ -17,6 +17,7 @@
 
 #include "daemon/serve/spnav_server.h"
 #include "tests/support/eventually.h"
+#include "tests/support/local_devices.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::serve {
@@ -169,13 +170,13 @@ TEST(SpnavProtocol, RandomBytesAreSurvived) {
 }
 
 struct Served : testing::Test {
-  Served() : segment(std::make_unique<shm::DevicesSegment>()) {
+  Served() {
     DeviceHealth health{};
     health.state = HealthState::kOk;
     std::snprintf(health.identity, sizeof health.identity, "Spaceball 3003, firmware 2.13");
     std::snprintf(health.port, sizeof health.port, "pty:/tmp/ball");
     segment->health[shm::kBall].publish(health);
-    auto started = SpnavServer::start(path, *segment, threads, clock);
+    auto started = SpnavServer::start(path, segment.slots(), threads, clock);
     EXPECT_TRUE(started) << started.error().what;
     if (started) server = *std::move(started);
     ::setenv("SPNAV_SOCKET", path.c_str(), 1);
@@ -184,7 +185,7 @@ struct Served : testing::Test {
   std::string path = dir / "spnav.sock";
   SystemClock clock;
   ThreadWatch threads;
-  std::unique_ptr<shm::DevicesSegment> segment;
+  test::LocalDevices segment;
   std::unique_ptr<SpnavServer> server;
 };
 
@@ -349,7 +350,7 @@ TEST_F(Served, SilentClientsDoNotKeepOthersOut) {
 TEST_F(Served, AFileThatIsNoSocketStays) {
   const std::string file = dir / "precious";
   test::writeText(file, "data");
-  const auto refused = SpnavServer::start(file, *segment, threads, clock);
+  const auto refused = SpnavServer::start(file, segment.slots(), threads, clock);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Errc::kInvalidArgument);
   EXPECT_EQ(test::readText(file), "data");
@@ -357,7 +358,7 @@ TEST_F(Served, AFileThatIsNoSocketStays) {
 
 TEST_F(Served, ASocketThatIsRemovedIsMadeAgain) {
   const std::string file = dir / "again";
-  const auto made = SpnavServer::start(file, *segment, threads, clock);
+  const auto made = SpnavServer::start(file, segment.slots(), threads, clock);
   ASSERT_TRUE(made) << made.error().what;
   std::filesystem::remove(file);
   EXPECT_TRUE(test::eventually([&] { return std::filesystem::is_socket(file); }));
@@ -397,14 +398,14 @@ TEST_F(Served, LibspnavSeesTheBall) {
 }
 
 TEST_F(Served, ASecondServerIsRefusedAndADeadOnesSocketIsReplaced) {
-  const auto second = SpnavServer::start(path, *segment, threads, clock);
+  const auto second = SpnavServer::start(path, segment.slots(), threads, clock);
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, Errc::kBusy);
   server.reset();
   EXPECT_NE(::access(path.c_str(), F_OK), 0) << "gone with its server";
   // The socket that a killed server leaves behind accepts no connections.
   { const UniqueFd dead = *net::listenLocal(path, 0600); }
-  EXPECT_TRUE(SpnavServer::start(path, *segment, threads, clock));
+  EXPECT_TRUE(SpnavServer::start(path, segment.slots(), threads, clock));
 }
 
 }  // namespace

@@ -226,7 +226,7 @@ UniqueFd connectTo(int port) {
   return fd;
 }
 
-void say(const UniqueFd& fd, const std::string& bytes) {
+void sendBytes(const UniqueFd& fd, const std::string& bytes) {
   (void)!::send(fd.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
@@ -257,7 +257,7 @@ TEST_F(RfbTest, HostileClientsDisturbNobodyElse) {
   std::vector<UniqueFd> hostile;
   const auto join = [&](const std::string& bytes) {
     hostile.push_back(connectTo(rfb.port()));
-    say(hostile.back(), bytes);
+    sendBytes(hostile.back(), bytes);
   };
   join(requests(1000));  // never reads
   ASSERT_TRUE(rfb.process().saysEventually("2 of 6 places are taken"));

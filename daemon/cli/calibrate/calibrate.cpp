@@ -58,8 +58,8 @@ int importGlove(const std::string& input, const std::string& output) {
   const auto saved = saveDeviceSettings(
       output, "glove", {{"offset", numbers(settings.offset)}, {"gain", numbers(settings.gain)}});
   if (!saved) return fail(saved.error());
-  say("{}: {} joints from {} ({}), defaults for the others\n", output, given, input,
-      imported->format);
+  printOut("{}: {} joints from {} ({}), defaults for the others\n", output, given, input,
+           imported->format);
   return kExitDone;
 }
 

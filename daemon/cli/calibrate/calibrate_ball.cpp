@@ -25,12 +25,12 @@ struct BallOptions {
   std::vector<int> axis_map;
   GuideTiming timing;
 
-  bool told() const {
+  bool hasOptions() const {
     return translation > 0 || rotation > 0 || dead_zone >= 0 || !axis_map.empty();
   }
 };
 
-int tell(const BallOptions& o) {
+int setFromOptions(const BallOptions& o) {
   auto values = nlohmann::ordered_json::object();
   if (o.translation > 0) values["full_scale_translation"] = o.translation;
   if (o.rotation > 0) values["full_scale_rotation"] = o.rotation;
@@ -46,7 +46,7 @@ int tell(const BallOptions& o) {
   }
   if (const auto saved = saveDeviceSettings(o.output, "ball", values); !saved)
     return fail(saved.error());
-  say("{}: ball\n", o.output);
+  printOut("{}: ball\n", o.output);
   return kExitDone;
 }
 
@@ -94,8 +94,7 @@ class GuidedBall final : public Guided {
 
 int guideBall(const BallOptions& o) {
   if (const auto writable = checkWritable(o.output); !writable) return fail(writable.error());
-  auto samples = LiveSamples<BallSample>::open(
-      o.instance, shm::kBall, [](const shm::DevicesSegment& s) -> const auto& { return s.ball; });
+  auto samples = LiveSamples<BallSample>::open(o.instance, "ball", "ball");
   if (!samples) return fail(samples.error());
   GuidedBall guided(*std::move(samples));
   if (const auto done = guide(spaceball::axesSteps(), o.timing, guided); !done)
@@ -107,7 +106,8 @@ int guideBall(const BallOptions& o) {
                                          {"axis_map", s.axis_map}};
   if (const auto saved = saveDeviceSettings(o.output, "ball", values); !saved)
     return fail(saved.error());
-  say("\n{}: ball, axis map {}, full push {} counts, full twist {}, dead zone {}; restart "
+  printOut(
+      "\n{}: ball, axis map {}, full push {} counts, full twist {}, dead zone {}; restart "
       "merlind to use it\n",
       o.output, values["axis_map"].dump(), s.full_scale_translation, s.full_scale_rotation,
       s.dead_zone);
@@ -145,7 +145,8 @@ void addCalibrateBall(Command calibrate, Run& run) {
       .expected(6)
       .range(-6, 6);
   command.option("-o,--output", o->output, "The configuration file to write into").required();
-  command.callback([o, &run] { run = [o] { return o->told() ? tell(*o) : guideBall(*o); }; });
+  command.callback(
+      [o, &run] { run = [o] { return o->hasOptions() ? setFromOptions(*o) : guideBall(*o); }; });
 }
 
 }  // namespace merlin::cli

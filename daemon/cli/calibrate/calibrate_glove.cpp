@@ -21,7 +21,7 @@ using cyberglove::GuidedCalibration;
 
 struct GloveOptions {
   std::string port, output;
-  int baud = 38400;
+  int baud = kCybergloveBaud;
   GuideTiming timing;
 };
 
@@ -81,7 +81,7 @@ int calibrateGlove(const GloveOptions& o) {
   GuidedGlove guided(**line, clock);
   const auto identity = guided.open();
   if (!identity) return fail(identity.error());
-  say("{}\n", *identity);
+  printOut("{}\n", *identity);
   if (const auto done = guide(cyberglove::guidedPoses(), o.timing, guided); !done)
     return fail(done.error());
   const auto solved = guided.solve();
@@ -89,7 +89,7 @@ int calibrateGlove(const GloveOptions& o) {
   const auto saved =
       saveDeviceSettings(o.output, "glove", {{"offset", solved->offset}, {"gain", solved->gain}});
   if (!saved) return fail(saved.error());
-  say("\n{}: offsets and gains of this hand\n", o.output);
+  printOut("\n{}: offsets and gains of this hand\n", o.output);
   return kExitDone;
 }
 

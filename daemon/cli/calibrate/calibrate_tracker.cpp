@@ -33,7 +33,9 @@ struct TrackerOptions {
   std::vector<std::string> steps = {"alignment", "boresight"};
   GuideTiming timing;
 
-  bool told() const { return !alignment.empty() || !boresight.empty() || !hemisphere.empty(); }
+  bool hasOptions() const {
+    return !alignment.empty() || !boresight.empty() || !hemisphere.empty();
+  }
   bool has(const char* step) const {
     return std::find(steps.begin(), steps.end(), step) != steps.end();
   }
@@ -44,7 +46,7 @@ std::string keyOf(const char* form, int station) {
 }
 constexpr const char *kAlignmentKey = "alignment{}_cm", *kBoresightKey = "boresight{}_wxyz";
 
-int tell(const TrackerOptions& o) {
+int setFromOptions(const TrackerOptions& o) {
   auto values = Json::object();
   const auto put = [&](const char* key, const std::vector<double>& list) {
     if (!list.empty()) values[keyOf(key, o.station)] = numbers(list);
@@ -60,7 +62,7 @@ int tell(const TrackerOptions& o) {
   }
   if (const auto saved = saveDeviceSettings(o.output, "tracker", values); !saved)
     return fail(saved.error());
-  say("{}: station {}\n", o.output, o.station);
+  printOut("{}: station {}\n", o.output, o.station);
   return kExitDone;
 }
 
@@ -114,8 +116,8 @@ class GuidedStation final : public Guided {
 
 // Returns the frame in which the running merlind reports this station's samples. Errors: kTimeout
 // (merlind has not published it yet).
-Result<StationFrame> presentFrame(const shm::DevicesSegment& segment, int station) {
-  const auto frames = segment.tracker_frames.read();
+Result<StationFrame> presentFrame(const shm::DeviceSlots& devices, int station) {
+  const auto frames = devices.tracker_frames->read();
   if (!frames) return Error{Errc::kTimeout, "merlind is still starting: try again"};
   const auto s = static_cast<std::size_t>(station - 1);
   StationFrame frame;
@@ -167,13 +169,10 @@ Result<Ok> checkKept(const TrackerOptions& o, const StationFrame& present) {
 
 int guideTracker(const TrackerOptions& o) {
   if (const auto writable = checkWritable(o.output); !writable) return fail(writable.error());
-  const auto station = static_cast<std::size_t>(o.station - 1);
-  auto samples = LiveSamples<TrackerSample>::open(
-      o.instance, shm::kTracker, [station](const shm::DevicesSegment& s) -> const auto& {
-        return s.tracker[station];
-      });
+  auto samples =
+      LiveSamples<TrackerSample>::open(o.instance, fmt::format("tracker{}", o.station), "tracker");
   if (!samples) return fail(samples.error());
-  const auto present = presentFrame(samples->segment(), o.station);
+  const auto present = presentFrame(samples->devices(), o.station);
   if (!present) return fail(present.error());
   if (const auto kept = checkKept(o, *present); !kept) return fail(kept.error());
   const std::size_t first = o.has("alignment") ? fastrak::kOrigin : fastrak::kAhead;
@@ -187,8 +186,8 @@ int guideTracker(const TrackerOptions& o) {
       o.output, "tracker",
       {{keyOf(kAlignmentKey, o.station), alignment}, {keyOf(kBoresightKey, o.station), boresight}});
   if (!saved) return fail(saved.error());
-  say("\n{}: station {}, alignment {} cm, boresight {}; restart merlind to use it\n", o.output,
-      o.station, alignment.dump(), boresight.dump());
+  printOut("\n{}: station {}, alignment {} cm, boresight {}; restart merlind to use it\n", o.output,
+           o.station, alignment.dump(), boresight.dump());
   return kExitDone;
 }
 
@@ -231,7 +230,8 @@ void addCalibrateTracker(Command calibrate, Run& run) {
       .expected(3)
       .range(-1.0, 1.0);
   command.option("-o,--output", o->output, "The configuration file to write into").required();
-  command.callback([o, &run] { run = [o] { return o->told() ? tell(*o) : guideTracker(*o); }; });
+  command.callback(
+      [o, &run] { run = [o] { return o->hasOptions() ? setFromOptions(*o) : guideTracker(*o); }; });
 }
 
 }  // namespace merlin::cli

@@ -36,14 +36,14 @@ struct Commands {
 };
 
 // Reads standard input: each line starts the next phase.
-void goOn(Commands& commands) {
+void readPhaseSteps(Commands& commands) {
   char text[256];
   const ssize_t n = ::read(commands.step_fd, text, sizeof text);
   if (n <= 0) commands.step_fd = -1;  // end of input
   for (ssize_t i = 0; i < n; ++i) {
     if (text[i] != '\n') continue;
     ++commands.phase;
-    say("phase {} of {}\n", commands.phase % commands.phases + 1, commands.phases);
+    printOut("phase {} of {}\n", commands.phase % commands.phases + 1, commands.phases);
     std::fflush(stdout);
   }
 }
@@ -67,7 +67,7 @@ int serve(const io::PtyMaster& line, emulate::Emulator& device, const Clock& clo
         {line.fd(), POLLIN, 0}, {commands.stop_fd, POLLIN, 0}, {commands.step_fd, POLLIN, 0}};
     if (::ppoll(fds, 3, &limit, nullptr) < 0 && errno != EINTR) return kExitFailed;
     if (fds[1].revents != 0) return kExitDone;
-    if (fds[2].revents != 0) goOn(commands);
+    if (fds[2].revents != 0) readPhaseSteps(commands);
     if (fds[0].revents == 0) continue;
     const ssize_t n = ::read(line.fd(), received, sizeof received);
     if (n > 0) device.receive(std::span(received, static_cast<std::size_t>(n)), clock.now());
@@ -97,7 +97,7 @@ int emulateDevice(const EmulateOptions& options) {
   emulate::MotionScript played = *script;
   if (options.step) played.held = &phase;
   const auto device = entry->make(settings, played, start);
-  say("{} on pty:{}\n", entry->name, options.link.empty() ? line->slavePath() : options.link);
+  printOut("{} on pty:{}\n", entry->name, options.link.empty() ? line->slavePath() : options.link);
   std::fflush(stdout);
   return serve(*line, *device, clock,
                {stop.get(), options.step ? STDIN_FILENO : -1, script->phases.size(), phase});

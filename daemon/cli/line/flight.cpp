@@ -15,7 +15,7 @@ int flight(const std::string& instance) {
   const auto files = askRole(instance, "devices", {"flight", "", std::chrono::seconds(10)});
   if (!files) return fail(files.error());
   for (const auto& file : nlohmann::json::parse(*files, nullptr, false))
-    say("{}\n", file.get<std::string>());
+    printOut("{}\n", file.get<std::string>());
   return kExitDone;
 }
 

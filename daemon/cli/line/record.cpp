@@ -99,8 +99,7 @@ int record(const RecordOptions& options) {
   if (!address) return fail(address.error());
   if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
   const DriverEntry* driver = driverNamed(options.device);
-  const bool ball = driver && driver->kind == SampleKind::kBall;
-  const int baud = options.baud > 0 ? options.baud : ball ? 9600 : 38400;
+  const int baud = options.baud > 0 ? options.baud : driver ? driver->baud : LineSettings().baud;
   auto line = io::openPort(*address, baud);
   if (!line) return fail(line.error());
   const SystemClock clock;
@@ -123,7 +122,8 @@ int record(const RecordOptions& options) {
   if (!written) return fail(written.error());
   std::size_t bytes = 0;
   for (const auto& chunk : recording.transcript.chunks) bytes += chunk.bytes.size();
-  say("{}: {} bytes in {} pieces\n", options.output, bytes, recording.transcript.chunks.size());
+  printOut("{}: {} bytes in {} pieces\n", options.output, bytes,
+           recording.transcript.chunks.size());
   return identity ? kExitDone : fail(identity.error());
 }
 
@@ -162,7 +162,7 @@ int replay(const ReplayOptions& options) {
   if (!transcript) return fail(transcript.error());
   const auto line = io::PtyMaster::open(options.link);
   if (!line) return fail(line.error());
-  say("{} on pty:{}\n", options.file, options.link.empty() ? line->slavePath() : options.link);
+  printOut("{} on pty:{}\n", options.file, options.link.empty() ? line->slavePath() : options.link);
   std::fflush(stdout);
   const SystemClock clock;
   do {
@@ -196,9 +196,9 @@ void addRecord(Command app, Run& run) {
               "Driver that sets up and polls the device; without a driver, the line is only read")
       .oneOf(names);
   command
-      .option(
-          "--baud", options->baud,
-          "Speed of the line in bits per second; the default is 9600 for a ball, otherwise 38400")
+      .option("--baud", options->baud,
+              "Speed of the line in bits per second; the default is that of the device, 38400 if "
+              "none is named")
       .baud();
   command
       .option("--seconds", options->seconds,

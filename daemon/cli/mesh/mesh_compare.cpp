@@ -6,6 +6,7 @@
 
 #include "daemon/base/clock.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/compare_options.h"
 #include "daemon/cli/mesh/compare_pictures.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/print.h"
@@ -89,9 +90,9 @@ std::string cell(const std::optional<double>& value) {
 
 void printTable(const CompareOptions& options, const Answer& answer) {
   const render::compare::Comparison& c = answer.comparison;
-  say("{} (A) and {} (B): diagonal of A {:.6g}, {:.1f} s\n", options.original, options.other,
-      c.diagonal, answer.seconds);
-  say("{:30}{:>12}{:>12}{:>12}{:>16}\n", "", "A to B", "B to A", "larger", "% of diagonal");
+  printOut("{} (A) and {} (B): diagonal of A {:.6g}, {:.1f} s\n", options.original, options.other,
+           c.diagonal, answer.seconds);
+  printOut("{:30}{:>12}{:>12}{:>12}{:>16}\n", "", "A to B", "B to A", "larger", "% of diagonal");
   const render::compare::Deviation symmetric = c.symmetric();
   const auto forward = figuresOf(c.forward), backward = figuresOf(c.backward);
   const auto larger = figuresOf(symmetric);
@@ -99,15 +100,16 @@ void printTable(const CompareOptions& options, const Answer& answer) {
     if (!larger[i].value) continue;
     const std::string percent =
         larger[i].is_length ? fmt::format("{:.4f}", 100 * *larger[i].value / c.diagonal) : "";
-    say("{:30}{:>12}{:>12}{:>12}{:>16}\n", larger[i].name, cell(forward[i].value),
-        cell(backward[i].value), cell(larger[i].value), percent);
+    printOut("{:30}{:>12}{:>12}{:>12}{:>16}\n", larger[i].name, cell(forward[i].value),
+             cell(backward[i].value), cell(larger[i].value), percent);
   }
   for (std::size_t i = 0; i < symmetric.features.size(); ++i) {
-    say("{:30}{:>12.4g}{:>12.4g}{:>12.4g}\n", symmetric.features[i].name + " RMS",
-        c.forward.features[i].rms, c.backward.features[i].rms, symmetric.features[i].rms);
+    printOut("{:30}{:>12.4g}{:>12.4g}{:>12.4g}\n", symmetric.features[i].name + " RMS",
+             c.forward.features[i].rms, c.backward.features[i].rms, symmetric.features[i].rms);
   }
   if (answer.changed_percent) {
-    say("pixels that differ by more than 15 %: {:.3g} % of the model's pixels "
+    printOut(
+        "pixels that differ by more than 15 %: {:.3g} % of the model's pixels "
         "({}/difference.png)\n",
         *answer.changed_percent, options.pictures);
   }
@@ -182,22 +184,9 @@ void addMeshCompare(Command mesh, Run& run) {
       .required()
       .typeName("B");
   options->choice.addTo(command);
-  command
-      .option("--samples", options->settings.samples,
-              "Number of points sampled on each surface, for all results except the maximum")
-      .range(std::size_t{1}, std::size_t{1'000'000'000})
-      .showDefault();
-  command.option("--seed", options->settings.seed, "Seed of the sampling").showDefault();
-  command
-      .option("--width", options->settings.width_percent,
-              "Width of the interval that contains the maximum, in percent of the diagonal of A's "
-              "bounding box")
-      .positive()
-      .showDefault();
+  addCompareOptions(command, options->settings);
   command.option("--feature", options->settings.features,
                  "Features to compare; the default is every feature that both surfaces have");
-  command.option("--threads", options->settings.threads,
-                 "Number of threads; 0: all cores. The results do not depend on this number");
   command
       .option(
           "--pictures", options->pictures,

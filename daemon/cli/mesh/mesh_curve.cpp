@@ -1,17 +1,17 @@
 // merlin mesh curve: tabulates the estimated and the measured error over the number of triangles.
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/compare_options.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/print.h"
 #include "daemon/cli/progress.h"
 #include "daemon/cli/svg_chart.h"
-#include "render/compare/compare.h"
+#include "render/compare/error_curve.h"
 
 namespace merlin::cli {
 namespace {
@@ -22,63 +22,24 @@ struct CurveOptions {
   render::compare::CompareSettings settings{.samples = 100'000};
 };
 
-// Comparison of one resolution with the finest; lengths in model units.
-struct Row {
-  std::size_t level, triangles;
-  double estimate;
-  render::compare::Deviation error;
-};
+using render::compare::ErrorCurve;
+using render::compare::ErrorPoint;
 
-struct Curve {
-  double diagonal = 0;
-  std::vector<Row> rows;  // finest first
-};
-
-// Selects levels: from half of the finest level's triangles down, `steps_an_octave` per halving of
-// the number of triangles, and the coarsest level.
-std::vector<std::size_t> levelsOf(const render::lod::Dendrogram& model,
-                                  std::size_t steps_an_octave) {
-  std::vector<std::size_t> levels;
-  const auto all = static_cast<double>(model.triangleCount());
-  const auto least = static_cast<double>(model.trianglesAt(model.levels() - 1));
-  for (double step = 1;; ++step) {
-    const double triangles = all * std::exp2(-step / static_cast<double>(steps_an_octave));
-    if (triangles < std::max(least, 1.0)) break;
-    const std::size_t level = model.levelFor(static_cast<std::size_t>(triangles));
-    if (levels.empty() || levels.back() != level) levels.push_back(level);
-  }
-  const std::size_t coarsest = model.levels() - 1;
-  if (levels.empty() || levels.back() != coarsest) levels.push_back(coarsest);
-  return levels;
-}
-
-Result<Curve> measure(const render::lod::Dendrogram& model, const CurveOptions& options) {
+Result<ErrorCurve> measure(const render::lod::Dendrogram& model, const CurveOptions& options) {
   const SystemClock clock;
   ProgressBar bar("comparing", "resolutions", clock);
-  const std::vector<std::size_t> levels = levelsOf(model, options.steps_an_octave);
-  const render::mesh::Mesh original = render::lod::extract(model, 0);
-  Curve curve;
-  for (const std::size_t level : levels) {
-    const auto done = static_cast<double>(curve.rows.size());
-    const auto compared = render::compare::compare(
-        original, render::lod::extract(model, level), options.settings, [&](const auto& p) {
-          bar.update((done + p.share) / static_cast<double>(levels.size()), curve.rows.size());
-          return true;
-        });
-    if (!compared) return compared.error();
-    curve.diagonal = compared->diagonal;
-    curve.rows.push_back({level, model.trianglesAt(level),
-                          static_cast<double>(model.errorAt(level)), compared->symmetric()});
-  }
-  bar.finish(curve.rows.size());
+  auto curve = render::compare::errorCurve(
+      model, options.steps_an_octave, options.settings,
+      [&](double share, std::size_t compared) { bar.update(share, compared); });
+  if (curve) bar.finish(curve->points.size());
   return curve;
 }
 
-std::string csvOf(const Curve& curve) {
+std::string csvOf(const ErrorCurve& curve) {
   std::string out =
       "triangles,level,estimate,rms,mean,max_low,max_high,estimate_percent,rms_percent,"
       "mean_percent,max_low_percent,max_high_percent\n";
-  for (const Row& r : curve.rows) {
+  for (const ErrorPoint& r : curve.points) {
     const double lengths[] = {r.estimate, r.error.rms, r.error.mean, r.error.max.low,
                               r.error.max.high};
     out += fmt::format("{},{}", r.triangles, r.level);
@@ -92,11 +53,11 @@ std::string csvOf(const Curve& curve) {
 
 // The curve as an SVG chart: number of triangles (x) and errors in percent of the diagonal (y),
 // both on logarithmic axes.
-std::string svgOf(const Curve& curve, const std::string& title) {
+std::string svgOf(const ErrorCurve& curve, const std::string& title) {
   ChartLine estimate{"estimate", "#7f7f7f", {}}, rms{"RMS", "#1f77b4", {}},
       most{"maximum, at most", "#d62728", {}};
   double low = 1e30, high = 0;
-  for (const Row& r : curve.rows) {
+  for (const ErrorPoint& r : curve.points) {
     const auto triangles = static_cast<double>(r.triangles);
     const auto add = [&](ChartLine& line, double length) {
       const double percent = 100 * length / curve.diagonal;
@@ -108,20 +69,20 @@ std::string svgOf(const Curve& curve, const std::string& title) {
     add(rms, r.error.rms);
     add(most, r.error.max.high);
   }
-  const auto first = static_cast<double>(curve.rows.back().triangles);
-  const auto last = static_cast<double>(curve.rows.front().triangles);
+  const auto first = static_cast<double>(curve.points.back().triangles);
+  const auto last = static_cast<double>(curve.points.front().triangles);
   return svgChart(svgText(title), "error in % of the diagonal over number of triangles",
                   {first, std::max(last, first + 1)}, {std::min(low, high / 10), high},
                   {estimate, rms, most});
 }
 
-void printTable(const Curve& curve) {
-  say("{:>10}{:>12}{:>12}{:>16}{:>16}   % of the diagonal, {:.6g}\n", "triangles", "estimate",
-      "RMS", "max, at least", "max, at most", curve.diagonal);
+void printTable(const ErrorCurve& curve) {
+  printOut("{:>10}{:>12}{:>12}{:>16}{:>16}   % of the diagonal, {:.6g}\n", "triangles", "estimate",
+           "RMS", "max, at least", "max, at most", curve.diagonal);
   const double percent = 100 / curve.diagonal;
-  for (const Row& r : curve.rows) {
-    say("{:>10}{:>12.4g}{:>12.4g}{:>16.4g}{:>16.4g}\n", r.triangles, percent * r.estimate,
-        percent * r.error.rms, percent * r.error.max.low, percent * r.error.max.high);
+  for (const ErrorPoint& r : curve.points) {
+    printOut("{:>10}{:>12.4g}{:>12.4g}{:>16.4g}{:>16.4g}\n", r.triangles, percent * r.estimate,
+             percent * r.error.rms, percent * r.error.max.low, percent * r.error.max.high);
   }
 }
 
@@ -165,20 +126,7 @@ void addMeshCurve(Command mesh, Run& run) {
               "Number of resolutions per halving of the triangles")
       .range(1, 16)
       .showDefault();
-  command
-      .option("--samples", options->settings.samples,
-              "Number of points sampled on each surface for the RMS")
-      .range(std::size_t{1}, std::size_t{1'000'000'000})
-      .showDefault();
-  command.option("--seed", options->settings.seed, "Seed of the sampling").showDefault();
-  command
-      .option("--width", options->settings.width_percent,
-              "Width of the interval that contains the maximum, in percent of the diagonal of the "
-              "bounding box")
-      .positive()
-      .showDefault();
-  command.option("--threads", options->settings.threads,
-                 "Number of threads; 0: all cores. The results do not depend on this number");
+  addCompareOptions(command, options->settings);
   command.callback([options, &run] { run = [options] { return curveOfModel(*options); }; });
 }
 

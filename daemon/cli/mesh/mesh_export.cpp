@@ -27,7 +27,7 @@ Result<std::size_t> levelOf(const ExportOptions& options, const render::lod::Den
   if (!options.within) return options.choice.levelOf(model, options.model);
   if (model.levels() == 1) return hasOneResolution(options.model);
   const render::mesh::Mesh coarsest = render::lod::extract(model, model.levels() - 1);
-  if (const auto free = render::mesh::checkBeside(options.output, coarsest); !free)
+  if (const auto free = render::mesh::checkCompanions(options.output, coarsest); !free)
     return free.error();
   const SystemClock clock;
   ProgressBar bar("comparing", "resolutions", clock);
@@ -39,8 +39,8 @@ Result<std::size_t> levelOf(const ExportOptions& options, const render::lod::Den
       });
   if (!found) return Error{found.error().code, options.model + ": " + found.error().what};
   bar.finish(compared);
-  say("distance from the finest resolution at most {:.4g}, {:.4g} % of the diagonal\n",
-      found->at_most, found->percent);
+  printOut("distance from the finest resolution at most {:.4g}, {:.4g} % of the diagonal\n",
+           found->at_most, found->percent);
   return found->level;
 }
 
@@ -56,8 +56,8 @@ int exportAll(const ExportOptions& options) {
   if (!model) return fail(model.error());
   const auto left_out = render::inventor::writeMultiresolution(options.output, *model);
   if (!left_out) return fail(left_out.error());
-  say("{}: {} to {} triangles, {} levels\n", options.output,
-      model->trianglesAt(model->levels() - 1), model->triangleCount(), model->levels());
+  printOut("{}: {} to {} triangles, {} levels\n", options.output,
+           model->trianglesAt(model->levels() - 1), model->triangleCount(), model->levels());
   printWritten({"iv", *left_out, {}});
   return kExitDone;
 }
@@ -74,8 +74,8 @@ int exportMesh(const ExportOptions& options) {
   const render::mesh::Mesh mesh = render::lod::extract(*model, *level);
   const auto written = render::mesh::writeMesh(options.output, mesh);
   if (!written) return fail(written.error());
-  say("{}: {} triangles, {} vertices, error estimate {:.4g}\n", options.output,
-      mesh.triangleCount(), mesh.vertexCount(), model->errorAt(*level));
+  printOut("{}: {} triangles, {} vertices, error estimate {:.4g}\n", options.output,
+           mesh.triangleCount(), mesh.vertexCount(), model->errorAt(*level));
   printWritten(*written);
   return kExitDone;
 }

@@ -65,20 +65,21 @@ void printText(const std::string& file, const Opened& opened) {
   const render::lod::Dendrogram& model = *opened.model;
   const auto& a = model.arrays();
   const render::mesh::Box box = boxOf(model);
-  say("{}: {} triangles, {} vertices\n", file, model.triangleCount(), model.vertexCount());
+  printOut("{}: {} triangles, {} vertices\n", file, model.triangleCount(), model.vertexCount());
   if (model.levels() > 1) {
-    say("  levels    {}, down to {} triangles (error estimate {:.3g})\n", model.levels(),
-        model.trianglesAt(model.levels() - 1), model.errorAt(model.levels() - 1));
+    printOut("  levels    {}, down to {} triangles (error estimate {:.3g})\n", model.levels(),
+             model.trianglesAt(model.levels() - 1), model.errorAt(model.levels() - 1));
   }
-  for (const auto& f : a.features) say("  feature   {} x {}\n", f.name, f.dimension);
-  if (!a.texture.empty()) say("  texture   {} bytes\n", a.texture.size());
-  say("  box       {:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}, diagonal {:.6g}\n", box.low[0],
-      box.low[1], box.low[2], box.high[0], box.high[1], box.high[2], box.diagonal());
-  if (!opened.mended.empty()) say("  {}\n", opened.mended);
+  for (const auto& f : a.features) printOut("  feature   {} x {}\n", f.name, f.dimension);
+  if (!a.texture.empty()) printOut("  texture   {} bytes\n", a.texture.size());
+  printOut("  box       {:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}, diagonal {:.6g}\n",
+           box.low[0], box.low[1], box.low[2], box.high[0], box.high[1], box.high[2],
+           box.diagonal());
+  if (!opened.mended.empty()) printOut("  {}\n", opened.mended);
   std::string_view about = a.about;
   while (!about.empty()) {
     const std::size_t n = std::min(about.find('\n'), about.size());
-    say("  made by   {}\n", about.substr(0, n));
+    printOut("  made by   {}\n", about.substr(0, n));
     about.remove_prefix(std::min(n + 1, about.size()));
   }
 }

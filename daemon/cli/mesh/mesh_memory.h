@@ -1,5 +1,4 @@
-// Memory of `merlin mesh reduce`: how much is available, how much the command needs, how much it
-// used.
+// Memory of `merlin mesh reduce`: checks that the command stays within a limit.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +9,6 @@
 #include "render/reduce/reduce.h"
 
 namespace merlin::cli {
-
-// Available memory in bytes: the smaller of 15/16 of the machine's free memory and 7/8 of the
-// address space that this process may still use (ulimit -v). A very large number if neither is
-// known.
-std::size_t freeMemory();
-
-// Peak resident memory of this process so far in bytes, mapped files included.
-std::size_t peakMemory();
 
 // Returns how many bytes the reduction of a mesh of this size may use in addition to the mesh, so
 // that the command stays within `limit` bytes. Checks also that all other steps (reading a file of

@@ -82,10 +82,11 @@ Error hasOneResolution(const std::string& path) {
 }
 
 void printWritten(const render::mesh::WrittenMesh& written) {
-  if (!written.beside.empty()) say("  companion files: {}\n", fmt::join(written.beside, " and "));
+  if (!written.companions.empty())
+    printOut("  companion files: {}\n", fmt::join(written.companions, " and "));
   if (!written.left_out.empty())
-    say("  features left out, because the format .{} cannot store them: {}\n", written.format,
-        fmt::join(written.left_out, ", "));
+    printOut("  features left out, because the format .{} cannot store them: {}\n", written.format,
+             fmt::join(written.left_out, ", "));
 }
 
 Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::string> outputs) {

@@ -30,7 +30,7 @@ Result<Ok> appendModel(const PictureOptions& options, const std::string& path,
     const std::size_t level = model->levelFor(
         static_cast<std::size_t>(percent / 100 * static_cast<double>(model->triangleCount())));
     strip.append(painter->draw(level));
-    say("{}: {} of {} triangles\n", path, model->trianglesAt(level), model->triangleCount());
+    printOut("{}: {} of {} triangles\n", path, model->trianglesAt(level), model->triangleCount());
   }
   return Ok{};
 }
@@ -50,7 +50,7 @@ int picture(const PictureOptions& options) {
   const auto written =
       render::image::writePng(options.output, strip.width, strip.height, strip.pixels);
   if (!written) return fail(written.error());
-  say("{}: {} x {}\n", options.output, strip.width, strip.height);
+  printOut("{}: {} x {}\n", options.output, strip.width, strip.height);
   return kExitDone;
 }
 

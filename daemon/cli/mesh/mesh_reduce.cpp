@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/process_memory.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/mesh/mesh_memory.h"
@@ -29,7 +30,7 @@ struct ReduceOptions {
 };
 
 // Time and memory of the command, for the report.
-struct Took {
+struct Usage {
   double reducing = 0, all = 0;  // reduction alone, and with reading and writing [s]
   std::size_t limit = 0;         // memory limit [bytes]
 };
@@ -49,10 +50,10 @@ Result<render::reduce::Weights> weightsOf(const ReduceOptions& options,
 double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
 
 void report(const ReduceOptions& options, const render::mesh::LoadedMesh& loaded,
-            const render::reduce::ReduceReport& r, const Took& took) {
+            const render::reduce::ReduceReport& r, const Usage& usage) {
   const float diagonal = render::mesh::boundingBox(loaded.mesh.positions).diagonal();
   const double percent = diagonal > 0 ? 100.0 * static_cast<double>(r.error / diagonal) : 0;
-  const double rate = took.reducing > 0 ? static_cast<double>(r.collapses) / took.reducing : 0;
+  const double rate = usage.reducing > 0 ? static_cast<double>(r.collapses) / usage.reducing : 0;
   if (options.json) {
     nlohmann::ordered_json json = {{"output", options.output},
                                    {"cost", options.settings.cost},
@@ -61,11 +62,11 @@ void report(const ReduceOptions& options, const render::mesh::LoadedMesh& loaded
                                    {"triangles_left", r.triangles},
                                    {"triangles_by_all_rules", r.by_all_rules},
                                    {"collapses", r.collapses},
-                                   {"seconds", took.reducing},
-                                   {"seconds_all", took.all},
+                                   {"seconds", usage.reducing},
+                                   {"seconds_all", usage.all},
                                    {"collapses_per_second", rate},
                                    {"peak_memory_mb", megabytes(peakMemory())},
-                                   {"memory_limit_mb", megabytes(took.limit)},
+                                   {"memory_limit_mb", megabytes(usage.limit)},
                                    {"blocks", r.blocks},
                                    {"error_estimate", r.error},
                                    {"error_estimate_percent", percent},
@@ -76,30 +77,31 @@ void report(const ReduceOptions& options, const render::mesh::LoadedMesh& loaded
     printJsonLine(json);
     return;
   }
-  say("{}: {} triangles down to {} in {} collapses ({})\n", options.output,
-      loaded.mesh.triangleCount(), r.triangles, r.collapses, r.stopped);
+  printOut("{}: {} triangles down to {} in {} collapses ({})\n", options.output,
+           loaded.mesh.triangleCount(), r.triangles, r.collapses, r.stopped);
   if (r.by_all_rules > r.triangles) {
-    say("  all constraints were satisfied down to {} triangles, and not all of them below\n",
-        r.by_all_rules);
+    printOut("  all constraints were satisfied down to {} triangles, and not all of them below\n",
+             r.by_all_rules);
   }
-  say("  {:.2f} s, {:.0f} collapses per second; {:.2f} s with reading and writing\n", took.reducing,
-      rate, took.all);
-  say("  peak memory {:.0f} MB, limit {:.0f} MB{}\n", megabytes(peakMemory()),
-      megabytes(took.limit), r.blocks > 1 ? fmt::format(", {} blocks", r.blocks) : "");
-  say("  error estimate of the coarsest level {:.4g} ({:.3g} % of the diagonal); {} flips "
+  printOut("  {:.2f} s, {:.0f} collapses per second; {:.2f} s with reading and writing\n",
+           usage.reducing, rate, usage.all);
+  printOut("  peak memory {:.0f} MB, limit {:.0f} MB{}\n", megabytes(peakMemory()),
+           megabytes(usage.limit), r.blocks > 1 ? fmt::format(", {} blocks", r.blocks) : "");
+  printOut(
+      "  error estimate of the coarsest level {:.4g} ({:.3g} % of the diagonal); {} flips "
       "refused\n",
       r.error, percent, r.flips_refused);
-  if (const std::string mended = mendedText(loaded); !mended.empty()) say("  {}\n", mended);
+  if (const std::string mended = mendedText(loaded); !mended.empty()) printOut("  {}\n", mended);
 }
 
 Result<render::reduce::Reduction> reduceLoaded(const ReduceOptions& options,
-                                               const render::mesh::Mesh& mesh, Took& took) {
+                                               const render::mesh::Mesh& mesh, Usage& usage) {
   render::reduce::ReduceSettings settings = options.settings;
   auto weights = weightsOf(options, mesh);
   if (!weights) return weights.error();
   settings.weights = *std::move(weights);
   if (options.lock_borders) settings.locked = render::mesh::borderVertices(mesh);
-  const auto room = roomForReduction(sizeOf(mesh), 0, settings, took.limit);
+  const auto room = roomForReduction(sizeOf(mesh), 0, settings, usage.limit);
   if (!room) return Error{room.error().code, options.input + ": " + room.error().what};
   settings.memory = *room;
 
@@ -113,7 +115,7 @@ Result<render::reduce::Reduction> reduceLoaded(const ReduceOptions& options,
         return true;
       });
   if (!reduction) return reduction;
-  took.reducing = toSeconds(clock.now() - began);
+  usage.reducing = toSeconds(clock.now() - began);
   bar.finish(reduction->report.collapses);
   return reduction;
 }
@@ -152,24 +154,24 @@ Result<Ok> checkOptions(const ReduceOptions& options) {
 int reduceMesh(const ReduceOptions& options) {
   const SystemClock clock;
   const Timestamp began = clock.now();
-  Took took;
-  took.limit = options.memory > 0 ? options.memory : freeMemory();
+  Usage usage;
+  usage.limit = options.memory > 0 ? options.memory : freeMemory();
   if (const auto fits = checkOptions(options); !fits) return fail(fits.error());
-  if (const auto fits = checkRoom(options.input, options.settings, took.limit); !fits)
+  if (const auto fits = checkRoom(options.input, options.settings, usage.limit); !fits)
     return fail(fits.error());
   auto loaded = loadMesh(options.input);
   if (!loaded) return fail(loaded.error());
-  if (const auto done = addTexture(options, loaded->mesh, took.limit); !done)
+  if (const auto done = addTexture(options, loaded->mesh, usage.limit); !done)
     return fail(done.error());
   if (const auto named = render::lod::checkNames(loaded->mesh); !named)
     return fail({named.error().code, options.input + ": " + named.error().what});
-  const auto reduction = reduceLoaded(options, loaded->mesh, took);
+  const auto reduction = reduceLoaded(options, loaded->mesh, usage);
   if (!reduction) return fail(reduction.error());
   const auto written =
       render::lod::writeMrm(options.output, loaded->mesh, reduction->log, options.settings.threads);
   if (!written) return fail(written.error());
-  took.all = toSeconds(clock.now() - began);
-  report(options, *loaded, reduction->report, took);
+  usage.all = toSeconds(clock.now() - began);
+  report(options, *loaded, reduction->report, usage);
   return kExitDone;
 }
 

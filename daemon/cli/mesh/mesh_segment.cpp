@@ -47,21 +47,24 @@ Result<Ok> draw(const SegmentOptions& options, const render::mesh::Mesh& mesh) {
 void report(const SegmentOptions& options, const render::segment::Segmentation& s, double seconds,
             const render::mesh::WrittenMesh& written) {
   if (options.json) {
-    const nlohmann::ordered_json json = {
-        {"output", options.output}, {"segments", s.sizes.size()},
-        {"sizes", s.sizes},         {"vertices", s.labels.size()},
-        {"error", s.error},         {"seconds", seconds},
-        {"beside", written.beside}, {"left_out", written.left_out}};
+    const nlohmann::ordered_json json = {{"output", options.output},
+                                         {"segments", s.sizes.size()},
+                                         {"sizes", s.sizes},
+                                         {"vertices", s.labels.size()},
+                                         {"error", s.error},
+                                         {"seconds", seconds},
+                                         {"companion_files", written.companions},
+                                         {"left_out", written.left_out}};
     printJsonLine(json);
     return;
   }
-  say("{}: {} segments of {} vertices, RMS distance in pattern space {:.4g}, {:.2f} s\n",
-      options.output, s.sizes.size(), s.labels.size(), s.error, seconds);
+  printOut("{}: {} segments of {} vertices, RMS distance in pattern space {:.4g}, {:.2f} s\n",
+           options.output, s.sizes.size(), s.labels.size(), s.error, seconds);
   constexpr std::size_t kMost = 20;
   const std::size_t shown = std::min(kMost, s.sizes.size());
-  say("  sizes {}{}\n",
-      fmt::join(s.sizes.begin(), s.sizes.begin() + static_cast<std::ptrdiff_t>(shown), " "),
-      s.sizes.size() > kMost ? " ..." : "");
+  printOut("  sizes {}{}\n",
+           fmt::join(s.sizes.begin(), s.sizes.begin() + static_cast<std::ptrdiff_t>(shown), " "),
+           s.sizes.size() > kMost ? " ..." : "");
   printWritten(written);
 }
 
@@ -82,7 +85,7 @@ int segmentMesh(const SegmentOptions& options) {
   for (const std::string& text : options.weights) {
     if (const auto set = setWeight(text, settings.weights); !set) return fail(set.error());
   }
-  if (const auto free = render::mesh::checkBeside(options.output, mesh); !free)
+  if (const auto free = render::mesh::checkCompanions(options.output, mesh); !free)
     return fail(free.error());
   const SystemClock clock;
   const Timestamp began = clock.now();

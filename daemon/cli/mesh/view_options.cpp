@@ -1,5 +1,8 @@
 #include "daemon/cli/mesh/view_options.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace merlin::cli {
 
 void View::addTo(Command command) {
@@ -19,14 +22,16 @@ void View::addTo(Command command) {
       .range(0.1, 10.0)
       .showDefault();
   command.option("--backend", backend_name_, "OpenGL implementation that draws without a window")
-      .oneOf({"egl", "osmesa"})
+      .oneOf({std::begin(render::gl::kGlBackendNames), std::end(render::gl::kGlBackendNames)})
       .showDefault();
 }
 
 render::frame::ModelView View::asAsked() const {
   render::frame::ModelView view = static_cast<const render::frame::ModelView&>(*this);
+  const auto* named = std::find(std::begin(render::gl::kGlBackendNames),
+                                std::end(render::gl::kGlBackendNames), backend_name_);
   view.backend =
-      backend_name_ == "osmesa" ? render::gl::GlBackend::kOsmesa : render::gl::GlBackend::kEgl;
+      static_cast<render::gl::GlBackend>(named - std::begin(render::gl::kGlBackendNames));
   return view;
 }
 

@@ -38,7 +38,8 @@ int adapt(const AdaptOptions& options) {
       fmt::format("{}; adapted to {} hands", file->trained.how, recording->hands.size())
           .substr(0, 200);
   if (const auto saved = nn::saveNetwork(options.output, out); !saved) return fail(saved.error());
-  say("{}: adapted to {} hands in {:.2f} s: {:.2f} % of them right (before: {:.2f} %); of hands "
+  printOut(
+      "{}: adapted to {} hands in {:.2f} s: {:.2f} % of them right (before: {:.2f} %); of hands "
       "like those of the training data {:.2f} % right (before: {:.2f} %)\n",
       options.output, recording->hands.size(), seconds, 100 * adapted->hands_after,
       100 * adapted->hands_before, 100 * adapted->drawn_after, 100 * adapted->drawn_before);
@@ -54,8 +55,8 @@ int synthesizeFile(const SynthesizeOptions& options) {
   const nn::Recording recording = synthesize(options.people);
   if (const auto saved = nn::saveRecording(options.output, recording); !saved)
     return fail(saved.error());
-  say("{}: {} synthetic hands of {} people\n", options.output, recording.hands.size(),
-      options.people.people);
+  printOut("{}: {} synthetic hands of {} people\n", options.output, recording.hands.size(),
+           options.people.people);
   return kExitDone;
 }
 

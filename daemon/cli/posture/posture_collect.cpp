@@ -54,12 +54,11 @@ void drawBars(const GloveSample& sample, bool again) {
 }
 
 // Records the glove for options.seconds, counted from the first sample. Errors: those of
-// SegmentReader::open() (kNotFound: no daemon), kTimeout (no sample for 3 s).
+// DevicesReader::open() (kNotFound: no daemon), kTimeout (no sample for 3 s).
 Result<nn::Recording> collect(const CollectOptions& options) {
-  const auto segment =
-      shm::SegmentReader<shm::DevicesSegment>::open(shm::segmentName(options.instance, "devices"));
-  if (!segment) return segment.error();
-  const auto& glove = (*segment)->glove;
+  const auto devices = shm::DevicesReader::open(shm::segmentName(options.instance, "devices"));
+  if (!devices) return devices.error();
+  const auto& glove = *(*devices)->glove;
   const SystemClock clock;
   nn::Recording recording;
   recording.unit = unitNamed(options.units).value_or(nn::InputUnit::kRadians);
@@ -119,8 +118,8 @@ int run(const CollectOptions& options) {
   if (const auto added = addTo(*recording, options.output); !added) return fail(added.error());
   if (const auto saved = nn::saveRecording(options.output, *recording); !saved)
     return fail(saved.error());
-  say("{}: {} hands of \"{}\" recorded, {} in all\n", options.output, taken, options.label,
-      recording->hands.size());
+  printOut("{}: {} hands of \"{}\" recorded, {} in all\n", options.output, taken, options.label,
+           recording->hands.size());
   for (const nn::Overlap& o : nn::overlapsOf(options.label, recording->hands))
     printError(
         "warning: \"{}\" and \"{}\" are hard to tell apart: their means are {:.1f} standard "

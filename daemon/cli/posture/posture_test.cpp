@@ -53,19 +53,20 @@ nlohmann::ordered_json toJson(const nn::Evaluation& e, bool synthetic) {
 }
 
 void printTable(const nn::Evaluation& e, bool synthetic, double margin) {
-  say("{} of {} {}hands right ({:.3f} %), {} recognised as no posture, {} as another; {} with a "
+  printOut(
+      "{} of {} {}hands right ({:.3f} %), {} recognised as no posture, {} as another; {} with a "
       "margin below {}\n",
       e.all.right, e.all.total, synthetic ? "synthetic " : "", 100 * e.all.accuracy(),
       e.all.rejected, e.all.total - e.all.right - e.all.rejected, e.unsure, margin);
-  if (!e.confusions.empty()) say("\n  hands  shown                recognised as\n");
+  if (!e.confusions.empty()) printOut("\n  hands  shown                recognised as\n");
   for (std::size_t n = 0; n < std::min(kShown, e.confusions.size()); ++n) {
     const nn::Confusion& c = e.confusions[n];
-    say("  {:5}  {:19}  {}\n", c.hands, c.shown, c.taken_for.empty() ? "-" : c.taken_for);
+    printOut("  {:5}  {:19}  {}\n", c.hands, c.shown, c.taken_for.empty() ? "-" : c.taken_for);
   }
-  say("\n  posture                right         margin: least  mean\n");
+  printOut("\n  posture                right         margin: least  mean\n");
   for (const nn::PostureScore& p : e.postures)
-    say("  {:19}  {:5} / {:5}        {:5.2f}  {:5.2f}\n", p.posture, p.score.right, p.score.total,
-        p.least_margin, p.mean_margin);
+    printOut("  {:19}  {:5} / {:5}        {:5.2f}  {:5.2f}\n", p.posture, p.score.right,
+             p.score.total, p.least_margin, p.mean_margin);
 }
 
 int test(const TestOptions& options) {
@@ -82,8 +83,8 @@ int test(const TestOptions& options) {
     json["nearest_mean"] = n.mean;
     json["nearest_neighbour"] = n.nearest;
     if (!options.json)
-      say("for comparison, from {}: nearest mean {:.3f} %, nearest neighbour {:.3f} %\n",
-          options.beside, 100 * n.mean, 100 * n.nearest);
+      printOut("for comparison, from {}: nearest mean {:.3f} %, nearest neighbour {:.3f} %\n",
+               options.beside, 100 * n.mean, 100 * n.nearest);
   }
   if (options.json) {
     printJsonLine(json);

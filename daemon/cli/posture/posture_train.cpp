@@ -11,8 +11,7 @@
 #include "daemon/cli/posture/posture.h"
 #include "daemon/cli/print.h"
 #include "daemon/cli/progress.h"
-#include "nn/evaluate.h"
-#include "nn/folds.h"
+#include "nn/cross_validation.h"
 
 namespace merlin::cli {
 namespace {
@@ -31,42 +30,45 @@ Result<nn::Recording> trainingHands(const TrainOptions& options) {
   return synthesize({.people = 20, .takes = 2, .postures = 8});
 }
 
-Result<nn::Fitted> fitWithBar(const nn::DataSet& hands, const nn::FitSettings& settings,
-                              const std::string& title, double& seconds) {
+// Calls `work` with a progress callback of nn::fit() that draws a bar; `seconds` is set to the time
+// that it took.
+template <typename Work>
+auto withBar(const std::string& title, double& seconds, const Work& work) {
   const SystemClock clock;
   const Timestamp began = clock.now();
   ProgressBar bar(title, "passes", clock);
   std::size_t passes = 0;
-  auto fitted = nn::fit(hands, settings, [&](double share, const nn::CurvePoint& point) {
+  auto result = work([&](double share, const nn::CurvePoint& point) {
     passes = point.pass;
     bar.update(share, passes);
     return true;
   });
-  if (fitted) bar.finish(passes);
+  if (result) bar.finish(passes);
   seconds = toSeconds(clock.now() - began);
-  return fitted;
+  return result;
 }
 
 int crossValidate(const nn::Recording& recording, const TrainOptions& options) {
-  double sum = 0, sum_mean = 0, sum_nearest = 0;
+  std::vector<nn::FoldScore> scores;
   for (std::size_t fold = 0; fold < options.folds; ++fold) {
-    const auto [train, test] = nn::splitFold(recording.hands, options.folds, fold);
     double seconds = 0;
-    const auto fitted = fitWithBar(train, options.fit,
-                                   fmt::format("fold {} of {}", fold + 1, options.folds), seconds);
-    if (!fitted) return fail(fitted.error());
-    const double accuracy = nn::score(fitted->network, test).accuracy();
-    const nn::Neighbours beside = nn::neighbours(train, test);
-    say("fold {}: {:.2f} % of {} hands right (nearest mean {:.2f} %, nearest neighbour "
+    const auto score =
+        withBar(fmt::format("fold {} of {}", fold + 1, options.folds), seconds,
+                [&](const nn::FitProgress& progress) {
+                  return nn::scoreFold(recording.hands, options.folds, fold, options.fit, progress);
+                });
+    if (!score) return fail(score.error());
+    printOut(
+        "fold {}: {:.2f} % of {} hands right (nearest mean {:.2f} %, nearest neighbour "
         "{:.2f} %), {:.2f} s\n",
-        fold + 1, 100 * accuracy, test.size(), 100 * beside.mean, 100 * beside.nearest, seconds);
-    sum += accuracy;
-    sum_mean += beside.mean;
-    sum_nearest += beside.nearest;
+        fold + 1, 100 * score->accuracy, score->hands, 100 * score->neighbours.mean,
+        100 * score->neighbours.nearest, seconds);
+    scores.push_back(*score);
   }
-  const double k = static_cast<double>(options.folds) / 100;
-  say("{} folds: {:.2f} % right (nearest mean {:.2f} %, nearest neighbour {:.2f} %)\n",
-      options.folds, sum / k, sum_mean / k, sum_nearest / k);
+  const nn::FoldScore mean = nn::meanOf(scores);
+  printOut("{} folds: {:.2f} % right (nearest mean {:.2f} %, nearest neighbour {:.2f} %)\n",
+           options.folds, 100 * mean.accuracy, 100 * mean.neighbours.mean,
+           100 * mean.neighbours.nearest);
   return kExitDone;
 }
 
@@ -75,8 +77,9 @@ int report(const TrainOptions& options, const nn::Fitted& fitted, double seconds
     const auto written = writeFile(options.curve, curveSvg(fitted.curve, options.output));
     if (!written) return fail(written.error());
   }
-  say("{}", curveText(fitted.curve));
-  say("{}: {} postures from {} hands{} in {:.2f} s; {:.2f} % of the training hands right, "
+  printOut("{}", curveText(fitted.curve));
+  printOut(
+      "{}: {} postures from {} hands{} in {:.2f} s; {:.2f} % of the training hands right, "
       "{:.2f} % of the validation hands\n",
       options.output, fitted.network.postures.size(), fitted.trained.samples,
       fitted.trained.synthetic ? " (synthetic)" : "", seconds, 100 * fitted.training_accuracy,
@@ -91,7 +94,9 @@ int train(TrainOptions options) {
   options.fit.unit = recording->unit;
   if (options.folds > 0) return crossValidate(*recording, options);
   double seconds = 0;
-  auto fitted = fitWithBar(recording->hands, options.fit, "training", seconds);
+  auto fitted = withBar("training", seconds, [&](const nn::FitProgress& progress) {
+    return nn::fit(recording->hands, options.fit, progress);
+  });
   if (!fitted) return fail(fitted.error());
   fitted->trained.synthetic = recording->synthetic;
   const auto saved =

@@ -54,10 +54,10 @@ int print(const AlignOptions& options, AlignAnswer answer) {
     fmt::print("{}\n", answer.text);
     return kExitDone;
   }
-  if (!answer.done.empty()) say("{}: {}\n", options.undo ? "undone" : "redone", answer.done);
+  if (!answer.done.empty()) printOut("{}: {}\n", options.undo ? "undone" : "redone", answer.done);
   if (!options.list && answer.find(options.output))
     std::erase_if(answer.outputs, [&](const auto& o) { return o.name != options.output; });
-  for (const std::string& line : alignmentLines(answer)) say("{}\n", line);
+  for (const std::string& line : alignmentLines(answer)) printOut("{}\n", line);
   return kExitDone;
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr Duration kLook = std::chrono::milliseconds(20);
+constexpr Duration kPollPeriod = std::chrono::milliseconds(20);
 constexpr Duration kPatience = std::chrono::seconds(10);
 
 state::Offset offsetOf(const Json& json) { return {json.at(0).get<double>(), json.at(1)}; }
@@ -70,7 +70,7 @@ Result<AlignAnswer> AlignedWall::askAndWait(const state::AlignRequest& request) 
                                "not show it after {:.0f} s",
                                toSeconds(kPatience))};
     }
-    clock.sleepUntil(clock.now() + kLook, {});
+    clock.sleepUntil(clock.now() + kPollPeriod, {});
   }
 }
 

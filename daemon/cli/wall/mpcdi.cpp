@@ -93,7 +93,8 @@ int exportFile(const ExportOptions& options) {
   if (!bytes) return fail(bytes.error());
   if (const auto written = writeFile(options.file, *bytes); !written) return fail(written.error());
   for (const render::correct::MpcdiOutput& output : outputs)
-    say("{}: region {}, {} x {} pixels\n", options.file, output.name, output.width, output.height);
+    printOut("{}: region {}, {} x {} pixels\n", options.file, output.name, output.width,
+             output.height);
   return kExitDone;
 }
 
@@ -157,8 +158,8 @@ Json correctionJson(const std::string& file, const render::correct::MpcdiRegion&
 }
 
 // What a person wants to know of a region before it is used, to stderr: the JSON goes to stdout.
-void tell(const std::string& file, const render::correct::MpcdiRegion& region,
-          const render::correct::MeasuredCorrection& measured) {
+void printRegion(const std::string& file, const render::correct::MpcdiRegion& region,
+                 const render::correct::MeasuredCorrection& measured) {
   const WarpFigures figures = figuresOf(region, measured.warp);
   printError(
       "{}: region {}: {} x {} pixels, warp of {} x {} cells, moves pixels by up to {:.1f}, "
@@ -189,7 +190,7 @@ int importFile(const ImportOptions& options) {
     if (!options.region.empty() && region.id != options.region) continue;
     const auto measured = mpcdi->measured(region.id);
     if (!measured) return named(measured.error());
-    tell(options.file, region, *measured);
+    printRegion(options.file, region, *measured);
     corrections[region.id] = {{"correction", correctionJson(path, region)}};
   }
   if (corrections.empty()) return named(mpcdi->measured(options.region).error());

@@ -9,7 +9,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 #include "daemon/cli/stop_signals.h"
 
 namespace merlin::cli {
@@ -49,7 +49,9 @@ void write(std::string_view text) {
 
 Result<Ok> RawTerminal::check() {
   if (::isatty(STDIN_FILENO) == 1 && ::isatty(STDOUT_FILENO) == 1) return Ok{};
-  return Error{Errc::kUnsupported, "standard input and output are no terminal"};
+  return Error{
+      Errc::kUnsupported,
+      "standard input or output is not a terminal; run this in a terminal, without redirection"};
 }
 
 RawTerminal::RawTerminal() : signals_(stopSignals()) {

@@ -144,9 +144,9 @@ int dump(const DumpOptions& options) {
     return kExitDone;
   }
   for (const auto& [segment, fields] : all.items()) {
-    say("{}\n", segment);
+    printOut("{}\n", segment);
     for (const auto& [name, field] : fields.items()) {
-      say("  {:28} {} {}\n", name, jsonText(field["value"]), field["unit"].get<std::string>());
+      printOut("  {:28} {} {}\n", name, jsonText(field["value"]), field["unit"].get<std::string>());
     }
   }
   return kExitDone;

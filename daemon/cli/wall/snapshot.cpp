@@ -22,7 +22,7 @@ struct SnapshotOptions {
   bool wall = false;
 };
 
-constexpr Duration kLook = std::chrono::milliseconds(5);
+constexpr Duration kPollPeriod = std::chrono::milliseconds(5);
 constexpr Duration kPatience = std::chrono::seconds(5);
 
 // The next signal of an output: merlind puts it into shared memory.
@@ -37,7 +37,7 @@ Result<render::out::CapturedFrame> signalOf(const SnapshotOptions& options) {
     auto frame = render::out::captureFrame(segment);
     if (!frame && frame.error().code != Errc::kTimeout) return frame;
     if (frame && frame->info.sequence > after) return frame;
-    clock.sleepUntil(clock.now() + kLook, {});
+    clock.sleepUntil(clock.now() + kPollPeriod, {});
   }
   return Error{Errc::kTimeout, fmt::format("merlind shows no frame of output {} within {:.0f} s",
                                            options.output, toSeconds(kPatience))};
@@ -71,8 +71,9 @@ int snapshot(const SnapshotOptions& options) {
   const auto written =
       render::image::writePng(options.file, frame->width, frame->height, frame->pixels);
   if (!written) return fail(written.error());
-  say("{}: {} x {}, frame {}, detail of cost {}{}\n", options.file, frame->width, frame->height,
-      frame->info.sequence, frame->info.cost, frame->info.full_detail ? ", full detail" : "");
+  printOut("{}: {} x {}, frame {}, detail of cost {}{}\n", options.file, frame->width,
+           frame->height, frame->info.sequence, frame->info.cost,
+           frame->info.full_detail ? ", full detail" : "");
   return kExitDone;
 }
 

@@ -24,7 +24,7 @@ void addStatus(Command app, Run& run) {
     run = [options] {
       const auto status = askStatus(options->instance);
       if (!status) return fail(status.error());
-      say("{}", options->json ? status->dump(2) + "\n" : statusTable(*status));
+      printOut("{}", options->json ? status->dump(2) + "\n" : statusTable(*status));
       return kExitDone;
     };
   });

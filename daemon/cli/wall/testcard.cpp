@@ -21,7 +21,7 @@ struct CardOptions {
   std::string card;
 };
 
-constexpr Duration kLook = std::chrono::milliseconds(5);
+constexpr Duration kPollPeriod = std::chrono::milliseconds(5);
 constexpr Duration kPatience = std::chrono::seconds(2);
 
 // Returns when the wall has shown another frame, so that whoever looks next sees the card.
@@ -32,7 +32,7 @@ void awaitFrameAfter(const std::string& instance, std::uint64_t frame) {
   for (const Timestamp until = clock.now() + kPatience; segment && clock.now() < until;) {
     const auto stats = (*segment)->stats.read();
     if (stats && stats->frames > frame) return;
-    clock.sleepUntil(clock.now() + kLook, {});
+    clock.sleepUntil(clock.now() + kPollPeriod, {});
   }
 }
 

@@ -71,17 +71,16 @@ int trace(const TraceOptions& options) {
   const auto frames = collect(**wall, fromSeconds(options.seconds));
   if (!frames) return fail(frames.error());
   std::vector<SampleInstant> samples;
-  const auto devices =
-      shm::SegmentReader<shm::DevicesSegment>::open(shm::segmentName(options.instance, "devices"));
+  const auto devices = shm::DevicesReader::open(shm::segmentName(options.instance, "devices"));
   if (devices && !frames->empty()) {
-    addSamples((*devices)->glove, "glove", *frames, samples);
-    addSamples((*devices)->tracker[0], "tracker", *frames, samples);
-    addSamples((*devices)->ball, "ball", *frames, samples);
+    addSamples(*(*devices)->glove, "glove", *frames, samples);
+    addSamples(*(*devices)->tracker[0], "tracker", *frames, samples);
+    addSamples(*(*devices)->ball, "ball", *frames, samples);
   }
   const std::string json = traceJson(*frames, samples);
   if (const auto written = writeFile(options.output, json); !written) return fail(written.error());
-  say("{}: {} frames, {} samples; open it in ui.perfetto.dev or chrome://tracing\n", options.output,
-      frames->size(), samples.size());
+  printOut("{}: {} frames, {} samples; open it in ui.perfetto.dev or chrome://tracing\n",
+           options.output, frames->size(), samples.size());
   return kExitDone;
 }
 

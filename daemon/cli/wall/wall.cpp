@@ -6,6 +6,7 @@
 #include "daemon/cli/print.h"
 #include "daemon/cli/roles.h"
 #include "daemon/cli/wall/align.h"
+#include "daemon/cli/wall/gpus.h"
 #include "daemon/cli/wall/mpcdi.h"
 #include "daemon/cli/wall/wall_plan.h"
 
@@ -28,7 +29,7 @@ int wall(const WallOptions& options) {
     if (value.empty()) continue;
     const auto done = askRole(options.instance, "wall", {name, value});
     if (!done) return fail(done.error());
-    say("{}: {}\n", name, value);
+    printOut("{}: {}\n", name, value);
   }
   return kExitDone;
 }
@@ -43,7 +44,7 @@ void addWall(Command app, Run& run) {
       "merlind controls the triangles again, or uses the configured rate. plan: "
       "the wall from above; mpcdi: the corrections of outputs, as files; align: moves the "
       "corners of outputs while the wall runs; testcard: a grid, ramps and the like instead of the "
-      "picture.\n"
+      "picture; gpus: the GPUs that it may be drawn on.\n"
       "Example: merlin wall --triangles 20000 --rate 20");
   addInstance(command, options->instance);
   command
@@ -62,6 +63,7 @@ void addWall(Command app, Run& run) {
   addPlan(command, run);
   addTestcard(command, run);
   addMpcdi(command, run);
+  addGpus(command, run);
   // A subcommand's callback comes first, and this one then as well.
   command.callback([options, &run] {
     if (!run) run = [options] { return wall(*options); };

@@ -152,7 +152,7 @@ int plan(const PlanOptions& options) {
     printJsonLine(tableJson(wall));
     return kExitDone;
   }
-  for (const std::string& line : tableLines(wall)) say("{}\n", line);
+  for (const std::string& line : tableLines(wall)) printOut("{}\n", line);
   return kExitDone;
 }
 

@@ -36,7 +36,7 @@ int watch(const WatchOptions& options) {
       [&](const std::string&, const std::string& document) {
         mergeStatus(both, document);
         if (++documents % roles->size() == 0) {
-          say("{}\n", options.json ? both.dump() : statusLine(both));
+          printOut("{}\n", options.json ? both.dump() : statusLine(both));
           std::fflush(stdout);
         }
         return options.seconds <= 0 || toSeconds(clock.now() - began) < options.seconds;

@@ -9,7 +9,7 @@
 #include <pugixml.hpp>
 
 #include "daemon/base/files.h"
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 #include "render/correct/io/archive.h"
 #include "render/correct/io/mpcdi.h"
 #include "render/correct/io/pfm.h"
@@ -166,14 +166,15 @@ Result<std::vector<RegionFiles>> regionsOf(const pugi::xml_document& document) {
   if (!root) return malformed("has no element MPCDI");
   if (const std::string profile = attribute(root, "profile"); profile != "2d") {
     return Error{Errc::kUnsupported,
-                 fmt::format("is of profile \"{}\"; only profile 2d is read, whose warp does not "
-                             "depend on the content",
+                 fmt::format("is of profile \"{}\"; only profile 2d is supported, whose warp does "
+                             "not depend on the content",
                              shown(profile))};
   }
   const std::string version = attribute(root, "version");
   if (!version.starts_with("1.") && !version.starts_with("2.") && version != "1" && version != "2")
-    return Error{Errc::kUnsupported,
-                 fmt::format("is of version \"{}\"; 1.0 and 2.0 are read", shown(version))};
+    return Error{
+        Errc::kUnsupported,
+        fmt::format("is of version \"{}\"; only 1.x and 2.x are supported", shown(version))};
   std::vector<RegionFiles> regions;
   for (const pugi::xml_node& buffer : children(child(root, "display"), "buffer")) {
     for (const pugi::xml_node& node : children(buffer, "region")) {
@@ -230,7 +231,9 @@ Result<MeshInterpolation> interpolationOf(const std::string& name) {
   if (name.empty() || name == "linear" || name == "unknown") return MeshInterpolation::kBilinear;
   return Error{
       Errc::kUnsupported,
-      fmt::format("its interpolation is \"{}\"; linear, smooth and unknown are read", shown(name))};
+      fmt::format("its interpolation is \"{}\"; only \"linear\", \"smooth\" and \"unknown\" are "
+                  "supported",
+                  shown(name))};
 }
 
 using Pixel = std::array<double, 3>;  // 0..1, linear
@@ -258,7 +261,7 @@ Result<MeasuredShares> sharesFrom(const image::Levels& levels, double gamma, con
       if (std::abs(pixel[c] - share * level[c]) <= kTellable) continue;
       return Error{Errc::kUnsupported,
                    fmt::format("its pixel {}, {} has another colour than the rest of the map; only "
-                               "one share for all three channels is read",
+                               "one share for all three channels is supported",
                                i % static_cast<std::size_t>(levels.width),
                                i / static_cast<std::size_t>(levels.width))};
     }

@@ -10,7 +10,7 @@
 #include <xxhash.h>
 
 #include "daemon/base/files.h"
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 #include "render/lod/io/mrm_layout.h"
 
 namespace merlin::render::lod {

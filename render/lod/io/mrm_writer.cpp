@@ -13,7 +13,7 @@
 
 #include "daemon/base/blocks.h"
 #include "daemon/base/files.h"
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 #include "render/lod/io/mrm_file.h"
 #include "render/lod/io/mrm_layout.h"
 #include "render/lod/removal_order.h"

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
-#include "render/mesh/io/beside.h"
+#include "render/mesh/io/companion_files.h"
 #include "render/mesh/io/reader.h"
 #include "render/mesh/io/writer.h"
 
@@ -64,16 +64,16 @@ std::string endingsOf(const Rows& rows) {
   return list;
 }
 
-struct BesideFile {
+struct CompanionFile {
   std::string path, content;
 };
 
 // The companion files that the mesh file refers to: the texture image and the material file.
-std::vector<BesideFile> filesBeside(const MeshWriter& writer, const Mesh& mesh,
-                                    const std::string& path) {
-  if (!isTextured(mesh) || writer.picture != PicturePlace::kBeside) return {};
+std::vector<CompanionFile> companionsOf(const MeshWriter& writer, const Mesh& mesh,
+                                        const std::string& path) {
+  if (!isTextured(mesh) || writer.picture != PicturePlace::kCompanionFile) return {};
   const std::string name = plainName(path), folder = folderOf(path);
-  std::vector<BesideFile> files = {
+  std::vector<CompanionFile> files = {
       {folder + pictureName(mesh, name), {mesh.texture.begin(), mesh.texture.end()}}};
   if (writer.material) files.push_back({folder + name + ".mtl", writer.material(mesh, name)});
   return files;
@@ -82,7 +82,7 @@ std::vector<BesideFile> filesBeside(const MeshWriter& writer, const Mesh& mesh,
 // Whether the companion file exists already, with the same content. Its name was not given by the
 // user, so a file with different content is not overwritten. Errors: kInvalidArgument (different
 // content).
-Result<bool> isThere(const BesideFile& file) {
+Result<bool> isThere(const CompanionFile& file) {
   std::error_code absent;
   if (!std::filesystem::exists(std::filesystem::symlink_status(file.path, absent))) return false;
   const auto there = MappedFile::open(file.path);
@@ -92,17 +92,17 @@ Result<bool> isThere(const BesideFile& file) {
 }
 
 // Writes files, and removes them in its destructor unless keep() was called.
-class Made {
+class WrittenFiles {
  public:
-  Made() = default;
-  ~Made() {
+  WrittenFiles() = default;
+  ~WrittenFiles() {
     std::error_code gone;
     for (const std::string& path : paths_) std::filesystem::remove(path, gone);
   }
-  Made(const Made&) = delete;
-  Made& operator=(const Made&) = delete;
+  WrittenFiles(const WrittenFiles&) = delete;
+  WrittenFiles& operator=(const WrittenFiles&) = delete;
 
-  Result<Ok> make(const BesideFile& file) {
+  Result<Ok> make(const CompanionFile& file) {
     const auto done = writeFile(file.path, file.content);
     if (done) paths_.push_back(file.path);
     return done;
@@ -176,10 +176,10 @@ Result<Ok> checkMeshEnding(const std::string& path) {
                fmt::format("{}: meshes are written as {}", path, endingsOf(kWriters))};
 }
 
-Result<Ok> checkBeside(const std::string& path, const Mesh& mesh) {
+Result<Ok> checkCompanions(const std::string& path, const Mesh& mesh) {
   const MeshWriter* writer = writerFor(path);
   if (!writer) return Ok{};
-  for (const BesideFile& file : filesBeside(*writer, mesh, path)) {
+  for (const CompanionFile& file : companionsOf(*writer, mesh, path)) {
     if (const auto there = isThere(file); !there) return there.error();
   }
   return Ok{};
@@ -196,18 +196,18 @@ Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh) {
   }
   const std::string name = plainName(path);
   WrittenMesh written{writer.ending, {}, {}};
-  Made made;
-  for (const BesideFile& file : filesBeside(writer, mesh, path)) {
+  WrittenFiles files;
+  for (const CompanionFile& file : companionsOf(writer, mesh, path)) {
     const auto there = isThere(file);
     if (!there) return there.error();
-    const auto done = *there ? Result<Ok>(Ok{}) : made.make(file);
+    const auto done = *there ? Result<Ok>(Ok{}) : files.make(file);
     if (!done) return done.error();
-    written.beside.push_back(file.path);
+    written.companions.push_back(file.path);
   }
   const auto done =
       writeFile(path, [&](const WriteBytes& bytes) { return writer.write(mesh, name, bytes); });
   if (!done) return done.error();
-  made.keep();
+  files.keep();
   for (const Feature& f : mesh.features) {
     if (!writer.carries(mesh, f)) written.left_out.push_back(f.name);
   }

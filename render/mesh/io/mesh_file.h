@@ -15,7 +15,7 @@
 //            .stl   binary: triangles only
 //            .glb and .gltf contain the texture image. For .ply, .obj and .iv it is a companion
 //            file in the same folder: for a.obj, a.obj.png (or .jpg) and a.obj.mtl. Unusual
-//            characters of the name are escaped (plainName() in beside.h).
+//            characters of the name are escaped (plainName() in companion_files.h).
 //
 // A returned mesh has passed validate(), tidy() and splitNonManifold(). Nothing throws, nothing is
 // printed. Reentrant.
@@ -58,9 +58,9 @@ Result<LoadedMesh> readMesh(const std::string& path);
 
 // What writeMesh() has written, and what the format could not hold.
 struct WrittenMesh {
-  std::string format;                 // the ending, in lower case
-  std::vector<std::string> left_out;  // names of features; "the texture image"
-  std::vector<std::string> beside;    // paths of the companion files
+  std::string format;                   // the ending, in lower case
+  std::vector<std::string> left_out;    // names of features; "the texture image"
+  std::vector<std::string> companions;  // paths of the companion files
 };
 
 // Checks that writeMesh() supports the ending; call it before long work. Errors: kUnsupported.
@@ -69,7 +69,7 @@ Result<Ok> checkMeshEnding(const std::string& path);
 // Checks that no companion file of writeMesh(path, mesh) has the name of a different existing file;
 // call it before long work. `mesh` may be any mesh with texture coordinates and the same texture
 // image. Errors: kInvalidArgument.
-Result<Ok> checkBeside(const std::string& path, const Mesh& mesh);
+Result<Ok> checkCompanions(const std::string& path, const Mesh& mesh);
 
 // Writes the mesh file and its companion files: all of them completely, or none. Errors: kIo,
 // kNotFound, kUnsupported (an unknown ending; a mesh too large for the format, or without

@@ -12,7 +12,7 @@
 namespace merlin::render::mesh {
 
 // Where a format stores the texture image: nowhere, inside the mesh file, or in a companion file.
-enum class PicturePlace { kNone, kInside, kBeside };
+enum class PicturePlace { kNone, kInside, kCompanionFile };
 
 struct MeshWriter {
   const char* ending;

@@ -54,6 +54,6 @@ void printSeparator(TextSink& out, const Mesh& mesh, const std::string& picture)
   out.print("    ]\n  }}\n}}\n");
 }
 
-const MeshWriter kInventorWriter{"iv", carries, write, PicturePlace::kBeside};
+const MeshWriter kInventorWriter{"iv", carries, write, PicturePlace::kCompanionFile};
 
 }  // namespace merlin::render::mesh

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 #include "render/mesh/io/text_lines.h"
 
 namespace merlin::render::mesh {
@@ -28,7 +28,7 @@ std::uint32_t indexOf(int number, std::size_t count) {
 }
 
 // The largest index that corners refer to, of vertices or of texture coordinates.
-struct Farthest {
+struct MaxIndex {
   std::uint32_t index = 0;
   int number = 0;  // as written in the file
   std::size_t line = 0;
@@ -218,7 +218,7 @@ class ObjParser {
   std::vector<float> colours_;
   std::unordered_map<std::string, std::uint32_t> material_numbers_{{"", 0}};
   std::uint32_t material_ = 0;
-  Farthest vertices_, texcoords_;
+  MaxIndex vertices_, texcoords_;
   bool textured_ = false;
 };
 

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
-#include "daemon/base/text.h"
-#include "render/mesh/io/beside.h"
+#include "daemon/base/printable_text.h"
+#include "render/mesh/io/companion_files.h"
 #include "render/mesh/io/text_lines.h"
 
 namespace merlin::render::mesh {

@@ -50,6 +50,6 @@ bool write(const Mesh& mesh, const std::string& name, const WriteBytes& bytes) {
 
 }  // namespace
 
-const MeshWriter kObjWriter{"obj", carries, write, PicturePlace::kBeside, nullptr, material};
+const MeshWriter kObjWriter{"obj", carries, write, PicturePlace::kCompanionFile, nullptr, material};
 
 }  // namespace merlin::render::mesh

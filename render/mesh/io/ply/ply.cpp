@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 #include "render/mesh/io/ply/ply_body.h"
 #include "render/mesh/io/ply/ply_features.h"
 #include "render/mesh/io/ply/ply_header.h"
@@ -29,20 +29,20 @@ struct Column {
 
 bool isInteger(Scalar type) { return type != Scalar::kFloat32 && type != Scalar::kFloat64; }
 
-const Known* knownAs(std::string_view property) {
-  for (const Known& k : kKnown) {
+const PropertyMapping* mappingOf(std::string_view property) {
+  for (const PropertyMapping& k : kPropertyMappings) {
     if (property == k.property) return &k;
   }
   return nullptr;
 }
 
 bool isKnownFeature(std::string_view name) {
-  return std::any_of(std::begin(kKnown), std::end(kKnown),
-                     [&](const Known& k) { return name == k.feature; });
+  return std::any_of(std::begin(kPropertyMappings), std::end(kPropertyMappings),
+                     [&](const PropertyMapping& k) { return name == k.feature; });
 }
 
 // The factor that turns integer colours into fractions of the range of their type; else 1.
-float scaleOf(const Known* known, Scalar type) {
+float scaleOf(const PropertyMapping* known, Scalar type) {
   if (!known || std::string_view(known->feature) != "colour") return 1;
   if (type == Scalar::kUint8) return 1.0F / 255;
   if (type == Scalar::kUint16) return 1.0F / 65535;
@@ -196,7 +196,7 @@ class Reader {
   }
 
   Column featureColumn(const Property& p, std::uint64_t count) {
-    const Known* known = knownAs(p.name);
+    const PropertyMapping* known = mappingOf(p.name);
     if (!known && isKnownFeature(p.name)) {  // a scalar "colour" cannot hold three components
       leaveOut(p.name, " (is expected as several properties)");
       return {};

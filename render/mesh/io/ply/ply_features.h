@@ -8,12 +8,12 @@ namespace merlin::render::mesh::ply {
 
 // Maps a property to component `offset` of a feature. Several properties may map to the same
 // component; the writer uses the first of them.
-struct Known {
+struct PropertyMapping {
   const char* property;
   const char* feature;
   std::size_t dimension, offset;
 };
-inline constexpr Known kKnown[] = {
+inline constexpr PropertyMapping kPropertyMappings[] = {
     {"nx", "normal", 3, 0},
     {"ny", "normal", 3, 1},
     {"nz", "normal", 3, 2},

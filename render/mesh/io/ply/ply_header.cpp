@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 #include "render/mesh/io/ply/ply_features.h"
 #include "render/mesh/io/text_lines.h"
 
@@ -171,10 +171,10 @@ std::size_t Element::leastBytes(Form form) const noexcept {
 bool hasTexcoord(const Header& header) {
   for (const Element& e : header.elements) {
     for (const Property& p : e.properties) {
-      const auto is = [&](const Known& k) {
+      const auto is = [&](const PropertyMapping& k) {
         return p.name == k.property && std::string_view(k.feature) == "texcoord";
       };
-      if (e.name == "vertex" && !p.list && std::ranges::any_of(kKnown, is)) return true;
+      if (e.name == "vertex" && !p.list && std::ranges::any_of(kPropertyMappings, is)) return true;
     }
   }
   return false;

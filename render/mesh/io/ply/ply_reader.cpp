@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "render/image/image_file.h"
-#include "render/mesh/io/beside.h"
+#include "render/mesh/io/companion_files.h"
 #include "render/mesh/io/ply/ply.h"
 #include "render/mesh/io/ply/ply_header.h"
 #include "render/mesh/io/reader.h"

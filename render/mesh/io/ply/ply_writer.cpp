@@ -15,7 +15,7 @@ namespace {
 // Names of the PLY properties that a feature is written as, one for each dimension.
 std::vector<std::string> propertiesOf(const Feature& f) {
   std::vector<std::string> names(f.dimension);
-  for (const Known& k : kKnown) {
+  for (const PropertyMapping& k : kPropertyMappings) {
     if (f.name == k.feature && f.dimension == k.dimension && names[k.offset].empty()) {
       names[k.offset] = k.property;
     }
@@ -93,6 +93,6 @@ bool write(const Mesh& mesh, const std::string& name, const WriteBytes& bytes) {
 }  // namespace
 }  // namespace ply
 
-const MeshWriter kPlyWriter{"ply", ply::carries, ply::write, PicturePlace::kBeside};
+const MeshWriter kPlyWriter{"ply", ply::carries, ply::write, PicturePlace::kCompanionFile};
 
 }  // namespace merlin::render::mesh

@@ -1,4 +1,4 @@
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 
 #include <cstdint>
 

@@ -10,6 +10,6 @@ namespace merlin {
 // The known word with the smallest optimal string alignment distance (edits of one letter, swaps of
 // two neighbours) from `word`, the first one if several are equally near; empty if the distance
 // exceeds half of the word's length.
-std::string nearest(std::string_view word, const std::vector<std::string>& known);
+std::string nearestWord(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace merlin

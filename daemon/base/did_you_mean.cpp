@@ -1,4 +1,4 @@
-#include "daemon/base/nearest.h"
+#include "daemon/base/did_you_mean.h"
 
 #include <algorithm>
 #include <numeric>
@@ -28,7 +28,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string nearest(std::string_view word, const std::vector<std::string>& known) {
+std::string nearestWord(std::string_view word, const std::vector<std::string>& known) {
   if (word.size() > kLongest) return {};
   std::size_t best = std::max<std::size_t>(word.size() / 2, 1) + 1;
   std::string found;

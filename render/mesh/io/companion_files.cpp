@@ -1,11 +1,11 @@
-#include "render/mesh/io/beside.h"
+#include "render/mesh/io/companion_files.h"
 
 #include <algorithm>
 #include <cctype>
 
 #include <fmt/format.h>
 
-#include "daemon/base/text.h"
+#include "daemon/base/printable_text.h"
 
 namespace merlin::render::mesh {
 

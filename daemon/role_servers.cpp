@@ -1,0 +1,182 @@
+#include "daemon/role_servers.h"
+
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "daemon/base/log.h"
+#include "daemon/serve/spnav_server.h"
+#include "daemon/serve/vrpn_server.h"
+#include "daemon/status/documents.h"
+
+namespace merlin {
+namespace {
+
+constexpr Duration kOnceASecond = std::chrono::seconds(1);
+constexpr Duration kSixtyASecond = std::chrono::microseconds(16'667);
+
+// Puts the JSON pointer of a setting before an error's text.
+Error errorAt(const char* pointer, const Error& error) {
+  return {error.code, fmt::format("{}: {}", pointer, error.what)};
+}
+
+// Address, keys and clients of the socket that sends samples to other machines; without an address
+// if none is configured. Errors: those of the files with the keys.
+Result<status::CurveServer> sampleServerKeys(const ServeSettings& s) {
+  if (s.samples_endpoint.empty()) return status::CurveServer{};
+  auto keys = status::readKeyPair(s.samples_keys);
+  if (!keys) return keys.error();
+  auto clients = status::readPublicKeys(s.samples_clients);
+  if (!clients) return clients.error();
+  return status::CurveServer{s.samples_endpoint, *std::move(keys), *std::move(clients)};
+}
+
+std::optional<status::RendererState> rendererState(const wall::WallRole& wall) {
+  const auto report = wall.renderer();
+  if (!report) return std::nullopt;
+  const render::gl::RendererInfo& info = report->info;
+  return status::RendererState{info.name,
+                               info.vendor,
+                               info.driver,
+                               info.library,
+                               info.node,
+                               info.pci,
+                               info.software,
+                               report->contexts,
+                               report->asynchronous ? "asynchronous" : "direct",
+                               report->corrects ? "gpu" : "cpu",
+                               report->correction_fault};
+}
+
+}  // namespace
+
+shm::Endpoints endpointsOf(const Settings& settings, const std::string& role) {
+  const std::string at =
+      fmt::format("ipc://{}/{}-{}", settings.run_directory, settings.instance, role);
+  return {at + ".status", at + ".command"};
+}
+
+void RoleServers::startServersForOthers(const shm::DeviceSlots& devices) {
+  const ServeSettings& s = parts_.settings.serve;
+  if (!s.spnav_socket.empty()) {
+    servers_.keep("space mouse", [this, &s, &devices]() -> Result<std::unique_ptr<net::Server>> {
+      auto server = serve::SpnavServer::start(s.spnav_socket, devices, watch_, clock_);
+      if (!server) return errorAt("/serve/spnav_socket", server.error());
+      return std::unique_ptr<net::Server>(*std::move(server));
+    });
+  }
+  if (s.vrpn_port > 0) {
+    servers_.keep("VRPN", [this, &s, &devices]() -> Result<std::unique_ptr<net::Server>> {
+      auto server = serve::VrpnServer::start(s.vrpn_port, devices, watch_, clock_);
+      if (!server) return errorAt("/serve/vrpn_port", server.error());
+      return std::unique_ptr<net::Server>(*std::move(server));
+    });
+  }
+}
+
+Result<Ok> RoleServers::startStatus(const std::string& role, CommandOf commands,
+                                    status::StatusServerSettings settings) {
+  const shm::Endpoints at = endpointsOf(parts_.settings, role);
+  settings.status_endpoint = at.status;
+  settings.command_endpoint = at.command;
+  const auto status = settings.publications[0].document;
+  settings.commands = parts_.commands.of(commands);
+  if (commands == CommandOf::kDevices) {
+    for (auto& command : parts_.commands.of(CommandOf::kPanel))
+      settings.commands.push_back(std::move(command));
+  }
+  settings.commands.insert(settings.commands.begin(),
+                           {"status", std::string(findCommand("status")->help),
+                            [status]() -> Result<std::string> { return status(); }});
+  return servers_.startRole(role, std::move(settings));
+}
+
+Result<Ok> RoleServers::startDevices() {
+  const shm::DeviceSlots& devices = parts_.devices->slots();
+  status::StatusServerSettings s;
+  const auto statusNow = [this, &devices] {
+    return parts_.services.addTo(
+        status::devicesStatus(devices, clock_.now(), servers_.health("devices")));
+  };
+  s.publications = {
+      {"status", kOnceASecond, statusNow},
+      {"metrics", kOnceASecond, [&devices] { return status::devicesMetrics(devices); }},
+      {"sample", kSixtyASecond,
+       [this, &devices] { return status::newestSamples(devices, clock_.now()); }}};
+  auto network = sampleServerKeys(parts_.settings.serve);
+  if (!network) return network.error();
+  s.network = *std::move(network);
+  // Shared because a std::function must be copyable.
+  auto health = std::make_shared<status::HealthEvents>(devices);
+  s.events = [this, health] { return deviceEvents(*health); };
+  if (auto started = startStatus("devices", CommandOf::kDevices, std::move(s)); !started)
+    return started;
+  startServersForOthers(devices);
+  return Ok{};
+}
+
+Result<Ok> RoleServers::startWall() {
+  const shm::WallSegment& segment = parts_.wall->segment();
+  const shm::DeviceSlots* remote =
+      parts_.remote_devices ? &parts_.remote_devices->slots() : nullptr;
+  status::StatusServerSettings s;
+  const auto statusNow = [this, &segment, remote] {
+    const auto renderer = rendererState(*parts_.wall);
+    return parts_.services.addTo(status::wallStatus(segment, clock_.now(), servers_.health("wall"),
+                                                    remote, renderer ? &*renderer : nullptr));
+  };
+  s.publications = {{"status", kOnceASecond, statusNow},
+                    {"metrics", kOnceASecond, [&segment] { return status::wallMetrics(segment); }}};
+  // Shared because a std::function must be copyable.
+  auto events = std::make_shared<status::WallEvents>(segment);
+  auto health = remote ? std::make_shared<status::HealthEvents>(*remote) : nullptr;
+  s.events = [this, events, health] { return wallEvents(*events, health.get()); };
+  if (auto started = startStatus("wall", CommandOf::kWall, std::move(s)); !started) return started;
+  if (remote) startServersForOthers(*remote);
+  return Ok{};
+}
+
+// Logs the sentences and adds them to `documents`, as events of that kind.
+void RoleServers::addEvents(std::vector<std::string>& documents, const char* kind,
+                            const std::vector<std::string>& sentences) const {
+  for (const std::string& sentence : sentences) {
+    logInfo("{}", sentence);
+    documents.push_back(status::event(kind, sentence, clock_.now()));
+  }
+}
+
+// Logs the services' events and adds them to `documents`. Each event is delivered once, to the role
+// whose server asks first.
+void RoleServers::addServiceEvents(std::vector<std::string>& documents) {
+  for (const std::string& sentence : parts_.services.takeEvents()) {
+    logWarning("{}", sentence);
+    documents.push_back(status::event("service", sentence, clock_.now()));
+  }
+}
+
+std::vector<std::string> RoleServers::deviceEvents(status::HealthEvents& health) {
+  std::vector<std::string> documents;
+  addEvents(documents, "device", health.take(clock_.now()));
+  addEvents(documents, "flight", parts_.devices->flight().check());
+  addEvents(documents, "server", servers_.events("devices"));
+  addServiceEvents(documents);
+  return documents;
+}
+
+// The events of the wall, its models and its servers and, if the wall uses another machine's
+// devices, those of the devices.
+std::vector<std::string> RoleServers::wallEvents(status::WallEvents& events,
+                                                 status::HealthEvents* remote) {
+  std::vector<std::string> documents;
+  addEvents(documents, "wall", events.take());
+  addEvents(documents, "wall", parts_.wall->viewerEvents());
+  addEvents(documents, "model", parts_.wall->contentEvents());
+  addEvents(documents, "state", parts_.keeper->takeNotices());
+  if (remote) addEvents(documents, "device", remote->take(clock_.now()));
+  addEvents(documents, "server", servers_.events("wall"));
+  addServiceEvents(documents);
+  return documents;
+}
+
+}  // namespace merlin

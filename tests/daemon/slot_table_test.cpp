@@ -1,0 +1,224 @@
+// Readers find the devices' slots by name: where another release, or a hostile writer, has put
+// them, they are found or refused with one error.
+#include "daemon/shm/slot_table.h"
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "daemon/shm/segment.h"
+#include "tests/support/local_devices.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::shm {
+namespace {
+
+// The devices' segment of a later release: it begins as ours does, with another header and a second
+// glove before our slots, and its table is last.
+struct LaterSegment {
+  Header header;
+  alignas(64) SeqSlot<DeviceHealth> left_health;
+  Channel<GloveSample> left_glove;
+  alignas(64) DevicesSegment ours;  // its own header and table are not used
+  alignas(64) Field fields[kMostFields];
+};
+
+// The table of LaterSegment: ours, moved, and the second glove's.
+std::vector<Field> laterFields() {
+  std::vector<Field> fields;
+  constexpr auto kMoved = static_cast<std::uint32_t>(offsetof(LaterSegment, ours));
+  for (Field f : devicesFields()) {
+    if (std::string_view(f.name).starts_with("segment.")) {
+      fields.push_back(f);
+      continue;
+    }
+    f.offset += kMoved;
+    if (f.slot != 0) f.slot += kMoved;
+    if (f.ring != 0) f.ring += kMoved;
+    fields.push_back(f);
+  }
+  for (const Field& f :
+       slotFields<DeviceHealth>("left_glove.health", offsetof(LaterSegment, left_health)))
+    fields.push_back(f);
+  for (const Field& f :
+       channelFields<GloveSample>("left_glove", offsetof(LaterSegment, left_glove)))
+    fields.push_back(f);
+  return fields;
+}
+
+std::unique_ptr<LaterSegment> later() {
+  auto segment = std::make_unique<LaterSegment>();
+  setFields(segment->header, segment->fields, laterFields());
+  return segment;
+}
+
+template <typename Segment>
+Result<SlotTable> tableOf(const Segment& segment) {
+  return SlotTable::read(std::as_bytes(std::span(&segment, 1)), "/it-devices");
+}
+
+TEST(DeviceSlots, AreFoundWhereALaterReleaseHasThem) {
+  const auto segment = later();
+  const auto table = tableOf(*segment);
+  ASSERT_TRUE(table) << table.error().what;
+  const auto slots = DeviceSlots::find(*table, segment->header);
+  ASSERT_TRUE(slots) << slots.error().what;
+  EXPECT_EQ(slots->glove, &segment->ours.glove);
+  EXPECT_EQ(slots->tracker[3], &segment->ours.tracker[3]);
+  EXPECT_EQ(slots->ball_health, &segment->ours.health[kBall]);
+  EXPECT_EQ(slots->actions[kPanelActions], &segment->ours.actions[kPanelActions]);
+  EXPECT_EQ(slots->posture_state, &segment->ours.posture_state);
+}
+
+TEST(DeviceSlots, ASecondGloveIsOneMoreDeviceWithoutANewReader) {
+  const auto segment = later();
+  const auto slots = DeviceSlots::find(*tableOf(*segment), segment->header);
+  ASSERT_TRUE(slots) << slots.error().what;
+  std::vector<std::string> devices;
+  for (const auto& [device, slot] : slots->health) devices.push_back(device);
+  EXPECT_EQ(devices, (std::vector<std::string>{"glove", "tracker", "ball", "left_glove"}));
+  EXPECT_EQ(slots->health[3].slot, &segment->left_health);
+  const auto left = tableOf(*segment)->channel<GloveSample>("left_glove");
+  ASSERT_TRUE(left) << left.error().what;
+  EXPECT_EQ(*left, &segment->left_glove);
+}
+
+TEST(DeviceSlots, OfThisReleaseAreTheMembersOfItsSegment) {
+  const test::LocalDevices devices;
+  EXPECT_EQ(devices.slots().glove, &devices->glove);
+  EXPECT_EQ(devices.slots().hand, &devices->hand);
+  EXPECT_EQ(devices.slots().tracker_frames, &devices->tracker_frames);
+  ASSERT_EQ(devices.slots().health.size(), 3U) << "without the panel";
+}
+
+// A segment of this release, whose table a test damages.
+class SlotTableTest : public testing::Test {
+ protected:
+  SlotTableTest() { setFields(segment_->header, segment_->fields, devicesFields()); }
+
+  Field& field(std::string_view name) {
+    Field* found = std::find_if(std::begin(segment_->fields), std::end(segment_->fields),
+                                [&](const Field& f) { return name == f.name; });
+    EXPECT_NE(found, std::end(segment_->fields)) << name;
+    return *found;
+  }
+  // The error of finding all slots; empty without one.
+  std::string fault() const {
+    const auto slots = DeviceSlots::find(*segment_);
+    if (slots) return "";
+    EXPECT_TRUE(slots.error().code == Errc::kMalformed || slots.error().code == Errc::kUnsupported);
+    return slots.error().what;
+  }
+
+  std::unique_ptr<DevicesSegment> segment_ = std::make_unique<DevicesSegment>();
+};
+
+TEST_F(SlotTableTest, ASlotThatIsMissingIsNamed) {
+  std::strcpy(field("ball.count").name, "bell.count");
+  EXPECT_EQ(fault(),
+            "shared memory of the devices: has no slot ball (no field ball.count); use this "
+            "program and merlind of the same release");
+}
+
+TEST_F(SlotTableTest, AFieldThatIsMissingIsNamed) {
+  std::strcpy(field("hand.delay_s").name, "hand.lag_s");
+  EXPECT_NE(fault().find("its slot hand lacks the field hand.delay_s"), std::string::npos)
+      << fault();
+}
+
+TEST_F(SlotTableTest, ASampleOfAnotherSizeIsRefused) {
+  for (Field& f : segment_->fields) {
+    if (std::string_view(f.name).starts_with("glove.") && f.ring != 0) f.ring_stride += 8;
+  }
+  EXPECT_NE(fault().find("its slot glove has the field glove.received_ns as"), std::string::npos)
+      << fault();
+  EXPECT_NE(fault().find("256 x 152; allowed is"), std::string::npos) << fault();
+}
+
+TEST_F(SlotTableTest, AFieldOfAnotherTypeCountOrPlaceIsRefused) {
+  const auto damaged = [&](auto damage) {
+    const Field before = field("tracker2.position_m");
+    damage(field("tracker2.position_m"));
+    const std::string what = fault();
+    field("tracker2.position_m") = before;
+    return what.find("slot tracker2 has the field tracker2.position_m") != std::string::npos;
+  };
+  EXPECT_TRUE(damaged([](Field& f) { f.type[0] = 'd'; }));
+  EXPECT_TRUE(damaged([](Field& f) { f.count = 4; }));
+  EXPECT_TRUE(damaged([](Field& f) { f.step = 8; }));
+  EXPECT_TRUE(damaged([](Field& f) { f.offset += 4; }));
+  EXPECT_TRUE(damaged([](Field& f) { f.slot += 8; }));
+  EXPECT_TRUE(damaged([](Field& f) { f.ring += 8; }));
+  EXPECT_TRUE(damaged([](Field& f) { f.ring_slots = 1 << 20; }));
+  EXPECT_EQ(fault(), "");
+}
+
+// Moves all fields of a slot, as a hostile writer may, so that they agree with each other.
+void move(DevicesSegment& segment, const std::string& slot, std::uint32_t by) {
+  for (Field& f : segment.fields) {
+    if (!std::string_view(f.name).starts_with(slot + ".")) continue;
+    f.offset += by;
+    if (f.slot != 0) f.slot += by;
+    if (f.ring != 0) f.ring += by;
+  }
+}
+
+TEST_F(SlotTableTest, ASlotOutsideTheSegmentIsRefused) {
+  const auto refused = [&](std::uint32_t by) {
+    move(*segment_, "ball", by);
+    const std::string what = fault();
+    move(*segment_, "ball", 0U - by);
+    return what.find("would be the bytes") != std::string::npos;
+  };
+  const auto last = static_cast<std::uint32_t>(
+      sizeof(DevicesSegment) - sizeof(Channel<BallSample>) - offsetof(DevicesSegment, ball));
+  EXPECT_FALSE(refused(last)) << "its last byte is the segment's";
+  EXPECT_TRUE(refused(last + 64));
+  EXPECT_TRUE(refused(1U << 31));
+  constexpr auto kBack = static_cast<std::uint32_t>(offsetof(DevicesSegment, ball) - 64);
+  EXPECT_TRUE(refused(0U - kBack)) << "in the header";
+  EXPECT_TRUE(refused(8)) << "not aligned";
+  EXPECT_EQ(fault(), "");
+}
+
+TEST_F(SlotTableTest, ATableOutsideTheSegmentIsRefused) {
+  segment_->header.field_count = 1U << 31;
+  EXPECT_NE(fault().find("its table of fields is not inside it"), std::string::npos) << fault();
+  segment_->header.field_count = 10;
+  segment_->header.field_offset = 0xFFFFFFF0;
+  EXPECT_NE(fault().find("its table of fields is not inside it"), std::string::npos) << fault();
+  segment_->header.field_offset = offsetof(DevicesSegment, fields);
+  segment_->header.field_size = 8;
+  EXPECT_NE(fault().find("its table of fields is not inside it"), std::string::npos) << fault();
+  segment_->header.field_count = 0;
+  EXPECT_NE(fault().find("has no slot glove.health"), std::string::npos) << fault();
+}
+
+TEST_F(SlotTableTest, NamesWithoutAnEndAndNamesTwiceAreSurvived) {
+  std::memset(field("gpio.health.state").name, 'x', sizeof(Field::name));
+  EXPECT_EQ(fault(), "") << "nobody asks for the panel";
+  const Field ball = field("ball.count");
+  field("gpio.count") = ball;  // the first one counts
+  EXPECT_EQ(fault(), "");
+}
+
+TEST(DevicesReader, RefusesADamagedSegmentWithOneError) {
+  const std::string name = segmentName(test::privateName("slots"), "devices");
+  const auto writer =
+      SegmentWriter<DevicesSegment>::make(name, devicesFields(), 1, SystemClock().now(), {});
+  ASSERT_TRUE(writer);
+  ASSERT_TRUE(DevicesReader::open(name));
+  EXPECT_TRUE(DevicesReader::open(name)->alive(SystemClock().now()));
+  for (Field& f : (*writer)->fields) f.offset += 4;
+  const auto refused = DevicesReader::open(name);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::kMalformed);
+  EXPECT_EQ(refused.error().what.find(name), std::string("shared memory ").size());
+}
+
+}  // namespace
+}  // namespace merlin::shm

@@ -1,0 +1,31 @@
+// LocalDevices: a devices' segment in plain memory, with its table of fields, and its slots as a
+// reader finds them.
+#pragma once
+
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "daemon/shm/device_slots.h"
+#include "daemon/shm/fields.h"
+
+namespace merlin::test {
+
+class LocalDevices {
+ public:
+  LocalDevices() {
+    shm::setFields(segment_->header, segment_->fields, shm::devicesFields());
+    auto found = shm::DeviceSlots::find(*segment_);
+    EXPECT_TRUE(found) << found.error().what;
+    if (found) slots_ = *std::move(found);
+  }
+  shm::DevicesSegment& operator*() const { return *segment_; }
+  shm::DevicesSegment* operator->() const { return segment_.get(); }
+  const shm::DeviceSlots& slots() const { return slots_; }
+
+ private:
+  std::unique_ptr<shm::DevicesSegment> segment_ = std::make_unique<shm::DevicesSegment>();
+  shm::DeviceSlots slots_;
+};
+
+}  // namespace merlin::test
