@@ -33,6 +33,10 @@ std::vector<Model> readModels(LoadedSettings& loaded);
 // that this installation lacks.
 void checkOutputs(LoadedSettings& loaded);
 
+// Adds a finding if /wall/render/gpu names no GPU of this machine. Looks for GPUs only if it names
+// one, which takes up to some tenths of a second for each.
+void checkRenderer(LoadedSettings& loaded);
+
 // Adds a finding with the JSON pointer `at` if `path`, which the daemon writes, is a file that it
 // also reads and would thus overwrite.
 void checkReplacesNothing(LoadedSettings& loaded, const std::string& path, const std::string& at);

@@ -1,5 +1,5 @@
 // ./dev bench correct: what an output's correction costs a frame, beside a memcpy of as many bytes:
-// each part of it alone and all together, on all processors and on one.
+// each part of it alone and all together, on all processors, on one, and by a shader.
 //
 // The picture is noise of 1280 x 960 pixels, as large as the demo's frame. Nothing but the loop
 // runs, so that the tables come from memory as they do in a wall, where a frame lies between two
@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -16,7 +17,9 @@
 #include <fmt/format.h>
 
 #include "daemon/base/thread_team.h"
+#include "render/correct/gpu/shader_pass.h"
 #include "render/correct/output_correction.h"
+#include "render/gl/gl_context.h"
 #include "tests/bench/figures.h"
 
 namespace merlin::bench {
@@ -52,8 +55,24 @@ std::vector<std::pair<std::string, CorrectionSettings>> cases() {
   return {{"pin", pin}, {"mesh_pin", mesh}, {"mesh_pin_blend", blend}, {"all", all}};
 }
 
-bool measure(int frames, Report& report) {
+// The shader, where there is an OpenGL; its context is current.
+struct Shader {
+  std::unique_ptr<render::gl::GlContext> context;
+  render::correct::ShaderPass pass;
+
+  explicit Shader(const std::string& gpu) {
+    auto made = render::gl::makeGlContext(render::gl::GlBackend::kEgl, gpu);
+    if (!made) didNotRun("the shader", made.error().what, "see --gpu");
+    context = *std::move(made);
+    if (const auto begun = pass.begin(*context); !begun)
+      didNotRun("the shader", begun.error().what, "see --gpu");
+  }
+  ~Shader() { pass.end(); }
+};
+
+bool measure(int frames, const std::string& gpu, Report& report) {
   std::mt19937 random(1);
+  Shader shader(gpu);
   std::vector<std::uint8_t> picture(std::size_t{4} * kWidth * kHeight), copy(picture.size());
   for (std::uint8_t& p : picture) p = static_cast<std::uint8_t>(random());
   const unsigned processors = threadsOr(0);
@@ -70,6 +89,8 @@ bool measure(int frames, Report& report) {
     subjects.emplace_back(name, render::correct::OutputCorrection(map, Threads(processors, team)));
     if (processors > 1)
       subjects.emplace_back(name + "_one", render::correct::OutputCorrection(map, 1));
+    subjects.emplace_back(name + "_shader",
+                          render::correct::OutputCorrection(map, 1, &shader.pass));
   }
   // All in turn, so that whatever else the machine does falls on all alike.
   std::vector<double> copies;
@@ -86,6 +107,10 @@ bool measure(int frames, Report& report) {
       passes[i].push_back(msSince(began));
     }
   }
+  if (const std::string fault = shader.pass.fault(); !fault.empty())
+    didNotRun("the shader", fault, "see --gpu");
+  report.text("shader by {}\n", shader.context->renderer());
+  report.figure("renderer", shader.context->renderer(), 1);
   const Measured memcpy_ms = medianOf(copies, "copies of the frame");
   report.text("correction of {} x {} pixels, medians of {} frames, {} processors\n", kWidth,
               kHeight, frames, processors);
@@ -101,6 +126,11 @@ bool measure(int frames, Report& report) {
     report.text("  {:<20} {:7.2f} ms, {:.1f} memcpys\n", name, ms.value(), ratio.value());
     report.figure(name + "_ms", ms, "ms");
     report.figure(name + "_per_memcpy", ratio, "1");
+    if (!name.ends_with("_shader")) continue;
+    const std::size_t on_cpu = i - (processors > 1 ? 2 : 1);
+    const Measured beside = ratioOf(ms, medianOf(passes[on_cpu], "passes"), name);
+    report.text("  {:<20} {:7.2f} times the CPU's\n", "", beside.value());
+    report.figure(name + "_per_cpu", beside, "1");
   }
   return true;
 }
@@ -113,9 +143,11 @@ int main(int argc, char** argv) {
   int frames = 200;
   bool json = false;
   app.add_option("--frames", frames, "Frames of each")->check(CLI::Range(1, 100'000));
+  std::string gpu = merlin::render::gl::kAnyGpu;
+  app.add_option("--gpu", gpu, "Where the shader runs, as /wall/render/gpu")->capture_default_str();
   app.add_flag("--json", json, "One JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("correct", json, [&](merlin::bench::Report& report) {
-    return merlin::bench::measure(frames, report);
+    return merlin::bench::measure(frames, gpu, report);
   });
 }

@@ -81,6 +81,15 @@ shm::WallStats DemoDaemon::wall() {
   return *stats;
 }
 
+std::string DemoDaemon::renderer() const {
+  constexpr std::string_view kBefore = "drawn by ";
+  const std::string output = process_->output();
+  const std::size_t at = output.find(kBefore);
+  if (at == std::string::npos) fail("it did not say who draws its wall");
+  const std::size_t begin = at + kBefore.size();
+  return output.substr(begin, output.find(';', begin) - begin);
+}
+
 void DemoDaemon::fail(const std::string& found) const { didNotRun(subject_, found, kWayOut); }
 
 }  // namespace merlin::bench

@@ -32,6 +32,9 @@ class DemoDaemon {
              const Change& change);
 
   pid_t pid() const { return process_->pid(); }
+  const std::string& instance() const { return instance_; }
+  // Where its wall takes commands. Not for the role "devices".
+  std::string commandEndpoint() const { return (*wall_)->header.command_endpoint; }
 
   // Throws if merlind has ended; to be called after the measurement.
   void expectRunning();
@@ -39,6 +42,10 @@ class DemoDaemon {
   // The statistics that its wall has published last. Not for the role "devices".
   shm::WallStats wall();
   const shm::DevicesSegment& devices() const { return **devices_; }
+
+  // Who draws its wall, as it says: "EGL, llvmpipe (...), two contexts". Not for the role
+  // "devices".
+  std::string renderer() const;
 
   // Kills it and waits for its end.
   void stop() { process_->kill(SIGTERM); }

@@ -192,6 +192,7 @@ bool run(const Options& options, Report& report) {
                   "the renderer");
   };
   const auto one = renderer(1), two = renderer(2);
+  report.figure("renderer", one->contexts()->renderer(), 1);
   report.text("{}, {} raster threads; three tiles and the operator's view, 640 x 480 each; {}\n",
               one->contexts()->renderer(), options.raster_threads,
               options.textured ? "textured" : "coloured");

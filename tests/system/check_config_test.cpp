@@ -69,6 +69,11 @@ TEST_F(CheckConfig, RefusesWallsThatCannotBeDrawn) {
                 "right-handed");
   expectRefused({{"wall", {{"render", {{"show", "heat"}}}}}}, "/wall/render/show",
                 "no feature \"heat\" that can be shown");
+  const auto render = [](const json& settings) { return json{{"wall", {{"render", settings}}}}; };
+  expectRefused(render({{"gpu", "matrox"}}), "/wall/render/gpu",
+                "\"matrox\" is none of the GPUs; this machine has: 0: ");
+  expectRefused(render({{"gpu", "0"}, {"backend", "osmesa"}}), "/wall/render/gpu",
+                "OSMesa draws in software");
 }
 
 TEST_F(CheckConfig, RefusesModelsThatCannotBeRead) {

@@ -18,7 +18,8 @@ class Correction : public testing::Test {
  protected:
   // Writes the configuration of a wall that shows only its background; its output "left" has this
   // correction.
-  std::string file(const std::string& name, const json& correction) {
+  std::string file(const std::string& name, const json& correction,
+                   const std::string& place = "auto") {
     const json png = {{"kind", "png"},
                       {"name", "left"},
                       {"path", dir_ / (name + ".png")},
@@ -29,15 +30,16 @@ class Correction : public testing::Test {
                          {"wall",
                           {{"model", model_},
                            {"scene", {{"model_distance_m", 1000}}},
-                           {"render", {{"background", {0.2, 0.4, 0.6}}}},
+                           {"render", {{"background", {0.2, 0.4, 0.6}}, {"correction", place}}},
                            {"outputs", json::array({{{"kind", "shared_memory"}}, png})}}}};
     writeText(dir_ / (name + ".json"), config.dump(1));
     return dir_ / (name + ".json");
   }
 
   // The image that merlind wrote to the output "left".
-  render::image::ImageFile shown(const std::string& name, const json& correction) {
-    const std::string config = file(name, correction), picture = dir_ / (name + ".png");
+  render::image::ImageFile shown(const std::string& name, const json& correction,
+                                 const std::string& place = "auto") {
+    const std::string config = file(name, correction, place), picture = dir_ / (name + ".png");
     run({"/bin/sh", "-c",
          fmt::format("{} --config {} & pid=$!; for i in $(seq 300); do [ -e {} ] && break; sleep "
                      "0.1; done; kill $pid; wait $pid",
@@ -77,6 +79,14 @@ TEST_F(Correction, AnExportedCorrectionShowsTheSamePicture) {
   EXPECT_EQ(at(10, 10), 0) << "beyond the corner";
   EXPECT_NEAR(at(300, 200), 156, 1) << "0.6 ^ 2.4 * 0.98 + 0.02 of the light";
   EXPECT_LT(at(600, 200), 100) << "in the ramp";
+}
+
+// The shader runs on whatever draws, here usually in software.
+TEST_F(Correction, TheShaderShowsTheCpusPicture) {
+  const auto cpu = shown("cpu", kCorrection, "cpu"), gpu = shown("gpu", kCorrection, "gpu");
+  ASSERT_EQ(cpu.pixels.size(), gpu.pixels.size());
+  for (std::size_t i = 0; i < cpu.pixels.size(); ++i)
+    ASSERT_NEAR(cpu.pixels[i], gpu.pixels[i], 1) << i / 3 % 640 << " " << i / 3 / 640;
 }
 
 TEST_F(Correction, WhatCannotBeUsedIsRefusedWithItsPlace) {

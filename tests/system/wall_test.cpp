@@ -37,6 +37,8 @@ TEST_F(Wall, RunsOnEmulatedDevicesAndEndsClean) {
   ASSERT_TRUE(status.is_object());
   for (const char* key : {"rate_asked", "rate_held", "late_percent", "triangles", "posture"})
     EXPECT_TRUE(status.contains(key)) << key;
+  EXPECT_EQ(status["renderer"]["library"], "EGL");
+  EXPECT_FALSE(status["renderer"]["name"].get<std::string>().empty());
   for (const char* name : {"glove", "tracker", "ball"})
     EXPECT_EQ(status["devices"][name]["health"], "ok") << name;
 

@@ -63,6 +63,18 @@ std::string paceLines(const Json& s) {
   return text + histogramChart(s.value("work_histogram", std::vector<std::uint32_t>{}));
 }
 
+std::string rendererLine(const Json& s) {
+  if (!s.contains("renderer")) return {};
+  const Json& r = s["renderer"];
+  const std::string fault = r.value("correction_fault", "");
+  return fmt::format("drawn by {} ({}; {}), {}, {} context{}, {} read-back; corrections {}{}\n",
+                     r.value("name", ""), r.value("vendor", ""), r.value("driver", ""),
+                     r.value("software", true) ? "software" : "hardware", r.value("contexts", 1),
+                     r.value("contexts", 1) > 1 ? "s" : "", r.value("read_back", ""),
+                     r.value("correction", "") == "gpu" ? "by a shader" : "on the CPU",
+                     fault.empty() ? "" : ": " + fault);
+}
+
 std::string outputLines(const Json& s) {
   std::string text;
   if (!s.contains("outputs")) return text;
@@ -164,7 +176,7 @@ std::string statusTable(const Json& s) {
         "room {:.0f} %\n",
         s.value("work_median_ms", 0.0), 100 * s.value("utilisation", 0.0),
         100 * s.value("head_room", 0.0));
-    text += paceLines(s) + outputLines(s);
+    text += paceLines(s) + rendererLine(s) + outputLines(s);
   }
   if (!s.contains("devices")) return text + serverLines(s);
   const std::string posture = s.value("posture", "");

@@ -1,0 +1,10 @@
+// merlin wall gpus: adds the subcommand to `merlin wall`.
+#pragma once
+
+#include "daemon/cli/command.h"
+
+namespace merlin::cli {
+
+void addGpus(Command wall, Run& run);
+
+}  // namespace merlin::cli
