@@ -13,11 +13,13 @@ namespace merlin {
 struct DaemonOptions {
   bool devices = true, wall = true;  // the roles of this process
   bool emulate = false;
+  bool page = false;  // the role page; without devices and wall
 };
 
 struct Configuration {
-  LoadedSettings loaded;            // the settings, with all findings
-  std::vector<wall::Model> models;  // for the role wall; not to be used if the verdict is kInvalid
+  LoadedSettings loaded;  // the settings, with all findings
+  // For the role wall; not to be used if the verdict is kInvalid.
+  std::vector<wall::WallContent> contents;
 };
 
 // Reads the file and all other files that merlind reads when it starts with these roles; files that

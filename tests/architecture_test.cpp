@@ -42,6 +42,7 @@ const std::map<std::string, Folders> kMayInclude = {
                      "drivers/hand",
                      "drivers/port",
                      "render/content",
+                     "render/content/picture",
                      "render/correct",
                      "render/correct/gpu",
                      "render/correct/io",

@@ -35,8 +35,12 @@ inline constexpr CommandInfo kCommands[] = {
      "Return the model and the viewer to their initial positions.", Bindable::kOnce, true},
     {"next_mode", CommandOf::kWall, "", "Switch whether the ball moves the model or the viewer.",
      Bindable::kOnce, true},
-    {"next_content", CommandOf::kWall, "", "Show the next model of the configuration.",
-     Bindable::kOnce, true},
+    {"next_content", CommandOf::kWall, "",
+     "Show the next slide, or the next content of the configuration.", Bindable::kOnce, true},
+    {"show", CommandOf::kWall, "NAME|FILE",
+     "Show the content of that name, or a model, a pyramid or a folder of pyramids that is not in "
+     "the configuration, by its whole path.",
+     Bindable::kNo, false},
     {"move", CommandOf::kWall, "X Y Z RX RY RZ",
      "Move what the ball moves, at once: X Y Z times the model's radius to the right, up and "
      "towards "

@@ -5,8 +5,13 @@
 
 namespace merlin::wall {
 
-ContentTurns::ContentTurns(std::vector<ShownContent> contents, render::governor::Governor& governor)
-    : contents_(std::move(contents)), governor_(governor), initial_(contents_.size()) {}
+ContentTurns::ContentTurns(std::vector<ShownContent> contents, render::governor::Governor& governor,
+                           ContentSource* source, std::size_t listed)
+    : contents_(std::move(contents)),
+      governor_(governor),
+      initial_(contents_.size()),
+      source_(source),
+      listed_(listed == 0 ? contents_.size() : listed) {}
 
 render::frame::DrawTimes ContentTurns::draw(std::size_t step,
                                             const Eigen::Isometry3f& T_eye_content) const {
@@ -30,8 +35,12 @@ void ContentTurns::calibrate(const Eigen::Isometry3f& T_eye_content) {
   governor_.calibrate(costs);
   const std::size_t cost = governor_.budget();
   initial_[0] = {cost, governor_.predict(cost) - governor_.fixedSeconds()};
-  for (index_ = 1; index_ < contents_.size(); ++index_) measureInitialView(T_eye_content);
+  for (index_ = 1; index_ < listed_; ++index_) {
+    if (source_) source_->prepare(index_);
+    measureInitialView(T_eye_content);
+  }
   index_ = 0;
+  if (source_ && listed_ > 1) source_->prepare(0);
 }
 
 // Draws at a cost close to that of the first content's initial view. The fastest of three draws
@@ -53,9 +62,24 @@ void ContentTurns::expectInitialView() const {
   if (view.drawing_s > 0 && now_s > 0) governor_.expect(view.drawing_s / now_s);
 }
 
+void ContentTurns::requestNext(std::uint32_t times) {
+  for (std::uint32_t i = 0; i < times; ++i) {
+    const bool stays = asked_ == index_ && source_ && source_->nextWithin(asked_);
+    if (stays) continue;
+    in_turn_ = (in_turn_ + 1) % listed_;
+    asked_ = in_turn_;
+  }
+}
+
+void ContentTurns::request(std::size_t place) noexcept {
+  if (place >= contents_.size()) return;
+  asked_ = place;
+  if (place < listed_) in_turn_ = place;
+}
+
 bool ContentTurns::showRequested() {
-  const std::size_t asked = requests_ % contents_.size();
-  if (std::exchange(index_, asked) == asked) return false;
+  if (std::exchange(index_, asked_) == asked_) return false;
+  if (source_) source_->prepare(index_);
   expectInitialView();
   return true;
 }

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -24,6 +25,11 @@ struct ShownContent {
   const render::content::DetailAxis* detail;
   render::frame::FramePainter* painter;
   render::content::Navigation navigation = render::content::Navigation::kObject;
+  // Of a plane: its nearest distance, as a multiple of the initial one.
+  float nearest = render::content::kNearestPlane;
+  std::string name{};          // for people, and for `merlin show`
+  const char* kind = "model";  // "model", "picture", "panorama"
+  std::string slide{};         // of slides: the name of the one that is shown
 };
 
 // Port (an interface): supplies contents that replace others while the wall runs. Implemented by
@@ -34,26 +40,38 @@ class ContentSource {
   struct Replacement {
     std::size_t place;
     ShownContent content;
+    bool asked_for = false;     // it is to be shown now, from its start view
+    std::uint32_t request = 0;  // of WallRole::show(); 0: none
+    std::string refused{};      // why there is nothing to show; then only `request` counts
   };
   // Called between frames. Returns a new content and the place (index) of the one that it replaces,
   // which is not used again; nullopt if there is none. `T_eye_content`: the view in which it will
   // be drawn. May take long while nothing moves.
   virtual std::optional<Replacement> take(bool moving, const Eigen::Isometry3f& T_eye_content) = 0;
+  // Called before the content of a place is drawn for the first time, or again after another one.
+  virtual void prepare(std::size_t place) { static_cast<void>(place); }
+  // Whether another part of a place (of slides: the next one) follows before the next place; it
+  // then comes by take().
+  virtual bool nextWithin(std::size_t place) {
+    static_cast<void>(place);
+    return false;
+  }
 };
 
 // Thread-bound to the wall's thread.
 class ContentTurns {
  public:
-  // `contents`: at least one; the first one is shown first. They and `governor` must outlive this
-  // object.
-  ContentTurns(std::vector<ShownContent> contents, render::governor::Governor& governor);
+  // `contents`: at least one; the first one is shown first. The first `listed` of them come by
+  // turns; 0: all. They, `governor` and `source`, which may be null, must outlive this object.
+  ContentTurns(std::vector<ShownContent> contents, render::governor::Governor& governor,
+               ContentSource* source = nullptr, std::size_t listed = 0);
 
   const render::content::DetailAxis& detail() const noexcept { return *shown().detail; }
   render::frame::FramePainter& painter() const noexcept { return *shown().painter; }
   render::content::Navigation navigation() const noexcept { return shown().navigation; }
   std::size_t index() const noexcept { return index_; }
-  // Requests for the next content, since the start.
-  std::uint32_t requests() const noexcept { return requests_; }
+  const ShownContent& content() const noexcept { return shown(); }
+  float nearest() const noexcept { return shown().nearest; }
 
   // Calibrates the governor with about a dozen frames of the first content at different detail, in
   // at most a second. Then draws three frames of each other content to measure its initial view.
@@ -65,7 +83,9 @@ class ContentTurns {
 
   // requestNext() requests the content that is `times` further in the list, cyclically.
   // showRequested() makes the change; it returns true if another content is shown now.
-  void requestNext(std::uint32_t times) noexcept { requests_ += times; }
+  void requestNext(std::uint32_t times);
+  // Requests the content of a place. Nothing happens if there is none.
+  void request(std::size_t place) noexcept;
   bool showRequested();
 
   // Replaces the content of a place; returns true if that is the one shown.
@@ -89,8 +109,11 @@ class ContentTurns {
   std::vector<ShownContent> contents_;
   render::governor::Governor& governor_;
   std::vector<InitialView> initial_;  // by content
-  std::size_t index_ = 0;
-  std::uint32_t requests_ = 0;
+  ContentSource* source_;
+  std::size_t listed_;       // contents that come by turns
+  std::size_t index_ = 0;    // shown
+  std::size_t asked_ = 0;    // to be shown by showRequested()
+  std::size_t in_turn_ = 0;  // the one of the list that was asked for last
   int size_divisor_ = 1;
 };
 

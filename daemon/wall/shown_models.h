@@ -1,59 +1,89 @@
-// ShownModels: the wall's models and their renderers, by place (the content's index). A model is
-// replaced while the wall runs if its file was replaced.
+// ShownModels: the wall's contents and their renderers, by place (the content's index): a renderer
+// for each model, and one for all pictures. A content is replaced while the wall runs if its file
+// was replaced, or another was asked for.
 #pragma once
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "config/settings.h"
 #include "daemon/wall/model_watch.h"
+#include "daemon/wall/wall_contents.h"
 #include "daemon/wall/wall_loop.h"
+#include "render/content/picture/picture_content.h"
 #include "render/frame/frame_renderer.h"
 
 namespace merlin::wall {
 
+// Prepares a content that was read: a model's content is made. Called on any thread. Errors: those
+// of ModelContent::make(), with the file's name.
+Result<ReadyModel> prepareContent(std::size_t place, WallContent content,
+                                  const WallSettings& settings);
+
 // Thread-bound to the wall's thread.
 class ShownModels final : public ContentSource {
  public:
-  // `plan`, `watch` and `clock` must outlive this object. Errors: those of DrawContexts::make(),
-  // and those of ModelContent and FrameRenderer, with the file's name.
-  static Result<std::unique_ptr<ShownModels>> make(std::vector<Model> models,
-                                                   const render::tiles::TilePlan& plan,
-                                                   const WallSettings& settings, ModelWatch& watch,
-                                                   const Eigen::Isometry3f& T_eye_model,
-                                                   const Clock& clock);
+  // What it borrows; all must outlive it.
+  struct Parts {
+    const render::tiles::TilePlan& plan;
+    const WallSettings& settings;
+    ModelWatch& watch;
+    render::content::TileSource& tiles;
+    const Clock& clock;
+  };
+  // `contents`: of the configuration. Behind them there is one more place, for what is not in it.
+  // Errors: those of DrawContexts::make(), and those of ModelContent and FrameRenderer, with the
+  // file's name.
+  static Result<std::unique_ptr<ShownModels>> make(std::vector<WallContent> contents,
+                                                   const Parts& parts,
+                                                   const Eigen::Isometry3f& T_eye_model);
 
   // Returns the function with which ModelWatch reads and prepares a replaced file on its own
-  // thread. `settings` must outlive it.
-  static ModelWatch::Make maker(const WallSettings& settings);
+  // thread. `entries` and `settings` must outlive it.
+  static ModelWatch::Make maker(const std::vector<ContentEntry>& entries,
+                                const WallSettings& settings);
 
   std::vector<ShownContent> contents() const;
+  std::size_t listed() const noexcept { return shown_.size() - 1; }  // of the configuration
   const render::frame::DrawContexts& contexts() const { return *contexts_; }
 
-  // Returns a replaced model as soon as nothing moves, or after kPatience if motion does not end.
+  // Returns a picture at once, and a model as soon as nothing moves, or after kPatience if motion
+  // does not end.
   std::optional<Replacement> take(bool moving, const Eigen::Isometry3f& T_eye_model) override;
+  void prepare(std::size_t place) override;
+  bool nextWithin(std::size_t place) override;
 
   static constexpr Duration kPatience = std::chrono::seconds(5);
 
  private:
   struct Shown {
+    ContentEntry entry;
     std::unique_ptr<const render::lod::Dendrogram> model;  // the renderer's content borrows it
     std::unique_ptr<render::frame::FrameRenderer> renderer;
+    std::shared_ptr<const render::content::Picture> picture;  // instead of these two
+    std::string file;
+    bool is_last_slide = false;
   };
-  ShownModels(ModelWatch& watch, const render::tiles::TilePlan& plan, const Clock& clock)
-      : watch_(watch), plan_(plan), clock_(clock) {}
-  Result<Shown> attach(ReadyModel ready, const Eigen::Isometry3f& T_eye_model) const;
-  ShownContent contentAt(std::size_t place) const {
-    const render::content::Content& content = shown_[place].renderer->content();
-    return {&content.detail(), shown_[place].renderer.get(), content.navigation()};
-  }
+  explicit ShownModels(const Parts& parts) : parts_(parts) {}
+  Result<Ok> makeViewer(const Eigen::Isometry3f& T_eye_model);
+  Result<Ok> add(ReadyModel ready, ContentEntry entry, const Eigen::Isometry3f& T_eye_model);
+  Result<std::unique_ptr<render::frame::FrameRenderer>> attach(
+      ReadyModel& ready, const Eigen::Isometry3f& T_eye_model) const;
+  void takePicture(ReadyModel& ready);
+  Result<Ok> takeModel(ReadyModel& ready, const Eigen::Isometry3f& T_eye_model);
+  void noteFile(const ReadyModel& ready, ContentKind kind);
+  static Replacement refusal(std::uint32_t request, std::string why);
+  ShownContent contentAt(std::size_t place) const;
+  float nearestOf(const render::content::Picture& picture) const;
 
-  ModelWatch& watch_;
-  const render::tiles::TilePlan& plan_;
-  const Clock& clock_;
+  Parts parts_;
   std::shared_ptr<const render::frame::DrawContexts> contexts_;
-  std::vector<Shown> shown_;  // by place
+  std::unique_ptr<render::frame::FrameRenderer> viewer_;  // of all pictures
+  render::content::PictureContent* pictures_ = nullptr;   // its content
+  std::size_t viewed_ = ~std::size_t{0};                  // place whose picture it shows
+  std::vector<Shown> shown_;                              // by place
   std::optional<ReadyModel> waiting_;
   Timestamp waits_since_{};
 };

@@ -39,6 +39,7 @@ class StillFrame {
                                     const Eigen::Isometry3f& T_eye_content, std::size_t step,
                                     int size_divisor, Timestamp until);
 
+  bool isRefining() const noexcept { return refining_.has_value(); }
   bool isFading() const noexcept { return fade_.isOn(); }
   // Returns the next canvas of the fade to `target`. REQUIRES: isFading().
   std::span<std::uint8_t> nextFading(std::span<const std::uint8_t> target) {

@@ -6,27 +6,14 @@
 #include <vector>
 
 #include "config/loader.h"
-#include "daemon/base/files.h"
-#include "render/content/settings.h"
-#include "render/lod/dendrogram.h"
+#include "daemon/wall/wall_contents.h"
 
 namespace merlin::wall {
 
-// A model that can be shown, and the file that it was read from.
-struct Model {
-  render::lod::Dendrogram dendrogram;
-  std::string path;
-  FileStamp stamp;
-};
-// Reads a model. Errors: those of readMrmCopy(); kInvalidArgument (the model lacks the feature that
-// `show` names). O(size of the file).
-Result<Model> readModel(const std::string& path, const render::content::ShownFeature& show);
-
-// Reads the models in the order in which they are shown: /wall/model, then /wall/contents. Adds a
-// finding for each model that is not named, cannot be read, or lacks the feature that
-// /wall/render/show names. The result is complete only if no finding was added. O(size of the
-// files).
-std::vector<Model> readModels(LoadedSettings& loaded);
+// Reads the contents in the order in which they are shown: see contentsOf(). Adds a finding for
+// each that names no file, cannot be read, or lacks the feature that /wall/render/show names. The
+// result is complete only if no finding was added. O(size of the models' files).
+std::vector<WallContent> readContents(LoadedSettings& loaded);
 
 // Adds a finding for each image file or snapshot folder that cannot be written, for each MPCDI file
 // of a correction that cannot be read or lacks the output's region, and for each output of a kind

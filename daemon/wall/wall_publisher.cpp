@@ -90,6 +90,15 @@ void WallPublisher::interaction(const render::scene::SceneView& view,
   slots_.interaction->publish(out);
 }
 
+void WallPublisher::content(const ShownContent& shown, shm::WallContent done, Timestamp now) {
+  if (!slots_.content) return;
+  done.updated_ns = toNanoseconds(now);
+  copyText(shown.name, done.name);
+  copyText(shown.kind, done.kind);
+  copyText(shown.slide, done.slide);
+  slots_.content->publish(done);
+}
+
 void WallPublisher::outputs(const render::out::OutputSet& outputs, Timestamp now) {
   if (!slots_.outputs) return;
   shm::WallOutputs all{};

@@ -23,6 +23,7 @@ struct WallSlots {
   shm::Channel<shm::FrameTrace>* trace = nullptr;
   shm::SeqSlot<shm::WallInteraction>* interaction = nullptr;
   shm::SeqSlot<shm::WallOutputs>* outputs = nullptr;
+  shm::SeqSlot<shm::WallContent>* content = nullptr;
 };
 
 // Thread-bound to the wall's thread: it is the only writer of these slots.
@@ -47,6 +48,8 @@ class WallPublisher {
   void interaction(const render::scene::SceneView& view, const render::frame::PointerMarker* marker,
                    std::uint32_t snapshots, std::size_t content, Timestamp now);
   void outputs(const render::out::OutputSet& outputs, Timestamp now);
+  // `done`: what became of the last request for a content; the rest of it is set.
+  void content(const ShownContent& shown, shm::WallContent done, Timestamp now);
 
  private:
   WallSlots slots_;

@@ -1,5 +1,5 @@
-// Port (an interface): a content, i.e. something that the wall shows, such as a model. Images and
-// panoramas are other possible kinds.
+// Port (an interface): a content, i.e. something that the wall shows: a model, a picture, a
+// panorama.
 //
 // A content is drawn at a step of its own detail axis. Step 0 is full detail and the last step is
 // the coarsest. Each step has a cost, in the content's own unit (a model: triangles), that the
@@ -50,7 +50,15 @@ struct ContentView {
   Eigen::Matrix4f clip_from_metres;  // content coordinates in metres to OpenGL's clip space, y up
   Eigen::Matrix3f eye_from_content;  // rotation only: the light stands at the eye
   int width_px = 0;
+  int height_px = 0;
   float weight = 1;  // square root of the weight of squared errors in this view
+};
+
+// What the last choice left out because it is still being loaded.
+enum class Pending {
+  kNothing,  // nothing: the choice shows all that its step has
+  kLoading,  // parts, which are shown coarser
+  kArrived,  // parts, some of which have come since: another choice shows them
 };
 
 // How far one view of a frame has been drawn. The content defines what the numbers count; both are
@@ -87,9 +95,16 @@ class Content {
   virtual ContentBounds bounds() const noexcept = 0;
   virtual Navigation navigation() const noexcept = 0;
 
+  // Called before choose(): whether the frame is one of a scene in motion, whose time is short.
+  // What takes up new data in bulk then does so in small portions.
+  virtual void setMoving(bool moving) noexcept { static_cast<void>(moving); }
+
   // Chooses what the next frame draws at `step` for these views. The choice does not change until
   // the next call, so renderers may read it on their threads. REQUIRES: step < detail().steps().
   virtual void choose(std::size_t step, std::span<const ContentView> views) = 0;
+
+  // What the last choose() left out.
+  virtual Pending pending() const noexcept { return Pending::kNothing; }
 
   // Creates the renderer for one context. Called on that context's thread, possibly at the same
   // time as on others. The content must outlive it. Errors: kUnsupported (a shader does not

@@ -9,4 +9,7 @@ enum class Navigation {
   kPanorama,  // a panorama: the viewer looks around from its centre, and zooms
 };
 
+// Nearest distance of a plane, as a multiple of the initial one, unless its content says another.
+inline constexpr float kNearestPlane = 0.02F;
+
 }  // namespace merlin::render::content

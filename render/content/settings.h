@@ -21,6 +21,10 @@ struct ShownFeature {
                                  // 1st and 99th percentile of the model
 };
 
+// Which kind of picture a pyramid is shown as. In the order of kShowAsNames.
+enum class ShowAs { kAsMarked, kPlane, kPanorama };
+inline constexpr const char* kShowAsNames[] = {"marked", "plane", "panorama"};
+
 // How a model is drawn.
 struct ModelSettings {
   ShownFeature show{};

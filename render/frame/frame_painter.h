@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "daemon/base/clock.h"
+#include "render/content/content.h"
 #include "render/frame/frame_step.h"
 
 namespace merlin::render::frame {
@@ -48,6 +49,9 @@ class FramePainter {
 
   // Whether any tile of the wall may show any part of the content.
   virtual bool sees(const Eigen::Isometry3f& T_eye_content) const = 0;
+
+  // What the frame that was begun last leaves out because it is still being loaded.
+  virtual content::Pending pending() const noexcept { return content::Pending::kNothing; }
 
   // Steps of the last draw() or refine(), in order.
   virtual std::span<const FrameStep> steps() const noexcept = 0;

@@ -62,13 +62,19 @@ content::ContentView FrameRenderer::viewOf(std::size_t tile,
                                            const Eigen::Isometry3f& T_eye_content) const {
   const tiles::Tile& t = plan_.tiles[tile];
   const tiles::Look look =
-      tiles::lookOf(t, T_eye_content.translation(), content_->bounds().radius_m);
+      content_->navigation() == content::Navigation::kPanorama
+          ? tiles::lookAround(t)
+          : tiles::lookOf(t, T_eye_content.translation(), content_->bounds().radius_m);
   // The light is at the eye for every tile that follows the wall, so that a surface is equally
   // bright on both sides of a seam. A camera of its own has its light at the camera.
   Eigen::Matrix3f eye_from_content = T_eye_content.linear();
   if (t.camera != tiles::TileCamera::kWall)
     eye_from_content = look.view.topLeftCorner<3, 3>() * eye_from_content;
-  return {tile, look.projection * look.view * T_eye_content.matrix(), eye_from_content, t.width,
+  return {tile,
+          look.projection * look.view * T_eye_content.matrix(),
+          eye_from_content,
+          t.width,
+          t.height,
           isOperators(tile) ? kOperatorWeight : 1};
 }
 
@@ -122,6 +128,7 @@ DrawTimes FrameRenderer::draw(const Request& asked) {
   Request request = asked;
   steps_.clear();
   const Timestamp began = clock_.now();
+  content_->setMoving(true);
   choose(request.T_eye_content, request.step, all_);
   const Duration chosen = clock_.now() - began;
   if (operators_.empty() || operators_.size() == all_.size()) request.until = Timestamp::max();
@@ -247,6 +254,7 @@ void FrameRenderer::warmUp(const Eigen::Isometry3f& T_eye_content) {
 
 void FrameRenderer::beginRefining(const Eigen::Isometry3f& T_eye_content, std::size_t step) {
   steps_.clear();
+  content_->setMoving(false);
   choose(T_eye_content, step, all_);
   queue_.begin(all_);
   refining_begins_ = true;

@@ -40,6 +40,7 @@ class FrameRenderer final : public FramePainter {
   bool refine(Timestamp until) override;
   void setSizeDivisor(int divisor) override { size_divisor_ = divisor; }
   bool sees(const Eigen::Isometry3f& T_eye_content) const override;
+  content::Pending pending() const noexcept override { return content_->pending(); }
   std::span<const FrameStep> steps() const noexcept override { return steps_; }
   std::span<std::uint8_t> pixels() noexcept override { return pixels_; }
 

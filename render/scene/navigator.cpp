@@ -64,10 +64,11 @@ void ObjectNavigator::carry(Poses& poses, const Poses& grabbed, const Eigen::Iso
       R_wall_eye * (hand.translation() - hand_then.translation()) * hand_gain_;
 }
 
-PlaneNavigator::PlaneNavigator(const SceneSettings& settings)
+PlaneNavigator::PlaneNavigator(const SceneSettings& settings, float nearest)
     : hand_gain_(static_cast<float>(settings.hand_gain)),
       distance_m_(static_cast<float>(settings.model_distance_m)),
-      radius_m_(static_cast<float>(settings.model_radius_m)) {}
+      radius_m_(static_cast<float>(settings.model_radius_m)),
+      nearest_(nearest) {}
 
 Poses PlaneNavigator::start() const {
   const Eigen::Vector3f place(0, 0, -distance_m_);
@@ -77,7 +78,7 @@ Poses PlaneNavigator::start() const {
 void PlaneNavigator::move(Poses& poses, const Poses& from, const Eigen::Vector3f& way_m) const {
   const Eigen::Vector3f was = from.T_wall_content.translation();
   const float zoom = std::exp(-way_m.z() / distance_m_);
-  const float away = std::clamp(-was.z() * zoom, kNearest * distance_m_, kFarthest * distance_m_);
+  const float away = std::clamp(-was.z() * zoom, nearest_ * distance_m_, kFarthest * distance_m_);
   // Sideways, the same push moves what is seen by the same angle at any distance; what is in the
   // middle of the view stays there while it is zoomed.
   const float scale = away / distance_m_;

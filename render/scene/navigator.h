@@ -61,20 +61,21 @@ class ObjectNavigator final : public Navigator {
 // moves the plane.
 class PlaneNavigator final : public Navigator {
  public:
-  explicit PlaneNavigator(const SceneSettings& settings);
+  // `nearest`: the nearest distance, as a multiple of the initial one.
+  explicit PlaneNavigator(const SceneSettings& settings, float nearest = kNearest);
   Poses start() const override;
   void push(Poses& poses, const Push& push, BallMode mode) const override;
   void fly(Poses& poses, const Eigen::Vector3f& way_m) const override;
   void carry(Poses& poses, const Poses& grabbed, const Eigen::Isometry3f& hand_then,
              const Eigen::Isometry3f& hand) const override;
 
-  // Nearest and farthest distance, as multiples of the initial one.
-  static constexpr float kNearest = 0.02F, kFarthest = 4;
+  // Nearest (by default) and farthest distance, as multiples of the initial one.
+  static constexpr float kNearest = content::kNearestPlane, kFarthest = 4;
 
  private:
   void move(Poses& poses, const Poses& from, const Eigen::Vector3f& way_m) const;
 
-  float hand_gain_, distance_m_, radius_m_;
+  float hand_gain_, distance_m_, radius_m_, nearest_;
 };
 
 // The viewer stands in the centre of a panorama and looks around: without limit about the vertical

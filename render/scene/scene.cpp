@@ -40,9 +40,9 @@ std::optional<Eigen::Matrix3f> axisMap(const std::array<int, 3>& axes) {
 }
 
 std::unique_ptr<const Navigator> makeNavigator(content::Navigation navigation,
-                                               const SceneSettings& settings) {
+                                               const SceneSettings& settings, float nearest) {
   switch (navigation) {
-    case content::Navigation::kPlane: return std::make_unique<PlaneNavigator>(settings);
+    case content::Navigation::kPlane: return std::make_unique<PlaneNavigator>(settings, nearest);
     case content::Navigation::kPanorama: return std::make_unique<PanoramaNavigator>(settings);
     case content::Navigation::kObject: break;
   }
@@ -85,15 +85,18 @@ Result<Scene> Scene::make(const SceneSettings& settings) {
 
 Scene::Scene(const SceneSettings& settings)
     : settings_(settings),
-      navigator_(makeNavigator(navigation_, settings)),
+      navigator_(makeNavigator(navigation_, settings, nearest_)),
       R_wall_tracker_(*axisMap(settings.tracker_axes)) {
   reset();
 }
 
-void Scene::setNavigation(content::Navigation navigation) {
-  if (std::exchange(navigation_, navigation) == navigation) return;
-  navigator_ = makeNavigator(navigation, settings_);
-  reset();
+void Scene::setNavigation(content::Navigation navigation, float nearest) {
+  const bool same = navigation == navigation_;
+  if (same && nearest == nearest_) return;
+  navigation_ = navigation;
+  nearest_ = nearest;
+  navigator_ = makeNavigator(navigation, settings_, nearest);
+  if (!same) reset();
 }
 
 void Scene::reset() {

@@ -63,7 +63,8 @@ class Scene {
 
   // Sets how the content is moved from now on; initially kObject. If the kind of navigation
   // changes, the view becomes the start view of the new kind, which counts as motion.
-  void setNavigation(content::Navigation navigation);
+  // `nearest`: of a plane, its nearest distance as a multiple of the initial one.
+  void setNavigation(content::Navigation navigation, float nearest = content::kNearestPlane);
 
  private:
   explicit Scene(const SceneSettings& settings);
@@ -77,6 +78,7 @@ class Scene {
 
   SceneSettings settings_;
   content::Navigation navigation_ = content::Navigation::kObject;
+  float nearest_ = content::kNearestPlane;
   std::unique_ptr<const Navigator> navigator_;
   Poses poses_;
   // While the content is grabbed: the poses of hand, content and viewer at the beginning, and the

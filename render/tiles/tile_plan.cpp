@@ -196,6 +196,12 @@ Look lookOf(const Tile& tile, const Eigen::Vector3f& centre, float radius) {
                       centre, radius);
 }
 
+Look lookAround(const Tile& tile) {
+  Look look{tile.projection, tile.view};
+  look.view.block<3, 1>(0, 3).setZero();
+  return look;
+}
+
 bool placeViewer(TilePlan& plan, const Viewer& viewer) {
   const auto isPlaced = [](const Tile& t) {
     return t.followsWall() && t.screen_m != std::array<double, 9>{};

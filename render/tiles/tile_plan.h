@@ -95,6 +95,10 @@ Look parallelLook(TileCamera camera, float aspect, const Eigen::Vector3f& centre
 // decides where the tile is fitted to it, otherwise the plan.
 Look lookOf(const Tile& tile, const Eigen::Vector3f& centre, float radius);
 
+// What a tile shows of a panorama, in whose centre the eye is, wherever that is: the plan's frustum
+// and direction. A tile that is fitted to other contents looks straight ahead.
+Look lookAround(const Tile& tile);
+
 // Whether any part of a box may be visible in a tile that follows the wall or has a free camera:
 // false if, for each of them, the whole box is outside one plane of the frustum, or if its matrix
 // contains NaN. `T_eye_box` takes the cube -1..1 to eye coordinates.

@@ -118,5 +118,77 @@ TEST_F(WallContentsTest, AReplacedOneThatIsNotShownWaitsForItsTurn) {
   EXPECT_EQ(dear_.drawn.size(), 3u) << "measured before the first frame, and never again";
 }
 
+// A content of which parts are loaded while it is shown.
+TEST_F(WallContentsTest, AStillWallWaitsForWhatIsBeingLoadedAndDrawsAgainWhenItHasCome) {
+  using render::content::Pending;
+  feed_.pushed = false;
+  painter_.left_out = Pending::kLoading;
+  int begun = 0;
+  run(6, [&](Timestamp) {
+    if (feed_.begins.size() == 90) {
+      begun = painter_.refined;
+      EXPECT_FALSE(stats().full_detail);
+    }
+    if (feed_.begins.size() == 100) {
+      EXPECT_EQ(painter_.refined, begun) << "nothing is drawn in vain";
+      painter_.left_out = Pending::kArrived;
+    }
+  });
+  EXPECT_EQ(painter_.refined, begun + 1);
+  EXPECT_TRUE(stats().full_detail);
+}
+
+// The second content has two parts; the next one comes when it is told to.
+class Slides final : public ContentSource {
+ public:
+  explicit Slides(ShownContent content) : content_(content) {}
+  std::optional<Replacement> take(bool, const Eigen::Isometry3f&) override {
+    if (!std::exchange(due, false)) return std::nullopt;
+    return Replacement{1, content_, true, 7, {}};
+  }
+  bool nextWithin(std::size_t place) override { return place == 1 && parts-- > 0; }
+  void prepare(std::size_t place) override { prepared.push_back(place); }
+
+  int parts = 1;
+  bool due = false;
+  std::vector<std::size_t> prepared;
+
+ private:
+  ShownContent content_;
+};
+
+TEST_F(WallContentsTest, SlidesComeOneAfterAnotherBeforeTheNextContent) {
+  Slides slides({&detail_, &dear_});
+  replacements_ = &slides;
+  run(6, [&](Timestamp) {
+    const auto frame = feed_.begins.size();
+    feed_.actions.next_content = frame == 30 || frame == 60 || frame == 120 ? 1 : 0;
+    if (frame == 61) slides.due = true;
+    if (frame == 110) {
+      EXPECT_EQ(interaction().content, 1u) << "the second slide";
+    }
+  });
+  EXPECT_EQ(interaction().content, 0u);
+  EXPECT_EQ(slides.parts, -1) << "asked for the last time after the second slide";
+  ASSERT_GE(slides.prepared.size(), 2u);
+  EXPECT_EQ(slides.prepared.back(), 0u);
+}
+
+// `merlin show FILE`: behind the contents of the list there is a place for what is not in it.
+TEST_F(WallContentsTest, AContentThatIsAskedForIsShownAndTheListGoesOnAfterIt) {
+  contents_.push_back({&detail_, &dear_});
+  listed_ = 2;
+  run(4, [&](Timestamp) {
+    const auto frame = feed_.begins.size();
+    if (frame == 30) loop_->show(2);
+    if (frame == 31) loop_->show(99);  // there is none
+    feed_.actions.next_content = frame == 60 ? 1 : 0;
+    if (frame == 50) {
+      EXPECT_EQ(interaction().content, 2u);
+    }
+  });
+  EXPECT_EQ(interaction().content, 1u);
+}
+
 }  // namespace
 }  // namespace merlin::wall

@@ -63,6 +63,12 @@ TEST(PlaneNavigator, StaysInFrontOfTheViewerAndInSight) {
   }
 }
 
+// A picture of 100 gigapixels is reached to its pixels.
+TEST(PlaneNavigator, GoesAsNearAsItsContentSays) {
+  const scene::PlaneNavigator navigator(kSettings, 0.001F);
+  EXPECT_FLOAT_EQ(pushed(navigator, {0, 0, 1e4F}).T_wall_content.translation().z(), -0.002F);
+}
+
 TEST(PlaneNavigator, GoesWithTheHandThatGrabsIt) {
   const scene::PlaneNavigator navigator(kSettings);
   scene::Poses poses = navigator.start();

@@ -71,6 +71,9 @@ class FakePainter final : public render::frame::FramePainter {
   }
   std::span<const render::frame::FrameStep> steps() const noexcept override { return steps_; }
   void beginRefining(const Eigen::Isometry3f&, std::size_t step) override {
+    refined += step == 0 ? 1 : 0;
+    if (left_out == render::content::Pending::kArrived)
+      left_out = render::content::Pending::kNothing;
     left_ = step == 0 ? slices_ : static_cast<int>(costOf(step) / milliseconds(3)) + 1;
   }
   bool refine(Timestamp until) override {
@@ -93,6 +96,10 @@ class FakePainter final : public render::frame::FramePainter {
   int slow = 1, divisor = 1;
   float furthest_seen_m = 50;
   bool gives_way = false;
+  // What its frames leave out; what has arrived is in the next one that is refined.
+  render::content::Pending left_out = render::content::Pending::kNothing;
+  render::content::Pending pending() const noexcept override { return left_out; }
+  int refined = 0;  // times that a frame of full detail was begun
   std::vector<Timestamp> drawn;
   std::vector<std::size_t> steps_drawn;
 
@@ -189,7 +196,8 @@ class FakeWall : public testing::Test {
             .viewer = viewer_,
             .on_snapshot = on_snapshot_,
             .on_align = on_align_,
-            .first_content = first_content_};
+            .first_content = first_content_,
+            .listed = listed_};
   }
   shm::WallStats stats() const { return *stats_->read(); }
   render::out::OutputSet recordingOutputs() {
@@ -220,7 +228,7 @@ class FakeWall : public testing::Test {
   ViewerPlace* viewer_ = nullptr;
   std::function<void()> on_snapshot_ = [] {};
   std::function<void(const AlignInput&)> on_align_ = [](const AlignInput&) {};
-  std::size_t first_content_ = 0;
+  std::size_t first_content_ = 0, listed_ = 0;
   std::unique_ptr<shm::SeqSlot<shm::WallInteraction>> interaction_ =
       std::make_unique<shm::SeqSlot<shm::WallInteraction>>();
   std::unique_ptr<shm::SeqSlot<shm::WallOutputs>> output_stats_ =

@@ -1,0 +1,13 @@
+// merlin image: its subcommands, one file each.
+#include "daemon/cli/image/image.h"
+
+namespace merlin::cli {
+
+void addImage(Command app, Run& run) {
+  Command image = app.subcommand("image", "Pictures and panoramas of any size: import, inspect.");
+  image.requireSubcommand();
+  addImageImport(image, run);
+  addImageInfo(image, run);
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,11 @@
+// merlin image: its subcommands, one file each.
+#pragma once
+
+#include "daemon/cli/command.h"
+
+namespace merlin::cli {
+
+void addImageImport(Command image, Run& run);
+void addImageInfo(Command image, Run& run);
+
+}  // namespace merlin::cli

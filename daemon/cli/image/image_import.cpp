@@ -1,0 +1,194 @@
+// merlin image import: makes a tiled pyramid of a picture of any format.
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include "daemon/base/files.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/image/image.h"
+#include "daemon/cli/image/import_child.h"
+#include "daemon/cli/print.h"
+#include "daemon/cli/progress.h"
+#include "daemon/cli/stop_signals.h"
+#include "render/image/pyramid_file.h"
+
+namespace merlin::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ImportOptions {
+  std::string in, out;
+  bool panorama = false, json = false;
+  int quality = 90;
+  int tile_px = 256;
+  std::size_t memory = std::size_t{4'000'000'000};
+};
+
+// A folder beside the result, which goes with this object.
+class WorkFolder {
+ public:
+  static Result<WorkFolder> make(const fs::path& result) {
+    std::string name = (fs::absolute(result).parent_path() / ".merlin-import-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr)
+      return Error{Errc::kIo, fmt::format("{}: {}", name, std::strerror(errno))};
+    return WorkFolder(std::move(name));
+  }
+  ~WorkFolder() {
+    std::error_code error;
+    if (!path_.empty()) fs::remove_all(path_, error);
+  }
+  WorkFolder(WorkFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+
+  const std::string& path() const noexcept { return path_; }
+
+ private:
+  explicit WorkFolder(std::string path) : path_(std::move(path)) {}
+  std::string path_;
+};
+
+// Gives the result its name once it is on the disk: whoever looks sees the old file or all of the
+// new one.
+Result<Ok> moveInto(const std::string& from, const std::string& to) {
+  const UniqueFd file(::open(from.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.valid() || ::fsync(file.get()) != 0 || ::rename(from.c_str(), to.c_str()) != 0)
+    return Error{Errc::kIo, fmt::format("{}: {}", to, std::strerror(errno))};
+  return Ok{};
+}
+
+struct Summary {
+  double seconds = 0;
+  std::uint64_t peak_bytes = 0;
+  std::vector<std::string> lacks;
+};
+
+void printSummary(const ImportOptions& options, const render::image::PyramidFile& file,
+                  const Summary& summary) {
+  const auto& finest = file.levels().front();
+  const double pixels = static_cast<double>(finest.width) * static_cast<double>(finest.height);
+  const double rate = pixels / std::max(summary.seconds, 1e-3);
+  if (options.json) {
+    printJsonLine(nlohmann::ordered_json{{"file", options.out},
+                                         {"kind", file.isPanorama() ? "panorama" : "picture"},
+                                         {"width", finest.width},
+                                         {"height", finest.height},
+                                         {"levels", file.levels().size()},
+                                         {"bytes", file.stamp().size},
+                                         {"seconds", summary.seconds},
+                                         {"pixels_per_s", rate},
+                                         {"peak_memory_bytes", summary.peak_bytes},
+                                         {"lacks", summary.lacks}});
+    return;
+  }
+  printOut(
+      "{}: {} of {} x {} pixels, {} levels, {:.1f} MB; {:.1f} s, {:.1f} million pixels/s, at most "
+      "{:.0f} MB of memory\n",
+      options.out, file.isPanorama() ? "panorama" : "picture", finest.width, finest.height,
+      file.levels().size(), static_cast<double>(file.stamp().size) / 1e6, summary.seconds,
+      rate / 1e6, static_cast<double>(summary.peak_bytes) / 1e6);
+}
+
+// Runs the import in `folder`. Returns the path of the result there.
+Result<std::string> runImport(const ImportOptions& options, const std::string& folder,
+                              Summary& summary) {
+  std::vector<std::string> arguments = {"picture",
+                                        options.in,
+                                        folder,
+                                        "--quality",
+                                        std::to_string(options.quality),
+                                        "--tile",
+                                        std::to_string(options.tile_px),
+                                        "--memory",
+                                        std::to_string(options.memory)};
+  if (options.panorama) arguments.emplace_back("--panorama");
+  const UniqueFd stop = stopSignals();
+  auto child = ImportChild::start(arguments);
+  if (!child) return child.error();
+  const SystemClock clock;
+  const Timestamp began = clock.now();
+  ProgressBar bar("importing", "pixels", clock);
+  const auto name = child->follow(
+      stop.get(), [&](const ImportReport& report) { bar.update(report.share(), report.items()); });
+  if (name) bar.finish(child->report().pixels());
+  summary.seconds = toSeconds(clock.now() - began);
+  summary.lacks = child->report().lacks();
+  rusage used{};
+  ::getrusage(RUSAGE_CHILDREN, &used);
+  summary.peak_bytes = static_cast<std::uint64_t>(used.ru_maxrss) * 1024;
+  if (!name) return name.error();
+  return folder + "/" + *name;
+}
+
+Result<Ok> checkOptions(const ImportOptions& options) {
+  if (const auto ending = checkEnding(options.out, "pyramid", ".tif"); !ending) return ending;
+  if (!fileStamp(options.in)) {
+    const bool there = fs::exists(options.in);
+    return Error{Errc::kNotFound,
+                 fmt::format("{}: {}", options.in, there ? "is not a file" : "does not exist")};
+  }
+  return checkWritable(options.out);
+}
+
+int importImage(const ImportOptions& options) {
+  if (const auto good = checkOptions(options); !good) return fail(good.error());
+  const auto folder = WorkFolder::make(options.out);
+  if (!folder) return fail(folder.error());
+  Summary summary;
+  const auto made = runImport(options, folder->path(), summary);
+  for (const std::string& what : summary.lacks)
+    printNote(fmt::format("this system lacks {}; the import ran without it", what));
+  if (!made) return fail(made.error());
+  // Read as the daemon will: what it would refuse is not left behind.
+  const auto read = render::image::PyramidFile::open(*made);
+  if (!read) return fail({Errc::kIo, "the result cannot be used: " + read.error().what});
+  if (const auto moved = moveInto(*made, options.out); !moved) return fail(moved.error());
+  printSummary(options, **read, summary);
+  return kExitDone;
+}
+
+}  // namespace
+
+void addImageImport(Command image, Run& run) {
+  const auto options = std::make_shared<ImportOptions>();
+  Command command = image.subcommand(
+      "import",
+      "Make a tiled pyramid, the form in which merlind shows pictures of any size, of a picture: "
+      "JPEG, PNG, TIFF, WebP, HDR, PPM, FITS and whatever else libvips reads. A program of its "
+      "own, "
+      "merlin-import, reads it in a sandbox without network, and with limited files and memory. "
+      "The result appears as a whole, or not at all.\n"
+      "Example: merlin image import photo.jpg -o photo.tif");
+  command.option("in", options->in, "Picture").required().typeName("FILE");
+  command.option("-o,--output", options->out, "Pyramid to write (.tif)")
+      .required()
+      .typeName("FILE");
+  command.flag("--panorama", options->panorama,
+               "The picture is equirectangular (360 x 180 degrees): it is shown with the viewer "
+               "inside");
+  command.option("--quality", options->quality, "Quality of JPEG, 1 to 100; 0: lossless, larger")
+      .range(0, 100)
+      .showDefault();
+  command.option("--tile", options->tile_px, "Width and height of the tiles in pixels, 256 or 512")
+      .check([](const std::string& value) {
+        return value == "256" || value == "512" ? std::string() : value + " is neither 256 nor 512";
+      })
+      .showDefault();
+  command
+      .option("--memory", options->memory,
+              "Address space that the import may take; about 0.5 GB are needed for any size of "
+              "picture that can be read row by row")
+      .size()
+      .typeName("SIZE");
+  command.flag("--json", options->json, "Print JSON, for programs");
+  command.callback([options, &run] { run = [options] { return importImage(*options); }; });
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,46 @@
+// The table of what merlin-import reads. To add a kind: an adapter in render/import, and a row in
+// importers.cpp.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "daemon/base/result.h"
+
+namespace merlin::import {
+
+struct Request {
+  std::string input;   // the file to read
+  std::string folder;  // where the result is written, and whatever is needed meanwhile
+  bool panorama = false;
+  int quality = 90;
+  int tile_px = 256;
+};
+
+// What an importer tells while it works.
+struct Reports {
+  // The size of the result's raw data [bytes], as soon as it is known: it limits what is written.
+  std::function<Result<Ok>(std::uint64_t raw_bytes)> size;
+  // The part of the work that is done, 0..1, and the number of items (pixels) so far.
+  std::function<void(double share, std::int64_t items)> progress;
+};
+
+// What was made: the name of the file in the request's folder, and facts about it as JSON members.
+struct Imported {
+  std::string file, facts;
+};
+
+struct Importer {
+  std::string_view kind;  // first argument of merlin-import
+  std::string_view help;
+  // Loads libraries, before the sandbox closes.
+  Result<Ok> (*prepare)(const char* program);
+  Result<Imported> (*run)(const Request& request, const Reports& reports);
+};
+
+std::span<const Importer> importers() noexcept;
+
+}  // namespace merlin::import

@@ -1,0 +1,128 @@
+// merlin-import: reads one file of another program's format, in a sandbox, and writes what MERLIN
+// shows. Started by `merlin image import`; what it says is for that program.
+//
+// stdout, a line each: "lacks WHAT", "pixels N", "progress SHARE ITEMS", then "done FILE {JSON}" or
+// "failed CODE WHY".
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/log.h"
+#include "daemon/base/printable_text.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/import/importers.h"
+#include "daemon/import/sandbox.h"
+
+namespace merlin::import {
+namespace {
+
+constexpr Duration kReportEvery = std::chrono::milliseconds(100);
+
+int usage() {
+  printError(
+      "usage: merlin-import KIND IN FOLDER [--panorama] [--quality Q] [--tile PX] [--memory BYTES] "
+      "[--cpu SECONDS]\n");
+  for (const Importer& importer : importers())
+    printError("  {}: {}\n", importer.kind, importer.help);
+  printError("For people there is: merlin image import IN -o OUT\n");
+  return kExitBadInput;
+}
+
+void tell(const std::string& line) {
+  fmt::print("{}\n", oneLine(line));
+  std::fflush(stdout);
+}
+
+int failed(const Error& error) {
+  tell(fmt::format("failed {} {}", static_cast<int>(error.code), error.what));
+  return exitStatus(error);
+}
+
+struct Options {
+  Request request;
+  Limits limits;
+};
+
+template <typename T>
+bool parse(std::string_view text, T& value) {
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && rest == text.data() + text.size();
+}
+
+std::optional<Options> parseOptions(int argc, char** argv) {
+  Options o;
+  o.request.input = argv[2];
+  o.request.folder = argv[3];
+  for (int i = 4; i < argc; ++i) {
+    const std::string_view name = argv[i];
+    if (name == "--panorama") {
+      o.request.panorama = true;
+      continue;
+    }
+    if (++i == argc) return std::nullopt;
+    const std::string_view value = argv[i];
+    const bool good = (name == "--quality" && parse(value, o.request.quality)) ||
+                      (name == "--tile" && parse(value, o.request.tile_px)) ||
+                      (name == "--memory" && parse(value, o.limits.memory_bytes)) ||
+                      (name == "--cpu" && parse(value, o.limits.cpu_s));
+    if (!good) return std::nullopt;
+  }
+  return o;
+}
+
+// The result may be a third larger than its raw data, by its coarser levels, and a little more.
+Result<Ok> limitResult(std::uint64_t raw_bytes) {
+  return limitFileSize(raw_bytes / 2 * 3 + (std::uint64_t{64} << 20));
+}
+
+int run(const Importer& importer, const char* program, const Options& options) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // whoever started this no longer waits
+  ::setenv("TMPDIR", options.request.folder.c_str(), 1);
+  if (const auto prepared = importer.prepare(program); !prepared) return failed(prepared.error());
+  const auto closed = closeSandbox(options.request.input, options.request.folder, options.limits);
+  if (!closed) return failed(closed.error());
+  for (const std::string& what : *closed) tell("lacks " + what);
+  const SystemClock clock;
+  Timestamp told{};
+  const Reports reports{[](std::uint64_t raw_bytes) {
+                          tell(fmt::format("pixels {}", raw_bytes / 3));
+                          return limitResult(raw_bytes);
+                        },
+                        [&](double share, std::int64_t items) {
+                          if (clock.now() - told < kReportEvery) return;
+                          told = clock.now();
+                          tell(fmt::format("progress {:.6f} {}", share, items));
+                        }};
+  const auto imported = importer.run(options.request, reports);
+  if (!imported) return failed(imported.error());
+  tell(fmt::format("done {} {{{}}}", imported->file, imported->facts));
+  return kExitDone;
+}
+
+int main(int argc, char** argv) {
+  if (argc < 4) return usage();
+  const auto all = importers();
+  const auto importer = std::ranges::find(all, std::string_view(argv[1]), &Importer::kind);
+  if (importer == all.end()) return usage();
+  const auto options = parseOptions(argc, argv);
+  return options ? run(*importer, argv[0], *options) : usage();
+}
+
+}  // namespace
+}  // namespace merlin::import
+
+int main(int argc, char** argv) {
+  merlin::openStandardStreams();
+  return merlin::runGuarded("merlin-import", [&] { return merlin::import::main(argc, argv); });
+}

@@ -1,0 +1,142 @@
+#include "daemon/wall/wall_contents.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "daemon/base/printable_text.h"
+#include "render/content/shown_colours.h"
+#include "render/lod/io/mrm_file.h"
+
+namespace merlin::wall {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostSlides = 10'000;
+constexpr std::string_view kModelEnding = ".mrm";
+constexpr std::string_view kPyramidEndings[] = {".tif", ".tiff"};
+
+bool isPyramid(const std::string& path) {
+  return std::ranges::any_of(kPyramidEndings, [&](auto ending) { return path.ends_with(ending); });
+}
+
+std::string nameOf(const std::string& path) {
+  const fs::path file(path);
+  return (file.has_filename() ? file : file.parent_path()).stem().string();
+}
+
+ContentEntry entryOf(const ContentSettings& c, const std::string& pointer) {
+  ContentEntry entry{pointer + "/model", c.name, c.model, ContentKind::kModel, c.show_as};
+  if (!c.picture.empty()) {
+    entry = {pointer + "/picture", c.name, c.picture, ContentKind::kPicture, c.show_as};
+  } else if (!c.slides.empty()) {
+    entry = {pointer + "/slides", c.name, c.slides, ContentKind::kSlides, c.show_as};
+  }
+  if (entry.name.empty()) entry.name = nameOf(entry.path);
+  return entry;
+}
+
+Result<WallContent> readModel(const ContentEntry& entry,
+                              const render::content::ShownFeature& show) {
+  FileStamp stamp;
+  auto model = render::lod::readMrmCopy(entry.path, &stamp);
+  if (!model) return model.error();
+  if (const auto shown = render::content::checkShown(*model, show); !shown)
+    return Error{Errc::kInvalidArgument, fmt::format("{}: {}", entry.path, shown.error().what)};
+  return WallContent{entry, entry.path, stamp, *std::move(model)};
+}
+
+Result<WallContent> readPicture(const ContentEntry& entry, const std::string& file) {
+  auto picture = render::content::openPicture(file, entry.show_as);
+  if (!picture) return picture.error();
+  const FileStamp stamp = (*picture)->file->stamp();
+  return WallContent{entry, file, stamp, *std::move(picture)};
+}
+
+// Names of the folder's pyramids, in order.
+Result<std::vector<std::string>> slidesIn(const std::string& folder) {
+  std::vector<std::string> slides;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (isPyramid(name) && !name.starts_with(".") && slides.size() < kMostSlides)
+      slides.push_back(name);
+  }
+  if (error) {
+    const bool missing = error == std::errc::no_such_file_or_directory;
+    return Error{missing ? Errc::kNotFound : Errc::kIo,
+                 fmt::format("{}: {}", folder, error.message())};
+  }
+  if (slides.empty()) {
+    return Error{Errc::kNotFound,
+                 fmt::format("{}: has no pyramid (.tif); make one: merlin image import IN -o "
+                             "{}/NAME.tif",
+                             folder, folder)};
+  }
+  std::ranges::sort(slides);
+  return slides;
+}
+
+Result<WallContent> readSlide(const ContentEntry& entry, const std::string& after,
+                              std::vector<std::string>& skipped) {
+  auto slides = slidesIn(entry.path);
+  if (!slides) return slides.error();
+  const std::string last = slides->back();
+  const std::string after_name = fs::path(after).filename().string();
+  std::rotate(slides->begin(), std::ranges::upper_bound(*slides, after_name), slides->end());
+  for (const std::string& name : *slides) {
+    auto read = readPicture(entry, (fs::path(entry.path) / name).string());
+    if (!read) {
+      skipped.push_back(fmt::format("a slide is left out: {}", read.error().what));
+      continue;
+    }
+    read->is_last_slide = name == last;
+    return read;
+  }
+  return Error{Errc::kNotFound, fmt::format("{}: none of its {} pyramids can be shown: {}",
+                                            entry.path, slides->size(), skipped.back())};
+}
+
+}  // namespace
+
+std::vector<ContentEntry> contentsOf(const WallSettings& wall) {
+  std::vector<ContentEntry> contents;
+  if (!wall.model.empty() || wall.contents.empty()) {
+    contents.push_back({"/wall/model", nameOf(wall.model), wall.model, ContentKind::kModel, {}});
+  }
+  for (std::size_t i = 0; i < wall.contents.size(); ++i)
+    contents.push_back(entryOf(wall.contents[i], fmt::format("/wall/contents/{}", i)));
+  return contents;
+}
+
+Result<ContentEntry> contentOfFile(const std::string& path) {
+  std::error_code error;
+  ContentEntry entry{"", nameOf(path), path, ContentKind::kPicture, {}};
+  if (fs::is_directory(path, error)) {
+    entry.kind = ContentKind::kSlides;
+  } else if (path.ends_with(kModelEnding)) {
+    entry.kind = ContentKind::kModel;
+  } else if (!isPyramid(path)) {
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("{}: is neither a model (.mrm), a pyramid (.tif) nor a folder of "
+                             "pyramids; make one: merlin mesh reduce, merlin image import",
+                             path)};
+  }
+  return entry;
+}
+
+Result<WallContent> readContent(const ContentEntry& entry,
+                                const render::content::ShownFeature& show, const std::string& after,
+                                std::vector<std::string>& skipped) {
+  switch (entry.kind) {
+    case ContentKind::kModel: return readModel(entry, show);
+    case ContentKind::kPicture: return readPicture(entry, entry.path);
+    case ContentKind::kSlides: return readSlide(entry, after, skipped);
+  }
+  return Error{Errc::kUnsupported, entry.path};
+}
+
+}  // namespace merlin::wall

@@ -1,0 +1,56 @@
+// The contents that a wall can show: those of its configuration, and files that `merlin show`
+// names.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "config/settings.h"
+#include "daemon/base/files.h"
+#include "daemon/base/result.h"
+#include "render/content/picture/picture.h"
+#include "render/lod/dendrogram.h"
+
+namespace merlin::wall {
+
+enum class ContentKind { kModel, kPicture, kSlides };
+
+// A content by its name and its file; `path` is a folder for slides.
+struct ContentEntry {
+  std::string pointer;  // JSON pointer of the setting that names it
+  std::string name, path;
+  ContentKind kind = ContentKind::kModel;
+  render::content::ShowAs show_as = render::content::ShowAs::kAsMarked;  // pictures and slides
+};
+
+// The configuration's contents in the order in which they are shown: /wall/model if it names one,
+// then /wall/contents. An entry that names no file has an empty path.
+std::vector<ContentEntry> contentsOf(const WallSettings& wall);
+
+// The content of a file that is not in the configuration, by its ending; a folder holds slides.
+// Errors: kInvalidArgument (another ending), kNotFound.
+Result<ContentEntry> contentOfFile(const std::string& path);
+
+// A content that was read.
+struct WallContent {
+  ContentEntry entry;
+  std::string file;  // that was read: the entry's, or one slide of it
+  FileStamp stamp;   // of that file
+  std::variant<render::lod::Dendrogram, std::shared_ptr<const render::content::Picture>> data;
+  bool is_last_slide = false;
+
+  bool isModel() const noexcept { return data.index() == 0; }
+};
+
+// Reads a content: a model as a whole, of a picture its coarsest level. Of slides it reads the
+// first that can be shown after the slide `after` in the order of their names, cyclically;
+// sentences about those that cannot be shown are added to `skipped`. Errors: those of
+// readMrmCopy(), openPicture(); kInvalidArgument (a model lacks the feature that `show` names);
+// kNotFound (a folder without a pyramid that can be shown). O(size of a model's file).
+Result<WallContent> readContent(const ContentEntry& entry,
+                                const render::content::ShownFeature& show, const std::string& after,
+                                std::vector<std::string>& skipped);
+
+}  // namespace merlin::wall

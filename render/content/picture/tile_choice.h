@@ -1,0 +1,29 @@
+// Chooses the tiles of a pyramid that a view needs: coarse where the picture is small in the view,
+// fine where it is large. Pure.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "render/content/picture/surface.h"
+#include "render/image/pyramid_file.h"
+
+namespace merlin::render::content {
+
+using Levels = std::span<const image::PyramidLevel>;
+
+// The part of the picture that a tile covers. The last column and row reach to the picture's edge,
+// which their level may round off.
+PixelRect rectOf(Levels levels, const image::TilePlace& place);
+
+// The tile of the next coarser level that covers it. REQUIRES: place.level + 1 < levels.size().
+image::TilePlace parentOf(Levels levels, const image::TilePlace& place);
+
+// Adds the tiles that cover all that the view may show of the picture, each once, such that no
+// pixel of theirs is larger in the view than `pixel_px`, unless it is one of the finest level.
+// Returns false if there are more than `most`: then some are missing. O(tiles * levels).
+bool chooseTiles(Levels levels, const Surface& surface, const PictureView& view, double pixel_px,
+                 std::size_t most, std::vector<image::TilePlace>& tiles);
+
+}  // namespace merlin::render::content

@@ -1,0 +1,81 @@
+// TileLoader: reads and decodes the tiles that are asked for, on a thread of its own.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "daemon/base/watched_thread.h"
+#include "render/content/picture/picture.h"
+
+namespace merlin::render::content {
+
+struct LoadedTile {
+  std::shared_ptr<const Picture> picture;
+  image::TilePlace place;
+  TilePixels pixels;  // empty: the tile cannot be read
+};
+
+// Port (an interface) to whoever loads. Called on the wall's thread, and never waits.
+class TileSource {
+ public:
+  virtual ~TileSource() = default;
+
+  // Asks for tiles of a picture, the most urgent first, instead of those that were asked for
+  // before. A tile that could not be read is not tried again until another picture is asked for.
+  virtual void ask(const std::shared_ptr<const Picture>& picture,
+                   std::span<const image::TilePlace> places) = 0;
+  // A tile that was loaded, if there is one; tiles that nobody asks for any more may be among them.
+  virtual std::optional<LoadedTile> take() = 0;
+  // Whether take() would return a tile.
+  virtual bool hasLoaded() const = 0;
+  // Whether tiles that were asked for may still come: neither loaded nor found to be unreadable
+  // yet.
+  virtual bool isLoading() const = 0;
+};
+
+// All are for the wall's thread, takeFaults() is thread-safe.
+class TileLoader final : public TileSource {
+ public:
+  // `watch` must outlive this object. Memory: kMostLoaded tiles, and a reader.
+  explicit TileLoader(ThreadWatch& watch);
+  ~TileLoader() override { thread_.stop(); }
+  TileLoader(const TileLoader&) = delete;
+  TileLoader& operator=(const TileLoader&) = delete;
+
+  void ask(const std::shared_ptr<const Picture>& picture,
+           std::span<const image::TilePlace> places) override;
+  std::optional<LoadedTile> take() override;
+  bool hasLoaded() const override;
+  bool isLoading() const override;
+
+  // Sentences about tiles that could not be read since the last call: one for each picture.
+  std::vector<std::string> takeFaults();
+
+  static constexpr std::size_t kMostLoaded = 32;  // tiles that wait for take()
+
+ private:
+  void run(const std::stop_token& stop, Progress& progress);
+  bool hasWork() const { return !places_.empty() && loaded_.size() < kMostLoaded; }
+  void load(std::unique_lock<std::mutex>& lock, std::optional<image::PyramidReader>& reader);
+  void noteFault(const image::TilePlace& place, const std::string& what);
+
+  mutable std::mutex mutex_;  // protects all up to thread_
+  std::condition_variable_any changed_;
+  std::shared_ptr<const Picture> picture_;
+  std::deque<image::TilePlace> places_;      // still to load
+  std::optional<image::TilePlace> loading_;  // by the thread, now; of picture_
+  std::deque<LoadedTile> loaded_;
+  std::set<image::TilePlace> unreadable_;  // of picture_
+  std::vector<std::string> faults_;
+  WatchedThread thread_;
+};
+
+}  // namespace merlin::render::content

@@ -1,0 +1,47 @@
+// Port (an interface): bytes that are read at any place. Implemented for files by FileAccess and
+// for memory by tests.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "daemon/base/files.h"
+#include "daemon/base/result.h"
+#include "daemon/base/unique_fd.h"
+
+namespace merlin::render::image {
+
+// Thread-safe.
+class RandomAccess {
+ public:
+  virtual ~RandomAccess() = default;
+
+  // Number of bytes when it was opened. Fewer may be there later.
+  virtual std::uint64_t size() const noexcept = 0;
+  // Fills `bytes` from `offset` on. Errors: kMalformed (the bytes end earlier), kIo.
+  virtual Result<Ok> read(std::uint64_t offset, std::span<std::uint8_t> bytes) const = 0;
+};
+
+// A file that stays open: it can be read after its name is gone. Reads by pread(), never by mmap(),
+// so that a file that is cut meanwhile is an error and not the end of the process.
+class FileAccess final : public RandomAccess {
+ public:
+  // Never blocks on a pipe or a device. Errors: kNotFound, kIo, kMalformed (not a regular file).
+  static Result<std::unique_ptr<FileAccess>> open(const std::string& path);
+
+  std::uint64_t size() const noexcept override { return stamp_.size; }
+  Result<Ok> read(std::uint64_t offset, std::span<std::uint8_t> bytes) const override;
+  // The file's stamp when it was opened.
+  const FileStamp& stamp() const noexcept { return stamp_; }
+
+ private:
+  FileAccess(UniqueFd file, const FileStamp& stamp) : file_(std::move(file)), stamp_(stamp) {}
+
+  UniqueFd file_;
+  FileStamp stamp_;
+};
+
+}  // namespace merlin::render::image

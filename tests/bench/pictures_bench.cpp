@@ -1,0 +1,205 @@
+// ./dev bench pictures: a picture of 20000 x 10000 pixels that is panned and zoomed without pause,
+// a panorama that is turned: late frames, rate, memory; and the time from `merlin show` to the
+// first picture of a file that the wall has not seen before.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "daemon/base/clock.h"
+#include "daemon/status/client.h"
+#include "tests/bench/demo_daemon.h"
+#include "tests/bench/figures.h"
+
+namespace merlin::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options : DemoOptions {
+  std::string work = "build/bench/pictures";
+  double seconds = 60;
+  int shows = 10;
+};
+
+// Structure of every size, so that no tile compresses to nothing.
+void writePpm(const std::string& path, int width, int height) {
+  std::ofstream out(path, std::ios::binary);
+  out << "P6\n" << width << " " << height << "\n255\n";
+  std::string row(3 * static_cast<std::size_t>(width), '\0');
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const unsigned noise = static_cast<unsigned>(x * 7919 ^ y * 104729) * 2654435761U >> 28;
+      const int wave = static_cast<int>(60 * std::sin(x / 97.0) * std::cos(y / 61.0));
+      char* const pixel = &row[3 * static_cast<std::size_t>(x)];
+      pixel[0] = static_cast<char>(120 + wave + static_cast<int>(noise));
+      pixel[1] = static_cast<char>(255 * x / width);
+      pixel[2] = static_cast<char>(255 * y / height);
+    }
+    out << row;
+  }
+}
+
+std::string pyramid(const Options& options, int width, int height, bool panorama) {
+  fs::create_directories(options.work);
+  const std::string name =
+      fmt::format("{}/{}x{}{}", options.work, width, height, panorama ? "-360" : "");
+  if (!fs::exists(name + ".tif")) {
+    note(fmt::format("making a picture of {} x {} pixels", width, height));
+    writePpm(name + ".ppm", width, height);
+    std::vector<std::string> command = {options.bin + "/merlin", "image", "import",
+                                        name + ".ppm",           "-o",    name + ".tif"};
+    if (panorama) command.emplace_back("--panorama");
+    const test::Outcome made = test::run(command);
+    fs::remove(name + ".ppm");
+    if (made.status != 0) didNotRun("merlin image import", made.output, "./dev build");
+  }
+  return fs::absolute(name + ".tif").string();
+}
+
+// Memory of a process [MB]: its greatest resident size, or the present one.
+double memoryOf(pid_t pid, const std::string& field) {
+  std::ifstream status(fmt::format("/proc/{}/status", pid));
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with(field + ":")) return std::stod(line.substr(field.size() + 1)) / 1024;
+  }
+  didNotRun("merlind", "/proc has no " + field + " of it", "is /proc there?");
+}
+
+struct Motion {
+  Measured late, held, work_ms;
+  double memory_mb = 0;
+  std::string renderer;
+};
+
+// A person at the wall, 30 steps a second: circles and zooms.
+std::string stepAt(double t, bool panorama) {
+  if (panorama) return fmt::format("0 0 0 {:.4f} {:.4f} 0", 0.6 * std::sin(t), -1.5);
+  const double zoom = 0.06 * std::sin(2 * std::numbers::pi * t / 12);
+  return fmt::format("{:.5f} {:.5f} {:.5f} 0 0 0", 0.02 * std::sin(t / 1.3),
+                     0.012 * std::cos(t / 0.9), zoom);
+}
+
+Motion move(const Options& options, const test::TempDir& dir, const std::string& file,
+            bool panorama) {
+  DemoDaemon daemon(options, dir, "all", [&](nlohmann::json& config) {
+    config["devices"]["script"] = "still";
+    config["wall"]["model"] = "";
+    config["wall"]["contents"] = {{{"picture", file}}};
+  });
+  SystemClock clock;
+  clock.sleepUntil(clock.now() + std::chrono::seconds(3), {});  // everything sharp, nothing moves
+  status::CommandSender sender;
+  const std::string endpoint = daemon.commandEndpoint();
+  const shm::WallStats from = daemon.wall();
+  std::vector<double> held, work;
+  const Timestamp start = clock.now();
+  for (int i = 0; toSeconds(clock.now() - start) < options.seconds; ++i) {
+    clock.sleepUntil(start + fromSeconds(i / 30.0), {});
+    static_cast<void>(sender.answer(clock.now()));
+    if (sender.isReady()) {
+      const auto sent = sender.send(endpoint, "move", stepAt(i / 30.0, panorama), clock.now());
+      if (!sent) didNotRun("the wall", sent.error().what, "see its log");
+    }
+    if (i % 30 != 29) continue;
+    const auto s = daemon.wall();
+    held.push_back(static_cast<double>(s.rate_held_hz));
+    work.push_back(static_cast<double>(s.work_median_ms));
+  }
+  const shm::WallStats end = daemon.wall();
+  daemon.expectRunning();
+  const double memory_mb = memoryOf(daemon.pid(), "VmHWM");
+  const std::string renderer = daemon.renderer();
+  daemon.stop();
+  constexpr const char* kSeconds = "seconds in which the wall moved";
+  return {shareOf(end.late - from.late, end.deadlines - from.deadlines,
+                  "deadlines of the wall, which did not move,"),
+          medianOf(held, kSeconds), medianOf(work, kSeconds), memory_mb, renderer};
+}
+
+struct Shown {
+  Measured first_s;
+  std::uint64_t late = 0;
+  double model_memory_mb = 0;
+};
+
+// `merlin show` of a picture and of the model in turns, on a wall that the demo's script moves.
+Shown show(const Options& options, const test::TempDir& dir, const std::string& file) {
+  DemoDaemon daemon(options, dir, "all",
+                    [&](nlohmann::json& config) { config["devices"]["script"] = "still"; });
+  SystemClock clock;
+  clock.sleepUntil(clock.now() + std::chrono::seconds(3), {});
+  const double memory_mb = memoryOf(daemon.pid(), "VmRSS");
+  const shm::WallStats from = daemon.wall();
+  std::vector<double> times;
+  for (int i = 0; i < options.shows; ++i) {
+    const Timestamp began = clock.now();
+    const test::Outcome shown =
+        test::run({options.bin + "/merlin", "show", file, "--instance", daemon.instance()});
+    if (shown.status != 0) didNotRun("merlin show", shown.output, "see the wall's log");
+    times.push_back(toSeconds(clock.now() - began));
+    clock.sleepUntil(clock.now() + std::chrono::seconds(1), {});
+    test::run({options.bin + "/merlin", "next_content", "--instance", daemon.instance()});
+    clock.sleepUntil(clock.now() + std::chrono::seconds(1), {});
+  }
+  const shm::WallStats end = daemon.wall();
+  daemon.stop();
+  return {quantileOf(times, 1, "pictures shown"), end.late - from.late, memory_mb};
+}
+
+void print(Report& report, const std::string& name, const Motion& m, bool panorama) {
+  report.text(
+      "{:24} {:6.1f} Hz held, {:5.2f} % of {} frames late, {:5.1f} ms a frame, {:5.0f} MB\n", name,
+      m.held.value(), 100 * m.late, m.late.count(), m.work_ms.value(), m.memory_mb);
+  const std::string key = panorama ? "panorama" : "picture";
+  report.figure(key + ".late", m.late, "1");
+  report.figure(key + ".rate_held", m.held, "Hz");
+  report.figure(key + ".work", m.work_ms, "ms");
+}
+
+void benchPictures(const Options& options, Report& report) {
+  const std::string large = pyramid(options, 20'000, 10'000, false);
+  const std::string of_1998 = pyramid(options, 7000, 4000, false);
+  const std::string panorama = pyramid(options, 8192, 4096, true);
+  const test::TempDir dir;
+  const Motion moved = move(options, dir, large, false);
+  const Motion turned = move(options, dir, panorama, true);
+  const Shown shown = show(options, dir, of_1998);
+  report.text("{}\n", moved.renderer);
+  print(report, "picture 20000 x 10000", moved, false);
+  print(report, "panorama 8192 x 4096", turned, true);
+  report.text(
+      "merlin show, 7000 x 4000: at most {:.0f} ms from the command to the first picture; {} late "
+      "frames in {} "
+      "changes; the wall with the model alone takes {:.0f} MB\n",
+      1000 * shown.first_s, shown.late, 2 * options.shows, shown.model_memory_mb);
+  report.figure("show.first", shown.first_s, "s");
+}
+
+}  // namespace
+}  // namespace merlin::bench
+
+int main(int argc, char** argv) {
+  merlin::bench::Options options;
+  CLI::App app("Late frames, memory and first pictures of large pictures.");
+  bool json = false;
+  app.add_option("--bin", options.bin, "Folder of merlind and merlin")->required();
+  app.add_option("--config", options.config, "The demo's configuration")->required();
+  app.add_option("--work", options.work, "Folder for the pictures");
+  app.add_option("--seconds", options.seconds, "Seconds of motion of each kind");
+  app.add_option("--shows", options.shows, "Times that merlin show is called");
+  app.add_flag("--json", json, "JSON, for programs");
+  CLI11_PARSE(app, argc, argv);
+  return merlin::bench::runBench("pictures", json, [&](merlin::bench::Report& report) {
+    merlin::bench::benchPictures(options, report);
+    return true;
+  });
+}

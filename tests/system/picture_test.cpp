@@ -1,0 +1,267 @@
+// Pictures from a file of another program to the wall: import, show, slides, and what becomes of
+// files that lie, change or vanish.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "render/image/image_file.h"
+#include "tests/support/picture_files.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A binary PPM whose pixels `colour` computes.
+template <typename Colour>
+void writePpm(const std::string& path, int width, int height, const Colour& colour) {
+  std::ofstream out(path, std::ios::binary);
+  out << "P6\n" << width << " " << height << "\n255\n";
+  std::string row;
+  for (int y = 0; y < height; ++y) {
+    row.clear();
+    for (int x = 0; x < width; ++x) {
+      for (const int c : colour(x, y)) row.push_back(static_cast<char>(c));
+    }
+    out << row;
+  }
+}
+
+std::array<int, 3> plain(int red, int green, int blue) { return {red, green, blue}; }
+
+Outcome import(const std::string& in, const std::string& out, std::vector<std::string> more = {}) {
+  std::vector<std::string> command = {kMerlin, "image", "import", in, "-o", out};
+  command.insert(command.end(), more.begin(), more.end());
+  return run(command);
+}
+
+// Files of the folder, hidden ones too.
+std::size_t filesIn(const std::string& folder) {
+  return static_cast<std::size_t>(
+      std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+TEST(ImageImport, MakesAPyramidOfAPictureAsLargeAsThoseOf1998) {
+  const TempDir dir;
+  writePpm(dir / "in.ppm", 7000, 4000, [](int x, int y) { return plain(x / 28, y / 16, 90); });
+  const Outcome made = import(dir / "in.ppm", dir / "out.tif", {"--json"});
+  ASSERT_EQ(made.status, 0) << made.output;
+  const auto json = nlohmann::json::parse(made.output.substr(made.output.rfind("{\"")));
+  EXPECT_EQ(json["width"], 7000);
+  EXPECT_EQ(json["height"], 4000);
+  EXPECT_EQ(json["levels"], 6);
+  EXPECT_EQ(json["kind"], "picture");
+  EXPECT_GT(json["pixels_per_s"], 0);
+  EXPECT_GT(json["peak_memory_bytes"], 1'000'000);
+  EXPECT_EQ(filesIn(dir.path()), 2U) << "nothing else is left";
+  const Outcome info = run({kMerlin, "image", "info", dir / "out.tif"});
+  EXPECT_EQ(info.status, 0);
+  EXPECT_NE(info.output.find("picture of 7000 x 4000 pixels"), std::string::npos) << info.output;
+}
+
+TEST(ImageImport, MarksAPanoramaAndIsLosslessWhereAsked) {
+  const TempDir dir;
+  writePpm(dir / "in.ppm", 800, 400, [](int x, int y) { return plain(x % 256, y % 256, 7); });
+  ASSERT_EQ(import(dir / "in.ppm", dir / "a.tif", {"--panorama", "--quality", "0"}).status, 0);
+  const Outcome info = run({kMerlin, "image", "info", dir / "a.tif", "--json"});
+  EXPECT_EQ(nlohmann::json::parse(info.output)["kind"], "panorama");
+}
+
+TEST(ImageImport, SaysWhatIsWrongAndLeavesNothing) {
+  const TempDir dir;
+  const std::string out = dir / "out.tif";
+  const auto expectRefused = [&](const std::string& in, int status, const std::string& what,
+                                 const std::vector<std::string>& more = {}) {
+    const Outcome refused = import(in, out, more);
+    EXPECT_EQ(refused.status, status) << in << ": " << refused.output;
+    EXPECT_NE(refused.output.find(what), std::string::npos) << refused.output;
+    EXPECT_FALSE(fs::exists(out));
+  };
+  writeText(dir / "text.jpg", "this is no picture");
+  expectRefused(dir / "text.jpg", 2, "cannot be read as a picture");
+  expectRefused(dir / "nothing.jpg", 2, "does not exist");
+  expectRefused(dir.path(), 2, "is not a file");
+  // A header of 10^10 pixels, and hardly any of them.
+  writeText(dir / "lies.ppm", "P6\n100000 100000\n255\n" + std::string(1000, 'x'));
+  expectRefused(dir / "lies.ppm", 2, "lies.ppm");
+  writePpm(dir / "good.ppm", 600, 400, [](int x, int) { return plain(x % 256, 0, 0); });
+  expectRefused(dir / "good.ppm", 2, "", {"--memory", "30M"});
+  EXPECT_EQ(import(dir / "good.ppm", dir / "out.png").status, 2) << "it must end in .tif";
+  EXPECT_EQ(import(dir / "good.ppm", dir / "no/out.tif").status, 2);
+  EXPECT_EQ(import(dir / "good.ppm", out, {"--quality", "101"}).status, 2);
+  EXPECT_EQ(filesIn(dir.path()), 3U);
+}
+
+TEST(ImageImport, CtrlCLeavesNoHalfFile) {
+  const TempDir dir;
+  writePpm(dir / "in.ppm", 9000, 6000,
+           [](int x, int y) { return plain((x * y) % 256, (x ^ y) % 256, x % 256); });
+  Process importing(
+      {kMerlin, "image", "import", dir / "in.ppm", "-o", dir / "out.tif", "--quality", "0"});
+  EXPECT_TRUE(eventually([&] { return filesIn(dir.path()) > 1 || importing.ended(); }));
+  EXPECT_EQ(importing.kill(SIGINT), 1) << importing.output();
+  EXPECT_NE(importing.output().find("was stopped"), std::string::npos) << importing.output();
+  EXPECT_EQ(filesIn(dir.path()), 1U) << "the input";
+}
+
+// A wall that shows what `contents` of the configuration are.
+class PictureWall : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    dir_ = new TempDir;
+    fs::create_directory(*dir_ / "slides");
+    const auto make = [](const std::string& name, int width, int height,
+                         const std::array<int, 3>& colour, std::vector<std::string> more = {}) {
+      writePpm(*dir_ / "in.ppm", width, height, [&](int, int) { return colour; });
+      const Outcome made = import(*dir_ / "in.ppm", *dir_ / name, std::move(more));
+      EXPECT_EQ(made.status, 0) << made.output;
+    };
+    make("red.tif", 2000, 1500, {250, 0, 0});
+    make("sky.tif", 1600, 800, {0, 0, 250}, {"--panorama"});
+    make("slides/1-green.tif", 900, 600, {0, 250, 0});
+    make("slides/2-grey.tif", 900, 600, {120, 120, 120});
+    make("other.tif", 7000, 4000, {250, 250, 0});
+  }
+  static void TearDownTestSuite() { delete dir_; }
+
+  void SetUp() override {
+    nlohmann::json wall = {{"model", ""},
+                           {"contents",
+                            {{{"picture", *dir_ / "red.tif"}},
+                             {{"picture", *dir_ / "sky.tif"}, {"name", "the sky"}},
+                             {{"slides", *dir_ / "slides"}}}}};
+    m_ = std::make_unique<Merlind>(*dir_, "", "pictures",
+                                   MerlindOptions{.script = "still", .also = {{"wall", wall}}});
+    ASSERT_TRUE(m_->ready()) << m_->process().output();
+  }
+  Outcome show(const std::string& what) {
+    return run({kMerlin, "show", what, "--instance", m_->instance()});
+  }
+  Outcome next() { return run({kMerlin, "next_content", "--instance", m_->instance()}); }
+  bool isShown(const std::string& name, const std::string& kind, const std::string& slide = "") {
+    return eventually([&] {
+      const auto content = m_->status()["content"];
+      return content["name"] == name && content["kind"] == kind && content["slide"] == slide;
+    });
+  }
+  // The middle of the wall's middle tile, once all of the picture is there.
+  bool isColoured(const std::array<int, 3>& rgb) {
+    return eventually([&] {
+      if (!m_->status()["full_detail"]) return false;
+      const std::string path = *dir_ / "frame.png";
+      run({kMerlin, "snapshot", "-o", path, "--instance", m_->instance()});
+      const auto frame = render::image::readImage(path);
+      if (!frame) return false;
+      const std::size_t middle = 3 * (std::size_t{240} * 1280 + 960);
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (std::abs(frame->pixels[middle + k] - rgb[k]) > 6) return false;
+      }
+      return true;
+    });
+  }
+
+  static TempDir* dir_;
+  std::unique_ptr<Merlind> m_;
+};
+TempDir* PictureWall::dir_ = nullptr;
+
+TEST_F(PictureWall, ShowsPicturesPanoramasSlidesAndFilesByName) {
+  EXPECT_TRUE(isShown("red", "picture"));
+  EXPECT_TRUE(isColoured({250, 0, 0}));
+  EXPECT_EQ(m_->status()["content"]["detail"]["unit"], "kilotexels");
+  EXPECT_EQ(show("the sky").status, 0);
+  EXPECT_TRUE(isShown("the sky", "panorama"));
+  EXPECT_TRUE(isColoured({0, 0, 250}));
+  next();
+  EXPECT_TRUE(isShown("slides", "picture", "1-green"));
+  EXPECT_TRUE(isColoured({0, 250, 0}));
+  next();
+  EXPECT_TRUE(isShown("slides", "picture", "2-grey"));
+  EXPECT_TRUE(isColoured({120, 120, 120}));
+  next();
+  EXPECT_TRUE(isShown("red", "picture"));
+  const Outcome other = show(*dir_ / "other.tif");
+  EXPECT_EQ(other.status, 0) << other.output;
+  EXPECT_TRUE(isShown("other", "picture"));
+  EXPECT_TRUE(isColoured({250, 250, 0}));
+  next();
+  EXPECT_TRUE(isShown("the sky", "panorama")) << "the list goes on where it was";
+}
+
+TEST_F(PictureWall, ShowsAModelThatIsNotInTheConfiguration) {
+  const std::string model = makeModel(*dir_, 5);
+  const Outcome shown = show(model);
+  EXPECT_EQ(shown.status, 0) << shown.output;
+  EXPECT_TRUE(isShown("model", "model"));
+  EXPECT_EQ(m_->status()["content"]["detail"]["unit"], "triangles");
+  EXPECT_EQ(show("red").status, 0);
+  EXPECT_TRUE(isShown("red", "picture"));
+}
+
+TEST_F(PictureWall, RefusesWhatItCannotShowAndStays) {
+  const auto expectRefused = [&](const std::string& what, const std::string& why) {
+    const Outcome refused = show(what);
+    EXPECT_EQ(refused.status, 2) << what << ": " << refused.output;
+    EXPECT_NE(refused.output.find(why), std::string::npos) << refused.output;
+  };
+  expectRefused("blue", "contents are red, the sky, slides");
+  expectRefused(*dir_ / "missing.tif", "missing.tif");
+  expectRefused(*dir_ / "in.ppm", "is neither a model (.mrm), a pyramid (.tif)");
+  writeText(*dir_ / "text.tif", "this is no picture");
+  expectRefused(*dir_ / "text.tif", "is not a TIFF file");
+  writeText(*dir_ / "text.mrm", "this is no model");
+  expectRefused(*dir_ / "text.mrm", "text.mrm");
+  fs::create_directory(*dir_ / "empty");
+  expectRefused(*dir_ / "empty", "has no pyramid");
+  EXPECT_TRUE(isShown("red", "picture"));
+  EXPECT_TRUE(isColoured({250, 0, 0}));
+}
+
+TEST_F(PictureWall, OpensAPictureOf100Gigapixels) {
+  const std::string huge = *dir_ / "huge.tif";
+  const Outcome made = run(
+      {"python3", "-B", kSource + "/tests/support/sparse_pyramid.py", "400000", "250000", huge});
+  ASSERT_EQ(made.status, 0) << made.output;
+  const Outcome info = run({kMerlin, "image", "info", huge, "--json"});
+  EXPECT_EQ(nlohmann::json::parse(info.output)["height"], 250000);
+  const Outcome shown = show(huge);
+  EXPECT_EQ(shown.status, 0) << shown.output;
+  EXPECT_TRUE(isShown("huge", "picture"));
+  // As near as it goes: a pixel of it is as large as eight of the wall.
+  run({kMerlin, "wall", "--move=0 0 10 0 0 0", "--instance", m_->instance()});
+  EXPECT_TRUE(eventually([&] { return m_->status()["full_detail"] == true; }));
+}
+
+TEST_F(PictureWall, FilesThatChangeOrVanishAreSaidAndTheWallStaysUp) {
+  const std::string live = *dir_ / "live.tif";
+  fs::copy_file(*dir_ / "other.tif", live, fs::copy_options::overwrite_existing);
+  ASSERT_EQ(show(live).status, 0);
+  EXPECT_TRUE(isColoured({250, 250, 0}));
+  fs::copy_file(*dir_ / "slides/1-green.tif", live + ".new");
+  fs::rename(live + ".new", live);
+  EXPECT_TRUE(m_->process().saysEventually("picture " + live + " was replaced and is shown"));
+  EXPECT_TRUE(isColoured({0, 250, 0}));
+  writeText(live, "no picture");
+  EXPECT_TRUE(m_->process().saysEventually("was replaced by one that cannot be shown"));
+  fs::remove(live);
+  EXPECT_TRUE(m_->process().saysEventually("is gone or is no longer a regular file"));
+  EXPECT_TRUE(isColoured({0, 250, 0})) << "what was read stays";
+  // A folder of slides that vanishes while one of them is shown.
+  fs::create_directory(*dir_ / "going");
+  fs::copy_file(*dir_ / "red.tif", *dir_ / "going/a.tif");
+  fs::copy_file(*dir_ / "sky.tif", *dir_ / "going/b.tif");
+  ASSERT_EQ(show(*dir_ / "going").status, 0);
+  EXPECT_TRUE(isShown("going", "picture", "a"));
+  fs::remove_all(*dir_ / "going");
+  next();
+  EXPECT_TRUE(m_->process().saysEventually("going"));
+  EXPECT_FALSE(m_->process().ended());
+  EXPECT_TRUE(isShown("going", "picture", "a"));
+}
+
+}  // namespace
+}  // namespace merlin::test
