@@ -151,7 +151,7 @@ const std::map<std::string, Folders> kOnlyIn = {
     {"zmq.hpp", {"daemon/status"}},
     {"zmq.h", {"daemon/status"}},
     {"nlohmann/json.hpp",
-     {"config", "nn/io", "daemon/json", "daemon/state", "daemon/status", "daemon/cli",
+     {"config", "nn/io", "daemon/json", "daemon/state", "daemon/status", "daemon/cli", "daemon/page",
       "daemon/page", "daemon/cli/mesh", "daemon/cli/posture", "daemon/cli/wall",
       "daemon/cli/calibrate", "daemon/cli/image", "daemon/cli/line", "render/mesh/io/gltf"}},
     {"microhttpd.h", {"daemon/page"}},

@@ -1,0 +1,44 @@
+// EventLog: the last events of all roles and of the page, numbered.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <string>
+
+#include "daemon/base/clock.h"
+
+namespace merlin::page {
+
+struct LoggedEvent {
+  std::uint64_t number = 0;
+  std::string role;                  // "wall", "devices", "page"
+  std::string time_utc = {};         // ISO 8601
+  std::string kind = {}, what = {};  // a word and a sentence
+};
+
+// Thread-safe. Keeps 500 events.
+class EventLog {
+ public:
+  // `first`: number of the first event. If it is the time of the start, in milliseconds, numbers
+  // grow over restarts, so that a client with a number of an earlier run gets everything.
+  explicit EventLog(std::uint64_t first) : next_(first) {}
+
+  // Adds what a role published as `event`. What is malformed is left out; long texts are cut.
+  void addDocument(const std::string& role, const std::string& document);
+  // Adds an event of the page itself, with the time of day.
+  void add(const std::string& role, const std::string& kind, const std::string& what);
+
+  // {"next": N, "events": [{"number", "role", "time_utc", "kind", "what"}]}: those after number
+  // `since`, the oldest first, at most the last 200.
+  std::string since(std::uint64_t since) const;
+
+ private:
+  void keep(LoggedEvent event);
+
+  mutable std::mutex mutex_;
+  std::deque<LoggedEvent> events_;  // guarded by mutex_, as is next_
+  std::uint64_t next_;
+};
+
+}  // namespace merlin::page

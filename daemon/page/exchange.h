@@ -1,0 +1,51 @@
+// A request and its answer, apart from the library that carries them. Plain data.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace merlin::page {
+
+// Limits of a request; the server refuses what is larger, without keeping it.
+inline constexpr std::size_t kMostBodyBytes = 4096;
+inline constexpr std::size_t kMostQueries = 8;
+
+struct Request {
+  std::string method;                        // "GET"
+  std::string path;                          // "/api/status", decoded, without the query
+  std::map<std::string, std::string> query;  // decoded
+  // Headers that matter, by their name in lower case. A header that was sent twice is not in it but
+  // in `repeated`.
+  std::map<std::string, std::string> headers;
+  bool repeated = false;
+  std::string body;
+
+  // Empty if the request lacks it.
+  const std::string& header(const std::string& name) const {
+    static const std::string kNone;
+    const auto found = headers.find(name);
+    return found == headers.end() ? kNone : found->second;
+  }
+};
+
+// The headers that a Request keeps.
+inline constexpr const char* kKeptHeaders[] = {"host",           "origin",        "sec-fetch-site",
+                                               "sec-fetch-mode", "authorization", "content-type",
+                                               "if-none-match",  "accept"};
+
+struct Answer {
+  unsigned status = 200;
+  std::string type = "application/json";
+  std::shared_ptr<const std::string> body;  // shared with other answers, such as a picture
+  std::vector<std::pair<std::string, std::string>> headers;
+
+  static Answer text(unsigned status, std::string type, std::string body) {
+    return {status, std::move(type), std::make_shared<const std::string>(std::move(body)), {}};
+  }
+};
+
+}  // namespace merlin::page

@@ -1,0 +1,32 @@
+// Names of hosts in HTTP headers: which are the page's own. Pure.
+//
+// A browser that was led to another site's name whose address is this machine's (DNS rebinding)
+// sends that name. So only addresses, which cannot be rebound, localhost and the configured names
+// are accepted.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace merlin::page {
+
+// Letters, digits, - and dots; at most 253 of them.
+bool isHostName(std::string_view name);
+
+// The words of a text that spaces separate.
+std::vector<std::string> wordsOf(std::string_view text);
+
+// The host of "HOST" or "HOST:PORT", in lower case; an IPv6 address without its brackets. Nothing
+// if it is malformed.
+std::optional<std::string> hostOf(std::string_view authority);
+
+// Whether this host, as hostOf() returns it, means the machine that the browser runs on.
+bool isLoopbackHost(std::string_view host);
+
+// Whether it is an address, localhost, or one of `names`.
+bool isOwnHost(std::string_view host, std::span<const std::string> names);
+
+}  // namespace merlin::page

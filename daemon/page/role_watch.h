@@ -1,0 +1,55 @@
+// RoleWatch: what one role of merlind publishes, followed over its restarts.
+#pragma once
+
+#include <string>
+
+#include "daemon/base/clock.h"
+#include "daemon/page/event_log.h"
+#include "daemon/shm/segment.h"
+#include "daemon/status/topic_follower.h"
+
+namespace merlin::page {
+
+// Thread-bound. `Reader`: shm::SegmentReader<shm::WallSegment> or shm::DevicesReader, instantiated
+// in role_watch.cpp.
+template <typename Reader>
+class RoleWatch {
+ public:
+  // `role`: "wall" or "devices", of this instance of merlind. `events` must outlive this.
+  RoleWatch(const std::string& instance, std::string role, EventLog& events);
+
+  // Takes what has arrived, and adds events to the log: the role's own, and that it runs or is
+  // gone. Never waits; takes a microsecond if nothing has arrived.
+  void update(Timestamp now);
+
+  const std::string& role() const noexcept { return role_; }
+  bool isRunning() const noexcept { return segment_ != nullptr; }
+  // The role's segment; null while it does not run. Valid until the next update().
+  const typename Reader::View* segment() const noexcept { return segment_; }
+  // Newest documents of the topics, JSON objects; empty while there is none.
+  const std::string& status() const noexcept { return status_; }
+  const std::string& metrics() const noexcept { return metrics_; }
+  // Where the role takes commands; empty while it does not run here.
+  const std::string& commandEndpoint() const noexcept { return command_endpoint_; }
+  // When status() arrived, if there is one.
+  Timestamp heard() const noexcept { return heard_; }
+
+ private:
+  void follow(const shm::Header* header);
+  void take(const status::TopicFollower::Message& message, Timestamp now);
+
+  std::string role_;
+  EventLog& events_;
+  shm::SegmentFollower<Reader> follower_;
+  status::TopicFollower topics_;
+  const typename Reader::View* segment_ = nullptr;
+  std::uint64_t generation_ = 0;  // of the run that is followed; 0: none
+  bool told_ = false, was_running_ = false;
+  std::string status_, metrics_, command_endpoint_;
+  Timestamp heard_{};
+};
+
+using WallWatch = RoleWatch<shm::SegmentReader<shm::WallSegment>>;
+using DevicesWatch = RoleWatch<shm::DevicesReader>;
+
+}  // namespace merlin::page

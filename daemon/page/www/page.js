@@ -1,0 +1,489 @@
+// The operator's page: shows what both roles report, and sends commands.
+
+import {Alignment} from "./align.js";
+import {command, getJson, getPicture, setToken, takeTokenFromAddress, token, tokenIsGood} from "./api.js";
+import {FrameChart, drawHistogram} from "./chart.js";
+
+const byId = id => document.getElementById(id);
+const wait = ms => new Promise(done => setTimeout(done, ms));
+
+const state = {
+  open: false,        // the server accepts the token
+  status: null,       // /api/status
+  online: true,
+  refused: "",        // why reading was refused
+  view: "wall",
+  events: 0,          // number of the newest event
+  used: {},           // sliders that are being used, and until when they stay where they are
+};
+const chart = new FrameChart(byId("frames"), 150);
+
+// ---- what is said -----------------------------------------------------------------------------
+
+let toast_timer = 0;
+function toast(text, bad = false) {
+  const box = byId("toast");
+  box.textContent = text;
+  box.className = bad ? "shown bad" : "shown";
+  clearTimeout(toast_timer);
+  toast_timer = setTimeout(() => { box.className = ""; }, bad ? 6000 : 1800);
+}
+
+function showBanners() {
+  const banners = [];
+  const roles = state.status ? state.status.roles : {};
+  if (!state.online) banners.push(["bad", "The page's server does not answer. This page tries again."]);
+  else if (state.refused) banners.push(["bad", state.refused]);
+  else {
+    if (roles.wall && !roles.wall.running)
+      banners.push(["bad", "The role wall does not run: no merlind shows a wall. The page shows it again as soon as it runs."]);
+    else if (roles.wall && roles.wall.status && roles.wall.age_s > 4)
+      banners.push(["warn", `The role wall has reported nothing for ${roles.wall.age_s.toFixed(0)} s.`]);
+    if (roles.devices && !roles.devices.running && !devicesOfWall())
+      banners.push(["bad", "The role devices does not run: no merlind reads glove, tracker and ball."]);
+  }
+  const text = JSON.stringify(banners), box = byId("banners");
+  if (box.dataset.text === text) return;
+  box.dataset.text = text;
+  box.replaceChildren(...banners.map(([kind, what]) => {
+    const line = document.createElement("p");
+    line.className = "banner " + kind;
+    line.textContent = what;
+    return line;
+  }));
+}
+
+// ---- the token --------------------------------------------------------------------------------
+
+function setOpen(open) {
+  state.open = open;
+  byId("lock").textContent = open ? "Unlocked" : "Locked";
+  byId("lock").classList.toggle("open", open);
+  for (const control of document.querySelectorAll(".command")) control.disabled = !open;
+  byId("screen").classList.toggle("open", open);
+  byId("align-plane").classList.toggle("locked", !open);
+  byId("move-hint").textContent = open ? "Drag in the picture to turn the model." : "Unlock to move the model.";
+}
+
+async function checkToken() {
+  try {
+    setOpen(await tokenIsGood());
+  } catch { /* the server is away; the next status says so */ }
+  return state.open;
+}
+
+function askForToken() {
+  byId("token-fault").textContent = "";
+  byId("token").value = "";
+  if (state.status) byId("token-place").textContent = "cat " + state.status.page.token_file;
+  byId("token-dialog").showModal();
+}
+
+function makeTokenDialog() {
+  byId("lock").onclick = () => {
+    if (!state.open) return askForToken();
+    setToken("");
+    setOpen(false);
+  };
+  byId("token-cancel").onclick = () => byId("token-dialog").close();
+  byId("token-form").onsubmit = async event => {
+    event.preventDefault();
+    setToken(byId("token").value.trim());
+    if (await checkToken()) {
+      byId("token-dialog").close();
+      readStatus();
+      return;
+    }
+    setToken("");
+    byId("token").value = "";
+    byId("token").focus();
+    byId("token-fault").textContent = state.online ? "The token is wrong." : "The page's server does not answer.";
+  };
+}
+
+// ---- commands ---------------------------------------------------------------------------------
+
+// Sends a command; says why it failed. Returns its result, or undefined.
+async function run(name, argument = "") {
+  try {
+    const result = await command(name, argument);
+    return result === undefined || result === null ? true : result;
+  } catch (error) {
+    if (error.status === 401) setOpen(false);
+    toast(error.message, true);
+    return undefined;
+  }
+}
+
+const readable = name => {
+  const text = name.replace(/_/g, " ");
+  return text[0].toUpperCase() + text.slice(1);
+};
+
+function commandButton(info) {
+  const button = document.createElement("button");
+  button.type = "button";
+  button.className = "command";
+  button.id = "command-" + info.name;
+  button.title = info.help;
+  button.textContent = readable(info.name);
+  button.disabled = !state.open;
+  button.onclick = async () => {
+    button.classList.add("busy");
+    if (await run(info.name) !== undefined) toast(readable(info.name));
+    button.classList.remove("busy");
+    readStatus();
+    if (info.name.startsWith("align_") || info.name === "next_testcard") alignment.refresh();
+  };
+  return button;
+}
+
+// A button for each command of the daemon's one list that needs no argument.
+function makeButtons(commands) {
+  const place = info => info.role !== "wall" ? "panel" :
+      info.name.startsWith("align_") || info.name === "next_testcard" ? "align" : "wall";
+  for (const id of ["wall", "panel", "align"])
+    byId("buttons-" + id).replaceChildren(
+        ...commands.filter(info => info.button && place(info) === id).map(commandButton));
+  const card = commands.find(info => info.name === "testcard");
+  if (card) alignment.setCards(card.choices || []);
+  state.can_show = commands.some(info => info.name === "show");
+}
+
+// ---- state ------------------------------------------------------------------------------------
+
+function facts(box, pairs) {
+  box.replaceChildren(...pairs.filter(([, value]) => value !== undefined).map(([name, value]) => {
+    const line = document.createElement("div"), small = document.createElement("small"), b = document.createElement("b");
+    small.textContent = name;
+    b.textContent = value;
+    line.append(small, b);
+    return line;
+  }));
+}
+
+function item(health, name, value, more) {
+  const line = document.createElement("div"), dot = document.createElement("span"), label = document.createElement("span"),
+        right = document.createElement("span");
+  line.className = "item";
+  dot.className = "dot " + health;
+  dot.title = health;
+  label.textContent = name;
+  right.className = "value";
+  right.textContent = value;
+  line.append(dot, label, right);
+  if (more) {
+    const small = document.createElement("small");
+    small.textContent = more;
+    line.append(small);
+  }
+  return line;
+}
+
+const number = (value, digits = 0) => typeof value === "number" ? value.toFixed(digits) : "–";
+const grouped = value => typeof value === "number" ? value.toLocaleString("en") : "–";
+const wallStatus = () => state.status && state.status.roles.wall.status;
+// A wall that uses another machine's devices reports them itself.
+const devicesOfWall = () => wallStatus() && wallStatus().devices ? wallStatus() : null;
+const devicesStatus = () => state.status && state.status.roles.devices.status || devicesOfWall();
+
+function showDevices() {
+  const status = devicesStatus(), devices = status ? Object.entries(status.devices || {}) : [];
+  byId("devices").replaceChildren(...devices.map(([name, d]) =>
+      item(d.health, readable(name), d.health === "ok" ? number(d.rate_hz, 1) + " Hz" : d.health,
+           d.reason || d.identity || d.port)));
+  if (devices.length === 0) byId("devices").textContent = "Nothing is known of the devices.";
+  byId("head-posture").textContent = status && status.posture || "";
+}
+
+function showOutputs(wall) {
+  const outputs = wall ? Object.entries(wall.outputs || {}) : [];
+  byId("outputs").replaceChildren(...outputs.map(([name, o]) =>
+      item(o.health, name, `${number(o.shown_hz, 1)} Hz, ${number(o.late_percent, 2)} % late`,
+           o.reason || (o.kind === name ? "" : o.kind))));
+}
+
+// The slider of the cost has a logarithmic scale from 1/1000 to all of it.
+const costOf = (place, full) => Math.max(1, Math.round(full * 10 ** (3 * (place / 1000 - 1))));
+const placeOf = (cost, full) => Math.round(1000 * (1 + Math.log10(Math.max(cost, 1) / Math.max(full, 1)) / 3));
+
+const isUsed = id => document.activeElement === byId(id) && Date.now() < (state.used[id] || 0);
+
+function showDetail(wall) {
+  const detail = wall.detail || {};
+  if (!isUsed("rate")) {
+    byId("rate").max = Math.max(120, Math.ceil(wall.rate_asked));
+    byId("rate").value = wall.rate_asked;
+    byId("rate-value").textContent = number(wall.rate_asked) + " Hz";
+  }
+  byId("cost-name").textContent = readable(detail.unit || "detail");
+  if (!isUsed("triangles")) {
+    byId("triangles").value = placeOf(detail.held_cost || wall.budget || detail.cost, detail.full_cost);
+    byId("triangles-value").textContent = detail.held_cost ? grouped(detail.held_cost) + " by hand" : "auto";
+  }
+  byId("triangles-auto").setAttribute("aria-pressed", String(!detail.held_cost));
+  facts(byId("detail-facts"), [
+    ["drawn now", grouped(detail.cost)], ["of", grouped(detail.full_cost)],
+    ["full detail", wall.full_detail ? "shown" : "no"], ["the model", wall.moving ? "moves" : "stands still"],
+    ["mode of the ball", wall.mode],
+    ["drawn by", wall.renderer && (wall.renderer.software ? "CPU" : "GPU")]]);
+}
+
+// The content that is shown: what the wall says of it, or its number in the configuration.
+function shownContent(wall) {
+  return typeof wall.content === "object" ? wall.content : {index: wall.content, name: "content " + (wall.content + 1)};
+}
+
+// Names of all contents if the wall says them; else a name is typed, or the next one is asked for.
+function showContents(wall) {
+  const now = shownContent(wall), box = byId("contents");
+  byId("content-name").textContent = [now.name, now.slide, now.kind].filter(Boolean).join(" · ") +
+      (now.refused ? " · refused: " + now.refused : "");
+  const names = state.can_show ? (wall.contents || []).map(c => typeof c === "string" ? c : c.name) : [];
+  byId("show-form").hidden = !state.can_show || names.length > 0;
+  const text = JSON.stringify([names, now.name, state.open]);
+  if (box.dataset.text === text) return;
+  box.dataset.text = text;
+  box.replaceChildren(...names.map(name => {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.className = "command";
+    button.textContent = name;
+    button.disabled = !state.open;
+    button.setAttribute("aria-pressed", String(name === now.name));
+    button.onclick = () => showContent(name);
+    return button;
+  }));
+}
+
+async function showContent(name) {
+  if (await run("show", name) !== undefined) toast("Show " + name);
+  readStatus();
+}
+
+function showFrames(wall) {
+  chart.period_ms = wall.rate_now > 0 ? 1000 / wall.rate_now : 0;
+  byId("frames-legend").textContent = `dashed: the period of ${chart.period_ms.toFixed(1)} ms; red: late`;
+  facts(byId("frame-facts"), [
+    ["rate", `${number(wall.rate_held, 1)} of ${number(wall.rate_asked)} Hz`],
+    ["late, 1 s", number(wall.late_percent_1s, 1) + " %"], ["late, 1 min", number(wall.late_percent_1min, 2) + " %"],
+    ["late, all", number(wall.late_percent, 2) + " %"], ["work, median", number(wall.work_median_ms, 1) + " ms"],
+    ["longest late", wall.longest_late === 1 ? "1 frame" : wall.longest_late + " frames"]]);
+  if (wall.work_histogram) drawHistogram(byId("work"), wall.work_histogram, 70);
+}
+
+function showStatus() {
+  const wall = wallStatus();
+  showBanners();
+  showDevices();
+  showOutputs(wall);
+  byId("instance").textContent = state.status.page.instance;
+  byId("head-rate").textContent = wall ? number(wall.rate_held, 0) : "–";
+  byId("head-late").textContent = wall ? number(wall.late_percent_1min, 1) : "–";
+  if (byId("everything").open) byId("raw").textContent = JSON.stringify(state.status, null, 2);
+  if (!wall) return;
+  showDetail(wall);
+  showContents(wall);
+  showFrames(wall);
+}
+
+// ---- reading ----------------------------------------------------------------------------------
+
+// Whether the server answered; says in a banner if it did not.
+function failed(error) {
+  state.online = error.status !== 0;
+  state.refused = error.status === 401 ? "Reading needs the token at this address. Use the button Locked." :
+      error.status >= 400 && error.status !== 429 && error.status !== 503 ? error.message : "";
+  if (error.status === 401 && token()) setOpen(false);
+  showBanners();
+}
+
+async function readStatus() {
+  try {
+    state.status = await getJson("/api/status");
+    state.online = true;
+    state.refused = "";
+    showStatus();
+    return true;
+  } catch (error) {
+    failed(error);
+    return false;
+  }
+}
+
+async function readFrames() {
+  const answer = await getJson("/api/frames?since=" + chart.next);
+  chart.add(answer);
+  chart.draw();
+}
+
+async function readEvents() {
+  const {next, events} = await getJson("/api/events?since=" + state.events);
+  state.events = next - 1;
+  const log = byId("log");
+  for (const event of events) {
+    const line = document.createElement("li"), time = document.createElement("time"),
+          from = document.createElement("span"), what = document.createElement("span");
+    const at = new Date(event.time_utc);
+    time.textContent = isNaN(at) ? "" : at.toLocaleTimeString("en-GB");
+    time.title = event.time_utc;
+    from.className = "from";
+    from.textContent = event.role;
+    what.className = "what";
+    what.textContent = event.what;
+    line.append(time, from, what);
+    log.prepend(line);
+  }
+  while (log.children.length > 200) log.lastChild.remove();
+}
+
+// ---- the picture ------------------------------------------------------------------------------
+
+let picture_seen = true, picture_url = "";
+new IntersectionObserver(entries => { picture_seen = entries.at(-1).isIntersecting; }).observe(byId("screen"));
+
+function pictureWidth() {
+  const wanted = byId("screen").clientWidth * Math.min(devicePixelRatio || 1, 2);
+  return [320, 640, 960, 1280].find(width => width >= wanted) || 1920;
+}
+
+async function showPictures() {
+  let after = 0, shown = "";
+  for (;;) {
+    if (document.hidden || !picture_seen || !state.online) {
+      await wait(300);
+      continue;
+    }
+    const view = state.view, width = pictureWidth();
+    if (shown !== view + width) after = 0;
+    try {
+      const picture = await getPicture(view, width, after);
+      if (!picture) continue;
+      after = picture.number;
+      shown = view + width;
+      await drawPicture(picture.blob);
+    } catch {
+      await wait(1000);
+    }
+  }
+}
+
+async function drawPicture(blob) {
+  const url = URL.createObjectURL(blob), image = new Image();
+  image.src = url;
+  await image.decode();
+  byId("picture").src = url;
+  byId("screen").style.aspectRatio = `${image.naturalWidth} / ${image.naturalHeight}`;
+  if (picture_url) URL.revokeObjectURL(picture_url);
+  picture_url = url;
+}
+
+function makePicture() {
+  for (const button of byId("views").children) {
+    button.onclick = () => {
+      state.view = button.dataset.view;
+      for (const other of byId("views").children) other.setAttribute("aria-pressed", String(other === button));
+    };
+  }
+  for (const button of document.querySelectorAll("[data-move]"))
+    button.onclick = () => run("move", button.dataset.move);
+  let from = null, turn = [0, 0], sending = false;
+  const screen = byId("screen");
+  // Motion while a command is under way adds up to the next one, so that nothing piles up.
+  const send = async () => {
+    if (sending || (!turn[0] && !turn[1])) return;
+    sending = true;
+    const [x, y] = turn.splice(0, 2, 0, 0);
+    await run("move", `0 0 0 ${y.toFixed(2)} ${x.toFixed(2)} 0`);
+    sending = false;
+    send();
+  };
+  screen.addEventListener("pointerdown", event => {
+    if (!state.open || !event.isPrimary) return;
+    event.preventDefault();
+    screen.setPointerCapture(event.pointerId);
+    from = [event.clientX, event.clientY];
+  });
+  screen.addEventListener("pointermove", event => {
+    if (!from || !event.isPrimary) return;
+    const scale = 180 / screen.clientHeight;  // 180 degrees over the picture's height
+    turn = [turn[0] + (event.clientX - from[0]) * scale, turn[1] + (event.clientY - from[1]) * scale];
+    from = [event.clientX, event.clientY];
+    send();
+  });
+  for (const end of ["pointerup", "pointercancel"]) screen.addEventListener(end, () => { from = null; });
+}
+
+// ---- sliders ----------------------------------------------------------------------------------
+
+function makeSlider(id, name, argumentOf, textOf) {
+  const slider = byId(id);
+  slider.oninput = () => {
+    state.used[id] = Date.now() + 3000;
+    byId(id + "-value").textContent = textOf(Number(slider.value));
+  };
+  slider.onchange = async () => {
+    state.used[id] = Date.now() + 1500;
+    await run(name, argumentOf(Number(slider.value)));
+    readStatus();
+  };
+  byId(id + "-auto").onclick = async () => {
+    state.used[id] = 0;
+    await run(name, "auto");
+    readStatus();
+  };
+}
+
+// ---- begin ------------------------------------------------------------------------------------
+
+// Calls `read` every `period` ms while the page is seen, one call after another.
+async function repeat(read, period) {
+  for (;;) {
+    if (!document.hidden) {
+      try {
+        await read();
+      } catch (error) {
+        failed(error);
+        await wait(1500);
+      }
+    }
+    await wait(period);
+  }
+}
+
+const alignment = new Alignment(run);
+const fullCost = () => wallStatus() && wallStatus().detail ? wallStatus().detail.full_cost : 1;
+
+async function begin() {
+  takeTokenFromAddress();
+  makeTokenDialog();
+  makePicture();
+  byId("show-form").onsubmit = event => {
+    event.preventDefault();
+    if (byId("show").value.trim()) showContent(byId("show").value.trim());
+  };
+  makeSlider("rate", "rate", String, value => value + " Hz");
+  makeSlider("triangles", "triangles", place => String(costOf(place, fullCost())),
+             place => grouped(costOf(place, fullCost())) + " by hand");
+  setOpen(false);
+  if (token()) await checkToken();
+  let commands = null;
+  repeat(async () => {
+    if (!await readStatus()) return wait(1500);
+    if (commands) return;
+    commands = (await getJson("/api/commands")).commands;
+    makeButtons(commands);
+    setOpen(state.open);
+  }, 1000);
+  repeat(readFrames, 500);
+  repeat(readEvents, 1000);
+  repeat(() => state.open ? alignment.refresh() : null, 2000);
+  showPictures();
+  addEventListener("resize", () => { chart.draw(); alignment.draw(); });
+  addEventListener("hashchange", async () => {
+    takeTokenFromAddress();
+    await checkToken();
+  });
+}
+
+begin();

@@ -1,0 +1,130 @@
+#include "daemon/page_process.h"
+
+#include <cerrno>
+#include <csignal>
+#include <ctime>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <systemd/sd-daemon.h>
+
+#include "daemon/base/log.h"
+#include "daemon/base/watched_thread.h"
+#include "daemon/net/server_keeper.h"
+#include "daemon/page/event_log.h"
+#include "daemon/page/page_server.h"
+#include "daemon/page/token.h"
+#include "daemon/status/ended_threads.h"
+#include "daemon/status/run_directory.h"
+#include "daemon/status/services.h"
+#include "daemon/status/watchdog.h"
+
+namespace merlin {
+namespace {
+
+constexpr Duration kBeat = std::chrono::milliseconds(100);
+// The wall's own threads take precedence on a machine that is busy with both.
+constexpr int kNice = 10;
+
+// Waits up to kBeat for a signal that ends the process.
+bool stopAsked() {
+  sigset_t set;
+  ::sigemptyset(&set);
+  for (const int s : {SIGTERM, SIGINT, SIGHUP}) ::sigaddset(&set, s);
+  const timespec limit{0, kBeat.count()};
+  const int signal = ::sigtimedwait(&set, nullptr, &limit);
+  if (signal == SIGHUP)
+    logInfo("SIGHUP is ignored: restart merlind to read a changed configuration");
+  return signal == SIGTERM || signal == SIGINT;
+}
+
+Duration watchdogInterval() {
+  std::uint64_t usec = 0;
+  return ::sd_watchdog_enabled(0, &usec) > 0 ? Duration(std::chrono::microseconds(usec / 2))
+                                             : Duration{};
+}
+
+std::uint64_t milliseconds1970(Timestamp now) {
+  return static_cast<std::uint64_t>((toNanoseconds(now) + realtimeOffset().count()) / 1'000'000);
+}
+
+class PageProcess {
+ public:
+  PageProcess(const Settings& settings, const page::TokenFile& token, Clock& clock)
+      : clock_(clock),
+        watchdog_(watchdogInterval()),
+        events_(milliseconds1970(clock.now())),
+        keeper_("page",
+                [this, settings = serverSettings(settings, token)] { return start(settings); }) {}
+
+  Result<Ok> run() {
+    tend();
+    ::sd_notify(0, "READY=1");
+    logInfo("ready");
+    while (!stopAsked()) {
+      tend();
+      if (const auto ended = ended_threads_.check(clock_.now())) return *ended;
+      if (watchdog_.ping(clock_.now(), threads_.threads())) ::sd_notify(0, "WATCHDOG=1");
+    }
+    ::sd_notify(0, "STOPPING=1");
+    logInfo("stopping");
+    return Ok{};
+  }
+
+ private:
+  static page::PageServerSettings serverSettings(const Settings& s, const page::TokenFile& token) {
+    return {s.page, s.instance, MERLIN_VERSION, token.token(), token.path()};
+  }
+
+  Result<std::unique_ptr<net::Server>> start(const page::PageServerSettings& settings) {
+    auto server = page::PageServer::start(settings, events_, threads_, clock_);
+    if (!server) {
+      return Error{server.error().code,
+                   fmt::format("/page/port {}: {}", settings.page.port, server.error().what)};
+    }
+    const PageSettings& p = settings.page;
+    logInfo("{} of merlind \"{}\" at http://{}:{}/{}; the token of commands is in {}",
+            p.enabled ? "the page" : "metrics", settings.instance, p.address, (*server)->port(),
+            p.enabled ? "" : "metrics", settings.token_file);
+    return std::unique_ptr<net::Server>(*std::move(server));
+  }
+
+  void tend() {
+    const Timestamp now = clock_.now();
+    keeper_.tend(now);
+    for (const std::string& sentence : keeper_.takeEvents(now)) {
+      logInfo("{}", sentence);
+      events_.add("page", "server", sentence);
+    }
+    const net::ServerHealth health = keeper_.health();
+    const std::string status = health.failure.empty()
+                                   ? fmt::format("{} connections", health.report.connections)
+                                   : health.failure;
+    if (status != std::exchange(told_status_, status)) ::sd_notify(0, ("STATUS=" + status).c_str());
+  }
+
+  Clock& clock_;
+  ThreadWatch threads_;  // declared before all members that have threads
+  status::Services services_;
+  status::EndedThreads ended_threads_{threads_, services_};
+  status::Watchdog watchdog_;
+  page::EventLog events_;
+  std::string told_status_;
+  net::ServerKeeper keeper_;  // uses everything above
+};
+
+}  // namespace
+
+Result<Ok> runPage(Settings settings, Clock& clock) {
+  auto directory = status::runDirectory(settings.run_directory);
+  if (!directory) return directory.error();
+  const auto token =
+      page::TokenFile::open(fmt::format("{}/{}-page.token", *directory, settings.instance));
+  if (!token) return token.error();
+  ::setpriority(PRIO_PROCESS, 0, kNice);
+  return PageProcess(settings, *token, clock).run();
+}
+
+}  // namespace merlin

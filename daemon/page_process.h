@@ -1,0 +1,17 @@
+// The process of `merlind --role page`: serves the operator's web page. It has no other role, so
+// that it stays while the wall is restarted, and a fault of one cannot stop the other.
+#pragma once
+
+#include "config/settings.h"
+#include "daemon/base/clock.h"
+#include "daemon/base/result.h"
+
+namespace merlin {
+
+// Runs until SIGTERM or SIGINT; notifies systemd of its start and of progress. A port that is in
+// use is no error: it is tried again every five seconds. REQUIRES: these signals and SIGHUP are
+// blocked; no thread has been started. Errors: kBusy (another process serves the page of this
+// instance), kIo (the run directory or the token's file), a thread has ended unexpectedly.
+Result<Ok> runPage(Settings settings, Clock& clock);
+
+}  // namespace merlin

@@ -1,0 +1,158 @@
+"""A person at the operator's page, in a headless Chromium: python3 page_browser.py URL TOKEN STATUS FOLDER SIZE
+
+URL: of the page; TOKEN: its token; STATUS: a command that prints `merlin status --json` of the same
+daemon; FOLDER: where the screenshots go; SIZE: desktop or phone. Fails with a sentence.
+"""
+import json
+import os
+import subprocess
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+import browser  # noqa: E402
+
+URL, TOKEN, STATUS, FOLDER, SIZE = sys.argv[1:]
+PHONE = SIZE == "phone"
+# What a page may say in its console without being wrong: requests that were refused on purpose.
+EXPECTED = ("401 (Unauthorized)",)
+
+
+def status():
+    return json.loads(subprocess.run(STATUS.split(), capture_output=True, text=True, check=True).stdout)
+
+
+def content():
+    shown = status()["content"]
+    return shown["index"] if isinstance(shown, dict) else shown
+
+
+def pixels(driver):
+    """Mean brightness of the picture's columns, as the browser shows it."""
+    return driver.run("""
+        const image = document.getElementById('picture'), canvas = document.createElement('canvas');
+        if (!image.naturalWidth) return null;
+        canvas.width = 64; canvas.height = 16;
+        const context = canvas.getContext('2d');
+        context.drawImage(image, 0, 0, 64, 16);
+        return Array.from(context.getImageData(0, 0, 64, 16).data.filter((v, i) => i % 4 === 1));""")
+
+
+def difference(a, b):
+    return sum(abs(x - y) for x, y in zip(a, b)) / max(1, len(a))
+
+
+def unlock(driver):
+    driver.open(URL)
+    driver.until("the state is shown", lambda: driver.run(
+        "return document.getElementById('head-rate').textContent !== '–'"))
+    assert driver.run("return document.getElementById('rate').disabled"), "unlocked without a token"
+    driver.click("#lock")
+    driver.type("#token", "A" * 32)
+    driver.click("#token-send")
+    driver.until("a wrong token is refused", lambda: driver.run(
+        "return document.getElementById('token-fault').textContent === 'The token is wrong.'"))
+    assert driver.run("return sessionStorage.length") == 0, "a wrong token is kept"
+    driver.type("#token", TOKEN)
+    driver.click("#token-send")
+    driver.until("the page is unlocked", lambda: driver.run(
+        "return document.getElementById('lock').textContent === 'Unlocked'"))
+
+
+def looks(driver):
+    driver.until("the picture is shown", lambda: pixels(driver) is not None)
+    picture = pixels(driver)
+    assert max(picture) - min(picture) > 20, "the picture is of one colour"
+    driver.until("frames are drawn", lambda: driver.run("""
+        const canvas = document.getElementById('frames'), data = canvas.getContext('2d')
+            .getImageData(0, 0, canvas.width, canvas.height).data;
+        return data.filter((v, i) => i % 4 === 3 && v > 0).length > 200"""))
+    driver.until("devices are listed", lambda: driver.run(
+        "return document.querySelectorAll('#devices .item .dot.ok').length === 3"))
+    wide = driver.run("return [document.documentElement.scrollWidth, innerWidth]")
+    assert wide[0] <= wide[1], "the page is %d pixels wide in a window of %d" % tuple(wide)
+
+
+def commands(driver):
+    mode = status()["mode"]
+    driver.click("#command-next_mode")
+    driver.until("a click switches the mode", lambda: status()["mode"] != mode)
+    driver.click("#command-next_mode")
+    driver.until("and back", lambda: status()["mode"] == mode)
+    driver.run("""const slider = document.getElementById('rate');
+        slider.focus(); slider.value = 14; slider.dispatchEvent(new Event('input'));
+        slider.dispatchEvent(new Event('change'));""")
+    driver.until("the slider sets the rate", lambda: status()["rate_asked"] == 14)
+    driver.click("#rate-auto")
+    driver.until("auto returns to the configured rate", lambda: status()["rate_asked"] == 10)
+    driver.run("""const slider = document.getElementById('triangles');
+        slider.focus(); slider.value = 700; slider.dispatchEvent(new Event('input'));
+        slider.dispatchEvent(new Event('change'));""")
+    driver.until("the slider holds the triangles", lambda: status()["detail"]["held_cost"] > 0)
+    driver.click("#triangles-auto")
+    driver.until("auto releases them", lambda: status()["detail"]["held_cost"] == 0)
+    driver.click("#command-next_content")
+    driver.until("the next content is shown", lambda: content() == 1)
+    driver.until("and the page says so", lambda: driver.run(
+        "return document.getElementById('content-name').textContent").startswith(CONTENT))
+    driver.click("#command-next_content")
+    driver.until("and the first one again", lambda: content() == 0)
+
+
+def moves(driver):
+    driver.click("#command-reset_view")
+    driver.until("the wall stands still", lambda: status()["full_detail"])
+    driver.until("the picture is shown", lambda: pixels(driver) is not None)
+    before = pixels(driver)
+    driver.run("document.getElementById('screen').scrollIntoView({block: 'center'})")
+    driver.drag("#screen", 60, 20, "touch" if PHONE else "mouse")
+    driver.until("dragging turns the model in the picture",
+                 lambda: difference(pixels(driver) or before, before) > 2)
+
+
+def aligns(driver):
+    driver.run("document.getElementById('align-plane').scrollIntoView({block: 'center'})")
+    driver.until("the output is listed", lambda: driver.run(
+        "return document.getElementById('align-output').options.length === 1"))
+    state = "return document.getElementById('align-state').textContent"
+    driver.drag("circle[data-corner=top_right]", -20, 15, "touch" if PHONE else "mouse")
+    driver.until("a corner is dragged", lambda: "top right moved by -" in driver.run(state))
+    driver.until("as one step", lambda: "1 to undo" in driver.run(state))
+    driver.click("#align-undo")
+    driver.until("the step is undone", lambda: "moved by 0.00, 0.00" in driver.run(state))
+    driver.click("#align-redo")
+    driver.until("and done again", lambda: "moved by -" in driver.run(state))
+    driver.click("#align-reset")
+    driver.until("the output is reset", lambda: "moved by 0.00, 0.00" in driver.run(state))
+    driver.click("[data-by='1 0']")
+    driver.until("an arrow moves the corner by a step", lambda: "moved by 1.00, 0.00" in driver.run(state))
+    driver.click("#align-undo")
+    driver.run("""const cards = document.getElementById('testcard');
+        cards.value = 'grid'; cards.dispatchEvent(new Event('change'));""")
+    driver.until("the test card is shown", lambda: "grid" == driver.run(
+        "return document.getElementById('testcard').value"))
+    driver.run("""const cards = document.getElementById('testcard');
+        cards.value = 'off'; cards.dispatchEvent(new Event('change'));""")
+
+
+def main():
+    driver = browser.Driver(390, 844, True) if PHONE else browser.Driver(1440, 1000)
+    try:
+        unlock(driver)
+        looks(driver)
+        commands(driver)
+        moves(driver)
+        aligns(driver)
+        driver.run("scrollTo(0, 0)")
+        driver.screenshot(os.path.join(FOLDER, "page-%s.png" % SIZE))
+        driver.screenshot(os.path.join(FOLDER, "page-%s-whole.png" % SIZE), whole=True)
+        wrong = [m for m in driver.messages() if not any(e in m for e in EXPECTED)]
+        assert not wrong, "the browser's console: %s" % wrong
+    finally:
+        driver.close()
+    print("page_browser: done (%s)" % SIZE)
+
+
+try:
+    main()
+except (AssertionError, RuntimeError) as error:
+    sys.exit("page_browser (%s): %s" % (SIZE, error))

@@ -1,0 +1,52 @@
+// A person at the operator's page: a headless Chromium, on a desktop and on a phone.
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/page_process.h"
+
+namespace merlin::test {
+namespace {
+
+class Browser : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    for (const char* program : {"chromium", "chromedriver", "python3"}) {
+      if (run({"which", program}).status != 0) GTEST_SKIP() << program << " is not installed";
+    }
+  }
+
+  TempDir dir_;
+};
+
+TEST_P(Browser, ShowsTheWallAndSendsWhatAPersonDoes) {
+  const int port = freePagePort();
+  const std::string model = makeModel(dir_, 5);
+  MerlindOptions options{.script = "still"};
+  options.also = {
+      {"page", {{"port", port}}},
+      {"wall",
+       {{"contents", {{{"model", model}}}},
+        {"outputs",
+         {{{"kind", "shared_memory"}}, {{"kind", "png"}, {"path", dir_ / "out.png"}}}}}}};
+  Merlind wall(dir_, model, "browser", options);
+  ASSERT_TRUE(wall.ready()) << wall.process().output();
+  PageProcess page(dir_, wall.config(), wall.instance(), port);
+  ASSERT_TRUE(page.ready()) << page.process().output();
+  ASSERT_TRUE(eventually([&] { return page.runs("wall") && page.runs("devices"); }));
+
+  const Outcome seen = run({"python3", "-B", kSource + "/tests/system/page_browser.py",
+                            fmt::format("http://127.0.0.1:{}/", port), page.token(),
+                            fmt::format("{} status --json --instance {}", kMerlin, wall.instance()),
+                            dir_.path(), GetParam()});
+  EXPECT_EQ(seen.status, 0) << seen.output << page.process().output();
+  EXPECT_EQ(page.process().kill(SIGTERM), 0) << page.process().output();
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, Browser, testing::Values("desktop", "phone"),
+                         [](const auto& size) { return std::string(size.param); });
+
+}  // namespace
+}  // namespace merlin::test

@@ -1,0 +1,315 @@
+// `merlind --role page` beside a real merlind: what it shows and sends, and what hostile clients
+// reach.
+#include <memory>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "render/image/image_file.h"
+#include "tests/support/page_process.h"
+
+namespace merlin::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class PageTest : public testing::Test {
+ protected:
+  void start(const std::string& script = "visit", const Json& page = Json::object()) {
+    Json settings = {{"port", port_}};
+    settings.merge_patch(page);
+    MerlindOptions options{.script = script};
+    options.also = {{"page", settings}};
+    wall_ = std::make_unique<Merlind>(dir_, makeModel(dir_, 5), "page", options);
+    ASSERT_TRUE(wall_->ready()) << wall_->process().output();
+    startPage();
+  }
+  void startPage() {
+    page_ = std::make_unique<PageProcess>(dir_, wall_->config(), wall_->instance(), port_);
+    ASSERT_TRUE(page_->ready()) << page_->process().output();
+  }
+  std::string events() const { return page_->get("/api/events").body; }
+  bool tells(const std::string& text) const {
+    return eventually([&] { return events().find(text) != std::string::npos; });
+  }
+
+  TempDir dir_;
+  int port_ = freePagePort();
+  std::unique_ptr<Merlind> wall_;
+  std::unique_ptr<PageProcess> page_;
+};
+
+TEST_F(PageTest, ShowsBothRolesTheirEventsTheFramesAndThePicture) {
+  start();
+  ASSERT_TRUE(eventually([&] { return page_->runs("wall") && page_->runs("devices"); }));
+  const Json status = page_->json("/api/status");
+  EXPECT_EQ(status["page"]["instance"], wall_->instance());
+  EXPECT_EQ(status["roles"]["wall"]["status"]["rate_asked"], 10);
+  EXPECT_EQ(status["roles"]["devices"]["status"]["devices"]["ball"]["health"], "ok");
+  EXPECT_TRUE(tells("the role wall runs"));
+  ASSERT_TRUE(eventually([&] { return page_->json("/api/frames")["frames"].size() > 20; }));
+  const Json frames = page_->json("/api/frames");
+  const std::uint64_t last = frames["frames"].back()[0];
+  EXPECT_EQ(frames["next"], last + 1);
+  for (const Json& frame : page_->json(fmt::format("/api/frames?since={}", last))["frames"])
+    EXPECT_GT(frame[0], last);
+
+  HttpAnswer picture = page_->get("/picture.jpg?width=640");
+  ASSERT_EQ(picture.status, 200) << picture.head;
+  const std::vector<std::uint8_t> bytes(picture.body.begin(), picture.body.end());
+  const auto image = render::image::decodeImage(bytes);
+  ASSERT_TRUE(image) << image.error().what;
+  EXPECT_EQ(image->width, 640);
+  EXPECT_EQ(image->height, 160) << "three tiles of 640 x 480 side by side";
+  EXPECT_EQ(page_->get("/picture.jpg?view=tile%20left").status, 200);
+  const HttpAnswer index = page_->get("/");
+  EXPECT_EQ(index.status, 200);
+  EXPECT_NE(index.head.find("Content-Security-Policy: default-src 'none'"), std::string::npos);
+  EXPECT_NE(index.head.find("X-Content-Type-Options: nosniff"), std::string::npos);
+  EXPECT_EQ(index.head.find("Access-Control"), std::string::npos);
+  EXPECT_EQ(index.head.find("Set-Cookie"), std::string::npos);
+}
+
+TEST_F(PageTest, APictureOfAWallThatStandsIsSentOnce) {
+  start("still");
+  ASSERT_TRUE(eventually([&] { return wall_->wall().full_detail == 1; }));
+  HttpAnswer picture;
+  const auto next = [&] {
+    const std::string key = "X-Picture-Number: ";
+    const std::size_t at = picture.head.find(key);
+    const std::string number =
+        at == std::string::npos ? "0" : picture.head.substr(at + key.size(), 13);
+    return page_->get("/picture.jpg?after=" + number);
+  };
+  EXPECT_TRUE(eventually([&] {
+    const HttpAnswer newer = next();
+    if (newer.status == 200) picture = newer;
+    return newer.status == 204;
+  }));
+  EXPECT_FALSE(picture.body.empty());
+}
+
+TEST_F(PageTest, CommandsReachTheirRoleAndOnlyWithTheToken) {
+  start("still");
+  ASSERT_TRUE(eventually([&] { return page_->runs("wall"); }));
+  const std::string body = R"({"command":"next_mode"})";
+  for (const std::string& wrong : {std::string(), std::string(32, 'A'), page_->token() + "A"}) {
+    const HttpAnswer refused = askPage(port_, postRequest("/api/command", wrong, body));
+    EXPECT_EQ(refused.status, 401) << refused.body;
+  }
+  EXPECT_STREQ(wall_->wall().mode, "object");
+  const HttpAnswer done = page_->send("next_mode");
+  EXPECT_EQ(done.status, 200) << done.body;
+  EXPECT_EQ(Json::parse(done.body)["ok"], true);
+  EXPECT_TRUE(eventually([&] { return std::string(wall_->wall().mode) == "fly"; }));
+  EXPECT_EQ(page_->send("rate", "12").status, 200);
+  EXPECT_TRUE(eventually([&] { return wall_->wall().rate_asked_hz == 12; }));
+
+  const HttpAnswer refused = page_->send("rate", "1000");
+  EXPECT_EQ(refused.status, 400);
+  EXPECT_NE(refused.body.find("1 to 240"), std::string::npos) << refused.body;
+  const HttpAnswer panel = page_->send("lamp_on");  // there is no panel
+  EXPECT_EQ(panel.status, 400) << panel.body;
+  EXPECT_EQ(page_->send("align", "list").status, 200);
+  EXPECT_TRUE(tells("refused; the last: POST /api/command: status"));
+  EXPECT_EQ(page_->process().output().find(page_->token()), std::string::npos);
+  EXPECT_EQ(events().find(page_->token()), std::string::npos);
+}
+
+TEST_F(PageTest, OutlivesTheWallAndShowsThatItIsDown) {
+  start("still");
+  ASSERT_TRUE(eventually([&] { return page_->runs("wall"); }));
+  const std::string token = page_->token();
+  wall_->process().kill(SIGKILL);
+  ASSERT_TRUE(tells("the role wall does not run"));
+  EXPECT_FALSE(page_->runs("wall"));
+  EXPECT_EQ(page_->get("/picture.jpg").status, 200) << "a card";
+  const HttpAnswer sent = page_->send("reset_view");
+  EXPECT_EQ(sent.status, 503) << sent.body;
+  EXPECT_NE(page_->get("/metrics").body.find("merlin_up{role=\"wall\"} 0"), std::string::npos);
+  Process again({kMerlind, "--config", wall_->config(), "--emulate"});
+  ASSERT_TRUE(again.saysEventually("ready")) << again.output();
+  EXPECT_TRUE(eventually([&] { return page_->runs("wall"); }));
+  EXPECT_EQ(page_->send("reset_view").status, 200);
+  EXPECT_EQ(page_->process().kill(SIGTERM), 0) << page_->process().output();
+  startPage();
+  EXPECT_EQ(page_->token(), token) << "browsers stay unlocked";
+}
+
+TEST_F(PageTest, MetricsOfBothRolesAreLinesThatPrometheusReads) {
+  start();
+  ASSERT_TRUE(eventually([&] {
+    const std::string text = page_->get("/metrics").body;
+    return text.find("merlin_device_ok") != std::string::npos &&
+           text.find("merlin_wall_frames_total") != std::string::npos;
+  }));
+  const HttpAnswer answer = page_->get("/metrics");
+  EXPECT_NE(answer.head.find("Content-Type: text/plain; version=0.0.4"), std::string::npos);
+  const std::regex help("# HELP ([a-z_][a-z0-9_]*) .+"),
+      type("# TYPE ([a-z_][a-z0-9_]*) (counter|gauge)"),
+      sample(R"re(([a-z_][a-z0-9_]*)(\{[a-z]+="[^"\\]*"\})? -?[0-9.e+-]+)re");
+  std::istringstream lines(answer.body);
+  std::string family;
+  std::smatch m;
+  int samples = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (std::regex_match(line, m, help)) {
+      family = m[1];
+    } else if (std::regex_match(line, m, type)) {
+      EXPECT_EQ(m[1], family) << line;
+    } else {
+      ASSERT_TRUE(std::regex_match(line, m, sample)) << line;
+      EXPECT_EQ(m[1], family) << line;
+      ++samples;
+    }
+  }
+  EXPECT_GT(samples, 70);
+}
+
+TEST_F(PageTest, StaysWithMetricsAloneOrIsRefusedWithNothingToServe) {
+  start("still", {{"enabled", false}});
+  EXPECT_EQ(page_->get("/").status, 404);
+  EXPECT_EQ(page_->get("/api/status").status, 404);
+  EXPECT_EQ(page_->send("reset_view").status, 404);
+  EXPECT_EQ(page_->get("/metrics").status, 200);
+  Json config = Json::parse(readText(wall_->config()));
+  config["page"]["metrics"] = false;
+  writeText(dir_ / "none.json", config.dump());
+  const Outcome refused = run({kMerlind, "--config", dir_ / "none.json", "--role", "page"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.output.find("/page/enabled is false, and so is /page/metrics"),
+            std::string::npos)
+      << refused.output;
+  EXPECT_EQ(run({kMerlind, "--check-config", dir_ / "none.json", "--role", "wall"}).status, 0);
+}
+
+// Without a wall, and on a configuration of its own.
+class PageAlone : public testing::Test {
+ protected:
+  std::string config(const std::string& name, const Json& page) {
+    Json settings = {{"instance", instance_}, {"run_directory", dir_.path()}, {"page", page}};
+    settings["page"]["port"] = port_;
+    writeText(dir_ / name, settings.dump());
+    return dir_ / name;
+  }
+  TempDir dir_;
+  int port_ = freePagePort();
+  std::string instance_ = privateName("page");
+};
+
+TEST_F(PageAlone, ABusyPortIsTriedAgainAndASecondPageIsRefused) {
+  const std::string file = config("page.json", Json::object());
+  auto other = net::listenTcp("127.0.0.1", port_);
+  ASSERT_TRUE(other);
+  PageProcess page(dir_, file, instance_, port_);
+  ASSERT_TRUE(page.ready()) << page.process().output();
+  EXPECT_TRUE(page.process().saysEventually(fmt::format("page: failed (/page/port {}", port_)))
+      << page.process().output();
+  other->reset();
+  EXPECT_TRUE(page.process().saysEventually("page: running")) << page.process().output();
+  EXPECT_EQ(page.get("/").status, 200);
+  EXPECT_NE(page.get("/api/events").body.find("page: failed"), std::string::npos);
+  const Outcome second = run({kMerlind, "--config", file, "--role", "page"});
+  EXPECT_EQ(second.status, 3) << second.output;
+  EXPECT_NE(second.output.find("already serves this page"), std::string::npos) << second.output;
+}
+
+TEST_F(PageAlone, AtANetworksAddressReadingNeedsTheTokenToo) {
+  PageProcess page(dir_, config("page.json", {{"address", "0.0.0.0"}}), instance_, port_);
+  ASSERT_TRUE(page.ready()) << page.process().output();
+  EXPECT_EQ(page.get("/").status, 200);
+  for (const char* path : {"/api/status", "/picture.jpg", "/metrics", "/api/events"}) {
+    EXPECT_EQ(page.get(path).status, 401) << path;
+    EXPECT_EQ(page.get(path, "Authorization: Bearer " + page.token() + "\r\n").status, 200) << path;
+  }
+}
+
+std::size_t residentKb(pid_t pid) {
+  const std::string status = readText(fmt::format("/proc/{}/status", pid));
+  const std::size_t at = status.find("VmRSS:");
+  return at == std::string::npos ? 0 : std::stoul(status.substr(at + 6));
+}
+
+std::size_t threads(pid_t pid) {
+  std::size_t count = 0;
+  for ([[maybe_unused]] const auto& entry :
+       std::filesystem::directory_iterator(fmt::format("/proc/{}/task", pid)))
+    ++count;
+  return count;
+}
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr std::size_t kMostMemory_kb = 1'000'000;
+#else
+constexpr std::size_t kMostMemory_kb = 100'000;
+#endif
+
+// While clients of all sorts misbehave, one that behaves is answered at once, and the wall goes on.
+TEST_F(PageTest, HostileClientsDisturbNobodyElse) {
+  start();
+  ASSERT_TRUE(eventually([&] { return page_->runs("wall"); }));
+  const pid_t pid = page_->process().pid();
+  ASSERT_EQ(page_->send("align", "list").status, 200);  // from now on all threads run
+  const std::size_t threads_before = threads(pid);
+  std::vector<UniqueFd> hostile;
+  const auto join = [&](const std::string& bytes) {
+    hostile.push_back(connectToPage(port_));
+    sendText(hostile.back(), bytes);
+  };
+  const auto good = [&](const char* after) {
+    // All clients have the same address here, so a newcomer's place becomes free after a second.
+    const auto soon = [](const auto& ask) { return eventually(ask, std::chrono::seconds(5)); };
+    EXPECT_TRUE(soon([&] { return page_->get("/api/status").status == 200; })) << after;
+    EXPECT_TRUE(soon([&] { return page_->send("align", "list").status == 200; })) << after;
+    EXPECT_LT(residentKb(pid), kMostMemory_kb) << after;
+    EXPECT_EQ(threads(pid), threads_before) << after;
+    EXPECT_FALSE(page_->process().ended()) << page_->process().output();
+  };
+  std::string many;  // more than the system's buffers take
+  for (int i = 0; i < 100; ++i)
+    many += "GET /picture.jpg?width=1920 HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n";
+  for (int i = 0; i < 100; ++i) join(many);
+  good("readers that stall");
+  for (int i = 0; i < 200; ++i) join(i % 2 == 0 ? "" : "GET / HT");
+  good("200 half requests");
+  for (const std::string& bytes :
+       {std::string(100'000, '\xFF'), std::string("\0\0\0\0", 4), std::string("\r\n\r\n\r\n"),
+        "GET /" + std::string(100'000, 'a') + " HTTP/1.1\r\n\r\n",
+        std::string("GET / HTTP/9.9\r\n\r\n"),
+        "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n" + std::string(100'000, 'h') + ": 1\r\n\r\n",
+        std::string("GET / HTTP/1.1\r\n\r\n"),
+        std::string("POST /api/command HTTP/1.1\r\nHost: 127.0.0.1\r\n"
+                    "Content-Length: 99999999999999999999\r\n\r\n"),
+        std::string("POST /api/command HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: "
+                    "chunked\r\n\r\nFFFFFFFF\r\n"),
+        std::string("\x16\x03\x01\x02\x00\x01", 6)})
+    join(bytes);
+  good("garbage");
+  // What is answered once there is a place; 0: the connection was closed.
+  const auto statusOf = [&](const std::string& request) {
+    int status = 0;
+    eventually([&] { return (status = askPage(port_, request).status) != 0; },
+               std::chrono::seconds(5));
+    return status;
+  };
+  const std::string large(1'000'000, ' ');
+  EXPECT_EQ(statusOf(postRequest("/api/command", page_->token(), large)), 413);
+  const std::string end = "Connection: close\r\n\r\n", get = "GET /api/status HTTP/1.1\r\n";
+  EXPECT_EQ(statusOf(get + "Host: evil.example\r\n" + end), 403);
+  EXPECT_EQ(statusOf(get + "Host: 127.0.0.1\r\nHost: evil.example\r\n" + end), 400);
+  EXPECT_EQ(statusOf(getRequest("/api/status", "Origin: http://evil.example\r\n")), 403);
+  for (int i = 0; i < 200; ++i) join("");
+  good("200 connections");
+  EXPECT_TRUE(tells("connections were refused or closed")) << events();
+  hostile.clear();
+  good("they left");
+  EXPECT_TRUE(wall_->status().is_object());
+  EXPECT_EQ(page_->process().kill(SIGTERM), 0) << page_->process().output();
+}
+
+}  // namespace
+}  // namespace merlin::test
