@@ -21,7 +21,8 @@ class Unit : public testing::TestWithParam<const char*> {
   std::string localCopy() const {
     const std::string name = GetParam();
     std::string unit = readText(kUnits + name);
-    const std::string from = "/usr/bin/" + name.substr(0, name.find('.'));
+    const std::string from =
+        name == "merlin-page.service" ? "/usr/bin/merlind" : "/usr/bin/" + name.substr(0, name.find('.'));
     const std::string to = MERLIN_BIN_DIR "/merlind";
     EXPECT_NE(unit.find(from), std::string::npos);
     for (std::size_t at = 0; (at = unit.find(from, at)) != std::string::npos; at += to.size())
@@ -47,9 +48,14 @@ TEST_P(Unit, IsExposedLittle) {
       judged.output.size() > 300 ? judged.output.size() - 300 : 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Units, Unit, testing::Values("merlind.service", "merlin-rfb.service"),
+INSTANTIATE_TEST_SUITE_P(Units, Unit,
+                         testing::Values("merlind.service", "merlin-rfb.service",
+                                         "merlin-page.service"),
                          [](const auto& unit) {
-                           return unit.index == 0 ? "merlind" : "merlin_rfb";
+                           std::string name(unit.param);
+                           name.resize(name.find('.'));
+                           if (name.size() > 6 && name[6] == '-') name[6] = '_';
+                           return name;
                          });
 
 TEST(DaemonsUnit, SaysWhatTheDaemonReliesOn) {
