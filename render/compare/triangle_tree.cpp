@@ -83,7 +83,7 @@ std::size_t cheapestCut(const Bins& bins) {
 // Squared distances of p to the boxes of both children; infinite for an empty one.
 template <typename Node>
 std::array<double, 2> boxDistances(const Node& node, const Vector& p) noexcept {
-  const double at[3] = {p.x, p.y, p.z};
+  const double at[3] = {p.x(), p.y(), p.z()};
   std::array<double, 2> sum{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t side = 0; side < 2; ++side) {

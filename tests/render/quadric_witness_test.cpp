@@ -36,7 +36,7 @@ struct Bench : test::QuadricBench {
                         const compare::Vector& to) const {
     const std::array<float, 3> from = surface[of].witness.get();
     const compare::Vector witness = at(of) + compare::Vector{from[0], from[1], from[2]};
-    double nearest = squared(witness - to);
+    double nearest = compare::squared(witness - to);
     for (const std::uint32_t end : {v, x}) {
       for (const reduce::Corner& c : surface.star(surface[end])) {
         if (c.b == v || c.b == x || c.c == v || c.c == x) continue;
@@ -60,7 +60,8 @@ TEST(QuadricWitness, TheFartherOfTwoIsFoundWithItsDistance) {
       const double of_v = bench.plainDistance2(v, v, x, to);
       const double of_x = bench.plainDistance2(x, v, x, to);
       const reduce::FartherWitness found = reduce::fartherWitness()(bench.view(), v, costs, e);
-      ASSERT_NEAR(found.distance2, std::max(of_v, of_x), 1e-4 * (1 + squared(to - bench.at(v))));
+      ASSERT_NEAR(found.distance2, std::max(of_v, of_x),
+                  1e-4 * (1 + compare::squared(to - bench.at(v))));
       const bool either = std::fabs(of_v - of_x) <= 1e-3;
       ASSERT_TRUE(either || found.end == (of_x > of_v ? 1u : 0u));
       of_neighbour += found.end;

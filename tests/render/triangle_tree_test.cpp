@@ -13,8 +13,8 @@ namespace {
 
 using Corners = std::array<compare::Vector, 3>;
 
-constexpr Corners kRight = {compare::Vector{0, 0, 0}, compare::Vector{4, 0, 0},
-                            compare::Vector{0, 3, 0}};
+const Corners kRight = {compare::Vector{0, 0, 0}, compare::Vector{4, 0, 0},
+                        compare::Vector{0, 3, 0}};
 
 void expectNearest(const Corners& corners, const compare::Vector& p, double distance,
                    const std::array<double, 3>& barycentric) {
@@ -65,16 +65,16 @@ TEST(NearestOnTriangle, IsNoFartherThanAnyPointOfIt) {
       c = {random.normal(), flat * random.normal(), flat * random.normal()};
     const compare::Vector p = {2 * random.normal(), random.normal(), random.normal()};
     const compare::NearestPoint nearest = compare::nearestOnTriangle(p, corners);
-    compare::Vector at;
+    compare::Vector at = compare::Vector::Zero();
     for (std::size_t k = 0; k < 3; ++k) at = at + nearest.barycentric[k] * corners[k];
-    EXPECT_NEAR(std::sqrt(squared(p - at)), std::sqrt(nearest.distance2), 1e-9);
+    EXPECT_NEAR(std::sqrt(compare::squared(p - at)), std::sqrt(nearest.distance2), 1e-9);
     double least = std::numeric_limits<double>::infinity();
     constexpr int kNet = 60;
     for (int i = 0; i <= kNet; ++i) {
       for (int j = 0; i + j <= kNet; ++j) {
         const double u = double{1} * i / kNet, v = double{1} * j / kNet;
-        least = std::min(least,
-                         squared(p - ((1 - u - v) * corners[0] + u * corners[1] + v * corners[2])));
+        least = std::min(least, compare::squared(p - ((1 - u - v) * corners[0] + u * corners[1] +
+                                                      v * corners[2])));
       }
     }
     EXPECT_LE(nearest.distance2, least * (1 + 1e-12));
@@ -133,8 +133,8 @@ TEST(TriangleTree, HasEachTriangleOnce) {
   for (std::uint32_t place = 0; place < tree.size(); ++place) {
     triangles.push_back(tree.triangleAt(place));
     const float* first = &mesh.positions[3 * mesh.triangles[3 * triangles.back()]];
-    EXPECT_EQ(tree.cornersAt(place)[0].x, first[0]);
-    EXPECT_EQ(tree.cornersAt(place)[0].z, first[2]);
+    EXPECT_EQ(tree.cornersAt(place)[0].x(), first[0]);
+    EXPECT_EQ(tree.cornersAt(place)[0].z(), first[2]);
   }
   std::iota(all.begin(), all.end(), 0u);
   std::sort(triangles.begin(), triangles.end());
