@@ -127,8 +127,8 @@ int main(int argc, char** argv) {
   if (fd < 0 || fstat(fd, &status) != 0) { perror(path); return 2; }
   memory = mmap(0, (size_t)status.st_size, PROT_READ, MAP_SHARED, fd, 0);
   const struct header* h = (const struct header*)memory;
-  int frames = memory != MAP_FAILED && h->magic == 0x42464D4D; /* the frame buffer's segment */
-  if (memory == MAP_FAILED || (h->magic != 0x4E4C524D && !frames) || h->version != (frames ? 3u : 4u)) {
+  /* The second one is the frame buffer's. */
+  if (memory == MAP_FAILED || (h->magic != 0x4E4C524D && h->magic != 0x42464D4D) || h->version != 4) {
     fprintf(stderr, "read_merlin: %s is not a segment of MERLIN that this program knows\n", path);
     return 2;
   }

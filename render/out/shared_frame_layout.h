@@ -19,7 +19,7 @@
 namespace merlin::render::out::framebuffer {
 
 inline constexpr std::uint32_t kMagic = 0x42464D4D;  // "MMFB" in memory
-inline constexpr std::uint32_t kVersion = 3;
+inline constexpr std::uint32_t kVersion = 4;
 inline constexpr std::uint32_t kFormatRgba8 = 1;
 inline constexpr std::size_t kBuffers = 3;
 inline constexpr std::size_t kMostTiles = 32;
@@ -30,14 +30,15 @@ struct TileRectangle {
   std::uint32_t kind;                // 0: part of the wall, 1: the operator's view
   std::int32_t x, y, width, height;  // in the frame [px], from its upper left corner
   std::int32_t wall_x, wall_y;       // upper left corner in the wall's picture [px]; -1: none
+  std::uint32_t eye;                 // which eye it is drawn for: 0 both, 1 left, 2 right
 };
-static_assert(sizeof(TileRectangle) == 44);
+static_assert(sizeof(TileRectangle) == 48);
 
 struct Buffer {
   std::uint64_t offset;                 // of its pixels, from the segment's start [bytes]
   std::atomic<std::uint64_t> sequence;  // of the frame in it; 0 while it is being written
   std::int64_t finished_ns;             // CLOCK_MONOTONIC, last pixel drawn
-  std::uint32_t triangles;
+  std::uint32_t cost;         // of the detail drawn, in the content's unit, e.g. triangles
   std::uint32_t full_detail;  // 1 if drawn at the finest detail
 };
 static_assert(sizeof(Buffer) == 32);
@@ -59,7 +60,7 @@ struct Header {
   Buffer buffers[kBuffers];
   TileRectangle tiles[kMostTiles];
 };
-static_assert(offsetof(Header, buffers) == 72 && sizeof(Header) == 72 + 96 + 1408);
+static_assert(offsetof(Header, buffers) == 72 && sizeof(Header) == 72 + 96 + 1536);
 
 // The part of the segment before the pixels.
 struct Front {

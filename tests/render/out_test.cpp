@@ -136,6 +136,19 @@ TEST(Framebuffer, WallHasRowsAndColumns) {
   }
 }
 
+TEST(Framebuffer, SaysWhichEyeATileIsDrawnFor) {
+  tiles::TilePlan plan = smallPlan();
+  plan.tiles[1].eye = tiles::Eye::kLeft;
+  plan.tiles[2].eye = tiles::Eye::kRight;
+  const auto sink = out::SharedFrameOutput::make(name("eyes"), plan, 1, kClock);
+  present(**sink, noise(kFrameBytes, 3), {1, {}, 1, true});
+  const auto frame = out::captureFrame(name("eyes"));
+  ASSERT_TRUE(frame);
+  const std::uint32_t expected[] = {0, 1, 2, 0};
+  ASSERT_EQ(frame->tiles.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(frame->tiles[i].eye, expected[i]) << i;
+}
+
 TEST(Framebuffer, ReaderNeverSeesTwoFramesInOne) {
   const auto sink = out::SharedFrameOutput::make(name("torn"), smallPlan(), 1, kClock);
   present(**sink, frameOf(1), {1, {}, 1, false});
@@ -178,7 +191,7 @@ Error captureDamaged(Damage damage) {
   h.stride = 4 * 128;
   h.format = out::framebuffer::kFormatRgba8;
   h.tile_count = 1;
-  h.tiles[0] = {"a", 0, 0, 0, 128, 96, 0, 0};
+  h.tiles[0] = {"a", 0, 0, 0, 128, 96, 0, 0, 0};
   for (std::size_t i = 0; i < 3; ++i) {
     h.buffers[i].offset = 4096 + i * kFrameBytes;
     h.buffers[i].sequence = 1;
@@ -227,7 +240,7 @@ TEST(Framebuffer, DamagedHeadersAreRefused) {
   EXPECT_EQ(captureDamaged([](Header& h) { h.magic = 1; }).code, Errc::kMalformed);
   const Error version = captureDamaged([](Header& h) { h.version = 9; });
   EXPECT_EQ(version.code, Errc::kUnsupported);
-  EXPECT_NE(version.what.find("is version 9, this program reads 3"), std::string::npos);
+  EXPECT_NE(version.what.find("is version 9, but this program reads version 4"), std::string::npos);
   const std::vector<void (*)(Header&)> damages = {
       [](Header& h) { h.format = 2; },
       [](Header& h) { h.stride = 4; },
