@@ -36,10 +36,12 @@ void checkOne(const Binding& b, const std::string& at, SettingFaults& faults) {
     faults.push_back(
         {at + "/input", fmt::format("is \"{}\"; allowed are {}", b.input, kInputForms)});
   const bool held = isHeldAction(b.action);
-  if (b.when != When::kByAction && (b.when == When::kHold) != held)
-    faults.push_back({at + "/on", fmt::format("cannot be used with {}; allowed is {}", b.action,
-                                              held ? "hold, because it lasts"
-                                                   : "enter or leave, because it happens once")});
+  if (b.when != When::kByAction && (b.when == When::kHold) != held) {
+    const char* const when = !held ? "hold" : atLeave(b) ? "leave" : "enter";
+    faults.push_back({at + "/on", fmt::format("is {}, but {} {}", when, b.action,
+                                              held ? "lasts as long as its input is held: set hold"
+                                                   : "happens once: set enter or leave")});
+  }
   const bool panel = input && input->kind == actions::Input::Kind::kPanelButton;
   if (panel && (held || atLeave(b)))
     faults.push_back({at, fmt::format("binds panel.button to {}; the panel's button only triggers "

@@ -53,7 +53,7 @@ Result<std::string> DatedFiles::next(std::time_t now) const {
     auto path = number == 1 ? start + ending_ : fmt::format("{}-{}{}", start, number, ending_);
     if (!fs::exists(fs::symlink_status(path, error))) return path;
   }
-  return Error{Errc::kIo, start + ending_ + ": too many files were made in this second"};
+  return Error{Errc::kIo, start + ending_ + ": all file names of this second are taken; try again"};
 }
 
 void DatedFiles::removeOldest(std::time_t now) const {

@@ -20,18 +20,21 @@ std::vector<std::string> WallEvents::take() {
                          : "the operator's view is as fine as the wall again");
   }
   if (const auto was = std::exchange(scale_, s->scale_divisor); was != scale_) {
-    events.push_back(scale_ > 1 ? "tiles at half size while moving: even the coarsest detail takes "
-                                  "too long"
-                                : "tiles at full size again: the coarsest detail fits");
+    events.push_back(scale_ > 1 ? "tiles at half size while moving: even the coarsest level of "
+                                  "detail takes too long"
+                                : "tiles at full size again: the coarsest level of detail is fast "
+                                  "enough");
   }
   if (const auto was = std::exchange(divisor_, s->rate_divisor); was != divisor_) {
     events.push_back(
         was < divisor_
-            ? fmt::format("rate reduced to {:.3g} of {:.3g} Hz: even the coarsest detail "
-                          "takes too long",
+            ? fmt::format("frame rate reduced to {:.3g} of {:.3g} Hz: even the coarsest level of "
+                          "detail takes too long",
                           s->rate_now_hz, s->rate_asked_hz)
-            : fmt::format("rate raised to {:.3g} of {:.3g} Hz: the coarsest detail fits",
-                          s->rate_now_hz, s->rate_asked_hz));
+            : fmt::format(
+                  "frame rate raised to {:.3g} of {:.3g} Hz: the coarsest level of detail is "
+                  "fast enough",
+                  s->rate_now_hz, s->rate_asked_hz));
   }
   if (const auto was = std::exchange(held_, s->held_cost); was != held_) {
     events.push_back(held_ != 0 ? fmt::format("{} {} while moving, set by hand", held_,
@@ -39,7 +42,7 @@ std::vector<std::string> WallEvents::take() {
                                 : "detail chosen by the governor again");
   }
   if (const auto was = std::exchange(asked_hz_, s->rate_asked_hz); was != asked_hz_ && was != 0)
-    events.push_back(fmt::format("the desired rate is {:.3g} Hz now", asked_hz_));
+    events.push_back(fmt::format("the desired frame rate is {:.3g} Hz now", asked_hz_));
   if (const auto was = std::exchange(returned_, s->returned); was != returned_)
     events.push_back("the start view has returned: no tile of the wall showed any of the content");
   takeOutputs(events);

@@ -14,7 +14,7 @@ class WallEvents {
  public:
   explicit WallEvents(const shm::WallSegment& segment) : segment_(segment) {}
 
-  // The changes since the last call, such as "rate reduced to 15 of 30 Hz: ...".
+  // The changes since the last call, such as "frame rate reduced to 15 of 30 Hz: ...".
   std::vector<std::string> take();
 
  private:

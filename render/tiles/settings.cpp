@@ -140,7 +140,7 @@ std::optional<std::string> faultOfView(const TileSettings& t) {
   if (t.turns != 0 || t.hasDirection() || t.hasFrustum() || t.hasScreen()) {
     return fmt::format(
         "tile {} has view {}, a camera of its own: leave out turns, direction_deg, "
-        "frustum_deg and screen_m, or let it follow the wall",
+        "frustum_deg and screen_m, or set view to wall",
         t.name, nameOf(t.view));
   }
   return t.view == TileCamera::kFree ? faultOfFreeCamera(t.name, t.camera) : std::nullopt;

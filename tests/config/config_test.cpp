@@ -87,7 +87,7 @@ TEST(Config, ActionsThatNothingCouldDoAreFound) {
             "/wall/snapshots names none\n"
             "f.json:2: /devices/bindings/1/action is lamp_slow, which needs a lamp: "
             "/devices/gpio has no chip with a lamp_line\n"
-            "f.json:3: /devices/bindings/2/action is next_content, and there is one model only: "
+            "f.json:3: /devices/bindings/2/action is next_content, and there is one content only: "
             "/wall/contents names none\n");
   EXPECT_EQ(all(loadSettings(R"({"wall": {"snapshots": "taken", "contents": [{"model": "b.mrm"}]},
                                 "devices": {"gpio": {"chip": "gpiochip0", "lamp_line": 5}, )" +
@@ -98,6 +98,21 @@ TEST(Config, ActionsThatNothingCouldDoAreFound) {
                           {"input": "posture.a", "action": "lamp_off"})")
                 .find("\"posture.a\" would both lamp_on and lamp_off when entered"),
             std::string::npos);
+}
+
+TEST(Config, AContentIsOneFileAndItsNameIsItsOwn) {
+  const auto contents = [](const std::string& list) {
+    return all(loadSettings("{\"wall\": {\"contents\": [" + list + "]}}", ""));
+  };
+  EXPECT_EQ(contents(R"({"model": "a.mrm"}, {"picture": "b.tif", "show_as": "panorama"},
+                        {"slides": "c", "name": "talk"})"),
+            "");
+  EXPECT_EQ(
+      contents(R"({"model": "a.mrm", "picture": "b.tif"})"),
+      "f.json:1: /wall/contents/0 names more than one file; give it one of model, picture and "
+      "slides\n");
+  EXPECT_EQ(contents(R"({"picture": "a.tif", "name": "sky"}, {"picture": "b.tif", "name": "sky"})"),
+            "f.json:1: /wall/contents/1/name is \"sky\", the name of another content\n");
 }
 
 TEST(Config, AGloveFasterThanItsLineIsFound) {

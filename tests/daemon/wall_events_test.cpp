@@ -34,17 +34,20 @@ TEST_F(WallEventsTest, TellEachStepDownAndUpOnce) {
   EXPECT_EQ(after(stats_), Sentences{"the operator's view is coarser: there is too little time"});
   EXPECT_EQ(after(stats_), Sentences{});
   stats_.scale_divisor = 2;
-  EXPECT_EQ(after(stats_), Sentences{"tiles at half size while moving: even the coarsest detail "
-                                     "takes too long"});
+  EXPECT_EQ(after(stats_), Sentences{"tiles at half size while moving: even the coarsest level of "
+                                     "detail takes too long"});
   stats_.rate_divisor = 2;
   stats_.rate_now_hz = 15;
-  EXPECT_EQ(after(stats_),
-            Sentences{"rate reduced to 15 of 30 Hz: even the coarsest detail takes too long"});
+  EXPECT_EQ(
+      after(stats_),
+      Sentences{"frame rate reduced to 15 of 30 Hz: even the coarsest level of detail takes too "
+                "long"});
   stats_.rate_divisor = 1;
   stats_.rate_now_hz = 30;
   stats_.operator_coarser = 0;
   EXPECT_EQ(after(stats_), (Sentences{"the operator's view is as fine as the wall again",
-                                      "rate raised to 30 of 30 Hz: the coarsest detail fits"}));
+                                      "frame rate raised to 30 of 30 Hz: the coarsest level of "
+                                      "detail is fast enough"}));
 }
 
 TEST_F(WallEventsTest, TellWhatIsSetByHand) {
@@ -53,7 +56,7 @@ TEST_F(WallEventsTest, TellWhatIsSetByHand) {
   std::strcpy(stats_.cost_unit, "triangles");
   stats_.rate_asked_hz = 20;
   EXPECT_EQ(after(stats_), (Sentences{"5000 triangles while moving, set by hand",
-                                      "the desired rate is 20 Hz now"}));
+                                      "the desired frame rate is 20 Hz now"}));
   stats_.held_cost = 0;
   EXPECT_EQ(after(stats_), Sentences{"detail chosen by the governor again"});
 }

@@ -316,7 +316,7 @@ TEST(Mpcdi, ABetaMapMayHaveOneColour) {
   const std::string bytes = parts.bytes();
   EXPECT_EQ(correct::Mpcdi::open(bytesOf(bytes))->measured("").error().what,
             "b.png: its pixel 0, 0 has another colour than the rest of the map; only one share for "
-            "all three channels is read");
+            "all three channels is supported");
 }
 
 // --- hostile
@@ -393,7 +393,7 @@ TEST(Mpcdi, ABrokenWarpIsSaid) {
   EXPECT_EQ(warp(pfm(2, 2, std::vector(4, std::array{kNaN, kNaN, 1.0F}))),
             "w.pfm: has NaN in every cell; it shows nothing");
   EXPECT_EQ(warp("PF\n100000 100000\n-1.0\n"),
-            "w.pfm: has 100000 x 100000 cells; at most 16777216 are read");
+            "w.pfm: has 100000 x 100000 cells; the maximum is 16777216");
   EXPECT_EQ(warp("PF\n2 2\n-1.0\nabc"), "w.pfm: has 3 bytes of floats; 2 x 2 cells need 48");
   EXPECT_EQ(warp("PF\n1 3\n-1.0\n" + std::string(36, '\0')),
             "w.pfm: has 1 x 3 cells; a warp has 2 x 2 or more");
@@ -417,12 +417,14 @@ TEST(Mpcdi, ABrokenBlendMapIsSaid) {
 
 TEST(Mpcdi, ABrokenDescriptionIsSaid) {
   EXPECT_EQ(faultWith([](Parts& p) { p.profile = "a3"; }),
-            "is of profile \"a3\"; only profile 2d is read, whose warp does not depend on "
-            "the content");
+            "is of profile \"a3\"; only profile 2d is supported, whose warp does not depend "
+            "on the content");
   EXPECT_EQ(faultWith([](Parts& p) { p.version = "version=\"3.0\""; }),
-            "is of version \"3.0\"; 1.0 and 2.0 are read");
-  EXPECT_EQ(faultWith([](Parts& p) { p.interpolation = "keystone"; }),
-            "w.pfm: its interpolation is \"keystone\"; linear, smooth and unknown are read");
+            "is of version \"3.0\"; only 1.x and 2.x are supported");
+  EXPECT_EQ(
+      faultWith([](Parts& p) { p.interpolation = "keystone"; }),
+      "w.pfm: its interpolation is \"keystone\"; only \"linear\", \"smooth\" and \"unknown\" are "
+      "supported");
   EXPECT_EQ(faultWith([](Parts& p) { p.xml = "<a>"; }),
             "mpcdi.xml: Start-end tags mismatch at byte 2");
   EXPECT_EQ(faultWith([](Parts& p) { p.xml = "<a/>"; }), "mpcdi.xml: has no element MPCDI");

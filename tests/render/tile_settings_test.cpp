@@ -100,7 +100,7 @@ const Fault kViews[] = {
     {"AnOwnViewThatIsTurned",
      [](tiles::TilesSettings& s) { s.tiles[0].view = tiles::TileCamera::kSide; },
      "tile left has view side, a camera of its own: leave out turns, direction_deg, frustum_deg "
-     "and screen_m, or let it follow the wall"},
+     "and screen_m, or set view to wall"},
     {"ACameraOfTheWallsView",
      [](tiles::TilesSettings& s) {
        s.tiles[1].camera.eye_m = {0, 1, 0};

@@ -125,7 +125,7 @@ std::string text(const Vector2d& at, const std::string& attributes, const std::s
 
 std::string degrees(double value) { return fmt::format("{:g}°", std::round(value * 10) / 10); }
 
-// Labels by their place in the drawing: what lies above one another is listed there.
+// Collects labels by position: labels at nearly the same position become the lines of one label.
 class Labels {
  public:
   // `along`: the direction in which the label is read; it is not read upside down.

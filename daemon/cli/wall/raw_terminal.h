@@ -15,7 +15,7 @@ namespace merlin::cli {
 // stopSignals().
 class RawTerminal {
  public:
-  // Errors: kUnsupported: standard input or output is no terminal.
+  // Errors: kUnsupported: standard input or output is not a terminal.
   static Result<Ok> check();
   RawTerminal();  // REQUIRES: check()
   ~RawTerminal();

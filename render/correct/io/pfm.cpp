@@ -70,8 +70,8 @@ Result<FloatMap> parsePfm(std::span<const std::byte> bytes, std::size_t most_cel
         "is not a PFM: it does not begin with PF, columns, rows and a scale that is not 0"};
   }
   if (*columns > most_cells / *rows) {
-    return Error{Errc::kUnsupported, fmt::format("has {} x {} cells; at most {} are read", *columns,
-                                                 *rows, most_cells)};
+    return Error{Errc::kUnsupported,
+                 fmt::format("has {} x {} cells; the maximum is {}", *columns, *rows, most_cells)};
   }
   const std::size_t cells = std::size_t{*columns} * *rows;
   if (bytes.size() < head.end() || bytes.size() - head.end() != 12 * cells) {
