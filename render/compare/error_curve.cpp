@@ -43,6 +43,7 @@ Result<ErrorCurve> errorCurve(const lod::Dendrogram& model, std::size_t steps_an
     curve.points.push_back({level, model.trianglesAt(level),
                             static_cast<double>(model.errorAt(level)), compared->symmetric()});
   }
+  progress(1, curve.points.size());
   return curve;
 }
 

@@ -63,6 +63,17 @@ TEST(Blocks, AreRefusedWhereNotEvenTheyFit) {
   EXPECT_FALSE(reduce::reduce(mesh, {.cost = "pattern", .memory = need.least}));
 }
 
+TEST(JobNeed, IsThatOfTheStepThatTakesMost) {
+  const mesh::MeshSize size{1'000'000, 2'000'000, 6};
+  const reduce::ReductionNeed reduction = reduce::needOf(size, {});
+  const reduce::JobNeed loaded = reduce::needOfJob(size, 0, {});
+  EXPECT_EQ(loaded.besides, size.bytes() + (32U << 20));
+  EXPECT_EQ(loaded.least, loaded.besides + reduction.least);
+  // A file of 10 GB is in memory together with the mesh, whose normals come later.
+  EXPECT_EQ(reduce::needOfJob(size, 10'000'000'000, {}).least,
+            10'000'000'000 + size.bytes() - 12 * size.vertices + (32U << 20));
+}
+
 TEST(Blocks, TheSameBytesForAnyNumberOfThreads) {
   const mesh::Mesh mesh = hills(250);
   const reduce::Reduction one = reduced(mesh, tight(mesh, {.threads = 1}));

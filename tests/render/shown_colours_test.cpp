@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "render/lod/finest_level.h"
 #include "render/reduce/reduce.h"
 
 namespace merlin::render {
@@ -20,9 +21,7 @@ lod::Dendrogram fan(std::vector<mesh::Feature> features) {
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0};
   mesh.triangles = {0, 1, 2, 0, 2, 3, 0, 3, 4};
   mesh.features = std::move(features);
-  lod::CollapseLog nothing;
-  nothing.features.resize(mesh.features.size());
-  return lod::buildDendrogram(mesh, nothing);
+  return lod::oneLevel(mesh);
 }
 
 Rgb colourAt(const lod::Dendrogram& model, const content::ShownColours& shown, const char* feature,

@@ -12,6 +12,7 @@
 #include "render/content/shown_colours.h"
 #include "render/image/picture_difference.h"
 #include "render/image/png_writer.h"
+#include "render/lod/finest_level.h"
 
 namespace merlin::cli {
 namespace {
@@ -147,7 +148,8 @@ render::mesh::Mesh edgeBands(const render::mesh::Mesh& mesh, const View& view) {
 Result<double> writePictures(const std::string& folder, const render::mesh::Mesh& a,
                              const render::mesh::Mesh& b, const View& view) {
   if (const auto made = makeFolder(folder); !made) return made.error();
-  const render::lod::Dendrogram first = asModel(framed(a, b)), second = asModel(framed(b, a));
+  const render::lod::Dendrogram first = render::lod::oneLevel(framed(a, b)),
+                                second = render::lod::oneLevel(framed(b, a));
   View same = view;
   if (!view.model.show.feature.empty()) {  // the same colour scale for both models
     const auto shown = render::content::coloursOf(first, view.model.show);
@@ -165,7 +167,7 @@ Result<double> writePictures(const std::string& folder, const render::mesh::Mesh
     if (!image) return image.error();
     images.push_back(*std::move(image));
   }
-  auto edges = drawn(asModel(framed(edgeBands(b, view), a)), plain);
+  auto edges = drawn(render::lod::oneLevel(framed(edgeBands(b, view), a)), plain);
   if (!edges) return edges.error();
   render::image::Image beside = images[0];
   beside.append(images[1]);

@@ -56,14 +56,8 @@ Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::str
 // kInvalidArgument.
 Result<Ok> setWeight(const std::string& text, render::reduce::Weights& weights);
 
-// Makes a model of one level from a mesh.
-render::lod::Dendrogram asModel(const render::mesh::Mesh& mesh);
-
 // The error for a model with one level if another resolution was requested.
 Error hasOneResolution(const std::string& path);
-
-// Bounding box of the finest resolution. Errors in percent are relative to the box's diagonal.
-render::mesh::Box boxOf(const render::lod::Dendrogram& model);
 
 // The resolution that the command line selects; at most one member is set.
 struct LevelChoice {

@@ -7,6 +7,7 @@
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/print.h"
+#include "render/lod/finest_level.h"
 
 namespace merlin::cli {
 namespace {
@@ -33,7 +34,7 @@ Result<Opened> open(const std::string& path) {
   }
   const auto loaded = loadMesh(path);
   if (!loaded) return loaded.error();
-  opened.model = asModel(loaded->mesh);
+  opened.model = render::lod::oneLevel(loaded->mesh);
   opened.repairs = repairsOf(*loaded);
   opened.mended = mendedText(*loaded);
   return opened;
@@ -43,7 +44,7 @@ void printJson(const std::string& file, const Opened& opened) {
   using Json = nlohmann::ordered_json;
   const render::lod::Dendrogram& model = *opened.model;
   const auto& a = model.arrays();
-  const render::mesh::Box box = boxOf(model);
+  const render::mesh::Box box = render::lod::finestBox(model);
   Json features = Json::array();
   for (const auto& f : a.features)
     features.push_back({{"name", f.name}, {"dimension", f.dimension}});
@@ -64,7 +65,7 @@ void printJson(const std::string& file, const Opened& opened) {
 void printText(const std::string& file, const Opened& opened) {
   const render::lod::Dendrogram& model = *opened.model;
   const auto& a = model.arrays();
-  const render::mesh::Box box = boxOf(model);
+  const render::mesh::Box box = render::lod::finestBox(model);
   printOut("{}: {} triangles, {} vertices\n", file, model.triangleCount(), model.vertexCount());
   if (model.levels() > 1) {
     printOut("  levels    {}, down to {} triangles (error estimate {:.3g})\n", model.levels(),

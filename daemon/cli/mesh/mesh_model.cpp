@@ -10,6 +10,7 @@
 #include "daemon/base/files.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/print.h"
+#include "render/lod/finest_level.h"
 #include "render/lod/io/mrm_file.h"
 
 namespace merlin::cli {
@@ -18,7 +19,7 @@ Result<render::lod::Dendrogram> openModel(const std::string& path) {
   if (path.ends_with(".mrm")) return render::lod::readMrm(path);
   const auto loaded = loadMesh(path);
   if (!loaded) return loaded.error();
-  return asModel(loaded->mesh);
+  return render::lod::oneLevel(loaded->mesh);
 }
 
 Result<render::mesh::LoadedMesh> loadMesh(const std::string& path) {
@@ -49,26 +50,6 @@ std::string mendedText(const render::mesh::LoadedMesh& loaded) {
       text += fmt::format("{}{} {}", text.empty() ? "repaired: " : ", ", r.count, r.name);
   }
   return text;
-}
-
-render::lod::Dendrogram asModel(const render::mesh::Mesh& mesh) {
-  render::lod::CollapseLog nothing;
-  nothing.features.resize(mesh.features.size());
-  return render::lod::buildDendrogram(mesh, nothing);
-}
-
-render::mesh::Box boxOf(const render::lod::Dendrogram& model) {
-  const auto& a = model.arrays();
-  if (a.triangles.empty()) return render::mesh::boundingBox(a.positions);
-  const auto at = [&](std::uint32_t corner) { return a.positions.subspan(3 * corner, 3); };
-  render::mesh::Box box = render::mesh::boundingBox(at(a.triangles[0]));
-  for (const std::uint32_t corner : a.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      box.low[k] = std::min(box.low[k], at(corner)[k]);
-      box.high[k] = std::max(box.high[k], at(corner)[k]);
-    }
-  }
-  return box;
 }
 
 Error hasOneResolution(const std::string& path) {
@@ -132,7 +113,8 @@ std::size_t LevelChoice::coarsestAllowed(const render::lod::Dendrogram& model) c
     return model.levelFor(static_cast<std::size_t>(
         std::floor(*percent / 100 * static_cast<double>(model.triangleCount()))));
   if (error_percent) {
-    return model.levelForError(static_cast<float>(*error_percent / 100) * boxOf(model).diagonal());
+    return model.levelForError(static_cast<float>(*error_percent / 100) *
+                               render::lod::finestBox(model).diagonal());
   }
   if (error_units) return model.levelForError(static_cast<float>(*error_units));
   return 0;

@@ -12,6 +12,7 @@
 #include "daemon/cli/mesh/view_options.h"
 #include "daemon/cli/print.h"
 #include "render/image/png_writer.h"
+#include "render/lod/finest_level.h"
 #include "render/segment/segment.h"
 
 namespace merlin::cli {
@@ -34,7 +35,7 @@ void setFeature(render::mesh::Mesh& mesh, render::mesh::Feature feature) {
 
 Result<Ok> draw(const SegmentOptions& options, const render::mesh::Mesh& mesh) {
   render::gl::prepareSoftwareGl(0);
-  const render::lod::Dendrogram model = asModel(mesh);
+  const render::lod::Dendrogram model = render::lod::oneLevel(mesh);
   const SystemClock clock;
   View view = options.view;
   if (view.model.show.feature.empty()) view.model.show.feature = "label";
