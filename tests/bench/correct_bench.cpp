@@ -70,15 +70,17 @@ struct Shader {
   ~Shader() { pass.end(); }
 };
 
-bool measure(int frames, const std::string& gpu, Report& report) {
-  std::mt19937 random(1);
-  Shader shader(gpu);
-  std::vector<std::uint8_t> picture(std::size_t{4} * kWidth * kHeight), copy(picture.size());
-  for (std::uint8_t& p : picture) p = static_cast<std::uint8_t>(random());
-  const unsigned processors = threadsOr(0);
-  ThreadTeam team;
-  std::vector<std::pair<std::string, render::correct::OutputCorrection>> subjects;
-  std::vector<double> maps;
+// A correction that is measured.
+struct Subject {
+  std::string name;
+  render::correct::OutputCorrection correction;
+  std::vector<double> passes{};  // [ms]
+};
+
+// All of them; adds the times of making maps of meshes to `maps` [ms].
+std::vector<Subject> subjectsOf(unsigned processors, ThreadTeam& team, Shader& shader,
+                                std::vector<double>& maps) {
+  std::vector<Subject> subjects;
   for (const auto& [name, settings] : cases()) {
     if (!validate(settings, kWidth, kHeight).empty())
       didNotRun(name, "its settings are not valid", "mend the benchmark");
@@ -86,51 +88,70 @@ bool measure(int frames, const std::string& gpu, Report& report) {
     const auto map = render::correct::makeCorrectionMap(settings, kWidth, kHeight, nullptr,
                                                         Threads(processors, team));
     if (!settings.mesh.isOff()) maps.push_back(msSince(began));
-    subjects.emplace_back(name, render::correct::OutputCorrection(map, Threads(processors, team)));
-    if (processors > 1)
-      subjects.emplace_back(name + "_one", render::correct::OutputCorrection(map, 1));
-    subjects.emplace_back(name + "_shader",
-                          render::correct::OutputCorrection(map, 1, &shader.pass));
+    subjects.push_back({name, {map, Threads(processors, team)}});
+    if (processors > 1) subjects.push_back({name + "_one", {map, 1}});
+    subjects.push_back({name + "_shader", {map, 1, &shader.pass}});
   }
-  // All in turn, so that whatever else the machine does falls on all alike.
+  return subjects;
+}
+
+// All in turn, so that whatever else the machine does falls on all alike. Returns the times of
+// copying the picture [ms].
+std::vector<double> measureInTurn(int frames, std::vector<Subject>& subjects) {
+  std::mt19937 random(1);
+  std::vector<std::uint8_t> picture(std::size_t{4} * kWidth * kHeight), copy(picture.size());
+  for (std::uint8_t& p : picture) p = static_cast<std::uint8_t>(random());
   std::vector<double> copies;
-  std::vector<std::vector<double>> passes(subjects.size());
   for (int frame = 0; frame < frames; ++frame) {
     auto began = Steady::now();
     std::memcpy(copy.data(), picture.data(), picture.size());
     asm volatile("" : : "r"(copy.data()) : "memory");
     copies.push_back(msSince(began));
-    for (std::size_t i = 0; i < subjects.size(); ++i) {
+    for (Subject& subject : subjects) {
       began = Steady::now();
-      const auto signal = subjects[i].second.apply({kWidth, kHeight, picture});
+      const auto signal = subject.correction.apply({kWidth, kHeight, picture});
       asm volatile("" : : "r"(signal.pixels.data()) : "memory");
-      passes[i].push_back(msSince(began));
+      subject.passes.push_back(msSince(began));
     }
   }
+  return copies;
+}
+
+void printSubject(const Subject& subject, const Measured& memcpy_ms, Report& report) {
+  const Measured ms = medianOf(subject.passes, "passes of " + subject.name);
+  const Measured ratio = ratioOf(ms, memcpy_ms, subject.name + " beside memcpy");
+  report.text("  {:<22} {:7.2f} ms, {:.1f} memcpys\n", subject.name, ms.value(), ratio.value());
+  report.figure(subject.name + "_ms", ms, "ms");
+  report.figure(subject.name + "_per_memcpy", ratio, "1");
+}
+
+bool measure(int frames, const std::string& gpu, Report& report) {
+  const unsigned processors = threadsOr(0);
+  ThreadTeam team;
+  Shader shader(gpu);
+  std::vector<double> maps;
+  std::vector<Subject> subjects = subjectsOf(processors, team, shader, maps);
+  const Measured memcpy_ms = medianOf(measureInTurn(frames, subjects), "copies of the frame");
   if (const std::string fault = shader.pass.fault(); !fault.empty())
     didNotRun("the shader", fault, "see --gpu");
   report.text("shader by {}\n", shader.context->renderer());
   report.figure("renderer", shader.context->renderer(), 1);
-  const Measured memcpy_ms = medianOf(copies, "copies of the frame");
   report.text("correction of {} x {} pixels, medians of {} frames, {} processors\n", kWidth,
               kHeight, frames, processors);
-  report.text("  {:<20} {:7.2f} ms\n", "memcpy", memcpy_ms.value());
+  report.text("  {:<22} {:7.2f} ms\n", "memcpy", memcpy_ms.value());
   report.figure("memcpy_ms", memcpy_ms, "ms");
   const Measured map_ms = medianOf(maps, "maps of meshes");
-  report.text("  {:<20} {:7.2f} ms, once\n", "map of a mesh", map_ms.value());
+  report.text("  {:<22} {:7.2f} ms, once\n", "map of a mesh", map_ms.value());
   report.figure("map_ms", map_ms, "ms");
+  const std::size_t of_a_case = processors > 1 ? 3 : 2;  // the shader is the last of each case
   for (std::size_t i = 0; i < subjects.size(); ++i) {
-    const std::string& name = subjects[i].first;
-    const Measured ms = medianOf(passes[i], "passes of " + name);
-    const Measured ratio = ratioOf(ms, memcpy_ms, name + " beside memcpy");
-    report.text("  {:<20} {:7.2f} ms, {:.1f} memcpys\n", name, ms.value(), ratio.value());
-    report.figure(name + "_ms", ms, "ms");
-    report.figure(name + "_per_memcpy", ratio, "1");
-    if (!name.ends_with("_shader")) continue;
-    const std::size_t on_cpu = i - (processors > 1 ? 2 : 1);
-    const Measured beside = ratioOf(ms, medianOf(passes[on_cpu], "passes"), name);
-    report.text("  {:<20} {:7.2f} times the CPU's\n", "", beside.value());
-    report.figure(name + "_per_cpu", beside, "1");
+    printSubject(subjects[i], memcpy_ms, report);
+    if (i % of_a_case != of_a_case - 1) continue;
+    const Subject& cpu = subjects[i + 1 - of_a_case];
+    const Measured ratio = ratioOf(medianOf(subjects[i].passes, "passes of the shader"),
+                                   medianOf(cpu.passes, "passes of the CPU"), cpu.name);
+    report.text("  {:<22} {:7.2f} times as long as on the CPU\n", "", ratio.value());
+    report.figure(cpu.name + "_shader_per_cpu", ratio, "1");
   }
   return true;
 }

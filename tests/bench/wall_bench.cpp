@@ -183,7 +183,10 @@ void benchLate(const Options& options, const test::TempDir& dir, Report& report)
       const auto rate = static_cast<double>(wall.end.rate_asked_hz);
       const BareRun bare = runBare(options, dir, script, wall.work_s, rate);
       all.add(wall, bare);
-      if (!std::exchange(named, true)) report.text("drawn by {}\n", wall.renderer);
+      if (!std::exchange(named, true)) {
+        report.text("drawn by {}\n", wall.renderer);
+        report.figure("renderer", wall.renderer, 1);
+      }
       printRow(report, script, round, wall, bare);
     }
     const auto wall = Measured::of(meanOf(all.wall, "rounds"), all.wall_deadlines, "deadlines");
