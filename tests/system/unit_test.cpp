@@ -21,8 +21,9 @@ class Unit : public testing::TestWithParam<const char*> {
   std::string localCopy() const {
     const std::string name = GetParam();
     std::string unit = readText(kUnits + name);
-    const std::string from =
-        name == "merlin-page.service" ? "/usr/bin/merlind" : "/usr/bin/" + name.substr(0, name.find('.'));
+    const std::string from = name == "merlin-page.service"
+                                 ? "/usr/bin/merlind"
+                                 : "/usr/bin/" + name.substr(0, name.find('.'));
     const std::string to = MERLIN_BIN_DIR "/merlind";
     EXPECT_NE(unit.find(from), std::string::npos);
     for (std::size_t at = 0; (at = unit.find(from, at)) != std::string::npos; at += to.size())
