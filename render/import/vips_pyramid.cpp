@@ -65,7 +65,7 @@ bool toSrgb(Image& image) {
   if (!by_profile) vips_error_clear();  // a profile that does not fit the picture is left out
   if (vips_image_get_coding(image.get()) == VIPS_CODING_RAD &&
       !applyStep(image,
-             [](VipsImage* from, VipsImage** to) { return vips_rad2float(from, to, nullptr); }))
+                 [](VipsImage* from, VipsImage** to) { return vips_rad2float(from, to, nullptr); }))
     return false;
   if (!applyStep(image, [](VipsImage* from, VipsImage** to) {
         return vips_colourspace(from, to, VIPS_INTERPRETATION_sRGB, nullptr);
@@ -75,7 +75,8 @@ bool toSrgb(Image& image) {
         return vips_flatten(from, to, nullptr);
       }))
     return false;
-  if (vips_image_get_bands(image.get()) > 3 && !applyStep(image, [](VipsImage* from, VipsImage** to) {
+  if (vips_image_get_bands(image.get()) > 3 &&
+      !applyStep(image, [](VipsImage* from, VipsImage** to) {
         return vips_extract_band(from, to, 0, "n", 3, nullptr);
       }))
     return false;
@@ -86,7 +87,8 @@ bool toSrgb(Image& image) {
 
 // Only the mark is left of what a file says about itself.
 bool mark(Image& image, bool panorama) {
-  if (!applyStep(image, [](VipsImage* from, VipsImage** to) { return vips_copy(from, to, nullptr); }))
+  if (!applyStep(image,
+                 [](VipsImage* from, VipsImage** to) { return vips_copy(from, to, nullptr); }))
     return false;
   for (const char* name : {VIPS_META_EXIF_NAME, VIPS_META_XMP_NAME, VIPS_META_IPTC_NAME,
                            VIPS_META_PHOTOSHOP_NAME, VIPS_META_ICC_NAME, VIPS_META_ORIENTATION})
