@@ -358,13 +358,15 @@ TEST(FrameRenderer, OperatorSeesTheWholeModel) {
 }
 
 TEST(FrameRenderer, OperatorsViewGivesWayBeforeTheFrameIsLate) {
-  Wall wall(fourTiles());
-  wall.draw();
-  const Image left = wall.tile(0), operators = wall.tile(3);
-  const frame::DrawTimes times = wall.renderer->draw({inFront(), 0, wall.clock.now()});
-  EXPECT_TRUE(times.gave_way);
-  EXPECT_EQ(wall.tile(0).pixels, left.pixels);
-  EXPECT_NE(wall.tile(3).pixels, operators.pixels);
+  for (const auto mode : {gl::ReadBackMode::kDirect, gl::ReadBackMode::kAsynchronous}) {
+    Wall wall(fourTiles(), gl::GlSettings{.read_back = mode});
+    wall.draw();
+    const Image left = wall.tile(0), operators = wall.tile(3);
+    const frame::DrawTimes times = wall.renderer->draw({inFront(), 0, wall.clock.now()});
+    EXPECT_TRUE(times.gave_way);
+    EXPECT_EQ(wall.tile(0).pixels, left.pixels);
+    EXPECT_NE(wall.tile(3).pixels, operators.pixels);
+  }
 }
 
 TEST(FrameRenderer, OsmesaDrawsTheSameWall) {
