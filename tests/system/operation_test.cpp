@@ -125,6 +125,7 @@ TEST(Operation, WhatIsRemovedFromSharedMemoryIsMadeAgain) {
 // One that the command takes.
 std::string argumentFor(const CommandInfo& command) {
   if (command.name == "align") return "list";
+  if (command.name == "show") return "model";
   if (command.name == "signal") return "shared_memory";
   if (command.name == "testcard") return "off";
   if (command.name == "move") return "0.1 -0.1 0 0 30 0";
