@@ -46,9 +46,10 @@ class Words {
 
 Error malformed(std::string_view argument) {
   return {Errc::kInvalidArgument,
-          fmt::format("\"{}\" is no request; allowed are: {}; CORNER is {}; DX and DY are pixels "
-                      "of the output, at most {} either way, x to the right and y down",
-                      excerpt(argument), kAlignForms, fmt::join(kCornerNames, ", "), kMostOffset)};
+          fmt::format(
+              "\"{}\" is not a valid request; allowed are: {}; CORNER is {}; DX and DY are pixels "
+              "of the output, at most {} either way, x to the right and y down",
+              excerpt(argument), kAlignForms, fmt::join(kCornerNames, ", "), kMostOffset)};
 }
 
 std::optional<AlignRequest> moveRequest(Words words, std::optional<Place> place) {

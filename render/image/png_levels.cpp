@@ -70,8 +70,8 @@ Result<Levels> read(Reading& r, std::size_t most_pixels) {
   const std::size_t width = png_get_image_width(r.png, r.info);
   const std::size_t height = png_get_image_height(r.png, r.info);
   if (width > most_pixels / height) {
-    return Error{Errc::kUnsupported,
-                 fmt::format("{} x {} pixels; at most {} are read", width, height, most_pixels)};
+    return Error{Errc::kUnsupported, fmt::format("{} x {} pixels; the maximum is {} in all", width,
+                                                 height, most_pixels)};
   }
   Levels levels{static_cast<int>(width), static_cast<int>(height), 3, {}};
   levels.values.resize(3 * width * height);

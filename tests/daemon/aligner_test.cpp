@@ -133,11 +133,12 @@ TEST_F(AlignerTest, WhatCannotBeShownIsRefusedAndNothingChanges) {
       {"reset x", "there is no output \"x\""},
       {"undo", "there is nothing to undo"},
       {"redo", "there is nothing to redo"},
-      {"move top_left 1 left", "is no request; allowed are: list | move CORNER DX DY OUTPUT"},
+      {"move top_left 1 left",
+       "is not a valid request; allowed are: list | move CORNER DX DY OUTPUT"},
       {"move upper_left 1 1 left", "CORNER is top_left, top_right, bottom_left, bottom_right"},
-      {"move top_left nan 1 left", "is no request"},
-      {"move top_left 1e9 1 left", "is no request"},
-      {"", "is no request"}};
+      {"move top_left nan 1 left", "is not a valid request"},
+      {"move top_left 1e9 1 left", "is not a valid request"},
+      {"", "is not a valid request"}};
   for (const auto& [argument, what] : refused) {
     const json answer = ask(argument);
     ASSERT_TRUE(answer.is_string()) << argument << answer;

@@ -431,7 +431,7 @@ TEST(Mpcdi, ABrokenDescriptionIsSaid) {
   EXPECT_EQ(faultWith([](Parts& p) { p.xml = "<MPCDI profile='2d' version='2.0'/>"; }),
             "mpcdi.xml: has no region");
   EXPECT_EQ(faultWith([](Parts& p) { p.xml = std::string(2 << 20, ' '); }),
-            "mpcdi.xml: has 2097152 bytes; at most 1048576 are read; an MPCDI file has it");
+            "mpcdi.xml: has 2097152 bytes; the maximum is 1048576; an MPCDI file has it");
   EXPECT_EQ(faultOf(*correct::zipBytes({{"w.pfm", identity()}})),
             "\"mpcdi.xml\" is not in the archive; an MPCDI file has it");
   const auto region = [](const std::string& attributes) {

@@ -122,8 +122,9 @@ TEST_F(MrmDamage, AnotherKindOfFileIsToldFromADamagedOne) {
 // The version is checked first, since a later version may have a different header.
 TEST_F(MrmDamage, AnotherVersionIsNotSupported) {
   for (const unsigned version : {0U, 2U, 0xFFFFFFFFU}) {
-    const std::string fault =
-        "is version " + std::to_string(version) + " of .mrm, this program reads 1";
+    const std::string fault = "is version " + std::to_string(version) +
+                              " of .mrm, but this program reads version 1; make it again with: "
+                              "merlin mesh reduce";
     const auto change = [&](MrmBytes::Header& h) { h.version = version; };
     EXPECT_EQ(faultWith(change, Errc::kUnsupported), fault);
     MrmBytes file = golden_;

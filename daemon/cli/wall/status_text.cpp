@@ -41,7 +41,7 @@ std::string pictureWord(const Json& s) {
 std::string givenWay(const Json& s) {
   std::string text;
   if (s.value("rate_divisor", 1) > 1)
-    text += fmt::format("; rate reduced to {:.3g} Hz", s.value("rate_now", 0.0));
+    text += fmt::format("; frame rate reduced to {:.3g} Hz", s.value("rate_now", 0.0));
   if (s.value("scale_divisor", 1) > 1) text += "; tiles drawn at half size";
   if (s.value("operator_coarser", false)) text += "; operator's view coarser";
   const int held = s.value("detail", Json::object()).value("held_cost", 0);

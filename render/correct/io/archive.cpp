@@ -53,7 +53,7 @@ Result<Archive> Archive::open(std::span<const std::byte> bytes) {
       static_cast<std::size_t>(std::max<zip_int64_t>(0, zip_get_num_entries(opened, 0)));
   if (count > kMostEntries)
     return Error{Errc::kUnsupported,
-                 fmt::format("has {} entries; at most {} are read", count, kMostEntries)};
+                 fmt::format("has {} entries; the maximum is {}", count, kMostEntries)};
   for (std::size_t i = 0; i < count; ++i) {
     const char* const name = zip_get_name(opened, i, ZIP_FL_ENC_RAW);
     if (name && isPlain(name)) continue;
@@ -70,8 +70,8 @@ Result<std::vector<std::byte>> Archive::read(const std::string& name, std::size_
   if (zip_stat(zip_.get(), name.c_str(), 0, &stat) != 0)
     return Error{Errc::kNotFound, fmt::format("\"{}\" is not in the archive", shown(name))};
   if (!(stat.valid & ZIP_STAT_SIZE) || stat.size > most) {
-    return Error{Errc::kUnsupported, fmt::format("{}: has {} bytes; at most {} are read",
-                                                 shown(name), stat.size, most)};
+    return Error{Errc::kUnsupported,
+                 fmt::format("{}: has {} bytes; the maximum is {}", shown(name), stat.size, most)};
   }
   zip_file_t* const file = zip_fopen_index(zip_.get(), stat.index, 0);
   if (!file) {

@@ -79,8 +79,9 @@ class MrmReader {
     }
     if (header_.version != kVersion) {
       return Error{Errc::kUnsupported,
-                   fmt::format("{}: is version {} of .mrm, this program reads {}", path_,
-                               header_.version, kVersion)};
+                   fmt::format("{}: is version {} of .mrm, but this program reads version {}; "
+                               "make it again with: merlin mesh reduce",
+                               path_, header_.version, kVersion)};
     }
     if (header_.header_checksum != checksum(&header_, offsetof(FileHeader, header_checksum))) {
       return broken(path_, "the header is damaged");
