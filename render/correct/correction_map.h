@@ -1,6 +1,6 @@
 // CorrectionMap: tables, computed once, of what a correction does to each pixel of an output. The
-// formula below is the reference: correct_pixels evaluates it on the CPU, and gpu/shader_pass, which
-// reads the same tables as textures, with the same result within 1 of 255.
+// formula below is the reference: correct_pixels evaluates it on the CPU, and gpu/shader_pass,
+// which reads the same tables as textures, with the same result within 1 of 255.
 //
 // For the output's pixel p, with source position (X, Y), gain a and black share s from the tables:
 //   1. c = bilinear filter of the uncorrected picture's signal (0..1) between the centres of the

@@ -112,8 +112,8 @@ class Install : public testing::Test {
 TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
   for (const char* path :
        {"/usr/bin/merlind", "/usr/bin/merlin", "/usr/lib/systemd/system/merlind.service",
-        "/usr/lib/sysusers.d/merlin.conf",
-        "/usr/lib/systemd/system/merlin-page.service", "/usr/lib/sysusers.d/merlin-page.conf", "/usr/share/merlin/merlind.service.d/network.conf",
+        "/usr/lib/sysusers.d/merlin.conf", "/usr/lib/systemd/system/merlin-page.service",
+        "/usr/lib/sysusers.d/merlin-page.conf", "/usr/share/merlin/merlind.service.d/network.conf",
         "/usr/share/merlin/merlind.service.d/gpio.conf",
         "/usr/share/merlin/merlind.service.d/gpu.conf",
         "/usr/share/merlin/merlind.service.d/files.conf", "/usr/share/merlin/spnav.tmpfiles.conf",

@@ -8,11 +8,11 @@
 namespace merlin::render::mesh {
 
 // Splits each vertex of the file into one vertex for each combination of texture coordinate and
-// material at its corners; the vertices at a seam have bit-identical positions (coincidentVertices() finds
-// them). The mesh gets "texcoord" and "colour" where the file has them; a vertex' colour comes from
-// the texture image, else from the vertex in the file, else from the material, else it is white. If
-// all corners use the same repeating texture image, it also becomes the mesh's texture.
-// REQUIRES: every index is in range, `materials` belong to `surface`.
+// material at its corners; the vertices at a seam have bit-identical positions
+// (coincidentVertices() finds them). The mesh gets "texcoord" and "colour" where the file has them;
+// a vertex' colour comes from the texture image, else from the vertex in the file, else from the
+// material, else it is white. If all corners use the same repeating texture image, it also becomes
+// the mesh's texture. REQUIRES: every index is in range, `materials` belong to `surface`.
 Mesh textured(ObjSurface surface, const std::vector<ObjMaterial>& materials);
 
 }  // namespace merlin::render::mesh
