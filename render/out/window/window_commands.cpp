@@ -40,7 +40,8 @@ constexpr Key kCtrlKeys[] = {{"N", "align_output_next"},
                              {"R", "align_redo"},
                              {"T", "next_testcard"}};
 constexpr bool isCommand(const Key& k) {
-  return findCommand(k.command) && findCommand(k.command)->argument.empty();
+  return std::ranges::any_of(
+      kCommands, [&](const CommandInfo& c) { return c.name == k.command && c.argument.empty(); });
 }
 static_assert(std::ranges::all_of(kKeys, isCommand) && std::ranges::all_of(kCtrlKeys, isCommand));
 
