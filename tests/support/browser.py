@@ -82,6 +82,11 @@ class Driver:
     def type(self, selector, text):
         self.do("POST", "/element/%s/value" % self.find(selector), {"text": text})
 
+    def press(self, key):
+        """A key, as WebDriver names it, for what has the keyboard's focus."""
+        self.do("POST", "/actions", {"actions": [{"type": "key", "id": "k", "actions": [
+            {"type": "keyDown", "value": key}, {"type": "keyUp", "value": key}]}]})
+
     def drag(self, selector, x, y, kind="mouse"):
         """Presses the pointer on an element, moves it by x and y pixels in steps, releases it."""
         origin = {ELEMENT: self.find(selector)}

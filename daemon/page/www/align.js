@@ -9,9 +9,13 @@ const svgName = "http://www.w3.org/2000/svg";
 const byId = id => document.getElementById(id);
 const readable = name => name.replace("_", " ");
 
-function element(name, attributes) {
+function set(element, attributes) {
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+}
+
+function make(name, attributes = {}) {
   const made = document.createElementNS(svgName, name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  set(made, attributes);
   return made;
 }
 
@@ -23,8 +27,10 @@ export class Alignment {
     this.output = "";
     this.corner = kCorners[0];
     this.dragged = null;   // {corner, from, by, sent, timer}
+    this.asked = 0;        // commands without an answer yet
     this.plane = byId("align-plane");
     this.makeControls();
+    this.makeShapes();
   }
 
   makeControls() {
@@ -58,12 +64,24 @@ export class Alignment {
     this.plane.addEventListener("keydown", event => this.key(event));
   }
 
+  // Once: a corner that is drawn anew keeps the keyboard's focus and a finger on it.
+  makeShapes() {
+    this.frame = make("rect", {class: "frame"});
+    this.quad = make("polygon", {class: "quad"});
+    this.handles = Object.fromEntries(kCorners.map(corner => [corner, {
+      dot: make("circle", {class: "handle"}),
+      area: make("circle", {class: "handle-area", "data-corner": corner, tabindex: 0, role: "button",
+                            "aria-label": readable(corner)})}]));
+  }
+
   setCards(names) {
     byId("testcard").replaceChildren(...["off", ...names].map(name => new Option(name, name)));
   }
 
   async ask(argument) {
+    this.plane.ariaBusy = String(++this.asked > 0);
     const report = await this.run("align", argument);
+    this.plane.ariaBusy = String(--this.asked > 0);
     if (report) this.take(report);
   }
 
@@ -114,24 +132,27 @@ export class Alignment {
 
   draw() {
     const output = this.current();
-    this.plane.replaceChildren();
     for (const button of byId("align-corners").children)
       button.setAttribute("aria-pressed", String(button.dataset.corner === this.corner));
-    if (!output) return void (byId("align-state").textContent = "");
+    if (!output) {
+      this.plane.replaceChildren();
+      byId("align-state").textContent = "";
+      return;
+    }
     const {width, height} = output, margin = Math.max(width, height) * kMargin;
     this.plane.setAttribute("viewBox", `${-margin} ${-margin} ${width + 2 * margin} ${height + 2 * margin}`);
     const unit = (width + 2 * margin) / (this.plane.clientWidth || 400);  // of one pixel on the screen
     const at = Object.fromEntries(kCorners.map(c => [c, this.place(output, c)]));
     const points = ["top_left", "top_right", "bottom_right", "bottom_left"].map(c => at[c].join(",")).join(" ");
-    this.plane.append(element("rect", {class: "frame", width, height, "stroke-width": unit}),
-                      element("polygon", {class: "quad", points, "stroke-width": 1.5 * unit}));
-    for (const corner of kCorners) {
+    set(this.frame, {width, height, "stroke-width": unit});
+    set(this.quad, {points, "stroke-width": 1.5 * unit});
+    for (const [corner, {dot, area}] of Object.entries(this.handles)) {
       const [cx, cy] = at[corner], chosen = corner === this.corner ? " chosen" : "";
-      this.plane.append(
-          element("circle", {class: "handle" + chosen, cx, cy, r: 7 * unit, "stroke-width": 2 * unit}),
-          element("circle", {class: "handle-area", cx, cy, r: 22 * unit, "data-corner": corner, tabindex: 0,
-                             role: "button", "aria-label": readable(corner)}));
+      set(dot, {class: "handle" + chosen, cx, cy, r: 7 * unit, "stroke-width": 2 * unit});
+      set(area, {cx, cy, r: 22 * unit});
     }
+    if (!this.plane.hasChildNodes())
+      this.plane.append(this.frame, this.quad, ...Object.values(this.handles).flatMap(h => [h.dot, h.area]));
     const {moved} = output.corners[this.corner], now = this.dragged ? this.dragged.by : [0, 0];
     byId("align-state").textContent = `${readable(this.corner)} moved by ${(moved[0] + now[0]).toFixed(2)}, ` +
         `${(moved[1] + now[1]).toFixed(2)} px${output.pending ? ", being shown" : ""} · ` +
