@@ -15,7 +15,8 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr Duration kPollPeriod = std::chrono::milliseconds(20);
-constexpr Duration kPatience = std::chrono::seconds(10);
+// A mesh for a display of many pixels takes seconds on a slow machine.
+constexpr Duration kPatience = std::chrono::seconds(60);
 
 state::Offset offsetOf(const Json& json) { return {json.at(0).get<double>(), json.at(1)}; }
 

@@ -43,7 +43,6 @@ std::string WindowLink::fault() const {
 // neither newest_ nor in flight stays free while it is written to.
 Result<bool> WindowLink::show(int width, int height, std::span<const std::uint8_t> pixels) {
   std::uint32_t free = 0;
-  bool replaces = false;
   {
     const std::lock_guard lock(mutex_);
     if (closed_) return Error{Errc::kClosed, fault_};
@@ -53,7 +52,6 @@ Result<bool> WindowLink::show(int width, int height, std::span<const std::uint8_
       slots_.emplace(*std::move(made));
     }
     while (free == newest_ || free == in_flight_) ++free;
-    replaces = frames_ > sent_;
   }
   const auto to = slots_->slot(free);
   std::copy_n(pixels.begin(), std::min(to.size(), pixels.size()), to.begin());
@@ -62,6 +60,7 @@ Result<bool> WindowLink::show(int width, int height, std::span<const std::uint8_
   {
     const std::lock_guard lock(mutex_);
     newest_ = free;
+    const bool replaces = frames_ > sent_;  // the frame before may have been sent meanwhile
     ++frames_;
     shown = opened_ && !replaces;
     fault = fault_;
