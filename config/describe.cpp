@@ -311,8 +311,8 @@ void describeRender(render::frame::RenderSettings& r, SettingsVisitor& v) {
            "jump.");
   v.integer(
       "picture_memory_mb", r.picture_memory_mb, {64, 65'536},
-      "Memory for the parts of the shown picture, in megabytes: in memory and in the textures "
-      "of all drawing contexts.");
+      "Most memory that the tiles of the shown picture take, in megabytes: in main memory and in "
+      "the textures of all drawing contexts together.");
   v.integer("fade_frames", r.fade_frames, {1, 30},
             "Number of frames over which a finer image of a still scene is faded in over the "
             "coarser one; 1: the finer image is shown at once.");
@@ -442,8 +442,9 @@ void describeCorrection(render::correct::CorrectionSettings& c, SettingsVisitor&
          "Region of the MPCDI file that belongs to this output. Empty: the file's only one.");
   v.group(
       "blend",
-      "Edge blending: strips of the picture that a neighbour shows as well. There the light "
-      "falls towards the border, so that both together are as bright as the picture.",
+      "Edge blending: strips of the picture that a neighbour shows as well. The "
+      "light decreases towards the border, so that both strips together are as bright as the rest "
+      "of the picture.",
       [&] {
         const Range pixels{0, render::correct::kMostCornerOffset};
         v.number(

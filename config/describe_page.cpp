@@ -3,8 +3,7 @@
 namespace merlin {
 
 void describePage(PageSettings& p, SettingsVisitor& v) {
-  v.flag("enabled", p.enabled,
-         "Whether there is a page. Without it, /metrics is all that this role serves.");
+  v.flag("enabled", p.enabled, "Whether the operator's page is served. If not, only /metrics is.");
   v.flag("metrics", p.metrics,
          "Whether the measurements of both roles are served at /metrics, as text for Prometheus.");
   v.text("address", p.address,

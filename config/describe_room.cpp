@@ -54,7 +54,8 @@ void describePanel(render::room::PanelSettings& p, SettingsVisitor& v) {
 void describeDisplay(render::room::DisplaySettings& d, SettingsVisitor& v) {
   v.text("name", d.name, "Name of the display and of its tile.");
   v.text("panel", d.panel,
-         "Name of the panel on which it shows its picture. Empty: the only panel of the room.");
+         "Name of the panel on which this display shows its picture. Empty: the only panel of the "
+         "room.");
   v.numbers("part_m", d.part_m, {-1000, 1000},
             "Part of the panel that it covers: distance of its left edge from the panel's left "
             "edge, distance of its lower edge from the panel's lower edge, width and height, in "

@@ -68,19 +68,18 @@ void describeView(render::tiles::TileCamera& view, render::tiles::FreeCamera& ca
           "top, side, front: the whole model from above, from the right, or from where the viewer "
           "stands, in parallel projection; the model is always in the middle and fits. free: the "
           "view of a camera of its own.");
-  v.group(
-      "camera",
-      "The camera of view free. Its places are relative to the eye of the wall's viewer (x right, "
-      "y up, z towards the person), in metres.",
-      [&] {
-        v.numbers("eye_m", camera.eye_m, {-1000, 1000}, "Where the camera stands.");
-        v.numbers("look_at_m", camera.look_at_m, {-1000, 1000},
-                  "Place that is in the middle of the camera's picture.");
-        v.numbers("up", camera.up, {-1000, 1000},
-                  "Direction that is upwards in the camera's picture.");
-        v.number("field_of_view_deg", camera.field_of_view_deg, {1, 179},
-                 "The camera's horizontal field of view in degrees.");
-      });
+  v.group("camera",
+          "The camera that is used if \"view\" is \"free\". Positions are relative to the midpoint "
+          "between the viewer's eyes (x right, y up, z towards the person), in metres.",
+          [&] {
+            v.numbers("eye_m", camera.eye_m, {-1000, 1000}, "Where the camera stands.");
+            v.numbers("look_at_m", camera.look_at_m, {-1000, 1000},
+                      "Place that is in the middle of the camera's picture.");
+            v.numbers("up", camera.up, {-1000, 1000},
+                      "Direction that is upwards in the camera's picture.");
+            v.number("field_of_view_deg", camera.field_of_view_deg, {1, 179},
+                     "The camera's horizontal field of view in degrees.");
+          });
 }
 
 }  // namespace merlin

@@ -1,5 +1,5 @@
-// The parts of describe() that are views of their own and stereo: /wall/stereo, and "view" and
-// "camera" of a tile or display.
+// The part of describe() that covers stereo (/wall/stereo), and "view" and "camera", with which a
+// tile or a display shows another view than the wall's.
 #pragma once
 
 #include "config/visitor.h"

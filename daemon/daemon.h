@@ -40,9 +40,10 @@ class Daemon {
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
-  // Runs until SIGTERM or SIGINT; notifies systemd when the first frame is shown, and of progress.
-  // Errors: those of starting the servers; the first frame could not be drawn; kClosed (stopped
-  // before the first frame); a thread has ended unexpectedly.
+  // Runs until SIGTERM or SIGINT. Tells systemd when the first frame is shown, and from then on
+  // that every thread still makes progress (its watchdog). Errors: those of starting the servers;
+  // the first frame could not be drawn; kClosed (stopped before the first frame); a thread has
+  // ended unexpectedly.
   Result<Ok> run();
 
  private:

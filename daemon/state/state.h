@@ -24,9 +24,9 @@ struct State {
 // The file's text: JSON, the version first.
 std::string stateText(const State& state);
 
-// Strict: an unknown key, a figure out of range, a step of an output that is not there are errors,
-// since such a file is not one that was written whole. `file`: its name, for messages. Errors:
-// kUnsupported (of a newer version), kMalformed (everything else).
+// Strict: unknown keys, numbers out of range, and alignment steps of an output that the file does not
+// list are errors, since they show that the file was not written completely. `file`: its name, for
+// messages. Errors: kUnsupported (of a newer version), kMalformed (everything else).
 Result<State> parseState(std::string_view text, const std::string& file);
 
 }  // namespace merlin::state

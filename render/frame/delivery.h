@@ -32,9 +32,9 @@ class Delivery {
   void show(std::span<std::uint8_t> canvas, const out::FrameInfo& info,
             std::optional<Timestamp> deadline);
 
-  // True if show() at `now` would send an output another signal than it did last, to an output that
-  // takes a frame then, or if an output wants one (Output::wantsFrame()) or `watcher` wants to see
-  // a signal.
+  // Whether a call of show() at `now` would have an effect: an output that accepts a frame then
+  // would be sent another signal (its corrected picture) than last time, an output asks for a frame
+  // (Output::wantsFrame()), or `watcher` asks to see a signal.
   bool hasChanged(Timestamp now) const;
 
   const out::OutputSet& outputs() const noexcept { return outputs_; }

@@ -88,8 +88,8 @@ struct TilesSettings {
                                      {"centre", TileKind::kWall, 640, 0, 0},
                                      {"right", TileKind::kWall, 0, 480, -1},
                                      {"operator", TileKind::kOperator, 640, 480, 0}};
-  // From the left to the right eye, as seen from the middle between both, with the head straight
-  // (x right, y up, z towards the person) [m].
+  // Vector from the left eye to the right eye while the head is held straight (x right, y up, z
+  // towards the person) [m].
   std::array<double, 3> eyes_m{};
 };
 

@@ -49,7 +49,7 @@ class TileCache {
   // level has at most.
   explicit TileCache(std::size_t slots);
 
-  // Number of slots such that they take at most `bytes` in this many contexts' textures.
+  // Largest number of slots whose textures take at most `bytes` in all `contexts` together.
   static std::size_t slotsWithin(std::size_t bytes, std::size_t contexts) noexcept;
 
   // Forgets all tiles. Those of the coarsest level are put at once and are never replaced.

@@ -1,5 +1,5 @@
-// WholeReduction: reduces the mesh as a whole, under the rules of one stage. Private to
-// render/reduce.
+// WholeReduction: reduces the entire mesh in one piece, under the rules of one QuadricStage (see
+// quadric_rules.h). Private to render/reduce.
 #pragma once
 
 #include <cstddef>
