@@ -86,6 +86,8 @@ const std::map<std::string, Folders> kMayInclude = {
     {"drivers/hand", {"drivers/port"}},
     {"drivers/gpio", {"drivers/port"}},
     {"drivers/io", {"drivers/port"}},
+    // projector, protocol and schedule are pure.
+    {"drivers/pjlink", {"drivers/port"}},
     {"drivers/loop", {"drivers/port"}},
     {"drivers/emulate",
      {"drivers/port", "drivers/hand", "drivers/cyberglove", "drivers/fastrak",
@@ -169,6 +171,7 @@ const std::map<std::string, Folders> kOnlyIn = {
     {"zip.h", {"render/correct/io"}},
     {"pugixml.hpp", {"render/correct/io"}},
     {"xxhash.h", {"render/lod/io"}},
+    {"nettle/md5.h", {"drivers/pjlink"}},
     {"rfb/rfb.h", {"daemon/rfb"}},
     {"rfb/rfbregion.h", {"daemon/rfb"}},
     {"CLI/CLI.hpp", {"daemon", "daemon/cli", "daemon/rfb"}},

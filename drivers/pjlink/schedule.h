@@ -1,0 +1,43 @@
+// Schedule: the times at which projectors are switched. Pure: the time of the local calendar is
+// passed in.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "drivers/pjlink/settings.h"
+
+namespace merlin::pjlink {
+
+// A minute of the local calendar: minutes from 1970-01-01 00:00 to it, as if every day had 24
+// hours.
+using LocalMinute = std::int64_t;
+
+// Thread-bound.
+class Schedule {
+ public:
+  // REQUIRES: validate(times) finds no fault. Without times, nothing is ever switched.
+  explicit Schedule(const std::vector<SwitchingTimes>& times);
+
+  // Whether projectors are to be on: at least one entry says so. O(entries).
+  bool isOn(LocalMinute now) const;
+
+  // To be called at least once a minute. Returns true (on) or false (off) when the scheduled state
+  // has changed since the last call, and at the first call. While the local time repeats an hour
+  // (daylight-saving time ends), or was set back by at most three hours, it returns nothing until
+  // the time is past what it was: each point switches once. An hour that is left out counts as
+  // passed: its points switch at its end.
+  std::optional<bool> step(LocalMinute now);
+
+ private:
+  struct Times {
+    unsigned days;  // weekdayBits()
+    int on, off;    // minutes after midnight
+  };
+  std::vector<Times> times_;
+  std::optional<bool> last_;
+  LocalMinute latest_ = 0;  // latest time of a call
+};
+
+}  // namespace merlin::pjlink

@@ -1,0 +1,155 @@
+// EmulatedProjector: a projector that speaks PJLink, with its warm-up and cool-down, as bytes in
+// and bytes out; and ProjectorServer, one at a TCP port that behaves as a test asks.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <thread>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/unique_fd.h"
+#include "drivers/pjlink/digest.h"
+
+namespace merlin::test {
+
+// Thread-bound.
+class EmulatedProjector {
+ public:
+  explicit EmulatedProjector(std::string password = {}) : password_(std::move(password)) {}
+
+  Duration warm_up = std::chrono::seconds(30), cool_down = std::chrono::seconds(90);
+  std::string refusal;  // "ERR3": the answer to every switching; empty: it obeys
+  std::string log;      // each switching that it was sent, "1" or "0"
+  std::string errors = "000000", lamps = "1234 1", name = "Epsilon";
+  std::string inputs;  // each input that was selected
+
+  // The first bytes of a connection.
+  std::string greet() {
+    authenticated_ = password_.empty();
+    return authenticated_ ? "PJLINK 0\r" : "PJLINK 1 498e4a67\r";
+  }
+
+  // The answer to one line, without its end.
+  std::string answer(std::string line, Timestamp now) {
+    if (!authenticated_) {
+      const std::string digest = pjlink::md5Hex("498e4a67" + password_);
+      if (!line.starts_with(digest)) return "PJLINK ERRA\r";
+      authenticated_ = true;
+      line.erase(0, digest.size());
+    }
+    if (line == "%1POWR ?") return "%1POWR=" + std::string(1, power(now)) + "\r";
+    if (line == "%1POWR 1" || line == "%1POWR 0") return "%1POWR=" + turn(line.back(), now) + "\r";
+    if (line == "%1ERST ?") return "%1ERST=" + errors + "\r";
+    if (line == "%1LAMP ?") return "%1LAMP=" + lamps + "\r";
+    if (line == "%1NAME ?") return "%1NAME=" + name + "\r";
+    if (line.starts_with("%1INPT ")) {
+      inputs += line.substr(7) + " ";
+      return "%1INPT=OK\r";
+    }
+    return line.substr(0, 6) + "=ERR1\r";
+  }
+
+  // '0' off, '1' on, '2' cooling, '3' warming.
+  char power(Timestamp now) {
+    if (now >= phase_until_ && power_ == '3') power_ = '1';
+    if (now >= phase_until_ && power_ == '2') power_ = '0';
+    return power_;
+  }
+
+ private:
+  std::string turn(char to, Timestamp now) {
+    log += to;
+    if (!refusal.empty()) return refusal;
+    const char is = power(now);
+    if (is == '2' || is == '3') return "ERR3";
+    if (is == to) return "OK";
+    power_ = to == '1' ? '3' : '2';
+    phase_until_ = now + (to == '1' ? warm_up : cool_down);
+    return "OK";
+  }
+
+  std::string password_;
+  bool authenticated_ = false;
+  char power_ = '0';
+  Timestamp phase_until_{};
+};
+
+// At 127.0.0.1, a port of its own; serves one connection after another.
+class ProjectorServer {
+ public:
+  enum Manner {
+    kPolite,
+    kSilent,     // says nothing, not even the greeting
+    kHalf,       // closes in the middle of its first answer
+    kJunk,       // sends bytes without end
+    kOneAnswer,  // closes after each answer
+    kDripping,   // sends a byte of a greeting that never ends each time it is read
+  };
+
+  explicit ProjectorServer(std::string password = {}) : projector(std::move(password)) {
+    listener_.reset(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    auto* const generic = reinterpret_cast<sockaddr*>(&address);
+    if (::bind(listener_.get(), generic, size) != 0 || ::listen(listener_.get(), 8) != 0) return;
+    ::getsockname(listener_.get(), generic, &size);
+    port = std::to_string(ntohs(address.sin_port));
+    thread_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
+  }
+
+  std::string port;
+  std::atomic<Manner> manner{kPolite};
+  std::atomic<int> connections{0};
+  EmulatedProjector projector;  // touched by its thread alone, except before the first connection
+
+ private:
+  void serve(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      if (!isReady(listener_)) continue;
+      const UniqueFd client(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
+      ++connections;
+      if (client.valid()) converse(stop, client);
+    }
+  }
+
+  void converse(const std::stop_token& stop, const UniqueFd& client) {
+    if (manner != kSilent && manner != kJunk && manner != kDripping) say(client, projector.greet());
+    for (std::string line; !stop.stop_requested();) {
+      if (manner == kJunk && !say(client, std::string(4096, 'x'))) return;
+      if (manner == kDripping && !say(client, std::string(1, 'P'))) return;
+      char byte = 0;
+      if (!isReady(client)) continue;
+      if (::recv(client.get(), &byte, 1, 0) != 1) return;
+      if (byte != '\r') {
+        line += byte;
+        continue;
+      }
+      const std::string answer = projector.answer(line, clock_.now());
+      line.clear();
+      if (manner == kHalf) return (void)say(client, answer.substr(0, 4));
+      say(client, answer);
+      if (manner == kOneAnswer) return;
+    }
+  }
+
+  static bool isReady(const UniqueFd& fd) {
+    pollfd item{fd.get(), POLLIN, 0};
+    return ::poll(&item, 1, 20) == 1;
+  }
+  static bool say(const UniqueFd& fd, const std::string& text) {
+    return ::send(fd.get(), text.data(), text.size(), MSG_NOSIGNAL) > 0;
+  }
+
+  SystemClock clock_;
+  UniqueFd listener_;
+  std::jthread thread_;
+};
+
+}  // namespace merlin::test
