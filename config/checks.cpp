@@ -71,12 +71,28 @@ void checkInput(const InputSettings& in, LoadedSettings& loaded) {
   }
 }
 
+constexpr const char* kProjectorsNeeded =
+    "projectors: /devices/projectors is empty, and /devices/gpio has no chip with a "
+    "projector_line";
+
+bool hasProjectors(const DevicesSettings& d) {
+  return !d.projectors.empty() || (!d.gpio.chip.empty() && d.gpio.projector_line >= 0);
+}
+
+void checkProjectors(const DevicesSettings& d, LoadedSettings& loaded) {
+  addFaults(validate(d.projectors), "/devices/projectors", loaded);
+  addFaults(validate(d.projector_schedule), "/devices/projector_schedule", loaded);
+  if (!d.projector_schedule.empty() && !hasProjectors(d))
+    loaded.addFinding("/devices/projector_schedule", fmt::format("needs {}", kProjectorsNeeded));
+}
+
 // Finds bindings whose action could never have an effect. Walls on other machines, which receive
 // actions through /serve/samples_endpoint, may have the folder or the models that this wall lacks.
 void checkBindings(const Settings& s, LoadedSettings& loaded) {
   addFaults(validate(s.devices.bindings), "/devices/bindings", loaded);
   const bool other_walls = !s.serve.samples_endpoint.empty();
   const bool lamp = !s.devices.gpio.chip.empty() && s.devices.gpio.lamp_line >= 0;
+  const bool projectors = hasProjectors(s.devices);
   for (std::size_t i = 0; i < s.devices.bindings.size(); ++i) {
     const std::string& action = s.devices.bindings[i].action;
     const std::string at = fmt::format("/devices/bindings/{}/action", i);
@@ -91,7 +107,10 @@ void checkBindings(const Settings& s, LoadedSettings& loaded) {
                         fmt::format("is {}, which needs a lamp: /devices/gpio has no chip with a "
                                     "lamp_line",
                                     action));
-    else if (command && command->role == CommandOf::kPanel && s.devices.gpio.chip.empty())
+    else if (action.starts_with("projector_")) {
+      if (!projectors)
+        loaded.addFinding(at, fmt::format("is {}, which needs {}", action, kProjectorsNeeded));
+    } else if (command && command->role == CommandOf::kPanel && s.devices.gpio.chip.empty())
       loaded.addFinding(
           at, fmt::format("is {}, which needs the panel: /devices/gpio names no chip", action));
   }
@@ -179,6 +198,7 @@ void checkTogether(LoadedSettings& loaded) {
   addFaults(validate(d.glove, d.glove_line), "/devices/glove", loaded);
   addFaults(validate(d.ball), "/devices/ball", loaded);
   addFaults(validate(d.gpio), "/devices/gpio", loaded);
+  checkProjectors(d, loaded);
   addFaults(validate(s.serve), "/serve", loaded);
   addFaults(validate(s.page), "/page", loaded);
   checkInput(s.wall.input, loaded);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "config/describe_page.h"
+#include "config/describe_projectors.h"
 #include "config/describe_room.h"
 #include "config/describe_stereo.h"
 #include "config/settings.h"
@@ -676,6 +677,7 @@ void describe(Settings& s, SettingsVisitor& v) {
     });
     v.group("gpio", "The wall's control panel on a GPIO chip.",
             [&] { describeGpio(s.devices.gpio, v); });
+    describeProjectors(s.devices, v);
     v.path("postures", s.devices.postures,
            "File of the neural network that recognises postures, in JSON. Empty: no posture is "
            "recognised.");

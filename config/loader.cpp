@@ -56,6 +56,21 @@ class Loader final : public SettingsVisitor {
   void text(const char* key, std::string& value, const char*) override {
     if (const JsonNode* node = take(key, JsonNode::Kind::kString, "a string")) value = node->text;
   }
+  void texts(const char* key, std::vector<std::string>& values, const char*) override {
+    const JsonNode* node = take(key, JsonNode::Kind::kArray, "a list of strings");
+    if (!node) return;
+    std::vector<std::string> read;
+    for (std::size_t i = 0; i < node->items.size(); ++i) {
+      const JsonNode& item = node->items[i];
+      const std::string at = fmt::format("{}/{}", key, i);
+      lines_[pointer(at)] = item.line;
+      if (item.kind == JsonNode::Kind::kString)
+        read.push_back(item.text);
+      else
+        addWrongKind(item, at, "a string");
+    }
+    if (read.size() == node->items.size()) values = std::move(read);
+  }
   void path(const char* key, std::string& value, const char*) override {
     const JsonNode* node = take(key, JsonNode::Kind::kString, "a file name");
     if (!node) return;

@@ -11,6 +11,7 @@
 #include "drivers/fastrak/settings.h"
 #include "drivers/gpio/settings.h"
 #include "drivers/hand/settings.h"
+#include "drivers/pjlink/settings.h"
 #include "drivers/port/port_address.h"
 #include "drivers/spaceball/settings.h"
 #include "nn/settings.h"
@@ -33,6 +34,8 @@ struct DevicesSettings {
   SpaceballSettings ball;
   HandSettings hand;
   GpioSettings gpio;
+  std::vector<PjlinkSettings> projectors;
+  std::vector<SwitchingTimes> projector_schedule;  // also of those at gpio.projector_line
   std::string postures;  // file of the posture network; empty: no posture is recognised
   nn::HoldSettings posture_hold;
   std::vector<Binding> bindings = defaultBindings();

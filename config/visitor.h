@@ -26,6 +26,8 @@ class SettingsVisitor {
   virtual void integer(const char* key, int& value, Range range, const char* help) = 0;
   virtual void flag(const char* key, bool& value, const char* help) = 0;
   virtual void text(const char* key, std::string& value, const char* help) = 0;
+  // A list of any number of texts.
+  virtual void texts(const char* key, std::vector<std::string>& values, const char* help) = 0;
   // A file name, relative to the folder of the configuration.
   virtual void path(const char* key, std::string& value, const char* help) = 0;
   // One of `names`; `value` is its index.

@@ -29,6 +29,9 @@ class TextWriter final : public SettingsVisitor {
   void integer(const char* key, int& value, Range, const char*) override { (*at_)[key] = value; }
   void flag(const char* key, bool& value, const char*) override { (*at_)[key] = value; }
   void text(const char* key, std::string& value, const char*) override { (*at_)[key] = value; }
+  void texts(const char* key, std::vector<std::string>& values, const char*) override {
+    (*at_)[key] = values;
+  }
   void path(const char* key, std::string& value, const char*) override { (*at_)[key] = value; }
   void choice(const char* key, int& value, std::span<const char* const> names,
               const char*) override {
@@ -87,6 +90,12 @@ class SchemaWriter final : public SettingsVisitor {
   }
   void text(const char* key, std::string& value, const char* help) override {
     put(key, {{"type", "string"}, {"default", value}, {"description", help}});
+  }
+  void texts(const char* key, std::vector<std::string>& values, const char* help) override {
+    put(key, {{"type", "array"},
+              {"items", {{"type", "string"}}},
+              {"default", values},
+              {"description", help}});
   }
   void path(const char* key, std::string& value, const char* help) override {
     text(key, value, help);

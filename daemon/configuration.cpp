@@ -145,6 +145,7 @@ Configuration readConfiguration(const std::string& file, const DaemonOptions& op
   if (options.page) checkPage(loaded);
   if (options.devices) {
     devices::checkPostures(loaded);
+    devices::checkPasswords(loaded);
     if (!options.emulate) devices::checkPorts(loaded);
     checkSamples(loaded);
   }

@@ -218,6 +218,7 @@ void Daemon::housekeeping() {
   if (wall_) tendWall(now);
   if (remote_devices_) remote_devices_->writeHeartbeat(now);
   if (devices_) executeActions();
+  if (devices_ && devices_->projectors()) devices_->projectors()->tend();
   servers_->tend(now);
   if (emulators_) {
     for (const std::string& device : emulators_->takeEnded()) {

@@ -125,6 +125,16 @@ Answer flight(const Parts& p) {
   return status::textList(*files);
 }
 
+Answer projectors(const Parts& p, bool on) {
+  if (!p.devices->projectors()) {
+    return lacks(
+        "has no projectors: /devices/projectors is empty, and /devices/gpio has no chip with a "
+        "projector_line");
+  }
+  const auto switched = p.devices->projectors()->switchAll(on);
+  return switched ? done() : Answer(switched.error());
+}
+
 Answer ofWall(const Parts& p, std::string_view name, const std::string& argument) {
   if (!p.wall) return lacks("does not draw a wall");
   if (name == "reset_view") return request(p, wall::WallLoop::kResetView);
@@ -148,6 +158,8 @@ Answer ofDevices(const Parts& p, const CommandInfo& command) {
   if (!p.devices) return lacks("has no devices");
   if (command.name == "flight") return flight(p);
   if (command.role != CommandOf::kPanel) return lacks("does not know the command");
+  if (command.name == "projector_on") return projectors(p, true);
+  if (command.name == "projector_off") return projectors(p, false);
   if (!p.devices->panel()) return lacks("has no panel: /devices/gpio names no chip");
   const auto executed = p.devices->panel()->execute(std::string(command.name));
   return executed ? done() : Answer(executed.error());

@@ -9,6 +9,7 @@
 #include "daemon/serve/spnav_server.h"
 #include "daemon/serve/vrpn_server.h"
 #include "daemon/status/documents.h"
+#include "daemon/status/projectors.h"
 
 namespace merlin {
 namespace {
@@ -47,6 +48,28 @@ std::optional<status::RendererState> rendererState(const wall::WallRole& wall) {
                                report->asynchronous ? "asynchronous" : "direct",
                                report->corrects ? "gpu" : "cpu",
                                report->correction_fault};
+}
+
+status::ProjectorStatus statusOf(const pjlink::ProjectorState& s, const char* kind) {
+  status::ProjectorStatus status;
+  status.name = s.name;
+  status.kind = kind;
+  status.power = pjlink::powerName(s.power);
+  status.wanted = !s.wanted ? "" : *s.wanted ? "on" : "off";
+  status.health = pjlink::healthName(s.health);
+  status.reason = s.reason;
+  status.address = s.address;
+  status.identity = s.identity;
+  status.lamp_hours = s.lamp_hours;
+  return status;
+}
+
+std::vector<status::ProjectorStatus> projectorStatus(devices::DevicesRole& devices) {
+  std::vector<status::ProjectorStatus> all;
+  if (const auto panel = devices.panelProjectors()) all.push_back(statusOf(*panel, "gpio"));
+  if (!devices.projectors()) return all;
+  for (const auto& state : devices.projectors()->states()) all.push_back(statusOf(state, "pjlink"));
+  return all;
 }
 
 }  // namespace
@@ -96,8 +119,9 @@ Result<Ok> RoleServers::startDevices() {
   const shm::DeviceSlots& devices = parts_.devices->slots();
   status::StatusServerSettings s;
   const auto statusNow = [this, &devices] {
-    return parts_.services.addTo(
-        status::devicesStatus(devices, clock_.now(), servers_.health("devices")));
+    return parts_.services.addTo(status::addProjectors(
+        status::devicesStatus(devices, clock_.now(), servers_.health("devices")),
+        projectorStatus(*parts_.devices)));
   };
   s.publications = {
       {"status", kOnceASecond, statusNow},
@@ -158,6 +182,8 @@ void RoleServers::addServiceEvents(std::vector<std::string>& documents) {
 std::vector<std::string> RoleServers::deviceEvents(status::HealthEvents& health) {
   std::vector<std::string> documents;
   addEvents(documents, "device", health.take(clock_.now()));
+  if (devices::Projectors* const projectors = parts_.devices->projectors())
+    addEvents(documents, "projector", projectors->takeEvents());
   addEvents(documents, "flight", parts_.devices->flight().check());
   addEvents(documents, "server", servers_.events("devices"));
   addServiceEvents(documents);

@@ -9,6 +9,7 @@
 #include "daemon/base/did_you_mean.h"
 #include "drivers/io/open_stream.h"
 #include "drivers/io/transcript.h"
+#include "drivers/pjlink/password.h"
 #include "nn/io/network_file.h"
 
 namespace merlin::devices {
@@ -61,6 +62,16 @@ void checkPorts(LoadedSettings& loaded) {
       const auto transcript = io::readTranscript(address->path);
       if (!transcript) loaded.addFinding(at, "cannot be used: " + transcript.error().what);
     }
+  }
+}
+
+void checkPasswords(LoadedSettings& loaded) {
+  const auto& projectors = loaded.settings.devices.projectors;
+  for (std::size_t i = 0; i < projectors.size(); ++i) {
+    const auto password = pjlink::readPassword(projectors[i].password_file);
+    if (password) continue;
+    loaded.addFinding(fmt::format("/devices/projectors/{}/password_file", i),
+                      "cannot be used: " + password.error().what);
   }
 }
 

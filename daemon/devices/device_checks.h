@@ -15,4 +15,7 @@ void checkPostures(LoadedSettings& loaded);
 // cannot be played. A missing device is not a fault: it may be connected later.
 void checkPorts(LoadedSettings& loaded);
 
+// Adds a finding for each projector whose password cannot be read from its file.
+void checkPasswords(LoadedSettings& loaded);
+
 }  // namespace merlin::devices

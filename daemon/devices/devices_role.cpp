@@ -14,6 +14,7 @@
 #include "drivers/io/low_latency.h"
 #include "drivers/io/open_stream.h"
 #include "drivers/io/recording_stream.h"
+#include "drivers/io/tcp_stream.h"
 #include "nn/io/network_file.h"
 
 namespace merlin::devices {
@@ -147,6 +148,7 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
   std::unique_ptr<DevicesRole> role(new DevicesRole({*std::move(segment), *std::move(slots)},
                                                     settings, generation, watch, clock));
   role->addPanel(settings.devices);
+  role->addProjectors(settings.devices);
   role->cpu_latency_us_ = settings.devices.cpu_latency_us;
   role->segment_->tracker_frames.publish(framesOf(settings.devices.tracker));
   const DevicesSettings& d = settings.devices;
@@ -234,6 +236,34 @@ void DevicesRole::addPanel(const DevicesSettings& devices) {
       [this] { panel_actions_->press(toNanoseconds(clock_.now())); });
 }
 
+void DevicesRole::addProjectors(const DevicesSettings& devices) {
+  panel_switches_projectors_ = panel_ && devices.gpio.projector_line >= 0;
+  if (!panel_switches_projectors_ && devices.projectors.empty()) return;
+  Projectors::Parts parts{nullptr,
+                          [](const TcpAddress& to) { return io::openTcp(to.host, to.port); },
+                          &localMinute, clock_};
+  if (panel_switches_projectors_)
+    parts.panel = [this](const std::string& command) { return panel_->execute(command); };
+  projectors_ = std::make_unique<Projectors>(devices, std::move(parts));
+}
+
+std::optional<pjlink::ProjectorState> DevicesRole::panelProjectors() const {
+  if (!panel_switches_projectors_) return std::nullopt;
+  constexpr pjlink::Power kPowers[] = {pjlink::Power::kOff, pjlink::Power::kWarming,
+                                       pjlink::Power::kOn, pjlink::Power::kCooling};
+  pjlink::ProjectorState state;
+  state.name = "panel";
+  const auto sample = segment_->gpio.newest();
+  const auto health = segment_->gpio_health.read();
+  if (!health) return state;
+  const bool works = health->state == HealthState::kOk;
+  state.health = works ? pjlink::Health::kOk : pjlink::Health::kUnreachable;
+  state.reason = health->reason;
+  state.address = health->port;
+  if (works && sample && sample->power < std::size(kPowers)) state.power = kPowers[sample->power];
+  return state;
+}
+
 void DevicesRole::start() {
   if (cpu_latency_us_ >= 0) {
     if (auto limit = io::limitCpuLatency(cpu_latency_us_))
@@ -246,6 +276,7 @@ void DevicesRole::start() {
       panel_->run(stop, [&progress] { progress.step(); });
     });
   }
+  if (projectors_) projectors_->start(watch_, threads_);
   for (const auto& line : lines_) {
     threads_.emplace_back(watch_, line->name,
                           [&line = *line](const std::stop_token& stop, Progress& progress) {

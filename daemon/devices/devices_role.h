@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "daemon/devices/flight_recorder.h"
 #include "daemon/devices/hand_sink.h"
 #include "daemon/devices/posture_sink.h"
+#include "daemon/devices/projectors.h"
 #include "daemon/shm/segment.h"
 #include "daemon/shm/shm_sink.h"
 #include "drivers/gpio/panel_loop.h"
@@ -47,6 +49,11 @@ class DevicesRole {
   const shm::DeviceSlots& slots() const { return slots_; }
   // Null if no panel is configured. Thread-safe.
   gpio::PanelLoop* panel() { return panel_.get(); }
+  // Null if no projector is configured, at the panel or by PJLink. Thread-safe, as it says.
+  Projectors* projectors() { return projectors_.get(); }
+  // The projectors at the panel's line, as a projector named "panel"; nothing if there are none.
+  // Thread-safe.
+  std::optional<pjlink::ProjectorState> panelProjectors() const;
   // The flight recorder of all devices that have a port. For the status server's thread.
   FlightRecorder& flight() { return flight_; }
 
@@ -58,6 +65,7 @@ class DevicesRole {
   DevicesRole(Memory memory, const Settings& settings, std::uint64_t generation, ThreadWatch& watch,
               Clock& clock);
   void addPanel(const DevicesSettings& settings);
+  void addProjectors(const DevicesSettings& settings);
   Result<Ok> add(const LineSettings& line, SampleKind kind, shm::DeviceIndex index,
                  const Settings& settings);
   struct Sinks {
@@ -76,6 +84,8 @@ class DevicesRole {
   std::unique_ptr<HandSink> hand_sink_;
   std::unique_ptr<actions::ActionWriter> panel_actions_;
   std::unique_ptr<gpio::PanelLoop> panel_;
+  bool panel_switches_projectors_ = false;
+  std::unique_ptr<Projectors> projectors_;  // calls panel_
   std::vector<std::unique_ptr<shm::ShmHealthSink>> health_;
   std::vector<std::unique_ptr<actions::ActionSink>> action_sinks_;
   std::uint64_t generation_;

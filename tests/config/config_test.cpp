@@ -100,6 +100,27 @@ TEST(Config, ActionsThatNothingCouldDoAreFound) {
             std::string::npos);
 }
 
+TEST(Config, ProjectorsAndTheirScheduleAreChecked) {
+  const auto loaded = loadSettings(R"({"devices": {
+      "projectors": [{"name": "left", "address": "10.0.0.7", "password_file": "p", "warm_up_s": 60}],
+      "projector_schedule": [{"days": ["mon", "sun"], "on": "09:00", "off": "17:30"}]}})",
+                                   "/etc/merlin");
+  ASSERT_EQ(loaded.verdict(), Verdict::kValid) << all(loaded);
+  EXPECT_EQ(loaded.settings.devices.projectors[0].password_file, "/etc/merlin/p");
+  EXPECT_EQ(loaded.settings.devices.projector_schedule[0].days,
+            (std::vector<std::string>{"mon", "sun"}));
+  EXPECT_EQ(all(loadSettings(R"({"devices": {
+      "projector_schedule": [{"days": ["monday"], "on": "09:00", "off": "17:30"}]}})",
+                             "")),
+            "f.json:2: /devices/projector_schedule/0/days/0 is \"monday\"; allowed are mon, tue, "
+            "wed, thu, fri, sat, sun\n"
+            "f.json:2: /devices/projector_schedule needs projectors: /devices/projectors is empty, "
+            "and /devices/gpio has no chip with a projector_line\n");
+  EXPECT_EQ(bindingsAre(R"({"input": "posture.a", "action": "projector_on"})"),
+            "f.json:1: /devices/bindings/0/action is projector_on, which needs projectors: "
+            "/devices/projectors is empty, and /devices/gpio has no chip with a projector_line\n");
+}
+
 TEST(Config, AContentIsOneFileAndItsNameIsItsOwn) {
   const auto contents = [](const std::string& list) {
     return all(loadSettings("{\"wall\": {\"contents\": [" + list + "]}}", ""));

@@ -157,6 +157,23 @@ std::string serverLines(const Json& s) {
   return text;
 }
 
+// A line for each projector.
+std::string projectorLines(const Json& s) {
+  std::string text;
+  if (!s.contains("projectors")) return text;
+  for (const auto& [name, p] : s["projectors"].items()) {
+    const std::string reason = p.value("reason", ""), wanted = p.value("wanted", "");
+    std::string detail = p.value("identity", "");
+    for (const int hours : p.value("lamp_hours", std::vector<int>{}))
+      detail += fmt::format("{}lamp {} h", detail.empty() ? "" : ", ", hours);
+    if (!wanted.empty()) detail += fmt::format("{}to be {}", detail.empty() ? "" : ", ", wanted);
+    if (!reason.empty()) detail += (detail.empty() ? "" : "; ") + reason;
+    text += fmt::format("projector {:13} {:8} {:12} {}\n", name, p.value("power", ""),
+                        p.value("health", ""), detail);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string statusTable(const Json& s) {
@@ -184,7 +201,7 @@ std::string statusTable(const Json& s) {
   for (const auto& [name, device] : s["devices"].items()) {
     text += fmt::format("{:8} {:8} {}\n", name, device.value("health", ""), deviceDetail(device));
   }
-  return text + serverLines(s);
+  return text + projectorLines(s) + serverLines(s);
 }
 
 std::string statusLine(const Json& s) {

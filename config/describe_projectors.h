@@ -1,0 +1,12 @@
+// The part of the description of the settings that is /devices/projectors and
+// /devices/projector_schedule.
+#pragma once
+
+#include "config/settings.h"
+#include "config/visitor.h"
+
+namespace merlin {
+
+void describeProjectors(DevicesSettings& devices, SettingsVisitor& visitor);
+
+}  // namespace merlin

@@ -1,0 +1,132 @@
+#include "daemon/devices/projectors.h"
+
+#include <ctime>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace merlin::devices {
+namespace {
+
+constexpr Duration kPanelRetry = std::chrono::seconds(1);
+
+}  // namespace
+
+pjlink::LocalMinute localMinute() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  ::localtime_r(&now, &local);
+  return ::timegm(&local) / 60;
+}
+
+Projectors::Projectors(const DevicesSettings& settings, Parts parts)
+    : parts_(std::move(parts)),
+      schedule_(settings.projector_schedule),
+      panel_due_(parts_.clock.now()) {
+  ::tzset();  // localtime_r() need not
+  for (const PjlinkSettings& projector : settings.projectors) add(projector);
+}
+
+Projectors::Entry& Projectors::add(const PjlinkSettings& settings) {
+  entries_.push_back(std::make_unique<Entry>());
+  Entry& entry = *entries_.back();
+  entry.name = settings.name;
+  const auto connect =
+      [this, &entry,
+       address = projectorAddress(settings.address)]() -> Result<std::unique_ptr<ByteStream>> {
+    if (!address) return Error{Errc::kInvalidArgument, "the address is not valid"};
+    if (!entry.progress) return parts_.connect(*address);
+    const Progress::Pause pause(*entry.progress);  // a host name look-up may take long
+    return parts_.connect(*address);
+  };
+  entry.loop = std::make_unique<pjlink::ProjectorLoop>(settings, connect, parts_.clock);
+  return entry;
+}
+
+void Projectors::start(ThreadWatch& watch, std::vector<WatchedThread>& threads) {
+  for (const auto& entry : entries_) {
+    threads.emplace_back(watch, "projector " + entry->name,
+                         [&entry = *entry](const std::stop_token& stop, Progress& progress) {
+                           entry.progress = &progress;
+                           entry.loop->run(stop, [&progress] { progress.step(); });
+                         });
+  }
+}
+
+Result<Ok> Projectors::switchPanel(bool on) {
+  if (!parts_.panel) return Ok{};
+  return parts_.panel(on ? "projector_on" : "projector_off");
+}
+
+Result<Ok> Projectors::switchAll(bool on) {
+  std::string refused;
+  Errc code = Errc::kIo;
+  const auto add = [&](const std::string& name, const std::string& why, const char* until) {
+    refused += fmt::format("{}{}: {}; it is switched {} {}", refused.empty() ? "" : "; ", name, why,
+                           on ? "on" : "off", until);
+  };
+  {
+    const std::lock_guard lock(mutex_);
+    panel_wanted_.reset();
+    if (const auto done = switchPanel(on); !done) {
+      code = done.error().code;
+      panel_wanted_ = on;
+      add("panel", done.error().what, "afterwards");
+    }
+  }
+  for (const auto& entry : entries_) {
+    const pjlink::ProjectorState state = entry->loop->state();
+    entry->loop->want(on);
+    if (!state.answers && state.health != pjlink::Health::kOpening)
+      add(entry->name, state.reason, "when it answers");
+  }
+  if (refused.empty()) return Ok{};
+  return Error{code, refused};
+}
+
+void Projectors::tend() {
+  const auto wanted = schedule_.step(parts_.local_minute());
+  const std::lock_guard lock(mutex_);
+  if (wanted) {
+    notices_.push_back(
+        fmt::format("projectors: switched {} by the schedule", *wanted ? "on" : "off"));
+    for (const auto& entry : entries_) entry->loop->want(*wanted);
+    panel_wanted_ = wanted;
+    panel_due_ = parts_.clock.now();
+  }
+  if (!panel_wanted_ || parts_.clock.now() < panel_due_) return;
+  panel_due_ = parts_.clock.now() + kPanelRetry;
+  if (switchPanel(*panel_wanted_)) panel_wanted_.reset();
+}
+
+void Projectors::round() {
+  for (const auto& entry : entries_) entry->loop->round();
+}
+
+std::vector<pjlink::ProjectorState> Projectors::states() const {
+  std::vector<pjlink::ProjectorState> states;
+  for (const auto& entry : entries_) states.push_back(entry->loop->state());
+  return states;
+}
+
+std::vector<std::string> Projectors::takeEvents() {
+  std::vector<std::string> events;
+  {
+    const std::lock_guard lock(mutex_);
+    events = std::exchange(notices_, {});
+  }
+  for (const auto& entry : entries_) {
+    const pjlink::ProjectorState state = entry->loop->state();
+    if (state.health == pjlink::Health::kOpening) continue;
+    std::string sentence =
+        fmt::format("projector {}: {}, {}{}", entry->name, pjlink::powerName(state.power),
+                    pjlink::healthName(state.health),
+                    state.reason.empty() ? "" : fmt::format(" ({})", state.reason));
+    if (sentence == entry->last) continue;
+    entry->last = sentence;
+    events.push_back(std::move(sentence));
+  }
+  return events;
+}
+
+}  // namespace merlin::devices

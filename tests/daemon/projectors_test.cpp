@@ -1,0 +1,261 @@
+// All projectors together: a day on a virtual clock with the schedule, a person's commands,
+// cool-down and a projector that is gone for a while; and what commands and status say.
+#include "daemon/devices/projectors.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "daemon/status/projectors.h"
+#include "drivers/gpio/panel.h"
+#include "tests/support/emulated_projector.h"
+#include "tests/support/fake_clock.h"
+
+namespace merlin::devices {
+namespace {
+
+using std::chrono::seconds;
+using test::EmulatedProjector;
+
+// The connection to an emulated projector, on the virtual clock.
+class EmulatedConnection final : public ByteStream {
+ public:
+  EmulatedConnection(EmulatedProjector& device, test::FakeClock& clock)
+      : device_(device), clock_(clock), input_(device.greet()) {}
+
+  Result<std::size_t> read(std::span<std::byte> buffer, Duration timeout) override {
+    if (input_.empty()) {
+      clock_.advance(timeout);
+      return Error{Errc::kTimeout, "time-out"};
+    }
+    const std::size_t n = std::min(buffer.size(), input_.size());
+    std::transform(input_.begin(), input_.begin() + static_cast<std::ptrdiff_t>(n), buffer.begin(),
+                   [](char c) { return static_cast<std::byte>(c); });
+    input_.erase(0, n);
+    return n;
+  }
+  Result<std::size_t> write(std::span<const std::byte> bytes, Duration) override {
+    std::string line;
+    for (const std::byte b : bytes) line += static_cast<char>(b);
+    line.pop_back();
+    input_ += device_.answer(line, clock_.now());
+    return bytes.size();
+  }
+  void interrupt() noexcept override {}
+
+ private:
+  EmulatedProjector& device_;
+  test::FakeClock& clock_;
+  std::string input_;
+};
+
+DevicesSettings settingsOf(const std::vector<SwitchingTimes>& schedule) {
+  DevicesSettings settings;
+  settings.projectors = {{.name = "left", .address = "10.0.0.7"},
+                         {.name = "right", .address = "10.0.0.8"}};
+  settings.projector_schedule = schedule;
+  return settings;
+}
+
+constexpr pjlink::LocalMinute kMonday = 20605 * 24 * 60;  // 2026-06-01 00:00
+
+// A wall with projectors at the panel's line and two that speak PJLink; its clock starts on Monday
+// at `start_min`.
+struct Wall {
+  explicit Wall(int start_min, const std::vector<SwitchingTimes>& schedule =
+                                   {{{"mon", "tue", "wed", "thu", "fri"}, "09:00", "17:00"}})
+      : first_min(kMonday + start_min), projectors(settingsOf(schedule), parts()) {}
+
+  Projectors::Parts parts() {
+    return {
+        [this](const std::string& command) -> Result<Ok> {
+          if (chip_gone) return Error{Errc::kIo, "gpiochip0: No such device"};
+          return panel.execute(command, clock.now());
+        },
+        [this](const TcpAddress& to) -> Result<std::unique_ptr<ByteStream>> {
+          EmulatedProjector& device = to.host == "10.0.0.7" ? left : right;
+          if (&device == &right && right_gone)
+            return Error{Errc::kTimeout, "tcp://10.0.0.8:4352: Connection timed out"};
+          return std::unique_ptr<ByteStream>(std::make_unique<EmulatedConnection>(device, clock));
+        },
+        [this] { return minute(); }, clock};
+  }
+  pjlink::LocalMinute minute() const {
+    return first_min +
+           std::chrono::duration_cast<std::chrono::minutes>(clock.now() - begin).count();
+  }
+  std::string time() const {
+    const auto s = std::chrono::duration_cast<seconds>(clock.now() - begin).count() +
+                   (first_min - kMonday) * 60;
+    return fmt::format("{:02}:{:02}:{:02}", s / 3600 % 24, s / 60 % 60, s % 60);
+  }
+  std::string powers() {
+    constexpr const char* kNames[] = {"off", "warming", "on", "cooling"};
+    std::string text = kNames[panel.sample(clock.now()).power];
+    for (const auto& s : projectors.states())
+      text += fmt::format(" {}", pjlink::powerName(s.power));
+    return text;
+  }
+  // Until the time of the day: each second everything that is due, and a row for each change.
+  void until(int hour, int minute_of_hour, int second = 0) {
+    const auto end = begin + seconds(hour * 3600 + minute_of_hour * 60 + second) -
+                     std::chrono::minutes(first_min - kMonday);
+    while (clock.now() < end) {
+      clock.advance(seconds(1));
+      panel.step(false, clock.now());
+      projectors.tend();
+      projectors.round();
+      for (const std::string& event : projectors.takeEvents()) {
+        if (event.starts_with("projectors: ")) table += time() + " " + event + "\n";
+      }
+      if (const std::string now = powers(); now != last) {
+        table += fmt::format("{} {}\n", time(), now);
+        last = now;
+      }
+    }
+  }
+  void command(bool on) {
+    const auto done = projectors.switchAll(on);
+    table += fmt::format("{} projector_{}: {}\n", time(), on ? "on" : "off",
+                         done ? "done" : done.error().what);
+  }
+
+  test::FakeClock clock;
+  Timestamp begin = clock.now();
+  pjlink::LocalMinute first_min;
+  EmulatedProjector left, right;
+  bool right_gone = false, chip_gone = false;
+  gpio::Panel panel{{.chip = "gpiochip0", .projector_line = 0}, clock.now()};
+  Projectors projectors;
+  std::string last, table = "\n";
+};
+
+// Columns after the time: the panel's projectors (30 s to warm up, 90 s to cool down), left and
+// right (the same, by themselves).
+TEST(Projectors, ADayOnAVirtualClock) {
+  Wall w(8 * 60);
+  w.until(8, 30);
+  w.command(true);  // somebody comes early
+  w.until(8, 31);
+  w.command(false);  // and leaves
+  w.until(12, 0);
+  w.command(false);  // a talk, in the dark
+  w.until(12, 0, 30);
+  w.command(true);  // before they have cooled down
+  w.until(16, 0);
+  w.right_gone = true;
+  w.until(16, 30);
+  w.command(true);
+  w.until(17, 10);
+  w.right_gone = false;
+  w.until(20, 0);
+  w.command(true);  // a late visitor
+  w.until(33, 5);   // Tuesday, 09:05
+  EXPECT_EQ(w.table, R"(
+08:00:01 projectors: switched off by the schedule
+08:00:01 off off off
+08:30:00 projector_on: done
+08:30:01 warming off off
+08:30:03 warming warming warming
+08:30:30 on warming warming
+08:30:31 on on on
+08:31:00 projector_off: done
+08:31:01 cooling on on
+08:31:03 cooling cooling cooling
+08:32:30 off cooling cooling
+08:32:31 off off off
+09:00:00 projectors: switched on by the schedule
+09:00:00 warming off off
+09:00:02 warming warming warming
+09:00:30 on on on
+12:00:00 projector_off: done
+12:00:01 cooling on on
+12:00:03 cooling cooling cooling
+12:00:30 projector_on: panel: the projectors cool down: wait 60 s; it is switched on afterwards
+12:01:30 warming cooling cooling
+12:01:31 warming off off
+12:01:33 warming warming warming
+12:02:00 on warming warming
+12:02:01 on on on
+16:00:01 on on unknown
+16:30:00 projector_on: right: tcp://10.0.0.8:4352: Connection timed out; it is switched on when it answers
+17:00:00 projectors: switched off by the schedule
+17:00:00 cooling on unknown
+17:00:02 cooling cooling unknown
+17:01:30 off off unknown
+17:10:05 off off on
+17:10:07 off off cooling
+17:11:35 off off off
+20:00:00 projector_on: done
+20:00:01 warming off off
+20:00:03 warming warming warming
+20:00:30 on warming warming
+20:00:31 on on on
+09:00:00 projectors: switched on by the schedule
+)");
+}
+
+TEST(Projectors, WhatThePanelRefusesTheScheduleIsDoneLater) {
+  Wall w(8 * 60 + 59);
+  w.until(8, 59, 50);
+  w.command(true);
+  w.command(true);
+  w.until(8, 59, 56);
+  w.command(false);  // they cool down for 90 s when the schedule wants them
+  w.until(9, 10);
+  EXPECT_EQ(w.powers(), "on on on");
+}
+
+TEST(Projectors, WhatTheyWereToldWhileTheChipWasGoneIsDoneLater) {
+  Wall w(10 * 60, {});
+  w.chip_gone = true;
+  w.until(10, 1);
+  w.command(true);
+  w.until(10, 2);
+  EXPECT_EQ(w.powers(), "off on on");
+  w.chip_gone = false;
+  w.until(10, 3);
+  EXPECT_EQ(w.powers(), "on on on");
+}
+
+TEST(Projectors, APersonSupersedesWhatTheScheduleStillWants) {
+  Wall w(16 * 60 + 59, {{{"mon"}, "17:00", "18:00"}});
+  w.until(16, 59, 30);
+  w.command(true);
+  w.until(16, 59, 50);
+  w.command(false);
+  w.until(17, 0, 10);  // the schedule waits for the panel to cool down
+  w.command(false);
+  w.until(17, 30);
+  EXPECT_EQ(w.powers(), "off off off");
+}
+
+TEST(Projectors, EventsNameProjectorPowerAndHealth) {
+  Wall w(8 * 60);
+  w.right_gone = true;
+  w.projectors.round();
+  EXPECT_EQ(w.projectors.takeEvents(),
+            (std::vector<std::string>{
+                "projector left: off, ok",
+                "projector right: unknown, unreachable (tcp://10.0.0.8:4352: Connection timed "
+                "out)"}));
+  w.projectors.round();
+  EXPECT_TRUE(w.projectors.takeEvents().empty()) << "nothing has changed";
+}
+
+TEST(Projectors, TheStatusListsThem) {
+  status::ProjectorStatus left;
+  left.name = "left";
+  left.kind = "pjlink";
+  left.power = "on";
+  left.health = "ok";
+  left.lamp_hours = {1200, 7};
+  EXPECT_EQ(status::addProjectors(R"({"role":"devices"})", {left}),
+            R"({"role":"devices","projectors":{"left":{"kind":"pjlink","power":"on","wanted":"",)"
+            R"("health":"ok","reason":"","address":"","identity":"","lamp_hours":[1200,7]}}})");
+  EXPECT_EQ(status::addProjectors(R"({"role":"devices"})", {}), R"({"role":"devices"})");
+}
+
+}  // namespace
+}  // namespace merlin::devices
