@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "config/describe_page.h"
+#include "config/describe_playlist.h"
 #include "config/describe_projectors.h"
 #include "config/describe_room.h"
 #include "config/describe_stereo.h"
@@ -563,6 +564,10 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
                                       "Kind of the picture or the slides. marked: a panorama if "
                                       "it was imported with --panorama, otherwise a plane.");
                             });
+  v.group("playlist",
+          "What the wall shows while nobody touches it: its contents in turn. It ends at the first "
+          "touch, with the content that is shown then, at full brightness.",
+          [&] { describePlaylist(w.playlist, v); });
   v.group(
       "rate",
       "The frame rate, and limits of the number of triangles, which is adapted to keep the rate.",

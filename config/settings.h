@@ -7,6 +7,7 @@
 #include "daemon/actions/settings.h"
 #include "daemon/page/settings.h"
 #include "daemon/serve/settings.h"
+#include "daemon/wall/settings.h"
 #include "drivers/cyberglove/settings.h"
 #include "drivers/fastrak/settings.h"
 #include "drivers/gpio/settings.h"
@@ -68,6 +69,7 @@ struct WallSettings {
   InputSettings input;
   std::string model;                      // an .mrm file, shown first; empty: the first content is
   std::vector<ContentSettings> contents;  // further contents, shown in turn by next_content
+  PlaylistSettings playlist;
   render::governor::GovernorSettings governor;
   render::room::RoomSettings room;     // instead of tiles by hand
   render::tiles::TilesSettings tiles;  // loadSettings() makes them from the room if that is given

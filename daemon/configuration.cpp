@@ -156,6 +156,7 @@ Configuration readConfiguration(const std::string& file, const DaemonOptions& op
     checkStateFile(file, loaded);
     wall::checkRenderer(loaded);
     wall::checkOutputs(loaded);
+    wall::checkPlaylist(loaded);
     read.contents = wall::readContents(loaded);
   }
   loaded.sortFindings();

@@ -113,6 +113,39 @@ Answer alignAction(const Parts& p, std::string_view name) {
   return done();
 }
 
+Answer playlist(const Parts& p, const std::string& argument) {
+  wall::Attendance& attendance = p.wall->attendance();
+  if (argument == "on") {
+    attendance.playlistOn();
+  } else if (argument == "off") {
+    attendance.playlistOff();
+  } else if (argument == "next") {
+    attendance.playlistNext();
+  } else {
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("\"{}\" is not on, off or next", argument.substr(0, 64))};
+  }
+  return done();
+}
+
+// Blank or freeze: on, or off again.
+Answer toggle(const Parts& p, void (wall::Attendance::*what)()) {
+  (p.wall->attendance().*what)();
+  return done();
+}
+
+// An alignment, or a test card, is to be seen.
+Answer seen(const Parts& p, Answer answer) {
+  if (answer) p.wall->attendance().touch();
+  return answer;
+}
+
+Answer testcard(const Parts& p, const std::string& name) {
+  const auto shown = p.wall->aligner().showCard(name);
+  if (!shown) return shown.error();
+  return fmt::format("{{\"after\": {}}}", framesOf(p));
+}
+
 Answer snapshot(const Parts& p) {
   if (!p.snapshots) return lacks("has no folder for snapshots: /wall/snapshots names none");
   p.snapshots->take();
@@ -145,13 +178,13 @@ Answer ofWall(const Parts& p, std::string_view name, const std::string& argument
   if (name == "snapshot") return snapshot(p);
   if (name == "triangles") return triangles(p, argument);
   if (name == "rate") return rate(p, argument);
-  if (name == "align") return p.wall->aligner().run(argument);
-  if (name == "testcard") {
-    const auto shown = p.wall->aligner().showCard(argument);
-    return shown ? fmt::format("{{\"after\": {}}}", framesOf(p)) : Answer(shown.error());
-  }
+  if (name == "align") return seen(p, p.wall->aligner().run(argument));
+  if (name == "testcard") return seen(p, testcard(p, argument));
   if (name == "signal") return signal(p, argument);
-  return alignAction(p, name);
+  if (name == "blank") return toggle(p, &wall::Attendance::toggleBlank);
+  if (name == "freeze") return toggle(p, &wall::Attendance::toggleFreeze);
+  if (name == "playlist") return playlist(p, argument);
+  return seen(p, alignAction(p, name));
 }
 
 Answer ofDevices(const Parts& p, const CommandInfo& command) {

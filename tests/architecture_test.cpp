@@ -85,9 +85,9 @@ const std::map<std::string, Folders> kMayInclude = {
     {"drivers/sample", {"drivers/port"}},
     {"drivers/hand", {"drivers/port"}},
     {"drivers/gpio", {"drivers/port"}},
-    {"drivers/io", {"drivers/port"}},
     // projector, protocol and schedule are pure.
     {"drivers/pjlink", {"drivers/port"}},
+    {"drivers/io", {"drivers/port"}},
     {"drivers/loop", {"drivers/port"}},
     {"drivers/emulate",
      {"drivers/port", "drivers/hand", "drivers/cyberglove", "drivers/fastrak",
@@ -138,12 +138,11 @@ const std::map<std::string, Folders> kMayInclude = {
     {"render/testcard", {"render/frame", "render/out/settings.h", "render/tiles"}},
     {"config",
      {"daemon/json", "daemon/actions/settings.h", "daemon/page/settings.h",
-      "daemon/serve/settings.h", "drivers/port", "drivers/gpio/settings.h",
-      "drivers/hand/settings.h", "drivers/pjlink/settings.h",
-      "drivers/cyberglove/settings.h", "drivers/fastrak/settings.h",
-      "drivers/spaceball/settings.h", "nn/settings.h", "render/frame/settings.h",
-      "render/governor/settings.h", "render/out/settings.h", "render/room",
-      "render/scene/settings.h", "render/stereo", "render/tiles/settings.h"}},
+      "daemon/serve/settings.h", "daemon/wall/settings.h", "drivers/port",
+      "drivers/gpio/settings.h", "drivers/hand/settings.h", "drivers/cyberglove/settings.h",
+      "drivers/fastrak/settings.h", "drivers/spaceball/settings.h", "nn/settings.h",
+      "render/frame/settings.h", "render/governor/settings.h", "render/out/settings.h",
+      "render/room", "render/scene/settings.h", "render/stereo", "render/tiles/settings.h"}},
 };
 
 // The only folders that may include a third-party header.

@@ -41,6 +41,16 @@ inline constexpr CommandInfo kCommands[] = {
      "Show the content of that name, or a model, a pyramid or a folder of pyramids that is not in "
      "the configuration, by its whole path.",
      Bindable::kNo, false},
+    {"blank", CommandOf::kWall, "",
+     "Make all outputs black at once; a second call or the next touch shows the picture again.",
+     Bindable::kOnce, true},
+    {"freeze", CommandOf::kWall, "",
+     "Freeze the picture: nothing moves it. A second call or the next touch ends it.",
+     Bindable::kOnce, true},
+    {"playlist", CommandOf::kWall, "on|off|next",
+     "Begin the playlist at once (on), keep it from beginning by itself (off), or show its next "
+     "content (next).",
+     Bindable::kNo, true},
     {"move", CommandOf::kWall, "X Y Z RX RY RZ",
      "Move what the ball moves, at once: X Y Z times the model's radius to the right, up and "
      "towards "

@@ -26,10 +26,14 @@ struct KeyCommand {
   const char* command;
 };
 constexpr KeyCommand kKeyCommands[] = {
-    {'r', "reset_view"},         {'R', "reset_view"},    {kHome, "reset_view"},
-    {'m', "next_mode"},          {'M', "next_mode"},     {'n', "next_content"},
-    {'N', "next_content"},       {'s', "snapshot"},      {'S', "snapshot"},
-    {kPageDown, "next_content"}, {'t', "next_testcard"}, {'T', "next_testcard"},
+    {'r', "reset_view"},    {'R', "reset_view"},
+    {kHome, "reset_view"},  {'m', "next_mode"},
+    {'M', "next_mode"},     {'n', "next_content"},
+    {'N', "next_content"},  {'s', "snapshot"},
+    {'S', "snapshot"},      {kPageDown, "next_content"},
+    {'t', "next_testcard"}, {'T', "next_testcard"},
+    {'b', "blank"},         {'B', "blank"},
+    {'f', "freeze"},        {'F', "freeze"},
 };
 // Not findCommand(): g++ 12 with sanitizers cannot compare its pointer while it compiles.
 constexpr bool isCommand(std::string_view name) {

@@ -232,6 +232,9 @@ void addInteraction(FieldTable& t) {
   MERLIN_FIELD(t, WallInteraction, at_model_m, "m");
   MERLIN_FIELD(t, WallInteraction, snapshots, "");
   MERLIN_FIELD(t, WallInteraction, content, "");
+  MERLIN_FIELD(t, WallInteraction, shown, "0 blank frozen");
+  MERLIN_FIELD(t, WallInteraction, playlist, "0 waits runs");
+  MERLIN_FIELD(t, WallInteraction, light, "");
 }
 
 void addOutputs(FieldTable& t) {

@@ -172,9 +172,13 @@ struct FrameTrace {
 };
 static_assert(sizeof(TraceStep) == 12 && sizeof(FrameTrace) == 48 + 32 * 12);
 
-// Interaction of people with the wall: pointing, snapshots, contents. Written once per period.
+// Interaction of people with the wall: pointing, snapshots, contents, and what is shown while
+// nobody is there. Written once per period.
 struct WallInteraction {
   enum Pointing : std::uint32_t { kNone = 0, kAtWall = 1, kAtModel = 2 };
+  enum Shown : std::uint32_t { kPicture = 0, kBlank = 1, kFrozen = 2 };
+  // kPlaylistOff: it does not begin by itself; kPlaylistWaiting: it will.
+  enum Playlist : std::uint32_t { kPlaylistOff = 0, kPlaylistWaiting = 1, kPlaylistRunning = 2 };
 
   std::int64_t updated_ns;
   std::uint32_t pointing;
@@ -183,8 +187,11 @@ struct WallInteraction {
   std::uint32_t snapshots;  // snapshots requested since the start
   std::uint32_t content;    // content shown: 0 the model, 1 .. the configuration's contents, then a
                             // file that is not in the configuration
+  std::uint32_t shown;      // Shown
+  std::uint32_t playlist;   // Playlist
+  float light;              // of the picture, as a share of the full light; below 1: dimmed
 };
-static_assert(sizeof(WallInteraction) == 40 && offsetof(WallInteraction, snapshots) == 32);
+static_assert(sizeof(WallInteraction) == 56 && offsetof(WallInteraction, snapshots) == 32);
 
 // One output of the wall, and how it fares.
 struct OutputStats {

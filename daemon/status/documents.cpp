@@ -224,6 +224,16 @@ Json contentJson(const shm::WallSegment& segment, const shm::WallStats& stats,
           {"refused", text(content.refused)}};
 }
 
+const char* shownName(const shm::WallInteraction& interaction) {
+  if (interaction.shown == shm::WallInteraction::kBlank) return "blank";
+  return interaction.shown == shm::WallInteraction::kFrozen ? "frozen" : "picture";
+}
+
+const char* playlistName(const shm::WallInteraction& interaction) {
+  if (interaction.playlist == shm::WallInteraction::kPlaylistRunning) return "running";
+  return interaction.playlist == shm::WallInteraction::kPlaylistWaiting ? "waiting" : "off";
+}
+
 // The actions that have begun at least once; "held": names of those that are held.
 Json actionsJson(const shm::ActionState& state) {
   Json begun = Json::object(), held = Json::array();
@@ -277,6 +287,9 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                {"pointer", pointerJson(interaction)},
                {"content", contentJson(segment, s, interaction)},
                {"snapshots", interaction.snapshots},
+               {"shown", shownName(interaction)},
+               {"light", round3(interaction.light)},
+               {"playlist", playlistName(interaction)},
                {"work_ms", round3(s.work_ms)},
                {"work_median_ms", round3(s.work_median_ms)},
                {"utilisation", round3(s.utilisation)},

@@ -71,6 +71,19 @@ void ContentTurns::requestNext(std::uint32_t times) {
   }
 }
 
+bool ContentTurns::isOf(std::span<const std::size_t> places) const {
+  if (places.empty()) return asked_ < listed_;
+  return std::ranges::find(places, asked_) != places.end();
+}
+
+void ContentTurns::requestNextOf(std::span<const std::size_t> places) {
+  if (places.empty()) return requestNext(1);
+  const bool listed = isOf(places);
+  if (listed && asked_ == index_ && source_ && source_->nextWithin(asked_)) return;
+  const auto at = std::ranges::find(places, asked_);
+  request(!listed || at + 1 == places.end() ? places.front() : *(at + 1));
+}
+
 void ContentTurns::request(std::size_t place) noexcept {
   if (place >= contents_.size()) return;
   asked_ = place;

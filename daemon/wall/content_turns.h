@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -84,9 +85,17 @@ class ContentTurns {
   // requestNext() requests the content that is `times` further in the list, cyclically.
   // showRequested() makes the change; it returns true if another content is shown now.
   void requestNext(std::uint32_t times);
+  // The next of `places`, cyclically: after the one that was asked for last, or the first if that
+  // is none of them. Before it come further parts of the place that is shown (slides). No places:
+  // all that come by turns.
+  void requestNextOf(std::span<const std::size_t> places);
+  // Whether the one that was asked for last is one of them.
+  bool isOf(std::span<const std::size_t> places) const;
   // Requests the content of a place. Nothing happens if there is none.
   void request(std::size_t place) noexcept;
   bool showRequested();
+  // The place that was asked for last.
+  std::size_t asked() const noexcept { return asked_; }
 
   // Replaces the content of a place; returns true if that is the one shown.
   bool replace(const ContentSource::Replacement& fresh);

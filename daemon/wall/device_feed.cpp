@@ -78,6 +78,8 @@ bool DeviceFeed::readActions(const shm::DeviceSlots& devices, Timestamp now, Wal
   input.scene.next_mode = begun(actionIndex("next_mode"));
   input.next_content = begun(actionIndex("next_content"));
   input.snapshot = begun(actionIndex("snapshot"));
+  input.blank = begun(actionIndex("blank"));
+  input.freeze = begun(actionIndex("freeze"));
   constexpr std::array kAlign = {actionIndex("align_output_next"), actionIndex("align_corner_next"),
                                  actionIndex("align_left"),        actionIndex("align_right"),
                                  actionIndex("align_up"),          actionIndex("align_down"),

@@ -17,7 +17,7 @@ struct WallInput {
   render::scene::SceneInput scene;
   std::optional<TrackerSample> head;  // sample of the tracker station on the viewer's head
   // How often each was requested since the last read.
-  std::uint32_t next_content = 0, snapshot = 0;
+  std::uint32_t next_content = 0, snapshot = 0, blank = 0, freeze = 0;
   AlignInput align;
   std::array<char, 20> posture{};  // name of the current posture, NUL-terminated; empty: none
 };

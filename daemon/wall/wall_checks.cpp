@@ -1,13 +1,16 @@
 #include "daemon/wall/wall_checks.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "daemon/base/files.h"
+#include "daemon/base/printable_text.h"
 #include "render/correct/io/mpcdi.h"
 #include "render/gl/gl_context.h"
 #include "render/out/output_kinds.h"
@@ -37,6 +40,22 @@ std::vector<WallContent> readContents(LoadedSettings& loaded) {
     loaded.addFinding(shows ? "/wall/render/show" : entry.pointer, kCannot + content.error().what);
   }
   return contents;
+}
+
+void checkPlaylist(LoadedSettings& loaded) {
+  const std::vector<std::string>& names = loaded.settings.wall.playlist.contents;
+  std::vector<std::string> known;
+  for (const ContentEntry& entry : contentsOf(loaded.settings.wall)) known.push_back(entry.name);
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    const std::string at = fmt::format("/wall/playlist/contents/{}", name - names.begin());
+    if (std::ranges::find(known, *name) == known.end()) {
+      loaded.addFinding(at, fmt::format("is \"{}\", which is not the name of a content; contents "
+                                        "are {}",
+                                        excerpt(*name), fmt::join(known, ", ")));
+    } else if (std::find(names.begin(), name, *name) != name) {
+      loaded.addFinding(at, fmt::format("is \"{}\", which is already in the list", *name));
+    }
+  }
 }
 
 namespace {

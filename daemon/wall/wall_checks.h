@@ -15,6 +15,10 @@ namespace merlin::wall {
 // result is complete only if no finding was added. O(size of the models' files).
 std::vector<WallContent> readContents(LoadedSettings& loaded);
 
+// Adds a finding for each name in /wall/playlist/contents that is not that of a content, or is
+// there twice. Reads no file.
+void checkPlaylist(LoadedSettings& loaded);
+
 // Adds a finding for each image file or snapshot folder that cannot be written, for each MPCDI file
 // of a correction that cannot be read or lacks the output's region, and for each output of a kind
 // that this installation lacks.

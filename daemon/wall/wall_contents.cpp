@@ -112,6 +112,17 @@ std::vector<ContentEntry> contentsOf(const WallSettings& wall) {
   return contents;
 }
 
+std::vector<std::size_t> placesOf(const std::vector<ContentEntry>& contents,
+                                  const std::vector<std::string>& names) {
+  std::vector<std::size_t> places;
+  for (const std::string& name : names) {
+    const auto found = std::ranges::find(contents, name, &ContentEntry::name);
+    if (found != contents.end())
+      places.push_back(static_cast<std::size_t>(found - contents.begin()));
+  }
+  return places;
+}
+
 Result<ContentEntry> contentOfFile(const std::string& path) {
   std::error_code error;
   ContentEntry entry{"", nameOf(path), path, ContentKind::kPicture, {}};

@@ -29,6 +29,10 @@ struct ContentEntry {
 // then /wall/contents. An entry that names no file has an empty path.
 std::vector<ContentEntry> contentsOf(const WallSettings& wall);
 
+// Places of the contents of these names in `contents`. A name that is none of theirs is left out.
+std::vector<std::size_t> placesOf(const std::vector<ContentEntry>& contents,
+                                  const std::vector<std::string>& names);
+
 // The content of a file that is not in the configuration, by its ending; a folder holds slides.
 // Errors: kInvalidArgument (another ending), kNotFound.
 Result<ContentEntry> contentOfFile(const std::string& path);

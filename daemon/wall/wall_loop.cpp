@@ -64,10 +64,12 @@ void WallLoop::applyRequests() {
     turns_.requestNext(1);
     parts_.scene.reset();
   }
-  if (const std::int64_t place = place_asked_.exchange(-1); place >= 0) {
+  const std::int64_t place = place_asked_.exchange(-1);
+  if (place >= 0) {
     turns_.request(static_cast<std::size_t>(place));
     parts_.scene.reset();
   }
+  if (requests != 0 || place >= 0) parts_.attendance.touch();
 }
 
 void WallLoop::useNavigation() {
@@ -105,7 +107,7 @@ void WallLoop::showContent() {
 }
 
 void WallLoop::replaceContents() {
-  if (!parts_.replacements) return;
+  if (!parts_.replacements || parts_.attendance.isFrozen()) return;
   const auto fresh = parts_.replacements->take(view_.moving, view_.T_eye_model);
   if (!fresh) return;
   if (!fresh->refused.empty()) return finishRequest(fresh->request, fresh->refused);
@@ -121,9 +123,41 @@ void WallLoop::replaceContents() {
   still_.restart();
 }
 
-void WallLoop::readInput(std::int64_t k, Timestamp began) {
-  WallInput input = parts_.feed.read(began);
+// The devices' input, without what does not count while the wall is black or frozen.
+WallInput WallLoop::attendedInput(Timestamp now) {
+  WallInput input = parts_.feed.read(now);
   input.scene.step = takeStep();
+  const Attendance::Frame frame = parts_.attendance.update(input, now);
+  held_ = frame.held;
+  if (parts_.curtain) parts_.curtain->setLight(frame.playlist.light);
+  followPlaylist(frame.playlist);
+  return input;
+}
+
+// What it shows begins with the initial view, wherever a visitor left it.
+void WallLoop::followPlaylist(const Playlist::Wanted& wanted) {
+  const std::size_t before = turns_.asked();
+  if (wanted.next || (wanted.begins && !turns_.isOf(parts_.playlist)))
+    turns_.requestNextOf(parts_.playlist);
+  if (turns_.asked() != before)
+    parts_.scene.reset();
+  else if (wanted.begins)
+    returnToInitialView();
+}
+
+// Black or frozen, the picture stays as it is.
+void WallLoop::followViewer(const WallInput& input, Timestamp now) {
+  if (held_) return;
+  if (parts_.marker) parts_.marker->pointAt(pointedAt());
+  // Updated between frames, so that all tiles of a frame have the same viewer position.
+  if (parts_.viewer && parts_.viewer->update(input.head, now)) view_.moving = true;
+  if (!lost_.update(painter().sees(view_.T_eye_model), view_.moving, now)) return;
+  ++counted_.returned;
+  returnToInitialView();  // takes effect in the next period
+}
+
+void WallLoop::readInput(std::int64_t k, Timestamp began) {
+  const WallInput input = attendedInput(began);
   const Timestamp read = parts_.clock.now();
   const bool was_moving = view_.moving;
   // The next content is shown after the scene's update, from its initial view.
@@ -133,18 +167,12 @@ void WallLoop::readInput(std::int64_t k, Timestamp began) {
   snapshots_ += input.snapshot;
   if (!input.align.isNothing()) parts_.on_align(input.align);
   view_ = parts_.scene.update(input.scene, began);
-  if (parts_.marker) parts_.marker->pointAt(pointedAt());
   if (turns_.showRequested()) {
     useNavigation();
     view_ = parts_.scene.view();
     showContent();
   }
-  // Updated between frames, so that all tiles of a frame have the same viewer position.
-  if (parts_.viewer && parts_.viewer->update(input.head, began)) view_.moving = true;
-  if (lost_.update(painter().sees(view_.T_eye_model), view_.moving, began)) {
-    ++counted_.returned;
-    returnToInitialView();  // takes effect in the next period
-  }
+  followViewer(input, began);
   std::copy(input.posture.begin(), input.posture.end(), counted_.posture);
   if (was_moving && !view_.moving) still_.begin(began, painter().pixels());
   if (!was_moving && view_.moving) resuming_ = true;
@@ -294,8 +322,14 @@ void WallLoop::publish() {
   counted_.full_detail = full_detail_;
   counted_.input_age_ms = static_cast<float>(1000 * toSeconds(parts_.feed.age()));
   publisher_.stats(counted_, {turns_, pace_, parts_.governor, stats_, view_, step_}, now);
-  publisher_.interaction(view_, parts_.marker, snapshots_, turns_.index() + parts_.first_number,
-                         now);
+  const Attendance& attendance = parts_.attendance;
+  shm::WallInteraction interaction{};
+  interaction.snapshots = snapshots_;
+  interaction.content = static_cast<std::uint32_t>(turns_.index()) + parts_.first_number;
+  interaction.shown = static_cast<std::uint32_t>(attendance.shown());
+  interaction.playlist = static_cast<std::uint32_t>(attendance.playlist());
+  interaction.light = attendance.light();
+  publisher_.interaction(interaction, view_, parts_.marker, now);
   {
     const std::lock_guard lock(step_mutex_);
     publisher_.content(turns_.content(), done_, now);

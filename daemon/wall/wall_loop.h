@@ -18,6 +18,7 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/shm/layout.h"
+#include "daemon/wall/attendance.h"
 #include "daemon/wall/content_turns.h"
 #include "daemon/wall/frame_stats.h"
 #include "daemon/wall/frame_tracer.h"
@@ -26,6 +27,7 @@
 #include "daemon/wall/still_frame.h"
 #include "daemon/wall/viewer_place.h"
 #include "daemon/wall/wall_publisher.h"
+#include "render/frame/curtain.h"
 #include "render/frame/delivery.h"
 #include "render/frame/frame_painter.h"
 #include "render/frame/pointer_marker.h"
@@ -45,6 +47,8 @@ struct WallParts {
   WallSlots slots;                    // where statistics are published
   Clock& clock;
   render::out::FrameClock& frame_clock;            // sets the deadlines of frames
+  Attendance& attendance;                          // whether somebody works the wall
+  render::frame::Curtain* curtain = nullptr;       // an overlay of `delivery`; may be null
   render::frame::PointerMarker* marker = nullptr;  // marks where the hand points; may be null
   int fade_frames = 1;                        // number of frames in which a finer frame is faded in
   double return_after_s = 0;                  // see SceneSettings; 0: never
@@ -58,6 +62,7 @@ struct WallParts {
   std::size_t listed = 0;         // contents that come by turns; 0: all
   // Added to a content's index to get its number in shared memory.
   std::uint32_t first_number = 0;
+  std::vector<std::size_t> playlist{};  // contents of the playlist, in order; empty: all by turns
 };
 
 // Thread-bound, except request(), move(), hold() and setRate().
@@ -103,6 +108,9 @@ class WallLoop {
   render::scene::Push takeStep();
   // Reads the devices and moves the scene.
   void readInput(std::int64_t k, Timestamp began);
+  WallInput attendedInput(Timestamp now);
+  void followPlaylist(const Playlist::Wanted& wanted);
+  void followViewer(const WallInput& input, Timestamp now);
   // Returns detail().steps() if there is no time for any frame.
   std::size_t chooseStep(std::int64_t k, Timestamp began);
   std::size_t stepFor(Duration available);
@@ -134,6 +142,7 @@ class WallLoop {
   std::optional<std::size_t> moving_step_;
   bool full_detail_ = false;
   bool resuming_ = false;  // the next frame is the first after a standstill
+  bool held_ = false;      // black or frozen: nothing moves the scene
   std::uint64_t frames_ = 0;
   std::uint32_t snapshots_ = 0;  // requested by bound inputs, since the start
   shm::WallStats counted_{};     // only the fields that the loop itself counts

@@ -74,12 +74,12 @@ void WallPublisher::stats(shm::WallStats out, const State& s, Timestamp now) {
   slots_.stats.publish(out);
 }
 
-void WallPublisher::interaction(const render::scene::SceneView& view,
-                                const render::frame::PointerMarker* marker, std::uint32_t snapshots,
-                                std::size_t content, Timestamp now) {
+void WallPublisher::interaction(shm::WallInteraction out, const render::scene::SceneView& view,
+                                const render::frame::PointerMarker* marker, Timestamp now) {
   if (!slots_.interaction) return;
-  shm::WallInteraction out{toNanoseconds(now), shm::WallInteraction::kNone,        {-1, -1}, {},
-                           snapshots,          static_cast<std::uint32_t>(content)};
+  out.updated_ns = toNanoseconds(now);
+  out.pointing = shm::WallInteraction::kNone;
+  std::fill(std::begin(out.pixel), std::end(out.pixel), -1);
   if (const auto& pointed = view.pointed) {
     out.pointing =
         pointed->on_model ? shm::WallInteraction::kAtModel : shm::WallInteraction::kAtWall;

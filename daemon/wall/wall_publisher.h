@@ -45,8 +45,9 @@ class WallPublisher {
   };
   void stats(shm::WallStats counted, const State& state, Timestamp now);
 
-  void interaction(const render::scene::SceneView& view, const render::frame::PointerMarker* marker,
-                   std::uint32_t snapshots, std::size_t content, Timestamp now);
+  // `out`: the fields that the loop sets itself; those of pointing are set from the others.
+  void interaction(shm::WallInteraction out, const render::scene::SceneView& view,
+                   const render::frame::PointerMarker* marker, Timestamp now);
   void outputs(const render::out::OutputSet& outputs, Timestamp now);
   // `done`: what became of the last request for a content; the rest of it is set.
   void content(const ShownContent& shown, shm::WallContent done, Timestamp now);

@@ -13,8 +13,7 @@
 #include "daemon/base/log.h"
 #include "daemon/base/printable_text.h"
 #include "daemon/shm/fields.h"
-#include "render/correct/io/mpcdi.h"
-#include "render/correct/output_correction.h"
+#include "daemon/wall/aligned_output.h"
 #include "render/frame/correction_chain.h"
 #include "render/frame/tile_arrangement.h"
 #include "render/out/output_kinds.h"
@@ -48,29 +47,6 @@ std::map<std::string, std::string> panelsOf(const WallSettings& wall) {
     if (!display.panel.empty()) panels[display.name] = display.panel;
   }
   return panels;
-}
-
-// Returns an output that can be aligned; its `make` builds corrections, which are applied on the
-// wall's thread, by `pass` or by the threads of `team`. Errors: those of readMeasured().
-Result<AlignedOutput> alignedOutput(const render::out::OutputSettings& output,
-                                    const render::out::PictureSize& size, ThreadTeam& team,
-                                    render::correct::CorrectionPass& pass) {
-  const render::correct::CorrectionSettings& settings = output.correction;
-  std::shared_ptr<render::correct::MeasuredCorrection> measured;  // used by `make` and its copies
-  if (!settings.mpcdi.empty()) {
-    auto read = render::correct::readMeasured(settings.mpcdi, settings.mpcdi_region);
-    if (!read) return read.error();
-    measured = std::make_shared<render::correct::MeasuredCorrection>(*std::move(read));
-  }
-  const auto make = [size, measured, &team,
-                     &pass](const render::correct::CorrectionSettings& wanted) {
-    auto map = render::correct::makeCorrectionMap(wanted, size.width, size.height, measured.get(),
-                                                  Threads(threadsOr(0)));
-    return std::unique_ptr<render::frame::Correction>(
-        std::make_unique<render::correct::OutputCorrection>(std::move(map),
-                                                            Threads(threadsOr(0), team), &pass));
-  };
-  return AlignedOutput{output.shownName(), size.width, size.height, settings, make};
 }
 
 }  // namespace
@@ -138,6 +114,7 @@ WallRole::WallRole(const Settings& settings, std::vector<WallContent> contents,
       graphics_cards_(watch, clock),
       cards_(plan_.frame_width, plan_.frame_height,
              render::testcard::cardTiles(plan_, settings.wall.outputs, panelsOf(settings.wall))),
+      attendance_(settings.wall.playlist),
       model_watch_(filesOf(contents_), ShownModels::maker(entries_, settings_.wall), watch_,
                    clock_),
       tiles_(watch_) {}
@@ -246,24 +223,39 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
                   fromSeconds(1 / settings_.wall.governor.rate_hz),
                   settings_.wall.stereo.head.station);
   render::frame::PointerMarker marker(plan_);
-  delivery_.emplace(plan_, outputs_, std::vector<render::frame::Overlay*>{&cards_, &marker},
+  delivery_.emplace(plan_, outputs_,
+                    std::vector<render::frame::Overlay*>{&cards_, &marker, &curtain_},
                     std::move(corrections_), signals_.get());
   std::optional<ViewerPlace> viewer = makeViewerPlace();
   render::out::VblankFrameClock frame_clock(clock_, [this] { return outputs_.vblank(); });
-  WallLoop loop({models.contents(), scene_, governor_, feed, *delivery_,
-                 WallSlots{segment_->stats, &segment_->trace, &segment_->interaction,
-                           &segment_->outputs, &segment_->content},
-                 clock_, frame_clock, &marker, settings_.wall.render.fade_frames,
-                 settings_.wall.scene.return_after_s, &progress, &models,
-                 viewer ? &*viewer : nullptr, on_snapshot_,
-                 [this](const AlignInput& input) { aligner_->ask(input); }, firstContent(),
-                 models.listed(), firstNumber()});
+  const WallSlots slots{segment_->stats, &segment_->trace, &segment_->interaction,
+                        &segment_->outputs, &segment_->content};
+  WallParts parts{models.contents(), scene_,     governor_, feed, *delivery_, slots, clock_,
+                  frame_clock,       attendance_};
+  parts.marker = &marker;
+  parts.progress = &progress;
+  parts.replacements = &models;
+  parts.viewer = viewer ? &*viewer : nullptr;
+  parts.listed = models.listed();
+  addOwn(parts);
+  WallLoop loop(std::move(parts));
   loop.setRate(keeper_.state().rate_hz);
   loop.calibrate();
   loop_.store(&loop);
   loop.run(stop, [&] { ready_.set_value(models.contexts().renderer()); });
   loop_.store(nullptr);
   shader_pass_.end();
+}
+
+void WallRole::addOwn(WallParts& parts) {
+  parts.curtain = &curtain_;
+  parts.fade_frames = settings_.wall.render.fade_frames;
+  parts.return_after_s = settings_.wall.scene.return_after_s;
+  parts.on_snapshot = on_snapshot_;
+  parts.on_align = [this](const AlignInput& input) { aligner_->ask(input); };
+  parts.first_content = firstContent();
+  parts.first_number = firstNumber();
+  parts.playlist = placesOf(entries_, settings_.wall.playlist.contents);
 }
 
 // Decides where corrections are computed. What a shader cannot do, the CPU does.
@@ -361,10 +353,12 @@ Result<Ok> WallRole::showFile(const ContentEntry& entry, std::uint32_t request) 
     if (!fileStamp(entry.path))
       return Error{Errc::kNotFound, entry.path + ": is not there, or may not be read by merlind"};
     model_watch_.ask(read, request);
+    attendance_.touch();
     return Ok{};
   }
   auto ready = read();
   if (!ready) return ready.error();
+  attendance_.touch();
   model_watch_.offer(*std::move(ready));
   return Ok{};
 }

@@ -16,6 +16,7 @@
 #include "daemon/shm/segment.h"
 #include "daemon/state/state_keeper.h"
 #include "daemon/wall/aligner.h"
+#include "daemon/wall/attendance.h"
 #include "daemon/wall/device_feed.h"
 #include "daemon/wall/shown_models.h"
 #include "daemon/wall/signal_taps.h"
@@ -78,6 +79,8 @@ class WallRole {
   void setRate(std::optional<double> rate_hz);
   Aligner& aligner() { return *aligner_; }
   SignalTaps& signals() { return *signals_; }
+  // For its thread-safe members.
+  Attendance& attendance() { return attendance_; }
 
   // To be called ten times a second: saves in the state which content is shown, and removes shared
   // memory of signals that nobody requests any more.
@@ -114,6 +117,7 @@ class WallRole {
   Result<Ok> showFile(const ContentEntry& entry, std::uint32_t request);
   std::size_t firstContent();
   void run(const std::stop_token& stop, Progress& progress);
+  void addOwn(WallParts& parts);
   void beginCorrecting(const render::frame::DrawContexts& contexts);
   std::optional<ViewerPlace> makeViewerPlace();
 
@@ -138,6 +142,8 @@ class WallRole {
   std::unique_ptr<SignalTaps> signals_;
   std::optional<std::uint32_t> kept_content_;  // content that the state was last updated for
   render::testcard::CardOverlay cards_;
+  Attendance attendance_;
+  render::frame::Curtain curtain_;
   std::optional<render::frame::Delivery> delivery_;  // owns the corrections while the wall runs
   std::unique_ptr<Aligner> aligner_;  // replaces corrections; the wall's thread calls ask()
   std::function<void()> on_snapshot_ = [] {};

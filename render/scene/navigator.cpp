@@ -51,6 +51,11 @@ void ObjectNavigator::fly(Poses& poses, const Eigen::Vector3f& way_m) const {
   poses.T_wall_eye.translate(way_m);
 }
 
+bool ObjectNavigator::turn(Poses& poses, float angle_rad) const {
+  push(poses, {Eigen::Vector3f::Zero(), {0, angle_rad, 0}}, BallMode::kObject);
+  return true;
+}
+
 // The content rotates with the hand, about its own centre, and moves hand_gain_ times as far as the
 // hand.
 void ObjectNavigator::carry(Poses& poses, const Poses& grabbed, const Eigen::Isometry3f& hand_then,
@@ -96,6 +101,8 @@ void PlaneNavigator::fly(Poses& poses, const Eigen::Vector3f& way_m) const {
   move(poses, poses, -way_m);
 }
 
+bool PlaneNavigator::turn(Poses& /*poses*/, float /*angle_rad*/) const { return false; }
+
 void PlaneNavigator::carry(Poses& poses, const Poses& grabbed, const Eigen::Isometry3f& hand_then,
                            const Eigen::Isometry3f& hand) const {
   move(poses, grabbed, (hand.translation() - hand_then.translation()) * hand_gain_);
@@ -133,6 +140,11 @@ void PanoramaNavigator::push(Poses& poses, const Push& push, BallMode /*mode*/) 
 
 void PanoramaNavigator::fly(Poses& poses, const Eigen::Vector3f& way_m) const {
   look(poses, poses, way_m.x(), -way_m.y(), -way_m.z());
+}
+
+bool PanoramaNavigator::turn(Poses& poses, float angle_rad) const {
+  look(poses, poses, angle_rad, 0, 0);
+  return true;
 }
 
 // The grabbed point follows the hand, so the view turns in the opposite direction.

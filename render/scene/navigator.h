@@ -33,6 +33,10 @@ class Navigator {
   virtual void push(Poses& poses, const Push& push, BallMode mode) const = 0;
   // Moves the viewer by `way_m`; called in each frame in which a hand steers the flight.
   virtual void fly(Poses& poses, const Eigen::Vector3f& way_m) const = 0;
+  // Turns what nobody touches, for show: an object about the viewer's vertical axis, its front to
+  // the right; the view of a panorama to the right. Returns false, and moves nothing, if the
+  // content stands still for show: a plane does, like a picture in a gallery.
+  virtual bool turn(Poses& poses, float angle_rad) const = 0;
   // Moves a content that is grabbed: the hand was at `hand_then` and the poses were `grabbed` when
   // the grab began; the hand is at `hand` now.
   virtual void carry(Poses& poses, const Poses& grabbed, const Eigen::Isometry3f& hand_then,
@@ -47,6 +51,7 @@ class ObjectNavigator final : public Navigator {
   Poses start() const override;
   void push(Poses& poses, const Push& push, BallMode mode) const override;
   void fly(Poses& poses, const Eigen::Vector3f& way_m) const override;
+  bool turn(Poses& poses, float angle_rad) const override;
   void carry(Poses& poses, const Poses& grabbed, const Eigen::Isometry3f& hand_then,
              const Eigen::Isometry3f& hand) const override;
 
@@ -66,6 +71,7 @@ class PlaneNavigator final : public Navigator {
   Poses start() const override;
   void push(Poses& poses, const Push& push, BallMode mode) const override;
   void fly(Poses& poses, const Eigen::Vector3f& way_m) const override;
+  bool turn(Poses& poses, float angle_rad) const override;
   void carry(Poses& poses, const Poses& grabbed, const Eigen::Isometry3f& hand_then,
              const Eigen::Isometry3f& hand) const override;
 
@@ -87,6 +93,7 @@ class PanoramaNavigator final : public Navigator {
   Poses start() const override;
   void push(Poses& poses, const Push& push, BallMode mode) const override;
   void fly(Poses& poses, const Eigen::Vector3f& way_m) const override;
+  bool turn(Poses& poses, float angle_rad) const override;
   void carry(Poses& poses, const Poses& grabbed, const Eigen::Isometry3f& hand_then,
              const Eigen::Isometry3f& hand) const override;
 

@@ -119,10 +119,12 @@ SceneView Scene::update(const SceneInput& input, Timestamp now) {
   const float step_s = std::clamp(seconds, 0.0F, kLongestStep_s);
   const bool pushed = moveByBall(input, step_s);
   const bool stepped = moveByStep(input);
+  const bool turned = turnByItself(input, step_s);
   const bool carried = moveByHand(input, input.grab);
   const bool flown = flyByHand(input, input.fly && !input.grab, step_s);
   bound();
-  if (std::exchange(jumped_, false) || pushed || stepped || carried || flown) last_motion_ = now;
+  if (std::exchange(jumped_, false) || pushed || stepped || turned || carried || flown)
+    last_motion_ = now;
   view_.T_eye_model = poses_.T_wall_eye.inverse() * poses_.T_wall_content;
   view_.mode = mode_;
   view_.grabbed = grab_hand_.has_value();
@@ -155,6 +157,11 @@ bool Scene::moveByStep(const SceneInput& input) {
   if (input.step.way_m.isZero(0) && input.step.turn_rad.isZero(0)) return false;
   navigator_->push(poses_, input.step, mode_);
   return true;
+}
+
+// Returns whether the content is one that turns by itself, and shall turn.
+bool Scene::turnByItself(const SceneInput& input, float seconds) {
+  return input.turn_rad_s != 0 && navigator_->turn(poses_, input.turn_rad_s * seconds);
 }
 
 // Returns whether the hand's motion exceeds the tracker's noise (at rest: twice the noise). At

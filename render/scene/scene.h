@@ -24,7 +24,8 @@ struct SceneInput {
   std::optional<TrackerSample> hand;
   bool grab = false, fly = false, point_at = false;  // held actions
   std::uint32_t reset_view = 0, next_mode = 0;  // how often each was requested since the last frame
-  Push step;  // requested by the command move since the last frame: applied at once
+  Push step;             // requested by the command move since the last frame: applied at once
+  float turn_rad_s = 0;  // speed at which the content turns by itself: see Navigator::turn()
 };
 
 // The point at which the hand points, in metres.
@@ -70,6 +71,7 @@ class Scene {
   explicit Scene(const SceneSettings& settings);
   bool moveByBall(const SceneInput& input, float seconds);
   bool moveByStep(const SceneInput& input);
+  bool turnByItself(const SceneInput& input, float seconds);
   bool moveByHand(const SceneInput& input, bool grab);
   bool flyByHand(const SceneInput& input, bool fly, float seconds);
   std::optional<Pointed> pointByHand(const SceneInput& input) const;

@@ -151,11 +151,13 @@ TEST_F(DeviceFeedTest, GivesTheActionsOfDevicesThatWork) {
   begin("next_content");
   EXPECT_EQ(read().next_content, 0u) << "it began before the wall looked";
   for (const char* name : {"next_content", "snapshot", "snapshot", "reset_view", "next_mode",
-                           "grab", "fly", "point_at"})
+                           "blank", "freeze", "freeze", "grab", "fly", "point_at"})
     begin(name);
   const WallInput input = read();
   EXPECT_EQ(input.next_content, 1u);
   EXPECT_EQ(input.snapshot, 2u);
+  EXPECT_EQ(input.blank, 1u);
+  EXPECT_EQ(input.freeze, 2u);
   EXPECT_EQ(input.scene.reset_view, 1u);
   EXPECT_EQ(input.scene.next_mode, 1u);
   EXPECT_TRUE(input.scene.grab && input.scene.fly && input.scene.point_at);

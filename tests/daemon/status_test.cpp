@@ -115,12 +115,30 @@ TEST_F(DocumentsTest, TheWallSaysWhoDrawsIt) {
 
 TEST_F(DocumentsTest, TheWallSaysWhereAHandPoints) {
   EXPECT_TRUE(json::parse(wallStatus(*wall_, kNow))["pointer"].is_null());
-  wall_->interaction.publish({0, shm::WallInteraction::kAtModel, {960, 240}, {0, 0.25F, 1}, 3, 0});
+  wall_->interaction.publish(
+      {0, shm::WallInteraction::kAtModel, {960, 240}, {0, 0.25F, 1}, 3, 0, 0, 0, 1});
   const json s = json::parse(wallStatus(*wall_, kNow));
   EXPECT_EQ(s["pointer"].dump(), R"({"at":"model","at_model_m":[0.0,0.25,1.0],"pixel":[960,240]})");
   EXPECT_EQ(s["snapshots"], 3);
-  wall_->interaction.publish({0, shm::WallInteraction::kAtWall, {-1, -1}, {}, 3, 0});
+  wall_->interaction.publish({0, shm::WallInteraction::kAtWall, {-1, -1}, {}, 3, 0, 0, 0, 1});
   EXPECT_TRUE(json::parse(wallStatus(*wall_, kNow))["pointer"]["pixel"].is_null());
+}
+
+TEST_F(DocumentsTest, TheWallSaysWhatItShowsWhileNobodyTouchesIt) {
+  shm::WallInteraction interaction{};
+  interaction.shown = shm::WallInteraction::kFrozen;
+  interaction.playlist = shm::WallInteraction::kPlaylistRunning;
+  interaction.light = 0.25F;
+  wall_->interaction.publish(interaction);
+  const json s = json::parse(wallStatus(*wall_, kNow));
+  EXPECT_EQ(s["shown"], "frozen");
+  EXPECT_EQ(s["playlist"], "running");
+  EXPECT_EQ(s["light"], 0.25);
+  interaction.shown = shm::WallInteraction::kBlank;
+  interaction.playlist = shm::WallInteraction::kPlaylistWaiting;
+  wall_->interaction.publish(interaction);
+  EXPECT_EQ(json::parse(wallStatus(*wall_, kNow))["shown"], "blank");
+  EXPECT_EQ(json::parse(wallStatus(*wall_, kNow))["playlist"], "waiting");
 }
 
 TEST_F(DocumentsTest, TheWallSaysHowItKeepsItsRate) {

@@ -79,6 +79,33 @@ TEST(PlaneNavigator, GoesWithTheHandThatGrabsIt) {
   EXPECT_TRUE(poses.T_wall_content.isApprox(grabbed.T_wall_content, 1e-6F));
 }
 
+TEST(PlaneNavigator, StandsStillForShow) {
+  const scene::PlaneNavigator navigator(kSettings);
+  scene::Poses poses = navigator.start();
+  EXPECT_FALSE(navigator.turn(poses, 0.5F));
+  EXPECT_TRUE(poses.T_wall_content.isApprox(navigator.start().T_wall_content, 0));
+}
+
+// What was to the right of the viewer comes to the middle; the horizon stays level.
+TEST(PanoramaNavigator, TurnsToTheRightForShow) {
+  const scene::PanoramaNavigator navigator(kSettings);
+  scene::Poses poses = navigator.start();
+  EXPECT_TRUE(navigator.turn(poses, 0.5F));
+  const Vector3f right(std::sin(0.5F), 0, -std::cos(0.5F));
+  EXPECT_TRUE(seen(poses, right).isApprox(-Vector3f::UnitZ(), 1e-5F));
+  EXPECT_TRUE((poses.T_wall_content.linear() * Vector3f::UnitY()).isApprox(Vector3f::UnitY()));
+}
+
+// The front of a model, which is towards the viewer, moves to the right; its place stays.
+TEST(ObjectNavigator, TurnsAboutItsVerticalAxisForShow) {
+  const scene::ObjectNavigator navigator(kSettings);
+  scene::Poses poses = navigator.start();
+  EXPECT_TRUE(navigator.turn(poses, 0.5F));
+  EXPECT_TRUE(seen(poses, Vector3f::UnitZ())
+                  .isApprox(Vector3f(std::sin(0.5F), 0, std::cos(0.5F) - 2), 1e-5F));
+  EXPECT_TRUE(seen(poses, Vector3f::Zero()).isApprox(Vector3f(0, 0, -2), 1e-5F));
+}
+
 // After a push to the right, what was to the right of the viewer is straight ahead.
 TEST(PanoramaNavigator, LooksWhereTheBallIsPushedOrTwistedTo) {
   const scene::PanoramaNavigator navigator(kSettings);

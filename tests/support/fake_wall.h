@@ -120,7 +120,7 @@ class FakeFeed final : public InputFeed {
     begins.push_back(now);
     if (on_begin) on_begin(now);
     WallInput input = actions;
-    actions.next_content = actions.snapshot = 0;
+    actions.next_content = actions.snapshot = actions.blank = actions.freeze = 0;
     actions.align = {};
     input.scene.ball.emplace();
     input.scene.ball->rotation[1] = pushed ? 0.5F : 0.0F;
@@ -176,11 +176,11 @@ class FakeWall : public testing::Test {
     loop.run(stop_.get_token(), [&] { ++first_frames_; });
   }
   WallParts parts() {
-    delivery_ = std::make_unique<render::frame::Delivery>(
-        plan_, outputs_,
-        marker_ ? std::vector<render::frame::Overlay*>{marker_}
-                : std::vector<render::frame::Overlay*>{},
-        std::move(corrections_));
+    std::vector<render::frame::Overlay*> overlays = {&curtain_};
+    if (marker_) overlays.insert(overlays.begin(), marker_);
+    delivery_ = std::make_unique<render::frame::Delivery>(plan_, outputs_, std::move(overlays),
+                                                          std::move(corrections_));
+    attendance_ = std::make_unique<Attendance>(playlist_);
     return {.contents = contents_,
             .scene = scene_,
             .governor = governor_,
@@ -189,6 +189,8 @@ class FakeWall : public testing::Test {
             .slots = {*stats_, trace_.get(), interaction_.get(), output_stats_.get()},
             .clock = clock_,
             .frame_clock = frame_clock_,
+            .attendance = *attendance_,
+            .curtain = &curtain_,
             .marker = marker_,
             .fade_frames = fade_frames_,
             .return_after_s = return_after_s_,
@@ -197,7 +199,8 @@ class FakeWall : public testing::Test {
             .on_snapshot = on_snapshot_,
             .on_align = on_align_,
             .first_content = first_content_,
-            .listed = listed_};
+            .listed = listed_,
+            .playlist = playlist_places_};
   }
   shm::WallStats stats() const { return *stats_->read(); }
   render::out::OutputSet recordingOutputs() {
@@ -222,6 +225,10 @@ class FakeWall : public testing::Test {
       std::make_unique<shm::SeqSlot<shm::WallStats>>();
   std::unique_ptr<shm::Channel<shm::FrameTrace>> trace_ =
       std::make_unique<shm::Channel<shm::FrameTrace>>();
+  render::frame::Curtain curtain_;
+  PlaylistSettings playlist_;
+  std::vector<std::size_t> playlist_places_;
+  std::unique_ptr<Attendance> attendance_;
   render::frame::PointerMarker* marker_ = nullptr;
   std::vector<std::unique_ptr<render::frame::Correction>> corrections_;
   ContentSource* replacements_ = nullptr;

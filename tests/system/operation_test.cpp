@@ -128,6 +128,7 @@ std::string argumentFor(const CommandInfo& command) {
   if (command.name == "show") return "model";
   if (command.name == "signal") return "shared_memory";
   if (command.name == "testcard") return "off";
+  if (command.name == "playlist") return "next";
   if (command.name == "move") return "0.1 -0.1 0 0 30 0";
   return command.argument.empty() ? "" : "auto";
 }
@@ -156,7 +157,10 @@ TEST(Operation, EveryCommandOfTheListIsCarriedOut) {
   EXPECT_TRUE(m.process().saysEventually("snapshot: " + dir / "shots"));
   for (const CommandInfo& command : kCommands) {
     if (!command.by_name) continue;
-    const Outcome done = run({kMerlin, std::string(command.name), "--instance", m.instance()});
+    std::vector<std::string> words = {kMerlin, std::string(command.name)};
+    if (!command.argument.empty()) words.push_back(argumentFor(command));
+    words.insert(words.end(), {"--instance", m.instance()});
+    const Outcome done = run(words);
     EXPECT_EQ(done.status, command.role == CommandOf::kPanel ? 2 : 0) << done.output;
   }
   const Outcome wrong = run({kMerlin, "wall", "--rate", "fast", "--instance", m.instance()});

@@ -144,6 +144,37 @@ TEST_F(Wall, EachDeviceMayDieAndComeBackWithoutTheOthersNoticing) {
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
 }
 
+// Black is what the outputs get, and so what a snapshot shows.
+TEST_F(Wall, BlankMakesEverythingBlackUntilSomebodyMovesIt) {
+  Merlind m(*dir_, model_, "blank", {.script = "still"});
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  ASSERT_TRUE(eventually([&] { return m.wall().full_detail == 1; }));
+  const auto merlin = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), kMerlin);
+    words.insert(words.end(), {"--instance", m.instance()});
+    const Outcome done = run(words);
+    EXPECT_EQ(done.status, 0) << done.output;
+  };
+  const auto shows = [&](const char* what) {
+    return eventually([&] { return m.status().value("shown", "") == what; });
+  };
+  const std::string black = *dir_ / "black.png", picture = *dir_ / "picture.png";
+  merlin({"blank"});
+  EXPECT_TRUE(shows("blank"));
+  merlin({"snapshot", "-o", black});
+  const auto image = render::image::readImage(black);
+  ASSERT_TRUE(image) << image.error().what;
+  EXPECT_TRUE(std::ranges::all_of(image->pixels, [](std::uint8_t v) { return v == 0; }));
+  merlin({"wall", "--move", "0 0 0 0 10 0"});
+  EXPECT_TRUE(shows("picture"));
+  merlin({"snapshot", "-o", picture});
+  expectPicture(picture, 100, 1280, 960);
+  merlin({"freeze"});
+  EXPECT_TRUE(shows("frozen"));
+  merlin({"freeze"});
+  EXPECT_TRUE(shows("picture"));
+}
+
 TEST_F(Wall, SnapshotsAreTheFrameAndTheWall) {
   Merlind m(*dir_, model_, "snapshot");
   ASSERT_TRUE(m.ready()) << m.process().output();

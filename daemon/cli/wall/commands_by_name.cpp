@@ -1,5 +1,5 @@
-// merlin reset_view, merlin projector_on ...: the commands of daemon/base/commands.h that take no
-// argument and have no other subcommand.
+// merlin reset_view, merlin playlist on ...: the commands of daemon/base/commands.h that have no
+// other subcommand.
 #include <memory>
 
 #include <fmt/format.h>
@@ -12,10 +12,19 @@
 namespace merlin::cli {
 namespace {
 
-int send(const std::string& instance, const CommandInfo& command) {
-  const auto done = askRole(instance, command.role == CommandOf::kWall ? "wall" : "devices",
-                            {std::string(command.name)});
+struct Sent {
+  std::string instance = "merlin", argument;
+};
+
+int send(const Sent& sent, const CommandInfo& command) {
+  const auto done = askRole(sent.instance, command.role == CommandOf::kWall ? "wall" : "devices",
+                            {std::string(command.name), sent.argument});
   return done ? kExitDone : fail(done.error());
+}
+
+// The first of the words that the argument may be: "on" of "on|off".
+std::string_view firstWord(std::string_view argument) {
+  return argument.substr(0, argument.find('|'));
 }
 
 }  // namespace
@@ -23,12 +32,18 @@ int send(const std::string& instance, const CommandInfo& command) {
 void addCommandsByName(Command app, Run& run) {
   for (const CommandInfo& info : kCommands) {
     if (!info.by_name) continue;
-    const auto instance = std::make_shared<std::string>("merlin");
-    Command command = app.subcommand(std::string(info.name),
-                                     fmt::format("{}\nExample: merlin {}", info.help, info.name));
-    addInstance(command, *instance);
-    command.callback(
-        [instance, &info, &run] { run = [instance, &info] { return send(*instance, info); }; });
+    const auto sent = std::make_shared<Sent>();
+    Command command =
+        app.subcommand(std::string(info.name),
+                       fmt::format("{}\nExample: merlin {}{}{}", info.help, info.name,
+                                   info.argument.empty() ? "" : " ", firstWord(info.argument)));
+    addInstance(command, sent->instance);
+    if (!info.argument.empty()) {
+      command.option("argument", sent->argument, "What to do")
+          .required()
+          .typeName(std::string(info.argument));
+    }
+    command.callback([sent, &info, &run] { run = [sent, &info] { return send(*sent, info); }; });
   }
 }
 

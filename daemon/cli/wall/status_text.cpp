@@ -32,6 +32,8 @@ std::string deviceDetail(const Json& d) {
 }
 
 std::string pictureWord(const Json& s) {
+  const std::string shown = s.value("shown", "picture");
+  if (shown != "picture") return shown;
   if (s.value("moving", false)) return s.value("grabbed", false) ? "grabbed" : "moving";
   return s.value("full_detail", false) ? "still, full detail" : "still, refining";
 }
@@ -44,6 +46,9 @@ std::string givenWay(const Json& s) {
     text += fmt::format("; frame rate reduced to {:.3g} Hz", s.value("rate_now", 0.0));
   if (s.value("scale_divisor", 1) > 1) text += "; tiles drawn at half size";
   if (s.value("operator_coarser", false)) text += "; operator's view coarser";
+  if (s.value("playlist", "") == "running") text += "; the playlist runs";
+  if (s.value("shown", "") == "picture" && s.value("light", 1.0) < 1)
+    text += fmt::format("; dimmed to {:.0f} % of its light", 100 * s.value("light", 1.0));
   const int held = s.value("detail", Json::object()).value("held_cost", 0);
   if (held > 0) text += fmt::format("; {} {} set by hand", held, costUnit(s));
   return text;

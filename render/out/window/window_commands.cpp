@@ -24,7 +24,7 @@ struct Key {
 };
 constexpr Key kKeys[] = {{"Home", "reset_view"},       {"R", "reset_view"},   {"M", "next_mode"},
                          {"PageDown", "next_content"}, {"N", "next_content"}, {"S", "snapshot"},
-                         {"T", "next_testcard"}};
+                         {"T", "next_testcard"},       {"B", "blank"},        {"F", "freeze"}};
 // With Ctrl: the keys of `merlin wall align`.
 constexpr Key kCtrlKeys[] = {{"N", "align_output_next"},
                              {"Tab", "align_corner_next"},

@@ -1,0 +1,11 @@
+// The part of describe() that is /wall/playlist.
+#pragma once
+
+#include "config/visitor.h"
+#include "daemon/wall/settings.h"
+
+namespace merlin {
+
+void describePlaylist(PlaylistSettings& playlist, SettingsVisitor& v);
+
+}  // namespace merlin

@@ -1,0 +1,19 @@
+// Makes an output of the configuration one that the Aligner can align.
+#pragma once
+
+#include "daemon/base/result.h"
+#include "daemon/base/thread_team.h"
+#include "daemon/wall/aligner.h"
+#include "render/correct/gpu/shader_pass.h"
+#include "render/out/output_kinds.h"
+
+namespace merlin::wall {
+
+// Returns an output that can be aligned; its `make` builds corrections, which are applied on the
+// wall's thread, by `pass` or by the threads of `team`. Both must outlive it. Errors: those of
+// readMeasured().
+Result<AlignedOutput> alignedOutput(const render::out::OutputSettings& output,
+                                    const render::out::PictureSize& size, ThreadTeam& team,
+                                    render::correct::CorrectionPass& pass);
+
+}  // namespace merlin::wall

@@ -1,0 +1,124 @@
+#include "daemon/wall/attendance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace merlin::wall {
+namespace {
+
+bool isPushed(const BallSample& ball) {
+  const auto pushes = [](float axis) { return axis != 0; };
+  return std::ranges::any_of(ball.translation, pushes) ||
+         std::ranges::any_of(ball.rotation, pushes);
+}
+
+// Whether a bound input or the command `move` acts on what is shown. It is a touch of its own,
+// however soon it follows another one.
+bool acts(const WallInput& input) {
+  const render::scene::SceneInput& scene = input.scene;
+  const bool stepped = !scene.step.way_m.isZero(0) || !scene.step.turn_rad.isZero(0);
+  const bool aligned = std::ranges::any_of(input.align.begun, [](auto n) { return n > 0; });
+  return stepped || aligned || scene.reset_view > 0 || scene.next_mode > 0 ||
+         input.next_content > 0 || input.snapshot > 0;
+}
+
+}  // namespace
+
+void Attendance::toggleBlank() {
+  const std::lock_guard lock(mutex_);
+  asked_.blank = !asked_.blank;
+}
+
+void Attendance::toggleFreeze() {
+  const std::lock_guard lock(mutex_);
+  asked_.freeze = !asked_.freeze;
+}
+
+void Attendance::touch() {
+  const std::lock_guard lock(mutex_);
+  asked_.touched = true;
+}
+
+void Attendance::playlistOn() {
+  const std::lock_guard lock(mutex_);
+  asked_.playlist = true;
+}
+
+void Attendance::playlistOff() {
+  const std::lock_guard lock(mutex_);
+  asked_.playlist = false;
+}
+
+void Attendance::playlistNext() {
+  const std::lock_guard lock(mutex_);
+  asked_.next = true;
+}
+
+Attendance::Asked Attendance::takeAsked(const WallInput& input) {
+  Asked asked;
+  {
+    const std::lock_guard lock(mutex_);
+    asked = std::exchange(asked_, {});
+  }
+  asked.blank ^= input.blank % 2 == 1;
+  asked.freeze ^= input.freeze % 2 == 1;
+  return asked;
+}
+
+// A hand at rest may hold a posture for ever, for example a glove that lies on a table.
+bool Attendance::handMoves(const render::scene::SceneInput& input) {
+  const std::array holding{input.grab, input.fly, input.point_at};
+  const auto before = std::exchange(holding_, holding);
+  bool moves = false;
+  for (std::size_t i = 0; i < holding.size(); ++i) moves |= holding[i] && !before[i];
+  if (!input.hand || std::ranges::none_of(holding, std::identity())) return moves;
+  const auto& at = input.hand->position_m;
+  const float way = std::hypot(at[0] - hand_m_[0], at[1] - hand_m_[1], at[2] - hand_m_[2]);
+  moves |= way > kHandMoves_m;
+  if (moves) std::copy(std::begin(at), std::end(at), hand_m_.begin());
+  return moves;
+}
+
+// Whether the ball is pushed, one of its buttons is pressed now, or a hand moves.
+bool Attendance::moves(const WallInput& input) {
+  const auto& ball = input.scene.ball;
+  const std::uint32_t buttons = ball ? ball->buttons : 0;
+  const std::uint32_t pressed = buttons & ~std::exchange(buttons_, buttons);
+  const bool pushed = (ball && isPushed(*ball)) || input.align.push != state::Offset{};
+  return handMoves(input.scene) || pushed || pressed != 0;
+}
+
+Attendance::Frame Attendance::update(WallInput& input, Timestamp now) {
+  const Asked asked = takeAsked(input);
+  const bool motion = moves(input);
+  const bool paused = !last_motion_ || now - *last_motion_ >= kPause;
+  const bool acted = acts(input) || asked.touched;
+  const bool bound = input.blank > 0 || input.freeze > 0;
+  if (motion || acted || bound) last_motion_ = now;
+  if (acted || (motion && paused && !bound)) blank_ = frozen_ = false;
+  blank_ ^= asked.blank;
+  frozen_ ^= asked.freeze;
+
+  if (asked.playlist) *asked.playlist ? playlist_.on() : playlist_.off();
+  if (asked.next) playlist_.next();
+  if (asked.next || asked.playlist.value_or(false)) blank_ = frozen_ = false;
+  Frame frame;
+  frame.held = blank_ || frozen_;
+  const Duration elapsed = now - std::exchange(last_update_, now).value_or(now);
+  // Black and frozen, the wall waits: for the playlist no time passes.
+  frame.playlist = playlist_.update(frame.held ? Duration::zero() : elapsed, motion || acted);
+  if (frame.held) input.scene = {};
+  if (!frame.held) input.scene.turn_rad_s = frame.playlist.turn_rad_s;
+  if (blank_) frame.playlist.light = 0;
+  light_ = frame.playlist.light;
+  return frame;
+}
+
+Attendance::Shown Attendance::shown() const noexcept {
+  if (blank_) return Shown::kBlank;
+  return frozen_ ? Shown::kFrozen : Shown::kPicture;
+}
+
+}  // namespace merlin::wall

@@ -1,0 +1,79 @@
+// Attendance: whether somebody works the wall, and what the wall shows if not: the playlist. Keeps
+// what the commands blank and freeze do, until the next touch.
+//
+// A touch is anything by which a visitor or an operator acts on the wall: a push of the ball, a
+// button, a hand that moves while it holds an action, a command that changes what is shown.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+
+#include "daemon/base/clock.h"
+#include "daemon/wall/input_feed.h"
+#include "daemon/wall/playlist.h"
+
+namespace merlin::wall {
+
+// Thread-bound to the wall's thread, except where it says thread-safe.
+class Attendance {
+ public:
+  explicit Attendance(const PlaylistSettings& playlist) : playlist_(playlist) {}
+
+  // Each is thread-safe and takes effect with the next update().
+  // Shows black, or freezes the picture; a second call undoes it.
+  void toggleBlank();
+  void toggleFreeze();
+  // A command that changes what is shown is executed; undoes both.
+  void touch();
+  // See Playlist.
+  void playlistOn();
+  void playlistOff();
+  void playlistNext();
+
+  // To be called once a frame, with the devices' input. REQUIRES: `now` never decreases. While the
+  // wall is black or frozen, the part of `input` that moves the scene is removed; what undoes that
+  // moves the scene as ever. While the playlist runs, it turns the scene.
+  struct Frame {
+    Playlist::Wanted playlist;  // its light is 0 while the wall is black
+    bool held = false;          // black or frozen: nothing moves the scene
+  };
+  Frame update(WallInput& input, Timestamp now);
+
+  enum class Shown : std::uint32_t { kPicture = 0, kBlank = 1, kFrozen = 2 };
+  Shown shown() const noexcept;
+  // Whether the picture is to stay as it is; also below black.
+  bool isFrozen() const noexcept { return frozen_; }
+  float light() const noexcept { return light_; }  // that the last update() wanted
+  Playlist::State playlist() const noexcept { return playlist_.state(); }
+
+  // Motions, such as pushes of the ball, are a new touch if there was none for this time before.
+  // Whoever pushes a button of the ball pushes the ball as well.
+  static constexpr Duration kPause = std::chrono::milliseconds(500);
+  // Motion of a hand, above the tracker's noise, that is a touch while the hand holds an action.
+  static constexpr float kHandMoves_m = 0.02F;
+
+ private:
+  struct Asked {
+    bool blank = false, freeze = false, touched = false, next = false;
+    std::optional<bool> playlist;  // on or off
+  };
+  Asked takeAsked(const WallInput& input);
+  bool moves(const WallInput& input);
+  bool handMoves(const render::scene::SceneInput& input);
+
+  std::mutex mutex_;
+  Asked asked_;  // guarded by mutex_: since the last update()
+  Playlist playlist_;
+  bool blank_ = false, frozen_ = false;
+  float light_ = 1;
+  std::optional<Timestamp> last_update_;
+  std::optional<Timestamp> last_motion_;
+  // Of the last frame: actions held by a hand, pressed buttons, the hand where it moved last.
+  std::array<bool, 3> holding_{};
+  std::uint32_t buttons_ = 0;
+  std::array<float, 3> hand_m_{};
+};
+
+}  // namespace merlin::wall

@@ -1,0 +1,189 @@
+// What counts as a touch, and what touches undo.
+#include "daemon/wall/attendance.h"
+
+#include <gtest/gtest.h>
+
+namespace merlin::wall {
+namespace {
+
+using std::chrono::milliseconds;
+using Shown = Attendance::Shown;
+
+class AttendanceTest : public testing::Test {
+ protected:
+  // A frame 20 ms after the last one, with `input_`, of which what happens once is removed then.
+  Shown frame() {
+    now_ += milliseconds(20);
+    WallInput input = input_;
+    attendance_.update(input, now_);
+    input_.blank = input_.freeze = input_.next_content = input_.snapshot = 0;
+    input_.scene.reset_view = input_.scene.next_mode = 0;
+    input_.scene.step = {};
+    input_.align.begun = {};
+    return attendance_.shown();
+  }
+  Shown pass(Duration time) {
+    Shown shown = attendance_.shown();
+    for (const Timestamp end = now_ + time; now_ < end;) shown = frame();
+    return shown;
+  }
+  void push(float by) {
+    input_.scene.ball.emplace();
+    input_.scene.ball->translation[0] = by;
+  }
+  void hold(float x_m) {
+    input_.scene.grab = true;
+    input_.scene.hand.emplace();
+    input_.scene.hand->position_m[0] = x_m;
+  }
+  // Black, and nobody has touched anything for some time.
+  void black() {
+    input_ = {};
+    pass(milliseconds(600));
+    attendance_.toggleBlank();
+    ASSERT_EQ(frame(), Shown::kBlank);
+  }
+
+  Attendance attendance_{{}};
+  WallInput input_;
+  Timestamp now_{std::chrono::seconds(100)};
+};
+
+TEST_F(AttendanceTest, EveryTouchShowsThePictureAgain) {
+  const std::function<void()> touches[] = {
+      [&] { push(0.1F); },
+      [&] { input_.scene.ball.emplace().rotation[2] = -0.1F; },
+      [&] { input_.scene.ball.emplace().buttons = 1U << 7; },
+      [&] { input_.scene.step.way_m.x() = 0.1F; },
+      [&] { input_.scene.step.turn_rad.y() = 0.1F; },
+      [&] { input_.scene.reset_view = 1; },
+      [&] { input_.scene.next_mode = 1; },
+      [&] { input_.next_content = 1; },
+      [&] { input_.snapshot = 1; },
+      [&] { input_.align.begun[2] = 1; },
+      [&] { input_.align.push.x = 0.5; },
+      [&] { input_.scene.grab = true; },
+      [&] { input_.scene.fly = true; },
+      [&] { input_.scene.point_at = true; },
+      [&] { attendance_.touch(); },
+      [&] { attendance_.playlistOn(); },
+      [&] { attendance_.playlistNext(); },
+  };
+  for (std::size_t i = 0; i < std::size(touches); ++i) {
+    black();
+    touches[i]();
+    EXPECT_EQ(frame(), Shown::kPicture) << i;
+    EXPECT_EQ(pass(milliseconds(100)), Shown::kPicture) << i;
+  }
+}
+
+TEST_F(AttendanceTest, NothingElseDoes) {
+  black();
+  push(0);
+  hold(0);
+  input_.scene.grab = false;
+  input_.posture[0] = 'x';
+  input_.head.emplace().position_m[0] = 1;
+  EXPECT_EQ(pass(milliseconds(2000)), Shown::kBlank);
+  attendance_.playlistOff();
+  EXPECT_EQ(frame(), Shown::kBlank);
+}
+
+TEST_F(AttendanceTest, ASecondCallUndoesTheFirstAlsoInTheSameFrame) {
+  attendance_.toggleFreeze();
+  EXPECT_EQ(frame(), Shown::kFrozen);
+  attendance_.toggleFreeze();
+  EXPECT_EQ(frame(), Shown::kPicture);
+  attendance_.toggleBlank();
+  attendance_.toggleBlank();
+  EXPECT_EQ(frame(), Shown::kPicture);
+  input_.blank = 2;
+  EXPECT_EQ(frame(), Shown::kPicture);
+}
+
+TEST_F(AttendanceTest, BlackIsAboveFrozen) {
+  attendance_.toggleFreeze();
+  frame();
+  attendance_.toggleBlank();
+  EXPECT_EQ(frame(), Shown::kBlank);
+  EXPECT_TRUE(attendance_.isFrozen());
+  attendance_.toggleBlank();
+  EXPECT_EQ(frame(), Shown::kFrozen);
+  attendance_.toggleBlank();
+  frame();
+  push(1);
+  EXPECT_EQ(frame(), Shown::kPicture);
+  EXPECT_FALSE(attendance_.isFrozen());
+}
+
+// Whoever turns the ball when the operator makes the wall black does not undo it by going on.
+TEST_F(AttendanceTest, AMotionThatGoesOnIsNoNewTouch) {
+  push(1);
+  pass(milliseconds(100));
+  attendance_.toggleBlank();
+  EXPECT_EQ(pass(milliseconds(3000)), Shown::kBlank);
+  push(0);
+  EXPECT_EQ(pass(milliseconds(400)), Shown::kBlank);
+  push(1);
+  EXPECT_EQ(frame(), Shown::kBlank) << "too short a pause";
+  push(0);
+  EXPECT_EQ(pass(milliseconds(500)), Shown::kBlank);
+  push(1);
+  EXPECT_EQ(frame(), Shown::kPicture);
+}
+
+// The button arrives with its action, the ball trembles, and the button is released.
+TEST_F(AttendanceTest, TheButtonThatMakesItBlackDoesNotUndoIt) {
+  for (const Shown expected : {Shown::kBlank, Shown::kPicture}) {
+    pass(milliseconds(600));
+    input_.scene.ball.emplace().buttons = 1;
+    input_.blank = 1;
+    EXPECT_EQ(frame(), expected);
+    input_.scene.ball->translation[1] = 0.05F;
+    EXPECT_EQ(pass(milliseconds(200)), expected);
+    input_.scene.ball.emplace();
+    EXPECT_EQ(pass(milliseconds(700)), expected);
+  }
+}
+
+TEST_F(AttendanceTest, AButtonThatIsStuckIsOneTouch) {
+  black();
+  input_.scene.ball.emplace().buttons = 4;
+  EXPECT_EQ(frame(), Shown::kPicture);
+  pass(milliseconds(1000));
+  attendance_.toggleBlank();
+  EXPECT_EQ(pass(milliseconds(1000)), Shown::kBlank);
+  input_.scene.ball->buttons = 4 | 1;
+  EXPECT_EQ(frame(), Shown::kPicture);
+}
+
+TEST_F(AttendanceTest, AHandThatHoldsAnActionTouchesWhileItMoves) {
+  hold(1);
+  pass(milliseconds(1000));
+  attendance_.toggleFreeze();
+  input_.scene.hand->position_m[0] = 1.015F;  // trembles
+  EXPECT_EQ(pass(milliseconds(1000)), Shown::kFrozen);
+  input_.scene.hand->position_m[0] = 1.03F;
+  EXPECT_EQ(frame(), Shown::kPicture);
+}
+
+TEST_F(AttendanceTest, WhileItIsBlackOrFrozenTheSceneGetsNoInput) {
+  push(1);
+  hold(1);
+  pass(milliseconds(100));
+  attendance_.toggleBlank();
+  WallInput input = input_;
+  EXPECT_TRUE(attendance_.update(input, now_ + milliseconds(20)).held);
+  EXPECT_FALSE(input.scene.ball || input.scene.hand || input.scene.grab);
+}
+
+TEST_F(AttendanceTest, TheTouchThatUndoesItMovesTheSceneAsEver) {
+  black();
+  push(0.5F);
+  WallInput input = input_;
+  EXPECT_FALSE(attendance_.update(input, now_ + milliseconds(20)).held);
+  EXPECT_EQ(input.scene.ball->translation[0], 0.5F);
+}
+
+}  // namespace
+}  // namespace merlin::wall

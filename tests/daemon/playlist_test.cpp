@@ -1,0 +1,199 @@
+// A day of a wall, in seconds of a virtual clock: who touches it when, and what it shows then.
+#include "daemon/wall/playlist.h"
+
+#include <map>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "config/loader.h"
+#include "daemon/wall/attendance.h"
+#include "daemon/wall/wall_checks.h"
+
+namespace merlin::wall {
+namespace {
+
+using std::chrono::seconds;
+
+constexpr float kSixDegrees = 0.104720F;
+
+// Begins after 5 minutes, shows each content for 2 hours, and is dimmed after 4 hours.
+PlaylistSettings settings() {
+  PlaylistSettings s;
+  s.after_s = 300;
+  s.hold_s = 7200;
+  s.dim_after_s = 14'400;
+  s.dim_to = 0.25;
+  return s;
+}
+
+constexpr int at(int hour, int minute) { return 60 * (60 * hour + minute); }
+
+class Day : public testing::Test {
+ protected:
+  // Whether somebody pushes the ball in a second of the day, and which commands are sent in it.
+  using Act = std::function<void(Attendance&)>;
+  std::map<int, Act> commands;
+  std::function<bool(int)> pushed = [](int) { return false; };
+
+  // What happened, second by second: "HH:MM:SS WHAT".
+  std::vector<std::string> run(const PlaylistSettings& playlist, int until = at(24, 0)) {
+    Attendance attendance(playlist);
+    std::vector<std::string> table;
+    Seen before;
+    for (int second = 0; second < until; ++second) {
+      if (const auto found = commands.find(second); found != commands.end())
+        found->second(attendance);
+      WallInput input;
+      input.scene.ball.emplace();
+      input.scene.ball->rotation[1] = pushed(second) ? 0.5F : 0.0F;
+      const auto frame = attendance.update(input, Timestamp(seconds(100 + second)));
+      const Seen now = seen(attendance, frame, input);
+      for (const std::string& what : changes(before, now)) {
+        table.push_back(fmt::format("{:02}:{:02}:{:02} {}", second / 3600, second / 60 % 60,
+                                    second % 60, what));
+      }
+      before = now;
+    }
+    return table;
+  }
+
+ private:
+  struct Seen {
+    Attendance::Shown shown = Attendance::Shown::kPicture;
+    bool running = false, next = false, turns = false;
+    float light = 1;
+  };
+  static Seen seen(const Attendance& attendance, const Attendance::Frame& frame,
+                   const WallInput& input) {
+    EXPECT_EQ(frame.held, attendance.shown() != Attendance::Shown::kPicture);
+    EXPECT_TRUE(!frame.held || !input.scene.ball) << "held, nothing moves the scene";
+    EXPECT_TRUE(input.scene.turn_rad_s == 0 ||
+                std::abs(input.scene.turn_rad_s - kSixDegrees) < 1e-5);
+    return {attendance.shown(), attendance.playlist() == Playlist::State::kRunning,
+            frame.playlist.next, input.scene.turn_rad_s != 0, frame.playlist.light};
+  }
+  static std::vector<std::string> changes(const Seen& before, const Seen& now) {
+    constexpr const char* kShown[] = {"the picture", "black", "frozen"};
+    std::vector<std::string> what;
+    if (now.shown != before.shown) what.emplace_back(kShown[static_cast<int>(now.shown)]);
+    if (now.running != before.running) what.emplace_back(now.running ? "begins" : "ends");
+    if (now.turns != before.turns) what.emplace_back(now.turns ? "turns" : "stands");
+    if (now.next) what.emplace_back("next");
+    const bool settled = now.light == 0 || now.light == 0.25F || now.light == 1;
+    if (now.light != before.light && settled) what.push_back(fmt::format("light {}", now.light));
+    return what;
+  }
+};
+
+TEST_F(Day, WithVisitorsAnOperatorAndNights) {
+  pushed = [](int s) { return (s >= at(9, 0) && s < at(9, 20)) || s == at(15, 30); };
+  commands[at(12, 0)] = [](Attendance& a) { a.toggleBlank(); };
+  commands[at(13, 0)] = [](Attendance& a) { a.toggleBlank(); };
+  commands[at(15, 0)] = [](Attendance& a) { a.toggleFreeze(); };
+  commands[at(16, 0)] = [](Attendance& a) { a.playlistOff(); };
+  commands[at(20, 0)] = [](Attendance& a) { a.playlistOn(); };
+  commands[at(23, 0)] = [](Attendance& a) { a.playlistNext(); };
+  const std::vector<std::string> expected = {
+      "00:05:00 begins",       // nobody came
+      "00:05:00 turns",        //
+      "02:05:00 next",         //
+      "04:00:03 light 0.25",   // three seconds after it began to fall
+      "04:05:00 next",         //
+      "06:05:00 next",         //
+      "08:05:00 next",         //
+      "09:00:00 ends",         // a visitor, for 20 minutes
+      "09:00:00 stands",       //
+      "09:00:00 light 1",      //
+      "09:24:59 begins",       // it comes back 5 minutes after the last touch
+      "09:24:59 turns",        //
+      "11:24:59 next",         //
+      "12:00:00 black",        // the operator
+      "12:00:00 stands",       //
+      "12:00:00 light 0",      //
+      "13:00:00 the picture",  // the operator again: it goes on
+      "13:00:00 turns",        //
+      "13:00:00 light 1",      //
+      "14:20:02 light 0.25",   // 4 hours after the last touch, without the black one
+      "14:24:59 next",         // likewise
+      "15:00:00 frozen",       //
+      "15:00:00 stands",       //
+      "15:30:00 the picture",  // a visitor
+      "15:30:00 ends",         //
+      "15:30:00 light 1",      //
+      "15:35:00 begins",       //
+      "15:35:00 turns",        //
+      "16:00:00 ends",         // switched off: it does not come back
+      "16:00:00 stands",       //
+      "20:00:00 begins",       // at once
+      "20:00:00 turns",        //
+      "22:00:00 next",         //
+      "23:00:00 next",         // asked for
+  };
+  EXPECT_EQ(run(settings()), expected);
+}
+
+TEST_F(Day, WithoutAPlaylistNothingHappens) { EXPECT_TRUE(run({}).empty()); }
+
+TEST_F(Day, ThePictureIsDimmedWithoutAPlaylistToo) {
+  PlaylistSettings s = settings();
+  s.after_s = 0;
+  pushed = [](int second) { return second == at(10, 0); };
+  EXPECT_EQ(run(s), (std::vector<std::string>{"04:00:03 light 0.25", "10:00:00 light 1",
+                                              "14:00:03 light 0.25"}));
+}
+
+TEST_F(Day, APlaylistThatOnlyACommandBeginsComesBackByCommandAlone) {
+  PlaylistSettings s;
+  commands[60] = [](Attendance& a) { a.playlistOn(); };
+  pushed = [](int second) { return second == 100; };
+  EXPECT_EQ(run(s), (std::vector<std::string>{"00:01:00 begins", "00:01:00 turns", "00:01:40 ends",
+                                              "00:01:40 stands"}));
+}
+
+TEST_F(Day, NextIsShownWithoutAPlaylistToo) {
+  commands[60] = [](Attendance& a) { a.playlistNext(); };
+  EXPECT_EQ(run({}), std::vector<std::string>{"00:01:00 next"});
+}
+
+TEST_F(Day, AMachineThatSleptShowsOneContentMore) {
+  Playlist playlist(settings());
+  playlist.on();
+  EXPECT_TRUE(playlist.update(seconds(1), false).begins);
+  EXPECT_TRUE(playlist.update(seconds(100'000), false).next);
+  EXPECT_FALSE(playlist.update(seconds(1), false).next);
+}
+
+std::string findings(const std::string& names) {
+  LoadedSettings loaded = loadSettings(
+      R"({"wall": {"model": "bone.mrm", "contents": [{"slides": "talk"}, {"picture": "a.tif",
+          "name": "hall"}], "playlist": {"contents": [)" +
+          names + "]}}}",
+      "");
+  checkPlaylist(loaded);
+  std::string text;
+  for (const Finding& finding : loaded.findings) text += toText("f.json", finding) + "\n";
+  return text;
+}
+
+TEST(PlaylistCheck, NamesAreThoseOfContentsOnceEach) {
+  EXPECT_EQ(findings(R"("hall", "talk", "bone")"), "");
+  EXPECT_EQ(findings(R"("hall", "attic")"),
+            "f.json:2: /wall/playlist/contents/1 is \"attic\", which is not the name of a content; "
+            "contents are bone, talk, hall\n");
+  EXPECT_EQ(findings(R"("hall", "talk", "hall")"),
+            "f.json:2: /wall/playlist/contents/2 is \"hall\", which is already in the list\n");
+  EXPECT_EQ(findings(R"("attic", 7)"),
+            "f.json:2: /wall/playlist/contents/1 is the number 7; allowed is a string\n");
+}
+
+TEST_F(Day, ThePictureGetsDarkerGradually) {
+  Playlist playlist(settings());
+  EXPECT_EQ(playlist.update(seconds(14'400), false).light, 1);
+  EXPECT_FLOAT_EQ(playlist.update(seconds(1), false).light, 0.75F);
+  EXPECT_FLOAT_EQ(playlist.update(seconds(1), false).light, 0.5F);
+  EXPECT_EQ(playlist.update(seconds(1), true).light, 1) << "bright again at once";
+}
+
+}  // namespace
+}  // namespace merlin::wall
