@@ -1,0 +1,59 @@
+// GlyphAtlas: pictures of all characters of a font that MERLIN draws, in the sizes in use, in one
+// picture.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "daemon/base/result.h"
+
+namespace merlin::render::text {
+
+struct Glyph {
+  int x = 0, y = 0, width = 0, height = 0;  // its picture in the atlas [px]
+  int left = 0;                             // from the pen to the picture's left edge [px]
+  int top = 0;                              // from the base line up to its upper edge [px]
+  int advance = 0;                          // from the pen to that of the next character [px]
+};
+
+struct FontSize {
+  int em_px = 0;                      // as asked for
+  int ascent_px = 0, descent_px = 0;  // of the font, from the base line; both positive
+};
+
+// Characters: Latin with its extensions A and B, Greek, Cyrillic, and some punctuation and symbols,
+// as far as the font has them. The same font gives the same bytes. Reentrant; immutable.
+class GlyphAtlas {
+ public:
+  // `font`: a font file that FreeType reads; used only during the call. `sizes_px`: em sizes. Costs
+  // about 50 us for each character and size. Errors: kMalformed (FreeType cannot read the font).
+  // REQUIRES: 1 <= size <= 200.
+  static Result<GlyphAtlas> make(std::span<const std::byte> font, std::span<const int> sizes_px);
+
+  // `size`: index in `sizes_px`.
+  const FontSize& size(std::size_t size) const noexcept { return sizes_[size]; }
+  // A box for a character that the atlas lacks. Costs O(log n).
+  const Glyph& glyph(std::size_t size, char32_t character) const noexcept;
+  bool has(char32_t character) const noexcept;
+
+  // Coverage 0..255 of the glyph's row, counted from the top.
+  std::span<const std::uint8_t> row(const Glyph& glyph, int row) const noexcept;
+
+  // Bytes that its picture takes.
+  std::size_t bytes() const noexcept { return coverage_.size(); }
+
+ private:
+  GlyphAtlas() = default;
+
+  class Builder;
+
+  std::vector<char32_t> characters_;  // ascending
+  // Of each size, one after another: those of characters_, then the box.
+  std::vector<Glyph> glyphs_;
+  std::vector<FontSize> sizes_;
+  std::vector<std::uint8_t> coverage_;
+};
+
+}  // namespace merlin::render::text

@@ -1,0 +1,66 @@
+// OperatorOverlay: puts the wall's state over the operator's tiles.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/result.h"
+#include "render/frame/overlay.h"
+#include "render/text/glyph_atlas.h"
+#include "render/text/operator_facts.h"
+#include "render/text/operator_plate.h"
+#include "render/tiles/tile_plan.h"
+
+namespace merlin::render::text {
+
+// show() and isShown() are for any thread; the rest is thread-bound to the wall's thread.
+class OperatorOverlay final : public frame::Overlay {
+ public:
+  // For the plan's tiles of kind kOperator that have room for it; without any it draws nothing.
+  // `source` and `clock` must outlive this object. Costs about 60 ms for each size of text. Errors:
+  // those of GlyphAtlas::make().
+  static Result<std::unique_ptr<OperatorOverlay>> make(const tiles::TilePlan& plan,
+                                                       OperatorSource& source, const Clock& clock);
+
+  // Whether it is drawn from the next frame on.
+  void show(bool shown) noexcept { asked_.store(shown); }
+  bool isShown() const noexcept { return asked_.load(); }
+
+  // Looks at the facts at most twice a second: a wall that stands is not presented more often.
+  bool hasChanged() const override;
+  // Reads the facts and draws the plates anew at most ten times a second; otherwise it costs the
+  // blending of the plates' pixels, and erase() a copy of them.
+  void draw(std::span<std::uint8_t> canvas) override;
+  void erase(std::span<std::uint8_t> canvas) override;
+
+ private:
+  struct TilePlates {
+    Rect tile;  // in the frame
+    PlateFonts fonts;
+    std::vector<Plate> plates;
+  };
+
+  OperatorOverlay(const tiles::TilePlan& plan, GlyphAtlas atlas, OperatorSource& source,
+                  const Clock& clock);
+  void refresh(Timestamp now);
+  void blend(const Plate& plate, const Rect& tile, std::span<std::uint8_t> canvas);
+  template <typename Act>
+  void forEachRow(const Plate& plate, const Rect& tile, const Act& act) const;
+
+  GlyphAtlas atlas_;
+  std::size_t frame_width_;
+  OperatorSource& source_;
+  const Clock& clock_;
+  std::vector<TilePlates> tiles_;
+  OperatorFacts facts_;
+  Timestamp read_at_{};            // when the facts that are drawn were read
+  mutable Timestamp looked_at_{};  // when hasChanged() last looked at them
+  bool drawn_ = false;
+  std::vector<std::uint8_t> covered_;  // the canvas's pixels under the plates
+  std::atomic<bool> asked_{true};
+};
+
+}  // namespace merlin::render::text

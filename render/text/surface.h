@@ -1,0 +1,65 @@
+// Surface: pixels that text and plates are drawn into. Pure.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace merlin::render::text {
+
+struct Rect {
+  int x = 0, y = 0, width = 0, height = 0;  // from the upper left corner [px]
+
+  bool operator==(const Rect&) const = default;
+};
+
+// The part that both have; without pixels if there is none.
+Rect common(const Rect& a, const Rect& b) noexcept;
+// The rectangle without a margin of `by` pixels on each side.
+Rect shrunk(const Rect& r, int by) noexcept;
+
+struct Point {
+  int x = 0, y = 0;  // [px]
+};
+
+struct Colour {
+  std::uint8_t red = 0, green = 0, blue = 0;
+  std::uint8_t alpha = 255;  // 255: opaque
+};
+// The same, more transparent: alpha times `share`, 0..1.
+Colour faded(Colour colour, float share) noexcept;
+
+// Borrows the pixels: RGBA, premultiplied by alpha, rows from the top without gaps. Each drawing
+// puts its colour over what is there, and nothing outside the clip. Reentrant.
+class Surface {
+ public:
+  // REQUIRES: rgba.size() is 4 * width * height.
+  Surface(std::span<std::uint8_t> rgba, int width, int height) noexcept;
+
+  // The same pixels, of which only those inside `clip` are drawn.
+  Surface clippedTo(const Rect& clip) const noexcept;
+  const Rect& clip() const noexcept { return clip_; }
+
+  void fill(const Rect& area, Colour colour) const noexcept;
+  // Gives all pixels this colour, also outside the clip, whatever is there. As quick as a memset.
+  void fillWhole(Colour colour) const noexcept;
+  // A disc of `diameter_px` with a smooth edge, in the middle of `area`.
+  void disc(const Rect& area, int diameter_px, Colour colour) const noexcept;
+  // Puts `colour` over one pixel with a coverage of 0..255. Outside the clip nothing happens.
+  void cover(int x, int y, std::uint8_t coverage, Colour colour) const noexcept;
+  // The same for pixels side by side, from `at` to the right.
+  void coverRow(Point at, std::span<const std::uint8_t> coverage, Colour colour) const noexcept;
+
+ private:
+  std::uint8_t* pixelAt(int x, int y) const noexcept;
+
+  std::span<std::uint8_t> rgba_;
+  int width_;
+  Rect clip_;
+};
+
+// x / 255, rounded. REQUIRES: x <= 255 * 255.
+constexpr std::uint8_t by255(std::uint32_t x) noexcept {
+  return static_cast<std::uint8_t>((x + 128 + ((x + 128) >> 8)) >> 8);
+}
+
+}  // namespace merlin::render::text

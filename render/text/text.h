@@ -1,0 +1,38 @@
+// Draws text into a surface. Pure.
+//
+// From left to right, a character after another: no kerning, no ligatures, no combining marks, no
+// lines. A character that the atlas lacks, a control character and a byte that is not UTF-8 are
+// boxes.
+#pragma once
+
+#include <string_view>
+
+#include "render/text/glyph_atlas.h"
+#include "render/text/surface.h"
+
+namespace merlin::render::text {
+
+// A font in one size. Borrows the atlas.
+struct Font {
+  const GlyphAtlas* atlas = nullptr;
+  std::size_t size = 0;  // index of the atlas's sizes
+
+  const FontSize& metrics() const noexcept { return atlas->size(size); }
+};
+
+// Sum of the characters' advances [px]; at most about a million, beyond which it stops.
+int textWidth(const Font& font, std::string_view text) noexcept;
+
+// Draws from `pen`, which is on the base line. Returns the pen behind the text; what would be
+// beyond the right edge of the clip is not looked at.
+Point drawText(const Surface& surface, const Font& font, Point pen, std::string_view text,
+               Colour colour) noexcept;
+
+enum class Align { kLeft, kMiddle, kRight };
+
+// Draws one line in a box, in the middle of its height, nothing outside. A text that is too wide
+// begins at the left edge and ends with an ellipsis. Returns the width that it takes [px].
+int drawTextIn(const Surface& surface, const Font& font, const Rect& box, std::string_view text,
+               Colour colour, Align align = Align::kLeft) noexcept;
+
+}  // namespace merlin::render::text

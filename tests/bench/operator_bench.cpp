@@ -1,0 +1,119 @@
+// ./dev bench operator: what the plates over the operator's tile cost a frame, beside a memcpy of
+// the tile.
+#include <chrono>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "render/text/operator_overlay.h"
+#include "tests/bench/figures.h"
+#include "tests/support/fake_clock.h"
+
+namespace merlin::bench {
+namespace {
+
+using Steady = std::chrono::steady_clock;
+using namespace render::text;
+
+double msSince(Steady::time_point then) {
+  return std::chrono::duration<double, std::milli>(Steady::now() - then).count();
+}
+
+// Facts of a busy wall, which differ each time.
+class BusyWall final : public OperatorSource {
+ public:
+  OperatorFacts read(Timestamp) override {
+    OperatorFacts f;
+    f.rate_asked_hz = f.rate_now_hz = 30;
+    f.rate_held_hz = 29.8;
+    f.cost = ++reads_;
+    f.full_cost = 69'636;
+    f.budget = 14'000;
+    f.cost_unit = "triangles";
+    f.content = "ankylosaurus";
+    f.mode = "moves the model";
+    f.posture = "fist";
+    f.devices = {{"glove", "ok", DeviceLight::kGood},
+                 {"tracker", "opening", DeviceLight::kWaiting},
+                 {"ball", "absent", DeviceLight::kBad}};
+    f.messages.assign(4, {"frame rate reduced to 15 of 30 Hz: there is too little time", 1});
+    for (std::size_t i = 0; i < kChartColumns; ++i)
+      f.chart[i] = {static_cast<std::uint8_t>(60 + i % 50), i % 60 == 0};
+    return f;
+  }
+
+ private:
+  std::uint32_t reads_ = 0;
+};
+
+struct Times {
+  std::vector<double> redrawn, kept, copied;  // [ms]
+};
+
+Times measureTile(int width, int height, int frames) {
+  render::tiles::TilesSettings settings;
+  settings.frame_width = settings.tile_width = width;
+  settings.frame_height = settings.tile_height = height;
+  settings.tiles = {{"operator", render::tiles::TileKind::kOperator, 0, 0, 0}};
+  const auto plan = render::tiles::planTiles(settings);
+  if (!plan) didNotRun("the tile", plan.error().what, "mend the benchmark");
+  BusyWall source;
+  test::FakeClock clock;
+  const auto overlay = OperatorOverlay::make(*plan, source, clock);
+  if (!overlay) didNotRun("the overlay", overlay.error().what, "mend the benchmark");
+  const auto bytes = static_cast<std::size_t>(4 * width * height);
+  std::vector<std::uint8_t> canvas(bytes, 90), copy(bytes);
+  Times times;
+  for (int i = 0; i < 3 * frames; ++i) {  // every third frame draws the plates anew, as at 30 Hz
+    clock.advance(std::chrono::milliseconds(34));
+    auto began = Steady::now();
+    (*overlay)->draw(canvas);
+    (*overlay)->erase(canvas);
+    (i % 3 == 0 ? times.redrawn : times.kept).push_back(msSince(began));
+    began = Steady::now();
+    std::memcpy(copy.data(), canvas.data(), bytes);
+    asm volatile("" : : "r"(copy.data()) : "memory");
+    times.copied.push_back(msSince(began));
+  }
+  return times;
+}
+
+void reportTile(const std::string& name, const Times& times, Report& report) {
+  const Measured redrawn = medianOf(times.redrawn, "frames that draw the plates of " + name);
+  const Measured kept = medianOf(times.kept, "frames that keep the plates of " + name);
+  const Measured copied = medianOf(times.copied, "copies of " + name);
+  const Measured ratio = ratioOf(kept, copied, name + " beside memcpy");
+  report.text(
+      "  {:<11} {:6.2f} ms a frame, {:.1f} memcpys of the tile; {:6.2f} ms where the plates are "
+      "drawn anew\n",
+      name, kept.value(), ratio.value(), redrawn.value());
+  report.figure(name + "_kept_ms", kept, "ms");
+  report.figure(name + "_redrawn_ms", redrawn, "ms");
+  report.figure(name + "_kept_per_memcpy", ratio, "1");
+}
+
+bool measure(int frames, Report& report) {
+  report.text("plates over the operator's tile, drawn and erased, medians\n");
+  reportTile("640x480", measureTile(640, 480, frames), report);
+  reportTile("1920x1080", measureTile(1920, 1080, frames), report);
+  return true;
+}
+
+}  // namespace
+}  // namespace merlin::bench
+
+int main(int argc, char** argv) {
+  CLI::App app("What the plates over the operator's tile cost a frame");
+  int frames = 100;
+  bool json = false;
+  app.add_option("--frames", frames, "Frames that draw the plates anew")
+      ->check(CLI::Range(1, 100'000));
+  app.add_flag("--json", json, "One JSON object");
+  CLI11_PARSE(app, argc, argv);
+  return merlin::bench::runBench("operator", json, [&](merlin::bench::Report& report) {
+    return merlin::bench::measure(frames, report);
+  });
+}
