@@ -101,8 +101,7 @@ SettingFaults validate(const std::vector<SwitchingTimes>& schedule) {
       faults.push_back({at + "/off",
                         "is the same time as on; leave out this entry, or change one "
                         "of the two"});
-    if (t.days.empty())
-      faults.push_back({at + "/days", "names no day; leave it out for all days"});
+    if (t.days.empty()) faults.push_back({at + "/days", "names no day; leave it out for all days"});
     for (std::size_t d = 0; d < t.days.size(); ++d) {
       if (weekdayBits({t.days[d]}) != 0) continue;
       faults.push_back({fmt::format("{}/days/{}", at, d),
