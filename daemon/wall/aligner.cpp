@@ -278,6 +278,11 @@ Result<Ok> Aligner::showCard(const std::string& name) {
   return Ok{};
 }
 
+bool Aligner::showsCard() const {
+  const std::lock_guard lock(mutex_);
+  return card_.has_value();
+}
+
 void Aligner::ask(const AlignInput& input) {
   const std::lock_guard lock(asked_mutex_);
   for (std::size_t i = 0; i < kAlignActionCount; ++i) asked_.begun[i] += input.begun[i];

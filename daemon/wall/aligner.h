@@ -74,6 +74,9 @@ class Aligner {
   // corner is marked on it once somebody has selected one. Errors: kInvalidArgument.
   Result<Ok> showCard(const std::string& name);
 
+  // Whether a test card is shown.
+  bool showsCard() const;
+
   // Passes on requests of bound inputs; returns at once. To be called on the wall's thread. A move
   // that is refused is reported as a notice of the keeper.
   void ask(const AlignInput& input);

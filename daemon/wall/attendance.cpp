@@ -41,6 +41,11 @@ void Attendance::touch() {
   asked_.touched = true;
 }
 
+void Attendance::attend() {
+  const std::lock_guard lock(mutex_);
+  asked_.attended = true;
+}
+
 void Attendance::playlistOn() {
   const std::lock_guard lock(mutex_);
   asked_.playlist = true;
@@ -108,7 +113,8 @@ Attendance::Frame Attendance::update(WallInput& input, Timestamp now) {
   frame.held = blank_ || frozen_;
   const Duration elapsed = now - std::exchange(last_update_, now).value_or(now);
   // Black and frozen, the wall waits: for the playlist no time passes.
-  frame.playlist = playlist_.update(frame.held ? Duration::zero() : elapsed, motion || acted);
+  frame.playlist =
+      playlist_.update(frame.held ? Duration::zero() : elapsed, motion || acted || asked.attended);
   if (frame.held) input.scene = {};
   if (!frame.held) input.scene.turn_rad_s = frame.playlist.turn_rad_s;
   if (blank_) frame.playlist.light = 0;

@@ -27,6 +27,8 @@ class Attendance {
   void toggleFreeze();
   // A command that changes what is shown is executed; undoes both.
   void touch();
+  // Somebody works the wall in a way that does not come with the input: the playlist ends.
+  void attend();
   // See Playlist.
   void playlistOn();
   void playlistOff();
@@ -56,7 +58,7 @@ class Attendance {
 
  private:
   struct Asked {
-    bool blank = false, freeze = false, touched = false, next = false;
+    bool blank = false, freeze = false, touched = false, attended = false, next = false;
     std::optional<bool> playlist;  // on or off
   };
   Asked takeAsked(const WallInput& input);

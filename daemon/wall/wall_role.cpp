@@ -185,6 +185,7 @@ std::size_t WallRole::firstContent() {
 // one it is. A file that is not in the configuration is not stored.
 void WallRole::tend(Timestamp now) {
   signals_->tend(now);
+  if (aligner_->showsCard()) attendance_.attend();
   const auto shown = segment_->interaction.read();
   if (!shown || kept_content_ == shown->content) return;
   kept_content_ = shown->content;

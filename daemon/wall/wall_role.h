@@ -82,8 +82,9 @@ class WallRole {
   // For its thread-safe members.
   Attendance& attendance() { return attendance_; }
 
-  // To be called ten times a second: saves in the state which content is shown, and removes shared
-  // memory of signals that nobody requests any more.
+  // To be called ten times a second: saves in the state which content is shown, removes shared
+  // memory of signals that nobody requests any more, and keeps the playlist from beginning while a
+  // test card is shown.
   void tend(Timestamp now);
 
   // Returns the events of the viewer's tracked head since the last call. Thread-safe.

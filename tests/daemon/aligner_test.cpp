@@ -109,6 +109,16 @@ TEST_F(AlignerTest, APointOfTheMeshMovesInSharesOfTheOutput) {
   EXPECT_EQ(built_.back().mesh.points[0], (render::correct::MeshPoint{0, 0}));
 }
 
+TEST_F(AlignerTest, SaysWhetherATestCardIsShown) {
+  EXPECT_FALSE(aligner_->showsCard());
+  EXPECT_TRUE(aligner_->showCard("grid"));
+  EXPECT_TRUE(aligner_->showsCard());
+  EXPECT_FALSE(aligner_->showCard("grey"));
+  EXPECT_TRUE(aligner_->showsCard()) << "as before";
+  EXPECT_TRUE(aligner_->showCard("off"));
+  EXPECT_FALSE(aligner_->showsCard());
+}
+
 TEST_F(AlignerTest, WhatIsOffIsNoCorrectionAtAll) {
   base_ = {};
   start();

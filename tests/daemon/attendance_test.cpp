@@ -146,6 +146,19 @@ TEST_F(AttendanceTest, TheButtonThatMakesItBlackDoesNotUndoIt) {
   }
 }
 
+TEST_F(AttendanceTest, TheActionMayComeAFrameBeforeItsButton) {
+  input_.blank = 1;
+  frame();
+  input_.scene.ball.emplace().buttons = 1;
+  EXPECT_EQ(pass(milliseconds(1000)), Shown::kBlank);
+}
+
+TEST_F(AttendanceTest, WorkThatIsNoTouchLeavesItBlack) {
+  black();
+  attendance_.attend();
+  EXPECT_EQ(frame(), Shown::kBlank);
+}
+
 TEST_F(AttendanceTest, AButtonThatIsStuckIsOneTouch) {
   black();
   input_.scene.ball.emplace().buttons = 4;
@@ -161,6 +174,7 @@ TEST_F(AttendanceTest, AHandThatHoldsAnActionTouchesWhileItMoves) {
   hold(1);
   pass(milliseconds(1000));
   attendance_.toggleFreeze();
+  frame();
   input_.scene.hand->position_m[0] = 1.015F;  // trembles
   EXPECT_EQ(pass(milliseconds(1000)), Shown::kFrozen);
   input_.scene.hand->position_m[0] = 1.03F;

@@ -151,6 +151,13 @@ TEST_F(Day, APlaylistThatOnlyACommandBeginsComesBackByCommandAlone) {
                                               "00:01:40 stands"}));
 }
 
+TEST_F(Day, APlaylistWaitsWhileATestCardIsShown) {
+  for (int second = 0; second < at(1, 0); ++second)
+    commands[second] = [](Attendance& a) { a.attend(); };
+  EXPECT_EQ(run(settings(), at(2, 0)),
+            (std::vector<std::string>{"01:04:59 begins", "01:04:59 turns"}));
+}
+
 TEST_F(Day, NextIsShownWithoutAPlaylistToo) {
   commands[60] = [](Attendance& a) { a.playlistNext(); };
   EXPECT_EQ(run({}), std::vector<std::string>{"00:01:00 next"});

@@ -176,16 +176,20 @@ TEST_F(WallAttendanceTest, ThePlaylistTurnsAtTheRateAndYieldsAtTheFirstTouch) {
 
 TEST_F(WallAttendanceTest, ThePlaylistBeginsWithTheInitialViewOfAContentOfItsList) {
   setPlaylist(2, 100, 0);
-  playlist_places_ = {1};
-  frames(4, [&](std::size_t frame) {
-    feed_.pushed = frame < 20;
-    if (frame == 70) {
-      EXPECT_GT(turned(), 5);
-      EXPECT_EQ(interaction().content, 0u);
-    }
-  });
-  EXPECT_EQ(interaction().content, 1u);
-  EXPECT_NEAR(turned(), 0, 1e-3);
+  for (const std::size_t place : {std::size_t{0}, std::size_t{1}}) {
+    playlist_places_ = {place};
+    feed_.begins.clear();
+    stop_ = std::stop_source();
+    frames(4, [&](std::size_t frame) {
+      feed_.pushed = frame < 20;
+      if (frame == 70) {
+        EXPECT_GT(turned(), 5);
+        EXPECT_EQ(interaction().content, 0u);
+      }
+    });
+    EXPECT_EQ(interaction().content, place);
+    EXPECT_NEAR(turned(), 0, 1e-3);
+  }
 }
 
 TEST_F(WallAttendanceTest, APlaylistOfOneContentTurnsItOnWithoutAJump) {
