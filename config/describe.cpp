@@ -597,6 +597,11 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
   v.group("scene", "Initial view of the model, and how a person's input moves it.",
           [&] { describeScene(w.scene, v); });
   v.group("render", "How the model is drawn.", [&] { describeRender(w.render, v); });
+  v.group("operator", "What is drawn over the picture on tiles of kind operator.", [&] {
+    v.flag("overlay", w.operator_tile.overlay,
+           "Whether rate, frame times, detail, content, posture, devices and messages are drawn "
+           "over the picture. A tile of less than 320 x 240 pixels has no room for them.");
+  });
   v.path("snapshots", w.snapshots,
          "Folder for the frames that the action snapshot writes. Empty: snapshots are off.");
   v.integer("snapshots_kept", w.snapshots_kept, {1, 1e6},

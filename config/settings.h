@@ -22,6 +22,7 @@
 #include "render/room/settings.h"
 #include "render/scene/settings.h"
 #include "render/stereo/settings.h"
+#include "render/text/settings.h"
 #include "render/tiles/settings.h"
 
 namespace merlin {
@@ -76,6 +77,7 @@ struct WallSettings {
   render::stereo::StereoSettings stereo;
   render::scene::SceneSettings scene;
   render::frame::RenderSettings render;
+  render::text::OperatorSettings operator_tile;
   std::vector<render::out::OutputSettings> outputs = {{}};
   std::string snapshots;  // folder for the frames that the action snapshot writes; empty: off
   int snapshots_kept = 1000;

@@ -166,6 +166,7 @@ void RoleServers::addEvents(std::vector<std::string>& documents, const char* kin
                             const std::vector<std::string>& sentences) const {
   for (const std::string& sentence : sentences) {
     logInfo("{}", sentence);
+    if (parts_.wall) parts_.wall->tell(sentence);
     documents.push_back(status::event(kind, sentence, clock_.now()));
   }
 }
@@ -175,6 +176,7 @@ void RoleServers::addEvents(std::vector<std::string>& documents, const char* kin
 void RoleServers::addServiceEvents(std::vector<std::string>& documents) {
   for (const std::string& sentence : parts_.services.takeEvents()) {
     logWarning("{}", sentence);
+    if (parts_.wall) parts_.wall->tell(sentence);
     documents.push_back(status::event("service", sentence, clock_.now()));
   }
 }

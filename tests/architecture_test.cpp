@@ -57,6 +57,7 @@ const std::map<std::string, Folders> kMayInclude = {
       "render/scene",
       "render/stereo",
       "render/testcard",
+      "render/text",
       "render/tiles"}},
     {"daemon/cli", {"config", "daemon/json", "daemon/shm", "daemon/status", "drivers/port"}},
     {"daemon/cli/calibrate",
@@ -157,6 +158,7 @@ const std::map<std::string, Folders> kMayInclude = {
       "render/room",
       "render/scene/settings.h",
       "render/stereo",
+      "render/text/settings.h",
       "render/tiles/settings.h"}},
 };
 
@@ -183,11 +185,11 @@ const std::map<std::string, Folders> kOnlyIn = {
     {"png.h", {"render/image"}},
     {"turbojpeg.h", {"render/image"}},
     {"zlib.h", {"render/image"}},
+    {"nettle/md5.h", {"drivers/pjlink"}},
     {"vips/vips.h", {"render/import"}},
     {"zip.h", {"render/correct/io"}},
     {"pugixml.hpp", {"render/correct/io"}},
     {"xxhash.h", {"render/lod/io"}},
-    {"nettle/md5.h", {"drivers/pjlink"}},
     {"rfb/rfb.h", {"daemon/rfb"}},
     {"rfb/rfbregion.h", {"daemon/rfb"}},
     {"CLI/CLI.hpp", {"daemon", "daemon/cli", "daemon/rfb"}},

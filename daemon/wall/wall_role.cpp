@@ -224,8 +224,7 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
                   fromSeconds(1 / settings_.wall.governor.rate_hz),
                   settings_.wall.stereo.head.station);
   render::frame::PointerMarker marker(plan_);
-  delivery_.emplace(plan_, outputs_,
-                    std::vector<render::frame::Overlay*>{&cards_, &marker, &curtain_},
+  delivery_.emplace(plan_, outputs_, withOperatorTile({&cards_, &marker, &curtain_}),
                     std::move(corrections_), signals_.get());
   std::optional<ViewerPlace> viewer = makeViewerPlace();
   render::out::VblankFrameClock frame_clock(clock_, [this] { return outputs_.vblank(); });
@@ -246,6 +245,18 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
   loop.run(stop, [&] { ready_.set_value(models.contexts().renderer()); });
   loop_.store(nullptr);
   shader_pass_.end();
+}
+
+// The plates of the operator's tile are drawn first, so that a test card hides them.
+std::vector<render::frame::Overlay*> WallRole::withOperatorTile(
+    std::vector<render::frame::Overlay*> overlays) {
+  if (!settings_.wall.operator_tile.overlay) return overlays;
+  operator_facts_.emplace(*segment_, shm::segmentName(settings_.instance, "devices"), board_);
+  auto made = render::text::OperatorOverlay::make(plan_, *operator_facts_, clock_);
+  if (!made) logWarning("nothing is drawn over the operator's tile: {}", made.error().what);
+  if (made) operator_overlay_ = *std::move(made);
+  if (operator_overlay_) overlays.insert(overlays.begin(), operator_overlay_.get());
+  return overlays;
 }
 
 void WallRole::addOwn(WallParts& parts) {

@@ -18,6 +18,8 @@
 #include "daemon/wall/aligner.h"
 #include "daemon/wall/attendance.h"
 #include "daemon/wall/device_feed.h"
+#include "daemon/wall/message_board.h"
+#include "daemon/wall/operator_facts_reader.h"
 #include "daemon/wall/shown_models.h"
 #include "daemon/wall/signal_taps.h"
 #include "daemon/wall/wall_checks.h"
@@ -28,6 +30,7 @@
 #include "render/out/output_kinds.h"
 #include "render/out/output_set.h"
 #include "render/testcard/card_overlay.h"
+#include "render/text/operator_overlay.h"
 
 namespace merlin::wall {
 
@@ -97,6 +100,9 @@ class WallRole {
   // a few milliseconds. Thread-safe.
   Result<std::uint32_t> show(const std::string& what);
 
+  // Shows a sentence on the operator's tile for a minute. Thread-safe.
+  void tell(std::string sentence) { board_.add(clock_.now(), std::move(sentence)); }
+
   // Returns the events of replaced, unreadable and missing files since the last call. Thread-safe.
   std::vector<std::string> contentEvents();
 
@@ -121,6 +127,8 @@ class WallRole {
   void addOwn(WallParts& parts);
   void beginCorrecting(const render::frame::DrawContexts& contexts);
   std::optional<ViewerPlace> makeViewerPlace();
+  std::vector<render::frame::Overlay*> withOperatorTile(
+      std::vector<render::frame::Overlay*> overlays);
 
   Settings settings_;  // `wall` is drawnWall() of the configured one
   std::vector<WallContent> contents_;
@@ -143,6 +151,9 @@ class WallRole {
   std::unique_ptr<SignalTaps> signals_;
   std::optional<std::uint32_t> kept_content_;  // content that the state was last updated for
   render::testcard::CardOverlay cards_;
+  MessageBoard board_;
+  std::optional<OperatorFactsReader> operator_facts_;
+  std::unique_ptr<render::text::OperatorOverlay> operator_overlay_;  // null: off
   Attendance attendance_;
   render::frame::Curtain curtain_;
   std::optional<render::frame::Delivery> delivery_;  // owns the corrections while the wall runs

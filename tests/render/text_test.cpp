@@ -138,8 +138,10 @@ TEST(Text, LatinGreekCyrillicAndSignsHaveGlyphs) {
 
 TEST(Text, EachByteThatIsNotUtf8IsOneUnknownCharacter) {
   EXPECT_EQ(decoded("a\xC3\xA4\xE2\x82\xAC\xF0\x9F\x98\x80"), U"aä€😀");
-  EXPECT_EQ(decoded("\xC3"), U"\uFFFD");                      // cut
-  EXPECT_EQ(decoded("\xE2\x82"), U"\uFFFD\uFFFD");            // cut
+  EXPECT_EQ(decoded("\xC3"), U"\uFFFD");            // cut
+  EXPECT_EQ(decoded("\xE2\x82"), U"\uFFFD\uFFFD");  // cut
+  // Cut in the middle of a longer text: what lies behind is not read.
+  EXPECT_EQ(decoded(std::string_view("\xE2\x82\xAC", 2)), U"\uFFFD\uFFFD");
   EXPECT_EQ(decoded("\xC3(x"), U"\uFFFD(x");                  // no continuation
   EXPECT_EQ(decoded("\x80\xBF"), U"\uFFFD\uFFFD");            // continuation alone
   EXPECT_EQ(decoded("\xC0\x80"), U"\uFFFD\uFFFD");            // overlong

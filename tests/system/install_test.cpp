@@ -117,8 +117,9 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
         "/usr/share/merlin/merlind.service.d/gpio.conf",
         "/usr/share/merlin/merlind.service.d/gpu.conf",
         "/usr/share/merlin/merlind.service.d/files.conf", "/usr/share/merlin/spnav.tmpfiles.conf",
-        "/usr/share/doc/merlin/LICENSE", "/usr/share/doc/merlin/systemd.md",
-        "/etc/merlin/merlin.json", "/etc/merlin/postures.json", "/etc/merlin/merlin.schema.json"}) {
+        "/usr/share/doc/merlin/LICENSE", "/usr/share/doc/merlin/DejaVuSans.LICENSE",
+        "/usr/share/doc/merlin/systemd.md", "/etc/merlin/merlin.json", "/etc/merlin/postures.json",
+        "/etc/merlin/merlin.schema.json"}) {
     EXPECT_TRUE(fs::is_regular_file(root_ + path)) << path;
   }
   // The unit starts the installed daemon with the installed configuration.

@@ -1,0 +1,39 @@
+// OperatorFactsReader: reads what the operator's tile shows from the slots in shared memory, as any
+// client does, and from the message board.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "daemon/shm/segment.h"
+#include "daemon/wall/message_board.h"
+#include "render/text/operator_facts.h"
+
+namespace merlin::wall {
+
+// Thread-bound to the wall's thread. Takes no lock for which it would have to wait.
+class OperatorFactsReader final : public render::text::OperatorSource {
+ public:
+  // `wall` and `board` must outlive this object. `devices`: the name of the devices' segment.
+  OperatorFactsReader(const shm::WallSegment& wall, std::string devices, const MessageBoard& board)
+      : wall_(wall), devices_(std::move(devices)), board_(board) {}
+
+  render::text::OperatorFacts read(Timestamp now) override;
+
+ private:
+  void readStats(render::text::OperatorFacts& facts) const;
+  void readContent(render::text::OperatorFacts& facts) const;
+  void readFrames(double rate_hz);
+  void readDevices(Timestamp now, render::text::OperatorFacts& facts);
+  void readMessages(Timestamp now, render::text::OperatorFacts& facts);
+
+  const shm::WallSegment& wall_;
+  shm::SegmentFollower<shm::DevicesReader> devices_;
+  const MessageBoard& board_;
+  std::vector<BoardMessage> messages_;
+  render::text::FrameChart chart_;
+  std::uint64_t frames_read_ = 0;  // of the wall's trace
+};
+
+}  // namespace merlin::wall
