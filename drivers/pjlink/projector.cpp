@@ -18,7 +18,7 @@ constexpr Duration kRepeat = seconds(10);      // until a command without effect
 constexpr Duration kUnavailable = seconds(3);  // the same after ERR3
 constexpr Duration kReconnect = seconds(5);
 constexpr Duration kPasswordRetry = seconds(30);
-constexpr Duration kErrors = seconds(30);
+constexpr Duration kErrorPeriod = seconds(30);
 constexpr Duration kLamps = std::chrono::minutes(5);
 constexpr std::size_t kMostLamps = 8;
 
@@ -136,7 +136,7 @@ void Projector::answered(Command command, const Answer& answer, Timestamp now) {
     case Command::kPowerOn:
     case Command::kPowerOff: return switched(command, answer, now);
     case Command::kInput: return inputSelected(answer, now);
-    case Command::kAskErrors: errors_due_ = now + kErrors; return errors(answer);
+    case Command::kAskErrors: errors_due_ = now + kErrorPeriod; return errors(answer);
     case Command::kAskLamps: lamps_due_ = now + kLamps; return lamps(answer);
     case Command::kAskName:
       name_due_ = Timestamp::max();

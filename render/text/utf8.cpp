@@ -7,7 +7,7 @@ namespace merlin::render::text {
 namespace {
 
 // Number of bytes of the character that begins with this one; 0: none does.
-std::size_t lengthOf(unsigned char first) {
+std::size_t lengthOf(char32_t first) {
   if (first < 0x80) return 1;
   if (first >= 0xC2 && first < 0xE0) return 2;
   if (first >= 0xE0 && first < 0xF0) return 3;
@@ -23,13 +23,15 @@ bool isCharacter(char32_t code, std::size_t length) {
 
 char32_t takeCharacter(std::string_view& rest) noexcept {
   assert(!rest.empty());
-  const auto byte = [&rest](std::size_t i) { return static_cast<unsigned char>(rest[i]); };
+  const auto byte = [&rest](std::size_t i) -> char32_t {
+    return static_cast<unsigned char>(rest[i]);
+  };
   const std::size_t length = lengthOf(byte(0));
-  char32_t code = length < 2 ? byte(0) : byte(0) & (0x7F >> length);
+  char32_t code = length < 2 ? byte(0) : byte(0) & (0x7FU >> length);
   bool valid = length > 0 && length <= rest.size();
   for (std::size_t i = 1; valid && i < length; ++i) {
-    valid = (byte(i) & 0xC0) == 0x80;
-    code = code << 6 | (byte(i) & 0x3F);
+    valid = (byte(i) & 0xC0U) == 0x80U;
+    code = code << 6 | (byte(i) & 0x3FU);
   }
   valid = valid && isCharacter(code, length);
   rest.remove_prefix(valid ? length : 1);
