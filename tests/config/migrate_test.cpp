@@ -73,8 +73,8 @@ TEST(Migrate, AHoldThatIsNoNumberIsLeftForTheCheck) {
 }
 
 TEST(Migrate, TheButtonsCommandBecomesABinding) {
-  const auto migrated =
-      migrate(R"({"devices": {"gpio": {"chip": "gpiochip0", "button_command": "projector_on"}}})");
+  const auto migrated = migrate(R"({"devices": {"gpio": {"chip": "gpiochip0", "projector_line": 4,
+                                       "button_command": "projector_on"}}})");
   ASSERT_TRUE(migrated) << migrated.error().what;
   const auto loaded = loadSettings(migrated->text, "");
   ASSERT_TRUE(loaded.findings.empty()) << loaded.findings[0].what;
