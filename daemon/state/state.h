@@ -24,9 +24,9 @@ struct State {
 // The file's text: JSON, the version first.
 std::string stateText(const State& state);
 
-// Strict: unknown keys, numbers out of range, and alignment steps of an output that the file does not
-// list are errors, since they show that the file was not written completely. `file`: its name, for
-// messages. Errors: kUnsupported (of a newer version), kMalformed (everything else).
+// Strict: unknown keys, numbers out of range, and alignment steps of an output that the file does
+// not list are errors, since they show that the file was not written completely. `file`: its name,
+// for messages. Errors: kUnsupported (of a newer version), kMalformed (everything else).
 Result<State> parseState(std::string_view text, const std::string& file);
 
 }  // namespace merlin::state

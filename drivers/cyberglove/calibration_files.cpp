@@ -90,7 +90,8 @@ Result<ImportedCalibration> readAsr(const std::vector<Line>& lines) {
   ImportedCalibration c{.format = "asr_cyberglove"};
   if (lines.size() != std::size(kValue)) {
     return Error{Errc::kMalformed,
-                 fmt::format("has {} lines; a calibration of the program asr_cyberglove has 22", lines.size())};
+                 fmt::format("has {} lines; a calibration of the program asr_cyberglove has 22",
+                             lines.size())};
   }
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const std::string where = fmt::format("line {}", lines[i].number);
