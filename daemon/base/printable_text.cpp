@@ -4,25 +4,19 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/utf8.h"
+
 namespace merlin {
 namespace {
 
 // Size in bytes of the first character; 0 if it is invalid or a control character.
 // REQUIRES: `bytes` is not empty.
 std::size_t characterAt(std::string_view bytes) noexcept {
-  const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(bytes[i]); };
-  const std::uint8_t lead = byte(0);
-  if (lead < 0x80) return lead >= 0x20 && lead != 0x7F ? 1 : 0;
-  const std::size_t size = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
-  if (lead < 0xC2 || lead > 0xF4 || bytes.size() < size) return 0;
-  std::uint32_t code = lead & (0x7FU >> size);
-  for (std::size_t i = 1; i < size; ++i) {
-    if ((byte(i) & 0xC0) != 0x80) return 0;
-    code = code << 6 | (byte(i) & 0x3FU);
-  }
-  constexpr std::uint32_t kLeast[] = {0xA0, 0x800, 0x10000};  // 0x80 to 0x9F are control characters
-  const bool surrogate = code >= 0xD800 && code < 0xE000;
-  return code < kLeast[size - 2] || code > 0x10FFFF || surrogate ? 0 : size;
+  std::string_view rest = bytes;
+  const char32_t code = takeCharacter(rest);
+  const std::size_t size = bytes.size() - rest.size();
+  const bool control = code < 0x20 || (code >= 0x7F && code < 0xA0);
+  return control || (code == kNoCharacter && size == 1) ? 0 : size;
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include "render/text/text.h"
 
-#include "render/text/utf8.h"
+#include "daemon/base/utf8.h"
 
 namespace merlin::render::text {
 namespace {

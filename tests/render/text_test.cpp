@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/base/utf8.h"
 #include "render/text/font_file.h"
-#include "render/text/utf8.h"
 
 namespace merlin::render::text {
 namespace {

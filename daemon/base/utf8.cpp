@@ -1,9 +1,9 @@
-#include "render/text/utf8.h"
+#include "daemon/base/utf8.h"
 
 #include <cassert>
 #include <cstddef>
 
-namespace merlin::render::text {
+namespace merlin {
 namespace {
 
 // Number of bytes of the character that begins with this one; 0: none does.
@@ -38,4 +38,4 @@ char32_t takeCharacter(std::string_view& rest) noexcept {
   return valid ? code : kNoCharacter;
 }
 
-}  // namespace merlin::render::text
+}  // namespace merlin

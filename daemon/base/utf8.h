@@ -3,13 +3,14 @@
 
 #include <string_view>
 
-namespace merlin::render::text {
+namespace merlin {
 
 // Stands for a byte that belongs to no character.
 inline constexpr char32_t kNoCharacter = 0xFFFD;
 
-// Removes the first character from `rest` and returns it; kNoCharacter, for one byte, if the bytes
-// are not UTF-8 there. REQUIRES: `rest` is not empty.
+// Removes the first character from `rest` and returns it; removes one byte and returns kNoCharacter
+// if the bytes are not UTF-8 there. (kNoCharacter itself, U+FFFD, is a character of three bytes.)
+// REQUIRES: `rest` is not empty.
 char32_t takeCharacter(std::string_view& rest) noexcept;
 
-}  // namespace merlin::render::text
+}  // namespace merlin
