@@ -270,7 +270,7 @@ std::string Daemon::summary(Timestamp now) const {
   for (const auto& [device, slot] : devices_->slots().health) {
     const auto health = slot->read();
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", device,
-                        health ? status::healthName(*health, now) : "absent");
+                        health ? shm::healthName(*health, now) : "absent");
   }
   return text;
 }

@@ -1,8 +1,8 @@
 #include "daemon/page/role_watch.h"
 
-#include <cstring>
 #include <utility>
 
+#include "daemon/base/fixed_text.h"
 #include "daemon/base/log.h"
 #include "daemon/json/json_tree.h"
 
@@ -11,11 +11,6 @@ namespace {
 
 const shm::Header& headerOf(const shm::WallSegment& segment) { return segment.header; }
 const shm::Header& headerOf(const shm::DeviceSlots& slots) { return *slots.header; }
-
-template <std::size_t N>
-std::string text(const char (&field)[N]) {
-  return {field, ::strnlen(field, N)};
-}
 
 bool isObject(const std::string& document) {
   const auto parsed = parseJson(document);
@@ -54,10 +49,11 @@ void RoleWatch<Reader>::follow(const shm::Header* header) {
   status_.clear();
   metrics_.clear();
   heard_ = {};
-  command_endpoint_ = header ? text(header->command_endpoint) : "";
+  command_endpoint_ = header ? textIn(header->command_endpoint) : "";
   // A new socket for each run: the old one would connect again, but not after every fault.
   (void)topics_.connect("").ok();
-  const auto connected = topics_.connect(header ? text(header->status_endpoint) : "");
+  const auto connected =
+      topics_.connect(std::string(header ? textIn(header->status_endpoint) : ""));
   if (!connected) logWarning("the role {} cannot be followed: {}", role_, connected.error().what);
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/fixed_text.h"
 #include "daemon/rfb/card.h"
 
 namespace merlin::rfb {
@@ -40,8 +41,7 @@ Result<bool> ShownPicture::readFrame(Timestamp now) {
     reader_.reset();
     return whyNoWall();
   }
-  const char* const endpoint = wall->header.command_endpoint;
-  command_endpoint_.assign(endpoint, ::strnlen(endpoint, sizeof wall->header.command_endpoint));
+  command_endpoint_ = textIn(wall->header.command_endpoint);
   const auto opened = openReader(now, wall->header.generation);
   if (!opened) return opened.error();
   const std::uint64_t newest = reader_->newest();

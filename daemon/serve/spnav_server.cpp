@@ -1,12 +1,12 @@
 #include "daemon/serve/spnav_server.h"
 
-#include <cstring>
 #include <optional>
 #include <utility>
 
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "daemon/base/fixed_text.h"
 #include "daemon/base/log.h"
 
 namespace merlin::serve {
@@ -88,11 +88,6 @@ class SpnavSession final : public net::Session {
   SpnavDevice device_;
 };
 
-template <std::size_t N>
-std::string_view text(const char (&field)[N]) {
-  return {field, strnlen(field, N)};
-}
-
 }  // namespace
 
 Result<std::unique_ptr<SpnavServer>> SpnavServer::start(const std::string& path,
@@ -158,7 +153,7 @@ void SpnavServer::updateHealth() {
   const bool there = health->state == HealthState::kOk;
   if (there == there_) return;
   there_ = there;
-  if (there) device_ = spnavDevice(text(health->identity), text(health->port));
+  if (there) device_ = spnavDevice(textIn(health->identity), textIn(health->port));
   server_.sendToAll([&](net::Session& session, std::string&) {
     static_cast<SpnavSession&>(session).device(there, device_);
   });

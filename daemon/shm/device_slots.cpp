@@ -68,4 +68,17 @@ Result<DeviceSlots> DeviceSlots::find(const DevicesSegment& segment) {
   return find(*table, segment.header);
 }
 
+const char* healthName(const DeviceHealth& health, Timestamp now) {
+  constexpr Duration kStale = std::chrono::seconds(1);
+  if (health.state == HealthState::kOk && now - fromNanoseconds(health.updated_ns) > kStale)
+    return "stale";
+  switch (health.state) {
+    case HealthState::kAbsent: return "absent";
+    case HealthState::kOpening: return "opening";
+    case HealthState::kOk: return "ok";
+    case HealthState::kFailed: return "failed";
+  }
+  return "failed";
+}
+
 }  // namespace merlin::shm

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/base/clock.h"
 #include "daemon/base/result.h"
 #include "daemon/shm/layout.h"
 #include "daemon/shm/slot_table.h"
@@ -41,5 +42,9 @@ struct DeviceSlots {
   const Channel<HandSample>* hand = nullptr;
   std::array<const SeqSlot<ActionState>*, kActionSources> actions{};
 };
+
+// State of a device for people and programs: "absent", "opening", "ok", "failed"; "stale" if an ok
+// health was not updated for a second.
+const char* healthName(const DeviceHealth& health, Timestamp now);
 
 }  // namespace merlin::shm

@@ -6,13 +6,14 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/fixed_text.h"
 #include "daemon/base/printable_text.h"
 
 namespace merlin::shm {
 namespace {
 
 // The name of a field; the table may be anybody's, so it may lack the NUL at its end.
-std::string nameOf(const Field& f) { return {f.name, ::strnlen(f.name, sizeof f.name)}; }
+std::string nameOf(const Field& f) { return std::string(textIn(f.name)); }
 
 // Whether both describe the same values at the same place. Units are for people.
 bool agree(const Field& a, const Field& b) {
@@ -22,7 +23,7 @@ bool agree(const Field& a, const Field& b) {
 }
 
 std::string textOf(const Field& f) {
-  const std::string_view type(f.type, ::strnlen(f.type, sizeof f.type));
+  const std::string_view type = textIn(f.type);
   return fmt::format("{} of type \"{}\" at {}, slot {}, ring {} of {} x {}", f.count, oneLine(type),
                      f.offset, f.slot, f.ring, f.ring_slots, f.ring_stride);
 }

@@ -1,7 +1,6 @@
 #include "daemon/status/documents.h"
 
 #include <cmath>
-#include <cstring>
 #include <ctime>
 #include <span>
 
@@ -9,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/commands.h"
+#include "daemon/base/fixed_text.h"
 
 namespace merlin::status {
 namespace {
@@ -39,7 +39,7 @@ std::string dump(const Json& json) {
 
 template <std::size_t N>
 std::string text(const char (&field)[N]) {
-  return {field, strnlen(field, N)};
+  return std::string(textIn(field));
 }
 
 // Rounds to six decimals (a micrometre, a microradian), enough for measurements.
@@ -105,11 +105,16 @@ double ageSeconds(std::int64_t then_ns, Timestamp now) {
 }
 
 Json deviceJson(const DeviceHealth& h, Timestamp now) {
-  return {{"health", healthName(h, now)}, {"since_s", ageSeconds(h.since_ns, now)},
-          {"port", text(h.port)},         {"identity", text(h.identity)},
-          {"reason", text(h.reason)},     {"rate_hz", round3(h.rate_hz)},
-          {"samples", h.samples},         {"reconnects", h.reconnects},
-          {"bad_packets", h.bad_packets}, {"bad_bytes", h.bad_bytes}};
+  return {{"health", shm::healthName(h, now)},
+          {"since_s", ageSeconds(h.since_ns, now)},
+          {"port", text(h.port)},
+          {"identity", text(h.identity)},
+          {"reason", text(h.reason)},
+          {"rate_hz", round3(h.rate_hz)},
+          {"samples", h.samples},
+          {"reconnects", h.reconnects},
+          {"bad_packets", h.bad_packets},
+          {"bad_bytes", h.bad_bytes}};
 }
 
 // The current posture (after the minimum hold time), the one of the newest record, and its margin.
@@ -151,23 +156,6 @@ std::string postureName(const shm::DeviceSlots& devices) {
   const auto posture = devices.posture->newest();
   return posture ? text(posture->name) : "";
 }
-
-}  // namespace
-
-const char* healthName(const DeviceHealth& health, Timestamp now) {
-  constexpr Duration kStale = std::chrono::seconds(1);
-  if (health.state == HealthState::kOk && now - fromNanoseconds(health.updated_ns) > kStale)
-    return "stale";
-  switch (health.state) {
-    case HealthState::kAbsent: return "absent";
-    case HealthState::kOpening: return "opening";
-    case HealthState::kOk: return "ok";
-    case HealthState::kFailed: return "failed";
-  }
-  return "failed";
-}
-
-namespace {
 
 Json devicesJson(const shm::DeviceSlots& devices, Timestamp now) {
   Json all = Json::object();

@@ -43,7 +43,4 @@ std::string event(std::string_view kind, std::string_view what, Timestamp now);
 // A list of texts, as a command's reply.
 std::string textList(const std::vector<std::string>& texts);
 
-// "absent", "opening", "ok", "failed"; "stale" if an ok health was not updated for a second.
-const char* healthName(const DeviceHealth& health, Timestamp now);
-
 }  // namespace merlin::status

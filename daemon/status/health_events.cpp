@@ -16,7 +16,7 @@ std::vector<std::string> HealthEvents::take(Timestamp now) {
     const auto health = slot->read();
     // Opening is not an event: an absent device is opened again every second.
     if (!health || health->state == HealthState::kOpening) continue;
-    const std::string_view state = healthName(*health, now);
+    const std::string_view state = shm::healthName(*health, now);
     const std::string_view why = health->state == HealthState::kOk && health->reason[0] == '\0'
                                      ? health->identity
                                      : health->reason;

@@ -1,11 +1,13 @@
 #include "daemon/status/wall_events.h"
 
 #include <algorithm>
-#include <cstring>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "daemon/base/fixed_text.h"
 
 namespace merlin::status {
 
@@ -56,9 +58,9 @@ void WallEvents::takeOutputs(std::vector<std::string>& events) {
   faults_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const shm::OutputStats& o = all->outputs[i];
-    std::string fault(o.fault, ::strnlen(o.fault, sizeof o.fault));
+    std::string fault(textIn(o.fault));
     if (fault == faults_[i]) continue;
-    const std::string name(o.name, ::strnlen(o.name, sizeof o.name));
+    const std::string_view name = textIn(o.name);
     events.push_back(fault.empty() ? fmt::format("output {} works again", name)
                                    : fmt::format("output {} failed: {}", name, fault));
     faults_[i] = std::move(fault);

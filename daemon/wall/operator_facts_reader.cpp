@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <string_view>
 
+#include "daemon/base/fixed_text.h"
 #include "daemon/base/printable_text.h"
 
 namespace merlin::wall {
@@ -14,31 +14,23 @@ using render::text::DeviceFact;
 using render::text::DeviceLight;
 using render::text::OperatorFacts;
 
-constexpr Duration kStale = std::chrono::seconds(1);
 constexpr Duration kShown = std::chrono::minutes(1), kFades = std::chrono::seconds(10);
 
-template <std::size_t size>
-std::string textOf(const char (&bytes)[size]) {
-  return std::string(wholeCharacters({bytes, ::strnlen(bytes, size)}));
+template <std::size_t N>
+std::string textOf(const char (&field)[N]) {
+  return std::string(wholeCharacters(textIn(field)));
 }
 
-// Why it is not well is said where there is a reason.
+// Why it is not well is said where there is a reason; one that works says what it lacks.
 DeviceFact deviceFact(std::string name, const DeviceHealth& health, Timestamp now) {
-  const auto with_reason = [&health](const char* state) {
-    const std::string reason = textOf(health.reason);
-    return reason.empty() ? std::string(state) : state + (": " + reason);
-  };
-  switch (health.state) {
-    case HealthState::kOk:
-      if (now - fromNanoseconds(health.updated_ns) > kStale)
-        return {std::move(name), "stale", DeviceLight::kBad};
-      return {std::move(name), with_reason("ok"),
-              health.reason[0] == '\0' ? DeviceLight::kGood : DeviceLight::kWaiting};
-    case HealthState::kOpening: return {std::move(name), "opening", DeviceLight::kWaiting};
-    case HealthState::kAbsent: return {std::move(name), with_reason("absent"), DeviceLight::kBad};
-    case HealthState::kFailed: break;
-  }
-  return {std::move(name), with_reason("failed"), DeviceLight::kBad};
+  const std::string_view state = shm::healthName(health, now);
+  const std::string reason = textOf(health.reason);
+  const bool works = state == "ok", opens = state == "opening";
+  DeviceFact fact{std::move(name), std::string(state), DeviceLight::kBad};
+  if (!reason.empty() && !opens && state != "stale") fact.state += ": " + reason;
+  if (works && reason.empty()) fact.light = DeviceLight::kGood;
+  if (opens || (works && !reason.empty())) fact.light = DeviceLight::kWaiting;
+  return fact;
 }
 
 // In steps of an eighth, so that a message that fades changes the plate eight times.

@@ -69,8 +69,8 @@ TEST_F(DocumentsTest, DevicesSayHealthReasonAndPosture) {
 
 TEST_F(DocumentsTest, AHealthThatNobodyWritesAnyMoreIsStale) {
   const DeviceHealth h = healthy("x");
-  EXPECT_STREQ(healthName(h, kNow + milliseconds(900)), "ok");
-  EXPECT_STREQ(healthName(h, kNow + milliseconds(1100)), "stale");
+  EXPECT_STREQ(shm::healthName(h, kNow + milliseconds(900)), "ok");
+  EXPECT_STREQ(shm::healthName(h, kNow + milliseconds(1100)), "stale");
 }
 
 TEST_F(DocumentsTest, TextThatIsNoUtf8BecomesJsonAllTheSame) {

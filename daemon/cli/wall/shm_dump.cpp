@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/base/fixed_text.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
@@ -40,7 +41,7 @@ Json number(const std::byte* at) {
 // Size in bytes of one value of the field's type, a format character of Python's struct module;
 // "20s" is a text of 20 bytes. 0: unknown type.
 std::size_t sizeOf(const shm::Field& f) {
-  const std::string_view type(f.type, strnlen(f.type, sizeof f.type));
+  const std::string_view type = textIn(f.type);
   if (type.ends_with('s')) return static_cast<std::size_t>(std::atoi(f.type));
   if (type.size() != 1) return 0;
   switch (type[0]) {

@@ -1,5 +1,4 @@
 // merlin show: shows a content of the configuration, or a file that is not in it.
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -8,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/fixed_text.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
@@ -60,7 +60,7 @@ int show(const ShowOptions& options) {
                                              "the wall does",
                                              options.what, options.wait_s)});
   }
-  const std::string refused(done->refused, ::strnlen(done->refused, sizeof done->refused));
+  const std::string refused(textIn(done->refused));
   if (!refused.empty()) return fail({Errc::kMalformed, refused});
   return kExitDone;
 }
