@@ -115,16 +115,14 @@ Answer alignAction(const Parts& p, std::string_view name) {
 
 Answer playlist(const Parts& p, const std::string& argument) {
   wall::Attendance& attendance = p.wall->attendance();
-  if (argument == "on") {
-    attendance.playlistOn();
-  } else if (argument == "off") {
-    attendance.playlistOff();
-  } else if (argument == "next") {
-    attendance.playlistNext();
-  } else {
+  if (argument != "on" && argument != "off" && argument != "next") {
     return Error{Errc::kInvalidArgument,
                  fmt::format("\"{}\" is not on, off or next", argument.substr(0, 64))};
   }
+  if (argument == "next")
+    attendance.nextOfPlaylist();
+  else
+    attendance.switchPlaylist(argument == "on");
   return done();
 }
 

@@ -161,13 +161,18 @@ Result<Ok> RoleServers::startWall() {
   return Ok{};
 }
 
+void RoleServers::addEvent(std::vector<std::string>& documents, const char* kind,
+                           const std::string& sentence) const {
+  if (parts_.wall) parts_.wall->tell(sentence);
+  documents.push_back(status::event(kind, sentence, clock_.now()));
+}
+
 // Logs the sentences and adds them to `documents`, as events of that kind.
 void RoleServers::addEvents(std::vector<std::string>& documents, const char* kind,
                             const std::vector<std::string>& sentences) const {
   for (const std::string& sentence : sentences) {
     logInfo("{}", sentence);
-    if (parts_.wall) parts_.wall->tell(sentence);
-    documents.push_back(status::event(kind, sentence, clock_.now()));
+    addEvent(documents, kind, sentence);
   }
 }
 
@@ -176,8 +181,7 @@ void RoleServers::addEvents(std::vector<std::string>& documents, const char* kin
 void RoleServers::addServiceEvents(std::vector<std::string>& documents) {
   for (const std::string& sentence : parts_.services.takeEvents()) {
     logWarning("{}", sentence);
-    if (parts_.wall) parts_.wall->tell(sentence);
-    documents.push_back(status::event("service", sentence, clock_.now()));
+    addEvent(documents, "service", sentence);
   }
 }
 

@@ -62,6 +62,8 @@ class RoleServers {
   void startServersForOthers(const shm::DeviceSlots& devices);
   std::vector<std::string> deviceEvents(status::HealthEvents& health);
   std::vector<std::string> wallEvents(status::WallEvents& events, status::HealthEvents* remote);
+  void addEvent(std::vector<std::string>& documents, const char* kind,
+                const std::string& sentence) const;
   void addEvents(std::vector<std::string>& documents, const char* kind,
                  const std::vector<std::string>& sentences) const;
   void addServiceEvents(std::vector<std::string>& documents);

@@ -118,6 +118,13 @@ constexpr const CommandInfo* findCommand(std::string_view name) {
   return found == std::end(kCommands) ? nullptr : found;
 }
 
+// Whether there is a command of that name without an argument, for example for a key. Also for
+// checks at compile time: g++ 12 with sanitizers cannot compare findCommand()'s pointer there.
+constexpr bool isPlainCommand(std::string_view name) {
+  return std::any_of(std::begin(kCommands), std::end(kCommands),
+                     [&](const CommandInfo& c) { return c.name == name && c.argument.empty(); });
+}
+
 // An action: a command that inputs may be bound to. Names of all actions, as C strings; an index
 // into this list identifies an action inside one build only.
 inline constexpr auto kActions = [] {

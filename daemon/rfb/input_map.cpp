@@ -35,13 +35,8 @@ constexpr KeyCommand kKeyCommands[] = {
     {'b', "blank"},         {'B', "blank"},
     {'f', "freeze"},        {'F', "freeze"},
 };
-// Not findCommand(): g++ 12 with sanitizers cannot compare its pointer while it compiles.
-constexpr bool isCommand(std::string_view name) {
-  return std::any_of(std::begin(kCommands), std::end(kCommands),
-                     [&](const CommandInfo& c) { return c.name == name; });
-}
 static_assert(std::all_of(std::begin(kKeyCommands), std::end(kKeyCommands),
-                          [](const KeyCommand& k) { return isCommand(k.command); }));
+                          [](const KeyCommand& k) { return isPlainCommand(k.command); }));
 
 constexpr double kDegreesPerHeight = 180;  // of a drag over the picture's height
 constexpr double kRadiiPerHeight = 1.5;    // about as far as the pointer, at the default distance

@@ -46,17 +46,12 @@ void Attendance::attend() {
   asked_.attended = true;
 }
 
-void Attendance::playlistOn() {
+void Attendance::switchPlaylist(bool on) {
   const std::lock_guard lock(mutex_);
-  asked_.playlist = true;
+  asked_.playlist = on;
 }
 
-void Attendance::playlistOff() {
-  const std::lock_guard lock(mutex_);
-  asked_.playlist = false;
-}
-
-void Attendance::playlistNext() {
+void Attendance::nextOfPlaylist() {
   const std::lock_guard lock(mutex_);
   asked_.next = true;
 }
@@ -115,8 +110,10 @@ Attendance::Frame Attendance::update(WallInput& input, Timestamp now) {
   // Black and frozen, the wall waits: for the playlist no time passes.
   frame.playlist =
       playlist_.update(frame.held ? Duration::zero() : elapsed, motion || acted || asked.attended);
-  if (frame.held) input.scene = {};
-  if (!frame.held) input.scene.turn_rad_s = frame.playlist.turn_rad_s;
+  if (frame.held)
+    input.scene = {};
+  else
+    input.scene.turn_rad_s = frame.playlist.turn_rad_s;
   if (blank_) frame.playlist.light = 0;
   light_ = frame.playlist.light;
   return frame;

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "daemon/base/clock.h"
+#include "daemon/shm/layout.h"
 #include "daemon/wall/input_feed.h"
 #include "daemon/wall/playlist.h"
 
@@ -30,9 +31,8 @@ class Attendance {
   // Somebody works the wall in a way that does not come with the input: the playlist ends.
   void attend();
   // See Playlist.
-  void playlistOn();
-  void playlistOff();
-  void playlistNext();
+  void switchPlaylist(bool on);
+  void nextOfPlaylist();
 
   // To be called once a frame, with the devices' input. REQUIRES: `now` never decreases. While the
   // wall is black or frozen, the part of `input` that moves the scene is removed; what undoes that
@@ -43,7 +43,7 @@ class Attendance {
   };
   Frame update(WallInput& input, Timestamp now);
 
-  enum class Shown : std::uint32_t { kPicture = 0, kBlank = 1, kFrozen = 2 };
+  using Shown = shm::WallInteraction::Shown;
   Shown shown() const noexcept;
   // Whether the picture is to stay as it is; also below black.
   bool isFrozen() const noexcept { return frozen_; }

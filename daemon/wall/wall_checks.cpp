@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "daemon/base/files.h"
 #include "daemon/base/printable_text.h"
@@ -44,14 +43,13 @@ std::vector<WallContent> readContents(LoadedSettings& loaded) {
 
 void checkPlaylist(LoadedSettings& loaded) {
   const std::vector<std::string>& names = loaded.settings.wall.playlist.contents;
-  std::vector<std::string> known;
-  for (const ContentEntry& entry : contentsOf(loaded.settings.wall)) known.push_back(entry.name);
+  const std::vector<ContentEntry> known = contentsOf(loaded.settings.wall);
   for (auto name = names.begin(); name != names.end(); ++name) {
     const std::string at = fmt::format("/wall/playlist/contents/{}", name - names.begin());
-    if (std::ranges::find(known, *name) == known.end()) {
+    if (std::ranges::find(known, *name, &ContentEntry::name) == known.end()) {
       loaded.addFinding(at, fmt::format("is \"{}\", which is not the name of a content; contents "
                                         "are {}",
-                                        excerpt(*name), fmt::join(known, ", ")));
+                                        excerpt(*name), namesOf(known)));
     } else if (std::find(names.begin(), name, *name) != name) {
       loaded.addFinding(at, fmt::format("is \"{}\", which is already in the list", *name));
     }

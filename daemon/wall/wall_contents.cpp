@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "daemon/base/printable_text.h"
 #include "render/content/shown_colours.h"
@@ -110,6 +111,12 @@ std::vector<ContentEntry> contentsOf(const WallSettings& wall) {
   for (std::size_t i = 0; i < wall.contents.size(); ++i)
     contents.push_back(entryOf(wall.contents[i], fmt::format("/wall/contents/{}", i)));
   return contents;
+}
+
+std::string namesOf(const std::vector<ContentEntry>& contents) {
+  std::vector<std::string_view> names;
+  for (const ContentEntry& entry : contents) names.push_back(entry.name);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::vector<std::size_t> placesOf(const std::vector<ContentEntry>& contents,

@@ -29,6 +29,9 @@ struct ContentEntry {
 // then /wall/contents. An entry that names no file has an empty path.
 std::vector<ContentEntry> contentsOf(const WallSettings& wall);
 
+// The names of contents for a message: "left, right".
+std::string namesOf(const std::vector<ContentEntry>& contents);
+
 // Places of the contents of these names in `contents`. A name that is none of theirs is left out.
 std::vector<std::size_t> placesOf(const std::vector<ContentEntry>& contents,
                                   const std::vector<std::string>& names);

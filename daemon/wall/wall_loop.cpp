@@ -326,7 +326,7 @@ void WallLoop::publish() {
   shm::WallInteraction interaction{};
   interaction.snapshots = snapshots_;
   interaction.content = static_cast<std::uint32_t>(turns_.index()) + parts_.first_number;
-  interaction.shown = static_cast<std::uint32_t>(attendance.shown());
+  interaction.shown = attendance.shown();
   interaction.playlist = static_cast<std::uint32_t>(attendance.playlist());
   interaction.light = attendance.light();
   publisher_.interaction(interaction, view_, parts_.marker, now);

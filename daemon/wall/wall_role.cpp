@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "config/drawn_wall.h"
 #include "daemon/base/log.h"
@@ -335,12 +334,10 @@ Result<std::uint32_t> WallRole::show(const std::string& what) {
     return number;
   }
   if (!what.starts_with("/") || !isText(what)) {
-    std::vector<std::string> names;
-    for (const ContentEntry& entry : entries_) names.push_back(entry.name);
     return Error{Errc::kInvalidArgument,
                  fmt::format("\"{}\" is not the name of a content; contents are {}; a file needs "
                              "its whole path",
-                             excerpt(what), fmt::join(names, ", "))};
+                             excerpt(what), namesOf(entries_))};
   }
   const auto entry = contentOfFile(what);
   if (!entry) return entry.error();

@@ -66,8 +66,8 @@ TEST_F(AttendanceTest, EveryTouchShowsThePictureAgain) {
       [&] { input_.scene.fly = true; },
       [&] { input_.scene.point_at = true; },
       [&] { attendance_.touch(); },
-      [&] { attendance_.playlistOn(); },
-      [&] { attendance_.playlistNext(); },
+      [&] { attendance_.switchPlaylist(true); },
+      [&] { attendance_.nextOfPlaylist(); },
   };
   for (std::size_t i = 0; i < std::size(touches); ++i) {
     black();
@@ -85,7 +85,7 @@ TEST_F(AttendanceTest, NothingElseDoes) {
   input_.posture[0] = 'x';
   input_.head.emplace().position_m[0] = 1;
   EXPECT_EQ(pass(milliseconds(2000)), Shown::kBlank);
-  attendance_.playlistOff();
+  attendance_.switchPlaylist(false);
   EXPECT_EQ(frame(), Shown::kBlank);
 }
 

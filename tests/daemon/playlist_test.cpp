@@ -91,9 +91,9 @@ TEST_F(Day, WithVisitorsAnOperatorAndNights) {
   commands[at(12, 0)] = [](Attendance& a) { a.toggleBlank(); };
   commands[at(13, 0)] = [](Attendance& a) { a.toggleBlank(); };
   commands[at(15, 0)] = [](Attendance& a) { a.toggleFreeze(); };
-  commands[at(16, 0)] = [](Attendance& a) { a.playlistOff(); };
-  commands[at(20, 0)] = [](Attendance& a) { a.playlistOn(); };
-  commands[at(23, 0)] = [](Attendance& a) { a.playlistNext(); };
+  commands[at(16, 0)] = [](Attendance& a) { a.switchPlaylist(false); };
+  commands[at(20, 0)] = [](Attendance& a) { a.switchPlaylist(true); };
+  commands[at(23, 0)] = [](Attendance& a) { a.nextOfPlaylist(); };
   const std::vector<std::string> expected = {
       "00:05:00 begins",       // nobody came
       "00:05:00 turns",        //
@@ -145,7 +145,7 @@ TEST_F(Day, ThePictureIsDimmedWithoutAPlaylistToo) {
 
 TEST_F(Day, APlaylistThatOnlyACommandBeginsComesBackByCommandAlone) {
   PlaylistSettings s;
-  commands[60] = [](Attendance& a) { a.playlistOn(); };
+  commands[60] = [](Attendance& a) { a.switchPlaylist(true); };
   pushed = [](int second) { return second == 100; };
   EXPECT_EQ(run(s), (std::vector<std::string>{"00:01:00 begins", "00:01:00 turns", "00:01:40 ends",
                                               "00:01:40 stands"}));
@@ -159,7 +159,7 @@ TEST_F(Day, APlaylistWaitsWhileATestCardIsShown) {
 }
 
 TEST_F(Day, NextIsShownWithoutAPlaylistToo) {
-  commands[60] = [](Attendance& a) { a.playlistNext(); };
+  commands[60] = [](Attendance& a) { a.nextOfPlaylist(); };
   EXPECT_EQ(run({}), std::vector<std::string>{"00:01:00 next"});
 }
 

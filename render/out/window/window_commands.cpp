@@ -39,10 +39,7 @@ constexpr Key kCtrlKeys[] = {{"N", "align_output_next"},
                              {"U", "align_undo"},
                              {"R", "align_redo"},
                              {"T", "next_testcard"}};
-constexpr bool isCommand(const Key& k) {
-  return std::ranges::any_of(
-      kCommands, [&](const CommandInfo& c) { return c.name == k.command && c.argument.empty(); });
-}
+constexpr bool isCommand(const Key& k) { return isPlainCommand(k.command); }
 static_assert(std::ranges::all_of(kKeys, isCommand) && std::ranges::all_of(kCtrlKeys, isCommand));
 
 }  // namespace
