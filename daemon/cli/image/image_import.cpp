@@ -96,8 +96,8 @@ void printSummary(const ImportOptions& options, const render::image::PyramidFile
       rate / 1e6, static_cast<double>(summary.peak_bytes) / 1e6);
 }
 
-// Runs the import in `folder`. Returns the path of the result there.
-Result<std::string> runImport(const ImportOptions& options, const std::string& folder,
+// Runs the import in `folder` until `stop` is readable. Returns the path of the result there.
+Result<std::string> runImport(const ImportOptions& options, const std::string& folder, int stop,
                               Summary& summary) {
   std::vector<std::string> arguments = {"picture",
                                         options.in,
@@ -109,14 +109,13 @@ Result<std::string> runImport(const ImportOptions& options, const std::string& f
                                         "--memory",
                                         std::to_string(options.memory)};
   if (options.panorama) arguments.emplace_back("--panorama");
-  const UniqueFd stop = stopSignals();
   auto child = ImportChild::start(arguments);
   if (!child) return child.error();
   const SystemClock clock;
   const Timestamp began = clock.now();
   ProgressBar bar("importing", "pixels", clock);
   const auto name = child->follow(
-      stop.get(), [&](const ImportReport& report) { bar.update(report.share(), report.items()); });
+      stop, [&](const ImportReport& report) { bar.update(report.share(), report.items()); });
   if (name) bar.finish(child->report().pixels());
   summary.seconds = toSeconds(clock.now() - began);
   summary.lacks = child->report().lacks();
@@ -139,10 +138,11 @@ Result<Ok> checkOptions(const ImportOptions& options) {
 
 int importImage(const ImportOptions& options) {
   if (const auto good = checkOptions(options); !good) return fail(good.error());
+  const UniqueFd stop = stopSignals();  // before the folder is there, which a signal would leave
   const auto folder = WorkFolder::make(options.out);
   if (!folder) return fail(folder.error());
   Summary summary;
-  const auto made = runImport(options, folder->path(), summary);
+  const auto made = runImport(options, folder->path(), stop.get(), summary);
   for (const std::string& what : summary.lacks)
     printNote(fmt::format("this system lacks {}; the import ran without it", what));
   if (!made) return fail(made.error());
