@@ -82,7 +82,7 @@ PostureStatistics statisticsOf(std::span<const Input> hands, std::span<const std
   return statistics;
 }
 
-WhitenedSpace::WhitenedSpace(const PostureStatistics& statistics, const Slots& used) : used_(used) {
+WhitenedSpace::WhitenedSpace(const PostureStatistics& statistics, const Slots& used) {
   MatrixXd factor = MatrixXd::Zero(kSize, kSize);
   for (std::size_t i = 0; i < kInputs; ++i) {
     for (std::size_t j = 0; j <= i; ++j)

@@ -52,7 +52,6 @@ class WhitenedSpace {
 
  private:
   using Matrix = std::array<std::array<double, kInputs>, kInputs>;
-  Slots used_;
   std::array<double, kInputs> centre_{};
   Matrix whiten_{}, colour_{};  // T and its inverse
   float sigma_ = 1;

@@ -1,7 +1,6 @@
 #include "render/frame/delivery.h"
 
 #include <algorithm>
-#include <ranges>
 #include <utility>
 
 namespace merlin::render::frame {
@@ -31,7 +30,8 @@ void Delivery::show(std::span<std::uint8_t> canvas, const out::FrameInfo& info,
     outputs_.present(i, signal, info, deadline);
     if (watched) watcher_->see(i, signal, info);
   }
-  for (Overlay* overlay : std::views::reverse(overlays_)) overlay->erase(canvas);
+  for (auto overlay = overlays_.rbegin(); overlay != overlays_.rend(); ++overlay)
+    (*overlay)->erase(canvas);
 }
 
 bool Delivery::hasChanged(Timestamp now) const {

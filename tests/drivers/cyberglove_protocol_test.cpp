@@ -230,7 +230,6 @@ TEST(CybergloveCalibration, IsALineWithAZeroAndASlope) {  // fact sheet, example
   CybergloveSettings settings;
   settings.offset[4] = 110;
   settings.gain[4] = 0.0115F;
-  Parser parser;
   GloveSample sample{};
   calibrate(parse(kPlain18, kExample1).records.at(0), slotsOf(kMask18), settings, sample);
   EXPECT_NEAR(sample.angle_rad[4], 0.23, 1e-6);

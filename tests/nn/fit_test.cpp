@@ -34,7 +34,7 @@ TEST_P(LaneGradient, AgreesWithFiniteDifferences) {
   for (double& v : x) v = random.uniform(-2, 2);
   constexpr std::uint32_t kCode = 0b10110;
   constexpr double kStep = 1e-5;
-  PackedWeights<double> gradient, unused;
+  PackedWeights<double> gradient;
   (void)addGradient(GetParam(), packed, x.data(), kCode, gradient);
   double largest = 0;
   for (std::size_t n = 0; n < packed.all.size(); ++n) {

@@ -201,7 +201,7 @@ TEST(GltfWriter, FollowsTheSpecification) {
   EXPECT_EQ(gltf.json["asset"]["version"], "2.0");
   EXPECT_EQ(gltf.json["buffers"][0]["byteLength"], gltf.buffer.size());
   EXPECT_FALSE(gltf.json["buffers"][0].contains("uri"));
-  EXPECT_EQ(gltf.json["scenes"][0]["nodes"], Json({0}));
+  EXPECT_EQ(gltf.json["scenes"][0]["nodes"], Json::array({0}));
   EXPECT_EQ(gltf.json["nodes"][0]["mesh"], 0);
   EXPECT_EQ(gltf.json["materials"][0]["doubleSided"], true);
   const Json& primitive = gltf.json["meshes"][0]["primitives"][0];

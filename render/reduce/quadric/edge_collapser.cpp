@@ -33,11 +33,12 @@ Corner* appendStar(Corner* to, std::span<const Corner> star, std::uint32_t other
 
 // Replaces x by v in a star. Processes whole lines; entries after the last corner have no meaning.
 void rename(Corner* star, std::uint32_t degree, std::uint32_t x, std::uint32_t v) {
+  const TwoCorners old = {x, x, x, x}, change = TwoCorners{v, v, v, v} ^ old;
   for (std::uint32_t line = 0; line < degree; line += kLine) {
     for (std::uint32_t i = line; i < line + kLine; i += 2) {
       TwoCorners corners;
       std::memcpy(&corners, star + i, sizeof corners);
-      corners ^= (corners == x) & (v ^ x);
+      corners ^= reinterpret_cast<TwoCorners>(corners == old) & change;
       std::memcpy(static_cast<void*>(star + i), &corners, sizeof corners);
     }
   }

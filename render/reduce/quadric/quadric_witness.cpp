@@ -55,7 +55,7 @@ struct Triangles {
       Floats edge = to_b < to_c ? to_b : to_c;
       edge = across < edge ? across : edge;
       const Floats here = inside ? pn * pn * inn : edge;
-      nearest[i] = there & (here < nearest[i]) ? here : nearest[i];
+      nearest[i] = (there & (here < nearest[i])) ? here : nearest[i];
     }
   }
 };

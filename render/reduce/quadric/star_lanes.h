@@ -40,9 +40,8 @@ MERLIN_INLINE T next(const T& v) {
 
 // Replaces all lanes from `count` on by the first lane.
 MERLIN_INLINE Ints upTo(std::uint32_t count, const Ints& v) {
-  return kLane < static_cast<std::int32_t>(count)
-             ? v
-             : __builtin_shufflevector(v, v, 0, 0, 0, 0, 0, 0, 0, 0);
+  const Ints first = __builtin_shufflevector(v, v, 0, 0, 0, 0, 0, 0, 0, 0);
+  return kLane < static_cast<std::int32_t>(count) ? v : first;
 }
 
 // The first (or the second) numbers of eight pairs; pairs from `count` on repeat the first pair.
