@@ -65,20 +65,24 @@ std::optional<double> slopeOf(std::span<const FrameCost> frames) {
   return slopes.empty() ? std::nullopt : std::optional(median(std::move(slopes)));
 }
 
-}  // namespace
-
-Governor::Governor(const GovernorSettings& settings) noexcept
-    : settings_(settings),
-      period_(fromSeconds(1.0 / settings.rate_hz)),
-      triangles_(static_cast<double>(settings.first_triangles)),
-      head_room_(kLeastRoom),
-      exponent_(kExponent),
-      noise_(kQuiet) {
+// Before anything is computed from them.
+const GovernorSettings& checked(const GovernorSettings& settings) noexcept {
   assert(settings.rate_hz > 0);
   assert(settings.min_triangles > 0 && settings.min_triangles <= settings.first_triangles);
   assert(settings.first_triangles <= settings.max_triangles);
   assert(settings.late_share > 0 && settings.late_share < 1);
+  return settings;
 }
+
+}  // namespace
+
+Governor::Governor(const GovernorSettings& settings) noexcept
+    : settings_(checked(settings)),
+      period_(fromSeconds(1.0 / settings.rate_hz)),
+      triangles_(static_cast<double>(settings.first_triangles)),
+      head_room_(kLeastRoom),
+      exponent_(kExponent),
+      noise_(kQuiet) {}
 
 std::size_t Governor::budget() const noexcept {
   return static_cast<std::size_t>(held_ ? clamped(static_cast<double>(*held_)) : triangles_);

@@ -194,6 +194,7 @@ Reduction runQuadric(const mesh::Mesh& mesh, const QuadricPlan& plan,
     if (f.name == "label") continue;  // not interpolated: carryAlong()
     std::vector<float>& values = result.log.features[c.feature];
     values.resize(result.log.children.size() * f.dimension);
+    if (values.empty()) continue;  // without a collapse there is no place for k to point at
     for (std::size_t k = 0; k < f.dimension; ++k)
       reducer.channelValues(c.first + k, c.scale, values.data() + k, f.dimension);
   }
