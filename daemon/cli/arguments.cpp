@@ -16,6 +16,10 @@ namespace merlin::cli {
 Argument Argument::required() { return Argument(option_->required()); }
 Argument Argument::typeName(const std::string& name) { return Argument(option_->type_name(name)); }
 Argument Argument::expected(int values) { return Argument(option_->expected(values)); }
+Argument Argument::expected(int least, int most) {
+  return Argument(option_->expected(least, most));
+}
+Argument Argument::repeatable() { return Argument(option_->allow_extra_args(false)); }
 Argument Argument::separated(char by) { return Argument(option_->delimiter(by)); }
 Argument Argument::showDefault() { return Argument(option_->capture_default_str()); }
 Argument Argument::range(int low, int high) {

@@ -23,6 +23,8 @@ class Argument {
   Argument required();
   Argument typeName(const std::string& name);  // placeholder for the value in the help
   Argument expected(int values);               // exact number of values
+  Argument expected(int least, int most);      // number of values
+  Argument repeatable();                       // one value each time that it is given
   Argument separated(char by);                 // several values in one argument, separated by `by`
   Argument showDefault();  // the help shows the variable's present value as the default
 

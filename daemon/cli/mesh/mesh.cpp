@@ -6,10 +6,11 @@
 namespace merlin::cli {
 
 void addMesh(Command app, Run& run) {
-  Command mesh = app.subcommand(
-      "mesh",
-      "Meshes and multiresolution models: reduce, inspect, export, compare, draw, segment.");
+  Command mesh = app.subcommand("mesh",
+                                "Meshes and multiresolution models: import, reduce, inspect, "
+                                "export, compare, draw, segment.");
   mesh.requireSubcommand();
+  addMeshImport(mesh, run);
   addMeshReduce(mesh, run);
   addMeshInfo(mesh, run);
   addMeshCurve(mesh, run);

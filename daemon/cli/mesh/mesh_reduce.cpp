@@ -9,8 +9,8 @@
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/mesh/mesh_memory.h"
+#include "daemon/cli/mesh/reduction_step.h"
 #include "daemon/cli/print.h"
-#include "daemon/cli/progress.h"
 #include "render/image/image_file.h"
 #include "render/lod/io/mrm_file.h"
 #include "render/mesh/borders.h"
@@ -104,20 +104,7 @@ Result<render::reduce::Reduction> reduceLoaded(const ReduceOptions& options,
   const auto room = roomForReduction(sizeOf(mesh), 0, settings, usage.limit);
   if (!room) return Error{room.error().code, options.input + ": " + room.error().what};
   settings.memory = *room;
-
-  const SystemClock clock;
-  ProgressBar bar("reducing", "collapses", clock);
-  const Timestamp began = clock.now();
-  const auto all = static_cast<double>(mesh.triangleCount());
-  auto reduction =
-      render::reduce::reduce(mesh, settings, [&](const render::reduce::ReduceProgress& p) {
-        bar.update(1 - static_cast<double>(p.triangles) / all, p.collapses);
-        return true;
-      });
-  if (!reduction) return reduction;
-  usage.reducing = toSeconds(clock.now() - began);
-  bar.finish(reduction->report.collapses);
-  return reduction;
+  return reduceWithProgress(mesh, settings, usage.reducing);
 }
 
 // Adds the texture that --texture names to the mesh.

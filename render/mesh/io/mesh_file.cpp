@@ -135,6 +135,8 @@ const Feature* findOf(const Mesh& mesh, std::string_view name, std::size_t dimen
 
 std::string readableEndings() { return endingsOf(kReaders); }
 
+bool isReadable(const std::string& path) { return readerFor(path) != nullptr; }
+
 std::optional<MeshFileSize> meshFileSize(const std::string& path) {
   const MeshReader* const reader = readerFor(path);
   if (!reader || !reader->size) return std::nullopt;

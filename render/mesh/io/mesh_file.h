@@ -52,6 +52,9 @@ std::optional<MeshFileSize> meshFileSize(const std::string& path);
 // File endings that readMesh() supports, for messages and help: ".ply, .obj and .stl".
 std::string readableEndings();
 
+// Whether readMesh() supports the ending.
+bool isReadable(const std::string& path);
+
 // Errors, each with the file's name and the place in it: kNotFound, kIo, kMalformed (truncated,
 // damaged, no triangles), kUnsupported (an unknown ending, an unsupported variant of a format).
 Result<LoadedMesh> readMesh(const std::string& path);

@@ -1,0 +1,343 @@
+#include "daemon/cli/mesh/import_range.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "render/range/colours.h"
+#include "render/range/filters.h"
+#include "render/range/geometry.h"
+#include "render/range/io/plane_file.h"
+
+namespace merlin::cli {
+namespace {
+
+namespace range = render::range;
+
+// Steps between pixels that the longest edge spans if nothing else is asked for: surfaces that are
+// inclined by up to 84 degrees stay connected.
+constexpr double kSteps = 10;
+
+bool readWhole(std::string_view text, double& value) {
+  const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return wrong == std::errc() && end == text.data() + text.size();
+}
+
+// "0.05", "3%".
+Result<range::Threshold> thresholdOf(const char* option, std::string_view text) {
+  range::Threshold threshold;
+  const bool percent = text.ends_with('%');
+  double value = 0;
+  if (!readWhole(text.substr(0, text.size() - (percent ? 1 : 0)), value) || !(value > 0) ||
+      !(value <= 1e9))
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("{} {}: is neither a length nor a percentage of the range, such as 3%",
+                             option, text)};
+  (percent ? threshold.per_range : threshold.length) =
+      static_cast<float>(percent ? value / 100 : value);
+  return threshold;
+}
+
+bool isElevation(const range::RangeImage& image) {
+  return image.geometry.scanner == range::Scanner::kElevation;
+}
+
+Error percentOfHeight(const char* option) {
+  return {Errc::kInvalidArgument,
+          fmt::format("{}: a height is no distance; give a length, not a percentage", option)};
+}
+
+// Adds the image of a --feature NAME=FILE.
+Result<Ok> addFeature(const std::string& text, ImportedRange& loaded) {
+  const std::size_t equals = text.find('=');
+  const std::string name = text.substr(0, equals);
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    return Error{Errc::kInvalidArgument, fmt::format("--feature {}: is not NAME=FILE", text)};
+  for (const char* taken : {"normal", "texcoord", "border"}) {
+    if (name == taken)
+      return Error{Errc::kInvalidArgument,
+                   fmt::format("--feature {}: the name {} is MERLIN's own", text, name)};
+  }
+  if (loaded.image.find(name))
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("--feature {}: there is a feature {} already", text, name)};
+  auto plane = range::readPlane(name, text.substr(equals + 1), loaded.image);
+  if (!plane) return plane.error();
+  loaded.image.planes.push_back(*std::move(plane));
+  return Ok{};
+}
+
+// The values of the pixels with a return.
+std::vector<float> valuesAtReturns(const range::RangeImage& image, std::span<const float> values) {
+  std::vector<float> some;
+  for (std::size_t p = 0; p < image.pixels(); ++p) {
+    if (range::isReturn(image.range[p])) some.push_back(values[p]);
+  }
+  return some;
+}
+
+// Adds the feature "colour" of --colour-by, or, where nothing has colours, of what is there.
+Result<Ok> addColours(const std::string& wanted, bool texture, range::RangeImage& image) {
+  const bool coloured = texture || image.find("colour");
+  const range::Plane* confidence = image.find("confidence");
+  std::string by = wanted;
+  if (by.empty() && !coloured)
+    by = confidence && confidence->dimension == 1 ? "confidence"
+         : isElevation(image)                     ? "height"
+                                                  : "";
+  if (by.empty() || by == "none") return Ok{};
+  if (image.find("colour"))
+    return Error{Errc::kInvalidArgument, "--colour-by: there is a feature colour already"};
+  const bool heights = by == "height" && isElevation(image);
+  const range::Plane* plane = image.find(by);
+  if (!heights && (!plane || plane->dimension != 1))
+    return Error{
+        Errc::kInvalidArgument,
+        fmt::format("--colour-by {}: there is no such feature of one value per pixel", by)};
+  const std::span<const float> values = heights ? image.range : plane->values;
+  const range::Ends ends = !heights && plane->low != plane->high
+                               ? range::Ends{plane->low, plane->high}
+                               : range::endsOf(valuesAtReturns(image, values));
+  const auto scale = heights ? range::Scale::kTerrain : range::Scale::kBlueToRed;
+  image.planes.push_back(range::coloursOf(values, ends, scale));
+  return Ok{};
+}
+
+std::vector<FeatureFacts> factsOf(const range::RangeImage& image) {
+  std::vector<FeatureFacts> facts;
+  for (const range::Plane& plane : image.planes) {
+    FeatureFacts f{plane.name, plane.unit, plane.dimension, plane.low, plane.high};
+    if (f.low == f.high && f.dimension == 1) {
+      const range::Ends ends = range::endsOf(valuesAtReturns(image, plane.values));
+      f.low = ends.low;
+      f.high = ends.high;
+    }
+    facts.push_back(std::move(f));
+  }
+  return facts;
+}
+
+// Peak memory from here on [bytes]: planes are there twice, as pixels and as features.
+std::size_t memoryFor(const range::RangeImage& image) {
+  std::size_t values = 0;
+  for (const range::Plane& plane : image.planes) values += plane.dimension;
+  return image.pixels() * (80 + 8 * values);
+}
+
+Result<Ok> chooseMaxEdge(const RangeImport& options, ImportedRange& range) {
+  if (options.max_edge == "none" || (options.max_edge.empty() && isElevation(range.image))) {
+    range.max_edge_text = "edges of any length";
+    return Ok{};
+  }
+  if (options.max_edge.empty()) {
+    const double step = render::range::stepOf(range.image);
+    range.max_edge.per_range = static_cast<float>(kSteps * step);
+    range.max_edge_text =
+        fmt::format("edges of up to {:.3g} % of the range, {} steps between pixels (--max-edge)",
+                    100 * kSteps * step, kSteps);
+    return Ok{};
+  }
+  const auto threshold = thresholdOf("--max-edge", options.max_edge);
+  if (!threshold) return threshold.error();
+  if (isElevation(range.image) && std::isinf(threshold->length))
+    return percentOfHeight("--max-edge");
+  range.max_edge = *threshold;
+  range.max_edge_text = fmt::format("edges of up to {}{}", options.max_edge,
+                                    options.max_edge.ends_with('%') ? " of the range" : "");
+  return Ok{};
+}
+
+Error nothingLeft(const std::string& path, const std::string& why) {
+  return {Errc::kMalformed, fmt::format("{}: {}", path, why)};
+}
+
+}  // namespace
+
+void RangeImport::addTo(Command command) {
+  const auto keep = [&](const char* name, Argument argument) {
+    names_.emplace_back(name);
+    arguments_.push_back(argument);
+    return argument;
+  };
+  keep("--geometry",
+       command.option("--geometry", geometry_,
+                      "How the pixels of a range image become rays: orthogonal (two mirrors), "
+                      "spinning (a turning head), pinhole (a camera of depths), elevation (a map "
+                      "from above); overrides what the file says"))
+      .oneOf({"orthogonal", "spinning", "pinhole", "elevation"});
+  keep("--angles",
+       command.option("--angles", angles_,
+                      "Horizontal and vertical angle of the image, in degrees, or a file with the "
+                      "angles of the rows (render/range/README.md)"))
+      .typeName("H V | FILE")
+      .expected(1, 2);
+  keep("--cell", command.option("--cell", cell_,
+                                "Elevation map: distance of its columns, and of "
+                                "its rows if that differs"))
+      .typeName("X [Y]")
+      .expected(1, 2);
+  keep("--exaggerate",
+       command.option("--exaggerate", exaggeration_, "Elevation map: factor of the heights"))
+      .typeName("FACTOR");
+  keep("--no-return", command.option("--no-return", no_return_,
+                                     "Stored value of pixels without a return; by default 0 for "
+                                     "range images"))
+      .typeName("VALUE");
+  keep("--raw", command.option("--raw", raw_,
+                               "The input is raw binary: its size, its planes in their order and "
+                               "their types (" +
+                                   range::rawTypes() + "); a plane named - is skipped"))
+      .typeName("WxH:range=TYPE,NAME=TYPE,...");
+  keep("--raw-header",
+       command.option("--raw-header", raw_header_, "Raw binary: bytes before the planes"))
+      .typeName("BYTES");
+  keep("--raw-interleaved",
+       command.flag("--raw-interleaved", raw_interleaved_,
+                    "Raw binary: the planes' values follow one another pixel by pixel"));
+  keep(
+      "--feature",
+      command.option("--feature", features,
+                     "A registered image (PGM, PPM, PNG, JPEG) of the same size, which becomes the "
+                     "feature NAME of the vertices; may be repeated"))
+      .typeName("NAME=FILE")
+      .repeatable();
+  keep("--max-edge",
+       command.option(
+           "--max-edge", max_edge,
+           "Longest edge of a triangle: a length, a percentage of the range, or none for "
+           "any; by default 10 times the step between pixels, and any for elevation maps"))
+      .typeName("LENGTH|PERCENT%");
+  keep("--median",
+       command.option("--median", median, "Median filter of this width in pixels: 3, 5, ... 15"))
+      .check([](const std::string& value) {
+        const bool odd = value == "3" || value == "5" || value == "7" || value == "9" ||
+                         value == "11" || value == "13" || value == "15";
+        return odd ? std::string() : value + " is none of 3, 5, 7, 9, 11, 13, 15";
+      });
+  keep("--spikes",
+       command.option("--spikes", spikes,
+                      "Remove pixels that differ by more than this from all but one of their "
+                      "neighbours; edges of surfaces stay"))
+      .typeName("LENGTH|PERCENT%");
+  keep("--between", command.option("--between", between, "Remove returns outside these ranges"))
+      .typeName("NEAR FAR")
+      .expected(2);
+  keep("--colour-by",
+       command.option("--colour-by", colour_by,
+                      "Make colours of a feature: high red, low blue; or of the height of an "
+                      "elevation map; none for none. By default of confidence or height, where "
+                      "there are no colours"))
+      .typeName("FEATURE");
+  keep("--border", command.flag("--border", border,
+                                "Add the feature border, 1 at vertices on a border, 0 elsewhere"));
+}
+
+std::string RangeImport::anyGiven() const {
+  for (std::size_t i = 0; i < arguments_.size(); ++i) {
+    if (arguments_[i].isGiven()) return names_[i];
+  }
+  return {};
+}
+
+std::optional<std::string> RangeImport::takeInput() {
+  double number = 0;
+  if (angles_.size() < 2 || readWhole(angles_.front(), number)) return std::nullopt;
+  std::string input = angles_.back();
+  angles_.pop_back();
+  return input;
+}
+
+Result<render::range::RangeOptions> RangeImport::fileOptions() const {
+  range::RangeOptions options;
+  options.scanner = range::scannerOf(geometry_);
+  std::array<double, 2> angles{};
+  const bool numbers = !angles_.empty() && readWhole(angles_[0], angles[0]) &&
+                       (angles_.size() < 2 || readWhole(angles_[1], angles[1]));
+  if (numbers)
+    options.angles_deg = angles;
+  else if (angles_.size() == 1)
+    options.angle_table = angles_[0];
+  else if (angles_.size() == 2)
+    return Error{Errc::kInvalidArgument, fmt::format("--angles {} {}: are not two numbers, nor one "
+                                                     "file",
+                                                     angles_[0], angles_[1])};
+  if (!cell_.empty()) options.cell = {cell_.front(), cell_.back()};
+  options.exaggeration = exaggeration_;
+  options.no_return = no_return_;
+  options.scale = scale;
+  if (raw_.empty() && (raw_header_ > 0 || raw_interleaved_))
+    return Error{Errc::kInvalidArgument, "--raw-header and --raw-interleaved need --raw"};
+  if (raw_.empty()) return options;
+  auto layout = range::parseRawLayout(raw_);
+  if (!layout) return Error{layout.error().code, "--raw " + layout.error().what};
+  layout->header_bytes = raw_header_;
+  layout->interleaved = raw_interleaved_;
+  options.raw = *std::move(layout);
+  return options;
+}
+
+Result<ImportedRange> loadRange(const std::string& path, const RangeImport& options, bool texture) {
+  const auto file_options = options.fileOptions();
+  if (!file_options) return file_options.error();
+  auto loaded = range::readRange(path, *file_options);
+  if (!loaded) return loaded.error();
+  ImportedRange imported;
+  imported.image = std::move(loaded->image);
+  imported.format = std::move(loaded->format);
+  imported.notes = std::move(loaded->notes);
+  imported.returns_in_file = static_cast<std::size_t>(
+      std::count_if(imported.image.range.begin(), imported.image.range.end(), range::isReturn));
+  imported.image.join_ends = !texture;
+  for (const std::string& text : options.features) {
+    if (const auto added = addFeature(text, imported); !added) return added.error();
+  }
+  return imported;
+}
+
+Result<Ok> filterRange(const std::string& path, const RangeImport& options, std::size_t limit,
+                       const range::Work& work, ImportedRange& imported) {
+  range::RangeImage& image = imported.image;
+  if (memoryFor(image) > limit)
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("{}: {} x {} pixels take {} MB as a mesh; the limit (--memory, by "
+                             "default the free memory) is {} MB",
+                             path, image.width, image.height, memoryFor(image) >> 20, limit >> 20)};
+  if (!options.between.empty())
+    imported.outside = range::removeOutside(image, static_cast<float>(options.between[0]),
+                                            static_cast<float>(options.between[1]));
+  if (!options.spikes.empty()) {
+    const auto threshold = thresholdOf("--spikes", options.spikes);
+    if (!threshold) return threshold.error();
+    if (isElevation(image) && std::isinf(threshold->length)) return percentOfHeight("--spikes");
+    imported.spikes = range::removeSpikes(image, *threshold, range::partOf(work, 0, 0.4));
+  }
+  if (options.median > 0) range::medianFilter(image, options.median, range::partOf(work, 0.4, 1));
+  if (std::none_of(image.range.begin(), image.range.end(), range::isReturn))
+    return nothingLeft(
+        path, fmt::format("the filters removed all of its {} returns", imported.returns_in_file));
+  return Ok{};
+}
+
+Result<Ok> meshRange(const std::string& path, const RangeImport& options, const range::Work& work,
+                     ImportedRange& imported) {
+  range::RangeImage& image = imported.image;
+  if (const auto chosen = chooseMaxEdge(options, imported); !chosen) return chosen;
+  if (const auto added = addColours(options.colour_by, !image.join_ends, image); !added)
+    return added;
+  imported.features = factsOf(image);
+  const std::vector<float> points = range::pointsOf(image, range::partOf(work, 0, 0.2));
+  imported.mesh = range::triangulate(image, points, imported.max_edge, range::partOf(work, 0.2, 1));
+  range::RangeMesh& mesh = imported.mesh;
+  if (mesh.mesh.triangles.empty())
+    return nothingLeft(path, fmt::format("its {} returns make no triangle with {}", mesh.returns,
+                                         imported.max_edge_text));
+  if (!image.join_ends) range::addTexcoords(mesh, image);
+  if (options.border)
+    mesh.mesh.features.push_back({"border", 1, {mesh.on_boundary.begin(), mesh.on_boundary.end()}});
+  return Ok{};
+}
+
+}  // namespace merlin::cli

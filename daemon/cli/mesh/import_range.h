@@ -1,0 +1,80 @@
+// The steps of `merlin mesh import` from a range image or an elevation map to a mesh.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/result.h"
+#include "daemon/cli/arguments.h"
+#include "daemon/cli/progress.h"
+#include "render/range/io/range_file.h"
+#include "render/range/triangulate.h"
+
+namespace merlin::cli {
+
+// The options that are about range images.
+class RangeImport {
+ public:
+  void addTo(Command command);
+  // The name of an option that was given, for a message that it does not fit; empty if none was.
+  std::string anyGiven() const;
+  // A file name that the greedy --angles took, because it stood before the input.
+  std::optional<std::string> takeInput();
+
+  Result<render::range::RangeOptions> fileOptions() const;
+
+  bool isRaw() const { return !raw_.empty(); }
+
+  std::optional<double> scale;  // of any input
+  std::string colour_by, max_edge, spikes;
+  std::vector<std::string> features;
+  std::vector<double> between;
+  std::size_t median = 0;
+  bool border = false;
+
+ private:
+  std::string geometry_, raw_;
+  std::vector<std::string> angles_;
+  std::vector<double> cell_;
+  std::optional<double> exaggeration_, no_return_;
+  std::size_t raw_header_ = 0;
+  bool raw_interleaved_ = false;
+  std::vector<Argument> arguments_;
+  std::vector<std::string> names_;
+};
+
+// What a feature of the mesh means, as far as it is known.
+struct FeatureFacts {
+  std::string name, unit;
+  std::size_t dimension = 1;
+  float low = 0, high = 0;  // as the file says, else of the values
+};
+
+// A range image and what was done to it.
+struct ImportedRange {
+  render::range::RangeImage image;
+  std::string format;
+  std::vector<std::string> notes;
+  std::vector<FeatureFacts> features;
+  std::size_t returns_in_file = 0, outside = 0, spikes = 0;
+  render::range::Threshold max_edge;
+  std::string max_edge_text;  // for a person
+  render::range::RangeMesh mesh;
+};
+
+// Reads a range image and its modalities. `texture`: whether a picture will be laid over it.
+// Errors: those of the readers; kInvalidArgument (two features of one name, --colour-by).
+Result<ImportedRange> loadRange(const std::string& path, const RangeImport& options, bool texture);
+
+// Runs the filters; checks first that `limit` bytes suffice for them and the mesh. Errors:
+// kInvalidArgument, kMalformed (nothing is left).
+Result<Ok> filterRange(const std::string& path, const RangeImport& options, std::size_t limit,
+                       const render::range::Work& work, ImportedRange& range);
+
+// Makes the mesh. Errors: kMalformed if no triangle is within --max-edge.
+Result<Ok> meshRange(const std::string& path, const RangeImport& options,
+                     const render::range::Work& work, ImportedRange& range);
+
+}  // namespace merlin::cli

@@ -1,0 +1,124 @@
+#include "daemon/cli/mesh/import_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/process_memory.h"
+#include "daemon/cli/print.h"
+
+namespace merlin::cli {
+namespace {
+
+nlohmann::ordered_json jsonOf(const ImportTimes& times) {
+  return {{"reading", times.reading},   {"filtering", times.filtering}, {"meshing", times.meshing},
+          {"reducing", times.reducing}, {"writing", times.writing},     {"all", times.all}};
+}
+
+// What both kinds of input have in common.
+nlohmann::ordered_json jsonOf(const ImportNames& names, const std::string& format,
+                              const ImportedFile& written, const ImportTimes& times) {
+  nlohmann::ordered_json json = {{"input", names.input},
+                                 {"output", names.output},
+                                 {"format", format},
+                                 {"triangles", written.triangles},
+                                 {"vertices", written.vertices},
+                                 {"companion_files", written.mesh.companions},
+                                 {"left_out", written.mesh.left_out},
+                                 {"seconds", jsonOf(times)},
+                                 {"peak_memory_mb", peakMemory() >> 20}};
+  if (written.coarsest) json["triangles_coarsest"] = *written.coarsest;
+  return json;
+}
+
+nlohmann::ordered_json finiteOrNull(float value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
+void addRange(const ImportedRange& range, nlohmann::ordered_json& json) {
+  using Json = nlohmann::ordered_json;
+  Json features = Json::array();
+  for (const FeatureFacts& f : range.features) {
+    Json feature = {{"name", f.name}, {"dimension", f.dimension}};
+    if (!f.unit.empty()) feature["unit"] = f.unit;
+    if (f.dimension == 1) feature["range"] = {f.low, f.high};
+    features.push_back(std::move(feature));
+  }
+  const auto& mesh = range.mesh;
+  json["geometry"] = render::range::nameOf(range.image.geometry.scanner);
+  json["width"] = range.image.width;
+  json["height"] = range.image.height;
+  json["returns"] = range.returns_in_file;
+  json["outside_removed"] = range.outside;
+  json["spikes_removed"] = range.spikes;
+  json["unused"] = mesh.unused;
+  json["vertices_added"] = mesh.split;
+  json["border_vertices"] = std::count(mesh.on_boundary.begin(), mesh.on_boundary.end(), 1);
+  json["max_edge_length"] = finiteOrNull(range.max_edge.length);
+  json["max_edge_percent"] = finiteOrNull(100 * range.max_edge.per_range);
+  json["features"] = std::move(features);
+  json["notes"] = range.notes;
+}
+
+void printFeatures(const ImportedRange& range) {
+  for (const FeatureFacts& f : range.features) {
+    if (f.dimension == 1)
+      printOut("  feature   {}, {:.6g} to {:.6g}{}{}\n", f.name, f.low, f.high,
+               f.unit.empty() ? "" : " ", f.unit);
+    else
+      printOut("  feature   {} x {}\n", f.name, f.dimension);
+  }
+}
+
+void printTimes(const ImportedFile& written, const ImportTimes& times) {
+  printWritten(written.mesh);
+  if (written.coarsest) printOut("  levels    down to {} triangles\n", *written.coarsest);
+  printOut("  {:.2f} s: reading {:.2f}, filtering {:.2f}, meshing {:.2f}", times.all, times.reading,
+           times.filtering, times.meshing);
+  if (written.coarsest) printOut(", reducing {:.2f}", times.reducing);
+  printOut(", writing {:.2f}; peak memory {} MB\n", times.writing, peakMemory() >> 20);
+}
+
+}  // namespace
+
+void reportRange(const ImportNames& names, const ImportedRange& range, const ImportedFile& written,
+                 const ImportTimes& times) {
+  if (names.json) {
+    auto json = jsonOf(names, range.format, written, times);
+    addRange(range, json);
+    printJsonLine(json);
+    return;
+  }
+  const auto& image = range.image;
+  const auto& mesh = range.mesh;
+  printOut("{}: {} triangles, {} vertices\n", names.output, written.triangles, written.vertices);
+  printOut("  read      {}, {} x {} pixels, {} with a return, {}\n", range.format, image.width,
+           image.height, range.returns_in_file, render::range::nameOf(image.geometry.scanner));
+  if (range.outside + range.spikes > 0)
+    printOut("  removed   {} returns outside --between, {} spikes\n", range.outside, range.spikes);
+  printFeatures(range);
+  if (written.triangles > 0)
+    printOut(
+        "  surface   {}; {} vertices on borders, {} returns in no triangle, {} vertices added "
+        "where surfaces touch in a point\n",
+        range.max_edge_text, std::count(mesh.on_boundary.begin(), mesh.on_boundary.end(), 1),
+        mesh.unused, mesh.split);
+  printTimes(written, times);
+}
+
+void reportMesh(const ImportNames& names, const render::mesh::LoadedMesh& loaded,
+                const ImportedFile& written, const ImportTimes& times) {
+  if (names.json) {
+    auto json = jsonOf(names, "mesh", written, times);
+    for (const Repair& repair : repairsOf(loaded)) json[repair.key] = repair.count;
+    printJsonLine(json);
+    return;
+  }
+  printOut("{}: {} triangles, {} vertices\n", names.output, written.triangles, written.vertices);
+  if (const std::string mended = mendedText(loaded); !mended.empty()) printOut("  {}\n", mended);
+  printTimes(written, times);
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,293 @@
+// merlin mesh import: makes a mesh or a model of a range image, an elevation map or a mesh of any
+// format that is read.
+#include <chrono>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/process_memory.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/import_range.h"
+#include "daemon/cli/mesh/import_report.h"
+#include "daemon/cli/mesh/mesh.h"
+#include "daemon/cli/mesh/mesh_memory.h"
+#include "daemon/cli/mesh/reduction_step.h"
+#include "daemon/cli/print.h"
+#include "daemon/cli/progress.h"
+#include "render/image/image_file.h"
+#include "render/lod/io/mrm_file.h"
+
+namespace merlin::cli {
+namespace {
+
+struct MeshImport {
+  std::vector<std::string> inputs;
+  std::string output, texture;
+  RangeImport range;
+  std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
+  unsigned threads = 0;
+  bool json = false;
+
+  const std::string& input() const { return inputs.front(); }
+  std::size_t limit() const { return memory > 0 ? memory : freeMemory(); }
+  bool makesModel() const { return output.ends_with(".mrm"); }
+  bool makesImage() const { return output.ends_with(".pgm"); }
+};
+
+ImportNames namesOf(const MeshImport& options) {
+  return {options.input(), options.output, options.json};
+}
+
+// Shows a bar once the work has taken two seconds.
+class LateBar {
+ public:
+  LateBar(std::size_t items, const Clock& clock)
+      : items_(items), clock_(clock), began_(clock.now()), bar_("importing", "pixels", clock) {}
+
+  render::range::Work work(unsigned threads) {
+    return {threadsOr(threads), [this](double share) {
+              shown_ = shown_ || clock_.now() - began_ > std::chrono::seconds(2);
+              if (shown_) bar_.update(share, at(share));
+            }};
+  }
+  void finish() {
+    if (shown_) bar_.finish(items_);
+  }
+
+ private:
+  std::size_t at(double share) const {
+    return static_cast<std::size_t>(share * static_cast<double>(items_));
+  }
+
+  std::size_t items_;
+  const Clock& clock_;
+  Timestamp began_;
+  ProgressBar bar_;
+  bool shown_ = false;
+};
+
+// Takes the time from one call to the next.
+class Stopwatch {
+ public:
+  explicit Stopwatch(const Clock& clock) : clock_(clock), last_(clock.now()) {}
+  double lap() {
+    const Timestamp now = clock_.now();
+    const double seconds = toSeconds(now - last_);
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  const Clock& clock_;
+  Timestamp last_;
+};
+
+// The units and the ranges of features, for the model's text "about".
+std::string aboutFeatures(const std::vector<FeatureFacts>& features) {
+  std::string text;
+  for (const FeatureFacts& f : features) {
+    if (f.dimension != 1) continue;
+    if (!f.unit.empty()) text += fmt::format("feature.{}.unit={}\n", f.name, f.unit);
+    text += fmt::format("feature.{}.range={} {}\n", f.name, f.low, f.high);
+  }
+  return text;
+}
+
+Result<ImportedFile> writeModel(const MeshImport& options, const render::mesh::Mesh& mesh,
+                                const std::vector<FeatureFacts>& features, ImportTimes& times) {
+  ImportedFile written{mesh.triangleCount(), mesh.vertexCount(), {}, {}};
+  if (const auto named = render::lod::checkNames(mesh); !named)
+    return Error{named.error().code, options.input() + ": " + named.error().what};
+  render::reduce::ReduceSettings settings;
+  settings.threads = options.threads;
+  settings.weights = render::reduce::findCost(settings.cost)->weights(mesh);
+  const auto room = roomForReduction(sizeOf(mesh), 0, settings, options.limit());
+  if (!room) return Error{room.error().code, options.input() + ": " + room.error().what};
+  settings.memory = *room;
+  auto reduction = reduceWithProgress(mesh, settings, times.reducing);
+  if (!reduction) return reduction.error();
+  reduction->log.about += aboutFeatures(features);
+  const auto done = render::lod::writeMrm(options.output, mesh, reduction->log, options.threads);
+  if (!done) return done.error();
+  written.coarsest = reduction->report.triangles;
+  return written;
+}
+
+Result<ImportedFile> writeOutput(const MeshImport& options, const render::mesh::Mesh& mesh,
+                                 const std::vector<FeatureFacts>& features, ImportTimes& times) {
+  if (options.makesModel()) return writeModel(options, mesh, features, times);
+  auto done = render::mesh::writeMesh(options.output, mesh);
+  if (!done) return done.error();
+  return ImportedFile{mesh.triangleCount(), mesh.vertexCount(), {}, *std::move(done)};
+}
+
+Result<Ok> addTexture(const MeshImport& options, render::mesh::Mesh& mesh) {
+  if (options.texture.empty()) return Ok{};
+  if (!mesh.find("texcoord") || mesh.find("texcoord")->dimension != 2)
+    return Error{Errc::kInvalidArgument,
+                 options.input() + ": has no texture coordinates for the picture of --texture"};
+  if (const auto fits = roomForPicture(options.texture, sizeOf(mesh), options.limit()); !fits)
+    return fits;
+  auto picture = render::image::readImage(options.texture);
+  if (!picture) return picture.error();
+  mesh.texture = std::move(picture->file);
+  return Ok{};
+}
+
+// A range image that is only filtered and written as PGM.
+int writeImage(const MeshImport& options, ImportedRange& range, ImportTimes& times,
+               Stopwatch& watch) {
+  const auto done = render::range::writeRange(options.output, range.image);
+  if (!done) return fail(done.error());
+  times.writing = watch.lap();
+  ImportedFile written;
+  written.mesh.format = "pgm";
+  for (const auto& plane : range.image.planes) written.mesh.left_out.push_back(plane.name);
+  times.all = times.reading + times.filtering + times.writing;
+  reportRange(namesOf(options), range, written, times);
+  return kExitDone;
+}
+
+int importRange(const MeshImport& options) {
+  const SystemClock clock;
+  Stopwatch watch(clock);
+  ImportTimes times;
+  auto range = loadRange(options.input(), options.range, !options.texture.empty());
+  if (!range) return fail(range.error());
+  for (const std::string& note : range->notes) printNote(options.input() + ": " + note);
+  times.reading = watch.lap();
+  LateBar bar(range->image.pixels(), clock);
+  const auto work = bar.work(options.threads);
+  const auto filtered = filterRange(options.input(), options.range, options.limit(),
+                                    render::range::partOf(work, 0, 0.5), *range);
+  if (!filtered) return fail(filtered.error());
+  times.filtering = watch.lap();
+  if (options.makesImage()) return writeImage(options, *range, times, watch);
+  const auto meshed =
+      meshRange(options.input(), options.range, render::range::partOf(work, 0.5, 1), *range);
+  if (!meshed) return fail(meshed.error());
+  bar.finish();
+  render::mesh::Mesh& mesh = range->mesh.mesh;
+  if (const auto added = addTexture(options, mesh); !added) return fail(added.error());
+  if (range->mesh.not_numbers > 0)
+    printNote(fmt::format("{}: {} values of features were not numbers; 0 stands there",
+                          options.input(), range->mesh.not_numbers));
+  times.meshing = watch.lap();
+  const auto written = writeOutput(options, mesh, range->features, times);
+  if (!written) return fail(written.error());
+  times.writing = watch.lap() - times.reducing;
+  times.all = times.reading + times.filtering + times.meshing + times.reducing + times.writing;
+  reportRange(namesOf(options), *range, *written, times);
+  return kExitDone;
+}
+
+Result<Ok> checkMeshInput(const MeshImport& options) {
+  const std::string option = options.range.anyGiven();
+  const std::string& path = options.input();
+  const std::string read =
+      fmt::format("read are {} as range images, and {} as meshes", render::range::readableRanges(),
+                  render::mesh::readableEndings());
+  std::error_code absent;
+  if (!std::filesystem::exists(path, absent))
+    return Error{Errc::kNotFound, path + ": does not exist"};
+  if (!render::mesh::isReadable(path))
+    return Error{Errc::kUnsupported, path + ": is of no format that MERLIN reads; " + read};
+  if (!option.empty())
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("{}: {} is for range images; {}", path, option, read)};
+  if (options.makesImage())
+    return Error{Errc::kUnsupported, options.output + ": only range images are written as PGM"};
+  return Ok{};
+}
+
+int importMesh(const MeshImport& options) {
+  const SystemClock clock;
+  Stopwatch watch(clock);
+  ImportTimes times;
+  if (const auto good = checkMeshInput(options); !good) return fail(good.error());
+  auto loaded = loadMesh(options.input());
+  if (!loaded) return fail(loaded.error());
+  render::mesh::Mesh& mesh = loaded->mesh;
+  for (float& x : mesh.positions) x = static_cast<float>(x * options.range.scale.value_or(1));
+  if (const auto valid = validate(mesh); !valid)
+    return fail({valid.error().code, options.input() + ": scaled, " + valid.error().what});
+  if (const auto added = addTexture(options, mesh); !added) return fail(added.error());
+  times.reading = watch.lap();
+  const auto written = writeOutput(options, mesh, {}, times);
+  if (!written) return fail(written.error());
+  times.writing = watch.lap() - times.reducing;
+  times.all = times.reading + times.reducing + times.writing;
+  reportMesh(namesOf(options), *loaded, *written, times);
+  return kExitDone;
+}
+
+Result<Ok> checkOptions(MeshImport& options) {
+  if (const auto input = options.range.takeInput()) options.inputs.push_back(*input);
+  if (options.inputs.size() != 1)
+    return Error{
+        Errc::kInvalidArgument,
+        fmt::format("{} inputs are given; one file is imported at a time", options.inputs.size())};
+  if (!options.makesModel() && !options.makesImage()) {
+    if (const auto known = render::mesh::checkMeshEnding(options.output); !known)
+      return Error{known.error().code,
+                   known.error().what + "; models as .mrm, range images as .pgm"};
+  }
+  return checkOutputs(options.input(), {options.output});
+}
+
+int importFile(MeshImport& options) {
+  if (const auto good = checkOptions(options); !good) return fail(good.error());
+  const bool range = options.range.isRaw() || render::range::isRangeFile(options.input());
+  return range ? importRange(options) : importMesh(options);
+}
+
+}  // namespace
+
+void addMeshImport(Command mesh, Run& run) {
+  const auto options = std::make_shared<MeshImport>();
+  Command command = mesh.subcommand("import",
+                                    "Make a mesh, or a model that is ready for the wall (.mrm, "
+                                    "reduced), of a range image with its "
+                                    "registered modalities, of an elevation map, or of a mesh. The "
+                                    "file's content decides what it "
+                                    "is: " +
+                                        render::range::readableRanges() + "; meshes are " +
+                                        render::mesh::readableEndings() +
+                                        ".\nExample: merlin mesh import scan.pgm --geometry "
+                                        "orthogonal --angles 60 45 --scale 0.001 "
+                                        "--feature colour=photo.ppm --spikes 2% -o scan.mrm");
+  command.option("input", options->inputs, "The file").typeName("IN");
+  command
+      .option("-o", options->output,
+              "The result: a model (.mrm), a mesh (.ply, .obj, .glb, .gltf, .stl, .iv), or the "
+              "filtered range image (.pgm)")
+      .required()
+      .typeName("OUT");
+  command
+      .option("--scale", options->range.scale,
+              "Metres per unit of the file's ranges, heights or coordinates")
+      .positive()
+      .typeName("METRES_PER_UNIT");
+  options->range.addTo(command);
+  command
+      .option("--texture", options->texture,
+              "Picture over the whole range image, or of a mesh with texture coordinates; it is "
+              "stored in the model, or beside the mesh")
+      .typeName("FILE.png|.jpg");
+  command
+      .option("--memory", options->memory,
+              "Maximum memory of the whole command, such as 900M or 16G; the default is the free "
+              "memory")
+      .size()
+      .typeName("SIZE");
+  command
+      .option("--threads", options->threads,
+              "Maximum number of threads; 0: all cores. The result does not depend on this number")
+      .showDefault();
+  command.flag("--json", options->json, "Print the report as JSON, for programs");
+  command.callback([options, &run] { run = [options] { return importFile(*options); }; });
+}
+
+}  // namespace merlin::cli

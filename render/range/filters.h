@@ -1,0 +1,28 @@
+// Filters of range images against noise, spikes and outliers. They change ranges only: no pixel
+// without a return gets one.
+#pragma once
+
+#include <cstddef>
+
+#include "render/range/range_image.h"
+#include "render/range/threshold.h"
+#include "render/range/work.h"
+
+namespace merlin::render::range {
+
+// Replaces each range by the median of the returns in the window x window pixels around it; of an
+// even number of them, by the lower one of the two in the middle, so that a range is always one
+// that was measured. Steps between surfaces stay where they are. [GOURLEY98] 5.2.2. O(pixels x
+// window^2). REQUIRES: window is odd, 3 to 15.
+void medianFilter(RangeImage& image, std::size_t window, const Work& work);
+
+// Removes spikes: pixels of which fewer than two of the eight neighbours have a range that differs
+// by no more than the limit (at the smaller one of the two ranges). A pixel at the edge of a
+// surface, or on a wire, has two neighbours there and stays. Returns the number of pixels that lost
+// their return. O(pixels).
+std::size_t removeSpikes(RangeImage& image, const Threshold& limit, const Work& work);
+
+// Removes returns outside [nearest, farthest]. Returns their number. O(pixels).
+std::size_t removeOutside(RangeImage& image, float nearest, float farthest);
+
+}  // namespace merlin::render::range

@@ -1,0 +1,128 @@
+#include "render/range/io/image_header.h"
+
+#include <fmt/format.h>
+
+#include "daemon/base/printable_text.h"
+#include "render/range/io/words.h"
+
+namespace merlin::render::range {
+namespace {
+
+struct ScannerName {
+  Scanner scanner;
+  const char* name;
+};
+constexpr ScannerName kScannerNames[] = {{Scanner::kOrthogonal, "orthogonal"},
+                                         {Scanner::kSpinning, "spinning"},
+                                         {Scanner::kPinhole, "pinhole"},
+                                         {Scanner::kElevation, "elevation"},
+                                         {Scanner::kRays, "rays"}};
+
+using Numbers = std::vector<double>;
+
+void setAngles(const Numbers& n, ImageHeader& header) {
+  header.angles_deg = {n[0], n.size() > 1 ? n[1] : 0};
+}
+void addBeam(const Numbers& n, ImageHeader& header) {
+  header.beams.push_back({n[0] * kDegree, n.size() > 1 ? n[1] * kDegree : 0});
+}
+void setCamera(const Numbers& n, ImageHeader& header) {
+  header.camera.emplace();
+  for (std::size_t i = 0; i < 12; ++i) (*header.camera)[i] = n[i];
+}
+
+// A key with numbers.
+struct Key {
+  const char* key;
+  std::size_t least, most;  // numbers
+  const char* allowed;
+  void (*set)(const Numbers&, ImageHeader&);
+};
+constexpr Key kKeys[] = {
+    {"angles", 1, 2, "one or two numbers (degrees: horizontal, vertical)", setAngles},
+    {"beam", 1, 2, "one or two numbers (degrees: altitude, azimuth)", addBeam},
+    {"minimum", 1, 1, "a number", [](const Numbers& n, ImageHeader& h) { h.minimum = n[0]; }},
+    {"maximum", 1, 1, "a number", [](const Numbers& n, ImageHeader& h) { h.maximum = n[0]; }},
+    {"scale", 1, 1, "a number (metres per unit)",
+     [](const Numbers& n, ImageHeader& h) { h.scale = n[0]; }},
+    {"no-return", 1, 1, "a number", [](const Numbers& n, ImageHeader& h) { h.no_return = n[0]; }},
+    {"camera", 12, 12, "twelve numbers (three rows of rotation and translation)", setCamera},
+    {"cell", 1, 2, "one or two numbers (distances of columns and of rows)",
+     [](const Numbers& n, ImageHeader& h) {
+       h.cell = {n[0], n.back()};
+     }}};
+
+Error keyFault(std::string_view key, std::string_view found, std::string_view allowed) {
+  return {Errc::kMalformed,
+          fmt::format("{}: found \"{}\", allowed: {}", key, oneLine(excerpt(found)), allowed)};
+}
+
+}  // namespace
+
+const char* nameOf(Scanner scanner) {
+  for (const ScannerName& row : kScannerNames) {
+    if (row.scanner == scanner) return row.name;
+  }
+  return "";
+}
+
+std::optional<Scanner> scannerOf(std::string_view name) {
+  for (const ScannerName& row : kScannerNames) {
+    if (row.name == name && row.scanner != Scanner::kRays) return row.scanner;
+  }
+  return std::nullopt;
+}
+
+Result<Ok> applyLine(std::string_view line, ImageHeader& header) {
+  const std::size_t colon = line.find(':');
+  if (colon == std::string_view::npos) return Ok{};
+  const std::string key = inLowerCase(trimmed(line.substr(0, colon)));
+  const std::string_view value = trimmed(line.substr(colon + 1));
+  if (key == "geometry") {
+    header.scanner = scannerOf(inLowerCase(value));
+    if (header.scanner) return Ok{};
+    return keyFault(key, value, "orthogonal, spinning, pinhole, elevation");
+  }
+  if (key == "unit") {
+    header.unit = excerpt(value);
+    return Ok{};
+  }
+  for (const Key& known : kKeys) {
+    if (key != known.key) continue;
+    const Numbers numbers = numbersOf(value, known.most);
+    if (numbers.size() < known.least) return keyFault(key, value, known.allowed);
+    known.set(numbers, header);
+    return Ok{};
+  }
+  return Ok{};
+}
+
+std::string linesOf(const ImageHeader& header, std::string_view before) {
+  std::string text;
+  const auto add = [&](const char* key, const std::string& value) {
+    text += fmt::format("{}{}: {}\n", before, key, value);
+  };
+  const auto addNumber = [&](const char* key, const std::optional<double>& value) {
+    if (value) add(key, fmt::format("{}", *value));
+  };
+  if (header.scanner) add("geometry", nameOf(*header.scanner));
+  if (header.angles_deg)
+    add("angles", fmt::format("{} {}", (*header.angles_deg)[0], (*header.angles_deg)[1]));
+  for (const Beam& beam : header.beams)
+    add("beam", fmt::format("{} {}", beam.altitude_rad / kDegree, beam.azimuth_rad / kDegree));
+  if (header.cell) add("cell", fmt::format("{} {}", (*header.cell)[0], (*header.cell)[1]));
+  addNumber("minimum", header.minimum);
+  addNumber("maximum", header.maximum);
+  addNumber("scale", header.scale);
+  addNumber("no-return", header.no_return);
+  if (!header.unit.empty()) add("unit", header.unit);
+  if (header.camera) {
+    std::string numbers;
+    for (const double x : *header.camera)
+      numbers += fmt::format("{}{}", numbers.empty() ? "" : " ", x);
+    add("camera", numbers);
+  }
+  return text;
+}
+
+}  // namespace merlin::render::range

@@ -1,0 +1,40 @@
+// ImageHeader: what a range file says of its pixels and of its scanner, before the command line
+// overrides it; and its form as "key: value" lines, which PGM files carry as comments (README.md).
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/base/result.h"
+#include "render/range/range_image.h"
+
+namespace merlin::render::range {
+
+struct ImageHeader {
+  std::optional<Scanner> scanner{};
+  std::optional<std::array<double, 2>> angles_deg{};  // horizontal, vertical; of beams only [0]
+  std::vector<Beam> beams{};                          // of a spinning scanner, one per row
+  std::optional<std::size_t> columns{};               // that the table of beams is for
+  std::optional<double> minimum{}, maximum{};         // values of the stored 0 and of the largest
+  std::optional<double> scale{};                      // metres per unit of the values
+  std::optional<double> no_return{};                  // the stored value of pixels without a return
+  std::optional<Pose> camera{};                       // T_world_scanner
+  std::optional<std::array<double, 2>> cell{};        // of an elevation map: distances [units]
+  std::string unit{};
+};
+
+// "orthogonal", "spinning", "pinhole", "elevation"; for kRays "rays".
+const char* nameOf(Scanner scanner);
+std::optional<Scanner> scannerOf(std::string_view name);  // not kRays
+
+// Sets what the line says, if it is "key: value" with a key of the table in README.md; other lines
+// are ignored. Errors: kMalformed, with the key, what was found and what is allowed.
+Result<Ok> applyLine(std::string_view line, ImageHeader& header);
+
+// The lines that applyLine() reads, each ended by a line feed and begun with `before`.
+std::string linesOf(const ImageHeader& header, std::string_view before);
+
+}  // namespace merlin::render::range

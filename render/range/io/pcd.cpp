@@ -1,0 +1,100 @@
+#include "render/range/io/pcd.h"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "daemon/base/printable_text.h"
+#include "render/range/io/pcd_body.h"
+#include "render/range/io/words.h"
+
+namespace merlin::render::range {
+namespace {
+
+constexpr const char* kLeftOut[] = {"_", "x", "y", "z", "normal_x", "normal_y", "normal_z"};
+
+const PcdValues* find(const PcdHeader& header, const std::vector<PcdValues>& values,
+                      std::string_view name) {
+  for (std::size_t f = 0; f < values.size(); ++f) {
+    if (header.fields[f].name == name && header.fields[f].count == 1) return &values[f];
+  }
+  return nullptr;
+}
+
+Plane colourPlane(const PcdValues& packed) {
+  Plane plane{"colour", 3, {}, "", 0, 1};
+  plane.values.reserve(3 * packed.size());
+  for (const double value : packed) {
+    const auto bits = static_cast<std::uint32_t>(value);
+    for (const unsigned shift : {16U, 8U, 0U})
+      plane.values.push_back(static_cast<float>(bits >> shift & 0xFF) / 255);
+  }
+  return plane;
+}
+
+void addPlanes(const PcdHeader& header, const std::vector<PcdValues>& values, PcdImage& pcd) {
+  for (std::size_t f = 0; f < values.size(); ++f) {
+    const PcdField& field = header.fields[f];
+    const bool left_out =
+        std::find(std::begin(kLeftOut), std::end(kLeftOut), field.name) != std::end(kLeftOut);
+    const std::string name = isPackedColour(field) ? "colour" : field.name;
+    if (left_out) continue;
+    if (pcd.image.find(name)) {
+      pcd.notes.push_back(fmt::format("the second field {} is left out", oneLine(name)));
+      continue;
+    }
+    if (name == "colour" && isPackedColour(field))
+      pcd.image.planes.push_back(colourPlane(values[f]));
+    else
+      pcd.image.planes.push_back({name, field.count, {values[f].begin(), values[f].end()}});
+  }
+}
+
+// Points to rays and ranges from the viewpoint.
+void addPoints(const PcdValues& x, const PcdValues& y, const PcdValues& z, const PcdHeader& header,
+               RangeImage& image) {
+  Geometry& g = image.geometry;
+  g.scanner = Scanner::kRays;
+  for (std::size_t k = 0; k < 3; ++k) g.T_world_scanner[4 * k + 3] = header.viewpoint[k];
+  g.rays.assign(3 * x.size(), kNoReturn);
+  image.range.assign(x.size(), kNoReturn);
+  for (std::size_t p = 0; p < x.size(); ++p) {
+    const double d[] = {x[p] - header.viewpoint[0], y[p] - header.viewpoint[1],
+                        z[p] - header.viewpoint[2]};
+    const double r = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    if (!(r > 0) || !(r <= double{kFarthest})) continue;
+    image.range[p] = static_cast<float>(r);
+    for (std::size_t k = 0; k < 3; ++k) g.rays[3 * p + k] = static_cast<float>(d[k] / r);
+  }
+}
+
+}  // namespace
+
+bool isPcd(std::string_view bytes) noexcept {
+  return bytes.starts_with("# .PCD") || bytes.starts_with("VERSION ");
+}
+
+Result<PcdImage> parsePcd(std::string_view bytes) {
+  const auto header = parsePcdHeader(bytes);
+  if (!header) return header.error();
+  if (header->height == 1)
+    return Error{Errc::kUnsupported,
+                 fmt::format("its {} points are not organised in rows and columns (HEIGHT 1); a "
+                             "surface from points without order is not read yet",
+                             header->points)};
+  const auto values = readPcdBody(bytes, *header);
+  if (!values) return values.error();
+  const PcdValues* x = find(*header, *values, "x");
+  const PcdValues* y = find(*header, *values, "y");
+  const PcdValues* z = find(*header, *values, "z");
+  if (!x || !y || !z) return Error{Errc::kMalformed, "has no fields x, y and z"};
+  PcdImage pcd;
+  pcd.image.width = header->width;
+  pcd.image.height = header->height;
+  addPoints(*x, *y, *z, *header, pcd.image);
+  addPlanes(*header, *values, pcd);
+  return pcd;
+}
+
+}  // namespace merlin::render::range

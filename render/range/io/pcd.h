@@ -1,0 +1,26 @@
+// PCD files (Point Cloud Library) with organised points: rows and columns as the scanner saw them.
+// Forms ascii, binary and binary_compressed. Format: "The PCD file format", documentation of PCL.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "daemon/base/result.h"
+#include "render/range/range_image.h"
+
+namespace merlin::render::range {
+
+bool isPcd(std::string_view bytes) noexcept;
+
+struct PcdImage {
+  RangeImage image;  // of kRays, from the file's viewpoint
+  std::vector<std::string> notes;
+};
+
+// The fields x, y, z become ranges and rays, rgb or rgba the plane "colour", each other field one
+// of its name; normals are left out, since they are computed anew. Points that are not finite are
+// no return. Errors, with the line of the header or the number of the point: kMalformed,
+// kUnsupported (not organised).
+Result<PcdImage> parsePcd(std::string_view bytes);
+
+}  // namespace merlin::render::range

@@ -1,0 +1,42 @@
+// The header and the numbers of a PCD file. Private to render/range/io.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/base/result.h"
+
+namespace merlin::render::range {
+
+struct PcdField {
+  std::string name;
+  std::size_t size = 4, count = 1;  // bytes of a number, numbers of a point
+  char type = 'F';                  // I, U, F
+};
+
+struct PcdHeader {
+  std::vector<PcdField> fields{};
+  std::size_t width = 0, height = 0, points = 0;
+  std::array<double, 7> viewpoint = {0, 0, 0, 1, 0, 0, 0};  // translation, quaternion wxyz
+  std::string data{};                                       // "ascii", ...
+  std::size_t size = 0;                                     // bytes before the points
+
+  std::size_t bytesOfPoint() const;
+};
+
+// Errors, with the line: kMalformed, kUnsupported (more than kMostPixels points).
+Result<PcdHeader> parsePcdHeader(std::string_view bytes);
+
+// The numbers of one field, points x count. A packed colour (rgb, rgba) is the number whose lower
+// 24 bits are red, green and blue, whatever the field's type.
+using PcdValues = std::vector<double>;
+
+// All fields' numbers. Errors: kMalformed, with the number of the point.
+Result<std::vector<PcdValues>> readPcdBody(std::string_view bytes, const PcdHeader& header);
+
+bool isPackedColour(const PcdField& field);
+
+}  // namespace merlin::render::range

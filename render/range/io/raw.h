@@ -1,0 +1,42 @@
+// Raw binary images, described by a text: how files of scanners are read whose layout only their
+// makers know, such as those of Coleman.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/base/result.h"
+#include "render/range/io/stored_image.h"
+
+namespace merlin::render::range {
+
+struct RawType {
+  const char* name;  // "u16be"
+  std::size_t bytes;
+  double (*load)(const std::uint8_t*);
+};
+
+struct RawPlane {
+  std::string name;  // "range", a modality's name, or "-" for a plane that is skipped
+  const RawType* type = nullptr;
+};
+
+struct RawLayout {
+  std::size_t width = 0, height = 0, header_bytes = 0;
+  bool interleaved = false;  // the planes' values pixel by pixel, not plane by plane
+  std::vector<RawPlane> planes{};
+};
+
+// Parses "335x181:range=u16be,confidence=u8"; types: u8, i8, and u16, i16, u32, i32, f32, f64 with
+// le or be behind. Exactly one plane is named range. Errors: kInvalidArgument.
+Result<RawLayout> parseRawLayout(std::string_view text);
+
+// The names of the types, "u8, i8, u16le, ...".
+std::string rawTypes();
+
+// Errors: kMalformed if the file is smaller than the layout.
+Result<StoredImage> parseRaw(std::string_view bytes, const RawLayout& layout);
+
+}  // namespace merlin::render::range

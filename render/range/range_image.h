@@ -1,0 +1,86 @@
+// RangeImage: distances, depths or heights on a grid of pixels, with registered images of other
+// modalities, and the geometry that makes points of them.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace merlin::render::range {
+
+// How pixels become rays; README.md has the coordinates.
+enum class Scanner {
+  kOrthogonal,  // two mirrors: [GOURLEY98] A.15 to A.17
+  kSpinning,    // a head that turns about the vertical, with a table of beams
+  kPinhole,     // a camera; the range is the depth along its axis
+  kElevation,   // a map seen from above; the range is the height
+  kRays         // a ray for each pixel
+};
+
+// A row of a spinning scanner.
+struct Beam {
+  double altitude_rad = 0;  // above the horizon
+  double azimuth_rad = 0;   // added to the azimuth of each column
+};
+
+// A rigid transform, three rows of four: world = rotation x scanner + translation.
+using Pose = std::array<double, 12>;
+inline constexpr Pose kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+struct Geometry {
+  Scanner scanner = Scanner::kOrthogonal;
+  // kOrthogonal: angle from the first to the last pixel. kPinhole: field of view, from edge to
+  // edge. kSpinning: `horizontal_rad` alone, the turn that all columns divide.
+  double horizontal_rad = 0, vertical_rad = 0;
+  std::vector<Beam> beams{};      // kSpinning: one per row, the top one first
+  double cell_x = 1, cell_y = 1;  // kElevation: distance of columns and of rows [units]
+  double exaggeration = 1;        // kElevation: factor of the heights
+  std::vector<float> rays{};      // kRays: pixels x 3, unit vectors, NaN where there is no return
+  Pose T_world_scanner = kIdentity;  // kElevation: unused
+};
+
+// A registered image: `dimension` floats per pixel of the range image.
+struct Plane {
+  std::string name;  // of the feature that it becomes
+  std::size_t dimension = 1;
+  std::vector<float> values{};
+  std::string unit{};       // empty: unknown
+  float low = 0, high = 0;  // range of possible values; equal: unknown
+};
+
+struct RangeImage {
+  std::size_t width = 0, height = 0;
+  std::vector<float> range{};  // pixels, rows from top to bottom [units]; NaN: no return
+  Geometry geometry{};
+  std::vector<Plane> planes{};
+
+  std::size_t pixels() const noexcept { return width * height; }
+  bool join_ends = true;  // false: a full turn has a seam, as a texture needs it
+
+  // Whether the last column's neighbour is the first: a spinning scanner's full turn.
+  bool wraps() const noexcept {
+    return join_ends && geometry.scanner == Scanner::kSpinning && width > 2 &&
+           std::abs(geometry.horizontal_rad - 2 * std::numbers::pi) < 1e-6;
+  }
+  const Plane* find(std::string_view name) const noexcept {
+    for (const Plane& plane : planes) {
+      if (plane.name == name) return &plane;
+    }
+    return nullptr;
+  }
+};
+
+inline constexpr float kNoReturn = std::numeric_limits<float>::quiet_NaN();
+// Ranges and heights beyond this, in either direction, are no return [units].
+inline constexpr float kFarthest = 1e9F;
+// Most pixels of an image, so that four vertices for each have 32-bit indices.
+inline constexpr std::size_t kMostPixels = std::size_t{1} << 28;
+
+inline bool isReturn(float range) noexcept { return range == range; }  // not NaN
+
+}  // namespace merlin::render::range

@@ -1,0 +1,453 @@
+// Range files: what the readers of our own make of good, damaged and hostile bytes. All files are
+// synthetic.
+#include "render/range/io/range_file.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "daemon/base/bytes.h"
+#include "daemon/base/files.h"
+#include "render/range/geometry.h"
+#include "render/range/io/angle_table.h"
+#include "render/range/io/elevation.h"
+#include "render/range/io/lzf.h"
+#include "render/range/io/netpbm.h"
+#include "render/range/io/pcd.h"
+#include "render/range/io/plane_file.h"
+#include "tests/support/range_images.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::test {
+namespace {
+
+using namespace render::range;
+
+class RangeFile : public testing::Test {
+ protected:
+  // Reads `bytes` as a file of this name.
+  Result<LoadedRange> read(const std::string& bytes, const RangeOptions& options = {},
+                           const std::string& name = "a.pgm") {
+    writeText(dir_ / name, bytes);
+    return readRange(dir_ / name, options);
+  }
+  // The error's text without the folder.
+  std::string fault(const std::string& bytes, const RangeOptions& options = {},
+                    const std::string& name = "a.pgm") {
+    const auto loaded = read(bytes, options, name);
+    if (loaded) return "no fault";
+    EXPECT_TRUE(loaded.error().what.starts_with(dir_.path() + "/")) << loaded.error().what;
+    return loaded.error().what.substr(dir_.path().size() + 1);
+  }
+
+  TempDir dir_;
+};
+
+const std::string kHeader = "P5\n# geometry: pinhole\n# angles: 60 40\n";
+
+std::string big16(std::initializer_list<int> values) {
+  std::string bytes;
+  for (const int v : values) appendBe16(bytes, static_cast<std::uint16_t>(v));
+  return bytes;
+}
+
+TEST_F(RangeFile, APgmsCommentsCarryTheGeometry) {
+  const auto loaded =
+      read("P5 # scale: 0.001\n#unit: m\n # camera: 1 0 0 5  0 1 0 6  0 0 1 7\n" +
+           kHeader.substr(3) + "2 2 # a comment\n65535\n" + big16({1000, 0, 2000, 3000}));
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->format, "PGM");
+  const Geometry& g = loaded->image.geometry;
+  EXPECT_EQ(g.scanner, Scanner::kPinhole);
+  EXPECT_NEAR(g.horizontal_rad, std::numbers::pi / 3, 1e-12);
+  EXPECT_EQ(g.T_world_scanner[7], 6);
+  EXPECT_EQ(loaded->image.range[0], 1.0F);
+  EXPECT_FALSE(isReturn(loaded->image.range[1]));
+  EXPECT_EQ(loaded->image.range[3], 3.0F);
+}
+
+TEST_F(RangeFile, MinimumAndMaximumScaleTheStoredValues) {
+  const auto loaded = read(kHeader + "# minimum: 10\n# maximum: 61\n# scale: 0.1\n2 2\n255\n" +
+                           "\x05\x0a\xff" + std::string(1, '\0'));
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_FLOAT_EQ(loaded->image.range[0], 1.1F);
+  EXPECT_FLOAT_EQ(loaded->image.range[2], 6.1F);
+  EXPECT_FALSE(isReturn(loaded->image.range[3])) << "0 is no return";
+}
+
+TEST_F(RangeFile, AnOptionOverridesTheHeader) {
+  RangeOptions options;
+  options.scanner = Scanner::kOrthogonal;
+  options.angles_deg = {90, 30};
+  options.scale = 2;
+  options.no_return = 7;
+  const auto loaded = read(kHeader + "2 2\n255\n\x07\x08\x09\x0a", options);
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->image.geometry.scanner, Scanner::kOrthogonal);
+  EXPECT_NEAR(loaded->image.geometry.vertical_rad, std::numbers::pi / 6, 1e-12);
+  EXPECT_FALSE(isReturn(loaded->image.range[0]));
+  EXPECT_EQ(loaded->image.range[1], 16);
+}
+
+TEST_F(RangeFile, TextPgmsAreReadAsWell) {
+  const auto loaded = read("P2\n# angles: 60 40\n2 2 9\n1 2\n3\n 9 ");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->image.range, (std::vector<float>{1, 2, 3, 9}));
+}
+
+TEST_F(RangeFile, WhatIsWrittenIsReadAgainWithinHalfAStep) {
+  RangeImage image = bumps(31, 17);
+  image.geometry.T_world_scanner = {0, -1, 0, 1.5, 1, 0, 0, 2, 0, 0, 1, -3};
+  ASSERT_TRUE(writeRange(dir_ / "b.pgm", image).ok());
+  const auto again = readRange(dir_ / "b.pgm", {});
+  ASSERT_TRUE(again) << again.error().what;
+  EXPECT_EQ(again->image.geometry.scanner, Scanner::kOrthogonal);
+  EXPECT_NEAR(again->image.geometry.horizontal_rad, std::numbers::pi / 2, 1e-12);
+  EXPECT_EQ(again->image.geometry.T_world_scanner, image.geometry.T_world_scanner);
+  for (std::size_t p = 0; p < image.pixels(); ++p) {
+    ASSERT_EQ(isReturn(image.range[p]), isReturn(again->image.range[p])) << p;
+    const float off = image.range[p] - again->image.range[p];
+    ASSERT_FALSE(std::abs(off) > 2.0 / 65534 / 2 + 1e-6) << p;
+  }
+}
+
+TEST_F(RangeFile, ASpinningScannersBeamsAreWrittenToo) {
+  RangeImage image = ring(8, 3);
+  image.geometry.beams[1] = {0.1, -0.05};
+  ASSERT_TRUE(writeRange(dir_ / "b.pgm", image).ok());
+  const auto again = readRange(dir_ / "b.pgm", {});
+  ASSERT_TRUE(again) << again.error().what;
+  ASSERT_EQ(again->image.geometry.beams.size(), 3u);
+  EXPECT_NEAR(again->image.geometry.beams[1].azimuth_rad, -0.05, 1e-12);
+  EXPECT_TRUE(again->image.wraps());
+}
+
+TEST_F(RangeFile, RefusalsNameFilePlaceAndWhatIsAllowed) {
+  EXPECT_EQ(fault("P5\n2 2\n255\nabcd"),
+            "a.pgm: the angles of the image are not known; give them with --angles HORIZONTAL "
+            "VERTICAL (degrees)");
+  EXPECT_EQ(fault(kHeader + "4 4\n255\nabc"), "a.pgm: has 3 bytes of pixels; 4 x 4 pixels take 16");
+  EXPECT_EQ(fault(kHeader + "2 2\n255\n" + std::string(4, '\0')),
+            "a.pgm: none of its 2 x 2 pixels has a return: all are the value that means none "
+            "(--no-return), not numbers, not positive or beyond 1e+09");
+  EXPECT_EQ(fault("P5\n# angles: sixty\n2 2\n255\nabcd"),
+            "a.pgm: line 2: angles: found \"sixty\", allowed: one or two numbers (degrees: "
+            "horizontal, vertical)");
+  EXPECT_EQ(fault("P5\n# geometry: round\n2 2\n255\nabcd"),
+            "a.pgm: line 2: geometry: found \"round\", allowed: orthogonal, spinning, pinhole, "
+            "elevation");
+  EXPECT_EQ(fault(kHeader + "two 2\n255\n"),
+            "a.pgm: line 4: the width is \"two\"; allowed are 1 to 268435456");
+  EXPECT_EQ(fault(kHeader + "99999 99999\n255\n"),
+            "a.pgm: line 5: 99999 x 99999 pixels; allowed are 268435456");
+  EXPECT_EQ(fault(kHeader + "1 2\n255\nab"),
+            "a.pgm: the image has 1 x 2 pixels; triangles need 2 x 2 at least");
+  EXPECT_EQ(fault("P6\n2 2\n255\n"), "a.pgm: is not a range image; read are " + readableRanges());
+}
+
+RangeOptions raw(const std::string& layout) {
+  RangeOptions options;
+  options.raw = *parseRawLayout(layout);
+  options.angles_deg = {60, 40};
+  return options;
+}
+
+TEST_F(RangeFile, RawPlanesAreReadByTheirDescription) {
+  auto options = raw("2x2:-=u8,range=u16be,confidence=f32le");
+  options.raw->header_bytes = 3;
+  std::string confidence;
+  for (const float c : {0.5F, 1.0F, 0.25F, 0.0F}) appendLeFloat(confidence, c);
+  const std::string bytes = "HDRskip" + big16({1, 2, 3, 0}) + confidence;
+  const auto loaded = read(bytes, options);
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->image.range[2], 3);
+  ASSERT_EQ(loaded->image.planes.size(), 1u);
+  EXPECT_EQ(loaded->image.planes[0].values, (std::vector<float>{0.5F, 1, 0.25F, 0}));
+  EXPECT_EQ(fault(bytes.substr(0, 20), options),
+            "a.pgm: has 17 bytes after a header of 3; 2 x 2 pixels of 7 bytes take 28");
+  options.raw->interleaved = true;
+  options.raw->header_bytes = 0;
+  const auto mixed =
+      read(std::string("x\0\1\0\0\0\0y\0\2\0\0\0\0z\0\3\0\0\0\0w\0\4\0\0\0\0", 28), options);
+  ASSERT_TRUE(mixed) << mixed.error().what;
+  EXPECT_EQ(mixed->image.range, (std::vector<float>{1, 2, 3, 4}));
+}
+
+TEST_F(RangeFile, NotANumberEverywhereIsRefused) {
+  std::string bytes;
+  for (int i = 0; i < 4; ++i) appendLeFloat(bytes, std::numeric_limits<float>::quiet_NaN());
+  EXPECT_NE(fault(bytes, raw("2x2:range=f32le")).find("none of its 2 x 2 pixels"),
+            std::string::npos);
+}
+
+TEST_F(RangeFile, RawTypesHaveTheirSignAndOrder) {
+  const auto first = [&](const std::string& type, std::string bytes) {
+    bytes.resize(32, '\1');
+    const auto loaded = read(bytes, raw("2x2:range=" + type));
+    return loaded ? loaded->image.range[0] : -1.0F;
+  };
+  EXPECT_EQ(first("u8", "\xC8"), 200);
+  EXPECT_TRUE(std::isnan(first("i8", "\xC8"))) << "negative: no return";
+  EXPECT_EQ(first("i16le", std::string("\x34\x12", 2)), 0x1234);
+  EXPECT_EQ(first("i16be", std::string("\x12\x34", 2)), 0x1234);
+  EXPECT_EQ(first("u32be", std::string("\0\1\0\0", 4)), 65536);
+  EXPECT_EQ(first("f32be", std::string("\x40\x20\0\0", 4)), 2.5F);
+  EXPECT_EQ(first("f64le", std::string("\0\0\0\0\0\0\x04\x40", 8)), 2.5F);
+}
+
+TEST(RawLayout, FaultsNameWhatIsAllowed) {
+  for (const char* text :
+       {"", "3:range=u8", "2x2:", "2x2:depth=u8", "2x2:range=u9", "2x2:range=u8,range=u8",
+        "2x2:range", "0x2:range=u8", "99999x99999:range=u8", "2x2x2:range=u8", "2x2:=u8"}) {
+    const auto layout = parseRawLayout(text);
+    ASSERT_FALSE(layout) << text;
+    EXPECT_NE(layout.error().what.find("335x181:range=u16be"), std::string::npos)
+        << layout.error().what;
+  }
+}
+
+TEST(AngleTable, RowsHaveAltitudeAndAzimuth) {
+  ImageHeader header;
+  ASSERT_TRUE(parseAngleTable("# row altitude\n0 10 4.5\n1 -5.5 -4.5 # last\n\n", header).ok());
+  ASSERT_EQ(header.beams.size(), 2u);
+  EXPECT_NEAR(header.beams[1].altitude_rad, -5.5 * std::numbers::pi / 180, 1e-12);
+  EXPECT_NEAR(header.beams[0].azimuth_rad, 4.5 * std::numbers::pi / 180, 1e-12);
+  EXPECT_EQ((*header.angles_deg)[0], 360);
+  EXPECT_FALSE(header.columns);
+}
+
+TEST(AngleTable, OfRowsThatWereShiftedByColumnsTheRestIsAdded) {
+  ImageHeader header;
+  ASSERT_TRUE(
+      parseAngleTable("# columns: 100 over 50 deg, after destagger\n0 1 4.1\n", header).ok());
+  EXPECT_NEAR(header.beams[0].azimuth_rad, 0.1 * std::numbers::pi / 180, 1e-9);
+  EXPECT_EQ(header.columns, 100u);
+  EXPECT_EQ((*header.angles_deg)[0], 50);
+}
+
+TEST(AngleTable, FaultsNameTheLine) {
+  for (const char* text :
+       {"", "# nothing\n", "0 1 2\n2 1 2\n", "0 1 2\nx\n", "1 2 3 4\n",
+        "# columns: many over 360 deg\n0 1\n", "# columns: 4 over 900 deg\n1\n"}) {
+    ImageHeader header;
+    const auto parsed = parseAngleTable(text, header);
+    ASSERT_FALSE(parsed) << text;
+  }
+  ImageHeader header;
+  EXPECT_NE(parseAngleTable("0 1 2\n2 1 2\n", header).error().what.find("line 2"),
+            std::string::npos);
+}
+
+const std::string kPcdHeader =
+    "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb label\nSIZE 4 4 4 4 2\nTYPE F F F F U\n"
+    "COUNT 1 1 1 1 1\nWIDTH 2\nHEIGHT 2\nVIEWPOINT 0 0 1 1 0 0 0\nPOINTS 4\n";
+
+std::string pcdPoint(float x, float y, float z, std::uint32_t rgb, unsigned label) {
+  std::string bytes;
+  for (const float v : {x, y, z}) appendLeFloat(bytes, v);
+  appendLe32(bytes, rgb);
+  bytes.push_back(static_cast<char>(label & 0xFF));
+  bytes.push_back(static_cast<char>(label >> 8));
+  return bytes;
+}
+std::string pcdBinary() {
+  return kPcdHeader + "DATA binary\n" + pcdPoint(0, 0, -1, 0xFF8000, 7) +
+         pcdPoint(1, 0, -1, 0, 300) + pcdPoint(0, -1, -1, 0, 0) +
+         pcdPoint(std::numeric_limits<float>::quiet_NaN(), 0, 0, 0, 0);
+}
+
+void expectPcd(const Result<LoadedRange>& loaded) {
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  const RangeImage& image = loaded->image;
+  EXPECT_EQ(loaded->format, "PCD");
+  EXPECT_FLOAT_EQ(image.range[0], 2) << "from the viewpoint, 1 above the origin";
+  EXPECT_FALSE(isReturn(image.range[3]));
+  const auto points = pointsOf(image, {});
+  EXPECT_NEAR(points[3], 1, 1e-6);
+  EXPECT_NEAR(points[5], -1, 1e-6);
+  EXPECT_EQ(image.find("label")->values, (std::vector<float>{7, 300, 0, 0}));
+  EXPECT_FLOAT_EQ(image.find("colour")->values[1], 128.0F / 255);
+  EXPECT_FLOAT_EQ(image.find("colour")->values[0], 1);
+}
+
+TEST_F(RangeFile, OrganisedPointsAreReadFromBinaryPcd) { expectPcd(read(pcdBinary())); }
+
+TEST_F(RangeFile, AndFromAsciiPcd) {
+  const float packed = std::bit_cast<float>(0xFF8000U);
+  expectPcd(read(kPcdHeader + "DATA ascii\n0 0 -1 " + fmt::format("{}", packed) +
+                 " 7\n1 0 -1 0 300\n0 -1 -1 0 0\nnan 0 0 0 0\n"));
+}
+
+// Only literal runs: what any packer may write.
+std::string packed(const std::string& bytes) {
+  std::string out;
+  for (std::size_t at = 0; at < bytes.size(); at += 32) {
+    const std::size_t n = std::min<std::size_t>(32, bytes.size() - at);
+    out.push_back(static_cast<char>(n - 1));
+    out += bytes.substr(at, n);
+  }
+  return out;
+}
+std::string pcdCompressed() {
+  const std::string rows = pcdBinary().substr(kPcdHeader.size() + 12);
+  std::string columns;
+  for (const auto& [start, size] : {std::pair(0, 4), {4, 4}, {8, 4}, {12, 4}, {16, 2}}) {
+    for (std::size_t p = 0; p < 4; ++p)
+      columns +=
+          rows.substr(18 * p + static_cast<std::size_t>(start), static_cast<std::size_t>(size));
+  }
+  const std::string small = packed(columns);
+  std::string bytes = kPcdHeader + "DATA binary_compressed\n";
+  appendLe32(bytes, static_cast<std::uint32_t>(small.size()));
+  appendLe32(bytes, static_cast<std::uint32_t>(columns.size()));
+  return bytes + small;
+}
+
+TEST_F(RangeFile, AndFromCompressedPcd) { expectPcd(read(pcdCompressed())); }
+
+TEST(Lzf, LiteralsAndReferences) {
+  const std::uint8_t bytes[] = {2, 'a', 'b', 'c', 0x20, 2, 0xE0, 3, 0};  // abc, abc, c x 12
+  const auto text = unpackLzf(bytes, 18);
+  ASSERT_TRUE(text);
+  EXPECT_EQ(std::string(text->begin(), text->end()), "abcabccccccccccccc");
+  EXPECT_FALSE(unpackLzf(bytes, 17)) << "more than expected";
+  EXPECT_FALSE(unpackLzf(bytes, 19)) << "less";
+  const std::uint8_t before[] = {0, 'a', 0x20, 1};
+  EXPECT_FALSE(unpackLzf(before, 4)) << "refers to before the beginning";
+  EXPECT_FALSE(unpackLzf(bytes, std::size_t{1} << 40)) << "and takes no memory";
+}
+
+TEST_F(RangeFile, PcdRefusals) {
+  std::string line = kPcdHeader + "DATA ascii\n0 0 0 0 0\n";
+  EXPECT_EQ(fault(line), "a.pgm: has 10 bytes of points; 2 x 2 points take 39 at least");
+  line = pcdBinary();
+  line.replace(line.find("HEIGHT 2"), 8, "HEIGHT 1").replace(line.find("POINTS 4"), 8, "POINTS 2");
+  EXPECT_NE(fault(line).find("not organised"), std::string::npos);
+  line = pcdBinary();
+  EXPECT_EQ(fault(line.replace(line.find("SIZE 4 4 4 4 2"), 14, "SIZE 4 4 4 4 3")),
+            "a.pgm: line 4: SIZE: found \"4 4 4 4 3\", allowed: 1, 2, 4 or 8 for each field");
+  line = pcdBinary();
+  EXPECT_EQ(fault(line.replace(line.find("POINTS 4"), 8, "POINTS 5")),
+            "a.pgm: POINTS is 5, WIDTH x HEIGHT is 4");
+  RangeOptions options;
+  options.angles_deg = {1, 1};
+  EXPECT_NE(fault(pcdBinary(), options).find("leave --geometry, --angles"), std::string::npos);
+}
+
+const std::string kGrid =
+    "ncols 3\nnrows 2\nxllcorner 500000\nyllcorner 4000000\ncellsize 30\nNODATA_value -9999\n";
+
+TEST_F(RangeFile, EsriGridsHaveVoids) {
+  const auto loaded = read(kGrid + "1 2.5 -9999\n -4 5e1 6\n", {}, "a.asc");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  const RangeImage& image = loaded->image;
+  EXPECT_EQ(image.geometry.scanner, Scanner::kElevation);
+  EXPECT_EQ(image.geometry.cell_x, 30);
+  EXPECT_EQ(image.range[4], 50);
+  EXPECT_EQ(image.range[3], -4) << "a height may be negative";
+  EXPECT_FALSE(isReturn(image.range[2]));
+  EXPECT_EQ(fault(kGrid + "1 2 3 4 5 six", {}, "a.asc"),
+            "a.asc: row 1, column 2: \"six\" is not a height");
+  EXPECT_EQ(fault(kGrid + "1 2 3 4 5 ", {}, "a.asc"), "a.asc: ends after 5 of 6 heights");
+  EXPECT_NE(fault("ncols 3\nrows 2\n", {}, "a.asc").find("line 2: \"rows 2\""), std::string::npos);
+}
+
+TEST_F(RangeFile, CellsInDegreesBecomeMetres) {
+  const std::string text =
+      "NCOLS 2\nNROWS 2\nXLLCENTER -72\nYLLCENTER 44\nCELLSIZE 0.01\n1 2 3 4\n";
+  const auto guessed = read(text, {}, "a.asc");
+  ASSERT_TRUE(guessed) << guessed.error().what;
+  EXPECT_NEAR(guessed->image.geometry.cell_y, 1111.14, 0.1);
+  EXPECT_NEAR(guessed->image.geometry.cell_x, 802, 0.5);
+  ASSERT_EQ(guessed->notes.size(), 1u);
+  writeText(dir_ / "a.prj", "PROJCS[\"UTM\"]");
+  const auto projected = read(text, {}, "a.asc");
+  EXPECT_EQ(projected->image.geometry.cell_y, 0.01);
+  EXPECT_EQ(projected->notes[0], "projection: PROJCS[\"UTM\"]");
+}
+
+TEST_F(RangeFile, ATileOfHeightsLiesWhereItsNameSays) {
+  std::string bytes;
+  bytes.reserve(2 * 1201 * 1201);
+  for (int i = 0; i < 1201 * 1201; ++i) appendBe16(bytes, i == 5 ? 0x8000 : 0xFFFE);
+  const auto loaded = read(bytes, {}, "S01E010.hgt");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->image.range[0], -2);
+  EXPECT_FALSE(isReturn(loaded->image.range[5]));
+  EXPECT_NEAR(loaded->image.geometry.cell_y, 92.146, 0.01) << "110,574 m / 1200";
+  EXPECT_NEAR(loaded->image.geometry.cell_x, 92.762, 0.01);
+  EXPECT_NE(fault(bytes, {}, "any.hgt").find("--cell"), std::string::npos);
+  EXPECT_NE(fault(bytes.substr(1), {}, "S01E010.hgt").find("has 2884801 bytes"), std::string::npos);
+}
+
+TEST_F(RangeFile, FeaturesHaveTheImagesSizeAndTheirScale) {
+  const RangeImage image = flatImage(2, 2, Scanner::kOrthogonal);
+  writeText(dir_ / "t.pgm",
+            "P5\n# minimum: -20\n# maximum: 31\n# unit: degC\n2 2\n255\n\x0a\x14\x1e" +
+                std::string("\0", 1));
+  const auto thermal = readPlane("thermal", dir_ / "t.pgm", image);
+  ASSERT_TRUE(thermal) << thermal.error().what;
+  EXPECT_EQ(thermal->unit, "degC");
+  EXPECT_NEAR(thermal->values[0], -18, 1e-5);
+  EXPECT_EQ(thermal->low, -20);
+  writeText(dir_ / "c.ppm", "P6\n2 2\n255\n" + std::string(12, '\xff'));
+  EXPECT_EQ(readPlane("colour", dir_ / "c.ppm", image)->values[11], 1);
+  EXPECT_EQ(readPlane("colour", dir_ / "t.pgm", image)->dimension, 3u) << "grey";
+  writeText(dir_ / "s.pgm", "P5\n3 2\n255\nabcdef");
+  const auto other = readPlane("x", dir_ / "s.pgm", image);
+  EXPECT_EQ(other.error().what, dir_ / "s.pgm" + ": has 3 x 2 pixels; the range image has 2 x 2");
+}
+
+void expectGoodEnd(const Result<LoadedRange>& loaded) {
+  const std::string text = loaded ? faultOf(loaded->image) : loaded.error().what;
+  EXPECT_EQ(text.empty(), loaded.ok()) << text;
+  EXPECT_EQ(text.find("a.pgm: ") != std::string::npos, !loaded.ok()) << text;
+}
+
+// By the reader that the bytes are for: parsed, or refused with a sentence.
+void expectParsed(const std::string& bytes) {
+  const auto expectSentence = [&](const auto& parsed, std::size_t pixels) {
+    EXPECT_TRUE(parsed ? pixels > 0 : parsed.error().what.size() > 10) << bytes;
+  };
+  if (isPcd(bytes)) {
+    const auto pcd = parsePcd(bytes);
+    expectSentence(pcd, pcd ? pcd->image.range.size() : 0);
+  } else {
+    const auto stored = isEsriGrid(bytes) ? parseEsriGrid(bytes, "") : parseNetpbm(bytes);
+    expectSentence(stored, stored ? stored->values.size() : 0);
+  }
+}
+
+// Whatever the bytes are, reading ends with an image that has a return or with a sentence that
+// names the file.
+TEST_F(RangeFile, EveryPrefixAndEveryDamagedByteEndsWell) {
+  const std::string files[] = {
+      kHeader + "# beam: 1 2\n# cell: 3\n# minimum: 1\n# maximum: 9\n2 2\n65535\n" +
+          big16({1, 2, 3, 4}),
+      "P2\n# angles: 9 9\n2 2 99\n1 2 3 4\n",
+      pcdBinary(),
+      pcdCompressed(),
+      kPcdHeader + "DATA ascii\n0 0 -1 0 7\n1 0 -1 0 300\n0 -1 -1 0 0\nnan 0 0 0 0\n",
+      kGrid + "1 2.5 -9999\n -4 5e1 6\n"};
+  for (const std::string& good : files) {
+    ASSERT_TRUE(read(good)) << read(good).error().what;
+    for (std::size_t n = 0; n < good.size(); ++n) {
+      const auto loaded = read(good.substr(0, n));
+      expectGoodEnd(loaded);
+    }
+    for (std::size_t n = 0; n < good.size(); ++n) {
+      for (const unsigned flip : {1U, 0x10U, 0x80U, 0xFFU}) {
+        std::string bad = good;
+        bad[n] = static_cast<char>(static_cast<unsigned char>(bad[n]) ^ flip);
+        expectParsed(bad);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace merlin::test
