@@ -71,10 +71,6 @@ void checkInput(const InputSettings& in, LoadedSettings& loaded) {
   }
 }
 
-constexpr const char* kProjectorsNeeded =
-    "projectors: /devices/projectors is empty, and /devices/gpio has no chip with a "
-    "projector_line";
-
 bool hasProjectors(const DevicesSettings& d) {
   return !d.projectors.empty() || (!d.gpio.chip.empty() && d.gpio.projector_line >= 0);
 }

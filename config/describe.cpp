@@ -664,7 +664,8 @@ void describe(Settings& s, SettingsVisitor& v) {
       "or /tmp/merlin-UID.");
   v.path("state_file", s.state_file,
          "File in which merlind keeps what people change while it runs (the alignment of outputs, "
-         "the frame rate, the content that is shown), so that it is there after a restart. Empty: "
+         "the frame rate, the content that is shown, that the playlist or the projectors were "
+         "switched off), so that it is there after a restart. Empty: "
          "INSTANCE.state.json in the folder that systemd sets, otherwise in /var/lib/merlin for "
          "root, and for other users in $XDG_STATE_HOME/merlin or ~/.local/state/merlin.");
   v.group("devices", "The devices that are read.", [&] {

@@ -49,6 +49,10 @@ struct DevicesSettings {
   std::string script = "visit";  // what the emulated person does, with --emulate
 };
 
+// What a configuration without any lacks, for messages: "has no ...", "needs ...".
+inline constexpr const char* kProjectorsNeeded =
+    "projectors: /devices/projectors is empty, and /devices/gpio has no chip with a projector_line";
+
 // Another machine whose devices the wall uses instead of this machine's.
 struct InputSettings {
   std::string

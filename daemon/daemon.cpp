@@ -104,22 +104,37 @@ Result<Ok> Daemon::makeRoles() {
     if (!role) return role.error();
     devices_ = *std::move(role);
   }
+  makeKeeper();
   if (options_.wall && !settings_.wall.input.endpoint.empty()) {
     auto remote = RemoteDevices::make(settings_, generation, services_, threads_, clock_);
     if (!remote) return remote.error();
     remote_devices_ = *std::move(remote);
   }
   if (options_.wall) {
-    const std::string file = state::stateFile(settings_.state_file, settings_.instance);
-    keeper_ = std::make_unique<state::StateKeeper>(
-        file.empty() ? nullptr : std::make_unique<state::StateFolder>(file), threads_);
     auto role = wall::WallRole::make(settings_, std::move(contents_), generation,
                                      endpointsOf(settings_, "wall"), *keeper_, threads_, clock_);
     if (!role) return role.error();
     wall_ = *std::move(role);
+    if (keeper_->state().playlist_off) wall_->attendance().switchPlaylist(false);
   }
   connectRoles();
   return Ok{};
+}
+
+// Of a process with a wall or projectors.
+void Daemon::makeKeeper() {
+  devices::Projectors* const projectors = devices_ ? devices_->projectors() : nullptr;
+  if (!options_.wall && !projectors) return;
+  const std::string file =
+      state::stateFile(settings_.state_file, settings_.instance, options_.wall);
+  keeper_ = std::make_unique<state::StateKeeper>(
+      file.empty() ? nullptr : std::make_unique<state::StateFolder>(file), threads_);
+  if (!projectors) return;
+  std::optional<devices::PersonsSwitch> last;
+  if (const auto kept = keeper_->state().projectors) last = {kept->on, kept->local_minute};
+  projectors->remember(last, [this](const devices::PersonsSwitch& person) {
+    keeper_->change([&](state::State& s) { s.projectors = {person.on, person.at}; });
+  });
 }
 
 // Makes what executes commands of the roles, and what serves them.
@@ -215,7 +230,9 @@ bool Daemon::stopAsked(Duration wait) {
 void Daemon::housekeeping() {
   const Timestamp now = clock_.now();
   if (devices_) devices_->writeHeartbeat(now);
-  if (wall_) tendWall(now);
+  if (wall_) wall_->writeHeartbeat(now);
+  if (wall_) wall_->tend(now);
+  if (keeper_) tendState();
   if (remote_devices_) remote_devices_->writeHeartbeat(now);
   if (devices_) executeActions();
   if (devices_ && devices_->projectors()) devices_->projectors()->tend();
@@ -237,9 +254,7 @@ void Daemon::housekeeping() {
   if (watchdog_.ping(now, threads_.threads())) ::sd_notify(0, "WATCHDOG=1");
 }
 
-void Daemon::tendWall(Timestamp now) {
-  wall_->writeHeartbeat(now);
-  wall_->tend(now);
+void Daemon::tendState() {
   if (const std::string fault = keeper_->fault(); fault.empty())
     services_.ok("state");
   else

@@ -50,7 +50,8 @@ class Daemon {
   Daemon(Configuration configuration, const DaemonOptions& options, Clock& clock);
   Result<Ok> makeRoles();
   void connectRoles();
-  void tendWall(Timestamp now);
+  void makeKeeper();
+  void tendState();
   void executeActions();
   void serveWindows();
   Result<Ok> awaitFirstFrame(std::future<Result<std::string>> ready);
@@ -74,7 +75,8 @@ class Daemon {
   std::unique_ptr<EmulatorChildren> emulators_;
   std::unique_ptr<RemoteDevices> remote_devices_;  // if /wall/input names another machine
   actions::ActionReader device_actions_;
-  std::unique_ptr<state::StateKeeper> keeper_;  // of a process with a wall; used by wall_
+  // Of a process with a wall or projectors; used by wall_ and devices_.
+  std::unique_ptr<state::StateKeeper> keeper_;
   std::optional<RoleCommands> commands_;
   std::unique_ptr<wall::SnapshotWriter> snapshots_;  // called by wall_
   std::unique_ptr<wall::WallRole> wall_;

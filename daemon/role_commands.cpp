@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "config/settings.h"
 #include "daemon/status/documents.h"
 
 namespace merlin {
@@ -119,10 +120,13 @@ Answer playlist(const Parts& p, const std::string& argument) {
     return Error{Errc::kInvalidArgument,
                  fmt::format("\"{}\" is not on, off or next", argument.substr(0, 64))};
   }
-  if (argument == "next")
+  if (argument == "next") {
     attendance.nextOfPlaylist();
-  else
-    attendance.switchPlaylist(argument == "on");
+    return done();
+  }
+  const bool on = argument == "on";
+  attendance.switchPlaylist(on);
+  p.keeper->change([&](state::State& s) { s.playlist_off = !on; });
   return done();
 }
 
@@ -157,11 +161,7 @@ Answer flight(const Parts& p) {
 }
 
 Answer projectors(const Parts& p, bool on) {
-  if (!p.devices->projectors()) {
-    return lacks(
-        "has no projectors: /devices/projectors is empty, and /devices/gpio has no chip with a "
-        "projector_line");
-  }
+  if (!p.devices->projectors()) return lacks(fmt::format("has no {}", kProjectorsNeeded));
   const auto switched = p.devices->projectors()->switchAll(on);
   return switched ? done() : Answer(switched.error());
 }

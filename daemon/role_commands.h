@@ -23,7 +23,7 @@ class RoleCommands {
     devices::DevicesRole* devices = nullptr;
     wall::WallRole* wall = nullptr;
     wall::SnapshotWriter* snapshots = nullptr;
-    state::StateKeeper* keeper = nullptr;  // of a process with a wall
+    state::StateKeeper* keeper = nullptr;  // of a process with a wall or projectors
   };
   explicit RoleCommands(const Parts& parts) : parts_(parts) {}
 

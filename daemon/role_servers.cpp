@@ -190,6 +190,7 @@ std::vector<std::string> RoleServers::deviceEvents(status::HealthEvents& health)
   addEvents(documents, "device", health.take(clock_.now()));
   if (devices::Projectors* const projectors = parts_.devices->projectors())
     addEvents(documents, "projector", projectors->takeEvents());
+  if (!parts_.wall && parts_.keeper) addEvents(documents, "state", parts_.keeper->takeNotices());
   addEvents(documents, "flight", parts_.devices->flight().check());
   addEvents(documents, "server", servers_.events("devices"));
   addServiceEvents(documents);

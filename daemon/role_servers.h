@@ -37,7 +37,7 @@ class RoleServers {
     devices::DevicesRole* devices;
     RemoteDevices* remote_devices;
     wall::WallRole* wall;
-    state::StateKeeper* keeper;  // of a process with a wall
+    state::StateKeeper* keeper;  // of a process with a wall or projectors
   };
   // `watch` and `clock` must outlive this object.
   RoleServers(const Parts& parts, ThreadWatch& watch, const Clock& clock)

@@ -53,6 +53,12 @@ void Projectors::start(ThreadWatch& watch, std::vector<WatchedThread>& threads) 
   }
 }
 
+void Projectors::remember(std::optional<PersonsSwitch> last,
+                          std::function<void(const PersonsSwitch&)> keep) {
+  by_person_ = last;
+  keep_ = std::move(keep);
+}
+
 Result<Ok> Projectors::switchPanel(bool on) {
   if (!parts_.panel) return Ok{};
   return parts_.panel(on ? "projector_on" : "projector_off");
@@ -65,8 +71,11 @@ Result<Ok> Projectors::switchAll(bool on) {
     refused += fmt::format("{}{}: {}; it is switched {} {}", refused.empty() ? "" : "; ", name, why,
                            on ? "on" : "off", until);
   };
+  const PersonsSwitch person{on, parts_.local_minute()};
+  keep_(person);
   {
     const std::lock_guard lock(mutex_);
+    by_person_ = person;
     panel_wanted_.reset();
     if (const auto done = switchPanel(on); !done) {
       code = done.error().code;
@@ -84,12 +93,26 @@ Result<Ok> Projectors::switchAll(bool on) {
   return Error{code, refused};
 }
 
+// What is to be from now on. A restart is no switching point: what a person did after the last one
+// holds.
+std::optional<bool> Projectors::due() {
+  const pjlink::LocalMinute now = parts_.local_minute();
+  std::optional<bool> wanted = schedule_.step(now);
+  if (!wanted) return wanted;
+  bool person = !std::exchange(follows_schedule_, true) && by_person_;
+  if (person) {
+    const auto point = schedule_.next(by_person_->at);
+    person = !point || point->at > now;
+  }
+  if (person) wanted = by_person_->on;
+  notices_.push_back(fmt::format("projectors: switched {} {}", *wanted ? "on" : "off",
+                                 person ? "again, as by a person before" : "by the schedule"));
+  return wanted;
+}
+
 void Projectors::tend() {
-  const auto wanted = schedule_.step(parts_.local_minute());
   const std::lock_guard lock(mutex_);
-  if (wanted) {
-    notices_.push_back(
-        fmt::format("projectors: switched {} by the schedule", *wanted ? "on" : "off"));
+  if (const auto wanted = due()) {
     for (const auto& entry : entries_) entry->loop->want(*wanted);
     panel_wanted_ = wanted;
     panel_due_ = parts_.clock.now();

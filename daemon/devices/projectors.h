@@ -19,6 +19,12 @@
 
 namespace merlin::devices {
 
+// A switching of all projectors by a person, and when it was.
+struct PersonsSwitch {
+  bool on = false;
+  pjlink::LocalMinute at = 0;
+};
+
 // The minute that the local calendar shows now, by the system's clock and time zone.
 pjlink::LocalMinute localMinute();
 
@@ -37,6 +43,11 @@ class Projectors {
   // REQUIRES: the settings' faults have been found; every address is valid.
   Projectors(const DevicesSettings& settings, Parts parts);
 
+  // What a person did last before merlind was restarted: it goes on to hold until the schedule's
+  // next switching point. `keep` is called with each further switching by a person, by the thread
+  // that calls switchAll(). To be called before start() and tend().
+  void remember(std::optional<PersonsSwitch> last, std::function<void(const PersonsSwitch&)> keep);
+
   // Adds a thread for each PJLink projector.
   void start(ThreadWatch& watch, std::vector<WatchedThread>& threads);
 
@@ -47,8 +58,8 @@ class Projectors {
   // down or were just switched. kIo: otherwise.
   Result<Ok> switchAll(bool on);
 
-  // Follows the schedule; repeats, once a second, what the panel refused.
-  // To be called by one thread, several times a second.
+  // Follows the schedule, at the first call at once; repeats, once a second, what the panel
+  // refused. To be called by one thread, several times a second.
   void tend();
 
   // One connection to each PJLink projector for which one is due. For tests without threads.
@@ -70,13 +81,17 @@ class Projectors {
   };
   Entry& add(const PjlinkSettings& settings);
   Result<Ok> switchPanel(bool on);
+  std::optional<bool> due();
 
   Parts parts_;
   std::vector<std::unique_ptr<Entry>> entries_;
   pjlink::Schedule schedule_;
   Timestamp panel_due_;
-  mutable std::mutex mutex_;          // guards the two below; held while the panel is switched
-  std::optional<bool> panel_wanted_;  // what the panel has refused so far
+  std::function<void(const PersonsSwitch&)> keep_ = [](const PersonsSwitch&) {};
+  bool follows_schedule_ = false;           // since the first tend() with a schedule
+  mutable std::mutex mutex_;                // guards all below; held while the panel is switched
+  std::optional<bool> panel_wanted_;        // what the panel has refused so far
+  std::optional<PersonsSwitch> by_person_;  // the last one
   std::vector<std::string> notices_;
 };
 

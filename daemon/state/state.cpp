@@ -19,6 +19,7 @@ constexpr std::size_t kLongestName = 64, kLongestPath = 4096;
 constexpr std::size_t kMostOutputs = 64;
 constexpr int kLargest = 1 << 20;  // of sizes and numbers of points
 constexpr double kLeastRate = 1, kMostRate = 240;
+constexpr std::uint64_t kMostMinutes = 5'000'000'000;  // of local time since 1970
 constexpr const char* kVersionKey = "merlin_state";
 
 Json textOf(const Offset& o) { return Json::array({o.x, o.y}); }
@@ -114,6 +115,19 @@ Step stepOf(JsonView view, const Alignment& alignment) {
   return step;
 }
 
+// "on" or "off".
+bool switchOf(JsonView view) {
+  const std::string word = view.text(kLongestName);
+  if (word != "on" && word != "off") view.addFault("on or off");
+  return word == "on";
+}
+
+ProjectorSwitch projectorsOf(JsonView view) {
+  view.allowKeys({"switched", "local_minute"});
+  return {switchOf(view.at("switched")),
+          static_cast<std::int64_t>(view.at("local_minute").count(0, kMostMinutes))};
+}
+
 Alignment alignmentOf(JsonView view) {
   view.allowKeys({"outputs", "steps", "done"});
   Alignment alignment;
@@ -143,9 +157,11 @@ State stateOf(JsonView root) {
                   {}, Errc::kUnsupported);
     return state;
   }
-  root.allowKeys({kVersionKey, "rate_hz", "content", "alignment"});
+  root.allowKeys({kVersionKey, "rate_hz", "content", "playlist", "projectors", "alignment"});
   if (root.has("rate_hz")) state.rate_hz = root.at("rate_hz").number(kLeastRate, kMostRate);
   if (root.has("content")) state.content = root.at("content").text(kLongestPath);
+  if (root.has("playlist")) state.playlist_off = !switchOf(root.at("playlist"));
+  if (root.has("projectors")) state.projectors = projectorsOf(root.at("projectors"));
   state.alignment = alignmentOf(root.at("alignment"));
   return state;
 }
@@ -157,6 +173,11 @@ std::string stateText(const State& state) {
   std::string text = fmt::format("{{\"{}\": {},\n", kVersionKey, kStateVersion);
   if (state.rate_hz) text += fmt::format("\"rate_hz\": {},\n", lineOf(*state.rate_hz));
   if (!state.content.empty()) text += fmt::format("\"content\": {},\n", lineOf(state.content));
+  if (state.playlist_off) text += "\"playlist\": \"off\",\n";
+  if (const auto& p = state.projectors) {
+    text += fmt::format("\"projectors\": {{\"switched\": \"{}\", \"local_minute\": {}}},\n",
+                        p->on ? "on" : "off", p->local_minute);
+  }
   std::vector<std::string> outputs, steps;
   for (const auto& output : state.alignment.outputs) outputs.push_back(lineOf(textOf(output)));
   for (const auto& step : state.alignment.steps) steps.push_back(lineOf(textOf(step)));

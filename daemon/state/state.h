@@ -12,13 +12,22 @@
 
 namespace merlin::state {
 
-// Version of the file's form. A program reads files of its own version only.
-inline constexpr std::uint64_t kStateVersion = 1;
+// Version of the file's form. A program reads files of its own version and of older ones. Version 2
+// added `playlist` and `projectors`.
+inline constexpr std::uint64_t kStateVersion = 2;
+
+// The last switching of all projectors by a person.
+struct ProjectorSwitch {
+  bool on = false;
+  std::int64_t local_minute = 0;  // when: minutes of the local calendar since 1970-01-01 00:00
+};
 
 struct State {
   Alignment alignment;
   std::optional<double> rate_hz;  // set by hand; none: the configured one
   std::string content;            // the model that is shown, its path; empty: the first one
+  bool playlist_off = false;      // by `merlin playlist off`, until on
+  std::optional<ProjectorSwitch> projectors;  // nothing: nobody has switched them
 };
 
 // The file's text: JSON, the version first.

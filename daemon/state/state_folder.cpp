@@ -91,10 +91,11 @@ Result<Ok> StateFolder::write(const std::string& text) {
 
 Result<Ok> StateFolder::putAside() { return rename(path_, path_ + ".damaged"); }
 
-std::string stateFile(const std::string& wanted, const std::string& instance) {
-  if (!wanted.empty()) return wanted;
+std::string stateFile(const std::string& wanted, const std::string& instance, bool has_wall) {
+  const char* const ending = has_wall ? "" : ".devices";
+  if (!wanted.empty()) return wanted + ending;
   const std::string folder = usualFolder();
-  return folder.empty() ? folder : fmt::format("{}/{}.state.json", folder, instance);
+  return folder.empty() ? folder : fmt::format("{}/{}.state.json{}", folder, instance, ending);
 }
 
 }  // namespace merlin::state

@@ -26,8 +26,9 @@ class StateFolder final : public StateFiles {
 
 // The file that is used: `wanted`, or, if that is empty, INSTANCE.state.json in the folder that
 // systemd sets (StateDirectory=), else in /var/lib/merlin for root, else in $XDG_STATE_HOME/merlin
-// or ~/.local/state/merlin. Empty if there is no such folder, since this user has no home. Reads
-// the environment: to be called before any thread starts.
-std::string stateFile(const std::string& wanted, const std::string& instance);
+// or ~/.local/state/merlin. Empty if there is no such folder, since this user has no home. A
+// process without a wall has a file of its own, with ".devices" appended, since the process of the
+// wall may have the other. Reads the environment: to be called before any thread starts.
+std::string stateFile(const std::string& wanted, const std::string& instance, bool has_wall);
 
 }  // namespace merlin::state

@@ -1,21 +1,20 @@
 #include "daemon/status/projectors.h"
 
-#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "daemon/status/add_member.h"
 
 namespace merlin::status {
 
 std::string addProjectors(const std::string& document,
                           const std::vector<ProjectorStatus>& projectors) {
-  using Json = nlohmann::ordered_json;
-  Json json = Json::parse(document, nullptr, false);
-  if (projectors.empty() || !json.is_object()) return document;
-  Json& all = json["projectors"];
+  nlohmann::ordered_json all;
   for (const ProjectorStatus& p : projectors) {
     all[p.name] = {{"kind", p.kind},         {"power", p.power},          {"wanted", p.wanted},
                    {"health", p.health},     {"reason", p.reason},        {"address", p.address},
                    {"identity", p.identity}, {"lamp_hours", p.lamp_hours}};
   }
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return addMember(document, "projectors", std::move(all));
 }
 
 }  // namespace merlin::status

@@ -4,7 +4,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+
+#include "daemon/status/add_member.h"
 
 namespace merlin::status {
 
@@ -26,16 +27,15 @@ std::vector<std::string> Services::takeEvents() {
 }
 
 std::string Services::addTo(const std::string& document) const {
-  using Json = nlohmann::ordered_json;
-  const std::lock_guard lock(mutex_);
-  Json json = Json::parse(document, nullptr, false);
-  if (services_.empty() || !json.is_object()) return document;
-  Json& services = json["services"];
-  for (const Service& s : services_) {
-    services[s.name]["health"] = s.reason.empty() ? "ok" : "failed";
-    services[s.name]["reason"] = s.reason;
+  nlohmann::ordered_json services;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const Service& s : services_) {
+      services[s.name]["health"] = s.reason.empty() ? "ok" : "failed";
+      services[s.name]["reason"] = s.reason;
+    }
   }
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return addMember(document, "services", std::move(services));
 }
 
 }  // namespace merlin::status

@@ -65,10 +65,24 @@ void ContentTurns::expectInitialView() const {
 void ContentTurns::requestNext(std::uint32_t times) {
   for (std::uint32_t i = 0; i < times; ++i) {
     const bool stays = asked_ == index_ && source_ && source_->nextWithin(asked_);
-    if (stays) continue;
+    if (!stays) requestPlaceAfter({});
+  }
+}
+
+void ContentTurns::requestPlaceAfter(std::span<const std::size_t> places) {
+  if (places.empty()) {
     in_turn_ = (in_turn_ + 1) % listed_;
     asked_ = in_turn_;
+    return;
   }
+  const auto at = std::ranges::find(places, asked_);
+  request(at == places.end() || at + 1 == places.end() ? places.front() : *(at + 1));
+}
+
+bool ContentTurns::leave(std::size_t place, std::span<const std::size_t> places) {
+  if (asked_ != place || index_ != place) return false;
+  requestPlaceAfter(places);
+  return asked_ != place;
 }
 
 bool ContentTurns::isOf(std::span<const std::size_t> places) const {
@@ -80,8 +94,7 @@ void ContentTurns::requestNextOf(std::span<const std::size_t> places) {
   if (places.empty()) return requestNext(1);
   const bool listed = isOf(places);
   if (listed && asked_ == index_ && source_ && source_->nextWithin(asked_)) return;
-  const auto at = std::ranges::find(places, asked_);
-  request(!listed || at + 1 == places.end() ? places.front() : *(at + 1));
+  requestPlaceAfter(places);
 }
 
 void ContentTurns::request(std::size_t place) noexcept {

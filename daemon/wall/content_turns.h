@@ -43,7 +43,8 @@ class ContentSource {
     ShownContent content;
     bool asked_for = false;     // it is to be shown now, from its start view
     std::uint32_t request = 0;  // of WallRole::show(); 0: none
-    std::string refused{};      // why there is nothing to show; then only `request` counts
+    std::string refused{};      // why there is nothing to show; then `content` does not count
+    bool goes_on = false;       // refused: the place has no further part, the next place follows
   };
   // Called between frames. Returns a new content and the place (index) of the one that it replaces,
   // which is not used again; nullopt if there is none. `T_eye_content`: the view in which it will
@@ -89,6 +90,9 @@ class ContentTurns {
   // is none of them. Before it come further parts of the place that is shown (slides). No places:
   // all that come by turns.
   void requestNextOf(std::span<const std::size_t> places);
+  // Requests the next of `places`, as above, if `place` is shown and nothing else was asked for: no
+  // further part of it can be shown. Returns whether it is left.
+  bool leave(std::size_t place, std::span<const std::size_t> places);
   // Whether the one that was asked for last is one of them.
   bool isOf(std::span<const std::size_t> places) const;
   // Requests the content of a place. Nothing happens if there is none.
@@ -106,6 +110,7 @@ class ContentTurns {
 
  private:
   const ShownContent& shown() const noexcept { return contents_[index_]; }
+  void requestPlaceAfter(std::span<const std::size_t> places);
   render::frame::DrawTimes draw(std::size_t step, const Eigen::Isometry3f& T_eye_content) const;
   void measureInitialView(const Eigen::Isometry3f& T_eye_content);
 

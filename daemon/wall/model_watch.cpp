@@ -47,8 +47,16 @@ void ModelWatch::run(const std::stop_token& stop, Progress& progress) {
 }
 
 void ModelWatch::ask(Read read, std::uint32_t request) {
+  ask(Asked{std::move(read), request, kNoPlace});
+}
+
+void ModelWatch::askForSlide(Read read, std::size_t place) {
+  ask(Asked{std::move(read), 0, place});
+}
+
+void ModelWatch::ask(Asked asked) {
   const std::lock_guard lock(mutex_);
-  asked_.push_back({std::move(read), request});
+  asked_.push_back(std::move(asked));
   asked_changed_.notify_one();
 }
 
@@ -83,7 +91,8 @@ void ModelWatch::readAsked(Progress& progress) {
     }
     report(fmt::format("what was asked for cannot be shown: {}", ready.error().what));
     ReadyModel nothing;
-    nothing.place = ~std::size_t{0};  // not to be taken for an outdated content of a place
+    nothing.place = asked.place;
+    nothing.is_slide = asked.place != kNoPlace;
     nothing.request = asked.request;
     nothing.refused = ready.error().what;
     const std::lock_guard lock(mutex_);

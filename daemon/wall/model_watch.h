@@ -53,7 +53,8 @@ struct ReadyModel {
   bool asked_for = false;     // to be shown now, from its start view
   bool was_replaced = false;  // its file was replaced by another one
   std::uint32_t request = 0;  // of WallRole::show(); 0: none
-  std::string refused{};      // why there is nothing to show; the rest is empty then
+  // Why there is nothing to show; of the rest only place, is_slide and request count then.
+  std::string refused{};
 };
 
 // take() is for the wall's thread; ask(), offer(), report() and takeEvents() are thread-safe.
@@ -79,8 +80,9 @@ class ModelWatch {
   // Returns a content that is ready, if there is one. Never waits for the watch's thread.
   std::optional<ReadyModel> take();
   // Calls `read` on the watch's thread; what it returns is ready then. An error becomes an event,
-  // and ready with the number of the request.
+  // and ready with the number of the request, or the place whose next slide was asked for.
   void ask(Read read, std::uint32_t request = 0);
+  void askForSlide(Read read, std::size_t place);
   // Adds a content that is ready.
   void offer(ReadyModel ready);
   // Adds an event.
@@ -100,10 +102,14 @@ class ModelWatch {
   std::vector<int> gone_;  // number of checks in a row that found no file, by place
   Make make_;
   const Clock& clock_;
+  // For what is not the content of a place, so that it is not taken for one that is outdated.
+  static constexpr std::size_t kNoPlace = ~std::size_t{0};
   struct Asked {
     Read read;
     std::uint32_t request = 0;
+    std::size_t place = kNoPlace;
   };
+  void ask(Asked asked);
   std::mutex mutex_;  // protects all up to thread_
   std::condition_variable_any asked_changed_;
   std::vector<ReadyModel> ready_;

@@ -183,16 +183,17 @@ bool ShownModels::nextWithin(std::size_t place) {
   const bool more = !shown.is_last_slide || (place < listed() && listed() == 1);
   ModelWatch& watch = parts_.watch;
   const WallSettings& settings = parts_.settings;
-  watch.ask([&watch, &settings, place, more, entry = shown.entry,
-             after = shown.file]() -> Result<ReadyModel> {
+  const auto read = [&watch, &settings, place, more, entry = shown.entry,
+                     after = shown.file]() -> Result<ReadyModel> {
     std::vector<std::string> skipped;
-    auto read = readContent(entry, settings.render.model.show, after, skipped);
+    auto slide = readContent(entry, settings.render.model.show, after, skipped);
     for (const std::string& why : skipped) watch.report(why);
-    if (!read) return read.error();
-    auto ready = prepareContent(place, *std::move(read), settings);
+    if (!slide) return slide.error();
+    auto ready = prepareContent(place, *std::move(slide), settings);
     if (ready) ready->asked_for = more;
     return ready;
-  });
+  };
+  watch.askForSlide(read, place);
   return more;
 }
 
@@ -219,8 +220,8 @@ Result<Ok> ShownModels::takeModel(ReadyModel& ready, const Eigen::Isometry3f& T_
   return Ok{};
 }
 
-ContentSource::Replacement ShownModels::refusal(std::uint32_t request, std::string why) {
-  return {0, {}, false, request, std::move(why)};
+ContentSource::Replacement ShownModels::refusal(const ReadyModel& ready, std::string why) {
+  return {ready.place, {}, false, ready.request, std::move(why), ready.is_slide};
 }
 
 // The last place has a name only once something is shown there.
@@ -246,10 +247,10 @@ std::optional<ContentSource::Replacement> ShownModels::take(bool moving,
   const bool model = waiting_->content != nullptr;
   if (model && moving && now - waits_since_ < kPatience) return std::nullopt;
   ReadyModel ready = *std::exchange(waiting_, std::nullopt);
-  if (!ready.refused.empty()) return refusal(ready.request, ready.refused);
+  if (!ready.refused.empty()) return refusal(ready, ready.refused);
   if (model) {
     const auto taken = takeModel(ready, T_eye_model);
-    if (!taken) return refusal(ready.request, taken.error().what);
+    if (!taken) return refusal(ready, taken.error().what);
   } else {
     takePicture(ready);
   }
@@ -258,7 +259,8 @@ std::optional<ContentSource::Replacement> ShownModels::take(bool moving,
     parts_.watch.report(
         fmt::format("{} {} was replaced and is shown", model ? "model" : "picture", ready.path));
   }
-  return Replacement{ready.place, contentAt(ready.place), ready.asked_for, ready.request, {}};
+  return Replacement{ready.place, contentAt(ready.place), ready.asked_for, ready.request, {},
+                     false};
 }
 
 }  // namespace merlin::wall

@@ -74,7 +74,7 @@ class ShownModels final : public ContentSource {
   void takePicture(ReadyModel& ready);
   Result<Ok> takeModel(ReadyModel& ready, const Eigen::Isometry3f& T_eye_model);
   void noteFile(const ReadyModel& ready, ContentKind kind);
-  static Replacement refusal(std::uint32_t request, std::string why);
+  static Replacement refusal(const ReadyModel& ready, std::string why);
   ShownContent contentAt(std::size_t place) const;
   float nearestOf(const render::content::Picture& picture) const;
 

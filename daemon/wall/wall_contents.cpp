@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -81,24 +84,41 @@ Result<std::vector<std::string>> slidesIn(const std::string& folder) {
   return slides;
 }
 
+// The first of these that can be shown; nothing if there is none. The others before it are added to
+// `skipped`.
+std::optional<WallContent> firstOf(std::span<const std::string> names, const ContentEntry& entry,
+                                   std::vector<std::string>& skipped) {
+  for (const std::string& name : names) {
+    auto read = readPicture(entry, (fs::path(entry.path) / name).string());
+    if (read) return *std::move(read);
+    skipped.push_back(fmt::format("a slide is left out: {}", read.error().what));
+  }
+  return std::nullopt;
+}
+
+// The last slide is the last one that can be shown: otherwise a damaged file at the end would keep
+// the next content from its turn.
 Result<WallContent> readSlide(const ContentEntry& entry, const std::string& after,
                               std::vector<std::string>& skipped) {
-  auto slides = slidesIn(entry.path);
+  const auto slides = slidesIn(entry.path);
   if (!slides) return slides.error();
-  const std::string last = slides->back();
-  const std::string after_name = fs::path(after).filename().string();
-  std::rotate(slides->begin(), std::ranges::upper_bound(*slides, after_name), slides->end());
-  for (const std::string& name : *slides) {
-    auto read = readPicture(entry, (fs::path(entry.path) / name).string());
-    if (!read) {
-      skipped.push_back(fmt::format("a slide is left out: {}", read.error().what));
-      continue;
-    }
-    read->is_last_slide = name == last;
-    return read;
+  const auto behind = [&](const std::string& file) {
+    const auto next = std::ranges::upper_bound(*slides, fs::path(file).filename().string());
+    return std::span(*slides).subspan(static_cast<std::size_t>(next - slides->begin()));
+  };
+  auto read = firstOf(behind(after), entry, skipped);
+  if (!read) {
+    const std::size_t before = slides->size() - behind(after).size();
+    read = firstOf(std::span(*slides).first(before), entry, skipped);
   }
-  return Error{Errc::kNotFound, fmt::format("{}: none of its {} pyramids can be shown: {}",
-                                            entry.path, slides->size(), skipped.back())};
+  if (!read) {
+    return Error{Errc::kNotFound, fmt::format("{}: none of its {} pyramids can be shown: {}",
+                                              entry.path, slides->size(), skipped.back())};
+  }
+  std::vector<std::string> behind_it;
+  read->is_last_slide = !firstOf(behind(read->file), entry, behind_it);
+  if (read->is_last_slide) std::ranges::move(behind_it, std::back_inserter(skipped));
+  return *std::move(read);
 }
 
 }  // namespace

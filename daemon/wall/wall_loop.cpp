@@ -110,7 +110,7 @@ void WallLoop::replaceContents() {
   if (!parts_.replacements || parts_.attendance.isFrozen()) return;
   const auto fresh = parts_.replacements->take(view_.moving, view_.T_eye_model);
   if (!fresh) return;
-  if (!fresh->refused.empty()) return finishRequest(fresh->request, fresh->refused);
+  if (!fresh->refused.empty()) return noteRefusal(*fresh);
   const bool shown = turns_.replace(*fresh);
   if (fresh->asked_for) {
     turns_.request(fresh->place);
@@ -121,6 +121,14 @@ void WallLoop::replaceContents() {
   useNavigation();
   showContent();
   still_.restart();
+}
+
+// A folder of slides that vanished, or is empty now, keeps nobody from the other contents.
+void WallLoop::noteRefusal(const ContentSource::Replacement& refused) {
+  const bool playing = parts_.attendance.playlist() == Playlist::State::kRunning;
+  const std::vector<std::size_t> places = playing ? parts_.playlist : std::vector<std::size_t>();
+  if (refused.goes_on && turns_.leave(refused.place, places)) parts_.scene.reset();
+  if (refused.request > 0) finishRequest(refused.request, refused.refused);
 }
 
 // The devices' input, without what does not count while the wall is black or frozen.

@@ -125,6 +125,7 @@ class WallLoop {
   void useNavigation();
   bool needsRefining() const;
   void replaceContents();
+  void noteRefusal(const ContentSource::Replacement& refused);
   std::optional<Eigen::Vector3f> pointedAt() const;
   void publish();
 

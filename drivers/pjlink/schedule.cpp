@@ -28,6 +28,21 @@ bool Schedule::isOn(LocalMinute now) const {
   });
 }
 
+std::optional<Schedule::Switching> Schedule::next(LocalMinute now) const {
+  const LocalMinute midnight = now - ((now % kDay) + kDay) % kDay;
+  std::vector<LocalMinute> points;
+  for (LocalMinute day = 0; day <= 7; ++day) {
+    for (const Times& t : times_) {
+      for (const int minute : {t.on, t.off}) points.push_back(midnight + day * kDay + minute);
+    }
+  }
+  std::ranges::sort(points);
+  for (const LocalMinute point : points) {
+    if (point > now && isOn(point) != isOn(point - 1)) return Switching{point, isOn(point)};
+  }
+  return std::nullopt;
+}
+
 std::optional<bool> Schedule::step(LocalMinute now) {
   if (times_.empty()) return std::nullopt;
   if (last_ && now < latest_ && latest_ - now <= kSetBack) return std::nullopt;

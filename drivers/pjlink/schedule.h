@@ -23,6 +23,14 @@ class Schedule {
   // Whether projectors are to be on: at least one entry says so. O(entries).
   bool isOn(LocalMinute now) const;
 
+  // The next minute after `now` in which the scheduled state changes, and what it is then; nothing
+  // if it stays as it is for a week. O(entries^2). May be called while another thread calls step().
+  struct Switching {
+    LocalMinute at = 0;
+    bool on = false;
+  };
+  std::optional<Switching> next(LocalMinute now) const;
+
   // To be called at least once a minute. Returns true (on) or false (off) when the scheduled state
   // has changed since the last call, and at the first call. While the local time repeats an hour
   // (daylight-saving time ends), or was set back by at most three hours, it returns nothing until

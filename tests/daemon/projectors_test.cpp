@@ -2,14 +2,12 @@
 // cool-down and a projector that is gone for a while; and what commands and status say.
 #include "daemon/devices/projectors.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "daemon/status/projectors.h"
 #include "drivers/gpio/panel.h"
-#include "tests/support/emulated_projector.h"
+#include "tests/support/emulated_connection.h"
 #include "tests/support/fake_clock.h"
 
 namespace merlin::devices {
@@ -18,37 +16,7 @@ namespace {
 using std::chrono::seconds;
 using test::EmulatedProjector;
 
-// The connection to an emulated projector, on the virtual clock.
-class EmulatedConnection final : public ByteStream {
- public:
-  EmulatedConnection(EmulatedProjector& device, test::FakeClock& clock)
-      : device_(device), clock_(clock), input_(device.greet()) {}
-
-  Result<std::size_t> read(std::span<std::byte> buffer, Duration timeout) override {
-    if (input_.empty()) {
-      clock_.advance(timeout);
-      return Error{Errc::kTimeout, "time-out"};
-    }
-    const std::size_t n = std::min(buffer.size(), input_.size());
-    std::transform(input_.begin(), input_.begin() + static_cast<std::ptrdiff_t>(n), buffer.begin(),
-                   [](char c) { return static_cast<std::byte>(c); });
-    input_.erase(0, n);
-    return n;
-  }
-  Result<std::size_t> write(std::span<const std::byte> bytes, Duration) override {
-    std::string line;
-    for (const std::byte b : bytes) line += static_cast<char>(b);
-    line.pop_back();
-    input_ += device_.answer(line, clock_.now());
-    return bytes.size();
-  }
-  void interrupt() noexcept override {}
-
- private:
-  EmulatedProjector& device_;
-  test::FakeClock& clock_;
-  std::string input_;
-};
+using EmulatedConnection = test::EmulatedConnection<test::FakeClock>;
 
 DevicesSettings settingsOf(const std::vector<SwitchingTimes>& schedule) {
   DevicesSettings settings;
@@ -228,6 +196,57 @@ TEST(Projectors, APersonSupersedesWhatTheScheduleStillWants) {
   w.until(17, 0, 10);  // the schedule waits for the panel to cool down
   w.command(false);
   w.until(17, 30);
+  EXPECT_EQ(w.powers(), "off off off");
+}
+
+// merlind is restarted on a Monday or Tuesday; the schedule switches on at 09:00 and off at 17:00.
+struct Restart {
+  int command_min;  // when a person switched the projectors, from Monday 00:00
+  bool on;
+  int restart_min;
+  const char* expected;
+};
+
+class AfterARestart : public testing::TestWithParam<Restart> {};
+
+TEST_P(AfterARestart, APersonsCommandHoldsUntilTheSchedulesNextPoint) {
+  const Restart& r = GetParam();
+  Wall w(r.restart_min);
+  w.projectors.remember(PersonsSwitch{r.on, kMonday + r.command_min}, [](const PersonsSwitch&) {});
+  const int minute = r.restart_min + 5;
+  w.until(minute / 60, minute % 60);
+  EXPECT_EQ(w.powers(), r.expected) << w.table;
+}
+
+constexpr const char* kOff = "off off off";
+constexpr const char* kOn = "on on on";
+
+INSTANTIATE_TEST_SUITE_P(
+    Times, AfterARestart,
+    testing::Values(Restart{14 * 60, false, 15 * 60, kOff},      // switched off in the afternoon
+                    Restart{8 * 60, true, 8 * 60 + 30, kOn},     // on before the opening time
+                    Restart{14 * 60, false, 17 * 60 + 1, kOff},  //
+                    Restart{14 * 60, true, 17 * 60 + 1, kOff},   // the schedule's point has passed
+                    Restart{14 * 60, false, 33 * 60 + 5, kOn},   // two of them have
+                    Restart{18 * 60, true, 27 * 60, kOn},        // a late visitor stays till three
+                    Restart{20 * 60, false, 27 * 60, kOff}));
+
+TEST(Projectors, WhatAPersonDoesIsKeptWithItsTime) {
+  Wall w(16 * 60 + 59);
+  std::vector<PersonsSwitch> kept;
+  w.projectors.remember({}, [&](const PersonsSwitch& person) { kept.push_back(person); });
+  w.until(17, 10);
+  EXPECT_TRUE(kept.empty()) << "the schedule is no person";
+  w.command(true);
+  ASSERT_EQ(kept.size(), 1U);
+  EXPECT_TRUE(kept[0].on);
+  EXPECT_EQ(kept[0].at, kMonday + 17 * 60 + 10);
+}
+
+TEST(Projectors, WithoutAScheduleARestartSwitchesNothing) {
+  Wall w(8 * 60, {});
+  w.projectors.remember(PersonsSwitch{true, kMonday}, [](const PersonsSwitch&) {});
+  w.until(8, 5);
   EXPECT_EQ(w.powers(), "off off off");
 }
 

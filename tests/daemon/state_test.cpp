@@ -109,6 +109,8 @@ State someState() {
   State state;
   state.rate_hz = 25;
   state.content = "/models/b \"x\".mrm";
+  state.playlist_off = true;
+  state.projectors = {false, 29'670'840};
   state.alignment.move(kLeft, kTopLeft, {1.5, -2.001});
   state.alignment.move(kLeft, kPoint, {3, 4});
   state.alignment.move(kRight, kBottomRight, {-7, 0});
@@ -123,6 +125,10 @@ TEST(StateText, IsReadBackAsItWas) {
   EXPECT_EQ(stateText(*read), stateText(written));
   EXPECT_EQ(read->rate_hz, 25);
   EXPECT_EQ(read->content, written.content);
+  EXPECT_TRUE(read->playlist_off);
+  ASSERT_TRUE(read->projectors);
+  EXPECT_FALSE(read->projectors->on);
+  EXPECT_EQ(read->projectors->local_minute, 29'670'840);
   EXPECT_EQ(read->alignment.offset("left", kTopLeft), (Offset{1.5, -2.001}));
   EXPECT_EQ(read->alignment.offset("left", kPoint), (Offset{3, 4}));
   EXPECT_EQ(read->alignment.find("left")->form, kLeft);
@@ -135,8 +141,26 @@ TEST(StateText, IsReadBackAsItWas) {
 TEST(StateText, OfNothingIsReadBack) {
   const auto read = parseState(stateText({}), "f");
   ASSERT_TRUE(read) << read.error().what;
-  EXPECT_FALSE(read->rate_hz);
+  EXPECT_FALSE(read->rate_hz || read->playlist_off || read->projectors);
   EXPECT_EQ(read->alignment.steps.size(), 0u);
+}
+
+// As merlind wrote it before the playlist and the projectors were kept.
+TEST(StateText, OfVersion1IsRead) {
+  const auto read = parseState(R"({"merlin_state": 1,
+"rate_hz": 25.0,
+"content": "/models/b.mrm",
+"alignment": {"outputs": [
+{"output":"left","size":[640,480],"mesh":[3,3],"moved":[{"place":"top_left","by":[1.5,-2.001]}]}],
+"steps": [
+],
+"done": 0}}
+)",
+                               "f");
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(read->rate_hz, 25);
+  EXPECT_EQ(read->alignment.offset("left", kTopLeft), (Offset{1.5, -2.001}));
+  EXPECT_FALSE(read->playlist_off || read->projectors);
 }
 
 // A file that was cut or of which one byte is another is an error, or a state within its limits.
@@ -193,7 +217,12 @@ TEST(StateText, WrongFiguresAreNamedWithTheirPlace) {
                             [{"place": [2, 0], "by": [1, 1]}]}], "steps": [], "done": 0})"))
                 .find("allowed: a point of the mesh"),
             std::string::npos);
-  const auto newer = parseState(R"({"merlin_state": 2, "anything": [1]})", "f");
+  EXPECT_NE(errorOf(R"({"merlin_state": 2, "playlist": "next"})").find("allowed: on or off"),
+            std::string::npos);
+  EXPECT_NE(errorOf(R"({"merlin_state": 2, "projectors": {"switched": "off", "local_minute": -1}})")
+                .find("/projectors/local_minute"),
+            std::string::npos);
+  const auto newer = parseState(R"({"merlin_state": 3, "anything": [1]})", "f");
   ASSERT_FALSE(newer);
   EXPECT_EQ(newer.error().code, Errc::kUnsupported);
 }
@@ -301,7 +330,7 @@ TEST_F(StateKeeping, WhereBothAreDamagedTheConfigurationHolds) {
 }
 
 TEST_F(StateKeeping, ANewerStateIsNeitherReadNorReplaced) {
-  const std::string newer = R"({"merlin_state": 2})";
+  const std::string newer = R"({"merlin_state": 3})";
   disk_.last = newer;
   disk_.previous = stateText(someState());
   const auto only = keeper();
@@ -381,16 +410,18 @@ TEST(StateFolder, SaysWhereItCannotWriteAndKeepsWhatIsThere) {
 }
 
 TEST(StateFolder, IsTheUsersUnlessOneIsNamed) {
-  EXPECT_EQ(stateFile("/x/y.json", "wall"), "/x/y.json");
+  EXPECT_EQ(stateFile("/x/y.json", "wall", true), "/x/y.json");
+  EXPECT_EQ(stateFile("/x/y.json", "wall", false), "/x/y.json.devices");
   ::setenv("STATE_DIRECTORY", "/var/lib/merlin:/other", 1);
-  EXPECT_EQ(stateFile("", "wall"), "/var/lib/merlin/wall.state.json");
+  EXPECT_EQ(stateFile("", "wall", true), "/var/lib/merlin/wall.state.json");
+  EXPECT_EQ(stateFile("", "wall", false), "/var/lib/merlin/wall.state.json.devices");
   ::unsetenv("STATE_DIRECTORY");
   if (::geteuid() == 0) return;
   ::setenv("XDG_STATE_HOME", "/home/x/state", 1);
-  EXPECT_EQ(stateFile("", "wall"), "/home/x/state/merlin/wall.state.json");
+  EXPECT_EQ(stateFile("", "wall", true), "/home/x/state/merlin/wall.state.json");
   ::unsetenv("XDG_STATE_HOME");
   ::setenv("HOME", "/home/x", 1);
-  EXPECT_EQ(stateFile("", "wall"), "/home/x/.local/state/merlin/wall.state.json");
+  EXPECT_EQ(stateFile("", "wall", true), "/home/x/.local/state/merlin/wall.state.json");
 }
 
 }  // namespace

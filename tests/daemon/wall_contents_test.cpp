@@ -143,14 +143,15 @@ class Slides final : public ContentSource {
  public:
   explicit Slides(ShownContent content) : content_(content) {}
   std::optional<Replacement> take(bool, const Eigen::Isometry3f&) override {
+    if (std::exchange(gone, false)) return Replacement{1, {}, false, 0, "it is gone", true};
     if (!std::exchange(due, false)) return std::nullopt;
-    return Replacement{1, content_, true, 7, {}};
+    return Replacement{1, content_, true, 7, {}, false};
   }
   bool nextWithin(std::size_t place) override { return place == 1 && parts-- > 0; }
   void prepare(std::size_t place) override { prepared.push_back(place); }
 
   int parts = 1;
-  bool due = false;
+  bool due = false, gone = false;
   std::vector<std::size_t> prepared;
 
  private:
@@ -172,6 +173,29 @@ TEST_F(WallContentsTest, SlidesComeOneAfterAnotherBeforeTheNextContent) {
   EXPECT_EQ(slides.parts, -1) << "asked for the last time after the second slide";
   ASSERT_GE(slides.prepared.size(), 2u);
   EXPECT_EQ(slides.prepared.back(), 0u);
+}
+
+TEST_F(WallContentsTest, WhereNoFurtherSlideCanBeShownTheNextContentFollows) {
+  Slides slides({&detail_, &dear_});
+  slides.parts = 100;
+  replacements_ = &slides;
+  run(6, [&](Timestamp) {
+    const auto frame = feed_.begins.size();
+    feed_.actions.next_content = frame == 30 || frame == 60 || frame == 120 ? 1 : 0;
+    if (frame == 61) slides.gone = true;
+    if (frame == 61) {
+      EXPECT_EQ(interaction().content, 1u);
+    }
+    if (frame == 65) {
+      EXPECT_EQ(interaction().content, 0u) << "the folder is gone";
+      slides.gone = true;  // one that comes late changes nothing
+    }
+    if (frame == 110) {
+      EXPECT_EQ(interaction().content, 0u);
+    }
+  });
+  EXPECT_EQ(interaction().content, 1u) << "and has its turn again";
+  EXPECT_EQ(slides.parts, 99);
 }
 
 // `merlin show FILE`: behind the contents of the list there is a place for what is not in it.

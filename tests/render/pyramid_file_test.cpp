@@ -15,6 +15,9 @@
 namespace merlin::render::image {
 namespace {
 
+using test::directoriesOf;
+using test::fieldAt;
+using test::numberAt;
 using test::pyramidBytes;
 using test::readPyramid;
 
@@ -31,31 +34,6 @@ std::vector<std::uint8_t> tileOf(const std::string& bytes, const TilePlace& plac
 std::string errorOf(std::string bytes) {
   const auto file = readPyramid(std::move(bytes));
   return file ? "" : file.error().what;
-}
-
-// Offset of the value of a field of the directory that begins at `directory`.
-std::size_t fieldAt(const std::string& bytes, std::size_t directory, int tag) {
-  for (std::size_t at = directory + 8;; at += 20) {
-    const int found =
-        static_cast<unsigned char>(bytes[at]) | static_cast<unsigned char>(bytes[at + 1]) << 8;
-    if (found == tag) return at + 12;
-  }
-}
-
-std::size_t numberAt(const std::string& bytes, std::size_t at) {
-  std::size_t value = 0;
-  for (std::size_t i = 8; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
-  return value;
-}
-
-// Offsets of all directories of a file whose levels follow one another.
-std::vector<std::size_t> directoriesOf(const std::string& bytes) {
-  std::vector<std::size_t> all;
-  for (std::size_t at = numberAt(bytes, 8); at != 0;) {
-    all.push_back(at);
-    at = numberAt(bytes, at + 8 + 20 * numberAt(bytes, at));
-  }
-  return all;
 }
 
 TEST(PyramidFile, HasTheLevelsThatWereWritten) {

@@ -91,11 +91,22 @@ class ProjectorServer {
     kDripping,   // sends a byte of a greeting that never ends each time it is read
   };
 
-  explicit ProjectorServer(std::string password = {}) : projector(std::move(password)) {
+  explicit ProjectorServer(std::string password = {}) : projector(std::move(password)) { appear(); }
+
+  // Ends its connection and its thread, and refuses further ones, as if it had no mains.
+  void vanish() {
+    thread_ = {};
+    listener_.reset();
+  }
+  // Is there again, at the same port.
+  void appear() {
     listener_.reset(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    const int yes = 1;
+    ::setsockopt(listener_.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address.sin_port = htons(static_cast<std::uint16_t>(port.empty() ? 0 : std::stoi(port)));
     socklen_t size = sizeof address;
     auto* const generic = reinterpret_cast<sockaddr*>(&address);
     if (::bind(listener_.get(), generic, size) != 0 || ::listen(listener_.get(), 8) != 0) return;
@@ -107,7 +118,8 @@ class ProjectorServer {
   std::string port;
   std::atomic<Manner> manner{kPolite};
   std::atomic<int> connections{0};
-  EmulatedProjector projector;  // touched by its thread alone, except before the first connection
+  // Touched by its thread alone, except before the first connection and after vanish().
+  EmulatedProjector projector;
 
  private:
   void serve(const std::stop_token& stop) {

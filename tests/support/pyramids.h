@@ -200,6 +200,31 @@ inline std::string pyramidBytes(const PyramidSpec& spec = {}) {
   return file;
 }
 
+// Offset of the value of a field of the directory that begins at `directory`.
+inline std::size_t fieldAt(const std::string& bytes, std::size_t directory, int tag) {
+  for (std::size_t at = directory + 8;; at += 20) {
+    const int found =
+        static_cast<unsigned char>(bytes[at]) | static_cast<unsigned char>(bytes[at + 1]) << 8;
+    if (found == tag) return at + 12;
+  }
+}
+
+inline std::size_t numberAt(const std::string& bytes, std::size_t at) {
+  std::size_t value = 0;
+  for (std::size_t i = 8; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+  return value;
+}
+
+// Offsets of all directories of a file whose levels follow one another.
+inline std::vector<std::size_t> directoriesOf(const std::string& bytes) {
+  std::vector<std::size_t> all;
+  for (std::size_t at = numberAt(bytes, 8); at != 0;) {
+    all.push_back(at);
+    at = numberAt(bytes, at + 8 + 20 * numberAt(bytes, at));
+  }
+  return all;
+}
+
 inline Result<std::shared_ptr<const render::image::PyramidFile>> readPyramid(std::string bytes) {
   return render::image::PyramidFile::read(std::make_unique<MemoryAccess>(std::move(bytes)),
                                           "test.tif");

@@ -222,7 +222,7 @@ TEST_F(Align, ADamagedStateIsSaidAndThePreviousOneUsed) {
 
 TEST_F(Align, ANewerStateIsLeftAloneAndStatusSaysSo) {
   wall_->process().kill(SIGTERM);
-  const std::string newer = R"({"merlin_state": 2, "more": []})";
+  const std::string newer = R"({"merlin_state": 3, "more": []})";
   writeText(stateFile(), newer);
   start();
   EXPECT_EQ(moveCorner("top_left", "20", "0").status, 0);

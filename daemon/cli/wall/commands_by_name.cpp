@@ -27,6 +27,16 @@ std::string_view firstWord(std::string_view argument) {
   return argument.substr(0, argument.find('|'));
 }
 
+// "on|off|next" as "on, off or next".
+std::string choices(std::string_view argument) {
+  std::string text(argument);
+  const std::size_t last = text.rfind('|');
+  if (last != std::string::npos) text.replace(last, 1, " or ");
+  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos;)
+    text.replace(at, 1, ", ");
+  return text;
+}
+
 }  // namespace
 
 void addCommandsByName(Command app, Run& run) {
@@ -39,11 +49,12 @@ void addCommandsByName(Command app, Run& run) {
                                    info.argument.empty() ? "" : " ", firstWord(info.argument)));
     addInstance(command, sent->instance);
     if (!info.argument.empty()) {
-      command.option("argument", sent->argument, "What to do")
-          .required()
-          .typeName(std::string(info.argument));
+      command.option("argument", sent->argument, "What to do").typeName(std::string(info.argument));
     }
-    command.callback([sent, &info, &run] { run = [sent, &info] { return send(*sent, info); }; });
+    command.callback([sent, &info, &run] {
+      if (!info.argument.empty() && sent->argument.empty()) lacks(choices(info.argument));
+      run = [sent, &info] { return send(*sent, info); };
+    });
   }
 }
 
