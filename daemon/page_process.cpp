@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <ctime>
 #include <memory>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "daemon/page/event_log.h"
 #include "daemon/page/page_server.h"
 #include "daemon/page/token.h"
+#include "daemon/page_contents.h"
 #include "daemon/status/ended_threads.h"
 #include "daemon/status/run_directory.h"
 #include "daemon/status/services.h"
@@ -50,6 +52,12 @@ std::uint64_t milliseconds1970(Timestamp now) {
   return static_cast<std::uint64_t>((toNanoseconds(now) + realtimeOffset().count()) / 1'000'000);
 }
 
+// Models' pictures are kept in the unit's cache, which outlives a restart of the machine.
+std::string thumbnailFolder(const Settings& settings) {
+  const char* const cache = std::getenv("CACHE_DIRECTORY");
+  return cache && *cache == '/' ? cache : settings.run_directory;
+}
+
 class PageProcess {
  public:
   PageProcess(const Settings& settings, const page::TokenFile& token, Clock& clock)
@@ -75,7 +83,8 @@ class PageProcess {
 
  private:
   static page::PageServerSettings serverSettings(const Settings& s, const page::TokenFile& token) {
-    return {s.page, s.instance, MERLIN_VERSION, token.token(), token.path()};
+    return {s.page,       s.instance,           MERLIN_VERSION,    token.token(),
+            token.path(), pageContents(s.wall), thumbnailFolder(s)};
   }
 
   Result<std::unique_ptr<net::Server>> start(const page::PageServerSettings& settings) {
@@ -120,8 +129,9 @@ class PageProcess {
 Result<Ok> runPage(Settings settings, Clock& clock) {
   auto directory = status::runDirectory(settings.run_directory);
   if (!directory) return directory.error();
-  const auto token =
-      page::TokenFile::open(fmt::format("{}/{}-page.token", *directory, settings.instance));
+  settings.run_directory = *std::move(directory);
+  const auto token = page::TokenFile::open(
+      fmt::format("{}/{}-page.token", settings.run_directory, settings.instance));
   if (!token) return token.error();
   ::setpriority(PRIO_PROCESS, 0, kNice);
   return PageProcess(settings, *token, clock).run();

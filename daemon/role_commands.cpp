@@ -176,6 +176,7 @@ Answer ofWall(const Parts& p, std::string_view name, const std::string& argument
   if (name == "snapshot") return snapshot(p);
   if (name == "triangles") return triangles(p, argument);
   if (name == "rate") return rate(p, argument);
+  if (name == "align" && argument == "list") return p.wall->aligner().run(argument);
   if (name == "align") return seen(p, p.wall->aligner().run(argument));
   if (name == "testcard") return seen(p, testcard(p, argument));
   if (name == "signal") return signal(p, argument);

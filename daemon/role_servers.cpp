@@ -1,5 +1,6 @@
 #include "daemon/role_servers.h"
 
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -61,7 +62,15 @@ status::ProjectorStatus statusOf(const pjlink::ProjectorState& s, const char* ki
   status.address = s.address;
   status.identity = s.identity;
   status.lamp_hours = s.lamp_hours;
+  if (s.within) status.within_s = std::ceil(toSeconds(*s.within));
   return status;
+}
+
+std::optional<status::ProjectorSwitching> nextSwitching(devices::DevicesRole& devices) {
+  if (!devices.projectors()) return std::nullopt;
+  const auto next = devices.projectors()->nextSwitching();
+  if (!next) return std::nullopt;
+  return status::ProjectorSwitching{next->at, next->on};
 }
 
 std::vector<status::ProjectorStatus> projectorStatus(devices::DevicesRole& devices) {
@@ -121,7 +130,7 @@ Result<Ok> RoleServers::startDevices() {
   const auto statusNow = [this, &devices] {
     return parts_.services.addTo(status::addProjectors(
         status::devicesStatus(devices, clock_.now(), servers_.health("devices")),
-        projectorStatus(*parts_.devices)));
+        projectorStatus(*parts_.devices), nextSwitching(*parts_.devices)));
   };
   s.publications = {
       {"status", kOnceASecond, statusNow},

@@ -78,7 +78,8 @@ const std::map<std::string, Folders> kMayInclude = {
     // The composition root.
     {"daemon",
      {"config", "daemon/actions", "daemon/cli", "daemon/devices", "daemon/net", "daemon/page",
-      "daemon/serve", "daemon/shm", "daemon/state", "daemon/status", "daemon/wall", "render/gl"}},
+      "daemon/serve", "daemon/shm", "daemon/state", "daemon/status", "daemon/wall", "render/gl",
+      "render/image/overview.h"}},
     {"drivers/port", {}},
     {"drivers/cyberglove", {"drivers/port"}},
     {"drivers/fastrak", {"drivers/port"}},
@@ -176,6 +177,7 @@ const std::map<std::string, Folders> kOnlyIn = {
       "daemon/page", "daemon/cli/mesh", "daemon/cli/posture", "daemon/cli/wall",
       "daemon/cli/calibrate", "daemon/cli/image", "daemon/cli/line", "render/mesh/io/gltf"}},
     {"microhttpd.h", {"daemon/page"}},
+    {"qrencode.h", {"daemon/page"}},
     {"EGL/egl.h", {"render/gl"}},
     {"EGL/eglext.h", {"render/gl"}},
     {"GL/osmesa.h", {"render/gl"}},

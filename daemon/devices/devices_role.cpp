@@ -261,6 +261,8 @@ std::optional<pjlink::ProjectorState> DevicesRole::panelProjectors() const {
   state.reason = health->reason;
   state.address = health->port;
   if (works && sample && sample->power < std::size(kPowers)) state.power = kPowers[sample->power];
+  const Duration left = panel_ ? panel_->phaseLeft() : Duration::zero();
+  if (works && left > Duration::zero()) state.within = left;
   return state;
 }
 

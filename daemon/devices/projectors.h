@@ -65,6 +65,11 @@ class Projectors {
   // One connection to each PJLink projector for which one is due. For tests without threads.
   void round();
 
+  // When the schedule switches next. Thread-safe.
+  std::optional<pjlink::Schedule::Switching> nextSwitching() const {
+    return schedule_.next(parts_.local_minute());
+  }
+
   // The PJLink projectors. Thread-safe.
   std::vector<pjlink::ProjectorState> states() const;
 

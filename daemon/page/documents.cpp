@@ -37,6 +37,28 @@ std::string statusDocument(const PageState& page, const std::vector<RoleState>& 
       list);
 }
 
+std::string contentsDocument(const std::vector<ContentState>& contents) {
+  std::string list;
+  for (const ContentState& c : contents) {
+    list += fmt::format(R"({}{{"name":{},"kind":{},"thumbnail":{},"fault":{}}})",
+                        list.empty() ? "" : ",", jsonText(c.name), jsonText(c.kind),
+                        c.thumbnail > 0 ? std::to_string(c.thumbnail) : "null", jsonText(c.fault));
+  }
+  return fmt::format("{{\"contents\":[{}]}}\n", list);
+}
+
+std::string phoneDocument(const PhoneState& phone) {
+  std::string rows;
+  for (int y = 0; y < phone.code.side; ++y) {
+    std::string row;
+    for (int x = 0; x < phone.code.side; ++x) row += phone.code.isDark(x, y) ? '1' : '0';
+    rows += fmt::format("{}\"{}\"", rows.empty() ? "" : ",", row);
+  }
+  return fmt::format("{{\"address\":{},\"why\":{},\"rows\":[{}]}}\n",
+                     phone.address.empty() ? "null" : jsonText(phone.address), jsonText(phone.why),
+                     rows);
+}
+
 std::string commandList() {
   std::string list;
   for (const CommandInfo& c : kCommands) {

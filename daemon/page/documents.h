@@ -1,12 +1,14 @@
 // The JSON documents that the page and other programs read under /api. Pure.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
 #include "daemon/page/exchange.h"
+#include "daemon/page/qr_code.h"
 
 namespace merlin::page {
 
@@ -17,6 +19,20 @@ struct RoleState {
   Duration age{};      // since it arrived
 };
 
+// A content of the configuration, for a person to choose.
+struct ContentState {
+  std::string name, kind;       // "model", "picture", "panorama", "slides"
+  std::uint64_t thumbnail = 0;  // number of its small picture; 0: there is none
+  std::string fault;            // why its file cannot be read; empty: nothing is known
+};
+
+// A code for a phone's camera, and what it says.
+struct PhoneState {
+  std::string address;  // of the page, without the token; empty: a phone cannot reach it
+  std::string why;      // why not
+  QrCode code;
+};
+
 struct PageState {
   std::string instance, version;
   std::string token_file;  // where the token is, for people
@@ -25,6 +41,12 @@ struct PageState {
 
 // {"page": {...}, "roles": {"wall": {"running", "age_s", "status": {...} or null}, ...}}.
 std::string statusDocument(const PageState& page, const std::vector<RoleState>& roles);
+
+// {"contents": [{"name", "kind", "thumbnail": NUMBER or null, "fault"}, ...]}.
+std::string contentsDocument(const std::vector<ContentState>& contents);
+
+// {"address": TEXT or null, "why": TEXT, "rows": ["1101...", ...]}: 1 is dark.
+std::string phoneDocument(const PhoneState& phone);
 
 // {"commands": [{"name", "role", "argument", "help", "button", "choices"}]}: those that the page
 // may send; `button`: whether it needs no argument; `choices`: arguments that it may have, if these

@@ -13,6 +13,8 @@
 #include "daemon/page/documents.h"
 #include "daemon/page/host_names.h"
 #include "daemon/page/metrics_text.h"
+#include "daemon/page/phone_address.h"
+#include "daemon/page/qr_code.h"
 
 namespace merlin::page {
 namespace {
@@ -88,7 +90,10 @@ PageServer::PageServer(PageServerSettings settings, EventLog& events, ThreadWatc
       clock_(clock),
       wall_(settings_.instance, "wall", events),
       devices_(settings_.instance, "devices", events),
-      pictures_(settings_.instance, settings_.page.picture_hz, firstNumber(), watch, clock) {}
+      pictures_(settings_.instance, settings_.page.picture_hz, firstNumber(), watch, clock),
+      thumbnails_(settings_.instance, settings_.contents,
+                  {settings_.thumbnail_folder, settings_.instance + "-page-"}, firstNumber(), watch,
+                  clock) {}
 
 PageServer::~PageServer() { thread_.stop(); }
 
@@ -143,6 +148,11 @@ std::optional<Answer> PageServer::handle(const Request& request, std::uint64_t i
             waiting_[id] = {r, clock_.now() + kPicturePatience};
             return std::nullopt;
           },
+          [&](const ContentsRoute&) -> std::optional<Answer> {
+            return json(contentsDocument(thumbnails_.contents()));
+          },
+          [&](const ThumbnailRoute& r) -> std::optional<Answer> { return thumbnail(r.content); },
+          [&](const PhoneRoute& r) -> std::optional<Answer> { return phone(r.origin); },
           [&](const CommandRoute& r) -> std::optional<Answer> { return execute(r, id); }},
       asked);
   if (answer && answer->status >= 400) noteRefusal(request, *answer);
@@ -156,6 +166,20 @@ std::optional<Answer> PageServer::execute(const CommandRoute& route, std::uint64
           {id, std::string(route.command->name), route.argument, clock_.now() + kCommandPatience}))
     return std::nullopt;
   return errorAnswer(503, "too many commands wait; try again later");
+}
+
+Answer PageServer::thumbnail(std::uint64_t content) const {
+  const auto jpeg = thumbnails_.jpeg(content);
+  if (!jpeg) return errorAnswer(404, fmt::format("there is no picture of content {}", content));
+  return {200, "image/jpeg", jpeg, {}};
+}
+
+Answer PageServer::phone(const std::string& origin) const {
+  const auto address = phoneAddress(origin, {settings_.page.address, port_, networkAddresses()});
+  if (!address) return json(phoneDocument({"", address.error().what, {}}));
+  auto code = qrCode(*address + "#token=" + settings_.token);
+  if (!code) return errorAnswer(500, code.error().what);
+  return json(phoneDocument({*address, "", *std::move(code)}));
 }
 
 // Nothing if the client has to wait for a newer one.

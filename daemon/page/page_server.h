@@ -22,6 +22,7 @@
 #include "daemon/page/role_watch.h"
 #include "daemon/page/routes.h"
 #include "daemon/page/settings.h"
+#include "daemon/page/thumbnails.h"
 
 namespace merlin::page {
 
@@ -30,6 +31,8 @@ struct PageServerSettings {
   std::string instance;  // of the merlind whose wall it shows
   std::string version;   // of this program
   std::string token, token_file;
+  std::vector<PageContent> contents;  // of the configuration
+  std::string thumbnail_folder;       // where models' pictures are kept
 };
 
 // A client of the roles' shared memory and sockets. Owns its threads: one for all clients, one for
@@ -60,6 +63,8 @@ class PageServer final : public net::Server {
   void updateRoles(Timestamp now);
   std::optional<Answer> handle(const Request& request, std::uint64_t id);
   std::optional<Answer> execute(const CommandRoute& route, std::uint64_t id);
+  Answer thumbnail(std::uint64_t content) const;
+  Answer phone(const std::string& origin) const;
   std::optional<Answer> pictureFor(const PictureRoute& route);
   void answerPictures(Timestamp now);
   std::string status() const;
@@ -77,6 +82,7 @@ class PageServer final : public net::Server {
   FrameHistory frames_;
   CommandQueue wall_commands_, devices_commands_;
   PictureMaker pictures_;
+  Thumbnails thumbnails_;
   std::map<std::uint64_t, WaitingPicture> waiting_;
   Timestamp looked_{};  // when the roles were looked at last
   std::uint64_t refused_ = 0, told_refused_ = 0;

@@ -76,6 +76,12 @@ Route pictureRoute(const Request& request) {
   return picture;
 }
 
+Route thumbnailRoute(const Request& request) {
+  const auto content = numberOf(request, "content");
+  if (!content) return badNumber("content");
+  return ThumbnailRoute{*content};
+}
+
 const JsonNode* memberOf(const JsonNode& object, std::string_view key) {
   const auto found =
       std::ranges::find_if(object.members, [&](const JsonNode::Member& m) { return m.key == key; });
@@ -123,7 +129,11 @@ constexpr Path kPaths[] = {
     {"/api/events", Needs::kReading, sinceRoute<EventsRoute>},
     {"/api/frames", Needs::kReading, sinceRoute<FramesRoute>},
     {"/picture.jpg", Needs::kReading, pictureRoute},
+    {"/api/contents", Needs::kReading, [](const Request&) -> Route { return ContentsRoute{}; }},
+    {"/thumbnail.jpg", Needs::kReading, thumbnailRoute},
     {"/api/command", Needs::kCommand, commandRoute},
+    {"/api/phone", Needs::kCommand,
+     [](const Request& request) -> Route { return PhoneRoute{request.header("origin")}; }},
     // Whether a token is accepted.
     {"/api/token", Needs::kCommand,
      [](const Request&) -> Route {

@@ -34,13 +34,22 @@ struct PictureRoute {
   int width = 960;            // at most, one of kPictureWidths [px]
   std::uint64_t after = 0;    // number of the picture that the client has; 0: none
 };
+struct ContentsRoute {};
+struct ThumbnailRoute {
+  std::uint64_t content = 0;  // its place in the list of contents
+};
+// A code by which a phone opens the page.
+struct PhoneRoute {
+  std::string origin;  // of the page, as the browser sees it; empty: it does not say
+};
 struct CommandRoute {
   const CommandInfo* command;
   std::string argument;
 };
 // An Answer: the request is answered already, or refused.
 using Route = std::variant<Answer, FileRoute, StatusRoute, CommandListRoute, EventsRoute,
-                           FramesRoute, MetricsRoute, PictureRoute, CommandRoute>;
+                           FramesRoute, MetricsRoute, PictureRoute, ContentsRoute, ThumbnailRoute,
+                           PhoneRoute, CommandRoute>;
 
 inline constexpr int kPictureWidths[] = {320, 640, 960, 1280, 1920};
 

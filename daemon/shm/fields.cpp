@@ -264,6 +264,15 @@ void addContent(FieldTable& t) {
   MERLIN_FIELD(t, WallContent, refused, "");
 }
 
+void addIdle(FieldTable& t) {
+  t.slot("idle", offsetof(WallSegment, idle));
+  MERLIN_FIELD(t, WallIdle, updated_ns, "ns");
+  MERLIN_FIELD(t, WallIdle, playlist_in_s, "s");
+  MERLIN_FIELD(t, WallIdle, next_in_s, "s");
+  MERLIN_FIELD(t, WallIdle, dim_in_s, "s");
+  MERLIN_FIELD(t, WallIdle, testcard, "");
+}
+
 }  // namespace
 
 template <typename T>
@@ -327,6 +336,7 @@ std::vector<Field> wallFields() {
   addInteraction(t);
   addOutputs(t);
   addContent(t);
+  addIdle(t);
   t.bare("segment", 0);
   MERLIN_FIELD(t, WallSegment, framebuffer, "");
   return t.take();

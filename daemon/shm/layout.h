@@ -223,6 +223,17 @@ struct WallContent {
 };
 static_assert(sizeof(WallContent) == 416 && offsetof(WallContent, finished) == 152);
 
+// What the wall will do by itself while nobody touches it, and what hides the content. Written once
+// a period. A time is negative while the thing is not going to happen.
+struct WallIdle {
+  std::int64_t updated_ns;
+  float playlist_in_s;     // until the playlist begins by itself
+  float next_in_s;         // until it shows its next content
+  float dim_in_s;          // until the picture begins to become darker
+  std::uint32_t testcard;  // 1 while a test card covers the picture
+};
+static_assert(sizeof(WallIdle) == 24);
+
 struct WallSegment {
   Header header;
   alignas(64) SeqSlot<WallStats> stats;  // writer: the wall's thread
@@ -232,6 +243,7 @@ struct WallSegment {
   alignas(64) char framebuffer[64];
   alignas(64) SeqSlot<WallOutputs> outputs;  // writer: the wall's thread
   alignas(64) SeqSlot<WallContent> content;  // writer: the wall's thread
+  alignas(64) SeqSlot<WallIdle> idle;        // writer: the wall's thread
   alignas(64) Field fields[kMostFields];     // writer: the daemon, as it starts
 };
 

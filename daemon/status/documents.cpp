@@ -222,6 +222,12 @@ const char* playlistName(const shm::WallInteraction& interaction) {
   return interaction.playlist == shm::WallInteraction::kPlaylistWaiting ? "waiting" : "off";
 }
 
+// Null if it is not going to happen.
+Json secondsUntil(float in_s) {
+  if (in_s < 0) return nullptr;
+  return round3(in_s);
+}
+
 // The actions that have begun at least once; "held": names of those that are held.
 Json actionsJson(const shm::ActionState& state) {
   Json begun = Json::object(), held = Json::array();
@@ -256,6 +262,7 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                        const shm::DeviceSlots* remote, const RendererState* renderer) {
   const auto s = segment.stats.read().value_or(shm::WallStats{});
   const auto interaction = segment.interaction.read().value_or(shm::WallInteraction{});
+  const auto idle = segment.idle.read().value_or(shm::WallIdle{0, -1, -1, -1, 0});
   Json json = {{"role", "wall"},
                {"pid", segment.header.pid},
                {"time_utc", timeUtc(segment.header, now)},
@@ -278,6 +285,10 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                {"shown", shownName(interaction)},
                {"light", round3(interaction.light)},
                {"playlist", playlistName(interaction)},
+               {"playlist_in_s", secondsUntil(idle.playlist_in_s)},
+               {"next_in_s", secondsUntil(idle.next_in_s)},
+               {"dim_in_s", secondsUntil(idle.dim_in_s)},
+               {"testcard", idle.testcard != 0},
                {"work_ms", round3(s.work_ms)},
                {"work_median_ms", round3(s.work_median_ms)},
                {"utilisation", round3(s.utilisation)},

@@ -1,6 +1,8 @@
 // The projectors in a role's status.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,11 +14,20 @@ struct ProjectorStatus {
   std::string health{}, reason{};  // "ok", "unreachable"
   std::string address{}, identity{};
   std::vector<int> lamp_hours{};  // of each lamp
+  std::optional<double> within_s{};  // longest time until it is what it becomes, or is wanted to be
+};
+
+// When the schedule switches all projectors next.
+struct ProjectorSwitching {
+  std::int64_t local_minute = 0;  // minutes from 1970-01-01 00:00 on the local calendar
+  bool on = false;
 };
 
 // Returns `document`, a JSON object, with the member "projectors" added if there are any:
-// {"left": {"kind": "pjlink", "power": "on", "health": "ok", ...}}.
+// {"left": {"kind": "pjlink", "power": "on", "health": "ok", ...}}, and with "projector_schedule"
+// if a switching is due: {"at": "2026-11-24T18:00", "on": false}, local time.
 std::string addProjectors(const std::string& document,
-                          const std::vector<ProjectorStatus>& projectors);
+                          const std::vector<ProjectorStatus>& projectors,
+                          const std::optional<ProjectorSwitching>& next = {});
 
 }  // namespace merlin::status

@@ -49,6 +49,7 @@ class Attendance {
   bool isFrozen() const noexcept { return frozen_; }
   float light() const noexcept { return light_; }  // that the last update() wanted
   Playlist::State playlist() const noexcept { return playlist_.state(); }
+  Playlist::Due due() const noexcept { return playlist_.due(); }
 
   // Motions, such as pushes of the ball, are a new touch if there was none for this time before.
   // Whoever pushes a button of the ball pushes the ball as well.

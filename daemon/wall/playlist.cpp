@@ -11,6 +11,15 @@ Playlist::State Playlist::state() const noexcept {
   return enabled_ && settings_.after_s > 0 ? State::kWaiting : State::kOff;
 }
 
+Playlist::Due Playlist::due() const noexcept {
+  Due due;
+  const double idle_s = toSeconds(idle_);
+  if (state() == State::kWaiting) due.begins_s = std::max(0.0, settings_.after_s - idle_s);
+  if (running_) due.next_s = std::max(0.0, settings_.hold_s - toSeconds(shown_));
+  if (enabled_ && settings_.dim_after_s > idle_s) due.dims_s = settings_.dim_after_s - idle_s;
+  return due;
+}
+
 void Playlist::on() noexcept {
   enabled_ = true;
   starting_ = !running_;

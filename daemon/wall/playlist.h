@@ -19,6 +19,13 @@ class Playlist {
   enum class State : std::uint32_t { kOff = 0, kWaiting = 1, kRunning = 2 };
   State state() const noexcept;
 
+  // When the next thing will happen if nobody touches the wall, in seconds from the last update();
+  // negative: not at all.
+  struct Due {
+    double begins_s = -1, next_s = -1, dims_s = -1;
+  };
+  Due due() const noexcept;
+
   // on(): begins at once, with the next update(), if it does not run. off(): ends, and neither it
   // nor dimming begins by itself until on(). next(): the next update() wants the next content,
   // whether it runs or not.

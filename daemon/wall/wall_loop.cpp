@@ -338,6 +338,7 @@ void WallLoop::publish() {
   interaction.playlist = static_cast<std::uint32_t>(attendance.playlist());
   interaction.light = attendance.light();
   publisher_.interaction(interaction, view_, parts_.marker, now);
+  publisher_.idle(attendance.due(), parts_.shows_testcard(), now);
   {
     const std::lock_guard lock(step_mutex_);
     publisher_.content(turns_.content(), done_, now);

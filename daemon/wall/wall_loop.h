@@ -58,6 +58,8 @@ struct WallParts {
   std::function<void()> on_snapshot = [] {};  // called when a bound input requests a snapshot
   // Called when a bound input requests an alignment action.
   std::function<void(const AlignInput&)> on_align = [](const AlignInput&) {};
+  // Whether a test card covers the picture.
+  std::function<bool()> shows_testcard = [] { return false; };
   std::size_t first_content = 0;  // index of the content that is shown first
   std::size_t listed = 0;         // contents that come by turns; 0: all
   // Added to a content's index to get its number in shared memory.

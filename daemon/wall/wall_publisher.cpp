@@ -99,6 +99,12 @@ void WallPublisher::content(const ShownContent& shown, shm::WallContent done, Ti
   slots_.content->publish(done);
 }
 
+void WallPublisher::idle(const Playlist::Due& due, bool testcard, Timestamp now) {
+  if (!slots_.idle) return;
+  slots_.idle->publish({toNanoseconds(now), static_cast<float>(due.begins_s),
+                        static_cast<float>(due.next_s), static_cast<float>(due.dims_s), testcard});
+}
+
 void WallPublisher::outputs(const render::out::OutputSet& outputs, Timestamp now) {
   if (!slots_.outputs) return;
   shm::WallOutputs all{};

@@ -10,6 +10,7 @@
 #include "daemon/wall/frame_stats.h"
 #include "daemon/wall/frame_tracer.h"
 #include "daemon/wall/pace.h"
+#include "daemon/wall/playlist.h"
 #include "render/frame/pointer_marker.h"
 #include "render/governor/governor.h"
 #include "render/out/output_set.h"
@@ -24,6 +25,7 @@ struct WallSlots {
   shm::SeqSlot<shm::WallInteraction>* interaction = nullptr;
   shm::SeqSlot<shm::WallOutputs>* outputs = nullptr;
   shm::SeqSlot<shm::WallContent>* content = nullptr;
+  shm::SeqSlot<shm::WallIdle>* idle = nullptr;
 };
 
 // Thread-bound to the wall's thread: it is the only writer of these slots.
@@ -51,6 +53,8 @@ class WallPublisher {
   void outputs(const render::out::OutputSet& outputs, Timestamp now);
   // `done`: what became of the last request for a content; the rest of it is set.
   void content(const ShownContent& shown, shm::WallContent done, Timestamp now);
+  // `testcard`: one covers the picture.
+  void idle(const Playlist::Due& due, bool testcard, Timestamp now);
 
  private:
   WallSlots slots_;

@@ -227,8 +227,8 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
                     std::move(corrections_), signals_.get());
   std::optional<ViewerPlace> viewer = makeViewerPlace();
   render::out::VblankFrameClock frame_clock(clock_, [this] { return outputs_.vblank(); });
-  const WallSlots slots{segment_->stats, &segment_->trace, &segment_->interaction,
-                        &segment_->outputs, &segment_->content};
+  const WallSlots slots{segment_->stats,    &segment_->trace,   &segment_->interaction,
+                        &segment_->outputs, &segment_->content, &segment_->idle};
   WallParts parts{models.contents(), scene_,     governor_, feed, *delivery_, slots, clock_,
                   frame_clock,       attendance_};
   parts.marker = &marker;
@@ -264,6 +264,7 @@ void WallRole::addOwn(WallParts& parts) {
   parts.return_after_s = settings_.wall.scene.return_after_s;
   parts.on_snapshot = on_snapshot_;
   parts.on_align = [this](const AlignInput& input) { aligner_->ask(input); };
+  parts.shows_testcard = [this] { return cards_.isShown(); };
   parts.first_content = firstContent();
   parts.first_number = firstNumber();
   parts.playlist = placesOf(entries_, settings_.wall.playlist.contents);

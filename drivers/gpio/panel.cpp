@@ -102,6 +102,11 @@ Outputs Panel::outputs(Timestamp now) const {
   return o;
 }
 
+Duration Panel::phaseLeft(Timestamp now) const {
+  const bool changes = power_ == GpioSample::kWarming || power_ == GpioSample::kCooling;
+  return changes ? std::max<Duration>(phase_until_ - now, Duration::zero()) : Duration::zero();
+}
+
 GpioSample Panel::sample(Timestamp now) const {
   GpioSample s{};
   s.changed_ns = toNanoseconds(changed_);

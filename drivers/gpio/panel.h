@@ -32,6 +32,8 @@ class Panel {
   bool step(bool pressed, Timestamp now);
 
   Outputs outputs(Timestamp now) const;
+  // Time until the projectors have warmed up or cooled down; 0: they do neither.
+  Duration phaseLeft(Timestamp now) const;
   GpioSample sample(Timestamp now) const;
 
   // When the state will next change by itself; Timestamp::max(): never.

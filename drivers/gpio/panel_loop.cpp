@@ -102,6 +102,11 @@ Result<Ok> PanelLoop::execute(const std::string& command) {
   return panel_.execute(command, clock_.now());
 }
 
+Duration PanelLoop::phaseLeft() {
+  const std::lock_guard lock(mutex_);
+  return panel_.phaseLeft(clock_.now());
+}
+
 void PanelLoop::report(HealthState state, const std::string& reason) {
   const std::int64_t now = toNanoseconds(clock_.now());
   if (state != health_.state || health_.since_ns == 0) health_.since_ns = now;

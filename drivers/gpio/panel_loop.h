@@ -31,6 +31,7 @@ class PanelLoop {
   // Like Panel::execute(); thread-safe. The lines follow within 50 ms. Errors also: kIo (the chip
   // is not open).
   Result<Ok> execute(const std::string& command);
+  Duration phaseLeft();  // like Panel::phaseLeft(); thread-safe
 
  private:
   Error serve(const std::stop_token& stop, const std::function<void()>& alive);

@@ -233,6 +233,7 @@ ProjectorState Projector::state(Timestamp now) const {
   s.identity = identity_;
   s.power = power_;
   s.wanted = wanted_;
+  if (wanted_ && now < deadline_) s.within = deadline_ - now;
   s.lamp_hours = lamp_hours_;
   s.answers = asked_ && !trouble_;
   judge(s, now);

@@ -37,6 +37,8 @@ struct ProjectorState {
   std::string identity;  // as the projector calls itself; empty: unknown
   Power power = Power::kUnknown;
   std::optional<bool> wanted;  // the state that it has not reached yet
+  // Time within which it must have reached that; PJLink does not tell more. Nothing: unknown.
+  std::optional<Duration> within{};
   Health health = Health::kOpening;
   std::string reason;           // what is wrong; empty: nothing
   bool answers = false;         // whether the last connection did what it was for

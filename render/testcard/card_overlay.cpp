@@ -22,6 +22,7 @@ void CardOverlay::show(std::optional<Card> card, std::optional<MarkedCorner> mar
   const std::lock_guard lock(mutex_);
   old = std::move(retired_);
   skipped = std::exchange(next_, std::move(next));
+  wanted_ = next_ != nullptr;
   waiting_ = true;
 }
 

@@ -13,7 +13,7 @@
 
 namespace merlin::render::testcard {
 
-// show() is for any thread; the rest for the wall's.
+// show() and isShown() are for any thread; the rest for the wall's.
 class CardOverlay final : public frame::Overlay {
  public:
   // `width` x `height`: of the canvas [px].
@@ -22,6 +22,9 @@ class CardOverlay final : public frame::Overlay {
   // Shows a card from the next frame on, or none. Draws it here, and needs two pictures of the
   // canvas's size as long as it is shown.
   void show(std::optional<Card> card, std::optional<MarkedCorner> mark = std::nullopt);
+
+  // Whether a card is drawn, or will be with the next frame.
+  bool isShown() const noexcept { return wanted_; }
 
   bool hasChanged() const override { return waiting_; }
   // Costs a copy of the tiles, and erase() another; nothing while no card is shown. Never waits.
@@ -39,7 +42,7 @@ class CardOverlay final : public frame::Overlay {
   std::vector<CardTile> tiles_;
   std::mutex mutex_;  // of next_ and retired_
   std::unique_ptr<Pictures> next_, retired_;
-  std::atomic<bool> waiting_{false};
+  std::atomic<bool> waiting_{false}, wanted_{false};
   std::unique_ptr<Pictures> shown_;
 };
 

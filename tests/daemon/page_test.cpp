@@ -1,9 +1,13 @@
 // The operator's page without a network: who may ask for what, and what is answered.
+#include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -18,11 +22,18 @@
 #include "daemon/page/host_names.h"
 #include "daemon/page/metrics_text.h"
 #include "daemon/page/page_files.h"
+#include "daemon/page/phone_address.h"
+#include "daemon/page/qr_code.h"
 #include "daemon/page/routes.h"
 #include "daemon/page/scale_down.h"
 #include "daemon/page/settings.h"
+#include "daemon/page/showing.h"
+#include "daemon/page/thumbnail_files.h"
+#include "daemon/page/thumbnails.h"
 #include "daemon/page/token.h"
 #include "daemon/status/documents.h"
+#include "render/image/image_file.h"
+#include "render/image/jpeg_writer.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::page {
@@ -77,8 +88,8 @@ TEST(PageHosts, OnlyAddressesLocalhostAndConfiguredNamesAreTheOwnOnes) {
 }
 
 TEST(PageHosts, ReadingIsFreeOnlyUnderANameOfThisMachineAtALoopbackAddress) {
-  for (const char* path :
-       {"/api/status", "/api/events", "/api/frames", "/api/commands", "/picture.jpg", "/metrics"}) {
+  for (const char* path : {"/api/status", "/api/events", "/api/frames", "/api/commands",
+                           "/api/contents", "/picture.jpg", "/thumbnail.jpg", "/metrics"}) {
     EXPECT_EQ(statusOf(get(path)), 200U) << path;
     EXPECT_EQ(statusOf(get(path, "wall.lab.example")), 401U) << path << " through a proxy";
     EXPECT_EQ(statusOf(get(path, "192.168.1.7")), 401U) << path;
@@ -210,6 +221,37 @@ TEST(PageRoutes, APictureHasAViewAndOneOfAFewSizes) {
   EXPECT_EQ(statusOf(request), 400U);
   request.query = {{"view", "tile \x1b[2J"}};
   EXPECT_EQ(statusOf(request), 400U);
+}
+
+TEST(PageRoutes, AThumbnailIsNamedByItsPlaceAlone) {
+  Request request = get("/thumbnail.jpg");
+  request.query = {{"content", "7"}};
+  EXPECT_EQ(std::get<ThumbnailRoute>(route(request, settings())).content, 7U);
+  for (const char* content : {"-1", "x", "7x", "1e3", " 7", "../model.mrm", "/etc/passwd",
+                              "99999999999999999999999", "\xff"}) {
+    request.query["content"] = content;
+    EXPECT_EQ(statusOf(request), 400U) << content;
+  }
+  request.query["content"] = "7";
+  EXPECT_EQ(statusOf(request, settings(false)), 401U);
+  request.method = "POST";
+  EXPECT_EQ(statusOf(request), 405U);
+}
+
+TEST(PageRoutes, ThePhonesCodeNeedsTheToken) {
+  Request request = post("{}");
+  request.path = "/api/phone";
+  request.headers["origin"] = "http://127.0.0.1:7480";
+  EXPECT_EQ(std::get<PhoneRoute>(route(request, settings())).origin, "http://127.0.0.1:7480");
+  request.headers["origin"] = "http://evil.example";
+  EXPECT_EQ(statusOf(request), 403U);
+  request.headers.erase("origin");
+  request.headers["authorization"] = "Bearer " + std::string(32, 'A');
+  EXPECT_EQ(statusOf(request), 401U);
+  request.headers.erase("authorization");
+  EXPECT_EQ(statusOf(request), 401U) << "on loopback too";
+  request.method = "GET";
+  EXPECT_EQ(statusOf(request), 405U);
 }
 
 TEST(PageCommands, EveryCommandOfTheListThatHasAButtonCanBeSent) {
@@ -434,6 +476,136 @@ TEST(PagePictures, AreMadeSmallerByMeans) {
   EXPECT_EQ(scaleDown(pixels, 4, 2, 100).width, 4);
   const std::vector<std::uint8_t> tall(std::size_t{4} * 1000, 7);
   EXPECT_EQ(scaleDown(tall, 1, 1000, 10).height, 40);
+}
+
+TEST(PageContents, AreADocumentWithTheNumbersOfTheirPictures) {
+  EXPECT_EQ(contentsDocument({}), "{\"contents\":[]}\n");
+  EXPECT_EQ(contentsDocument({{"a \"skull\"", "model", 0, ""}, {"b", "slides", 17, "gone"}}),
+            R"({"contents":[{"name":"a \"skull\"","kind":"model","thumbnail":null,"fault":""},)"
+            R"({"name":"b","kind":"slides","thumbnail":17,"fault":"gone"}]})"
+            "\n");
+}
+
+TEST(PageContents, ThumbnailsFitIntoTheirBoxWhateverTheirProportions) {
+  const auto sizeOf = [](int width, int height) {
+    const std::size_t bytes =
+        std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    const auto jpeg =
+        thumbnailOf({width, height, std::vector<std::uint8_t>(bytes, std::uint8_t{99})});
+    EXPECT_TRUE(jpeg) << jpeg.error().what;
+    const auto image = render::image::decodeImage(
+        {reinterpret_cast<const std::uint8_t*>(jpeg->data()), jpeg->size()});
+    EXPECT_TRUE(image) << image.error().what;
+    return std::pair(image->width, image->height);
+  };
+  EXPECT_EQ(sizeOf(1920, 480), std::pair(640, 160));
+  EXPECT_EQ(sizeOf(800, 800), std::pair(240, 240));
+  EXPECT_EQ(sizeOf(100, 50), std::pair(100, 50)) << "it is not enlarged";
+  EXPECT_EQ(sizeOf(4000, 1), std::pair(640, 1));
+  EXPECT_LE(sizeOf(1, 4000).second, 240);
+  EXPECT_EQ(sizeOf(1, 1), std::pair(1, 1));
+}
+
+TEST(PageContents, AModelsPictureIsKeptOnceEachTimeThatItComesUp) {
+  constexpr auto kStep = std::chrono::milliseconds(250);
+  ShowingWatch watch;
+  Timestamp now{};
+  // Steps until the picture is kept, at most 40.
+  const auto stepsUntilKept = [&](const Showing& showing) {
+    int steps = 0;
+    do now += kStep;
+    while (!watch.update(showing, now) && ++steps < 40);
+    return steps;
+  };
+  EXPECT_EQ(stepsUntilKept({"a", false, true}), 3) << "0.7 s after full detail";
+  EXPECT_EQ(stepsUntilKept({"a", false, true}), 40) << "not again";
+  EXPECT_EQ(stepsUntilKept({"b", false, false}), 16) << "4 s, if it never stands still";
+  EXPECT_EQ(stepsUntilKept({"a", false, true}), 3) << "it came up again";
+  EXPECT_EQ(stepsUntilKept({"c", true, true}), 40) << "black, or under a test card";
+  EXPECT_EQ(stepsUntilKept({"c", false, true}), 3) << "it is uncovered";
+  EXPECT_EQ(stepsUntilKept({"", false, true}), 40) << "nothing is shown yet";
+}
+
+TEST(PageContents, AThumbnailsFileIsReadOnlyIfItIsOne) {
+  const test::TempDir dir;
+  const ThumbnailFiles files(dir.path(), "lab-page-"), others(dir.path(), "lab-page-2-");
+  const auto jpegOf = [](int width, int height) {
+    const std::size_t bytes =
+        std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    return *render::image::encodeJpeg(width, height, std::vector<std::uint8_t>(bytes), 80);
+  };
+  const std::string good = jpegOf(640, 160);
+  ASSERT_TRUE(files.write("skull", good));
+  ASSERT_TRUE(others.write("skull", good));
+  EXPECT_TRUE(files.read("skull") == good);
+  EXPECT_FALSE(files.read("bone").has_value());
+  for (const std::string& wrong :
+       {std::string(), std::string("\xFF\xD8"), good.substr(0, 100), "GIF89a" + good,
+        jpegOf(641, 10), jpegOf(10, 241), good + std::string(600'000, ' ')}) {
+    ASSERT_TRUE(files.write("skull", wrong));
+    EXPECT_FALSE(files.read("skull").has_value()) << wrong.size() << " bytes";
+  }
+  ASSERT_TRUE(files.write("bone", good));
+  test::writeText(dir / "lab-page.token", "kept");
+  files.removeOthers({"bone"});
+  EXPECT_TRUE(files.read("bone") == good);
+  EXPECT_TRUE(others.read("skull") == good) << "another instance's";
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 3);
+}
+
+TEST(PagePhone, GoesTheWayThatTheBrowserWent) {
+  const auto at = [](const std::string& origin, const PagePlace& place) {
+    const auto address = phoneAddress(origin, place);
+    return address ? *address : "none: " + address.error().what;
+  };
+  const PagePlace loopback{"127.0.0.1", 7480, {"10.0.0.5"}};
+  EXPECT_EQ(at("https://wall.lab.example", loopback), "https://wall.lab.example/") << "a proxy";
+  EXPECT_EQ(at("http://10.0.0.9:7480", loopback), "http://10.0.0.9:7480/");
+  for (const char* own : {"http://127.0.0.1:7480", "http://localhost:7480", "http://[::1]:7480", "",
+                          "null", "http://"}) {
+    EXPECT_NE(at(own, loopback).find("it listens at 127.0.0.1 alone"), std::string::npos) << own;
+    EXPECT_EQ(at(own, {"0.0.0.0", 80, {"10.0.0.5", "10.1.0.5"}}), "http://10.0.0.5:80/") << own;
+    EXPECT_EQ(at(own, {"10.1.0.5", 7480, {"10.0.0.5"}}), "http://10.1.0.5:7480/") << own;
+    EXPECT_NE(at(own, {"0.0.0.0", 80, {}}).find("is in no network"), std::string::npos) << own;
+  }
+}
+
+// The three corners by which a camera finds a code: a ring of 7 modules around a square of 3.
+bool hasFinders(const QrCode& code) {
+  for (const auto& [left, top] :
+       {std::pair(0, 0), std::pair(code.side - 7, 0), std::pair(0, code.side - 7)}) {
+    for (int y = 0; y < 7; ++y) {
+      for (int x = 0; x < 7; ++x) {
+        const int ring = std::max(std::abs(x - 3), std::abs(y - 3));
+        if (code.isDark(left + x, top + y) != (ring != 2)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+TEST(PagePhone, TheCodeIsTheSmallestThatHoldsTheAddress) {
+  const auto small = qrCode("MERLIN");
+  ASSERT_TRUE(small);
+  EXPECT_EQ(small->side, 21);
+  EXPECT_TRUE(hasFinders(*small));
+  const auto address = qrCode("http://192.168.100.200:7480/#token=" + kToken);
+  ASSERT_TRUE(address);
+  EXPECT_EQ(address->side, 37) << "version 5: 84 bytes at level M";
+  EXPECT_TRUE(hasFinders(*address));
+  EXPECT_EQ(qrCode("http://192.168.100.200:7480/#token=" + kToken)->dark, address->dark);
+  EXPECT_FALSE(qrCode(""));
+  EXPECT_TRUE(qrCode(std::string(2331, 'x')));
+  const auto large = qrCode(std::string(2332, 'x'));
+  ASSERT_FALSE(large);
+  EXPECT_NE(large.error().what.find("2332 bytes"), std::string::npos) << large.error().what;
+}
+
+TEST(PagePhone, TheDocumentHasTheCodeButNotTheTokenAsText) {
+  const std::string none = phoneDocument({"", "why \"not\"", {}});
+  EXPECT_EQ(none, "{\"address\":null,\"why\":\"why \\\"not\\\"\",\"rows\":[]}\n");
+  const std::string two = phoneDocument({"http://10.0.0.5/", "", {2, {1, 0, 0, 1}}});
+  EXPECT_EQ(two, "{\"address\":\"http://10.0.0.5/\",\"why\":\"\",\"rows\":[\"10\",\"01\"]}\n");
 }
 
 TEST(PageTokenFile, IsMadeOnceForUserAndGroupAndKept) {

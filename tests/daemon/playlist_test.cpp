@@ -1,6 +1,7 @@
 // A day of a wall, in seconds of a virtual clock: who touches it when, and what it shows then.
 #include "daemon/wall/playlist.h"
 
+#include <array>
 #include <map>
 
 #include <fmt/format.h>
@@ -169,6 +170,26 @@ TEST_F(Day, AMachineThatSleptShowsOneContentMore) {
   EXPECT_TRUE(playlist.update(seconds(1), false).begins);
   EXPECT_TRUE(playlist.update(seconds(100'000), false).next);
   EXPECT_FALSE(playlist.update(seconds(1), false).next);
+}
+
+TEST_F(Day, ThePlaylistSaysWhatComesNextAndWhen) {
+  const auto due = [](const Playlist& p) {
+    const Playlist::Due d = p.due();
+    return std::array{d.begins_s, d.next_s, d.dims_s};
+  };
+  Playlist playlist(settings());
+  EXPECT_EQ(due(playlist), (std::array{300.0, -1.0, 14'400.0}));
+  playlist.update(seconds(100), false);
+  EXPECT_EQ(due(playlist), (std::array{200.0, -1.0, 14'300.0}));
+  playlist.update(seconds(200), false);
+  EXPECT_EQ(due(playlist), (std::array{-1.0, 7200.0, 14'100.0})) << "it has begun";
+  playlist.update(seconds(200), false);
+  EXPECT_EQ(due(playlist), (std::array{-1.0, 7000.0, 13'900.0}));
+  playlist.update(seconds(1), true);
+  EXPECT_EQ(due(playlist), (std::array{300.0, -1.0, 14'400.0})) << "a touch";
+  playlist.off();
+  EXPECT_EQ(due(playlist), (std::array{-1.0, -1.0, -1.0}));
+  EXPECT_EQ(due(Playlist({})), (std::array{-1.0, -1.0, -1.0})) << "without settings";
 }
 
 std::string findings(const std::string& names) {

@@ -274,6 +274,11 @@ TEST(Projectors, TheStatusListsThem) {
             R"({"role":"devices","projectors":{"left":{"kind":"pjlink","power":"on","wanted":"",)"
             R"("health":"ok","reason":"","address":"","identity":"","lamp_hours":[1200,7]}}})");
   EXPECT_EQ(status::addProjectors(R"({"role":"devices"})", {}), R"({"role":"devices"})");
+  constexpr std::int64_t kMinute = 20605 * 24 * 60 + 18 * 60 + 5;  // 2026-06-01
+  EXPECT_EQ(status::addProjectors("{}", {}, status::ProjectorSwitching{kMinute, true}),
+            R"({"projector_schedule":{"at":"2026-06-01T18:05","on":true}})");
+  left.within_s = 42;
+  EXPECT_NE(status::addProjectors("{}", {left}).find(R"("within_s":42)"), std::string::npos);
 }
 
 }  // namespace

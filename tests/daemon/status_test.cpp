@@ -134,6 +134,14 @@ TEST_F(DocumentsTest, TheWallSaysWhatItShowsWhileNobodyTouchesIt) {
   EXPECT_EQ(s["shown"], "frozen");
   EXPECT_EQ(s["playlist"], "running");
   EXPECT_EQ(s["light"], 0.25);
+  EXPECT_TRUE(s["next_in_s"].is_null()) << "nothing is known";
+  EXPECT_EQ(s["testcard"], false);
+  wall_->idle.publish({0, -1, 41.5F, 0, 1});
+  const json idle = json::parse(wallStatus(*wall_, kNow));
+  EXPECT_TRUE(idle["playlist_in_s"].is_null());
+  EXPECT_EQ(idle["next_in_s"], 41.5);
+  EXPECT_EQ(idle["dim_in_s"], 0);
+  EXPECT_EQ(idle["testcard"], true);
   interaction.shown = shm::WallInteraction::kBlank;
   interaction.playlist = shm::WallInteraction::kPlaylistWaiting;
   wall_->interaction.publish(interaction);

@@ -156,8 +156,10 @@ TEST(Pjlink, AProjectorIsAskedBeforeItIsSwitched) {
   b.pass(3);
   EXPECT_EQ(b.state().power, Power::kWarming);
   EXPECT_EQ(b.state().wanted, true);
+  EXPECT_EQ(b.state().within, seconds(57)) << "of the 60 that it may take";
   b.pass(30);
   EXPECT_EQ(b.state().power, Power::kOn);
+  EXPECT_EQ(b.state().within, std::nullopt);
   EXPECT_EQ(b.state().wanted, std::nullopt);
   EXPECT_EQ(b.device.log, "1") << "once";
 }
@@ -385,6 +387,23 @@ TEST(Schedule, AClockThatIsSetBackByDaysCounts) {
   Schedule schedule({{kDaily, "09:00", "17:00"}});
   EXPECT_EQ(schedule.step(at(30, 10)), true);
   EXPECT_EQ(schedule.step(at(0, 8)), false);
+}
+
+TEST(Schedule, SaysWhenItSwitchesNext) {
+  const Schedule schedule({{{"mon", "tue"}, "09:00", "17:00"},
+                           {{"mon"}, "16:00", "18:00"},
+                           {{"sat"}, "20:00", "02:00"}});
+  const auto next = [&](LocalMinute now) {
+    const auto found = schedule.next(now);
+    return found ? std::pair(found->at, found->on) : std::pair(LocalMinute{0}, false);
+  };
+  EXPECT_EQ(next(at(0, 8, 59)), std::pair(at(0, 9), true));
+  EXPECT_EQ(next(at(0, 9)), std::pair(at(0, 18), false)) << "at 17:00 the other entry goes on";
+  EXPECT_EQ(next(at(1, 17)), std::pair(at(5, 20), true)) << "Saturday";
+  EXPECT_EQ(next(at(5, 23)), std::pair(at(6, 2), false)) << "Sunday";
+  EXPECT_EQ(next(at(6, 2)), std::pair(at(7, 9), true)) << "the next week";
+  EXPECT_FALSE(Schedule({}).next(at(0, 9)));
+  EXPECT_FALSE(Schedule({{kDaily, "09:00", "09:00"}}).next(at(0, 9))) << "on for ever";
 }
 
 TEST(PjlinkSettings, FaultsAreNamed) {

@@ -264,6 +264,7 @@ TEST(CardOverlay, CoversTheTilesUntilItIsTakenOff) {
   overlay.draw(canvas.pixels);
   EXPECT_EQ(canvas.pixels, before.pixels);
   EXPECT_FALSE(overlay.hasChanged());
+  EXPECT_FALSE(overlay.isShown());
   overlay.show(testcard::Card::kGrid);
   overlay.show(testcard::Card::kRamps);
   EXPECT_TRUE(overlay.hasChanged());
@@ -271,6 +272,7 @@ TEST(CardOverlay, CoversTheTilesUntilItIsTakenOff) {
     overlay.draw(canvas.pixels);
     EXPECT_EQ(canvas.pixels, card.pixels);
     EXPECT_FALSE(overlay.hasChanged());
+    EXPECT_TRUE(overlay.isShown());
     overlay.erase(canvas.pixels);
     EXPECT_EQ(canvas.pixels, before.pixels);
   }
@@ -280,6 +282,7 @@ TEST(CardOverlay, CoversTheTilesUntilItIsTakenOff) {
   EXPECT_EQ(canvas.pixels, before.pixels);
   overlay.erase(canvas.pixels);
   EXPECT_EQ(canvas.pixels, before.pixels);
+  EXPECT_FALSE(overlay.isShown());
 }
 
 }  // namespace

@@ -77,6 +77,8 @@ class Driver:
         return self.do("POST", "/element", {"using": "css selector", "value": selector})[ELEMENT]
 
     def click(self, selector):
+        """Clicks an element in the middle of the window, where nothing that sticks to its edges covers it."""
+        self.run("document.querySelector(arguments[0]).scrollIntoView({block: 'center'})", selector)
         self.do("POST", "/element/%s/click" % self.find(selector), {})
 
     def type(self, selector, text):

@@ -96,7 +96,74 @@ def commands(driver):
     driver.until("and the page says so", lambda: driver.run(
         "return document.getElementById('content-name').textContent").startswith(name))
     driver.click("#command-next_content")
+    driver.until("and the third", lambda: content() == 2)
+    driver.click("#command-next_content")
     driver.until("and the first one again", lambda: content() == 0)
+
+
+def contents(driver):
+    tile = "#contents [data-name=%s]"
+    seen = "return document.querySelector('%s .thumbnail img')?.naturalWidth || 0"
+    driver.until("each content has its picture", lambda: all(
+        driver.run(seen % (tile % name)) > 100 for name in ("model", "meadow")))
+    assert driver.run("return document.querySelectorAll('#contents button').length") == 3
+    pressed = "return document.querySelector('%s').ariaPressed" % (tile % "meadow")
+    driver.until("another one is shown", lambda: driver.run(pressed) == "false")
+    driver.click(tile % "meadow")
+    driver.until("a tap shows the content", lambda: status()["content"]["name"] == "meadow")
+    driver.until("and the page marks it", lambda: driver.run(pressed) == "true")
+    driver.run("document.querySelector('%s').focus()" % (tile % "model"))
+    driver.press("\ue007")
+    driver.until("the Enter key shows one as well", lambda: status()["content"]["name"] == "model")
+
+
+def idle(driver):
+    """Playlist, black, frozen."""
+    state = "return document.getElementById('playlist-state').textContent"
+
+    def pressed(selector):
+        return driver.run("return document.querySelector('%s').ariaPressed" % selector) == "true"
+    driver.until("the playlist is off", lambda: driver.run(state).startswith("Off"))
+    driver.click("[data-playlist=on]")
+    driver.until("the playlist runs", lambda: status()["playlist"] == "running")
+    driver.until("and the page says for how long", lambda: "Plays; the next in" in driver.run(state))
+    assert pressed("[data-playlist=on]") and not pressed("[data-playlist=off]")
+    before = content()
+    driver.click("[data-playlist=next]")
+    driver.until("its next content is shown", lambda: content() != before)
+    driver.click("[data-playlist=off]")
+    driver.until("the playlist is off again", lambda: status()["playlist"] == "off" and pressed("[data-playlist=off]"))
+    for button, word in (("#command-blank", "blank"), ("#command-freeze", "frozen")):
+        driver.click(button)
+        driver.until("the wall is " + word, lambda: status()["shown"] == word and pressed(button))
+        driver.click(button)
+        driver.until("the picture is shown again", lambda: status()["shown"] == "picture" and not pressed(button))
+    driver.click("#contents [data-name=model]")
+    driver.until("the model is shown", lambda: content() == 0)
+    assert driver.run("return document.getElementById('projectors-none').checkVisibility()"), "projectors from nowhere"
+
+
+def phone(driver):
+    """The code for a phone: on loopback the page says why there is none."""
+    driver.run("document.getElementById('phone').click()")
+    driver.until("the page says why a phone cannot reach it", lambda: "listens at 127.0.0.1 alone" in driver.run(
+        "return document.getElementById('phone-why').textContent"))
+    assert driver.run("return document.getElementById('phone-code').hasAttribute('hidden')"), "a useless code"
+    driver.click("#phone-close")
+    driver.until("the dialog is closed", lambda: not driver.run("return document.getElementById('phone-dialog').open"))
+
+
+def labels(driver):
+    """What a screen reader would say nothing about."""
+    nameless = driver.run("""return [...document.querySelectorAll('button, input, select, img, svg')]
+        .filter(e => e.checkVisibility() && !e.closest('[aria-hidden=true]') && !(e.ariaLabel || e.alt === '' || e.alt ||
+            e.textContent.trim() || (e.labels && e.labels.length)))
+        .map(e => e.outerHTML.slice(0, 80))""")
+    assert not nameless, "without a label: %s" % nameless
+    small = driver.run("""return [...document.querySelectorAll('main button')].filter(e => e.checkVisibility())
+        .map(e => [e.textContent.trim() || e.ariaLabel, e.getBoundingClientRect()])
+        .filter(([name, box]) => box.height < 40 || box.width < 40).map(([name]) => name)""")
+    assert not PHONE or not small, "too small for a thumb: %s" % small
 
 
 def moves(driver):
@@ -152,6 +219,10 @@ def main():
         unlock(driver)
         looks(driver)
         commands(driver)
+        contents(driver)
+        idle(driver)
+        phone(driver)
+        labels(driver)
         moves(driver)
         aligns(driver)
         driver.run("scrollTo(0, 0)")

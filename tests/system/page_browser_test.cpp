@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/page_process.h"
+#include "tests/support/pyramids.h"
 
 namespace merlin::test {
 namespace {
@@ -25,10 +26,12 @@ TEST_P(Browser, ShowsTheWallAndSendsWhatAPersonDoes) {
   const int port = freePagePort();
   const std::string model = makeModel(dir_, 5);
   MerlindOptions options{.script = "still"};
+  const std::string meadow = dir_ / "meadow.tif";
+  writeText(meadow, pyramidBytes({.width = 1600, .height = 400}));
   options.also = {
       {"page", {{"port", port}}},
       {"wall",
-       {{"contents", {{{"model", model}}}},
+       {{"contents", {{{"model", model}, {"name", "again"}}, {{"picture", meadow}}}},
         {"outputs",
          {{{"kind", "shared_memory"}}, {{"kind", "png"}, {"path", dir_ / "out.png"}}}}}}};
   Merlind wall(dir_, model, "browser", options);

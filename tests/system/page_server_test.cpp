@@ -1,5 +1,7 @@
 // `merlind --role page` beside a real merlind: what it shows and sends, and what hostile clients
 // reach.
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <regex>
 #include <sstream>
@@ -11,6 +13,7 @@
 
 #include "render/image/image_file.h"
 #include "tests/support/page_process.h"
+#include "tests/support/pyramids.h"
 
 namespace merlin::test {
 namespace {
@@ -126,6 +129,52 @@ TEST_F(PageTest, CommandsReachTheirRoleAndOnlyWithTheToken) {
   EXPECT_EQ(events().find(page_->token()), std::string::npos);
 }
 
+TEST_F(PageTest, AModelsThumbnailIsWhatTheWallShowedOfIt) {
+  start("still");
+  const Json before = page_->json("/api/contents")["contents"];
+  ASSERT_EQ(before.size(), 1U);
+  EXPECT_EQ(before[0]["name"], "model");
+  EXPECT_EQ(before[0]["kind"], "model");
+  ASSERT_TRUE(eventually(
+      [&] { return page_->json("/api/contents")["contents"][0]["thumbnail"].is_number(); }));
+  const HttpAnswer answer = page_->get("/thumbnail.jpg?content=0");
+  ASSERT_EQ(answer.status, 200) << answer.head;
+  const std::vector<std::uint8_t> bytes(answer.body.begin(), answer.body.end());
+  const auto image = render::image::decodeImage(bytes);
+  ASSERT_TRUE(image) << image.error().what;
+  EXPECT_EQ(image->width, 640);
+  EXPECT_EQ(image->height, 160) << "three tiles side by side";
+  const auto [darkest, brightest] = std::ranges::minmax(image->pixels);
+  EXPECT_GT(brightest - darkest, 50) << "the model is seen";
+  wall_->process().kill(SIGTERM);
+  page_->process().kill(SIGTERM);
+  startPage();
+  ASSERT_TRUE(eventually([&] { return page_->get("/thumbnail.jpg?content=0").status == 200; }));
+  EXPECT_EQ(page_->get("/thumbnail.jpg?content=0").body, answer.body)
+      << "it is kept over a restart of the page, without a wall";
+}
+
+TEST_F(PageTest, SaysWhatThePlaylistDoesAndWhatCoversThePicture) {
+  start("still");
+  const auto wall = [&] { return page_->json("/api/status")["roles"]["wall"]["status"]; };
+  ASSERT_TRUE(eventually([&] { return page_->runs("wall"); }));
+  EXPECT_EQ(page_->send("playlist", "on").status, 200);
+  EXPECT_TRUE(eventually([&] { return wall()["playlist"] == "running"; }));
+  EXPECT_GT(wall()["next_in_s"], 0);
+  EXPECT_EQ(page_->send("playlist", "off").status, 200);
+  EXPECT_TRUE(eventually([&] { return wall()["playlist"] == "off"; }));
+  EXPECT_TRUE(eventually([&] { return wall()["next_in_s"].is_null(); }));
+  EXPECT_EQ(page_->send("blank").status, 200);
+  EXPECT_TRUE(eventually([&] { return wall()["shown"] == "blank"; }));
+  EXPECT_EQ(page_->send("align", "list").status, 200) << "as an open page does every two seconds";
+  const std::int64_t asked_ns = wall_->wall().updated_ns;
+  EXPECT_TRUE(eventually([&] { return wall_->wall().updated_ns > asked_ns + 500'000'000; }));
+  EXPECT_EQ(wall_->status()["shown"], "blank") << "reading is no touch";
+  EXPECT_EQ(page_->send("testcard", "grid").status, 200);
+  EXPECT_TRUE(eventually([&] { return wall()["testcard"] == true; }));
+  EXPECT_EQ(page_->send("playlist", "sometimes").status, 400);
+}
+
 TEST_F(PageTest, OutlivesTheWallAndShowsThatItIsDown) {
   start("still");
   ASSERT_TRUE(eventually([&] { return page_->runs("wall"); }));
@@ -236,6 +285,77 @@ TEST_F(PageAlone, AtANetworksAddressReadingNeedsTheTokenToo) {
   }
 }
 
+TEST_F(PageAlone, ListsContentsAndReadsTheirPicturesFromTheirFiles) {
+  const std::string good = dir_ / "meadow.tif", bad = dir_ / "bad.tif", slides = dir_ / "talk";
+  writeText(good, pyramidBytes({.width = 800, .height = 200, .description = "MERLIN panorama"}));
+  writeText(bad, "II no pyramid");
+  std::filesystem::create_directory(slides);
+  writeText(slides + "/2.tif", pyramidBytes());
+  writeText(slides + "/1.tif", "cut");  // is left out
+  const std::string file = config("page.json", Json::object());
+  Json settings = Json::parse(readText(file));
+  settings["wall"]["contents"] = {{{"picture", good}},
+                                  {{"picture", bad}, {"name", "the bad one"}},
+                                  {{"slides", slides}},
+                                  {{"model", dir_ / "missing.mrm"}}};
+  writeText(file, settings.dump());
+  PageProcess page(dir_, file, instance_, port_);
+  ASSERT_TRUE(page.ready()) << page.process().output();
+  const auto contents = [&] { return page.json("/api/contents")["contents"]; };
+  ASSERT_TRUE(eventually([&] { return contents()[2]["thumbnail"].is_number(); })) << contents();
+  const Json all = contents();
+  ASSERT_EQ(all.size(), 4U);
+  EXPECT_EQ(all[0]["name"], "meadow");
+  EXPECT_EQ(all[0]["kind"], "panorama") << "as the file says";
+  EXPECT_TRUE(all[0]["thumbnail"].is_number());
+  EXPECT_EQ(all[1]["name"], "the bad one");
+  EXPECT_TRUE(all[1]["thumbnail"].is_null());
+  EXPECT_NE(all[1]["fault"].get<std::string>().find("bad.tif"), std::string::npos) << all[1];
+  EXPECT_EQ(all[2]["kind"], "slides");
+  EXPECT_EQ(all[3]["kind"], "model");
+  EXPECT_TRUE(all[3]["thumbnail"].is_null()) << "no wall has shown it";
+  const auto pictureOf = [&](int content) {
+    const HttpAnswer answer = page.get(fmt::format("/thumbnail.jpg?content={}", content));
+    EXPECT_EQ(answer.status, 200) << content;
+    const std::vector<std::uint8_t> bytes(answer.body.begin(), answer.body.end());
+    const auto image = render::image::decodeImage(bytes);
+    EXPECT_TRUE(image) << image.error().what;
+    return image ? std::pair(image->width, image->height) : std::pair(0, 0);
+  };
+  EXPECT_EQ(pictureOf(0), std::pair(640, 160));
+  EXPECT_EQ(pictureOf(2), std::pair(480, 240));
+  for (const char* none : {"1", "3", "4", "18446744073709551615"})
+    EXPECT_EQ(page.get(std::string("/thumbnail.jpg?content=") + none).status, 404) << none;
+  for (const char* wrong : {"-1", "meadow", "..%2fbad.tif", "18446744073709551616"})
+    EXPECT_EQ(page.get(std::string("/thumbnail.jpg?content=") + wrong).status, 400) << wrong;
+}
+
+TEST_F(PageAlone, ThePhonesCodeIsForWhoHasTheTokenAndWhereAPhoneCanGo) {
+  const auto ask = [&](const std::string& token) {
+    return askPage(port_, postRequest("/api/phone", token, "{}"));
+  };
+  {
+    PageProcess page(dir_, config("page.json", Json::object()), instance_, port_);
+    ASSERT_TRUE(page.ready()) << page.process().output();
+    EXPECT_EQ(ask(std::string(32, 'A')).status, 401);
+    const Json here = Json::parse(ask(page.token()).body);
+    EXPECT_TRUE(here["address"].is_null());
+    EXPECT_TRUE(here["rows"].empty());
+    EXPECT_NE(here["why"].get<std::string>().find("listens at 127.0.0.1 alone"), std::string::npos);
+    EXPECT_EQ(page.process().kill(SIGTERM), 0) << page.process().output();
+  }
+  PageProcess page(dir_, config("page.json", {{"address", "0.0.0.0"}}), instance_, port_);
+  ASSERT_TRUE(page.ready()) << page.process().output();
+  const HttpAnswer answer = ask(page.token());
+  EXPECT_EQ(answer.body.find(page.token()), std::string::npos) << "in the code alone";
+  const Json there = Json::parse(answer.body);
+  if (there["address"].is_null()) GTEST_SKIP() << there["why"];
+  EXPECT_TRUE(there["address"].get<std::string>().ends_with(fmt::format(":{}/", port_)));
+  EXPECT_GE(there["rows"].size(), 33U);
+  for (const Json& row : there["rows"])
+    EXPECT_EQ(row.get<std::string>().size(), there["rows"].size());
+}
+
 std::size_t residentKb(pid_t pid) {
   const std::string status = readText(fmt::format("/proc/{}/status", pid));
   const std::size_t at = status.find("VmRSS:");
@@ -282,6 +402,12 @@ TEST_F(PageTest, HostileClientsDisturbNobodyElse) {
     many += "GET /picture.jpg?width=1920 HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n";
   for (int i = 0; i < 100; ++i) join(many);
   good("readers that stall");
+  std::string thumbnails;
+  for (int i = 0; i < 300; ++i)
+    thumbnails +=
+        fmt::format("GET /thumbnail.jpg?content={} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n", i);
+  for (int i = 0; i < 100; ++i) join(thumbnails);
+  good("a flood of thumbnails");
   for (int i = 0; i < 200; ++i) join(i % 2 == 0 ? "" : "GET / HT");
   good("200 half requests");
   for (const std::string& bytes :

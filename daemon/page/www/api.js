@@ -50,6 +50,9 @@ export async function getPicture(view, width, after) {
   return {blob: await response.blob(), number: response.headers.get("X-Picture-Number")};
 }
 
+// The small picture of the content at this place of /api/contents.
+export const getThumbnail = async place => (await request("/thumbnail.jpg?content=" + place)).blob();
+
 const post = (path, value) => request(path, {
   method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify(value)});
 
@@ -58,6 +61,9 @@ export async function command(name, argument = "") {
   const wanted = argument ? {command: name, argument} : {command: name};
   return (await (await post("/api/command", wanted)).json()).result;
 }
+
+// {address, why, rows}: a code by which a phone opens the page, or why there is none.
+export const phoneCode = async () => (await post("/api/phone", {})).json();
 
 // Whether the server accepts the token.
 export async function tokenIsGood() {

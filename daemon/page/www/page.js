@@ -3,6 +3,9 @@
 import {Alignment} from "./align.js";
 import {command, getJson, getPicture, setToken, takeTokenFromAddress, token, tokenIsGood} from "./api.js";
 import {FrameChart, drawHistogram} from "./chart.js";
+import {Contents} from "./contents.js";
+import {showIdle, showProjectors} from "./idle.js";
+import {makePhone} from "./phone.js";
 
 const byId = id => document.getElementById(id);
 const wait = ms => new Promise(done => setTimeout(done, ms));
@@ -129,25 +132,40 @@ function commandButton(info) {
   button.textContent = readable(info.name);
   button.disabled = !state.open;
   button.onclick = async () => {
-    button.classList.add("busy");
-    if (await run(info.name) !== undefined) toast(readable(info.name));
-    button.classList.remove("busy");
-    readStatus();
+    await press(button, info.name, "", readable(info.name));
     if (info.name.startsWith("align_") || info.name === "next_testcard") alignment.refresh();
   };
   return button;
 }
 
-// A button for each command of the daemon's one list that needs no argument.
+// Sends a command for a button; `done` is said when it was executed.
+async function press(button, name, argument, done) {
+  button.classList.add("busy");
+  if (await run(name, argument) !== undefined && done) toast(done);
+  button.classList.remove("busy");
+  readStatus();
+}
+
+// Buttons of commands that have a place of their own on the page.
+const kPlaced = ["blank", "freeze", "projector_on", "projector_off"];
+function makePlacedButtons() {
+  for (const name of kPlaced) {
+    const button = byId("command-" + name);
+    button.onclick = () => press(button, name, "", name.startsWith("projector") ? readable(name) : "");
+  }
+  for (const button of document.querySelectorAll("[data-playlist]"))
+    button.onclick = () => press(button, "playlist", button.dataset.playlist, "Playlist: " + button.dataset.playlist);
+}
+
+// A button for each further command of the daemon's one list that needs no argument.
 function makeButtons(commands) {
   const place = info => info.role !== "wall" ? "panel" :
       info.name.startsWith("align_") || info.name === "next_testcard" ? "align" : "wall";
   for (const id of ["wall", "panel", "align"])
     byId("buttons-" + id).replaceChildren(
-        ...commands.filter(info => info.button && place(info) === id).map(commandButton));
+        ...commands.filter(info => info.button && !kPlaced.includes(info.name) && place(info) === id).map(commandButton));
   const card = commands.find(info => info.name === "testcard");
   if (card) alignment.setCards(card.choices || []);
-  state.can_show = commands.some(info => info.name === "show");
 }
 
 // ---- state ------------------------------------------------------------------------------------
@@ -234,26 +252,11 @@ function shownContent(wall) {
   return typeof wall.content === "object" ? wall.content : {index: wall.content, name: "content " + (wall.content + 1)};
 }
 
-// Names of all contents if the wall says them; else a name is typed, or the next one is asked for.
 function showContents(wall) {
-  const now = shownContent(wall), box = byId("contents");
+  const now = shownContent(wall);
   byId("content-name").textContent = [now.name, now.slide, now.kind].filter(Boolean).join(" · ") +
       (now.refused ? " · refused: " + now.refused : "");
-  const names = state.can_show ? (wall.contents || []).map(c => typeof c === "string" ? c : c.name) : [];
-  byId("show-form").hidden = !state.can_show || names.length > 0;
-  const text = JSON.stringify([names, now.name, state.open]);
-  if (box.dataset.text === text) return;
-  box.dataset.text = text;
-  box.replaceChildren(...names.map(name => {
-    const button = document.createElement("button");
-    button.type = "button";
-    button.className = "command";
-    button.textContent = name;
-    button.disabled = !state.open;
-    button.setAttribute("aria-pressed", String(name === now.name));
-    button.onclick = () => showContent(name);
-    return button;
-  }));
+  contents.mark(now.name);
 }
 
 async function showContent(name) {
@@ -276,6 +279,7 @@ function showStatus() {
   const wall = wallStatus();
   showBanners();
   showDevices();
+  showProjectors(devicesStatus(), item);
   showOutputs(wall);
   byId("instance").textContent = state.status.page.instance;
   byId("head-rate").textContent = wall ? number(wall.rate_held, 0) : "–";
@@ -283,6 +287,7 @@ function showStatus() {
   if (byId("everything").open) byId("raw").textContent = JSON.stringify(state.status, null, 2);
   if (!wall) return;
   showDetail(wall);
+  showIdle(wall);
   showContents(wall);
   showFrames(wall);
 }
@@ -452,12 +457,18 @@ async function repeat(read, period) {
 }
 
 const alignment = new Alignment(run);
+const contents = new Contents(byId("contents"), showContent);
 const fullCost = () => wallStatus() && wallStatus().detail ? wallStatus().detail.full_cost : 1;
 
 async function begin() {
   takeTokenFromAddress();
   makeTokenDialog();
   makePicture();
+  makePlacedButtons();
+  makePhone(error => {
+    if (error.status === 401) setOpen(false);
+    toast(error.message, true);
+  });
   byId("show-form").onsubmit = event => {
     event.preventDefault();
     if (byId("show").value.trim()) showContent(byId("show").value.trim());
@@ -477,6 +488,10 @@ async function begin() {
   }, 1000);
   repeat(readFrames, 500);
   repeat(readEvents, 1000);
+  repeat(async () => {
+    await contents.refresh(state.open);
+    if (wallStatus()) contents.mark(shownContent(wallStatus()).name);
+  }, 3000);
   repeat(() => state.open ? alignment.refresh() : null, 2000);
   showPictures();
   addEventListener("resize", () => { chart.draw(); alignment.draw(); });

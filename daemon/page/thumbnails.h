@@ -1,0 +1,99 @@
+// Thumbnails: the wall's contents, with a small picture of each, made on a thread of its own.
+//
+// Those of pictures, panoramas and slides are read from their files. That of a model is what the
+// wall showed of it last, taken from its shared memory: a model's file may be larger than this
+// machine's memory, and drawing it would cost the wall time.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/result.h"
+#include "daemon/base/watched_thread.h"
+#include "daemon/page/documents.h"
+#include "daemon/page/showing.h"
+#include "daemon/page/thumbnail_files.h"
+#include "daemon/rfb/shown_picture.h"
+#include "daemon/shm/segment.h"
+#include "render/image/image.h"
+
+namespace merlin::page {
+
+// A picture of a content, read from its file.
+struct ReadPicture {
+  render::image::Image image;
+  bool panorama = false;
+};
+
+// A content of the configuration.
+struct PageContent {
+  std::string name;
+  std::string kind;  // "model", "picture", "panorama" or "slides"
+  std::string path;  // of its file, or of its folder
+  // Reads its picture, of a few million pixels at most; called on the thumbnails' thread. Empty:
+  // only the wall can show it.
+  std::function<Result<ReadPicture>()> read;
+};
+
+// Thread-safe. Keeps about 20 KB for each content.
+class Thumbnails {
+ public:
+  // Of `contents` only the first kMost are kept; `files` has models' pictures of earlier runs.
+  // `first`: the first picture's number, above 0. `watch` and `clock` must outlive this.
+  Thumbnails(const std::string& instance, std::vector<PageContent> contents, ThumbnailFiles files,
+             std::uint64_t first, ThreadWatch& watch, Clock& clock);
+  ~Thumbnails();
+  Thumbnails(const Thumbnails&) = delete;
+  Thumbnails& operator=(const Thumbnails&) = delete;
+
+  // The contents in their order. While somebody asks, their files are read again once a minute.
+  std::vector<ContentState> contents();
+  // The JPEG picture of the content at `place`; null if there is none.
+  std::shared_ptr<const std::string> jpeg(std::uint64_t place) const;
+
+  static constexpr std::size_t kMost = 256;
+  static constexpr int kMostWidth = 640, kMostHeight = 240;  // [px]
+
+ private:
+  struct Entry {
+    ContentState state;
+    std::shared_ptr<const std::string> jpeg;
+    std::optional<Timestamp> read_at;  // of the thread alone
+  };
+  void loop(const std::stop_token& stop, Progress& progress);
+  void readOne(Timestamp now, Progress& progress);
+  void followWall(Timestamp now);
+  std::optional<Showing> showing(Timestamp now);
+  void readFiles(Progress& progress);
+  bool keep(std::size_t place, std::string jpeg);
+  void keepModel(std::size_t place, const render::image::Image& image);
+  void note(std::size_t place, const std::string& fault);
+
+  const std::vector<PageContent> contents_;
+  const ThumbnailFiles files_;
+  Clock& clock_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any wake_;  // with mutex_
+  std::vector<Entry> entries_;        // guarded by mutex_, except read_at
+  std::optional<Timestamp> asked_;    // guarded by mutex_, as is next_
+  std::uint64_t next_;
+  // Of the thread alone.
+  shm::SegmentFollower<shm::SegmentReader<shm::WallSegment>> wall_;
+  rfb::ShownPicture picture_;
+  ShowingWatch watch_;
+  WatchedThread thread_;
+};
+
+// The picture made small enough for a thumbnail, as JPEG. Errors: encodeJpeg()'s. REQUIRES: it has
+// pixels.
+Result<std::string> thumbnailOf(const render::image::Image& image);
+
+}  // namespace merlin::page
