@@ -5,6 +5,8 @@
 #include <cassert>
 #include <utility>
 
+#include "daemon/base/huge_vector.h"
+
 namespace merlin::render::range {
 namespace {
 
@@ -29,6 +31,13 @@ float medianOfNine(std::array<float, 9> v) {
   float a = low, b = middle;
   order(a, b);
   return std::max(a, std::min(b, high));
+}
+
+std::vector<float> copyOf(const std::vector<float>& ranges) {
+  std::vector<float> copy;
+  resizeHuge(copy, ranges.size());
+  std::copy(ranges.begin(), ranges.end(), copy.begin());
+  return copy;
 }
 
 // Pixels around one, with the columns of a full turn joined.
@@ -104,7 +113,7 @@ int agreeing(const Neighbourhood& around, std::ptrdiff_t row, std::ptrdiff_t col
 
 void medianFilter(RangeImage& image, std::size_t window, const Work& work) {
   assert(window % 2 == 1 && window >= 3 && window <= 15);
-  const std::vector<float> before = image.range;
+  const std::vector<float> before = copyOf(image.range);
   const Neighbourhood around(image, before);
   const auto reach = static_cast<std::ptrdiff_t>(window / 2);
   forRows(work, image.height, [&](std::size_t r) {
@@ -122,7 +131,7 @@ void medianFilter(RangeImage& image, std::size_t window, const Work& work) {
 }
 
 std::size_t removeSpikes(RangeImage& image, const Threshold& limit, const Work& work) {
-  const std::vector<float> before = image.range;
+  const std::vector<float> before = copyOf(image.range);
   const Neighbourhood around(image, before);
   std::vector<std::size_t> removed(image.height, 0);
   forRows(work, image.height, [&](std::size_t r) {

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/huge_vector.h"
+
 namespace merlin::render::range {
 namespace {
 
@@ -173,7 +175,8 @@ std::string faultOf(const RangeImage& image) {
 }
 
 std::vector<float> pointsOf(const RangeImage& image, const Work& work) {
-  std::vector<float> points(3 * image.pixels());
+  std::vector<float> points;
+  resizeHuge(points, 3 * image.pixels());
   const Geometry& g = image.geometry;
   const RayTable rays(image);
   forRows(work, image.height, [&](std::size_t row) {

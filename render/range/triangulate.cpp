@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "daemon/base/huge_vector.h"
 #include "render/range/cells.h"
 #include "render/range/geometry.h"
 
@@ -87,7 +88,7 @@ Cell Triangulation::cellOf(const std::array<std::size_t, 4>& corners) const {
 }
 
 void Triangulation::findCells(const Threshold& max_edge, const Work& work) {
-  squared_limits_.resize(image_.pixels());
+  resizeHuge(squared_limits_, image_.pixels());
   forRows({work.threads}, image_.height, [&](std::size_t row) {
     for (std::size_t p = row * image_.width; p < (row + 1) * image_.width; ++p) {
       const float limit = max_edge.at(image_.range[p]);
@@ -113,8 +114,8 @@ std::uint8_t Triangulation::sidesOf(std::size_t row, std::size_t column) const {
 
 // Numbers the vertices by their pixels, and the triangles by their cells.
 void Triangulation::countVertices(const Work& work) {
-  sides_.resize(image_.pixels());
-  first_.resize(image_.pixels());
+  resizeHuge(sides_, image_.pixels());
+  resizeHuge(first_, image_.pixels());
   struct Row {
     std::size_t vertices = 0, triangles = 0, returns = 0, unused = 0, split = 0;
   };
@@ -148,10 +149,10 @@ void Triangulation::countVertices(const Work& work) {
     result_.unused += row.unused;
     result_.split += row.split;
   }
-  result_.pixels.resize(vertices);
-  result_.on_boundary.resize(vertices);
-  result_.mesh.positions.resize(3 * vertices);
-  result_.mesh.triangles.resize(3 * triangles);
+  resizeHuge(result_.pixels, vertices);
+  resizeHuge(result_.on_boundary, vertices);
+  resizeHuge(result_.mesh.positions, 3 * vertices);
+  resizeHuge(result_.mesh.triangles, 3 * triangles);
 }
 
 void Triangulation::fillVertices(const Work& work) {
@@ -173,7 +174,7 @@ void Triangulation::fillFeatures(const Work& work) {
   const std::size_t blocks = (vertices + kBlock - 1) / kBlock;
   for (const Plane& plane : image_.planes) {
     mesh::Feature feature{plane.name, plane.dimension, {}};
-    feature.values.resize(vertices * plane.dimension);
+    resizeHuge(feature.values, vertices * plane.dimension);
     std::vector<std::size_t> wrong(blocks, 0);
     forRows(work, blocks, [&](std::size_t block) {
       for (std::size_t v = block * kBlock; v < std::min(vertices, (block + 1) * kBlock); ++v) {
@@ -213,7 +214,8 @@ void Triangulation::fillTriangles(const Work& work) {
 // vertex gets its normals in one order on any number of threads.
 void Triangulation::fillNormals(const Work& work) {
   mesh::Mesh& mesh = result_.mesh;
-  std::vector<float> normals(mesh.positions.size(), 0.0F);
+  std::vector<float> normals;
+  resizeHuge(normals, mesh.positions.size());
   const auto addRow = [&](std::size_t row) {
     for (std::size_t t = triangle_start_[row]; t < triangle_start_[row + 1]; ++t) {
       const std::uint32_t* v = &mesh.triangles[3 * t];

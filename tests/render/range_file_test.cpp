@@ -399,6 +399,7 @@ TEST_F(RangeFile, FeaturesHaveTheImagesSizeAndTheirScale) {
   EXPECT_EQ(readPlane("colour", dir_ / "t.pgm", image)->dimension, 3u) << "grey";
   writeText(dir_ / "s.pgm", "P5\n3 2\n255\nabcdef");
   const auto other = readPlane("x", dir_ / "s.pgm", image);
+  ASSERT_FALSE(other);
   EXPECT_EQ(other.error().what, dir_ / "s.pgm" + ": has 3 x 2 pixels; the range image has 2 x 2");
 }
 

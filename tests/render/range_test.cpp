@@ -146,9 +146,7 @@ TEST(MedianFilter, PixelsWithoutReturnStaySoAndAreNotCounted) {
 
 TEST(MedianFilter, WiderWindowsAndFullTurnsWrapAround) {
   RangeImage image = ring(8, 3);
-  image.range[8 + 0] = 7;
-  image.range[8 + 7] = 7;
-  image.range[8 + 6] = 7;
+  for (const std::size_t p : {0U, 1U, 8U, 9U, 16U, 17U}) image.range[p] = 7;
   medianFilter(image, 5, {});
   for (const float r : image.range) EXPECT_EQ(r, 1);
 }
@@ -286,6 +284,7 @@ TEST(Triangulation, SurfacesThatTouchInAPointGetAVertexEach) {
   EXPECT_EQ(m.mesh.vertexCount(), 6u);
   EXPECT_EQ(m.split, 1u);
   EXPECT_EQ(m.pixels, (std::vector<std::uint32_t>{0, 1, 4, 4, 7, 8}));
+  EXPECT_EQ(m.mesh.triangles, (std::vector<std::uint32_t>{0, 3, 1, 2, 4, 5}));
 }
 
 TEST(Triangulation, NormalsAreThoseOfEquation41) {

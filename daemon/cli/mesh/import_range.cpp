@@ -156,12 +156,20 @@ Error nothingLeft(const std::string& path, const std::string& why) {
 
 }  // namespace
 
+Argument RangeImport::keep(const char* name, Argument argument) {
+  names_.emplace_back(name);
+  arguments_.push_back(argument);
+  return argument;
+}
+
 void RangeImport::addTo(Command command) {
-  const auto keep = [&](const char* name, Argument argument) {
-    names_.emplace_back(name);
-    arguments_.push_back(argument);
-    return argument;
-  };
+  addGeometry(command);
+  addRaw(command);
+  addFilters(command);
+  addFeatures(command);
+}
+
+void RangeImport::addGeometry(Command command) {
   keep("--geometry",
        command.option("--geometry", geometry_,
                       "How the pixels of a range image become rays: orthogonal (two mirrors), "
@@ -186,6 +194,9 @@ void RangeImport::addTo(Command command) {
                                      "Stored value of pixels without a return; by default 0 for "
                                      "range images"))
       .typeName("VALUE");
+}
+
+void RangeImport::addRaw(Command command) {
   keep("--raw", command.option("--raw", raw_,
                                "The input is raw binary: its size, its planes in their order and "
                                "their types (" +
@@ -197,13 +208,9 @@ void RangeImport::addTo(Command command) {
   keep("--raw-interleaved",
        command.flag("--raw-interleaved", raw_interleaved_,
                     "Raw binary: the planes' values follow one another pixel by pixel"));
-  keep(
-      "--feature",
-      command.option("--feature", features,
-                     "A registered image (PGM, PPM, PNG, JPEG) of the same size, which becomes the "
-                     "feature NAME of the vertices; may be repeated"))
-      .typeName("NAME=FILE")
-      .repeatable();
+}
+
+void RangeImport::addFilters(Command command) {
   keep("--max-edge",
        command.option(
            "--max-edge", max_edge,
@@ -225,6 +232,16 @@ void RangeImport::addTo(Command command) {
   keep("--between", command.option("--between", between, "Remove returns outside these ranges"))
       .typeName("NEAR FAR")
       .expected(2);
+}
+
+void RangeImport::addFeatures(Command command) {
+  keep(
+      "--feature",
+      command.option("--feature", features,
+                     "A registered image (PGM, PPM, PNG, JPEG) of the same size, which becomes the "
+                     "feature NAME of the vertices; may be repeated"))
+      .typeName("NAME=FILE")
+      .repeatable();
   keep("--colour-by",
        command.option("--colour-by", colour_by,
                       "Make colours of a feature: high red, low blue; or of the height of an "

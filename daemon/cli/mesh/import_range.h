@@ -35,6 +35,12 @@ class RangeImport {
   bool border = false;
 
  private:
+  Argument keep(const char* name, Argument argument);  // for anyGiven()
+  void addGeometry(Command command);
+  void addRaw(Command command);
+  void addFilters(Command command);
+  void addFeatures(Command command);
+
   std::string geometry_, raw_;
   std::vector<std::string> angles_;
   std::vector<double> cell_;

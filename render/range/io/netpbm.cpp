@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/bytes.h"
+#include "daemon/base/huge_vector.h"
 #include "daemon/base/printable_text.h"
 #include "render/range/colours.h"
 #include "render/range/io/words.h"
@@ -77,7 +78,7 @@ Result<Ok> readBinary(std::string_view bytes, StoredImage& image) {
   const std::size_t n = image.width * image.height * image.channels;
   const std::size_t size = image.largest > 255 ? 2 : 1;
   if (bytes.size() < n * size) return tooShort(image, n * size, bytes.size());
-  image.values.resize(n);
+  resizeHuge(image.values, n);
   const auto* p = reinterpret_cast<const std::uint8_t*>(bytes.data());
   if (size == 1)
     std::copy_n(p, n, image.values.begin());

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
+#include "daemon/base/huge_vector.h"
 #include "render/range/geometry.h"
 #include "render/range/io/angle_table.h"
 #include "render/range/io/elevation.h"
@@ -123,7 +124,7 @@ void setRanges(const StoredImage& stored, RangeImage& image) {
   const double step = scaled ? (*header.maximum - *header.minimum) / stored.largest * scale : scale;
   const auto none = static_cast<float>(
       header.no_return.value_or(elevation ? std::numeric_limits<double>::quiet_NaN() : 0));
-  image.range.resize(stored.values.size());
+  resizeHuge(image.range, stored.values.size());
   for (std::size_t p = 0; p < stored.values.size(); ++p) {
     const float value = stored.values[p];
     const auto range = static_cast<float>(first + double{value} * step);

@@ -1,10 +1,12 @@
 // PLY, binary little-endian: colours as bytes, labels as integers, all else as floats.
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "daemon/base/bytes.h"
 #include "render/mesh/io/ply/ply_features.h"
 #include "render/mesh/io/writer.h"
 
@@ -36,16 +38,71 @@ Form formOf(const Feature& f) {
   return label ? Form::kInteger : Form::kFloat;
 }
 
-void append(std::string& row, float value, Form form) {
+constexpr std::size_t kBlock = std::size_t{1} << 18;  // bytes that are written at once
+
+void storeLe32(std::uint8_t* p, std::uint32_t v) {
+  for (int i = 0; i < 4; ++i) p[i] = static_cast<std::uint8_t>(v >> 8 * i);
+}
+
+std::size_t sizeOf(Form form) { return form == Form::kByte ? 1 : 4; }
+
+void store(std::uint8_t* p, float value, Form form) {
   switch (form) {
-    case Form::kFloat: appendLeFloat(row, value); return;
-    case Form::kByte:
-      row.push_back(static_cast<char>(std::lround(std::clamp(value, 0.0F, 1.0F) * 255)));
+    case Form::kFloat: storeLe32(p, std::bit_cast<std::uint32_t>(value)); return;
+    case Form::kByte: {
+      const float level = std::clamp(value, 0.0F, 1.0F) * 255;
+      *p = static_cast<std::uint8_t>(double{level} + 0.5);  // lround() takes much longer
       return;
+    }
     case Form::kInteger:
-      appendLe32(row, static_cast<std::uint32_t>(static_cast<std::int32_t>(value)));
+      storeLe32(p, static_cast<std::uint32_t>(static_cast<std::int32_t>(value)));
       return;
   }
+}
+
+// A table of the vertices' values: the positions or a feature, with its place in a row.
+struct ValueTable {
+  const float* values;
+  std::size_t dimension, offset;
+  Form form;
+};
+
+// Writes `rows` rows of `size` bytes, each filled by `fill`, in blocks.
+template <typename Fill>
+bool writeRows(const WriteBytes& bytes, std::size_t rows, std::size_t size, const Fill& fill) {
+  const std::size_t in_a_block = kBlock / size + 1;
+  std::vector<std::uint8_t> block(in_a_block * size);
+  for (std::size_t first = 0; first < rows; first += in_a_block) {
+    const std::size_t n = std::min(in_a_block, rows - first);
+    for (std::size_t i = 0; i < n; ++i) fill(first + i, &block[i * size]);
+    if (!bytes(std::as_bytes(std::span(block.data(), n * size)))) return false;
+  }
+  return true;
+}
+
+bool writeVertices(const Mesh& mesh, const std::vector<Form>& forms, const WriteBytes& bytes) {
+  std::vector<ValueTable> columns = {{mesh.positions.data(), 3, 0, Form::kFloat}};
+  std::size_t size = 12;
+  for (std::size_t f = 0; f < forms.size(); ++f) {
+    const Feature& feature = mesh.features[f];
+    columns.push_back({feature.values.data(), feature.dimension, size, forms[f]});
+    size += feature.dimension * sizeOf(forms[f]);
+  }
+  return writeRows(bytes, mesh.vertexCount(), size, [&](std::size_t v, std::uint8_t* row) {
+    for (const ValueTable& column : columns) {
+      const std::size_t step = sizeOf(column.form);
+      const float* values = column.values + v * column.dimension;
+      for (std::size_t k = 0; k < column.dimension; ++k)
+        store(row + column.offset + k * step, values[k], column.form);
+    }
+  });
+}
+
+bool writeTriangles(const Mesh& mesh, const WriteBytes& bytes) {
+  return writeRows(bytes, mesh.triangleCount(), 13, [&](std::size_t t, std::uint8_t* row) {
+    row[0] = 3;
+    for (std::size_t k = 0; k < 3; ++k) storeLe32(row + 1 + 4 * k, mesh.triangles[3 * t + k]);
+  });
 }
 
 // The texture image is named in a comment, as MeshLab does it.
@@ -69,25 +126,9 @@ bool carries(const Mesh&, const Feature&) { return true; }
 bool write(const Mesh& mesh, const std::string& name, const WriteBytes& bytes) {
   std::vector<Form> forms;
   for (const Feature& f : mesh.features) forms.push_back(formOf(f));
-  std::string row = headerFor(mesh, name, forms);
-  const auto put = [&] { return bytes(std::as_bytes(std::span(row))); };
-  if (!put()) return false;
-  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
-    row.clear();
-    for (std::size_t k = 0; k < 3; ++k) appendLeFloat(row, mesh.positions[3 * v + k]);
-    for (std::size_t f = 0; f < forms.size(); ++f) {
-      const Feature& feature = mesh.features[f];
-      for (std::size_t k = 0; k < feature.dimension; ++k)
-        append(row, feature.values[v * feature.dimension + k], forms[f]);
-    }
-    if (!put()) return false;
-  }
-  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
-    row.assign(1, '\3');
-    for (std::size_t k = 0; k < 3; ++k) appendLe32(row, mesh.triangles[t + k]);
-    if (!put()) return false;
-  }
-  return true;
+  const std::string header = headerFor(mesh, name, forms);
+  return bytes(std::as_bytes(std::span(header))) && writeVertices(mesh, forms, bytes) &&
+         writeTriangles(mesh, bytes);
 }
 
 }  // namespace
