@@ -43,6 +43,12 @@ TEST(Pjlink, WithoutAPasswordCommandsArePlain) {
   EXPECT_EQ(session.request(Command::kAskErrors, ""), "%1ERST ?\r");
   EXPECT_EQ(session.request(Command::kAskLamps, ""), "%1LAMP ?\r");
   EXPECT_EQ(session.request(Command::kAskName, ""), "%1NAME ?\r");
+  for (const char* const name : {"a", "b"}) {  // CR LF ends a line too
+    const auto answer = session.feed(std::string("%1NAME=") + name + "\r\n");
+    ASSERT_TRUE(answer && *answer);
+    EXPECT_EQ((*answer)->value, name);
+    session.request(Command::kAskName, "");
+  }
 }
 
 Session greeted() {
@@ -273,9 +279,11 @@ TEST(Pjlink, FaultsThatItReportsAreItsHealth) {
   b.pass(30);
   EXPECT_EQ(b.state().health, Health::kFailed);
   EXPECT_EQ(b.state().reason, "lamp: error");
-  b.device.errors = "junk";
-  b.pass(30);
-  EXPECT_EQ(b.state().reason, "lamp: error") << "what was known stays";
+  for (const char* const junk : {"junk", "00x000", "0000000"}) {
+    b.device.errors = junk;
+    b.pass(30);
+    EXPECT_EQ(b.state().reason, "lamp: error") << "what was known stays";
+  }
 }
 
 TEST(Pjlink, LampsAreReadOrUnknown) {

@@ -187,6 +187,30 @@ TEST_F(Align, RateAndContentAreThereAfterARestart) {
       eventually([&] { return readText(stateFile()).find("rate_hz") == std::string::npos; }));
 }
 
+TEST_F(Align, APlaylistThatIsOffIsOffAfterARestartUntilOn) {
+  const auto restart = [this] {
+    wall_->process().kill(SIGTERM);
+    start();
+  };
+  const auto isPlaylist = [this](const std::string& state) {
+    return eventually([&] { return wall_->status()["playlist"] == state; });
+  };
+  also_ = {{"wall", {{"playlist", {{"after_s", 3600}}}}}};
+  restart();
+  EXPECT_TRUE(isPlaylist("waiting"));
+  EXPECT_EQ(merlin({"playlist", "off"}).status, 0);
+  EXPECT_TRUE(isPlaylist("off"));
+  restart();
+  EXPECT_TRUE(isPlaylist("off"));
+  EXPECT_EQ(merlin({"playlist", "on"}).status, 0);
+  EXPECT_TRUE(isPlaylist("running"));
+  restart();
+  EXPECT_TRUE(isPlaylist("waiting"));
+  const Outcome bare = merlin({"playlist"});
+  EXPECT_EQ(bare.status, 2);
+  EXPECT_NE(bare.output.find("on, off or next is required"), std::string::npos) << bare.output;
+}
+
 // The file is written with every step; the process is killed in the middle of that.
 TEST_F(Align, AKillAmongManyWritesLeavesAStateThatIsRead) {
   for (int round = 0; round < 5; ++round) {
