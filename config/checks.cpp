@@ -95,6 +95,9 @@ void checkBindings(const Settings& s, LoadedSettings& loaded) {
     const CommandInfo* const command = findCommand(action);
     if (action == "snapshot" && s.wall.snapshots.empty() && !other_walls)
       loaded.addFinding(at, "is snapshot, which needs a folder: /wall/snapshots names none");
+    if (action == "operator_panel" && !s.wall.operator_tile.panel && !other_walls)
+      loaded.addFinding(at,
+                        "is operator_panel, which needs the panel: /wall/operator/panel is off");
     if (action == "next_content" && s.wall.contents.empty() && !other_walls)
       loaded.addFinding(
           at, "is next_content, and there is one content only: /wall/contents names none");
@@ -170,6 +173,20 @@ void checkContents(const WallSettings& wall, LoadedSettings& loaded) {
   }
 }
 
+void checkPanel(const WallSettings& wall, LoadedSettings& loaded) {
+  const render::tiles::TilesSettings& tiles = wall.tiles;
+  const bool fits = std::ranges::any_of(tiles.tiles, [&](const render::tiles::TileSettings& tile) {
+    return tile.kind == render::tiles::TileKind::kOperator &&
+           (tile.width > 0 ? tile.width : tiles.tile_width) >= 320 &&
+           (tile.height > 0 ? tile.height : tiles.tile_height) >= 240;
+  });
+  if (wall.operator_tile.panel && !fits) {
+    loaded.addFinding("/wall/operator/panel",
+                      "needs a tile of kind operator of at least 320 x 240 pixels; the wall has "
+                      "none");
+  }
+}
+
 void checkSnapshots(const WallSettings& wall, LoadedSettings& loaded) {
   const bool shared = std::any_of(wall.outputs.begin(), wall.outputs.end(), [](const auto& o) {
     return o.kind == render::out::OutputKind::kSharedMemory;
@@ -204,6 +221,7 @@ void checkTogether(LoadedSettings& loaded) {
   addFaults(validate(s.wall.governor), "/wall/rate", loaded);
   checkContents(s.wall, loaded);
   checkSnapshots(s.wall, loaded);
+  checkPanel(s.wall, loaded);
   checkBindings(s, loaded);
 }
 

@@ -17,7 +17,8 @@ namespace {
 constexpr const char* kSlot7Rules[] = {"zero", "neutral", "derived", "switch"};
 constexpr const char* kTileKinds[] = {"wall", "operator"};
 constexpr const char* kWhen[] = {"by_action", "enter", "hold", "leave"};
-constexpr const char* kScripts[] = {"visit", "turning", "still", "grabbing", "alignment", "pushes"};
+constexpr const char* kScripts[] = {"visit",     "turning", "still", "grabbing",
+                                    "alignment", "panel",   "pushes"};
 
 constexpr const char* kDialogues[] = {"binary", "text"};
 constexpr const char* kWristLights[] = {"switch", "off", "on"};
@@ -601,6 +602,12 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
     v.flag("overlay", w.operator_tile.overlay,
            "Whether rate, frame times, detail, content, posture, devices and messages are drawn "
            "over the picture. A tile of less than 320 x 240 pixels has no room for them.");
+    v.flag(
+        "panel", w.operator_tile.panel,
+        "Whether there is a panel with buttons on the operator's tile (the first one of at least "
+        "320 x 240 pixels), worked by a mouse or a finger in a window, by a VNC client and by the "
+        "ball: kind of content, content, pan, tilt, zoom, rate and detail by hand, projectors, "
+        "lamp. The ball works it after the action operator_panel.");
   });
   v.path("snapshots", w.snapshots,
          "Folder for the frames that the action snapshot writes. Empty: snapshots are off.");

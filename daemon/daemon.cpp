@@ -66,6 +66,13 @@ Result<Ok> checkNotRunning(const std::string& instance, const DaemonOptions& rol
   return Ok{};
 }
 
+wall::ProjectorsSeen seenOf(const pjlink::ProjectorState& state) {
+  wall::ProjectorsSeen seen{pjlink::powerName(state.power), state.wanted};
+  const bool on = state.power == pjlink::Power::kOn || state.power == pjlink::Power::kWarming;
+  if (!seen.wanted && state.power != pjlink::Power::kUnknown) seen.wanted = on;
+  return seen;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Daemon>> Daemon::make(Configuration configuration,
@@ -176,6 +183,17 @@ void Daemon::executeActions() {
   }
 }
 
+// What the operator's panel asks for, by the ball, and what it shows of the projectors.
+void Daemon::tendPanel() {
+  commands_->runPanel();
+  if (!devices_ || !devices_->projectors()) return;
+  std::vector<wall::ProjectorsSeen> all;
+  for (const pjlink::ProjectorState& state : devices_->projectors()->states())
+    all.push_back(seenOf(state));
+  if (const auto at_line = devices_->panelProjectors()) all.push_back(seenOf(*at_line));
+  wall_->panel()->report(wall::together(all));
+}
+
 Result<Ok> Daemon::run() {
   const Timestamp now = clock_.now();
   if (devices_) {
@@ -235,6 +253,7 @@ void Daemon::housekeeping() {
   if (keeper_) tendState();
   if (remote_devices_) remote_devices_->writeHeartbeat(now);
   if (devices_) executeActions();
+  if (wall_ && wall_->panel()) tendPanel();
   if (devices_ && devices_->projectors()) devices_->projectors()->tend();
   servers_->tend(now);
   if (emulators_) {

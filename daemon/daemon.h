@@ -53,6 +53,7 @@ class Daemon {
   void makeKeeper();
   void tendState();
   void executeActions();
+  void tendPanel();
   void serveWindows();
   Result<Ok> awaitFirstFrame(std::future<Result<std::string>> ready);
   bool stopAsked(Duration wait);  // waits for a signal

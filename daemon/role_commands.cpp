@@ -148,6 +148,40 @@ Answer testcard(const Parts& p, const std::string& name) {
   return fmt::format("{{\"after\": {}}}", framesOf(p));
 }
 
+// "X Y 0|1", or "out".
+Answer operatorPointer(wall::OperatorPanel& panel, std::string_view argument) {
+  std::array<int, 3> numbers{};
+  const char* at = argument.data();
+  const char* const end = at + argument.size();
+  bool good = argument != "out";
+  for (std::size_t i = 0; good && i < numbers.size(); ++i) {
+    while (at != end && *at == ' ') ++at;
+    const auto [rest, error] = std::from_chars(at, end, numbers[i]);
+    good = error == std::errc() && std::abs(numbers[i]) <= 1'000'000;
+    at = rest;
+  }
+  good = good && at == end && (numbers[2] == 0 || numbers[2] == 1);
+  if (!good && argument != "out") {
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("\"{}\" is neither X Y 0, X Y 1 nor out; X and Y are a pixel of the "
+                             "frame",
+                             argument.substr(0, 64))};
+  }
+  if (good)
+    panel.point(render::panel::Point{numbers[0], numbers[1]}, numbers[2] == 1);
+  else
+    panel.point(std::nullopt, false);
+  return done();
+}
+
+Answer operatorPanel(const Parts& p, std::string_view name, const std::string& argument) {
+  wall::OperatorPanel* const panel = p.wall->panel();
+  if (!panel) return lacks("has no panel on the operator's tile: /wall/operator/panel is off");
+  if (name == "operator_pointer") return operatorPointer(*panel, argument);
+  panel->toggleBall();
+  return done();
+}
+
 Answer snapshot(const Parts& p) {
   if (!p.snapshots) return lacks("has no folder for snapshots: /wall/snapshots names none");
   p.snapshots->take();
@@ -180,6 +214,7 @@ Answer ofWall(const Parts& p, std::string_view name, const std::string& argument
   if (name == "align") return seen(p, p.wall->aligner().run(argument));
   if (name == "testcard") return seen(p, testcard(p, argument));
   if (name == "signal") return signal(p, argument);
+  if (name.starts_with("operator_")) return operatorPanel(p, name, argument);
   if (name == "blank") return toggle(p, &wall::Attendance::toggleBlank);
   if (name == "freeze") return toggle(p, &wall::Attendance::toggleFreeze);
   if (name == "playlist") return playlist(p, argument);
@@ -205,8 +240,18 @@ Result<std::string> RoleCommands::run(std::string_view name, const std::string& 
     return Error{Errc::kInvalidArgument, fmt::format("\"{}\" is not a known command", name)};
   auto answer = command->role == CommandOf::kWall ? ofWall(parts_, name, argument)
                                                   : ofDevices(parts_, *command);
+  if (answer && name == "operator_pointer") runPanel();
   if (answer) return answer;
   return Error{answer.error().code, fmt::format("{}: {}", name, answer.error().what)};
+}
+
+void RoleCommands::runPanel() const {
+  wall::OperatorPanel* const panel = parts_.wall ? parts_.wall->panel() : nullptr;
+  if (!panel) return;
+  for (const render::panel::Request& request : panel->takeRequests()) {
+    const auto executed = run(request.command, request.argument);
+    if (!executed) panel->refuse(executed.error().what);
+  }
 }
 
 std::vector<status::Command> RoleCommands::of(CommandOf role) const {

@@ -31,6 +31,10 @@ class RoleCommands {
   // invalid argument, or this process lacks the part that executes the command); those of the part.
   Result<std::string> run(std::string_view name, const std::string& argument = {}) const;
 
+  // Executes what was asked for at the operator's panel, which shows why one was refused. Returns
+  // at once if there is nothing.
+  void runPanel() const;
+
   // The commands that a role's socket accepts, except `status`.
   std::vector<status::Command> of(CommandOf role) const;
 

@@ -14,7 +14,8 @@ Actions ActionReader::read(const shm::DeviceSlots& devices,
     auto& last = last_[source];
     const bool same = last && last->generation == state->generation;
     for (std::size_t i = 0; i < shm::kMostActions; ++i) {
-      if (same) actions.begun[i] += state->begun[i] - last->begun[i];
+      if (same) actions.begun_by[source][i] = state->begun[i] - last->begun[i];
+      actions.begun[i] += actions.begun_by[source][i];
       actions.held[i] = actions.held[i] || (held_by[source] && state->held[i] != 0);
     }
     constexpr auto kKept = static_cast<std::uint32_t>(sizeof(shm::ActionState::recent));

@@ -15,6 +15,8 @@ namespace merlin::actions {
 struct Actions {
   // How often each action has begun since the last read().
   std::array<std::uint32_t, shm::kMostActions> begun{};
+  // The same by source, of which `begun` is the sum.
+  std::array<std::array<std::uint32_t, shm::kMostActions>, shm::kActionSources> begun_by{};
   std::array<bool, shm::kMostActions> held{};
   // The actions that have begun, device by device, in the order in which they began; at most the
   // last twelve of each device.

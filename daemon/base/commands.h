@@ -56,6 +56,14 @@ inline constexpr CommandInfo kCommands[] = {
      "towards "
      "the viewer, and RX RY RZ degrees about these axes.",
      Bindable::kNo, false},
+    {"operator_panel", CommandOf::kWall, "",
+     "Let the ball work the panel on the operator's tile, or what it moved before.",
+     Bindable::kOnce, true},
+    {"operator_pointer", CommandOf::kWall, "X Y 0|1",
+     "Move the pointer of the operator's panel to a pixel of the frame, with its button pressed "
+     "(1) "
+     "or not (0); out takes it away.",
+     Bindable::kNo, false},
     {"snapshot", CommandOf::kWall, "",
      "Write the newest frame into the folder that /wall/snapshots names.", Bindable::kOnce, false},
     {"triangles", CommandOf::kWall, "N|auto",

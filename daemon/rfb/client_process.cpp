@@ -56,13 +56,18 @@ class InputLink {
     if (const auto answer = sender_.answer(now); answer && !*answer)
       logWarning("a client's input: {}", oneLine(answer->error().what));
     if (!sender_.isReady()) return;
-    const auto request = map_.take();
+    const auto request = next(now);
     if (!request || endpoint.empty()) return;  // while no wall runs, input is lost
     const auto sent = sender_.send(endpoint, request->command, request->argument, now);
     if (!sent) logWarning("a client's input: {}", oneLine(sent.error().what));
   }
 
  private:
+  std::optional<Request> next(Timestamp now) {
+    if (const auto told = map_.panel().take(now)) return Request{"operator_pointer", *told};
+    return map_.take();
+  }
+
   InputMap map_;
   status::CommandSender sender_;
 };
@@ -125,6 +130,7 @@ int serveClient(const RfbSettings& settings, int client, int report) {
       if (screen.wantsPicture()) show(picture, screen, now);
       reporter.tend(screen, now);
     }
+    if (input) input->map().panel().place(picture.panel());
     if (input) input->tend(picture.commandEndpoint(), now);
     screen.process(std::clamp(next - clock.now(), Duration::zero(), period));
   }

@@ -48,7 +48,19 @@ constexpr double kMostRadii = 10, kMostDegrees = 360;
 
 }  // namespace
 
+// A drag with another button goes on over the panel.
+bool InputMap::panelTakes(unsigned buttons, int x, int y) {
+  const bool drags_otherwise = (buttons & ~kLeft) != 0 && (buttons & kLeft) == 0;
+  return !drags_otherwise && panel_.point(x, y, (buttons & kLeft) != 0);
+}
+
 void InputMap::pointer(unsigned buttons, int x, int y, int height) {
+  if (panelTakes(buttons, x, y)) {
+    buttons_ = buttons;
+    x_ = x;
+    y_ = y;
+    return;
+  }
   const unsigned pressed = buttons & ~buttons_, dragged = buttons & buttons_;
   const double across = static_cast<double>(x - x_) / std::max(height, 1);
   const double down = static_cast<double>(y - y_) / std::max(height, 1);

@@ -8,6 +8,8 @@
 #include <set>
 #include <string>
 
+#include "daemon/base/panel_pointer.h"
+
 namespace merlin::rfb {
 
 struct Request {
@@ -21,7 +23,9 @@ class InputMap {
  public:
   // The pointer in a picture of `height` pixels. `buttons`: as in RFB, bit 0 left, 1 middle, 2
   // right, 3 wheel up, 4 wheel down.
+  // What the operator's panel takes goes to panel() and does nothing else.
   void pointer(unsigned buttons, int x, int y, int height);
+  PanelPointer& panel() noexcept { return panel_; }
   // A key is pressed or released; `keysym`: an X11 keysym, as in RFB.
   void key(std::uint32_t keysym, bool pressed);
 
@@ -35,7 +39,9 @@ class InputMap {
     double way[3] = {}, turn_deg[3] = {};
   };
   bool pressesArrow(std::uint32_t keysym);
+  bool panelTakes(unsigned buttons, int x, int y);
 
+  PanelPointer panel_;
   Step step_;
   std::deque<std::string> commands_;
   std::set<std::uint32_t> held_;  // keys that are pressed; bounded

@@ -42,6 +42,9 @@ Result<bool> ShownPicture::readFrame(Timestamp now) {
     return whyNoWall();
   }
   command_endpoint_ = textIn(wall->header.command_endpoint);
+  const auto panel = wall->panel.read();
+  panel_in_frame_.reset();
+  if (panel) panel_in_frame_ = {panel->x, panel->y, panel->width, panel->height};
   const auto opened = openReader(now, wall->header.generation);
   if (!opened) return opened.error();
   const std::uint64_t newest = reader_->newest();
@@ -92,13 +95,30 @@ ShownPicture::Change ShownPicture::showFrame() {
   const auto layout = layoutOf(frame_, view_);
   if (!layout) return showCard(layout.error().what);
   card_.clear();
+  findPanel(*layout);
   Change change;
   change.resized = resize(layout->width, layout->height);
   change.changed = copyChanged(frame_, *layout, pixels_);
   return change;
 }
 
+void ShownPicture::findPanel(const Layout& layout) {
+  panel_.reset();
+  if (!panel_in_frame_) return;
+  const Rectangle& at = *panel_in_frame_;
+  if (at.x < 0 || at.y < 0) return;  // not written by this release
+  for (const auto& [from, to_x, to_y] : layout.pieces) {
+    const int x = at.x - from.x, y = at.y - from.y;
+    const bool shown = x >= 0 && y >= 0 && at.width > 0 && at.height > 0 &&
+                       at.width <= from.width - x && at.height <= from.height - y;
+    if (shown)
+      panel_ = PanelPointer::Place{to_x + x,  to_y + y,      at.width,
+                                   at.height, from.x - to_x, from.y - to_y};
+  }
+}
+
 ShownPicture::Change ShownPicture::showCard(const std::string& text) {
+  panel_.reset();
   if (std::exchange(card_, text) == text) return {};
   drawCard(text, pixels_, width_, height_);
   return {false, {{0, 0, width_, height_}}};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/panel_pointer.h"
 #include "daemon/rfb/view.h"
 #include "daemon/shm/segment.h"
 #include "render/out/shared_frame.h"
@@ -34,12 +35,15 @@ class ShownPicture {
   std::span<std::uint8_t> pixels() noexcept { return pixels_; }
   // The text of the card; empty while the wall is shown.
   const std::string& card() const noexcept { return card_; }
+  // Where pixels() shows the operator's panel; nothing while they do not.
+  const std::optional<PanelPointer::Place>& panel() const noexcept { return panel_; }
   // Where the wall takes commands; empty while no wall runs.
   const std::string& commandEndpoint() const noexcept { return command_endpoint_; }
 
  private:
   Result<bool> readFrame(Timestamp now);
   Error whyNoWall() const;
+  void findPanel(const Layout& layout);
   Result<Ok> openReader(Timestamp now, std::uint64_t generation);
   bool resize(int width, int height);
   Change showFrame();
@@ -54,6 +58,8 @@ class ShownPicture {
   std::uint64_t sequence_ = 0;  // number of the frame shown
   render::out::CapturedFrame frame_;
   std::string command_endpoint_, card_;
+  std::optional<PanelPointer::Place> panel_;
+  std::optional<Rectangle> panel_in_frame_;
   int width_ = 0, height_ = 0;
   std::vector<std::uint8_t> pixels_;
 };

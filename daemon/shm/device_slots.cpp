@@ -59,6 +59,7 @@ Result<DeviceSlots> DeviceSlots::find(const SlotTable& table, const Header& head
   for (std::size_t i = 0; i < kActionSources; ++i)
     finder.find(fmt::format("actions.{}", kActionSourceNames[i]), slots.actions[i]);
   if (finder.error()) return *finder.error();
+  if (const auto gpio = table.channel<GpioSample>("gpio")) slots.gpio = *gpio;
   return slots;
 }
 

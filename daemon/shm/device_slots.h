@@ -40,6 +40,7 @@ struct DeviceSlots {
   const SeqSlot<TrackerFrames>* tracker_frames = nullptr;
   const Channel<BallSample>* ball = nullptr;
   const Channel<HandSample>* hand = nullptr;
+  const Channel<GpioSample>* gpio = nullptr;  // null if the segment lacks it
   std::array<const SeqSlot<ActionState>*, kActionSources> actions{};
 };
 

@@ -273,6 +273,16 @@ void addIdle(FieldTable& t) {
   MERLIN_FIELD(t, WallIdle, testcard, "");
 }
 
+void addPanel(FieldTable& t) {
+  t.slot("panel", offsetof(WallSegment, panel));
+  MERLIN_FIELD(t, WallPanel, updated_ns, "ns");
+  MERLIN_FIELD(t, WallPanel, x, "px");
+  MERLIN_FIELD(t, WallPanel, y, "px");
+  MERLIN_FIELD(t, WallPanel, width, "px");
+  MERLIN_FIELD(t, WallPanel, height, "px");
+  MERLIN_FIELD(t, WallPanel, by_ball, "");
+}
+
 }  // namespace
 
 template <typename T>
@@ -337,6 +347,7 @@ std::vector<Field> wallFields() {
   addOutputs(t);
   addContent(t);
   addIdle(t);
+  addPanel(t);
   t.bare("segment", 0);
   MERLIN_FIELD(t, WallSegment, framebuffer, "");
   return t.take();

@@ -234,6 +234,15 @@ struct WallIdle {
 };
 static_assert(sizeof(WallIdle) == 24);
 
+// The panel on the operator's tile. Written when it changes; never without a panel.
+struct WallPanel {
+  std::int64_t updated_ns;
+  std::int32_t x, y, width, height;  // in the frame, from its upper left corner [px]
+  std::uint32_t by_ball;             // 1 while the ball works it
+  std::uint32_t reserved;
+};
+static_assert(sizeof(WallPanel) == 32);
+
 struct WallSegment {
   Header header;
   alignas(64) SeqSlot<WallStats> stats;  // writer: the wall's thread
@@ -244,6 +253,7 @@ struct WallSegment {
   alignas(64) SeqSlot<WallOutputs> outputs;  // writer: the wall's thread
   alignas(64) SeqSlot<WallContent> content;  // writer: the wall's thread
   alignas(64) SeqSlot<WallIdle> idle;        // writer: the wall's thread
+  alignas(64) SeqSlot<WallPanel> panel;      // writer: the wall's thread
   alignas(64) Field fields[kMostFields];     // writer: the daemon, as it starts
 };
 

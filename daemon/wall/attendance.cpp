@@ -21,7 +21,7 @@ bool acts(const WallInput& input) {
   const bool stepped = !scene.step.way_m.isZero(0) || !scene.step.turn_rad.isZero(0);
   const bool aligned = std::ranges::any_of(input.align.begun, [](auto n) { return n > 0; });
   return stepped || aligned || scene.reset_view > 0 || scene.next_mode > 0 ||
-         input.next_content > 0 || input.snapshot > 0;
+         input.next_content > 0 || input.snapshot > 0 || input.operator_panel > 0;
 }
 
 }  // namespace
@@ -86,7 +86,8 @@ bool Attendance::moves(const WallInput& input) {
   const auto& ball = input.scene.ball;
   const std::uint32_t buttons = ball ? ball->buttons : 0;
   const std::uint32_t pressed = buttons & ~std::exchange(buttons_, buttons);
-  const bool pushed = (ball && isPushed(*ball)) || input.align.push != state::Offset{};
+  const bool pushed =
+      (ball && isPushed(*ball)) || input.panel_pushed || input.align.push != state::Offset{};
   return handMoves(input.scene) || pushed || pressed != 0;
 }
 

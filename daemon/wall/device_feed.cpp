@@ -67,15 +67,20 @@ void DeviceFeed::readPosture(const shm::DeviceSlots& devices, Timestamp now, Wal
 bool DeviceFeed::readActions(const shm::DeviceSlots& devices, Timestamp now, WallInput& input) {
   const auto glove = fresh(*devices.glove, *devices.glove_health, now);
   const bool glove_works = glove && now - fromNanoseconds(glove->received_ns) <= stale_after_;
-  const actions::Actions actions = actions_.read(
-      devices, {glove_works, fresh(*devices.ball, *devices.ball_health, now).has_value(), true});
-  const auto begun = [&](std::size_t action) { return actions.begun[action]; };
+  const bool ball_works = fresh(*devices.ball, *devices.ball_health, now).has_value();
+  const actions::Actions actions =
+      actions_.read(devices, {glove_works, ball_works && !leaves_out_ball_, true});
+  const auto begun = [&](std::size_t action) {
+    const std::uint32_t by_ball = actions.begun_by[shm::kBallActions][action];
+    return actions.begun[action] - (leaves_out_ball_ ? by_ball : 0);
+  };
   const auto held = [&](std::size_t action) { return actions.held[action]; };
   input.scene.grab = held(actionIndex("grab"));
   input.scene.fly = held(actionIndex("fly"));
   input.scene.point_at = held(actionIndex("point_at"));
   input.scene.reset_view = begun(actionIndex("reset_view"));
   input.scene.next_mode = begun(actionIndex("next_mode"));
+  input.operator_panel = actions.begun[actionIndex("operator_panel")];
   input.next_content = begun(actionIndex("next_content"));
   input.snapshot = begun(actionIndex("snapshot"));
   input.blank = begun(actionIndex("blank"));

@@ -24,6 +24,7 @@ class DeviceFeed final : public InputFeed {
         ahead_(ahead) {}
 
   WallInput read(Timestamp now) override;
+  void leaveOutBall(bool leaves_out) override { leaves_out_ball_ = leaves_out; }
   Duration age() const noexcept override { return age_.value_or(Duration::zero()); }
 
  private:
@@ -39,6 +40,7 @@ class DeviceFeed final : public InputFeed {
   int hand_station_, head_station_;
   Duration stale_after_;
   Duration ahead_;
+  bool leaves_out_ball_ = false;
   std::optional<Duration> age_;
   std::optional<Timestamp> last_read_;
   actions::ActionReader actions_;

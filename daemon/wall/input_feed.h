@@ -18,6 +18,8 @@ struct WallInput {
   std::optional<TrackerSample> head;  // sample of the tracker station on the viewer's head
   // How often each was requested since the last read.
   std::uint32_t next_content = 0, snapshot = 0, blank = 0, freeze = 0;
+  std::uint32_t operator_panel = 0;
+  bool panel_pushed = false;  // the ball is pushed, on the operator's panel
   AlignInput align;
   std::array<char, 20> posture{};  // name of the current posture, NUL-terminated; empty: none
 };
@@ -29,6 +31,10 @@ class InputFeed {
 
   // Reads the newest input of every device that works; never waits.
   virtual WallInput read(Timestamp now) = 0;
+
+  // Whether actions of the ball's buttons are left out from the next read() on, except
+  // operator_panel.
+  virtual void leaveOutBall(bool leaves_out) { static_cast<void>(leaves_out); }
 
   // Age of the newest sample that the last read() returned; zero if there was none.
   virtual Duration age() const noexcept = 0;

@@ -135,6 +135,10 @@ void WallLoop::noteRefusal(const ContentSource::Replacement& refused) {
 WallInput WallLoop::attendedInput(Timestamp now) {
   WallInput input = parts_.feed.read(now);
   input.scene.step = takeStep();
+  if (parts_.panel) {
+    parts_.panel->update(input, now);
+    parts_.feed.leaveOutBall(parts_.panel->takesBall());
+  }
   const Attendance::Frame frame = parts_.attendance.update(input, now);
   held_ = frame.held;
   if (parts_.curtain) parts_.curtain->setLight(frame.playlist.light);

@@ -23,6 +23,7 @@
 #include "daemon/wall/frame_stats.h"
 #include "daemon/wall/frame_tracer.h"
 #include "daemon/wall/input_feed.h"
+#include "daemon/wall/operator_panel.h"
 #include "daemon/wall/pace.h"
 #include "daemon/wall/still_frame.h"
 #include "daemon/wall/viewer_place.h"
@@ -55,6 +56,7 @@ struct WallParts {
   Progress* progress = nullptr;               // stepped once a period; may be null
   ContentSource* replacements = nullptr;      // replaces contents while the wall runs; may be null
   ViewerPlace* viewer = nullptr;              // set if the viewer's head is tracked, else null
+  OperatorPanel* panel = nullptr;             // on the operator's tile; may be null
   std::function<void()> on_snapshot = [] {};  // called when a bound input requests a snapshot
   // Called when a bound input requests an alignment action.
   std::function<void(const AlignInput&)> on_align = [](const AlignInput&) {};

@@ -82,9 +82,9 @@ Result<Ok> WallRole::makeOutputs(std::uint64_t generation) {
       [this](const std::string& why) { window_.stop(why); }};
   std::vector<render::out::NamedOutput> outputs;
   for (const render::out::OutputSettings& settings : settings_.wall.outputs) {
-    auto output =
-        render::out::makeOutput(settings, {plan_, frame_name, generation, watch_, clock_,
-                                           settings_.wall.tiles, graphics_cards_, window});
+    auto output = render::out::makeOutput(
+        settings, {plan_, frame_name, generation, watch_, clock_, settings_.wall.tiles,
+                   graphics_cards_, window, operator_tile_.panelInFrame()});
     if (!output)
       return Error{output.error().code,
                    fmt::format("output {}: {}", settings.shownName(), output.error().what)};
@@ -114,6 +114,7 @@ WallRole::WallRole(const Settings& settings, std::vector<WallContent> contents,
       cards_(plan_.frame_width, plan_.frame_height,
              render::testcard::cardTiles(plan_, settings.wall.outputs, panelsOf(settings.wall))),
       attendance_(settings.wall.playlist),
+      operator_tile_({plan_, settings_, entries_, *segment_, board_, attendance_, clock_}),
       model_watch_(filesOf(contents_), ShownModels::maker(entries_, settings_.wall), watch_,
                    clock_),
       tiles_(watch_) {}
@@ -223,8 +224,7 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
                   fromSeconds(1 / settings_.wall.governor.rate_hz),
                   settings_.wall.stereo.head.station);
   render::frame::PointerMarker marker(plan_);
-  delivery_.emplace(plan_, outputs_, withOperatorTile({&cards_, &marker, &curtain_}),
-                    std::move(corrections_), signals_.get());
+  delivery_.emplace(plan_, outputs_, overlaysWith(marker), std::move(corrections_), signals_.get());
   std::optional<ViewerPlace> viewer = makeViewerPlace();
   render::out::VblankFrameClock frame_clock(clock_, [this] { return outputs_.vblank(); });
   const WallSlots slots{segment_->stats,    &segment_->trace,   &segment_->interaction,
@@ -246,20 +246,18 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
   shader_pass_.end();
 }
 
-// The plates of the operator's tile are drawn first, so that a test card hides them.
-std::vector<render::frame::Overlay*> WallRole::withOperatorTile(
-    std::vector<render::frame::Overlay*> overlays) {
-  if (!settings_.wall.operator_tile.overlay) return overlays;
-  operator_facts_.emplace(*segment_, shm::segmentName(settings_.instance, "devices"), board_);
-  auto made = render::text::OperatorOverlay::make(plan_, *operator_facts_, clock_);
-  if (!made) logWarning("nothing is drawn over the operator's tile: {}", made.error().what);
-  if (made) operator_overlay_ = *std::move(made);
-  if (operator_overlay_) overlays.insert(overlays.begin(), operator_overlay_.get());
+// From the first to the last that is drawn: a test card hides the plates of the operator's tile,
+// and the panel is above it, since it can be worked there too.
+std::vector<render::frame::Overlay*> WallRole::overlaysWith(render::frame::PointerMarker& marker) {
+  std::vector<render::frame::Overlay*> overlays = {
+      operator_tile_.makePlates(), &cards_, operator_tile_.makePanelOverlay(), &marker, &curtain_};
+  std::erase(overlays, nullptr);
   return overlays;
 }
 
 void WallRole::addOwn(WallParts& parts) {
   parts.curtain = &curtain_;
+  parts.panel = operator_tile_.panel();
   parts.fade_frames = settings_.wall.render.fade_frames;
   parts.return_after_s = settings_.wall.scene.return_after_s;
   parts.on_snapshot = on_snapshot_;

@@ -19,7 +19,7 @@
 #include "daemon/wall/attendance.h"
 #include "daemon/wall/device_feed.h"
 #include "daemon/wall/message_board.h"
-#include "daemon/wall/operator_facts_reader.h"
+#include "daemon/wall/operator_tile.h"
 #include "daemon/wall/shown_models.h"
 #include "daemon/wall/signal_taps.h"
 #include "daemon/wall/wall_checks.h"
@@ -30,7 +30,6 @@
 #include "render/out/output_kinds.h"
 #include "render/out/output_set.h"
 #include "render/testcard/card_overlay.h"
-#include "render/text/operator_overlay.h"
 
 namespace merlin::wall {
 
@@ -82,6 +81,8 @@ class WallRole {
   void setRate(std::optional<double> rate_hz);
   Aligner& aligner() { return *aligner_; }
   SignalTaps& signals() { return *signals_; }
+  // For its thread-safe members; null: there is no panel on the operator's tile.
+  OperatorPanel* panel() { return operator_tile_.panel(); }
   // For its thread-safe members.
   Attendance& attendance() { return attendance_; }
 
@@ -127,8 +128,7 @@ class WallRole {
   void addOwn(WallParts& parts);
   void beginCorrecting(const render::frame::DrawContexts& contexts);
   std::optional<ViewerPlace> makeViewerPlace();
-  std::vector<render::frame::Overlay*> withOperatorTile(
-      std::vector<render::frame::Overlay*> overlays);
+  std::vector<render::frame::Overlay*> overlaysWith(render::frame::PointerMarker& marker);
 
   Settings settings_;  // `wall` is drawnWall() of the configured one
   std::vector<WallContent> contents_;
@@ -152,9 +152,8 @@ class WallRole {
   std::optional<std::uint32_t> kept_content_;  // content that the state was last updated for
   render::testcard::CardOverlay cards_;
   MessageBoard board_;
-  std::optional<OperatorFactsReader> operator_facts_;
-  std::unique_ptr<render::text::OperatorOverlay> operator_overlay_;  // null: off
   Attendance attendance_;
+  OperatorTile operator_tile_;
   render::frame::Curtain curtain_;
   std::optional<render::frame::Delivery> delivery_;  // owns the corrections while the wall runs
   std::unique_ptr<Aligner> aligner_;  // replaces corrections; the wall's thread calls ask()

@@ -18,6 +18,7 @@ using Ball = std::array<float, 6>;
 constexpr Ball kRest{};
 constexpr Ball kSpin{0, 0, 0, 0, 0.6F, 0};
 constexpr Ball kPush{0.5F, 0, 0.4F, 0, 0, 0};
+constexpr Ball kDown{0, -0.9F, 0, 0, 0, 0};
 constexpr Ball kTumble{0, 0.2F, 0, 0.5F, -0.5F, 0.3F};
 
 // A visitor: turns the model, looks at it, pushes it, takes it in the hand, lets go, tumbles it,
@@ -55,12 +56,24 @@ constexpr Phase kPushes[] = {
     {5, "open", {0.1F, 0, 0, 0, 0, -0.9F}, 0, false},
 };
 
+// A visitor who works the operator's panel: button 3 is bound to the action operator_panel, which
+// gives the ball to the panel and, the next time, takes it away. Each time the ball is pushed down,
+// and then button 1 is held.
+constexpr Phase kPanel[] = {
+    {0.4, "open", kRest, 4, false}, {0.8, "open", kRest, 0, false}, {0.5, "open", kDown, 0, false},
+    {0.6, "open", kRest, 0, false}, {1.2, "open", kRest, 1, false}, {1.5, "open", kRest, 0, false},
+};
+
 constexpr MotionScript kScripts[] = {
     {"visit", "a visitor turns the model, rests, grabs it with a fist, lets go", kVisit},
     {"turning", "the ball is twisted all the time", kTurning},
     {"still", "nobody is there: open hand, ball at rest, tracker noise only", kStill},
     {"grabbing", "fist and open hand in turn, the hand moves", kGrabbing},
     {"alignment", "the hand goes where merlin calibrate tracker asks, 5 s each", kAlignment},
+    {"panel",
+     "a visitor works the operator's panel with the ball: button 3 enters and leaves, button 1 "
+     "presses",
+     kPanel},
     {"pushes", "the ball is moved as merlin calibrate ball asks, 5 s each", kPushes},
 };
 

@@ -1,5 +1,6 @@
 #include "render/out/output_kinds.h"
 
+#include <algorithm>
 #include <iterator>
 
 #include "render/out/png_output.h"
@@ -26,8 +27,10 @@ OutputOrError makePng(const OutputSettings& settings, const OutputParts& parts) 
 OutputOrError makeWindow(const OutputSettings& settings, const OutputParts& parts) {
   auto program = windowProgram();
   if (!program) return program.error();
+  WindowActs acts = parts.window;
+  if (parts.panel) acts.panel = panelIn(settings, parts.plan, *parts.panel);
   return std::unique_ptr<Output>(std::make_unique<WindowOutput>(
-      settings.window, parts.window, *std::move(program), parts.watch, parts.clock));
+      settings.window, acts, *std::move(program), parts.watch, parts.clock));
 }
 
 OutputOrError makeKms(const OutputSettings& settings, const OutputParts& parts) {
@@ -41,6 +44,22 @@ constexpr OutputOrError (*kMakers[])(const OutputSettings&, const OutputParts&) 
 static_assert(std::size(kMakers) == std::size(kOutputKindNames));
 
 }  // namespace
+
+std::optional<PanelPointer::Place> panelIn(const OutputSettings& settings,
+                                           const tiles::TilePlan& plan,
+                                           const PanelPointer::Place& in_frame) {
+  if (settings.tiles.empty()) return in_frame;
+  for (const PlacedTile& placed : settings.tiles) {
+    const auto tile = std::ranges::find(plan.tiles, placed.tile, &tiles::Tile::name);
+    if (tile == plan.tiles.end() || placed.mirror != Mirror::kNone || placed.turn != Turn::k0)
+      continue;
+    const int x = in_frame.x - tile->x, y = in_frame.y - tile->y;
+    if (x < 0 || y < 0 || x >= tile->width || y >= tile->height) continue;
+    return PanelPointer::Place{placed.x + x,    placed.y + y,       in_frame.width,
+                               in_frame.height, tile->x - placed.x, tile->y - placed.y};
+  }
+  return std::nullopt;
+}
 
 Result<Ok> checkIsThere(OutputKind kind) {
   if (kind != OutputKind::kWindow) return Ok{};

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "daemon/base/panel_pointer.h"
 #include "daemon/base/watched_thread.h"
 #include "render/out/kms_output.h"
 #include "render/out/output.h"
@@ -23,7 +25,15 @@ struct OutputParts {
   const tiles::TilesSettings& tiles;
   kms::Cards& cards;    // for outputs of kind kms
   WindowActs window{};  // for outputs of kind window
+  // The operator's panel in the frame, for their pointers; nothing: there is none.
+  std::optional<PanelPointer::Place> panel{};
 };
+
+// Where the picture of an output of these settings shows the panel. Nothing if it does not, or
+// mirrored or turned.
+std::optional<PanelPointer::Place> panelIn(const OutputSettings& settings,
+                                           const tiles::TilePlan& plan,
+                                           const PanelPointer::Place& in_frame);
 
 // Whether this installation has what outputs of this kind need. Errors: kUnsupported: what is
 // missing, and how to get it.

@@ -12,6 +12,7 @@
 #include "render/text/glyph_atlas.h"
 #include "render/text/operator_facts.h"
 #include "render/text/operator_plate.h"
+#include "render/text/plate_cover.h"
 #include "render/tiles/tile_plan.h"
 
 namespace merlin::render::text {
@@ -46,12 +47,9 @@ class OperatorOverlay final : public frame::Overlay {
   OperatorOverlay(const tiles::TilePlan& plan, GlyphAtlas atlas, OperatorSource& source,
                   const Clock& clock);
   void refresh(Timestamp now);
-  void blend(const Plate& plate, const Rect& tile, std::span<std::uint8_t> canvas);
-  template <typename Act>
-  void forEachRow(const Plate& plate, const Rect& tile, const Act& act) const;
 
   GlyphAtlas atlas_;
-  std::size_t frame_width_;
+  PlateCover cover_;
   OperatorSource& source_;
   const Clock& clock_;
   std::vector<TilePlates> tiles_;
@@ -59,7 +57,6 @@ class OperatorOverlay final : public frame::Overlay {
   Timestamp read_at_{};            // when the facts that are drawn were read
   mutable Timestamp looked_at_{};  // when hasChanged() last looked at them
   bool drawn_ = false;
-  std::vector<std::uint8_t> covered_;  // the canvas's pixels under the plates
   std::atomic<bool> asked_{true};
 };
 

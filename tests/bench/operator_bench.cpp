@@ -1,5 +1,5 @@
-// ./dev bench operator: what the plates over the operator's tile cost a frame, beside a memcpy of
-// the tile.
+// ./dev bench operator: what the plates and the panel over the operator's tile cost a frame, beside
+// a memcpy of the tile.
 #include <chrono>
 #include <cstring>
 #include <memory>
@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "render/panel/panel_overlay.h"
 #include "render/text/operator_overlay.h"
 #include "tests/bench/figures.h"
 #include "tests/support/fake_clock.h"
@@ -53,25 +54,27 @@ struct Times {
   std::vector<double> redrawn, kept, copied;  // [ms]
 };
 
-Times measureTile(int width, int height, int frames) {
+render::tiles::TilePlan planOf(int width, int height) {
   render::tiles::TilesSettings settings;
   settings.frame_width = settings.tile_width = width;
   settings.frame_height = settings.tile_height = height;
   settings.tiles = {{"operator", render::tiles::TileKind::kOperator, 0, 0, 0}};
   const auto plan = render::tiles::planTiles(settings);
   if (!plan) didNotRun("the tile", plan.error().what, "mend the benchmark");
-  BusyWall source;
-  test::FakeClock clock;
-  const auto overlay = OperatorOverlay::make(*plan, source, clock);
-  if (!overlay) didNotRun("the overlay", overlay.error().what, "mend the benchmark");
-  const auto bytes = static_cast<std::size_t>(4 * width * height);
+  return *plan;
+}
+
+// Every third frame draws anew; before() is called before each frame with its number.
+template <typename Before>
+Times measureOverlay(render::frame::Overlay& overlay, std::size_t bytes, int frames,
+                     const Before& before) {
   std::vector<std::uint8_t> canvas(bytes, 90), copy(bytes);
   Times times;
-  for (int i = 0; i < 3 * frames; ++i) {  // every third frame draws the plates anew, as at 30 Hz
-    clock.advance(std::chrono::milliseconds(34));
+  for (int i = 0; i < 3 * frames; ++i) {
+    before(i);
     auto began = Steady::now();
-    (*overlay)->draw(canvas);
-    (*overlay)->erase(canvas);
+    overlay.draw(canvas);
+    overlay.erase(canvas);
     (i % 3 == 0 ? times.redrawn : times.kept).push_back(msSince(began));
     began = Steady::now();
     std::memcpy(copy.data(), canvas.data(), bytes);
@@ -81,14 +84,48 @@ Times measureTile(int width, int height, int frames) {
   return times;
 }
 
+Times measureTile(int width, int height, int frames) {
+  const render::tiles::TilePlan plan = planOf(width, height);
+  BusyWall source;
+  test::FakeClock clock;
+  const auto overlay = OperatorOverlay::make(plan, source, clock);
+  if (!overlay) didNotRun("the overlay", overlay.error().what, "mend the benchmark");
+  // The plates are drawn anew ten times a second: every third frame at 30 Hz.
+  return measureOverlay(**overlay, static_cast<std::size_t>(4 * width * height), frames,
+                        [&](int) { clock.advance(std::chrono::milliseconds(34)); });
+}
+
+// A panel whose view differs from the one before in every third frame.
+class BusyPanel final : public render::panel::PanelSource {
+ public:
+  const render::panel::PanelView& view() override { return shown; }
+  render::panel::PanelView shown;
+};
+
+Times measurePanel(int width, int height, int frames) {
+  const render::tiles::TilePlan plan = planOf(width, height);
+  render::panel::PanelOptions options;
+  options.contents = {{"ankylosaurus", true}, {"map", false}};
+  options.projectors = options.video = options.lamp = true;
+  const auto place = render::panel::placePanel(plan, options);
+  BusyPanel source;
+  source.shown.facts.content = "ankylosaurus";
+  source.shown.facts.projectors = "warming";
+  if (!place) didNotRun("the panel", "it has no place", "mend the benchmark");
+  const auto overlay = render::panel::PanelOverlay::make(plan, *place, options, source);
+  if (!overlay) didNotRun("the panel", overlay.error().what, "mend the benchmark");
+  return measureOverlay(**overlay, static_cast<std::size_t>(4 * width * height), frames,
+                        [&](int i) { source.shown.facts.rate_hz = 30 + i / 3; });
+}
+
 void reportTile(const std::string& name, const Times& times, Report& report) {
-  const Measured redrawn = medianOf(times.redrawn, "frames that draw the plates of " + name);
-  const Measured kept = medianOf(times.kept, "frames that keep the plates of " + name);
+  const Measured redrawn = medianOf(times.redrawn, "frames that draw " + name);
+  const Measured kept = medianOf(times.kept, "frames that keep what is drawn of " + name);
   const Measured copied = medianOf(times.copied, "copies of " + name);
   const Measured ratio = ratioOf(kept, copied, name + " beside memcpy");
   report.text(
-      "  {:<11} {:6.2f} ms a frame, {:.1f} memcpys of the tile; {:6.2f} ms where the plates are "
-      "drawn anew\n",
+      "  {:<15} {:6.2f} ms a frame, {:.1f} memcpys of the tile; {:6.2f} ms where it is drawn "
+      "anew\n",
       name, kept.value(), ratio.value(), redrawn.value());
   report.figure(name + "_kept_ms", kept, "ms");
   report.figure(name + "_redrawn_ms", redrawn, "ms");
@@ -99,6 +136,9 @@ bool measure(int frames, Report& report) {
   report.text("plates over the operator's tile, drawn and erased, medians\n");
   reportTile("640x480", measureTile(640, 480, frames), report);
   reportTile("1920x1080", measureTile(1920, 1080, frames), report);
+  report.text("the panel\n");
+  reportTile("panel_640x480", measurePanel(640, 480, frames), report);
+  reportTile("panel_1920x1080", measurePanel(1920, 1080, frames), report);
   return true;
 }
 
@@ -106,7 +146,7 @@ bool measure(int frames, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("What the plates over the operator's tile cost a frame");
+  CLI::App app("What the plates and the panel over the operator's tile cost a frame");
   int frames = 100;
   bool json = false;
   app.add_option("--frames", frames, "Frames that draw the plates anew")

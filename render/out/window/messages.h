@@ -11,9 +11,11 @@
 #include <string_view>
 #include <type_traits>
 
+#include "daemon/base/panel_pointer.h"
+
 namespace merlin::render::out {
 
-inline constexpr std::uint32_t kWindowMagic = 0x4D574E31;  // +1 with each change of a message
+inline constexpr std::uint32_t kWindowMagic = 0x4D574E32;  // +1 with each change of a message
 
 struct WindowForm {
   std::uint32_t magic = kWindowMagic;
@@ -21,6 +23,7 @@ struct WindowForm {
   std::int32_t monitor = 0, x = -1, y = -1, width = 0, height = 0;  // as in WindowSettings
   std::uint8_t fullscreen = 0, border = 1, fit = 1, input = 1;
   std::int32_t picture_width = 0, picture_height = 0;  // [px]
+  PanelPointer::Place panel{};  // in the picture; width 0: it does not show it
 };
 
 struct FrameReady {

@@ -1,6 +1,7 @@
 #include "render/out/window/sdl_window.h"
 
 #include <cstdlib>
+#include <utility>
 
 #include <SDL.h>
 #include <fmt/format.h>
@@ -147,7 +148,38 @@ bool SdlWindow::handle(const SDL_Event& event) {
   return true;
 }
 
+std::vector<std::string> SdlWindow::takeCommands() {
+  std::vector<std::string> all;
+  const Timestamp now = SystemClock().now();
+  while (const auto told = panel_.take(now)) all.push_back("operator_pointer " + *told);
+  for (std::string& command : commands_.take()) all.push_back(std::move(command));
+  return all;
+}
+
+// Returns whether the operator's panel takes the event. SDL reports a finger on the screen as the
+// left button of a mouse; the finger leaves with its release.
+bool SdlWindow::pointOnPanel(const SDL_Event& event) {
+  if (event.type == SDL_WINDOWEVENT && event.window.event == SDL_WINDOWEVENT_LEAVE) panel_.leave();
+  const bool moves = event.type == SDL_MOUSEMOTION;
+  const bool presses = event.type == SDL_MOUSEBUTTONDOWN,
+             releases = event.type == SDL_MOUSEBUTTONUP;
+  const bool left = (presses || releases) && event.button.button == SDL_BUTTON_LEFT;
+  const bool drags_otherwise =
+      moves && event.motion.state != 0 && (event.motion.state & SDL_BUTTON_LMASK) == 0;
+  if ((!moves && !left) || drags_otherwise || drawn_.width == 0) return false;
+  const PixelSize picture{form_.picture_width, form_.picture_height};
+  const PixelRectangle at = fit(picture, drawn_, form_.fit != 0);
+  const int x = moves ? event.motion.x : event.button.x,
+            y = moves ? event.motion.y : event.button.y;
+  const bool pressed = moves ? (event.motion.state & SDL_BUTTON_LMASK) != 0 : presses;
+  const bool taken = panel_.point((x - at.x) * picture.width / at.width,
+                                  (y - at.y) * picture.height / at.height, pressed);
+  if (releases && event.button.which == SDL_TOUCH_MOUSEID) panel_.leave();
+  return taken;
+}
+
 void SdlWindow::act(const SDL_Event& event) {
+  if (pointOnPanel(event)) return;
   int width = 0, height = 0;
   SDL_GetWindowSize(window_.get(), &width, &height);
   if (event.type == SDL_MOUSEMOTION && event.motion.state != 0) {

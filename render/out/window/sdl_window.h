@@ -35,17 +35,20 @@ class SdlWindow {
   // Handles what has happened since the last call. Returns false if a person closed the window.
   bool handleEvents();
   // What the person asked for: see WindowCommands.
-  std::vector<std::string> takeCommands() { return commands_.take(); }
+  std::vector<std::string> takeCommands();
 
  private:
   struct Freed {
     void operator()(SDL_Window* window) const;
     void operator()(SDL_Surface* surface) const;
   };
-  SdlWindow(const WindowForm& form, SDL_Window* window) : form_(form), window_(window) {}
+  SdlWindow(const WindowForm& form, SDL_Window* window) : form_(form), window_(window) {
+    if (form.panel.width > 0) panel_.place(form.panel);
+  }
 
   bool handle(const SDL_Event& event);
   void act(const SDL_Event& event);
+  bool pointOnPanel(const SDL_Event& event);
   void press(const SDL_KeyboardEvent& event);
   void toggleFullscreen();
   Result<Ok> draw();
@@ -55,6 +58,7 @@ class SdlWindow {
   std::unique_ptr<SDL_Surface, Freed> picture_;  // the last one, in the window's format
   PixelSize drawn_;                              // size of the window when it was last drawn
   WindowCommands commands_;
+  PanelPointer panel_;
 };
 
 }  // namespace merlin::render::out

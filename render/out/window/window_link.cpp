@@ -84,6 +84,7 @@ WindowForm WindowLink::form() const {
   form.input = settings_.input;
   form.picture_width = slots_->width();
   form.picture_height = slots_->height();
+  if (acts_.panel) form.panel = *acts_.panel;
   return form;
 }
 

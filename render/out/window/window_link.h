@@ -14,6 +14,7 @@
 #include <string>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/panel_pointer.h"
 #include "daemon/base/unique_fd.h"
 #include "daemon/base/watched_thread.h"
 #include "render/out/window/picture_slots.h"
@@ -29,6 +30,8 @@ struct WindowActs {
       [](const std::string&, const std::string&) -> Result<std::string> { return std::string(); };
   // Stops merlind. `why`: a sentence for the log.
   std::function<void(const std::string& why)> stop = [](const std::string&) {};
+  // Where the window's picture shows the operator's panel; nothing: it does not.
+  std::optional<PanelPointer::Place> panel{};
 };
 
 // show(), fault() and isClosed() are thread-safe, except that one thread calls show().

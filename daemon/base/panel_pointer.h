@@ -1,0 +1,60 @@
+// PanelPointer: which events of a pointer, in a window or a VNC client, belong to the operator's
+// panel, and the command operator_pointer that tells merlind of them. Pure.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "daemon/base/clock.h"
+
+namespace merlin {
+
+// Thread-bound.
+class PanelPointer {
+ public:
+  // Where a picture shows the panel [px]. A pixel x, y of the picture is x + to_frame_x,
+  // y + to_frame_y of the wall's frame.
+  struct Place {
+    int x = 0, y = 0, width = 0, height = 0;
+    int to_frame_x = 0, to_frame_y = 0;
+
+    bool operator==(const Place&) const = default;
+  };
+  // Nothing: the picture does not show it; what is held is let go.
+  void place(const std::optional<Place>& place);
+
+  // The pointer is at a pixel of the picture. `pressed`: its (left) button. Returns true if the
+  // panel takes the event: it is to have no other effect. A drag belongs to where it began.
+  bool point(int x, int y, bool pressed);
+  // The pointer has left the picture, or the finger the screen.
+  void leave();
+
+  // The argument of the next command operator_pointer; nothing if there is none. While the button
+  // is held it is told again every kRepeat, so that merlind can let it go if nothing is heard any
+  // more. Motions since the last call are one; presses and releases stay as they are.
+  std::optional<std::string> take(Timestamp now);
+
+  static constexpr Duration kRepeat = std::chrono::milliseconds(500);
+
+ private:
+  struct Told {
+    int x = 0, y = 0;
+    bool pressed = false, out = false;
+    bool operator==(const Told&) const = default;
+  };
+  void tell(const Told& told);
+
+  std::optional<Place> place_;
+  bool pressed_ = false;  // the button
+  bool held_ = false;     // since it was pressed on the panel
+  Told last_{0, 0, false, true};
+  struct Waiting {
+    Told told;
+    bool moves = false;  // a motion: not the first with its button, or within the panel
+  };
+  std::deque<Waiting> waiting_;  // bounded
+  Timestamp taken_{};
+};
+
+}  // namespace merlin

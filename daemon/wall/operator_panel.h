@@ -1,0 +1,105 @@
+// OperatorPanel: the panel on the operator's tile (render/panel) in merlind: what pointer and ball
+// do with it, what it shows, and which commands it asks for.
+#pragma once
+
+#include <array>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/settings.h"
+#include "daemon/base/clock.h"
+#include "daemon/shm/segment.h"
+#include "daemon/wall/attendance.h"
+#include "daemon/wall/input_feed.h"
+#include "daemon/wall/wall_contents.h"
+#include "render/panel/panel_overlay.h"
+
+namespace merlin::wall {
+
+// What a wall of these settings and contents has, of what the panel can work. Without projectors,
+// video and lamp where the devices are another machine's.
+render::panel::PanelOptions panelOptions(const Settings& settings,
+                                         const std::vector<ContentEntry>& contents);
+
+// What is known of the projectors together.
+struct ProjectorsSeen {
+  std::string power;           // "on", "warming", "mixed"; empty: not known
+  std::optional<bool> wanted;  // whether they are on, or are to be
+};
+
+// Of several: the power that they have in common, or "mixed"; the same of `wanted`.
+ProjectorsSeen together(const std::vector<ProjectorsSeen>& all);
+
+// Thread-safe, except where it says otherwise.
+class OperatorPanel final : public render::panel::PanelSource {
+ public:
+  struct Parts {
+    const shm::WallSegment& wall;        // what is shown is read from its slots
+    shm::SeqSlot<shm::WallPanel>& slot;  // where the panel's place is published
+    std::string devices;                 // name of the devices' segment
+    double rate_hz = 0;                  // of the configuration
+    float radius_m = 1;                  // of the content
+    Attendance& attendance;              // a press is a touch
+    const Clock& clock;
+  };
+  // All of `parts` must outlive this object.
+  OperatorPanel(render::panel::PanelPlace place, render::panel::PanelOptions options,
+                const Parts& parts);
+
+  const render::panel::PanelPlace& place() const noexcept { return place_; }
+  const render::panel::PanelOptions& options() const noexcept { return options_; }
+
+  // The pointer is at a pixel of the frame, or nowhere. A press while the wall is black only makes
+  // it bright again.
+  void point(std::optional<render::panel::Point> in_frame, bool pressed);
+  // Whether the ball works the panel, from the next frame on.
+  void toggleBall();
+  // The commands that were asked for since the last call, in their order.
+  std::vector<render::panel::Request> takeRequests();
+  // Shows for some time why a command was refused.
+  void refuse(std::string why);
+  // What the role devices says of the projectors; otherwise those at the GPIO line are read.
+  void report(ProjectorsSeen projectors);
+
+  // Once a frame, on the wall's thread, before Attendance::update(): executes what is held, and
+  // takes the ball out of `input` while that works the panel.
+  void update(WallInput& input, Timestamp now);
+  // On the wall's thread: whether actions of the ball's buttons are the panel's.
+  bool takesBall() const noexcept { return view_.by_ball; }
+  // On the wall's thread: of the last update().
+  const render::panel::PanelView& view() override { return view_; }
+
+ private:
+  void readFacts(Timestamp now);
+  void readDevices(Timestamp now, render::panel::PanelFacts& facts);
+  void useBall(WallInput& input, Timestamp now);
+  void addMotion(WallInput& input, Duration elapsed) const;
+  void collectRequests();
+  void touchBy(std::optional<render::panel::ControlId> pressed);
+  void publish(Timestamp now);
+
+  const render::panel::PanelPlace place_;
+  const render::panel::PanelOptions options_;
+  Parts parts_;
+
+  // Of the wall's thread.
+  shm::SegmentFollower<shm::DevicesReader> devices_;
+  std::optional<Timestamp> read_at_, updated_at_;
+  std::optional<bool> published_by_ball_;
+  render::panel::PanelView view_;
+
+  std::mutex mutex_;  // guards all below; never held while anything is waited for
+  render::panel::PanelInput input_;
+  render::panel::PanelFacts facts_;
+  std::vector<render::panel::Request> requests_;
+  std::optional<ProjectorsSeen> projectors_;
+  std::string notice_;
+  Timestamp noticed_at_{};
+  Attendance::Shown shown_ = Attendance::Shown::kPicture;  // at the last update()
+  bool toggled_ = false;                                   // toggleBall() since then
+  bool swallowed_ = false;  // the press that is held made a black wall bright
+};
+
+}  // namespace merlin::wall

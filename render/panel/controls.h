@@ -1,0 +1,113 @@
+// The controls of the operator's panel, and what each of them asks for: a command of
+// daemon/base/commands.h, or a motion. Pure.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace merlin::render::panel {
+
+enum class ControlId : std::uint8_t {
+  kModel,
+  kPicture,
+  kPrevious,
+  kNext,
+  kUp,
+  kLeft,
+  kReset,
+  kRight,
+  kDown,
+  kNearer,
+  kFarther,
+  kMode,
+  kSnapshot,
+  kBall,
+  kRateLess,
+  kRateMore,
+  kRateAuto,
+  kDetailLess,
+  kDetailMore,
+  kDetailAuto,
+  kBlank,
+  kFreeze,
+  kLampOff,
+  kLampSlow,
+  kLampFast,
+  kLampOn,
+  kProjectorsOn,
+  kProjectorsOff,
+  kVideoA,
+  kVideoB
+};
+
+// A command of daemon/base/commands.h.
+struct Request {
+  std::string command, argument{};
+
+  bool operator==(const Request&) const = default;
+};
+
+// How the content that is shown moves, and what the panel's buttons of kind and content say.
+enum class ShownKind : std::uint8_t { kModel, kPicture, kPanorama };
+
+struct PanelContent {
+  std::string name;
+  bool is_model = true;
+};
+
+// What this wall has, of what the panel can work; does not change while it runs.
+struct PanelOptions {
+  std::vector<PanelContent> contents;  // of the configuration, in their order
+  bool snapshots = false;              // there is a folder for them
+  bool projectors = false, video = false, lamp = false;
+};
+
+// What the panel shows of the wall. Equal facts are drawn alike.
+struct PanelFacts {
+  std::string content, slide;  // names; no slide: empty
+  ShownKind kind = ShownKind::kModel;
+  bool flies = false;  // the ball moves the viewer
+  double rate_hz = 0;  // asked for
+  bool rate_by_hand = false;
+  std::uint32_t detail = 0;       // budget of moving frames, in detail_unit
+  std::uint32_t full_detail = 0;  // cost of full detail; 0: not known
+  bool detail_by_hand = false;
+  std::string detail_unit;  // "triangles"
+  bool blank = false, frozen = false;
+  std::optional<std::uint32_t> lamp;      // a GpioSample::Lamp; nothing: not known
+  std::optional<std::uint32_t> video;     // 0: A, 1: B; nothing: not known
+  std::string projectors;                 // "on", "warming", "off"; empty: not known
+  std::optional<bool> projectors_wanted;  // whether they are on or become so
+  std::string notice;                     // why the last command was refused; empty: it was not
+
+  bool operator==(const PanelFacts&) const = default;
+};
+
+// When a control acts. kClick: when it is released. kStep: when it is pressed, and again while it
+// is held. kMotion: as long as it is held.
+enum class Acts : std::uint8_t { kClick, kStep, kMotion };
+
+Acts actsOf(ControlId id) noexcept;
+// What stands on its button. `by_ball`: the ball works the panel.
+std::string_view labelOf(ControlId id, const PanelFacts& facts, bool by_ball) noexcept;
+
+// The command that a control gives now; nothing if there is nothing to do, or if it moves.
+std::optional<Request> requestOf(ControlId id, const PanelFacts& facts,
+                                 const PanelOptions& options);
+// Whether its button is drawn as one that is switched on.
+bool isLit(ControlId id, const PanelFacts& facts, bool by_ball) noexcept;
+
+// Speed of what a control moves while it is held.
+struct Motion {
+  std::array<float, 3> way_radii_s{};  // to the right, up, nearer; times the content's radius
+  std::array<float, 3> turn_rad_s{};   // about these axes
+};
+// A model is turned, a picture shifted, a panorama looked around in; the arrows on the buttons say
+// where the content goes, or the view of a panorama. Nothing moves for a control of another kind.
+Motion motionOf(ControlId id, ShownKind kind) noexcept;
+
+}  // namespace merlin::render::panel

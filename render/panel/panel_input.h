@@ -1,0 +1,87 @@
+// PanelInput: what pointer and ball do with the operator's panel: which control is under the
+// pointer, selected, pressed and held. Pure.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "daemon/base/clock.h"
+#include "render/panel/panel_layout.h"
+
+namespace merlin::render::panel {
+
+// What the ball does: a push to the right and up, as shares of full scale, and whether one of its
+// buttons is held.
+struct BallPush {
+  float right = 0, up = 0;
+  bool button = false;
+};
+
+// Thread-bound.
+class PanelInput {
+ public:
+  // `layout` must outlive this object.
+  explicit PanelInput(const PanelLayout& layout) : layout_(layout) {}
+
+  // The pointer, in pixels of the tile, and whether its button is pressed. A press counts if it
+  // begins on a control; dragged away and released elsewhere, it does nothing.
+  void point(Point in_tile, bool pressed, Timestamp now);
+  // The pointer has left the tile, or does not exist any more.
+  void leave();
+
+  // The ball begins, or ends, to work the panel. A button that is pressed now, and a push, do
+  // nothing until they are let go.
+  void enterByBall(Timestamp now);
+  void leaveByBall();
+  // To be called once a frame while the ball works the panel.
+  void ball(const BallPush& push, Timestamp now);
+
+  // To be called once a frame: what is held acts again. A pointer whose press was not heard of for
+  // kForgotten is let go; a ball that was not used for kIdle leaves.
+  void update(Timestamp now);
+
+  // Controls that act now, in their order: each once. Motions are not among them.
+  std::vector<ControlId> takeActs();
+
+  // What is drawn.
+  bool byBall() const noexcept { return by_ball_; }
+  std::optional<ControlId> hovered() const noexcept { return hovered_; }
+  std::optional<ControlId> selected() const noexcept;  // by the ball
+  std::optional<ControlId> pressed() const noexcept;   // with the pointer still on it, or by ball
+  // Whether the pointer's button is pressed, wherever it was pressed.
+  bool isDown() const noexcept { return down_; }
+
+  static constexpr Duration kRepeatAfter = std::chrono::milliseconds(500);
+  static constexpr Duration kRepeatEvery = std::chrono::milliseconds(200);
+  static constexpr Duration kForgotten = std::chrono::milliseconds(1500);
+  static constexpr Duration kIdle = std::chrono::seconds(30);
+  // A push of the ball beyond this share of full scale selects the next control; less than half of
+  // it counts as let go.
+  static constexpr float kPush = 0.3F;
+
+ private:
+  struct Press {
+    ControlId id;
+    Timestamp heard;       // when the pointer was heard of last
+    Timestamp next_act{};  // kStep: when it acts again
+  };
+  void begin(std::optional<Press>& press, ControlId id, Timestamp now);
+  void repeat(std::optional<Press>& press, Timestamp now);
+  void select(int right, int down, Timestamp now);
+
+  const PanelLayout& layout_;
+  std::vector<ControlId> acts_;  // bounded: see takeActs()
+  // The pointer
+  std::optional<ControlId> hovered_;
+  bool down_ = false;  // its button
+  std::optional<Press> press_;
+  // The ball
+  bool by_ball_ = false;
+  ControlId selected_ = ControlId::kReset;
+  bool armed_ = false;  // its buttons were released since it entered
+  std::optional<Press> ball_press_;
+  std::optional<Timestamp> next_step_;  // while it is pushed: when the selection moves on
+  Timestamp used_{};
+};
+
+}  // namespace merlin::render::panel

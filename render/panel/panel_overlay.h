@@ -1,0 +1,65 @@
+// PanelOverlay: the operator's panel, as an overlay of the wall's frames.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "render/frame/overlay.h"
+#include "render/panel/panel_plate.h"
+#include "render/text/plate_cover.h"
+#include "render/tiles/tile_plan.h"
+
+namespace merlin::render::panel {
+
+// The panel's place: on the first tile of kind operator that has room for it.
+struct PanelPlace {
+  Rect tile;  // in the frame
+  PanelLayout layout;
+
+  // The panel in the frame.
+  Rect inFrame() const noexcept {
+    return {tile.x + layout.at.x, tile.y + layout.at.y, layout.at.width, layout.at.height};
+  }
+};
+// Nothing if there is no tile of kind operator with at least 320 x 240 pixels.
+std::optional<PanelPlace> placePanel(const tiles::TilePlan& plan, const PanelOptions& options);
+
+// Port (an interface): where the overlay gets what it draws.
+class PanelSource {
+ public:
+  virtual ~PanelSource() = default;
+
+  // Called on the wall's thread, once or twice a frame; never waits.
+  virtual const PanelView& view() = 0;
+};
+
+// Thread-bound to the wall's thread.
+class PanelOverlay final : public frame::Overlay {
+ public:
+  // All must outlive this object. Costs about 60 ms for each of two sizes of text. Errors: those of
+  // text::GlyphAtlas::make().
+  static Result<std::unique_ptr<PanelOverlay>> make(const tiles::TilePlan& plan,
+                                                    const PanelPlace& place,
+                                                    const PanelOptions& options,
+                                                    PanelSource& source);
+
+  bool hasChanged() const override;
+  // Draws the panel anew if its view is another one; otherwise it costs the blending of the panel's
+  // pixels, and erase() a copy of them.
+  void draw(std::span<std::uint8_t> canvas) override;
+  void erase(std::span<std::uint8_t> canvas) override { cover_.erase(canvas); }
+
+ private:
+  PanelOverlay(int frame_width_px, const PanelPlace& place, const PanelOptions& options,
+               text::GlyphAtlas atlas, PanelSource& source);
+
+  const PanelPlace& place_;
+  const PanelOptions& options_;
+  text::GlyphAtlas atlas_;
+  PanelSource& source_;
+  text::PlateCover cover_;
+  std::optional<PanelView> drawn_;
+  text::Plate plate_;
+};
+
+}  // namespace merlin::render::panel
