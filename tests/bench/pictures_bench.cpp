@@ -1,6 +1,6 @@
 // ./dev bench pictures: a picture of 20000 x 10000 pixels that is panned and zoomed without pause,
 // a panorama that is turned: late frames, rate, memory; and the time from `merlin show` to the
-// first picture of a file that the wall has not seen before.
+// first picture of a file that the wall has not seen before, of 10^11 pixels too.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -13,6 +13,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include "daemon/base/clock.h"
 #include "daemon/status/client.h"
@@ -63,6 +64,24 @@ std::string pyramid(const Options& options, int width, int height, bool panorama
     if (made.status != 0) didNotRun("merlin image import", made.output, "./dev build");
   }
   return fs::absolute(name + ".tif").string();
+}
+
+// 10^11 pixels in a sparse file.
+std::string gigapixels(const Options& options) {
+  fs::create_directories(options.work);
+  const std::string name = options.work + "/400000x250000.tif";
+  const test::Outcome made =
+      test::run({"python3", "-B", MERLIN_SOURCE_DIR "/tests/support/sparse_pyramid.py", "400000",
+                 "250000", name});
+  if (made.status != 0) didNotRun("sparse_pyramid.py", made.output, "is python3 there?");
+  return fs::absolute(name).string();
+}
+
+// What a file takes on the disk [kB].
+double diskOf(const std::string& file) {
+  struct stat s {};
+  if (::stat(file.c_str(), &s) != 0) didNotRun(file, "it is not there", "make it again");
+  return static_cast<double>(s.st_blocks) * 512 / 1000;
 }
 
 // Memory of a process [MB]: its greatest resident size, or the present one.
@@ -128,7 +147,7 @@ Motion move(const Options& options, const test::TempDir& dir, const std::string&
 struct Shown {
   Measured first_s;
   std::uint64_t late = 0;
-  double model_memory_mb = 0;
+  double model_memory_mb = 0, most_memory_mb = 0;
 };
 
 // `merlin show` of a picture and of the model in turns, on a wall that the demo's script moves.
@@ -151,8 +170,9 @@ Shown show(const Options& options, const test::TempDir& dir, const std::string& 
     clock.sleepUntil(clock.now() + std::chrono::seconds(1), {});
   }
   const shm::WallStats end = daemon.wall();
+  const double most_mb = memoryOf(daemon.pid(), "VmHWM");
   daemon.stop();
-  return {quantileOf(times, 1, "pictures shown"), end.late - from.late, memory_mb};
+  return {quantileOf(times, 1, "pictures shown"), end.late - from.late, memory_mb, most_mb};
 }
 
 void print(Report& report, const std::string& name, const Motion& m, bool panorama) {
@@ -169,10 +189,12 @@ void benchPictures(const Options& options, Report& report) {
   const std::string large = pyramid(options, 20'000, 10'000, false);
   const std::string of_1998 = pyramid(options, 7000, 4000, false);
   const std::string panorama = pyramid(options, 8192, 4096, true);
+  const std::string huge = gigapixels(options);
   const test::TempDir dir;
   const Motion moved = move(options, dir, large, false);
   const Motion turned = move(options, dir, panorama, true);
   const Shown shown = show(options, dir, of_1998);
+  const Shown opened = show(options, dir, huge);
   report.text("{}\n", moved.renderer);
   print(report, "picture 20000 x 10000", moved, false);
   print(report, "panorama 8192 x 4096", turned, true);
@@ -181,7 +203,13 @@ void benchPictures(const Options& options, Report& report) {
       "frames in {} "
       "changes; the wall with the model alone takes {:.0f} MB\n",
       1000 * shown.first_s, shown.late, 2 * options.shows, shown.model_memory_mb);
+  report.text(
+      "merlin show, 10^11 pixels ({:.0f} kB of {:.0f} MB on the disk): at most {:.0f} ms; {} late "
+      "frames; {:.0f} MB before, {:.0f} MB at most\n",
+      diskOf(huge), static_cast<double>(fs::file_size(huge)) / 1e6, 1000 * opened.first_s,
+      opened.late, opened.model_memory_mb, opened.most_memory_mb);
   report.figure("show.first", shown.first_s, "s");
+  report.figure("show.first_of_1e11_pixels", opened.first_s, "s");
 }
 
 }  // namespace
