@@ -35,7 +35,7 @@ std::uint32_t twoDigits(std::uint32_t number) {
 }
 
 float strongest(std::initializer_list<float> pushes) {
-  return std::ranges::max(pushes, {}, [](float push) { return std::abs(push); });
+  return std::max(pushes, [](float a, float b) { return std::abs(a) < std::abs(b); });
 }
 
 // Pushed or twisted to the right; pushed up or away, or tilted away.

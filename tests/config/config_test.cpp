@@ -473,6 +473,17 @@ TEST(Config, StereoIsCheckedWithTheRestOfTheWall) {
             "(/devices/hand/station); the head needs its own\n");
 }
 
+TEST(Config, APanelNeedsAnOperatorsTileWithRoom) {
+  EXPECT_EQ(wallIs(R"("operator": {"panel": true})"), "");
+  EXPECT_EQ(wallIs(R"("operator": {"panel": true}, "tiles": {"tile_width": 319})"),
+            "f.json:1: /wall/operator/panel needs a tile of kind operator of at least 320 x 240 "
+            "pixels; the wall has none\n");
+  const std::string ball = R"({"input": "ball.button.3", "action": "operator_panel"})";
+  EXPECT_EQ(bindingsAre(ball),
+            "f.json:1: /devices/bindings/0/action is operator_panel, which needs the panel: "
+            "/wall/operator/panel is off\n");
+}
+
 // The pair of "left" is two placed tiles; the finding is at the one of the file.
 TEST(Config, AFaultOfAnOutputInStereoIsWhereTheFileHasIt) {
   EXPECT_EQ(

@@ -232,5 +232,31 @@ TEST_F(DeviceFeedTest, AlignActionsArriveInTheirOrder) {
   for (std::size_t i = 0; i < kAlignActionCount; ++i) EXPECT_EQ(input.align.begun[i], i + 1);
 }
 
+// The ball works the operator's panel: what its buttons are bound to does not happen meanwhile.
+TEST_F(DeviceFeedTest, ActionsOfTheBallAreLeftOutExceptThePanels) {
+  const auto begin = [&](shm::ActionSource source, std::uint32_t times) {
+    shm::ActionState state{};
+    state.begun[actionIndex("next_content")] = times;
+    state.begun[actionIndex("operator_panel")] = times;
+    state.held[actionIndex("fly")] = 1;
+    (*segment_)->actions[source].publish(state);
+  };
+  push();
+  begin(shm::kBallActions, 0);
+  begin(shm::kPanelActions, 0);
+  EXPECT_TRUE(read().scene.fly);
+  feed_.leaveOutBall(true);
+  begin(shm::kBallActions, 3);
+  (*segment_)->actions[shm::kPanelActions].publish([&] {
+    shm::ActionState state{};
+    state.begun[actionIndex("next_content")] = 2;
+    return state;
+  }());
+  const WallInput input = read();
+  EXPECT_EQ(input.next_content, 2U) << "those of others remain";
+  EXPECT_EQ(input.operator_panel, 3U);
+  EXPECT_FALSE(input.scene.fly);
+}
+
 }  // namespace
 }  // namespace merlin::wall

@@ -270,5 +270,24 @@ TEST(RfbSettings, ThePasswordsFileIsForItsOwnerOnly) {
   EXPECT_FALSE(readPassword(dir / "pipe"));  // and does not wait for a writer
 }
 
+TEST(RfbInput, WhatIsOnTheOperatorsPanelDoesNotTurnTheModel) {
+  InputMap map;
+  map.panel().place(PanelPointer::Place{100, 0, 50, 50, 640, 480});
+  const auto told = [&] { return map.panel().take(Timestamp()); };
+  map.pointer(1, 110, 10, 480);
+  map.pointer(1, 400, 300, 480);
+  map.pointer(0, 400, 300, 480);
+  EXPECT_FALSE(map.take());
+  EXPECT_EQ(told(), "750 490 1");
+  EXPECT_EQ(told(), "1040 780 1");
+  map.pointer(1, 10, 10, 480);
+  map.pointer(1, 110, 10, 480);
+  EXPECT_TRUE(map.take()) << "a drag that began beside it";
+  map.pointer(0, 110, 10, 480);
+  map.pointer(2, 110, 10, 480);
+  map.pointer(2, 120, 10, 480);
+  EXPECT_TRUE(map.take()) << "another button";
+}
+
 }  // namespace
 }  // namespace merlin::rfb
