@@ -172,6 +172,7 @@ TEST(PanelLayout, APointHitsTheButtonThatItIsOn) {
     EXPECT_TRUE(hit(x, y));
     EXPECT_TRUE(hit(x + button.at.width - 1, y + button.at.height - 1));
     EXPECT_FALSE(hit(x - 1, y));
+    EXPECT_FALSE(hit(x + button.at.width, y));
     EXPECT_FALSE(hit(x, y + button.at.height));
   }
   EXPECT_EQ(buttonAt(layout, {0, 0}), nullptr);
@@ -321,7 +322,8 @@ TEST_F(PanelInputTest, TheBallsButtonPressesWhatIsSelected) {
   ball(0, 0, true);
   EXPECT_EQ(input_.pressed(), C::kLeft);
   ball(0, 1, true);
-  EXPECT_EQ(input_.pressed(), C::kLeft) << "whoever presses the button moves the ball";
+  EXPECT_EQ(input_.pressed(), C::kLeft);
+  EXPECT_EQ(input_.selected(), C::kLeft) << "whoever presses the button moves the ball";
 }
 
 TEST_F(PanelInputTest, TheButtonThatEnteredPressesNothing) {
