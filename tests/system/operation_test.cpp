@@ -129,6 +129,7 @@ std::string argumentFor(const CommandInfo& command) {
   if (command.name == "signal") return "shared_memory";
   if (command.name == "testcard") return "off";
   if (command.name == "playlist") return "next";
+  if (command.name == "operator_pointer") return "out";
   if (command.name == "move") return "0.1 -0.1 0 0 30 0";
   return command.argument.empty() ? "" : "auto";
 }
@@ -137,7 +138,7 @@ std::string argumentFor(const CommandInfo& command) {
 TEST(Operation, EveryCommandOfTheListIsCarriedOut) {
   const TempDir dir;
   Merlind m(dir, makeModel(dir, 2), "commands",
-            {.also = {{"wall", {{"snapshots", dir / "shots"}}}}});
+            {.also = {{"wall", {{"snapshots", dir / "shots"}, {"operator", {{"panel", true}}}}}}});
   ASSERT_TRUE(m.ready()) << m.process().output();
   for (const CommandInfo& command : kCommands) {
     if (command.bindable == Bindable::kHeld) continue;  // takes effect only while its input is held
