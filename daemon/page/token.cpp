@@ -56,7 +56,7 @@ std::optional<std::string> tokenIn(const UniqueFd& file) {
   return token;
 }
 
-Result<Ok> lock(const UniqueFd& file, const std::string& path) {
+Result<Ok> lockToken(const UniqueFd& file, const std::string& path) {
   if (::flock(file.get(), LOCK_EX | LOCK_NB) == 0) return Ok{};
   if (errno != EWOULDBLOCK) return failed(path);
   return Error{Errc::kBusy,
@@ -82,7 +82,7 @@ Result<TokenFile> TokenFile::open(const std::string& path) {
   // O_NONBLOCK: never waits for a pipe of this name.
   UniqueFd old(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (old.valid()) {
-    if (const auto locked = lock(old, path); !locked) return locked.error();
+    if (const auto locked = lockToken(old, path); !locked) return locked.error();
     if (auto token = tokenIn(old)) return TokenFile(path, *std::move(token), std::move(old));
   }
   if (::unlink(path.c_str()) != 0 && errno != ENOENT) return failed(path);
@@ -90,7 +90,7 @@ Result<TokenFile> TokenFile::open(const std::string& path) {
   if (!token) return token.error();
   auto file = write(path, *token);
   if (!file) return file.error();
-  if (const auto locked = lock(*file, path); !locked) return locked.error();
+  if (const auto locked = lockToken(*file, path); !locked) return locked.error();
   return TokenFile(path, *std::move(token), *std::move(file));
 }
 
