@@ -17,6 +17,7 @@
 #include <sys/resource.h>
 #include <sys/syscall.h>
 
+#include "daemon/base/sanitizer.h"
 #include "daemon/base/unique_fd.h"
 
 namespace merlin::import {
@@ -139,7 +140,7 @@ Result<std::vector<std::string>> closeSandbox(const std::string& input, const st
                                               const Limits& limits) {
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
     return Error{Errc::kIo, fmt::format("PR_SET_NO_NEW_PRIVS: {}", std::strerror(errno))};
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these reserve terabytes
+#if !defined(MERLIN_ANY_SANITIZER)  // these reserve terabytes
   if (const auto set = limit(RLIMIT_AS, limits.memory_bytes, "memory"); !set) return set.error();
 #endif
   if (const auto set = limit(RLIMIT_CPU, limits.cpu_s, "CPU time"); !set) return set.error();

@@ -14,6 +14,7 @@
 
 #include "daemon/base/log.h"
 #include "daemon/base/printable_text.h"
+#include "daemon/base/sanitizer.h"
 #include "daemon/rfb/input_map.h"
 #include "daemon/rfb/rfb_screen.h"
 #include "daemon/rfb/shown_picture.h"
@@ -32,7 +33,7 @@ void limitProcess() {
   };
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_NOFILE, 64);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these reserve terabytes
+#if !defined(MERLIN_ANY_SANITIZER)  // these reserve terabytes
   limit(RLIMIT_DATA, rlim_t{1} << 30);
 #endif
 }

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/random.h"
+#include "daemon/base/sanitizer.h"
 #include "drivers/cyberglove/calibration_files.h"
 #include "drivers/cyberglove/protocol.h"
 #include "drivers/emulate/emulator.h"
@@ -218,7 +219,7 @@ int main(int argc, char** argv) {
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("fuzz", json, [&](merlin::bench::Report& report) {
-#ifndef __SANITIZE_ADDRESS__
+#ifndef MERLIN_ADDRESS_SANITIZER
     report.text("(without sanitizers: only a crash would show)\n");
 #endif
     for (const auto& target : merlin::bench::kTargets)

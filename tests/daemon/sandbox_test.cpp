@@ -13,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "daemon/base/sanitizer.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::import {
@@ -92,7 +93,7 @@ TEST_F(SandboxTest, LimitsFilesAndMemory) {
           const bool first = ::write(fd, text.data(), text.size()) == 1000;
           return first && ::write(fd, text.data(), text.size()) < 0 && errno == EFBIG;
         },
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(MERLIN_ANY_SANITIZER)
             [] {
               void* const large = std::malloc(std::size_t{1} << 30);
               const bool refused = large == nullptr;

@@ -1,6 +1,7 @@
 // User errors: each gives one clear message and the right exit status, and leaves nothing behind.
 #include <gtest/gtest.h>
 
+#include "daemon/base/sanitizer.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -46,7 +47,7 @@ TEST_F(BadInput, ATruncatedScan) {
   EXPECT_FALSE(std::filesystem::exists(dir_ / "out.mrm"));
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(MERLIN_ANY_SANITIZER)
 TEST_F(BadInput, ALimitOfTheAddressSpaceCountsAsWhatIsFree) {
   const std::string reduce = fmt::format("{} mesh reduce {}/config/models/ankylosaurus.ply -o {}",
                                          kMerlin, kSource, dir_ / "out.mrm");

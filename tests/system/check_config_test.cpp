@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include "daemon/base/sanitizer.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -182,7 +183,7 @@ TEST_F(CheckConfig, ACheckThatDoesNotEndIsNotValid) {
   for (int i = 0; i < 340'000; ++i) bindings += i == 0 ? "{}" : ",{}";
   writeText(dir_ / "c.json", "{\"devices\": {\"bindings\": [" + bindings + "]}}");
   const std::string check = kMerlind + " --check-config " + dir_ / "c.json";
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(MERLIN_ANY_SANITIZER)
   const Outcome starved = run({"/bin/bash", "-c", "ulimit -v 150000; exec " + check});
   EXPECT_EQ(starved.status, 2) << starved.output;
 #endif

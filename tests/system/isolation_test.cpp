@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "daemon/base/sanitizer.h"
 #include "daemon/shm/segment.h"
 #include "daemon/shm/shm_sink.h"
 #include "drivers/loop/device_loop.h"
@@ -22,7 +23,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
+#if defined(MERLIN_ANY_SANITIZER)
 constexpr bool kTimed = false;  // a sanitizer's build is too slow to check times
 #else
 constexpr bool kTimed = true;

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/base/sanitizer.h"
 #include "render/image/image_file.h"
 #include "tests/support/page_process.h"
 #include "tests/support/pyramids.h"
@@ -370,7 +371,7 @@ std::size_t threads(pid_t pid) {
   return count;
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(MERLIN_ANY_SANITIZER)
 constexpr std::size_t kMostMemory_kb = 1'000'000;
 #else
 constexpr std::size_t kMostMemory_kb = 100'000;

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/base/sanitizer.h"
 #include "render/image/image_file.h"
 #include "tests/support/picture_files.h"
 #include "tests/system/merlind.h"
@@ -89,7 +90,7 @@ TEST(ImageImport, SaysWhatIsWrongAndLeavesNothing) {
   writeText(dir / "lies.ppm", "P6\n100000 100000\n255\n" + std::string(1000, 'x'));
   expectRefused(dir / "lies.ppm", 2, "lies.ppm");
   writePpm(dir / "good.ppm", 600, 400, [](int x, int) { return plain(x % 256, 0, 0); });
-#if !defined(__SANITIZE_ADDRESS__)  // it reserves terabytes, so that there is no limit
+#if !defined(MERLIN_ADDRESS_SANITIZER)  // it reserves terabytes, so that there is no limit
   expectRefused(dir / "good.ppm", 2, "", {"--memory", "30M"});
 #endif
   EXPECT_EQ(import(dir / "good.ppm", dir / "out.png").status, 2) << "it must end in .tif";

@@ -11,6 +11,7 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 
+#include "daemon/base/sanitizer.h"
 #include "daemon/base/unique_fd.h"
 #include "render/image/image_file.h"
 #include "tests/support/vnc_client.h"
@@ -240,7 +241,7 @@ std::string requests(int count) {
 
 // A picture of 3.7 MB, a frame of 4.9 MB and the library. The address sanitizer keeps what was
 // freed.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(MERLIN_ANY_SANITIZER)
 constexpr std::size_t kMostMemory_kb = 1'000'000;
 #else
 constexpr std::size_t kMostMemory_kb = 50'000;
