@@ -52,20 +52,28 @@ Answer triangles(const Parts& p, const std::string& argument) {
   return done();
 }
 
+// Reads as many numbers with blanks between them as `numbers` holds; false unless that is all, and
+// number i is at most most(i) in size.
+template <typename Number, std::size_t count, typename Most>
+bool readNumbers(std::string_view text, std::array<Number, count>& numbers, const Most& most) {
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    while (at != end && *at == ' ') ++at;
+    const auto [rest, error] = std::from_chars(at, end, numbers[i]);
+    // not std::abs(), which the least int does not have
+    if (error != std::errc() || !(numbers[i] >= -most(i) && numbers[i] <= most(i))) return false;
+    at = rest;
+  }
+  return at == end;
+}
+
 // Six numbers: see the list of commands. The limits keep one command from losing the model.
 Answer move(const Parts& p, std::string_view argument) {
   constexpr float kMostRadii = 10, kMostDegrees = 360;
   std::array<float, 6> step{};
-  const char* at = argument.data();
-  const char* const end = at + argument.size();
-  bool good = true;
-  for (std::size_t i = 0; good && i < step.size(); ++i) {
-    while (at != end && *at == ' ') ++at;
-    const auto [rest, error] = std::from_chars(at, end, step[i]);
-    good = error == std::errc() && std::abs(step[i]) <= (i < 3 ? kMostRadii : kMostDegrees);
-    at = rest;
-  }
-  if (!good || at != end) {
+  const auto most = [](std::size_t i) { return i < 3 ? kMostRadii : kMostDegrees; };
+  if (!readNumbers(argument, step, most)) {
     return Error{
         Errc::kInvalidArgument,
         fmt::format("\"{}\" is not six numbers X Y Z RX RY RZ: X, Y and Z are from -{} to {} times "
@@ -151,16 +159,8 @@ Answer testcard(const Parts& p, const std::string& name) {
 // "X Y 0|1", or "out".
 Answer operatorPointer(wall::OperatorPanel& panel, std::string_view argument) {
   std::array<int, 3> numbers{};
-  const char* at = argument.data();
-  const char* const end = at + argument.size();
-  bool good = argument != "out";
-  for (std::size_t i = 0; good && i < numbers.size(); ++i) {
-    while (at != end && *at == ' ') ++at;
-    const auto [rest, error] = std::from_chars(at, end, numbers[i]);
-    good = error == std::errc() && std::abs(numbers[i]) <= 1'000'000;
-    at = rest;
-  }
-  good = good && at == end && (numbers[2] == 0 || numbers[2] == 1);
+  const bool good = readNumbers(argument, numbers, [](std::size_t) { return 1'000'000; }) &&
+                    (numbers[2] == 0 || numbers[2] == 1);
   if (!good && argument != "out") {
     return Error{Errc::kInvalidArgument,
                  fmt::format("\"{}\" is neither X Y 0, X Y 1 nor out; X and Y are a pixel of the "

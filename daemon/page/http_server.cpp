@@ -13,6 +13,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "daemon/base/words.h"
 #include "daemon/page/gate.h"
 
 namespace merlin::page {
@@ -70,13 +71,8 @@ MHD_Result queue(MHD_Connection* connection, const Answer& answer) {
   return queued;
 }
 
-std::string lowerCase(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 void keepHeader(Request& request, std::string name, std::string_view value) {
-  name = lowerCase(std::move(name));
+  name = lowerCase(name);
   if (std::ranges::none_of(kKeptHeaders, [&](const char* kept) { return name == kept; })) return;
   request.repeated = !request.headers.emplace(std::move(name), value).second || request.repeated;
 }

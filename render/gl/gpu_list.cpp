@@ -1,21 +1,16 @@
 #include "render/gl/gpu_list.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "daemon/base/words.h"
 #include "render/gl/egl_context.h"
 
 namespace merlin::render::gl {
 namespace {
-
-std::string lowerCase(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 std::string describe(std::size_t index, const Gpu& gpu) {
   const RendererInfo& r = gpu.renderer;
@@ -49,7 +44,7 @@ bool isNamed(const Gpu& gpu, const std::string& wanted) {
 }  // namespace
 
 bool isSoftwareRenderer(std::string_view name) {
-  const std::string lower = lowerCase(std::string(name));
+  const std::string lower = lowerCase(name);
   constexpr const char* kSoftware[] = {"llvmpipe", "softpipe", "swrast", "software", "swiftshader"};
   return std::ranges::any_of(
       kSoftware, [&](const char* word) { return lower.find(word) != std::string::npos; });

@@ -174,6 +174,21 @@ TEST(Operation, EveryCommandOfTheListIsCarriedOut) {
       << wrong.output;
 }
 
+TEST(Operation, APointerWhereNoFrameIsIsRefused) {
+  const TempDir dir;
+  Merlind m(dir, makeModel(dir, 2), "pointer",
+            {.also = {{"wall", {{"operator", {{"panel", true}}}}}}});
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  const std::string endpoint = fmt::format("ipc://{}/{}-wall.command", dir.path(), m.instance());
+  for (const char* place :
+       {"-2147483648 0 0", "1000001 0 0", "0 0 2", "0 0", "0 0 0 0", "nan 0 0"}) {
+    const auto answer = status::ask(endpoint, "operator_pointer", std::chrono::seconds(10), place);
+    ASSERT_FALSE(answer) << place;
+    EXPECT_NE(answer.error().what.find("is neither X Y 0, X Y 1 nor out"), std::string::npos)
+        << answer.error().what;
+  }
+}
+
 TEST(Operation, ARunDirectoryMayHaveAnyName) {
   const TempDir dir;
   Merlind m(dir, "", "quoted", {.role = "devices", .also = {{"run_directory", dir / "a\"b"}}});

@@ -21,7 +21,7 @@ std::optional<Corner> cornerOf(std::string_view name) {
   if (name.size() < 7 || !readNumber(name.substr(1, 2), latitude) ||
       !readNumber(name.substr(4, 3), longitude) || latitude > 90 || longitude > 180)
     return std::nullopt;
-  const std::string letters = inLowerCase(name.substr(0, 4));
+  const std::string letters = lowerCase(name.substr(0, 4));
   const bool south = letters[0] == 's', west = letters[3] == 'w';
   if ((letters[0] != 'n' && !south) || (letters[3] != 'e' && !west)) return std::nullopt;
   return Corner{south ? -1.0 * latitude : latitude, west ? -1.0 * longitude : longitude};
@@ -66,7 +66,7 @@ Result<GridHeader> readGridHeader(std::string_view& text) {
     std::string_view rest = text;
     const std::string_view words = trimmed(takeLine(rest));
     std::string_view value = words;
-    const std::string key = inLowerCase(takeWord(value));
+    const std::string key = lowerCase(takeWord(value));
     double number = 0;
     if (key.empty() || key[0] < 'a' || key[0] > 'z' || key == "nan") return header;
     const bool read = readNumber(trimmed(value), number) && std::abs(number) <= 1e30;
@@ -146,7 +146,7 @@ std::array<double, 2> metresPerDegree(double latitude_deg) {
 }
 
 bool isHgt(std::string_view bytes, std::string_view name) noexcept {
-  return inLowerCase(name).ends_with(".hgt") ||
+  return lowerCase(name).ends_with(".hgt") ||
          (sideOf(bytes.size()) > 0 && cornerOf(name).has_value());
 }
 
@@ -179,9 +179,7 @@ Result<StoredImage> parseHgt(std::string_view bytes, std::string_view name) {
   return image;
 }
 
-bool isEsriGrid(std::string_view text) noexcept {
-  return inLowerCase(text.substr(0, 5)) == "ncols";
-}
+bool isEsriGrid(std::string_view text) noexcept { return lowerCase(text.substr(0, 5)) == "ncols"; }
 
 Result<StoredImage> parseEsriGrid(std::string_view text, std::string_view projection) {
   const auto header = readGridHeader(text);

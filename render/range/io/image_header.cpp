@@ -76,10 +76,10 @@ std::optional<Scanner> scannerOf(std::string_view name) {
 Result<Ok> applyLine(std::string_view line, ImageHeader& header) {
   const std::size_t colon = line.find(':');
   if (colon == std::string_view::npos) return Ok{};
-  const std::string key = inLowerCase(trimmed(line.substr(0, colon)));
+  const std::string key = lowerCase(trimmed(line.substr(0, colon)));
   const std::string_view value = trimmed(line.substr(colon + 1));
   if (key == "geometry") {
-    header.scanner = scannerOf(inLowerCase(value));
+    header.scanner = scannerOf(lowerCase(value));
     if (header.scanner) return Ok{};
     return keyFault(key, value, "orthogonal, spinning, pinhole, elevation");
   }

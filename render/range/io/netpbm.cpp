@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostHeader = std::size_t{1} << 22;  // bytes with its comments
 
-bool isBlank(char c) { return kBlanks.find(c) != std::string_view::npos; }
+bool isBlank(char c) { return kSpaces.find(c) != std::string_view::npos; }
 
 // Reads the words and comments before the pixels.
 class HeaderReader {

@@ -80,7 +80,7 @@ class ObjParser {
   std::string_view nextLine() {
     const auto next = [&] {
       ++line_;
-      return trimmed(takeLine(left_));
+      return trimmed(takeUncommented(left_));
     };
     std::string_view line = next();
     if (!goesOn(line)) return line;

@@ -43,7 +43,7 @@ class Library {
     }
     ObjMaterial* material = nullptr;  // null: a material that no face uses
     for (std::string_view text = file->text(); !text.empty();) {
-      std::string_view line = takeLine(text);
+      std::string_view line = takeUncommented(text);
       const std::string_view keyword = takeWord(line);
       if (keyword == "newmtl")
         material = find(trimmed(line));

@@ -81,7 +81,7 @@ class OffFile {
   // The next line that is neither blank nor a comment; empty at the end of the file.
   std::string_view nextLine() {
     while (!rest_.empty()) {
-      const std::string_view line = trimmed(takeLine(rest_));
+      const std::string_view line = trimmed(takeUncommented(rest_));
       ++line_;
       if (!line.empty()) return line;
     }
