@@ -1,5 +1,6 @@
-// Whether this is a sanitizer's build: it reserves terabytes of address space, counts its own memory
-// as the program's, and is slow. g++ and clang say it differently; this is the only place that asks.
+// Whether this is a sanitizer's build: it reserves terabytes of address space, counts its own
+// memory as the program's, and is slow. g++ and clang say it differently; this is the only place
+// that asks.
 #pragma once
 
 #if defined(__SANITIZE_ADDRESS__)

@@ -13,7 +13,7 @@ struct ProjectorStatus {
   std::string power{}, wanted{};   // off, warming, on, cooling, unknown; wanted: empty if it is
   std::string health{}, reason{};  // "ok", "unreachable"
   std::string address{}, identity{};
-  std::vector<int> lamp_hours{};  // of each lamp
+  std::vector<int> lamp_hours{};     // of each lamp
   std::optional<double> within_s{};  // longest time until it is what it becomes, or is wanted to be
 };
 

@@ -52,11 +52,11 @@ struct WallContent {
 };
 
 // Reads a content: a model as a whole, of a picture its coarsest level. Of slides it reads the
-// first that can be shown after the slide `after` in the order of their names, cyclically, and tries
-// the next one, to see whether it is the last; sentences about those that cannot be shown are added
-// to `skipped`. Errors: those of
-// readMrmCopy(), openPicture(); kInvalidArgument (a model lacks the feature that `show` names);
-// kNotFound (a folder without a pyramid that can be shown). O(size of a model's file).
+// first that can be shown after the slide `after` in the order of their names, cyclically, and
+// tries the next one, to see whether it is the last; sentences about those that cannot be shown are
+// added to `skipped`. Errors: those of readMrmCopy(), openPicture(); kInvalidArgument (a model
+// lacks the feature that `show` names); kNotFound (a folder without a pyramid that can be shown).
+// O(size of a model's file).
 Result<WallContent> readContent(const ContentEntry& entry,
                                 const render::content::ShownFeature& show, const std::string& after,
                                 std::vector<std::string>& skipped);
