@@ -14,7 +14,7 @@ namespace {
 
 nlohmann::ordered_json jsonOf(const ImportTimes& times) {
   return {{"reading", times.reading},   {"filtering", times.filtering}, {"meshing", times.meshing},
-          {"reducing", times.reducing}, {"writing", times.writing},     {"all", times.all}};
+          {"reducing", times.reducing}, {"writing", times.writing},     {"all", times.all()}};
 }
 
 // What both kinds of input have in common.
@@ -75,8 +75,8 @@ void printFeatures(const ImportedRange& range) {
 void printTimes(const ImportedFile& written, const ImportTimes& times) {
   printWritten(written.mesh);
   if (written.coarsest) printOut("  levels    down to {} triangles\n", *written.coarsest);
-  printOut("  {:.2f} s: reading {:.2f}, filtering {:.2f}, meshing {:.2f}", times.all, times.reading,
-           times.filtering, times.meshing);
+  printOut("  {:.2f} s: reading {:.2f}, filtering {:.2f}, meshing {:.2f}", times.all(),
+           times.reading, times.filtering, times.meshing);
   if (written.coarsest) printOut(", reducing {:.2f}", times.reducing);
   printOut(", writing {:.2f}; peak memory {} MB\n", times.writing, peakMemory() >> 20);
 }

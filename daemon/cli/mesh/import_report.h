@@ -17,7 +17,9 @@ struct ImportNames {
 
 // Seconds of the command's steps.
 struct ImportTimes {
-  double reading = 0, filtering = 0, meshing = 0, reducing = 0, writing = 0, all = 0;
+  double reading = 0, filtering = 0, meshing = 0, reducing = 0, writing = 0;
+
+  double all() const noexcept { return reading + filtering + meshing + reducing + writing; }
 };
 
 // What was written.

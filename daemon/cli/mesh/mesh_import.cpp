@@ -145,7 +145,6 @@ int writeImage(const MeshImport& options, ImportedRange& range, ImportTimes& tim
   ImportedFile written;
   written.mesh.format = "pgm";
   for (const auto& plane : range.image.planes) written.mesh.left_out.push_back(plane.name);
-  times.all = times.reading + times.filtering + times.writing;
   reportRange(namesOf(options), range, written, times);
   return kExitDone;
 }
@@ -178,7 +177,6 @@ int importRange(const MeshImport& options) {
   const auto written = writeOutput(options, mesh, range->features, times);
   if (!written) return fail(written.error());
   times.writing = watch.lap() - times.reducing;
-  times.all = times.reading + times.filtering + times.meshing + times.reducing + times.writing;
   reportRange(namesOf(options), *range, *written, times);
   return kExitDone;
 }
@@ -218,7 +216,6 @@ int importMesh(const MeshImport& options) {
   const auto written = writeOutput(options, mesh, {}, times);
   if (!written) return fail(written.error());
   times.writing = watch.lap() - times.reducing;
-  times.all = times.reading + times.reducing + times.writing;
   reportMesh(namesOf(options), *loaded, *written, times);
   return kExitDone;
 }
