@@ -19,6 +19,13 @@ inline float loadLeFloat(const std::uint8_t* p) noexcept {
   return std::bit_cast<float>(loadLe32(p));
 }
 
+inline void storeLe32(std::uint8_t* p, std::uint32_t v) noexcept {
+  for (int i = 0; i < 4; ++i) p[i] = static_cast<std::uint8_t>(v >> 8 * i);
+}
+inline void storeLeFloat(std::uint8_t* p, float v) noexcept {
+  storeLe32(p, std::bit_cast<std::uint32_t>(v));
+}
+
 inline void appendBe16(std::string& out, std::uint16_t v) {
   out.push_back(static_cast<char>(v >> 8));
   out.push_back(static_cast<char>(v & 0xFF));

@@ -1,12 +1,12 @@
 // PLY, binary little-endian: colours as bytes, labels as integers, all else as floats.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <span>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "daemon/base/bytes.h"
 #include "render/mesh/io/ply/ply_features.h"
 #include "render/mesh/io/writer.h"
 
@@ -40,15 +40,11 @@ Form formOf(const Feature& f) {
 
 constexpr std::size_t kBlock = std::size_t{1} << 18;  // bytes that are written at once
 
-void storeLe32(std::uint8_t* p, std::uint32_t v) {
-  for (int i = 0; i < 4; ++i) p[i] = static_cast<std::uint8_t>(v >> 8 * i);
-}
-
 std::size_t sizeOf(Form form) { return form == Form::kByte ? 1 : 4; }
 
 void store(std::uint8_t* p, float value, Form form) {
   switch (form) {
-    case Form::kFloat: storeLe32(p, std::bit_cast<std::uint32_t>(value)); return;
+    case Form::kFloat: storeLeFloat(p, value); return;
     case Form::kByte: {
       const float level = std::clamp(value, 0.0F, 1.0F) * 255;
       *p = static_cast<std::uint8_t>(double{level} + 0.5);  // lround() takes much longer
