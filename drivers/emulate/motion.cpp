@@ -18,7 +18,7 @@ using Ball = std::array<float, 6>;
 constexpr Ball kRest{};
 constexpr Ball kSpin{0, 0, 0, 0, 0.6F, 0};
 constexpr Ball kPush{0.5F, 0, 0.4F, 0, 0, 0};
-constexpr Ball kDown{0, -0.9F, 0, 0, 0, 0}, kUp{0, 0.9F, 0, 0, 0, 0};
+constexpr Ball kDown{0, -0.9F, 0, 0, 0, 0};
 constexpr Ball kTumble{0, 0.2F, 0, 0.5F, -0.5F, 0.3F};
 
 // A visitor: turns the model, looks at it, pushes it, takes it in the hand, lets go, tumbles it,
@@ -58,12 +58,10 @@ constexpr Phase kPushes[] = {
 
 // A visitor who works the operator's panel: button 3 is bound to the action operator_panel, which
 // gives the ball to the panel and, the next time, takes it away. Each time the ball is pushed down,
-// then button 1 is held, and the ball is pushed up again, so that the same control is chosen each
-// time.
+// well under the half second after which the panel selects one control more, then button 1 is held.
 constexpr Phase kPanel[] = {
-    {0.4, "open", kRest, 4, false}, {0.8, "open", kRest, 0, false}, {0.5, "open", kDown, 0, false},
-    {0.6, "open", kRest, 0, false}, {1.2, "open", kRest, 1, false}, {0.6, "open", kRest, 0, false},
-    {0.5, "open", kUp, 0, false},   {0.8, "open", kRest, 0, false},
+    {0.4, "open", kRest, 4, false}, {0.8, "open", kRest, 0, false}, {0.25, "open", kDown, 0, false},
+    {0.6, "open", kRest, 0, false}, {1.2, "open", kRest, 1, false}, {0.8, "open", kRest, 0, false},
 };
 
 constexpr MotionScript kScripts[] = {

@@ -45,6 +45,7 @@ void PanelInput::leave() {
 
 void PanelInput::enterByBall(Timestamp now) {
   by_ball_ = true;
+  selected_ = kFirst;
   armed_ = false;
   used_ = now;
   ball_press_.reset();

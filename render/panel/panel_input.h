@@ -29,8 +29,8 @@ class PanelInput {
   // The pointer has left the tile, or does not exist any more.
   void leave();
 
-  // The ball begins, or ends, to work the panel. A button that is pressed now, and a push, do
-  // nothing until they are let go.
+  // The ball begins, or ends, to work the panel. It begins at kFirst, wherever it was the last
+  // time. A button that is pressed now, and a push, do nothing until they are let go.
   void enterByBall(Timestamp now);
   void leaveByBall();
   // To be called once a frame while the ball works the panel.
@@ -58,6 +58,8 @@ class PanelInput {
   // A push of the ball beyond this share of full scale selects the next control; less than half of
   // it counts as let go.
   static constexpr float kPush = 0.3F;
+  // What is selected when the ball enters: the middle of the arrows.
+  static constexpr ControlId kFirst = ControlId::kReset;
 
  private:
   struct Press {
@@ -77,7 +79,7 @@ class PanelInput {
   std::optional<Press> press_;
   // The ball
   bool by_ball_ = false;
-  ControlId selected_ = ControlId::kReset;
+  ControlId selected_ = kFirst;
   bool armed_ = false;  // its buttons were released since it entered
   std::optional<Press> ball_press_;
   std::optional<Timestamp> next_step_;  // while it is pushed: when the selection moves on

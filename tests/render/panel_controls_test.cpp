@@ -326,6 +326,16 @@ TEST_F(PanelInputTest, TheBallsButtonPressesWhatIsSelected) {
   EXPECT_EQ(input_.selected(), C::kLeft) << "whoever presses the button moves the ball";
 }
 
+TEST_F(PanelInputTest, TheBallBeginsInTheMiddleWhereverItLeft) {
+  enter();
+  ball(0, -1);
+  EXPECT_EQ(input_.selected(), C::kDown);
+  input_.leaveByBall();
+  EXPECT_EQ(input_.selected(), std::nullopt);
+  enter();
+  EXPECT_EQ(input_.selected(), C::kReset);
+}
+
 TEST_F(PanelInputTest, TheButtonThatEnteredPressesNothing) {
   input_.enterByBall(now_);
   ball(0, 0, true);

@@ -150,7 +150,7 @@ TEST_F(OperatorPanelSystem, TheBallEntersWorksItAndLeaves) {
         {{"devices",
           {{"bindings",
             json::array({json{{"input", "ball.button.3"}, {"action", "operator_panel"}}})}}}});
-  // The visitor does it again every eleven seconds; a busy machine may miss a button.
+  // The visitor does it again every eight seconds; a busy machine may miss a button.
   constexpr std::chrono::minutes kPatience(2);
   EXPECT_TRUE(eventually([&] { return byBall() && wall_->wall().moving == 0; }, kPatience));
   EXPECT_TRUE(eventually([&] { return byBall() && wall_->wall().moving == 1; }, kPatience));
