@@ -1,6 +1,5 @@
 // merlin mesh import: makes a mesh or a model of a range image, an elevation map or a mesh of any
 // format that is read.
-#include <chrono>
 #include <filesystem>
 #include <memory>
 
@@ -11,11 +10,11 @@
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh/import_range.h"
 #include "daemon/cli/mesh/import_report.h"
+#include "daemon/cli/mesh/late_bar.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/mesh/mesh_memory.h"
 #include "daemon/cli/mesh/reduction_step.h"
 #include "daemon/cli/print.h"
-#include "daemon/cli/progress.h"
 #include "render/image/image_file.h"
 #include "render/lod/io/mrm_file.h"
 
@@ -39,34 +38,6 @@ struct MeshImport {
 ImportNames namesOf(const MeshImport& options) {
   return {options.input(), options.output, options.json};
 }
-
-// Shows a bar once the work has taken two seconds.
-class LateBar {
- public:
-  LateBar(std::size_t items, const Clock& clock)
-      : items_(items), clock_(clock), began_(clock.now()), bar_("importing", "pixels", clock) {}
-
-  render::range::Work work(unsigned threads) {
-    return {threadsOr(threads), [this](double share) {
-              shown_ = shown_ || clock_.now() - began_ > std::chrono::seconds(2);
-              if (shown_) bar_.update(share, at(share));
-            }};
-  }
-  void finish() {
-    if (shown_) bar_.finish(items_);
-  }
-
- private:
-  std::size_t at(double share) const {
-    return static_cast<std::size_t>(share * static_cast<double>(items_));
-  }
-
-  std::size_t items_;
-  const Clock& clock_;
-  Timestamp began_;
-  ProgressBar bar_;
-  bool shown_ = false;
-};
 
 // Takes the time from one call to the next.
 class Stopwatch {
@@ -157,7 +128,7 @@ int importRange(const MeshImport& options) {
   if (!range) return fail(range.error());
   for (const std::string& note : range->notes) printNote(options.input() + ": " + note);
   times.reading = watch.lap();
-  LateBar bar(range->image.pixels(), clock);
+  LateBar bar("importing", range->image.pixels(), clock);
   const auto work = bar.work(options.threads);
   const auto filtered = filterRange(options.input(), options.range, options.limit(),
                                     render::range::partOf(work, 0, 0.5), *range);

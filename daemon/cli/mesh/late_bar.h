@@ -1,0 +1,43 @@
+// LateBar: a progress bar for steps that work on pixels, shown once the work has taken two seconds.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+#include "daemon/base/clock.h"
+#include "daemon/cli/progress.h"
+#include "render/range/work.h"
+
+namespace merlin::cli {
+
+// Thread-bound. Must outlive the Work that it gives.
+class LateBar {
+ public:
+  LateBar(const std::string& title, std::size_t pixels, const Clock& clock)
+      : pixels_(pixels), clock_(clock), began_(clock.now()), bar_(title, "pixels", clock) {}
+
+  // `threads`: 0 for all cores.
+  render::range::Work work(unsigned threads) {
+    return {threadsOr(threads), [this](double share) {
+              shown_ = shown_ || clock_.now() - began_ > std::chrono::seconds(2);
+              if (shown_) bar_.update(share, at(share));
+            }};
+  }
+  void finish() {
+    if (shown_) bar_.finish(pixels_);
+  }
+
+ private:
+  std::size_t at(double share) const {
+    return static_cast<std::size_t>(share * static_cast<double>(pixels_));
+  }
+
+  std::size_t pixels_;
+  const Clock& clock_;
+  Timestamp began_;
+  ProgressBar bar_;
+  bool shown_ = false;
+};
+
+}  // namespace merlin::cli
