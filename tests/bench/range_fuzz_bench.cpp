@@ -68,6 +68,27 @@ std::string pgmOf(const std::string& keys) {
   return bytes;
 }
 
+std::string gridOf(const std::string& form, const std::string& body) {
+  return "ply\nformat " + form +
+         " 1.0\nobj_info num_cols 3\nobj_info num_rows 2\nelement vertex 5\nproperty float x\n"
+         "property float y\nproperty float z\nproperty uchar red\nelement range_grid 6\n"
+         "property list uchar int vertex_indices\nend_header\n" +
+         body;
+}
+
+std::string gridPoints() {
+  std::string bytes;
+  for (int v = 0; v < 5; ++v) {
+    for (const int k : {v % 3, v / 3, v % 2}) appendLeFloat(bytes, static_cast<float>(k));
+    bytes.push_back(static_cast<char>(50 * v));
+  }
+  for (std::uint32_t p = 0; p < 6; ++p) {
+    bytes.push_back(p == 5 ? '\0' : '\1');
+    if (p < 5) appendLe32(bytes, p);
+  }
+  return bytes;
+}
+
 std::vector<std::string> goodFiles() {
   return {
       pgmOf("# geometry: orthogonal\n# angles: 60 40\n# scale: 0.001\n# unit: m\n"),
@@ -80,6 +101,9 @@ std::vector<std::string> goodFiles() {
       pcdOf("binary", pcdPoints()),
       pcdOf("binary_compressed", packed(pcdPoints())),
       pcdOf("ascii", "0 0 0 1 2\n1 0 0 3 4\n2 0 1 5 6\n0 -1 0 7 8\n1 -1 nan 9 1\n2 -1 0 2 3\n"),
+      gridOf("ascii",
+             "0 0 0 9\n1 0 0 255\n2 0 1 7\n0 1 0 0\n1 1 0 9\n1 0\n1 1\n1 2\n1 3\n0\n1 4\n"),
+      gridOf("binary_little_endian", gridPoints()),
       "ncols 3\nnrows 3\nxllcorner 10\nyllcorner 20\ncellsize 0.01\nNODATA_value -9\n1 2 3 4 -9 6 "
       "7 "
       "8.5 1e2\n",

@@ -19,6 +19,7 @@
 #include "render/range/io/netpbm.h"
 #include "render/range/io/pcd.h"
 #include "render/range/io/plane_file.h"
+#include "render/range/io/range_grid.h"
 #include "tests/support/range_images.h"
 #include "tests/support/temp_dir.h"
 
@@ -403,6 +404,80 @@ TEST_F(RangeFile, FeaturesHaveTheImagesSizeAndTheirScale) {
   EXPECT_EQ(other.error().what, dir_ / "s.pgm" + ": has 3 x 2 pixels; the range image has 2 x 2");
 }
 
+// As in the Stanford 3D Scanning Repository: seen from far along z, rows from the bottom. 3 x 2
+// pixels, the fifth without a vertex.
+const std::string kStanford =
+    "ply\nformat ascii 1.0\nobj_info num_cols 3\nobj_info num_rows 2\nelement vertex 5\nproperty "
+    "float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar "
+    "green\nproperty uchar blue\nproperty float confidence\nelement range_grid 6\nproperty list "
+    "uchar int vertex_indices\nend_header\n";
+const std::string kStanfordBody =
+    "0 1 0.5 255 0 0 0.25\n1 1 0.9 0 255 0 0.5\n2 1 -0.7 0 0 255 1\n0 2 0 9 9 9 0\n2 2 0 9 9 9 0\n"
+    "1 0\n1 1\n1 2\n1 3\n0\n1 4\n";
+
+TEST_F(RangeFile, PointsOnAGridOfAPlyAreWhereTheFileSays) {
+  const auto loaded = read(kStanford + kStanfordBody, {}, "a.ply");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->format, "PLY with a range_grid");
+  const RangeImage& image = loaded->image;
+  EXPECT_EQ(image.width, 3u);
+  EXPECT_EQ(image.height, 2u);
+  EXPECT_FALSE(isReturn(image.range[4]));
+  const auto points = pointsOf(image, {});
+  const float expected[] = {0, 1, 0.5F, 1, 1, 0.9F, 2, 1, -0.7F};
+  for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(points[i], expected[i], 1e-5) << i;
+  EXPECT_GT(image.geometry.T_world_scanner[11], 10) << "far along z";
+  EXPECT_TRUE(isMirrored(image)) << "its rows run upwards";
+  ASSERT_EQ(image.planes.size(), 2u);
+  EXPECT_EQ(image.find("colour")->values[4], 1) << "green of the second pixel, 255";
+  EXPECT_EQ(image.find("confidence")->values[2], 1);
+  EXPECT_EQ(image.find("confidence")->values[5], 0);
+  ASSERT_EQ(loaded->notes.size(), 1u);
+  EXPECT_NE(loaded->notes[0].find("far away in the direction of z"), std::string::npos);
+}
+
+TEST_F(RangeFile, AGridAtEvenAnglesIsSeenFromTheOrigin) {
+  std::string body;
+  const std::size_t end = kStanford.find("property uchar red");
+  const std::string header = kStanford.substr(0, end) + kStanford.substr(kStanford.find("element "
+                                                                                        "range"));
+  for (const int i : {-1, 0, 1, -1, 1}) {
+    const double a = 0.5 * i;
+    body += fmt::format("{} 0.{} {}\n", (3 + i) * std::sin(a), i + 1, -(3 + i) * std::cos(a));
+  }
+  const auto loaded = read(header + body + "1 0\n1 1\n1 2\n1 3\n0\n1 4\n", {}, "a.ply");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->image.geometry.T_world_scanner, kIdentity);
+  EXPECT_NEAR(loaded->image.range[1], 3, 0.01);
+}
+
+TEST_F(RangeFile, FaultsOfAGridNameThePixelOrTheVertex) {
+  const auto with = [](std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+  };
+  const std::string good = kStanford + kStanfordBody;
+  EXPECT_EQ(fault(with(good, "obj_info num_cols 3\n", ""), {}, "a.ply").substr(0, 40),
+            "a.ply: has a range_grid without its num_");
+  EXPECT_EQ(fault(with(good, "num_cols 3", "num_cols 4"), {}, "a.ply"),
+            "a.ply: range_grid has 6 pixels; num_cols x num_rows is 4 x 2");
+  EXPECT_EQ(fault(with(good, "num_cols 3", "num_cols x"), {}, "a.ply"),
+            "a.ply: line 3: num_cols is \"x\"; allowed are 1 to 268435456");
+  EXPECT_EQ(fault(with(good, "1 4\n", "1 5\n"), {}, "a.ply"),
+            "a.ply: pixel 5 has vertex 5; there are 5");
+  EXPECT_EQ(fault(with(good, "1 4\n", "1 -1\n"), {}, "a.ply"), "a.ply: pixel 5 has vertex -1");
+  EXPECT_EQ(fault(with(good, "1 4\n", "2 4 0\n"), {}, "a.ply"),
+            "a.ply: pixel 5 has 2 vertices; allowed are 0 and 1");
+  EXPECT_EQ(fault(with(good, "1 4\n", ""), {}, "a.ply"), "a.ply: ends at range_grid 5 of 6");
+  EXPECT_EQ(fault(with(good, "0 255 0 0.5", "0 red 0 0.5"), {}, "a.ply"),
+            "a.ply: vertex 1: \"red\" is not a number it may have");
+  EXPECT_EQ(fault(with(good, "element vertex 5", "element vertex 999999999"), {}, "a.ply"),
+            "a.ply: the header says 999999999 elements vertex, more than the file has bytes for");
+  EXPECT_EQ(fault(with(good, "obj_info num_r", "\xd1 num_r"), {}, "a.ply"),
+            "a.ply: line 4: \"\\xd1\" is not a keyword of a PLY header");
+  EXPECT_EQ(fault(with(good, "float z", "float w"), {}, "a.ply"),
+            "a.ply: the vertices have no property z");
+}
+
 void expectGoodEnd(const Result<LoadedRange>& loaded) {
   const std::string text = loaded ? faultOf(loaded->image) : loaded.error().what;
   EXPECT_EQ(text.empty(), loaded.ok()) << text;
@@ -414,7 +489,10 @@ void expectParsed(const std::string& bytes) {
   const auto expectSentence = [&](const auto& parsed, std::size_t pixels) {
     EXPECT_TRUE(parsed ? pixels > 0 : parsed.error().what.size() > 10) << bytes;
   };
-  if (isPcd(bytes)) {
+  if (isRangeGrid(bytes)) {
+    const auto grid = parseRangeGrid(bytes);
+    expectSentence(grid, grid ? grid->image.range.size() : 0);
+  } else if (isPcd(bytes)) {
     const auto pcd = parsePcd(bytes);
     expectSentence(pcd, pcd ? pcd->image.range.size() : 0);
   } else {
@@ -432,6 +510,7 @@ TEST_F(RangeFile, EveryPrefixAndEveryDamagedByteEndsWell) {
       "P2\n# angles: 9 9\n2 2 99\n1 2 3 4\n",
       pcdBinary(),
       pcdCompressed(),
+      kStanford + kStanfordBody,
       kPcdHeader + "DATA ascii\n0 0 -1 0 7\n1 0 -1 0 300\n0 -1 -1 0 0\nnan 0 0 0 0\n",
       kGrid + "1 2.5 -9999\n -4 5e1 6\n"};
   for (const std::string& good : files) {

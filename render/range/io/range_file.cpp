@@ -12,6 +12,7 @@
 #include "render/range/io/elevation.h"
 #include "render/range/io/netpbm.h"
 #include "render/range/io/pcd.h"
+#include "render/range/io/range_grid.h"
 #include "render/range/io/words.h"
 
 namespace merlin::render::range {
@@ -39,7 +40,7 @@ struct RangeFormat {
   Result<StoredImage> (*read)(std::string_view bytes, const std::string& path);
 };
 
-// PCD has a row of its own in readRange(), since it has points and not ranges.
+// Formats of points have their own functions below, since they have no ranges.
 constexpr RangeFormat kFormats[] = {
     {"PGM", isPgm, [](std::string_view bytes, const std::string&) { return parseNetpbm(bytes); }},
     {"ESRI ASCII grid", [](std::string_view bytes, std::string_view) { return isEsriGrid(bytes); },
@@ -167,19 +168,33 @@ Result<LoadedRange> loadStored(StoredImage stored, const RangeOptions& options) 
   return loaded;
 }
 
-Result<LoadedRange> loadPcd(std::string_view bytes, const RangeOptions& options) {
+bool hasPoints(std::string_view bytes) { return isPcd(bytes) || isRangeGrid(bytes); }
+
+Result<LoadedRange> parsePoints(std::string_view bytes) {
+  LoadedRange loaded;
+  const auto take = [&](auto parsed, const char* format) -> Result<LoadedRange> {
+    if (!parsed) return parsed.error();
+    loaded.image = std::move(parsed->image);
+    loaded.format = format;
+    loaded.notes = std::move(parsed->notes);
+    return std::move(loaded);
+  };
+  return isPcd(bytes) ? take(parsePcd(bytes), "PCD")
+                      : take(parseRangeGrid(bytes), "PLY with a range_grid");
+}
+
+Result<LoadedRange> loadPoints(std::string_view bytes, const RangeOptions& options) {
   if (options.scanner || options.angles_deg || !options.angle_table.empty() || options.cell ||
       options.exaggeration || options.no_return)
     return Error{
         Errc::kInvalidArgument,
         "its points have coordinates; leave --geometry, --angles, --cell, --exaggerate and "
         "--no-return out"};
-  auto pcd = parsePcd(bytes);
-  if (!pcd) return pcd.error();
-  LoadedRange loaded{std::move(pcd->image), "PCD", std::move(pcd->notes)};
+  auto loaded = parsePoints(bytes);
+  if (!loaded) return loaded;
   const double scale = options.scale.value_or(1);
-  for (float& range : loaded.image.range) range = static_cast<float>(range * scale);
-  for (const std::size_t k : {3U, 7U, 11U}) loaded.image.geometry.T_world_scanner[k] *= scale;
+  for (float& range : loaded->image.range) range = static_cast<float>(range * scale);
+  for (const std::size_t k : {3U, 7U, 11U}) loaded->image.geometry.T_world_scanner[k] *= scale;
   return loaded;
 }
 
@@ -187,7 +202,7 @@ Result<LoadedRange> load(const std::string& path, const RangeOptions& options) {
   const auto file = MappedFile::open(path);
   if (!file) return file.error();
   const std::string_view bytes = file->text();
-  if (!options.raw && isPcd(bytes)) return loadPcd(bytes, options);
+  if (!options.raw && hasPoints(bytes)) return loadPoints(bytes, options);
   const RangeFormat* format = options.raw ? nullptr : formatOf(bytes, nameIn(path));
   if (!options.raw && !format)
     return Error{Errc::kUnsupported, "is not a range image; read are " + readableRanges()};
@@ -210,11 +225,11 @@ std::string emptyFault(const RangeImage& image) {
 
 bool isRangeFile(const std::string& path) {
   const auto file = MappedFile::open(path);
-  return file && (isPcd(file->text()) || formatOf(file->text(), nameIn(path)));
+  return file && (hasPoints(file->text()) || formatOf(file->text(), nameIn(path)));
 }
 
 std::string readableRanges() {
-  return "PGM, organised PCD, HGT, ESRI ASCII grids and raw binary (--raw)";
+  return "PGM, organised PCD, PLY with a range_grid, HGT, ESRI ASCII grids and raw binary (--raw)";
 }
 
 Result<LoadedRange> readRange(const std::string& path, const RangeOptions& options) {

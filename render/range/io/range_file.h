@@ -4,6 +4,7 @@
 //   PGM, 8 and 16 bits     ranges; the header's comments carry the geometry (README.md)
 //   raw binary             ranges and other planes, described by RangeOptions::raw
 //   PCD                    organised points; ascii, binary, binary_compressed
+//   PLY with a range_grid  points on a grid; ascii, both byte orders
 //   HGT, ESRI ASCII grid   heights
 //
 // Everything in a file is hostile until it has been checked. Nothing throws, nothing is printed.
