@@ -122,7 +122,7 @@ void drawChart(const OperatorFacts& facts, Rows& rows) {
   };
   if (facts.rate_now_hz > 0)
     note(fmt::format("{:.1f} ms", 1000 / facts.rate_now_hz), Align::kLeft, kDim);
-  note(fmt::format("{:.2g} % late", facts.late_percent), Align::kRight,
+  note(fmt::format("{:.1f} % late", facts.late_percent), Align::kRight,
        facts.late_percent > 1 ? kBad : kDim);
 }
 
