@@ -96,6 +96,19 @@ std::array<double, 2> boxDistances(const Node& node, const Vector& p) noexcept {
   return sum;
 }
 
+// Where the ray enters the boxes of both children; infinite if it misses one, or if that is empty.
+template <typename Node>
+std::array<double, 2> boxEntries(const Node& node, const Ray& ray) noexcept {
+  std::array<double, 2> entries{};
+  for (std::size_t side = 0; side < 2; ++side) {
+    const std::array<float, 3> low = {node.low[0][side], node.low[1][side], node.low[2][side]};
+    const std::array<float, 3> high = {node.high[0][side], node.high[1][side], node.high[2][side]};
+    entries[side] =
+        low[0] > high[0] ? std::numeric_limits<double>::infinity() : ray.entry(low, high);
+  }
+  return entries;
+}
+
 }  // namespace
 
 class TriangleTree::Builder {
@@ -217,34 +230,55 @@ void TriangleTree::nearestOfLeaf(const Node& node, int side, const Vector& p,
   }
 }
 
-TriangleTree::Nearest TriangleTree::nearest(const Vector& p, std::uint32_t hint) const noexcept {
+void TriangleTree::firstOfLeaf(const Node& node, int side, const Ray& ray,
+                               Crossing& best) const noexcept {
+  const std::uint32_t first = node.child[side];
+  for (std::uint32_t place = first; place < first + node.count[side]; ++place) {
+    const auto hit = ray.hit(cornersAt(place));
+    if (hit && hit->distance < best.hit.distance) best = {*hit, place};
+  }
+}
+
+template <typename DistancesOf, typename VisitLeaf>
+void TriangleTree::walk(const DistancesOf& distancesOf, const double& limit,
+                        const VisitLeaf& visitLeaf) const noexcept {
   struct Pending {
     std::uint32_t node;
-    double distance2;
+    double distance;
   };
   std::array<Pending, kDeepest> stack;  // NOLINT: filled before it is read
   std::size_t pending = 0;
   stack[pending++] = {0, 0.0};
-  Nearest best{{std::numeric_limits<double>::infinity(), {}}, kNone};
-  if (hint != kNone) best = {nearestAt(hint, p), hint};
   while (pending > 0) {
     const Pending next = stack[--pending];
-    if (!(next.distance2 < best.point.distance2)) continue;
+    if (!(next.distance < limit)) continue;
     const Node& node = nodes_[next.node];
-    const std::array<double, 2> distances = boxDistances(node, p);
+    const std::array<double, 2> distances = distancesOf(node);
     const int nearer = distances[1] < distances[0] ? 1 : 0;
     const auto isInner = [&](int side) { return node.count[side] == 0; };
-    const auto isNear = [&](int side) {
-      return distances[static_cast<std::size_t>(side)] < best.point.distance2;
-    };
+    const auto isNear = [&](int side) { return distances[static_cast<std::size_t>(side)] < limit; };
     for (const int side : {nearer, 1 - nearer}) {
-      if (!isInner(side) && isNear(side)) nearestOfLeaf(node, side, p, best);
+      if (!isInner(side) && isNear(side)) visitLeaf(node, side);
     }
     for (const int side : {1 - nearer, nearer}) {  // the nearer one is pushed last: visited next
       if (isInner(side) && isNear(side))
         stack[pending++] = {node.child[side], distances[static_cast<std::size_t>(side)]};
     }
   }
+}
+
+TriangleTree::Nearest TriangleTree::nearest(const Vector& p, std::uint32_t hint) const noexcept {
+  Nearest best{{std::numeric_limits<double>::infinity(), {}}, kNone};
+  if (hint != kNone) best = {nearestAt(hint, p), hint};
+  walk([&](const Node& node) { return boxDistances(node, p); }, best.point.distance2,
+       [&](const Node& node, int side) { nearestOfLeaf(node, side, p, best); });
+  return best;
+}
+
+TriangleTree::Crossing TriangleTree::firstAlong(const Ray& ray) const noexcept {
+  Crossing best{{std::numeric_limits<double>::infinity(), {}}, kNone};
+  walk([&](const Node& node) { return boxEntries(node, ray); }, best.hit.distance,
+       [&](const Node& node, int side) { firstOfLeaf(node, side, ray, best); });
   return best;
 }
 

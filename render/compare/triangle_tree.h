@@ -1,5 +1,5 @@
 // TriangleTree: a bounding volume hierarchy over the triangles of a mesh; finds the point of the
-// surface that is nearest to a given point.
+// surface that is nearest to a given point, and the first one along a ray.
 //
 // Binary, axis-aligned boxes, binned surface area heuristic, at most 4 triangles per leaf; a node
 // holds both children's boxes in one cache line. Triangles are stored in the order of the leaves,
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "render/compare/triangle_distance.h"
+#include "render/compare/triangle_ray.h"
 #include "render/mesh/mesh.h"
 
 namespace merlin::render::compare {
@@ -22,6 +23,11 @@ class TriangleTree {
 
   struct Nearest {
     NearestPoint point;
+    std::uint32_t place = kNone;
+  };
+
+  struct Crossing {
+    RayHit hit;
     std::uint32_t place = kNone;
   };
 
@@ -43,6 +49,11 @@ class TriangleTree {
   // returned.
   Nearest nearest(const Vector& p, std::uint32_t hint = kNone) const noexcept;
 
+  // Finds where the ray first meets the surface, from either side; kNone if it does not. Where it
+  // meets several triangles at one distance (on their common edge), the one whose place in the tree
+  // is visited first, which depends on nothing else.
+  Crossing firstAlong(const Ray& ray) const noexcept;
+
  private:
   struct Node {
     float low[3][2], high[3][2];  // axis, child
@@ -53,7 +64,14 @@ class TriangleTree {
 
   class Builder;
 
+  // Visits the leaves whose boxes are nearer than `limit`, which the visits may lower; nearer boxes
+  // first. distancesOf(node) gives the distances of both children's boxes, infinite for an empty
+  // one.
+  template <typename DistancesOf, typename VisitLeaf>
+  void walk(const DistancesOf& distancesOf, const double& limit,
+            const VisitLeaf& visitLeaf) const noexcept;
   void nearestOfLeaf(const Node& node, int side, const Vector& p, Nearest& best) const noexcept;
+  void firstOfLeaf(const Node& node, int side, const Ray& ray, Crossing& best) const noexcept;
 
   std::vector<Node> nodes_;           // the first is the root
   std::vector<std::uint32_t> order_;  // place -> triangle of the mesh

@@ -196,6 +196,15 @@ std::vector<float> pointsOf(const RangeImage& image, const Work& work) {
   return points;
 }
 
+std::vector<Beam> evenBeams(double vertical_rad, std::size_t rows) {
+  std::vector<Beam> beams(rows);
+  for (std::size_t r = 0; r < rows && rows > 1; ++r) {
+    const double share = static_cast<double>(r) / static_cast<double>(rows - 1);
+    beams[r].altitude_rad = vertical_rad * (0.5 - share);
+  }
+  return beams;
+}
+
 double stepOf(const RangeImage& image) {
   constexpr std::size_t kPairs = 4096;
   if (image.geometry.scanner == Scanner::kElevation) return 0;

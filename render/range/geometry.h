@@ -18,6 +18,9 @@ std::string faultOf(const RangeImage& image);
 // O(pixels). REQUIRES: faultOf(image) is empty.
 std::vector<float> pointsOf(const RangeImage& image, const Work& work);
 
+// Rows at equal steps of altitude over an angle, the top one first, for a spinning scanner.
+std::vector<Beam> evenBeams(double vertical_rad, std::size_t rows);
+
 // Typical angle between the rays of neighbouring pixels, the larger one of those along rows and
 // those along columns: medians of up to 4096 pairs each [rad]; 0 for kElevation, or if no two rays
 // are neighbours. O(1). REQUIRES: faultOf(image) is empty.

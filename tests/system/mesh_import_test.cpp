@@ -139,6 +139,35 @@ TEST_F(MeshImport, MeshesGoTheSameWay) {
   EXPECT_NEAR(nlohmann::json::parse(info.output)["box"]["low"][0], -9.9817, 1e-4);
 }
 
+TEST_F(MeshImport, AScanOfAModelComesBackWithItsFeaturesAndWithoutOptions) {
+  ASSERT_EQ(import({scan_, "--feature", "colour=" + (dir_ / "colour.ppm"), "--feature",
+                    "label=" + (dir_ / "confidence.pgm"), "-o", dir_ / "a.ply"})
+                .status,
+            0);
+  const Outcome scanned = run({kMerlin, "mesh", "scan", dir_ / "a.ply", "--camera", "0", "0", "0",
+                               "--geometry", "pinhole", "--angles", "50", "35", "--width", "40",
+                               "--height", "30", "-o", dir_ / "b.pgm", "--json"});
+  ASSERT_EQ(scanned.status, 0) << scanned.output;
+  const auto scan = nlohmann::json::parse(scanned.output);
+  EXPECT_EQ(scan["returns"], 1200) << "the model is wider than the view";
+  EXPECT_EQ(scan["features"][0]["file"], "b.colour.png");
+  const auto json = report({dir_ / "b.pgm", "-o", ply_});
+  EXPECT_EQ(json["geometry"], "pinhole");
+  EXPECT_EQ(json["triangles"], 2 * 39 * 29);
+  std::string names;
+  for (const auto& f : json["features"]) names += f["name"].get<std::string>() + " ";
+  ASSERT_EQ(names, "colour label confidence ");
+  EXPECT_EQ(json["features"][1]["range"][1], 46) << "whole numbers stay whole";
+  std::filesystem::remove(dir_ / "b.label.pgm");
+  const auto without = report({dir_ / "b.pgm", "-o", ply_});
+  ASSERT_EQ(without["features"].size(), 2u);
+  EXPECT_NE(without["notes"][0].get<std::string>().find("--feature label=FILE"), std::string::npos);
+  const Outcome away = run({kMerlin, "mesh", "scan", dir_ / "a.ply", "--camera", "0", "0", "0", "0",
+                            "0", "5", "-o", dir_ / "out.pgm"});
+  EXPECT_EQ(away.status, 2);
+  EXPECT_NE(away.output.find("none of the rays meets it"), std::string::npos) << away.output;
+}
+
 TEST_F(MeshImport, TheSameInputGivesTheSameBytesOnAnyNumberOfThreads) {
   ASSERT_EQ(import({scan_, "--median", "3", "--threads", "1", "-o", dir_ / "a.ply"}).status, 0);
   ASSERT_EQ(import({scan_, "--median", "3", "--threads", "4", "-o", dir_ / "b.ply"}).status, 0);

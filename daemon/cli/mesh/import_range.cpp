@@ -50,23 +50,54 @@ Error percentOfHeight(const char* option) {
           fmt::format("{}: a height is no distance; give a length, not a percentage", option)};
 }
 
+// A fault of a feature's name as the end of a message; empty if it may be added.
+std::string nameFault(const std::string& name, const ImportedRange& loaded) {
+  for (const char* taken : {"normal", "texcoord", "border"}) {
+    if (name == taken) return fmt::format("the name {} is MERLIN's own", name);
+  }
+  return loaded.image.find(name) ? fmt::format("there is a feature {} already", name) : "";
+}
+
 // Adds the image of a --feature NAME=FILE.
 Result<Ok> addFeature(const std::string& text, ImportedRange& loaded) {
   const std::size_t equals = text.find('=');
   const std::string name = text.substr(0, equals);
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     return Error{Errc::kInvalidArgument, fmt::format("--feature {}: is not NAME=FILE", text)};
-  for (const char* taken : {"normal", "texcoord", "border"}) {
-    if (name == taken)
-      return Error{Errc::kInvalidArgument,
-                   fmt::format("--feature {}: the name {} is MERLIN's own", text, name)};
-  }
-  if (loaded.image.find(name))
-    return Error{Errc::kInvalidArgument,
-                 fmt::format("--feature {}: there is a feature {} already", text, name)};
+  if (const std::string fault = nameFault(name, loaded); !fault.empty())
+    return Error{Errc::kInvalidArgument, fmt::format("--feature {}: {}", text, fault)};
   auto plane = range::readPlane(name, text.substr(equals + 1), loaded.image);
   if (!plane) return plane.error();
   loaded.image.planes.push_back(*std::move(plane));
+  return Ok{};
+}
+
+// Adds the images that the file itself names, but for those that were given. One that is missing is
+// a note only: the ranges may have been copied without it.
+Result<Ok> addNamedFeatures(const std::string& path, bool texture,
+                            const std::vector<range::FeatureFile>& named, ImportedRange& loaded) {
+  const std::size_t given = loaded.image.planes.size();
+  const auto isGiven = [&](const std::string& name) {
+    const auto& planes = loaded.image.planes;
+    return std::any_of(planes.begin(), planes.begin() + static_cast<std::ptrdiff_t>(given),
+                       [&](const range::Plane& plane) { return plane.name == name; });
+  };
+  for (const range::FeatureFile& feature : named) {
+    if (isGiven(feature.name) || (texture && feature.name == "colour")) continue;
+    if (const std::string fault = nameFault(feature.name, loaded); !fault.empty())
+      return Error{Errc::kMalformed, fmt::format("{}: feature: {}", path, fault)};
+    const std::string file = path.substr(0, path.rfind('/') + 1) + feature.file;
+    auto plane = range::readPlane(feature.name, file, loaded.image);
+    if (plane) {
+      loaded.image.planes.push_back(*std::move(plane));
+      continue;
+    }
+    if (plane.error().code != Errc::kNotFound) return plane.error();
+    loaded.notes.push_back(
+        fmt::format("{}, the file of the feature {}, does not exist; the feature is left out "
+                    "(--feature {}=FILE)",
+                    file, feature.name, feature.name));
+  }
   return Ok{};
 }
 
@@ -311,6 +342,8 @@ Result<ImportedRange> loadRange(const std::string& path, const RangeImport& opti
   for (const std::string& text : options.features) {
     if (const auto added = addFeature(text, imported); !added) return added.error();
   }
+  const auto added = addNamedFeatures(path, texture, loaded->features, imported);
+  if (!added) return added.error();
   return imported;
 }
 

@@ -8,7 +8,7 @@ namespace merlin::cli {
 void addMesh(Command app, Run& run) {
   Command mesh = app.subcommand("mesh",
                                 "Meshes and multiresolution models: import, reduce, inspect, "
-                                "export, compare, draw, segment.");
+                                "export, compare, draw, segment, scan.");
   mesh.requireSubcommand();
   addMeshImport(mesh, run);
   addMeshReduce(mesh, run);
@@ -18,6 +18,7 @@ void addMesh(Command app, Run& run) {
   addMeshCompare(mesh, run);
   addMeshPicture(mesh, run);
   addMeshSegment(mesh, run);
+  addMeshScan(mesh, run);
 }
 
 }  // namespace merlin::cli

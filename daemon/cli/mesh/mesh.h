@@ -21,6 +21,7 @@ void addMeshImport(Command mesh, Run& run);
 void addMeshInfo(Command mesh, Run& run);
 void addMeshPicture(Command mesh, Run& run);
 void addMeshReduce(Command mesh, Run& run);
+void addMeshScan(Command mesh, Run& run);
 void addMeshSegment(Command mesh, Run& run);
 
 // Opens a multiresolution model (.mrm), or reads a mesh and makes a dendrogram of one level from

@@ -57,6 +57,21 @@ Error keyFault(std::string_view key, std::string_view found, std::string_view al
           fmt::format("{}: found \"{}\", allowed: {}", key, oneLine(excerpt(found)), allowed)};
 }
 
+// "NAME=FILE"; the file may not lie elsewhere, since the header comes from outside.
+Result<Ok> addFeature(std::string_view value, ImageHeader& header) {
+  const std::size_t equals = value.find('=');
+  const std::string_view name = value.substr(0, equals);
+  const std::string_view file =
+      equals == std::string_view::npos ? std::string_view() : value.substr(equals + 1);
+  if (name.empty() || file.empty() || file.front() == '.' ||
+      file.find('/') != std::string_view::npos)
+    return keyFault("feature", value, "NAME=FILE, a file in the same folder");
+  if (header.features.size() == kMostFeatures)
+    return keyFault("feature", value, fmt::format("{} features", kMostFeatures));
+  header.features.push_back({std::string(name), std::string(file)});
+  return Ok{};
+}
+
 }  // namespace
 
 const char* nameOf(Scanner scanner) {
@@ -87,6 +102,7 @@ Result<Ok> applyLine(std::string_view line, ImageHeader& header) {
     header.unit = excerpt(value);
     return Ok{};
   }
+  if (key == "feature") return addFeature(value, header);
   for (const Key& known : kKeys) {
     if (key != known.key) continue;
     const Numbers numbers = numbersOf(value, known.most);
@@ -116,6 +132,8 @@ std::string linesOf(const ImageHeader& header, std::string_view before) {
   addNumber("scale", header.scale);
   addNumber("no-return", header.no_return);
   if (!header.unit.empty()) add("unit", header.unit);
+  for (const FeatureFile& feature : header.features)
+    add("feature", feature.name + "=" + feature.file);
   if (header.camera) {
     std::string numbers;
     for (const double x : *header.camera)

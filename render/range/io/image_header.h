@@ -13,6 +13,12 @@
 
 namespace merlin::render::range {
 
+// A registered image of its own: the feature that it becomes, and its file, which lies in the
+// folder of the file that names it.
+struct FeatureFile {
+  std::string name, file;
+};
+
 struct ImageHeader {
   std::optional<Scanner> scanner{};
   std::optional<std::array<double, 2>> angles_deg{};  // horizontal, vertical; of beams only [0]
@@ -24,11 +30,14 @@ struct ImageHeader {
   std::optional<Pose> camera{};                       // T_world_scanner
   std::optional<std::array<double, 2>> cell{};        // of an elevation map: distances [units]
   std::string unit{};
+  std::vector<FeatureFile> features{};
 };
 
 // "orthogonal", "spinning", "pinhole", "elevation"; for kRays "rays".
 const char* nameOf(Scanner scanner);
 std::optional<Scanner> scannerOf(std::string_view name);  // not kRays
+
+inline constexpr std::size_t kMostFeatures = 64;  // that a header names
 
 // Sets what the line says, if it is "key: value" with a key of the table in README.md; other lines
 // are ignored. Errors: kMalformed, with the key, what was found and what is allowed.

@@ -159,7 +159,8 @@ Result<StoredImage> parseNetpbm(std::string_view bytes) {
   return image;
 }
 
-bool writePgm(const RangeImage& image, int bits, const WriteBytes& write) {
+bool writePgm(const RangeImage& image, int bits, const WriteBytes& write,
+              const std::vector<FeatureFile>& features) {
   assert(bits == 8 || bits == 16);
   const double largest = bits == 8 ? 255 : 65535;
   const Ends ends = endsOf(image.range);
@@ -170,6 +171,7 @@ bool writePgm(const RangeImage& image, int bits, const WriteBytes& write) {
   header.minimum = ends.low - step;
   header.maximum = ends.low + step * (largest - 1);
   header.no_return = 0;
+  header.features = features;
   std::string text = fmt::format("P5\n# range image, written by MERLIN\n{}{} {}\n{}\n",
                                  linesOf(header, "# "), image.width, image.height, largest);
   if (!write(std::as_bytes(std::span(text)))) return false;

@@ -19,8 +19,9 @@ Result<StoredImage> parseNetpbm(std::string_view bytes);
 
 // Writes a PGM of the ranges with all of the image's geometry in its header, so that reading it
 // gives the same image within half a step of the largest range's 1/65534 (16 bits) or 1/254 (8
-// bits). Planes are not written. Returns false if a write failed. REQUIRES: bits is 8 or 16, the
-// geometry is not kRays.
-bool writePgm(const RangeImage& image, int bits, const WriteBytes& write);
+// bits). Planes are not written; the header names the files of `features`. Returns false if a write
+// failed. REQUIRES: bits is 8 or 16, the geometry is not kRays.
+bool writePgm(const RangeImage& image, int bits, const WriteBytes& write,
+              const std::vector<FeatureFile>& features = {});
 
 }  // namespace merlin::render::range

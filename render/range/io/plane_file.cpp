@@ -1,12 +1,15 @@
 #include "render/range/io/plane_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include "daemon/base/bytes.h"
 #include "daemon/base/files.h"
 #include "render/image/image_file.h"
+#include "render/image/png_writer.h"
 #include "render/range/io/netpbm.h"
 
 namespace merlin::render::range {
@@ -75,7 +78,68 @@ Plane planeOf(const std::string& name, const image::ImageFile& picture) {
   return plane;
 }
 
+constexpr double kLargest = 65535;
+
+// The values that the stored 0 and the largest stored value stand for.
+struct StoredScale {
+  double minimum = 0, maximum = kLargest;
+  double step() const { return (maximum - minimum) / kLargest; }
+};
+
+StoredScale scaleOf(const Plane& plane, const RangeImage& image) {
+  double low = plane.low, high = plane.high;
+  bool known = low < high, whole = true;
+  for (std::size_t p = 0; p < image.pixels(); ++p) {
+    if (!isReturn(image.range[p])) continue;
+    const double value = plane.values[p];
+    whole = whole && value == std::round(value);
+    low = known ? std::min(low, value) : value;
+    high = known ? std::max(high, value) : value;
+    known = true;
+  }
+  const double from = std::min(low, 0.0);
+  if (whole && plane.low == plane.high && high - from <= kLargest) return {from, from + kLargest};
+  return {low, high > low ? high : low + 1};
+}
+
+Result<Ok> writeGrey(const std::string& path, const Plane& plane, const RangeImage& image) {
+  const StoredScale scale = scaleOf(plane, image);
+  ImageHeader header;
+  header.unit = plane.unit;
+  if (scale.minimum != 0 || scale.maximum != kLargest) {
+    header.minimum = scale.minimum;
+    header.maximum = scale.maximum;
+  }
+  std::string text = fmt::format("P5\n# feature of a range image, written by MERLIN\n{}{} {}\n{}\n",
+                                 linesOf(header, "# "), image.width, image.height, kLargest);
+  for (std::size_t p = 0; p < image.pixels(); ++p) {
+    const double value = isReturn(image.range[p]) ? plane.values[p] : scale.minimum;
+    const double stored = std::clamp((value - scale.minimum) / scale.step(), 0.0, kLargest);
+    appendBe16(text, static_cast<std::uint16_t>(std::lround(stored)));
+  }
+  return writeFile(path, text);
+}
+
+Result<Ok> writeColours(const std::string& path, const Plane& plane, const RangeImage& image) {
+  std::vector<std::uint8_t> rgba;
+  rgba.reserve(4 * image.pixels());
+  for (std::size_t p = 0; p < image.pixels(); ++p) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float value = std::clamp(plane.values[3 * p + k], 0.0F, 1.0F);
+      rgba.push_back(static_cast<std::uint8_t>(std::lround(255 * value)));
+    }
+    rgba.push_back(255);
+  }
+  return image::writePng(path, static_cast<int>(image.width), static_cast<int>(image.height), rgba);
+}
+
 }  // namespace
+
+const char* endingOf(const Plane& plane) { return plane.dimension == 3 ? ".png" : ".pgm"; }
+
+Result<Ok> writePlane(const std::string& path, const Plane& plane, const RangeImage& image) {
+  return plane.dimension == 3 ? writeColours(path, plane, image) : writeGrey(path, plane, image);
+}
 
 Result<Plane> readPlane(const std::string& name, const std::string& path, const RangeImage& image) {
   const auto file = MappedFile::open(path);

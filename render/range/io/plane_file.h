@@ -1,4 +1,4 @@
-// Registered images of other modalities, from files of their own.
+// Registered images of other modalities, in files of their own.
 #pragma once
 
 #include <string>
@@ -14,5 +14,15 @@ namespace merlin::render::range {
 // file's ending. Errors, with the file's name: kNotFound, kIo, kMalformed, kUnsupported,
 // kInvalidArgument (another size: both are named).
 Result<Plane> readPlane(const std::string& name, const std::string& path, const RangeImage& image);
+
+// The ending of the files in which writePlane() writes the plane: ".png" for colours, else ".pgm".
+const char* endingOf(const Plane& plane);
+
+// Writes a plane so that readPlane() gives it back: colours (dimension 3, each 0..1) as PNG with 8
+// bits; one value per pixel as PGM with 16 bits, whose header has the scale and the unit. Whole
+// numbers that lie within 65535 of one another are kept exactly. Only pixels with a return count;
+// the others are written as the lowest value. Errors: those of writeFile(). REQUIRES: dimension 1
+// or 3, finite values.
+Result<Ok> writePlane(const std::string& path, const Plane& plane, const RangeImage& image);
 
 }  // namespace merlin::render::range

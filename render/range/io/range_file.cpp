@@ -82,16 +82,6 @@ Result<Ok> overrideHeader(const RangeOptions& options, ImageHeader& header) {
   return Ok{};
 }
 
-// Rows at equal steps, for a spinning scanner with two angles and without a table.
-std::vector<Beam> evenBeams(double vertical_rad, std::size_t rows) {
-  std::vector<Beam> beams(rows);
-  for (std::size_t r = 0; r < rows && rows > 1; ++r) {
-    const double share = static_cast<double>(r) / static_cast<double>(rows - 1);
-    beams[r].altitude_rad = vertical_rad * (0.5 - share);
-  }
-  return beams;
-}
-
 Geometry geometryOf(const ImageHeader& header, const RangeOptions& options, std::size_t rows) {
   Geometry g;
   g.scanner = header.scanner.value_or(Scanner::kOrthogonal);
@@ -164,6 +154,7 @@ Result<LoadedRange> loadStored(StoredImage stored, const RangeOptions& options) 
                              *stored.header.columns, stored.width)};
   setRanges(stored, image);
   image.planes = std::move(stored.planes);
+  loaded.features = std::move(stored.header.features);
   loaded.notes = std::move(stored.notes);
   return loaded;
 }
@@ -250,13 +241,15 @@ Result<LoadedRange> readRange(const std::string& path, const RangeOptions& optio
   return loaded;
 }
 
-Result<Ok> writeRange(const std::string& path, const RangeImage& image) {
+Result<Ok> writeRange(const std::string& path, const RangeImage& image,
+                      const std::vector<FeatureFile>& features) {
   if (image.geometry.scanner == Scanner::kRays)
     return Error{Errc::kUnsupported,
                  path +
                      ": points with a ray each are not written as PGM, which has no place for "
                      "the rays"};
-  return writeFile(path, [&](const WriteBytes& write) { return writePgm(image, 16, write); });
+  return writeFile(path,
+                   [&](const WriteBytes& write) { return writePgm(image, 16, write, features); });
 }
 
 }  // namespace merlin::render::range

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "daemon/base/result.h"
+#include "render/range/io/image_header.h"
 #include "render/range/io/raw.h"
 #include "render/range/range_image.h"
 
@@ -36,8 +37,9 @@ struct RangeOptions {
 
 struct LoadedRange {
   RangeImage image;
-  std::string format;              // "PGM", ...
-  std::vector<std::string> notes;  // for the user: what was left out or assumed
+  std::string format;                 // "PGM", ...
+  std::vector<FeatureFile> features;  // that the file names; they are not read
+  std::vector<std::string> notes;     // for the user: what was left out or assumed
 };
 
 // Whether readRange() without options.raw is for a file that begins, or is named, like this.
@@ -54,8 +56,10 @@ std::string readableRanges();
 // this kind of file does not take, or one that is missing).
 Result<LoadedRange> readRange(const std::string& path, const RangeOptions& options);
 
-// Writes the ranges of an image, with its geometry, as a PGM of 16 bits. Errors: those of
+// Writes the ranges of an image, with its geometry and the names of the files of its features, as a
+// PGM of 16 bits. Errors: those of
 // writeFile(); kUnsupported for points with a ray each, which a PGM has no place for.
-Result<Ok> writeRange(const std::string& path, const RangeImage& image);
+Result<Ok> writeRange(const std::string& path, const RangeImage& image,
+                      const std::vector<FeatureFile>& features = {});
 
 }  // namespace merlin::render::range

@@ -1,0 +1,308 @@
+// merlin mesh scan: the range image that a scanner would take of a model.
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/late_bar.h"
+#include "daemon/cli/mesh/mesh.h"
+#include "daemon/cli/print.h"
+#include "render/lod/io/mrm_file.h"
+#include "render/mesh/io/companion_files.h"
+#include "render/range/colours.h"
+#include "render/range/geometry.h"
+#include "render/range/io/plane_file.h"
+#include "render/range/io/range_file.h"
+#include "render/scan/placement.h"
+#include "render/scan/scan.h"
+
+namespace merlin::cli {
+namespace {
+
+namespace range = render::range;
+namespace scan = render::scan;
+
+constexpr double kRadian = std::numbers::pi / 180;
+
+struct MeshScan {
+  std::string model, output, geometry = "orthogonal";
+  std::vector<double> angles_deg = {40, 30}, camera;
+  double yaw_deg = 0, pitch_deg = 0, drop_outs_percent = 0, most_incidence_deg = 90;
+  scan::ScanSettings settings;
+  unsigned threads = 0;
+  bool json = false;
+};
+
+// What was written.
+struct ScannedFiles {
+  std::vector<range::FeatureFile> features;  // names of files beside the output
+  std::vector<std::string> left_out;
+  range::Ends ends;  // the nearest and the farthest range
+  double range_step = 0, angle_step = 0;
+};
+
+Result<render::mesh::Mesh> meshOf(const std::string& path) {
+  if (!path.ends_with(".mrm")) {
+    auto loaded = loadMesh(path);
+    if (!loaded) return loaded.error();
+    return std::move(loaded->mesh);
+  }
+  const auto model = render::lod::readMrm(path);
+  if (!model) return model.error();
+  return render::lod::extract(*model, 0);
+}
+
+Result<range::Pose> poseOf(const MeshScan& options, const render::mesh::Box& box) {
+  const std::vector<double>& c = options.camera;
+  if (c.empty())
+    return scan::around(box, options.yaw_deg * kRadian, options.pitch_deg * kRadian,
+                        options.settings.geometry);
+  if (c.size() == 12) {
+    range::Pose pose;
+    std::copy(c.begin(), c.end(), pose.begin());
+    return pose;
+  }
+  if (c.size() != 3 && c.size() != 6)
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("--camera: {} numbers are given; allowed are 3 (the scanner's place), "
+                             "6 (and a point that it looks at) and 12 (a transform)",
+                             c.size())};
+  const scan::Point from = {c[0], c[1], c[2]};
+  const scan::Point at = c.size() == 6 ? scan::Point{c[3], c[4], c[5]} : scan::centreOf(box);
+  if (from == at)
+    return Error{Errc::kInvalidArgument, "--camera: the scanner stands where it looks at"};
+  return scan::lookAt(from, at);
+}
+
+Result<Ok> place(MeshScan& options, const render::mesh::Mesh& mesh) {
+  range::Geometry& geometry = options.settings.geometry;
+  geometry.scanner = *range::scannerOf(options.geometry);
+  geometry.horizontal_rad = options.angles_deg[0] * kRadian;
+  geometry.vertical_rad = options.angles_deg[1] * kRadian;
+  const auto pose = poseOf(options, render::mesh::boundingBox(mesh.positions));
+  if (!pose) return pose.error();
+  geometry.T_world_scanner = *pose;
+  if (geometry.scanner != range::Scanner::kSpinning) return Ok{};
+  geometry.beams = range::evenBeams(geometry.vertical_rad, options.settings.height);
+  geometry.vertical_rad = 0;
+  return Ok{};
+}
+
+Result<scan::Scan> scanModel(MeshScan& options) {
+  const auto mesh = meshOf(options.model);
+  if (!mesh) return mesh.error();
+  const auto named = [&](const Error& error) {
+    return Error{error.code, options.model + ": " + error.what};
+  };
+  if (const auto placed = place(options, *mesh); !placed) return placed.error();
+  std::optional<render::image::ImageFile> texture;
+  const render::mesh::Feature* texcoord = mesh->find("texcoord");
+  if (!mesh->texture.empty() && texcoord && texcoord->dimension == 2) {
+    auto decoded = render::image::decodeImage(mesh->texture);
+    if (!decoded) return named({decoded.error().code, "its texture: " + decoded.error().what});
+    texture = *std::move(decoded);
+  }
+  const SystemClock clock;
+  LateBar bar("scanning", options.settings.width * options.settings.height, clock);
+  auto scanned = scan::scan({*mesh, texture ? &*texture : nullptr}, options.settings,
+                            bar.work(options.threads));
+  if (!scanned && scanned.error().code == Errc::kMalformed) {
+    const render::mesh::Box box = render::mesh::boundingBox(mesh->positions);
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("{}: {}; it lies within ({:.6g}, {:.6g}, {:.6g}) and ({:.6g}, {:.6g}, "
+                             "{:.6g}): leave --camera out, or look there",
+                             options.model, scanned.error().what, box.low[0], box.low[1],
+                             box.low[2], box.high[0], box.high[1], box.high[2])};
+  }
+  if (!scanned) return named(scanned.error());
+  bar.finish();
+  if (scanned->met == scanned->oblique + scanned->lost)
+    return named({Errc::kInvalidArgument,
+                  "all of its returns were lost (--drop-outs, "
+                  "--max-incidence, --noise)"});
+  return scanned;
+}
+
+// Writes the planes beside the output, then the output, which names them.
+Result<ScannedFiles> writeScan(const MeshScan& options, const scan::Scan& scanned) {
+  ScannedFiles files;
+  files.left_out = scanned.left_out;
+  const range::RangeImage& image = scanned.image;
+  const std::string folder = render::mesh::folderOf(options.output);
+  const std::string stem =
+      render::mesh::plainName(options.output.substr(0, options.output.rfind('.')));
+  for (const range::Plane& plane : image.planes) {
+    if (render::mesh::plainName(plane.name) != plane.name || plane.name.empty()) {
+      files.left_out.push_back(plane.name);  // could not be a part of a file's name
+      continue;
+    }
+    const std::string file = fmt::format("{}.{}{}", stem, plane.name, range::endingOf(plane));
+    const auto written = range::writePlane(folder + file, plane, image);
+    if (!written) return written.error();
+    files.features.push_back({plane.name, file});
+  }
+  const auto written = range::writeRange(options.output, image, files.features);
+  if (!written) return written.error();
+  files.ends = range::endsOf(image.range);
+  files.range_step = (double{files.ends.high} - files.ends.low) / 65534;
+  files.angle_step = range::stepOf(image);
+  return files;
+}
+
+void reportJson(const MeshScan& options, const scan::Scan& scanned, const ScannedFiles& files) {
+  using Json = nlohmann::ordered_json;
+  Json features = Json::array();
+  for (const range::FeatureFile& f : files.features)
+    features.push_back({{"name", f.name}, {"file", f.file}});
+  const range::RangeImage& image = scanned.image;
+  printJsonLine(Json{{"model", options.model},
+                     {"output", options.output},
+                     {"geometry", range::nameOf(image.geometry.scanner)},
+                     {"width", image.width},
+                     {"height", image.height},
+                     {"returns", scanned.met - scanned.oblique - scanned.lost},
+                     {"too_oblique", scanned.oblique},
+                     {"dropped", scanned.lost},
+                     {"range", {files.ends.low, files.ends.high}},
+                     {"range_step", files.range_step},
+                     {"angle_step_deg", files.angle_step / kRadian},
+                     {"camera", image.geometry.T_world_scanner},
+                     {"features", features},
+                     {"left_out", files.left_out}});
+}
+
+void report(const MeshScan& options, const scan::Scan& scanned, const ScannedFiles& files) {
+  if (options.json) return reportJson(options, scanned, files);
+  const range::RangeImage& image = scanned.image;
+  const range::Pose& pose = image.geometry.T_world_scanner;
+  printOut("{}: {} x {} pixels, {} with a return, {}\n", options.output, image.width, image.height,
+           scanned.met - scanned.oblique - scanned.lost, range::nameOf(image.geometry.scanner));
+  printOut(
+      "  scanner   at {:.6g} {:.6g} {:.6g}, {:.6g} degrees between pixels, which is {:.4g} at "
+      "the farthest range\n",
+      pose[3], pose[7], pose[11], files.angle_step / kRadian,
+      files.angle_step * double{files.ends.high});
+  printOut("  ranges    {:.6g} to {:.6g}, stored in steps of {:.3g}\n", files.ends.low,
+           files.ends.high, files.range_step);
+  if (scanned.oblique + scanned.lost > 0)
+    printOut("  lost      {} returns of surfaces too oblique, {} dropped\n", scanned.oblique,
+             scanned.lost);
+  for (const range::FeatureFile& f : files.features)
+    printOut("  feature   {}: {}\n", f.name, render::mesh::folderOf(options.output) + f.file);
+  for (const std::string& name : files.left_out)
+    printOut("  left out  feature {}: not one value per pixel, or its name is taken\n", name);
+}
+
+Result<Ok> checkScan(MeshScan& options) {
+  if (const auto named = checkEnding(options.output, "range image", ".pgm"); !named) return named;
+  if (const auto free = checkOutputs(options.model, {options.output}); !free) return free;
+  options.settings.drop_outs = options.drop_outs_percent / 100;
+  options.settings.most_incidence_rad = options.most_incidence_deg * kRadian;
+  return Ok{};
+}
+
+int scanFile(MeshScan& options) {
+  if (const auto good = checkScan(options); !good) return fail(good.error());
+  const auto scanned = scanModel(options);
+  if (!scanned) return fail(scanned.error());
+  const auto files = writeScan(options, *scanned);
+  if (!files) return fail(files.error());
+  report(options, *scanned, *files);
+  return kExitDone;
+}
+
+void addScanner(Command command, MeshScan& options) {
+  command
+      .option("--geometry", options.geometry,
+              "How pixels become rays: orthogonal (two mirrors), spinning (a turning head), "
+              "pinhole (a camera of depths)")
+      .oneOf({"orthogonal", "spinning", "pinhole"})
+      .showDefault();
+  command.option("--angles", options.angles_deg, "Horizontal and vertical angle, in degrees")
+      .typeName("H V")
+      .expected(2)
+      .showDefault();
+  command.option("--width", options.settings.width, "Width of the image in pixels")
+      .range(std::size_t{2}, std::size_t{16384})
+      .showDefault();
+  command.option("--height", options.settings.height, "Height of the image in pixels")
+      .range(std::size_t{2}, std::size_t{16384})
+      .showDefault();
+  const Argument camera =
+      command
+          .option("--camera", options.camera,
+                  "Where the scanner stands: its place, looking at the model's centre; its "
+                  "place and a point that it looks at; or the transform of the key camera "
+                  "(render/range/io/README.md). By default far enough to see all of the model")
+          .typeName("X Y Z [X Y Z]|12 NUMBERS")
+          .expected(3, 12);
+  Command turn = command.group("turn", "Turns the model before a scanner that is placed by itself");
+  turn.option("--yaw", options.yaw_deg, "Rotation about the vertical axis, in degrees")
+      .showDefault();
+  turn.option("--pitch", options.pitch_deg,
+              "Rotation about the horizontal axis, in degrees, applied before the yaw; -90 for a "
+              "model whose z axis points up")
+      .showDefault();
+  turn.exclude(camera);
+}
+
+void addFaults(Command command, MeshScan& options) {
+  command
+      .option("--noise", options.settings.noise,
+              "Standard deviation of the ranges, in the model's units")
+      .nonNegative()
+      .showDefault();
+  command
+      .option("--drop-outs", options.drop_outs_percent,
+              "Share of the returns that are lost, in percent")
+      .range(0.0, 100.0)
+      .showDefault();
+  command
+      .option("--max-incidence", options.most_incidence_deg,
+              "Surfaces whose normal is farther from the ray do not return, in degrees")
+      .range(1.0, 90.0)
+      .showDefault();
+  command
+      .option("--seed", options.settings.seed,
+              "Of noise and drop-outs: the same seed gives the "
+              "same files")
+      .showDefault();
+}
+
+}  // namespace
+
+void addMeshScan(Command mesh, Run& run) {
+  const auto options = std::make_shared<MeshScan>();
+  Command command = mesh.subcommand(
+      "scan",
+      "Take a range image of a model with a simulated scanner, by casting a ray for each pixel. "
+      "The features of the model (colours, labels, any other of one value) and the confidence (the "
+      "cosine of the angle of incidence) become images beside OUT.pgm, which names them, so that "
+      "merlin mesh import OUT.pgm reads everything back.\nExample: merlin mesh scan bust.ply --yaw "
+      "30 --noise 0.0005 --drop-outs 1 -o scan.pgm");
+  command
+      .option("model", options->model,
+              "The model (.mrm) or mesh (" + render::mesh::readableEndings() + ")")
+      .required()
+      .typeName("MODEL");
+  command
+      .option("-o", options->output,
+              "The range image; the images beside it are OUT.NAME.pgm and OUT.NAME.png, and "
+              "replace those that are there")
+      .required()
+      .typeName("OUT.pgm");
+  addScanner(command, *options);
+  addFaults(command, *options);
+  command
+      .option("--threads", options->threads,
+              "Maximum number of threads; 0: all cores. The result does not depend on this number")
+      .showDefault();
+  command.flag("--json", options->json, "Print the report as JSON, for programs");
+  command.callback([options, &run] { run = [options] { return scanFile(*options); }; });
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,50 @@
+// Modalities: which features of a scanned mesh become planes of the range image, and their values.
+// Private to render/scan.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/scan/scan.h"
+
+namespace merlin::render::scan {
+
+// The place of the surface that a pixel shows.
+struct Place {
+  std::uint32_t triangle = 0;
+  std::array<double, 3> barycentric{};  // of its corners
+  double cosine = 0;                    // of the angle of incidence
+};
+
+class Modalities {
+ public:
+  // Adds the planes to the image, all of their values 0. Borrows both.
+  Modalities(const Scene& scene, range::RangeImage& image);
+
+  // Sets a pixel of each plane. May be called for several pixels at once.
+  void set(std::size_t pixel, const Place& place);
+
+  const std::vector<std::string>& leftOut() const noexcept { return left_out_; }
+
+ private:
+  enum class From { kInterpolated, kNearestCorner, kTexture, kIncidence };
+  struct Source {
+    From from;
+    const mesh::Feature* feature;  // nullptr for kIncidence
+  };
+
+  void add(const mesh::Feature& feature);
+  void addPlane(const std::string& name, std::size_t dimension, float high, const Source& source);
+  // Component `k` of the feature at the place.
+  double at(const mesh::Feature& feature, const Place& place, std::size_t k) const;
+
+  const Scene& scene_;
+  range::RangeImage& image_;
+  std::vector<Source> sources_;  // of the image's planes
+  std::vector<std::string> left_out_;
+};
+
+}  // namespace merlin::render::scan

@@ -1,0 +1,58 @@
+// Simulated scanner: the range image that a scanner would take of a mesh, by casting a ray for each
+// pixel, with the modalities that the mesh carries.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "daemon/base/result.h"
+#include "render/image/image_file.h"
+#include "render/mesh/mesh.h"
+#include "render/range/range_image.h"
+#include "render/range/work.h"
+
+namespace merlin::render::scan {
+
+// What is scanned.
+struct Scene {
+  const mesh::Mesh& mesh;
+  // The mesh's decoded texture; nullptr: none. REQUIRES: with it, "texcoord" of dimension 2.
+  const image::ImageFile* texture = nullptr;
+};
+
+struct ScanSettings {
+  std::size_t width = 640, height = 480;
+  range::Geometry geometry{};                        // kOrthogonal, kSpinning or kPinhole
+  double noise = 0;                                  // standard deviation of the ranges [units]
+  double drop_outs = 0;                              // share of the returns that are lost, 0..1
+  double most_incidence_rad = std::numbers::pi / 2;  // surfaces that are more oblique do not return
+  std::uint64_t seed = 1;                            // of noise and drop-outs
+};
+
+struct Scan {
+  // Ranges, and one plane per modality, 0 where there is no return: "colour" (of the texture, else
+  // of the vertices); the vertices' other features of one value, interpolated, but for "label" and
+  // "part" those of the nearest corner; "confidence", the cosine of the angle of incidence, 0..1.
+  range::RangeImage image;
+  std::size_t met = 0;                // rays that met the mesh
+  std::size_t oblique = 0, lost = 0;  // of these without a return: by most_incidence_rad, drop_outs
+  std::vector<std::string> left_out;  // features of the mesh that became no plane, but for the
+                                      // normals and the texture coordinates
+};
+
+// Scans the mesh, whose triangles are opaque from both sides.
+//
+// A range is that of the triangle itself, rounded to float, with normally distributed noise along
+// the ray; of kPinhole along its depth. Noise that makes a range 0 or less is a lost return.
+// errors  kInvalidArgument: faultOf() the image; kMalformed: no ray meets the mesh.
+// order   each pixel has random numbers of its own: the same seed gives the same image, whatever
+//         the number of threads
+// cost    O((triangles + pixels) log triangles) time; 110 bytes a triangle, and per pixel 16 bytes
+//         and 4 for each value of a plane
+// REQUIRES: validate(mesh), at least one triangle. Reentrant.
+Result<Scan> scan(const Scene& scene, const ScanSettings& settings, const range::Work& work);
+
+}  // namespace merlin::render::scan
