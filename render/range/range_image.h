@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,6 +43,10 @@ struct Geometry {
   double exaggeration = 1;        // kElevation: factor of the heights
   std::vector<float> rays{};      // kRays: pixels x 3, unit vectors, NaN where there is no return
   Pose T_world_scanner = kIdentity;  // kElevation: unused
+  // kElevation: the projection as text (WKT), empty: unknown; and, in its own units, where the
+  // point (0, 0) of the mesh lies, the middle of the lower left pixel.
+  std::string projection{};
+  std::optional<std::array<double, 2>> origin{};
 };
 
 // A registered image: `dimension` floats per pixel of the range image.

@@ -89,6 +89,15 @@ std::string gridPoints() {
   return bytes;
 }
 
+// What merlin-import writes.
+std::string importedGrid() {
+  std::string bytes =
+      "MERLIN grid 1\nsize: 3 2\nformat: FITS\ngeometry: elevation\ncell: 0.5 0.25\nprojection: "
+      "WGS 84\norigin: 20 60\nlatitude: 60\nnote: a\nvalues\n";
+  for (const float height : {1.0F, 2.0F, 3.0F, 1e9F, -9.0F, 0.5F}) appendLeFloat(bytes, height);
+  return bytes;
+}
+
 std::vector<std::string> goodFiles() {
   return {
       pgmOf("# geometry: orthogonal\n# angles: 60 40\n# scale: 0.001\n# unit: m\n"),
@@ -104,6 +113,7 @@ std::vector<std::string> goodFiles() {
       gridOf("ascii",
              "0 0 0 9\n1 0 0 255\n2 0 1 7\n0 1 0 0\n1 1 0 9\n1 0\n1 1\n1 2\n1 3\n0\n1 4\n"),
       gridOf("binary_little_endian", gridPoints()),
+      importedGrid(),
       "ncols 3\nnrows 3\nxllcorner 10\nyllcorner 20\ncellsize 0.01\nNODATA_value -9\n1 2 3 4 -9 6 "
       "7 "
       "8.5 1e2\n",
@@ -153,6 +163,8 @@ class RangeFuzz {
     std::string bytes = good_[random.below(good_.size())];
     for (std::uint64_t n = random.below(4) + 1; n > 0; --n) change(bytes, random);
     file_.set(bytes);
+    if (bytes.starts_with("MERLIN grid"))
+      return ofLoaded(range::readGrid(file_.path(), file_.path(), {}));
     switch (random.below(6)) {
       case 0: return ofTable();
       case 1: return ofPlane();
@@ -172,7 +184,10 @@ class RangeFuzz {
   }
 
   std::string ofRange(const range::RangeOptions& options) {
-    auto loaded = range::readRange(file_.path(), options);
+    return ofLoaded(range::readRange(file_.path(), options));
+  }
+
+  std::string ofLoaded(Result<range::LoadedRange> loaded) {
     if (!loaded) return ofError(loaded.error());
     range::RangeImage& image = loaded->image;
     range::Threshold limit;

@@ -15,6 +15,7 @@
 #include "render/range/geometry.h"
 #include "render/range/io/angle_table.h"
 #include "render/range/io/elevation.h"
+#include "render/range/io/grid_file.h"
 #include "render/range/io/lzf.h"
 #include "render/range/io/netpbm.h"
 #include "render/range/io/pcd.h"
@@ -476,6 +477,90 @@ TEST_F(RangeFile, FaultsOfAGridNameThePixelOrTheVertex) {
             "a.ply: line 4: \"\\xd1\" is not a keyword of a PLY header");
   EXPECT_EQ(fault(with(good, "float z", "float w"), {}, "a.ply"),
             "a.ply: the vertices have no property z");
+}
+
+// As merlin-import writes it: 3 x 2 heights, cells of 0.5 x 0.25 degrees at latitude 60.
+std::string gridOf(const GridHead& head) {
+  std::string bytes;
+  EXPECT_TRUE(writeGrid(
+      head,
+      [&](std::span<const std::byte> some) {
+        bytes.append(reinterpret_cast<const char*>(some.data()), some.size());
+        return true;
+      },
+      [](std::size_t row, std::span<float> values) {
+        for (std::size_t i = 0; i < values.size(); ++i)
+          values[i] = static_cast<float>(10 * row + i);
+        if (row == 1) values[1] = kNoReturn;
+        return true;
+      }));
+  return bytes;
+}
+
+GridHead gridHead() {
+  GridHead head{3, 2, "GTOPO30", {}, 60, {"a note\nof two lines"}};
+  head.header.scanner = Scanner::kElevation;
+  head.header.cell = {0.5, 0.25};
+  head.header.projection = "GEOGCS[\"WGS 84\"]";
+  head.header.origin = {20.25, 59.5};
+  return head;
+}
+
+TEST_F(RangeFile, WhatMerlinImportWritesIsReadUnderTheNameOfTheFile) {
+  writeText(dir_ / "made", gridOf(gridHead()));
+  const auto loaded = readGrid(dir_ / "made", "E020N90.DEM", {});
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->format, "GTOPO30");
+  const RangeImage& image = loaded->image;
+  EXPECT_EQ(image.geometry.scanner, Scanner::kElevation);
+  EXPECT_EQ(image.range[2], 2);
+  EXPECT_EQ(image.range[5], 12);
+  EXPECT_FALSE(isReturn(image.range[4]));
+  EXPECT_NEAR(image.geometry.cell_x, 0.5 * 55800.5, 1) << "a degree at latitude 60 is 55.8 km";
+  EXPECT_NEAR(image.geometry.cell_y, 0.25 * 111412.0, 1);
+  EXPECT_EQ(image.geometry.projection, "GEOGCS[\"WGS 84\"]");
+  EXPECT_EQ((*image.geometry.origin)[1], 59.5);
+  ASSERT_EQ(loaded->notes.size(), 2u);
+  EXPECT_EQ(loaded->notes[0], "a note\\x0aof two lines");
+  RangeOptions options;
+  options.scale = 0.5;
+  EXPECT_EQ(readGrid(dir_ / "made", "x", options)->image.range[2], 1);
+  ASSERT_TRUE(writeRange(dir_ / "b.pgm", image).ok());
+  const auto again = readRange(dir_ / "b.pgm", {});
+  ASSERT_TRUE(again) << again.error().what;
+  EXPECT_EQ(again->image.geometry.projection, image.geometry.projection);
+  EXPECT_EQ(again->image.geometry.origin, image.geometry.origin);
+}
+
+TEST_F(RangeFile, DamageToWhatMerlinImportWritesIsSaid) {
+  const std::string good = gridOf(gridHead());
+  const auto refused = [&](const std::string& bytes) {
+    writeText(dir_ / "made", bytes);
+    const auto loaded = readGrid(dir_ / "made", "a.dem", {});
+    return loaded ? std::string() : loaded.error().what;
+  };
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  EXPECT_EQ(refused(good.substr(0, good.size() - 1)),
+            "a.dem: has 23 bytes of values; 3 x 2 take 24");
+  EXPECT_EQ(refused(good + "x"), "a.dem: has 25 bytes of values; 3 x 2 take 24");
+  EXPECT_EQ(refused(with("size: 3 2", "size: 3 0")), "a.dem: line 2: size: found \"3 0\"");
+  EXPECT_EQ(refused(with("size: 3 2", "size: 99999 99999")),
+            "a.dem: line 2: size: found \"99999 99999\"");
+  EXPECT_EQ(refused(with("latitude: 60", "latitude: 91")), "a.dem: line 8: latitude: found \"91\"");
+  EXPECT_EQ(refused(with("latitude: 60", "feature: a=passwd")),
+            "a.dem: line 8: feature: a grid names no files");
+  EXPECT_EQ(refused(with("size", "sise")), "a.dem: has no line size");
+  EXPECT_EQ(refused(with("values\n", "")).substr(0, 15), "a.dem: has no l");
+  for (std::size_t n = 0; n < good.size(); ++n) {
+    EXPECT_TRUE(refused(good.substr(0, n)).starts_with("a.dem: ")) << n;
+    std::string bad = good;
+    bad[n] = static_cast<char>(static_cast<unsigned char>(bad[n]) ^ 0x80U);
+    const auto parsed = parseGrid(bad);
+    EXPECT_TRUE(parsed ? parsed->image.values.size() == 6 : parsed.error().what.size() > 10) << n;
+  }
 }
 
 void expectGoodEnd(const Result<LoadedRange>& loaded) {

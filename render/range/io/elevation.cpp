@@ -98,6 +98,8 @@ bool isInDegrees(const GridHeader& header, double dx, std::string_view projectio
 void setCells(const GridHeader& header, std::string_view projection, StoredImage& image) {
   double dx = header.dx.value_or(header.cell.value_or(0));
   double dy = header.dy.value_or(header.cell.value_or(0));
+  if (projection.size() <= kMostProjection / 4)  // an escaped byte takes four
+    image.header.projection = oneLine(trimmed(projection));
   if (!projection.empty())
     image.notes.push_back(fmt::format("projection: {}", oneLine(excerpt(trimmed(projection)))));
   if (!isInDegrees(header, dx, projection)) {

@@ -50,6 +50,10 @@ constexpr Key kKeys[] = {
     {"cell", 1, 2, "one or two numbers (distances of columns and of rows)",
      [](const Numbers& n, ImageHeader& h) {
        h.cell = {n[0], n.back()};
+     }},
+    {"origin", 2, 2, "two numbers (coordinates of the middle of the lower left pixel)",
+     [](const Numbers& n, ImageHeader& h) {
+       h.origin = {n[0], n[1]};
      }}};
 
 Error keyFault(std::string_view key, std::string_view found, std::string_view allowed) {
@@ -103,6 +107,12 @@ Result<Ok> applyLine(std::string_view line, ImageHeader& header) {
     return Ok{};
   }
   if (key == "feature") return addFeature(value, header);
+  if (key == "projection") {
+    if (value.size() > kMostProjection || !isText(value))
+      return keyFault(key, value, fmt::format("text of up to {} bytes", kMostProjection));
+    header.projection = value;
+    return Ok{};
+  }
   for (const Key& known : kKeys) {
     if (key != known.key) continue;
     const Numbers numbers = numbersOf(value, known.most);
@@ -132,6 +142,8 @@ std::string linesOf(const ImageHeader& header, std::string_view before) {
   addNumber("scale", header.scale);
   addNumber("no-return", header.no_return);
   if (!header.unit.empty()) add("unit", header.unit);
+  if (!header.projection.empty()) add("projection", header.projection);
+  if (header.origin) add("origin", fmt::format("{} {}", (*header.origin)[0], (*header.origin)[1]));
   for (const FeatureFile& feature : header.features)
     add("feature", feature.name + "=" + feature.file);
   if (header.camera) {

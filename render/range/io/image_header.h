@@ -30,6 +30,8 @@ struct ImageHeader {
   std::optional<Pose> camera{};                       // T_world_scanner
   std::optional<std::array<double, 2>> cell{};        // of an elevation map: distances [units]
   std::string unit{};
+  std::string projection{};                       // of an elevation map: one line of text (WKT)
+  std::optional<std::array<double, 2>> origin{};  // of an elevation map: range_image.h
   std::vector<FeatureFile> features{};
 };
 
@@ -38,6 +40,8 @@ const char* nameOf(Scanner scanner);
 std::optional<Scanner> scannerOf(std::string_view name);  // not kRays
 
 inline constexpr std::size_t kMostFeatures = 64;  // that a header names
+
+inline constexpr std::size_t kMostProjection = 8192;  // [bytes]
 
 // Sets what the line says, if it is "key: value" with a key of the table in README.md; other lines
 // are ignored. Errors: kMalformed, with the key, what was found and what is allowed.

@@ -114,6 +114,8 @@ ImageHeader headerOf(const RangeImage& image) {
   header.scanner = g.scanner;
   if (g.scanner == Scanner::kElevation) {
     header.cell = {g.cell_x, g.cell_y};
+    header.projection = g.projection;
+    header.origin = g.origin;
     return header;
   }
   header.angles_deg = {g.horizontal_rad / kDegree, g.vertical_rad / kDegree};

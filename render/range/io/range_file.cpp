@@ -10,6 +10,7 @@
 #include "render/range/geometry.h"
 #include "render/range/io/angle_table.h"
 #include "render/range/io/elevation.h"
+#include "render/range/io/grid_file.h"
 #include "render/range/io/netpbm.h"
 #include "render/range/io/pcd.h"
 #include "render/range/io/range_grid.h"
@@ -99,6 +100,8 @@ Geometry geometryOf(const ImageHeader& header, const RangeOptions& options, std:
     g.cell_x = cell[0];
     g.cell_y = cell[1];
     g.exaggeration = options.exaggeration.value_or(1);
+    g.projection = header.projection;
+    g.origin = header.origin;
   } else if (header.camera) {
     g.T_world_scanner = *header.camera;
   }
@@ -204,6 +207,16 @@ Result<LoadedRange> load(const std::string& path, const RangeOptions& options) {
   return loaded;
 }
 
+Result<LoadedRange> loadGrid(const std::string& path, const RangeOptions& options) {
+  const auto file = MappedFile::open(path);
+  if (!file) return file.error();
+  auto grid = parseGrid(file->text());
+  if (!grid) return grid.error();
+  auto loaded = loadStored(std::move(grid->image), options);
+  if (loaded) loaded->format = std::move(grid->format);
+  return loaded;
+}
+
 std::string emptyFault(const RangeImage& image) {
   if (std::any_of(image.range.begin(), image.range.end(), isReturn)) return {};
   return fmt::format(
@@ -212,19 +225,9 @@ std::string emptyFault(const RangeImage& image) {
       image.width, image.height, kFarthest);
 }
 
-}  // namespace
-
-bool isRangeFile(const std::string& path) {
-  const auto file = MappedFile::open(path);
-  return file && (hasPoints(file->text()) || formatOf(file->text(), nameIn(path)));
-}
-
-std::string readableRanges() {
-  return "PGM, organised PCD, PLY with a range_grid, HGT, ESRI ASCII grids and raw binary (--raw)";
-}
-
-Result<LoadedRange> readRange(const std::string& path, const RangeOptions& options) {
-  auto loaded = load(path, options);
+// What was read of the file `path`, if points can be made of it, else why not.
+Result<LoadedRange> checked(const std::string& path, const RangeOptions& options,
+                            Result<LoadedRange> loaded) {
   // Errors of the file system and of the table of angles name their file.
   const auto named = [&](const Error& error) {
     const bool has_name =
@@ -239,6 +242,25 @@ Result<LoadedRange> readRange(const std::string& path, const RangeOptions& optio
   if (const std::string fault = emptyFault(image); !fault.empty())
     return named({Errc::kMalformed, fault});
   return loaded;
+}
+}  // namespace
+
+bool isRangeFile(const std::string& path) {
+  const auto file = MappedFile::open(path);
+  return file && (hasPoints(file->text()) || formatOf(file->text(), nameIn(path)));
+}
+
+std::string readableRanges() {
+  return "PGM, organised PCD, PLY with a range_grid, HGT, ESRI ASCII grids and raw binary (--raw)";
+}
+
+Result<LoadedRange> readRange(const std::string& path, const RangeOptions& options) {
+  return checked(path, options, load(path, options));
+}
+
+Result<LoadedRange> readGrid(const std::string& path, const std::string& name,
+                             const RangeOptions& options) {
+  return checked(name, options, loadGrid(path, options));
 }
 
 Result<Ok> writeRange(const std::string& path, const RangeImage& image,

@@ -56,6 +56,11 @@ std::string readableRanges();
 // this kind of file does not take, or one that is missing).
 Result<LoadedRange> readRange(const std::string& path, const RangeOptions& options);
 
+// Reads the grid at `path` that merlin-import made of the file `name` (grid_file.h), as readRange()
+// reads a file. Errors: those of readRange(), with `name` in place of the path.
+Result<LoadedRange> readGrid(const std::string& path, const std::string& name,
+                             const RangeOptions& options);
+
 // Writes the ranges of an image, with its geometry and the names of the files of its features, as a
 // PGM of 16 bits. Errors: those of
 // writeFile(); kUnsupported for points with a ray each, which a PGM has no place for.

@@ -1,0 +1,54 @@
+// The form in which merlin-import hands range images and elevation maps of other programs' formats
+// to merlin:
+//
+//   MERLIN grid 1
+//   size: 344 403
+//   format: USGS DEM
+//   geometry: elevation        (and the other keys of a PGM's comments, README.md)
+//   latitude: 46.2             the cells are in degrees, at this latitude; else in metres
+//   note: ...                  for the user, at most 16 of them
+//   values
+//
+// then width x height floats, little-endian, rows from top to bottom; NaN: no return.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/base/files.h"
+#include "daemon/base/result.h"
+#include "render/range/io/stored_image.h"
+
+namespace merlin::render::range {
+
+struct GridHead {
+  std::size_t width = 0, height = 0;
+  std::string format{};                  // "FITS", one line
+  ImageHeader header{};                  // without beams' columns and features
+  std::optional<double> latitude_deg{};  // of the middle; then header.cell is in degrees
+  std::vector<std::string> notes{};      // one line each
+};
+
+bool isGrid(std::string_view bytes) noexcept;
+
+struct ParsedGrid {
+  StoredImage image;  // with cells in metres
+  std::string format;
+};
+
+// Everything is checked: the file is from a program that read a hostile file. Errors, with the
+// line: kMalformed.
+Result<ParsedGrid> parseGrid(std::string_view bytes);
+
+// Sets the values of a row; false ends the writing.
+using ReadRow = std::function<bool(std::size_t row, std::span<float> values)>;
+
+// Writes the head and all rows. False if `write` or `read` did. REQUIRES: width and height are at
+// least 1, their product at most kMostPixels.
+bool writeGrid(const GridHead& head, const WriteBytes& write, const ReadRow& read);
+
+}  // namespace merlin::render::range
