@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "render/import/model_file.h"
 #include "render/import/vips_pyramid.h"
+#include "render/mesh/io/mesh_file.h"
 
 namespace merlin::import {
 namespace {
@@ -21,9 +23,28 @@ Result<Imported> importPicture(const Request& request, const Reports& reports) {
   return Imported{name, fmt::format("\"width\": {}, \"height\": {}", made->width, made->height)};
 }
 
+Result<Imported> importModel(const Request& request, const Reports& reports) {
+  const std::string name = "model.ply";
+  auto built =
+      render::import::readModel({request.input, request.format, request.folder}, reports.progress);
+  if (!built) return built.error();
+  const render::mesh::Mesh& mesh = built->mesh;
+  if (const auto valid = validate(mesh); !valid)
+    return Error{valid.error().code, request.input + ": " + valid.error().what};
+  if (const auto may = reports.size(sizeOf(mesh).bytes() + mesh.texture.size()); !may)
+    return may.error();
+  const auto written = render::mesh::writeMesh(request.folder + "/" + name, mesh);
+  if (!written) return written.error();
+  for (const std::string& note : built->notes) reports.note(note);
+  return Imported{
+      name, fmt::format("\"parts\": {}, \"degenerate\": {}", built->parts, built->degenerate)};
+}
+
 constexpr Importer kImporters[] = {
     {"picture", "a picture of any format that libvips reads, as a tiled pyramid",
      &render::import::prepareImport, &importPicture},
+    {"model", "a model of any format that Coin or assimp reads (--format), as a mesh",
+     &render::import::prepareModels, &importModel, true},
 };
 
 }  // namespace

@@ -18,14 +18,17 @@ struct Request {
   bool panorama = false;
   int quality = 90;
   int tile_px = 256;
+  std::string format;  // of a model: ending of the usual name of its format, in lower case
 };
 
 // What an importer tells while it works.
 struct Reports {
   // The size of the result's raw data [bytes], as soon as it is known: it limits what is written.
   std::function<Result<Ok>(std::uint64_t raw_bytes)> size;
-  // The part of the work that is done, 0..1, and the number of items (pixels) so far.
+  // The part of the work that is done, 0..1, and the number of items (pixels, triangles) so far.
   std::function<void(double share, std::int64_t items)> progress;
+  // For the user: something that was left out or assumed.
+  std::function<void(const std::string&)> note;
 };
 
 // What was made: the name of the file in the request's folder, and facts about it as JSON members.
@@ -39,6 +42,7 @@ struct Importer {
   // Loads libraries, before the sandbox closes.
   Result<Ok> (*prepare)(const char* program);
   Result<Imported> (*run)(const Request& request, const Reports& reports);
+  bool reads_beside = false;  // files beside the input, such as textures
 };
 
 std::span<const Importer> importers() noexcept;

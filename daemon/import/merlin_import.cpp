@@ -1,8 +1,8 @@
 // merlin-import: reads one file of another program's format, in a sandbox, and writes what MERLIN
-// shows. Started by `merlin image import`; what it says is for that program.
+// shows. Started by `merlin image import` and `merlin mesh import`; what it says is for them.
 //
-// stdout, a line each: "lacks WHAT", "pixels N", "progress SHARE ITEMS", then "done FILE {JSON}" or
-// "failed CODE WHY".
+// stdout, a line each: "lacks WHAT", "pixels N", "progress SHARE ITEMS", "note WHAT", then "done
+// FILE {JSON}" or "failed CODE WHY".
 #include <algorithm>
 #include <atomic>
 #include <charconv>
@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 #include <sys/prctl.h>
@@ -31,11 +32,11 @@ constexpr Duration kReportEvery = std::chrono::milliseconds(100);
 
 int usage() {
   printError(
-      "usage: merlin-import KIND IN FOLDER [--panorama] [--quality Q] [--tile PX] [--memory BYTES] "
-      "[--cpu SECONDS]\n");
+      "usage: merlin-import KIND IN FOLDER [--panorama] [--quality Q] [--tile PX] "
+      "[--format ENDING] [--memory BYTES] [--cpu SECONDS]\n");
   for (const Importer& importer : importers())
     printError("  {}: {}\n", importer.kind, importer.help);
-  printError("For people there is: merlin image import IN -o OUT\n");
+  printError("For people there are: merlin image import IN -o OUT, merlin mesh import IN -o OUT\n");
   return kExitBadInput;
 }
 
@@ -60,6 +61,14 @@ bool parse(std::string_view text, T& value) {
   return error == std::errc() && rest == text.data() + text.size();
 }
 
+// The ending of a file's name becomes a part of names that a library sees.
+bool parse(std::string_view text, std::string& ending) {
+  const bool plain = std::ranges::all_of(
+      text, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
+  ending = text;
+  return plain && !text.empty() && text.size() <= 8;
+}
+
 std::optional<Options> parseOptions(int argc, char** argv) {
   Options o;
   o.request.input = argv[2];
@@ -74,6 +83,7 @@ std::optional<Options> parseOptions(int argc, char** argv) {
     const std::string_view value = argv[i];
     const bool good = (name == "--quality" && parse(value, o.request.quality)) ||
                       (name == "--tile" && parse(value, o.request.tile_px)) ||
+                      (name == "--format" && parse(value, o.request.format)) ||
                       (name == "--memory" && parse(value, o.limits.memory_bytes)) ||
                       (name == "--cpu" && parse(value, o.limits.cpu_s));
     if (!good) return std::nullopt;
@@ -90,7 +100,12 @@ int run(const Importer& importer, const char* program, const Options& options) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // whoever started this no longer waits
   ::setenv("TMPDIR", options.request.folder.c_str(), 1);
   if (const auto prepared = importer.prepare(program); !prepared) return failed(prepared.error());
-  const auto closed = closeSandbox(options.request.input, options.request.folder, options.limits);
+  std::vector<std::string> inputs = {options.request.input};
+  if (importer.reads_beside) {
+    const auto beside = filesBeside(options.request.input);
+    inputs.insert(inputs.end(), beside.begin(), beside.end());
+  }
+  const auto closed = closeSandbox(inputs, options.request.folder, options.limits);
   if (!closed) return failed(closed.error());
   for (const std::string& what : *closed) tell("lacks " + what);
   const SystemClock clock;
@@ -103,7 +118,8 @@ int run(const Importer& importer, const char* program, const Options& options) {
                           if (clock.now() - told < kReportEvery) return;
                           told = clock.now();
                           tell(fmt::format("progress {:.6f} {}", share, items));
-                        }};
+                        },
+                        [](const std::string& what) { tell("note " + what); }};
   const auto imported = importer.run(options.request, reports);
   if (!imported) return failed(imported.error());
   tell(fmt::format("done {} {{{}}}", imported->file, imported->facts));

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstddef>
 #include <cstring>
+#include <filesystem>
 #include <iterator>
 
 #include <fcntl.h>
@@ -48,16 +49,18 @@ bool allow(int rules, const std::string& path, std::uint64_t access) {
   return ::syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &beneath, 0) == 0;
 }
 
-// Files: the input, read-only; the folder; and what libraries read of the system.
-bool limitFiles(const std::string& input, const std::string& folder) {
+// Files: the inputs, read-only; the folder; and what libraries read of the system.
+bool limitFiles(const std::vector<std::string>& inputs, const std::string& folder) {
   landlock_ruleset_attr all{};
   all.handled_access_fs = kAll;
   const UniqueFd rules(
       static_cast<int>(::syscall(SYS_landlock_create_ruleset, &all, sizeof all, 0)));
   if (!rules.valid()) return false;
-  if (!allow(rules.get(), input, LANDLOCK_ACCESS_FS_READ_FILE) ||
-      !allow(rules.get(), folder, kRead | kWrite))
-    return false;
+  if (!allow(rules.get(), folder, kRead | kWrite)) return false;
+  for (const std::string& input : inputs) {
+    if (!allow(rules.get(), input, LANDLOCK_ACCESS_FS_READ_FILE) && input == inputs.front())
+      return false;
+  }
   for (const char* system : {"/usr", "/lib", "/lib64", "/proc", "/sys/devices/system/cpu"})
     allow(rules.get(), system, kRead);
   for (const char* device : {"/dev/null", "/dev/urandom"})
@@ -129,15 +132,35 @@ bool limitCalls() {
   return ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0) == 0;
 }
 
+// Adds the visible files of a folder.
+void addFiles(const std::filesystem::path& folder, std::vector<std::string>& files) {
+  constexpr std::size_t kMost = 4096;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const bool hidden = entry.path().filename().string().starts_with('.');
+    if (files.size() < kMost && !hidden && entry.is_regular_file(error))
+      files.push_back(entry.path().string());
+  }
+}
+
 }  // namespace
+
+std::vector<std::string> filesBeside(const std::string& input) {
+  std::vector<std::string> files;
+  const auto folder = std::filesystem::absolute(input).parent_path();
+  addFiles(folder, files);
+  for (const char* name : {"textures", "Textures", "images", "maps", "materials"})
+    addFiles(folder / name, files);
+  return files;
+}
 
 Result<Ok> limitFileSize(std::uint64_t bytes) {
   ::signal(SIGXFSZ, SIG_IGN);  // then it is an error of write()
   return limit(RLIMIT_FSIZE, bytes, "file sizes");
 }
 
-Result<std::vector<std::string>> closeSandbox(const std::string& input, const std::string& folder,
-                                              const Limits& limits) {
+Result<std::vector<std::string>> closeSandbox(const std::vector<std::string>& inputs,
+                                              const std::string& folder, const Limits& limits) {
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
     return Error{Errc::kIo, fmt::format("PR_SET_NO_NEW_PRIVS: {}", std::strerror(errno))};
 #if !defined(MERLIN_ANY_SANITIZER)  // these reserve terabytes
@@ -148,7 +171,7 @@ Result<std::vector<std::string>> closeSandbox(const std::string& input, const st
   if (const auto set = limit(RLIMIT_NOFILE, 128, "open files"); !set) return set.error();
   ::unshare(CLONE_NEWNET);  // where this is allowed, there is no network either way
   std::vector<std::string> lacking;
-  if (!limitFiles(input, folder)) lacking.emplace_back("Landlock, which limits files");
+  if (!limitFiles(inputs, folder)) lacking.emplace_back("Landlock, which limits files");
   if (!limitCalls()) lacking.emplace_back("seccomp, which limits the network and other programs");
   return lacking;
 }

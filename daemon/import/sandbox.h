@@ -15,11 +15,15 @@ struct Limits {
   std::uint64_t cpu_s = 12 * 3600;                      // CPU time of all threads
 };
 
-// Closes the sandbox around this process, for good. `input`: a file that may be read; `folder`: the
+// The files that a model may name, at most 4096: the visible ones in the folder of `input`, and in
+// folders of it that are called textures, images, maps or materials.
+std::vector<std::string> filesBeside(const std::string& input);
+
+// Closes the sandbox around this process, for good. `inputs`: files that may be read; `folder`: the
 // one folder in which files may be written. Errors: kIo (a limit cannot be set). Returns what this
 // system lacks, in words for a person: "landlock (files)", for example; empty if all holds.
-Result<std::vector<std::string>> closeSandbox(const std::string& input, const std::string& folder,
-                                              const Limits& limits);
+Result<std::vector<std::string>> closeSandbox(const std::vector<std::string>& inputs,
+                                              const std::string& folder, const Limits& limits);
 
 // Limits the size of each file that is written from now on [bytes].
 Result<Ok> limitFileSize(std::uint64_t bytes);

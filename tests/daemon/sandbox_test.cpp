@@ -33,7 +33,7 @@ int firstFailure(const std::string& input, const std::string& folder, const Limi
                  const std::vector<std::function<bool()>>& checks) {
   const pid_t child = ::fork();
   if (child == 0) {
-    const auto closed = closeSandbox(input, folder, limits);
+    const auto closed = closeSandbox({input}, folder, limits);
     if (!closed) ::_exit(kNotClosed);
     if (!closed->empty()) ::_exit(kLacks);
     for (std::size_t i = 0; i < checks.size(); ++i) {

@@ -1,5 +1,6 @@
 // merlin image import: makes a tiled pyramid of a picture of any format.
-#include <cstdlib>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -12,10 +13,11 @@
 #include "daemon/base/files.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/image/image.h"
-#include "daemon/cli/image/import_child.h"
+#include "daemon/cli/import_child.h"
 #include "daemon/cli/print.h"
 #include "daemon/cli/progress.h"
 #include "daemon/cli/stop_signals.h"
+#include "daemon/cli/work_folder.h"
 #include "render/image/pyramid_file.h"
 
 namespace merlin::cli {
@@ -29,30 +31,6 @@ struct ImportOptions {
   int quality = 90;
   int tile_px = 256;
   std::size_t memory = std::size_t{4'000'000'000};
-};
-
-// A folder beside the result, which goes with this object.
-class WorkFolder {
- public:
-  static Result<WorkFolder> make(const fs::path& result) {
-    std::string name = (fs::absolute(result).parent_path() / ".merlin-import-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr)
-      return Error{Errc::kIo, fmt::format("{}: {}", name, std::strerror(errno))};
-    return WorkFolder(std::move(name));
-  }
-  ~WorkFolder() {
-    std::error_code error;
-    if (!path_.empty()) fs::remove_all(path_, error);
-  }
-  WorkFolder(WorkFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-
-  const std::string& path() const noexcept { return path_; }
-
- private:
-  explicit WorkFolder(std::string path) : path_(std::move(path)) {}
-  std::string path_;
 };
 
 // Gives the result its name once it is on the disk: whoever looks sees the old file or all of the

@@ -108,16 +108,27 @@ void reportRange(const ImportNames& names, const ImportedRange& range, const Imp
   printTimes(written, times);
 }
 
-void reportMesh(const ImportNames& names, const render::mesh::LoadedMesh& loaded,
-                const ImportedFile& written, const ImportTimes& times) {
+void reportModel(const ImportNames& names, const ImportedModel& model, const ImportedFile& written,
+                 const ImportTimes& times) {
+  const render::mesh::Mesh& mesh = model.loaded.mesh;
   if (names.json) {
-    auto json = jsonOf(names, "mesh", written, times);
-    for (const Repair& repair : repairsOf(loaded)) json[repair.key] = repair.count;
+    auto json = jsonOf(names, model.format, written, times);
+    if (model.parts) json["parts"] = *model.parts;
+    json["features"] = nlohmann::ordered_json::array();
+    for (const auto& f : mesh.features)
+      json["features"].push_back({{"name", f.name}, {"dimension", f.dimension}});
+    json["texture_bytes"] = mesh.texture.size();
+    json["notes"] = model.notes;
+    for (const Repair& repair : repairsOf(model.loaded)) json[repair.key] = repair.count;
     printJsonLine(json);
     return;
   }
   printOut("{}: {} triangles, {} vertices\n", names.output, written.triangles, written.vertices);
-  if (const std::string mended = mendedText(loaded); !mended.empty()) printOut("  {}\n", mended);
+  if (model.parts) printOut("  read      {}, {} parts\n", model.format, *model.parts);
+  for (const auto& f : mesh.features) printOut("  feature   {} x {}\n", f.name, f.dimension);
+  if (!mesh.texture.empty()) printOut("  texture   {} bytes\n", mesh.texture.size());
+  const std::string mended = mendedText(model.loaded);
+  if (!mended.empty()) printOut("  {}\n", mended);
   printTimes(written, times);
 }
 

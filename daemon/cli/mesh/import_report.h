@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "daemon/cli/mesh/import_model.h"
 #include "daemon/cli/mesh/import_range.h"
 #include "daemon/cli/mesh/mesh.h"
 
@@ -31,7 +32,7 @@ struct ImportedFile {
 
 void reportRange(const ImportNames& names, const ImportedRange& range, const ImportedFile& written,
                  const ImportTimes& times);
-void reportMesh(const ImportNames& names, const render::mesh::LoadedMesh& loaded,
-                const ImportedFile& written, const ImportTimes& times);
+void reportModel(const ImportNames& names, const ImportedModel& model, const ImportedFile& written,
+                 const ImportTimes& times);
 
 }  // namespace merlin::cli

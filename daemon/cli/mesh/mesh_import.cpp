@@ -1,15 +1,18 @@
-// merlin mesh import: makes a mesh or a model of a range image, an elevation map or a mesh of any
-// format that is read.
+// merlin mesh import: makes a mesh or a model of a range image, an elevation map, a mesh or a model
+// of any format that is read.
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/process_memory.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/import_model.h"
 #include "daemon/cli/mesh/import_range.h"
 #include "daemon/cli/mesh/import_report.h"
+#include "daemon/cli/mesh/input_kinds.h"
 #include "daemon/cli/mesh/late_bar.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/mesh/mesh_memory.h"
@@ -152,16 +155,16 @@ int importRange(const MeshImport& options) {
   return kExitDone;
 }
 
-Result<Ok> checkMeshInput(const MeshImport& options) {
+Result<Ok> checkMeshInput(const MeshImport& options, const std::optional<InputKind>& kind) {
   const std::string option = options.range.anyGiven();
   const std::string& path = options.input();
-  const std::string read =
-      fmt::format("read are {} as range images, and {} as meshes", render::range::readableRanges(),
-                  render::mesh::readableEndings());
+  const std::string read = fmt::format("read are {} as range images, {} as meshes, and {}",
+                                       render::range::readableRanges(),
+                                       render::mesh::readableEndings(), foreignFormats());
   std::error_code absent;
   if (!std::filesystem::exists(path, absent))
     return Error{Errc::kNotFound, path + ": does not exist"};
-  if (!render::mesh::isReadable(path))
+  if (!kind)
     return Error{Errc::kUnsupported, path + ": is of no format that MERLIN reads; " + read};
   if (!option.empty())
     return Error{Errc::kInvalidArgument,
@@ -171,14 +174,14 @@ Result<Ok> checkMeshInput(const MeshImport& options) {
   return Ok{};
 }
 
-int importMesh(const MeshImport& options) {
+int importMesh(const MeshImport& options, const std::optional<InputKind>& kind) {
   const SystemClock clock;
   Stopwatch watch(clock);
   ImportTimes times;
-  if (const auto good = checkMeshInput(options); !good) return fail(good.error());
-  auto loaded = loadMesh(options.input());
-  if (!loaded) return fail(loaded.error());
-  render::mesh::Mesh& mesh = loaded->mesh;
+  if (const auto good = checkMeshInput(options, kind); !good) return fail(good.error());
+  auto model = loadModel(options.input(), *kind, {options.output, options.limit()});
+  if (!model) return fail(model.error());
+  render::mesh::Mesh& mesh = model->loaded.mesh;
   for (float& x : mesh.positions) x = static_cast<float>(x * options.range.scale.value_or(1));
   if (const auto valid = validate(mesh); !valid)
     return fail({valid.error().code, options.input() + ": scaled, " + valid.error().what});
@@ -187,7 +190,7 @@ int importMesh(const MeshImport& options) {
   const auto written = writeOutput(options, mesh, {}, times);
   if (!written) return fail(written.error());
   times.writing = watch.lap() - times.reducing;
-  reportMesh(namesOf(options), *loaded, *written, times);
+  reportModel(namesOf(options), *model, *written, times);
   return kExitDone;
 }
 
@@ -207,8 +210,10 @@ Result<Ok> checkOptions(MeshImport& options) {
 
 int importFile(MeshImport& options) {
   if (const auto good = checkOptions(options); !good) return fail(good.error());
-  const bool range = options.range.isRaw() || render::range::isRangeFile(options.input());
-  return range ? importRange(options) : importMesh(options);
+  if (options.range.isRaw()) return importRange(options);
+  const auto kind = inputKindOf(options.input());
+  const bool range = kind && kind->reader == InputReader::kRange;
+  return range ? importRange(options) : importMesh(options, kind);
 }
 
 }  // namespace
@@ -218,12 +223,17 @@ void addMeshImport(Command mesh, Run& run) {
   Command command = mesh.subcommand("import",
                                     "Make a mesh, or a model that is ready for the wall (.mrm, "
                                     "reduced), of a range image with its "
-                                    "registered modalities, of an elevation map, or of a mesh. The "
-                                    "file's content decides what it "
+                                    "registered modalities, of an elevation map, of a mesh, or of "
+                                    "a model. The file's content decides what it "
                                     "is: " +
                                         render::range::readableRanges() + "; meshes are " +
                                         render::mesh::readableEndings() +
-                                        ".\nExample: merlin mesh import scan.pgm --geometry "
+                                        "; models, which the program merlin-import reads in a "
+                                        "sandbox, are " +
+                                        foreignFormats() +
+                                        ". Parts of a model become one mesh; the feature label "
+                                        "has the number of each vertex' part."
+                                        "\nExample: merlin mesh import scan.pgm --geometry "
                                         "orthogonal --angles 60 45 --scale 0.001 "
                                         "--feature colour=photo.ppm --spikes 2% -o scan.mrm");
   command.option("input", options->inputs, "The file").typeName("IN");

@@ -51,6 +51,16 @@ const MeshReader* readerFor(const std::string& path) {
   return nullptr;
 }
 
+// The reader for what the file begins with; nullptr: none knows it.
+const MeshReader* readerForContent(const std::string& path) {
+  const auto file = MappedFile::open(path);
+  if (!file) return nullptr;
+  const std::string_view content = file->text();
+  const auto found =
+      std::ranges::find_if(kReaders, [&](const MeshReader* r) { return r->is && r->is(content); });
+  return found == kReaders.end() ? nullptr : *found;
+}
+
 // ".ply, .obj and .stl".
 template <typename Rows>
 std::string endingsOf(const Rows& rows) {
@@ -152,6 +162,13 @@ Result<LoadedMesh> readMesh(const std::string& path) {
   if (const MeshReader* const reader = readerFor(path)) return readMeshAs(*reader, path);
   return Error{Errc::kUnsupported,
                fmt::format("{}: meshes are read from {}", path, readableEndings())};
+}
+
+bool isMeshFile(const std::string& path) { return readerForContent(path) != nullptr; }
+
+Result<LoadedMesh> readMeshByContent(const std::string& path) {
+  const MeshReader* const reader = readerForContent(path);
+  return reader ? readMeshAs(*reader, path) : readMesh(path);
 }
 
 Result<LoadedMesh> readMeshAs(const MeshReader& reader, const std::string& path) {

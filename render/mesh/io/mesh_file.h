@@ -55,6 +55,13 @@ std::string readableEndings();
 // Whether readMesh() supports the ending.
 bool isReadable(const std::string& path);
 
+// Whether the file begins as one of these formats does, whatever its name. False if it cannot be
+// opened. Reads its beginning only.
+bool isMeshFile(const std::string& path);
+
+// As readMesh(), by the file's content; its name's ending counts where the content tells nothing.
+Result<LoadedMesh> readMeshByContent(const std::string& path);
+
 // Errors, each with the file's name and the place in it: kNotFound, kIo, kMalformed (truncated,
 // damaged, no triangles), kUnsupported (an unknown ending, an unsupported variant of a format).
 Result<LoadedMesh> readMesh(const std::string& path);

@@ -24,6 +24,9 @@ struct MeshReader {
   // read; nothing if the header has no counts. May be null.
   std::optional<MeshFileSize> (*size)(std::string_view content,
                                       const std::string& folder) = nullptr;
+  // Whether a file that begins like this is of the format; damage behind that is found by read().
+  // Null: only the name's ending tells.
+  bool (*is)(std::string_view content) = nullptr;
 };
 
 extern const MeshReader kPlyReader, kObjReader, kOffReader, kOmReader, kStlReader;

@@ -175,11 +175,19 @@ std::optional<MeshFileSize> size(std::string_view content, const std::string&) {
   return MeshFileSize{file.size(), {}};
 }
 
+bool isOff(std::string_view content) {
+  const std::string_view line = content.substr(0, std::min<std::size_t>(content.find('\n'), 64));
+  const std::size_t from = line.find_first_not_of(" \t");
+  if (from == std::string_view::npos) return false;
+  const std::string_view word = line.substr(from, line.find_first_of(" \t\r", from) - from);
+  return formOf(word).has_value();
+}
+
 }  // namespace
 
 const MeshReader kOffReader = {"off",
                                "ASCII: normals, colours and texture coordinates; polygons "
                                "become triangle fans",
-                               read, size};
+                               read, size, isOff};
 
 }  // namespace merlin::render::mesh

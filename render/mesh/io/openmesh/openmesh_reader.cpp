@@ -209,13 +209,25 @@ std::optional<MeshFileSize> stlSize(std::string_view content, const std::string&
   return MeshFileSize{{3 * triangles, triangles, 0}, {}};
 }
 
+// Its header's third byte is the kind of mesh, its fourth the version.
+bool isOm(std::string_view content) {
+  return content.size() >= kOmHeader && content.starts_with("OM") &&
+         std::string_view("TQP").find(content[2]) != std::string_view::npos &&
+         static_cast<unsigned char>(content[3]) < 0x80;
+}
+
+bool isStl(std::string_view content) {
+  return isBinaryStl(content) || (content.starts_with("solid") &&
+                                  content.substr(0, 4096).find("facet") != std::string_view::npos);
+}
+
 }  // namespace
 
 const MeshReader kOmReader = {"om", "OpenMesh's own format: normals, colours, texture coordinates",
-                              readOm, omSize};
+                              readOm, omSize, isOm};
 const MeshReader kStlReader = {"stl",
                                "ASCII and binary: triangles; corners at the same position "
                                "become one vertex",
-                               readStl, stlSize};
+                               readStl, stlSize, isStl};
 
 }  // namespace merlin::render::mesh

@@ -56,11 +56,15 @@ std::optional<MeshFileSize> size(std::string_view content, const std::string& fo
   return found;
 }
 
+bool isPly(std::string_view content) {
+  return content.starts_with("ply\n") || content.starts_with("ply\r");
+}
+
 }  // namespace
 
 const MeshReader kPlyReader = {"ply",
                                "ASCII and binary; every scalar vertex property becomes a feature; "
                                "the texture image that a comment TextureFile names",
-                               read, size};
+                               read, size, isPly};
 
 }  // namespace merlin::render::mesh

@@ -26,16 +26,20 @@ class ImportReport {
   std::uint64_t items() const noexcept { return items_; }    // pixels so far
   std::uint64_t pixels() const noexcept { return pixels_; }  // of the picture; 0: not known yet
   const std::vector<std::string>& lacks() const noexcept { return lacks_; }
+  // For the user: what was left out or assumed. At most 16.
+  const std::vector<std::string>& notes() const noexcept { return notes_; }
+  // Facts about the result as a JSON object, not checked; empty until it is complete.
+  const std::string& facts() const noexcept { return facts_; }
   // The name of the result in its folder, once it is complete; or the error.
   const std::optional<Result<std::string>>& result() const noexcept { return result_; }
 
  private:
   void line(std::string_view text);
 
-  std::string pending_;
+  std::string pending_, facts_;
   double share_ = 0;
   std::uint64_t items_ = 0, pixels_ = 0;
-  std::vector<std::string> lacks_;
+  std::vector<std::string> lacks_, notes_;
   std::optional<Result<std::string>> result_;
 };
 
@@ -51,9 +55,10 @@ class ImportChild {
 
   // Follows it until it ends. `stop`: a descriptor that is readable when it is to be ended.
   // `on_progress` is called about ten times a second. Returns the name of the result. Errors: those
-  // of the import; kClosed (`stop`); kTimeout (no progress for kPatience); kMalformed (it ended by
+  // of the import; kClosed (`stop`); kTimeout (no progress for `patience`); kMalformed (it ended by
   // a signal, or above a limit).
-  Result<std::string> follow(int stop, const std::function<void(const ImportReport&)>& on_progress);
+  Result<std::string> follow(int stop, const std::function<void(const ImportReport&)>& on_progress,
+                             Duration patience = kPatience);
 
   const ImportReport& report() const noexcept { return report_; }
 

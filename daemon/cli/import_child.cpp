@@ -1,4 +1,4 @@
-#include "daemon/cli/image/import_child.h"
+#include "daemon/cli/import_child.h"
 
 #include <array>
 #include <cerrno>
@@ -41,8 +41,8 @@ Result<std::string> importProgram() {
   const auto program = self.parent_path() / "merlin-import";
   if (!error && ::access(program.c_str(), X_OK) == 0) return program.string();
   return Error{Errc::kUnsupported,
-               fmt::format("{}: is not there; merlin-import is built where libvips is (Debian: "
-                           "libvips-dev) and belongs into the folder of merlin",
+               fmt::format("{}: is not there; merlin-import is built where its libraries are "
+                           "(./dev build installs them) and belongs into the folder of merlin",
                            program.string())};
 }
 
@@ -83,9 +83,12 @@ void ImportReport::line(std::string_view text) {
     pixels_ = number<std::uint64_t>(text);
   } else if (what == "lacks" && lacks_.size() < 16) {
     lacks_.emplace_back(text);
+  } else if (what == "note" && notes_.size() < 16) {
+    notes_.emplace_back(text);
   } else if (what == "done") {
     const std::string name(word(text));
     if (name.find('/') == std::string::npos && !name.empty()) result_ = name;
+    facts_ = text;
   } else if (what == "failed") {
     const int code = number<int>(word(text));
     const bool known = code >= 0 && code <= static_cast<int>(Errc::kBusy);
@@ -144,8 +147,9 @@ Result<std::string> ImportChild::ended() {
                                       WEXITSTATUS(status))};
 }
 
-Result<std::string> ImportChild::follow(
-    int stop, const std::function<void(const ImportReport&)>& on_progress) {
+Result<std::string> ImportChild::follow(int stop,
+                                        const std::function<void(const ImportReport&)>& on_progress,
+                                        Duration patience) {
   const SystemClock clock;
   Timestamp advanced = clock.now();
   for (double share = -1;;) {
@@ -158,10 +162,10 @@ Result<std::string> ImportChild::follow(
       advanced = clock.now();
       on_progress(report_);
     }
-    if (clock.now() - advanced > kPatience) {
+    if (clock.now() - advanced > patience) {
       return Error{Errc::kTimeout,
                    fmt::format("the import made no progress for {:.0f} s and was ended",
-                               toSeconds(kPatience))};
+                               toSeconds(patience))};
     }
   }
 }

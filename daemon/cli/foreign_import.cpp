@@ -1,0 +1,130 @@
+#include "daemon/cli/foreign_import.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include "daemon/base/files.h"
+#include "daemon/cli/import_child.h"
+#include "daemon/cli/progress.h"
+#include "daemon/cli/stop_signals.h"
+#include "daemon/cli/work_folder.h"
+
+namespace merlin::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Signals end the import instead of this process, until it is over.
+class HeldSignals {
+ public:
+  HeldSignals() {
+    ::sigprocmask(SIG_SETMASK, nullptr, &before_);
+    stop_ = stopSignals();
+  }
+  ~HeldSignals() { ::sigprocmask(SIG_SETMASK, &before_, nullptr); }
+  HeldSignals(const HeldSignals&) = delete;
+  HeldSignals& operator=(const HeldSignals&) = delete;
+
+  int stop() const noexcept { return stop_.get(); }
+  // The signal that came has done what it was for.
+  void take() const {
+    signalfd_siginfo info{};
+    [[maybe_unused]] const auto n = ::read(stop_.get(), &info, sizeof info);
+  }
+
+ private:
+  sigset_t before_{};
+  UniqueFd stop_;
+};
+
+// A second of CPU time for each of so many bytes; libraries take a tenth of it and less.
+constexpr std::uint64_t kBytesPerSecond = 100'000;
+
+Error named(const ForeignFile& file, const Error& error) {
+  if (error.what.starts_with(file.input + ":") || error.code == Errc::kClosed) return error;
+  return {error.code, file.input + ": " + error.what};
+}
+
+std::vector<std::string> argumentsFor(const ForeignFile& file, const std::string& folder,
+                                      std::uint64_t bytes) {
+  std::vector<std::string> arguments = {file.kind,
+                                        file.input,
+                                        folder,
+                                        "--memory",
+                                        std::to_string(file.memory_bytes),
+                                        "--cpu",
+                                        std::to_string(60 + bytes / kBytesPerSecond)};
+  arguments.insert(arguments.end(), file.options.begin(), file.options.end());
+  return arguments;
+}
+
+// Waits for the result's name.
+Result<std::string> follow(ImportChild& child, int stop, Duration patience) {
+  const SystemClock clock;
+  const Timestamp began = clock.now();
+  ProgressBar bar("reading", "items", clock);
+  bool shown = false;
+  auto name = child.follow(
+      stop,
+      [&](const ImportReport& report) {
+        shown = shown || clock.now() - began > std::chrono::seconds(2);
+        if (shown) bar.update(report.share(), report.items());
+      },
+      patience);
+  if (shown && name) bar.finish(child.report().items());
+  return name;
+}
+
+// A link could lead to a file that merlin-import itself may not read.
+Result<Ok> checkFolder(const std::string& folder) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.symlink_status(error).type() != fs::file_type::regular)
+      return Error{Errc::kMalformed, "merlin-import left something that is not a file"};
+  }
+  return Ok{};
+}
+
+Result<ForeignReport> importInto(const ForeignFile& file, const std::string& folder, int stop,
+                                 const std::function<Result<Ok>(const std::string&)>& take) {
+  const auto stamp = fileStamp(file.input);
+  if (!stamp) return Error{Errc::kNotFound, file.input + ": is not a file"};
+  auto child = ImportChild::start(argumentsFor(file, folder, stamp->size));
+  if (!child) return child.error();
+  const auto name = follow(*child, stop, patienceFor(stamp->size));
+  if (!name) return named(file, name.error());
+  const ImportReport& said = child->report();
+  ForeignReport report{nlohmann::json::parse(said.facts(), nullptr, false), said.notes(),
+                       said.lacks()};
+  if (!report.facts.is_object()) report.facts = nlohmann::json::object();
+  if (const auto regular = checkFolder(folder); !regular) return named(file, regular.error());
+  if (const auto taken = take(folder + "/" + *name); !taken) return named(file, taken.error());
+  return report;
+}
+
+}  // namespace
+
+Duration patienceFor(std::uint64_t bytes) noexcept {
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 44;  // of a file [bytes]
+  return ImportChild::kPatience +
+         std::chrono::seconds(static_cast<long>(std::min(bytes, kMost) / (10 * kBytesPerSecond)));
+}
+
+Result<ForeignReport> importForeign(const ForeignFile& file,
+                                    const std::function<Result<Ok>(const std::string&)>& take) {
+  const HeldSignals signals;  // before the folder is there, which a signal would leave
+  const auto folder = WorkFolder::make(file.output);
+  if (!folder) return folder.error();
+  auto report = importInto(file, folder->path(), signals.stop(), take);
+  if (!report && report.error().code == Errc::kClosed) signals.take();
+  return report;
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,41 @@
+// Has the program merlin-import read a file of another program's format, and takes its result.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/result.h"
+
+namespace merlin::cli {
+
+struct ForeignFile {
+  std::string kind;                  // first argument of merlin-import
+  std::string input;                 // the file
+  std::string output;                // of the command; the work folder lies beside it meanwhile
+  std::vector<std::string> options;  // further arguments of merlin-import
+  std::uint64_t memory_bytes = 0;    // that merlin-import may take
+};
+
+// What merlin-import said. All of it is from a process that read a hostile file.
+struct ForeignReport {
+  nlohmann::json facts;  // an object
+  std::vector<std::string> notes;
+  std::vector<std::string> lacks;  // what the sandbox could not do on this system
+};
+
+// Starts merlin-import, shows its progress from the third second on, and calls `take` with the path
+// of the result, which is a regular file and goes afterwards, with all that lies beside it. Ctrl-C
+// ends the import and leaves nothing. Errors, with the input's name: those of the import, of
+// ImportChild::follow() and of `take`.
+Result<ForeignReport> importForeign(const ForeignFile& file,
+                                    const std::function<Result<Ok>(const std::string&)>& take);
+
+// How long an import of so many bytes may show no progress, since a library need not report any.
+Duration patienceFor(std::uint64_t bytes) noexcept;
+
+}  // namespace merlin::cli

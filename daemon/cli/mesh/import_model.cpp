@@ -1,0 +1,64 @@
+#include "daemon/cli/mesh/import_model.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "daemon/cli/foreign_import.h"
+#include "daemon/cli/print.h"
+
+namespace merlin::cli {
+namespace {
+
+// A count in what merlin-import said; nothing if there is none.
+std::optional<std::size_t> countIn(const nlohmann::json& facts, const char* key) {
+  const auto found = facts.find(key);
+  if (found == facts.end() || !found->is_number_unsigned()) return std::nullopt;
+  return found->get<std::size_t>();
+}
+
+Result<ImportedModel> loadForeign(const std::string& path, const InputKind& kind,
+                                  const ModelLimits& limits) {
+  ImportedModel model;
+  model.format = kind.format;
+  const ForeignFile file{
+      kind.kind, path, limits.output, {"--format", kind.ending}, limits.memory_bytes};
+  auto report = importForeign(file, [&](const std::string& made) -> Result<Ok> {
+    auto loaded = render::mesh::readMesh(made);
+    if (!loaded)
+      return Error{loaded.error().code,
+                   "what merlin-import made of it cannot be read: " + loaded.error().what};
+    model.loaded = *std::move(loaded);
+    return Ok{};
+  });
+  if (!report) return report.error();
+  model.parts = countIn(report->facts, "parts");
+  model.loaded.tidied.degenerate += countIn(report->facts, "degenerate").value_or(0);
+  model.notes = std::move(report->notes);
+  for (const std::string& what : report->lacks)
+    model.notes.push_back(fmt::format("this system lacks {}; merlin-import ran without it", what));
+  return model;
+}
+
+Result<ImportedModel> loadOwn(const std::string& path) {
+  auto loaded = render::mesh::readMeshByContent(path);
+  if (!loaded) return loaded.error();
+  ImportedModel model;
+  model.notes = loaded->notes;
+  model.loaded = *std::move(loaded);
+  return model;
+}
+
+}  // namespace
+
+Result<ImportedModel> loadModel(const std::string& path, const InputKind& kind,
+                                const ModelLimits& limits) {
+  auto model =
+      kind.reader == InputReader::kForeign ? loadForeign(path, kind, limits) : loadOwn(path);
+  if (!model) return model;
+  for (const std::string& note : model->notes) printNote(path + ": " + note);
+  render::mesh::ensureNormals(model->loaded.mesh);
+  return model;
+}
+
+}  // namespace merlin::cli

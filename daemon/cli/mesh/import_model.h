@@ -1,0 +1,34 @@
+// The steps of `merlin mesh import` from a file of meshes or models to a mesh.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/base/result.h"
+#include "daemon/cli/mesh/input_kinds.h"
+#include "render/mesh/io/mesh_file.h"
+
+namespace merlin::cli {
+
+// A mesh, and what is known of the file it comes from.
+struct ImportedModel {
+  render::mesh::LoadedMesh loaded;
+  std::string format = "mesh";
+  std::optional<std::size_t> parts{};  // of a foreign format: surfaces that became one mesh
+  std::vector<std::string> notes{};    // already printed
+};
+
+// Where a foreign format is read meanwhile, and the memory that the reading program may take.
+struct ModelLimits {
+  std::string output;
+  std::uint64_t memory_bytes = 0;
+};
+
+// Reads by our own readers, or by merlin-import, whose result is then read as any mesh. Adds
+// normals; prints the notes. Errors: those of the readers, with the file's name.
+Result<ImportedModel> loadModel(const std::string& path, const InputKind& kind,
+                                const ModelLimits& limits);
+
+}  // namespace merlin::cli

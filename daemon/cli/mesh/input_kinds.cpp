@@ -1,0 +1,133 @@
+#include "daemon/cli/mesh/input_kinds.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "daemon/base/files.h"
+#include "render/mesh/io/mesh_file.h"
+#include "render/range/io/range_file.h"
+
+namespace merlin::cli {
+namespace {
+
+constexpr std::size_t kLooked = 4096;  // bytes in which the mark of a text is looked for
+
+std::string_view beginningOf(std::string_view content) {
+  if (content.starts_with("\xEF\xBB\xBF")) content.remove_prefix(3);
+  const std::size_t from = content.find_first_not_of(" \t\r\n");
+  return content.substr(std::min(from, content.size()), kLooked);
+}
+
+bool isXmlWith(std::string_view content, std::string_view mark) {
+  content = beginningOf(content);
+  return content.starts_with('<') && content.find(mark) != std::string_view::npos;
+}
+
+bool isCollada(std::string_view content) { return isXmlWith(content, "<COLLADA"); }
+bool isX3d(std::string_view content) { return isXmlWith(content, "<X3D"); }
+bool isAmf(std::string_view content) { return isXmlWith(content, "<amf"); }
+
+// The keys of a JSON object stand in any order.
+bool isGltf(std::string_view content) {
+  constexpr std::string_view kKeys[] = {"\"asset\"", "\"accessors\"", "\"bufferViews\"",
+                                        "\"meshes\""};
+  return beginningOf(content).starts_with('{') &&
+         std::ranges::any_of(kKeys, [head = content.substr(0, 1 << 16)](std::string_view key) {
+           return head.find(key) != std::string_view::npos;
+         });
+}
+
+// A chunk 0x4D4D, whose first chunk is the version or the editor's.
+bool is3ds(std::string_view content) {
+  if (content.size() < 16 || !content.starts_with("MM")) return false;
+  const std::string_view first = content.substr(6, 2);
+  return first == std::string_view("\x02\x00", 2) || first == "==";
+}
+
+bool isZipWith(std::string_view content, std::string_view name) {
+  return content.starts_with("PK\x03\x04") && content.find(name) != std::string_view::npos;
+}
+bool is3mf(std::string_view content) { return isZipWith(content, "3D/3dmodel.model"); }
+
+bool isDxf(std::string_view content) {
+  const std::string_view head = beginningOf(content);
+  return head.starts_with("AutoCAD Binary DXF") ||
+         ((head.starts_with("0\n") || head.starts_with("0\r") || head.starts_with("999")) &&
+          head.find("SECTION") != std::string_view::npos);
+}
+
+bool isLightWave(std::string_view content) {
+  return content.starts_with("FORM") && content.size() > 12 &&
+         (content.substr(8, 3) == "LWO" || content.substr(8, 4) == "LXOB");
+}
+
+// A format that merlin-import reads: its mark at the file's beginning, or a function that knows it.
+struct ForeignFormat {
+  const char* kind;    // first argument of merlin-import
+  const char* format;  // for a person
+  const char* ending;
+  std::string_view mark{};
+  bool (*is)(std::string_view content) = nullptr;
+};
+
+constexpr ForeignFormat kForeign[] = {
+    {"model", "Open Inventor", "iv", "#Inventor V"},
+    {"model", "VRML", "wrl", "#VRML V"},
+    {"model", "glTF", "glb", "glTF"},
+    {"model", "glTF", "gltf", {}, isGltf},
+    {"model", "COLLADA", "dae", {}, isCollada},
+    {"model", "3DS", "3ds", {}, is3ds},
+    {"model", "FBX", "fbx", "Kaydara FBX Binary"},
+    {"model", "FBX", "fbx", "; FBX"},
+    {"model", "X3D", "x3d", {}, isX3d},
+    {"model", "3MF", "3mf", {}, is3mf},
+    {"model", "AMF", "amf", {}, isAmf},
+    {"model", "DXF", "dxf", {}, isDxf},
+    {"model", "LightWave", "lwo", {}, isLightWave},
+    {"model", "AC3D", "ac", "AC3Db"},
+    {"model", "Blender", "blend", "BLENDER"},
+    {"model", "DirectX", "x", "xof "},
+    {"model", "3ds Max ASE", "ase", "*3DSMAX_ASCIIEXPORT"},
+    {"model", "Milkshape", "ms3d", "MS3D000000"},
+    {"model", "Quake II", "md2", "IDP2"},
+    {"model", "Quake III", "md3", "IDP3"},
+    {"model", "Doom 3", "md5mesh", "MD5Version"},
+    {"model", "IQM", "iqm", "INTERQUAKEMODEL"},
+    {"model", "TrueSpace", "cob", "Caligari "},
+    {"model", "Blitz3D", "b3d", "BB3D"},
+};
+
+bool isOf(const ForeignFormat& f, std::string_view content) {
+  return f.is ? f.is(content) : content.starts_with(f.mark);
+}
+
+}  // namespace
+
+std::optional<InputKind> foreignKindOf(std::string_view content) {
+  const auto found =
+      std::ranges::find_if(kForeign, [&](const ForeignFormat& f) { return isOf(f, content); });
+  if (found == std::end(kForeign)) return std::nullopt;
+  return InputKind{InputReader::kForeign, found->kind, found->ending, found->format};
+}
+
+std::optional<InputKind> inputKindOf(const std::string& path) {
+  if (render::range::isRangeFile(path)) return InputKind{InputReader::kRange};
+  if (render::mesh::isMeshFile(path)) return InputKind{InputReader::kMesh};
+  const auto file = MappedFile::open(path);
+  if (!file) return std::nullopt;
+  if (auto foreign = foreignKindOf(file->text())) return foreign;
+  if (render::mesh::isReadable(path)) return InputKind{InputReader::kMesh};
+  return std::nullopt;
+}
+
+std::string foreignFormats() {
+  std::string list;
+  std::string_view last;
+  for (const ForeignFormat& f : kForeign) {
+    if (f.format != last) list += (list.empty() ? "" : ", ") + std::string(f.format);
+    last = f.format;
+  }
+  return list;
+}
+
+}  // namespace merlin::cli

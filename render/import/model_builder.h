@@ -1,0 +1,76 @@
+// ModelBuilder: collects the triangles of a model's parts as one mesh.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "render/image/image_file.h"
+#include "render/mesh/mesh.h"
+
+namespace merlin::render::import {
+
+// Colour of what has none in the file.
+inline constexpr std::array<float, 3> kPlain{0.8F, 0.8F, 0.8F};
+
+// A corner of a triangle: position in the model's coordinates; colour as a screen shows it, each
+// 0..1; texture coordinates with v upwards.
+struct Corner {
+  std::array<float, 3> position{};
+  std::array<float, 3> colour = kPlain;
+  std::array<float, 2> texcoord{};
+};
+
+// The texture image of a part, which must outlive the builder; may be none.
+struct PartTexture {
+  const image::ImageFile* picture = nullptr;
+  bool clamped = false;
+  bool operator==(const PartTexture&) const = default;
+};
+
+struct BuiltModel {
+  mesh::Mesh mesh;
+  std::size_t parts = 0;       // that have triangles
+  std::size_t degenerate = 0;  // triangles that were dropped: two corners are one vertex
+  std::size_t not_finite = 0;  // triangles that were dropped: a coordinate is not a number, or huge
+  std::vector<std::string> notes;
+};
+
+// Corners of one part become one vertex if all of their numbers are the same, so that seams of
+// textures and borders of colours stay; vertices of different parts stay apart, since each has one
+// part's number. Not pure in its use of memory alone: std::bad_alloc leaves it. Thread-bound.
+class ModelBuilder {
+ public:
+  // The triangles that follow belong to a new part.
+  void beginPart(const PartTexture& texture);
+  // Adds a triangle, counter-clockwise from outside. Where the part has a texture, the colour is
+  // the texture's at the corner.
+  void add(std::array<Corner, 3> corners);
+
+  std::size_t triangles() const noexcept { return model_.mesh.triangleCount(); }
+
+  // The mesh has "colour" if a part has a colour or a texture, "texcoord" if a part has a texture,
+  // "label" (the part's number from 0) if there are several parts, and the texture if all triangles
+  // have the same, and it repeats.
+  BuiltModel finish() &&;
+
+ private:
+  using Key = std::array<std::uint32_t, 8>;
+  struct Hash {
+    std::size_t operator()(const Key& key) const noexcept;
+  };
+  std::uint32_t vertexOf(const Corner& corner);
+  void dress(Corner& corner) const;
+  bool keepsTexture() const;
+
+  BuiltModel model_;
+  std::vector<float> colours_, texcoords_, labels_;
+  std::unordered_map<Key, std::uint32_t, Hash> vertices_;  // of this part
+  PartTexture texture_;                                    // of this part
+  std::vector<PartTexture> used_;                          // different ones of parts with triangles
+  bool part_has_triangles_ = false, coloured_ = false;
+};
+
+}  // namespace merlin::render::import

@@ -1,0 +1,233 @@
+// `merlin mesh import` on models of other programs' formats, which merlin-import reads. All of them
+// are made here.
+#include <bit>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "daemon/base/bytes.h"
+#include "daemon/base/sanitizer.h"
+#include "render/image/png_writer.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A square of side 2 in the plane z = 0, as two of the triangles' four corners name it.
+const std::string kSquareIv =
+    "#Inventor V2.1 ascii\nSeparator {\n Transform { translation 10 0 0 scaleFactor 1 3 1 }\n"
+    " Material { diffuseColor 1 0 0 }\n Coordinate3 { point [ 0 0 0, 2 0 0, 2 2 0, 0 2 0 ] }\n"
+    " IndexedFaceSet { coordIndex [ 0, 1, 2, 3, -1 ] }\n"
+    " Material { diffuseColor 0 0 1 }\n Translation { translation 0 0 5 }\n"
+    " IndexedFaceSet { coordIndex [ 0, 1, 2, -1, 1, 1, 2, -1 ] }\n}\n";
+
+const std::string kVrml97 =
+    "#VRML V2.0 utf8\nTransform { translation 0 0 7 children Shape {\n"
+    " appearance Appearance { material Material { diffuseColor 0 1 0 } }\n"
+    " geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0 ] }\n"
+    "  coordIndex [ 0 1 2 3 -1 ] } } }\n";
+
+// Two instances of a square, one of them moved and doubled.
+std::string collada() {
+  return R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><up_axis>Y_UP</up_axis></asset>
+<library_effects><effect id="e"><profile_COMMON><technique sid="t"><lambert><diffuse><color>0.2 0.4 0.6 1</color>
+</diffuse></lambert></technique></profile_COMMON></effect></library_effects>
+<library_materials><material id="m"><instance_effect url="#e"/></material></library_materials>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="12">0 0 0 1 0 0 1 1 0 0 1 0</float_array>
+<technique_common><accessor source="#pa" count="4" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<polylist material="s" count="1"><input semantic="VERTEX" source="#v" offset="0"/><vcount>4</vcount><p>0 1 2 3</p></polylist>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="w">
+<node id="a"><instance_geometry url="#g"><bind_material><technique_common><instance_material symbol="s" target="#m"/>
+</technique_common></bind_material></instance_geometry></node>
+<node id="b"><translate>0 0 4</translate><scale>2 2 2</scale><instance_geometry url="#g"><bind_material><technique_common>
+<instance_material symbol="s" target="#m"/></technique_common></bind_material></instance_geometry></node>
+</visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#w"/></scene></COLLADA>
+)";
+}
+
+void appendLe16(std::string& bytes, int value) {
+  bytes.push_back(static_cast<char>(value & 0xFF));
+  bytes.push_back(static_cast<char>(value >> 8));
+}
+
+std::string chunk(int id, const std::string& content) {
+  std::string bytes;
+  appendLe16(bytes, id);
+  appendLe32(bytes, static_cast<std::uint32_t>(content.size() + 6));
+  return bytes + content;
+}
+
+std::string threeDs() {
+  std::string vertices, faces;
+  appendLe16(vertices, 3);
+  for (const float x : {0.F, 0.F, 0.F, 3.F, 0.F, 0.F, 0.F, 4.F, 0.F})
+    appendLe32(vertices, std::bit_cast<std::uint32_t>(x));
+  for (const int x : {1, 0, 1, 2, 7}) appendLe16(faces, x);
+  const std::string mesh =
+      chunk(0x4000, std::string("one\0", 4) +
+                        chunk(0x4100, chunk(0x4110, vertices) + chunk(0x4120, faces)));
+  return chunk(0x4D4D, chunk(2, std::string("\3\0\0\0", 4)) + chunk(0x3D3D, mesh));
+}
+
+class ModelImport : public testing::Test {
+ protected:
+  Outcome import(const std::string& in, std::vector<std::string> more = {}) {
+    std::vector<std::string> command = {kMerlin, "mesh", "import", in, "-o", out_};
+    command.insert(command.end(), more.begin(), more.end());
+    return run(command);
+  }
+  nlohmann::json report(const std::string& name, const std::string& content) {
+    writeText(dir_ / name, content);
+    const Outcome done = import(dir_ / name, {"--json"});
+    EXPECT_EQ(done.status, 0) << done.output;
+    const auto start = done.output.find("{\"input\"");
+    if (start == std::string::npos) return {};
+    return nlohmann::json::parse(done.output.substr(start));
+  }
+  nlohmann::json info() {
+    return nlohmann::json::parse(run({kMerlin, "mesh", "info", out_, "--json"}).output);
+  }
+  std::string features() {
+    std::string names;
+    const auto json = info();
+    for (const auto& f : json["features"]) names += f["name"].get<std::string>() + " ";
+    return names;
+  }
+  // The file is refused by one line that names it and says `why`, and nothing is left of it.
+  void expectRefused(const std::string& name, const std::string& content, const std::string& why,
+                     const std::vector<std::string>& more = {}) {
+    writeText(dir_ / name, content);
+    const Outcome done = import(dir_ / name, more);
+    EXPECT_EQ(done.status, 2) << done.output;
+    EXPECT_NE(done.output.find(dir_ / name + ":"), std::string::npos) << done.output;
+    EXPECT_NE(done.output.find(why), std::string::npos) << done.output;
+    for (const auto& entry : fs::directory_iterator(dir_.path())) {
+      const std::string left = entry.path().filename();
+      EXPECT_FALSE(left.starts_with("out") || left.starts_with(".merlin")) << left;
+    }
+  }
+
+  TempDir dir_;
+  std::string out_ = dir_ / "out.ply";
+};
+
+TEST_F(ModelImport, OpenInventorIsTransformedColouredAndLabelledByPart) {
+  const auto json = report("a.iv", kSquareIv);
+  EXPECT_EQ(json["format"], "Open Inventor");
+  EXPECT_EQ(json["parts"], 2);
+  EXPECT_EQ(json["triangles"], 3) << "a square, and a triangle";
+  EXPECT_EQ(json["degenerate_dropped"], 1);
+  EXPECT_EQ(json["vertices"], 7) << "a square's and a triangle's";
+  EXPECT_EQ(features(), "colour label normal ");
+  EXPECT_EQ(info()["box"]["low"], nlohmann::json({10.0, 0.0, 0.0}));
+  EXPECT_EQ(info()["box"]["high"], nlohmann::json({12.0, 6.0, 5.0}));
+  const std::string ply = readText(out_);
+  EXPECT_NE(ply.find(std::string("\xff\0\0", 3)), std::string::npos) << "a red vertex";
+}
+
+TEST_F(ModelImport, ItsContentDecidesWhatAFileIs) {
+  const auto json = report("vrml.obj", kVrml97);
+  EXPECT_EQ(json["format"], "VRML");
+  EXPECT_EQ(json["triangles"], 2);
+  EXPECT_EQ(info()["box"]["low"][2], 7.0);
+  EXPECT_EQ(report("obj.dae", "# by hand\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")["format"], "mesh");
+  EXPECT_EQ(report("off.bin", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")["triangles"], 1);
+}
+
+TEST_F(ModelImport, ColladaIsOneMeshOfItsInstances) {
+  const auto json = report("a.dae", collada());
+  EXPECT_EQ(json["format"], "COLLADA");
+  EXPECT_EQ(json["parts"], 2);
+  EXPECT_EQ(json["triangles"], 4);
+  EXPECT_EQ(json["vertices"], 8);
+  EXPECT_EQ(features(), "colour label normal ");
+  EXPECT_EQ(info()["box"]["high"], nlohmann::json({2.0, 2.0, 4.0}));
+  EXPECT_NE(readText(out_).find("\x33\x66\x99"), std::string::npos) << "its diffuse colour";
+}
+
+TEST_F(ModelImport, ThreeDsIsReadByItsChunks) {
+  const auto json = report("a", threeDs());
+  EXPECT_EQ(json["format"], "3DS");
+  EXPECT_EQ(json["triangles"], 1);
+  EXPECT_NEAR(info()["diagonal"], 5, 1e-5);
+}
+
+TEST_F(ModelImport, GltfColoursComeBackAsTheyWere) {
+  writeText(dir_ / "a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+            "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+            "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+            "0 0 0 10 100 200\n1 0 0 10 100 200\n0 1 0 10 100 200\n3 0 1 2\n");
+  ASSERT_EQ(run({kMerlin, "mesh", "import", dir_ / "a.ply", "-o", dir_ / "a.glb"}).status, 0);
+  const auto json = report("b", readText(dir_ / "a.glb"));
+  EXPECT_EQ(json["format"], "glTF");
+  EXPECT_EQ(features(), "colour normal ") << "one part needs no label";
+  EXPECT_NE(readText(out_).find("\x0a\x64\xc8"), std::string::npos);
+}
+
+TEST_F(ModelImport, AModelForTheWallIsMadeInOneStep) {
+  out_ = dir_ / "out.mrm";
+  std::string spheres = "#Inventor V2.1 ascii\n";
+  for (int i = 0; i < 3; ++i) spheres += "Translation { translation 3 0 0 } Sphere { }\n";
+  const auto json = report("a.iv", spheres);
+  EXPECT_GT(json["triangles"], 500);
+  EXPECT_LT(json["triangles_coarsest"], json["triangles"]);
+}
+
+TEST_F(ModelImport, ATextureBesideTheModelIsKeptAndNoOtherFileIsRead) {
+  const auto textured = [](const std::string& name) {
+    return "#VRML V2.0 utf8\nShape { appearance Appearance { texture ImageTexture { url \"" + name +
+           "\" } } geometry Box { } }\n";
+  };
+  fs::create_directory(dir_ / "models");
+  const std::vector<std::uint8_t> red = {255, 0, 0, 255};
+  ASSERT_TRUE(render::image::writePng(dir_ / "models/beside.png", 1, 1, red));
+  ASSERT_TRUE(render::image::writePng(dir_ / "above.png", 1, 1, red));
+  const auto kept = report("models/a.wrl", textured("beside.png"));
+  EXPECT_GT(kept["texture_bytes"], 60) << kept;
+  EXPECT_EQ(features(), "colour texcoord normal ");
+  fs::remove(out_ + ".png");
+  const auto left = report("models/b.wrl", textured("../above.png"));
+  EXPECT_EQ(left["texture_bytes"], 0);
+  EXPECT_NE(left["notes"].dump().find("this texture is left out"), std::string::npos) << left;
+}
+
+TEST_F(ModelImport, WhatIsWrongIsSaidInOneMessageThatNamesTheFile) {
+  expectRefused("cut.iv", kSquareIv.substr(0, 150), "cannot be read: Couldn't read");
+  expectRefused("cut.dae", collada().substr(0, 900), "cannot be read as .dae");
+  expectRefused("cut.3ds", threeDs().substr(0, 40), "cannot be read as .3ds");
+  expectRefused("lies.wrl", "#VRML V1.0 ascii\nP5\n3 3 255\n", "cannot be read: ");
+  expectRefused("cyclic.iv", "#Inventor V2.1 ascii\nDEF A Separator { Cube { } USE A }\n",
+                "is cyclic: a Separator contains itself");
+  expectRefused("empty.iv", "#Inventor V2.1 ascii\nSeparator { }\n", "holds no surface");
+  expectRefused("unknown.bin", "what is this", "is of no format that MERLIN reads");
+  expectRefused("a.iv", kSquareIv, "--angles is for range images", {"--angles", "1", "2"});
+  std::string multiplies = "#Inventor V2.1 ascii\nSeparator { DEF A0 Separator { Cube { } }\n";
+  for (int i = 1; i < 30; ++i)
+    multiplies += fmt::format("DEF A{} Separator {{ USE A{} USE A{} }}\n", i, i - 1, i - 1);
+  expectRefused("bomb.iv", multiplies + "}\n", "uses its shapes ");
+}
+
+TEST_F(ModelImport, ACrashAndALimitOfMemoryAreMessages) {
+#if !defined(MERLIN_ANY_SANITIZER)  // of which a crash would be a report, and which need terabytes
+  std::string deep = "#Inventor V2.1 ascii\n";
+  for (int i = 0; i < 200'000; ++i) deep += "Group {";
+  expectRefused("deep.iv", deep, "the import ended by signal 11");
+  std::string large = "#Inventor V2.1 ascii\nDEF A Separator { Sphere { } }\n";
+  for (int i = 0; i < 20'000; ++i) large += "Translation { translation 1 0 0 } USE A\n";
+  expectRefused("large.iv", large, "takes more memory than is allowed", {"--memory", "150M"});
+#endif
+}
+
+}  // namespace
+}  // namespace merlin::test
