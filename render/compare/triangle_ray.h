@@ -31,9 +31,9 @@ class Ray {
   double entry(const std::array<float, 3>& low, const std::array<float, 3>& high) const noexcept;
 
  private:
-  Vector origin_, inverse_;   // inverse: 1 / direction, finite
-  std::array<int, 3> axes_;   // the last one is that along which the ray is longest
-  double shear_x_, shear_y_;  // take the direction to that axis
+  Vector origin_, inverse_;    // inverse: 1 / direction, finite
+  std::array<int, 3> axes_{};  // the last one is that along which the ray is longest
+  double shear_x_, shear_y_;   // take the direction to that axis
   double scale_;
 };
 

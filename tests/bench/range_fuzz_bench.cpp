@@ -103,7 +103,8 @@ std::vector<std::string> goodFiles() {
       pgmOf("# geometry: orthogonal\n# angles: 60 40\n# scale: 0.001\n# unit: m\n"),
       pgmOf("# geometry: spinning\n# angles: 360\n# beam: 10 1\n# beam: 5 -1\n# beam: 0\n# beam: "
             "-5 2\n# minimum: 1\n# maximum: 9\n"),
-      pgmOf("# geometry: pinhole\n# angles: 60 40\n# camera: 1 0 0 5 0 1 0 6 0 0 1 7\n"),
+      pgmOf("# geometry: pinhole\n# angles: 60 40\n# feature: heat=a.pgm\n# camera: 1 0 0 5 0 1 0 "
+            "6 0 0 1 7\n"),
       pgmOf("# geometry: elevation\n# cell: 30 20\n# no-return: 300\n"),
       "P2\n# angles: 9 9\n3 3 99\n1 2 3 4 5 6 7 8 9\n",
       "P6\n3 2\n255\n123456789012345678",
