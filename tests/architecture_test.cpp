@@ -125,7 +125,8 @@ const std::map<std::string, Folders> kMayInclude = {
     {"render/content/picture", {"render/content", "render/gl", "render/image"}},
     {"render/content/sample", {"render/content", "render/gl"}},
     // With the program merlin-import, which merlind neither links nor starts.
-    {"render/import", {"render/image", "render/mesh", "render/mesh/io"}},
+    {"render/import",
+     {"render/image", "render/mesh", "render/mesh/io", "render/range", "render/range/io"}},
     {"render/frame",
      {"render/content", "render/gl", "render/image", "render/lod", "render/out",
       "render/stereo/anaglyph.h", "render/tiles"}},
@@ -195,6 +196,8 @@ const std::map<std::string, Folders> kOnlyIn = {
     {"turbojpeg.h", {"render/image"}},
     {"zlib.h", {"render/image"}},
     {"nettle/md5.h", {"drivers/pjlink"}},
+    {"fitsio.h", {"render/import"}},
+    {"gdal.h", {"render/import"}},
     {"vips/vips.h", {"render/import"}},
     {"zip.h", {"render/correct/io"}},
     {"pugixml.hpp", {"render/correct/io"}},

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "daemon/import/sandbox.h"
+#include "render/import/grid_import.h"
 #include "render/import/model_file.h"
 #include "render/import/vips_pyramid.h"
 #include "render/mesh/io/mesh_file.h"
@@ -40,11 +42,25 @@ Result<Imported> importModel(const Request& request, const Reports& reports) {
       name, fmt::format("\"parts\": {}, \"degenerate\": {}", built->parts, built->degenerate)};
 }
 
+Result<Imported> importGrid(const Request& request, const Reports& reports) {
+  const std::string name = "grid";
+  const auto made = render::import::importGrid(
+      request.input, request.folder + "/" + name,
+      [&](const render::import::ImportedGrid& size) {
+        return reports.size(sizeof(float) * size.width * size.height);
+      },
+      reports.progress);
+  if (!made) return made.error();
+  return Imported{name, fmt::format("\"width\": {}, \"height\": {}", made->width, made->height)};
+}
+
 constexpr Importer kImporters[] = {
     {"picture", "a picture of any format that libvips reads, as a tiled pyramid",
      &render::import::prepareImport, &importPicture},
     {"model", "a model of any format that Coin or assimp reads (--format), as a mesh",
-     &render::import::prepareModels, &importModel, true},
+     &render::import::prepareModels, &importModel, &filesBeside},
+    {"grid", "a range image or an elevation map of FITS or any format that GDAL reads",
+     &render::import::prepareGridImport, &importGrid, &render::import::gridHeadersBeside},
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "daemon/base/result.h"
 
@@ -42,7 +43,8 @@ struct Importer {
   // Loads libraries, before the sandbox closes.
   Result<Ok> (*prepare)(const char* program);
   Result<Imported> (*run)(const Request& request, const Reports& reports);
-  bool reads_beside = false;  // files beside the input, such as textures
+  // The files beside the input that may be read as well, such as textures; null: none.
+  std::vector<std::string> (*beside)(const std::string& input) = nullptr;
 };
 
 std::span<const Importer> importers() noexcept;

@@ -101,8 +101,8 @@ int run(const Importer& importer, const char* program, const Options& options) {
   ::setenv("TMPDIR", options.request.folder.c_str(), 1);
   if (const auto prepared = importer.prepare(program); !prepared) return failed(prepared.error());
   std::vector<std::string> inputs = {options.request.input};
-  if (importer.reads_beside) {
-    const auto beside = filesBeside(options.request.input);
+  if (importer.beside) {
+    const auto beside = importer.beside(options.request.input);
     inputs.insert(inputs.end(), beside.begin(), beside.end());
   }
   const auto closed = closeSandbox(inputs, options.request.folder, options.limits);

@@ -327,10 +327,11 @@ Result<render::range::RangeOptions> RangeImport::fileOptions() const {
   return options;
 }
 
-Result<ImportedRange> loadRange(const std::string& path, const RangeImport& options, bool texture) {
+Result<ImportedRange> loadRange(const std::string& path, const RangeImport& options, bool texture,
+                                const RangeReader& read) {
   const auto file_options = options.fileOptions();
   if (!file_options) return file_options.error();
-  auto loaded = range::readRange(path, *file_options);
+  auto loaded = read(path, *file_options);
   if (!loaded) return loaded.error();
   ImportedRange imported;
   imported.image = std::move(loaded->image);

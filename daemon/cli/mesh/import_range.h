@@ -1,6 +1,7 @@
 // The steps of `merlin mesh import` from a range image or an elevation map to a mesh.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -70,9 +71,14 @@ struct ImportedRange {
   render::range::RangeMesh mesh;
 };
 
+// Reads the file by the options; render::range::readRange() is one.
+using RangeReader = std::function<Result<render::range::LoadedRange>(
+    const std::string& path, const render::range::RangeOptions&)>;
+
 // Reads a range image and its modalities. `texture`: whether a picture will be laid over it.
 // Errors: those of the readers; kInvalidArgument (two features of one name, --colour-by).
-Result<ImportedRange> loadRange(const std::string& path, const RangeImport& options, bool texture);
+Result<ImportedRange> loadRange(const std::string& path, const RangeImport& options, bool texture,
+                                const RangeReader& read);
 
 // Runs the filters; checks first that `limit` bytes suffice for them and the mesh. Errors:
 // kInvalidArgument, kMalformed (nothing is left).

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/base/printable_text.h"
 #include "daemon/base/process_memory.h"
 #include "daemon/cli/print.h"
 
@@ -59,7 +60,28 @@ void addRange(const ImportedRange& range, nlohmann::ordered_json& json) {
   json["max_edge_length"] = finiteOrNull(range.max_edge.length);
   json["max_edge_percent"] = finiteOrNull(100 * range.max_edge.per_range);
   json["features"] = std::move(features);
+  const auto& geometry = range.image.geometry;
+  if (!geometry.projection.empty()) json["projection"] = geometry.projection;
+  if (geometry.origin) json["origin"] = *geometry.origin;
   json["notes"] = range.notes;
+}
+
+// The name in a projection's text, which is its first word in quotes.
+std::string nameOfProjection(const std::string& text) {
+  const std::size_t from = text.find('"');
+  const std::size_t to = text.find('"', from == std::string::npos ? from : from + 1);
+  return to == std::string::npos ? excerpt(text) : excerpt(text.substr(from + 1, to - from - 1));
+}
+
+void printMap(const render::range::Geometry& geometry) {
+  if (geometry.projection.empty() && !geometry.origin) return;
+  std::string text = geometry.projection.empty()
+                         ? "projection unknown"
+                         : "projection " + nameOfProjection(geometry.projection);
+  if (geometry.origin)
+    text += fmt::format("; the mesh's (0, 0) is at {}, {}", (*geometry.origin)[0],
+                        (*geometry.origin)[1]);
+  printOut("  map       {}\n", text);
 }
 
 void printFeatures(const ImportedRange& range) {
@@ -98,6 +120,7 @@ void reportRange(const ImportNames& names, const ImportedRange& range, const Imp
            image.height, range.returns_in_file, render::range::nameOf(image.geometry.scanner));
   if (range.outside + range.spikes > 0)
     printOut("  removed   {} returns outside --between, {} spikes\n", range.outside, range.spikes);
+  printMap(image.geometry);
   printFeatures(range);
   if (written.triangles > 0)
     printOut(

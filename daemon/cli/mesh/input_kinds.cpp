@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "daemon/base/files.h"
+#include "daemon/base/words.h"
 #include "render/mesh/io/mesh_file.h"
 #include "render/range/io/range_file.h"
 
@@ -61,6 +62,36 @@ bool isLightWave(std::string_view content) {
          (content.substr(8, 3) == "LWO" || content.substr(8, 4) == "LXOB");
 }
 
+bool isTiff(std::string_view content) {
+  constexpr std::string_view kMarks[] = {{"II*\0", 4}, {"MM\0*", 4}, {"II+\0", 4}, {"MM\0+", 4}};
+  return std::ranges::any_of(kMarks, [&](std::string_view m) { return content.starts_with(m); });
+}
+
+// Two numbers of the first record: the level of the DEM, and the kind of its pattern.
+bool isUsgsDem(std::string_view content) {
+  if (content.size() < 1024) return false;
+  const std::string_view pattern = content.substr(150, 6), system = content.substr(156, 6);
+  return (pattern == "     1" || pattern == "     4") && system.starts_with("     ") &&
+         system[5] >= '0' && system[5] <= '3';
+}
+
+// Whether a text of this name, but for the ending .hdr, describes rows and columns: GTOPO30 and
+// other raw grids are two files.
+bool hasHeaderBeside(const std::string& path) {
+  constexpr std::size_t kMost = 4096;
+  const std::size_t dot = path.find_last_of("./");
+  if (dot == std::string::npos || path[dot] != '.') return false;
+  for (const char* ending : {".hdr", ".HDR"}) {
+    const std::string header = path.substr(0, dot) + ending;
+    const auto file = header == path ? Error{Errc::kNotFound, {}} : FileCopy::read(header, kMost);
+    if (!file) continue;
+    const std::string text = lowerCase(file->text());
+    if (text.find("nrows") != std::string::npos && text.find("ncols") != std::string::npos)
+      return true;
+  }
+  return false;
+}
+
 // A format that merlin-import reads: its mark at the file's beginning, or a function that knows it.
 struct ForeignFormat {
   const char* kind;    // first argument of merlin-import
@@ -71,6 +102,19 @@ struct ForeignFormat {
 };
 
 constexpr ForeignFormat kForeign[] = {
+    {kGridKind, "FITS", "fits", "SIMPLE  ="},
+    {kGridKind, "GeoTIFF", "tif", {}, isTiff},
+    {kGridKind, "USGS DEM", "dem", {}, isUsgsDem},
+    {kGridKind, "DTED", "dt2", "UHL1"},
+    {kGridKind, "Erdas Imagine", "img", "EHFA_HEADER_TAG"},
+    {kGridKind, "netCDF", "nc", "CDF"},
+    {kGridKind, "HDF5", "h5", "\x89HDF"},
+    {kGridKind, "Surfer", "grd", "DSAA"},
+    {kGridKind, "Surfer", "grd", "DSBB"},
+    {kGridKind, "Surfer", "grd", "DSRB"},
+    {kGridKind, "Binary Terrain", "bt", "binterr"},
+    {kGridKind, "PCIDSK", "pix", "PCIDSK  "},
+    {kGridKind, "GRIB", "grb", "GRIB"},
     {"model", "Open Inventor", "iv", "#Inventor V"},
     {"model", "VRML", "wrl", "#VRML V"},
     {"model", "glTF", "glb", "glTF"},
@@ -116,6 +160,9 @@ std::optional<InputKind> inputKindOf(const std::string& path) {
   const auto file = MappedFile::open(path);
   if (!file) return std::nullopt;
   if (auto foreign = foreignKindOf(file->text())) return foreign;
+  if (hasHeaderBeside(path))
+    return InputKind{InputReader::kForeign, kGridKind, "dem",
+                     "a raw grid with its header beside it"};
   if (render::mesh::isReadable(path)) return InputKind{InputReader::kMesh};
   return std::nullopt;
 }

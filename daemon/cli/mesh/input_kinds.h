@@ -7,6 +7,8 @@
 
 namespace merlin::cli {
 
+inline constexpr const char* kGridKind = "grid";  // of merlin-import
+
 enum class InputReader { kRange, kMesh, kForeign };
 
 struct InputKind {
@@ -14,6 +16,9 @@ struct InputKind {
   // Of kForeign: what merlin-import is told (its kind, and the ending of the format's usual name),
   // and the format's name for a person.
   std::string kind{}, ending{}, format{};
+
+  // Whether it becomes a range image or an elevation map, by whichever reader.
+  bool isGrid() const { return reader == InputReader::kRange || kind == kGridKind; }
 };
 
 // Reads the file's beginning; the name's ending counts only where the content tells nothing.

@@ -9,6 +9,7 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/process_memory.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/import_grid.h"
 #include "daemon/cli/mesh/import_model.h"
 #include "daemon/cli/mesh/import_range.h"
 #include "daemon/cli/mesh/import_report.h"
@@ -58,10 +59,14 @@ class Stopwatch {
   Timestamp last_;
 };
 
-// The units and the ranges of features, for the model's text "about".
-std::string aboutFeatures(const std::vector<FeatureFacts>& features) {
+// The units and the ranges of features, and where a map lies, for the model's text "about".
+std::string aboutRange(const ImportedRange& range) {
   std::string text;
-  for (const FeatureFacts& f : features) {
+  const auto& geometry = range.image.geometry;
+  if (!geometry.projection.empty()) text += fmt::format("map.projection={}\n", geometry.projection);
+  if (geometry.origin)
+    text += fmt::format("map.origin={} {}\n", (*geometry.origin)[0], (*geometry.origin)[1]);
+  for (const FeatureFacts& f : range.features) {
     if (f.dimension != 1) continue;
     if (!f.unit.empty()) text += fmt::format("feature.{}.unit={}\n", f.name, f.unit);
     text += fmt::format("feature.{}.range={} {}\n", f.name, f.low, f.high);
@@ -70,7 +75,7 @@ std::string aboutFeatures(const std::vector<FeatureFacts>& features) {
 }
 
 Result<ImportedFile> writeModel(const MeshImport& options, const render::mesh::Mesh& mesh,
-                                const std::vector<FeatureFacts>& features, ImportTimes& times) {
+                                const std::string& about, ImportTimes& times) {
   ImportedFile written{mesh.triangleCount(), mesh.vertexCount(), {}, {}};
   if (const auto named = render::lod::checkNames(mesh); !named)
     return Error{named.error().code, options.input() + ": " + named.error().what};
@@ -82,7 +87,7 @@ Result<ImportedFile> writeModel(const MeshImport& options, const render::mesh::M
   settings.memory = *room;
   auto reduction = reduceWithProgress(mesh, settings, times.reducing);
   if (!reduction) return reduction.error();
-  reduction->log.about += aboutFeatures(features);
+  reduction->log.about += about;
   const auto done = render::lod::writeMrm(options.output, mesh, reduction->log, options.threads);
   if (!done) return done.error();
   written.coarsest = reduction->report.triangles;
@@ -90,8 +95,8 @@ Result<ImportedFile> writeModel(const MeshImport& options, const render::mesh::M
 }
 
 Result<ImportedFile> writeOutput(const MeshImport& options, const render::mesh::Mesh& mesh,
-                                 const std::vector<FeatureFacts>& features, ImportTimes& times) {
-  if (options.makesModel()) return writeModel(options, mesh, features, times);
+                                 const std::string& about, ImportTimes& times) {
+  if (options.makesModel()) return writeModel(options, mesh, about, times);
   auto done = render::mesh::writeMesh(options.output, mesh);
   if (!done) return done.error();
   return ImportedFile{mesh.triangleCount(), mesh.vertexCount(), {}, *std::move(done)};
@@ -123,11 +128,19 @@ int writeImage(const MeshImport& options, ImportedRange& range, ImportTimes& tim
   return kExitDone;
 }
 
-int importRange(const MeshImport& options) {
+RangeReader readerOf(const MeshImport& options, const std::optional<InputKind>& kind) {
+  if (!kind || kind->reader != InputReader::kForeign) return render::range::readRange;
+  return [&options](const std::string& path, const render::range::RangeOptions& said) {
+    return readForeignGrid({path, options.output, options.limit()}, said);
+  };
+}
+
+int importRange(const MeshImport& options, const std::optional<InputKind>& kind) {
   const SystemClock clock;
   Stopwatch watch(clock);
   ImportTimes times;
-  auto range = loadRange(options.input(), options.range, !options.texture.empty());
+  auto range =
+      loadRange(options.input(), options.range, !options.texture.empty(), readerOf(options, kind));
   if (!range) return fail(range.error());
   for (const std::string& note : range->notes) printNote(options.input() + ": " + note);
   times.reading = watch.lap();
@@ -148,7 +161,7 @@ int importRange(const MeshImport& options) {
     printNote(fmt::format("{}: {} values of features were not numbers; 0 stands there",
                           options.input(), range->mesh.not_numbers));
   times.meshing = watch.lap();
-  const auto written = writeOutput(options, mesh, range->features, times);
+  const auto written = writeOutput(options, mesh, aboutRange(*range), times);
   if (!written) return fail(written.error());
   times.writing = watch.lap() - times.reducing;
   reportRange(namesOf(options), *range, *written, times);
@@ -210,10 +223,9 @@ Result<Ok> checkOptions(MeshImport& options) {
 
 int importFile(MeshImport& options) {
   if (const auto good = checkOptions(options); !good) return fail(good.error());
-  if (options.range.isRaw()) return importRange(options);
+  if (options.range.isRaw()) return importRange(options, {});
   const auto kind = inputKindOf(options.input());
-  const bool range = kind && kind->reader == InputReader::kRange;
-  return range ? importRange(options) : importMesh(options, kind);
+  return kind && kind->isGrid() ? importRange(options, kind) : importMesh(options, kind);
 }
 
 }  // namespace
@@ -228,8 +240,8 @@ void addMeshImport(Command mesh, Run& run) {
                                     "is: " +
                                         render::range::readableRanges() + "; meshes are " +
                                         render::mesh::readableEndings() +
-                                        "; models, which the program merlin-import reads in a "
-                                        "sandbox, are " +
+                                        "; maps and models that the program merlin-import reads in "
+                                        "a sandbox are " +
                                         foreignFormats() +
                                         ". Parts of a model become one mesh; the feature label "
                                         "has the number of each vertex' part."

@@ -1,0 +1,29 @@
+#include "daemon/cli/mesh/import_grid.h"
+
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "daemon/cli/foreign_import.h"
+
+namespace merlin::cli {
+
+Result<render::range::LoadedRange> readForeignGrid(const ForeignGrid& grid,
+                                                   const render::range::RangeOptions& options) {
+  std::optional<render::range::LoadedRange> loaded;
+  const ForeignFile file{"grid", grid.input, grid.output, {}, grid.memory_bytes};
+  const auto report = importForeign(file, [&](const std::string& made) -> Result<Ok> {
+    auto read = render::range::readGrid(made, grid.input, options);
+    if (!read) return read.error();
+    loaded = *std::move(read);
+    return Ok{};
+  });
+  if (!report) return report.error();
+  for (const std::string& what : report->lacks)
+    loaded->notes.push_back(
+        fmt::format("this system lacks {}; merlin-import ran without it", what));
+  return *std::move(loaded);
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,23 @@
+// Range images and elevation maps of formats that merlin-import reads, for `merlin mesh import`.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "daemon/base/result.h"
+#include "render/range/io/range_file.h"
+
+namespace merlin::cli {
+
+struct ForeignGrid {
+  std::string input;
+  std::string output;              // of the command; the work folder lies beside it meanwhile
+  std::uint64_t memory_bytes = 0;  // that merlin-import may take
+};
+
+// Has merlin-import read the file, and reads what it made, which is as hostile as the file. Errors:
+// those of importForeign() and of range::readGrid(), with the input's name.
+Result<render::range::LoadedRange> readForeignGrid(const ForeignGrid& grid,
+                                                   const render::range::RangeOptions& options);
+
+}  // namespace merlin::cli
