@@ -1,8 +1,10 @@
 // The sandbox of merlin-import, in a child process: what it still can do, and what it cannot.
 #include "daemon/import/sandbox.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <vector>
 
@@ -81,6 +83,17 @@ TEST_F(SandboxTest, LeavesNoNetworkNoProgramAndNoOtherProcess) {
                return ::execv(name, arguments) < 0 && errno == EPERM;
              },
              [] { return ::kill(::getppid(), 0) < 0 && errno == EPERM; }});
+}
+
+TEST_F(SandboxTest, OfTheFilesBesideAModelTheVisibleOnesMayBeRead) {
+  for (const char* folder : {"textures", "private"}) {
+    std::filesystem::create_directory(dir_ / folder);
+    test::writeText(dir_ / folder + "/a.png", "");
+  }
+  test::writeText(dir_ / ".hidden", "");
+  auto files = filesBeside(input_);
+  std::ranges::sort(files);
+  EXPECT_EQ(files, (std::vector<std::string>{input_, dir_ / "other", dir_ / "textures/a.png"}));
 }
 
 TEST_F(SandboxTest, LimitsFilesAndMemory) {
