@@ -351,13 +351,17 @@ TEST_F(GridImport, MapsThatAreNoneAreRefused) {
 // What a map names is not read: neither by a reader for such maps, nor past the sandbox.
 TEST_F(GridImport, AFileThatNamesOthersIsNotFollowed) {
   writeText(dir_ / "secret.tif", Tiff().of(3, 2, Tiff::shorts({100, 110, 1, 120, 130, 140})));
-  expectRefusal("a.vrt",
-                "<VRTDataset rasterXSize=\"3\" rasterYSize=\"2\"><VRTRasterBand "
-                "dataType=\"Int16\" band=\"1\"><SimpleSource><SourceFilename>" +
-                    dir_ / "secret.tif" +
-                    "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand>"
-                    "</VRTDataset>",
-                "is of no format that MERLIN reads");
+  const std::string vrt =
+      "<VRTDataset rasterXSize=\"3\" rasterYSize=\"2\"><VRTRasterBand dataType=\"Int16\" "
+      "band=\"1\"><SimpleSource><SourceFilename>" +
+      dir_ / "secret.tif" +
+      "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
+  expectRefusal("a.vrt", vrt, "is of no format that MERLIN reads");
+  std::filesystem::create_directory(dir_ / "folder");
+  const Outcome own =
+      run({MERLIN_BIN_DIR "/merlin-import", "grid", dir_ / "a.vrt", dir_ / "folder"});
+  EXPECT_NE(own.output.find("not recognized"), std::string::npos) << own.output;
+  EXPECT_TRUE(std::filesystem::is_empty(dir_ / "folder"));
 }
 
 }  // namespace
