@@ -266,6 +266,10 @@ TEST_F(GridImport, FaultsOfAFitsFileNameTheirCard) {
                 "card CAM12: is missing");
   expectRefusal("a.fits", fits(-32, 2, 2, {"ALT1    = 1", "GEOMETRY= 'spinning'"}, pixels),
                 "card ALT2: is missing; there are 2 rows");
+}
+
+TEST_F(GridImport, AFitsFileThatIsCutOrTooLargeOrEmptyIsRefused) {
+  const std::string pixels = bigFloats({1, 1, 1, 1});
   expectRefusal("a.fits", fits(-32, 2, 2, {}, pixels), "give them with --angles");
   expectRefusal("a.fits", fits(-32, 200000, 200000, kPinhole, pixels), "200000 x 200000 pixels");
   const std::string whole = fits(-32, 40, 40, kPinhole, bigFloats(std::vector<float>(1600, 1)));
