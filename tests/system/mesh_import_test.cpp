@@ -144,9 +144,10 @@ TEST_F(MeshImport, AScanOfAModelComesBackWithItsFeaturesAndWithoutOptions) {
                     "label=" + (dir_ / "confidence.pgm"), "-o", dir_ / "a.ply"})
                 .status,
             0);
-  const Outcome scanned = run({kMerlin, "mesh", "scan", dir_ / "a.ply", "--camera", "0", "0", "0",
-                               "--geometry", "pinhole", "--angles", "50", "35", "--width", "40",
-                               "--height", "30", "-o", dir_ / "b.pgm", "--json"});
+  const Outcome scanned =
+      run({kMerlin, "mesh",       "scan",    dir_ / "a.ply", "--camera",     "0",     "0",
+           "0",     "--geometry", "pinhole", "--angles",     "50",           "35",    "--width",
+           "40",    "--height",   "30",      "-o",           dir_ / "b.pgm", "--json"});
   ASSERT_EQ(scanned.status, 0) << scanned.output;
   const auto scan = nlohmann::json::parse(scanned.output);
   EXPECT_EQ(scan["returns"], 1200) << "the model is wider than the view";
