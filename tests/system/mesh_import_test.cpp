@@ -206,8 +206,8 @@ TEST_F(MeshImport, OptionsThatDoNotFitAreRefused) {
   expectRefusal({scan_, "-o", dir_ / "out.xyz"}, "models as .mrm, range images as .pgm");
   expectRefusal({scan_, "-o", scan_}, "is an input");
   expectRefusal({dir_ / "absent.pgm", "-o", ply_}, "does not exist");
-  writeText(dir_ / "a.fits", "SIMPLE  = T");
-  expectRefusal({dir_ / "a.fits", "-o", ply_}, "is of no format that MERLIN reads; read are PGM");
+  writeText(dir_ / "a.dat", "nobody knows this");
+  expectRefusal({dir_ / "a.dat", "-o", ply_}, "is of no format that MERLIN reads; read are PGM");
   ASSERT_EQ(import({scan_, "-o", dir_ / "a.ply"}).status, 0);
   expectRefusal({dir_ / "a.ply", "--median", "3", "-o", ply_}, "--median is for range images");
 }
