@@ -164,8 +164,13 @@ TEST(Operation, EveryCommandOfTheListIsCarriedOut) {
     std::vector<std::string> words = {kMerlin, std::string(command.name)};
     if (!command.argument.empty()) words.push_back(argumentFor(command));
     words.insert(words.end(), {"--instance", m.instance()});
-    const Outcome done = run(words);
-    EXPECT_EQ(done.status, command.role == CommandOf::kPanel ? 2 : 0) << done.output;
+    // A merlind that a busy machine keeps from its heartbeat for a second counts as gone.
+    Outcome done;
+    const int expected = command.role == CommandOf::kPanel ? 2 : 0;
+    EXPECT_TRUE(eventually([&] {
+      done = run(words);
+      return done.status == expected;
+    })) << done.output;
   }
   const Outcome wrong = run({kMerlin, "wall", "--rate", "fast", "--instance", m.instance()});
   EXPECT_EQ(wrong.status, 2);

@@ -129,8 +129,13 @@ TEST_F(OperatorPanelSystem, AVncClientsMouseWorksItAndMovesNothingElse) {
       client().until([&] { return differing(model(client().picture()), before, 8) > 1000; }));
   point(0, ControlId::kLeft);
   EXPECT_TRUE(isStill());
-  click(ControlId::kReset);
-  EXPECT_TRUE(client().until(stands));
+  // A press that is not heard of for 1.5 s is let go without a click: a busy machine may need two.
+  bool is_back = false;
+  for (int tries = 0; tries < 3 && !is_back; ++tries) {
+    click(ControlId::kReset);
+    is_back = client().until(stands);
+  }
+  EXPECT_TRUE(is_back);
 }
 
 TEST_F(OperatorPanelSystem, AClientThatDiesWithAnArrowHeldLetsGo) {

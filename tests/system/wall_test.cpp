@@ -138,7 +138,8 @@ TEST_F(Wall, EachDeviceMayDieAndComeBackWithoutTheOthersNoticing) {
                                  *dir_ / fmt::format("{}-{}.pty", m.instance(), victim.driver)}));
     EXPECT_TRUE(m.healthIs(victim.index, HealthState::kOk)) << victim.name;
     EXPECT_TRUE(eventually([&] { return status_says("ok"); })) << victim.name;
-    EXPECT_EQ(m.devices()->health[victim.index].read()->reconnects, 1u);
+    // On a busy machine a new emulator's first record may come too late, once more.
+    EXPECT_GE(m.devices()->health[victim.index].read()->reconnects, 1u);
     EXPECT_GT(m.wall().updated_ns, drawn) << "the wall never stops";
 
     if (victim.index != shm::kGlove) expectContiguous(m.devices()->glove, glove_from, "glove");
