@@ -101,8 +101,9 @@ Result<ForeignReport> importInto(const ForeignFile& file, const std::string& fol
   const auto name = follow(*child, stop, patienceFor(stamp->size));
   if (!name) return named(file, name.error());
   const ImportReport& said = child->report();
-  ForeignReport report{nlohmann::json::parse(said.facts(), nullptr, false), said.notes(),
-                       said.lacks()};
+  ForeignReport report{nlohmann::json::parse(said.facts(), nullptr, false), said.notes()};
+  for (const std::string& what : said.lacks())
+    report.notes.push_back(fmt::format("this system lacks {}; merlin-import ran without it", what));
   if (!report.facts.is_object()) report.facts = nlohmann::json::object();
   if (const auto regular = checkFolder(folder); !regular) return named(file, regular.error());
   if (const auto taken = take(folder + "/" + *name); !taken) return named(file, taken.error());

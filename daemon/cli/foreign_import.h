@@ -23,9 +23,8 @@ struct ForeignFile {
 
 // What merlin-import said. All of it is from a process that read a hostile file.
 struct ForeignReport {
-  nlohmann::json facts;  // an object
-  std::vector<std::string> notes;
-  std::vector<std::string> lacks;  // what the sandbox could not do on this system
+  nlohmann::json facts;            // an object
+  std::vector<std::string> notes;  // for the user; also what the sandbox could not do
 };
 
 // Starts merlin-import, shows its progress from the third second on, and calls `take` with the path

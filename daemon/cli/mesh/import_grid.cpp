@@ -3,8 +3,6 @@
 #include <optional>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "daemon/cli/foreign_import.h"
 
 namespace merlin::cli {
@@ -20,9 +18,7 @@ Result<render::range::LoadedRange> readForeignGrid(const ForeignGrid& grid,
     return Ok{};
   });
   if (!report) return report.error();
-  for (const std::string& what : report->lacks)
-    loaded->notes.push_back(
-        fmt::format("this system lacks {}; merlin-import ran without it", what));
+  loaded->notes.insert(loaded->notes.end(), report->notes.begin(), report->notes.end());
   return *std::move(loaded);
 }
 

@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "daemon/cli/foreign_import.h"
 #include "daemon/cli/print.h"
 
@@ -35,8 +33,6 @@ Result<ImportedModel> loadForeign(const std::string& path, const InputKind& kind
   model.parts = countIn(report->facts, "parts");
   model.loaded.tidied.degenerate += countIn(report->facts, "degenerate").value_or(0);
   model.notes = std::move(report->notes);
-  for (const std::string& what : report->lacks)
-    model.notes.push_back(fmt::format("this system lacks {}; merlin-import ran without it", what));
   return model;
 }
 
