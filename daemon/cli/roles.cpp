@@ -11,9 +11,13 @@ namespace {
 template <typename Segment>
 std::optional<FoundRole> find(const std::string& instance, const char* role,
                               std::optional<Error>& denied) {
-  const auto segment = shm::SegmentReader<Segment>::open(shm::segmentName(instance, role));
+  const std::string name = shm::segmentName(instance, role);
+  const auto segment = shm::SegmentReader<Segment>::open(name);
   if (!segment && segment.error().code == Errc::kIo) denied = segment.error();
-  if (!segment || !segment->alive(SystemClock().now())) return std::nullopt;
+  // On a machine that is too busy the heartbeat may be late; the lock says that it still runs, to
+  // the same user.
+  if (!segment || !(segment->alive(SystemClock().now()) || SharedMemory::owned(name)))
+    return std::nullopt;
   const shm::Header& h = (*segment)->header;
   // Without an endpoint the segment is a copy of another machine's devices, and no process on this
   // machine executes their commands.

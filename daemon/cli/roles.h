@@ -23,7 +23,7 @@ Result<std::vector<FoundRole>> findRoles(const std::string& instance);
 // A request to a role: a command of daemon/base/commands.h and its argument.
 struct RoleRequest {
   std::string command, argument = {};
-  Duration patience = std::chrono::seconds(2);  // maximum time to wait for the answer
+  Duration patience = std::chrono::seconds(5);  // maximum time to wait for the answer
 };
 
 // Sends a command to the role and returns the answer as JSON. Errors: those of findRoles() and

@@ -13,6 +13,7 @@
 #include <X11/extensions/XTest.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "tests/support/pictures.h"
 #include "tests/support/process.h"
@@ -29,12 +30,9 @@ class XServer {
 
   // Starts it; after its end, with the same display.
   void start() {
-    std::vector<std::string> words = {"Xvfb"};
-    if (!display_.empty()) words.push_back(display_);
-    for (const char* word :
-         {"-displayfd", "1", "-screen", "0", "1600x1200x24", "-nolisten", "tcp", "-noreset"})
-      words.emplace_back(word);
-    process_ = std::make_unique<Process>(std::move(words));
+    process_ = std::make_unique<Process>(
+        std::vector<std::string>{"Xvfb", display_, "-displayfd", "1", "-screen", "0",
+                                 "1600x1200x24", "-nolisten", "tcp", "-noreset"});
     const auto number = [&] {
       const std::string said = process_->output();
       const std::size_t end = said.rfind('\n');
@@ -46,8 +44,7 @@ class XServer {
     };
     ASSERT_TRUE(eventually([&] { return !number().empty() || process_->ended(); }))
         << process_->output();
-    ASSERT_FALSE(number().empty()) << process_->output();
-    display_ = ":" + number();
+    ASSERT_EQ(":" + number(), display_) << process_->output();
   }
 
   // The pixels of the screen.
@@ -148,7 +145,9 @@ class XServer {
     Display* display_;
   };
 
-  std::string display_;
+  // The process's own: of a number that Xvfb finds free, another test's server takes hold while
+  // this one is down. Displays go up to 59535, the ports of TCP from 6000.
+  std::string display_ = fmt::format(":{}", 1000 + getpid() % 50000);
   std::unique_ptr<Process> process_;
 };
 

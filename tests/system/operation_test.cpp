@@ -164,19 +164,29 @@ TEST(Operation, EveryCommandOfTheListIsCarriedOut) {
     std::vector<std::string> words = {kMerlin, std::string(command.name)};
     if (!command.argument.empty()) words.push_back(argumentFor(command));
     words.insert(words.end(), {"--instance", m.instance()});
-    // A merlind that a busy machine keeps from its heartbeat for a second counts as gone.
-    Outcome done;
-    const int expected = command.role == CommandOf::kPanel ? 2 : 0;
-    EXPECT_TRUE(eventually([&] {
-      done = run(words);
-      return done.status == expected;
-    })) << done.output;
+    const Outcome done = run(words);
+    EXPECT_EQ(done.status, command.role == CommandOf::kPanel ? 2 : 0) << done.output;
   }
   const Outcome wrong = run({kMerlin, "wall", "--rate", "fast", "--instance", m.instance()});
   EXPECT_EQ(wrong.status, 2);
   EXPECT_NE(wrong.output.find("rate: \"fast\" is not a number from 1 to 240, or auto"),
             std::string::npos)
       << wrong.output;
+}
+
+TEST(Operation, AMerlindThatStandsStillIsSaidToRunAndNotToAnswer) {
+  const TempDir dir;
+  Merlind m(dir, makeModel(dir, 2), "still");
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  ::kill(m.process().pid(), SIGSTOP);
+  const auto wall =
+      shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(m.instance(), "wall"));
+  ASSERT_TRUE(wall);
+  EXPECT_TRUE(eventually([&] { return !wall->alive(SystemClock().now()); }));
+  const Outcome home = run({kMerlin, "home", "--instance", m.instance()});
+  ::kill(m.process().pid(), SIGCONT);
+  EXPECT_EQ(home.status, 1) << home.output;
+  EXPECT_NE(home.output.find("no answer within 5.0 s"), std::string::npos) << home.output;
 }
 
 TEST(Operation, APointerWhereNoFrameIsIsRefused) {
