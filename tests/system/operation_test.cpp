@@ -183,10 +183,10 @@ TEST(Operation, AMerlindThatStandsStillIsSaidToRunAndNotToAnswer) {
       shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(m.instance(), "wall"));
   ASSERT_TRUE(wall);
   EXPECT_TRUE(eventually([&] { return !wall->alive(SystemClock().now()); }));
-  const Outcome home = run({kMerlin, "home", "--instance", m.instance()});
+  const Outcome reset = run({kMerlin, "reset_view", "--instance", m.instance()});
   ::kill(m.process().pid(), SIGCONT);
-  EXPECT_EQ(home.status, 1) << home.output;
-  EXPECT_NE(home.output.find("no answer within 5.0 s"), std::string::npos) << home.output;
+  EXPECT_EQ(reset.status, 1) << reset.output;
+  EXPECT_NE(reset.output.find("no answer within 5.0 s"), std::string::npos) << reset.output;
 }
 
 TEST(Operation, APointerWhereNoFrameIsIsRefused) {
