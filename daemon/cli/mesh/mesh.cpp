@@ -8,7 +8,7 @@ namespace merlin::cli {
 void addMesh(Command app, Run& run) {
   Command mesh = app.subcommand("mesh",
                                 "Meshes and multiresolution models: import, reduce, inspect, "
-                                "export, compare, draw, segment, scan.");
+                                "export, compare, draw, segment, scan, fuse.");
   mesh.requireSubcommand();
   addMeshImport(mesh, run);
   addMeshReduce(mesh, run);
@@ -19,6 +19,7 @@ void addMesh(Command app, Run& run) {
   addMeshPicture(mesh, run);
   addMeshSegment(mesh, run);
   addMeshScan(mesh, run);
+  addMeshFuse(mesh, run);
 }
 
 }  // namespace merlin::cli

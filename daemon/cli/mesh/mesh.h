@@ -17,6 +17,7 @@ namespace merlin::cli {
 void addMeshCompare(Command mesh, Run& run);
 void addMeshCurve(Command mesh, Run& run);
 void addMeshExport(Command mesh, Run& run);
+void addMeshFuse(Command mesh, Run& run);
 void addMeshImport(Command mesh, Run& run);
 void addMeshInfo(Command mesh, Run& run);
 void addMeshPicture(Command mesh, Run& run);

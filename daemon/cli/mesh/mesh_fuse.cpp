@@ -1,0 +1,254 @@
+// merlin mesh fuse: one surface of several range images with known poses.
+#include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/process_memory.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/import_grid.h"
+#include "daemon/cli/mesh/import_range.h"
+#include "daemon/cli/mesh/input_kinds.h"
+#include "daemon/cli/mesh/late_bar.h"
+#include "daemon/cli/mesh/mesh.h"
+#include "daemon/cli/mesh/mesh_memory.h"
+#include "daemon/cli/mesh/reduction_step.h"
+#include "daemon/cli/print.h"
+#include "render/fuse/fuse.h"
+#include "render/lod/io/mrm_file.h"
+
+namespace merlin::cli {
+namespace {
+
+namespace fuse = render::fuse;
+
+struct MeshFuse {
+  std::vector<std::string> scans;
+  std::string output;
+  fuse::FuseSettings settings;
+  std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
+  unsigned threads = 0;
+  bool lost_says_nothing = false, json = false;
+
+  std::size_t limit() const { return memory > 0 ? memory : freeMemory(); }
+  bool makesModel() const { return output.ends_with(".mrm"); }
+};
+
+// What was written, and what it took.
+struct FusedFile {
+  render::mesh::WrittenMesh mesh{};
+  std::optional<std::size_t> coarsest{};  // triangles of a model's coarsest level
+  double reading = 0, fusing = 0, writing = 0;
+};
+
+Result<render::range::RangeImage> readScan(const MeshFuse& options, const std::string& path) {
+  const auto kind = inputKindOf(path);
+  RangeReader read = render::range::readRange;
+  if (kind && kind->isGrid() && kind->reader == InputReader::kForeign)
+    read = [&](const std::string& name, const render::range::RangeOptions& said) {
+      return readForeignGrid({name, options.output, options.limit()}, said);
+    };
+  auto loaded = loadRange(path, {}, false, read);
+  if (!loaded) return loaded.error();
+  for (const std::string& note : loaded->notes) printNote(path + ": " + note);
+  if (const std::string fault = fuse::faultOf(loaded->image); !fault.empty())
+    return Error{Errc::kInvalidArgument, path + ": " + fault};
+  return std::move(loaded->image);
+}
+
+Result<std::vector<render::range::RangeImage>> readScans(const MeshFuse& options) {
+  std::vector<render::range::RangeImage> scans;
+  for (const std::string& path : options.scans) {
+    auto scan = readScan(options, path);
+    if (!scan) return scan.error();
+    scans.push_back(*std::move(scan));
+  }
+  const bool placed = std::any_of(scans.begin(), scans.end(), [](const auto& scan) {
+    return scan.geometry.T_world_scanner != render::range::kIdentity;
+  });
+  if (!placed && scans.size() > 1)
+    return Error{Errc::kInvalidArgument,
+                 options.scans.front() +
+                     ": neither this scan nor the others have a camera transform; fusion needs to "
+                     "know where each stood: the key camera of a PGM, or CAM11 to CAM34 of a FITS "
+                     "image (render/range/io/README.md)"};
+  return scans;
+}
+
+Result<fuse::Fused> fuseScans(MeshFuse& options,
+                              const std::vector<render::range::RangeImage>& scans) {
+  std::size_t pixels = 0;
+  for (const auto& scan : scans) pixels += scan.pixels();
+  if (options.settings.voxel == 0) options.settings.voxel = fuse::voxelFor(scans);
+  options.settings.background_is_empty = !options.lost_says_nothing;
+  // What is free now does not include the scans; a limit of the whole command does.
+  const std::size_t used = options.memory > 0 ? peakMemory() : 0;
+  options.settings.memory = options.limit() - std::min(options.limit(), used);
+  const SystemClock clock;
+  LateBar bar("fusing", pixels, clock);
+  auto fused = fuse::fuse(scans, options.settings, bar.work(options.threads));
+  if (!fused) return Error{fused.error().code, options.output + ": " + fused.error().what};
+  bar.finish();
+  return fused;
+}
+
+Result<Ok> writeFused(const MeshFuse& options, const render::mesh::Mesh& mesh, FusedFile& file) {
+  if (!options.makesModel()) {
+    auto written = render::mesh::writeMesh(options.output, mesh);
+    if (!written) return written.error();
+    file.mesh = *std::move(written);
+    return Ok{};
+  }
+  if (const auto named = render::lod::checkNames(mesh); !named) return named.error();
+  render::reduce::ReduceSettings settings;
+  settings.threads = options.threads;
+  settings.weights = render::reduce::findCost(settings.cost)->weights(mesh);
+  const render::mesh::MeshSize size = sizeOf(mesh);
+  const auto room = roomForReduction(size, 0, settings, options.limit());
+  if (!room) return Error{room.error().code, options.output + ": " + room.error().what};
+  settings.memory = *room;
+  double seconds = 0;
+  const auto reduction = reduceWithProgress(mesh, settings, seconds);
+  if (!reduction) return reduction.error();
+  file.coarsest = reduction->report.triangles;
+  return render::lod::writeMrm(options.output, mesh, reduction->log, options.threads);
+}
+
+void reportJson(const MeshFuse& options, const fuse::Fused& fused, const FusedFile& file) {
+  nlohmann::ordered_json features = nlohmann::ordered_json::array();
+  for (const auto& f : fused.mesh.features)
+    features.push_back({{"name", f.name}, {"dimension", f.dimension}});
+  nlohmann::ordered_json json = {
+      {"scans", options.scans},
+      {"output", options.output},
+      {"voxel", options.settings.voxel},
+      {"truncation", options.settings.truncation * options.settings.voxel},
+      {"closed", options.settings.close},
+      {"triangles", fused.mesh.triangleCount()},
+      {"vertices", fused.mesh.vertexCount()},
+      {"measured_vertices", fused.measured},
+      {"vertices_added", fused.split},
+      {"blocks", fused.blocks},
+      {"blocks_looked_at", fused.looked_at},
+      {"features", features},
+      {"companion_files", file.mesh.companions},
+      {"left_out", file.mesh.left_out},
+      {"seconds", {{"reading", file.reading}, {"fusing", file.fusing}, {"writing", file.writing}}},
+      {"peak_memory_mb", peakMemory() >> 20}};
+  if (file.coarsest) json["triangles_coarsest"] = *file.coarsest;
+  printJsonLine(json);
+}
+
+void report(const MeshFuse& options, const fuse::Fused& fused, const FusedFile& file) {
+  if (options.json) return reportJson(options, fused, file);
+  printOut("{}: {} triangles, {} vertices\n", options.output, fused.mesh.triangleCount(),
+           fused.mesh.vertexCount());
+  printOut("  read      {} scans\n", options.scans.size());
+  printOut("  volume    {} blocks of 8 x 8 x 8 voxels of {:.4g}, of {} looked at\n", fused.blocks,
+           options.settings.voxel, fused.looked_at);
+  const std::size_t inferred = fused.mesh.vertexCount() - fused.measured;
+  if (options.settings.close)
+    printOut("  closed    {} vertices that no scan saw (feature measured is 0)\n", inferred);
+  for (const auto& f : fused.mesh.features) printOut("  feature   {} x {}\n", f.name, f.dimension);
+  printWritten(file.mesh);
+  if (file.coarsest) printOut("  levels    down to {} triangles\n", *file.coarsest);
+  printOut("  {:.2f} s: reading {:.2f}, fusing {:.2f}, writing {:.2f}; peak memory {} MB\n",
+           file.reading + file.fusing + file.writing, file.reading, file.fusing, file.writing,
+           peakMemory() >> 20);
+}
+
+Result<Ok> checkFuse(const MeshFuse& options) {
+  if (!options.makesModel()) {
+    if (const auto known = render::mesh::checkMeshEnding(options.output); !known)
+      return Error{known.error().code, known.error().what + "; models as .mrm"};
+  }
+  for (const std::string& scan : options.scans) {
+    if (const auto free = checkOutputs(scan, {options.output}); !free) return free;
+  }
+  if (options.lost_says_nothing && !options.settings.close)
+    return Error{Errc::kInvalidArgument, "--ignore-background: is for --close"};
+  return Ok{};
+}
+
+int fuseFiles(MeshFuse& options) {
+  const SystemClock clock;
+  FusedFile file;
+  if (const auto good = checkFuse(options); !good) return fail(good.error());
+  const Timestamp began = clock.now();
+  const auto scans = readScans(options);
+  if (!scans) return fail(scans.error());
+  const Timestamp read = clock.now();
+  const auto fused = fuseScans(options, *scans);
+  if (!fused) return fail(fused.error());
+  if (fused->not_numbers > 0)
+    printNote(fmt::format("{}: {} vertices have 0 in a feature that no scan has there",
+                          options.output, fused->not_numbers));
+  const Timestamp done = clock.now();
+  if (const auto written = writeFused(options, fused->mesh, file); !written)
+    return fail(written.error());
+  file.reading = toSeconds(read - began);
+  file.fusing = toSeconds(done - read);
+  file.writing = toSeconds(clock.now() - done);
+  report(options, *fused, file);
+  return kExitDone;
+}
+
+void addVolume(Command command, MeshFuse& options) {
+  command
+      .option("--voxel", options.settings.voxel,
+              "Edge of a voxel, in the scans' units; by default the median step between pixels")
+      .positive()
+      .typeName("LENGTH");
+  command
+      .option("--truncation", options.settings.truncation,
+              "Distance from a surface, in voxels, up to which a scan says how far it is: more for "
+              "noisy scans, less for thin parts")
+      .range(1.0, 100.0)
+      .showDefault();
+  command
+      .option("--max-edge", options.settings.max_edge,
+              "Longest edge of a scan's surface; by default 10 times the step between pixels")
+      .positive()
+      .typeName("LENGTH");
+  command.flag("--close", options.settings.close,
+               "Close the surface: what no scan saw is inside. The feature measured is 0 there");
+  command.flag("--ignore-background", options.lost_says_nothing,
+               "With --close: rays without a return say nothing. By default those in a "
+               "window of 3 x 3 pixels without a return went through empty space");
+}
+
+}  // namespace
+
+void addMeshFuse(Command mesh, Run& run) {
+  const auto options = std::make_shared<MeshFuse>();
+  Command command = mesh.subcommand(
+      "fuse",
+      "Make one surface of several range images whose files say where the scanner stood (the key "
+      "camera). Where scans overlap, distances, colours and other features are blended by "
+      "confidence and angle of incidence. Scans are not aligned to one another."
+      "\nExample: merlin mesh fuse scan1.pgm scan2.pgm scan3.pgm --close -o bust.mrm");
+  command.option("scans", options->scans, "The range images, as merlin mesh import reads them")
+      .required()
+      .typeName("SCAN...");
+  command
+      .option("-o", options->output,
+              "The result: a model (.mrm) or a mesh (.ply, .obj, .glb, .gltf, .stl, .iv)")
+      .required()
+      .typeName("OUT");
+  addVolume(command, *options);
+  command
+      .option("--memory", options->memory,
+              "Maximum memory of the whole command, such as 900M or 16G; the default is the free "
+              "memory")
+      .size()
+      .typeName("SIZE");
+  command
+      .option("--threads", options->threads,
+              "Maximum number of threads; 0: all cores. The result does not depend on this number")
+      .showDefault();
+  command.flag("--json", options->json, "Print the report as JSON, for programs");
+  command.callback([options, &run] { run = [options] { return fuseFiles(*options); }; });
+}
+
+}  // namespace merlin::cli

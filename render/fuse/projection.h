@@ -1,0 +1,55 @@
+// Projection: the inverse of a scanner's geometry, from a point to the place in the range image.
+// Private to render/fuse.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/range/range_image.h"
+
+namespace merlin::render::fuse {
+
+using Point = std::array<double, 3>;
+
+inline double dot(const Point& a, const Point& b) noexcept {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Point cross(const Point& a, const Point& b) noexcept {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline Point minus(const Point& a, const Point& b) noexcept {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+// A place in the image in pixels, from the middle of the first one.
+struct Place {
+  double column = 0, row = 0;
+};
+
+class Projection {
+ public:
+  // REQUIRES: faultOf(image) and inverseFaultOf(image) are empty.
+  explicit Projection(const range::RangeImage& image);
+
+  // Where the ray through the point (scanner's coordinates) lies in the image; nothing if it lies
+  // in no cell of 2 x 2 pixels. The column of a full turn is below the width.
+  std::optional<Place> at(const Point& point) const;
+
+ private:
+  std::optional<Place> inside(double column, double row) const;
+  std::optional<Place> onSpinning(const Point& point) const;
+
+  range::Scanner scanner_;
+  double width_, height_;
+  bool wraps_;
+  double per_column_ = 1, per_row_ = 1;  // columns and rows per radian, or per unit of tangent
+  std::vector<range::Beam> beams_{};     // kSpinning
+};
+
+// Why points cannot be projected into an image that has no other fault; empty if they can: the
+// scanner is orthogonal, pinhole, or spinning with rows from the top to the bottom. O(rows).
+std::string inverseFaultOf(const range::RangeImage& image);
+
+}  // namespace merlin::render::fuse

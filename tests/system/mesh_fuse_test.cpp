@@ -1,0 +1,80 @@
+// `merlin mesh fuse` on scans that `merlin mesh scan` takes: the model comes back, and what is
+// refused is said.
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/meshes.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+class MeshFuse : public testing::Test {
+ protected:
+  MeshFuse() {
+    const Mesh ball = sphere(4);
+    std::string text;
+    for (std::size_t i = 0; i < ball.positions.size(); i += 3)
+      text += fmt::format("v {} {} {}\n", ball.positions[i], ball.positions[i + 1],
+                          ball.positions[i + 2]);
+    for (std::size_t i = 0; i < ball.triangles.size(); i += 3)
+      text += fmt::format("f {} {} {}\n", ball.triangles[i] + 1, ball.triangles[i + 1] + 1,
+                          ball.triangles[i + 2] + 1);
+    writeText(model_, text);
+  }
+  // Twelve scans around the model, four each at three heights.
+  std::vector<std::string> scanned() {
+    std::vector<std::string> files;
+    for (int i = 0; i < 12; ++i) {
+      const double yaw = 1.5708 * i, y = 3.0 * (i / 4 - 1);
+      files.push_back(dir_ / fmt::format("scan{}.pgm", i));
+      const Outcome scan =
+          run({kMerlin, "mesh", "scan", model_, "--width", "80", "--height", "60", "--camera",
+               fmt::format("{:.3f}", 4 * std::cos(yaw)), fmt::format("{:.3f}", y),
+               fmt::format("{:.3f}", 4 * std::sin(yaw)), "-o", files.back()});
+      EXPECT_EQ(scan.status, 0) << scan.output;
+    }
+    return files;
+  }
+  Outcome fuse(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {kMerlin, "mesh", "fuse"});
+    return run(std::move(arguments));
+  }
+  static nlohmann::json jsonOf(const Outcome& outcome) {
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    const auto start = outcome.output.find("{\"");
+    return start == std::string::npos ? nlohmann::json()
+                                      : nlohmann::json::parse(outcome.output.substr(start));
+  }
+
+  TempDir dir_;
+  std::string model_ = dir_ / "ball.obj", out_ = dir_ / "out.ply";
+};
+
+TEST_F(MeshFuse, TwelveScansOfAModelGiveItBackClosed) {
+  auto arguments = scanned();
+  arguments.insert(arguments.end(), {"--voxel", "0.08", "--close", "-o", out_, "--json"});
+  const auto json = jsonOf(fuse(arguments));
+  EXPECT_EQ(json["closed"], true);
+  EXPECT_EQ(json["measured_vertices"], json["vertices"]);
+  EXPECT_EQ(json["vertices"].get<long>() - json["triangles"].get<long>() / 2, 2) << "one sphere";
+  const auto c = jsonOf(run(
+      {kMerlin, "mesh", "compare", model_, out_, "--samples", "5000", "--width", "0.2", "--json"}));
+  EXPECT_LT(c["max_high"], 0.5 * 0.08) << "half a voxel";
+  EXPECT_GT(c["max_high"], 0);
+}
+
+TEST_F(MeshFuse, RefusesScansThatDoNotSayWhereTheyStood) {
+  const std::string scan = "P5\n# angles: 40 30\n4 4\n255\n" + std::string(16, '\x64');
+  writeText(dir_ / "a.pgm", scan);
+  writeText(dir_ / "b.pgm", scan);
+  const Outcome refused = fuse({dir_ / "a.pgm", dir_ / "b.pgm", "-o", out_});
+  EXPECT_EQ(refused.status, 2) << refused.output;
+  EXPECT_NE(refused.output.find("key camera"), std::string::npos) << refused.output;
+  EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
+}  // namespace
+}  // namespace merlin::test
