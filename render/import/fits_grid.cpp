@@ -51,9 +51,15 @@ class Cards {
     if (there && !(std::abs(value) <= 1e30)) setFault(name, "is not a number of up to 1e30");
     return there && fault_.empty() ? std::optional(value) : std::nullopt;
   }
+  // Of any length: with the cards that continue it.
   std::string text(const std::string& name) {
-    std::array<char, FLEN_VALUE> value{};
-    return read(name, TSTRING, value.data()) ? std::string(trimmed(value.data())) : std::string();
+    char* value = nullptr;
+    int status = 0;
+    fits_read_key_longstr(file_, name.c_str(), &value, nullptr, &status);
+    const std::string found = value ? std::string(trimmed(value)) : std::string();
+    int freed = 0;
+    if (value) fits_free_memory(value, &freed);
+    return noted(name, status) ? found : std::string();
   }
   void setFault(const std::string& name, const std::string& what) {
     if (fault_.empty()) fault_ = fmt::format("card {}: {}", name, what);
@@ -64,6 +70,10 @@ class Cards {
   bool read(const std::string& name, int type, void* value) {
     int status = 0;
     fits_read_key(file_, type, name.c_str(), value, nullptr, &status);
+    return noted(name, status);
+  }
+  // Keeps a fault other than a card that is not there. Returns whether the card was read.
+  bool noted(const std::string& name, int status) {
     if (status != 0 && status != KEY_NO_EXIST && status != VALUE_UNDEFINED)
       setFault(name, wordsOf(status));
     fits_clear_errmsg();
@@ -99,6 +109,17 @@ void readCamera(Cards& cards, range::ImageHeader& header) {
   }
 }
 
+// FEAT1, FEAT2, ...: files of registered images, as the key `feature`.
+void readFeatures(Cards& cards, range::ImageHeader& header) {
+  for (std::size_t i = 1;; ++i) {
+    const std::string name = fmt::format("FEAT{}", i);
+    const std::string value = cards.text(name);
+    if (value.empty()) return;
+    if (const auto added = range::applyLine("feature: " + oneLine(value), header); !added)
+      return cards.setFault(name, added.error().what);
+  }
+}
+
 void readScale(Cards& cards, range::GridHead& head) {
   constexpr std::pair<const char*, double> kUnits[] = {
       {"m", 1},     {"metre", 1}, {"meter", 1},   {"metres", 1},    {"meters", 1},   {"mm", 0.001},
@@ -130,6 +151,7 @@ void readGeometry(Cards& cards, range::GridHead& head) {
   const std::string projection = cards.text("PROJECTN");
   if (!projection.empty()) head.header.projection = oneLine(projection);
   readCamera(cards, head.header);
+  readFeatures(cards, head.header);
   readScale(cards, head);
 }
 

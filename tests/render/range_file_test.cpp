@@ -550,8 +550,9 @@ TEST_F(RangeFile, DamageToWhatMerlinImportWritesIsSaid) {
   EXPECT_EQ(refused(with("size: 3 2", "size: 99999 99999")),
             "a.dem: line 2: size: found \"99999 99999\"");
   EXPECT_EQ(refused(with("latitude: 60", "latitude: 91")), "a.dem: line 8: latitude: found \"91\"");
-  EXPECT_EQ(refused(with("latitude: 60", "feature: a=passwd")),
-            "a.dem: line 8: feature: a grid names no files");
+  EXPECT_EQ(refused(with("latitude: 60", "feature: a=../passwd")),
+            "a.dem: line 8: feature: found \"a=../passwd\", allowed: NAME=FILE, a file in the same "
+            "folder");
   EXPECT_EQ(refused(with("size", "sise")), "a.dem: has no line size");
   EXPECT_EQ(refused(with("values\n", "")).substr(0, 15), "a.dem: has no l");
   for (std::size_t n = 0; n < good.size(); ++n) {

@@ -278,6 +278,28 @@ TEST_F(GridImport, AFitsFileThatIsCutOrTooLargeOrEmptyIsRefused) {
   expectRefusal("a.fits", fits(-32, 2, 2, kPinhole, bigFloats({0, 0, 0, 0})), "none of its 2 x 2");
 }
 
+// What `merlin mesh scan` writes, CFITSIO reads; the names of the images beside it are longer than
+// a card, one with a quote where the card ends.
+TEST_F(GridImport, AScanAsFitsComesBackWithItsCameraAndItsModalities) {
+  const std::string stem = std::string(52, 'x') + "'s scan";
+  const auto scanned = [&](const std::string& ending) {
+    const Outcome scan = run({kMerlin, "mesh", "scan", kSource + "/config/models/ankylosaurus.ply",
+                              "--geometry", "pinhole", "--width", "40", "--height", "30", "--yaw",
+                              "20", "-o", dir_ / stem + ending});
+    EXPECT_EQ(scan.status, 0) << scan.output;
+    const Outcome back =
+        run({kMerlin, "mesh", "import", dir_ / stem + ending, "-o", ply_, "--json"});
+    EXPECT_EQ(back.status, 0) << back.output;
+    return nlohmann::json::parse(back.output.substr(back.output.find('{')));
+  };
+  const auto pgm = scanned(".pgm"), fits = scanned(".fits");
+  EXPECT_EQ(fits["format"], "FITS");
+  for (const char* key : {"geometry", "returns", "triangles", "features"})
+    EXPECT_EQ(fits[key], pgm[key]) << key;
+  EXPECT_GT(fits["triangles"], 100);
+  EXPECT_NE(fits["features"].dump().find("confidence"), std::string::npos) << fits["features"];
+}
+
 TEST_F(GridImport, AGeoTiffHasItsCellsVoidsAndProjection) {
   const std::string file = Tiff().of(3, 2, Tiff::shorts({100, 110, -9999, 120, 130, 140}));
   const auto json = report("a.anything", file);

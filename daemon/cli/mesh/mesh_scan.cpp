@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/base/words.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh/late_bar.h"
 #include "daemon/cli/mesh/mesh.h"
@@ -41,8 +42,9 @@ struct MeshScan {
 struct ScannedFiles {
   std::vector<range::FeatureFile> features;  // names of files beside the output
   std::vector<std::string> left_out;
-  range::Ends ends;  // the nearest and the farthest range
-  double range_step = 0, angle_step = 0;
+  range::Ends ends;       // the nearest and the farthest range
+  double range_step = 0;  // of the stored ranges; 0: they are floats
+  double angle_step = 0;
 };
 
 Result<render::mesh::Mesh> meshOf(const std::string& path) {
@@ -127,6 +129,8 @@ Result<scan::Scan> scanModel(MeshScan& options) {
   return scanned;
 }
 
+bool isFits(const std::string& path) { return lowerCase(path).ends_with(".fits"); }
+
 // Writes the planes beside the output, then the output, which names them.
 Result<ScannedFiles> writeScan(const MeshScan& options, const scan::Scan& scanned) {
   ScannedFiles files;
@@ -148,7 +152,8 @@ Result<ScannedFiles> writeScan(const MeshScan& options, const scan::Scan& scanne
   const auto written = range::writeRange(options.output, image, files.features);
   if (!written) return written.error();
   files.ends = range::endsOf(image.range);
-  files.range_step = (double{files.ends.high} - files.ends.low) / 65534;
+  if (!isFits(options.output))
+    files.range_step = (double{files.ends.high} - files.ends.low) / 65534;
   files.angle_step = range::stepOf(image);
   return files;
 }
@@ -186,8 +191,9 @@ void report(const MeshScan& options, const scan::Scan& scanned, const ScannedFil
       "the farthest range\n",
       pose[3], pose[7], pose[11], files.angle_step / kRadian,
       files.angle_step * double{files.ends.high});
-  printOut("  ranges    {:.6g} to {:.6g}, stored in steps of {:.3g}\n", files.ends.low,
-           files.ends.high, files.range_step);
+  printOut(
+      "  ranges    {:.6g} to {:.6g}, stored {}\n", files.ends.low, files.ends.high,
+      isFits(options.output) ? "as floats" : fmt::format("in steps of {:.3g}", files.range_step));
   if (scanned.oblique + scanned.lost > 0)
     printOut("  lost      {} returns of surfaces too oblique, {} dropped\n", scanned.oblique,
              scanned.lost);
@@ -198,7 +204,9 @@ void report(const MeshScan& options, const scan::Scan& scanned, const ScannedFil
 }
 
 Result<Ok> checkScan(MeshScan& options) {
-  if (const auto named = checkEnding(options.output, "range image", ".pgm"); !named) return named;
+  if (!isFits(options.output) && !options.output.ends_with(".pgm"))
+    return Error{Errc::kInvalidArgument,
+                 options.output + ": the name of a range image must end in .pgm or .fits"};
   if (const auto free = checkOutputs(options.model, {options.output}); !free) return free;
   options.settings.drop_outs = options.drop_outs_percent / 100;
   options.settings.most_incidence_rad = options.most_incidence_deg * kRadian;
@@ -281,8 +289,8 @@ void addMeshScan(Command mesh, Run& run) {
       "scan",
       "Take a range image of a model with a simulated scanner, by casting a ray for each pixel. "
       "The features of the model (colours, labels, any other of one value) and the confidence (the "
-      "cosine of the angle of incidence) become images beside OUT.pgm, which names them, so that "
-      "merlin mesh import OUT.pgm reads everything back.\nExample: merlin mesh scan bust.ply --yaw "
+      "cosine of the angle of incidence) become images beside OUT, which names them, so that "
+      "merlin mesh import OUT reads everything back.\nExample: merlin mesh scan bust.ply --yaw "
       "30 --noise 0.0005 --drop-outs 1 -o scan.pgm");
   command
       .option("model", options->model,
@@ -291,10 +299,11 @@ void addMeshScan(Command mesh, Run& run) {
       .typeName("MODEL");
   command
       .option("-o", options->output,
-              "The range image; the images beside it are OUT.NAME.pgm and OUT.NAME.png, and "
-              "replace those that are there")
+              "The range image: PGM of 16 bits, or FITS of floats, whose ranges are exact. The "
+              "images beside it are OUT.NAME.pgm and OUT.NAME.png, and replace those that are "
+              "there")
       .required()
-      .typeName("OUT.pgm");
+      .typeName("OUT.pgm|OUT.fits");
   addScanner(command, *options);
   addFaults(command, *options);
   command

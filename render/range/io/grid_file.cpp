@@ -49,7 +49,6 @@ std::string setGridKey(std::string_view line, GridHead& head) {
     if (head.notes.size() < kMostNotes) head.notes.push_back(textOf(value));
     return {};
   }
-  if (lowerCase(trimmed(key)) == "feature") return "feature: a grid names no files";
   const auto applied = applyLine(line, head.header);
   return applied ? std::string() : applied.error().what;
 }

@@ -28,7 +28,7 @@ namespace merlin::render::range {
 struct GridHead {
   std::size_t width = 0, height = 0;
   std::string format{};                  // "FITS", one line
-  ImageHeader header{};                  // without beams' columns and features
+  ImageHeader header{};                  // without beams' columns
   std::optional<double> latitude_deg{};  // of the middle; then header.cell is in degrees
   std::vector<std::string> notes{};      // one line each
 };

@@ -123,6 +123,22 @@ Result<Ok> applyLine(std::string_view line, ImageHeader& header) {
   return Ok{};
 }
 
+ImageHeader headerOf(const RangeImage& image) {
+  const Geometry& g = image.geometry;
+  ImageHeader header;
+  header.scanner = g.scanner;
+  if (g.scanner == Scanner::kElevation) {
+    header.cell = {g.cell_x, g.cell_y};
+    header.projection = g.projection;
+    header.origin = g.origin;
+    return header;
+  }
+  header.angles_deg = {g.horizontal_rad / kDegree, g.vertical_rad / kDegree};
+  header.beams = g.beams;
+  if (g.T_world_scanner != kIdentity) header.camera = g.T_world_scanner;
+  return header;
+}
+
 std::string linesOf(const ImageHeader& header, std::string_view before) {
   std::string text;
   const auto add = [&](const char* key, const std::string& value) {

@@ -47,6 +47,9 @@ inline constexpr std::size_t kMostProjection = 8192;  // [bytes]
 // are ignored. Errors: kMalformed, with the key, what was found and what is allowed.
 Result<Ok> applyLine(std::string_view line, ImageHeader& header);
 
+// The image's geometry as its file says it. REQUIRES: the geometry is not kRays.
+ImageHeader headerOf(const RangeImage& image);
+
 // The lines that applyLine() reads, each ended by a line feed and begun with `before`.
 std::string linesOf(const ImageHeader& header, std::string_view before);
 

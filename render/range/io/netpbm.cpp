@@ -108,23 +108,6 @@ Result<Ok> readText(std::string_view text, StoredImage& image) {
   return Ok{};
 }
 
-ImageHeader headerOf(const RangeImage& image) {
-  const Geometry& g = image.geometry;
-  ImageHeader header;
-  header.scanner = g.scanner;
-  if (g.scanner == Scanner::kElevation) {
-    header.cell = {g.cell_x, g.cell_y};
-    header.projection = g.projection;
-    header.origin = g.origin;
-    return header;
-  }
-  header.angles_deg = {g.horizontal_rad / kDegree, g.vertical_rad / kDegree};
-  header.beams = g.beams;
-  header.no_return = 0;
-  if (g.T_world_scanner != kIdentity) header.camera = g.T_world_scanner;
-  return header;
-}
-
 }  // namespace
 
 bool isNetpbm(std::string_view bytes) noexcept {

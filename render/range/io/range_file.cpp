@@ -10,6 +10,7 @@
 #include "render/range/geometry.h"
 #include "render/range/io/angle_table.h"
 #include "render/range/io/elevation.h"
+#include "render/range/io/fits_write.h"
 #include "render/range/io/grid_file.h"
 #include "render/range/io/netpbm.h"
 #include "render/range/io/pcd.h"
@@ -265,13 +266,16 @@ Result<LoadedRange> readGrid(const std::string& path, const std::string& name,
 
 Result<Ok> writeRange(const std::string& path, const RangeImage& image,
                       const std::vector<FeatureFile>& features) {
-  if (image.geometry.scanner == Scanner::kRays)
+  const Scanner scanner = image.geometry.scanner;
+  const bool fits = lowerCase(path).ends_with(".fits");
+  if (scanner == Scanner::kRays || (fits && scanner == Scanner::kElevation))
     return Error{Errc::kUnsupported,
-                 path +
-                     ": points with a ray each are not written as PGM, which has no place for "
-                     "the rays"};
-  return writeFile(path,
-                   [&](const WriteBytes& write) { return writePgm(image, 16, write, features); });
+                 fmt::format("{}: an image of {} is not written as {}, which has no place for its "
+                             "geometry",
+                             path, nameOf(scanner), fits ? "FITS" : "PGM")};
+  return writeFile(path, [&](const WriteBytes& write) {
+    return fits ? writeFits(image, write, features) : writePgm(image, 16, write, features);
+  });
 }
 
 }  // namespace merlin::render::range

@@ -61,9 +61,10 @@ Result<LoadedRange> readRange(const std::string& path, const RangeOptions& optio
 Result<LoadedRange> readGrid(const std::string& path, const std::string& name,
                              const RangeOptions& options);
 
-// Writes the ranges of an image, with its geometry and the names of the files of its features, as a
-// PGM of 16 bits. Errors: those of
-// writeFile(); kUnsupported for points with a ray each, which a PGM has no place for.
+// Writes the ranges of an image, with its geometry and the names of the files of its features: as
+// FITS of floats if the path ends in ".fits", else as a PGM of 16 bits. Errors: those of
+// writeFile(); kUnsupported for points with a ray each, and for an elevation map as FITS, since the
+// format has no place for their geometry.
 Result<Ok> writeRange(const std::string& path, const RangeImage& image,
                       const std::vector<FeatureFile>& features = {});
 
