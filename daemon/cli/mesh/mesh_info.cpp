@@ -1,94 +1,157 @@
-// merlin mesh info: prints the contents of a mesh or a model.
+// merlin mesh info: prints what is in a file that MERLIN reads as a mesh, a model or a range image.
+#include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "daemon/base/process_memory.h"
 #include "daemon/cli/exit_status.h"
-#include "daemon/cli/mesh/mesh.h"
+#include "daemon/cli/mesh/import_grid.h"
+#include "daemon/cli/mesh/import_model.h"
+#include "daemon/cli/mesh/import_range.h"
+#include "daemon/cli/mesh/info_report.h"
+#include "daemon/cli/mesh/input_kinds.h"
+#include "daemon/cli/mesh/late_bar.h"
 #include "daemon/cli/print.h"
-#include "render/lod/finest_level.h"
 
 namespace merlin::cli {
 namespace {
 
 struct InfoOptions {
   std::string file;
+  RangeImport range;
   bool json = false;
 };
 
-// A model and, if it was read from a mesh file, the repairs that were necessary.
-struct Opened {
-  std::optional<render::lod::Dendrogram> model;
-  std::vector<Repair> repairs;
-  std::string mended;
-};
+// Where merlin-import's result lies until it is read.
+std::string meanwhile() {
+  std::error_code error;
+  const auto folder = std::filesystem::temp_directory_path(error);
+  return ((error ? "/tmp" : folder) / "merlin-info").string();
+}
 
-Result<Opened> open(const std::string& path) {
-  Opened opened;
-  if (path.ends_with(".mrm")) {
-    auto model = openModel(path);
-    if (!model) return model.error();
-    opened.model = *std::move(model);
-    return opened;
+// The unit of a feature that a model's text "about" names.
+std::string unitIn(std::string_view about, const std::string& feature) {
+  const std::string key = fmt::format("feature.{}.unit=", feature);
+  for (std::size_t at = 0; at < about.size();) {
+    const std::size_t end = std::min(about.find('\n', at), about.size());
+    const std::string_view line = about.substr(at, end - at);
+    if (line.starts_with(key)) return std::string(line.substr(key.size()));
+    at = end + 1;
   }
-  const auto loaded = loadMesh(path);
+  return {};
+}
+
+void addMesh(const render::mesh::Mesh& mesh, FileInfo& info) {
+  info.triangles = mesh.triangleCount();
+  info.vertices = mesh.vertexCount();
+  info.texture_bytes = mesh.texture.size();
+  info.is = render::mesh::inspect(mesh);
+  if (info.levels.levels == 1) info.levels.coarsest = info.triangles;
+}
+
+void addFeatures(const render::mesh::Mesh& mesh, FileInfo& info) {
+  for (const auto& f : mesh.features)
+    info.features.push_back({f.name, unitIn(info.about, f.name), f.dimension, rangeOf(f)});
+}
+
+void addLoaded(const render::mesh::LoadedMesh& loaded, FileInfo& info) {
+  addMesh(loaded.mesh, info);
+  addFeatures(loaded.mesh, info);
+  info.repairs = repairsOf(loaded);
+  info.mended = mendedText(loaded);
+}
+
+Result<FileInfo> infoOfModel(const std::string& path) {
+  const auto model = openModel(path);
+  if (!model) return model.error();
+  FileInfo info{path, "multiresolution model"};
+  const std::size_t last = model->levels() - 1;
+  info.levels = {model->levels(), model->trianglesAt(last), model->errorAt(last)};
+  info.about = model->arrays().about;
+  const render::mesh::Mesh mesh = extract(*model, 0);
+  addMesh(mesh, info);
+  addFeatures(mesh, info);
+  info.texture_bytes = model->arrays().texture.size();
+  return info;
+}
+
+// As the file has it: no normals are added.
+Result<FileInfo> infoOfMesh(const std::string& path) {
+  const auto loaded = render::mesh::readMeshByContent(path);
   if (!loaded) return loaded.error();
-  opened.model = render::lod::oneLevel(loaded->mesh);
-  opened.repairs = repairsOf(*loaded);
-  opened.mended = mendedText(*loaded);
-  return opened;
+  for (const std::string& note : loaded->notes) printNote(note);
+  FileInfo info{path, "mesh"};
+  addLoaded(*loaded, info);
+  return info;
 }
 
-void printJson(const std::string& file, const Opened& opened) {
-  using Json = nlohmann::ordered_json;
-  const render::lod::Dendrogram& model = *opened.model;
-  const auto& a = model.arrays();
-  const render::mesh::Box box = render::lod::finestBox(model);
-  Json features = Json::array();
-  for (const auto& f : a.features)
-    features.push_back({{"name", f.name}, {"dimension", f.dimension}});
-  Json json = {{"file", file},
-               {"triangles", model.triangleCount()},
-               {"vertices", model.vertexCount()},
-               {"levels", model.levels()},
-               {"triangles_coarsest", model.trianglesAt(model.levels() - 1)},
-               {"features", std::move(features)},
-               {"texture_bytes", a.texture.size()},
-               {"box", {{"low", box.low}, {"high", box.high}}},
-               {"diagonal", box.diagonal()},
-               {"about", a.about}};
-  for (const Repair& r : opened.repairs) json[r.key] = r.count;
-  printJsonLine(json);
+Result<FileInfo> infoOfForeign(const std::string& path, const InputKind& kind) {
+  const auto model = loadModel(path, kind, {meanwhile(), freeMemory()});
+  if (!model) return model.error();
+  FileInfo info{path, model->format};
+  info.parts = model->parts;
+  addLoaded(model->loaded, info);
+  return info;
 }
 
-void printText(const std::string& file, const Opened& opened) {
-  const render::lod::Dendrogram& model = *opened.model;
-  const auto& a = model.arrays();
-  const render::mesh::Box box = render::lod::finestBox(model);
-  printOut("{}: {} triangles, {} vertices\n", file, model.triangleCount(), model.vertexCount());
-  if (model.levels() > 1) {
-    printOut("  levels    {}, down to {} triangles (error estimate {:.3g})\n", model.levels(),
-             model.trianglesAt(model.levels() - 1), model.errorAt(model.levels() - 1));
+void addPlanes(const ImportedRange& range, FileInfo& info) {
+  for (const render::range::Plane& plane : range.image.planes) {
+    render::mesh::Feature at_returns{plane.name, plane.dimension, {}};
+    for (std::size_t i = 0; i < plane.values.size(); ++i) {
+      if (render::range::isReturn(range.image.range[i / plane.dimension]))
+        at_returns.values.push_back(plane.values[i]);
+    }
+    info.features.push_back({plane.name, plane.unit, plane.dimension, rangeOf(at_returns)});
   }
-  for (const auto& f : a.features) printOut("  feature   {} x {}\n", f.name, f.dimension);
-  if (!a.texture.empty()) printOut("  texture   {} bytes\n", a.texture.size());
-  printOut("  box       {:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}, diagonal {:.6g}\n",
-           box.low[0], box.low[1], box.low[2], box.high[0], box.high[1], box.high[2],
-           box.diagonal());
-  if (!opened.mended.empty()) printOut("  {}\n", opened.mended);
-  std::string_view about = a.about;
-  while (!about.empty()) {
-    const std::size_t n = std::min(about.find('\n'), about.size());
-    printOut("  made by   {}\n", about.substr(0, n));
-    about.remove_prefix(std::min(n + 1, about.size()));
-  }
+}
+
+RangeReader readerOf(const std::optional<InputKind>& kind) {
+  if (!kind || kind->reader != InputReader::kForeign) return render::range::readRange;
+  return [](const std::string& path, const render::range::RangeOptions& said) {
+    return readForeignGrid({path, meanwhile(), freeMemory()}, said);
+  };
+}
+
+Result<FileInfo> infoOfRange(const InfoOptions& options, const std::optional<InputKind>& kind) {
+  auto range = loadRange(options.file, options.range, false, readerOf(kind));
+  if (!range) return range.error();
+  for (const std::string& note : range->notes) printNote(options.file + ": " + note);
+  FileInfo info{options.file, range->format};
+  const render::range::RangeImage& image = range->image;
+  info.image = ImageInfo{image.width, image.height, range->returns_in_file,
+                         std::string(nameOf(image.geometry.scanner))};
+  addPlanes(*range, info);
+  const SystemClock clock;
+  LateBar bar("inspecting", image.pixels(), clock);
+  const auto work = bar.work(0);
+  if (const auto fits = filterRange(options.file, options.range, freeMemory(), work, *range); !fits)
+    return fits.error();
+  const auto meshed = meshRange(options.file, options.range, work, *range);
+  bar.finish();
+  if (!meshed) printNote(meshed.error().what);
+  if (meshed) addMesh(range->mesh.mesh, info);
+  return info;
+}
+
+Result<FileInfo> infoOf(const InfoOptions& options) {
+  const std::string option = options.range.anyGiven();
+  const auto kind = options.range.isRaw() ? std::nullopt : inputKindOf(options.file);
+  if (options.range.isRaw() || (kind && kind->isGrid())) return infoOfRange(options, kind);
+  if (!option.empty())
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("{}: {} is for range images", options.file, option)};
+  if (options.file.ends_with(".mrm")) return infoOfModel(options.file);
+  return kind && kind->reader == InputReader::kForeign ? infoOfForeign(options.file, *kind)
+                                                       : infoOfMesh(options.file);
 }
 
 int info(const InfoOptions& options) {
-  const auto opened = open(options.file);
-  if (!opened) return fail(opened.error());
-  (options.json ? printJson : printText)(options.file, *opened);
+  const auto found = infoOf(options);
+  if (!found) return fail(found.error());
+  (options.json ? printInfoJson : printInfoText)(*found);
   return kExitDone;
 }
 
@@ -98,13 +161,14 @@ void addMeshInfo(Command mesh, Run& run) {
   const auto options = std::make_shared<InfoOptions>();
   Command command = mesh.subcommand(
       "info",
-      "Show the contents of a mesh or a model, and the "
-      "repairs that reading a mesh needed.\nExample: merlin mesh info scan.mrm --json");
-  command
-      .option("file", options->file,
-              "Model (.mrm) or mesh (" + render::mesh::readableEndings() + ")")
-      .required()
-      .typeName("FILE");
+      "Show what is in a model, a mesh, a range image, an elevation map, or a model of another "
+      "program, whatever merlin mesh import reads: sizes, the box around it, features with their "
+      "ranges, connected parts, holes with the length of their borders, what is odd, and the "
+      "repairs that reading needed. Vertices at one place count as one for parts and holes. "
+      "Nothing is written."
+      "\nExample: merlin mesh info scan.mrm --json");
+  command.option("file", options->file, "The file").required().typeName("FILE");
+  options->range.addTo(command);
   command.flag("--json", options->json, "Print JSON, for programs");
   command.callback([options, &run] { run = [options] { return info(*options); }; });
 }

@@ -1,0 +1,47 @@
+// The facts that `merlin mesh info` prints, and how.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/cli/mesh/mesh.h"
+#include "render/mesh/inspect.h"
+
+namespace merlin::cli {
+
+struct FeatureInfo {
+  std::string name, unit;  // unit: empty if it is not known
+  std::size_t dimension = 1;
+  render::mesh::ValueRange range;
+};
+
+struct ImageInfo {
+  std::size_t width = 0, height = 0, returns = 0;  // pixels, and those with a return
+  std::string geometry;
+};
+
+struct LevelInfo {
+  std::size_t levels = 1, coarsest = 0;  // triangles of the coarsest level
+  float error = 0;                       // its estimate [model units]
+};
+
+// What a file is, whichever it is.
+struct FileInfo {
+  std::string file, format;
+  std::size_t triangles = 0, vertices = 0;
+  std::optional<ImageInfo> image{};  // of range images and elevation maps
+  LevelInfo levels{};
+  std::optional<std::size_t> parts{};  // of a foreign format
+  std::vector<FeatureInfo> features{};
+  std::size_t texture_bytes = 0;
+  render::mesh::Inspection is{};
+  std::vector<Repair> repairs{};  // that reading needed
+  std::string mended{}, about{};
+};
+
+void printInfoJson(const FileInfo& info);
+void printInfoText(const FileInfo& info);
+
+}  // namespace merlin::cli
