@@ -155,7 +155,11 @@ Sight View::onTriangles(const std::array<std::uint32_t, 4>& corners, std::uint8_
     sight.shares = {shares[0] / sum, shares[1] / sum, shares[2] / sum};
     sight.weight = 1;
   }
-  if (sight.weight < 0) return sight;
+  return sight.weight < 0 ? sight : fromPlane(corner, p, sight);
+}
+
+// Completes a sight of `p` by its distance from the plane of these corners.
+Sight View::fromPlane(const std::array<Point, 3>& corner, const Point& p, Sight sight) const {
   Point normal = cross(minus(corner[1], corner[0]), minus(corner[2], corner[0]));
   const double area = length(normal), far = length(p);
   if (!(area > 0) || !(far > 0)) return {};

@@ -68,6 +68,7 @@ class View {
   std::array<std::uint32_t, 4> cornersAt(std::size_t row, std::size_t column) const;
   Sight onTriangles(const std::array<std::uint32_t, 4>& corners, std::uint8_t lacking,
                     const Point& p) const;
+  Sight fromPlane(const std::array<Point, 3>& corner, const Point& p, Sight sight) const;
   Sight besides(const std::array<std::uint32_t, 4>& corners, const Place& in_cell,
                 const Point& p) const;
   double confidenceAt(const Sight& sight) const;

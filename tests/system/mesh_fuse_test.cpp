@@ -76,5 +76,23 @@ TEST_F(MeshFuse, RefusesScansThatDoNotSayWhereTheyStood) {
   EXPECT_FALSE(std::filesystem::exists(out_));
 }
 
+TEST_F(MeshFuse, TakesPosesFromFilesOfTheirOwn) {
+  const std::string scan = dir_ / "a.pgm", pose = dir_ / "pose.txt";
+  writeText(scan, "P5\n# angles: 40 30\n8 8\n255\n" + std::string(64, '\x64'));
+  writeText(pose, "1 0 0 1000\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  ASSERT_EQ(fuse({scan, "--pose", pose, "-o", out_}).status, 0);
+  const auto info = jsonOf(run({kMerlin, "mesh", "info", out_, "--json"}));
+  EXPECT_GT(info["box"]["low"][0], 900);
+  writeText(pose, "1 0 0 1000\n0 1 0 0\n0 0 1\n");
+  const Outcome short_one = fuse({scan, "--pose", pose, "-o", dir_ / "b.ply"});
+  EXPECT_EQ(short_one.status, 2);
+  EXPECT_NE(short_one.output.find("is not a pose"), std::string::npos) << short_one.output;
+  writeText(pose, "2 0 0 0\n0 1 0 0\n0 0 1 0\n");
+  EXPECT_NE(fuse({scan, "--pose", pose, "-o", dir_ / "b.ply"}).output.find("not a rotation"),
+            std::string::npos);
+  EXPECT_NE(fuse({scan, scan, "--pose", pose, "-o", out_}).output.find("1 files for 2 scans"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace merlin::test

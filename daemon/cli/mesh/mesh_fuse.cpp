@@ -13,6 +13,7 @@
 #include "daemon/cli/mesh/late_bar.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/mesh/mesh_memory.h"
+#include "daemon/cli/mesh/pose_file.h"
 #include "daemon/cli/mesh/reduction_step.h"
 #include "daemon/cli/print.h"
 #include "render/fuse/fuse.h"
@@ -24,7 +25,7 @@ namespace {
 namespace fuse = render::fuse;
 
 struct MeshFuse {
-  std::vector<std::string> scans;
+  std::vector<std::string> scans, poses;
   std::string output;
   fuse::FuseSettings settings;
   std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
@@ -42,7 +43,8 @@ struct FusedFile {
   double reading = 0, fusing = 0, writing = 0;
 };
 
-Result<render::range::RangeImage> readScan(const MeshFuse& options, const std::string& path) {
+Result<render::range::RangeImage> readScan(const MeshFuse& options, std::size_t number) {
+  const std::string& path = options.scans[number];
   const auto kind = inputKindOf(path);
   RangeReader read = render::range::readRange;
   if (kind && kind->isGrid() && kind->reader == InputReader::kForeign)
@@ -52,6 +54,11 @@ Result<render::range::RangeImage> readScan(const MeshFuse& options, const std::s
   auto loaded = loadRange(path, {}, false, read);
   if (!loaded) return loaded.error();
   for (const std::string& note : loaded->notes) printNote(path + ": " + note);
+  if (!options.poses.empty()) {
+    const auto pose = readPose(options.poses[number]);
+    if (!pose) return pose.error();
+    loaded->image.geometry.T_world_scanner = *pose;
+  }
   if (const std::string fault = fuse::faultOf(loaded->image); !fault.empty())
     return Error{Errc::kInvalidArgument, path + ": " + fault};
   return std::move(loaded->image);
@@ -59,8 +66,8 @@ Result<render::range::RangeImage> readScan(const MeshFuse& options, const std::s
 
 Result<std::vector<render::range::RangeImage>> readScans(const MeshFuse& options) {
   std::vector<render::range::RangeImage> scans;
-  for (const std::string& path : options.scans) {
-    auto scan = readScan(options, path);
+  for (std::size_t i = 0; i < options.scans.size(); ++i) {
+    auto scan = readScan(options, i);
     if (!scan) return scan.error();
     scans.push_back(*std::move(scan));
   }
@@ -72,7 +79,7 @@ Result<std::vector<render::range::RangeImage>> readScans(const MeshFuse& options
                  options.scans.front() +
                      ": neither this scan nor the others have a camera transform; fusion needs to "
                      "know where each stood: the key camera of a PGM, or CAM11 to CAM34 of a FITS "
-                     "image (render/range/io/README.md)"};
+                     "image (render/range/io/README.md), or --pose FILE"};
   return scans;
 }
 
@@ -166,6 +173,10 @@ Result<Ok> checkFuse(const MeshFuse& options) {
   for (const std::string& scan : options.scans) {
     if (const auto free = checkOutputs(scan, {options.output}); !free) return free;
   }
+  if (!options.poses.empty() && options.poses.size() != options.scans.size())
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("--pose: {} files for {} scans; give one for each, in their order",
+                             options.poses.size(), options.scans.size())};
   if (options.lost_says_nothing && !options.settings.close)
     return Error{Errc::kInvalidArgument, "--ignore-background: is for --close"};
   return Ok{};
@@ -236,6 +247,12 @@ void addMeshFuse(Command mesh, Run& run) {
               "The result: a model (.mrm) or a mesh (.ply, .obj, .glb, .gltf, .stl, .iv)")
       .required()
       .typeName("OUT");
+  command
+      .option("--pose", options->poses,
+              "File with a scan's camera transform, three or four rows of four numbers; once for "
+              "each scan, in their order. It overrides what the scans say")
+      .repeatable()
+      .typeName("FILE");
   addVolume(command, *options);
   command
       .option("--memory", options->memory,
