@@ -53,7 +53,7 @@ Result<render::range::RangeImage> readScan(const MeshFuse& options, std::size_t 
     };
   auto loaded = loadRange(path, {}, false, read);
   if (!loaded) return loaded.error();
-  for (const std::string& note : loaded->notes) printNote(path + ": " + note);
+  for (const std::string& note : loaded->notes) printNote(fmt::format("{}: {}", path, note));
   if (!options.poses.empty()) {
     const auto pose = readPose(options.poses[number]);
     if (!pose) return pose.error();
