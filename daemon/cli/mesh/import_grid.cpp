@@ -22,4 +22,13 @@ Result<render::range::LoadedRange> readForeignGrid(const ForeignGrid& grid,
   return *std::move(loaded);
 }
 
+RangeReader readerOf(const std::optional<InputKind>& kind, const std::string& output,
+                     std::uint64_t memory_bytes) {
+  if (!kind || !kind->isGrid() || kind->reader != InputReader::kForeign)
+    return render::range::readRange;
+  return [=](const std::string& path, const render::range::RangeOptions& said) {
+    return readForeignGrid({path, output, memory_bytes}, said);
+  };
+}
+
 }  // namespace merlin::cli

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "daemon/base/result.h"
+#include "daemon/cli/mesh/import_range.h"
+#include "daemon/cli/mesh/input_kinds.h"
 #include "render/range/io/range_file.h"
 
 namespace merlin::cli {
@@ -19,5 +22,10 @@ struct ForeignGrid {
 // those of importForeign() and of range::readGrid(), with the input's name.
 Result<render::range::LoadedRange> readForeignGrid(const ForeignGrid& grid,
                                                    const render::range::RangeOptions& options);
+
+// What loadRange() is to read a file of this kind with: readForeignGrid() for a grid of another
+// program's format, else range::readRange(). `output`, `memory_bytes`: as in ForeignGrid.
+RangeReader readerOf(const std::optional<InputKind>& kind, const std::string& output,
+                     std::uint64_t memory_bytes);
 
 }  // namespace merlin::cli

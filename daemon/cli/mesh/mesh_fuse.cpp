@@ -12,12 +12,10 @@
 #include "daemon/cli/mesh/input_kinds.h"
 #include "daemon/cli/mesh/late_bar.h"
 #include "daemon/cli/mesh/mesh.h"
-#include "daemon/cli/mesh/mesh_memory.h"
 #include "daemon/cli/mesh/pose_file.h"
 #include "daemon/cli/mesh/reduction_step.h"
 #include "daemon/cli/print.h"
 #include "render/fuse/fuse.h"
-#include "render/lod/io/mrm_file.h"
 
 namespace merlin::cli {
 namespace {
@@ -45,13 +43,8 @@ struct FusedFile {
 
 Result<render::range::RangeImage> readScan(const MeshFuse& options, std::size_t number) {
   const std::string& path = options.scans[number];
-  const auto kind = inputKindOf(path);
-  RangeReader read = render::range::readRange;
-  if (kind && kind->isGrid() && kind->reader == InputReader::kForeign)
-    read = [&](const std::string& name, const render::range::RangeOptions& said) {
-      return readForeignGrid({name, options.output, options.limit()}, said);
-    };
-  auto loaded = loadRange(path, {}, false, read);
+  auto loaded =
+      loadRange(path, {}, false, readerOf(inputKindOf(path), options.output, options.limit()));
   if (!loaded) return loaded.error();
   for (const std::string& note : loaded->notes) printNote(fmt::format("{}: {}", path, note));
   if (!options.poses.empty()) {
@@ -107,19 +100,12 @@ Result<Ok> writeFused(const MeshFuse& options, const render::mesh::Mesh& mesh, F
     file.mesh = *std::move(written);
     return Ok{};
   }
-  if (const auto named = render::lod::checkNames(mesh); !named) return named.error();
-  render::reduce::ReduceSettings settings;
-  settings.threads = options.threads;
-  settings.weights = render::reduce::findCost(settings.cost)->weights(mesh);
-  const render::mesh::MeshSize size = sizeOf(mesh);
-  const auto room = roomForReduction(size, 0, settings, options.limit());
-  if (!room) return Error{room.error().code, options.output + ": " + room.error().what};
-  settings.memory = *room;
-  double seconds = 0;
-  const auto reduction = reduceWithProgress(mesh, settings, seconds);
-  if (!reduction) return reduction.error();
-  file.coarsest = reduction->report.triangles;
-  return render::lod::writeMrm(options.output, mesh, reduction->log, options.threads);
+  double reducing = 0;  // a part of writing
+  const auto coarsest = writeReduced(
+      {options.output, options.output, {}, options.limit(), options.threads}, mesh, reducing);
+  if (!coarsest) return coarsest.error();
+  file.coarsest = *coarsest;
+  return Ok{};
 }
 
 void reportJson(const MeshFuse& options, const fuse::Fused& fused, const FusedFile& file) {
@@ -254,16 +240,7 @@ void addMeshFuse(Command mesh, Run& run) {
       .repeatable()
       .typeName("FILE");
   addVolume(command, *options);
-  command
-      .option("--memory", options->memory,
-              "Maximum memory of the whole command, such as 900M or 16G; the default is the free "
-              "memory")
-      .size()
-      .typeName("SIZE");
-  command
-      .option("--threads", options->threads,
-              "Maximum number of threads; 0: all cores. The result does not depend on this number")
-      .showDefault();
+  addLimits(command, options->memory, options->threads);
   command.flag("--json", options->json, "Print the report as JSON, for programs");
   command.callback([options, &run] { run = [options] { return fuseFiles(*options); }; });
 }

@@ -20,7 +20,6 @@
 #include "daemon/cli/mesh/reduction_step.h"
 #include "daemon/cli/print.h"
 #include "render/image/image_file.h"
-#include "render/lod/io/mrm_file.h"
 
 namespace merlin::cli {
 namespace {
@@ -77,20 +76,11 @@ std::string aboutRange(const ImportedRange& range) {
 Result<ImportedFile> writeModel(const MeshImport& options, const render::mesh::Mesh& mesh,
                                 const std::string& about, ImportTimes& times) {
   ImportedFile written{mesh.triangleCount(), mesh.vertexCount(), {}, {}};
-  if (const auto named = render::lod::checkNames(mesh); !named)
-    return Error{named.error().code, options.input() + ": " + named.error().what};
-  render::reduce::ReduceSettings settings;
-  settings.threads = options.threads;
-  settings.weights = render::reduce::findCost(settings.cost)->weights(mesh);
-  const auto room = roomForReduction(sizeOf(mesh), 0, settings, options.limit());
-  if (!room) return Error{room.error().code, options.input() + ": " + room.error().what};
-  settings.memory = *room;
-  auto reduction = reduceWithProgress(mesh, settings, times.reducing);
-  if (!reduction) return reduction.error();
-  reduction->log.about += about;
-  const auto done = render::lod::writeMrm(options.output, mesh, reduction->log, options.threads);
-  if (!done) return done.error();
-  written.coarsest = reduction->report.triangles;
+  const auto coarsest =
+      writeReduced({options.output, options.input(), about, options.limit(), options.threads}, mesh,
+                   times.reducing);
+  if (!coarsest) return coarsest.error();
+  written.coarsest = *coarsest;
   return written;
 }
 
@@ -128,19 +118,12 @@ int writeImage(const MeshImport& options, ImportedRange& range, ImportTimes& tim
   return kExitDone;
 }
 
-RangeReader readerOf(const MeshImport& options, const std::optional<InputKind>& kind) {
-  if (!kind || kind->reader != InputReader::kForeign) return render::range::readRange;
-  return [&options](const std::string& path, const render::range::RangeOptions& said) {
-    return readForeignGrid({path, options.output, options.limit()}, said);
-  };
-}
-
 int importRange(const MeshImport& options, const std::optional<InputKind>& kind) {
   const SystemClock clock;
   Stopwatch watch(clock);
   ImportTimes times;
-  auto range =
-      loadRange(options.input(), options.range, !options.texture.empty(), readerOf(options, kind));
+  auto range = loadRange(options.input(), options.range, !options.texture.empty(),
+                         readerOf(kind, options.output, options.limit()));
   if (!range) return fail(range.error());
   for (const std::string& note : range->notes) printNote(options.input() + ": " + note);
   times.reading = watch.lap();
@@ -266,16 +249,7 @@ void addMeshImport(Command mesh, Run& run) {
               "Picture over the whole range image, or of a mesh with texture coordinates; it is "
               "stored in the model, or beside the mesh")
       .typeName("FILE.png|.jpg");
-  command
-      .option("--memory", options->memory,
-              "Maximum memory of the whole command, such as 900M or 16G; the default is the free "
-              "memory")
-      .size()
-      .typeName("SIZE");
-  command
-      .option("--threads", options->threads,
-              "Maximum number of threads; 0: all cores. The result does not depend on this number")
-      .showDefault();
+  addLimits(command, options->memory, options->threads);
   command.flag("--json", options->json, "Print the report as JSON, for programs");
   command.callback([options, &run] { run = [options] { return importFile(*options); }; });
 }

@@ -108,15 +108,9 @@ void addPlanes(const ImportedRange& range, FileInfo& info) {
   }
 }
 
-RangeReader readerOf(const std::optional<InputKind>& kind) {
-  if (!kind || kind->reader != InputReader::kForeign) return render::range::readRange;
-  return [](const std::string& path, const render::range::RangeOptions& said) {
-    return readForeignGrid({path, meanwhile(), freeMemory()}, said);
-  };
-}
-
 Result<FileInfo> infoOfRange(const InfoOptions& options, const std::optional<InputKind>& kind) {
-  auto range = loadRange(options.file, options.range, false, readerOf(kind));
+  auto range =
+      loadRange(options.file, options.range, false, readerOf(kind, meanwhile(), freeMemory()));
   if (!range) return range.error();
   for (const std::string& note : range->notes) printNote(options.file + ": " + note);
   FileInfo info{options.file, range->format};

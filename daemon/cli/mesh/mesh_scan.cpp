@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/base/words.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh/late_bar.h"
 #include "daemon/cli/mesh/mesh.h"
@@ -129,8 +128,6 @@ Result<scan::Scan> scanModel(MeshScan& options) {
   return scanned;
 }
 
-bool isFits(const std::string& path) { return lowerCase(path).ends_with(".fits"); }
-
 // Writes the planes beside the output, then the output, which names them.
 Result<ScannedFiles> writeScan(const MeshScan& options, const scan::Scan& scanned) {
   ScannedFiles files;
@@ -152,7 +149,7 @@ Result<ScannedFiles> writeScan(const MeshScan& options, const scan::Scan& scanne
   const auto written = range::writeRange(options.output, image, files.features);
   if (!written) return written.error();
   files.ends = range::endsOf(image.range);
-  if (!isFits(options.output))
+  if (!range::isFitsName(options.output))
     files.range_step = (double{files.ends.high} - files.ends.low) / 65534;
   files.angle_step = range::stepOf(image);
   return files;
@@ -191,9 +188,9 @@ void report(const MeshScan& options, const scan::Scan& scanned, const ScannedFil
       "the farthest range\n",
       pose[3], pose[7], pose[11], files.angle_step / kRadian,
       files.angle_step * double{files.ends.high});
-  printOut(
-      "  ranges    {:.6g} to {:.6g}, stored {}\n", files.ends.low, files.ends.high,
-      isFits(options.output) ? "as floats" : fmt::format("in steps of {:.3g}", files.range_step));
+  printOut("  ranges    {:.6g} to {:.6g}, stored {}\n", files.ends.low, files.ends.high,
+           range::isFitsName(options.output) ? "as floats"
+                                             : fmt::format("in steps of {:.3g}", files.range_step));
   if (scanned.oblique + scanned.lost > 0)
     printOut("  lost      {} returns of surfaces too oblique, {} dropped\n", scanned.oblique,
              scanned.lost);
@@ -204,7 +201,7 @@ void report(const MeshScan& options, const scan::Scan& scanned, const ScannedFil
 }
 
 Result<Ok> checkScan(MeshScan& options) {
-  if (!isFits(options.output) && !options.output.ends_with(".pgm"))
+  if (!range::isFitsName(options.output) && !options.output.ends_with(".pgm"))
     return Error{Errc::kInvalidArgument,
                  options.output + ": the name of a range image must end in .pgm or .fits"};
   if (const auto free = checkOutputs(options.model, {options.output}); !free) return free;

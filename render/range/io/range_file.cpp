@@ -264,10 +264,12 @@ Result<LoadedRange> readGrid(const std::string& path, const std::string& name,
   return checked(name, options, loadGrid(path, options));
 }
 
+bool isFitsName(const std::string& path) { return lowerCase(path).ends_with(".fits"); }
+
 Result<Ok> writeRange(const std::string& path, const RangeImage& image,
                       const std::vector<FeatureFile>& features) {
   const Scanner scanner = image.geometry.scanner;
-  const bool fits = lowerCase(path).ends_with(".fits");
+  const bool fits = isFitsName(path);
   if (scanner == Scanner::kRays || (fits && scanner == Scanner::kElevation))
     return Error{Errc::kUnsupported,
                  fmt::format("{}: an image of {} is not written as {}, which has no place for its "

@@ -61,8 +61,11 @@ Result<LoadedRange> readRange(const std::string& path, const RangeOptions& optio
 Result<LoadedRange> readGrid(const std::string& path, const std::string& name,
                              const RangeOptions& options);
 
+// Whether writeRange() writes the path as FITS, with exact ranges: it ends in ".fits".
+bool isFitsName(const std::string& path);
+
 // Writes the ranges of an image, with its geometry and the names of the files of its features: as
-// FITS of floats if the path ends in ".fits", else as a PGM of 16 bits. Errors: those of
+// FITS of floats if isFitsName(), else as a PGM of 16 bits. Errors: those of
 // writeFile(); kUnsupported for points with a ray each, and for an elevation map as FITS, since the
 // format has no place for their geometry.
 Result<Ok> writeRange(const std::string& path, const RangeImage& image,
