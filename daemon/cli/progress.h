@@ -1,11 +1,16 @@
 // ProgressBar: shows the progress of a long operation, its rate and the remaining time.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "daemon/base/clock.h"
 
 namespace merlin::cli {
+
+// Is told how far an operation is: its title, as the bar has it ("reducing"), and the share that is
+// done, 0..1. Called often, on the thread that works.
+using ProgressListener = std::function<void(const std::string& title, double share)>;
 
 // On a terminal, redraws one line up to ten times a second; otherwise prints a line after each
 // tenth of the work. Writes to stderr. Thread-bound.

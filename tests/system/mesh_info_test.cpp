@@ -71,6 +71,14 @@ TEST_F(MeshInfo, ARangeImageHasRowsColumnsAndReturns) {
       << text.output;
 }
 
+TEST_F(MeshInfo, OfAFileThatIsAbsentItSaysThat) {
+  for (const char* const name : {"absent", "absent.ply", "absent.mrm"}) {
+    const Outcome info = run({kInfoMerlin, "mesh", "info", dir_ / name});
+    EXPECT_EQ(info.status, 2) << info.output;
+    EXPECT_EQ(info.output, "merlin: " + (dir_ / name) + ": does not exist\n");
+  }
+}
+
 TEST_F(MeshInfo, WritesNothing) {
   const std::string file = roof();
   infoOf(file);

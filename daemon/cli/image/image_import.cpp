@@ -1,4 +1,6 @@
 // merlin image import: makes a tiled pyramid of a picture of any format.
+#include "daemon/cli/image/image_import.h"
+
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -25,14 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct ImportOptions {
-  std::string in, out;
-  bool panorama = false, json = false;
-  int quality = 90;
-  int tile_px = 256;
-  std::size_t memory = std::size_t{4'000'000'000};
-};
-
 // Gives the result its name once it is on the disk: whoever looks sees the old file or all of the
 // new one.
 Result<Ok> moveInto(const std::string& from, const std::string& to) {
@@ -48,13 +42,13 @@ struct Summary {
   std::vector<std::string> lacks;
 };
 
-void printSummary(const ImportOptions& options, const render::image::PyramidFile& file,
+void printSummary(const ImageImport& options, const render::image::PyramidFile& file,
                   const Summary& summary) {
   const auto& finest = file.levels().front();
   const double pixels = static_cast<double>(finest.width) * static_cast<double>(finest.height);
   const double rate = pixels / std::max(summary.seconds, 1e-3);
   if (options.json) {
-    printJsonLine(nlohmann::ordered_json{{"file", options.out},
+    printJsonLine(nlohmann::ordered_json{{"file", options.output},
                                          {"kind", file.isPanorama() ? "panorama" : "picture"},
                                          {"width", finest.width},
                                          {"height", finest.height},
@@ -69,16 +63,16 @@ void printSummary(const ImportOptions& options, const render::image::PyramidFile
   printOut(
       "{}: {} of {} x {} pixels, {} levels, {:.1f} MB; {:.1f} s, {:.1f} million pixels/s, at most "
       "{:.0f} MB of memory\n",
-      options.out, file.isPanorama() ? "panorama" : "picture", finest.width, finest.height,
+      options.output, file.isPanorama() ? "panorama" : "picture", finest.width, finest.height,
       file.levels().size(), static_cast<double>(file.stamp().size) / 1e6, summary.seconds,
       rate / 1e6, static_cast<double>(summary.peak_bytes) / 1e6);
 }
 
 // Runs the import in `folder` until `stop` is readable. Returns the path of the result there.
-Result<std::string> runImport(const ImportOptions& options, const std::string& folder, int stop,
+Result<std::string> runImport(const ImageImport& options, const std::string& folder, int stop,
                               Summary& summary) {
   std::vector<std::string> arguments = {"picture",
-                                        options.in,
+                                        options.input,
                                         folder,
                                         "--quality",
                                         std::to_string(options.quality),
@@ -91,9 +85,12 @@ Result<std::string> runImport(const ImportOptions& options, const std::string& f
   if (!child) return child.error();
   const SystemClock clock;
   const Timestamp began = clock.now();
-  ProgressBar bar("importing", "pixels", clock);
-  const auto name = child->follow(
-      stop, [&](const ImportReport& report) { bar.update(report.share(), report.items()); });
+  const std::string title = "importing";
+  ProgressBar bar(title, "pixels", clock);
+  const auto name = child->follow(stop, [&](const ImportReport& report) {
+    bar.update(report.share(), report.items());
+    if (options.progress) options.progress(title, report.share());
+  });
   if (name) bar.finish(child->report().pixels());
   summary.seconds = toSeconds(clock.now() - began);
   summary.lacks = child->report().lacks();
@@ -104,38 +101,38 @@ Result<std::string> runImport(const ImportOptions& options, const std::string& f
   return folder + "/" + *name;
 }
 
-Result<Ok> checkOptions(const ImportOptions& options) {
-  if (const auto ending = checkEnding(options.out, "pyramid", ".tif"); !ending) return ending;
-  if (!fileStamp(options.in)) {
-    const bool there = fs::exists(options.in);
+Result<Ok> checkOptions(const ImageImport& options) {
+  if (const auto ending = checkEnding(options.output, "pyramid", ".tif"); !ending) return ending;
+  if (!fileStamp(options.input)) {
+    const bool there = fs::exists(options.input);
     return Error{Errc::kNotFound,
-                 fmt::format("{}: {}", options.in, there ? "is not a file" : "does not exist")};
+                 fmt::format("{}: {}", options.input, there ? "is not a file" : "does not exist")};
   }
-  return checkWritable(options.out);
-}
-
-int importImage(const ImportOptions& options) {
-  if (const auto good = checkOptions(options); !good) return fail(good.error());
-  const UniqueFd stop = stopSignals();  // before the folder is there, which a signal would leave
-  const auto folder = WorkFolder::make(options.out);
-  if (!folder) return fail(folder.error());
-  Summary summary;
-  const auto made = runImport(options, folder->path(), stop.get(), summary);
-  for (const std::string& what : summary.lacks)
-    printNote(fmt::format("this system lacks {}; the import ran without it", what));
-  if (!made) return fail(made.error());
-  // Read as the daemon will: what it would refuse is not left behind.
-  const auto read = render::image::PyramidFile::open(*made);
-  if (!read) return fail({Errc::kIo, "the result cannot be used: " + read.error().what});
-  if (const auto moved = moveInto(*made, options.out); !moved) return fail(moved.error());
-  printSummary(options, **read, summary);
-  return kExitDone;
+  return checkWritable(options.output);
 }
 
 }  // namespace
 
+Result<Ok> importImage(const ImageImport& options) {
+  if (const auto good = checkOptions(options); !good) return good.error();
+  const UniqueFd stop = stopSignals();  // before the folder is there, which a signal would leave
+  const auto folder = WorkFolder::make(options.output);
+  if (!folder) return folder.error();
+  Summary summary;
+  const auto made = runImport(options, folder->path(), stop.get(), summary);
+  for (const std::string& what : summary.lacks)
+    printNote(fmt::format("this system lacks {}; the import ran without it", what));
+  if (!made) return made.error();
+  // Read as the daemon will: what it would refuse is not left behind.
+  const auto read = render::image::PyramidFile::open(*made);
+  if (!read) return Error{Errc::kIo, "the result cannot be used: " + read.error().what};
+  if (const auto moved = moveInto(*made, options.output); !moved) return moved.error();
+  if (!options.quiet) printSummary(options, **read, summary);
+  return Ok{};
+}
+
 void addImageImport(Command image, Run& run) {
-  const auto options = std::make_shared<ImportOptions>();
+  const auto options = std::make_shared<ImageImport>();
   Command command = image.subcommand(
       "import",
       "Make a tiled pyramid, the form in which merlind shows pictures of any size, of a picture: "
@@ -144,8 +141,8 @@ void addImageImport(Command image, Run& run) {
       "merlin-import, reads it in a sandbox without network, and with limited files and memory. "
       "The result appears as a whole, or not at all.\n"
       "Example: merlin image import photo.jpg -o photo.tif");
-  command.option("in", options->in, "Picture").required().typeName("FILE");
-  command.option("-o,--output", options->out, "Pyramid to write (.tif)")
+  command.option("in", options->input, "Picture").required().typeName("FILE");
+  command.option("-o,--output", options->output, "Pyramid to write (.tif)")
       .required()
       .typeName("FILE");
   command.flag("--panorama", options->panorama,
@@ -166,7 +163,12 @@ void addImageImport(Command image, Run& run) {
       .size()
       .typeName("SIZE");
   command.flag("--json", options->json, "Print JSON, for programs");
-  command.callback([options, &run] { run = [options] { return importImage(*options); }; });
+  command.callback([options, &run] {
+    run = [options] {
+      const auto done = importImage(*options);
+      return done ? kExitDone : fail(done.error());
+    };
+  });
 }
 
 }  // namespace merlin::cli

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <string>
+#include <utility>
 
 #include "daemon/base/clock.h"
 #include "daemon/cli/progress.h"
@@ -14,12 +15,20 @@ namespace merlin::cli {
 // Thread-bound. Must outlive the Work that it gives.
 class LateBar {
  public:
-  LateBar(const std::string& title, std::size_t pixels, const Clock& clock)
-      : pixels_(pixels), clock_(clock), began_(clock.now()), bar_(title, "pixels", clock) {}
+  // `listener`: is told from the beginning on; may be empty.
+  LateBar(const std::string& title, std::size_t pixels, const Clock& clock,
+          ProgressListener listener = {})
+      : title_(title),
+        listener_(std::move(listener)),
+        pixels_(pixels),
+        clock_(clock),
+        began_(clock.now()),
+        bar_(title, "pixels", clock) {}
 
   // `threads`: 0 for all cores.
   render::range::Work work(unsigned threads) {
     return {threadsOr(threads), [this](double share) {
+              if (listener_) listener_(title_, share);
               shown_ = shown_ || clock_.now() - began_ > std::chrono::seconds(2);
               if (shown_) bar_.update(share, at(share));
             }};
@@ -33,6 +42,8 @@ class LateBar {
     return static_cast<std::size_t>(share * static_cast<double>(pixels_));
   }
 
+  std::string title_;
+  ProgressListener listener_;
   std::size_t pixels_;
   const Clock& clock_;
   Timestamp began_;

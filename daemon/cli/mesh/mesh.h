@@ -55,6 +55,9 @@ void printWritten(const render::mesh::WrittenMesh& written);
 // checkWritable().
 Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::string> outputs);
 
+// Checks that there is an input file. Errors: kNotFound.
+Result<Ok> checkIsThere(const std::string& path);
+
 // Parses `text`, such as "colour=0.5", and sets the weight of that feature. Errors:
 // kInvalidArgument.
 Result<Ok> setWeight(const std::string& text, render::reduce::Weights& weights);

@@ -1,6 +1,7 @@
 // merlin mesh import: makes a mesh or a model of a range image, an elevation map, a mesh or a model
 // of any format that is read.
-#include <filesystem>
+#include "daemon/cli/mesh/mesh_import.h"
+
 #include <memory>
 #include <optional>
 
@@ -24,23 +25,16 @@
 namespace merlin::cli {
 namespace {
 
-struct MeshImport {
-  std::vector<std::string> inputs;
-  std::string output, texture;
-  RangeImport range;
-  std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
-  unsigned threads = 0;
-  bool json = false;
-
-  const std::string& input() const { return inputs.front(); }
-  std::size_t limit() const { return memory > 0 ? memory : freeMemory(); }
-  bool makesModel() const { return output.ends_with(".mrm"); }
-  bool makesImage() const { return output.ends_with(".pgm"); }
-};
-
 ImportNames namesOf(const MeshImport& options) {
   return {options.input(), options.output, options.json};
 }
+
+std::size_t limitOf(const MeshImport& options) {
+  return options.memory > 0 ? options.memory : freeMemory();
+}
+
+bool makesModel(const MeshImport& options) { return options.output.ends_with(".mrm"); }
+bool makesImage(const MeshImport& options) { return options.output.ends_with(".pgm"); }
 
 // Takes the time from one call to the next.
 class Stopwatch {
@@ -76,9 +70,9 @@ std::string aboutRange(const ImportedRange& range) {
 Result<ImportedFile> writeModel(const MeshImport& options, const render::mesh::Mesh& mesh,
                                 const std::string& about, ImportTimes& times) {
   ImportedFile written{mesh.triangleCount(), mesh.vertexCount(), {}, {}};
-  const auto coarsest =
-      writeReduced({options.output, options.input(), about, options.limit(), options.threads}, mesh,
-                   times.reducing);
+  const auto coarsest = writeReduced(
+      {options.output, options.input(), about, limitOf(options), options.threads, options.progress},
+      mesh, times.reducing);
   if (!coarsest) return coarsest.error();
   written.coarsest = *coarsest;
   return written;
@@ -86,7 +80,7 @@ Result<ImportedFile> writeModel(const MeshImport& options, const render::mesh::M
 
 Result<ImportedFile> writeOutput(const MeshImport& options, const render::mesh::Mesh& mesh,
                                  const std::string& about, ImportTimes& times) {
-  if (options.makesModel()) return writeModel(options, mesh, about, times);
+  if (makesModel(options)) return writeModel(options, mesh, about, times);
   auto done = render::mesh::writeMesh(options.output, mesh);
   if (!done) return done.error();
   return ImportedFile{mesh.triangleCount(), mesh.vertexCount(), {}, *std::move(done)};
@@ -97,7 +91,7 @@ Result<Ok> addTexture(const MeshImport& options, render::mesh::Mesh& mesh) {
   if (!mesh.find("texcoord") || mesh.find("texcoord")->dimension != 2)
     return Error{Errc::kInvalidArgument,
                  options.input() + ": has no texture coordinates for the picture of --texture"};
-  if (const auto fits = roomForPicture(options.texture, sizeOf(mesh), options.limit()); !fits)
+  if (const auto fits = roomForPicture(options.texture, sizeOf(mesh), limitOf(options)); !fits)
     return fits;
   auto picture = render::image::readImage(options.texture);
   if (!picture) return picture.error();
@@ -106,49 +100,49 @@ Result<Ok> addTexture(const MeshImport& options, render::mesh::Mesh& mesh) {
 }
 
 // A range image that is only filtered and written as PGM.
-int writeImage(const MeshImport& options, ImportedRange& range, ImportTimes& times,
-               Stopwatch& watch) {
+Result<Ok> writeImage(const MeshImport& options, ImportedRange& range, ImportTimes& times,
+                      Stopwatch& watch) {
   const auto done = render::range::writeRange(options.output, range.image);
-  if (!done) return fail(done.error());
+  if (!done) return done.error();
   times.writing = watch.lap();
   ImportedFile written;
   written.mesh.format = "pgm";
   for (const auto& plane : range.image.planes) written.mesh.left_out.push_back(plane.name);
-  reportRange(namesOf(options), range, written, times);
-  return kExitDone;
+  if (!options.quiet) reportRange(namesOf(options), range, written, times);
+  return Ok{};
 }
 
-int importRange(const MeshImport& options, const std::optional<InputKind>& kind) {
+Result<Ok> importRange(const MeshImport& options, const std::optional<InputKind>& kind) {
   const SystemClock clock;
   Stopwatch watch(clock);
   ImportTimes times;
   auto range = loadRange(options.input(), options.range, !options.texture.empty(),
-                         readerOf(kind, options.output, options.limit()));
-  if (!range) return fail(range.error());
+                         readerOf(kind, options.output, limitOf(options)));
+  if (!range) return range.error();
   for (const std::string& note : range->notes) printNote(options.input() + ": " + note);
   times.reading = watch.lap();
-  LateBar bar("importing", range->image.pixels(), clock);
+  LateBar bar("importing", range->image.pixels(), clock, options.progress);
   const auto work = bar.work(options.threads);
-  const auto filtered = filterRange(options.input(), options.range, options.limit(),
+  const auto filtered = filterRange(options.input(), options.range, limitOf(options),
                                     render::range::partOf(work, 0, 0.5), *range);
-  if (!filtered) return fail(filtered.error());
+  if (!filtered) return filtered.error();
   times.filtering = watch.lap();
-  if (options.makesImage()) return writeImage(options, *range, times, watch);
+  if (makesImage(options)) return writeImage(options, *range, times, watch);
   const auto meshed =
       meshRange(options.input(), options.range, render::range::partOf(work, 0.5, 1), *range);
-  if (!meshed) return fail(meshed.error());
+  if (!meshed) return meshed.error();
   bar.finish();
   render::mesh::Mesh& mesh = range->mesh.mesh;
-  if (const auto added = addTexture(options, mesh); !added) return fail(added.error());
+  if (const auto added = addTexture(options, mesh); !added) return added.error();
   if (range->mesh.not_numbers > 0)
     printNote(fmt::format("{}: {} values of features were not numbers; 0 stands there",
                           options.input(), range->mesh.not_numbers));
   times.meshing = watch.lap();
   const auto written = writeOutput(options, mesh, aboutRange(*range), times);
-  if (!written) return fail(written.error());
+  if (!written) return written.error();
   times.writing = watch.lap() - times.reducing;
-  reportRange(namesOf(options), *range, *written, times);
-  return kExitDone;
+  if (!options.quiet) reportRange(namesOf(options), *range, *written, times);
+  return Ok{};
 }
 
 Result<Ok> checkMeshInput(const MeshImport& options, const std::optional<InputKind>& kind) {
@@ -157,37 +151,35 @@ Result<Ok> checkMeshInput(const MeshImport& options, const std::optional<InputKi
   const std::string read = fmt::format("read are {} as range images, {} as meshes, and {}",
                                        render::range::readableRanges(),
                                        render::mesh::readableEndings(), foreignFormats());
-  std::error_code absent;
-  if (!std::filesystem::exists(path, absent))
-    return Error{Errc::kNotFound, path + ": does not exist"};
+  if (const auto there = checkIsThere(path); !there) return there;
   if (!kind)
     return Error{Errc::kUnsupported, path + ": is of no format that MERLIN reads; " + read};
   if (!option.empty())
     return Error{Errc::kInvalidArgument,
                  fmt::format("{}: {} is for range images; {}", path, option, read)};
-  if (options.makesImage())
+  if (makesImage(options))
     return Error{Errc::kUnsupported, options.output + ": only range images are written as PGM"};
   return Ok{};
 }
 
-int importMesh(const MeshImport& options, const std::optional<InputKind>& kind) {
+Result<Ok> importMesh(const MeshImport& options, const std::optional<InputKind>& kind) {
   const SystemClock clock;
   Stopwatch watch(clock);
   ImportTimes times;
-  if (const auto good = checkMeshInput(options, kind); !good) return fail(good.error());
-  auto model = loadModel(options.input(), *kind, {options.output, options.limit()});
-  if (!model) return fail(model.error());
+  if (const auto good = checkMeshInput(options, kind); !good) return good.error();
+  auto model = loadModel(options.input(), *kind, {options.output, limitOf(options)});
+  if (!model) return model.error();
   render::mesh::Mesh& mesh = model->loaded.mesh;
   for (float& x : mesh.positions) x = static_cast<float>(x * options.range.scale.value_or(1));
   if (const auto valid = validate(mesh); !valid)
-    return fail({valid.error().code, options.input() + ": scaled, " + valid.error().what});
-  if (const auto added = addTexture(options, mesh); !added) return fail(added.error());
+    return Error{valid.error().code, options.input() + ": scaled, " + valid.error().what};
+  if (const auto added = addTexture(options, mesh); !added) return added.error();
   times.reading = watch.lap();
   const auto written = writeOutput(options, mesh, {}, times);
-  if (!written) return fail(written.error());
+  if (!written) return written.error();
   times.writing = watch.lap() - times.reducing;
-  reportModel(namesOf(options), *model, *written, times);
-  return kExitDone;
+  if (!options.quiet) reportModel(namesOf(options), *model, *written, times);
+  return Ok{};
 }
 
 Result<Ok> checkOptions(MeshImport& options) {
@@ -196,7 +188,7 @@ Result<Ok> checkOptions(MeshImport& options) {
     return Error{
         Errc::kInvalidArgument,
         fmt::format("{} inputs are given; one file is imported at a time", options.inputs.size())};
-  if (!options.makesModel() && !options.makesImage()) {
+  if (!makesModel(options) && !makesImage(options)) {
     if (const auto known = render::mesh::checkMeshEnding(options.output); !known)
       return Error{known.error().code,
                    known.error().what + "; models as .mrm, range images as .pgm"};
@@ -204,14 +196,29 @@ Result<Ok> checkOptions(MeshImport& options) {
   return checkOutputs(options.input(), {options.output});
 }
 
-int importFile(MeshImport& options) {
-  if (const auto good = checkOptions(options); !good) return fail(good.error());
+}  // namespace
+
+Result<Ok> importFile(MeshImport& options) {
+  if (const auto good = checkOptions(options); !good) return good;
   if (options.range.isRaw()) return importRange(options, {});
   const auto kind = inputKindOf(options.input());
   return kind && kind->isGrid() ? importRange(options, kind) : importMesh(options, kind);
 }
 
-}  // namespace
+void addImportOptions(Command command, MeshImport& options) {
+  command
+      .option("--scale", options.range.scale,
+              "Metres per unit of the file's ranges, heights or coordinates")
+      .positive()
+      .typeName("METRES_PER_UNIT");
+  options.range.addTo(command);
+  command
+      .option("--texture", options.texture,
+              "Picture over the whole range image, or of a mesh with texture coordinates; it is "
+              "stored in the model, or beside the mesh")
+      .typeName("FILE.png|.jpg");
+  addLimits(command, options.memory, options.threads);
+}
 
 void addMeshImport(Command mesh, Run& run) {
   const auto options = std::make_shared<MeshImport>();
@@ -238,20 +245,14 @@ void addMeshImport(Command mesh, Run& run) {
               "filtered range image (.pgm)")
       .required()
       .typeName("OUT");
-  command
-      .option("--scale", options->range.scale,
-              "Metres per unit of the file's ranges, heights or coordinates")
-      .positive()
-      .typeName("METRES_PER_UNIT");
-  options->range.addTo(command);
-  command
-      .option("--texture", options->texture,
-              "Picture over the whole range image, or of a mesh with texture coordinates; it is "
-              "stored in the model, or beside the mesh")
-      .typeName("FILE.png|.jpg");
-  addLimits(command, options->memory, options->threads);
+  addImportOptions(command, *options);
   command.flag("--json", options->json, "Print the report as JSON, for programs");
-  command.callback([options, &run] { run = [options] { return importFile(*options); }; });
+  command.callback([options, &run] {
+    run = [options] {
+      const auto done = importFile(*options);
+      return done ? kExitDone : fail(done.error());
+    };
+  });
 }
 
 }  // namespace merlin::cli

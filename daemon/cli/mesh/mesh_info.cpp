@@ -14,6 +14,7 @@
 #include "daemon/cli/mesh/info_report.h"
 #include "daemon/cli/mesh/input_kinds.h"
 #include "daemon/cli/mesh/late_bar.h"
+#include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/print.h"
 
 namespace merlin::cli {
@@ -131,6 +132,7 @@ Result<FileInfo> infoOfRange(const InfoOptions& options, const std::optional<Inp
 }
 
 Result<FileInfo> infoOf(const InfoOptions& options) {
+  if (const auto there = checkIsThere(options.file); !there) return there.error();
   const std::string option = options.range.anyGiven();
   const auto kind = options.range.isRaw() ? std::nullopt : inputKindOf(options.file);
   if (options.range.isRaw() || (kind && kind->isGrid())) return infoOfRange(options, kind);

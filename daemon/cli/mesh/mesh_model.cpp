@@ -79,6 +79,12 @@ Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::str
   return checkWritable(outputs);
 }
 
+Result<Ok> checkIsThere(const std::string& path) {
+  std::error_code absent;
+  if (std::filesystem::exists(path, absent)) return Ok{};
+  return Error{Errc::kNotFound, path + ": does not exist"};
+}
+
 Result<Ok> setWeight(const std::string& text, render::reduce::Weights& weights) {
   const auto equals = text.find('=');
   char* end = nullptr;

@@ -2,21 +2,24 @@
 
 #include "daemon/base/clock.h"
 #include "daemon/cli/mesh/mesh_memory.h"
-#include "daemon/cli/progress.h"
 #include "render/lod/io/mrm_file.h"
 
 namespace merlin::cli {
 
 Result<render::reduce::Reduction> reduceWithProgress(const render::mesh::Mesh& mesh,
                                                      const render::reduce::ReduceSettings& settings,
-                                                     double& seconds) {
+                                                     double& seconds,
+                                                     const ProgressListener& listener) {
   const SystemClock clock;
-  ProgressBar bar("reducing", "collapses", clock);
+  const std::string title = "reducing";
+  ProgressBar bar(title, "collapses", clock);
   const Timestamp began = clock.now();
   const auto all = static_cast<double>(mesh.triangleCount());
   auto reduction =
       render::reduce::reduce(mesh, settings, [&](const render::reduce::ReduceProgress& p) {
-        bar.update(1 - static_cast<double>(p.triangles) / all, p.collapses);
+        const double share = 1 - static_cast<double>(p.triangles) / all;
+        bar.update(share, p.collapses);
+        if (listener) listener(title, share);
         return true;
       });
   if (!reduction) return reduction;
@@ -37,7 +40,7 @@ Result<std::size_t> writeReduced(const ModelOutput& output, const render::mesh::
   const auto room = roomForReduction(sizeOf(mesh), 0, settings, output.memory);
   if (!room) return named(room.error());
   settings.memory = *room;
-  auto reduction = reduceWithProgress(mesh, settings, seconds);
+  auto reduction = reduceWithProgress(mesh, settings, seconds, output.progress);
   if (!reduction) return reduction.error();
   reduction->log.about += output.about;
   const auto done = render::lod::writeMrm(output.file, mesh, reduction->log, output.threads);

@@ -6,15 +6,17 @@
 
 #include "daemon/base/result.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/progress.h"
 #include "render/reduce/reduce.h"
 
 namespace merlin::cli {
 
-// reduce(), with its progress on stderr. `seconds`: receives the time it took. Errors: those of
-// reduce().
+// reduce(), with its progress on stderr and for `listener`, which may be empty. `seconds`: receives
+// the time it took. Errors: those of reduce().
 Result<render::reduce::Reduction> reduceWithProgress(const render::mesh::Mesh& mesh,
                                                      const render::reduce::ReduceSettings& settings,
-                                                     double& seconds);
+                                                     double& seconds,
+                                                     const ProgressListener& listener = {});
 
 // A model that is to be made of a mesh.
 struct ModelOutput {
@@ -23,6 +25,7 @@ struct ModelOutput {
   std::string about;       // lines for the model's text "about"
   std::size_t memory = 0;  // limit of the whole command [bytes]
   unsigned threads = 0;    // 0: all cores
+  ProgressListener progress{};
 };
 
 // Reduces the mesh by the usual cost, with reduceWithProgress(), and writes the model. Returns the

@@ -1,0 +1,35 @@
+// The import of `merlin mesh import`, which `merlin show` makes as well.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "daemon/base/result.h"
+#include "daemon/cli/command.h"
+#include "daemon/cli/mesh/import_range.h"
+#include "daemon/cli/progress.h"
+
+namespace merlin::cli {
+
+struct MeshImport {
+  std::vector<std::string> inputs;  // one
+  std::string output, texture;
+  RangeImport range;
+  std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
+  unsigned threads = 0;      // 0: all cores
+  bool json = false;
+  bool quiet = false;           // no report; notes and progress are printed all the same
+  ProgressListener progress{};  // may be empty
+
+  const std::string& input() const { return inputs.front(); }
+};
+
+// Adds the options that are about the input, and the limits.
+void addImportOptions(Command command, MeshImport& options);
+
+// Imports the file; prints notes, progress and the report. Ctrl-C leaves nothing behind. Errors:
+// those of the readers, of the reduction and of the writers, with the file's name.
+Result<Ok> importFile(MeshImport& options);
+
+}  // namespace merlin::cli
