@@ -6,6 +6,7 @@
 #include "config/describe_playlist.h"
 #include "config/describe_projectors.h"
 #include "config/describe_room.h"
+#include "config/describe_shown.h"
 #include "config/describe_stereo.h"
 #include "config/settings.h"
 #include "config/visitor.h"
@@ -525,7 +526,8 @@ void describeKms(render::out::kms::KmsSettings& k, SettingsVisitor& v) {
   v.text("connector", k.connector,
          "Name of the connector that the display is plugged in at, as in /sys/class/drm, for "
          "example HDMI-A-1. Empty: the first connector that has a display; only for a single "
-         "output on its card.");
+         "output on its card. *: every connector of the card that has a display and that no other "
+         "output names; that there is none, or no card, is then no fault.");
   v.text("mode", k.mode,
          "Mode of the display, WIDTHxHEIGHT or WIDTHxHEIGHT@HZ, for example 1920x1080@60. Empty: "
          "the mode with the size of the picture if the display has one, otherwise the mode that "
@@ -569,6 +571,7 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
           "What the wall shows while nobody touches it: its contents in turn. It ends at the first "
           "touch, with the content that is shown then, at full brightness.",
           [&] { describePlaylist(w.playlist, v); });
+  v.group("shown", "Files that `merlin show FILE` shows.", [&] { describeShown(w.shown, v); });
   v.group(
       "rate",
       "The frame rate, and limits of the number of triangles, which is adapted to keep the rate.",

@@ -50,6 +50,8 @@ TEST(KmsSettingsTest, FaultsNameTheSettingAndTheWayOut) {
   EXPECT_EQ(faults[2].pointer, "/mode");
   EXPECT_TRUE(validate(KmsSettings{"/dev/dri/card1", "HDMI-A-1", "1920x1080@60"}).empty());
   EXPECT_TRUE(validate(KmsSettings{}).empty());
+  EXPECT_TRUE(validate(KmsSettings{"", "*", ""}).empty());
+  EXPECT_EQ(validate(KmsSettings{"", "HDMI-*", ""}).size(), 1U);
 }
 
 SettingFaults faultsOf(const std::vector<KmsSettings>& displays) {
@@ -68,6 +70,8 @@ TEST(KmsSettingsTest, ADisplayIsOneOutputs) {
   ASSERT_EQ(twice.size(), 1U);
   EXPECT_EQ(twice[0].pointer, "/1/kms/connector");
   EXPECT_EQ(faultsOf({{"", "A-1", ""}, {"", "", ""}}).size(), 1U) << "which connector is open";
+  EXPECT_TRUE(faultsOf({{"", "A-1", ""}, {"", "*", ""}}).empty());
+  EXPECT_EQ(faultsOf({{"", "*", ""}, {"", "*", ""}}).size(), 1U);
   EXPECT_EQ(faultsOf({{"", "A-1", ""}, {"/dev/a", "A-2", ""}}).size(), 1U)
       << "the unnamed card may be the named one";
 }
@@ -329,6 +333,84 @@ TEST_F(DisplaysTest, AFrameIsOneCommitOfAllDisplays) {
   EXPECT_EQ(bench_.shown, (std::map<Id, int>{{21, 2}, {22, 2}}));
   EXPECT_EQ(counted_[0], 2);
   EXPECT_FALSE(displays_.wantsFrame(0));
+}
+
+class EveryConnectorTest : public DisplaysTest {
+ protected:
+  EveryConnectorTest() { every_.add({"", "*", ""}, 640, 480); }
+  // Presents a frame and lets it be shown; returns the fault.
+  std::string show(std::uint64_t sequence, std::uint8_t blue) {
+    std::vector<std::uint8_t> pixels(640 * 480 * 4);
+    for (std::size_t i = 2; i < pixels.size(); i += 4) pixels[i] = blue;
+    const auto shown = every_.present(0, pixels, sequence);
+    every_.step(Duration::zero());
+    return shown ? "" : shown.error().what;
+  }
+  void lookAgain() {
+    clock_.advance(seconds(1));
+    every_.step(Duration::zero());
+  }
+  Displays every_{[this]() -> Result<std::unique_ptr<Card>> {
+                    if (!opens_) return Error{Errc::kNotFound, "there is no card"};
+                    return std::unique_ptr<Card>(std::make_unique<FakeCard>(bench_));
+                  },
+                  clock_};
+};
+
+TEST_F(EveryConnectorTest, ShowsThePictureOnEachDisplayThatThereIs) {
+  every_.step(Duration::zero());
+  EXPECT_EQ(show(1, 5), "");
+  ASSERT_EQ(bench_.commits.size(), 1U) << "one commit";
+  EXPECT_EQ(bench_.shown, (std::map<Id, int>{{21, 5}, {22, 5}}));
+}
+
+TEST_F(EveryConnectorTest, HasNoFaultWithoutADisplayOrACard) {
+  opens_ = false;
+  every_.step(Duration::zero());
+  EXPECT_EQ(show(1, 5), "");
+  EXPECT_EQ(every_.fault(0), "");
+  opens_ = true;
+  for (Connector& connector : bench_.connectors) connector.connected = false;
+  lookAgain();
+  EXPECT_EQ(show(2, 6), "");
+  EXPECT_TRUE(bench_.commits.empty());
+  EXPECT_FALSE(every_.wantsFrame(0));
+  bench_.connectors[1].connected = true;
+  lookAgain();
+  EXPECT_TRUE(every_.wantsFrame(0)) << "although nothing moves";
+  EXPECT_EQ(show(3, 7), "");
+  EXPECT_EQ(bench_.shown, (std::map<Id, int>{{21, 7}})) << "the first CRTC is free";
+}
+
+TEST_F(EveryConnectorTest, APulledDisplayDoesNotMoveTheOthers) {
+  every_.step(Duration::zero());
+  show(1, 5);
+  bench_.connectors[0].connected = false;
+  lookAgain();
+  EXPECT_EQ(show(2, 6), "");
+  ASSERT_EQ(bench_.commits.back().size(), 1U);
+  EXPECT_EQ(bench_.commits.back()[0].crtc, 22U);
+  EXPECT_FALSE(bench_.commits.back()[0].sets_mode);
+}
+
+TEST_F(EveryConnectorTest, WhatIsWrongWithADisplayIsAFaultAndTheOthersShow) {
+  bench_.connectors[1].modes = {mode(320, 240, 60)};
+  every_.step(Duration::zero());
+  EXPECT_NE(show(1, 5).find("more than mode 320x240@60 of A-2"), std::string::npos);
+  EXPECT_EQ(bench_.shown, (std::map<Id, int>{{21, 5}}));
+}
+
+TEST_F(EveryConnectorTest, LeavesTheOnesThatAnotherOutputNames) {
+  every_.add({"", "A-1", "1024x768"}, 640, 480);
+  every_.step(Duration::zero());
+  show(1, 5);
+  std::vector<std::uint8_t> pixels(640 * 480 * 4);
+  ASSERT_TRUE(every_.present(1, pixels, 1));
+  every_.step(Duration::zero());
+  ASSERT_EQ(bench_.commits.size(), 1U);
+  EXPECT_EQ(bench_.commits[0].size(), 2U);
+  const int blues = bench_.shown[21] + bench_.shown[22];
+  EXPECT_EQ(blues, 5) << "one display each";
 }
 
 TEST_F(DisplaysTest, AFrameThatNotEveryOutputHasIsNotCommitted) {

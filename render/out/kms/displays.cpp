@@ -32,26 +32,32 @@ Displays::Displays(OpenCard open, const Clock& clock) : open_(std::move(open)), 
 Displays::~Displays() { card_.reset(); }
 
 std::size_t Displays::add(const KmsSettings& settings, int picture_width, int picture_height) {
-  Screen& screen = screens_.emplace_back();
-  screen.settings = settings;
-  screen.width = picture_width;
-  screen.height = picture_height;
-  return screens_.size() - 1;
+  const std::size_t count = settings.isEvery() ? kMostOfEvery : 1;
+  for (std::size_t n = 0; n < count; ++n) {
+    Screen& screen = screens_.emplace_back();
+    screen.settings = settings;
+    screen.output = outputs_;
+    if (settings.isEvery()) screen.nth = n;
+    screen.width = picture_width;
+    screen.height = picture_height;
+  }
+  return outputs_++;
 }
 
 Result<std::optional<Timestamp>> Displays::present(std::size_t i,
                                                    std::span<const std::uint8_t> rgba,
                                                    std::uint64_t sequence) {
   using Shown = std::optional<Timestamp>;
-  Screen& screen = screens_[i];
   std::unique_lock lock(mutex_);
-  screen.wants_frame = false;
   if (std::exchange(sequence_, sequence) != sequence) whole_ = false;
-  const std::shared_ptr<Place> place = screen.lit ? screen.place : nullptr;
-  bool replaces = false;
-  if (place) {
+  bool shown = false;
+  for (Screen& screen : screens_) {
+    if (screen.output != i) continue;
+    screen.wants_frame = false;
+    const std::shared_ptr<Place> place = screen.lit ? screen.place : nullptr;
+    if (!place) continue;
     const BufferTurns::Write write = place->turns.beginWrite();
-    replaces = write.replaces;
+    shown = shown || !write.replaces;
     lock.unlock();
     Buffer& buffer = *place->buffers[write.buffer];
     writePicture(rgba, screen.width, screen.height, buffer.bytes(), buffer.pitch(),
@@ -59,17 +65,30 @@ Result<std::optional<Timestamp>> Displays::present(std::size_t i,
     lock.lock();
     place->turns.endWrite(write.buffer);
   }
-  if (i + 1 == screens_.size()) {
+  if (i + 1 == outputs_) {
     whole_ = true;
     if (card_) card_->wake();
   }
-  if (!screen.fault.empty()) return Error{Errc::kIo, screen.fault};
-  return place && !replaces ? Shown(clock_.now()) : Shown();
+  if (auto why = faultOf(i); !why.empty()) return Error{Errc::kIo, std::move(why)};
+  return shown ? Shown(clock_.now()) : Shown();
 }
 
 std::string Displays::fault(std::size_t i) const {
   const std::lock_guard lock(mutex_);
-  return screens_[i].fault;
+  return faultOf(i);
+}
+
+// What concerns several displays alike is said once.
+std::string Displays::faultOf(std::size_t output) const {
+  std::set<std::string> faults;
+  for (const Screen& screen : screens_)
+    if (screen.output == output && !screen.fault.empty()) faults.insert(screen.fault);
+  return fmt::format("{}", fmt::join(faults, "; "));
+}
+
+bool Displays::wantsFrame(std::size_t i) const {
+  return std::ranges::any_of(
+      screens_, [i](const Screen& s) { return s.output == i && s.wants_frame.load(); });
 }
 
 std::optional<Displays::Blanks> Displays::blanks() const {
@@ -105,6 +124,9 @@ bool Displays::openCard() {
   looked_ = true;
   if (!opened) {
     darkenAll(opened.error().what);
+    if (opened.error().code == Errc::kNotFound)
+      for (Screen& screen : screens_)
+        if (screen.nth) screen.fault.clear();
     return false;
   }
   card_ = *std::move(opened);
@@ -172,13 +194,38 @@ bool Displays::hasNewDisplay(const CardContents& contents) {
   return has;
 }
 
-void Displays::arrange(const CardContents& contents, Timestamp now) {
-  std::vector<std::uint32_t> masks;
+// The number of a connector for each screen. An output of every connector takes those that no other
+// output names in the card's order, whether they have a display or not: none changes its screen
+// when another one is pulled.
+std::vector<Result<std::size_t>> Displays::chooseConnectors(const CardContents& contents) const {
+  std::set<std::string> named;
+  for (const Screen& screen : screens_) named.insert(screen.settings.connector);
+  std::vector<std::size_t> free;
+  for (std::size_t c = 0; c < contents.connectors.size(); ++c)
+    if (named.count(contents.connectors[c].name) == 0) free.push_back(c);
   std::vector<Result<std::size_t>> chosen;
   for (const Screen& screen : screens_) {
-    chosen.push_back(
-        chooseConnector(contents.connectors, screen.settings.connector, card_->path()));
-    masks.push_back(chosen.back() ? contents.connectors[*chosen.back()].crtcs : 0);
+    if (!screen.nth) {
+      chosen.push_back(
+          chooseConnector(contents.connectors, screen.settings.connector, card_->path()));
+    } else if (*screen.nth < free.size()) {
+      chosen.emplace_back(free[*screen.nth]);
+    } else {
+      chosen.emplace_back(Error{Errc::kNotFound, ""});  // nothing is missing
+    }
+  }
+  return chosen;
+}
+
+void Displays::arrange(const CardContents& contents, Timestamp now) {
+  const std::vector<Result<std::size_t>> chosen = chooseConnectors(contents);
+  std::vector<std::uint32_t> masks;
+  for (std::size_t i = 0; i < screens_.size(); ++i) {
+    const Connector* const c = chosen[i] ? &contents.connectors[*chosen[i]] : nullptr;
+    // Of every connector, one without a display needs no CRTC; one that had a display keeps its
+    // own.
+    const bool needs_none = c && screens_[i].nth && !c->connected && !screens_[i].place;
+    masks.push_back(c && !needs_none ? c->crtcs : 0);
   }
   std::uint32_t usable = 0;
   for (std::size_t i = 0; i < contents.primary_planes.size(); ++i)
@@ -201,6 +248,7 @@ void Displays::arrange(const CardContents& contents, Timestamp now) {
 // Finds the mode and makes the buffers, which stay as long as the mode does.
 Result<Ok> Displays::place(Screen& screen, const CardContents& contents, const Connector& connector,
                            std::optional<std::size_t> crtc) {
+  if (!connector.connected && screen.nth) return Error{Errc::kNotFound, ""};  // nothing is missing
   if (!connector.connected) {
     return Error{Errc::kNotFound,
                  fmt::format("nothing is plugged in at {} of {}", connector.name, card_->path())};

@@ -36,20 +36,22 @@ class Displays {
   Displays(const Displays&) = delete;
   Displays& operator=(const Displays&) = delete;
 
-  // Adds an output and returns its number. To be called before the first present() and step().
+  // Adds an output and returns its number. To be called before the first present() and step(). One
+  // of every connector (KmsSettings::isEvery()) is shown on each that has a display and that no
+  // other output names, up to kMostOfEvery; that there is none, or no card, is not a fault of it.
   std::size_t add(const KmsSettings& settings, int picture_width, int picture_height);
-  std::size_t size() const { return screens_.size(); }
+  static constexpr std::size_t kMostOfEvery = 16;
 
   // Writes the picture (RGBA, rows from top to bottom without padding) of frame `sequence` into a
-  // buffer of output i. A frame is committed when the last output has its picture of it. Never
-  // waits for a display. Cost: one pass over the pixels. Returns when the picture was handed over;
-  // nothing if it replaced one that was not committed yet, or if the card was not looked at yet.
-  // Errors: why the output shows no picture.
+  // buffer of each display of output i. A frame is committed when the last output has its picture
+  // of it. Never waits for a display. Cost: one pass over the pixels for each. Returns when the
+  // picture was handed over; nothing if it replaced one that was not committed yet, or if the card
+  // was not looked at yet. Errors: why the output shows no picture.
   Result<std::optional<Timestamp>> present(std::size_t i, std::span<const std::uint8_t> rgba,
                                            std::uint64_t sequence);
 
   // True if output i could show a picture and has none.
-  bool wantsFrame(std::size_t i) const { return screens_[i].wants_frame; }
+  bool wantsFrame(std::size_t i) const;
 
   // Why output i shows no picture; empty: it shows one, or the card was not looked at yet.
   std::string fault(std::size_t i) const;
@@ -77,7 +79,9 @@ class Displays {
   };
   struct Screen {
     KmsSettings settings{};
-    int width = 0, height = 0;  // of the picture [px]
+    std::size_t output = 0;
+    std::optional<std::size_t> nth{};  // of an output of every connector: of those that are free
+    int width = 0, height = 0;         // of the picture [px]
     // Shared with present(), which may still write when a display gets another mode.
     std::shared_ptr<Place> place{};
     bool lit = false;                     // takes part in commits
@@ -97,12 +101,14 @@ class Displays {
   void look(Timestamp now);
   bool holdMaster();
   bool hasNewDisplay(const CardContents& contents);
+  std::vector<Result<std::size_t>> chooseConnectors(const CardContents& contents) const;
   void arrange(const CardContents& contents, Timestamp now);
   Result<Ok> place(Screen& screen, const CardContents& contents, const Connector& connector,
                    std::optional<std::size_t> crtc);
   static void lightAgain(Screen& screen);
   static void darken(Screen& screen, const std::string& fault);
   void darkenAll(const std::string& fault);
+  std::string faultOf(std::size_t output) const;
   void commit(Timestamp now);
   std::vector<Share> dueShares();
   void settle(std::vector<Share>& shares, const CommitResult& result, Timestamp now);
@@ -116,8 +122,9 @@ class Displays {
   mutable std::mutex mutex_;  // guards all below except the atomics; not held during slow calls
   std::condition_variable idle_;
   std::unique_ptr<Card> card_;  // replaced by step() with the mutex held, used by it without
-  std::deque<Screen> screens_;  // a deque, since a Screen cannot be moved
-  bool looked_ = false;         // at a card, or for one, at least once
+  std::deque<Screen> screens_;  // by output; a deque, since a Screen cannot be moved
+  std::size_t outputs_ = 0;
+  bool looked_ = false;  // at a card, or for one, at least once
   bool master_ = false;
   bool whole_ = false;  // every output has its picture of the frame `sequence_`
   bool busy_ = false;   // the last commit is to be tried again

@@ -54,10 +54,10 @@ SettingFaults validate(const KmsSettings& s) {
   const bool named = std::ranges::all_of(s.connector, [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_';
   });
-  if (!named || s.connector.size() > 31) {
+  if (!s.isEvery() && (!named || s.connector.size() > 31)) {
     faults.push_back({"/connector", fmt::format("is \"{}\"; a connector's name is, for example, "
-                                                "HDMI-A-1, as in /sys/class/drm",
-                                                s.connector)});
+                                                "HDMI-A-1, as in /sys/class/drm; {} is every one",
+                                                s.connector, kEveryConnector)});
   }
   if (!s.mode.empty() && !parseMode(s.mode)) {
     faults.push_back({"/mode", fmt::format("is \"{}\"; a mode is WIDTHxHEIGHT or WIDTHxHEIGHT@HZ, "

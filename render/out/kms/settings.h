@@ -8,11 +8,15 @@
 
 namespace merlin::render::out::kms {
 
-struct KmsSettings {
-  std::string card{};       // its device file; empty: the first card that has connectors
-  std::string connector{};  // its name, "HDMI-A-1"; empty: the first one with a display
-  std::string mode{};       // "1920x1080" or "1920x1080@60"; empty: see chooseMode()
+inline constexpr const char* kEveryConnector = "*";
 
+struct KmsSettings {
+  std::string card{};  // its device file; empty: the first card that has connectors
+  // Its name, "HDMI-A-1"; empty: the first one with a display; kEveryConnector: all of the card.
+  std::string connector{};
+  std::string mode{};  // "1920x1080" or "1920x1080@60"; empty: see chooseMode()
+
+  bool isEvery() const { return connector == kEveryConnector; }
   bool operator==(const KmsSettings&) const = default;
 };
 
