@@ -123,14 +123,16 @@ class SchemaWriter final : public SettingsVisitor {
     put(key, std::move(object));
   }
   // Describes one item with the default values of its type; the list's own default is not
-  // described.
-  void list(const char* key, std::size_t, const char* help,
+  // described. Afterwards the list is as long as it was: what is described after it may depend on
+  // whether it is empty.
+  void list(const char* key, std::size_t count, const char* help,
             const std::function<void(std::size_t)>& resize,
             const std::function<void(std::size_t)>& member) override {
     Json item = object_("");
     item.erase("description");
     resize(1);
     within(item, [&] { member(0); });
+    resize(count);
     put(key, {{"type", "array"}, {"items", std::move(item)}, {"description", help}});
   }
 

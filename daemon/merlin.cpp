@@ -16,6 +16,15 @@
 namespace merlin {
 namespace {
 
+manual::PageSettings page() {
+  return {.name = "merlin",
+          .summary = "command-line tool of the display wall MERLIN",
+          .section = 1,
+          .files = {{"/etc/merlin/merlin.json", "the daemon's configuration"},
+                    {"/var/lib/merlin", "models, and what people changed while the wall ran"}},
+          .see_also = {"merlind(8)", "merlin.json(5)"}};
+}
+
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file-size limit is then an error of write()
   CLI::App app(
@@ -41,7 +50,7 @@ int main(int argc, char** argv) {
                             : fmt::format("did you mean \"{}\"?", near));
     return kExitBadInput;
   }
-  if (const auto status = parseArguments(app, argc, argv)) return *status;
+  if (const auto status = parseArguments(app, argc, argv, page())) return *status;
   initLog(LogLevel::kWarning);
   return run();
 }

@@ -9,6 +9,7 @@
 #include <sys/resource.h>
 
 #include "config/loader.h"
+#include "config/manual_page.h"
 #include "config/writer.h"
 #include "daemon/base/log.h"
 #include "daemon/base/printable_text.h"
@@ -29,7 +30,20 @@ struct Options {
   bool emulate = false;
   bool print_config = false;
   bool print_schema = false;
+  bool print_config_manual = false;
 };
+
+manual::PageSettings page() {
+  return {.name = "merlind",
+          .summary = "daemon of the display wall MERLIN",
+          .section = 8,
+          .files = {{"/etc/merlin/merlin.json", "the configuration, described in merlin.json(5)"},
+                    {"/usr/share/merlin/merlind.service.d",
+                     "drop-ins for merlind.service, each of which allows one more thing"},
+                    {"/var/lib/merlin", "models, and what people changed while the wall ran"},
+                    {"/run/merlin", "sockets of status and commands, for the group merlin"}},
+          .see_also = {"merlin(1)", "merlin.json(5)", "systemctl(1)"}};
+}
 
 void printFindings(const std::string& file, const LoadedSettings& loaded) {
   for (const Finding& finding : loaded.findings) printError("{}\n", toText(file, finding));
@@ -150,11 +164,13 @@ int main(int argc, char** argv) {
                "Print the configuration with every setting, including defaults, and exit");
   app.add_flag("--print-schema", options.print_schema,
                "Print the JSON Schema of configuration files, and exit");
+  app.add_flag("--print-config-manual", options.print_config_manual,
+               "Print the manual page of configuration files, merlin.json(5), and exit");
   app.set_version_flag("--version", MERLIN_VERSION);
-  if (const auto status = parseArguments(app, argc, argv)) return *status;
+  if (const auto status = parseArguments(app, argc, argv, page())) return *status;
   initLog(LogLevel::kInfo);
-  if (options.print_schema) {
-    fmt::print("{}", settingsSchema());
+  if (options.print_schema || options.print_config_manual) {
+    fmt::print("{}", options.print_schema ? settingsSchema() : settingsManual(MERLIN_VERSION));
     return kExitDone;
   }
   if (options.print_config) return printConfig(options);

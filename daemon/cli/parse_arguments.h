@@ -1,4 +1,5 @@
-// Parses the arguments of a program with CLI11, whose exceptions end here.
+// Parses the arguments of a program with CLI11, whose exceptions end here, and adds the options
+// that print its manual page and its completion.
 #pragma once
 
 #include <optional>
@@ -10,12 +11,32 @@
 #include "daemon/base/log.h"
 #include "daemon/base/printable_text.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/program_of.h"
+#include "daemon/manual/bash_completion.h"
+#include "daemon/manual/man_page.h"
 
 namespace merlin {
 
-// Returns nothing if the program is to run. Otherwise, after --help, --version or an invalid
-// argument, prints the text and returns the exit status.
-inline std::optional<int> parseArguments(CLI::App& app, int argc, char** argv) {
+// `page`: of the manual; it is used while `app` parses.
+inline void addManualOptions(CLI::App& app, const manual::PageSettings& page) {
+  app.add_flag_callback(
+      "--print-manual",
+      [&] {
+        const std::string text = manPage(cli::programOf(app), page, MERLIN_VERSION);
+        throw CLI::CallForVersion(text, 0);  // as --version ends: the text is printed
+      },
+      "Print this program's manual page, for man -l -, and exit");
+  app.add_flag_callback(
+      "--print-completion",
+      [&] { throw CLI::CallForVersion(bashCompletion(cli::programOf(app), page.name), 0); },
+      "Print completion of commands and options for bash, and exit");
+}
+
+// Returns nothing if the program is to run. Otherwise, after --help, --version, --print-manual,
+// --print-completion or an invalid argument, prints the text and returns the exit status.
+inline std::optional<int> parseArguments(CLI::App& app, int argc, char** argv,
+                                         const manual::PageSettings& page) {
+  addManualOptions(app, page);
   try {
     app.parse(argc, argv);
     return std::nullopt;

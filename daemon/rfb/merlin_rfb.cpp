@@ -106,6 +106,15 @@ int serve(Options& options) {
   return ran ? kExitDone : fail(ran.error());
 }
 
+manual::PageSettings page() {
+  return {.name = "merlin-rfb",
+          .summary = "shows the display wall MERLIN to VNC clients",
+          .section = 1,
+          .files = {{"/etc/merlin/rfb.conf",
+                     "options for merlin-rfb.service: MERLIN_RFB_OPTIONS=\"...\""}},
+          .see_also = {"merlin(1)", "merlind(8)"}};
+}
+
 int main(int argc, char** argv) {
   Options options;
   CLI::App app(
@@ -114,7 +123,7 @@ int main(int argc, char** argv) {
       "Example: merlin-rfb --tile left --allow-input, then vncviewer 127.0.0.1:0");
   addOptions(app, options);
   app.set_version_flag("--version", MERLIN_VERSION);
-  if (const auto status = parseArguments(app, argc, argv)) return *status;
+  if (const auto status = parseArguments(app, argc, argv, page())) return *status;
   return serve(options);
 }
 

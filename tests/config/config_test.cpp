@@ -376,6 +376,13 @@ TEST(Config, TheSchemaDescribesTheItemsOfEveryList) {
   EXPECT_EQ(schema.find("\"properties\": {}"), std::string::npos);
 }
 
+// A room excludes them, and a file need not have a room.
+TEST(Config, TheSchemaDescribesTilesWithoutARoom) {
+  const std::string schema = settingsSchema();
+  for (const char* key : {"\"frame_width\"", "\"frame_height\"", "\"frustum_deg\""})
+    EXPECT_NE(schema.find(key), std::string::npos) << key;
+}
+
 TEST(Config, TheSchemaInTheRepositoryIsTheProgramsOwn) {
   EXPECT_EQ(test::readText(MERLIN_SOURCE_DIR "/config/merlin.schema.json"), settingsSchema())
       << "merlind --print-schema > config/merlin.schema.json";

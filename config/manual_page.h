@@ -1,0 +1,12 @@
+// Writes the manual page of configuration files, merlin.json(5).
+#pragma once
+
+#include <string>
+
+namespace merlin {
+
+// The page, in the macros of man(7): every setting with its type, range, default and meaning, in
+// the order of describe(). `version`: of MERLIN, at the foot of the page.
+std::string settingsManual(const std::string& version);
+
+}  // namespace merlin
