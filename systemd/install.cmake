@@ -1,7 +1,7 @@
 # Installs the configuration; after install_unit.cmake, which says where: `configuration`.
-# An existing configuration is somebody's work and is kept. wall.json names postures.json and the
-# schema, which must be in the same folder.
-foreach(pair "wall.json>merlin.json" "postures.json>postures.json"
+# An existing configuration is somebody's work and is kept. It names the schema, and an example may
+# name postures.json, which must be in the same folder.
+foreach(pair "installed.json>merlin.json" "postures.json>postures.json"
              "merlin.schema.json>merlin.schema.json")
   string(REPLACE ">" ";" pair "${pair}")
   list(GET pair 0 from)
@@ -12,6 +12,7 @@ foreach(pair "wall.json>merlin.json" "postures.json>postures.json"
   else()
     message(STATUS "Installing: ${path}")
     file(READ "${source}/config/${from}" content)
+    string(REPLACE "/usr/share/" "${CMAKE_INSTALL_PREFIX}/share/" content "${content}")
     file(WRITE "${path}" "${content}")
   endif()
 endforeach()
