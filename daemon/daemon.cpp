@@ -212,6 +212,8 @@ Result<Ok> Daemon::run() {
   logInfo("ready");
   while (!stopAsked(kBeat)) {
     housekeeping();
+    // Not before READY=1: a ping arms systemd's watchdog, and the first frame may take longer.
+    if (watchdog_.ping(clock_.now(), threads_.threads())) ::sd_notify(0, "WATCHDOG=1");
     if (const auto ended = ended_threads_.check(clock_.now())) return *ended;
   }
   ::sd_notify(0, "STOPPING=1");
@@ -270,7 +272,6 @@ void Daemon::housekeeping() {
     summarised_ = now;
     ::sd_notify(0, ("STATUS=" + summary(now)).c_str());
   }
-  if (watchdog_.ping(now, threads_.threads())) ::sd_notify(0, "WATCHDOG=1");
 }
 
 void Daemon::tendState() {

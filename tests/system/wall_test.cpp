@@ -295,6 +295,8 @@ TEST_F(Wall, TellsSystemdWhenTheFirstFrameIsOutAndThatThereIsProgress) {
   EXPECT_TRUE(systemd.hears("READY=1")) << m.process().output();
   EXPECT_GT(m.wall().frames, 0u);
   EXPECT_TRUE(systemd.hears("WATCHDOG=1"));
+  EXPECT_LT(systemd.all().find("READY=1"), systemd.all().find("WATCHDOG=1"))
+      << "a ping would arm the watchdog while the first frame takes its time";
   EXPECT_TRUE(systemd.hears("STATUS="));
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
   EXPECT_TRUE(systemd.hears("STOPPING=1"));
