@@ -40,10 +40,11 @@ Result<std::string> importProgram() {
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
   const auto program = self.parent_path() / "merlin-import";
   if (!error && ::access(program.c_str(), X_OK) == 0) return program.string();
-  return Error{Errc::kUnsupported,
-               fmt::format("{}: is not there; merlin-import is built where its libraries are "
-                           "(./dev build installs them) and belongs into the folder of merlin",
-                           program.string())};
+  return Error{
+      Errc::kUnsupported,
+      fmt::format("{}: is not there; install the package merlin-import. In a build it is made "
+                  "where its libraries are (./dev build installs them), beside merlin",
+                  program.string())};
 }
 
 [[noreturn]] void execute(const std::vector<std::string>& arguments, int output) {
