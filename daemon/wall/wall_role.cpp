@@ -93,6 +93,7 @@ Result<Ok> WallRole::makeOutputs(std::uint64_t generation) {
       frame_name.copy(segment_->framebuffer, sizeof segment_->framebuffer - 1);
   }
   outputs_ = render::out::OutputSet(std::move(outputs));
+  graphics_cards_.open();  // before the drawing contexts do
   return Ok{};
 }
 

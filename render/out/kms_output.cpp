@@ -9,6 +9,7 @@ namespace {
 
 // The longest time without a sign of life from the thread.
 constexpr Duration kStep = std::chrono::milliseconds(500);
+constexpr Duration kLongestLook = std::chrono::seconds(2);
 
 class KmsOutput final : public Output {
  public:
@@ -53,6 +54,15 @@ void CardWorker::start() {
       displays_.step(kStep);
     }
   });
+}
+
+void Cards::open() {
+  for (const auto& [path, held] : workers_) {
+    const auto worker = held.lock();
+    if (!worker) continue;
+    worker->start();
+    worker->displays().awaitFirstLook(kLongestLook);
+  }
 }
 
 std::unique_ptr<Output> Cards::makeOutput(const KmsSettings& settings, int picture_width,

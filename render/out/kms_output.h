@@ -22,7 +22,7 @@ class CardWorker {
   CardWorker& operator=(const CardWorker&) = delete;
 
   Displays& displays() { return displays_; }
-  // Starts the thread, once: with the first frame, when every output has been added.
+  // Starts the thread, once: when every output has been added.
   void start();
 
  private:
@@ -37,6 +37,11 @@ class CardWorker {
 class Cards {
  public:
   Cards(ThreadWatch& watch, const Clock& clock) : watch_(watch), clock_(clock) {}
+
+  // Opens the cards, once all outputs are made, and looks at them; takes 2 s at most. To be called
+  // before anything else in the process opens them, as Mesa does: whoever opens a card that has no
+  // master becomes it, and only the thread that opened it, or root, can give that away.
+  void open();
 
   // Never fails: what is not there may come. Its health says what is missing.
   std::unique_ptr<Output> makeOutput(const KmsSettings& settings, int picture_width,

@@ -117,11 +117,17 @@ void Displays::wake() {
   idle_.notify_all();
 }
 
+void Displays::awaitFirstLook(Duration longest) {
+  std::unique_lock lock(mutex_);
+  idle_.wait_for(lock, longest, [this] { return looked_; });
+}
+
 bool Displays::openCard() {
   next_look_ = clock_.now() + kLookEvery;
   auto opened = open_();
   const std::lock_guard lock(mutex_);
   looked_ = true;
+  idle_.notify_all();
   if (!opened) {
     darkenAll(opened.error().what);
     if (opened.error().code == Errc::kNotFound)
@@ -167,6 +173,7 @@ bool Displays::holdMaster() {
   for (Screen& screen : screens_) screen.lit = false;
   if (!became) {
     looked_ = true;
+    idle_.notify_all();
     darkenAll(taken);
   }
   return became;
@@ -243,6 +250,7 @@ void Displays::arrange(const CardContents& contents, Timestamp now) {
   }
   const std::lock_guard lock(mutex_);
   looked_ = true;
+  idle_.notify_all();
 }
 
 // Finds the mode and makes the buffers, which stay as long as the mode does.

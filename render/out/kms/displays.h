@@ -67,6 +67,8 @@ class Displays {
   // `longest` for something to do.
   void step(Duration longest);
   void wake();
+  // Waits until step() has looked at the card, or for one, but at most `longest`.
+  void awaitFirstLook(Duration longest);
 
  private:
   // What an output is shown on.
