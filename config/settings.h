@@ -75,6 +75,7 @@ struct WallSettings {
   std::string model;                      // an .mrm file, shown first; empty: the first content is
   std::vector<ContentSettings> contents;  // further contents, shown in turn by next_content
   PlaylistSettings playlist;
+  ShownSettings shown;
   render::governor::GovernorSettings governor;
   render::room::RoomSettings room;     // instead of tiles by hand
   render::tiles::TilesSettings tiles;  // loadSettings() makes them from the room if that is given

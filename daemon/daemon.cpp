@@ -136,6 +136,8 @@ void Daemon::makeKeeper() {
       state::stateFile(settings_.state_file, settings_.instance, options_.wall);
   keeper_ = std::make_unique<state::StateKeeper>(
       file.empty() ? nullptr : std::make_unique<state::StateFolder>(file), threads_);
+  settings_.wall.shown.folder =
+      state::shownFolder(settings_.wall.shown.folder, file, settings_.instance);
   if (!projectors) return;
   std::optional<devices::PersonsSwitch> last;
   if (const auto kept = keeper_->state().projectors) last = {kept->on, kept->local_minute};

@@ -84,8 +84,13 @@ Answer move(const Parts& p, std::string_view argument) {
   return done();
 }
 
-Answer show(const Parts& p, const std::string& what) {
-  const auto request = p.wall->show(what);
+Answer notice(const Parts& p, const std::string& text) {
+  const auto shown = p.wall->notice(text);
+  return shown ? done() : Answer(shown.error());
+}
+
+// The number of the request, for shm::WallContent::finished.
+Answer requestOf(const Result<std::uint32_t>& request) {
   if (!request) return request.error();
   return fmt::format("{{\"request\": {}}}", *request);
 }
@@ -205,7 +210,9 @@ Answer ofWall(const Parts& p, std::string_view name, const std::string& argument
   if (name == "reset_view") return request(p, wall::WallLoop::kResetView);
   if (name == "next_mode") return request(p, wall::WallLoop::kNextMode);
   if (name == "next_content") return request(p, wall::WallLoop::kNextContent);
-  if (name == "show") return show(p, argument);
+  if (name == "show") return requestOf(p.wall->show(argument));
+  if (name == "show_file") return requestOf(p.wall->showFile(argument));
+  if (name == "notice") return notice(p, argument);
   if (name == "move") return move(p, argument);
   if (name == "snapshot") return snapshot(p);
   if (name == "triangles") return triangles(p, argument);

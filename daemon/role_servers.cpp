@@ -156,8 +156,11 @@ Result<Ok> RoleServers::startWall() {
   status::StatusServerSettings s;
   const auto statusNow = [this, &segment, remote] {
     const auto renderer = rendererState(*parts_.wall);
-    return parts_.services.addTo(status::wallStatus(segment, clock_.now(), servers_.health("wall"),
-                                                    remote, renderer ? &*renderer : nullptr));
+    const wall::ShownFolder& folder = parts_.wall->shownFolder();
+    return parts_.services.addTo(
+        status::addShownFolder(status::wallStatus(segment, clock_.now(), servers_.health("wall"),
+                                                  remote, renderer ? &*renderer : nullptr),
+                               {folder.path(), folder.limitBytes(), folder.fault()}));
   };
   s.publications = {{"status", kOnceASecond, statusNow},
                     {"metrics", kOnceASecond, [&segment] { return status::wallMetrics(segment); }}};

@@ -37,10 +37,14 @@ inline constexpr CommandInfo kCommands[] = {
      Bindable::kOnce, true},
     {"next_content", CommandOf::kWall, "",
      "Show the next slide, or the next content of the configuration.", Bindable::kOnce, true},
-    {"show", CommandOf::kWall, "NAME|FILE",
-     "Show the content of that name, or a model, a pyramid or a folder of pyramids that is not in "
-     "the configuration, by its whole path.",
+    {"show", CommandOf::kWall, "NAME", "Show the content of the configuration of that name.",
      Bindable::kNo, false},
+    {"show_file", CommandOf::kWall, "NAME",
+     "Show a model, a pyramid or a folder of pyramids of the content folder, by the name that it "
+     "has there; `merlin show FILE` puts it there.",
+     Bindable::kNo, false},
+    {"notice", CommandOf::kWall, "TEXT|off",
+     "Show a sentence over the picture for five seconds; off ends it.", Bindable::kNo, true},
     {"blank", CommandOf::kWall, "",
      "Make all outputs black at once; a second call or the next touch shows the picture again.",
      Bindable::kOnce, true},

@@ -105,8 +105,12 @@ std::optional<FileStamp> fileStamp(const std::string& path) {
 Result<FileCopy> FileCopy::read(const std::string& path, std::size_t most) {
   const UniqueFd fd(::open(
       path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // O_NONBLOCK: opening a pipe would block
+  return fd.valid() ? read(fd.get(), path, most) : fileError(path, errno);
+}
+
+Result<FileCopy> FileCopy::read(int fd, const std::string& path, std::size_t most) {
   struct stat status {};
-  if (!fd.valid() || ::fstat(fd.get(), &status) != 0) return fileError(path, errno);
+  if (::fstat(fd, &status) != 0) return fileError(path, errno);
   if (!S_ISREG(status.st_mode)) return Error{Errc::kMalformed, path + ": is not a regular file"};
   FileCopy copy;
   copy.stamp_ = stampOf(status);
@@ -121,9 +125,9 @@ Result<FileCopy> FileCopy::read(const std::string& path, std::size_t most) {
   } catch (const std::bad_alloc&) {
     return too_large;
   }
-  const ssize_t n = readAll(fd.get(), {copy.bytes_.data(), copy.size_});
+  const ssize_t n = readAll(fd, {copy.bytes_.data(), copy.size_});
   if (n < 0) return fileError(path, errno);
-  if (static_cast<std::size_t>(n) != copy.size_ || ::fstat(fd.get(), &status) != 0 ||
+  if (static_cast<std::size_t>(n) != copy.size_ || ::fstat(fd, &status) != 0 ||
       stampOf(status).size != copy.stamp_.size ||
       stampOf(status).modified_ns != copy.stamp_.modified_ns) {
     return Error{Errc::kIo,

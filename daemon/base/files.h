@@ -37,6 +37,8 @@ class FileCopy {
   // larger than this machine's memory, or changed while it was read); kMalformed (not a regular
   // file).
   static Result<FileCopy> read(const std::string& path, std::size_t most = kAll);
+  // The same of a file that is open. `path`: for messages.
+  static Result<FileCopy> read(int fd, const std::string& path, std::size_t most = kAll);
 
   std::span<const std::byte> bytes() const noexcept { return {bytes_.data(), size_}; }
   std::string_view text() const noexcept {

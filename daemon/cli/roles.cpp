@@ -1,11 +1,16 @@
 #include "daemon/cli/roles.h"
 
+#include <string_view>
+
 #include <fmt/format.h>
 
+#include "daemon/cli/allowed.h"
 #include "daemon/status/client.h"
 
 namespace merlin::cli {
 namespace {
+
+constexpr std::string_view kIpc = "ipc://";
 
 // Returns the role if it runs. `denied` is set if its shared memory exists but cannot be read.
 template <typename Segment>
@@ -44,9 +49,15 @@ Result<std::string> askRole(const std::string& instance, const std::string& role
   const auto roles = findRoles(instance);
   if (!roles) return roles.error();
   for (const FoundRole& found : *roles) {
-    if (found.role == role)
-      return status::ask(found.endpoints.command, request.command, request.patience,
-                         request.argument);
+    if (found.role != role) continue;
+    // ZeroMQ would try again until the patience is over.
+    const std::string_view endpoint = found.endpoints.command;
+    if (endpoint.starts_with(kIpc)) {
+      const auto allowed = checkAllowed(std::string(endpoint.substr(kIpc.size())));
+      if (!allowed) return allowed.error();
+    }
+    return status::ask(found.endpoints.command, request.command, request.patience,
+                       request.argument);
   }
   return Error{Errc::kIo, role == "wall"
                               ? fmt::format("no merlind shows a wall as \"{}\"", instance)

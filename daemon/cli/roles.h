@@ -26,8 +26,8 @@ struct RoleRequest {
   Duration patience = std::chrono::seconds(5);  // maximum time to wait for the answer
 };
 
-// Sends a command to the role and returns the answer as JSON. Errors: those of findRoles() and
-// status::ask(); kIo if this daemon does not run the role.
+// Sends a command to the role and returns the answer as JSON. Errors: those of findRoles(),
+// checkAllowed() and status::ask(); kIo if this daemon does not run the role.
 Result<std::string> askRole(const std::string& instance, const std::string& role,
                             const RoleRequest& request);
 

@@ -10,6 +10,8 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "daemon/base/result.h"
 
@@ -18,12 +20,17 @@ namespace merlin::cli {
 // Its files go with this object. Thread-bound.
 class WorkFolder {
  public:
-  // Makes a folder of a new name where `result` lies or will lie. Errors: kIo.
+  // Makes a folder of a new name where `result` lies or will lie. In a folder that is shared by its
+  // group, the group may clear up what a process that was killed has left. Errors: kIo.
   static Result<WorkFolder> make(const std::filesystem::path& result) {
     const auto folder = std::filesystem::absolute(result).parent_path();
     std::string name = (folder / ".merlin-import-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr)
       return Error{Errc::kIo, fmt::format("{}: {}", name, std::strerror(errno))};
+    struct stat shared {};
+    if (::stat(folder.c_str(), &shared) == 0 && (shared.st_mode & (S_IWGRP | S_IWOTH)) == S_IWGRP &&
+        ::chown(name.c_str(), static_cast<uid_t>(-1), shared.st_gid) == 0)
+      ::chmod(name.c_str(), 0770);
     return WorkFolder(std::move(name));
   }
   ~WorkFolder() {

@@ -283,6 +283,12 @@ void addPanel(FieldTable& t) {
   MERLIN_FIELD(t, WallPanel, by_ball, "");
 }
 
+void addNotice(FieldTable& t) {
+  t.slot("notice", offsetof(WallSegment, notice));
+  MERLIN_FIELD(t, WallNotice, updated_ns, "ns");
+  MERLIN_FIELD(t, WallNotice, text, "");
+}
+
 }  // namespace
 
 template <typename T>
@@ -348,6 +354,7 @@ std::vector<Field> wallFields() {
   addContent(t);
   addIdle(t);
   addPanel(t);
+  addNotice(t);
   t.bare("segment", 0);
   MERLIN_FIELD(t, WallSegment, framebuffer, "");
   return t.take();

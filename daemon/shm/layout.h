@@ -243,6 +243,13 @@ struct WallPanel {
 };
 static_assert(sizeof(WallPanel) == 32);
 
+// What a client has the wall say for a few seconds, over the picture. Written when it changes.
+struct WallNotice {
+  std::int64_t updated_ns;
+  char text[152];  // empty: nothing
+};
+static_assert(sizeof(WallNotice) == 160);
+
 struct WallSegment {
   Header header;
   alignas(64) SeqSlot<WallStats> stats;  // writer: the wall's thread
@@ -254,6 +261,7 @@ struct WallSegment {
   alignas(64) SeqSlot<WallContent> content;  // writer: the wall's thread
   alignas(64) SeqSlot<WallIdle> idle;        // writer: the wall's thread
   alignas(64) SeqSlot<WallPanel> panel;      // writer: the wall's thread
+  alignas(64) SeqSlot<WallNotice> notice;    // writer: the daemon's main thread
   alignas(64) Field fields[kMostFields];     // writer: the daemon, as it starts
 };
 

@@ -98,4 +98,14 @@ std::string stateFile(const std::string& wanted, const std::string& instance, bo
   return folder.empty() ? folder : fmt::format("{}/{}.state.json{}", folder, instance, ending);
 }
 
+std::string shownFolder(const std::string& wanted, const std::string& file,
+                        const std::string& instance) {
+  if (wanted.empty() && file.empty()) return {};
+  std::error_code error;
+  const std::filesystem::path whole = std::filesystem::absolute(
+      wanted.empty() ? fmt::format("{}/{}.shown", folderOf(file), instance) : wanted, error);
+  const std::string folder = whole.lexically_normal().string();
+  return folder.size() > 1 && folder.ends_with('/') ? folder.substr(0, folder.size() - 1) : folder;
+}
+
 }  // namespace merlin::state

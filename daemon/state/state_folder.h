@@ -31,4 +31,10 @@ class StateFolder final : public StateFiles {
 // wall may have the other. Reads the environment: to be called before any thread starts.
 std::string stateFile(const std::string& wanted, const std::string& instance, bool has_wall);
 
+// The content folder that is used, as a whole path, which other programs can use: `wanted`, or, if
+// that is empty, INSTANCE.shown beside the state's `file`, from stateFile(). Empty if there is
+// neither.
+std::string shownFolder(const std::string& wanted, const std::string& file,
+                        const std::string& instance);
+
 }  // namespace merlin::state

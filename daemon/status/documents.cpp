@@ -9,6 +9,7 @@
 
 #include "daemon/base/commands.h"
 #include "daemon/base/fixed_text.h"
+#include "daemon/status/add_member.h"
 
 namespace merlin::status {
 namespace {
@@ -289,6 +290,7 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                {"next_in_s", secondsUntil(idle.next_in_s)},
                {"dim_in_s", secondsUntil(idle.dim_in_s)},
                {"testcard", idle.testcard != 0},
+               {"notice", text(segment.notice.read().value_or(shm::WallNotice{}).text)},
                {"work_ms", round3(s.work_ms)},
                {"work_median_ms", round3(s.work_median_ms)},
                {"utilisation", round3(s.utilisation)},
@@ -321,6 +323,12 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
     json["devices"] = devicesJson(*remote, now);
   }
   return dump(json);
+}
+
+std::string addShownFolder(const std::string& document, const ShownFolderState& folder) {
+  return addMember(
+      document, "shown_folder",
+      {{"path", folder.path}, {"limit_bytes", folder.limit_bytes}, {"fault", folder.fault}});
 }
 
 std::string newestSamples(const shm::DeviceSlots& devices, Timestamp now) {

@@ -2,6 +2,7 @@
 // are a contract (README.md): names may be added, but not changed or removed.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,16 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                        const std::vector<net::ServerHealth>& servers = {},
                        const shm::DeviceSlots* remote = nullptr,
                        const RendererState* renderer = nullptr);
+// The content folder, into which `merlin show FILE` puts files.
+struct ShownFolderState {
+  std::string path{};
+  std::uint64_t limit_bytes = 0;  // of all files in it together
+  std::string fault{};            // why it cannot be used; empty: it can
+};
+// Returns `document`, a JSON object, with the member "shown_folder": {"path", "limit_bytes",
+// "fault"}.
+std::string addShownFolder(const std::string& document, const ShownFolderState& folder);
+
 // Topic "sample": the newest posture, glove, hand, tracker and ball, and the actions of their
 // inputs.
 std::string newestSamples(const shm::DeviceSlots& devices, Timestamp now);

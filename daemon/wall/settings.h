@@ -1,4 +1,4 @@
-// Settings of what the wall shows while nobody is there.
+// Settings of what the wall shows while nobody is there, and of files that clients have it show.
 #pragma once
 
 #include <string>
@@ -15,6 +15,11 @@ struct PlaylistSettings {
   std::vector<std::string> contents;  // names, in the order in which they are shown; empty: all
   double dim_after_s = 0;             // time without a touch until the picture is dimmed; 0: never
   double dim_to = 0.3;                // then, share of the full light
+};
+
+struct ShownSettings {
+  std::string folder;    // for `merlin show FILE`; empty: one beside the file of the state
+  int limit_mb = 4'096;  // of all files in it together
 };
 
 }  // namespace merlin

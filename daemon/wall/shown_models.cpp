@@ -103,9 +103,11 @@ ModelWatch::Make ShownModels::maker(const std::vector<ContentEntry>& entries,
     if (place < entries.size()) {
       entry = entries[place];
     } else {
-      const auto named = contentOfFile(path);
-      if (!named) return named.error();
-      entry = *named;
+      const std::string& folder = settings.shown.folder;
+      const auto there =
+          contentBelow(folder, path.substr(std::min(folder.size() + 1, path.size())));
+      if (!there) return there.error();
+      entry = *there;
     }
     // The one slide that was replaced.
     const bool slide = entry.kind == ContentKind::kSlides;
@@ -231,6 +233,7 @@ void ShownModels::noteFile(const ReadyModel& ready, ContentKind kind) {
   shown.is_last_slide = ready.is_last_slide;
   if (ready.place < listed()) return;
   shown.entry.name = ready.name;
+  shown.entry.below = parts_.settings.shown.folder;
   shown.entry.kind = ready.is_slide ? ContentKind::kSlides : kind;
   shown.entry.path =
       ready.is_slide ? std::filesystem::path(ready.path).parent_path().string() : ready.path;

@@ -123,6 +123,10 @@ void checkOutputs(LoadedSettings& loaded) {
     if (const auto usable = checkFolder(wall.snapshots); !usable)
       loaded.addFinding("/wall/snapshots", kCannot + usable.error().what);
   }
+  if (!wall.shown.folder.empty()) {
+    if (const auto usable = checkFolder(wall.shown.folder); !usable)
+      loaded.addFinding("/wall/shown/folder", kCannot + usable.error().what);
+  }
 }
 
 }  // namespace merlin::wall

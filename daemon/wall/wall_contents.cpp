@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "daemon/base/open_below.h"
 #include "daemon/base/printable_text.h"
 #include "render/content/shown_colours.h"
 #include "render/lod/io/mrm_file.h"
@@ -43,10 +44,31 @@ ContentEntry entryOf(const ContentSettings& c, const std::string& pointer) {
   return entry;
 }
 
+// The part of a path below the content folder.
+std::string_view nameBelow(const ContentEntry& entry, std::string_view path) {
+  path.remove_prefix(std::min(entry.below.size() + 1, path.size()));
+  return path;
+}
+
+Result<render::lod::Dendrogram> readModelCopy(const ContentEntry& entry, FileStamp& stamp) {
+  if (entry.below.empty()) return render::lod::readMrmCopy(entry.path, &stamp);
+  const auto file = openBelow(entry.below, nameBelow(entry, entry.path));
+  if (!file) return file.error();
+  return render::lod::readMrmCopy(file->get(), entry.path, &stamp);
+}
+
+Result<std::shared_ptr<const render::image::PyramidFile>> openPyramid(const ContentEntry& entry,
+                                                                      const std::string& path) {
+  if (entry.below.empty()) return render::image::PyramidFile::open(path);
+  auto file = openBelow(entry.below, nameBelow(entry, path));
+  if (!file) return file.error();
+  return render::image::PyramidFile::open(*std::move(file), path);
+}
+
 Result<WallContent> readModel(const ContentEntry& entry,
                               const render::content::ShownFeature& show) {
   FileStamp stamp;
-  auto model = render::lod::readMrmCopy(entry.path, &stamp);
+  auto model = readModelCopy(entry, stamp);
   if (!model) return model.error();
   if (const auto shown = render::content::checkShown(*model, show); !shown)
     return Error{Errc::kInvalidArgument, fmt::format("{}: {}", entry.path, shown.error().what)};
@@ -54,17 +76,28 @@ Result<WallContent> readModel(const ContentEntry& entry,
 }
 
 Result<WallContent> readPicture(const ContentEntry& entry, const std::string& file) {
-  auto picture = render::content::openPicture(file, entry.show_as);
+  auto pyramid = openPyramid(entry, file);
+  if (!pyramid) return pyramid.error();
+  auto picture = render::content::makePicture(*std::move(pyramid), entry.show_as);
   if (!picture) return picture.error();
   const FileStamp stamp = (*picture)->file->stamp();
   return WallContent{entry, file, stamp, *std::move(picture)};
 }
 
 // Names of the folder's pyramids, in order.
-Result<std::vector<std::string>> slidesIn(const std::string& folder) {
+Result<std::vector<std::string>> slidesIn(const ContentEntry& entry) {
+  const std::string& folder = entry.path;
   std::vector<std::string> slides;
   std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+  UniqueFd opened;  // so that nobody can put a link in its place meanwhile
+  if (!entry.below.empty()) {
+    auto found = openFolderBelow(entry.below, nameBelow(entry, folder));
+    if (!found) return found.error();
+    opened = *std::move(found);
+  }
+  const std::string listed =
+      opened.valid() ? fmt::format("/proc/self/fd/{}", opened.get()) : folder;
+  for (fs::directory_iterator it(listed, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
     if (isPyramid(name) && !name.starts_with(".") && slides.size() < kMostSlides)
       slides.push_back(name);
@@ -100,7 +133,7 @@ std::optional<WallContent> firstOf(std::span<const std::string> names, const Con
 // the next content from its turn.
 Result<WallContent> readSlide(const ContentEntry& entry, const std::string& after,
                               std::vector<std::string>& skipped) {
-  const auto slides = slidesIn(entry.path);
+  const auto slides = slidesIn(entry);
   if (!slides) return slides.error();
   const auto behind = [&](const std::string& file) {
     const auto next = std::ranges::upper_bound(*slides, fs::path(file).filename().string());
@@ -150,17 +183,20 @@ std::vector<std::size_t> placesOf(const std::vector<ContentEntry>& contents,
   return places;
 }
 
-Result<ContentEntry> contentOfFile(const std::string& path) {
-  std::error_code error;
-  ContentEntry entry{"", nameOf(path), path, ContentKind::kPicture, {}};
-  if (fs::is_directory(path, error)) {
+Result<ContentEntry> contentBelow(const std::string& folder, const std::string& name) {
+  const std::string path = fmt::format("{}/{}", folder, name);
+  ContentEntry entry{"", nameOf(path), path, ContentKind::kPicture, {}, folder};
+  if (openFolderBelow(folder, name)) {
     entry.kind = ContentKind::kSlides;
-  } else if (path.ends_with(kModelEnding)) {
+    return entry;
+  }
+  if (const auto file = openBelow(folder, name); !file) return file.error();
+  if (path.ends_with(kModelEnding)) {
     entry.kind = ContentKind::kModel;
   } else if (!isPyramid(path)) {
     return Error{Errc::kInvalidArgument,
                  fmt::format("{}: is neither a model (.mrm), a pyramid (.tif) nor a folder of "
-                             "pyramids; make one: merlin mesh reduce, merlin image import",
+                             "pyramids; `merlin show FILE` makes one of a file",
                              path)};
   }
   return entry;

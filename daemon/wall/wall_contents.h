@@ -1,5 +1,5 @@
-// The contents that a wall can show: those of its configuration, and files that `merlin show`
-// names.
+// The contents that a wall can show: those of its configuration, and files of its content folder
+// (ShownFolder).
 #pragma once
 
 #include <memory>
@@ -23,6 +23,9 @@ struct ContentEntry {
   std::string name, path;
   ContentKind kind = ContentKind::kModel;
   render::content::ShowAs show_as = render::content::ShowAs::kAsMarked;  // pictures and slides
+  // The content folder, if it lies there: no link below it is followed. Empty: the configuration
+  // names the file, which is the operator's.
+  std::string below{};
 };
 
 // The configuration's contents in the order in which they are shown: /wall/model if it names one,
@@ -36,9 +39,9 @@ std::string namesOf(const std::vector<ContentEntry>& contents);
 std::vector<std::size_t> placesOf(const std::vector<ContentEntry>& contents,
                                   const std::vector<std::string>& names);
 
-// The content of a file that is not in the configuration, by its ending; a folder holds slides.
-// Errors: kInvalidArgument (another ending), kNotFound.
-Result<ContentEntry> contentOfFile(const std::string& path);
+// The content of a file in the content folder, by its ending; a folder holds slides. `name`: of the
+// file, or SLIDES/FILE. Errors: those of openBelow(); kInvalidArgument (another ending).
+Result<ContentEntry> contentBelow(const std::string& folder, const std::string& name);
 
 // A content that was read.
 struct WallContent {
@@ -54,9 +57,9 @@ struct WallContent {
 // Reads a content: a model as a whole, of a picture its coarsest level. Of slides it reads the
 // first that can be shown after the slide `after` in the order of their names, cyclically, and
 // tries the next one, to see whether it is the last; sentences about those that cannot be shown are
-// added to `skipped`. Errors: those of readMrmCopy(), openPicture(); kInvalidArgument (a model
-// lacks the feature that `show` names); kNotFound (a folder without a pyramid that can be shown).
-// O(size of a model's file).
+// added to `skipped`. Errors: those of readMrmCopy(), openPicture(), openBelow(); kInvalidArgument
+// (a model lacks the feature that `show` names); kNotFound (a folder without a pyramid that can be
+// shown). O(size of a model's file).
 Result<WallContent> readContent(const ContentEntry& entry,
                                 const render::content::ShownFeature& show, const std::string& after,
                                 std::vector<std::string>& skipped);

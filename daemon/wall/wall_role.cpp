@@ -48,6 +48,8 @@ std::map<std::string, std::string> panelsOf(const WallSettings& wall) {
   return panels;
 }
 
+Error notShownYet() { return {Errc::kBusy, "the wall has not shown its first frame yet"}; }
+
 }  // namespace
 
 Result<std::unique_ptr<WallRole>> WallRole::make(
@@ -69,6 +71,8 @@ Result<std::unique_ptr<WallRole>> WallRole::make(
   if (const auto made = role->makeOutputs(generation); !made) return made.error();
   if (const auto made = role->makeCorrections(); !made) return made.error();
   role->makeSignals(generation);
+  if (const auto made = role->shown_folder_.make(); !made)
+    role->model_watch_.report(made.error().what);
   return role;
 }
 
@@ -104,6 +108,7 @@ WallRole::WallRole(const Settings& settings, std::vector<WallContent> contents,
     : settings_(settings),
       contents_(std::move(contents)),
       entries_(entriesOf(contents_)),
+      shown_folder_(settings_.wall.shown),
       plan_(std::move(plan)),
       scene_(std::move(scene)),
       governor_(settings.wall.governor),
@@ -116,6 +121,7 @@ WallRole::WallRole(const Settings& settings, std::vector<WallContent> contents,
              render::testcard::cardTiles(plan_, settings.wall.outputs, panelsOf(settings.wall))),
       attendance_(settings.wall.playlist),
       operator_tile_({plan_, settings_, entries_, *segment_, board_, attendance_, clock_}),
+      notice_(plan_, segment_->notice, clock_),
       model_watch_(filesOf(contents_), ShownModels::maker(entries_, settings_.wall), watch_,
                    clock_),
       tiles_(watch_) {}
@@ -186,6 +192,7 @@ std::size_t WallRole::firstContent() {
 // one it is. A file that is not in the configuration is not stored.
 void WallRole::tend(Timestamp now) {
   signals_->tend(now);
+  notice_.tend(now);
   if (aligner_->showsCard()) attendance_.attend();
   const auto shown = segment_->interaction.read();
   if (!shown || kept_content_ == shown->content) return;
@@ -248,10 +255,11 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
 }
 
 // From the first to the last that is drawn: a test card hides the plates of the operator's tile,
-// and the panel is above it, since it can be worked there too.
+// the notice and the panel are above it, since they are of use there too.
 std::vector<render::frame::Overlay*> WallRole::overlaysWith(render::frame::PointerMarker& marker) {
   std::vector<render::frame::Overlay*> overlays = {
-      operator_tile_.makePlates(), &cards_, operator_tile_.makePanelOverlay(), &marker, &curtain_};
+      operator_tile_.makePlates(),       &cards_, &notice_.overlay(),
+      operator_tile_.makePanelOverlay(), &marker, &curtain_};
   std::erase(overlays, nullptr);
   return overlays;
 }
@@ -323,30 +331,37 @@ void WallRole::request(WallLoop::Request what) {
   if (WallLoop* loop = loop_.load()) loop->request(what);
 }
 
-Result<std::uint32_t> WallRole::show(const std::string& what) {
+Result<std::uint32_t> WallRole::show(const std::string& name) {
   WallLoop* const loop = loop_.load();
-  if (!loop) return Error{Errc::kBusy, "the wall has not shown its first frame yet"};
-  const std::uint32_t number = ++show_requests_;
-  const auto named = std::ranges::find(entries_, what, &ContentEntry::name);
-  if (named != entries_.end()) {
-    loop->show(static_cast<std::size_t>(named - entries_.begin()));
-    loop->finishRequest(number, {});
-    return number;
-  }
-  if (!what.starts_with("/") || !isText(what)) {
+  if (!loop) return notShownYet();
+  const auto named = std::ranges::find(entries_, name, &ContentEntry::name);
+  if (named == entries_.end()) {
     return Error{Errc::kInvalidArgument,
-                 fmt::format("\"{}\" is not the name of a content; contents are {}; a file needs "
-                             "its whole path",
-                             excerpt(what), namesOf(entries_))};
+                 fmt::format("\"{}\" is not the name of a content; contents are {}{}",
+                             excerpt(name), namesOf(entries_),
+                             name.find('/') == std::string::npos
+                                 ? ""
+                                 : "; merlind opens no path that a client names: `merlin show "
+                                   "FILE` puts the file into its content folder")};
   }
-  const auto entry = contentOfFile(what);
+  const std::uint32_t number = ++show_requests_;
+  loop->show(static_cast<std::size_t>(named - entries_.begin()));
+  loop->finishRequest(number, {});
+  return number;
+}
+
+Result<std::uint32_t> WallRole::showFile(const std::string& name) {
+  if (!loop_.load()) return notShownYet();
+  const auto entry = shown_folder_.entryOf(name);
   if (!entry) return entry.error();
-  if (const auto shown = showFile(*entry, number); !shown) return shown.error();
+  const std::uint32_t number = ++show_requests_;
+  if (const auto shown = showEntry(*entry, number); !shown) return shown.error();
+  for (std::string& fault : shown_folder_.tidy(name)) model_watch_.report(std::move(fault));
   return number;
 }
 
 // A model is read on the watch's thread, since that may take long.
-Result<Ok> WallRole::showFile(const ContentEntry& entry, std::uint32_t request) {
+Result<Ok> WallRole::showEntry(const ContentEntry& entry, std::uint32_t request) {
   const auto read = [this, entry, request]() -> Result<ReadyModel> {
     std::vector<std::string> skipped;
     auto content = readContent(entry, settings_.wall.render.model.show, "", skipped);
@@ -359,8 +374,6 @@ Result<Ok> WallRole::showFile(const ContentEntry& entry, std::uint32_t request) 
     return ready;
   };
   if (entry.kind == ContentKind::kModel) {
-    if (!fileStamp(entry.path))
-      return Error{Errc::kNotFound, entry.path + ": is not there, or may not be read by merlind"};
     model_watch_.ask(read, request);
     attendance_.touch();
     return Ok{};

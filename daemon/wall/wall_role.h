@@ -19,7 +19,9 @@
 #include "daemon/wall/attendance.h"
 #include "daemon/wall/device_feed.h"
 #include "daemon/wall/message_board.h"
+#include "daemon/wall/notice.h"
 #include "daemon/wall/operator_tile.h"
+#include "daemon/wall/shown_folder.h"
 #include "daemon/wall/shown_models.h"
 #include "daemon/wall/signal_taps.h"
 #include "daemon/wall/wall_checks.h"
@@ -87,19 +89,27 @@ class WallRole {
   Attendance& attendance() { return attendance_; }
 
   // To be called ten times a second: saves in the state which content is shown, removes shared
-  // memory of signals that nobody requests any more, and keeps the playlist from beginning while a
-  // test card is shown.
+  // memory of signals that nobody requests any more, publishes the notice, and keeps the playlist
+  // from beginning while a test card is shown.
   void tend(Timestamp now);
 
   // Returns the events of the viewer's tracked head since the last call. Thread-safe.
   std::vector<std::string> viewerEvents();
 
-  // Shows the content of that name, or a file that is not in the configuration, by its whole path.
-  // Returns the number of the request: when it is done, shm::WallContent::finished is that number.
-  // Errors, for whoever asks: kInvalidArgument (no such name), those of readContent(); a model's
-  // file is read later, so that its errors come with `finished`. Reads a picture's coarsest level,
-  // a few milliseconds. Thread-safe.
-  Result<std::uint32_t> show(const std::string& what);
+  // Shows the content of the configuration of that name. Returns the number of the request: when it
+  // is done, shm::WallContent::finished is that number. Errors: kBusy, kInvalidArgument (no such
+  // name). Thread-safe.
+  Result<std::uint32_t> show(const std::string& name);
+  // The same of a file in the content folder, by its name there; removes what is no longer needed
+  // there. Errors, for whoever asks: kBusy, those of ShownFolder::entryOf() and readContent(); a
+  // model's file is read later, so that its errors come with `finished`. Reads a picture's coarsest
+  // level, a few milliseconds. Thread-safe.
+  Result<std::uint32_t> showFile(const std::string& name);
+  const ShownFolder& shownFolder() const noexcept { return shown_folder_; }
+
+  // Shows a sentence over the picture for a few seconds. Errors: those of Notice::show().
+  // Thread-safe.
+  Result<Ok> notice(const std::string& text) { return notice_.show(text); }
 
   // Shows a sentence on the operator's tile for a minute. Thread-safe.
   void tell(std::string sentence) { board_.add(clock_.now(), std::move(sentence)); }
@@ -122,7 +132,7 @@ class WallRole {
   Result<Ok> makeCorrections();
   void makeSignals(std::uint64_t generation);
   std::uint32_t firstNumber() const noexcept;
-  Result<Ok> showFile(const ContentEntry& entry, std::uint32_t request);
+  Result<Ok> showEntry(const ContentEntry& entry, std::uint32_t request);
   std::size_t firstContent();
   void run(const std::stop_token& stop, Progress& progress);
   void addOwn(WallParts& parts);
@@ -133,6 +143,7 @@ class WallRole {
   Settings settings_;  // `wall` is drawnWall() of the configured one
   std::vector<WallContent> contents_;
   const std::vector<ContentEntry> entries_;  // of contents_
+  ShownFolder shown_folder_;
   render::tiles::TilePlan plan_;
   render::scene::Scene scene_;
   render::governor::Governor governor_;
@@ -154,6 +165,7 @@ class WallRole {
   MessageBoard board_;
   Attendance attendance_;
   OperatorTile operator_tile_;
+  Notice notice_;
   render::frame::Curtain curtain_;
   std::optional<render::frame::Delivery> delivery_;  // owns the corrections while the wall runs
   std::unique_ptr<Aligner> aligner_;  // replaces corrections; the wall's thread calls ask()

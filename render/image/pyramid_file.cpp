@@ -59,10 +59,19 @@ TileForm formOf(const TiffDirectory& d) {
 }  // namespace
 
 Result<std::shared_ptr<const PyramidFile>> PyramidFile::open(const std::string& path) {
-  auto file = FileAccess::open(path);
+  return ofFile(FileAccess::open(path), path);
+}
+
+Result<std::shared_ptr<const PyramidFile>> PyramidFile::open(UniqueFd file,
+                                                             const std::string& name) {
+  return ofFile(FileAccess::of(std::move(file), name), name);
+}
+
+Result<std::shared_ptr<const PyramidFile>> PyramidFile::ofFile(
+    Result<std::unique_ptr<FileAccess>> file, const std::string& name) {
   if (!file) return file.error();
   const FileStamp stamp = (*file)->stamp();
-  auto read = PyramidFile::read(*std::move(file), path);
+  auto read = PyramidFile::read(*std::move(file), name);
   if (read) std::const_pointer_cast<PyramidFile>(*read)->stamp_ = stamp;
   return read;
 }

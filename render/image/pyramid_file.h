@@ -47,6 +47,7 @@ class PyramidFile {
   // and the place: kUnsupported (another kind of file, or of TIFF), kMalformed (damaged, or not a
   // pyramid), kIo, kNotFound.
   static Result<std::shared_ptr<const PyramidFile>> open(const std::string& path);
+  static Result<std::shared_ptr<const PyramidFile>> open(UniqueFd file, const std::string& name);
   static Result<std::shared_ptr<const PyramidFile>> read(std::unique_ptr<const RandomAccess> file,
                                                          const std::string& name);
 
@@ -65,6 +66,8 @@ class PyramidFile {
  private:
   friend class PyramidReader;
   PyramidFile() = default;
+  static Result<std::shared_ptr<const PyramidFile>> ofFile(Result<std::unique_ptr<FileAccess>> file,
+                                                           const std::string& name);
   Result<Ok> readLevels();
   Result<Ok> addLevel(const TiffDirectory& directory);
   Result<std::vector<TiffDirectory>> directories() const;

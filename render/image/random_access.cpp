@@ -18,7 +18,10 @@ std::int64_t nanoseconds(const timespec& t) {
 }  // namespace
 
 Result<std::unique_ptr<FileAccess>> FileAccess::open(const std::string& path) {
-  UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  return of(UniqueFd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)), path);
+}
+
+Result<std::unique_ptr<FileAccess>> FileAccess::of(UniqueFd file, const std::string& path) {
   struct stat s {};
   if (!file.valid() || ::fstat(file.get(), &s) != 0) {
     return Error{errno == ENOENT ? Errc::kNotFound : Errc::kIo,

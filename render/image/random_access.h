@@ -31,6 +31,8 @@ class FileAccess final : public RandomAccess {
  public:
   // Never blocks on a pipe or a device. Errors: kNotFound, kIo, kMalformed (not a regular file).
   static Result<std::unique_ptr<FileAccess>> open(const std::string& path);
+  // The same of a file that is open. `path`: for messages.
+  static Result<std::unique_ptr<FileAccess>> of(UniqueFd file, const std::string& path);
 
   std::uint64_t size() const noexcept override { return stamp_.size; }
   Result<Ok> read(std::uint64_t offset, std::span<std::uint8_t> bytes) const override;

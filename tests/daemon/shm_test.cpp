@@ -150,11 +150,11 @@ TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
 }
 
 TEST(Fields, CoverEveryByteOfTheWallsSegmentButPadding) {
-  EXPECT_EQ(
-      undescribed(wallFields(), offsetof(WallSegment, fields)),
-      (Runs{"segment.command_endpoint 40", "wall.cost_unit 24", "trace.wake 4",
-            "trace.step.tile's ring 56", "interaction.light 4", "outputs.count 4",
-            "outputs.fault 48", "content.refused 24", "idle.testcard 32", "panel.by_ball 28"}));
+  EXPECT_EQ(undescribed(wallFields(), offsetof(WallSegment, fields)),
+            (Runs{"segment.command_endpoint 40", "wall.cost_unit 24", "trace.wake 4",
+                  "trace.step.tile's ring 56", "interaction.light 4", "outputs.count 4",
+                  "outputs.fault 48", "content.refused 24", "idle.testcard 32", "panel.by_ball 28",
+                  "notice.text 24"}));
 }
 
 // Reads sample 258 at its position in the ring, as a reader that knows only the table does.

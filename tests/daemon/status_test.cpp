@@ -124,6 +124,17 @@ TEST_F(DocumentsTest, TheWallSaysWhereAHandPoints) {
   EXPECT_TRUE(json::parse(wallStatus(*wall_, kNow))["pointer"]["pixel"].is_null());
 }
 
+TEST_F(DocumentsTest, TheWallSaysWhatAClientHasItSayAndWhereFilesGo) {
+  EXPECT_EQ(json::parse(wallStatus(*wall_, kNow))["notice"], "");
+  wall_->notice.publish({1, "Reading scan.pgm: 45 %"});
+  const std::string status = wallStatus(*wall_, kNow);
+  EXPECT_EQ(json::parse(status)["notice"], "Reading scan.pgm: 45 %");
+  const json s = json::parse(addShownFolder(status, {"/var/lib/merlin/merlin.shown", 4096, ""}));
+  EXPECT_EQ(s["shown_folder"].dump(),
+            R"({"fault":"","limit_bytes":4096,"path":"/var/lib/merlin/merlin.shown"})");
+  EXPECT_EQ(s["notice"], "Reading scan.pgm: 45 %");
+}
+
 TEST_F(DocumentsTest, TheWallSaysWhatItShowsWhileNobodyTouchesIt) {
   shm::WallInteraction interaction{};
   interaction.shown = shm::WallInteraction::kFrozen;

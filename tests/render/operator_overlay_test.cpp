@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "render/text/font_file.h"
+#include "render/text/notice_overlay.h"
 #include "tests/support/fake_clock.h"
 
 namespace merlin::render::text {
@@ -259,6 +260,47 @@ TEST(FrameChart, AnyTimesAreAccepted) {
   }));
   chart.add({began, began, began, Duration::zero(), false});
   chart.add({Timestamp(milliseconds(-50)), began, began, milliseconds(33), false});
+}
+
+TEST(NoticeOverlay, IsOverTheFirstTileOfTheWallForAWhile) {
+  Wall wall;
+  NoticeOverlay notice(wall.plan, wall.clock);
+  EXPECT_FALSE(notice.hasChanged());
+  ASSERT_TRUE(notice.show("Reading scan.pgm: 45 %", wall.clock.now() + milliseconds(5000)));
+  EXPECT_TRUE(notice.hasChanged());
+  notice.draw(wall.canvas);
+  EXPECT_FALSE(notice.hasChanged());
+  EXPECT_GT(wall.changedIn(0), 5'000);
+  EXPECT_LT(wall.changedIn(0), 640 * 480 / 20) << "a small plate";
+  for (std::size_t tile = 1; tile < 4; ++tile) EXPECT_EQ(wall.changedIn(tile), 0) << tile;
+  notice.erase(wall.canvas);
+  EXPECT_EQ(wall.canvas, wall.before);
+
+  wall.clock.advance(milliseconds(4999));
+  EXPECT_FALSE(notice.hasChanged());
+  ASSERT_TRUE(notice.show("Reading scan.pgm: 46 %", wall.clock.now() + milliseconds(5000)));
+  EXPECT_TRUE(notice.hasChanged()) << "another sentence";
+  notice.draw(wall.canvas);
+  notice.erase(wall.canvas);
+  wall.clock.advance(milliseconds(5000));
+  EXPECT_TRUE(notice.hasChanged()) << "its time is over";
+  notice.draw(wall.canvas);
+  EXPECT_EQ(wall.canvas, wall.before);
+  EXPECT_FALSE(notice.hasChanged());
+}
+
+TEST(NoticeOverlay, ALongSentenceEndsInTheTileAndAnEmptyOneEndsIt) {
+  Wall wall;
+  NoticeOverlay notice(wall.plan, wall.clock);
+  const Timestamp until = wall.clock.now() + milliseconds(5000);
+  ASSERT_TRUE(notice.show(std::string(150, 'W'), until));
+  notice.draw(wall.canvas);
+  EXPECT_GT(wall.changedIn(0), 15'000);
+  EXPECT_EQ(wall.changedIn(1), 0);
+  notice.erase(wall.canvas);
+  ASSERT_TRUE(notice.show("", until));
+  notice.draw(wall.canvas);
+  EXPECT_EQ(wall.canvas, wall.before);
 }
 
 }  // namespace

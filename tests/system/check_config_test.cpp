@@ -106,6 +106,8 @@ TEST_F(CheckConfig, RefusesFilesThatCannotBeWritten) {
   expectRefused(pngOutput(std::string("x\0y.png", 7)), "/wall/outputs/0/path",
                 "without the character NUL");
   expectRefused({{"wall", {{"snapshots", "file/taken"}}}}, "/wall/snapshots", "Not a directory");
+  expectRefused({{"wall", {{"shown", {{"folder", "file/shown"}}}}}}, "/wall/shown/folder",
+                "Not a directory");
   EXPECT_EQ(readText(dir_ / "file"), "kept");
 }
 

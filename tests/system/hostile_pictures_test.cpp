@@ -121,6 +121,10 @@ class HostilePictures : public testing::Test {
   }
 
   static std::string slide(const std::string& name) { return *dir_ / "slides/" + name + ".tif"; }
+  // A file of the content folder: what a client has put there by itself.
+  static std::string shared(const std::string& name) {
+    return *dir_ / (m_->instance() + ".shown/" + name);
+  }
   static Outcome merlin(std::vector<std::string> words) {
     words.insert(words.begin(), kMerlin);
     words.insert(words.end(), {"--instance", m_->instance()});
@@ -163,7 +167,7 @@ Merlind* HostilePictures::m_ = nullptr;
 TEST_F(HostilePictures, OfEachTheMessageSaysWhatIsWrongAndTheWallGoesOn) {
   int number = 0;
   for (const Case& c : pictures()) {
-    const std::string name = fmt::format("case-{}", ++number), file = *dir_ / (name + ".tif");
+    const std::string name = fmt::format("case-{}", ++number), file = shared(name + ".tif");
     writeText(file, c.bytes);
     const Outcome shown = merlin({"show", file});
     row(c.what, shown.status == 0 ? "is shown" : shown.output);
@@ -175,8 +179,8 @@ TEST_F(HostilePictures, OfEachTheMessageSaysWhatIsWrongAndTheWallGoesOn) {
     else
       EXPECT_NE(shown.output.find(file + ": "), std::string::npos) << shown.output;
   }
-  ASSERT_EQ(::mkfifo((*dir_ / "pipe.tif").c_str(), 0600), 0);
-  const Outcome pipe = merlin({"show", *dir_ / "pipe.tif"});
+  ASSERT_EQ(::mkfifo(shared("pipe.tif").c_str(), 0600), 0);
+  const Outcome pipe = merlin({"show", shared("pipe.tif")});
   row("a pipe", pipe.output);
   EXPECT_EQ(pipe.status, 2);
   EXPECT_NE(pipe.output.find("pipe.tif: is not a regular file"), std::string::npos) << pipe.output;

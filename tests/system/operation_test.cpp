@@ -126,6 +126,7 @@ TEST(Operation, WhatIsRemovedFromSharedMemoryIsMadeAgain) {
 std::string argumentFor(const CommandInfo& command) {
   if (command.name == "align") return "list";
   if (command.name == "show") return "model";
+  if (command.name == "show_file") return "other.mrm";
   if (command.name == "signal") return "shared_memory";
   if (command.name == "testcard") return "off";
   if (command.name == "playlist") return "next";
@@ -140,6 +141,7 @@ TEST(Operation, EveryCommandOfTheListIsCarriedOut) {
   Merlind m(dir, makeModel(dir, 2), "commands",
             {.also = {{"wall", {{"snapshots", dir / "shots"}, {"operator", {{"panel", true}}}}}}});
   ASSERT_TRUE(m.ready()) << m.process().output();
+  std::filesystem::copy(dir / "model.mrm", dir / (m.instance() + ".shown/other.mrm"));
   for (const CommandInfo& command : kCommands) {
     if (command.bindable == Bindable::kHeld) continue;  // takes effect only while its input is held
     const bool by_wall = command.role == CommandOf::kWall;

@@ -144,6 +144,10 @@ class PictureWall : public testing::Test {
   Outcome show(const std::string& what) {
     return run({kMerlin, "show", what, "--instance", m_->instance()});
   }
+  // A file of the content folder.
+  std::string shared(const std::string& name) const {
+    return *dir_ / (m_->instance() + ".shown/" + name);
+  }
   Outcome next() { return run({kMerlin, "next_content", "--instance", m_->instance()}); }
   bool isShown(const std::string& name, const std::string& kind, const std::string& slide = "") {
     return eventually([&] {
@@ -205,6 +209,33 @@ TEST_F(PictureWall, ShowsAModelThatIsNotInTheConfiguration) {
   EXPECT_TRUE(isShown("red", "picture"));
 }
 
+// What merlin image import makes of them lies in the content folder; the wall shows that.
+TEST_F(PictureWall, ShowsPicturesOfAnyFormatAndFoldersOfThemAsSlides) {
+  writePpm(*dir_ / "violet.ppm", 300, 200, [](int, int) { return plain(140, 0, 250); });
+  const Outcome picture = show(*dir_ / "violet.ppm");
+  EXPECT_EQ(picture.status, 0) << picture.output;
+  EXPECT_TRUE(isShown("violet", "picture"));
+  EXPECT_TRUE(isColoured({140, 0, 250}));
+  EXPECT_TRUE(fs::exists(shared("violet.tif")));
+
+  const std::string talk = *dir_ / "talk";
+  fs::create_directory(talk);
+  fs::copy_file(*dir_ / "violet.ppm", talk + "/2.ppm");
+  fs::copy_file(*dir_ / "red.tif", talk + "/1.tif");
+  fs::copy_file(*dir_ / "slides/1-green.tif", talk + "/2.tif");
+  writeText(talk + "/notes.txt", "what I want to say");
+  const Outcome slides = show(talk + "/");
+  EXPECT_EQ(slides.status, 0) << slides.output;
+  EXPECT_NE(slides.output.find("notes.txt: "), std::string::npos) << slides.output;
+  EXPECT_TRUE(isShown("talk", "picture", "1"));
+  next();
+  EXPECT_TRUE(isShown("talk", "picture", "2"));
+  EXPECT_TRUE(isColoured({140, 0, 250}));
+  next();
+  EXPECT_TRUE(isShown("talk", "picture", "2.tif")) << "two names that differ by their ending";
+  EXPECT_EQ(filesIn(shared("")), 2U) << "no work folder is left";
+}
+
 TEST_F(PictureWall, RefusesWhatItCannotShowAndStays) {
   const auto expectRefused = [&](const std::string& what, const std::string& why) {
     const Outcome refused = show(what);
@@ -212,14 +243,14 @@ TEST_F(PictureWall, RefusesWhatItCannotShowAndStays) {
     EXPECT_NE(refused.output.find(why), std::string::npos) << refused.output;
   };
   expectRefused("blue", "contents are red, the sky, slides");
-  expectRefused(*dir_ / "missing.tif", "missing.tif");
-  expectRefused(*dir_ / "in.ppm", "is neither a model (.mrm), a pyramid (.tif)");
+  expectRefused(*dir_ / "missing.tif", "missing.tif: does not exist");
   writeText(*dir_ / "text.tif", "this is no picture");
-  expectRefused(*dir_ / "text.tif", "is not a TIFF file");
+  expectRefused(*dir_ / "text.tif", "text.tif: cannot be read as a picture");
   writeText(*dir_ / "text.mrm", "this is no model");
   expectRefused(*dir_ / "text.mrm", "text.mrm");
   fs::create_directory(*dir_ / "empty");
-  expectRefused(*dir_ / "empty", "has no pyramid");
+  expectRefused(*dir_ / "empty", "empty: has no picture");
+  EXPECT_EQ(filesIn(shared("")), 0U) << "what cannot be shown does not stay";
   EXPECT_TRUE(isShown("red", "picture"));
   EXPECT_TRUE(isColoured({250, 0, 0}));
 }
@@ -240,7 +271,7 @@ TEST_F(PictureWall, OpensAPictureOf100Gigapixels) {
 }
 
 TEST_F(PictureWall, FilesThatChangeOrVanishAreSaidAndTheWallStaysUp) {
-  const std::string live = *dir_ / "live.tif";
+  const std::string live = shared("live.tif"), going = shared("going");
   fs::copy_file(*dir_ / "other.tif", live, fs::copy_options::overwrite_existing);
   ASSERT_EQ(show(live).status, 0);
   EXPECT_TRUE(isColoured({250, 250, 0}));
@@ -254,12 +285,12 @@ TEST_F(PictureWall, FilesThatChangeOrVanishAreSaidAndTheWallStaysUp) {
   EXPECT_TRUE(m_->process().saysEventually("is gone or is no longer a regular file"));
   EXPECT_TRUE(isColoured({0, 250, 0})) << "what was read stays";
   // A folder of slides that vanishes while one of them is shown.
-  fs::create_directory(*dir_ / "going");
-  fs::copy_file(*dir_ / "red.tif", *dir_ / "going/a.tif");
-  fs::copy_file(*dir_ / "sky.tif", *dir_ / "going/b.tif");
-  ASSERT_EQ(show(*dir_ / "going").status, 0);
+  fs::create_directory(going);
+  fs::copy_file(*dir_ / "red.tif", going + "/a.tif");
+  fs::copy_file(*dir_ / "sky.tif", going + "/b.tif");
+  ASSERT_EQ(show(going).status, 0);
   EXPECT_TRUE(isShown("going", "picture", "a"));
-  fs::remove_all(*dir_ / "going");
+  fs::remove_all(going);
   next();
   EXPECT_TRUE(m_->process().saysEventually("going: No such file or directory"));
   EXPECT_FALSE(m_->process().ended());

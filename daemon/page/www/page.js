@@ -42,6 +42,7 @@ function showBanners() {
       banners.push(["bad", "The role wall does not run: no merlind shows a wall. The page shows it again as soon as it runs."]);
     else if (roles.wall && roles.wall.status && roles.wall.age_s > 4)
       banners.push(["warn", `The role wall has reported nothing for ${roles.wall.age_s.toFixed(0)} s.`]);
+    if (wallStatus() && wallStatus().notice) banners.push(["note", wallStatus().notice]);
     if (roles.devices && !roles.devices.running && !devicesOfWall())
       banners.push(["bad", "The role devices does not run: no merlind reads glove, tracker and ball."]);
   }
@@ -469,10 +470,6 @@ async function begin() {
     if (error.status === 401) setOpen(false);
     toast(error.message, true);
   });
-  byId("show-form").onsubmit = event => {
-    event.preventDefault();
-    if (byId("show").value.trim()) showContent(byId("show").value.trim());
-  };
   makeSlider("rate", "rate", String, value => value + " Hz");
   makeSlider("triangles", "triangles", place => String(costOf(place, fullCost())),
              place => grouped(costOf(place, fullCost())) + " by hand");

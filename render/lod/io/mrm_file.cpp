@@ -175,22 +175,31 @@ Result<Dendrogram> readFrom(const std::string& path, Result<File> file) {
   return MrmReader(path, kept->bytes(), kept).read();
 }
 
+// Checks the header alone first, so that a large file of another format is not read completely. The
+// check of the whole copy afterwards is the one that counts. `read`: reads the first bytes.
+template <typename Read>
+Result<Dendrogram> readCopy(const std::string& path, FileStamp* stamp, const Read& read) {
+  const Result<FileCopy> head = read(sizeof(FileHeader));
+  if (!head) return head.error();
+  const auto good = MrmReader(path, head->bytes(), nullptr).checkHeader(head->stamp().size);
+  if (!good) return good.error();
+  Result<FileCopy> file = read(FileCopy::kAll);
+  if (stamp && file) *stamp = file->stamp();
+  return readFrom(path, std::move(file));
+}
+
 }  // namespace
 
 Result<Dendrogram> readMrm(const std::string& path) {
   return readFrom(path, MappedFile::open(path));
 }
 
-// Checks the header alone first, so that a large file of another format is not read completely. The
-// check of the whole copy afterwards is the one that counts.
 Result<Dendrogram> readMrmCopy(const std::string& path, FileStamp* stamp) {
-  const auto head = FileCopy::read(path, sizeof(FileHeader));
-  if (!head) return head.error();
-  const auto good = MrmReader(path, head->bytes(), nullptr).checkHeader(head->stamp().size);
-  if (!good) return good.error();
-  auto file = FileCopy::read(path);
-  if (stamp && file) *stamp = file->stamp();
-  return readFrom(path, std::move(file));
+  return readCopy(path, stamp, [&](std::size_t most) { return FileCopy::read(path, most); });
+}
+
+Result<Dendrogram> readMrmCopy(int fd, const std::string& path, FileStamp* stamp) {
+  return readCopy(path, stamp, [&](std::size_t most) { return FileCopy::read(fd, path, most); });
 }
 
 }  // namespace merlin::render::lod

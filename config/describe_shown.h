@@ -1,0 +1,11 @@
+// The part of describe() that is /wall/shown.
+#pragma once
+
+#include "config/visitor.h"
+#include "daemon/wall/settings.h"
+
+namespace merlin {
+
+void describeShown(ShownSettings& shown, SettingsVisitor& v);
+
+}  // namespace merlin

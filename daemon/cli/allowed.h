@@ -1,0 +1,14 @@
+// Whether this user may use what belongs to merlind's group: its sockets, its content folder.
+#pragma once
+
+#include <string>
+
+#include "daemon/base/result.h"
+
+namespace merlin::cli {
+
+// Checks that this user may write to the file or socket, or into the folder. What is absent is no
+// error here. Errors: kIo, with the group that may and how to join it.
+Result<Ok> checkAllowed(const std::string& path);
+
+}  // namespace merlin::cli

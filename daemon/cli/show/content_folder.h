@@ -1,0 +1,42 @@
+// The content folder of a running wall (daemon/wall/shown_folder.h), as a client uses it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "daemon/base/result.h"
+
+namespace merlin::cli {
+
+struct ContentFolder {
+  std::string path;
+  std::uint64_t limit_bytes = 0;  // of all files in it together
+};
+
+// Asks the wall. Errors: those of askRole(); kUnsupported (the wall has no content folder, and
+// why).
+Result<ContentFolder> contentFolderOf(const std::string& instance);
+
+// Whether the path lies in the folder itself: then it need not be put there.
+bool isIn(const ContentFolder& folder, const std::string& path);
+
+// Checks that this user may put files there, and returns for how many bytes there is room. O(files
+// in the folder). Errors: kIo, with the folder, its group and the way out; kUnsupported (full).
+Result<std::uint64_t> roomIn(const ContentFolder& folder);
+
+// Gives what was made, a file or a folder of files beside which nothing else is used, to the group
+// of the content folder, and then its name there, in place of what had that name. Whoever looks
+// sees the old one or all of the new one. `made` lies in a work folder in the content folder.
+// Errors: kIo.
+Result<Ok> handOver(const std::string& made, const ContentFolder& folder, const std::string& name);
+
+// Copies a file, by sharing its blocks where the file system can. `on_progress` may be empty.
+// Errors: kNotFound, kIo, kMalformed (not a regular file).
+Result<Ok> copyFile(const std::string& from, const std::string& to,
+                    const std::function<void(double share)>& on_progress);
+
+// Size of a file, or of the files in a folder [bytes].
+std::uint64_t sizeOfAll(const std::string& path);
+
+}  // namespace merlin::cli

@@ -1,0 +1,263 @@
+// merlin show: shows a content of the configuration, or any file that merlin can make a content of.
+#include <cctype>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/fixed_text.h"
+#include "daemon/cli/command.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
+#include "daemon/cli/roles.h"
+#include "daemon/cli/show/content_folder.h"
+#include "daemon/cli/show/conversion.h"
+#include "daemon/cli/show/watched_child.h"
+#include "daemon/cli/stop_signals.h"
+#include "daemon/cli/work_folder.h"
+#include "daemon/shm/segment.h"
+
+namespace merlin::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ShowOptions {
+  std::string instance = "merlin";
+  MeshImport mesh;  // its inputs: what is to be shown
+  ImageImport image;
+  double wait_s = 60;
+
+  const std::string& what() const { return mesh.input(); }
+  // The name of an option about the import of meshes that was given; empty if none was.
+  std::string meshOption() const {
+    if (mesh.range.scale) return "--scale";
+    return mesh.texture.empty() ? mesh.range.anyGiven() : "--texture";
+  }
+};
+
+constexpr Duration kLook = std::chrono::milliseconds(5);
+
+// What became of a request, once the wall says and has shown another frame; nothing before the end
+// of the time to wait.
+std::optional<shm::WallContent> awaitDone(const ShowOptions& options, std::uint32_t request) {
+  const auto segment =
+      shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(options.instance, "wall"));
+  SystemClock clock;
+  const Timestamp until = clock.now() + fromSeconds(options.wait_s);
+  std::optional<std::uint64_t> frame;
+  for (; segment && clock.now() < until; clock.sleepUntil(clock.now() + kLook, {})) {
+    const auto content = (*segment)->content.read();
+    const auto stats = (*segment)->stats.read();
+    if (!content || !stats || content->finished < request) continue;
+    if (!frame) frame = stats->frames;
+    if (content->refused[0] != '\0' || stats->frames > *frame) return content;
+  }
+  return std::nullopt;
+}
+
+// Asks the wall to show it, and waits until it does.
+Result<Ok> ask(const ShowOptions& options, const RoleRequest& request) {
+  const auto asked = askRole(options.instance, "wall", request);
+  if (!asked) return asked.error();
+  const auto answer = nlohmann::json::parse(*asked, nullptr, false);
+  const auto done = awaitDone(options, answer.value("request", std::uint32_t{0}));
+  if (!done) {
+    return Error{Errc::kTimeout, fmt::format("{} is not shown after {} s; merlin status says what "
+                                             "the wall does",
+                                             options.what(), options.wait_s)};
+  }
+  const std::string refused(textIn(done->refused));
+  if (!refused.empty()) return Error{Errc::kMalformed, refused};
+  return Ok{};
+}
+
+// Has the wall say how far it is, about once a second. A wall that does not answer holds nobody up.
+class WallNotices {
+ public:
+  WallNotices(const ShowOptions& options, const Clock& clock)
+      : options_(options),
+        clock_(clock),
+        file_(excerpt(fs::path(options.what()).filename().string())) {}
+
+  void progress(const std::string& title, double share) {
+    const Timestamp now = clock_.now();
+    if (now - sent_ < std::chrono::seconds(1)) return;
+    sent_ = now;
+    std::string step = title.empty() ? "reading" : title;
+    step[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(step[0])));
+    send(title.empty() ? fmt::format("{} {}", step, file_)
+                       : fmt::format("{} {}: {:.0f} %", step, file_, 100 * share));
+  }
+  void done() {
+    if (sent_ != Timestamp{}) send("off");
+  }
+  void failed(const Error& error) {
+    if (error.code == Errc::kClosed) return done();
+    send(std::string(wholeCharacters(
+        oneLine(fmt::format("{} cannot be shown: {}", file_, error.what)).substr(0, kMost))));
+  }
+
+ private:
+  static constexpr std::size_t kMost = sizeof(shm::WallNotice::text) - 1;
+  void send(const std::string& text) const {
+    const auto sent = askRole(options_.instance, "wall", {"notice", text, std::chrono::seconds(1)});
+    static_cast<void>(sent);
+  }
+
+  const ShowOptions& options_;
+  const Clock& clock_;
+  std::string file_;
+  Timestamp sent_{};
+};
+
+// Signals end the conversion instead of this process, until what it left is cleared up.
+class HeldStop {
+ public:
+  HeldStop() {
+    ::sigprocmask(SIG_SETMASK, nullptr, &before_);
+    stop_ = stopSignals();
+  }
+  ~HeldStop() { ::sigprocmask(SIG_SETMASK, &before_, nullptr); }
+  HeldStop(const HeldStop&) = delete;
+  HeldStop& operator=(const HeldStop&) = delete;
+
+  int stop() const noexcept { return stop_.get(); }
+  const sigset_t& before() const noexcept { return before_; }
+  // The signal that came has done what it was for.
+  void take() const {
+    signalfd_siginfo info{};
+    [[maybe_unused]] const auto n = ::read(stop_.get(), &info, sizeof info);
+  }
+
+ private:
+  sigset_t before_{};
+  UniqueFd stop_;
+};
+
+// Makes the content in a work folder in the content folder, and gives it its name there.
+Result<Ok> put(const ShowOptions& options, const ContentFolder& folder, FileKind kind,
+               const std::string& name, WallNotices& notices) {
+  const auto room = roomIn(folder);
+  if (!room) return room.error();
+  const HeldStop signals;  // before the work folder is there, which a signal would leave
+  const auto work = WorkFolder::make(fs::path(folder.path) / name);
+  if (!work) return work.error();
+  const Conversion conversion{options.what(), work->path() + "/" + name, kind, *room};
+  const auto made = runWatched(
+      {[&](const ProgressListener& listener) {
+         return convert(conversion, options.mesh, options.image, listener);
+       },
+       [&](const std::string& title, double share) { notices.progress(title, share); }, *room},
+      signals.stop(), signals.before());
+  if (!made && made.error().code == Errc::kClosed) signals.take();
+  if (!made) return made;
+  return handOver(conversion.output, folder, name);
+}
+
+// Returns the name of what was put into the content folder.
+Result<std::string> putFile(const ShowOptions& options, const ContentFolder& folder,
+                            WallNotices& notices) {
+  const auto kind = kindOfFile(options.what(), !options.meshOption().empty());
+  if (!kind) return kind.error();
+  const auto name = nameInFolder(options.what(), *kind);
+  if (!name) return name;
+  const auto done = put(options, folder, *kind, *name, notices);
+  if (!done) return done.error();
+  return name;
+}
+
+int showFile(const ShowOptions& options) {
+  const SystemClock clock;
+  const Timestamp began = clock.now();
+  const auto folder = contentFolderOf(options.instance);
+  if (!folder) return fail(folder.error());
+  WallNotices notices(options, clock);
+  const auto cannot = [&notices](const Error& error) {
+    notices.failed(error);
+    return fail(error);
+  };
+  const bool there = isIn(*folder, options.what());
+  const auto name = there ? Result<std::string>(fs::path(options.what()).filename().string())
+                          : putFile(options, *folder, notices);
+  if (!name) return cannot(name.error());
+  const double made_s = toSeconds(clock.now() - began);
+  const auto shown = ask(options, {"show_file", *name});
+  const std::string put = folder->path + "/" + *name;
+  if (!shown) {
+    // What cannot be shown does not stay.
+    std::error_code error;
+    if (!there && shown.error().code != Errc::kTimeout) fs::remove_all(put, error);
+    return cannot(shown.error());
+  }
+  notices.done();
+  printOut("{}: shown after {:.1f} s, of which it took {:.1f} s to put {:.1f} MB into {}\n",
+           options.what(), toSeconds(clock.now() - began), made_s,
+           static_cast<double>(sizeOfAll(put)) / 1e6, folder->path);
+  return kExitDone;
+}
+
+int showName(const ShowOptions& options) {
+  const std::string option = options.meshOption();
+  if (!option.empty())
+    return fail({Errc::kInvalidArgument,
+                 fmt::format("{}: {} is for files; a file needs a '/' or an ending in its name",
+                             options.what(), option)});
+  const auto shown = ask(options, {"show", options.what()});
+  if (shown) return kExitDone;
+  std::error_code error;
+  if (fs::exists(options.what(), error))
+    printNote(fmt::format("a file {0} is here: merlin show ./{0}", options.what()));
+  return fail(shown.error());
+}
+
+// The name of a content comes first; a file is told by a '/', or by its ending if it is there.
+int show(ShowOptions& options) {
+  std::vector<std::string>& inputs = options.mesh.inputs;
+  if (const auto input = options.mesh.range.takeInput()) inputs.push_back(*input);
+  if (inputs.size() != 1)
+    return fail({Errc::kInvalidArgument,
+                 fmt::format("{} contents are given; one is shown at a time", inputs.size())});
+  std::error_code error;
+  const bool ending = fs::path(options.what()).has_extension();
+  const bool file = options.what().find('/') != std::string::npos ||
+                    (ending && fs::exists(options.what(), error)) ||
+                    (ending && !options.meshOption().empty());
+  return file ? showFile(options) : showName(options);
+}
+
+}  // namespace
+
+void addShow(Command app, Run& run) {
+  const auto options = std::make_shared<ShowOptions>();
+  Command command = app.subcommand(
+      "show",
+      "Show a content on the wall: one of the configuration by its name, or any file that merlin "
+      "mesh import or merlin image import reads, with the options of mesh import, or a folder of "
+      "pictures as slides. A PGM, a FITS image and a TIFF are pictures unless their header gives "
+      "a geometry or such an option is given. The file is read with your rights; the result goes "
+      "into merlind's content folder (/wall/shown). The wall shows the progress. Returns when it "
+      "is shown.\n"
+      "Example: merlin show scan.pgm --geometry orthogonal --angles 60 45 --scale 0.001");
+  addInstance(command, options->instance);
+  command.option("what", options->mesh.inputs, "Name of a content, a file or a folder")
+      .typeName("NAME|FILE");
+  command
+      .option("--wait", options->wait_s,
+              "Longest time to wait until it is shown, once it is imported, in seconds")
+      .seconds()
+      .showDefault();
+  command.flag("--panorama", options->image.panorama,
+               "The picture is equirectangular (360 x 180 degrees): it is shown with the viewer "
+               "inside");
+  addImportOptions(command, options->mesh);
+  command.callback([options, &run] { run = [options] { return show(*options); }; });
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,164 @@
+#include "daemon/cli/show/watched_child.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <optional>
+#include <string_view>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/unique_fd.h"
+
+namespace merlin::cli {
+namespace {
+
+constexpr int kLook_ms = 100;
+
+void sendAll(int to, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(to, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return;
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
+}
+
+// The child tells lines "SHARE TITLE", and at its end a zero byte and the error: its code as one
+// byte and its text; no text: none.
+[[noreturn]] void workInChild(const WatchedWork& watched, int to, const sigset_t& mask) {
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  ::sigprocmask(SIG_SETMASK, &mask, nullptr);
+  ::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit is an error then
+  rlimit size{};
+  ::getrlimit(RLIMIT_FSIZE, &size);
+  size.rlim_cur = std::min<rlim_t>(watched.most_bytes, size.rlim_max);
+  ::setrlimit(RLIMIT_FSIZE, &size);
+  const SystemClock clock;
+  Timestamp told{};
+  const auto done = watched.work([&](const std::string& title, double share) {
+    const Timestamp now = clock.now();
+    if (now - told < std::chrono::milliseconds(kLook_ms / 2)) return;
+    told = now;
+    sendAll(to, fmt::format("{:.3f} {}\n", share, title));
+  });
+  std::string end(1, '\0');
+  if (!done) end += static_cast<char>(1 + static_cast<int>(done.error().code)) + done.error().what;
+  sendAll(to, end);
+  std::fflush(nullptr);
+  ::_exit(0);
+}
+
+// What the child has told so far.
+class Told {
+ public:
+  explicit Told(const ProgressListener& listener) : listener_(listener) {}
+
+  // Takes what is there; false at the end.
+  bool read(int from) {
+    std::array<char, 4096> bytes{};
+    const ssize_t n = ::read(from, bytes.data(), bytes.size());
+    if (n > 0) take({bytes.data(), static_cast<std::size_t>(n)});
+    return n > 0 || (n < 0 && errno == EINTR);
+  }
+  void report() const { listener_(title_, share_); }
+
+  // Nothing if the child did not come to its end.
+  std::optional<Result<Ok>> result() const {
+    if (!ended_) return std::nullopt;
+    if (line_.empty()) return Result<Ok>(Ok{});
+    return Result<Ok>(
+        Error{static_cast<Errc>(static_cast<unsigned char>(line_[0]) - 1), line_.substr(1)});
+  }
+
+ private:
+  void take(std::string_view bytes) {
+    for (const char c : bytes) {
+      if (ended_ || (c != '\n' && c != '\0')) {
+        line_ += c;
+        continue;
+      }
+      const std::size_t blank = line_.find(' ');
+      if (c == '\n' && blank != std::string::npos) {
+        std::from_chars(line_.data(), line_.data() + blank, share_);
+        title_ = line_.substr(blank + 1);
+      }
+      ended_ = c == '\0';
+      line_.clear();
+    }
+  }
+
+  const ProgressListener& listener_;
+  std::string line_, title_;
+  double share_ = 0;
+  bool ended_ = false;
+};
+
+// Asks the child to end, which lets it end its own, and makes it after two seconds.
+void endChild(pid_t child, int from, Told& told) {
+  ::kill(child, SIGTERM);
+  const SystemClock clock;
+  const Timestamp until = clock.now() + std::chrono::seconds(2);
+  pollfd item{from, POLLIN, 0};
+  while (clock.now() < until) {
+    if (::poll(&item, 1, kLook_ms) > 0 && !told.read(from)) return;
+  }
+  ::kill(child, SIGKILL);
+}
+
+// False if it was stopped.
+bool follow(int from, int stop, Told& told) {
+  const SystemClock clock;
+  Timestamp looked{};
+  for (;;) {
+    std::array<pollfd, 2> items{pollfd{from, POLLIN, 0}, pollfd{stop, POLLIN, 0}};
+    ::poll(items.data(), items.size(), kLook_ms);
+    if (items[1].revents != 0) return false;
+    if (items[0].revents != 0 && !told.read(from)) return true;
+    if (clock.now() - looked < std::chrono::milliseconds(kLook_ms)) continue;
+    looked = clock.now();
+    told.report();
+  }
+}
+
+}  // namespace
+
+Result<Ok> runWatched(const WatchedWork& watched, int stop, const sigset_t& mask) {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+    return Error{Errc::kIo, fmt::format("pipe: {}", std::strerror(errno))};
+  UniqueFd from(ends[0]), to(ends[1]);
+  std::fflush(nullptr);  // what is buffered is printed once
+  const pid_t child = ::fork();
+  if (child < 0) return Error{Errc::kIo, fmt::format("fork: {}", std::strerror(errno))};
+  if (child == 0) workInChild(watched, to.get(), mask);
+  to.reset();
+  Told told(watched.on_progress);
+  const bool finished = follow(from.get(), stop, told);
+  if (!finished) endChild(child, from.get(), told);
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (!finished) return Error{Errc::kClosed, "interrupted; nothing is left behind"};
+  if (const auto result = told.result()) return *result;
+  // Ctrl-C reaches the child as well, and may end it before this process looks.
+  const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP)
+    return Error{Errc::kClosed, "interrupted; nothing is left behind"};
+  return Error{Errc::kIo,
+               fmt::format("the import ended by signal {} ({}): it may need more memory than there "
+                           "is (--memory)",
+                           signal, ::strsignal(signal))};
+}
+
+}  // namespace merlin::cli

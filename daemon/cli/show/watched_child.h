@@ -1,0 +1,30 @@
+// Runs long work in a child process, so that the parent stays there to say how far it is, to end
+// it, and to clear up, whatever becomes of it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include <signal.h>
+
+#include "daemon/base/result.h"
+#include "daemon/cli/progress.h"
+
+namespace merlin::cli {
+
+struct WatchedWork {
+  // Is called in the child; tells the listener how far it is. May print.
+  std::function<Result<Ok>(const ProgressListener&)> work;
+  // Is called in the parent ten times a second with what the child has told last: its step and its
+  // share; with an empty title before the first.
+  ProgressListener on_progress;
+  std::uint64_t most_bytes = 0;  // of each file that the child writes
+};
+
+// Runs the work until it is done or `stop`, of stopSignals(), is readable. `mask`: the signal mask
+// from before stopSignals(), for the child. Errors: those of the work; kClosed (`stop`); kIo (a
+// signal ended the child). To be called while the process has one thread.
+Result<Ok> runWatched(const WatchedWork& watched, int stop, const sigset_t& mask);
+
+}  // namespace merlin::cli

@@ -1,0 +1,39 @@
+#include "daemon/wall/notice.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "daemon/base/printable_text.h"
+
+namespace merlin::wall {
+
+Result<Ok> Notice::show(const std::string& text) {
+  if (text.empty() || text.size() > kMostBytes || !isText(text)) {
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("\"{}\" is not a sentence of 1 to {} bytes of text, or off",
+                             excerpt(text), kMostBytes)};
+  }
+  const std::string shown = text == "off" ? "" : text;
+  const Timestamp until = clock_.now() + kShown;
+  if (const auto drawn = overlay_.show(shown, until); !drawn) return drawn;
+  const std::lock_guard lock(mutex_);
+  text_ = shown;
+  until_ = until;
+  return Ok{};
+}
+
+void Notice::tend(Timestamp now) {
+  std::string text;
+  {
+    const std::lock_guard lock(mutex_);
+    if (now < until_) text = text_;
+  }
+  if (text == published_) return;
+  shm::WallNotice notice{toNanoseconds(now), {}};
+  text.copy(notice.text, kMostBytes);
+  slot_.publish(notice);
+  published_ = std::move(text);
+}
+
+}  // namespace merlin::wall

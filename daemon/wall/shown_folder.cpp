@@ -1,0 +1,158 @@
+#include "daemon/wall/shown_folder.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include "daemon/base/files.h"
+#include "daemon/base/open_below.h"
+#include "daemon/base/printable_text.h"
+
+namespace merlin::wall {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Duration kLeftOver = std::chrono::hours(1);
+
+bool isHidden(const FolderFile& file) { return file.name.starts_with('.'); }
+
+// systemd's RestrictSUIDSGID= forbids the set-group-ID bit. Without it clients give their files the
+// group themselves.
+bool makeForGroup(const std::string& folder) {
+  if (::mkdir(folder.c_str(), 0770) != 0) return false;
+  return ::chmod(folder.c_str(), 02770) == 0 || ::chmod(folder.c_str(), 0770) == 0;
+}
+
+// Of the files in a folder of slides; links are not followed.
+std::uint64_t bytesIn(const fs::directory_entry& entry) {
+  std::error_code error;
+  if (entry.symlink_status(error).type() == fs::file_type::regular) return entry.file_size(error);
+  if (entry.symlink_status(error).type() != fs::file_type::directory) return 0;
+  std::uint64_t bytes = 0;
+  for (fs::directory_iterator it(entry.path(), error), end; !error && it != end;
+       it.increment(error)) {
+    std::error_code unknown;
+    if (it->symlink_status(unknown).type() != fs::file_type::regular) continue;
+    const std::uintmax_t size = it->file_size(unknown);
+    if (!unknown) bytes += size;
+  }
+  return bytes;
+}
+
+// Of a link its own time. Zero if the file is gone meanwhile.
+Duration ageOf(const std::string& path) {
+  struct stat status {};
+  timespec now{};
+  if (::lstat(path.c_str(), &status) != 0 || ::clock_gettime(CLOCK_REALTIME, &now) != 0) return {};
+  return std::chrono::seconds(now.tv_sec - status.st_mtim.tv_sec) +
+         std::chrono::nanoseconds(now.tv_nsec - status.st_mtim.tv_nsec);
+}
+
+}  // namespace
+
+std::vector<std::string> surplusOf(std::vector<FolderFile> files, std::span<const std::string> kept,
+                                   std::uint64_t limit_bytes) {
+  std::erase_if(files, isHidden);
+  // Of the same age by name, so that one folder has one result.
+  std::ranges::sort(files, [](const FolderFile& a, const FolderFile& b) {
+    return std::pair(a.age, std::string_view(a.name)) < std::pair(b.age, std::string_view(b.name));
+  });
+  const auto isKept = [&](const FolderFile& file) {
+    return std::ranges::find(kept, file.name) != kept.end();
+  };
+  std::uint64_t bytes = 0;
+  for (const FolderFile& file : files) bytes += isKept(file) ? file.bytes : 0;
+  std::vector<std::string> surplus;
+  for (const FolderFile& file : files) {
+    if (isKept(file)) continue;
+    const bool fits = bytes <= limit_bytes / 2 && file.bytes <= limit_bytes / 2 - bytes;
+    if (fits)
+      bytes += file.bytes;
+    else
+      surplus.push_back(file.name);
+  }
+  return surplus;
+}
+
+std::vector<std::string> leftOversOf(std::span<const FolderFile> files) {
+  std::vector<std::string> left;
+  for (const FolderFile& file : files) {
+    if (isHidden(file) && file.age > kLeftOver) left.push_back(file.name);
+  }
+  return left;
+}
+
+Result<Ok> ShownFolder::make() {
+  const auto cannot = [this](Errc code, const std::string& why) {
+    fault_ = fmt::format("merlin show cannot show files: {} (/wall/shown/folder)", why);
+    return Error{code, fault_};
+  };
+  const std::string& folder = settings_.folder;
+  if (folder.empty())
+    return cannot(Errc::kUnsupported, "no content folder is set, and this user has none for state");
+  std::error_code error;
+  fs::create_directories(fs::path(folder).parent_path(), error);
+  if (!makeForGroup(folder) && errno != EEXIST)
+    return cannot(Errc::kIo, fmt::format("{}: {}", folder, std::strerror(errno)));
+  if (const auto usable = checkWritableFolder(folder); !usable)
+    return cannot(usable.error().code, usable.error().what);
+  const auto faults = remove(leftOversOf(files()));
+  return faults.empty() ? Result<Ok>(Ok{}) : Error{Errc::kIo, faults.front()};
+}
+
+Result<ContentEntry> ShownFolder::entryOf(const std::string& name) const {
+  if (!fault_.empty()) return Error{Errc::kUnsupported, fault_};
+  if (!isPlainName(name)) {
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("\"{}\" is not the name of a file in the content folder {}; merlind "
+                             "opens no other file: `merlin show FILE` puts it there",
+                             excerpt(name), settings_.folder)};
+  }
+  auto entry = contentBelow(settings_.folder, name);
+  if (!entry) return entry;
+  std::error_code gone;
+  const std::uint64_t bytes = bytesIn(fs::directory_entry(entry->path, gone));
+  if (bytes <= limitBytes()) return entry;
+  return Error{Errc::kInvalidArgument,
+               fmt::format("{}: has {} bytes; /wall/shown/limit_mb allows {} MB", entry->path,
+                           bytes, settings_.limit_mb)};
+}
+
+std::vector<std::string> ShownFolder::tidy(const std::string& shown) {
+  const std::lock_guard lock(mutex_);
+  if (shown != shown_) shown_before_ = std::exchange(shown_, shown);
+  const std::string kept[] = {shown_, shown_before_};
+  return remove(surplusOf(files(), kept, limitBytes()));
+}
+
+std::vector<FolderFile> ShownFolder::files() const {
+  std::vector<FolderFile> files;
+  std::error_code error;
+  for (fs::directory_iterator it(settings_.folder, error), end; !error && it != end;
+       it.increment(error)) {
+    files.push_back({it->path().filename().string(), bytesIn(*it), ageOf(it->path().string())});
+  }
+  return files;
+}
+
+// A folder as well; of a link the link.
+std::vector<std::string> ShownFolder::remove(const std::vector<std::string>& names) const {
+  std::vector<std::string> faults;
+  for (const std::string& name : names) {
+    std::error_code error;
+    fs::remove_all(fs::path(settings_.folder) / name, error);
+    if (error) {
+      faults.push_back(
+          fmt::format("{}/{} cannot be removed: {}", settings_.folder, name, error.message()));
+    }
+  }
+  return faults;
+}
+
+}  // namespace merlin::wall

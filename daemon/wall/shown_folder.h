@@ -1,0 +1,69 @@
+// ShownFolder: the content folder, into which `merlin show FILE` puts what it makes of a file. Its
+// group may write to it, so whatever is there may be anything.
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/result.h"
+#include "daemon/wall/settings.h"
+#include "daemon/wall/wall_contents.h"
+
+namespace merlin::wall {
+
+// A file in the folder, or a folder of slides.
+struct FolderFile {
+  std::string name;
+  std::uint64_t bytes = 0;
+  Duration age{};  // since it was written
+};
+
+// Names of the files that are to be removed, so that the next client has room. Those in `kept`
+// stay; then, the newest first, those with which all that stay take at most half of `limit_bytes`.
+// Hidden ones, which are being written, do not count and stay. Pure.
+std::vector<std::string> surplusOf(std::vector<FolderFile> files, std::span<const std::string> kept,
+                                   std::uint64_t limit_bytes);
+
+// Names of hidden files that are older than an hour: of clients that were killed. Pure.
+std::vector<std::string> leftOversOf(std::span<const FolderFile> files);
+
+// Thread-safe.
+class ShownFolder {
+ public:
+  explicit ShownFolder(const ShownSettings& settings) : settings_(settings) {}
+
+  // Makes the folder if it is missing, for the group of this process, and such that files in it
+  // get that group; removes what clients that were killed have left. Errors: kUnsupported (no
+  // folder is set), kIo. To be called once, as the daemon starts.
+  Result<Ok> make();
+
+  const std::string& path() const noexcept { return settings_.folder; }
+  std::uint64_t limitBytes() const noexcept {
+    return static_cast<std::uint64_t>(settings_.limit_mb) * 1'000'000;
+  }
+  // Why it cannot be used; empty: it can.
+  const std::string& fault() const noexcept { return fault_; }
+
+  // The content of that name in the folder. Errors: those of contentBelow(); kUnsupported (the
+  // folder cannot be used), kInvalidArgument (it is larger than limitBytes()).
+  Result<ContentEntry> entryOf(const std::string& name) const;
+
+  // Removes surplusOf() the folder; `shown` and the one of the call before stay. Returns a sentence
+  // about each that cannot be removed.
+  std::vector<std::string> tidy(const std::string& shown);
+
+ private:
+  std::vector<FolderFile> files() const;
+  std::vector<std::string> remove(const std::vector<std::string>& names) const;
+
+  ShownSettings settings_;
+  std::string fault_;
+  std::mutex mutex_;
+  std::string shown_, shown_before_;  // guarded by mutex_
+};
+
+}  // namespace merlin::wall

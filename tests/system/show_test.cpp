@@ -1,0 +1,159 @@
+// merlin show FILE: from a range image with colour on the disk to the wall in one command, what is
+// left of one that was stopped, and that merlind opens no path that a client names.
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "daemon/status/client.h"
+#include "render/image/image_file.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// One wall for all, which shows its model at the beginning of each.
+class ShowFile : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    dir_ = new TempDir;
+    wall_ = new Merlind(*dir_, makeModel(*dir_, 2), "show",
+                        MerlindOptions{.script = "still", .emulate = false});
+    EXPECT_TRUE(wall_->ready()) << wall_->process().output();
+  }
+  static void TearDownTestSuite() {
+    EXPECT_EQ(wall_->process().kill(SIGTERM), 0) << wall_->process().output();
+    delete wall_;
+    delete dir_;
+  }
+  void SetUp() override {
+    for (const auto& entry : fs::directory_iterator(folder())) fs::remove_all(entry.path());
+    ASSERT_EQ(run(command({"model"})).status, 0);
+  }
+  std::string folder() const { return *dir_ / (wall_->instance() + ".shown"); }
+  std::vector<std::string> command(const std::vector<std::string>& words) const {
+    std::vector<std::string> all = {kMerlin, "show", "--instance", wall_->instance()};
+    all.insert(all.end(), words.begin(), words.end());
+    return all;
+  }
+  // What is in the content folder, hidden ones too.
+  std::vector<std::string> there() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder()))
+      names.push_back(entry.path().filename().string());
+    return names;
+  }
+  shm::WallContent content() const {
+    const auto wall =
+        shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(wall_->instance(), "wall"));
+    return wall ? (*wall)->content.read().value_or(shm::WallContent{}) : shm::WallContent{};
+  }
+  // Mean red, green and blue of what is not background.
+  std::array<double, 3> colour() const {
+    const std::string path = *dir_ / "frame.png";
+    run({kMerlin, "snapshot", "-o", path, "--instance", wall_->instance()});
+    const auto frame = render::image::readImage(path);
+    std::array<double, 3> sum{};
+    double count = 0;
+    for (std::size_t i = 0; frame && i + 2 < frame->pixels.size(); i += 3) {
+      if (std::max({frame->pixels[i], frame->pixels[i + 1], frame->pixels[i + 2]}) < 64) continue;
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += frame->pixels[i + k];
+      ++count;
+    }
+    for (double& s : sum) s /= std::max(count, 1.0);
+    return sum;
+  }
+  // The answer of the wall's socket, or why there is none.
+  std::string asked(const std::string& name, const std::string& argument) const {
+    const auto answer =
+        status::ask(fmt::format("ipc://{}/{}-wall.command", dir_->path(), wall_->instance()), name,
+                    std::chrono::seconds(10), argument);
+    return answer ? *answer : answer.error().what;
+  }
+  // A flat square of side x side returns, all of one colour.
+  void writeScan(const std::string& name, int side, const std::string& rgb) const {
+    const auto pixels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+    const std::string size = fmt::format("{0} {0}\n", side);
+    std::string ranges, colours;
+    for (std::size_t i = 0; i < pixels; ++i) {
+      ranges += '\x08';
+      ranges += static_cast<char>(i * 31 % 8);  // rough, so that reduction takes its time
+      colours += rgb;
+    }
+    writeText(*dir_ / (name + ".pgm"), "P5\n" + size + "65535\n" + ranges);
+    writeText(*dir_ / (name + ".ppm"), "P6\n" + size + "255\n" + colours);
+  }
+  std::vector<std::string> scan(const std::string& name) const {
+    return command({*dir_ / (name + ".pgm"), "--geometry", "orthogonal", "--angles", "40", "40",
+                    "--feature", "colour=" + *dir_ / (name + ".ppm")});
+  }
+
+  static TempDir* dir_;
+  static Merlind* wall_;
+};
+TempDir* ShowFile::dir_ = nullptr;
+Merlind* ShowFile::wall_ = nullptr;
+
+TEST_F(ShowFile, ARangeImageWithColourIsOnTheWallAfterOneCommand) {
+  writeScan("hill", 40, "\x10\x10\xF0");
+  const Outcome shown = run(scan("hill"));
+  EXPECT_EQ(shown.status, 0) << shown.output;
+  EXPECT_NE(shown.output.find("hill.pgm: shown after "), std::string::npos) << shown.output;
+  EXPECT_STREQ(content().name, "hill");
+  EXPECT_STREQ(content().kind, "model");
+  EXPECT_EQ(wall_->status()["content"]["detail"]["full_cost"], 2 * 39 * 39);
+  EXPECT_EQ(there(), std::vector<std::string>{"hill.mrm"});
+  EXPECT_EQ(fs::status(folder() + "/hill.mrm").permissions(), fs::perms(0640));
+  EXPECT_TRUE(eventually([&] { return colour()[2] > 3 * colour()[0] && colour()[2] > 64; }))
+      << "blue";
+}
+
+TEST_F(ShowFile, OneThatIsStoppedSaysOnTheWallHowFarItIsAndLeavesNothing) {
+  writeScan("large", 1000, "abc");
+  Process showing(scan("large"));
+  EXPECT_TRUE(eventually([&] {
+    return wall_->status()["notice"].get<std::string>().find(" large.pgm") != std::string::npos ||
+           showing.ended();
+  }));
+  EXPECT_EQ(showing.kill(SIGINT), 1) << showing.output();
+  EXPECT_NE(showing.output().find("interrupted; nothing is left behind"), std::string::npos)
+      << showing.output();
+  EXPECT_EQ(there(), std::vector<std::string>());
+  EXPECT_STREQ(content().name, "model");
+  EXPECT_TRUE(eventually([&] { return wall_->status()["notice"] == ""; }));
+}
+
+TEST_F(ShowFile, MerlindOpensNoPathThatAClientNames) {
+  const std::string model = *dir_ / "model.mrm";
+  EXPECT_NE(asked("show", model).find("merlind opens no path that a client names"),
+            std::string::npos)
+      << asked("show", model);
+  EXPECT_NE(asked("show_file", model).find("is not the name of a file in the content folder"),
+            std::string::npos);
+  EXPECT_NE(asked("show_file", "../model.mrm").find("is not the name of a file"),
+            std::string::npos);
+  fs::create_symlink(model, folder() + "/link.mrm");
+  EXPECT_NE(asked("show_file", "link.mrm").find("link.mrm: is a link"), std::string::npos);
+  EXPECT_STREQ(content().name, "model");
+}
+
+TEST_F(ShowFile, WhatCannotBeShownIsSaidHereAndOnTheWall) {
+  writeText(*dir_ / "broken.mrm", "MRLN.mrm and nothing else");
+  const Outcome broken = run(command({*dir_ / "broken.mrm"}));
+  EXPECT_EQ(broken.status, 2) << broken.output;
+  EXPECT_NE(broken.output.find("broken.mrm: "), std::string::npos) << broken.output;
+  EXPECT_TRUE(eventually([&] {
+    return wall_->status()["notice"].get<std::string>().starts_with("broken.mrm cannot be shown: ");
+  }));
+  EXPECT_EQ(there(), std::vector<std::string>()) << "it does not stay";
+  const Outcome absent = run(command({*dir_ / "absent.pgm"}));
+  EXPECT_EQ(absent.output, "merlin: " + (*dir_ / "absent.pgm") + ": does not exist\n");
+  const Outcome alone = run({kMerlin, "show", *dir_ / "broken.mrm", "--instance", "nobody-runs"});
+  EXPECT_EQ(alone.status, 1);
+  EXPECT_NE(alone.output.find("no merlind runs as \"nobody-runs\""), std::string::npos)
+      << alone.output;
+}
+
+}  // namespace
+}  // namespace merlin::test
