@@ -8,7 +8,6 @@
 namespace merlin::manual {
 
 // A script that bash reads. Where a value is not one of a few words, bash completes file names.
-// zsh can use it through its bashcompinit.
 std::string bashCompletion(const ProgramCommand& program, const std::string& name);
 
 }  // namespace merlin::manual
