@@ -67,8 +67,8 @@ def module_files(folder):
     return order
 
 
-def initrd(path, modules):
-    """Writes the machine's first files: busybox, modules, init (a cpio archive, format newc)."""
+def initrd(path, modules, init):
+    """Writes the machine's first files: busybox, modules, guest/`init` (a cpio archive, format newc)."""
     def entry(name, mode, data=b""):
         name = name.encode() + b"\0"
         fields = (entry.count, mode, 0, 0, 1, 0, len(data), 0, 0, 0, 0, len(name), 0)
@@ -91,7 +91,7 @@ def initrd(path, modules):
         archive += entry("modules/" + os.path.basename(module), 0o100644, content(module))
     archive += entry("modules/order", 0o100644, "\n".join(names).encode())
     archive += entry("bin/busybox", 0o100755, content(busybox))
-    archive += entry("init", 0o100755, content(f"{HERE}/guest/init"))
+    archive += entry("init", 0o100755, content(f"{HERE}/guest/{init}"))
     archive += entry("TRAILER!!!", 0)
     with open(path, "wb") as file:
         file.write(archive)
@@ -155,15 +155,21 @@ class Line:
 
 
 class Vm:
-    def __init__(self, folder, mode, memory_mb=1536):
-        """`folder`: for the machine's files; FOLDER/shared is its /mnt. `mode`: "640x480"."""
+    def __init__(self, folder, mode, memory_mb=1536, root=None):
+        """`folder`: for the machine's files; FOLDER/shared is its /mnt. `mode`: "640x480".
+
+        `root`: a Debian of its own with systemd, which the machine writes to; None: the host's, read-only.
+        """
         self.folder, self.shared = folder, os.path.join(folder, "shared")
         shutil.rmtree(folder, ignore_errors=True)
         os.makedirs(self.shared)
         if shutil.which("qemu-system-x86_64") is None:
             raise Missing("QEMU is not there (package qemu-system-x86)")
         vmlinuz, modules = kernel(os.path.join(os.path.dirname(folder), "kernel"))
-        initrd(f"{folder}/initrd", module_files(modules))
+        initrd(f"{folder}/initrd", module_files(modules), "systemd" if root else "init")
+        # Owners are those of the files, which only root can set.
+        owners = "passthrough" if os.geteuid() == 0 else "none"
+        shares = f"path={root},security_model={owners}" if root else "path=/,security_model=none,readonly=on"
         video = " ".join(f"video=Virtual-{i + 1}:{mode}@60e" for i in range(HEADS))
         self.log = open(f"{folder}/qemu.log", "wb")
         self.qemu = subprocess.Popen(
@@ -176,7 +182,7 @@ class Vm:
              "-device", "virtio-serial-pci",
              "-chardev", f"socket,id=shell,path={folder}/shell,server=on,wait=off",
              "-device", "virtserialport,chardev=shell,name=merlin.shell",
-             "-virtfs", "local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap",
+             "-virtfs", f"local,{shares},mount_tag=host,multidevs=remap",
              "-virtfs", f"local,path={self.shared},mount_tag=out,security_model=none",
              "-qmp", f"unix:{folder}/qmp,server=on,wait=off"],
             stdin=subprocess.DEVNULL, stdout=self.log, stderr=subprocess.STDOUT)

@@ -1,0 +1,173 @@
+#!/usr/bin/env python3
+"""The Debian packages on a fresh Debian 12 with its own systemd, in a virtual machine: ./dev test-vm-package
+
+The Debian is made once by debootstrap, with the libraries that the packages depend on; each run begins
+with a copy. Judges states and pictures; the times that it prints are those of an emulated machine.
+"""
+import argparse
+import glob
+import json
+import os
+import shutil
+import subprocess
+import time
+import unittest
+
+import vm
+
+OPTIONS = None
+MACHINE = None
+MODE = (1024, 768)
+
+# Hands the shell of vm.Vm to the tests when everything that starts with the machine has started.
+SHELL_UNIT = """[Unit]
+Description=Shell of the tests
+After=multi-user.target
+[Service]
+ExecStart=/bin/sh -c 'exec 3<>/dev/virtio-ports/merlin.shell; echo "init: ready" >/dev/ttyS0; exec /bin/sh <&3 >&3 2>&3'
+[Install]
+WantedBy=graphical.target multi-user.target
+"""
+
+
+# An emulated machine takes seconds for what the watchdogs of the units allow 5 s for.
+SLOW = "[Service]\nWatchdogSec=120\n"
+
+
+def dependencies(package):
+    """Names of the packages that it depends on: of alternatives the first one."""
+    field = subprocess.run(["dpkg-deb", "--field", package, "Depends"], check=True, capture_output=True, text=True)
+    return [entry.split("|")[0].split("(")[0].strip() for entry in field.stdout.split(",")]
+
+
+def make_debian(folder, package):
+    """A Debian 12 with systemd and what `package` depends on."""
+    if os.path.exists(f"{folder}/made"):
+        return
+    if shutil.which("debootstrap") is None or os.geteuid() != 0:
+        raise vm.Missing("debootstrap is not there, or this is not root")
+    shutil.rmtree(folder, ignore_errors=True)
+    subprocess.run(["debootstrap", "--variant=minbase", "--include=systemd,systemd-sysv,udev,dbus,procps", "bookworm",
+                    f"{folder}/root"], check=True, stdout=subprocess.DEVNULL)
+    for name in glob.glob("/etc/apt/apt.conf.d/*"):  # a proxy
+        shutil.copy(name, f"{folder}/root/etc/apt/apt.conf.d/")
+    with open(f"{folder}/root/usr/sbin/policy-rc.d", "w", encoding="utf-8") as file:
+        file.write("#!/bin/sh\nexit 101\n")  # nothing is started here
+    os.chmod(f"{folder}/root/usr/sbin/policy-rc.d", 0o755)
+    subprocess.run(["chroot", f"{folder}/root", "env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "install", "-qy",
+                    "--no-install-recommends", *dependencies(package)], check=True, stdout=subprocess.DEVNULL)
+    os.unlink(f"{folder}/root/usr/sbin/policy-rc.d")
+    open(f"{folder}/made", "w", encoding="utf-8").close()
+
+
+def setUpModule():
+    global MACHINE
+    package = glob.glob(f"{OPTIONS.packages}/merlin_*.deb")[0]
+    root = f"{OPTIONS.work}/package-root"
+    try:
+        make_debian(f"{OPTIONS.work}/debian", package)
+        shutil.rmtree(root, ignore_errors=True)
+        subprocess.run(["cp", "-a", "--reflink=auto", f"{OPTIONS.work}/debian/root", root], check=True)
+        units = f"{root}/etc/systemd/system"
+        with open(f"{units}/vm-shell.service", "w", encoding="utf-8") as file:
+            file.write(SHELL_UNIT)
+        os.makedirs(f"{units}/multi-user.target.wants", exist_ok=True)
+        os.symlink("../vm-shell.service", f"{units}/multi-user.target.wants/vm-shell.service")
+        for unit in ("merlind", "merlin-page"):
+            os.makedirs(f"{units}/{unit}.service.d")
+            with open(f"{units}/{unit}.service.d/slow.conf", "w", encoding="utf-8") as file:
+                file.write(SLOW)
+        MACHINE = vm.Vm(f"{OPTIONS.work}/package-machine", f"{MODE[0]}x{MODE[1]}", root=root)
+    except vm.Missing as missing:
+        print(f"test-vm-package: skipped: {missing}")
+        raise unittest.SkipTest(str(missing)) from missing
+    shutil.copy(package, f"{MACHINE.shared}/merlin.deb")
+
+
+def tearDownModule():
+    if MACHINE:
+        MACHINE.close()
+
+
+def state(unit):
+    """What systemd says of it: "active", "inactive" ..."""
+    return MACHINE.run(f"systemctl is-active {unit}", succeeds=False).strip()
+
+
+def since(event):
+    """When merlind last was in a state, "ActiveEnter" (READY) or "InactiveEnter" [s]."""
+    return int(MACHINE.run(f"systemctl show -p {event}TimestampMonotonic --value merlind")) / 1e6
+
+
+def status():
+    return json.loads(MACHINE.run("merlin status --json"))
+
+
+def lit(picture):
+    """Share of the picture that is not dark: the background's channels are below 32."""
+    width, height, data = picture
+    return sum(1 for i in range(0, len(data), 3) if max(data[i:i + 3]) > 48) / (width * height)
+
+
+class Package(unittest.TestCase):
+    """In the order of an administrator's: the names are sorted."""
+
+    def test_1_installed_it_is_neither_enabled_nor_started(self):
+        MACHINE.run("apt-get install -qy --no-install-recommends /mnt/merlin.deb")
+        self.assertEqual(MACHINE.run("systemctl is-enabled merlin.target", succeeds=False).strip(), "disabled")
+        for unit in ("merlin.target", "merlind", "merlin-page"):
+            self.assertEqual(state(unit), "inactive", unit)
+        self.assertIn("merlin", MACHINE.run("stat -c %U /var/lib/merlin"))
+
+    def test_2_started_it_shows_the_model_on_every_display_without_an_alarm(self):
+        begin = time.monotonic()
+        MACHINE.run("systemctl start merlin.target merlind || { journalctl -u merlind --no-pager | tail -n 30; false; }")
+        print(f"from systemctl start to READY {time.monotonic() - begin:.1f} s")
+        self.assertEqual([state(u) for u in ("merlin.target", "merlind", "merlin-page")], ["active"] * 3)
+        print(MACHINE.run("merlin status"))
+        until = time.monotonic() + vm.DEADLINE_S
+        shown = []
+        while time.monotonic() < until:  # a picture follows READY by a frame
+            shown = [lit(MACHINE.screendump(head)) for head in range(vm.HEADS)]
+            if min(shown) > 0.03 and status()["playlist"] == "running":
+                break
+        print("share of each display that is lit:", ", ".join(f"{share:.2f}" for share in shown))
+        self.assertGreater(min(shown), 0.03)
+        self.assertEqual(status()["playlist"], "running")
+        self.assertEqual(MACHINE.run("journalctl -u merlind -p warning -o cat --no-pager"), "")
+        before = MACHINE.screendump(0)
+        while MACHINE.screendump(0) == before and time.monotonic() < until:
+            pass
+        self.assertNotEqual(MACHINE.screendump(0), before, "the model does not turn")
+
+    def test_3_an_upgrade_restarts_the_wall_and_keeps_the_configuration(self):
+        pid = MACHINE.run("systemctl show -p MainPID --value merlind")
+        MACHINE.run("sed -i 's/\"rate_hz\": 30/\"rate_hz\": 12/' /etc/merlin/merlin.json; echo x >/var/lib/merlin/mine")
+        begin = time.monotonic()
+        MACHINE.run("dpkg -i --force-confold /mnt/merlin.deb")
+        print(f"upgrade of a running wall {time.monotonic() - begin:.1f} s, of which it was down "
+              f"{since('ActiveEnter') - since('InactiveEnter'):.1f} s")
+        self.assertNotEqual(MACHINE.run("systemctl show -p MainPID --value merlind"), pid)
+        self.assertEqual(state("merlind"), "active")
+        self.assertEqual(status()["rate_asked"], 12)
+        MACHINE.run("test -e /var/lib/merlin/mine")
+
+    def test_4_removal_stops_it_and_keeps_configuration_and_state(self):
+        MACHINE.run("dpkg --remove merlin")
+        self.assertIn(state("merlind"), ("inactive", "unknown"))
+        MACHINE.run("test -e /var/lib/merlin/mine && grep -q 12 /etc/merlin/merlin.json && test ! -e /usr/bin/merlind")
+
+    def test_5_purge_leaves_no_file(self):
+        MACHINE.run("dpkg --purge merlin")
+        left = MACHINE.run("find / -xdev -name '*merlin*' ! -path '/proc/*' ! -path '/mnt/*'; ls -d /run/merlin* /dev/shm/merlin*",
+                           succeeds=False)
+        self.assertEqual([line for line in left.splitlines() if line.startswith("/")], [])
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--packages", required=True, help="folder of the packages")
+    parser.add_argument("--work", required=True, help="folder for the machine's files")
+    OPTIONS, rest = parser.parse_known_args()
+    OPTIONS.work = os.path.abspath(OPTIONS.work)
+    unittest.main(argv=["package_test.py", *rest], failfast=True)
