@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "daemon/base/files.h"
+#include "daemon/base/printable_text.h"
 #include "daemon/cli/import_child.h"
 #include "daemon/cli/progress.h"
 #include "daemon/cli/stop_signals.h"
@@ -44,9 +45,6 @@ class HeldSignals {
   UniqueFd stop_;
 };
 
-// A second of CPU time for each of so many bytes; libraries take a tenth of it and less.
-constexpr std::uint64_t kBytesPerSecond = 100'000;
-
 Error named(const ForeignFile& file, const Error& error) {
   if (error.what.starts_with(file.input + ":") || error.code == Errc::kClosed) return error;
   return {error.code, file.input + ": " + error.what};
@@ -60,7 +58,7 @@ std::vector<std::string> argumentsFor(const ForeignFile& file, const std::string
                                         "--memory",
                                         std::to_string(file.memory_bytes),
                                         "--cpu",
-                                        std::to_string(60 + bytes / kBytesPerSecond)};
+                                        std::to_string(60 + bytes / file.bytes_per_second)};
   arguments.insert(arguments.end(), file.options.begin(), file.options.end());
   return arguments;
 }
@@ -98,7 +96,7 @@ Result<ForeignReport> importInto(const ForeignFile& file, const std::string& fol
   if (!stamp) return Error{Errc::kNotFound, file.input + ": is not a file"};
   auto child = ImportChild::start(argumentsFor(file, folder, stamp->size));
   if (!child) return child.error();
-  const auto name = follow(*child, stop, patienceFor(stamp->size));
+  const auto name = follow(*child, stop, patienceFor(stamp->size, file.bytes_per_second));
   if (!name) return named(file, name.error());
   const ImportReport& said = child->report();
   ForeignReport report{nlohmann::json::parse(said.facts(), nullptr, false), said.notes()};
@@ -112,10 +110,26 @@ Result<ForeignReport> importInto(const ForeignFile& file, const std::string& fol
 
 }  // namespace
 
-Duration patienceFor(std::uint64_t bytes) noexcept {
+std::optional<std::size_t> ForeignReport::count(const char* key) const {
+  const auto found = facts.find(key);
+  if (found == facts.end() || !found->is_number_unsigned()) return std::nullopt;
+  return found->get<std::size_t>();
+}
+
+double ForeignReport::number(const char* key) const {
+  const auto found = facts.find(key);
+  return found != facts.end() && found->is_number() ? found->get<double>() : 0;
+}
+
+std::string ForeignReport::text(const char* key) const {
+  const auto found = facts.find(key);
+  return found != facts.end() && found->is_string() ? oneLine(found->get<std::string>()) : "";
+}
+
+Duration patienceFor(std::uint64_t bytes, std::uint64_t bytes_per_second) noexcept {
   constexpr std::uint64_t kMost = std::uint64_t{1} << 44;  // of a file [bytes]
   return ImportChild::kPatience +
-         std::chrono::seconds(static_cast<long>(std::min(bytes, kMost) / (10 * kBytesPerSecond)));
+         std::chrono::seconds(static_cast<long>(std::min(bytes, kMost) / (10 * bytes_per_second)));
 }
 
 Result<ForeignReport> importForeign(const ForeignFile& file,

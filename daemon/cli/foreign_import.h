@@ -1,8 +1,10 @@
 // Has the program merlin-import read a file of another program's format, and takes its result.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,12 +21,18 @@ struct ForeignFile {
   std::string output;                // of the command; the work folder lies beside it meanwhile
   std::vector<std::string> options;  // further arguments of merlin-import
   std::uint64_t memory_bytes = 0;    // that merlin-import may take
+  // A second of CPU time for each of so many bytes; most libraries take a tenth of it and less.
+  std::uint64_t bytes_per_second = 100'000;
 };
 
 // What merlin-import said. All of it is from a process that read a hostile file.
 struct ForeignReport {
   nlohmann::json facts;            // an object
   std::vector<std::string> notes;  // for the user; also what the sandbox could not do
+
+  std::optional<std::size_t> count(const char* key) const;  // nothing if there is none
+  double number(const char* key) const;                     // else 0
+  std::string text(const char* key) const;                  // one line; else empty
 };
 
 // Starts merlin-import, shows its progress from the third second on, and calls `take` with the path
@@ -35,6 +43,6 @@ Result<ForeignReport> importForeign(const ForeignFile& file,
                                     const std::function<Result<Ok>(const std::string&)>& take);
 
 // How long an import of so many bytes may show no progress, since a library need not report any.
-Duration patienceFor(std::uint64_t bytes) noexcept;
+Duration patienceFor(std::uint64_t bytes, std::uint64_t bytes_per_second) noexcept;
 
 }  // namespace merlin::cli

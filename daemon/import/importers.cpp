@@ -7,6 +7,10 @@
 #include "render/import/model_file.h"
 #include "render/import/vips_pyramid.h"
 #include "render/mesh/io/mesh_file.h"
+#include "render/points/io/cloud_file.h"
+#if defined(MERLIN_POINTS)
+#include "render/import/point_surface.h"
+#endif
 
 namespace merlin::import {
 namespace {
@@ -54,6 +58,55 @@ Result<Imported> importGrid(const Request& request, const Reports& reports) {
   return Imported{name, fmt::format("\"width\": {}, \"height\": {}", made->width, made->height)};
 }
 
+#if defined(MERLIN_POINTS)
+
+Result<Ok> preparePoints(const char* program) { return render::import::preparePoints(program); }
+
+std::string factsOf(const render::points::PointCloud& cloud,
+                    const render::import::PointSurface& surface) {
+  const auto& used = surface.settings;
+  const auto& origin = cloud.origin;
+  return fmt::format(
+      "\"format\": \"{}\", \"points\": {}, \"spacing\": {}, \"depth\": {}, \"neighbours\": {}, "
+      "\"trim\": {}, \"trimmed\": {}, \"normals\": \"{}\", "
+      "\"origin_x\": {}, \"origin_y\": {}, \"origin_z\": {}",
+      cloud.format, cloud.size(), surface.spacing, used.depth, used.neighbours, used.trim,
+      surface.trimmed, surface.normals, origin[0], origin[1], origin[2]);
+}
+
+Result<Imported> importPoints(const Request& request, const Reports& reports) {
+  const std::string name = "model.ply";
+  const auto cloud = render::points::readCloud(request.input);
+  if (!cloud) return cloud.error();
+  const auto surface = render::import::surfaceOf(*cloud, request.surface, reports.progress);
+  if (!surface) return Error{surface.error().code, request.input + ": " + surface.error().what};
+  const render::mesh::Mesh& mesh = surface->mesh;
+  if (const auto valid = validate(mesh); !valid)
+    return Error{valid.error().code, request.input + ": " + valid.error().what};
+  if (const auto may = reports.size(sizeOf(mesh).bytes()); !may) return may.error();
+  const auto written = render::mesh::writeMesh(request.folder + "/" + name, mesh);
+  if (!written) return written.error();
+  for (const auto* notes : {&cloud->notes, &surface->notes}) {
+    for (const std::string& note : *notes) reports.note(note);
+  }
+  return Imported{name, factsOf(*cloud, *surface)};
+}
+
+#else
+
+Result<Ok> preparePoints(const char* /*program*/) { return Ok{}; }
+
+// What can be said of the file is said first.
+Result<Imported> importPoints(const Request& request, const Reports& /*reports*/) {
+  const auto cloud = render::points::readCloud(request.input);
+  if (!cloud) return cloud.error();
+  return Error{Errc::kUnsupported, request.input +
+                                       ": this merlin-import was built without Open3D, which makes "
+                                       "surfaces of points (Debian: libopen3d-dev)"};
+}
+
+#endif
+
 constexpr Importer kImporters[] = {
     {"picture", "a picture of any format that libvips reads, as a tiled pyramid",
      &render::import::prepareImport, &importPicture},
@@ -61,6 +114,8 @@ constexpr Importer kImporters[] = {
      &render::import::prepareModels, &importModel, &filesBeside},
     {"grid", "a range image or an elevation map of FITS or any format that GDAL reads",
      &render::import::prepareGridImport, &importGrid, &render::import::gridHeadersBeside},
+    {"points", "a point cloud (LAS, PCD, PLY, XYZ), as the mesh of a surface through its points",
+     &preparePoints, &importPoints},
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "daemon/base/result.h"
+#include "render/points/surface_guess.h"
 
 namespace merlin::import {
 
@@ -20,6 +21,7 @@ struct Request {
   int quality = 90;
   int tile_px = 256;
   std::string format;  // of a model: ending of the usual name of its format, in lower case
+  render::points::SurfaceSettings surface{};  // of a point cloud
 };
 
 // What an importer tells while it works.

@@ -33,7 +33,8 @@ constexpr Duration kReportEvery = std::chrono::milliseconds(100);
 int usage() {
   printError(
       "usage: merlin-import KIND IN FOLDER [--panorama] [--quality Q] [--tile PX] "
-      "[--format ENDING] [--memory BYTES] [--cpu SECONDS]\n");
+      "[--format ENDING] [--depth N] [--neighbours K] [--trim LENGTH] [--memory BYTES] [--cpu "
+      "SECONDS]\n");
   for (const Importer& importer : importers())
     printError("  {}: {}\n", importer.kind, importer.help);
   printError("For people there are: merlin image import IN -o OUT, merlin mesh import IN -o OUT\n");
@@ -84,6 +85,9 @@ std::optional<Options> parseOptions(int argc, char** argv) {
     const bool good = (name == "--quality" && parse(value, o.request.quality)) ||
                       (name == "--tile" && parse(value, o.request.tile_px)) ||
                       (name == "--format" && parse(value, o.request.format)) ||
+                      (name == "--depth" && parse(value, o.request.surface.depth)) ||
+                      (name == "--neighbours" && parse(value, o.request.surface.neighbours)) ||
+                      (name == "--trim" && parse(value, o.request.surface.trim)) ||
                       (name == "--memory" && parse(value, o.limits.memory_bytes)) ||
                       (name == "--cpu" && parse(value, o.limits.cpu_s));
     if (!good) return std::nullopt;

@@ -1,10 +1,12 @@
-// ./dev bench fuzz-ranges: damaged range files of every kind through our own readers, and what is
-// read through filters and triangulation. Each has to end with a valid mesh or with one sentence
-// that names the file. With the sanitizers.
+// ./dev bench fuzz-ranges: damaged range files and point clouds of every kind through our own
+// readers, and what is read of ranges through filters and triangulation. Each has to end with a
+// valid mesh, with a sound cloud, or with one sentence that names the file. With the sanitizers.
 //
 // The files are synthetic, and small; each gets one to four changes: bytes, digits, pieces that
 // are cut out or doubled, numbers that are too large.
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -18,6 +20,7 @@
 #include "daemon/base/printable_text.h"
 #include "daemon/base/random.h"
 #include "daemon/base/unique_fd.h"
+#include "render/points/io/cloud_file.h"
 #include "render/range/filters.h"
 #include "render/range/geometry.h"
 #include "render/range/io/angle_table.h"
@@ -25,6 +28,7 @@
 #include "render/range/io/range_file.h"
 #include "render/range/triangulate.h"
 #include "tests/bench/figures.h"
+#include "tests/support/clouds.h"
 
 namespace merlin::bench {
 namespace {
@@ -161,9 +165,12 @@ class RangeFuzz {
   // Runs the input of this seed. Returns its fault; empty if it ended well.
   std::string run(std::uint64_t seed) {
     Random random(seed);
-    std::string bytes = good_[random.below(good_.size())];
+    const bool is_cloud = random.below(4) == 0;
+    std::string bytes =
+        is_cloud ? clouds_[random.below(clouds_.size())] : good_[random.below(good_.size())];
     for (std::uint64_t n = random.below(4) + 1; n > 0; --n) change(bytes, random);
     file_.set(bytes);
+    if (is_cloud) return ofCloud();
     if (bytes.starts_with("MERLIN grid"))
       return ofLoaded(range::readGrid(file_.path(), file_.path(), {}));
     switch (random.below(6)) {
@@ -202,6 +209,19 @@ class RangeFuzz {
     return valid ? "" : "not a valid mesh: " + valid.error().what;
   }
 
+  std::string ofCloud() {
+    const auto cloud = render::points::readCloud(file_.path());
+    if (!cloud) return ofError(cloud.error());
+    ++counts["clouds"];
+    const bool finite =
+        std::ranges::all_of(cloud->positions, [](float x) { return std::abs(x) <= 1e18F; });
+    if (cloud->size() == 0 || !finite) return "a cloud without points, or with one far away";
+    for (const auto& f : cloud->features) {
+      if (f.values.size() != cloud->size() * f.dimension) return "a feature of another size";
+    }
+    return {};
+  }
+
   std::string ofTable() {
     range::RangeOptions options;
     options.angle_table = file_.path();
@@ -233,7 +253,7 @@ class RangeFuzz {
     return ofRange(options);
   }
 
-  std::vector<std::string> good_ = goodFiles();
+  std::vector<std::string> good_ = goodFiles(), clouds_ = test::goodClouds();
   MemoryFile file_, range_;
 };
 
@@ -246,7 +266,7 @@ bool fuzz(std::uint64_t seed, std::uint64_t inputs, Report& report) {
     if (!fault.empty() && ++faults <= 10) note(fmt::format("seed {}: {}", seed + i, fault));
   }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
-  for (const char* what : {"meshes", "features", "tables", "refused"}) {
+  for (const char* what : {"meshes", "clouds", "features", "tables", "refused"}) {
     if (subject.counts[what] == 0)
       throw DidNotRun(
           fmt::format("of {} inputs none is one of: {}; --inputs gives more", inputs, what));
@@ -265,7 +285,7 @@ bool fuzz(std::uint64_t seed, std::uint64_t inputs, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("Damaged range files through our own readers");
+  CLI::App app("Damaged range files and point clouds through our own readers");
   std::uint64_t inputs = 10'000'000, seed = 1;
   bool json = false;
   app.add_option("--inputs", inputs, "Number of files");

@@ -33,6 +33,21 @@ class MeshInfo : public testing::Test {
   TempDir dir_;
 };
 
+TEST_F(MeshInfo, APointCloudIsCountedWithoutASurface) {
+  writeText(dir_ / "cloud", "500000.5 1 2 7\n500001 1 2 8\n500001 1 2 9\n500001 5 2 9\n");
+  const auto info = infoOf(dir_ / "cloud");
+  EXPECT_EQ(info["format"], "XYZ text");
+  EXPECT_EQ(info["triangles"], 0);
+  EXPECT_EQ(info["cloud"]["points"], 4);
+  EXPECT_EQ(info["cloud"]["coincident"], 1);
+  EXPECT_EQ(info["cloud"]["origin"], (std::vector<double>{500'000, 0, 0}));
+  EXPECT_EQ(info["box"]["low"], (std::vector<double>{0.5, 1, 2}));
+  EXPECT_EQ(info["box"]["high"], (std::vector<double>{1, 5, 2}));
+  ASSERT_EQ(info["features"].size(), 1U);
+  EXPECT_EQ(info["features"][0]["name"], "intensity");
+  EXPECT_EQ(info["features"][0]["range"], (std::vector<double>{7, 9}));
+}
+
 TEST_F(MeshInfo, AMeshHasHolesAndRanges) {
   const auto info = infoOf(roof());
   EXPECT_EQ(info["format"], "mesh");

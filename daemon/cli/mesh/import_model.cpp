@@ -8,19 +8,15 @@
 namespace merlin::cli {
 namespace {
 
-// A count in what merlin-import said; nothing if there is none.
-std::optional<std::size_t> countIn(const nlohmann::json& facts, const char* key) {
-  const auto found = facts.find(key);
-  if (found == facts.end() || !found->is_number_unsigned()) return std::nullopt;
-  return found->get<std::size_t>();
-}
-
 Result<ImportedModel> loadForeign(const std::string& path, const InputKind& kind,
                                   const ModelLimits& limits) {
   ImportedModel model;
   model.format = kind.format;
-  const ForeignFile file{
-      kind.kind, path, limits.output, {"--format", kind.ending}, limits.memory_bytes};
+  const ForeignFile file =
+      kind.isPoints()
+          ? pointFile(path, limits.output, limits.memory_bytes, limits.surface)
+          : ForeignFile{
+                kind.kind, path, limits.output, {"--format", kind.ending}, limits.memory_bytes};
   auto report = importForeign(file, [&](const std::string& made) -> Result<Ok> {
     auto loaded = render::mesh::readMesh(made);
     if (!loaded)
@@ -30,8 +26,12 @@ Result<ImportedModel> loadForeign(const std::string& path, const InputKind& kind
     return Ok{};
   });
   if (!report) return report.error();
-  model.parts = countIn(report->facts, "parts");
-  model.loaded.tidied.degenerate += countIn(report->facts, "degenerate").value_or(0);
+  model.parts = report->count("parts");
+  if (kind.isPoints()) {
+    model.cloud = pointFactsOf(*report);
+    model.format = report->text("format");
+  }
+  model.loaded.tidied.degenerate += report->count("degenerate").value_or(0);
   model.notes = std::move(report->notes);
   return model;
 }

@@ -1,12 +1,14 @@
-// The steps of `merlin mesh import` from a file of meshes or models to a mesh.
+// The steps of `merlin mesh import` from a file of meshes, models or points to a mesh.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "daemon/base/result.h"
+#include "daemon/cli/mesh/import_points.h"
 #include "daemon/cli/mesh/input_kinds.h"
 #include "render/mesh/io/mesh_file.h"
 
@@ -17,13 +19,15 @@ struct ImportedModel {
   render::mesh::LoadedMesh loaded;
   std::string format = "mesh";
   std::optional<std::size_t> parts{};  // of a foreign format: surfaces that became one mesh
-  std::vector<std::string> notes{};    // already printed
+  std::optional<PointFacts> cloud{};
+  std::vector<std::string> notes{};  // already printed
 };
 
 // Where a foreign format is read meanwhile, and the memory that the reading program may take.
 struct ModelLimits {
   std::string output;
   std::uint64_t memory_bytes = 0;
+  render::points::SurfaceSettings surface{};  // of a point cloud
 };
 
 // Reads by our own readers, or by merlin-import, whose result is then read as any mesh. Adds

@@ -103,6 +103,28 @@ void printTimes(const ImportedFile& written, const ImportTimes& times) {
   printOut(", writing {:.2f}; peak memory {} MB\n", times.writing, peakMemory() >> 20);
 }
 
+nlohmann::ordered_json jsonOf(const PointFacts& cloud) {
+  return {{"points", cloud.points},    {"spacing", cloud.spacing},
+          {"depth", cloud.used.depth}, {"neighbours", cloud.used.neighbours},
+          {"trim", cloud.used.trim},   {"trimmed_triangles", cloud.trimmed},
+          {"normals", cloud.normals},  {"origin", cloud.origin}};
+}
+
+void printCloud(const std::string& format, const PointFacts& cloud) {
+  const auto& origin = cloud.origin;
+  printOut("  read      {}, {} points, {:.6g} apart\n", format, cloud.points, cloud.spacing);
+  if (origin != std::array<double, 3>{})
+    printOut("  origin    the mesh's (0, 0, 0) is at {}, {}, {}\n", origin[0], origin[1],
+             origin[2]);
+  printOut("  normals   {}\n", cloud.normals);
+  if (cloud.used.trim > 0)
+    printOut(
+        "  surface   Poisson, --depth {}; --trim {:.6g} took {} triangles that no point is near\n",
+        cloud.used.depth, cloud.used.trim, cloud.trimmed);
+  else
+    printOut("  surface   Poisson, --depth {}; nothing was trimmed\n", cloud.used.depth);
+}
+
 }  // namespace
 
 void reportRange(const ImportNames& names, const ImportedRange& range, const ImportedFile& written,
@@ -137,6 +159,7 @@ void reportModel(const ImportNames& names, const ImportedModel& model, const Imp
   if (names.json) {
     auto json = jsonOf(names, model.format, written, times);
     if (model.parts) json["parts"] = *model.parts;
+    if (model.cloud) json["cloud"] = jsonOf(*model.cloud);
     json["features"] = nlohmann::ordered_json::array();
     for (const auto& f : mesh.features)
       json["features"].push_back({{"name", f.name}, {"dimension", f.dimension}});
@@ -147,6 +170,7 @@ void reportModel(const ImportNames& names, const ImportedModel& model, const Imp
     return;
   }
   printOut("{}: {} triangles, {} vertices\n", names.output, written.triangles, written.vertices);
+  if (model.cloud) printCloud(model.format, *model.cloud);
   if (model.parts) printOut("  read      {}, {} parts\n", model.format, *model.parts);
   for (const auto& f : mesh.features) printOut("  feature   {} x {}\n", f.name, f.dimension);
   if (!mesh.texture.empty()) printOut("  texture   {} bytes\n", mesh.texture.size());

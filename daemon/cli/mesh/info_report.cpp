@@ -62,6 +62,28 @@ void printSurface(const Inspection& is) {
   }
 }
 
+// What may be odd about the points themselves; "isolated" says nothing of them.
+std::vector<Repair> oddities(const CloudInfo& cloud, const Inspection& is) {
+  return {{"coincident", "points at the place of an earlier one", cloud.coincident},
+          {"normals_not_unit", "normals that are not of length one", is.not_unit}};
+}
+
+nlohmann::ordered_json jsonOf(const CloudInfo& cloud, const Inspection& is) {
+  nlohmann::ordered_json json = {{"points", cloud.points}, {"origin", cloud.origin}};
+  for (const Repair& odd : oddities(cloud, is)) json[odd.key] = odd.count;
+  return json;
+}
+
+void printCloud(const CloudInfo& cloud, const Inspection& is) {
+  const auto& origin = cloud.origin;
+  if (origin != std::array<double, 3>{})
+    printOut("  origin    {}, {}, {}: the box is relative to it\n", origin[0], origin[1],
+             origin[2]);
+  for (const Repair& odd : oddities(cloud, is)) {
+    if (odd.count > 0) printOut("  odd       {} {}\n", odd.count, odd.name);
+  }
+}
+
 void printFeature(const FeatureInfo& f) {
   std::string text =
       fmt::format("{} x {}, {:.6g} to {:.6g}", f.name, f.dimension, f.range.low, f.range.high);
@@ -100,8 +122,10 @@ void printInfoJson(const FileInfo& info) {
                                    {"length", totalLength(is)},
                                    {"longest", is.holes.empty() ? 0 : is.holes.front().length}}},
                                  {"about", info.about}};
-  for (const Repair& odd : oddities(is)) json["odd"][odd.key] = odd.count;
+  if (!info.cloud)
+    for (const Repair& odd : oddities(is)) json["odd"][odd.key] = odd.count;
   if (info.parts) json["parts"] = *info.parts;
+  if (info.cloud) json["cloud"] = jsonOf(*info.cloud, is);
   if (info.image) {
     json["image"] = {{"columns", info.image->width},
                      {"rows", info.image->height},
@@ -114,7 +138,10 @@ void printInfoJson(const FileInfo& info) {
 
 void printInfoText(const FileInfo& info) {
   const render::mesh::Box& box = info.is.box;
-  printOut("{}: {} triangles, {} vertices\n", info.file, info.triangles, info.vertices);
+  if (info.cloud)
+    printOut("{}: {} points\n", info.file, info.cloud->points);
+  else
+    printOut("{}: {} triangles, {} vertices\n", info.file, info.triangles, info.vertices);
   printOut("  format    {}\n", info.format);
   if (const auto& image = info.image) {
     printOut(
@@ -131,6 +158,7 @@ void printInfoText(const FileInfo& info) {
   printOut("  box       {:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}, diagonal {:.6g}\n",
            box.low[0], box.low[1], box.low[2], box.high[0], box.high[1], box.high[2],
            box.diagonal());
+  if (info.cloud) printCloud(*info.cloud, info.is);
   if (info.triangles > 0) printSurface(info.is);
   if (!info.mended.empty()) printOut("  {}\n", info.mended);
   printAbout(info.about);

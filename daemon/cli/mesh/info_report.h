@@ -1,6 +1,7 @@
 // The facts that `merlin mesh info` prints, and how.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -22,6 +23,11 @@ struct ImageInfo {
   std::string geometry;
 };
 
+struct CloudInfo {
+  std::size_t points = 0, coincident = 0;  // coincident: at the place of an earlier one
+  std::array<double, 3> origin{};          // of the file's coordinates; the box is relative to it
+};
+
 struct LevelInfo {
   std::size_t levels = 1, coarsest = 0;  // triangles of the coarsest level
   float error = 0;                       // its estimate [model units]
@@ -32,6 +38,7 @@ struct FileInfo {
   std::string file, format;
   std::size_t triangles = 0, vertices = 0;
   std::optional<ImageInfo> image{};  // of range images and elevation maps
+  std::optional<CloudInfo> cloud{};  // of point clouds
   LevelInfo levels{};
   std::optional<std::size_t> parts{};  // of a foreign format
   std::vector<FeatureInfo> features{};

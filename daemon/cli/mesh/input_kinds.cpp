@@ -6,6 +6,7 @@
 #include "daemon/base/files.h"
 #include "daemon/base/words.h"
 #include "render/mesh/io/mesh_file.h"
+#include "render/points/io/cloud_file.h"
 #include "render/range/io/range_file.h"
 
 namespace merlin::cli {
@@ -155,14 +156,18 @@ std::optional<InputKind> foreignKindOf(std::string_view content) {
 }
 
 std::optional<InputKind> inputKindOf(const std::string& path) {
-  if (render::range::isRangeFile(path)) return InputKind{InputReader::kRange};
-  if (render::mesh::isMeshFile(path)) return InputKind{InputReader::kMesh};
   const auto file = MappedFile::open(path);
   if (!file) return std::nullopt;
+  const auto cloud = render::points::cloudFormatOf(file->text());
+  if (cloud) return InputKind{InputReader::kForeign, kPointsKind, {}, *cloud};
+  if (render::range::isRangeFile(path)) return InputKind{InputReader::kRange};
+  if (render::mesh::isMeshFile(path)) return InputKind{InputReader::kMesh};
   if (auto foreign = foreignKindOf(file->text())) return foreign;
   if (hasHeaderBeside(path))
     return InputKind{InputReader::kForeign, kGridKind, "dem",
                      "a raw grid with its header beside it"};
+  const auto text = render::points::textCloudFormatOf(file->text());
+  if (text) return InputKind{InputReader::kForeign, kPointsKind, {}, *text};
   if (render::mesh::isReadable(path)) return InputKind{InputReader::kMesh};
   return std::nullopt;
 }

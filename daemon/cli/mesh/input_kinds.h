@@ -8,6 +8,7 @@
 namespace merlin::cli {
 
 inline constexpr const char* kGridKind = "grid";  // of merlin-import
+inline constexpr const char* kPointsKind = "points";
 
 enum class InputReader { kRange, kMesh, kForeign };
 
@@ -19,6 +20,7 @@ struct InputKind {
 
   // Whether it becomes a range image or an elevation map, by whichever reader.
   bool isGrid() const { return reader == InputReader::kRange || kind == kGridKind; }
+  bool isPoints() const { return kind == kPointsKind; }
 };
 
 // Reads the file's beginning; the name's ending counts only where the content tells nothing.

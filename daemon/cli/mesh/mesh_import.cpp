@@ -1,5 +1,5 @@
-// merlin mesh import: makes a mesh or a model of a range image, an elevation map, a mesh or a model
-// of any format that is read.
+// merlin mesh import: makes a mesh or a model of a range image, an elevation map, a mesh, a model
+// or a point cloud of any format that is read.
 #include "daemon/cli/mesh/mesh_import.h"
 
 #include <memory>
@@ -21,6 +21,7 @@
 #include "daemon/cli/mesh/reduction_step.h"
 #include "daemon/cli/print.h"
 #include "render/image/image_file.h"
+#include "render/points/io/cloud_file.h"
 
 namespace merlin::cli {
 namespace {
@@ -148,9 +149,10 @@ Result<Ok> importRange(const MeshImport& options, const std::optional<InputKind>
 Result<Ok> checkMeshInput(const MeshImport& options, const std::optional<InputKind>& kind) {
   const std::string option = options.range.anyGiven();
   const std::string& path = options.input();
-  const std::string read = fmt::format("read are {} as range images, {} as meshes, and {}",
-                                       render::range::readableRanges(),
-                                       render::mesh::readableEndings(), foreignFormats());
+  const std::string read =
+      fmt::format("read are {} as range images, {} as meshes, {} as point clouds, and {}",
+                  render::range::readableRanges(), render::mesh::readableEndings(),
+                  render::points::readableClouds(), foreignFormats());
   if (const auto there = checkIsThere(path); !there) return there;
   if (!kind)
     return Error{Errc::kUnsupported, path + ": is of no format that MERLIN reads; " + read};
@@ -167,7 +169,8 @@ Result<Ok> importMesh(const MeshImport& options, const std::optional<InputKind>&
   Stopwatch watch(clock);
   ImportTimes times;
   if (const auto good = checkMeshInput(options, kind); !good) return good.error();
-  auto model = loadModel(options.input(), *kind, {options.output, limitOf(options)});
+  auto model =
+      loadModel(options.input(), *kind, {options.output, limitOf(options), options.points.surface});
   if (!model) return model.error();
   render::mesh::Mesh& mesh = model->loaded.mesh;
   for (float& x : mesh.positions) x = static_cast<float>(x * options.range.scale.value_or(1));
@@ -175,11 +178,21 @@ Result<Ok> importMesh(const MeshImport& options, const std::optional<InputKind>&
     return Error{valid.error().code, options.input() + ": scaled, " + valid.error().what};
   if (const auto added = addTexture(options, mesh); !added) return added.error();
   times.reading = watch.lap();
-  const auto written = writeOutput(options, mesh, {}, times);
+  const std::string about = model->cloud ? aboutPoints(*model->cloud) : "";
+  const auto written = writeOutput(options, mesh, about, times);
   if (!written) return written.error();
   times.writing = watch.lap() - times.reducing;
   if (!options.quiet) reportModel(namesOf(options), *model, *written, times);
   return Ok{};
+}
+
+// Errors: kInvalidArgument (an option for point clouds, of anything else).
+Result<Ok> checkPointOptions(const MeshImport& options, const std::optional<InputKind>& kind) {
+  if (!options.points.anyGiven() || !kind || kind->isPoints()) return Ok{};
+  return Error{
+      Errc::kInvalidArgument,
+      fmt::format("{}: --depth, --neighbours and --trim are for point clouds, which are {}",
+                  options.input(), render::points::readableClouds())};
 }
 
 Result<Ok> checkOptions(MeshImport& options) {
@@ -202,6 +215,7 @@ Result<Ok> importFile(MeshImport& options) {
   if (const auto good = checkOptions(options); !good) return good;
   if (options.range.isRaw()) return importRange(options, {});
   const auto kind = inputKindOf(options.input());
+  if (const auto good = checkPointOptions(options, kind); !good) return good;
   return kind && kind->isGrid() ? importRange(options, kind) : importMesh(options, kind);
 }
 
@@ -212,6 +226,7 @@ void addImportOptions(Command command, MeshImport& options) {
       .positive()
       .typeName("METRES_PER_UNIT");
   options.range.addTo(command);
+  options.points.addTo(command);
   command
       .option("--texture", options.texture,
               "Picture over the whole range image, or of a mesh with texture coordinates; it is "
@@ -225,11 +240,12 @@ void addMeshImport(Command mesh, Run& run) {
   Command command = mesh.subcommand("import",
                                     "Make a mesh, or a model that is ready for the wall (.mrm, "
                                     "reduced), of a range image with its "
-                                    "registered modalities, of an elevation map, of a mesh, or of "
-                                    "a model. The file's content decides what it "
-                                    "is: " +
+                                    "registered modalities, of an elevation map, of a mesh, of a "
+                                    "model, or of a point cloud. The file's content decides what "
+                                    "it is: " +
                                         render::range::readableRanges() + "; meshes are " +
-                                        render::mesh::readableEndings() +
+                                        render::mesh::readableEndings() + "; point clouds are " +
+                                        render::points::readableClouds() +
                                         "; maps and models that the program merlin-import reads in "
                                         "a sandbox are " +
                                         foreignFormats() +

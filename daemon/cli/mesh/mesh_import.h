@@ -7,6 +7,7 @@
 
 #include "daemon/base/result.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/mesh/import_points.h"
 #include "daemon/cli/mesh/import_range.h"
 #include "daemon/cli/progress.h"
 
@@ -16,6 +17,7 @@ struct MeshImport {
   std::vector<std::string> inputs;  // one
   std::string output, texture;
   RangeImport range;
+  PointImport points;
   std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
   unsigned threads = 0;      // 0: all cores
   bool json = false;

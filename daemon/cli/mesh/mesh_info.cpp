@@ -1,4 +1,5 @@
-// merlin mesh info: prints what is in a file that MERLIN reads as a mesh, a model or a range image.
+// merlin mesh info: prints what is in a file that MERLIN reads as a mesh, a model, a range image or
+// a point cloud.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -16,6 +17,8 @@
 #include "daemon/cli/mesh/late_bar.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/print.h"
+#include "render/mesh/coincident.h"
+#include "render/points/io/cloud_file.h"
 
 namespace merlin::cli {
 namespace {
@@ -98,6 +101,24 @@ Result<FileInfo> infoOfForeign(const std::string& path, const InputKind& kind) {
   return info;
 }
 
+// The points themselves: no surface is made.
+Result<FileInfo> infoOfPoints(const std::string& path) {
+  auto cloud = render::points::readCloud(path);
+  if (!cloud) return cloud.error();
+  for (const std::string& note : cloud->notes) printNote(path + ": " + note);
+  const auto next = render::mesh::coincidentVertices(cloud->positions);
+  std::size_t places = 0;  // the last point of a ring leads to its first
+  for (std::uint32_t p = 0; p < next.size(); ++p) places += next[p] <= p;
+  FileInfo info{path, cloud->format};
+  info.cloud = CloudInfo{cloud->size(), cloud->size() - places, cloud->origin};
+  render::mesh::Mesh points;
+  points.positions = std::move(cloud->positions);
+  points.features = std::move(cloud->features);
+  info.is = render::mesh::inspect(points);
+  addFeatures(points, info);
+  return info;
+}
+
 void addPlanes(const ImportedRange& range, FileInfo& info) {
   for (const render::range::Plane& plane : range.image.planes) {
     render::mesh::Feature at_returns{plane.name, plane.dimension, {}};
@@ -139,6 +160,7 @@ Result<FileInfo> infoOf(const InfoOptions& options) {
   if (!option.empty())
     return Error{Errc::kInvalidArgument,
                  fmt::format("{}: {} is for range images", options.file, option)};
+  if (kind && kind->isPoints()) return infoOfPoints(options.file);
   if (options.file.ends_with(".mrm")) return infoOfModel(options.file);
   return kind && kind->reader == InputReader::kForeign ? infoOfForeign(options.file, *kind)
                                                        : infoOfMesh(options.file);
@@ -157,8 +179,9 @@ void addMeshInfo(Command mesh, Run& run) {
   const auto options = std::make_shared<InfoOptions>();
   Command command = mesh.subcommand(
       "info",
-      "Show what is in a model, a mesh, a range image, an elevation map, or a model of another "
-      "program, whatever merlin mesh import reads: sizes, the box around it, features with their "
+      "Show what is in a model, a mesh, a range image, an elevation map, a point cloud, or a model "
+      "of another program, whatever merlin mesh import reads: sizes, the box around it, features "
+      "with their "
       "ranges, connected parts, holes with the length of their borders, what is odd, and the "
       "repairs that reading needed. Vertices at one place count as one for parts and holes. "
       "Nothing is written."

@@ -80,8 +80,8 @@ Result<PcdImage> parsePcd(std::string_view bytes) {
   if (!header) return header.error();
   if (header->height == 1)
     return Error{Errc::kUnsupported,
-                 fmt::format("its {} points are not organised in rows and columns (HEIGHT 1); a "
-                             "surface from points without order is not read yet",
+                 fmt::format("its {} points are not organised in rows and columns (HEIGHT 1), as a "
+                             "range image is; merlin mesh import makes a surface of such points",
                              header->points)};
   const auto values = readPcdBody(bytes, *header);
   if (!values) return values.error();

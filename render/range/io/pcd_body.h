@@ -1,4 +1,4 @@
-// The header and the numbers of a PCD file. Private to render/range/io.
+// The header and the numbers of a PCD file. Private to render/range/io and render/points/io.
 #pragma once
 
 #include <array>

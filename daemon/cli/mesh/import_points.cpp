@@ -1,0 +1,71 @@
+#include "daemon/cli/mesh/import_points.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "daemon/cli/mesh/input_kinds.h"
+
+namespace merlin::cli {
+
+void PointImport::addTo(Command command) {
+  using namespace render::points;
+  arguments_.push_back(
+      command
+          .option("--depth", surface.depth,
+                  "Of a point cloud: depth of the octree of its surface (Poisson reconstruction); "
+                  "guessed from the points' spacing; where there are too few points for it, cells "
+                  "stay larger")
+          .range(kLeastDepth, kMostDepth)
+          .typeName("N"));
+  arguments_.push_back(
+      command
+          .option("--neighbours", surface.neighbours,
+                  "Of a point cloud: neighbours of a point that make its normal; guessed: 16")
+          .range(kLeastNeighbours, kMostNeighbours)
+          .typeName("K"));
+  arguments_.push_back(
+      command
+          .option("--trim", surface.trim,
+                  "Of a point cloud: greatest distance of the surface from the nearest point, in "
+                  "the file's unit; with 0 nothing is trimmed, and the surface closes over gaps; "
+                  "guessed from the points' spacing")
+          .nonNegative()
+          .typeName("LENGTH"));
+}
+
+bool PointImport::anyGiven() const { return std::ranges::any_of(arguments_, &Argument::isGiven); }
+
+ForeignFile pointFile(const std::string& input, const std::string& output,
+                      std::uint64_t memory_bytes, const render::points::SurfaceSettings& settings) {
+  constexpr std::uint64_t kBytesPerSecond = 2'000;  // a tenth and less of what was measured
+  return {kPointsKind,
+          input,
+          output,
+          {"--depth", std::to_string(settings.depth), "--neighbours",
+           std::to_string(settings.neighbours), "--trim", fmt::format("{}", settings.trim)},
+          memory_bytes,
+          kBytesPerSecond};
+}
+
+PointFacts pointFactsOf(const ForeignReport& report) {
+  PointFacts cloud;
+  cloud.points = report.count("points").value_or(0);
+  cloud.trimmed = report.count("trimmed").value_or(0);
+  cloud.used = {static_cast<int>(std::clamp(report.number("depth"), 0.0, 99.0)),
+                static_cast<int>(std::clamp(report.number("neighbours"), 0.0, 999.0)),
+                report.number("trim")};
+  cloud.spacing = report.number("spacing");
+  cloud.normals = report.text("normals");
+  const char* axes[] = {"origin_x", "origin_y", "origin_z"};
+  for (std::size_t k = 0; k < 3; ++k) cloud.origin[k] = report.number(axes[k]);
+  return cloud;
+}
+
+std::string aboutPoints(const PointFacts& cloud) {
+  const auto& origin = cloud.origin;
+  if (origin == std::array<double, 3>{}) return {};
+  return fmt::format("points.origin={} {} {}\n", origin[0], origin[1], origin[2]);
+}
+
+}  // namespace merlin::cli

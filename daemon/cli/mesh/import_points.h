@@ -1,0 +1,48 @@
+// Point clouds for `merlin mesh import`: the options that are about them, and how their surface was
+// made.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "daemon/cli/arguments.h"
+#include "daemon/cli/foreign_import.h"
+#include "render/points/surface_guess.h"
+
+namespace merlin::cli {
+
+// The options that are about point clouds.
+class PointImport {
+ public:
+  void addTo(Command command);
+  bool anyGiven() const;
+
+  render::points::SurfaceSettings surface;
+
+ private:
+  std::vector<Argument> arguments_;
+};
+
+// How the surface of a point cloud was made.
+struct PointFacts {
+  std::size_t points = 0, trimmed = 0;  // triangles that were too far from all points
+  render::points::SurfaceSettings used;
+  double spacing = 0;              // median distance to the fourth neighbour [the file's unit]
+  std::string normals;             // where they come from, for a person
+  std::array<double, 3> origin{};  // of the file's coordinates; the mesh is relative to it
+};
+
+// The file for importForeign(), with the surface's settings and the time that a surface takes.
+ForeignFile pointFile(const std::string& input, const std::string& output,
+                      std::uint64_t memory_bytes, const render::points::SurfaceSettings& settings);
+
+// What merlin-import said of a point cloud; what it did not say is 0 or empty.
+PointFacts pointFactsOf(const ForeignReport& report);
+
+// The mesh's (0, 0, 0) in the file's coordinates, for the model's text "about"; empty where it is
+// the same.
+std::string aboutPoints(const PointFacts& cloud);
+
+}  // namespace merlin::cli

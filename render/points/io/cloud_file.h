@@ -1,0 +1,39 @@
+// Reads point clouds; a file's content decides what it is, not its ending.
+//
+//   LAS    1.2 to 1.4, point formats 0 to 10; LAZ is refused, with the command that converts it
+//   PCD    points without rows and columns; ascii, binary, binary_compressed
+//   PLY    without faces; ascii, both byte orders
+//   XYZ    text: x y z, with an intensity, a colour or a normal
+//   E57    is refused, with the command that converts it
+//
+// Everything in a file is hostile until it has been checked. Nothing throws, nothing is printed.
+// Reentrant.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "daemon/base/result.h"
+#include "render/points/point_cloud.h"
+
+namespace merlin::render::points {
+
+// The format of a cloud that begins like this: "LAS", "PCD", ...; E57 as well, which is refused
+// with the way out when it is read. Nothing for any other file.
+std::optional<std::string> cloudFormatOf(std::string_view bytes);
+
+// Of a text without any mark, which other readers are asked about first: "XYZ", or nothing.
+std::optional<std::string> textCloudFormatOf(std::string_view bytes);
+
+// The formats, for messages and help.
+std::string readableClouds();
+
+// `bytes` is a whole file. At least one point is returned, and all are finite. Errors, with the
+// place: kMalformed, kUnsupported.
+Result<PointCloud> parseCloud(std::string_view bytes);
+
+// As parseCloud(). Errors: with the file's name; kNotFound, kIo.
+Result<PointCloud> readCloud(const std::string& path);
+
+}  // namespace merlin::render::points

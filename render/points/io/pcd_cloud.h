@@ -1,0 +1,20 @@
+// PCD files whose points are in no rows and columns, as a point cloud; the header and the numbers
+// are read by render/range/io/pcd_body.
+#pragma once
+
+#include <string_view>
+
+#include "daemon/base/result.h"
+#include "render/points/point_cloud.h"
+
+namespace merlin::render::points {
+
+// Whether the bytes begin a PCD file of HEIGHT 1.
+bool isPcdCloud(std::string_view bytes);
+
+// rgb or rgba becomes "colour", normal_x, normal_y and normal_z become "normal", any other field
+// but "_" a feature of its name. The viewpoint is used unless it is the format's default, 0 0 0.
+// Errors: those of parsePcdHeader() and readPcdBody(); kMalformed (no x, y or z).
+Result<PointCloud> parsePcdCloud(std::string_view bytes);
+
+}  // namespace merlin::render::points

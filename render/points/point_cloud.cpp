@@ -1,0 +1,70 @@
+#include "render/points/point_cloud.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace merlin::render::points {
+namespace {
+
+constexpr float kFarthestPoint = 1e18F;
+
+bool isPoint(const float* p) {
+  return std::all_of(p, p + 3, [](float x) { return std::abs(x) <= kFarthestPoint; });
+}
+
+// Moves the rows of `kept` points to the front, in order.
+void keepRows(const std::vector<bool>& kept, std::size_t dimension, std::vector<float>& values) {
+  std::size_t to = 0;
+  for (std::size_t p = 0; p < kept.size(); ++p) {
+    if (!kept[p]) continue;
+    for (std::size_t k = 0; k < dimension; ++k) values[to++] = values[p * dimension + k];
+  }
+  values.resize(to);
+}
+
+}  // namespace
+
+const mesh::Feature* PointCloud::find(std::string_view name) const noexcept {
+  const auto found = std::ranges::find(features, name, &mesh::Feature::name);
+  return found == features.end() ? nullptr : &*found;
+}
+
+std::array<double, 3> originNear(const std::array<double, 3>& point) noexcept {
+  constexpr double kNear = 1e4;
+  std::array<double, 3> origin{};
+  for (std::size_t k = 0; k < 3; ++k)
+    if (std::isfinite(point[k]) && std::abs(point[k]) >= kNear) origin[k] = std::floor(point[k]);
+  return origin;
+}
+
+Result<Ok> keepFinite(PointCloud& cloud) {
+  const std::size_t points = cloud.size();
+  std::vector<bool> kept(points);
+  for (std::size_t p = 0; p < points; ++p) kept[p] = isPoint(&cloud.positions[3 * p]);
+  const auto left = static_cast<std::size_t>(std::count(kept.begin(), kept.end(), true));
+  if (left == 0)
+    return Error{Errc::kMalformed,
+                 fmt::format("has {} points, none with finite coordinates", points)};
+  if (left < points) {
+    keepRows(kept, 3, cloud.positions);
+    for (mesh::Feature& f : cloud.features) keepRows(kept, f.dimension, f.values);
+    cloud.notes.push_back(
+        fmt::format("{} points without finite coordinates are left out", points - left));
+  }
+  std::size_t replaced = 0;
+  for (mesh::Feature& f : cloud.features) {
+    for (float& value : f.values) {
+      if (std::isfinite(value)) continue;
+      value = 0;
+      ++replaced;
+    }
+  }
+  if (replaced > 0)
+    cloud.notes.push_back(
+        fmt::format("{} values of features were not numbers; 0 stands there", replaced));
+  return Ok{};
+}
+
+}  // namespace merlin::render::points

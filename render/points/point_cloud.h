@@ -1,0 +1,47 @@
+// PointCloud: points without triangles, with any number of named features. Flat arrays.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/base/result.h"
+#include "render/mesh/mesh.h"
+
+namespace merlin::render::points {
+
+inline constexpr std::size_t kMostPoints = std::size_t{1} << 28;
+
+// Where the scanner was, which tells the outer side of the surface.
+enum class Side {
+  kUnknown,
+  kViewpoint,  // at PointCloud::viewpoint
+  kAbove       // an aircraft: the surface is seen from +z
+};
+
+struct PointCloud {
+  std::array<double, 3> origin{};  // of the file's coordinates; positions are relative to it
+  std::vector<float> positions;    // points x 3, the file's unit
+  // As of a mesh: "normal" (3), "colour" (3, 0..1), "label" (a classification); others are data.
+  std::vector<mesh::Feature> features;
+  Side side = Side::kUnknown;
+  std::array<float, 3> viewpoint{};  // relative to the origin
+  std::string format;                // "LAS 1.4", ...
+  std::vector<std::string> notes;    // for the user: what was left out or assumed
+
+  std::size_t size() const noexcept { return positions.size() / 3; }
+  const mesh::Feature* find(std::string_view name) const noexcept;  // nullptr if there is none
+};
+
+// The origin for a cloud with this point: a coordinate of 10^4 and more is moved by its whole part,
+// since a float keeps seven digits; any other axis keeps its zero.
+std::array<double, 3> originNear(const std::array<double, 3>& point) noexcept;
+
+// Removes points whose coordinates are not finite or beyond 10^18, and notes how many; features
+// that are no number become 0, and are noted. Order is kept. Errors: kMalformed (no point is left).
+// REQUIRES: every feature has a value for every point.
+Result<Ok> keepFinite(PointCloud& cloud);
+
+}  // namespace merlin::render::points
