@@ -246,8 +246,7 @@ TEST_F(BadInput, MeshesThatCannotBeCompared) {
 TEST_F(BadInput, MeshCommands) {
   writeText(dir_ / "empty.ply", "");
   writeText(dir_ / "a.xyz", "");
-  expectOutcome(run({kMerlin, "mesh", "info", dir_ / "none.ply"}), 2,
-                {"none.ply: does not exist"});
+  expectOutcome(run({kMerlin, "mesh", "info", dir_ / "none.ply"}), 2, {"none.ply: does not exist"});
   expectOutcome(run({kMerlin, "mesh", "info", dir_ / "empty.ply"}), 2,
                 {"empty.ply: line 1: a PLY file starts with"});
   expectOutcome(run({kMerlin, "mesh", "info", dir_ / "a.xyz"}), 2,
