@@ -32,7 +32,10 @@ bool makeForGroup(const std::string& folder) {
 // Of the files in a folder of slides; links are not followed.
 std::uint64_t bytesIn(const fs::directory_entry& entry) {
   std::error_code error;
-  if (entry.symlink_status(error).type() == fs::file_type::regular) return entry.file_size(error);
+  if (entry.symlink_status(error).type() == fs::file_type::regular) {
+    const std::uintmax_t size = entry.file_size(error);
+    return error ? 0 : size;  // gone meanwhile
+  }
   if (entry.symlink_status(error).type() != fs::file_type::directory) return 0;
   std::uint64_t bytes = 0;
   for (fs::directory_iterator it(entry.path(), error), end; !error && it != end;
