@@ -93,6 +93,7 @@ class PyramidReader {
   explicit PyramidReader(std::shared_ptr<const PyramidFile> file);
   PyramidReader(const PyramidReader&) = delete;
   PyramidReader& operator=(const PyramidReader&) = delete;
+  ~PyramidReader() = default;
 
   // Reads one tile of kTileSide as RGBA, rows from top to bottom; beyond the level's right and
   // lower edge the edge's pixels are repeated. A tile that the file leaves out (offset and size 0)
