@@ -44,20 +44,26 @@ struct ShowOptions {
 
 constexpr Duration kLook = std::chrono::milliseconds(5);
 
-// What became of a request, once the wall says and has shown another frame; nothing before the end
-// of the time to wait.
+// What became of a request, once the wall says and has shown another frame, or a period later is at
+// rest with all its detail: who looks late sees no other frame. Nothing before the end of the time
+// to wait.
 std::optional<shm::WallContent> awaitDone(const ShowOptions& options, std::uint32_t request) {
   const auto segment =
       shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(options.instance, "wall"));
   SystemClock clock;
   const Timestamp until = clock.now() + fromSeconds(options.wait_s);
   std::optional<std::uint64_t> frame;
+  std::int64_t said_ns = 0;
   for (; segment && clock.now() < until; clock.sleepUntil(clock.now() + kLook, {})) {
     const auto content = (*segment)->content.read();
     const auto stats = (*segment)->stats.read();
     if (!content || !stats || content->finished < request) continue;
-    if (!frame) frame = stats->frames;
-    if (content->refused[0] != '\0' || stats->frames > *frame) return content;
+    if (!frame) {
+      frame = stats->frames;
+      said_ns = content->updated_ns;
+    }
+    const bool at_rest = stats->full_detail != 0 && stats->updated_ns > said_ns;
+    if (content->refused[0] != '\0' || stats->frames > *frame || at_rest) return content;
   }
   return std::nullopt;
 }
