@@ -24,27 +24,13 @@ std::vector<const PcdValues*> three(const PcdHeader& header, const std::vector<P
                                     const std::string_view (&names)[3]) {
   std::vector<const PcdValues*> found;
   for (const std::string_view name : names) {
-    const auto field = std::ranges::find_if(
-        header.fields, [name](const PcdField& f) { return f.name == name && f.count == 1; });
-    if (field != header.fields.end())
-      found.push_back(&values[static_cast<std::size_t>(field - header.fields.begin())]);
+    if (const PcdValues* field = range::findField(header, values, name)) found.push_back(field);
   }
   return found;
 }
 
 bool isAmong(const std::string_view (&names)[3], const std::string& name) {
   return std::find(std::begin(names), std::end(names), name) != std::end(names);
-}
-
-mesh::Feature colourOf(const PcdValues& packed) {
-  mesh::Feature colour{"colour", 3, {}};
-  colour.values.reserve(3 * packed.size());
-  for (const double value : packed) {
-    const auto bits = static_cast<std::uint32_t>(value);
-    for (const unsigned shift : {16U, 8U, 0U})
-      colour.values.push_back(static_cast<float>(bits >> shift & 0xFF) / 255);
-  }
-  return colour;
 }
 
 mesh::Feature normalOf(const std::vector<const PcdValues*>& axes) {
@@ -68,7 +54,7 @@ void addFeatures(const PcdHeader& header, const std::vector<PcdValues>& values, 
     if (cloud.find(name) || (!packed && (name == "colour" || name == "normal"))) {
       cloud.notes.push_back(fmt::format("the field {} is left out", oneLine(field.name)));
     } else if (packed) {
-      cloud.features.push_back(colourOf(values[f]));
+      cloud.features.push_back({"colour", 3, range::unpackedColour(values[f])});
     } else {
       cloud.features.push_back({name, field.count, {values[f].begin(), values[f].end()}});
     }

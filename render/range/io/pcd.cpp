@@ -14,25 +14,6 @@ namespace {
 
 constexpr const char* kLeftOut[] = {"_", "x", "y", "z", "normal_x", "normal_y", "normal_z"};
 
-const PcdValues* find(const PcdHeader& header, const std::vector<PcdValues>& values,
-                      std::string_view name) {
-  for (std::size_t f = 0; f < values.size(); ++f) {
-    if (header.fields[f].name == name && header.fields[f].count == 1) return &values[f];
-  }
-  return nullptr;
-}
-
-Plane colourPlane(const PcdValues& packed) {
-  Plane plane{"colour", 3, {}, "", 0, 1};
-  plane.values.reserve(3 * packed.size());
-  for (const double value : packed) {
-    const auto bits = static_cast<std::uint32_t>(value);
-    for (const unsigned shift : {16U, 8U, 0U})
-      plane.values.push_back(static_cast<float>(bits >> shift & 0xFF) / 255);
-  }
-  return plane;
-}
-
 void addPlanes(const PcdHeader& header, const std::vector<PcdValues>& values, PcdImage& pcd) {
   for (std::size_t f = 0; f < values.size(); ++f) {
     const PcdField& field = header.fields[f];
@@ -45,7 +26,7 @@ void addPlanes(const PcdHeader& header, const std::vector<PcdValues>& values, Pc
       continue;
     }
     if (name == "colour" && isPackedColour(field))
-      pcd.image.planes.push_back(colourPlane(values[f]));
+      pcd.image.planes.push_back({"colour", 3, unpackedColour(values[f]), "", 0, 1});
     else
       pcd.image.planes.push_back({name, field.count, {values[f].begin(), values[f].end()}});
   }
@@ -85,9 +66,9 @@ Result<PcdImage> parsePcd(std::string_view bytes) {
                              header->points)};
   const auto values = readPcdBody(bytes, *header);
   if (!values) return values.error();
-  const PcdValues* x = find(*header, *values, "x");
-  const PcdValues* y = find(*header, *values, "y");
-  const PcdValues* z = find(*header, *values, "z");
+  const PcdValues* x = findField(*header, *values, "x");
+  const PcdValues* y = findField(*header, *values, "y");
+  const PcdValues* z = findField(*header, *values, "z");
   if (!x || !y || !z) return Error{Errc::kMalformed, "has no fields x, y and z"};
   PcdImage pcd;
   pcd.image.width = header->width;

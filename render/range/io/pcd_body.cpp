@@ -32,6 +32,7 @@ double numberAt(const std::uint8_t* p, const PcdField& field) {
                            : std::bit_cast<double>(bits);
   if (field.type == 'U') return static_cast<double>(bits);
   const auto unused = 64 - 8 * field.size;
+  // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): the header has 1 to 8 bytes
   return static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused);
 }
 
@@ -217,6 +218,25 @@ Result<std::vector<PcdValues>> readCompressed(std::string_view bytes, const PcdH
 }
 
 }  // namespace
+
+const PcdValues* findField(const PcdHeader& header, const std::vector<PcdValues>& values,
+                           std::string_view name) {
+  for (std::size_t f = 0; f < values.size(); ++f) {
+    if (header.fields[f].name == name && header.fields[f].count == 1) return &values[f];
+  }
+  return nullptr;
+}
+
+std::vector<float> unpackedColour(const PcdValues& packed) {
+  std::vector<float> colour;
+  colour.reserve(3 * packed.size());
+  for (const double value : packed) {
+    const auto bits = static_cast<std::uint32_t>(value);
+    for (const unsigned shift : {16U, 8U, 0U})
+      colour.push_back(static_cast<float>(bits >> shift & 0xFF) / 255);
+  }
+  return colour;
+}
 
 bool isPackedColour(const PcdField& field) {
   return (field.name == "rgb" || field.name == "rgba") && field.size == 4 && field.count == 1;

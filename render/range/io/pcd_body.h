@@ -37,6 +37,13 @@ using PcdValues = std::vector<double>;
 // All fields' numbers. Errors: kMalformed, with the number of the point.
 Result<std::vector<PcdValues>> readPcdBody(std::string_view bytes, const PcdHeader& header);
 
+// The numbers of the field of this name with one number a point; nullptr if there is none.
+const PcdValues* findField(const PcdHeader& header, const std::vector<PcdValues>& values,
+                           std::string_view name);
+
 bool isPackedColour(const PcdField& field);
+
+// Red, green and blue of each point, 0..1.
+std::vector<float> unpackedColour(const PcdValues& packed);
 
 }  // namespace merlin::render::range
