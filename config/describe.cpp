@@ -405,8 +405,8 @@ void describeServe(ServeSettings& s, SettingsVisitor& v) {
   v.text("samples_endpoint", s.samples_endpoint,
          "Address from which walls on other machines receive the devices' samples, encrypted, such "
          "as tcp://*:7401. Empty: no such server.");
-  v.path("samples_keys", s.samples_keys,
-         "File with this machine's key pair, written by `merlin keys -o FILE`.");
+  v.secretFile("samples_keys", s.samples_keys,
+               "File with this machine's key pair, written by `merlin keys -o FILE`.");
   v.path("samples_clients", s.samples_clients,
          "File with the public keys of the machines that may receive samples, one per line.");
 }
@@ -543,8 +543,8 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
             "Address of the merlind that reads the devices, tcp://HOST:PORT. Empty: the wall uses "
             "the devices of this machine.");
         v.text("server_key", w.input.server_key, "Public key of the merlind at endpoint.");
-        v.path("keys", w.input.keys,
-               "File with this machine's key pair, written by `merlin keys -o FILE`.");
+        v.secretFile("keys", w.input.keys,
+                     "File with this machine's key pair, written by `merlin keys -o FILE`.");
       });
   v.path("model", w.model,
          "Multiresolution model that is shown first, an .mrm file; empty: the first of contents is "

@@ -11,9 +11,10 @@ void describeProjectors(DevicesSettings& d, SettingsVisitor& v) {
         v.text("name", p.name, "Name of the projector: 1 to 32 letters, digits, - and _.");
         v.text("address", p.address,
                "Network address of the projector: HOST or HOST:PORT; without PORT it is 4352.");
-        v.path("password_file", p.password_file,
-               "File whose first line is the password for PJLink, readable by merlind. Empty: the "
-               "projector asks for no password.");
+        v.secretFile(
+            "password_file", p.password_file,
+            "File whose first line is the password for PJLink, readable by merlind. Empty: the "
+            "projector asks for no password.");
         v.text("input", p.input,
                "Input that is selected each time the projector has been switched on, as two "
                "digits: 1 (RGB), 2 (video), 3 (digital), 4 (storage) or 5 (network), then the "

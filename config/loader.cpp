@@ -202,7 +202,7 @@ class Loader final : public SettingsVisitor {
 
   void addWrongKind(const JsonNode& node, std::string_view key, std::string_view allowed) {
     loaded_.add({false, node.line, pointer(key),
-                 fmt::format("is {}; allowed is {}", describe(node), allowed)});
+                 fmt::format("is {}; allowed is {}", describe(node), allowed), true});
   }
 
   double clamp(const JsonNode& node, std::string_view key, Range range) {
@@ -266,12 +266,12 @@ LoadedSettings loadSettings(std::string_view json, const std::string& folder) {
       line = std::atoi(what.c_str() + 5);
       what = what.substr(colon + 2);
     }
-    loaded.add({false, line, "", what});
+    loaded.add({false, line, "", what, true});
     return loaded;
   }
   if (tree->kind != JsonNode::Kind::kObject) {
     loaded.add(
-        {false, tree->line, "", fmt::format("is {}; allowed is an object", describe(*tree))});
+        {false, tree->line, "", fmt::format("is {}; allowed is an object", describe(*tree)), true});
     return loaded;
   }
   {

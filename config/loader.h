@@ -17,6 +17,7 @@ struct Finding {
   int line = 0;
   std::string pointer;  // RFC 6901, "/wall/rate/rate_hz"
   std::string what;     // rest of the sentence, "is 900; allowed is 1 to 240"
+  bool quotes = false;  // `what` quotes text that may be anything, also a secret
 };
 
 struct LoadedSettings {

@@ -1,6 +1,6 @@
-// SettingsVisitor: describe() calls one of its functions for every setting. Three visitors use this
-// description, so that they always agree: they read a file, write the schema, and print the
-// settings in effect.
+// SettingsVisitor: describe() calls one of its functions for every setting. What reads a
+// file, writes the schema and the manual page, and prints or compares the settings in effect are
+// visitors of this description, so that they always agree.
 #pragma once
 
 #include <array>
@@ -30,6 +30,11 @@ class SettingsVisitor {
   virtual void texts(const char* key, std::vector<std::string>& values, const char* help) = 0;
   // A file name, relative to the folder of the configuration.
   virtual void path(const char* key, std::string& value, const char* help) = 0;
+  // The name of a file that holds a secret: a password, a secret key. What is meant for strangers
+  // leaves the name out too, since people also write the secret itself in its place.
+  virtual void secretFile(const char* key, std::string& value, const char* help) {
+    path(key, value, help);
+  }
   // One of `names`; `value` is its index.
   virtual void choice(const char* key, int& value, std::span<const char* const> names,
                       const char* help) = 0;

@@ -23,6 +23,8 @@ Json plain(double value) {
 
 class TextWriter final : public SettingsVisitor {
  public:
+  explicit TextWriter(Secrets secrets) : secrets_(secrets) {}
+
   void number(const char* key, double& value, Range, const char*) override {
     (*at_)[key] = plain(value);
   }
@@ -33,6 +35,9 @@ class TextWriter final : public SettingsVisitor {
     (*at_)[key] = values;
   }
   void path(const char* key, std::string& value, const char*) override { (*at_)[key] = value; }
+  void secretFile(const char* key, std::string& value, const char*) override {
+    (*at_)[key] = secrets_ == Secrets::kWritten || value.empty() ? value : kSecretLeftOut;
+  }
   void choice(const char* key, int& value, std::span<const char* const> names,
               const char*) override {
     (*at_)[key] = names[static_cast<std::size_t>(value)];
@@ -66,6 +71,7 @@ class TextWriter final : public SettingsVisitor {
     members();
     at_ = outer;
   }
+  Secrets secrets_;
   Json* at_ = &root;
 };
 
@@ -170,9 +176,9 @@ std::string settingsSchema() {
   return schema.dump(2) + "\n";
 }
 
-std::string settingsText(const Settings& settings) {
+std::string settingsText(const Settings& settings, Secrets secrets) {
   Settings copy = settings;  // describe() needs settings that a visitor may change
-  TextWriter writer;
+  TextWriter writer(secrets);
   describe(copy, writer);
   return writer.root.dump(2) + "\n";
 }

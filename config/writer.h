@@ -11,7 +11,11 @@ namespace merlin {
 // config/merlin.schema.json.
 std::string settingsSchema();
 
+// kLeftOut: the names of files that hold secrets are replaced by kSecretLeftOut.
+enum class Secrets { kWritten, kLeftOut };
+inline constexpr const char* kSecretLeftOut = "(left out)";
+
 // A configuration that has every setting with its value in `settings`.
-std::string settingsText(const Settings& settings);
+std::string settingsText(const Settings& settings, Secrets secrets = Secrets::kWritten);
 
 }  // namespace merlin
