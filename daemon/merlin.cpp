@@ -36,8 +36,8 @@ int main(int argc, char** argv) {
   for (const auto add :
        {cli::addStatus, cli::addWatch, cli::addSnapshot, cli::addWall, cli::addShow, cli::addTrace,
         cli::addMesh, cli::addImage, cli::addPosture, cli::addEmulate, cli::addRecord,
-        cli::addReplay, cli::addFlight, cli::addCalibrate, cli::addConfig, cli::addKeys,
-        cli::addShm, cli::addCommandsByName}) {
+        cli::addReplay, cli::addFlight, cli::addReport, cli::addCalibrate, cli::addConfig,
+        cli::addKeys, cli::addShm, cli::addCommandsByName}) {
     add(program, run);
   }
   std::vector<std::string> names;

@@ -25,6 +25,7 @@ void addMesh(Command app, Run& run);
 void addPosture(Command app, Run& run);
 void addRecord(Command app, Run& run);
 void addReplay(Command app, Run& run);
+void addReport(Command app, Run& run);
 void addShm(Command app, Run& run);
 void addShow(Command app, Run& run);
 void addSnapshot(Command app, Run& run);

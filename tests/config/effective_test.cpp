@@ -41,7 +41,7 @@ TEST(Effective, AChangeHasItsPointerAndBothValues) {
                      {"/wall/contents/0/model", "\"/etc/merlin/a.mrm\"", ""},
                      {"/wall/contents/0/picture", "\"\"", ""},
                      {"/wall/contents/0/slides", "\"\"", ""},
-                     {"/wall/contents/0/show_as", "\"as_marked\"", ""}}));
+                     {"/wall/contents/0/show_as", "\"marked\"", ""}}));
 }
 
 TEST(Effective, AnEntryIsComparedWithANewOne) {

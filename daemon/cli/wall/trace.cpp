@@ -1,11 +1,11 @@
-// merlin trace: writes the duration of each step of the wall's frames, for a trace viewer.
+#include "daemon/cli/wall/trace.h"
+
 #include <algorithm>
 #include <memory>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "daemon/base/clock.h"
 #include "daemon/base/files.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
@@ -23,7 +23,7 @@ struct TraceOptions {
 };
 
 // Returns the traces of frames that cover the time `wanted`: those in shared memory and, if these
-// cover less, the following ones. Errors: kTimeout (no frame for 2 s).
+// cover less, the following ones; at least one. Errors: kTimeout (no frame for 2 s).
 Result<std::vector<shm::FrameTrace>> collect(const shm::WallSegment& wall, Duration wanted) {
   std::vector<shm::FrameTrace> frames;
   const std::uint64_t have = wall.trace.count();
@@ -32,7 +32,7 @@ Result<std::vector<shm::FrameTrace>> collect(const shm::WallSegment& wall, Durat
   const auto covered = [&] {
     return frames.empty() ? Duration{} : Duration(frames.back().end_ns - frames.front().begin_ns);
   };
-  for (Timestamp heard = clock.now(); next < have || covered() < wanted;) {
+  for (Timestamp heard = clock.now(); next < have || frames.empty() || covered() < wanted;) {
     if (next == wall.trace.count()) {
       if (clock.now() - heard > std::chrono::seconds(2))
         return Error{Errc::kTimeout, "the wall has drawn nothing for 2 s"};
@@ -44,7 +44,8 @@ Result<std::vector<shm::FrameTrace>> collect(const shm::WallSegment& wall, Durat
     heard = clock.now();
   }
   const std::int64_t from = frames.back().end_ns - wanted.count();
-  std::erase_if(frames, [from](const shm::FrameTrace& f) { return f.begin_ns < from; });
+  if (wanted > Duration{})
+    std::erase_if(frames, [from](const shm::FrameTrace& f) { return f.begin_ns < from; });
   return frames;
 }
 
@@ -62,29 +63,34 @@ void addSamples(const shm::Channel<T>& channel, const char* device,
 }
 
 int trace(const TraceOptions& options) {
-  const auto wall =
-      shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(options.instance, "wall"));
-  if (!wall) {
-    return fail({Errc::kIo, fmt::format("no merlind shows a wall as \"{}\": {}", options.instance,
-                                        wall.error().what)});
-  }
-  const auto frames = collect(**wall, fromSeconds(options.seconds));
-  if (!frames) return fail(frames.error());
-  std::vector<SampleInstant> samples;
-  const auto devices = shm::DevicesReader::open(shm::segmentName(options.instance, "devices"));
-  if (devices && !frames->empty()) {
-    addSamples(*(*devices)->glove, "glove", *frames, samples);
-    addSamples(*(*devices)->tracker[0], "tracker", *frames, samples);
-    addSamples(*(*devices)->ball, "ball", *frames, samples);
-  }
-  const std::string json = traceJson(*frames, samples);
-  if (const auto written = writeFile(options.output, json); !written) return fail(written.error());
+  const auto recorded = recordTrace(options.instance, fromSeconds(options.seconds));
+  if (!recorded) return fail(recorded.error());
+  if (const auto written = writeFile(options.output, recorded->json); !written)
+    return fail(written.error());
   printOut("{}: {} frames, {} samples; open it in ui.perfetto.dev or chrome://tracing\n",
-           options.output, frames->size(), samples.size());
+           options.output, recorded->frames, recorded->samples);
   return kExitDone;
 }
 
 }  // namespace
+
+Result<WallTrace> recordTrace(const std::string& instance, Duration wanted) {
+  const auto wall = shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(instance, "wall"));
+  if (!wall) {
+    return Error{Errc::kIo,
+                 fmt::format("no merlind shows a wall as \"{}\": {}", instance, wall.error().what)};
+  }
+  const auto frames = collect(**wall, wanted);
+  if (!frames) return frames.error();
+  std::vector<SampleInstant> samples;
+  const auto devices = shm::DevicesReader::open(shm::segmentName(instance, "devices"));
+  if (devices) {
+    addSamples(*(*devices)->glove, "glove", *frames, samples);
+    addSamples(*(*devices)->tracker[0], "tracker", *frames, samples);
+    addSamples(*(*devices)->ball, "ball", *frames, samples);
+  }
+  return WallTrace{traceJson(*frames, samples), frames->size(), samples.size()};
+}
 
 void addTrace(Command app, Run& run) {
   const auto options = std::make_shared<TraceOptions>();

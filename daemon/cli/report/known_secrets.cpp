@@ -1,0 +1,75 @@
+#include "daemon/cli/report/known_secrets.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+
+#include "config/effective.h"
+#include "daemon/base/files.h"
+
+namespace merlin::cli {
+namespace {
+
+constexpr std::size_t kShortest = 4;  // what is shorter stands in every text by chance
+constexpr std::size_t kMostFileBytes = 65536;
+
+}  // namespace
+
+KnownSecrets::KnownSecrets(const Settings& settings, const std::string& token_file) {
+  for (const std::string& path : secretFilesOf(settings)) {
+    add(path);
+    addFile(path);
+  }
+  if (!token_file.empty() && fileStamp(token_file)) addFile(token_file);
+  sortByLength();
+}
+
+KnownSecrets::KnownSecrets(std::vector<std::string> texts) {
+  for (const std::string& text : texts) add(text);
+  sortByLength();
+}
+
+void KnownSecrets::add(std::string_view text) {
+  if (text.size() >= kShortest) texts_.emplace_back(text);
+}
+
+// Each line as a whole, for passwords and tokens, and its last word, for "secret KEY". A line
+// "public KEY" is none.
+void KnownSecrets::addFile(const std::string& path) {
+  const auto file = FileCopy::read(path, kMostFileBytes);
+  if (!file && file.error().code == Errc::kNotFound)
+    return add(std::filesystem::path(path).filename().string());
+  if (!file) return;
+  std::istringstream lines{std::string(file->text())};
+  for (std::string line; std::getline(lines, line);) {
+    if (line.ends_with('\r')) line.pop_back();
+    if (line.starts_with("public ")) continue;
+    add(line);
+    if (const std::size_t blank = line.rfind(' '); blank != std::string::npos)
+      add(std::string_view(line).substr(blank + 1));
+  }
+}
+
+void KnownSecrets::sortByLength() {
+  std::stable_sort(texts_.begin(), texts_.end(),
+                   [](const std::string& a, const std::string& b) { return a.size() > b.size(); });
+}
+
+std::string KnownSecrets::without(std::string_view text) const {
+  std::string out(text);
+  for (const std::string& secret : texts_) {
+    for (std::size_t at = out.find(secret); at != std::string::npos;) {
+      out.replace(at, secret.size(), kSecretLeftOut);
+      at = out.find(secret, at + std::string_view(kSecretLeftOut).size());
+    }
+  }
+  return out;
+}
+
+bool KnownSecrets::isIn(std::string_view text) const {
+  return std::any_of(texts_.begin(), texts_.end(), [&](const std::string& secret) {
+    return text.find(secret) != std::string_view::npos;
+  });
+}
+
+}  // namespace merlin::cli

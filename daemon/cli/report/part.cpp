@@ -1,0 +1,231 @@
+#include "daemon/cli/report/part.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "daemon/base/files.h"
+#include "daemon/base/printable_text.h"
+#include "daemon/base/unique_fd.h"
+
+namespace merlin::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostMissingBytes = 65536;  // of the sentences of a part
+constexpr int kExitNotInstalled = 127;
+
+// A folder that only this user can read; it goes with this object.
+class PrivateFolder {
+ public:
+  static Result<PrivateFolder> make() {
+    std::error_code error;
+    std::string name = (fs::temp_directory_path(error) / "merlin-report-XXXXXX").string();
+    if (error || ::mkdtemp(name.data()) == nullptr)
+      return Error{Errc::kIo, fmt::format("{}: {}", name, std::strerror(errno))};
+    return PrivateFolder(std::move(name));
+  }
+  ~PrivateFolder() {
+    std::error_code error;
+    if (!path_.empty()) fs::remove_all(path_, error);
+  }
+  PrivateFolder(PrivateFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  PrivateFolder(const PrivateFolder&) = delete;
+  PrivateFolder& operator=(const PrivateFolder&) = delete;
+
+  const std::string& path() const { return path_; }
+
+ private:
+  explicit PrivateFolder(std::string path) : path_(std::move(path)) {}
+  std::string path_;
+};
+
+// What the part prints goes nowhere; each file is bounded, since a write beyond is an error.
+void limitChild(std::size_t most_bytes, const sigset_t& mask) {
+  ::setpgid(0, 0);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::sigprocmask(SIG_SETMASK, &mask, nullptr);
+  ::signal(SIGXFSZ, SIG_IGN);
+  rlimit size{};
+  ::getrlimit(RLIMIT_FSIZE, &size);
+  size.rlim_cur = std::min<rlim_t>(most_bytes, size.rlim_max);
+  ::setrlimit(RLIMIT_FSIZE, &size);
+  const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, fd);
+}
+
+[[noreturn]] void collectInChild(const PartSettings& part, const std::string& path, int to,
+                                 const sigset_t& mask) {
+  limitChild(part.most_bytes, mask);
+  PartFolder folder(path);
+  try {
+    part.collect(folder);
+  } catch (const std::exception& e) {
+    folder.lacks(fmt::format("{}: {}", part.name, e.what()));
+  }
+  std::string text;
+  for (const std::string& what : folder.missing()) text += oneLine(what) + '\n';
+  text.resize(std::min(text.size(), kMostMissingBytes));  // below what a pipe holds: never blocks
+  text += '\0';                                           // the part came to its end
+  const ssize_t told = ::write(to, text.data(), text.size());
+  ::_exit(told < 0 ? 1 : 0);
+}
+
+// What the child tells until its end, `until` or `stop`.
+struct Told {
+  std::string text;
+  bool late = false, stopped = false;
+};
+Told listen(int from, int stop, Timestamp until) {
+  const SystemClock clock;
+  Told told;
+  for (;;) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - clock.now()).count();
+    if (left <= 0) return told.late = true, told;
+    std::array<pollfd, 2> items{pollfd{from, POLLIN, 0}, pollfd{stop, POLLIN, 0}};
+    ::poll(items.data(), items.size(), static_cast<int>(left));
+    if (items[1].revents != 0) return told.stopped = true, told;
+    if (items[0].revents == 0) continue;
+    std::array<char, 4096> bytes{};
+    const ssize_t n = ::read(from, bytes.data(), bytes.size());
+    if (n > 0) told.text.append(bytes.data(), static_cast<std::size_t>(n));
+    if (n == 0 || (n < 0 && errno != EINTR)) return told;
+  }
+}
+
+// Ends the child and what it started. A process that waits for a device may not end at once: it is
+// not waited for longer than a second.
+void endChild(pid_t child) {
+  ::kill(-child, SIGKILL);
+  ::kill(child, SIGKILL);
+  const SystemClock clock;
+  for (const Timestamp until = clock.now() + std::chrono::seconds(1); clock.now() < until;) {
+    const pid_t ended = ::waitpid(child, nullptr, WNOHANG);
+    if (ended == child || (ended < 0 && errno != EINTR)) return;
+    ::poll(nullptr, 0, 5);
+  }
+}
+
+void takeFiles(const PartSettings& part, const std::string& path, PartResult& result) {
+  std::vector<fs::path> paths;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path, error)) paths.push_back(entry.path());
+  std::sort(paths.begin(), paths.end());
+  std::size_t left = part.most_bytes;
+  for (const fs::path& file : paths) {
+    const std::string name = (part.in_folder ? part.name + "/" : "") + file.filename().string();
+    const auto stamp = fileStamp(file.string());
+    const auto content = stamp && stamp->size <= left ? FileCopy::read(file.string(), left)
+                                                      : Result<FileCopy>(Error{Errc::kIo, ""});
+    if (!content) {
+      result.missing.push_back(fmt::format(
+          "{}: does not fit: the files of this part may have {} bytes", name, part.most_bytes));
+      continue;
+    }
+    left -= content->bytes().size();
+    result.files.push_back({name, std::string(content->text())});
+  }
+}
+
+void takeMissing(std::string_view text, PartResult& result) {
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    result.missing.emplace_back(text.substr(0, end));
+    text.remove_prefix(end + 1);
+  }
+}
+
+}  // namespace
+
+std::string PartFolder::path(const std::string& name) const {
+  std::string safe = oneLine(name);
+  std::replace(safe.begin(), safe.end(), '/', '_');
+  if (safe.empty() || safe[0] == '.') safe.insert(0, "_");
+  return path_ + "/" + safe;
+}
+
+void PartFolder::put(const std::string& name, const Result<std::string>& content) {
+  if (!content) return lacks(fmt::format("{}: {}", name, content.error().what));
+  if (const auto written = writeFile(path(name), *content); !written)
+    lacks(fmt::format("{}: {}", name, written.error().what));
+}
+
+void PartFolder::copy(const std::string& from, std::size_t most) {
+  const std::string name = fs::path(from).filename().string();
+  const auto stamp = fileStamp(from);
+  if (stamp && stamp->size > most)
+    return lacks(fmt::format("{}: has {} bytes; at most {} are taken", from, stamp->size, most));
+  const auto content = FileCopy::read(from, most);
+  put(name, content ? Result<std::string>(std::string(content->text()))
+                    : Result<std::string>(content.error()));
+}
+
+Result<PartResult> runPart(const PartSettings& part, int stop, const sigset_t& mask) {
+  const auto folder = PrivateFolder::make();
+  if (!folder) return folder.error();
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+    return Error{Errc::kIo, fmt::format("pipe: {}", std::strerror(errno))};
+  UniqueFd from(ends[0]), to(ends[1]);
+  std::fflush(nullptr);  // what is buffered is printed once
+  const pid_t child = ::fork();
+  if (child < 0) return Error{Errc::kIo, fmt::format("fork: {}", std::strerror(errno))};
+  if (child == 0) collectInChild(part, folder->path(), to.get(), mask);
+  to.reset();
+  const Told told = listen(from.get(), stop, SystemClock().now() + part.limit);
+  endChild(child);
+  if (told.stopped) return Error{Errc::kClosed, "interrupted; nothing is left behind"};
+  PartResult result;
+  takeMissing(told.text, result);
+  if (told.late) {
+    result.missing.push_back(fmt::format("{}: was ended after {:.0f} s, before it was complete",
+                                         part.name, toSeconds(part.limit)));
+  } else if (!told.text.ends_with('\0')) {
+    result.missing.push_back(part.name + ": the process that collects it ended early");
+  }
+  takeFiles(part, folder->path(), result);
+  return result;
+}
+
+Result<int> runInto(const std::string& path, const std::vector<std::string>& arguments) {
+  const UniqueFd file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+  if (!file.valid()) return Error{Errc::kIo, fmt::format("{}: {}", path, std::strerror(errno))};
+  std::vector<std::string> copies = arguments;
+  std::vector<char*> argv;
+  for (std::string& argument : copies) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child < 0) return Error{Errc::kIo, fmt::format("fork: {}", std::strerror(errno))};
+  if (child == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    ::dup2(file.get(), STDOUT_FILENO);
+    ::dup2(file.get(), STDERR_FILENO);
+    ::setenv("LC_ALL", "C.UTF-8", 1);  // NOLINT(concurrency-mt-unsafe): one thread
+    ::execvp(argv[0], argv.data());
+    ::_exit(kExitNotInstalled);
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (!WIFEXITED(status))
+    return Error{Errc::kIo,
+                 fmt::format("{} was ended by signal {}", arguments[0], WTERMSIG(status))};
+  if (WEXITSTATUS(status) != kExitNotInstalled) return WEXITSTATUS(status);
+  ::unlink(path.c_str());
+  return Error{Errc::kNotFound, fmt::format("the program {} is not installed", arguments[0])};
+}
+
+}  // namespace merlin::cli

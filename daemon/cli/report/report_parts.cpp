@@ -1,0 +1,212 @@
+#include "daemon/cli/report/report_parts.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <set>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "config/effective.h"
+#include "config/writer.h"
+#include "daemon/base/files.h"
+#include "daemon/cli/print.h"
+#include "daemon/cli/report/machine.h"
+#include "daemon/cli/roles.h"
+#include "daemon/cli/wall/status_text.h"
+#include "daemon/cli/wall/trace.h"
+#include "daemon/shm/segment.h"
+#include "daemon/state/state_folder.h"
+#include "render/image/png_writer.h"
+#include "render/out/shared_frame.h"
+
+namespace merlin::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::seconds;
+
+constexpr std::size_t kMega = 1 << 20;
+constexpr std::size_t kMostFlightBytes = 2 * kMega;  // of one recording
+constexpr const char* kUnits[] = {"merlind.service", "merlin-page.service", "merlin-rfb.service",
+                                  "merlin.target"};
+
+std::string changesText(const Settings& settings) {
+  std::string text;
+  for (const SettingChange& c : changesFromDefaults(settings, Secrets::kLeftOut)) {
+    text += fmt::format("{}: {} -> {}\n", c.pointer, c.before.empty() ? "(absent)" : c.before,
+                        c.after.empty() ? "(absent)" : c.after);
+  }
+  return text;
+}
+
+void collectConfiguration(const ReportSubject& subject, PartFolder& folder) {
+  const LoadedSettings& loaded = subject.loaded;
+  folder.put("findings.txt", findingsText(subject.config, loaded));
+  folder.put("settings.json", settingsText(loaded.settings, Secrets::kLeftOut));
+  folder.put("changes.txt", changesText(loaded.settings));
+  std::string state = state::stateFile(loaded.settings.state_file, subject.instance, true);
+  const std::string service = fmt::format("/var/lib/merlin/{}.state.json", subject.instance);
+  if (loaded.settings.state_file.empty() && !fileStamp(state)) state = service;
+  const auto text = state::StateFolder(state).read();
+  folder.put("state.json", text);
+}
+
+// The programs' ids, by role.
+std::vector<std::pair<std::string, std::string>> processes(const std::string& instance) {
+  std::vector<std::pair<std::string, std::string>> found = {{"merlin", "self"}};
+  const auto status = askStatus(instance);
+  if (!status || !status->contains("roles")) return found;
+  for (const auto& [role, facts] : (*status)["roles"].items()) {
+    if (const auto pid = facts.value("pid", 0); pid > 0)
+      found.emplace_back(role, std::to_string(pid));
+  }
+  return found;
+}
+
+void collectVersions(const ReportSubject& subject, PartFolder& folder) {
+  folder.put("versions.txt", versionsText(""));
+  for (const auto& [name, pid] : processes(subject.instance)) {
+    const std::string text = librariesText("", pid);
+    if (text.empty())
+      folder.lacks(fmt::format("libraries of {}: its process is another user's", name));
+    else
+      folder.put(fmt::format("libraries-of-{}.txt", name), text);
+  }
+  const auto packages =
+      runInto(folder.path("packages.txt"),
+              {"dpkg-query", "-W", "-f", "${Package} ${Version} ${db:Status-Status}\n", "merlin*",
+               "libegl-mesa0", "libgl1-mesa-dri", "libosmesa6", "libdrm2", "libzmq5", "systemd"});
+  if (!packages) folder.lacks("packages.txt: " + packages.error().what);
+}
+
+void collectStatus(const ReportSubject& subject, PartFolder& folder) {
+  const auto status = askStatus(subject.instance);
+  folder.put("status.json", status ? Result<std::string>(status->dump(2) + "\n")
+                                   : Result<std::string>(status.error()));
+}
+
+// Keeps what the program has said, also of a failure.
+void collectOutput(const std::string& name, const std::vector<std::string>& arguments,
+                   PartFolder& folder) {
+  const auto status = runInto(folder.path(name), arguments);
+  if (!status) return folder.lacks(fmt::format("{}: {}", name, status.error().what));
+  const auto said = FileCopy::read(folder.path(name), 1000);
+  const std::string first(said ? said->text().substr(0, said->text().find('\n')) : "");
+  if (first.starts_with("-- No entries") || first.starts_with("No journal files"))
+    folder.lacks(
+        fmt::format("{}: {} (who may read the journal: group systemd-journal)", name, first));
+}
+
+// sd_booted(3)
+bool systemdRuns() {
+  std::error_code error;
+  return fs::is_directory("/run/systemd/system", error);
+}
+
+void collectUnits(PartFolder& folder) {
+  if (!systemdRuns()) return folder.lacks("units.txt: systemd does not run this machine");
+  std::vector<std::string> arguments = {"systemctl", "status", "--no-pager", "--full",
+                                        "--lines=20"};
+  arguments.insert(arguments.end(), std::begin(kUnits), std::end(kUnits));
+  collectOutput("units.txt", arguments, folder);
+}
+
+void collectJournal(PartFolder& folder) {
+  std::vector<std::string> arguments = {"journalctl", "--no-pager", "--output=short-iso-precise",
+                                        "--since=-1day", "--lines=20000"};
+  for (const char* unit : kUnits) arguments.push_back(std::string("--unit=") + unit);
+  collectOutput("journal.txt", arguments, folder);
+}
+
+// The recordings of the last day in the daemon's folder, the newest first.
+std::vector<std::string> recordings(const ReportSubject& subject) {
+  std::vector<std::pair<fs::file_time_type, std::string>> found;
+  const auto day_ago = fs::file_time_type::clock::now() - std::chrono::hours(24);
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(subject.run_directory, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(subject.instance + "-") || !name.ends_with(".bytes")) continue;
+    if (const auto time = entry.last_write_time(error); !error && time >= day_ago)
+      found.emplace_back(time, entry.path().string());
+  }
+  std::sort(found.rbegin(), found.rend());
+  std::vector<std::string> paths;
+  for (const auto& [time, path] : found) paths.push_back(path);
+  return paths;
+}
+
+// First those that are there: asking for new ones may remove the oldest.
+void collectFlight(const ReportSubject& subject, PartFolder& folder) {
+  std::set<std::string> taken;
+  for (const std::string& path : recordings(subject)) {
+    folder.copy(path, kMostFlightBytes);
+    taken.insert(path);
+  }
+  const auto files = askRole(subject.instance, "devices", {"flight", "", seconds(10)});
+  if (!files) return folder.lacks("flight recordings of now: " + files.error().what);
+  for (const auto& file : nlohmann::json::parse(*files, nullptr, false)) {
+    if (file.is_string() && taken.insert(file.get<std::string>()).second)
+      folder.copy(file.get<std::string>(), kMostFlightBytes);
+  }
+}
+
+void collectTrace(const ReportSubject& subject, PartFolder& folder) {
+  const auto trace = recordTrace(subject.instance, Duration{});
+  folder.put("trace.json",
+             trace ? Result<std::string>(trace->json) : Result<std::string>(trace.error()));
+}
+
+void collectFrame(const ReportSubject& subject, PartFolder& folder) {
+  const auto frame = render::out::captureFrame(shm::segmentName(subject.instance, "framebuffer"));
+  if (!frame) return folder.lacks("frame.png: " + frame.error().what);
+  const auto written =
+      render::image::writePng(folder.path("frame.png"), frame->width, frame->height, frame->pixels);
+  if (!written) folder.lacks("frame.png: " + written.error().what);
+}
+
+void collectHardware(PartFolder& folder) {
+  folder.put("hardware.txt", hardwareText(""));
+  for (const PackedFile& id : displayIds("")) folder.put(id.name, id.content);
+}
+
+}  // namespace
+
+std::string findingsText(const std::string& file, const LoadedSettings& loaded) {
+  std::string text;
+  for (Finding finding : loaded.findings) {
+    if (finding.quotes) finding.what = "is not understood (left out; see merlind --check-config)";
+    text += toText(file, finding) + "\n";
+  }
+  if (loaded.left_out > 0) text += fmt::format("{}: and {} more findings\n", file, loaded.left_out);
+  return text.empty() ? file + ": no findings\n" : text;
+}
+
+std::vector<ReportPart> reportParts(const ReportSubject& s) {
+  return {
+      {{"configuration", true, seconds(10), 4 * kMega,
+        [&s](PartFolder& f) { collectConfiguration(s, f); }},
+       "the settings in effect without secrets, what differs from the defaults, findings, and what "
+       "people changed while the wall ran (state.json)"},
+      {{"status", false, seconds(15), 4 * kMega, [&s](PartFolder& f) { collectStatus(s, f); }},
+       "state of both roles, as by merlin status --json"},
+      {{"versions", true, seconds(20), 2 * kMega, [&s](PartFolder& f) { collectVersions(s, f); }},
+       "versions of MERLIN, kernel, distribution, libraries and packages; the renderer is in "
+       "status.json"},
+      {{"hardware", true, seconds(10), 2 * kMega, collectHardware},
+       "CPU, memory, graphics cards, displays with their EDID, PCI and USB devices, serial "
+       "adapters, input devices"},
+      {{"units", false, seconds(10), kMega, collectUnits}, "systemctl status of MERLIN's units"},
+      {{"frame", false, seconds(20), 16 * kMega, [&s](PartFolder& f) { collectFrame(s, f); }},
+       "what the wall shows, as by merlin snapshot"},
+      {{"trace", false, seconds(10), 8 * kMega, [&s](PartFolder& f) { collectTrace(s, f); }},
+       "time of each step of the last frames, as by merlin trace; for ui.perfetto.dev"},
+      {{"journal", false, seconds(30), 8 * kMega, collectJournal},
+       "the journal of MERLIN's units of the last day, at most 20000 lines"},
+      {{"flight", true, seconds(20), 8 * kMega, [&s](PartFolder& f) { collectFlight(s, f); }},
+       "bytes of the devices' lines: recordings of the last day and of now, as by merlin flight"}};
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,32 @@
+// The parts of a report, and how each is collected.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "config/loader.h"
+#include "daemon/cli/report/part.h"
+
+namespace merlin::cli {
+
+// What a report is about.
+struct ReportSubject {
+  std::string config;         // the configuration's file
+  LoadedSettings loaded;      // what it says
+  std::string instance;       // name of the daemon
+  std::string run_directory;  // of its sockets and flight recordings
+};
+
+struct ReportPart {
+  PartSettings settings;
+  std::string about;  // what it is, as a clause
+};
+
+// In the order in which they are collected; the most useful first, since they get their room first.
+// `subject` outlives them.
+std::vector<ReportPart> reportParts(const ReportSubject& subject);
+
+// The findings of a configuration, one per line, without text of the file that may be anything.
+std::string findingsText(const std::string& file, const LoadedSettings& loaded);
+
+}  // namespace merlin::cli

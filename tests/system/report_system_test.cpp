@@ -1,0 +1,132 @@
+// merlin report: the file that is sent to somebody who is to help, of a wall that runs and of one
+// that does not.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/stat.h>
+
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kPassword = "hunter-twenty-two";
+constexpr const char* kToken = "TOKEN0123456789TOKEN0123456789xy";
+
+// The archive's files, by name, read by another program; names begin with the archive's folder.
+std::map<std::string, std::string> unpack(const TempDir& dir, const std::string& archive) {
+  const std::string out = dir / "unpacked.json";
+  const std::string script =
+      "import json, sys, tarfile\n"
+      "t = tarfile.open(sys.argv[1], 'r:gz')\n"
+      "json.dump({m.name: t.extractfile(m).read().decode('latin-1') for m in t}, open(sys.argv[2], "
+      "'w'))";
+  const Outcome read = run({"python3", "-c", script, archive, out});
+  EXPECT_EQ(read.status, 0) << read.output;
+  const json files = json::parse(readText(out), nullptr, false);
+  return files.is_object() ? files.get<std::map<std::string, std::string>>()
+                           : std::map<std::string, std::string>{};
+}
+
+// The secret key of a new key pair.
+std::string makeKeys(const std::string& path) {
+  EXPECT_EQ(run({kMerlin, "keys", "-o", path}).status, 0);
+  const std::string text = readText(path);
+  const std::size_t at = text.find("secret ") + 7;
+  return text.substr(at, 40);
+}
+
+void expectNowhere(const std::map<std::string, std::string>& files, const std::string& secret) {
+  ASSERT_GE(secret.size(), 8u);
+  for (const auto& [name, content] : files) {
+    EXPECT_EQ(name.find(secret), std::string::npos);
+    EXPECT_EQ(content.find(secret), std::string::npos) << name << " has " << secret;
+  }
+}
+
+TEST(Report, OfARunningWallHasItsPartsAndNoSecret) {
+  const TempDir dir;
+  const std::string model = makeModel(dir);
+  const std::string key = makeKeys(dir / "wall.keys");
+  writeText(dir / "left.password", std::string(kPassword) + "\n");
+  MerlindOptions options;
+  options.also = {
+      {"serve", {{"samples_keys", "wall.keys"}}},
+      {"devices",
+       {{"projectors",
+         {{{"name", "left"}, {"address", "127.0.0.1:1"}, {"password_file", "left.password"}}}}}},
+      // Somebody has written the password where everybody sees it.
+      {"wall", {{"contents", {{{"model", model}, {"name", kPassword}}}}}}};
+  Merlind wall(dir, model, "report", options);
+  ASSERT_TRUE(wall.ready()) << wall.process().output();
+  writeText(dir / (wall.instance() + "-page.token"), kToken);
+  writeText(dir / (wall.instance() + "-old-20260101T000000Z.bytes"), std::string("# ") + kToken);
+
+  const Outcome made =
+      run({kMerlin, "report", "-o", dir / "wall.tar.gz", "--config", wall.config(), "--json"});
+  ASSERT_EQ(made.status, 0) << made.output;
+  const json parts = json::parse(made.output, nullptr, false);
+  ASSERT_TRUE(parts.is_object()) << made.output;
+  EXPECT_EQ(parts["parts"].size(), 9u);
+  EXPECT_EQ(parts["bytes"], readText(dir / "wall.tar.gz").size());
+
+  const auto files = unpack(dir, dir / "wall.tar.gz");
+  for (const char* name :
+       {"README.txt", "configuration/settings.json", "configuration/changes.txt",
+        "configuration/findings.txt", "status.json", "versions/versions.txt",
+        "versions/libraries-of-merlin.txt", "hardware/hardware.txt", "frame.png", "trace.json"})
+    EXPECT_TRUE(files.contains(std::string("wall/") + name)) << name << "\n" << made.output;
+  EXPECT_EQ(json::parse(files.at("wall/status.json"))["roles"].size(), 2u);
+  EXPECT_EQ(files.at("wall/frame.png").find("PNG\r\n"), 2u)
+      << "after one byte, which JSON makes two";
+  EXPECT_FALSE(json::parse(files.at("wall/trace.json"))["traceEvents"].empty());
+  EXPECT_GE(std::count_if(files.begin(), files.end(),
+                          [](const auto& f) { return f.first.starts_with("wall/flight/"); }),
+            2)
+      << "the old one and those of now: " << made.output;
+  EXPECT_NE(files.at("wall/configuration/changes.txt")
+                .find("/devices/projectors/0/password_file: (absent) -> \"(left out)\""),
+            std::string::npos);
+  for (const std::string& secret :
+       {std::string(kPassword), std::string(kToken), key, std::string("left.password")})
+    expectNowhere(files, secret);
+}
+
+TEST(Report, OfAWallThatDoesNotRunSaysSoAndQuotesNoFile) {
+  const TempDir dir;
+  writeText(dir / "wall.json",
+            std::string(R"({"instance": "merlin-report-none", "password": ")") + kPassword +
+                R"(", "devices": {"projectors": [{"name": "left", "address": "127.0.0.1:1",
+                "password_file": ")" +
+                kPassword + R"("}, ")" + kPassword + "\"]}}");
+  const Outcome made = run({kMerlin, "report", "-o", dir / "none.tar.gz", "-c", dir / "wall.json"});
+  ASSERT_EQ(made.status, 0) << made.output;
+  EXPECT_NE(made.output.find("status: 0 files, 0.0 kB\n  missing: status.json: no merlind runs as "
+                             "\"merlin-report-none\""),
+            std::string::npos)
+      << made.output;
+  EXPECT_NE(made.output.find(dir / "none.tar.gz"), std::string::npos);
+  const auto files = unpack(dir, dir / "none.tar.gz");
+  ASSERT_TRUE(files.contains("none/README.txt"));
+  EXPECT_NE(files.at("none/README.txt").find("no merlind runs"), std::string::npos);
+  EXPECT_NE(files.at("none/configuration/findings.txt").find("/password is not a known setting"),
+            std::string::npos);
+  EXPECT_TRUE(files.contains("none/hardware/hardware.txt"));
+  expectNowhere(files, kPassword);
+}
+
+TEST(Report, WritesNothingWhereItCannot) {
+  const TempDir dir;
+  const Outcome named = run({kMerlin, "report", "-o", dir / "wall.zip"});
+  EXPECT_EQ(named.status, 2);
+  EXPECT_NE(named.output.find("the name of a report must end in .tar.gz"), std::string::npos);
+  const Outcome nowhere = run({kMerlin, "report", "-o", dir / "no/wall.tar.gz"});
+  EXPECT_EQ(nowhere.status, 2) << nowhere.output;
+  EXPECT_TRUE(std::filesystem::is_empty(dir.path()));
+}
+
+}  // namespace
+}  // namespace merlin::test
