@@ -23,7 +23,7 @@ void addFaults(const SettingFaults& faults, const std::string& group, LoadedSett
   for (const auto& [pointer, what, other] : faults) {
     const std::string at = group + other;
     const std::string before =
-        other.empty() ? "" : fmt::format("conflicts with {} (line {}): ", at, loaded.lineOf(at));
+        other.empty() ? "" : fmt::format("conflicts with {} ({}): ", at, loaded.placeText(at));
     loaded.addFinding(group + pointer, fmt::format("{}{}{}", prefix, before, what));
   }
 }

@@ -5,14 +5,15 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include <fmt/format.h>
 
 #include "config/checks.h"
 #include "config/migrate.h"
+#include "config/sources.h"
 #include "config/visitor.h"
 #include "daemon/base/did_you_mean.h"
-#include "daemon/base/files.h"
 #include "daemon/base/printable_text.h"
 #include "daemon/json/json_tree.h"
 
@@ -245,60 +246,68 @@ void LoadedSettings::addFinding(const std::string& pointer, std::string what) {
   add({false, lineOf(pointer), pointer, std::move(what)});
 }
 
+LoadedSettings::Place LoadedSettings::placeAt(int line) const {
+  for (const Source& source : sources) {
+    if (line > source.lines_before && line <= source.last_line)
+      return {source.file, line - source.lines_before};
+  }
+  return {{}, line};
+}
+
+std::string LoadedSettings::placeText(const std::string& pointer) const {
+  const auto [file, line] = placeAt(lineOf(pointer));
+  return file.empty() ? fmt::format("line {}", line) : fmt::format("{}:{}", file, line);
+}
+
 void LoadedSettings::add(Finding finding) {
+  if (finding.file.empty()) {
+    const Place place = placeAt(finding.line);
+    finding.file = place.file;
+    finding.line = place.line;
+  }
   if (findings.size() < kMostFindings) return findings.push_back(std::move(finding));
   ++left_out;
   left_out_invalid_ = left_out_invalid_ || !finding.adjusted;
 }
 
 void LoadedSettings::sortFindings() {
-  std::stable_sort(findings.begin(), findings.end(),
-                   [](const Finding& a, const Finding& b) { return a.line < b.line; });
+  std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
+    return std::tie(a.file, a.line) < std::tie(b.file, b.line);
+  });
 }
 
-LoadedSettings loadSettings(std::string_view json, const std::string& folder) {
-  LoadedSettings loaded;
-  const auto tree = parseJson(json);
-  if (!tree) {
-    int line = 0;
-    std::string what = tree.error().what;  // "line N: ..."
-    if (const auto colon = what.find(": "); colon != std::string::npos) {
-      line = std::atoi(what.c_str() + 5);
-      what = what.substr(colon + 2);
-    }
-    loaded.add({false, line, "", what, true});
-    return loaded;
-  }
-  if (tree->kind != JsonNode::Kind::kObject) {
-    loaded.add(
-        {false, tree->line, "", fmt::format("is {}; allowed is an object", describe(*tree)), true});
-    return loaded;
-  }
+namespace {
+
+void loadTree(const JsonNode& tree, const std::string& folder, LoadedSettings& loaded) {
   {
-    Loader loader(*tree, folder, loaded);
+    Loader loader(tree, folder, loaded);
     describe(loaded.settings, loader);
     loader.finish();
     loaded.lines = loader.lines();
   }
+  loaded.parsed = true;
   checkTogether(loaded);
+}
+
+}  // namespace
+
+LoadedSettings loadSettings(std::string_view json, const std::string& folder) {
+  LoadedSettings loaded;
+  if (const auto tree = parseSource(json, "", loaded)) loadTree(*tree, folder, loaded);
   loaded.sortFindings();
   return loaded;
 }
 
 LoadedSettings loadSettingsFile(const std::string& path) {
-  const auto file = FileCopy::read(path, kMostJsonBytes + 1);
-  if (!file) {
-    LoadedSettings loaded;
-    std::string what = file.error().what;
-    if (what.starts_with(path + ": ")) what = what.substr(path.size() + 2);
-    loaded.add({false, 0, "", what});
-    return loaded;
-  }
-  return loadSettings(file->text(), std::filesystem::path(path).parent_path().string());
+  LoadedSettings loaded;
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  if (const auto tree = readSources(path, loaded)) loadTree(*tree, folder, loaded);
+  loaded.sortFindings();
+  return loaded;
 }
 
 std::string toText(const std::string& file, const Finding& f) {
-  std::string text = file;
+  std::string text = f.file.empty() ? file : f.file;
   if (f.line > 0) text += fmt::format(":{}", f.line);
   if (!f.pointer.empty()) text += ": " + f.pointer;
   return oneLine(text + (f.pointer.empty() ? ": " : " ") + f.what);

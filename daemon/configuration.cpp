@@ -138,8 +138,8 @@ void checkPage(LoadedSettings& loaded) {
 Configuration readConfiguration(const std::string& file, const DaemonOptions& options) {
   Configuration read{loadSettingsFile(file), {}};
   LoadedSettings& loaded = read.loaded;
-  // A single finding without a pointer: the file could not be read or parsed at all.
-  if (loaded.findings.size() == 1 && loaded.findings[0].pointer.empty()) return read;
+  // The files could not be read or parsed at all.
+  if (!loaded.parsed) return read;
   checkDescriptors(loaded);
   checkRunDirectory(loaded);
   if (options.page) checkPage(loaded);

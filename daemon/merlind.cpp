@@ -38,6 +38,8 @@ manual::PageSettings page() {
           .summary = "daemon of the display wall MERLIN",
           .section = 8,
           .files = {{"/etc/merlin/merlin.json", "the configuration, described in merlin.json(5)"},
+                    {"/etc/merlin/conf.d/*.json",
+                     "merged over the configuration in the order of their names"},
                     {"/usr/share/merlin/merlind.service.d",
                      "drop-ins for merlind.service, each of which allows one more thing"},
                     {"/var/lib/merlin", "models, and what people changed while the wall ran"},
