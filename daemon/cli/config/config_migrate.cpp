@@ -1,11 +1,11 @@
-// merlin config: commands for configuration files. The only one is migrate.
+// merlin config migrate: rewrites a configuration of an earlier version.
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "config/migrate.h"
 #include "daemon/base/files.h"
-#include "daemon/cli/command.h"
+#include "daemon/cli/config/config.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
 #include "daemon/json/json_tree.h"
@@ -43,9 +43,7 @@ int migrateFile(const MigrateOptions& options) {
 
 }  // namespace
 
-void addConfig(Command app, Run& run) {
-  Command config = app.subcommand("config", "Configuration files of merlind");
-  config.requireSubcommand();
+void addConfigMigrate(Command config, Run& run) {
   const auto options = std::make_shared<MigrateOptions>();
   Command command = config.subcommand(
       "migrate",

@@ -1,0 +1,21 @@
+// The subcommands of `merlin config`, and what they share.
+#pragma once
+
+#include <string>
+
+#include "config/loader.h"
+#include "daemon/cli/command.h"
+
+namespace merlin::cli {
+
+inline constexpr const char* kUsualConfig = "/etc/merlin/merlin.json";
+
+void addConfigShow(Command config, Run& run);
+void addConfigDiff(Command config, Run& run);
+void addConfigMigrate(Command config, Run& run);
+
+// Reads a configuration and prints its findings to stderr. Errors: kInvalidArgument (it is
+// invalid).
+Result<LoadedSettings> loadPrinted(const std::string& file);
+
+}  // namespace merlin::cli
