@@ -110,9 +110,11 @@ std::string settingsManual(const std::string& version) {
          ".SH DESCRIPTION\n" +
          roffText(
              "merlind reads /etc/merlin/merlin.json, or the file that its option --config names. "
-             "It is JSON; every setting may be left out, and an unknown one is an error. File "
-             "names "
-             "are relative to the folder of the configuration. `merlind --check-config FILE` says "
+             "It is JSON; every setting may be left out, and an unknown one is an error. Files "
+             "conf.d/*.json in the same folder are merged over it in the order of their names: "
+             "objects by key; everything else, lists too, replaces what was there. `merlin config "
+             "show` says which file each value comes from. File names are relative to the folder "
+             "of the configuration. `merlind --check-config FILE` says "
              "what is wrong with a file, with the line and the JSON pointer of each finding, and "
              "`merlind --print-config` prints a configuration with every setting.") +
          "\n.SH SETTINGS\nEach heading is the JSON pointer of an object; 0 stands for any item of "

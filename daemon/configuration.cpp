@@ -85,6 +85,12 @@ void checkStateFile(const std::string& configuration, LoadedSettings& loaded) {
   if (std::filesystem::equivalent(configuration, path, error))
     return loaded.addFinding(kPointer,
                              "names the configuration itself, which merlind never writes");
+  for (const LoadedSettings::Source& source : loaded.sources) {
+    if (source.file.empty() || !std::filesystem::equivalent(source.file, path, error)) continue;
+    return loaded.addFinding(
+        kPointer, fmt::format("names {}, a file of the configuration, which merlind never writes",
+                              source.file));
+  }
   wall::checkReplacesNothing(loaded, path, kPointer);
   const std::string folder = std::filesystem::path(path).parent_path().string();
   if (const auto usable = checkFolder(folder.empty() ? "." : folder); !usable)

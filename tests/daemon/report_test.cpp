@@ -44,7 +44,7 @@ TEST(KnownSecrets, ComeFromTheFilesThatTheSettingsName) {
   settings.devices.projectors[0].password_file = dir / "left.password";
   settings.devices.projectors[1].password_file = dir / "typed-in-place";  // there is no such file
   settings.serve.samples_keys = dir / "wall.keys";
-  const KnownSecrets secrets(settings, dir / "page.token");
+  const KnownSecrets secrets(settings, {dir / "page.token", dir / "no-such-file"});
   EXPECT_EQ(secrets.without("hunter-22 PUBLICKEY SECRETKEY TOKENTOKEN typed-in-place"),
             "(left out) PUBLICKEY (left out) (left out) (left out)");
   EXPECT_EQ(secrets.without(dir / "left.password"), "(left out)");

@@ -51,7 +51,7 @@ TEST_F(BadInput, ATruncatedScan) {
 TEST_F(BadInput, ALimitOfTheAddressSpaceCountsAsWhatIsFree) {
   const std::string reduce = fmt::format("{} mesh reduce {}/config/models/ankylosaurus.ply -o {}",
                                          kMerlin, kSource, dir_ / "out.mrm");
-  expectOutcome(run({"/bin/bash", "-c", "ulimit -v 50000; " + reduce}), 2,
+  expectOutcome(run({"/bin/bash", "-c", "ulimit -v 80000; " + reduce}), 2,
                 {"even in blocks; the limit (--memory, by default the free memory) is"});
 }
 #endif

@@ -15,12 +15,14 @@ constexpr std::size_t kMostFileBytes = 65536;
 
 }  // namespace
 
-KnownSecrets::KnownSecrets(const Settings& settings, const std::string& token_file) {
+KnownSecrets::KnownSecrets(const Settings& settings, const std::vector<std::string>& others) {
   for (const std::string& path : secretFilesOf(settings)) {
     add(path);
     addFile(path);
   }
-  if (!token_file.empty() && fileStamp(token_file)) addFile(token_file);
+  for (const std::string& path : others) {
+    if (fileStamp(path)) addFile(path);
+  }
   sortByLength();
 }
 

@@ -14,10 +14,10 @@ namespace merlin::cli {
 // such as a journal: where a secret that this user can read stands in a text, it is replaced.
 class KnownSecrets {
  public:
-  // Reads the files that the settings name, and `token_file`, as far as this user may. The name of
-  // a file that does not exist counts as a secret, since somebody may have written the secret
-  // there.
-  KnownSecrets(const Settings& settings, const std::string& token_file);
+  // Reads the files that the settings name, and `others` that exist, as far as this user may. The
+  // name of a file that does not exist counts as a secret, since somebody may have written the
+  // secret there.
+  KnownSecrets(const Settings& settings, const std::vector<std::string>& others);
   explicit KnownSecrets(std::vector<std::string> texts);
 
   // The text with each secret replaced by kSecretLeftOut. O(text x secrets).

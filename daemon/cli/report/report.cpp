@@ -45,6 +45,13 @@ ReportSubject subjectOf(const ReportOptions& options) {
   return subject;
 }
 
+// The token of the web page, and the password of merlin-rfb where its unit suggests it.
+std::vector<std::string> otherSecretFiles(const ReportSubject& subject) {
+  const auto folder = std::filesystem::path(subject.config).parent_path();
+  return {fmt::format("{}/{}-page.token", subject.run_directory, subject.instance),
+          (folder / "rfb.password").string()};
+}
+
 void printPart(const CollectedPart& part) {
   std::size_t bytes = 0;
   for (const PackedFile& file : part.result.files) bytes += file.content.size();
@@ -75,9 +82,7 @@ int report(const ReportOptions& options) {
     return fail(named.error());
   if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
   const ReportSubject subject = subjectOf(options);
-  const KnownSecrets secrets(
-      subject.loaded.settings,
-      fmt::format("{}/{}-page.token", subject.run_directory, subject.instance));
+  const KnownSecrets secrets(subject.loaded.settings, otherSecretFiles(subject));
   const auto parts = collect(subject, secrets, !options.json);
   if (!parts) return fail(parts.error());
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
