@@ -53,6 +53,17 @@ void checkPortsDiffer(const DevicesSettings& d, LoadedSettings& loaded) {
   }
 }
 
+// A ball that is read from MERLIN's own socket would feed itself.
+void checkOwnSocket(const Settings& s, LoadedSettings& loaded) {
+  const std::string& own = s.serve.spnav_socket;
+  if (own.empty() || s.devices.ball_line.port != "unix:" + own) return;
+  loaded.addFinding("/devices/ball/port",
+                    fmt::format("is \"unix:{0}\", the socket that merlind serves by "
+                                "/serve/spnav_socket; spacenavd's own socket is needed here, and "
+                                "another path there",
+                                own));
+}
+
 // The samples from another machine are encrypted, so the wall's input from it needs keys.
 void checkInput(const InputSettings& in, LoadedSettings& loaded) {
   if (in.endpoint.empty()) return;
@@ -208,8 +219,11 @@ void checkTogether(LoadedSettings& loaded) {
   addFaults(validate(d.tracker_line), "/devices/tracker", loaded);
   addFaults(validate(d.ball_line), "/devices/ball", loaded);
   checkPortsDiffer(d, loaded);
+  checkOwnSocket(s, loaded);
   addFaults(validate(d.glove, d.glove_line), "/devices/glove", loaded);
   addFaults(validate(d.ball), "/devices/ball", loaded);
+  addFaults(validate(d.spacenav), "/devices/ball/spacenav", loaded);
+  addFaults(validate(d.evdev), "/devices/ball/evdev", loaded);
   addFaults(validate(d.gpio), "/devices/gpio", loaded);
   checkProjectors(d, loaded);
   addFaults(validate(s.serve), "/serve", loaded);

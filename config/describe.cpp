@@ -26,14 +26,17 @@ constexpr const char* kWristLights[] = {"switch", "off", "on"};
 constexpr const char* kTrackerNumbers[] = {"binary", "text", "short"};
 constexpr const char* kGloves[] = {"cyberglove"};
 constexpr const char* kTrackers[] = {"fastrak"};
-constexpr const char* kBalls[] = {"spaceball", "sample"};
+constexpr const char* kBalls[] = {"spaceball", "spacenav", "evdev", "sample"};
 
 void describeLine(LineSettings& line, std::span<const char* const> drivers, SettingsVisitor& v) {
   v.choiceOf("driver", line.driver, drivers, "Driver that speaks to the device.");
   v.text(
       "port", line.port,
       "Where the device is connected: serial:/dev/... (preferably a name under /dev/serial/by-id), "
-      "pty:PATH, tcp://HOST:PORT (a raw serial server) or replay:FILE. Empty: no device.");
+      "pty:PATH, tcp://HOST:PORT (a raw serial server), unix:PATH (a socket, such as spacenavd's "
+      "unix:/run/spnav.sock), evdev:/dev/input/... (an input device, preferably a name under "
+      "/dev/input/by-id) or replay:FILE. Empty: no device. `merlin devices` lists what is plugged "
+      "in.");
   static const std::string kBaud = fmt::format("Speed of the serial line in bits per second: {}.",
                                                fmt::join(lineSpeeds(), ", "));
   v.integer("baud", line.baud,
@@ -42,8 +45,8 @@ void describeLine(LineSettings& line, std::span<const char* const> drivers, Sett
   v.integer("max_bytes_s", line.max_bytes_s, {0, 100'000'000},
             "Maximum number of bytes per second that are read from the device. A device that sends "
             "more is read at this rate and without real-time priority, and its health says so. "
-            "0: four times the number that the baud rate allows, or 1000000 for a port tcp:// or "
-            "replay:.");
+            "0: four times the number that the baud rate allows, or 1000000 for a port that is "
+            "neither serial: nor pty:.");
 }
 
 void describeGlove(DevicesSettings& d, SettingsVisitor& v) {
@@ -132,6 +135,33 @@ void describeTracker(DevicesSettings& d, SettingsVisitor& v) {
          "are in metres either way.");
 }
 
+void describeSpacenav(SpacenavSettings& s, SettingsVisitor& v) {
+  v.integer("full_scale", s.full_scale, {100, 32767},
+            "Count of an axis at a full push or twist, as spacenavd sends it.");
+  v.integer("dead_zone", s.dead_zone, {0, 99},
+            "Largest count of an axis, positive or negative, that is treated as rest.");
+  v.numbers("axis_map", s.axis_map, {-6, 6},
+            "Axis of spacenavd for each of x, y, z and the rotations about x, y, z: 1 to 3 are its "
+            "x, y, z, and 4 to 6 its rotations; a negative number reverses the axis.");
+}
+
+void describeEvdev(EvdevSettings& e, SettingsVisitor& v) {
+  static const std::string kAxes = fmt::format(
+      "Axis of the input device for each of x, y, z and the rotations about x, y, z, as six texts: "
+      "{}. Empty: as fits the kind of device.",
+      kAxisForms);
+  v.texts("axes", e.axes, kAxes.c_str());
+  v.texts("buttons", e.buttons,
+          "Keys of the input device that are ball.button.1, 2 and so on: the kernel's names without "
+          "KEY_ or BTN_, in lower case, such as south, tl or pagedown. Empty: the first twelve "
+          "buttons of the device. `merlin devices` lists its keys.");
+  v.number("dead_zone", e.dead_zone, {0, 0.9},
+           "Share of an axis's full deflection, to either side, that is treated as rest.");
+  v.number("curve", e.curve, {1, 5},
+           "Exponent of the response to an axis's deflection: 1 is linear; the greater, the finer "
+           "are small deflections.");
+}
+
 void describeBall(DevicesSettings& d, SettingsVisitor& v) {
   describeLine(d.ball_line, kBalls, v);
   v.integer("full_scale_translation", d.ball.full_scale_translation, {100, 32767},
@@ -156,6 +186,12 @@ void describeBall(DevicesSettings& d, SettingsVisitor& v) {
             "Device axis for each of x, y, z and the rotations about x, y, z: 1 to 3 are the "
             "device's X, Y, Z, and 4 to 6 its rotations A, B, C; a negative number reverses the "
             "axis.");
+  v.group("spacenav", "Settings of the driver spacenav, for a space mouse that spacenavd reads.",
+          [&] { describeSpacenav(d.spacenav, v); });
+  v.group("evdev",
+          "Settings of the driver evdev, for a gamepad, joystick, space mouse or clicker that the "
+          "kernel reads.",
+          [&] { describeEvdev(d.evdev, v); });
 }
 
 // What a room computes, if there is one.

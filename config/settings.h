@@ -9,12 +9,14 @@
 #include "daemon/serve/settings.h"
 #include "daemon/wall/settings.h"
 #include "drivers/cyberglove/settings.h"
+#include "drivers/evdev/settings.h"
 #include "drivers/fastrak/settings.h"
 #include "drivers/gpio/settings.h"
 #include "drivers/hand/settings.h"
 #include "drivers/pjlink/settings.h"
 #include "drivers/port/port_address.h"
 #include "drivers/spaceball/settings.h"
+#include "drivers/spacenav/settings.h"
 #include "nn/settings.h"
 #include "render/frame/settings.h"
 #include "render/governor/settings.h"
@@ -34,6 +36,8 @@ struct DevicesSettings {
   FastrakSettings tracker;
   LineSettings ball_line{"spaceball", "", kSpaceballBaud};
   SpaceballSettings ball;
+  SpacenavSettings spacenav;  // of the ball, with this driver
+  EvdevSettings evdev;        // the same
   HandSettings hand;
   GpioSettings gpio;
   std::vector<PjlinkSettings> projectors;

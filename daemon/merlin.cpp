@@ -33,11 +33,12 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", MERLIN_VERSION);
   cli::Run run;
   const cli::Command program(app);
-  for (const auto add :
-       {cli::addStatus, cli::addWatch, cli::addSnapshot, cli::addWall, cli::addShow, cli::addTrace,
-        cli::addMesh, cli::addImage, cli::addPosture, cli::addEmulate, cli::addRecord,
-        cli::addReplay, cli::addFlight, cli::addReport, cli::addCalibrate, cli::addConfig,
-        cli::addKeys, cli::addShm, cli::addCommandsByName}) {
+  for (const auto add : {cli::addStatus,        cli::addWatch,   cli::addDevices, cli::addSnapshot,
+                         cli::addWall,          cli::addShow,    cli::addTrace,   cli::addMesh,
+                         cli::addImage,         cli::addPosture, cli::addEmulate, cli::addRecord,
+                         cli::addReplay,        cli::addFlight,  cli::addReload,  cli::addReport,
+                         cli::addCalibrate,     cli::addConfig,  cli::addKeys,    cli::addShm,
+                         cli::addCommandsByName}) {
     add(program, run);
   }
   std::vector<std::string> names;

@@ -1,9 +1,11 @@
 #include "drivers/registry.h"
 
 #include "drivers/cyberglove/device.h"
+#include "drivers/evdev/device.h"
 #include "drivers/fastrak/device.h"
 #include "drivers/sample/device.h"
 #include "drivers/spaceball/device.h"
+#include "drivers/spacenav/device.h"
 
 namespace merlin {
 namespace {
@@ -25,6 +27,14 @@ constexpr DriverEntry kDrivers[] = {
     {"spaceball", SampleKind::kBall, kSpaceballBaud, "Spaceball 1003, 2003, 3003 or 4000 FLX",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return spaceball::makeDevice(s.spaceball, c, k);
+     }},
+    {"spacenav", SampleKind::kBall, 0, "space mouse, through spacenavd's socket",
+     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
+       return spacenav::makeDevice(s.spacenav, c, k);
+     }},
+    {"evdev", SampleKind::kBall, 0, "gamepad, joystick, space mouse or clicker, through the kernel",
+     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
+       return evdev::makeDevice(s.evdev, c, k);
      }},
     {"sample", SampleKind::kBall, 9600, "template for new drivers: a ball that sends lines of text",
      [](const DriverSettings&, const Clock& c, SampleSink& k) -> DevicePtr {

@@ -7,10 +7,12 @@
 
 #include "daemon/base/clock.h"
 #include "drivers/cyberglove/settings.h"
+#include "drivers/evdev/settings.h"
 #include "drivers/fastrak/settings.h"
 #include "drivers/port/device.h"
 #include "drivers/port/sample_sink.h"
 #include "drivers/spaceball/settings.h"
+#include "drivers/spacenav/settings.h"
 
 namespace merlin {
 
@@ -21,12 +23,14 @@ struct DriverSettings {
   CybergloveSettings cyberglove;
   FastrakSettings fastrak;
   SpaceballSettings spaceball;
+  SpacenavSettings spacenav;
+  EvdevSettings evdev;
 };
 
 struct DriverEntry {
   const char* name;
   SampleKind kind;
-  int baud;  // default speed of its line
+  int baud;  // default speed of its line; 0: it has none
   const char* help;
   std::unique_ptr<Device> (*make)(const DriverSettings&, const Clock&, SampleSink&);
 };

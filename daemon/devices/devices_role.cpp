@@ -1,5 +1,7 @@
 #include "daemon/devices/devices_role.h"
 
+#include <atomic>
+#include <cassert>
 #include <cstring>
 #include <utility>
 
@@ -24,6 +26,16 @@ constexpr int kRealTimePriority = 50;
 
 constexpr double kStreamBytes_s = 1e6;  // byte-rate limit of a line without a baud rate
 constexpr int kSpare = 4;               // byte-rate limit of a line, relative to its baud rate
+
+constexpr SampleKind kKinds[shm::kDevices] = {SampleKind::kGlove, SampleKind::kTracker,
+                                              SampleKind::kBall};
+
+const LineSettings& lineOf(const DevicesSettings& settings, shm::DeviceIndex index) {
+  if (index == shm::kGlove) return settings.glove_line;
+  return index == shm::kTracker ? settings.tracker_line : settings.ball_line;
+}
+
+constexpr shm::DeviceIndex kEach[] = {shm::kGlove, shm::kTracker, shm::kBall};
 
 double paceOf(const LineSettings& line, const PortAddress& address) {
   if (line.max_bytes_s > 0) return line.max_bytes_s;
@@ -147,78 +159,127 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
   if (!slots) return slots.error();
   std::unique_ptr<DevicesRole> role(new DevicesRole({*std::move(segment), *std::move(slots)},
                                                     settings, generation, watch, clock));
+  std::optional<nn::PostureNetwork> network;
+  if (const std::string& path = settings.devices.postures; !path.empty()) {
+    auto file = nn::loadNetwork(path);
+    if (!file) return file.error();
+    network = std::move(file->network);
+  }
   role->addPanel(settings.devices);
   role->addProjectors(settings.devices);
   role->cpu_latency_us_ = settings.devices.cpu_latency_us;
   role->segment_->tracker_frames.publish(framesOf(settings.devices.tracker));
-  const DevicesSettings& d = settings.devices;
-  const std::pair<const LineSettings*, std::pair<SampleKind, shm::DeviceIndex>> kLines[] = {
-      {&d.glove_line, {SampleKind::kGlove, shm::kGlove}},
-      {&d.tracker_line, {SampleKind::kTracker, shm::kTracker}},
-      {&d.ball_line, {SampleKind::kBall, shm::kBall}}};
-  for (const auto& [line, what] : kLines) {
-    if (const auto added = role->add(*line, what.first, what.second, settings); !added)
-      return added.error();
+  role->makeSinks(settings.devices, network);
+  for (const shm::DeviceIndex index : kEach) {
+    role->segment_->health[index].publish(notConfigured(clock.now()));
+    if (lineOf(settings.devices, index).port.empty()) continue;
+    if (const auto opened = role->open(index, settings.devices); !opened) return opened.error();
   }
   return role;
 }
 
-Result<Ok> DevicesRole::add(const LineSettings& line, SampleKind kind, shm::DeviceIndex index,
-                            const Settings& settings) {
-  shm::SeqSlot<DeviceHealth>& slot = segment_->health[index];
-  slot.publish(notConfigured(clock_.now()));
-  if (line.port.empty()) return Ok{};
-  const DriverEntry* driver = findDriver(kind, line.driver);
+// Builds the chains of sinks through which samples and health reach shared memory. Each sink
+// publishes its own result before it passes a sample on.
+void DevicesRole::makeSinks(const DevicesSettings& settings,
+                            const std::optional<nn::PostureNetwork>& network) {
+  for (const shm::DeviceIndex index : kEach) {
+    lines_[index] = std::unique_ptr<Line>(new Line{shm::kDeviceNames[index],
+                                                   shm::ShmHealthSink(segment_->health[index]),
+                                                   nullptr, nullptr, nullptr, WatchedThread()});
+  }
+  const auto actionsOf = [&](shm::ActionSource source, HealthSink& health) {
+    return std::make_unique<actions::ActionSink>(
+        actions::ActionWriter(settings.bindings, source, generation_, segment_->actions[source]),
+        actions::ActionSink::Parts{segment_->posture_state, sink_, health,
+                                   fromSeconds(settings.stale_after_s)});
+  };
+  glove_actions_ = actionsOf(shm::kGloveActions, lines_[shm::kGlove]->health);
+  ball_actions_ = actionsOf(shm::kBallActions, lines_[shm::kBall]->health);
+  posture_sink_ = std::make_unique<PostureSink>(
+      network, settings.posture_hold,
+      PostureSink::Outputs{segment_->posture, segment_->posture_state}, *glove_actions_);
+  hand_sink_ = std::make_unique<HandSink>(settings.hand, *segment_, sink_);
+  lines_[shm::kGlove]->counts = std::make_unique<ContinuedCounts>(*posture_sink_, *glove_actions_);
+  lines_[shm::kTracker]->counts =
+      std::make_unique<ContinuedCounts>(*hand_sink_, lines_[shm::kTracker]->health);
+  lines_[shm::kBall]->counts = std::make_unique<ContinuedCounts>(*ball_actions_, *ball_actions_);
+}
+
+// Makes the loop of a device that has a port.
+Result<Ok> DevicesRole::open(shm::DeviceIndex index, const DevicesSettings& settings) {
+  const LineSettings& line = lineOf(settings, index);
+  const DriverEntry* driver = findDriver(kKinds[index], line.driver);
   if (!driver) return Error{Errc::kInvalidArgument, "there is no driver named " + line.driver};
   const auto address = parsePort(line.port);
   if (!address) return address.error();
-  const DriverSettings own{settings.devices.glove, settings.devices.tracker, settings.devices.ball};
-  health_.push_back(std::make_unique<shm::ShmHealthSink>(slot));
-  const auto chain = sinksFor(kind, *health_.back(), settings.devices);
-  if (!chain) return chain.error();
+  const DriverSettings own{settings.glove, settings.tracker, settings.ball, settings.spacenav,
+                           settings.evdev};
   DeviceLoopSettings loop;
   loop.port = line.port;
   loop.baud = line.baud;
   loop.max_bytes_s = paceOf(line, *address);
   loop.on_pace = [](bool above) { above ? giveUpRealTime() : askForRealTime(); };
-  ByteTap& tap = flight_.add(index, line.driver, line.baud);
-  lines_.push_back(std::make_unique<Line>());
-  Line& entry = *lines_.back();
+  ByteTap& tap = flight_.ringOf(index, line.driver, line.baud);
+  Line& entry = *lines_[index];
   entry.name = line.driver;
-  entry.loop = std::make_unique<DeviceLoop>(
-      loop, Opener(*address, line.baud, tap, entry.progress, clock_),
-      driver->make(own, clock_, *chain->samples), *chain->health, clock_);
+  entry.loop =
+      std::make_unique<DeviceLoop>(loop, Opener(*address, line.baud, tap, entry.progress, clock_),
+                                   driver->make(own, clock_, *entry.counts), *entry.counts, clock_);
   return Ok{};
 }
 
-// Builds the chain of sinks through which a device's samples and health reach shared memory. Each
-// sink publishes its own result before it passes a sample on.
-Result<DevicesRole::Sinks> DevicesRole::sinksFor(SampleKind kind, HealthSink& health,
-                                                 const DevicesSettings& settings) {
-  if (kind == SampleKind::kTracker) {
-    hand_sink_ = std::make_unique<HandSink>(settings.hand, *segment_, sink_);
-    return Sinks{hand_sink_.get(), &health};
+void DevicesRole::start(Line& line) {
+  if (!line.loop) return;
+  line.thread =
+      WatchedThread(watch_, line.name, [&line](const std::stop_token& stop, Progress& progress) {
+        line.progress = &progress;
+        askForRealTime();
+        line.loop->run(stop, [&progress] { progress.step(); });
+      });
+}
+
+// Stops the device's thread, if it has one. What its inputs hold ends.
+void DevicesRole::close(shm::DeviceIndex index) {
+  Line& line = *lines_[index];
+  line.thread.stop();
+  line.loop.reset();
+  flight_.expectEnd(index);
+  line.counts->restart();
+  const std::int64_t now_ns = toNanoseconds(clock_.now());
+  if (index == shm::kGlove) glove_actions_->release(now_ns);
+  if (index == shm::kBall) ball_actions_->release(now_ns);
+}
+
+void DevicesRole::reload(const Settings& settings, const DevicesChanges& changes,
+                         const std::optional<nn::PostureNetwork>& network) {
+  const DevicesSettings& devices = settings.devices;
+  if (changes.bindings) {
+    const Duration stale_after = fromSeconds(devices.stale_after_s);
+    glove_actions_->reload(devices.bindings, stale_after);
+    ball_actions_->reload(devices.bindings, stale_after);
+    if (panel_actions_) panel_actions_->rebind(devices.bindings);
   }
-  const auto source = kind == SampleKind::kBall ? shm::kBallActions : shm::kGloveActions;
-  actions::ActionWriter writer(settings.bindings, source, generation_, segment_->actions[source]);
-  action_sinks_.push_back(std::make_unique<actions::ActionSink>(
-      std::move(writer), actions::ActionSink::Parts{segment_->posture_state, sink_, health,
-                                                    fromSeconds(settings.stale_after_s)}));
-  actions::ActionSink& actions = *action_sinks_.back();
-  if (kind == SampleKind::kBall || settings.postures.empty()) return Sinks{&actions, &actions};
-  const auto file = nn::loadNetwork(settings.postures);
-  if (!file) return file.error();
-  posture_sink_ = std::make_unique<PostureSink>(
-      file->network, settings.posture_hold,
-      PostureSink::Outputs{segment_->posture, segment_->posture_state}, actions);
-  return Sinks{posture_sink_.get(), &actions};
+  if (changes.hand) hand_sink_->reload(devices.hand);
+  if (changes.postures) posture_sink_->reload(network, devices.posture_hold);
+  if (changes.lines[shm::kTracker]) segment_->tracker_frames.publish(framesOf(devices.tracker));
+  for (const shm::DeviceIndex index : kEach) {
+    if (!changes.lines[index]) continue;
+    close(index);
+    if (lineOf(devices, index).port.empty()) {
+      segment_->health[index].publish(notConfigured(clock_.now()));
+      continue;
+    }
+    [[maybe_unused]] const auto opened = open(index, devices);
+    assert(opened);
+    start(*lines_[index]);
+  }
 }
 
 void DevicesRole::addPanel(const DevicesSettings& devices) {
   const GpioSettings& settings = devices.gpio;
   segment_->gpio_health.publish(notConfigured(clock_.now()));
   if (settings.chip.empty()) return;
-  health_.push_back(std::make_unique<shm::ShmHealthSink>(segment_->gpio_health));
+  panel_health_ = std::make_unique<shm::ShmHealthSink>(segment_->gpio_health);
   const auto open = [settings] {
     return io::openGpioChip(settings.chip,
                             {settings.projector_line, settings.video_line, settings.lamp_line},
@@ -232,7 +293,7 @@ void DevicesRole::addPanel(const DevicesSettings& devices) {
   panel_actions_ = std::make_unique<actions::ActionWriter>(
       devices.bindings, shm::kPanelActions, generation_, segment_->actions[shm::kPanelActions]);
   panel_ = std::make_unique<gpio::PanelLoop>(
-      settings, open, publish, *health_.back(), clock_,
+      settings, open, publish, *panel_health_, clock_,
       [this] { panel_actions_->press(toNanoseconds(clock_.now())); });
 }
 
@@ -279,19 +340,18 @@ void DevicesRole::start() {
     });
   }
   if (projectors_) projectors_->start(watch_, threads_);
-  for (const auto& line : lines_) {
-    threads_.emplace_back(watch_, line->name,
-                          [&line = *line](const std::stop_token& stop, Progress& progress) {
-                            line.progress = &progress;
-                            askForRealTime();
-                            line.loop->run(stop, [&progress] { progress.step(); });
-                          });
-  }
+  for (const auto& line : lines_) start(*line);
 }
 
 DevicesRole::~DevicesRole() {
   for (WatchedThread& thread : threads_) thread.requestStop();
+  for (const auto& line : lines_) {
+    if (line) line->thread.requestStop();
+  }
   threads_.clear();
+  for (const auto& line : lines_) {
+    if (line) line->thread.stop();
+  }
 }
 
 }  // namespace merlin::devices

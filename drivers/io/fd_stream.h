@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "daemon/base/unique_fd.h"
+#include "drivers/io/fd_wait.h"
 #include "drivers/port/byte_stream.h"
 
 namespace merlin::io {
@@ -22,12 +22,9 @@ class FdStream final : public ByteStream {
   void interrupt() noexcept override;
 
  private:
-  // Waits until the descriptor is ready for `events`. Errors: kTimeout, kClosed, kIo.
-  Result<Ok> await(short events, Duration timeout);
-
   int fd_;
   std::function<void()> close_;
-  UniqueFd wake_;  // eventfd that interrupt() signals; it is never cleared
+  FdWait wait_;
 };
 
 }  // namespace merlin::io

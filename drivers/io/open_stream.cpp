@@ -6,34 +6,20 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <grp.h>
 #include <libserialport.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <termios.h>
 
+#include "drivers/io/evdev_stream.h"
 #include "drivers/io/fd_stream.h"
 #include "drivers/io/low_latency.h"
+#include "drivers/io/open_error.h"
 #include "drivers/io/replay_stream.h"
 #include "drivers/io/tcp_stream.h"
+#include "drivers/io/unix_stream.h"
 
 namespace merlin::io {
 namespace {
-
-// " (its group is dialout: usermod -aG dialout USER)" if errno is EACCES; otherwise empty.
-std::string groupHint(const std::string& path) {
-  struct stat status {};
-  if (errno != EACCES || ::stat(path.c_str(), &status) != 0) return {};
-  const group* owner = ::getgrgid(status.st_gid);
-  return owner ? fmt::format(" (its group is {0}: usermod -aG {0} USER)", owner->gr_name) : "";
-}
-
-Error openError(const std::string& path, int error) {
-  errno = error;
-  const std::string hint = groupHint(path);
-  return {error == ENOENT ? Errc::kNotFound : Errc::kIo,
-          fmt::format("{}: {}{}", path, std::strerror(error), hint)};
-}
 
 Result<Ok> lockPort(int fd, const std::string& path) {
   if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return Ok{};
@@ -141,6 +127,8 @@ Result<std::unique_ptr<ByteStream>> openPort(const PortAddress& address, int bau
     case PortKind::kSerial: return openSerial(address.path, baud);
     case PortKind::kTcp: return openTcp(address.path, address.service);
     case PortKind::kReplay: return openReplay(address.path);
+    case PortKind::kUnix: return openUnix(address.path);
+    case PortKind::kEvdev: return openEvdev(address.path);
     case PortKind::kPty: break;
   }
   return openPty(address.path, baud);

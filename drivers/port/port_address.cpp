@@ -12,15 +12,21 @@ namespace merlin {
 namespace {
 
 constexpr int kSpeeds[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
-constexpr const char* kForms = "serial:/dev/..., pty:PATH, tcp://HOST:PORT and replay:FILE";
+constexpr const char* kForms =
+    "serial:/dev/..., pty:PATH, tcp://HOST:PORT, unix:PATH, evdev:/dev/input/... and replay:FILE";
+
+constexpr std::string_view kEvdevDriver = "evdev";
 
 }  // namespace
 
 std::span<const int> lineSpeeds() { return kSpeeds; }
 
 Result<PortAddress> parsePort(std::string_view text) {
-  constexpr std::pair<std::string_view, PortKind> kPrefixes[] = {
-      {"serial:", PortKind::kSerial}, {"pty:", PortKind::kPty}, {"replay:", PortKind::kReplay}};
+  constexpr std::pair<std::string_view, PortKind> kPrefixes[] = {{"serial:", PortKind::kSerial},
+                                                                 {"pty:", PortKind::kPty},
+                                                                 {"unix:", PortKind::kUnix},
+                                                                 {"evdev:", PortKind::kEvdev},
+                                                                 {"replay:", PortKind::kReplay}};
   for (const auto& [prefix, kind] : kPrefixes) {
     if (text.starts_with(prefix) && text.size() > prefix.size())
       return PortAddress{kind, std::string(text.substr(prefix.size())), {}};
@@ -33,7 +39,13 @@ Result<PortAddress> parsePort(std::string_view text) {
 
 SettingFaults validate(const LineSettings& line) {
   SettingFaults faults;
-  if (!line.port.empty() && !parsePort(line.port)) {
+  const auto port = parsePort(line.port);
+  if (port && (port->kind == PortKind::kEvdev) && line.driver != kEvdevDriver) {
+    faults.push_back({"/port", fmt::format("is \"{}\", an input device of the kernel, which the "
+                                           "driver \"{}\" does not read; set \"driver\": \"{}\"",
+                                           line.port, line.driver, kEvdevDriver)});
+  }
+  if (!line.port.empty() && !port) {
     faults.push_back({"/port", fmt::format("is \"{}\"; allowed are {}, or \"\" for no device",
                                            line.port, kForms)});
   }

@@ -1,6 +1,7 @@
 // PortAddress: address of a device's line: `serial:/dev/...`, `pty:PATH` (an emulator or another
-// program's pseudo-terminal), `tcp://HOST:PORT` (a raw serial server) or `replay:FILE` (a
-// transcript).
+// program's pseudo-terminal), `tcp://HOST:PORT` (a raw serial server), `unix:PATH` (a local socket
+// that another program listens at, such as spacenavd's), `evdev:PATH` (an input device of the
+// kernel) or `replay:FILE` (a transcript).
 #pragma once
 
 #include <span>
@@ -12,7 +13,7 @@
 
 namespace merlin {
 
-enum class PortKind { kSerial, kPty, kTcp, kReplay };
+enum class PortKind { kSerial, kPty, kTcp, kUnix, kEvdev, kReplay };
 
 struct PortAddress {
   PortKind kind = PortKind::kPty;
@@ -35,11 +36,12 @@ struct LineSettings {
   std::string port;    // in a form that parsePort() understands; empty: no device
   int baud = 38400;
   // Maximum number of bytes read per second; 0: four times what the baud rate carries, or a million
-  // for tcp:// and replay:.
+  // for a line that has none.
   int max_bytes_s = 0;
 };
 
-// Finds a port or speed that is not allowed. Pointers: "/port", "/baud".
+// Finds a port or speed that is not allowed, and a port that the driver cannot read. Pointers:
+// "/port", "/baud".
 SettingFaults validate(const LineSettings& line);
 
 }  // namespace merlin

@@ -1,10 +1,10 @@
 // Settings of a Spaceball.
 #pragma once
 
-#include <array>
 #include <string>
 
 #include "daemon/base/setting_fault.h"
+#include "drivers/port/axes.h"
 
 namespace merlin {
 
@@ -25,7 +25,7 @@ struct SpaceballSettings {
   std::string beep = {};
   // For x, y, z and the rotations about them: the device's axis 1..6 (X Y Z A B C), negative if it
   // is reversed.
-  std::array<int, 6> axis_map = {1, 2, -3, 4, 5, -6};
+  AxisMap axis_map = {1, 2, -3, 4, 5, -6};
 };
 
 // Finds an axis map in which an axis is missing or repeated. Pointer: "/axis_map".

@@ -18,8 +18,10 @@
 #include "drivers/emulate/emulator.h"
 #include "drivers/fastrak/protocol.h"
 #include "drivers/io/transcript.h"
+#include "drivers/port/evdev_line.h"
 #include "drivers/sample/protocol.h"
 #include "drivers/spaceball/protocol.h"
+#include "drivers/spacenav/protocol.h"
 #include "tests/bench/figures.h"
 
 namespace merlin::bench {
@@ -83,6 +85,23 @@ std::string textRecord(Random& r) {
   return sample::encode(record);
 }
 
+std::string spacenavFrame(Random& r) {
+  spacenav::Frame frame{};
+  for (std::int32_t& word : frame) word = anyShort(r);
+  frame[0] = static_cast<std::int32_t>(r.below(7));
+  return spacenav::encode(frame);
+}
+
+std::string evdevRecord(Random& r) {
+  EvdevRecord record;
+  record.kind = static_cast<EvdevRecord::Kind>(1 + r.below(9));
+  record.code = static_cast<std::uint16_t>(r.below(768));
+  record.value = anyShort(r);
+  std::string bytes;
+  append(record, bytes);
+  return bytes;
+}
+
 std::string transcriptLine(Random& r) {
   return fmt::format("# device: x # serial: 9600\n@{:.6f} {}{:04x} <- note\n# end\n", r.uniform(),
                      r.below(2) ? "to " : "", r.below(65536));
@@ -124,6 +143,8 @@ const Target kTargets[] = {
        return fastrak::encode(fastrak::Status{});
      }},
     {"spaceball", [] { return each(std::make_shared<spaceball::Parser>()); }, ballPacket},
+    {"spacenav", [] { return each(std::make_shared<spacenav::Parser>()); }, spacenavFrame},
+    {"evdev", [] { return each(std::make_shared<EvdevParser>()); }, evdevRecord},
     {"sample", [] { return each(std::make_shared<sample::Parser>()); }, textRecord},
     {"calibration files",
      []() -> Feed {

@@ -128,6 +128,7 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
                            "/usr/share/merlin/wall.json",
                            "/usr/share/merlin/merlind.service.d/network.conf",
                            "/usr/share/merlin/merlind.service.d/gpio.conf",
+                           "/usr/share/merlin/merlind.service.d/input.conf",
                            "/usr/share/merlin/merlind.service.d/gpu.conf",
                            "/usr/share/merlin/merlind.service.d/files.conf",
                            "/usr/share/merlin/spnav.tmpfiles.conf",

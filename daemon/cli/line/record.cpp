@@ -114,7 +114,7 @@ int record(const RecordOptions& options) {
   recording.transcript.header = {
       {"device", identity ? *identity : "no device answered: " + identity.error().what},
       {"driver", driver ? driver->name : "none, the line was only read"},
-      {"serial", fmt::format("{} 8N1", baud)},
+      {"serial", baud > 0 ? fmt::format("{} 8N1", baud) : "none"},
       {"synthetic", "not known: from " + options.port},
       {"by", "merlin record"},
       {"date", fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))}};
@@ -187,7 +187,8 @@ void addRecord(Command app, Run& run) {
                                    "ball.bytes");
   command
       .option("port", options->port,
-              "Port of the device: serial:/dev/..., pty:PATH or tcp://HOST:PORT")
+              "Port of the device: serial:/dev/..., pty:PATH, tcp://HOST:PORT, unix:PATH or "
+              "evdev:/dev/input/...")
       .required();
   command.option("-o,--output", options->output, "File to write the transcript into (text)")
       .required();

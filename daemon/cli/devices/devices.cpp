@@ -1,0 +1,182 @@
+// merlin devices: the devices that a running merlind reads, and what is plugged into this machine
+// and not configured.
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <poll.h>
+#include <unistd.h>
+
+#include "daemon/cli/command.h"
+#include "daemon/cli/devices/live_table.h"
+#include "daemon/cli/devices/plugged.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
+#include "daemon/cli/stop_signals.h"
+#include "daemon/shm/segment.h"
+#include "drivers/port/port_address.h"
+
+namespace merlin::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kRedraw_ms = 100;
+
+struct DevicesOptions {
+  std::string instance = "merlin";
+  bool json = false, watch = false;
+  double seconds = 0;
+};
+
+struct Configured {
+  std::string name, state;
+  DeviceHealth health;
+  std::string path;  // of its port's file, without links; empty: its port has none
+};
+
+std::string pathOf(const std::string& port) {
+  const auto address = parsePort(port);
+  if (!address || address->kind == PortKind::kTcp) return {};
+  std::error_code error;
+  const auto real = std::filesystem::canonical(address->path, error);
+  return error ? address->path : real.string();
+}
+
+// Of a merlind that runs; empty otherwise.
+Result<std::vector<Configured>> configuredDevices(const std::string& instance) {
+  const auto reader = shm::DevicesReader::open(shm::segmentName(instance, "devices"));
+  if (!reader) return reader.error();
+  const Timestamp now = SystemClock().now();
+  if (!reader->alive(now)) return Error{Errc::kNotFound, "it has ended"};
+  std::vector<Configured> all;
+  for (const auto& [device, slot] : (*reader)->health) {
+    const auto health = slot->read();
+    if (health)
+      all.push_back({device, shm::healthName(*health, now), *health, pathOf(health->port)});
+  }
+  return all;
+}
+
+// The device whose port this is; null if none is.
+const Configured* readerOf(const Plugged& plugged, const std::vector<Configured>& configured) {
+  const auto at = std::ranges::find(configured, plugged.path, &Configured::path);
+  return at == configured.end() ? nullptr : &*at;
+}
+
+void printConfigured(const std::vector<Configured>& configured) {
+  for (const Configured& device : configured) {
+    const DeviceHealth& h = device.health;
+    const bool works = device.state == "ok";
+    const std::string what = works ? fmt::format("{:.1f} Hz  {}{}{}", h.rate_hz, h.identity,
+                                                 h.reason[0] ? "; " : "", h.reason)
+                                   : h.reason;
+    printOut("  {:8} {:8} {}{}{}\n", device.name, device.state, h.port, h.port[0] ? "  " : "",
+             what);
+  }
+}
+
+void printPlugged(const Plugged& plugged, const Configured* reader) {
+  printOut("  {}: {}\n", plugged.kind, plugged.name);
+  if (reader) {
+    printOut("    is the {}'s port\n", reader->name);
+    return;
+  }
+  for (const std::string& role : plugged.roles)
+    printOut("    {}\n", configurationLine(plugged, role));
+  if (plugged.roles.empty()) printOut("    {}: no driver reads it\n", plugged.port);
+  if (!plugged.readable && !plugged.roles.empty()) {
+    printOut("    this user may not open it{}\n",
+             plugged.group.empty() ? "" : fmt::format("; its group is {}", plugged.group));
+  }
+}
+
+Json jsonOf(const Configured& device) {
+  return {{"name", device.name},
+          {"health", device.state},
+          {"port", device.health.port},
+          {"identity", device.health.identity},
+          {"reason", device.health.reason},
+          {"rate_hz", device.health.rate_hz},
+          {"samples", device.health.samples},
+          {"reconnects", device.health.reconnects}};
+}
+
+Json jsonOf(const Plugged& plugged, const Configured* reader) {
+  Json lines = Json::object();
+  for (const std::string& role : plugged.roles) {
+    lines[role] = {{"port", plugged.port}};
+    if (!plugged.driver.empty()) lines[role]["driver"] = plugged.driver;
+  }
+  return {{"kind", plugged.kind},         {"name", plugged.name},
+          {"port", plugged.port},         {"read_by", reader ? Json(reader->name) : Json()},
+          {"readable", plugged.readable}, {"group", plugged.group},
+          {"as", std::move(lines)}};
+}
+
+int list(const DevicesOptions& options) {
+  const auto running = configuredDevices(options.instance);
+  const std::vector<Configured> configured = running ? *running : std::vector<Configured>();
+  const std::vector<Plugged> all = findPlugged();
+  if (options.json) {
+    Json json = {
+        {"running", running.ok()}, {"configured", Json::array()}, {"plugged", Json::array()}};
+    for (const Configured& device : configured) json["configured"].push_back(jsonOf(device));
+    for (const Plugged& plugged : all)
+      json["plugged"].push_back(jsonOf(plugged, readerOf(plugged, configured)));
+    printJsonLine(json);
+    return kExitDone;
+  }
+  if (running)
+    printOut("Devices of merlind \"{}\":\n", options.instance);
+  else
+    printOut("No merlind with devices runs as \"{}\".\n", options.instance);
+  printConfigured(configured);
+  printOut("{}\n", all.empty() ? "Nothing is plugged in that could be a device."
+                               : "Plugged in, with the line for \"devices\" of the configuration:");
+  for (const Plugged& plugged : all) printPlugged(plugged, readerOf(plugged, configured));
+  return kExitDone;
+}
+
+// On a terminal each table replaces the one before.
+int watch(const DevicesOptions& options) {
+  const UniqueFd stop = stopSignals();
+  const auto reader = shm::DevicesReader::open(shm::segmentName(options.instance, "devices"));
+  if (!reader) return fail(reader.error());
+  const SystemClock clock;
+  const Timestamp began = clock.now();
+  const bool terminal = ::isatty(STDOUT_FILENO) == 1;
+  while (options.seconds <= 0 || toSeconds(clock.now() - began) < options.seconds) {
+    if (!reader->alive(clock.now())) return fail({Errc::kClosed, "merlind has ended"});
+    if (terminal) fmt::print("\x1b[H\x1b[J");
+    printOut("{}\n", liveTable(**reader, clock.now()));
+    std::fflush(stdout);
+    pollfd item{stop.get(), POLLIN, 0};
+    if (::poll(&item, 1, kRedraw_ms) > 0) break;
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+void addDevices(Command app, Run& run) {
+  const auto options = std::make_shared<DevicesOptions>();
+  Command command = app.subcommand(
+      "devices",
+      "List the devices that merlind reads and how they are, and what is plugged into this machine "
+      "and not configured (serial adapters, gamepads, space mice, clickers), with the line that "
+      "makes it a device. No device is opened.\nExample: merlin devices; merlin devices --watch");
+  addInstance(command, options->instance);
+  command.flag("--json", options->json, "Print one JSON document");
+  command.flag("--watch", options->watch,
+               "Show what the devices measure, ten times a second, until interrupted");
+  command.option("--for", options->seconds, "With --watch: duration in seconds").seconds();
+  command.callback([options, &run] {
+    run = [options] { return options->watch ? watch(*options) : list(*options); };
+  });
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,92 @@
+#include "daemon/cli/devices/live_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <span>
+
+#include <fmt/format.h>
+
+namespace merlin::cli {
+namespace {
+
+constexpr int kHalfBar = 10;  // characters to either side of rest
+
+std::string ballLines(const BallSample& ball) {
+  constexpr const char* kNames[] = {"x", "y", "z", "about x", "about y", "about z"};
+  std::string text;
+  for (int i = 0; i < 6; ++i) {
+    const float share = i < 3 ? ball.translation[i] : ball.rotation[i - 3];
+    text +=
+        fmt::format("    {:8} {} {:6.3f}  raw {}\n", kNames[i], axisBar(share), share, ball.raw[i]);
+  }
+  std::string pressed;
+  for (int button = 0; button < 12; ++button) {
+    if (ball.buttons >> button & 1) pressed += fmt::format(" {}", button + 1);
+  }
+  return text + fmt::format("    buttons {}\n", pressed.empty() ? " none" : pressed);
+}
+
+std::string gloveLines(const GloveSample& glove, const shm::DeviceSlots& devices) {
+  std::string joints;
+  for (std::size_t i = 0; i < std::size(glove.angle_rad); ++i) {
+    if (i % 8 == 0) joints += i == 0 ? "    degrees " : "\n            ";
+    joints += fmt::format(" {:6.1f}", glove.angle_rad[i] * 180 / std::numbers::pi_v<float>);
+  }
+  const auto posture = devices.posture_state ? devices.posture_state->read() : std::nullopt;
+  const std::string name = posture ? posture->name : "";
+  return fmt::format("{}\n    posture  {}\n", joints, name.empty() ? "none" : name);
+}
+
+std::string trackerLines(const shm::DeviceSlots& devices) {
+  std::string text;
+  for (const auto* channel : devices.tracker) {
+    const auto s = channel ? channel->newest() : std::nullopt;
+    if (!s) continue;
+    text += fmt::format(
+        "    station {}  {:7.3f} {:7.3f} {:7.3f} m  turned {:5.3f} {:6.3f} {:6.3f} "
+        "{:6.3f}{}\n",
+        s->station, s->position_m[0], s->position_m[1], s->position_m[2], s->orientation_wxyz[0],
+        s->orientation_wxyz[1], s->orientation_wxyz[2], s->orientation_wxyz[3],
+        s->stylus ? "  button" : "");
+  }
+  return text;
+}
+
+std::string valuesOf(const shm::SeqSlot<DeviceHealth>* slot, const shm::DeviceSlots& devices) {
+  if (slot == devices.ball_health) {
+    const auto ball = devices.ball->newest();
+    return ball ? ballLines(*ball) : "";
+  }
+  if (slot == devices.glove_health) {
+    const auto glove = devices.glove->newest();
+    return glove ? gloveLines(*glove, devices) : "";
+  }
+  return slot == devices.tracker_health ? trackerLines(devices) : "";
+}
+
+}  // namespace
+
+std::string axisBar(float share) {
+  const int length = static_cast<int>(std::lround(std::min(std::abs(share), 1.0F) * kHalfBar));
+  const auto bar = [&](bool filled) {
+    return std::string(static_cast<std::size_t>(filled ? length : 0), '#');
+  };
+  return fmt::format("[{:>{}}|{:<{}}]", bar(share < 0), kHalfBar, bar(share > 0), kHalfBar);
+}
+
+std::string liveTable(const shm::DeviceSlots& devices, Timestamp now) {
+  std::string text;
+  for (const auto& [device, slot] : devices.health) {
+    const auto health = slot->read();
+    if (!health) continue;
+    const std::string_view state = shm::healthName(*health, now);
+    text += fmt::format("  {:8} {:8} {:7.1f} Hz  {}\n", device, state, health->rate_hz,
+                        state == "ok" ? health->identity : health->reason);
+    if (state == "ok") text += valuesOf(slot, devices);
+  }
+  return text;
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,19 @@
+// The newest values of all devices, as lines for a person.
+#pragma once
+
+#include <string>
+
+#include "daemon/base/clock.h"
+#include "daemon/shm/device_slots.h"
+
+namespace merlin::cli {
+
+// Each device with its health; below it, if it works, what it measures now: bars for the ball's
+// axes and the numbers of its buttons, the glove's joints in degrees and its posture, the position
+// of each of the tracker's stations.
+std::string liveTable(const shm::DeviceSlots& devices, Timestamp now);
+
+// "[----|##  ]" for a share -1..1.
+std::string axisBar(float share);
+
+}  // namespace merlin::cli

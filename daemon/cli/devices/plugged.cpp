@@ -1,0 +1,170 @@
+#include "daemon/cli/devices/plugged.h"
+
+#include <algorithm>
+#include <bitset>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <grp.h>
+#include <linux/input-event-codes.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace merlin::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> entriesOf(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  std::error_code error;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    entries.push_back(at->path());
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+std::string firstLine(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
+
+// The path without links; itself if that cannot be found out.
+std::string withoutLinks(const fs::path& path) {
+  std::error_code error;
+  const fs::path real = fs::canonical(path, error);
+  return error ? path.string() : real.string();
+}
+
+std::string groupOf(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return {};
+  const group* const owner = ::getgrgid(status.st_gid);  // NOLINT(concurrency-mt-unsafe)
+  return owner ? owner->gr_name : "";
+}
+
+// The links of a folder such as /dev/input/by-id, by the file that each points to. Names there stay
+// the same when a device is plugged in elsewhere. The last of several is taken: of a gamepad that
+// is
+// "...-event-joystick".
+std::map<std::string, std::string> linksOf(const fs::path& folder) {
+  std::map<std::string, std::string> links;
+  for (const fs::path& entry : entriesOf(folder)) links[withoutLinks(entry)] = entry.string();
+  return links;
+}
+
+// The number of bits that a kernel's bitmap has; words of 64 bits, the last one first.
+template <std::size_t N>
+std::bitset<N> bitmap(const fs::path& file) {
+  std::istringstream words(firstLine(file));
+  std::vector<std::string> all;
+  for (std::string word; words >> word;) all.push_back(word);
+  std::bitset<N> bits;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const unsigned long long word = std::strtoull(all[all.size() - 1 - i].c_str(), nullptr, 16);
+    for (std::size_t bit = 0; bit < 64 && 64 * i + bit < N; ++bit)
+      bits[64 * i + bit] = word >> bit & 1;
+  }
+  return bits;
+}
+
+// What kind of input device it is; empty for one that cannot serve (a power button, a lid).
+std::string kindOf(const fs::path& capabilities) {
+  const auto keys = bitmap<KEY_CNT>(capabilities / "key");
+  const auto absolute = bitmap<ABS_CNT>(capabilities / "abs");
+  const auto relative = bitmap<REL_CNT>(capabilities / "rel");
+  const auto six = [](const auto& axes) {
+    for (int code = ABS_X; code <= ABS_RZ; ++code) {
+      if (!axes[static_cast<std::size_t>(code)]) return false;
+    }
+    return true;
+  };
+  if (keys[BTN_GAMEPAD]) return "gamepad";
+  if (keys[BTN_JOYSTICK]) return "joystick";
+  if (six(absolute) || six(relative)) return "space mouse";
+  if (absolute[ABS_MT_POSITION_X]) return "touch screen";
+  if (keys[BTN_MOUSE] && relative[REL_X]) return "mouse";
+  if (keys[KEY_PAGEDOWN] || keys[KEY_NEXT]) return keys[KEY_A] ? "keyboard" : "clicker";
+  return {};
+}
+
+void addAdapters(const std::string& root, std::vector<Plugged>& all) {
+  const auto links = linksOf(root + "/dev/serial/by-id");
+  std::map<std::string, std::string> found = links;  // by file: the name to be used
+  for (const fs::path& entry : entriesOf(root + "/sys/class/tty")) {
+    const std::string name = entry.filename();
+    const bool adapter = name.starts_with("ttyUSB") || name.starts_with("ttyACM");
+    const std::string device = root + "/dev/" + name;
+    if (adapter && fs::exists(device)) found.emplace(withoutLinks(device), device);
+  }
+  for (const auto& [path, name] : found) {
+    all.push_back({"serial adapter",
+                   fs::path(name).filename(),
+                   "serial:" + name,
+                   path,
+                   {"glove", "tracker", "ball"},
+                   "",
+                   ::access(path.c_str(), R_OK | W_OK) == 0,
+                   groupOf(path)});
+  }
+}
+
+void addInputDevices(const std::string& root, std::vector<Plugged>& all) {
+  const auto links = linksOf(root + "/dev/input/by-id");
+  std::vector<Plugged> found;
+  for (const fs::path& entry : entriesOf(root + "/sys/class/input")) {
+    if (!entry.filename().string().starts_with("event")) continue;
+    const std::string kind = kindOf(entry / "device/capabilities");
+    if (kind.empty()) continue;
+    const std::string path = withoutLinks(root + "/dev/input/" + entry.filename().string());
+    const auto link = links.find(path);
+    found.push_back({kind,
+                     firstLine(entry / "device/name"),
+                     "evdev:" + (link == links.end() ? path : link->second),
+                     path,
+                     {"ball"},
+                     "evdev",
+                     ::access(path.c_str(), R_OK) == 0,
+                     groupOf(path)});
+    if (kind == "touch screen") found.back().roles.clear();  // no driver reads it
+  }
+  std::ranges::stable_sort(found, {}, &Plugged::name);
+  all.insert(all.end(), found.begin(), found.end());
+}
+
+void addSpacenavd(const std::string& root, std::vector<Plugged>& all) {
+  const std::string path = root + "/run/spnav.sock";
+  std::error_code error;
+  if (!fs::is_socket(path, error)) return;
+  all.push_back({"space-mouse socket",
+                 "spacenavd, or another program that serves as one",
+                 "unix:" + path,
+                 path,
+                 {"ball"},
+                 "spacenav",
+                 ::access(path.c_str(), R_OK | W_OK) == 0,
+                 groupOf(path)});
+}
+
+}  // namespace
+
+std::vector<Plugged> findPlugged(const std::string& root) {
+  std::vector<Plugged> all;
+  addAdapters(root, all);
+  addInputDevices(root, all);
+  addSpacenavd(root, all);
+  return all;
+}
+
+std::string configurationLine(const Plugged& plugged, const std::string& role) {
+  const std::string driver =
+      plugged.driver.empty() ? "" : fmt::format("\"driver\": \"{}\", ", plugged.driver);
+  return fmt::format("\"{}\": {{{}\"port\": \"{}\"}}", role, driver, plugged.port);
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,216 @@
+#include "drivers/evdev/input_device.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <linux/input-event-codes.h>
+
+#include "drivers/port/axes.h"
+
+namespace merlin::evdev {
+namespace {
+
+// Counts of a relative axis at full deflection: what 3Dconnexion's mice send.
+constexpr std::int32_t kRelativeScale = 350;
+constexpr std::size_t kMostKeys = 768;  // the kernel's KEY_CNT
+constexpr std::size_t kLongestName = 200;
+
+AxisSource plain(int code) { return {code, -1, false}; }
+AxisSource reversed(int code) { return {code, -1, true}; }
+AxisSource pair(int code, int minus) { return {code, minus, false}; }
+
+std::string lowered(const char* text) {
+  std::string name(text);
+  std::ranges::transform(name, name.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return name;
+}
+
+std::string textOf(const AxisSource& source) {
+  if (source.code < 0) return "none";
+  std::string text(source.reversed ? "-" : "");
+  text += axisName(source.code);
+  if (source.minus >= 0) text += fmt::format("-{}", axisName(source.minus));
+  return text;
+}
+
+}  // namespace
+
+InputDevice::Axis* InputDevice::axis(std::uint16_t code) noexcept {
+  return code < axes_.size() ? &axes_[code] : nullptr;
+}
+
+bool InputDevice::has(int code) const noexcept {
+  return code >= 0 && axes_[static_cast<std::size_t>(code)].there;
+}
+
+bool InputDevice::hasKey(std::uint16_t code) const noexcept {
+  return std::ranges::any_of(keys_, [&](const Key& key) { return key.code == code; });
+}
+
+std::size_t InputDevice::axes() const noexcept {
+  return static_cast<std::size_t>(std::ranges::count_if(axes_, &Axis::there));
+}
+
+void InputDevice::describe(const EvdevRecord& r) {
+  Axis* const at = axis(r.code);
+  const auto key = std::ranges::lower_bound(keys_, r.code, {}, &Key::code);
+  const bool known = key != keys_.end() && key->code == r.code;
+  switch (r.kind) {
+    case EvdevRecord::kName:
+      if (name_.size() < kLongestName) name_ += r.text.data();
+      break;
+    case EvdevRecord::kAxis:
+      if (at && r.low < r.high) *at = {true, false, r.value, r.low, r.high};
+      break;
+    case EvdevRecord::kRelative:
+      if (at && r.code <= REL_RZ && !at->there)
+        *at = {true, true, 0, -kRelativeScale, kRelativeScale};
+      break;
+    case EvdevRecord::kKey:
+      if (!known && keys_.size() < kMostKeys)
+        keys_.insert(key, {r.code, lowered(r.text.data()), false});
+      break;
+    default: take(r);
+  }
+}
+
+void InputDevice::take(const EvdevRecord& r) noexcept {
+  if (r.kind == EvdevRecord::kPressed) {
+    const auto key = std::ranges::lower_bound(keys_, r.code, {}, &Key::code);
+    if (key != keys_.end() && key->code == r.code) key->pressed = r.value != 0;
+  }
+  Axis* const at = axis(r.code);
+  const bool moves = r.kind == EvdevRecord::kMoved || r.kind == EvdevRecord::kShifted;
+  if (at && at->there && moves && at->relative == (r.kind == EvdevRecord::kShifted))
+    at->value = r.value;
+}
+
+std::string InputDevice::choose(const EvdevSettings& settings) {
+  dead_zone_ = static_cast<float>(settings.dead_zone);
+  curve_ = static_cast<float>(settings.curve);
+  const std::string axes = chooseAxes(settings.axes);
+  const std::string buttons = chooseButtons(settings.buttons);
+  return axes.empty() ? buttons : axes;
+}
+
+// Positive is right for x and down or towards the person for y, as the kernel says; the README has
+// the table.
+AxisSources InputDevice::usualSources() const {
+  const bool six =
+      has(ABS_X) && has(ABS_Y) && has(ABS_Z) && has(ABS_RX) && has(ABS_RY) && has(ABS_RZ);
+  const AxisSource hat_x = reversed(ABS_HAT0X), hat_y = reversed(ABS_HAT0Y);
+  if (six && !hasKey(BTN_GAMEPAD) && !hasKey(BTN_JOYSTICK)) {  // a space mouse; its z is down
+    return {plain(ABS_X),  reversed(ABS_Z),  plain(ABS_Y),
+            plain(ABS_RX), reversed(ABS_RZ), plain(ABS_RY)};
+  }
+  if (hasKey(BTN_JOYSTICK) && !hasKey(BTN_GAMEPAD) && !has(ABS_RX) && !has(ABS_Z)) {  // a stick
+    return {plain(ABS_HAT0X), hat_y, {}, plain(ABS_Y), plain(ABS_X), reversed(ABS_RZ)};
+  }
+  if (has(ABS_RX) && has(ABS_RY)) {  // a gamepad whose triggers are z and rz
+    const bool triggers = has(ABS_Z) && has(ABS_RZ);
+    return {plain(ABS_X),  triggers ? pair(ABS_RZ, ABS_Z) : hat_y,
+            plain(ABS_Y),  plain(ABS_RY),
+            plain(ABS_RX), hat_x};
+  }
+  const bool pedals = has(ABS_GAS) && has(ABS_BRAKE);  // triggers of a gamepad without rx, ry
+  return {plain(ABS_X), pedals ? pair(ABS_GAS, ABS_BRAKE) : hat_y,
+          plain(ABS_Y), plain(ABS_RZ),
+          plain(ABS_Z), hat_x};
+}
+
+std::string InputDevice::chooseAxes(const std::vector<std::string>& names) {
+  sources_ = usualSources();
+  if (names.empty()) {
+    for (AxisSource& source : sources_) {
+      if (!has(source.code)) source = {};
+    }
+    return {};
+  }
+  for (std::size_t i = 0; i < std::min(names.size(), sources_.size()); ++i) {
+    sources_[i] = parseAxisSource(names[i]).value_or(AxisSource{});
+    for (const int code : {sources_[i].code, sources_[i].minus}) {
+      if (code >= 0 && !has(code))
+        return fmt::format("it has no axis {}, which the configuration names", axisName(code));
+    }
+  }
+  return {};
+}
+
+std::string InputDevice::chooseButtons(const std::vector<std::string>& names) {
+  buttons_.fill(-1);
+  std::size_t count = 0;
+  const auto add = [&](const Key& key) {
+    if (count < buttons_.size()) buttons_[count++] = static_cast<std::int32_t>(&key - keys_.data());
+  };
+  for (const std::string& name : names) {
+    const auto key = std::ranges::find(keys_, name, &Key::name);
+    if (key == keys_.end())
+      return fmt::format("it has no key \"{}\", which the configuration names", name);
+    add(*key);
+  }
+  if (!names.empty()) return {};
+  const bool has_buttons =
+      std::ranges::any_of(keys_, [](const Key& key) { return key.code >= BTN_MISC; });
+  for (const Key& key : keys_) {
+    if (!has_buttons || key.code >= BTN_MISC) add(key);
+  }
+  return {};
+}
+
+float InputDevice::centred(int code) const noexcept { return 2 * oneSided(code) - 1; }
+
+float InputDevice::oneSided(int code) const noexcept {
+  const Axis& axis = axes_[static_cast<std::size_t>(code)];
+  const double range =
+      static_cast<double>(axis.high) - axis.low;  // the difference may exceed an int
+  const double share = (static_cast<double>(axis.value) - axis.low) / range;
+  return static_cast<float>(std::clamp(share, 0.0, 1.0));
+}
+
+float InputDevice::deflection(const AxisSource& source) const noexcept {
+  if (!has(source.code)) return 0;
+  if (has(source.minus)) return oneSided(source.code) - oneSided(source.minus);
+  return source.reversed ? -centred(source.code) : centred(source.code);
+}
+
+void InputDevice::fill(BallSample& sample) const noexcept {
+  constexpr float kRawScale = 1000;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    const float raw = deflection(sources_[i]);
+    const float share = axisShare(raw, dead_zone_, 1);
+    const float value = std::pow(std::abs(share), curve_);
+    (i < 3 ? sample.translation[i] : sample.rotation[i - 3]) = share < 0 ? -value : value;
+    sample.raw[i] = static_cast<std::int16_t>(std::lround(raw * kRawScale));
+  }
+  sample.buttons = 0;
+  for (std::size_t i = 0; i < buttons_.size(); ++i) {
+    if (buttons_[i] >= 0 && keys_[static_cast<std::size_t>(buttons_[i])].pressed)
+      sample.buttons |= 1U << i;
+  }
+}
+
+void InputDevice::restRelative() noexcept {
+  for (Axis& axis : axes_) {
+    if (axis.relative) axis.value = 0;
+  }
+}
+
+bool InputDevice::relativeMoves() const noexcept {
+  return std::ranges::any_of(axes_, [](const Axis& a) { return a.relative && a.value != 0; });
+}
+
+std::string InputDevice::chosen() const {
+  std::vector<std::string> axes, buttons;
+  for (const AxisSource& source : sources_) axes.push_back(textOf(source));
+  for (const std::int32_t button : buttons_) {
+    if (button >= 0) buttons.push_back(keys_[static_cast<std::size_t>(button)].name);
+  }
+  return fmt::format("axes {}; buttons {}", fmt::join(axes, ", "),
+                     buttons.empty() ? "none" : fmt::format("{}", fmt::join(buttons, ", ")));
+}
+
+}  // namespace merlin::evdev

@@ -1,0 +1,76 @@
+// InputDevice: the axes and keys of an input device of the kernel, their state, and what they mean
+// as a ball. Pure.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "drivers/evdev/axis_source.h"
+#include "drivers/evdev/settings.h"
+#include "drivers/port/evdev_line.h"
+#include "drivers/port/samples.h"
+
+namespace merlin::evdev {
+
+class InputDevice {
+ public:
+  // Takes one record of the description, or of the state that follows it.
+  void describe(const EvdevRecord& record);
+  // Takes one record of the events; one about an axis or key that was not described is ignored.
+  // Allocates nothing.
+  void take(const EvdevRecord& record) noexcept;
+
+  // Chooses axes and buttons by the settings, or by the kind of device; to be called once the
+  // description is complete. Returns a sentence about what the settings name and the device lacks;
+  // empty: nothing.
+  std::string choose(const EvdevSettings& settings);
+
+  // Writes the present state into `sample`: axes, buttons, and as raw values the deflections in
+  // thousandths, before dead zone and curve. Allocates nothing.
+  void fill(BallSample& sample) const noexcept;
+  // Relative axes, which only tell that they move, are at rest from now on.
+  void restRelative() noexcept;
+  bool relativeMoves() const noexcept;  // one of them is not at rest
+
+  const std::string& name() const noexcept { return name_; }
+  std::size_t axes() const noexcept;
+  std::size_t keys() const noexcept { return keys_.size(); }
+  // What choose() chose.
+  const AxisSources& sources() const noexcept { return sources_; }
+  // "axes x, rz-z, y, ry, rx, -hat0x; buttons south, east" for a person.
+  std::string chosen() const;
+
+ private:
+  struct Axis {
+    bool there = false, relative = false;
+    std::int32_t value = 0, low = 0, high = 0;
+  };
+  struct Key {
+    std::uint16_t code = 0;
+    std::string name;
+    bool pressed = false;
+  };
+  static constexpr std::size_t kAxes = 0x18;  // the numbers in kAxisForms
+  static constexpr std::size_t kButtons = 12;
+
+  Axis* axis(std::uint16_t code) noexcept;
+  bool has(int code) const noexcept;
+  bool hasKey(std::uint16_t code) const noexcept;
+  AxisSources usualSources() const;
+  std::string chooseAxes(const std::vector<std::string>& names);
+  std::string chooseButtons(const std::vector<std::string>& names);
+  float deflection(const AxisSource& source) const noexcept;
+  float centred(int code) const noexcept;
+  float oneSided(int code) const noexcept;
+
+  std::string name_;
+  std::array<Axis, kAxes> axes_{};
+  std::vector<Key> keys_;  // ascending by number
+  AxisSources sources_{};
+  std::array<std::int32_t, kButtons> buttons_{};  // index into keys_; -1: none
+  float dead_zone_ = 0, curve_ = 1;
+};
+
+}  // namespace merlin::evdev

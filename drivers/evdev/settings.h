@@ -1,0 +1,31 @@
+// Settings of an input device of the kernel that serves as the ball.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/base/setting_fault.h"
+
+namespace merlin {
+
+struct EvdevSettings {
+  // For x, y, z and the rotations about them: the axis that moves it, in a form of kAxisForms.
+  // Empty: as fits the kind of device (drivers/evdev/README.md).
+  std::vector<std::string> axes;
+  // The keys that are ball.button.1, 2 and so on, by the kernel's names without KEY_ or BTN_.
+  // Empty: the first twelve buttons of the device, in the order of the kernel's numbers.
+  std::vector<std::string> buttons;
+  double dead_zone = 0.08;  // share of the full deflection up to which an axis counts as at rest
+  double curve = 2;         // exponent of the response: 1 is linear, more is finer near rest
+};
+
+inline constexpr const char* kAxisForms =
+    "the kernel's name of an axis without ABS_ in lower case (x, y, z, rx, ry, rz, throttle, "
+    "rudder, "
+    "wheel, gas, brake, hat0x ... hat3y), with - before it if it is reversed; two names with - "
+    "between them, for a pair of triggers; and none";
+
+// Finds axes and buttons that cannot be. Pointers: "/axes", "/axes/INDEX", "/buttons".
+SettingFaults validate(const EvdevSettings& settings);
+
+}  // namespace merlin

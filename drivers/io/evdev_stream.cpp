@@ -1,0 +1,164 @@
+#include "drivers/io/evdev_stream.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <libevdev/libevdev.h>
+
+#include "daemon/base/unique_fd.h"
+#include "drivers/io/fd_wait.h"
+#include "drivers/io/open_error.h"
+#include "drivers/port/evdev_line.h"
+
+namespace merlin::io {
+namespace {
+
+using Handle = std::unique_ptr<libevdev, decltype(&libevdev_free)>;
+
+EvdevRecord numbered(EvdevRecord::Kind kind, unsigned code, std::int32_t value = 0) {
+  EvdevRecord record;
+  record.kind = kind;
+  record.code = static_cast<std::uint16_t>(code);
+  record.value = value;
+  return record;
+}
+
+EvdevRecord named(EvdevRecord::Kind kind, unsigned code, std::string_view text) {
+  EvdevRecord record = numbered(kind, code);
+  std::copy_n(text.begin(), std::min(text.size(), EvdevRecord::kText), record.text.begin());
+  return record;
+}
+
+// "SOUTH" of "BTN_SOUTH"; the number of a key that has no name.
+std::string keyName(unsigned code) {
+  const char* const name = libevdev_event_code_get_name(EV_KEY, code);
+  if (!name) return fmt::format("{}", code);
+  const std::string_view text(name);
+  return std::string(text.substr(std::min(text.size(), text.find('_') + 1)));
+}
+
+// The description, then the present state.
+std::string describe(const libevdev* device) {
+  std::string out;
+  std::string_view name = libevdev_get_name(device);
+  for (; !name.empty(); name.remove_prefix(std::min(name.size(), EvdevRecord::kText)))
+    append(named(EvdevRecord::kName, 0, name), out);
+  for (unsigned code = 0; code < ABS_CNT; ++code) {
+    const input_absinfo* const axis = libevdev_get_abs_info(device, code);
+    if (!axis || !libevdev_has_event_code(device, EV_ABS, code)) continue;
+    EvdevRecord record = numbered(EvdevRecord::kAxis, code, axis->value);
+    record.low = axis->minimum;
+    record.high = axis->maximum;
+    append(record, out);
+  }
+  for (unsigned code = 0; code < REL_CNT; ++code) {
+    if (libevdev_has_event_code(device, EV_REL, code))
+      append(numbered(EvdevRecord::kRelative, code), out);
+  }
+  for (unsigned code = 0; code < KEY_CNT; ++code) {
+    if (!libevdev_has_event_code(device, EV_KEY, code)) continue;
+    append(named(EvdevRecord::kKey, code, keyName(code)), out);
+    if (libevdev_get_event_value(device, EV_KEY, code) != 0)
+      append(numbered(EvdevRecord::kPressed, code, 1), out);
+  }
+  append(numbered(EvdevRecord::kReady, 0), out);
+  return out;
+}
+
+void append(const input_event& event, std::string& out) {
+  const auto add = [&](EvdevRecord::Kind kind) {
+    merlin::append(numbered(kind, event.code, event.value), out);
+  };
+  switch (event.type) {
+    case EV_ABS: return add(EvdevRecord::kMoved);
+    case EV_REL: return add(EvdevRecord::kShifted);
+    case EV_KEY: return add(EvdevRecord::kPressed);
+    case EV_SYN:
+      if (event.code == SYN_REPORT) add(EvdevRecord::kReport);
+      return;
+    default: return;
+  }
+}
+
+class EvdevStream final : public ByteStream {
+ public:
+  EvdevStream(UniqueFd fd, Handle device)
+      : fd_(std::move(fd)), device_(std::move(device)), ahead_(describe(device_.get())) {
+    ahead_.reserve(std::max(ahead_.size(), kAhead));
+  }
+
+  Result<std::size_t> read(std::span<std::byte> buffer, Duration timeout) override {
+    if (next_ == ahead_.size()) {
+      if (const auto filled = fill(timeout); !filled) return filled.error();
+    }
+    const std::size_t n = std::min(buffer.size(), ahead_.size() - next_);
+    std::memcpy(buffer.data(), ahead_.data() + next_, n);
+    next_ += n;
+    return n;
+  }
+
+  Result<std::size_t> write(std::span<const std::byte>, Duration) override {
+    return Error{Errc::kIo, "nothing is written to an input device"};
+  }
+
+  void interrupt() noexcept override { wait_.interrupt(); }
+
+ private:
+  static constexpr std::size_t kAhead = 4096;  // bytes; a read of the kernel has fewer
+  static constexpr std::size_t kRecord = 24;
+
+  Result<Ok> fill(Duration timeout) {
+    ahead_.clear();
+    next_ = 0;
+    // libevdev may have read events that the descriptor no longer has.
+    if (libevdev_has_event_pending(device_.get()) <= 0) {
+      if (auto ready = wait_.await(fd_.get(), POLLIN, timeout); !ready) return ready;
+    }
+    while (ahead_.size() + kRecord <= kAhead) {
+      input_event event{};
+      const unsigned flag = dropped_ ? LIBEVDEV_READ_FLAG_SYNC : LIBEVDEV_READ_FLAG_NORMAL;
+      const int status = libevdev_next_event(device_.get(), flag, &event);
+      if (status == -EAGAIN && !dropped_) break;
+      if (status == -EAGAIN) {
+        dropped_ = false;  // the state is known again
+        continue;
+      }
+      if (status < 0)
+        return Error{status == -ENODEV ? Errc::kClosed : Errc::kIo,
+                     fmt::format("the input device: {}", std::strerror(-status))};
+      if (status == LIBEVDEV_READ_STATUS_SYNC) dropped_ = true;
+      append(event, ahead_);
+    }
+    if (ahead_.empty()) return Error{Errc::kTimeout, "time-out"};  // events that are of no use
+    return Ok{};
+  }
+
+  UniqueFd fd_;
+  Handle device_;
+  FdWait wait_;
+  std::string ahead_;  // records that read() has not returned yet, from next_ on
+  std::size_t next_ = 0;
+  bool dropped_ = false;  // the kernel dropped events; libevdev tells what changed
+};
+
+}  // namespace
+
+Result<std::unique_ptr<ByteStream>> openEvdev(const std::string& path) {
+  UniqueFd fd(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  if (!fd.valid()) return openError(path, errno);
+  libevdev* made = nullptr;
+  if (libevdev_new_from_fd(fd.get(), &made) < 0)
+    return Error{Errc::kIo, path + ": is not an input device of the kernel"};
+  Handle device(made, libevdev_free);
+  if (libevdev_grab(device.get(), LIBEVDEV_GRAB) < 0)
+    return Error{Errc::kBusy, path + ": another program has grabbed this input device"};
+  return std::unique_ptr<ByteStream>(
+      std::make_unique<EvdevStream>(std::move(fd), std::move(device)));
+}
+
+}  // namespace merlin::io

@@ -1,0 +1,34 @@
+#include "drivers/io/fd_wait.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include <sys/eventfd.h>
+
+namespace merlin::io {
+
+Error ioError(const char* call) {
+  return {errno == EIO || errno == ENXIO || errno == ENODEV ? Errc::kClosed : Errc::kIo,
+          std::string(call) + ": " + std::strerror(errno)};  // NOLINT: one thread a stream
+}
+
+FdWait::FdWait() : wake_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
+
+void FdWait::interrupt() noexcept { (void)::eventfd_write(wake_.get(), 1); }
+
+Result<Ok> FdWait::await(int fd, short events, Duration timeout) {
+  pollfd fds[] = {{fd, events, 0}, {wake_.get(), POLLIN, 0}};
+  const auto ns = std::max<std::int64_t>(timeout.count(), 0);
+  const timespec limit{ns / 1'000'000'000, ns % 1'000'000'000};
+  const int ready = ::ppoll(fds, 2, &limit, nullptr);
+  if (ready < 0 && errno == EINTR) return Error{Errc::kTimeout, "signal"};
+  if (ready < 0) return ioError("poll");
+  if (ready == 0) return Error{Errc::kTimeout, "time-out"};  // short: no allocation
+  if (fds[1].revents != 0) return Error{Errc::kClosed, "interrupted"};
+  if ((fds[0].revents & events) != 0) return Ok{};
+  return Error{Errc::kClosed, "the other end hung up"};
+}
+
+}  // namespace merlin::io

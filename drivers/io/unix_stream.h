@@ -1,0 +1,16 @@
+// A ByteStream over a local socket that another program listens at, as spacenavd does.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "daemon/base/result.h"
+#include "drivers/port/byte_stream.h"
+
+namespace merlin::io {
+
+// Errors: kInvalidArgument (the path is longer than a socket's may be), kNotFound (nobody has made
+// the socket), kIo (nobody listens there; without permission, the message names the group to join).
+Result<std::unique_ptr<ByteStream>> openUnix(const std::string& path);
+
+}  // namespace merlin::io

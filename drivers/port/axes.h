@@ -1,0 +1,28 @@
+// The axes of a ball: a raw axis as a share of its full scale, and which axis of a device is which
+// of MERLIN's. Pure.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "daemon/base/setting_fault.h"
+
+namespace merlin {
+
+// -1..1. Values up to `dead_zone` give 0, and beyond it the scale starts at 0, so that the result
+// is continuous at its edge. `dead_zone` and `full_scale` in the unit of `value`. REQUIRES:
+// dead_zone < full_scale.
+inline float axisShare(float value, float dead_zone, float full_scale) noexcept {
+  const float beyond = std::max(std::abs(value) - dead_zone, 0.0F);
+  const float share = std::min(beyond / (full_scale - dead_zone), 1.0F);
+  return value < 0 ? -share : share;
+}
+
+// For x, y, z and the rotations about them: a device's axis 1..6, negative if it is reversed.
+using AxisMap = std::array<int, 6>;
+
+// Finds a map in which an axis is missing or repeated. Pointer: "/axis_map".
+SettingFaults validateAxisMap(const AxisMap& map);
+
+}  // namespace merlin

@@ -1,0 +1,66 @@
+// What the port evdev:PATH carries: the description of an input device of the kernel, then its
+// events, as records of 24 bytes. drivers/io writes them, drivers/evdev reads them; so a gamepad
+// can be recorded, replayed and watched by the flight recorder as every other device. Pure.
+//
+//   byte 0     0xE5
+//   byte 1     EvdevRecord::Kind
+//   bytes 2-3  code: the kernel's number of the axis or key (linux/input-event-codes.h)
+//   bytes 4-23 kName, kKey: text, padded with NUL; otherwise value, low, high: i32
+//
+// All numbers are little-endian.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace merlin {
+
+struct EvdevRecord {
+  // The description is kName, kAxis, kRelative and kKey, in any order, then the events that set the
+  // present state, then kReady. Each report of the device is some of kMoved, kShifted, kPressed,
+  // and then kReport.
+  enum Kind : std::uint8_t {
+    kName = 1,      // text: the device's name
+    kAxis = 2,      // code, value, low, high: an absolute axis, its value and its range
+    kRelative = 3,  // code: a relative axis
+    kKey = 4,       // code, text: a key or button, and the kernel's name of it without KEY_ or BTN_
+    kReady = 5,
+    kMoved = 6,    // code, value: of an absolute axis
+    kShifted = 7,  // code, value: by how much a relative axis moved
+    kPressed = 8,  // code, value: 1 pressed, 0 released, 2 repeated
+    kReport = 9,
+  };
+  static constexpr std::size_t kText = 20;
+
+  Kind kind = kReport;
+  std::uint16_t code = 0;
+  std::int32_t value = 0, low = 0, high = 0;
+  std::array<char, kText + 1> text{};  // NUL-ended
+};
+
+class EvdevParser {
+ public:
+  // Takes one byte; returns a record when `byte` completes one. Never blocks, never allocates. What
+  // is no record is dropped byte by byte and counted.
+  std::optional<EvdevRecord> feed(std::byte byte) noexcept;
+
+  std::uint64_t badPackets() const noexcept { return bad_packets_; }
+  std::uint64_t badBytes() const noexcept { return bad_bytes_; }
+  bool inside() const noexcept { return length_ > 0; }  // in the middle of a record
+  void reset() noexcept;                                // for a new connection
+
+ private:
+  static constexpr std::size_t kSize = 24;
+  std::array<std::uint8_t, kSize> bytes_{};
+  std::size_t length_ = 0;
+  bool lost_ = false;  // since the last record, bytes were dropped
+  std::uint64_t bad_packets_ = 0, bad_bytes_ = 0;
+};
+
+// Appends the record's bytes. A text that is too long is cut.
+void append(const EvdevRecord& record, std::string& out);
+
+}  // namespace merlin

@@ -1,0 +1,281 @@
+// Input devices of the kernel as the ball: records, axes and buttons of a gamepad, a space mouse, a
+// joystick and a clicker, the driver's stream.
+#include <gtest/gtest.h>
+#include <linux/input-event-codes.h>
+
+#include "daemon/base/random.h"
+#include "drivers/evdev/device.h"
+#include "tests/support/fake_clock.h"
+#include "tests/support/fake_stream.h"
+#include "tests/support/recording_sink.h"
+
+namespace merlin::evdev {
+namespace {
+
+using Kind = EvdevRecord::Kind;
+
+std::string record(Kind kind, int code = 0, std::int32_t value = 0, std::int32_t low = 0,
+                   std::int32_t high = 0) {
+  EvdevRecord r;
+  r.kind = kind;
+  r.code = static_cast<std::uint16_t>(code);
+  r.value = value;
+  r.low = low;
+  r.high = high;
+  std::string out;
+  append(r, out);
+  return out;
+}
+
+std::string named(Kind kind, int code, std::string_view text) {
+  EvdevRecord r;
+  r.kind = kind;
+  r.code = static_cast<std::uint16_t>(code);
+  std::copy(text.begin(), text.end(), r.text.begin());
+  std::string out;
+  append(r, out);
+  return out;
+}
+
+std::string axis(int code, std::int32_t low, std::int32_t high, std::int32_t value) {
+  return record(EvdevRecord::kAxis, code, value, low, high);
+}
+
+// As xpad describes a controller; resting values are seldom the middle.
+std::string gamepad() {
+  std::string text =
+      named(EvdevRecord::kName, 0, "Microsoft X-Box 360 ") + named(EvdevRecord::kName, 0, "pad");
+  for (const int code : {ABS_X, ABS_Y, ABS_RX, ABS_RY}) text += axis(code, -32768, 32767, 128);
+  for (const int code : {ABS_Z, ABS_RZ}) text += axis(code, 0, 255, 0);
+  for (const int code : {ABS_HAT0X, ABS_HAT0Y}) text += axis(code, -1, 1, 0);
+  const std::pair<int, const char*> keys[] = {{BTN_SOUTH, "SOUTH"}, {BTN_EAST, "EAST"},
+                                              {BTN_NORTH, "NORTH"}, {BTN_WEST, "WEST"},
+                                              {BTN_TL, "TL"},       {BTN_START, "START"}};
+  for (const auto& [code, name] : keys) text += named(EvdevRecord::kKey, code, name);
+  return text + record(EvdevRecord::kReady);
+}
+
+std::string spaceMouse() {
+  std::string text = named(EvdevRecord::kName, 0, "SpaceNavigator");
+  for (int code = ABS_X; code <= ABS_RZ; ++code) text += axis(code, -350, 350, 0);
+  text += named(EvdevRecord::kKey, BTN_0, "0") + named(EvdevRecord::kKey, BTN_1, "1");
+  return text + record(EvdevRecord::kReady);
+}
+
+std::string moved(int code, std::int32_t value) { return record(EvdevRecord::kMoved, code, value); }
+std::string pressed(int code, int value) { return record(EvdevRecord::kPressed, code, value); }
+const std::string kReport = record(EvdevRecord::kReport);
+
+class EvdevTest : public testing::Test {
+ protected:
+  void connect(const std::string& description, const EvdevSettings& settings = {}) {
+    device_.emplace(settings, clock_, sink_);
+    stream_.feed(description);
+    const auto opened = device_->open(stream_);
+    ASSERT_TRUE(opened) << opened.error().what;
+    identity_ = *opened;
+  }
+  const BallSample& after(const std::string& events) {
+    stream_.feed(events + kReport);
+    EXPECT_TRUE(device_->poll(stream_));
+    EXPECT_FALSE(sink_.ball.empty());
+    return sink_.ball.back();
+  }
+
+  test::FakeClock clock_;
+  test::RecordingSink sink_;
+  test::FakeStream stream_{clock_, nullptr};
+  std::optional<EvdevDevice> device_;
+  std::string identity_;
+};
+
+TEST(EvdevParser, ReadsWhatIsAppendedAndFindsTheNextRecordAfterRubbish) {
+  EvdevParser parser;
+  std::vector<EvdevRecord> records;
+  const std::string bytes = axis(ABS_RZ, -5, 70000, -3) + "\xE5\xE5\x7F" +
+                            named(EvdevRecord::kKey, BTN_SOUTH, "SOUTH") + kReport;
+  for (const char c : bytes) {
+    if (const auto r = parser.feed(static_cast<std::byte>(c))) records.push_back(*r);
+  }
+  ASSERT_EQ(records.size(), 3u);
+  EXPECT_EQ(records[0].code, ABS_RZ);
+  EXPECT_EQ(records[0].low, -5);
+  EXPECT_EQ(records[0].high, 70000);
+  EXPECT_EQ(records[0].value, -3);
+  EXPECT_STREQ(records[1].text.data(), "SOUTH");
+  EXPECT_EQ(records[2].kind, EvdevRecord::kReport);
+  EXPECT_EQ(parser.badBytes(), 3u);
+  EXPECT_EQ(parser.badPackets(), 1u);
+}
+
+TEST_F(EvdevTest, AGamepadMovesTurnsAndRises) {
+  connect(gamepad());
+  EXPECT_EQ(identity_, "Microsoft X-Box 360 pad, 8 axes, 6 keys");
+  EXPECT_STREQ(device_->complaint(), "");
+  EXPECT_EQ(device_->input().chosen(),
+            "axes x, rz-z, y, ry, rx, -hat0x; buttons south, east, north, west, tl, start");
+  EXPECT_FLOAT_EQ(after(moved(ABS_X, 32767)).translation[0], 1);
+  EXPECT_FLOAT_EQ(after(moved(ABS_Y, -32768)).translation[2], -1);  // forwards: away
+  EXPECT_FLOAT_EQ(after(moved(ABS_RZ, 255)).translation[1], 1);
+  EXPECT_FLOAT_EQ(after(moved(ABS_Z, 255)).translation[1], 0);  // both triggers
+  EXPECT_FLOAT_EQ(after(moved(ABS_RX, 32767)).rotation[1], 1);
+  EXPECT_FLOAT_EQ(after(moved(ABS_RY, 32767)).rotation[0], 1);
+  EXPECT_FLOAT_EQ(after(moved(ABS_HAT0X, 1)).rotation[2], -1);
+  EXPECT_EQ(after(pressed(BTN_SOUTH, 1) + pressed(BTN_START, 1)).buttons, 0x21u);
+  EXPECT_EQ(after(pressed(BTN_SOUTH, 0)).buttons, 0x20u);
+}
+
+TEST_F(EvdevTest, ItsResponseIsZeroWithinTheDeadZoneAndFineBeyondIt) {
+  EvdevSettings settings;
+  settings.dead_zone = 0.2;
+  settings.curve = 2;
+  connect(gamepad(), settings);
+  EXPECT_FLOAT_EQ(after(moved(ABS_X, 6500)).translation[0], 0);
+  EXPECT_NEAR(after(moved(ABS_X, 19660)).translation[0], 0.25, 1e-3);  // 0.6: half of what is left
+  EXPECT_NEAR(after(moved(ABS_X, -19660)).translation[0], -0.25, 1e-3);
+}
+
+TEST_F(EvdevTest, ASpaceMouseMovesAsItIsPushed) {
+  EvdevSettings linear;
+  linear.curve = 1;
+  linear.dead_zone = 0;
+  connect(spaceMouse(), linear);
+  const BallSample& s =
+      after(moved(ABS_X, 350) + moved(ABS_Y, 175) + moved(ABS_Z, 350) + moved(ABS_RX, 35) +
+            moved(ABS_RY, 70) + moved(ABS_RZ, -350) + pressed(BTN_1, 1));
+  const float push[] = {1, -1, 0.5F}, twist[] = {0.1F, 1, 0.2F};
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FLOAT_EQ(s.translation[i], push[i]) << i;
+    EXPECT_FLOAT_EQ(s.rotation[i], twist[i]) << i;
+  }
+  EXPECT_EQ(s.buttons, 2u);
+}
+
+TEST_F(EvdevTest, AHeldStickIsPublishedAgainUntilItIsLetGo) {
+  connect(gamepad());
+  after(moved(ABS_X, 32767));
+  const Timestamp pushed = clock_.now();
+  while (clock_.now() < pushed + std::chrono::seconds(1)) ASSERT_TRUE(device_->poll(stream_));
+  EXPECT_EQ(sink_.ball.size(), 21u);
+  after(moved(ABS_X, 128));
+  const std::size_t ended = sink_.ball.size();
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(device_->poll(stream_));
+  EXPECT_EQ(sink_.ball.size(), ended);
+}
+
+TEST_F(EvdevTest, ARelativeAxisThatSaysNothingMoreIsAtRest) {
+  connect(record(EvdevRecord::kRelative, REL_X) + named(EvdevRecord::kKey, BTN_LEFT, "LEFT") +
+          record(EvdevRecord::kReady));
+  EXPECT_FLOAT_EQ(after(record(EvdevRecord::kShifted, REL_X, 350)).translation[0], 1);
+  const Timestamp pushed = clock_.now();
+  while (sink_.ball.back().translation[0] != 0) ASSERT_TRUE(device_->poll(stream_));
+  EXPECT_LE(clock_.now() - pushed, std::chrono::milliseconds(110));
+  EXPECT_GE(clock_.now() - pushed, std::chrono::milliseconds(60));
+}
+
+TEST_F(EvdevTest, AClickersKeysAreTheButtonsThatTheConfigurationNames) {
+  EvdevSettings settings;
+  settings.buttons = {"pagedown", "pageup"};
+  connect(named(EvdevRecord::kKey, KEY_PAGEUP, "PAGEUP") +
+              named(EvdevRecord::kKey, KEY_PAGEDOWN, "PAGEDOWN") + record(EvdevRecord::kReady),
+          settings);
+  EXPECT_EQ(device_->input().chosen(),
+            "axes none, none, none, none, none, none; buttons pagedown, pageup");
+  EXPECT_EQ(after(pressed(KEY_PAGEDOWN, 1)).buttons, 1u);
+  EXPECT_EQ(after(pressed(KEY_PAGEUP, 1) + pressed(KEY_PAGEDOWN, 2)).buttons, 3u);
+  EXPECT_EQ(after(pressed(KEY_PAGEDOWN, 0)).buttons, 2u);
+}
+
+TEST_F(EvdevTest, WhatTheConfigurationNamesAndTheDeviceLacksIsAComplaint) {
+  EvdevSettings settings;
+  settings.axes = {"x", "-y", "none", "throttle", "none", "none"};
+  connect(gamepad(), settings);
+  EXPECT_STREQ(device_->complaint(), "it has no axis throttle, which the configuration names");
+  EXPECT_FLOAT_EQ(after(moved(ABS_Y, -32768)).translation[1], 1);
+  settings = {};
+  settings.buttons = {"south", "thumbr"};
+  connect(gamepad(), settings);
+  EXPECT_STREQ(device_->complaint(), "it has no key \"thumbr\", which the configuration names");
+}
+
+TEST_F(EvdevTest, AKeyThatIsPressedAtTheBeginningIsPressed) {
+  std::string description = gamepad();
+  description.insert(description.size() - record(EvdevRecord::kReady).size(), pressed(BTN_EAST, 1));
+  connect(description);
+  EXPECT_EQ(after(moved(ABS_X, 0)).buttons, 2u);
+}
+
+TEST_F(EvdevTest, ReconnectedItForgetsTheDeviceOfBefore) {
+  connect(spaceMouse());
+  after(moved(ABS_X, 350) + pressed(BTN_0, 1));
+  stream_.feed(gamepad());
+  ASSERT_TRUE(device_->open(stream_));
+  EXPECT_EQ(device_->input().axes(), 8u);
+  const BallSample& s = after(moved(ABS_HAT0X, 0));
+  EXPECT_EQ(s.buttons, 0u);
+  EXPECT_FLOAT_EQ(s.translation[0], 0);
+  EXPECT_EQ(s.counter, 2u);
+}
+
+// A line that describes itself for ever takes no memory.
+TEST_F(EvdevTest, WhatComesAfterTheDescriptionDescribesNothing) {
+  connect(gamepad());
+  for (int i = 0; i < 3; ++i) stream_.feed(gamepad() + axis(ABS_THROTTLE, 0, 255, 0));
+  ASSERT_TRUE(device_->poll(stream_));
+  EXPECT_EQ(device_->input().name(), "Microsoft X-Box 360 pad");
+  EXPECT_EQ(device_->input().axes(), 8u);
+}
+
+TEST_F(EvdevTest, ADescriptionThatDoesNotEndIsRefusedInTime) {
+  device_.emplace(EvdevSettings{}, clock_, sink_);
+  stream_.feed(axis(ABS_X, 0, 255, 0));
+  const Timestamp began = clock_.now();
+  EXPECT_EQ(device_->open(stream_).error().code, Errc::kTimeout);
+  EXPECT_LE(clock_.now() - began, std::chrono::milliseconds(1100));
+  stream_.feed(record(EvdevRecord::kReady));
+  EXPECT_EQ(device_->open(stream_).error().code, Errc::kMalformed);  // neither axes nor keys
+}
+
+TEST_F(EvdevTest, RandomBytesGiveNoSampleThatIsNotPlausible) {
+  connect(gamepad());
+  Random random(11);
+  for (int i = 0; i < 100'000; ++i) {
+    std::string bytes =
+        record(static_cast<Kind>(1 + random.below(9)),
+               static_cast<int>(random.below(random.below(2) ? 32 : 0x140)),
+               static_cast<std::int32_t>(random.next()), static_cast<std::int32_t>(random.next()),
+               static_cast<std::int32_t>(random.next()));
+    bytes[random.below(bytes.size())] = static_cast<char>(random.next());
+    stream_.feed(bytes);
+    ASSERT_TRUE(device_->poll(stream_));
+  }
+  EXPECT_GT(sink_.ball.size(), 1000u);
+  EXPECT_GT(device_->counters().bad_bytes, 0u);
+  for (const BallSample& s : sink_.ball) {
+    for (int axis = 0; axis < 3; ++axis) {
+      ASSERT_LE(std::abs(s.translation[axis]), 1);
+      ASSERT_LE(std::abs(s.rotation[axis]), 1);
+    }
+    ASSERT_EQ(s.buttons >> 12, 0u);
+  }
+}
+
+TEST(EvdevSettings, AxesAndButtonsThatCannotBeAreNamed) {
+  EvdevSettings settings;
+  EXPECT_TRUE(validate(settings).empty());
+  settings.axes = {"x", "-rz", "gas-brake", "none", "y", "hat0x"};
+  EXPECT_TRUE(validate(settings).empty());
+  settings.axes = {"x", "up", "gas-gas", "-gas-brake", "", "y-"};
+  std::vector<std::string> at;
+  for (const SettingFault& fault : validate(settings)) at.push_back(fault.pointer);
+  EXPECT_EQ(at, (std::vector<std::string>{"/axes/1", "/axes/2", "/axes/3", "/axes/4", "/axes/5"}));
+  settings = {};
+  settings.axes = {"x"};
+  settings.buttons = {"a", "b", "a"};
+  at.clear();
+  for (const SettingFault& fault : validate(settings)) at.push_back(fault.pointer);
+  EXPECT_EQ(at, (std::vector<std::string>{"/axes", "/buttons/2"}));
+}
+
+}  // namespace
+}  // namespace merlin::evdev

@@ -1,0 +1,153 @@
+// The devices of today as the ball of a real merlind: a space mouse through the real spacenavd, and
+// a gamepad whose records come over a pseudo-terminal. That the kernel's own devices give these
+// records is seen in the virtual machine (tests/vm).
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <linux/input-event-codes.h>
+
+#include "drivers/io/pty_master.h"
+#include "drivers/port/evdev_line.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+nlohmann::json ballOf(const std::string& driver, const std::string& port) {
+  return {{"devices", {{"ball", {{"driver", driver}, {"port", port}}}}}};
+}
+
+std::optional<BallSample> ballOf(Merlind& merlind) {
+  const auto* devices = merlind.devices();
+  return devices ? devices->ball.newest() : std::nullopt;
+}
+
+// spacenavd on a ball's line, in a folder of its own.
+class Spacenavd {
+ public:
+  Spacenavd(const TempDir& dir, const std::string& line) : dir_(dir.path()) {
+    writeText(dir / "spnavrc", "serial = " + line + "\n");
+    // Debian's spacenavd binds run/spnav.sock relative to its working directory (/ as a service).
+    std::filesystem::create_directory(dir / "run");
+    start();
+  }
+  void start() {
+    process_ = std::make_unique<Process>(std::vector<std::string>{
+        "sh", "-c", "cd " + dir_ + " && rm -f run/spnav.sock && exec spacenavd -d -v -c spnavrc"});
+  }
+  void stop() { process_->kill(SIGTERM); }
+  std::string socket() const { return dir_ + "/run/spnav.sock"; }
+
+ private:
+  std::string dir_;
+  std::unique_ptr<Process> process_;
+};
+
+TEST(TodaysDevices, ASpaceMouseOfSpacenavdIsTheBallAndComesBackWithIt) {
+  if (run({"which", "spacenavd"}).status != 0) GTEST_SKIP() << "spacenavd is not installed";
+  const TempDir dir;
+  Process emulator({kMerlin, "emulate", "spaceball", "--link", dir / "line", "--script", "visit"});
+  ASSERT_TRUE(emulator.saysEventually("spaceball on")) << emulator.output();
+  Spacenavd spacenavd(dir, dir / "line");
+  MerlindOptions options;
+  options.role = "devices";
+  options.emulate = false;
+  options.also = ballOf("spacenav", "unix:" + spacenavd.socket());
+  Merlind merlind(dir, "", "mouse", options);
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  // The visitor turns the model now and then. spacenavd gives up on a ball that does not answer in
+  // time, as happens on a busy machine; the test then starts it again, as a service manager would.
+  const auto turns = [&] {
+    for (int attempt = 0; attempt < 6; ++attempt) {
+      const auto seen = [&] {
+        const auto ball = ballOf(merlind);
+        return ball && std::abs(ball->rotation[1]) > 0.1F;
+      };
+      if (eventually(seen, std::chrono::seconds(20))) return true;
+      spacenavd.stop();
+      spacenavd.start();
+    }
+    return false;
+  };
+  EXPECT_TRUE(turns()) << merlind.process().output();
+  EXPECT_TRUE(merlind.healthIs(shm::kBall, HealthState::kOk));
+  EXPECT_NE(merlind.status()["devices"]["ball"]["identity"].get<std::string>(), "");
+  spacenavd.stop();
+  EXPECT_TRUE(merlind.healthIs(shm::kBall, HealthState::kAbsent));
+  spacenavd.start();
+  EXPECT_TRUE(turns()) << merlind.process().output();
+  EXPECT_GE(merlind.devices()->health[shm::kBall].read()->reconnects, 1u);
+}
+
+std::string record(EvdevRecord::Kind kind, int code = 0, std::int32_t value = 0,
+                   std::string_view name = {}) {
+  EvdevRecord r;
+  r.kind = kind;
+  r.code = static_cast<std::uint16_t>(code);
+  r.value = value;
+  if (kind == EvdevRecord::kAxis) {
+    r.low = -32768;
+    r.high = 32767;
+  }
+  std::copy(name.begin(), name.end(), r.text.begin());
+  std::string out;
+  append(r, out);
+  return out;
+}
+
+// A gamepad at the other end of a pseudo-terminal, which merlind opens as soon as it is there.
+class Gamepad {
+ public:
+  explicit Gamepad(const std::string& link) : line_(*io::PtyMaster::open(link)) {}
+  void describe() {
+    std::string text = record(EvdevRecord::kName, 0, 0, "made-up pad");
+    for (const int code : {ABS_X, ABS_Y, ABS_RX, ABS_RY}) text += record(EvdevRecord::kAxis, code);
+    text += record(EvdevRecord::kKey, BTN_SOUTH, 0, "SOUTH");
+    text += record(EvdevRecord::kReady);
+    (void)!::write(line_.fd(), text.data(), text.size());  // nobody may have opened it yet
+  }
+  void report(const std::string& events) {
+    const std::string bytes = events + record(EvdevRecord::kReport);
+    EXPECT_EQ(::write(line_.fd(), bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+  }
+
+ private:
+  io::PtyMaster line_;
+};
+
+TEST(TodaysDevices, AGamepadMovesTheModelAndItsButtonsAct) {
+  const TempDir dir;
+  Gamepad pad(dir / "pad");
+  MerlindOptions options;
+  options.emulate = false;
+  options.also = ballOf("evdev", "pty:" + dir / "pad");
+  Merlind merlind(dir, makeModel(dir, 5), "pad", options);
+  // A line that says nothing is opened again and again; it is described once for each time.
+  EXPECT_TRUE(eventually([&] {
+    pad.describe();
+    const auto* devices = merlind.devices();
+    const auto health = devices ? devices->health[shm::kBall].read() : std::nullopt;
+    return health && health->state == HealthState::kOk;
+  })) << merlind.process().output();
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  EXPECT_STREQ(merlind.devices()->health[shm::kBall].read()->identity,
+               "made-up pad, 4 axes, 1 keys");
+  ASSERT_TRUE(eventually([&] { return merlind.wall().moving == 0; }));
+  pad.report(record(EvdevRecord::kMoved, ABS_RX, 32767));
+  EXPECT_TRUE(eventually([&] { return merlind.wall().moving == 1; }));
+  EXPECT_FLOAT_EQ(ballOf(merlind)->rotation[1], 1);
+  // The stick is held, without another event: the model goes on turning.
+  const std::uint32_t counter = ballOf(merlind)->counter;
+  EXPECT_TRUE(eventually([&] { return ballOf(merlind)->counter > counter + 20; }));
+  EXPECT_EQ(merlind.wall().moving, 1u);
+  pad.report(record(EvdevRecord::kMoved, ABS_RX, 0));
+  EXPECT_TRUE(eventually([&] { return merlind.wall().moving == 0; }));
+  pad.report(record(EvdevRecord::kPressed, BTN_SOUTH, 1));  // ball.button.1: reset_view
+  EXPECT_TRUE(eventually([&] {
+    const auto actions = merlind.devices()->actions[shm::kBallActions].read();
+    return actions && actions->sequence == 1;
+  }));
+}
+
+}  // namespace
+}  // namespace merlin::test
