@@ -96,6 +96,14 @@ TEST_F(ConfD, SyntaxErrorsOfAllFilesAreFound) {
   for (const Finding& finding : loaded.findings) EXPECT_TRUE(finding.quotes) << finding.what;
 }
 
+TEST_F(ConfD, AFaultyFileAloneLeavesTheDefaults) {
+  put("merlin.json", R"({"instance": "lab"})");
+  put("conf.d/a.json", "{");
+  const auto loaded = load();
+  EXPECT_FALSE(loaded.parsed);
+  EXPECT_EQ(loaded.settings.instance, "merlin");
+}
+
 TEST_F(ConfD, OtherFilesAreNotRead) {
   put("merlin.json", R"({"instance": "lab"})");
   put("conf.d/a.json~", "no JSON");

@@ -6,6 +6,7 @@
 
 #include <archive.h>
 #include <archive_entry.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -14,6 +15,7 @@
 #include "daemon/cli/report/machine.h"
 #include "daemon/cli/report/report_parts.h"
 #include "daemon/cli/stop_signals.h"
+#include "tests/support/eventually.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::cli {
@@ -38,14 +40,14 @@ TEST(KnownSecrets, ComeFromTheFilesThatTheSettingsName) {
   const TempDir dir;
   writeText(dir / "left.password", "hunter-22\r\n");
   writeText(dir / "wall.keys", "public PUBLICKEY\nsecret SECRETKEY\n");
-  writeText(dir / "page.token", "TOKENTOKEN\n");
+  writeText(dir / "page.token", "hunter-22-TOKEN\n");
   Settings settings;
   settings.devices.projectors.resize(2);
   settings.devices.projectors[0].password_file = dir / "left.password";
   settings.devices.projectors[1].password_file = dir / "typed-in-place";  // there is no such file
   settings.serve.samples_keys = dir / "wall.keys";
   const KnownSecrets secrets(settings, {dir / "page.token", dir / "no-such-file"});
-  EXPECT_EQ(secrets.without("hunter-22 PUBLICKEY SECRETKEY TOKENTOKEN typed-in-place"),
+  EXPECT_EQ(secrets.without("hunter-22 PUBLICKEY SECRETKEY hunter-22-TOKEN typed-in-place"),
             "(left out) PUBLICKEY (left out) (left out) (left out)");
   EXPECT_EQ(secrets.without(dir / "left.password"), "(left out)");
   EXPECT_EQ(secrets.without("left.password"), "left.password") << "a file that exists";
@@ -161,6 +163,43 @@ TEST_F(RunPart, AProgramThatHangsIsEndedWithThePart) {
   EXPECT_EQ(result->missing.back(), "part: was ended after 0 s, before it was complete");
 }
 
+TEST_F(RunPart, WhatAProgramHasStartedIsEndedToo) {
+  const auto result = run(
+      [](PartFolder& folder) {
+        const auto ran = runInto(folder.path("pid"), {"sh", "-c", "sleep 1000 & echo $!; wait"});
+        folder.lacks(ran ? "it ended" : ran.error().what);
+      },
+      milliseconds(500));
+  ASSERT_TRUE(result);
+  ASSERT_EQ(result->files.size(), 1u);
+  const std::string stat = fmt::format("/proc/{}/stat", std::stoi(result->files[0].content));
+  EXPECT_TRUE(test::eventually([&] {
+    const std::string text = test::readText(stat);
+    return text.empty() || text.find(") Z") != std::string::npos;  // nobody may have waited for it
+  }));
+}
+
+// By what settings mean, before known secrets are looked for.
+TEST_F(RunPart, TheConfigurationLacksNamesOfFilesWithSecrets) {
+  const TempDir dir;
+  writeText(
+      dir / "merlin.json",
+      R"({"devices": {"projectors": [{"name": "left", "address": "h", "password_file": "pw"}]},
+                "serve": {"samples_keys": "kk"}})");
+  const ReportSubject subject{dir / "merlin.json", loadSettingsFile(dir / "merlin.json"),
+                              "merlin-report-none", dir.path()};
+  const ReportPart configuration = reportParts(subject)[0];
+  const auto result = runPart(configuration.settings, stop_.get(), mask_);
+  ASSERT_TRUE(result);
+  ASSERT_EQ(result->files.size(), 3u);
+  for (const PackedFile& file : result->files) {
+    EXPECT_EQ(file.content.find(dir / "pw"), std::string::npos) << file.name;
+    EXPECT_EQ(file.content.find(dir / "kk"), std::string::npos) << file.name;
+  }
+  EXPECT_NE(result->files[2].content.find("\"password_file\": \"(left out)\""), std::string::npos)
+      << result->files[2].name;
+}
+
 TEST_F(RunPart, ThatCrashesOrWritesTooMuchSaysSo) {
   const auto crashed = run([](PartFolder&) {
     const rlimit none{0, 0};
@@ -178,7 +217,7 @@ TEST_F(RunPart, ThatCrashesOrWritesTooMuchSaysSo) {
   ASSERT_EQ(large->files.size(), 1u);
   EXPECT_EQ(large->files[0].name, "part/small");
   ASSERT_EQ(large->missing.size(), 2u);
-  EXPECT_NE(large->missing[0].find("large"), std::string::npos);
+  EXPECT_NE(large->missing[0].find("File too large"), std::string::npos) << large->missing[0];
   EXPECT_EQ(large->missing[1],
             "part/third: does not fit: the files of this part may have 1000 bytes");
 }

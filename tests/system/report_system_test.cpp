@@ -82,11 +82,12 @@ TEST(Report, OfARunningWallHasItsPartsAndNoSecret) {
   EXPECT_EQ(json::parse(files.at("wall/status.json"))["roles"].size(), 2u);
   EXPECT_EQ(files.at("wall/frame.png").find("PNG\r\n"), 2u)
       << "after one byte, which JSON makes two";
-  EXPECT_FALSE(json::parse(files.at("wall/trace.json"))["traceEvents"].empty());
-  EXPECT_GE(std::count_if(files.begin(), files.end(),
-                          [](const auto& f) { return f.first.starts_with("wall/flight/"); }),
-            2)
-      << "the old one and those of now: " << made.output;
+  EXPECT_NE(files.at("wall/trace.json").find("\"ph\":\"X\""), std::string::npos) << "a frame";
+  EXPECT_TRUE(files.contains("wall/flight/" + wall.instance() + "-old-20260101T000000Z.bytes"));
+  const auto recordings = std::count_if(files.begin(), files.end(), [](const auto& f) {
+    return f.first.starts_with("wall/flight/");
+  });
+  EXPECT_EQ(recordings, 1 + 3) << "glove, tracker and ball of now: " << made.output;
   EXPECT_NE(files.at("wall/configuration/changes.txt")
                 .find("/devices/projectors/0/password_file: (absent) -> \"(left out)\""),
             std::string::npos);
@@ -125,6 +126,7 @@ TEST(Report, WritesNothingWhereItCannot) {
   EXPECT_NE(named.output.find("the name of a report must end in .tar.gz"), std::string::npos);
   const Outcome nowhere = run({kMerlin, "report", "-o", dir / "no/wall.tar.gz"});
   EXPECT_EQ(nowhere.status, 2) << nowhere.output;
+  EXPECT_EQ(nowhere.output.find("configuration:"), std::string::npos) << "before the long work";
   EXPECT_TRUE(std::filesystem::is_empty(dir.path()));
 }
 
