@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 
 #include "daemon/actions/action_writer.h"
 #include "daemon/base/clock.h"
@@ -10,8 +11,8 @@
 
 namespace merlin::actions {
 
-// One for each device. Takes no lock and allocates nothing. The actions are published before the
-// sample, so that a reader that waits for the sample finds them.
+// One for each device. Takes no lock and allocates nothing, except in reload(). The actions are
+// published before the sample, so that a reader that waits for the sample finds them.
 class ActionSink final : public SampleSink, public HealthSink {
  public:
   // `postures`: where the current posture is published before each glove sample.
@@ -22,7 +23,18 @@ class ActionSink final : public SampleSink, public HealthSink {
     HealthSink& health;
     Duration stale_after;
   };
-  ActionSink(ActionWriter writer, const Parts& parts) : writer_(std::move(writer)), parts_(parts) {}
+  ActionSink(ActionWriter writer, const Parts& parts)
+      : writer_(std::move(writer)), parts_(parts), stale_after_(parts.stale_after) {}
+
+  // For one other thread: see ActionWriter::rebind(). A device that sends nothing has the new
+  // bindings with its next health, within 250 ms.
+  void reload(const std::vector<Binding>& bindings, Duration stale_after) {
+    stale_after_ = stale_after;
+    writer_.rebind(bindings);
+  }
+
+  // The device is closed: all its inputs end. REQUIRES: no thread of the device runs.
+  void release(std::int64_t now_ns) noexcept { writer_.release(now_ns); }
 
   void publish(const GloveSample& sample) noexcept override {
     const auto posture = parts_.postures.read();
@@ -36,14 +48,16 @@ class ActionSink final : public SampleSink, public HealthSink {
   }
   void publish(const DeviceHealth& health) noexcept override {
     parts_.health.publish(health);
+    writer_.adopt(health.updated_ns);
     const bool lost = health.state != HealthState::kOk &&
-                      health.updated_ns - health.since_ns >= parts_.stale_after.count();
+                      health.updated_ns - health.since_ns >= stale_after_.load().count();
     if (lost) writer_.release(health.updated_ns);
   }
 
  private:
   ActionWriter writer_;
   Parts parts_;
+  std::atomic<Duration> stale_after_;
 };
 
 }  // namespace merlin::actions

@@ -9,21 +9,56 @@ namespace merlin::actions {
 
 ActionWriter::ActionWriter(const std::vector<Binding>& bindings, shm::ActionSource source,
                            std::uint64_t generation, shm::SeqSlot<shm::ActionState>& slot)
-    : slot_(slot) {
+    : source_(source),
+      bindings_(parse(bindings)),
+      rebound_(std::make_unique<Handover<ParsedBindings>>()),
+      slot_(slot) {
+  state_.generation = generation;
+  slot_.publish(state_);
+}
+
+ActionWriter::ParsedBindings ActionWriter::parse(const std::vector<Binding>& bindings) const {
   static_assert(kActions.size() <= shm::kMostActions);
+  ParsedBindings parsed;
   for (const Binding& binding : bindings) {
     auto input = parseInput(binding.input);
     const auto action = std::find(kActions.begin(), kActions.end(), binding.action);
-    if (!input || input->source() != source || action == kActions.end()) continue;
-    bindings_.push_back({*std::move(input), static_cast<std::size_t>(action - kActions.begin()),
-                         isHeldAction(binding.action), binding.when == When::kLeave});
+    if (!input || input->source() != source_ || action == kActions.end()) continue;
+    parsed.push_back({*std::move(input), static_cast<std::size_t>(action - kActions.begin()),
+                      isHeldAction(binding.action), binding.when == When::kLeave});
   }
-  state_.generation = generation;
+  return parsed;
+}
+
+void ActionWriter::rebind(const std::vector<Binding>& bindings) {
+  rebound_->offer(parse(bindings));
+}
+
+void ActionWriter::adopt(std::int64_t now_ns) noexcept {
+  const auto carryOver = [](const ParsedBindings& before, ParsedBindings& now) {
+    for (ParsedBinding& binding : now) {
+      const auto same = std::find_if(before.begin(), before.end(), [&](const ParsedBinding& b) {
+        return b.input == binding.input && b.action == binding.action &&
+               b.on_leave == binding.on_leave;
+      });
+      binding.was_held = same != before.end() && same->was_held;
+      binding.waits = same == before.end() || same->waits;
+    }
+  };
+  if (!rebound_->take(bindings_, carryOver)) return;
+  const shm::ActionState before = state_;
+  updateHeld();
+  if (std::equal(std::begin(before.held), std::end(before.held), std::begin(state_.held))) return;
+  state_.changed_ns = now_ns;
   slot_.publish(state_);
 }
 
 // Returns whether the state changed.
 bool ActionWriter::step(ParsedBinding& binding, bool held) noexcept {
+  if (binding.waits) {
+    binding.waits = held;
+    return false;
+  }
   if (held == binding.was_held) return false;
   binding.was_held = held;
   if (!binding.lasts && held == binding.on_leave) return false;
@@ -43,6 +78,7 @@ void ActionWriter::updateHeld() noexcept {
 
 template <typename IsHeld>
 void ActionWriter::apply(std::int64_t now_ns, const IsHeld& isHeld) noexcept {
+  adopt(now_ns);
   bool changed = false;
   for (ParsedBinding& binding : bindings_)
     changed = step(binding, isHeld(binding.input)) || changed;
@@ -64,7 +100,9 @@ void ActionWriter::update(const GloveSample& glove, const PostureState* posture)
   });
 }
 
+// Before a press the button was released.
 void ActionWriter::press(std::int64_t now_ns) noexcept {
+  apply(now_ns, [](const Input&) { return false; });
   apply(now_ns, [](const Input&) { return true; });
   apply(now_ns, [](const Input&) { return false; });
 }

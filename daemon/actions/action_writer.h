@@ -2,16 +2,19 @@
 // shared memory.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "daemon/actions/input.h"
 #include "daemon/actions/settings.h"
+#include "daemon/base/handover.h"
 #include "daemon/shm/layout.h"
 
 namespace merlin::actions {
 
-// Thread-bound to the device's thread. Takes no lock; allocates nothing after construction. Each
-// call costs a comparison per binding of this device and writes only when an action begins or ends.
+// Thread-bound to the device's thread, except rebind(). Takes no lock; allocates nothing after
+// construction. Each call costs a comparison per binding of this device and writes only when an
+// action begins or ends.
 class ActionWriter {
  public:
   // Uses the bindings whose input belongs to `source`; others, and invalid ones, are ignored.
@@ -27,19 +30,32 @@ class ActionWriter {
   // The device is lost: all its inputs end.
   void release(std::int64_t now_ns) noexcept;
 
+  // For one other thread: replaces the bindings; the writer uses them from its next call on. A
+  // binding that was there before goes on; what one held that is no more ends; and a new one does
+  // nothing until its input has been seen released, so that a button that is pressed at this moment
+  // triggers nothing.
+  void rebind(const std::vector<Binding>& bindings);
+  // Uses new bindings, if there are any; each of the calls above does so too.
+  void adopt(std::int64_t now_ns) noexcept;
+
  private:
   struct ParsedBinding {
     Input input;
     std::size_t action;  // index into kActions
     bool lasts, on_leave;
     bool was_held = false;
+    bool waits = false;  // until the input has been seen released
   };
+  using ParsedBindings = std::vector<ParsedBinding>;
+  ParsedBindings parse(const std::vector<Binding>& bindings) const;
   template <typename IsHeld>
   void apply(std::int64_t now_ns, const IsHeld& isHeld) noexcept;
   bool step(ParsedBinding& binding, bool held) noexcept;
   void updateHeld() noexcept;
 
-  std::vector<ParsedBinding> bindings_;
+  shm::ActionSource source_;
+  ParsedBindings bindings_;
+  std::unique_ptr<Handover<ParsedBindings>> rebound_;  // a pointer, since a writer is moved
   shm::ActionState state_{};
   shm::SeqSlot<shm::ActionState>& slot_;
 };

@@ -19,6 +19,7 @@ struct Input {
 
   // The device to which the input belongs.
   shm::ActionSource source() const;
+  bool operator==(const Input&) const = default;
 };
 
 // Parses the name of an input (kInputForms); nothing if the name is not valid.

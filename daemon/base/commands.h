@@ -29,6 +29,11 @@ struct CommandInfo {
 
 inline constexpr CommandInfo kCommands[] = {
     {"status", CommandOf::kEachRole, "", "Show the state of the role.", Bindable::kNo, false},
+    {"reload", CommandOf::kEachRole, "now|check|NUMBER",
+     "Read the configuration again and swap what changed, all or nothing (now), or only say what "
+     "would be swapped (check). The answer has the number of the request, which asks what became "
+     "of it.",
+     Bindable::kNo, false},
     {"flight", CommandOf::kDevices, "",
      "Write the last minutes of every device's bytes into files.", Bindable::kNo, false},
     {"reset_view", CommandOf::kWall, "",

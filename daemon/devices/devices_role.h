@@ -2,7 +2,7 @@
 // shared memory.
 #pragma once
 
-#include <atomic>
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +14,7 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/unique_fd.h"
 #include "daemon/base/watched_thread.h"
+#include "daemon/devices/continued_counts.h"
 #include "daemon/devices/flight_recorder.h"
 #include "daemon/devices/hand_sink.h"
 #include "daemon/devices/posture_sink.h"
@@ -23,8 +24,15 @@
 #include "drivers/gpio/panel_loop.h"
 #include "drivers/loop/device_loop.h"
 #include "drivers/registry.h"
+#include "nn/postures.h"
 
 namespace merlin::devices {
+
+// What changed in the settings of the devices while they are read.
+struct DevicesChanges {
+  bool bindings = false, hand = false, postures = false;
+  std::array<bool, shm::kDevices> lines{};  // by device: its line or the settings of its driver
+};
 
 class DevicesRole {
  public:
@@ -42,6 +50,13 @@ class DevicesRole {
   // Starts a thread for each device that has a port, with real-time priority if the system allows
   // it.
   void start();
+
+  // Gives the devices that run these settings, of which `changes` differ. Only the threads of
+  // `changes.lines` are stopped, which takes up to 50 ms for each, and made again; all else is
+  // swapped between two samples. `network`: of settings.devices.postures, if that is not empty.
+  // REQUIRES: start() was called; every driver exists and every port can be parsed.
+  void reload(const Settings& settings, const DevicesChanges& changes,
+              const std::optional<nn::PostureNetwork>& network);
 
   void writeHeartbeat(Timestamp now) const { segment_.writeHeartbeat(now); }
   Result<std::string> mend() { return segment_.mend(); }  // SegmentWriter::mend()
@@ -66,13 +81,19 @@ class DevicesRole {
               Clock& clock);
   void addPanel(const DevicesSettings& settings);
   void addProjectors(const DevicesSettings& settings);
-  Result<Ok> add(const LineSettings& line, SampleKind kind, shm::DeviceIndex index,
-                 const Settings& settings);
-  struct Sinks {
-    SampleSink* samples;
-    HealthSink* health;
+  // A device's line; `loop` and `thread` are of the present connection.
+  struct Line {
+    std::string name;
+    shm::ShmHealthSink health;
+    std::unique_ptr<ContinuedCounts> counts;  // the first sink
+    Progress* progress = nullptr;             // set when the thread starts
+    std::unique_ptr<DeviceLoop> loop;         // null: no port
+    WatchedThread thread;
   };
-  Result<Sinks> sinksFor(SampleKind kind, HealthSink& health, const DevicesSettings& settings);
+  void makeSinks(const DevicesSettings& settings, const std::optional<nn::PostureNetwork>& network);
+  Result<Ok> open(shm::DeviceIndex index, const DevicesSettings& settings);
+  void start(Line& line);
+  void close(shm::DeviceIndex index);
 
   shm::SegmentWriter<shm::DevicesSegment> segment_;
   shm::DeviceSlots slots_;
@@ -80,25 +101,21 @@ class DevicesRole {
   Clock& clock_;
   shm::ShmSink sink_;
   FlightRecorder flight_;
-  std::unique_ptr<PostureSink> posture_sink_;
+  // What samples and health pass through on their way to shared memory; made once, while the lines
+  // may come and go.
+  std::unique_ptr<actions::ActionSink> glove_actions_, ball_actions_;
+  std::unique_ptr<PostureSink> posture_sink_;  // before glove_actions_
   std::unique_ptr<HandSink> hand_sink_;
   std::unique_ptr<actions::ActionWriter> panel_actions_;
   std::unique_ptr<gpio::PanelLoop> panel_;
   bool panel_switches_projectors_ = false;
   std::unique_ptr<Projectors> projectors_;  // calls panel_
-  std::vector<std::unique_ptr<shm::ShmHealthSink>> health_;
-  std::vector<std::unique_ptr<actions::ActionSink>> action_sinks_;
+  std::unique_ptr<shm::ShmHealthSink> panel_health_;
   std::uint64_t generation_;
-  // A device's loop; `progress` is set when its thread starts.
-  struct Line {
-    std::string name;
-    Progress* progress = nullptr;
-    std::unique_ptr<DeviceLoop> loop;
-  };
-  std::vector<std::unique_ptr<Line>> lines_;
   int cpu_latency_us_ = -1;
   UniqueFd cpu_latency_;  // the limit is in effect while this is open
-  std::vector<WatchedThread> threads_;
+  std::array<std::unique_ptr<Line>, shm::kDevices> lines_;
+  std::vector<WatchedThread> threads_;  // of panel and projectors
 };
 
 }  // namespace merlin::devices

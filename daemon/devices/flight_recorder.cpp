@@ -1,5 +1,6 @@
 #include "daemon/devices/flight_recorder.h"
 
+#include <algorithm>
 #include <ctime>
 
 #include <fmt/chrono.h>
@@ -15,12 +16,24 @@ constexpr std::size_t kMostDumps = 8;  // files kept per device
 
 }  // namespace
 
-FlightRing& FlightRecorder::add(shm::DeviceIndex device, std::string driver, int baud) {
-  entries_.push_back({device, std::move(driver), baud, std::make_unique<FlightRing>()});
-  return *entries_.back().ring;
+FlightRing& FlightRecorder::ringOf(shm::DeviceIndex device, std::string driver, int baud) {
+  const std::lock_guard lock(mutex_);
+  auto entry = std::ranges::find(entries_, device, &Entry::device);
+  if (entry == entries_.end())
+    entry = entries_.insert(entry, {device, {}, 0, std::make_unique<FlightRing>()});
+  entry->driver = std::move(driver);
+  entry->baud = baud;
+  return *entry->ring;
+}
+
+void FlightRecorder::expectEnd(shm::DeviceIndex device) {
+  const std::lock_guard lock(mutex_);
+  const auto entry = std::ranges::find(entries_, device, &Entry::device);
+  if (entry != entries_.end()) entry->was_well = false;
 }
 
 std::vector<std::string> FlightRecorder::check() {
+  const std::lock_guard lock(mutex_);
   std::vector<std::string> sentences;
   for (Entry& entry : entries_) {
     const auto health = segment_.health[entry.device].read();
@@ -38,6 +51,7 @@ std::vector<std::string> FlightRecorder::check() {
 }
 
 Result<std::vector<std::string>> FlightRecorder::dump() {
+  const std::lock_guard lock(mutex_);
   std::vector<std::string> files;
   for (const Entry& entry : entries_) {
     auto file = write(entry, "on command");

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@
 
 namespace merlin::devices {
 
-// Thread-bound to the status server's thread, except for the rings.
+// Thread-bound to the status server's thread, except for the rings, ringOf() and expectEnd().
 class FlightRecorder {
  public:
   // Dumps are written into `folder` as INSTANCE-DRIVER-TIME.bytes; the newest eight of each driver
@@ -20,9 +21,11 @@ class FlightRecorder {
   FlightRecorder(const shm::DevicesSegment& segment, std::string folder, std::string instance)
       : segment_(segment), folder_(std::move(folder)), instance_(std::move(instance)) {}
 
-  // Adds a ring for a device and returns it; the ring lives as long as the recorder. `driver` and
-  // `baud` go into the headers of its dumps.
-  FlightRing& add(shm::DeviceIndex device, std::string driver, int baud);
+  // Returns the device's ring, which lives as long as the recorder; the first call makes it.
+  // `driver` and `baud` go into the headers of its dumps. Thread-safe.
+  FlightRing& ringOf(shm::DeviceIndex device, std::string driver, int baud);
+  // The device was stopped on purpose: no reason for a dump. Thread-safe.
+  void expectEnd(shm::DeviceIndex device);
 
   // Dumps each device that has stopped working since the last call; returns a sentence for each.
   std::vector<std::string> check();
@@ -42,7 +45,8 @@ class FlightRecorder {
 
   const shm::DevicesSegment& segment_;
   std::string folder_, instance_;
-  std::vector<Entry> entries_;
+  std::mutex mutex_;
+  std::vector<Entry> entries_;  // guarded by mutex_
 };
 
 }  // namespace merlin::devices

@@ -2,14 +2,15 @@
 // into a HandSample; passes all samples on. Runs on the tracker's thread.
 #pragma once
 
+#include "daemon/base/handover.h"
 #include "daemon/shm/layout.h"
 #include "drivers/hand/hand.h"
 #include "drivers/port/sample_sink.h"
 
 namespace merlin::devices {
 
-// Takes no lock and allocates nothing: the newest glove sample is read from shared memory, as any
-// client does.
+// Takes no lock and allocates nothing, except in reload(): the newest glove sample is read from
+// shared memory, as any client does.
 class HandSink final : public SampleSink {
  public:
   HandSink(const HandSettings& settings, shm::DevicesSegment& segment, SampleSink& next)
@@ -18,9 +19,16 @@ class HandSink final : public SampleSink {
         segment_(segment),
         next_(next) {}
 
+  // For one other thread: settings from the tracker's next record on.
+  void reload(const HandSettings& settings) { fresh_.offer(settings); }
+
   void publish(const GloveSample& sample) noexcept override { next_.publish(sample); }
   void publish(const TrackerSample& sample) noexcept override {
     next_.publish(sample);
+    if (HandSettings settings; fresh_.take(settings)) {
+      station_ = static_cast<std::uint32_t>(settings.station);
+      hand_ = hand::Hand(settings);
+    }
     if (sample.station == station_)
       segment_.hand.publish(hand_.update(sample, segment_.glove.newest()));
   }
@@ -31,6 +39,7 @@ class HandSink final : public SampleSink {
   hand::Hand hand_;
   shm::DevicesSegment& segment_;
   SampleSink& next_;
+  Handover<HandSettings> fresh_;
 };
 
 }  // namespace merlin::devices

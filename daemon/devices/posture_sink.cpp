@@ -13,38 +13,58 @@ void setName(char (&field)[N], std::string_view name) noexcept {
 }  // namespace
 
 void PostureSink::publish(const GloveSample& sample) noexcept {
+  if (fresh_.take(recognition_)) endPosture(sample);
+  if (recognition_) recognise(sample);
+  next_.publish(sample);
+}
+
+// Between two recognitions there is a sample without a posture, so that what a posture holds ends.
+void PostureSink::endPosture(const GloveSample& sample) noexcept {
+  entered_before_ = entered_;
+  PostureSample shown{};
+  PostureState state{};
+  shown.received_ns = state.received_ns = sample.received_ns;
+  shown.since_ns = state.since_ns = sample.received_ns;
+  shown.counter = state.counter = sample.counter;
+  state.entered = entered_;
+  outputs_.shown.publish(shown);
+  outputs_.held.publish(state);
+}
+
+void PostureSink::recognise(const GloveSample& sample) noexcept {
+  Recognition& r = *recognition_;
   nn::Angles values;
-  if (unit_ == nn::InputUnit::kRaw) {
+  if (r.unit == nn::InputUnit::kRaw) {
     std::copy_n(std::begin(sample.raw), values.size(), values.begin());
   } else {
     std::copy(std::begin(sample.angle_rad), std::end(sample.angle_rad), values.begin());
   }
-  const nn::Recognition seen = recognise_(values);
-  if (seen.code != code_) {
-    code_ = seen.code;
-    since_ns_ = sample.received_ns;
+  const nn::Recognition seen = r.recognise(values);
+  if (seen.code != r.code) {
+    r.code = seen.code;
+    r.since_ns = sample.received_ns;
   }
   PostureSample shown{};
   shown.received_ns = sample.received_ns;
-  shown.since_ns = since_ns_;
+  shown.since_ns = r.since_ns;
   shown.counter = sample.counter;
   shown.code = seen.code;
   std::copy(seen.activation.begin(), seen.activation.end(), shown.activation);
   setName(shown.name, seen.name);
   outputs_.shown.publish(shown);
 
-  const nn::Held& held = hold_.update(seen, sample.received_ns);
+  const nn::Held& held = r.hold.update(seen, sample.received_ns);
+  entered_ = entered_before_ + held.entered;
   PostureState state{};
   state.received_ns = sample.received_ns;
   state.since_ns = held.since_ns;
   state.counter = sample.counter;
   state.code = held.code;
   state.margin = seen.margin;
-  state.entered = held.entered;
-  if (held.any) setName(state.name, recognise_.name(held.code));
+  state.entered = entered_;
+  if (held.any) setName(state.name, r.recognise.name(held.code));
   setName(state.seen, seen.name);
   outputs_.held.publish(state);
-  next_.publish(sample);
 }
 
 }  // namespace merlin::devices

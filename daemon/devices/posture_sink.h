@@ -2,6 +2,10 @@
 // Runs on the glove's thread.
 #pragma once
 
+#include <memory>
+#include <optional>
+
+#include "daemon/base/handover.h"
 #include "daemon/shm/layout.h"
 #include "drivers/port/sample_sink.h"
 #include "nn/hold.h"
@@ -9,8 +13,8 @@
 
 namespace merlin::devices {
 
-// Takes no lock and allocates nothing. The posture is published before its glove sample, so that a
-// reader that waits for the sample finds the posture.
+// Takes no lock and allocates nothing, except in reload(). The posture is published before its
+// glove sample, so that a reader that waits for the sample finds the posture.
 class PostureSink final : public SampleSink {
  public:
   // `shown`: the posture of each record; `held`: the current posture, after the minimum hold time.
@@ -18,22 +22,44 @@ class PostureSink final : public SampleSink {
     shm::Channel<PostureSample>& shown;
     shm::SeqSlot<PostureState>& held;
   };
-  PostureSink(const nn::PostureNetwork& network, const nn::HoldSettings& hold, Outputs outputs,
-              SampleSink& next)
-      : unit_(network.unit), recognise_(network), hold_(hold), outputs_(outputs), next_(next) {}
+  // Without `network` no posture is recognised, and none published.
+  PostureSink(const std::optional<nn::PostureNetwork>& network, const nn::HoldSettings& hold,
+              Outputs outputs, SampleSink& next)
+      : recognition_(made(network, hold)), outputs_(outputs), next_(next) {}
+
+  // For one other thread: recognises by this network and hold from the next sample on. The posture
+  // that is held ends, and is recognised anew.
+  void reload(const std::optional<nn::PostureNetwork>& network, const nn::HoldSettings& hold) {
+    fresh_.offer(made(network, hold));
+  }
 
   void publish(const GloveSample& sample) noexcept override;
   void publish(const TrackerSample& sample) noexcept override { next_.publish(sample); }
   void publish(const BallSample& sample) noexcept override { next_.publish(sample); }
 
  private:
-  nn::InputUnit unit_;
-  nn::Recogniser recognise_;
-  nn::PostureHold hold_;
+  struct Recognition {
+    Recognition(const nn::PostureNetwork& network, const nn::HoldSettings& settings)
+        : unit(network.unit), recognise(network), hold(settings) {}
+    nn::InputUnit unit;
+    nn::Recogniser recognise;
+    nn::PostureHold hold;
+    std::uint32_t code = ~std::uint32_t{0};
+    std::int64_t since_ns = 0;
+  };
+  static std::unique_ptr<Recognition> made(const std::optional<nn::PostureNetwork>& network,
+                                           const nn::HoldSettings& hold) {
+    return network ? std::make_unique<Recognition>(*network, hold) : nullptr;
+  }
+  void recognise(const GloveSample& sample) noexcept;
+  void endPosture(const GloveSample& sample) noexcept;
+
+  std::unique_ptr<Recognition> recognition_;  // null: no posture is recognised
   Outputs outputs_;
   SampleSink& next_;
-  std::uint32_t code_ = ~std::uint32_t{0};
-  std::int64_t since_ns_ = 0;
+  Handover<std::unique_ptr<Recognition>> fresh_;
+  std::uint32_t entered_ = 0;         // postures that have begun so far
+  std::uint32_t entered_before_ = 0;  // those of earlier recognitions
 };
 
 }  // namespace merlin::devices

@@ -176,6 +176,71 @@ TEST_F(ActionsTest, WhatBeganBeforeTheFirstLookOrBeforeARestartIsPast) {
   EXPECT_EQ(read().begun[kNextMode], 1u);
 }
 
+TEST_F(ActionsTest, WhatStaysBoundGoesOnAndWhatIsNoMoreEnds) {
+  ActionWriter w = writer({{"ball.button.1", "grab"}, {"ball.button.2", "fly"}}, shm::kBallActions);
+  w.update(ball(1 | 2));
+  EXPECT_TRUE(read().held[kGrab]);
+  w.rebind({{"ball.button.3", "next_mode"}, {"ball.button.1", "grab"}});
+  w.adopt(9);
+  const Actions after = read();
+  EXPECT_TRUE(after.held[kGrab]);
+  EXPECT_FALSE(after.held[actionIndex("fly")]);
+  EXPECT_TRUE(after.in_order.empty()) << "nothing begins anew";
+  EXPECT_EQ(state(shm::kBallActions).changed_ns, 9);
+  w.update(ball(1 | 4));
+  EXPECT_EQ(read().begun[kNextMode], 0u) << "the third button was never seen released";
+  w.update(ball(1));
+  w.update(ball(1 | 4));
+  const Actions pressed = read();
+  EXPECT_EQ(pressed.begun[kNextMode], 1u);
+  EXPECT_TRUE(pressed.held[kGrab]);
+}
+
+// An input that is pressed at that moment triggers nothing, neither when it is seen nor when it
+// ends.
+TEST_F(ActionsTest, ANewBindingWaitsForTheNextPress) {
+  ActionWriter w = writer({{"ball.button.1", "next_mode"}}, shm::kBallActions);
+  w.update(ball(1));
+  (void)read();
+  w.rebind({{"ball.button.1", "grab"}, {"ball.button.1", "lamp_off", When::kLeave}});
+  for (int i = 0; i < 3; ++i) w.update(ball(1));
+  EXPECT_FALSE(read().held[kGrab]);
+  w.update(ball(0));
+  EXPECT_TRUE(read().in_order.empty());
+  w.update(ball(1));
+  EXPECT_TRUE(read().held[kGrab]);
+  w.update(ball(0));
+  EXPECT_EQ(read().in_order, std::vector<std::size_t>{kLampOff});
+  ActionWriter panel = writer({}, shm::kPanelActions);
+  (void)read();
+  panel.rebind({{"panel.button", "next_mode"}});
+  panel.press(3);
+  EXPECT_EQ(read().begun[kNextMode], 1u) << "the panel's button is released between presses";
+}
+
+// A ball at rest sends no samples, but its health.
+TEST_F(ActionsTest, ADeviceThatSendsNothingIsReboundByItsHealth) {
+  test::RecordingSink samples;
+  test::RecordingHealth healths;
+  ActionSink sink(writer({{"ball.button.1", "grab"}}, shm::kBallActions),
+                  {segment_->posture_state, samples, healths, std::chrono::milliseconds(500)});
+  sink.publish(ball(1));
+  EXPECT_TRUE(read().held[kGrab]);
+  sink.reload({}, std::chrono::milliseconds(100));
+  DeviceHealth health{};
+  health.state = HealthState::kOk;
+  sink.publish(health);
+  EXPECT_FALSE(read().held[kGrab]);
+  sink.reload({{"ball.button.1", "grab"}}, std::chrono::milliseconds(100));
+  sink.publish(ball(0));
+  sink.publish(ball(1));
+  EXPECT_TRUE(read().held[kGrab]);
+  health.state = HealthState::kAbsent;
+  health.updated_ns = 100'000'000;
+  sink.publish(health);
+  EXPECT_FALSE(read().held[kGrab]) << "the new time counts";
+}
+
 TEST(BindingSettings, AnInputThatIsNoneIsFound) {
   for (const std::string input :
        {"", "ball", "ball.button.", "ball.button.0", "ball.button.13", "ball.button.-1",

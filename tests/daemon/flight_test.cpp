@@ -116,7 +116,7 @@ TEST(FlightRecorder, WhatItDumpsReplays) {
   const test::TempDir dir;
   const auto segment = std::make_unique<shm::DevicesSegment>();
   FlightRecorder recorder(*segment, dir / "flight", "lab");
-  FlightRing& ring = recorder.add(shm::kGlove, "cyberglove", 38400);
+  FlightRing& ring = recorder.ringOf(shm::kGlove, "cyberglove", 38400);
   test::DeviceBench bench("cyberglove", {}, "visit");
   io::RecordingStream stream(std::make_unique<test::BorrowedStream>(bench.stream), ring,
                              bench.clock);
@@ -160,7 +160,7 @@ TEST(FlightRecorder, KeepsEightDumpsOfADevice) {
   const auto segment = std::make_unique<shm::DevicesSegment>();
   for (int run = 0; run < 2; ++run) {
     FlightRecorder recorder(*segment, dir / "flight", "lab");
-    recorder.add(shm::kBall, "spaceball", 9600);
+    recorder.ringOf(shm::kBall, "spaceball", 9600);
     for (int i = 0; i < 10; ++i) ASSERT_TRUE(recorder.dump());
   }
   std::size_t files = 0;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/devices/continued_counts.h"
 #include "drivers/hand/shapes.h"
 #include "nn/io/network_file.h"
 #include "tests/support/recording_sink.h"
@@ -64,6 +65,77 @@ TEST_F(PostureSinkTest, AHandThatIsNoneHasNoName) {
   broken.angle_rad[5] = std::numeric_limits<float>::quiet_NaN();
   sink_.publish(broken);
   EXPECT_STREQ(postures_->newest()->name, "");
+}
+
+TEST_F(PostureSinkTest, ANewHoldEndsThePostureAndBeginsItAnew) {
+  GloveSample fist = showing("fist", 1);
+  const auto show = [&](std::int64_t ms) {
+    fist.received_ns = 1'000'000'000 + ms * 1'000'000;
+    sink_.publish(fist);
+  };
+  for (std::int64_t ms = 0; ms < 200; ms += 10) show(ms);
+  ASSERT_STREQ(held_.read()->name, "fist");
+  sink_.reload(file_.network, {.hold_s = 0.05});
+  show(200);
+  EXPECT_STREQ(held_.read()->name, "");
+  EXPECT_EQ(held_.read()->entered, 1u) << "counts go on";
+  for (std::int64_t ms = 210; ms < 260; ms += 10) show(ms);
+  EXPECT_STREQ(held_.read()->name, "fist");
+  EXPECT_EQ(held_.read()->entered, 2u);
+}
+
+TEST_F(PostureSinkTest, WithoutANetworkNoPostureIsSeen) {
+  sink_.publish(showing("fist", 1));
+  sink_.reload(std::nullopt, {});
+  sink_.publish(showing("fist", 2));
+  EXPECT_STREQ(postures_->newest()->name, "");
+  sink_.publish(showing("fist", 3));
+  EXPECT_EQ(postures_->newest()->counter, 2u) << "nothing is published any more";
+  sink_.reload(file_.network, {});
+  sink_.publish(showing("fist", 4));
+  EXPECT_STREQ(postures_->newest()->name, "fist");
+  EXPECT_EQ(next_.glove.size(), 4u);
+}
+
+// The newest of three stations, and the line's own counters.
+TEST(ContinuedCounts, GoOnWhereTheDeviceIsMadeAnew) {
+  test::RecordingSink samples;
+  test::RecordingHealth healths;
+  ContinuedCounts counts(samples, healths);
+  const auto ball = [&](std::uint32_t counter) {
+    BallSample sample{};
+    sample.counter = counter;
+    counts.publish(sample);
+    return samples.ball.back().counter;
+  };
+  const auto tracker = [&](std::uint32_t station, std::uint32_t counter) {
+    TrackerSample sample{};
+    sample.station = station;
+    sample.counter = counter;
+    counts.publish(sample);
+    return samples.tracker.back().counter;
+  };
+  const auto health = [&](std::uint64_t n) {
+    DeviceHealth h{};
+    h.samples = n;
+    h.bad_bytes = 1;
+    h.reconnects = 2;
+    counts.publish(h);
+    return healths.last();
+  };
+  EXPECT_EQ(ball(7), 7u);
+  EXPECT_EQ(tracker(1, 5), 5u);
+  EXPECT_EQ(tracker(4, 9), 9u);
+  EXPECT_EQ(health(12).samples, 12u);
+  counts.restart();
+  EXPECT_EQ(ball(1), 8u);
+  EXPECT_EQ(tracker(1, 1), 6u);
+  EXPECT_EQ(tracker(4, 2), 11u);
+  EXPECT_EQ(health(3).samples, 15u);
+  EXPECT_EQ(healths.last().bad_bytes, 2u);
+  EXPECT_EQ(healths.last().reconnects, 5u) << "the line was opened once more";
+  counts.restart();
+  EXPECT_EQ(ball(1), 9u);
 }
 
 }  // namespace
