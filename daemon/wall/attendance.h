@@ -43,6 +43,9 @@ class Attendance {
   };
   Frame update(WallInput& input, Timestamp now);
 
+  // Replaces the playlist's settings: see Playlist.
+  void configure(const PlaylistSettings& playlist) { playlist_.configure(playlist); }
+
   using Shown = shm::WallInteraction::Shown;
   Shown shown() const noexcept;
   // Whether the picture is to stay as it is; also below black.

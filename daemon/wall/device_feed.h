@@ -24,6 +24,11 @@ class DeviceFeed final : public InputFeed {
         ahead_(ahead) {}
 
   WallInput read(Timestamp now) override;
+  void configure(const FeedSettings& settings) override {
+    hand_station_ = settings.hand_station;
+    stale_after_ = settings.stale_after;
+    ahead_ = settings.ahead;
+  }
   void leaveOutBall(bool leaves_out) override { leaves_out_ball_ = leaves_out; }
   Duration age() const noexcept override { return age_.value_or(Duration::zero()); }
 

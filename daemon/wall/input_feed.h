@@ -24,6 +24,15 @@ struct WallInput {
   std::array<char, 20> posture{};  // name of the current posture, NUL-terminated; empty: none
 };
 
+// How the devices' input is read.
+struct FeedSettings {
+  int hand_station = 1;
+  // Age at which samples of tracker and glove count as missing.
+  Duration stale_after{};
+  // Time from a frame's begin until it is visible; the hand's pose is predicted for that time.
+  Duration ahead{};
+};
+
 // Thread-bound to the wall's thread.
 class InputFeed {
  public:
@@ -31,6 +40,9 @@ class InputFeed {
 
   // Reads the newest input of every device that works; never waits.
   virtual WallInput read(Timestamp now) = 0;
+
+  // Replaces the settings, from the next read() on.
+  virtual void configure(const FeedSettings& settings) { static_cast<void>(settings); }
 
   // Whether actions of the ball's buttons are left out from the next read() on, except
   // operator_panel.

@@ -66,6 +66,8 @@ class OperatorPanel final : public render::panel::PanelSource {
   // Once a frame, on the wall's thread, before Attendance::update(): executes what is held, and
   // takes the ball out of `input` while that works the panel.
   void update(WallInput& input, Timestamp now);
+  // On the wall's thread: the configured rate is another one from now on.
+  void configure(double rate_hz) noexcept { parts_.rate_hz = rate_hz; }
   // On the wall's thread: whether actions of the ball's buttons are the panel's.
   bool takesBall() const noexcept { return view_.by_ball; }
   // On the wall's thread: of the last update().

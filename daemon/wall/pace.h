@@ -28,6 +28,9 @@ class Pace {
   void hold(std::optional<std::size_t> cost) noexcept;
   void setRate(std::optional<double> rate_hz) noexcept;
 
+  // Replaces the configured rate, with the next update(). REQUIRES: rate_hz > 0.
+  void configure(double rate_hz) noexcept { configured_hz_ = rate_hz; }
+
   // To be called before each frame: applies hold() and setRate(). Returns true if the period has
   // changed.
   bool update();
@@ -52,7 +55,7 @@ class Pace {
   bool betterFits() const;
 
   render::governor::Governor& governor_;
-  const double configured_hz_;
+  double configured_hz_;
   double asked_hz_;
   Duration period_;
   // The first step halves the size of the tiles, each further one halves the rate.

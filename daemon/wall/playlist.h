@@ -19,6 +19,9 @@ class Playlist {
   enum class State : std::uint32_t { kOff = 0, kWaiting = 1, kRunning = 2 };
   State state() const noexcept;
 
+  // Replaces the settings; what runs goes on, and the time that has passed counts.
+  void configure(const PlaylistSettings& settings) { settings_ = settings; }
+
   // When the next thing will happen if nobody touches the wall, in seconds from the last update();
   // negative: not at all.
   struct Due {

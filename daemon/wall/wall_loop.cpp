@@ -57,6 +57,7 @@ void WallLoop::run(const std::stop_token& stop, const std::function<void()>& fir
 }
 
 void WallLoop::applyRequests() {
+  applyTuning();
   const std::uint32_t requests = requests_.exchange(0);
   if (requests & kResetView) returnToInitialView();
   if (requests & kNextMode) parts_.scene.nextMode();
@@ -70,6 +71,35 @@ void WallLoop::applyRequests() {
     parts_.scene.reset();
   }
   if (requests != 0 || place >= 0) parts_.attendance.touch();
+}
+
+void WallLoop::tune(WallTuning tuning) {
+  const std::lock_guard lock(step_mutex_);
+  tunings_.push_back(std::move(tuning));
+}
+
+void WallLoop::applyTuning() {
+  std::vector<WallTuning> tunings;
+  {
+    const std::lock_guard lock(step_mutex_);
+    tunings.swap(tunings_);
+  }
+  for (WallTuning& tuning : tunings) {
+    if (tuning.governor) {
+      parts_.governor.setLimits(*tuning.governor);
+      pace_.configure(tuning.governor->rate_hz);
+      if (parts_.panel) parts_.panel->configure(tuning.governor->rate_hz);
+    }
+    if (tuning.playlist) {
+      parts_.attendance.configure(*tuning.playlist);
+      parts_.playlist = std::move(tuning.places);
+    }
+    if (tuning.scene) {
+      (void)parts_.scene.configure(*tuning.scene);  // validated with the file
+      lost_.setReturnAfter(tuning.scene->return_after_s);
+    }
+    if (tuning.feed) parts_.feed.configure(*tuning.feed);
+  }
 }
 
 void WallLoop::useNavigation() {

@@ -28,6 +28,7 @@
 #include "daemon/wall/still_frame.h"
 #include "daemon/wall/viewer_place.h"
 #include "daemon/wall/wall_publisher.h"
+#include "daemon/wall/wall_tuning.h"
 #include "render/frame/curtain.h"
 #include "render/frame/delivery.h"
 #include "render/frame/frame_painter.h"
@@ -69,7 +70,7 @@ struct WallParts {
   std::vector<std::size_t> playlist{};  // contents of the playlist, in order; empty: all by turns
 };
 
-// Thread-bound, except request(), move(), hold() and setRate().
+// Thread-bound, except where it says thread-safe.
 class WallLoop {
  public:
   explicit WallLoop(WallParts parts);
@@ -95,6 +96,9 @@ class WallLoop {
   // Thread-safe: moves what the ball moves, in the next frame; several of a frame add up.
   void move(const render::scene::Push& step);
 
+  // Thread-safe: takes these settings before the next frame. What people changed stays.
+  void tune(WallTuning tuning);
+
   // Thread-safe; applied before the next frame: see Pace.
   void hold(std::optional<std::size_t> cost) noexcept { pace_.hold(cost); }
   void setRate(std::optional<double> rate_hz) noexcept { pace_.setRate(rate_hz); }
@@ -109,6 +113,7 @@ class WallLoop {
   std::int64_t stillPeriod(std::int64_t k);
 
   void applyRequests();
+  void applyTuning();
   render::scene::Push takeStep();
   // Reads the devices and moves the scene.
   void readInput(std::int64_t k, Timestamp began);
@@ -157,6 +162,7 @@ class WallLoop {
   // Guarded by step_mutex_: by move() since the last frame; the last request that is done.
   render::scene::Push step_asked_;
   shm::WallContent done_{};
+  std::vector<WallTuning> tunings_;  // guarded by step_mutex_: since the last frame
 };
 
 }  // namespace merlin::wall

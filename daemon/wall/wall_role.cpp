@@ -227,10 +227,9 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
   }
   ShownModels& models = **made;
   beginCorrecting(models.contexts());
-  DeviceFeed feed(shm::segmentName(settings_.instance, "devices"), settings_.devices.hand.station,
-                  fromSeconds(settings_.devices.stale_after_s),
-                  fromSeconds(1 / settings_.wall.governor.rate_hz),
-                  settings_.wall.stereo.head.station);
+  const FeedSettings input = feedSettings(settings_);
+  DeviceFeed feed(shm::segmentName(settings_.instance, "devices"), input.hand_station,
+                  input.stale_after, input.ahead, settings_.wall.stereo.head.station);
   render::frame::PointerMarker marker(plan_);
   delivery_.emplace(plan_, outputs_, overlaysWith(marker), std::move(corrections_), signals_.get());
   std::optional<ViewerPlace> viewer = makeViewerPlace();
@@ -252,6 +251,23 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
   loop.run(stop, [&] { ready_.set_value(models.contexts().renderer()); });
   loop_.store(nullptr);
   shader_pass_.end();
+}
+
+FeedSettings WallRole::feedSettings(const Settings& settings) {
+  return {settings.devices.hand.station, fromSeconds(settings.devices.stale_after_s),
+          fromSeconds(1 / settings.wall.governor.rate_hz)};
+}
+
+void WallRole::reload(const Settings& settings, const WallChanges& changes) {
+  WallTuning tuning;
+  if (changes.rate) tuning.governor = settings.wall.governor;
+  if (changes.playlist) {
+    tuning.playlist = settings.wall.playlist;
+    tuning.places = placesOf(entries_, settings.wall.playlist.contents);
+  }
+  if (changes.scene) tuning.scene = settings.wall.scene;
+  if (changes.rate || changes.input) tuning.feed = feedSettings(settings);
+  if (WallLoop* loop = loop_.load()) loop->tune(std::move(tuning));
 }
 
 // From the first to the last that is drawn: a test card hides the plates of the operator's tile,

@@ -35,6 +35,11 @@
 
 namespace merlin::wall {
 
+// What changed in the settings while the wall is drawn.
+struct WallChanges {
+  bool rate = false, playlist = false, scene = false, input = false;
+};
+
 // Who draws the wall, for the status.
 struct RendererReport {
   render::gl::RendererInfo info{};
@@ -74,6 +79,10 @@ class WallRole {
   // Sets what outputs of kind window do for the person at them, on their own threads. To be called
   // before start().
   void onWindow(render::out::WindowActs acts) { window_ = std::move(acts); }
+
+  // Has the wall take these settings, of which `changes` differ, before its next frame; nothing is
+  // closed. REQUIRES: the first frame was shown; all else in `settings` is as before.
+  void reload(const Settings& settings, const WallChanges& changes);
 
   // Thread-safe; these four are ignored before the wall's loop runs.
   void request(WallLoop::Request what);
@@ -138,6 +147,7 @@ class WallRole {
   void addOwn(WallParts& parts);
   void beginCorrecting(const render::frame::DrawContexts& contexts);
   std::optional<ViewerPlace> makeViewerPlace();
+  static FeedSettings feedSettings(const Settings& settings);
   std::vector<render::frame::Overlay*> overlaysWith(render::frame::PointerMarker& marker);
 
   Settings settings_;  // `wall` is drawnWall() of the configured one

@@ -229,6 +229,11 @@ void Governor::expect(double ratio) noexcept {
   startOver();
 }
 
+void Governor::setLimits(const GovernorSettings& settings) noexcept {
+  settings_ = checked(settings);
+  triangles_ = clamped(triangles_);
+}
+
 void Governor::setRate(double rate_hz) noexcept {
   assert(rate_hz > 0);
   period_ = fromSeconds(1 / rate_hz);

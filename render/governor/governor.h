@@ -79,6 +79,10 @@ class Governor {
   // REQUIRES: rate_hz > 0.
   void setRate(double rate_hz) noexcept;
 
+  // Replaces limits and share of late frames; the rate is setRate()'s. The model is kept, and the
+  // budget stays as far as the limits allow. REQUIRES: validate() finds nothing.
+  void setLimits(const GovernorSettings& settings) noexcept;
+
   // The time that the model expects `triangles` to take, in seconds.
   double predict(std::size_t triangles) const noexcept;
 

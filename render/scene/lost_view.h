@@ -21,6 +21,11 @@ class LostView {
   // decreases.
   bool update(bool seen, bool moving, Timestamp now) noexcept;
 
+  // Replaces the time; the last sighting stays.
+  void setReturnAfter(double return_after_s) noexcept {
+    return_after_ = fromSeconds(return_after_s);
+  }
+
  private:
   Duration return_after_;
   // Time of the last sighting; nullopt if there was none since the last return.

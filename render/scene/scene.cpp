@@ -90,6 +90,18 @@ Scene::Scene(const SceneSettings& settings)
   reset();
 }
 
+Result<Ok> Scene::configure(const SceneSettings& settings) {
+  if (const SettingFaults faults = validate(settings); !faults.empty())
+    return Error{Errc::kInvalidArgument, faults.front().what};
+  settings_ = settings;
+  navigator_ = makeNavigator(navigation_, settings_, nearest_);
+  R_wall_tracker_ = *axisMap(settings.tracker_axes);
+  // A hand begins anew, from where it is.
+  grab_hand_.reset();
+  fly_hand_.reset();
+  return Ok{};
+}
+
 void Scene::setNavigation(content::Navigation navigation, float nearest) {
   const bool same = navigation == navigation_;
   if (same && nearest == nearest_) return;

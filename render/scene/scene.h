@@ -62,6 +62,10 @@ class Scene {
   void reset();  // returns model and viewer to their initial poses; counts as motion
   void nextMode();
 
+  // Replaces the settings, from the next update() on; the poses stay. The initial view is that of
+  // the new settings. Errors: those of make(), and nothing is replaced.
+  Result<Ok> configure(const SceneSettings& settings);
+
   // Sets how the content is moved from now on; initially kObject. If the kind of navigation
   // changes, the view becomes the start view of the new kind, which counts as motion.
   // `nearest`: of a plane, its nearest distance as a multiple of the initial one.
