@@ -10,6 +10,7 @@
 #include <sys/un.h>
 
 #include "daemon/base/files.h"
+#include "daemon/base/printable_text.h"
 #include "daemon/devices/device_checks.h"
 #include "daemon/status/curve.h"
 #include "daemon/status/run_directory.h"
@@ -141,8 +142,9 @@ void checkPage(LoadedSettings& loaded) {
 
 }  // namespace
 
-Configuration readConfiguration(const std::string& file, const DaemonOptions& options) {
-  Configuration read{loadSettingsFile(file), {}};
+Configuration readConfiguration(const std::string& file, const DaemonOptions& options,
+                                Reading reading) {
+  Configuration read{loadSettingsFile(file), {}, file};
   LoadedSettings& loaded = read.loaded;
   // The files could not be read or parsed at all.
   if (!loaded.parsed) return read;
@@ -160,13 +162,21 @@ Configuration readConfiguration(const std::string& file, const DaemonOptions& op
   if (options.wall) {
     checkInput(options, loaded);
     checkStateFile(file, loaded);
-    wall::checkRenderer(loaded);
+    if (reading == Reading::kStart) wall::checkRenderer(loaded);
     wall::checkOutputs(loaded);
     wall::checkPlaylist(loaded);
-    read.contents = wall::readContents(loaded);
+    if (reading == Reading::kStart) read.contents = wall::readContents(loaded);
   }
   loaded.sortFindings();
   return read;
+}
+
+std::vector<std::string> findingLines(const std::string& file, const LoadedSettings& loaded) {
+  std::vector<std::string> lines;
+  for (const Finding& finding : loaded.findings) lines.push_back(toText(file, finding));
+  if (loaded.left_out > 0)
+    lines.push_back(fmt::format("{}: and {} more findings", oneLine(file), loaded.left_out));
+  return lines;
 }
 
 }  // namespace merlin

@@ -20,12 +20,21 @@ struct Configuration {
   LoadedSettings loaded;  // the settings, with all findings
   // For the role wall; not to be used if the verdict is kInvalid.
   std::vector<wall::WallContent> contents;
+  std::string file;
 };
+
+// kAgain: merlind runs with a configuration of this file, and changes of what only a start takes
+// are refused anyway: the contents and the renderer are not read, which may take long.
+enum class Reading { kStart, kAgain };
 
 // Reads the file and all other files that merlind reads when it starts with these roles; files that
 // only other roles need are not checked. Changes nothing on disk. Never fails: faults are findings.
 // Conditions that may change while merlind runs (a missing device, a port in use) are not faults.
 // Cost: linear in the size of the models' files.
-Configuration readConfiguration(const std::string& file, const DaemonOptions& options);
+Configuration readConfiguration(const std::string& file, const DaemonOptions& options,
+                                Reading reading = Reading::kStart);
+
+// The findings as lines, and how many further ones there are.
+std::vector<std::string> findingLines(const std::string& file, const LoadedSettings& loaded);
 
 }  // namespace merlin

@@ -17,6 +17,7 @@ namespace merlin {
 namespace {
 
 constexpr Duration kBeat = std::chrono::milliseconds(100);
+constexpr Duration kReloadBeat = std::chrono::milliseconds(10);  // while one is executed
 constexpr Duration kSummary = std::chrono::seconds(5);
 constexpr Duration kOnceASecond = std::chrono::seconds(1);
 
@@ -86,7 +87,9 @@ Result<std::unique_ptr<Daemon>> Daemon::make(Configuration configuration,
 }
 
 Daemon::Daemon(Configuration configuration, const DaemonOptions& options, Clock& clock)
-    : settings_(std::move(configuration.loaded.settings)),
+    : settings_(configuration.loaded.settings),
+      configured_(std::move(configuration.loaded.settings)),
+      file_(std::move(configuration.file)),
       contents_(std::move(configuration.contents)),
       options_(options),
       clock_(clock),
@@ -156,8 +159,10 @@ void Daemon::connectRoles() {
         threads_);
     wall_->onSnapshot([this] { snapshots_->take(); });
   }
-  commands_.emplace(
-      RoleCommands::Parts{devices_.get(), wall_.get(), snapshots_.get(), keeper_.get()});
+  reloader_.emplace(file_, options_, std::move(configured_), settings_,
+                    Reloader::Parts{devices_.get(), wall_.get(), services_, threads_});
+  commands_.emplace(RoleCommands::Parts{devices_.get(), wall_.get(), snapshots_.get(),
+                                        keeper_.get(), &*reloader_});
   servers_.emplace(RoleServers::Parts{settings_, *commands_, services_, devices_.get(),
                                       remote_devices_.get(), wall_.get(), keeper_.get()},
                    threads_, clock_);
@@ -212,8 +217,9 @@ Result<Ok> Daemon::run() {
   }
   ::sd_notify(0, "READY=1");
   logInfo("ready");
-  while (!stopAsked(kBeat)) {
+  while (!stopAsked(reloader_->isBusy() ? kReloadBeat : kBeat)) {
     housekeeping();
+    reloader_->tend();
     // Not before READY=1: a ping arms systemd's watchdog, and the first frame may take longer.
     if (watchdog_.ping(clock_.now(), threads_.threads())) ::sd_notify(0, "WATCHDOG=1");
     if (const auto ended = ended_threads_.check(clock_.now())) return *ended;
@@ -244,8 +250,7 @@ bool Daemon::stopAsked(Duration wait) {
   const sigset_t set = takenSignals();
   const timespec limit{0, wait.count()};
   const int signal = ::sigtimedwait(&set, nullptr, &limit);
-  if (signal == SIGHUP)
-    logInfo("SIGHUP is ignored: restart merlind to read a changed configuration");
+  if (signal == SIGHUP) reloader_->request();
   return signal == SIGTERM || signal == SIGINT || closed_;
 }
 

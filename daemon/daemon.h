@@ -17,6 +17,7 @@
 #include "daemon/configuration.h"
 #include "daemon/devices/devices_role.h"
 #include "daemon/emulator_children.h"
+#include "daemon/reloader.h"
 #include "daemon/remote_devices.h"
 #include "daemon/role_commands.h"
 #include "daemon/role_servers.h"
@@ -40,10 +41,10 @@ class Daemon {
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
-  // Runs until SIGTERM or SIGINT. Tells systemd when the first frame is shown, and from then on
-  // that every thread still makes progress (its watchdog). Errors: those of starting the servers;
-  // the first frame could not be drawn; kClosed (stopped before the first frame); a thread has
-  // ended unexpectedly.
+  // Runs until SIGTERM or SIGINT; SIGHUP: reads the configuration again. Tells systemd when the
+  // first frame is shown, and from then on that every thread still makes progress (its watchdog).
+  // Errors: those of starting the servers; the first frame could not be drawn; kClosed (stopped
+  // before the first frame); a thread has ended unexpectedly.
   Result<Ok> run();
 
  private:
@@ -64,6 +65,8 @@ class Daemon {
   // Members are destroyed from the last to the first: an object that calls others is declared after
   // them, so that it is destroyed first.
   Settings settings_;
+  Settings configured_;  // as the file has them; moved into reloader_
+  const std::string file_;
   std::vector<wall::WallContent> contents_;  // moved into wall_ when that is created
   DaemonOptions options_;
   Clock& clock_;
@@ -78,6 +81,7 @@ class Daemon {
   actions::ActionReader device_actions_;
   // Of a process with a wall or projectors; used by wall_ and devices_.
   std::unique_ptr<state::StateKeeper> keeper_;
+  std::optional<Reloader> reloader_;
   std::optional<RoleCommands> commands_;
   std::unique_ptr<wall::SnapshotWriter> snapshots_;  // called by wall_
   std::unique_ptr<wall::WallRole> wall_;

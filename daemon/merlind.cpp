@@ -48,8 +48,7 @@ manual::PageSettings page() {
 }
 
 void printFindings(const std::string& file, const LoadedSettings& loaded) {
-  for (const Finding& finding : loaded.findings) printError("{}\n", toText(file, finding));
-  if (loaded.left_out > 0) printError("{}: and {} more findings\n", oneLine(file), loaded.left_out);
+  for (const std::string& line : findingLines(file, loaded)) printError("{}\n", line);
 }
 
 DaemonOptions daemonOptions(const Options& options) {

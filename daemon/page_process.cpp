@@ -38,7 +38,7 @@ bool stopAsked() {
   const timespec limit{0, kBeat.count()};
   const int signal = ::sigtimedwait(&set, nullptr, &limit);
   if (signal == SIGHUP)
-    logInfo("SIGHUP is ignored: restart merlind to read a changed configuration");
+    logInfo("SIGHUP is ignored: the page reads a changed configuration when it is restarted");
   return signal == SIGTERM || signal == SIGINT;
 }
 

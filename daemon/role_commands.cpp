@@ -239,14 +239,20 @@ Answer ofDevices(const Parts& p, const CommandInfo& command) {
   return executed ? done() : Answer(executed.error());
 }
 
+Answer ofEachRole(const Parts& p, std::string_view name, const std::string& argument) {
+  if (name == "reload" && p.reloader) return p.reloader->run(argument);
+  return lacks("does not know the command");
+}
+
 }  // namespace
 
 Result<std::string> RoleCommands::run(std::string_view name, const std::string& argument) const {
   const CommandInfo* const command = findCommand(name);
   if (!command)
     return Error{Errc::kInvalidArgument, fmt::format("\"{}\" is not a known command", name)};
-  auto answer = command->role == CommandOf::kWall ? ofWall(parts_, name, argument)
-                                                  : ofDevices(parts_, *command);
+  auto answer = command->role == CommandOf::kEachRole ? ofEachRole(parts_, name, argument)
+                : command->role == CommandOf::kWall   ? ofWall(parts_, name, argument)
+                                                      : ofDevices(parts_, *command);
   if (answer && name == "operator_pointer") runPanel();
   if (answer) return answer;
   return Error{answer.error().code, fmt::format("{}: {}", name, answer.error().what)};
@@ -264,7 +270,7 @@ void RoleCommands::runPanel() const {
 std::vector<status::Command> RoleCommands::of(CommandOf role) const {
   std::vector<status::Command> commands;
   for (const CommandInfo& c : kCommands) {
-    if (c.role != role || c.bindable == Bindable::kHeld) continue;
+    if (c.role != role || c.bindable == Bindable::kHeld || c.name == "status") continue;
     status::Command command{std::string(c.name), std::string(c.help), nullptr, nullptr};
     if (c.argument.empty())
       command.run = [this, name = c.name] { return run(name); };

@@ -7,6 +7,7 @@
 
 #include "daemon/base/commands.h"
 #include "daemon/devices/devices_role.h"
+#include "daemon/reloader.h"
 #include "daemon/state/state_keeper.h"
 #include "daemon/status/server.h"
 #include "daemon/wall/snapshot_writer.h"
@@ -24,6 +25,7 @@ class RoleCommands {
     wall::WallRole* wall = nullptr;
     wall::SnapshotWriter* snapshots = nullptr;
     state::StateKeeper* keeper = nullptr;  // of a process with a wall or projectors
+    Reloader* reloader = nullptr;
   };
   explicit RoleCommands(const Parts& parts) : parts_(parts) {}
 

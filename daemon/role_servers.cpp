@@ -114,10 +114,11 @@ Result<Ok> RoleServers::startStatus(const std::string& role, CommandOf commands,
   settings.command_endpoint = at.command;
   const auto status = settings.publications[0].document;
   settings.commands = parts_.commands.of(commands);
-  if (commands == CommandOf::kDevices) {
-    for (auto& command : parts_.commands.of(CommandOf::kPanel))
-      settings.commands.push_back(std::move(command));
-  }
+  const auto add = [&](CommandOf also) {
+    for (auto& command : parts_.commands.of(also)) settings.commands.push_back(std::move(command));
+  };
+  if (commands == CommandOf::kDevices) add(CommandOf::kPanel);
+  add(CommandOf::kEachRole);
   settings.commands.insert(settings.commands.begin(),
                            {"status", std::string(findCommand("status")->help),
                             [status]() -> Result<std::string> { return status(); }});

@@ -1,5 +1,7 @@
 #include "daemon/cli/roles.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -27,7 +29,7 @@ std::optional<FoundRole> find(const std::string& instance, const char* role,
   // Without an endpoint the segment is a copy of another machine's devices, and no process on this
   // machine executes their commands.
   if (h.command_endpoint[0] == '\0') return std::nullopt;
-  return FoundRole{role, {h.status_endpoint, h.command_endpoint}};
+  return FoundRole{role, {h.status_endpoint, h.command_endpoint}, h.pid};
 }
 
 }  // namespace
@@ -42,6 +44,22 @@ Result<std::vector<FoundRole>> findRoles(const std::string& instance) {
   return Error{Errc::kIo, fmt::format("no merlind runs as \"{0}\" (there is no shared memory "
                                       "/{0}-wall or /{0}-devices of a running merlind)",
                                       instance)};
+}
+
+Result<std::string> instanceOf(std::uint32_t pid) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev/shm", error)) {
+    const std::string name = entry.path().filename().string();
+    const std::size_t dash = name.rfind('-');
+    if (dash == std::string::npos ||
+        (name.substr(dash) != "-wall" && name.substr(dash) != "-devices"))
+      continue;
+    const auto roles = findRoles(name.substr(0, dash));
+    if (roles && std::ranges::any_of(*roles, [&](const FoundRole& r) { return r.pid == pid; }))
+      return name.substr(0, dash);
+  }
+  return Error{Errc::kIo,
+               fmt::format("process {} is no merlind that reads devices or draws a wall", pid)};
 }
 
 Result<std::string> askRole(const std::string& instance, const std::string& role,

@@ -14,11 +14,15 @@ namespace merlin::cli {
 struct FoundRole {
   std::string role;  // "devices" or "wall"
   shm::Endpoints endpoints;
+  std::uint32_t pid = 0;  // of its process; one may have both roles
 };
 
 // The running roles of this instance. Errors: kIo if no role runs, or if its shared memory may not
 // be read.
 Result<std::vector<FoundRole>> findRoles(const std::string& instance);
+
+// The instance of the merlind that is this process. Errors: kIo if it is none.
+Result<std::string> instanceOf(std::uint32_t pid);
 
 // A request to a role: a command of daemon/base/commands.h and its argument.
 struct RoleRequest {

@@ -17,7 +17,7 @@ class Unit : public testing::TestWithParam<const char*> {
     if (!installed("systemd-analyze")) GTEST_SKIP() << "systemd is not installed";
   }
   // A copy of the unit in which the path of the installed program is replaced by this build's
-  // merlind, which is always there.
+  // merlind, which is always there, and that of merlin by this build's.
   std::string localCopy() const {
     const std::string name = GetParam();
     std::string unit = readText(kUnits + name);
@@ -28,6 +28,9 @@ class Unit : public testing::TestWithParam<const char*> {
     EXPECT_NE(unit.find(from), std::string::npos);
     for (std::size_t at = 0; (at = unit.find(from, at)) != std::string::npos; at += to.size())
       unit.replace(at, from.size(), to);
+    const std::string tool = "/usr/bin/merlin ";
+    if (const std::size_t at = unit.find(tool); at != std::string::npos)
+      unit.replace(at, tool.size(), MERLIN_BIN_DIR "/merlin ");
     writeText(dir_ / name, unit);
     return dir_ / name;
   }

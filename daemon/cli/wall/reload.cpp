@@ -1,0 +1,225 @@
+// merlin reload: has merlind read its configuration again and swap what changed.
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/clock.h"
+#include "daemon/cli/command.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
+#include "daemon/cli/roles.h"
+
+namespace merlin::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr Duration kPollPeriod = std::chrono::milliseconds(20);
+constexpr Duration kPatience = std::chrono::seconds(60);  // a file system may be slow
+
+struct ReloadOptions {
+  std::string instance = "merlin";
+  std::uint32_t pid = 0;
+  bool check = false, json = false;
+};
+
+// What became of a request in one process; `answer` as in daemon/reload/answer.h.
+struct Reloaded {
+  FoundRole process;
+  Json answer;
+  bool done() const { return outcome() == "done"; }
+  std::string outcome() const { return answer.value("outcome", ""); }
+};
+
+// One role of each process: a process with both roles reads its configuration once.
+Result<std::vector<FoundRole>> processesOf(const std::string& instance) {
+  auto roles = findRoles(instance);
+  if (!roles) return roles;
+  std::set<std::uint32_t> seen;
+  std::erase_if(*roles, [&](const FoundRole& role) { return !seen.insert(role.pid).second; });
+  return roles;
+}
+
+// Has a process read its configuration, and waits for its answer.
+Result<Reloaded> reloadProcess(const std::string& instance, const FoundRole& process,
+                               const char* what) {
+  const auto ask = [&](const std::string& argument) -> Result<Json> {
+    const auto text = askRole(instance, process.role, {"reload", argument});
+    if (!text) return text.error();
+    return Json::parse(*text, nullptr, false);
+  };
+  const auto begun = ask(what);
+  if (!begun) return begun.error();
+  const std::string number = std::to_string(begun->value("request", 0U));
+  SystemClock clock;
+  for (const Timestamp until = clock.now() + kPatience; clock.now() < until;) {
+    auto answer = ask(number);
+    if (!answer) return answer.error();
+    if (!answer->value("pending", false)) return Reloaded{process, *std::move(answer)};
+    clock.sleepUntil(clock.now() + kPollPeriod, {});
+  }
+  return Error{Errc::kTimeout,
+               fmt::format("merlind (process {}) has not read its configuration within {:.0f} s; "
+                           "its log will say what became of it",
+                           process.pid, toSeconds(kPatience))};
+}
+
+Result<std::vector<Reloaded>> reloadEach(const std::string& instance,
+                                         const std::vector<FoundRole>& processes,
+                                         const char* what) {
+  std::vector<Reloaded> all;
+  for (const FoundRole& process : processes) {
+    auto reloaded = reloadProcess(instance, process, what);
+    if (!reloaded) return reloaded.error();
+    all.push_back(*std::move(reloaded));
+  }
+  return all;
+}
+
+bool allDone(const std::vector<Reloaded>& all) {
+  return std::ranges::all_of(all, [](const Reloaded& r) { return r.done(); });
+}
+
+// All or nothing holds in one process: of two, both check the file before one swaps anything.
+Result<std::vector<Reloaded>> reloadAll(const ReloadOptions& options) {
+  const auto processes = processesOf(options.instance);
+  if (!processes) return processes.error();
+  if (options.check || processes->size() > 1) {
+    auto checked = reloadEach(options.instance, *processes, "check");
+    if (options.check || !checked || !allDone(*checked)) return checked;
+  }
+  return reloadEach(options.instance, *processes, "now");
+}
+
+std::string changeText(const Json& change) {
+  const std::string from = change.value("from", ""), to = change.value("to", "");
+  const std::string setting = change.value("setting", "");
+  if (from.empty()) return fmt::format("{}: {} (new)", setting, to);
+  if (to.empty()) return fmt::format("{}: {} -> removed", setting, from);
+  return fmt::format("{}: {} -> {}", setting, from, to);
+}
+
+// Each text once, in the order of the processes.
+std::vector<std::string> together(const std::vector<Reloaded>& all, const char* key,
+                                  std::string (*text)(const Json&)) {
+  std::vector<std::string> texts;
+  for (const Reloaded& reloaded : all) {
+    for (const Json& entry : reloaded.answer.value(key, Json::array())) {
+      std::string one = text(entry);
+      if (std::ranges::find(texts, one) == texts.end()) texts.push_back(std::move(one));
+    }
+  }
+  return texts;
+}
+
+std::string itself(const Json& json) { return json.is_string() ? json.get<std::string>() : ""; }
+std::string settingOf(const Json& change) { return change.value("setting", ""); }
+
+// Changed settings that none of these processes reads: each would think them another's.
+std::vector<std::string> readByNone(const std::vector<Reloaded>& all) {
+  std::vector<std::string> settings = together(all, "elsewhere", itself);
+  for (const std::string& swapped : together(all, "swapped", settingOf))
+    std::erase(settings, swapped);
+  for (const std::string& refused : together(all, "restart", itself)) std::erase(settings, refused);
+  return settings;
+}
+
+void printDone(const std::vector<Reloaded>& all) {
+  const auto swapped = together(all, "swapped", changeText);
+  const auto unread = readByNone(all);
+  for (const std::string& line : swapped) printOut("{}\n", line);
+  for (const std::string& setting : unread) {
+    printOut(
+        "{}: is taken by another process at its start (--role page: systemctl restart "
+        "merlin-page)\n",
+        setting);
+  }
+  if (swapped.empty() && unread.empty()) printOut("nothing changed\n");
+}
+
+// Why nothing was swapped.
+void printRefusal(const std::vector<Reloaded>& all) {
+  for (const Reloaded& reloaded : all) {
+    const std::string file = reloaded.answer.value("file", ""), outcome = reloaded.outcome();
+    if (outcome == "invalid") {
+      printError("merlin: {}: invalid, {} findings; nothing was changed\n", printable(file),
+                 reloaded.answer.value("findings", Json::array()).size());
+      return;
+    }
+    if (outcome != "done" && outcome != "needs_restart") {
+      printError("merlin: {}: {}; nothing was changed\n", printable(file),
+                 printable(reloaded.answer.value("failure", "no reason")));
+      return;
+    }
+  }
+  const auto restart = together(all, "restart", itself);
+  printError(
+      "merlin: nothing was changed, since merlind takes {} only when it starts: systemctl restart "
+      "merlind\n",
+      restart.size() == 1 ? "this setting" : "these settings");
+  for (const std::string& setting : restart) printError("  {}\n", printable(setting));
+}
+
+// Findings as `merlind --check-config` prints them, also numbers that were adjusted.
+void print(const std::vector<Reloaded>& all) {
+  for (const std::string& finding : together(all, "findings", itself))
+    printError("{}\n", printable(finding));
+  allDone(all) ? printDone(all) : printRefusal(all);
+}
+
+int exitStatusOf(const std::vector<Reloaded>& all) {
+  const auto is = [&](const char* outcome) {
+    return std::ranges::any_of(all, [&](const Reloaded& r) { return r.outcome() == outcome; });
+  };
+  if (allDone(all)) return kExitDone;
+  return is("invalid") || is("needs_restart") ? kExitBadInput : kExitFailed;
+}
+
+int reload(ReloadOptions options) {
+  if (options.pid > 0) {
+    auto instance = instanceOf(options.pid);
+    if (!instance) return fail(instance.error());
+    options.instance = *std::move(instance);
+  }
+  const auto all = reloadAll(options);
+  if (!all) return fail(all.error());
+  if (!options.json) {
+    print(*all);
+    return exitStatusOf(*all);
+  }
+  Json processes = Json::array();
+  for (const Reloaded& reloaded : *all) {
+    Json process{{"pid", reloaded.process.pid}};
+    process.update(reloaded.answer);
+    processes.push_back(std::move(process));
+  }
+  printJsonLine(Json{{"processes", std::move(processes)}});
+  return exitStatusOf(*all);
+}
+
+}  // namespace
+
+void addReload(Command app, Run& run) {
+  const auto options = std::make_shared<ReloadOptions>();
+  Command command = app.subcommand(
+      "reload",
+      "Have merlind read its configuration again and swap what changed, without closing anything "
+      "else: bindings, devices, hand, postures, rate, playlist, speeds. All or nothing: if the "
+      "file is invalid, or if a setting changed that needs a restart, everything stays as it was. "
+      "Exit status: 0 done, 2 invalid or a restart is needed, 1 otherwise.\n"
+      "Example: merlin reload --check");
+  addInstance(command, options->instance);
+  command
+      .option("--pid", options->pid,
+              "The daemon of this process, instead of --instance (for systemd's ExecReload=)")
+      .typeName("PID");
+  command.flag("--check", options->check, "Only say what would be swapped");
+  command.flag("--json", options->json, "Print JSON, for programs");
+  command.callback([options, &run] { run = [options] { return reload(*options); }; });
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,71 @@
+#include "daemon/reload/answer.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace merlin::reload {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kLongest = 200;  // bytes of a value, for a person
+
+// Not through the middle of a UTF-8 character.
+std::string cut(const std::string& text) {
+  if (text.size() <= kLongest) return text;
+  std::size_t end = kLongest;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  return text.substr(0, end) + " ...";
+}
+
+Json valuesOf(const std::vector<SettingChange>& changes) {
+  Json list = Json::array();
+  for (const SettingChange& change : changes) {
+    list.push_back(
+        {{"setting", change.pointer}, {"from", cut(change.before)}, {"to", cut(change.after)}});
+  }
+  return list;
+}
+
+// Without values, which may name files with secrets.
+Json pointersOf(const std::vector<SettingChange>& changes) {
+  Json list = Json::array();
+  for (const SettingChange& change : changes) list.push_back(change.pointer);
+  return list;
+}
+
+// The first text and the number of those after it.
+std::string firstOf(const std::string& first, std::size_t count) {
+  return count > 1 ? fmt::format("{} (and {} more)", first, count - 1) : first;
+}
+
+}  // namespace
+
+std::string answerText(const Answer& answer) {
+  const Json json{{"outcome", kOutcomeNames[static_cast<std::size_t>(answer.outcome)]},
+                  {"only_checked", answer.only_checked},
+                  {"file", answer.file},
+                  {"findings", answer.findings},
+                  {"swapped", valuesOf(answer.plan.swapped)},
+                  {"restart", pointersOf(answer.plan.restart)},
+                  {"elsewhere", pointersOf(answer.plan.elsewhere)},
+                  {"failure", answer.failure}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string refusal(const Answer& answer) {
+  constexpr const char* kKept = "the settings before it stay in effect";
+  switch (answer.outcome) {
+    case Outcome::kDone: return {};
+    case Outcome::kInvalid:
+      return fmt::format("{}; {}", firstOf(answer.findings.front(), answer.findings.size()), kKept);
+    case Outcome::kRestart:
+      return fmt::format("{}: {} changed, which only a restart takes; {}", answer.file,
+                         firstOf(answer.plan.restart.front().pointer, answer.plan.restart.size()),
+                         kKept);
+    case Outcome::kFailed: break;
+  }
+  return fmt::format("{}: {}; {}", answer.file, answer.failure, kKept);
+}
+
+}  // namespace merlin::reload

@@ -1,0 +1,34 @@
+// What a reload did, or why it did nothing, as JSON for whoever asked for it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/reload/plan.h"
+
+namespace merlin::reload {
+
+// kInvalid: the file has faults, or a changed number that is out of range. kRestart: a changed setting needs a restart. kFailed: the outside
+// world, for example no memory. After these three nothing was changed.
+enum class Outcome { kDone, kInvalid, kRestart, kFailed };
+inline constexpr const char* kOutcomeNames[] = {"done", "invalid", "needs_restart", "failed"};
+
+struct Answer {
+  Outcome outcome = Outcome::kDone;
+  bool only_checked = false;          // nothing was to be swapped: what would be is in `plan`
+  std::string file;                   // the configuration
+  std::vector<std::string> findings;  // a line each, as merlind --check-config prints them
+  Plan plan;
+  std::string failure;  // of kFailed
+};
+
+// {"outcome": "done", "only_checked": false, "file": "merlin.json", "findings": [...], "swapped":
+// [{"setting": "/devices/bindings/0/action", "from": "\"grab\"", "to": "\"fly\""}], "restart":
+// ["/wall/render/gpu"], "elsewhere": [...], "failure": ""}. `from` and `to` are values as JSON
+// text; empty: there is no such setting.
+std::string answerText(const Answer& answer);
+
+// Why nothing was changed, in one sentence for an event; empty after kDone.
+std::string refusal(const Answer& answer);
+
+}  // namespace merlin::reload

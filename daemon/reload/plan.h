@@ -1,0 +1,65 @@
+// Which part of a running merlind takes which setting of a changed configuration: the one table of
+// it, and what a reload would do.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "config/effective.h"
+
+namespace merlin::reload {
+
+// What can be swapped while merlind runs; kRestart: only a restart takes the setting.
+enum class Part : std::size_t {
+  kRestart,
+  kBindings,  // bindings, and when a silent device lets go
+  kGlove,     // each of these three: the device's line is closed and opened again
+  kTracker,
+  kBall,
+  kHand,      // station and filter of the hand
+  kPostures,  // network, hold times and margin
+  kRate,      // frame rate and limits of the triangles
+  kPlaylist,  // what the wall shows while nobody is there, and its light then
+  kScene,     // how a person's input moves the model
+  kCount
+};
+
+// Processes that read a setting, as a set of bits.
+using Readers = std::uint32_t;
+inline constexpr Readers kDevices = 1, kWall = 2, kPage = 4;
+inline constexpr Readers kMirror = 8;  // a wall that uses another machine's devices
+inline constexpr Readers kAll = kDevices | kWall | kPage | kMirror;
+
+struct Taker {
+  std::string_view pointer;  // of a setting, a list or a group
+  Readers readers;
+  Part part;
+};
+
+// The row of the table with the longest pointer that is `pointer` or a group around it. A pointer
+// that no row covers, such as that of a new setting, needs a restart of every process: it is never
+// passed over.
+Taker takerOf(std::string_view pointer);
+
+// The rows of the table, for tests.
+std::vector<Taker> takers();
+
+struct Plan {
+  std::vector<SettingChange> swapped;    // that this process can take while it runs
+  std::vector<SettingChange> restart;    // that it takes at its next start only
+  std::vector<SettingChange> elsewhere;  // that only other processes read
+  std::array<bool, static_cast<std::size_t>(Part::kCount)> parts{};  // of `swapped`
+
+  bool has(Part part) const { return parts[static_cast<std::size_t>(part)]; }
+};
+
+// Divides the changes for a process that is these readers.
+Plan planFor(const std::vector<SettingChange>& changes, Readers process);
+
+// Gives `running` the settings of these parts from `fresh`, and leaves all others alone.
+// `keep_ports`: also the devices' ports (those of emulators).
+void adopt(const Plan& plan, const Settings& fresh, bool keep_ports, Settings& running);
+
+}  // namespace merlin::reload

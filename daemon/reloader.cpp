@@ -1,0 +1,214 @@
+#include "daemon/reloader.h"
+
+#include <algorithm>
+#include <charconv>
+#include <exception>
+
+#include <fmt/format.h>
+
+#include "config/effective.h"
+#include "daemon/base/log.h"
+#include "nn/io/network_file.h"
+
+namespace merlin {
+namespace {
+
+using reload::Outcome;
+using reload::Part;
+
+constexpr std::size_t kMostWaiting = 8, kKept = 32;
+constexpr const char* kService = "configuration";
+
+std::optional<std::uint32_t> numberIn(const std::string& text) {
+  std::uint32_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || rest != end) return std::nullopt;
+  return number;
+}
+
+// Whether a number that is out of range would change what is in effect. At the start it is
+// adjusted, since a wall that runs is worth more; here the one before is at hand.
+bool adjustsChange(const LoadedSettings& loaded, const std::vector<SettingChange>& changes) {
+  return std::ranges::any_of(loaded.findings, [&](const Finding& finding) {
+    return std::ranges::any_of(changes, [&](const SettingChange& change) {
+      return finding.pointer == change.pointer || finding.pointer.starts_with(change.pointer + "/");
+    });
+  });
+}
+
+std::string orNothing(const std::string& value) { return value.empty() ? "nothing" : value; }
+
+}  // namespace
+
+Reloader::Reloader(std::string file, const DaemonOptions& options, Settings configured,
+                   Settings& running, const Parts& parts)
+    : file_(std::move(file)),
+      options_(options),
+      configured_(std::move(configured)),
+      running_(running),
+      parts_(parts) {}
+
+Result<std::string> Reloader::run(const std::string& argument) {
+  const std::lock_guard lock(mutex_);
+  if (argument == "now" || argument == "check") {
+    if (waiting_.size() >= kMostWaiting) {
+      return Error{Errc::kBusy,
+                   fmt::format("{} requests wait already; try again later", kMostWaiting)};
+    }
+    waiting_.push_back({++last_number_, argument == "check"});
+    return fmt::format("{{\"request\": {}}}", last_number_);
+  }
+  const auto number = numberIn(argument);
+  const auto answer =
+      std::ranges::find_if(answers_, [&](const auto& a) { return a.first == number; });
+  if (answer != answers_.end()) return answer->second;
+  const bool waits = std::ranges::any_of(waiting_, [&](auto& r) { return r.number == number; });
+  if (waits || (current_ && current_->number == number)) return std::string("{\"pending\": true}");
+  return Error{
+      Errc::kInvalidArgument,
+      fmt::format("\"{}\" is neither now, check nor the number of a request of the last {}",
+                  argument.substr(0, 64), kKept)};
+}
+
+bool Reloader::isBusy() const {
+  const std::lock_guard lock(mutex_);
+  return current_ || !waiting_.empty();
+}
+
+void Reloader::tend() {
+  std::optional<Request> request;
+  std::optional<ReadFile> file;
+  {
+    const std::lock_guard lock(mutex_);
+    if (read_) {
+      request = current_;
+      file.swap(read_);
+    }
+  }
+  if (file) {
+    thread_.stop();
+    finish(*request, *std::move(file));
+  }
+  const std::lock_guard lock(mutex_);
+  if (current_ || waiting_.empty()) return;
+  current_ = waiting_.front();
+  waiting_.pop_front();
+  thread_ = WatchedThread(parts_.watch, "reload",
+                          [this](const std::stop_token& stop, Progress& p) { read(stop, p); });
+}
+
+// The body of the thread. Then it waits until it is stopped, as every thread must.
+void Reloader::read(const std::stop_token& stop, Progress& progress) {
+  giveWay();
+  ReadFile file;
+  {
+    const Progress::Pause pause(progress);  // a file system may not answer
+    file = readGuarded();
+  }
+  std::unique_lock lock(mutex_);
+  read_ = std::move(file);
+  while (!stop.stop_requested()) {
+    progress.step();
+    ending_.wait_for(lock, stop, std::chrono::milliseconds(200), [] { return false; });
+  }
+}
+
+Reloader::ReadFile Reloader::readGuarded() const {
+  try {
+    return read();
+  } catch (const std::exception& e) {  // of memory
+    ReadFile failed;
+    failed.answer.outcome = Outcome::kFailed;
+    failed.answer.file = file_;
+    failed.answer.failure = e.what();
+    return failed;
+  }
+}
+
+reload::Readers Reloader::process() const {
+  const bool mirrors = options_.wall && !configured_.wall.input.endpoint.empty();
+  return (options_.devices ? reload::kDevices : 0U) | (options_.wall ? reload::kWall : 0U) |
+         (mirrors ? reload::kMirror : 0U);
+}
+
+Reloader::ReadFile Reloader::read() const {
+  Configuration fresh = readConfiguration(file_, options_, Reading::kAgain);
+  ReadFile file;
+  file.answer.file = file_;
+  file.answer.findings = findingLines(file_, fresh.loaded);
+  if (fresh.loaded.verdict() == LoadedSettings::Verdict::kInvalid) {
+    file.answer.outcome = Outcome::kInvalid;
+    return file;
+  }
+  file.settings = std::move(fresh.loaded.settings);
+  const auto changes = changesBetween(configured_, file.settings);
+  if (adjustsChange(fresh.loaded, changes)) {
+    file.answer.outcome = Outcome::kInvalid;
+    return file;
+  }
+  file.answer.plan = reload::planFor(changes, process());
+  if (!file.answer.plan.restart.empty()) {
+    file.answer.outcome = Outcome::kRestart;
+    return file;
+  }
+  const std::string& postures = file.settings.devices.postures;
+  if (!file.answer.plan.has(Part::kPostures) || postures.empty()) return file;
+  auto network = nn::loadNetwork(postures);
+  if (network) {
+    file.network = std::move(network->network);
+  } else {  // it was readable when it was checked
+    file.answer.outcome = Outcome::kInvalid;
+    file.answer.findings.push_back(
+        fmt::format("{}: /devices/postures cannot be used: {}", file_, network.error().what));
+  }
+  return file;
+}
+
+void Reloader::finish(const Request& request, ReadFile file) {
+  file.answer.only_checked = request.only_check;
+  if (!request.only_check) {
+    if (file.answer.outcome == Outcome::kDone) swap(file);
+    report(file.answer);
+  }
+  std::string text = reload::answerText(file.answer);
+  const std::lock_guard lock(mutex_);
+  answers_.emplace_back(request.number, std::move(text));
+  if (answers_.size() > kKept) answers_.pop_front();
+  current_.reset();
+}
+
+void Reloader::swap(const ReadFile& file) {
+  const reload::Plan& plan = file.answer.plan;
+  reload::adopt(plan, file.settings, options_.emulate, running_);
+  if (parts_.devices) {
+    parts_.devices->reload(
+        running_,
+        {plan.has(Part::kBindings),
+         plan.has(Part::kHand),
+         plan.has(Part::kPostures),
+         {plan.has(Part::kGlove), plan.has(Part::kTracker), plan.has(Part::kBall)}},
+        file.network);
+  }
+  if (parts_.wall) {
+    parts_.wall->reload(running_,
+                        {plan.has(Part::kRate), plan.has(Part::kPlaylist), plan.has(Part::kScene),
+                         plan.has(Part::kBindings) || plan.has(Part::kHand)});
+  }
+  configured_ = file.settings;
+}
+
+void Reloader::report(const reload::Answer& answer) {
+  for (const std::string& finding : answer.findings) logWarning("{}", finding);
+  if (answer.outcome != Outcome::kDone)
+    return parts_.services.failed(kService, reload::refusal(answer));
+  parts_.services.ok(kService);
+  for (const SettingChange& change : answer.plan.swapped) {
+    logInfo("reload: {} was {} and is {}", change.pointer, orNothing(change.before),
+            orNothing(change.after));
+  }
+  logInfo("reload: {} was read again; {}", file_,
+          answer.plan.swapped.empty() ? "nothing changed for this process" : "all is done");
+}
+
+}  // namespace merlin

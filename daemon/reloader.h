@@ -1,0 +1,87 @@
+// Reloader: has merlind read its configuration again: by SIGHUP, and by the command reload.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "config/settings.h"
+#include "daemon/base/result.h"
+#include "daemon/base/watched_thread.h"
+#include "daemon/configuration.h"
+#include "daemon/devices/devices_role.h"
+#include "daemon/reload/answer.h"
+#include "daemon/status/services.h"
+#include "daemon/wall/wall_role.h"
+#include "nn/postures.h"
+
+namespace merlin {
+
+// The file is read and checked on a thread of its own, which runs only meanwhile and gives way to
+// all others; what changed is swapped by tend(), on the main thread. All or nothing. Several
+// requests are executed one after another.
+class Reloader {
+ public:
+  struct Parts {
+    devices::DevicesRole* devices;  // null: this process lacks the part
+    wall::WallRole* wall;
+    status::Services& services;  // says why a reload was refused, until one is not
+    ThreadWatch& watch;
+  };
+  // `configured`: the settings of `file` that are in effect. `running`: the same with what was made
+  // of them at the start (the emulators' ports); changed by tend() alone. All must outlive this.
+  Reloader(std::string file, const DaemonOptions& options, Settings configured, Settings& running,
+           const Parts& parts);
+
+  // The command: "now" and "check", which only says what would be done, return {"request": N}; N
+  // as the argument returns {"pending": true} until the request was executed, then its answer
+  // (reload::answerText()). The last 32 answers are kept. Errors: kInvalidArgument; kBusy (8
+  // requests wait). Returns at once. Thread-safe.
+  Result<std::string> run(const std::string& argument);
+  // As by "now"; whoever asks hears of it by log and events. Thread-safe.
+  void request() { (void)run("now"); }
+
+  // Whether a request waits or is executed: then tend() is called more often. Thread-safe.
+  bool isBusy() const;
+  // Begins what was requested, and swaps what was read. To be called by the main thread, from the
+  // first frame on. Takes up to 50 ms for each device that is made anew.
+  void tend();
+
+ private:
+  struct Request {
+    std::uint32_t number = 0;
+    bool only_check = false;
+  };
+  struct ReadFile {
+    reload::Answer answer;
+    Settings settings;
+    std::optional<nn::PostureNetwork> network;
+  };
+  ReadFile readGuarded() const;
+  ReadFile read() const;
+  reload::Readers process() const;
+  void read(const std::stop_token& stop, Progress& progress);
+  void finish(const Request& request, ReadFile file);
+  void swap(const ReadFile& file);
+  void report(const reload::Answer& answer);
+
+  const std::string file_;
+  const DaemonOptions options_;
+  Settings configured_;  // changed by tend() while nothing is read
+  Settings& running_;
+  Parts parts_;
+  mutable std::mutex mutex_;  // guards all below but thread_
+  std::condition_variable_any ending_;
+  std::uint32_t last_number_ = 0;
+  std::deque<Request> waiting_;
+  std::optional<Request> current_;
+  std::optional<ReadFile> read_;  // of current_
+  std::deque<std::pair<std::uint32_t, std::string>> answers_;
+  WatchedThread thread_;  // reads
+};
+
+}  // namespace merlin

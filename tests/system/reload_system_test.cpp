@@ -1,0 +1,275 @@
+// merlin reload and SIGHUP with the real programs: what changed is swapped and nothing else, or
+// everything stays as it was.
+#include <random>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "daemon/base/commands.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+using nlohmann::json;
+
+json bindings(const std::string& fist) {
+  return json::array({{{"input", "posture.fist"}, {"action", fist}},
+                      {{"input", "ball.button.2"}, {"action", "next_mode"}}});
+}
+
+class Reload : public testing::Test {
+ protected:
+  // The devices' process, whose emulated person makes a fist and opens it in turn.
+  void start(const json& also = {{"devices", {{"bindings", bindings("grab")}}}}) {
+    merlind_.emplace(dir_, "", "reload",
+                     MerlindOptions{.script = "grabbing", .role = "devices", .also = also});
+    ASSERT_TRUE(merlind_->ready()) << merlind_->process().output();
+    for (const auto device : {shm::kGlove, shm::kTracker, shm::kBall})
+      ASSERT_TRUE(merlind_->healthIs(device, HealthState::kOk)) << device;
+    written_ = json::parse(readText(merlind_->config()));
+  }
+  void write(const json& patch) {
+    written_.merge_patch(patch);
+    writeText(merlind_->config(), written_.dump(2));
+  }
+  Outcome reload(std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {kMerlin, "reload", "--instance", merlind_->instance()});
+    return run(more);
+  }
+  DeviceHealth health(shm::DeviceIndex device) {
+    return *merlind_->devices()->health[device].read();
+  }
+  shm::ActionState actions() { return *merlind_->devices()->actions[shm::kGloveActions].read(); }
+  std::uint32_t begun(std::string_view action) {
+    for (std::size_t i = 0; i < kActions.size(); ++i) {
+      if (action == kActions[i]) return actions().begun[i];
+    }
+    return 0;
+  }
+  std::string serviceHealth() {
+    return merlind_->status()["services"]["configuration"].value("health", "");
+  }
+  std::size_t entriesOf(const char* folder) const {
+    const std::filesystem::directory_iterator all(
+        fmt::format("/proc/{}/{}", merlind_->process().pid(), folder));
+    return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+  }
+
+  TempDir dir_;
+  mutable std::optional<Merlind> merlind_;
+  json written_;
+};
+
+// The state of a line has lasted since before: it was not closed for a moment.
+TEST_F(Reload, AChangedBindingActsAndNoLineIsClosed) {
+  start();
+  ASSERT_TRUE(eventually([&] { return begun("grab") > 0; }));
+  const DeviceHealth before[] = {health(shm::kGlove), health(shm::kTracker), health(shm::kBall)};
+  write({{"devices", {{"bindings", bindings("reset_view")}}}});
+  const Outcome done = reload();
+  EXPECT_EQ(done.status, 0) << done.output;
+  EXPECT_EQ(done.output, "/devices/bindings/0/action: \"grab\" -> \"reset_view\"\n");
+  EXPECT_TRUE(eventually([&] { return begun("reset_view") > 0; }));
+  const std::uint32_t grabs = begun("grab");
+  EXPECT_EQ(actions().held[actionIndex("grab")], 0);
+  const std::uint32_t resets = begun("reset_view");
+  EXPECT_TRUE(eventually([&] { return begun("reset_view") > resets; }));
+  EXPECT_EQ(begun("grab"), grabs);
+  for (const auto device : {shm::kGlove, shm::kTracker, shm::kBall}) {
+    EXPECT_EQ(health(device).since_ns, before[device].since_ns) << device;
+    EXPECT_EQ(health(device).reconnects, before[device].reconnects) << device;
+  }
+  EXPECT_GT(health(shm::kGlove).samples, before[shm::kGlove].samples);
+  EXPECT_EQ(reload().output, "nothing changed\n");
+  write({{"devices", {{"bindings", bindings("grab")}}}});
+  ASSERT_EQ(::kill(merlind_->process().pid(), SIGHUP), 0);
+  EXPECT_TRUE(merlind_->process().saysEventually(
+      "reload: /devices/bindings/0/action was \"reset_view\" and is \"grab\""))
+      << merlind_->process().output();
+  EXPECT_TRUE(eventually([&] { return begun("grab") > grabs; }));
+  EXPECT_EQ(merlind_->process().kill(SIGTERM), 0);
+}
+
+TEST_F(Reload, ADeviceIsMadeAnewAloneAndItsCountersGoOn) {
+  start();
+  const DeviceHealth before[] = {health(shm::kGlove), health(shm::kTracker), health(shm::kBall)};
+  write({{"devices", {{"glove", {{"light", "on"}}}}}});
+  const std::string pid = std::to_string(merlind_->process().pid());
+  const Outcome done = run({kMerlin, "reload", "--pid", pid});
+  EXPECT_EQ(done.output, "/devices/glove/light: \"switch\" -> \"on\"\n");
+  EXPECT_TRUE(eventually([&] {
+    const DeviceHealth glove = health(shm::kGlove);
+    return glove.state == HealthState::kOk && glove.since_ns > before[shm::kGlove].since_ns &&
+           glove.samples > before[shm::kGlove].samples + 10;
+  })) << merlind_->process().output();
+  EXPECT_EQ(health(shm::kGlove).reconnects, before[shm::kGlove].reconnects + 1);
+  for (const auto device : {shm::kTracker, shm::kBall})
+    EXPECT_EQ(health(device).since_ns, before[device].since_ns) << device;
+  EXPECT_EQ(merlind_->process().output().find("the last bytes of"), std::string::npos)
+      << "a device that was stopped on purpose has not failed";
+}
+
+// With the same words as a check of the file, and as an event that a good one ends.
+TEST_F(Reload, ABadFileIsSaidAndChangesNothing) {
+  start();
+  const std::string good = written_.dump(2);
+  write({{"devices", {{"bindings", bindings("fly")}}}});
+  const std::string wanted = written_.dump(2);
+  const auto broken = [&](const json& patch) {
+    json copy = written_;
+    copy.merge_patch(patch);
+    return copy.dump(2);
+  };
+  for (const std::string& text :
+       {wanted.substr(0, wanted.size() / 2), broken({{"devices", {{"bal", {{"baud", 9600}}}}}}),
+        broken({{"devices", {{"ball", {{"baud", 12345}}}}}}),
+        broken({{"devices", {{"postures", "none.json"}}}}),
+        broken({{"devices", {{"posture_hold_s", 99}}}}),  // a start would adjust it
+        broken({{"devices", {{"glove", {{"port", "serial"}}}}}, {"wall", {{"outputs", 3}}}})}) {
+    writeText(merlind_->config(), text);
+    const Outcome checked =
+        run({kMerlind, "--check-config", merlind_->config(), "--role", "devices", "--emulate"});
+    const Outcome refused = reload();
+    EXPECT_EQ(refused.status, 2) << refused.output;
+    EXPECT_NE(refused.output.find("nothing was changed"), std::string::npos) << refused.output;
+    std::istringstream lines(checked.output);
+    int findings = 0;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.find(": invalid, ") != std::string::npos ||
+          line.find(": valid after 1 adj") != std::string::npos)
+        continue;
+      ++findings;
+      EXPECT_NE(refused.output.find(line + "\n"), std::string::npos) << line << "\nis not in\n"
+                                                                     << refused.output;
+    }
+    EXPECT_GT(findings, 0) << checked.output;
+  }
+  EXPECT_EQ(serviceHealth(), "failed");
+  EXPECT_TRUE(merlind_->process().saysEventually("configuration: failed ("));
+  EXPECT_TRUE(merlind_->process().saysEventually("the settings before it stay in effect"));
+  writeText(merlind_->config(), good);
+  EXPECT_EQ(reload().output, "nothing changed\n") << "none of the bad files was taken";
+  EXPECT_EQ(serviceHealth(), "ok");
+  EXPECT_TRUE(merlind_->process().saysEventually("configuration: works again"));
+  EXPECT_FALSE(merlind_->process().ended());
+}
+
+TEST_F(Reload, WhatOnlyARestartTakesIsRefusedWithAllTheRest) {
+  start();
+  write({{"devices", {{"cpu_latency_us", 100}, {"bindings", bindings("fly")}}}});
+  const Outcome refused = reload();
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.output,
+            "merlin: nothing was changed, since merlind takes this setting only when it starts: "
+            "systemctl restart merlind\n  /devices/cpu_latency_us\n");
+  EXPECT_TRUE(merlind_->process().saysEventually(
+      "/devices/cpu_latency_us changed, which only a restart takes"));
+  write({{"devices", {{"cpu_latency_us", -1}}}, {"page", {{"port", 7999}}}});
+  const Outcome would = reload({"--check", "--json"});
+  EXPECT_EQ(would.status, 0) << would.output;
+  const json answer = json::parse(would.output, nullptr, false)["processes"][0];
+  EXPECT_EQ(answer["outcome"], "done");
+  EXPECT_EQ(answer["only_checked"], true);
+  EXPECT_EQ(answer["pid"], merlind_->process().pid());
+  ASSERT_EQ(answer["swapped"].size(), 1u) << would.output;
+  EXPECT_EQ(answer["elsewhere"], json({"/page/port"}));
+  const Outcome done = reload();
+  EXPECT_EQ(done.status, 0);
+  EXPECT_NE(
+      done.output.find("/devices/bindings/0/action: \"grab\" -> \"fly\"\n/page/port: is taken "
+                       "by another process at its start"),
+      std::string::npos)
+      << done.output;
+}
+
+// Good ones and bad ones in a random order, always the same one, while the hand moves.
+TEST_F(Reload, FiftyInARowLeaveNothingBehind) {
+  start();
+  const json good[] = {
+      {{"devices", {{"bindings", bindings("fly")}}}},
+      {{"devices", {{"bindings", bindings("grab")}, {"stale_after_s", 0.7}}}},
+      {{"devices", {{"posture_hold_s", 0.1}, {"postures", ""}}}},
+      {{"devices", {{"posture_hold_s", 0.2}, {"postures", kSource + "/config/postures.json"}}}},
+      {{"devices", {{"ball", {{"dead_zone", 5}}}}}},
+      {{"devices", {{"ball", {{"dead_zone", 6}}}, {"hand", {{"cutoff_hz", 4}}}}}},
+      {{"devices", {{"tracker", {{"alignment1_cm", {0, 0, 0, 1, 0, 0, 0, 1, 0}}}}}}},
+      {{"devices", {{"hand", {{"station", 2}, {"cutoff_hz", 5}}}}}}};
+  const json bad[] = {{{"devices", {{"ball", {{"baud", 7}}}}}},
+                      {{"devices", {{"hands", 1}}}},
+                      {{"devices", {{"script", "still"}}}},
+                      {{"devices", {{"postures", "none"}}}}};
+  ASSERT_TRUE(reload().status == 0);
+  const std::size_t descriptors = entriesOf("fd"), threads = entriesOf("task");
+  std::mt19937 random(5);
+  std::uint64_t samples = health(shm::kGlove).samples;
+  for (int i = 0; i < 50; ++i) {
+    const bool is_good = random() % 3 != 0;
+    const json kept = written_;
+    write(is_good ? good[random() % std::size(good)] : bad[random() % std::size(bad)]);
+    const Outcome done = reload();
+    EXPECT_EQ(done.status, is_good ? 0 : 2) << i << ": " << done.output;
+    if (!is_good) written_ = kept;
+    EXPECT_TRUE(eventually([&] { return health(shm::kGlove).samples > samples; })) << i;
+    samples = health(shm::kGlove).samples;
+  }
+  for (const auto device : {shm::kGlove, shm::kTracker, shm::kBall})
+    EXPECT_TRUE(merlind_->healthIs(device, HealthState::kOk)) << device;
+  EXPECT_EQ(health(shm::kGlove).reconnects, 0u) << "it was never closed";
+  EXPECT_TRUE(eventually([&] { return entriesOf("fd") == descriptors; }))
+      << entriesOf("fd") << " descriptors instead of " << descriptors;
+  EXPECT_TRUE(eventually([&] { return entriesOf("task") == threads; }))
+      << entriesOf("task") << " threads instead of " << threads;
+  EXPECT_EQ(merlind_->process().kill(SIGTERM), 0);
+}
+
+// The wall in a process of its own.
+class ReloadOfTwo : public Reload {
+ protected:
+  void SetUp() override {
+    start({{"wall", {{"model", makeModel(dir_, 2)}, {"rate", {{"rate_hz", 10}}}}}});
+    wall_.emplace(
+        std::vector<std::string>{kMerlind, "--config", merlind_->config(), "--role", "wall"});
+    ASSERT_TRUE(wall_->saysEventually("ready")) << wall_->output();
+  }
+  std::optional<Process> wall_;
+};
+
+TEST_F(ReloadOfTwo, EachTakesItsPartAndTheWallGoesOn) {
+  const std::uint64_t frames = merlind_->wall().frames;
+  ASSERT_EQ(merlind_->wall().rate_asked_hz, 10);
+  write({{"devices", {{"bindings", bindings("fly")}, {"hand", {{"station", 2}}}}},
+         {"wall",
+          {{"rate", {{"rate_hz", 12}}},
+           {"playlist", {{"dim_after_s", 100}}},
+           {"scene", {{"hand_gain", 2}}}}}});
+  const Outcome done = reload();
+  EXPECT_EQ(done.status, 0) << done.output;
+  for (const char* line :
+       {"/devices/hand/station: 1 -> 2\n", "/wall/rate/rate_hz: 10 -> 12\n",
+        "/wall/playlist/dim_after_s: 0 -> 100\n", "/wall/scene/hand_gain: 3 -> 2\n"})
+    EXPECT_NE(done.output.find(line), std::string::npos) << line << done.output;
+  EXPECT_EQ(done.output.find("is taken by another process"), std::string::npos) << done.output;
+  EXPECT_TRUE(eventually([&] { return merlind_->wall().rate_asked_hz == 12; }));
+  EXPECT_TRUE(eventually([&] { return merlind_->wall().frames > frames; }));
+  const auto dims = [&] { return merlind_->status().dump(); };
+  EXPECT_NE(dims(), "null");
+  EXPECT_EQ(reload().output, "nothing changed\n");
+}
+
+TEST_F(ReloadOfTwo, WhatOneRefusesNeitherTakes) {
+  write({{"devices", {{"bindings", bindings("fly")}}},
+         {"wall", {{"render", {{"wireframe", true}}}}}});
+  const Outcome refused = reload();
+  EXPECT_EQ(refused.status, 2) << refused.output;
+  EXPECT_NE(refused.output.find("\n  /wall/render/wireframe\n"), std::string::npos)
+      << refused.output;
+  write({{"wall", {{"render", {{"wireframe", false}}}}}});
+  const Outcome done = reload();
+  EXPECT_NE(done.output.find("/devices/bindings/0/action: "), std::string::npos)
+      << "it was not swapped before: " << done.output;
+}
+
+}  // namespace
+}  // namespace merlin::test
