@@ -1,11 +1,8 @@
-// VRPN's wire format, as far as a server of trackers, buttons and analogs needs it. No I/O, no
-// clock.
+// What a VRPN server of trackers, buttons and analogs needs beside drivers/port/vrpn_line, which
+// describes the wire format: clients' messages, payloads that we send alone, requests by UDP. No
+// I/O, no clock.
 //
-// Both sides begin with a cookie of 24 bytes. A message: i32be x 5: length (24 + payload), seconds,
-// microseconds, sender, type; i32be sequence number; payload, padded to a multiple of 8. Negative
-// types are the system's: -1 describes a sender, -2 a type, each by a name.
-//
-// Source: vrpn_Connection.C, vrpn_Tracker.C, vrpn_Analog.C, vrpn_Button.C; README.md beside this.
+// Source: vrpn_Connection.C, vrpn_Analog.C, vrpn_Button.C; README.md beside this.
 #pragma once
 
 #include <cstdint>
@@ -14,26 +11,17 @@
 #include <string>
 #include <string_view>
 
+#include "drivers/port/vrpn_line.h"
+
 namespace merlin::serve {
 
-inline constexpr std::size_t kVrpnCookieLength = 24;
-// The cookie that we send.
-std::string vrpnCookie();
-
-// Whether the peer's cookie agrees with ours up to the last '.' of the version. REQUIRES: `cookie`
-// has 24 bytes.
-bool vrpnCookieFits(std::string_view cookie);
+// The longest message that is accepted from a client, including header and padding.
+inline constexpr std::size_t kVrpnLongest = 8192;
 
 struct VrpnMessage {
-  std::int32_t seconds = 0, microseconds = 0;
-  std::int32_t sender = 0, type = 0;
-  std::uint32_t sequence = 0;
-  std::string payload;
+  VrpnHeader header;
+  std::string_view payload;  // part of the input
 };
-std::string encodeVrpn(const VrpnMessage& message);
-
-// The longest message that is accepted, including header and padding.
-inline constexpr std::size_t kVrpnLongest = 8192;
 
 // The message at the front of the input; nothing if it is not complete yet.
 struct VrpnFront {
@@ -43,13 +31,9 @@ struct VrpnFront {
 };
 VrpnFront readVrpn(std::string_view input);
 
-// Encode and decode payloads.
-std::string vrpnName(std::string_view name);  // of a message that describes a sender or type
-std::optional<std::string> readVrpnName(std::string_view payload);
-std::string vrpnPose(std::int32_t sensor, std::span<const float> position_m,
-                     std::span<const float> orientation_wxyz);  // Pos_Quat: x y z, qx qy qz qw
-std::string vrpnChannels(std::span<const double> channels);     // Analog Channel
-std::string vrpnButton(std::int32_t button, bool down);         // Button Change
+// Encode payloads.
+std::string vrpnChannels(std::span<const double> channels);  // Analog Channel
+std::string vrpnButton(std::int32_t button, bool down);      // Button Change
 std::string vrpnButtons(std::uint32_t down,
                         std::int32_t count);  // Button States: bit i is button i
 

@@ -24,12 +24,11 @@ constexpr std::int32_t kButtons = 12;
 
 // The server's numbers for senders and types; each client first gets their names.
 enum Sender : std::int32_t { kControl, kHand, kTracker, kBall };
-constexpr const char* kSenders[] = {"VRPN Control", "Hand0", "Tracker0", "Ball0"};
+constexpr const char* kSenders[] = {kVrpnControl, "Hand0", "Tracker0", "Ball0"};
 enum Type : std::int32_t { kPing, kPong, kPose, kChannels, kButtonChange, kButtonStates };
-constexpr const char* kTypes[] = {"vrpn_Base ping_message", "vrpn_Base pong_message",
-                                  "vrpn_Tracker Pos_Quat",  "vrpn_Analog Channel",
-                                  "vrpn_Button Change",     "vrpn_Button States"};
-constexpr std::int32_t kDescribeSender = -1, kDescribeType = -2;
+constexpr const char* kTypes[] = {
+    kVrpnPing,           kVrpnPong, kVrpnPoseType, "vrpn_Analog Channel", "vrpn_Button Change",
+    "vrpn_Button States"};
 
 net::ServerLimits limits() {
   net::ServerLimits l;
@@ -87,7 +86,7 @@ class VrpnSession final : public net::Session {
   void open(std::string& output) override;
 
   // `at_ns`: CLOCK_MONOTONIC; clients expect the time of day.
-  void send(std::int32_t sender, std::int32_t type, std::string payload, std::int64_t at_ns,
+  void send(std::int32_t sender, std::int32_t type, std::string_view payload, std::int64_t at_ns,
             std::string& output);
   void sendButtons(const BallSample& sample, std::string& output);
 
@@ -131,52 +130,51 @@ void VrpnSession::open(std::string& output) {
   const std::int64_t now_ns = toNanoseconds(clock_.now());
   output += vrpnCookie();
   for (std::int32_t i = 0; i < std::ssize(kSenders); ++i)
-    send(i, kDescribeSender, vrpnName(kSenders[i]), now_ns, output);
+    send(i, kVrpnDescribeSender, vrpnName(kSenders[i]), now_ns, output);
   for (std::int32_t i = 0; i < std::ssize(kTypes); ++i)
-    send(i, kDescribeType, vrpnName(kTypes[i]), now_ns, output);
+    send(i, kVrpnDescribeType, vrpnName(kTypes[i]), now_ns, output);
   // A button may already be pressed.
   const auto ball = devices_.ball->newest();
   buttons_ = ball ? ball->buttons : 0;
   send(kBall, kButtonStates, vrpnButtons(buttons_, kButtons), now_ns, output);
 }
 
-void VrpnSession::send(std::int32_t sender, std::int32_t type, std::string payload,
+void VrpnSession::send(std::int32_t sender, std::int32_t type, std::string_view payload,
                        std::int64_t at_ns, std::string& output) {
   const auto wall =
       std::chrono::system_clock::now().time_since_epoch() - (clock_.now() - fromNanoseconds(at_ns));
   const auto us = std::chrono::duration_cast<std::chrono::microseconds>(wall).count();
-  VrpnMessage m;
-  m.seconds = static_cast<std::int32_t>(us / 1'000'000);
-  m.microseconds = static_cast<std::int32_t>(us % 1'000'000);
-  m.sender = sender;
-  m.type = type;
-  m.sequence = ++sequence_;
-  m.payload = std::move(payload);
-  output += encodeVrpn(m);
+  VrpnHeader header;
+  header.seconds = static_cast<std::int32_t>(us / 1'000'000);
+  header.microseconds = static_cast<std::int32_t>(us % 1'000'000);
+  header.sender = sender;
+  header.type = type;
+  header.sequence = ++sequence_;
+  appendVrpn(header, payload, output);
 }
 
 void VrpnSession::handle(const VrpnMessage& m, std::string& output) {
-  if (m.type == kDescribeSender) return describe(m);
-  if (m.type == kDescribeType) {
+  if (m.header.type == kVrpnDescribeSender) return describe(m);
+  if (m.header.type == kVrpnDescribeType) {
     if (readVrpnName(m.payload) == kTypes[kPing])
-      ping_ = m.sender;
-    else if (ping_ == m.sender)
+      ping_ = m.header.sender;
+    else if (ping_ == m.header.sender)
       ping_.reset();
     return;
   }
-  const auto sender = senders_.find(m.sender);
-  if (m.type == ping_ && sender != senders_.end())
+  const auto sender = senders_.find(m.header.sender);
+  if (m.header.type == ping_ && sender != senders_.end())
     send(sender->second, kPong, {}, toNanoseconds(clock_.now()), output);
 }
 
 void VrpnSession::describe(const VrpnMessage& m) {
   constexpr std::size_t kMostNumbers =
       64;  // limits memory: a client could give the same name many numbers
-  senders_.erase(m.sender);
+  senders_.erase(m.header.sender);
   const auto name = readVrpnName(m.payload);
   const auto* known = std::find(std::begin(kSenders), std::end(kSenders), name.value_or(""));
   if (known != std::end(kSenders) && senders_.size() < kMostNumbers)
-    senders_[m.sender] = static_cast<std::int32_t>(known - std::begin(kSenders));
+    senders_[m.header.sender] = static_cast<std::int32_t>(known - std::begin(kSenders));
 }
 
 void VrpnSession::sendButtons(const BallSample& s, std::string& output) {

@@ -23,21 +23,27 @@ std::string hex(const std::string& bytes) {
   return text;
 }
 
+std::string encoded(const VrpnHeader& header, std::string_view payload = {}) {
+  std::string bytes;
+  appendVrpn(header, payload, bytes);
+  return bytes;
+}
+
 TEST(VrpnProtocol, TheCookieIsTwentyFourBytes) {
   EXPECT_EQ(hex(vrpnCookie()), "7672706E3A207665722E2030372E33382020300000000000");
   EXPECT_TRUE(vrpnCookieFits(vrpnCookie()));
   EXPECT_TRUE(vrpnCookieFits("vrpn: ver. 07.33  0\0\0\0\0\0"s)) << "a minor version only";
   EXPECT_FALSE(vrpnCookieFits("vrpn: ver. 06.38  0\0\0\0\0\0"s));
+  EXPECT_EQ(vrpnVersion("vrpn: ver. 07.33  0\0\0\0\0\0"s), "07.33");
 }
 
 TEST(VrpnProtocol, ASenderIsDescribedByItsName) {
-  VrpnMessage m;
-  m.seconds = 1700000000;
-  m.sender = 1;
-  m.type = -1;
-  m.sequence = 7;
-  m.payload = vrpnName("Fastrak0");
-  const std::string bytes = encodeVrpn(m);
+  VrpnHeader header;
+  header.seconds = 1700000000;
+  header.sender = 1;
+  header.type = -1;
+  header.sequence = 7;
+  const std::string bytes = encoded(header, vrpnName("Fastrak0"));
   EXPECT_EQ(hex(bytes),
             "000000256553F1000000000000000001FFFFFFFF00000007"
             "000000094661737472616B3000"
@@ -45,7 +51,7 @@ TEST(VrpnProtocol, ASenderIsDescribedByItsName) {
   const VrpnFront back = readVrpn(bytes);
   ASSERT_TRUE(back.message);
   EXPECT_EQ(back.bytes, bytes.size());
-  EXPECT_EQ(back.message->sequence, 7u);
+  EXPECT_EQ(back.message->header.sequence, 7u);
   EXPECT_EQ(readVrpnName(back.message->payload), "Fastrak0");
 }
 
@@ -59,6 +65,13 @@ TEST(VrpnProtocol, APoseIsSevenDoubles) {
   EXPECT_EQ(hex(pose.substr(32, 8)), "0000000000000000");
   EXPECT_EQ(hex(pose.substr(48, 8)), "3FE8000000000000");  // qz
   EXPECT_EQ(hex(pose.substr(56, 8)), "3FE0000000000000");  // qw last
+  const auto back = readVrpnPose(pose);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->sensor, 2);
+  EXPECT_EQ(back->position[1], static_cast<double>(-0.1397F));
+  EXPECT_EQ(back->orientation_wxyz, (std::array<double, 4>{0.5, 0, 0, 0.75}));
+  EXPECT_FALSE(readVrpnPose(pose.substr(0, 63)));
+  EXPECT_FALSE(readVrpnPose(pose + '\0'));
 }
 
 TEST(VrpnProtocol, ChannelsAndButtons) {
@@ -76,9 +89,7 @@ TEST(VrpnProtocol, CallbacksAreReadWithCare) {
 }
 
 TEST(VrpnProtocol, EveryPrefixWaitsAndEveryBadLengthIsSaid) {
-  VrpnMessage m;
-  m.payload = vrpnName("x");
-  const std::string whole = encodeVrpn(m);
+  const std::string whole = encoded({}, vrpnName("x"));
   for (std::size_t n = 0; n < whole.size(); ++n) {
     const VrpnFront front = readVrpn(whole.substr(0, n));
     EXPECT_FALSE(front.message) << n;
@@ -88,11 +99,9 @@ TEST(VrpnProtocol, EveryPrefixWaitsAndEveryBadLengthIsSaid) {
   std::string wild = whole;
   wild[0] = '\x7F';
   EXPECT_TRUE(readVrpn(wild).broken);
-  VrpnMessage longest;
-  longest.payload.resize(kVrpnLongest - 24);
-  EXPECT_FALSE(readVrpn(encodeVrpn(longest).substr(0, 100)).broken);
-  longest.payload.resize(kVrpnLongest - 23);
-  EXPECT_TRUE(readVrpn(encodeVrpn(longest).substr(0, 100)).broken);
+  const std::string longest(kVrpnLongest - 24, '\0');
+  EXPECT_FALSE(readVrpn(encoded({}, longest).substr(0, 100)).broken);
+  EXPECT_TRUE(readVrpn(encoded({}, longest + "x").substr(0, 100)).broken);
   for (std::size_t n = 0; n < 12; ++n) (void)readVrpnName(whole.substr(24, n));
 }
 
@@ -106,21 +115,24 @@ struct Client {
     EXPECT_GT(::send(fd.get(), hello.data(), hello.size(), 0), 0);
   }
   static std::string described(int id, int type, const char* name) {
-    VrpnMessage m;
-    m.sender = id;
-    m.type = type;
-    m.payload = vrpnName(name);
-    return encodeVrpn(m);
+    VrpnHeader header;
+    header.sender = id;
+    header.type = type;
+    return encoded(header, vrpnName(name));
   }
   void ping() {
-    VrpnMessage m;
-    m.sender = 0;
-    m.type = 3;
-    const std::string bytes = encodeVrpn(m);
+    VrpnHeader header;
+    header.sender = 0;
+    header.type = 3;
+    const std::string bytes = encoded(header);
     EXPECT_GT(::send(fd.get(), bytes.data(), bytes.size(), 0), 0);
   }
+  struct Received {
+    VrpnHeader header;
+    std::string payload;
+  };
   // The next message whose type has this name in the server's descriptions.
-  std::optional<VrpnMessage> next(const std::string& type) {
+  std::optional<Received> next(const std::string& type) {
     for (VrpnFront front; !front.broken;) {
       if (!cookie_seen && input.size() >= 24) {
         EXPECT_TRUE(vrpnCookieFits(input.substr(0, 24)));
@@ -128,18 +140,19 @@ struct Client {
         cookie_seen = true;
       }
       front = cookie_seen ? readVrpn(input) : VrpnFront{};
-      const auto m = front.message;
+      std::optional<Received> m;
+      if (front.message) m = {front.message->header, std::string(front.message->payload)};
       input.erase(0, front.bytes);
       if (!m) {
         char buffer[4096];
         const ssize_t n = ::recv(fd.get(), buffer, sizeof buffer, 0);
         if (n <= 0) return std::nullopt;
         input.append(buffer, static_cast<std::size_t>(n));
-      } else if (m->type == -1) {
-        senders[m->sender] = *readVrpnName(m->payload);
-      } else if (m->type == -2) {
-        types[m->sender] = *readVrpnName(m->payload);
-      } else if (types[m->type] == type) {
+      } else if (m->header.type == -1) {
+        senders[m->header.sender] = *readVrpnName(m->payload);
+      } else if (m->header.type == -2) {
+        types[m->header.sender] = *readVrpnName(m->payload);
+      } else if (types[m->header.type] == type) {
         return m;
       }
     }
@@ -163,14 +176,14 @@ void checkSamples(Client& client, shm::DevicesSegment& segment) {
   client.ping();
   const auto pong = client.next("vrpn_Base pong_message");
   ASSERT_TRUE(pong);
-  EXPECT_EQ(client.senders[pong->sender], "Ball0");
+  EXPECT_EQ(client.senders[pong->header.sender], "Ball0");
   BallSample ball{};
   ball.translation[2] = 0.5F;
   ball.buttons = 4;
   segment.ball.publish(ball);
   const auto analog = client.next("vrpn_Analog Channel");
   ASSERT_TRUE(analog);
-  EXPECT_EQ(client.senders[analog->sender], "Ball0");
+  EXPECT_EQ(client.senders[analog->header.sender], "Ball0");
   const double channels[] = {0, 0, 0.5, 0, 0, 0};
   EXPECT_EQ(analog->payload, vrpnChannels(channels));
   const auto button = client.next("vrpn_Button Change");
@@ -183,9 +196,9 @@ void checkSamples(Client& client, shm::DevicesSegment& segment) {
   segment.tracker[2].publish(tracker);
   const auto pose = client.next("vrpn_Tracker Pos_Quat");
   ASSERT_TRUE(pose);
-  EXPECT_EQ(client.senders[pose->sender], "Tracker0");
+  EXPECT_EQ(client.senders[pose->header.sender], "Tracker0");
   EXPECT_EQ(pose->payload, vrpnPose(2, tracker.position_m, tracker.orientation_wxyz));
-  EXPECT_GT(pose->seconds, 1'600'000'000) << "the time of day";
+  EXPECT_GT(pose->header.seconds, 1'600'000'000) << "the time of day";
 }
 
 TEST(VrpnServer, ServesAClientThatConnects) {
@@ -255,10 +268,10 @@ TEST(VrpnServer, AFloodOfOneClientNeitherGrowsNorKeepsAnyoneWaiting) {
   auto server = VrpnServer::start(0, segment.slots(), threads, clock);
   ASSERT_TRUE(server) << server.error().what;
   const UniqueFd flood = connectedTo(**server);
-  VrpnMessage empty;
+  VrpnHeader empty;
   empty.type = 999;
   std::string bytes = vrpnCookie();
-  while (bytes.size() < 1 << 20) bytes += encodeVrpn(empty);
+  while (bytes.size() < 1 << 20) appendVrpn(empty, {}, bytes);
   std::size_t taken = 0;
   for (int i = 0; i < 64; ++i) {
     const ssize_t n = ::send(flood.get(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);

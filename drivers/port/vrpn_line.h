@@ -1,0 +1,77 @@
+// What a port that speaks VRPN carries: the cookies and messages by which our server (daemon/serve)
+// and our client (drivers/vrpn) speak. Pure.
+//
+// Both sides begin with a cookie of 24 bytes. A message: i32be x 5: length (24 + payload), seconds,
+// microseconds, sender, type; i32be sequence number; payload, padded to a multiple of 8. Negative
+// types are the system's: -1 describes a sender, -2 a type, each by a name; the number described is
+// in the place of the sender. Each side has numbers of its own.
+//
+// Source: VRPN 07.38, vrpn_Connection.C, vrpn_Tracker.C.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace merlin {
+
+inline constexpr std::size_t kVrpnCookieLength = 24;
+inline constexpr std::size_t kVrpnHeaderLength = 24;
+
+// Types that need no description.
+inline constexpr std::int32_t kVrpnDescribeSender = -1, kVrpnDescribeType = -2,
+                              kVrpnDisconnect = -5;
+
+// Names of senders and types that both sides use.
+inline constexpr const char* kVrpnControl = "VRPN Control";
+inline constexpr const char* kVrpnPing = "vrpn_Base ping_message";
+inline constexpr const char* kVrpnPong = "vrpn_Base pong_message";
+inline constexpr const char* kVrpnPoseType = "vrpn_Tracker Pos_Quat";
+
+// The cookie that we send.
+std::string vrpnCookie();
+
+// Whether the peer's cookie agrees with ours up to the last '.' of the version. REQUIRES: `cookie`
+// has 24 bytes.
+bool vrpnCookieFits(std::string_view cookie);
+
+// The version in a cookie that fits: "07.38".
+std::string_view vrpnVersion(std::string_view cookie);
+
+struct VrpnHeader {
+  std::int32_t seconds = 0, microseconds = 0;  // time of day
+  std::int32_t sender = 0, type = 0;
+  std::uint32_t sequence = 0;
+};
+
+// Appends the message's bytes.
+void appendVrpn(const VrpnHeader& header, std::string_view payload, std::string& out);
+
+// The beginning of a message.
+struct VrpnStart {
+  VrpnHeader header;
+  std::size_t payload = 0;  // its length without padding
+  std::size_t bytes = 0;    // length of the whole message; 0: invalid, no message has this length
+};
+// REQUIRES: `bytes` begins with kVrpnHeaderLength bytes.
+VrpnStart readVrpnStart(std::string_view bytes) noexcept;
+
+// Encode and decode payloads. What is read is part of the payload; nothing if it is malformed.
+std::string vrpnName(std::string_view name);  // of a message that describes a sender or type
+std::optional<std::string_view> readVrpnName(std::string_view payload) noexcept;
+
+// Pos_Quat: a sensor's pose. The numbers that are read can be any, NaN and infinity included.
+struct VrpnPose {
+  std::int32_t sensor = 0;
+  std::array<double, 3> position{};  // in the server's unit; VRPN asks for metres
+  std::array<double, 4> orientation_wxyz{};
+};
+std::string vrpnPose(std::int32_t sensor, std::span<const float> position_m,
+                     std::span<const float> orientation_wxyz);
+std::optional<VrpnPose> readVrpnPose(std::string_view payload) noexcept;
+
+}  // namespace merlin
