@@ -44,8 +44,8 @@ def kernel(cache):
     return glob.glob(f"{cache}/boot/vmlinuz-*")[0], glob.glob(f"{cache}/lib/modules/*")[0]
 
 
-def module_files(folder):
-    """Files of MODULES and of what they need, in the order in which they are loaded."""
+def module_files(folder, wanted):
+    """Files of the modules `wanted` and of what they need, in the order in which they are loaded."""
     files = {os.path.basename(path)[:-3].replace("-", "_"): path
              for path in glob.glob(f"{folder}/**/*.ko", recursive=True)}
     order = []
@@ -62,7 +62,7 @@ def module_files(folder):
             add(needed)
         order.append(path)
 
-    for name in MODULES:
+    for name in wanted:
         add(name)
     return order
 
@@ -95,6 +95,15 @@ def initrd(path, modules, init):
     archive += entry("TRAILER!!!", 0)
     with open(path, "wb") as file:
         file.write(archive)
+
+
+def until(condition, what, deadline_s=DEADLINE_S):
+    """Asks again and again until the condition is true, and returns it."""
+    end = time.monotonic() + deadline_s
+    while not (result := condition()):
+        if time.monotonic() > end:
+            raise AssertionError(f"not within {deadline_s} s: {what}")
+    return result
 
 
 class Line:
@@ -155,8 +164,10 @@ class Line:
 
 
 class Vm:
-    def __init__(self, folder, mode, memory_mb=1536, root=None):
+    def __init__(self, folder, mode, memory_mb=1536, root=None, modules=(), extra=()):
         """`folder`: for the machine's files; FOLDER/shared is its /mnt. `mode`: "640x480".
+
+        `modules`: of the kernel, beside MODULES. `extra`: arguments of QEMU; a further serial port is /dev/ttyS1.
 
         `root`: a Debian of its own with systemd, which the machine writes to; None: the host's, read-only.
         """
@@ -165,8 +176,8 @@ class Vm:
         os.makedirs(self.shared)
         if shutil.which("qemu-system-x86_64") is None:
             raise Missing("QEMU is not there (package qemu-system-x86)")
-        vmlinuz, modules = kernel(os.path.join(os.path.dirname(folder), "kernel"))
-        initrd(f"{folder}/initrd", module_files(modules), "systemd" if root else "init")
+        vmlinuz, module_folder = kernel(os.path.join(os.path.dirname(folder), "kernel"))
+        initrd(f"{folder}/initrd", module_files(module_folder, MODULES + tuple(modules)), "systemd" if root else "init")
         # Owners are those of the files, which only root can set.
         owners = "passthrough" if os.geteuid() == 0 else "none"
         shares = f"path={root},security_model={owners}" if root else "path=/,security_model=none,readonly=on"
@@ -184,7 +195,7 @@ class Vm:
              "-device", "virtserialport,chardev=shell,name=merlin.shell",
              "-virtfs", f"local,{shares},mount_tag=host,multidevs=remap",
              "-virtfs", f"local,path={self.shared},mount_tag=out,security_model=none",
-             "-qmp", f"unix:{folder}/qmp,server=on,wait=off"],
+             "-qmp", f"unix:{folder}/qmp,server=on,wait=off", *extra],
             stdin=subprocess.DEVNULL, stdout=self.log, stderr=subprocess.STDOUT)
         ended = lambda: self.qemu.poll() is not None
         self.console = Line(f"{folder}/console", ended)
@@ -212,14 +223,17 @@ class Vm:
             raise AssertionError(f"{command!r} ended with {int(found[1])}:\n{output}")
         return output
 
-    def screendump(self, head):
-        """(width, height, RGB bytes) of what a display shows."""
-        path = f"{self.folder}/head{head}.ppm"
-        self.monitor.send(json.dumps({"execute": "screendump",
-                                      "arguments": {"filename": path, "device": "gpu", "head": head}}))
+    def ask(self, command, **arguments):
+        """A command of QEMU's monitor."""
+        self.monitor.send(json.dumps({"execute": command, "arguments": arguments}))
         answer = self.monitor.wait_for(r'"(return|error)".*')
         if answer[1] == b"error":
             raise AssertionError(answer[0].decode())
+
+    def screendump(self, head):
+        """(width, height, RGB bytes) of what a display shows."""
+        path = f"{self.folder}/head{head}.ppm"
+        self.ask("screendump", filename=path, device="gpu", head=head)
         with open(path, "rb") as file:
             data = file.read()
         header = re.match(rb"P6\s(\d+) (\d+)\s255\s", data)

@@ -9,10 +9,10 @@ import json
 import os
 import subprocess
 import sys
-import time
 import unittest
 
 import vm
+from vm import until  # what a display shows follows an event by a frame
 
 sys.path.insert(0, os.path.join(vm.HERE, "..", "support"))
 import check_wall_picture  # noqa: E402  its reader of PNG files
@@ -79,15 +79,6 @@ def stop_wall(signal):
 def outputs():
     """What `merlin status` says of each output."""
     return json.loads(MACHINE.run("merlin status --json"))["outputs"]
-
-
-def until(condition, what, deadline_s=vm.DEADLINE_S):
-    """Asks the machine again and again: what it shows follows an event by a frame."""
-    end = time.monotonic() + deadline_s
-    while not (result := condition()):
-        if time.monotonic() > end:
-            raise AssertionError(f"not within {deadline_s} s: {what}")
-    return result
 
 
 def picture(name, command):

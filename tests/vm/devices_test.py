@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+"""Devices on real lines of the kernel, in a virtual machine: ./dev test-vm
+
+Two serial ports and a serial adapter on USB, whose other ends are the emulators on the host, so that
+libserialport's way is taken; a gamepad made by uinput, so that libevdev's way is. Judges health, values
+and the order of events; no rates and no latencies, since the machine is emulated.
+"""
+import argparse
+import json
+import os
+import subprocess
+import sys
+import unittest
+
+import vm
+
+OPTIONS = None
+MACHINE = None
+EMULATORS = []
+DEVICES = ("glove", "tracker", "ball")
+EV_KEY, EV_ABS, ABS_RX, BTN_SOUTH = 1, 3, 3, 304
+BALL = {"driver": "usb-serial", "id": "ball", "chardev": "ball-line"}
+
+
+def setUpModule():
+    global MACHINE
+    lines = f"{OPTIONS.work}/lines"
+    os.makedirs(lines, exist_ok=True)
+    for device, script in (("cyberglove", "grabbing"), ("fastrak", "turning"), ("spaceball", "turning")):
+        command = [f"{OPTIONS.bin}/merlin", "emulate", device, "--link", f"{lines}/{device}", "--script", script]
+        emulator = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        EMULATORS.append(emulator)
+        emulator.stdout.readline()  # it is there
+    extra = ["-chardev", f"serial,id=glove-line,path={lines}/cyberglove", "-serial", "chardev:glove-line",
+             "-chardev", f"serial,id=tracker-line,path={lines}/fastrak", "-serial", "chardev:tracker-line",
+             "-chardev", f"serial,id=ball-line,path={lines}/spaceball",
+             "-device", "qemu-xhci,id=usb", "-device", "usb-serial,id=ball,chardev=ball-line"]
+    try:
+        MACHINE = vm.Vm(f"{OPTIONS.work}/machine", "640x480", memory_mb=512, extra=extra,
+                        modules=("xhci-pci", "ftdi_sio", "uinput", "evdev"))
+    except vm.Missing as missing:
+        print(f"test-vm: skipped: {missing}")
+        raise unittest.SkipTest(str(missing)) from missing
+    MACHINE.run(f"PATH=$PATH:{OPTIONS.bin} HOME=/run; export PATH HOME\n"
+                "mkfifo /run/log; exec 4<>/run/log; cat <&4 >/dev/ttyS0 &\n"
+                "mkfifo /run/pad; exec 5<>/run/pad")
+
+
+def tearDownModule():
+    if MACHINE:
+        MACHINE.close()
+    for emulator in EMULATORS:
+        emulator.kill()
+        emulator.wait()
+        emulator.stdout.close()
+
+
+def start(devices):
+    """Starts merlind with these devices, and waits until it is ready; returns its process id."""
+    config = {"run_directory": "/run/merlin", "devices": devices}
+    with open(f"{MACHINE.shared}/devices.json", "w", encoding="utf-8") as file:
+        json.dump(config, file)
+    pid = int(MACHINE.run("merlind --role devices --config /mnt/devices.json >/run/log 2>&1 & echo $!"))
+    MACHINE.wait_for(r"ready")
+    return pid
+
+
+def stop(pid):
+    MACHINE.run(f"kill {pid}; wait {pid}", succeeds=False)
+
+
+def listed():
+    return json.loads(MACHINE.run("merlin devices --json"))
+
+
+def configured():
+    return {device["name"]: device for device in listed()["configured"]}
+
+
+def health():
+    return {name: device["health"] for name, device in configured().items()}
+
+
+class Devices(unittest.TestCase):
+    def test_1_three_devices_on_serial_lines_and_one_is_unplugged(self):
+        pid = start({"glove": {"port": "serial:/dev/ttyS1"}, "tracker": {"port": "serial:/dev/ttyS2"},
+                     "ball": {"port": "serial:/dev/ttyUSB0"}})
+        vm.until(lambda: set(health().values()) == {"ok"}, "all three stream")
+        found = configured()
+        self.assertIn("CyberGlove", found["glove"]["identity"])
+        self.assertIn("Fastrak", found["tracker"]["identity"])
+        self.assertIn("Spaceball", found["ball"]["identity"])
+        adapters = [p for p in listed()["plugged"] if p["kind"] == "serial adapter"]
+        self.assertEqual([(a["port"], a["read_by"]) for a in adapters], [("serial:/dev/ttyUSB0", "ball")])
+        before = {name: device["samples"] for name, device in found.items()}
+        vm.until(lambda: all(d["samples"] > before[n] for n, d in configured().items()), "samples go on")
+
+        MACHINE.ask("device_del", id="ball")
+        vm.until(lambda: health()["ball"] == "absent", "the ball is seen to be gone")
+        at_loss = configured()
+        vm.until(lambda: all(configured()[n]["samples"] > at_loss[n]["samples"] for n in ("glove", "tracker")),
+                 "the others go on")
+        MACHINE.ask("device_add", **BALL)
+        vm.until(lambda: health()["ball"] == "ok", "the ball is back")
+        found = configured()
+        self.assertEqual([found[name]["reconnects"] for name in DEVICES], [0, 0, 1])
+        stop(pid)
+
+    def test_2_a_line_that_is_taken_is_said_to_be(self):
+        pid = start({"tracker": {"port": "serial:/dev/ttyS2"}})
+        vm.until(lambda: health()["tracker"] == "ok", "the tracker streams")
+        said = MACHINE.run("merlin record serial:/dev/ttyS2 --seconds 1 -o /run/x.bytes", succeeds=False)
+        self.assertIn("/dev/ttyS2: another program holds this port", said)
+        stop(pid)
+
+    def plug(self):
+        pad = int(MACHINE.run("make_gamepad </run/pad >/run/pad.path 2>/run/log & echo $!"))
+        path = vm.until(lambda: MACHINE.run("cat /run/pad.path").strip(), "the gamepad is there")
+        return pad, path
+
+    def report(self, kind, code, value):
+        MACHINE.run(f"echo {kind} {code} {value} >&5")
+
+    def test_3_a_gamepad_is_found_read_grabbed_unplugged_and_back(self):
+        pad, path = self.plug()
+        plugged = [p for p in listed()["plugged"] if p["kind"] == "gamepad"]
+        self.assertEqual(len(plugged), 1)
+        self.assertEqual(plugged[0]["name"], "made-up gamepad of a test")
+        line = plugged[0]["as"]["ball"]
+        self.assertEqual(line, {"port": f"evdev:{path}", "driver": "evdev"})
+        pid = start({"ball": line})
+        vm.until(lambda: health()["ball"] == "ok", "the gamepad streams")
+        self.assertEqual(configured()["ball"]["identity"], "made-up gamepad of a test, 4 axes, 2 keys")
+        self.report(EV_ABS, ABS_RX, 32767)
+        self.report(EV_KEY, BTN_SOUTH, 1)
+        vm.until(lambda: self.values() == (1.0, 1), "stick and button are in shared memory")
+        samples = configured()["ball"]["samples"]
+        vm.until(lambda: configured()["ball"]["samples"] > samples + 20, "the held stick is published again")
+        said = MACHINE.run(f"merlin record evdev:{path} --device evdev --seconds 1 -o /run/x.bytes", succeeds=False)
+        self.assertIn(f"{path}: another program has grabbed this input device", said)
+
+        MACHINE.run(f"kill {pad}; wait {pad}", succeeds=False)
+        vm.until(lambda: health()["ball"] == "absent", "the gamepad is seen to be gone")
+        pad, again = self.plug()
+        self.assertEqual(again, path)
+        vm.until(lambda: health()["ball"] == "ok", "the gamepad is back")
+        self.report(EV_ABS, ABS_RX, -32768)
+        vm.until(lambda: self.values() == (-1.0, 0), "what was pressed before is not pressed any more")
+        stop(pid)
+        MACHINE.run(f"kill {pad}; wait {pad}", succeeds=False)
+
+    def values(self):
+        fields = json.loads(MACHINE.run("merlin shm dump --json"))["/merlin-devices"]
+        return fields["ball.rotation"]["value"][1], fields["ball.buttons"]["value"]
+
+
+if __name__ == "__main__":
+    arguments = argparse.ArgumentParser()
+    arguments.add_argument("--bin", required=True, help="folder of the programs")
+    arguments.add_argument("--work", required=True, help="folder for the machine's files")
+    OPTIONS, rest = arguments.parse_known_args()
+    OPTIONS.bin, OPTIONS.work = os.path.abspath(OPTIONS.bin), os.path.abspath(OPTIONS.work)
+    unittest.main(argv=[sys.argv[0], "-v", *rest], failfast=True)
