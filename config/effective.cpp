@@ -79,7 +79,8 @@ void flatten(const Json& json, const std::string& pointer, Values& out) {
     for (std::size_t i = 0; i < json.size(); ++i)
       flatten(json[i], fmt::format("{}/{}", pointer, i), out);
   } else {
-    for (const auto& [key, value] : json.items()) flatten(value, pointer + "/" + key, out);
+    for (const auto& [key, value] : json.items())
+      flatten(value, fmt::format("{}/{}", pointer, key), out);
   }
 }
 

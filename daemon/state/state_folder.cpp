@@ -98,6 +98,12 @@ std::string stateFile(const std::string& wanted, const std::string& instance, bo
   return folder.empty() ? folder : fmt::format("{}/{}.state.json{}", folder, instance, ending);
 }
 
+std::string findStateFile(const std::string& wanted, const std::string& instance) {
+  const std::string own = stateFile(wanted, instance, true);
+  const std::string service = fmt::format("/var/lib/merlin/{}.state.json", instance);
+  return wanted.empty() && !fileStamp(own) && fileStamp(service) ? service : own;
+}
+
 std::string shownFolder(const std::string& wanted, const std::string& file,
                         const std::string& instance) {
   if (wanted.empty() && file.empty()) return {};

@@ -31,6 +31,11 @@ class StateFolder final : public StateFiles {
 // wall may have the other. Reads the environment: to be called before any thread starts.
 std::string stateFile(const std::string& wanted, const std::string& instance, bool has_wall);
 
+// The file as another program than merlind finds it, who knows neither merlind's user nor its
+// environment: stateFile() of a process with a wall, or, if there is no such file, that of the
+// installed service in /var/lib/merlin if that exists.
+std::string findStateFile(const std::string& wanted, const std::string& instance);
+
 // The content folder that is used, as a whole path, which other programs can use: `wanted`, or, if
 // that is empty, INSTANCE.shown beside the state's `file`, from stateFile(). Empty if there is
 // neither.

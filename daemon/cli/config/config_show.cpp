@@ -1,12 +1,9 @@
 // merlin config show: the settings in effect, and where each comes from.
-#include <algorithm>
-#include <iterator>
 #include <memory>
 #include <optional>
 
 #include <fmt/format.h>
 
-#include "daemon/base/files.h"
 #include "daemon/cli/config/config.h"
 #include "daemon/cli/config/shown_settings.h"
 #include "daemon/cli/exit_status.h"
@@ -21,17 +18,8 @@ struct ShowOptions {
   bool changed = false, json = false;
 };
 
-// The state's file that merlind uses with these settings. The installed merlind is a service, which
-// has it in /var/lib/merlin whoever asks.
-std::string stateFileOf(const Settings& settings) {
-  const std::string own = state::stateFile(settings.state_file, settings.instance, true);
-  if (!settings.state_file.empty() || fileStamp(own)) return own;
-  const std::string service = fmt::format("/var/lib/merlin/{}.state.json", settings.instance);
-  return fileStamp(service) ? service : own;
-}
-
 std::optional<RunTimeChanges> changesOf(const Settings& settings) {
-  const std::string file = stateFileOf(settings);
+  const std::string file = state::findStateFile(settings.state_file, settings.instance);
   const auto text = state::StateFolder(file).read();
   if (!text) {
     if (text.error().code != Errc::kNotFound) printNote(text.error().what);

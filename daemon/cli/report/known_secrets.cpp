@@ -26,7 +26,7 @@ KnownSecrets::KnownSecrets(const Settings& settings, const std::vector<std::stri
   sortByLength();
 }
 
-KnownSecrets::KnownSecrets(std::vector<std::string> texts) {
+KnownSecrets::KnownSecrets(const std::vector<std::string>& texts) {
   for (const std::string& text : texts) add(text);
   sortByLength();
 }

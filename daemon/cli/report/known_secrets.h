@@ -18,7 +18,7 @@ class KnownSecrets {
   // name of a file that does not exist counts as a secret, since somebody may have written the
   // secret there.
   KnownSecrets(const Settings& settings, const std::vector<std::string>& others);
-  explicit KnownSecrets(std::vector<std::string> texts);
+  explicit KnownSecrets(const std::vector<std::string>& texts);
 
   // The text with each secret replaced by kSecretLeftOut. O(text x secrets).
   std::string without(std::string_view text) const;

@@ -47,11 +47,8 @@ void collectConfiguration(const ReportSubject& subject, PartFolder& folder) {
   folder.put("findings.txt", findingsText(subject.config, loaded));
   folder.put("settings.json", settingsText(loaded.settings, Secrets::kLeftOut));
   folder.put("changes.txt", changesText(loaded.settings));
-  std::string state = state::stateFile(loaded.settings.state_file, subject.instance, true);
-  const std::string service = fmt::format("/var/lib/merlin/{}.state.json", subject.instance);
-  if (loaded.settings.state_file.empty() && !fileStamp(state)) state = service;
-  const auto text = state::StateFolder(state).read();
-  folder.put("state.json", text);
+  const std::string state = state::findStateFile(loaded.settings.state_file, subject.instance);
+  folder.put("state.json", state::StateFolder(state).read());
 }
 
 // The programs' ids, by role.
