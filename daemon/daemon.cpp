@@ -17,7 +17,6 @@ namespace merlin {
 namespace {
 
 constexpr Duration kBeat = std::chrono::milliseconds(100);
-constexpr Duration kReloadBeat = std::chrono::milliseconds(10);  // while one is executed
 constexpr Duration kSummary = std::chrono::seconds(5);
 constexpr Duration kOnceASecond = std::chrono::seconds(1);
 
@@ -159,8 +158,10 @@ void Daemon::connectRoles() {
         threads_);
     wall_->onSnapshot([this] { snapshots_->take(); });
   }
+  // SIGCHLD is waited for anyway, and asks for a round of the main loop.
+  const auto wake = [main = ::pthread_self()] { ::pthread_kill(main, SIGCHLD); };
   reloader_.emplace(file_, options_, std::move(configured_), settings_,
-                    Reloader::Parts{devices_.get(), wall_.get(), services_, threads_});
+                    Reloader::Parts{devices_.get(), wall_.get(), services_, threads_, wake});
   commands_.emplace(RoleCommands::Parts{devices_.get(), wall_.get(), snapshots_.get(),
                                         keeper_.get(), &*reloader_});
   servers_.emplace(RoleServers::Parts{settings_, *commands_, services_, devices_.get(),
@@ -217,7 +218,7 @@ Result<Ok> Daemon::run() {
   }
   ::sd_notify(0, "READY=1");
   logInfo("ready");
-  while (!stopAsked(reloader_->isBusy() ? kReloadBeat : kBeat)) {
+  while (!stopAsked(kBeat)) {
     housekeeping();
     reloader_->tend();
     // Not before READY=1: a ping arms systemd's watchdog, and the first frame may take longer.

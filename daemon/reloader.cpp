@@ -57,6 +57,7 @@ Result<std::string> Reloader::run(const std::string& argument) {
                    fmt::format("{} requests wait already; try again later", kMostWaiting)};
     }
     waiting_.push_back({++last_number_, argument == "check"});
+    parts_.wake();
     return fmt::format("{{\"request\": {}}}", last_number_);
   }
   const auto number = numberIn(argument);
@@ -69,11 +70,6 @@ Result<std::string> Reloader::run(const std::string& argument) {
       Errc::kInvalidArgument,
       fmt::format("\"{}\" is neither now, check nor the number of a request of the last {}",
                   argument.substr(0, 64), kKept)};
-}
-
-bool Reloader::isBusy() const {
-  const std::lock_guard lock(mutex_);
-  return current_ || !waiting_.empty();
 }
 
 void Reloader::tend() {
@@ -108,6 +104,7 @@ void Reloader::read(const std::stop_token& stop, Progress& progress) {
   }
   std::unique_lock lock(mutex_);
   read_ = std::move(file);
+  parts_.wake();
   while (!stop.stop_requested()) {
     progress.step();
     ending_.wait_for(lock, stop, std::chrono::milliseconds(200), [] { return false; });

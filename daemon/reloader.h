@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -31,6 +32,7 @@ class Reloader {
     wall::WallRole* wall;
     status::Services& services;  // says why a reload was refused, until one is not
     ThreadWatch& watch;
+    std::function<void()> wake;  // has the main thread call tend() soon; called on any thread
   };
   // `configured`: the settings of `file` that are in effect. `running`: the same with what was made
   // of them at the start (the emulators' ports); changed by tend() alone. All must outlive this.
@@ -45,8 +47,6 @@ class Reloader {
   // As by "now"; whoever asks hears of it by log and events. Thread-safe.
   void request() { (void)run("now"); }
 
-  // Whether a request waits or is executed: then tend() is called more often. Thread-safe.
-  bool isBusy() const;
   // Begins what was requested, and swaps what was read. To be called by the main thread, from the
   // first frame on. Takes up to 50 ms for each device that is made anew.
   void tend();
@@ -74,7 +74,7 @@ class Reloader {
   Settings configured_;  // changed by tend() while nothing is read
   Settings& running_;
   Parts parts_;
-  mutable std::mutex mutex_;  // guards all below but thread_
+  std::mutex mutex_;  // guards all below but thread_
   std::condition_variable_any ending_;
   std::uint32_t last_number_ = 0;
   std::deque<Request> waiting_;
