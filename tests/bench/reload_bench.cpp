@@ -1,0 +1,174 @@
+// ./dev bench reload: thousands of reloads, good and bad ones in turn, while the emulated hand
+// moves and the demo's wall is drawn: late frames beside the same wall without reloads,
+// descriptors, threads, memory, and what became of the samples.
+#include <algorithm>
+#include <filesystem>
+#include <thread>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "daemon/base/clock.h"
+#include "daemon/status/client.h"
+#include "tests/bench/demo_daemon.h"
+#include "tests/bench/figures.h"
+
+namespace merlin::bench {
+namespace {
+
+using nlohmann::json;
+
+struct Options : DemoOptions {
+  int reloads = 10'000;
+  double seconds = 20;
+};
+
+// What a process holds.
+struct Held {
+  std::size_t descriptors, threads;
+  double memory_mb;  // resident
+};
+
+std::size_t entriesOf(pid_t pid, const char* folder) {
+  const std::filesystem::directory_iterator all(fmt::format("/proc/{}/{}", pid, folder));
+  return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+}
+
+Held heldBy(pid_t pid) {
+  const std::string status = test::readText(fmt::format("/proc/{}/status", pid));
+  const std::size_t at = status.find("VmRSS:");
+  const double kb = at == std::string::npos ? 0 : std::atof(status.c_str() + at + 6);
+  return {entriesOf(pid, "fd"), entriesOf(pid, "task"), kb / 1024};
+}
+
+Measured lateShare(const shm::WallStats& from, const shm::WallStats& to) {
+  return shareOf(to.late - from.late, to.deadlines - from.deadlines,
+                 "deadlines of the wall, which did not move,");
+}
+
+// The configurations in turn: bindings, postures, a device's line, the wall's; every fourth is bad.
+json variantOf(const json& demo, int i) {
+  json config = demo;
+  switch (i % 8) {
+    case 0:
+    case 4:
+      config["devices"]["bindings"] = {
+          {{"input", "posture.fist"}, {"action", i % 8 == 0 ? "fly" : "grab"}}};
+      break;
+    case 1: config["devices"]["posture_hold_s"] = 0.2; break;
+    case 2:
+      config["wall"]["rate"]["late_share"] = 0.02;
+      config["wall"]["scene"]["hand_gain"] = 2;
+      break;
+    case 5: config["devices"]["ball"]["dead_zone"] = i % 16 == 5 ? 5 : 6; break;
+    case 6: config["devices"]["hand"]["cutoff_hz"] = 4; break;
+    case 3: config["devices"]["glove"]["baud"] = 7; break;
+    default: config["wall"]["render"]["wireframe"] = true; break;
+  }
+  return config;
+}
+
+// Writes the file, has it read, and waits for the answer; returns the outcome.
+std::string reload(const DemoDaemon& daemon, const std::string& path, const json& config) {
+  test::writeText(path, config.dump());
+  const auto ask = [&](const std::string& argument) {
+    const auto answer =
+        status::ask(daemon.commandEndpoint(), "reload", std::chrono::seconds(10), argument);
+    if (!answer) didNotRun("merlin reload", answer.error().what, "see merlin status");
+    return json::parse(*answer);
+  };
+  const std::string number = std::to_string(ask("now").value("request", 0));
+  SystemClock clock;
+  for (;;) {
+    const json answer = ask(number);
+    if (!answer.value("pending", false)) return answer.value("outcome", "");
+    clock.sleepUntil(clock.now() + std::chrono::milliseconds(5), {});
+  }
+}
+
+bool bench(const Options& options, Report& report) {
+  const test::TempDir dir;
+  json demo;
+  DemoDaemon daemon(options, dir, "all", [&](json& config) {
+    config["devices"]["script"] = "grabbing";
+    config["wall"]["playlist"] = {{"after_s", 0}};
+    demo = config;
+  });
+  const std::string path = dir / (daemon.instance() + ".json");
+  std::this_thread::sleep_for(std::chrono::seconds(3));  // the first frames calibrate the governor
+  const shm::WallStats first = daemon.wall();
+  std::this_thread::sleep_for(std::chrono::duration<double>(options.seconds));
+  const shm::WallStats before = daemon.wall();
+  for (int i = 0; i < 16; ++i) reload(daemon, path, variantOf(demo, i));  // memory settles
+  const Held held = heldBy(daemon.pid());
+  const shm::DevicesSegment& devices = daemon.devices();
+  const std::uint64_t tracked = devices.tracker[0].count();
+  const shm::WallStats begun = daemon.wall();
+  std::vector<double> took_ms;
+  int wrong = 0;
+  SystemClock clock;
+  for (int i = 0; i < options.reloads; ++i) {
+    if (i % 500 == 0) note(fmt::format("{} of {} reloads", i, options.reloads));
+    const Timestamp from = clock.now();
+    const std::string outcome = reload(daemon, path, variantOf(demo, i));
+    took_ms.push_back(1000 * toSeconds(clock.now() - from));
+    const char* const expected = i % 8 == 3 ? "invalid" : i % 8 == 7 ? "needs_restart" : "done";
+    if (outcome != expected && ++wrong < 5) note(fmt::format("reload {}: {}", i, outcome));
+    daemon.expectRunning();
+  }
+  std::this_thread::sleep_for(std::chrono::seconds(2));  // the statistics follow
+  const shm::WallStats end = daemon.wall();
+  const Held after = heldBy(daemon.pid());
+  const auto samples = devices.tracker[0].count() - tracked;
+  const auto tracker = devices.health[shm::kTracker].read();
+  const auto without = lateShare(first, before), with = lateShare(begun, end);
+  const auto took = medianOf(took_ms, "reloads");
+  const auto slowest = quantileOf(took_ms, 1, "reloads");
+  const auto n = took.count();
+  report.text("{} reloads, of which {} had another outcome than they should; drawn by {}\n", n,
+              wrong, daemon.renderer());
+  report.text("a reload takes {:.0f} ms (median), {:.0f} ms at most\n", took.value(),
+              slowest.value());
+  report.text("late frames {:.2f} % with reloads, {:.2f} % without\n", 100 * with, 100 * without);
+  report.text("descriptors {} -> {}, threads {} -> {}, memory {:.1f} -> {:.1f} MB\n",
+              held.descriptors, after.descriptors, held.threads, after.threads, held.memory_mb,
+              after.memory_mb);
+  report.text("samples of the tracker {}, which was lost {} times\n", samples,
+              tracker ? tracker->reconnects : 0);
+  report.figure("took", took, "ms");
+  report.figure("slowest", slowest, "ms");
+  report.figure("late_with", with, "1");
+  report.figure("late_without", without, "1");
+  report.figure("wrong_outcomes", Measured::of(wrong, n, "reloads"), "1");
+  const auto grown = [&](double from, double to) { return Measured::of(to - from, n, "reloads"); };
+  report.figure(
+      "descriptors_grown",
+      grown(static_cast<double>(held.descriptors), static_cast<double>(after.descriptors)), "1");
+  report.figure("threads_grown",
+                grown(static_cast<double>(held.threads), static_cast<double>(after.threads)), "1");
+  report.figure("memory_grown", grown(held.memory_mb, after.memory_mb), "MB");
+  return wrong == 0 && after.descriptors == held.descriptors && after.threads == held.threads;
+}
+
+}  // namespace
+}  // namespace merlin::bench
+
+int main(int argc, char** argv) {
+  merlin::bench::Options options;
+  bool json = false;
+  CLI::App app("Late frames, descriptors, threads and memory during thousands of reloads.");
+  app.add_option("--bin", options.bin, "Folder of merlind and merlin")->required();
+  app.add_option("--config", options.config, "The wall's configuration")->required();
+  app.add_option("--reloads", options.reloads)
+      ->check(CLI::Range(1, 10'000'000))
+      ->capture_default_str();
+  app.add_option("--seconds", options.seconds, "Of the run without reloads")
+      ->check(CLI::Range(1, 86'400))
+      ->capture_default_str();
+  app.add_flag("--json", json, "The figures as one JSON object");
+  CLI11_PARSE(app, argc, argv);
+  return merlin::bench::runBench("reload", json, [&](merlin::bench::Report& report) {
+    return merlin::bench::bench(options, report);
+  });
+}
