@@ -36,6 +36,12 @@ TEST(KnownSecrets, AreReplacedTheLongestFirst) {
   EXPECT_FALSE(secrets.isIn("abc"));
 }
 
+TEST(KnownSecrets, AreFoundAsJsonAndMessagesWriteThem) {
+  const KnownSecrets secrets(Texts{"say \"hi\"", "tab\there"});
+  EXPECT_EQ(secrets.without(R"x({"name": "say \"hi\""})x"), R"x({"name": "(left out)"})x");
+  EXPECT_EQ(secrets.without(R"x("tab\there", tab\x09here)x"), R"x("(left out)", (left out))x");
+}
+
 TEST(KnownSecrets, ComeFromTheFilesThatTheSettingsName) {
   const TempDir dir;
   writeText(dir / "left.password", "hunter-22\r\n");

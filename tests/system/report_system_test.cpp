@@ -119,6 +119,26 @@ TEST(Report, OfAWallThatDoesNotRunSaysSoAndQuotesNoFile) {
   expectNowhere(files, kPassword);
 }
 
+TEST(Report, TheJournalIsThatOfTheUnitsWithoutSecrets) {
+  const TempDir dir;
+  const std::string journalctl = dir / "journalctl";  // found before the real one
+  writeText(journalctl, std::string("#!/bin/sh\necho \"$@\"\necho typed ") + kPassword + "\n");
+  std::filesystem::permissions(journalctl, std::filesystem::perms::owner_all);
+  writeText(dir / "left.password", std::string(kPassword) + "\n");
+  writeText(dir / "wall.json",
+            R"({"instance": "merlin-report-none", "devices": {"projectors": [
+                {"name": "left", "address": "127.0.0.1:1", "password_file": "left.password"}]}})");
+  Process made({kMerlin, "report", "-o", dir / "none.tar.gz", "-c", dir / "wall.json"},
+               {{"PATH", dir.path() + ":/usr/bin:/bin"}});
+  ASSERT_EQ(made.wait(), 0) << made.output();
+  const auto files = unpack(dir, dir / "none.tar.gz");
+  const std::string& journal = files.at("none/journal.txt");
+  for (const char* part : {"--unit=merlind.service", "--unit=merlin-page.service", "--since=-1day",
+                           "--lines=20000", "\ntyped (left out)\n"})
+    EXPECT_NE(journal.find(part), std::string::npos) << part << " is not in " << journal;
+  expectNowhere(files, kPassword);
+}
+
 TEST(Report, WritesNothingWhereItCannot) {
   const TempDir dir;
   const Outcome named = run({kMerlin, "report", "-o", dir / "wall.zip"});

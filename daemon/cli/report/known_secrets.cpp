@@ -4,8 +4,12 @@
 #include <filesystem>
 #include <sstream>
 
+#include <nlohmann/json.hpp>
+
 #include "config/effective.h"
 #include "daemon/base/files.h"
+#include "daemon/base/printable_text.h"
+#include "daemon/cli/print.h"
 
 namespace merlin::cli {
 namespace {
@@ -31,8 +35,14 @@ KnownSecrets::KnownSecrets(const std::vector<std::string>& texts) {
   sortByLength();
 }
 
+// Also as JSON and as messages write it, where it has quotes or other characters that they escape.
 void KnownSecrets::add(std::string_view text) {
-  if (text.size() >= kShortest) texts_.emplace_back(text);
+  if (text.size() < kShortest) return;
+  texts_.emplace_back(text);
+  const std::string json = jsonText(nlohmann::json(text));
+  for (const std::string& escaped : {json.substr(1, json.size() - 2), oneLine(text)}) {
+    if (escaped != text) texts_.push_back(escaped);
+  }
 }
 
 // Each line as a whole, for passwords and tokens, and its last word, for "secret KEY". A line
