@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zmq.hpp>
@@ -15,8 +14,6 @@
 
 namespace merlin::status {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int kRound_ms = 100;
 constexpr int kMostRequestBytes = 4096;
@@ -45,11 +42,6 @@ std::string innerOf(const std::string& endpoint) {
 
 bool isThere(const std::string& path) { return ::access(path.c_str(), F_OK) == 0; }
 
-std::string failure(std::string_view what) {
-  return Json{{"ok", false}, {"error", std::string(what)}}.dump(-1, ' ', false,
-                                                                Json::error_handler_t::replace);
-}
-
 }  // namespace
 
 struct StatusServer::Sockets {
@@ -77,14 +69,6 @@ void limit(zmq::socket_t& socket, int most_bytes) {
   socket.set(zmq::sockopt::linger, 0);
   socket.set(zmq::sockopt::maxmsgsize, std::int64_t{most_bytes});
   socket.set(zmq::sockopt::handshake_ivl, kHandshake_ms);
-}
-
-Result<std::string> runWith(const Command& command, const nlohmann::json& request) {
-  const auto argument = request.find("argument");
-  if (argument != request.end() && argument->is_string())
-    return command.run_with(argument->get<std::string>());
-  return Error{Errc::kInvalidArgument,
-               fmt::format("{} needs an \"argument\", a text: {}", command.name, command.help)};
 }
 
 std::string z85(const zmq::message_t& key) {
@@ -282,31 +266,11 @@ void StatusServer::answer() {
   std::string text;
   try {
     text = parts ? failure("a request must have one part; this one had several")
-                 : reply(request.to_string_view());
+                 : answerTo(request.to_string_view(), settings_.commands);
   } catch (const std::exception& e) {  // without an answer the socket would take no more requests
     text = failure(e.what());
   }
   sockets_->replier.send(zmq::buffer(text), zmq::send_flags::none);
-}
-
-std::string StatusServer::reply(std::string_view request) {
-  // A request has at most 4 KiB, so deep nesting cannot overflow the stack in recursive copies.
-  const auto json = nlohmann::json::parse(request, nullptr, false);
-  const auto name = json.is_object() ? json.find("command") : json.end();
-  std::vector<std::string> names;
-  for (const Command& c : settings_.commands) names.push_back(c.name);
-  if (!json.is_object() || name == json.end() || !name->is_string()) {
-    return failure(R"(a request is {"command": "NAME"}, NAME one of )" +
-                   fmt::format("{}", fmt::join(names, ", ")));
-  }
-  for (const Command& c : settings_.commands) {
-    if (*name != c.name) continue;
-    const auto result = c.run_with ? runWith(c, json) : c.run();
-    return result ? fmt::format(R"({{"ok": true, "result": {}}})", *result)
-                  : failure(result.error().what);
-  }
-  return failure(fmt::format("\"{}\" is not a known command; commands are {}",
-                             name->get<std::string>().substr(0, 64), fmt::join(names, ", ")));
 }
 
 }  // namespace merlin::status

@@ -10,6 +10,7 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
 #include "daemon/base/watched_thread.h"
+#include "daemon/status/command.h"
 #include "daemon/status/curve.h"
 #include "daemon/status/relay.h"
 
@@ -20,15 +21,6 @@ struct Publication {
   std::string topic;  // "status", "metrics", "sample"
   Duration interval;
   std::function<std::string()> document;  // called in the server's thread
-};
-
-// A command. Its function returns the JSON value that becomes "result"; an Error becomes
-// {"ok": false, "error": ...}. Called in the server's thread.
-struct Command {
-  std::string name, help;
-  std::function<Result<std::string>()> run;
-  // Instead of `run`, for a command that needs the request's "argument", a text.
-  std::function<Result<std::string>(const std::string& argument)> run_with = nullptr;
 };
 
 struct StatusServerSettings {
@@ -81,7 +73,6 @@ class StatusServer {
   Duration untilDue() const;
   void admit();  // answers libzmq's authentication request: is the client's key listed?
   void answer();
-  std::string reply(std::string_view request);
 
   StatusServerSettings settings_;
   const Clock& clock_;

@@ -141,10 +141,11 @@ std::string InputDevice::chooseAxes(const std::vector<std::string>& names) {
 }
 
 std::string InputDevice::chooseButtons(const std::vector<std::string>& names) {
-  buttons_.fill(-1);
+  buttons_.fill(0);
   std::size_t count = 0;
   const auto add = [&](const Key& key) {
-    if (count < buttons_.size()) buttons_[count++] = static_cast<std::int32_t>(&key - keys_.data());
+    if (count < buttons_.size())
+      buttons_[count++] = 1 + static_cast<std::size_t>(&key - keys_.data());
   };
   for (const std::string& name : names) {
     const auto key = std::ranges::find(keys_, name, &Key::name);
@@ -188,8 +189,7 @@ void InputDevice::fill(BallSample& sample) const noexcept {
   }
   sample.buttons = 0;
   for (std::size_t i = 0; i < buttons_.size(); ++i) {
-    if (buttons_[i] >= 0 && keys_[static_cast<std::size_t>(buttons_[i])].pressed)
-      sample.buttons |= 1U << i;
+    if (buttons_[i] > 0 && keys_[buttons_[i] - 1].pressed) sample.buttons |= 1U << i;
   }
 }
 
@@ -206,8 +206,8 @@ bool InputDevice::relativeMoves() const noexcept {
 std::string InputDevice::chosen() const {
   std::vector<std::string> axes, buttons;
   for (const AxisSource& source : sources_) axes.push_back(textOf(source));
-  for (const std::int32_t button : buttons_) {
-    if (button >= 0) buttons.push_back(keys_[static_cast<std::size_t>(button)].name);
+  for (const std::size_t button : buttons_) {
+    if (button > 0) buttons.push_back(keys_[button - 1].name);
   }
   return fmt::format("axes {}; buttons {}", fmt::join(axes, ", "),
                      buttons.empty() ? "none" : fmt::format("{}", fmt::join(buttons, ", ")));

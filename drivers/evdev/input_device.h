@@ -69,7 +69,7 @@ class InputDevice {
   std::array<Axis, kAxes> axes_{};
   std::vector<Key> keys_;  // ascending by number
   AxisSources sources_{};
-  std::array<std::int32_t, kButtons> buttons_{};  // index into keys_; -1: none
+  std::array<std::size_t, kButtons> buttons_{};  // 1 + index into keys_; 0: none
   float dead_zone_ = 0, curve_ = 1;
 };
 

@@ -1,0 +1,248 @@
+#include "tests/fuzz/targets.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <iterator>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "config/loader.h"
+#include "daemon/base/commands.h"
+#include "daemon/base/unique_fd.h"
+#include "daemon/json/json_tree.h"
+#include "daemon/serve/spnav_protocol.h"
+#include "daemon/serve/vrpn_protocol.h"
+#include "daemon/state/state.h"
+#include "daemon/status/command.h"
+#include "drivers/cyberglove/calibration_files.h"
+#include "drivers/cyberglove/protocol.h"
+#include "drivers/evdev/input_device.h"
+#include "drivers/fastrak/protocol.h"
+#include "drivers/io/transcript.h"
+#include "drivers/port/plausible.h"
+#include "drivers/sample/protocol.h"
+#include "drivers/spaceball/calibration.h"
+#include "drivers/spaceball/protocol.h"
+#include "drivers/spacenav/protocol.h"
+#include "nn/io/data_set_file.h"
+#include "nn/io/network_file.h"
+#include "render/correct/io/mpcdi.h"
+#include "render/image/image_file.h"
+#include "render/lod/io/mrm_file.h"
+#include "render/mesh/io/mesh_file.h"
+#include "render/points/io/cloud_file.h"
+#include "render/range/io/grid_file.h"
+#include "render/range/io/range_grid.h"
+
+namespace merlin::fuzz {
+namespace {
+
+// What must hold whatever the bytes are; libFuzzer and the test see the abort.
+void require(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "fuzz: does not hold: %s\n", what);
+  std::abort();
+}
+
+std::string_view textOf(Bytes bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// The bytes as a file without a name, for readers of files.
+class MemoryFile {
+ public:
+  explicit MemoryFile(Bytes bytes) : fd_(::memfd_create("fuzz", MFD_CLOEXEC)) {
+    require(fd_.valid() && ::write(fd_.get(), bytes.data(), bytes.size()) ==
+                               static_cast<ssize_t>(bytes.size()),
+            "a file in memory");
+  }
+  int fd() const { return fd_.get(); }
+  std::string path() const { return fmt::format("/proc/self/fd/{}", fd_.get()); }
+
+ private:
+  UniqueFd fd_;
+};
+
+template <typename Parser>
+void feed(Parser parser, Bytes bytes) {
+  for (const std::uint8_t byte : bytes) (void)parser.feed(std::byte{byte});
+}
+
+void cybergloveBytes(Bytes bytes) {
+  feed(cyberglove::Parser(), bytes);
+  cyberglove::Parser stamped;
+  stamped.expect({.values = 18, .timestamp = true, .status = true});
+  feed(stamped, bytes);
+}
+
+void calibrationBytes(Bytes bytes) { (void)cyberglove::importCalibration(textOf(bytes)); }
+
+void fastrakBytes(Bytes bytes) {
+  using Numbers = fastrak::Layout::Numbers;
+  for (const Numbers numbers : {Numbers::kBinary, Numbers::kText, Numbers::kShort}) {
+    fastrak::Parser parser;
+    parser.expect({.numbers = numbers});
+    for (const std::uint8_t byte : bytes) (void)parser.feed(std::byte{byte}, 1);
+  }
+  (void)fastrak::parseStatus(textOf(bytes));
+  (void)fastrak::parseStations(textOf(bytes));
+}
+
+void spaceballBytes(Bytes bytes) {
+  spaceball::Parser parser;
+  for (const std::uint8_t byte : bytes) {
+    const auto packet = parser.feed(std::byte{byte});
+    const auto* const moved = packet ? std::get_if<spaceball::Displacement>(&*packet) : nullptr;
+    if (!moved) continue;
+    BallSample sample{};
+    spaceball::calibrate(*moved, {}, sample);
+    require(plausible(sample), "a ball's sample is plausible");
+  }
+}
+
+void spacenavBytes(Bytes bytes) {
+  spacenav::Parser parser;
+  for (const std::uint8_t byte : bytes) {
+    if (const auto frame = parser.feed(std::byte{byte})) (void)spacenav::namePiece(*frame);
+  }
+}
+
+void evdevBytes(Bytes bytes) {
+  EvdevParser parser;
+  evdev::InputDevice device;
+  bool described = false;
+  BallSample sample{};
+  for (const std::uint8_t byte : bytes) {
+    const auto record = parser.feed(std::byte{byte});
+    if (!record) continue;
+    described ? device.take(*record) : device.describe(*record);
+    if (record->kind == EvdevRecord::kReady) {
+      described = true;
+      (void)device.choose({});
+    }
+    device.fill(sample);
+    require(plausible(sample), "an input device's sample is plausible");
+  }
+}
+
+void sampleBytes(Bytes bytes) { feed(sample::Parser(), bytes); }
+
+void transcriptText(Bytes bytes) {
+  const auto transcript = io::parseTranscript(textOf(bytes));
+  if (!transcript) return;
+  require(io::parseTranscript(io::formatTranscript(*transcript)).ok(),
+          "a transcript that was read can be written and read");
+}
+
+void configurationText(Bytes bytes) {
+  const LoadedSettings loaded = loadSettings(textOf(bytes), "/nowhere");
+  for (const Finding& finding : loaded.findings)
+    require(!finding.what.empty(), "a finding says what is wrong");
+}
+
+void commandText(Bytes bytes) {
+  constexpr std::size_t kMostBytes = 4096;  // of a request
+  std::vector<status::Command> commands;
+  for (const CommandInfo& info : kCommands) {
+    status::Command command{std::string(info.name), std::string(info.help), nullptr, nullptr};
+    if (info.argument.empty())
+      command.run = [] { return Result<std::string>(std::string("{}")); };
+    else
+      command.run_with = [](const std::string& argument) -> Result<std::string> {
+        return Error{Errc::kInvalidArgument, argument};
+      };
+    commands.push_back(std::move(command));
+  }
+  const std::string answer = status::answerTo(textOf(bytes).substr(0, kMostBytes), commands);
+  require(parseJson(answer).ok(), "an answer is JSON");
+}
+
+void stateText(Bytes bytes) { (void)state::parseState(textOf(bytes), "state.json"); }
+
+void networkText(Bytes bytes) { (void)nn::parseNetwork(textOf(bytes), "network.json"); }
+
+void recordingText(Bytes bytes) { (void)nn::parseRecording(textOf(bytes), "recording.csv"); }
+
+void mrmFile(Bytes bytes) {
+  const MemoryFile file(bytes);
+  (void)render::lod::readMrmCopy(file.fd(), "model.mrm");
+}
+
+void meshFile(Bytes bytes) {
+  const MemoryFile file(bytes);
+  (void)render::mesh::readMeshByContent(file.path());
+}
+
+void pictureFile(Bytes bytes) { (void)render::image::decodeImage(bytes); }
+
+void mpcdiFile(Bytes bytes) {
+  const auto file = render::correct::Mpcdi::open(std::as_bytes(bytes));
+  if (!file) return;
+  for (const auto& region : file->regions()) (void)file->measured(region.id);
+}
+
+void rangeFile(Bytes bytes) {
+  (void)render::range::parseGrid(textOf(bytes));
+  (void)render::range::parseRangeGrid(textOf(bytes));
+}
+
+void cloudFile(Bytes bytes) { (void)render::points::parseCloud(textOf(bytes)); }
+
+void vrpnBytes(Bytes bytes) {
+  (void)serve::readVrpnCallback(textOf(bytes));
+  std::string_view input = textOf(bytes);
+  for (;;) {
+    const auto front = serve::readVrpn(input);
+    if (front.broken || !front.message) return;
+    require(front.bytes > 0, "a message takes bytes");
+    (void)readVrpnName(front.message->payload);
+    input.remove_prefix(front.bytes);
+  }
+}
+
+// Of a client of MERLIN's own space-mouse socket.
+void spnavBytes(Bytes bytes) {
+  serve::SpnavClient client({});
+  std::string out;
+  (void)client.receive(textOf(bytes), 1000, out);
+  BallSample sample{};
+  sample.raw[0] = 100;
+  sample.buttons = 5;
+  client.sample(sample, true, out);
+  require(out.size() % 4 == 0, "answers are words");
+}
+
+constexpr Target kTargets[] = {
+    {"cyberglove", cybergloveBytes},
+    {"calibration", calibrationBytes},
+    {"fastrak", fastrakBytes},
+    {"spaceball", spaceballBytes},
+    {"spacenav", spacenavBytes},
+    {"evdev", evdevBytes},
+    {"sample", sampleBytes},
+    {"transcript", transcriptText},
+    {"configuration", configurationText},
+    {"command", commandText},
+    {"state", stateText},
+    {"network", networkText},
+    {"recording", recordingText},
+    {"mrm", mrmFile},
+    {"mesh", meshFile},
+    {"picture", pictureFile},
+    {"mpcdi", mpcdiFile},
+    {"range", rangeFile},
+    {"cloud", cloudFile},
+    {"vrpn", vrpnBytes},
+    {"spnav", spnavBytes},
+};
+
+}  // namespace
+
+std::span<const Target> targets() { return kTargets; }
+
+}  // namespace merlin::fuzz
