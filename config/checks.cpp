@@ -64,6 +64,20 @@ void checkOwnSocket(const Settings& s, LoadedSettings& loaded) {
                                 own));
 }
 
+// The same of a tracker that is read from MERLIN's own VRPN server.
+void checkOwnVrpn(const Settings& s, LoadedSettings& loaded) {
+  const LineSettings& line = s.devices.tracker_line;
+  const auto port = parsePort(line.port);
+  if (line.driver != "vrpn" || !port || port->kind != PortKind::kTcp) return;
+  const bool here =
+      port->path == "localhost" || port->path == "::1" || port->path.starts_with("127.");
+  if (!here || port->service != std::to_string(s.serve.vrpn_port)) return;
+  loaded.addFinding("/devices/tracker/port",
+                    fmt::format("is \"{}\", where merlind itself serves by /serve/vrpn_port; the "
+                                "tracker's own server is needed here, and another number there",
+                                line.port));
+}
+
 // The samples from another machine are encrypted, so the wall's input from it needs keys.
 void checkInput(const InputSettings& in, LoadedSettings& loaded) {
   if (in.endpoint.empty()) return;
@@ -220,7 +234,9 @@ void checkTogether(LoadedSettings& loaded) {
   addFaults(validate(d.ball_line), "/devices/ball", loaded);
   checkPortsDiffer(d, loaded);
   checkOwnSocket(s, loaded);
+  checkOwnVrpn(s, loaded);
   addFaults(validate(d.glove, d.glove_line), "/devices/glove", loaded);
+  addFaults(validate(d.vrpn, d.tracker_line), "/devices/tracker", loaded);
   addFaults(validate(d.ball), "/devices/ball", loaded);
   addFaults(validate(d.spacenav), "/devices/ball/spacenav", loaded);
   addFaults(validate(d.evdev), "/devices/ball/evdev", loaded);

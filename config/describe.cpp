@@ -25,7 +25,7 @@ constexpr const char* kDialogues[] = {"binary", "text"};
 constexpr const char* kWristLights[] = {"switch", "off", "on"};
 constexpr const char* kTrackerNumbers[] = {"binary", "text", "short"};
 constexpr const char* kGloves[] = {"cyberglove"};
-constexpr const char* kTrackers[] = {"fastrak"};
+constexpr const char* kTrackers[] = {"fastrak", "vrpn"};
 constexpr const char* kBalls[] = {"spaceball", "spacenav", "evdev", "sample"};
 
 void describeLine(LineSettings& line, std::span<const char* const> drivers, SettingsVisitor& v) {
@@ -33,10 +33,12 @@ void describeLine(LineSettings& line, std::span<const char* const> drivers, Sett
   v.text(
       "port", line.port,
       "Where the device is connected: serial:/dev/... (preferably a name under /dev/serial/by-id), "
-      "pty:PATH, tcp://HOST:PORT (a raw serial server), unix:PATH (a socket, such as spacenavd's "
-      "unix:/run/spnav.sock), evdev:/dev/input/... (an input device, preferably a name under "
-      "/dev/input/by-id) or replay:FILE. Empty: no device. `merlin devices` lists what is plugged "
-      "in.");
+      "pty:PATH, tcp://HOST:PORT (a raw serial server, or a VRPN server), unix:PATH (a socket, "
+      "such as spacenavd's unix:/run/spnav.sock), evdev:/dev/input/... (an input device, "
+      "preferably "
+      "a name under /dev/input/by-id) or replay:FILE. Empty: no device. `merlin devices` lists "
+      "what "
+      "is plugged in.");
   static const std::string kBaud = fmt::format("Speed of the serial line in bits per second: {}.",
                                                fmt::join(lineSpeeds(), ", "));
   v.integer("baud", line.baud,
@@ -117,6 +119,19 @@ void describeTrackerForm(FastrakSettings& t, SettingsVisitor& v) {
             "centimetres.");
 }
 
+void describeVrpn(VrpnSettings& s, SettingsVisitor& v) {
+  v.text("device", s.device,
+         "Name of the tracker at the server, without @HOST, such as Tracker0. If it is wrong, the "
+         "tracker's state names the devices that the server has.");
+  v.numbers(
+      "stations", s.stations, {VrpnSettings::kNoSensor, 9999},
+      "The server's number of the sensor that is station 1, 2, 3 and 4; -1 for a station that "
+      "is not used.");
+  v.number("scale", s.scale, {1e-6, 1e3},
+           "Metres in the server's unit of length: 1 for metres, which VRPN asks for, 0.001 for a "
+           "server that sends millimetres.");
+}
+
 void describeTracker(DevicesSettings& d, SettingsVisitor& v) {
   describeLine(d.tracker_line, kTrackers, v);
   constexpr const char* kKeys[] = {"hemisphere1", "hemisphere2", "hemisphere3", "hemisphere4"};
@@ -133,6 +148,11 @@ void describeTracker(DevicesSettings& d, SettingsVisitor& v) {
   v.flag("centimetres", d.tracker.centimetres,
          "Unit of positions on the serial line: true for centimetres, false for inches. Samples "
          "are in metres either way.");
+  v.group(
+      "vrpn",
+      "Settings of the driver vrpn, for a tracker of a VRPN server. The tracker's other settings, "
+      "except for driver and port, are those of a Fastrak and have no effect with it.",
+      [&] { describeVrpn(d.vrpn, v); });
 }
 
 void describeSpacenav(SpacenavSettings& s, SettingsVisitor& v) {
@@ -151,10 +171,11 @@ void describeEvdev(EvdevSettings& e, SettingsVisitor& v) {
       "{}. Empty: as fits the kind of device.",
       kAxisForms);
   v.texts("axes", e.axes, kAxes.c_str());
-  v.texts("buttons", e.buttons,
-          "Keys of the input device that are ball.button.1, 2 and so on: the kernel's names without "
-          "KEY_ or BTN_, in lower case, such as south, tl or pagedown. Empty: the first twelve "
-          "buttons of the device. `merlin devices` lists its keys.");
+  v.texts(
+      "buttons", e.buttons,
+      "Keys of the input device that are ball.button.1, 2 and so on: the kernel's names without "
+      "KEY_ or BTN_, in lower case, such as south, tl or pagedown. Empty: the first twelve "
+      "buttons of the device. `merlin devices` lists its keys.");
   v.number("dead_zone", e.dead_zone, {0, 0.9},
            "Share of an axis's full deflection, to either side, that is treated as rest.");
   v.number("curve", e.curve, {1, 5},

@@ -17,6 +17,7 @@
 #include "drivers/port/port_address.h"
 #include "drivers/spaceball/settings.h"
 #include "drivers/spacenav/settings.h"
+#include "drivers/vrpn/settings.h"
 #include "nn/settings.h"
 #include "render/frame/settings.h"
 #include "render/governor/settings.h"
@@ -34,6 +35,7 @@ struct DevicesSettings {
   CybergloveSettings glove;
   LineSettings tracker_line{"fastrak", "", kFastrakBaud};
   FastrakSettings tracker;
+  VrpnSettings vrpn;  // of the tracker, with this driver
   LineSettings ball_line{"spaceball", "", kSpaceballBaud};
   SpaceballSettings ball;
   SpacenavSettings spacenav;  // of the ball, with this driver

@@ -6,6 +6,7 @@
 #include "drivers/sample/device.h"
 #include "drivers/spaceball/device.h"
 #include "drivers/spacenav/device.h"
+#include "drivers/vrpn/device.h"
 
 namespace merlin {
 namespace {
@@ -23,6 +24,10 @@ constexpr DriverEntry kDrivers[] = {
     {"fastrak", SampleKind::kTracker, kFastrakBaud, "Polhemus Fastrak, 1 to 4 receivers",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return fastrak::makeDevice(s.fastrak, c, k);
+     }},
+    {"vrpn", SampleKind::kTracker, 0, "tracker of a VRPN server, over the network",
+     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
+       return vrpn::makeDevice(s.vrpn, c, k);
      }},
     {"spaceball", SampleKind::kBall, kSpaceballBaud, "Spaceball 1003, 2003, 3003 or 4000 FLX",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {

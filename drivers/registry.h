@@ -13,6 +13,7 @@
 #include "drivers/port/sample_sink.h"
 #include "drivers/spaceball/settings.h"
 #include "drivers/spacenav/settings.h"
+#include "drivers/vrpn/settings.h"
 
 namespace merlin {
 
@@ -25,6 +26,7 @@ struct DriverSettings {
   SpaceballSettings spaceball;
   SpacenavSettings spacenav;
   EvdevSettings evdev;
+  VrpnSettings vrpn;
 };
 
 struct DriverEntry {

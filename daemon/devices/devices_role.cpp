@@ -213,7 +213,7 @@ Result<Ok> DevicesRole::open(shm::DeviceIndex index, const DevicesSettings& sett
   const auto address = parsePort(line.port);
   if (!address) return address.error();
   const DriverSettings own{settings.glove, settings.tracker, settings.ball, settings.spacenav,
-                           settings.evdev};
+                           settings.evdev, settings.vrpn};
   DeviceLoopSettings loop;
   loop.port = line.port;
   loop.baud = line.baud;

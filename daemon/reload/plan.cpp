@@ -96,6 +96,7 @@ void adopt(const Plan& plan, const Settings& fresh, bool keep_ports, Settings& r
   if (plan.has(Part::kTracker)) {
     keepPort(to.tracker_line, from.tracker_line, keep_ports);
     to.tracker = from.tracker;
+    to.vrpn = from.vrpn;
   }
   if (plan.has(Part::kBall)) {
     keepPort(to.ball_line, from.ball_line, keep_ports);

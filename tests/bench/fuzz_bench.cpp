@@ -22,6 +22,7 @@
 #include "drivers/sample/protocol.h"
 #include "drivers/spaceball/protocol.h"
 #include "drivers/spacenav/protocol.h"
+#include "drivers/vrpn/protocol.h"
 #include "tests/bench/figures.h"
 
 namespace merlin::bench {
@@ -102,6 +103,31 @@ std::string evdevRecord(Random& r) {
   return bytes;
 }
 
+std::string vrpnMessage(Random& r) {
+  VrpnHeader header;
+  header.sender = anyShort(r);
+  header.type = anyShort(r);
+  std::string bytes;
+  appendVrpn(header, std::string(r.below(300), 'x'), bytes);
+  return bytes;
+}
+
+// The wire has no marks at which a message begins: the driver closes a connection that is broken.
+// A new one begins with the next piece, and with every sixteenth one.
+Feed vrpnFeed() {
+  auto parser = std::make_shared<vrpn::Parser>();
+  return [parser, pieces = 0](const std::string& bytes) mutable {
+    if (parser->broken() || ++pieces % 16 == 0) parser->reset();
+    std::uint64_t packets = 0;
+    for (const char c : bytes) {
+      const auto message = parser->feed(static_cast<std::byte>(c));
+      packets += message ? 1U : 0U;
+      if (message) (void)(readVrpnName(message->payload) || readVrpnPose(message->payload));
+    }
+    return packets;
+  };
+}
+
 std::string transcriptLine(Random& r) {
   return fmt::format("# device: x # serial: 9600\n@{:.6f} {}{:04x} <- note\n# end\n", r.uniform(),
                      r.below(2) ? "to " : "", r.below(65536));
@@ -145,6 +171,7 @@ const Target kTargets[] = {
     {"spaceball", [] { return each(std::make_shared<spaceball::Parser>()); }, ballPacket},
     {"spacenav", [] { return each(std::make_shared<spacenav::Parser>()); }, spacenavFrame},
     {"evdev", [] { return each(std::make_shared<EvdevParser>()); }, evdevRecord},
+    {"vrpn", vrpnFeed, vrpnMessage},
     {"sample", [] { return each(std::make_shared<sample::Parser>()); }, textRecord},
     {"calibration files",
      []() -> Feed {

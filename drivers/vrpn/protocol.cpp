@@ -1,0 +1,24 @@
+#include "drivers/vrpn/protocol.h"
+
+namespace merlin::vrpn {
+
+std::optional<Message> Parser::feed(std::byte byte) noexcept {
+  if (broken_) return std::nullopt;
+  if (length_ < bytes_.size()) bytes_[length_] = static_cast<char>(byte);
+  ++length_;
+  const std::string_view stored(bytes_.data(), bytes_.size());
+  if (length_ == kVrpnHeaderLength) {
+    start_ = readVrpnStart(stored);
+    broken_ = start_.bytes == 0 || start_.bytes > kLongest;
+  }
+  if (broken_ || length_ < kVrpnHeaderLength || length_ < start_.bytes) return std::nullopt;
+  length_ = 0;
+  return Message{start_.header, stored.substr(kVrpnHeaderLength).substr(0, start_.payload)};
+}
+
+void Parser::reset() noexcept {
+  length_ = 0;
+  broken_ = false;
+}
+
+}  // namespace merlin::vrpn

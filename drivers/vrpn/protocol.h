@@ -1,0 +1,43 @@
+// What a VRPN server sends: bytes to messages. Pure. The wire format, and the way back, are
+// drivers/port/vrpn_line.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+#include "drivers/port/vrpn_line.h"
+
+namespace merlin::vrpn {
+
+struct Message {
+  VrpnHeader header;
+  std::string_view payload;  // cut after Parser::kMostPayload; valid until the next byte is fed
+};
+
+// Reads what follows the cookie.
+class Parser {
+ public:
+  // A description of a sender or type has at most 104 bytes, a pose 64.
+  static constexpr std::size_t kMostPayload = 128;
+  // The longest message, with its header, that a server can send: VRPN's own buffer has 64000.
+  static constexpr std::size_t kLongest = 65536;
+
+  // Takes one byte; returns a message when `byte` completes one. Never blocks, never allocates.
+  std::optional<Message> feed(std::byte byte) noexcept;
+
+  // An invalid length was read. Where the next message begins is not known: feed() returns nothing
+  // any more, and the connection has to be closed.
+  bool broken() const noexcept { return broken_; }
+  bool inside() const noexcept { return length_ > 0; }  // in the middle of a message
+  void reset() noexcept;                                // for a new connection
+
+ private:
+  std::array<char, kVrpnHeaderLength + kMostPayload> bytes_{};  // the first of the message
+  std::size_t length_ = 0;                                      // how many have come
+  VrpnStart start_;                                             // once the header has come
+  bool broken_ = false;
+};
+
+}  // namespace merlin::vrpn

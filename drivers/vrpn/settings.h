@@ -1,0 +1,27 @@
+// Settings of a tracker of a VRPN server.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "daemon/base/setting_fault.h"
+#include "drivers/port/port_address.h"
+#include "drivers/port/samples.h"
+
+namespace merlin {
+
+struct VrpnSettings {
+  std::string device = "Tracker0";  // its name at the server, without "@HOST"
+  // For each station the server's sensor that it is; kNoSensor: the station is not used.
+  std::array<int, kStations> stations = {0, 1, 2, 3};
+  double scale = 1;  // metres in the server's unit of length; VRPN asks for metres
+
+  static constexpr int kNoSensor = -1;
+};
+
+// Finds a name that no device can have, and stations that share a sensor or have none; with this
+// driver also a port at which no server can be. Pointers, relative to the tracker: "/port",
+// "/vrpn/device", "/vrpn/stations".
+SettingFaults validate(const VrpnSettings& settings, const LineSettings& line);
+
+}  // namespace merlin
