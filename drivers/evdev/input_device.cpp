@@ -185,7 +185,8 @@ void InputDevice::fill(BallSample& sample) const noexcept {
     const float share = axisShare(raw, dead_zone_, 1);
     const float value = std::pow(std::abs(share), curve_);
     (i < 3 ? sample.translation[i] : sample.rotation[i - 3]) = share < 0 ? -value : value;
-    sample.raw[i] = static_cast<std::int16_t>(std::lround(raw * kRawScale));
+    const bool away = i % 3 == 2;  // a Spaceball's z
+    sample.raw[i] = static_cast<std::int16_t>(std::lround((away ? -raw : raw) * kRawScale));
   }
   sample.buttons = 0;
   for (std::size_t i = 0; i < buttons_.size(); ++i) {

@@ -28,7 +28,8 @@ class InputDevice {
   std::string choose(const EvdevSettings& settings);
 
   // Writes the present state into `sample`: axes, buttons, and as raw values the deflections in
-  // thousandths, before dead zone and curve. Allocates nothing.
+  // thousandths, before dead zone and curve, about a Spaceball's axes, whose z points away from the
+  // person: so clients of the space-mouse socket get what they expect. Allocates nothing.
   void fill(BallSample& sample) const noexcept;
   // Relative axes, which only tell that they move, are at rest from now on.
   void restRelative() noexcept;
