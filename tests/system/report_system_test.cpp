@@ -63,7 +63,9 @@ TEST(Report, OfARunningWallHasItsPartsAndNoSecret) {
   Merlind wall(dir, model, "report", options);
   ASSERT_TRUE(wall.ready()) << wall.process().output();
   writeText(dir / (wall.instance() + "-page.token"), kToken);
-  writeText(dir / (wall.instance() + "-old-20260101T000000Z.bytes"), std::string("# ") + kToken);
+  std::filesystem::create_directory(dir / "flight");
+  writeText(dir / ("flight/" + wall.instance() + "-old-20260101T000000Z.bytes"),
+            std::string("# ") + kToken);
 
   const Outcome made =
       run({kMerlin, "report", "-o", dir / "wall.tar.gz", "--config", wall.config(), "--json"});

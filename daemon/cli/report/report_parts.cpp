@@ -118,12 +118,12 @@ void collectJournal(PartFolder& folder) {
   collectOutput("journal.txt", arguments, folder);
 }
 
-// The recordings of the last day in the daemon's folder, the newest first.
+// The recordings of the last day in the daemon's folder for them (devices_role), the newest first.
 std::vector<std::string> recordings(const ReportSubject& subject) {
   std::vector<std::pair<fs::file_time_type, std::string>> found;
   const auto day_ago = fs::file_time_type::clock::now() - std::chrono::hours(24);
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(subject.run_directory, error)) {
+  for (const auto& entry : fs::directory_iterator(subject.run_directory + "/flight", error)) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(subject.instance + "-") || !name.ends_with(".bytes")) continue;
     if (const auto time = entry.last_write_time(error); !error && time >= day_ago)

@@ -14,7 +14,7 @@ struct ReportSubject {
   std::string config;         // the configuration's file
   LoadedSettings loaded;      // what it says
   std::string instance;       // name of the daemon
-  std::string run_directory;  // of its sockets and flight recordings
+  std::string run_directory;  // of its sockets; flight recordings are in its folder flight
 };
 
 struct ReportPart {
