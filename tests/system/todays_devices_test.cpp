@@ -1,11 +1,13 @@
-// The devices of today as the ball of a real merlind: a space mouse through the real spacenavd, and
-// a gamepad whose records come over a pseudo-terminal. That the kernel's own devices give these
-// records is seen in the virtual machine (tests/vm).
+// The devices of today at a real merlind: a space mouse through the real spacenavd, a gamepad whose
+// records come over a pseudo-terminal, and the tracker of a VRPN server, which is another merlind.
+// That the kernel's own devices give a gamepad's records is seen in the virtual machine (tests/vm).
+#include <algorithm>
 #include <filesystem>
 
 #include <gtest/gtest.h>
 #include <linux/input-event-codes.h>
 
+#include "daemon/net/connection_server.h"
 #include "drivers/io/pty_master.h"
 #include "drivers/port/evdev_line.h"
 #include "tests/system/merlind.h"
@@ -147,6 +149,68 @@ TEST(TodaysDevices, AGamepadMovesTheModelAndItsButtonsAct) {
     const auto actions = merlind.devices()->actions[shm::kBallActions].read();
     return actions && actions->sequence == 1;
   }));
+}
+
+// A TCP port that is free: the system has just assigned it, and it was closed again.
+int freePort() {
+  const auto probe = net::listenTcp("127.0.0.1", 0);
+  return probe ? net::portOf(probe->get()) : 0;
+}
+
+MerlindOptions vrpnServer(int port) {
+  MerlindOptions options;
+  options.role = "devices";
+  options.script = "turning";
+  options.also = {{"serve", {{"vrpn_port", port}}}};
+  return options;
+}
+
+MerlindOptions vrpnClient(int port) {
+  MerlindOptions options;
+  options.role = "devices";
+  options.emulate = false;
+  options.also = {{"devices",
+                   {{"tracker",
+                     {{"driver", "vrpn"},
+                      {"port", fmt::format("tcp://127.0.0.1:{}", port)},
+                      {"vrpn", {{"stations", {2, 0, -1, -1}}}}}}}}};
+  return options;
+}
+
+// Whether station 1 of the server measured what is now station 2 of the client.
+bool agree(Merlind& server, Merlind& client) {
+  const auto *from = server.devices(), *to = client.devices();
+  const auto got = to ? to->tracker[1].newest() : std::nullopt;
+  if (!from || !got) return false;
+  const std::uint64_t count = from->tracker[0].count();
+  for (std::uint64_t i = count - std::min<std::uint64_t>(count, shm::kHistory); i < count; ++i) {
+    const auto sent = from->tracker[0].at(i);
+    if (!sent || !std::ranges::equal(sent->position_m, got->position_m)) continue;
+    return std::ranges::equal(sent->orientation_wxyz, got->orientation_wxyz,
+                              [](float a, float b) { return std::abs(a - b) < 1e-6F; });
+  }
+  return false;
+}
+
+TEST(TodaysDevices, ATrackerOfAVrpnServerIsTheTrackerAndComesBackWithIt) {
+  const TempDir dir;
+  const int port = freePort();
+  std::optional<Merlind> server(std::in_place, dir, "", "server", vrpnServer(port));
+  Merlind client(dir, "", "client", vrpnClient(port));
+  ASSERT_TRUE(client.ready()) << client.process().output();
+  ASSERT_TRUE(client.healthIs(shm::kTracker, HealthState::kOk)) << client.process().output();
+  EXPECT_TRUE(eventually([&] { return agree(*server, client); }));
+  EXPECT_EQ(client.status()["devices"]["tracker"]["identity"],
+            "VRPN tracker Tracker0 at server version 07.38");
+  EXPECT_EQ(client.devices()->tracker[0].count(), 0u) << "the server has no third station";
+  const auto counter = client.devices()->tracker[1].newest()->counter;
+  server->process().kill(SIGKILL);
+  EXPECT_TRUE(client.healthIs(shm::kTracker, HealthState::kAbsent));
+  server.emplace(dir, "", "again", vrpnServer(port));
+  EXPECT_TRUE(client.healthIs(shm::kTracker, HealthState::kOk)) << client.process().output();
+  EXPECT_TRUE(eventually([&] { return agree(*server, client); }));
+  EXPECT_GT(client.devices()->tracker[1].newest()->counter, counter);
+  EXPECT_EQ(client.devices()->health[shm::kTracker].read()->reconnects, 1u);
 }
 
 }  // namespace
