@@ -69,7 +69,10 @@ DeviceHealth notConfigured(Timestamp now) {
   return health;
 }
 
-TrackerFrames framesOf(const FastrakSettings& settings) {
+// Only a Fastrak is aligned by its settings; another tracker's samples are in its server's frame.
+TrackerFrames framesOf(const DevicesSettings& devices) {
+  const FastrakSettings settings =
+      devices.tracker_line.driver == "fastrak" ? devices.tracker : FastrakSettings{};
   TrackerFrames frames;  // NOLINT(*-member-init): filled below
   for (std::size_t i = 0; i < kStations; ++i) {
     std::copy(settings.alignment_cm[i].begin(), settings.alignment_cm[i].end(),
@@ -168,7 +171,7 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
   role->addPanel(settings.devices);
   role->addProjectors(settings.devices);
   role->cpu_latency_us_ = settings.devices.cpu_latency_us;
-  role->segment_->tracker_frames.publish(framesOf(settings.devices.tracker));
+  role->segment_->tracker_frames.publish(framesOf(settings.devices));
   role->makeSinks(settings.devices, network);
   for (const shm::DeviceIndex index : kEach) {
     role->segment_->health[index].publish(notConfigured(clock.now()));
@@ -212,8 +215,8 @@ Result<Ok> DevicesRole::open(shm::DeviceIndex index, const DevicesSettings& sett
   if (!driver) return Error{Errc::kInvalidArgument, "there is no driver named " + line.driver};
   const auto address = parsePort(line.port);
   if (!address) return address.error();
-  const DriverSettings own{settings.glove, settings.tracker, settings.ball, settings.spacenav,
-                           settings.evdev, settings.vrpn};
+  const DriverSettings own{settings.glove,    settings.tracker, settings.ball,
+                           settings.spacenav, settings.evdev,   settings.vrpn};
   DeviceLoopSettings loop;
   loop.port = line.port;
   loop.baud = line.baud;
@@ -261,7 +264,7 @@ void DevicesRole::reload(const Settings& settings, const DevicesChanges& changes
   }
   if (changes.hand) hand_sink_->reload(devices.hand);
   if (changes.postures) posture_sink_->reload(network, devices.posture_hold);
-  if (changes.lines[shm::kTracker]) segment_->tracker_frames.publish(framesOf(devices.tracker));
+  if (changes.lines[shm::kTracker]) segment_->tracker_frames.publish(framesOf(devices));
   for (const shm::DeviceIndex index : kEach) {
     if (!changes.lines[index]) continue;
     close(index);

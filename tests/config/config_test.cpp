@@ -224,6 +224,13 @@ INSTANTIATE_TEST_SUITE_P(
             "is 31337; allowed are 1200, 2400, 4800"},
         Bad{"{\"devices\": {\"glove\": {\"port\": \"/dev/ttyS0\"}}}",
             "allowed are serial:/dev/..., pty:PATH"},
+        Bad{"{\"devices\": {\"tracker\": {\"driver\": \"vrpn\", \"port\": \"unix:/x\"}}}",
+            "/devices/tracker/port is \"unix:/x\", at which no VRPN server can be"},
+        Bad{"{\"devices\": {\"tracker\": {\"vrpn\": {\"device\": \"Wand@lab\"}}}}",
+            "/devices/tracker/vrpn/device is \"Wand@lab\"; needed is the name alone"},
+        Bad{"{\"serve\": {\"vrpn_port\": 4000}, \"devices\": {\"tracker\": {\"driver\": \"vrpn\", "
+            "\"port\": \"tcp://127.0.0.1:4000\"}}}",
+            "/devices/tracker/port is \"tcp://127.0.0.1:4000\", where merlind itself serves"},
         Bad{"{\"instance\": \"a/b\"}", "is \"a/b\"; allowed are 1 to 32 letters, digits, - and _"},
         Bad{"{\"wall\": {\"scene\": {\"tracker_axes\": [1, 1, 2]}}}",
             "allowed is each of 1 to 3 once"},

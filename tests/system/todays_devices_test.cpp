@@ -173,6 +173,7 @@ MerlindOptions vrpnClient(int port) {
                    {{"tracker",
                      {{"driver", "vrpn"},
                       {"port", fmt::format("tcp://127.0.0.1:{}", port)},
+                      {"boresight2_wxyz", {0, 1, 0, 0}},  // of a Fastrak
                       {"vrpn", {{"stations", {2, 0, -1, -1}}}}}}}}};
   return options;
 }
@@ -203,6 +204,11 @@ TEST(TodaysDevices, ATrackerOfAVrpnServerIsTheTrackerAndComesBackWithIt) {
   EXPECT_EQ(client.status()["devices"]["tracker"]["identity"],
             "VRPN tracker Tracker0 at server version 07.38");
   EXPECT_EQ(client.devices()->tracker[0].count(), 0u) << "the server has no third station";
+  EXPECT_EQ(client.devices()->tracker_frames.read()->boresight_wxyz[1][0], 1);
+  const Outcome calibrated = run({kMerlin, "calibrate", "tracker", "--station", "2", "--boresight",
+                                  "1", "0", "0", "0", "-o", client.config()});
+  EXPECT_EQ(calibrated.status, 2) << calibrated.output;
+  EXPECT_NE(calibrated.output.find("/devices/tracker/driver is \"vrpn\""), std::string::npos);
   const auto counter = client.devices()->tracker[1].newest()->counter;
   server->process().kill(SIGKILL);
   EXPECT_TRUE(client.healthIs(shm::kTracker, HealthState::kAbsent));

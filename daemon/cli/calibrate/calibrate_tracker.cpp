@@ -46,6 +46,20 @@ std::string keyOf(const char* form, int station) {
 }
 constexpr const char *kAlignmentKey = "alignment{}_cm", *kBoresightKey = "boresight{}_wxyz";
 
+// Errors: kInvalidArgument (the file's tracker has another driver, which has none of these
+// settings), those of readConfiguration().
+Result<Ok> checkFastrak(const std::string& file) {
+  const auto config = readConfiguration(file, "tracker");
+  if (!config) return config.error();
+  const Json& tracker = (*config)["devices"]["tracker"];
+  const auto driver = tracker.find("driver");
+  if (driver == tracker.end() || *driver == "fastrak") return Ok{};
+  return Error{Errc::kInvalidArgument,
+               fmt::format("{}: /devices/tracker/driver is {}, but alignment, boresight and "
+                           "hemisphere are a Fastrak's; set the frame where the tracker is served",
+                           file, driver->dump())};
+}
+
 int setFromOptions(const TrackerOptions& o) {
   auto values = Json::object();
   const auto put = [&](const char* key, const std::vector<double>& list) {
@@ -230,8 +244,12 @@ void addCalibrateTracker(Command calibrate, Run& run) {
       .expected(3)
       .range(-1.0, 1.0);
   command.option("-o,--output", o->output, "The configuration file to write into").required();
-  command.callback(
-      [o, &run] { run = [o] { return o->hasOptions() ? setFromOptions(*o) : guideTracker(*o); }; });
+  command.callback([o, &run] {
+    run = [o] {
+      if (const auto fits = checkFastrak(o->output); !fits) return fail(fits.error());
+      return o->hasOptions() ? setFromOptions(*o) : guideTracker(*o);
+    };
+  });
 }
 
 }  // namespace merlin::cli
