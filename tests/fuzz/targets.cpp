@@ -29,6 +29,7 @@
 #include "drivers/spaceball/calibration.h"
 #include "drivers/spaceball/protocol.h"
 #include "drivers/spacenav/protocol.h"
+#include "drivers/vrpn/device.h"
 #include "nn/io/data_set_file.h"
 #include "nn/io/network_file.h"
 #include "render/correct/io/mpcdi.h"
@@ -38,6 +39,8 @@
 #include "render/points/io/cloud_file.h"
 #include "render/range/io/grid_file.h"
 #include "render/range/io/range_grid.h"
+#include "tests/support/fake_clock.h"
+#include "tests/support/fake_stream.h"
 
 namespace merlin::fuzz {
 namespace {
@@ -205,6 +208,23 @@ void vrpnBytes(Bytes bytes) {
   }
 }
 
+// Of a VRPN server, to the whole driver.
+void vrpnServerBytes(Bytes bytes) {
+  struct Sink final : SampleSink {
+    void publish(const GloveSample&) noexcept override {}
+    void publish(const BallSample&) noexcept override {}
+    void publish(const TrackerSample& sample) noexcept override {
+      require(plausible(sample), "a VRPN tracker's sample is plausible");
+    }
+  } sink;
+  test::FakeClock clock;
+  test::FakeStream stream(clock, nullptr);
+  stream.feed(textOf(bytes));
+  vrpn::VrpnDevice device({}, clock, sink);
+  bool goes_on = device.open(stream).ok();
+  while (goes_on) goes_on = device.poll(stream).ok();
+}
+
 // Of a client of MERLIN's own space-mouse socket.
 void spnavBytes(Bytes bytes) {
   serve::SpnavClient client({});
@@ -238,6 +258,7 @@ constexpr Target kTargets[] = {
     {"range", rangeFile},
     {"cloud", cloudFile},
     {"vrpn", vrpnBytes},
+    {"vrpn_server", vrpnServerBytes},
     {"spnav", spnavBytes},
 };
 
