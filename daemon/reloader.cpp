@@ -153,7 +153,7 @@ Reloader::ReadFile Reloader::read() const {
   if (!file.answer.plan.has(Part::kPostures) || postures.empty()) return file;
   auto network = nn::loadNetwork(postures);
   if (network) {
-    file.network = std::move(network->network);
+    file.network = network->network;
   } else {  // it was readable when it was checked
     file.answer.outcome = Outcome::kInvalid;
     file.answer.findings.push_back(

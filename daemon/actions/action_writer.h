@@ -41,8 +41,8 @@ class ActionWriter {
  private:
   struct ParsedBinding {
     Input input;
-    std::size_t action;  // index into kActions
-    bool lasts, on_leave;
+    std::size_t action = 0;  // index into kActions
+    bool lasts = false, on_leave = false;
     bool was_held = false;
     bool waits = false;  // until the input has been seen released
   };

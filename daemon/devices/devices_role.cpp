@@ -166,7 +166,7 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
   if (const std::string& path = settings.devices.postures; !path.empty()) {
     auto file = nn::loadNetwork(path);
     if (!file) return file.error();
-    network = std::move(file->network);
+    network = file->network;
   }
   role->addPanel(settings.devices);
   role->addProjectors(settings.devices);
@@ -186,9 +186,7 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
 void DevicesRole::makeSinks(const DevicesSettings& settings,
                             const std::optional<nn::PostureNetwork>& network) {
   for (const shm::DeviceIndex index : kEach) {
-    lines_[index] = std::unique_ptr<Line>(new Line{shm::kDeviceNames[index],
-                                                   shm::ShmHealthSink(segment_->health[index]),
-                                                   nullptr, nullptr, nullptr, WatchedThread()});
+    lines_[index] = std::make_unique<Line>(segment_->health[index]);
   }
   const auto actionsOf = [&](shm::ActionSource source, HealthSink& health) {
     return std::make_unique<actions::ActionSink>(

@@ -83,7 +83,8 @@ class DevicesRole {
   void addProjectors(const DevicesSettings& settings);
   // A device's line; `loop` and `thread` are of the present connection.
   struct Line {
-    std::string name;
+    explicit Line(shm::SeqSlot<DeviceHealth>& slot) : health(slot) {}
+    std::string name;  // of its driver
     shm::ShmHealthSink health;
     std::unique_ptr<ContinuedCounts> counts;  // the first sink
     Progress* progress = nullptr;             // set when the thread starts

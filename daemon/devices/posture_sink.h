@@ -30,7 +30,7 @@ class PostureSink final : public SampleSink {
   // For one other thread: recognises by this network and hold from the next sample on. The posture
   // that is held ends, and is recognised anew.
   void reload(const std::optional<nn::PostureNetwork>& network, const nn::HoldSettings& hold) {
-    fresh_.offer(made(network, hold));
+    fresh_.offer(made(network, hold));  // NOLINT(*NewDeleteLeaks): the handover owns it
   }
 
   void publish(const GloveSample& sample) noexcept override;
@@ -40,12 +40,12 @@ class PostureSink final : public SampleSink {
  private:
   struct Recognition {
     Recognition(const nn::PostureNetwork& network, const nn::HoldSettings& settings)
-        : unit(network.unit), recognise(network), hold(settings) {}
-    nn::InputUnit unit;
+        : recognise(network), hold(settings), unit(network.unit) {}
     nn::Recogniser recognise;
+    std::int64_t since_ns = 0;
     nn::PostureHold hold;
     std::uint32_t code = ~std::uint32_t{0};
-    std::int64_t since_ns = 0;
+    nn::InputUnit unit;
   };
   static std::unique_ptr<Recognition> made(const std::optional<nn::PostureNetwork>& network,
                                            const nn::HoldSettings& hold) {

@@ -12,6 +12,7 @@
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
 #include "daemon/cli/roles.h"
+#include "daemon/reload/plan.h"
 
 namespace merlin::cli {
 namespace {
@@ -36,12 +37,17 @@ struct Reloaded {
 };
 
 // One role of each process: a process with both roles reads its configuration once.
-Result<std::vector<FoundRole>> processesOf(const std::string& instance) {
-  auto roles = findRoles(instance);
-  if (!roles) return roles;
+std::vector<FoundRole> processesOf(std::vector<FoundRole> roles) {
   std::set<std::uint32_t> seen;
-  std::erase_if(*roles, [&](const FoundRole& role) { return !seen.insert(role.pid).second; });
+  std::erase_if(roles, [&](const FoundRole& role) { return !seen.insert(role.pid).second; });
   return roles;
+}
+
+reload::Readers readersOf(const std::vector<FoundRole>& roles) {
+  reload::Readers readers = 0;
+  for (const FoundRole& role : roles)
+    readers |= role.role == "wall" ? reload::kWall : reload::kDevices;
+  return readers;
 }
 
 // Has a process read its configuration, and waits for its answer.
@@ -85,14 +91,13 @@ bool allDone(const std::vector<Reloaded>& all) {
 }
 
 // All or nothing holds in one process: of two, both check the file before one swaps anything.
-Result<std::vector<Reloaded>> reloadAll(const ReloadOptions& options) {
-  const auto processes = processesOf(options.instance);
-  if (!processes) return processes.error();
-  if (options.check || processes->size() > 1) {
-    auto checked = reloadEach(options.instance, *processes, "check");
+Result<std::vector<Reloaded>> reloadAll(const ReloadOptions& options,
+                                        const std::vector<FoundRole>& processes) {
+  if (options.check || processes.size() > 1) {
+    auto checked = reloadEach(options.instance, processes, "check");
     if (options.check || !checked || !allDone(*checked)) return checked;
   }
-  return reloadEach(options.instance, *processes, "now");
+  return reloadEach(options.instance, processes, "now");
 }
 
 std::string changeText(const Json& change) {
@@ -117,26 +122,25 @@ std::vector<std::string> together(const std::vector<Reloaded>& all, const char* 
 }
 
 std::string itself(const Json& json) { return json.is_string() ? json.get<std::string>() : ""; }
-std::string settingOf(const Json& change) { return change.value("setting", ""); }
 
-// Changed settings that none of these processes reads: each would think them another's.
-std::vector<std::string> readByNone(const std::vector<Reloaded>& all) {
+// Changed settings that no running process of these reads: each would think them another's.
+std::vector<std::string> readByNone(const std::vector<Reloaded>& all, reload::Readers running) {
   std::vector<std::string> settings = together(all, "elsewhere", itself);
-  for (const std::string& swapped : together(all, "swapped", settingOf))
-    std::erase(settings, swapped);
-  for (const std::string& refused : together(all, "restart", itself)) std::erase(settings, refused);
+  std::erase_if(settings, [&](const std::string& setting) {
+    return (reload::takerOf(setting).readers & running) != 0;
+  });
   return settings;
 }
 
-void printDone(const std::vector<Reloaded>& all) {
+void printDone(const std::vector<Reloaded>& all, reload::Readers running) {
   const auto swapped = together(all, "swapped", changeText);
-  const auto unread = readByNone(all);
+  const auto unread = readByNone(all, running);
   for (const std::string& line : swapped) printOut("{}\n", line);
   for (const std::string& setting : unread) {
-    printOut(
-        "{}: is taken by another process at its start (--role page: systemctl restart "
-        "merlin-page)\n",
-        setting);
+    printOut("{}: {}\n", setting,
+             reload::takerOf(setting).readers == reload::kPage
+                 ? "is taken by the page when it starts: systemctl restart merlin-page"
+                 : "is taken by a merlind of another role when it starts");
   }
   if (swapped.empty() && unread.empty()) printOut("nothing changed\n");
 }
@@ -165,10 +169,10 @@ void printRefusal(const std::vector<Reloaded>& all) {
 }
 
 // Findings as `merlind --check-config` prints them, also numbers that were adjusted.
-void print(const std::vector<Reloaded>& all) {
+void print(const std::vector<Reloaded>& all, reload::Readers running) {
   for (const std::string& finding : together(all, "findings", itself))
     printError("{}\n", printable(finding));
-  allDone(all) ? printDone(all) : printRefusal(all);
+  allDone(all) ? printDone(all, running) : printRefusal(all);
 }
 
 int exitStatusOf(const std::vector<Reloaded>& all) {
@@ -179,16 +183,18 @@ int exitStatusOf(const std::vector<Reloaded>& all) {
   return is("invalid") || is("needs_restart") ? kExitBadInput : kExitFailed;
 }
 
-int reload(ReloadOptions options) {
+int reloadInstance(ReloadOptions options) {
   if (options.pid > 0) {
     auto instance = instanceOf(options.pid);
     if (!instance) return fail(instance.error());
     options.instance = *std::move(instance);
   }
-  const auto all = reloadAll(options);
+  const auto roles = findRoles(options.instance);
+  if (!roles) return fail(roles.error());
+  const auto all = reloadAll(options, processesOf(*roles));
   if (!all) return fail(all.error());
   if (!options.json) {
-    print(*all);
+    print(*all, readersOf(*roles));
     return exitStatusOf(*all);
   }
   Json processes = Json::array();
@@ -219,7 +225,7 @@ void addReload(Command app, Run& run) {
       .typeName("PID");
   command.flag("--check", options->check, "Only say what would be swapped");
   command.flag("--json", options->json, "Print JSON, for programs");
-  command.callback([options, &run] { run = [options] { return reload(*options); }; });
+  command.callback([options, &run] { run = [options] { return reloadInstance(*options); }; });
 }
 
 }  // namespace merlin::cli
