@@ -244,6 +244,7 @@ void checkTogether(LoadedSettings& loaded) {
   checkProjectors(d, loaded);
   addFaults(validate(s.serve), "/serve", loaded);
   addFaults(validate(s.page), "/page", loaded);
+  addFaults(validate(s.alarms), "/alarms", loaded);
   checkInput(s.wall.input, loaded);
   checkTiles(loaded);
   checkHead(s, loaded);

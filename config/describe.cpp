@@ -784,6 +784,9 @@ void describe(Settings& s, SettingsVisitor& v) {
   v.group("serve", "Servers for other programs and machines.", [&] { describeServe(s.serve, v); });
   v.group("page", "The web page of the operator, which `merlind --role page` serves.",
           [&] { describePage(s.page, v); });
+  v.listOf<AlarmSettings>("alarms", s.alarms,
+                          "Programs that `merlind --role alarms` starts when something happens.",
+                          [&](AlarmSettings& a) { describeAlarm(a, v); });
 }
 
 }  // namespace merlin

@@ -1,5 +1,11 @@
 #include "config/describe_page.h"
 
+#include <string>
+
+#include <fmt/format.h>
+
+#include "daemon/base/event_kinds.h"
+
 namespace merlin {
 
 void describePage(PageSettings& p, SettingsVisitor& v) {
@@ -17,6 +23,24 @@ void describePage(PageSettings& p, SettingsVisitor& v) {
          "always accepted.");
   v.number("picture_hz", p.picture_hz, {0.2, 30},
            "Pictures of the wall per second that a browser gets at most.");
+}
+
+void describeAlarm(AlarmSettings& a, SettingsVisitor& v) {
+  v.texts(
+      "run", a.run,
+      "Program to be started, as an absolute path, and its arguments. The event is its standard "
+      "input, one line of JSON with instance, role, time_utc, kind, what and left_out, the number "
+      "of events before it that the program was not started for.");
+  static const std::string kKinds = [] {
+    std::string text = "Kinds of the events for which it is started; empty: all.";
+    for (const EventKind& kind : kEventKinds) text += fmt::format(" {}: {}.", kind.name, kind.help);
+    return text;
+  }();
+  v.texts("kinds", a.kinds, kKinds.c_str());
+  v.integer("most_per_hour", a.most_per_hour, {1, 3600},
+            "Times per hour that it is started at most.");
+  v.number("time_limit_s", a.time_limit_s, {0.1, 3600},
+           "Time in seconds after which the program and all that it started are ended.");
 }
 
 }  // namespace merlin

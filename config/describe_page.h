@@ -1,11 +1,13 @@
-// The part of describe() that is /page, the operator's web page.
+// The parts of describe() that are /page, the operator's web page, and /alarms.
 #pragma once
 
 #include "config/visitor.h"
+#include "daemon/alarms/settings.h"
 #include "daemon/page/settings.h"
 
 namespace merlin {
 
 void describePage(PageSettings& page, SettingsVisitor& visitor);
+void describeAlarm(AlarmSettings& alarm, SettingsVisitor& visitor);
 
 }  // namespace merlin

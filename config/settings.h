@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "daemon/actions/settings.h"
+#include "daemon/alarms/settings.h"
 #include "daemon/page/settings.h"
 #include "daemon/serve/settings.h"
 #include "daemon/wall/settings.h"
@@ -106,6 +107,7 @@ struct Settings {
   WallSettings wall;
   ServeSettings serve;
   PageSettings page;
+  std::vector<AlarmSettings> alarms;
 };
 
 }  // namespace merlin

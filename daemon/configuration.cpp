@@ -140,6 +140,11 @@ void checkPage(LoadedSettings& loaded) {
                     "is false, and so is /page/metrics: the role page has nothing to serve");
 }
 
+void checkAlarms(LoadedSettings& loaded) {
+  if (!loaded.settings.alarms.empty()) return;
+  loaded.addFinding("/alarms", "is empty: the role alarms has no program to start");
+}
+
 }  // namespace
 
 Configuration readConfiguration(const std::string& file, const DaemonOptions& options,
@@ -151,6 +156,7 @@ Configuration readConfiguration(const std::string& file, const DaemonOptions& op
   checkDescriptors(loaded);
   checkRunDirectory(loaded);
   if (options.page) checkPage(loaded);
+  if (options.alarms) checkAlarms(loaded);
   if (options.devices) {
     devices::checkPostures(loaded);
     devices::checkPasswords(loaded);

@@ -13,7 +13,8 @@ namespace merlin {
 struct DaemonOptions {
   bool devices = true, wall = true;  // the roles of this process
   bool emulate = false;
-  bool page = false;  // the role page; without devices and wall
+  bool page = false;    // the role page; without devices and wall
+  bool alarms = false;  // the role alarms; the same
 };
 
 struct Configuration {

@@ -11,6 +11,7 @@
 #include "config/loader.h"
 #include "config/manual_page.h"
 #include "config/writer.h"
+#include "daemon/alarms_process.h"
 #include "daemon/base/log.h"
 #include "daemon/base/printable_text.h"
 #include "daemon/cli/exit_status.h"
@@ -54,7 +55,7 @@ void printFindings(const std::string& file, const LoadedSettings& loaded) {
 DaemonOptions daemonOptions(const Options& options) {
   const bool all = options.role == "all";
   return {all || options.role == "devices", all || options.role == "wall", options.emulate,
-          options.role == "page"};
+          options.role == "page", options.role == "alarms"};
 }
 
 Configuration checkedConfiguration(const std::string& file, const Options& options) {
@@ -120,6 +121,10 @@ int runDaemon(const Options& options) {
   Configuration configuration = checkedConfiguration(options.config, options);
   if (configuration.loaded.verdict() == LoadedSettings::Verdict::kInvalid) return kExitBadInput;
   raiseDescriptorLimit();
+  if (options.role == "alarms") {
+    SystemClock alarms_clock;
+    return exitStatusOf(runAlarms(configuration.loaded.settings, alarms_clock));
+  }
   if (options.role == "page") {
     SystemClock page_clock;
     return exitStatusOf(runPage(configuration.loaded.settings, page_clock));
@@ -156,8 +161,9 @@ int main(int argc, char** argv) {
           ->type_name("FILE");
   app.add_option("--role", options.role,
                  "Role of this process: it reads the devices, draws the wall, or does both; or it "
-                 "serves the operator's web page, beside a merlind that does")
-      ->check(CLI::IsMember({"devices", "wall", "all", "page"}))
+                 "serves the operator's web page, or starts the programs of alarms, beside a "
+                 "merlind that does")
+      ->check(CLI::IsMember({"devices", "wall", "all", "page", "alarms"}))
       ->capture_default_str();
   app.add_flag("--emulate", options.emulate,
                "Start an emulator for each device, on a pseudo-terminal");

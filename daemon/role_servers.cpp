@@ -174,14 +174,14 @@ Result<Ok> RoleServers::startWall() {
   return Ok{};
 }
 
-void RoleServers::addEvent(std::vector<std::string>& documents, const char* kind,
+void RoleServers::addEvent(std::vector<std::string>& documents, const EventKind& kind,
                            const std::string& sentence) const {
   if (parts_.wall) parts_.wall->tell(sentence);
-  documents.push_back(status::event(kind, sentence, clock_.now()));
+  documents.push_back(status::event(kind.name, sentence, clock_.now()));
 }
 
 // Logs the sentences and adds them to `documents`, as events of that kind.
-void RoleServers::addEvents(std::vector<std::string>& documents, const char* kind,
+void RoleServers::addEvents(std::vector<std::string>& documents, const EventKind& kind,
                             const std::vector<std::string>& sentences) const {
   for (const std::string& sentence : sentences) {
     logInfo("{}", sentence);
@@ -194,18 +194,19 @@ void RoleServers::addEvents(std::vector<std::string>& documents, const char* kin
 void RoleServers::addServiceEvents(std::vector<std::string>& documents) {
   for (const std::string& sentence : parts_.services.takeEvents()) {
     logWarning("{}", sentence);
-    addEvent(documents, "service", sentence);
+    addEvent(documents, kServiceEvent, sentence);
   }
 }
 
 std::vector<std::string> RoleServers::deviceEvents(status::HealthEvents& health) {
   std::vector<std::string> documents;
-  addEvents(documents, "device", health.take(clock_.now()));
+  addEvents(documents, kDeviceEvent, health.take(clock_.now()));
   if (devices::Projectors* const projectors = parts_.devices->projectors())
-    addEvents(documents, "projector", projectors->takeEvents());
-  if (!parts_.wall && parts_.keeper) addEvents(documents, "state", parts_.keeper->takeNotices());
-  addEvents(documents, "flight", parts_.devices->flight().check());
-  addEvents(documents, "server", servers_.events("devices"));
+    addEvents(documents, kProjectorEvent, projectors->takeEvents());
+  if (!parts_.wall && parts_.keeper)
+    addEvents(documents, kStateEvent, parts_.keeper->takeNotices());
+  addEvents(documents, kFlightEvent, parts_.devices->flight().check());
+  addEvents(documents, kServerEvent, servers_.events("devices"));
   addServiceEvents(documents);
   return documents;
 }
@@ -215,12 +216,12 @@ std::vector<std::string> RoleServers::deviceEvents(status::HealthEvents& health)
 std::vector<std::string> RoleServers::wallEvents(status::WallEvents& events,
                                                  status::HealthEvents* remote) {
   std::vector<std::string> documents;
-  addEvents(documents, "wall", events.take());
-  addEvents(documents, "wall", parts_.wall->viewerEvents());
-  addEvents(documents, "model", parts_.wall->contentEvents());
-  addEvents(documents, "state", parts_.keeper->takeNotices());
-  if (remote) addEvents(documents, "device", remote->take(clock_.now()));
-  addEvents(documents, "server", servers_.events("wall"));
+  addEvents(documents, kWallEvent, events.take());
+  addEvents(documents, kWallEvent, parts_.wall->viewerEvents());
+  addEvents(documents, kModelEvent, parts_.wall->contentEvents());
+  addEvents(documents, kStateEvent, parts_.keeper->takeNotices());
+  if (remote) addEvents(documents, kDeviceEvent, remote->take(clock_.now()));
+  addEvents(documents, kServerEvent, servers_.events("wall"));
   addServiceEvents(documents);
   return documents;
 }

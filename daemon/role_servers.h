@@ -8,6 +8,7 @@
 
 #include "config/settings.h"
 #include "daemon/base/clock.h"
+#include "daemon/base/event_kinds.h"
 #include "daemon/base/result.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/devices/devices_role.h"
@@ -62,9 +63,9 @@ class RoleServers {
   void startServersForOthers(const shm::DeviceSlots& devices);
   std::vector<std::string> deviceEvents(status::HealthEvents& health);
   std::vector<std::string> wallEvents(status::WallEvents& events, status::HealthEvents* remote);
-  void addEvent(std::vector<std::string>& documents, const char* kind,
+  void addEvent(std::vector<std::string>& documents, const EventKind& kind,
                 const std::string& sentence) const;
-  void addEvents(std::vector<std::string>& documents, const char* kind,
+  void addEvents(std::vector<std::string>& documents, const EventKind& kind,
                  const std::vector<std::string>& sentences) const;
   void addServiceEvents(std::vector<std::string>& documents);
 

@@ -174,4 +174,9 @@ Result<JsonNode> parseJson(std::string_view text) {
                                      : builder.error};
 }
 
+std::string jsonText(std::string_view text) {
+  return nlohmann::json(std::string(text))
+      .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 }  // namespace merlin

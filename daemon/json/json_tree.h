@@ -45,4 +45,7 @@ std::string describe(const JsonNode& node);
 // by nlohmann-json, a duplicate key in an object, more than 32 levels, more than 1 MiB.
 Result<JsonNode> parseJson(std::string_view text);
 
+// The text as JSON, with its quotes; bytes that are not valid UTF-8 are replaced.
+std::string jsonText(std::string_view text);
+
 }  // namespace merlin

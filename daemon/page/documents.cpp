@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/commands.h"
+#include "daemon/json/json_tree.h"
 #include "daemon/page/gate.h"
 #include "daemon/page/routes.h"
 #include "render/testcard/card.h"

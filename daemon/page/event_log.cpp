@@ -54,6 +54,11 @@ void EventLog::keep(LoggedEvent event) {
   if (events_.size() > kKept) events_.pop_front();
 }
 
+std::vector<LoggedEvent> EventLog::after(std::uint64_t number) const {
+  const std::lock_guard lock(mutex_);
+  return {std::ranges::upper_bound(events_, number, {}, &LoggedEvent::number), events_.end()};
+}
+
 std::string EventLog::since(std::uint64_t since) const {
   const std::lock_guard lock(mutex_);
   auto from = std::ranges::upper_bound(events_, since, {}, &LoggedEvent::number);

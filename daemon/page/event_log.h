@@ -5,6 +5,7 @@
 #include <deque>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "daemon/base/clock.h"
 
@@ -28,6 +29,9 @@ class EventLog {
   void addDocument(const std::string& role, const std::string& document);
   // Adds an event of the page itself, with the time of day.
   void add(const std::string& role, const std::string& kind, const std::string& what);
+
+  // Those that are kept and have a number above `number`, the oldest first.
+  std::vector<LoggedEvent> after(std::uint64_t number) const;
 
   // {"next": N, "events": [{"number", "role", "time_utc", "kind", "what"}]}: those after number
   // `since`, the oldest first, at most the last 200.

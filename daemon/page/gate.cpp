@@ -1,9 +1,9 @@
 #include "daemon/page/gate.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "daemon/base/printable_text.h"
+#include "daemon/json/json_tree.h"
 #include "daemon/page/host_names.h"
 
 namespace merlin::page {
@@ -55,11 +55,6 @@ std::optional<Answer> refuseToken(const Request& request, const GateSettings& se
 }
 
 }  // namespace
-
-std::string jsonText(std::string_view text) {
-  return nlohmann::json(std::string(text))
-      .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
 
 Answer errorAnswer(unsigned status, std::string_view text) {
   return Answer::text(status, "application/json",

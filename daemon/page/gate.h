@@ -33,7 +33,4 @@ bool sameSecret(std::string_view given, std::string_view secret) noexcept;
 // {"error": TEXT} with this status.
 Answer errorAnswer(unsigned status, std::string_view text);
 
-// The text in quotation marks, as JSON.
-std::string jsonText(std::string_view text);
-
 }  // namespace merlin::page

@@ -89,7 +89,8 @@ mkdir -p "$root"/var/lib/dpkg/{info,updates} "$root"/etc "$root"/run
 touch "$root/var/lib/dpkg/status" "$root/var/lib/dpkg/available"
 left >"$work/before"
 dpkg_below --install "$packages"/merlin*.deb
-grep -q '^merlin:' "$root/etc/passwd" && grep -q '^merlin-page:' "$root/etc/passwd" || fail "the users were not made"
+grep -q '^merlin:' "$root/etc/passwd" && grep -q '^merlin-page:' "$root/etc/passwd" &&
+  grep -q '^merlin-alarms:' "$root/etc/passwd" || fail "the users were not made"
 [ "$(stat -c %U:%a "$root/var/lib/merlin")" != root:755 ] || fail "/var/lib/merlin does not belong to the user merlin"
 [ ! -e "$root/etc/systemd/system" ] || fail "installation enabled a unit"
 check_documents

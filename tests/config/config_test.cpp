@@ -222,6 +222,16 @@ INSTANTIATE_TEST_SUITE_P(
             "allowed is each of 1 to 6 once"},
         Bad{"{\"devices\": {\"glove\": {\"baud\": 31337}}}",
             "is 31337; allowed are 1200, 2400, 4800"},
+        Bad{"{\"devices\": {\"ball\": {\"port\": \"evdev:/dev/input/event3\"}}}",
+            "which the driver \"spaceball\" does not read; set \"driver\": \"evdev\""},
+        Bad{"{\"devices\": {\"ball\": {\"evdev\": {\"axes\": [\"x\", \"up\", \"none\", \"none\", "
+            "\"none\", \"none\"]}}}}",
+            "/devices/ball/evdev/axes/1 is \"up\"; allowed are the kernel's name of an axis"},
+        Bad{"{\"serve\": {\"spnav_socket\": \"/run/a.sock\"}, \"devices\": {\"ball\": {\"driver\": "
+            "\"spacenav\", \"port\": \"unix:/run/a.sock\"}}}",
+            "/devices/ball/port is \"unix:/run/a.sock\", the socket that merlind serves"},
+        Bad{"{\"alarms\": [{\"run\": [\"mail\"]}]}",
+            "/alarms/0/run/0 is \"mail\"; a program is named by an absolute path"},
         Bad{"{\"devices\": {\"glove\": {\"port\": \"/dev/ttyS0\"}}}",
             "allowed are serial:/dev/..., pty:PATH"},
         Bad{"{\"devices\": {\"tracker\": {\"driver\": \"vrpn\", \"port\": \"unix:/x\"}}}",

@@ -116,6 +116,8 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
                            "/usr/lib/sysusers.d/merlin.conf",
                            "/usr/lib/systemd/system/merlin-page.service",
                            "/usr/lib/sysusers.d/merlin-page.conf",
+                           "/usr/lib/systemd/system/merlin-alarms.service",
+                           "/usr/lib/sysusers.d/merlin-alarms.conf",
                            "/usr/lib/systemd/system/merlin.target",
                            "/usr/lib/systemd/system/merlind.service.d/displays.conf",
                            "/usr/lib/tmpfiles.d/merlin.conf",

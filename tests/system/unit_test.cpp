@@ -21,7 +21,7 @@ class Unit : public testing::TestWithParam<const char*> {
   std::string localCopy() const {
     const std::string name = GetParam();
     std::string unit = readText(kUnits + name);
-    const std::string from = name == "merlin-page.service"
+    const std::string from = name == "merlin-page.service" || name == "merlin-alarms.service"
                                  ? "/usr/bin/merlind"
                                  : "/usr/bin/" + name.substr(0, name.find('.'));
     const std::string to = MERLIN_BIN_DIR "/merlind";
@@ -54,7 +54,7 @@ TEST_P(Unit, IsExposedLittle) {
 
 INSTANTIATE_TEST_SUITE_P(Units, Unit,
                          testing::Values("merlind.service", "merlin-rfb.service",
-                                         "merlin-page.service"),
+                                         "merlin-page.service", "merlin-alarms.service"),
                          [](const auto& unit) {
                            std::string name(unit.param);
                            name.resize(name.find('.'));

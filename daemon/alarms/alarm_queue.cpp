@@ -1,0 +1,53 @@
+#include "daemon/alarms/alarm_queue.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "daemon/json/json_tree.h"
+
+namespace merlin::alarms {
+
+std::string alarmText(const std::string& instance, const AlarmEvent& event,
+                      std::uint64_t left_out) {
+  return fmt::format(
+      R"({{"instance": {}, "role": {}, "time_utc": {}, "kind": {}, "what": {}, "left_out": {}}})"
+      "\n",
+      jsonText(instance), jsonText(event.role), jsonText(event.time_utc), jsonText(event.kind),
+      jsonText(event.what), left_out);
+}
+
+// A full bucket would let twice as many start within an hour as are allowed, so half of them are a
+// reserve for bursts, and the other half come over time.
+AlarmQueue::AlarmQueue(const AlarmSettings& settings)
+    : settings_(settings),
+      starts_(std::max(settings.most_per_hour / 2.0, 0.5) / 3600,
+              std::max(settings.most_per_hour / 2.0, 1.0)) {}
+
+bool AlarmQueue::isFor(const AlarmEvent& event) const {
+  return settings_.kinds.empty() ||
+         std::ranges::find(settings_.kinds, event.kind) != settings_.kinds.end();
+}
+
+void AlarmQueue::add(const AlarmEvent& event) {
+  if (!isFor(event)) return;
+  waiting_.push_back({event, std::nullopt});
+  if (waiting_.size() <= kMost) return;
+  waiting_.pop_front();
+  ++left_out_;
+}
+
+std::optional<AlarmQueue::Next> AlarmQueue::next(Timestamp now) {
+  for (Waiting& waiting : waiting_) {
+    if (!waiting.since) waiting.since = now;
+  }
+  left_out_ += std::erase_if(
+      waiting_, [&](const Waiting& waiting) { return now - *waiting.since > kLongestWait; });
+  if (waiting_.empty() || !starts_.take(1, now)) return std::nullopt;
+  Next next{std::move(waiting_.front().event), std::exchange(left_out_, 0)};
+  waiting_.pop_front();
+  return next;
+}
+
+}  // namespace merlin::alarms

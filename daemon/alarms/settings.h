@@ -1,0 +1,22 @@
+// Settings of alarms: programs that `merlind --role alarms` starts when something happens.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/base/setting_fault.h"
+
+namespace merlin {
+
+struct AlarmSettings {
+  std::vector<std::string> run;    // a program, as an absolute path, and its arguments
+  std::vector<std::string> kinds;  // of the events that start it (event_kinds.h); empty: all
+  int most_per_hour = 12;          // times that it is started at most
+  double time_limit_s = 30;        // after which it is ended
+};
+
+// Finds an alarm without a program, a program that is no absolute path, and kinds that no event
+// has. Pointers: "/INDEX/run" ...
+SettingFaults validate(const std::vector<AlarmSettings>& alarms);
+
+}  // namespace merlin

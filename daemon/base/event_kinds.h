@@ -1,0 +1,52 @@
+// Kinds of events: what the topic "event" tells of, and what alarms can be for.
+#pragma once
+
+#include <array>
+
+namespace merlin {
+
+struct EventKind {
+  const char* name;
+  const char* help;  // what such an event tells of, and what to do
+};
+
+inline constexpr EventKind kDeviceEvent{
+    "device",
+    "a device was lost, is back, or complains: look at its plug and cable, then at "
+    "`merlin devices`"};
+inline constexpr EventKind kWallEvent{
+    "wall",
+    "an output failed or works again, or the rate or the detail was reduced since the machine "
+    "is too slow: look at the outputs of `merlin status`"};
+inline constexpr EventKind kModelEvent{
+    "model",
+    "a content was replaced, or its file cannot be shown: the sentence says why; the content "
+    "before it is still shown"};
+inline constexpr EventKind kProjectorEvent{
+    "projector",
+    "a projector was switched, does not answer, or refuses: look at its network, its "
+    "lamp, its password"};
+inline constexpr EventKind kServiceEvent{
+    "service",
+    "something that merlind can do without has failed or works again: the state's file, "
+    "shared memory, a reload, the input from another machine"};
+inline constexpr EventKind kServerEvent{
+    "server",
+    "a server for other programs cannot run, or refuses clients: its port is taken, or "
+    "somebody floods it"};
+inline constexpr EventKind kStateEvent{
+    "state", "the file of what people changed was damaged or set aside: check alignment and rate"};
+inline constexpr EventKind kFlightEvent{
+    "flight",
+    "the last bytes of a lost device were written to a file, for whoever looks for the "
+    "fault"};
+inline constexpr EventKind kRoleEvent{
+    "role",
+    "merlind ended and was not back within 15 s, or is back; only alarms tell it: look at "
+    "`systemctl status merlind` and its journal"};
+
+inline constexpr std::array kEventKinds = {kDeviceEvent,    kWallEvent,    kModelEvent,
+                                           kProjectorEvent, kServiceEvent, kServerEvent,
+                                           kStateEvent,     kFlightEvent,  kRoleEvent};
+
+}  // namespace merlin

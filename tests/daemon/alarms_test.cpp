@@ -1,0 +1,142 @@
+// Alarms: for which events a program is started, and how often; a program with a limited time.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "daemon/alarms/alarm_queue.h"
+#include "daemon/alarms/child_program.h"
+#include "daemon/json/json_tree.h"
+#include "tests/support/eventually.h"
+#include "tests/support/temp_dir.h"
+
+namespace merlin::alarms {
+namespace {
+
+using test::TempDir;
+
+Timestamp at(double seconds) { return Timestamp(fromSeconds(1000 + seconds)); }
+
+AlarmEvent event(const std::string& what, const std::string& kind = "device") {
+  return {"devices", "2026-11-25T12:00:00.000000Z", kind, what};
+}
+
+AlarmSettings settings(int most_per_hour, std::vector<std::string> kinds = {}) {
+  AlarmSettings s;
+  s.run = {"/bin/true"};
+  s.kinds = std::move(kinds);
+  s.most_per_hour = most_per_hour;
+  return s;
+}
+
+TEST(AlarmQueue, TellsEventsInTheirOrder) {
+  AlarmQueue queue(settings(12));
+  EXPECT_FALSE(queue.next(at(0)));
+  queue.add(event("one"));
+  queue.add(event("two"));
+  EXPECT_EQ(queue.next(at(0))->event.what, "one");
+  EXPECT_EQ(queue.next(at(0))->event.what, "two");
+  EXPECT_FALSE(queue.next(at(0)));
+}
+
+TEST(AlarmQueue, LeavesOutOtherKinds) {
+  AlarmQueue queue(settings(12, {"output", "role"}));
+  queue.add(event("a device"));
+  queue.add(event("an output", "output"));
+  EXPECT_EQ(queue.next(at(0))->event.what, "an output");
+  EXPECT_FALSE(queue.next(at(0)));
+}
+
+TEST(AlarmQueue, NeverStartsMoreThanAllowedWithinAnHour) {
+  constexpr int kMost = 6;
+  AlarmQueue queue(settings(kMost));
+  std::deque<double> starts;
+  for (double t = 0; t < 4 * 3600; t += 1) {
+    queue.add(event("again"));
+    if (!queue.next(at(t))) continue;
+    starts.push_back(t);
+    while (starts.front() <= t - 3600) starts.pop_front();
+    ASSERT_LE(starts.size(), static_cast<std::size_t>(kMost)) << t;
+  }
+  EXPECT_GE(starts.size(), 2u) << "and not none";
+}
+
+TEST(AlarmQueue, SaysHowManyEventsWereLeftOut) {
+  AlarmQueue queue(settings(2));
+  queue.add(event("first"));
+  EXPECT_EQ(queue.next(at(0))->left_out, 0u);
+  for (std::size_t i = 0; i < AlarmQueue::kMost + 5; ++i) queue.add(event(std::to_string(i)));
+  EXPECT_FALSE(queue.next(at(1)));
+  queue.add(event("later"));
+  const auto next = queue.next(at(3600));  // those that waited are too old by now
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->event.what, "later");
+  EXPECT_EQ(next->left_out, AlarmQueue::kMost + 5);
+}
+
+TEST(AlarmText, IsJsonWhateverTheEventSays) {
+  const std::string text = alarmText("lab", event("a \"quote\"\n\x01 \xFF"), 3);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1);
+  const auto parsed = parseJson(text);
+  ASSERT_TRUE(parsed) << text;
+  EXPECT_EQ(parsed->members.size(), 6u);
+}
+
+TEST(AlarmSettings, ProgramsAreAbsolutePathsAndKindsAreThoseOfEvents) {
+  std::vector<AlarmSettings> alarms(3);
+  alarms[1].run = {"mail", "-s", "wall"};
+  alarms[2].run = {"/usr/bin/mail"};
+  alarms[2].kinds = {"device", "output"};
+  std::vector<std::string> pointers;
+  for (const SettingFault& fault : validate(alarms)) pointers.push_back(fault.pointer);
+  EXPECT_EQ(pointers, (std::vector<std::string>{"/0/run", "/1/run/0", "/2/kinds/1"}));
+}
+
+// Waits, on the system's clock, until the program has ended.
+std::string outcome(ChildProgram& program, double pretend_s = 0) {
+  const SystemClock clock;
+  std::optional<std::string> ended;
+  EXPECT_TRUE(test::eventually(
+      [&] { return (ended = program.ended(clock.now() + fromSeconds(pretend_s))).has_value(); }));
+  return ended.value_or("it still runs");
+}
+
+Timestamp inAnHour() { return SystemClock().now() + std::chrono::hours(1); }
+
+TEST(ChildProgram, GetsTheTextAsItsInput) {
+  const TempDir dir;
+  auto program =
+      ChildProgram::start({"/bin/sh", "-c", "cat > \"$0\"", dir / "out"}, "an event\n", inAnHour());
+  ASSERT_TRUE(program) << program.error().what;
+  EXPECT_EQ(outcome(*program), "");
+  EXPECT_EQ(test::readText(dir / "out"), "an event\n");
+  EXPECT_FALSE(program->ended(inAnHour())) << "it is told once";
+}
+
+TEST(ChildProgram, SaysHowItFailed) {
+  auto failed = ChildProgram::start({"/bin/sh", "-c", "exit 3"}, "", inAnHour());
+  ASSERT_TRUE(failed);
+  EXPECT_EQ(outcome(*failed), "ended with status 3");
+  auto killed = ChildProgram::start({"/bin/sh", "-c", "kill -SEGV $$"}, "", inAnHour());
+  ASSERT_TRUE(killed);
+  EXPECT_EQ(outcome(*killed), "was ended by signal 11");
+  const auto missing = ChildProgram::start({"/no/such/program"}, "", inAnHour());
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code, Errc::kNotFound);
+}
+
+TEST(ChildProgram, IsEndedWithAllThatItStartedWhenItsTimeIsOver) {
+  const TempDir dir;
+  auto program = ChildProgram::start(
+      {"/bin/sh", "-c", "sleep 1000 & echo $! > \"$0\"; wait", dir / "pid"}, "", inAnHour());
+  ASSERT_TRUE(program);
+  ASSERT_TRUE(test::eventually([&] { return !test::readText(dir / "pid").empty(); }));
+  EXPECT_FALSE(program->ended(SystemClock().now()));
+  EXPECT_EQ(outcome(*program, 7200), "took longer than its time limit, and was ended");
+  const pid_t sleeper = std::stoi(test::readText(dir / "pid"));
+  EXPECT_TRUE(test::eventually([&] {  // gone, or a zombie that init has not collected yet
+    const std::string stat = test::readText("/proc/" + std::to_string(sleeper) + "/stat");
+    return stat.empty() || stat.find(") Z") != std::string::npos;
+  }));
+}
+
+}  // namespace
+}  // namespace merlin::alarms
