@@ -109,9 +109,10 @@ Result<Adapted> adapt(const PostureNetwork& network, const PostureStatistics& st
   Descending at;
   at.weights = before;
   Descent descent(network.phi, both, space.means(), Random(random.next()));
+  const float noise = kNoise * space.sigma();
   for (std::size_t i = 0; i < kPasses; ++i) {
     const float left = 1 - static_cast<float>(i) / kPasses;
-    descent.pass(at, codes, kRate * left, kNoise * space.sigma(), 1.0F);
+    descent.pass(at, codes, kRate * left, {noise, 1, noise, 1});
   }
 
   const auto held_out = rehearse(space, kRehearsed, random);

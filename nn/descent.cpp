@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -36,19 +37,47 @@ Descent::Descent(Phi phi, std::span<const Sample> samples, std::span<const Input
   for (float& v : noise_) v = bell(random_);
   std::iota(order_.begin(), order_.end(), 0U);
   next_ = order_.size();
+  half_square_.fill(std::numeric_limits<float>::max());
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    half_square_[k] = 0;
+    for (std::size_t i = 0; i < kInputs; ++i) {
+      component_[i][k] = means[k][i];
+      half_square_[k] += means[k][i] * means[k][i] / 2;
+    }
+  }
+  for (const Sample& sample : samples) own_side_.push_back(nearest(sample.u) == sample.posture);
 }
 
-Input Descent::stray(const Sample& sample, float noise, float shrink) {
+// By |u - m|^2 = |u|^2 + 2 (|m|^2 / 2 - u m), for all postures at a time.
+std::uint32_t Descent::nearest(const Input& u) const noexcept {
+  std::array<float, kCodes> far = half_square_;
+  for (std::size_t i = 0; i < kInputs; ++i) {
+    for (std::size_t k = 0; k < kCodes; ++k) far[k] -= u[i] * component_[i][k];
+  }
+  return static_cast<std::uint32_t>(std::min_element(far.begin(), far.end()) - far.begin());
+}
+
+// A hand that strays beyond the border to another posture would teach the wrong code, so it comes
+// back half of the way to its posture's mean, until it is on its own side.
+Input Descent::stray(std::size_t n, const Straying& straying) {
+  constexpr int kHalvings = 3;
+  const Sample& sample = samples_[n];
   const float* away = &noise_[random_.below(kNoisePool - kInputs)];
   const Input& mean = means_[sample.posture];
+  const float noise = own_side_[n] ? straying.noise : straying.noise_beyond;
+  const float shrink = own_side_[n] ? straying.shrink : straying.shrink_beyond;
   Input u;
   for (std::size_t i = 0; i < kInputs; ++i)
     u[i] = mean[i] + shrink * (sample.u[i] - mean[i]) + noise * away[i];
+  for (int halvings = 0; halvings < kHalvings && own_side_[n]; ++halvings) {
+    if (nearest(u) == sample.posture) break;
+    for (std::size_t i = 0; i < kInputs; ++i) u[i] = (u[i] + mean[i]) / 2;
+  }
   return u;
 }
 
-double Descent::pass(Descending& at, std::span<const std::uint32_t> codes, float rate, float noise,
-                     float shrink) {
+double Descent::pass(Descending& at, std::span<const std::uint32_t> codes, float rate,
+                     const Straying& straying) {
   const std::size_t all = std::clamp(samples_.size(), kFewest, kMost);
   double error = 0;
   for (std::size_t done = 0; done < all;) {
@@ -60,10 +89,10 @@ double Descent::pass(Descending& at, std::span<const std::uint32_t> codes, float
           std::swap(order_[i], order_[random_.below(i + 1)]);
         next_ = 0;
       }
-      const Sample& sample = samples_[order_[next_++]];
-      const Input u = stray(sample, noise, shrink);
+      const std::size_t chosen = order_[next_++];
+      const Input u = stray(chosen, straying);
       error += static_cast<double>(
-          addGradient(phi_, at.weights, u.data(), codes[sample.posture], gradient));
+          addGradient(phi_, at.weights, u.data(), codes[samples_[chosen].posture], gradient));
     }
     for (float& g : gradient.all) g /= static_cast<float>(size);
     step(at, gradient, rate);

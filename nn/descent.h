@@ -2,11 +2,14 @@
 // small batches of hands to which noise is added. Pure, seeded.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "daemon/base/random.h"
 #include "nn/packed_weights.h"
+#include "nn/postures.h"
 
 namespace merlin::nn {
 
@@ -22,24 +25,33 @@ struct Descending {
   float first_power = 1, second_power = 1;  // powers of Adam's decay rates, for its bias correction
 };
 
+// How far hands stray in a pass. Each hand's distance from the mean of its posture is multiplied by
+// `shrink`, then noise of standard deviation `noise` is added to every component: the smoothed
+// bootstrap, which keeps the spread about as it is. A hand to which another posture's mean is
+// nearer already strays by the figures `beyond`; no other hand gets nearer to another posture's
+// mean.
+struct Straying {
+  float noise = 0, shrink = 1;
+  float noise_beyond = 0, shrink_beyond = 1;
+};
+
 class Descent {
  public:
   // Borrows both: the hands, and the mean of each posture.
   Descent(Phi phi, std::span<const Sample> samples, std::span<const Input> means, Random random);
 
-  // Makes one pass over the samples: a part of very many, several rounds over few. Each hand's
-  // distance from the mean of its posture is multiplied by `shrink`, then noise of standard
-  // deviation `noise` is added to every component. This is the smoothed bootstrap, which keeps the
-  // spread about as it is. Returns the mean squared error of [GOU] A.5.3 over these samples.
-  double pass(Descending& at, std::span<const std::uint32_t> codes, float rate, float noise,
-              float shrink);
+  // Makes one pass over the samples: a part of very many, several rounds over few. Each hand strays
+  // as `straying` says. Returns the mean squared error of [GOU] A.5.3 over these samples.
+  double pass(Descending& at, std::span<const std::uint32_t> codes, float rate,
+              const Straying& straying);
 
   // Returns the mean outputs of each posture's hands, without noise.
   std::vector<std::array<double, kOutputs>> meanOutputs(const PackedWeights<float>& weights) const;
 
  private:
   void step(Descending& at, const PackedWeights<float>& gradient, float rate);
-  Input stray(const Sample& sample, float noise, float shrink);
+  Input stray(std::size_t n, const Straying& straying);
+  std::uint32_t nearest(const Input& u) const noexcept;  // the posture whose mean is nearest to u
 
   Phi phi_;
   std::span<const Sample> samples_;
@@ -47,6 +59,9 @@ class Descent {
   Random random_;
   std::vector<float> noise_;  // normally distributed; each read starts at a random place
   std::vector<std::uint32_t> order_;
+  std::vector<bool> own_side_;  // of each sample: whether its own posture's mean is the nearest
+  std::array<std::array<float, kCodes>, kInputs> component_{};  // the means, for nearest()
+  std::array<float, kCodes> half_square_{};
   std::size_t next_ = 0;
 };
 

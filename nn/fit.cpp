@@ -21,7 +21,8 @@ constexpr float kRate = 0.02F, kLastRate = 1e-5F;
 // The noise grows while the error with noise is below this limit. So the network is trained with as
 // much noise as it tolerates, and the margins between postures are as wide as possible.
 constexpr double kBearableError = 0.005;
-constexpr float kNoiseStep = 1.05F, kFirstNoise = 0.7F, kLeastNoise = 0.35F, kMostNoise = 2.0F;
+constexpr float kNoiseStep = 1.05F, kFirstNoise = 0.7F, kLeastNoise = 0.35F, kMostNoise = 4.0F;
+constexpr float kMostBeyond = 2.0F;  // of hands to which another posture's mean is nearer
 constexpr std::size_t kEvaluationPeriod =
     4;                                   // passes between two evaluations of the validation hands
 constexpr std::size_t kPatience = 8;     // evaluations without a better error before training ends
@@ -70,6 +71,8 @@ class Fit {
     return 1 - static_cast<float>(i) / static_cast<float>(of);
   }
 
+  static float shrinkFor(float noise) { return 1 / std::sqrt(1 + noise * noise); }
+
   double asideError(const Start& start) const {
     return meanError(settings_.phi, aside_, start.at.weights, start.codes);
   }
@@ -82,9 +85,10 @@ class Fit {
   static std::size_t fewer(std::size_t n) { return n > 4 ? (n + 2) / 3 : (n + 1) / 2; }
 
   double pass(Start& start, Descent& descent, float rate) {
-    const float noise = noise_ * space_.sigma();
-    const float shrink = 1 / std::sqrt(1 + noise_ * noise_);
-    const double error = descent.pass(start.at, start.codes, rate, noise, shrink);
+    const float beyond = std::min(noise_, kMostBeyond);
+    const double error = descent.pass(
+        start.at, start.codes, rate,
+        {noise_ * space_.sigma(), shrinkFor(noise_), beyond * space_.sigma(), shrinkFor(beyond)});
     const bool look = curve_.size() % kEvaluationPeriod == 0 && !aside_.empty();
     curve_.push_back({curve_.size() + 1, error, look ? asideError(start) : std::nan(""),
                       static_cast<double>(noise_)});
