@@ -1,4 +1,4 @@
-// Settings of the minimum time and margin of a posture.
+// Settings of the minimum time and margin of a posture, and of following a glove's drift.
 #pragma once
 
 namespace merlin::nn {
@@ -8,6 +8,13 @@ struct HoldSettings {
   double leave_s = 0.10;  // time that it has to be absent before it ends
   double least_margin =
       0.30;  // least margin of a record that counts; half of it while a posture is held
+};
+
+struct DriftSettings {
+  double share =
+      0.05;  // of a visit's distance from its posture's mean that is taken for drift; 0: off
+  double least_margin = 0.30;  // least margin of a hand to learn from
+  double most = 0.30;          // most drift that is followed, share of a sensor's range
 };
 
 }  // namespace merlin::nn

@@ -1,0 +1,65 @@
+#include "nn/drift.h"
+
+#include <algorithm>
+
+namespace merlin::nn {
+namespace {
+
+// No hand of a posture is further from its mean; what is, is another posture taken for this one. A
+// sensor's range is 6 standard deviations over all postures.
+constexpr float kFurthest = 0.15F;
+constexpr float kMostHands = 1e4F;  // of a visit: more of the same hand tell nothing new
+
+}  // namespace
+
+DriftFollower::DriftFollower(const PostureNetwork& network, const PostureStatistics& statistics,
+                             const DriftSettings& settings)
+    : settings_(settings), recognise_(network), ranges_(network.ranges) {
+  for (std::size_t k = 0; k < statistics.postures.size(); ++k) {
+    const auto code = network.postures.code(statistics.postures[k]);
+    if (!code) continue;
+    mean_[*code] = statistics.mean[k];
+    known_[*code] = true;
+  }
+}
+
+Recognition DriftFollower::operator()(const Angles& value) noexcept {
+  Angles still = value;
+  for (std::size_t i = 0; i < kInputs; ++i)
+    still[i] -= offset_[i] * (ranges_[i].high - ranges_[i].low);
+  const Recognition seen = recognise_(still);
+  const auto least = static_cast<float>(settings_.least_margin);
+  if (settings_.share > 0 && seen.margin >= least && known_[seen.code])
+    learn(seen.code, normalise(ranges_, still));
+  return seen;
+}
+
+// A posture that is held for long counts once, however many hands of it there are: otherwise the
+// way in which it happens to be held would be taken for drift.
+void DriftFollower::learn(std::uint32_t code, const Input& hand) noexcept {
+  if (code != visited_) {
+    endVisit();
+    visited_ = code;
+  }
+  if (hands_ >= kMostHands) return;
+  for (std::size_t i = 0; i < kInputs; ++i) away_[i] += hand[i] - mean_[code][i];
+  ++hands_;
+}
+
+void DriftFollower::endVisit() noexcept {
+  const auto share = static_cast<float>(settings_.share), most = static_cast<float>(settings_.most);
+  for (std::size_t i = 0; i < kInputs && hands_ > 0; ++i) {
+    const float away = std::clamp(away_[i] / hands_, -kFurthest, kFurthest);
+    offset_[i] = std::clamp(offset_[i] + share * away, -most, most);
+  }
+  away_ = {};
+  hands_ = 0;
+}
+
+void DriftFollower::reset() noexcept {
+  offset_ = away_ = {};
+  hands_ = 0;
+  visited_ = kNone;
+}
+
+}  // namespace merlin::nn
