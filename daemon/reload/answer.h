@@ -8,8 +8,9 @@
 
 namespace merlin::reload {
 
-// kInvalid: the file has faults, or a changed number that is out of range. kRestart: a changed setting needs a restart. kFailed: the outside
-// world, for example no memory. After these three nothing was changed.
+// kInvalid: the file has faults, or a changed number that is out of range. kRestart: a changed
+// setting needs a restart. kFailed: the outside world, for example no memory. After these three
+// nothing was changed.
 enum class Outcome { kDone, kInvalid, kRestart, kFailed };
 inline constexpr const char* kOutcomeNames[] = {"done", "invalid", "needs_restart", "failed"};
 

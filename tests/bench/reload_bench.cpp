@@ -21,7 +21,7 @@ using nlohmann::json;
 
 struct Options : DemoOptions {
   int reloads = 10'000;
-  double seconds = 20;
+  double seconds = 20, pause = 0;
 };
 
 // What a process holds.
@@ -116,6 +116,7 @@ bool bench(const Options& options, Report& report) {
     const char* const expected = i % 8 == 3 ? "invalid" : i % 8 == 7 ? "needs_restart" : "done";
     if (outcome != expected && ++wrong < 5) note(fmt::format("reload {}: {}", i, outcome));
     daemon.expectRunning();
+    std::this_thread::sleep_for(std::chrono::duration<double>(options.pause));
   }
   std::this_thread::sleep_for(std::chrono::seconds(2));  // the statistics follow
   const shm::WallStats end = daemon.wall();
@@ -165,6 +166,9 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--seconds", options.seconds, "Of the run without reloads")
       ->check(CLI::Range(1, 86'400))
+      ->capture_default_str();
+  app.add_option("--pause", options.pause, "Between two reloads, in seconds")
+      ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
