@@ -149,7 +149,9 @@ int main(int argc, char** argv) {
   // must never start the daemon instead of checking a file.
   const CLI::Validator named(
       [](const std::string& file) { return std::string(file.empty() ? "names no file" : ""); }, "");
-  app.add_option("--config", options.config, "The configuration file, JSON")
+  app.add_option(
+         "--config", options.config,
+         "The configuration file, JSON. SIGHUP, or `merlin reload`, has merlind read it again")
       ->check(named)
       ->capture_default_str();
   const CLI::Option* check =

@@ -41,6 +41,7 @@ constexpr Taker kTakers[] = {
     {"/wall/scene/return_after_s", kWall, Part::kScene},
     {"/serve", kDevices | kMirror, Part::kRestart},
     {"/page", kPage, Part::kRestart},
+    {"/alarms", kAlarms, Part::kRestart},
 };
 
 bool covers(std::string_view outer, std::string_view pointer) {

@@ -30,7 +30,8 @@ enum class Part : std::size_t {
 using Readers = std::uint32_t;
 inline constexpr Readers kDevices = 1, kWall = 2, kPage = 4;
 inline constexpr Readers kMirror = 8;  // a wall that uses another machine's devices
-inline constexpr Readers kAll = kDevices | kWall | kPage | kMirror;
+inline constexpr Readers kAlarms = 16;
+inline constexpr Readers kAll = kDevices | kWall | kPage | kMirror | kAlarms;
 
 struct Taker {
   std::string_view pointer;  // of a setting, a list or a group

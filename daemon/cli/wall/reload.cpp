@@ -132,15 +132,20 @@ std::vector<std::string> readByNone(const std::vector<Reloaded>& all, reload::Re
   return settings;
 }
 
+const char* whoTakes(reload::Readers readers) {
+  if (readers == reload::kPage)
+    return "is taken by the page when it starts: systemctl restart merlin-page";
+  if (readers == reload::kAlarms)
+    return "is taken by the alarms when they start: systemctl restart merlin-alarms";
+  return "is taken by a merlind of another role when it starts";
+}
+
 void printDone(const std::vector<Reloaded>& all, reload::Readers running) {
   const auto swapped = together(all, "swapped", changeText);
   const auto unread = readByNone(all, running);
   for (const std::string& line : swapped) printOut("{}\n", line);
   for (const std::string& setting : unread) {
-    printOut("{}: {}\n", setting,
-             reload::takerOf(setting).readers == reload::kPage
-                 ? "is taken by the page when it starts: systemctl restart merlin-page"
-                 : "is taken by a merlind of another role when it starts");
+    printOut("{}: {}\n", setting, whoTakes(reload::takerOf(setting).readers));
   }
   if (swapped.empty() && unread.empty()) printOut("nothing changed\n");
 }
