@@ -59,7 +59,6 @@ void DriftFollower::endVisit() noexcept {
 void DriftFollower::reset() noexcept {
   offset_ = away_ = {};
   hands_ = 0;
-  visited_ = kNone;
 }
 
 }  // namespace merlin::nn

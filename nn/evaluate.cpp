@@ -56,11 +56,10 @@ void count(Score& score, bool rejected, bool right) {
   score.right += right ? 1 : 0;
 }
 
-}  // namespace
-
-Evaluation evaluate(const PostureNetwork& network, std::span<const LabelledHand> hands,
-                    double least_margin) {
-  const Recogniser recognise(network);
+// `recognise`: a function of a hand's values that returns a Recognition.
+template <typename Recognise>
+Evaluation evaluateWith(Recognise& recognise, std::span<const LabelledHand> hands,
+                        double least_margin) {
   Evaluation e;
   std::map<std::string, PostureScore> by_posture;
   std::map<std::pair<std::string, std::string>, std::size_t> confused;
@@ -92,6 +91,19 @@ Evaluation evaluate(const PostureNetwork& network, std::span<const LabelledHand>
                    });
   e.confusions = sorted(confused);
   return e;
+}
+
+}  // namespace
+
+Evaluation evaluate(const PostureNetwork& network, std::span<const LabelledHand> hands,
+                    double least_margin) {
+  const Recogniser recognise(network);
+  return evaluateWith(recognise, hands, least_margin);
+}
+
+Evaluation evaluate(DriftFollower& follower, std::span<const LabelledHand> hands,
+                    double least_margin) {
+  return evaluateWith(follower, hands, least_margin);
 }
 
 Neighbours neighbours(std::span<const LabelledHand> train, std::span<const LabelledHand> test) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "nn/data_set.h"
+#include "nn/drift.h"
 
 namespace merlin::nn {
 
@@ -30,6 +31,9 @@ struct Evaluation {
   std::vector<Confusion> confusions;   // the most frequent first
 };
 Evaluation evaluate(const PostureNetwork& network, std::span<const LabelledHand> hands,
+                    double least_margin);
+// The same of a follower, which is shown the hands in the order given.
+Evaluation evaluate(DriftFollower& follower, std::span<const LabelledHand> hands,
                     double least_margin);
 
 // Shares of `test` that two classifiers recognise correctly: the nearest mean of a posture of

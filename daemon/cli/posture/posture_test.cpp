@@ -21,7 +21,7 @@ constexpr std::size_t kShown = 10;  // maximum number of confusions in the table
 struct TestOptions {
   std::string network = "config/postures.json", data, beside, units = "auto";
   double margin = 0.3;
-  bool json = false;
+  bool json = false, follow = false;
 };
 
 Result<nn::Recording> testHands(const TestOptions& options, const nn::PostureNetwork& network) {
@@ -69,12 +69,28 @@ void printTable(const nn::Evaluation& e, bool synthetic, double margin) {
              p.score.total, p.least_margin, p.mean_margin);
 }
 
+// Errors: kInvalidArgument (drift is to be followed, and the file lacks the postures' means).
+Result<nn::Evaluation> evaluate(const nn::NetworkFile& file,
+                                std::span<const nn::LabelledHand> hands,
+                                const TestOptions& options) {
+  if (!options.follow) return nn::evaluate(file.network, hands, options.margin);
+  if (!file.statistics)
+    return Error{Errc::kInvalidArgument,
+                 options.network +
+                     ": has no /memory, the means of its postures, without which no "
+                     "drift is seen: train the network again"};
+  nn::DriftFollower follower(file.network, *file.statistics, {});
+  return nn::evaluate(follower, hands, options.margin);
+}
+
 int test(const TestOptions& options) {
   const auto file = nn::loadNetwork(options.network);
   if (!file) return fail(file.error());
   const auto recording = testHands(options, file->network);
   if (!recording) return fail(recording.error());
-  const nn::Evaluation e = nn::evaluate(file->network, recording->hands, options.margin);
+  const auto evaluation = evaluate(*file, recording->hands, options);
+  if (!evaluation) return fail(evaluation.error());
+  const nn::Evaluation& e = *evaluation;
   auto json = toJson(e, recording->synthetic);
   if (!options.beside.empty()) {
     const auto train = readFor(file->network, options.beside, unitNamed(options.units));
@@ -119,6 +135,9 @@ void addPostureTest(Command posture, Run& run) {
       .range(0.0, 1.0)
       .showDefault();
   addUnits(command, options->units);
+  command.flag("--follow-drift", options->follow,
+               "Follow the drift of the glove's sensors, without looking at the labels; for hands "
+               "of one person in the order in which they were recorded");
   command.flag("--json", options->json, "Print JSON, for programs");
   command.callback([options, &run] { run = [options] { return test(*options); }; });
 }
