@@ -1,6 +1,6 @@
 // ./dev bench posture: training compared with the simplest classifiers on unseen people, adapting
-// to one more person, flicker of the reported postures, and recall. Compared with FANN:
-// fann_bench.cpp.
+// to one more person, gloves that drift, flicker of the reported postures, and recall. Compared
+// with FANN: fann_bench.cpp.
 //
 // All hands are synthetic. Absolute times differ between machines; ratios are within one run.
 #include <algorithm>
@@ -14,12 +14,14 @@
 #include <fmt/format.h>
 
 #include "nn/adapt.h"
+#include "nn/drift.h"
 #include "nn/evaluate.h"
 #include "nn/fit.h"
 #include "nn/hold.h"
 #include "nn/train.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/nanoseconds.h"
+#include "tests/nn/drifting.h"
 #include "tests/nn/shipped.h"
 
 namespace merlin::bench {
@@ -117,6 +119,39 @@ void adapting(const nn::Fitted& fitted, Report& report) {
   }
 }
 
+// Each person's first half of a session trains, the second half tests.
+void drifts(Report& report) {
+  constexpr std::uint64_t kFirst = 3001, kPeople = 20;
+  std::size_t hands = 0, faults = 0, followed = 0;
+  double by_mean = 0, by_hand = 0;
+  for (std::uint64_t person = kFirst; person < kFirst + kPeople; ++person) {
+    const nn::test::Session session = nn::test::drifting(hand::allShapes(), person, {});
+    const auto result = nn::fit(session.first, {});
+    const nn::Fitted& fitted = expect(result, "the training");
+    nn::DriftFollower follow(fitted.network, fitted.statistics, {});
+    const auto count = static_cast<std::size_t>(std::count_if(
+        session.second.begin(), session.second.end(),
+        [&](const nn::LabelledHand& h) { return follow(h.value).name != h.posture; }));
+    const nn::Score s = nn::score(fitted.network, session.second);
+    const nn::Neighbours n = nn::neighbours(session.first, session.second);
+    hands += s.total;
+    faults += s.total - s.right;
+    followed += count;
+    by_mean += (1 - n.mean) / static_cast<double>(kPeople);
+    by_hand += (1 - n.nearest) / static_cast<double>(kPeople);
+  }
+  const Measured alone = shareOf(faults, hands, "hands"), with = shareOf(followed, hands, "hands");
+  report.text(
+      "\n{} people whose gloves drift in a session, 31 postures; the first half trains, the second "
+      "tests\n"
+      "  faults in {} hands: network {} ({:.2f} %), network and drift followed {} ({:.2f} %), "
+      "nearest mean {:.2f} %, nearest neighbour {:.2f} %\n",
+      kPeople, hands, faults, 100 * alone, followed, 100 * with, 100 * by_mean, 100 * by_hand);
+  report.figure("drift.faults", alone, "1");
+  report.figure("drift.faults.followed", with, "1");
+  report.figure("drift.faults.nearest_neighbour", Measured::of(by_hand, kPeople, "people"), "1");
+}
+
 struct Flicker {
   std::size_t reported = 0, missed = 0, invented = 0, repeated = 0;
 };
@@ -197,6 +232,8 @@ bool run(Report& report) {
   const nn::Fitted fitted = trainingTable(report);
   note("adapting");
   adapting(fitted, report);
+  note("drift");
+  drifts(report);
   flicker(fitted, report);
   report.text("\n");
   recall(fitted.network, people(5001, 10, 5, 3), report);
@@ -208,7 +245,7 @@ bool run(Report& report) {
 
 int main(int argc, char** argv) {
   bool json = false;
-  CLI::App app("The posture network: training, adapting, flicker, recall.");
+  CLI::App app("The posture network: training, adapting, drift, flicker, recall.");
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("posture", json, merlin::bench::run);
