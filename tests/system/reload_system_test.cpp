@@ -198,7 +198,7 @@ TEST_F(Reload, FiftyInARowLeaveNothingBehind) {
                       {{"devices", {{"hands", 1}}}},
                       {{"devices", {{"script", "still"}}}},
                       {{"devices", {{"postures", "none"}}}}};
-  ASSERT_TRUE(reload().status == 0);
+  // Before any client is connected: its place is free some time after it has gone.
   const std::size_t descriptors = entriesOf("fd"), threads = entriesOf("task");
   std::mt19937 random(5);
   std::uint64_t samples = health(shm::kGlove).samples;
