@@ -48,7 +48,8 @@ void DriftFollower::learn(std::uint32_t code, const Input& hand) noexcept {
 
 void DriftFollower::endVisit() noexcept {
   const auto share = static_cast<float>(settings_.share), most = static_cast<float>(settings_.most);
-  for (std::size_t i = 0; i < kInputs && hands_ > 0; ++i) {
+  const bool counts = hands_ > 0 && hands_ >= static_cast<float>(settings_.least_hands);
+  for (std::size_t i = 0; i < kInputs && counts; ++i) {
     const float away = std::clamp(away_[i] / hands_, -kFurthest, kFurthest);
     offset_[i] = std::clamp(offset_[i] + share * away, -most, most);
   }

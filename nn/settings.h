@@ -15,6 +15,7 @@ struct DriftSettings {
       0.05;  // of a visit's distance from its posture's mean that is taken for drift; 0: off
   double least_margin = 0.30;  // least margin of a hand to learn from
   double most = 0.30;          // most drift that is followed, share of a sensor's range
+  double least_hands = 5;      // of a visit that counts: a hand on its way passes other postures
 };
 
 }  // namespace merlin::nn

@@ -75,7 +75,8 @@ class TwoPostures : public testing::Test {
 };
 
 TEST_F(TwoPostures, ADriftIsFollowedFromVisitToVisitAndForgottenAtAReset) {
-  DriftFollower follow(network_, statistics_, {.share = 0.5, .least_margin = 0.3, .most = 0.3});
+  DriftFollower follow(network_, statistics_,
+                       {.share = 0.5, .least_margin = 0.3, .most = 0.3, .least_hands = 1});
   (void)follow(hand(false, 0.1F));
   EXPECT_FLOAT_EQ(follow.offset()[4], 0) << "the visit has not ended";
   EXPECT_EQ(follow(hand(true, 0.1F)).name, "fist");
@@ -92,15 +93,25 @@ TEST_F(TwoPostures, ADriftIsFollowedFromVisitToVisitAndForgottenAtAReset) {
 }
 
 TEST_F(TwoPostures, APostureHeldForLongCountsOnce) {
-  DriftFollower follow(network_, statistics_, {.share = 0.5, .least_margin = 0.3, .most = 0.3});
+  DriftFollower follow(network_, statistics_,
+                       {.share = 0.5, .least_margin = 0.3, .most = 0.3, .least_hands = 1});
   for (int n = 0; n < 20'000; ++n) (void)follow(hand(false, 0.1F));
   EXPECT_FLOAT_EQ(follow.offset()[4], 0);
   (void)follow(hand(true, 0.1F));
   EXPECT_NEAR(follow.offset()[4], 0.05F, 1e-4F);
 }
 
+TEST_F(TwoPostures, APostureThatAHandOnlyPassesDoesNotCount) {
+  DriftFollower follow(network_, statistics_, {.share = 0.5, .most = 0.3, .least_hands = 5});
+  for (int n = 0; n < 40; ++n) (void)follow(hand(n / 4 % 2 == 0, 0.1F));
+  EXPECT_FLOAT_EQ(follow.offset()[4], 0) << "visits of four hands";
+  for (int n = 0; n < 6; ++n) (void)follow(hand(n == 5, 0.1F));
+  EXPECT_FLOAT_EQ(follow.offset()[4], 0.05F) << "one of five";
+}
+
 TEST_F(TwoPostures, TheDriftIsBoundedWhateverIsShown) {
-  DriftFollower follow(network_, statistics_, {.share = 1, .least_margin = 0, .most = 0.3});
+  DriftFollower follow(network_, statistics_,
+                       {.share = 1, .least_margin = 0, .most = 0.3, .least_hands = 1});
   for (int n = 0; n < 1000; ++n) {
     Angles value;
     value.fill(n % 3 == 0 ? 1e30F : -1e30F);
@@ -111,7 +122,8 @@ TEST_F(TwoPostures, TheDriftIsBoundedWhateverIsShown) {
 }
 
 TEST_F(TwoPostures, AHandThatIsNotFiniteOrNotSureTeachesNothing) {
-  DriftFollower follow(network_, statistics_, {.share = 1, .least_margin = 0.3, .most = 0.3});
+  DriftFollower follow(network_, statistics_,
+                       {.share = 1, .least_margin = 0.3, .most = 0.3, .least_hands = 1});
   Angles broken = hand(true, 0);
   broken[7] = std::numeric_limits<float>::quiet_NaN();
   Angles between = hand(true, 0.1F);
@@ -130,7 +142,8 @@ TEST_F(TwoPostures, AnEvaluationShowsTheFollowerTheHandsInTheirOrder) {
   for (int n = 0; n < 100; ++n)
     hands.push_back(
         {n % 2 == 0 ? "flat" : "fist", hand(n % 2 != 0, 0.004F * static_cast<float>(n))});
-  DriftFollower follow(network_, statistics_, {.share = 0.5, .least_margin = 0.3, .most = 0.4});
+  DriftFollower follow(network_, statistics_,
+                       {.share = 0.5, .least_margin = 0.3, .most = 0.4, .least_hands = 1});
   EXPECT_EQ(evaluate(follow, hands, 0.3).all.right, 100U);
   EXPECT_LT(evaluate(network_, hands, 0.3).all.right, 90U);
 }
