@@ -101,6 +101,15 @@ TEST_F(TwoPostures, APostureHeldForLongCountsOnce) {
   EXPECT_NEAR(follow.offset()[4], 0.05F, 1e-4F);
 }
 
+TEST_F(TwoPostures, AHandFarFromItsPostureTeachesNoMoreThanANearOne) {
+  DriftFollower follow(network_, statistics_, {.share = 0.5, .most = 0.3, .least_hands = 1});
+  Angles far = hand(false, 0);
+  far[5] = 0.95F;
+  (void)follow(far);
+  (void)follow(hand(true, 0));
+  EXPECT_FLOAT_EQ(follow.offset()[5], 0.075F) << "half of 0.15, not of 0.45";
+}
+
 TEST_F(TwoPostures, APostureThatAHandOnlyPassesDoesNotCount) {
   DriftFollower follow(network_, statistics_, {.share = 0.5, .most = 0.3, .least_hands = 5});
   for (int n = 0; n < 40; ++n) (void)follow(hand(n / 4 % 2 == 0, 0.1F));
