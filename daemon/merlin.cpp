@@ -25,7 +25,7 @@ manual::PageSettings page() {
           .see_also = {"merlind(8)", "merlin.json(5)"}};
 }
 
-int main(int argc, char** argv) {
+int runProgram(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file-size limit is then an error of write()
   CLI::App app(
       "MERLIN runs a lab's display wall. This is its command-line tool; the daemon is merlind.");
@@ -61,5 +61,5 @@ int main(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   merlin::openStandardStreams();
-  return merlin::runGuarded("merlin", [&] { return merlin::main(argc, argv); });
+  return merlin::runGuarded("merlin", [&] { return merlin::runProgram(argc, argv); });
 }

@@ -140,7 +140,7 @@ int runDaemon(const Options& options) {
   return exitStatusOf((*daemon)->run());
 }
 
-int main(int argc, char** argv) {
+int runProgram(int argc, char** argv) {
   Options options;
   CLI::App app(
       "MERLIN's daemon: reads the devices and draws the wall.\n\nExample: merlind --config "
@@ -193,5 +193,5 @@ int main(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   merlin::openStandardStreams();
-  return merlin::runGuarded("merlind", [&] { return merlin::main(argc, argv); });
+  return merlin::runGuarded("merlind", [&] { return merlin::runProgram(argc, argv); });
 }

@@ -115,7 +115,7 @@ manual::PageSettings page() {
           .see_also = {"merlin(1)", "merlind(8)"}};
 }
 
-int main(int argc, char** argv) {
+int runProgram(int argc, char** argv) {
   Options options;
   CLI::App app(
       "Shows MERLIN's wall to VNC clients (RFB). This program links libvncserver and is therefore "
@@ -132,5 +132,5 @@ int main(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   merlin::openStandardStreams();
-  return merlin::runGuarded("merlin-rfb", [&] { return merlin::main(argc, argv); });
+  return merlin::runGuarded("merlin-rfb", [&] { return merlin::runProgram(argc, argv); });
 }

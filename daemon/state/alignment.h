@@ -33,7 +33,9 @@ struct Place {
   int column = 0, row = 0;
 
   auto operator<=>(const Place&) const = default;
-  std::size_t corner() const { return static_cast<std::size_t>(2 * row + column); }
+  std::size_t corner() const {
+    return 2 * static_cast<std::size_t>(row) + static_cast<std::size_t>(column);
+  }
 };
 // Nothing if there is no corner of that name.
 std::optional<Place> cornerNamed(std::string_view name);

@@ -53,6 +53,9 @@ struct StatusServer::Sockets {
   std::vector<std::pair<zmq::socket_t*, std::string>> bound;
   std::string samples;  // path of the encrypted socket; empty: none
 
+  Sockets() = default;
+  Sockets(const Sockets&) = delete;
+  Sockets& operator=(const Sockets&) = delete;
   ~Sockets() {
     for (const auto& [socket, path] : bound) ::unlink(path.c_str());
   }

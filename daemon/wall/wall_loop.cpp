@@ -106,7 +106,7 @@ void WallLoop::useNavigation() {
   parts_.scene.setNavigation(turns_.navigation(), turns_.nearest());
 }
 
-void WallLoop::finishRequest(std::uint32_t number, std::string refused) {
+void WallLoop::finishRequest(std::uint32_t number, const std::string& refused) {
   const std::lock_guard lock(step_mutex_);
   done_.finished = number;
   std::fill(std::begin(done_.refused), std::end(done_.refused), '\0');

@@ -91,7 +91,7 @@ class WallLoop {
   // none.
   void show(std::size_t place) noexcept { place_asked_.store(static_cast<std::int64_t>(place)); }
   // Thread-safe: request `number` is done: shown, or refused for this reason.
-  void finishRequest(std::uint32_t number, std::string refused);
+  void finishRequest(std::uint32_t number, const std::string& refused);
 
   // Thread-safe: moves what the ball moves, in the next frame; several of a frame add up.
   void move(const render::scene::Push& step);

@@ -33,8 +33,8 @@ class TileArrangement final : public Correction {
   // `first`: index in the output's picture of the tile's upper left pixel; `column`, `row`: index
   // steps from there to the tile's next column and row [pixels].
   struct Placed {
-    int x, y, width, height;  // in the canvas
-    std::ptrdiff_t first, column, row;
+    int x = 0, y = 0, width = 0, height = 0;  // in the canvas
+    std::ptrdiff_t first = 0, column = 0, row = 0;
     // Of an anaglyph: from a pixel of the left eye's picture to the same one of the right eye's, in
     // the canvas. 0: one picture alone.
     int right_x = 0, right_y = 0;

@@ -13,7 +13,7 @@ using text::Point;
 using text::Rect;
 
 struct Button {
-  ControlId id;
+  ControlId id{};
   Rect at;
 };
 
@@ -21,7 +21,7 @@ struct Button {
 enum class FieldId : std::uint8_t { kContent, kZoom, kRate, kDetail, kLamp, kProjectors };
 
 struct Field {
-  FieldId id;
+  FieldId id{};
   Rect at;
 };
 

@@ -99,7 +99,7 @@ void addAdapters(const std::string& root, std::vector<Plugged>& all) {
   for (const fs::path& entry : entriesOf(root + "/sys/class/tty")) {
     const std::string name = entry.filename();
     const bool adapter = name.starts_with("ttyUSB") || name.starts_with("ttyACM");
-    const std::string device = root + "/dev/" + name;
+    const std::string device = fmt::format("{}/dev/{}", root, name);
     if (adapter && fs::exists(device)) found.emplace(withoutLinks(device), device);
   }
   for (const auto& [path, name] : found) {

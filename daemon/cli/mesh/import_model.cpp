@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "daemon/cli/foreign_import.h"
 #include "daemon/cli/print.h"
 
@@ -52,7 +54,7 @@ Result<ImportedModel> loadModel(const std::string& path, const InputKind& kind,
   auto model =
       kind.reader == InputReader::kForeign ? loadForeign(path, kind, limits) : loadOwn(path);
   if (!model) return model;
-  for (const std::string& note : model->notes) printNote(path + ": " + note);
+  for (const std::string& note : model->notes) printNote(fmt::format("{}: {}", path, note));
   render::mesh::ensureNormals(model->loaded.mesh);
   return model;
 }

@@ -105,7 +105,7 @@ Result<FileInfo> infoOfForeign(const std::string& path, const InputKind& kind) {
 Result<FileInfo> infoOfPoints(const std::string& path) {
   auto cloud = render::points::readCloud(path);
   if (!cloud) return cloud.error();
-  for (const std::string& note : cloud->notes) printNote(path + ": " + note);
+  for (const std::string& note : cloud->notes) printNote(fmt::format("{}: {}", path, note));
   const auto next = render::mesh::coincidentVertices(cloud->positions);
   std::size_t places = 0;  // the last point of a ring leads to its first
   for (std::uint32_t p = 0; p < next.size(); ++p) places += next[p] <= p;

@@ -94,7 +94,7 @@ class Displays {
   };
   // A screen's share of a commit.
   struct Share {
-    Screen* screen;
+    Screen* screen = nullptr;
     Lit lit;
   };
 

@@ -25,6 +25,7 @@ class PictureSlots {
   PictureSlots(PictureSlots&& other) noexcept;
   PictureSlots& operator=(PictureSlots&&) = delete;
   PictureSlots(const PictureSlots&) = delete;
+  PictureSlots& operator=(const PictureSlots&) = delete;
   ~PictureSlots();
 
   int width() const noexcept { return width_; }
