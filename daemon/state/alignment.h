@@ -32,7 +32,7 @@ struct Place {
   Of of = Of::kPin;
   int column = 0, row = 0;
 
-  auto operator<=>(const Place&) const = default;
+  auto operator<=>(const Place&) const = default;  // NOLINT(modernize-use-nullptr): of its making
   std::size_t corner() const {
     return 2 * static_cast<std::size_t>(row) + static_cast<std::size_t>(column);
   }

@@ -62,6 +62,7 @@ std::vector<Row> rowsFor(const PanelOptions& options) {
 void addRow(const Row& row, const Rect& space, int gap_px, PanelLayout& layout) {
   int whole = 0, before = 0;
   for (const Part& part : row) whole += part.share;
+  if (whole == 0) return;
   const auto edge = [&](int share) { return space.x + (space.width + gap_px) * share / whole; };
   for (const Part& part : row) {
     const int left = edge(before), right = edge(before + part.share) - gap_px;

@@ -13,7 +13,7 @@
 
 #include "daemon/base/sanitizer.h"
 #include "daemon/net/connection_server.h"
-#include "daemon/serve/vrpn_protocol.h"
+#include "drivers/port/vrpn_line.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -233,12 +233,10 @@ TEST(Servers, AVrpnClientThatFloodsTakesNoMemoryAndMerlindStopsAtOnce) {
   ASSERT_TRUE(merlind.healthIs(shm::kBall, HealthState::kOk)) << "all that it needs is in memory";
   const long before = residentKb(merlind.process().pid());
   std::string bytes;
-  for (int i = 0; i < 1000; ++i) {
-    serve::VrpnMessage empty;
-    empty.type = 999;
-    bytes += serve::encodeVrpn(empty);
-  }
-  const std::string cookie = serve::vrpnCookie();
+  VrpnHeader unknown;
+  unknown.type = 999;
+  for (int i = 0; i < 1000; ++i) appendVrpn(unknown, "", bytes);
+  const std::string cookie = vrpnCookie();
   ASSERT_EQ(::send(client.get(), cookie.data(), cookie.size(), 0), ssize_t{24});
   const std::size_t sent = flood(client, bytes);
   const long after = residentKb(merlind.process().pid());
