@@ -82,7 +82,7 @@ TEST(NetworkFormat, HoldsTheShippedFile) {  // the format is a contract: nn/io/R
   const auto file = loadNetwork(test::kShippedPath);
   ASSERT_TRUE(file) << file.error().what;
   EXPECT_EQ(formatNetwork(*file), shippedText());
-  EXPECT_EQ(file->network.postures.name(0b10010), "fist");
+  EXPECT_EQ(file->network.postures.name(0b01010), "fist");
   EXPECT_EQ(file->trained.seed, 1998u);
   EXPECT_EQ(file->trained.samples, 1600u);
   EXPECT_TRUE(file->trained.synthetic);
@@ -171,13 +171,13 @@ INSTANTIATE_TEST_SUITE_P(
               "f.json: /output/0: found an array of 17 elements; allowed: an array of 16 elements"},
         Fault{"\"hidden\": [\n    [", "\"hidden\": [\n    [1e7], [",
               "f.json: /hidden: found an array of 16 elements; allowed: an array of 15 elements"},
-        Fault{"\"10001\"", "\"1001\"",
-              "f.json: /postures/0/code: found \"1001\"; allowed: five digits 0 or 1, output 4 "
+        Fault{"\"00011\"", "\"0011\"",
+              "f.json: /postures/0/code: found \"0011\"; allowed: five digits 0 or 1, output 4 "
               "first"},
         Fault{"\"unit\": \"rad\"", "\"unit\": \"deg\"",
               "f.json: /unit: found \"deg\"; allowed: \"rad\" or \"raw\""},
         Fault{"\"name\": \"horns\"", "\"nam\": \"horns\"",
-              "f.json: /postures/4: found the key \"nam\"; allowed: code, name"},
+              "f.json: /postures/7: found the key \"nam\"; allowed: code, name"},
         Fault{
             "\"seed\": 1998", "\"seed\": -1",
             "f.json: /trained/seed: found -1; allowed: an integer from 0 to 18446744073709551615"},
