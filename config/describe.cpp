@@ -766,6 +766,11 @@ void describe(Settings& s, SettingsVisitor& v) {
     v.number("posture_margin", s.devices.posture_hold.least_margin, {0, 1},
              "Minimum margin for a posture to be recognised, from 0 to 1: the margin says how sure "
              "the posture network is. Half of it suffices to keep the current posture.");
+    v.flag(
+        "posture_drift", s.devices.posture_drift,
+        "Whether merlind follows the slow drift of the glove's sensors: from postures that it is "
+        "sure of it learns by how much each sensor has moved, at most 0.3 of its range, and "
+        "subtracts that before it recognises. Forgotten when the glove is connected again.");
     describeBindings(s.devices, v);
     v.integer("cpu_latency_us", s.devices.cpu_latency_us, {-1, 10000},
               "Maximum time that idle CPU cores may take to wake up, for the whole machine, in "

@@ -47,6 +47,7 @@ struct DevicesSettings {
   std::vector<SwitchingTimes> projector_schedule;  // also of those at gpio.projector_line
   std::string postures;  // file of the posture network; empty: no posture is recognised
   nn::HoldSettings posture_hold;
+  bool posture_drift = true;  // whether slow drift of the glove's sensors is followed
   std::vector<Binding> bindings = defaultBindings();
   // Time after which the buttons and postures of a device that has stopped working count as
   // released.

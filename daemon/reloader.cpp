@@ -153,7 +153,7 @@ Reloader::ReadFile Reloader::read() const {
   if (!file.answer.plan.has(Part::kPostures) || postures.empty()) return file;
   auto network = nn::loadNetwork(postures);
   if (network) {
-    file.network = network->network;
+    file.trained = nn::trainedPostures(*network);
   } else {  // it was readable when it was checked
     file.answer.outcome = Outcome::kInvalid;
     file.answer.findings.push_back(
@@ -185,7 +185,7 @@ void Reloader::swap(const ReadFile& file) {
          plan.has(Part::kHand),
          plan.has(Part::kPostures),
          {plan.has(Part::kGlove), plan.has(Part::kTracker), plan.has(Part::kBall)}},
-        file.network);
+        file.trained);
   }
   if (parts_.wall) {
     parts_.wall->reload(running_,

@@ -18,7 +18,7 @@
 #include "daemon/reload/answer.h"
 #include "daemon/status/services.h"
 #include "daemon/wall/wall_role.h"
-#include "nn/postures.h"
+#include "nn/drift.h"
 
 namespace merlin {
 
@@ -59,7 +59,7 @@ class Reloader {
   struct ReadFile {
     reload::Answer answer;
     Settings settings;
-    std::optional<nn::PostureNetwork> network;
+    std::optional<nn::TrainedPostures> trained;
   };
   ReadFile readGuarded() const;
   ReadFile read() const;

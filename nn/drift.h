@@ -7,12 +7,19 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "nn/postures.h"
 #include "nn/settings.h"
 #include "nn/space.h"
 
 namespace merlin::nn {
+
+// A network with the statistics of its training, without which no drift is followed.
+struct TrainedPostures {
+  PostureNetwork network;
+  PostureStatistics statistics;
+};
 
 // Thread-bound: it learns from what it recognises.
 class DriftFollower {
@@ -24,6 +31,8 @@ class DriftFollower {
   // Recognises a hand, as Recogniser does, after the drift so far was subtracted. Allocation-free;
   // about 0.1 us more than Recogniser.
   Recognition operator()(const Angles& value) noexcept;
+
+  std::string_view name(std::uint32_t code) const noexcept { return recognise_.name(code); }
 
   // Forgets the drift: for another glove or another person.
   void reset() noexcept;

@@ -70,6 +70,14 @@ DeviceHealth notConfigured(Timestamp now) {
 }
 
 // Only a Fastrak is aligned by its settings; another tracker's samples are in its server's frame.
+// A glove sends about a hundred hands a second: fifteen of them are a posture that is held.
+PostureSink::Settings postureSettings(const DevicesSettings& settings) {
+  nn::DriftSettings drift;
+  drift.least_hands = 15;
+  if (!settings.posture_drift) drift.share = 0;
+  return {settings.posture_hold, drift};
+}
+
 TrackerFrames framesOf(const DevicesSettings& devices) {
   const FastrakSettings settings =
       devices.tracker_line.driver == "fastrak" ? devices.tracker : FastrakSettings{};
@@ -162,17 +170,17 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
   if (!slots) return slots.error();
   std::unique_ptr<DevicesRole> role(new DevicesRole({*std::move(segment), *std::move(slots)},
                                                     settings, generation, watch, clock));
-  std::optional<nn::PostureNetwork> network;
+  std::optional<nn::TrainedPostures> postures;
   if (const std::string& path = settings.devices.postures; !path.empty()) {
-    auto file = nn::loadNetwork(path);
+    const auto file = nn::loadNetwork(path);
     if (!file) return file.error();
-    network = file->network;
+    postures = nn::trainedPostures(*file);
   }
   role->addPanel(settings.devices);
   role->addProjectors(settings.devices);
   role->cpu_latency_us_ = settings.devices.cpu_latency_us;
   role->segment_->tracker_frames.publish(framesOf(settings.devices));
-  role->makeSinks(settings.devices, network);
+  role->makeSinks(settings.devices, postures);
   for (const shm::DeviceIndex index : kEach) {
     role->segment_->health[index].publish(notConfigured(clock.now()));
     if (lineOf(settings.devices, index).port.empty()) continue;
@@ -184,7 +192,7 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
 // Builds the chains of sinks through which samples and health reach shared memory. Each sink
 // publishes its own result before it passes a sample on.
 void DevicesRole::makeSinks(const DevicesSettings& settings,
-                            const std::optional<nn::PostureNetwork>& network) {
+                            const std::optional<nn::TrainedPostures>& postures) {
   for (const shm::DeviceIndex index : kEach) {
     lines_[index] = std::make_unique<Line>(segment_->health[index]);
   }
@@ -197,7 +205,7 @@ void DevicesRole::makeSinks(const DevicesSettings& settings,
   glove_actions_ = actionsOf(shm::kGloveActions, lines_[shm::kGlove]->health);
   ball_actions_ = actionsOf(shm::kBallActions, lines_[shm::kBall]->health);
   posture_sink_ = std::make_unique<PostureSink>(
-      network, settings.posture_hold,
+      postures, postureSettings(settings),
       PostureSink::Outputs{segment_->posture, segment_->posture_state}, *glove_actions_);
   hand_sink_ = std::make_unique<HandSink>(settings.hand, *segment_, sink_);
   lines_[shm::kGlove]->counts = std::make_unique<ContinuedCounts>(*posture_sink_, *glove_actions_);
@@ -252,7 +260,7 @@ void DevicesRole::close(shm::DeviceIndex index) {
 }
 
 void DevicesRole::reload(const Settings& settings, const DevicesChanges& changes,
-                         const std::optional<nn::PostureNetwork>& network) {
+                         const std::optional<nn::TrainedPostures>& postures) {
   const DevicesSettings& devices = settings.devices;
   if (changes.bindings) {
     const Duration stale_after = fromSeconds(devices.stale_after_s);
@@ -261,7 +269,7 @@ void DevicesRole::reload(const Settings& settings, const DevicesChanges& changes
     if (panel_actions_) panel_actions_->rebind(devices.bindings);
   }
   if (changes.hand) hand_sink_->reload(devices.hand);
-  if (changes.postures) posture_sink_->reload(network, devices.posture_hold);
+  if (changes.postures) posture_sink_->reload(postures, postureSettings(devices));
   if (changes.lines[shm::kTracker]) segment_->tracker_frames.publish(framesOf(devices));
   for (const shm::DeviceIndex index : kEach) {
     if (!changes.lines[index]) continue;

@@ -24,7 +24,7 @@
 #include "drivers/gpio/panel_loop.h"
 #include "drivers/loop/device_loop.h"
 #include "drivers/registry.h"
-#include "nn/postures.h"
+#include "nn/drift.h"
 
 namespace merlin::devices {
 
@@ -53,10 +53,10 @@ class DevicesRole {
 
   // Gives the devices that run these settings, of which `changes` differ. Only the threads of
   // `changes.lines` are stopped, which takes up to 50 ms for each, and made again; all else is
-  // swapped between two samples. `network`: of settings.devices.postures, if that is not empty.
+  // swapped between two samples. `postures`: of settings.devices.postures, if that is not empty.
   // REQUIRES: start() was called; every driver exists and every port can be parsed.
   void reload(const Settings& settings, const DevicesChanges& changes,
-              const std::optional<nn::PostureNetwork>& network);
+              const std::optional<nn::TrainedPostures>& postures);
 
   void writeHeartbeat(Timestamp now) const { segment_.writeHeartbeat(now); }
   Result<std::string> mend() { return segment_.mend(); }  // SegmentWriter::mend()
@@ -91,7 +91,8 @@ class DevicesRole {
     std::unique_ptr<DeviceLoop> loop;         // null: no port
     WatchedThread thread;
   };
-  void makeSinks(const DevicesSettings& settings, const std::optional<nn::PostureNetwork>& network);
+  void makeSinks(const DevicesSettings& settings,
+                 const std::optional<nn::TrainedPostures>& postures);
   Result<Ok> open(shm::DeviceIndex index, const DevicesSettings& settings);
   void start(Line& line);
   void close(shm::DeviceIndex index);

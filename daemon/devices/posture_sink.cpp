@@ -10,6 +10,9 @@ void setName(char (&field)[N], std::string_view name) noexcept {
   std::copy_n(name.begin(), std::min(name.size(), N - 1), field);
 }
 
+// Another person may have the glove after this time without a sample, as when its plug was pulled.
+constexpr std::int64_t kSilence_ns = 1'000'000'000;
+
 }  // namespace
 
 void PostureSink::publish(const GloveSample& sample) noexcept {
@@ -33,6 +36,10 @@ void PostureSink::endPosture(const GloveSample& sample) noexcept {
 
 void PostureSink::recognise(const GloveSample& sample) noexcept {
   Recognition& r = *recognition_;
+  const bool plugged_in = sample.flags & ~r.flags & GloveSample::kPlugged;
+  if (plugged_in || sample.received_ns - r.received_ns > kSilence_ns) r.recognise.reset();
+  r.received_ns = sample.received_ns;
+  r.flags = sample.flags;
   nn::Angles values;
   if (r.unit == nn::InputUnit::kRaw) {
     std::copy_n(std::begin(sample.raw), values.size(), values.begin());

@@ -8,8 +8,8 @@
 #include "daemon/base/handover.h"
 #include "daemon/shm/layout.h"
 #include "drivers/port/sample_sink.h"
+#include "nn/drift.h"
 #include "nn/hold.h"
-#include "nn/postures.h"
 
 namespace merlin::devices {
 
@@ -17,20 +17,24 @@ namespace merlin::devices {
 // glove sample, so that a reader that waits for the sample finds the posture.
 class PostureSink final : public SampleSink {
  public:
+  struct Settings {
+    nn::HoldSettings hold;
+    nn::DriftSettings drift;
+  };
   // `shown`: the posture of each record; `held`: the current posture, after the minimum hold time.
   struct Outputs {
     shm::Channel<PostureSample>& shown;
     shm::SeqSlot<PostureState>& held;
   };
-  // Without `network` no posture is recognised, and none published.
-  PostureSink(const std::optional<nn::PostureNetwork>& network, const nn::HoldSettings& hold,
+  // Without `postures` none is recognised, and none published.
+  PostureSink(const std::optional<nn::TrainedPostures>& postures, const Settings& settings,
               Outputs outputs, SampleSink& next)
-      : recognition_(made(network, hold)), outputs_(outputs), next_(next) {}
+      : recognition_(made(postures, settings)), outputs_(outputs), next_(next) {}
 
-  // For one other thread: recognises by this network and hold from the next sample on. The posture
-  // that is held ends, and is recognised anew.
-  void reload(const std::optional<nn::PostureNetwork>& network, const nn::HoldSettings& hold) {
-    fresh_.offer(made(network, hold));  // NOLINT(*NewDeleteLeaks): the handover owns it
+  // For one other thread: recognises these postures in this way from the next sample on. The
+  // posture that is held ends, and is recognised anew; the drift that was followed is forgotten.
+  void reload(const std::optional<nn::TrainedPostures>& postures, const Settings& settings) {
+    fresh_.offer(made(postures, settings));  // NOLINT(*NewDeleteLeaks): the handover owns it
   }
 
   void publish(const GloveSample& sample) noexcept override;
@@ -39,17 +43,21 @@ class PostureSink final : public SampleSink {
 
  private:
   struct Recognition {
-    Recognition(const nn::PostureNetwork& network, const nn::HoldSettings& settings)
-        : recognise(network), hold(settings), unit(network.unit) {}
-    nn::Recogniser recognise;
+    Recognition(const nn::TrainedPostures& postures, const Settings& settings)
+        : recognise(postures.network, postures.statistics, settings.drift),
+          hold(settings.hold),
+          unit(postures.network.unit) {}
+    nn::DriftFollower recognise;
+    std::int64_t received_ns = 0;  // of the last sample
+    std::uint32_t flags = 0;       // of the last sample
     std::int64_t since_ns = 0;
     nn::PostureHold hold;
     std::uint32_t code = ~std::uint32_t{0};
     nn::InputUnit unit;
   };
-  static std::unique_ptr<Recognition> made(const std::optional<nn::PostureNetwork>& network,
-                                           const nn::HoldSettings& hold) {
-    return network ? std::make_unique<Recognition>(*network, hold) : nullptr;
+  static std::unique_ptr<Recognition> made(const std::optional<nn::TrainedPostures>& postures,
+                                           const Settings& settings) {
+    return postures ? std::make_unique<Recognition>(*postures, settings) : nullptr;
   }
   void recognise(const GloveSample& sample) noexcept;
   void endPosture(const GloveSample& sample) noexcept;

@@ -24,6 +24,7 @@ constexpr Taker kTakers[] = {
     {"/devices/posture_hold_s", kDevices, Part::kPostures},
     {"/devices/posture_leave_s", kDevices, Part::kPostures},
     {"/devices/posture_margin", kDevices, Part::kPostures},
+    {"/devices/posture_drift", kDevices, Part::kPostures},
     {"/wall", kWall, Part::kRestart},
     {"/wall/rate", kWall, Part::kRate},
     {"/wall/playlist", kWall, Part::kPlaylist},
@@ -109,6 +110,7 @@ void adopt(const Plan& plan, const Settings& fresh, bool keep_ports, Settings& r
   if (plan.has(Part::kPostures)) {
     to.postures = from.postures;
     to.posture_hold = from.posture_hold;
+    to.posture_drift = from.posture_drift;
   }
   if (plan.has(Part::kRate)) running.wall.governor = fresh.wall.governor;
   if (plan.has(Part::kPlaylist)) running.wall.playlist = fresh.wall.playlist;

@@ -204,6 +204,10 @@ Result<NetworkFile> parseNetwork(std::string_view text, const std::string& file)
   }
 }
 
+TrainedPostures trainedPostures(const NetworkFile& file) {
+  return {file.network, file.statistics.value_or(PostureStatistics{})};
+}
+
 Result<NetworkFile> loadNetwork(const std::string& path) {
   const auto file = FileCopy::read(path, kMostJsonBytes + 1);
   if (!file) return file.error();

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "daemon/base/result.h"
+#include "nn/drift.h"
 #include "nn/fit.h"
 #include "nn/postures.h"
 
@@ -16,6 +17,9 @@ struct NetworkFile {
   Provenance trained;
   std::optional<PostureStatistics> statistics;  // statistics for adapting; absent in version 1
 };
+
+// What recognises the file's postures. Without statistics in the file, no drift is followed.
+TrainedPostures trainedPostures(const NetworkFile& file);
 
 // Reads a whole file or nothing. The error is the first fault: it names the file, the place (a JSON
 // pointer), what was found there and what is allowed.

@@ -21,12 +21,13 @@ GloveSample showing(const char* shape, std::uint32_t counter) {
 
 class PostureSinkTest : public testing::Test {
  protected:
-  nn::NetworkFile file_ = *nn::loadNetwork(MERLIN_SOURCE_DIR "/config/postures.json");
+  nn::TrainedPostures file_ =
+      nn::trainedPostures(*nn::loadNetwork(MERLIN_SOURCE_DIR "/config/postures.json"));
   std::unique_ptr<shm::Channel<PostureSample>> postures_ =
       std::make_unique<shm::Channel<PostureSample>>();
   test::RecordingSink next_;
   shm::SeqSlot<PostureState> held_;
-  PostureSink sink_{file_.network, {}, {*postures_, held_}, next_};
+  PostureSink sink_{file_, {}, {*postures_, held_}, next_};
 };
 
 TEST_F(PostureSinkTest, RecognisesEachShippedShapeAndHandsTheSampleOn) {
@@ -75,7 +76,7 @@ TEST_F(PostureSinkTest, ANewHoldEndsThePostureAndBeginsItAnew) {
   };
   for (std::int64_t ms = 0; ms < 200; ms += 10) show(ms);
   ASSERT_STREQ(held_.read()->name, "fist");
-  sink_.reload(file_.network, {.hold_s = 0.05});
+  sink_.reload(file_, {{.hold_s = 0.05}, {}});
   show(200);
   EXPECT_STREQ(held_.read()->name, "");
   EXPECT_EQ(held_.read()->entered, 1u) << "counts go on";
@@ -91,7 +92,7 @@ TEST_F(PostureSinkTest, WithoutANetworkNoPostureIsSeen) {
   EXPECT_STREQ(postures_->newest()->name, "");
   sink_.publish(showing("fist", 3));
   EXPECT_EQ(postures_->newest()->counter, 2u) << "nothing is published any more";
-  sink_.reload(file_.network, {});
+  sink_.reload(file_, {});
   sink_.publish(showing("fist", 4));
   EXPECT_STREQ(postures_->newest()->name, "fist");
   EXPECT_EQ(next_.glove.size(), 4u);
@@ -136,6 +137,71 @@ TEST(ContinuedCounts, GoOnWhereTheDeviceIsMadeAnew) {
   EXPECT_EQ(healths.last().reconnects, 5u) << "the line was opened once more";
   counts.restart();
   EXPECT_EQ(ball(1), 9u);
+}
+
+// A glove whose sensors drift, each in its own direction, while its wearer shows one posture after
+// the other for 0.4 s each.
+class DriftingGlove {
+ public:
+  explicit DriftingGlove(const nn::TrainedPostures& postures) : ranges_(postures.network.ranges) {}
+
+  // Shows every shape once, drifted by `drift`, a share of each sensor's range; returns how many of
+  // the eight were recognised at their last hand.
+  int show(PostureSink& sink, const shm::Channel<PostureSample>& seen, float drift) {
+    int right = 0;
+    for (const hand::Shape& shape : hand::shapes()) {
+      for (int hand = 0; hand < 40; ++hand) {
+        ++counter_;
+        GloveSample sample = showing(shape.name, counter_);
+        sample.received_ns = std::int64_t{counter_} * 10'000'000;
+        for (std::size_t i = 0; i < std::size(sample.angle_rad); ++i) {
+          const float range = ranges_[i].high - ranges_[i].low;
+          sample.angle_rad[i] += (i % 2 == 0 ? drift : -drift) * range;
+        }
+        sink.publish(sample);
+      }
+      right += std::string_view(seen.newest()->name) == shape.name;
+    }
+    return right;
+  }
+  // Nothing is heard of the glove, as when its plug is pulled.
+  void pause() { counter_ += 200; }
+
+ private:
+  nn::InputRanges ranges_;
+  std::uint32_t counter_ = 1000;
+};
+
+constexpr float kDrifted = 0.27F;
+
+// Right postures, of eight, at the end of a slow drift.
+int rightAfterDrift(PostureSink& sink, const shm::Channel<PostureSample>& seen,
+                    DriftingGlove& glove) {
+  constexpr int kRounds = 100;
+  int right = 0;
+  for (int round = 0; round <= kRounds; ++round)
+    right = glove.show(sink, seen, kDrifted * static_cast<float>(round) / kRounds);
+  return right;
+}
+
+TEST_F(PostureSinkTest, FollowsASlowDriftAndForgetsItWhenTheGloveIsBack) {
+  DriftingGlove glove(file_);
+  EXPECT_EQ(rightAfterDrift(sink_, *postures_, glove), 8);
+  glove.pause();
+  EXPECT_EQ(glove.show(sink_, *postures_, 0), 8) << "the drift is forgotten";
+}
+
+TEST_F(PostureSinkTest, WithoutFollowingTheSameDriftIsTakenForOtherPostures) {
+  PostureSink still{file_, {{}, {.share = 0}}, {*postures_, held_}, next_};
+  DriftingGlove glove(file_);
+  EXPECT_LT(rightAfterDrift(still, *postures_, glove), 7);
+}
+
+TEST_F(PostureSinkTest, ANetworkWithoutStatisticsRecognisesAndFollowsNothing) {
+  PostureSink plain{nn::TrainedPostures{file_.network, {}}, {}, {*postures_, held_}, next_};
+  DriftingGlove glove(file_);
+  EXPECT_EQ(glove.show(plain, *postures_, 0), 8);
+  EXPECT_LT(rightAfterDrift(plain, *postures_, glove), 7);
 }
 
 }  // namespace
