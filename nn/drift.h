@@ -22,6 +22,7 @@ struct TrainedPostures {
 };
 
 // Thread-bound: it learns from what it recognises.
+// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding): there is one of it
 class DriftFollower {
  public:
   // `statistics`: of the network's training; a posture that the network does not name is ignored.

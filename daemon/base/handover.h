@@ -16,29 +16,30 @@ class Handover {
   Handover() = default;
   ~Handover() {
     delete offered_.load();
-    delete given_back_.load();
+    free(given_back_.load());
   }
   Handover(const Handover&) = delete;
   Handover& operator=(const Handover&) = delete;
 
   // Offers a value in place of one that was not taken yet.
   void offer(T value) {
-    auto fresh = std::make_unique<T>(std::move(value));
+    auto fresh = std::make_unique<Node>(Node{std::move(value), nullptr});
     delete offered_.exchange(fresh.release(), std::memory_order_acq_rel);
-    // After the exchange, since the taker waits while there is one: so none is overwritten.
-    delete given_back_.exchange(nullptr, std::memory_order_acq_rel);
+    free(given_back_.exchange(nullptr, std::memory_order_acquire));
   }
 
   // Swaps the offered value with `mine`, after merge(mine, offered); false if there is none.
   template <typename Merge>
   bool take(T& mine, const Merge& merge) noexcept {
-    if (!offered_.load(std::memory_order_relaxed) || given_back_.load(std::memory_order_acquire))
-      return false;
-    T* const fresh = offered_.exchange(nullptr, std::memory_order_acq_rel);
-    if (!fresh) return false;
-    merge(mine, *fresh);
-    std::swap(mine, *fresh);
-    given_back_.store(fresh, std::memory_order_release);
+    if (!offered_.load(std::memory_order_relaxed)) return false;
+    Node* const node = offered_.exchange(nullptr, std::memory_order_acq_rel);
+    if (!node) return false;
+    merge(mine, node->value);
+    std::swap(mine, node->value);
+    node->next = given_back_.load(std::memory_order_relaxed);
+    while (!given_back_.compare_exchange_weak(node->next, node, std::memory_order_release,
+                                              std::memory_order_relaxed)) {
+    }
     return true;
   }
   bool take(T& mine) noexcept {
@@ -46,8 +47,18 @@ class Handover {
   }
 
  private:
-  std::atomic<T*> offered_{nullptr};
-  std::atomic<T*> given_back_{nullptr};
+  struct Node {
+    T value;
+    Node* next;  // of those given back
+  };
+  static void free(Node* node) noexcept {
+    while (node) delete std::exchange(node, node->next);
+  }
+
+  std::atomic<Node*> offered_{nullptr};
+  // All that were given back since the last offer. Were there room for one only, a taker that gave
+  // one back just after the last offer could never take that offer.
+  std::atomic<Node*> given_back_{nullptr};
 };
 
 }  // namespace merlin
