@@ -92,9 +92,9 @@ const std::map<std::string, Folders> kMayInclude = {
       "render/testcard/card.h", "render/tiles"}},
     // The composition root.
     {"daemon",
-     {"config", "daemon/actions", "daemon/alarms", "daemon/cli", "daemon/devices", "daemon/net", "daemon/page",
-      "daemon/reload", "daemon/serve", "daemon/shm", "daemon/state", "daemon/status", "daemon/wall",
-      "nn", "nn/io", "render/gl", "render/image/overview.h"}},
+     {"config", "daemon/actions", "daemon/alarms", "daemon/cli", "daemon/devices", "daemon/net",
+      "daemon/page", "daemon/reload", "daemon/serve", "daemon/shm", "daemon/state", "daemon/status",
+      "daemon/wall", "nn", "nn/io", "render/gl", "render/image/overview.h"}},
     {"drivers/port", {}},
     {"drivers/cyberglove", {"drivers/port"}},
     {"drivers/fastrak", {"drivers/port"}},

@@ -116,7 +116,7 @@ TEST_F(EvdevTest, AGamepadMovesTurnsAndRises) {
             "axes x, rz-z, y, ry, rx, -hat0x; buttons south, east, north, west, tl, start");
   EXPECT_FLOAT_EQ(after(moved(ABS_X, 32767)).translation[0], 1);
   EXPECT_FLOAT_EQ(after(moved(ABS_Y, -32768)).translation[2], -1);  // forwards: away
-  EXPECT_EQ(sink_.ball.back().raw[2], 1000);  // a Spaceball's z points there
+  EXPECT_EQ(sink_.ball.back().raw[2], 1000);                        // a Spaceball's z points there
   EXPECT_FLOAT_EQ(after(moved(ABS_RZ, 255)).translation[1], 1);
   EXPECT_FLOAT_EQ(after(moved(ABS_Z, 255)).translation[1], 0);  // both triggers
   EXPECT_FLOAT_EQ(after(moved(ABS_RX, 32767)).rotation[1], 1);

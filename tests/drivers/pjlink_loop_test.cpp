@@ -40,7 +40,7 @@ struct Running {
 
 TEST(ProjectorLoop, SwitchesAProjectorOnAndOff) {
   ProjectorServer server;
-  server.projector.warm_up = server.projector.cool_down = Duration::zero();
+  server.set([](auto& p) { p.warm_up = p.cool_down = Duration::zero(); });
   Running r(server.port);
   ASSERT_TRUE(r.becomes(Power::kOff));
   r.loop.want(true);
@@ -114,7 +114,7 @@ TEST(ProjectorLoop, OneThatClosesAfterEachAnswerIsServedAllTheSame) {
 
 TEST(ProjectorLoop, ARefusalIsItsHealth) {
   ProjectorServer server;
-  server.projector.refusal = "ERR4";
+  server.set([](auto& p) { p.refusal = "ERR4"; });
   Running r(server.port);
   r.loop.want(true);
   ASSERT_TRUE(r.becomes(Health::kRefused));

@@ -115,10 +115,18 @@ class ProjectorServer {
     thread_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
   }
 
+  // Changes the projector before the first connection. Its thread reads the manner at each
+  // connection, and so sees what was written before.
+  template <typename Change>
+  void set(const Change& change) {
+    change(projector);
+    manner = manner.load();
+  }
+
   std::string port;
   std::atomic<Manner> manner{kPolite};
   std::atomic<int> connections{0};
-  // Touched by its thread alone, except before the first connection and after vanish().
+  // Touched by its thread alone, except by set() and after vanish().
   EmulatedProjector projector;
 
  private:

@@ -23,7 +23,8 @@ TEST(Operation, SignalsThatAskForNothingEndNothing) {
   for (const int signal : {SIGUSR1, SIGUSR2, SIGALRM, SIGXCPU, SIGIO, SIGPWR, SIGTSTP, SIGTTIN,
                            SIGTTOU, SIGRTMIN + 3, SIGRTMAX, SIGHUP})
     ASSERT_EQ(::kill(m.process().pid(), signal), 0);
-  EXPECT_TRUE(m.process().saysEventually("was read again; nothing changed")) << m.process().output();
+  EXPECT_TRUE(m.process().saysEventually("was read again; nothing changed"))
+      << m.process().output();
   EXPECT_FALSE(m.process().ended()) << m.process().output();
   EXPECT_TRUE(m.status()["devices"].contains("ball")) << m.status();
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
@@ -45,8 +46,7 @@ TEST(Operation, ALogThatNobodyReadsHoldsNothing) {
   const auto status = [&] { return run({kMerlin, "status", "--json", "--instance", instance}); };
   ASSERT_TRUE(eventually([&] { return status().status == 0; }));
   // Each reload logs one line.
-  for (int i = 0; i < 3; ++i)
-    ASSERT_EQ(run({kMerlin, "reload", "--instance", instance}).status, 0);
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(run({kMerlin, "reload", "--instance", instance}).status, 0);
   EXPECT_EQ(status().status, 0);
   char bytes[65536];
   while (::read(log.get(), bytes, sizeof bytes) > 0) continue;

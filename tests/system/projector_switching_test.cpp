@@ -16,8 +16,8 @@ class ProjectorSwitching : public testing::Test {
  protected:
   // Times of the emulated projectors: short, as nobody is to wait for them.
   ProjectorSwitching() {
-    for (ProjectorServer* p : {&left_, &right_})
-      p->projector.warm_up = p->projector.cool_down = std::chrono::seconds(1);
+    for (ProjectorServer* server : {&left_, &right_})
+      server->set([](auto& p) { p.warm_up = p.cool_down = std::chrono::seconds(1); });
   }
 
   void start(const json& more = json::object()) {
@@ -73,7 +73,7 @@ TEST_F(ProjectorSwitching, ByCommandAllAtOnceAndStatusShowsThem) {
 }
 
 TEST_F(ProjectorSwitching, OneThatWarmsUpIsNotSwitchedOffBeforeItIsOn) {
-  left_.projector.warm_up = std::chrono::seconds(3);
+  left_.set([](auto& p) { p.warm_up = std::chrono::seconds(3); });
   start();
   EXPECT_TRUE(is("left", "off"));
   merlin("projector_on");
@@ -88,7 +88,7 @@ TEST_F(ProjectorSwitching, OneThatWarmsUpIsNotSwitchedOffBeforeItIsOn) {
 
 TEST_F(ProjectorSwitching, AWrongPasswordIsSaidAndTheRightOneFromThenOnUsed) {
   ProjectorServer locked("JBMIAProjectorLink");
-  locked.projector.warm_up = std::chrono::seconds(0);
+  locked.set([](auto& p) { p.warm_up = std::chrono::seconds(0); });
   writeText(dir_ / "password", "guess\n");
   start({{"projectors",
           {{{"name", "left"},
