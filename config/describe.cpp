@@ -175,7 +175,7 @@ void describeEvdev(EvdevSettings& e, SettingsVisitor& v) {
       "buttons", e.buttons,
       "Keys of the input device that are ball.button.1, 2 and so on: the kernel's names without "
       "KEY_ or BTN_, in lower case, such as south, tl or pagedown. Empty: the first twelve "
-      "buttons of the device. `merlin devices` lists its keys.");
+      "buttons of the device.");
   v.number("dead_zone", e.dead_zone, {0, 0.9},
            "Share of an axis's full deflection, to either side, that is treated as rest.");
   v.number("curve", e.curve, {1, 5},

@@ -1,8 +1,6 @@
 #include "daemon/alarms_process.h"
 
 #include <array>
-#include <csignal>
-#include <ctime>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -16,6 +14,7 @@
 #include "daemon/base/log.h"
 #include "daemon/page/event_log.h"
 #include "daemon/page/role_watch.h"
+#include "daemon/stop_asked.h"
 
 namespace merlin {
 namespace {
@@ -26,18 +25,6 @@ constexpr Duration kWatchdogPing = std::chrono::seconds(1);
 constexpr Duration kFirstStart = std::chrono::minutes(3);
 // A role that is back within this time was restarted, and nobody is told.
 constexpr Duration kRestart = std::chrono::seconds(15);
-
-// Waits up to kBeat for a signal that ends the process.
-bool stopAsked() {
-  sigset_t set;
-  ::sigemptyset(&set);
-  for (const int s : {SIGTERM, SIGINT, SIGHUP}) ::sigaddset(&set, s);
-  const timespec limit{0, kBeat.count()};
-  const int signal = ::sigtimedwait(&set, nullptr, &limit);
-  if (signal == SIGHUP)
-    logInfo("SIGHUP is ignored: a changed configuration is read when this process is restarted");
-  return signal == SIGTERM || signal == SIGINT;
-}
 
 // Tells that a role ended, and that it is back. A role that has never run is not missed.
 class RoleState {
@@ -108,7 +95,7 @@ class AlarmsProcess {
   void run() {
     ::sd_notify(0, "READY=1");
     logInfo("ready");
-    while (!stopAsked()) {
+    while (!stopAsked(kBeat, "alarms")) {
       const Timestamp now = clock_.now();
       tend(now);
       if (now - pinged_ < kWatchdogPing) continue;

@@ -1,9 +1,7 @@
 #include "daemon/page_process.h"
 
 #include <cerrno>
-#include <csignal>
 #include <cstdlib>
-#include <ctime>
 #include <memory>
 #include <utility>
 
@@ -22,6 +20,7 @@
 #include "daemon/status/run_directory.h"
 #include "daemon/status/services.h"
 #include "daemon/status/watchdog.h"
+#include "daemon/stop_asked.h"
 
 namespace merlin {
 namespace {
@@ -29,18 +28,6 @@ namespace {
 constexpr Duration kBeat = std::chrono::milliseconds(100);
 // The wall's own threads take precedence on a machine that is busy with both.
 constexpr int kNice = 10;
-
-// Waits up to kBeat for a signal that ends the process.
-bool stopAsked() {
-  sigset_t set;
-  ::sigemptyset(&set);
-  for (const int s : {SIGTERM, SIGINT, SIGHUP}) ::sigaddset(&set, s);
-  const timespec limit{0, kBeat.count()};
-  const int signal = ::sigtimedwait(&set, nullptr, &limit);
-  if (signal == SIGHUP)
-    logInfo("SIGHUP is ignored: the page reads a changed configuration when it is restarted");
-  return signal == SIGTERM || signal == SIGINT;
-}
 
 Duration watchdogInterval() {
   std::uint64_t usec = 0;
@@ -71,7 +58,7 @@ class PageProcess {
     tend();
     ::sd_notify(0, "READY=1");
     logInfo("ready");
-    while (!stopAsked()) {
+    while (!stopAsked(kBeat, "page")) {
       tend();
       if (const auto ended = ended_threads_.check(clock_.now())) return *ended;
       if (watchdog_.ping(clock_.now(), threads_.threads())) ::sd_notify(0, "WATCHDOG=1");

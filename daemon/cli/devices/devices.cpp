@@ -145,6 +145,12 @@ int list(const DevicesOptions& options) {
 int watch(const DevicesOptions& options) {
   const UniqueFd stop = stopSignals();
   const auto reader = shm::DevicesReader::open(shm::segmentName(options.instance, "devices"));
+  if (!reader && reader.error().code == Errc::kNotFound) {
+    return fail({Errc::kNotFound,
+                 fmt::format("no merlind with devices runs as \"{}\": start it first, or give "
+                             "--instance",
+                             options.instance)});
+  }
   if (!reader) return fail(reader.error());
   const SystemClock clock;
   const Timestamp began = clock.now();
