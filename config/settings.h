@@ -9,16 +9,11 @@
 #include "daemon/page/settings.h"
 #include "daemon/serve/settings.h"
 #include "daemon/wall/settings.h"
-#include "drivers/cyberglove/settings.h"
-#include "drivers/evdev/settings.h"
-#include "drivers/fastrak/settings.h"
 #include "drivers/gpio/settings.h"
 #include "drivers/hand/settings.h"
 #include "drivers/pjlink/settings.h"
 #include "drivers/port/port_address.h"
-#include "drivers/spaceball/settings.h"
-#include "drivers/spacenav/settings.h"
-#include "drivers/vrpn/settings.h"
+#include "drivers/registry.h"
 #include "nn/settings.h"
 #include "render/frame/settings.h"
 #include "render/governor/settings.h"
@@ -31,17 +26,20 @@
 
 namespace merlin {
 
+// A device that is read: how it is reached, and what its driver is told.
+struct DeviceSettings {
+  std::string name;    // of its slots in shared memory, in the status and in bindings; unique
+  std::string person;  // whose it is; devices of one person act on the wall at the same time
+  LineSettings line;
+  DriverSettings own;  // of which line.driver uses its part
+};
+
+// "glove", "tracker" and "ball", of 1998's drivers and without ports.
+std::vector<DeviceSettings> defaultDevices();
+
 struct DevicesSettings {
-  LineSettings glove_line{"cyberglove", "", kCybergloveBaud};
-  CybergloveSettings glove;
-  LineSettings tracker_line{"fastrak", "", kFastrakBaud};
-  FastrakSettings tracker;
-  VrpnSettings vrpn;  // of the tracker, with this driver
-  LineSettings ball_line{"spaceball", "", kSpaceballBaud};
-  SpaceballSettings ball;
-  SpacenavSettings spacenav;  // of the ball, with this driver
-  EvdevSettings evdev;        // the same
-  HandSettings hand;
+  std::vector<DeviceSettings> list = defaultDevices();
+  std::vector<HandSettings> hands = {{}};
   GpioSettings gpio;
   std::vector<PjlinkSettings> projectors;
   std::vector<SwitchingTimes> projector_schedule;  // also of those at gpio.projector_line
@@ -52,6 +50,9 @@ struct DevicesSettings {
   // Time after which the buttons and postures of a device that has stopped working count as
   // released.
   double stale_after_s = 0.5;
+  // Several people: while one of them acts on the wall, and this long after, the others' input does
+  // not move what is shown.
+  double turn_s = 3;
   // Maximum wake-up latency of idle cores, for the whole machine [us]; -1: the system's setting.
   int cpu_latency_us = -1;
   std::string script = "visit";  // what the emulated person does, with --emulate

@@ -6,6 +6,8 @@
 #include <string_view>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/setting_fault.h"
+#include "daemon/base/settings_visitor.h"
 #include "drivers/cyberglove/settings.h"
 #include "drivers/evdev/settings.h"
 #include "drivers/fastrak/settings.h"
@@ -17,8 +19,6 @@
 
 namespace merlin {
 
-enum class SampleKind { kGlove, kTracker, kBall };
-
 // Settings of all drivers; each driver uses its own.
 struct DriverSettings {
   CybergloveSettings cyberglove;
@@ -29,17 +29,26 @@ struct DriverSettings {
   VrpnSettings vrpn;
 };
 
+// All that the rest of MERLIN needs to know about a driver.
 struct DriverEntry {
-  const char* name;
+  const char* name;  // also the key of its settings in the configuration
   SampleKind kind;
   int baud;  // default speed of its line; 0: it has none
   const char* help;
   std::unique_ptr<Device> (*make)(const DriverSettings&, const Clock&, SampleSink&);
+  // Describes the driver's own settings; null: it has none.
+  void (*describe)(DriverSettings&, SettingsVisitor&);
+  // Finds faults in them, also together with the device's line; null: none is possible. Pointers are
+  // relative to the device: "/port", "/cyberglove/rate_hz".
+  SettingFaults (*validate)(const DriverSettings&, const LineSettings&);
 };
 
 std::span<const DriverEntry> drivers();
 
-// nullptr if there is no driver of that name and kind.
-const DriverEntry* findDriver(SampleKind kind, std::string_view name);
+// nullptr if there is no driver of that name.
+const DriverEntry* findDriver(std::string_view name);
+
+// "glove", "tracker", "ball".
+const char* kindName(SampleKind kind);
 
 }  // namespace merlin

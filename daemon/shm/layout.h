@@ -23,8 +23,9 @@
 namespace merlin::shm {
 
 inline constexpr std::uint32_t kMagic = 0x4E4C524D;  // "MRLN" in memory
-inline constexpr std::uint32_t kVersion = 4;
-inline constexpr std::size_t kMostFields = 512;
+inline constexpr std::uint32_t kVersion = 5;
+inline constexpr std::size_t kMostFields = 512;          // of the wall's segment
+inline constexpr std::size_t kMostDevicesFields = 1536;  // of the devices' segment
 
 // A reader only needs to know the first 40 bytes beforehand: they have the offset of the table of
 // fields, which describes everything else. They are the same in the frame buffer's segment.
@@ -48,21 +49,8 @@ struct Header {
 static_assert(offsetof(Header, field_offset) == 24 && offsetof(Header, heartbeat_ns) == 40);
 static_assert(offsetof(Header, status_endpoint) == 64 && sizeof(Header) == 280);
 
-// Index of a device in DevicesSegment::health.
-enum DeviceIndex : std::size_t { kGlove = 0, kTracker = 1, kBall = 2, kDevices = 3 };
-inline constexpr const char* kDeviceNames[kDevices] = {"glove", "tracker", "ball"};
-
 // Maximum number of actions (daemon/base/commands.h).
 inline constexpr std::size_t kMostActions = 32;
-
-// Whose inputs trigger actions: index of DevicesSegment::actions.
-enum ActionSource : std::size_t {
-  kGloveActions = 0,  // postures and the wrist switch
-  kBallActions = 1,
-  kPanelActions = 2,
-  kActionSources = 3
-};
-inline constexpr const char* kActionSourceNames[kActionSources] = {"glove", "ball", "panel"};
 
 // Actions that the inputs of one device are bound to. Written when one begins or ends. Index of the
 // arrays: kActions of daemon/base/commands.h; other processes find an action by its field's name.
@@ -76,21 +64,38 @@ struct ActionState {
 };
 static_assert(sizeof(ActionState) == 192);
 
+// Slots of one glove. Writer: its device thread, which writes what follows from a sample before it.
+struct GloveSlots {
+  Channel<GloveSample> samples;
+  Channel<PostureSample> posture;
+  alignas(64) SeqSlot<PostureState> posture_state;
+};
+
+// Slots of one tracker. Writer: its device thread; of the frames the daemon, as it starts.
+struct TrackerSlots {
+  Channel<TrackerSample> stations[kStations];  // index: station - 1
+  alignas(64) SeqSlot<TrackerFrames> frames;
+};
+
+// The sources of actions: the devices, in the order of DevicesSegment::health, then the panel.
+inline constexpr std::size_t kPanelSource = kMostDevices;
+inline constexpr std::size_t kActionSources = kMostDevices + 1;
+
+// Room for the most devices that may be configured. Those that are, and only those, have names in
+// the table of fields: health and actions in the order of the configuration, samples in the order
+// of the devices of their kind.
 // NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding): offsets are a contract
 struct DevicesSegment {
   Header header;
-  alignas(64) SeqSlot<DeviceHealth> health[kDevices];  // writer: each device's thread
-  Channel<GloveSample> glove;                          // writer: the glove's device thread
-  Channel<PostureSample> posture;                     // writer: the same, before the glove's sample
-  Channel<TrackerSample> tracker[kStations];          // writer: the tracker's; index: station - 1
-  Channel<BallSample> ball;                           // writer: the ball's device thread
-  Channel<HandSample> hand;                           // writer: the tracker's device thread
-  Channel<GpioSample> gpio;                           // writer: the panel's thread
-  alignas(64) SeqSlot<DeviceHealth> gpio_health;      // writer: the panel's thread
-  alignas(64) SeqSlot<PostureState> posture_state;    // writer: the glove's device thread
-  alignas(64) SeqSlot<TrackerFrames> tracker_frames;  // writer: the daemon, as it starts
+  alignas(64) SeqSlot<DeviceHealth> health[kMostDevices];  // writer: each device's thread
+  GloveSlots glove[kMostGloves];
+  TrackerSlots tracker[kMostTrackers];
+  Channel<BallSample> ball[kMostBalls];                      // writer: each ball's device thread
+  Channel<HandSample> hand[kMostHands];                      // writer: its tracker's device thread
+  Channel<GpioSample> gpio;                                  // writer: the panel's thread
+  alignas(64) SeqSlot<DeviceHealth> gpio_health;             // writer: the panel's thread
   alignas(64) SeqSlot<ActionState> actions[kActionSources];  // writer: each device's thread
-  alignas(64) Field fields[kMostFields];                     // writer: the daemon, as it starts
+  alignas(64) Field fields[kMostDevicesFields];              // writer: the daemon, as it starts
 };
 
 // Statistics of the wall, written once per frame by the wall's thread. Shares are 0..1.

@@ -1,10 +1,16 @@
 // Settings of the hand.
 #pragma once
 
+#include <string>
+
 namespace merlin {
 
 struct HandSettings {
-  int station = 1;  // the tracker's station that is on the hand
+  std::string name = "hand";  // of its slot in shared memory; unique among hands and devices
+  std::string person;         // whose it is, as in the settings of devices
+  std::string glove;          // name of the glove that it wears; empty: the first glove
+  std::string tracker;        // name of the tracker that follows it; empty: the first tracker
+  int station = 1;            // the tracker's station that is on the hand
   // Low-pass filter of the pose, against the tracker's noise: cut-off frequency for a hand at rest
   // (0: no filter), and its increase with speed [Hz per m/s].
   double cutoff_hz = 3;

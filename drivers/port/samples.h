@@ -11,6 +11,13 @@
 
 namespace merlin {
 
+// What a device measures.
+enum class SampleKind { kGlove, kTracker, kBall };
+
+// The most devices that one daemon reads, of all kinds and of each, and the most hands.
+inline constexpr std::size_t kMostDevices = 16, kMostGloves = 4, kMostTrackers = 4, kMostBalls = 8;
+inline constexpr std::size_t kMostHands = 4;
+
 // Slots of a CyberGlove, in the order of the interface unit's mask bits: 0 thumb roll ... 22 wrist
 // yaw. drivers/cyberglove/README.md lists the slots and the rules that fill slot 7.
 inline constexpr std::size_t kGloveSlots = 23;

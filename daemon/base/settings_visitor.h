@@ -1,0 +1,108 @@
+// SettingsVisitor: a description of settings calls one of its functions for every setting. What reads
+// a file, writes the schema and the manual page, and prints or compares the settings in effect are
+// visitors of the same description, so that they always agree.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace merlin {
+
+struct Range {
+  double low, high;
+};
+
+class SettingsVisitor {
+ public:
+  virtual ~SettingsVisitor() = default;
+
+  // `help`: what the setting means, in full sentences, with the unit. `value`: the present value,
+  // which the visitor may change.
+  virtual void number(const char* key, double& value, Range range, const char* help) = 0;
+  virtual void integer(const char* key, int& value, Range range, const char* help) = 0;
+  virtual void flag(const char* key, bool& value, const char* help) = 0;
+  virtual void text(const char* key, std::string& value, const char* help) = 0;
+  // A list of any number of texts.
+  virtual void texts(const char* key, std::vector<std::string>& values, const char* help) = 0;
+  // A file name, relative to the folder of the configuration.
+  virtual void path(const char* key, std::string& value, const char* help) = 0;
+  // The name of a file that holds a secret: a password, a secret key. What is meant for strangers
+  // leaves the name out too, since people also write the secret itself in its place.
+  virtual void secretFile(const char* key, std::string& value, const char* help) {
+    path(key, value, help);
+  }
+  // One of `names`; `value` is its index.
+  virtual void choice(const char* key, int& value, std::span<const char* const> names,
+                      const char* help) = 0;
+  // A list of exactly values.size() numbers.
+  virtual void numbers(const char* key, std::span<double> values, Range range,
+                       const char* help) = 0;
+  virtual void group(const char* key, const char* help, const std::function<void()>& members) = 0;
+  // A list of any number of objects: resize(n) sets their number, member(i) describes one.
+  virtual void list(const char* key, std::size_t count, const char* help,
+                    const std::function<void(std::size_t)>& resize,
+                    const std::function<void(std::size_t)>& member) = 0;
+
+  // A key that a file must not have, since another setting determines its value. `what`: the rest
+  // of the sentence that begins with the key.
+  virtual void excluded(const char* key, const char* what) = 0;
+
+  // A group that only counts while `active`; another setting decides that. `what`: as in excluded(),
+  // why a file must not have the group while it is not active. Visitors that describe what a file
+  // may have, rather than what one has, describe the group in any case.
+  virtual void groupIf(bool active, const char* key, const char* help,
+                       const std::function<void()>& members, const char* what) {
+    if (active)
+      group(key, help, members);
+    else
+      excluded(key, what);
+  }
+
+  // Overloads for other number types and for enumerations.
+  void number(const char* key, float& value, Range range, const char* help) {
+    double wide = static_cast<double>(value);
+    number(key, wide, range, help);
+    value = static_cast<float>(wide);
+  }
+  void integer(const char* key, std::size_t& value, Range range, const char* help) {
+    int narrow = static_cast<int>(value);
+    integer(key, narrow, range, help);
+    value = static_cast<std::size_t>(narrow);
+  }
+  template <typename T, std::size_t N>
+  void numbers(const char* key, std::array<T, N>& values, Range range, const char* help) {
+    std::array<double, N> wide{};
+    for (std::size_t i = 0; i < N; ++i) wide[i] = static_cast<double>(values[i]);
+    numbers(key, std::span<double>(wide), range, help);
+    for (std::size_t i = 0; i < N; ++i) values[i] = static_cast<T>(wide[i]);
+  }
+  template <typename Enum>
+  void oneOf(const char* key, Enum& value, std::span<const char* const> names, const char* help) {
+    int index = static_cast<int>(value);
+    choice(key, index, names, help);
+    value = static_cast<Enum>(index);
+  }
+  // A text that is one of `names`.
+  void choiceOf(const char* key, std::string& value, std::span<const char* const> names,
+                const char* help) {
+    int index = 0;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (value == names[i]) index = static_cast<int>(i);
+    }
+    choice(key, index, names, help);
+    value = names[static_cast<std::size_t>(index)];
+  }
+  template <typename T>
+  void listOf(const char* key, std::vector<T>& values, const char* help,
+              const std::function<void(T&)>& member) {
+    list(
+        key, values.size(), help, [&](std::size_t n) { values.assign(n, T{}); },
+        [&](std::size_t i) { member(values[i]); });
+  }
+};
+
+}  // namespace merlin
