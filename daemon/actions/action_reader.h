@@ -15,24 +15,24 @@ namespace merlin::actions {
 struct Actions {
   // How often each action has begun since the last read().
   std::array<std::uint32_t, shm::kMostActions> begun{};
-  // The same by source, of which `begun` is the sum.
-  std::array<std::array<std::uint32_t, shm::kMostActions>, shm::kActionSources> begun_by{};
+  // The same by source, of which `begun` is the sum. Index: DeviceSlots::actions.
+  std::vector<std::array<std::uint32_t, shm::kMostActions>> begun_by;
   std::array<bool, shm::kMostActions> held{};
   // The actions that have begun, device by device, in the order in which they began; at most the
   // last twelve of each device.
   std::vector<std::size_t> in_order;
 };
 
-// Thread-bound. Never waits; allocates only while actions begin.
+// Thread-bound. Never waits.
 class ActionReader {
  public:
   // Actions that began before the first read, or before the first one after a restart of the daemon
-  // that counts them, are not reported. `held_by`: the sources whose held actions are reported.
-  Actions read(const shm::DeviceSlots& devices,
-               const std::array<bool, shm::kActionSources>& held_by = {true, true, true});
+  // that counts them, are not reported. `held_by`: whether a source's held actions are reported,
+  // by the index of DeviceSlots::actions; null: all are.
+  Actions read(const shm::DeviceSlots& devices, const std::vector<bool>* held_by = nullptr);
 
  private:
-  std::array<std::optional<shm::ActionState>, shm::kActionSources> last_;
+  std::vector<std::optional<shm::ActionState>> last_;  // by source
 };
 
 }  // namespace merlin::actions

@@ -15,10 +15,10 @@ namespace merlin::actions {
 // published before the sample, so that a reader that waits for the sample finds them.
 class ActionSink final : public SampleSink, public HealthSink {
  public:
-  // `postures`: where the current posture is published before each glove sample.
+  // `postures`: where the current posture is published before each glove sample; null: not a glove.
   // `stale_after`: a device that has not worked for this time counts as lost: its inputs end.
   struct Parts {
-    const shm::SeqSlot<PostureState>& postures;
+    const shm::SeqSlot<PostureState>* postures;
     SampleSink& samples;
     HealthSink& health;
     Duration stale_after;
@@ -37,7 +37,7 @@ class ActionSink final : public SampleSink, public HealthSink {
   void release(std::int64_t now_ns) noexcept { writer_.release(now_ns); }
 
   void publish(const GloveSample& sample) noexcept override {
-    const auto posture = parts_.postures.read();
+    const auto posture = parts_.postures ? parts_.postures->read() : std::nullopt;
     writer_.update(sample, posture ? &*posture : nullptr);
     parts_.samples.publish(sample);
   }

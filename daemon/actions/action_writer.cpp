@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "daemon/base/commands.h"
 
 namespace merlin::actions {
 
-ActionWriter::ActionWriter(const std::vector<Binding>& bindings, shm::ActionSource source,
+ActionWriter::ActionWriter(const std::vector<Binding>& bindings, Source source,
                            std::uint64_t generation, shm::SeqSlot<shm::ActionState>& slot)
-    : source_(source),
+    : source_(std::move(source)),
       bindings_(parse(bindings)),
       rebound_(std::make_unique<Handover<ParsedBindings>>()),
       slot_(slot) {
@@ -23,7 +24,7 @@ ActionWriter::ParsedBindings ActionWriter::parse(const std::vector<Binding>& bin
   for (const Binding& binding : bindings) {
     auto input = parseInput(binding.input);
     const auto action = std::find(kActions.begin(), kActions.end(), binding.action);
-    if (!input || input->source() != source_ || action == kActions.end()) continue;
+    if (!input || !input->isOf(source_) || action == kActions.end()) continue;
     parsed.push_back({*std::move(input), static_cast<std::size_t>(action - kActions.begin()),
                       isHeldAction(binding.action), binding.when == When::kLeave});
   }

@@ -17,10 +17,10 @@ namespace merlin::actions {
 // action begins or ends.
 class ActionWriter {
  public:
-  // Uses the bindings whose input belongs to `source`; others, and invalid ones, are ignored.
+  // Uses the bindings whose input is of `source`; others, and invalid ones, are ignored.
   // `generation`: of the daemon; a new one tells readers that the counters began again at 0.
-  ActionWriter(const std::vector<Binding>& bindings, shm::ActionSource source,
-               std::uint64_t generation, shm::SeqSlot<shm::ActionState>& slot);
+  ActionWriter(const std::vector<Binding>& bindings, Source source, std::uint64_t generation,
+               shm::SeqSlot<shm::ActionState>& slot);
 
   void update(const BallSample& ball) noexcept;
   // `posture`: the current posture, after its minimum hold time; may be null.
@@ -53,7 +53,7 @@ class ActionWriter {
   bool step(ParsedBinding& binding, bool held) noexcept;
   void updateHeld() noexcept;
 
-  shm::ActionSource source_;
+  Source source_;
   ParsedBindings bindings_;
   std::unique_ptr<Handover<ParsedBindings>> rebound_;  // a pointer, since a writer is moved
   shm::ActionState state_{};

@@ -16,39 +16,60 @@ std::optional<std::uint32_t> buttonBit(std::string_view number) {
   return 1U << (button - 1);
 }
 
+// Cuts off what stands before the last `part` that begins the name or follows a dot, such as
+// "left." of "left.posture.fist" for "posture."; nothing if the part is not there.
+std::optional<std::string> takeDevice(std::string_view& name, std::string_view part) {
+  if (name.starts_with(part)) {
+    name.remove_prefix(part.size());
+    return std::string();
+  }
+  const std::size_t dot = name.find('.');
+  if (dot == 0 || dot == std::string_view::npos || !name.substr(dot + 1).starts_with(part))
+    return std::nullopt;
+  std::string device(name.substr(0, dot));
+  name.remove_prefix(dot + 1 + part.size());
+  return device;
+}
+
+std::optional<Input> button(std::string_view name) {
+  const auto device = takeDevice(name, "button.");
+  const auto bit = device ? buttonBit(name) : std::nullopt;
+  if (!bit) return std::nullopt;
+  return Input{Input::Kind::kButton, *device, *bit, {}};
+}
+
+std::optional<Input> posture(std::string_view name) {
+  const auto device = takeDevice(name, "posture.");
+  if (!device || name.empty()) return std::nullopt;
+  return Input{Input::Kind::kPosture, *device, 0, std::string(name)};
+}
+
+std::optional<Input> wristSwitch(std::string_view name) {
+  const auto device = takeDevice(name, "switch");
+  if (!device || !name.empty()) return std::nullopt;
+  return Input{Input::Kind::kWristSwitch, *device, 0, {}};
+}
+
 }  // namespace
 
-shm::ActionSource Input::source() const {
-  switch (kind) {
-    case Kind::kBallButton: return shm::kBallActions;
-    case Kind::kPanelButton: return shm::kPanelActions;
-    case Kind::kPosture:
-    case Kind::kWristSwitch: break;
-  }
-  return shm::kGloveActions;
+bool Input::isOf(const Source& source) const {
+  if (!source.kind) return kind == Kind::kPanelButton;
+  if (!device.empty() && device != source.name) return false;
+  if (*source.kind == SampleKind::kBall) return kind == Kind::kButton;
+  return *source.kind == SampleKind::kGlove &&
+         (kind == Kind::kPosture || kind == Kind::kWristSwitch);
+}
+
+bool Input::overlaps(const Input& other) const {
+  return kind == other.kind && button == other.button && posture == other.posture &&
+         (device.empty() || other.device.empty() || device == other.device);
 }
 
 std::optional<Input> parseInput(std::string_view name) {
-  constexpr std::string_view kButton = "ball.button.", kPosture = "posture.";
-  Input input;
-  if (name == "glove.switch") {
-    input.kind = Input::Kind::kWristSwitch;
-    return input;
-  }
-  if (name == "panel.button") {
-    input.kind = Input::Kind::kPanelButton;
-    return input;
-  }
-  if (name.starts_with(kPosture) && name.size() > kPosture.size()) {
-    input.kind = Input::Kind::kPosture;
-    input.posture = name.substr(kPosture.size());
-    return input;
-  }
-  if (!name.starts_with(kButton)) return std::nullopt;
-  const auto bit = buttonBit(name.substr(kButton.size()));
-  if (!bit) return std::nullopt;
-  input.button = *bit;
-  return input;
+  if (name == "panel.button") return Input{Input::Kind::kPanelButton, {}, 0, {}};
+  if (auto input = button(name)) return input;
+  if (auto input = posture(name)) return input;
+  return wristSwitch(name);
 }
 
 }  // namespace merlin::actions

@@ -6,19 +6,27 @@
 #include <string>
 #include <string_view>
 
-#include "daemon/shm/layout.h"
+#include "drivers/port/samples.h"
 
 namespace merlin::actions {
 
-struct Input {
-  enum class Kind { kBallButton, kPosture, kWristSwitch, kPanelButton };
+// Whose inputs trigger actions: a device, or the control panel.
+struct Source {
+  std::string name;                // of the device
+  std::optional<SampleKind> kind;  // of the device; none: the panel
+};
 
-  Kind kind = Kind::kBallButton;
-  std::uint32_t button = 0;  // kBallButton: its bit in BallSample::buttons
+struct Input {
+  enum class Kind { kButton, kPosture, kWristSwitch, kPanelButton };
+
+  Kind kind = Kind::kButton;
+  std::string device;        // whose input it is; empty: that of every device that has such a one
+  std::uint32_t button = 0;  // kButton: its bit in BallSample::buttons
   std::string posture;       // kPosture: its name
 
-  // The device to which the input belongs.
-  shm::ActionSource source() const;
+  bool isOf(const Source& source) const;
+  // Whether one event can be both: the same part of the same device.
+  bool overlaps(const Input& other) const;
   bool operator==(const Input&) const = default;
 };
 

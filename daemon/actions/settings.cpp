@@ -49,10 +49,15 @@ void checkOne(const Binding& b, const std::string& at, SettingFaults& faults) {
                                       held ? b.action : "its release")});
 }
 
+// What all inputs have in common that one event can be, whatever device they name.
+std::string partOf(const actions::Input& input) {
+  return fmt::format("{} {} {}", static_cast<int>(input.kind), input.button, input.posture);
+}
+
 }  // namespace
 
 // Linear in the number of bindings: for each moment of an input at most one binding of each action
-// is kept.
+// is kept, and each input has few moments.
 SettingFaults validate(const std::vector<Binding>& bindings) {
   SettingFaults faults;
   std::map<std::pair<std::string, bool>, std::vector<std::size_t>> before;
@@ -60,9 +65,11 @@ SettingFaults validate(const std::vector<Binding>& bindings) {
     const Binding& b = bindings[i];
     const std::string at = fmt::format("/{}", i);
     checkOne(b, at, faults);
-    auto& same_moment = before[{b.input, atLeave(b)}];
+    const auto input = actions::parseInput(b.input);
+    auto& same_moment = before[{input ? partOf(*input) : b.input, atLeave(b)}];
     const auto j = std::find_if(same_moment.begin(), same_moment.end(), [&](std::size_t k) {
-      return exclude(bindings[k].action, b.action);
+      const auto other = actions::parseInput(bindings[k].input);
+      return (!input || !other || input->overlaps(*other)) && exclude(bindings[k].action, b.action);
     });
     if (j == same_moment.end()) {
       same_moment.push_back(i);

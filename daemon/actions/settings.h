@@ -19,12 +19,14 @@ struct Binding {
 
 // All names of inputs, for descriptions and messages.
 inline constexpr const char* kInputForms =
-    "ball.button.1 to ball.button.12, posture.NAME, glove.switch and panel.button";
+    "DEVICE.button.1 to DEVICE.button.12, DEVICE.posture.NAME, DEVICE.switch (DEVICE is the name "
+    "of "
+    "a device; without \"DEVICE.\" it is the input of any device), and panel.button";
 
 inline std::vector<Binding> defaultBindings() {
   return {{"posture.fist", "grab"},
-          {"ball.button.1", "reset_view"},
-          {"ball.button.2", "next_mode"},
+          {"button.1", "reset_view"},
+          {"button.2", "next_mode"},
           {"panel.button", "next_mode"}};
 }
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/actions/input.h"
 #include "daemon/base/did_you_mean.h"
 #include "drivers/io/open_stream.h"
 #include "drivers/io/transcript.h"
@@ -29,19 +30,19 @@ void checkPostures(LoadedSettings& loaded) {
   const std::string& path = loaded.settings.devices.postures;
   if (path.empty()) return;
   const auto file = nn::loadNetwork(path);
-  if (!file) return loaded.addFinding("/devices/postures", "cannot be used: " + file.error().what);
-  if (!loaded.lines.contains("/devices/bindings")) return;
+  if (!file) return loaded.addFinding("/postures/file", "cannot be used: " + file.error().what);
+  if (!loaded.lines.contains("/bindings")) return;
   const std::vector<std::string> names = namesOf(file->network.postures);
-  constexpr std::string_view kPosture = "posture.";
   const auto& bindings = loaded.settings.devices.bindings;
   for (std::size_t i = 0; i < bindings.size(); ++i) {
     const std::string& input = bindings[i].input;
-    if (!input.starts_with(kPosture) || input.size() == kPosture.size()) continue;
-    const std::string name = input.substr(kPosture.size());
+    const auto parsed = actions::parseInput(input);
+    if (!parsed || parsed->kind != actions::Input::Kind::kPosture) continue;
+    const std::string& name = parsed->posture;
     if (file->network.postures.code(name)) continue;
     const std::string near = nearestWord(name, names);
     loaded.addFinding(
-        fmt::format("/devices/bindings/{}/input", i),
+        fmt::format("/bindings/{}/input", i),
         fmt::format("is \"{}\", which is not a posture of {}; {}it knows {}", input, path,
                     near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near),
                     fmt::join(names, ", ")));
@@ -50,11 +51,10 @@ void checkPostures(LoadedSettings& loaded) {
 
 void checkPorts(LoadedSettings& loaded) {
   const DevicesSettings& d = loaded.settings.devices;
-  const std::pair<const char*, const std::string&> ports[] = {
-      {"glove", d.glove_line.port}, {"tracker", d.tracker_line.port}, {"ball", d.ball_line.port}};
-  for (const auto& [device, port] : ports) {
+  for (std::size_t i = 0; i < d.list.size(); ++i) {
+    const std::string& port = d.list[i].line.port;
     if (port.empty()) continue;
-    const std::string at = fmt::format("/devices/{}/port", device);
+    const std::string at = fmt::format("/devices/{}/port", i);
     const auto address = parsePort(port);
     if (!address) {
       loaded.addFinding(at, "cannot be used: " + address.error().what);
@@ -70,7 +70,7 @@ void checkPasswords(LoadedSettings& loaded) {
   for (std::size_t i = 0; i < projectors.size(); ++i) {
     const auto password = pjlink::readPassword(projectors[i].password_file);
     if (password) continue;
-    loaded.addFinding(fmt::format("/devices/projectors/{}/password_file", i),
+    loaded.addFinding(fmt::format("/projectors/{}/password_file", i),
                       "cannot be used: " + password.error().what);
   }
 }

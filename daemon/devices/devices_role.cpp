@@ -27,16 +27,6 @@ constexpr int kRealTimePriority = 50;
 constexpr double kStreamBytes_s = 1e6;  // byte-rate limit of a line without a baud rate
 constexpr int kSpare = 4;               // byte-rate limit of a line, relative to its baud rate
 
-constexpr SampleKind kKinds[shm::kDevices] = {SampleKind::kGlove, SampleKind::kTracker,
-                                              SampleKind::kBall};
-
-const LineSettings& lineOf(const DevicesSettings& settings, shm::DeviceIndex index) {
-  if (index == shm::kGlove) return settings.glove_line;
-  return index == shm::kTracker ? settings.tracker_line : settings.ball_line;
-}
-
-constexpr shm::DeviceIndex kEach[] = {shm::kGlove, shm::kTracker, shm::kBall};
-
 double paceOf(const LineSettings& line, const PortAddress& address) {
   if (line.max_bytes_s > 0) return line.max_bytes_s;
   return address.hasSpeed() ? kSpare * line.baud / 10.0 : kStreamBytes_s;
@@ -70,17 +60,9 @@ DeviceHealth notConfigured(Timestamp now) {
 }
 
 // Only a Fastrak is aligned by its settings; another tracker's samples are in its server's frame.
-// A glove sends about a hundred hands a second: fifteen of them are a posture that is held.
-PostureSink::Settings postureSettings(const DevicesSettings& settings) {
-  nn::DriftSettings drift;
-  drift.least_hands = 15;
-  if (!settings.posture_drift) drift.share = 0;
-  return {settings.posture_hold, drift};
-}
-
-TrackerFrames framesOf(const DevicesSettings& devices) {
+TrackerFrames framesOf(const DeviceSettings& device) {
   const FastrakSettings settings =
-      devices.tracker_line.driver == "fastrak" ? devices.tracker : FastrakSettings{};
+      device.line.driver == "fastrak" ? device.own.fastrak : FastrakSettings{};
   TrackerFrames frames;  // NOLINT(*-member-init): filled below
   for (std::size_t i = 0; i < kStations; ++i) {
     std::copy(settings.alignment_cm[i].begin(), settings.alignment_cm[i].end(),
@@ -154,7 +136,6 @@ DevicesRole::DevicesRole(Memory memory, const Settings& settings, std::uint64_t 
       slots_(std::move(memory.slots)),
       watch_(watch),
       clock_(clock),
-      sink_(*segment_),
       flight_(*segment_, settings.run_directory + "/flight", settings.instance),
       generation_(generation) {}
 
@@ -163,8 +144,8 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
                                                        const shm::Endpoints& endpoints,
                                                        ThreadWatch& watch, Clock& clock) {
   auto segment = shm::SegmentWriter<shm::DevicesSegment>::make(
-      shm::segmentName(settings.instance, "devices"), shm::devicesFields(), generation, clock.now(),
-      endpoints);
+      shm::segmentName(settings.instance, "devices"),
+      shm::devicesFields(slotNames(settings.devices)), generation, clock.now(), endpoints);
   if (!segment) return segment.error();
   auto slots = shm::DeviceSlots::find(**segment);
   if (!slots) return slots.error();
@@ -179,61 +160,44 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
   role->addPanel(settings.devices);
   role->addProjectors(settings.devices);
   role->cpu_latency_us_ = settings.devices.cpu_latency_us;
-  role->segment_->tracker_frames.publish(framesOf(settings.devices));
-  role->makeSinks(settings.devices, postures);
-  for (const shm::DeviceIndex index : kEach) {
-    role->segment_->health[index].publish(notConfigured(clock.now()));
-    if (lineOf(settings.devices, index).port.empty()) continue;
-    if (const auto opened = role->open(index, settings.devices); !opened) return opened.error();
+  for (std::size_t i = 0; i < settings.devices.list.size(); ++i) {
+    const DeviceSettings& device = settings.devices.list[i];
+    role->segment_->health[i].publish(notConfigured(clock.now()));
+    role->publishFrames(settings.devices, i);
+    role->lines_.push_back(std::make_unique<Line>());
+    role->lines_[i]->name = device.name;
+    role->lines_[i]->chain =
+        std::make_unique<DeviceChain>(settings.devices, i, postures, generation, *role->segment_);
+    if (device.line.port.empty()) continue;
+    if (const auto opened = role->open(i, settings.devices); !opened) return opened.error();
   }
   return role;
 }
 
-// Builds the chains of sinks through which samples and health reach shared memory. Each sink
-// publishes its own result before it passes a sample on.
-void DevicesRole::makeSinks(const DevicesSettings& settings,
-                            const std::optional<nn::TrainedPostures>& postures) {
-  for (const shm::DeviceIndex index : kEach) {
-    lines_[index] = std::make_unique<Line>(segment_->health[index]);
-  }
-  const auto actionsOf = [&](shm::ActionSource source, HealthSink& health) {
-    return std::make_unique<actions::ActionSink>(
-        actions::ActionWriter(settings.bindings, source, generation_, segment_->actions[source]),
-        actions::ActionSink::Parts{segment_->posture_state, sink_, health,
-                                   fromSeconds(settings.stale_after_s)});
-  };
-  glove_actions_ = actionsOf(shm::kGloveActions, lines_[shm::kGlove]->health);
-  ball_actions_ = actionsOf(shm::kBallActions, lines_[shm::kBall]->health);
-  posture_sink_ = std::make_unique<PostureSink>(
-      postures, postureSettings(settings),
-      PostureSink::Outputs{segment_->posture, segment_->posture_state}, *glove_actions_);
-  hand_sink_ = std::make_unique<HandSink>(settings.hand, *segment_, sink_);
-  lines_[shm::kGlove]->counts = std::make_unique<ContinuedCounts>(*posture_sink_, *glove_actions_);
-  lines_[shm::kTracker]->counts =
-      std::make_unique<ContinuedCounts>(*hand_sink_, lines_[shm::kTracker]->health);
-  lines_[shm::kBall]->counts = std::make_unique<ContinuedCounts>(*ball_actions_, *ball_actions_);
+void DevicesRole::publishFrames(const DevicesSettings& settings, std::size_t device) {
+  const DevicePlace place = devicePlaces(settings)[device];
+  if (place.kind == SampleKind::kTracker)
+    segment_->tracker[place.of_kind].frames.publish(framesOf(settings.list[device]));
 }
 
 // Makes the loop of a device that has a port.
-Result<Ok> DevicesRole::open(shm::DeviceIndex index, const DevicesSettings& settings) {
-  const LineSettings& line = lineOf(settings, index);
-  const DriverEntry* driver = findDriver(kKinds[index], line.driver);
+Result<Ok> DevicesRole::open(std::size_t device, const DevicesSettings& settings) {
+  const LineSettings& line = settings.list[device].line;
+  const DriverEntry* driver = findDriver(line.driver);
   if (!driver) return Error{Errc::kInvalidArgument, "there is no driver named " + line.driver};
   const auto address = parsePort(line.port);
   if (!address) return address.error();
-  const DriverSettings own{settings.glove,    settings.tracker, settings.ball,
-                           settings.spacenav, settings.evdev,   settings.vrpn};
   DeviceLoopSettings loop;
   loop.port = line.port;
   loop.baud = line.baud;
   loop.max_bytes_s = paceOf(line, *address);
   loop.on_pace = [](bool above) { above ? giveUpRealTime() : askForRealTime(); };
-  ByteTap& tap = flight_.ringOf(index, line.driver, line.baud);
-  Line& entry = *lines_[index];
-  entry.name = line.driver;
-  entry.loop =
-      std::make_unique<DeviceLoop>(loop, Opener(*address, line.baud, tap, entry.progress, clock_),
-                                   driver->make(own, clock_, *entry.counts), *entry.counts, clock_);
+  Line& entry = *lines_[device];
+  ByteTap& tap = flight_.ringOf(device, entry.name, line.driver, line.baud);
+  entry.loop = std::make_unique<DeviceLoop>(
+      loop, Opener(*address, line.baud, tap, entry.progress, clock_),
+      driver->make(settings.list[device].own, clock_, entry.chain->samples()),
+      entry.chain->health(), clock_);
   return Ok{};
 }
 
@@ -248,39 +212,34 @@ void DevicesRole::start(Line& line) {
 }
 
 // Stops the device's thread, if it has one. What its inputs hold ends.
-void DevicesRole::close(shm::DeviceIndex index) {
-  Line& line = *lines_[index];
+void DevicesRole::close(std::size_t device) {
+  Line& line = *lines_[device];
   line.thread.stop();
   line.loop.reset();
-  flight_.expectEnd(index);
-  line.counts->restart();
-  const std::int64_t now_ns = toNanoseconds(clock_.now());
-  if (index == shm::kGlove) glove_actions_->release(now_ns);
-  if (index == shm::kBall) ball_actions_->release(now_ns);
+  flight_.expectEnd(device);
+  line.chain->close(toNanoseconds(clock_.now()));
 }
 
 void DevicesRole::reload(const Settings& settings, const DevicesChanges& changes,
                          const std::optional<nn::TrainedPostures>& postures) {
   const DevicesSettings& devices = settings.devices;
-  if (changes.bindings) {
-    const Duration stale_after = fromSeconds(devices.stale_after_s);
-    glove_actions_->reload(devices.bindings, stale_after);
-    ball_actions_->reload(devices.bindings, stale_after);
-    if (panel_actions_) panel_actions_->rebind(devices.bindings);
+  for (const auto& line : lines_) {
+    if (changes.bindings) line->chain->rebind(devices);
+    if (changes.hand) line->chain->reloadHands(devices);
+    if (changes.postures) line->chain->reloadPostures(postures, devices);
   }
-  if (changes.hand) hand_sink_->reload(devices.hand);
-  if (changes.postures) posture_sink_->reload(postures, postureSettings(devices));
-  if (changes.lines[shm::kTracker]) segment_->tracker_frames.publish(framesOf(devices));
-  for (const shm::DeviceIndex index : kEach) {
-    if (!changes.lines[index]) continue;
-    close(index);
-    if (lineOf(devices, index).port.empty()) {
-      segment_->health[index].publish(notConfigured(clock_.now()));
+  if (changes.bindings && panel_actions_) panel_actions_->rebind(devices.bindings);
+  for (std::size_t i = 0; i < lines_.size() && i < changes.lines.size(); ++i) {
+    if (!changes.lines[i]) continue;
+    close(i);
+    publishFrames(devices, i);
+    if (devices.list[i].line.port.empty()) {
+      segment_->health[i].publish(notConfigured(clock_.now()));
       continue;
     }
-    [[maybe_unused]] const auto opened = open(index, devices);
+    [[maybe_unused]] const auto opened = open(i, devices);
     assert(opened);
-    start(*lines_[index]);
+    start(*lines_[i]);
   }
 }
 
@@ -300,7 +259,7 @@ void DevicesRole::addPanel(const DevicesSettings& devices) {
       segment_->gpio.publish(sample);
   };
   panel_actions_ = std::make_unique<actions::ActionWriter>(
-      devices.bindings, shm::kPanelActions, generation_, segment_->actions[shm::kPanelActions]);
+      devices.bindings, actions::Source{}, generation_, segment_->actions[shm::kPanelSource]);
   panel_ = std::make_unique<gpio::PanelLoop>(
       settings, open, publish, *panel_health_, clock_,
       [this] { panel_actions_->press(toNanoseconds(clock_.now())); });
@@ -354,13 +313,9 @@ void DevicesRole::start() {
 
 DevicesRole::~DevicesRole() {
   for (WatchedThread& thread : threads_) thread.requestStop();
-  for (const auto& line : lines_) {
-    if (line) line->thread.requestStop();
-  }
+  for (const auto& line : lines_) line->thread.requestStop();
   threads_.clear();
-  for (const auto& line : lines_) {
-    if (line) line->thread.stop();
-  }
+  for (const auto& line : lines_) line->thread.stop();
 }
 
 }  // namespace merlin::devices

@@ -2,22 +2,18 @@
 // shared memory.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "config/settings.h"
-#include "daemon/actions/action_sink.h"
 #include "daemon/actions/action_writer.h"
 #include "daemon/base/clock.h"
 #include "daemon/base/unique_fd.h"
 #include "daemon/base/watched_thread.h"
-#include "daemon/devices/continued_counts.h"
+#include "daemon/devices/device_chain.h"
 #include "daemon/devices/flight_recorder.h"
-#include "daemon/devices/hand_sink.h"
-#include "daemon/devices/posture_sink.h"
 #include "daemon/devices/projectors.h"
 #include "daemon/shm/segment.h"
 #include "daemon/shm/shm_sink.h"
@@ -31,7 +27,7 @@ namespace merlin::devices {
 // What changed in the settings of the devices while they are read.
 struct DevicesChanges {
   bool bindings = false, hand = false, postures = false;
-  std::array<bool, shm::kDevices> lines{};  // by device: its line or the settings of its driver
+  std::vector<bool> lines;  // by device: its line or the settings of its driver
 };
 
 class DevicesRole {
@@ -54,7 +50,8 @@ class DevicesRole {
   // Gives the devices that run these settings, of which `changes` differ. Only the threads of
   // `changes.lines` are stopped, which takes up to 50 ms for each, and made again; all else is
   // swapped between two samples. `postures`: of settings.devices.postures, if that is not empty.
-  // REQUIRES: start() was called; every driver exists and every port can be parsed.
+  // REQUIRES: start() was called; every driver exists and every port can be parsed; devices and
+  // hands are as many as before, with the same names and kinds.
   void reload(const Settings& settings, const DevicesChanges& changes,
               const std::optional<nn::TrainedPostures>& postures);
 
@@ -83,31 +80,22 @@ class DevicesRole {
   void addProjectors(const DevicesSettings& settings);
   // A device's line; `loop` and `thread` are of the present connection.
   struct Line {
-    explicit Line(shm::SeqSlot<DeviceHealth>& slot) : health(slot) {}
-    std::string name;  // of its driver
-    shm::ShmHealthSink health;
-    std::unique_ptr<ContinuedCounts> counts;  // the first sink
-    Progress* progress = nullptr;             // set when the thread starts
-    std::unique_ptr<DeviceLoop> loop;         // null: no port
+    std::string name;  // of the device
+    std::unique_ptr<DeviceChain> chain;
+    Progress* progress = nullptr;      // set when the thread starts
+    std::unique_ptr<DeviceLoop> loop;  // null: no port
     WatchedThread thread;
   };
-  void makeSinks(const DevicesSettings& settings,
-                 const std::optional<nn::TrainedPostures>& postures);
-  Result<Ok> open(shm::DeviceIndex index, const DevicesSettings& settings);
+  void publishFrames(const DevicesSettings& settings, std::size_t device);
+  Result<Ok> open(std::size_t device, const DevicesSettings& settings);
   void start(Line& line);
-  void close(shm::DeviceIndex index);
+  void close(std::size_t device);
 
   shm::SegmentWriter<shm::DevicesSegment> segment_;
   shm::DeviceSlots slots_;
   ThreadWatch& watch_;
   Clock& clock_;
-  shm::ShmSink sink_;
   FlightRecorder flight_;
-  // What samples and health pass through on their way to shared memory; made once, while the lines
-  // may come and go.
-  std::unique_ptr<actions::ActionSink> glove_actions_, ball_actions_;
-  std::unique_ptr<PostureSink> posture_sink_;  // before glove_actions_
-  std::unique_ptr<HandSink> hand_sink_;
   std::unique_ptr<actions::ActionWriter> panel_actions_;
   std::unique_ptr<gpio::PanelLoop> panel_;
   bool panel_switches_projectors_ = false;
@@ -115,9 +103,9 @@ class DevicesRole {
   std::unique_ptr<shm::ShmHealthSink> panel_health_;
   std::uint64_t generation_;
   int cpu_latency_us_ = -1;
-  UniqueFd cpu_latency_;  // the limit is in effect while this is open
-  std::array<std::unique_ptr<Line>, shm::kDevices> lines_;
-  std::vector<WatchedThread> threads_;  // of panel and projectors
+  UniqueFd cpu_latency_;                      // the limit is in effect while this is open
+  std::vector<std::unique_ptr<Line>> lines_;  // in the order of the list of devices
+  std::vector<WatchedThread> threads_;        // of panel and projectors
 };
 
 }  // namespace merlin::devices

@@ -16,17 +16,19 @@ constexpr std::size_t kMostDumps = 8;  // files kept per device
 
 }  // namespace
 
-FlightRing& FlightRecorder::ringOf(shm::DeviceIndex device, std::string driver, int baud) {
+FlightRing& FlightRecorder::ringOf(std::size_t device, std::string name, std::string driver,
+                                   int baud) {
   const std::lock_guard lock(mutex_);
   auto entry = std::ranges::find(entries_, device, &Entry::device);
   if (entry == entries_.end())
-    entry = entries_.insert(entry, {device, {}, 0, std::make_unique<FlightRing>()});
+    entry = entries_.insert(entry, {device, {}, {}, 0, std::make_unique<FlightRing>()});
+  entry->name = std::move(name);
   entry->driver = std::move(driver);
   entry->baud = baud;
   return *entry->ring;
 }
 
-void FlightRecorder::expectEnd(shm::DeviceIndex device) {
+void FlightRecorder::expectEnd(std::size_t device) {
   const std::lock_guard lock(mutex_);
   const auto entry = std::ranges::find(entries_, device, &Entry::device);
   if (entry != entries_.end()) entry->was_well = false;
@@ -43,9 +45,8 @@ std::vector<std::string> FlightRecorder::check() {
     entry.was_well = well;
     if (!fell) continue;
     const auto file = write(entry, health->reason);
-    sentences.push_back(file
-                            ? fmt::format("the last bytes of the {} are in {}", entry.driver, *file)
-                            : file.error().what);
+    sentences.push_back(file ? fmt::format("the last bytes of {} are in {}", entry.name, *file)
+                             : file.error().what);
   }
   return sentences;
 }
@@ -62,7 +63,7 @@ Result<std::vector<std::string>> FlightRecorder::dump() {
 }
 
 Result<std::string> FlightRecorder::write(const Entry& entry, std::string_view why) {
-  const DatedFiles files(folder_, fmt::format("{}-{}", instance_, entry.driver), ".bytes",
+  const DatedFiles files(folder_, fmt::format("{}-{}", instance_, entry.name), ".bytes",
                          kMostDumps);
   const std::time_t now = std::time(nullptr);
   auto path = files.next(now);

@@ -16,16 +16,17 @@ namespace merlin::devices {
 // Thread-bound to the status server's thread, except for the rings, ringOf() and expectEnd().
 class FlightRecorder {
  public:
-  // Dumps are written into `folder` as INSTANCE-DRIVER-TIME.bytes; the newest eight of each driver
+  // Dumps are written into `folder` as INSTANCE-DEVICE-TIME.bytes; the newest eight of each device
   // are kept, including those of earlier runs (DatedFiles).
   FlightRecorder(const shm::DevicesSegment& segment, std::string folder, std::string instance)
       : segment_(segment), folder_(std::move(folder)), instance_(std::move(instance)) {}
 
-  // Returns the device's ring, which lives as long as the recorder; the first call makes it.
-  // `driver` and `baud` go into the headers of its dumps. Thread-safe.
-  FlightRing& ringOf(shm::DeviceIndex device, std::string driver, int baud);
+  // Returns the ring of the device with this index in DevicesSegment::health, which lives as long
+  // as the recorder; the first call makes it. `name` goes into the names of its dumps, `driver` and
+  // `baud` into their headers. Thread-safe.
+  FlightRing& ringOf(std::size_t device, std::string name, std::string driver, int baud);
   // The device was stopped on purpose: no reason for a dump. Thread-safe.
-  void expectEnd(shm::DeviceIndex device);
+  void expectEnd(std::size_t device);
 
   // Dumps each device that has stopped working since the last call; returns a sentence for each.
   std::vector<std::string> check();
@@ -35,7 +36,8 @@ class FlightRecorder {
 
  private:
   struct Entry {
-    shm::DeviceIndex device;
+    std::size_t device;
+    std::string name;
     std::string driver;
     int baud;
     std::unique_ptr<FlightRing> ring;

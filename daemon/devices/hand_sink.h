@@ -13,13 +13,17 @@ namespace merlin::devices {
 // shared memory, as any client does.
 class HandSink final : public SampleSink {
  public:
-  HandSink(const HandSettings& settings, shm::DevicesSegment& segment, SampleSink& next)
+  // `glove`: where the samples of the hand's glove are; null: it wears none. `hand`: where the hand
+  // is published.
+  HandSink(const HandSettings& settings, const shm::Channel<GloveSample>* glove,
+           shm::Channel<HandSample>& hand, SampleSink& next)
       : station_(static_cast<std::uint32_t>(settings.station)),
         hand_(settings),
-        segment_(segment),
+        glove_(glove),
+        slot_(hand),
         next_(next) {}
 
-  // For one other thread: settings from the tracker's next record on.
+  // For one other thread: station and filter from the tracker's next record on.
   void reload(const HandSettings& settings) { fresh_.offer(settings); }
 
   void publish(const GloveSample& sample) noexcept override { next_.publish(sample); }
@@ -30,14 +34,15 @@ class HandSink final : public SampleSink {
       hand_ = hand::Hand(settings);
     }
     if (sample.station == station_)
-      segment_.hand.publish(hand_.update(sample, segment_.glove.newest()));
+      slot_.publish(hand_.update(sample, glove_ ? glove_->newest() : std::nullopt));
   }
   void publish(const BallSample& sample) noexcept override { next_.publish(sample); }
 
  private:
   std::uint32_t station_;
   hand::Hand hand_;
-  shm::DevicesSegment& segment_;
+  const shm::Channel<GloveSample>* glove_;
+  shm::Channel<HandSample>& slot_;
   SampleSink& next_;
   Handover<HandSettings> fresh_;
 };

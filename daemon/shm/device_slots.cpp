@@ -1,5 +1,6 @@
 #include "daemon/shm/device_slots.h"
 
+#include <algorithm>
 #include <optional>
 
 #include <fmt/format.h>
@@ -42,22 +43,36 @@ Result<DeviceSlots> DeviceSlots::find(const SlotTable& table, const Header& head
   slots.header = &header;
   Finder finder(table);
   for (const std::string& device : table.namesBefore(".health.state")) {
-    if (device == "gpio") continue;
-    finder.find(device + ".health", slots.health.emplace_back(Health{device, nullptr}).slot);
+    if (device != "gpio")
+      finder.find(device + ".health", slots.health.emplace_back(Health{device, {}}).slot);
   }
-  finder.find("glove.health", slots.glove_health);
-  finder.find("tracker.health", slots.tracker_health);
-  finder.find("ball.health", slots.ball_health);
-  finder.find("glove", slots.glove);
-  finder.find("posture", slots.posture);
-  finder.find("posture_state", slots.posture_state);
-  for (std::size_t i = 0; i < kStations; ++i)
-    finder.find(fmt::format("tracker{}", i + 1), slots.tracker[i]);
-  finder.find("tracker", slots.tracker_frames);
-  finder.find("ball", slots.ball);
-  finder.find("hand", slots.hand);
-  for (std::size_t i = 0; i < kActionSources; ++i)
-    finder.find(fmt::format("actions.{}", kActionSourceNames[i]), slots.actions[i]);
+  // Each kind is told by a field that only its samples have.
+  for (const std::string& name : table.namesBefore(".angle_rad")) {
+    Glove& glove = slots.gloves.emplace_back(Glove{name, {}, {}, {}, {}});
+    finder.find(name + ".health", glove.health);
+    finder.find(name, glove.samples);
+    finder.find(name + ".posture", glove.posture);
+    finder.find(name + ".posture_state", glove.posture_state);
+  }
+  for (const std::string& name : table.namesBefore(".boresight_wxyz")) {
+    Tracker& tracker = slots.trackers.emplace_back(Tracker{name, {}, {}, {}});
+    finder.find(name + ".health", tracker.health);
+    for (std::size_t i = 0; i < kStations; ++i)
+      finder.find(fmt::format("{}{}", name, i + 1), tracker.stations[i]);
+    finder.find(name, tracker.frames);
+  }
+  for (const std::string& name : table.namesBefore(".translation")) {
+    Ball& ball = slots.balls.emplace_back(Ball{name, {}, {}});
+    finder.find(name + ".health", ball.health);
+    finder.find(name, ball.samples);
+  }
+  for (const std::string& name : table.namesBefore(".joint_rad"))
+    finder.find(name, slots.hands.emplace_back(Hand{name, {}}).samples);
+  for (const std::string& name : table.namesBefore(".sequence")) {
+    constexpr std::string_view kActions = "actions.";
+    if (name.starts_with(kActions))
+      finder.find(name, slots.actions.emplace_back(Actions{name.substr(kActions.size()), {}}).slot);
+  }
   if (finder.error()) return *finder.error();
   if (const auto gpio = table.channel<GpioSample>("gpio")) slots.gpio = *gpio;
   return slots;
@@ -67,6 +82,31 @@ Result<DeviceSlots> DeviceSlots::find(const DevicesSegment& segment) {
   const auto table = SlotTable::read(std::as_bytes(std::span(&segment, 1)), "of the devices");
   if (!table) return table.error();
   return find(*table, segment.header);
+}
+
+namespace {
+
+template <typename Slots>
+const Slots* named(const std::vector<Slots>& all, std::string_view name) {
+  if (name.empty()) return all.empty() ? nullptr : &all.front();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Slots& s) { return s.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+const DeviceSlots::Glove* DeviceSlots::glove(std::string_view name) const {
+  return named(gloves, name);
+}
+const DeviceSlots::Tracker* DeviceSlots::tracker(std::string_view name) const {
+  return named(trackers, name);
+}
+const DeviceSlots::Ball* DeviceSlots::ball(std::string_view name) const {
+  return named(balls, name);
+}
+const DeviceSlots::Hand* DeviceSlots::hand(std::string_view name) const {
+  return named(hands, name);
 }
 
 const char* healthName(const DeviceHealth& health, Timestamp now) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/base/clock.h"
@@ -20,28 +21,54 @@ struct DeviceSlots {
     std::string device;  // "glove"
     const SeqSlot<DeviceHealth>* slot;
   };
+  struct Glove {
+    std::string name;
+    const SeqSlot<DeviceHealth>* health;
+    const Channel<GloveSample>* samples;
+    const Channel<PostureSample>* posture;
+    const SeqSlot<PostureState>* posture_state;
+  };
+  struct Tracker {
+    std::string name;
+    const SeqSlot<DeviceHealth>* health;
+    std::array<const Channel<TrackerSample>*, kStations> stations;  // index: station - 1
+    const SeqSlot<TrackerFrames>* frames;
+  };
+  struct Ball {
+    std::string name;
+    const SeqSlot<DeviceHealth>* health;
+    const Channel<BallSample>* samples;
+  };
+  struct Hand {
+    std::string name;
+    const Channel<HandSample>* samples;
+  };
+  struct Actions {
+    std::string source;  // name of a device, or "panel"
+    const SeqSlot<ActionState>* slot;
+  };
 
   // Finds all members. Errors: those of SlotTable::channel().
   static Result<DeviceSlots> find(const SlotTable& table, const Header& header);
   // The same for a segment of this process, whose table is filled in.
   static Result<DeviceSlots> find(const DevicesSegment& segment);
 
+  // The one with this name, or the first one if `name` is empty; null if there is none.
+  const Glove* glove(std::string_view name = {}) const;
+  const Tracker* tracker(std::string_view name = {}) const;
+  const Ball* ball(std::string_view name = {}) const;
+  const Hand* hand(std::string_view name = {}) const;
+
   const Header* header = nullptr;
-  // Of each device that the table names "NAME.health", in its order; without the control panel,
-  // which is "gpio".
+  // Each in the table's order, which is that of the configuration. Health is that of the devices,
+  // without the control panel's, which is "gpio.health".
   std::vector<Health> health;
-  const SeqSlot<DeviceHealth>* glove_health = nullptr;
-  const SeqSlot<DeviceHealth>* tracker_health = nullptr;
-  const SeqSlot<DeviceHealth>* ball_health = nullptr;
-  const Channel<GloveSample>* glove = nullptr;
-  const Channel<PostureSample>* posture = nullptr;
-  const SeqSlot<PostureState>* posture_state = nullptr;
-  std::array<const Channel<TrackerSample>*, kStations> tracker{};  // index: station - 1
-  const SeqSlot<TrackerFrames>* tracker_frames = nullptr;
-  const Channel<BallSample>* ball = nullptr;
-  const Channel<HandSample>* hand = nullptr;
+  std::vector<Glove> gloves;
+  std::vector<Tracker> trackers;
+  std::vector<Ball> balls;
+  std::vector<Hand> hands;
+  std::vector<Actions> actions;
   const Channel<GpioSample>* gpio = nullptr;  // null if the segment lacks it
-  std::array<const SeqSlot<ActionState>*, kActionSources> actions{};
 };
 
 // State of a device for people and programs: "absent", "opening", "ok", "failed"; "stale" if an ok

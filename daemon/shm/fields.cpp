@@ -316,30 +316,62 @@ template std::vector<Field> channelFields<BallSample>(const std::string&, std::s
 template std::vector<Field> channelFields<HandSample>(const std::string&, std::size_t);
 template std::vector<Field> channelFields<GpioSample>(const std::string&, std::size_t);
 
-std::vector<Field> devicesFields() {
-  FieldTable t;
-  addHeader(t);
-  for (std::size_t i = 0; i < kDevices; ++i) {
-    addSlot<DeviceHealth>(t, fmt::format("{}.health", kDeviceNames[i]),
-                          offsetof(DevicesSegment, health) + i * sizeof(SeqSlot<DeviceHealth>));
+namespace {
+
+// `alias`: whether its postures have the names of the first glove's as well.
+void addGlove(FieldTable& t, const std::string& name, std::size_t offset, bool alias) {
+  addChannel<GloveSample>(t, name, offset + offsetof(GloveSlots, samples));
+  for (const std::string& prefix : {name + ".", std::string()}) {
+    if (prefix.empty() && !alias) continue;
+    addChannel<PostureSample>(t, prefix + "posture", offset + offsetof(GloveSlots, posture));
+    addSlot<PostureState>(t, prefix + "posture_state",
+                          offset + offsetof(GloveSlots, posture_state));
   }
-  addChannel<GloveSample>(t, "glove", offsetof(DevicesSegment, glove));
-  addChannel<PostureSample>(t, "posture", offsetof(DevicesSegment, posture));
-  addSlot<PostureState>(t, "posture_state", offsetof(DevicesSegment, posture_state));
+}
+
+void addTracker(FieldTable& t, const std::string& name, std::size_t offset) {
   for (std::size_t i = 0; i < kStations; ++i) {
     addChannel<TrackerSample>(
-        t, fmt::format("tracker{}", i + 1),
-        offsetof(DevicesSegment, tracker) + i * sizeof(Channel<TrackerSample>));
+        t, fmt::format("{}{}", name, i + 1),
+        offset + offsetof(TrackerSlots, stations) + i * sizeof(Channel<TrackerSample>));
   }
-  addSlot<TrackerFrames>(t, "tracker", offsetof(DevicesSegment, tracker_frames));
-  addChannel<BallSample>(t, "ball", offsetof(DevicesSegment, ball));
-  addChannel<HandSample>(t, "hand", offsetof(DevicesSegment, hand));
+  addSlot<TrackerFrames>(t, name, offset + offsetof(TrackerSlots, frames));
+}
+
+std::size_t actionsAt(std::size_t source) {
+  return offsetof(DevicesSegment, actions) + source * sizeof(SeqSlot<ActionState>);
+}
+
+}  // namespace
+
+std::vector<Field> devicesFields(const SlotNames& names) {
+  FieldTable t;
+  addHeader(t);
+  for (std::size_t i = 0; i < names.devices.size(); ++i) {
+    addSlot<DeviceHealth>(t, names.devices[i].name + ".health",
+                          offsetof(DevicesSegment, health) + i * sizeof(SeqSlot<DeviceHealth>));
+  }
+  std::size_t gloves = 0, trackers = 0, balls = 0;
+  for (const auto& [name, kind] : names.devices) {
+    if (kind == SampleKind::kGlove) {
+      addGlove(t, name, offsetof(DevicesSegment, glove) + gloves * sizeof(GloveSlots), gloves == 0);
+      ++gloves;
+    } else if (kind == SampleKind::kTracker) {
+      addTracker(t, name, offsetof(DevicesSegment, tracker) + trackers++ * sizeof(TrackerSlots));
+    } else {
+      addChannel<BallSample>(
+          t, name, offsetof(DevicesSegment, ball) + balls++ * sizeof(Channel<BallSample>));
+    }
+  }
+  for (std::size_t i = 0; i < names.hands.size(); ++i) {
+    addChannel<HandSample>(t, names.hands[i],
+                           offsetof(DevicesSegment, hand) + i * sizeof(Channel<HandSample>));
+  }
   addChannel<GpioSample>(t, "gpio", offsetof(DevicesSegment, gpio));
   addSlot<DeviceHealth>(t, "gpio.health", offsetof(DevicesSegment, gpio_health));
-  for (std::size_t i = 0; i < kActionSources; ++i) {
-    addSlot<ActionState>(t, fmt::format("actions.{}", kActionSourceNames[i]),
-                         offsetof(DevicesSegment, actions) + i * sizeof(SeqSlot<ActionState>));
-  }
+  for (std::size_t i = 0; i < names.devices.size(); ++i)
+    addSlot<ActionState>(t, "actions." + names.devices[i].name, actionsAt(i));
+  addSlot<ActionState>(t, "actions.panel", actionsAt(kPanelSource));
   return t.take();
 }
 

@@ -9,7 +9,21 @@
 
 namespace merlin::shm {
 
-std::vector<Field> devicesFields();
+// What the slots of the devices' segment are named after.
+struct SlotNames {
+  struct Device {
+    std::string name;
+    SampleKind kind;
+  };
+  std::vector<Device> devices;  // in the order of DevicesSegment::health
+  std::vector<std::string> hands;
+};
+
+// For each device NAME.health and actions.NAME; for a glove NAME, NAME.posture and
+// NAME.posture_state, and for the first glove also posture and posture_state; for a tracker
+// NAME1 to NAME4, by station, and NAME for its frames; for a ball or a hand NAME; and gpio,
+// gpio.health and actions.panel. REQUIRES: no more of each than DevicesSegment has room for.
+std::vector<Field> devicesFields(const SlotNames& names);
 std::vector<Field> wallFields();
 
 // The fields of one slot with the name `name` at `offset` in a segment, as the tables above have

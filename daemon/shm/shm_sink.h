@@ -1,4 +1,4 @@
-// ShmSink: writes samples and health from the device threads into the devices' segment.
+// ShmSink: writes the samples and the health of one device into the devices' segment.
 #pragma once
 
 #include "daemon/shm/layout.h"
@@ -6,21 +6,32 @@
 
 namespace merlin::shm {
 
-// Each overload is called from one device's thread only.
+// Writes the samples of a device's kind into its slots; those of other kinds, which it has no slots
+// for, are dropped. Called from the device's thread only.
 class ShmSink final : public SampleSink {
  public:
-  explicit ShmSink(DevicesSegment& segment) : segment_(segment) {}
-
-  void publish(const GloveSample& sample) noexcept override { segment_.glove.publish(sample); }
-  void publish(const TrackerSample& sample) noexcept override {
-    if (sample.station >= 1 && sample.station <= kStations) {
-      segment_.tracker[sample.station - 1].publish(sample);
-    }
+  // `place`: which device of its kind it is, counted from 0. REQUIRES: the segment has room for it.
+  ShmSink(DevicesSegment& segment, SampleKind kind, std::size_t place) {
+    if (kind == SampleKind::kGlove) glove_ = &segment.glove[place];
+    if (kind == SampleKind::kTracker) tracker_ = &segment.tracker[place];
+    if (kind == SampleKind::kBall) ball_ = &segment.ball[place];
   }
-  void publish(const BallSample& sample) noexcept override { segment_.ball.publish(sample); }
+
+  void publish(const GloveSample& sample) noexcept override {
+    if (glove_) glove_->samples.publish(sample);
+  }
+  void publish(const TrackerSample& sample) noexcept override {
+    if (tracker_ && sample.station >= 1 && sample.station <= kStations)
+      tracker_->stations[sample.station - 1].publish(sample);
+  }
+  void publish(const BallSample& sample) noexcept override {
+    if (ball_) ball_->publish(sample);
+  }
 
  private:
-  DevicesSegment& segment_;
+  GloveSlots* glove_ = nullptr;
+  TrackerSlots* tracker_ = nullptr;
+  Channel<BallSample>* ball_ = nullptr;
 };
 
 class ShmHealthSink final : public HealthSink {
