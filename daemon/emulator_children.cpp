@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "daemon/base/clock.h"
+#include "drivers/emulate/emulator.h"
 
 namespace merlin {
 namespace {
@@ -45,12 +46,13 @@ pid_t spawn(const std::vector<std::string>& arguments) {
 }
 
 // Sets the device's port to pty:PATH, unless it has this form already, and returns PATH.
-std::string placeLine(LineSettings& line, const std::string& instance,
+std::string placeLine(DeviceSettings& device, const std::string& instance,
                       const std::string& run_directory) {
   constexpr std::string_view kPty = "pty:";
-  if (!line.port.starts_with(kPty))
-    line.port = fmt::format("pty:{}/{}-{}.pty", run_directory, instance, line.driver);
-  return line.port.substr(kPty.size());
+  std::string& port = device.line.port;
+  if (!port.starts_with(kPty))
+    port = fmt::format("pty:{}/{}-{}.pty", run_directory, instance, device.name);
+  return port.substr(kPty.size());
 }
 
 }  // namespace
@@ -61,15 +63,16 @@ Result<EmulatorChildren> EmulatorChildren::start(Settings& settings,
   if (!program) return program.error();
   EmulatorChildren started;
   const auto epoch = std::to_string(toNanoseconds(SystemClock().now()));
-  for (LineSettings* line : {&settings.devices.glove_line, &settings.devices.tracker_line,
-                             &settings.devices.ball_line}) {
-    const std::string link = placeLine(*line, settings.instance, run_directory);
+  for (DeviceSettings& device : settings.devices.list) {
+    const LineSettings& line = device.line;
+    if (!emulate::findEmulator(line.driver)) continue;
+    const std::string link = placeLine(device, settings.instance, run_directory);
     const pid_t pid =
-        spawn({*program, "emulate", line->driver, "--link", link, "--script",
-               settings.devices.script, "--baud", std::to_string(line->baud), "--epoch-ns", epoch});
+        spawn({*program, "emulate", line.driver, "--link", link, "--script",
+               settings.devices.script, "--baud", std::to_string(line.baud), "--epoch-ns", epoch});
     if (pid < 0)
       return Error{Errc::kIo, fmt::format("cannot start an emulator: {}", std::strerror(errno))};
-    started.children_.push_back({line->driver, pid});
+    started.children_.push_back({device.name, pid});
   }
   return started;
 }

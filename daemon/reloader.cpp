@@ -157,7 +157,7 @@ Reloader::ReadFile Reloader::read() const {
   } else {  // it was readable when it was checked
     file.answer.outcome = Outcome::kInvalid;
     file.answer.findings.push_back(
-        fmt::format("{}: /devices/postures cannot be used: {}", file_, network.error().what));
+        fmt::format("{}: /postures/file cannot be used: {}", file_, network.error().what));
   }
   return file;
 }
@@ -181,10 +181,7 @@ void Reloader::swap(const ReadFile& file) {
   if (parts_.devices) {
     parts_.devices->reload(
         running_,
-        {plan.has(Part::kBindings),
-         plan.has(Part::kHand),
-         plan.has(Part::kPostures),
-         {plan.has(Part::kGlove), plan.has(Part::kTracker), plan.has(Part::kBall)}},
+        {plan.has(Part::kBindings), plan.has(Part::kHand), plan.has(Part::kPostures), plan.lines},
         file.trained);
   }
   if (parts_.wall) {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "daemon/devices/device_places.h"
 #include "daemon/net/network_allowed.h"
 #include "daemon/shm/fields.h"
 
@@ -14,8 +15,8 @@ Result<std::unique_ptr<RemoteDevices>> RemoteDevices::make(const Settings& setti
                                                            const Clock& clock) {
   const InputSettings& input = settings.wall.input;
   auto segment = shm::SegmentWriter<shm::DevicesSegment>::make(
-      shm::segmentName(settings.instance, "devices"), shm::devicesFields(), generation, clock.now(),
-      {});
+      shm::segmentName(settings.instance, "devices"),
+      shm::devicesFields(devices::slotNames(settings.devices)), generation, clock.now(), {});
   if (!segment) return segment.error();
   auto slots = shm::DeviceSlots::find(**segment);
   if (!slots) return slots.error();
@@ -27,7 +28,8 @@ Result<std::unique_ptr<RemoteDevices>> RemoteDevices::make(const Settings& setti
   auto keys = status::readKeyPair(input.keys);
   if (!keys) return keys.error();
   auto link = status::SampleLink::start({input.endpoint, input.server_key, *std::move(keys)},
-                                        *devices->segment_, threads, clock);
+                                        devices::slotNames(settings.devices), *devices->segment_,
+                                        threads, clock);
   if (!link) return link.error();
   devices->link_ = *std::move(link);
   return devices;

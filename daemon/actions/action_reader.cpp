@@ -5,22 +5,29 @@
 
 namespace merlin::actions {
 
-Actions ActionReader::read(const shm::DeviceSlots& devices, const std::vector<bool>* held_by) {
+void ActionCounts::add(const ActionCounts& other) {
+  for (std::size_t i = 0; i < shm::kMostActions; ++i) {
+    begun[i] += other.begun[i];
+    held[i] = held[i] || other.held[i];
+  }
+}
+
+Actions ActionReader::read(const shm::DeviceSlots& devices) {
   Actions actions;
   const std::size_t sources = devices.actions.size();
-  actions.begun_by.resize(sources);
+  actions.by_source.resize(sources);
   last_.resize(sources);
   for (std::size_t source = 0; source < sources; ++source) {
     const auto state = devices.actions[source].slot->read();
     if (!state) continue;
-    const bool counts = !held_by || source >= held_by->size() || (*held_by)[source];
+    ActionCounts& counts = actions.by_source[source];
     auto& last = last_[source];
     const bool same = last && last->generation == state->generation;
     for (std::size_t i = 0; i < shm::kMostActions; ++i) {
-      if (same) actions.begun_by[source][i] = state->begun[i] - last->begun[i];
-      actions.begun[i] += actions.begun_by[source][i];
-      actions.held[i] = actions.held[i] || (counts && state->held[i] != 0);
+      if (same) counts.begun[i] = state->begun[i] - last->begun[i];
+      counts.held[i] = state->held[i] != 0;
     }
+    actions.all.add(counts);
     constexpr auto kKept = static_cast<std::uint32_t>(sizeof(shm::ActionState::recent));
     const std::uint32_t fresh = same ? std::min(state->sequence - last->sequence, kKept) : 0;
     for (std::uint32_t n = state->sequence - fresh; n != state->sequence; ++n)

@@ -11,13 +11,19 @@
 
 namespace merlin::actions {
 
-// State of all actions, indexed like kActions (daemon/base/commands.h).
-struct Actions {
+// State of actions, indexed like kActions (daemon/base/commands.h).
+struct ActionCounts {
   // How often each action has begun since the last read().
   std::array<std::uint32_t, shm::kMostActions> begun{};
-  // The same by source, of which `begun` is the sum. Index: DeviceSlots::actions.
-  std::vector<std::array<std::uint32_t, shm::kMostActions>> begun_by;
   std::array<bool, shm::kMostActions> held{};
+
+  void add(const ActionCounts& other);
+};
+
+struct Actions {
+  ActionCounts all;
+  // What `all` is the sum of. Index: DeviceSlots::actions.
+  std::vector<ActionCounts> by_source;
   // The actions that have begun, device by device, in the order in which they began; at most the
   // last twelve of each device.
   std::vector<std::size_t> in_order;
@@ -27,9 +33,8 @@ struct Actions {
 class ActionReader {
  public:
   // Actions that began before the first read, or before the first one after a restart of the daemon
-  // that counts them, are not reported. `held_by`: whether a source's held actions are reported,
-  // by the index of DeviceSlots::actions; null: all are.
-  Actions read(const shm::DeviceSlots& devices, const std::vector<bool>* held_by = nullptr);
+  // that counts them, are not reported.
+  Actions read(const shm::DeviceSlots& devices);
 
  private:
   std::vector<std::optional<shm::ActionState>> last_;  // by source

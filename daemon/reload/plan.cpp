@@ -12,19 +12,27 @@ constexpr Taker kTakers[] = {
     {"/instance", kAll, Part::kRestart},
     {"/run_directory", kAll, Part::kRestart},
     {"/state_file", kDevices | kWall, Part::kRestart},
-    {"/devices", kDevices, Part::kRestart},
-    {"/devices/bindings", kDevices, Part::kBindings},
-    {"/devices/stale_after_s", kDevices | kWall, Part::kBindings},
-    {"/devices/glove", kDevices, Part::kGlove},
-    {"/devices/tracker", kDevices, Part::kTracker},
-    {"/devices/ball", kDevices, Part::kBall},
-    {"/devices/hand", kDevices, Part::kHand},
-    {"/devices/hand/station", kDevices | kWall, Part::kHand},
-    {"/devices/postures", kDevices, Part::kPostures},
-    {"/devices/posture_hold_s", kDevices, Part::kPostures},
-    {"/devices/posture_leave_s", kDevices, Part::kPostures},
-    {"/devices/posture_margin", kDevices, Part::kPostures},
-    {"/devices/posture_drift", kDevices, Part::kPostures},
+    // Names, kinds and the number of devices and hands are in the table of shared memory, which
+    // readers have read.
+    {"/devices", kDevices | kWall | kMirror, Part::kRestart},
+    {"/devices/*", kDevices, Part::kLine},
+    {"/devices/*/name", kDevices | kWall | kMirror, Part::kRestart},
+    {"/devices/*/driver", kDevices | kMirror, Part::kRestart},
+    {"/devices/*/person", kWall, Part::kHand},
+    {"/hands", kDevices | kWall | kMirror, Part::kRestart},
+    {"/hands/*/station", kDevices | kWall, Part::kHand},
+    {"/hands/*/cutoff_hz", kDevices, Part::kHand},
+    {"/hands/*/cutoff_per_m_s", kDevices, Part::kHand},
+    {"/hands/*/person", kWall, Part::kHand},
+    {"/postures", kDevices, Part::kPostures},
+    {"/bindings", kDevices, Part::kBindings},
+    {"/people/stale_after_s", kDevices | kWall, Part::kBindings},
+    {"/people/turn_s", kWall, Part::kHand},
+    {"/gpio", kDevices, Part::kRestart},
+    {"/projectors", kDevices, Part::kRestart},
+    {"/projector_schedule", kDevices, Part::kRestart},
+    {"/cpu_latency_us", kDevices, Part::kRestart},
+    {"/script", kDevices, Part::kRestart},
     {"/wall", kWall, Part::kRestart},
     {"/wall/rate", kWall, Part::kRate},
     {"/wall/playlist", kWall, Part::kPlaylist},
@@ -45,14 +53,43 @@ constexpr Taker kTakers[] = {
     {"/alarms", kAlarms, Part::kRestart},
 };
 
-bool covers(std::string_view outer, std::string_view pointer) {
-  return pointer.starts_with(outer) &&
-         (pointer.size() == outer.size() || pointer[outer.size()] == '/');
+// Takes the first part off, up to the next "/": "devices" of "/devices/2".
+std::string_view takePart(std::string_view& pointer) {
+  pointer.remove_prefix(1);
+  const std::string_view part = pointer.substr(0, pointer.find('/'));
+  pointer.remove_prefix(part.size());
+  return part;
 }
 
-void keepPort(LineSettings& line, LineSettings fresh, bool keeps) {
-  if (keeps) fresh.port = line.port;
-  line = std::move(fresh);
+bool isIndex(std::string_view part) {
+  return !part.empty() &&
+         std::all_of(part.begin(), part.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+// Whether `pointer` is `outer`, or in that group or list.
+bool covers(std::string_view outer, std::string_view pointer) {
+  while (!outer.empty()) {
+    if (pointer.empty()) return false;
+    const std::string_view expected = takePart(outer), found = takePart(pointer);
+    if (expected != found && !(expected == "*" && isIndex(found))) return false;
+  }
+  return true;
+}
+
+// The index of the device whose setting this is: 2 for "/devices/2/port".
+std::size_t deviceOf(std::string_view pointer) {
+  (void)takePart(pointer);
+  std::size_t index = 0;
+  for (const char digit : takePart(pointer))
+    index = index * 10 + static_cast<std::size_t>(digit - '0');
+  return index;
+}
+
+void adoptDevice(const DeviceSettings& fresh, bool keep_port, DeviceSettings& running) {
+  std::string port = keep_port ? running.line.port : fresh.line.port;
+  running.line = fresh.line;
+  running.line.port = std::move(port);
+  running.own = fresh.own;
 }
 
 }  // namespace
@@ -79,6 +116,10 @@ Plan planFor(const std::vector<SettingChange>& changes, Readers process) {
     } else {
       plan.swapped.push_back(change);
       plan.parts[static_cast<std::size_t>(taker.part)] = true;
+      if (taker.part != Part::kLine) continue;
+      const std::size_t device = deviceOf(change.pointer);
+      plan.lines.resize(std::max(plan.lines.size(), device + 1));
+      plan.lines[device] = true;
     }
   }
   return plan;
@@ -91,22 +132,14 @@ void adopt(const Plan& plan, const Settings& fresh, bool keep_ports, Settings& r
     to.bindings = from.bindings;
     to.stale_after_s = from.stale_after_s;
   }
-  if (plan.has(Part::kGlove)) {
-    keepPort(to.glove_line, from.glove_line, keep_ports);
-    to.glove = from.glove;
+  for (std::size_t i = 0; i < std::min(to.list.size(), from.list.size()); ++i) {
+    if (i < plan.lines.size() && plan.lines[i]) adoptDevice(from.list[i], keep_ports, to.list[i]);
+    if (plan.has(Part::kHand)) to.list[i].person = from.list[i].person;
   }
-  if (plan.has(Part::kTracker)) {
-    keepPort(to.tracker_line, from.tracker_line, keep_ports);
-    to.tracker = from.tracker;
-    to.vrpn = from.vrpn;
+  if (plan.has(Part::kHand)) {
+    to.hands = from.hands;
+    to.turn_s = from.turn_s;
   }
-  if (plan.has(Part::kBall)) {
-    keepPort(to.ball_line, from.ball_line, keep_ports);
-    to.ball = from.ball;
-    to.spacenav = from.spacenav;
-    to.evdev = from.evdev;
-  }
-  if (plan.has(Part::kHand)) to.hand = from.hand;
   if (plan.has(Part::kPostures)) {
     to.postures = from.postures;
     to.posture_hold = from.posture_hold;

@@ -15,10 +15,8 @@ namespace merlin::reload {
 enum class Part : std::size_t {
   kRestart,
   kBindings,  // bindings, and when a silent device lets go
-  kGlove,     // each of these three: the device's line is closed and opened again
-  kTracker,
-  kBall,
-  kHand,      // station and filter of the hand
+  kLine,      // of a device, which is closed and opened again
+  kHand,      // station and filter of a hand
   kPostures,  // network, hold times and margin
   kRate,      // frame rate and limits of the triangles
   kPlaylist,  // what the wall shows while nobody is there, and its light then
@@ -34,7 +32,7 @@ inline constexpr Readers kAlarms = 16;
 inline constexpr Readers kAll = kDevices | kWall | kPage | kMirror | kAlarms;
 
 struct Taker {
-  std::string_view pointer;  // of a setting, a list or a group
+  std::string_view pointer;  // of a setting, a list or a group; "*" stands for any list index
   Readers readers;
   Part part;
 };
@@ -52,6 +50,7 @@ struct Plan {
   std::vector<SettingChange> restart;    // that it takes at its next start only
   std::vector<SettingChange> elsewhere;  // that only other processes read
   std::array<bool, static_cast<std::size_t>(Part::kCount)> parts{};  // of `swapped`
+  std::vector<bool> lines;  // of kLine: by the index of the device; those beyond its end: false
 
   bool has(Part part) const { return parts[static_cast<std::size_t>(part)]; }
 };

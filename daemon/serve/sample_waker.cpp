@@ -21,6 +21,11 @@ constexpr long kWithoutWaitv_ns =
 // Waits until one of the words differs from its value in `seen`, or kRound has passed.
 void waitForAny(const std::vector<const std::atomic<std::uint32_t>*>& words,
                 const std::vector<std::uint32_t>& seen) {
+  if (words.empty()) {  // no device is configured that could send samples
+    const timespec round{0, kRound.count()};
+    ::nanosleep(&round, nullptr);
+    return;
+  }
 #ifdef SYS_futex_waitv
   std::vector<futex_waitv> waiters(words.size());
   for (std::size_t i = 0; i < words.size(); ++i) {

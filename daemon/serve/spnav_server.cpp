@@ -32,6 +32,12 @@ std::uint64_t inodeOf(const std::string& path) {
   return ::lstat(path.c_str(), &status) == 0 ? status.st_ino : 0;
 }
 
+std::vector<const std::atomic<std::uint32_t>*> wakeWords(const shm::DeviceSlots& devices) {
+  std::vector<const std::atomic<std::uint32_t>*> words;
+  for (const auto& ball : devices.balls) words.push_back(&ball.samples->wakeWord());
+  return words;
+}
+
 class SpnavSession final : public net::Session {
  public:
   SpnavSession(const SpnavDevice& device, const Clock& clock)
@@ -105,8 +111,8 @@ SpnavServer::SpnavServer(std::string path, UniqueFd listener, const shm::DeviceS
       devices_(devices),
       clock_(clock),
       server_("space mouse", limits(), clock),
-      seen_(devices.ball->count()),
-      waker_({&devices.ball->wakeWord()}, watch, "samples for the space mouse") {
+      waker_(wakeWords(devices), watch, "samples for the space mouse") {
+  for (const auto& ball : devices.balls) balls_.push_back({ball, ball.samples->count()});
   updateHealth();
   listen(std::move(listener));
   thread_ = net::ServerThread(watch, "space mouse", [this] { round(); });
@@ -148,31 +154,39 @@ void SpnavServer::round() {
 }
 
 void SpnavServer::updateHealth() {
-  const auto health = devices_.ball_health->read();
-  if (!health) return;  // not known yet, or being written: unchanged
-  const bool there = health->state == HealthState::kOk;
+  bool there = false;
+  for (const Ball& ball : balls_) {
+    const auto health = ball.slots.health->read();
+    if (!health) return;  // not known yet, or being written: unchanged
+    if (there || health->state != HealthState::kOk) continue;
+    there = true;
+    if (!there_) device_ = spnavDevice(textIn(health->identity), textIn(health->port));
+  }
   if (there == there_) return;
   there_ = there;
-  if (there) device_ = spnavDevice(textIn(health->identity), textIn(health->port));
   server_.sendToAll([&](net::Session& session, std::string&) {
     static_cast<SpnavSession&>(session).device(there, device_);
   });
 }
 
 void SpnavServer::sendSamples() {
-  const std::uint64_t count = devices_.ball->count();
-  if (count - seen_ > shm::kHistory / 2) seen_ = count - 1;
-  for (; seen_ < count; ++seen_) {
-    const auto sample = devices_.ball->at(seen_);
-    if (!sample) continue;
-    server_.sendToAll([&](net::Session& session, std::string& output) {
-      static_cast<SpnavSession&>(session).sample(*sample, output);
-    });
+  for (Ball& ball : balls_) {
+    const shm::Channel<BallSample>& samples = *ball.slots.samples;
+    const std::uint64_t count = samples.count();
+    if (count - ball.seen > shm::kHistory / 2) ball.seen = count - 1;
+    for (; ball.seen < count; ++ball.seen) {
+      const auto sample = samples.at(ball.seen);
+      if (!sample) continue;
+      last_ = &samples;
+      server_.sendToAll([&](net::Session& session, std::string& output) {
+        static_cast<SpnavSession&>(session).sample(*sample, output);
+      });
+    }
   }
 }
 
 void SpnavServer::sendMissed() {
-  const auto newest = devices_.ball->newest();
+  const auto newest = last_ ? last_->newest() : std::nullopt;
   server_.sendToAll([&](net::Session& session, std::string& output) {
     static_cast<SpnavSession&>(session).sendMissed(newest, output);
   });

@@ -1,8 +1,9 @@
-// SpnavServer: offers MERLIN's ball as a space mouse, on the socket that libspnav opens.
+// SpnavServer: offers MERLIN's balls as one space mouse, on the socket that libspnav opens.
 #pragma once
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
@@ -21,6 +22,9 @@ namespace merlin::serve {
 // libspnav takes the first message after a request as its answer. So after it has connected or sent
 // a request, a client gets no events until it has sent nothing for 60 ms (at most 0.5 s if it keeps
 // asking); then it gets the button events of that time and the newest motion.
+//
+// Of several balls, the device that clients are told of is the first that works, and the events are
+// those of all, as spacenavd merges those of several space mice.
 class SpnavServer final : public net::Server {
  public:
   // Errors: those of listenLocal(). The segment of `devices`, `watch` and `clock` must
@@ -52,7 +56,12 @@ class SpnavServer final : public net::Server {
   const Clock& clock_;
   net::ConnectionServer server_;
   SpnavDevice device_;
-  std::uint64_t seen_;  // number of ball samples processed
+  struct Ball {
+    shm::DeviceSlots::Ball slots;
+    std::uint64_t seen;  // number of samples processed
+  };
+  std::vector<Ball> balls_;
+  const shm::Channel<BallSample>* last_ = nullptr;  // of the ball that sent the last sample
   bool there_ = false;
   SampleWaker waker_;
   net::ServerThread thread_;

@@ -22,9 +22,33 @@ constexpr Duration kRound = std::chrono::milliseconds(50);
 constexpr double kDatagrams = 20;  // answered per second, and in a burst
 constexpr std::int32_t kButtons = 12;
 
-// The server's numbers for senders and types; each client first gets their names.
-enum Sender : std::int32_t { kControl, kHand, kTracker, kBall };
-constexpr const char* kSenders[] = {kVrpnControl, "Hand0", "Tracker0", "Ball0"};
+// The server's numbers for senders and types; each client first gets their names. Senders are the
+// control, then the hands, the trackers and the balls.
+class Senders {
+ public:
+  explicit Senders(const shm::DeviceSlots& devices)
+      : hands_(devices.hands.size()), trackers_(devices.trackers.size()) {
+    names_.emplace_back(kVrpnControl);
+    const auto add = [&](const char* kind, std::size_t count) {
+      for (std::size_t i = 0; i < count; ++i) names_.push_back(fmt::format("{}{}", kind, i));
+    };
+    add("Hand", hands_);
+    add("Tracker", trackers_);
+    add("Ball", devices.balls.size());
+  }
+
+  const std::vector<std::string>& names() const { return names_; }
+  std::int32_t hand(std::size_t i) const { return number(i); }
+  std::int32_t tracker(std::size_t i) const { return number(hands_ + i); }
+  std::int32_t ball(std::size_t i) const { return number(hands_ + trackers_ + i); }
+
+ private:
+  static std::int32_t number(std::size_t device) { return static_cast<std::int32_t>(device) + 1; }
+
+  std::size_t hands_, trackers_;
+  std::vector<std::string> names_;
+};
+
 enum Type : std::int32_t { kPing, kPong, kPose, kChannels, kButtonChange, kButtonStates };
 constexpr const char* kTypes[] = {
     kVrpnPing,           kVrpnPong, kVrpnPoseType, "vrpn_Analog Channel", "vrpn_Button Change",
@@ -79,7 +103,11 @@ class VrpnSession final : public net::Session {
  public:
   VrpnSession(const shm::DeviceSlots& devices, const Clock& clock,
               std::unique_ptr<PortClaim> port = nullptr)
-      : devices_(devices), clock_(clock), port_(std::move(port)) {}
+      : devices_(devices),
+        named_(devices),
+        clock_(clock),
+        port_(std::move(port)),
+        buttons_(devices.balls.size()) {}
 
   Result<Taken> receive(std::string_view input, std::size_t most, std::string& output) override;
   bool established() const noexcept override { return greeted_; }
@@ -88,13 +116,16 @@ class VrpnSession final : public net::Session {
   // `at_ns`: CLOCK_MONOTONIC; clients expect the time of day.
   void send(std::int32_t sender, std::int32_t type, std::string_view payload, std::int64_t at_ns,
             std::string& output);
-  void sendButtons(const BallSample& sample, std::string& output);
+  // `ball`: its index.
+  void sendButtons(std::size_t ball, const BallSample& sample, std::string& output);
+  const Senders& senders() const { return named_; }
 
  private:
   void handle(const VrpnMessage& message, std::string& output);
   void describe(const VrpnMessage& message);
 
   const shm::DeviceSlots& devices_;
+  const Senders named_;
   const Clock& clock_;
   std::unique_ptr<PortClaim> port_;  // if we connected to the client
   bool greeted_ = false;             // its cookie has arrived
@@ -102,7 +133,7 @@ class VrpnSession final : public net::Session {
   std::map<std::int32_t, std::int32_t> senders_;
   std::optional<std::int32_t> ping_;
   std::uint32_t sequence_ = 0;
-  std::uint32_t buttons_ = 0;
+  std::vector<std::uint32_t> buttons_;  // by ball
 };
 
 Result<net::Session::Taken> VrpnSession::receive(std::string_view input, std::size_t most,
@@ -129,14 +160,17 @@ Result<net::Session::Taken> VrpnSession::receive(std::string_view input, std::si
 void VrpnSession::open(std::string& output) {
   const std::int64_t now_ns = toNanoseconds(clock_.now());
   output += vrpnCookie();
-  for (std::int32_t i = 0; i < std::ssize(kSenders); ++i)
-    send(i, kVrpnDescribeSender, vrpnName(kSenders[i]), now_ns, output);
+  for (std::size_t i = 0; i < named_.names().size(); ++i)
+    send(static_cast<std::int32_t>(i), kVrpnDescribeSender, vrpnName(named_.names()[i]), now_ns,
+         output);
   for (std::int32_t i = 0; i < std::ssize(kTypes); ++i)
     send(i, kVrpnDescribeType, vrpnName(kTypes[i]), now_ns, output);
   // A button may already be pressed.
-  const auto ball = devices_.ball->newest();
-  buttons_ = ball ? ball->buttons : 0;
-  send(kBall, kButtonStates, vrpnButtons(buttons_, kButtons), now_ns, output);
+  for (std::size_t i = 0; i < buttons_.size(); ++i) {
+    const auto ball = devices_.balls[i].samples->newest();
+    buttons_[i] = ball ? ball->buttons : 0;
+    send(named_.ball(i), kButtonStates, vrpnButtons(buttons_[i], kButtons), now_ns, output);
+  }
 }
 
 void VrpnSession::send(std::int32_t sender, std::int32_t type, std::string_view payload,
@@ -172,17 +206,20 @@ void VrpnSession::describe(const VrpnMessage& m) {
       64;  // limits memory: a client could give the same name many numbers
   senders_.erase(m.header.sender);
   const auto name = readVrpnName(m.payload);
-  const auto* known = std::find(std::begin(kSenders), std::end(kSenders), name.value_or(""));
-  if (known != std::end(kSenders) && senders_.size() < kMostNumbers)
-    senders_[m.header.sender] = static_cast<std::int32_t>(known - std::begin(kSenders));
+  const auto& names = named_.names();
+  const auto known = std::find(names.begin(), names.end(), name.value_or(""));
+  if (known != names.end() && senders_.size() < kMostNumbers)
+    senders_[m.header.sender] = static_cast<std::int32_t>(known - names.begin());
 }
 
-void VrpnSession::sendButtons(const BallSample& s, std::string& output) {
+void VrpnSession::sendButtons(std::size_t ball, const BallSample& s, std::string& output) {
+  std::uint32_t& known = buttons_[ball];
   for (std::int32_t b = 0; b < kButtons; ++b) {
-    if (((s.buttons ^ buttons_) >> b & 1) == 0) continue;
-    send(kBall, kButtonChange, vrpnButton(b, s.buttons >> b & 1), s.received_ns, output);
+    if (((s.buttons ^ known) >> b & 1) == 0) continue;
+    send(named_.ball(ball), kButtonChange, vrpnButton(b, s.buttons >> b & 1), s.received_ns,
+         output);
   }
-  buttons_ = s.buttons;
+  known = s.buttons;
 }
 
 Result<std::unique_ptr<VrpnServer>> VrpnServer::start(int port, const shm::DeviceSlots& devices,
@@ -203,17 +240,23 @@ VrpnServer::VrpnServer(UniqueFd tcp, UniqueFd udp, const shm::DeviceSlots& devic
       clock_(clock),
       server_("VRPN", limits(), clock),
       datagrams_(kDatagrams, kDatagrams),
-      seen_hand_(devices.hand->count()),
-      seen_ball_(devices.ball->count()),
       waker_(
           [&] {
-            std::vector<const std::atomic<std::uint32_t>*> words = {&devices.hand->wakeWord(),
-                                                                    &devices.ball->wakeWord()};
-            for (const auto* channel : devices.tracker) words.push_back(&channel->wakeWord());
+            std::vector<const std::atomic<std::uint32_t>*> words;
+            for (const auto& hand : devices.hands) words.push_back(&hand.samples->wakeWord());
+            for (const auto& ball : devices.balls) words.push_back(&ball.samples->wakeWord());
+            for (const auto& tracker : devices.trackers) {
+              for (const auto* channel : tracker.stations) words.push_back(&channel->wakeWord());
+            }
             return words;
           }(),
           watch, "samples for VRPN") {
-  for (std::size_t i = 0; i < kStations; ++i) seen_tracker_[i] = devices.tracker[i]->count();
+  for (const auto& hand : devices.hands) seen_hands_.push_back(hand.samples->count());
+  for (const auto& ball : devices.balls) seen_balls_.push_back(ball.samples->count());
+  for (const auto& tracker : devices.trackers) {
+    auto& seen = seen_trackers_.emplace_back();
+    for (std::size_t i = 0; i < kStations; ++i) seen[i] = tracker.stations[i]->count();
+  }
   server_.listen(std::move(tcp), [this](const net::Peer&) {
     return std::make_unique<VrpnSession>(devices_, clock_);
   });
@@ -273,29 +316,38 @@ void VrpnServer::each(const shm::Channel<T>& channel, std::uint64_t& seen,
 }
 
 void VrpnServer::sendSamples() {
-  each<HandSample>(
-      *devices_.hand, seen_hand_, [](VrpnSession& client, const HandSample& s, std::string& out) {
-        client.send(kHand, kPose, vrpnPose(0, s.position_m, s.orientation_wxyz), s.received_ns,
-                    out);
-        const std::vector<double> joints(std::begin(s.joint_rad), std::end(s.joint_rad));
-        client.send(kHand, kChannels, vrpnChannels(joints), s.received_ns, out);
-      });
-  for (std::size_t i = 0; i < kStations; ++i) {
-    each<TrackerSample>(
-        *devices_.tracker[i], seen_tracker_[i],
-        [i](VrpnSession& client, const TrackerSample& s, std::string& out) {
-          client.send(kTracker, kPose,
-                      vrpnPose(static_cast<std::int32_t>(i), s.position_m, s.orientation_wxyz),
-                      s.received_ns, out);
-        });
+  for (std::size_t n = 0; n < devices_.hands.size(); ++n) {
+    each<HandSample>(*devices_.hands[n].samples, seen_hands_[n],
+                     [n](VrpnSession& client, const HandSample& s, std::string& out) {
+                       const std::int32_t hand = client.senders().hand(n);
+                       client.send(hand, kPose, vrpnPose(0, s.position_m, s.orientation_wxyz),
+                                   s.received_ns, out);
+                       const std::vector<double> joints(std::begin(s.joint_rad),
+                                                        std::end(s.joint_rad));
+                       client.send(hand, kChannels, vrpnChannels(joints), s.received_ns, out);
+                     });
   }
-  each<BallSample>(*devices_.ball, seen_ball_,
-                   [](VrpnSession& client, const BallSample& s, std::string& out) {
-                     std::vector<double> axes(std::begin(s.translation), std::end(s.translation));
-                     axes.insert(axes.end(), std::begin(s.rotation), std::end(s.rotation));
-                     client.send(kBall, kChannels, vrpnChannels(axes), s.received_ns, out);
-                     client.sendButtons(s, out);
-                   });
+  for (std::size_t n = 0; n < devices_.trackers.size(); ++n) {
+    for (std::size_t i = 0; i < kStations; ++i) {
+      each<TrackerSample>(
+          *devices_.trackers[n].stations[i], seen_trackers_[n][i],
+          [n, i](VrpnSession& client, const TrackerSample& s, std::string& out) {
+            client.send(client.senders().tracker(n), kPose,
+                        vrpnPose(static_cast<std::int32_t>(i), s.position_m, s.orientation_wxyz),
+                        s.received_ns, out);
+          });
+    }
+  }
+  for (std::size_t n = 0; n < devices_.balls.size(); ++n) {
+    each<BallSample>(*devices_.balls[n].samples, seen_balls_[n],
+                     [n](VrpnSession& client, const BallSample& s, std::string& out) {
+                       std::vector<double> axes(std::begin(s.translation), std::end(s.translation));
+                       axes.insert(axes.end(), std::begin(s.rotation), std::end(s.rotation));
+                       client.send(client.senders().ball(n), kChannels, vrpnChannels(axes),
+                                   s.received_ns, out);
+                       client.sendButtons(n, s, out);
+                     });
+  }
 }
 
 }  // namespace merlin::serve

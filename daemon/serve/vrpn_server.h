@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
@@ -23,8 +24,9 @@ namespace merlin::serve {
 class VrpnSession;
 
 // Devices: Hand0 (tracker, sensor 0, smoothed; analog, 23 joint angles in radians), Tracker0
-// (tracker, sensors 0 to 3), Ball0 (analog, 6 shares of full scale; buttons). Positions are in
-// metres, in the frame of each station. Data are sent over TCP; a client connects by TCP, or asks
+// (tracker, sensors 0 to 3), Ball0 (analog, 6 shares of full scale; buttons), and likewise Hand1
+// and so on where there are several, in the order of the configuration. Positions are in metres, in
+// the frame of each station. Data are sent over TCP; a client connects by TCP, or asks
 // by UDP to be connected to. Owns its threads; reads shared memory as any client does.
 class VrpnServer final : public net::Server {
  public:
@@ -58,8 +60,9 @@ class VrpnServer final : public net::Server {
   std::set<int> connected_back_;  // clients' ports that we are connected to; must outlive server_
   net::ConnectionServer server_;
   TokenBucket datagrams_;
-  std::uint64_t seen_hand_, seen_ball_;
-  std::array<std::uint64_t, kStations> seen_tracker_{};
+  // Number of samples processed, by the index of DeviceSlots.
+  std::vector<std::uint64_t> seen_hands_, seen_balls_;
+  std::vector<std::array<std::uint64_t, kStations>> seen_trackers_;
   SampleWaker waker_;
   net::ServerThread thread_;
 };

@@ -119,9 +119,9 @@ Json deviceJson(const DeviceHealth& h, Timestamp now) {
 }
 
 // The current posture (after the minimum hold time), the one of the newest record, and its margin.
-Json postureJson(const shm::DeviceSlots& devices, Timestamp now) {
-  const auto held = devices.posture_state->read();
-  const auto shown = devices.posture->newest();
+Json postureJson(const shm::DeviceSlots::Glove& glove, Timestamp now) {
+  const auto held = glove.posture_state->read();
+  const auto shown = glove.posture->newest();
   if (!held || !shown) return nullptr;
   return {{"name", text(held->name)},
           {"code", held->code},
@@ -152,10 +152,24 @@ Json serversJson(const std::vector<net::ServerHealth>& servers) {
   return all;
 }
 
-std::string postureName(const shm::DeviceSlots& devices) {
-  if (const auto held = devices.posture_state->read()) return text(held->name);
-  const auto posture = devices.posture->newest();
+std::string postureName(const shm::DeviceSlots::Glove& glove) {
+  if (const auto held = glove.posture_state->read()) return text(held->name);
+  const auto posture = glove.posture->newest();
   return posture ? text(posture->name) : "";
+}
+
+// That of the first glove that shows one.
+std::string postureName(const shm::DeviceSlots& devices) {
+  for (const auto& glove : devices.gloves) {
+    if (std::string name = postureName(glove); !name.empty()) return name;
+  }
+  return "";
+}
+
+Json posturesJson(const shm::DeviceSlots& devices, Timestamp now) {
+  Json all = Json::object();
+  for (const auto& glove : devices.gloves) all[glove.name] = postureJson(glove, now);
+  return all;
 }
 
 Json devicesJson(const shm::DeviceSlots& devices, Timestamp now) {
@@ -175,7 +189,9 @@ std::string devicesStatus(const shm::DeviceSlots& devices, Timestamp now,
                {"time_utc", timeUtc(*devices.header, now)},
                {"uptime_s", ageSeconds(devices.header->started_ns, now)},
                {"posture", postureName(devices)},
-               {"posture_detail", postureJson(devices, now)},
+               {"posture_detail",
+                devices.gloves.empty() ? Json(nullptr) : postureJson(devices.gloves[0], now)},
+               {"postures", posturesJson(devices, now)},
                {"devices", devicesJson(devices, now)},
                {"servers", serversJson(servers)}});
 }
@@ -331,49 +347,73 @@ std::string addShownFolder(const std::string& document, const ShownFolderState& 
       {{"path", folder.path}, {"limit_bytes", folder.limit_bytes}, {"fault", folder.fault}});
 }
 
+namespace {
+
+Json postureSampleJson(const PostureSample& p) {
+  return {
+      {"received_ns", p.received_ns}, {"since_ns", p.since_ns},
+      {"counter", p.counter},         {"code", p.code},
+      {"name", text(p.name)},         {"activation", list(std::span<const float>(p.activation))}};
+}
+
+Json gloveJson(const GloveSample& g) {
+  return {{"received_ns", g.received_ns},
+          {"counter", g.counter},
+          {"flags", g.flags},
+          {"sensors", g.sensors},
+          {"raw", integers(std::span<const std::uint8_t>(g.raw))},
+          {"angle_rad", list(std::span<const float>(g.angle_rad))}};
+}
+
+Json stationJson(const TrackerSample& t) {
+  return {{"station", t.station},
+          {"received_ns", t.received_ns},
+          {"counter", t.counter},
+          {"error", std::string(1, t.error)},
+          {"position_m", list(std::span<const float>(t.position_m))},
+          {"orientation_wxyz", list(std::span<const float>(t.orientation_wxyz))}};
+}
+
+Json ballJson(const BallSample& b) {
+  return {{"received_ns", b.received_ns},
+          {"counter", b.counter},
+          {"buttons", b.buttons},
+          {"period_us", b.period_us},
+          {"raw", integers(std::span<const std::int16_t>(b.raw))},
+          {"translation", list(std::span<const float>(b.translation))},
+          {"rotation", list(std::span<const float>(b.rotation))}};
+}
+
+// Each device's newest samples under its name; of the first glove the posture also beside it.
+void addSamples(const shm::DeviceSlots& devices, Json& json) {
+  for (const auto& glove : devices.gloves) {
+    const auto p = glove.posture->newest();
+    if (p && &glove == &devices.gloves.front()) json["posture"] = postureSampleJson(*p);
+    if (const auto g = glove.samples->newest()) json[glove.name] = gloveJson(*g);
+    if (p && json.contains(glove.name)) json[glove.name]["posture"] = postureSampleJson(*p);
+  }
+  for (const auto& tracker : devices.trackers) {
+    Json stations = Json::array();
+    for (const auto* channel : tracker.stations) {
+      if (const auto t = channel->newest()) stations.push_back(stationJson(*t));
+    }
+    if (!stations.empty()) json[tracker.name] = std::move(stations);
+  }
+  for (const auto& ball : devices.balls) {
+    if (const auto b = ball.samples->newest()) json[ball.name] = ballJson(*b);
+  }
+  for (const auto& hand : devices.hands) {
+    if (const auto h = hand.samples->newest()) json[hand.name] = handJson(*h);
+  }
+}
+
+}  // namespace
+
 std::string newestSamples(const shm::DeviceSlots& devices, Timestamp now) {
   Json json = {{"now_ns", toNanoseconds(now)}, {"time_utc", timeUtc(*devices.header, now)}};
-  if (const auto p = devices.posture->newest()) {
-    json["posture"] = {{"received_ns", p->received_ns},
-                       {"since_ns", p->since_ns},
-                       {"counter", p->counter},
-                       {"code", p->code},
-                       {"name", text(p->name)},
-                       {"activation", list(std::span<const float>(p->activation))}};
-  }
-  if (const auto g = devices.glove->newest()) {
-    json["glove"] = {{"received_ns", g->received_ns},
-                     {"counter", g->counter},
-                     {"flags", g->flags},
-                     {"sensors", g->sensors},
-                     {"raw", integers(std::span<const std::uint8_t>(g->raw))},
-                     {"angle_rad", list(std::span<const float>(g->angle_rad))}};
-  }
-  Json stations = Json::array();
-  for (const auto* channel : devices.tracker) {
-    const auto t = channel->newest();
-    if (!t) continue;
-    stations.push_back({{"station", t->station},
-                        {"received_ns", t->received_ns},
-                        {"counter", t->counter},
-                        {"error", std::string(1, t->error)},
-                        {"position_m", list(std::span<const float>(t->position_m))},
-                        {"orientation_wxyz", list(std::span<const float>(t->orientation_wxyz))}});
-  }
-  if (!stations.empty()) json["tracker"] = std::move(stations);
-  if (const auto b = devices.ball->newest()) {
-    json["ball"] = {{"received_ns", b->received_ns},
-                    {"counter", b->counter},
-                    {"buttons", b->buttons},
-                    {"period_us", b->period_us},
-                    {"raw", integers(std::span<const std::int16_t>(b->raw))},
-                    {"translation", list(std::span<const float>(b->translation))},
-                    {"rotation", list(std::span<const float>(b->rotation))}};
-  }
-  if (const auto h = devices.hand->newest()) json["hand"] = handJson(*h);
-  for (std::size_t i = 0; i < shm::kActionSources; ++i) {
-    if (const auto a = devices.actions[i]->read())
-      json["actions"][shm::kActionSourceNames[i]] = actionsJson(*a);
+  addSamples(devices, json);
+  for (const auto& [source, slot] : devices.actions) {
+    if (const auto a = slot->read()) json["actions"][source] = actionsJson(*a);
   }
   json["health"] = briefHealth(devices);
   return dump(json);

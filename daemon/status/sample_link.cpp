@@ -52,14 +52,18 @@ class Apply {
     read(document, "now_ns", there_now_ns_);
   }
 
-  void all() {
-    posture();
-    glove();
-    tracker();
-    ball();
-    hand();
-    for (std::size_t i = 0; i < shm::kActionSources; ++i) actions(i);
-    for (std::size_t i = 0; i < shm::kDevices; ++i) health(i);
+  void all(const shm::SlotNames& names) {
+    std::size_t gloves = 0, trackers = 0, balls = 0;
+    for (std::size_t i = 0; i < names.devices.size(); ++i) {
+      const auto& [name, kind] = names.devices[i];
+      if (kind == SampleKind::kGlove) glove(name, segment_.glove[gloves++]);
+      if (kind == SampleKind::kTracker) tracker(name, segment_.tracker[trackers++]);
+      if (kind == SampleKind::kBall) ball(name, segment_.ball[balls++]);
+      actions(name, segment_.actions[i]);
+      health(name, segment_.health[i]);
+    }
+    for (std::size_t i = 0; i < names.hands.size(); ++i) hand(names.hands[i], segment_.hand[i]);
+    actions("panel", segment_.actions[shm::kPanelSource]);
   }
 
  private:
@@ -86,13 +90,13 @@ class Apply {
     const auto last = channel.newest();
     if (!last || last->counter != sample.counter) channel.publish(sample);
   }
-  const Json* object(const char* key) const {
-    const auto found = document_.find(key);
-    return found != document_.end() && found->is_object() ? &*found : nullptr;
+  static const Json* object(const Json& parent, const std::string& key) {
+    const auto found = parent.find(key);
+    return found != parent.end() && found->is_object() ? &*found : nullptr;
   }
 
-  void posture() {
-    const Json* o = object("posture");
+  void posture(const Json& of_glove, shm::Channel<PostureSample>& slot) {
+    const Json* o = object(of_glove, "posture");
     if (!o) return;
     auto s = common<PostureSample>(*o);
     read(*o, "since_ns", s.since_ns);
@@ -101,20 +105,21 @@ class Apply {
     read(*o, "activation", s.activation);
     if (const auto name = o->find("name"); name != o->end() && name->is_string())
       setText(s.name, name->get<std::string>());
-    publish(segment_.posture, s);
+    publish(slot, s);
   }
-  void glove() {
-    const Json* o = object("glove");
+  void glove(const std::string& name, shm::GloveSlots& slots) {
+    const Json* o = object(document_, name);
     if (!o) return;
+    posture(*o, slots.posture);
     auto s = common<GloveSample>(*o);
     read(*o, "flags", s.flags);
     read(*o, "sensors", s.sensors);
     read(*o, "angle_rad", s.angle_rad);
     read(*o, "raw", s.raw);
-    publish(segment_.glove, s);
+    publish(slots.samples, s);
   }
-  void tracker() {
-    const auto list = document_.find("tracker");
+  void tracker(const std::string& name, shm::TrackerSlots& slots) {
+    const auto list = document_.find(name);
     if (list == document_.end() || !list->is_array()) return;
     for (const Json& o : *list) {
       auto s = common<TrackerSample>(o);
@@ -125,11 +130,11 @@ class Apply {
       const auto error = o.find("error");
       const bool text = error != o.end() && error->is_string();
       s.error = text && error->get<std::string>().size() == 1 ? error->get<std::string>()[0] : ' ';
-      publish(segment_.tracker[s.station - 1], s);
+      publish(slots.stations[s.station - 1], s);
     }
   }
-  void ball() {
-    const Json* o = object("ball");
+  void ball(const std::string& name, shm::Channel<BallSample>& slot) {
+    const Json* o = object(document_, name);
     if (!o) return;
     auto s = common<BallSample>(*o);
     read(*o, "buttons", s.buttons);
@@ -137,10 +142,10 @@ class Apply {
     read(*o, "rotation", s.rotation);
     read(*o, "raw", s.raw);
     read(*o, "period_us", s.period_us);
-    publish(segment_.ball, s);
+    publish(slot, s);
   }
-  void hand() {
-    const Json* o = object("hand");
+  void hand(const std::string& name, shm::Channel<HandSample>& slot) {
+    const Json* o = object(document_, name);
     if (!o) return;
     auto s = common<HandSample>(*o);
     read(*o, "flags", s.flags);
@@ -152,15 +157,15 @@ class Apply {
     read(*o, "velocity_m_s", s.velocity_m_s);
     read(*o, "turn_rad_s", s.turn_rad_s);
     read(*o, "delay_s", s.delay_s);
-    publish(segment_.hand, s);
+    publish(slot, s);
   }
   // The order of the actions is not transmitted: those that begin between two documents are taken
   // in the order of kActions.
-  void actions(std::size_t source) {
-    const Json* all = object("actions");
-    const auto found = all ? all->find(shm::kActionSourceNames[source]) : Json::const_iterator();
-    if (!all || found == all->end() || !found->is_object()) return;
-    const auto last = segment_.actions[source].read();
+  void actions(const std::string& source, shm::SeqSlot<shm::ActionState>& slot) {
+    const Json* all = object(document_, "actions");
+    const Json* found = all ? object(*all, source) : nullptr;
+    if (!found) return;
+    const auto last = slot.read();
     shm::ActionState s{};
     read(*found, "changed_ns", s.changed_ns);
     s.changed_ns = here(s.changed_ns);
@@ -175,13 +180,13 @@ class Apply {
     const bool same = last && last->generation == s.generation;
     const bool news = !same || !std::equal(std::begin(s.begun), std::end(s.begun), last->begun) ||
                       !std::equal(std::begin(s.held), std::end(s.held), last->held);
-    if (news) segment_.actions[source].publish(s);
+    if (news) slot.publish(s);
   }
-  void health(std::size_t device) {
-    const Json* all = object("health");
-    const auto found = all ? all->find(shm::kDeviceNames[device]) : Json::const_iterator();
-    if (!all || found == all->end() || !found->is_object()) return;
-    const auto last = segment_.health[device].read();
+  void health(const std::string& device, shm::SeqSlot<DeviceHealth>& slot) {
+    const Json* all = object(document_, "health");
+    const Json* found = all ? object(*all, device) : nullptr;
+    if (!found) return;
+    const auto last = slot.read();
     DeviceHealth h{};
     std::uint32_t state = 0;
     read(*found, "state", state);
@@ -202,7 +207,7 @@ class Apply {
     // since_ns, computed anew from each document, would vary with the network's delay: keep the
     // first.
     if (last && last->state == h.state) h.since_ns = last->since_ns;
-    segment_.health[device].publish(h);
+    slot.publish(h);
   }
 
   const Json& document_;
@@ -215,11 +220,11 @@ class Apply {
 }  // namespace
 
 bool applySamples(const std::string& document, const std::string& from, Timestamp now,
-                  shm::DevicesSegment& segment) {
+                  const shm::SlotNames& names, shm::DevicesSegment& segment) {
   if (document.size() > kLongestDocument) return false;
   const auto json = Json::parse(document, nullptr, false);
   if (!json.is_object() || !json.contains("now_ns")) return false;
-  Apply(json, from, now, segment).all();
+  Apply(json, from, now, segment).all(names);
   return true;
 }
 
@@ -229,9 +234,11 @@ struct SampleLink::Socket {
 };
 
 Result<std::unique_ptr<SampleLink>> SampleLink::start(SampleLinkSettings settings,
+                                                      shm::SlotNames names,
                                                       shm::DevicesSegment& segment,
                                                       ThreadWatch& watch, const Clock& clock) {
-  std::unique_ptr<SampleLink> link(new SampleLink(std::move(settings), segment, clock));
+  std::unique_ptr<SampleLink> link(
+      new SampleLink(std::move(settings), std::move(names), segment, clock));
   try {
     link->connect();
   } catch (const zmq::error_t& e) {
@@ -244,9 +251,10 @@ Result<std::unique_ptr<SampleLink>> SampleLink::start(SampleLinkSettings setting
   return link;
 }
 
-SampleLink::SampleLink(SampleLinkSettings settings, shm::DevicesSegment& segment,
-                       const Clock& clock)
+SampleLink::SampleLink(SampleLinkSettings settings, shm::SlotNames names,
+                       shm::DevicesSegment& segment, const Clock& clock)
     : settings_(std::move(settings)),
+      names_(std::move(names)),
       segment_(segment),
       clock_(clock),
       heard_(clock.now()),
@@ -302,7 +310,8 @@ bool SampleLink::take() {
     if (!socket_->subscriber.recv(part)) break;
     more = part.more();
   }
-  if (!applySamples(document.to_string(), settings_.endpoint, clock_.now(), segment_)) return false;
+  if (!applySamples(document.to_string(), settings_.endpoint, clock_.now(), names_, segment_))
+    return false;
   heard_ = clock_.now();
   renew_after_ = settings_.renew_after;
   ever_ = true;
@@ -317,7 +326,8 @@ void SampleLink::renewWhereSilent(Timestamp now) {
 }
 
 void SampleLink::lost(Timestamp now) {
-  for (auto& slot : segment_.health) {
+  for (std::size_t i = 0; i < names_.devices.size(); ++i) {
+    auto& slot = segment_.health[i];
     const auto last = slot.read();
     DeviceHealth h = last.value_or(DeviceHealth{});
     if (!last || h.state != HealthState::kAbsent) h.since_ns = toNanoseconds(now);

@@ -8,6 +8,7 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
 #include "daemon/base/watched_thread.h"
+#include "daemon/shm/fields.h"
 #include "daemon/shm/layout.h"
 #include "daemon/status/curve.h"
 
@@ -24,14 +25,16 @@ struct SampleLinkSettings {
   Duration renew_after = std::chrono::seconds(2), renew_at_most = std::chrono::seconds(5);
 };
 
-// Follows the topic "sample" on a thread of its own and writes the samples into `segment`, whose
-// only writer it is. Times are converted to this machine's clock such that a sample is as old as it
-// was when it was sent; the delay of the network is unknown and not added. While nothing is
-// received, the health of every device is absent, with the reason.
+// Follows the topic "sample" on a thread of its own and writes the samples of the devices and hands
+// that `names` has into `segment`, whose only writer it is; others are passed over. Times are
+// converted to this machine's clock such that a sample is as old as it was when it was sent; the
+// delay of the network is unknown and not added. While nothing is received, the health of every
+// device is absent, with the reason.
 class SampleLink {
  public:
   // Errors: kInvalidArgument (an invalid endpoint or key).
   static Result<std::unique_ptr<SampleLink>> start(SampleLinkSettings settings,
+                                                   shm::SlotNames names,
                                                    shm::DevicesSegment& segment, ThreadWatch& watch,
                                                    const Clock& clock);
   ~SampleLink();
@@ -40,7 +43,8 @@ class SampleLink {
 
  private:
   struct Socket;
-  SampleLink(SampleLinkSettings settings, shm::DevicesSegment& segment, const Clock& clock);
+  SampleLink(SampleLinkSettings settings, shm::SlotNames names, shm::DevicesSegment& segment,
+             const Clock& clock);
   void connect();  // throws zmq::error_t
   void run(const std::stop_token& stop, Progress& progress);
   bool take();  // receives a document, if there is one, and applies it
@@ -48,6 +52,7 @@ class SampleLink {
   void lost(Timestamp now);
 
   SampleLinkSettings settings_;
+  shm::SlotNames names_;
   std::unique_ptr<Socket> socket_;
   shm::DevicesSegment& segment_;
   const Clock& clock_;
@@ -62,6 +67,6 @@ class SampleLink {
 // Publishes the document's samples in `segment`, except those whose counter has not changed. False
 // if the document is invalid. For SampleLink and its tests.
 bool applySamples(const std::string& document, const std::string& from, Timestamp now,
-                  shm::DevicesSegment& segment);
+                  const shm::SlotNames& names, shm::DevicesSegment& segment);
 
 }  // namespace merlin::status

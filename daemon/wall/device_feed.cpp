@@ -22,12 +22,24 @@ bool pushed(const BallSample& b) {
 
 // Replaces the hand's pose by the one predicted for the time `seen`, if shared memory has a
 // smoothed hand that was computed from the same tracker sample.
-void predictPose(const shm::DeviceSlots& devices, Timestamp seen, TrackerSample& hand) {
-  const auto h = devices.hand->newest();
+void predictPose(const shm::DeviceSlots::Hand* slots, Timestamp seen, TrackerSample& hand) {
+  const auto h = slots ? slots->samples->newest() : std::nullopt;
   if (!h || h->received_ns != hand.received_ns) return;
   const hand::Pose pose = hand::poseAt(*h, seen);
   std::copy(pose.position_m.begin(), pose.position_m.end(), hand.position_m);
   std::copy(pose.orientation_wxyz.begin(), pose.orientation_wxyz.end(), hand.orientation_wxyz);
+}
+
+// Whether an action is held by which a hand acts on the model.
+bool holdsModel(const actions::ActionCounts& counts) {
+  constexpr std::array kOfHand = {actionIndex("grab"), actionIndex("fly"), actionIndex("point_at")};
+  return std::any_of(kOfHand.begin(), kOfHand.end(), [&](std::size_t i) { return counts.held[i]; });
+}
+
+bool acts(const actions::ActionCounts& counts) {
+  const auto begins = [](std::uint32_t n) { return n > 0; };
+  return std::any_of(counts.begun.begin(), counts.begun.end(), begins) ||
+         std::find(counts.held.begin(), counts.held.end(), true) != counts.held.end();
 }
 
 }  // namespace
@@ -39,48 +51,147 @@ std::optional<T> DeviceFeed::fresh(const shm::Channel<T>& channel,
   const auto health = slot.read();
   if (!sample || !health) return std::nullopt;
   const bool well = health->state == HealthState::kOk &&
-                    now - fromNanoseconds(health->updated_ns) < stale_after_ * 2;
-  if (!well && now - fromNanoseconds(health->since_ns) >= stale_after_) return std::nullopt;
+                    now - fromNanoseconds(health->updated_ns) < settings_.stale_after * 2;
+  if (!well && now - fromNanoseconds(health->since_ns) >= settings_.stale_after)
+    return std::nullopt;
   const Duration age = now - fromNanoseconds(sample->received_ns);
   age_ = std::min(age, age_.value_or(age));
   return sample;
 }
 
-std::optional<TrackerSample> DeviceFeed::station(const shm::DeviceSlots& devices, int number,
-                                                 Timestamp now) {
-  const auto index = static_cast<std::size_t>(number - 1);
-  const auto sample = fresh(*devices.tracker[index], *devices.tracker_health, now);
-  if (!sample || now - fromNanoseconds(sample->received_ns) > stale_after_) return std::nullopt;
+std::string DeviceFeed::personOf(const std::string& device) const {
+  const auto found = std::find_if(settings_.devices.begin(), settings_.devices.end(),
+                                  [&](const OwnedDevice& d) { return d.device == device; });
+  return found == settings_.devices.end() ? std::string() : found->person;
+}
+
+bool DeviceFeed::counts(const std::string& device) const {
+  return !holder_ || personOf(device) == *holder_;
+}
+
+std::optional<TrackerSample> DeviceFeed::station(const shm::DeviceSlots& devices,
+                                                 const FollowedStation& place, Timestamp now) {
+  const auto* const tracker = devices.tracker(place.tracker);
+  if (!tracker || place.station < 1) return std::nullopt;
+  const auto index = static_cast<std::size_t>(place.station - 1);
+  const auto sample = fresh(*tracker->stations[index], *tracker->health, now);
+  if (!sample || now - fromNanoseconds(sample->received_ns) > settings_.stale_after)
+    return std::nullopt;
   return sample;
 }
 
-void DeviceFeed::readPosture(const shm::DeviceSlots& devices, Timestamp now, WallInput& input) {
-  const auto shown = fresh(*devices.posture, *devices.glove_health, now);
-  if (!shown || now - fromNanoseconds(shown->received_ns) > stale_after_) return;
-  const auto held = devices.posture_state->read();
+std::optional<BallSample> DeviceFeed::readBall(const shm::DeviceSlots::Ball& slots, Timestamp now) {
+  auto ball = fresh(*slots.samples, *slots.health, now);
+  if (ball && pushed(*ball) && now - fromNanoseconds(ball->received_ns) > kPushLasts) {
+    std::fill(std::begin(ball->translation), std::end(ball->translation), 0.0F);
+    std::fill(std::begin(ball->rotation), std::end(ball->rotation), 0.0F);
+  }
+  return ball;
+}
+
+// Held actions count only while their device works: a process that has ended cannot release them.
+DeviceFeed::Acts DeviceFeed::readActs(const shm::DeviceSlots& devices, Timestamp now) {
+  Acts acts;
+  acts.actions = actions_.read(devices);
+  const auto ends = [&](const std::string& device) {
+    for (std::size_t i = 0; i < devices.actions.size(); ++i) {
+      if (devices.actions[i].source == device) acts.actions.by_source[i].held = {};
+    }
+  };
+  for (const auto& ball : devices.balls) {
+    acts.balls.push_back(readBall(ball, now));
+    if (!acts.balls.back() || leaves_out_ball_) ends(ball.name);
+  }
+  for (const auto& glove : devices.gloves) {
+    const auto sample = fresh(*glove.samples, *glove.health, now);
+    if (!sample || now - fromNanoseconds(sample->received_ns) > settings_.stale_after)
+      ends(glove.name);
+  }
+  return acts;
+}
+
+void DeviceFeed::takeTurns(const shm::DeviceSlots& devices, const Acts& now_acts, Timestamp now) {
+  std::vector<std::string> acting;
+  for (std::size_t i = 0; i < devices.balls.size(); ++i) {
+    if (now_acts.balls[i] && pushed(*now_acts.balls[i]))
+      acting.push_back(personOf(devices.balls[i].name));
+  }
+  for (std::size_t i = 0; i < devices.actions.size(); ++i) {
+    const bool panel = i + 1 == devices.actions.size();
+    if (!panel && acts(now_acts.actions.by_source[i]))
+      acting.push_back(personOf(devices.actions[i].source));
+  }
+  holder_ = turns_.update(now, acting);
+}
+
+// The hand that acted last keeps on while it holds an action, so that a second one does not take
+// over the model.
+std::size_t DeviceFeed::handThatActs(const shm::DeviceSlots& devices,
+                                     const actions::Actions& actions) {
+  const auto holds = [&](std::size_t hand) {
+    const auto* const glove = devices.glove(settings_.hands[hand].glove);
+    for (std::size_t i = 0; glove && i < devices.actions.size(); ++i) {
+      if (devices.actions[i].source == glove->name) return holdsModel(actions.by_source[i]);
+    }
+    return false;
+  };
+  const auto mayAct = [&](std::size_t hand) {
+    return !holder_ || settings_.hands[hand].person == *holder_;
+  };
+  const std::size_t count = settings_.hands.size();
+  if (hand_ < count && mayAct(hand_) && holds(hand_)) return hand_;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (mayAct(i) && holds(i)) return i;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (mayAct(i)) return i;
+  }
+  return count;
+}
+
+void DeviceFeed::readHand(const shm::DeviceSlots& devices, const actions::Actions& actions,
+                          Timestamp now, WallInput& input) {
+  const std::size_t acting = handThatActs(devices, actions);
+  if (acting >= settings_.hands.size()) return;
+  hand_ = acting;
+  const FollowedHand& followed = settings_.hands[hand_];
+  auto& hand = input.scene.hand;
+  hand = station(devices, followed.place, now);
+  if (hand && settings_.ahead > Duration::zero())
+    predictPose(devices.hand(followed.name), now + settings_.ahead, *hand);
+  readPosture(devices, followed.glove, now, input);
+}
+
+void DeviceFeed::readPosture(const shm::DeviceSlots& devices, const std::string& name,
+                             Timestamp now, WallInput& input) {
+  const auto* const glove = devices.glove(name);
+  if (!glove) return;
+  const auto shown = fresh(*glove->posture, *glove->health, now);
+  if (!shown || now - fromNanoseconds(shown->received_ns) > settings_.stale_after) return;
+  const auto held = glove->posture_state->read();
   static_assert(sizeof held->name == sizeof input.posture);
   if (held) std::copy(std::begin(held->name), std::end(held->name), input.posture.begin());
 }
 
-// Held actions count only while their device works: a process that has ended cannot release them.
-// Returns whether the ball moves a corner.
-bool DeviceFeed::readActions(const shm::DeviceSlots& devices, Timestamp now, WallInput& input) {
-  const auto glove = fresh(*devices.glove, *devices.glove_health, now);
-  const bool glove_works = glove && now - fromNanoseconds(glove->received_ns) <= stale_after_;
-  const bool ball_works = fresh(*devices.ball, *devices.ball_health, now).has_value();
-  const actions::Actions actions =
-      actions_.read(devices, {glove_works, ball_works && !leaves_out_ball_, true});
-  const auto begun = [&](std::size_t action) {
-    const std::uint32_t by_ball = actions.begun_by[shm::kBallActions][action];
-    return actions.begun[action] - (leaves_out_ball_ ? by_ball : 0);
-  };
-  const auto held = [&](std::size_t action) { return actions.held[action]; };
-  input.scene.grab = held(actionIndex("grab"));
-  input.scene.fly = held(actionIndex("fly"));
-  input.scene.point_at = held(actionIndex("point_at"));
+// Returns whether a ball moves a corner.
+bool DeviceFeed::useActions(const shm::DeviceSlots& devices, const actions::Actions& actions,
+                            WallInput& input) const {
+  actions::ActionCounts used;
+  for (std::size_t i = 0; i < devices.actions.size(); ++i) {
+    const std::string& source = devices.actions[i].source;
+    const bool panel = i + 1 == devices.actions.size();
+    if (!panel && !counts(source)) continue;
+    actions::ActionCounts counts = actions.by_source[i];
+    input.operator_panel += counts.begun[actionIndex("operator_panel")];
+    if (leaves_out_ball_ && devices.ball(source)) counts.begun = {};
+    used.add(counts);
+  }
+  const auto begun = [&](std::size_t action) { return used.begun[action]; };
+  input.scene.grab = used.held[actionIndex("grab")];
+  input.scene.fly = used.held[actionIndex("fly")];
+  input.scene.point_at = used.held[actionIndex("point_at")];
   input.scene.reset_view = begun(actionIndex("reset_view"));
   input.scene.next_mode = begun(actionIndex("next_mode"));
-  input.operator_panel = actions.begun[actionIndex("operator_panel")];
   input.next_content = begun(actionIndex("next_content"));
   input.snapshot = begun(actionIndex("snapshot"));
   input.blank = begun(actionIndex("blank"));
@@ -92,7 +203,7 @@ bool DeviceFeed::readActions(const shm::DeviceSlots& devices, Timestamp now, Wal
                                  actionIndex("next_testcard")};
   static_assert(kAlign.size() == kAlignActionCount);
   for (std::size_t i = 0; i < kAlign.size(); ++i) input.align.begun[i] = begun(kAlign[i]);
-  return held(actionIndex("align_push"));
+  return used.held[actionIndex("align_push")];
 }
 
 // A full push moves the selected corner by kFullPush_px_s; the speed grows with the cube of the
@@ -116,18 +227,17 @@ WallInput DeviceFeed::read(Timestamp now) {
   age_.reset();
   const shm::DeviceSlots* d = devices_.get(now);
   if (!d) return input;
-  auto& ball = input.scene.ball;
-  ball = fresh(*d->ball, *d->ball_health, now);
-  if (ball && pushed(*ball) && now - fromNanoseconds(ball->received_ns) > kPushLasts) {
-    std::fill(std::begin(ball->translation), std::end(ball->translation), 0.0F);
-    std::fill(std::begin(ball->rotation), std::end(ball->rotation), 0.0F);
+  const Acts acts = readActs(*d, now);
+  takeTurns(*d, acts, now);
+  for (std::size_t i = 0; i < d->balls.size(); ++i) {
+    const auto& ball = acts.balls[i];
+    if (!ball || !counts(d->balls[i].name)) continue;
+    const bool replaces = input.scene.ball && pushed(*ball) && !pushed(*input.scene.ball);
+    if (!input.scene.ball || replaces) input.scene.ball = ball;
   }
-  auto& hand = input.scene.hand;
-  hand = station(*d, hand_station_, now);
-  if (head_station_ > 0) input.head = station(*d, head_station_, now);
-  if (hand && ahead_ > Duration::zero()) predictPose(*d, now + ahead_, *hand);
-  readPosture(*d, now, input);
-  const bool align = readActions(*d, now, input);
+  readHand(*d, acts.actions, now, input);
+  if (settings_.head.station > 0) input.head = station(*d, settings_.head, now);
+  const bool align = useActions(*d, acts.actions, input);
   moveCorner(since_last, align, input);
   return input;
 }

@@ -2,49 +2,67 @@
 // process or another one writes. The devices' slots are found by name when the segment is opened.
 #pragma once
 
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "daemon/actions/action_reader.h"
 #include "daemon/base/clock.h"
 #include "daemon/shm/segment.h"
 #include "daemon/wall/input_feed.h"
+#include "daemon/wall/turns.h"
 
 namespace merlin::wall {
 
 // Thread-bound. Never waits: reads the newest samples and omits devices that do not work.
+//
+// Of several balls the one that is pushed counts, of several hands the one that holds an action,
+// otherwise the first of each; the actions of all count. Of several people only the input of the
+// one who has the wall counts (Turns).
 class DeviceFeed final : public InputFeed {
  public:
-  // `ahead`: time from a frame's begin until it is visible; the hand's pose is predicted for that
-  // time. `stale_after`: age at which samples of tracker and glove count as missing.
-  // `head_station`: the tracker station on the viewer's head; 0: none.
-  DeviceFeed(std::string segment_name, int hand_station, Duration stale_after,
-             Duration ahead = Duration::zero(), int head_station = 0)
-      : devices_(std::move(segment_name)),
-        hand_station_(hand_station),
-        head_station_(head_station),
-        stale_after_(stale_after),
-        ahead_(ahead) {}
+  DeviceFeed(std::string segment_name, FeedSettings settings)
+      : devices_(std::move(segment_name)), settings_(std::move(settings)), turns_(settings_.turn) {}
 
   WallInput read(Timestamp now) override;
   void configure(const FeedSettings& settings) override {
-    hand_station_ = settings.hand_station;
-    stale_after_ = settings.stale_after;
-    ahead_ = settings.ahead;
+    settings_ = settings;
+    turns_.setAfter(settings.turn);
   }
   void leaveOutBall(bool leaves_out) override { leaves_out_ball_ = leaves_out; }
   Duration age() const noexcept override { return age_.value_or(Duration::zero()); }
 
  private:
+  // What the devices of one person do now.
+  struct Acts {
+    std::vector<std::optional<BallSample>> balls;  // index: DeviceSlots::balls
+    actions::Actions actions;
+  };
   template <typename T>
   std::optional<T> fresh(const shm::Channel<T>& channel, const shm::SeqSlot<DeviceHealth>& health,
                          Timestamp now);
-  std::optional<TrackerSample> station(const shm::DeviceSlots& devices, int number, Timestamp now);
-  void readPosture(const shm::DeviceSlots& devices, Timestamp now, WallInput& input);
+  std::string personOf(const std::string& device) const;
+  std::optional<TrackerSample> station(const shm::DeviceSlots& devices,
+                                       const FollowedStation& place, Timestamp now);
+  std::optional<BallSample> readBall(const shm::DeviceSlots::Ball& ball, Timestamp now);
+  Acts readActs(const shm::DeviceSlots& devices, Timestamp now);
+  bool counts(const std::string& device) const;
+  void takeTurns(const shm::DeviceSlots& devices, const Acts& acts, Timestamp now);
+  std::size_t handThatActs(const shm::DeviceSlots& devices, const actions::Actions& actions);
+  void readHand(const shm::DeviceSlots& devices, const actions::Actions& actions, Timestamp now,
+                WallInput& input);
+  void readPosture(const shm::DeviceSlots& devices, const std::string& glove, Timestamp now,
+                   WallInput& input);
   void moveCorner(Duration since_last, bool held, WallInput& input) const;
-  bool readActions(const shm::DeviceSlots& devices, Timestamp now, WallInput& input);
+  bool useActions(const shm::DeviceSlots& devices, const actions::Actions& actions,
+                  WallInput& input) const;
 
   shm::SegmentFollower<shm::DevicesReader> devices_;
-  int hand_station_, head_station_;
-  Duration stale_after_;
-  Duration ahead_;
+  FeedSettings settings_;
+  Turns turns_;
+  std::optional<std::string> holder_;  // who has the wall
+  std::size_t hand_ = 0;               // the hand that acted last: index of settings_.hands
   bool leaves_out_ball_ = false;
   std::optional<Duration> age_;
   std::optional<Timestamp> last_read_;

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "daemon/base/clock.h"
 #include "daemon/wall/aligner.h"
@@ -24,13 +26,34 @@ struct WallInput {
   std::array<char, 20> posture{};  // name of the current posture, NUL-terminated; empty: none
 };
 
+// A station of a tracker.
+struct FollowedStation {
+  std::string tracker;  // its name; empty: the first tracker
+  int station = 0;      // 1 to 4; 0: none
+};
+
+// Whose a device is: people take turns.
+struct OwnedDevice {
+  std::string device, person;
+};
+
+struct FollowedHand {
+  std::string name, person;
+  std::string glove;  // name of the glove whose postures are the hand's; empty: the first glove
+  FollowedStation place;
+};
+
 // How the devices' input is read.
 struct FeedSettings {
-  int hand_station = 1;
+  std::vector<FollowedHand> hands;
+  std::vector<OwnedDevice> devices;  // those that are not listed are of the person ""
+  FollowedStation head;              // on the viewer's head
   // Age at which samples of tracker and glove count as missing.
   Duration stale_after{};
   // Time from a frame's begin until it is visible; the hand's pose is predicted for that time.
   Duration ahead{};
+  // While a person acts, and this long after, other people's input does not count.
+  Duration turn{};
 };
 
 // Thread-bound to the wall's thread.
@@ -44,7 +67,7 @@ class InputFeed {
   // Replaces the settings, from the next read() on.
   virtual void configure(const FeedSettings& settings) { static_cast<void>(settings); }
 
-  // Whether actions of the ball's buttons are left out from the next read() on, except
+  // Whether actions of the balls' buttons are left out from the next read() on, except
   // operator_panel.
   virtual void leaveOutBall(bool leaves_out) { static_cast<void>(leaves_out); }
 

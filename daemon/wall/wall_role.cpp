@@ -227,9 +227,7 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
   }
   ShownModels& models = **made;
   beginCorrecting(models.contexts());
-  const FeedSettings input = feedSettings(settings_);
-  DeviceFeed feed(shm::segmentName(settings_.instance, "devices"), input.hand_station,
-                  input.stale_after, input.ahead, settings_.wall.stereo.head.station);
+  DeviceFeed feed(shm::segmentName(settings_.instance, "devices"), feedSettings(settings_));
   render::frame::PointerMarker marker(plan_);
   delivery_.emplace(plan_, outputs_, overlaysWith(marker), std::move(corrections_), signals_.get());
   std::optional<ViewerPlace> viewer = makeViewerPlace();
@@ -254,8 +252,18 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
 }
 
 FeedSettings WallRole::feedSettings(const Settings& settings) {
-  return {settings.devices.hand.station, fromSeconds(settings.devices.stale_after_s),
-          fromSeconds(1 / settings.wall.governor.rate_hz)};
+  FeedSettings feed;
+  for (const HandSettings& hand : settings.devices.hands) {
+    feed.hands.push_back({hand.name, hand.person, hand.glove, {hand.tracker, hand.station}});
+  }
+  for (const DeviceSettings& device : settings.devices.list)
+    feed.devices.push_back({device.name, device.person});
+  const render::stereo::HeadSettings& head = settings.wall.stereo.head;
+  feed.head = {head.tracker, head.station};
+  feed.stale_after = fromSeconds(settings.devices.stale_after_s);
+  feed.ahead = fromSeconds(1 / settings.wall.governor.rate_hz);
+  feed.turn = fromSeconds(settings.devices.turn_s);
+  return feed;
 }
 
 void WallRole::reload(const Settings& settings, const WallChanges& changes) {

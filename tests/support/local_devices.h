@@ -11,10 +11,18 @@
 
 namespace merlin::test {
 
+// The names of the default configuration.
+inline shm::SlotNames defaultSlotNames() {
+  return {{{"glove", SampleKind::kGlove},
+           {"tracker", SampleKind::kTracker},
+           {"ball", SampleKind::kBall}},
+          {"hand"}};
+}
+
 class LocalDevices {
  public:
-  LocalDevices() {
-    shm::setFields(segment_->header, segment_->fields, shm::devicesFields());
+  explicit LocalDevices(const shm::SlotNames& names = defaultSlotNames()) {
+    shm::setFields(segment_->header, segment_->fields, shm::devicesFields(names));
     auto found = shm::DeviceSlots::find(*segment_);
     EXPECT_TRUE(found) << found.error().what;
     if (found) slots_ = *std::move(found);

@@ -28,21 +28,21 @@ std::string ballLines(const BallSample& ball) {
   return text + fmt::format("    buttons {}\n", pressed.empty() ? " none" : pressed);
 }
 
-std::string gloveLines(const GloveSample& glove, const shm::DeviceSlots& devices) {
+std::string gloveLines(const GloveSample& glove, const shm::SeqSlot<PostureState>& state) {
   std::string joints;
   for (std::size_t i = 0; i < std::size(glove.angle_rad); ++i) {
     if (i % 8 == 0) joints += i == 0 ? "    degrees " : "\n            ";
     joints += fmt::format(" {:6.1f}", glove.angle_rad[i] * 180 / std::numbers::pi_v<float>);
   }
-  const auto posture = devices.posture_state ? devices.posture_state->read() : std::nullopt;
+  const auto posture = state.read();
   const std::string name = posture ? posture->name : "";
   return fmt::format("{}\n    posture  {}\n", joints, name.empty() ? "none" : name);
 }
 
-std::string trackerLines(const shm::DeviceSlots& devices) {
+std::string trackerLines(const shm::DeviceSlots::Tracker& tracker) {
   std::string text;
-  for (const auto* channel : devices.tracker) {
-    const auto s = channel ? channel->newest() : std::nullopt;
+  for (const auto* channel : tracker.stations) {
+    const auto s = channel->newest();
     if (!s) continue;
     text += fmt::format(
         "    station {}  {:7.3f} {:7.3f} {:7.3f} m  turned {:5.3f} {:6.3f} {:6.3f} "
@@ -54,16 +54,17 @@ std::string trackerLines(const shm::DeviceSlots& devices) {
   return text;
 }
 
-std::string valuesOf(const shm::SeqSlot<DeviceHealth>* slot, const shm::DeviceSlots& devices) {
-  if (slot == devices.ball_health) {
-    const auto ball = devices.ball->newest();
+std::string valuesOf(const std::string& device, const shm::DeviceSlots& devices) {
+  if (const auto* const slots = devices.ball(device)) {
+    const auto ball = slots->samples->newest();
     return ball ? ballLines(*ball) : "";
   }
-  if (slot == devices.glove_health) {
-    const auto glove = devices.glove->newest();
-    return glove ? gloveLines(*glove, devices) : "";
+  if (const auto* const slots = devices.glove(device)) {
+    const auto glove = slots->samples->newest();
+    return glove ? gloveLines(*glove, *slots->posture_state) : "";
   }
-  return slot == devices.tracker_health ? trackerLines(devices) : "";
+  const auto* const tracker = devices.tracker(device);
+  return tracker ? trackerLines(*tracker) : "";
 }
 
 }  // namespace
@@ -82,9 +83,9 @@ std::string liveTable(const shm::DeviceSlots& devices, Timestamp now) {
     const auto health = slot->read();
     if (!health) continue;
     const std::string_view state = shm::healthName(*health, now);
-    text += fmt::format("  {:8} {:8} {:7.1f} Hz  {}\n", device, state, health->rate_hz,
+    text += fmt::format("  {:10} {:8} {:7.1f} Hz  {}\n", device, state, health->rate_hz,
                         state == "ok" ? health->identity : health->reason);
-    if (state == "ok") text += valuesOf(slot, devices);
+    if (state == "ok") text += valuesOf(device, devices);
   }
   return text;
 }
