@@ -23,14 +23,16 @@ constexpr std::size_t kGrab = actionIndex("grab"), kNextMode = actionIndex("next
 
 class ActionsTest : public testing::Test {
  protected:
-  ActionWriter writer(const std::vector<Binding>& bindings, shm::ActionSource source,
+  // `source`: index in the segment.
+  ActionWriter writer(const std::vector<Binding>& bindings, std::size_t source,
                       std::uint64_t generation = 1) {
-    return {bindings, source, generation, segment_->actions[source]};
+    const auto devices = test::defaultSlotNames().devices;
+    Source of;
+    if (source < devices.size()) of = {devices[source].name, devices[source].kind};
+    return {bindings, of, generation, segment_->actions[source]};
   }
   Actions read() { return reader_.read(segment_.slots()); }
-  shm::ActionState state(shm::ActionSource source) const {
-    return *segment_->actions[source].read();
-  }
+  shm::ActionState state(std::size_t source) const { return *segment_->actions[source].read(); }
   static BallSample ball(std::uint32_t buttons) {
     BallSample b{};
     b.buttons = buttons;
@@ -48,26 +50,25 @@ class ActionsTest : public testing::Test {
 };
 
 TEST_F(ActionsTest, AnActionBeginsOnceAPress) {
-  ActionWriter w = writer({{"ball.button.2", "next_mode"}}, shm::kBallActions);
+  ActionWriter w = writer({{"ball.button.2", "next_mode"}}, test::kBall);
   (void)read();
   for (int press = 0; press < 3; ++press) {
     for (int i = 0; i < 5; ++i) w.update(ball(2));
-    EXPECT_EQ(read().begun[kNextMode], 1u) << press;
+    EXPECT_EQ(read().all.begun[kNextMode], 1u) << press;
     for (int i = 0; i < 5; ++i) w.update(ball(0));
-    EXPECT_EQ(read().begun[kNextMode], 0u) << press;
+    EXPECT_EQ(read().all.begun[kNextMode], 0u) << press;
   }
   w.update(ball(2 | 4));
   w.update(ball(2 | 8));  // other buttons change while button 2 is held
   w.update(ball(4));
-  EXPECT_EQ(read().begun[kNextMode], 1u);
-  EXPECT_EQ(state(shm::kBallActions).begun[kNextMode], 4u);
-  EXPECT_EQ(state(shm::kBallActions).changed_ns, 5);
+  EXPECT_EQ(read().all.begun[kNextMode], 1u);
+  EXPECT_EQ(state(test::kBall).begun[kNextMode], 4u);
+  EXPECT_EQ(state(test::kBall).changed_ns, 5);
 }
 
 TEST_F(ActionsTest, OnLeaveAnActionBeginsWhenTheInputEnds) {
-  ActionWriter w =
-      writer({{"ball.button.1", "lamp_on"}, {"ball.button.1", "lamp_off", When::kLeave}},
-             shm::kBallActions);
+  ActionWriter w = writer(
+      {{"ball.button.1", "lamp_on"}, {"ball.button.1", "lamp_off", When::kLeave}}, test::kBall);
   (void)read();
   w.update(ball(1));
   EXPECT_EQ(read().in_order, std::vector<std::size_t>{kLampOn});
@@ -77,9 +78,8 @@ TEST_F(ActionsTest, OnLeaveAnActionBeginsWhenTheInputEnds) {
 
 // Both actions begin between two reads; the reader gets them in the order in which they began.
 TEST_F(ActionsTest, TheirOrderIsKept) {
-  ActionWriter w =
-      writer({{"ball.button.1", "lamp_on"}, {"ball.button.1", "lamp_off", When::kLeave}},
-             shm::kBallActions);
+  ActionWriter w = writer(
+      {{"ball.button.1", "lamp_on"}, {"ball.button.1", "lamp_off", When::kLeave}}, test::kBall);
   (void)read();
   w.update(ball(1));
   w.update(ball(0));
@@ -92,15 +92,14 @@ TEST_F(ActionsTest, TheirOrderIsKept) {
 }
 
 TEST_F(ActionsTest, WhatLastsIsHeldUntilTheInputEnds) {
-  ActionWriter w =
-      writer({{"ball.button.1", "grab"}, {"ball.button.2", "grab"}}, shm::kBallActions);
+  ActionWriter w = writer({{"ball.button.1", "grab"}, {"ball.button.2", "grab"}}, test::kBall);
   w.update(ball(1));
-  EXPECT_TRUE(read().held[kGrab]);
+  EXPECT_TRUE(read().all.held[kGrab]);
   w.update(ball(1 | 2));
   w.update(ball(2));
-  EXPECT_TRUE(read().held[kGrab]) << "the other button holds it";
+  EXPECT_TRUE(read().all.held[kGrab]) << "the other button holds it";
   w.update(ball(0));
-  EXPECT_FALSE(read().held[kGrab]);
+  EXPECT_FALSE(read().all.held[kGrab]);
 }
 
 TEST_F(ActionsTest, EveryInputDoesWhatItIsBoundTo) {
@@ -108,9 +107,9 @@ TEST_F(ActionsTest, EveryInputDoesWhatItIsBoundTo) {
                                          {"glove.switch", "reset_view"},
                                          {"posture.point", "grab"},
                                          {"panel.button", "next_mode"}};
-  ActionWriter glove = writer(bindings, shm::kGloveActions);
-  ActionWriter ball_writer = writer(bindings, shm::kBallActions);
-  ActionWriter panel = writer(bindings, shm::kPanelActions);
+  ActionWriter glove = writer(bindings, test::kGlove);
+  ActionWriter ball_writer = writer(bindings, test::kBall);
+  ActionWriter panel = writer(bindings, test::kPanel);
   (void)read();
   ball_writer.update(ball(0x7FF));  // buttons 1 to 11, which are not bound
   EXPECT_TRUE(read().in_order.empty());
@@ -124,13 +123,13 @@ TEST_F(ActionsTest, EveryInputDoesWhatItIsBoundTo) {
   const PostureState fist = posture("fist"), point = posture("point");
   glove.update(sample, &fist);
   const Actions switched = read();
-  EXPECT_EQ(switched.begun[kReset], 1u);
-  EXPECT_FALSE(switched.held[kGrab]);
+  EXPECT_EQ(switched.all.begun[kReset], 1u);
+  EXPECT_FALSE(switched.all.held[kGrab]);
   glove.update(sample, &point);
-  EXPECT_TRUE(read().held[kGrab]);
+  EXPECT_TRUE(read().all.held[kGrab]);
   panel.press(7);
   panel.press(8);
-  EXPECT_EQ(read().begun[kNextMode], 2u);
+  EXPECT_EQ(read().all.begun[kNextMode], 2u);
 }
 
 TEST_F(ActionsTest, ADeviceThatIsLostLetsGo) {
@@ -141,8 +140,8 @@ TEST_F(ActionsTest, ADeviceThatIsLostLetsGo) {
     void publish(const DeviceHealth&) noexcept override { ++published; }
     int published = 0;
   } healths;
-  ActionSink sink(writer(bindings, shm::kBallActions),
-                  {segment_->posture_state, samples, healths, std::chrono::milliseconds(500)});
+  ActionSink sink(writer(bindings, test::kBall), {&segment_->glove[0].posture_state, samples,
+                                                  healths, std::chrono::milliseconds(500)});
   (void)read();
   sink.publish(ball(3));
   DeviceHealth health{};
@@ -150,95 +149,96 @@ TEST_F(ActionsTest, ADeviceThatIsLostLetsGo) {
   health.since_ns = 1'000'000'000;
   health.updated_ns = 1'499'999'999;
   sink.publish(health);
-  EXPECT_TRUE(read().held[kGrab]) << "it may come back";
+  EXPECT_TRUE(read().all.held[kGrab]) << "it may come back";
   health.updated_ns = 1'500'000'000;
   sink.publish(health);
   const Actions actions = read();
-  EXPECT_FALSE(actions.held[kGrab]);
-  EXPECT_EQ(actions.begun[kNextMode], 1u) << "the input has ended";
+  EXPECT_FALSE(actions.all.held[kGrab]);
+  EXPECT_EQ(actions.all.begun[kNextMode], 1u) << "the input has ended";
   EXPECT_EQ(healths.published, 2);
 }
 
 TEST_F(ActionsTest, WhatBeganBeforeTheFirstLookOrBeforeARestartIsPast) {
   const std::vector<Binding> bindings = {{"ball.button.2", "next_mode"}};
   {
-    ActionWriter w = writer(bindings, shm::kBallActions);
+    ActionWriter w = writer(bindings, test::kBall);
     w.update(ball(2));
   }
-  EXPECT_EQ(read().begun[kNextMode], 0u);
-  ActionWriter restarted = writer(bindings, shm::kBallActions, 2);
+  EXPECT_EQ(read().all.begun[kNextMode], 0u);
+  ActionWriter restarted = writer(bindings, test::kBall, 2);
   restarted.update(ball(2));
   restarted.update(ball(0));
   restarted.update(ball(2));
-  EXPECT_EQ(read().begun[kNextMode], 0u);
+  EXPECT_EQ(read().all.begun[kNextMode], 0u);
   restarted.update(ball(0));
   restarted.update(ball(2));
-  EXPECT_EQ(read().begun[kNextMode], 1u);
+  EXPECT_EQ(read().all.begun[kNextMode], 1u);
 }
 
 TEST_F(ActionsTest, WhatStaysBoundGoesOnAndWhatIsNoMoreEnds) {
-  ActionWriter w = writer({{"ball.button.1", "grab"}, {"ball.button.2", "fly"}}, shm::kBallActions);
+  ActionWriter w = writer({{"ball.button.1", "grab"}, {"ball.button.2", "fly"}}, test::kBall);
   w.update(ball(1 | 2));
-  EXPECT_TRUE(read().held[kGrab]);
+  EXPECT_TRUE(read().all.held[kGrab]);
   w.rebind({{"ball.button.3", "next_mode"}, {"ball.button.1", "grab"}});
   w.adopt(9);
   const Actions after = read();
-  EXPECT_TRUE(after.held[kGrab]);
-  EXPECT_FALSE(after.held[actionIndex("fly")]);
+  EXPECT_TRUE(after.all.held[kGrab]);
+  EXPECT_FALSE(after.all.held[actionIndex("fly")]);
   EXPECT_TRUE(after.in_order.empty()) << "nothing begins anew";
-  EXPECT_EQ(state(shm::kBallActions).changed_ns, 9);
+  EXPECT_EQ(state(test::kBall).changed_ns, 9);
   w.update(ball(1 | 4));
-  EXPECT_EQ(read().begun[kNextMode], 0u) << "the third button was never seen released";
+  EXPECT_EQ(read().all.begun[kNextMode], 0u) << "the third button was never seen released";
   w.update(ball(1));
   w.update(ball(1 | 4));
   const Actions pressed = read();
-  EXPECT_EQ(pressed.begun[kNextMode], 1u);
-  EXPECT_TRUE(pressed.held[kGrab]);
+  EXPECT_EQ(pressed.all.begun[kNextMode], 1u);
+  EXPECT_TRUE(pressed.all.held[kGrab]);
 }
 
 // An input that is pressed at that moment triggers nothing, neither when it is seen nor when it
 // ends.
 TEST_F(ActionsTest, ANewBindingWaitsForTheNextPress) {
-  ActionWriter w = writer({{"ball.button.1", "next_mode"}}, shm::kBallActions);
+  ActionWriter w = writer({{"ball.button.1", "next_mode"}}, test::kBall);
   w.update(ball(1));
   (void)read();
   w.rebind({{"ball.button.1", "grab"}, {"ball.button.1", "lamp_off", When::kLeave}});
   for (int i = 0; i < 3; ++i) w.update(ball(1));
-  EXPECT_FALSE(read().held[kGrab]);
+  EXPECT_FALSE(read().all.held[kGrab]);
   w.update(ball(0));
   EXPECT_TRUE(read().in_order.empty());
   w.update(ball(1));
-  EXPECT_TRUE(read().held[kGrab]);
+  EXPECT_TRUE(read().all.held[kGrab]);
   w.update(ball(0));
   EXPECT_EQ(read().in_order, std::vector<std::size_t>{kLampOff});
-  ActionWriter panel = writer({}, shm::kPanelActions);
+  ActionWriter panel = writer({}, test::kPanel);
   (void)read();
   panel.rebind({{"panel.button", "next_mode"}});
   panel.press(3);
-  EXPECT_EQ(read().begun[kNextMode], 1u) << "the panel's button is released between presses";
+  EXPECT_EQ(read().all.begun[kNextMode], 1u) << "the panel's button is released between presses";
 }
 
 // A ball at rest sends no samples, but its health.
 TEST_F(ActionsTest, ADeviceThatSendsNothingIsReboundByItsHealth) {
   test::RecordingSink samples;
   test::RecordingHealth healths;
-  ActionSink sink(writer({{"ball.button.1", "grab"}}, shm::kBallActions),
-                  {segment_->posture_state, samples, healths, std::chrono::milliseconds(500)});
+  ActionSink sink(
+      writer({{"ball.button.1", "grab"}}, test::kBall),
+      {&segment_->glove[0].posture_state, samples, healths, std::chrono::milliseconds(500)});
   sink.publish(ball(1));
-  EXPECT_TRUE(read().held[kGrab]);
+  EXPECT_TRUE(read().all.held[kGrab]);
   sink.reload({}, std::chrono::milliseconds(100));
   DeviceHealth health{};
   health.state = HealthState::kOk;
   sink.publish(health);
-  EXPECT_FALSE(read().held[kGrab]);
+  EXPECT_FALSE(read().all.held[kGrab]);
   sink.reload({{"ball.button.1", "grab"}}, std::chrono::milliseconds(100));
   sink.publish(ball(0));
   sink.publish(ball(1));
-  EXPECT_TRUE(read().held[kGrab]);
+  EXPECT_TRUE(read().all.held[kGrab]);
   health.state = HealthState::kAbsent;
   health.updated_ns = 100'000'000;
   sink.publish(health);
-  EXPECT_FALSE(read().held[kGrab]) << "the new time counts";
+  EXPECT_FALSE(read().all.held[kGrab]) << "the new time counts";
 }
 
 TEST(BindingSettings, AnInputThatIsNoneIsFound) {

@@ -8,6 +8,7 @@
 #include "daemon/base/commands.h"
 #include "daemon/base/log.h"
 #include "daemon/shm/fields.h"
+#include "tests/support/local_devices.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::wall {
@@ -21,8 +22,8 @@ constexpr Duration kStaleAfter = milliseconds(500);
 class DeviceFeedTest : public testing::Test {
  protected:
   void SetUp() override {
-    auto made =
-        shm::SegmentWriter<shm::DevicesSegment>::make(name_, shm::devicesFields(), 1, now_, {});
+    auto made = shm::SegmentWriter<shm::DevicesSegment>::make(
+        name_, shm::devicesFields(test::defaultSlotNames()), 1, now_, {});
     ASSERT_TRUE(made);
     segment_.emplace(*std::move(made));
     for (auto& slot : (*segment_)->health) slot.publish(health(HealthState::kOk));
@@ -37,41 +38,49 @@ class DeviceFeedTest : public testing::Test {
     segment_->writeHeartbeat(now_);
     return feed_.read(now_);
   }
+  static FeedSettings settings() {
+    FeedSettings settings;
+    settings.hands = {{"hand", "", "", {"", 2}}};
+    settings.stale_after = kStaleAfter;
+    return settings;
+  }
   void push() {
     BallSample ball{};
     ball.received_ns = toNanoseconds(now_);
     ball.translation[0] = 1;
     ball.buttons = 2;
-    (*segment_)->ball.publish(ball);
+    (*segment_)->ball[0].publish(ball);
   }
 
   std::string name_ = shm::segmentName(test::privateName("feed"), "devices");
   Timestamp now_ = SystemClock().now();
   std::optional<shm::SegmentWriter<shm::DevicesSegment>> segment_;
-  DeviceFeed feed_{name_, 2, kStaleAfter};
+  DeviceFeed feed_{name_, settings()};
 };
 
 // A hand that moves at 1 m/s, measured 3 ms ago, predicted to the end of the next frame, 33 ms
 // ahead.
 TEST_F(DeviceFeedTest, PredictsTheHandToTheDisplayTime) {
-  DeviceFeed feed(name_, 2, kStaleAfter, milliseconds(33));
+  FeedSettings ahead = settings();
+  ahead.ahead = milliseconds(33);
+  DeviceFeed feed(name_, ahead);
   TrackerSample measured{};
   measured.received_ns = toNanoseconds(now_ - milliseconds(3));
   measured.position_m[0] = 0.5F;
   measured.orientation_wxyz[0] = 1;
-  (*segment_)->tracker[1].publish(measured);
+  (*segment_)->tracker[0].stations[1].publish(measured);
   HandSample hand{};
   hand.received_ns = measured.received_ns;
   hand.position_m[0] = 0.49F;
   hand.orientation_wxyz[0] = 1;
   hand.velocity_m_s[0] = 1;
   hand.delay_s = 0.01F;
-  (*segment_)->hand.publish(hand);
+  (*segment_)->hand[0].publish(hand);
   segment_->writeHeartbeat(now_);
   EXPECT_NEAR(feed.read(now_).scene.hand->position_m[0], 0.49 + 0.003 + 0.033 + 0.010, 1e-5);
   EXPECT_EQ(read().scene.hand->position_m[0], 0.5F) << "not asked to look ahead";
   measured.received_ns += 1000;  // a newer tracker record, for which there is no HandSample yet
-  (*segment_)->tracker[1].publish(measured);
+  (*segment_)->tracker[0].stations[1].publish(measured);
   EXPECT_EQ(feed.read(now_).scene.hand->position_m[0], 0.5F);
 }
 
@@ -79,7 +88,7 @@ TEST_F(DeviceFeedTest, GivesTheNewestOfWhatThereIs) {
   push();
   TrackerSample hand{};
   hand.received_ns = toNanoseconds(now_ - milliseconds(3));
-  (*segment_)->tracker[1].publish(hand);
+  (*segment_)->tracker[0].stations[1].publish(hand);
   const auto input = read();
   ASSERT_TRUE(input.scene.ball);
   EXPECT_EQ(input.scene.ball->translation[0], 1);
@@ -89,11 +98,13 @@ TEST_F(DeviceFeedTest, GivesTheNewestOfWhatThereIs) {
 }
 
 TEST_F(DeviceFeedTest, GivesTheHeadsStationWhereOneIsNamedAndItIsFresh) {
-  DeviceFeed feed(name_, 2, kStaleAfter, Duration::zero(), 3);
+  FeedSettings with_head = settings();
+  with_head.head = {"", 3};
+  DeviceFeed feed(name_, with_head);
   TrackerSample head{};
   head.received_ns = toNanoseconds(now_ - milliseconds(3));
   head.position_m[0] = 0.7F;
-  (*segment_)->tracker[2].publish(head);
+  (*segment_)->tracker[0].stations[2].publish(head);
   segment_->writeHeartbeat(now_);
   ASSERT_TRUE(feed.read(now_).head);
   EXPECT_EQ(feed.read(now_).head->position_m[0], 0.7F);
@@ -104,7 +115,7 @@ TEST_F(DeviceFeedTest, GivesTheHeadsStationWhereOneIsNamedAndItIsFresh) {
 
 TEST_F(DeviceFeedTest, ADeviceThatIsNotWellForAWhileIsLeftOut) {
   push();
-  (*segment_)->health[shm::kBall].publish(health(HealthState::kAbsent));
+  (*segment_)->health[test::kBall].publish(health(HealthState::kAbsent));
   EXPECT_TRUE(read().scene.ball);
   now_ += kStaleAfter;
   EXPECT_FALSE(read().scene.ball);
@@ -125,9 +136,9 @@ TEST_F(DeviceFeedTest, AHandOrPostureThatIsOldIsNone) {
   PostureState held{};
   hand.received_ns = posture.received_ns = toNanoseconds(now_);
   std::string("fist").copy(held.name, sizeof held.name - 1);
-  (*segment_)->tracker[1].publish(hand);
-  (*segment_)->posture.publish(posture);
-  (*segment_)->posture_state.publish(held);
+  (*segment_)->tracker[0].stations[1].publish(hand);
+  (*segment_)->glove[0].posture.publish(posture);
+  (*segment_)->glove[0].posture_state.publish(held);
   EXPECT_TRUE(read().scene.hand);
   EXPECT_STREQ(read().posture.data(), "fist");
   now_ += kStaleAfter + milliseconds(1);
@@ -146,7 +157,7 @@ TEST_F(DeviceFeedTest, GivesTheActionsOfDevicesThatWork) {
         kActions.begin());
     ++actions.begun[at];
     actions.held[at] = isHeldAction(name) ? 1 : 0;
-    (*segment_)->actions[shm::kBallActions].publish(actions);
+    (*segment_)->actions[test::kBall].publish(actions);
   };
   begin("next_content");
   EXPECT_EQ(read().next_content, 0u) << "it began before the wall looked";
@@ -163,7 +174,7 @@ TEST_F(DeviceFeedTest, GivesTheActionsOfDevicesThatWork) {
   EXPECT_TRUE(input.scene.grab && input.scene.fly && input.scene.point_at);
   EXPECT_EQ(read().snapshot, 0u) << "once";
   EXPECT_TRUE(read().scene.grab) << "as long as it is held";
-  (*segment_)->health[shm::kBall].publish(health(HealthState::kAbsent));
+  (*segment_)->health[test::kBall].publish(health(HealthState::kAbsent));
   now_ += kStaleAfter;
   EXPECT_FALSE(read().scene.grab) << "the ball is lost";
 }
@@ -182,14 +193,14 @@ TEST_F(DeviceFeedTest, ThePushOfTheBallIsTheCornersWhileThatIsHeld) {
   EXPECT_EQ(input.scene.ball->translation[0], 1);
   shm::ActionState held{};
   held.held[actionIndex("align_push")] = 1;
-  (*segment_)->actions[shm::kBallActions].publish(held);
+  (*segment_)->actions[test::kBall].publish(held);
   now_ += milliseconds(50);
   input = read();
   EXPECT_NEAR(input.align.push.x, 3, 1e-9) << "60 pixels a second, for 50 ms";
   EXPECT_EQ(input.align.push.y, 0);
   EXPECT_EQ(input.scene.ball->translation[0], 0) << "the model stays";
   now_ += milliseconds(300);
-  (*segment_)->ball.publish([&] {
+  (*segment_)->ball[0].publish([&] {
     BallSample ball{};
     ball.received_ns = toNanoseconds(now_);
     ball.translation[1] = 0.5F;
@@ -225,16 +236,16 @@ TEST_F(DeviceFeedTest, AlignActionsArriveInTheirOrder) {
     begun.begun[action - kActions.begin()] = static_cast<std::uint32_t>(i + 1);
   }
   shm::ActionState none{};
-  (*segment_)->actions[shm::kBallActions].publish(none);
+  (*segment_)->actions[test::kBall].publish(none);
   read();
-  (*segment_)->actions[shm::kBallActions].publish(begun);
+  (*segment_)->actions[test::kBall].publish(begun);
   const WallInput input = read();
   for (std::size_t i = 0; i < kAlignActionCount; ++i) EXPECT_EQ(input.align.begun[i], i + 1);
 }
 
 // The ball works the operator's panel: what its buttons are bound to does not happen meanwhile.
 TEST_F(DeviceFeedTest, ActionsOfTheBallAreLeftOutExceptThePanels) {
-  const auto begin = [&](shm::ActionSource source, std::uint32_t times) {
+  const auto begin = [&](std::size_t source, std::uint32_t times) {
     shm::ActionState state{};
     state.begun[actionIndex("next_content")] = times;
     state.begun[actionIndex("operator_panel")] = times;
@@ -242,12 +253,12 @@ TEST_F(DeviceFeedTest, ActionsOfTheBallAreLeftOutExceptThePanels) {
     (*segment_)->actions[source].publish(state);
   };
   push();
-  begin(shm::kBallActions, 0);
-  begin(shm::kPanelActions, 0);
+  begin(test::kBall, 0);
+  begin(test::kPanel, 0);
   EXPECT_TRUE(read().scene.fly);
   feed_.leaveOutBall(true);
-  begin(shm::kBallActions, 3);
-  (*segment_)->actions[shm::kPanelActions].publish([&] {
+  begin(test::kBall, 3);
+  (*segment_)->actions[test::kPanel].publish([&] {
     shm::ActionState state{};
     state.begun[actionIndex("next_content")] = 2;
     return state;

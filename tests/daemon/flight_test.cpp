@@ -10,6 +10,7 @@
 #include "drivers/registry.h"
 #include "tests/support/borrowed_stream.h"
 #include "tests/support/device_bench.h"
+#include "tests/support/local_devices.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::devices {
@@ -116,28 +117,26 @@ TEST(FlightRecorder, WhatItDumpsReplays) {
   const test::TempDir dir;
   const auto segment = std::make_unique<shm::DevicesSegment>();
   FlightRecorder recorder(*segment, dir / "flight", "lab");
-  FlightRing& ring = recorder.ringOf(shm::kGlove, "cyberglove", 38400);
+  FlightRing& ring = recorder.ringOf(test::kGlove, "left", "cyberglove", 38400);
   test::DeviceBench bench("cyberglove", {}, "visit");
   io::RecordingStream stream(std::make_unique<test::BorrowedStream>(bench.stream), ring,
                              bench.clock);
-  const auto device =
-      findDriver(SampleKind::kGlove, "cyberglove")->make({}, bench.clock, bench.sink);
+  const auto device = findDriver("cyberglove")->make({}, bench.clock, bench.sink);
   ASSERT_TRUE(device->open(stream));
   for (const Timestamp end = bench.clock.now() + seconds(2); bench.clock.now() < end;)
     ASSERT_TRUE(device->poll(stream));
 
   DeviceHealth health{};
   health.state = HealthState::kOk;
-  segment->health[shm::kGlove].publish(health);
+  segment->health[test::kGlove].publish(health);
   EXPECT_TRUE(recorder.check().empty());
   health.state = HealthState::kFailed;
   std::snprintf(health.reason, sizeof health.reason, "no record for 0.5 s");
-  segment->health[shm::kGlove].publish(health);
+  segment->health[test::kGlove].publish(health);
   const auto sentences = recorder.check();
   ASSERT_EQ(sentences.size(), 1u);
-  const std::string said = "the last bytes of the cyberglove are in ";
-  ASSERT_TRUE(sentences[0].starts_with(said + dir.path() + "/flight/lab-cyberglove-20"))
-      << sentences[0];
+  const std::string said = "the last bytes of left are in ";
+  ASSERT_TRUE(sentences[0].starts_with(said + dir.path() + "/flight/lab-left-20")) << sentences[0];
   EXPECT_TRUE(recorder.check().empty()) << "once a fault";
 
   const auto transcript = io::readTranscript(sentences[0].substr(said.size()));
@@ -146,7 +145,7 @@ TEST(FlightRecorder, WhatItDumpsReplays) {
   test::FakeClock clock;
   test::RecordingSink sink;
   io::ReplayStream replay(*transcript, clock);
-  const auto again = findDriver(SampleKind::kGlove, "cyberglove")->make({}, clock, sink);
+  const auto again = findDriver("cyberglove")->make({}, clock, sink);
   ASSERT_TRUE(again->open(replay));
   while (again->poll(replay)) continue;
   ASSERT_EQ(sink.glove.size(), bench.sink.glove.size());
@@ -160,7 +159,7 @@ TEST(FlightRecorder, KeepsEightDumpsOfADevice) {
   const auto segment = std::make_unique<shm::DevicesSegment>();
   for (int run = 0; run < 2; ++run) {
     FlightRecorder recorder(*segment, dir / "flight", "lab");
-    recorder.ringOf(shm::kBall, "spaceball", 9600);
+    recorder.ringOf(test::kBall, "ball", "spaceball", 9600);
     for (int i = 0; i < 10; ++i) ASSERT_TRUE(recorder.dump());
   }
   std::size_t files = 0;

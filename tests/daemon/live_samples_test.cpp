@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/shm/fields.h"
+#include "tests/support/local_devices.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::cli {
@@ -13,12 +14,13 @@ namespace {
 TEST(LiveSamples, KnowsAStateThatIsBeingWrittenFromBefore) {
   const std::string instance = test::privateName("live");
   const auto segment = shm::SegmentWriter<shm::DevicesSegment>::make(
-      shm::segmentName(instance, "devices"), shm::devicesFields(), 1, SystemClock().now(), {});
+      shm::segmentName(instance, "devices"), shm::devicesFields(test::defaultSlotNames()), 1,
+      SystemClock().now(), {});
   ASSERT_TRUE(segment);
   auto samples = LiveSamples<BallSample>::open(instance, "ball", "ball");
   ASSERT_TRUE(samples);
   EXPECT_EQ(samples->complaint(), "its state is not known yet");
-  auto& slot = (*segment)->health[shm::kBall];
+  auto& slot = (*segment)->health[test::kBall];
   DeviceHealth health{};
   health.state = HealthState::kOk;
   slot.publish(health);

@@ -138,13 +138,13 @@ DeviceHealth health(HealthState state, const std::string& identity, const std::s
 
 TEST(LiveTable, ShowsWhatWorkingDevicesMeasureAndWhyOthersDoNot) {
   test::LocalDevices devices;
-  devices->health[shm::kGlove].publish(health(HealthState::kAbsent, "", "not configured"));
-  devices->health[shm::kBall].publish(health(HealthState::kOk, "pad, 8 axes", ""));
+  devices->health[test::kGlove].publish(health(HealthState::kAbsent, "", "not configured"));
+  devices->health[test::kBall].publish(health(HealthState::kOk, "pad, 8 axes", ""));
   BallSample ball{};
   ball.translation[1] = -0.5F;
   ball.raw[1] = -700;
   ball.buttons = 0x801;
-  devices->ball.publish(ball);
+  devices->ball[0].publish(ball);
   const std::string text = liveTable(devices.slots(), fromNanoseconds(1'100'000'000));
   EXPECT_NE(text.find("glove    absent      20.0 Hz  not configured\n"), std::string::npos) << text;
   EXPECT_NE(text.find("ball     ok          20.0 Hz  pad, 8 axes\n"), std::string::npos) << text;

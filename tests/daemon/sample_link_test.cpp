@@ -23,7 +23,7 @@ test::LocalDevices filled(std::int64_t received_ns, std::uint32_t counter) {
   glove.sensors = 22;
   glove.angle_rad[4] = 1.234567F;
   glove.raw[4] = 201;
-  segment->glove.publish(glove);
+  segment->glove[0].samples.publish(glove);
   TrackerSample tracker{};
   tracker.received_ns = received_ns;
   tracker.counter = counter;
@@ -31,29 +31,29 @@ test::LocalDevices filled(std::int64_t received_ns, std::uint32_t counter) {
   tracker.position_m[1] = -0.123456F;
   tracker.orientation_wxyz[0] = 1;
   tracker.error = 'k';
-  segment->tracker[1].publish(tracker);
+  segment->tracker[0].stations[1].publish(tracker);
   BallSample ball{};
   ball.received_ns = received_ns;
   ball.counter = counter;
   ball.rotation[2] = -0.5F;
   ball.raw[5] = -800;
   ball.buttons = 0x101;
-  segment->ball.publish(ball);
+  segment->ball[0].publish(ball);
   PostureSample posture{};
   posture.received_ns = posture.since_ns = received_ns;
   posture.counter = counter;
   posture.code = 3;
   std::snprintf(posture.name, sizeof posture.name, "fist");
-  segment->posture.publish(posture);
+  segment->glove[0].posture.publish(posture);
   HandSample hand{};
   hand.received_ns = received_ns;
   hand.counter = counter;
   hand.orientation_wxyz[0] = 1;
   hand.velocity_m_s[0] = 0.25F;
-  segment->hand.publish(hand);
-  for (std::size_t i = 0; i < shm::kDevices; ++i) {
+  segment->hand[0].publish(hand);
+  for (std::size_t i = 0; i < test::defaultSlotNames().devices.size(); ++i) {
     DeviceHealth health{};
-    health.state = i == shm::kTracker ? HealthState::kFailed : HealthState::kOk;
+    health.state = i == test::kTracker ? HealthState::kFailed : HealthState::kOk;
     std::snprintf(health.reason, sizeof health.reason, "reason %d", static_cast<int>(i));
     segment->health[i].publish(health);
   }
@@ -65,79 +65,82 @@ TEST(ApplySamples, BringsEverythingOverAsOldAsItWas) {
   const auto here = std::make_unique<shm::DevicesSegment>();
   const std::string document = newestSamples(there.slots(), fromNanoseconds(5'010'000'000));
   const Timestamp now = fromNanoseconds(99'000'000'000);
-  ASSERT_TRUE(applySamples(document, "tcp://a:1", now, *here));
-  const auto glove = here->glove.newest();
+  ASSERT_TRUE(applySamples(document, "tcp://a:1", now, test::defaultSlotNames(), *here));
+  const auto glove = here->glove[0].samples.newest();
   ASSERT_TRUE(glove);
   EXPECT_EQ(glove->received_ns, 98'990'000'000) << "10 ms old";
   EXPECT_EQ(glove->counter, 7u);
   EXPECT_NEAR(glove->angle_rad[4], 1.234567F, 1e-6F);
   EXPECT_EQ(glove->raw[4], 201);
   EXPECT_EQ(glove->sensors, 22u);
-  const auto tracker = here->tracker[1].newest();
+  const auto tracker = here->tracker[0].stations[1].newest();
   ASSERT_TRUE(tracker);
   EXPECT_NEAR(tracker->position_m[1], -0.123456F, 1e-6F);
   EXPECT_EQ(tracker->error, 'k');
-  EXPECT_FALSE(here->tracker[0].newest());
-  EXPECT_EQ(here->ball.newest()->raw[5], -800);
-  EXPECT_EQ(here->ball.newest()->buttons, 0x101u);
-  EXPECT_STREQ(here->posture.newest()->name, "fist");
-  EXPECT_EQ(here->posture.newest()->since_ns, 98'990'000'000);
-  EXPECT_FLOAT_EQ(here->hand.newest()->velocity_m_s[0], 0.25F);
-  EXPECT_EQ(here->health[shm::kTracker].read()->state, HealthState::kFailed);
-  EXPECT_STREQ(here->health[shm::kTracker].read()->reason, "reason 1");
-  EXPECT_STREQ(here->health[shm::kBall].read()->port, "tcp://a:1");
+  EXPECT_FALSE(here->tracker[0].stations[0].newest());
+  EXPECT_EQ(here->ball[0].newest()->raw[5], -800);
+  EXPECT_EQ(here->ball[0].newest()->buttons, 0x101u);
+  EXPECT_STREQ(here->glove[0].posture.newest()->name, "fist");
+  EXPECT_EQ(here->glove[0].posture.newest()->since_ns, 98'990'000'000);
+  EXPECT_FLOAT_EQ(here->hand[0].newest()->velocity_m_s[0], 0.25F);
+  EXPECT_EQ(here->health[test::kTracker].read()->state, HealthState::kFailed);
+  EXPECT_STREQ(here->health[test::kTracker].read()->reason, "reason 1");
+  EXPECT_STREQ(here->health[test::kBall].read()->port, "tcp://a:1");
 }
 
 TEST(ApplySamples, TheSameSampleIsPublishedOnce) {
   const auto there = filled(1, 7);
   const auto here = std::make_unique<shm::DevicesSegment>();
   for (int i = 0; i < 3; ++i)
-    ASSERT_TRUE(applySamples(newestSamples(there.slots(), fromNanoseconds(2)), "", {}, *here));
-  EXPECT_EQ(here->ball.count(), 1u);
-  ASSERT_TRUE(applySamples(newestSamples(filled(3, 8).slots(), fromNanoseconds(4)), "", {}, *here));
-  EXPECT_EQ(here->ball.count(), 2u);
+    ASSERT_TRUE(applySamples(newestSamples(there.slots(), fromNanoseconds(2)), "", {},
+                             test::defaultSlotNames(), *here));
+  EXPECT_EQ(here->ball[0].count(), 1u);
+  ASSERT_TRUE(applySamples(newestSamples(filled(3, 8).slots(), fromNanoseconds(4)), "", {},
+                           test::defaultSlotNames(), *here));
+  EXPECT_EQ(here->ball[0].count(), 2u);
 }
 
 TEST(ApplySamples, NonsenseIsRefusedAndHalfTruthsDoNoHarm) {
   const auto here = std::make_unique<shm::DevicesSegment>();
   for (const char* bad : {"", "[]", "{}", "{\"now_ns\":", "7"})
-    EXPECT_FALSE(applySamples(bad, "", {}, *here)) << bad;
+    EXPECT_FALSE(applySamples(bad, "", {}, test::defaultSlotNames(), *here)) << bad;
   for (const char* odd :
        {R"({"now_ns":1,"ball":7,"tracker":{},"hand":[],"health":3,"posture":"x"})",
         R"({"now_ns":1,"tracker":[{"station":9},{"station":"x"},7,{"error":"long"}]})",
         R"({"now_ns":"x","glove":{"angle_rad":[1,2],"raw":"y","counter":{}}})",
         R"({"now_ns":1,"health":{"ball":{"state":99,"reason":5}}})"}) {
-    EXPECT_TRUE(applySamples(odd, "", {}, *here)) << odd;
+    EXPECT_TRUE(applySamples(odd, "", {}, test::defaultSlotNames(), *here)) << odd;
   }
   const std::string good = newestSamples(filled(1, 1).slots(), {});
   for (std::size_t n = 0; n < good.size(); n += 7)
-    EXPECT_FALSE(applySamples(good.substr(0, n), "", {}, *here));
+    EXPECT_FALSE(applySamples(good.substr(0, n), "", {}, test::defaultSlotNames(), *here));
 }
 
 TEST(ApplySamples, WhatNoDeviceCanMeasureIsNotTaken) {
   const auto there = filled(1, 1);
-  TrackerSample far = *there->tracker[1].newest();
+  TrackerSample far = *there->tracker[0].stations[1].newest();
   far.counter = 2;
   far.position_m[0] = 1e30F;
-  there->tracker[1].publish(far);
-  BallSample ball = *there->ball.newest();
+  there->tracker[0].stations[1].publish(far);
+  BallSample ball = *there->ball[0].newest();
   ball.counter = 2;
   ball.rotation[2] = 3;
-  there->ball.publish(ball);
+  there->ball[0].publish(ball);
   const auto here = std::make_unique<shm::DevicesSegment>();
-  ASSERT_TRUE(applySamples(newestSamples(there.slots(), {}), "", {}, *here));
-  EXPECT_EQ(here->tracker[1].count(), 0U);
-  EXPECT_EQ(here->ball.count(), 0U);
-  EXPECT_EQ(here->glove.count(), 1U) << "the others are";
+  ASSERT_TRUE(
+      applySamples(newestSamples(there.slots(), {}), "", {}, test::defaultSlotNames(), *here));
+  EXPECT_EQ(here->tracker[0].stations[1].count(), 0U);
+  EXPECT_EQ(here->ball[0].count(), 0U);
+  EXPECT_EQ(here->glove[0].samples.count(), 1U) << "the others are";
 }
 
 TEST(ApplySamples, ATimeThatCannotBeIsNone) {
   const auto here = std::make_unique<shm::DevicesSegment>();
   ASSERT_TRUE(applySamples(
       R"({"now_ns":9223372036854775807,"ball":{"received_ns":-9223372036854775807,"counter":1}})",
-      "", fromNanoseconds(5), *here));
-  ASSERT_EQ(here->ball.count(), 1U);
-  EXPECT_EQ(here->ball.newest()->received_ns, 0);
+      "", fromNanoseconds(5), test::defaultSlotNames(), *here));
+  ASSERT_EQ(here->ball[0].count(), 1U);
+  EXPECT_EQ(here->ball[0].newest()->received_ns, 0);
 }
 
 TEST(Keys, AreWrittenForTheirOwnerAloneAndReadBack) {
@@ -189,7 +192,7 @@ struct Devices {
 };
 
 HealthState ballOf(const shm::DevicesSegment& segment) {
-  const auto health = segment.health[shm::kBall].read();
+  const auto health = segment.health[test::kBall].read();
   return health ? health->state : HealthState::kAbsent;
 }
 
@@ -204,17 +207,17 @@ TEST(SampleLink, FollowsSaysWhenItIsGoneAndComesBackByItself) {
   settings.endpoint = "tcp://127.0.0.1:" + std::to_string(port);
   settings.server_key = server.public_key;
   settings.keys = client;
-  const auto link = SampleLink::start(settings, *here, threads, clock);
+  const auto link = SampleLink::start(settings, test::defaultSlotNames(), *here, threads, clock);
   ASSERT_TRUE(link) << link.error().what;
-  ASSERT_TRUE(test::eventually([&] { return here->health[shm::kBall].read().has_value(); }));
-  EXPECT_NE(std::string(here->health[shm::kBall].read()->reason).find("yet"), std::string::npos);
+  ASSERT_TRUE(test::eventually([&] { return here->health[test::kBall].read().has_value(); }));
+  EXPECT_NE(std::string(here->health[test::kBall].read()->reason).find("yet"), std::string::npos);
   for (int times = 0; times < 2; ++times) {
     Devices devices(dir, port, server, {client.public_key});
     ASSERT_TRUE(test::eventually([&] { return ballOf(*here) == HealthState::kOk; })) << times;
-    EXPECT_EQ(here->ball.newest()->buttons, 0x101u);
+    EXPECT_EQ(here->ball[0].newest()->buttons, 0x101u);
     devices.stop();
     ASSERT_TRUE(test::eventually([&] { return ballOf(*here) == HealthState::kAbsent; }));
-    EXPECT_EQ(std::string(here->health[shm::kBall].read()->reason),
+    EXPECT_EQ(std::string(here->health[test::kBall].read()->reason),
               "nothing received from " + settings.endpoint + ": the link is lost");
   }
 }
@@ -229,13 +232,13 @@ TEST(SampleLink, AStrangersKeyHearsNothing) {
   const auto ours = std::make_unique<shm::DevicesSegment>();
   Devices devices(dir, port, server, {friends.public_key});
   const std::string endpoint = "tcp://127.0.0.1:" + std::to_string(port);
-  const auto bad =
-      SampleLink::start({endpoint, server.public_key, stranger}, *theirs, threads, clock);
-  const auto good =
-      SampleLink::start({endpoint, server.public_key, friends}, *ours, threads, clock);
+  const auto bad = SampleLink::start({endpoint, server.public_key, stranger},
+                                     test::defaultSlotNames(), *theirs, threads, clock);
+  const auto good = SampleLink::start({endpoint, server.public_key, friends},
+                                      test::defaultSlotNames(), *ours, threads, clock);
   ASSERT_TRUE(bad && good);
-  ASSERT_TRUE(test::eventually([&] { return ours->ball.count() > 0; }));
-  EXPECT_EQ(theirs->ball.count(), 0u);
+  ASSERT_TRUE(test::eventually([&] { return ours->ball[0].count() > 0; }));
+  EXPECT_EQ(theirs->ball[0].count(), 0u);
 }
 
 // As in a usual installation, the daemon lists our key only after our first attempt.
@@ -249,7 +252,7 @@ TEST(SampleLink, AKeyThatIsListedLaterIsHeardAfterTheOthersRestart) {
   SampleLinkSettings settings{"tcp://127.0.0.1:" + std::to_string(port), server.public_key, ours};
   settings.renew_after = settings.renew_at_most = std::chrono::milliseconds(300);
   auto devices = std::make_unique<Devices>(dir, port, server, std::vector{other.public_key});
-  const auto link = SampleLink::start(settings, *here, threads, clock);
+  const auto link = SampleLink::start(settings, test::defaultSlotNames(), *here, threads, clock);
   ASSERT_TRUE(link) << link.error().what;
   // The daemon accepts the TCP connection and then refuses our key, at least once.
   ASSERT_TRUE(test::eventually([&] { return devices->samples->report().accepted > 0; }));
@@ -269,7 +272,7 @@ TEST(SampleLink, ComesBackAfterAnotherProgramAnsweredOnThePort) {
   settings.renew_after = settings.renew_at_most = std::chrono::milliseconds(300);
   auto listener = net::listenTcp("127.0.0.1", port);
   ASSERT_TRUE(listener) << listener.error().what;
-  const auto link = SampleLink::start(settings, *here, threads, clock);
+  const auto link = SampleLink::start(settings, test::defaultSlotNames(), *here, threads, clock);
   ASSERT_TRUE(link) << link.error().what;
   UniqueFd web;
   ASSERT_TRUE(test::eventually([&] {
@@ -290,12 +293,16 @@ TEST(SampleLink, SaysThatAKeyOrAnAddressIsNone) {
   const SystemClock clock;
   ThreadWatch threads;
   const KeyPair keys = *makeKeyPair();
-  EXPECT_EQ(
-      SampleLink::start({"tcp://127.0.0.1:1", "short", keys}, *here, threads, clock).error().code,
-      Errc::kInvalidArgument);
-  EXPECT_EQ(
-      SampleLink::start({"nonsense", keys.public_key, keys}, *here, threads, clock).error().code,
-      Errc::kInvalidArgument);
+  EXPECT_EQ(SampleLink::start({"tcp://127.0.0.1:1", "short", keys}, test::defaultSlotNames(), *here,
+                              threads, clock)
+                .error()
+                .code,
+            Errc::kInvalidArgument);
+  EXPECT_EQ(SampleLink::start({"nonsense", keys.public_key, keys}, test::defaultSlotNames(), *here,
+                              threads, clock)
+                .error()
+                .code,
+            Errc::kInvalidArgument);
 }
 
 }  // namespace

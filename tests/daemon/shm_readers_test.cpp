@@ -6,6 +6,7 @@
 
 #include "daemon/shm/fields.h"
 #include "daemon/shm/segment.h"
+#include "tests/support/local_devices.h"
 #include "tests/support/process.h"
 #include "tests/support/temp_dir.h"
 
@@ -16,21 +17,21 @@ const std::string kReaders = MERLIN_SOURCE_DIR "/daemon/shm/read_merlin";
 
 struct Writer : testing::Test {
   Writer() : name(segmentName(test::privateName("readers"), "devices")) {
-    auto made = SegmentWriter<DevicesSegment>::make(name, devicesFields(), 1, SystemClock().now(),
-                                                    {"ipc://a", "ipc://b"});
+    auto made = SegmentWriter<DevicesSegment>::make(name, devicesFields(test::defaultSlotNames()),
+                                                    1, SystemClock().now(), {"ipc://a", "ipc://b"});
     EXPECT_TRUE(made);
     segment.emplace(*std::move(made));
     GloveSample glove{};
     glove.counter = 7;
     glove.angle_rad[4] = 0.5F;
     glove.raw[22] = 201;
-    (*segment)->glove.publish(glove);
+    (*segment)->glove[0].samples.publish(glove);
     BallSample ball{};
     ball.raw[0] = -1234;
-    (*segment)->ball.publish(ball);
+    (*segment)->ball[0].publish(ball);
     DeviceHealth health{};
     std::snprintf(health.reason, sizeof health.reason, "no record for 0.5 s");
-    (*segment)->health[kGlove].publish(health);
+    (*segment)->health[test::kGlove].publish(health);
   }
   std::string shmName() const { return name.substr(1); }
   std::string reader(const test::TempDir& dir) const {
@@ -75,8 +76,8 @@ struct Turning {
           BallSample ball{};
           ball.received_ns = toNanoseconds(SystemClock().now());
           while (!stop.stop_requested()) {
-            ball.rotation[0] = static_cast<float>(segment.ball.count());
-            segment.ball.publish(ball);
+            ball.rotation[0] = static_cast<float>(segment.ball[0].count());
+            segment.ball[0].publish(ball);
             std::this_thread::sleep_for(std::chrono::microseconds(300));
           }
         }) {}

@@ -13,6 +13,7 @@
 #include "daemon/base/shared_memory.h"
 #include "daemon/shm/fields.h"
 #include "daemon/shm/segment.h"
+#include "tests/support/local_devices.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::shm {
@@ -63,8 +64,9 @@ std::size_t widthOf(const Field& f) {
 }
 
 TEST(Fields, DescribeEachValueOnceAndInsideTheSegment) {
-  for (const auto& [fields, size] : {std::pair{devicesFields(), sizeof(DevicesSegment)},
-                                     std::pair{wallFields(), sizeof(WallSegment)}}) {
+  for (const auto& [fields, size] :
+       {std::pair{devicesFields(test::defaultSlotNames()), sizeof(DevicesSegment)},
+        std::pair{wallFields(), sizeof(WallSegment)}}) {
     std::set<std::string> names;
     for (const Field& f : fields) {
       EXPECT_TRUE(names.insert(f.name).second) << f.name;
@@ -115,38 +117,52 @@ using Runs = std::vector<std::string>;
 // A member that is added to layout.h or samples.h but not to fields.cpp changes these lists. They
 // contain only `reserved` members and padding to 8 or 64 bytes.
 TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
-  EXPECT_EQ(undescribed(devicesFields(), offsetof(DevicesSegment, fields)),
-            (Runs{"segment.command_endpoint 40",
-                  "glove.health.rate_hz 4",
-                  "tracker.health.rate_hz 4",
-                  "ball.health.rate_hz 4",
-                  "glove.wake 4",
-                  "glove.raw's ring 32",
-                  "posture.wake 4",
-                  "posture.name's ring 40",
-                  "tracker1.stylus 2",
-                  "tracker1.wake 4",
-                  "tracker1.stylus's ring 56",
-                  "tracker2.stylus 2",
-                  "tracker2.wake 4",
-                  "tracker2.stylus's ring 56",
-                  "tracker3.stylus 2",
-                  "tracker3.wake 4",
-                  "tracker3.stylus's ring 56",
-                  "tracker4.stylus 2",
-                  "tracker4.wake 4",
-                  "tracker4.stylus's ring 56",
-                  "ball.wake 4",
-                  "ball.period_us's ring 48",
-                  "hand.delay_s 4",
-                  "hand.wake 4",
-                  "hand.delay_s's ring 56",
-                  "gpio.wake 4",
-                  "gpio.wait_s's ring 8",
-                  "gpio.health.rate_hz 4",
-                  "posture_state.seen 48",
-                  "tracker.boresight_wxyz 40",
-                  "actions.panel.recent 40"}));
+  SlotNames all;  // each device of a kind has the kind as its name, after a letter
+  const auto add = [&](SampleKind kind, const char* name, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i)
+      all.devices.push_back({static_cast<char>('a' + i) + std::string("_") + name, kind});
+  };
+  add(SampleKind::kGlove, "glove", kMostGloves);
+  add(SampleKind::kTracker, "tracker", kMostTrackers);
+  add(SampleKind::kBall, "ball", kMostBalls);
+  for (std::size_t i = 0; i < kMostHands; ++i)
+    all.hands.push_back(static_cast<char>('a' + i) + std::string("_hand"));
+  Runs kinds;
+  for (std::string run : undescribed(devicesFields(all), offsetof(DevicesSegment, fields))) {
+    if (run[1] == '_') run.erase(0, 2);
+    if (std::find(kinds.begin(), kinds.end(), run) == kinds.end()) kinds.push_back(run);
+  }
+  EXPECT_EQ(kinds, (Runs{"segment.command_endpoint 40",
+                         "glove.health.rate_hz 4",
+                         "tracker.health.rate_hz 4",
+                         "ball.health.rate_hz 4",
+                         "glove.wake 4",
+                         "glove.raw's ring 32",
+                         "posture.wake 4",
+                         "posture.name's ring 40",
+                         "tracker1.stylus 2",
+                         "tracker1.wake 4",
+                         "tracker1.stylus's ring 56",
+                         "tracker2.stylus 2",
+                         "tracker2.wake 4",
+                         "tracker2.stylus's ring 56",
+                         "tracker3.stylus 2",
+                         "tracker3.wake 4",
+                         "tracker3.stylus's ring 56",
+                         "tracker4.stylus 2",
+                         "tracker4.wake 4",
+                         "tracker4.stylus's ring 56",
+                         "ball.wake 4",
+                         "ball.period_us's ring 48",
+                         "hand.delay_s 4",
+                         "hand.wake 4",
+                         "hand.delay_s's ring 56",
+                         "gpio.wake 4",
+                         "gpio.wait_s's ring 8",
+                         "gpio.health.rate_hz 4",
+                         "posture_state.seen 48",
+                         "tracker.boresight_wxyz 40",
+                         "actions.panel.recent 40"}));
 }
 
 TEST(Fields, CoverEveryByteOfTheWallsSegmentButPadding) {
@@ -161,8 +177,8 @@ TEST(Fields, CoverEveryByteOfTheWallsSegmentButPadding) {
 TEST(Fields, SayWhereASampleLiesInItsRing) {
   auto segment = std::make_unique<DevicesSegment>();
   BallSample ball{};
-  for (ball.counter = 0; ball.counter < 300; ++ball.counter) segment->ball.publish(ball);
-  for (const Field& f : devicesFields()) {
+  for (ball.counter = 0; ball.counter < 300; ++ball.counter) segment->ball[0].publish(ball);
+  for (const Field& f : devicesFields(test::defaultSlotNames())) {
     if (std::strcmp(f.name, "ball.counter") != 0) continue;
     ASSERT_EQ(f.ring_slots, 256u);
     const auto* base = reinterpret_cast<const char*>(segment.get());
@@ -179,8 +195,8 @@ TEST(Fields, PointAtTheValueInItsSlot) {
   auto segment = std::make_unique<DevicesSegment>();
   GloveSample glove{};
   glove.angle_rad[22] = 0.5F;
-  segment->glove.publish(glove);
-  for (const Field& f : devicesFields()) {
+  segment->glove[0].samples.publish(glove);
+  for (const Field& f : devicesFields(test::defaultSlotNames())) {
     if (std::strcmp(f.name, "glove.angle_rad") != 0) continue;
     EXPECT_EQ(f.count, 23u);
     EXPECT_STREQ(f.unit, "rad");
@@ -195,16 +211,16 @@ TEST(Segment, IsFoundByAReaderAndGoneWithItsWriter) {
   const std::string name = segmentName(privateName("found"), "devices");
   const SystemClock clock;
   {
-    const auto writer =
-        SegmentWriter<DevicesSegment>::make(name, devicesFields(), 42, clock.now(), kEndpoints);
+    const auto writer = SegmentWriter<DevicesSegment>::make(
+        name, devicesFields(test::defaultSlotNames()), 42, clock.now(), kEndpoints);
     ASSERT_TRUE(writer);
     BallSample ball{};
     ball.counter = 5;
-    (*writer)->ball.publish(ball);
+    (*writer)->ball[0].publish(ball);
     const auto reader = SegmentReader<DevicesSegment>::open(name);
     ASSERT_TRUE(reader);
     EXPECT_EQ((*reader)->header.generation, 42u);
-    EXPECT_EQ((*reader)->ball.newest()->counter, 5u);
+    EXPECT_EQ((*reader)->ball[0].newest()->counter, 5u);
     EXPECT_STREQ((*reader)->header.command_endpoint, "ipc:///run/merlin/a.command");
     EXPECT_TRUE(reader->alive(clock.now()));
     EXPECT_FALSE(reader->alive(clock.now() + std::chrono::seconds(2)));
@@ -217,11 +233,11 @@ TEST(Segment, IsFoundByAReaderAndGoneWithItsWriter) {
 TEST(Segment, ASecondWriterIsRefusedAndTheFirstUndisturbed) {
   const std::string name = segmentName(privateName("second"), "devices");
   const SystemClock clock;
-  const auto first =
-      SegmentWriter<DevicesSegment>::make(name, devicesFields(), 1, clock.now(), kEndpoints);
+  const auto first = SegmentWriter<DevicesSegment>::make(
+      name, devicesFields(test::defaultSlotNames()), 1, clock.now(), kEndpoints);
   ASSERT_TRUE(first);
-  const auto second =
-      SegmentWriter<DevicesSegment>::make(name, devicesFields(), 2, clock.now(), kEndpoints);
+  const auto second = SegmentWriter<DevicesSegment>::make(
+      name, devicesFields(test::defaultSlotNames()), 2, clock.now(), kEndpoints);
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, Errc::kBusy);
   EXPECT_NE(second.error().what.find(name), std::string::npos);

@@ -17,21 +17,20 @@
 namespace merlin::shm {
 namespace {
 
-// The devices' segment of a later release: it begins as ours does, with another header and a second
-// glove before our slots, and its table is last.
+// The devices' segment of a later release: it begins as ours does, with another header and a device
+// of a kind that we do not know before our slots, and its table is last.
 struct LaterSegment {
   Header header;
-  alignas(64) SeqSlot<DeviceHealth> left_health;
-  Channel<GloveSample> left_glove;
+  alignas(64) SeqSlot<DeviceHealth> touch_health;
   alignas(64) DevicesSegment ours;  // its own header and table are not used
-  alignas(64) Field fields[kMostFields];
+  alignas(64) Field fields[kMostDevicesFields];
 };
 
-// The table of LaterSegment: ours, moved, and the second glove's.
+// The table of LaterSegment: ours, moved, and the new device's.
 std::vector<Field> laterFields() {
   std::vector<Field> fields;
   constexpr auto kMoved = static_cast<std::uint32_t>(offsetof(LaterSegment, ours));
-  for (Field f : devicesFields()) {
+  for (Field f : devicesFields(test::defaultSlotNames())) {
     if (std::string_view(f.name).starts_with("segment.")) {
       fields.push_back(f);
       continue;
@@ -42,10 +41,7 @@ std::vector<Field> laterFields() {
     fields.push_back(f);
   }
   for (const Field& f :
-       slotFields<DeviceHealth>("left_glove.health", offsetof(LaterSegment, left_health)))
-    fields.push_back(f);
-  for (const Field& f :
-       channelFields<GloveSample>("left_glove", offsetof(LaterSegment, left_glove)))
+       slotFields<DeviceHealth>("touch.health", offsetof(LaterSegment, touch_health)))
     fields.push_back(f);
   return fields;
 }
@@ -67,38 +63,79 @@ TEST(DeviceSlots, AreFoundWhereALaterReleaseHasThem) {
   ASSERT_TRUE(table) << table.error().what;
   const auto slots = DeviceSlots::find(*table, segment->header);
   ASSERT_TRUE(slots) << slots.error().what;
-  EXPECT_EQ(slots->glove, &segment->ours.glove);
-  EXPECT_EQ(slots->tracker[3], &segment->ours.tracker[3]);
-  EXPECT_EQ(slots->ball_health, &segment->ours.health[kBall]);
-  EXPECT_EQ(slots->actions[kPanelActions], &segment->ours.actions[kPanelActions]);
-  EXPECT_EQ(slots->posture_state, &segment->ours.posture_state);
+  EXPECT_EQ(slots->glove()->samples, &segment->ours.glove[0].samples);
+  EXPECT_EQ(slots->tracker()->stations[3], &segment->ours.tracker[0].stations[3]);
+  EXPECT_EQ(slots->ball()->health, &segment->ours.health[test::kBall]);
+  ASSERT_EQ(slots->actions.size(), 4U);
+  EXPECT_EQ(slots->actions[3].source, "panel");
+  EXPECT_EQ(slots->actions[3].slot, &segment->ours.actions[kPanelSource]);
+  EXPECT_EQ(slots->glove()->posture_state, &segment->ours.glove[0].posture_state);
 }
 
-TEST(DeviceSlots, ASecondGloveIsOneMoreDeviceWithoutANewReader) {
+TEST(DeviceSlots, ADeviceOfANewKindIsOneMoreWithoutANewReader) {
   const auto segment = later();
   const auto slots = DeviceSlots::find(*tableOf(*segment), segment->header);
   ASSERT_TRUE(slots) << slots.error().what;
   std::vector<std::string> devices;
   for (const auto& [device, slot] : slots->health) devices.push_back(device);
-  EXPECT_EQ(devices, (std::vector<std::string>{"glove", "tracker", "ball", "left_glove"}));
-  EXPECT_EQ(slots->health[3].slot, &segment->left_health);
-  const auto left = tableOf(*segment)->channel<GloveSample>("left_glove");
-  ASSERT_TRUE(left) << left.error().what;
-  EXPECT_EQ(*left, &segment->left_glove);
+  EXPECT_EQ(devices, (std::vector<std::string>{"glove", "tracker", "ball", "touch"}));
+  EXPECT_EQ(slots->health[3].slot, &segment->touch_health);
 }
 
 TEST(DeviceSlots, OfThisReleaseAreTheMembersOfItsSegment) {
   const test::LocalDevices devices;
-  EXPECT_EQ(devices.slots().glove, &devices->glove);
-  EXPECT_EQ(devices.slots().hand, &devices->hand);
-  EXPECT_EQ(devices.slots().tracker_frames, &devices->tracker_frames);
+  EXPECT_EQ(devices.slots().glove()->samples, &devices->glove[0].samples);
+  EXPECT_EQ(devices.slots().hand()->samples, &devices->hand[0]);
+  EXPECT_EQ(devices.slots().tracker()->frames, &devices->tracker[0].frames);
   ASSERT_EQ(devices.slots().health.size(), 3U) << "without the panel";
+}
+
+TEST(DeviceSlots, SeveralOfAKindAreFoundByTheirNamesInTheOrderOfTheConfiguration) {
+  const test::LocalDevices devices({{{"right", SampleKind::kGlove},
+                                     {"desk", SampleKind::kBall},
+                                     {"left", SampleKind::kGlove},
+                                     {"room", SampleKind::kTracker},
+                                     {"door", SampleKind::kBall}},
+                                    {"right_hand", "left_hand"}});
+  const DeviceSlots& slots = devices.slots();
+  EXPECT_EQ(slots.glove(), slots.glove("right")) << "the first one";
+  EXPECT_EQ(slots.glove("left")->samples, &devices->glove[1].samples);
+  EXPECT_EQ(slots.glove("left")->posture, &devices->glove[1].posture);
+  EXPECT_EQ(slots.glove("left")->health, &devices->health[2]);
+  EXPECT_EQ(slots.ball("door")->samples, &devices->ball[1]);
+  EXPECT_EQ(slots.ball("door")->health, &devices->health[4]);
+  EXPECT_EQ(slots.tracker("room")->stations[1], &devices->tracker[0].stations[1]);
+  EXPECT_EQ(slots.hand("left_hand")->samples, &devices->hand[1]);
+  EXPECT_EQ(slots.actions[4].source, "door");
+  EXPECT_EQ(slots.actions[4].slot, &devices->actions[4]);
+  EXPECT_EQ(slots.ball("left"), nullptr) << "a glove";
+  const auto table = tableOf(*devices);
+  EXPECT_EQ(*table->channel<PostureSample>("posture"), &devices->glove[0].posture)
+      << "the first glove's, without its name";
+}
+
+TEST(DeviceSlots, TheMostDevicesFitIntoTheTable) {
+  SlotNames most;
+  for (const auto& [kind, count] : {std::pair{SampleKind::kGlove, kMostGloves},
+                                    {SampleKind::kTracker, kMostTrackers},
+                                    {SampleKind::kBall, kMostBalls}}) {
+    for (std::size_t i = 0; i < count; ++i)
+      most.devices.push_back({"sixteen_letters_"[0] + std::to_string(most.devices.size()), kind});
+  }
+  for (std::size_t i = 0; i < kMostHands; ++i) most.hands.push_back("hand" + std::to_string(i));
+  ASSERT_EQ(most.devices.size(), kMostDevices);
+  EXPECT_LE(devicesFields(most).size(), kMostDevicesFields * 9 / 10);
+  const test::LocalDevices devices(most);
+  EXPECT_EQ(devices.slots().health.size(), kMostDevices);
+  EXPECT_EQ(devices.slots().hands.size(), kMostHands);
 }
 
 // A segment of this release, whose table a test damages.
 class SlotTableTest : public testing::Test {
  protected:
-  SlotTableTest() { setFields(segment_->header, segment_->fields, devicesFields()); }
+  SlotTableTest() {
+    setFields(segment_->header, segment_->fields, devicesFields(test::defaultSlotNames()));
+  }
 
   Field& field(std::string_view name) {
     Field* found = std::find_if(std::begin(segment_->fields), std::end(segment_->fields),
@@ -208,8 +245,8 @@ TEST_F(SlotTableTest, NamesWithoutAnEndAndNamesTwiceAreSurvived) {
 
 TEST(DevicesReader, RefusesADamagedSegmentWithOneError) {
   const std::string name = segmentName(test::privateName("slots"), "devices");
-  const auto writer =
-      SegmentWriter<DevicesSegment>::make(name, devicesFields(), 1, SystemClock().now(), {});
+  const auto writer = SegmentWriter<DevicesSegment>::make(
+      name, devicesFields(test::defaultSlotNames()), 1, SystemClock().now(), {});
   ASSERT_TRUE(writer);
   ASSERT_TRUE(DevicesReader::open(name));
   EXPECT_TRUE(DevicesReader::open(name)->alive(SystemClock().now()));

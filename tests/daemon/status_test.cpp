@@ -50,13 +50,13 @@ class DocumentsTest : public testing::Test {
 };
 
 TEST_F(DocumentsTest, DevicesSayHealthReasonAndPosture) {
-  devices_->health[shm::kGlove].publish(healthy("CyberGlove"));
+  devices_->health[test::kGlove].publish(healthy("CyberGlove"));
   DeviceHealth gone{};
   std::snprintf(gone.reason, sizeof gone.reason, "/dev/x: No such file");
-  devices_->health[shm::kBall].publish(gone);
+  devices_->health[test::kBall].publish(gone);
   PostureSample posture{};
   std::snprintf(posture.name, sizeof posture.name, "fist");
-  devices_->posture.publish(posture);
+  devices_->glove[0].posture.publish(posture);
   const json s = json::parse(devicesStatus(devices_.slots(), kNow));
   EXPECT_EQ(s["role"], "devices");
   EXPECT_EQ(s["posture"], "fist");
@@ -74,7 +74,7 @@ TEST_F(DocumentsTest, AHealthThatNobodyWritesAnyMoreIsStale) {
 }
 
 TEST_F(DocumentsTest, TextThatIsNoUtf8BecomesJsonAllTheSame) {
-  devices_->health[shm::kGlove].publish(healthy("\xFF\xFE\"\\"));
+  devices_->health[test::kGlove].publish(healthy("\xFF\xFE\"\\"));
   EXPECT_TRUE(json::accept(devicesStatus(devices_.slots(), kNow)));
 }
 
@@ -186,10 +186,10 @@ TEST_F(DocumentsTest, SamplesAreTheNewestOfEachThatThereIs) {
   TrackerSample tracker{};
   tracker.station = 2;
   tracker.position_m[1] = 0.5F;
-  devices_->tracker[1].publish(tracker);
+  devices_->tracker[0].stations[1].publish(tracker);
   BallSample ball{};
   ball.counter = 3;
-  devices_->ball.publish(ball);
+  devices_->ball[0].publish(ball);
   const json s = json::parse(newestSamples(devices_.slots(), kNow));
   EXPECT_EQ(s["tracker"][0]["station"], 2);
   EXPECT_EQ(s["tracker"][0]["position_m"], json({0, 0.5, 0}));
@@ -202,10 +202,10 @@ TEST_F(DocumentsTest, SamplesAreTheNewestOfEachThatThereIs) {
 TEST_F(DocumentsTest, TheGloveIsCalledGloveAndTheHandHand) {
   GloveSample glove{};
   glove.sensors = 22;
-  devices_->glove.publish(glove);
+  devices_->glove[0].samples.publish(glove);
   HandSample hand{};
   hand.delay_s = 0.25F;
-  devices_->hand.publish(hand);
+  devices_->hand[0].publish(hand);
   const json s = json::parse(newestSamples(devices_.slots(), kNow));
   EXPECT_EQ(s["glove"]["sensors"], 22);
   EXPECT_EQ(s["hand"]["delay_s"], 0.25);
@@ -225,7 +225,7 @@ TEST_F(DocumentsTest, EachSaysTheTimeOfDayBesideTheMonotonicOne) {
 }
 
 TEST_F(DocumentsTest, MetricsAreFlatNumbers) {
-  devices_->health[shm::kTracker].publish(healthy("x"));
+  devices_->health[test::kTracker].publish(healthy("x"));
   const json m = json::parse(devicesMetrics(devices_.slots()));
   EXPECT_EQ(m["tracker_ok"], 1);
   EXPECT_EQ(m["tracker_samples_total"], 1234);
@@ -241,15 +241,15 @@ TEST_F(DocumentsTest, MetricsAreFlatNumbers) {
 TEST_F(DocumentsTest, EventsAreToldOnce) {
   HealthEvents events(devices_.slots());
   EXPECT_TRUE(events.take(kNow).empty());
-  devices_->health[shm::kBall].publish(healthy("Spaceball 2003"));
+  devices_->health[test::kBall].publish(healthy("Spaceball 2003"));
   EXPECT_EQ(events.take(kNow), (std::vector<std::string>{"ball: ok (Spaceball 2003)"}));
   EXPECT_TRUE(events.take(kNow).empty());
   DeviceHealth lost{};
   std::snprintf(lost.reason, sizeof lost.reason, "the other end hung up");
-  devices_->health[shm::kBall].publish(lost);
+  devices_->health[test::kBall].publish(lost);
   EXPECT_EQ(events.take(kNow), (std::vector<std::string>{"ball: absent (the other end hung up)"}));
   lost.state = HealthState::kOpening;  // trying to open it again is no event
-  devices_->health[shm::kBall].publish(lost);
+  devices_->health[test::kBall].publish(lost);
   EXPECT_TRUE(events.take(kNow).empty());
 }
 

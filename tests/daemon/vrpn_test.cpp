@@ -180,7 +180,7 @@ void checkSamples(Client& client, shm::DevicesSegment& segment) {
   BallSample ball{};
   ball.translation[2] = 0.5F;
   ball.buttons = 4;
-  segment.ball.publish(ball);
+  segment.ball[0].publish(ball);
   const auto analog = client.next("vrpn_Analog Channel");
   ASSERT_TRUE(analog);
   EXPECT_EQ(client.senders[analog->header.sender], "Ball0");
@@ -193,7 +193,7 @@ void checkSamples(Client& client, shm::DevicesSegment& segment) {
   tracker.station = 3;
   tracker.position_m[0] = 1;
   tracker.orientation_wxyz[0] = 1;
-  segment.tracker[2].publish(tracker);
+  segment.tracker[0].stations[2].publish(tracker);
   const auto pose = client.next("vrpn_Tracker Pos_Quat");
   ASSERT_TRUE(pose);
   EXPECT_EQ(client.senders[pose->header.sender], "Tracker0");
@@ -250,7 +250,7 @@ TEST(VrpnServer, AClientHearsOfAButtonThatIsHeldAlready) {
   const test::LocalDevices segment;
   BallSample ball{};
   ball.buttons = 5;
-  segment->ball.publish(ball);
+  segment->ball[0].publish(ball);
   const auto server = VrpnServer::start(0, segment.slots(), threads, clock);
   ASSERT_TRUE(server) << server.error().what;
   Client client(::dup(connectedTo(**server).get()));

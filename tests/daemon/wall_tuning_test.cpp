@@ -90,13 +90,14 @@ TEST_F(WallTuningTest, TheFeedIsToldOfHandAndTimes) {
               *attendance_};
   WallLoop loop(std::move(p));
   WallTuning first, second;
-  first.feed = FeedSettings{2, milliseconds(300), milliseconds(33)};
-  second.feed = FeedSettings{3, milliseconds(300), milliseconds(33)};
+  first.feed.emplace().hands = {{"hand", "", "", {"", 2}}};
+  first.feed->stale_after = milliseconds(300);
+  second.feed.emplace().hands = {{"hand", "", "", {"", 3}}};
   loop.tune(first);
   loop.tune(second);
   loop.run(stop_.get_token(), [&] { stop_.request_stop(); });
   ASSERT_EQ(feed.told.size(), 2u) << "none is lost, and none comes twice";
-  EXPECT_EQ(feed.told[1].hand_station, 3);
+  EXPECT_EQ(feed.told[1].hands[0].place.station, 3);
   EXPECT_EQ(feed.told[0].stale_after, milliseconds(300));
 }
 

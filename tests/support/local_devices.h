@@ -11,6 +11,9 @@
 
 namespace merlin::test {
 
+// Indices of the default configuration's devices, and of what else begins actions.
+inline constexpr std::size_t kGlove = 0, kTracker = 1, kBall = 2, kPanel = shm::kPanelSource;
+
 // The names of the default configuration.
 inline shm::SlotNames defaultSlotNames() {
   return {{{"glove", SampleKind::kGlove},
