@@ -20,7 +20,8 @@ class LiveSamples {
  public:
   // `slot`: name of the samples' slot in shared memory, "tracker1"; `device`: of the device whose
   // health they depend on, "tracker". Errors: kNotFound (there is no shared memory of `instance`),
-  // kClosed (its merlind has ended), those of DevicesReader::open() and SlotTable::channel().
+  // kClosed (its merlind has ended), kInvalidArgument (that merlind has no such device), those of
+  // DevicesReader::open() and SlotTable::channel().
   static Result<LiveSamples> open(const std::string& instance, const std::string& slot,
                                   const std::string& device) {
     auto reader = shm::DevicesReader::open(shm::segmentName(instance, "devices"));
@@ -30,6 +31,7 @@ class LiveSamples {
                                "--instance",
                                instance)};
     if (!reader) return reader.error();
+    if (const auto known = checkName(**reader, instance, device); !known) return known.error();
     const auto channel = reader->table().template channel<Sample>(slot);
     if (!channel) return channel.error();
     const auto health = reader->table().template slot<DeviceHealth>(device + ".health");
@@ -71,6 +73,20 @@ class LiveSamples {
         channel_(channel),
         health_slot_(health_slot),
         next_(channel.count()) {}
+
+  static Result<Ok> checkName(const shm::DeviceSlots& devices, const std::string& instance,
+                              const std::string& device) {
+    std::string names;
+    for (const auto& health : devices.health) {
+      if (health.device == device) return Ok{};
+      names += (names.empty() ? "" : ", ") + health.device;
+    }
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("the merlind that runs as \"{}\" has no device named \"{}\": its "
+                             "devices are {}; start it with the same configuration, or give "
+                             "--instance",
+                             instance, device, names)};
+  }
 
   Result<Ok> checkAlive() const {
     if (reader_.alive(clock_.now())) return Ok{};

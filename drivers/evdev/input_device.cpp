@@ -55,6 +55,21 @@ std::size_t InputDevice::axes() const noexcept {
   return static_cast<std::size_t>(std::ranges::count_if(axes_, &Axis::there));
 }
 
+std::vector<std::string> InputDevice::axisNames() const {
+  std::vector<std::string> names;
+  for (std::size_t code = 0; code < axes_.size(); ++code) {
+    const std::string_view name = axisName(static_cast<int>(code));
+    if (axes_[code].there && !name.empty()) names.emplace_back(name);
+  }
+  return names;
+}
+
+std::vector<std::string> InputDevice::keyNames() const {
+  std::vector<std::string> names;
+  for (const Key& key : keys_) names.push_back(key.name);
+  return names;
+}
+
 void InputDevice::describe(const EvdevRecord& r) {
   Axis* const at = axis(r.code);
   const auto key = std::ranges::lower_bound(keys_, r.code, {}, &Key::code);

@@ -38,6 +38,10 @@ class InputDevice {
   const std::string& name() const noexcept { return name_; }
   std::size_t axes() const noexcept;
   std::size_t keys() const noexcept { return keys_.size(); }
+  // All of them, by the names that settings use, in the order of the kernel's numbers. An axis that
+  // settings cannot name is left out.
+  std::vector<std::string> axisNames() const;
+  std::vector<std::string> keyNames() const;
   // What choose() chose.
   const AxisSources& sources() const noexcept { return sources_; }
   // "axes x, rz-z, y, ry, rx, -hat0x; buttons south, east" for a person.

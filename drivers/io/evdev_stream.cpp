@@ -13,7 +13,6 @@
 #include "daemon/base/unique_fd.h"
 #include "drivers/io/fd_wait.h"
 #include "drivers/io/open_error.h"
-#include "drivers/port/evdev_line.h"
 
 namespace merlin::io {
 namespace {
@@ -62,7 +61,7 @@ std::string describe(const libevdev* device) {
   }
   for (unsigned code = 0; code < KEY_CNT; ++code) {
     if (!libevdev_has_event_code(device, EV_KEY, code)) continue;
-    append(named(EvdevRecord::kKey, code, keyName(code)), out);
+    append(keyRecord(static_cast<std::uint16_t>(code)), out);
     if (libevdev_get_event_value(device, EV_KEY, code) != 0)
       append(numbered(EvdevRecord::kPressed, code, 1), out);
   }
@@ -147,6 +146,8 @@ class EvdevStream final : public ByteStream {
 };
 
 }  // namespace
+
+EvdevRecord keyRecord(std::uint16_t code) { return named(EvdevRecord::kKey, code, keyName(code)); }
 
 Result<std::unique_ptr<ByteStream>> openEvdev(const std::string& path) {
   UniqueFd fd(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));

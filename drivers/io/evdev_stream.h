@@ -2,11 +2,13 @@
 // records.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
 #include "daemon/base/result.h"
 #include "drivers/port/byte_stream.h"
+#include "drivers/port/evdev_line.h"
 
 namespace merlin::io {
 
@@ -15,5 +17,9 @@ namespace merlin::io {
 // message names the group to join; not an input device). write() of the stream always fails with
 // kIo.
 Result<std::unique_ptr<ByteStream>> openEvdev(const std::string& path);
+
+// The record that describes a key of this number of the kernel, as such a stream has it: with the
+// key's name.
+EvdevRecord keyRecord(std::uint16_t code);
 
 }  // namespace merlin::io

@@ -20,9 +20,6 @@ constexpr GuidedStep kSteps[] = {
 };
 constexpr std::size_t kRest = 0;
 
-// Ratio of a push's counts to a twist's, as in the default full scales (README.md, "Quirks").
-constexpr int kPushOfTwist = 5;
-constexpr int kLeastPush = 400, kLeastTwist = 80;  // counts
 constexpr int kMostNext_percent = 60;           // next axis of the kind, relative to the strongest
 constexpr int kMargin = 4;                      // counts, added to the dead zone
 constexpr int kMostNoise = (99 - kMargin) / 2;  // keeps the dead zone within 0..99
@@ -31,15 +28,17 @@ constexpr bool isPush(std::size_t step) { return step <= 3; }
 constexpr bool isPushAxis(int axis) { return std::abs(axis) <= 3; }
 constexpr int deadZone(int noise) { return 2 * noise + kMargin; }
 
-// Counts of a push, or counts of a twist scaled to those of a push.
-int strength(int axis, int counts) { return counts * (isPushAxis(axis) ? 1 : kPushOfTwist); }
-
 }  // namespace
 
 std::span<const GuidedStep> axesSteps() { return kSteps; }
 
 char nameOfAxis(int axis) noexcept {
   return std::string_view("-XYZABC")[static_cast<std::size_t>(std::abs(axis))];
+}
+
+// Counts of a push, or counts of a twist scaled to those of a push.
+int GuidedAxes::strength(int axis, int counts) const noexcept {
+  return counts * (isPushAxis(axis) ? 1 : response_.push_of_twist);
 }
 
 void GuidedAxes::begin(std::size_t step) {
@@ -81,7 +80,7 @@ Result<Ok> GuidedAxes::check(const AxisAnswer& answer) const {
     return refuse(fmt::format("{} showed {} counts ({} are taken for noise): was it touched?", name,
                               answer.counts, kMostNoise));
   }
-  const int least = isPushAxis(answer.axis) ? kLeastPush : kLeastTwist;
+  const int least = isPushAxis(answer.axis) ? response_.least_push : response_.least_twist;
   if (answer.counts < least) {
     return refuse(fmt::format("{} answered the most, with {} counts ({} are needed): {} it harder",
                               name, answer.counts, least, isPush(step_) ? "push" : "twist"));

@@ -23,10 +23,23 @@ struct AxisAnswer {
 };
 char nameOfAxis(int axis) noexcept;  // 'X' for 1 and -1
 
+// How strongly a kind of ball answers a person, in its raw counts.
+struct BallResponse {
+  int push_of_twist;            // counts of a full push divided by those of a full twist
+  int least_push, least_twist;  // below these, the person is asked to push or twist harder
+};
+// A Spaceball's pushes count five times as much as its twists, as its default full scales have it
+// (README.md, "Quirks").
+inline constexpr BallResponse kSpaceballResponse = {5, 400, 80};
+// Space mice send at most 350 counts of each axis; see SpacenavSettings::full_scale.
+inline constexpr BallResponse kSpaceMouseResponse = {1, 120, 120};
+
 // Uses raw counts only, which do not depend on axis map, dead zone and full scale of the present
 // settings.
 class GuidedAxes {
  public:
+  explicit GuidedAxes(const BallResponse& response = kSpaceballResponse) : response_(response) {}
+
   void begin(std::size_t step);  // starts or restarts a step; later samples belong to it
   void add(const BallSample& sample);
 
@@ -42,7 +55,9 @@ class GuidedAxes {
 
  private:
   Result<Ok> check(const AxisAnswer& answer) const;
+  int strength(int axis, int counts) const noexcept;
 
+  BallResponse response_;
   std::size_t step_ = 0;
   std::array<int, 6> strongest_{};  // in the current step, signed raw counts
   std::array<AxisAnswer, 7> answers_{};

@@ -69,8 +69,9 @@ TEST_F(PluggedTest, SerialAdaptersAreNamedByIdWhereTheyHaveOne) {
   EXPECT_EQ(found[0].port, "serial:" + by_id);
   EXPECT_EQ(found[0].path, root() + "/dev/ttyUSB0");
   EXPECT_EQ(found[1].port, "serial:" + root() + "/dev/ttyUSB1");
-  EXPECT_EQ(configurationLine(found[0], "tracker"),
-            "\"tracker\": {\"port\": \"serial:" + by_id + "\"}");
+  ASSERT_EQ(found[0].uses.size(), 3u);
+  EXPECT_EQ(configurationEntry(found[0], found[0].uses[1]),
+            "{\"name\": \"tracker\", \"driver\": \"fastrak\", \"port\": \"serial:" + by_id + "\"}");
 }
 
 TEST_F(PluggedTest, InputDevicesAreToldApart) {
@@ -91,15 +92,39 @@ TEST_F(PluggedTest, InputDevicesAreToldApart) {
                        "keys: keyboard", "pad: gamepad", "presenter: clicker", "stick: joystick"}));
 }
 
-TEST_F(PluggedTest, AnInputDevicesLineHasItsDriverAndALastingName) {
+TEST_F(PluggedTest, AnInputDevicesEntryHasItsDriverAndALastingName) {
   addInput(12, "pad", {{BTN_SOUTH}, {ABS_X}}, "usb-pad-event-joystick");
   const auto found = findPlugged(root());
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(configurationLine(found[0], "ball"),
-            "\"ball\": {\"driver\": \"evdev\", \"port\": \"evdev:" + root() +
+  ASSERT_EQ(found[0].uses.size(), 1u);
+  EXPECT_EQ(configurationEntry(found[0], found[0].uses[0]),
+            "{\"name\": \"pad\", \"driver\": \"evdev\", \"port\": \"evdev:" + root() +
                 "/dev/input/by-id/usb-pad-event-joystick\"}");
-  EXPECT_EQ(found[0].roles, std::vector<std::string>{"ball"});
   EXPECT_TRUE(found[0].readable);
+}
+
+TEST_F(PluggedTest, AnInputDevicesAxesAndKeysHaveTheConfigurationsNames) {
+  addInput(1, "pad", {{BTN_SOUTH, BTN_EAST, BTN_TL}, {ABS_X, ABS_Y, ABS_RX, ABS_RY, ABS_HAT0X}});
+  const auto found = findPlugged(root());
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].axes, (std::vector<std::string>{"x", "y", "rx", "ry", "hat0x"}));
+  EXPECT_EQ(found[0].keys, (std::vector<std::string>{"south", "east", "tl"}));
+  EXPECT_EQ(found[0].usual, "axes x, none, y, ry, rx, -hat0x; buttons south, east, tl");
+}
+
+TEST_F(PluggedTest, NamesAreFreeUnlessOnlyOneOfSeveralUsesCanBe) {
+  addInput(1, "pad", {{BTN_SOUTH}, {ABS_X}});
+  addInput(2, "pad", {{BTN_SOUTH}, {ABS_X}});
+  fs::create_directories(root() + "/dev/serial/by-id");
+  for (const char* name : {"a", "b"}) test::writeText(root() + "/dev/serial/by-id/" + name, "");
+  auto found = findPlugged(root());
+  nameApart(found, {"pad", "tracker", "tracker_2"});
+  std::vector<std::string> names;
+  for (const Plugged& plugged : found) {
+    for (const auto& use : plugged.uses) names.push_back(use.name);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"glove", "tracker_3", "ball", "glove", "tracker_3",
+                                             "ball", "pad_2", "pad_3"}));
 }
 
 TEST_F(PluggedTest, SpacenavdsSocketIsOfferedAndAFileOfThatNameIsNot) {
@@ -116,8 +141,9 @@ TEST_F(PluggedTest, SpacenavdsSocketIsOfferedAndAFileOfThatNameIsNot) {
   ASSERT_EQ(::bind(socket.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
   const auto found = findPlugged(root());
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(configurationLine(found[0], "ball"),
-            "\"ball\": {\"driver\": \"spacenav\", \"port\": \"unix:" + path + "\"}");
+  ASSERT_EQ(found[0].uses.size(), 1u);
+  EXPECT_EQ(configurationEntry(found[0], found[0].uses[0]),
+            "{\"name\": \"mouse\", \"driver\": \"spacenav\", \"port\": \"unix:" + path + "\"}");
 }
 
 TEST(LiveTable, ABarShowsHowFarAnAxisIsPushed) {

@@ -98,5 +98,17 @@ TEST(GuidedAxes, AFullScaleStaysInItsRange) {
   EXPECT_EQ(guided.solve({}).full_scale_rotation, 100);
 }
 
+TEST(GuidedAxes, ASpaceMousesTwistsCountAsMuchAsItsPushes) {
+  const auto twisted = [](const BallResponse& response) {
+    GuidedAxes guided(response);
+    return answer(guided, 1, {{300, 0, 0, 0, 150, 0}});
+  };
+  const auto mouse = twisted(kSpaceMouseResponse);
+  ASSERT_TRUE(mouse) << mouse.error().what;
+  EXPECT_EQ(mouse->axis, 1);
+  EXPECT_EQ(mouse->counts, 300);
+  EXPECT_FALSE(twisted(kSpaceballResponse)) << "that is a Spaceball's twist";
+}
+
 }  // namespace
 }  // namespace merlin::spaceball

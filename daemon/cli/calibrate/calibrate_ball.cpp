@@ -10,6 +10,7 @@
 
 #include "daemon/base/files.h"
 #include "daemon/cli/calibrate/calibrate.h"
+#include "daemon/cli/calibrate/calibrated_device.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/guide.h"
 #include "daemon/cli/live_samples.h"
@@ -20,40 +21,76 @@ namespace merlin::cli {
 namespace {
 
 struct BallOptions {
-  std::string output, instance = "merlin";
-  int translation = 0, rotation = 0, dead_zone = -1;  // these values: not given as options
+  std::string output, device, instance = "merlin";
+  int translation = 0, rotation = 0, full = 0, dead_zone = -1;  // these values: not given
   std::vector<int> axis_map;
   GuideTiming timing;
 
   bool hasOptions() const {
-    return translation > 0 || rotation > 0 || dead_zone >= 0 || !axis_map.empty();
+    return translation > 0 || rotation > 0 || full > 0 || dead_zone >= 0 || !axis_map.empty();
   }
 };
 
-int setFromOptions(const BallOptions& o) {
+// A ball whose driver has an axis map, scales and a dead zone.
+bool isSpaceMouse(const CalibratedDevice& ball) { return ball.driver == "spacenav"; }
+
+// The file's ball. Errors: kInvalidArgument (its driver has no such settings), those of
+// findDevice().
+Result<CalibratedDevice> findBall(const BallOptions& o) {
+  auto ball = findDevice(o.output, SampleKind::kBall, o.device);
+  if (!ball || ball->driver == "spaceball" || isSpaceMouse(*ball)) return ball;
+  const std::string instead =
+      ball->driver == "evdev"
+          ? fmt::format(
+                "edit axes, buttons, dead_zone and curve in {}/evdev instead; `merlin "
+                "devices` lists its axes and keys, and `merlin devices --watch` shows "
+                "what they do",
+                ball->pointer)
+          : "name another ball with --device";
+  return Error{Errc::kInvalidArgument,
+               fmt::format("{}: {}/driver, that of \"{}\", is \"{}\", which has no axis map and "
+                           "full scales to calibrate: {}",
+                           o.output, ball->pointer, ball->name, ball->driver, instead)};
+}
+
+// Errors: kInvalidArgument: an option that the ball's driver does not have; an axis map in which
+// an axis is missing.
+Result<Ok> checkOptions(const BallOptions& o, const CalibratedDevice& ball) {
+  if (isSpaceMouse(ball) ? o.translation > 0 || o.rotation > 0 : o.full > 0) {
+    const char* const allowed =
+        isSpaceMouse(ball) ? "--full-scale" : "--full-scale-translation and --full-scale-rotation";
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("\"{}\" has the driver {}, whose options for its scale are {}",
+                             ball.name, ball.driver, allowed)};
+  }
+  if (o.axis_map.empty()) return Ok{};
+  std::array<bool, 7> seen{};
+  for (const int axis : o.axis_map) seen[static_cast<std::size_t>(std::abs(axis))] = true;
+  if (!seen[0] && std::count(seen.begin(), seen.end(), true) == 6) return Ok{};
+  return Error{Errc::kInvalidArgument,
+               "--axis-map: needs each of 1 to 6 once; a negative number reverses the axis"};
+}
+
+int setFromOptions(const BallOptions& o, const CalibratedDevice& ball) {
+  if (const auto fits = checkOptions(o, ball); !fits) return fail(fits.error());
   auto values = nlohmann::ordered_json::object();
   if (o.translation > 0) values["full_scale_translation"] = o.translation;
   if (o.rotation > 0) values["full_scale_rotation"] = o.rotation;
+  if (o.full > 0) values["full_scale"] = o.full;
   if (o.dead_zone >= 0) values["dead_zone"] = o.dead_zone;
-  if (!o.axis_map.empty()) {
-    std::array<bool, 7> seen{};
-    for (const int axis : o.axis_map) seen[static_cast<std::size_t>(std::abs(axis))] = true;
-    if (seen[0] || std::count(seen.begin(), seen.end(), true) != 6) {
-      return fail({Errc::kInvalidArgument,
-                   "--axis-map: needs each of 1 to 6 once; a negative number reverses the axis"});
-    }
-    values["axis_map"] = o.axis_map;
-  }
-  if (const auto saved = saveDeviceSettings(o.output, "ball", values); !saved)
+  if (!o.axis_map.empty()) values["axis_map"] = o.axis_map;
+  if (const auto saved = saveSettings(ball, SampleKind::kBall, values); !saved)
     return fail(saved.error());
-  printOut("{}: ball\n", o.output);
+  printOut("{}: {}\n", o.output, ball.name);
   return kExitDone;
 }
 
 // Measures the ball by the raw counts that merlind writes into shared memory.
 class GuidedBall final : public Guided {
  public:
-  explicit GuidedBall(LiveSamples<BallSample> samples) : samples_(std::move(samples)) {}
+  GuidedBall(LiveSamples<BallSample> samples, std::string device,
+             const spaceball::BallResponse& response)
+      : samples_(std::move(samples)), device_(std::move(device)), axes_(response) {}
 
   Result<Ok> listen(bool measuring) override {
     return samples_.listen([&](const BallSample& sample) {
@@ -67,7 +104,7 @@ class GuidedBall final : public Guided {
   }
   Result<std::string> end() override {
     if (const std::string complaint = samples_.complaint(); !complaint.empty())
-      return Error{Errc::kTimeout, "the ball does not answer: " + complaint};
+      return Error{Errc::kTimeout, fmt::format("{} does not answer: {}", device_, complaint)};
     const auto answer = axes_.end();
     if (!answer) return answer.error();
     if (step_ == 0) return fmt::format("at rest at most {} counts", answer->counts);
@@ -87,30 +124,44 @@ class GuidedBall final : public Guided {
 
  private:
   LiveSamples<BallSample> samples_;
+  std::string device_;  // its name
   std::size_t step_ = 0;
   spaceball::GuidedAxes axes_;
   std::optional<BallSample> newest_;
 };
 
-int guideBall(const BallOptions& o) {
+// What is written into the configuration. A space mouse has one full scale for all axes: the
+// smaller one, so that each axis can reach it.
+nlohmann::ordered_json valuesOf(const SpaceballSettings& s, bool space_mouse) {
+  if (space_mouse)
+    return {{"full_scale", std::min(s.full_scale_translation, s.full_scale_rotation)},
+            {"dead_zone", s.dead_zone},
+            {"axis_map", s.axis_map}};
+  return {{"full_scale_translation", s.full_scale_translation},
+          {"full_scale_rotation", s.full_scale_rotation},
+          {"dead_zone", s.dead_zone},
+          {"axis_map", s.axis_map}};
+}
+
+int guideBall(const BallOptions& o, const CalibratedDevice& ball) {
   if (const auto writable = checkWritable(o.output); !writable) return fail(writable.error());
-  auto samples = LiveSamples<BallSample>::open(o.instance, "ball", "ball");
+  auto samples = LiveSamples<BallSample>::open(o.instance, ball.name, ball.name);
   if (!samples) return fail(samples.error());
-  GuidedBall guided(*std::move(samples));
+  GuidedBall guided(
+      *std::move(samples), ball.name,
+      isSpaceMouse(ball) ? spaceball::kSpaceMouseResponse : spaceball::kSpaceballResponse);
+  printOut("{} of merlind \"{}\"\n", ball.name, o.instance);
   if (const auto done = guide(spaceball::axesSteps(), o.timing, guided); !done)
     return fail(done.error());
   const SpaceballSettings s = guided.solve();
-  const nlohmann::ordered_json values = {{"full_scale_translation", s.full_scale_translation},
-                                         {"full_scale_rotation", s.full_scale_rotation},
-                                         {"dead_zone", s.dead_zone},
-                                         {"axis_map", s.axis_map}};
-  if (const auto saved = saveDeviceSettings(o.output, "ball", values); !saved)
+  const nlohmann::ordered_json values = valuesOf(s, isSpaceMouse(ball));
+  if (const auto saved = saveSettings(ball, SampleKind::kBall, values); !saved)
     return fail(saved.error());
   printOut(
-      "\n{}: ball, axis map {}, full push {} counts, full twist {}, dead zone {}; restart "
+      "\n{}: {}, axis map {}, full push {} counts, full twist {}, dead zone {}; restart "
       "merlind to use it\n",
-      o.output, values["axis_map"].dump(), s.full_scale_translation, s.full_scale_rotation,
-      s.dead_zone);
+      o.output, ball.name, values["axis_map"].dump(), s.full_scale_translation,
+      s.full_scale_rotation, s.dead_zone);
   return kExitDone;
 }
 
@@ -126,14 +177,20 @@ void addCalibrateBall(Command calibrate, Run& run) {
                            "values.\nExample: merlin calibrate ball -o "
                            "merlin.json\nExample: merlin calibrate ball --axis-map 1 2 -3 4 5 -6 "
                            "--full-scale-translation 6000 -o merlin.json");
+  addDeviceOption(command, o->device, "ball");
   addGuideTiming(command, o->timing);
   addInstance(command, o->instance);
   command
       .option("--full-scale-translation", o->translation,
-              "Raw count of a translation axis at a full push")
+              "Of a Spaceball: raw count of a translation axis at a full push")
       .range(100, 32767);
   command
-      .option("--full-scale-rotation", o->rotation, "Raw count of a rotation axis at a full twist")
+      .option("--full-scale-rotation", o->rotation,
+              "Of a Spaceball: raw count of a rotation axis at a full twist")
+      .range(100, 32767);
+  command
+      .option("--full-scale", o->full,
+              "Of a space mouse (driver spacenav): count of an axis at a full push or twist")
       .range(100, 32767);
   command.option("--dead-zone", o->dead_zone, "Largest raw count that is treated as rest")
       .range(0, 99);
@@ -145,8 +202,13 @@ void addCalibrateBall(Command calibrate, Run& run) {
       .expected(6)
       .range(-6, 6);
   command.option("-o,--output", o->output, "The configuration file to write into").required();
-  command.callback(
-      [o, &run] { run = [o] { return o->hasOptions() ? setFromOptions(*o) : guideBall(*o); }; });
+  command.callback([o, &run] {
+    run = [o] {
+      const auto ball = findBall(*o);
+      if (!ball) return fail(ball.error());
+      return o->hasOptions() ? setFromOptions(*o, *ball) : guideBall(*o, *ball);
+    };
+  });
 }
 
 }  // namespace merlin::cli

@@ -6,6 +6,7 @@
 
 #include "daemon/base/files.h"
 #include "daemon/cli/calibrate/calibrate.h"
+#include "daemon/cli/calibrate/calibrated_device.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/guide.h"
 #include "daemon/cli/print.h"
@@ -20,7 +21,7 @@ namespace {
 using cyberglove::GuidedCalibration;
 
 struct GloveOptions {
-  std::string port, output;
+  std::string port, output, device;
   int baud = kCybergloveBaud;
   GuideTiming timing;
 };
@@ -75,21 +76,23 @@ int calibrateGlove(const GloveOptions& o) {
   const auto address = parsePort(o.port);
   if (!address) return fail(address.error());
   if (const auto writable = checkWritable(o.output); !writable) return fail(writable.error());
+  const auto device = findDevice(o.output, SampleKind::kGlove, o.device);
+  if (!device) return fail(device.error());
   auto line = io::openPort(*address, o.baud);
   if (!line) return fail(line.error());
   const SystemClock clock;
   GuidedGlove guided(**line, clock);
   const auto identity = guided.open();
   if (!identity) return fail(identity.error());
-  printOut("{}\n", *identity);
+  printOut("{}: {}\n", device->name, *identity);
   if (const auto done = guide(cyberglove::guidedPoses(), o.timing, guided); !done)
     return fail(done.error());
   const auto solved = guided.solve();
   if (!solved) return fail(solved.error());
-  const auto saved =
-      saveDeviceSettings(o.output, "glove", {{"offset", solved->offset}, {"gain", solved->gain}});
+  const auto saved = saveSettings(*device, SampleKind::kGlove,
+                                  {{"offset", solved->offset}, {"gain", solved->gain}});
   if (!saved) return fail(saved.error());
-  printOut("\n{}: offsets and gains of this hand\n", o.output);
+  printOut("\n{}: {}, offsets and gains of this hand\n", o.output, device->name);
   return kExitDone;
 }
 
@@ -106,6 +109,7 @@ void addCalibrateGlove(Command calibrate, Run& run) {
       .required();
   command.option("-o,--output", o->output, "The configuration file to write into").required();
   command.option("--baud", o->baud, "Speed of the line in bits per second").baud().showDefault();
+  addDeviceOption(command, o->device, "glove");
   addGuideTiming(command, o->timing);
   command.callback([o, &run] { run = [o] { return calibrateGlove(*o); }; });
 }

@@ -10,6 +10,7 @@
 
 #include "daemon/base/files.h"
 #include "daemon/cli/calibrate/calibrate.h"
+#include "daemon/cli/calibrate/calibrated_device.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/guide.h"
 #include "daemon/cli/live_samples.h"
@@ -27,7 +28,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 struct TrackerOptions {
-  std::string output, instance = "merlin";
+  std::string output, device, instance = "merlin";
   int station = 1;
   std::vector<double> alignment, boresight, hemisphere;  // empty: not given as options
   std::vector<std::string> steps = {"alignment", "boresight"};
@@ -46,21 +47,19 @@ std::string keyOf(const char* form, int station) {
 }
 constexpr const char *kAlignmentKey = "alignment{}_cm", *kBoresightKey = "boresight{}_wxyz";
 
-// Errors: kInvalidArgument (the file's tracker has another driver, which has none of these
-// settings), those of readConfiguration().
-Result<Ok> checkFastrak(const std::string& file) {
-  const auto config = readConfiguration(file, "tracker");
-  if (!config) return config.error();
-  const Json& tracker = (*config)["devices"]["tracker"];
-  const auto driver = tracker.find("driver");
-  if (driver == tracker.end() || *driver == "fastrak") return Ok{};
+// The file's tracker. Errors: kInvalidArgument (it has another driver, which has none of these
+// settings), those of findDevice().
+Result<CalibratedDevice> findFastrak(const TrackerOptions& o) {
+  auto tracker = findDevice(o.output, SampleKind::kTracker, o.device);
+  if (!tracker || tracker->driver == "fastrak") return tracker;
   return Error{Errc::kInvalidArgument,
-               fmt::format("{}: /devices/tracker/driver is {}, but alignment, boresight and "
-                           "hemisphere are a Fastrak's; set the frame where the tracker is served",
-                           file, driver->dump())};
+               fmt::format("{}: {}/driver, that of \"{}\", is \"{}\", but alignment, boresight and "
+                           "hemisphere are a Fastrak's: set the frame where the tracker is "
+                           "served, or name a Fastrak with --device",
+                           o.output, tracker->pointer, tracker->name, tracker->driver)};
 }
 
-int setFromOptions(const TrackerOptions& o) {
+int setFromOptions(const TrackerOptions& o, const CalibratedDevice& tracker) {
   auto values = Json::object();
   const auto put = [&](const char* key, const std::vector<double>& list) {
     if (!list.empty()) values[keyOf(key, o.station)] = numbers(list);
@@ -74,17 +73,22 @@ int setFromOptions(const TrackerOptions& o) {
       return fail({Errc::kInvalidArgument, "--boresight: is not a unit quaternion w x y z"});
     put(kBoresightKey, o.boresight);
   }
-  if (const auto saved = saveDeviceSettings(o.output, "tracker", values); !saved)
+  if (const auto saved = saveSettings(tracker, SampleKind::kTracker, values); !saved)
     return fail(saved.error());
-  printOut("{}: station {}\n", o.output, o.station);
+  printOut("{}: {}, station {}\n", o.output, tracker.name, o.station);
   return kExitDone;
 }
 
 // Measures a station by the samples that merlind writes into shared memory.
 class GuidedStation final : public Guided {
  public:
-  GuidedStation(LiveSamples<TrackerSample> samples, const StationFrame& present, std::size_t first)
-      : samples_(std::move(samples)), present_(present), first_(first), alignment_(present) {}
+  GuidedStation(LiveSamples<TrackerSample> samples, std::string device, const StationFrame& present,
+                std::size_t first)
+      : samples_(std::move(samples)),
+        device_(std::move(device)),
+        present_(present),
+        first_(first),
+        alignment_(present) {}
 
   Result<Ok> listen(bool measuring) override {
     return samples_.listen([&](const TrackerSample& sample) {
@@ -97,7 +101,7 @@ class GuidedStation final : public Guided {
     const std::string complaint = samples_.complaint();
     const auto held = alignment_.end();
     if (!held && !complaint.empty())
-      return Error{held.error().code, fmt::format("the tracker sends no samples: {}", complaint)};
+      return Error{held.error().code, fmt::format("{} sends no samples: {}", device_, complaint)};
     if (!held) return held.error();
     const auto& p = held->position_m;
     return fmt::format(
@@ -122,16 +126,19 @@ class GuidedStation final : public Guided {
 
  private:
   LiveSamples<TrackerSample> samples_;
+  std::string device_;  // its name
   StationFrame present_;
   std::size_t first_;
   GuidedAlignment alignment_;
   std::optional<TrackerSample> newest_;
 };
 
-// Returns the frame in which the running merlind reports this station's samples. Errors: kTimeout
-// (merlind has not published it yet).
-Result<StationFrame> presentFrame(const shm::DeviceSlots& devices, int station) {
-  const auto frames = devices.tracker_frames->read();
+// Returns the frame in which the running merlind reports samples of this station of the tracker.
+// Errors: kTimeout (merlind has not published it yet).
+Result<StationFrame> presentFrame(const shm::DeviceSlots& devices, const std::string& name,
+                                  int station) {
+  const auto* const tracker = devices.tracker(name);
+  const auto frames = tracker ? tracker->frames->read() : std::nullopt;
   if (!frames) return Error{Errc::kTimeout, "merlind is still starting: try again"};
   const auto s = static_cast<std::size_t>(station - 1);
   StationFrame frame;
@@ -140,17 +147,17 @@ Result<StationFrame> presentFrame(const shm::DeviceSlots& devices, int station) 
   return frame;
 }
 
-// Whether the value of `key` in the file equals `running`, the running merlind's value. `tracker`:
-// the file's object /devices/tracker; if it lacks `key`, `standard` is compared.
+// Whether the value of `key` in the file equals `running`, the running merlind's value. `own`: the
+// tracker's settings in the file; if they lack `key`, `standard` is compared.
 template <std::size_t N>
-bool agrees(const Json& tracker, const std::string& key, const std::array<float, N>& running,
+bool agrees(const Json& own, const std::string& key, const std::array<float, N>& running,
             const std::array<float, N>& standard) {
   constexpr float kRounded = 0.006F;  // rounding of numbers in the file
-  const auto at = tracker.find(key);
-  if (at != tracker.end() && (!at->is_array() || at->size() != N)) return false;
+  const auto at = own.find(key);
+  if (at != own.end() && (!at->is_array() || at->size() != N)) return false;
   for (std::size_t i = 0; i < N; ++i) {
-    if (at != tracker.end() && !(*at)[i].is_number()) return false;
-    const float value = at == tracker.end() ? standard[i] : (*at)[i].template get<float>();
+    if (at != own.end() && !(*at)[i].is_number()) return false;
+    const float value = at == own.end() ? standard[i] : (*at)[i].template get<float>();
     if (std::abs(value - running[i]) > kRounded) return false;
   }
   return true;
@@ -158,50 +165,49 @@ bool agrees(const Json& tracker, const std::string& key, const std::array<float,
 
 // Checks that a setting which --steps does not measure has the same value in the file and in the
 // running merlind, because it is derived from merlind's value and saved too. Errors:
-// kInvalidArgument, those of readConfiguration().
-Result<Ok> checkKept(const TrackerOptions& o, const StationFrame& present) {
-  const auto config = readConfiguration(o.output, "tracker");
-  if (!config) return config.error();
-  const Json& tracker = (*config)["devices"]["tracker"];
+// kInvalidArgument.
+Result<Ok> checkKept(const TrackerOptions& o, const CalibratedDevice& tracker,
+                     const StationFrame& present) {
   const std::string alignment = keyOf(kAlignmentKey, o.station);
   const std::string boresight = keyOf(kBoresightKey, o.station);
   std::string other;
   if (!o.has("alignment") &&
-      !agrees(tracker, alignment, present.alignment_cm, FastrakSettings::kAligned))
+      !agrees(tracker.own, alignment, present.alignment_cm, FastrakSettings::kAligned))
     other = alignment;
   if (!o.has("boresight") &&
-      !agrees(tracker, boresight, present.boresight_wxyz, FastrakSettings::kAhead))
+      !agrees(tracker.own, boresight, present.boresight_wxyz, FastrakSettings::kAhead))
     other = boresight;
   if (other.empty()) return Ok{};
   return Error{
       Errc::kInvalidArgument,
-      fmt::format("{}: its /devices/tracker/{} differs from that of the running merlind, but "
+      fmt::format("{}: its {}/{}/{} differs from that of the running merlind, but "
                   "--steps does not measure it again: restart merlind with this file, or measure "
                   "both",
-                  o.output, other)};
+                  o.output, tracker.pointer, tracker.driver, other)};
 }
 
-int guideTracker(const TrackerOptions& o) {
+int guideTracker(const TrackerOptions& o, const CalibratedDevice& tracker) {
   if (const auto writable = checkWritable(o.output); !writable) return fail(writable.error());
-  auto samples =
-      LiveSamples<TrackerSample>::open(o.instance, fmt::format("tracker{}", o.station), "tracker");
+  auto samples = LiveSamples<TrackerSample>::open(
+      o.instance, fmt::format("{}{}", tracker.name, o.station), tracker.name);
   if (!samples) return fail(samples.error());
-  const auto present = presentFrame(samples->devices(), o.station);
+  const auto present = presentFrame(samples->devices(), tracker.name, o.station);
   if (!present) return fail(present.error());
-  if (const auto kept = checkKept(o, *present); !kept) return fail(kept.error());
+  if (const auto kept = checkKept(o, tracker, *present); !kept) return fail(kept.error());
   const std::size_t first = o.has("alignment") ? fastrak::kOrigin : fastrak::kAhead;
   const std::size_t end = o.has("boresight") ? fastrak::kAhead + 1 : fastrak::kAhead;
-  GuidedStation guided(*std::move(samples), *present, first);
+  GuidedStation guided(*std::move(samples), tracker.name, *present, first);
+  printOut("{}, station {}, of merlind \"{}\"\n", tracker.name, o.station, o.instance);
   const auto steps = fastrak::alignmentSteps().subspan(first, end - first);
   if (const auto done = guide(steps, o.timing, guided); !done) return fail(done.error());
   const StationFrame solved = guided.solve();
   const Json alignment = numbers(solved.alignment_cm), boresight = numbers(solved.boresight_wxyz);
-  const auto saved = saveDeviceSettings(
-      o.output, "tracker",
+  const auto saved = saveSettings(
+      tracker, SampleKind::kTracker,
       {{keyOf(kAlignmentKey, o.station), alignment}, {keyOf(kBoresightKey, o.station), boresight}});
   if (!saved) return fail(saved.error());
-  printOut("\n{}: station {}, alignment {} cm, boresight {}; restart merlind to use it\n", o.output,
-           o.station, alignment.dump(), boresight.dump());
+  printOut("\n{}: {}, station {}, alignment {} cm, boresight {}; restart merlind to use it\n",
+           o.output, tracker.name, o.station, alignment.dump(), boresight.dump());
   return kExitDone;
 }
 
@@ -217,6 +223,7 @@ void addCalibrateTracker(Command calibrate, Run& run) {
       "--station 1 "
       "-o merlin.json\nExample: merlin calibrate tracker --station 1 --boresight 0.7071 0 0 0.7071 "
       "-o merlin.json");
+  addDeviceOption(command, o->device, "tracker");
   command.option("--station", o->station).range(1, 4).showDefault();
   command.option("--steps", o->steps, "Settings to measure: alignment, boresight or both")
       .separated(',')
@@ -246,8 +253,9 @@ void addCalibrateTracker(Command calibrate, Run& run) {
   command.option("-o,--output", o->output, "The configuration file to write into").required();
   command.callback([o, &run] {
     run = [o] {
-      if (const auto fits = checkFastrak(o->output); !fits) return fail(fits.error());
-      return o->hasOptions() ? setFromOptions(*o) : guideTracker(*o);
+      const auto tracker = findFastrak(*o);
+      if (!tracker) return fail(tracker.error());
+      return o->hasOptions() ? setFromOptions(*o, *tracker) : guideTracker(*o, *tracker);
     };
   });
 }

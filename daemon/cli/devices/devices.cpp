@@ -74,21 +74,37 @@ void printConfigured(const std::vector<Configured>& configured) {
     const std::string what = works ? fmt::format("{:.1f} Hz  {}{}{}", h.rate_hz, h.identity,
                                                  h.reason[0] ? "; " : "", h.reason)
                                    : h.reason;
-    printOut("  {:8} {:8} {}{}{}\n", device.name, device.state, h.port, h.port[0] ? "  " : "",
+    printOut("  {:10} {:8} {}{}{}\n", device.name, device.state, h.port, h.port[0] ? "  " : "",
              what);
   }
 }
 
+// The words, with commas, in lines of at most 90 characters that begin with four spaces.
+std::string wrapped(const std::string& title, const std::vector<std::string>& words) {
+  constexpr std::size_t kWidth = 90;
+  std::string text, line = "    " + title;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string word = " " + words[i] + (i + 1 < words.size() ? "," : "");
+    if (line.size() + word.size() > kWidth) {
+      text += line + "\n";
+      line = "     ";
+    }
+    line += word;
+  }
+  return text + line + "\n";
+}
+
 void printPlugged(const Plugged& plugged, const Configured* reader) {
   printOut("  {}: {}\n", plugged.kind, plugged.name);
-  if (reader) {
-    printOut("    is the {}'s port\n", reader->name);
-    return;
-  }
-  for (const std::string& role : plugged.roles)
-    printOut("    {}\n", configurationLine(plugged, role));
-  if (plugged.roles.empty()) printOut("    {}: no driver reads it\n", plugged.port);
-  if (!plugged.readable && !plugged.roles.empty()) {
+  if (reader) printOut("    is the port of \"{}\"\n", reader->name);
+  if (!plugged.axes.empty()) printOut("{}", wrapped("axes:", plugged.axes));
+  if (!plugged.keys.empty()) printOut("{}", wrapped("keys:", plugged.keys));
+  if (!plugged.usual.empty()) printOut("    unless told otherwise: {}\n", plugged.usual);
+  if (reader) return;
+  for (const Plugged::Use& use : plugged.uses)
+    printOut("    {}\n", configurationEntry(plugged, use));
+  if (plugged.uses.empty()) printOut("    {}: no driver reads it\n", plugged.port);
+  if (!plugged.readable && !plugged.uses.empty()) {
     printOut("    this user may not open it{}\n",
              plugged.group.empty() ? "" : fmt::format("; its group is {}", plugged.group));
   }
@@ -106,21 +122,32 @@ Json jsonOf(const Configured& device) {
 }
 
 Json jsonOf(const Plugged& plugged, const Configured* reader) {
-  Json lines = Json::object();
-  for (const std::string& role : plugged.roles) {
-    lines[role] = {{"port", plugged.port}};
-    if (!plugged.driver.empty()) lines[role]["driver"] = plugged.driver;
-  }
+  Json entries = Json::array();
+  for (const Plugged::Use& use : plugged.uses)
+    entries.push_back({{"name", use.name}, {"driver", use.driver}, {"port", plugged.port}});
   return {{"kind", plugged.kind},         {"name", plugged.name},
           {"port", plugged.port},         {"read_by", reader ? Json(reader->name) : Json()},
           {"readable", plugged.readable}, {"group", plugged.group},
-          {"as", std::move(lines)}};
+          {"axes", plugged.axes},         {"keys", plugged.keys},
+          {"usual", plugged.usual},       {"as", std::move(entries)}};
+}
+
+// What is plugged in, under names that no configured device has. A device without a port keeps
+// its name free: it is a place for one.
+std::vector<Plugged> pluggedBeside(const std::vector<Configured>& configured) {
+  std::vector<std::string> taken;
+  for (const Configured& device : configured) {
+    if (device.health.port[0]) taken.push_back(device.name);
+  }
+  std::vector<Plugged> all = findPlugged();
+  nameApart(all, taken);
+  return all;
 }
 
 int list(const DevicesOptions& options) {
   const auto running = configuredDevices(options.instance);
   const std::vector<Configured> configured = running ? *running : std::vector<Configured>();
-  const std::vector<Plugged> all = findPlugged();
+  const std::vector<Plugged> all = pluggedBeside(configured);
   if (options.json) {
     Json json = {
         {"running", running.ok()}, {"configured", Json::array()}, {"plugged", Json::array()}};
@@ -135,8 +162,9 @@ int list(const DevicesOptions& options) {
   else
     printOut("No merlind with devices runs as \"{}\".\n", options.instance);
   printConfigured(configured);
-  printOut("{}\n", all.empty() ? "Nothing is plugged in that could be a device."
-                               : "Plugged in, with the line for \"devices\" of the configuration:");
+  printOut("{}\n", all.empty()
+                       ? "Nothing is plugged in that could be a device."
+                       : "Plugged in, with the entry for the configuration's list \"devices\":");
   for (const Plugged& plugged : all) printPlugged(plugged, readerOf(plugged, configured));
   return kExitDone;
 }
@@ -173,8 +201,11 @@ void addDevices(Command app, Run& run) {
   Command command = app.subcommand(
       "devices",
       "List the devices that merlind reads and how they are, and what is plugged into this machine "
-      "and not configured (serial adapters, gamepads, space mice, clickers), with the line that "
-      "makes it a device. No device is opened.\nExample: merlin devices; merlin devices --watch");
+      "and not configured (serial adapters, gamepads, space mice, clickers), with the entry for "
+      "the "
+      "configuration's list \"devices\" that makes it a device, and the axes and keys of input "
+      "devices by the names that the configuration uses. No device is opened.\nExample: merlin "
+      "devices; merlin devices --watch");
   addInstance(command, options->instance);
   command.flag("--json", options->json, "Print one JSON document");
   command.flag("--watch", options->watch,

@@ -13,6 +13,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "drivers/evdev/input_device.h"
+#include "drivers/io/evdev_stream.h"
+
 namespace merlin::cli {
 namespace {
 
@@ -73,24 +76,66 @@ std::bitset<N> bitmap(const fs::path& file) {
   return bits;
 }
 
+// What an input device has, by the kernel's numbers.
+struct Capabilities {
+  explicit Capabilities(const fs::path& folder)
+      : keys(bitmap<KEY_CNT>(folder / "key")),
+        absolute(bitmap<ABS_CNT>(folder / "abs")),
+        relative(bitmap<REL_CNT>(folder / "rel")) {}
+
+  std::bitset<KEY_CNT> keys;
+  std::bitset<ABS_CNT> absolute;
+  std::bitset<REL_CNT> relative;
+};
+
 // What kind of input device it is; empty for one that cannot serve (a power button, a lid).
-std::string kindOf(const fs::path& capabilities) {
-  const auto keys = bitmap<KEY_CNT>(capabilities / "key");
-  const auto absolute = bitmap<ABS_CNT>(capabilities / "abs");
-  const auto relative = bitmap<REL_CNT>(capabilities / "rel");
+std::string kindOf(const Capabilities& has) {
   const auto six = [](const auto& axes) {
     for (int code = ABS_X; code <= ABS_RZ; ++code) {
       if (!axes[static_cast<std::size_t>(code)]) return false;
     }
     return true;
   };
-  if (keys[BTN_GAMEPAD]) return "gamepad";
-  if (keys[BTN_JOYSTICK]) return "joystick";
-  if (six(absolute) || six(relative)) return "space mouse";
-  if (absolute[ABS_MT_POSITION_X]) return "touch screen";
-  if (keys[BTN_MOUSE] && relative[REL_X]) return "mouse";
-  if (keys[KEY_PAGEDOWN] || keys[KEY_NEXT]) return keys[KEY_A] ? "keyboard" : "clicker";
+  if (has.keys[BTN_GAMEPAD]) return "gamepad";
+  if (has.keys[BTN_JOYSTICK]) return "joystick";
+  if (six(has.absolute) || six(has.relative)) return "space mouse";
+  if (has.absolute[ABS_MT_POSITION_X]) return "touch screen";
+  if (has.keys[BTN_MOUSE] && has.relative[REL_X]) return "mouse";
+  if (has.keys[KEY_PAGEDOWN] || has.keys[KEY_NEXT]) return has.keys[KEY_A] ? "keyboard" : "clicker";
   return {};
+}
+
+// A short name for a device of this kind.
+std::string nameFor(const std::string& kind) {
+  if (kind == "gamepad") return "pad";
+  if (kind == "joystick") return "stick";
+  if (kind == "space mouse") return "mouse";
+  return kind;
+}
+
+// Fills in axes, keys and which are read. The kernel tells the ranges of axes only to those who
+// open the device; which axes are read does not depend on them.
+void describeInput(const Capabilities& has, Plugged& plugged) {
+  evdev::InputDevice input;
+  EvdevRecord record;
+  record.high = 1;
+  record.kind = EvdevRecord::kAxis;
+  for (std::size_t code = 0; code < has.absolute.size(); ++code) {
+    record.code = static_cast<std::uint16_t>(code);
+    if (has.absolute[code]) input.describe(record);
+  }
+  record.kind = EvdevRecord::kRelative;
+  for (std::size_t code = 0; code < has.relative.size(); ++code) {
+    record.code = static_cast<std::uint16_t>(code);
+    if (has.relative[code]) input.describe(record);
+  }
+  for (std::size_t code = 0; code < has.keys.size(); ++code) {
+    if (has.keys[code]) input.describe(io::keyRecord(static_cast<std::uint16_t>(code)));
+  }
+  (void)input.choose({});  // the usual ones, which the device has
+  plugged.axes = input.axisNames();
+  plugged.keys = input.keyNames();
+  plugged.usual = input.chosen();
 }
 
 void addAdapters(const std::string& root, std::vector<Plugged>& all) {
@@ -107,10 +152,12 @@ void addAdapters(const std::string& root, std::vector<Plugged>& all) {
                    fs::path(name).filename(),
                    "serial:" + name,
                    path,
-                   {"glove", "tracker", "ball"},
-                   "",
+                   {{"glove", "cyberglove"}, {"tracker", "fastrak"}, {"ball", "spaceball"}},
                    ::access(path.c_str(), R_OK | W_OK) == 0,
-                   groupOf(path)});
+                   groupOf(path),
+                   {},
+                   {},
+                   {}});
   }
 }
 
@@ -119,7 +166,8 @@ void addInputDevices(const std::string& root, std::vector<Plugged>& all) {
   std::vector<Plugged> found;
   for (const fs::path& entry : entriesOf(root + "/sys/class/input")) {
     if (!entry.filename().string().starts_with("event")) continue;
-    const std::string kind = kindOf(entry / "device/capabilities");
+    const Capabilities has(entry / "device/capabilities");
+    const std::string kind = kindOf(has);
     if (kind.empty()) continue;
     const std::string path = withoutLinks(root + "/dev/input/" + entry.filename().string());
     const auto link = links.find(path);
@@ -127,11 +175,16 @@ void addInputDevices(const std::string& root, std::vector<Plugged>& all) {
                      firstLine(entry / "device/name"),
                      "evdev:" + (link == links.end() ? path : link->second),
                      path,
-                     {"ball"},
-                     "evdev",
+                     {{nameFor(kind), "evdev"}},
                      ::access(path.c_str(), R_OK) == 0,
-                     groupOf(path)});
-    if (kind == "touch screen") found.back().roles.clear();  // no driver reads it
+                     groupOf(path),
+                     {},
+                     {},
+                     {}});
+    if (kind == "touch screen")
+      found.back().uses.clear();  // no driver reads it
+    else
+      describeInput(has, found.back());
   }
   std::ranges::stable_sort(found, {}, &Plugged::name);
   all.insert(all.end(), found.begin(), found.end());
@@ -145,10 +198,12 @@ void addSpacenavd(const std::string& root, std::vector<Plugged>& all) {
                  "spacenavd, or another program that serves as one",
                  "unix:" + path,
                  path,
-                 {"ball"},
-                 "spacenav",
+                 {{"mouse", "spacenav"}},
                  ::access(path.c_str(), R_OK | W_OK) == 0,
-                 groupOf(path)});
+                 groupOf(path),
+                 {},
+                 {},
+                 {}});
 }
 
 }  // namespace
@@ -161,10 +216,20 @@ std::vector<Plugged> findPlugged(const std::string& root) {
   return all;
 }
 
-std::string configurationLine(const Plugged& plugged, const std::string& role) {
-  const std::string driver =
-      plugged.driver.empty() ? "" : fmt::format("\"driver\": \"{}\", ", plugged.driver);
-  return fmt::format("\"{}\": {{{}\"port\": \"{}\"}}", role, driver, plugged.port);
+void nameApart(std::vector<Plugged>& all, std::vector<std::string> taken) {
+  for (Plugged& plugged : all) {
+    for (Plugged::Use& use : plugged.uses) {
+      const std::string wanted = use.name;
+      for (int n = 2; std::ranges::find(taken, use.name) != taken.end(); ++n)
+        use.name = fmt::format("{}_{}", wanted, n);
+    }
+    if (plugged.uses.size() == 1) taken.push_back(plugged.uses.front().name);
+  }
+}
+
+std::string configurationEntry(const Plugged& plugged, const Plugged::Use& use) {
+  return fmt::format(R"({{"name": "{}", "driver": "{}", "port": "{}"}})", use.name, use.driver,
+                     plugged.port);
 }
 
 }  // namespace merlin::cli

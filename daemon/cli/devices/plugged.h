@@ -8,15 +8,23 @@
 namespace merlin::cli {
 
 struct Plugged {
-  std::string kind;  // "serial adapter", "gamepad", "space mouse" ..., for a person
-  std::string name;  // as the device says, for a person
-  std::string port;  // in a form that parsePort() understands
-  std::string path;  // of its file, without links
-  // The keys of /devices for which it may serve: of an adapter "glove", "tracker" and "ball".
-  std::vector<std::string> roles;
-  std::string driver;     // that reads it; empty: the usual one of each role
+  // One way to serve, as an entry of the configuration's list "devices".
+  struct Use {
+    std::string name;    // for the device
+    std::string driver;  // that reads it
+  };
+
+  std::string kind;       // "serial adapter", "gamepad", "space mouse" ..., for a person
+  std::string name;       // as the device says, for a person
+  std::string port;       // in a form that parsePort() understands
+  std::string path;       // of its file, without links
+  std::vector<Use> uses;  // of an adapter one for each driver of a serial line; empty: none
   bool readable = false;  // by the calling process
   std::string group;      // of its file, whose members may read it; empty: unknown
+  // Of an input device: its axes and keys, by the names that the configuration uses, and which of
+  // them are read if it names none: "axes x, ...; buttons south, ...".
+  std::vector<std::string> axes, keys;
+  std::string usual;
 };
 
 // Reads /dev, /sys and /run below `root` (tests give one of their own; no "/" at its end); opens no
@@ -24,7 +32,11 @@ struct Plugged {
 // read are listed too. Cost: a few files for each input device.
 std::vector<Plugged> findPlugged(const std::string& root = "");
 
-// The line of the configuration that makes it the device `role`.
-std::string configurationLine(const Plugged& plugged, const std::string& role);
+// Changes names of uses so that they differ from the names in `taken`, and those of things that
+// have only one use from each other: "mouse_2".
+void nameApart(std::vector<Plugged>& all, std::vector<std::string> taken);
+
+// The entry for the list "devices" of the configuration.
+std::string configurationEntry(const Plugged& plugged, const Plugged::Use& use);
 
 }  // namespace merlin::cli

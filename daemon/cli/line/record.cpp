@@ -57,13 +57,6 @@ struct Nowhere final : SampleSink {
   void publish(const BallSample&) noexcept override {}
 };
 
-const DriverEntry* driverNamed(const std::string& name) {
-  for (const DriverEntry& entry : drivers()) {
-    if (entry.name == name) return &entry;
-  }
-  return nullptr;
-}
-
 // Reads the line until `end`, until a signal (on `stop_fd`), or until the line fails, which is
 // printed. If `device` is not null, its driver sets the device up and polls it. Returns the
 // device's identity. Errors: those of Device::open().
@@ -98,8 +91,8 @@ int record(const RecordOptions& options) {
   const auto address = parsePort(options.port);
   if (!address) return fail(address.error());
   if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
-  const DriverEntry* driver = driverNamed(options.device);
-  const int baud = options.baud > 0 ? options.baud : driver ? driver->baud : LineSettings().baud;
+  const DriverEntry* driver = findDriver(options.device);
+  const int baud = options.baud > 0 ? options.baud : driver ? driver->baud : kUsualBaud;
   auto line = io::openPort(*address, baud);
   if (!line) return fail(line.error());
   const SystemClock clock;

@@ -25,6 +25,7 @@ constexpr Duration kPatience = std::chrono::seconds(3);  // longest time without
 
 struct CollectOptions {
   std::string label, output = "hands.csv", instance = "merlin", units = "rad";
+  std::string device;  // empty: the first glove
   double seconds = 2;
 };
 
@@ -53,12 +54,24 @@ void drawBars(const GloveSample& sample, bool again) {
   printError("{}{}", again ? fmt::format("\033[{}A", lines) : "", out);
 }
 
+Error noGlove(const shm::DeviceSlots& devices, const CollectOptions& options) {
+  std::string names;
+  for (const auto& glove : devices.gloves) names += (names.empty() ? "" : ", ") + glove.name;
+  return {Errc::kInvalidArgument,
+          fmt::format("the merlind that runs as \"{}\" has no glove{}{}; its gloves: {}",
+                      options.instance, options.device.empty() ? "" : " named ", options.device,
+                      names.empty() ? "none" : names)};
+}
+
 // Records the glove for options.seconds, counted from the first sample. Errors: those of
-// DevicesReader::open() (kNotFound: no daemon), kTimeout (no sample for 3 s).
+// DevicesReader::open() (kNotFound: no daemon), kInvalidArgument (no such glove), kTimeout (no
+// sample for 3 s).
 Result<nn::Recording> collect(const CollectOptions& options) {
   const auto devices = shm::DevicesReader::open(shm::segmentName(options.instance, "devices"));
   if (!devices) return devices.error();
-  const auto& glove = *(*devices)->glove;
+  const auto* const slots = (*devices)->glove(options.device);
+  if (!slots) return noGlove(**devices, options);
+  const auto& glove = *slots->samples;
   const SystemClock clock;
   nn::Recording recording;
   recording.unit = unitNamed(options.units).value_or(nn::InputUnit::kRadians);
@@ -70,7 +83,7 @@ Result<nn::Recording> collect(const CollectOptions& options) {
     glove.wait(next, {0, 100'000'000});
     if (next == glove.count()) {
       if (clock.now() - heard < kPatience) continue;
-      return Error{Errc::kTimeout, "the glove has sent nothing for 3 s: see merlin status"};
+      return Error{Errc::kTimeout, slots->name + " has sent nothing for 3 s: see merlin status"};
     }
     heard = clock.now();
     if (began == Timestamp{}) began = heard;
@@ -145,6 +158,8 @@ void addPostureCollect(Command posture, Run& run_now) {
   command.option("--units", options->units, "Angles in radians, or raw counts of the sensors")
       .oneOf({"rad", "raw"})
       .showDefault();
+  command.option("--device", options->device, "Name of the glove; the default is the first one")
+      .typeName("NAME");
   addInstance(command, options->instance);
   command.callback([options, &run_now] { run_now = [options] { return run(*options); }; });
 }

@@ -50,7 +50,7 @@ Result<std::vector<shm::FrameTrace>> collect(const shm::WallSegment& wall, Durat
 }
 
 template <typename T>
-void addSamples(const shm::Channel<T>& channel, const char* device,
+void addSamples(const shm::Channel<T>& channel, const std::string& device,
                 std::span<const shm::FrameTrace> frames, std::vector<SampleInstant>& out) {
   const std::uint64_t count = channel.count();
   for (std::uint64_t n = count > shm::kHistory - 1 ? count - (shm::kHistory - 1) : 0; n < count;
@@ -60,6 +60,20 @@ void addSamples(const shm::Channel<T>& channel, const char* device,
         sample->received_ns <= frames.back().end_ns)
       out.push_back({device, sample->received_ns});
   }
+}
+
+// Of a tracker, the samples of its first station that sends any: all stations send together.
+void addDevices(const shm::DeviceSlots& devices, std::span<const shm::FrameTrace> frames,
+                std::vector<SampleInstant>& out) {
+  for (const auto& glove : devices.gloves) addSamples(*glove.samples, glove.name, frames, out);
+  for (const auto& tracker : devices.trackers) {
+    for (const auto* station : tracker.stations) {
+      if (station->count() == 0) continue;
+      addSamples(*station, tracker.name, frames, out);
+      break;
+    }
+  }
+  for (const auto& ball : devices.balls) addSamples(*ball.samples, ball.name, frames, out);
 }
 
 int trace(const TraceOptions& options) {
@@ -84,11 +98,7 @@ Result<WallTrace> recordTrace(const std::string& instance, Duration wanted) {
   if (!frames) return frames.error();
   std::vector<SampleInstant> samples;
   const auto devices = shm::DevicesReader::open(shm::segmentName(instance, "devices"));
-  if (devices) {
-    addSamples(*(*devices)->glove, "glove", *frames, samples);
-    addSamples(*(*devices)->tracker[0], "tracker", *frames, samples);
-    addSamples(*(*devices)->ball, "ball", *frames, samples);
-  }
+  if (devices) addDevices(**devices, *frames, samples);
   return WallTrace{traceJson(*frames, samples), frames->size(), samples.size()};
 }
 

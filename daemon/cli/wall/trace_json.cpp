@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -89,7 +88,7 @@ std::string traceJson(std::span<const shm::FrameTrace> frames,
   events.push_back(trackName("wall, second thread", kOtherTrack));
   const std::int64_t from = frames.empty() ? 0 : frames.front().begin_ns;
   for (const shm::FrameTrace& f : frames) addFrame(f, from, events);
-  std::vector<std::string_view> tracks;
+  std::vector<std::string> tracks;
   for (const SampleInstant& s : samples) {
     auto track = std::find(tracks.begin(), tracks.end(), s.device);
     if (track == tracks.end()) {

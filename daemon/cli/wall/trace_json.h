@@ -11,7 +11,7 @@ namespace merlin::cli {
 
 // When the first byte of a sample arrived.
 struct SampleInstant {
-  const char* device;
+  std::string device;  // its name
   std::int64_t at_ns;
 };
 

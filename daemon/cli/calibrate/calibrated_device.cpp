@@ -1,0 +1,146 @@
+#include "daemon/cli/calibrate/calibrated_device.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "config/settings.h"
+#include "daemon/base/files.h"
+#include "drivers/registry.h"
+
+namespace merlin::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The devices of a configuration that has none of its own.
+Json defaultList() {
+  Json list = Json::array();
+  for (const DeviceSettings& device : defaultDevices())
+    list.push_back({{"name", device.name}, {"driver", device.line.driver}});
+  return list;
+}
+
+// The file's configuration, with the list /devices. Errors: kMalformed, kIo.
+Result<Json> readConfiguration(const std::string& path) {
+  Json config = Json::object();
+  if (const auto file = FileCopy::read(path)) {
+    config = Json::parse(file->text(), nullptr, false);
+    if (!config.is_object())
+      return Error{Errc::kMalformed,
+                   path + ": exists and is not a JSON object; nothing was changed"};
+  } else if (file.error().code != Errc::kNotFound) {
+    return file.error();
+  }
+  Json& devices = config["devices"];
+  if (devices.is_null()) devices = defaultList();
+  if (devices.is_object())
+    return Error{Errc::kMalformed,
+                 fmt::format("{0}: /devices is an object, the form before devices had names; "
+                             "nothing was changed: run `merlin config migrate {0}` first",
+                             path)};
+  if (!devices.is_array())
+    return Error{Errc::kMalformed, path + ": /devices is not a list; nothing was changed"};
+  return config;
+}
+
+std::string textOf(const Json& entry, const char* key) {
+  const auto at = entry.find(key);
+  return at != entry.end() && at->is_string() ? at->get<std::string>() : std::string();
+}
+
+std::optional<SampleKind> kindOf(const Json& entry) {
+  const DriverEntry* const driver = findDriver(textOf(entry, "driver"));
+  return driver ? std::optional(driver->kind) : std::nullopt;
+}
+
+std::string nameOf(const Json& entry) {
+  std::string name = textOf(entry, "name");
+  const auto kind = kindOf(entry);
+  return name.empty() && kind ? kindName(*kind) : name;
+}
+
+// What to write instead of a name that the list lacks: "; its gloves are left, right".
+std::string namesOf(const Json& list, SampleKind kind) {
+  std::vector<std::string> names;
+  for (const Json& entry : list) {
+    if (kindOf(entry) == kind) names.push_back(nameOf(entry));
+  }
+  return names.empty() ? fmt::format("and no {} at all", kindName(kind))
+                       : fmt::format("its {}s: {}", kindName(kind), fmt::join(names, ", "));
+}
+
+// Index in the list. Errors: kInvalidArgument.
+Result<std::size_t> indexOf(const Json& list, const std::string& path, SampleKind kind,
+                            const std::string& name) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (name.empty() ? kindOf(list[i]) != kind : nameOf(list[i]) != name) continue;
+    if (kindOf(list[i]) == kind) return i;
+    return Error{
+        Errc::kInvalidArgument,
+        fmt::format("{}: /devices/{} (\"{}\") has the driver \"{}\", which is not that of "
+                    "a {}; {}",
+                    path, i, name, textOf(list[i], "driver"), kindName(kind), namesOf(list, kind))};
+  }
+  if (name.empty())
+    return Error{
+        Errc::kInvalidArgument,
+        fmt::format("{}: /devices has no {}: add one first (`merlin devices` shows what is "
+                    "plugged in and its line for the file)",
+                    path, kindName(kind))};
+  return Error{Errc::kInvalidArgument, fmt::format("{}: /devices has no device named \"{}\"; {}",
+                                                   path, name, namesOf(list, kind))};
+}
+
+Result<CalibratedDevice> deviceAt(const Json& list, std::size_t index, const std::string& path) {
+  const Json& entry = list[index];
+  CalibratedDevice device{path, fmt::format("/devices/{}", index), nameOf(entry),
+                          textOf(entry, "driver"), Json::object()};
+  const auto own = entry.find(device.driver);
+  if (own == entry.end()) return device;
+  if (!own->is_object())
+    return Error{Errc::kMalformed, fmt::format("{}: {}/{} is not an object; nothing was changed",
+                                               path, device.pointer, device.driver)};
+  device.own = *own;
+  return device;
+}
+
+}  // namespace
+
+Result<CalibratedDevice> findDevice(const std::string& file, SampleKind kind,
+                                    const std::string& name) {
+  const auto config = readConfiguration(file);
+  if (!config) return config.error();
+  const Json& list = config->at("devices");
+  const auto index = indexOf(list, file, kind, name);
+  if (!index) return index.error();
+  return deviceAt(list, *index, file);
+}
+
+Result<Ok> saveSettings(const CalibratedDevice& device, SampleKind kind, const Json& values) {
+  auto config = readConfiguration(device.file);
+  if (!config) return config.error();
+  Json& list = (*config)["devices"];
+  const auto index = indexOf(list, device.file, kind, device.name);
+  if (!index) return index.error();
+  const auto now = deviceAt(list, *index, device.file);
+  if (!now) return now.error();
+  if (now->driver != device.driver)
+    return Error{
+        Errc::kInvalidArgument,
+        fmt::format("{}: the driver of {} has changed meanwhile from {} to {}; nothing was "
+                    "changed: calibrate again",
+                    device.file, now->pointer, device.driver, now->driver)};
+  Json& own = list[*index][device.driver];
+  if (own.is_null()) own = Json::object();
+  own.update(values);
+  return writeFile(device.file, config->dump(2) + "\n");
+}
+
+void addDeviceOption(Command command, std::string& name, const char* kind) {
+  const std::string help =
+      fmt::format("Name of the {0} in the configuration file; the default is its first {0}", kind);
+  command.option("--device", name, help.c_str()).typeName("NAME");
+}
+
+}  // namespace merlin::cli

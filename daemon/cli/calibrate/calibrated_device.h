@@ -1,0 +1,49 @@
+// Finds the device in a configuration file that a calibration is for, and writes what was measured
+// into its entry.
+#pragma once
+
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/result.h"
+#include "daemon/cli/arguments.h"
+#include "drivers/port/samples.h"
+
+namespace merlin::cli {
+
+// An entry of the list /devices.
+struct CalibratedDevice {
+  std::string file;
+  std::string pointer;         // "/devices/2"
+  std::string name, driver;    // those in effect: an entry without a name has its kind's
+  nlohmann::ordered_json own;  // the entry's settings of its driver: an object, which may be empty
+};
+
+// Finds the device named `name`, or the first device of this kind if `name` is empty. A file that
+// does not exist or has no /devices has merlind's default devices: glove, tracker and ball. Errors:
+// kMalformed (the file is no configuration, or one of an earlier form), kInvalidArgument (there is
+// no such device, or it is of another kind), kIo.
+Result<CalibratedDevice> findDevice(const std::string& file, SampleKind kind,
+                                    const std::string& name);
+
+// Copies the members of `values` into the device's settings of its driver, and keeps all else in
+// the file and the order; creates the file if it does not exist. Errors: those of findDevice() and
+// writeFile(); kInvalidArgument (the file has changed meanwhile: the device has another driver
+// there). After an error the old file is unchanged.
+Result<Ok> saveSettings(const CalibratedDevice& device, SampleKind kind,
+                        const nlohmann::ordered_json& values);
+
+// Adds the option --device for the name of a device. `kind`: "glove".
+void addDeviceOption(Command command, std::string& name, const char* kind);
+
+// The numbers as a JSON list, rounded to seven significant digits.
+template <typename T>
+nlohmann::ordered_json numbers(const T& values) {
+  auto list = nlohmann::ordered_json::array();
+  for (const auto v : values) list.push_back(std::stod(fmt::format("{:.7g}", v)));
+  return list;
+}
+
+}  // namespace merlin::cli
