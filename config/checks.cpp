@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <map>
 #include <set>
-#include <utility>
 
 #include <fmt/format.h>
 
+#include "config/device_checks.h"
+#include "config/devices.h"
 #include "daemon/base/commands.h"
 #include "daemon/base/tcp_address.h"
 #include "render/room/room_tiles.h"
@@ -15,18 +15,6 @@
 
 namespace merlin {
 namespace {
-
-// Adds the faults as findings. `group`: JSON pointer to which the faults' pointers are relative.
-// `prefix`: precedes texts of faults that are not predicates, "cannot be used: ".
-void addFaults(const SettingFaults& faults, const std::string& group, LoadedSettings& loaded,
-               const std::string& prefix = {}) {
-  for (const auto& [pointer, what, other] : faults) {
-    const std::string at = group + other;
-    const std::string before =
-        other.empty() ? "" : fmt::format("conflicts with {} ({}): ", at, loaded.placeText(at));
-    loaded.addFinding(group + pointer, fmt::format("{}{}{}", prefix, before, what));
-  }
-}
 
 void checkName(const Settings& s, LoadedSettings& loaded) {
   bool good = !s.instance.empty() && s.instance.size() <= 32;
@@ -36,46 +24,6 @@ void checkName(const Settings& s, LoadedSettings& loaded) {
     loaded.addFinding(
         "/instance",
         fmt::format("is \"{}\"; allowed are 1 to 32 letters, digits, - and _", s.instance));
-}
-
-// Two drivers on one serial line would each read only a part of the device's bytes.
-void checkPortsDiffer(const DevicesSettings& d, LoadedSettings& loaded) {
-  std::map<std::string, const char*> taken;
-  const std::pair<const char*, const LineSettings*> lines[] = {
-      {"glove", &d.glove_line}, {"tracker", &d.tracker_line}, {"ball", &d.ball_line}};
-  for (const auto& [device, line] : lines) {
-    if (line->port.empty() || line->port.starts_with("replay:")) continue;
-    const auto [first, fresh] = taken.emplace(line->port, device);
-    if (fresh) continue;
-    loaded.addFinding(fmt::format("/devices/{}/port", device),
-                      fmt::format("is \"{}\", which is the {}'s port; each device needs its own",
-                                  line->port, first->second));
-  }
-}
-
-// A ball that is read from MERLIN's own socket would feed itself.
-void checkOwnSocket(const Settings& s, LoadedSettings& loaded) {
-  const std::string& own = s.serve.spnav_socket;
-  if (own.empty() || s.devices.ball_line.port != "unix:" + own) return;
-  loaded.addFinding("/devices/ball/port",
-                    fmt::format("is \"unix:{0}\", the socket that merlind serves by "
-                                "/serve/spnav_socket; spacenavd's own socket is needed here, and "
-                                "another path there",
-                                own));
-}
-
-// The same of a tracker that is read from MERLIN's own VRPN server.
-void checkOwnVrpn(const Settings& s, LoadedSettings& loaded) {
-  const LineSettings& line = s.devices.tracker_line;
-  const auto port = parsePort(line.port);
-  if (line.driver != "vrpn" || !port || port->kind != PortKind::kTcp) return;
-  const bool here =
-      port->path == "localhost" || port->path == "::1" || port->path.starts_with("127.");
-  if (!here || port->service != std::to_string(s.serve.vrpn_port)) return;
-  loaded.addFinding("/devices/tracker/port",
-                    fmt::format("is \"{}\", where merlind itself serves by /serve/vrpn_port; the "
-                                "tracker's own server is needed here, and another number there",
-                                line.port));
 }
 
 // The samples from another machine are encrypted, so the wall's input from it needs keys.
@@ -101,22 +49,22 @@ bool hasProjectors(const DevicesSettings& d) {
 }
 
 void checkProjectors(const DevicesSettings& d, LoadedSettings& loaded) {
-  addFaults(validate(d.projectors), "/devices/projectors", loaded);
-  addFaults(validate(d.projector_schedule), "/devices/projector_schedule", loaded);
+  addFaults(validate(d.projectors), "/projectors", loaded);
+  addFaults(validate(d.projector_schedule), "/projector_schedule", loaded);
   if (!d.projector_schedule.empty() && !hasProjectors(d))
-    loaded.addFinding("/devices/projector_schedule", fmt::format("needs {}", kProjectorsNeeded));
+    loaded.addFinding("/projector_schedule", fmt::format("needs {}", kProjectorsNeeded));
 }
 
 // Finds bindings whose action could never have an effect. Walls on other machines, which receive
 // actions through /serve/samples_endpoint, may have the folder or the models that this wall lacks.
 void checkBindings(const Settings& s, LoadedSettings& loaded) {
-  addFaults(validate(s.devices.bindings), "/devices/bindings", loaded);
+  addFaults(validate(s.devices.bindings), "/bindings", loaded);
   const bool other_walls = !s.serve.samples_endpoint.empty();
   const bool lamp = !s.devices.gpio.chip.empty() && s.devices.gpio.lamp_line >= 0;
   const bool projectors = hasProjectors(s.devices);
   for (std::size_t i = 0; i < s.devices.bindings.size(); ++i) {
     const std::string& action = s.devices.bindings[i].action;
-    const std::string at = fmt::format("/devices/bindings/{}/action", i);
+    const std::string at = fmt::format("/bindings/{}/action", i);
     const CommandInfo* const command = findCommand(action);
     if (action == "snapshot" && s.wall.snapshots.empty() && !other_walls)
       loaded.addFinding(at, "is snapshot, which needs a folder: /wall/snapshots names none");
@@ -127,16 +75,15 @@ void checkBindings(const Settings& s, LoadedSettings& loaded) {
       loaded.addFinding(
           at, "is next_content, and there is one content only: /wall/contents names none");
     if (action.starts_with("lamp_") && !lamp)
-      loaded.addFinding(at,
-                        fmt::format("is {}, which needs a lamp: /devices/gpio has no chip with a "
-                                    "lamp_line",
-                                    action));
+      loaded.addFinding(at, fmt::format("is {}, which needs a lamp: /gpio has no chip with a "
+                                        "lamp_line",
+                                        action));
     else if (action.starts_with("projector_")) {
       if (!projectors)
         loaded.addFinding(at, fmt::format("is {}, which needs {}", action, kProjectorsNeeded));
     } else if (command && command->role == CommandOf::kPanel && s.devices.gpio.chip.empty())
-      loaded.addFinding(
-          at, fmt::format("is {}, which needs the panel: /devices/gpio names no chip", action));
+      loaded.addFinding(at,
+                        fmt::format("is {}, which needs the panel: /gpio names no chip", action));
   }
 }
 
@@ -154,16 +101,6 @@ void checkStereo(const WallSettings& wall, LoadedSettings& loaded) {
   for (SettingFault& fault : of_outputs)
     fault.pointer = render::stereo::pointerInSettings(eyes, fault.pointer);
   addFaults(of_outputs, "/wall/outputs", loaded);
-}
-
-void checkHead(const Settings& s, LoadedSettings& loaded) {
-  const int station = s.wall.stereo.head.station;
-  if (station == 0 || station != s.devices.hand.station) return;
-  loaded.addFinding(
-      "/wall/stereo/head/station",
-      fmt::format("is {}, the station that is worn on the hand (/devices/hand/station); "
-                  "the head needs its own",
-                  station));
 }
 
 // Makes the tiles of a wall that is described as a room. A wall whose room is at fault has no tiles
@@ -229,25 +166,15 @@ void checkTogether(LoadedSettings& loaded) {
   const Settings& s = loaded.settings;
   const DevicesSettings& d = s.devices;
   checkName(s, loaded);
-  addFaults(validate(d.glove_line), "/devices/glove", loaded);
-  addFaults(validate(d.tracker_line), "/devices/tracker", loaded);
-  addFaults(validate(d.ball_line), "/devices/ball", loaded);
-  checkPortsDiffer(d, loaded);
-  checkOwnSocket(s, loaded);
-  checkOwnVrpn(s, loaded);
-  addFaults(validate(d.glove, d.glove_line), "/devices/glove", loaded);
-  addFaults(validate(d.vrpn, d.tracker_line), "/devices/tracker", loaded);
-  addFaults(validate(d.ball), "/devices/ball", loaded);
-  addFaults(validate(d.spacenav), "/devices/ball/spacenav", loaded);
-  addFaults(validate(d.evdev), "/devices/ball/evdev", loaded);
-  addFaults(validate(d.gpio), "/devices/gpio", loaded);
+  completeDevices(loaded.settings.devices.list);
+  checkDevices(loaded);
+  addFaults(validate(d.gpio), "/gpio", loaded);
   checkProjectors(d, loaded);
   addFaults(validate(s.serve), "/serve", loaded);
   addFaults(validate(s.page), "/page", loaded);
   addFaults(validate(s.alarms), "/alarms", loaded);
   checkInput(s.wall.input, loaded);
   checkTiles(loaded);
-  checkHead(s, loaded);
   addFaults(validate(s.wall.scene), "/wall/scene", loaded, "cannot be used: ");
   addFaults(validate(s.wall.governor), "/wall/rate", loaded);
   checkContents(s.wall, loaded);

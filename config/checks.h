@@ -6,7 +6,7 @@
 namespace merlin {
 
 // Adds a finding to `loaded` for each fault. Replaces the settings of the tiles by those of the
-// room, if one is given.
+// room, if one is given, and completes the devices (config/devices.h).
 void checkTogether(LoadedSettings& loaded);
 
 }  // namespace merlin

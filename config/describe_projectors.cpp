@@ -6,7 +6,7 @@ void describeProjectors(DevicesSettings& d, SettingsVisitor& v) {
   v.listOf<PjlinkSettings>(
       "projectors", d.projectors,
       "Projectors that are switched over the network by PJLink. The commands projector_on and "
-      "projector_off switch them together with those at /devices/gpio/projector_line.",
+      "projector_off switch them together with those at /gpio/projector_line.",
       [&](PjlinkSettings& p) {
         v.text("name", p.name, "Name of the projector: 1 to 32 letters, digits, - and _.");
         v.text("address", p.address,
@@ -29,7 +29,7 @@ void describeProjectors(DevicesSettings& d, SettingsVisitor& v) {
   v.listOf<SwitchingTimes>(
       "projector_schedule", d.projector_schedule,
       "Times at which all projectors are switched on and off, also those at "
-      "/devices/gpio/projector_line. Outside of all entries they are off. A person's command holds "
+      "/gpio/projector_line. Outside of all entries they are off. A person's command holds "
       "until the next time of the schedule. Empty: there is no schedule.",
       [&](SwitchingTimes& t) {
         v.texts("days", t.days,

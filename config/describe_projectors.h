@@ -1,5 +1,5 @@
-// The part of the description of the settings that is /devices/projectors and
-// /devices/projector_schedule.
+// The part of the description of the settings that is /projectors and
+// /projector_schedule.
 #pragma once
 
 #include "config/settings.h"

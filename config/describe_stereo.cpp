@@ -4,6 +4,8 @@ namespace merlin {
 namespace {
 
 void describeHead(render::stereo::HeadSettings& h, SettingsVisitor& v) {
+  v.text("tracker", h.tracker,
+         "Name of the tracker whose receiver is on the viewer's head. Empty: the first tracker.");
   v.integer("station", h.station, {0, 4},
             "Tracker station on the viewer's head, 1 to 4, which says where the eyes are; it also "
             "works with mode off. While it is missing, the wall is drawn for the configured place "

@@ -45,8 +45,10 @@ class ManualWriter final : public SettingsVisitor {
   void choice(const char* key, int& value, std::span<const char* const> names,
               const char* help) override {
     add(key,
-        fmt::format("one of {}; default {}", fmt::join(names, ", "),
-                    names[static_cast<std::size_t>(value)]),
+        fmt::format("one of {}{}", fmt::join(names, ", "),
+                    value < 0
+                        ? std::string()
+                        : fmt::format("; default {}", names[static_cast<std::size_t>(value)])),
         help);
   }
   void numbers(const char* key, std::span<double> values, Range range, const char* help) override {
@@ -55,6 +57,10 @@ class ManualWriter final : public SettingsVisitor {
   }
   void group(const char* key, const char* help, const std::function<void()>& members) override {
     within(key, help, members);
+  }
+  void groupIf(bool, const char* key, const char* help, const std::function<void()>& members,
+               const char*) override {
+    group(key, help, members);
   }
   void list(const char* key, std::size_t count, const char* help,
             const std::function<void(std::size_t)>& resize,

@@ -60,7 +60,7 @@ struct DevicesSettings {
 
 // What a configuration without any lacks, for messages: "has no ...", "needs ...".
 inline constexpr const char* kProjectorsNeeded =
-    "projectors: /devices/projectors is empty, and /devices/gpio has no chip with a projector_line";
+    "projectors: /projectors is empty, and /gpio has no chip with a projector_line";
 
 // Another machine whose devices the wall uses instead of this machine's.
 struct InputSettings {

@@ -40,7 +40,7 @@ class TextWriter final : public SettingsVisitor {
   }
   void choice(const char* key, int& value, std::span<const char* const> names,
               const char*) override {
-    (*at_)[key] = names[static_cast<std::size_t>(value)];
+    (*at_)[key] = value < 0 ? "" : names[static_cast<std::size_t>(value)];
   }
   void numbers(const char* key, std::span<double> values, Range, const char*) override {
     Json list = Json::array();
@@ -108,9 +108,10 @@ class SchemaWriter final : public SettingsVisitor {
   }
   void choice(const char* key, int& value, std::span<const char* const> names,
               const char* help) override {
-    put(key, {{"enum", Json(std::vector<std::string>(names.begin(), names.end()))},
-              {"default", names[static_cast<std::size_t>(value)]},
-              {"description", help}});
+    Json schema = {{"enum", Json(std::vector<std::string>(names.begin(), names.end()))}};
+    if (value >= 0) schema["default"] = names[static_cast<std::size_t>(value)];
+    schema["description"] = help;
+    put(key, std::move(schema));
   }
   void numbers(const char* key, std::span<double> values, Range range, const char* help) override {
     Json defaults = Json::array();
@@ -127,6 +128,10 @@ class SchemaWriter final : public SettingsVisitor {
     Json object = object_(help);
     within(object, members);
     put(key, std::move(object));
+  }
+  void groupIf(bool, const char* key, const char* help, const std::function<void()>& members,
+               const char*) override {
+    group(key, help, members);
   }
   // Describes one item with the default values of its type; the list's own default is not
   // described. Afterwards the list is as long as it was: what is described after it may depend on

@@ -13,49 +13,94 @@ namespace {
 
 using DevicePtr = std::unique_ptr<Device>;
 
-// All drivers of merlind. A new driver needs one row here and one folder beside this file. This is
-// a table, not self-registration, because a linker drops unreferenced objects of a static library.
+// The functions of a driver whose settings are the member kOwn of DriverSettings.
+template <auto kOwn>
+void describeOwn(DriverSettings& s, SettingsVisitor& visitor) {
+  describe(s.*kOwn, visitor);
+}
+
+// The faults, with pointers relative to the device instead of the driver's own settings.
+SettingFaults within(const std::string& driver, SettingFaults faults) {
+  for (SettingFault& fault : faults) {
+    fault.pointer = "/" + driver + fault.pointer;
+    if (!fault.other.empty()) fault.other = "/" + driver + fault.other;
+  }
+  return faults;
+}
+
+// All drivers of merlind, and all that is needed of a new one beside its folder and, if it has
+// settings of its own, a member of DriverSettings. This is a table, not self-registration, because
+// a linker drops unreferenced objects of a static library.
 constexpr DriverEntry kDrivers[] = {
     {"cyberglove", SampleKind::kGlove, kCybergloveBaud,
      "CyberGlove with its interface unit, 18 or 22 sensors",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return cyberglove::makeDevice(s.cyberglove, c, k);
+     },
+     describeOwn<&DriverSettings::cyberglove>,
+     [](const DriverSettings& s, const LineSettings& line) {
+       return within("cyberglove", validate(s.cyberglove, line));
      }},
     {"fastrak", SampleKind::kTracker, kFastrakBaud, "Polhemus Fastrak, 1 to 4 receivers",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return fastrak::makeDevice(s.fastrak, c, k);
-     }},
+     },
+     describeOwn<&DriverSettings::fastrak>, nullptr},
     {"vrpn", SampleKind::kTracker, 0, "tracker of a VRPN server, over the network",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return vrpn::makeDevice(s.vrpn, c, k);
-     }},
+     },
+     describeOwn<&DriverSettings::vrpn>,
+     [](const DriverSettings& s, const LineSettings& line) { return validate(s.vrpn, line); }},
     {"spaceball", SampleKind::kBall, kSpaceballBaud, "Spaceball 1003, 2003, 3003 or 4000 FLX",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return spaceball::makeDevice(s.spaceball, c, k);
+     },
+     describeOwn<&DriverSettings::spaceball>,
+     [](const DriverSettings& s, const LineSettings&) {
+       return within("spaceball", validate(s.spaceball));
      }},
     {"spacenav", SampleKind::kBall, 0, "space mouse, through spacenavd's socket",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return spacenav::makeDevice(s.spacenav, c, k);
+     },
+     describeOwn<&DriverSettings::spacenav>,
+     [](const DriverSettings& s, const LineSettings&) {
+       return within("spacenav", validate(s.spacenav));
      }},
     {"evdev", SampleKind::kBall, 0, "gamepad, joystick, space mouse or clicker, through the kernel",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return evdev::makeDevice(s.evdev, c, k);
+     },
+     describeOwn<&DriverSettings::evdev>,
+     [](const DriverSettings& s, const LineSettings&) {
+       return within("evdev", validate(s.evdev));
      }},
     {"sample", SampleKind::kBall, 9600, "template for new drivers: a ball that sends lines of text",
      [](const DriverSettings&, const Clock& c, SampleSink& k) -> DevicePtr {
        return sample::makeDevice(c, k);
-     }},
+     },
+     nullptr, nullptr},
 };
 
 }  // namespace
 
 std::span<const DriverEntry> drivers() { return kDrivers; }
 
-const DriverEntry* findDriver(SampleKind kind, std::string_view name) {
+const DriverEntry* findDriver(std::string_view name) {
   for (const DriverEntry& entry : kDrivers) {
-    if (entry.kind == kind && entry.name == name) return &entry;
+    if (entry.name == name) return &entry;
   }
   return nullptr;
+}
+
+const char* kindName(SampleKind kind) {
+  switch (kind) {
+    case SampleKind::kGlove: return "glove";
+    case SampleKind::kTracker: return "tracker";
+    case SampleKind::kBall: break;
+  }
+  return "ball";
 }
 
 }  // namespace merlin

@@ -35,7 +35,7 @@ class SettingsVisitor {
   virtual void secretFile(const char* key, std::string& value, const char* help) {
     path(key, value, help);
   }
-  // One of `names`; `value` is its index.
+  // One of `names`; `value` is its index, or negative if there is no default.
   virtual void choice(const char* key, int& value, std::span<const char* const> names,
                       const char* help) = 0;
   // A list of exactly values.size() numbers.

@@ -8,6 +8,8 @@
 
 namespace merlin {
 
+class SettingsVisitor;
+
 inline constexpr int kCybergloveBaud = 38400;  // speed of its line, as it is delivered
 
 // Value of slot 7, the abduction of the index finger, which no known glove measures.
@@ -79,5 +81,8 @@ struct CybergloveSettings {
 
 // Finds a rate that the line cannot carry. Pointer: "/rate_hz".
 SettingFaults validate(const CybergloveSettings& glove, const LineSettings& line);
+
+// Calls `visitor` for every setting, in the order of written files.
+void describe(CybergloveSettings& glove, SettingsVisitor& visitor);
 
 }  // namespace merlin

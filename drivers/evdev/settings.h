@@ -8,12 +8,14 @@
 
 namespace merlin {
 
+class SettingsVisitor;
+
 struct EvdevSettings {
   // For x, y, z and the rotations about them: the axis that moves it, in a form of kAxisForms.
   // Empty: as fits the kind of device (drivers/evdev/README.md).
   std::vector<std::string> axes;
-  // The keys that are ball.button.1, 2 and so on, by the kernel's names without KEY_ or BTN_.
-  // Empty: the first twelve buttons of the device, in the order of the kernel's numbers.
+  // The keys that are NAME.button.1, 2 and so on in bindings, by the kernel's names without KEY_ or
+  // BTN_. Empty: the first twelve buttons of the device, in the order of the kernel's numbers.
   std::vector<std::string> buttons;
   double dead_zone = 0.08;  // share of the full deflection up to which an axis counts as at rest
   double curve = 2;         // exponent of the response: 1 is linear, more is finer near rest
@@ -27,5 +29,8 @@ inline constexpr const char* kAxisForms =
 
 // Finds axes and buttons that cannot be. Pointers: "/axes", "/axes/INDEX", "/buttons".
 SettingFaults validate(const EvdevSettings& settings);
+
+// Calls `visitor` for every setting, in the order of written files.
+void describe(EvdevSettings& settings, SettingsVisitor& visitor);
 
 }  // namespace merlin

@@ -5,6 +5,8 @@
 
 namespace merlin {
 
+class SettingsVisitor;
+
 inline constexpr int kFastrakBaud = 38400;  // speed of its line, as it is delivered
 
 struct FastrakSettings {
@@ -35,5 +37,8 @@ struct FastrakSettings {
   static constexpr std::array<float, 9> kAligned = {0, 0, 0, 200, 0, 0, 0, 200, 0};
   static constexpr std::array<float, 4> kAhead = {1, 0, 0, 0};
 };
+
+// Calls `visitor` for every setting, in the order of written files.
+void describe(FastrakSettings& tracker, SettingsVisitor& visitor);
 
 }  // namespace merlin

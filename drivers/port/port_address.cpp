@@ -49,9 +49,12 @@ SettingFaults validate(const LineSettings& line) {
     faults.push_back({"/port", fmt::format("is \"{}\"; allowed are {}, or \"\" for no device",
                                            line.port, kForms)});
   }
-  if (std::find(std::begin(kSpeeds), std::end(kSpeeds), line.baud) == std::end(kSpeeds)) {
-    faults.push_back(
-        {"/baud", fmt::format("is {}; allowed are {}", line.baud, fmt::join(kSpeeds, ", "))});
+  const bool known =
+      std::find(std::begin(kSpeeds), std::end(kSpeeds), line.baud) != std::end(kSpeeds);
+  if (line.baud != 0 && !known) {
+    faults.push_back({"/baud", fmt::format("is {}; allowed are {}, and 0 for the driver's usual "
+                                           "speed",
+                                           line.baud, fmt::join(kSpeeds, ", "))});
   }
   return faults;
 }

@@ -30,11 +30,14 @@ Result<PortAddress> parsePort(std::string_view text);
 // Speeds of a serial line that the drivers support, ascending [baud].
 std::span<const int> lineSpeeds();
 
+// Speed of a line whose driver has no usual one.
+inline constexpr int kUsualBaud = 38400;
+
 // Settings of one device's line.
 struct LineSettings {
   std::string driver;  // a name from drivers/registry
   std::string port;    // in a form that parsePort() understands; empty: no device
-  int baud = 38400;
+  int baud = 0;        // 0: the driver's usual speed
   // Maximum number of bytes read per second; 0: four times what the baud rate carries, or a million
   // for a line that has none.
   int max_bytes_s = 0;

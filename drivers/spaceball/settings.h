@@ -8,6 +8,8 @@
 
 namespace merlin {
 
+class SettingsVisitor;
+
 inline constexpr int kSpaceballBaud = 9600;  // speed of its line, as it is delivered
 
 struct SpaceballSettings {
@@ -30,5 +32,8 @@ struct SpaceballSettings {
 
 // Finds an axis map in which an axis is missing or repeated. Pointer: "/axis_map".
 SettingFaults validate(const SpaceballSettings& ball);
+
+// Calls `visitor` for every setting, in the order of written files.
+void describe(SpaceballSettings& ball, SettingsVisitor& visitor);
 
 }  // namespace merlin

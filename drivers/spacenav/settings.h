@@ -6,6 +6,8 @@
 
 namespace merlin {
 
+class SettingsVisitor;
+
 struct SpacenavSettings {
   int full_scale = 350;  // count of an axis at a full push or twist, as 3Dconnexion's mice send it
   int dead_zone = 10;    // count of an axis up to which it counts as at rest
@@ -16,5 +18,8 @@ struct SpacenavSettings {
 
 // Finds an axis map in which an axis is missing or repeated. Pointer: "/axis_map".
 SettingFaults validate(const SpacenavSettings& settings);
+
+// Calls `visitor` for every setting, in the order of written files.
+void describe(SpacenavSettings& settings, SettingsVisitor& visitor);
 
 }  // namespace merlin

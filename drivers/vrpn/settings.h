@@ -10,6 +10,8 @@
 
 namespace merlin {
 
+class SettingsVisitor;
+
 struct VrpnSettings {
   std::string device = "Tracker0";  // its name at the server, without "@HOST"
   // For each station the server's sensor that it is; kNoSensor: the station is not used.
@@ -23,5 +25,8 @@ struct VrpnSettings {
 // driver also a port at which no server can be. Pointers, relative to the tracker: "/port",
 // "/vrpn/device", "/vrpn/stations".
 SettingFaults validate(const VrpnSettings& settings, const LineSettings& line);
+
+// Calls `visitor` for every setting, in the order of written files.
+void describe(VrpnSettings& settings, SettingsVisitor& visitor);
 
 }  // namespace merlin

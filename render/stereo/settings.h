@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "daemon/base/setting_fault.h"
@@ -33,7 +34,8 @@ inline constexpr const char* kEyeSizeNames[] = {"half", "full"};
 
 // Where the tracker stands in the room, and how far a head at rest seems to move.
 struct HeadSettings {
-  int station = 0;  // of the tracker, on the viewer's head; 0: none
+  std::string tracker;  // its name; empty: the first tracker
+  int station = 0;      // of the tracker, on the viewer's head; 0: none
   // Place of the eyes in the room where the tracker says 0, 0, 0: that of its transmitter, less the
   // way from the eyes to the receiver on the head [m].
   std::array<double, 3> origin_m{};

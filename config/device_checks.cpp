@@ -1,0 +1,260 @@
+#include "config/device_checks.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "config/devices.h"
+#include "daemon/actions/input.h"
+#include "daemon/base/printable_text.h"
+
+namespace merlin {
+namespace {
+
+constexpr std::size_t kLongestName = 16;
+
+// Names in shared memory and of inputs that are no device's.
+constexpr const char* kReserved[] = {"posture", "posture_state", "postures", "gesture",
+                                     "gpio",    "panel",         "actions",  "health",
+                                     "key",     "touch",         "now_ns",   "time_utc"};
+
+std::string deviceAt(std::size_t index) { return fmt::format("/devices/{}", index); }
+std::string handAt(std::size_t index) { return fmt::format("/hands/{}", index); }
+
+bool isName(const std::string& name) {
+  return !name.empty() && name.size() <= kLongestName && name[0] >= 'a' && name[0] <= 'z' &&
+         std::ranges::all_of(name, [](char c) {
+           return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+         });
+}
+
+// Whether there are no more devices and hands than merlind has places for; if not, a finding for
+// each excess.
+bool checkNumbers(const DevicesSettings& d, LoadedSettings& loaded) {
+  const auto check = [&](const char* at, const std::string& what, std::size_t n, std::size_t most) {
+    if (n <= most) return true;
+    loaded.addFinding(at, fmt::format("has {} {}; at most {} are allowed: leave out {}", n, what,
+                                      most, n - most));
+    return false;
+  };
+  std::map<SampleKind, std::size_t> number;
+  for (const DeviceSettings& device : d.list) {
+    if (const DriverEntry* const driver = findDriver(device.line.driver)) ++number[driver->kind];
+  }
+  bool good = check("/devices", "devices", d.list.size(), kMostDevices);
+  for (const auto& [kind, most] : {std::pair{SampleKind::kGlove, kMostGloves},
+                                   {SampleKind::kTracker, kMostTrackers},
+                                   {SampleKind::kBall, kMostBalls}})
+    good = check("/devices", fmt::format("{}s", kindName(kind)), number[kind], most) && good;
+  return check("/hands", "hands", d.hands.size(), kMostHands) && good;
+}
+
+// The names that are taken, each with the rest of a sentence "is NAME, ..." that says by what.
+using TakenNames = std::map<std::string, std::string>;
+
+void takeName(const std::string& name, const std::string& at, const std::string& owner,
+              TakenNames& taken, LoadedSettings& loaded) {
+  if (!isName(name)) {
+    return loaded.addFinding(at + "/name",
+                             fmt::format("is \"{}\"; allowed are 1 to {} of a to z, 0 to 9 and _, "
+                                         "beginning with a letter",
+                                         excerpt(name), kLongestName));
+  }
+  const auto [first, fresh] = taken.emplace(name, owner);
+  if (!fresh)
+    loaded.addFinding(at + "/name",
+                      fmt::format("is \"{}\", {}; give it another name", name, first->second));
+}
+
+// A tracker takes the names of its stations in shared memory as well.
+void takeStations(const std::string& name, const std::string& at, TakenNames& taken,
+                  LoadedSettings& loaded) {
+  for (std::size_t station = 1; station <= kStations; ++station) {
+    const std::string own = name + std::to_string(station);
+    const auto [first, fresh] =
+        taken.emplace(own, fmt::format("the name of station {} of the tracker at {}", station, at));
+    if (!fresh)
+      loaded.addFinding(at + "/name", fmt::format("is \"{}\", so that its station {} would be "
+                                                  "\"{}\", {}; give one of them another name",
+                                                  name, station, own, first->second));
+  }
+}
+
+void checkNames(const DevicesSettings& d, LoadedSettings& loaded) {
+  TakenNames taken;
+  for (const char* const name : kReserved)
+    taken.emplace(name, "a name that merlind uses for something else");
+  for (std::size_t i = 0; i < d.list.size(); ++i) {
+    if (!findDriver(d.list[i].line.driver) && d.list[i].name.empty()) continue;
+    takeName(d.list[i].name, deviceAt(i), fmt::format("the name of the device at {}", deviceAt(i)),
+             taken, loaded);
+  }
+  for (std::size_t i = 0; i < d.hands.size(); ++i)
+    takeName(d.hands[i].name, handAt(i), fmt::format("the name of the hand at {}", handAt(i)),
+             taken, loaded);
+  for (std::size_t i = 0; i < d.list.size(); ++i) {
+    const DriverEntry* const driver = findDriver(d.list[i].line.driver);
+    if (driver && driver->kind == SampleKind::kTracker)
+      takeStations(d.list[i].name, deviceAt(i), taken, loaded);
+  }
+}
+
+// Two drivers on one serial line would each read only a part of the device's bytes.
+void checkPortsDiffer(const DevicesSettings& d, LoadedSettings& loaded) {
+  std::map<std::string, std::size_t> taken;
+  for (std::size_t i = 0; i < d.list.size(); ++i) {
+    const std::string& port = d.list[i].line.port;
+    if (port.empty() || port.starts_with("replay:")) continue;
+    const auto [first, fresh] = taken.emplace(port, i);
+    if (fresh) continue;
+    loaded.addFinding(deviceAt(i) + "/port",
+                      fmt::format("is \"{}\", which is the port of the device \"{}\" at {}; each "
+                                  "device needs its own",
+                                  port, d.list[first->second].name, deviceAt(first->second)));
+  }
+}
+
+// A device that is read from MERLIN's own socket would feed itself.
+void checkOwnSocket(const DeviceSettings& device, const std::string& at, LoadedSettings& loaded) {
+  const std::string& own = loaded.settings.serve.spnav_socket;
+  if (own.empty() || device.line.port != "unix:" + own) return;
+  loaded.addFinding(at + "/port",
+                    fmt::format("is \"unix:{0}\", the socket that merlind serves by "
+                                "/serve/spnav_socket; spacenavd's own socket is needed here, and "
+                                "another path there",
+                                own));
+}
+
+// The same of a tracker that is read from MERLIN's own VRPN server.
+void checkOwnVrpn(const DeviceSettings& device, const std::string& at, LoadedSettings& loaded) {
+  const auto port = parsePort(device.line.port);
+  if (device.line.driver != "vrpn" || !port || port->kind != PortKind::kTcp) return;
+  const bool here =
+      port->path == "localhost" || port->path == "::1" || port->path.starts_with("127.");
+  if (!here || port->service != std::to_string(loaded.settings.serve.vrpn_port)) return;
+  loaded.addFinding(at + "/port",
+                    fmt::format("is \"{}\", where merlind itself serves by /serve/vrpn_port; the "
+                                "tracker's own server is needed here, and another number there",
+                                device.line.port));
+}
+
+void checkDevice(const DeviceSettings& device, const std::string& at, LoadedSettings& loaded) {
+  const DriverEntry* const driver = findDriver(device.line.driver);
+  if (!driver) {
+    if (!loaded.lines.contains(at + "/driver"))
+      loaded.addFinding(at,
+                        "has no driver: name one in \"driver\", such as cyberglove, fastrak, "
+                        "spaceball or evdev");
+    return;
+  }
+  addFaults(validate(device.line), at, loaded);
+  if (driver->validate) addFaults(driver->validate(device.own, device.line), at, loaded);
+  checkOwnSocket(device, at, loaded);
+  checkOwnVrpn(device, at, loaded);
+}
+
+std::string namesOf(const DevicesSettings& d, SampleKind kind) {
+  std::string names;
+  for (const DeviceSettings& device : d.list) {
+    const DriverEntry* const driver = findDriver(device.line.driver);
+    if (driver && driver->kind == kind) names += (names.empty() ? "" : ", ") + device.name;
+  }
+  return names;
+}
+
+// `at`: of a setting that names a device of the kind; empty: none in particular. On a wall that
+// uses the devices of another machine, the name is of that machine's configuration.
+void checkNamed(const std::string& name, SampleKind kind, const std::string& at,
+                LoadedSettings& loaded) {
+  const Settings& s = loaded.settings;
+  if (name.empty() || !s.wall.input.endpoint.empty() || findDevice(s.devices, kind, name)) return;
+  const std::string there = namesOf(s.devices, kind);
+  loaded.addFinding(
+      at, fmt::format("is \"{}\", which is not the name of a {}; /devices has {}", excerpt(name),
+                      kindName(kind),
+                      there.empty() ? fmt::format("no {}: add one", kindName(kind)) : there));
+}
+
+SampleKind kindOf(const actions::Input& input) {
+  return input.kind == actions::Input::Kind::kButton ? SampleKind::kBall : SampleKind::kGlove;
+}
+
+// Inputs of a device that is not there, or of another kind. An input that names no device is that
+// of any device.
+void checkInputs(LoadedSettings& loaded) {
+  const DevicesSettings& d = loaded.settings.devices;
+  for (std::size_t i = 0; i < d.bindings.size(); ++i) {
+    const std::string& text = d.bindings[i].input;
+    const auto input = actions::parseInput(text);
+    if (!input || input->device.empty() || findDevice(d, kindOf(*input), input->device)) continue;
+    const std::string there = namesOf(d, kindOf(*input));
+    loaded.addFinding(
+        fmt::format("/bindings/{}/input", i),
+        fmt::format("is \"{}\", and \"{}\" is not the name of a {}; /devices has {}", excerpt(text),
+                    excerpt(input->device), kindName(kindOf(*input)),
+                    there.empty() ? fmt::format("no {}: leave the binding out, or add one",
+                                                kindName(kindOf(*input)))
+                                  : there));
+  }
+}
+
+// The tracker's name if the text is empty: that of the first one.
+std::string trackerNamed(const DevicesSettings& d, const std::string& name) {
+  const DeviceSettings* const first = findDevice(d, SampleKind::kTracker, name);
+  return first ? first->name : name;
+}
+
+// The stations that are worn: each by one hand, or by the head.
+void checkStations(LoadedSettings& loaded) {
+  const DevicesSettings& d = loaded.settings.devices;
+  const auto& head = loaded.settings.wall.stereo.head;
+  std::map<std::pair<std::string, int>, std::size_t> worn;
+  for (std::size_t i = 0; i < d.hands.size(); ++i) {
+    const auto [first, fresh] =
+        worn.emplace(std::pair(trackerNamed(d, d.hands[i].tracker), d.hands[i].station), i);
+    if (fresh) continue;
+    loaded.addFinding(
+        handAt(i) + "/station",
+        fmt::format("is {}, the station that is worn on the hand at {} ({}/station); "
+                    "each hand needs its own",
+                    d.hands[i].station, handAt(first->second), handAt(first->second)));
+  }
+  checkNamed(head.tracker, SampleKind::kTracker, "/wall/stereo/head/tracker", loaded);
+  const auto found = worn.find({trackerNamed(d, head.tracker), head.station});
+  if (head.station == 0 || found == worn.end()) return;
+  loaded.addFinding("/wall/stereo/head/station",
+                    fmt::format("is {}, the station that is worn on the hand ({}/station); the "
+                                "head needs its own",
+                                head.station, handAt(found->second)));
+}
+
+}  // namespace
+
+void addFaults(const SettingFaults& faults, const std::string& group, LoadedSettings& loaded,
+               const std::string& prefix) {
+  for (const auto& [pointer, what, other] : faults) {
+    const std::string at = group + other;
+    const std::string before =
+        other.empty() ? "" : fmt::format("conflicts with {} ({}): ", at, loaded.placeText(at));
+    loaded.addFinding(group + pointer, fmt::format("{}{}{}", prefix, before, what));
+  }
+}
+
+void checkDevices(LoadedSettings& loaded) {
+  const DevicesSettings& d = loaded.settings.devices;
+  if (!checkNumbers(d, loaded)) return;
+  checkNames(d, loaded);
+  checkPortsDiffer(d, loaded);
+  for (std::size_t i = 0; i < d.list.size(); ++i) checkDevice(d.list[i], deviceAt(i), loaded);
+  for (std::size_t i = 0; i < d.hands.size(); ++i) {
+    checkNamed(d.hands[i].glove, SampleKind::kGlove, handAt(i) + "/glove", loaded);
+    checkNamed(d.hands[i].tracker, SampleKind::kTracker, handAt(i) + "/tracker", loaded);
+  }
+  checkInputs(loaded);
+  checkStations(loaded);
+}
+
+}  // namespace merlin
