@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "daemon/base/clock.h"
-#include "drivers/emulate/emulator.h"
+#include "drivers/emulate/names.h"
 
 namespace merlin {
 namespace {
@@ -65,7 +65,7 @@ Result<EmulatorChildren> EmulatorChildren::start(Settings& settings,
   const auto epoch = std::to_string(toNanoseconds(SystemClock().now()));
   for (DeviceSettings& device : settings.devices.list) {
     const LineSettings& line = device.line;
-    if (!emulate::findEmulator(line.driver)) continue;
+    if (!emulate::isEmulated(line.driver)) continue;
     const std::string link = placeLine(device, settings.instance, run_directory);
     const pid_t pid =
         spawn({*program, "emulate", line.driver, "--link", link, "--script",

@@ -42,6 +42,7 @@ class ActionSink final : public SampleSink, public HealthSink {
     parts_.samples.publish(sample);
   }
   void publish(const TrackerSample& sample) noexcept override { parts_.samples.publish(sample); }
+  void publish(const TouchSample& sample) noexcept override { parts_.samples.publish(sample); }
   void publish(const BallSample& sample) noexcept override {
     writer_.update(sample);
     parts_.samples.publish(sample);

@@ -1,5 +1,6 @@
 #include "daemon/actions/input.h"
 
+#include <algorithm>
 #include <charconv>
 
 namespace merlin::actions {
@@ -27,6 +28,10 @@ std::optional<std::string> takeDevice(std::string_view& name, std::string_view p
   if (dot == 0 || dot == std::string_view::npos || !name.substr(dot + 1).starts_with(part))
     return std::nullopt;
   std::string device(name.substr(0, dot));
+  const auto allowed = [](char c) {
+    return c == '_' || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+  };
+  if (!std::all_of(device.begin(), device.end(), allowed)) return std::nullopt;
   name.remove_prefix(dot + 1 + part.size());
   return device;
 }

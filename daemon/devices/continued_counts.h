@@ -16,6 +16,7 @@ class ContinuedCounts final : public SampleSink, public HealthSink {
 
   void publish(const GloveSample& sample) noexcept override { pass(sample, glove_); }
   void publish(const BallSample& sample) noexcept override { pass(sample, ball_); }
+  void publish(const TouchSample& sample) noexcept override { pass(sample, touch_); }
   void publish(const TrackerSample& sample) noexcept override {
     pass(sample, tracker_[(sample.station - 1) % kStations]);
   }
@@ -34,7 +35,7 @@ class ContinuedCounts final : public SampleSink, public HealthSink {
   void restart() noexcept {
     before_ = last_;
     if (last_.samples > 0) ++before_.reconnects;
-    for (Count* const count : {&glove_, &ball_}) count->before = count->last;
+    for (Count* const count : {&glove_, &ball_, &touch_}) count->before = count->last;
     for (Count& count : tracker_) count.before = count.last;
   }
 
@@ -51,7 +52,7 @@ class ContinuedCounts final : public SampleSink, public HealthSink {
 
   SampleSink& samples_;
   HealthSink& health_;
-  Count glove_, ball_;
+  Count glove_, ball_, touch_;
   std::array<Count, kStations> tracker_{};
   DeviceHealth before_{}, last_{};
 };

@@ -18,7 +18,7 @@ DeviceChain::DeviceChain(const DevicesSettings& settings, std::size_t device,
   const DevicePlace place = devicePlaces(settings)[device];
   SampleSink* next = &memory_;
   HealthSink* health = &health_;
-  if (place.kind != SampleKind::kTracker) {
+  if (place.kind == SampleKind::kGlove || place.kind == SampleKind::kBall) {
     const shm::SeqSlot<PostureState>* state =
         place.kind == SampleKind::kGlove ? &segment.glove[place.of_kind].posture_state : nullptr;
     actions_ = std::make_unique<actions::ActionSink>(

@@ -54,7 +54,7 @@ class DeviceChain {
   // Each passes on to the one before it; counts_ is the first that a sample reaches.
   shm::ShmSink memory_;
   shm::ShmHealthSink health_;
-  std::unique_ptr<actions::ActionSink> actions_;  // null for a tracker, which has no inputs
+  std::unique_ptr<actions::ActionSink> actions_;  // null for those that have no inputs
   std::unique_ptr<PostureSink> postures_;         // null except for a glove
   std::vector<Hand> hands_;                       // that follow a tracker
   std::unique_ptr<ContinuedCounts> counts_;

@@ -16,7 +16,7 @@ SampleKind kindOf(const DeviceSettings& device) {
 
 std::vector<DevicePlace> devicePlaces(const DevicesSettings& settings) {
   std::vector<DevicePlace> places;
-  std::array<std::size_t, 3> before{};
+  std::array<std::size_t, 4> before{};
   for (const DeviceSettings& device : settings.list) {
     const SampleKind kind = kindOf(device);
     places.push_back({kind, before[static_cast<std::size_t>(kind)]++});

@@ -37,6 +37,7 @@ class HandSink final : public SampleSink {
       slot_.publish(hand_.update(sample, glove_ ? glove_->newest() : std::nullopt));
   }
   void publish(const BallSample& sample) noexcept override { next_.publish(sample); }
+  void publish(const TouchSample& sample) noexcept override { next_.publish(sample); }
 
  private:
   std::uint32_t station_;

@@ -40,6 +40,7 @@ class PostureSink final : public SampleSink {
   void publish(const GloveSample& sample) noexcept override;
   void publish(const TrackerSample& sample) noexcept override { next_.publish(sample); }
   void publish(const BallSample& sample) noexcept override { next_.publish(sample); }
+  void publish(const TouchSample& sample) noexcept override { next_.publish(sample); }
 
  private:
   struct Recognition {

@@ -66,6 +66,11 @@ Result<DeviceSlots> DeviceSlots::find(const SlotTable& table, const Header& head
     finder.find(name + ".health", ball.health);
     finder.find(name, ball.samples);
   }
+  for (const std::string& name : table.namesBefore(".fingers")) {
+    Touch& touch = slots.touches.emplace_back(Touch{name, {}, {}});
+    finder.find(name + ".health", touch.health);
+    finder.find(name, touch.samples);
+  }
   for (const std::string& name : table.namesBefore(".joint_rad"))
     finder.find(name, slots.hands.emplace_back(Hand{name, {}}).samples);
   for (const std::string& name : table.namesBefore(".sequence")) {
@@ -73,6 +78,8 @@ Result<DeviceSlots> DeviceSlots::find(const SlotTable& table, const Header& head
     if (name.starts_with(kActions))
       finder.find(name, slots.actions.emplace_back(Actions{name.substr(kActions.size()), {}}).slot);
   }
+  if (slots.actions.empty())  // a table that lacks even the panel's is none
+    finder.find("actions.panel", slots.actions.emplace_back(Actions{"panel", {}}).slot);
   if (finder.error()) return *finder.error();
   if (const auto gpio = table.channel<GpioSample>("gpio")) slots.gpio = *gpio;
   return slots;
@@ -104,6 +111,9 @@ const DeviceSlots::Tracker* DeviceSlots::tracker(std::string_view name) const {
 }
 const DeviceSlots::Ball* DeviceSlots::ball(std::string_view name) const {
   return named(balls, name);
+}
+const DeviceSlots::Touch* DeviceSlots::touch(std::string_view name) const {
+  return named(touches, name);
 }
 const DeviceSlots::Hand* DeviceSlots::hand(std::string_view name) const {
   return named(hands, name);

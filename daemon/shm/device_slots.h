@@ -39,6 +39,11 @@ struct DeviceSlots {
     const SeqSlot<DeviceHealth>* health;
     const Channel<BallSample>* samples;
   };
+  struct Touch {
+    std::string name;
+    const SeqSlot<DeviceHealth>* health;
+    const Channel<TouchSample>* samples;
+  };
   struct Hand {
     std::string name;
     const Channel<HandSample>* samples;
@@ -57,6 +62,7 @@ struct DeviceSlots {
   const Glove* glove(std::string_view name = {}) const;
   const Tracker* tracker(std::string_view name = {}) const;
   const Ball* ball(std::string_view name = {}) const;
+  const Touch* touch(std::string_view name = {}) const;
   const Hand* hand(std::string_view name = {}) const;
 
   const Header* header = nullptr;
@@ -66,6 +72,7 @@ struct DeviceSlots {
   std::vector<Glove> gloves;
   std::vector<Tracker> trackers;
   std::vector<Ball> balls;
+  std::vector<Touch> touches;
   std::vector<Hand> hands;
   std::vector<Actions> actions;
   const Channel<GpioSample>* gpio = nullptr;  // null if the segment lacks it

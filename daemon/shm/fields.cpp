@@ -99,6 +99,15 @@ void addMembers(FieldTable& t, std::type_identity<BallSample>) {
   MERLIN_FIELD(t, BallSample, period_us, "us");
 }
 
+void addMembers(FieldTable& t, std::type_identity<TouchSample>) {
+  MERLIN_FIELD(t, TouchSample, received_ns, "ns");
+  MERLIN_FIELD(t, TouchSample, counter, "");
+  MERLIN_FIELD(t, TouchSample, fingers, "");
+  MERLIN_FIELD(t, TouchSample, id, "");
+  MERLIN_FIELD(t, TouchSample, position, "10 x right, down");
+  MERLIN_FIELD(t, TouchSample, aspect, "");
+}
+
 void addMembers(FieldTable& t, std::type_identity<HandSample>) {
   MERLIN_FIELD(t, HandSample, received_ns, "ns");
   MERLIN_FIELD(t, HandSample, glove_ns, "ns");
@@ -313,6 +322,7 @@ template std::vector<Field> channelFields<GloveSample>(const std::string&, std::
 template std::vector<Field> channelFields<PostureSample>(const std::string&, std::size_t);
 template std::vector<Field> channelFields<TrackerSample>(const std::string&, std::size_t);
 template std::vector<Field> channelFields<BallSample>(const std::string&, std::size_t);
+template std::vector<Field> channelFields<TouchSample>(const std::string&, std::size_t);
 template std::vector<Field> channelFields<HandSample>(const std::string&, std::size_t);
 template std::vector<Field> channelFields<GpioSample>(const std::string&, std::size_t);
 
@@ -351,16 +361,19 @@ std::vector<Field> devicesFields(const SlotNames& names) {
     addSlot<DeviceHealth>(t, names.devices[i].name + ".health",
                           offsetof(DevicesSegment, health) + i * sizeof(SeqSlot<DeviceHealth>));
   }
-  std::size_t gloves = 0, trackers = 0, balls = 0;
+  std::size_t gloves = 0, trackers = 0, balls = 0, touches = 0;
   for (const auto& [name, kind] : names.devices) {
     if (kind == SampleKind::kGlove) {
       addGlove(t, name, offsetof(DevicesSegment, glove) + gloves * sizeof(GloveSlots), gloves == 0);
       ++gloves;
     } else if (kind == SampleKind::kTracker) {
       addTracker(t, name, offsetof(DevicesSegment, tracker) + trackers++ * sizeof(TrackerSlots));
-    } else {
+    } else if (kind == SampleKind::kBall) {
       addChannel<BallSample>(
           t, name, offsetof(DevicesSegment, ball) + balls++ * sizeof(Channel<BallSample>));
+    } else {
+      addChannel<TouchSample>(
+          t, name, offsetof(DevicesSegment, touch) + touches++ * sizeof(Channel<TouchSample>));
     }
   }
   for (std::size_t i = 0; i < names.hands.size(); ++i) {

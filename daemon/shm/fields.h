@@ -21,7 +21,8 @@ struct SlotNames {
 
 // For each device NAME.health and actions.NAME; for a glove NAME, NAME.posture and
 // NAME.posture_state, and for the first glove also posture and posture_state; for a tracker
-// NAME1 to NAME4, by station, and NAME for its frames; for a ball or a hand NAME; and gpio,
+// NAME1 to NAME4, by station, and NAME for its frames; for a ball, a touch frame or a hand
+// NAME; and gpio,
 // gpio.health and actions.panel. REQUIRES: no more of each than DevicesSegment has room for.
 std::vector<Field> devicesFields(const SlotNames& names);
 std::vector<Field> wallFields();

@@ -91,6 +91,7 @@ struct DevicesSegment {
   GloveSlots glove[kMostGloves];
   TrackerSlots tracker[kMostTrackers];
   Channel<BallSample> ball[kMostBalls];                      // writer: each ball's device thread
+  Channel<TouchSample> touch[kMostTouches];                  // writer: each one's device thread
   Channel<HandSample> hand[kMostHands];                      // writer: its tracker's device thread
   Channel<GpioSample> gpio;                                  // writer: the panel's thread
   alignas(64) SeqSlot<DeviceHealth> gpio_health;             // writer: the panel's thread

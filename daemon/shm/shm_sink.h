@@ -15,6 +15,7 @@ class ShmSink final : public SampleSink {
     if (kind == SampleKind::kGlove) glove_ = &segment.glove[place];
     if (kind == SampleKind::kTracker) tracker_ = &segment.tracker[place];
     if (kind == SampleKind::kBall) ball_ = &segment.ball[place];
+    if (kind == SampleKind::kTouch) touch_ = &segment.touch[place];
   }
 
   void publish(const GloveSample& sample) noexcept override {
@@ -27,11 +28,15 @@ class ShmSink final : public SampleSink {
   void publish(const BallSample& sample) noexcept override {
     if (ball_) ball_->publish(sample);
   }
+  void publish(const TouchSample& sample) noexcept override {
+    if (touch_) touch_->publish(sample);
+  }
 
  private:
   GloveSlots* glove_ = nullptr;
   TrackerSlots* tracker_ = nullptr;
   Channel<BallSample>* ball_ = nullptr;
+  Channel<TouchSample>* touch_ = nullptr;
 };
 
 class ShmHealthSink final : public HealthSink {

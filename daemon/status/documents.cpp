@@ -1,5 +1,6 @@
 #include "daemon/status/documents.h"
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <span>
@@ -384,6 +385,16 @@ Json ballJson(const BallSample& b) {
           {"rotation", list(std::span<const float>(b.rotation))}};
 }
 
+Json touchJson(const TouchSample& t) {
+  Json fingers = Json::array();
+  for (std::size_t i = 0; i < std::min<std::size_t>(t.fingers, kFingers); ++i)
+    fingers.push_back({{"id", t.id[i]}, {"position", list(std::span<const float>(t.position[i]))}});
+  return {{"received_ns", t.received_ns},
+          {"counter", t.counter},
+          {"fingers", std::move(fingers)},
+          {"aspect", round3(static_cast<double>(t.aspect))}};
+}
+
 // Each device's newest samples under its name; of the first glove the posture also beside it.
 void addSamples(const shm::DeviceSlots& devices, Json& json) {
   for (const auto& glove : devices.gloves) {
@@ -401,6 +412,9 @@ void addSamples(const shm::DeviceSlots& devices, Json& json) {
   }
   for (const auto& ball : devices.balls) {
     if (const auto b = ball.samples->newest()) json[ball.name] = ballJson(*b);
+  }
+  for (const auto& touch : devices.touches) {
+    if (const auto t = touch.samples->newest()) json[touch.name] = touchJson(*t);
   }
   for (const auto& hand : devices.hands) {
     if (const auto h = hand.samples->newest()) json[hand.name] = handJson(*h);

@@ -53,12 +53,13 @@ class Apply {
   }
 
   void all(const shm::SlotNames& names) {
-    std::size_t gloves = 0, trackers = 0, balls = 0;
+    std::size_t gloves = 0, trackers = 0, balls = 0, touches = 0;
     for (std::size_t i = 0; i < names.devices.size(); ++i) {
       const auto& [name, kind] = names.devices[i];
       if (kind == SampleKind::kGlove) glove(name, segment_.glove[gloves++]);
       if (kind == SampleKind::kTracker) tracker(name, segment_.tracker[trackers++]);
       if (kind == SampleKind::kBall) ball(name, segment_.ball[balls++]);
+      if (kind == SampleKind::kTouch) touch(name, segment_.touch[touches++]);
       actions(name, segment_.actions[i]);
       health(name, segment_.health[i]);
     }
@@ -142,6 +143,20 @@ class Apply {
     read(*o, "rotation", s.rotation);
     read(*o, "raw", s.raw);
     read(*o, "period_us", s.period_us);
+    publish(slot, s);
+  }
+  void touch(const std::string& name, shm::Channel<TouchSample>& slot) {
+    const Json* o = object(document_, name);
+    const auto list = o ? o->find("fingers") : Json::const_iterator();
+    if (!o || list == o->end() || !list->is_array() || list->size() > kFingers) return;
+    auto s = common<TouchSample>(*o);
+    read(*o, "aspect", s.aspect);
+    for (const Json& finger : *list) {
+      if (!finger.is_object()) return;
+      read(finger, "id", s.id[s.fingers]);
+      read(finger, "position", s.position[s.fingers]);
+      ++s.fingers;
+    }
     publish(slot, s);
   }
   void hand(const std::string& name, shm::Channel<HandSample>& slot) {

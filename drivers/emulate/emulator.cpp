@@ -5,6 +5,7 @@
 #include "drivers/cyberglove/settings.h"
 #include "drivers/emulate/cyberglove_emulator.h"
 #include "drivers/emulate/fastrak_emulator.h"
+#include "drivers/emulate/names.h"
 #include "drivers/emulate/spaceball_emulator.h"
 #include "drivers/fastrak/settings.h"
 #include "drivers/spaceball/settings.h"
@@ -18,6 +19,9 @@ constexpr EmulatorEntry kEmulators[] = {
      makeFastrak},
     {"spaceball", kSpaceballBaud, "2003|1003|3003|4000", "Spaceball", makeSpaceball},
 };
+static_assert(std::ranges::equal(kEmulators, kEmulated, {}, [](const EmulatorEntry& entry) {
+  return std::string_view(entry.name);
+}));
 
 }  // namespace
 

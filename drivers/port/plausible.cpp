@@ -43,6 +43,17 @@ bool plausible(const BallSample& s) noexcept {
   return within(s.translation, 1) && within(s.rotation, 1) && s.buttons >> kButtons == 0;
 }
 
+bool plausible(const TouchSample& s) noexcept {
+  constexpr float kWidest = 100;
+  if (s.fingers > kFingers || !(s.aspect > 1 / kWidest && s.aspect < kWidest)) return false;
+  for (std::size_t i = 0; i < s.fingers; ++i) {
+    for (const float share : s.position[i]) {
+      if (!(share >= 0 && share <= 1)) return false;
+    }
+  }
+  return true;
+}
+
 bool plausible(const PostureSample& s) noexcept {
   return within(s.activation, 1) && s.code < 1U << std::size(s.activation) &&
          s.name[sizeof s.name - 1] == '\0';

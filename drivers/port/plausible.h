@@ -20,6 +20,7 @@ inline constexpr float kFurthest_m = 25;
 bool plausible(const GloveSample& sample) noexcept;
 bool plausible(const TrackerSample& sample) noexcept;
 bool plausible(const BallSample& sample) noexcept;
+bool plausible(const TouchSample& sample) noexcept;
 bool plausible(const PostureSample& sample) noexcept;
 bool plausible(const HandSample& sample) noexcept;
 

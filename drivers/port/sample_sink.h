@@ -16,6 +16,7 @@ class SampleSink {
   virtual void publish(const GloveSample& sample) noexcept = 0;
   virtual void publish(const TrackerSample& sample) noexcept = 0;
   virtual void publish(const BallSample& sample) noexcept = 0;
+  virtual void publish(const TouchSample& sample) noexcept = 0;
 };
 
 // Receives the health of one device.

@@ -12,10 +12,11 @@
 namespace merlin {
 
 // What a device measures.
-enum class SampleKind { kGlove, kTracker, kBall };
+enum class SampleKind { kGlove, kTracker, kBall, kTouch };
 
 // The most devices that one daemon reads, of all kinds and of each, and the most hands.
-inline constexpr std::size_t kMostDevices = 16, kMostGloves = 4, kMostTrackers = 4, kMostBalls = 8;
+inline constexpr std::size_t kMostDevices = 16, kMostGloves = 4, kMostTrackers = 4, kMostBalls = 8,
+                             kMostTouches = 2;
 inline constexpr std::size_t kMostHands = 4;
 
 // Slots of a CyberGlove, in the order of the interface unit's mask bits: 0 thumb roll ... 22 wrist
@@ -69,6 +70,21 @@ struct BallSample {
   std::uint32_t period_us;  // since the last displacement packet, by the device's clock
 };
 static_assert(sizeof(BallSample) == 56 && offsetof(BallSample, translation) == 16);
+
+// Fingers that a touch frame follows at once.
+inline constexpr std::size_t kFingers = 10;
+
+// The fingers on a touch frame or a screen. Sent when a finger comes, moves or goes.
+struct TouchSample {
+  std::int64_t received_ns;
+  std::uint32_t counter;
+  std::uint32_t fingers;        // that touch now: the first of the lists below
+  std::uint32_t id[kFingers];   // of a finger, the same for as long as it stays down
+  float position[kFingers][2];  // share of the width, to the right, and of the height, down: 0..1
+  float aspect;                 // the surface's width by its height
+  std::uint32_t reserved;
+};
+static_assert(sizeof(TouchSample) == 144 && offsetof(TouchSample, position) == 56);
 
 struct PostureSample {
   std::int64_t received_ns;  // of the glove record in which the posture was recognised

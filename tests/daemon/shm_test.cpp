@@ -23,9 +23,9 @@ using test::privateName;
 
 const Endpoints kEndpoints{"ipc:///run/merlin/a.status", "ipc:///run/merlin/a.command"};
 
-// The contract with other programs: these offsets never change within version 4.
-TEST(Layout, OffsetsOfVersion4) {
-  EXPECT_EQ(kVersion, 4u);
+// The contract with other programs: these offsets never change within version 5.
+TEST(Layout, OffsetsOfVersion5) {
+  EXPECT_EQ(kVersion, 5u);
   EXPECT_EQ(offsetof(Header, generation), 16u);
   EXPECT_EQ(offsetof(Header, field_offset), 24u);
   EXPECT_EQ(offsetof(Header, field_count), 28u);
@@ -37,7 +37,7 @@ TEST(Layout, OffsetsOfVersion4) {
   EXPECT_EQ(offsetof(Field, offset), 88u);
   EXPECT_EQ(offsetof(Field, ring), 96u);
   EXPECT_EQ(offsetof(DevicesSegment, health), 320u);
-  EXPECT_EQ(offsetof(DevicesSegment, glove), 1280u);
+  EXPECT_EQ(offsetof(DevicesSegment, glove), 5440u);
   EXPECT_EQ(offsetof(GloveSample, raw), 112u);
   EXPECT_EQ(offsetof(TrackerSample, orientation_wxyz), 28u);
   EXPECT_EQ(offsetof(BallSample, rotation), 28u);
@@ -125,6 +125,7 @@ TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
   add(SampleKind::kGlove, "glove", kMostGloves);
   add(SampleKind::kTracker, "tracker", kMostTrackers);
   add(SampleKind::kBall, "ball", kMostBalls);
+  add(SampleKind::kTouch, "touch", kMostTouches);
   for (std::size_t i = 0; i < kMostHands; ++i)
     all.hands.push_back(static_cast<char>('a' + i) + std::string("_hand"));
   Runs kinds;

@@ -116,9 +116,11 @@ TEST(DeviceSlots, SeveralOfAKindAreFoundByTheirNamesInTheOrderOfTheConfiguration
 
 TEST(DeviceSlots, TheMostDevicesFitIntoTheTable) {
   SlotNames most;
-  for (const auto& [kind, count] : {std::pair{SampleKind::kGlove, kMostGloves},
-                                    {SampleKind::kTracker, kMostTrackers},
-                                    {SampleKind::kBall, kMostBalls}}) {
+  for (const auto& [kind, count] :
+       {std::pair{SampleKind::kGlove, kMostGloves},
+        {SampleKind::kTracker, kMostTrackers},
+        {SampleKind::kBall, kMostDevices - kMostGloves - kMostTrackers - kMostTouches},
+        {SampleKind::kTouch, kMostTouches}}) {
     for (std::size_t i = 0; i < count; ++i)
       most.devices.push_back({"sixteen_letters_"[0] + std::to_string(most.devices.size()), kind});
   }
@@ -232,7 +234,7 @@ TEST_F(SlotTableTest, ATableOutsideTheSegmentIsRefused) {
   segment_->header.field_size = 8;
   EXPECT_NE(fault().find("its table of fields is not inside it"), std::string::npos) << fault();
   segment_->header.field_count = 0;
-  EXPECT_NE(fault().find("has no slot glove.health"), std::string::npos) << fault();
+  EXPECT_NE(fault().find("has no slot actions.panel"), std::string::npos) << fault();
 }
 
 TEST_F(SlotTableTest, NamesWithoutAnEndAndNamesTwiceAreSurvived) {

@@ -63,6 +63,14 @@ class Lines final : public SampleSink {
                         s.counter, s.flags, s.sensors, list(std::span(s.raw).first(23), "{}{}"),
                         list(s.angle_rad, "{}{:.3f}"));
   }
+  void publish(const TouchSample& s) noexcept override {
+    text += fmt::format("{{\"touch\":{},\"fingers\":[", s.counter);
+    for (std::size_t i = 0; i < s.fingers; ++i) {
+      text += fmt::format("{}[{},{:.4f},{:.4f}]", i == 0 ? "" : ",", s.id[i], s.position[i][0],
+                          s.position[i][1]);
+    }
+    text += "]}\n";
+  }
   void publish(const TrackerSample& s) noexcept override {
     text += fmt::format("{{\"tracker\":{},\"station\":{},\"error\":\"{}\",\"m\":{},\"wxyz\":{}}}\n",
                         s.counter, s.station, s.error, list(s.position_m, "{}{:.4f}"),

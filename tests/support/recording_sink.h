@@ -11,10 +11,12 @@ struct RecordingSink final : SampleSink {
   void publish(const GloveSample& s) noexcept override { glove.push_back(s); }
   void publish(const TrackerSample& s) noexcept override { tracker.push_back(s); }
   void publish(const BallSample& s) noexcept override { ball.push_back(s); }
+  void publish(const TouchSample& s) noexcept override { touch.push_back(s); }
 
   std::vector<GloveSample> glove;
   std::vector<TrackerSample> tracker;
   std::vector<BallSample> ball;
+  std::vector<TouchSample> touch;
 };
 
 struct RecordingHealth final : HealthSink {
