@@ -47,6 +47,7 @@ class GuidedGlove final : public Guided, private SampleSink {
   }
   void publish(const TrackerSample&) noexcept override {}
   void publish(const BallSample&) noexcept override {}
+  void publish(const TouchSample&) noexcept override {}
   std::string spans() const;
 
   ByteStream& line_;

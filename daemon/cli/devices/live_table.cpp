@@ -54,6 +54,15 @@ std::string trackerLines(const shm::DeviceSlots::Tracker& tracker) {
   return text;
 }
 
+std::string touchLines(const TouchSample& touch) {
+  std::string text = touch.fingers == 0 ? "    no finger\n" : "";
+  for (std::size_t i = 0; i < std::min<std::size_t>(touch.fingers, kFingers); ++i) {
+    text += fmt::format("    finger {}  {:5.3f} to the right, {:5.3f} down\n", touch.id[i],
+                        touch.position[i][0], touch.position[i][1]);
+  }
+  return text;
+}
+
 std::string valuesOf(const std::string& device, const shm::DeviceSlots& devices) {
   if (const auto* const slots = devices.ball(device)) {
     const auto ball = slots->samples->newest();
@@ -62,6 +71,10 @@ std::string valuesOf(const std::string& device, const shm::DeviceSlots& devices)
   if (const auto* const slots = devices.glove(device)) {
     const auto glove = slots->samples->newest();
     return glove ? gloveLines(*glove, *slots->posture_state) : "";
+  }
+  if (const auto* const slots = devices.touch(device)) {
+    const auto touch = slots->samples->newest();
+    return touch ? touchLines(*touch) : "";
   }
   const auto* const tracker = devices.tracker(device);
   return tracker ? trackerLines(*tracker) : "";

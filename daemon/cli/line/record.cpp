@@ -55,6 +55,7 @@ struct Nowhere final : SampleSink {
   void publish(const GloveSample&) noexcept override {}
   void publish(const TrackerSample&) noexcept override {}
   void publish(const BallSample&) noexcept override {}
+  void publish(const TouchSample&) noexcept override {}
 };
 
 // Reads the line until `end`, until a signal (on `stop_fd`), or until the line fails, which is

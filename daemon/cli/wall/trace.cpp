@@ -74,6 +74,7 @@ void addDevices(const shm::DeviceSlots& devices, std::span<const shm::FrameTrace
     }
   }
   for (const auto& ball : devices.balls) addSamples(*ball.samples, ball.name, frames, out);
+  for (const auto& touch : devices.touches) addSamples(*touch.samples, touch.name, frames, out);
 }
 
 int trace(const TraceOptions& options) {
