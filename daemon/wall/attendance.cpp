@@ -81,13 +81,14 @@ bool Attendance::handMoves(const render::scene::SceneInput& input) {
   return moves;
 }
 
-// Whether the ball is pushed, one of its buttons is pressed now, or a hand moves.
+// Whether the ball is pushed, a finger touches, one of the ball's buttons is pressed now, or a hand
+// moves.
 bool Attendance::moves(const WallInput& input) {
   const auto& ball = input.scene.ball;
   const std::uint32_t buttons = ball ? ball->buttons : 0;
   const std::uint32_t pressed = buttons & ~std::exchange(buttons_, buttons);
-  const bool pushed =
-      (ball && isPushed(*ball)) || input.panel_pushed || input.align.push != state::Offset{};
+  const bool pushed = (ball && isPushed(*ball)) || input.scene.touch.fingers > 0 ||
+                      input.panel_pushed || input.align.push != state::Offset{};
   return handMoves(input.scene) || pushed || pressed != 0;
 }
 

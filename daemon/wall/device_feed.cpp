@@ -102,6 +102,11 @@ DeviceFeed::Acts DeviceFeed::readActs(const shm::DeviceSlots& devices, Timestamp
     acts.balls.push_back(readBall(ball, now));
     if (!acts.balls.back() || leaves_out_ball_) ends(ball.name);
   }
+  touches_.resize(devices.touches.size());
+  for (std::size_t i = 0; i < devices.touches.size(); ++i) {
+    const auto touch = fresh(*devices.touches[i].samples, *devices.touches[i].health, now);
+    acts.touches.push_back(touches_[i].update(touch ? &*touch : nullptr));
+  }
   for (const auto& glove : devices.gloves) {
     const auto sample = fresh(*glove.samples, *glove.health, now);
     if (!sample || now - fromNanoseconds(sample->received_ns) > settings_.stale_after)
@@ -115,6 +120,9 @@ void DeviceFeed::takeTurns(const shm::DeviceSlots& devices, const Acts& now_acts
   for (std::size_t i = 0; i < devices.balls.size(); ++i) {
     if (now_acts.balls[i] && pushed(*now_acts.balls[i]))
       acting.push_back(personOf(devices.balls[i].name));
+  }
+  for (std::size_t i = 0; i < devices.touches.size(); ++i) {
+    if (now_acts.touches[i].fingers > 0) acting.push_back(personOf(devices.touches[i].name));
   }
   for (std::size_t i = 0; i < devices.actions.size(); ++i) {
     const bool panel = i + 1 == devices.actions.size();
@@ -234,6 +242,10 @@ WallInput DeviceFeed::read(Timestamp now) {
     if (!ball || !counts(d->balls[i].name)) continue;
     const bool replaces = input.scene.ball && pushed(*ball) && !pushed(*input.scene.ball);
     if (!input.scene.ball || replaces) input.scene.ball = ball;
+  }
+  for (std::size_t i = 0; i < d->touches.size(); ++i) {
+    if (acts.touches[i].fingers > input.scene.touch.fingers && counts(d->touches[i].name))
+      input.scene.touch = acts.touches[i];
   }
   readHand(*d, acts.actions, now, input);
   if (settings_.head.station > 0) input.head = station(*d, settings_.head, now);

@@ -18,8 +18,8 @@ namespace merlin::wall {
 // Thread-bound. Never waits: reads the newest samples and omits devices that do not work.
 //
 // Of several balls the one that is pushed counts, of several hands the one that holds an action,
-// otherwise the first of each; the actions of all count. Of several people only the input of the
-// one who has the wall counts (Turns).
+// otherwise the first of each; of several touch surfaces the one that is touched; the actions of
+// all count. Of several people only the input of the one who has the wall counts (Turns).
 class DeviceFeed final : public InputFeed {
  public:
   DeviceFeed(std::string segment_name, FeedSettings settings)
@@ -36,7 +36,8 @@ class DeviceFeed final : public InputFeed {
  private:
   // What the devices of one person do now.
   struct Acts {
-    std::vector<std::optional<BallSample>> balls;  // index: DeviceSlots::balls
+    std::vector<std::optional<BallSample>> balls;     // index: DeviceSlots::balls
+    std::vector<render::scene::TouchMotion> touches;  // index: DeviceSlots::touches
     actions::Actions actions;
   };
   template <typename T>
@@ -67,6 +68,7 @@ class DeviceFeed final : public InputFeed {
   std::optional<Duration> age_;
   std::optional<Timestamp> last_read_;
   actions::ActionReader actions_;
+  std::vector<render::scene::TouchFollower> touches_;  // index: DeviceSlots::touches
 };
 
 }  // namespace merlin::wall

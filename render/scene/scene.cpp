@@ -131,11 +131,12 @@ SceneView Scene::update(const SceneInput& input, Timestamp now) {
   const float step_s = std::clamp(seconds, 0.0F, kLongestStep_s);
   const bool pushed = moveByBall(input, step_s);
   const bool stepped = moveByStep(input);
+  const bool touched = moveByTouch(input.touch);
   const bool turned = turnByItself(input, step_s);
   const bool carried = moveByHand(input, input.grab);
   const bool flown = flyByHand(input, input.fly && !input.grab, step_s);
   bound();
-  if (std::exchange(jumped_, false) || pushed || stepped || turned || carried || flown)
+  if (std::exchange(jumped_, false) || pushed || stepped || touched || turned || carried || flown)
     last_motion_ = now;
   view_.T_eye_model = poses_.T_wall_eye.inverse() * poses_.T_wall_content;
   view_.mode = mode_;
@@ -168,6 +169,29 @@ bool Scene::moveByBall(const SceneInput& input, float seconds) {
 bool Scene::moveByStep(const SceneInput& input) {
   if (input.step.way_m.isZero(0) && input.step.turn_rad.isZero(0)) return false;
   navigator_->push(poses_, input.step, mode_);
+  return true;
+}
+
+// What is touched follows the fingers. One finger turns an object, as a dragged mouse does in a
+// window; two move and turn it in the picture's plane, and bring it nearer as they move apart. A
+// plane and a panorama are moved by any number. Returns whether the fingers move.
+bool Scene::moveByTouch(const TouchMotion& touch) {
+  constexpr float kTurnPerHeight = std::numbers::pi_v<float>;
+  constexpr float kRadiiPerHeight = 1.5F;
+  if (!touch.moves()) return false;
+  const float height_m = kRadiiPerHeight * static_cast<float>(settings_.model_radius_m);
+  const bool object = navigation_ == content::Navigation::kObject;
+  Push push;
+  if (navigation_ == content::Navigation::kPanorama || (object && touch.fingers < 2))
+    push.turn_rad = {-touch.up * kTurnPerHeight, touch.right * kTurnPerHeight, 0};
+  else
+    push.way_m = {touch.right * height_m, touch.up * height_m, 0};
+  if (object && touch.fingers >= 2) push.turn_rad.z() = touch.turn_rad;
+  const float away = object ? view_.T_eye_model.translation().norm()
+                            : static_cast<float>(settings_.model_distance_m);
+  // A plane and a panorama take the way to their zoom by the exponential function themselves.
+  push.way_m.z() = object ? away * (1 - std::exp(-touch.spread)) : away * touch.spread;
+  navigator_->push(poses_, push, BallMode::kObject);
   return true;
 }
 

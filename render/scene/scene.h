@@ -15,6 +15,7 @@
 #include "drivers/port/samples.h"
 #include "render/scene/navigator.h"
 #include "render/scene/settings.h"
+#include "render/scene/touch.h"
 
 namespace merlin::render::scene {
 
@@ -24,6 +25,7 @@ struct SceneInput {
   std::optional<TrackerSample> hand;
   bool grab = false, fly = false, point_at = false;  // held actions
   std::uint32_t reset_view = 0, next_mode = 0;  // how often each was requested since the last frame
+  TouchMotion touch;                            // of the fingers on a touch surface
   Push step;             // requested by the command move since the last frame: applied at once
   float turn_rad_s = 0;  // speed at which the content turns by itself: see Navigator::turn()
 };
@@ -75,6 +77,7 @@ class Scene {
   explicit Scene(const SceneSettings& settings);
   bool moveByBall(const SceneInput& input, float seconds);
   bool moveByStep(const SceneInput& input);
+  bool moveByTouch(const TouchMotion& touch);
   bool turnByItself(const SceneInput& input, float seconds);
   bool moveByHand(const SceneInput& input, bool grab);
   bool flyByHand(const SceneInput& input, bool fly, float seconds);

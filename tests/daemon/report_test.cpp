@@ -99,9 +99,9 @@ TEST(ReportContents, FindingsDoNotQuoteTheFile) {
     return findingsText("f.json", loadSettings(json, "/etc/merlin"));
   };
   EXPECT_EQ(text("{}"), "f.json: no findings\n");
-  const std::string entry = text(R"({"devices": {"projectors": ["hunter22"]}})");
+  const std::string entry = text(R"({"projectors": ["hunter22"]})");
   EXPECT_TRUE(
-      entry.starts_with("f.json:1: /devices/projectors/0 is not understood (left out; see merlind "
+      entry.starts_with("f.json:1: /projectors/0 is not understood (left out; see merlind "
                         "--check-config)\n"))
       << entry;
   EXPECT_EQ(entry.find("hunter22"), std::string::npos);
@@ -187,7 +187,7 @@ TEST_F(RunPart, TheConfigurationLacksNamesOfFilesWithSecrets) {
   const TempDir dir;
   writeText(
       dir / "merlin.json",
-      R"({"devices": {"projectors": [{"name": "left", "address": "h", "password_file": "pw"}]},
+      R"({"projectors": [{"name": "left", "address": "h", "password_file": "pw"}],
                 "serve": {"samples_keys": "kk"}})");
   const ReportSubject subject{dir / "merlin.json", loadSettingsFile(dir / "merlin.json"),
                               "merlin-report-none", dir.path()};

@@ -124,7 +124,7 @@ TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
   };
   add(SampleKind::kGlove, "glove", kMostGloves);
   add(SampleKind::kTracker, "tracker", kMostTrackers);
-  add(SampleKind::kBall, "ball", kMostBalls);
+  add(SampleKind::kBall, "ball", kMostDevices - kMostGloves - kMostTrackers - kMostTouches);
   add(SampleKind::kTouch, "touch", kMostTouches);
   for (std::size_t i = 0; i < kMostHands; ++i)
     all.hands.push_back(static_cast<char>('a' + i) + std::string("_hand"));

@@ -48,17 +48,17 @@ TEST(ShownSettings, WhatPeopleChangedHoldsInsteadOfTheFile) {
 }
 
 TEST(ShownSettings, AnEntryOfAListIsComparedWithTheDefaultListOfThatLength) {
-  const auto loaded = loadSettings(R"({"devices": {"bindings": [
+  const auto loaded = loadSettings(R"({"bindings": [
 {"input": "posture.fist", "action": "fly"}, {"input": "ball.button.1", "action": "grab"},
-{"input": "ball.button.2", "action": "reset_view"}, {"input": "panel.button", "action": "next_mode"}]}})",
+{"input": "ball.button.2", "action": "reset_view"}, {"input": "panel.button", "action": "next_mode"}]})",
                                    "");
   const auto settings = shownSettings(loaded, "m.json", nullptr);
-  EXPECT_EQ(lineOf(find(settings, "/devices/bindings/1/action")),
-            "* /devices/bindings/1/action: \"grab\"  (m.json:2; default \"reset_view\")\n");
-  EXPECT_EQ(lineOf(find(settings, "/devices/bindings/3/action")),
-            "  /devices/bindings/3/action: \"next_mode\"  (m.json:3)\n");
-  EXPECT_EQ(lineOf(find(settings, "/devices/bindings/1/on")),
-            "  /devices/bindings/1/on: \"by_action\"\n");
+  EXPECT_EQ(lineOf(find(settings, "/bindings/1/action")),
+            "* /bindings/1/action: \"grab\"  (m.json:2; default \"reset_view\")\n");
+  EXPECT_EQ(lineOf(find(settings, "/bindings/3/action")),
+            "  /bindings/3/action: \"next_mode\"  (m.json:3)\n");
+  EXPECT_EQ(lineOf(find(settings, "/bindings/1/on")),
+            "  /bindings/1/on: \"by_action\"\n");
 }
 
 TEST(ShownSettings, AreJsonForPrograms) {

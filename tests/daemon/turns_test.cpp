@@ -39,7 +39,8 @@ class SeveralDevicesTest : public testing::Test {
              {"right", SampleKind::kGlove},
              {"room", SampleKind::kTracker},
              {"desk", SampleKind::kBall},
-             {"door", SampleKind::kBall}},
+             {"door", SampleKind::kBall},
+             {"table", SampleKind::kTouch}},
             {"left_hand", "right_hand"}};
   }
   // `person_of_right`: of the right glove and hand, and of the ball at the door.
@@ -91,7 +92,7 @@ class SeveralDevicesTest : public testing::Test {
     (*segment_)->actions[device].publish(state);
   }
 
-  enum : std::size_t { kLeft, kRight, kRoom, kDesk, kDoor };
+  enum : std::size_t { kLeft, kRight, kRoom, kDesk, kDoor, kTable };
   std::string name_ = shm::segmentName(test::privateName("several"), "devices");
   Timestamp now_ = SystemClock().now();
   std::optional<shm::SegmentWriter<shm::DevicesSegment>> segment_;
@@ -141,6 +142,25 @@ TEST_F(SeveralDevicesTest, AnotherPersonsInputWaitsForItsTurn) {
   EXPECT_EQ(input.scene.ball->translation[0], 0.5F);
   EXPECT_TRUE(input.scene.grab);
   EXPECT_EQ(input.scene.hand->station, 2u);
+}
+
+TEST_F(SeveralDevicesTest, FingersMoveWhatIsShownAndTakeTheTurn) {
+  FeedSettings settings_of_two = settings("bob");
+  settings_of_two.devices.push_back({"table", "bob"});
+  DeviceFeed feed(name_, settings_of_two);
+  TouchSample touch{};
+  touch.received_ns = toNanoseconds(now_);
+  touch.aspect = 1;
+  touch.fingers = 1;
+  (*segment_)->touch[0].publish(touch);
+  EXPECT_EQ(read(feed).scene.touch.fingers, 1u);
+  touch.position[0][0] = 0.25F;
+  (*segment_)->touch[0].publish(touch);
+  push(0, 1);
+  const WallInput input = read(feed);
+  EXPECT_EQ(input.scene.touch.right, 0.25F);
+  EXPECT_FALSE(input.scene.ball && input.scene.ball->translation[0] != 0)
+      << "the ball of the other person waits";
 }
 
 TEST_F(SeveralDevicesTest, OnePersonsDevicesActTogether) {

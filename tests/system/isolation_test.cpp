@@ -80,6 +80,7 @@ class Bench : public SampleSink {
   void publish(const GloveSample& s) noexcept override { arrivals_[0].add(now(), s.counter); }
   void publish(const TrackerSample& s) noexcept override { arrivals_[1].add(now(), s.counter); }
   void publish(const BallSample& s) noexcept override { arrivals_[2].add(now(), s.counter); }
+  void publish(const TouchSample&) noexcept override {}
 
   // Waits until the device's health is ok and another sample has arrived; false if that fails.
   bool well(std::size_t i) {
