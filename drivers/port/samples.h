@@ -15,7 +15,7 @@ namespace merlin {
 enum class SampleKind { kGlove, kTracker, kBall, kTouch };
 
 // The most devices that one daemon reads, of all kinds and of each, and the most hands.
-inline constexpr std::size_t kMostDevices = 16, kMostGloves = 4, kMostTrackers = 4, kMostBalls = 8,
+inline constexpr std::size_t kMostDevices = 16, kMostGloves = 4, kMostTrackers = 4, kMostBalls = 6,
                              kMostTouches = 2;
 inline constexpr std::size_t kMostHands = 4;
 

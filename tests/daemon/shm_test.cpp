@@ -124,7 +124,7 @@ TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
   };
   add(SampleKind::kGlove, "glove", kMostGloves);
   add(SampleKind::kTracker, "tracker", kMostTrackers);
-  add(SampleKind::kBall, "ball", kMostDevices - kMostGloves - kMostTrackers - kMostTouches);
+  add(SampleKind::kBall, "ball", kMostBalls);
   add(SampleKind::kTouch, "touch", kMostTouches);
   for (std::size_t i = 0; i < kMostHands; ++i)
     all.hands.push_back(static_cast<char>('a' + i) + std::string("_hand"));
@@ -168,10 +168,44 @@ TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
 
 TEST(Fields, CoverEveryByteOfTheWallsSegmentButPadding) {
   EXPECT_EQ(undescribed(wallFields(), offsetof(WallSegment, fields)),
-            (Runs{"segment.command_endpoint 40", "wall.cost_unit 24", "trace.wake 4",
-                  "trace.step.tile's ring 56", "interaction.light 4", "outputs.count 4",
-                  "outputs.fault 48", "content.refused 24", "idle.testcard 32", "panel.by_ball 28",
-                  "notice.text 24"}));
+            (Runs{"segment.command_endpoint 40",
+                  "glove.health.rate_hz 4",
+                  "tracker.health.rate_hz 4",
+                  "ball.health.rate_hz 4",
+                  "touch.health.rate_hz 4",
+                  "glove.wake 4",
+                  "glove.raw's ring 32",
+                  "posture.wake 4",
+                  "posture.name's ring 40",
+                  "posture_state.seen 48",
+                  "glove.posture.wake 4",
+                  "glove.posture.name's ring 40",
+                  "glove.posture_state.seen 48",
+                  "tracker1.stylus 2",
+                  "tracker1.wake 4",
+                  "tracker1.stylus's ring 56",
+                  "tracker2.stylus 2",
+                  "tracker2.wake 4",
+                  "tracker2.stylus's ring 56",
+                  "tracker3.stylus 2",
+                  "tracker3.wake 4",
+                  "tracker3.stylus's ring 56",
+                  "tracker4.stylus 2",
+                  "tracker4.wake 4",
+                  "tracker4.stylus's ring 56",
+                  "tracker.boresight_wxyz 40",
+                  "ball.wake 4",
+                  "ball.period_us's ring 48",
+                  "touch.aspect 4",
+                  "touch.wake 4",
+                  "touch.aspect's ring 24",
+                  "hand.delay_s 4",
+                  "hand.wake 4",
+                  "hand.delay_s's ring 56",
+                  "gpio.wake 4",
+                  "gpio.wait_s's ring 8",
+                  "gpio.health.rate_hz 4",
+                  "actions.panel.recent 40"}));
 }
 
 // Reads sample 258 at its position in the ring, as a reader that knows only the table does.
