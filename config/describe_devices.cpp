@@ -71,7 +71,7 @@ void describeLine(LineSettings& line, SettingsVisitor& v) {
 void describeOwn(DeviceSettings& d, SettingsVisitor& v) {
   for (const DriverEntry& entry : drivers()) {
     if (!entry.describe) {
-      v.excluded(entry.name, fmt::format("has no settings of its own: leave it out").c_str());
+      v.excluded(entry.name, "has no settings: leave it out");
       continue;
     }
     v.groupIf(
@@ -87,10 +87,11 @@ void describeOwn(DeviceSettings& d, SettingsVisitor& v) {
 }
 
 void describeDevice(DeviceSettings& d, SettingsVisitor& v) {
-  v.text("name", d.name,
-         "Name of the device in shared memory, in the status and in bindings: 1 to 16 of a to z, 0 "
-         "to 9 and _, beginning with a letter. Empty: glove, tracker or ball, as the driver has "
-         "it.");
+  v.text(
+      "name", d.name,
+      "Name of the device in shared memory, in the status and in bindings: 1 to 16 of a to z, 0 "
+      "to 9 and _, beginning with a letter. Empty: glove, tracker, ball or touch, as the driver's "
+      "kind is.");
   describePerson(d.person, v);
   describeLine(d.line, v);
   describeOwn(d, v);

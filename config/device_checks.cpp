@@ -19,7 +19,7 @@ constexpr std::size_t kLongestName = 16;
 // Names in shared memory and of inputs that are no device's.
 constexpr const char* kReserved[] = {"posture", "posture_state", "postures", "gesture",
                                      "gpio",    "panel",         "actions",  "health",
-                                     "key",     "touch",         "now_ns",   "time_utc"};
+                                     "key",     "now_ns",        "time_utc"};
 
 std::string deviceAt(std::size_t index) { return fmt::format("/devices/{}", index); }
 std::string handAt(std::size_t index) { return fmt::format("/hands/{}", index); }
@@ -47,8 +47,11 @@ bool checkNumbers(const DevicesSettings& d, LoadedSettings& loaded) {
   bool good = check("/devices", "devices", d.list.size(), kMostDevices);
   for (const auto& [kind, most] : {std::pair{SampleKind::kGlove, kMostGloves},
                                    {SampleKind::kTracker, kMostTrackers},
-                                   {SampleKind::kBall, kMostBalls}})
-    good = check("/devices", fmt::format("{}s", kindName(kind)), number[kind], most) && good;
+                                   {SampleKind::kBall, kMostBalls},
+                                   {SampleKind::kTouch, kMostTouches}})
+    good = check("/devices", fmt::format("devices of the kind {}", kindName(kind)), number[kind],
+                 most) &&
+           good;
   return check("/hands", "hands", d.hands.size(), kMostHands) && good;
 }
 
@@ -87,14 +90,14 @@ void checkNames(const DevicesSettings& d, LoadedSettings& loaded) {
   TakenNames taken;
   for (const char* const name : kReserved)
     taken.emplace(name, "a name that merlind uses for something else");
+  for (std::size_t i = 0; i < d.hands.size(); ++i)
+    takeName(d.hands[i].name, handAt(i), fmt::format("the name of the hand at {}", handAt(i)),
+             taken, loaded);
   for (std::size_t i = 0; i < d.list.size(); ++i) {
     if (!findDriver(d.list[i].line.driver) && d.list[i].name.empty()) continue;
     takeName(d.list[i].name, deviceAt(i), fmt::format("the name of the device at {}", deviceAt(i)),
              taken, loaded);
   }
-  for (std::size_t i = 0; i < d.hands.size(); ++i)
-    takeName(d.hands[i].name, handAt(i), fmt::format("the name of the hand at {}", handAt(i)),
-             taken, loaded);
   for (std::size_t i = 0; i < d.list.size(); ++i) {
     const DriverEntry* const driver = findDriver(d.list[i].line.driver);
     if (driver && driver->kind == SampleKind::kTracker)

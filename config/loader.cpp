@@ -26,6 +26,12 @@ std::string escapePointer(std::string_view key) {
   return out;
 }
 
+std::string movedText(std::string_view is, const MovedSetting& moved) {
+  return fmt::format(
+      "{} an earlier version; {}; the command merlin config migrate FILE rewrites the file", is,
+      moved.now);
+}
+
 // Reads the settings from a JSON tree and reports keys that no setting has as unknown.
 class Loader final : public SettingsVisitor {
  public:
@@ -165,12 +171,7 @@ class Loader final : public SettingsVisitor {
 
   std::string whatOf(const std::string& pointer, const std::string& key,
                      const std::vector<std::string>& known) const {
-    if (const MovedSetting* moved = findMoved(pointer)) {
-      return fmt::format(
-          "is a setting of an earlier version; {}; the command merlin config migrate FILE rewrites "
-          "the file",
-          moved->now);
-    }
+    if (const MovedSetting* moved = findMoved(pointer)) return movedText("is a setting of", *moved);
     return "is not a known setting; " + suggestion(key, known);
   }
 
@@ -195,6 +196,12 @@ class Loader final : public SettingsVisitor {
       if (member.value.kind == kind && whole) return &member.value;
       if (!whole)
         allowed = "a text without the character NUL, where the operating system would truncate it";
+      if (member.value.kind == JsonNode::Kind::kObject) {
+        if (const MovedSetting* moved = findMoved(pointer(key))) {
+          loaded_.add({false, member.line, pointer(key), movedText("is an object, as in", *moved)});
+          return nullptr;
+        }
+      }
       addWrongKind(member.value, key, allowed);
       return nullptr;
     }

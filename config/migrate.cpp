@@ -5,12 +5,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "config/migrate_devices.h"
 #include "daemon/json/json_tree.h"
 
 namespace merlin {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using Notes = std::vector<std::string>;
 
 // Whether `object` is a JSON object whose member `key` is a string that is not empty.
 bool hasText(const Json& object, const char* key) {
@@ -20,7 +22,7 @@ bool hasText(const Json& object, const char* key) {
 }
 
 // Earlier versions had the group /wall/png; it becomes an output of kind png in /wall/outputs.
-Result<bool> movePng(Json& root) {
+Result<bool> movePng(Json& root, Notes&) {
   const auto wall = root.find("wall");
   if (wall == root.end() || !wall->is_object() || !wall->contains("png")) return false;
   if (wall->contains("outputs")) {
@@ -71,7 +73,7 @@ bool hasPanel(const Json& devices) {
 
 // /wall/scene/bindings became /devices/bindings. The panel's button needed no binding in earlier
 // versions, where its default action was next_mode; it gets this binding now.
-Result<bool> moveBindings(Json& root) {
+Result<bool> moveBindings(Json& root, Notes&) {
   Json bindings = takeOfScene(root, "bindings");
   if (bindings.is_null()) return false;
   const auto devices = groupOf(root, "devices", "/devices");
@@ -86,7 +88,7 @@ Result<bool> moveBindings(Json& root) {
   return true;
 }
 
-Result<bool> moveButton(Json& root) {
+Result<bool> moveButton(Json& root, Notes&) {
   const auto devices = root.find("devices");
   if (devices == root.end() || !devices->is_object() || !devices->contains("gpio")) return false;
   Json& gpio = (*devices)["gpio"];
@@ -103,7 +105,7 @@ Result<bool> moveButton(Json& root) {
   return true;
 }
 
-Result<bool> moveStation(Json& root) {
+Result<bool> moveStation(Json& root, Notes&) {
   const Json station = takeOfScene(root, "hand_station");
   if (station.is_null()) return false;
   const auto devices = groupOf(root, "devices", "/devices");
@@ -116,7 +118,7 @@ Result<bool> moveStation(Json& root) {
   return true;
 }
 
-Result<bool> moveStaleAfter(Json& root) {
+Result<bool> moveStaleAfter(Json& root, Notes&) {
   const Json after = takeOfScene(root, "stale_after_s");
   if (after.is_null()) return false;
   const auto devices = groupOf(root, "devices", "/devices");
@@ -129,7 +131,7 @@ Result<bool> moveStaleAfter(Json& root) {
 
 // Earlier versions waited for /wall/scene/posture_hold_s and /devices/posture_hold_s, that is, for
 // the longer of them: this time becomes /devices/posture_hold_s.
-Result<bool> movePostureHold(Json& root) {
+Result<bool> movePostureHold(Json& root, Notes&) {
   const Json hold = takeOfScene(root, "posture_hold_s");
   if (hold.is_null()) return false;
   const auto devices = groupOf(root, "devices", "/devices");
@@ -144,20 +146,27 @@ Result<bool> movePostureHold(Json& root) {
 
 struct Step {
   MovedSetting moved;
-  Result<bool> (*rewrite)(Json& root);  // returns whether it changed `root`
+  // Returns whether it changed `root`; adds what else is to be said to `notes`.
+  Result<bool> (*rewrite)(Json& root, Notes& notes);
 };
 
-// In the order in which the versions made these changes.
+// In the order in which the versions made these changes. `now` is the place in this version; a step
+// may write to the place of its own version, from which a later one moves it on.
 constexpr Step kSteps[] = {
     {{"/wall/png", "an entry {\"kind\": \"png\", \"path\": ...} of /wall/outputs replaces it"},
      movePng},
-    {{"/wall/scene/bindings", "/devices/bindings replaces it"}, moveBindings},
+    {{"/wall/scene/bindings", "/bindings replaces it"}, moveBindings},
     {{"/devices/gpio/button_command",
-      "an entry {\"input\": \"panel.button\", \"action\": ...} of /devices/bindings replaces it"},
+      "an entry {\"input\": \"panel.button\", \"action\": ...} of /bindings replaces it"},
      moveButton},
-    {{"/wall/scene/hand_station", "/devices/hand/station replaces it"}, moveStation},
-    {{"/wall/scene/stale_after_s", "/devices/stale_after_s replaces it"}, moveStaleAfter},
-    {{"/wall/scene/posture_hold_s", "/devices/posture_hold_s replaces it"}, movePostureHold},
+    {{"/wall/scene/hand_station", "/hands/0/station replaces it"}, moveStation},
+    {{"/wall/scene/stale_after_s", "/people/stale_after_s replaces it"}, moveStaleAfter},
+    {{"/wall/scene/posture_hold_s", "/postures/hold_s replaces it"}, movePostureHold},
+    {{"/devices",
+      "it is a list now, [{\"name\": \"ball\", \"driver\": \"spaceball\", \"port\": ..., "
+      "\"spaceball\": {...}}, ...], and hands, postures, bindings, people, gpio, projectors, "
+      "projector_schedule, cpu_latency_us and script stand beside it"},
+     moveDevices},
 };
 
 }  // namespace
@@ -175,10 +184,12 @@ Result<Migration> migrate(std::string_view json) {
   if (!root.is_object()) return Error{Errc::kMalformed, "line 1: is not a JSON object"};
   Migration migration;
   for (const Step& step : kSteps) {
-    const auto changed = step.rewrite(root);
+    Notes notes;
+    const auto changed = step.rewrite(root, notes);
     if (!changed) return changed.error();
     if (*changed)
       migration.changes.push_back(fmt::format("{}: {}", step.moved.pointer, step.moved.now));
+    migration.changes.insert(migration.changes.end(), notes.begin(), notes.end());
   }
   migration.text = migration.changes.empty() ? std::string(json) : root.dump(2) + "\n";
   return migration;

@@ -46,16 +46,15 @@ TEST_F(ConfD, FilesAreMergedInTheOrderOfTheirNames) {
 }
 
 TEST_F(ConfD, ListsReplaceListsAndWhateverIsNoObjectReplaces) {
-  put("merlin.json", R"({"devices": {"bindings": [{"input": "posture.fist", "action": "grab"},
-                                                  {"input": "glove.switch", "action": "next_mode"}]}})");
-  put("conf.d/a.json",
-      R"({"devices": {"bindings": [{"input": "posture.fist", "action": "fly"}]}})");
+  put("merlin.json", R"({"bindings": [{"input": "posture.fist", "action": "grab"},
+                                      {"input": "glove.switch", "action": "next_mode"}]})");
+  put("conf.d/a.json", R"({"bindings": [{"input": "posture.fist", "action": "fly"}]})");
   const auto loaded = load();
   ASSERT_EQ(loaded.verdict(), Verdict::kValid) << findings();
   ASSERT_EQ(loaded.settings.devices.bindings.size(), 1u);
   EXPECT_EQ(loaded.settings.devices.bindings[0].action, "fly");
-  put("conf.d/b.json", R"({"devices": 7})");
-  EXPECT_EQ(findings(), "conf.d/b.json:1: /devices is the number 7; allowed is an object\n");
+  put("conf.d/b.json", R"({"gpio": 7})");
+  EXPECT_EQ(findings(), "conf.d/b.json:1: /gpio is the number 7; allowed is an object\n");
 }
 
 TEST_F(ConfD, FindingsNameTheFileAndItsLine) {
@@ -69,15 +68,16 @@ TEST_F(ConfD, FindingsNameTheFileAndItsLine) {
 }
 
 TEST_F(ConfD, FaultsOfCheckedValuesNameTheFileToo) {
-  put("merlin.json", R"({"devices": {"glove": {"port": "serial:/dev/a"}}})");
-  put("conf.d/a.json", "{\"devices\":\n{\"tracker\": {\"port\": \"serial:/dev/a\"}}}");
-  EXPECT_EQ(
-      findings(),
-      "conf.d/a.json:2: /devices/tracker/port is \"serial:/dev/a\", which is the glove's port; "
-      "each device needs its own\n");
+  put("merlin.json", R"({"bindings": [{"input": "left.switch", "action": "grab"}]})");
+  put("conf.d/a.json", "{\"hands\":\n[{\"glove\": \"left\"}]}");
+  EXPECT_EQ(findings(),
+            "merlin.json:1: /bindings/0/input is \"left.switch\", and \"left\" is not the name of "
+            "a glove; /devices has glove\n"
+            "conf.d/a.json:2: /hands/0/glove is \"left\", which is not the name of a glove; "
+            "/devices has glove\n");
   const auto loaded = load();
-  EXPECT_EQ(loaded.placeText("/devices/glove/port"), "line 1");
-  EXPECT_EQ(loaded.placeText("/devices/tracker/port"), dir_ / "conf.d/a.json:2");
+  EXPECT_EQ(loaded.placeText("/bindings/0/input"), "line 1");
+  EXPECT_EQ(loaded.placeText("/hands/0/glove"), dir_ / "conf.d/a.json:2");
 }
 
 TEST_F(ConfD, SyntaxErrorsOfAllFilesAreFound) {

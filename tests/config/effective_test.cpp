@@ -52,12 +52,12 @@ TEST(Effective, AnEntryIsComparedWithANewOne) {
 }
 
 TEST(Effective, SecretsAreLeftOutAndTheirFilesAreKnown) {
-  const Settings settings = load(R"({"devices": {"projectors": [
-      {"name": "a", "address": "h", "password_file": "a.password"}, {"name": "b", "address": "i"}]}})");
+  const Settings settings = load(R"({"projectors": [
+      {"name": "a", "address": "h", "password_file": "a.password"}, {"name": "b", "address": "i"}]})");
   EXPECT_EQ(secretFilesOf(settings), (std::vector<std::string>{"/etc/merlin/a.password"}));
   const auto values = valuesOf(settings, Secrets::kLeftOut);
-  EXPECT_EQ(valueAt(values, "/devices/projectors/0/password_file").value, "\"(left out)\"");
-  EXPECT_EQ(valueAt(values, "/devices/projectors/1/password_file").value, "\"\"");
+  EXPECT_EQ(valueAt(values, "/projectors/0/password_file").value, "\"(left out)\"");
+  EXPECT_EQ(valueAt(values, "/projectors/1/password_file").value, "\"\"");
   EXPECT_EQ(settingsText(settings, Secrets::kLeftOut).find("a.password"), std::string::npos);
   EXPECT_NE(settingsText(settings).find("a.password"), std::string::npos);
 }

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "config/loader.h"
+#include "tests/support/findings.h"
+#include "tests/support/temp_dir.h"
 
 namespace merlin {
 namespace {
@@ -51,7 +53,7 @@ TEST(Migrate, BindingsGoToTheDevicesWithThePanelsButton) {
     "wall": {"scene": {"bindings": [{"input": "posture.fist", "action": "grab"}],
                        "hand_station": 2, "stale_after_s": 0.7, "posture_hold_s": 0.4}}})");
   ASSERT_TRUE(migrated) << migrated.error().what;
-  EXPECT_EQ(migrated->changes.size(), 4u);
+  EXPECT_EQ(migrated->changes.size(), 5u) << "the last one makes the list of devices";
   const auto loaded = loadSettings(migrated->text, "");
   ASSERT_TRUE(loaded.findings.empty()) << loaded.findings[0].what;
   const DevicesSettings& d = loaded.settings.devices;
@@ -59,7 +61,7 @@ TEST(Migrate, BindingsGoToTheDevicesWithThePanelsButton) {
   EXPECT_EQ(d.bindings[0].input, "posture.fist");
   EXPECT_EQ(d.bindings[1].input, "panel.button");
   EXPECT_EQ(d.bindings[1].action, "next_mode") << "the button's default";
-  EXPECT_EQ(d.hand.station, 2);
+  EXPECT_EQ(d.hands[0].station, 2);
   EXPECT_EQ(d.stale_after_s, 0.7);
   EXPECT_EQ(d.posture_hold.hold_s, 0.4) << "the longer of both times was in force";
 }
@@ -87,6 +89,82 @@ TEST(Migrate, TheButtonsCommandBecomesABinding) {
   ASSERT_FALSE(both);
   EXPECT_EQ(both.error().what,
             "has both /wall/scene/bindings and /devices/bindings: delete the former by hand");
+}
+
+TEST(Migrate, TheDevicesBecomeAListAndWhatWasWithThemStandsBesideIt) {
+  const auto migrated = migrate(R"({
+  "instance": "lab",
+  "devices": {
+    "hand": {"station": 2},
+    "ball": {"driver": "evdev", "port": "evdev:/dev/x", "evdev": {"curve": 3}},
+    "glove": {"port": "serial:/dev/g", "baud": 115200, "max_bytes_s": 9000, "light": "on"},
+    "tracker": {"port": "serial:/dev/t", "hemisphere1": [0, 0, 1]},
+    "stale_after_s": 0.7, "postures": "p.json", "posture_hold_s": 0.2, "posture_leave_s": 0.1,
+    "posture_margin": 0.5, "posture_drift": false, "script": "still", "cpu_latency_us": 5,
+    "gpio": {"chip": "gpiochip0"}, "projectors": [{"name": "left", "address": "h"}],
+    "projector_schedule": [{"on": "09:00", "off": "17:00"}],
+    "bindings": [{"input": "ball.button.1", "action": "reset_view"}]
+  },
+  "wall": {"model": "a.mrm"}
+})");
+  ASSERT_TRUE(migrated) << migrated.error().what;
+  EXPECT_EQ(migrated->text,
+            test::readText(MERLIN_SOURCE_DIR "/tests/config/migrated_devices.json"));
+  EXPECT_EQ(migrated->changes.size(), 1u);
+  const auto loaded = loadSettings(migrated->text, "");
+  EXPECT_EQ(test::findingsOf(loaded), "");
+  const DevicesSettings& d = loaded.settings.devices;
+  EXPECT_EQ(d.list[0].own.cyberglove.light, CybergloveSettings::Light::kOn);
+  EXPECT_EQ(d.list[2].own.evdev.curve, 3);
+  EXPECT_EQ(d.posture_hold.least_margin, 0.5);
+  EXPECT_FALSE(d.posture_drift);
+  const auto again = migrate(migrated->text);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->text, migrated->text) << "once is enough";
+  EXPECT_TRUE(again->changes.empty());
+}
+
+TEST(Migrate, SettingsOfADriverThatTheDeviceDoesNotHaveAreLeftOutAndNamed) {
+  const auto migrated = migrate(R"({"devices": {"glove": {}, "tracker": {"driver": "vrpn",
+      "hemisphere1": [0, 0, 1], "stylus": true, "vrpn": {"device": "Wand"}},
+      "ball": {"beep": "c", "spacenav": {"dead_zone": 4}}}})");
+  ASSERT_TRUE(migrated) << migrated.error().what;
+  ASSERT_EQ(migrated->changes.size(), 3u);
+  EXPECT_EQ(migrated->changes[1],
+            "/devices/tracker: left out are settings of the driver fastrak (hemisphere1, stylus), "
+            "since the device's driver is vrpn");
+  EXPECT_EQ(migrated->changes[2],
+            "/devices/ball: left out are settings of the driver spacenav (dead_zone), since the "
+            "device's driver is spaceball");
+  const auto loaded = loadSettings(migrated->text, "");
+  EXPECT_EQ(test::findingsOf(loaded), "");
+  EXPECT_EQ(loaded.settings.devices.list[1].own.vrpn.device, "Wand");
+  EXPECT_EQ(loaded.settings.devices.list[2].own.spaceball.beep, "c");
+}
+
+TEST(Migrate, DevicesThatAFileDoesNotNameStayAsTheyWereByDefault) {
+  const auto one = migrate(R"({"devices": {"ball": {"port": "pty:/tmp/b"}}})");
+  ASSERT_TRUE(one) << one.error().what;
+  EXPECT_EQ(loadSettings(one->text, "").settings.devices.list.size(), 3u);
+  ASSERT_EQ(one->changes.size(), 2u);
+  EXPECT_NE(one->changes[1].find("did not name (glove, tracker)"), std::string::npos)
+      << one->changes[1];
+  EXPECT_EQ(migrate(R"({"devices": {"script": "still"}})")->text,
+            "{\n  \"script\": \"still\"\n}\n");
+  EXPECT_EQ(migrate(R"({"devices": {}})")->text, "{}\n");
+}
+
+TEST(Migrate, WhatNoVersionKnewIsLeftForTheCheck) {
+  const auto migrated = migrate(R"({"devices": {"glvoe": {}, "ball": {"driver": "bal", "bepe": "c",
+      "evdev": {"curve": 3}}}})");
+  ASSERT_TRUE(migrated) << migrated.error().what;
+  const std::string findings = test::findingsOf(loadSettings(migrated->text, ""));
+  for (const char* place : {"/devices/2/driver", "/devices/2/spaceball/bepe", "/glvoe"})
+    EXPECT_NE(findings.find(place), std::string::npos) << place << "\n" << findings;
+  EXPECT_EQ(migrate(R"({"devices": {"ball": 7}})").error().what, "/devices/ball is not an object");
+  EXPECT_EQ(migrate(R"({"devices": {"gpio": {}}, "gpio": {}})").error().what,
+            "has both the object /devices, of which /gpio is made, and /gpio: bring them together "
+            "by hand");
 }
 
 TEST(Migrate, WhatIsOfThisVersionStaysByteByByte) {

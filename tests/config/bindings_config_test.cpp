@@ -1,0 +1,96 @@
+// Bindings and projectors of a configuration: what could have no effect is refused.
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "config/loader.h"
+#include "tests/support/findings.h"
+
+namespace merlin {
+namespace {
+
+using test::findingsOf;
+using Verdict = LoadedSettings::Verdict;
+
+std::string bindingsAre(const std::string& list) {
+  return findingsOf(loadSettings("{\"bindings\": [" + list + "]}", ""));
+}
+
+TEST(BindingsConfig, BindingsThatConflictAreNamedBoth) {
+  const std::string fist = R"({"input": "posture.fist", "action": "grab"})";
+  EXPECT_EQ(bindingsAre(fist), "");
+  EXPECT_EQ(bindingsAre(fist + "," + fist),
+            "f.json:1: /bindings/1 conflicts with /bindings/0 (line 1): "
+            "\"posture.fist\" would grab twice when held\n");
+  EXPECT_EQ(bindingsAre(fist + ",\n" + R"({"input": "posture.fist", "action": "fly"})"),
+            "f.json:2: /bindings/1 conflicts with /bindings/0 (line 1): "
+            "\"posture.fist\" would both grab and fly when held, which exclude each other\n");
+  const std::string fist_left =
+      R"({"input": "posture.fist", "action": "reset_view", "on": "leave"})";
+  EXPECT_EQ(bindingsAre(fist + "," + fist_left), "");
+  EXPECT_EQ(bindingsAre(fist_left + "," + fist_left),
+            "f.json:1: /bindings/1 conflicts with /bindings/0 (line 1): "
+            "\"posture.fist\" would reset_view twice when left\n");
+}
+
+TEST(BindingsConfig, ActionsThatNothingCouldDoAreFound) {
+  const std::string bindings =
+      R"("bindings": [{"input": "posture.a", "action": "snapshot"},
+                      {"input": "posture.b", "action": "lamp_slow"},
+                      {"input": "posture.c", "action": "next_content"}])";
+  EXPECT_EQ(findingsOf(loadSettings("{" + bindings + "}", "")),
+            "f.json:1: /bindings/0/action is snapshot, which needs a folder: "
+            "/wall/snapshots names none\n"
+            "f.json:2: /bindings/1/action is lamp_slow, which needs a lamp: "
+            "/gpio has no chip with a lamp_line\n"
+            "f.json:3: /bindings/2/action is next_content, and there is one content only: "
+            "/wall/contents names none\n");
+  EXPECT_EQ(
+      findingsOf(loadSettings(R"({"wall": {"snapshots": "taken", "contents": [{"model": "b.mrm"}]},
+                                "gpio": {"chip": "gpiochip0", "lamp_line": 5}, )" +
+                                  bindings + "}",
+                              "")),
+      "");
+  EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "lamp_on"},
+                          {"input": "posture.a", "action": "lamp_off"})")
+                .find("\"posture.a\" would both lamp_on and lamp_off when entered"),
+            std::string::npos);
+}
+
+TEST(BindingsConfig, ProjectorsAndTheirScheduleAreChecked) {
+  const auto loaded = loadSettings(R"({
+      "projectors": [{"name": "left", "address": "10.0.0.7", "password_file": "p", "warm_up_s": 60}],
+      "projector_schedule": [{"days": ["mon", "sun"], "on": "09:00", "off": "17:30"}]})",
+                                   "/etc/merlin");
+  ASSERT_EQ(loaded.verdict(), Verdict::kValid) << findingsOf(loaded);
+  EXPECT_EQ(loaded.settings.devices.projectors[0].password_file, "/etc/merlin/p");
+  EXPECT_EQ(loaded.settings.devices.projector_schedule[0].days,
+            (std::vector<std::string>{"mon", "sun"}));
+  EXPECT_EQ(findingsOf(loadSettings(R"({
+      "projector_schedule": [{"days": ["monday"], "on": "09:00", "off": "17:30"}]})",
+                                    "")),
+            "f.json:2: /projector_schedule/0/days/0 is \"monday\"; allowed are mon, tue, "
+            "wed, thu, fri, sat, sun\n"
+            "f.json:2: /projector_schedule needs projectors: /projectors is empty, "
+            "and /gpio has no chip with a projector_line\n");
+  EXPECT_EQ(bindingsAre(R"({"input": "posture.a", "action": "projector_on"})"),
+            "f.json:1: /bindings/0/action is projector_on, which needs projectors: "
+            "/projectors is empty, and /gpio has no chip with a projector_line\n");
+}
+
+TEST(BindingsConfig, BindingsThatNameNothingAreFound) {
+  EXPECT_NE(bindingsAre(R"({"input": "ball.button.13", "action": "grab"})")
+                .find("allowed are DEVICE.button.1 to DEVICE.button.12"),
+            std::string::npos);
+  EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "grab", "on": "leave"})")
+                .find("/bindings/0/on is leave, but grab lasts as long as its input is "
+                      "held: set hold"),
+            std::string::npos);
+  EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "dance"})").find("fly"),
+            std::string::npos)
+      << "the list of what exists";
+}
+
+}  // namespace
+}  // namespace merlin
