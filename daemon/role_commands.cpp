@@ -234,7 +234,7 @@ Answer ofDevices(const Parts& p, const CommandInfo& command) {
   if (command.role != CommandOf::kPanel) return lacks("does not know the command");
   if (command.name == "projector_on") return projectors(p, true);
   if (command.name == "projector_off") return projectors(p, false);
-  if (!p.devices->panel()) return lacks("has no panel: /devices/gpio names no chip");
+  if (!p.devices->panel()) return lacks("has no panel: /gpio names no chip");
   const auto executed = p.devices->panel()->execute(std::string(command.name));
   return executed ? done() : Answer(executed.error());
 }

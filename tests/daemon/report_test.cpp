@@ -185,9 +185,8 @@ TEST_F(RunPart, WhatItHasStartedIsEndedToo) {
 // By what settings mean, before known secrets are looked for.
 TEST_F(RunPart, TheConfigurationLacksNamesOfFilesWithSecrets) {
   const TempDir dir;
-  writeText(
-      dir / "merlin.json",
-      R"({"projectors": [{"name": "left", "address": "h", "password_file": "pw"}],
+  writeText(dir / "merlin.json",
+            R"({"projectors": [{"name": "left", "address": "h", "password_file": "pw"}],
                 "serve": {"samples_keys": "kk"}})");
   const ReportSubject subject{dir / "merlin.json", loadSettingsFile(dir / "merlin.json"),
                               "merlin-report-none", dir.path()};

@@ -57,8 +57,7 @@ TEST(ShownSettings, AnEntryOfAListIsComparedWithTheDefaultListOfThatLength) {
             "* /bindings/1/action: \"grab\"  (m.json:2; default \"reset_view\")\n");
   EXPECT_EQ(lineOf(find(settings, "/bindings/3/action")),
             "  /bindings/3/action: \"next_mode\"  (m.json:3)\n");
-  EXPECT_EQ(lineOf(find(settings, "/bindings/1/on")),
-            "  /bindings/1/on: \"by_action\"\n");
+  EXPECT_EQ(lineOf(find(settings, "/bindings/1/on")), "  /bindings/1/on: \"by_action\"\n");
 }
 
 TEST(ShownSettings, AreJsonForPrograms) {
