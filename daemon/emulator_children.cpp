@@ -1,5 +1,6 @@
 #include "daemon/emulator_children.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include <unistd.h>
 
 #include "daemon/base/clock.h"
+#include "daemon/devices/device_places.h"
 #include "drivers/emulate/names.h"
 
 namespace merlin {
@@ -55,6 +57,40 @@ std::string placeLine(DeviceSettings& device, const std::string& instance,
   return port.substr(kPty.size());
 }
 
+// The highest station that a hand or the head uses of this tracker, at least 1: the emulated
+// Fastrak has that many receivers.
+int stationsOf(const Settings& settings, const std::string& tracker) {
+  int highest = 1;
+  const auto use = [&](const std::string& name, int station) {
+    const DevicesSettings& devices = settings.devices;
+    const auto place = devices::placeOf(devices, SampleKind::kTracker, name);
+    if (place == devices::placeOf(devices, SampleKind::kTracker, tracker))
+      highest = std::max(highest, station);
+  };
+  for (const HandSettings& hand : settings.devices.hands) use(hand.tracker, hand.station);
+  use(settings.wall.stereo.head.tracker, settings.wall.stereo.head.station);
+  return highest;
+}
+
+// The command line of `merlin emulate` for this device.
+std::vector<std::string> emulateCommand(const std::string& program, const Settings& settings,
+                                        const DeviceSettings& device, const std::string& link) {
+  const LineSettings& line = device.line;
+  std::vector<std::string> command = {program,
+                                      "emulate",
+                                      line.driver,
+                                      "--link",
+                                      link,
+                                      "--script",
+                                      settings.devices.script,
+                                      "--baud",
+                                      std::to_string(line.baud)};
+  if (line.driver == "fastrak") {
+    command.insert(command.end(), {"--model", std::to_string(stationsOf(settings, device.name))});
+  }
+  return command;
+}
+
 }  // namespace
 
 Result<EmulatorChildren> EmulatorChildren::start(Settings& settings,
@@ -67,9 +103,9 @@ Result<EmulatorChildren> EmulatorChildren::start(Settings& settings,
     const LineSettings& line = device.line;
     if (!emulate::isEmulated(line.driver)) continue;
     const std::string link = placeLine(device, settings.instance, run_directory);
-    const pid_t pid =
-        spawn({*program, "emulate", line.driver, "--link", link, "--script",
-               settings.devices.script, "--baud", std::to_string(line.baud), "--epoch-ns", epoch});
+    std::vector<std::string> command = emulateCommand(*program, settings, device, link);
+    command.insert(command.end(), {"--epoch-ns", epoch});
+    const pid_t pid = spawn(command);
     if (pid < 0)
       return Error{Errc::kIo, fmt::format("cannot start an emulator: {}", std::strerror(errno))};
     started.children_.push_back({device.name, pid});
