@@ -43,7 +43,7 @@ TEST(Alarms, ALostDeviceAndAMerlindThatEndsStartTheProgram) {
         {{"run", {"/bin/sh", "-c", "cat >> \"$0\"", broken}}, {"kinds", {"projector"}}}}}};
   Merlind merlind(dir, "", "alarmed", options);
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
-  ASSERT_TRUE(merlind.healthIs(shm::kBall, HealthState::kOk));
+  ASSERT_TRUE(merlind.healthIs("ball", HealthState::kOk));
   Process alarms({kMerlind, "--config", merlind.config(), "--role", "alarms"});
   ASSERT_TRUE(alarms.saysEventually("ready")) << alarms.output();
   // What happened before the alarms' start is not told, so the ball is lost until that is seen.

@@ -67,11 +67,11 @@ TEST_F(BadInput, AFileThatMayNotGrowSoFar) {
 TEST_F(BadInput, AConfigurationWithThreeErrors) {
   writeText(dir_ / "bad.json",
             "{\n\"wall\": {\n\"modle\": \"a.mrm\",\n\"rate\": {\"rate_hz\": "
-            "\"fast\"}},\n\"devices\": {\"ball\": {\"port\": \"COM1\"}}\n}\n");
+            "\"fast\"}},\n\"devices\": [{\"driver\": \"spaceball\", \"port\": \"COM1\"}]\n}\n");
   const std::vector<std::string> findings = {
       "bad.json:3: /wall/modle is not a known setting; did you mean \"model\"?",
       "bad.json:4: /wall/rate/rate_hz is the string \"fast\"; allowed is a number",
-      "bad.json:5: /devices/ball/port is \"COM1\"; allowed are"};
+      "bad.json:5: /devices/0/port is \"COM1\"; allowed are"};
   expectOutcome(run({kMerlind, "--check-config", dir_ / "bad.json"}), 2, findings);
   expectOutcome(run({kMerlind, "--config", dir_ / "bad.json"}), 2, findings);
 }
@@ -90,13 +90,15 @@ TEST_F(BadInput, CheckConfigSaysValidAdjustedOrInvalid) {
 TEST_F(BadInput, APortThatDoesNotExistLeavesTheRestRunning) {
   const std::string model = makeModel(dir_, 5);
   const std::string name = privateName("noport");
-  writeText(dir_ / "c.json", nlohmann::json{{"instance", name},
-                                            {"run_directory", dir_.path()},
-                                            {"wall", {{"model", model}}},
-                                            {"devices",
-                                             {{"ball", {{"port", "serial:/dev/ttyNONE7"}}},
-                                              {"glove", {{"port", "pty:" + dir_ / "none"}}}}}}
-                                 .dump());
+  writeText(dir_ / "c.json",
+            nlohmann::json{{"instance", name},
+                           {"run_directory", dir_.path()},
+                           {"wall", {{"model", model}}},
+                           {"devices",
+                            {deviceEntry("ball", "spaceball", "serial:/dev/ttyNONE7"),
+                             deviceEntry("tracker", "fastrak"),
+                             deviceEntry("glove", "cyberglove", "pty:" + dir_ / "none")}}}
+                .dump());
   Process merlind({kMerlind, "--config", dir_ / "c.json"});
   EXPECT_TRUE(merlind.saysEventually("ready")) << merlind.output();
   EXPECT_TRUE(merlind.saysEventually("ball: absent (/dev/ttyNONE7: No such file or directory)"))
@@ -110,12 +112,13 @@ TEST_F(BadInput, APortThatDoesNotExistLeavesTheRestRunning) {
 TEST_F(BadInput, APortThatIsNoSerialLine) {
   const std::string name = privateName("noline");
   writeText(dir_ / "file", "");
-  writeText(dir_ / "c.json", nlohmann::json{{"instance", name},
-                                            {"run_directory", dir_.path()},
-                                            {"devices",
-                                             {{"ball", {{"port", "serial:/dev/null"}}},
-                                              {"glove", {{"port", "pty:" + dir_ / "file"}}}}}}
-                                 .dump());
+  writeText(dir_ / "c.json",
+            nlohmann::json{{"instance", name},
+                           {"run_directory", dir_.path()},
+                           {"devices",
+                            {deviceEntry("ball", "spaceball", "serial:/dev/null"),
+                             deviceEntry("glove", "cyberglove", "pty:" + dir_ / "file")}}}
+                .dump());
   Process merlind({kMerlind, "--config", dir_ / "c.json", "--role", "devices"});
   EXPECT_TRUE(merlind.saysEventually("/dev/null: ")) << merlind.output();
   EXPECT_TRUE(merlind.saysEventually("is not a terminal; pty: takes the path of a pseudo-terminal"))
@@ -127,33 +130,33 @@ TEST_F(BadInput, ABrokenPostureNetwork) {
   writeText(dir_ / "p.json", "{\"version\": 1}");
   writeText(dir_ / "c.json", nlohmann::json{{"instance", privateName("net")},
                                             {"run_directory", dir_.path()},
-                                            {"devices", {{"postures", "p.json"}}}}
+                                            {"postures", {{"file", "p.json"}}}}
                                  .dump());
   expectOutcome(run({kMerlind, "--config", dir_ / "c.json", "--role", "devices"}), 2, {"p.json"});
 }
 
 TEST_F(BadInput, BindingsToPosturesThatTheNetworkDoesNotKnow) {
   const std::string postures = kSource + "/config/postures.json";
-  writeText(dir_ / "c.json", "{\"devices\": {\"postures\": \"" + postures + R"(",
+  writeText(dir_ / "c.json", "{\"postures\": {\"file\": \"" + postures + R"("},
     "bindings": [
       {"input": "posture.fist", "action": "grab"},
       {"input": "posture.pinhc", "action": "next_mode"},
-      {"input": "posture.salute", "action": "reset_view"}]}})");
+      {"input": "posture.salute", "action": "reset_view"}]})");
   const std::vector<std::string> said = {
-      "c.json:4: /devices/bindings/1/input is \"posture.pinhc\", which is not a posture of " +
-          postures + "; did you mean \"pinch\"? it knows ",
-      "c.json:5: /devices/bindings/2/input is \"posture.salute\", which is not a posture of " +
-          postures + "; it knows ",
+      "c.json:4: /bindings/1/input is \"posture.pinhc\", which is not a posture of " + postures +
+          "; did you mean \"pinch\"? it knows ",
+      "c.json:5: /bindings/2/input is \"posture.salute\", which is not a posture of " + postures +
+          "; it knows ",
       "thumb-up"};
   expectOutcome(run({kMerlind, "--check-config", dir_ / "c.json"}), 2, said);
   expectOutcome(run({kMerlind, "--config", dir_ / "c.json"}), 2, said);
-  writeText(dir_ / "n.json", R"({"devices": {
-    "postures": "none.json"}})");
+  writeText(dir_ / "n.json", R"({"postures": {
+    "file": "none.json"}})");
   expectOutcome(run({kMerlind, "--check-config", dir_ / "n.json"}), 2,
-                {"n.json:2: /devices/postures cannot be used: ", "none.json: No such file"});
+                {"n.json:2: /postures/file cannot be used: ", "none.json: No such file"});
   // A process that only draws the wall does not load the posture network.
   const Outcome wall = run({kMerlind, "--check-config", dir_ / "n.json", "--role", "wall"});
-  EXPECT_EQ(wall.output.find("/devices/postures"), std::string::npos) << wall.output;
+  EXPECT_EQ(wall.output.find("/postures/file"), std::string::npos) << wall.output;
 }
 
 TEST_F(BadInput, AFullStandardOutputIsAFailure) {

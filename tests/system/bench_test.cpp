@@ -64,7 +64,7 @@ class Bench : public testing::Test {
   std::string demoOn(const std::string& model) const {
     auto config = nlohmann::json::parse(readText(kDemo));
     config["wall"]["model"] = model;
-    config["devices"]["postures"] = kSource + "/config/postures.json";
+    config["postures"]["file"] = kSource + "/config/postures.json";
     writeText(dir_ / "demo.json", config.dump());
     return dir_ / "demo.json";
   }

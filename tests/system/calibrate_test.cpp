@@ -15,23 +15,23 @@ class Bench {
  public:
   Bench(const char* device, const char* role, const char* script)
       : role_(role),
+        driver_(device),
         device_({kMerlin, "emulate", device, "--link", dir_ / "line", "--script", script, "--step",
                  "--epoch-ns", "1"}) {
     EXPECT_TRUE(device_.saysEventually(std::string(device) + " on")) << device_.output();
   }
 
-  // Starts a merlind with `configuration` merged into /devices/ROLE.
-  Merlind& start(json configuration = json::object()) {
+  // Starts a merlind with the device; `own`: the settings of its driver.
+  Merlind& start(const json& own = json::object()) {
     merlind_.reset();
-    configuration["port"] = "pty:" + dir_ / "line";
     merlind_ = std::make_unique<Merlind>(
         dir_, "", "calibrate" + std::to_string(++starts_),
-        MerlindOptions{.role = "devices",
-                       .emulate = false,
-                       .also = {{"devices", {{role_, std::move(configuration)}}}}});
+        MerlindOptions{
+            .role = "devices",
+            .emulate = false,
+            .also = onlyDevice(deviceEntry(role_, driver_, "pty:" + dir_ / "line", own))});
     EXPECT_TRUE(merlind_->ready()) << merlind_->process().output();
-    EXPECT_TRUE(merlind_->healthIs(role_ == "ball" ? shm::kBall : shm::kTracker, HealthState::kOk))
-        << merlind_->process().output();
+    EXPECT_TRUE(merlind_->healthIs(role_, HealthState::kOk)) << merlind_->process().output();
     return *merlind_;
   }
   Merlind& merlind() { return *merlind_; }
@@ -50,11 +50,18 @@ class Bench {
     return words;
   }
   std::string file() const { return dir_ / "merlin.json"; }
-  json saved() const { return json::parse(readText(file()))["devices"][role_]; }
+  // The settings of the device's driver in the file.
+  json saved() const {
+    const json config = json::parse(readText(file()));
+    for (const json& device : config["devices"]) {
+      if (device["driver"] == driver_) return device.value(driver_, json::object());
+    }
+    return json::object();
+  }
 
  private:
   TempDir dir_;
-  std::string role_;
+  std::string role_, driver_;
   Process device_;
   std::unique_ptr<Merlind> merlind_;
   int starts_ = 0;
@@ -63,7 +70,7 @@ class Bench {
 // Waits until the station's samples are within 1 cm of `cm` on each axis.
 void isAt(Merlind& merlind, const std::array<float, 3>& cm) {
   EXPECT_TRUE(eventually([&] {
-    const auto sample = merlind.devices()->tracker[0].newest();
+    const auto sample = merlind.devices()->tracker()->stations[0]->newest();
     if (!sample) return false;
     for (std::size_t i = 0; i < 3; ++i) {
       if (std::abs(100 * sample->position_m[i] - cm[i]) > 1) return false;
@@ -115,7 +122,7 @@ TEST(CalibrateTracker, GoesThroughPlacesAndAPose) {
   // positions gives the same result.
   const auto& merlind = bench.start(bench.saved());
   isAt(bench.merlind(), {15, 15, 0});
-  const auto ahead = bench.merlind().devices()->tracker[0].newest();
+  const auto ahead = bench.merlind().devices()->tracker()->stations[0]->newest();
   EXPECT_GT(std::abs(ahead->orientation_wxyz[0]), 0.999F);
   bench.next();  // back to the first position
   isAt(bench.merlind(), {0, 0, 0});
@@ -147,9 +154,9 @@ TEST(CalibrateTracker, KeepsWhatIsInForceOrSaysThatTheFileHasAnother) {
   writeText(bench.file(), "{}");
   const Outcome other = run(bench.calibrate({"--pause", "0.1", "--steps", "boresight"}));
   EXPECT_EQ(other.status, 2) << other.output;
-  EXPECT_NE(
-      other.output.find("/devices/tracker/alignment1_cm differs from that of the running merlind"),
-      std::string::npos)
+  EXPECT_NE(other.output.find(
+                "/devices/1/fastrak/alignment1_cm differs from that of the running merlind"),
+            std::string::npos)
       << other.output;
   EXPECT_EQ(readText(bench.file()), "{}");
   writeText(bench.file(), readText(bench.merlind().config()));
@@ -191,7 +198,7 @@ void moveThrough(Bench& bench) {
     ASSERT_TRUE(calibrate.saysEventually(name)) << calibrate.output();
     if (counts.second != 12) bench.next();
     ASSERT_TRUE(eventually([&, axis = counts.first, raw = counts.second] {
-      const auto sample = bench.merlind().devices()->ball.newest();
+      const auto sample = bench.merlind().devices()->ball()->samples->newest();
       return sample && sample->raw[axis] == raw;
     })) << name;
     calibrate.type("\n");
@@ -203,7 +210,8 @@ TEST(CalibrateBall, GoesThroughPushesAndTwists) {
   Bench bench("spaceball", "ball", "pushes");
   // The calibration uses raw counts, to which the configured axis map and dead zone do not apply.
   bench.start({{"axis_map", {3, 2, 1, 6, 5, 4}}, {"dead_zone", 99}});
-  writeText(bench.file(), "{\"devices\": {\"ball\": {\"cubic\": false}}}");
+  writeText(bench.file(),
+            onlyDevice(deviceEntry("ball", "spaceball", "", {{"cubic", false}})).dump());
   moveThrough(bench);
   const json saved = bench.saved();
   EXPECT_EQ(saved["axis_map"], json({-2, 1, -3, -5, 4, -6}));
@@ -217,10 +225,10 @@ TEST(CalibrateBall, GoesThroughPushesAndTwists) {
   // person.
   bench.start(saved);
   ASSERT_TRUE(eventually([&] {
-    const auto sample = bench.merlind().devices()->ball.newest();
+    const auto sample = bench.merlind().devices()->ball()->samples->newest();
     return sample && sample->rotation[2] == 1;
   }));
-  EXPECT_EQ(bench.merlind().devices()->ball.newest()->rotation[0], 0);
+  EXPECT_EQ(bench.merlind().devices()->ball()->samples->newest()->rotation[0], 0);
 }
 
 TEST(CalibrateBall, RefusesABallThatNobodyMoves) {

@@ -140,18 +140,18 @@ TEST_F(CheckConfig, RefusesSocketsAndPortsThatCannotBeServed) {
 TEST_F(CheckConfig, RefusesPortsThatCannotBePlayed) {
   writeText(dir_ / "bad.bytes", "no transcript\n");
   const auto ball = [](const std::string& port) {
-    return json{{"devices", {{"ball", {{"port", port}}}}}};
+    return onlyDevice(deviceEntry("ball", "spaceball", port));
   };
-  expectRefused(ball("replay:" + dir_ / "bad.bytes"), "/devices/ball/port", "bad.bytes: line 1");
-  expectRefused(ball("replay:" + dir_ / "none"), "/devices/ball/port", "No such file");
-  expectRefused(ball("tcp://256.1.1.1:99999"), "/devices/ball/port", "allowed are serial:");
+  expectRefused(ball("replay:" + dir_ / "bad.bytes"), "/devices/0/port", "bad.bytes: line 1");
+  expectRefused(ball("replay:" + dir_ / "none"), "/devices/0/port", "No such file");
+  expectRefused(ball("tcp://256.1.1.1:99999"), "/devices/0/port", "allowed are serial:");
 }
 
 TEST_F(CheckConfig, LooksAtWhatTheRoleNeeds) {
   const std::string config = file({{"wall", {{"model", "none.mrm"}}}});
   EXPECT_EQ(run({kMerlind, "--check-config", config, "--role", "devices"}).status, 0);
   EXPECT_EQ(run({kMerlind, "--check-config", config, "--role", "wall"}).status, 2);
-  const std::string replay = file({{"devices", {{"ball", {{"port", "replay:none"}}}}}});
+  const std::string replay = file(onlyDevice(deviceEntry("ball", "spaceball", "replay:none")));
   EXPECT_EQ(run({kMerlind, "--check-config", replay, "--role", "wall"}).status, 0);
 }
 
@@ -161,14 +161,14 @@ TEST_F(CheckConfig, ADefaultBindingIsNobodysMistake) {
   for (std::size_t at = 0; (at = network.find("\"fist\"", at)) != std::string::npos;)
     network.replace(at, 6, "\"ball\"");
   writeText(dir_ / "own.json", network);
-  const json devices = {{"devices", {{"postures", "own.json"}}}};
+  const json devices = {{"postures", {{"file", "own.json"}}}};
   for (const char* role : {"devices", "all"}) {
     const Outcome checked = run({kMerlind, "--check-config", file(devices), "--role", role});
     EXPECT_EQ(checked.status, 0) << role << ": " << checked.output;
   }
   json bound = devices;
-  bound["devices"]["bindings"] = json::array({{{"input", "posture.fist"}, {"action", "grab"}}});
-  expectRefused(bound, "/devices/bindings/0/input", "is not a posture of");
+  bound["bindings"] = json::array({{{"input", "posture.fist"}, {"action", "grab"}}});
+  expectRefused(bound, "/bindings/0/input", "is not a posture of");
 }
 
 TEST_F(CheckConfig, AnEmptyNameIsBadUsageAndStartsNothing) {
@@ -183,7 +183,7 @@ TEST_F(CheckConfig, AnEmptyNameIsBadUsageAndStartsNothing) {
 TEST_F(CheckConfig, ACheckThatDoesNotEndIsNotValid) {
   std::string bindings;
   for (int i = 0; i < 340'000; ++i) bindings += i == 0 ? "{}" : ",{}";
-  writeText(dir_ / "c.json", "{\"devices\": {\"bindings\": [" + bindings + "]}}");
+  writeText(dir_ / "c.json", "{\"bindings\": [" + bindings + "]}");
   const std::string check = kMerlind + " --check-config " + dir_ / "c.json";
 #if !defined(MERLIN_ANY_SANITIZER)
   const Outcome starved = run({"/bin/bash", "-c", "ulimit -v 150000; exec " + check});

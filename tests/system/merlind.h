@@ -43,6 +43,21 @@ struct MerlindOptions {
   nlohmann::json also = nlohmann::json::object();  // merged into the configuration
 };
 
+// An entry of the configuration's list of devices. `own`: the settings of its driver.
+inline nlohmann::json deviceEntry(const std::string& name, const std::string& driver,
+                                  const std::string& port = {},
+                                  const nlohmann::json& own = nullptr) {
+  nlohmann::json entry = {{"name", name}, {"driver", driver}};
+  if (!port.empty()) entry["port"] = port;
+  if (!own.is_null()) entry[driver] = own;
+  return entry;
+}
+
+// A configuration's list with this one device.
+inline nlohmann::json onlyDevice(const nlohmann::json& entry) {
+  return {{"devices", nlohmann::json::array({entry})}};
+}
+
 class Merlind {
  public:
   Merlind(const TempDir& dir, const std::string& model, const std::string& name,
@@ -52,7 +67,8 @@ class Merlind {
         {"instance", instance_},
         {"run_directory", dir.path()},
         {"state_file", dir / (name + ".state.json")},
-        {"devices", {{"postures", kSource + "/config/postures.json"}, {"script", options.script}}},
+        {"postures", {{"file", kSource + "/config/postures.json"}}},
+        {"script", options.script},
         {"wall", {{"model", model}, {"rate", {{"rate_hz", options.rate_hz}}}}}};
     config.merge_patch(options.also);
     writeText(config_, config.dump(2));
@@ -66,10 +82,9 @@ class Merlind {
   const std::string& config() const { return config_; }
   bool ready() { return process_->saysEventually("ready"); }
 
-  const shm::DevicesSegment* devices() {
+  const shm::DeviceSlots* devices() {
     if (!devices_) {
-      auto opened =
-          shm::SegmentReader<shm::DevicesSegment>::open(shm::segmentName(instance_, "devices"));
+      auto opened = shm::DevicesReader::open(shm::segmentName(instance_, "devices"));
       if (!opened) return nullptr;
       devices_.emplace(*std::move(opened));
     }
@@ -80,12 +95,27 @@ class Merlind {
         shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(instance_, "wall"));
     return opened ? (*opened)->stats.read().value_or(shm::WallStats{}) : shm::WallStats{};
   }
-  bool healthIs(shm::DeviceIndex device, HealthState state) {
+  // The last health of the device with this name; nothing before the first.
+  std::optional<DeviceHealth> health(const std::string& device) {
+    const auto* const slots = devices();
+    for (std::size_t i = 0; slots && i < slots->health.size(); ++i) {
+      if (slots->health[i].device == device) return slots->health[i].slot->read();
+    }
+    return std::nullopt;
+  }
+  bool healthIs(const std::string& device, HealthState state) {
     return eventually([&] {
-      const auto* d = devices();
-      const auto health = d ? d->health[device].read() : std::nullopt;
-      return health && health->state == state;
+      const auto now = health(device);
+      return now && now->state == state;
     });
+  }
+  // The actions that the inputs of the device with this name have begun; nothing before the first.
+  std::optional<shm::ActionState> actions(const std::string& device) {
+    const auto* const slots = devices();
+    for (std::size_t i = 0; slots && i < slots->actions.size(); ++i) {
+      if (slots->actions[i].source == device) return slots->actions[i].slot->read();
+    }
+    return std::nullopt;
   }
   nlohmann::json status() {
     const Outcome asked = run({kMerlin, "status", "--json", "--instance", instance_});
@@ -118,7 +148,7 @@ class Merlind {
  private:
   std::string instance_, config_;
   std::unique_ptr<Process> process_;
-  std::optional<shm::SegmentReader<shm::DevicesSegment>> devices_;
+  std::optional<shm::DevicesReader> devices_;
 };
 
 }  // namespace merlin::test

@@ -151,10 +151,8 @@ TEST_F(OperatorPanelSystem, AClientThatDiesWithAnArrowHeldLetsGo) {
 // The emulated visitor enters with button 3, chooses the arrow down, holds it with button 1, and
 // leaves with button 3; between entering and leaving only the arrow moves the model.
 TEST_F(OperatorPanelSystem, TheBallEntersWorksItAndLeaves) {
-  start("panel",
-        {{"devices",
-          {{"bindings",
-            json::array({json{{"input", "ball.button.3"}, {"action", "operator_panel"}}})}}}});
+  start("panel", {{"bindings",
+                   json::array({json{{"input", "ball.button.3"}, {"action", "operator_panel"}}})}});
   // The visitor does it again every eight seconds; a busy machine may miss a button.
   constexpr std::chrono::minutes kPatience(2);
   EXPECT_TRUE(eventually([&] { return byBall() && wall_->wall().moving == 0; }, kPatience));

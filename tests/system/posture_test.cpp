@@ -25,7 +25,7 @@ TEST(PostureCollect, TakesHandsOfALiveGloveAndWarnsOfTwoThatLookAlike) {
   const TempDir dir;
   Merlind merlind(dir, "", "collect", {.script = "still", .role = "devices"});
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
-  ASSERT_TRUE(merlind.healthIs(shm::kGlove, HealthState::kOk));
+  ASSERT_TRUE(merlind.healthIs("glove", HealthState::kOk));
   const std::string file = dir / "hands.csv";
   const Outcome open = run(collect(merlind, "open", file));
   ASSERT_EQ(open.status, 0) << open.output;
@@ -69,7 +69,7 @@ TEST(PostureCollect, TakesHandsOfARecording) {
       dir, "", "replayed",
       {.role = "devices",
        .emulate = false,
-       .also = {{"devices", {{"glove", {{"port", "replay:" + dir / "glove.bytes"}}}}}}});
+       .also = onlyDevice(deviceEntry("glove", "cyberglove", "replay:" + dir / "glove.bytes"))});
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
   const std::string file = dir / "hands.csv";
   const Outcome open = run(collect(merlind, "open", file));
@@ -85,7 +85,7 @@ TEST(PostureCollect, SaysWhyThereAreNoHands) {
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
   const Outcome silent = run(collect(merlind, "open", dir / "hands.csv"));
   EXPECT_EQ(silent.status, 1) << silent.output;
-  EXPECT_NE(silent.output.find("the glove has sent nothing for 3 s"), std::string::npos);
+  EXPECT_NE(silent.output.find("glove has sent nothing for 3 s"), std::string::npos);
   const Outcome name = run(collect(merlind, "two words", dir / "hands.csv"));
   EXPECT_EQ(name.status, 2) << name.output;
   EXPECT_NE(name.output.find("LABEL \"two words\": allowed are 1 to 19 letters"),

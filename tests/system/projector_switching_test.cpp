@@ -21,13 +21,12 @@ class ProjectorSwitching : public testing::Test {
   }
 
   void start(const json& more = json::object()) {
-    json devices = {{"projectors",
-                     {{{"name", "left"}, {"address", "127.0.0.1:" + left_.port}},
-                      {{"name", "right"}, {"address", "127.0.0.1:" + right_.port}}}}};
-    devices.merge_patch(more);
+    json also = {{"projectors",
+                  {{{"name", "left"}, {"address", "127.0.0.1:" + left_.port}},
+                   {{"name", "right"}, {"address", "127.0.0.1:" + right_.port}}}}};
+    also.merge_patch(more);
     m_ = std::make_unique<Merlind>(
-        dir_, "", "projectors",
-        MerlindOptions{.role = "devices", .emulate = false, .also = {{"devices", devices}}});
+        dir_, "", "projectors", MerlindOptions{.role = "devices", .emulate = false, .also = also});
     ASSERT_TRUE(m_->ready()) << m_->process().output();
   }
   Outcome merlin(const std::string& command) {

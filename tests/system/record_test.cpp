@@ -53,11 +53,11 @@ TEST(Flight, TheDaemonDumpsOnCommandAndOnAFault) {
   const TempDir dir;
   Merlind merlind(dir, "", "flight", {.script = "turning", .role = "devices"});
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
-  ASSERT_TRUE(merlind.healthIs(shm::kBall, HealthState::kOk));
-  ASSERT_TRUE(eventually([&] { return merlind.devices()->ball.count() > 20; }));
+  ASSERT_TRUE(merlind.healthIs("ball", HealthState::kOk));
+  ASSERT_TRUE(eventually([&] { return merlind.devices()->ball()->samples->count() > 20; }));
   const Outcome asked = run({kMerlin, "flight", "--instance", merlind.instance()});
   ASSERT_EQ(asked.status, 0) << asked.output;
-  const auto at = asked.output.find(dir / "flight/" + merlind.instance() + "-spaceball-");
+  const auto at = asked.output.find(dir / "flight/" + merlind.instance() + "-ball-");
   ASSERT_NE(at, std::string::npos) << asked.output;
   const auto dump =
       io::readTranscript(asked.output.substr(at, asked.output.find(".bytes", at) + 6 - at));
@@ -65,7 +65,7 @@ TEST(Flight, TheDaemonDumpsOnCommandAndOnAFault) {
   EXPECT_EQ((*dump)["driver"], "spaceball");
   EXPECT_GT(dump->chunks.size(), 20u);
   for (const pid_t child : merlind.children("spaceball")) ::kill(child, SIGKILL);
-  EXPECT_TRUE(merlind.process().saysEventually("the last bytes of the spaceball are in"))
+  EXPECT_TRUE(merlind.process().saysEventually("the last bytes of ball are in"))
       << merlind.process().output();
 }
 
@@ -88,9 +88,10 @@ TEST(Calibrate, WritesIntoAConfigurationThatTheDaemonAccepts) {
   EXPECT_EQ(imported.status, 0) << imported.output;
   const auto json = nlohmann::json::parse(readText(config));
   EXPECT_EQ(json["instance"], "kept");
-  EXPECT_EQ(json["devices"]["ball"]["full_scale_translation"], 6000);
-  EXPECT_EQ(json["devices"]["tracker"]["boresight2_wxyz"][3], 0.8);
-  EXPECT_EQ(json["devices"]["glove"]["offset"][4], 60);
+  ASSERT_EQ(json["devices"].size(), 3u) << "the default list: " << json;
+  EXPECT_EQ(json["devices"][2]["spaceball"]["full_scale_translation"], 6000);
+  EXPECT_EQ(json["devices"][1]["fastrak"]["boresight2_wxyz"][3], 0.8);
+  EXPECT_EQ(json["devices"][0]["cyberglove"]["offset"][4], 60);
   const Outcome checked = run({kMerlind, "--check-config", config, "--role", "devices"});
   EXPECT_EQ(checked.status, 0) << checked.output;
   const std::string before = readText(config);

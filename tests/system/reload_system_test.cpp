@@ -14,19 +14,41 @@ namespace {
 
 using nlohmann::json;
 
+constexpr const char* kDevices[] = {"glove", "tracker", "ball"};
+
 json bindings(const std::string& fist) {
   return json::array({{{"input", "posture.fist"}, {"action", fist}},
                       {{"input", "ball.button.2"}, {"action", "next_mode"}}});
 }
 
+// The default devices, of which the one with this name has these settings of its driver, or another
+// member of its entry.
+json devicesWith(const std::string& name, const json& own, const json& members = json::object()) {
+  json list = json::array({deviceEntry("glove", "cyberglove"), deviceEntry("tracker", "fastrak"),
+                           deviceEntry("ball", "spaceball")});
+  for (json& entry : list) {
+    if (entry["name"] != name) continue;
+    if (!own.is_null()) entry[entry["driver"].get<std::string>()] = own;
+    entry.update(members);
+  }
+  return {{"devices", list}};
+}
+
+json handWith(const json& members) { return {{"hands", json::array({members})}}; }
+
+json both(json first, const json& second) {
+  first.update(second);
+  return first;
+}
+
 class Reload : public testing::Test {
  protected:
   // The devices' process, whose emulated person makes a fist and opens it in turn.
-  void start(const json& also = {{"devices", {{"bindings", bindings("grab")}}}}) {
+  void start(const json& also = {{"bindings", bindings("grab")}}) {
     merlind_.emplace(dir_, "", "reload",
                      MerlindOptions{.script = "grabbing", .role = "devices", .also = also});
     ASSERT_TRUE(merlind_->ready()) << merlind_->process().output();
-    for (const auto device : {shm::kGlove, shm::kTracker, shm::kBall})
+    for (const char* device : kDevices)
       ASSERT_TRUE(merlind_->healthIs(device, HealthState::kOk)) << device;
     written_ = json::parse(readText(merlind_->config()));
   }
@@ -38,10 +60,15 @@ class Reload : public testing::Test {
     more.insert(more.begin(), {kMerlin, "reload", "--instance", merlind_->instance()});
     return run(more);
   }
-  DeviceHealth health(shm::DeviceIndex device) {
-    return *merlind_->devices()->health[device].read();
+  DeviceHealth health(const std::string& device) {
+    return merlind_->health(device).value_or(DeviceHealth{});
   }
-  shm::ActionState actions() { return *merlind_->devices()->actions[shm::kGloveActions].read(); }
+  std::map<std::string, DeviceHealth> healths() {
+    std::map<std::string, DeviceHealth> all;
+    for (const char* device : kDevices) all[device] = health(device);
+    return all;
+  }
+  shm::ActionState actions() { return merlind_->actions("glove").value_or(shm::ActionState{}); }
   std::uint32_t begun(std::string_view action) {
     for (std::size_t i = 0; i < kActions.size(); ++i) {
       if (action == kActions[i]) return actions().begun[i];
@@ -66,27 +93,27 @@ class Reload : public testing::Test {
 TEST_F(Reload, AChangedBindingActsAndNoLineIsClosed) {
   start();
   ASSERT_TRUE(eventually([&] { return begun("grab") > 0; }));
-  const DeviceHealth before[] = {health(shm::kGlove), health(shm::kTracker), health(shm::kBall)};
-  write({{"devices", {{"bindings", bindings("reset_view")}}}});
+  auto before = healths();
+  write({{"bindings", bindings("reset_view")}});
   const Outcome done = reload();
   EXPECT_EQ(done.status, 0) << done.output;
-  EXPECT_EQ(done.output, "/devices/bindings/0/action: \"grab\" -> \"reset_view\"\n");
+  EXPECT_EQ(done.output, "/bindings/0/action: \"grab\" -> \"reset_view\"\n");
   EXPECT_TRUE(eventually([&] { return begun("reset_view") > 0; }));
   const std::uint32_t grabs = begun("grab");
   EXPECT_EQ(actions().held[actionIndex("grab")], 0);
   const std::uint32_t resets = begun("reset_view");
   EXPECT_TRUE(eventually([&] { return begun("reset_view") > resets; }));
   EXPECT_EQ(begun("grab"), grabs);
-  for (const auto device : {shm::kGlove, shm::kTracker, shm::kBall}) {
+  for (const char* device : kDevices) {
     EXPECT_EQ(health(device).since_ns, before[device].since_ns) << device;
     EXPECT_EQ(health(device).reconnects, before[device].reconnects) << device;
   }
-  EXPECT_GT(health(shm::kGlove).samples, before[shm::kGlove].samples);
+  EXPECT_GT(health("glove").samples, before["glove"].samples);
   EXPECT_EQ(reload().output, "nothing changed\n");
-  write({{"devices", {{"bindings", bindings("grab")}}}});
+  write({{"bindings", bindings("grab")}});
   ASSERT_EQ(::kill(merlind_->process().pid(), SIGHUP), 0);
   EXPECT_TRUE(merlind_->process().saysEventually(
-      "reload: /devices/bindings/0/action was \"reset_view\" and is \"grab\""))
+      "reload: /bindings/0/action was \"reset_view\" and is \"grab\""))
       << merlind_->process().output();
   EXPECT_TRUE(eventually([&] { return begun("grab") > grabs; }));
   EXPECT_EQ(merlind_->process().kill(SIGTERM), 0);
@@ -94,18 +121,18 @@ TEST_F(Reload, AChangedBindingActsAndNoLineIsClosed) {
 
 TEST_F(Reload, ADeviceIsMadeAnewAloneAndItsCountersGoOn) {
   start();
-  const DeviceHealth before[] = {health(shm::kGlove), health(shm::kTracker), health(shm::kBall)};
-  write({{"devices", {{"glove", {{"light", "on"}}}}}});
+  auto before = healths();
+  write(devicesWith("glove", {{"light", "on"}}));
   const std::string pid = std::to_string(merlind_->process().pid());
   const Outcome done = run({kMerlin, "reload", "--pid", pid});
-  EXPECT_EQ(done.output, "/devices/glove/light: \"switch\" -> \"on\"\n");
+  EXPECT_EQ(done.output, "/devices/0/cyberglove/light: \"switch\" -> \"on\"\n");
   EXPECT_TRUE(eventually([&] {
-    const DeviceHealth glove = health(shm::kGlove);
-    return glove.state == HealthState::kOk && glove.since_ns > before[shm::kGlove].since_ns &&
-           glove.samples > before[shm::kGlove].samples + 10;
+    const DeviceHealth glove = health("glove");
+    return glove.state == HealthState::kOk && glove.since_ns > before["glove"].since_ns &&
+           glove.samples > before["glove"].samples + 10;
   })) << merlind_->process().output();
-  EXPECT_EQ(health(shm::kGlove).reconnects, before[shm::kGlove].reconnects + 1);
-  for (const auto device : {shm::kTracker, shm::kBall})
+  EXPECT_EQ(health("glove").reconnects, before["glove"].reconnects + 1);
+  for (const char* device : {"tracker", "ball"})
     EXPECT_EQ(health(device).since_ns, before[device].since_ns) << device;
   EXPECT_EQ(merlind_->process().output().find("the last bytes of"), std::string::npos)
       << "a device that was stopped on purpose has not failed";
@@ -115,7 +142,7 @@ TEST_F(Reload, ADeviceIsMadeAnewAloneAndItsCountersGoOn) {
 TEST_F(Reload, ABadFileIsSaidAndChangesNothing) {
   start();
   const std::string good = written_.dump(2);
-  write({{"devices", {{"bindings", bindings("fly")}}}});
+  write({{"bindings", bindings("fly")}});
   const std::string wanted = written_.dump(2);
   const auto broken = [&](const json& patch) {
     json copy = written_;
@@ -123,11 +150,12 @@ TEST_F(Reload, ABadFileIsSaidAndChangesNothing) {
     return copy.dump(2);
   };
   for (const std::string& text :
-       {wanted.substr(0, wanted.size() / 2), broken({{"devices", {{"bal", {{"baud", 9600}}}}}}),
-        broken({{"devices", {{"ball", {{"baud", 12345}}}}}}),
-        broken({{"devices", {{"postures", "none.json"}}}}),
-        broken({{"devices", {{"posture_hold_s", 99}}}}),  // a start would adjust it
-        broken({{"devices", {{"glove", {{"port", "serial"}}}}}, {"wall", {{"outputs", 3}}}})}) {
+       {wanted.substr(0, wanted.size() / 2), broken(devicesWith("ball", nullptr, {{"bau", 9600}})),
+        broken(devicesWith("ball", nullptr, {{"baud", 12345}})),
+        broken({{"postures", {{"file", "none.json"}}}}),
+        broken({{"postures", {{"hold_s", 99}}}}),  // a start would adjust it
+        broken(both(devicesWith("glove", nullptr, {{"port", "serial"}}),
+                    {{"wall", {{"outputs", 3}}}}))}) {
     writeText(merlind_->config(), text);
     const Outcome checked =
         run({kMerlind, "--check-config", merlind_->config(), "--role", "devices", "--emulate"});
@@ -158,15 +186,15 @@ TEST_F(Reload, ABadFileIsSaidAndChangesNothing) {
 
 TEST_F(Reload, WhatOnlyARestartTakesIsRefusedWithAllTheRest) {
   start();
-  write({{"devices", {{"cpu_latency_us", 100}, {"bindings", bindings("fly")}}}});
+  write({{"cpu_latency_us", 100}, {"bindings", bindings("fly")}});
   const Outcome refused = reload();
   EXPECT_EQ(refused.status, 2);
   EXPECT_EQ(refused.output,
             "merlin: nothing was changed, since merlind takes this setting only when it starts: "
-            "systemctl restart merlind\n  /devices/cpu_latency_us\n");
-  EXPECT_TRUE(merlind_->process().saysEventually(
-      "/devices/cpu_latency_us changed, which only a restart takes"));
-  write({{"devices", {{"cpu_latency_us", -1}}}, {"page", {{"port", 7999}}}});
+            "systemctl restart merlind\n  /cpu_latency_us\n");
+  EXPECT_TRUE(
+      merlind_->process().saysEventually("/cpu_latency_us changed, which only a restart takes"));
+  write({{"cpu_latency_us", -1}, {"page", {{"port", 7999}}}});
   const Outcome would = reload({"--check", "--json"});
   EXPECT_EQ(would.status, 0) << would.output;
   const json answer = json::parse(would.output, nullptr, false)["processes"][0];
@@ -178,7 +206,7 @@ TEST_F(Reload, WhatOnlyARestartTakesIsRefusedWithAllTheRest) {
   const Outcome done = reload();
   EXPECT_EQ(done.status, 0);
   EXPECT_EQ(done.output,
-            "/devices/bindings/0/action: \"grab\" -> \"fly\"\n"
+            "/bindings/0/action: \"grab\" -> \"fly\"\n"
             "/page/port: is taken by the page when it starts: systemctl restart merlin-page\n");
 }
 
@@ -186,22 +214,23 @@ TEST_F(Reload, WhatOnlyARestartTakesIsRefusedWithAllTheRest) {
 TEST_F(Reload, FiftyInARowLeaveNothingBehind) {
   start();
   const json good[] = {
-      {{"devices", {{"bindings", bindings("fly")}}}},
-      {{"devices", {{"bindings", bindings("grab")}, {"stale_after_s", 0.7}}}},
-      {{"devices", {{"posture_hold_s", 0.1}, {"postures", ""}}}},
-      {{"devices", {{"posture_hold_s", 0.2}, {"postures", kSource + "/config/postures.json"}}}},
-      {{"devices", {{"ball", {{"dead_zone", 5}}}}}},
-      {{"devices", {{"ball", {{"dead_zone", 6}}}, {"hand", {{"cutoff_hz", 4}}}}}},
-      {{"devices", {{"tracker", {{"alignment1_cm", {0, 0, 0, 1, 0, 0, 0, 1, 0}}}}}}},
-      {{"devices", {{"hand", {{"station", 2}, {"cutoff_hz", 5}}}}}}};
-  const json bad[] = {{{"devices", {{"ball", {{"baud", 7}}}}}},
-                      {{"devices", {{"hands", 1}}}},
-                      {{"devices", {{"script", "still"}}}},
-                      {{"devices", {{"postures", "none"}}}}};
+      {{"bindings", bindings("fly")}},
+      {{"bindings", bindings("grab")}, {"people", {{"stale_after_s", 0.7}}}},
+      {{"postures", {{"hold_s", 0.1}, {"file", ""}}}},
+      {{"postures", {{"hold_s", 0.2}, {"file", kSource + "/config/postures.json"}}}},
+      devicesWith("ball", {{"dead_zone", 5}}),
+      both(devicesWith("ball", {{"dead_zone", 6}}), handWith({{"cutoff_hz", 4}})),
+      devicesWith("tracker", {{"alignment1_cm", {0, 0, 0, 1, 0, 0, 0, 1, 0}}}),
+      handWith({{"station", 2}, {"cutoff_hz", 5}})};
+  const json bad[] = {devicesWith("ball", nullptr, {{"baud", 7}}),
+                      {{"hands", 1}},
+                      {{"script", "still"}},
+                      {{"postures", {{"file", "none"}}}},
+                      devicesWith("ball", nullptr, {{"name", "mouse"}})};
   // Before any client is connected: its place is free some time after it has gone.
   const std::size_t descriptors = entriesOf("fd"), threads = entriesOf("task");
   std::mt19937 random(5);
-  std::uint64_t samples = health(shm::kGlove).samples;
+  std::uint64_t samples = health("glove").samples;
   for (int i = 0; i < 50; ++i) {
     const bool is_good = random() % 3 != 0;
     const json kept = written_;
@@ -209,12 +238,12 @@ TEST_F(Reload, FiftyInARowLeaveNothingBehind) {
     const Outcome done = reload();
     EXPECT_EQ(done.status, is_good ? 0 : 2) << i << ": " << done.output;
     if (!is_good) written_ = kept;
-    EXPECT_TRUE(eventually([&] { return health(shm::kGlove).samples > samples; })) << i;
-    samples = health(shm::kGlove).samples;
+    EXPECT_TRUE(eventually([&] { return health("glove").samples > samples; })) << i;
+    samples = health("glove").samples;
   }
-  for (const auto device : {shm::kGlove, shm::kTracker, shm::kBall})
+  for (const char* device : kDevices)
     EXPECT_TRUE(merlind_->healthIs(device, HealthState::kOk)) << device;
-  EXPECT_EQ(health(shm::kGlove).reconnects, 0u) << "it was never closed";
+  EXPECT_EQ(health("glove").reconnects, 0u) << "it was never closed";
   EXPECT_TRUE(eventually([&] { return entriesOf("fd") == descriptors; }))
       << entriesOf("fd") << " descriptors instead of " << descriptors;
   EXPECT_TRUE(eventually([&] { return entriesOf("task") == threads; }))
@@ -226,7 +255,7 @@ TEST_F(Reload, FiftyInARowLeaveNothingBehind) {
 class ReloadOfTwo : public Reload {
  protected:
   void SetUp() override {
-    start({{"devices", {{"bindings", bindings("grab")}}},
+    start({{"bindings", bindings("grab")},
            {"wall", {{"model", makeModel(dir_, 2)}, {"rate", {{"rate_hz", 10}}}}}});
     wall_.emplace(
         std::vector<std::string>{kMerlind, "--config", merlind_->config(), "--role", "wall"});
@@ -238,7 +267,8 @@ class ReloadOfTwo : public Reload {
 TEST_F(ReloadOfTwo, EachTakesItsPartAndTheWallGoesOn) {
   const std::uint64_t frames = merlind_->wall().frames;
   ASSERT_EQ(merlind_->wall().rate_asked_hz, 10);
-  write({{"devices", {{"bindings", bindings("fly")}, {"hand", {{"station", 2}}}}},
+  write({{"bindings", bindings("fly")},
+         {"hands", json::array({{{"station", 2}}})},
          {"wall",
           {{"rate", {{"rate_hz", 12}}},
            {"playlist", {{"dim_after_s", 100}}},
@@ -246,7 +276,7 @@ TEST_F(ReloadOfTwo, EachTakesItsPartAndTheWallGoesOn) {
   const Outcome done = reload();
   EXPECT_EQ(done.status, 0) << done.output;
   for (const char* line :
-       {"/devices/hand/station: 1 -> 2\n", "/wall/rate/rate_hz: 10 -> 12\n",
+       {"/hands/0/station: 1 -> 2\n", "/wall/rate/rate_hz: 10 -> 12\n",
         "/wall/playlist/dim_after_s: 0 -> 100\n", "/wall/scene/hand_gain: 3 -> 2\n"})
     EXPECT_NE(done.output.find(line), std::string::npos) << line << done.output;
   EXPECT_EQ(done.output.find("is taken by"), std::string::npos) << done.output;
@@ -256,15 +286,14 @@ TEST_F(ReloadOfTwo, EachTakesItsPartAndTheWallGoesOn) {
 }
 
 TEST_F(ReloadOfTwo, WhatOneRefusesNeitherTakes) {
-  write({{"devices", {{"bindings", bindings("fly")}}},
-         {"wall", {{"render", {{"wireframe", true}}}}}});
+  write({{"bindings", bindings("fly")}, {"wall", {{"render", {{"wireframe", true}}}}}});
   const Outcome refused = reload();
   EXPECT_EQ(refused.status, 2) << refused.output;
   EXPECT_NE(refused.output.find("\n  /wall/render/wireframe\n"), std::string::npos)
       << refused.output;
   write({{"wall", {{"render", {{"wireframe", false}}}}}});
   const Outcome done = reload();
-  EXPECT_EQ(done.output, "/devices/bindings/0/action: \"grab\" -> \"fly\"\n")
+  EXPECT_EQ(done.output, "/bindings/0/action: \"grab\" -> \"fly\"\n")
       << "it was not swapped before: " << done.output;
 }
 

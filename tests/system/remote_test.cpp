@@ -22,7 +22,7 @@ struct TwoMachines : testing::Test {
     std::filesystem::create_directory(dir / "b");
     writeText(dir / "devices.json", nlohmann::json{{"instance", devices_name},
                                                    {"run_directory", dir / "a"},
-                                                   {"devices", {{"script", "turning"}}},
+                                                   {"script", "turning"},
                                                    {"serve",
                                                     {{"samples_endpoint", endpoint},
                                                      {"samples_keys", dir / "devices.keys"},
@@ -66,12 +66,11 @@ TEST_F(TwoMachines, TheWallMovesWithTheOtherMachinesBallAndOutlivesIt) {
   ASSERT_TRUE(wall.saysEventually("ready")) << wall.output();
   const auto segment =
       shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(wall_name, "wall"));
-  const auto mirror =
-      shm::SegmentReader<shm::DevicesSegment>::open(shm::segmentName(wall_name, "devices"));
+  const auto mirror = shm::DevicesReader::open(shm::segmentName(wall_name, "devices"));
   ASSERT_TRUE(segment && mirror);
   const auto moving = [&] { return (*segment)->stats.read()->moving != 0; };
   const auto ball = [&] {
-    const auto health = (*mirror)->health[shm::kBall].read();
+    const auto health = (*mirror)->ball()->health->read();
     return health ? health->state : HealthState::kAbsent;
   };
   ASSERT_TRUE(eventually([&] { return !moving(); }));  // the other daemon does not run yet

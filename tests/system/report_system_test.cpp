@@ -55,9 +55,8 @@ TEST(Report, OfARunningWallHasItsPartsAndNoSecret) {
   MerlindOptions options;
   options.also = {
       {"serve", {{"samples_keys", "wall.keys"}}},
-      {"devices",
-       {{"projectors",
-         {{{"name", "left"}, {"address", "127.0.0.1:1"}, {"password_file", "left.password"}}}}}},
+      {"projectors",
+       {{{"name", "left"}, {"address", "127.0.0.1:1"}, {"password_file", "left.password"}}}},
       // Somebody has written the password where everybody sees it.
       {"wall", {{"contents", {{{"model", model}, {"name", kPassword}}}}}}};
   Merlind wall(dir, model, "report", options);
@@ -91,7 +90,7 @@ TEST(Report, OfARunningWallHasItsPartsAndNoSecret) {
   });
   EXPECT_GE(recordings, 1 + 3) << "glove, tracker and ball of now: " << made.output;
   EXPECT_NE(files.at("wall/configuration/changes.txt")
-                .find("/devices/projectors/0/password_file: (absent) -> \"(left out)\""),
+                .find("/projectors/0/password_file: (absent) -> \"(left out)\""),
             std::string::npos);
   for (const std::string& secret :
        {std::string(kPassword), std::string(kToken), key, std::string("left.password")})
@@ -100,11 +99,11 @@ TEST(Report, OfARunningWallHasItsPartsAndNoSecret) {
 
 TEST(Report, OfAWallThatDoesNotRunSaysSoAndQuotesNoFile) {
   const TempDir dir;
-  writeText(dir / "wall.json",
-            std::string(R"({"instance": "merlin-report-none", "password": ")") + kPassword +
-                R"(", "devices": {"projectors": [{"name": "left", "address": "127.0.0.1:1",
+  writeText(dir / "wall.json", std::string(R"({"instance": "merlin-report-none", "password": ")") +
+                                   kPassword +
+                                   R"(", "projectors": [{"name": "left", "address": "127.0.0.1:1",
                 "password_file": ")" +
-                kPassword + R"("}, ")" + kPassword + "\"]}}");
+                                   kPassword + R"("}, ")" + kPassword + "\"]}");
   const Outcome made = run({kMerlin, "report", "-o", dir / "none.tar.gz", "-c", dir / "wall.json"});
   ASSERT_EQ(made.status, 0) << made.output;
   EXPECT_NE(made.output.find("status: 0 files, 0.0 kB\n  missing: status.json: no merlind runs as "
@@ -128,8 +127,8 @@ TEST(Report, TheJournalIsThatOfTheUnitsWithoutSecrets) {
   std::filesystem::permissions(journalctl, std::filesystem::perms::owner_all);
   writeText(dir / "left.password", std::string(kPassword) + "\n");
   writeText(dir / "wall.json",
-            R"({"instance": "merlin-report-none", "devices": {"projectors": [
-                {"name": "left", "address": "127.0.0.1:1", "password_file": "left.password"}]}})");
+            R"({"instance": "merlin-report-none", "projectors": [
+                {"name": "left", "address": "127.0.0.1:1", "password_file": "left.password"}]})");
   Process made({kMerlin, "report", "-o", dir / "none.tar.gz", "-c", dir / "wall.json"},
                {{"PATH", dir.path() + ":/usr/bin:/bin"}});
   ASSERT_EQ(made.wait(), 0) << made.output();

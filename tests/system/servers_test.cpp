@@ -95,7 +95,7 @@ TEST(Servers, TheExampleOfLibspnavSeesTheEmulatedBallTurn) {
   MerlindOptions options = devicesThatServe({{"spnav_socket", dir / "spnav.sock"}});
   options.script = "turning";
   Merlind merlind(dir, "", "libspnav", options);
-  ASSERT_TRUE(merlind.healthIs(shm::kBall, HealthState::kOk)) << merlind.process().output();
+  ASSERT_TRUE(merlind.healthIs("ball", HealthState::kOk)) << merlind.process().output();
   Process simple({"stdbuf", "-oL", dir / "simple"}, {{"SPNAV_SOCKET", dir / "spnav.sock"}});
   ASSERT_TRUE(simple.saysEventually("protocol version: 1")) << simple.output();
   ASSERT_TRUE(simple.saysEventually("Device: Spaceball")) << simple.output();
@@ -230,7 +230,7 @@ TEST(Servers, AVrpnClientThatFloodsTakesNoMemoryAndMerlindStopsAtOnce) {
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
   UniqueFd client;
   ASSERT_TRUE(eventually([&] { return (client = connectTo(port)).valid(); }));
-  ASSERT_TRUE(merlind.healthIs(shm::kBall, HealthState::kOk)) << "all that it needs is in memory";
+  ASSERT_TRUE(merlind.healthIs("ball", HealthState::kOk)) << "all that it needs is in memory";
   const long before = residentKb(merlind.process().pid());
   std::string bytes;
   VrpnHeader unknown;

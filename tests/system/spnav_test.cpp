@@ -175,7 +175,7 @@ struct Served : testing::Test {
     health.state = HealthState::kOk;
     std::snprintf(health.identity, sizeof health.identity, "Spaceball 3003, firmware 2.13");
     std::snprintf(health.port, sizeof health.port, "pty:/tmp/ball");
-    segment->health[shm::kBall].publish(health);
+    segment->health[test::kBall].publish(health);
     auto started = SpnavServer::start(path, segment.slots(), threads, clock);
     EXPECT_TRUE(started) << started.error().what;
     if (started) server = *std::move(started);
@@ -198,7 +198,7 @@ class MovingBall {
           for (std::int16_t i = 1;
                clock.sleepUntil(clock.now() + std::chrono::milliseconds(10), stop);
                i = static_cast<std::int16_t>(i % 1000 + 1))
-            segment.ball.publish(pushed({i, 1, 1, 1, 1, 1}));
+            segment.ball[0].publish(pushed({i, 1, 1, 1, 1, 1}));
         }) {}
 
  private:
@@ -248,8 +248,8 @@ Event nextEvent(const UniqueFd& fd) {
 TEST_F(Served, AClickWhileAClientConnectsIsToldToIt) {
   const UniqueFd fd = connectedTo(path);
   ASSERT_TRUE(test::eventually([&] { return server->report().connections == 1; }));
-  segment->ball.publish(pushed({}, 1));
-  segment->ball.publish(pushed({}, 0));
+  segment->ball[0].publish(pushed({}, 1));
+  segment->ball[0].publish(pushed({}, 0));
   EXPECT_EQ(nextEvent(fd), (Event{1, 0, 1}));
   EXPECT_EQ(nextEvent(fd), (Event{2, 0, 0}));
 }
@@ -276,13 +276,13 @@ TEST_F(Served, AClientThatReadsLateHearsThatTheBallRests) {
   // Publish until the socket is full and the server omits motion events.
   int queued = 0, before = -1, same = 0;
   ASSERT_TRUE(test::eventually([&] {
-    for (int i = 0; i < 16; ++i) segment->ball.publish(pushed({1, 2, 3, 4, 5, 6}));
+    for (int i = 0; i < 16; ++i) segment->ball[0].publish(pushed({1, 2, 3, 4, 5, 6}));
     before = std::exchange(queued, 0);
     ::ioctl(fd.get(), FIONREAD, &queued);
     same = queued > 4096 && queued == before ? same + 1 : 0;
     return same == 50;
   }));
-  segment->ball.publish(pushed({}));
+  segment->ball[0].publish(pushed({}));
   // After two of its echoes, the server has seen the sample.
   const UniqueFd other = connectedTo(path);
   for (int i = 0; i < 2; ++i) {
@@ -375,7 +375,7 @@ TEST_F(Served, LibspnavSeesTheBall) {
   EXPECT_EQ(::spnav_dev_type(), 0x101);
   EXPECT_EQ(::spnav_client_name("test"), 0);
 
-  segment->ball.publish(pushed({256, -512, 1000, -1, 39, -10}));
+  segment->ball[0].publish(pushed({256, -512, 1000, -1, 39, -10}));
   spnav_event event{};
   const auto next = [&](int type) {
     return test::eventually([&] { return ::spnav_poll_event(&event) == type; });
@@ -386,11 +386,11 @@ TEST_F(Served, LibspnavSeesTheBall) {
             (std::array{256, -512, 1000, -1, 39, -10}));
   EXPECT_EQ(event.motion.period, 50u);
 
-  segment->ball.publish(pushed({}, 0x100));
+  segment->ball[0].publish(pushed({}, 0x100));
   ASSERT_TRUE(next(SPNAV_EVENT_BUTTON));
   EXPECT_EQ(event.button.bnum, 8);
   EXPECT_EQ(event.button.press, 1);
-  segment->ball.publish(pushed({}, 0));
+  segment->ball[0].publish(pushed({}, 0));
   ASSERT_TRUE(next(SPNAV_EVENT_BUTTON));
   EXPECT_EQ(event.button.press, 0);
   EXPECT_EQ(::spnav_sensitivity(2.0), 0);

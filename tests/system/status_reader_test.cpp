@@ -17,7 +17,7 @@ TEST(StatusReader, FollowsATopicAndSendsCommands) {
   options.role = "devices";
   Merlind daemon(dir, "", "pyzmq", options);
   ASSERT_TRUE(daemon.ready()) << daemon.process().output();
-  ASSERT_TRUE(daemon.healthIs(shm::kBall, HealthState::kOk));
+  ASSERT_TRUE(daemon.healthIs("ball", HealthState::kOk));
   const std::string segment = shm::segmentName(daemon.instance(), "devices").substr(1);
 
   const Outcome samples = run({kPython, "-B", kReader, segment, "sample", "3"});

@@ -79,9 +79,9 @@ TEST(Survival, AContentThatOneRecordFlungOutOfSightReturns) {
   Merlind m(dir, makeModel(dir, 5), "survival",
             {.emulate = false,
              .also = {{"devices",
-                       {{"tracker", {{"port", "pty:" + (dir / "tracker")}}},
-                        {"ball", {{"port", "pty:" + (dir / "ball")}}},
-                        {"bindings", bindings}}},
+                       {deviceEntry("tracker", "fastrak", "pty:" + dir / "tracker"),
+                        deviceEntry("ball", "spaceball", "pty:" + dir / "ball")}},
+                      {"bindings", bindings},
                       {"wall", {{"scene", {{"return_after_s", 0.5}}}}}}});
   const auto served = [&](auto condition) {
     return eventually([&] {
@@ -91,7 +91,7 @@ TEST(Survival, AContentThatOneRecordFlungOutOfSightReturns) {
     });
   };
   const auto hand_m = [&] {
-    const auto sample = m.devices() ? m.devices()->tracker[0].newest() : std::nullopt;
+    const auto sample = m.devices() ? m.devices()->tracker()->stations[0]->newest() : std::nullopt;
     return sample ? sample->position_m[0] : 0;
   };
   ASSERT_TRUE(served([&] { return hand_m() > 0.5F && m.wall().frames > 0; }))

@@ -3,6 +3,7 @@
 // That the kernel's own devices give a gamepad's records is seen in the virtual machine (tests/vm).
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <linux/input-event-codes.h>
@@ -16,12 +17,12 @@ namespace merlin::test {
 namespace {
 
 nlohmann::json ballOf(const std::string& driver, const std::string& port) {
-  return {{"devices", {{"ball", {{"driver", driver}, {"port", port}}}}}};
+  return onlyDevice(deviceEntry("ball", driver, port));
 }
 
 std::optional<BallSample> ballOf(Merlind& merlind) {
   const auto* devices = merlind.devices();
-  return devices ? devices->ball.newest() : std::nullopt;
+  return devices ? devices->ball()->samples->newest() : std::nullopt;
 }
 
 // spacenavd on a ball's line, in a folder of its own.
@@ -72,13 +73,13 @@ TEST(TodaysDevices, ASpaceMouseOfSpacenavdIsTheBallAndComesBackWithIt) {
     return false;
   };
   EXPECT_TRUE(turns()) << merlind.process().output();
-  EXPECT_TRUE(merlind.healthIs(shm::kBall, HealthState::kOk));
+  EXPECT_TRUE(merlind.healthIs("ball", HealthState::kOk));
   EXPECT_NE(merlind.status()["devices"]["ball"]["identity"].get<std::string>(), "");
   spacenavd.stop();
-  EXPECT_TRUE(merlind.healthIs(shm::kBall, HealthState::kAbsent));
+  EXPECT_TRUE(merlind.healthIs("ball", HealthState::kAbsent));
   spacenavd.start();
   EXPECT_TRUE(turns()) << merlind.process().output();
-  EXPECT_GE(merlind.devices()->health[shm::kBall].read()->reconnects, 1u);
+  EXPECT_GE(merlind.health("ball")->reconnects, 1u);
 }
 
 std::string record(EvdevRecord::Kind kind, int code = 0, std::int32_t value = 0,
@@ -124,16 +125,17 @@ TEST(TodaysDevices, AGamepadMovesTheModelAndItsButtonsAct) {
   options.emulate = false;
   options.also = ballOf("evdev", "pty:" + dir / "pad");
   Merlind merlind(dir, makeModel(dir, 5), "pad", options);
-  // A line that says nothing is opened again and again; it is described once for each time.
+  // A line that says nothing is opened again and again. It is described once for each time, when it
+  // is open: what was sent before is dropped then, from some byte on.
+  std::int64_t opened_ns = 0;
   EXPECT_TRUE(eventually([&] {
-    pad.describe();
-    const auto* devices = merlind.devices();
-    const auto health = devices ? devices->health[shm::kBall].read() : std::nullopt;
+    const auto health = merlind.health("ball");
+    const bool opening = health && health->state == HealthState::kOpening;
+    if (opening && std::exchange(opened_ns, health->since_ns) != health->since_ns) pad.describe();
     return health && health->state == HealthState::kOk;
   })) << merlind.process().output();
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
-  EXPECT_STREQ(merlind.devices()->health[shm::kBall].read()->identity,
-               "made-up pad, 4 axes, 1 keys");
+  EXPECT_STREQ(merlind.health("ball")->identity, "made-up pad, 4 axes, 1 keys");
   ASSERT_TRUE(eventually([&] { return merlind.wall().moving == 0; }));
   pad.report(record(EvdevRecord::kMoved, ABS_RX, 32767));
   EXPECT_TRUE(eventually([&] { return merlind.wall().moving == 1; }));
@@ -146,7 +148,7 @@ TEST(TodaysDevices, AGamepadMovesTheModelAndItsButtonsAct) {
   EXPECT_TRUE(eventually([&] { return merlind.wall().moving == 0; }));
   pad.report(record(EvdevRecord::kPressed, BTN_SOUTH, 1));  // ball.button.1: reset_view
   EXPECT_TRUE(eventually([&] {
-    const auto actions = merlind.devices()->actions[shm::kBallActions].read();
+    const auto actions = merlind.actions("ball");
     return actions && actions->sequence == 1;
   }));
 }
@@ -169,23 +171,19 @@ MerlindOptions vrpnClient(int port) {
   MerlindOptions options;
   options.role = "devices";
   options.emulate = false;
-  options.also = {{"devices",
-                   {{"tracker",
-                     {{"driver", "vrpn"},
-                      {"port", fmt::format("tcp://127.0.0.1:{}", port)},
-                      {"boresight2_wxyz", {0, 1, 0, 0}},  // of a Fastrak
-                      {"vrpn", {{"stations", {2, 0, -1, -1}}}}}}}}};
+  options.also = onlyDevice(deviceEntry("tracker", "vrpn", fmt::format("tcp://127.0.0.1:{}", port),
+                                        {{"stations", {2, 0, -1, -1}}}));
   return options;
 }
 
 // Whether station 1 of the server measured what is now station 2 of the client.
 bool agree(Merlind& server, Merlind& client) {
   const auto *from = server.devices(), *to = client.devices();
-  const auto got = to ? to->tracker[1].newest() : std::nullopt;
+  const auto got = to ? to->tracker()->stations[1]->newest() : std::nullopt;
   if (!from || !got) return false;
-  const std::uint64_t count = from->tracker[0].count();
+  const std::uint64_t count = from->tracker()->stations[0]->count();
   for (std::uint64_t i = count - std::min<std::uint64_t>(count, shm::kHistory); i < count; ++i) {
-    const auto sent = from->tracker[0].at(i);
+    const auto sent = from->tracker()->stations[0]->at(i);
     if (!sent || !std::ranges::equal(sent->position_m, got->position_m)) continue;
     return std::ranges::equal(sent->orientation_wxyz, got->orientation_wxyz,
                               [](float a, float b) { return std::abs(a - b) < 1e-6F; });
@@ -199,24 +197,26 @@ TEST(TodaysDevices, ATrackerOfAVrpnServerIsTheTrackerAndComesBackWithIt) {
   std::optional<Merlind> server(std::in_place, dir, "", "server", vrpnServer(port));
   Merlind client(dir, "", "client", vrpnClient(port));
   ASSERT_TRUE(client.ready()) << client.process().output();
-  ASSERT_TRUE(client.healthIs(shm::kTracker, HealthState::kOk)) << client.process().output();
+  ASSERT_TRUE(client.healthIs("tracker", HealthState::kOk)) << client.process().output();
   EXPECT_TRUE(eventually([&] { return agree(*server, client); }));
   EXPECT_EQ(client.status()["devices"]["tracker"]["identity"],
             "VRPN tracker Tracker0 at server version 07.38");
-  EXPECT_EQ(client.devices()->tracker[0].count(), 0u) << "the server has no third station";
-  EXPECT_EQ(client.devices()->tracker_frames.read()->boresight_wxyz[1][0], 1);
+  EXPECT_EQ(client.devices()->tracker()->stations[0]->count(), 0u)
+      << "the server has no third station";
+  EXPECT_EQ(client.devices()->tracker()->frames->read()->boresight_wxyz[1][0], 1);
   const Outcome calibrated = run({kMerlin, "calibrate", "tracker", "--station", "2", "--boresight",
                                   "1", "0", "0", "0", "-o", client.config()});
   EXPECT_EQ(calibrated.status, 2) << calibrated.output;
-  EXPECT_NE(calibrated.output.find("/devices/tracker/driver is \"vrpn\""), std::string::npos);
-  const auto counter = client.devices()->tracker[1].newest()->counter;
+  EXPECT_NE(calibrated.output.find("/devices/0/driver, that of \"tracker\", is \"vrpn\""),
+            std::string::npos);
+  const auto counter = client.devices()->tracker()->stations[1]->newest()->counter;
   server->process().kill(SIGKILL);
-  EXPECT_TRUE(client.healthIs(shm::kTracker, HealthState::kAbsent));
+  EXPECT_TRUE(client.healthIs("tracker", HealthState::kAbsent));
   server.emplace(dir, "", "again", vrpnServer(port));
-  EXPECT_TRUE(client.healthIs(shm::kTracker, HealthState::kOk)) << client.process().output();
+  EXPECT_TRUE(client.healthIs("tracker", HealthState::kOk)) << client.process().output();
   EXPECT_TRUE(eventually([&] { return agree(*server, client); }));
-  EXPECT_GT(client.devices()->tracker[1].newest()->counter, counter);
-  EXPECT_EQ(client.devices()->health[shm::kTracker].read()->reconnects, 1u);
+  EXPECT_GT(client.devices()->tracker()->stations[1]->newest()->counter, counter);
+  EXPECT_EQ(client.health("tracker")->reconnects, 1u);
 }
 
 }  // namespace

@@ -26,12 +26,15 @@ std::string Wall::model_;
 TEST_F(Wall, RunsOnEmulatedDevicesAndEndsClean) {
   Merlind m(*dir_, model_, "runs");
   ASSERT_TRUE(m.ready()) << m.process().output();
-  for (const auto device : {shm::kGlove, shm::kTracker, shm::kBall})
+  for (const char* device : {"glove", "tracker", "ball"})
     EXPECT_TRUE(m.healthIs(device, HealthState::kOk)) << device;
-  EXPECT_TRUE(
-      eventually([&] { return m.devices()->posture.newest() && m.devices()->glove.count() > 50; }));
-  EXPECT_TRUE(eventually(
-      [&] { return m.devices()->ball.count() > 5 && m.devices()->tracker[0].count() > 50; }));
+  EXPECT_TRUE(eventually([&] {
+    return m.devices()->glove()->posture->newest() && m.devices()->glove()->samples->count() > 50;
+  }));
+  EXPECT_TRUE(eventually([&] {
+    return m.devices()->ball()->samples->count() > 5 &&
+           m.devices()->tracker()->stations[0]->count() > 50;
+  }));
 
   const auto status = m.status();
   ASSERT_TRUE(status.is_object());
@@ -67,9 +70,9 @@ TEST_F(Wall, AFistPointsAndItsEndTakesASnapshot) {
   const nlohmann::json bindings = {
       {{"input", "posture.fist"}, {"action", "point_at"}},
       {{"input", "posture.fist"}, {"action", "snapshot"}, {"on", "leave"}}};
-  Merlind m(*dir_, model_, "points",
-            {.script = "grabbing",
-             .also = {{"wall", {{"snapshots", folder}}}, {"devices", {{"bindings", bindings}}}}});
+  Merlind m(
+      *dir_, model_, "points",
+      {.script = "grabbing", .also = {{"wall", {{"snapshots", folder}}}, {"bindings", bindings}}});
   ASSERT_TRUE(m.ready()) << m.process().output();
   const auto interaction = [&] {
     const auto wall =
@@ -104,17 +107,13 @@ TEST_F(Wall, EachDeviceMayDieAndComeBackWithoutTheOthersNoticing) {
   Merlind m(*dir_, model_, "dies");
   ASSERT_TRUE(m.ready()) << m.process().output();
   const struct {
-    shm::DeviceIndex index;
-    const char *driver, *name;
-  } kDevices[] = {{shm::kGlove, "cyberglove", "glove"},
-                  {shm::kTracker, "fastrak", "tracker"},
-                  {shm::kBall, "spaceball", "ball"}};
-  const auto streams = [&](shm::DeviceIndex device) {
-    const auto health = m.devices()->health[device].read();
+    std::string driver, name;
+  } kDevices[] = {{"cyberglove", "glove"}, {"fastrak", "tracker"}, {"spaceball", "ball"}};
+  const auto streams = [&](const std::string& device) {
+    const auto health = m.health(device);
     return health && health->state == HealthState::kOk && health->samples > 0;
   };
-  for (const auto& d : kDevices)
-    ASSERT_TRUE(eventually([&] { return streams(d.index); })) << d.name;
+  for (const auto& d : kDevices) ASSERT_TRUE(eventually([&] { return streams(d.name); })) << d.name;
   std::vector<std::unique_ptr<Process>> restarted;
 
   for (const auto& victim : kDevices) {
@@ -122,29 +121,29 @@ TEST_F(Wall, EachDeviceMayDieAndComeBackWithoutTheOthersNoticing) {
     const auto status_says = [&](const char* health) {
       return m.status()["devices"][victim.name]["health"] == health;
     };
-    const std::uint64_t glove_from = m.devices()->glove.count(),
-                        tracker_from = m.devices()->tracker[0].count();
+    const std::uint64_t glove_from = m.devices()->glove()->samples->count(),
+                        tracker_from = m.devices()->tracker()->stations[0]->count();
     const std::int64_t drawn = m.wall().updated_ns;
     const auto children = m.children(victim.driver);
     ASSERT_EQ(children.size(), 1u);
     ::kill(children[0], SIGKILL);
-    EXPECT_TRUE(m.healthIs(victim.index, HealthState::kAbsent)) << victim.name;
+    EXPECT_TRUE(m.healthIs(victim.name, HealthState::kAbsent)) << victim.name;
     EXPECT_TRUE(eventually([&] { return status_says("absent"); })) << victim.name;
-    EXPECT_TRUE(
-        m.process().saysEventually(fmt::format("the emulated {} has ended", victim.driver)));
+    EXPECT_TRUE(m.process().saysEventually(fmt::format("the emulated {} has ended", victim.name)));
 
     restarted.push_back(std::make_unique<Process>(
         std::vector<std::string>{kMerlin, "emulate", victim.driver, "--link",
-                                 *dir_ / fmt::format("{}-{}.pty", m.instance(), victim.driver)}));
-    EXPECT_TRUE(m.healthIs(victim.index, HealthState::kOk)) << victim.name;
+                                 *dir_ / fmt::format("{}-{}.pty", m.instance(), victim.name)}));
+    EXPECT_TRUE(m.healthIs(victim.name, HealthState::kOk)) << victim.name;
     EXPECT_TRUE(eventually([&] { return status_says("ok"); })) << victim.name;
     // On a busy machine a new emulator's first record may come too late, once more.
-    EXPECT_GE(m.devices()->health[victim.index].read()->reconnects, 1u);
+    EXPECT_GE(m.health(victim.name)->reconnects, 1u);
     EXPECT_GT(m.wall().updated_ns, drawn) << "the wall never stops";
 
-    if (victim.index != shm::kGlove) expectContiguous(m.devices()->glove, glove_from, "glove");
-    if (victim.index != shm::kTracker)
-      expectContiguous(m.devices()->tracker[0], tracker_from, "tracker");
+    if (victim.name != "glove")
+      expectContiguous(*m.devices()->glove()->samples, glove_from, "glove");
+    if (victim.name != "tracker")
+      expectContiguous(*m.devices()->tracker()->stations[0], tracker_from, "tracker");
   }
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
 }
@@ -197,10 +196,10 @@ TEST_F(Wall, SnapshotsAreTheFrameAndTheWall) {
 TEST_F(Wall, SharedMemoryIsReadByItsDumpAndByPython) {
   Merlind m(*dir_, model_, "dump", {.script = "still"});
   ASSERT_TRUE(m.ready()) << m.process().output();
-  ASSERT_TRUE(m.healthIs(shm::kGlove, HealthState::kOk));
+  ASSERT_TRUE(m.healthIs("glove", HealthState::kOk));
   ASSERT_TRUE(eventually([&] {
-    return m.devices()->posture.newest() &&
-           std::string(m.devices()->posture.newest()->name) == "open";
+    return m.devices()->glove()->posture->newest() &&
+           std::string(m.devices()->glove()->posture->newest()->name) == "open";
   }));
   const auto dump = nlohmann::json::parse(
       run({kMerlin, "shm", "dump", "--json", "--instance", m.instance()}).output);
@@ -241,7 +240,7 @@ TEST_F(Wall, ASecondOneOfTheSameNameIsRefused) {
   EXPECT_EQ(second.process().wait(), 3);
   EXPECT_NE(second.process().output().find("another merlind already runs as"), std::string::npos)
       << second.process().output();
-  EXPECT_TRUE(first.healthIs(shm::kBall, HealthState::kOk));
+  EXPECT_TRUE(first.healthIs("ball", HealthState::kOk));
   EXPECT_EQ(first.status()["roles"].size(), 2u) << "its sockets still answer";
   EXPECT_EQ(first.process().kill(SIGTERM), 0);
 }

@@ -1,0 +1,373 @@
+// Several devices of each kind at one merlind, over pseudo-terminals: two gloves, a tracker with
+// two stations, two balls, a gamepad that is not there, and two hands. Each has its slots under its
+// name, and none notices what happens to another; two people take turns at the wall.
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "daemon/base/commands.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kNextMode = actionIndex("next_mode"), kResetView = actionIndex("reset_view"),
+                      kFreeze = actionIndex("freeze"), kBlank = actionIndex("blank");
+
+struct Emulated {
+  std::string name, driver, script;
+  std::vector<std::string> more = {};  // options of merlin emulate
+};
+
+// Emulated devices, each a process that can be killed alone.
+class Emulators {
+ public:
+  explicit Emulators(std::vector<Emulated> all) : all_(std::move(all)) {
+    for (const Emulated& device : all_) start(device.name);
+  }
+
+  void start(const std::string& name) {
+    const Emulated& device = *std::ranges::find(all_, name, &Emulated::name);
+    std::vector<std::string> words = {kMerlin,    "emulate",     device.driver, "--link", at(name),
+                                      "--script", device.script, "--epoch-ns",  "1"};
+    words.insert(words.end(), device.more.begin(), device.more.end());
+    auto process = std::make_unique<Process>(words);
+    EXPECT_TRUE(process->saysEventually(device.driver + " on")) << process->output();
+    processes_[name] = std::move(process);
+  }
+  void kill(const std::string& name) { processes_.at(name)->kill(SIGKILL); }
+
+  // Of one with the option --step: its person goes on to the next phase of the script.
+  void step(const std::string& name, int phases) {
+    for (int i = 0; i < phases; ++i) {
+      const std::size_t said = processes_.at(name)->output().size();
+      processes_.at(name)->type("\n");
+      EXPECT_TRUE(eventually([&] { return processes_.at(name)->output().size() > said; }));
+    }
+  }
+
+  // The configuration's list. `people`: whose device is whose.
+  json list(const std::map<std::string, std::string>& people = {}) const {
+    json all = json::array();
+    for (const Emulated& device : all_) {
+      all.push_back(deviceEntry(device.name, device.driver, "pty:" + at(device.name)));
+      if (people.contains(device.name)) all.back()["person"] = people.at(device.name);
+    }
+    return all;
+  }
+  const std::vector<Emulated>& all() const { return all_; }
+
+ private:
+  std::string at(const std::string& name) const { return dir_ / ("line-" + name); }
+
+  TempDir dir_;
+  std::vector<Emulated> all_;
+  std::map<std::string, std::unique_ptr<Process>> processes_;
+};
+
+class ManyDevices : public testing::Test {
+ protected:
+  // Both hands make a fist and open in turn, at the same time.
+  void start(const std::string& script_of_near, const std::string& script_of_far) {
+    emulators_.emplace(std::vector<Emulated>{{"left", "cyberglove", "grabbing"},
+                                             {"right", "cyberglove", "grabbing"},
+                                             {"stage", "fastrak", "grabbing", {"--model", "2"}},
+                                             {"near", "spaceball", script_of_near},
+                                             {"far", "spaceball", script_of_far}});
+    json list = emulators_->list();
+    list.push_back(deviceEntry("pad", "evdev", "evdev:" + dir_ / "no-gamepad"));
+    const json hands = {{{"name", "left_hand"}, {"glove", "left"}, {"station", 1}},
+                        {{"name", "right_hand"}, {"glove", "right"}, {"station", 2}}};
+    const json bindings = {{{"input", "left.posture.fist"}, {"action", "next_mode"}},
+                           {{"input", "right.posture.open"}, {"action", "reset_view"}},
+                           {{"input", "far.button.1"}, {"action", "freeze"}},
+                           {{"input", "button.3"}, {"action", "blank"}}};
+    m_.emplace(
+        dir_, "", "many",
+        MerlindOptions{.role = "devices",
+                       .emulate = false,
+                       .also = {{"devices", list}, {"hands", hands}, {"bindings", bindings}}});
+    ASSERT_TRUE(m_->ready()) << m_->process().output();
+    for (const Emulated& device : emulators_->all())
+      ASSERT_TRUE(m_->healthIs(device.name, HealthState::kOk))
+          << device.name << m_->process().output();
+  }
+  // How often inputs of the device have begun the action with this index of kActions.
+  std::uint32_t begun(const std::string& device, std::size_t action) {
+    const auto state = m_->actions(device);
+    return state ? state->begun[action] : 0;
+  }
+  // How many samples the device has sent.
+  std::uint64_t count(const std::string& device) {
+    const auto* const slots = m_->devices();
+    if (const auto* const glove = slots->glove(device)) return glove->samples->count();
+    if (const auto* const ball = slots->ball(device)) return ball->samples->count();
+    const auto& stations = slots->tracker(device)->stations;
+    return std::min(stations[0]->count(), stations[1]->count());
+  }
+
+  TempDir dir_;
+  std::optional<Emulators> emulators_;
+  std::optional<Merlind> m_;
+};
+
+// Whether one of the newest samples of the channel is what `is` looks for.
+template <typename T, typename Is>
+bool has(const shm::Channel<T>& channel, Is is) {
+  const std::uint64_t count = channel.count();
+  for (std::uint64_t n = count - std::min<std::uint64_t>(count, shm::kHistory - 1); n < count;
+       ++n) {
+    const auto sample = channel.at(n);
+    if (sample && is(*sample)) return true;
+  }
+  return false;
+}
+
+// Whether the hand's newest sample is made of this glove's joints and this station's record.
+bool isMadeOf(const shm::DeviceSlots& devices, const char* hand, const char* glove,
+              std::size_t station) {
+  const auto made = devices.hand(hand)->samples->newest();
+  if (!made || (made->flags & HandSample::kJoints) == 0) return false;
+  return has(*devices.glove(glove)->samples,
+             [&](const GloveSample& g) {
+               return g.received_ns == made->glove_ns &&
+                      std::ranges::equal(g.angle_rad, made->joint_rad);
+             }) &&
+         has(*devices.tracker("stage")->stations[station - 1], [&](const TrackerSample& t) {
+           return t.received_ns == made->received_ns && t.counter == made->counter;
+         });
+}
+
+TEST_F(ManyDevices, EachHasItsSlotsAndItsPlaceInTheStatusUnderItsName) {
+  start("turning", "turning");
+  for (const Emulated& device : emulators_->all())
+    EXPECT_TRUE(eventually([&] { return count(device.name) > 20; })) << device.name;
+  EXPECT_TRUE(m_->healthIs("pad", HealthState::kAbsent));
+  const shm::DeviceSlots& devices = *m_->devices();
+  EXPECT_EQ(devices.tracker("stage")->stations[2]->count(), 0u);
+  EXPECT_TRUE(eventually([&] { return isMadeOf(devices, "left_hand", "left", 1); }));
+  EXPECT_TRUE(eventually([&] { return isMadeOf(devices, "right_hand", "right", 2); }));
+  for (const char* name : {"left", "right"})
+    EXPECT_TRUE(devices.glove(name)->posture->newest()) << name;
+
+  const auto dump = json::parse(
+      run({kMerlin, "shm", "dump", "--json", "--instance", m_->instance()}).output, nullptr, false);
+  const auto& fields = dump["/" + m_->instance() + "-devices"];
+  for (const char* field :
+       {"left.angle_rad", "right.angle_rad", "right.posture.name", "stage1.position_m",
+        "stage2.position_m", "near.translation", "far.rotation", "pad.health.state",
+        "left_hand.joint_rad", "right_hand.position_m", "actions.far.begun"})
+    EXPECT_TRUE(fields.contains(field)) << field;
+  EXPECT_FALSE(fields.contains("glove.angle_rad")) << "no device has the default name";
+
+  json status;
+  EXPECT_TRUE(eventually([&] {
+    status = m_->status();
+    return status["devices"].size() == 6 && status["devices"]["far"]["health"] == "ok";
+  })) << status;
+  for (const Emulated& device : emulators_->all())
+    EXPECT_EQ(status["devices"][device.name]["health"], "ok") << device.name;
+  EXPECT_EQ(status["devices"]["pad"]["health"], "absent");
+  for (const char* name : {"left", "right"}) EXPECT_TRUE(status["postures"].contains(name)) << name;
+  EXPECT_EQ(m_->process().kill(SIGTERM), 0) << m_->process().output();
+  EXPECT_TRUE(m_->leftInSharedMemory().empty());
+}
+
+// Both gloves make the same postures and both balls press the same buttons.
+TEST_F(ManyDevices, AnInputIsThatOfItsDeviceOrOfAny) {
+  start("panel", "panel");
+  EXPECT_TRUE(eventually([&] { return begun("left", kNextMode) >= 2; }));
+  EXPECT_TRUE(eventually([&] { return begun("right", kResetView) >= 2; }));
+  EXPECT_EQ(begun("left", kResetView), 0u);
+  EXPECT_EQ(begun("right", kNextMode), 0u);
+  EXPECT_TRUE(eventually([&] { return begun("far", kFreeze) >= 1; }));
+  EXPECT_TRUE(eventually([&] { return begun("near", kBlank) >= 1 && begun("far", kBlank) >= 1; }));
+  EXPECT_EQ(begun("near", kFreeze), 0u);
+}
+
+// Of the newest samples since the `from`-th none is missing.
+template <typename T>
+void expectContiguous(const shm::Channel<T>& channel, std::uint64_t from, const std::string& what) {
+  const std::uint64_t to = channel.count();
+  std::optional<std::uint32_t> last;
+  for (std::uint64_t n = std::max(from, to > 200 ? to - 200 : 0); n < to; ++n) {
+    const auto sample = channel.at(n);
+    ASSERT_TRUE(sample) << what;
+    EXPECT_TRUE(!last || sample->counter == *last + 1) << what;
+    last = sample->counter;
+  }
+}
+
+void expectContiguous(const shm::DeviceSlots& devices, const std::string& device,
+                      std::uint64_t from) {
+  if (const auto* const glove = devices.glove(device))
+    return expectContiguous(*glove->samples, from, device);
+  if (const auto* const ball = devices.ball(device))
+    return expectContiguous(*ball->samples, from, device);
+  for (std::size_t i = 0; i < 2; ++i)
+    expectContiguous(*devices.tracker(device)->stations[i], from, device);
+}
+
+TEST_F(ManyDevices, EachMayDieAndComeBackWithoutTheOthersNoticing) {
+  start("turning", "turning");
+  for (const Emulated& device : emulators_->all())
+    ASSERT_TRUE(eventually([&] { return count(device.name) > 0; })) << device.name;
+  for (const Emulated& victim : emulators_->all()) {
+    std::map<std::string, std::uint64_t> from;
+    emulators_->kill(victim.name);
+    EXPECT_TRUE(m_->healthIs(victim.name, HealthState::kAbsent)) << victim.name;
+    for (const Emulated& device : emulators_->all()) from[device.name] = count(device.name);
+    for (const Emulated& other : emulators_->all()) {
+      if (other.name == victim.name) continue;
+      EXPECT_TRUE(eventually([&] { return count(other.name) > from[other.name] + 5; }))
+          << other.name << " while " << victim.name << " is dead";
+    }
+    emulators_->start(victim.name);
+    EXPECT_TRUE(m_->healthIs(victim.name, HealthState::kOk)) << victim.name;
+    EXPECT_TRUE(eventually([&] { return count(victim.name) > from[victim.name]; })) << victim.name;
+    EXPECT_GE(m_->health(victim.name)->reconnects, 1u) << victim.name;
+    for (const Emulated& other : emulators_->all()) {
+      if (other.name != victim.name) expectContiguous(*m_->devices(), other.name, from[other.name]);
+    }
+  }
+  EXPECT_EQ(m_->process().kill(SIGTERM), 0) << m_->process().output();
+}
+
+TEST_F(ManyDevices, TheCommandsCalibrateAndRecordTheOneThatIsNamed) {
+  start("turning", "turning");
+  const std::string file = m_->config();
+  const Outcome first = run({kMerlin, "calibrate", "ball", "--dead-zone", "7", "-o", file});
+  const Outcome named =
+      run({kMerlin, "calibrate", "ball", "--device", "far", "--dead-zone", "9", "-o", file});
+  EXPECT_EQ(first.status + named.status, 0) << first.output << named.output;
+  const json devices = json::parse(readText(file))["devices"];
+  EXPECT_EQ(devices[3]["spaceball"], json({{"dead_zone", 7}}));
+  EXPECT_EQ(devices[4]["spaceball"], json({{"dead_zone", 9}}));
+  const auto refused = [&](std::vector<std::string> words, const std::string& said) {
+    words.insert(words.begin(), {kMerlin, "calibrate"});
+    words.insert(words.end(), {"-o", file});
+    const std::string before = readText(file);
+    const Outcome done = run(words);
+    EXPECT_EQ(done.status, 2) << done.output;
+    EXPECT_NE(done.output.find(said), std::string::npos) << done.output;
+    EXPECT_EQ(readText(file), before);
+  };
+  refused({"ball", "--device", "third", "--dead-zone", "1"},
+          "/devices has no device named \"third\"; its balls: near, far, pad");
+  refused({"ball", "--device", "left", "--dead-zone", "1"},
+          "/devices/0 (\"left\") has the driver \"cyberglove\", which is not that of a ball");
+  refused({"ball", "--device", "pad", "--dead-zone", "1"},
+          "edit axes, buttons, dead_zone and curve in /devices/5/evdev instead");
+  refused({"ball", "--device", "far", "--full-scale", "300"},
+          "\"far\" has the driver spaceball, whose options for its scale are "
+          "--full-scale-translation");
+
+  const Outcome hands =
+      run({kMerlin, "posture", "collect", "fist", "--device", "right", "--seconds", "0.3", "-o",
+           dir_ / "hands.csv", "--instance", m_->instance()});
+  EXPECT_EQ(hands.status, 0) << hands.output;
+  const Outcome none = run({kMerlin, "posture", "collect", "fist", "--device", "near", "-o",
+                            dir_ / "hands.csv", "--instance", m_->instance()});
+  EXPECT_EQ(none.status, 2) << none.output;
+  EXPECT_NE(none.output.find("has no glove named near; its gloves: left, right"), std::string::npos)
+      << none.output;
+}
+
+// An old file is not half read, and what it says names the way to the new form.
+TEST(ManyDevicesCommands, CalibratingAFileOfTheEarlierFormIsRefused) {
+  const TempDir dir;
+  const std::string old = "{\"devices\": {\"ball\": {\"dead_zone\": 4}}}";
+  writeText(dir / "old.json", old);
+  const Outcome done =
+      run({kMerlin, "calibrate", "ball", "--dead-zone", "1", "-o", dir / "old.json"});
+  EXPECT_EQ(done.status, 2) << done.output;
+  EXPECT_NE(done.output.find("run `merlin config migrate " + dir / "old.json` first"),
+            std::string::npos)
+      << done.output;
+  EXPECT_EQ(readText(dir / "old.json"), old);
+}
+
+// Two people with a ball each. The script "panel": 0 button 3, 1 rest, 2 a push down, 3 rest,
+// 4 button 1, 5 rest.
+class TwoPeople : public testing::Test {
+ protected:
+  void SetUp() override {
+    emulators_.emplace(std::vector<Emulated>{{"one", "spaceball", "panel", {"--step"}},
+                                             {"two", "spaceball", "panel", {"--step"}}});
+    const json bindings = {{{"input", "button.1"}, {"action", "next_mode"}}};
+    m_.emplace(dir_, makeModel(dir_, 2), "people",
+               MerlindOptions{.emulate = false,
+                              .also = {{"devices", emulators_->list({{"one", "a"}, {"two", "b"}})},
+                                       {"hands", json::array()},
+                                       {"people", {{"turn_s", 60}}},
+                                       {"bindings", bindings}}});
+    ASSERT_TRUE(m_->ready()) << m_->process().output();
+    for (const char* ball : {"one", "two"})
+      ASSERT_TRUE(m_->healthIs(ball, HealthState::kOk)) << m_->process().output();
+    for (const char* ball : {"one", "two"}) emulators_->step(ball, 1);
+    ASSERT_TRUE(eventually([&] { return m_->wall().moving == 0; }));
+  }
+  bool moves(bool moving) {
+    return eventually([&] { return (m_->wall().moving != 0) == moving; });
+  }
+  bool modeIs(const std::string& mode) {
+    return eventually([&] { return m_->wall().mode == mode; });
+  }
+  bool isPushed(const std::string& ball) {
+    return eventually([&] {
+      const auto sample = m_->devices()->ball(ball)->samples->newest();
+      return sample && std::abs(sample->translation[1]) > 0.3F;
+    });
+  }
+  // The wall has read its input, and written what came of it, at least once from now on.
+  void aFewPeriodsPass() {
+    for (int i = 0; i < 4; ++i) {
+      const std::int64_t updated = m_->wall().updated_ns;
+      ASSERT_TRUE(eventually([&] { return m_->wall().updated_ns > updated; }));
+    }
+  }
+
+  TempDir dir_;
+  std::optional<Emulators> emulators_;
+  std::optional<Merlind> m_;
+};
+
+TEST_F(TwoPeople, TakeTurnsAtTheWall) {
+  emulators_->step("one", 1);
+  EXPECT_TRUE(moves(true)) << "nobody else has it";
+  const std::string mode = m_->wall().mode;
+  emulators_->step("one", 1);
+  ASSERT_TRUE(moves(false));
+
+  // It is a's turn for a minute yet.
+  emulators_->step("two", 1);
+  ASSERT_TRUE(isPushed("two"));
+  aFewPeriodsPass();
+  EXPECT_EQ(m_->wall().moving, 0u) << "b's push does not count";
+  emulators_->step("two", 2);
+  ASSERT_TRUE(eventually([&] {
+    const auto actions = m_->actions("two");
+    return actions && actions->begun[kNextMode] == 1;
+  }));
+  aFewPeriodsPass();
+  EXPECT_EQ(m_->wall().mode, mode) << "b's button does not count";
+  emulators_->step("one", 1);
+  EXPECT_TRUE(eventually([&] { return m_->wall().mode != mode; })) << "a's button counts";
+
+  json config = json::parse(readText(m_->config()));
+  config["people"]["turn_s"] = 0;
+  writeText(m_->config(), config.dump(2));
+  const Outcome reloaded = run({kMerlin, "reload", "--instance", m_->instance()});
+  EXPECT_EQ(reloaded.output, "/people/turn_s: 60 -> 0\n");
+  emulators_->step("two", 4);
+  EXPECT_TRUE(moves(true)) << "a does nothing any more";
+  emulators_->step("two", 2);
+  EXPECT_TRUE(modeIs(mode));
+}
+
+}  // namespace
+}  // namespace merlin::test
