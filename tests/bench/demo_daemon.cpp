@@ -19,7 +19,7 @@ nlohmann::json demoConfig(const DemoOptions& options, const std::string& instanc
               "--config names the demo's, config/demo.json");
   }
   const auto folder = std::filesystem::absolute(options.config).parent_path();
-  for (auto* path : {&config["devices"]["postures"], &config["wall"]["model"]})
+  for (auto* path : {&config["postures"]["file"], &config["wall"]["model"]})
     *path = (folder / path->get<std::string>()).string();
   config["instance"] = instance;
   config["run_directory"] = dir.path();
@@ -37,16 +37,28 @@ std::string endOf(const std::string& output) {
 }
 
 // Opens a segment, which exists once merlind is ready. Returns the error, or an empty text.
-template <typename Segment>
-std::string open(std::optional<shm::SegmentReader<Segment>>& reader, const std::string& instance,
-                 const char* role) {
-  auto opened = shm::SegmentReader<Segment>::open(shm::segmentName(instance, role));
+template <typename Reader>
+std::string open(std::optional<Reader>& reader, const std::string& instance, const char* role) {
+  auto opened = Reader::open(shm::segmentName(instance, role));
   if (!opened) return opened.error().what;
   reader.emplace(*std::move(opened));
   return "";
 }
 
 }  // namespace
+
+nlohmann::json& deviceOf(nlohmann::json& config, const std::string& name) {
+  nlohmann::json& list = config["devices"];
+  if (list.is_null()) {
+    list = nlohmann::json::array({{{"name", "glove"}, {"driver", "cyberglove"}},
+                                  {{"name", "tracker"}, {"driver", "fastrak"}},
+                                  {{"name", "ball"}, {"driver", "spaceball"}}});
+  }
+  for (nlohmann::json& device : list) {
+    if (device.value("name", "") == name) return device;
+  }
+  didNotRun(name, "the configuration has no device of this name", "--config names the demo's");
+}
 
 DemoDaemon::DemoDaemon(const DemoOptions& options, const test::TempDir& dir,
                        const std::string& role, const Change& change)
@@ -72,6 +84,13 @@ DemoDaemon::DemoDaemon(const DemoOptions& options, const test::TempDir& dir,
 
 void DemoDaemon::expectRunning() {
   if (process_->ended()) fail("it ended while it was measured; " + endOf(process_->output()));
+}
+
+std::optional<DeviceHealth> DemoDaemon::health(const std::string& device) const {
+  for (const auto& health : devices().health) {
+    if (health.device == device) return health.slot->read();
+  }
+  return std::nullopt;
 }
 
 shm::WallStats DemoDaemon::wall() {

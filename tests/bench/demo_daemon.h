@@ -20,6 +20,10 @@ struct DemoOptions {
   std::string config;  // the demo's configuration
 };
 
+// The entry of the configuration's list of devices with this name: "glove", "tracker" or "ball" of
+// a configuration without a list of its own, which then has the default one.
+nlohmann::json& deviceOf(nlohmann::json& config, const std::string& name);
+
 // Thread-bound. Every function throws DidNotRun if merlind does not run or deliver as expected.
 class DemoDaemon {
  public:
@@ -41,7 +45,9 @@ class DemoDaemon {
 
   // The statistics that its wall has published last. Not for the role "devices".
   shm::WallStats wall();
-  const shm::DevicesSegment& devices() const { return **devices_; }
+  const shm::DeviceSlots& devices() const { return **devices_; }
+  // The last health of the device with this name; nothing before the first.
+  std::optional<DeviceHealth> health(const std::string& device) const;
 
   // Who draws its wall, as it says: "EGL, llvmpipe (...), two contexts". Not for the role
   // "devices".
@@ -56,7 +62,7 @@ class DemoDaemon {
   std::string instance_, subject_;
   std::optional<test::Process> process_;
   std::optional<shm::SegmentReader<shm::WallSegment>> wall_;
-  std::optional<shm::SegmentReader<shm::DevicesSegment>> devices_;
+  std::optional<shm::DevicesReader> devices_;
 };
 
 }  // namespace merlin::bench

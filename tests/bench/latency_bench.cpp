@@ -1,8 +1,9 @@
 // ./dev bench latency: from a byte on a line to a client of the shared memory, for MERLIN's reader,
-// for the same with idle cores kept awake (devices.cpu_latency_us = 0), for that reader over a line
+// for the same with idle cores kept awake (cpu_latency_us = 0), for that reader over a line
 // that is asked once a millisecond, over one that is asked without a pause, and for a bare blocking
 // loop without a device: interleaved in one run, over a pseudo-terminal and over a socket pair,
-// idle and with all cores loaded.
+// idle and with all cores loaded. That is a glove; a tracker and a ball are measured beside a bare
+// loop of their own.
 //
 // Absolute times belong to this machine and this minute; the ratios are what counts. A pty's bytes
 // pass through a kernel worker, a socket pair's do not.
@@ -158,6 +159,33 @@ void benchReaders(const Options& options, Report& report) {
   report.figure("pty.by_bare_p99", bare99, "1");
 }
 
+// The other kinds of devices beside a bare loop, which publishes a sample for each record's bytes
+// without looking at them; the rounds of both are interleaved.
+void benchKinds(const Options& options, Report& report) {
+  report.text("\nkind      line  MERLIN [us]  bare [us]   median by bare (asked at most 1.2)\n");
+  Times& times = makeTimes();
+  for (const Kind* kind : {&kTrackerKind, &kBallKind}) {
+    std::map<Reader, std::vector<double>> all;
+    for (int r = 0; r < options.rounds; ++r) {
+      note(fmt::format("{}: round {} of {}", kind->name, r + 1, options.rounds));
+      for (const Reader reader : {kMerlin, kBare}) {
+        const Round round = runRound(options.round, reader, kPty, times, *kind);
+        all[reader].insert(all[reader].end(), round.latency_us.begin(), round.latency_us.end());
+      }
+    }
+    const auto what = [&](Reader r) {
+      return fmt::format("{} of {}", kind->name, kReaderNames[r]);
+    };
+    const auto merlin = quantileOf(all[kMerlin], 0.5, what(kMerlin));
+    const auto bare = quantileOf(all[kBare], 0.5, what(kBare));
+    const auto ratio = ratioOf(merlin, bare, "samples");
+    report.text("{:9} pty {:12.1f} {:10.1f}   {:.2f}: {}\n", kind->name, merlin.value(),
+                bare.value(), ratio.value(), verdict(ratio <= 1.2));
+    report.figure(fmt::format("pty.{}.median", kind->name), merlin, "us");
+    report.figure(fmt::format("pty.{}.by_bare_median", kind->name), ratio, "1");
+  }
+}
+
 }  // namespace
 }  // namespace merlin::bench
 
@@ -178,6 +206,7 @@ int main(int argc, char** argv) {
     benchCpu(options, dir, report);
     benchEquation(options, dir, report);
     benchReaders(options, report);
+    benchKinds(options, report);
     return true;
   });
 }

@@ -22,13 +22,14 @@ double cpuSeconds(pid_t pid) {
 }
 
 void atHighestRates(nlohmann::json& config) {
-  config["devices"]["glove"] = {{"rate_hz", 150}};
-  config["devices"]["script"] = "turning";
+  deviceOf(config, "glove")["cyberglove"] = {{"rate_hz", 150}};
+  config["script"] = "turning";
 }
 
 // The smallest number of samples among the three devices.
-std::uint64_t fewestSamples(const shm::DevicesSegment& devices) {
-  return std::min({devices.glove.count(), devices.tracker[0].count(), devices.ball.count()});
+std::uint64_t fewestSamples(const shm::DeviceSlots& devices) {
+  return std::min({devices.glove()->samples->count(), devices.tracker()->stations[0]->count(),
+                   devices.ball()->samples->count()});
 }
 
 struct Terms {

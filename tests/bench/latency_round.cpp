@@ -20,8 +20,6 @@
 #include "daemon/shm/fields.h"
 #include "daemon/shm/segment.h"
 #include "daemon/shm/shm_sink.h"
-#include "drivers/cyberglove/device.h"
-#include "drivers/cyberglove/protocol.h"
 #include "drivers/emulate/emulator.h"
 #include "drivers/io/cpu_latency.h"
 #include "drivers/io/fd_stream.h"
@@ -65,24 +63,29 @@ bool askForRealTime() {
   return ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &priority) == 0;
 }
 
-// A client like any other: maps the segment, waits for the glove's next sample, notes the time.
-void runClient(const std::string& name, Times& times) {
-  askForRealTime();
-  const auto reader = shm::SegmentReader<Segment>::open(name);
-  if (!reader) return;
-  const auto& glove = (*reader)->glove;
+// Waits for the channel's next sample and notes the time, again and again.
+template <typename Sample>
+void noteArrivals(const shm::Channel<Sample>& channel, Times& times) {
   times.received = 0;
   for (std::uint64_t seen = 0; !times.stop;) {
-    glove.wait(seen, {0, 100'000'000});
-    const std::uint64_t count = glove.count();
+    channel.wait(seen, {0, 100'000'000});
+    const std::uint64_t count = channel.count();
     if (count == seen) continue;
     const std::int64_t at = now();
-    const auto sample = glove.newest();
+    const auto sample = channel.newest();
     seen = count;
     if (!sample || sample->counter >= Times::kMost) continue;
     times.received_ns[sample->counter] = at;
     times.received = sample->counter;
   }
+}
+
+// A client like any other, which maps the segment.
+void runClient(const std::string& name, const Kind& kind, Times& times) {
+  askForRealTime();
+  const auto reader = shm::SegmentReader<Segment>::open(name);
+  if (!reader) return;
+  withChannel(**reader, kind, [&](const auto& channel) { noteArrivals(channel, times); });
 }
 
 // A line that is polled instead of waited for, every millisecond or without a pause.
@@ -136,16 +139,12 @@ Ends makeLine(Line kind) {
   return ends;
 }
 
-std::string record(std::uint32_t n) {
-  cyberglove::Record r;
-  for (std::size_t i = 0; i < 22; ++i) r.values[i] = static_cast<std::uint8_t>(1 + (n + i) % 255);
-  return cyberglove::encode(r, {.values = 22, .timestamp = false, .status = true});
-}
-
 // Reads, publishes and wakes the client, and nothing else: the minimum work of any blocking reader.
-void bareLoop(int fd, Segment& segment, const std::atomic<bool>& stop) {
+template <typename Sample>
+void bareLoop(int fd, std::size_t length, shm::Channel<Sample>& channel,
+              const std::atomic<bool>& stop) {
   std::byte buffer[256];
-  GloveSample sample{};
+  Sample sample{};
   std::size_t bytes = 0;
   while (!stop) {
     pollfd item{fd, POLLIN, 0};
@@ -153,9 +152,9 @@ void bareLoop(int fd, Segment& segment, const std::atomic<bool>& stop) {
     const ssize_t n = ::read(fd, buffer, sizeof buffer);
     if (n <= 0) continue;
     bytes += static_cast<std::size_t>(n);
-    for (const std::size_t length = record(0).size(); bytes >= length; bytes -= length) {
+    for (; bytes >= length; bytes -= length) {
       ++sample.counter;
-      segment.glove.publish(sample);
+      channel.publish(sample);
     }
   }
 }
@@ -182,22 +181,22 @@ struct ReaderThread {
   std::atomic<bool> streaming{false}, stop{false}, ended{false}, real_time{false};
   std::atomic<double> cpu_s{0};
 
-  void run(Reader kind, int fd, Segment& segment) {
-    read(kind, fd, segment);
+  void run(Reader reader, const Kind& kind, int fd, Segment& segment) {
+    read(reader, kind, fd, segment);
     ended = true;
   }
 
  private:
-  void read(Reader kind, int fd, Segment& segment) {
+  void read(Reader reader, const Kind& kind, int fd, Segment& segment) {
     // A spinning thread with real-time priority would block the machine.
-    real_time = kind != kSpinning && askForRealTime();
-    shm::ShmSink sink(segment);
+    real_time = reader != kSpinning && askForRealTime();
+    shm::ShmSink sink(segment, kind.kind, 0);
     const SystemClock clock;
     std::unique_ptr<ByteStream> stream;
-    if (kind == kMerlin || kind == kAwake) stream = std::make_unique<io::FdStream>(fd, [] {});
-    if (kind == kSleeping || kind == kSpinning)
-      stream = std::make_unique<AskedStream>(fd, kind == kSleeping);
-    const auto device = cyberglove::makeDevice({}, clock, sink);
+    if (reader == kMerlin || reader == kAwake) stream = std::make_unique<io::FdStream>(fd, [] {});
+    if (reader == kSleeping || reader == kSpinning)
+      stream = std::make_unique<AskedStream>(fd, reader == kSleeping);
+    const auto device = kind.make(clock, sink);
     if (stream && !device->open(*stream)) return;
     streaming = true;
     timespec before{}, after{};
@@ -205,7 +204,8 @@ struct ReaderThread {
     if (stream) {
       while (!stop && device->poll(*stream)) continue;
     } else {
-      bareLoop(fd, segment, stop);
+      withChannel(segment, kind,
+                  [&](auto& channel) { bareLoop(fd, kind.record(0).size(), channel, stop); });
     }
     ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &after);
     cpu_s = static_cast<double>(after.tv_sec - before.tv_sec) +
@@ -215,15 +215,16 @@ struct ReaderThread {
 
 // Sends `samples` records at irregular intervals around the rate, so that no loop can synchronise
 // to it.
-void sendRecords(int fd, int samples, double rate_hz, std::uint32_t first, Times& times) {
+void sendRecords(int fd, const RoundSize& size, const Kind& kind, std::uint32_t first,
+                 Times& times) {
   const SystemClock clock;
   Timestamp due = clock.now();
-  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(samples); ++i) {
-    due += fromSeconds((0.5 + static_cast<double>(i * 7919 % 1000) / 1000) / rate_hz);
+  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(size.samples); ++i) {
+    due += fromSeconds((0.5 + static_cast<double>(i * 7919 % 1000) / 1000) / size.rate_hz);
     timespec at{due.time_since_epoch() / std::chrono::seconds(1),
                 (due.time_since_epoch() % std::chrono::seconds(1)).count()};
     ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, nullptr);
-    const std::string bytes = record(first + i);
+    const std::string bytes = kind.record(first + i);
     times.sent_ns[first + i] = now();
     (void)!::write(fd, bytes.data(), bytes.size());
   }
@@ -246,10 +247,10 @@ std::vector<double> latencies(const Times& times, std::uint32_t first, std::uint
 // A client process that has opened the segment.
 class Client {
  public:
-  Client(const std::string& name, Times& times) : times_(times) {
+  Client(const std::string& name, const Kind& kind, Times& times) : times_(times) {
     times.stop = false;
     times.received = kNone;
-    pid_ = child([&] { runClient(name, times); });
+    pid_ = child([&] { runClient(name, kind, times); });
     if (test::eventually([&] { return times.received != kNone; })) return;
     stop();
     didNotRun("a client of " + name, "it did not open the segment within 30 s", "see /dev/shm");
@@ -270,43 +271,46 @@ class Client {
 
 }  // namespace
 
-Round runRound(const RoundSize& size, Reader kind, Line line, Times& times) {
+Round runRound(const RoundSize& size, Reader reader, Line line, Times& times, const Kind& kind) {
   const std::string name = shm::segmentName(test::privateName("latency"), "devices");
   const SystemClock clock;
-  const auto segment =
-      shm::SegmentWriter<Segment>::make(name, shm::devicesFields(), 1, clock.now(), {});
+  const auto segment = shm::SegmentWriter<Segment>::make(
+      name, shm::devicesFields({{{kind.name, kind.kind}}, {}}), 1, clock.now(), {});
   if (!segment) didNotRun("the shared memory", segment.error().what, "see /dev/shm");
   Ends ends = makeLine(line);
   if (!ends.reader.valid())
     didNotRun(kLineNames[line], "it cannot be made", "see 'ulimit -n' and /dev/pts");
   std::fill(std::begin(times.received_ns), std::end(times.received_ns), 0);
   std::optional<UniqueFd> awake;
-  if (kind == kAwake) awake.emplace(*io::limitCpuLatency(0));
-  std::optional<Client> client(std::in_place, name, times);
-  ReaderThread reader;
-  std::thread thread([&] { reader.run(kind, ends.reader.get(), **segment); });
-  const auto emulator = emulate::findEmulator("cyberglove")
+  if (reader == kAwake) awake.emplace(*io::limitCpuLatency(0));
+  std::optional<Client> client(std::in_place, name, kind, times);
+  ReaderThread reading;
+  std::thread thread([&] { reading.run(reader, kind, ends.reader.get(), **segment); });
+  const auto emulator = emulate::findEmulator(kind.emulator)
                             ->make({}, *emulate::findMotionScript("still"), clock.now());
-  serveDialogue(ends.deviceFd(), *emulator, [&] { return reader.streaming || reader.ended; });
+  serveDialogue(ends.deviceFd(), *emulator, [&] { return reading.streaming || reading.ended; });
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  const auto first = static_cast<std::uint32_t>((**segment).glove.count()) + 1;
+  const std::uint32_t first = withChannel(**segment, kind, [](const auto& channel) {
+    const auto sample = channel.newest();
+    return sample ? sample->counter + 1 : 1;
+  });
   const Timestamp start = clock.now();
   std::thread sender([&] {
     askForRealTime();  // it stands for the hardware, so nothing may delay it
-    sendRecords(ends.deviceFd(), size.samples, size.rate_hz, first, times);
+    sendRecords(ends.deviceFd(), size, kind, first, times);
   });
   sender.join();
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   const double took = toSeconds(clock.now() - start);
-  const bool ended_early = reader.ended;
-  reader.stop = true;
+  const bool ended_early = reading.ended;
+  reading.stop = true;
   thread.join();
   client.reset();
   if (ended_early)
-    didNotRun(fmt::format("{} on a {}", kReaderNames[kind], kLineNames[line]),
-              "it ended before its line did", "see drivers/cyberglove");
+    didNotRun(fmt::format("{} on a {}", kReaderNames[reader], kLineNames[line]),
+              "it ended before its line did", fmt::format("see drivers/{}", kind.emulator));
   return {latencies(times, first, first + static_cast<std::uint32_t>(size.samples)),
-          reader.cpu_s / took, reader.real_time};
+          reading.cpu_s / took, reading.real_time};
 }
 
 }  // namespace merlin::bench

@@ -6,6 +6,8 @@
 
 #include <sys/types.h>
 
+#include "tests/bench/latency_kind.h"
+
 namespace merlin::bench {
 
 enum Reader { kMerlin, kAwake, kSleeping, kSpinning, kBare, kReaders };
@@ -31,7 +33,8 @@ struct Round {
 
 // Throws DidNotRun if the line, the segment, the client or the reader does not run to the end.
 // kAwake is allowed only if io::limitCpuLatency(0) succeeds.
-Round runRound(const RoundSize& size, Reader kind, Line line, Times& times);
+Round runRound(const RoundSize& size, Reader reader, Line line, Times& times,
+               const Kind& kind = kGloveKind);
 
 // Starts a process that runs `body` and dies with this one.
 pid_t child(const std::function<void()>& body);

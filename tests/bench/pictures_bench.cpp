@@ -110,7 +110,7 @@ std::string stepAt(double t, bool panorama) {
 Motion move(const Options& options, const test::TempDir& dir, const std::string& file,
             bool panorama) {
   DemoDaemon daemon(options, dir, "all", [&](nlohmann::json& config) {
-    config["devices"]["script"] = "still";
+    config["script"] = "still";
     config["wall"]["model"] = "";
     config["wall"]["contents"] = {{{"picture", file}}};
   });
@@ -153,7 +153,7 @@ struct Shown {
 // `merlin show` of a picture and of the model in turns, on a wall that the demo's script moves.
 Shown show(const Options& options, const test::TempDir& dir, const std::string& file) {
   DemoDaemon daemon(options, dir, "all",
-                    [&](nlohmann::json& config) { config["devices"]["script"] = "still"; });
+                    [&](nlohmann::json& config) { config["script"] = "still"; });
   SystemClock clock;
   clock.sleepUntil(clock.now() + std::chrono::seconds(3), {});
   const double memory_mb = memoryOf(daemon.pid(), "VmRSS");

@@ -53,17 +53,16 @@ json variantOf(const json& demo, int i) {
   switch (i % 8) {
     case 0:
     case 4:
-      config["devices"]["bindings"] = {
-          {{"input", "posture.fist"}, {"action", i % 8 == 0 ? "fly" : "grab"}}};
+      config["bindings"] = {{{"input", "posture.fist"}, {"action", i % 8 == 0 ? "fly" : "grab"}}};
       break;
-    case 1: config["devices"]["posture_hold_s"] = 0.2; break;
+    case 1: config["postures"]["hold_s"] = 0.2; break;
     case 2:
       config["wall"]["rate"]["late_share"] = 0.02;
       config["wall"]["scene"]["hand_gain"] = 2;
       break;
-    case 5: config["devices"]["ball"]["dead_zone"] = i % 16 == 5 ? 5 : 6; break;
-    case 6: config["devices"]["hand"]["cutoff_hz"] = 4; break;
-    case 3: config["devices"]["glove"]["baud"] = 7; break;
+    case 5: deviceOf(config, "ball")["spaceball"]["dead_zone"] = i % 16 == 5 ? 5 : 6; break;
+    case 6: config["hands"] = {{{"cutoff_hz", 4}}}; break;
+    case 3: deviceOf(config, "glove")["baud"] = 7; break;
     default: config["wall"]["render"]["wireframe"] = true; break;
   }
   return config;
@@ -91,7 +90,7 @@ bool bench(const Options& options, Report& report) {
   const test::TempDir dir;
   json demo;
   DemoDaemon daemon(options, dir, "all", [&](json& config) {
-    config["devices"]["script"] = "grabbing";
+    config["script"] = "grabbing";
     config["wall"]["playlist"] = {{"after_s", 0}};
     demo = config;
   });
@@ -102,8 +101,8 @@ bool bench(const Options& options, Report& report) {
   const shm::WallStats before = daemon.wall();
   for (int i = 0; i < 16; ++i) reload(daemon, path, variantOf(demo, i));  // memory settles
   const Held held = heldBy(daemon.pid());
-  const shm::DevicesSegment& devices = daemon.devices();
-  const std::uint64_t tracked = devices.tracker[0].count();
+  const shm::Channel<TrackerSample>& station = *daemon.devices().tracker()->stations[0];
+  const std::uint64_t tracked = station.count();
   const shm::WallStats begun = daemon.wall();
   std::vector<double> took_ms;
   int wrong = 0;
@@ -121,8 +120,8 @@ bool bench(const Options& options, Report& report) {
   std::this_thread::sleep_for(std::chrono::seconds(2));  // the statistics follow
   const shm::WallStats end = daemon.wall();
   const Held after = heldBy(daemon.pid());
-  const auto samples = devices.tracker[0].count() - tracked;
-  const auto tracker = devices.health[shm::kTracker].read();
+  const auto samples = station.count() - tracked;
+  const auto tracker = daemon.health("tracker");
   const auto without = lateShare(first, before), with = lateShare(begun, end);
   const auto took = medianOf(took_ms, "reloads");
   const auto slowest = quantileOf(took_ms, 1, "reloads");

@@ -89,7 +89,7 @@ pid_t child(const std::function<void()>& body) {
 
 void publishForEver(DevicesSegment& segment, const std::atomic<bool>& stop) {
   for (std::uint32_t n = 1; !stop.load(std::memory_order_relaxed); ++n)
-    segment.glove.publish(sampleOf(n));
+    segment.glove[0].samples.publish(sampleOf(n));
 }
 
 void readUntil(const std::string& name, std::uint64_t reads, Shared& shared) {
@@ -98,10 +98,10 @@ void readUntil(const std::string& name, std::uint64_t reads, Shared& shared) {
   std::uint64_t torn = 0, empty = 0, done = 0;
   for (; done < reads; ++done) {
     // Three of four look at the newest, one at the ring where it is about to be overwritten.
-    const std::uint64_t count = (*reader)->glove.count();
+    const std::uint64_t count = (*reader)->glove[0].samples.count();
     const bool oldest = (done & 3) == 3 && count > shm::kHistory;
-    const auto s =
-        oldest ? (*reader)->glove.at(count - shm::kHistory + 1) : (*reader)->glove.newest();
+    const auto s = oldest ? (*reader)->glove[0].samples.at(count - shm::kHistory + 1)
+                          : (*reader)->glove[0].samples.newest();
     if (!s) {
       ++empty;
     } else if (!whole(*s)) {
@@ -122,11 +122,12 @@ const Writer& expectMade(const Result<Writer>& segment) {
 bool benchTorn(const Options& options, Report& report) {
   const std::string name = shm::segmentName(test::privateName("torn"), "devices");
   const SystemClock clock;
-  const auto made = Writer::make(name, shm::devicesFields(), 1, clock.now(), {});
+  const auto made = Writer::make(name, shm::devicesFields({{{"glove", SampleKind::kGlove}}, {}}), 1,
+                                 clock.now(), {});
   const Writer& segment = expectMade(made);
   Shared& shared = *makeShared();
   const Timestamp start = clock.now();
-  (*segment).glove.publish(sampleOf(1));
+  (*segment).glove[0].samples.publish(sampleOf(1));
   const pid_t writer = child([&] { publishForEver(*segment, shared.stop); });
   std::vector<pid_t> readers;
   const auto each = static_cast<std::uint64_t>(options.reads / options.readers);
@@ -136,7 +137,7 @@ bool benchTorn(const Options& options, Report& report) {
   shared.stop = true;
   ::waitpid(writer, nullptr, 0);
   const double took = toSeconds(clock.now() - start);
-  const std::uint64_t written = (*segment).glove.count() - 1;
+  const std::uint64_t written = (*segment).glove[0].samples.count() - 1;
   const auto writes = Measured::of(static_cast<double>(written), written, "writes");
   const auto torn = shareOf(shared.torn, shared.reads - shared.empty, "reads of a whole value");
   report.text(
@@ -158,14 +159,14 @@ struct Wreck {
 // Looks at every slot that a dead writer left.
 void inspect(const DevicesSegment& segment, const Clock& clock, Wreck& wreck) {
   const Timestamp start = clock.now();
-  const std::uint64_t count = segment.glove.count();
-  const auto newest = segment.glove.newest();
+  const std::uint64_t count = segment.glove[0].samples.count();
+  const auto newest = segment.glove[0].samples.newest();
   const auto health = segment.health[0].read();
   if (!newest || !health) ++wreck.middle;
   if (newest && !whole(*newest)) ++wreck.rubbish;
   if (health && !whole(*health)) ++wreck.rubbish;
   for (std::uint64_t n = count > shm::kHistory ? count - shm::kHistory : 0; n < count; ++n) {
-    const auto s = segment.glove.at(n);
+    const auto s = segment.glove[0].samples.at(n);
     if (s && (!whole(*s) || s->counter != n + 1)) ++wreck.rubbish;
   }
   wreck.slowest_s = std::max(wreck.slowest_s, toSeconds(clock.now() - start));
@@ -174,16 +175,17 @@ void inspect(const DevicesSegment& segment, const Clock& clock, Wreck& wreck) {
 // A daemon's life: makes the segment, as merlind does, and writes until it is killed.
 void liveAndWrite(const std::string& name, std::uint64_t generation, int ready) {
   const SystemClock clock;
-  const auto segment = Writer::make(name, shm::devicesFields(), generation, clock.now(), {});
+  const auto segment = Writer::make(name, shm::devicesFields({{{"glove", SampleKind::kGlove}}, {}}),
+                                    generation, clock.now(), {});
   if (!segment) ::_exit(1);
-  (**segment).glove.publish(sampleOf(1));
+  (**segment).glove[0].samples.publish(sampleOf(1));
   DeviceHealth health[16];
   for (std::uint64_t n = 0; n < 16; ++n) health[n] = healthOf(n);
   (**segment).health[0].publish(health[0]);
   (void)!::write(ready, "r", 1);
   for (std::uint32_t n = 2;; ++n) {
     for (std::uint32_t i = 0; i < 64; ++i) (**segment).health[0].publish(health[(n + i) % 16]);
-    (**segment).glove.publish(sampleOf(n));
+    (**segment).glove[0].samples.publish(sampleOf(n));
   }
 }
 

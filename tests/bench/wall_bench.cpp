@@ -28,7 +28,7 @@ struct Options : DemoOptions {
 };
 
 DemoDaemon::Change withScript(const std::string& script) {
-  return [script](nlohmann::json& config) { config["devices"]["script"] = script; };
+  return [script](nlohmann::json& config) { config["script"] = script; };
 }
 
 void sleepSeconds(double seconds) {
@@ -120,10 +120,10 @@ BareRun runBare(const Options& options, const test::TempDir& dir, const std::str
                 double work_s, double rate_hz) {
   DemoDaemon devices(options, dir, "devices", withScript(script));
   FixedWork fixed = workThatTakes(work_s, rate_hz);
-  const std::uint64_t before = devices.devices().glove.count();
+  const std::uint64_t before = devices.devices().glove()->samples->count();
   const BareRun run = bareLoop(fixed, rate_hz, options.seconds);
   devices.expectRunning();
-  if (devices.devices().glove.count() == before)
+  if (devices.devices().glove()->samples->count() == before)
     didNotRun("the glove beside the bare loop", "it sent no sample", "see merlin status");
   devices.stop();
   return run;
@@ -223,8 +223,7 @@ Intervals intervalsOf(const shm::Channel<T>& channel, std::uint64_t from, const 
 }
 
 struct Victim {
-  shm::DeviceIndex device;
-  const char* driver;
+  std::string name, driver;  // of the device
 };
 
 void killEmulator(const DemoDaemon& wall, const std::string& driver) {
@@ -241,43 +240,45 @@ void killEmulator(const DemoDaemon& wall, const std::string& driver) {
 }
 
 // How long merlind took to read an emulator in the place of the killed one.
-Measured secondsUntilBack(const shm::DevicesSegment& devices, const Victim& victim,
-                          Process& emulator) {
+Measured secondsUntilBack(const DemoDaemon& wall, const Victim& victim, Process& emulator) {
   if (!emulator.saysEventually(" on pty:"))
     didNotRun(fmt::format("merlin emulate {}", victim.driver), emulator.output(), "see --bin");
   const SystemClock clock;
   const Timestamp answered = clock.now();
   const bool back = test::eventually([&] {
-    const auto health = devices.health[victim.device].read();
+    const auto health = wall.health(victim.name);
     return health && health->state == HealthState::kOk && health->reconnects > 0;
   });
   if (!back)
-    didNotRun(victim.driver, "merlind did not read it again within 30 s", "see merlin status");
+    didNotRun(victim.name, "merlind did not read it again within 30 s", "see merlin status");
   return Measured::of(toSeconds(clock.now() - answered), 1, "reconnections");
 }
 
 // Samples of glove and tracker since the last look, without the device that is killed.
 class Others {
  public:
-  Others(const shm::DevicesSegment& devices, shm::DeviceIndex victim)
-      : devices_(devices), victim_(victim) {
+  Others(const shm::DeviceSlots& devices, std::string victim)
+      : glove_slots_(*devices.glove()->samples),
+        tracker_slots_(*devices.tracker()->stations[0]),
+        victim_(std::move(victim)) {
     begin();
   }
   void begin() {
-    glove_ = devices_.glove.count();
-    tracker_ = devices_.tracker[0].count();
+    glove_ = glove_slots_.count();
+    tracker_ = tracker_slots_.count();
   }
   std::map<std::string, Intervals> end() const {
     std::map<std::string, Intervals> all;
-    if (victim_ != shm::kGlove) all.emplace("glove", intervalsOf(devices_.glove, glove_, "glove"));
-    if (victim_ != shm::kTracker)
-      all.emplace("tracker", intervalsOf(devices_.tracker[0], tracker_, "tracker"));
+    if (victim_ != "glove") all.emplace("glove", intervalsOf(glove_slots_, glove_, "glove"));
+    if (victim_ != "tracker")
+      all.emplace("tracker", intervalsOf(tracker_slots_, tracker_, "tracker"));
     return all;
   }
 
  private:
-  const shm::DevicesSegment& devices_;
-  shm::DeviceIndex victim_;
+  const shm::Channel<GloveSample>& glove_slots_;
+  const shm::Channel<TrackerSample>& tracker_slots_;
+  std::string victim_;
   std::uint64_t glove_ = 0, tracker_ = 0;
 };
 
@@ -289,14 +290,14 @@ bool killOne(const Victim& victim, const std::function<Process&()>& restart, Dem
              Report& report) {
   const std::string driver = victim.driver;
   note(driver + ": killed and restarted");
-  Others others(wall.devices(), victim.device);
+  Others others(wall.devices(), victim.name);
   sleepSeconds(1);
   const auto before = others.end();
   killEmulator(wall, driver);
   others.begin();
   const std::int64_t drawn = wall.wall().updated_ns;
   sleepSeconds(1.5);
-  const Measured back = secondsUntilBack(wall.devices(), victim, restart());
+  const Measured back = secondsUntilBack(wall, victim, restart());
   const auto during = others.end();
   report.text("{:11} {:9.2f} s", driver, back.value());
   report.figure(driver + ".back", back, "s");
@@ -325,12 +326,12 @@ bool benchFaults(const Options& options, const test::TempDir& dir, Report& repor
   report.text("\na device killed and restarted (its emulator, kill -9)\n");
   report.text("killed      back after   glove's     tracker's   samples     wall\n");
   report.text("            1st answer   median      median      missing\n");
-  for (const Victim& victim : {Victim{shm::kGlove, "cyberglove"}, Victim{shm::kTracker, "fastrak"},
-                               Victim{shm::kBall, "spaceball"}}) {
+  for (const Victim& victim :
+       {Victim{"glove", "cyberglove"}, Victim{"tracker", "fastrak"}, Victim{"ball", "spaceball"}}) {
     const auto restart = [&]() -> Process& {
       return *emulators.emplace_back(std::make_unique<Process>(
           std::vector<std::string>{options.bin + "/merlin", "emulate", victim.driver, "--link",
-                                   dir / (std::string(victim.driver) + ".pty")}));
+                                   dir / fmt::format("{}-{}.pty", wall.instance(), victim.name)}));
     };
     ran_on = killOne(victim, restart, wall, report) && ran_on;
   }

@@ -18,6 +18,7 @@ OPTIONS = None
 MACHINE = None
 EMULATORS = []
 DEVICES = ("glove", "tracker", "ball")
+DRIVERS = {"glove": "cyberglove", "tracker": "fastrak", "ball": "spaceball"}
 EV_KEY, EV_ABS, ABS_RX, BTN_SOUTH = 1, 3, 3, 304
 BALL = {"driver": "usb-serial", "id": "ball", "chardev": "ball-line"}
 
@@ -55,9 +56,13 @@ def tearDownModule():
         emulator.stdout.close()
 
 
-def start(devices):
+def entry(name, port):
+    return {"name": name, "driver": DRIVERS[name], "port": port}
+
+
+def start(*devices):
     """Starts merlind with these devices, and waits until it is ready; returns its process id."""
-    config = {"run_directory": "/run/merlin", "devices": devices}
+    config = {"run_directory": "/run/merlin", "devices": list(devices)}
     with open(f"{MACHINE.shared}/devices.json", "w", encoding="utf-8") as file:
         json.dump(config, file)
     pid = int(MACHINE.run("merlind --role devices --config /mnt/devices.json >/run/log 2>&1 & echo $!"))
@@ -83,8 +88,8 @@ def health():
 
 class Devices(unittest.TestCase):
     def test_1_three_devices_on_serial_lines_and_one_is_unplugged(self):
-        pid = start({"glove": {"port": "serial:/dev/ttyS1"}, "tracker": {"port": "serial:/dev/ttyS2"},
-                     "ball": {"port": "serial:/dev/ttyUSB0"}})
+        pid = start(entry("glove", "serial:/dev/ttyS1"), entry("tracker", "serial:/dev/ttyS2"),
+                    entry("ball", "serial:/dev/ttyUSB0"))
         vm.until(lambda: set(health().values()) == {"ok"}, "all three stream")
         found = configured()
         self.assertIn("CyberGlove", found["glove"]["identity"])
@@ -107,7 +112,7 @@ class Devices(unittest.TestCase):
         stop(pid)
 
     def test_2_a_line_that_is_taken_is_said_to_be(self):
-        pid = start({"tracker": {"port": "serial:/dev/ttyS2"}})
+        pid = start(entry("tracker", "serial:/dev/ttyS2"))
         vm.until(lambda: health()["tracker"] == "ok", "the tracker streams")
         said = MACHINE.run("merlin record serial:/dev/ttyS2 --seconds 1 -o /run/x.bytes", succeeds=False)
         self.assertIn("/dev/ttyS2: another program holds this port", said)
@@ -126,9 +131,11 @@ class Devices(unittest.TestCase):
         plugged = [p for p in listed()["plugged"] if p["kind"] == "gamepad"]
         self.assertEqual(len(plugged), 1)
         self.assertEqual(plugged[0]["name"], "made-up gamepad of a test")
-        line = plugged[0]["as"]["ball"]
-        self.assertEqual(line, {"port": f"evdev:{path}", "driver": "evdev"})
-        pid = start({"ball": line})
+        self.assertEqual(plugged[0]["axes"], ["x", "y", "rx", "ry"])
+        self.assertIn("south", plugged[0]["keys"])
+        suggested = plugged[0]["as"][0]
+        self.assertEqual(suggested, {"name": "pad", "driver": "evdev", "port": f"evdev:{path}"})
+        pid = start(suggested | {"name": "ball"})
         vm.until(lambda: health()["ball"] == "ok", "the gamepad streams")
         self.assertEqual(configured()["ball"]["identity"], "made-up gamepad of a test, 4 axes, 2 keys")
         self.report(EV_ABS, ABS_RX, 32767)

@@ -33,10 +33,13 @@ class Wall:
         config.pop("$schema")
         config["instance"], config["run_directory"] = self.instance, options.folder
         config["wall"]["model"] = options.model
+        config.pop("postures", None)  # names a file beside the demo's
         if lines is None:
-            config["devices"] = {"script": "turning"}
+            config["script"] = "turning"
         else:
-            config["devices"] = {name: {"port": port} for name, port in lines.items()}
+            drivers = {"glove": "cyberglove", "tracker": "fastrak", "ball": "spaceball"}
+            config["devices"] = [{"name": name, "driver": driver, "port": lines.get(name, "")}
+                                 for name, driver in drivers.items()]
         config.update(also or {})
         path = os.path.join(options.folder, "attack.json")
         with open(path, "w", encoding="utf8") as file:
