@@ -30,6 +30,17 @@ void predictPose(const shm::DeviceSlots::Hand* slots, Timestamp seen, TrackerSam
   std::copy(pose.orientation_wxyz.begin(), pose.orientation_wxyz.end(), hand.orientation_wxyz);
 }
 
+// Whether this glove holds the action point_at.
+bool points(const shm::DeviceSlots& devices, const actions::Actions& actions,
+            const std::string& glove) {
+  const auto* const slots = devices.glove(glove);
+  for (std::size_t i = 0; slots && i < devices.actions.size(); ++i) {
+    if (devices.actions[i].source == slots->name)
+      return actions.by_source[i].held[actionIndex("point_at")];
+  }
+  return false;
+}
+
 // Whether an action is held by which a hand acts on the model.
 bool holdsModel(const actions::ActionCounts& counts) {
   constexpr std::array kOfHand = {actionIndex("grab"), actionIndex("fly"), actionIndex("point_at")};
@@ -160,14 +171,24 @@ std::size_t DeviceFeed::handThatActs(const shm::DeviceSlots& devices,
 void DeviceFeed::readHand(const shm::DeviceSlots& devices, const actions::Actions& actions,
                           Timestamp now, WallInput& input) {
   const std::size_t acting = handThatActs(devices, actions);
+  for (std::size_t i = 0; i < settings_.hands.size(); ++i) {
+    if (i == acting || !points(devices, actions, settings_.hands[i].glove)) continue;
+    if (const auto other = predicted(devices, settings_.hands[i], now))
+      input.scene.other_pointers.push_back(*other);
+  }
   if (acting >= settings_.hands.size()) return;
   hand_ = acting;
-  const FollowedHand& followed = settings_.hands[hand_];
-  auto& hand = input.scene.hand;
-  hand = station(devices, followed.place, now);
+  input.scene.hand = predicted(devices, settings_.hands[hand_], now);
+  readPosture(devices, settings_.hands[hand_].glove, now, input);
+}
+
+// The pose of a hand when the next frame is visible.
+std::optional<TrackerSample> DeviceFeed::predicted(const shm::DeviceSlots& devices,
+                                                   const FollowedHand& followed, Timestamp now) {
+  auto hand = station(devices, followed.place, now);
   if (hand && settings_.ahead > Duration::zero())
     predictPose(devices.hand(followed.name), now + settings_.ahead, *hand);
-  readPosture(devices, followed.glove, now, input);
+  return hand;
 }
 
 void DeviceFeed::readPosture(const shm::DeviceSlots& devices, const std::string& name,

@@ -19,7 +19,8 @@ namespace merlin::wall {
 //
 // Of several balls the one that is pushed counts, of several hands the one that holds an action,
 // otherwise the first of each; of several touch surfaces the one that is touched; the actions of
-// all count. Of several people only the input of the one who has the wall counts (Turns).
+// all count. Of several people only the input of the one who has the wall counts (Turns); the hands
+// of the others may still point.
 class DeviceFeed final : public InputFeed {
  public:
   DeviceFeed(std::string segment_name, FeedSettings settings)
@@ -51,6 +52,8 @@ class DeviceFeed final : public InputFeed {
   bool counts(const std::string& device) const;
   void takeTurns(const shm::DeviceSlots& devices, const Acts& acts, Timestamp now);
   std::size_t handThatActs(const shm::DeviceSlots& devices, const actions::Actions& actions);
+  std::optional<TrackerSample> predicted(const shm::DeviceSlots& devices, const FollowedHand& hand,
+                                         Timestamp now);
   void readHand(const shm::DeviceSlots& devices, const actions::Actions& actions, Timestamp now,
                 WallInput& input);
   void readPosture(const shm::DeviceSlots& devices, const std::string& glove, Timestamp now,

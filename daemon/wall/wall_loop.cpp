@@ -223,9 +223,12 @@ void WallLoop::readInput(std::int64_t k, Timestamp began) {
   tracer_.add(StepKind::kScene, read, parts_.clock.now());
 }
 
-std::optional<Eigen::Vector3f> WallLoop::pointedAt() const {
-  if (!view_.pointed) return std::nullopt;
-  return view_.pointed->at_eye_m;
+render::frame::PointerMarker::Points WallLoop::pointedAt() const {
+  render::frame::PointerMarker::Points points;
+  if (view_.pointed) points[0] = view_.pointed->at_eye_m;
+  for (std::size_t i = 0; i < view_.others_pointed.size() && i + 1 < points.size(); ++i)
+    points[i + 1] = view_.others_pointed[i].at_eye_m;
+  return points;
 }
 
 std::size_t WallLoop::chooseStep(std::int64_t k, Timestamp began) {

@@ -135,7 +135,7 @@ class WallLoop {
   bool needsRefining() const;
   void replaceContents();
   void noteRefusal(const ContentSource::Replacement& refused);
-  std::optional<Eigen::Vector3f> pointedAt() const;
+  render::frame::PointerMarker::Points pointedAt() const;
   void publish();
 
   WallParts parts_;

@@ -8,7 +8,9 @@ namespace {
 
 // Visible from across a hall, both on a bright model and on a dark background.
 constexpr int kRadius_px = 9, kRim_px = 3;
-constexpr std::uint8_t kDisc[3] = {255, 120, 0}, kRim[3] = {20, 20, 20};
+constexpr std::uint8_t kDiscs[PointerMarker::kMost][3] = {
+    {255, 120, 0}, {0, 150, 255}, {60, 200, 60}, {200, 80, 255}};
+constexpr std::uint8_t kRim[3] = {20, 20, 20};
 
 // The point's pixel, counted from the tile's upper left corner; it may lie beyond the tile's edges.
 std::optional<Eigen::Vector2i> pixelIn(const tiles::Tile& tile, const Eigen::Vector3f& at_eye_m) {
@@ -29,7 +31,7 @@ bool within(const tiles::Tile& tile, const Eigen::Vector2i& p) {
 
 PointerMarker::PointerMarker(const tiles::TilePlan& plan) : plan_(plan) {
   constexpr std::size_t kSide = 2 * kRadius_px + 1;
-  covered_.reserve(plan.tiles.size() * kSide * kSide);
+  covered_.reserve(kMost * plan.tiles.size() * kSide * kSide);
 }
 
 std::optional<Eigen::Vector2i> PointerMarker::pixelOf(const Eigen::Vector3f& at_eye_m) const {
@@ -42,15 +44,17 @@ std::optional<Eigen::Vector2i> PointerMarker::pixelOf(const Eigen::Vector3f& at_
 }
 
 void PointerMarker::draw(std::span<std::uint8_t> canvas) {
-  drawn_ = at_eye_m_ ? pixelOf(*at_eye_m_) : std::nullopt;
-  if (!drawn_) return;
-  for (const tiles::Tile& tile : plan_.tiles) {
-    if (!tile.isFitted()) drawIn(tile, *at_eye_m_, canvas);
+  drawn_ = pixels();
+  for (std::size_t i = kMost; i-- > 0;) {  // who acts last, above the others
+    if (!drawn_[i]) continue;
+    for (const tiles::Tile& tile : plan_.tiles) {
+      if (!tile.isFitted()) drawIn(tile, *at_eye_m_[i], kDiscs[i], canvas);
+    }
   }
 }
 
 void PointerMarker::drawIn(const tiles::Tile& tile, const Eigen::Vector3f& at_eye_m,
-                           std::span<std::uint8_t> pixels) {
+                           const std::uint8_t* colour, std::span<std::uint8_t> pixels) {
   const auto middle = pixelIn(tile, at_eye_m);
   if (!middle) return;
   for (int y = -kRadius_px; y <= kRadius_px; ++y) {
@@ -63,18 +67,26 @@ void PointerMarker::drawIn(const tiles::Tile& tile, const Eigen::Vector3f& at_ey
                                   static_cast<std::size_t>(tile.x + p.x()));
       covered_.push_back({at, {pixels[at], pixels[at + 1], pixels[at + 2]}});
       constexpr int kInner = (kRadius_px - kRim_px) * (kRadius_px - kRim_px);
-      std::copy_n(from_middle <= kInner ? kDisc : kRim, 3, &pixels[at]);
+      std::copy_n(from_middle <= kInner ? colour : kRim, 3, &pixels[at]);
     }
   }
 }
 
 void PointerMarker::erase(std::span<std::uint8_t> canvas) {
-  for (const Covered& c : covered_) std::copy_n(c.rgb, 3, &canvas[c.at]);
+  // Backwards: where discs overlap, the first one covered the picture.
+  for (auto c = covered_.rbegin(); c != covered_.rend(); ++c)
+    std::copy_n(c->rgb, 3, &canvas[c->at]);
   covered_.clear();
 }
 
-bool PointerMarker::hasChanged() const {
-  return (at_eye_m_ ? pixelOf(*at_eye_m_) : std::nullopt) != drawn_;
+PointerMarker::Pixels PointerMarker::pixels() const {
+  Pixels pixels;
+  for (std::size_t i = 0; i < kMost; ++i) {
+    if (at_eye_m_[i]) pixels[i] = pixelOf(*at_eye_m_[i]);
+  }
+  return pixels;
 }
+
+bool PointerMarker::hasChanged() const { return pixels() != drawn_; }
 
 }  // namespace merlin::render::frame

@@ -1,7 +1,8 @@
-// PointerMarker: the disc that shows a visitor where the hand points; drawn into a finished frame
+// PointerMarker: the discs that show visitors where their hands point; drawn into a finished frame
 // and erased again.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,11 +24,15 @@ class PointerMarker final : public Overlay {
   // pixel's centre is at x + 0.5, y + 0.5. Nothing if no wall tile shows the point.
   std::optional<Eigen::Vector2i> pixelOf(const Eigen::Vector3f& at_eye_m) const;
 
-  // Sets the point at which the disc is drawn from now on; none: no disc, as initially.
-  void pointAt(const std::optional<Eigen::Vector3f>& at_eye_m) { at_eye_m_ = at_eye_m; }
+  // Where hands point, in eye coordinates [m]: first the one that acts on the wall, in orange, then
+  // others, in blue, green and violet.
+  static constexpr std::size_t kMost = 4;
+  using Points = std::array<std::optional<Eigen::Vector3f>, kMost>;
+  // Sets the points at which discs are drawn from now on; none, as initially: no disc.
+  void pointAt(const Points& at_eye_m) { at_eye_m_ = at_eye_m; }
 
   bool hasChanged() const override;
-  // Draws the disc around pixelOf() the point, also across seams of wall tiles, and in tiles of
+  // Draws a disc around pixelOf() each point, also across seams of wall tiles, and in tiles of
   // free cameras that see the point. Cost: microseconds.
   void draw(std::span<std::uint8_t> canvas) override;
   void erase(std::span<std::uint8_t> canvas) override;
@@ -37,12 +42,14 @@ class PointerMarker final : public Overlay {
     std::size_t at;  // offset of the pixel in the canvas [bytes]
     std::uint8_t rgb[3];
   };
-  void drawIn(const tiles::Tile& tile, const Eigen::Vector3f& at_eye_m,
-              std::span<std::uint8_t> pixels);
+  using Pixels = std::array<std::optional<Eigen::Vector2i>, kMost>;
+  Pixels pixels() const;
+  void drawIn(const tiles::Tile& tile, const Eigen::Vector3f& at_eye_m, const std::uint8_t* colour,
+              std::span<std::uint8_t> canvas);
 
   const tiles::TilePlan& plan_;
-  std::optional<Eigen::Vector3f> at_eye_m_;
-  std::optional<Eigen::Vector2i> drawn_;
+  Points at_eye_m_;
+  Pixels drawn_;
   std::vector<Covered> covered_;
 };
 

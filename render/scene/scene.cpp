@@ -116,7 +116,7 @@ void Scene::reset() {
   grab_hand_.reset();
   fly_hand_.reset();
   jumped_ = true;
-  view_ = {poses_.T_wall_content, mode_, false, true, std::nullopt};
+  view_ = {poses_.T_wall_content, mode_, false, true, {}, std::nullopt};
 }
 
 void Scene::nextMode() { mode_ = mode_ == BallMode::kObject ? BallMode::kFly : BallMode::kObject; }
@@ -142,7 +142,11 @@ SceneView Scene::update(const SceneInput& input, Timestamp now) {
   view_.mode = mode_;
   view_.grabbed = grab_hand_.has_value();
   view_.moving = now - last_motion_ < fromSeconds(settings_.still_after_s);
-  view_.pointed = input.point_at ? pointByHand(input) : std::nullopt;
+  view_.pointed.reset();
+  if (input.point_at && input.hand) view_.pointed = pointByHand(*input.hand);
+  view_.others_pointed.clear();
+  for (const TrackerSample& hand : input.other_pointers)
+    view_.others_pointed.push_back(pointByHand(hand));
   return view_;
 }
 
@@ -241,9 +245,8 @@ bool Scene::flyByHand(const SceneInput& input, bool fly, float seconds) {
 }
 
 // A hand in the same orientation as the transmitter points straight into the wall, along -z.
-std::optional<Pointed> Scene::pointByHand(const SceneInput& input) const {
-  if (!input.hand) return std::nullopt;
-  const Eigen::Isometry3f hand = handPose(*input.hand);
+Pointed Scene::pointByHand(const TrackerSample& sample) const {
+  const Eigen::Isometry3f hand = handPose(sample);
   const Ray ray{vector(settings_.tracker_origin_m) + hand.translation(),
                 hand.linear() * -Eigen::Vector3f::UnitZ()};
   const auto radius = static_cast<float>(settings_.model_radius_m);

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -26,6 +27,7 @@ struct SceneInput {
   bool grab = false, fly = false, point_at = false;  // held actions
   std::uint32_t reset_view = 0, next_mode = 0;  // how often each was requested since the last frame
   TouchMotion touch;                            // of the fingers on a touch surface
+  std::vector<TrackerSample> other_pointers;    // hands that point, besides `hand`
   Push step;             // requested by the command move since the last frame: applied at once
   float turn_rad_s = 0;  // speed at which the content turns by itself: see Navigator::turn()
 };
@@ -43,7 +45,8 @@ struct SceneView {
   BallMode mode = BallMode::kObject;
   bool grabbed = false;
   bool moving = false;  // an input exceeds its noise, or did so within the last still_after_s
-  std::optional<Pointed> pointed;  // while a hand points; pointing does not count as motion
+  std::vector<Pointed> others_pointed;  // by SceneInput::other_pointers
+  std::optional<Pointed> pointed;       // while a hand points; pointing does not count as motion
 };
 
 class Scene {
@@ -81,7 +84,7 @@ class Scene {
   bool turnByItself(const SceneInput& input, float seconds);
   bool moveByHand(const SceneInput& input, bool grab);
   bool flyByHand(const SceneInput& input, bool fly, float seconds);
-  std::optional<Pointed> pointByHand(const SceneInput& input) const;
+  Pointed pointByHand(const TrackerSample& hand) const;
   void bound();  // see update()
   Eigen::Isometry3f handPose(const TrackerSample& sample) const;
 

@@ -88,7 +88,7 @@ class Script {
   }
   void pointed() {
     render::frame::PointerMarker marker(plan_);
-    marker.pointAt(Eigen::Vector3f(0.2F, 0.1F, -2.0F));
+    marker.pointAt({Eigen::Vector3f(0.2F, 0.1F, -2.0F)});
     marker.draw(renderer_->pixels());
     print("pointer", hash(renderer_->pixels()));
     marker.erase(renderer_->pixels());

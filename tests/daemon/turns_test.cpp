@@ -144,6 +144,17 @@ TEST_F(SeveralDevicesTest, AnotherPersonsInputWaitsForItsTurn) {
   EXPECT_EQ(input.scene.hand->station, 2u);
 }
 
+TEST_F(SeveralDevicesTest, WhoseTurnItIsNotMayStillPoint) {
+  DeviceFeed feed(name_, settings("bob"));
+  push(0, 1);
+  states_[kRight].held[actionIndex("point_at")] = 1;
+  (*segment_)->actions[kRight].publish(states_[kRight]);
+  const WallInput input = read(feed);
+  EXPECT_FALSE(input.scene.point_at);
+  ASSERT_EQ(input.scene.other_pointers.size(), 1u);
+  EXPECT_EQ(input.scene.other_pointers[0].station, 2u);
+}
+
 TEST_F(SeveralDevicesTest, FingersMoveWhatIsShownAndTakeTheTurn) {
   FeedSettings settings_of_two = settings("bob");
   settings_of_two.devices.push_back({"table", "bob"});

@@ -26,11 +26,11 @@ class PointerMarkerTest : public testing::Test {
   }
 
   void draw(const std::optional<Vector3f>& at_eye_m) {
-    marker_.pointAt(at_eye_m);
+    marker_.pointAt({at_eye_m});
     marker_.draw(pixels_);
   }
   bool wouldMoveTo(const std::optional<Vector3f>& at_eye_m) {
-    marker_.pointAt(at_eye_m);
+    marker_.pointAt({at_eye_m});
     return marker_.hasChanged();
   }
 
@@ -49,6 +49,20 @@ TEST_F(PointerMarkerTest, StraightAheadIsTheMiddleOfTheCentreTile) {
   EXPECT_FALSE(marked(970, 240));
   EXPECT_EQ(pixels_[at(969, 240)], 20) << "a dark rim";
   EXPECT_EQ(pixels_[at(960, 240) + 3], 90) << "alpha stays";
+}
+
+// Each of several hands has its disc; erased, the picture is as it was, also where they overlap.
+TEST_F(PointerMarkerTest, SeveralHandsHaveDiscsOfTheirOwn) {
+  const std::vector<std::uint8_t> before = pixels_;
+  marker_.pointAt({Vector3f(0, 0, -2), Vector3f(0.02F, 0, -2), Vector3f(0.3F, 0, -2)});
+  EXPECT_TRUE(marker_.hasChanged());
+  marker_.draw(pixels_);
+  EXPECT_FALSE(marker_.hasChanged());
+  EXPECT_EQ(pixels_[at(960, 240)], 255) << "orange, above the other";
+  const Vector2i third = *marker_.pixelOf({0.3F, 0, -2});
+  EXPECT_EQ(pixels_[at(third.x(), third.y())], 60) << "green";
+  marker_.erase(pixels_);
+  EXPECT_EQ(pixels_, before);
 }
 
 // 20 degrees to the left is the seam between the left tile (upper left in the frame) and the centre
