@@ -172,8 +172,8 @@ TEST(LiveTable, ShowsWhatWorkingDevicesMeasureAndWhyOthersDoNot) {
   ball.buttons = 0x801;
   devices->ball[0].publish(ball);
   const std::string text = liveTable(devices.slots(), fromNanoseconds(1'100'000'000));
-  EXPECT_NE(text.find("glove    absent      20.0 Hz  not configured\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("ball     ok          20.0 Hz  pad, 8 axes\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("glove      absent      20.0 Hz  not configured\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("ball       ok          20.0 Hz  pad, 8 axes\n"), std::string::npos) << text;
   EXPECT_NE(text.find("y        [     #####|          ] -0.500  raw -700"), std::string::npos)
       << text;
   EXPECT_NE(text.find("buttons  1 12\n"), std::string::npos) << text;
