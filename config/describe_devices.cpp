@@ -164,6 +164,17 @@ void describeBindings(DevicesSettings& d, SettingsVisitor& v) {
                 "When the action happens: hold (as long as the button is pressed or the posture is "
                 "held), enter (once, when that begins) or leave (once, when that ends). by_action: "
                 "hold for actions that last, enter for the others.");
+        v.text("with", b.with,
+               "Another input of the same device, which has to be held at the same time (a chord). "
+               "Empty: none.");
+        v.number("after_s", b.after_s, {0, 60},
+                 "How long the input has to be held before it counts, in seconds (a long press). "
+                 "Bind the short press of the same input with on: leave; it does not happen when "
+                 "the long one did.");
+        v.number("repeat_s", b.repeat_s, {0, 60},
+                 "Time after which an action that happens once happens again while the input is "
+                 "held, in seconds; a device that sends nothing while it is held may take 0.25 s "
+                 "longer. 0: it does not.");
       });
 }
 

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "daemon/base/clock.h"
 #include "daemon/base/commands.h"
 
 namespace merlin::actions {
@@ -25,8 +26,14 @@ ActionWriter::ParsedBindings ActionWriter::parse(const std::vector<Binding>& bin
     auto input = parseInput(binding.input);
     const auto action = std::find(kActions.begin(), kActions.end(), binding.action);
     if (!input || !input->isOf(source_) || action == kActions.end()) continue;
-    parsed.push_back({*std::move(input), static_cast<std::size_t>(action - kActions.begin()),
-                      isHeldAction(binding.action), binding.when == When::kLeave});
+    ParsedBinding& p = parsed.emplace_back();
+    p.input = *std::move(input);
+    if (!binding.with.empty()) p.with = parseInput(binding.with);
+    p.action = static_cast<std::size_t>(action - kActions.begin());
+    p.lasts = isHeldAction(binding.action);
+    p.on_leave = binding.when == When::kLeave;
+    p.after_ns = fromSeconds(binding.after_s).count();
+    p.repeat_ns = fromSeconds(binding.repeat_s).count();
   }
   return parsed;
 }
@@ -36,14 +43,23 @@ void ActionWriter::rebind(const std::vector<Binding>& bindings) {
 }
 
 void ActionWriter::adopt(std::int64_t now_ns) noexcept {
+  takeBindings(now_ns);
+  stepAll(now_ns);
+}
+
+void ActionWriter::takeBindings(std::int64_t now_ns) noexcept {
   const auto carryOver = [](const ParsedBindings& before, ParsedBindings& now) {
     for (ParsedBinding& binding : now) {
       const auto same = std::find_if(before.begin(), before.end(), [&](const ParsedBinding& b) {
-        return b.input == binding.input && b.action == binding.action &&
+        return b.input == binding.input && b.with == binding.with && b.action == binding.action &&
                b.on_leave == binding.on_leave;
       });
-      binding.was_held = same != before.end() && same->was_held;
       binding.waits = same == before.end() || same->waits;
+      if (same == before.end()) continue;
+      binding.pressed = same->pressed;
+      binding.since_ns = same->since_ns;
+      binding.was_held = same->was_held;
+      binding.again_ns = same->again_ns;
     }
   };
   if (!rebound_->take(bindings_, carryOver)) return;
@@ -54,20 +70,50 @@ void ActionWriter::adopt(std::int64_t now_ns) noexcept {
   slot_.publish(state_);
 }
 
-// Returns whether the state changed.
-bool ActionWriter::step(ParsedBinding& binding, bool held) noexcept {
-  if (binding.waits) {
-    binding.waits = held;
-    return false;
-  }
-  if (held == binding.was_held) return false;
-  binding.was_held = held;
-  if (!binding.lasts && held == binding.on_leave) return false;
-  if (binding.lasts && !held) return true;
+// Counts the action, unless it lasts and ends.
+bool ActionWriter::begin(ParsedBinding& binding) noexcept {
   ++state_.begun[binding.action];
   state_.recent[state_.sequence++ % std::size(state_.recent)] =
       static_cast<std::uint8_t>(binding.action);
   return true;
+}
+
+// Whether a binding that waits for a longer press of the same input has begun: then letting go is
+// the end of that one, and not the short press.
+bool ActionWriter::longerOneHeld(const ParsedBinding& binding) const noexcept {
+  return std::any_of(bindings_.begin(), bindings_.end(), [&](const ParsedBinding& other) {
+    return other.after_ns > binding.after_ns && other.input == binding.input && other.was_held;
+  });
+}
+
+// Returns whether the state changed.
+bool ActionWriter::step(ParsedBinding& binding, std::int64_t now_ns) noexcept {
+  const bool held = binding.pressed && now_ns - binding.since_ns >= binding.after_ns;
+  if (held == binding.was_held) {
+    if (!held || binding.repeat_ns == 0 || now_ns < binding.again_ns) return false;
+    binding.again_ns = now_ns + binding.repeat_ns;
+    return begin(binding);
+  }
+  const bool cancelled = binding.on_leave && longerOneHeld(binding);
+  binding.was_held = held;
+  if (binding.lasts && !held) return true;
+  if ((!binding.lasts && held == binding.on_leave) || cancelled) return false;
+  binding.again_ns = now_ns + binding.repeat_ns;
+  return begin(binding);
+}
+
+// Bindings that act when their input ends come first: they see whether a longer one is still held.
+void ActionWriter::stepAll(std::int64_t now_ns) noexcept {
+  bool changed = false;
+  for (const bool on_leave : {true, false}) {
+    for (ParsedBinding& binding : bindings_) {
+      if (binding.on_leave == on_leave) changed = step(binding, now_ns) || changed;
+    }
+  }
+  if (!changed) return;
+  updateHeld();
+  state_.changed_ns = now_ns;
+  slot_.publish(state_);
 }
 
 void ActionWriter::updateHeld() noexcept {
@@ -79,18 +125,23 @@ void ActionWriter::updateHeld() noexcept {
 
 template <typename IsHeld>
 void ActionWriter::apply(std::int64_t now_ns, const IsHeld& isHeld) noexcept {
-  adopt(now_ns);
-  bool changed = false;
-  for (ParsedBinding& binding : bindings_)
-    changed = step(binding, isHeld(binding.input)) || changed;
-  if (!changed) return;
-  updateHeld();
-  state_.changed_ns = now_ns;
-  slot_.publish(state_);
+  takeBindings(now_ns);
+  for (ParsedBinding& binding : bindings_) {
+    const bool pressed = isHeld(binding.input) && (!binding.with || isHeld(*binding.with));
+    if (binding.waits) {
+      binding.waits = pressed;
+      continue;
+    }
+    if (pressed && !binding.pressed) binding.since_ns = now_ns;
+    binding.pressed = pressed;
+  }
+  stepAll(now_ns);
 }
 
 void ActionWriter::update(const BallSample& ball) noexcept {
-  apply(ball.received_ns, [&](const Input& input) { return (ball.buttons & input.button) != 0; });
+  axes_ = pushedAxes(ball, axes_);
+  const std::uint32_t held = ball.buttons | axes_;
+  apply(ball.received_ns, [&](const Input& input) { return (held & input.button) != 0; });
 }
 
 void ActionWriter::update(const GloveSample& glove, const PostureState* posture) noexcept {

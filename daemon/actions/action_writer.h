@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "daemon/actions/input.h"
@@ -35,25 +36,36 @@ class ActionWriter {
   // nothing until its input has been seen released, so that a button that is pressed at this moment
   // triggers nothing.
   void rebind(const std::vector<Binding>& bindings);
-  // Uses new bindings, if there are any; each of the calls above does so too.
+  // Uses new bindings, if there are any, and begins what time alone begins; each of the calls above
+  // does so too. To be called now and then while the device sends nothing.
   void adopt(std::int64_t now_ns) noexcept;
 
  private:
   struct ParsedBinding {
     Input input;
+    std::optional<Input> with;
     std::size_t action = 0;  // index into kActions
     bool lasts = false, on_leave = false;
-    bool was_held = false;
-    bool waits = false;  // until the input has been seen released
+    std::int64_t after_ns = 0, repeat_ns = 0;
+    bool pressed = false;       // the input, and the one with it
+    std::int64_t since_ns = 0;  // when `pressed` began
+    bool was_held = false;      // pressed for long enough
+    std::int64_t again_ns = 0;  // when the action repeats
+    bool waits = false;         // until the input has been seen released
   };
   using ParsedBindings = std::vector<ParsedBinding>;
   ParsedBindings parse(const std::vector<Binding>& bindings) const;
   template <typename IsHeld>
   void apply(std::int64_t now_ns, const IsHeld& isHeld) noexcept;
-  bool step(ParsedBinding& binding, bool held) noexcept;
+  void takeBindings(std::int64_t now_ns) noexcept;
+  void stepAll(std::int64_t now_ns) noexcept;
+  bool step(ParsedBinding& binding, std::int64_t now_ns) noexcept;
+  bool longerOneHeld(const ParsedBinding& binding) const noexcept;
+  bool begin(ParsedBinding& binding) noexcept;
   void updateHeld() noexcept;
 
   Source source_;
+  std::uint32_t axes_ = 0;  // that are pushed: pushedAxes()
   ParsedBindings bindings_;
   std::unique_ptr<Handover<ParsedBindings>> rebound_;  // a pointer, since a writer is moved
   shm::ActionState state_{};

@@ -36,6 +36,24 @@ std::optional<std::string> takeDevice(std::string_view& name, std::string_view p
   return device;
 }
 
+// The bit of pushedAxes() for "x+", "rz-" ...
+std::optional<std::uint32_t> axisBit(std::string_view name) {
+  constexpr std::string_view kAxes[] = {"x", "y", "z", "rx", "ry", "rz"};
+  if (name.empty() || (name.back() != '+' && name.back() != '-')) return std::nullopt;
+  const std::string_view axis = name.substr(0, name.size() - 1);
+  const auto* const found = std::find(std::begin(kAxes), std::end(kAxes), axis);
+  if (found == std::end(kAxes)) return std::nullopt;
+  const auto index = static_cast<unsigned>(found - std::begin(kAxes));
+  return 1U << (kMostButtons + 2 * index + (name.back() == '-' ? 1 : 0));
+}
+
+std::optional<Input> axis(std::string_view name) {
+  const auto device = takeDevice(name, "axis.");
+  const auto bit = device ? axisBit(name) : std::nullopt;
+  if (!bit) return std::nullopt;
+  return Input{Input::Kind::kButton, *device, *bit, {}};
+}
+
 std::optional<Input> button(std::string_view name) {
   const auto device = takeDevice(name, "button.");
   const auto bit = device ? buttonBit(name) : std::nullopt;
@@ -70,9 +88,24 @@ bool Input::overlaps(const Input& other) const {
          (device.empty() || other.device.empty() || device == other.device);
 }
 
+std::uint32_t pushedAxes(const BallSample& ball, std::uint32_t before) noexcept {
+  constexpr float kBegins = 0.5F, kEnds = 0.33F;
+  std::uint32_t pushed = 0;
+  for (unsigned i = 0; i < 6; ++i) {
+    const float share = i < 3 ? ball.translation[i] : ball.rotation[i - 3];
+    for (const unsigned negative : {0U, 1U}) {
+      const std::uint32_t bit = 1U << (kMostButtons + 2 * i + negative);
+      const float push = negative == 1 ? -share : share;
+      if (push > ((before & bit) != 0 ? kEnds : kBegins)) pushed |= bit;
+    }
+  }
+  return pushed;
+}
+
 std::optional<Input> parseInput(std::string_view name) {
   if (name == "panel.button") return Input{Input::Kind::kPanelButton, {}, 0, {}};
   if (auto input = button(name)) return input;
+  if (auto input = axis(name)) return input;
   if (auto input = posture(name)) return input;
   return wristSwitch(name);
 }

@@ -30,6 +30,23 @@ std::string conflictText(const Binding& a, const Binding& b) {
                      a.action, b.action, when);
 }
 
+// The second input of a chord, the time of a long press, and what repeats.
+void checkTimes(const Binding& b, const std::string& at, SettingFaults& faults) {
+  const auto input = actions::parseInput(b.input);
+  const auto with = actions::parseInput(b.with);
+  if (!b.with.empty() && (!with || with->kind == actions::Input::Kind::kPanelButton)) {
+    faults.push_back({at + "/with", fmt::format("is \"{}\"; allowed are the forms of input, "
+                                                "without panel.button",
+                                                b.with)});
+  } else if (input && with && (input->device != with->device || *input == *with)) {
+    faults.push_back({at + "/with", fmt::format("is \"{}\"; allowed is another input of the device "
+                                                "of \"{}\"",
+                                                b.with, b.input)});
+  }
+  if (b.repeat_s > 0 && (isHeldAction(b.action) || atLeave(b)))
+    faults.push_back({at + "/repeat_s", "repeats only what happens once, as its input begins"});
+}
+
 void checkOne(const Binding& b, const std::string& at, SettingFaults& faults) {
   const auto input = actions::parseInput(b.input);
   if (!input)
@@ -42,7 +59,12 @@ void checkOne(const Binding& b, const std::string& at, SettingFaults& faults) {
                                               held ? "lasts as long as its input is held: set hold"
                                                    : "happens once: set enter or leave")});
   }
+  checkTimes(b, at, faults);
   const bool panel = input && input->kind == actions::Input::Kind::kPanelButton;
+  if (panel && (b.after_s > 0 || b.repeat_s > 0 || !b.with.empty()))
+    faults.push_back({at,
+                      "gives panel.button with, after_s or repeat_s, which it has not: it only "
+                      "tells that it was pressed"});
   if (panel && (held || atLeave(b)))
     faults.push_back({at, fmt::format("binds panel.button to {}; the panel's button only triggers "
                                       "actions that happen once, when it is pressed",
@@ -69,7 +91,9 @@ SettingFaults validate(const std::vector<Binding>& bindings) {
     auto& same_moment = before[{input ? partOf(*input) : b.input, atLeave(b)}];
     const auto j = std::find_if(same_moment.begin(), same_moment.end(), [&](std::size_t k) {
       const auto other = actions::parseInput(bindings[k].input);
-      return (!input || !other || input->overlaps(*other)) && exclude(bindings[k].action, b.action);
+      const bool same_time = bindings[k].with == b.with && bindings[k].after_s == b.after_s;
+      return (!input || !other || input->overlaps(*other)) &&
+             (same_time || isHeldAction(b.action)) && exclude(bindings[k].action, b.action);
     });
     if (j == same_moment.end()) {
       same_moment.push_back(i);

@@ -15,13 +15,17 @@ struct Binding {
   std::string input;            // in a form of kInputForms
   std::string action = "grab";  // a name of kActions (daemon/base/commands.h)
   When when = When::kByAction;
+  std::string with = {};  // another input of the same device that has to be held too; empty: none
+  double after_s = 0;     // how long the input has to be held before it counts
+  double repeat_s = 0;    // of what happens once: again after each such time; 0: once
 };
 
 // All names of inputs, for descriptions and messages.
 inline constexpr const char* kInputForms =
-    "DEVICE.button.1 to DEVICE.button.12, DEVICE.posture.NAME, DEVICE.switch (DEVICE is the name "
-    "of "
-    "a device; without \"DEVICE.\" it is the input of any device), and panel.button";
+    "DEVICE.button.1 to DEVICE.button.12, DEVICE.axis.x+, x-, y+, y-, z+, z-, rx+ ... rz- (a push "
+    "or "
+    "twist of more than half), DEVICE.posture.NAME, DEVICE.switch (DEVICE is the name of a device; "
+    "without \"DEVICE.\" it is the input of any device), and panel.button";
 
 inline std::vector<Binding> defaultBindings() {
   return {{"posture.fist", "grab"},
@@ -30,9 +34,9 @@ inline std::vector<Binding> defaultBindings() {
           {"panel.button", "next_mode"}};
 }
 
-// Finds unknown inputs, actions that cannot be combined with their `when`, and pairs of actions
-// that one input would trigger at the same moment although they exclude each other or are the same.
-// Pointers: "/INDEX/input" ... Cost: linear.
+// Finds unknown inputs, actions that cannot be combined with their `when` or times, and pairs of
+// actions that one input would trigger at the same moment although they exclude each other or are
+// the same. Pointers: "/INDEX/input" ... Cost: linear.
 SettingFaults validate(const std::vector<Binding>& bindings);
 
 }  // namespace merlin

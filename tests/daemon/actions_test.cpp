@@ -241,6 +241,106 @@ TEST_F(ActionsTest, ADeviceThatSendsNothingIsReboundByItsHealth) {
   EXPECT_FALSE(read().all.held[kGrab]) << "the new time counts";
 }
 
+TEST_F(ActionsTest, AChordNeedsBoth) {
+  Binding chord{"ball.button.1", "next_mode"};
+  chord.with = "ball.button.2";
+  ActionWriter w = writer({chord}, test::kBall);
+  (void)read();
+  w.update(ball(1));
+  w.update(ball(0));
+  w.update(ball(2));
+  EXPECT_EQ(read().all.begun[kNextMode], 0u);
+  w.update(ball(1 | 2));
+  w.update(ball(1 | 2));
+  EXPECT_EQ(read().all.begun[kNextMode], 1u);
+  w.update(ball(2));
+  w.update(ball(1 | 2));
+  EXPECT_EQ(read().all.begun[kNextMode], 1u) << "again";
+}
+
+BallSample at(BallSample ball, int ms) {
+  ball.received_ns = std::int64_t{ms} * 1'000'000;
+  return ball;
+}
+
+TEST_F(ActionsTest, ALongPressIsNotAShortOneToo) {
+  Binding brief{"ball.button.1", "next_mode", When::kLeave};
+  Binding longer{"ball.button.1", "reset_view"};
+  longer.after_s = 0.8;
+  ActionWriter w = writer({brief, longer}, test::kBall);
+  (void)read();
+  w.update(at(ball(1), 0));
+  w.update(at(ball(0), 300));
+  Actions actions = read();
+  EXPECT_EQ(actions.all.begun[kNextMode], 1u);
+  EXPECT_EQ(actions.all.begun[kReset], 0u);
+  w.update(at(ball(1), 1000));
+  w.update(at(ball(1), 1799));
+  EXPECT_EQ(read().all.begun[kReset], 0u);
+  w.adopt(1'800'000'000);
+  EXPECT_EQ(read().all.begun[kReset], 1u) << "though the ball sends nothing";
+  w.update(at(ball(0), 2000));
+  actions = read();
+  EXPECT_EQ(actions.all.begun[kNextMode], 0u) << "this end is the long press's";
+  EXPECT_EQ(actions.all.begun[kReset], 0u);
+}
+
+TEST_F(ActionsTest, WhatRepeatsDoesSoWhileItsInputIsHeld) {
+  Binding next{"ball.button.1", "next_mode"};
+  next.repeat_s = 0.5;
+  ActionWriter w = writer({next}, test::kBall);
+  (void)read();
+  w.update(at(ball(1), 0));
+  for (int ms = 100; ms <= 1100; ms += 100) w.adopt(std::int64_t{ms} * 1'000'000);
+  EXPECT_EQ(read().all.begun[kNextMode], 3u) << "at 0, 0.5 and 1 s";
+  w.update(at(ball(0), 1200));
+  w.adopt(5'000'000'000);
+  EXPECT_EQ(read().all.begun[kNextMode], 0u);
+}
+
+TEST_F(ActionsTest, AnAxisThatIsPushedIsAnInput) {
+  ActionWriter w = writer({{"ball.axis.x-", "next_mode"}, {"axis.rz+", "reset_view"}}, test::kBall);
+  (void)read();
+  const auto push = [&](float x, float rz) {
+    BallSample sample = ball(0);
+    sample.translation[0] = x;
+    sample.rotation[2] = rz;
+    w.update(sample);
+  };
+  push(0.9F, -0.9F);
+  EXPECT_TRUE(read().in_order.empty()) << "the other way";
+  for (const float x : {-0.6F, -0.45F, -0.55F, -0.4F, -0.6F}) push(x, 0);
+  EXPECT_EQ(read().all.begun[kNextMode], 1u) << "it trembles about one half";
+  push(-0.3F, 0.6F);
+  push(-0.6F, 0.6F);
+  const Actions actions = read();
+  EXPECT_EQ(actions.all.begun[kNextMode], 1u);
+  EXPECT_EQ(actions.all.begun[kReset], 1u);
+}
+
+TEST(BindingSettings, ChordsAndTimesFitTheirInput) {
+  const auto pointers = [](const Binding& binding) {
+    std::string all;
+    for (const SettingFault& fault : validate({binding})) all += fault.pointer + " ";
+    return all;
+  };
+  const Binding good{"ball.button.1", "next_mode", When::kEnter, "ball.button.2", 0.5, 0.2};
+  EXPECT_EQ(pointers(good), "");
+  for (const char* with :
+       {"ball.button.1", "button.2", "pad.button.2", "panel.button", "nonsense"}) {
+    Binding bad = good;
+    bad.with = with;
+    EXPECT_EQ(pointers(bad), "/0/with ") << with;
+  }
+  EXPECT_EQ(pointers({"ball.button.1", "grab", When::kHold, "", 0, 0.2}), "/0/repeat_s ");
+  EXPECT_EQ(pointers({"ball.button.1", "next_mode", When::kLeave, "", 0, 0.2}), "/0/repeat_s ");
+  EXPECT_EQ(pointers({"panel.button", "next_mode", When::kEnter, "", 0.5, 0}), "/0 ");
+  EXPECT_TRUE(validate({{"ball.button.1", "next_mode", When::kEnter, "", 0, 0},
+                        {"ball.button.1", "next_mode", When::kEnter, "", 0.8, 0}})
+                  .empty())
+      << "at different times";
+}
+
 TEST(BindingSettings, AnInputThatIsNoneIsFound) {
   for (const std::string input : {"",
                                   "ball",
@@ -253,6 +353,9 @@ TEST(BindingSettings, AnInputThatIsNoneIsFound) {
                                   "ball.button.x1",
                                   "ball.button. 1",
                                   "ball.button.99999999999",
+                                  "ball.axis.x",
+                                  "ball.axis.w+",
+                                  "ball.axis.+",
                                   "posture.",
                                   "posture",
                                   "glove",
