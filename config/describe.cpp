@@ -466,6 +466,20 @@ void describeServe(ServeSettings& s, SettingsVisitor& v) {
                "File with this machine's key pair, written by `merlin keys -o FILE`.");
   v.path("samples_clients", s.samples_clients,
          "File with the public keys of the machines that may receive samples, one per line.");
+  v.text("wall_endpoint", s.wall_endpoint,
+         "Address at which the wall answers status and commands of other machines, encrypted, such "
+         "as tcp://*:7402. Empty: not at all.");
+  v.text("devices_endpoint", s.devices_endpoint,
+         "The same of the devices, at a port of its own, such as tcp://*:7403.");
+  v.secretFile("commands_keys", s.commands_keys,
+               "File with this machine's key pair for these addresses, written by `merlin keys -o "
+               "FILE`.");
+  v.path("commands_clients", s.commands_clients,
+         "File with the public keys of those who may send commands to these addresses, one per "
+         "line.");
+  v.path("commands_readers", s.commands_readers,
+         "File with the public keys of those who may only read status and events there, one per "
+         "line.");
 }
 
 void describeMesh(render::correct::MeshSettings& m, SettingsVisitor& v) {
@@ -688,6 +702,11 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
         v.number("interval_s", o.interval_s, {1, 86400},
                  "Minimum time between two writes of the PNG file of an output of kind png, in "
                  "seconds.");
+        v.number("check_s", o.check_s, {0, 3600},
+                 "Time between two checks of what an output of kind shared_memory or kms really "
+                 "shows, in seconds. What it shows is read back and compared with what was meant; "
+                 "black, frozen or another program's picture is an event of kind picture. 0: "
+                 "never checked.");
         v.group("window", "The window of an output of kind window.",
                 [&] { describeWindow(o.window, v); });
         v.group("kms", "The display of an output of kind kms.", [&] { describeKms(o.kms, v); });
