@@ -163,7 +163,9 @@ const std::map<std::string, Folders> kMayInclude = {
     // With the program merlin-window, which includes nothing else of MERLIN.
     {"render/out/window", {}},
     // choice, buffer_turns and settings are pure.
-    {"render/out/kms", {"render/out/picture/picture_digest.h", "render/out/picture_judge.h"}},
+    {"render/out/kms", {"render/out/picture"}},
+    // Pure.
+    {"render/out/picture", {}},
     // Pure except for the threads among which it divides the rows; of render/frame it knows the
     // port only.
     {"render/correct", {"render/frame/correction.h"}},
