@@ -96,7 +96,7 @@ class Wall {
       counts.present_ms.push_back(msOf(clock_.now() - began));
       const out::PictureState state = checks.state(0);
       if (state.took_ms > 0) counts.check_ms.push_back(static_cast<double>(state.took_ms));
-      counts.wrong += out::isWrong(state.verdict) ? 1 : 0;
+      counts.wrong += out::isWrong(state.verdict) ? 1U : 0U;
       k = std::max(k + 1, static_cast<std::int64_t>((clock_.now() - start) / period));
     }
     checks.stop();
