@@ -17,6 +17,7 @@ class RemoteOptions {
  public:
   // Adds the options to the program's own.
   explicit RemoteOptions(Command app);
+  ~RemoteOptions() = default;
   RemoteOptions(const RemoteOptions&) = delete;
   RemoteOptions& operator=(const RemoteOptions&) = delete;
 

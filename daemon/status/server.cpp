@@ -24,7 +24,9 @@ constexpr int kMostQueued = 100;      // documents queued for a subscriber that 
 constexpr int kHandshake_ms = 2000;
 constexpr std::size_t kEventsKept = 50;
 constexpr const char* kZap = "inproc://zeromq.zap.01";
-constexpr const char* kSamplesDomain = "samples";
+// Of the samples: a domain cannot be taken from a socket again, and with one libzmq asks about the
+// clients of the publisher's local address too.
+constexpr const char* kSamplesDomain = "";
 constexpr const char* kCommandsDomain = "commands";
 constexpr Duration kCheckPeriod = std::chrono::seconds(1);
 constexpr Duration kSayAgain = std::chrono::seconds(10);
@@ -83,10 +85,8 @@ struct StatusServer::Sockets {
   static void bindAt(const Bound& b) {
     b.socket->set(zmq::sockopt::curve_server, b.encrypted != nullptr);
     if (b.encrypted) {
-      b.socket->set(zmq::sockopt::zap_domain, b.domain);
+      if (*b.domain) b.socket->set(zmq::sockopt::zap_domain, b.domain);
       b.socket->set(zmq::sockopt::curve_secretkey, b.encrypted->keys.secret_key);
-    } else {
-      ::zmq_setsockopt(b.socket->handle(), ZMQ_ZAP_DOMAIN, nullptr, 0);  // an empty text is refused
     }
     b.socket->bind("ipc://" + b.path);
   }

@@ -25,7 +25,7 @@ struct Door {
   Grant grantOf(const std::string& key) const;
 };
 
-// The doors by the domain (ZMQ_ZAP_DOMAIN) of their sockets.
+// The doors by the domain (ZMQ_ZAP_DOMAIN) of their sockets, which may be empty.
 using Doors = std::map<std::string, Door, std::less<>>;
 
 // The frames of the answer to a request: status 200 and, as the client's user id, userOf() its

@@ -27,14 +27,16 @@ constexpr const char* kFolder = "/etc/merlin";
 void collect(const Json& at, const Pointer& pointer, std::vector<Pointer>& all) {
   if (at.is_object()) {
     for (const auto& [key, value] : at.items()) {
-      all.push_back(pointer / key);
-      collect(value, all.back(), all);
+      const Pointer here = pointer / key;
+      all.push_back(here);
+      collect(value, here, all);
     }
   }
   if (at.is_array()) {
     for (std::size_t i = 0; i < at.size(); ++i) {
-      all.push_back(pointer / i);
-      collect(at[i], all.back(), all);
+      const Pointer here = pointer / i;
+      all.push_back(here);
+      collect(at[i], here, all);
     }
   }
 }

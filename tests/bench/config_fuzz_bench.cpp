@@ -43,7 +43,7 @@ std::vector<std::string> examples(const std::string& folder) {
   std::vector<std::string> all = {settingsText(Settings{})};
   for (const char* name : {"demo", "demo-window", "installed", "wall", "wall-kms-four",
                            "wall-stereo", "wall-three-160"}) {
-    const std::string path = fmt::format("{}/{}.json", folder, name);
+    const std::string path = fmt::format("{}/{}.json", folder.empty() ? "config" : folder, name);
     const auto file = FileCopy::read(path);
     if (!file) didNotRun("the examples", file.error().what, "run it in the source tree");
     all.emplace_back(file->text());
@@ -53,7 +53,7 @@ std::vector<std::string> examples(const std::string& folder) {
 
 struct Options {
   std::uint64_t seed = 1, count = 100'000;
-  std::string configurations = "config";
+  std::string configurations;  // folder; empty: that of the source tree, from within it
 };
 
 struct Faults {
@@ -104,16 +104,16 @@ bool fuzz(const Options& options, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("Mutated configurations through the loader.");
   merlin::bench::Options options;
   bool json = false;
+  CLI::App app("Mutated configurations through the loader.");
   app.add_option("--seed", options.seed, "Of the first one; the next has the next")
       ->capture_default_str();
   app.add_option("--count", options.count, "Of configurations")
-      ->check(CLI::Range(1, 1'000'000'000))
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
       ->capture_default_str();
-  app.add_option("--configurations", options.configurations, "Folder of the examples")
-      ->capture_default_str();
+  app.add_option("--configurations", options.configurations,
+                 "Folder of the examples; the default is config");
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("fuzz-config", json, [&](merlin::bench::Report& report) {

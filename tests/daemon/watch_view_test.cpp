@@ -53,7 +53,7 @@ TEST(WatchView, ShowsWallDevicesOutputsChartAndEvents) {
   const std::vector<std::string> expected = {
       "merlin watch: merlin  14:05:07 UTC  up 2 h 13 min                         q quits",
       "rate      29.9 of 30 Hz, moving",
-      "late      0.00 % (last second), 1.50 % (minute), 0.02 % (all); at most 2 in a row",
+      "late      0.00 % (second), 1.50 % (minute), 0.02 % (all); at most 2 in a row",
       "frame     12.4 ms (median of the last second), 37 % of the period",
       "detail    48210 triangles, step 3 of 12; full 91204",
       "content   scan (model)",
@@ -87,9 +87,9 @@ TEST(WatchView, ColoursSayWhatIsWrong) {
   const CellGrid grid = layOut(s, {26, 80}, false);
   EXPECT_EQ(styleOf(grid, "failed"), CellStyle::kBad);
   EXPECT_EQ(styleOf(grid, "absent "), CellStyle::kWarning);
-  EXPECT_EQ(styleOf(grid, "0.00 % (last"), CellStyle::kGood);
+  EXPECT_EQ(styleOf(grid, "0.00 % (second"), CellStyle::kGood);
   s.status["late_percent_1s"] = 4;
-  EXPECT_EQ(styleOf(layOut(s, {26, 80}, false), "4.00 % (last"), CellStyle::kWarning);
+  EXPECT_EQ(styleOf(layOut(s, {26, 80}, false), "4.00 % (second"), CellStyle::kWarning);
 }
 
 TEST(WatchView, WhileNoDaemonAnswersTheLastStateIsDim) {

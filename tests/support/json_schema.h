@@ -118,12 +118,15 @@ class JsonSchema {
   void list(const std::string& at, const Json& schema, bool required, Faults& lines) const {
     lines.push_back(fmt::format("{} {}{}", at, kindOf(schema), required ? " required" : ""));
     const auto needed = schema.value("required", std::vector<std::string>());
-    for (const auto& [name, member] : schema.value("properties", Json::object()).items()) {
-      const bool always = std::find(needed.begin(), needed.end(), name) != needed.end();
-      list(at + "/" + name, member, always, lines);
-    }
-    for (const auto& [name, member] : schema.value("patternProperties", Json::object()).items())
-      list(at + "/~" + name, member, false, lines);
+    const auto each = [&](const char* keyword, const char* before) {
+      if (!schema.contains(keyword)) return;
+      for (const auto& [name, member] : schema[keyword].items()) {
+        const bool always = std::find(needed.begin(), needed.end(), name) != needed.end();
+        list(at + before + name, member, always, lines);
+      }
+    };
+    each("properties", "/");
+    each("patternProperties", "/~");
     if (schema.contains("additionalProperties"))
       list(at + "/*", schema["additionalProperties"], false, lines);
     if (schema.contains("items")) list(at + "/#", schema["items"], false, lines);

@@ -80,10 +80,12 @@ class TerminalScreen {
     if (rest[1] != '[') {
       const bool three = rest[1] == '(' || rest[1] == ')';
       if (three && rest.size() < 3) return false;
+      if (rest[1] == 'E') place(row_ + 2, 1);  // the next row's begin
+      if (rest[1] == 'M' && row_ > 0) --row_;
       rest.remove_prefix(three ? 3 : 2);
       return true;
     }
-    const std::size_t end = rest.find_first_of("@ABCDGHJKPXbdhlmnrt", 2);
+    const std::size_t end = rest.find_first_of("@ABCDGHJKLMPSTXbdhlmnrt", 2);
     if (end == std::string_view::npos) return false;
     act(rest[end], rest.substr(2, end - 2));
     rest.remove_prefix(end + 1);

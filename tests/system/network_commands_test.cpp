@@ -32,6 +32,9 @@ class NetworkCommands : public testing::Test {
         MerlindOptions{.also = {{"serve",
                                  {{"wall_endpoint", wall_},
                                   {"devices_endpoint", devices_},
+                                  {"samples_endpoint", samples_},
+                                  {"samples_keys", file("server")},
+                                  {"samples_clients", dir_ / "readers"},
                                   {"commands_keys", file("server")},
                                   {"commands_clients", dir_ / "commanders"},
                                   {"commands_readers", dir_ / "readers"}}}}});
@@ -56,6 +59,7 @@ class NetworkCommands : public testing::Test {
   TempDir dir_;
   std::string wall_ = fmt::format("tcp://127.0.0.1:{}", freePort());
   std::string devices_ = fmt::format("tcp://127.0.0.1:{}", freePort());
+  std::string samples_ = fmt::format("tcp://127.0.0.1:{}", freePort());
   std::unique_ptr<Merlind> daemon_;
 };
 
@@ -151,6 +155,17 @@ TEST_F(NetworkCommands, AnAddressWithoutKeysIsRefusedByTheCheck) {
       refused.output.find("/serve/wall_endpoint also needs commands_keys (merlin keys -o FILE"),
       std::string::npos)
       << refused.output;
+}
+
+// The publisher's socket is bound to a local address and to an encrypted one; the local one must
+// not become encrypted when it is bound again.
+TEST_F(NetworkCommands, ALocalSocketThatIsRemovedIsThereAgainAndNotEncrypted) {
+  const std::string inner = dir_ / (daemon_->instance() + "-devices.status.inner");
+  std::filesystem::remove(inner);
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(inner); }));
+  const auto take = [](const std::string&, const std::string&) { return false; };
+  EXPECT_TRUE(status::follow({"ipc://" + dir_ / (daemon_->instance() + "-devices.status")},
+                             {"status"}, seconds(10), take));
 }
 
 // Another user of this machine, who is not in the daemon's group.

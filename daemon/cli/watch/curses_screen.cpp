@@ -30,7 +30,7 @@ short pairOf(CellStyle style) { return static_cast<short>(static_cast<int>(style
 // Also without colours, headings and faults differ from other text.
 attr_t attributesOf(CellStyle style) {
   switch (style) {
-    case CellStyle::kHeading: return WA_BOLD;
+    case CellStyle::kHeading:
     case CellStyle::kBad: return WA_BOLD;
     case CellStyle::kDim: return WA_DIM;
     default: return WA_NORMAL;

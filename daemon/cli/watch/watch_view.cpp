@@ -105,7 +105,7 @@ std::vector<Row> wallRows(const Json& s) {
   }
   rows.push_back(labelled(
       "late",
-      fmt::format("{} % (last second), {} % (minute), {} % (all); at most {} in a row",
+      fmt::format("{} % (second), {} % (minute), {} % (all); at most {} in a row",
                   figure(number(s, "late_percent_1s"), 2),
                   figure(number(s, "late_percent_1min"), 2), figure(number(s, "late_percent"), 2),
                   figure(number(s, "longest_late"), 0)),
@@ -169,7 +169,7 @@ std::string upTime(const Json& s) {
   for (const auto& [role, common] : object(s, "roles").items()) {
     if (common.is_object()) most = std::max(most, number(common, "uptime_s").value_or(0));
   }
-  if (!(most < 1e9)) return "";
+  if (!(most > 0 && most < 1e9)) return "";
   const auto minutes = static_cast<long>(most / 60);
   if (minutes < 1) return fmt::format("up {:.0f} s", most);
   if (minutes < 60) return fmt::format("up {} min", minutes);
