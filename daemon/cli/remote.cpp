@@ -5,14 +5,15 @@ namespace merlin::cli {
 RemoteOptions::RemoteOptions(Command app) {
   app.option(
          "--endpoint", address_.endpoints,
-         "Speak with a merlind on another machine, encrypted: the address of its role, as "
+         "Speak with a merlind on another machine, encrypted: the address tcp://HOST:PORT of its "
+         "role, as "
          "/serve/wall_endpoint or /serve/devices_endpoint of its configuration sets it. May be "
          "given once for each role. For status, watch and the commands that have no other "
          "options.\n"
          "Example: merlin --endpoint tcp://wall.lab:7402 --keys my.keys --server-key wall.public "
          "status")
       .repeatable()
-      .typeName("tcp://HOST:PORT");
+      .typeName("ADDRESS");
   app.option("--keys", address_.keys, "File with our own key pair, which merlin keys -o FILE makes")
       .typeName("FILE");
   app.option("--server-key", address_.server_key,

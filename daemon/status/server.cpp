@@ -231,6 +231,8 @@ Result<std::unique_ptr<net::Server>> StatusServer::startNetworkCommands(ThreadWa
   // A handshake costs libzmq half a millisecond, also if the key is unknown.
   commands.limits.accepts_per_s = 50;
   commands.limits.accepts_burst = 50;
+  commands.limits.messages_per_s = 100;  // two for each request
+  commands.limits.messages_burst = 200;
   commands.zmtp = {kMostRequestBytes, 1, 0};  // CURVE hides how many parts a message has
   auto relay = Relay::start(std::move(commands), watch, clock_);
   if (!relay) return relay.error();

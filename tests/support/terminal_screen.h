@@ -117,6 +117,10 @@ class TerminalScreen {
       case 'D': column_ -= std::min(n, column_); break;
       case 'K': erase(row_, all[0] == 1 ? 0 : column_, all[0] == 0 ? columns_ : column_ + 1); break;
       case 'J': clear(all[0]); break;
+      case 'L': moveRows(row_, std::min(n, rows_ - row_), true); break;
+      case 'M': moveRows(row_, std::min(n, rows_ - row_), false); break;
+      case 'S': moveRows(0, std::min(n, rows_), false); break;
+      case 'T': moveRows(0, std::min(n, rows_), true); break;
       case 'X': erase(row_, column_, std::min(column_ + n, columns_)); break;
       case 'b':
         for (std::size_t i = 0; i < n; ++i) write(last_);
@@ -139,6 +143,15 @@ class TerminalScreen {
   void place(std::size_t row, std::size_t column) {
     row_ = std::min(row, rows_) - 1;
     column_ = std::min(column, columns_) - 1;
+  }
+  // Moves the rows from this one on down or up; blank ones take the places that become free.
+  void moveRows(std::size_t from, std::size_t n, bool down) {
+    const std::vector<std::vector<std::string>> blank(n, std::vector<std::string>(columns_, " "));
+    const auto first = cells_.begin() + static_cast<std::ptrdiff_t>(from);
+    if (!down) cells_.erase(first, first + static_cast<std::ptrdiff_t>(n));
+    const auto at = down ? cells_.begin() + static_cast<std::ptrdiff_t>(from) : cells_.end();
+    cells_.insert(at, blank.begin(), blank.end());
+    cells_.resize(rows_);
   }
   void erase(std::size_t row, std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < std::min(to, columns_); ++i) cells_[row][i] = " ";

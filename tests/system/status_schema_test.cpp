@@ -81,17 +81,17 @@ TEST(StatusSchema, MerlindKeepsTo) {
     const std::vector<std::string> topics =
         role == "wall" ? std::vector<std::string>{"status", "metrics", "event"}
                        : std::vector<std::string>{"status", "metrics", "event", "sample"};
-    const auto followed =
-        status::follow({at + ".status"}, topics, seconds(10),
-                       [&](const std::string& topic, const std::string& document) {
-                         const bool shared = topic == "event" || topic == "sample";
-                         const auto faults = s.faults(shared ? topic : role + "_" + topic,
-                                                      json::parse(document, nullptr, false));
-                         EXPECT_TRUE(faults.empty()) << role << " " << topic << ":\n"
-                                                     << fmt::format("{}", fmt::join(faults, "\n"));
-                         ++seen[topic];
-                         return faults.empty() && (seen["status"] < 3 || seen["metrics"] < 3);
-                       });
+    const auto followed = status::follow(
+        {at + ".status"}, topics, seconds(10),
+        [&](const std::string& topic, const std::string& document) {
+          const bool shared = topic == "event" || topic == "sample";
+          const auto faults = s.faults(shared ? topic : fmt::format("{}_{}", role, topic),
+                                       json::parse(document, nullptr, false));
+          EXPECT_TRUE(faults.empty()) << role << " " << topic << ":\n"
+                                      << fmt::format("{}", fmt::join(faults, "\n"));
+          ++seen[topic];
+          return faults.empty() && (seen["status"] < 3 || seen["metrics"] < 3);
+        });
     EXPECT_TRUE(followed);
     EXPECT_TRUE(role == "wall" || seen["sample"] > 10);
     for (const char* command : {"status", "events"}) {
