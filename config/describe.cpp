@@ -23,6 +23,20 @@ void describeServe(ServeSettings& s, SettingsVisitor& v) {
                "File with this machine's key pair, written by `merlin keys -o FILE`.");
   v.path("samples_clients", s.samples_clients,
          "File with the public keys of the machines that may receive samples, one per line.");
+  v.text("wall_endpoint", s.wall_endpoint,
+         "Address at which the wall answers status and commands of other machines, encrypted, such "
+         "as tcp://*:7402. Empty: not at all.");
+  v.text("devices_endpoint", s.devices_endpoint,
+         "The same of the devices, at a port of its own, such as tcp://*:7403.");
+  v.secretFile("commands_keys", s.commands_keys,
+               "File with this machine's key pair for these addresses, written by `merlin keys -o "
+               "FILE`.");
+  v.path("commands_clients", s.commands_clients,
+         "File with the public keys of those who may send commands to these addresses, one per "
+         "line.");
+  v.path("commands_readers", s.commands_readers,
+         "File with the public keys of those who may only read status and events there, one per "
+         "line.");
 }
 
 }  // namespace

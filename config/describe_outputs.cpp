@@ -144,6 +144,11 @@ void describeOutputs(std::vector<render::out::OutputSettings>& outputs, Settings
         v.number("interval_s", o.interval_s, {1, 86400},
                  "Minimum time between two writes of the PNG file of an output of kind png, in "
                  "seconds.");
+        v.number("check_s", o.check_s, {0, 3600},
+                 "Time between two checks of what an output of kind shared_memory or kms really "
+                 "shows, in seconds. What it shows is read back and compared with what was meant; "
+                 "black, frozen or another program's picture is an event of kind picture. 0: "
+                 "never checked.");
         v.group("window", "The window of an output of kind window.",
                 [&] { describeWindow(o.window, v); });
         v.group("kms", "The display of an output of kind kms.", [&] { describeKms(o.kms, v); });

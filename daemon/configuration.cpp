@@ -46,7 +46,7 @@ void checkRunDirectory(LoadedSettings& loaded) {
   if (path.empty()) return;
   // Length of the longest socket name in the folder.
   const std::size_t longest = path.size() + 1 + loaded.settings.instance.size() +
-                              std::string_view("-devices.status.samples.inner").size();
+                              std::string_view("-devices.command.network.inner").size();
   if (longest > kMostSocketName) {
     return loaded.addFinding(
         "/run_directory",
@@ -100,25 +100,40 @@ void checkStateFile(const std::string& configuration, LoadedSettings& loaded) {
 }
 
 // Checks that the host of the address is '*' or an IPv4 address, to which a socket can be bound.
-void checkBindable(const std::string& endpoint, LoadedSettings& loaded) {
+void checkBindable(const std::string& endpoint, const char* pointer, LoadedSettings& loaded) {
   constexpr std::string_view kTcp = "tcp://";
   if (!endpoint.starts_with(kTcp)) return;  // already reported by the loader
   const std::string host = endpoint.substr(kTcp.size(), endpoint.rfind(':') - kTcp.size());
   in_addr address{};
   if (host == "*" || ::inet_pton(AF_INET, host.c_str(), &address) == 1) return;
   loaded.addFinding(
-      "/serve/samples_endpoint",
-      fmt::format("{}{} is neither * nor an IPv4 address of this machine", kCannot, host));
+      pointer, fmt::format("{}{} is neither * nor an IPv4 address of this machine", kCannot, host));
 }
 
 void checkSamples(LoadedSettings& loaded) {
   const ServeSettings& s = loaded.settings.serve;
   if (s.samples_endpoint.empty()) return;
-  checkBindable(s.samples_endpoint, loaded);
+  checkBindable(s.samples_endpoint, "/serve/samples_endpoint", loaded);
   if (!s.samples_keys.empty())
     take(status::readKeyPair(s.samples_keys), "/serve/samples_keys", loaded);
   if (!s.samples_clients.empty())
     take(status::readPublicKeys(s.samples_clients), "/serve/samples_clients", loaded);
+}
+
+// Of the roles that this process has.
+void checkNetworkCommands(const DaemonOptions& options, LoadedSettings& loaded) {
+  const ServeSettings& s = loaded.settings.serve;
+  const bool wall = options.wall && !s.wall_endpoint.empty();
+  const bool devices = options.devices && !s.devices_endpoint.empty();
+  if (!wall && !devices) return;
+  if (wall) checkBindable(s.wall_endpoint, "/serve/wall_endpoint", loaded);
+  if (devices) checkBindable(s.devices_endpoint, "/serve/devices_endpoint", loaded);
+  if (!s.commands_keys.empty())
+    take(status::readKeyPair(s.commands_keys), "/serve/commands_keys", loaded);
+  if (!s.commands_clients.empty())
+    take(status::readPublicKeys(s.commands_clients), "/serve/commands_clients", loaded);
+  if (!s.commands_readers.empty())
+    take(status::readPublicKeys(s.commands_readers), "/serve/commands_readers", loaded);
 }
 
 void checkInput(const DaemonOptions& options, LoadedSettings& loaded) {
@@ -165,6 +180,7 @@ Configuration readConfiguration(const std::string& file, const DaemonOptions& op
   }
   const bool mirrors = options.wall && !loaded.settings.wall.input.endpoint.empty();
   if (options.devices || mirrors) checkSpnavSocket(loaded);
+  checkNetworkCommands(options, loaded);
   if (options.wall) {
     checkInput(options, loaded);
     checkStateFile(file, loaded);

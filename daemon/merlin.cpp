@@ -12,6 +12,7 @@
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/parse_arguments.h"
+#include "daemon/cli/remote.h"
 
 namespace merlin {
 namespace {
@@ -33,14 +34,16 @@ int runProgram(int argc, char** argv) {
   app.set_version_flag("--version", MERLIN_VERSION);
   cli::Run run;
   const cli::Command program(app);
-  for (const auto add : {cli::addStatus,        cli::addWatch,   cli::addDevices, cli::addSnapshot,
-                         cli::addWall,          cli::addShow,    cli::addTrace,   cli::addMesh,
-                         cli::addImage,         cli::addPosture, cli::addEmulate, cli::addRecord,
-                         cli::addReplay,        cli::addFlight,  cli::addReload,  cli::addReport,
-                         cli::addCalibrate,     cli::addConfig,  cli::addKeys,    cli::addShm,
-                         cli::addCommandsByName}) {
+  cli::RemoteOptions remote(program);
+  for (const auto add : {cli::addStatus, cli::addWatch}) add(program, run, remote);
+  for (const auto add :
+       {cli::addDevices, cli::addSnapshot, cli::addWall, cli::addShow, cli::addTrace, cli::addMesh,
+        cli::addImage, cli::addPosture, cli::addEmulate, cli::addRecord, cli::addReplay,
+        cli::addFlight, cli::addReload, cli::addReport, cli::addCalibrate, cli::addConfig,
+        cli::addKeys, cli::addShm}) {
     add(program, run);
   }
+  cli::addCommandsByName(program, run, remote);
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
   if (argc > 1 && argv[1][0] != '-' &&
@@ -52,6 +55,7 @@ int runProgram(int argc, char** argv) {
     return kExitBadInput;
   }
   if (const auto status = parseArguments(app, argc, argv, page())) return *status;
+  if (const auto possible = remote.check(); !possible) return cli::fail(possible.error());
   initLog(LogLevel::kWarning);
   return run();
 }

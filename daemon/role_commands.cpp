@@ -270,7 +270,8 @@ void RoleCommands::runPanel() const {
 std::vector<status::Command> RoleCommands::of(CommandOf role) const {
   std::vector<status::Command> commands;
   for (const CommandInfo& c : kCommands) {
-    if (c.role != role || c.bindable == Bindable::kHeld || c.name == "status") continue;
+    if (c.role != role || c.bindable == Bindable::kHeld) continue;
+    if (c.name == "status" || c.name == "events") continue;  // the servers' own
     status::Command command{std::string(c.name), std::string(c.help), nullptr, nullptr};
     if (c.argument.empty())
       command.run = [this, name = c.name] { return run(name); };

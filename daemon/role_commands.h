@@ -37,7 +37,7 @@ class RoleCommands {
   // at once if there is nothing.
   void runPanel() const;
 
-  // The commands that a role's socket accepts, except `status`.
+  // The commands that a role's socket accepts, except `status` and `events`.
   std::vector<status::Command> of(CommandOf role) const;
 
  private:

@@ -23,6 +23,12 @@ Error errorAt(const char* pointer, const Error& error) {
   return {error.code, fmt::format("{}: {}", pointer, error.what)};
 }
 
+// The public keys in a file; none if no file is named.
+Result<std::vector<std::string>> keysOf(const std::string& file) {
+  if (file.empty()) return std::vector<std::string>();
+  return status::readPublicKeys(file);
+}
+
 // Address, keys and clients of the socket that sends samples to other machines; without an address
 // if none is configured. Errors: those of the files with the keys.
 Result<status::CurveServer> sampleServerKeys(const ServeSettings& s) {
@@ -31,7 +37,19 @@ Result<status::CurveServer> sampleServerKeys(const ServeSettings& s) {
   if (!keys) return keys.error();
   auto clients = status::readPublicKeys(s.samples_clients);
   if (!clients) return clients.error();
-  return status::CurveServer{s.samples_endpoint, *std::move(keys), *std::move(clients)};
+  return status::CurveServer{s.samples_endpoint, *std::move(keys), {*std::move(clients), {}}};
+}
+
+// The same of the socket that answers a role's requests of other machines, at `endpoint`.
+Result<status::CurveServer> commandServerKeys(const ServeSettings& s, const std::string& endpoint) {
+  if (endpoint.empty()) return status::CurveServer{};
+  auto keys = status::readKeyPair(s.commands_keys);
+  if (!keys) return keys.error();
+  auto readers = keysOf(s.commands_readers), commanders = keysOf(s.commands_clients);
+  if (!readers) return readers.error();
+  if (!commanders) return commanders.error();
+  return status::CurveServer{
+      endpoint, *std::move(keys), {*std::move(readers), *std::move(commanders)}};
 }
 
 std::optional<status::RendererState> rendererState(const wall::WallRole& wall) {
@@ -112,6 +130,11 @@ Result<Ok> RoleServers::startStatus(const std::string& role, CommandOf commands,
   const shm::Endpoints at = endpointsOf(parts_.settings, role);
   settings.status_endpoint = at.status;
   settings.command_endpoint = at.command;
+  const ServeSettings& serve = parts_.settings.serve;
+  auto network = commandServerKeys(
+      serve, commands == CommandOf::kWall ? serve.wall_endpoint : serve.devices_endpoint);
+  if (!network) return network.error();
+  settings.network_commands = *std::move(network);
   const auto status = settings.publications[0].document;
   settings.commands = parts_.commands.of(commands);
   const auto add = [&](CommandOf also) {
@@ -217,6 +240,7 @@ std::vector<std::string> RoleServers::wallEvents(status::WallEvents& events,
                                                  status::HealthEvents* remote) {
   std::vector<std::string> documents;
   addEvents(documents, kWallEvent, events.take());
+  addEvents(documents, kPictureEvent, events.takePictures());
   addEvents(documents, kWallEvent, parts_.wall->viewerEvents());
   addEvents(documents, kModelEvent, parts_.wall->contentEvents());
   addEvents(documents, kStateEvent, parts_.keeper->takeNotices());

@@ -28,6 +28,7 @@ Servers::~Servers() {
 Result<Ok> Servers::startRole(const std::string& role, status::StatusServerSettings settings) {
   settings.name = role;
   const bool samples = !settings.network.endpoint.empty();
+  const bool commands = !settings.network_commands.endpoint.empty();
   auto started = status::StatusServer::start(std::move(settings), watch_, clock_);
   if (!started) return started.error();
   const status::StatusServer* server = started->get();
@@ -35,13 +36,21 @@ Result<Ok> Servers::startRole(const std::string& role, status::StatusServerSetti
     const std::lock_guard lock(mutex_);
     roles_[role].server = *std::move(started);
   }
-  if (!samples) return Ok{};
-  keep("samples for other machines", [this, server]() -> Result<std::unique_ptr<net::Server>> {
-    auto relay = server->startSamples(watch_);
-    if (relay) return relay;
-    return Error{relay.error().code,
-                 fmt::format("/serve/samples_endpoint: {}", relay.error().what)};
-  });
+  const auto keepRelay = [&](const std::string& name, const std::string& setting, auto start) {
+    keep(name, [this, server, setting, start]() -> Result<std::unique_ptr<net::Server>> {
+      auto relay = (server->*start)(watch_);
+      if (relay) return relay;
+      return Error{relay.error().code, fmt::format("{}: {}", setting, relay.error().what)};
+    });
+  };
+  if (samples) {
+    keepRelay("samples for other machines", "/serve/samples_endpoint",
+              &status::StatusServer::startSamples);
+  }
+  if (commands) {
+    keepRelay(fmt::format("commands of the {} over the network", role),
+              fmt::format("/serve/{}_endpoint", role), &status::StatusServer::startNetworkCommands);
+  }
   return Ok{};
 }
 

@@ -26,8 +26,9 @@ class Servers {
   Servers& operator=(const Servers&) = delete;
 
   // Starts a role's own sockets and, if settings.network has an address, the server that sends
-  // samples to other machines. To be called from the main thread. Errors: those of
-  // StatusServer::start(). A samples server that cannot start is not an error: it is tried again.
+  // samples to other machines; likewise the one that answers their requests (network_commands). To
+  // be called from the main thread. Errors: those of StatusServer::start(). A server for other
+  // machines that cannot start is not an error: it is tried again.
   Result<Ok> startRole(const std::string& role, status::StatusServerSettings settings);
   // Adds a server for other programs and starts it. If it cannot start, or has ended, tend() tries
   // again. To be called from the main thread.

@@ -78,7 +78,8 @@ const std::map<std::string, Folders> kMayInclude = {
       "render/mesh/io", "render/points", "render/points/io", "render/range", "render/range/io",
       "render/reduce", "render/scan", "render/segment"}},
     {"daemon/cli/image", {"daemon/cli", "render/image"}},
-    {"daemon/cli/config", {"config", "daemon/cli", "daemon/json", "daemon/state"}},
+    {"daemon/cli/config",
+     {"config", "daemon/cli", "daemon/cli/wall/reload.h", "daemon/json", "daemon/state"}},
     {"daemon/cli/report",
      {"config", "daemon/cli", "daemon/cli/wall", "daemon/shm", "daemon/state", "render/image",
       "render/out"}},
@@ -91,6 +92,7 @@ const std::map<std::string, Folders> kMayInclude = {
      {"config", "daemon/cli", "daemon/reload/plan.h", "daemon/shm", "daemon/state", "daemon/status",
       "render/correct/io", "render/gl/gpu_list.h", "render/image", "render/out", "render/room",
       "render/testcard/card.h", "render/tiles"}},
+    {"daemon/cli/watch", {"daemon/cli", "daemon/cli/wall", "daemon/status"}},
     // The composition root.
     {"daemon",
      {"config", "daemon/actions", "daemon/alarms", "daemon/cli", "daemon/devices", "daemon/net",
@@ -121,7 +123,9 @@ const std::map<std::string, Folders> kMayInclude = {
     {"nn/io", {"daemon/json", "nn"}},
     {"render/image", {}},
     {"render/mesh", {}},
-    {"render/mesh/io", {"render/image", "render/mesh"}},
+    // Pure.
+    {"render/mesh/atlas", {"render/image", "render/mesh"}},
+    {"render/mesh/io", {"render/image", "render/mesh", "render/mesh/atlas"}},
     // Pure except for its threads; its results do not depend on the number of threads.
     {"render/range", {"render/mesh"}},
     {"render/range/io", {"render/image", "render/mesh/io/ply", "render/range"}},
@@ -148,19 +152,21 @@ const std::map<std::string, Folders> kMayInclude = {
     {"render/content/sample", {"render/content", "render/gl"}},
     // With the program merlin-import, which merlind neither links nor starts.
     {"render/import",
-     {"render/image", "render/mesh", "render/mesh/io", "render/points", "render/range",
-      "render/range/io"}},
+     {"render/image", "render/mesh", "render/mesh/atlas", "render/mesh/io", "render/points",
+      "render/range", "render/range/io"}},
     {"render/frame",
      {"render/content", "render/gl", "render/image", "render/lod", "render/out",
       "render/stereo/anaglyph.h", "render/tiles"}},
     {"render/stereo", {"drivers/port", "render/out/settings.h", "render/tiles"}},
     {"render/out",
-     {"render/correct/settings.h", "render/image", "render/out/kms", "render/out/window",
-      "render/tiles"}},
+     {"daemon/shm/seq_slot.h", "render/correct/settings.h", "render/image", "render/out/kms",
+      "render/out/picture", "render/out/window", "render/tiles"}},
     // With the program merlin-window, which includes nothing else of MERLIN.
     {"render/out/window", {}},
     // choice, buffer_turns and settings are pure.
-    {"render/out/kms", {}},
+    {"render/out/kms", {"render/out/picture"}},
+    // Pure.
+    {"render/out/picture", {}},
     // Pure except for the threads among which it divides the rows; of render/frame it knows the
     // port only.
     {"render/correct", {"render/frame/correction.h"}},
@@ -206,7 +212,8 @@ const std::map<std::string, Folders> kOnlyIn = {
      {"config", "nn/io", "daemon/json", "daemon/reload", "daemon/state", "daemon/status",
       "daemon/cli", "daemon/page", "daemon/cli/mesh", "daemon/cli/posture", "daemon/cli/wall",
       "daemon/cli/calibrate", "daemon/cli/config", "daemon/cli/devices", "daemon/cli/image",
-      "daemon/cli/line", "daemon/cli/report", "daemon/cli/show", "render/mesh/io/gltf"}},
+      "daemon/cli/line", "daemon/cli/report", "daemon/cli/show", "daemon/cli/watch",
+       "render/mesh/io/gltf"}},
     {"microhttpd.h", {"daemon/page"}},
     {"qrencode.h", {"daemon/page"}},
     {"EGL/egl.h", {"render/gl"}},
@@ -220,12 +227,13 @@ const std::map<std::string, Folders> kOnlyIn = {
     {"ft2build.h", {"render/text"}},
     {"png.h", {"render/image"}},
     {"turbojpeg.h", {"render/image"}},
-    {"zlib.h", {"render/image"}},
+    {"zlib.h", {"render/image", "render/mesh/io"}},
     {"nettle/md5.h", {"drivers/pjlink"}},
     {"fitsio.h", {"render/import"}},
     {"gdal.h", {"render/import"}},
     {"vips/vips.h", {"render/import"}},
     {"archive.h", {"daemon/cli/report"}},
+    {"curses.h", {"daemon/cli/watch"}},
     {"archive_entry.h", {"daemon/cli/report"}},
     {"zip.h", {"render/correct/io"}},
     {"pugixml.hpp", {"render/correct/io"}},
@@ -282,7 +290,9 @@ const Folders kImpure = {"fstream",
 // row above names one of them. The set is what
 // each subfolder may include. A new subfolder needs no entry.
 const std::map<std::string, Folders> kPrivateTo = {
-    {"render/mesh/io", {"render/image", "render/mesh"}},
+    // Pure.
+    {"render/mesh/atlas", {"render/image", "render/mesh"}},
+    {"render/mesh/io", {"render/image", "render/mesh", "render/mesh/atlas"}},
     {"render/reduce", {"render/lod", "render/mesh", "render/reduce/quadric"}},
 };
 

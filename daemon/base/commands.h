@@ -29,6 +29,7 @@ struct CommandInfo {
 
 inline constexpr CommandInfo kCommands[] = {
     {"status", CommandOf::kEachRole, "", "Show the state of the role.", Bindable::kNo, false},
+    {"events", CommandOf::kEachRole, "", "Show the last events of the role.", Bindable::kNo, false},
     {"reload", CommandOf::kEachRole, "now|check|NUMBER",
      "Read the configuration again and swap what changed, all or nothing (now), or only say what "
      "would be swapped (check). The answer has the number of the request, which asks what became "

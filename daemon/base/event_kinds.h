@@ -18,6 +18,11 @@ inline constexpr EventKind kWallEvent{
     "wall",
     "an output failed or works again, or the rate or the detail was reduced since the machine "
     "is too slow: look at the outputs of `merlin status`"};
+inline constexpr EventKind kPictureEvent{
+    "picture",
+    "an output works and yet was found to show something else than what it was sent: black, an "
+    "older frame, parts of two frames, another program's picture; or shows it again: look at "
+    "`picture` of the outputs of `merlin status`"};
 inline constexpr EventKind kModelEvent{
     "model",
     "a content was replaced, or its file cannot be shown: the sentence says why; the content "
@@ -45,8 +50,8 @@ inline constexpr EventKind kRoleEvent{
     "merlind ended and was not back within 15 s, or is back; only alarms tell it: look at "
     "`systemctl status merlind` and its journal"};
 
-inline constexpr std::array kEventKinds = {kDeviceEvent,    kWallEvent,    kModelEvent,
-                                           kProjectorEvent, kServiceEvent, kServerEvent,
-                                           kStateEvent,     kFlightEvent,  kRoleEvent};
+inline constexpr std::array kEventKinds = {
+    kDeviceEvent,  kWallEvent,   kPictureEvent, kModelEvent,  kProjectorEvent,
+    kServiceEvent, kServerEvent, kStateEvent,   kFlightEvent, kRoleEvent};
 
 }  // namespace merlin

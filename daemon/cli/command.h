@@ -13,9 +13,10 @@ namespace merlin::cli {
 // parsing, and main() calls it after parsing.
 using Run = std::function<int()>;
 
+class RemoteOptions;
+
 // Each function adds one subcommand; `run`: set if that subcommand was given.
 void addCalibrate(Command app, Run& run);
-void addCommandsByName(Command app, Run& run);
 void addConfig(Command app, Run& run);
 void addDevices(Command app, Run& run);
 void addEmulate(Command app, Run& run);
@@ -31,10 +32,14 @@ void addReport(Command app, Run& run);
 void addShm(Command app, Run& run);
 void addShow(Command app, Run& run);
 void addSnapshot(Command app, Run& run);
-void addStatus(Command app, Run& run);
 void addTrace(Command app, Run& run);
 void addWall(Command app, Run& run);
-void addWatch(Command app, Run& run);
+
+// The same for those that can also speak with a daemon of another machine. `remote` must outlive
+// what the subcommand does.
+void addCommandsByName(Command app, Run& run, RemoteOptions& remote);
+void addStatus(Command app, Run& run, RemoteOptions& remote);
+void addWatch(Command app, Run& run, RemoteOptions& remote);
 
 // Prints "merlin: " and the error's text to stderr; returns the error's exit status.
 int fail(const Error& error);

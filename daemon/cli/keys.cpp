@@ -1,4 +1,4 @@
-// merlin keys: creates a key pair for a daemon that sends or receives samples over a network.
+// merlin keys: creates a key pair for samples and commands over a network.
 #include <memory>
 
 #include <fmt/format.h>
@@ -34,8 +34,8 @@ void addKeys(Command app, Run& run) {
   const auto path = std::make_shared<std::string>();
   Command command = app.subcommand(
       "keys",
-      "Create a key pair for encrypted samples over a network. The key file stays on this machine; "
-      "the public key, which is printed, is for the other machine.\n"
+      "Create a key pair for encrypted samples and commands over a network. The key file stays on "
+      "this machine; the public key, which is printed, is for the other machine.\n"
       "Example: merlin keys -o /etc/merlin/wall.keys");
   command.option("-o,--output", *path, "Name of the key file, which only its owner can read")
       .required();

@@ -5,9 +5,12 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
+#include "daemon/base/printable_text.h"
+#include "daemon/base/tcp_address.h"
 #include "daemon/cli/allowed.h"
-#include "daemon/status/client.h"
 
 namespace merlin::cli {
 namespace {
@@ -32,7 +35,57 @@ std::optional<FoundRole> find(const std::string& instance, const char* role,
   return FoundRole{role, {h.status_endpoint, h.command_endpoint}, h.pid};
 }
 
+// The other daemon's public key: `given` is the key, or the name of a file that has it.
+Result<std::string> serverKey(const std::string& given) {
+  if (status::isKey(given)) return given;
+  const auto keys = status::readPublicKeys(given);
+  if (!keys) {
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("--server-key: \"{}\" is neither a public key (40 characters, as "
+                             "merlin keys prints it) nor a file with one: {}",
+                             excerpt(given), keys.error().what)};
+  }
+  if (keys->size() == 1) return keys->front();
+  return Error{
+      Errc::kInvalidArgument,
+      fmt::format("--server-key: {}: has {} public keys; one is needed", given, keys->size())};
+}
+
+// Keys for a daemon on another machine.
+Result<status::ClientKeys> clientKeys(const DaemonAddress& daemon) {
+  if (daemon.keys.empty() || daemon.server_key.empty()) {
+    return Error{Errc::kInvalidArgument,
+                 "--endpoint also needs --keys FILE (merlin keys -o FILE makes it) and "
+                 "--server-key KEY, since commands over a network are encrypted"};
+  }
+  for (const std::string& endpoint : daemon.endpoints) {
+    const auto address = parseTcpAddress(endpoint);
+    if (address && address->host != "*") continue;
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("--endpoint: \"{}\" is not tcp://HOST:PORT, PORT 1 to 65535",
+                             excerpt(endpoint))};
+  }
+  auto own = status::readKeyPair(daemon.keys);
+  if (!own) return own.error();
+  auto server = serverKey(daemon.server_key);
+  if (!server) return server.error();
+  return status::ClientKeys{*std::move(server), *std::move(own)};
+}
+
+// Which role answers at this address.
+Result<std::string> roleAt(const FoundRole& found, Duration patience) {
+  const auto status = status::ask(found.commands(), "status", patience);
+  if (!status) return status.error();
+  const auto json = nlohmann::json::parse(*status, nullptr, false);
+  const auto role = json.is_object() ? json.find("role") : json.end();
+  return role != json.end() && role->is_string() ? role->get<std::string>() : std::string();
+}
+
 }  // namespace
+
+std::string DaemonAddress::name() const {
+  return isRemote() ? fmt::format("{}", fmt::join(endpoints, ", ")) : instance;
+}
 
 Result<std::vector<FoundRole>> findRoles(const std::string& instance) {
   std::vector<FoundRole> roles;
@@ -44,6 +97,16 @@ Result<std::vector<FoundRole>> findRoles(const std::string& instance) {
   return Error{Errc::kIo, fmt::format("no merlind runs as \"{0}\" (there is no shared memory "
                                       "/{0}-wall or /{0}-devices of a running merlind)",
                                       instance)};
+}
+
+Result<std::vector<FoundRole>> findRoles(const DaemonAddress& daemon) {
+  if (!daemon.isRemote()) return findRoles(daemon.instance);
+  const auto keys = clientKeys(daemon);
+  if (!keys) return keys.error();
+  std::vector<FoundRole> roles;
+  for (const std::string& endpoint : daemon.endpoints)
+    roles.push_back({"", {"", endpoint}, 0, *keys});
+  return roles;
 }
 
 Result<std::string> instanceOf(std::uint32_t pid) {
@@ -80,6 +143,23 @@ Result<std::string> askRole(const std::string& instance, const std::string& role
   return Error{Errc::kIo, role == "wall"
                               ? fmt::format("no merlind shows a wall as \"{}\"", instance)
                               : fmt::format("merlind \"{}\" runs without devices", instance)};
+}
+
+Result<std::string> askRole(const DaemonAddress& daemon, const std::string& role,
+                            const RoleRequest& request) {
+  if (!daemon.isRemote()) return askRole(daemon.instance, role, request);
+  const auto roles = findRoles(daemon);
+  if (!roles) return roles.error();
+  for (const FoundRole& found : *roles) {
+    if (roles->size() > 1) {
+      const auto there = roleAt(found, request.patience);
+      if (!there) return there.error();
+      if (*there != role) continue;
+    }
+    return status::ask(found.commands(), request.command, request.patience, request.argument);
+  }
+  return Error{Errc::kInvalidArgument,
+               fmt::format("{}: none of these is the role {}", daemon.name(), role)};
 }
 
 }  // namespace merlin::cli

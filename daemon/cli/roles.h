@@ -8,18 +8,39 @@
 
 #include "daemon/base/result.h"
 #include "daemon/shm/segment.h"
+#include "daemon/status/client.h"
 
 namespace merlin::cli {
 
+// Which daemon a subcommand speaks with: one of this machine or, if an endpoint is given, one of
+// another machine, encrypted.
+struct DaemonAddress {
+  std::string instance = "merlin";     // of this machine
+  std::vector<std::string> endpoints;  // "tcp://HOST:PORT", one for each role of another machine
+  std::string keys;                    // file with our key pair
+  std::string server_key;              // the other daemon's public key, or a file with it
+
+  bool isRemote() const noexcept { return !endpoints.empty(); }
+  // For messages: the instance, or the endpoints.
+  std::string name() const;
+};
+
 struct FoundRole {
-  std::string role;  // "devices" or "wall"
+  std::string role;  // "devices" or "wall"; empty: that of the other machine's endpoint
   shm::Endpoints endpoints;
   std::uint32_t pid = 0;  // of its process; one may have both roles
+  std::optional<status::ClientKeys> keys = {};
+
+  status::CommandAddress commands() const { return {endpoints.command, keys}; }
 };
 
 // The running roles of this instance. Errors: kIo if no role runs, or if its shared memory may not
 // be read.
 Result<std::vector<FoundRole>> findRoles(const std::string& instance);
+
+// The same for any daemon. One of another machine is not asked, and its roles are unknown. Errors:
+// those of findRoles() and of reading the keys; kInvalidArgument (a key is missing or invalid).
+Result<std::vector<FoundRole>> findRoles(const DaemonAddress& daemon);
 
 // The instance of the merlind that is this process. Errors: kIo if it is none.
 Result<std::string> instanceOf(std::uint32_t pid);
@@ -33,6 +54,9 @@ struct RoleRequest {
 // Sends a command to the role and returns the answer as JSON. Errors: those of findRoles(),
 // checkAllowed() and status::ask(); kIo if this daemon does not run the role.
 Result<std::string> askRole(const std::string& instance, const std::string& role,
+                            const RoleRequest& request);
+// The same for any daemon. Of several endpoints the one is asked that has the role.
+Result<std::string> askRole(const DaemonAddress& daemon, const std::string& role,
                             const RoleRequest& request);
 
 }  // namespace merlin::cli

@@ -42,14 +42,16 @@ Result<Imported> importModel(const Request& request, const Reports& reports) {
   const auto written = render::mesh::writeMesh(request.folder + "/" + name, mesh);
   if (!written) return written.error();
   for (const std::string& note : built->notes) reports.note(note);
-  return Imported{
-      name, fmt::format("\"parts\": {}, \"degenerate\": {}", built->parts, built->degenerate)};
+  return Imported{name, fmt::format("\"parts\": {}, \"degenerate\": {}, \"welded_vertices\": {}, "
+                                    "\"welded_edges\": {}",
+                                    built->parts, built->degenerate, built->welded.vertices,
+                                    built->welded.edges)};
 }
 
 Result<Imported> importGrid(const Request& request, const Reports& reports) {
   const std::string name = "grid";
   const auto made = render::import::importGrid(
-      request.input, request.folder + "/" + name,
+      {request.input, request.hdu}, request.folder + "/" + name,
       [&](const render::import::ImportedGrid& size) {
         return reports.size(sizeof(float) * size.width * size.height);
       },

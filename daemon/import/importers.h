@@ -21,6 +21,7 @@ struct Request {
   int quality = 90;
   int tile_px = 256;
   std::string format;  // of a model: ending of the usual name of its format, in lower case
+  std::string hdu;     // of a FITS file: number or name of the image; empty: the first
   render::points::SurfaceSettings surface{};  // of a point cloud
 };
 

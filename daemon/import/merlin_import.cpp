@@ -33,7 +33,8 @@ constexpr Duration kReportEvery = std::chrono::milliseconds(100);
 int usage() {
   printError(
       "usage: merlin-import KIND IN FOLDER [--panorama] [--quality Q] [--tile PX] "
-      "[--format ENDING] [--depth N] [--neighbours K] [--trim LENGTH] [--memory BYTES] [--cpu "
+      "[--format ENDING] [--hdu N|NAME] [--depth N] [--neighbours K] [--trim LENGTH] [--memory "
+      "BYTES] [--cpu "
       "SECONDS]\n");
   for (const Importer& importer : importers())
     printError("  {}: {}\n", importer.kind, importer.help);
@@ -70,6 +71,12 @@ bool parse(std::string_view text, std::string& ending) {
   return plain && !text.empty() && text.size() <= 8;
 }
 
+// It is only compared.
+bool parseName(std::string_view text, std::string& name) {
+  name = text;
+  return true;
+}
+
 std::optional<Options> parseOptions(int argc, char** argv) {
   Options o;
   o.request.input = argv[2];
@@ -85,6 +92,7 @@ std::optional<Options> parseOptions(int argc, char** argv) {
     const bool good = (name == "--quality" && parse(value, o.request.quality)) ||
                       (name == "--tile" && parse(value, o.request.tile_px)) ||
                       (name == "--format" && parse(value, o.request.format)) ||
+                      (name == "--hdu" && parseName(value, o.request.hdu)) ||
                       (name == "--depth" && parse(value, o.request.surface.depth)) ||
                       (name == "--neighbours" && parse(value, o.request.surface.neighbours)) ||
                       (name == "--trim" && parse(value, o.request.surface.trim)) ||

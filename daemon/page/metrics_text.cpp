@@ -50,6 +50,8 @@ constexpr Described kWall[] = {
     {"cost_coefficient_us", "cost_coefficient_seconds",
      "Cost model: work for a cost of one, before the exponent.", 1e-6},
     {"cost_exponent", "", "Cost model: exponent of the cost."},
+    {"outputs_right", "", "Outputs that were found to show what was meant."},
+    {"outputs_wrong", "", "Outputs that were found black, frozen, torn, or with another picture."},
 };
 
 // Of a device; in the document the device's name and _ precede the name.

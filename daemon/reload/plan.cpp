@@ -49,6 +49,11 @@ constexpr Taker kTakers[] = {
     {"/wall/scene/hand_noise_deg", kWall, Part::kScene},
     {"/wall/scene/return_after_s", kWall, Part::kScene},
     {"/serve", kDevices | kMirror, Part::kRestart},
+    {"/serve/wall_endpoint", kWall, Part::kRestart},
+    {"/serve/devices_endpoint", kDevices, Part::kRestart},
+    {"/serve/commands_keys", kDevices | kWall, Part::kRestart},
+    {"/serve/commands_clients", kDevices | kWall, Part::kRestart},
+    {"/serve/commands_readers", kDevices | kWall, Part::kRestart},
     {"/page", kPage, Part::kRestart},
     {"/alarms", kAlarms, Part::kRestart},
 };

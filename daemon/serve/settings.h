@@ -16,10 +16,20 @@ struct ServeSettings {
   std::string samples_endpoint;
   std::string samples_keys;     // file with this machine's key pair
   std::string samples_clients;  // file with the public keys of allowed clients, one per line
+  // Addresses at which each role answers requests of other machines, encrypted, "tcp://*:7402";
+  // empty: none.
+  std::string wall_endpoint, devices_endpoint;
+  std::string commands_keys;     // file with this machine's key pair
+  std::string commands_clients;  // file with the public keys that may send commands, one per line
+  std::string commands_readers;  // file with those that may only read status and events
+
+  bool hasNetworkCommands() const noexcept {
+    return !wall_endpoint.empty() || !devices_endpoint.empty();
+  }
 };
 
-// Finds an address that cannot be used, or that has no keys: traffic over a network must be
-// encrypted. Pointer: "/samples_endpoint".
+// Finds an address that cannot be used, that is used twice, or that has no keys: traffic over a
+// network must be encrypted. Pointers: "/samples_endpoint", "/wall_endpoint", "/devices_endpoint".
 SettingFaults validate(const ServeSettings& serve);
 
 }  // namespace merlin

@@ -261,6 +261,9 @@ void addOutputs(FieldTable& t) {
   each(&OutputStats::shown_hz, "shown_hz", offsetof(OutputStats, shown_hz), "Hz");
   each(&OutputStats::late_share, "late_share", offsetof(OutputStats, late_share), "");
   each(&OutputStats::fault, "fault", offsetof(OutputStats, fault), "");
+  each(&OutputStats::picture, "picture", offsetof(OutputStats, picture), "0, 1 right, 2.. wrong");
+  each(&OutputStats::picture_ms, "picture_ms", offsetof(OutputStats, picture_ms), "ms");
+  each(&OutputStats::picture_fault, "picture_fault", offsetof(OutputStats, picture_fault), "");
 }
 
 void addContent(FieldTable& t) {

@@ -208,8 +208,13 @@ struct OutputStats {
   float shown_hz;        // frames shown in the last second
   float late_share;      // of its frames while something moved, since the start: shown too late
   char fault[140];       // why it failed; empty while it works
+  // What the output was found to show when it was last read back: 0 not read, 1 what was meant,
+  // 2 black, 3 an older frame, 4 parts of two frames, 5 a picture that is not the wall's.
+  std::uint32_t picture;
+  float picture_ms;         // that reading took so long
+  char picture_fault[112];  // what is wrong with it; empty while `picture` is 0 or 1
 };
-static_assert(sizeof(OutputStats) == 208);
+static_assert(sizeof(OutputStats) == 328);
 
 // Written once a period.
 struct WallOutputs {

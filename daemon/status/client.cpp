@@ -28,45 +28,68 @@ Result<std::string> resultOf(const std::string& command_endpoint, std::string_vi
   return Error{Errc::kInvalidArgument, fmt::format("{}: {}", command_endpoint, why)};
 }
 
-Result<std::string> askOnce(const std::string& command_endpoint, const std::string& command,
+void connect(zmq::socket_t& socket, const CommandAddress& server) {
+  socket.set(zmq::sockopt::linger, 0);
+  if (server.keys) {
+    socket.set(zmq::sockopt::curve_serverkey, server.keys->server_key);
+    socket.set(zmq::sockopt::curve_publickey, server.keys->own.public_key);
+    socket.set(zmq::sockopt::curve_secretkey, server.keys->own.secret_key);
+  }
+  socket.connect(server.endpoint);
+}
+
+Result<std::string> askOnce(const CommandAddress& server, const std::string& command,
                             Duration timeout, const std::string& argument) {
   try {
     zmq::context_t context{1};
     zmq::socket_t socket{context, zmq::socket_type::req};
-    socket.set(zmq::sockopt::linger, 0);
     socket.set(zmq::sockopt::rcvtimeo, milliseconds(timeout));
     socket.set(zmq::sockopt::sndtimeo, milliseconds(timeout));
-    socket.connect(command_endpoint);
+    connect(socket, server);
     const std::string request = requestText(command, argument);
     zmq::message_t answer;
     if (!socket.send(zmq::buffer(request)) || !socket.recv(answer)) {
       return Error{Errc::kTimeout, "no answer"};
     }
-    return resultOf(command_endpoint, answer.to_string_view());
+    return resultOf(server.endpoint, answer.to_string_view());
   } catch (const std::exception& e) {
-    return Error{Errc::kIo, fmt::format("{}: {}", command_endpoint, e.what())};
+    return Error{Errc::kIo, fmt::format("{}: {}", server.endpoint, e.what())};
   }
+}
+
+// What a server on another machine leaves open when it does not answer.
+std::string noAnswer(const CommandAddress& server, Duration timeout) {
+  return fmt::format("{}: no answer within {:.1f} s{}", server.endpoint, toSeconds(timeout),
+                     server.keys ? "; does it run there, with this server key, and does it list "
+                                   "our public key?"
+                                 : "");
 }
 
 }  // namespace
 
-Result<std::string> ask(const std::string& command_endpoint, const std::string& command,
-                        Duration timeout, const std::string& argument) {
+bool CommandAddress::operator==(const CommandAddress& other) const {
+  const auto all = [](const CommandAddress& a) {
+    return a.keys ? a.keys->server_key + a.keys->own.secret_key : std::string();
+  };
+  return endpoint == other.endpoint && all(*this) == all(other);
+}
+
+Result<std::string> ask(const CommandAddress& server, const std::string& command, Duration timeout,
+                        const std::string& argument) {
   const bool again = command == "status" && argument.empty();
   const int attempts = again ? std::max(1, static_cast<int>(timeout / kAttempt)) : 1;
   for (int attempt = 1;; ++attempt) {
-    auto answer = askOnce(command_endpoint, command, timeout / attempts, argument);
+    auto answer = askOnce(server, command, timeout / attempts, argument);
     if (answer || answer.error().code != Errc::kTimeout) return answer;
     if (attempt < attempts) continue;
-    return Error{Errc::kTimeout, fmt::format("{}: no answer within {:.1f} s", command_endpoint,
-                                             toSeconds(timeout))};
+    return Error{Errc::kTimeout, noAnswer(server, timeout)};
   }
 }
 
 struct CommandSender::Connection {
   zmq::context_t context{1};
   std::optional<zmq::socket_t> socket;
-  std::string endpoint;           // that the socket is connected to
+  CommandAddress server{""};      // that the socket is connected to
   std::optional<Timestamp> sent;  // set while an answer is outstanding
 };
 
@@ -75,22 +98,21 @@ CommandSender::~CommandSender() = default;
 
 bool CommandSender::isReady() const noexcept { return !connection_->sent; }
 
-Result<Ok> CommandSender::send(const std::string& command_endpoint, const std::string& command,
+Result<Ok> CommandSender::send(const CommandAddress& server, const std::string& command,
                                const std::string& argument, Timestamp now) {
   Connection& c = *connection_;
   try {
-    if (!c.socket || c.endpoint != command_endpoint) {
+    if (!c.socket || !(c.server == server)) {
       c.socket.emplace(c.context, zmq::socket_type::req);
-      c.socket->set(zmq::sockopt::linger, 0);
-      c.socket->connect(command_endpoint);
-      c.endpoint = command_endpoint;
+      connect(*c.socket, server);
+      c.server = server;
     }
     if (c.socket->send(zmq::buffer(requestText(command, argument)), zmq::send_flags::dontwait))
       c.sent = now;
     return Ok{};
   } catch (const std::exception& e) {
     c.socket.reset();
-    return Error{Errc::kIo, fmt::format("{}: {}", command_endpoint, e.what())};
+    return Error{Errc::kIo, fmt::format("{}: {}", server.endpoint, e.what())};
   }
 }
 
@@ -101,18 +123,17 @@ std::optional<Result<std::string>> CommandSender::answer(Timestamp now) {
     zmq::message_t answer;
     if (c.socket->recv(answer, zmq::recv_flags::dontwait)) {
       c.sent.reset();
-      return resultOf(c.endpoint, answer.to_string_view());
+      return resultOf(c.server.endpoint, answer.to_string_view());
     }
     if (now - *c.sent < kPatience) return std::nullopt;
     // The protocol allows no further request without an answer: begin with a new socket.
     c.sent.reset();
     c.socket.reset();
-    return Error{Errc::kTimeout,
-                 fmt::format("{}: no answer within {:.1f} s", c.endpoint, toSeconds(kPatience))};
+    return Error{Errc::kTimeout, noAnswer(c.server, kPatience)};
   } catch (const std::exception& e) {
     c.sent.reset();
     c.socket.reset();
-    return Error{Errc::kIo, fmt::format("{}: {}", c.endpoint, e.what())};
+    return Error{Errc::kIo, fmt::format("{}: {}", c.server.endpoint, e.what())};
   }
 }
 

@@ -5,19 +5,37 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
+#include "daemon/status/curve.h"
 
 namespace merlin::status {
+
+// Keys of an encrypted connection to a server on another machine.
+struct ClientKeys {
+  std::string server_key;  // the server's public key
+  KeyPair own;             // the client's, whose public key the server lists
+};
+
+// Where a role's commands are accepted.
+struct CommandAddress {
+  std::string endpoint;            // "ipc://PATH"; with keys "tcp://HOST:PORT"
+  std::optional<ClientKeys> keys;  // none: not encrypted
+
+  CommandAddress(std::string at, std::optional<ClientKeys> by = std::nullopt)  // NOLINT: implicit
+      : endpoint(std::move(at)), keys(std::move(by)) {}
+  bool operator==(const CommandAddress& other) const;
+};
 
 // Sends {"command": name}, with "argument" if it is not empty; returns the JSON text of "result".
 // Errors: kTimeout (no answer), kInvalidArgument (the daemon refused the command), kIo. If the
 // daemon closes the connection (all places taken), the request is lost; `status`, which changes
 // nothing, is therefore sent again every second until `timeout`.
-Result<std::string> ask(const std::string& command_endpoint, const std::string& command,
-                        Duration timeout, const std::string& argument = "");
+Result<std::string> ask(const CommandAddress& server, const std::string& command, Duration timeout,
+                        const std::string& argument = "");
 
 // Sends commands one after another and never waits for an answer. Uses a thread of ZeroMQ's.
 // Thread-bound.
@@ -31,7 +49,7 @@ class CommandSender {
   // Whether the last command was answered; only then another one can be sent.
   bool isReady() const noexcept;
   // Sends {"command": name}, with "argument" if it is not empty. REQUIRES: isReady(). Errors: kIo.
-  Result<Ok> send(const std::string& command_endpoint, const std::string& command,
+  Result<Ok> send(const CommandAddress& server, const std::string& command,
                   const std::string& argument, Timestamp now);
   // The answer to the last command, once: the JSON text of "result"; nothing while there is none.
   // Errors: kTimeout (no answer within kPatience), kInvalidArgument (the daemon refused the

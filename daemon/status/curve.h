@@ -1,10 +1,12 @@
-// Keys of CURVE, ZeroMQ's encryption, which decides who may receive samples over a network.
+// Keys of CURVE, ZeroMQ's encryption, which decides who may receive samples and send commands over
+// a network.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "daemon/base/result.h"
+#include "daemon/status/zap.h"
 
 namespace merlin::status {
 
@@ -28,11 +30,11 @@ Result<std::vector<std::string>> readPublicKeys(const std::string& path);
 // Whether the text is a valid key.
 bool isKey(const std::string& text);
 
-// Settings of the server of samples for other machines.
+// Settings of an encrypted server for other machines.
 struct CurveServer {
   std::string endpoint;  // "tcp://*:7401"; empty: none
   KeyPair keys;
-  std::vector<std::string> clients;  // public keys of the clients that may connect
+  Door clients;  // public keys of the clients that may connect
 };
 
 }  // namespace merlin::status

@@ -199,15 +199,27 @@ std::string devicesStatus(const shm::DeviceSlots& devices, Timestamp now,
 
 namespace {
 
+// In the order of shm::OutputStats::picture.
+constexpr const char* kPictures[] = {"unchecked", "right", "black", "frozen", "torn", "foreign"};
+
+const char* pictureName(const shm::OutputStats& o) {
+  return kPictures[o.picture < std::size(kPictures) ? o.picture : 0];
+}
+
 Json outputsJson(const shm::WallSegment& segment) {
   Json json = Json::object();
   const auto all = segment.outputs.read();
   if (!all) return json;
   for (const shm::OutputStats& o : std::span(all->outputs).first(all->count)) {
-    json[text(o.name)] = {
-        {"kind", text(o.kind)},           {"health", o.failed != 0 ? "failed" : "ok"},
-        {"reason", text(o.fault)},        {"frames", o.frames},
-        {"shown_hz", round3(o.shown_hz)}, {"late_percent", round3(100 * o.late_share)}};
+    json[text(o.name)] = {{"kind", text(o.kind)},
+                          {"health", o.failed != 0 ? "failed" : "ok"},
+                          {"reason", text(o.fault)},
+                          {"frames", o.frames},
+                          {"shown_hz", round3(o.shown_hz)},
+                          {"late_percent", round3(100 * o.late_share)},
+                          {"picture", pictureName(o)},
+                          {"picture_reason", text(o.picture_fault)},
+                          {"picture_ms", round3(o.picture_ms)}};
   }
   return json;
 }
@@ -448,6 +460,23 @@ std::string devicesMetrics(const shm::DeviceSlots& devices) {
   return dump(json);
 }
 
+namespace {
+
+// How many outputs were found to show what was meant, and how many something else.
+void addPictureCounts(const shm::WallSegment& segment, Json& json) {
+  int right = 0, wrong = 0;
+  if (const auto all = segment.outputs.read()) {
+    for (const shm::OutputStats& o : std::span(all->outputs).first(all->count)) {
+      right += o.picture == 1 ? 1 : 0;
+      wrong += o.picture > 1 && o.picture < std::size(kPictures) ? 1 : 0;
+    }
+  }
+  json["outputs_right"] = right;
+  json["outputs_wrong"] = wrong;
+}
+
+}  // namespace
+
 std::string wallMetrics(const shm::WallSegment& segment) {
   const auto s = segment.stats.read().value_or(shm::WallStats{});
   Json json = {{"role", "wall"},
@@ -475,6 +504,7 @@ std::string wallMetrics(const shm::WallSegment& segment) {
                {"cost_fixed_ms", round3(s.cost_fixed_ms)},
                {"cost_coefficient_us", round3(s.cost_coefficient_us)},
                {"cost_exponent", round3(s.cost_exponent)}};
+  addPictureCounts(segment, json);
   // work_sixteenths_N: frames whose work took between (N - 1)/16 and N/16 of the period.
   if (text(s.cost_unit) == kTriangles) json["triangles"] = s.cost;
   for (std::size_t i = 0; i < std::size(s.work_histogram); ++i)

@@ -6,10 +6,12 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zmq.hpp>
 
+#include "daemon/base/commands.h"
 #include "daemon/base/log.h"
 
 namespace merlin::status {
@@ -20,6 +22,12 @@ constexpr int kMostRequestBytes = 4096;
 constexpr int kMostSaidBytes = 4096;  // of one frame from a subscriber
 constexpr int kMostQueued = 100;      // documents queued for a subscriber that does not read
 constexpr int kHandshake_ms = 2000;
+constexpr std::size_t kEventsKept = 50;
+constexpr const char* kZap = "inproc://zeromq.zap.01";
+// Of the samples: a domain cannot be taken from a socket again, and with one libzmq asks about the
+// clients of the publisher's local address too.
+constexpr const char* kSamplesDomain = "";
+constexpr const char* kCommandsDomain = "commands";
 constexpr Duration kCheckPeriod = std::chrono::seconds(1);
 constexpr Duration kSayAgain = std::chrono::seconds(10);
 
@@ -48,20 +56,39 @@ struct StatusServer::Sockets {
   zmq::context_t context{1};
   zmq::socket_t publisher{context, zmq::socket_type::pub};
   zmq::socket_t replier{context, zmq::socket_type::rep};
+  // Requests from the network. A ROUTER, because a REP of libzmq 4.3.4 loses replies after a
+  // malformed request, and the relay cannot see the form of an encrypted one.
+  zmq::socket_t network{context, zmq::socket_type::router};
   zmq::socket_t doorman{context, zmq::socket_type::rep};
-  // Sockets and the paths that they are bound to.
-  std::vector<std::pair<zmq::socket_t*, std::string>> bound;
-  std::string samples;  // path of the encrypted socket; empty: none
+  struct Bound {
+    zmq::socket_t* socket;
+    std::string path;
+    const CurveServer* encrypted;  // null: not
+    const char* domain;
+  };
+  std::vector<Bound> bound;
+  std::string samples, commands;  // paths of the encrypted sockets; empty: none
 
   Sockets() = default;
   Sockets(const Sockets&) = delete;
   Sockets& operator=(const Sockets&) = delete;
   ~Sockets() {
-    for (const auto& [socket, path] : bound) ::unlink(path.c_str());
+    for (const Bound& b : bound) ::unlink(b.path.c_str());
   }
-  void bind(zmq::socket_t& socket, const std::string& path) {
-    socket.bind("ipc://" + path);
-    bound.emplace_back(&socket, path);
+  void bind(zmq::socket_t& socket, const std::string& path, const CurveServer* encrypted = nullptr,
+            const char* domain = "") {
+    bound.push_back({&socket, path, encrypted, domain});
+    bindAt(bound.back());
+  }
+  // libzmq applies a socket's options to addresses bound afterwards, so that each address of one
+  // socket is encrypted or not.
+  static void bindAt(const Bound& b) {
+    b.socket->set(zmq::sockopt::curve_server, b.encrypted != nullptr);
+    if (b.encrypted) {
+      if (*b.domain) b.socket->set(zmq::sockopt::zap_domain, b.domain);
+      b.socket->set(zmq::sockopt::curve_secretkey, b.encrypted->keys.secret_key);
+    }
+    b.socket->bind("ipc://" + b.path);
   }
 };
 
@@ -74,11 +101,28 @@ void limit(zmq::socket_t& socket, int most_bytes) {
   socket.set(zmq::sockopt::handshake_ivl, kHandshake_ms);
 }
 
-std::string z85(const zmq::message_t& key) {
-  char text[41] = "";
-  if (key.size() != 32) return {};
-  ::zmq_z85_encode(text, static_cast<const std::uint8_t*>(key.data()), key.size());
-  return text;
+// All parts of a message that has arrived; none if there is no message.
+std::vector<zmq::message_t> receiveAll(zmq::socket_t& socket) {
+  std::vector<zmq::message_t> parts;
+  do {
+    parts.emplace_back();
+    if (!socket.recv(parts.back(), zmq::recv_flags::dontwait)) return {};
+  } while (parts.back().more());
+  return parts;
+}
+
+template <typename Parts>
+void sendAll(zmq::socket_t& socket, const Parts& parts) {
+  for (std::size_t i = 0; i < std::size(parts); ++i) {
+    socket.send(zmq::buffer(parts[i]),
+                i + 1 < std::size(parts) ? zmq::send_flags::sndmore : zmq::send_flags::none);
+  }
+}
+
+// What the sender of an encrypted message may do: zapAnswer() gave it as the user id.
+Grant grantOf(const zmq::message_t& message) {
+  const char* const user = ::zmq_msg_gets(message.handle(), "User-Id");
+  return user ? grantOfUser(user) : Grant::kNothing;
 }
 
 }  // namespace
@@ -95,32 +139,42 @@ Result<std::unique_ptr<StatusServer>> StatusServer::start(StatusServerSettings s
 }
 
 StatusServer::StatusServer(StatusServerSettings settings, const Clock& clock)
-    : settings_(std::move(settings)), clock_(clock), due_(settings_.publications.size()) {}
+    : settings_(std::move(settings)),
+      clock_(clock),
+      doors_{{kSamplesDomain, settings_.network.clients},
+             {kCommandsDomain, settings_.network_commands.clients}},
+      due_(settings_.publications.size()) {
+  settings_.commands.push_back(
+      {"events", std::string(findCommand("events")->help), [this]() -> Result<std::string> {
+         return fmt::format("[{}]", fmt::join(last_events_, ","));
+       }});
+}
 
 StatusServer::~StatusServer() {
   relays_.clear();
   thread_.stop();
 }
 
-// libzmq applies a socket's options to addresses bound afterwards; the encrypted one comes last, so
-// that CURVE holds for it only.
 Result<Ok> StatusServer::openSockets() {
   try {
     sockets_ = std::make_unique<Sockets>();
     limit(sockets_->publisher, kMostSaidBytes);
     sockets_->publisher.set(zmq::sockopt::sndhwm, kMostQueued);
     limit(sockets_->replier, kMostRequestBytes);
+    limit(sockets_->network, kMostRequestBytes);
+    limit(sockets_->doorman, kMostSaidBytes);
     const Umask umask;
+    sockets_->doorman.bind(kZap);
     sockets_->bind(sockets_->publisher, innerOf(settings_.status_endpoint));
     sockets_->bind(sockets_->replier, innerOf(settings_.command_endpoint));
     if (!settings_.network.endpoint.empty()) {
-      limit(sockets_->doorman, kMostSaidBytes);
-      sockets_->doorman.bind("inproc://zeromq.zap.01");
-      sockets_->publisher.set(zmq::sockopt::zap_domain, "merlin");
-      sockets_->publisher.set(zmq::sockopt::curve_server, true);
-      sockets_->publisher.set(zmq::sockopt::curve_secretkey, settings_.network.keys.secret_key);
       sockets_->samples = innerOf(settings_.status_endpoint + ".samples");
-      sockets_->bind(sockets_->publisher, sockets_->samples);
+      sockets_->bind(sockets_->publisher, sockets_->samples, &settings_.network, kSamplesDomain);
+    }
+    if (!settings_.network_commands.endpoint.empty()) {
+      sockets_->commands = innerOf(settings_.command_endpoint + ".network");
+      sockets_->bind(sockets_->network, sockets_->commands, &settings_.network_commands,
+                     kCommandsDomain);
     }
     return Ok{};
   } catch (const zmq::error_t& e) {
@@ -168,6 +222,23 @@ Result<std::unique_ptr<net::Server>> StatusServer::startSamples(ThreadWatch& wat
   return std::unique_ptr<net::Server>(*std::move(relay));
 }
 
+Result<std::unique_ptr<net::Server>> StatusServer::startNetworkCommands(ThreadWatch& watch) const {
+  RelaySettings commands;
+  commands.name = fmt::format("commands of the {} over the network", settings_.name);
+  commands.endpoint = settings_.network_commands.endpoint;
+  commands.inner = sockets_->commands;
+  commands.limits.opening = std::chrono::seconds(5);  // over a network, with encryption
+  // A handshake costs libzmq half a millisecond, also if the key is unknown.
+  commands.limits.accepts_per_s = 50;
+  commands.limits.accepts_burst = 50;
+  commands.limits.messages_per_s = 100;  // two for each request
+  commands.limits.messages_burst = 200;
+  commands.zmtp = {kMostRequestBytes, 1, 0};  // CURVE hides how many parts a message has
+  auto relay = Relay::start(std::move(commands), watch, clock_);
+  if (!relay) return relay.error();
+  return std::unique_ptr<net::Server>(*std::move(relay));
+}
+
 std::vector<net::ServerReport> StatusServer::reports() const {
   std::vector<net::ServerReport> reports;
   for (const auto& relay : relays_) reports.push_back(relay->report());
@@ -192,10 +263,12 @@ void StatusServer::run(const std::stop_token& stop, Progress& progress) {
 
 void StatusServer::round() {
   zmq::pollitem_t items[] = {{sockets_->replier.handle(), 0, ZMQ_POLLIN, 0},
-                             {sockets_->doorman.handle(), 0, ZMQ_POLLIN, 0}};
-  zmq::poll(items, 2, std::chrono::ceil<std::chrono::milliseconds>(untilDue()));
+                             {sockets_->doorman.handle(), 0, ZMQ_POLLIN, 0},
+                             {sockets_->network.handle(), 0, ZMQ_POLLIN, 0}};
+  zmq::poll(items, std::size(items), std::chrono::ceil<std::chrono::milliseconds>(untilDue()));
   if (items[0].revents & ZMQ_POLLIN) answer();
   if (items[1].revents & ZMQ_POLLIN) admit();
+  if (items[2].revents & ZMQ_POLLIN) answerNetwork();
   publishDue();
 }
 
@@ -204,13 +277,14 @@ void StatusServer::bindAgainWhereGone() {
   const Timestamp now = clock_.now();
   if (now - checked_ < kCheckPeriod) return;
   checked_ = now;
-  for (auto& [socket, path] : sockets_->bound) {
+  for (const Sockets::Bound& b : sockets_->bound) {
+    const std::string& path = b.path;
     if (isThere(path)) continue;
     std::error_code ignored;
     std::filesystem::create_directories(std::filesystem::path(path).parent_path(), ignored);
     const Umask umask;
-    socket->unbind("ipc://" + path);
-    socket->bind("ipc://" + path);
+    b.socket->unbind("ipc://" + path);
+    Sockets::bindAt(b);
     logWarning("status of the {}: the socket {} was removed and has been created again",
                settings_.name, path);
   }
@@ -223,23 +297,43 @@ Duration StatusServer::untilDue() const {
   return std::max<Duration>(wait, Duration::zero());
 }
 
-// RFC 27, ZAP: version, request id, domain, address, identity, mechanism, then the client's key.
 void StatusServer::admit() {
-  std::vector<zmq::message_t> request;
-  do {
-    request.emplace_back();
-    if (!sockets_->doorman.recv(request.back(), zmq::recv_flags::dontwait)) return;
-  } while (request.back().more());
-  const bool known = request.size() == 7 && request[5].to_string_view() == "CURVE" &&
-                     std::count(settings_.network.clients.begin(), settings_.network.clients.end(),
-                                z85(request[6])) > 0;
-  const std::string id = request.size() > 1 ? request[1].to_string() : "";
-  const std::string answer[] = {"1.0", id, known ? "200" : "400", known ? "OK" : "unknown key",
-                                "",    ""};
-  for (std::size_t i = 0; i < std::size(answer); ++i)
-    sockets_->doorman.send(zmq::buffer(answer[i]), i + 1 < std::size(answer)
-                                                       ? zmq::send_flags::sndmore
-                                                       : zmq::send_flags::none);
+  std::vector<std::string> request;
+  for (const zmq::message_t& part : receiveAll(sockets_->doorman))
+    request.push_back(part.to_string());
+  if (!request.empty()) sendAll(sockets_->doorman, zapAnswer(request, doors_));
+}
+
+// A request of a REQ socket through a ROUTER: the connection's name, an empty part, the request.
+// Anything else gets no answer.
+void StatusServer::answerNetwork() {
+  const auto parts = receiveAll(sockets_->network);
+  if (parts.size() != 3 || !parts[1].empty()) return;
+  std::string text;
+  try {
+    text = answerFor(grantOf(parts[2]), parts[2].to_string_view());
+  } catch (const std::exception& e) {
+    text = failure(e.what());
+  }
+  const std::string answer[] = {parts[0].to_string(), "", std::move(text)};
+  sendAll(sockets_->network, answer);
+}
+
+std::string StatusServer::answerFor(Grant grant, std::string_view request) const {
+  if (grant == Grant::kCommand) return answerTo(request, settings_.commands);
+  const auto refuse = [grant]() -> Result<std::string> {
+    return Error{Errc::kInvalidArgument, grant == Grant::kRead
+                                             ? "this key may only read: status and events"
+                                             : "this key may do nothing"};
+  };
+  std::vector<Command> allowed = settings_.commands;
+  for (Command& command : allowed) {
+    const bool reads = command.name == "status" || command.name == "events";
+    if (grant == Grant::kRead && reads) continue;
+    command.run = refuse;
+    command.run_with = nullptr;
+  }
+  return answerTo(request, allowed);
 }
 
 void StatusServer::publishDue() {
@@ -248,7 +342,11 @@ void StatusServer::publishDue() {
     sockets_->publisher.send(zmq::buffer(document), zmq::send_flags::none);
   };
   const Timestamp now = clock_.now();
-  for (const std::string& event : settings_.events()) send("event", event);
+  for (const std::string& event : settings_.events()) {
+    send("event", event);
+    last_events_.push_back(event);
+    if (last_events_.size() > kEventsKept) last_events_.pop_front();
+  }
   for (std::size_t i = 0; i < due_.size(); ++i) {
     if (now < due_[i]) continue;
     due_[i] = now + settings_.publications[i].interval;

@@ -2,6 +2,7 @@
 // commands.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
@@ -29,6 +30,9 @@ struct StatusServerSettings {
   // Where the same topics are published, encrypted, for clients on other machines whose keys are
   // listed; it takes no commands.
   CurveServer network;
+  // Where requests are answered, encrypted, from clients on other machines whose keys are listed:
+  // every command to those that may command; status and events to those that may read.
+  CurveServer network_commands;
   std::vector<Publication> publications;
   std::vector<Command> commands;
   // Called at least ten times a second; the documents it returns are published under "event", in
@@ -38,6 +42,8 @@ struct StatusServerSettings {
 
 // Requests: {"command": NAME, "argument": TEXT} (the argument only if the command needs one), one
 // part, at most 4 KiB. Replies: {"ok": true, "result": ...} or {"ok": false, "error": "..."}.
+// Besides its settings' commands the server knows `events`: a list of the last 50 documents that
+// were published under "event", oldest first.
 //
 // Clients connect to relays (relay.h), which limit what each may use; libzmq's own sockets are
 // behind them. The thread that publishes and answers only ends when it is stopped: an error in a
@@ -56,6 +62,8 @@ class StatusServer {
   // alone (the port is in use) and be tried again. REQUIRES: that address is set. Errors: those of
   // Relay::start().
   Result<std::unique_ptr<net::Server>> startSamples(ThreadWatch& watch) const;
+  // The same for the address of `network_commands`.
+  Result<std::unique_ptr<net::Server>> startNetworkCommands(ThreadWatch& watch) const;
 
   // Reports of the relays: counters of accepted and refused connections. Thread-safe.
   std::vector<net::ServerReport> reports() const;
@@ -73,10 +81,14 @@ class StatusServer {
   Duration untilDue() const;
   void admit();  // answers libzmq's authentication request: is the client's key listed?
   void answer();
+  void answerNetwork();
+  std::string answerFor(Grant grant, std::string_view request) const;
 
   StatusServerSettings settings_;
   const Clock& clock_;
   std::unique_ptr<Sockets> sockets_;
+  Doors doors_;
+  std::deque<std::string> last_events_;
   std::vector<Timestamp> due_;
   Timestamp checked_{};  // when the inner sockets' files were last checked
   Timestamp said_{};     // when an error was last logged

@@ -67,4 +67,26 @@ void WallEvents::takeOutputs(std::vector<std::string>& events) {
   }
 }
 
+std::vector<std::string> WallEvents::takePictures() {
+  std::vector<std::string> events;
+  const auto all = segment_.outputs.read();
+  if (!all) return events;
+  const std::size_t count = std::min<std::size_t>(all->count, std::size(all->outputs));
+  pictures_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const shm::OutputStats& o = all->outputs[i];
+    std::string wrong(textIn(o.picture_fault));
+    const std::string was = std::exchange(pictures_[i], wrong);
+    if (wrong == was) continue;
+    const std::string_view name = textIn(o.name);
+    if (!wrong.empty())
+      events.push_back(fmt::format("output {} {}", name, wrong));
+    else if (o.picture != 0)
+      events.push_back(fmt::format("output {} shows what was meant again", name));
+    else
+      events.push_back(fmt::format("output {} shows no picture that could be read back", name));
+  }
+  return events;
+}
+
 }  // namespace merlin::status

@@ -16,6 +16,9 @@ class WallEvents {
 
   // The changes since the last call, such as "frame rate reduced to 15 of 30 Hz: ...".
   std::vector<std::string> take();
+  // The same of what the outputs were found to show, such as "output left is black instead of ...".
+  // What fails anyway has had its event.
+  std::vector<std::string> takePictures();
 
  private:
   void takeOutputs(std::vector<std::string>& events);
@@ -23,7 +26,8 @@ class WallEvents {
   const shm::WallSegment& segment_;
   std::uint32_t divisor_ = 1, scale_ = 1, operator_coarser_ = 0, held_ = 0, returned_ = 0;
   float asked_hz_ = 0;
-  std::vector<std::string> faults_;  // of the outputs, by number; empty: it works
+  std::vector<std::string> faults_;    // of the outputs, by number; empty: it works
+  std::vector<std::string> pictures_;  // what is wrong with theirs; empty: nothing
 };
 
 }  // namespace merlin::status

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "daemon/base/fixed_text.h"
+
 namespace merlin::wall {
 namespace {
 
@@ -120,6 +122,10 @@ void WallPublisher::outputs(const render::out::OutputSet& outputs, Timestamp now
     o.frames = state.frames;
     o.shown_hz = static_cast<float>(outputs.shownHz(i, now));
     o.late_share = static_cast<float>(state.lateShare());
+    const render::out::PictureState picture = outputs.picture(i);
+    o.picture = static_cast<std::uint32_t>(picture.verdict);
+    o.picture_ms = picture.took_ms;
+    copyText(textIn(picture.says), o.picture_fault);
   }
   slots_.outputs->publish(all);
 }

@@ -97,6 +97,7 @@ Result<Ok> WallRole::makeOutputs(std::uint64_t generation) {
       frame_name.copy(segment_->framebuffer, sizeof segment_->framebuffer - 1);
   }
   outputs_ = render::out::OutputSet(std::move(outputs));
+  makeChecks();
   graphics_cards_.open();  // before the drawing contexts do
   return Ok{};
 }
@@ -125,6 +126,14 @@ WallRole::WallRole(const Settings& settings, std::vector<WallContent> contents,
       model_watch_(filesOf(contents_), ShownModels::maker(entries_, settings_.wall), watch_,
                    clock_),
       tiles_(watch_) {}
+
+void WallRole::makeChecks() {
+  std::vector<render::out::PictureChecks::Checked> checked;
+  for (std::size_t i = 0; i < outputs_.size(); ++i)
+    checked.push_back({&outputs_.output(i), fromSeconds(settings_.wall.outputs[i].check_s)});
+  checks_.emplace(checked, clock_);
+  outputs_.checkWith(&*checks_);
+}
 
 // Outputs of kind shared_memory receive the frame without correction; all others can be aligned.
 Result<Ok> WallRole::makeCorrections() {
@@ -205,6 +214,7 @@ void WallRole::tend(Timestamp now) {
 
 WallRole::~WallRole() {
   thread_.stop();
+  checks_.reset();
   outputs_ =
       render::out::OutputSet({});  // those of kind window execute commands, which use members
 }
@@ -246,6 +256,7 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
   loop.setRate(keeper_.state().rate_hz);
   loop.calibrate();
   loop_.store(&loop);
+  checks_->start(watch_);
   loop.run(stop, [&] { ready_.set_value(models.contexts().renderer()); });
   loop_.store(nullptr);
   shader_pass_.end();

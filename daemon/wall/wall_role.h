@@ -138,6 +138,7 @@ class WallRole {
            shm::SegmentWriter<shm::WallSegment> segment, state::StateKeeper& keeper,
            ThreadWatch& watch, Clock& clock);
   Result<Ok> makeOutputs(std::uint64_t generation);
+  void makeChecks();
   Result<Ok> makeCorrections();
   void makeSignals(std::uint64_t generation);
   std::uint32_t firstNumber() const noexcept;
@@ -163,6 +164,7 @@ class WallRole {
   Clock& clock_;
   render::out::kms::Cards graphics_cards_;  // their displays, shared by the outputs on them
   render::out::OutputSet outputs_{{}};
+  std::optional<render::out::PictureChecks> checks_;  // of outputs_
   ThreadTeam team_;  // threads for the corrections; used on the wall's thread
   render::correct::ShaderPass shader_pass_;  // of the corrections, where a GPU computes them
   mutable std::mutex renderer_mutex_;

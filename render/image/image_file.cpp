@@ -78,20 +78,29 @@ struct Between {
   float share;
 };
 
-Between between(float place, int n, bool clamped) noexcept {
-  const double unit =
-      clamped ? std::clamp(double{place}, 0.0, 1.0) : place - std::floor(double{place});
+// A coordinate of a repeating image loses its whole part first, so that the pixel's index is exact.
+Between between(double place, int n, Wrap wrap) noexcept {
+  constexpr double kFarthest = 1e9;  // of what is not repeated
+  const double period = wrap == Wrap::kMirror ? 2 : 1;
+  const double unit = wrap == Wrap::kClamp ? std::clamp(place, -kFarthest, kFarthest)
+                                           : place - period * std::floor(place / period);
   const double x = unit * n - 0.5;
-  const int low = static_cast<int>(std::floor(x));
-  const auto inside = [&](int i) { return clamped ? std::clamp(i, 0, n - 1) : (i + n) % n; };
-  return {inside(low), inside(low + 1), static_cast<float>(x - low)};
+  const double low = std::floor(x);
+  const auto i = static_cast<std::int64_t>(low);
+  return {wrapped(i, n, wrap), wrapped(i + 1, n, wrap), static_cast<float>(x - low)};
 }
 
 }  // namespace
 
-std::array<float, 3> ImageFile::at(float u, float v, bool clamped) const noexcept {
-  const Between x = between(u, width, clamped),
-                y = between(-v + (clamped ? 1.0F : 0.0F), height, clamped);
+int wrapped(std::int64_t i, int n, Wrap wrap) noexcept {
+  const std::int64_t period = wrap == Wrap::kMirror ? std::int64_t{2} * n : n;
+  if (wrap == Wrap::kClamp) return static_cast<int>(std::clamp<std::int64_t>(i, 0, n - 1));
+  const std::int64_t inside = (i % period + period) % period;
+  return static_cast<int>(inside < n ? inside : period - 1 - inside);
+}
+
+std::array<float, 3> ImageFile::at(float u, float v, Wrap wrap_u, Wrap wrap_v) const noexcept {
+  const Between x = between(u, width, wrap_u), y = between(1 - double{v}, height, wrap_v);
   const auto pixel = [&](int column, int row) {
     return &pixels[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
                         static_cast<std::size_t>(column))];

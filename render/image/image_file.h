@@ -11,15 +11,21 @@
 
 namespace merlin::render::image {
 
+// What lies beside the image in texture coordinates: the image again, its mirror image, or the
+// pixels of its border.
+enum class Wrap : std::uint8_t { kRepeat, kMirror, kClamp };
+
+// The pixel, 0..n-1, that stands for pixel `i` of a row or column of `n`. REQUIRES: n > 0.
+int wrapped(std::int64_t i, int n, Wrap wrap) noexcept;
+
 struct ImageFile {
   int width = 0, height = 0;         // [px]
   std::vector<std::uint8_t> pixels;  // RGB, rows from top to bottom
   std::vector<std::uint8_t> file{};  // the encoded file; only readImage() sets it
 
   // Colour at texture coordinates (u, v), v upwards: interpolated between the four nearest pixels,
-  // each component 0..1. The image repeats, unless `clamped`. REQUIRES: u and v are finite, the
-  // image is not empty.
-  std::array<float, 3> at(float u, float v, bool clamped) const noexcept;
+  // each component 0..1. REQUIRES: u and v are finite, the image is not empty.
+  std::array<float, 3> at(float u, float v, Wrap wrap_u, Wrap wrap_v) const noexcept;
 };
 
 // Reads a PNG or JPEG file; its first bytes decide which, not its name. Errors, with the file's

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "daemon/base/result.h"
 
@@ -14,5 +15,11 @@ namespace merlin::render::image {
 // appears whole or not at all. The same pixels give the same bytes. Errors: as writeFile().
 Result<Ok> writePng(const std::string& path, int width, int height,
                     std::span<const std::uint8_t> pixels);
+
+// The bytes of a PNG file. `pixels`: RGB, rows from top to bottom. The same pixels give the same
+// bytes. About 30 ms for a million pixels. Errors: kIo (no memory), kInvalidArgument (the size is
+// not that of `pixels`, or 0).
+Result<std::vector<std::uint8_t>> encodePng(int width, int height,
+                                            std::span<const std::uint8_t> pixels);
 
 }  // namespace merlin::render::image

@@ -97,10 +97,16 @@ float toSrgb(float linear) {
                               : 1.055F * std::pow(std::max(linear, 0.0F), 1 / 2.4F) - 0.055F;
 }
 
+image::Wrap wrapOf(aiTextureMapMode mode) {
+  if (mode == aiTextureMapMode_Mirror) return image::Wrap::kMirror;
+  const bool ends = mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal;
+  return ends ? image::Wrap::kClamp : image::Wrap::kRepeat;
+}
+
 // What the triangles of a mesh look like.
 struct Material {
   std::array<float, 3> colour = kPlain;
-  PartTexture texture;
+  mesh::SurfaceTexture texture;
   unsigned texcoords = 0;  // which of the mesh's texture coordinates
 };
 
@@ -168,7 +174,7 @@ class SceneReader {
       if (m.texture.picture || material.GetTexture(type, 0, &path, nullptr, &m.texcoords, nullptr,
                                                    nullptr, wrap) != aiReturn_SUCCESS)
         continue;
-      m.texture = {imageOf(path), wrap[0] == aiTextureMapMode_Clamp};
+      m.texture = {imageOf(path), wrapOf(wrap[0]), wrapOf(wrap[1])};
     }
     return m;
   }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <new>
 #include <unordered_map>
 #include <utility>
 
@@ -31,9 +32,11 @@
 #include <Inventor/nodes/SoWWWInline.h>
 #include <fmt/format.h>
 
+#include "daemon/base/files.h"
 #include "render/import/model_file.h"
 #include "render/import/model_textures.h"
 #include "render/mesh/io/companion_files.h"
+#include "render/mesh/io/gzip.h"
 
 namespace merlin::render::import {
 namespace {
@@ -218,7 +221,7 @@ class GraphReader {
     return textures_.ofPixels(fmt::format("pixels {}", pictures_.size()), std::move(image));
   }
 
-  PartTexture textureOf(const SoCallbackAction& action) {
+  mesh::SurfaceTexture textureOf(const SoCallbackAction& action) {
     SbVec2s size;
     int components = 0;
     const unsigned char* const bytes = action.getTextureImage(size, components);
@@ -226,7 +229,10 @@ class GraphReader {
     auto found = pictures_.find(bytes);
     if (found == pictures_.end())
       found = pictures_.emplace(bytes, inlineImage(bytes, size, components)).first;
-    return {found->second, action.getTextureWrapS() == SoTexture2::CLAMP};
+    const auto wrapOf = [](int wrap) {
+      return wrap == SoTexture2::CLAMP ? image::Wrap::kClamp : image::Wrap::kRepeat;
+    };
+    return {found->second, wrapOf(action.getTextureWrapS()), wrapOf(action.getTextureWrapT())};
   }
 
   static SoCallbackAction::Response beginShape(void* self, SoCallbackAction*, const SoNode*) {
@@ -296,6 +302,19 @@ SbBool reportReading(const SbName&, float share, SbBool, void* on_triangles) {
   return TRUE;
 }
 
+// What a file holds that is packed by gzip; empty if it is not. Coin could unpack it as well, but
+// without a limit.
+Result<std::string> unpackedIfGzip(const std::string& path) {
+  constexpr std::size_t kMost = std::size_t{1} << 30;  // [bytes]
+  const auto mark = FileCopy::read(path, 2);
+  if (!mark || !mesh::isGzip(mark->text())) return std::string();
+  const auto packed = MappedFile::open(path);
+  if (!packed) throw std::bad_alloc();  // it could be read, so memory is what lacks
+  auto text = mesh::gunzip(packed->text(), kMost);
+  if (text && text->empty()) return Error{Errc::kMalformed, "gzip: nothing is packed"};
+  return text;
+}
+
 // Why Coin gave up.
 std::string reasons() {
   std::string text;
@@ -318,9 +337,16 @@ Result<Ok> prepareModels(const char*) {
 
 Result<BuiltModel> readByCoin(const ModelFile& file, const OnTriangles& on_triangles) {
   complaints().clear();
+  const auto unpacked = unpackedIfGzip(file.path);
+  if (!unpacked) return unpacked.error();
   SoInput input;
   SoInput::addDirectoryFirst(mesh::folderOf(file.path).c_str());
-  if (!input.openFile(file.path.c_str()) || !input.isValidFile())
+  bool opened = true;
+  if (unpacked->empty())
+    opened = input.openFile(file.path.c_str());
+  else
+    input.setBuffer(unpacked->data(), unpacked->size());
+  if (!opened || !input.isValidFile())
     return Error{Errc::kMalformed, "cannot be read: " + reasons()};
   SoDB::addProgressCallback(reportReading, const_cast<OnTriangles*>(&on_triangles));
   SoSeparator* const root = SoDB::readAll(&input);

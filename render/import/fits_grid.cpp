@@ -160,8 +160,8 @@ class FitsGrid final : public GridSource {
   explicit FitsGrid(File file) : file_(std::move(file)) {}
 
   // Finds the image and reads its cards. Returns the fault.
-  Result<Ok> prepare() {
-    if (const auto found = findImage(); !found) return found;
+  Result<Ok> prepare(const std::string& wanted) {
+    if (const auto found = findImage(wanted); !found) return found;
     head_.format = "FITS";
     Cards cards(file_.get());
     const std::string order = lowerCase(cards.text("ROWORDER"));
@@ -190,23 +190,79 @@ class FitsGrid final : public GridSource {
   }
 
  private:
-  // Goes to the first image of two axes.
-  Result<Ok> findImage() {
-    int images = 0, status = 0;
-    if (fits_get_num_hdus(file_.get(), &images, &status) != 0)
+  // Goes to the image that is wanted, else to the first one.
+  Result<Ok> findImage(const std::string& wanted) {
+    if (const auto listed = listImages(); !listed) return listed;
+    if (images_.empty()) return Error{Errc::kUnsupported, "has no image of two axes"};
+    const auto chosen = std::ranges::find_if(
+        images_, [&](const Image& i) { return wanted.empty() || isCalled(i, wanted); });
+    if (chosen == images_.end())
+      return Error{Errc::kInvalidArgument,
+                   fmt::format("has no image {} of two axes (--hdu); there are {}",
+                               oneLine(excerpt(wanted)), listOf(images_))};
+    head_.width = chosen->width;
+    head_.height = chosen->height;
+    if (head_.width > range::kMostPixels / head_.height)
+      return Error{Errc::kUnsupported, fmt::format("image {}; allowed are {} pixels",
+                                                   nameOf(*chosen), range::kMostPixels)};
+    int type = 0, status = 0;
+    if (fits_movabs_hdu(file_.get(), chosen->number + 1, &type, &status) != 0)
+      return Error{Errc::kMalformed, fmt::format("image {}: {}", nameOf(*chosen), wordsOf(status))};
+    if (wanted.empty() && images_.size() > 1) {
+      const std::vector<Image> others(chosen + 1, images_.end());
+      head_.notes.push_back(fmt::format("left out: {}; image {} is read (--hdu reads another one)",
+                                        listOf(others), nameOf(*chosen)));
+    }
+    return Ok{};
+  }
+
+  // An image of two axes.
+  struct Image {
+    int number = 0;      // of its header-data unit, 0: the primary one
+    std::string name{};  // the card EXTNAME, one line
+    std::size_t width = 0, height = 0;
+  };
+
+  // Where the file is damaged behind an image, the images before it are listed.
+  Result<Ok> listImages() {
+    int units = 0, status = 0;
+    if (fits_get_num_hdus(file_.get(), &units, &status) != 0)
       return Error{Errc::kMalformed, wordsOf(status)};
-    for (int i = 1; i <= std::min(images, kMostImages); ++i) {
+    for (int i = 0; i < std::min(units, kMostImages); ++i) {
       int type = 0;
       status = 0;
-      if (fits_movabs_hdu(file_.get(), i, &type, &status) != 0)
-        return Error{Errc::kMalformed, fmt::format("image {}: {}", i, wordsOf(status))};
+      if (fits_movabs_hdu(file_.get(), i + 1, &type, &status) != 0) {
+        const std::string words = wordsOf(status);
+        if (images_.empty()) return Error{Errc::kMalformed, fmt::format("image {}: {}", i, words)};
+        return Ok{};
+      }
       const bool image = type == IMAGE_HDU || fits_is_compressed_image(file_.get(), &status) != 0;
       if (!image || !takeSize()) continue;
-      if (head_.width <= range::kMostPixels / head_.height) return Ok{};
-      return Error{Errc::kUnsupported, fmt::format("image {}: {} x {} pixels; allowed are {}", i,
-                                                   head_.width, head_.height, range::kMostPixels)};
+      images_.push_back(
+          {i, oneLine(Cards(file_.get()).text("EXTNAME")), head_.width, head_.height});
     }
-    return Error{Errc::kUnsupported, "has no image of two axes"};
+    return Ok{};
+  }
+
+  // By its number, or by its name, in which capital letters count for nothing.
+  static bool isCalled(const Image& image, const std::string& wanted) {
+    return std::to_string(image.number) == wanted ||
+           (!image.name.empty() && lowerCase(image.name) == lowerCase(wanted));
+  }
+
+  static std::string nameOf(const Image& image) {
+    return fmt::format("{}{} ({} x {} pixels)", image.number,
+                       image.name.empty() ? "" : fmt::format(" \"{}\"", excerpt(image.name)),
+                       image.width, image.height);
+  }
+
+  static std::string listOf(const std::vector<Image>& images) {
+    constexpr std::size_t kNamed = 8;
+    std::string list;
+    for (std::size_t i = 0; i < std::min(images.size(), kNamed); ++i)
+      list += (i == 0 ? "" : ", ") + nameOf(images[i]);
+    return images.size() > kNamed ? fmt::format("{} and {} more", list, images.size() - kNamed)
+                                  : list;
   }
 
   // Whether the image has two axes.
@@ -227,6 +283,7 @@ class FitsGrid final : public GridSource {
 
   File file_;
   range::GridHead head_;
+  std::vector<Image> images_;
   bool bottom_first_ = false;
 };
 
@@ -234,14 +291,14 @@ class FitsGrid final : public GridSource {
 
 bool isFits(std::string_view bytes) noexcept { return bytes.starts_with("SIMPLE  ="); }
 
-Result<std::unique_ptr<GridSource>> openFits(const std::string& path) {
+Result<std::unique_ptr<GridSource>> openFits(const std::string& path, const std::string& wanted) {
   fitsfile* opened = nullptr;
   int status = 0;
   // Of this name as it is: fits_open_file() takes more than file names.
   if (fits_open_diskfile(&opened, path.c_str(), READONLY, &status) != 0)
     return Error{Errc::kMalformed, wordsOf(status)};
   auto grid = std::make_unique<FitsGrid>(File(opened));
-  if (const auto prepared = grid->prepare(); !prepared) return prepared.error();
+  if (const auto prepared = grid->prepare(wanted); !prepared) return prepared.error();
   return std::unique_ptr<GridSource>(std::move(grid));
 }
 

@@ -12,9 +12,11 @@ namespace merlin::render::import {
 
 bool isFits(std::string_view bytes) noexcept;
 
-// Opens the first image of two axes; further axes of length 1 count for nothing. The cards of its
-// geometry are in the README of render/range/io. BSCALE, BZERO and BLANK are applied. Errors, with
-// the name of the card or CFITSIO's words: kMalformed, kUnsupported (no such image, too large).
-Result<std::unique_ptr<GridSource>> openFits(const std::string& path);
+// Opens an image of two axes; further axes of length 1 count for nothing. `wanted`: its number (0
+// is the primary one) or its EXTNAME; empty: the first one, and a note lists the others. The cards
+// of its geometry are in the README of render/range/io. BSCALE, BZERO and BLANK are applied.
+// Errors, with the name of the card or CFITSIO's words: kMalformed, kUnsupported (no image at all,
+// too large), kInvalidArgument (no such image; the error lists those there are).
+Result<std::unique_ptr<GridSource>> openFits(const std::string& path, const std::string& wanted);
 
 }  // namespace merlin::render::import

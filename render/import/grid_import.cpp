@@ -14,11 +14,14 @@
 namespace merlin::render::import {
 namespace {
 
-Result<std::unique_ptr<GridSource>> openGrid(const std::string& in) {
+Result<std::unique_ptr<GridSource>> openGrid(const GridInput& input) {
+  const std::string& in = input.path;
   constexpr std::size_t kBeginning = 80;
   const auto beginning = FileCopy::read(in, kBeginning);
   if (!beginning) return beginning.error();
-  if (isFits(beginning->text())) return openFits(in);
+  if (isFits(beginning->text())) return openFits(in, input.hdu);
+  if (!input.hdu.empty())
+    return Error{Errc::kInvalidArgument, "--hdu is for FITS files, and this is none"};
   // An absolute name is a file's; GDAL takes others for addresses and databases.
   std::error_code error;
   const auto path = std::filesystem::absolute(in, error);
@@ -47,9 +50,10 @@ std::vector<std::string> gridHeadersBeside(const std::string& input) {
   return files;
 }
 
-Result<ImportedGrid> importGrid(const std::string& in, const std::string& out,
+Result<ImportedGrid> importGrid(const GridInput& input, const std::string& out,
                                 const OnGridSize& on_size, const OnGridProgress& on_progress) {
-  const auto source = openGrid(in);
+  const std::string& in = input.path;
+  const auto source = openGrid(input);
   if (!source) return Error{source.error().code, fmt::format("{}: {}", in, source.error().what)};
   const range::GridHead& head = (*source)->head();
   const ImportedGrid size{head.width, head.height};

@@ -12,6 +12,11 @@
 
 namespace merlin::render::import {
 
+struct GridInput {
+  std::string path;
+  std::string hdu{};  // of a FITS file: openFits()'s `wanted`
+};
+
 struct ImportedGrid {
   std::size_t width = 0, height = 0;  // [pixels]
 };
@@ -31,7 +36,7 @@ using OnGridSize = std::function<Result<Ok>(const ImportedGrid&)>;
 
 // Reads `in`, by its content, and writes the grid to `out`. Rows are streamed. Errors, with the
 // file's name and the library's own words: kMalformed, kUnsupported, kIo (`out` cannot be written).
-Result<ImportedGrid> importGrid(const std::string& in, const std::string& out,
+Result<ImportedGrid> importGrid(const GridInput& in, const std::string& out,
                                 const OnGridSize& on_size, const OnGridProgress& on_progress);
 
 }  // namespace merlin::render::import

@@ -34,7 +34,7 @@ std::size_t ModelBuilder::Hash::operator()(const Key& key) const noexcept {
   return h;
 }
 
-void ModelBuilder::beginPart(const PartTexture& texture) {
+void ModelBuilder::beginPart(const mesh::SurfaceTexture& texture) {
   vertices_.clear();
   texture_ = texture;
   part_has_triangles_ = false;
@@ -47,7 +47,7 @@ void ModelBuilder::dress(Corner& corner) const {
     return;
   }
   const auto [u, v] = corner.texcoord;
-  corner.colour = texture_.picture->at(u, v, texture_.clamped);
+  corner.colour = texture_.picture->at(u, v, texture_.wrap_u, texture_.wrap_v);
 }
 
 std::uint32_t ModelBuilder::vertexOf(const Corner& corner) {
@@ -73,7 +73,7 @@ void ModelBuilder::add(std::array<Corner, 3> corners) {
   }
   if (!std::exchange(part_has_triangles_, true)) {
     ++model_.parts;
-    if (std::ranges::find(used_, texture_) == used_.end()) used_.push_back(texture_);
+    number_ = textureNumber();
   }
   std::array<std::uint32_t, 3> t{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -81,30 +81,31 @@ void ModelBuilder::add(std::array<Corner, 3> corners) {
     coloured_ = coloured_ || corners[k].colour != kPlain;
     t[k] = vertexOf(corners[k]);
   }
-  if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
+  if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {
     ++model_.degenerate;
-  else
+  } else {
     model_.mesh.triangles.insert(model_.mesh.triangles.end(), t.begin(), t.end());
+    textures_.of_triangle.push_back(number_);
+  }
 }
 
-bool ModelBuilder::keepsTexture() const {
-  return used_.size() == 1 && used_[0].picture && !used_[0].clamped &&
-         !used_[0].picture->file.empty();
+std::uint32_t ModelBuilder::textureNumber() {
+  if (!texture_.picture) return mesh::kNoTexture;
+  auto& all = textures_.textures;
+  const auto found = std::ranges::find(all, texture_);
+  const auto number = static_cast<std::uint32_t>(found - all.begin());
+  if (found == all.end()) all.push_back(texture_);
+  return number;
 }
 
 BuiltModel ModelBuilder::finish() && {
   mesh::Mesh& mesh = model_.mesh;
-  const bool textured =
-      std::ranges::any_of(used_, [](const PartTexture& t) { return t.picture != nullptr; });
+  const bool textured = !textures_.textures.empty();
   if (coloured_ || textured) mesh.features.push_back({"colour", 3, std::move(colours_)});
   if (textured) mesh.features.push_back({"texcoord", 2, std::move(texcoords_)});
   if (model_.parts > 1) mesh.features.push_back({"label", 1, std::move(labels_)});
-  if (keepsTexture()) {
-    mesh.texture = used_[0].picture->file;
-  } else if (textured) {
-    model_.notes.emplace_back(
-        "several textures, a clamped one, or parts without one: baked into vertex colours");
-  }
+  model_.notes = mesh::joinTextures(mesh, textures_).notes();
+  model_.welded = mesh::weldParts(mesh);
   if (model_.not_finite > 0)
     model_.notes.push_back(
         fmt::format("left out: {} triangles with coordinates that are not numbers, or beyond 1e18",

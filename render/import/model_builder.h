@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "render/image/image_file.h"
+#include "render/mesh/atlas/join_textures.h"
 #include "render/mesh/mesh.h"
+#include "render/mesh/weld_parts.h"
 
 namespace merlin::render::import {
 
@@ -23,28 +25,24 @@ struct Corner {
   std::array<float, 2> texcoord{};
 };
 
-// The texture image of a part, which must outlive the builder; may be none.
-struct PartTexture {
-  const image::ImageFile* picture = nullptr;
-  bool clamped = false;
-  bool operator==(const PartTexture&) const = default;
-};
-
 struct BuiltModel {
   mesh::Mesh mesh;
   std::size_t parts = 0;       // that have triangles
   std::size_t degenerate = 0;  // triangles that were dropped: two corners are one vertex
   std::size_t not_finite = 0;  // triangles that were dropped: a coordinate is not a number, or huge
+  mesh::WeldReport welded;     // of different parts
   std::vector<std::string> notes;
 };
 
 // Corners of one part become one vertex if all of their numbers are the same, so that seams of
-// textures and borders of colours stay; vertices of different parts stay apart, since each has one
-// part's number. Not pure in its use of memory alone: std::bad_alloc leaves it. Thread-bound.
+// textures and borders of colours stay; vertices of different parts are welded where the parts are
+// one surface (render/mesh/weld_parts.h). Not pure in its use of memory alone: std::bad_alloc
+// leaves it. Thread-bound.
 class ModelBuilder {
  public:
   // The triangles that follow belong to a new part.
-  void beginPart(const PartTexture& texture);
+  // `texture`: its picture must outlive the builder; null: none.
+  void beginPart(const mesh::SurfaceTexture& texture);
   // Adds a triangle, counter-clockwise from outside. Where the part has a texture, the colour is
   // the texture's at the corner.
   void add(std::array<Corner, 3> corners);
@@ -52,8 +50,8 @@ class ModelBuilder {
   std::size_t triangles() const noexcept { return model_.mesh.triangleCount(); }
 
   // The mesh has "colour" if a part has a colour or a texture, "texcoord" if a part has a texture,
-  // "label" (the part's number from 0) if there are several parts, and the texture if all triangles
-  // have the same, and it repeats.
+  // "label" (the part's number from 0) if there are several parts, and one texture if there is any
+  // (render/mesh/atlas).
   BuiltModel finish() &&;
 
  private:
@@ -63,13 +61,14 @@ class ModelBuilder {
   };
   std::uint32_t vertexOf(const Corner& corner);
   void dress(Corner& corner) const;
-  bool keepsTexture() const;
+  std::uint32_t textureNumber();
 
   BuiltModel model_;
   std::vector<float> colours_, texcoords_, labels_;
   std::unordered_map<Key, std::uint32_t, Hash> vertices_;  // of this part
-  PartTexture texture_;                                    // of this part
-  std::vector<PartTexture> used_;                          // different ones of parts with triangles
+  mesh::SurfaceTexture texture_;                           // of this part
+  std::uint32_t number_ = mesh::kNoTexture;                // of this part's texture
+  mesh::SurfaceTextures textures_;                         // of parts with triangles
   bool part_has_triangles_ = false, coloured_ = false;
 };
 

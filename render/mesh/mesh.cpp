@@ -90,18 +90,9 @@ void compactRows(std::vector<float>& values, std::size_t dimension,
 }
 
 std::size_t dropUnused(Mesh& mesh) {
-  std::vector<std::uint32_t> place(mesh.vertexCount(), kUnused);
-  for (const std::uint32_t v : mesh.triangles) place[v] = 0;
-  std::uint32_t rows = 0;
-  for (std::uint32_t& p : place) {
-    if (p != kUnused) p = rows++;
-  }
-  const std::size_t dropped = mesh.vertexCount() - rows;
-  if (dropped == 0) return 0;
-  for (std::uint32_t& v : mesh.triangles) v = place[v];
-  compactRows(mesh.positions, 3, place, rows);
-  for (Feature& f : mesh.features) compactRows(f.values, f.dimension, place, rows);
-  return dropped;
+  std::vector<bool> used(mesh.vertexCount(), false);
+  for (const std::uint32_t v : mesh.triangles) used[v] = true;
+  return keepVertices(mesh, used);
 }
 
 Result<Ok> validate(const Feature& f, std::size_t vertices) {
@@ -161,6 +152,20 @@ Result<Ok> validate(const Mesh& mesh) {
     if (const auto valid = validate(f, n); !valid) return valid;
   }
   return Ok{};
+}
+
+std::size_t keepVertices(Mesh& mesh, const std::vector<bool>& kept) {
+  std::vector<std::uint32_t> place(mesh.vertexCount(), kUnused);
+  std::uint32_t rows = 0;
+  for (std::size_t v = 0; v < place.size(); ++v) {
+    if (kept[v]) place[v] = rows++;
+  }
+  const std::size_t dropped = mesh.vertexCount() - rows;
+  if (dropped == 0) return 0;
+  for (std::uint32_t& v : mesh.triangles) v = place[v];
+  compactRows(mesh.positions, 3, place, rows);
+  for (Feature& f : mesh.features) compactRows(f.values, f.dimension, place, rows);
+  return dropped;
 }
 
 TidyReport tidy(Mesh& mesh) {

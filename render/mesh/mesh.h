@@ -61,6 +61,10 @@ Result<Ok> validate(const Mesh& mesh);
 // validate(mesh).ok().
 TidyReport tidy(Mesh& mesh);
 
+// Removes the vertices that are not kept; order is kept. Returns how many were removed. REQUIRES:
+// an entry for each vertex, and every vertex of a triangle is kept.
+std::size_t keepVertices(Mesh& mesh, const std::vector<bool>& kept);
+
 // Bounding box of all vertices; all zero if there are none.
 Box boundingBox(std::span<const float> positions) noexcept;
 

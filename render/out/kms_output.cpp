@@ -24,6 +24,16 @@ class KmsOutput final : public Output {
     return worker_->displays().fault(number_);
   }
   bool wantsFrame() const override { return worker_->displays().wantsFrame(number_); }
+  bool canReadBack() const override { return true; }
+  Result<std::vector<DisplayReading>> readBack() override {
+    auto read = worker_->displays().readBack(number_);
+    if (!read) return read.error();
+    std::vector<DisplayReading> readings;
+    for (const Displays::Reading& reading : *read)
+      readings.push_back({reading.connector, reading.found, reading.programs});
+    return readings;
+  }
+  void showAgain() override { worker_->displays().showAgain(number_); }
   std::optional<Vblank> vblank() const override {
     const auto blanks = worker_->displays().blanks();
     if (!blanks) return std::nullopt;

@@ -6,10 +6,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
 #include "render/out/frame_clock.h"
+#include "render/out/picture/picture_judge.h"
 
 namespace merlin::render::out {
 
@@ -26,7 +28,15 @@ struct Signal {
   std::span<const std::uint8_t> pixels{};  // RGBA, rows from top to bottom, no padding
 };
 
-// Thread-bound to the wall's thread, except mend(), wantsFrame() and vblank().
+// What one display of an output was found to show.
+struct DisplayReading {
+  std::string where;  // the display, for a person: "HDMI-A-1"; empty: the output has only one
+  FoundPicture found;
+  std::string programs{};  // of a foreign picture: whose it may be, "Xorg (812)"; empty: not known
+};
+
+// Thread-bound to the wall's thread, except mend(), wantsFrame(), vblank(), readBack() and
+// showAgain().
 class Output {
  public:
   virtual ~Output() = default;
@@ -52,6 +62,17 @@ class Output {
 
   // The last vertical blank of the output's display; nothing if it has none. Thread-safe.
   virtual std::optional<Vblank> vblank() const { return std::nullopt; }
+
+  // True if readBack() may find something.
+  virtual bool canReadBack() const { return false; }
+
+  // Reads what the output really shows, of each of its displays that shows frames. May take
+  // milliseconds; called on one thread, which is not the wall's. Errors: why it cannot be read.
+  virtual Result<std::vector<DisplayReading>> readBack() { return std::vector<DisplayReading>(); }
+
+  // Called when the output was found to show another picture than what it was sent: sets up anew
+  // whatever may be wrong. A frame follows. Thread-safe.
+  virtual void showAgain() {}
 
   // Called once a second, from any thread: restores what other processes have removed, e.g. a
   // shared-memory object. Returns a description of what it did, for the log; empty if nothing.

@@ -17,6 +17,7 @@ OutputSet::OutputSet(std::vector<NamedOutput> outputs) {
 void OutputSet::present(std::size_t i, const Signal& signal, const FrameInfo& info,
                         std::optional<Timestamp> deadline) {
   Entry& entry = entries_[i];
+  if (checks_) checks_->meant(i, signal);
   const auto shown = entry.named.output->present(signal, info);
   entry.state.fault = shown ? std::string() : shown.error().what;
   if (!shown || !*shown) return;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "render/out/output.h"
+#include "render/out/picture_checks.h"
 
 namespace merlin::render::out {
 
@@ -48,7 +49,16 @@ class OutputSet {
     return entries_[i].named.output->mayTake(info);
   }
 
-  bool wantsFrame(std::size_t i) const { return entries_[i].named.output->wantsFrame(); }
+  bool wantsFrame(std::size_t i) const {
+    return entries_[i].named.output->wantsFrame() || (checks_ && checks_->wantsFrame(i));
+  }
+
+  // Output i, for whoever reads back what it shows.
+  Output& output(std::size_t i) { return *entries_[i].named.output; }
+  // `checks` are told what the outputs are handed, and outlive the last present(); null: none are.
+  void checkWith(PictureChecks* checks) { checks_ = checks; }
+  // What the checks have found of output i.
+  PictureState picture(std::size_t i) const { return checks_ ? checks_->state(i) : PictureState{}; }
 
   // The last vertical blank of the first output that has one; nothing if none has. Thread-safe.
   std::optional<Vblank> vblank() const;
@@ -69,6 +79,7 @@ class OutputSet {
     std::deque<Timestamp> shown;  // times of the frames of the last second
   };
   std::vector<Entry> entries_;
+  PictureChecks* checks_ = nullptr;
 };
 
 }  // namespace merlin::render::out

@@ -79,6 +79,9 @@ void checkOne(const OutputSettings& o, const std::string& at, SettingFaults& fau
     faults.push_back({at, "has no path; an output of kind png needs the name of its file"});
   if (o.kind != OutputKind::kPng && !o.path.empty())
     faults.push_back({at + "/path", fmt::format("is not a setting of kind {}", nameOf(o.kind))});
+  const bool can_be_checked = o.kind == OutputKind::kSharedMemory || o.kind == OutputKind::kKms;
+  if (!can_be_checked && o.check_s != OutputSettings{}.check_s)
+    faults.push_back({at + "/check_s", fmt::format("is not a setting of kind {}", nameOf(o.kind))});
   if (o.kind != OutputKind::kWindow && o.window != WindowSettings{})
     faults.push_back({at + "/window", fmt::format("is not a setting of kind {}", nameOf(o.kind))});
   for (const SettingFault& fault : validate(o.window))

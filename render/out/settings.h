@@ -47,6 +47,8 @@ struct OutputSettings {
   kms::KmsSettings kms{};           // kms: which display
   std::vector<PlacedTile> tiles{};  // tiles that the output is sent; empty: the whole frame
   correct::CorrectionSettings correction{};  // applied to the picture made of `tiles`
+  // Seconds between two looks at what it really shows; 0: none. Kinds shared_memory and kms.
+  double check_s = 5;
 
   std::string shownName() const { return name.empty() ? nameOf(kind) : name; }
 };

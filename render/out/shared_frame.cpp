@@ -144,18 +144,25 @@ Result<Ok> check(const Header& h, std::size_t size, const std::string& name) {
   return good ? Result<Ok>(Ok{}) : Result<Ok>(broken(name, "its header is damaged"));
 }
 
-// True if the copy is consistent. `checked` is a private, checked copy of the header; the memory at
-// `base` may change at any time.
-bool copyNewest(const Header& checked, const std::byte* base, CapturedFrame& frame) {
+// Calls use(pixels, sequence, buffer) with the newest frame; true if that was not overwritten
+// meanwhile. `checked` is a private, checked copy of the header; the memory at `base` may change at
+// any time.
+template <typename Use>
+bool useNewest(const Header& checked, const std::byte* base, const Use& use) {
   const auto& h = *reinterpret_cast<const Header*>(base);
   const std::size_t newest = h.newest.load(std::memory_order_acquire) % framebuffer::kBuffers;
   const Buffer& b = h.buffers[newest];
   const std::uint64_t before = b.sequence.load(std::memory_order_acquire);
   if (before == 0) return false;
-  std::memcpy(frame.pixels.data(), base + checked.buffers[newest].offset, frame.pixels.size());
-  frame.info = {before, fromNanoseconds(b.finished_ns), b.cost, b.full_detail != 0};
+  const auto* const pixels =
+      reinterpret_cast<const std::uint8_t*>(base + checked.buffers[newest].offset);
+  use(std::span(pixels, std::size_t{checked.stride} * checked.height), before, b);
   std::atomic_thread_fence(std::memory_order_acquire);
   return b.sequence.load(std::memory_order_relaxed) == before;
+}
+
+Error noCompleteFrame(const std::string& name) {
+  return {Errc::kTimeout, fmt::format("shared memory {}: no complete frame could be read", name)};
 }
 
 }  // namespace
@@ -174,10 +181,11 @@ Result<std::unique_ptr<SharedFrameOutput>> SharedFrameOutput::make(const std::st
   auto memory = SharedMemory::create(name, size);
   if (!memory) return memory.error();
   std::unique_ptr<SharedFrameOutput> sink(
-      new SharedFrameOutput(*std::move(memory), frame_bytes, clock));
+      new SharedFrameOutput(name, *std::move(memory), frame_bytes, clock));
   auto& front = *new (sink->memory_.data()) Front{};
   shm::setFields(front.header, front.fields, framebufferFields());
   fillHeader(front.header, plan, size, generation);
+  sink->generation_ = generation;
   return sink;
 }
 
@@ -198,6 +206,21 @@ Result<std::optional<Timestamp>> SharedFrameOutput::present(const Signal& signal
   h.newest.store(next_, std::memory_order_release);
   next_ = static_cast<std::uint32_t>((next_ + 1) % framebuffer::kBuffers);
   return std::optional(clock_.now());
+}
+
+// By its name, as any other process reads it.
+Result<std::vector<DisplayReading>> SharedFrameOutput::readBack() {
+  const auto reader = SharedFrameReader::open(name_);
+  if (!reader) return reader.error();
+  DisplayReading reading;
+  if (reader->generation() != generation_) {
+    reading.found.kind = FoundPicture::Kind::kForeign;
+  } else {
+    const auto digest = reader->digest();
+    if (!digest) return digest.error();
+    reading.found.digest = *digest;
+  }
+  return std::vector{std::move(reading)};
 }
 
 Result<std::string> SharedFrameOutput::mend() {
@@ -235,11 +258,28 @@ Result<Ok> SharedFrameReader::copy(CapturedFrame& frame) const {
   frame.wall_height = static_cast<int>(h.wall_height);
   frame.tiles.assign(h.tiles, h.tiles + h.tile_count);
   frame.pixels.resize(std::size_t{h.stride} * h.height);
+  const auto take = [&](std::span<const std::uint8_t> pixels, std::uint64_t sequence,
+                        const Buffer& b) {
+    std::memcpy(frame.pixels.data(), pixels.data(), pixels.size());
+    frame.info = {sequence, fromNanoseconds(b.finished_ns), b.cost, b.full_detail != 0};
+  };
   for (int i = 0; i < kCaptureTries; ++i) {
-    if (copyNewest(h, memory_.data(), frame)) return Ok{};
+    if (useNewest(h, memory_.data(), take)) return Ok{};
   }
-  return Error{Errc::kTimeout,
-               fmt::format("shared memory {}: no complete frame could be read", name_)};
+  return noCompleteFrame(name_);
+}
+
+Result<PictureDigest> SharedFrameReader::digest() const {
+  const Header& h = checked();
+  PictureDigest digest{};
+  const auto take = [&](std::span<const std::uint8_t> pixels, std::uint64_t, const Buffer&) {
+    digest = digestOf({static_cast<int>(h.width), static_cast<int>(h.height), pixels, h.stride,
+                       PixelOrder::kRgba});
+  };
+  for (int i = 0; i < kCaptureTries; ++i) {
+    if (useNewest(h, memory_.data(), take)) return digest;
+  }
+  return noCompleteFrame(name_);
 }
 
 Result<CapturedFrame> captureFrame(const std::string& name, SharedMemory::From from) {

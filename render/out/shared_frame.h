@@ -10,6 +10,7 @@
 
 #include "daemon/base/shared_memory.h"
 #include "render/out/output.h"
+#include "render/out/picture/picture_digest.h"
 #include "render/out/shared_frame_layout.h"
 #include "render/tiles/tile_plan.h"
 
@@ -29,14 +30,24 @@ class SharedFrameOutput final : public Output {
   // REQUIRES: the signal has the size of the plan's frame.
   Result<std::optional<Timestamp>> present(const Signal& signal, const FrameInfo& info) override;
 
+  // Reads the segment as any other process does, by its name. Errors: those of SharedFrameReader.
+  bool canReadBack() const override { return true; }
+  Result<std::vector<DisplayReading>> readBack() override;
+
   // Calls SharedMemory::mend(); present() waits until it returns.
   Result<std::string> mend() override;
 
  private:
-  SharedFrameOutput(SharedMemory memory, std::size_t frame_bytes, const Clock& clock)
-      : memory_(std::move(memory)), frame_bytes_(frame_bytes), clock_(clock) {}
+  SharedFrameOutput(std::string name, SharedMemory memory, std::size_t frame_bytes,
+                    const Clock& clock)
+      : name_(std::move(name)),
+        memory_(std::move(memory)),
+        frame_bytes_(frame_bytes),
+        clock_(clock) {}
   framebuffer::Header& header() { return *reinterpret_cast<framebuffer::Header*>(memory_.data()); }
 
+  const std::string name_;
+  std::uint64_t generation_ = 0;
   std::mutex mutex_;  // makes present() and mend() mutually exclusive
   SharedMemory memory_;
   std::size_t frame_bytes_;
@@ -67,6 +78,8 @@ class SharedFrameReader {
   // Copies the newest frame into `frame` and reuses its memory. Errors: kTimeout (no frame yet, or
   // the writer overwrote the buffer during every attempt).
   Result<Ok> copy(CapturedFrame& frame) const;
+  // The newest frame's digest, without copying the frame. Errors: those of copy().
+  Result<PictureDigest> digest() const;
 
  private:
   SharedFrameReader(std::string name, SharedMemory memory);

@@ -65,7 +65,8 @@ void Modalities::set(std::size_t pixel, const Place& place) {
       *out = source.feature->values[corner];
     } else if (source.from == From::kTexture) {
       const auto rgb = scene_.texture->at(static_cast<float>(at(*source.feature, place, 0)),
-                                          static_cast<float>(at(*source.feature, place, 1)), false);
+                                          static_cast<float>(at(*source.feature, place, 1)),
+                                          image::Wrap::kRepeat, image::Wrap::kRepeat);
       std::copy(rgb.begin(), rgb.end(), out);
     } else {
       for (std::size_t k = 0; k < plane.dimension; ++k)

@@ -68,9 +68,10 @@ TEST(Effective, EveryFileWithASecretIsDescribedAsOne) {
   settings.devices.projectors[0].password_file = "1";
   settings.serve.samples_keys = "2";
   settings.wall.input.keys = "3";
+  settings.serve.commands_keys = "4";
   auto files = secretFilesOf(settings);
   std::sort(files.begin(), files.end());
-  EXPECT_EQ(files, (std::vector<std::string>{"1", "2", "3"}));
+  EXPECT_EQ(files, (std::vector<std::string>{"1", "2", "3", "4"}));
 }
 
 }  // namespace

@@ -165,6 +165,9 @@ TEST(ReloadPlan, EachProcessTakesItsPart) {
             (std::vector<std::string>{"/devices/0/cyberglove/filter", "/page/port"}));
   EXPECT_EQ(pointersOf(planOf({"/serve/vrpn_port"}, kWall).elsewhere).size(), 1u);
   EXPECT_EQ(pointersOf(planOf({"/serve/vrpn_port"}, kWall | kMirror).restart).size(), 1u);
+  EXPECT_EQ(pointersOf(planOf({"/serve/wall_endpoint"}, kWall).restart).size(), 1u);
+  EXPECT_EQ(pointersOf(planOf({"/serve/wall_endpoint"}, kDevices).elsewhere).size(), 1u);
+  EXPECT_EQ(pointersOf(planOf({"/serve/commands_clients"}, kDevices).restart).size(), 1u);
   EXPECT_EQ(pointersOf(planOf({"/instance"}, kWall).restart).size(), 1u);
 }
 

@@ -1,3 +1,4 @@
+#include <array>
 #include <atomic>
 #include <cstring>
 #include <filesystem>
@@ -158,6 +159,29 @@ TEST_F(DocumentsTest, TheWallSaysWhatItShowsWhileNobodyTouchesIt) {
   wall_->interaction.publish(interaction);
   EXPECT_EQ(json::parse(wallStatus(*wall_, kNow))["shown"], "blank");
   EXPECT_EQ(json::parse(wallStatus(*wall_, kNow))["playlist"], "waiting");
+}
+
+TEST_F(DocumentsTest, TheWallSaysWhatItsOutputsWereFoundToShow) {
+  shm::WallOutputs outputs{};
+  outputs.count = 4;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    outputs.outputs[i].name[0] = static_cast<char>('a' + i);
+    outputs.outputs[i].picture = std::array{0U, 1U, 4U, 99U}[i];
+  }
+  std::snprintf(outputs.outputs[2].picture_fault, sizeof outputs.outputs[2].picture_fault, "torn");
+  outputs.outputs[2].picture_ms = 1.5F;
+  wall_->outputs.publish(outputs);
+  const json s = json::parse(wallStatus(*wall_, kNow))["outputs"];
+  EXPECT_EQ(s["a"]["picture"], "unchecked");
+  EXPECT_EQ(s["b"]["picture"], "right");
+  EXPECT_EQ(s["b"]["picture_reason"], "");
+  EXPECT_EQ(s["c"]["picture"], "torn");
+  EXPECT_EQ(s["c"]["picture_reason"], "torn");
+  EXPECT_EQ(s["c"]["picture_ms"], 1.5);
+  EXPECT_EQ(s["d"]["picture"], "unchecked") << "whatever that number means";
+  const json metrics = json::parse(wallMetrics(*wall_));
+  EXPECT_EQ(metrics["outputs_right"], 1);
+  EXPECT_EQ(metrics["outputs_wrong"], 1);
 }
 
 TEST_F(DocumentsTest, TheWallSaysHowItKeepsItsRate) {
@@ -382,6 +406,16 @@ TEST_F(ServerTest, PublishesTopics) {
   EXPECT_TRUE(followed);
   EXPECT_TRUE(status && event);
   EXPECT_GT(threads_.threads().back().progress, 0u);
+}
+
+TEST_F(ServerTest, TellsTheLastFiftyEvents) {
+  const auto count = [&] {
+    const auto answer = ask(command_, "events", seconds(10));
+    return answer ? json::parse(*answer).size() : 0;
+  };
+  EXPECT_TRUE(test::eventually([&] { return count() == 50; }));
+  EXPECT_EQ(json::parse(*ask(command_, "events", seconds(10)))[49], json({{"kind", "x"}}));
+  EXPECT_EQ(count(), 50U) << "not more";
 }
 
 TEST_F(ServerTest, SocketsAreForUserAndGroupOnly) {

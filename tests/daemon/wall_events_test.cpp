@@ -61,5 +61,28 @@ TEST_F(WallEventsTest, TellWhatIsSetByHand) {
   EXPECT_EQ(after(stats_), Sentences{"detail chosen by the governor again"});
 }
 
+TEST_F(WallEventsTest, TellOnceWhatAnOutputWasFoundToShow) {
+  shm::WallOutputs outputs{};
+  outputs.count = 2;
+  std::strcpy(outputs.outputs[1].name, "left");
+  const auto finds = [&](std::uint32_t picture, const char* fault) {
+    outputs.outputs[1].picture = picture;
+    std::strcpy(outputs.outputs[1].picture_fault, fault);
+    segment_->outputs.publish(outputs);
+    return events_.takePictures();
+  };
+  EXPECT_EQ(events_.takePictures(), Sentences{});
+  EXPECT_EQ(finds(1, ""), Sentences{});
+  EXPECT_EQ(finds(2, "is black instead of what was meant, at A-1"),
+            Sentences{"output left is black instead of what was meant, at A-1"});
+  EXPECT_EQ(finds(2, "is black instead of what was meant, at A-1"), Sentences{});
+  EXPECT_EQ(finds(3, "stands still on an older frame"),
+            Sentences{"output left stands still on an older frame"});
+  EXPECT_EQ(finds(1, ""), Sentences{"output left shows what was meant again"});
+  finds(2, "is black");
+  EXPECT_EQ(finds(0, ""), Sentences{"output left shows no picture that could be read back"});
+  EXPECT_EQ(events_.take(), Sentences{}) << "these are events of their own";
+}
+
 }  // namespace
 }  // namespace merlin::status

@@ -1,11 +1,14 @@
 #include "tests/fuzz/targets.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 #include <sys/mman.h>
@@ -35,7 +38,11 @@
 #include "render/correct/io/mpcdi.h"
 #include "render/image/image_file.h"
 #include "render/lod/io/mrm_file.h"
+#include "render/mesh/atlas/corner_coordinates.h"
+#include "render/mesh/atlas/join_textures.h"
+#include "render/mesh/io/gzip.h"
 #include "render/mesh/io/mesh_file.h"
+#include "render/mesh/weld_parts.h"
 #include "render/points/io/cloud_file.h"
 #include "render/range/io/grid_file.h"
 #include "render/range/io/range_grid.h"
@@ -181,6 +188,65 @@ void meshFile(Bytes bytes) {
   (void)render::mesh::readMeshByContent(file.path());
 }
 
+void gzipFile(Bytes bytes) {
+  constexpr std::size_t kMost = std::size_t{1} << 20;
+  const auto all = render::mesh::gunzip(textOf(bytes), kMost);
+  require(!all || all->size() <= kMost, "what is unpacked stays in its limit");
+  const std::string beginning = render::mesh::gunzipBeginning(textOf(bytes), 100);
+  require(!all || all->starts_with(beginning), "the beginning is the same");
+}
+
+// 28 bytes a triangle: three of 27 vertices, its texture, and u and v of its corners, as floats.
+render::mesh::Mesh meshOf(Bytes bytes, std::vector<std::uint32_t>& textures) {
+  constexpr std::size_t kTriangle = 28, kVertices = 27;
+  render::mesh::Mesh mesh;
+  std::vector<std::array<float, 2>> corners;
+  render::mesh::Feature label{"label", 1, {}};
+  for (std::size_t v = 0; v < kVertices; ++v) {
+    mesh.positions.insert(
+        mesh.positions.end(),
+        {static_cast<float>(v % 3), static_cast<float>(v / 3 % 3), static_cast<float>(v / 18)});
+    label.values.push_back(static_cast<float>(v / 9));
+  }
+  for (std::size_t at = 0; at + kTriangle <= bytes.size(); at += kTriangle) {
+    const std::uint8_t* const from = bytes.data() + at;
+    textures.push_back(from[3] % 4 < 3 ? from[3] % 4 : render::mesh::kNoTexture);
+    for (std::size_t k = 0; k < 3; ++k) {
+      mesh.triangles.push_back(from[k] % kVertices);
+      std::array<float, 2> uv{};
+      std::memcpy(uv.data(), from + 4 + 8 * k, sizeof uv);
+      corners.push_back(uv);
+    }
+  }
+  mesh.features.push_back(std::move(label));
+  setCornerCoordinates(mesh, corners);
+  return mesh;
+}
+
+void texturedMesh(Bytes bytes) {
+  namespace mesh = render::mesh;
+  using render::image::Wrap;
+  static const render::image::ImageFile picture{2, 3, std::vector<std::uint8_t>(18, 77), {}};
+  mesh::SurfaceTextures textures{{{&picture, Wrap::kRepeat, Wrap::kMirror},
+                                  {&picture, Wrap::kClamp, Wrap::kRepeat},
+                                  {&picture}},
+                                 {}};
+  mesh::Mesh surface = meshOf(bytes, textures.of_triangle);
+  const std::size_t triangles = surface.triangleCount();
+  const auto joined = joinTextures(surface, textures);
+  require(surface.triangleCount() == triangles, "each triangle stays");
+  if (joined.width > 0) {
+    require(validate(surface).ok(), "the mesh is valid");
+    for (const float x : surface.find("texcoord")->values)
+      require(x >= 0 && x <= 1, "coordinates lie in the atlas");
+    require(render::image::decodeImage(surface.texture).ok(), "the atlas is a picture");
+  }
+  mesh::weldParts(surface);
+  require(surface.triangleCount() == triangles, "each triangle stays, welded");
+  for (const std::uint32_t v : surface.triangles)
+    require(v < surface.vertexCount(), "each vertex is there");
+}
+
 void pictureFile(Bytes bytes) { (void)render::image::decodeImage(bytes); }
 
 void mpcdiFile(Bytes bytes) {
@@ -253,6 +319,8 @@ constexpr Target kTargets[] = {
     {"recording", recordingText},
     {"mrm", mrmFile},
     {"mesh", meshFile},
+    {"gzip", gzipFile},
+    {"textured", texturedMesh},
     {"picture", pictureFile},
     {"mpcdi", mpcdiFile},
     {"range", rangeFile},

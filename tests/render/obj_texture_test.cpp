@@ -130,9 +130,8 @@ TEST_F(TexturedObj, GivesEachMaterialItsOwn) {
   EXPECT_EQ((Floats{colour.end() - 3, colour.end()}), (Floats{0, 1, 0}));
   ASSERT_EQ(loaded.notes.size(), 2u);
   EXPECT_NE(loaded.notes[0].find("the option -o is ignored"), std::string::npos);
-  EXPECT_EQ(loaded.notes[1],
-            "several textures, a clamped one, or faces without one: baked into vertex colours");
-  EXPECT_TRUE(loaded.mesh.texture.empty());
+  EXPECT_EQ(loaded.notes[1], "1 texture and 1 plain colour became one of 32 x 24 pixels");
+  EXPECT_FALSE(loaded.mesh.texture.empty());
 }
 
 // The image file is kept byte for byte, so nothing is lost.
@@ -147,9 +146,14 @@ TEST_F(TexturedObj, HasThePictureThatIsEverywhereForATexture) {
   };
   const std::string two = "newmtl a\nmap_Kd four.png\nnewmtl b\nmap_Kd four.png\nKd 1 0 0\n";
   EXPECT_EQ(textureOf(two, "usemtl a\nf 1/1 2/2 4/4\nusemtl b\nf 1/1 4/4 3/3\n"), file);
-  EXPECT_EQ(textureOf(two, "usemtl a\nf 1/1 2/2 4/4\nf 1/1 4 3/3\n"), "") << "a bare corner";
-  EXPECT_EQ(textureOf(two, "f 1/1 2/2 4/4\nusemtl b\nf 1/1 4/4 3/3\n"), "") << "a bare face";
-  EXPECT_EQ(textureOf("newmtl a\nmap_Kd -clamp on four.png\n", "usemtl a\nf 1/1 2/2 4/4\n"), "");
+  const auto expectAtlas = [&](const std::string& materials, const std::string& faces) {
+    const std::string texture = textureOf(materials, faces);
+    EXPECT_TRUE(texture.starts_with("\x89PNG")) << faces;
+    EXPECT_NE(texture, file) << faces;
+  };
+  expectAtlas(two, "usemtl a\nf 1/1 2/2 4/4\nf 1/1 4 3/3\n");    // a bare corner
+  expectAtlas(two, "f 1/1 2/2 4/4\nusemtl b\nf 1/1 4/4 3/3\n");  // a bare face
+  expectAtlas("newmtl a\nmap_Kd -clamp on four.png\n", "usemtl a\nf 1/1 2/2 4/4\n");
 }
 
 // Each output has a folder of its own, so that no reader finds another one's image.
@@ -217,7 +221,8 @@ TEST_F(TexturedObj, MayBeAPlyThatNamesItsPicture) {
         << comments;
   }
   const std::pair<std::string, std::string> faults[] = {
-      {four + "comment TextureFile other.png\n", "left out: 2 texture images"},
+      {four + "comment TextureFile other.png\n",
+       "left out: 2 texture images, since no property texnumber of the faces says which is whose"},
       {"comment TextureFile none.png\n",
        dir_ / "none.png: No such file or directory; the texture image is left out"},
       {"comment TextureFile broken.png\n",
@@ -230,6 +235,47 @@ TEST_F(TexturedObj, MayBeAPlyThatNamesItsPicture) {
     EXPECT_TRUE(loaded.mesh.texture.empty());
   }
   EXPECT_TRUE(readPly("comment texture four pixels.png\n").mesh.texture.empty());
+}
+
+// Two squares of two faces each, of MeshLab's form: each corner of a face has its own coordinates.
+TEST_F(TexturedObj, MayBeAPlyWhoseFacesHaveSeveralPictures) {
+  writePngFile(dir_ / "a.png", 1, 1, {255, 0, 0});
+  writePngFile(dir_ / "b.png", 1, 1, {0, 0, 255});
+  const auto readPly = [&](const std::string& faces, const std::string& comments) {
+    test::writeText(dir_ / "a.ply",
+                    "ply\nformat ascii 1.0\n" + comments +
+                        "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                        "element face 3\nproperty list uchar int vertex_indices\nproperty list "
+                        "uchar float texcoord\nproperty int texnumber\nend_header\n"
+                        "0 0 0\n1 0 0\n1 1 0\n0 1 0\n" +
+                        faces);
+    auto loaded = mesh::readMesh(dir_ / "a.ply");
+    EXPECT_TRUE(loaded) << loaded.error().what;
+    return loaded ? *std::move(loaded) : mesh::LoadedMesh{};
+  };
+  const std::string both = "comment TextureFile a.png\ncomment TextureFile b.png\n";
+  const auto loaded =
+      readPly("3 0 1 2 6 0 0 1 0 1 1 0\n3 0 2 3 6 0 0 1 1 0 1 1\n3 0 3 1 2 0 0 -1\n", both);
+  ASSERT_EQ(loaded.mesh.triangleCount(), 3u);
+  EXPECT_EQ(loaded.notes, Names{"2 textures and 1 plain colour became one of 32 x 48 pixels"});
+  const auto atlas = image::decodeImage(loaded.mesh.texture);
+  ASSERT_TRUE(atlas);
+  const Colour expected[] = {{1, 0, 0}, {0, 0, 1}, {1, 1, 1}};
+  for (std::size_t i = 0; i < 9; ++i) {
+    const float* const uv =
+        &loaded.mesh.find("texcoord")->values[2 * std::size_t{loaded.mesh.triangles[i]}];
+    EXPECT_EQ(atlas->at(uv[0], uv[1], image::Wrap::kRepeat, image::Wrap::kRepeat), expected[i / 3])
+        << i;
+  }
+  const auto one =
+      readPly("4 0 1 2 3 8 0 0 1 0 1 1 0 1 0\n3 0 2 3 6 0 0 0.5 1 0 1 0\n3 0 3 1 6 0 0 0 1 1 0 0\n",
+              "comment TextureFile a.png\n");
+  EXPECT_EQ(one.notes, Names{});
+  EXPECT_EQ(std::string(one.mesh.texture.begin(), one.mesh.texture.end()),
+            test::readText(dir_ / "a.png"));
+  EXPECT_EQ(one.mesh.triangleCount(), 4u) << "a square, and two triangles";
+  const auto none = readPly("3 0 1 2 0 0\n3 0 2 3 0 1\n3 0 3 1 0 7\n", both);
+  EXPECT_TRUE(none.mesh.texture.empty()) << "no corner has coordinates";
 }
 
 // Image and material files are written without being named by the user, so they must not replace
@@ -322,14 +368,17 @@ TEST_F(TexturedObj, NamesTheLineOfACornerWithoutItsCoordinate) {
 
 TEST(ImageFile, IsMixedOfTheNearestPixels) {
   const image::ImageFile four{2, 2, kFour};
-  EXPECT_EQ(four.at(0.25F, 0.75F, false), (Colour{1, 0, 0}));
-  EXPECT_EQ(four.at(0.5F, 0.75F, false), (Colour{0.5F, 0.5F, 0}));
-  EXPECT_EQ(four.at(0.5F, 0.5F, false), (Colour{0.5F, 0.5F, 0.5F}));
-  EXPECT_EQ(four.at(0, 0.75F, false), (Colour{0.5F, 0.5F, 0})) << "repeats";
-  EXPECT_EQ(four.at(0, 0.75F, true), (Colour{1, 0, 0})) << "does not";
-  EXPECT_EQ(four.at(-0.75F, 1.75F, false), (Colour{1, 0, 0}));
-  EXPECT_EQ(four.at(-7, 9, true), (Colour{1, 0, 0}));
-  EXPECT_EQ(four.at(1e30F, -1e30F, false), four.at(0, 0, false));
+  constexpr auto kR = image::Wrap::kRepeat, kC = image::Wrap::kClamp, kM = image::Wrap::kMirror;
+  EXPECT_EQ(four.at(0.25F, 0.75F, kR, kR), (Colour{1, 0, 0}));
+  EXPECT_EQ(four.at(0.5F, 0.75F, kR, kR), (Colour{0.5F, 0.5F, 0}));
+  EXPECT_EQ(four.at(0.5F, 0.5F, kR, kR), (Colour{0.5F, 0.5F, 0.5F}));
+  EXPECT_EQ(four.at(0, 0.75F, kR, kR), (Colour{0.5F, 0.5F, 0})) << "repeats";
+  EXPECT_EQ(four.at(0, 0.75F, kC, kC), (Colour{1, 0, 0})) << "does not";
+  EXPECT_EQ(four.at(-0.75F, 1.75F, kR, kR), (Colour{1, 0, 0}));
+  EXPECT_EQ(four.at(-7, 9, kC, kC), (Colour{1, 0, 0}));
+  EXPECT_EQ(four.at(1.25F, 0.75F, kM, kR), (Colour{0, 1, 0})) << "is mirrored";
+  EXPECT_EQ(four.at(0, 0.75F, kC, kR), (Colour{1, 0, 0})) << "each axis in its way";
+  EXPECT_EQ(four.at(1e30F, -1e30F, kR, kR), four.at(0, 0, kR, kR));
 }
 
 TEST(ImageFile, MayBeAJpegOfAnyName) {

@@ -93,6 +93,34 @@ TEST(Framebuffer, GivesTheNewestFrameWithWhatIsKnownOfIt) {
   }
 }
 
+TEST(Framebuffer, ReadsBackWhatOthersRead) {
+  const auto sink = out::SharedFrameOutput::make(name("back"), smallPlan(), 7, kClock);
+  ASSERT_TRUE(sink) << sink.error().what;
+  EXPECT_FALSE((*sink)->readBack()) << "no frame yet";
+  const Pixels pixels = noise(kFrameBytes, 3);
+  present(**sink, pixels, {1, {}, 1, true});
+  const auto read = (*sink)->readBack();
+  ASSERT_TRUE(read) << read.error().what;
+  ASSERT_EQ(read->size(), 1U);
+  EXPECT_EQ(read->at(0).found.kind, out::FoundPicture::Kind::kPixels);
+  EXPECT_EQ(read->at(0).found.digest, out::digestOf({128, 96, pixels, 512}));
+}
+
+// Such as that of a second daemon, under the name of the first.
+TEST(Framebuffer, AnotherGenerationUnderItsNameIsForeign) {
+  const auto sink = out::SharedFrameOutput::make(name("mine"), smallPlan(), 7, kClock);
+  ASSERT_TRUE(sink) << sink.error().what;
+  present(**sink, noise(kFrameBytes, 3), {1, {}, 1, true});
+  const int file = ::shm_open(name("mine").c_str(), O_RDWR, 0);
+  ASSERT_GE(file, 0);
+  void* const at = ::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  ::close(file);
+  ASSERT_NE(at, MAP_FAILED);
+  static_cast<out::framebuffer::Header*>(at)->generation = 8;
+  ::munmap(at, 4096);
+  EXPECT_EQ((*sink)->readBack()->at(0).found.kind, out::FoundPicture::Kind::kForeign);
+}
+
 TEST(Framebuffer, WallIsItsTilesSideBySideWithoutTheOperators) {
   const auto sink = out::SharedFrameOutput::make(name("wall"), smallPlan(), 1, kClock);
   const Pixels pixels = noise(kFrameBytes, 3);

@@ -249,7 +249,8 @@ TEST_F(BadInput, MeshesThatCannotBeCompared) {
 TEST_F(BadInput, MeshCommands) {
   writeText(dir_ / "empty.ply", "");
   writeText(dir_ / "a.xyz", "");
-  expectOutcome(run({kMerlin, "mesh", "info", dir_ / "none.ply"}), 2, {"none.ply: does not exist"});
+  expectOutcome(run({kMerlin, "mesh", "info", dir_ / "none.ply"}), 2,
+                {"none.ply: No such file or directory"});
   expectOutcome(run({kMerlin, "mesh", "info", dir_ / "empty.ply"}), 2,
                 {"empty.ply: line 1: a PLY file starts with"});
   expectOutcome(run({kMerlin, "mesh", "info", dir_ / "a.xyz"}), 2,
@@ -266,7 +267,7 @@ TEST_F(BadInput, MeshCommands) {
   expectOutcome(run({kMerlin, "mesh", "picture", scan, "-o", dir_ / "o.jpg"}), 2,
                 {"o.jpg: the name of a picture must end in .png"});
   expectOutcome(run({kMerlin, "mesh", "info", dir_ / "a\033[31m\xff.ply"}), 2,
-                {"/a\\x1b[31m\\xff.ply: does not exist"});
+                {"/a\\x1b[31m\\xff.ply: No such file or directory"});
   expectOutcome(run({kMerlin, "mesh", "export", scan, "-o", dir_ / "o.dae"}), 2,
                 {"o.dae: meshes are written as .ply"});
   expectOutcome(run({kMerlin, "mesh", "export", scan, "-o", dir_ / "o.ply", "--percent", "5",

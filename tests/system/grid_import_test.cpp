@@ -268,6 +268,48 @@ TEST_F(GridImport, FaultsOfAFitsFileNameTheirCard) {
                 "card ALT2: is missing; there are 2 rows");
 }
 
+// A FITS file whose images are the primary one, without axes, and two extensions.
+std::string fitsOfTwo() {
+  const auto extension = [](const std::string& name, int width, float range) {
+    std::string bytes =
+        fits(-32, width, 2, with(kPinhole, {"EXTNAME = '" + name + "'"}),
+             bigFloats(std::vector<float>(static_cast<std::size_t>(2 * width), range)));
+    bytes.replace(0, 30, "XTENSION= 'IMAGE   '          ");
+    return bytes;
+  };
+  std::string primary = fits(-32, 2, 2, {}, "").substr(0, 2880);
+  primary.replace(2 * 80, 80, fmt::format("{:80}", "NAXIS   =                    0"));
+  primary.replace(3 * 80, 160, fmt::format("{:160}", "EXTEND  =                    T"));
+  return primary + extension("NEAR", 2, 1) + extension("Far", 3, 5);
+}
+
+TEST_F(GridImport, TheImageOfAFitsFileIsChosen) {
+  const std::string file = fitsOfTwo();
+  const auto first = report("a.fits", file);
+  EXPECT_EQ(first["width"], 2);
+  EXPECT_EQ(first["notes"][0],
+            "left out: 2 \"Far\" (3 x 2 pixels); image 1 \"NEAR\" (2 x 2 pixels) is read "
+            "(--hdu reads another one)");
+  for (const char* hdu : {"2", "FAR", "far"}) {
+    const auto chosen = report("a.fits", file, {"--hdu", hdu});
+    EXPECT_EQ(chosen["width"], 3) << hdu;
+    EXPECT_EQ(chosen["notes"].dump().find("left out"), std::string::npos) << hdu;
+  }
+  std::filesystem::remove(ply_);
+  EXPECT_NE(refusal("a.fits", file, {"--hdu", "0"})
+                .find("has no image 0 of two axes (--hdu); there are 1 \"NEAR\" (2 x 2 pixels), 2 "
+                      "\"Far\" (3 x 2 pixels)"),
+            std::string::npos);
+  const std::string tiff = Tiff().of(3, 2, Tiff::shorts({100, 110, -9999, 120, 130, 140}));
+  EXPECT_NE(refusal("a.tif", tiff, {"--hdu", "1"}).find("--hdu is for FITS files"),
+            std::string::npos);
+  EXPECT_NE(refusal("a.pgm", "P5\n2 2\n255\nabcd", {"--hdu", "1"}).find("--hdu is for FITS files"),
+            std::string::npos);
+  const std::string about = run({kMerlin, "mesh", "info", dir_ / "a.fits", "--json"}).output;
+  EXPECT_NE(about.find("note: " + (dir_ / "a.fits") + ": left out: 2"), std::string::npos) << about;
+  EXPECT_NE(about.find("\"unit\":\"m\""), std::string::npos) << about;
+}
+
 TEST_F(GridImport, AFitsFileThatIsCutOrTooLargeOrEmptyIsRefused) {
   const std::string pixels = bigFloats({1, 1, 1, 1});
   expectRefusal("a.fits", fits(-32, 2, 2, {}, pixels), "give them with --angles");

@@ -205,7 +205,7 @@ TEST_F(MeshImport, OptionsThatDoNotFitAreRefused) {
   expectRefusal({scan_, scan_, "-o", ply_}, "one file is imported at a time");
   expectRefusal({scan_, "-o", dir_ / "out.xyz"}, "models as .mrm, range images as .pgm");
   expectRefusal({scan_, "-o", scan_}, "is an input");
-  expectRefusal({dir_ / "absent.pgm", "-o", ply_}, "does not exist");
+  expectRefusal({dir_ / "absent.pgm", "-o", ply_}, "No such file or directory");
   writeText(dir_ / "a.dat", "nobody knows this");
   expectRefusal({dir_ / "a.dat", "-o", ply_}, "is of no format that MERLIN reads; read are PGM");
   ASSERT_EQ(import({scan_, "-o", dir_ / "a.ply"}).status, 0);

@@ -90,7 +90,7 @@ TEST_F(MeshInfo, OfAFileThatIsAbsentItSaysThat) {
   for (const char* const name : {"absent", "absent.ply", "absent.mrm"}) {
     const Outcome info = run({kInfoMerlin, "mesh", "info", dir_ / name});
     EXPECT_EQ(info.status, 2) << info.output;
-    EXPECT_EQ(info.output, "merlin: " + (dir_ / name) + ": does not exist\n");
+    EXPECT_EQ(info.output, "merlin: " + (dir_ / name) + ": No such file or directory\n");
   }
 }
 

@@ -8,7 +8,9 @@
 
 #include "daemon/base/bytes.h"
 #include "daemon/base/sanitizer.h"
+#include "render/image/image_file.h"
 #include "render/image/png_writer.h"
+#include "tests/support/gzip.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -200,6 +202,72 @@ TEST_F(ModelImport, ATextureBesideTheModelIsKeptAndNoOtherFileIsRead) {
   const auto left = report("models/b.wrl", textured("../above.png"));
   EXPECT_EQ(left["texture_bytes"], 0);
   EXPECT_NE(left["notes"].dump().find("this texture is left out"), std::string::npos) << left;
+}
+
+// The three files of a synthetic room (tests/support/textured_models.py): a floor whose picture
+// repeats, a wall, a board, and a pillar without a picture.
+class TexturedRoom : public ModelImport, public testing::WithParamInterface<const char*> {};
+
+TEST_P(TexturedRoom, HasOneTextureOfAllItsPictures) {
+  ASSERT_EQ(
+      run({"python3", "-B", kSource + "/tests/support/textured_models.py", dir_.path()}).status, 0);
+  const std::string name = GetParam();
+  const auto json = report(name, readText(dir_ / name));
+  EXPECT_EQ(json["triangles"], 2 + 2 + 2 + 48);
+  EXPECT_NE(json["notes"].dump().find("3 textures and 1 plain colour became one of"),
+            std::string::npos)
+      << json["notes"];
+  const auto atlas = render::image::readImage(out_ + ".png");
+  ASSERT_TRUE(atlas) << atlas.error().what;
+  EXPECT_GE(atlas->width * atlas->height, 12 * 64 * 12 * 64) << "twelve repeats each way";
+  if (name == "room.obj") return;
+  EXPECT_EQ(json["parts"], 4);
+  EXPECT_EQ(features(), "colour texcoord label normal ");
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, TexturedRoom, testing::Values("room.obj", "room.wrl", "room.gltf"));
+
+// Two squares side by side, of which each is a part.
+TEST_F(ModelImport, PartsOfOneSurfaceAreWelded) {
+  const auto square = [](int x) {
+    return fmt::format(
+        "Separator {{ Coordinate3 {{ point [ {0} 0 0, {1} 0 0, {1} 1 0, {0} 1 0 ] }}"
+        " IndexedFaceSet {{ coordIndex [ 0, 1, 2, 3, -1 ] }} }}\n",
+        x, x + 1);
+  };
+  const auto json = report("a.iv", "#Inventor V2.1 ascii\n" + square(0) + square(1) + square(5));
+  EXPECT_EQ(json["parts"], 3);
+  EXPECT_EQ(json["welded_edges"], 1);
+  EXPECT_EQ(json["welded_vertices"], 2);
+  EXPECT_EQ(json["vertices"], 10);
+  EXPECT_EQ(info()["components"], 2);
+  const Outcome text = import(dir_ / "a.iv");
+  EXPECT_NE(text.output.find("  welded    2 vertices of different parts, along 1 common edges\n"),
+            std::string::npos)
+      << text.output;
+}
+
+TEST_F(ModelImport, InventorAndVrmlMayBePackedByGzip) {
+  const auto json = report("a.iv.gz", gzipped(kSquareIv));
+  EXPECT_EQ(json["format"], "Open Inventor, gzip");
+  EXPECT_EQ(json["triangles"], 3);
+  EXPECT_EQ(report("vrml", gzipped(kVrml97))["triangles"], 2);
+  EXPECT_EQ(info()["unit"], "");
+  writeText(dir_ / "b.wrz", gzipped(kVrml97));
+  const auto about =
+      nlohmann::json::parse(run({kMerlin, "mesh", "info", dir_ / "b.wrz", "--json"}).output);
+  EXPECT_EQ(about["unit"], "m") << "as the rules of VRML say";
+  const std::string packed = gzipped(kSquareIv);
+  std::filesystem::remove(out_);
+  expectRefused("cut.gz", packed.substr(0, packed.size() - 20), "gzip: is cut");
+  expectRefused("other.gz", gzipped("ply\n"), "is of no format that MERLIN reads");
+  expectRefused("twice.gz", gzipped(packed), "is of no format that MERLIN reads");
+#if !defined(MERLIN_ANY_SANITIZER)
+  std::string bomb = gzipped(kSquareIv);
+  const std::string member = gzipped(std::string(std::size_t{1} << 24, '#'));
+  for (int i = 0; i < 64; ++i) bomb += member;
+  expectRefused("bomb.iv", bomb, "gzip: unpacks to more than 1073741824 bytes");
+#endif
 }
 
 TEST_F(ModelImport, WhatIsWrongIsSaidInOneMessageThatNamesTheFile) {

@@ -18,6 +18,7 @@ void addConfig(Command app, Run& run) {
   config.requireSubcommand();
   addConfigShow(config, run);
   addConfigDiff(config, run);
+  addConfigEdit(config, run);
   addConfigMigrate(config, run);
 }
 

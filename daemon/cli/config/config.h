@@ -12,6 +12,7 @@ inline constexpr const char* kUsualConfig = "/etc/merlin/merlin.json";
 
 void addConfigShow(Command config, Run& run);
 void addConfigDiff(Command config, Run& run);
+void addConfigEdit(Command config, Run& run);
 void addConfigMigrate(Command config, Run& run);
 
 // Reads a configuration and prints its findings to stderr. Errors: kInvalidArgument (it is

@@ -10,7 +10,8 @@ namespace merlin::cli {
 Result<render::range::LoadedRange> readForeignGrid(const ForeignGrid& grid,
                                                    const render::range::RangeOptions& options) {
   std::optional<render::range::LoadedRange> loaded;
-  const ForeignFile file{"grid", grid.input, grid.output, {}, grid.memory_bytes};
+  ForeignFile file{"grid", grid.input, grid.output, {}, grid.memory_bytes};
+  if (!grid.hdu.empty()) file.options = {"--hdu", grid.hdu};
   const auto report = importForeign(file, [&](const std::string& made) -> Result<Ok> {
     auto read = render::range::readGrid(made, grid.input, options);
     if (!read) return read.error();
@@ -22,12 +23,13 @@ Result<render::range::LoadedRange> readForeignGrid(const ForeignGrid& grid,
   return *std::move(loaded);
 }
 
-RangeReader readerOf(const std::optional<InputKind>& kind, const std::string& output,
-                     std::uint64_t memory_bytes) {
-  if (!kind || !kind->isGrid() || kind->reader != InputReader::kForeign)
-    return render::range::readRange;
-  return [=](const std::string& path, const render::range::RangeOptions& said) {
-    return readForeignGrid({path, output, memory_bytes}, said);
+RangeReader readerOf(const std::optional<InputKind>& kind, const ForeignGrid& grid) {
+  const bool foreign = kind && kind->isGrid() && kind->reader == InputReader::kForeign;
+  return [=](const std::string& path,
+             const render::range::RangeOptions& said) -> Result<render::range::LoadedRange> {
+    if (foreign) return readForeignGrid({path, grid.output, grid.memory_bytes, grid.hdu}, said);
+    if (grid.hdu.empty()) return render::range::readRange(path, said);
+    return Error{Errc::kInvalidArgument, path + ": --hdu is for FITS files, and this is none"};
   };
 }
 

@@ -29,6 +29,8 @@ Result<ImportedModel> loadForeign(const std::string& path, const InputKind& kind
   });
   if (!report) return report.error();
   model.parts = report->count("parts");
+  model.welded_edges = report->count("welded_edges").value_or(0);
+  model.welded_vertices = report->count("welded_vertices").value_or(0);
   if (kind.isPoints()) {
     model.cloud = pointFactsOf(*report);
     model.format = report->text("format");

@@ -19,6 +19,8 @@ struct ImportedModel {
   render::mesh::LoadedMesh loaded;
   std::string format = "mesh";
   std::optional<std::size_t> parts{};  // of a foreign format: surfaces that became one mesh
+  // Along whose common edges parts were welded, and vertices that became one with others.
+  std::size_t welded_edges = 0, welded_vertices = 0;
   std::optional<PointFacts> cloud{};
   std::vector<std::string> notes{};  // already printed
 };

@@ -228,6 +228,10 @@ void RangeImport::addGeometry(Command command) {
 }
 
 void RangeImport::addRaw(Command command) {
+  keep("--hdu", command.option("--hdu", hdu,
+                               "FITS file: the image to read, by its number (0 is the primary "
+                               "one) or its EXTNAME; by default the first of two axes"))
+      .typeName("N|NAME");
   keep("--raw", command.option("--raw", raw_,
                                "The input is raw binary: its size, its planes in their order and "
                                "their types (" +
@@ -316,6 +320,8 @@ Result<render::range::RangeOptions> RangeImport::fileOptions() const {
   options.exaggeration = exaggeration_;
   options.no_return = no_return_;
   options.scale = scale;
+  if (!raw_.empty() && !hdu.empty())
+    return Error{Errc::kInvalidArgument, "--hdu is for FITS files, --raw for others"};
   if (raw_.empty() && (raw_header_ > 0 || raw_interleaved_))
     return Error{Errc::kInvalidArgument, "--raw-header and --raw-interleaved need --raw"};
   if (raw_.empty()) return options;

@@ -29,6 +29,7 @@ class RangeImport {
   bool isRaw() const { return !raw_.empty(); }
 
   std::optional<double> scale;  // of any input
+  std::string hdu;              // of a FITS file
   std::string colour_by, max_edge, spikes;
   std::vector<std::string> features;
   std::vector<double> between;

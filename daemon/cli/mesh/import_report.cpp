@@ -158,7 +158,11 @@ void reportModel(const ImportNames& names, const ImportedModel& model, const Imp
   const render::mesh::Mesh& mesh = model.loaded.mesh;
   if (names.json) {
     auto json = jsonOf(names, model.format, written, times);
-    if (model.parts) json["parts"] = *model.parts;
+    if (model.parts) {
+      json["parts"] = *model.parts;
+      json["welded_edges"] = model.welded_edges;
+      json["welded_vertices"] = model.welded_vertices;
+    }
     if (model.cloud) json["cloud"] = jsonOf(*model.cloud);
     json["features"] = nlohmann::ordered_json::array();
     for (const auto& f : mesh.features)
@@ -172,6 +176,9 @@ void reportModel(const ImportNames& names, const ImportedModel& model, const Imp
   printOut("{}: {} triangles, {} vertices\n", names.output, written.triangles, written.vertices);
   if (model.cloud) printCloud(model.format, *model.cloud);
   if (model.parts) printOut("  read      {}, {} parts\n", model.format, *model.parts);
+  if (model.welded_vertices > 0)
+    printOut("  welded    {} vertices of different parts, along {} common edges\n",
+             model.welded_vertices, model.welded_edges);
   for (const auto& f : mesh.features) printOut("  feature   {} x {}\n", f.name, f.dimension);
   if (!mesh.texture.empty()) printOut("  texture   {} bytes\n", mesh.texture.size());
   const std::string mended = mendedText(model.loaded);

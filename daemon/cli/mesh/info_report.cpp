@@ -114,6 +114,7 @@ void printInfoJson(const FileInfo& info) {
                                  {"texture_bytes", info.texture_bytes},
                                  {"box", {{"low", is.box.low}, {"high", is.box.high}}},
                                  {"diagonal", is.box.diagonal()},
+                                 {"unit", info.unit},
                                  {"components", is.components},
                                  {"closed_components", is.closed},
                                  {"volume", is.volume},
@@ -158,6 +159,7 @@ void printInfoText(const FileInfo& info) {
   printOut("  box       {:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}, diagonal {:.6g}\n",
            box.low[0], box.low[1], box.low[2], box.high[0], box.high[1], box.high[2],
            box.diagonal());
+  printOut("  unit      {}\n", info.unit.empty() ? "not known" : info.unit);
   if (info.cloud) printCloud(*info.cloud, info.is);
   if (info.triangles > 0) printSurface(info.is);
   if (!info.mended.empty()) printOut("  {}\n", info.mended);

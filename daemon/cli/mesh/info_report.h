@@ -43,6 +43,7 @@ struct FileInfo {
   std::optional<std::size_t> parts{};  // of a foreign format
   std::vector<FeatureInfo> features{};
   std::size_t texture_bytes = 0;
+  std::string unit{};  // of the coordinates; empty if it is not known
   render::mesh::Inspection is{};
   std::vector<Repair> repairs{};  // that reading needed
   std::string mended{}, about{};

@@ -5,6 +5,7 @@
 
 #include "daemon/base/files.h"
 #include "daemon/base/words.h"
+#include "render/mesh/io/gzip.h"
 #include "render/mesh/io/mesh_file.h"
 #include "render/points/io/cloud_file.h"
 #include "render/range/io/range_file.h"
@@ -146,9 +147,21 @@ bool isOf(const ForeignFormat& f, std::string_view content) {
   return f.is ? f.is(content) : content.starts_with(f.mark);
 }
 
+// Inventor and VRML files are often packed by gzip; merlin-import unpacks them.
+std::optional<InputKind> packedKindOf(std::string_view content) {
+  constexpr std::size_t kBeginning = 64;
+  const std::string beginning = render::mesh::gunzipBeginning(content, kBeginning);
+  if (render::mesh::isGzip(beginning)) return std::nullopt;  // packed twice
+  auto kind = foreignKindOf(beginning);
+  if (!kind || (kind->ending != "iv" && kind->ending != "wrl")) return std::nullopt;
+  kind->format += ", gzip";
+  return kind;
+}
+
 }  // namespace
 
 std::optional<InputKind> foreignKindOf(std::string_view content) {
+  if (render::mesh::isGzip(content)) return packedKindOf(content);
   const auto found =
       std::ranges::find_if(kForeign, [&](const ForeignFormat& f) { return isOf(f, content); });
   if (found == std::end(kForeign)) return std::nullopt;
@@ -170,6 +183,12 @@ std::optional<InputKind> inputKindOf(const std::string& path) {
   if (text) return InputKind{InputReader::kForeign, kPointsKind, {}, *text};
   if (render::mesh::isReadable(path)) return InputKind{InputReader::kMesh};
   return std::nullopt;
+}
+
+std::string InputKind::unit() const {
+  constexpr std::string_view kMetres[] = {"iv", "wrl", "glb", "gltf", "x3d"};
+  const bool metres = isGrid() || std::ranges::find(kMetres, ending) != std::end(kMetres);
+  return metres ? "m" : "";
 }
 
 std::string foreignFormats() {

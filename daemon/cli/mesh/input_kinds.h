@@ -21,6 +21,9 @@ struct InputKind {
   // Whether it becomes a range image or an elevation map, by whichever reader.
   bool isGrid() const { return reader == InputReader::kRange || kind == kGridKind; }
   bool isPoints() const { return kind == kPointsKind; }
+  // The unit of its coordinates: "m" where its format's rules say so, and of ranges and heights,
+  // which reading converts; else empty.
+  std::string unit() const;
 };
 
 // Reads the file's beginning; the name's ending counts only where the content tells nothing.

@@ -43,8 +43,8 @@ struct FusedFile {
 
 Result<render::range::RangeImage> readScan(const MeshFuse& options, std::size_t number) {
   const std::string& path = options.scans[number];
-  auto loaded =
-      loadRange(path, {}, false, readerOf(inputKindOf(path), options.output, options.limit()));
+  auto loaded = loadRange(path, {}, false,
+                          readerOf(inputKindOf(path), {{}, options.output, options.limit()}));
   if (!loaded) return loaded.error();
   for (const std::string& note : loaded->notes) printNote(fmt::format("{}: {}", path, note));
   if (!options.poses.empty()) {

@@ -53,9 +53,9 @@ class Stopwatch {
   Timestamp last_;
 };
 
-// The units and the ranges of features, and where a map lies, for the model's text "about".
+// The units, the ranges of features, and where a map lies, for the model's text "about".
 std::string aboutRange(const ImportedRange& range) {
-  std::string text;
+  std::string text = "unit=m\n";
   const auto& geometry = range.image.geometry;
   if (!geometry.projection.empty()) text += fmt::format("map.projection={}\n", geometry.projection);
   if (geometry.origin)
@@ -118,7 +118,7 @@ Result<Ok> importRange(const MeshImport& options, const std::optional<InputKind>
   Stopwatch watch(clock);
   ImportTimes times;
   auto range = loadRange(options.input(), options.range, !options.texture.empty(),
-                         readerOf(kind, options.output, limitOf(options)));
+                         readerOf(kind, {{}, options.output, limitOf(options), options.range.hdu}));
   if (!range) return range.error();
   for (const std::string& note : range->notes) printNote(options.input() + ": " + note);
   times.reading = watch.lap();
@@ -178,7 +178,9 @@ Result<Ok> importMesh(const MeshImport& options, const std::optional<InputKind>&
     return Error{valid.error().code, options.input() + ": scaled, " + valid.error().what};
   if (const auto added = addTexture(options, mesh); !added) return added.error();
   times.reading = watch.lap();
-  const std::string about = model->cloud ? aboutPoints(*model->cloud) : "";
+  const bool metres = options.range.scale || kind->unit() == "m";
+  const std::string about =
+      (metres ? "unit=m\n" : "") + (model->cloud ? aboutPoints(*model->cloud) : std::string());
   const auto written = writeOutput(options, mesh, about, times);
   if (!written) return written.error();
   times.writing = watch.lap() - times.reducing;

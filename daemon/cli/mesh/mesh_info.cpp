@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/printable_text.h"
 #include "daemon/base/process_memory.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh/import_grid.h"
@@ -36,16 +37,20 @@ std::string meanwhile() {
   return ((error ? "/tmp" : folder) / "merlin-info").string();
 }
 
-// The unit of a feature that a model's text "about" names.
-std::string unitIn(std::string_view about, const std::string& feature) {
-  const std::string key = fmt::format("feature.{}.unit=", feature);
+// What a model's text "about" has behind `key` and "="; empty if it has no such line.
+std::string valueIn(std::string_view about, const std::string& key) {
   for (std::size_t at = 0; at < about.size();) {
     const std::size_t end = std::min(about.find('\n', at), about.size());
     const std::string_view line = about.substr(at, end - at);
-    if (line.starts_with(key)) return std::string(line.substr(key.size()));
+    if (line.starts_with(key + "=")) return std::string(line.substr(key.size() + 1));
     at = end + 1;
   }
   return {};
+}
+
+// The unit of a feature that a model's text "about" names.
+std::string unitIn(std::string_view about, const std::string& feature) {
+  return valueIn(about, fmt::format("feature.{}.unit", feature));
 }
 
 void addMesh(const render::mesh::Mesh& mesh, FileInfo& info) {
@@ -75,6 +80,7 @@ Result<FileInfo> infoOfModel(const std::string& path) {
   const std::size_t last = model->levels() - 1;
   info.levels = {model->levels(), model->trianglesAt(last), model->errorAt(last)};
   info.about = model->arrays().about;
+  info.unit = oneLine(valueIn(info.about, "unit"));
   const render::mesh::Mesh mesh = extract(*model, 0);
   addMesh(mesh, info);
   addFeatures(mesh, info);
@@ -96,6 +102,7 @@ Result<FileInfo> infoOfForeign(const std::string& path, const InputKind& kind) {
   const auto model = loadModel(path, kind, {meanwhile(), freeMemory()});
   if (!model) return model.error();
   FileInfo info{path, model->format};
+  info.unit = kind.unit();
   info.parts = model->parts;
   addLoaded(model->loaded, info);
   return info;
@@ -131,11 +138,12 @@ void addPlanes(const ImportedRange& range, FileInfo& info) {
 }
 
 Result<FileInfo> infoOfRange(const InfoOptions& options, const std::optional<InputKind>& kind) {
-  auto range =
-      loadRange(options.file, options.range, false, readerOf(kind, meanwhile(), freeMemory()));
+  auto range = loadRange(options.file, options.range, false,
+                         readerOf(kind, {{}, meanwhile(), freeMemory(), options.range.hdu}));
   if (!range) return range.error();
   for (const std::string& note : range->notes) printNote(options.file + ": " + note);
   FileInfo info{options.file, range->format};
+  info.unit = "m";
   const render::range::RangeImage& image = range->image;
   info.image = ImageInfo{image.width, image.height, range->returns_in_file,
                          std::string(nameOf(image.geometry.scanner))};

@@ -82,7 +82,7 @@ Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::str
 Result<Ok> checkIsThere(const std::string& path) {
   std::error_code absent;
   if (std::filesystem::exists(path, absent)) return Ok{};
-  return Error{Errc::kNotFound, path + ": does not exist"};
+  return Error{Errc::kNotFound, path + ": No such file or directory"};  // as the readers say it
 }
 
 Result<Ok> setWeight(const std::string& text, render::reduce::Weights& weights) {

@@ -21,7 +21,7 @@ constexpr const char* kLeftOut =
     "  Passwords, secret keys and the token of the web page: the files that hold them are not "
     "read\n"
     "  into this report, and the settings that name these files (password_file, keys,\n"
-    "  samples_keys) say \"(left out)\" if they are set. The configuration is here as the "
+    "  samples_keys, commands_keys) say \"(left out)\" if they are set. The configuration is here as the "
     "settings\n"
     "  that merlind understands, not as the file itself; text of the file that merlind does not\n"
     "  understand is left out. Where a secret that the user of merlin report can read, or the "

@@ -7,7 +7,7 @@
 #include "daemon/base/commands.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
-#include "daemon/cli/roles.h"
+#include "daemon/cli/remote.h"
 
 namespace merlin::cli {
 namespace {
@@ -16,8 +16,8 @@ struct Sent {
   std::string instance = "merlin", argument;
 };
 
-int send(const Sent& sent, const CommandInfo& command) {
-  const auto done = askRole(sent.instance, command.role == CommandOf::kWall ? "wall" : "devices",
+int send(const DaemonAddress& daemon, const Sent& sent, const CommandInfo& command) {
+  const auto done = askRole(daemon, command.role == CommandOf::kWall ? "wall" : "devices",
                             {std::string(command.name), sent.argument});
   return done ? kExitDone : fail(done.error());
 }
@@ -39,7 +39,7 @@ std::string choices(std::string_view argument) {
 
 }  // namespace
 
-void addCommandsByName(Command app, Run& run) {
+void addCommandsByName(Command app, Run& run, RemoteOptions& remote) {
   for (const CommandInfo& info : kCommands) {
     if (!info.by_name) continue;
     const auto sent = std::make_shared<Sent>();
@@ -51,9 +51,11 @@ void addCommandsByName(Command app, Run& run) {
     if (!info.argument.empty()) {
       command.option("argument", sent->argument, "What to do").typeName(std::string(info.argument));
     }
-    command.callback([sent, &info, &run] {
+    command.callback([sent, &info, &run, &remote] {
       if (!info.argument.empty() && sent->argument.empty()) lacks(choices(info.argument));
-      run = [sent, &info] { return send(*sent, info); };
+      run = [sent, &info, daemon = remote.daemon(sent->instance)] {
+        return send(daemon, *sent, info);
+      };
     });
   }
 }

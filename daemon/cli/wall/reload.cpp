@@ -1,4 +1,6 @@
 // merlin reload: has merlind read its configuration again and swap what changed.
+#include "daemon/cli/wall/reload.h"
+
 #include <algorithm>
 #include <memory>
 #include <set>
@@ -213,6 +215,12 @@ int reloadInstance(ReloadOptions options) {
 }
 
 }  // namespace
+
+int reloadNow(const std::string& instance) {
+  ReloadOptions options;
+  options.instance = instance;
+  return reloadInstance(std::move(options));
+}
 
 void addReload(Command app, Run& run) {
   const auto options = std::make_shared<ReloadOptions>();

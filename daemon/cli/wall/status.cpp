@@ -6,11 +6,12 @@
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
+#include "daemon/cli/remote.h"
 #include "daemon/cli/wall/status_text.h"
 
 namespace merlin::cli {
 
-void addStatus(Command app, Run& run) {
+void addStatus(Command app, Run& run, RemoteOptions& remote) {
   struct Options {
     std::string instance = "merlin";
     bool json = false;
@@ -20,9 +21,9 @@ void addStatus(Command app, Run& run) {
       "status", "Show the state of the wall and of the devices.\nExample: merlin status --json");
   addInstance(command, options->instance);
   command.flag("--json", options->json, "Print JSON, for programs");
-  command.callback([options, &run] {
-    run = [options] {
-      const auto status = askStatus(options->instance);
+  command.callback([options, &run, &remote] {
+    run = [options, daemon = remote.daemon(options->instance)] {
+      const auto status = askStatus(daemon);
       if (!status) return fail(status.error());
       printOut("{}", options->json ? status->dump(2) + "\n" : statusTable(*status));
       return kExitDone;

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "daemon/cli/roles.h"
 #include "daemon/status/client.h"
 
 namespace merlin::cli {
@@ -134,11 +133,17 @@ void mergeStatus(Json& both, const std::string& document) {
 }
 
 Result<Json> askStatus(const std::string& instance) {
-  const auto roles = findRoles(instance);
+  DaemonAddress daemon;
+  daemon.instance = instance;
+  return askStatus(daemon);
+}
+
+Result<Json> askStatus(const DaemonAddress& daemon) {
+  const auto roles = findRoles(daemon);
   if (!roles) return roles.error();
   Json both = Json::object();
   for (const FoundRole& role : *roles) {
-    const auto answer = status::ask(role.endpoints.command, "status", kPatience);
+    const auto answer = status::ask(role.commands(), "status", kPatience);
     if (!answer) return answer.error();
     mergeStatus(both, *answer);
   }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/result.h"
+#include "daemon/cli/roles.h"
 
 namespace merlin::cli {
 
@@ -15,6 +16,8 @@ namespace merlin::cli {
 // uptime_s, which both roles have, are moved to "roles"/ROLE. Errors: kIo (no daemon runs),
 // kTimeout (a role does not answer).
 Result<nlohmann::ordered_json> askStatus(const std::string& instance);
+// The same of any daemon.
+Result<nlohmann::ordered_json> askStatus(const DaemonAddress& daemon);
 
 // Merges one role's status document into `both`, the object of both roles. A document that is not a
 // JSON object is ignored.

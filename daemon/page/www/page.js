@@ -218,8 +218,9 @@ function showDevices() {
 function showOutputs(wall) {
   const outputs = wall ? Object.entries(wall.outputs || {}) : [];
   byId("outputs").replaceChildren(...outputs.map(([name, o]) =>
-      item(o.health, name, `${number(o.shown_hz, 1)} Hz, ${number(o.late_percent, 2)} % late`,
-           o.reason || (o.kind === name ? "" : o.kind))));
+      item(o.picture_reason ? "failed" : o.health, name,
+           `${number(o.shown_hz, 1)} Hz, ${number(o.late_percent, 2)} % late`,
+           o.reason || o.picture_reason || (o.kind === name ? "" : o.kind))));
 }
 
 // The slider of the cost has a logarithmic scale from 1/1000 to all of it.

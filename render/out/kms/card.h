@@ -11,6 +11,7 @@
 
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
+#include "render/out/picture/picture_digest.h"
 
 namespace merlin::render::out::kms {
 
@@ -80,6 +81,28 @@ struct Flip {
   Timestamp when{};
 };
 
+// What a CRTC scans out, as the kernel says it.
+struct ScannedOut {
+  bool is_on = false;    // it has a mode, is active, and its plane has a buffer
+  bool covered = false;  // another plane is shown on it as well
+  Id buffer = 0;         // of its plane
+  bool operator==(const ScannedOut&) const = default;
+};
+
+// Looks at what a card's displays are sent, past the wall's own books. Thread-bound to one thread,
+// which need not be the card's; may outlive the card.
+class Scanout {
+ public:
+  virtual ~Scanout() = default;
+  // Errors: kIo: the card is not there any more.
+  virtual Result<ScannedOut> look(Id crtc, Id plane) = 0;
+  // Of the picture in the middle of a buffer of the wall's, by a mapping of its own. Errors: kIo:
+  // another program is DRM master, or the card is not there any more.
+  virtual Result<PictureDigest> read(Id buffer, int picture_width, int picture_height) = 0;
+  // Programs that have the card open besides this one, "Xorg (812)"; empty if none is seen.
+  virtual std::vector<std::string> others() const = 0;
+};
+
 // Thread-bound, except wake() and the destruction of buffers, which may outlive the card.
 class Card {
  public:
@@ -108,6 +131,9 @@ class Card {
   // Waits for flips until one arrives, `longest` is over or wake() is called.
   virtual std::vector<Flip> wait(Duration longest) = 0;
   virtual void wake() = 0;  // thread-safe
+
+  // Null if it cannot be looked at. To be made anew each time this one becomes master.
+  virtual std::shared_ptr<Scanout> scanout() { return nullptr; }
 
   // True if this CRTC counts vertical blanks, so that the times of its flips are those of its
   // display. A virtual machine's card often flips at once.

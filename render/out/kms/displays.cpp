@@ -106,6 +106,7 @@ void Displays::step(Duration longest) {
   }
   if (now >= next_look_) look(now);
   if (!card_) return;
+  lightAskedFor();
   commit(now);
   take(card_->wait(busy_ ? std::min(longest, kBusyPause) : longest));
   checkOverdue(clock_.now());
@@ -142,6 +143,7 @@ bool Displays::openCard() {
 
 void Displays::closeCard(const std::string& why) {
   const std::lock_guard lock(mutex_);
+  scanout_.reset();
   card_.reset();
   master_ = false;
   connected_.clear();
@@ -169,6 +171,7 @@ bool Displays::holdMaster() {
   const std::string taken = became ? std::string() : takenMessage();
   const std::lock_guard lock(mutex_);
   master_ = became;
+  scanout_ = became ? card_->scanout() : nullptr;
   // Another program may have set other modes meanwhile: arrange() lights all displays again.
   for (Screen& screen : screens_) screen.lit = false;
   if (!became) {

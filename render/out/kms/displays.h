@@ -19,10 +19,12 @@
 #include "render/out/kms/buffer_turns.h"
 #include "render/out/kms/card.h"
 #include "render/out/kms/settings.h"
+#include "render/out/picture/picture_judge.h"
 
 namespace merlin::render::out::kms {
 
-// The wall's thread calls present(), one thread step(), both for the object's whole life; the rest
+// The wall's thread calls present(), one thread step(), and one readBack(), for the object's whole
+// life; the rest
 // is thread-safe. Nothing that can go wrong ends it: a card, connector or mode that is not there, a
 // display that is unplugged, another program that has the displays. Each is the error of present()
 // of those that it concerns, and is looked at again once a second.
@@ -55,6 +57,19 @@ class Displays {
 
   // Why output i shows no picture; empty: it shows one, or the card was not looked at yet.
   std::string fault(std::size_t i) const;
+
+  // What a display of an output was found to show.
+  struct Reading {
+    std::string connector;
+    FoundPicture found;
+    std::string programs{};  // of a foreign picture: those that have the card open as well
+  };
+  // Reads what each display of output i shows that shows its frames: as the kernel says, not as
+  // these books do. Takes milliseconds; no frame waits for it. Errors: the first reason why a
+  // display cannot be read.
+  Result<std::vector<Reading>> readBack(std::size_t i);
+  // Sets the modes of output i anew with its next frame, and asks for that frame.
+  void showAgain(std::size_t i);
 
   // The last vertical blank of the first display that counts them, and the time between two.
   struct Blanks {
@@ -91,6 +106,12 @@ class Displays {
     std::string fault{};                  // why no picture is shown; empty: one is
     std::optional<Timestamp> retry_at{};  // after the card refused it
     std::atomic<bool> wants_frame{false};
+    bool again = false;  // asked for by showAgain()
+  };
+  // A display that is to be read back.
+  struct Target {
+    std::shared_ptr<Place> place;
+    int width = 0, height = 0;  // of the picture [px]
   };
   // A screen's share of a commit.
   struct Share {
@@ -113,6 +134,8 @@ class Displays {
   std::string faultOf(std::size_t output) const;
   void commit(Timestamp now);
   std::vector<Share> dueShares();
+  void lightAskedFor();
+  static Result<Reading> readOne(Scanout& scanout, const Target& target);
   void settle(std::vector<Share>& shares, const CommitResult& result, Timestamp now);
   void refuse(std::vector<Share>& shares, const std::string& why, Timestamp now);
   void take(const std::vector<Flip>& flips);
@@ -123,8 +146,9 @@ class Displays {
   const Clock& clock_;
   mutable std::mutex mutex_;  // guards all below except the atomics; not held during slow calls
   std::condition_variable idle_;
-  std::unique_ptr<Card> card_;  // replaced by step() with the mutex held, used by it without
-  std::deque<Screen> screens_;  // by output; a deque, since a Screen cannot be moved
+  std::unique_ptr<Card> card_;        // replaced by step() with the mutex held, used by it without
+  std::shared_ptr<Scanout> scanout_;  // of card_, since it became master; shared with readBack()
+  std::deque<Screen> screens_;        // by output; a deque, since a Screen cannot be moved
   std::size_t outputs_ = 0;
   bool looked_ = false;  // at a card, or for one, at least once
   bool master_ = false;

@@ -24,6 +24,7 @@
 #include "render/out/kms/drm_objects.h"
 #include "render/out/kms/drm_properties.h"
 #include "render/out/kms/drm_saved_state.h"
+#include "render/out/kms/drm_scanout.h"
 #include "render/out/kms/drm_users.h"
 
 namespace merlin::render::out::kms {
@@ -74,6 +75,7 @@ class DrmCard final : public Card {
     const std::uint64_t one = 1;
     [[maybe_unused]] const auto written = ::write(wake_.get(), &one, sizeof one);
   }
+  std::shared_ptr<Scanout> scanout() override { return makeDrmScanout(file_, path_); }
   bool hasVblank(Id crtc) const override {
     std::uint64_t sequence = 0, ns = 0;
     return drmCrtcGetSequence(fd(), crtc, &sequence, &ns) == 0;

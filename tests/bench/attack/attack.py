@@ -12,11 +12,12 @@ import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir))
 
+import control
 import devices
 import figures
 import sockets
 
-GROUPS = [devices, sockets]
+GROUPS = [devices, sockets, control]
 
 
 def main():

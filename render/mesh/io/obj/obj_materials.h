@@ -18,6 +18,8 @@ struct ObjMaterial {
   bool clamped = false;  // the texture does not repeat
   std::optional<std::array<float, 3>> diffuse;  // Kd
 
+  image::Wrap wrap() const noexcept { return clamped ? image::Wrap::kClamp : image::Wrap::kRepeat; }
+
   auto operator<=>(const ObjMaterial&) const = default;
 };
 

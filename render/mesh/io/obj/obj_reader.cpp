@@ -19,12 +19,9 @@ Result<LoadedMesh> read(std::string_view content, const std::string& folder) {
   if (!surface->corner_texcoord.empty()) {
     materials = readMaterials(surface->materials, surface->libraries, folder, loaded.notes);
   }
-  loaded.mesh = textured(*std::move(surface), materials);
-  const bool pictures =
-      std::ranges::any_of(materials, [](const ObjMaterial& m) { return m.picture != nullptr; });
-  if (pictures && loaded.mesh.texture.empty())
-    loaded.notes.emplace_back(
-        "several textures, a clamped one, or faces without one: baked into vertex colours");
+  TexturedSurface made = textured(*std::move(surface), materials);
+  loaded.mesh = std::move(made.mesh);
+  std::ranges::move(made.joined.notes(), std::back_inserter(loaded.notes));
   return loaded;
 }
 

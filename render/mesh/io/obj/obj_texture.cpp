@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 #include <utility>
 
 namespace merlin::render::mesh {
@@ -77,16 +78,20 @@ void mergeMaterials(ObjSurface& surface, const std::vector<ObjMaterial>& materia
   for (std::uint32_t& m : surface.triangle_material) m = same[m];
 }
 
-// The texture image, if all corners use the same one and it repeats; else nullptr.
-const image::ImageFile* onlyPicture(const ObjSurface& surface,
-                                    const std::vector<ObjMaterial>& materials) {
-  const auto& used = surface.triangle_material;
-  if (used.empty() || std::ranges::count(surface.corner_texcoord, kNoTexcoord) > 0) return nullptr;
-  const image::ImageFile* picture = materials[used[0]].picture.get();
-  const bool everywhere = std::ranges::all_of(used, [&](std::uint32_t m) {
-    return materials[m].picture.get() == picture && !materials[m].clamped;
-  });
-  return everywhere ? picture : nullptr;
+// The pictures, one for each material, and the triangles that show them: those whose corners all
+// have texture coordinates.
+SurfaceTextures texturesOf(const ObjSurface& surface, const std::vector<ObjMaterial>& materials) {
+  SurfaceTextures all;
+  for (const ObjMaterial& m : materials)
+    all.textures.push_back({m.picture.get(), m.wrap(), m.wrap()});
+  for (std::size_t t = 0; t < surface.triangle_material.size(); ++t) {
+    const auto corners = std::span(surface.corner_texcoord).subspan(3 * t, 3);
+    const std::uint32_t material = surface.triangle_material[t];
+    const bool shown =
+        materials[material].picture && std::ranges::find(corners, kNoTexcoord) == corners.end();
+    all.of_triangle.push_back(shown ? material : kNoTexture);
+  }
+  return all;
 }
 
 class Dresser {
@@ -109,7 +114,7 @@ class Dresser {
     const ObjMaterial& material = materials_[w.material];
     const auto [u, v] = texcoordOf(w);
     if (material.picture && w.texcoord != kNoTexcoord && std::isfinite(u) && std::isfinite(v))
-      return material.picture->at(u, v, material.clamped);
+      return material.picture->at(u, v, material.wrap(), material.wrap());
     if (own_) {
       const float* c = &own_->values[3 * std::size_t{w.vertex}];
       return {c[0], c[1], c[2]};
@@ -125,8 +130,8 @@ class Dresser {
 
 }  // namespace
 
-Mesh textured(ObjSurface surface, const std::vector<ObjMaterial>& materials) {
-  if (surface.corner_texcoord.empty()) return std::move(surface.mesh);
+TexturedSurface textured(ObjSurface surface, const std::vector<ObjMaterial>& materials) {
+  if (surface.corner_texcoord.empty()) return {std::move(surface.mesh), {}};
   mergeMaterials(surface, materials);
   Mesh mesh;
   const std::vector<Wedge> wedges = wedgesOf(surface, mesh.triangles);
@@ -144,9 +149,8 @@ Mesh textured(ObjSurface surface, const std::vector<ObjMaterial>& materials) {
   }
   if (dresser.hasColours()) mesh.features.push_back(std::move(colour));
   if (!surface.texcoords.empty()) mesh.features.push_back(std::move(texcoord));
-  if (const image::ImageFile* picture = onlyPicture(surface, materials))
-    mesh.texture = picture->file;
-  return mesh;
+  JoinedTextures joined = joinTextures(mesh, texturesOf(surface, materials));
+  return {std::move(mesh), joined};
 }
 
 }  // namespace merlin::render::mesh

@@ -2,17 +2,23 @@
 // Private to render/mesh/io.
 #pragma once
 
+#include "render/mesh/atlas/join_textures.h"
 #include "render/mesh/io/obj/obj.h"
 #include "render/mesh/io/obj/obj_materials.h"
 
 namespace merlin::render::mesh {
 
+struct TexturedSurface {
+  Mesh mesh;
+  JoinedTextures joined;
+};
+
 // Splits each vertex of the file into one vertex for each combination of texture coordinate and
 // material at its corners; the vertices at a seam have bit-identical positions
 // (coincidentVertices() finds them). The mesh gets "texcoord" and "colour" where the file has them;
 // a vertex' colour comes from the texture image, else from the vertex in the file, else from the
-// material, else it is white. If all corners use the same repeating texture image, it also becomes
-// the mesh's texture. REQUIRES: every index is in range, `materials` belong to `surface`.
-Mesh textured(ObjSurface surface, const std::vector<ObjMaterial>& materials);
+// material, else it is white. Its texture images become one texture by joinTextures(). REQUIRES:
+// every index is in range, `materials` belong to `surface`.
+TexturedSurface textured(ObjSurface surface, const std::vector<ObjMaterial>& materials);
 
 }  // namespace merlin::render::mesh

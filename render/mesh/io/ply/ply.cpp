@@ -92,10 +92,17 @@ std::vector<Feature> grouped(std::vector<Feature> features, std::size_t vertices
   return groups;
 }
 
+// Texture coordinates of a corner that has none.
+constexpr std::array<float, 2> kNowhere = {std::numeric_limits<float>::quiet_NaN(),
+                                           std::numeric_limits<float>::quiet_NaN()};
+
 class Reader {
  public:
-  Reader(std::string_view bytes, Header header)
-      : header_(std::move(header)), body_(bytes.substr(header_.size), header_.form) {}
+  // textures  null: the faces' properties of textures are left out
+  Reader(std::string_view bytes, Header header, FaceTextures* textures)
+      : header_(std::move(header)),
+        body_(bytes.substr(header_.size), header_.form),
+        textures_(textures) {}
 
   Result<LoadedMesh> read() {
     for (const Element& e : header_.elements) {
@@ -104,6 +111,7 @@ class Reader {
                                            : skip(e);
       if (!done) return done.error();
     }
+    completeTextures();
     mesh().features = grouped(std::move(mesh().features), mesh().vertexCount());
     noteLosses();
     return std::move(loaded_);
@@ -239,19 +247,78 @@ class Reader {
   Result<Ok> readFaces(const Element& e) {
     if (const auto room = checkRoom(e); !room) return room;
     mesh().triangles.reserve(std::min<std::uint64_t>(e.count, body_.left()) * 3);
-    std::vector<bool> corners;
+    std::vector<FaceProperty> uses;
     for (const Property& p : e.properties) {
-      corners.push_back(isCorners(p));
-      if (!corners.back()) leaveOut(p.name, " (a face property)");
+      uses.push_back(useOf(p));
+      if (uses.back() == FaceProperty::kNone) leaveOut(p.name, " (a face property)");
     }
+    const bool textured =
+        std::ranges::any_of(uses, [](FaceProperty u) { return u > FaceProperty::kCorners; });
     for (std::uint64_t row = 0; row < e.count; ++row) {
-      for (std::size_t i = 0; i < corners.size(); ++i) {
-        const Property& p = e.properties[i];
-        const auto done = corners[i] ? readCorners(e, row, p) : skipProperty(e, row, p);
-        if (!done) return done;
+      const std::size_t before = mesh().triangleCount();
+      for (std::size_t i = 0; i < uses.size(); ++i) {
+        if (const auto done = readFaceProperty(uses[i], e, row, e.properties[i]); !done)
+          return done;
       }
+      if (textured) textureFace(before, uses);
     }
     return Ok{};
+  }
+
+  enum class FaceProperty { kNone, kCorners, kTexcoord, kTexnumber };
+
+  FaceProperty useOf(const Property& p) const {
+    if (isCorners(p)) return FaceProperty::kCorners;
+    if (textures_ && p.list && p.name == "texcoord") return FaceProperty::kTexcoord;
+    if (textures_ && !p.list && p.name == "texnumber") return FaceProperty::kTexnumber;
+    return FaceProperty::kNone;
+  }
+
+  Result<Ok> readFaceProperty(FaceProperty use, const Element& e, std::uint64_t row,
+                              const Property& p) {
+    switch (use) {
+      case FaceProperty::kCorners: return readCorners(e, row, p);
+      case FaceProperty::kTexcoord: return readTexcoords(e, row, p);
+      case FaceProperty::kTexnumber:
+        if (!body_.next(p.type, face_number_)) return brokenAt(e, row, p);
+        return Ok{};
+      case FaceProperty::kNone: break;
+    }
+    return skipProperty(e, row, p);
+  }
+
+  Result<Ok> readTexcoords(const Element& e, std::uint64_t row, const Property& p) {
+    const auto count = readLength(e, row, p);
+    if (!count) return count.error();
+    face_texcoords_.clear();
+    double value = 0;
+    for (std::uint64_t i = 0; i < *count; ++i) {
+      if (!body_.next(p.type, value)) return brokenAt(e, row, p);
+      face_texcoords_.push_back(static_cast<float>(value));
+    }
+    return Ok{};
+  }
+
+  // Notes the texture of a face's triangles, which form a fan around its first corner.
+  void textureFace(std::size_t first, const std::vector<FaceProperty>& uses) {
+    const auto has = [&](FaceProperty u) { return std::ranges::find(uses, u) != uses.end(); };
+    const std::size_t triangles = mesh().triangleCount() - first;
+    if (has(FaceProperty::kTexnumber)) {
+      textures_->numbers.resize(first, -1);  // of faces of another element
+      const bool whole = std::abs(face_number_) < 1e9;
+      textures_->numbers.resize(first + triangles,
+                                whole ? static_cast<std::int64_t>(face_number_) : -1);
+    }
+    if (!has(FaceProperty::kTexcoord)) return;
+    textures_->corners.resize(3 * first, kNowhere);
+    const bool all = face_texcoords_.size() == 2 * (triangles + 2);
+    for (std::size_t t = 0; t < triangles; ++t) {
+      for (const std::size_t corner : {std::size_t{0}, t + 1, t + 2}) {
+        textures_->corners.push_back(
+            all ? std::array{face_texcoords_[2 * corner], face_texcoords_[2 * corner + 1]}
+                : kNowhere);
+      }
+    }
   }
 
   static bool isCorners(const Property& p) {
@@ -282,6 +349,13 @@ class Reader {
     return Ok{};
   }
 
+  // Faces of an element without textures may come last.
+  void completeTextures() {
+    if (!textures_) return;
+    if (!textures_->numbers.empty()) textures_->numbers.resize(mesh().triangleCount(), -1);
+    if (!textures_->corners.empty()) textures_->corners.resize(mesh().triangles.size(), kNowhere);
+  }
+
   void leaveOut(const std::string& name, std::string_view why) {
     constexpr std::size_t kMostNamed = 8;
     if (++left_out_count_ <= kMostNamed)
@@ -300,17 +374,21 @@ class Reader {
   Header header_;
   Body body_;
   LoadedMesh loaded_;
+  FaceTextures* textures_;
+  std::vector<float> face_texcoords_;  // of this face
+  double face_number_ = -1;
   std::string left_out_, left_out_more_;  // names of properties and elements
   std::size_t left_out_count_ = 0, rounded_ = 0;
 };
 
 }  // namespace
 
-Result<LoadedMesh> parse(std::string_view bytes, std::vector<std::string>* pictures) {
+Result<LoadedMesh> parse(std::string_view bytes, FaceTextures* textures) {
   auto header = parseHeader(bytes);
   if (!header) return header.error();
-  if (pictures) *pictures = header->pictures;
-  return Reader(bytes, std::move(*header)).read();
+  if (textures) textures->pictures = header->pictures;
+  if (header->pictures.empty()) textures = nullptr;
+  return Reader(bytes, std::move(*header), textures).read();
 }
 
 }  // namespace merlin::render::mesh::ply

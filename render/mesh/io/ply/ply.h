@@ -3,6 +3,8 @@
 // Turk, "The PLY Polygon File Format", 1994.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,9 +14,20 @@
 
 namespace merlin::render::mesh::ply {
 
+// What the faces of a file with texture images say of them, as MeshLab writes it.
+struct FaceTextures {
+  std::vector<std::string> pictures;  // file names in the comments "TextureFile"
+  // "texcoord" of each triangle's corners; empty if the faces have none. Corners of a face whose
+  // list has another length are not numbers.
+  std::vector<std::array<float, 2>> corners;
+  // "texnumber" of each triangle: an index of `pictures`, or another number for none; empty if the
+  // faces have none.
+  std::vector<std::int64_t> numbers;
+};
+
 // `bytes` is a whole file. Faces with more than three corners become triangle fans. The mesh is
 // neither validated nor tidied. Errors: kMalformed, kUnsupported, without the file's name.
-// pictures  receives the file names in the comments "TextureFile"
-Result<LoadedMesh> parse(std::string_view bytes, std::vector<std::string>* pictures = nullptr);
+// textures  receives what the file says of texture images; null: that is left out
+Result<LoadedMesh> parse(std::string_view bytes, FaceTextures* textures = nullptr);
 
 }  // namespace merlin::render::mesh::ply

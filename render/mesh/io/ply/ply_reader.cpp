@@ -1,7 +1,14 @@
-// Reads PLY files and the texture image that a file names: a row of the table of readers.
+// Reads PLY files and the texture images that a file names: a row of the table of readers.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "render/image/image_file.h"
+#include "render/mesh/atlas/corner_coordinates.h"
+#include "render/mesh/atlas/join_textures.h"
 #include "render/mesh/io/companion_files.h"
 #include "render/mesh/io/ply/ply.h"
 #include "render/mesh/io/ply/ply_header.h"
@@ -11,25 +18,73 @@
 namespace merlin::render::mesh {
 namespace {
 
-// Several texture images are left out: at most the faces of a PLY tell which one they use.
+// The texture images that the file names; empty ones are left out, which a note says.
+std::vector<image::ImageFile> picturesOf(const std::vector<std::string>& names,
+                                         const std::string& folder,
+                                         std::vector<std::string>& notes) {
+  std::vector<image::ImageFile> pictures;
+  for (const std::string& name : names) {
+    pictures.emplace_back();
+    if (name.find('\0') != std::string::npos) {
+      notes.push_back(name + ": is not a valid file name; the texture image is left out");
+      continue;
+    }
+    auto picture = image::readImage(pathBeside(folder, name));
+    if (picture)
+      pictures.back() = *std::move(picture);
+    else
+      notes.push_back(picture.error().what + "; the texture image is left out");
+  }
+  return pictures;
+}
+
+bool isNumber(const std::array<float, 2>& uv) {
+  return std::isfinite(uv[0]) && std::isfinite(uv[1]);
+}
+
+// Without numbers of textures, all faces have the only one.
+SurfaceTextures texturesOf(const ply::FaceTextures& faces,
+                           const std::vector<image::ImageFile>& pictures, std::size_t triangles) {
+  SurfaceTextures all;
+  for (const image::ImageFile& p : pictures) all.textures.push_back({&p});
+  for (std::size_t t = 0; t < triangles; ++t) {
+    const std::int64_t number = faces.numbers.empty() ? 0 : faces.numbers[t];
+    const bool there = number >= 0 && static_cast<std::uint64_t>(number) < pictures.size() &&
+                       !pictures[static_cast<std::size_t>(number)].pixels.empty();
+    const bool placed = faces.corners.empty() ||
+                        std::all_of(&faces.corners[3 * t], &faces.corners[3 * t] + 3, isNumber);
+    all.of_triangle.push_back(there && placed ? static_cast<std::uint32_t>(number) : kNoTexture);
+  }
+  return all;
+}
+
+// Corners without coordinates get some: no triangle with a texture has them.
+void setCoordinates(std::vector<std::array<float, 2>> corners, Mesh& mesh) {
+  for (auto& uv : corners) {
+    if (!isNumber(uv)) uv = {};
+  }
+  setCornerCoordinates(mesh, corners);
+}
+
+// Coordinates of the faces' corners come before those of the vertices.
 Result<LoadedMesh> read(std::string_view content, const std::string& folder) {
-  std::vector<std::string> pictures;
-  auto loaded = ply::parse(content, &pictures);
-  if (!loaded || pictures.empty() || !findOf(loaded->mesh, "texcoord", 2)) return loaded;
-  if (pictures.size() > 1) {
-    loaded->notes.push_back(fmt::format("left out: {} texture images", pictures.size()));
+  ply::FaceTextures faces;
+  auto loaded = ply::parse(content, &faces);
+  if (!loaded || faces.pictures.empty()) return loaded;
+  Mesh& mesh = loaded->mesh;
+  if (faces.corners.empty() && !findOf(mesh, "texcoord", 2)) return loaded;
+  if (faces.numbers.empty() && faces.pictures.size() > 1) {
+    loaded->notes.push_back(
+        fmt::format("left out: {} texture images, since no property texnumber of the faces says "
+                    "which is whose",
+                    faces.pictures.size()));
     return loaded;
   }
-  if (pictures[0].find('\0') != std::string::npos) {
-    loaded->notes.push_back(pictures[0] +
-                            ": is not a valid file name; the texture image is left out");
-    return loaded;
-  }
-  auto texture = image::readImage(pathBeside(folder, pictures[0]));
-  if (texture)
-    loaded->mesh.texture = std::move(texture->file);
-  else
-    loaded->notes.push_back(texture.error().what + "; the texture image is left out");
+  if (const auto valid = validate(mesh); !valid) return valid.error();
+  if (!faces.corners.empty()) setCoordinates(faces.corners, mesh);
+  const auto pictures = picturesOf(faces.pictures, folder, loaded->notes);
+  const auto notes = joinTextures(mesh, texturesOf(faces, pictures, mesh.triangleCount())).notes();
+  loaded->notes.insert(loaded->notes.end(), notes.begin(), notes.end());
   return loaded;
 }
 
@@ -64,7 +119,7 @@ bool isPly(std::string_view content) {
 
 const MeshReader kPlyReader = {"ply",
                                "ASCII and binary; every scalar vertex property becomes a feature; "
-                               "the texture image that a comment TextureFile names",
+                               "the texture images that comments TextureFile name",
                                read, size, isPly};
 
 }  // namespace merlin::render::mesh

@@ -1,0 +1,162 @@
+// merlin config edit: a person edits a copy, which takes the file's place only once it is valid.
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "daemon/cli/config/config.h"
+#include "daemon/cli/config/edited_file.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/print.h"
+#include "daemon/cli/roles.h"
+#include "daemon/cli/wall/reload.h"
+
+namespace merlin::cli {
+namespace {
+
+using Verdict = LoadedSettings::Verdict;
+
+std::string editorName() {
+  for (const char* variable : {"VISUAL", "EDITOR"}) {
+    const char* const set = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): one thread
+    if (set && *set) return set;
+  }
+  return "editor";  // Debian's choice of the system
+}
+
+// Ignores the signals of the keyboard, which are for the editor meanwhile.
+class KeyboardSignalsIgnored {
+ public:
+  KeyboardSignalsIgnored()
+      : interrupt_(std::signal(SIGINT, SIG_IGN)), quit_(std::signal(SIGQUIT, SIG_IGN)) {}
+  ~KeyboardSignalsIgnored() {
+    std::signal(SIGINT, interrupt_);
+    std::signal(SIGQUIT, quit_);
+  }
+  KeyboardSignalsIgnored(const KeyboardSignalsIgnored&) = delete;
+  KeyboardSignalsIgnored& operator=(const KeyboardSignalsIgnored&) = delete;
+
+ private:
+  void (*interrupt_)(int);
+  void (*quit_)(int);
+};
+
+// Runs the editor, a line for the shell, on the file and waits for its end. Errors: kIo (it cannot
+// be started, or it failed).
+Result<Ok> runEditor(const std::string& editor, const std::string& file) {
+  const std::string line = editor + " \"$1\"";
+  const KeyboardSignalsIgnored ignored;
+  const pid_t child = ::fork();
+  if (child < 0) return Error{Errc::kIo, "the editor cannot be started: no process is left"};
+  if (child == 0) {
+    ::signal(SIGINT, SIG_DFL);
+    ::signal(SIGQUIT, SIG_DFL);
+    ::execl("/bin/sh", "sh", "-c", line.c_str(), "sh", file.c_str(), nullptr);
+    ::_exit(127);
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return Ok{};
+  return Error{Errc::kIo,
+               fmt::format("the editor \"{}\" (from VISUAL or EDITOR) failed{}", editor,
+                           WIFEXITED(status) ? fmt::format(", exit status {}", WEXITSTATUS(status))
+                                             : std::string(" by a signal"))};
+}
+
+// Asks until the answer begins with one of `letters`; nothing at the end of the input.
+std::optional<char> ask(const std::string& question, std::string_view letters) {
+  for (std::string answer;
+       printOut("{} ", question), std::fflush(stdout), std::getline(std::cin, answer);) {
+    if (!answer.empty() && letters.find(answer[0]) != std::string_view::npos) return answer[0];
+  }
+  printOut("\n");
+  return std::nullopt;
+}
+
+// Reads the copy as the configuration that it is to become, and prints its findings under the
+// name of that.
+LoadedSettings check(const EditedFile& edited) {
+  LoadedSettings loaded = loadSettingsFile(edited.copy());
+  for (const Finding& finding : loaded.findings) printError("{}\n", toText(edited.path(), finding));
+  if (loaded.left_out > 0)
+    printError("{}: and {} more findings\n", oneLine(edited.path()), loaded.left_out);
+  return loaded;
+}
+
+int keepOld(const EditedFile& edited, int status) {
+  printOut("{}: not changed\n", edited.path());
+  return status;
+}
+
+int offerReload(const std::string& instance) {
+  if (!findRoles(instance)) return kExitDone;  // no merlind runs that could read it
+  const auto answer =
+      ask(fmt::format("merlind \"{}\" runs. Have it read its configuration now? (y)es, (n)o:",
+                      instance),
+          "yn");
+  return answer == 'y' ? reloadNow(instance) : kExitDone;
+}
+
+int save(EditedFile& edited, const LoadedSettings& loaded) {
+  if (const auto replaced = edited.replace(); !replaced) {
+    edited.keepCopy();
+    printNote(fmt::format("what was edited is in {}", edited.copy()));
+    return fail(replaced.error());
+  }
+  printOut("{}: saved\n", edited.path());
+  return offerReload(loaded.settings.instance);
+}
+
+// Edits until the copy is valid and is to be kept, or the old file is.
+int editFile(const std::string& path) {
+  auto edited = EditedFile::open(path);
+  if (!edited) return fail(edited.error());
+  const std::string editor = editorName();
+  for (;;) {
+    if (const auto done = runEditor(editor, edited->copy()); !done) {
+      keepOld(*edited, kExitFailed);
+      return fail(done.error());
+    }
+    const auto changed = edited->hasChanged();
+    if (!changed) return fail(changed.error());
+    if (!*changed) return keepOld(*edited, kExitDone);
+    const LoadedSettings loaded = check(*edited);
+    if (loaded.verdict() == Verdict::kValid) return save(*edited, loaded);
+    const bool invalid = loaded.verdict() == Verdict::kInvalid;
+    const auto answer =
+        invalid ? ask("It is invalid. (e)dit again, (k)eep the old one:", "ek")
+                : ask("Numbers are out of their range. (e)dit again, (k)eep the old one, (s)ave:",
+                      "eks");
+    if (answer == 's') return save(*edited, loaded);
+    if (answer == 'k') return keepOld(*edited, invalid ? kExitBadInput : kExitDone);
+    if (answer) continue;
+    edited->keepCopy();  // nobody answers: the work is not lost
+    printNote(fmt::format("what was edited is in {}", edited->copy()));
+    return keepOld(*edited, kExitBadInput);
+  }
+}
+
+}  // namespace
+
+void addConfigEdit(Command config, Run& run) {
+  const auto file = std::make_shared<std::string>(kUsualConfig);
+  Command command = config.subcommand(
+      "edit",
+      "Edit a copy of a configuration with $VISUAL or $EDITOR and check it. Findings are shown "
+      "with "
+      "their lines, and it can be edited again; only a valid one takes the file's place, at once, "
+      "with its owner and mode. Then merlind, if it runs, can read it.\n"
+      "Example: sudo merlin config edit");
+  command.option("file", *file, "The configuration file").typeName("FILE").showDefault();
+  command.callback([file, &run] { run = [file] { return editFile(*file); }; });
+}
+
+}  // namespace merlin::cli

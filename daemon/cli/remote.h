@@ -1,0 +1,37 @@
+// The options of `merlin` that name a daemon of another machine.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "daemon/base/result.h"
+#include "daemon/cli/command.h"
+#include "daemon/cli/roles.h"
+
+namespace merlin::cli {
+
+// What was given before the subcommand: merlin --endpoint ... --keys ... --server-key ... COMMAND.
+// Valid once the command line has been parsed; must outlive what the subcommands do.
+class RemoteOptions {
+ public:
+  // Adds the options to the program's own.
+  explicit RemoteOptions(Command app);
+  ~RemoteOptions() = default;
+  RemoteOptions(const RemoteOptions&) = delete;
+  RemoteOptions& operator=(const RemoteOptions&) = delete;
+
+  // To be called by the callback of a subcommand that can speak with another machine's daemon: the
+  // daemon that it speaks with.
+  DaemonAddress daemon(const std::string& instance);
+
+  // Checks that the subcommand that was given can do what these options ask. Errors:
+  // kInvalidArgument.
+  Result<Ok> check() const;
+
+ private:
+  DaemonAddress address_;
+  bool used_ = false;
+};
+
+}  // namespace merlin::cli

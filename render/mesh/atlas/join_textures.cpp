@@ -1,0 +1,214 @@
+#include "render/mesh/atlas/join_textures.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "render/image/png_writer.h"
+#include "render/mesh/atlas/charts.h"
+#include "render/mesh/atlas/layout.h"
+#include "render/mesh/atlas/paint.h"
+
+namespace merlin::render::mesh {
+namespace {
+
+bool repeats(const SurfaceTexture& t) {
+  return t.wrap_u == image::Wrap::kRepeat && t.wrap_v == image::Wrap::kRepeat;
+}
+
+bool hasTexture(const SurfaceTextures& textures) {
+  return std::ranges::any_of(textures.of_triangle, [](auto t) { return t != kNoTexture; });
+}
+
+// The picture that all triangles have, if it repeats and its file is known; else nullptr.
+const image::ImageFile* onlyPicture(const SurfaceTextures& textures) {
+  if (textures.of_triangle.empty() || textures.of_triangle[0] == kNoTexture) return nullptr;
+  const SurfaceTexture& first = textures.textures[textures.of_triangle[0]];
+  const bool only = std::ranges::all_of(textures.of_triangle, [&](std::uint32_t t) {
+    return t != kNoTexture && textures.textures[t] == first;
+  });
+  return only && repeats(first) && !first.picture->file.empty() ? first.picture : nullptr;
+}
+
+// Gives each triangle corners of its own place in the atlas.
+class Splitter {
+ public:
+  Splitter(Mesh& mesh, const Charts& charts) : mesh_(mesh), charts_(charts) {}
+
+  // Returns a triangle of each vertex, which says where in the atlas the vertex is; kNoTexture: no
+  // triangle has it.
+  std::vector<std::uint32_t> split() {
+    triangle_of_.assign(mesh_.vertexCount(), kNoTexture);
+    for (std::uint32_t t = 0; t < charts_.places.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        std::uint32_t& v = mesh_.triangles[3 * std::size_t{t} + k];
+        v = vertexFor(v, t);
+      }
+    }
+    return std::move(triangle_of_);
+  }
+
+ private:
+  using Key = std::pair<std::uint32_t, std::array<std::int64_t, 4>>;
+
+  std::uint32_t vertexFor(std::uint32_t v, std::uint32_t t) {
+    if (triangle_of_[v] == kNoTexture) triangle_of_[v] = t;
+    const TrianglePlace& place = charts_.places[t];
+    if (charts_.places[triangle_of_[v]] == place) return v;
+    const Key key{v, {place.chart, place.colour, place.shift[0], place.shift[1]}};
+    const auto next = static_cast<std::uint32_t>(mesh_.vertexCount());
+    const auto [found, fresh] = twins_.try_emplace(key, next);
+    if (fresh) addTwin(v, t);
+    return found->second;
+  }
+
+  void addTwin(std::uint32_t v, std::uint32_t t) {
+    const auto copy = [v](std::vector<float>& values, std::size_t dimension) {
+      for (std::size_t k = 0; k < dimension; ++k) values.push_back(values[v * dimension + k]);
+    };
+    copy(mesh_.positions, 3);
+    for (Feature& f : mesh_.features) copy(f.values, f.dimension);
+    triangle_of_.push_back(t);
+  }
+
+  Mesh& mesh_;
+  const Charts& charts_;
+  std::vector<std::uint32_t> triangle_of_;
+  std::map<Key, std::uint32_t> twins_;
+};
+
+void setCoordinates(const Charts& charts, const Layout& layout,
+                    const std::vector<std::uint32_t>& triangle_of, Feature& texcoord) {
+  for (std::size_t v = 0; v < triangle_of.size(); ++v) {
+    float* const uv = &texcoord.values[2 * v];
+    std::array<float, 2> there{};
+    const TrianglePlace place =
+        triangle_of[v] == kNoTexture ? TrianglePlace{} : charts.places[triangle_of[v]];
+    if (place.chart != kNoTexture) {
+      const Chart& chart = charts.charts[place.chart];
+      const auto [x, y] =
+          texelsOf(*chart.texture.picture, static_cast<double>(uv[0]) - place.shift[0],
+                   static_cast<double>(uv[1]) - place.shift[1]);
+      there = layout.coordinatesOf(chart, layout.cells[place.chart], x, y);
+    } else if (triangle_of[v] != kNoTexture) {
+      there = layout.coordinatesOf(place.colour);
+    }
+    std::ranges::copy(there, uv);
+  }
+}
+
+// The mean colour of an atlas, each chart by its area: what is between the charts has it, so that
+// little changes where the mipmaps mix them.
+Colour meanOfAll(const Charts& charts, const Layout& layout) {
+  std::array<double, 3> sum{};
+  double all = 0;
+  const auto add = [&](const Colour& colour, double area) {
+    for (std::size_t k = 0; k < 3; ++k) sum[k] += area * colour[k];
+    all += area;
+  };
+  for (std::size_t i = 0; i < charts.charts.size(); ++i)
+    add(meanOf(*charts.charts[i].texture.picture),
+        static_cast<double>(layout.cells[i].width) * layout.cells[i].height);
+  for (const Colour& colour : charts.colours) add(colour, kGutter * kGutter);
+  Colour mean{};
+  for (std::size_t k = 0; k < 3; ++k)
+    mean[k] = static_cast<std::uint8_t>(std::lround(sum[k] / all));
+  return mean;
+}
+
+std::vector<std::uint8_t> paint(const Charts& charts, const Layout& layout) {
+  AtlasPixels atlas{layout.width, layout.height, {}};
+  atlas.pixels.resize(std::size_t{3} * static_cast<std::size_t>(layout.width) *
+                      static_cast<std::size_t>(layout.height));
+  paintColour(meanOfAll(charts, layout), 0, 0, layout.width, layout.height, atlas);
+  for (std::size_t i = 0; i < charts.charts.size(); ++i)
+    paintChart(charts.charts[i], layout.cells[i], atlas);
+  for (std::size_t i = 0; i < charts.colours.size(); ++i) {
+    const auto [x, y] = layout.squareOf(i);
+    paintColour(charts.colours[i], x, y, kGutter, kGutter, atlas);
+  }
+  return std::move(atlas.pixels);
+}
+
+JoinedTextures reportOf(const Charts& charts, const Layout& layout) {
+  JoinedTextures joined;
+  joined.pictures = charts.charts.size();
+  joined.colours = charts.colours.size();
+  joined.width = layout.width;
+  joined.height = layout.height;
+  joined.scale = layout.scale;
+  joined.reduced = layout.reduced;
+  joined.mean_coloured = charts.mean_coloured;
+  joined.rounded_colours = charts.rounded_colours;
+  return joined;
+}
+
+JoinedTextures makeAtlas(Mesh& mesh, const SurfaceTextures& textures, const AtlasLimits& limits) {
+  const Charts charts = findCharts(mesh, textures, limits);
+  JoinedTextures joined;
+  const auto layout = layOut(charts, limits);
+  if (!layout) {
+    joined.baked = true;
+    return joined;
+  }
+  auto file = image::encodePng(layout->width, layout->height, paint(charts, *layout));
+  if (!file) {
+    joined.baked = true;
+    return joined;
+  }
+  joined = reportOf(charts, *layout);
+  const std::size_t before = mesh.vertexCount();
+  const auto triangle_of = Splitter(mesh, charts).split();
+  joined.split = mesh.vertexCount() - before;
+  setCoordinates(charts, *layout, triangle_of, *mesh.find("texcoord"));
+  mesh.texture = *std::move(file);
+  return joined;
+}
+
+std::string counted(std::size_t n, const char* one, const char* several) {
+  return fmt::format("{} {}", n, n == 1 ? one : several);
+}
+
+}  // namespace
+
+std::vector<std::string> JoinedTextures::notes() const {
+  if (baked)
+    return {"its textures are too many for one picture: they are baked into the vertices' colours"};
+  if (pictures + colours == 0) return {};
+  std::vector<std::string> all;
+  std::string text = counted(pictures, "texture", "textures");
+  if (colours > 0) text += " and " + counted(colours, "plain colour", "plain colours");
+  text +=
+      fmt::format("{} of {} x {} pixels",
+                  pictures + colours > 1 ? " became one" : " is kept as a picture", width, height);
+  if (scale < 1) text += fmt::format("; each was made smaller, to {:.0f} %", 100 * scale);
+  all.push_back(std::move(text));
+  if (reduced > 0)
+    all.push_back(fmt::format("{} made smaller, since they are repeated often",
+                              counted(reduced, "texture was", "textures were")));
+  if (mean_coloured > 0)
+    all.push_back(fmt::format("{} the mean colour of their texture, which they repeat too often",
+                              counted(mean_coloured, "triangle has", "triangles have")));
+  if (rounded_colours > 0)
+    all.push_back(fmt::format("{} without texture in rounded colours, since there are too many",
+                              counted(rounded_colours, "triangle is", "triangles are")));
+  return all;
+}
+
+JoinedTextures joinTextures(Mesh& mesh, const SurfaceTextures& textures,
+                            const AtlasLimits& limits) {
+  assert(textures.of_triangle.size() == mesh.triangleCount());
+  if (!hasTexture(textures)) return {};
+  assert(mesh.find("texcoord") && mesh.find("texcoord")->dimension == 2);
+  if (const image::ImageFile* const picture = onlyPicture(textures)) {
+    mesh.texture = picture->file;
+    return {};
+  }
+  return makeAtlas(mesh, textures, limits);
+}
+
+}  // namespace merlin::render::mesh

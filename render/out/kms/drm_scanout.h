@@ -1,0 +1,15 @@
+// What a card of the Linux kernel sends to its displays.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "render/out/kms/card.h"
+#include "render/out/kms/drm_buffer.h"
+
+namespace merlin::render::out::kms {
+
+// `file`: that of the card at `path` whose DRM master is to read its buffers.
+std::shared_ptr<Scanout> makeDrmScanout(DrmFile file, std::string path);
+
+}  // namespace merlin::render::out::kms

@@ -1,0 +1,69 @@
+// Judges what an output was found to show by what it was meant to show. Pure: times are passed in.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "daemon/base/clock.h"
+#include "render/out/picture/picture_digest.h"
+
+namespace merlin::render::out {
+
+// In the order of kPictureVerdictNames, and of shm::OutputStats::picture.
+enum class PictureVerdict {
+  kUnchecked,  // nothing was read back
+  kRight,
+  kBlack,    // dark, where something was meant
+  kFrozen,   // an older frame, although newer ones were handed over long ago
+  kTorn,     // parts of two frames
+  kForeign,  // another program's picture, or one that the wall never made
+};
+inline constexpr const char* kPictureVerdictNames[] = {"unchecked", "right", "black",
+                                                       "frozen",    "torn",  "foreign"};
+inline constexpr const char* nameOf(PictureVerdict verdict) {
+  return kPictureVerdictNames[static_cast<int>(verdict)];
+}
+inline constexpr bool isWrong(PictureVerdict verdict) {
+  return verdict != PictureVerdict::kUnchecked && verdict != PictureVerdict::kRight;
+}
+
+// A frame that an output was handed.
+struct MeantPicture {
+  PictureDigest digest{};
+  Timestamp handed_over{};
+};
+
+// What an output was found to show.
+struct FoundPicture {
+  enum class Kind {
+    kPixels,   // `digest` is what was read
+    kOff,      // the display is sent no picture
+    kForeign,  // a buffer that is not the wall's
+  };
+  Kind kind = Kind::kPixels;
+  PictureDigest digest{};
+};
+
+// An output may still show a frame this long after the next one was handed over.
+inline constexpr Duration kLongestLag = std::chrono::seconds(1);
+
+// `meant`: the last frames, oldest first, no two in a row alike. `last_right`: what was
+// found when it was right last. `began`: when reading began. kUnchecked if nothing was meant yet.
+// Cost: at most one comparison of digests for each two of `meant`.
+PictureVerdict judgePicture(std::span<const MeantPicture> meant, const FoundPicture& found,
+                            const std::optional<PictureDigest>& last_right, Timestamp began);
+
+// What verdicts settle on: one reading that disagrees does not count. Two in a row that say
+// "wrong", whatever they say is wrong, do; two that say "right" end it. kUnchecked counts at once.
+class SteadyVerdict {
+ public:
+  PictureVerdict update(PictureVerdict reading);
+  PictureVerdict current() const noexcept { return current_; }
+  // The last reading disagrees, so the next one should follow soon.
+  bool isUnsettled() const noexcept { return isWrong(last_) != isWrong(current_); }
+
+ private:
+  PictureVerdict current_ = PictureVerdict::kUnchecked, last_ = PictureVerdict::kUnchecked;
+};
+
+}  // namespace merlin::render::out

@@ -1,0 +1,90 @@
+// PictureChecks: reads back what a wall's outputs show, one output at a time on a thread of its
+// own, and compares it with what they were handed.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/watched_thread.h"
+#include "daemon/shm/seq_slot.h"
+#include "render/out/output.h"
+#include "render/out/picture/picture_judge.h"
+
+namespace merlin::render::out {
+
+// The result for one output. Trivial, so that a SeqSlot holds it: begin with PictureState{}.
+struct PictureState {
+  PictureVerdict verdict;
+  float took_ms;   // of the last check
+  char says[112];  // what is wrong: "is black instead of what was meant, at HDMI-A-1"
+};
+
+class PictureChecks {
+ public:
+  struct Checked {
+    Output* output = nullptr;  // outlives this
+    Duration every{};          // between two checks; 0: never checked
+  };
+  // By output number. `clock` outlives this.
+  PictureChecks(const std::vector<Checked>& outputs, const Clock& clock);
+
+  // Starts the thread, unless nothing is to be checked. `watch` outlives this.
+  void start(ThreadWatch& watch);
+  void stop() { thread_.stop(); }
+
+  // Output i is handed this picture. Called on the wall's thread; never waits. Cost: digestOf().
+  void meant(std::size_t i, const Signal& signal);
+  // True from when output i was found to show something else until meant(). Thread-safe.
+  bool wantsFrame(std::size_t i) const { return entries_[i].wants_frame.load(); }
+  // Thread-safe; never waits.
+  PictureState state(std::size_t i) const {
+    return entries_[i].state.read().value_or(PictureState{});
+  }
+
+  // Checks the output whose turn it is, if it is due. An output that was found to show something
+  // else is checked every half second, counts as wrong from the second time on, and is then set up
+  // anew, once in its time. Returns when the next one
+  // is due; nothing: none ever is. Called by the thread, or by a test without one.
+  std::optional<Timestamp> step();
+
+ private:
+  static constexpr std::size_t kRemembered = 16;  // frames
+  struct Meant {
+    std::int64_t handed_over_ns;
+    PictureDigest digest;
+  };
+  struct Entry {
+    Checked checked{};
+    // Of the wall's thread, which writes the slots; newest_ counts the frames written.
+    PictureDigest last{};
+    std::array<shm::SeqSlot<Meant>, kRemembered> slots{};
+    std::atomic<std::uint64_t> written{0};
+    // Of the thread that checks.
+    Timestamp due{}, mend_at{};
+    SteadyVerdict steady{};
+    std::map<std::string, PictureDigest> last_right{};  // by display
+    shm::SeqSlot<PictureState> state{};
+    std::atomic<bool> wants_frame{false};
+  };
+  static std::vector<MeantPicture> meantOf(const Entry& entry);
+  void check(Entry& entry);
+  static PictureState judge(Entry& entry, const std::vector<DisplayReading>& readings,
+                            Timestamp began);
+
+  const Clock& clock_;
+  std::deque<Entry> entries_;  // a deque, since an Entry cannot be moved
+  std::mutex idle_mutex_;
+  std::condition_variable_any idle_;
+  WatchedThread thread_;
+};
+
+}  // namespace merlin::render::out

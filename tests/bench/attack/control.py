@@ -1,0 +1,224 @@
+"""Cases: clients who may not command. Each attacks the wall's encrypted address for commands, or its
+local sockets, for some seconds; what counts is that it gets nothing and that no more frames are late
+than before."""
+import json
+import os
+import socket
+import struct
+import subprocess
+import sys
+import time
+
+import figures
+import sockets
+import strangers
+from devices import RATE_HZ, free_port
+from figures import Measured, did_not_run
+from wall import WAY_OUT, Wall
+
+LIMIT = 1.0  # percentage points of late frames more than before
+SERVER = "commands of the wall over the network"
+BLANK = json.dumps({"command": "blank"}).encode()
+OTHER_USER = 65534
+CONNECTIONS = 10_000
+
+
+def key(options, name):
+    """Makes a key pair; returns its file."""
+    path = os.path.join(options.folder, f"{name}.keys")
+    if not os.path.exists(path):
+        public = figures.run([f"{options.bin}/merlin", "keys", "-o", path], "merlin keys", WAY_OUT)
+        with open(path + ".public", "w", encoding="utf8") as file:
+            file.write(public[:40] + "\n")
+    return path
+
+
+class Attacked:
+    """A wall whose commands are served over the network to one key, and where that is."""
+
+    def __init__(self, options):
+        self.options = options
+        self.server, self.listed, self.other = (key(options, n) for n in ("wall", "boss", "other"))
+        self.address = ("127.0.0.1", free_port())
+        self.wall = Wall(options, None, {"serve": {
+            "wall_endpoint": "tcp://%s:%d" % self.address, "commands_keys": self.server,
+            "commands_clients": self.listed + ".public"}})
+        self.local = os.path.join(options.folder, f"{self.wall.instance}-wall.command")
+
+    def merlin(self, keys, *words):
+        return subprocess.run(
+            [f"{self.options.bin}/merlin", "--endpoint", "tcp://%s:%d" % self.address, "--keys", keys,
+             "--server-key", self.server + ".public", *words], capture_output=True, text=True,
+            check=False)
+
+
+# Each of these goes on until `end` and returns how often it tried and what it got, as bytes that
+# are more than a server's greeting.
+
+def no_key(attacked, end):
+    """Without encryption: the commands' own protocol."""
+    tries, got = 0, b""
+    while time.monotonic() < end:
+        s = strangers.connect(attacked.address)
+        strangers.send(s, strangers.GREETING + strangers.ready(b"REQ") + b"\1\0\0"
+                       + bytes([len(BLANK)]) + BLANK)
+        got += received(s)
+        tries += 1
+    return tries, got
+
+
+def wrong_key(attacked, end):
+    """With a key of its own that is not listed, by merlin itself."""
+    tries, got = 0, b""
+    while time.monotonic() < end or tries == 0:
+        asked = attacked.merlin(attacked.other, "blank")
+        got += b"a command" if asked.returncode == 0 else b""
+        tries += 1
+    return tries, got
+
+
+def other_user(attacked, end):
+    """Of the same machine, in no group of the daemon's."""
+    if os.geteuid() != 0:
+        did_not_run("another user", "only root can become one", "run this as root")
+    os.chmod(attacked.options.folder, 0o755)
+    knock = ("import os, socket, sys, time\n"
+             f"os.setgroups([]); os.setgid({OTHER_USER}); os.setuid({OTHER_USER})\n"
+             "tries, opened, end = 0, 0, float(sys.argv[2])\n"
+             "while time.monotonic() < end:\n"
+             "    s = socket.socket(socket.AF_UNIX)\n"
+             "    opened += s.connect_ex(sys.argv[1]) == 0\n"
+             "    s.close(); tries += 1; time.sleep(0.001)\n"
+             "print(tries, opened)\n")
+    said = figures.run([sys.executable, "-c", knock, attacked.local, str(end)], "another user", WAY_OUT)
+    tries, opened = map(int, said.split())
+    return tries, b"a connection" * opened
+
+
+def connections(attacked, end):
+    """10,000 of them, 200 at a time, each with a greeting where it is taken at once, and no more."""
+    tries, held = 0, []
+    pause = max(0, end - time.monotonic()) * 200 / CONNECTIONS
+    while tries < CONNECTIONS:
+        s = socket.socket()
+        s.setblocking(False)  # a server that takes no more for now is not waited for
+        s.connect_ex(attacked.address)
+        try:
+            s.send(strangers.CURVE_GREETING)
+        except OSError:
+            pass
+        held.append(s)
+        tries += 1
+        if len(held) == 200:
+            time.sleep(pause)
+            strangers.close(held)
+            held = []
+    return tries, b""
+
+
+def gigabyte(attacked, end):
+    """Messages declared as 1 GB, of which as much is sent as is taken."""
+    tries, got, zeros = 0, b"", bytes(1 << 16)
+    while time.monotonic() < end:
+        for greeting in (strangers.GREETING + strangers.ready(b"REQ"), strangers.CURVE_GREETING):
+            s = strangers.connect(attacked.address)
+            strangers.send(s, greeting + b"\2" + struct.pack(">Q", 10**9))
+            strangers.push(s, zeros, 0.2)
+            got += received(s)
+            tries += 1
+        time.sleep(0.05)
+    return tries, got
+
+
+def half_a_message(attacked, end):
+    """The greeting, then half of a frame, and then nothing."""
+    tries, got, held = 0, b"", []
+    while time.monotonic() < end:
+        s = strangers.connect(attacked.address)
+        strangers.send(s, strangers.CURVE_GREETING + b"\4\xc8\5HELLO" + bytes(60))
+        held.append(s)
+        tries += 1
+        time.sleep(0.05)
+    for s in held:
+        got += received(s)
+    return tries, got
+
+
+def received(s):
+    """What came beyond the greeting (64 bytes) until the other side closed, or for 20 ms; and closes."""
+    if s is None:
+        return b""
+    data = b""
+    try:
+        s.settimeout(0.02)
+        while part := s.recv(4096):
+            data += part
+    except OSError:
+        pass
+    s.close()
+    return data[64:]
+
+
+class Unauthorised:
+    """Each of the attackers in turn: late frames of as long a time before it and during it."""
+    name = "unauthorised"
+    ATTACKERS = (no_key, wrong_key, other_user, connections, gigabyte, half_a_message)
+
+    def run(self, options, report):
+        attacked, worst = Attacked(options), []
+        with attacked.wall as wall:
+            self.expect_served(attacked)
+            time.sleep(3)  # the governor has learnt
+            for attacker in self.ATTACKERS:
+                before = self.late(wall, options.seconds, lambda: time.sleep(options.seconds))
+                result = []
+                end = time.monotonic() + options.seconds
+                during = self.late(wall, options.seconds,
+                                   lambda a=attacker, e=end, r=result: r.extend(a(attacked, e)))
+                tries, got = result
+                self.report(report, attacker, tries, before, during)
+                assert not got, f"{attacker.__name__}: it got {got[:80]}"
+                if not tries > 0:
+                    did_not_run(attacker.__name__, "it did not try", "see control.py")
+                worst.append((during - before, attacker.__name__))
+            status = wall.status()
+            assert status["shown"] == "picture", "a command of somebody else was carried out"
+            if not sockets.sent_away(status, SERVER) > 0:
+                did_not_run("the attack", f"it reached nobody: {status['servers'][SERVER]}",
+                            "see control.py")
+            self.expect_served(attacked)
+            sockets.expect_sound(wall)
+        sockets.expect_clean_end(wall)
+        more, who = max(worst)
+        assert more <= LIMIT, f"{who}: {more:+.2f} percentage points of late frames"
+
+    def report(self, report, attacker, tries, before, during):
+        name = f"{self.name}.{attacker.__name__}"
+        figures.note(f"{name}: {tries} tries")
+        report.text(f"{name:34} {tries:6d} tries  late {before:5.2f} % before, {during:5.2f} % during: "
+                    f"{during - before:+.2f} points (at most {LIMIT:+.1f}); it got nothing")
+        report.figure(f"{name}.late_before", before, "%")
+        report.figure(f"{name}.late_during", during, "%")
+
+    def late(self, wall, seconds, work):
+        """Share of late deadlines while `work` runs, at least `seconds`."""
+        began, before = time.monotonic(), wall.deadlines()
+        work()
+        time.sleep(max(0, began + seconds - time.monotonic()))
+        took, after = time.monotonic() - began, wall.deadlines()
+        # Of the rate that is asked: a wall that has halved its rate has missed every second frame.
+        asked = RATE_HZ * took
+        deadlines, late = (b - a for a, b in zip(before, after))
+        if deadlines < asked / 8:
+            did_not_run("the wall", f"it did not move: {deadlines} deadlines of {asked:.0f}",
+                        "the emulated ball turns it")
+        return Measured(max(0, 100 * (1 - (deadlines - late) / asked)), deadlines, "deadlines")
+
+    def expect_served(self, attacked):
+        """That the listed key is answered: the address is served, before and after."""
+        asked = attacked.merlin(attacked.listed, "status", "--json")
+        if asked.returncode != 0:
+            did_not_run("the listed key", f"it was not answered: {asked.stderr[-300:]}", WAY_OUT)
+
+
+CASES = [Unauthorised()]

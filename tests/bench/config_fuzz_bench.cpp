@@ -1,0 +1,122 @@
+// ./dev bench fuzz-config [N]: mutated configurations through the loader. Of each kind of fault the
+// first seed is told, which shows it again.
+#include <array>
+#include <csignal>
+#include <cstring>
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "config/writer.h"
+#include "daemon/base/clock.h"
+#include "daemon/base/files.h"
+#include "daemon/cli/progress.h"
+#include "tests/bench/config_fuzz.h"
+#include "tests/bench/figures.h"
+
+namespace merlin::bench {
+namespace {
+
+volatile std::uint64_t current_seed = 0;
+
+// A crash is a fault too, and its seed has to be said. Only what a signal handler may call.
+void sayWhere(int signal) {
+  char text[96] = "\nfault: a crash; again: --count 1 --seed ";
+  char* end = text + std::strlen(text);
+  char digits[24];
+  int n = 0;
+  std::uint64_t seed = current_seed;
+  do digits[n++] = static_cast<char>('0' + seed % 10);
+  while ((seed /= 10) > 0);
+  while (n > 0) *end++ = digits[--n];
+  *end++ = '\n';
+  [[maybe_unused]] const auto written =
+      ::write(STDERR_FILENO, text, static_cast<std::size_t>(end - text));
+  ::signal(signal, SIG_DFL);
+  ::raise(signal);
+}
+
+std::vector<std::string> examples(const std::string& folder) {
+  std::vector<std::string> all = {settingsText(Settings{})};
+  for (const char* name : {"demo", "demo-window", "installed", "wall", "wall-kms-four",
+                           "wall-stereo", "wall-three-160"}) {
+    const std::string path = fmt::format("{}/{}.json", folder.empty() ? "config" : folder, name);
+    const auto file = FileCopy::read(path);
+    if (!file) didNotRun("the examples", file.error().what, "run it in the source tree");
+    all.emplace_back(file->text());
+  }
+  return all;
+}
+
+struct Options {
+  std::uint64_t seed = 1, count = 100'000;
+  std::string configurations;  // folder; empty: that of the source tree, from within it
+};
+
+struct Faults {
+  std::uint64_t count = 0, first_seed = 0;
+};
+
+bool fuzz(const Options& options, Report& report) {
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL}) ::signal(signal, sayWhere);
+  constexpr std::array kNames = {"no JSON, or too deep or long", "invalid",
+                                 "valid, numbers adjusted", "valid"};
+  const SystemClock clock;
+  cli::ProgressBar bar("fuzzing", "configurations", clock);
+  const ConfigFuzz fuzz(examples(options.configurations));
+  std::array<std::uint64_t, kNames.size()> outcomes{};
+  std::map<std::string, Faults> faults;
+  for (std::uint64_t i = 0; i < options.count; ++i) {
+    current_seed = options.seed + i;
+    const auto result = fuzz.run(current_seed);
+    ++outcomes[static_cast<std::size_t>(result.outcome)];
+    if (!result.fault.empty()) {
+      Faults& kind = faults[result.fault];
+      if (kind.count++ == 0) kind.first_seed = current_seed;
+      if (options.count == 1) report.text("{}\n", result.text);
+    }
+    if (i % 256 == 0) bar.update(double(i) / double(options.count), i);
+  }
+  bar.finish(options.count);
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    report.text("{:>10}  {}\n", outcomes[i], kNames[i]);
+    constexpr std::array kFigures = {"no_json", "invalid", "adjusted", "valid"};
+    report.figure(kFigures[i], shareOf(outcomes[i], options.count, "configurations"), "1");
+  }
+  // Where all are refused, no accepted one was compared.
+  if (options.count >= 1000 && outcomes[3] == 0)
+    didNotRun("the loader", "it accepted none", "see tests/bench/config_fuzz.h");
+  for (const auto& [what, f] : faults) {
+    report.text("{:>10}  FAULT: the loader {}; again: --count 1 --seed {}\n", f.count, what,
+                f.first_seed);
+  }
+  report.text("seeds {} to {}: {}\n", options.seed, options.seed + options.count - 1,
+              faults.empty() ? "no crash, and no key was ignored" : "with faults");
+  report.figure("kinds_of_faults",
+                Measured::of(double(faults.size()), options.count, "configurations"), "1");
+  return faults.empty();
+}
+
+}  // namespace
+}  // namespace merlin::bench
+
+int main(int argc, char** argv) {
+  merlin::bench::Options options;
+  bool json = false;
+  CLI::App app("Mutated configurations through the loader.");
+  app.add_option("--seed", options.seed, "Of the first one; the next has the next")
+      ->capture_default_str();
+  app.add_option("--count", options.count, "Of configurations")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
+      ->capture_default_str();
+  app.add_option("--configurations", options.configurations,
+                 "Folder of the examples; the default is config");
+  app.add_flag("--json", json, "The figures as one JSON object");
+  CLI11_PARSE(app, argc, argv);
+  return merlin::bench::runBench("fuzz-config", json, [&](merlin::bench::Report& report) {
+    return merlin::bench::fuzz(options, report);
+  });
+}

@@ -1,0 +1,83 @@
+// A real merlind whose output shows something else than what it was sent: found, said, mended.
+#include <cstring>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+
+#include "daemon/base/unique_fd.h"
+#include "render/out/shared_frame_layout.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+using Json = nlohmann::json;
+namespace framebuffer = render::out::framebuffer;
+
+// Overwrites the newest frame in shared memory with zeros, as a program of the same user may.
+void blacken(const std::string& instance) {
+  const std::string path = "/dev/shm/" + instance + "-framebuffer";
+  const auto size = static_cast<std::size_t>(std::filesystem::file_size(path));
+  const UniqueFd file(::open(path.c_str(), O_RDWR | O_CLOEXEC));
+  void* const at = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
+  ASSERT_NE(at, MAP_FAILED);
+  const auto& header = *static_cast<const framebuffer::Header*>(at);
+  const std::size_t newest = header.newest.load() % framebuffer::kBuffers;
+  std::memset(static_cast<std::byte*>(at) + header.buffers[newest].offset, 0,
+              std::size_t{header.stride} * header.height);
+  ::munmap(at, size);
+}
+
+Json outputOf(Merlind& m) { return m.status()["outputs"]["shared_memory"]; }
+
+bool pictureIs(Merlind& m, const std::string& verdict) {
+  return eventually([&] { return outputOf(m)["picture"] == verdict; });
+}
+
+MerlindOptions checkedEvery(double seconds) {
+  return {
+      .role = "wall",
+      .emulate = false,
+      .also = {{"wall",
+                {{"outputs", Json::array({{{"kind", "shared_memory"}, {"check_s", seconds}}})}}}}};
+}
+
+TEST(PictureChecks, ABlackPictureIsFoundSaidAndMended) {
+  const TempDir dir;
+  Merlind m(dir, makeModel(dir, 2), "black", checkedEvery(0.2));
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  ASSERT_TRUE(pictureIs(m, "right")) << m.status().dump(2);
+  EXPECT_GT(outputOf(m)["picture_ms"], 0);
+  blacken(m.instance());
+  EXPECT_TRUE(m.process().saysEventually("output shared_memory is black instead of what was meant"))
+      << m.process().output();
+  EXPECT_TRUE(m.process().saysEventually("output shared_memory shows what was meant again"))
+      << m.process().output();
+  EXPECT_EQ(outputOf(m)["health"], "ok");
+  EXPECT_EQ(outputOf(m)["picture"], "right");
+}
+
+TEST(PictureChecks, AWallThatIsMadeBlackIsRight) {
+  const TempDir dir;
+  Merlind m(dir, makeModel(dir, 2), "blank", checkedEvery(0.05));
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  ASSERT_TRUE(pictureIs(m, "right"));
+  ASSERT_EQ(run({kMerlin, "blank", "--instance", m.instance()}).status, 0);
+  ASSERT_TRUE(eventually([&] { return m.status()["shown"] == "blank"; })) << m.status().dump(2);
+  const auto frames = outputOf(m)["frames"];
+  EXPECT_GE(frames, 1);
+  EXPECT_TRUE(pictureIs(m, "right"));
+  EXPECT_EQ(m.process().output().find("is black"), std::string::npos) << m.process().output();
+}
+
+TEST(PictureChecks, ZeroSecondsIsNoCheck) {
+  const TempDir dir;
+  Merlind m(dir, makeModel(dir, 2), "unchecked", checkedEvery(0));
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  ASSERT_TRUE(eventually([&] { return outputOf(m)["frames"] >= 1; }));
+  EXPECT_EQ(outputOf(m)["picture"], "unchecked");
+}
+
+}  // namespace
+}  // namespace merlin::test
