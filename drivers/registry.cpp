@@ -3,9 +3,12 @@
 #include "drivers/cyberglove/device.h"
 #include "drivers/evdev/device.h"
 #include "drivers/fastrak/device.h"
+#include "drivers/osc/device.h"
 #include "drivers/sample/device.h"
 #include "drivers/spaceball/device.h"
 #include "drivers/spacenav/device.h"
+#include "drivers/touch/device.h"
+#include "drivers/tuio/device.h"
 #include "drivers/vrpn/device.h"
 
 namespace merlin {
@@ -52,6 +55,12 @@ constexpr DriverEntry kDrivers[] = {
      },
      describeOwn<&DriverSettings::vrpn>,
      [](const DriverSettings& s, const LineSettings& line) { return validate(s.vrpn, line); }},
+    {"osc", SampleKind::kTracker, 0, "tracker whose poses come as OSC messages, over the network",
+     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
+       return osc::makeDevice(s.osc, c, k);
+     },
+     describeOwn<&DriverSettings::osc>,
+     [](const DriverSettings& s, const LineSettings& line) { return validate(s.osc, line); }},
     {"spaceball", SampleKind::kBall, kSpaceballBaud, "Spaceball 1003, 2003, 3003 or 4000 FLX",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return spaceball::makeDevice(s.spaceball, c, k);
@@ -76,6 +85,18 @@ constexpr DriverEntry kDrivers[] = {
      [](const DriverSettings& s, const LineSettings&) {
        return within("evdev", validate(s.evdev));
      }},
+    {"touch", SampleKind::kTouch, 0, "touch frame, touch screen or mouse, through the kernel",
+     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
+       return touch::makeDevice(s.touch, c, k);
+     },
+     describeOwn<&DriverSettings::touch>,
+     [](const DriverSettings& s, const LineSettings& line) { return validate(s.touch, line); }},
+    {"tuio", SampleKind::kTouch, 0, "touch surface of a TUIO 1.1 tracker, over the network",
+     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
+       return tuio::makeDevice(s.tuio, c, k);
+     },
+     describeOwn<&DriverSettings::tuio>,
+     [](const DriverSettings& s, const LineSettings& line) { return validate(s.tuio, line); }},
     {"sample", SampleKind::kBall, 9600, "template for new drivers: a ball that sends lines of text",
      [](const DriverSettings&, const Clock& c, SampleSink& k) -> DevicePtr {
        return sample::makeDevice(c, k);
@@ -95,12 +116,8 @@ const DriverEntry* findDriver(std::string_view name) {
 }
 
 const char* kindName(SampleKind kind) {
-  switch (kind) {
-    case SampleKind::kGlove: return "glove";
-    case SampleKind::kTracker: return "tracker";
-    case SampleKind::kBall: break;
-  }
-  return "ball";
+  constexpr const char* kNames[] = {"glove", "tracker", "ball", "touch"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace merlin

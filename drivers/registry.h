@@ -11,10 +11,13 @@
 #include "drivers/cyberglove/settings.h"
 #include "drivers/evdev/settings.h"
 #include "drivers/fastrak/settings.h"
+#include "drivers/osc/settings.h"
 #include "drivers/port/device.h"
 #include "drivers/port/sample_sink.h"
 #include "drivers/spaceball/settings.h"
 #include "drivers/spacenav/settings.h"
+#include "drivers/touch/settings.h"
+#include "drivers/tuio/settings.h"
 #include "drivers/vrpn/settings.h"
 
 namespace merlin {
@@ -27,6 +30,9 @@ struct DriverSettings {
   SpacenavSettings spacenav;
   EvdevSettings evdev;
   VrpnSettings vrpn;
+  OscSettings osc;
+  TouchSettings touch;
+  TuioSettings tuio;
 };
 
 // All that the rest of MERLIN needs to know about a driver.
@@ -38,8 +44,8 @@ struct DriverEntry {
   std::unique_ptr<Device> (*make)(const DriverSettings&, const Clock&, SampleSink&);
   // Describes the driver's own settings; null: it has none.
   void (*describe)(DriverSettings&, SettingsVisitor&);
-  // Finds faults in them, also together with the device's line; null: none is possible. Pointers are
-  // relative to the device: "/port", "/cyberglove/rate_hz".
+  // Finds faults in them, also together with the device's line; null: none is possible. Pointers
+  // are relative to the device: "/port", "/cyberglove/rate_hz".
   SettingFaults (*validate)(const DriverSettings&, const LineSettings&);
 };
 
@@ -48,7 +54,7 @@ std::span<const DriverEntry> drivers();
 // nullptr if there is no driver of that name.
 const DriverEntry* findDriver(std::string_view name);
 
-// "glove", "tracker", "ball".
+// "glove", "tracker", "ball", "touch".
 const char* kindName(SampleKind kind);
 
 }  // namespace merlin

@@ -41,6 +41,25 @@ std::string keyName(unsigned code) {
   return std::string(text.substr(std::min(text.size(), text.find('_') + 1)));
 }
 
+// The fingers that touch a multi-touch device now, and the slot that the next event is about.
+void appendFingers(const libevdev* device, std::string& out) {
+  const int slots = libevdev_get_num_slots(device);  // -1: it has none
+  const auto add = [&](int code, int value) {
+    append(numbered(EvdevRecord::kMoved, static_cast<unsigned>(code), value), out);
+  };
+  for (int slot = 0; slot < slots; ++slot) {
+    const auto at = static_cast<unsigned>(slot);
+    if (libevdev_get_slot_value(device, at, ABS_MT_TRACKING_ID) < 0) continue;
+    add(ABS_MT_SLOT, slot);
+    for (const int code :
+         {ABS_MT_TRACKING_ID, ABS_MT_POSITION_X, ABS_MT_POSITION_Y, ABS_MT_TOOL_TYPE}) {
+      if (libevdev_has_event_code(device, EV_ABS, static_cast<unsigned>(code)))
+        add(code, libevdev_get_slot_value(device, at, static_cast<unsigned>(code)));
+    }
+  }
+  if (slots > 0) add(ABS_MT_SLOT, libevdev_get_current_slot(device));
+}
+
 // The description, then the present state.
 std::string describe(const libevdev* device) {
   std::string out;
@@ -53,6 +72,7 @@ std::string describe(const libevdev* device) {
     EvdevRecord record = numbered(EvdevRecord::kAxis, code, axis->value);
     record.low = axis->minimum;
     record.high = axis->maximum;
+    record.resolution = axis->resolution;
     append(record, out);
   }
   for (unsigned code = 0; code < REL_CNT; ++code) {
@@ -65,6 +85,7 @@ std::string describe(const libevdev* device) {
     if (libevdev_get_event_value(device, EV_KEY, code) != 0)
       append(numbered(EvdevRecord::kPressed, code, 1), out);
   }
+  appendFingers(device, out);
   append(numbered(EvdevRecord::kReady, 0), out);
   return out;
 }

@@ -16,6 +16,7 @@
 #include "drivers/io/open_error.h"
 #include "drivers/io/replay_stream.h"
 #include "drivers/io/tcp_stream.h"
+#include "drivers/io/udp_stream.h"
 #include "drivers/io/unix_stream.h"
 
 namespace merlin::io {
@@ -126,6 +127,7 @@ Result<std::unique_ptr<ByteStream>> openPort(const PortAddress& address, int bau
   switch (address.kind) {
     case PortKind::kSerial: return openSerial(address.path, baud);
     case PortKind::kTcp: return openTcp(address.path, address.service);
+    case PortKind::kUdp: return openUdp(address.path, address.service);
     case PortKind::kReplay: return openReplay(address.path);
     case PortKind::kUnix: return openUnix(address.path);
     case PortKind::kEvdev: return openEvdev(address.path);

@@ -1,5 +1,6 @@
 // Opens a device's line (drivers/port/port_address.h): serial ports through libserialport,
-// pseudo-terminals, raw serial servers, local sockets, input devices, transcripts.
+// pseudo-terminals, raw serial servers, ports for datagrams, local sockets, input devices,
+// transcripts.
 #pragma once
 
 #include <memory>
@@ -15,7 +16,7 @@ namespace merlin::io {
 // While it is open, no other process of MERLIN can open it (by flock, because TIOCEXCL does not
 // stop root). A transcript is replayed with the timing of its recording, then ends. Errors:
 // kNotFound, kBusy, kIo (without permission, the message names the group to join); those of
-// openTcp(), openUnix(), openEvdev() and readTranscript().
+// openTcp(), openUdp(), openUnix(), openEvdev() and readTranscript().
 Result<std::unique_ptr<ByteStream>> openPort(const PortAddress& address, int baud);
 
 }  // namespace merlin::io

@@ -50,6 +50,7 @@ std::optional<EvdevRecord> EvdevParser::feed(std::byte byte) noexcept {
     record.value = readInt(&bytes_[4]);
     record.low = readInt(&bytes_[8]);
     record.high = readInt(&bytes_[12]);
+    record.resolution = readInt(&bytes_[16]);
   }
   return record;
 }
@@ -71,7 +72,8 @@ void append(const EvdevRecord& record, std::string& out) {
   appendInt(record.value, out);
   appendInt(record.low, out);
   appendInt(record.high, out);
-  out.append(EvdevRecord::kText - 12, '\0');
+  appendInt(record.resolution, out);
+  out.append(EvdevRecord::kText - 16, '\0');
 }
 
 }  // namespace merlin

@@ -5,7 +5,7 @@
 //   byte 0     0xE5
 //   byte 1     EvdevRecord::Kind
 //   bytes 2-3  code: the kernel's number of the axis or key (linux/input-event-codes.h)
-//   bytes 4-23 kName, kKey: text, padded with NUL; otherwise value, low, high: i32
+//   bytes 4-23 kName, kKey: text, padded with NUL; otherwise value, low, high, resolution: i32
 //
 // All numbers are little-endian.
 #pragma once
@@ -20,11 +20,12 @@ namespace merlin {
 
 struct EvdevRecord {
   // The description is kName, kAxis, kRelative and kKey, in any order, then the events that set the
-  // present state, then kReady. Each report of the device is some of kMoved, kShifted, kPressed,
-  // and then kReport.
+  // present state, then kReady. The fingers of a multi-touch device are as the kernel's protocol B
+  // has them: kMoved of ABS_MT_SLOT, then of what belongs to this slot. Each report of the device
+  // is some of kMoved, kShifted, kPressed, and then kReport.
   enum Kind : std::uint8_t {
     kName = 1,      // text: the device's name
-    kAxis = 2,      // code, value, low, high: an absolute axis, its value and its range
+    kAxis = 2,      // code, value, low, high, resolution: an absolute axis, its value and its range
     kRelative = 3,  // code: a relative axis
     kKey = 4,       // code, text: a key or button, and the kernel's name of it without KEY_ or BTN_
     kReady = 5,
@@ -38,6 +39,7 @@ struct EvdevRecord {
   Kind kind = kReport;
   std::uint16_t code = 0;
   std::int32_t value = 0, low = 0, high = 0;
+  std::int32_t resolution = 0;         // of a position [1/mm]; 0: not known
   std::array<char, kText + 1> text{};  // NUL-ended
 };
 

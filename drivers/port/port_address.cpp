@@ -1,9 +1,12 @@
 #include "drivers/port/port_address.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <optional>
 #include <utility>
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
 
 #include "daemon/base/tcp_address.h"
@@ -13,9 +16,35 @@ namespace {
 
 constexpr int kSpeeds[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
 constexpr const char* kForms =
-    "serial:/dev/..., pty:PATH, tcp://HOST:PORT, unix:PATH, evdev:/dev/input/... and replay:FILE";
+    "serial:/dev/..., pty:PATH, tcp://HOST:PORT, udp:PORT, udp://ADDRESS:PORT, unix:PATH, "
+    "evdev:/dev/input/... and replay:FILE";
 
-constexpr std::string_view kEvdevDriver = "evdev";
+// Ports whose bytes are of a form of their own, which only some drivers read.
+struct OwnForm {
+  PortKind kind;
+  const char* what;
+  std::array<std::string_view, 2> drivers;
+};
+constexpr OwnForm kOwnForms[] = {
+    {PortKind::kEvdev, "an input device of the kernel", {"evdev", "touch"}},
+    {PortKind::kUdp, "a port for datagrams", {"tuio", "osc"}},
+};
+
+// "udp:PORT" or "udp://ADDRESS:PORT", whose ADDRESS is not a name.
+std::optional<PortAddress> parseUdp(std::string_view text) {
+  constexpr std::string_view kScheme = "udp:", kLoopback = "127.0.0.1";
+  if (!text.starts_with(kScheme)) return std::nullopt;
+  text.remove_prefix(kScheme.size());
+  const bool whole = text.starts_with("//");
+  const auto address = parseTcpAddress(whole ? fmt::format("tcp:{}", text)
+                                             : fmt::format("tcp://{}:{}", kLoopback, text));
+  if (!address) return std::nullopt;
+  std::array<unsigned char, 16> bytes{};
+  if (::inet_pton(AF_INET, address->host.c_str(), bytes.data()) != 1 &&
+      ::inet_pton(AF_INET6, address->host.c_str(), bytes.data()) != 1)
+    return std::nullopt;
+  return PortAddress{PortKind::kUdp, address->host, address->port};
+}
 
 }  // namespace
 
@@ -33,6 +62,7 @@ Result<PortAddress> parsePort(std::string_view text) {
   }
   if (auto tcp = parseTcpAddress(text); tcp && tcp->host != "*")
     return PortAddress{PortKind::kTcp, std::move(tcp->host), std::move(tcp->port)};
+  if (auto udp = parseUdp(text)) return *std::move(udp);
   return Error{Errc::kInvalidArgument,
                fmt::format("\"{}\" is not a valid port; ports are {}", text, kForms)};
 }
@@ -40,10 +70,13 @@ Result<PortAddress> parsePort(std::string_view text) {
 SettingFaults validate(const LineSettings& line) {
   SettingFaults faults;
   const auto port = parsePort(line.port);
-  if (port && (port->kind == PortKind::kEvdev) && line.driver != kEvdevDriver) {
-    faults.push_back({"/port", fmt::format("is \"{}\", an input device of the kernel, which the "
-                                           "driver \"{}\" does not read; set \"driver\": \"{}\"",
-                                           line.port, line.driver, kEvdevDriver)});
+  for (const OwnForm& form : kOwnForms) {
+    if (!port || port->kind != form.kind || std::ranges::count(form.drivers, line.driver) > 0)
+      continue;
+    faults.push_back({"/port", fmt::format("is \"{}\", {}, which the driver \"{}\" does not read; "
+                                           "the drivers \"{}\" do",
+                                           line.port, form.what, line.driver,
+                                           fmt::join(form.drivers, "\" and \""))});
   }
   if (!line.port.empty() && !port) {
     faults.push_back({"/port", fmt::format("is \"{}\"; allowed are {}, or \"\" for no device",

@@ -1,7 +1,8 @@
 // PortAddress: address of a device's line: `serial:/dev/...`, `pty:PATH` (an emulator or another
 // program's pseudo-terminal), `tcp://HOST:PORT` (a raw serial server), `unix:PATH` (a local socket
 // that another program listens at, such as spacenavd's), `evdev:PATH` (an input device of the
-// kernel) or `replay:FILE` (a transcript).
+// kernel), `udp:PORT` or `udp://ADDRESS:PORT` (datagrams that other programs send to this port, of
+// this machine or at that address of it) or `replay:FILE` (a transcript).
 #pragma once
 
 #include <span>
@@ -13,12 +14,14 @@
 
 namespace merlin {
 
-enum class PortKind { kSerial, kPty, kTcp, kUnix, kEvdev, kReplay };
+enum class PortKind { kSerial, kPty, kTcp, kUdp, kUnix, kEvdev, kReplay };
 
 struct PortAddress {
   PortKind kind = PortKind::kPty;
-  std::string path;     // path of the device or file; for kTcp the host
-  std::string service;  // for kTcp only: the port's number
+  // Path of the device or file; for kTcp the host, for kUdp the address at which it is received,
+  // 127.0.0.1 unless the port names another.
+  std::string path;
+  std::string service;  // for kTcp and kUdp only: the port's number
 
   // Whether MERLIN sets the baud rate of the line.
   bool hasSpeed() const noexcept { return kind == PortKind::kSerial || kind == PortKind::kPty; }

@@ -1,0 +1,64 @@
+// Poses: the tracker's samples in OSC messages. Pure, but that it publishes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "daemon/base/clock.h"
+#include "drivers/osc/settings.h"
+#include "drivers/port/osc_packet.h"
+#include "drivers/port/sample_sink.h"
+
+namespace merlin::osc {
+
+class Poses final : public OscSink {
+ public:
+  // REQUIRES: settings that validate() has no fault of.
+  Poses(const OscSettings& settings, SampleSink& sink);
+
+  // The messages that follow arrived at that time.
+  void begin(Timestamp received) noexcept { received_ = received; }
+  // Publishes a sample if the message is the pose of a station. A pose that no tracker can have
+  // measured is dropped and counted. Allocates only while addresses are collected.
+  void take(const OscMessage& message) noexcept override;
+
+  // From now on, or no more, the addresses of messages that are no pose are collected, up to
+  // kMostOthers.
+  void collectOthers(bool collect);
+  const std::vector<std::string>& others() const noexcept { return others_; }
+  static constexpr std::size_t kMostOthers = 6;
+
+  std::uint64_t samples() const noexcept { return samples_; }
+  std::uint64_t badPoses() const noexcept { return bad_poses_; }
+  // Why the newest message gave no sample; empty: it gave one, or there was none.
+  const char* silence() const noexcept { return silence_; }
+  void forgetSilence() noexcept { silence_ = ""; }
+  // The address of the first station's messages, for a person.
+  std::string expected() const;
+
+ private:
+  struct Station {
+    bool used = false;
+    std::string name, address;  // the address only if it has the name
+  };
+
+  // The station of the message, and how many of its arguments name it; kStations: none.
+  std::size_t stationOf(const OscMessage& message, std::size_t& names) const noexcept;
+  void other(const OscMessage& message) noexcept;
+  void bad(const char* why) noexcept;
+
+  OscSettings settings_;
+  SampleSink& sink_;
+  std::array<Station, kStations> stations_;
+  bool named_by_address_ = false;
+  std::array<TrackerSample, kStations> sample_{};  // the newest of each station
+  Timestamp received_{};
+  std::uint64_t samples_ = 0, bad_poses_ = 0;
+  const char* silence_ = "";
+  bool collects_ = false;
+  std::vector<std::string> others_;
+};
+
+}  // namespace merlin::osc

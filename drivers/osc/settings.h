@@ -1,0 +1,36 @@
+// Settings of a tracker whose poses come as OSC messages.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/base/setting_fault.h"
+#include "drivers/port/port_address.h"
+
+namespace merlin {
+
+class SettingsVisitor;
+
+struct OscSettings {
+  enum class Quaternion { kXyzw, kWxyz };
+
+  // Address of the messages. kStation in it stands for the station's name; without it, the first
+  // argument is the name, or, if it is none, every message is of the first station.
+  std::string address = "/tracker/{station}/pose";
+  // For station 1, 2 and so on its name at the sender; empty: the station is not used.
+  std::vector<std::string> stations = {"1", "2", "3", "4"};
+  Quaternion quaternion = Quaternion::kXyzw;  // order in which its components are sent
+  double scale = 1;                           // metres in the sender's unit of length
+
+  static constexpr const char* kStation = "{station}";
+};
+
+// Finds an address that no message can have, stations without a name of their own, and a port at
+// which no datagram can arrive. Pointers, relative to the tracker: "/port", "/osc/address",
+// "/osc/stations".
+SettingFaults validate(const OscSettings& settings, const LineSettings& line);
+
+// Calls `visitor` for every setting, in the order of written files.
+void describe(OscSettings& settings, SettingsVisitor& visitor);
+
+}  // namespace merlin

@@ -1,0 +1,58 @@
+#include "drivers/port/touch_frames.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace merlin {
+namespace {
+
+// Also makes 0 of NaN.
+float share(float value) noexcept { return value > 0 ? std::min(value, 1.0F) : 0; }
+
+bool sameFingers(const TouchSample& a, const TouchSample& b) noexcept {
+  if (a.fingers != b.fingers) return false;
+  for (std::size_t i = 0; i < a.fingers; ++i) {
+    if (a.id[i] != b.id[i] || a.position[i][0] != b.position[i][0] ||
+        a.position[i][1] != b.position[i][1])
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+TouchFrames::TouchFrames(SampleSink& sink, TouchOrientation orientation) noexcept
+    : sink_(sink), orientation_(orientation) {
+  next_.aspect = kUsualAspect;
+}
+
+void TouchFrames::add(std::uint32_t id, float x, float y) noexcept {
+  if (next_.fingers >= kFingers) return;
+  x = share(x);
+  y = share(y);
+  if (orientation_.swap_axes) std::swap(x, y);
+  const std::size_t at = next_.fingers++;
+  next_.id[at] = id;
+  next_.position[at][0] = orientation_.invert_x ? 1 - x : x;
+  next_.position[at][1] = orientation_.invert_y ? 1 - y : y;
+}
+
+void TouchFrames::publish(Timestamp at) noexcept {
+  if (sameFingers(next_, newest_)) return;
+  for (std::size_t i = next_.fingers; i < kFingers; ++i) {
+    next_.id[i] = 0;
+    next_.position[i][0] = next_.position[i][1] = 0;
+  }
+  next_.received_ns = toNanoseconds(at);
+  next_.counter = newest_.counter + 1;
+  newest_ = next_;
+  ++samples_;
+  sink_.publish(newest_);
+}
+
+void TouchFrames::lift(Timestamp at) noexcept {
+  begin();
+  publish(at);
+}
+
+}  // namespace merlin

@@ -1,0 +1,24 @@
+// The description of the settings of a touch frame, touch screen or mouse.
+#include "daemon/base/settings_visitor.h"
+#include "drivers/touch/settings.h"
+
+namespace merlin {
+
+void describe(TouchSettings& t, SettingsVisitor& v) {
+  v.flag("swap_axes", t.orientation.swap_axes,
+         "Whether the device's x runs along the surface's height: for a frame that is mounted "
+         "upright. Applied before invert_x and invert_y.");
+  v.flag("invert_x", t.orientation.invert_x,
+         "Whether a finger that moves to the right is reported as moving to the left.");
+  v.flag("invert_y", t.orientation.invert_y,
+         "Whether a finger that moves down is reported as moving up.");
+  v.number(
+      "aspect", t.aspect, {0, 10},
+      "Width of the surface divided by its height, as a person sees it. 0: from the "
+      "device's resolutions, or else from the ranges of its axes; 16:9 if these are equal, and "
+      "for a mouse.");
+  v.integer("mouse_counts", t.mouse_counts, {10, 100'000},
+            "Counts of a mouse's motion that make a drag over the whole height of the surface.");
+}
+
+}  // namespace merlin

@@ -1,0 +1,48 @@
+// Driver of a touch frame, a touch screen or a mouse that the kernel reads. Its port is
+// evdev:/dev/input/by-id/...
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "daemon/base/clock.h"
+#include "drivers/port/device.h"
+#include "drivers/port/evdev_line.h"
+#include "drivers/port/touch_frames.h"
+#include "drivers/touch/settings.h"
+#include "drivers/touch/surface.h"
+
+namespace merlin::touch {
+
+// open() reads the description, within 1 s; kMalformed also for a device that is neither a touch
+// surface nor a mouse. poll() publishes a sample for each report of the device in which a finger
+// comes, moves or goes. A device that nobody touches is silent, so silence is no fault: the
+// connection ends when the device is unplugged. The fingers of before are gone with the next
+// open().
+class TouchDevice final : public Device {
+ public:
+  TouchDevice(const TouchSettings& settings, const Clock& clock, SampleSink& sink)
+      : settings_(settings), clock_(clock), frames_(sink, settings.orientation) {}
+
+  Result<std::string> open(ByteStream& stream) override;
+  Result<Ok> poll(ByteStream& stream) override;
+  DeviceCounters counters() const noexcept override;
+  const char* complaint() const noexcept override { return ""; }
+
+ private:
+  Result<Ok> readDescription(ByteStream& stream);
+  void publish(Timestamp at) noexcept;
+
+  TouchSettings settings_;
+  const Clock& clock_;
+  TouchFrames frames_;
+  EvdevParser parser_;
+  Surface surface_;
+  Timestamp report_start_{};
+  bool in_report_ = false;
+};
+
+std::unique_ptr<Device> makeDevice(const TouchSettings& settings, const Clock& clock,
+                                   SampleSink& sink);
+
+}  // namespace merlin::touch

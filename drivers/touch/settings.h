@@ -1,0 +1,24 @@
+// Settings of a touch frame, touch screen or mouse that the kernel reads.
+#pragma once
+
+#include "daemon/base/setting_fault.h"
+#include "drivers/port/port_address.h"
+#include "drivers/port/touch_frames.h"
+
+namespace merlin {
+
+class SettingsVisitor;
+
+struct TouchSettings {
+  TouchOrientation orientation;
+  double aspect = 0;        // width by height as a person sees it; 0: as the device says
+  int mouse_counts = 2000;  // of a mouse's motion along the surface's height
+};
+
+// Finds a port at which no input device can be. Pointer: "/port".
+SettingFaults validate(const TouchSettings& settings, const LineSettings& line);
+
+// Calls `visitor` for every setting, in the order of written files.
+void describe(TouchSettings& settings, SettingsVisitor& visitor);
+
+}  // namespace merlin

@@ -1,0 +1,20 @@
+// The description of the settings of a touch surface of a TUIO tracker.
+#include "daemon/base/settings_visitor.h"
+#include "drivers/tuio/settings.h"
+
+namespace merlin {
+
+void describe(TuioSettings& t, SettingsVisitor& v) {
+  v.flag("swap_axes", t.orientation.swap_axes,
+         "Whether the tracker's x runs along the surface's height. Applied before invert_x and "
+         "invert_y.");
+  v.flag("invert_x", t.orientation.invert_x,
+         "Whether a finger that moves to the right is reported as moving to the left.");
+  v.flag("invert_y", t.orientation.invert_y,
+         "Whether a finger that moves down is reported as moving up.");
+  v.number("aspect", t.aspect, {0.1, 10},
+           "Width of the surface divided by its height, as a person sees it. TUIO does not tell "
+           "it.");
+}
+
+}  // namespace merlin

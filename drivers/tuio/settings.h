@@ -1,0 +1,23 @@
+// Settings of a touch surface that a TUIO tracker tells of over the network.
+#pragma once
+
+#include "daemon/base/setting_fault.h"
+#include "drivers/port/port_address.h"
+#include "drivers/port/touch_frames.h"
+
+namespace merlin {
+
+class SettingsVisitor;
+
+struct TuioSettings {
+  TouchOrientation orientation;
+  double aspect = 16.0 / 9;  // the surface's width by its height as a person sees it
+};
+
+// Finds a port at which no datagram can arrive. Pointer: "/port".
+SettingFaults validate(const TuioSettings& settings, const LineSettings& line);
+
+// Calls `visitor` for every setting, in the order of written files.
+void describe(TuioSettings& settings, SettingsVisitor& visitor);
+
+}  // namespace merlin

@@ -1,0 +1,328 @@
+// Touch frames and mice of the kernel: slots, one position, a pressed mouse; the driver's stream.
+#include <gtest/gtest.h>
+#include <linux/input-event-codes.h>
+#include <linux/input.h>
+
+#include "daemon/base/random.h"
+#include "drivers/port/plausible.h"
+#include "drivers/touch/device.h"
+#include "tests/support/count_allocations.h"
+#include "tests/support/fake_clock.h"
+#include "tests/support/fake_stream.h"
+#include "tests/support/recording_sink.h"
+
+namespace merlin::touch {
+namespace {
+
+using Kind = EvdevRecord::Kind;
+
+std::string record(Kind kind, int code = 0, std::int32_t value = 0) {
+  EvdevRecord r;
+  r.kind = kind;
+  r.code = static_cast<std::uint16_t>(code);
+  r.value = value;
+  std::string out;
+  append(r, out);
+  return out;
+}
+
+std::string axis(int code, std::int32_t high, std::int32_t resolution = 0) {
+  EvdevRecord r;
+  r.kind = EvdevRecord::kAxis;
+  r.code = static_cast<std::uint16_t>(code);
+  r.high = high;
+  r.resolution = resolution;
+  std::string out;
+  append(r, out);
+  return out;
+}
+
+std::string named(Kind kind, int code, std::string_view text) {
+  EvdevRecord r;
+  r.kind = kind;
+  r.code = static_cast<std::uint16_t>(code);
+  std::copy(text.begin(), text.end(), r.text.begin());
+  std::string out;
+  append(r, out);
+  return out;
+}
+
+std::string moved(int code, std::int32_t value) { return record(EvdevRecord::kMoved, code, value); }
+std::string pressed(int code, int value) { return record(EvdevRecord::kPressed, code, value); }
+std::string shifted(int code, int by) { return record(EvdevRecord::kShifted, code, by); }
+const std::string kReady = record(EvdevRecord::kReady), kReport = record(EvdevRecord::kReport);
+
+// A frame of 800 mm by 400 mm with ten slots.
+std::string frame() {
+  return named(EvdevRecord::kName, 0, "made-up frame") + axis(ABS_X, 8000, 10) +
+         axis(ABS_Y, 4000, 10) + axis(ABS_MT_SLOT, 9) + axis(ABS_MT_TRACKING_ID, 65535) +
+         axis(ABS_MT_POSITION_X, 8000, 10) + axis(ABS_MT_POSITION_Y, 4000, 10) +
+         named(EvdevRecord::kKey, BTN_TOUCH, "TOUCH") + kReady;
+}
+std::string screen(const std::string& key = named(EvdevRecord::kKey, BTN_TOUCH, "TOUCH")) {
+  return named(EvdevRecord::kName, 0, "old screen") + axis(ABS_X, 4096) + axis(ABS_Y, 4096) + key +
+         kReady;
+}
+std::string mouse() {
+  return named(EvdevRecord::kName, 0, "mouse") + record(EvdevRecord::kRelative, REL_X) +
+         record(EvdevRecord::kRelative, REL_Y) + named(EvdevRecord::kKey, BTN_LEFT, "LEFT") +
+         kReady;
+}
+
+class TouchTest : public testing::Test {
+ protected:
+  void connect(const std::string& description, const TouchSettings& settings = {}) {
+    device_.emplace(settings, clock_, sink_);
+    stream_.feed(description);
+    const auto opened = device_->open(stream_);
+    ASSERT_TRUE(opened) << opened.error().what;
+    identity_ = *opened;
+  }
+  const TouchSample& after(const std::string& events) {
+    stream_.feed(events + kReport);
+    while (device_->poll(stream_) && ++polls_ % 4 != 0) {
+    }
+    EXPECT_FALSE(sink_.touch.empty());
+    return sink_.touch.back();
+  }
+  static std::string finger(int slot, int tracking, int x, int y) {
+    return moved(ABS_MT_SLOT, slot) + moved(ABS_MT_TRACKING_ID, tracking) +
+           moved(ABS_MT_POSITION_X, x) + moved(ABS_MT_POSITION_Y, y);
+  }
+
+  test::FakeClock clock_;
+  test::RecordingSink sink_;
+  test::FakeStream stream_{clock_, nullptr};
+  std::optional<TouchDevice> device_;
+  std::string identity_;
+  int polls_ = 0;
+};
+
+TEST_F(TouchTest, TwoFingersComeMoveAndGo) {
+  connect(frame());
+  EXPECT_EQ(identity_, "made-up frame, 10 fingers");
+  EXPECT_TRUE(sink_.touch.empty());
+  const TouchSample first = after(finger(0, 7, 2000, 1000) + pressed(BTN_TOUCH, 1));
+  EXPECT_EQ(first.fingers, 1u);
+  EXPECT_EQ(first.counter, 1u);
+  EXPECT_FLOAT_EQ(first.position[0][0], 0.25F);
+  EXPECT_FLOAT_EQ(first.position[0][1], 0.25F);
+  EXPECT_FLOAT_EQ(first.aspect, 2);
+  const TouchSample both = after(finger(1, 8, 8000, 4000));
+  EXPECT_EQ(both.fingers, 2u);
+  EXPECT_EQ(both.id[0], first.id[0]);
+  EXPECT_NE(both.id[1], first.id[0]);
+  EXPECT_FLOAT_EQ(both.position[1][0], 1);
+  const TouchSample pinched =  // the slot is still 1; then the other one
+      after(moved(ABS_MT_POSITION_X, 6000) + moved(ABS_MT_SLOT, 0) +
+            moved(ABS_MT_POSITION_Y, 2000));
+  EXPECT_FLOAT_EQ(pinched.position[1][0], 0.75F);
+  EXPECT_FLOAT_EQ(pinched.position[0][1], 0.5F);
+  EXPECT_EQ(pinched.counter, 3u);
+  const TouchSample one = after(moved(ABS_MT_TRACKING_ID, -1));
+  EXPECT_EQ(one.fingers, 1u);
+  EXPECT_EQ(one.id[0], both.id[1]);
+  EXPECT_EQ(after(moved(ABS_MT_SLOT, 1) + moved(ABS_MT_TRACKING_ID, -1)).fingers, 0u);
+}
+
+TEST_F(TouchTest, AReportThatMovesNoFingerIsNotPublished) {
+  connect(frame());
+  after(finger(0, 7, 2000, 1000));
+  after(pressed(BTN_TOUCH, 1));
+  after(moved(ABS_MT_POSITION_X, 2000));
+  EXPECT_EQ(sink_.touch.size(), 1u);
+}
+
+// After events were dropped, libevdev may tell of another finger on a slot without an end of the
+// first one's.
+TEST_F(TouchTest, AnotherTrackingNumberIsAnotherFinger) {
+  connect(frame());
+  const std::uint32_t first = after(finger(0, 7, 2000, 1000)).id[0];
+  EXPECT_EQ(after(finger(0, 7, 3000, 1000)).id[0], first);
+  EXPECT_NE(after(finger(0, 8, 3000, 1000)).id[0], first);
+}
+
+TEST_F(TouchTest, APalmIsNoFinger) {
+  connect(frame());
+  EXPECT_EQ(after(finger(0, 7, 2000, 1000) + finger(1, 8, 0, 0)).fingers, 2u);
+  EXPECT_EQ(after(moved(ABS_MT_TOOL_TYPE, MT_TOOL_PALM)).fingers, 1u);
+  EXPECT_EQ(after(finger(1, 9, 0, 0)).fingers, 2u);
+}
+
+TEST_F(TouchTest, FingersThatTouchAtTheBeginningArePublished) {
+  std::string text = frame();
+  text.insert(text.size() - kReady.size(), finger(2, 7, 4000, 2000) + moved(ABS_MT_SLOT, 0));
+  connect(text);
+  ASSERT_EQ(sink_.touch.size(), 1u);
+  EXPECT_FLOAT_EQ(sink_.touch[0].position[0][0], 0.5F);
+}
+
+TEST_F(TouchTest, OfManySlotsThirtyTwoAreFollowedAndTenFingersPublished) {
+  std::string text = frame();
+  text.insert(text.size() - kReady.size(), axis(ABS_MT_SLOT, 99));
+  connect(text);
+  EXPECT_EQ(identity_, "made-up frame, 32 fingers");
+  std::string fingers;
+  for (int slot = 0; slot < 12; ++slot) fingers += finger(slot, slot, 100 * slot, 0);
+  EXPECT_EQ(after(fingers).fingers, kFingers);
+  after(finger(50, 50, 0, 0) + finger(-1, 51, 0, 0) + finger(1 << 30, 52, 0, 0));
+  EXPECT_EQ(sink_.touch.size(), 1u);
+}
+
+TEST_F(TouchTest, AScreenWithOnePositionHasOneFinger) {
+  connect(screen());
+  EXPECT_EQ(identity_, "old screen, one finger");
+  const TouchSample down = after(moved(ABS_X, 1024) + moved(ABS_Y, 2048) + pressed(BTN_TOUCH, 1));
+  EXPECT_EQ(down.fingers, 1u);
+  EXPECT_FLOAT_EQ(down.position[0][0], 0.25F);
+  EXPECT_FLOAT_EQ(down.position[0][1], 0.5F);
+  EXPECT_FLOAT_EQ(down.aspect, 16.0F / 9);  // equal ranges say nothing of it
+  EXPECT_FLOAT_EQ(after(moved(ABS_X, 4096)).position[0][0], 1);
+  EXPECT_EQ(after(pressed(BTN_TOUCH, 0)).fingers, 0u);
+  after(moved(ABS_X, 0));
+  EXPECT_EQ(sink_.touch.size(), 3u);
+  EXPECT_NE(after(pressed(BTN_TOUCH, 1)).id[0], down.id[0]);
+}
+
+TEST_F(TouchTest, APointerWithAPositionTouchesWhileItsLeftButtonIsPressed) {
+  connect(screen(named(EvdevRecord::kKey, BTN_LEFT, "LEFT")));
+  after(pressed(BTN_LEFT, 1));
+  EXPECT_EQ(sink_.touch.back().fingers, 1u);
+}
+
+TEST_F(TouchTest, APressedMouseIsAFingerThatBeginsInTheMiddle) {
+  TouchSettings settings;
+  settings.mouse_counts = 1000;
+  settings.aspect = 2;
+  connect(mouse(), settings);
+  EXPECT_EQ(identity_, "mouse, a mouse");
+  stream_.feed(shifted(REL_X, 500) + kReport);
+  ASSERT_TRUE(device_->poll(stream_));
+  EXPECT_TRUE(sink_.touch.empty());  // its button is not pressed
+  const TouchSample down = after(pressed(BTN_LEFT, 1));
+  EXPECT_FLOAT_EQ(down.position[0][0], 0.5F);
+  EXPECT_FLOAT_EQ(down.position[0][1], 0.5F);
+  const TouchSample dragged = after(shifted(REL_X, 200) + shifted(REL_Y, -100));
+  EXPECT_FLOAT_EQ(dragged.position[0][0], 0.6F);  // as far as 200 counts down, on a surface twice
+  EXPECT_FLOAT_EQ(dragged.position[0][1], 0.4F);  // as wide as high
+  EXPECT_EQ(dragged.id[0], down.id[0]);
+  EXPECT_FLOAT_EQ(after(shifted(REL_X, 5000)).position[0][0], 1);
+  EXPECT_EQ(after(pressed(BTN_LEFT, 0)).fingers, 0u);
+  const TouchSample again = after(pressed(BTN_LEFT, 1));
+  EXPECT_FLOAT_EQ(again.position[0][0], 0.5F);
+  EXPECT_NE(again.id[0], down.id[0]);
+}
+
+TEST_F(TouchTest, ASurfaceThatIsMountedOtherwiseIsTurned) {
+  TouchSettings settings;
+  settings.orientation = {true, true, false};
+  connect(frame(), settings);
+  const TouchSample s = after(finger(0, 7, 2000, 4000));
+  EXPECT_FLOAT_EQ(s.position[0][0], 0);      // 1 - y
+  EXPECT_FLOAT_EQ(s.position[0][1], 0.25F);  // x
+  EXPECT_FLOAT_EQ(s.aspect, 0.5F);
+  settings = {};
+  settings.orientation.invert_y = true;
+  settings.aspect = 1.5;
+  connect(frame(), settings);
+  EXPECT_FLOAT_EQ(after(finger(0, 7, 2000, 1000)).position[0][1], 0.75F);
+  EXPECT_FLOAT_EQ(sink_.touch.back().aspect, 1.5F);
+}
+
+TEST_F(TouchTest, WithoutResolutionsTheAspectIsThatOfTheRanges) {
+  connect(named(EvdevRecord::kName, 0, "x") + axis(ABS_X, 3000) + axis(ABS_Y, 1000) +
+          named(EvdevRecord::kKey, BTN_TOUCH, "TOUCH") + kReady);
+  EXPECT_FLOAT_EQ(after(pressed(BTN_TOUCH, 1)).aspect, 3);
+}
+
+TEST_F(TouchTest, ADeviceThatIsNeitherIsRefusedWithTheWayOut) {
+  device_.emplace(TouchSettings{}, clock_, sink_);
+  stream_.feed(named(EvdevRecord::kName, 0, "pad") + axis(ABS_X, 255) + axis(ABS_Y, 255) +
+               named(EvdevRecord::kKey, BTN_SOUTH, "SOUTH") + kReady);
+  const auto pad = device_->open(stream_);
+  ASSERT_FALSE(pad);
+  EXPECT_EQ(pad.error().code, Errc::kMalformed);
+  EXPECT_EQ(
+      pad.error().what,
+      "\"pad\" is neither a touch surface nor a mouse; for a gamepad, joystick or space mouse "
+      "set \"driver\": \"evdev\"");
+  stream_.feed(axis(ABS_MT_POSITION_X, 255) + axis(ABS_MT_POSITION_Y, 255) + kReady);
+  EXPECT_NE(device_->open(stream_).error().what.find("protocol A"), std::string::npos);
+  stream_.feed(axis(ABS_X, 255));
+  const Timestamp began = clock_.now();
+  EXPECT_EQ(device_->open(stream_).error().code, Errc::kTimeout);
+  EXPECT_LE(clock_.now() - began, std::chrono::milliseconds(1100));
+}
+
+TEST_F(TouchTest, ReconnectedItHasNoFingerOfBefore) {
+  connect(frame());
+  after(finger(0, 7, 2000, 1000));
+  stream_.feed(mouse());
+  ASSERT_TRUE(device_->open(stream_));
+  EXPECT_EQ(sink_.touch.back().fingers, 0u);
+  EXPECT_EQ(sink_.touch.back().counter, 2u);
+}
+
+TEST_F(TouchTest, EventsAllocateNothing) {
+  connect(frame());
+  sink_.touch.reserve(1000);
+  std::string events = finger(0, 7, 0, 0);
+  for (int i = 1; i < 400; ++i) events += moved(ABS_MT_POSITION_X, i) + kReport;
+  stream_.feed(events);
+  const long before = test::allocations;
+  while (sink_.touch.size() < 399) ASSERT_TRUE(device_->poll(stream_));
+#ifndef MERLIN_THREAD_SANITIZER
+  EXPECT_EQ(test::allocations, before);
+#endif
+}
+
+TEST_F(TouchTest, EveryPrefixOfAReportPublishesNothingAndTheWholeDoes) {
+  const std::string events = finger(0, 7, 2000, 1000) + kReport;
+  for (std::size_t n = 0; n <= events.size(); ++n) {
+    sink_.touch.clear();
+    connect(frame());
+    stream_.feed(events.substr(0, n));
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(device_->poll(stream_));
+    EXPECT_EQ(sink_.touch.size(), n == events.size() ? 1u : 0u) << n;
+  }
+}
+
+TEST_F(TouchTest, RandomEventsGiveNoSampleThatIsNotPlausible) {
+  Random random(11);
+  for (const std::string& description : {frame(), screen(), mouse()}) {
+    connect(description);
+    const std::size_t before = sink_.touch.size();
+    for (int i = 0; i < 30'000; ++i) {
+      const int codes[] = {
+          ABS_X,    ABS_Y,     ABS_MT_SLOT,      ABS_MT_TRACKING_ID, ABS_MT_POSITION_X,
+          BTN_LEFT, BTN_TOUCH, ABS_MT_POSITION_Y};
+      const auto value = random.below(2) ? static_cast<std::int32_t>(random.next())
+                                         : static_cast<std::int32_t>(random.below(12)) - 1;
+      std::string bytes = record(static_cast<Kind>(6 + random.below(4)),
+                                 codes[random.below(std::size(codes))], value);
+      if (random.below(10) == 0)
+        bytes[random.below(bytes.size())] = static_cast<char>(random.next());
+      stream_.feed(bytes);
+      ASSERT_TRUE(device_->poll(stream_));
+    }
+    EXPECT_GT(sink_.touch.size(), before + 100);
+  }
+  EXPECT_GT(device_->counters().bad_bytes, 0u);
+  for (const TouchSample& s : sink_.touch) ASSERT_TRUE(plausible(s));
+}
+
+TEST(TouchSettings, OtherPortsThanInputDevicesAreRefused) {
+  LineSettings line;
+  line.driver = "touch";
+  for (const char* good : {"", "evdev:/dev/input/event3", "replay:x", "pty:/tmp/x"}) {
+    line.port = good;
+    EXPECT_TRUE(validate(TouchSettings{}, line).empty()) << good;
+    EXPECT_TRUE(validate(line).empty()) << good;
+  }
+  line.port = "serial:/dev/ttyS0";
+  ASSERT_EQ(validate(TouchSettings{}, line).size(), 1u);
+  EXPECT_EQ(validate(TouchSettings{}, line)[0].pointer, "/port");
+}
+
+}  // namespace
+}  // namespace merlin::touch
