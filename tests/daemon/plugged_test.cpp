@@ -103,6 +103,21 @@ TEST_F(PluggedTest, AnInputDevicesEntryHasItsDriverAndALastingName) {
   EXPECT_TRUE(found[0].readable);
 }
 
+TEST_F(PluggedTest, ATouchScreenAndAMouseServeAsTouchFrames) {
+  addInput(1, "a mouse", {{BTN_LEFT}, {}, {REL_X, REL_Y}});
+  addInput(2, "frame", {{BTN_TOUCH}, {ABS_X, ABS_Y, ABS_MT_POSITION_X}});
+  const auto found = findPlugged(root());
+  ASSERT_EQ(found.size(), 2u);
+  ASSERT_EQ(found[0].uses.size(), 2u);
+  EXPECT_EQ(found[0].uses[0].driver, "evdev");
+  EXPECT_EQ(found[0].uses[1].driver, "touch");
+  ASSERT_EQ(found[1].uses.size(), 1u);
+  EXPECT_EQ(configurationEntry(found[1], found[1].uses[0]),
+            R"({"name": "touch", "driver": "touch", "port": "evdev:)" + root() +
+                R"(/dev/input/event2"})");
+  EXPECT_TRUE(found[1].keys.empty()) << "the driver touch has no setting that names them";
+}
+
 TEST_F(PluggedTest, AnInputDevicesAxesAndKeysHaveTheConfigurationsNames) {
   addInput(1, "pad", {{BTN_SOUTH, BTN_EAST, BTN_TL}, {ABS_X, ABS_Y, ABS_RX, ABS_RY, ABS_HAT0X}});
   const auto found = findPlugged(root());
@@ -172,7 +187,8 @@ TEST(LiveTable, ShowsWhatWorkingDevicesMeasureAndWhyOthersDoNot) {
   ball.buttons = 0x801;
   devices->ball[0].publish(ball);
   const std::string text = liveTable(devices.slots(), fromNanoseconds(1'100'000'000));
-  EXPECT_NE(text.find("glove      absent      20.0 Hz  not configured\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("glove      absent      20.0 Hz  not configured\n"), std::string::npos)
+      << text;
   EXPECT_NE(text.find("ball       ok          20.0 Hz  pad, 8 axes\n"), std::string::npos) << text;
   EXPECT_NE(text.find("y        [     #####|          ] -0.500  raw -700"), std::string::npos)
       << text;

@@ -103,8 +103,7 @@ void printPlugged(const Plugged& plugged, const Configured* reader) {
   if (reader) return;
   for (const Plugged::Use& use : plugged.uses)
     printOut("    {}\n", configurationEntry(plugged, use));
-  if (plugged.uses.empty()) printOut("    {}: no driver reads it\n", plugged.port);
-  if (!plugged.readable && !plugged.uses.empty()) {
+  if (!plugged.readable) {
     printOut("    this user may not open it{}\n",
              plugged.group.empty() ? "" : fmt::format("; its group is {}", plugged.group));
   }
@@ -201,7 +200,8 @@ void addDevices(Command app, Run& run) {
   Command command = app.subcommand(
       "devices",
       "List the devices that merlind reads and how they are, and what is plugged into this machine "
-      "and not configured (serial adapters, gamepads, space mice, clickers), with the entry for "
+      "and not configured (serial adapters, gamepads, space mice, clickers, touch screens), with "
+      "the entry for "
       "the "
       "configuration's list \"devices\" that makes it a device, and the axes and keys of input "
       "devices by the names that the configuration uses. No device is opened.\nExample: merlin "

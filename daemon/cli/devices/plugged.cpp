@@ -105,12 +105,14 @@ std::string kindOf(const Capabilities& has) {
   return {};
 }
 
-// A short name for a device of this kind.
-std::string nameFor(const std::string& kind) {
-  if (kind == "gamepad") return "pad";
-  if (kind == "joystick") return "stick";
-  if (kind == "space mouse") return "mouse";
-  return kind;
+// How a device of this kind may serve, under a short name.
+std::vector<Plugged::Use> usesOf(const std::string& kind) {
+  if (kind == "gamepad") return {{"pad", "evdev"}};
+  if (kind == "joystick") return {{"stick", "evdev"}};
+  if (kind == "space mouse") return {{"mouse", "evdev"}};
+  if (kind == "touch screen") return {{"touch", "touch"}};
+  if (kind == "mouse") return {{"mouse", "evdev"}, {"touch", "touch"}};
+  return {{kind, "evdev"}};
 }
 
 // Fills in axes, keys and which are read. The kernel tells the ranges of axes only to those who
@@ -175,16 +177,13 @@ void addInputDevices(const std::string& root, std::vector<Plugged>& all) {
                      firstLine(entry / "device/name"),
                      "evdev:" + (link == links.end() ? path : link->second),
                      path,
-                     {{nameFor(kind), "evdev"}},
+                     usesOf(kind),
                      ::access(path.c_str(), R_OK) == 0,
                      groupOf(path),
                      {},
                      {},
                      {}});
-    if (kind == "touch screen")
-      found.back().uses.clear();  // no driver reads it
-    else
-      describeInput(has, found.back());
+    if (kind != "touch screen") describeInput(has, found.back());  // not of evdev's settings
   }
   std::ranges::stable_sort(found, {}, &Plugged::name);
   all.insert(all.end(), found.begin(), found.end());

@@ -18,11 +18,12 @@ struct Plugged {
   std::string name;       // as the device says, for a person
   std::string port;       // in a form that parsePort() understands
   std::string path;       // of its file, without links
-  std::vector<Use> uses;  // of an adapter one for each driver of a serial line; empty: none
+  std::vector<Use> uses;  // at least one; of an adapter one for each kind of device
   bool readable = false;  // by the calling process
   std::string group;      // of its file, whose members may read it; empty: unknown
-  // Of an input device: its axes and keys, by the names that the configuration uses, and which of
-  // them are read if it names none: "axes x, ...; buttons south, ...".
+  // Of an input device that the driver evdev reads: its axes and keys, by the names of that
+  // driver's settings, and which of them are read if these name none: "axes x, ...; buttons south,
+  // ...".
   std::vector<std::string> axes, keys;
   std::string usual;
 };
