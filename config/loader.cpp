@@ -108,6 +108,16 @@ class Loader final : public SettingsVisitor {
         values[i] = clamp(node->items[i], item, range);
     }
   }
+  void wholeNumbers(const char* key, std::span<double> values, Range range,
+                    const char* help) override {
+    numbers(key, values, range, help);
+    const JsonNode* list = levels_.back().object ? memberOf(*levels_.back().object, key) : nullptr;
+    for (std::size_t i = 0; list && i < list->items.size(); ++i) {
+      const JsonNode& item = list->items[i];
+      if (item.kind == JsonNode::Kind::kNumber && item.number != std::floor(item.number))
+        addWrongKind(item, fmt::format("{}/{}", key, i), "a whole number");
+    }
+  }
   void group(const char* key, const char*, const std::function<void()>& members) override {
     enter(take(key, JsonNode::Kind::kObject, "an object"), pointer(key));
     members();
@@ -181,6 +191,13 @@ class Loader final : public SettingsVisitor {
     const std::string near = key.size() > kLongest ? "" : nearestWord(key, known);
     return near.empty() ? fmt::format("known here are {}", fmt::join(known, ", "))
                         : fmt::format("did you mean \"{}\"?", near);
+  }
+
+  static const JsonNode* memberOf(const JsonNode& object, std::string_view key) {
+    for (const auto& member : object.members) {
+      if (member.key == key) return &member.value;
+    }
+    return nullptr;
   }
 
   // Returns the value of `key`; null if the key is missing, or, after adding a finding, if the

@@ -1,12 +1,13 @@
-// SettingsVisitor: a description of settings calls one of its functions for every setting. What reads
-// a file, writes the schema and the manual page, and prints or compares the settings in effect are
-// visitors of the same description, so that they always agree.
+// SettingsVisitor: a description of settings calls one of its functions for every setting. What
+// reads a file, writes the schema and the manual page, and prints or compares the settings in
+// effect are visitors of the same description, so that they always agree.
 #pragma once
 
 #include <array>
 #include <functional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -41,6 +42,11 @@ class SettingsVisitor {
   // A list of exactly values.size() numbers.
   virtual void numbers(const char* key, std::span<double> values, Range range,
                        const char* help) = 0;
+  // The same, but each of them is a whole number.
+  virtual void wholeNumbers(const char* key, std::span<double> values, Range range,
+                            const char* help) {
+    numbers(key, values, range, help);
+  }
   virtual void group(const char* key, const char* help, const std::function<void()>& members) = 0;
   // A list of any number of objects: resize(n) sets their number, member(i) describes one.
   virtual void list(const char* key, std::size_t count, const char* help,
@@ -51,9 +57,9 @@ class SettingsVisitor {
   // of the sentence that begins with the key.
   virtual void excluded(const char* key, const char* what) = 0;
 
-  // A group that only counts while `active`; another setting decides that. `what`: as in excluded(),
-  // why a file must not have the group while it is not active. Visitors that describe what a file
-  // may have, rather than what one has, describe the group in any case.
+  // A group that only counts while `active`; another setting decides that. `what`: as in
+  // excluded(), why a file must not have the group while it is not active. Visitors that describe
+  // what a file may have, rather than what one has, describe the group in any case.
   virtual void groupIf(bool active, const char* key, const char* help,
                        const std::function<void()>& members, const char* what) {
     if (active)
@@ -77,7 +83,10 @@ class SettingsVisitor {
   void numbers(const char* key, std::array<T, N>& values, Range range, const char* help) {
     std::array<double, N> wide{};
     for (std::size_t i = 0; i < N; ++i) wide[i] = static_cast<double>(values[i]);
-    numbers(key, std::span<double>(wide), range, help);
+    if constexpr (std::is_integral_v<T>)
+      wholeNumbers(key, wide, range, help);
+    else
+      numbers(key, std::span<double>(wide), range, help);
     for (std::size_t i = 0; i < N; ++i) values[i] = static_cast<T>(wide[i]);
   }
   template <typename Enum>

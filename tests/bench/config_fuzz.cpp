@@ -256,7 +256,7 @@ std::string faultOf(const std::string& text, const LoadedSettings& loaded) {
 
 std::string ConfigFuzz::mutated(Random& r) const {
   Json tree = Json::parse(oneOf(examples_, r));
-  for (std::uint64_t n = r.below(4); n > 0; --n) mutateTree(tree, r);
+  for (std::uint64_t n = 1 + r.below(3); n > 0; --n) mutateTree(tree, r);
   std::string text =
       tree.dump(r.below(2) == 0 ? -1 : 2, ' ', false, Json::error_handler_t::replace);
   if (r.below(4) == 0) {
