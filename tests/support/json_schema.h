@@ -1,7 +1,7 @@
 // JsonSchema: checks documents against a JSON schema, as far as daemon/status/status.schema.json
 // uses the language: $ref into $defs, type, enum, properties, required, additionalProperties,
-// patternProperties, items, minItems, maxItems. Stricter than the language: a member that is not
-// described is a fault.
+// patternProperties, items, minItems, maxItems, anyOf. Stricter than the language: a member that is
+// not described is a fault.
 #pragma once
 
 #include <algorithm>
@@ -65,6 +65,7 @@ class JsonSchema {
   void check(const Json& unresolved, const Json& value, const std::string& at,
              Faults& found) const {
     const Json& schema = resolved(unresolved);
+    if (schema.contains("anyOf")) return checkAny(schema["anyOf"], value, at, found);
     const auto types = typesOf(schema);
     const auto fits = [&](const std::string& type) { return isOf(type, value); };
     if (!types.empty() && std::none_of(types.begin(), types.end(), fits))
@@ -74,6 +75,19 @@ class JsonSchema {
       found.push_back(fmt::format("{}: is {}, which is none of its values", at, value.dump()));
     if (value.is_object()) checkMembers(schema, value, at, found);
     if (value.is_array()) checkItems(schema, value, at, found);
+  }
+
+  void checkAny(const Json& alternatives, const Json& value, const std::string& at,
+                Faults& found) const {
+    Faults of_all;
+    for (const Json& alternative : alternatives) {
+      Faults of_one;
+      check(alternative, value, at, of_one);
+      if (of_one.empty()) return;
+      of_all.insert(of_all.end(), of_one.begin(), of_one.end());
+    }
+    found.push_back(
+        fmt::format("{}: is none of the alternatives: {}", at, fmt::join(of_all, "; ")));
   }
 
   void checkItems(const Json& schema, const Json& value, const std::string& at,
@@ -111,6 +125,12 @@ class JsonSchema {
   }
 
   static std::string kindOf(const Json& schema) {
+    if (schema.contains("anyOf")) {
+      std::vector<std::string> names;
+      for (const Json& one : schema["anyOf"])
+        names.push_back(one["$ref"].get<std::string>().substr(8));
+      return fmt::format("any of {}", fmt::join(names, "|"));
+    }
     if (schema.contains("$ref")) return "-> " + schema["$ref"].get<std::string>().substr(8);
     return fmt::format("{}", fmt::join(typesOf(schema), "|"));
   }
