@@ -18,12 +18,17 @@
 #include "drivers/emulate/emulator.h"
 #include "drivers/fastrak/protocol.h"
 #include "drivers/io/transcript.h"
+#include "drivers/osc/poses.h"
+#include "drivers/port/datagram_line.h"
 #include "drivers/port/evdev_line.h"
+#include "drivers/port/osc_packet.h"
 #include "drivers/sample/protocol.h"
 #include "drivers/spaceball/protocol.h"
 #include "drivers/spacenav/protocol.h"
+#include "drivers/tuio/sources.h"
 #include "drivers/vrpn/protocol.h"
 #include "tests/bench/figures.h"
+#include "tests/support/osc_packets.h"
 
 namespace merlin::bench {
 namespace {
@@ -128,6 +133,65 @@ Feed vrpnFeed() {
   };
 }
 
+// Reads the datagrams of a line; a datagram counts as a packet if `taken` says so.
+template <typename Sink>
+Feed datagramFeed(std::shared_ptr<Sink> sink,
+                  std::function<bool(Sink&, OscReader&, const Datagram&)> taken) {
+  auto parser = std::make_shared<DatagramParser>();
+  auto reader = std::make_shared<OscReader>();
+  return [=](const std::string& bytes) {
+    std::uint64_t packets = 0;
+    for (const char c : bytes) {
+      const auto datagram = parser->feed(static_cast<std::byte>(c));
+      if (datagram) packets += taken(*sink, *reader, *datagram) ? 1U : 0U;
+    }
+    return packets;
+  };
+}
+
+Feed tuioFeed() {
+  return datagramFeed<tuio::Sources>(
+      std::make_shared<tuio::Sources>(),
+      [](tuio::Sources& sources, OscReader& reader, const Datagram& d) {
+        sources.clear();
+        sources.begin(d.sender, {});
+        return reader.read(d.bytes, sources) && sources.complete();
+      });
+}
+
+std::string tuioFrame(Random& r) {
+  const auto contact = [&] {
+    return test::TuioContact{static_cast<int>(r.below(100)), static_cast<float>(r.uniform()),
+                             static_cast<float>(r.uniform())};
+  };
+  const auto frame = static_cast<int>(r.below(1000));
+  return test::datagram(r.below(2) ? test::tuioCursors(frame, {contact()}, {1000, 1001}, "a@b")
+                                   : test::tuioObject(frame, contact()));
+}
+
+struct NoSamples final : SampleSink {
+  void publish(const GloveSample&) noexcept override {}
+  void publish(const TrackerSample&) noexcept override {}
+  void publish(const BallSample&) noexcept override {}
+  void publish(const TouchSample&) noexcept override {}
+};
+
+Feed oscFeed() {
+  static NoSamples nowhere;
+  return datagramFeed<osc::Poses>(std::make_shared<osc::Poses>(OscSettings{}, nowhere),
+                                  [](osc::Poses& poses, OscReader& reader, const Datagram& d) {
+                                    const std::uint64_t before = poses.samples();
+                                    (void)reader.read(d.bytes, poses);
+                                    return poses.samples() > before;
+                                  });
+}
+
+std::string oscPose(Random& r) {
+  const auto place = [&] { return static_cast<float>(r.uniform(-3, 3)); };
+  return test::datagram(test::oscMessage(fmt::format("/tracker/{}/pose", 1 + r.below(4)),
+                                         {place(), place(), place(), 0.0F, 0.6F, 0.0F, 0.8F}));
+}
+
 std::string transcriptLine(Random& r) {
   return fmt::format("# device: x # serial: 9600\n@{:.6f} {}{:04x} <- note\n# end\n", r.uniform(),
                      r.below(2) ? "to " : "", r.below(65536));
@@ -172,6 +236,8 @@ const Target kTargets[] = {
     {"spacenav", [] { return each(std::make_shared<spacenav::Parser>()); }, spacenavFrame},
     {"evdev", [] { return each(std::make_shared<EvdevParser>()); }, evdevRecord},
     {"vrpn", vrpnFeed, vrpnMessage},
+    {"tuio", tuioFeed, tuioFrame},
+    {"osc", oscFeed, oscPose},
     {"sample", [] { return each(std::make_shared<sample::Parser>()); }, textRecord},
     {"calibration files",
      []() -> Feed {

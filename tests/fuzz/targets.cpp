@@ -27,11 +27,14 @@
 #include "drivers/evdev/input_device.h"
 #include "drivers/fastrak/protocol.h"
 #include "drivers/io/transcript.h"
+#include "drivers/osc/device.h"
 #include "drivers/port/plausible.h"
 #include "drivers/sample/protocol.h"
 #include "drivers/spaceball/calibration.h"
 #include "drivers/spaceball/protocol.h"
 #include "drivers/spacenav/protocol.h"
+#include "drivers/touch/device.h"
+#include "drivers/tuio/device.h"
 #include "drivers/vrpn/device.h"
 #include "nn/io/data_set_file.h"
 #include "nn/io/network_file.h"
@@ -274,21 +277,59 @@ void vrpnBytes(Bytes bytes) {
   }
 }
 
-// Of a VRPN server, to the whole driver.
-void vrpnServerBytes(Bytes bytes) {
-  struct Sink final : SampleSink {
-    void publish(const GloveSample&) noexcept override {}
-    void publish(const BallSample&) noexcept override {}
-    void publish(const TrackerSample& sample) noexcept override {
-      require(plausible(sample), "a VRPN tracker's sample is plausible");
-    }
-  } sink;
-  test::FakeClock clock;
+// A sink that judges what it gets.
+struct PlausibleSink final : SampleSink {
+  void publish(const GloveSample& s) noexcept override {
+    require(plausible(s), "a glove's sample");
+  }
+  void publish(const BallSample& s) noexcept override { require(plausible(s), "a ball's sample"); }
+  void publish(const TouchSample& s) noexcept override { require(plausible(s), "a touch sample"); }
+  void publish(const TrackerSample& s) noexcept override {
+    require(plausible(s), "a tracker's sample");
+  }
+};
+
+// The bytes of a line to the whole driver, which is polled a few times more than they need.
+void driverBytes(Device& device, test::FakeClock& clock, std::string_view bytes) {
+  constexpr std::size_t kPolls = 20;
   test::FakeStream stream(clock, nullptr);
-  stream.feed(textOf(bytes));
-  vrpn::VrpnDevice device({}, clock, sink);
+  stream.feed(bytes);
   bool goes_on = device.open(stream).ok();
-  while (goes_on) goes_on = device.poll(stream).ok();
+  for (std::size_t i = 0; goes_on && i < kPolls + bytes.size() / 256; ++i)
+    goes_on = device.poll(stream).ok();
+}
+
+// Of a VRPN server.
+void vrpnServerBytes(Bytes bytes) {
+  PlausibleSink sink;
+  test::FakeClock clock;
+  vrpn::VrpnDevice device({}, clock, sink);
+  driverBytes(device, clock, textOf(bytes));
+}
+
+void touchBytes(Bytes bytes) {
+  PlausibleSink sink;
+  test::FakeClock clock;
+  touch::TouchDevice device({}, clock, sink);
+  driverBytes(device, clock, textOf(bytes));
+}
+
+// The bytes are one datagram.
+void tuioBytes(Bytes bytes) {
+  PlausibleSink sink;
+  test::FakeClock clock;
+  tuio::TuioDevice device({}, clock, sink);
+  std::string line;
+  if (!bytes.empty() && bytes.size() <= kLongestDatagram) append({1, std::as_bytes(bytes)}, line);
+  driverBytes(device, clock, line + line);
+}
+
+// The bytes are the line: records of datagrams.
+void oscBytes(Bytes bytes) {
+  PlausibleSink sink;
+  test::FakeClock clock;
+  osc::OscDevice device({}, clock, sink);
+  driverBytes(device, clock, textOf(bytes));
 }
 
 // Of a client of MERLIN's own space-mouse socket.
@@ -310,6 +351,9 @@ constexpr Target kTargets[] = {
     {"spaceball", spaceballBytes},
     {"spacenav", spacenavBytes},
     {"evdev", evdevBytes},
+    {"touch", touchBytes},
+    {"tuio", tuioBytes},
+    {"osc", oscBytes},
     {"sample", sampleBytes},
     {"transcript", transcriptText},
     {"configuration", configurationText},
