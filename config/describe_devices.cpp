@@ -49,7 +49,9 @@ void describeLine(LineSettings& line, SettingsVisitor& v) {
   v.text(
       "port", line.port,
       "Where the device is connected: serial:/dev/... (preferably a name under /dev/serial/by-id), "
-      "pty:PATH, tcp://HOST:PORT (a raw serial server, or a VRPN server), unix:PATH (a socket, "
+      "pty:PATH, tcp://HOST:PORT (a raw serial server, or a VRPN server), udp:PORT (datagrams that "
+      "come to this port from this machine, for TUIO and OSC) or "
+      "udp://ADDRESS:PORT (also from others), unix:PATH (a socket, "
       "such as spacenavd's unix:/run/spnav.sock), evdev:/dev/input/... (an input device, "
       "preferably "
       "a name under /dev/input/by-id) or replay:FILE. Empty: no device. `merlin devices` lists "

@@ -82,14 +82,16 @@ TEST_F(PluggedTest, InputDevicesAreToldApart) {
   addInput(3, "SpaceMouse", {{BTN_0}, {}, {REL_X, REL_Y, REL_Z, REL_RX, REL_RY, REL_RZ}});
   addInput(4, "a mouse", {{BTN_LEFT}, {}, {REL_X, REL_Y}});
   addInput(5, "frame", {{BTN_TOUCH}, {ABS_X, ABS_Y, ABS_MT_POSITION_X}});
+  addInput(8, "tablet", {{BTN_LEFT}, {ABS_X, ABS_Y}});
   addInput(6, "presenter", {{KEY_PAGEUP, KEY_PAGEDOWN}, {}});
   addInput(7, "keys", {{KEY_A, KEY_PAGEDOWN}, {}});
   std::vector<std::string> found;
   for (const Plugged& plugged : findPlugged(root()))
     found.push_back(plugged.name + ": " + plugged.kind);
-  EXPECT_EQ(found, (std::vector<std::string>{
-                       "SpaceMouse: space mouse", "a mouse: mouse", "frame: touch screen",
-                       "keys: keyboard", "pad: gamepad", "presenter: clicker", "stick: joystick"}));
+  EXPECT_EQ(found, (std::vector<std::string>{"SpaceMouse: space mouse", "a mouse: mouse",
+                                             "frame: touch screen", "keys: keyboard",
+                                             "pad: gamepad", "presenter: clicker",
+                                             "stick: joystick", "tablet: touch screen"}));
 }
 
 TEST_F(PluggedTest, AnInputDevicesEntryHasItsDriverAndALastingName) {

@@ -40,7 +40,7 @@ struct Configured {
 
 std::string pathOf(const std::string& port) {
   const auto address = parsePort(port);
-  if (!address || address->kind == PortKind::kTcp) return {};
+  if (!address || address->kind == PortKind::kTcp || address->kind == PortKind::kUdp) return {};
   std::error_code error;
   const auto real = std::filesystem::canonical(address->path, error);
   return error ? address->path : real.string();

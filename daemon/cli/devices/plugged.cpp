@@ -99,7 +99,9 @@ std::string kindOf(const Capabilities& has) {
   if (has.keys[BTN_GAMEPAD]) return "gamepad";
   if (has.keys[BTN_JOYSTICK]) return "joystick";
   if (six(has.absolute) || six(has.relative)) return "space mouse";
-  if (has.absolute[ABS_MT_POSITION_X]) return "touch screen";
+  const bool pressed = has.keys[BTN_TOUCH] || has.keys[BTN_MOUSE];
+  if (has.absolute[ABS_MT_POSITION_X] || (has.absolute[ABS_X] && has.absolute[ABS_Y] && pressed))
+    return "touch screen";
   if (has.keys[BTN_MOUSE] && has.relative[REL_X]) return "mouse";
   if (has.keys[KEY_PAGEDOWN] || has.keys[KEY_NEXT]) return has.keys[KEY_A] ? "keyboard" : "clicker";
   return {};

@@ -181,8 +181,8 @@ void addRecord(Command app, Run& run) {
                                    "ball.bytes");
   command
       .option("port", options->port,
-              "Port of the device: serial:/dev/..., pty:PATH, tcp://HOST:PORT, unix:PATH or "
-              "evdev:/dev/input/...")
+              "Port of the device: serial:/dev/..., pty:PATH, tcp://HOST:PORT, udp:PORT, "
+              "unix:PATH or evdev:/dev/input/...")
       .required();
   command.option("-o,--output", options->output, "File to write the transcript into (text)")
       .required();
