@@ -2,7 +2,7 @@
 """Devices on real lines of the kernel, in a virtual machine: ./dev test-vm
 
 Two serial ports and a serial adapter on USB, whose other ends are the emulators on the host, so that
-libserialport's way is taken; a gamepad made by uinput, so that libevdev's way is. Judges health, values
+libserialport's way is taken; a gamepad, a touch frame and a mouse made by uinput, so that libevdev's way is. Judges health, values
 and the order of events; no rates and no latencies, since the machine is emulated.
 """
 import argparse
@@ -19,7 +19,8 @@ MACHINE = None
 EMULATORS = []
 DEVICES = ("glove", "tracker", "ball")
 DRIVERS = {"glove": "cyberglove", "tracker": "fastrak", "ball": "spaceball"}
-EV_KEY, EV_ABS, ABS_RX, BTN_SOUTH = 1, 3, 3, 304
+EV_KEY, EV_REL, EV_ABS, ABS_RX, BTN_SOUTH = 1, 2, 3, 3, 304
+SLOT, MT_X, MT_Y, TRACKING_ID, REL_X, BTN_LEFT = 47, 53, 54, 57, 0, 272
 BALL = {"driver": "usb-serial", "id": "ball", "chardev": "ball-line"}
 
 
@@ -44,7 +45,7 @@ def setUpModule():
         raise unittest.SkipTest(str(missing)) from missing
     MACHINE.run(f"PATH=$PATH:{OPTIONS.bin} HOME=/run; export PATH HOME\n"
                 "mkfifo /run/log; exec 4<>/run/log; cat <&4 >/dev/ttyS0 &\n"
-                "mkfifo /run/pad; exec 5<>/run/pad")
+                "mkfifo /run/input; exec 5<>/run/input")
 
 
 def tearDownModule():
@@ -118,16 +119,19 @@ class Devices(unittest.TestCase):
         self.assertIn("/dev/ttyS2: another program holds this port", said)
         stop(pid)
 
-    def plug(self):
-        pad = int(MACHINE.run("make_gamepad </run/pad >/run/pad.path 2>/run/log & echo $!"))
-        path = vm.until(lambda: MACHINE.run("cat /run/pad.path").strip(), "the gamepad is there")
-        return pad, path
+    def plug(self, kind):
+        """A made-up input device; returns its process id and its file."""
+        maker = int(MACHINE.run(f"rm -f /run/input.path; make_input {kind} </run/input "
+                                ">/run/input.path 2>/run/log & echo $!"))
+        path = vm.until(lambda: MACHINE.run("cat /run/input.path", succeeds=False).strip(), f"the {kind} is there")
+        return maker, path
 
-    def report(self, kind, code, value):
-        MACHINE.run(f"echo {kind} {code} {value} >&5")
+    def report(self, *events):
+        """One report of the input device, of some (type, code, value)."""
+        MACHINE.run("echo " + " ".join(str(number) for event in events for number in event) + " >&5")
 
     def test_3_a_gamepad_is_found_read_grabbed_unplugged_and_back(self):
-        pad, path = self.plug()
+        pad, path = self.plug("gamepad")
         plugged = [p for p in listed()["plugged"] if p["kind"] == "gamepad"]
         self.assertEqual(len(plugged), 1)
         self.assertEqual(plugged[0]["name"], "made-up gamepad of a test")
@@ -138,8 +142,8 @@ class Devices(unittest.TestCase):
         pid = start(suggested | {"name": "ball"})
         vm.until(lambda: health()["ball"] == "ok", "the gamepad streams")
         self.assertEqual(configured()["ball"]["identity"], "made-up gamepad of a test, 4 axes, 2 keys")
-        self.report(EV_ABS, ABS_RX, 32767)
-        self.report(EV_KEY, BTN_SOUTH, 1)
+        self.report((EV_ABS, ABS_RX, 32767))
+        self.report((EV_KEY, BTN_SOUTH, 1))
         vm.until(lambda: self.values() == (1.0, 1), "stick and button are in shared memory")
         samples = configured()["ball"]["samples"]
         vm.until(lambda: configured()["ball"]["samples"] > samples + 20, "the held stick is published again")
@@ -148,13 +152,61 @@ class Devices(unittest.TestCase):
 
         MACHINE.run(f"kill {pad}; wait {pad}", succeeds=False)
         vm.until(lambda: health()["ball"] == "absent", "the gamepad is seen to be gone")
-        pad, again = self.plug()
+        pad, again = self.plug("gamepad")
         self.assertEqual(again, path)
         vm.until(lambda: health()["ball"] == "ok", "the gamepad is back")
-        self.report(EV_ABS, ABS_RX, -32768)
+        self.report((EV_ABS, ABS_RX, -32768))
         vm.until(lambda: self.values() == (-1.0, 0), "what was pressed before is not pressed any more")
         stop(pid)
         MACHINE.run(f"kill {pad}; wait {pad}", succeeds=False)
+
+    def test_4_two_fingers_pinch_on_a_touch_frame_that_is_unplugged(self):
+        frame, path = self.plug("frame")
+        plugged = [p for p in listed()["plugged"] if p["kind"] == "touch screen"]
+        self.assertEqual([p["name"] for p in plugged], ["made-up frame of a test"])
+        suggested = plugged[0]["as"][0]
+        self.assertEqual(suggested, {"name": "touch", "driver": "touch", "port": f"evdev:{path}"})
+        # One finger touches before merlind opens the frame.
+        self.report((EV_ABS, SLOT, 0), (EV_ABS, TRACKING_ID, 7), (EV_ABS, MT_X, 2000), (EV_ABS, MT_Y, 2000))
+        pid = start(suggested)
+        vm.until(lambda: health()["touch"] == "ok", "the frame streams")
+        self.assertEqual(configured()["touch"]["identity"], "made-up frame of a test, 10 fingers")
+        vm.until(lambda: self.fingers() == [[0.25, 0.5]], "the finger that touched before is there")
+        self.report((EV_ABS, SLOT, 1), (EV_ABS, TRACKING_ID, 8), (EV_ABS, MT_X, 6000), (EV_ABS, MT_Y, 2000))
+        vm.until(lambda: self.fingers() == [[0.25, 0.5], [0.75, 0.5]], "two fingers touch")
+        self.report((EV_ABS, SLOT, 0), (EV_ABS, MT_X, 3000), (EV_ABS, SLOT, 1), (EV_ABS, MT_X, 5000))
+        vm.until(lambda: self.fingers() == [[0.375, 0.5], [0.625, 0.5]], "they pinch")
+        self.report((EV_ABS, SLOT, 0), (EV_ABS, TRACKING_ID, -1))
+        vm.until(lambda: self.fingers() == [[0.625, 0.5]], "one goes")
+        MACHINE.run(f"kill {frame}; wait {frame}", succeeds=False)
+        vm.until(lambda: health()["touch"] == "absent", "the frame is seen to be gone")
+        frame, again = self.plug("frame")
+        self.assertEqual(again, path)
+        vm.until(lambda: health()["touch"] == "ok", "the frame is back")
+        self.assertEqual(self.fingers(), [])
+        stop(pid)
+        MACHINE.run(f"kill {frame}; wait {frame}", succeeds=False)
+
+    def test_5_a_pressed_mouse_is_a_finger(self):
+        mouse, path = self.plug("mouse")
+        pid = start({"name": "touch", "driver": "touch", "port": f"evdev:{path}", "touch": {"mouse_counts": 1000}})
+        vm.until(lambda: health()["touch"] == "ok", "the mouse streams")
+        self.report((EV_KEY, BTN_LEFT, 1))
+        vm.until(lambda: self.fingers() == [[0.5, 0.5]], "it touches in the middle")
+        self.report((EV_REL, 1, 250))
+        vm.until(lambda: self.fingers() == [[0.5, 0.75]], "it drags")
+        self.report((EV_KEY, BTN_LEFT, 0))
+        vm.until(lambda: self.fingers() == [], "it goes")
+        stop(pid)
+        MACHINE.run(f"kill {mouse}; wait {mouse}", succeeds=False)
+
+    def fingers(self):
+        """The places of the fingers on the surface."""
+        fields = json.loads(MACHINE.run("merlin shm dump --json"))["/merlin-devices"]
+        if not fields["touch.fingers"].get("value"):  # before the first sample, too
+            return []
+        places = fields["touch.position"]["value"]
+        return [places[2 * i:2 * i + 2] for i in range(fields["touch.fingers"]["value"])]
 
     def values(self):
         fields = json.loads(MACHINE.run("merlin shm dump --json"))["/merlin-devices"]

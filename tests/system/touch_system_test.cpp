@@ -1,0 +1,178 @@
+// Touch surfaces and a tracker over the network at a real merlind: a touch frame whose records come
+// over a pseudo-terminal, TUIO and OSC that Python's standard library packs, OSC of liblo's
+// oscsend; recorded and replayed. That the kernel's own devices give such records is seen in the
+// virtual machine (tests/vm).
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <linux/input-event-codes.h>
+#include <sys/socket.h>
+
+#include "daemon/base/unique_fd.h"
+#include "drivers/io/pty_master.h"
+#include "drivers/port/evdev_line.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+// A port that is free: the system has just assigned it to a socket that was closed again.
+std::string freeUdpPort() {
+  const UniqueFd probe(::socket(AF_INET, SOCK_DGRAM, 0));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  if (::bind(probe.get(), reinterpret_cast<sockaddr*>(&address), size) != 0) return "";
+  ::getsockname(probe.get(), reinterpret_cast<sockaddr*>(&address), &size);
+  return std::to_string(ntohs(address.sin_port));
+}
+
+std::vector<std::string> sender(const std::string& what, const std::string& port) {
+  return {"python3", "-B", kSource + "/tests/support/send_osc.py", what, port};
+}
+
+MerlindOptions devicesAlone(const nlohmann::json& entry) {
+  MerlindOptions options;
+  options.role = "devices";
+  options.emulate = false;
+  options.also = onlyDevice(entry);
+  return options;
+}
+
+std::optional<TouchSample> newestTouch(Merlind& merlind, const std::string& name) {
+  const auto* const devices = merlind.devices();
+  const auto* const touch = devices ? devices->touch(name) : nullptr;
+  return touch ? touch->samples->newest() : std::nullopt;
+}
+
+bool fingersAre(Merlind& merlind, const std::string& name, std::uint32_t fingers) {
+  return eventually([&] {
+    const auto touch = newestTouch(merlind, name);
+    return touch && touch->fingers == fingers;
+  });
+}
+
+std::optional<TrackerSample> newestPose(Merlind& merlind, std::size_t station) {
+  const auto* const devices = merlind.devices();
+  return devices ? devices->tracker()->stations[station - 1]->newest() : std::nullopt;
+}
+
+std::string record(EvdevRecord::Kind kind, int code = 0, std::int32_t value = 0, int high = 0) {
+  EvdevRecord r;
+  r.kind = kind;
+  r.code = static_cast<std::uint16_t>(code);
+  r.value = value;
+  r.high = high;
+  std::string out;
+  append(r, out);
+  return out;
+}
+
+TEST(TouchSystem, AFrameOfTheKernelTouches) {
+  const TempDir dir;
+  const auto line = io::PtyMaster::open(dir / "frame");
+  ASSERT_TRUE(line);
+  const auto say = [&](const std::string& bytes) {
+    (void)!::write(line->fd(), bytes.data(), bytes.size());  // nobody may have opened it yet
+  };
+  std::string description;
+  for (const auto& [code, high] : {std::pair{ABS_MT_SLOT, 9},
+                                   {ABS_MT_TRACKING_ID, 65535},
+                                   {ABS_MT_POSITION_X, 1000},
+                                   {ABS_MT_POSITION_Y, 500}})
+    description += record(EvdevRecord::kAxis, code, 0, high);
+  description += record(EvdevRecord::kReady);
+  Merlind merlind(dir, "", "frame",
+                  devicesAlone(deviceEntry("frame", "touch", "pty:" + dir / "frame")));
+  EXPECT_TRUE(eventually([&] {
+    say(description);
+    const auto health = merlind.health("frame");
+    return health && health->state == HealthState::kOk;
+  })) << merlind.process().output();
+  const auto moved = [](int code, int value) { return record(EvdevRecord::kMoved, code, value); };
+  say(moved(ABS_MT_SLOT, 0) + moved(ABS_MT_TRACKING_ID, 1) + moved(ABS_MT_POSITION_X, 250) +
+      moved(ABS_MT_POSITION_Y, 250) + moved(ABS_MT_SLOT, 1) + moved(ABS_MT_TRACKING_ID, 2) +
+      moved(ABS_MT_POSITION_X, 750) + moved(ABS_MT_POSITION_Y, 250) + record(EvdevRecord::kReport));
+  EXPECT_TRUE(fingersAre(merlind, "frame", 2));
+  EXPECT_FLOAT_EQ(newestTouch(merlind, "frame")->position[1][0], 0.75F);
+  EXPECT_FLOAT_EQ(newestTouch(merlind, "frame")->aspect, 2);
+  say(moved(ABS_MT_TRACKING_ID, -1) + record(EvdevRecord::kReport));
+  EXPECT_TRUE(fingersAre(merlind, "frame", 1));
+}
+
+TEST(TouchSystem, FingersOfATuioTrackerTouchUntilItIsSilent) {
+  const TempDir dir;
+  const std::string port = freeUdpPort();
+  Merlind merlind(dir, "", "tuio", devicesAlone(deviceEntry("table", "tuio", "udp:" + port)));
+  ASSERT_TRUE(merlind.healthIs("table", HealthState::kOk)) << merlind.process().output();
+  EXPECT_STREQ(merlind.health("table")->reason, "no TUIO frame has come yet");
+  Process tracker(sender("tuio", port));
+  EXPECT_TRUE(fingersAre(merlind, "table", 2)) << tracker.output();
+  const auto touch = newestTouch(merlind, "table");
+  EXPECT_FLOAT_EQ(touch->position[0][1], 0.25F);
+  EXPECT_FLOAT_EQ(touch->position[1][1], 0.75F);
+  EXPECT_NEAR(touch->position[0][0] + touch->position[1][0], 1, 1e-5);
+  const std::uint32_t id = touch->id[0];
+  EXPECT_TRUE(eventually([&] { return newestTouch(merlind, "table")->counter > 20; }));
+  EXPECT_EQ(newestTouch(merlind, "table")->id[0], id);
+  EXPECT_EQ(merlind.health("table")->bad_packets, 0u);
+  tracker.kill(SIGKILL);
+  EXPECT_TRUE(fingersAre(merlind, "table", 0));
+  EXPECT_TRUE(eventually(
+      [&] { return std::string_view(merlind.health("table")->reason).starts_with("silent"); }));
+  EXPECT_EQ(merlind.health("table")->state, HealthState::kOk);
+}
+
+TEST(TouchSystem, WhatATuioTrackerSentIsRecordedAndReplayed) {
+  const TempDir dir;
+  const std::string port = freeUdpPort();
+  Process tracker(sender("tuio", port));
+  const Outcome recorded = run({kMerlin, "record", "udp:" + port, "--device", "tuio", "--seconds",
+                                "1", "-o", dir / "table.bytes"});
+  ASSERT_EQ(recorded.status, 0) << recorded.output;
+  Merlind merlind(dir, "", "again",
+                  devicesAlone(deviceEntry("table", "tuio", "replay:" + dir / "table.bytes")));
+  EXPECT_TRUE(fingersAre(merlind, "table", 2)) << merlind.process().output();
+}
+
+TEST(TouchSystem, PosesByOscAreTheTrackerAndTheirEndIsSaid) {
+  const TempDir dir;
+  const std::string port = freeUdpPort();
+  Merlind merlind(dir, "", "osc",
+                  devicesAlone(deviceEntry("tracker", "osc", "udp:" + port, {{"scale", 0.001}})));
+  EXPECT_TRUE(eventually([&] {
+    const auto health = merlind.health("tracker");
+    return health && std::string_view(health->reason) == "no OSC message comes to the port";
+  }));
+  Process tracker(sender("osc", port));
+  ASSERT_TRUE(merlind.healthIs("tracker", HealthState::kOk)) << tracker.output();
+  const auto pose = newestPose(merlind, 1);
+  ASSERT_TRUE(pose);
+  EXPECT_FLOAT_EQ(pose->position_m[1], 0.5F);
+  EXPECT_FLOAT_EQ(pose->orientation_wxyz[0], 0.8F);
+  EXPECT_FLOAT_EQ(pose->orientation_wxyz[2], 0.6F);
+  EXPECT_TRUE(eventually([&] { return newestPose(merlind, 1)->counter > pose->counter + 20; }));
+  tracker.kill(SIGKILL);
+  EXPECT_TRUE(merlind.healthIs("tracker", HealthState::kFailed));
+}
+
+TEST(TouchSystem, PosesOfLiblosSenderAreRead) {
+  if (run({"which", "oscsend"}).status != 0)
+    GTEST_SKIP() << "oscsend (package liblo-tools) is not installed";
+  const TempDir dir;
+  const std::string port = freeUdpPort();
+  Merlind merlind(dir, "", "liblo", devicesAlone(deviceEntry("tracker", "osc", "udp:" + port)));
+  EXPECT_TRUE(eventually([&] {
+    EXPECT_EQ(run({"oscsend", "127.0.0.1", port, "/tracker/3/pose", "fffdddd", "1.5", "-0.5", "2",
+                   "0", "0", "0", "1"})
+                  .status,
+              0);
+    return newestPose(merlind, 3).has_value();
+  })) << merlind.process().output();
+  EXPECT_FLOAT_EQ(newestPose(merlind, 3)->position_m[0], 1.5F);
+  EXPECT_FLOAT_EQ(newestPose(merlind, 3)->position_m[2], 2);
+  EXPECT_FLOAT_EQ(newestPose(merlind, 3)->orientation_wxyz[0], 1);
+}
+
+}  // namespace
+}  // namespace merlin::test
