@@ -320,8 +320,9 @@ INSTANTIATE_TEST_SUITE_P(
                   "/devices/0/spacenav/axis_map is"},
         BadDevice{R"("driver": "cyberglove", "baud": 31337)",
                   "/devices/0/baud is 31337; allowed are 1200, 2400, 4800"},
-        BadDevice{R"("driver": "spaceball", "port": "evdev:/dev/input/event3")",
-                  "which the driver \"spaceball\" does not read; set \"driver\": \"evdev\""},
+        BadDevice{
+            R"("driver": "spaceball", "port": "evdev:/dev/input/event3")",
+            "which the driver \"spaceball\" does not read; the drivers \"evdev\" and \"touch\" do"},
         BadDevice{
             R"("driver": "evdev", "evdev": {"axes": ["x", "up", "none", "none", "none", "none"]})",
             "/devices/0/evdev/axes/1 is \"up\"; allowed are the kernel's name of an axis"},
